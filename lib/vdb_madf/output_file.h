@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <string>
+
+namespace vdb_madf {
+
+/// A file that appears whole or not at all: write to temporaryPath() (same folder), then commit()
+/// syncs it to disk and renames it over `path`. Destroyed without commit: the temporary is removed.
+class OutputFile {
+ public:
+  /// @throw IoError if a file cannot be made there.
+  explicit OutputFile(std::string path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  const std::string& path() const { return path_; }
+  const std::string& temporaryPath() const { return temporaryPath_; }
+  /// @throw IoError if syncing or renaming fails.
+  void commit();
+
+ private:
+  std::string path_, temporaryPath_;
+  bool committed_ = false;
+};
+
+}  // namespace vdb_madf

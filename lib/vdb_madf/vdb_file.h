@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vdb_madf/grid_types.h"
+
+namespace vdb_madf {
+
+/// Registers OpenVDB's grid types and this library's own metadata type. Call once before any file
+/// is read or written, or a grid is given graph metadata. Thread-safe; further calls do nothing.
+void initialize();
+
+struct VdbReadOptions {
+  /// Largest number of voxels that active tiles and leaves of one grid may hold, and the largest
+  /// |coordinate|: a file beyond them is refused before its tiles are touched.
+  int64_t maxVoxels = int64_t(1) << 32;
+  int maxCoordinate = 1 << 20;
+};
+
+/// All grids of a .vdb file, read eagerly (no delayed loading) from a file that may be corrupt.
+/// Every read is checked; linked against OpenVDB before 11, a program also needs the checked
+/// decompression of tools/ for files that are not trusted.
+/// @throw IoError, one line that names the file, if it is missing, truncated, corrupt or not VDB.
+std::vector<openvdb::GridBase::Ptr> readVdb(const std::string& path,
+                                            const VdbReadOptions& options = {});
+
+/// Writes the grids whole or not at all: a temporary file beside `path`, every write checked,
+/// synced to disk, then renamed. The file's bytes depend on its grids alone (OpenVDB's random UUID
+/// is replaced by one derived from the content).
+/// @throw IoError, one line that names the file (disk full, no permission, ...); Interrupted.
+void writeVdb(const std::string& path, const std::vector<openvdb::GridBase::ConstPtr>& grids,
+              Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf
