@@ -1,2 +1,148 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/leaf_index.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+
+#include "vdb_madf/detail/parallel.h"
+#include "vdb_madf/errors.h"
+
+namespace vdb_madf {
+
+namespace {
+
+constexpr LeafIndex::Mask kFullMask = {~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull};
+
+/// Leaves per task when a leaf costs about a microsecond.
+constexpr size_t kLeafGrain = 64;
+
+struct SourceLeaf {
+  Coord origin;
+  const MaskTree::LeafNodeType* leaf;  // null: part of an active tile
+};
+
+/// Calls f(box) for every active tile.
+template <typename F>
+void forEachActiveTile(const MaskTree& tree, const F& f) {
+  auto tile = tree.cbeginValueOn();
+  tile.setMaxDepth(MaskTree::ValueOnCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile) {
+    CoordBBox box;
+    tile.getBoundingBox(box);
+    f(box);
+  }
+}
+
+/// The active bounding box; checks the limits before a tile is cut into leaves.
+CoordBBox checkedBoundingBox(const MaskTree& tree) {
+  size_t leaves = tree.leafCount();
+  forEachActiveTile(tree, [&](const CoordBBox& box) { leaves += box.volume() / 512; });
+  if (leaves > LeafIndex::kMaxLeaves)
+    throw InvalidInput("the object touches " + std::to_string(leaves) +
+                       " leaf nodes, more than the " + std::to_string(LeafIndex::kMaxLeaves) +
+                       " that 32-bit voxel ids can hold: crop or coarsen the volume");
+  CoordBBox box;
+  if (!tree.evalActiveVoxelBoundingBox(box)) return {};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.min()[axis] < -LeafIndex::kMaxCoordinate || box.max()[axis] > LeafIndex::kMaxCoordinate)
+      throw InvalidInput("the object has coordinates beyond +-" +
+                         std::to_string(LeafIndex::kMaxCoordinate) +
+                         ": move it nearer to the origin");
+    if (int64_t(box.max()[axis]) - box.min()[axis] + 1 > LeafIndex::kMaxExtent)
+      throw InvalidInput("the object is longer than " + std::to_string(LeafIndex::kMaxExtent) +
+                         " voxels along an axis, beyond which squared distances overflow: crop or "
+                         "coarsen the volume");
+  }
+  return box;
+}
+
+std::vector<SourceLeaf> sortedLeaves(const MaskTree& tree) {
+  std::vector<SourceLeaf> leaves;
+  for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf)
+    if (!leaf->isEmpty()) leaves.push_back({leaf->origin(), &*leaf});
+  forEachActiveTile(tree, [&](const CoordBBox& box) {
+    for (int x = box.min().x(); x <= box.max().x(); x += 8)
+      for (int y = box.min().y(); y <= box.max().y(); y += 8)
+        for (int z = box.min().z(); z <= box.max().z(); z += 8)
+          leaves.push_back({Coord(x, y, z), nullptr});
+  });
+  tbb::parallel_sort(leaves.begin(), leaves.end(),
+                     [](const auto& a, const auto& b) { return a.origin < b.origin; });
+  return leaves;
+}
+
+/// Links each leaf to the one 8 voxels further along an axis. Shifting keeps the order of origins,
+/// so one merge-like walk finds all pairs.
+void linkNeighbors(const std::vector<Coord>& origins, int axis,
+                   std::vector<LeafIndex::Neighbors>& neighbors) {
+  size_t j = 0;
+  for (size_t i = 0; i < origins.size(); ++i) {
+    Coord target = origins[i];
+    target[axis] += 8;
+    while (j < origins.size() && origins[j] < target) ++j;
+    if (j < origins.size() && origins[j] == target) {
+      neighbors[i][2 * axis + 1] = uint32_t(j);
+      neighbors[j][2 * axis] = uint32_t(i);
+    }
+  }
+}
+
+/// Makes the leaves in parallel, then hangs them into a tree; fill(id) gives a voxel's value.
+template <typename Fill>
+Int32Grid::Ptr makeGrid(const LeafIndex& index, const std::string& name, Interrupter* interrupter,
+                        const Fill& fill) {
+  using Leaf = Int32Tree::LeafNodeType;
+  std::vector<std::unique_ptr<Leaf>> leaves(index.leafCount());
+  detail::parallelFor(leaves.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      leaves[i] = std::make_unique<Leaf>(openvdb::PartialCreate(), index.origin(i));
+      leaves[i]->buffer().allocate();
+      int32_t* values = leaves[i]->buffer().data();
+      for (size_t k = 0; k < 512; ++k) values[k] = fill(i * 512 + k);
+      Leaf::NodeMaskType mask;
+      for (size_t x = 0; x < 8; ++x) mask.template getWord<uint64_t>(int(x)) = index.mask(i)[x];
+      leaves[i]->setValueMask(mask);
+    }
+  });
+  auto grid = Int32Grid::create(0);
+  grid->setName(name);
+  openvdb::tree::ValueAccessor<Int32Tree, false> tree(grid->tree());
+  for (auto& leaf : leaves) tree.addLeaf(leaf.release());
+  return grid;
+}
+
+}  // namespace
+
+LeafIndex::LeafIndex(const MaskGrid& object) {
+  const MaskTree& tree = object.constTree();
+  boundingBox_ = checkedBoundingBox(tree);
+  const std::vector<SourceLeaf> leaves = sortedLeaves(tree);
+  origins_.resize(leaves.size());
+  masks_.resize(leaves.size());
+  neighbors_.assign(leaves.size(), {kNone, kNone, kNone, kNone, kNone, kNone});
+  for (size_t i = 0; i < leaves.size(); ++i) {
+    origins_[i] = leaves[i].origin;
+    masks_[i] = kFullMask;
+    if (leaves[i].leaf)
+      for (int x = 0; x < 8; ++x)
+        masks_[i][x] = leaves[i].leaf->getValueMask().template getWord<uint64_t>(x);
+    for (const uint64_t word : masks_[i]) voxelCount_ += __builtin_popcountll(word);
+  }
+  for (int axis = 0; axis < 3; ++axis) linkNeighbors(origins_, axis, neighbors_);
+}
+
+Int32Grid::Ptr toGrid(const LeafIndex& index, const VoxelArray<int32_t>& values,
+                      const std::string& name, Interrupter* interrupter) {
+  return makeGrid(index, name, interrupter, [&](size_t id) { return values[id]; });
+}
+
+Int32Grid::Ptr toGrid(const LeafIndex& index, const VoxelArray<uint32_t>& values,
+                      const std::vector<int32_t>& table, const std::string& name,
+                      Interrupter* interrupter) {
+  return makeGrid(index, name, interrupter, [&](size_t id) { return table[values[id]]; });
+}
+
+}  // namespace vdb_madf

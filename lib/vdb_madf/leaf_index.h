@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "vdb_madf/grid_types.h"
@@ -16,7 +17,8 @@ namespace vdb_madf {
 /// leaf.
 using VoxelId = uint32_t;
 
-/// One value per voxel of each leaf of a LeafIndex, at VoxelId; uninitialised when made.
+/// One value per voxel of each leaf of a LeafIndex, at VoxelId; uninitialised when made. Every
+/// stage leaves 0 at the voxels outside the object.
 template <typename T>
 class VoxelArray {
  public:
@@ -46,7 +48,7 @@ class LeafIndex {
   static constexpr size_t kMaxLeaves = 0xffffffffu / 512;
   /// Squared distances fit in 32 bits up to this many voxels a side: 3 n^2 < 2^31.
   static constexpr int kMaxExtent = 26754;
-  static constexpr int kMaxCoordinate = 1 << 30;
+  static constexpr int kMaxCoordinate = (1 << 30) - 1;
 
   /// Bit y*8 + z of word x is voxel (x, y, z) of the leaf.
   using Mask = std::array<uint64_t, 8>;
@@ -82,9 +84,13 @@ class LeafIndex {
   int64_t voxelCount_ = 0;
 };
 
-/// An Int32 grid with the topology of X and the array's values; background 0. The array is consumed
-/// leaf by leaf... its memory is freed at the end.
+/// An Int32 grid with the topology of X and the array's values; background 0, inactive elsewhere.
+/// @throw Interrupted
 Int32Grid::Ptr toGrid(const LeafIndex& index, const VoxelArray<int32_t>& values,
                       const std::string& name, Interrupter* interrupter = nullptr);
+/// The same of table[values[id]].
+Int32Grid::Ptr toGrid(const LeafIndex& index, const VoxelArray<uint32_t>& values,
+                      const std::vector<int32_t>& table, const std::string& name,
+                      Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

@@ -6,6 +6,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <atomic>
+
 #include "vdb_madf/errors.h"
 
 namespace vdb_madf::detail {

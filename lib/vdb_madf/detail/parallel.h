@@ -3,13 +3,18 @@
 
 #pragma once
 
-#include <atomic>
+#include <tbb/enumerable_thread_specific.h>
+
 #include <cstddef>
 #include <functional>
 
 #include "vdb_madf/grid_types.h"
 
 namespace vdb_madf::detail {
+
+/// Scratch space of one thread: local() is made on first use.
+template <typename T>
+using PerThread = tbb::enumerable_thread_specific<T>;
 
 /// Runs body(begin, end) over [0, count) in chunks of at least `grain` items, in parallel. The
 /// interrupter is asked between chunks, with the percentage done.
