@@ -27,11 +27,16 @@ struct Obstacles {
 Obstacles resolveBoundary(const LeafIndex& index, Boundary boundary,
                           const std::optional<CoordBBox>& domain);
 
-/// Exact squared Euclidean distance D(p) = min |p - q|^2 over background voxels q, for p in X;
-/// voxels squared, >= 1 on X, 0 elsewhere. Three separable passes (Meijster et al. 2000), each
-/// restricted to the runs of X in its rows: a background voxel ends whatever lies beyond it.
+struct SquaredDistance {
+  VoxelArray<int32_t> values;  ///< D, voxels squared: >= 1 on X, 0 elsewhere
+  int32_t largest = 0;         ///< 0 if X is empty
+};
+
+/// Exact squared Euclidean distance D(p) = min |p - q|^2 over background voxels q, for p in X.
+/// Separable passes (Meijster et al. 2000) along x, y, z, each within the runs of X in its rows: a
+/// background voxel ends whatever lies beyond it, so the sweeps never leave X.
 /// @throw InvalidInput if there is no background (X fills an open domain); Interrupted.
-VoxelArray<int32_t> squaredDistance(const LeafIndex& index, const Obstacles& obstacles,
-                                    Interrupter* interrupter = nullptr);
+SquaredDistance squaredDistance(const LeafIndex& index, const Obstacles& obstacles,
+                                Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vdb_madf/detail/parallel.h"
+#include "vdb_madf/leaf_index.h"
+
+namespace vdb_madf::detail {
+
+/// Pencils per task: a pencil of a few leaves costs some tens of microseconds.
+constexpr size_t kPencilGrain = 8;
+
+/// First leaves of the pencils along an axis: the leaves without a neighbour before them.
+inline std::vector<uint32_t> pencilStarts(const LeafIndex& index, int axis) {
+  std::vector<uint32_t> starts;
+  for (size_t i = 0; i < index.leafCount(); ++i)
+    if (index.neighbors(i)[2 * axis] == LeafIndex::kNone) starts.push_back(uint32_t(i));
+  return starts;
+}
+
+/// The leaves that follow each other without a gap along an axis, from `start` on.
+inline void collectPencil(const LeafIndex& index, int axis, uint32_t start,
+                          std::vector<uint32_t>& leaves) {
+  leaves.clear();
+  for (uint32_t i = start; i != LeafIndex::kNone; i = index.neighbors(i)[2 * axis + 1])
+    leaves.push_back(i);
+}
+
+/// The 64 rows of a pencil are numbered by the other two coordinates, the slower one first. Offsets
+/// within a leaf (x*64 + y*8 + z) of the voxel at position t (0..7) of a row:
+template <int Axis>
+constexpr int rowOffset(int row) {
+  if (Axis == 0) return row;                          // row = y*8 + z
+  if (Axis == 1) return (row >> 3) * 64 + (row & 7);  // row = x*8 + z
+  return row * 8;                                     // row = x*8 + y
+}
+template <int Axis>
+constexpr int rowStride() {
+  return Axis == 0 ? 64 : Axis == 1 ? 8 : 1;
+}
+
+}  // namespace vdb_madf::detail
