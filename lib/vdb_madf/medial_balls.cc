@@ -1,2 +1,75 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/medial_balls.h"
+
+#include "vdb_madf/detail/parallel.h"
+#include "vdb_madf/detail/voxels.h"
+
+namespace vdb_madf {
+
+void VoxelSet::rankMembers() {
+  before_.resize(words_.size());
+  uint32_t count = 0;
+  for (size_t i = 0; i < words_.size(); ++i) {
+    before_[i] = count;
+    count += uint32_t(__builtin_popcountll(words_[i]));
+  }
+  size_ = count;
+}
+
+std::vector<VoxelId> VoxelSet::members() const {
+  std::vector<VoxelId> ids;
+  ids.reserve(size_);
+  for (size_t i = 0; i < words_.size(); ++i)
+    detail::forEachBit(words_[i], [&](int bit) { ids.push_back(VoxelId(i * 64 + bit)); });
+  return ids;
+}
+
+VoxelSet medialBalls(const LeafIndex& index, const PowerMap& map, Interrupter* interrupter) {
+  VoxelSet balls(index.leafCount());
+  detail::parallelFor(index.leafCount(), detail::kLeafGrain, interrupter,
+                      [&](size_t begin, size_t end) {
+                        VoxelId last = ~VoxelId(0);
+                        detail::forEachVoxel(index, begin, end, [&](VoxelId p) {
+                          if (map.site[p] == last) return;
+                          last = map.site[p];
+                          balls.insertAtomic(last);
+                        });
+                      });
+  balls.rankMembers();
+  return balls;
+}
+
+MedialBallTable measureBalls(const LeafIndex& index, const PowerMap& map, const VoxelSet& balls,
+                             Interrupter* interrupter) {
+  MedialBallTable table;
+  table.cellSize.assign(balls.size(), 0);
+  table.squaredRadius.assign(balls.size(), 0);
+  detail::parallelFor(index.leafCount(), detail::kLeafGrain, interrupter,
+                      [&](size_t begin, size_t end) {
+                        // Neighbours along z mostly share their ball: count runs, add once.
+                        VoxelId first = 0;
+                        uint32_t run = 0;
+                        const auto flush = [&] {
+                          if (run == 0) return;
+                          const uint32_t ball = balls.rank(map.site[first]);
+                          __atomic_fetch_add(&table.cellSize[ball], run, __ATOMIC_RELAXED);
+                          __atomic_store_n(&table.squaredRadius[ball],
+                                           siteSquaredRadius(index, map, first), __ATOMIC_RELAXED);
+                        };
+                        detail::forEachVoxel(index, begin, end, [&](VoxelId p) {
+                          if (run > 0 && map.site[p] == map.site[first]) {
+                            ++run;
+                            return;
+                          }
+                          flush();
+                          first = p;
+                          run = 1;
+                        });
+                        flush();
+                      });
+  return table;
+}
+
+}  // namespace vdb_madf
