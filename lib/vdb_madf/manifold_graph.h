@@ -36,4 +36,15 @@ struct ManifoldGraph {
   std::vector<Edge> edges;
 };
 
+class LeafIndex;
+struct Flow;
+template <typename T>
+class VoxelArray;
+
+/// The graph of a flow; \p power is the (filtered) power map that it followed. Height of a voxel:
+/// H(p) = -power(p) = D(s) - |p - s|^2 with s = Pi(p).
+/// @throw Interrupted
+ManifoldGraph manifoldGraph(const LeafIndex& index, const Flow& flow,
+                            const VoxelArray<int32_t>& power, Interrupter* interrupter = nullptr);
+
 }  // namespace vdb_madf
