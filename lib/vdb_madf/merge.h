@@ -29,6 +29,9 @@ struct Merging {
       representative;  ///< node of grain g at g - 1: largest D, then smaller coordinate
 };
 
+/// @throw InvalidInput unless theta is in [-1, 1] (NaN is not).
+void checkMergeOptions(const MergeOptions& options);
+
 /// Merges critical points by the angle of their balls (paper, section 5.2, eq. 7), then by the
 /// neck.
 ///
@@ -37,7 +40,7 @@ struct Merging {
 /// order (then ascending pair) merge two classes if h >= (1 - theta)/2 * min(top, top), top =
 /// largest D of a class so far. Grains are numbered in lexicographic order of their
 /// representatives.
-/// @throw InvalidInput unless theta is in [-1, 1].
+/// @throw InvalidInput as checkMergeOptions.
 Merging merge(const ManifoldGraph& graph, const MergeOptions& options = {});
 
 }  // namespace vdb_madf
