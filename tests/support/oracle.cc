@@ -1,0 +1,384 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "support/oracle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+
+namespace vdb_madf::test {
+
+namespace {
+
+int64_t squaredLength(const Coord& d) {
+  return int64_t(d.x()) * d.x() + int64_t(d.y()) * d.y() + int64_t(d.z()) * d.z();
+}
+
+/// A ball as one voxel p sees it: pi_x(p), D(x), x.
+struct Candidate {
+  int64_t power = 0;
+  int64_t squaredRadius = 0;
+  Coord center;
+};
+
+/// Section 3: least power; equal: the larger D; equal too: the lexicographically smaller
+/// coordinate.
+bool better(const Candidate& a, const Candidate& b) {
+  if (a.power != b.power) return a.power < b.power;
+  if (a.squaredRadius != b.squaredRadius) return a.squaredRadius > b.squaredRadius;
+  return std::make_tuple(a.center.x(), a.center.y(), a.center.z()) <
+         std::make_tuple(b.center.x(), b.center.y(), b.center.z());
+}
+
+Candidate candidate(const Coord& p, const Coord& center, int64_t squaredRadius) {
+  return {squaredLength(p - center) - squaredRadius, squaredRadius, center};
+}
+
+}  // namespace
+
+// ---------------------------------------------------------------------------------- Section 1
+
+bool oracleBoundary(const ObjectVolume& object, Boundary boundary,
+                    const std::optional<CoordBBox>& domain) {
+  if (domain)
+    for (int i = 0; i < object.size(); ++i)
+      if (object[i] && !domain->isInside(object.coord(i)))
+        throw Undefined("the object leaves the domain");
+  if (boundary == Boundary::open && !domain) throw Undefined("an open boundary needs a domain");
+  if (boundary == Boundary::automatic) return domain.has_value();
+  return boundary == Boundary::open;
+}
+
+// ---------------------------------------------------------------------------------- Section 2
+
+DenseVolume<int64_t> oracleDistance(const ObjectVolume& object, bool open,
+                                    const CoordBBox& domain) {
+  // Only the background voxels that have a 6-neighbour in X can be nearest to a p in X: from the
+  // nearest one, q, a step along an axis in which q and p differ leads nearer to p (and stays in a
+  // box that holds both), so what lies there is not background; then it is in X.
+  CoordBBox around = object.box();
+  if (!around.empty()) around.expand(1);
+  const ObjectVolume space(around);
+  std::vector<Coord> background;
+  for (int i = 0; i < space.size(); ++i) {
+    const Coord q = space.coord(i);
+    if (object.get(q, 0) || (open && !domain.isInside(q))) continue;
+    for (const Coord& step : kSixNeighbors)
+      if (object.get(q + step, 0)) {
+        background.push_back(q);
+        break;
+      }
+  }
+  DenseVolume<int64_t> distance(object.box());
+  for (int i = 0; i < object.size(); ++i) {
+    if (!object[i]) continue;
+    if (background.empty()) throw Undefined("there is no background");
+    const Coord p = object.coord(i);
+    int64_t least = squaredLength(p - background.front());
+    for (const Coord& q : background) {
+      least = std::min(least, squaredLength(p - q));
+      if (least == 1) break;  // nothing is nearer
+    }
+    distance[i] = least;
+  }
+  return distance;
+}
+
+// ---------------------------------------------------------------------------------- Section 3
+
+OraclePower oraclePower(const ObjectVolume& object, const DenseVolume<int64_t>& distance,
+                        const ObjectVolume& sites) {
+  // A negative power means |p - x|^2 < D(x), so x lies within `reach` of p along each axis.
+  // (For the power map itself nothing is lost: the ball at p is a candidate, of power -D(p) < 0.)
+  int64_t largest = 0;
+  for (int i = 0; i < sites.size(); ++i)
+    if (sites[i]) largest = std::max(largest, distance[i]);
+  int reach = 0;
+  while (int64_t(reach + 1) * (reach + 1) < largest) ++reach;
+
+  OraclePower result{SiteMap(object.box(), kNoSite), DenseVolume<int64_t>(object.box())};
+  for (int i = 0; i < object.size(); ++i) {
+    if (!object[i]) continue;
+    const Coord p = object.coord(i);
+    CoordBBox window(p - Coord(reach), p + Coord(reach));
+    window.intersect(object.box());
+    Candidate best;  // of power 0: only a negative one beats it
+    for (int x = window.min().x(); x <= window.max().x(); ++x)
+      for (int y = window.min().y(); y <= window.max().y(); ++y) {
+        int site = object.index(Coord(x, y, window.min().z()));
+        for (int z = window.min().z(); z <= window.max().z(); ++z, ++site) {
+          if (!sites[site]) continue;
+          const Candidate other = candidate(p, Coord(x, y, z), distance[site]);
+          if (other.power >= 0 || other.power > best.power || !better(other, best)) continue;
+          best = other;
+          result.site[i] = site;
+        }
+      }
+    result.power[i] = best.power;
+  }
+  return result;
+}
+
+std::vector<MedialBall> oracleBalls(const OraclePower& power,
+                                    const DenseVolume<int64_t>& distance) {
+  std::map<int, int64_t> cellSize;
+  for (int i = 0; i < power.site.size(); ++i)
+    if (power.site[i] != kNoSite) ++cellSize[power.site[i]];
+  std::vector<MedialBall> balls;
+  for (const auto& [site, size] : cellSize)
+    balls.push_back({distance.coord(site), int32_t(distance[site]), size});
+  return balls;
+}
+
+// ---------------------------------------------------------------------------------- Section 5
+
+DenseVolume<int> sixComponents(const ObjectVolume& object) {
+  DenseVolume<int> component(object.box());
+  int count = 0;
+  for (int i = 0; i < object.size(); ++i) {
+    if (!object[i] || component[i]) continue;
+    component[i] = ++count;
+    std::vector<Coord> front{object.coord(i)};
+    while (!front.empty()) {
+      const Coord p = front.back();
+      front.pop_back();
+      for (const Coord& step : kSixNeighbors) {
+        const Coord q = p + step;
+        if (!object.get(q, 0) || component[q]) continue;
+        component[q] = count;
+        front.push_back(q);
+      }
+    }
+  }
+  return component;
+}
+
+ObjectVolume oracleKeptBalls(const ObjectVolume& object, const std::vector<MedialBall>& balls,
+                             int64_t gamma) {
+  ObjectVolume kept(object.box());
+  const DenseVolume<int> component = sixComponents(object);
+  std::map<int, MedialBall> best;  // of each component: largest D, then smaller coordinate
+  std::set<int> served;            // components with a kept ball
+  for (const MedialBall& ball : balls) {
+    const int number = component[ball.center];
+    // Balls come in lexicographic order, so an equal one is not better.
+    const auto known = best.find(number);
+    if (known == best.end() || ball.squaredRadius > known->second.squaredRadius)
+      best[number] = ball;
+    if (ball.cellSize < gamma) continue;
+    kept[ball.center] = 1;
+    served.insert(number);
+  }
+  for (const auto& [number, ball] : best)
+    if (!served.count(number)) kept[ball.center] = 1;
+  return kept;
+}
+
+OraclePower oracleFilteredPower(const ObjectVolume& object, const DenseVolume<int64_t>& distance,
+                                const ObjectVolume& kept) {
+  // Step 2: covered voxels, those that get a site here.
+  OraclePower result = oraclePower(object, distance, kept);
+  std::vector<int> uncovered;
+  for (int i = 0; i < object.size(); ++i)
+    if (object[i] && result.site[i] == kNoSite) uncovered.push_back(i);
+
+  // Step 3: synchronous rounds, all from the sites at the end of the round before.
+  for (bool changed = true; changed;) {
+    changed = false;
+    const SiteMap before = result.site;
+    for (const int i : uncovered) {
+      const Coord p = object.coord(i);
+      std::vector<int> offered;
+      if (before[i] != kNoSite) offered.push_back(before[i]);
+      for (const Coord& step : kSixNeighbors) {
+        const Coord q = p + step;
+        if (object.get(q, 0) && before[q] != kNoSite) offered.push_back(before[q]);
+      }
+      if (offered.empty()) continue;
+      int bestSite = offered.front();
+      Candidate best = candidate(p, object.coord(bestSite), distance[bestSite]);
+      for (const int site : offered) {
+        const Candidate other = candidate(p, object.coord(site), distance[site]);
+        if (!better(other, best)) continue;
+        best = other;
+        bestSite = site;
+      }
+      changed = changed || bestSite != before[i];
+      result.site[i] = bestSite;
+      result.power[i] = best.power;
+    }
+  }
+  return result;
+}
+
+// ---------------------------------------------------------------------------------- Section 4
+
+SiteMap oracleFlow(const SiteMap& site) {
+  SiteMap critical(site.box(), kNoSite);
+  for (int i = 0; i < site.size(); ++i) {
+    if (site[i] == kNoSite) continue;
+    int c = i;
+    for (int steps = 0; site[c] != c; ++steps) {
+      if (steps > site.size()) throw std::logic_error("the flow has a cycle");
+      c = site[c];
+    }
+    critical[i] = c;
+  }
+  return critical;
+}
+
+// ---------------------------------------------------------------------------------- Section 6
+
+ManifoldGraph oracleGraph(const ObjectVolume& object, const DenseVolume<int64_t>& distance,
+                          const OraclePower& power, const SiteMap& critical) {
+  std::map<int, int64_t> voxels;  // by critical point, in lexicographic order
+  for (int i = 0; i < object.size(); ++i)
+    if (object[i]) ++voxels[critical[i]];
+  ManifoldGraph graph;
+  std::map<int, uint32_t> node;
+  for (const auto& [c, count] : voxels) {
+    node[c] = uint32_t(graph.nodes.size());
+    graph.nodes.push_back({object.coord(c), int32_t(distance[c]), count});
+  }
+
+  std::map<std::pair<uint32_t, uint32_t>, ManifoldGraph::Edge> edges;
+  for (int i = 0; i < object.size(); ++i) {
+    if (!object[i]) continue;
+    const Coord p = object.coord(i);
+    for (const Coord& step : {Coord(1, 0, 0), Coord(0, 1, 0), Coord(0, 0, 1)}) {
+      const Coord q = p + step;
+      if (!object.get(q, 0) || critical[p] == critical[q]) continue;
+      const uint32_t a = node[critical[p]], b = node[critical[q]];
+      const auto pair = std::minmax(a, b);
+      // 6.2: H(p) = -pi'(p)
+      const auto height = int32_t(std::min(-power.power[p], -power.power[q]));
+      auto [entry, isNew] = edges.insert({pair, {pair.first, pair.second, 0, height, false}});
+      ManifoldGraph::Edge& edge = entry->second;
+      ++edge.contactFaces;
+      edge.saddleHeight = std::max(edge.saddleHeight, height);
+      // 6.1, adjacency of cells: p and q map to the critical points in one step
+      if (power.site[p] == critical[p] && power.site[q] == critical[q]) edge.cellsTouch = true;
+    }
+  }
+  for (const auto& entry : edges) graph.edges.push_back(entry.second);
+  return graph;
+}
+
+Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
+  const double theta = options.theta;
+  if (!(theta >= -1 && theta <= 1)) throw Undefined("theta is not in [-1, 1]");
+  const auto& nodes = graph.nodes;
+  // The class of a node is named after any one of its nodes.
+  std::vector<uint32_t> classOf(nodes.size());
+  for (uint32_t i = 0; i < nodes.size(); ++i) classOf[i] = i;
+  const auto unite = [&](uint32_t a, uint32_t b) {
+    const uint32_t from = classOf[b], to = classOf[a];
+    for (uint32_t& c : classOf)
+      if (c == from) c = to;
+  };
+  const auto top = [&](uint32_t c) {
+    int32_t largest = 0;
+    for (size_t i = 0; i < nodes.size(); ++i)
+      if (classOf[i] == c) largest = std::max(largest, nodes[i].squaredRadius);
+    return largest;
+  };
+
+  // 6.1
+  if (options.mode != MergeMode::neck)
+    for (const auto& edge : graph.edges) {
+      if (options.adjacency == Adjacency::cell && !edge.cellsTouch) continue;
+      const auto &ci = nodes[edge.first], &cj = nodes[edge.second];
+      const int64_t numerator =
+          squaredLength(ci.position - cj.position) - ci.squaredRadius - cj.squaredRadius;
+      const int64_t product = int64_t(ci.squaredRadius) * cj.squaredRadius;
+      if (double(numerator) / (2 * std::sqrt(double(product))) < theta)
+        unite(edge.first, edge.second);
+    }
+
+  // 6.2. Nodes are in lexicographic order, so the order of pairs is that of their indices.
+  if (options.mode != MergeMode::angle) {
+    auto edges = graph.edges;
+    std::sort(edges.begin(), edges.end(), [](const auto& a, const auto& b) {
+      return std::make_tuple(-int64_t(a.saddleHeight), a.first, a.second) <
+             std::make_tuple(-int64_t(b.saddleHeight), b.first, b.second);
+    });
+    for (const auto& edge : edges) {
+      if (edge.saddleHeight <= 0) break;
+      const uint32_t a = classOf[edge.first], b = classOf[edge.second];
+      if (a == b) continue;
+      if (double(edge.saddleHeight) >= ((1 - theta) / 2) * double(std::min(top(a), top(b))))
+        unite(edge.first, edge.second);
+    }
+  }
+
+  // Section 7: the representative has the largest D; of equal ones the first in node order.
+  std::map<uint32_t, uint32_t> representative;  // by class
+  for (uint32_t i = 0; i < nodes.size(); ++i) {
+    const auto known = representative.find(classOf[i]);
+    if (known == representative.end() ||
+        nodes[i].squaredRadius > nodes[known->second].squaredRadius)
+      representative[classOf[i]] = i;
+  }
+  Merging merging;
+  for (const auto& entry : representative) merging.representative.push_back(entry.second);
+  std::sort(merging.representative.begin(), merging.representative.end());
+  std::map<uint32_t, int32_t> number;
+  int32_t grains = 0;
+  for (const uint32_t r : merging.representative) number[classOf[r]] = ++grains;
+  for (const uint32_t c : classOf) merging.grainOfNode.push_back(number[c]);
+  return merging;
+}
+
+// ---------------------------------------------------------------------------------- Section 7
+
+OracleResult oracleSegment(const ObjectVolume& object, const std::optional<CoordBBox>& domain,
+                           const SegmentOptions& options) {
+  if (options.gamma < 0) throw Undefined("gamma is negative");
+  OracleResult result;
+  result.open = oracleBoundary(object, options.boundary, domain);
+  result.distance = oracleDistance(object, result.open, domain.value_or(CoordBBox()));
+  result.unfiltered = oraclePower(object, result.distance, object);
+  result.balls = oracleBalls(result.unfiltered, result.distance);
+
+  result.filtered = result.unfiltered;
+  if (options.gamma > 0) {
+    const ObjectVolume kept = oracleKeptBalls(object, result.balls, options.gamma);
+    for (const MedialBall& ball : result.balls)
+      if (kept[ball.center]) result.kept.push_back(ball.center);
+    result.filtered = oracleFilteredPower(object, result.distance, kept);
+  } else {
+    for (const MedialBall& ball : result.balls) result.kept.push_back(ball.center);
+  }
+
+  const SiteMap critical = oracleFlow(result.filtered.site);
+  result.graph = oracleGraph(object, result.distance, result.filtered, critical);
+  result.merging = oracleMerge(result.graph, options.merge);
+
+  result.manifold = DenseVolume<int64_t>(object.box());
+  result.grain = DenseVolume<int64_t>(object.box());
+  std::map<Coord, size_t> node;
+  for (size_t i = 0; i < result.graph.nodes.size(); ++i) node[result.graph.nodes[i].position] = i;
+  std::set<Coord> blocks;
+  SegmentCounts& counts = result.counts;
+  for (int i = 0; i < object.size(); ++i) {
+    if (!object[i]) continue;
+    const size_t n = node.at(object.coord(critical[i]));
+    result.manifold[i] = int64_t(n) + 1;
+    result.grain[i] = result.merging.grainOfNode[n];
+    ++counts.objectVoxels;
+    counts.largestSquaredDistance = std::max(counts.largestSquaredDistance, result.distance[i]);
+    blocks.insert(object.coord(i) & ~7);
+    if (result.filtered.site[i] == i) ++counts.criticalPoints;
+  }
+  counts.leaves = int64_t(blocks.size());
+  counts.medialBalls = int64_t(result.balls.size());
+  counts.keptBalls = int64_t(result.kept.size());
+  counts.grains = int64_t(result.merging.representative.size());
+  return result;
+}
+
+}  // namespace vdb_madf::test

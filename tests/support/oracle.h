@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "support/dense_volume.h"
+#include "vdb_madf/segment.h"
+
+// The whole method by brute force, from its definitions, on dense volumes. Of the library it uses
+// the plain data of the public headers (options, graph, counts) and no code.
+
+namespace vdb_madf::test {
+
+/// The definitions give no result: what the library must report as InvalidInput.
+class Undefined : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A function X -> X as indices into the object's volume; kNoSite where it has no value.
+using SiteMap = DenseVolume<int>;
+constexpr int kNoSite = -1;
+
+struct OraclePower {
+  SiteMap site;                ///< Pi(p)
+  DenseVolume<int64_t> power;  ///< pi of p to the ball at its site
+};
+
+struct OracleResult {
+  DenseVolume<int64_t> distance;  ///< D
+  OraclePower unfiltered;         ///< Pi, pi
+  OraclePower filtered;           ///< Pi', pi'; the same at gamma 0
+  DenseVolume<int64_t> manifold;  ///< critical points 1..K in lexicographic order
+  DenseVolume<int64_t> grain;     ///< 1..N
+  std::vector<MedialBall> balls;  ///< of Pi, lexicographic
+  std::vector<Coord> kept;        ///< of these, the ones that the filter keeps
+  ManifoldGraph graph;
+  Merging merging;
+  SegmentCounts counts;
+  bool open = false;
+};
+
+/// Section 1: is the boundary open? @throw Undefined
+bool oracleBoundary(const ObjectVolume& object, Boundary boundary,
+                    const std::optional<CoordBBox>& domain);
+
+/// Section 2. `domain` is used if open. @throw Undefined if there is no background.
+DenseVolume<int64_t> oracleDistance(const ObjectVolume& object, bool open, const CoordBBox& domain);
+
+/// Section 3, over the balls of some sites only; kNoSite where none of their balls has a negative
+/// power.
+OraclePower oraclePower(const ObjectVolume& object, const DenseVolume<int64_t>& distance,
+                        const ObjectVolume& sites);
+
+/// Section 3: the medial balls and the sizes of their cells.
+std::vector<MedialBall> oracleBalls(const OraclePower& power, const DenseVolume<int64_t>& distance);
+
+/// Number of the 6-connected component of each object voxel, from 1 on; 0: background.
+DenseVolume<int> sixComponents(const ObjectVolume& object);
+
+/// Section 5, step 1.
+ObjectVolume oracleKeptBalls(const ObjectVolume& object, const std::vector<MedialBall>& balls,
+                             int64_t gamma);
+/// Section 5, steps 2 and 3.
+OraclePower oracleFilteredPower(const ObjectVolume& object, const DenseVolume<int64_t>& distance,
+                                const ObjectVolume& kept);
+
+/// Section 4: the critical point, as an index, that each voxel reaches.
+SiteMap oracleFlow(const SiteMap& site);
+
+/// Section 6, before merging.
+ManifoldGraph oracleGraph(const ObjectVolume& object, const DenseVolume<int64_t>& distance,
+                          const OraclePower& power, const SiteMap& critical);
+
+/// Sections 6 and 7: the classes, numbered. @throw Undefined unless theta is in [-1, 1]
+Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options);
+
+/// All of it. @throw Undefined
+OracleResult oracleSegment(const ObjectVolume& object, const std::optional<CoordBBox>& domain,
+                           const SegmentOptions& options);
+
+}  // namespace vdb_madf::test
