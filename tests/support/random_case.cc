@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "support/random_case.h"
+
+#include <algorithm>
+#include <array>
+#include <iomanip>
+#include <sstream>
+
+#include "vdb_madf/grid_metadata.h"
+
+namespace vdb_madf::test {
+
+namespace {
+
+constexpr std::array<int64_t, 6> kGammas = {0, 1, 2, 5, 20, 100};
+constexpr std::array<double, 8> kThetas = {-1, -0.95, -0.9, -0.8, -0.5, 0, 0.5, 1};
+constexpr std::array<const char*, 3> kBoundaryNames = {"automatic", "open", "closed"};
+constexpr std::array<const char*, 3> kModeNames = {"both", "angle", "neck"};
+
+/// Without the slice at `position`; what lies beyond it moves down by one.
+CoordBBox withoutSlice(CoordBBox box, int axis, int position) {
+  if (box.min()[axis] > position) --box.min()[axis];
+  if (box.max()[axis] >= position) --box.max()[axis];
+  return box;
+}
+
+RandomCase withoutSlice(const RandomCase& c, int axis, int position) {
+  RandomCase result = c;
+  result.object = ObjectVolume(withoutSlice(c.object.box(), axis, position));
+  for (int i = 0; i < result.object.size(); ++i) {
+    Coord p = result.object.coord(i);
+    if (p[axis] >= position) ++p[axis];
+    result.object[i] = c.object[p];
+  }
+  if (c.domain) result.domain = withoutSlice(*c.domain, axis, position);
+  return result;
+}
+
+class Shrinker {
+ public:
+  Shrinker(RandomCase failing, const std::function<bool(const RandomCase&)>& fails, int tries)
+      : best_(std::move(failing)), fails_(fails), tries_(tries) {}
+
+  RandomCase run() {
+    for (bool smaller = true; smaller && tries_ > 0;) {
+      smaller = simplifyOptions();
+      smaller = dropSlices() || smaller;
+      smaller = dropBlocks() || smaller;
+    }
+    return best_;
+  }
+
+ private:
+  bool take(const RandomCase& candidate) {
+    if (tries_-- <= 0 || !fails_(candidate)) return false;
+    best_ = candidate;
+    return true;
+  }
+
+  bool dropSlices() {
+    bool smaller = false;
+    for (int axis = 0; axis < 3; ++axis)
+      for (int at = best_.object.box().max()[axis]; at >= best_.object.box().min()[axis]; --at)
+        if (best_.object.box().dim()[axis] > 1)
+          smaller = take(withoutSlice(best_, axis, at)) || smaller;
+    return smaller;
+  }
+
+  /// Clears parts of the object: halves of what is left, then smaller ones, at last single voxels.
+  bool dropBlocks() {
+    bool smaller = false;
+    std::vector<int> voxels;
+    for (int i = 0; i < best_.object.size(); ++i)
+      if (best_.object[i]) voxels.push_back(i);
+    for (size_t part = (voxels.size() + 1) / 2; part > 0; part = part > 1 ? (part + 1) / 2 : 0)
+      for (size_t first = 0; first < voxels.size(); first += part) {
+        RandomCase candidate = best_;
+        for (size_t i = first; i < std::min(first + part, voxels.size()); ++i)
+          candidate.object[voxels[i]] = 0;
+        if (!(candidate.object == best_.object)) smaller = take(candidate) || smaller;
+        if (tries_ <= 0) return smaller;
+      }
+    return smaller;
+  }
+
+  bool simplifyOptions() {
+    bool simpler = false;
+    const auto attempt = [&](bool worthwhile, const auto& change) {
+      if (!worthwhile) return;
+      RandomCase candidate = best_;
+      change(candidate);
+      simpler = take(candidate) || simpler;
+    };
+    attempt(best_.threads != 1, [](RandomCase& c) { c.threads = 1; });
+    attempt(best_.tiles != Tiles::none, [](RandomCase& c) { c.tiles = Tiles::none; });
+    attempt(best_.options.gamma != 0, [](RandomCase& c) { c.options.gamma = 0; });
+    attempt(best_.domain.has_value(), [](RandomCase& c) {
+      c.domain.reset();
+      c.domainInMetadata = false;
+      c.options.boundary = Boundary::automatic;
+    });
+    attempt(best_.domainInMetadata, [](RandomCase& c) { c.domainInMetadata = false; });
+    const Coord origin = best_.object.box().min();
+    attempt(origin != Coord(0), [&](RandomCase& c) {
+      c.object = translated(c.object, Coord(0) - origin);
+      if (c.domain) c.domain->translate(Coord(0) - origin);
+    });
+    return simpler;
+  }
+
+  RandomCase best_;
+  const std::function<bool(const RandomCase&)>& fails_;
+  int tries_;
+};
+
+}  // namespace
+
+RandomCase randomCase(uint64_t seed, const std::optional<Coord>& size) {
+  RandomCase c;
+  c.seed = seed;
+  int turn = int(seed % uint64_t(kCombinations));
+  const auto choose = [&](int count) {
+    const int chosen = turn % count;
+    turn /= count;
+    return chosen;
+  };
+  c.options.boundary = Boundary(choose(3));
+  c.options.merge.adjacency = Adjacency(choose(2));
+  c.options.merge.mode = MergeMode(choose(3));
+  c.threads = 1 + choose(3);
+
+  Rng rng(seed);
+  c.options.gamma = kGammas[size_t(rng.below(int(kGammas.size())))];
+  c.options.merge.theta = kThetas[size_t(rng.below(int(kThetas.size())))];
+  c.kind = VolumeKind(rng.below(kVolumeKinds));
+  const Coord origin = randomOrigin(rng), drawn = randomSize(rng);
+  c.object = randomVolume(c.kind, boxAt(origin, size.value_or(drawn)), rng);
+  c.domain = randomDomain(c.object, rng);
+  // Open without a domain is an error: rarely worth a run.
+  if (c.options.boundary == Boundary::open && !c.domain && rng.chance(0.9))
+    c.domain = c.object.box();
+  c.domainInMetadata = c.domain && rng.chance(0.5);
+  c.tiles = rng.chance(0.5) ? Tiles::wherePossible : Tiles::none;
+  return c;
+}
+
+MaskGrid::Ptr maskOf(const RandomCase& c) {
+  auto mask = toMask(c.object, c.tiles);
+  if (c.domain && c.domainInMetadata) setDomain(*mask, *c.domain);
+  return mask;
+}
+
+SegmentOptions optionsOf(const RandomCase& c) {
+  SegmentOptions options = c.options;
+  if (!c.domainInMetadata) options.domain = c.domain;
+  options.keepDistance = options.keepPower = options.keepManifold = options.keepBalls = true;
+  return options;
+}
+
+std::string describe(const RandomCase& c) {
+  constexpr int kLargestPicture = 3000;
+  std::ostringstream text;
+  const Coord dim = c.object.size() ? c.object.box().dim() : Coord(0);
+  text << "seed " << c.seed << ": " << name(c.kind) << ", " << dim << " voxels from "
+       << c.object.box().min() << ", " << countObject(c.object) << " of them object; domain "
+       << (c.domain ? toString(*c.domain) : "unknown")
+       << (c.domainInMetadata ? " (in the metadata)" : "") << "; boundary "
+       << kBoundaryNames[size_t(c.options.boundary)] << ", gamma " << c.options.gamma << ", theta "
+       << std::setprecision(17) << c.options.merge.theta << ", mode "
+       << kModeNames[size_t(c.options.merge.mode)] << ", adjacency "
+       << (c.options.merge.adjacency == Adjacency::cell ? "cell" : "manifold") << ", "
+       << (c.tiles == Tiles::none ? "no tiles, " : "tiles, ") << c.threads << " threads\n";
+  if (c.object.size() <= kLargestPicture) text << picture(c.object);
+  return text.str();
+}
+
+RandomCase shrink(RandomCase failing, const std::function<bool(const RandomCase&)>& fails,
+                  int tries) {
+  return Shrinker(std::move(failing), fails, tries).run();
+}
+
+}  // namespace vdb_madf::test
