@@ -1,2 +1,237 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+#include "vdb_madf/detail/header_text.h"
+#include "vdb_madf/detail/parallel.h"
+#include "vdb_madf/errors.h"
+#include "vdb_madf/image_file.h"
+
+namespace vdb_madf {
+
+namespace {
+
+constexpr int kLeaf = 8;
+constexpr size_t kPiecesPerChunk = 64;
+constexpr size_t kSamplesPerChunk = size_t(1) << 18;
+
+/// True if the sample type can hold the value. Integers must be met exactly, also in float types
+/// (a label must not become its neighbour); a double becomes the nearest float.
+template <typename Sample, typename Value>
+bool fits(Value value) {
+  using Limits = std::numeric_limits<Sample>;
+  if constexpr (std::is_same_v<Sample, Value>) {
+    return true;
+  } else if constexpr (std::is_integral_v<Sample> && std::is_integral_v<Value>) {
+    return int64_t(value) >= int64_t(Limits::lowest()) && int64_t(value) <= int64_t(Limits::max());
+  } else if constexpr (std::is_integral_v<Sample>) {
+    return double(value) >= double(Limits::lowest()) && double(value) <= double(Limits::max()) &&
+           std::trunc(value) == value;
+  } else if constexpr (std::is_integral_v<Value>) {
+    constexpr int64_t kExact = int64_t(1) << Limits::digits;
+    return int64_t(value) >= -kExact && int64_t(value) <= kExact;
+  } else {
+    return !(std::abs(double(value)) > double(Limits::max())) || std::isinf(value);
+  }
+}
+
+/// One voxel per sample, x fastest: the values of a tree over `box`, eight slices at a time.
+template <typename Tree>
+class SlabReader {
+ public:
+  using Leaf = typename Tree::LeafNodeType;
+  /// Bits are handed over as bytes.
+  using Value = std::conditional_t<std::is_same_v<typename Tree::ValueType, bool>, uint8_t,
+                                   typename Tree::ValueType>;
+
+  SlabReader(const Tree& tree, const CoordBBox& box)
+      : tree_(tree), box_(box), slabs_(size_t((box.max().z() >> 3) - (box.min().z() >> 3)) + 1) {
+    std::vector<const Leaf*> leaves;
+    leaves.reserve(tree.leafCount());
+    tree.getNodes(leaves);
+    for (const Leaf* leaf : leaves)
+      if (leaf->getNodeBoundingBox().hasOverlap(box))
+        slab(leaf->origin().z()).leaves.push_back(leaf);
+    auto tile = tree.cbeginValueAll();
+    tile.setMaxDepth(tile.getLeafDepth() - 1);
+    for (; tile; ++tile) addTile(tile.getBoundingBox(), Value(*tile));
+  }
+
+  int slabCount() const { return int(slabs_.size()); }
+  CoordBBox slabBox(int number) const {
+    const int first = (box_.min().z() & ~7) + kLeaf * number;
+    CoordBBox box = box_;
+    box.min().z() = std::max(first, box_.min().z());
+    box.max().z() = std::min(first + kLeaf - 1, box_.max().z());
+    return box;
+  }
+
+  void read(int number, Value* samples) const {
+    const CoordBBox box = slabBox(number);
+    const Slab& content = slabs_[size_t(number)];
+    std::fill(samples, samples + box.volume(), Value(tree_.background()));
+    detail::parallelFor(content.tiles.size(), kPiecesPerChunk, nullptr,
+                        [&](size_t begin, size_t end) {
+                          for (size_t i = begin; i < end; ++i)
+                            fillTile(content.tiles[i], box, samples);
+                        });
+    detail::parallelFor(content.leaves.size(), kPiecesPerChunk, nullptr,
+                        [&](size_t begin, size_t end) {
+                          for (size_t i = begin; i < end; ++i)
+                            copyLeaf(*content.leaves[i], box, samples);
+                        });
+  }
+
+ private:
+  struct Tile {
+    CoordBBox box;
+    Value value;
+  };
+  struct Slab {
+    std::vector<const Leaf*> leaves;
+    std::vector<Tile> tiles;
+  };
+
+  Slab& slab(int z) { return slabs_[size_t((z >> 3) - (box_.min().z() >> 3))]; }
+
+  void addTile(CoordBBox box, Value value) {
+    box.intersect(box_);
+    if (box.empty() || value == Value(tree_.background())) return;
+    for (int z = box.min().z() & ~7; z <= box.max().z(); z += kLeaf)
+      slab(z).tiles.push_back({box, value});
+  }
+
+  static size_t place(const CoordBBox& box, int x, int y, int z) {
+    const Coord size = box.dim(), p = Coord(x, y, z) - box.min();
+    return (size_t(p.z()) * size_t(size.y()) + size_t(p.y())) * size_t(size.x()) + size_t(p.x());
+  }
+
+  static void fillTile(const Tile& tile, const CoordBBox& box, Value* samples) {
+    CoordBBox part = tile.box;
+    part.intersect(box);
+    for (int z = part.min().z(); z <= part.max().z(); ++z)
+      for (int y = part.min().y(); y <= part.max().y(); ++y)
+        std::fill_n(samples + place(box, part.min().x(), y, z), part.dim().x(), tile.value);
+  }
+
+  static void copyLeaf(const Leaf& leaf, const CoordBBox& box, Value* samples) {
+    CoordBBox part = leaf.getNodeBoundingBox();
+    part.intersect(box);
+    for (int z = part.min().z(); z <= part.max().z(); ++z)
+      for (int y = part.min().y(); y <= part.max().y(); ++y) {
+        Value* to = samples + place(box, part.min().x(), y, z);
+        openvdb::Index offset = Leaf::coordToOffset(Coord(part.min().x(), y, z));
+        for (int x = part.min().x(); x <= part.max().x(); ++x, offset += kLeaf * kLeaf)
+          *to++ = Value(leaf.getValue(offset));
+      }
+  }
+
+  const Tree& tree_;
+  CoordBBox box_;
+  std::vector<Slab> slabs_;
+};
+
+template <typename Value>
+[[noreturn]] void failToFit(const std::string& path, Value value, SampleType type) {
+  std::string text;
+  if constexpr (std::is_integral_v<Value>)
+    text = std::to_string(value);
+  else
+    text = detail::shortestDecimal(double(value));
+  throw InvalidInput(path + ": the value " + text + " does not fit " + sampleTypeName(type) +
+                     ": choose another sample type");
+}
+
+template <typename Sample, typename Value>
+void convert(const std::string& path, const std::vector<Value>& values, size_t count,
+             SampleType type, std::vector<Sample>& samples) {
+  samples.resize(values.size());
+  detail::parallelFor(count, kSamplesPerChunk, nullptr, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      if (!fits<Sample>(values[i])) failToFit(path, values[i], type);
+      samples[i] = Sample(values[i]);
+    }
+  });
+}
+
+template <typename Sample, typename Tree>
+void writeAs(const std::string& path, const Tree& tree, const CoordBBox& box, const ImageInfo& info,
+             Interrupter* interrupter) {
+  const SlabReader<Tree> reader(tree, box);
+  using Value = typename SlabReader<Tree>::Value;
+  const size_t slice = size_t(info.size.x()) * size_t(info.size.y());
+  std::vector<Value> values(slice * size_t(std::min(kLeaf, info.size.z())));
+  std::vector<Sample> samples;
+  const auto writer = createImage(path, info);
+  for (int number = 0; number < reader.slabCount(); ++number) {
+    if (interrupter && interrupter->wasInterrupted(int(int64_t(number) * 100 / reader.slabCount())))
+      throw Interrupted();
+    reader.read(number, values.data());
+    const int count = reader.slabBox(number).dim().z();
+    if constexpr (std::is_same_v<Sample, Value>) {
+      writer->write(count, values.data());
+    } else {
+      convert(path, values, slice * size_t(count), info.type, samples);
+      writer->write(count, samples.data());
+    }
+  }
+  writer->finish();
+}
+
+template <typename Tree>
+void writeTree(const std::string& path, const Tree& tree, const CoordBBox& box,
+               const ImageInfo& info, Interrupter* interrupter) {
+  switch (info.type) {
+    case SampleType::uint8:
+      return writeAs<uint8_t>(path, tree, box, info, interrupter);
+    case SampleType::int8:
+      return writeAs<int8_t>(path, tree, box, info, interrupter);
+    case SampleType::uint16:
+      return writeAs<uint16_t>(path, tree, box, info, interrupter);
+    case SampleType::int16:
+      return writeAs<int16_t>(path, tree, box, info, interrupter);
+    case SampleType::uint32:
+      return writeAs<uint32_t>(path, tree, box, info, interrupter);
+    case SampleType::int32:
+      return writeAs<int32_t>(path, tree, box, info, interrupter);
+    case SampleType::float32:
+      return writeAs<float>(path, tree, box, info, interrupter);
+    case SampleType::float64:
+      return writeAs<double>(path, tree, box, info, interrupter);
+  }
+}
+
+template <typename Value>
+bool tryGrid(const std::string& path, const openvdb::GridBase& grid, const CoordBBox& box,
+             const ImageInfo& info, Interrupter* interrupter) {
+  using Grid = openvdb::Grid<StandardTree<Value>>;
+  if (!grid.isType<Grid>()) return false;
+  writeTree(path, static_cast<const Grid&>(grid).tree(), box, info, interrupter);
+  return true;
+}
+
+}  // namespace
+
+void writeImage(const std::string& path, const openvdb::GridBase& grid, const CoordBBox& box,
+                SampleType type, Interrupter* interrupter) {
+  if (box.empty()) throw InvalidInput(path + ": there is no box to write");
+  ImageInfo info;
+  info.size = box.dim();
+  info.type = type;
+  info.voxelSize = voxelSize(grid);
+  if (!tryGrid<bool>(path, grid, box, info, interrupter) &&
+      !tryGrid<openvdb::ValueMask>(path, grid, box, info, interrupter) &&
+      !tryGrid<int32_t>(path, grid, box, info, interrupter) &&
+      !tryGrid<int64_t>(path, grid, box, info, interrupter) &&
+      !tryGrid<float>(path, grid, box, info, interrupter) &&
+      !tryGrid<double>(path, grid, box, info, interrupter))
+    throw InvalidInput(path + ": grid '" + grid.getName() + "' of type " + grid.valueType() +
+                       " cannot be an image: only bool, mask, int32, int64, float and double can");
+}
+
+}  // namespace vdb_madf

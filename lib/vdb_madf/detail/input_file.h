@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace vdb_madf::detail {
+
+/// A regular file, open for reading at any place; every read is checked.
+class InputFile {
+ public:
+  /// @throw IoError if it is missing, not a regular file (a pipe would block) or not readable.
+  explicit InputFile(std::string path);
+  ~InputFile();
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+
+  const std::string& path() const { return path_; }
+  uint64_t size() const { return size_; }
+  /// Exactly `count` bytes from `offset` on. @throw IoError if there are fewer.
+  void read(uint64_t offset, void* to, size_t count) const;
+  /// At most the first `count` bytes.
+  std::string head(size_t count) const;
+
+ private:
+  std::string path_;
+  int descriptor_ = -1;
+  uint64_t size_ = 0;
+};
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "vdb_madf/image_file.h"
+
+namespace vdb_madf::detail {
+
+/// NRRD with the data in the same file or in one other, encoding raw or gzip. The voxel size comes
+/// from `spacings` with `units`, or `space directions` with `space units`; without units there is
+/// none. A rotated frame is fine, a sheared one is an error.
+/// Not read: text and bzip2 encodings, other than three dimensions, data spread over several files.
+std::unique_ptr<ImageReader> openNrrd(const std::string& path);
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "vdb_madf/detail/input_file.h"
+#include "vdb_madf/image_file.h"
+
+namespace vdb_madf::detail {
+
+/// Where the samples lie in a file and how they are coded.
+struct SampleLayout {
+  uint64_t offset = 0;
+  bool atEnd = false;     ///< the last bytes of the file, whatever comes before (not if deflated)
+  bool deflated = false;  ///< zlib or gzip from `offset` to the end of the file
+  uint64_t skip = 0;      ///< decompressed bytes before the first sample
+  bool bigEndian = false;
+};
+
+/// Samples of a binary file, for any header that describes them so. The file has to hold exactly
+/// what is asked for: a wrong size or type is an error, never a sheared picture.
+/// @param path the file the user named: info().path and the messages about the header
+std::unique_ptr<ImageReader> openSamples(const std::string& path, const ImageInfo& info,
+                                         std::unique_ptr<InputFile> data,
+                                         const SampleLayout& layout);
+
+std::unique_ptr<ImageReader> openRaw(const std::string& path, const RawLayout& layout);
+std::unique_ptr<ImageWriter> createRaw(const std::string& path, const ImageInfo& info);
+
+}  // namespace vdb_madf::detail
