@@ -217,6 +217,10 @@ std::optional<ManifoldGraph> graph(const openvdb::GridBase& grid) {
   return metadata->value();
 }
 
+void removeGraph(openvdb::GridBase& grid) {
+  grid.removeMeta(kName);
+}
+
 void detail::registerGraphMetadata() {
   if (!openvdb::Metadata::isRegisteredType(kName))
     openvdb::Metadata::registerType(kName, GraphMetadata::create);

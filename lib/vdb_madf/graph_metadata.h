@@ -23,6 +23,8 @@ void setGraph(openvdb::GridBase& grid, ManifoldGraph graph);
 /// Absent: the grid has no graph.
 std::optional<ManifoldGraph> graph(const openvdb::GridBase& grid);
 
+void removeGraph(openvdb::GridBase& grid);
+
 namespace detail {
 /// Part of initialize(); further calls do nothing.
 void registerGraphMetadata();

@@ -16,6 +16,7 @@ constexpr char kDomainMax[] = "madf_domain_max";
 constexpr char kVoxelSize[] = "madf_voxel_size_m";
 constexpr char kLengthUnit[] = "madf_length_unit";
 constexpr char kSource[] = "madf_source";
+constexpr char kBoundary[] = "madf_boundary";
 
 /// Below this edge, millimetres would make a voxel volume that OpenVDB's transforms refuse.
 constexpr double kSmallestInMillimetres = 20e-9;
@@ -63,7 +64,7 @@ void setVoxelSize(openvdb::GridBase& grid, const std::optional<VoxelSize>& size)
 }
 
 void copyProvenance(const openvdb::GridBase& from, openvdb::GridBase& to) {
-  for (const char* key : {kDomainMin, kDomainMax, kVoxelSize, kLengthUnit, kSource})
+  for (const char* key : {kDomainMin, kDomainMax, kVoxelSize, kLengthUnit, kSource, kBoundary})
     if (const auto value = from[key]) to.insertMeta(key, *value);
   to.setTransform(from.transform().copy());
 }

@@ -36,7 +36,8 @@ std::optional<VoxelSize> voxelSize(const openvdb::MetaMap& metadata);
 /// position of voxel (i,j,k) is its centre. Without a size the transform is the identity.
 void setVoxelSize(openvdb::GridBase& grid, const std::optional<VoxelSize>& size);
 
-/// Copies domain, voxel size, transform and `madf_source` from one grid to another.
+/// Copies domain, voxel size, transform, `madf_source` and `madf_boundary` from one grid to
+/// another.
 void copyProvenance(const openvdb::GridBase& from, openvdb::GridBase& to);
 
 }  // namespace vdb_madf

@@ -67,6 +67,11 @@ bool looksLikeImage(const std::string& path);
 MaskGrid::Ptr readMask(ImageReader& image, const Selection& selection = {},
                        Interrupter* interrupter = nullptr);
 
+/// Labels of an integer image, slab by slab: active where the value is not 0. Domain, voxel size
+/// and source as readMask.
+/// @throw InvalidInput if a value is no integer or beyond int32; IoError; Interrupted.
+Int32Grid::Ptr readLabels(ImageReader& image, Interrupter* interrupter = nullptr);
+
 /// Writes slices in ascending order; whole or not at all (finish() renames the temporary file).
 class ImageWriter {
  public:
@@ -86,5 +91,12 @@ bool isImageEnding(const std::string& path);
 /// @throw InvalidInput if a value does not fit the sample type, naming the value; IoError.
 void writeImage(const std::string& path, const openvdb::GridBase& grid, const CoordBBox& box,
                 SampleType type, Interrupter* interrupter = nullptr);
+
+/// Copies an image slab by slab into another format and sample type; \p voxelSize replaces its own.
+/// @throw InvalidInput if a value does not fit the sample type, naming the value; IoError;
+/// Interrupted.
+void copyImage(const std::string& path, ImageReader& image, SampleType type,
+               const std::optional<VoxelSize>& voxelSize = std::nullopt,
+               Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

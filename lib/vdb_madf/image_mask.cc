@@ -4,14 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <limits>
 #include <type_traits>
 #include <vector>
 
 #include "vdb_madf/detail/byte_order.h"
 #include "vdb_madf/detail/header_text.h"
+#include "vdb_madf/detail/image_grid.h"
 #include "vdb_madf/detail/parallel.h"
+#include "vdb_madf/detail/sample_conversion.h"
 #include "vdb_madf/errors.h"
 #include "vdb_madf/image_file.h"
 
@@ -110,24 +111,9 @@ class SlabPacker {
 
   /// Packs `count` slices from z on and adds the leaves that hold object to the tree.
   void pack(const void* samples, int z, int count, MaskTree& tree) {
-    switch (type_) {
-      case SampleType::uint8:
-        return packAs<uint8_t>(samples, z, count, tree);
-      case SampleType::int8:
-        return packAs<int8_t>(samples, z, count, tree);
-      case SampleType::uint16:
-        return packAs<uint16_t>(samples, z, count, tree);
-      case SampleType::int16:
-        return packAs<int16_t>(samples, z, count, tree);
-      case SampleType::uint32:
-        return packAs<uint32_t>(samples, z, count, tree);
-      case SampleType::int32:
-        return packAs<int32_t>(samples, z, count, tree);
-      case SampleType::float32:
-        return packAs<float>(samples, z, count, tree);
-      case SampleType::float64:
-        return packAs<double>(samples, z, count, tree);
-    }
+    detail::withSampleType(type_, [&](auto sample) {
+      packAs(static_cast<const decltype(sample)*>(samples), z, count, tree);
+    });
   }
 
  private:
@@ -136,13 +122,13 @@ class SlabPacker {
   static size_t leaves(int voxels) { return size_t(voxels + kLeaf - 1) / kLeaf; }
 
   template <typename T>
-  void packAs(const void* samples, int z, int count, MaskTree& tree) {
+  void packAs(const T* samples, int z, int count, MaskTree& tree) {
     const Interval<T> object = intervalOf<T>(selection_);
     const size_t samplesPerRow = size_t(size_.x()) * size_t(kLeaf * count);
     detail::parallelFor(rows_.size(), 1 + kSamplesPerChunk / samplesPerRow, nullptr,
                         [&](size_t begin, size_t end) {
                           for (size_t row = begin; row < end; ++row)
-                            packRow(static_cast<const T*>(samples), object, row, z, count);
+                            packRow(samples, object, row, z, count);
                         });
     openvdb::tree::ValueAccessor<MaskTree> accessor(tree);
     for (LeafRow& row : rows_) {
@@ -196,12 +182,6 @@ class SlabPacker {
   std::vector<LeafRow> rows_;
 };
 
-/// The last part of the path, be it a file or a folder.
-std::string nameOf(const std::string& path) {
-  const std::filesystem::path whole(path);
-  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
-}
-
 }  // namespace
 
 MaskGrid::Ptr readMask(ImageReader& image, const Selection& selection, Interrupter* interrupter) {
@@ -218,9 +198,7 @@ MaskGrid::Ptr readMask(ImageReader& image, const Selection& selection, Interrupt
     packer.pack(slab.get(), z, count, grid->tree());
   }
   grid->setName("object");
-  setDomain(*grid, CoordBBox(Coord(0), info.size.offsetBy(-1)));
-  setVoxelSize(*grid, info.voxelSize);
-  grid->insertMeta("madf_source", openvdb::StringMetadata(nameOf(image.path())));
+  detail::describeImageGrid(image, *grid);
   return grid;
 }
 

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <type_traits>
 #include <vector>
 
-#include "vdb_madf/detail/header_text.h"
 #include "vdb_madf/detail/parallel.h"
+#include "vdb_madf/detail/sample_conversion.h"
 #include "vdb_madf/errors.h"
 #include "vdb_madf/image_file.h"
 
@@ -18,27 +16,6 @@ namespace {
 
 constexpr int kLeaf = 8;
 constexpr size_t kPiecesPerChunk = 64;
-constexpr size_t kSamplesPerChunk = size_t(1) << 18;
-
-/// True if the sample type can hold the value. Integers must be met exactly, also in float types
-/// (a label must not become its neighbour); a double becomes the nearest float.
-template <typename Sample, typename Value>
-bool fits(Value value) {
-  using Limits = std::numeric_limits<Sample>;
-  if constexpr (std::is_same_v<Sample, Value>) {
-    return true;
-  } else if constexpr (std::is_integral_v<Sample> && std::is_integral_v<Value>) {
-    return int64_t(value) >= int64_t(Limits::lowest()) && int64_t(value) <= int64_t(Limits::max());
-  } else if constexpr (std::is_integral_v<Sample>) {
-    return double(value) >= double(Limits::lowest()) && double(value) <= double(Limits::max()) &&
-           std::trunc(value) == value;
-  } else if constexpr (std::is_integral_v<Value>) {
-    constexpr int64_t kExact = int64_t(1) << Limits::digits;
-    return int64_t(value) >= -kExact && int64_t(value) <= kExact;
-  } else {
-    return !(std::abs(double(value)) > double(Limits::max())) || std::isinf(value);
-  }
-}
 
 /// One voxel per sample, x fastest: the values of a tree over `box`, eight slices at a time.
 template <typename Tree>
@@ -136,29 +113,6 @@ class SlabReader {
   std::vector<Slab> slabs_;
 };
 
-template <typename Value>
-[[noreturn]] void failToFit(const std::string& path, Value value, SampleType type) {
-  std::string text;
-  if constexpr (std::is_integral_v<Value>)
-    text = std::to_string(value);
-  else
-    text = detail::shortestDecimal(double(value));
-  throw InvalidInput(path + ": the value " + text + " does not fit " + sampleTypeName(type) +
-                     ": choose another sample type");
-}
-
-template <typename Sample, typename Value>
-void convert(const std::string& path, const std::vector<Value>& values, size_t count,
-             SampleType type, std::vector<Sample>& samples) {
-  samples.resize(values.size());
-  detail::parallelFor(count, kSamplesPerChunk, nullptr, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      if (!fits<Sample>(values[i])) failToFit(path, values[i], type);
-      samples[i] = Sample(values[i]);
-    }
-  });
-}
-
 template <typename Sample, typename Tree>
 void writeAs(const std::string& path, const Tree& tree, const CoordBBox& box, const ImageInfo& info,
              Interrupter* interrupter) {
@@ -176,7 +130,8 @@ void writeAs(const std::string& path, const Tree& tree, const CoordBBox& box, co
     if constexpr (std::is_same_v<Sample, Value>) {
       writer->write(count, values.data());
     } else {
-      convert(path, values, slice * size_t(count), info.type, samples);
+      samples.resize(values.size());
+      detail::convertSamples(path, values.data(), slice * size_t(count), info.type, samples.data());
       writer->write(count, samples.data());
     }
   }
@@ -186,24 +141,9 @@ void writeAs(const std::string& path, const Tree& tree, const CoordBBox& box, co
 template <typename Tree>
 void writeTree(const std::string& path, const Tree& tree, const CoordBBox& box,
                const ImageInfo& info, Interrupter* interrupter) {
-  switch (info.type) {
-    case SampleType::uint8:
-      return writeAs<uint8_t>(path, tree, box, info, interrupter);
-    case SampleType::int8:
-      return writeAs<int8_t>(path, tree, box, info, interrupter);
-    case SampleType::uint16:
-      return writeAs<uint16_t>(path, tree, box, info, interrupter);
-    case SampleType::int16:
-      return writeAs<int16_t>(path, tree, box, info, interrupter);
-    case SampleType::uint32:
-      return writeAs<uint32_t>(path, tree, box, info, interrupter);
-    case SampleType::int32:
-      return writeAs<int32_t>(path, tree, box, info, interrupter);
-    case SampleType::float32:
-      return writeAs<float>(path, tree, box, info, interrupter);
-    case SampleType::float64:
-      return writeAs<double>(path, tree, box, info, interrupter);
-  }
+  detail::withSampleType(info.type, [&](auto sample) {
+    writeAs<decltype(sample)>(path, tree, box, info, interrupter);
+  });
 }
 
 template <typename Value>

@@ -146,4 +146,15 @@ MaskGrid::Ptr objectMask(const openvdb::GridBase& grid, const std::optional<Sele
   return object;
 }
 
+BoolGrid::Ptr toBoolGrid(const MaskGrid& mask) {
+  using BoolTree = BoolGrid::TreeType;
+  const auto grid = BoolGrid::create(
+      std::make_shared<BoolTree>(mask.tree(), false, true, openvdb::TopologyCopy()));
+  grid->tree().prune();
+  for (auto meta = mask.beginMeta(); meta != mask.endMeta(); ++meta)
+    grid->insertMeta(meta->first, *meta->second);
+  grid->setTransform(mask.transform().copy());
+  return grid;
+}
+
 }  // namespace vdb_madf

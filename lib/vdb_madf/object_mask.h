@@ -21,4 +21,8 @@ namespace vdb_madf {
 MaskGrid::Ptr objectMask(const openvdb::GridBase& grid,
                          const std::optional<Selection>& selection = std::nullopt);
 
+/// The same voxels as a Bool grid with the mask's name, transform and metadata: what files hold, as
+/// other programs do not read mask grids. Uniform 8x8x8 blocks become tiles.
+BoolGrid::Ptr toBoolGrid(const MaskGrid& mask);
+
 }  // namespace vdb_madf

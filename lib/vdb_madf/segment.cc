@@ -10,10 +10,12 @@
 #include "vdb_madf/errors.h"
 #include "vdb_madf/flow.h"
 #include "vdb_madf/gamma_filter.h"
+#include "vdb_madf/graph_metadata.h"
 #include "vdb_madf/grid_metadata.h"
 #include "vdb_madf/leaf_index.h"
 #include "vdb_madf/medial_balls.h"
 #include "vdb_madf/power_map.h"
+#include "vdb_madf/segmentation_metadata.h"
 
 namespace vdb_madf {
 
@@ -78,13 +80,6 @@ std::vector<int32_t> labelTable(const Merging& merging) {
   return table;
 }
 
-Int32Grid::Ptr withProvenance(Int32Grid::Ptr grid, const MaskGrid& object,
-                              const std::optional<CoordBBox>& box) {
-  copyProvenance(object, *grid);
-  if (box) setDomain(*grid, *box);
-  return grid;
-}
-
 }  // namespace
 
 Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
@@ -96,7 +91,6 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
   SegmentCounts& counts = result.counts;
   Stages stages(interrupter, result.times);
   result.domain = options.domain ? options.domain : domain(object);
-  const auto grid = [&](Int32Grid::Ptr g) { return withProvenance(g, object, result.domain); };
 
   stages.begin("leaf_index");
   const LeafIndex index(object);
@@ -109,7 +103,7 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
   SquaredDistance distance = squaredDistance(index, obstacles, interrupter);
   counts.largestSquaredDistance = distance.largest;
   if (options.keepDistance)
-    result.distanceSquared = grid(toGrid(index, distance.values, "distance_squared", interrupter));
+    result.distanceSquared = toGrid(index, distance.values, "distance_squared", interrupter);
 
   stages.begin("power_map");
   PowerMap map = powerMap(index, std::move(distance.values), interrupter);
@@ -135,18 +129,29 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
 
   stages.begin("manifold_graph");
   result.graph = manifoldGraph(index, flowMap, map.power, interrupter);
-  if (options.keepPower) result.power = grid(toGrid(index, map.power, "power", interrupter));
+  if (options.keepPower) result.power = toGrid(index, map.power, "power", interrupter);
   map.power.clear();
 
   stages.begin("merge");
   const Merging merging = merge(result.graph, options.merge);
   counts.grains = int64_t(merging.representative.size());
+  result.grainVoxels.assign(merging.representative.size(), 0);
+  for (size_t i = 0; i < result.graph.nodes.size(); ++i)
+    result.grainVoxels[size_t(merging.grainOfNode[i] - 1)] += result.graph.nodes[i].voxels;
 
   stages.begin("labels");
   if (options.keepManifold)
-    result.manifold = grid(toGrid(index, flowMap.manifold, identity(result.graph.nodes.size() + 1),
-                                  "manifold", interrupter));
-  result.grain = grid(toGrid(index, flowMap.manifold, labelTable(merging), "grain", interrupter));
+    result.manifold = toGrid(index, flowMap.manifold, identity(result.graph.nodes.size() + 1),
+                             "manifold", interrupter);
+  result.grain = toGrid(index, flowMap.manifold, labelTable(merging), "grain", interrupter);
+  for (const Int32Grid::Ptr& grid :
+       {result.grain, result.distanceSquared, result.power, result.manifold}) {
+    if (!grid) continue;
+    copyProvenance(object, *grid);
+    if (result.domain) setDomain(*grid, *result.domain);
+    describeSegmentation(*grid, options, result);
+  }
+  if (result.manifold) setGraph(*result.manifold, result.graph);
   return result;
 }
 

@@ -50,12 +50,13 @@ struct StageTime {
 };
 
 struct Segmentation {
-  Int32Grid::Ptr grain;            ///< labels 1..N on X; background 0, inactive
-  Int32Grid::Ptr distanceSquared;  ///< D, if kept
-  Int32Grid::Ptr power;            ///< pi' = least power, if kept
-  Int32Grid::Ptr manifold;         ///< critical points 1..K, if kept
-  std::vector<MedialBall> balls;   ///< lexicographic centres, if kept
-  ManifoldGraph graph;             ///< node i is critical point i + 1
+  Int32Grid::Ptr grain;              ///< labels 1..N on X; background 0, inactive
+  Int32Grid::Ptr distanceSquared;    ///< D, if kept
+  Int32Grid::Ptr power;              ///< pi' = least power, if kept
+  Int32Grid::Ptr manifold;           ///< critical points 1..K, if kept
+  std::vector<MedialBall> balls;     ///< lexicographic centres, if kept
+  ManifoldGraph graph;               ///< node i is critical point i + 1
+  std::vector<int64_t> grainVoxels;  ///< voxels of grain g at g - 1
   SegmentCounts counts;
   std::optional<CoordBBox> domain;
   bool open = false;             ///< the boundary that was used

@@ -305,15 +305,18 @@ void initialize() {
   });
 }
 
-std::vector<GridBase::Ptr> readVdb(const std::string& path, const VdbReadOptions& options) {
+std::vector<GridBase::Ptr> readVdb(const std::string& path, const VdbReadOptions& options,
+                                   Interrupter* interrupter) {
   initialize();
-  detail::InputBuffer file(path);
+  detail::InputBuffer file(path, interrupter);
   const auto refuseDamaged = [&file](const std::string& what) {
     refuse(file, "it is damaged (" + what + "); make or copy it again");
   };
   try {
     return Reader(file, options).read();
   } catch (const IoError&) {
+    throw;
+  } catch (const Interrupted&) {
     throw;
   } catch (const std::bad_alloc&) {
     refuse(file, "there is not enough memory; close other programs, or crop it");

@@ -24,9 +24,11 @@ struct VdbReadOptions {
 /// All grids of a .vdb file, read eagerly (no delayed loading) from a file that may be corrupt.
 /// Every read is checked; linked against OpenVDB before 11, a program also needs the checked
 /// decompression of tools/ for files that are not trusted.
-/// @throw IoError, one line that names the file, if it is missing, truncated, corrupt or not VDB.
+/// @throw IoError, one line that names the file, if it is missing, truncated, corrupt or not VDB;
+///   Interrupted.
 std::vector<openvdb::GridBase::Ptr> readVdb(const std::string& path,
-                                            const VdbReadOptions& options = {});
+                                            const VdbReadOptions& options = {},
+                                            Interrupter* interrupter = nullptr);
 
 /// Writes the grids whole or not at all: a temporary file beside `path`, every write checked,
 /// synced to disk, then renamed. The file's bytes depend on its grids alone (OpenVDB's random UUID

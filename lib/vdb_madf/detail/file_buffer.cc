@@ -34,7 +34,8 @@ int64_t target(int64_t offset, std::ios_base::seekdir direction, int64_t positio
 
 }  // namespace
 
-InputBuffer::InputBuffer(const std::string& path) : path_(path) {
+InputBuffer::InputBuffer(const std::string& path, Interrupter* interrupter)
+    : path_(path), interrupter_(interrupter) {
   // Without waiting: a pipe that nobody writes to would block here.
   file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file_ < 0) failToRead(path, std::strerror(errno), "check the path and its permissions");
@@ -91,6 +92,9 @@ std::string InputBuffer::readString() {
 
 InputBuffer::int_type InputBuffer::underflow() {
   if (gptr() < egptr()) return traits_type::to_int_type(*gptr());
+  if (interrupter_ &&
+      interrupter_->wasInterrupted(int(position() * 100 / std::max<int64_t>(size_, 1))))
+    throw Interrupted();
   start_ = position();
   ssize_t count = 0;
   do {

@@ -23,11 +23,12 @@ class EarlyEnd : public std::runtime_error {
 };
 
 /// A regular file behind one large buffer. Unlike std::filebuf it keeps the buffer when it moves
-/// within it, knows how much is left, and says why a read failed.
+/// within it, knows how much is left, says why a read failed, and asks the interrupter whenever it
+/// is filled.
 class InputBuffer final : public std::streambuf {
  public:
   /// @throw IoError if it cannot be opened or is not a regular file.
-  explicit InputBuffer(const std::string& path);
+  explicit InputBuffer(const std::string& path, Interrupter* interrupter = nullptr);
   ~InputBuffer() override;
   InputBuffer(const InputBuffer&) = delete;
   InputBuffer& operator=(const InputBuffer&) = delete;
@@ -60,6 +61,7 @@ class InputBuffer final : public std::streambuf {
 
  private:
   std::string path_;
+  Interrupter* interrupter_;
   int file_ = -1;
   int64_t size_ = 0;
   int64_t start_ = 0;  ///< position of the buffer's first byte
