@@ -184,6 +184,10 @@ class Reader {
 
   std::vector<GridBase::Ptr> read() {
     header_ = readHeader(file_);
+    // OpenVDB's readers ask the stream for these.
+    io::setStreamMetadataPtr(stream_, streamState_, /*transfer=*/false);
+    io::setVersion(stream_, header_.library, header_.format);
+
     readMetadata(file_, stream_, nullptr);
     const auto count = file_.read<int32_t>();
     if (count < 0) damaged("its number of grids is negative");
@@ -245,10 +249,6 @@ class Reader {
     const int64_t start = file_.position();
     const detail::TreeSettings settings{layout, grid.saveFloatAsHalf(), compression,
                                         options_.maxVoxels, options_.maxCoordinate};
-    // Its trial reads need what OpenVDB's readers ask the stream for.
-    auto state = std::make_shared<io::StreamMetadata>();
-    io::setStreamMetadataPtr(stream_, state, /*transfer=*/false);
-    io::setVersion(stream_, header_.library, header_.format);
     io::setDataCompression(stream_, compression);
     io::setGridClass(stream_, grid.getGridClass());
     io::setHalfFloat(stream_, settings.half);
@@ -265,11 +265,11 @@ class Reader {
     if (file_.position() != extent.topologyEnd) damaged("its nodes have the wrong size");
     grid.readBuffers(stream_);
     if (file_.position() != extent.end) damaged("its voxels have the wrong size");
-    io::clearStreamMetadataPtr(stream_);
   }
 
   detail::InputBuffer& file_;
   std::istream stream_;
+  io::StreamMetadata::Ptr streamState_ = std::make_shared<io::StreamMetadata>();
   const VdbReadOptions& options_;
   Header header_;
 };
@@ -318,6 +318,8 @@ std::vector<GridBase::Ptr> readVdb(const std::string& path, const VdbReadOptions
     throw;
   } catch (const Interrupted&) {
     throw;
+  } catch (const detail::BeyondLimits& error) {
+    refuse(file, error.what() + std::string("; crop it, or make it again if it is not so large"));
   } catch (const std::bad_alloc&) {
     refuse(file, "there is not enough memory; close other programs, or crop it");
   } catch (const std::ios_base::failure&) {

@@ -257,12 +257,13 @@ class TreeCheck {
 
   void addVoxels(int64_t count) {
     if (count > settings_.maxVoxels - voxels_)
-      damaged("a grid has more than " + std::to_string(settings_.maxVoxels) + " voxels");
+      throw BeyondLimits("a grid has more than " + std::to_string(settings_.maxVoxels) + " voxels");
     voxels_ += count;
   }
 
   [[noreturn]] void tooFar() const {
-    damaged("a grid reaches beyond coordinate " + std::to_string(settings_.maxCoordinate));
+    throw BeyondLimits("a grid reaches beyond coordinate " +
+                       std::to_string(settings_.maxCoordinate));
   }
 
   InputBuffer& file_;

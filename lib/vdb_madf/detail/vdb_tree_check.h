@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <istream>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "vdb_madf/detail/file_buffer.h"
@@ -37,9 +38,15 @@ struct TreeExtent {
   int64_t memoryBytes = 0;
 };
 
+/// The tree is larger than its reader wants it.
+class BeyondLimits : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// Walks over a tree in a file without building it: everything that OpenVDB's reader takes on
 /// trust. `stream` reads from `file`, whose position is the start of the tree.
-/// @throw std::runtime_error that says what is wrong; EarlyEnd.
+/// @throw std::runtime_error that says what is wrong; EarlyEnd; BeyondLimits.
 TreeExtent checkTree(InputBuffer& file, std::istream& stream, const TreeSettings& settings);
 
 }  // namespace vdb_madf::detail
