@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <new>
 #include <type_traits>
 #include <vector>
 
@@ -188,7 +189,11 @@ MaskGrid::Ptr readMask(ImageReader& image, const Selection& selection, Interrupt
   const ImageInfo& info = image.info();
   const auto grid = MaskGrid::create();
   const int slices = std::min(kLeaf, info.size.z());
-  const std::unique_ptr<char[]> slab(new char[size_t(detail::sliceBytes(info)) * size_t(slices)]);
+  const size_t slabBytes = size_t(detail::sliceBytes(info)) * size_t(slices);
+  const std::unique_ptr<char[]> slab(new (std::nothrow) char[slabBytes]);
+  if (!slab)
+    throw IoError(image.path() + ": its slices are too large: " + std::to_string(slabBytes) +
+                  " bytes are needed for eight");
   SlabPacker packer(info.size, info.type, selection);
   for (int z = 0; z < info.size.z(); z += kLeaf) {
     if (interrupter && interrupter->wasInterrupted(int(int64_t(z) * 100 / info.size.z())))

@@ -54,9 +54,9 @@ size_t InflateStream::inflateSome(unsigned char* to, size_t count) {
     if (result == Z_STREAM_END) {
       ended_ = true;
     } else if (result == Z_BUF_ERROR || result == Z_OK) {
-      if (made == 0 && starved) throw IoError(file_.path() + ": the compressed data end too early");
+      if (made == 0 && starved) throw IoError(file_.name() + ": the compressed data end too early");
     } else {
-      throw IoError(file_.path() + ": the compressed data are damaged" +
+      throw IoError(file_.name() + ": the compressed data are damaged" +
                     (stream_.msg ? std::string(" (") + stream_.msg + ")" : std::string()));
     }
   }
@@ -66,7 +66,7 @@ size_t InflateStream::inflateSome(unsigned char* to, size_t count) {
 void InflateStream::read(void* to, size_t count) {
   const size_t missing = inflateSome(static_cast<unsigned char*>(to), count);
   if (missing > 0)
-    throw IoError(file_.path() + ": the compressed data end too early: " + std::to_string(missing) +
+    throw IoError(file_.name() + ": the compressed data end too early: " + std::to_string(missing) +
                   " bytes of a slice are missing");
 }
 
@@ -80,7 +80,7 @@ void InflateStream::expectEnd() {
   if (ended_) return;  // what follows is padding or another matter
   unsigned char byte;
   if (inflateSome(&byte, 1) == 0)
-    throw IoError(file_.path() + ": holds more data than its header says: check size and type");
+    throw IoError(file_.name() + ": holds more data than its header says: check size and type");
 }
 
 }  // namespace vdb_madf::detail

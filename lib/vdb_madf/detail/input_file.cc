@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "vdb_madf/detail/header_text.h"
 #include "vdb_madf/errors.h"
 
 namespace vdb_madf::detail {
@@ -22,13 +23,22 @@ constexpr size_t kMostPerCall = size_t(1) << 30;
 
 }  // namespace
 
-InputFile::InputFile(std::string path) : path_(std::move(path)) {
+InputFile::InputFile(const std::string& path) : name_(path) {
+  open(path);
+}
+
+InputFile::InputFile(const std::string& header, const std::string& path)
+    : name_(header + ": its data file " + quoted(path)) {
+  open(path);
+}
+
+void InputFile::open(const std::string& path) {
   struct stat status;
-  if (stat(path_.c_str(), &status) != 0)
-    throw IoError(path_ + ": cannot be opened: " + std::strerror(errno));
-  if (!S_ISREG(status.st_mode)) throw IoError(path_ + ": is not a regular file");
-  descriptor_ = open(path_.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor_ < 0) throw IoError(path_ + ": cannot be opened: " + std::strerror(errno));
+  if (stat(path.c_str(), &status) != 0)
+    throw IoError(name_ + ": cannot be opened: " + std::strerror(errno));
+  if (!S_ISREG(status.st_mode)) throw IoError(name_ + ": is not a regular file");
+  descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor_ < 0) throw IoError(name_ + ": cannot be opened: " + std::strerror(errno));
   size_ = uint64_t(status.st_size);
 }
 
@@ -38,14 +48,14 @@ InputFile::~InputFile() {
 
 void InputFile::read(uint64_t offset, void* to, size_t count) const {
   if (offset > size_ || count > size_ - offset)
-    throw IoError(path_ + ": ends early: " + std::to_string(size_) + " bytes, at least " +
+    throw IoError(name_ + ": ends early: " + std::to_string(size_) + " bytes, at least " +
                   std::to_string(offset + count) + " needed");
   char* place = static_cast<char*>(to);
   while (count > 0) {
     const ssize_t got = pread(descriptor_, place, std::min(count, kMostPerCall), off_t(offset));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw IoError(path_ + ": cannot be read: " + std::strerror(errno));
-    if (got == 0) throw IoError(path_ + ": became shorter while it was read");
+    if (got < 0) throw IoError(name_ + ": cannot be read: " + std::strerror(errno));
+    if (got == 0) throw IoError(name_ + ": became shorter while it was read");
     place += got;
     offset += uint64_t(got);
     count -= size_t(got);

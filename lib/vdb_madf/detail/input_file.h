@@ -13,12 +13,15 @@ namespace vdb_madf::detail {
 class InputFile {
  public:
   /// @throw IoError if it is missing, not a regular file (a pipe would block) or not readable.
-  explicit InputFile(std::string path);
+  explicit InputFile(const std::string& path);
+  /// The data of a detached header: messages name both, the header first.
+  InputFile(const std::string& header, const std::string& path);
   ~InputFile();
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
 
-  const std::string& path() const { return path_; }
+  /// For messages.
+  const std::string& name() const { return name_; }
   uint64_t size() const { return size_; }
   /// Exactly `count` bytes from `offset` on. @throw IoError if there are fewer.
   void read(uint64_t offset, void* to, size_t count) const;
@@ -26,7 +29,9 @@ class InputFile {
   std::string head(size_t count) const;
 
  private:
-  std::string path_;
+  void open(const std::string& path);
+
+  std::string name_;
   int descriptor_ = -1;
   uint64_t size_ = 0;
 };

@@ -33,7 +33,7 @@ constexpr TypeName kTypes[] = {
 /// The fields of a header, up to and with ElementDataFile.
 class MetaHeader {
  public:
-  explicit MetaHeader(const InputFile& file) : path_(file.path()) {
+  explicit MetaHeader(const InputFile& file) : path_(file.name()) {
     const std::string head = file.head(kLongestHeader);
     while (dataOffset_ < head.size() && !find("ElementDataFile")) {
       const size_t end = std::min(head.find('\n', dataOffset_), head.size());
@@ -192,13 +192,8 @@ std::unique_ptr<ImageReader> openMeta(const std::string& path) {
   if (dataFile.compare(0, 4, "LIST") == 0 || dataFile.find('%') != std::string::npos)
     throw IoError(path + ": its data are spread over several files; write them into one");
   layout.offset = uint64_t(std::max<int64_t>(headerSize, 0));
-  std::unique_ptr<InputFile> data;
-  try {
-    data = std::make_unique<InputFile>(besideHeader(path, dataFile));
-  } catch (const IoError&) {
-    throw IoError(path + ": its data file " + quoted(dataFile) + " cannot be opened");
-  }
-  return openSamples(path, info, std::move(data), layout);
+  return openSamples(path, info, std::make_unique<InputFile>(path, besideHeader(path, dataFile)),
+                     layout);
 }
 
 std::unique_ptr<ImageWriter> createMeta(const std::string& path, const ImageInfo& info) {

@@ -67,7 +67,7 @@ std::string fieldName(const std::string& text) {
 
 class NrrdHeader {
  public:
-  explicit NrrdHeader(const InputFile& file) : path_(file.path()) {
+  explicit NrrdHeader(const InputFile& file) : path_(file.name()) {
     const std::string head = file.head(kLongestHeader);
     if (head.compare(0, 4, "NRRD") != 0) throw IoError(path_ + ": does not begin with NRRD");
     bool first = true;
@@ -179,7 +179,7 @@ uint64_t skipLines(const InputFile& file, uint64_t offset, int64_t lines) {
   std::string chunk;
   while (lines > 0) {
     if (offset >= file.size())
-      throw IoError(file.path() + ": has fewer lines than its header wants skipped");
+      throw IoError(file.name() + ": has fewer lines than its header wants skipped");
     chunk.resize(size_t(std::min<uint64_t>(1 << 16, file.size() - offset)));
     file.read(offset, chunk.data(), chunk.size());
     size_t used = 0;
@@ -200,11 +200,7 @@ uint64_t skipLines(const InputFile& file, uint64_t offset, int64_t lines) {
 std::unique_ptr<InputFile> openData(const std::string& path, const std::string& dataFile) {
   if (dataFile.compare(0, 4, "LIST") == 0 || dataFile.find('%') != std::string::npos)
     throw IoError(path + ": its data are spread over several files; write them into one");
-  try {
-    return std::make_unique<InputFile>(besideHeader(path, dataFile));
-  } catch (const IoError&) {
-    throw IoError(path + ": its data file " + quoted(dataFile) + " cannot be opened");
-  }
+  return std::make_unique<InputFile>(path, besideHeader(path, dataFile));
 }
 
 SampleLayout layoutOf(const std::string& path, const NrrdHeader& header, SampleType type) {

@@ -82,19 +82,18 @@ std::unique_ptr<ImageReader> openSamples(const std::string& path, const ImageInf
                                          const SampleLayout& layout) {
   SampleLayout place = layout;
   const uint64_t needed = imageBytes(info), size = data->size();
-  const std::string named = data->path() == path ? path : path + ": " + data->path();
   if (place.atEnd && needed <= size) place.offset = size - needed;
   if (place.offset > size)
-    throw IoError(named + ": has " + std::to_string(size) + " bytes, but its samples begin at " +
-                  std::to_string(place.offset));
+    throw IoError(data->name() + ": has " + std::to_string(size) +
+                  " bytes, but its samples begin at " + std::to_string(place.offset));
   const uint64_t held = size - place.offset;
   if (place.deflated) {
     const uint64_t most = held * InflateStream::kMostExpansion;
     if (place.skip > most || needed > most - place.skip)
-      throw IoError(named + ": has " + std::to_string(held) + " compressed bytes, too few for " +
-                    describe(info));
+      throw IoError(data->name() + ": has " + std::to_string(held) +
+                    " compressed bytes, too few for " + describe(info));
   } else if (held != needed) {
-    throw IoError(named + ": has " + std::to_string(held) + " bytes of samples, but " +
+    throw IoError(data->name() + ": has " + std::to_string(held) + " bytes of samples, but " +
                   describe(info) + " takes " + std::to_string(needed) +
                   ": check the size, the sample type and whether there is a header to skip");
   }

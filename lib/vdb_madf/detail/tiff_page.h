@@ -35,7 +35,7 @@ class TiffFile {
  public:
   explicit TiffFile(const std::string& path);
 
-  const std::string& path() const { return data_.path(); }
+  const std::string& path() const { return data_.name(); }
   /// The current page. Its strips and tiles lie within the file and can hold what it claims.
   /// @throw IoError if it is not a grey image of a known type.
   TiffPage page() const;
