@@ -27,8 +27,8 @@ constexpr int64_t kMaxBatch = 1 << 18;
 /// A batch aims at this part of what is missing, many standard deviations short of the goal.
 constexpr double kBatchPart = 0.8;
 
-/// So many balls in a row that are too large for what is missing: give up.
-constexpr int kMaxRejects = 20000;
+/// So many balls in a row that add nothing, or too much for what is missing: give up.
+constexpr int kMaxFailures = 100000;
 constexpr int kPollInterval = 64;
 
 class PackBuilder {
@@ -95,16 +95,16 @@ class PackBuilder {
 
   void addSingly() {
     const double tolerance = kFractionTolerance * boxVoxels_;
-    int rejects = 0;
+    int failures = 0;
     for (int64_t step = 0; missing() > tolerance; ++step) {
       if (step % kPollInterval == 0 && interrupter_ && interrupter_->wasInterrupted())
         throw Interrupted();
       const Ball ball = drawBall();
-      if (!meetsBox(ball)) continue;
-      if (double(balls_.countNew(ball)) <= missing() + tolerance) {
+      const int64_t added = meetsBox(ball) ? balls_.countNew(ball) : 0;
+      if (added > 0 && double(added) <= missing() + tolerance) {
         balls_.add(ball);
-        rejects = 0;
-      } else if (++rejects == kMaxRejects) {
+        failures = 0;
+      } else if (++failures == kMaxFailures) {
         throw InvalidInput(
             "the fraction cannot be met with so large balls in so small a box: use smaller radii "
             "or a larger size");

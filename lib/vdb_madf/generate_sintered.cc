@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "vdb_madf/detail/ball_placement.h"
 #include "vdb_madf/detail/ball_union.h"
 #include "vdb_madf/detail/gaussian_blur.h"
 #include "vdb_madf/detail/mask_blocks.h"
@@ -11,7 +12,6 @@
 #include "vdb_madf/detail/power_cells.h"
 #include "vdb_madf/detail/random.h"
 #include "vdb_madf/detail/sample_options.h"
-#include "vdb_madf/errors.h"
 #include "vdb_madf/generate.h"
 
 namespace vdb_madf {
@@ -29,45 +29,8 @@ constexpr double kNoiseSigma = 1;
 constexpr double kNoiseAmplitude = 1.5;
 constexpr float kCut = 0.45f;
 
-/// Random positions tried for a ball before the box counts as full.
-constexpr int kMaxTries = 50000;
-constexpr int kPollInterval = 256;
-
-enum Stream : uint64_t { kBallStream = 0, kNoiseStream = 1 };
-
-bool keepsDistance(const Ball& ball, const std::vector<Ball>& others, double neck) {
-  for (const Ball& other : others) {
-    const double dx = ball.x - other.x, dy = ball.y - other.y, dz = ball.z - other.z;
-    const double distance = neck * (ball.radius + other.radius);
-    if (dx * dx + dy * dy + dz * dz < distance * distance) return false;
-  }
-  return true;
-}
-
-/// Random sequential addition: each ball keeps its radius and tries positions until one fits.
-std::vector<Ball> placeBalls(const SinteredOptions& options, Interrupter* interrupter) {
-  detail::RandomSequence random(options.seed, kBallStream);
-  std::vector<Ball> balls;
-  while (int(balls.size()) < options.count) {
-    Ball ball;
-    ball.radius = random.uniform(options.minRadius, options.maxRadius);
-    int tries = 0;
-    do {
-      if (tries % kPollInterval == 0 && interrupter && interrupter->wasInterrupted())
-        throw Interrupted();
-      if (tries++ == kMaxTries)
-        throw InvalidInput("only " + std::to_string(balls.size()) + " of " +
-                           std::to_string(options.count) +
-                           " balls fit: use a smaller count, radius or neck, or a larger size");
-      ball.x = random.uniform(-0.5, options.size.x() - 0.5);
-      ball.y = random.uniform(-0.5, options.size.y() - 0.5);
-      ball.z = random.uniform(-0.5, options.size.z() - 0.5);
-    } while (!keepsDistance(ball, balls, options.neck));
-    balls.push_back(ball);
-  }
-  detail::sortByCentre(balls);
-  return balls;
-}
+/// Stream 0 places the balls.
+constexpr uint64_t kNoiseStream = 1;
 
 /// 1 inside the balls, 0 outside; also beyond the faces of the sample, so that the blur sees no
 /// surface there.
@@ -161,7 +124,7 @@ Sample generateSintered(const SinteredOptions& options, Interrupter* interrupter
   detail::checkRange("neck", options.neck, 0, 10);
   detail::checkRange("roughness", options.roughness, 0, 10);
 
-  const std::vector<Ball> balls = placeBalls(options, interrupter);
+  const std::vector<Ball> balls = detail::placeSintered(options, interrupter);
   Sample sample;
   sample.object = MaskGrid::create(SurfaceBuilder(options, balls).build(interrupter));
   sample.truth = Int32Grid::create(detail::powerCells(sample.object->tree(), balls, interrupter));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <tuple>
 
 #include "vdb_madf/detail/parallel.h"
 
@@ -120,6 +121,12 @@ void visitBlocks(const MaskBlocks& blocks, const CoordBBox& ball, const Visit& v
 }
 
 }  // namespace
+
+void sortByCentre(std::vector<Ball>& balls) {
+  std::stable_sort(balls.begin(), balls.end(), [](const Ball& a, const Ball& b) {
+    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+  });
+}
 
 RowRange ballRow(const Ball& ball, int x, int y, int zMin, int zMax) {
   const double dx = x - ball.x, dy = y - ball.y;

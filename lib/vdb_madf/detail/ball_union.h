@@ -16,6 +16,9 @@ struct Ball {
   double x = 0, y = 0, z = 0, radius = 0;
 };
 
+/// Sorts balls by centre (x, then y, then z): the order in which the true grains are numbered.
+void sortByCentre(std::vector<Ball>& balls);
+
 /// Voxels along z; empty if last < first.
 struct RowRange {
   int first = 0, last = -1;

@@ -7,7 +7,6 @@
 #include <atomic>
 #include <limits>
 #include <map>
-#include <tuple>
 
 #include "vdb_madf/detail/parallel.h"
 
@@ -91,12 +90,6 @@ void numberOwners(const std::vector<Leaf*>& leaves, size_t ballCount, Interrupte
 }
 
 }  // namespace
-
-void sortByCentre(std::vector<Ball>& balls) {
-  std::stable_sort(balls.begin(), balls.end(), [](const Ball& a, const Ball& b) {
-    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-  });
-}
 
 Int32Tree::Ptr powerCells(const MaskTree& object, const std::vector<Ball>& balls,
                           Interrupter* interrupter) {

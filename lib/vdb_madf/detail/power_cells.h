@@ -10,9 +10,6 @@
 
 namespace vdb_madf::detail {
 
-/// Sorts balls by centre (x, then y, then z): the order in which the true grains are numbered.
-void sortByCentre(std::vector<Ball>& balls);
-
 /// For each voxel p of the object the ball of least power |p - c|^2 - r^2 (tie: the earlier ball),
 /// with the object's topology. The balls that own a voxel are numbered 1..N in their order. The
 /// object must have no active tiles.
