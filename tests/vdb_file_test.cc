@@ -554,7 +554,7 @@ TEST_CASE("vdb_file: damaged files are read or refused, quickly and in little me
   int refused = 0, total = 0;
   uint32_t seed = 0;
   for (const auto& [name, bytes] : smallFiles()) {
-    for (int round = 0; round < 700; ++round) {
+    for (int round = 0; round < 500; ++round) {
       std::mt19937 random(++seed);
       std::string changed = bytes;
       for (uint32_t i = 0, n = 1 + random() % 3; i < n; ++i) {

@@ -21,9 +21,10 @@ struct VdbReadOptions {
   int maxCoordinate = 1 << 20;
 };
 
-/// All grids of a .vdb file, read eagerly (no delayed loading) from a file that may be corrupt.
-/// Every read is checked; linked against OpenVDB before 11, a program also needs the checked
-/// decompression of tools/ for files that are not trusted.
+/// The volumes of a .vdb file in its order, read eagerly (no delayed loading) from a file that may
+/// be damaged; point grids are left out. Formats 222 to 224. The structure of
+/// each grid is checked before OpenVDB reads it; linked against OpenVDB before 11, a program also
+/// needs the checked decompression of tools/ for files that may change while they are read.
 /// @throw IoError, one line that names the file, if it is missing, truncated, corrupt or not VDB;
 ///   Interrupted.
 std::vector<openvdb::GridBase::Ptr> readVdb(const std::string& path,
