@@ -32,13 +32,12 @@ class Stages {
 
   void begin(const char* stage) {
     end();
-    if (interrupter_) {
-      interrupter_->start(stage);
-      if (interrupter_->wasInterrupted(0)) throw Interrupted();
-    }
     times_.push_back({stage, 0});
     begin_ = Clock::now();
     running_ = true;
+    if (!interrupter_) return;
+    interrupter_->start(stage);
+    if (interrupter_->wasInterrupted(0)) throw Interrupted();
   }
   void end() {
     if (!running_) return;
