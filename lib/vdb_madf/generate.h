@@ -26,12 +26,15 @@ struct Sample {
 /// 4/3 pi r^3 - |X|) / |X| is met within 1 % of its value (0: no two balls share a voxel).
 /// truth = the power map of the input balls.
 ///
-/// Centres are uniform over all placements that have this overlap and where each ball has the
-/// least power at its own centre: |ci - cj|^2 > |ri^2 - rj^2|. Then each ball is a critical point
-/// of the power map of the balls, so each true cell is a grain in the paper's sense, and owns a
-/// voxel; a ball that a larger one nearly swallows is none. No other distance is asked for. (A
-/// Markov chain finds such a placement: moves of single balls, first towards the overlap, then 100
-/// for each ball at that overlap.)
+/// Centres are uniform over all placements that have this overlap and where
+/// - each ball has the least power at its own centre, |ci - cj|^2 > |ri^2 - rj^2|: then it owns a
+///   voxel, and is a critical point of the power map of the balls; a ball that a larger one nearly
+///   swallows is no grain;
+/// - no voxel lies in three balls: where several meet in one place, their union is widest between
+///   their centres, and the balls are not its grains.
+/// Placements that are uniform but for the overlap have up to a fifth more such widest places than
+/// balls. (A Markov chain finds a placement: moves of single balls, first towards the overlap, then
+/// 100 for each ball at that overlap.)
 struct SphereOptions {
   Coord size{300, 300, 300};
   uint64_t seed = 1;

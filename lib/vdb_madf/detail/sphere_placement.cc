@@ -94,14 +94,17 @@ class Placement {
     for (int i = 0; i < options_.count; ++i) {
       balls_.emplace_back(radii.uniform(options_.minRadius, options_.maxRadius), Coord(0));
       int tries = 0;
+      Share now{0, false};
       do {
         poll(tries);
         if (tries++ == kMaxTries)
           throw InvalidInput("only " + std::to_string(i) + " of " + std::to_string(options_.count) +
                              " balls find a place: use fewer or smaller balls, or a larger size");
         balls_.back().centre = anyCentre(balls_.back().radius(), centres);
-      } while (!ownsCentres(balls_.size() - 1));
-      unionVoxels_ += ownVoxels(balls_.size() - 1);
+        if (!ownsCentres(size_t(i))) continue;
+        now = share(size_t(i));
+      } while (!now.pairsOnly);
+      unionVoxels_ += now.own;
       volume_ += balls_.back().volume();
       ballVoxels_ += balls_.back().voxels();
     }
@@ -148,11 +151,11 @@ class Placement {
     }
     ball.centre = newCentre;
     if (ownsCentres(i)) {
+      const Share now = share(i);
       ball.centre = oldCentre;
-      unionVoxels_ -= ownVoxels(i);
+      unionVoxels_ += now.own - share(i).own;
       ball.centre = newCentre;
-      unionVoxels_ += ownVoxels(i);
-      if (accept()) return;
+      if (now.pairsOnly && accept()) return;
     }
     ball.centre = oldCentre;
     unionVoxels_ = oldUnion;
@@ -183,8 +186,13 @@ class Placement {
     return true;
   }
 
-  /// The voxels of ball i that no other ball has.
-  int64_t ownVoxels(size_t i) const {
+  struct Share {
+    int64_t own = 0;        ///< voxels that no other ball has
+    bool pairsOnly = true;  ///< no voxel lies in two other balls as well
+  };
+
+  /// How ball i shares its voxels with the others.
+  Share share(size_t i) const {
     const LatticeBall& ball = balls_[i];
     std::vector<const LatticeBall*> others;
     for (size_t j = 0; j < balls_.size(); ++j) {
@@ -192,9 +200,11 @@ class Placement {
       if (j != i && squaredDistance(ball.centre, balls_[j].centre) < touch * touch)
         others.push_back(&balls_[j]);
     }
-    if (others.empty()) return ball.voxels();
-
-    int64_t own = 0;
+    Share share;
+    if (others.empty()) {
+      share.own = ball.voxels();
+      return share;
+    }
     std::vector<RowRange> covered;
     const int r = ball.reach();
     for (int x = ball.centre.x() - r; x <= ball.centre.x() + r; ++x)
@@ -205,23 +215,23 @@ class Placement {
         for (const LatticeBall* other : others) {
           const RowRange part = other->row(x, y);
           if (part.first <= part.last && part.first <= row.last && part.last >= row.first)
-            covered.push_back(part);
+            covered.push_back({std::max(part.first, row.first), std::min(part.last, row.last)});
         }
-        own += uncovered(row, covered);
+        addRow(row, covered, share);
       }
-    return own;
+    return share;
   }
 
-  static int64_t uncovered(const RowRange& row, std::vector<RowRange>& covered) {
+  static void addRow(const RowRange& row, std::vector<RowRange>& covered, Share& share) {
     std::sort(covered.begin(), covered.end(),
               [](const RowRange& a, const RowRange& b) { return a.first < b.first; });
-    int64_t count = 0;
     int next = row.first;
     for (const RowRange& part : covered) {
-      count += std::max(0, part.first - next);
+      if (part.first < next) share.pairsOnly = false;
+      share.own += std::max(0, part.first - next);
       next = std::max(next, part.last + 1);
     }
-    return count + std::max(0, row.last + 1 - next);
+    share.own += std::max(0, row.last + 1 - next);
   }
 
   double overlap() const { return (volume_ - double(unionVoxels_)) / double(unionVoxels_); }
