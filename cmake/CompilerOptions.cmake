@@ -7,7 +7,7 @@ function(vdb_madf_compiler_options target)
   endif()
   if(VDB_MADF_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all
-      -fno-omit-frame-pointer -g1)
+      -fno-omit-frame-pointer -g1 -O1)
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
   endif()
 endfunction()
