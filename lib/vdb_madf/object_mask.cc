@@ -9,6 +9,7 @@
 #include "vdb_madf/detail/parallel.h"
 #include "vdb_madf/errors.h"
 #include "vdb_madf/grid_metadata.h"
+#include "vdb_madf/leaf_index.h"
 
 namespace vdb_madf {
 
@@ -78,7 +79,13 @@ bool isNumber(const Value& value) {
   return value == value;
 }
 
+/// Only the faces of a box cost leaf nodes, the rest is tiles.
 MaskTree::Ptr box(const CoordBBox& extent) {
+  constexpr double kLeaf = 8;
+  const double a = extent.dim().x() / kLeaf + 1, b = extent.dim().y() / kLeaf + 1,
+               c = extent.dim().z() / kLeaf + 1;
+  if (2 * (a * b + b * c + c * a) > double(LeafIndex::kMaxLeaves))
+    throw InvalidInput("the domain is too large to invert a selection in it: crop it");
   auto tree = std::make_shared<MaskTree>();
   tree->sparseFill(extent, true, true);
   return tree;
