@@ -234,11 +234,16 @@ TEST_CASE("generate: spheres are as documented", "[generate]") {
       }
     }
     const Sample sample = generateSpheres(options);
-    size_t wrong = 0;
+    size_t wrong = 0, crowded = 0;
     const auto object = sample.object->getConstAccessor();
     const CoordBBox box(Coord(0), options.size.offsetBy(-1));
-    for (auto p = box.begin(); p; ++p) wrong += object.isValueOn(*p) != inUnion(balls, *p);
+    for (auto p = box.begin(); p; ++p) {
+      wrong += object.isValueOn(*p) != inUnion(balls, *p);
+      crowded += std::count_if(balls.begin(), balls.end(),
+                               [&](const Ball& b) { return power(b, *p) < 0; }) > 2;
+    }
     CHECK(wrong == 0);
+    CHECK(crowded == 0);
     requireTruth(sample, balls);
     for (size_t i = 0; i < balls.size(); ++i)
       CHECK(sample.truth->tree().getValue(
