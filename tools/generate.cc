@@ -126,6 +126,10 @@ void addGenerate(CLI::App& app, Common& common, Action& action) {
         a.add_option("--radius", o->radius, "radii A:B, voxels (default 20:30)");
         a.add_option("--overlap", o->spheres.overlap, "overlap of the balls (paper, section 6.1)")
             ->capture_default_str();
+        a.add_option("--max-cover", o->spheres.maxCover,
+                     "most balls that may share a voxel (0: any)")
+            ->check(CLI::NonNegativeNumber)
+            ->capture_default_str();
       },
       [o](Interrupter* i) { return generateSpheres(o->spheres, i); },
       "vdb_madf generate spheres balls.vdb --count 100 --radius 20:30 --overlap 0.084");

@@ -24,6 +24,7 @@ void checkOptions(const SphereOptions& options) {
   detail::checkCount(options.count);
   detail::checkRadii(options.minRadius, options.maxRadius);
   detail::checkRange("overlap", options.overlap, 0, kMaxOverlap);
+  if (options.maxCover < 0) throw InvalidInput("the largest cover must be 1 or more, or 0 for any");
   const int shortest = std::min({options.size.x(), options.size.y(), options.size.z()});
   if (2 * int(std::ceil(options.maxRadius)) > shortest - 1)
     throw InvalidInput("balls of the largest radius do not fit into " + std::to_string(shortest) +
@@ -46,6 +47,7 @@ Sample generateSpheres(const SphereOptions& options, Interrupter* interrupter) {
       .add("count", std::to_string(options.count))
       .range("radius", options.minRadius, options.maxRadius)
       .add("overlap", options.overlap)
+      .add("max-cover", std::to_string(options.maxCover))
       .add("seed", std::to_string(options.seed));
   detail::describe(*sample.object, "object", options.size, source);
   detail::describe(*sample.truth, "truth", options.size, source);

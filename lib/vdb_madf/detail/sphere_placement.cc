@@ -94,7 +94,8 @@ class Placement {
     for (int i = 0; i < options_.count; ++i) {
       balls_.emplace_back(radii.uniform(options_.minRadius, options_.maxRadius), Coord(0));
       int tries = 0;
-      Share now{0, false};
+      Share now;
+      bool placed = false;
       do {
         poll(tries);
         if (tries++ == kMaxTries)
@@ -103,7 +104,8 @@ class Placement {
         balls_.back().centre = anyCentre(balls_.back().radius(), centres);
         if (!ownsCentres(size_t(i))) continue;
         now = share(size_t(i));
-      } while (!now.pairsOnly);
+        placed = fits(now);
+      } while (!placed);
       unionVoxels_ += now.own;
       volume_ += balls_.back().volume();
       ballVoxels_ += balls_.back().voxels();
@@ -155,7 +157,7 @@ class Placement {
       ball.centre = oldCentre;
       unionVoxels_ += now.own - share(i).own;
       ball.centre = newCentre;
-      if (now.pairsOnly && accept()) return;
+      if (fits(now) && accept()) return;
     }
     ball.centre = oldCentre;
     unionVoxels_ = oldUnion;
@@ -187,9 +189,13 @@ class Placement {
   }
 
   struct Share {
-    int64_t own = 0;        ///< voxels that no other ball has
-    bool pairsOnly = true;  ///< no voxel lies in two other balls as well
+    int64_t own = 0;  ///< voxels that no other ball has
+    int cover = 1;    ///< most balls that one of its voxels lies in
   };
+
+  bool fits(const Share& share) const {
+    return options_.maxCover == 0 || share.cover <= options_.maxCover;
+  }
 
   /// How ball i shares its voxels with the others.
   Share share(size_t i) const {
@@ -227,7 +233,11 @@ class Placement {
               [](const RowRange& a, const RowRange& b) { return a.first < b.first; });
     int next = row.first;
     for (const RowRange& part : covered) {
-      if (part.first < next) share.pairsOnly = false;
+      const auto holds = [&](const RowRange& other) {
+        return other.first <= part.first && other.last >= part.first;
+      };
+      share.cover =
+          std::max(share.cover, 1 + int(std::count_if(covered.begin(), covered.end(), holds)));
       share.own += std::max(0, part.first - next);
       next = std::max(next, part.last + 1);
     }
