@@ -15,8 +15,10 @@ namespace {
 std::atomic<bool> interruptRequested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
 
-void onSignal(int) {
+/// The first signal asks; should the program be where it cannot hear, a second one ends it.
+void onSignal(int signal) {
   interruptRequested = true;
+  std::signal(signal, SIG_DFL);
 }
 
 constexpr auto kShowEvery = std::chrono::milliseconds(100);
