@@ -1,5 +1,5 @@
 # Flags of our own targets, never of those that link us. UNCHECKED: not instrumented by the sanitizers;
-# for the tests' own code, where they would cost an hour of compiling and find nothing of ours.
+# for the tests' own code, whose macros would take most of the time to compile.
 function(vdb_madf_compiler_options target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "UNCHECKED" "" "")
   target_compile_features(${target} PUBLIC cxx_std_17)

@@ -60,6 +60,7 @@ TEST_CASE("image_file: what createImage writes, openImage reads", "[image_file]"
     for (const SampleType type : kSampleTypes)
       for (const Coord& size : {Coord(1), kSize, Coord(17, 1, 9)})
         for (const double metres : {0.0, 8.5e-6, 3.3e-8, 1.0 / 3e5, 0.05}) {
+          if (metres > 0 && type != SampleType::uint16) continue;
           CAPTURE(ending, sampleTypeName(type), size, metres);
           const std::string path = folder / ("image." + ending);
           const std::string bytes = randomSamples(type, voxels(size), 1);

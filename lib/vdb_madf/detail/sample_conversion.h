@@ -3,9 +3,11 @@
 
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <mutex>
 #include <string>
 #include <type_traits>
 
@@ -71,17 +73,25 @@ template <typename Value>
                      ": choose another sample type");
 }
 
-/// samples[i] = values[i], in parallel. @throw InvalidInput that names the file and the value.
+/// samples[i] = values[i], in parallel. @throw InvalidInput that names the file and the first value
+/// that does not fit, however many threads look.
 template <typename Sample, typename Value>
 void convertSamples(const std::string& path, const Value* values, size_t count, SampleType type,
                     Sample* samples) {
   constexpr size_t kSamplesPerChunk = size_t(1) << 18;
+  std::mutex mutex;
+  size_t firstMisfit = count;
   parallelFor(count, kSamplesPerChunk, nullptr, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      if (!fits<Sample>(values[i])) failToFit(path, values[i], type);
+      if (!fits<Sample>(values[i])) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        firstMisfit = std::min(firstMisfit, i);
+        return;
+      }
       samples[i] = Sample(values[i]);
     }
   });
+  if (firstMisfit < count) failToFit(path, values[firstMisfit], type);
 }
 
 }  // namespace vdb_madf::detail
