@@ -9,6 +9,7 @@
 #include "command.h"
 #include "input.h"
 #include "json_file.h"
+#include "vdb_madf/errors.h"
 
 namespace vdb_madf::tools {
 
@@ -54,6 +55,10 @@ void run(const Options& o, const Common& common) {
   const Int32Grid::Ptr truth = loadLabels(o.truth, "--truth-grid", common.progress);
   const Int32Grid::Ptr test = loadLabels(o.test, "--test-grid", common.progress);
   const Comparison comparison = compare(*truth, *test, common.progress);
+  if (comparison.commonVoxels == 0 && comparison.truthGrains > 0 && comparison.testGrains > 0)
+    throw InvalidInput(o.test.path + ": no voxel is labelled both here and in " + o.truth.path +
+                       ", so there is nothing to compare: give labels of the same sample");
+  common.progress->end();
   jsonFile.write(summary(o, comparison));
   if (!common.quiet && o.json != "-") print(comparison);
 }
@@ -72,7 +77,9 @@ void addCompare(CLI::App& app, Common& common, Action& action) {
       ->type_name("FILE");
   o->truth.addRaw(*verb);
   verb->callback([o, &common, &action] {
+    for (InputOptions* input : {&o->truth, &o->test}) input->outputs = {o->json};
     o->truth.parse();
+    o->test.parse();
     // --dims describes whichever of the two is RAW.
     for (InputOptions* input : {&o->truth, &o->test}) {
       input->sampleType = o->truth.sampleType;
@@ -81,8 +88,6 @@ void addCompare(CLI::App& app, Common& common, Action& action) {
     o->test.size = o->truth.size;
     for (InputOptions* input : {&o->truth, &o->test})
       if (!hasRawEnding(input->path)) input->size.reset();
-    checkOutputIsNotInput(o->truth.path, o->json);
-    checkOutputIsNotInput(o->test.path, o->json);
     action = [o, &common] { run(*o, common); };
   });
 }

@@ -37,6 +37,15 @@ std::optional<SampleType> outputType(const Options& o) {
   return o.input.size ? std::nullopt : o.input.sampleType;
 }
 
+/// A RAW file does not tell these itself.
+void report(const Options& o, const Common& common, const std::string& what, const Coord& size,
+            SampleType type) {
+  common.progress->end();
+  if (common.quiet) return;
+  std::cout << o.out << ": " << what << ", " << size.x() << "x" << size.y() << "x" << size.z()
+            << " voxels of type " << sampleTypeName(type) << "\n";
+}
+
 void writeGridAsImage(const Options& o, const Common& common, const openvdb::GridBase& grid) {
   std::optional<CoordBBox> box = domain(grid);
   if (!box) {
@@ -49,7 +58,9 @@ void writeGridAsImage(const Options& o, const Common& common, const openvdb::Gri
                 << ": no known domain, so the active bounding box is written; its origin is "
                 << box->min() << "\n";
   }
-  writeImage(o.out, grid, *box, outputType(o).value_or(naturalType(grid)), common.progress);
+  const SampleType type = outputType(o).value_or(naturalType(grid));
+  writeImage(o.out, grid, *box, type, common.progress);
+  report(o, common, "grid '" + grid.getName() + "'", box->dim(), type);
 }
 
 void convertMask(const Options& o, const Common& common) {
@@ -61,8 +72,9 @@ void convertMask(const Options& o, const Common& common) {
   const BoolGrid::Ptr grid = toBoolGrid(*object);
   if (o.boundary != "auto")
     setBoundary(*grid, o.boundary == "open" ? Boundary::open : Boundary::closed);
-  if (!common.quiet) std::cout << o.out << ": " << object->activeVoxelCount() << " object voxels\n";
   writeVdb(o.out, {grid}, common.progress);
+  common.progress->end();
+  if (!common.quiet) std::cout << o.out << ": " << object->activeVoxelCount() << " object voxels\n";
 }
 
 void copyVdb(const Options& o, const Common& common) {
@@ -84,6 +96,7 @@ void copyVdb(const Options& o, const Common& common) {
 }
 
 void run(const Options& o, const Common& common) {
+  checkWritable(o.out);
   const bool fromVdb = !o.input.size && isVdb(o.input.path);
   if (o.input.selection || (!fromVdb && hasVdbEnding(o.out)))
     convertMask(o, common);
@@ -92,9 +105,14 @@ void run(const Options& o, const Common& common) {
   else {
     if (!o.input.gridName.empty())
       throw InvalidInput(o.input.path + ": --grid is for VDB files, and this is none");
-    const auto image = openImage(o.input.path, o.input.rawLayout());
-    copyImage(o.out, *image, outputType(o).value_or(image->info().type), o.input.voxelSize,
-              common.progress);
+    if (o.input.domain || o.boundary != "auto")
+      throw InvalidInput(o.input.path +
+                         ": --domain and --boundary are for VDB files and masks, and this is "
+                         "copied from image to image; leave them out");
+    const auto image = openInput(o.input);
+    const SampleType type = outputType(o).value_or(image->info().type);
+    copyImage(o.out, *image, type, o.input.voxelSize, common.progress);
+    report(o, common, "all values", image->info().size, type);
   }
 }
 
@@ -117,14 +135,17 @@ void addConvert(CLI::App& app, Common& common, Action& action) {
       ->check(CLI::IsMember({"auto", "open", "closed"}))
       ->capture_default_str();
   verb->callback([o, &common, &action] {
+    o->input.outputs = {o->out};
+    o->input.typeIsOfInput = hasVdbEnding(o->out);
     o->input.parse();
     if (!o->outType.empty()) {
+      if (hasVdbEnding(o->out))
+        throw WrongUsage("--out-type is for images, and " + o->out + " is none: leave it out");
       o->parsedOutType = sampleTypeFromName(o->outType);
       if (!o->parsedOutType) throw WrongUsage("--out-type " + o->outType + ": no such sample type");
     }
     if (!hasVdbEnding(o->out) && !isImageEnding(o->out))
       throw WrongUsage(o->out + ": the ending must be .vdb, .tif, .raw, .mhd or .mha");
-    checkOutputIsNotInput(o->input.path, o->out);
     action = [o, &common] { run(*o, common); };
   });
 }

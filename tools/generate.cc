@@ -60,6 +60,15 @@ void writeSample(const std::string& out, Sample& sample, Interrupter* interrupte
   if (sample.truth) writeImage(truthPath(out), *sample.truth, box, SampleType::int32, interrupter);
 }
 
+/// Nothing is read, so whatever cannot be made is the fault of the options.
+Sample makeSample(const std::function<Sample(Interrupter*)>& make, Interrupter* interrupter) {
+  try {
+    return make(interrupter);
+  } catch (const InvalidInput& error) {
+    throw WrongUsage(std::string("cannot generate this: ") + error.what());
+  }
+}
+
 /// A kind of sample: its own options besides those that all share, and the call that makes it.
 void addKind(CLI::App& verb, Common& common, Action& action, GenerateOptions& o,
              const std::string& kind, const std::string& description,
@@ -70,7 +79,9 @@ void addKind(CLI::App& verb, Common& common, Action& action, GenerateOptions& o,
   CLI::Option* size =
       app->add_option("--size", o.size, "edge of a cube, voxels")->check(CLI::Range(1, 26754));
   app->add_option("--dims", o.dims, "size NXxNYxNZ, voxels")->excludes(size);
-  app->add_option("--seed", o.seed, "same seed, same bits")->capture_default_str();
+  app->add_option("--seed", o.seed, "same seed, same bits")
+      ->check(CLI::NonNegativeNumber)  // would wrap around
+      ->capture_default_str();
   app->add_option("--voxel-size", o.voxelSize, "edge of a voxel with unit, for example 8.5um");
   addOptions(*app);
   app->callback([&common, &action, &o, make] {
@@ -95,12 +106,14 @@ void addKind(CLI::App& verb, Common& common, Action& action, GenerateOptions& o,
     std::optional<VoxelSize> voxelSize;
     if (!o.voxelSize.empty()) voxelSize = parseVoxelSize(o.voxelSize);
     action = [&common, &o, make, voxelSize] {
-      Sample sample = make(common.progress);
+      checkWritable(o.out);
+      Sample sample = makeSample(make, common.progress);
       if (voxelSize) {
         setVoxelSize(*sample.object, voxelSize);
         if (sample.truth) setVoxelSize(*sample.truth, voxelSize);
       }
       writeSample(o.out, sample, common.progress);
+      common.progress->end();
       if (!common.quiet)
         std::cout << o.out << ": " << sample.object->activeVoxelCount() << " object voxels, "
                   << 100.0 * double(sample.object->activeVoxelCount()) /
@@ -114,7 +127,10 @@ void addKind(CLI::App& verb, Common& common, Action& action, GenerateOptions& o,
 
 void addGenerate(CLI::App& app, Common& common, Action& action) {
   CLI::App* verb = app.add_subcommand("generate", "make a synthetic sample");
-  verb->require_subcommand(1);
+  verb->require_subcommand(0, 1);
+  verb->footer(
+      "vdb_madf generate KIND --help explains a kind.\nExample:\n"
+      "  vdb_madf generate snow snow.vdb --size 256");
   auto o = std::make_shared<GenerateOptions>();
   // The options live as long as the parser, which holds the callbacks that hold them.
   verb->final_callback([o] {});

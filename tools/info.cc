@@ -97,9 +97,10 @@ void run(const Options& o, const Common& common) {
     for (const auto& grid : readVdb(o.input.path, {}, common.progress))
       json["grids"].push_back(describeGrid(*grid));
   } else {
-    const auto image = openImage(o.input.path, o.input.rawLayout());
+    const auto image = openInput(o.input);
     json.update(describeImage(*image));
   }
+  common.progress->end();
   jsonFile.write(json);
   if (!common.quiet && o.json != "-") print(json);
 }
@@ -114,8 +115,8 @@ void addInfo(CLI::App& app, Common& common, Action& action) {
   verb->add_option("--json", o->json, "machine-readable result (-: standard output)")
       ->type_name("FILE");
   verb->callback([o, &common, &action] {
+    o->input.outputs = {o->json};
     o->input.parse();
-    checkOutputIsNotInput(o->input.path, o->json);
     action = [o, &common] { run(*o, common); };
   });
 }

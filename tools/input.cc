@@ -12,6 +12,7 @@
 #include "command.h"
 #include "vdb_madf/errors.h"
 #include "vdb_madf/object_mask.h"
+#include "vdb_madf/output_file.h"
 #include "vdb_madf/vdb_file.h"
 
 namespace vdb_madf::tools {
@@ -71,6 +72,23 @@ std::string lowerCaseEnding(const std::string& path) {
 
 std::string typeNames() {
   return "uint8, int8, uint16, int16, uint32, int32, float32 or float64";
+}
+
+bool sameFile(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  return a == b || std::filesystem::equivalent(a, b, ignored);
+}
+
+/// All files that the outputs are written to: an .mhd has its samples in a file beside it.
+std::vector<std::string> filesOf(const std::vector<std::string>& outputs) {
+  std::vector<std::string> files;
+  for (const std::string& output : outputs) {
+    if (output.empty() || output == "-") continue;
+    files.push_back(output);
+    if (lowerCaseEnding(output) == ".mhd")
+      files.push_back(std::filesystem::path(output).replace_extension(".raw").string());
+  }
+  return files;
 }
 
 }  // namespace
@@ -138,6 +156,8 @@ void InputOptions::parse() {
     sampleType = sampleTypeFromName(type);
     if (!sampleType) throw WrongUsage("--type " + type + ": must be " + typeNames());
   }
+  if (typeIsOfInput && sampleType && !size)
+    throw WrongUsage("--type describes a RAW input: give --dims too");
   if (bigEndian && !size) throw WrongUsage("--big-endian describes a RAW input: give --dims too");
   if (size && !sampleType) throw WrongUsage("a RAW input needs --type: " + typeNames());
   if (int(!phase.empty()) + int(!threshold.empty()) + int(!range.empty()) > 1)
@@ -157,6 +177,14 @@ void InputOptions::parse() {
   }
   if (!voxelSizeText.empty()) voxelSize = parseVoxelSize(voxelSizeText);
   if (!domainText.empty()) domain = parseDomain(domainText);
+  const std::vector<std::string> files = filesOf(outputs);
+  for (size_t i = 0; i < files.size(); ++i) {
+    if (sameFile(path, files[i]))
+      throw WrongUsage(files[i] + ": the output would overwrite the input; choose another name");
+    for (size_t j = 0; j < i; ++j)
+      if (sameFile(files[j], files[i]))
+        throw WrongUsage(files[i] + ": two outputs would go to this file; choose another name");
+  }
 }
 
 std::optional<RawLayout> InputOptions::rawLayout() const {
@@ -169,7 +197,8 @@ bool isVdb(const std::string& path) {
   constexpr char kMagic[8] = {' ', 'B', 'D', 'V', 0, 0, 0, 0};
   std::ifstream file(path, std::ios::binary);
   char start[8] = {};
-  return file.read(start, 8) && std::memcmp(start, kMagic, 8) == 0;
+  if (file.read(start, 8) && std::memcmp(start, kMagic, 8) == 0) return true;
+  return hasVdbEnding(path) && !looksLikeImage(path);
 }
 
 bool hasVdbEnding(const std::string& path) {
@@ -177,6 +206,9 @@ bool hasVdbEnding(const std::string& path) {
 }
 bool hasRawEnding(const std::string& path) {
   return lowerCaseEnding(path) == ".raw";
+}
+bool hasPngEnding(const std::string& path) {
+  return lowerCaseEnding(path) == ".png";
 }
 
 bool isNumericGrid(const openvdb::GridBase& grid) {
@@ -220,17 +252,31 @@ openvdb::GridBase::Ptr chooseGrid(const std::vector<openvdb::GridBase::Ptr>& gri
       "; the file holds " + list);
 }
 
+std::unique_ptr<ImageReader> openInput(const InputOptions& input) {
+  auto image = openImage(input.path, input.rawLayout());
+  for (const std::string& output : filesOf(input.outputs))
+    for (const std::string& file : image->files())
+      if (sameFile(file, output))
+        throw InvalidInput(output + ": holds samples of " + input.path +
+                           ", which the output would overwrite; choose another name");
+  return image;
+}
+
+void checkWritable(const std::string& output) {
+  const OutputFile probe(output);
+}
+
 MaskGrid::Ptr loadObject(const InputOptions& input, Interrupter* interrupter) {
   MaskGrid::Ptr object;
   if (!input.size && isVdb(input.path)) {
     const auto grid = chooseGrid(readVdb(input.path, {}, interrupter), input.path, input.gridName,
                                  "--grid", {"object"}, isNumericGrid);
     if (input.domain) setDomain(*grid, *input.domain);  // an inversion needs it
-    object = objectMask(*grid, input.selection);
+    object = naming(input.path, [&] { return objectMask(*grid, input.selection); });
   } else {
     if (!input.gridName.empty())
       throw InvalidInput(input.path + ": --grid is for VDB files, and this is none");
-    const auto image = openImage(input.path, input.rawLayout());
+    const auto image = openInput(input);
     object = readMask(*image, input.selection.value_or(Selection{}), interrupter);
   }
   if (input.domain) setDomain(*object, *input.domain);
@@ -248,14 +294,8 @@ Int32Grid::Ptr loadLabels(const InputOptions& input, const std::string& gridOpti
   }
   if (!input.gridName.empty())
     throw InvalidInput(input.path + ": " + gridOption + " is for VDB files, and this is none");
-  const auto image = openImage(input.path, input.rawLayout());
+  const auto image = openInput(input);
   return readLabels(*image, interrupter);
-}
-
-void checkOutputIsNotInput(const std::string& input, const std::string& output) {
-  std::error_code ignored;
-  if (input == output || std::filesystem::equivalent(input, output, ignored))
-    throw WrongUsage(output + ": the output would overwrite the input; choose another name");
 }
 
 }  // namespace vdb_madf::tools

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "vdb_madf/errors.h"
 #include "vdb_madf/grid_metadata.h"
 #include "vdb_madf/grid_types.h"
 #include "vdb_madf/image_file.h"
@@ -19,8 +20,10 @@ namespace vdb_madf::tools {
 /// What the command line says of a volume to read. The text of each option is checked by parse().
 struct InputOptions {
   std::string path;
+  std::vector<std::string> outputs;  ///< what the verb will write; empty names and "-" are none
   std::string gridName;
-  std::string dims, type;  ///< of a RAW file; `type` of the output if the input is not RAW
+  std::string dims, type;     ///< of a RAW file; `type` of the output if the input is not RAW
+  bool typeIsOfInput = true;  ///< nothing but a RAW input takes a `type`
   bool bigEndian = false;
   std::string phase, threshold, range;
   bool invert = false;
@@ -37,7 +40,7 @@ struct InputOptions {
   void addSelection(CLI::App& verb);
   void addVoxelSize(CLI::App& verb);
   void addDomain(CLI::App& verb);
-  /// @throw WrongUsage
+  /// Also checks that the outputs overwrite neither the input nor each other. @throw WrongUsage
   void parse();
   std::optional<RawLayout> rawLayout() const;
 };
@@ -47,10 +50,29 @@ double parseNumber(const std::string& text, const std::string& option);
 Coord parseDims(const std::string& text, const std::string& option);
 VoxelSize parseVoxelSize(const std::string& text);
 
-/// True if the file is an OpenVDB file, by its first bytes.
+/// True if the file is to be read as OpenVDB: by its first bytes, then by its ending.
 bool isVdb(const std::string& path);
 bool hasVdbEnding(const std::string& path);
 bool hasRawEnding(const std::string& path);
+bool hasPngEnding(const std::string& path);
+
+/// Opens an image of which no file is among the outputs. @throw InvalidInput, IoError
+std::unique_ptr<ImageReader> openInput(const InputOptions& input);
+
+/// Finds out before the work, not after it, that the output cannot be written. @throw IoError
+void checkWritable(const std::string& output);
+
+/// Runs `work`; what the library has to say against the data then names the file, too.
+template <typename Work>
+auto naming(const std::string& path, const Work& work) -> decltype(work()) {
+  try {
+    return work();
+  } catch (const InvalidInput& error) {
+    const std::string what = error.what();
+    if (what.compare(0, path.size(), path) == 0) throw;
+    throw InvalidInput(path + ": " + what);
+  }
+}
 
 /// The object of any readable volume, with domain and voxel size as the options override them.
 MaskGrid::Ptr loadObject(const InputOptions& input, Interrupter* interrupter);
@@ -69,8 +91,5 @@ openvdb::GridBase::Ptr chooseGrid(const std::vector<openvdb::GridBase::Ptr>& gri
                                   bool (*usable)(const openvdb::GridBase&));
 bool isNumericGrid(const openvdb::GridBase& grid);
 bool isLabelGrid(const openvdb::GridBase& grid);
-
-/// The output must not be the input. @throw WrongUsage
-void checkOutputIsNotInput(const std::string& input, const std::string& output);
 
 }  // namespace vdb_madf::tools

@@ -3,9 +3,12 @@
 
 #include <tbb/global_control.h>
 
+#include <cstdio>
 #include <iostream>
 #include <new>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "command.h"
 #include "vdb_madf/errors.h"
@@ -29,19 +32,50 @@ namespace {
 
 constexpr int kDone = 0, kFailed = 1, kWrongUsage = 2, kInterrupted = 130;
 
+/// One line, whatever a file name or a corrupt header brought into it.
 int fail(int code, std::string what) {
   for (char& c : what)
-    if (c == '\n' || c == '\r') c = ' ';
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
   std::cerr << "vdb_madf: error: " << what << std::endl;
   return code;
 }
 
+/// An unset variable of a script must not turn `--phase "$PHASE"` into the default.
+void rejectEmptyArguments(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument.empty())
+      throw WrongUsage(i > 1 ? "the argument after '" + std::string(argv[i - 1]) + "' is empty"
+                             : "the first argument is empty");
+    if (argument.compare(0, 2, "--") == 0 && argument.back() == '=')
+      throw WrongUsage("'" + argument + "' lacks its value");
+  }
+}
+
+/// "vdb_madf segment", as far as the command line was understood.
+std::string parsedCommand(const CLI::App& app) {
+  std::string command = app.get_name();
+  const std::vector<CLI::App*> verbs = app.get_subcommands();
+  return verbs.empty() ? command : command + " " + parsedCommand(*verbs.front());
+}
+
+void flushStandardOutput() {
+  std::fflush(stdout);
+  std::cout.flush();
+  if (!std::cout || std::ferror(stdout)) throw IoError("standard output cannot be written");
+}
+
 int run(int argc, char** argv) {
+  rejectEmptyArguments(argc, argv);
   CLI::App app("Separates the grains of granular microstructures in micro-CT volumes.", "vdb_madf");
   app.set_version_flag("--version", std::string("vdb_madf ") + kVersion);
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);  // its absence is told below, in our words
   app.get_formatter()->column_width(34);
-  app.footer("vdb_madf VERB --help explains a verb.");
+  app.get_formatter()->label("SUBCOMMAND", "VERB");
+  app.get_formatter()->label("Subcommands", "Verbs");
+  app.footer(
+      "vdb_madf VERB --help explains a verb.\nExample:\n"
+      "  vdb_madf segment scan.tif grains.vdb --phase 1 --voxel-size 8.5um");
 
   Common common;
   Action action;
@@ -56,24 +90,28 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     std::cout << app.help();
+    flushStandardOutput();
     return kDone;
   } catch (const CLI::CallForVersion&) {
-    std::cout << "vdb_madf " << kVersion << std::endl;
+    std::cout << "vdb_madf " << kVersion << "\n";
+    flushStandardOutput();
     return kDone;
   } catch (const CLI::ParseError& error) {
-    return fail(kWrongUsage, std::string(error.what()) + " (see vdb_madf --help)");
+    return fail(kWrongUsage,
+                std::string(error.what()) + " (see " + parsedCommand(app) + " --help)");
   }
+  const std::string command = parsedCommand(app);
+  if (!action) return fail(kWrongUsage, "say what to do: see " + command + " --help");
 
   catchInterrupts();
-  Progress progress(common.quiet);
+  Progress progress(common.quiet, command.substr(command.find(' ') + 1));
   common.progress = &progress;
   std::optional<tbb::global_control> threads;
   if (common.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, size_t(common.threads));
   initialize();
   action();
-  std::cout.flush();
-  if (!std::cout) throw IoError("standard output cannot be written");
+  flushStandardOutput();
   return kDone;
 }
 

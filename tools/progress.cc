@@ -7,6 +7,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <utility>
 
 namespace vdb_madf::tools {
 
@@ -28,9 +29,12 @@ constexpr auto kShowEvery = std::chrono::milliseconds(100);
 void catchInterrupts() {
   std::signal(SIGINT, onSignal);
   std::signal(SIGTERM, onSignal);
+  if (std::signal(SIGHUP, onSignal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
-Progress::Progress(bool quiet) : show_(!quiet && isatty(STDERR_FILENO)) {}
+Progress::Progress(bool quiet, std::string work)
+    : show_(!quiet && isatty(STDERR_FILENO)), work_(std::move(work)) {}
 
 Progress::~Progress() {
   clearLine();
@@ -44,6 +48,7 @@ void Progress::start(const char* name) {
 void Progress::end() {
   const std::lock_guard<std::mutex> lock(mutex_);
   stage_.clear();
+  clearLine();
 }
 
 bool Progress::wasInterrupted(int percent) {
@@ -51,7 +56,7 @@ bool Progress::wasInterrupted(int percent) {
     const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
     const auto now = std::chrono::steady_clock::now();
     if (lock.owns_lock() && now - lastShown_ > kShowEvery) {
-      std::fprintf(stderr, "\r\033[K%s %d %%", stage_.c_str(), percent);
+      std::fprintf(stderr, "\r\033[K%s %d %%", (stage_.empty() ? work_ : stage_).c_str(), percent);
       lineShown_ = true;
       lastShown_ = now;
     }

@@ -15,23 +15,27 @@ namespace vdb_madf::tools {
 /// Shows one progress line on stderr when that is a terminal, and turns Ctrl-C into a cancel.
 class Progress : public Interrupter {
  public:
-  explicit Progress(bool quiet);
+  /// @param work is shown outside of named stages
+  Progress(bool quiet, std::string work);
   ~Progress() override;
   void start(const char* name) override;
-  void end() override;
+  void end() override;  ///< also takes the line away: results may follow on the same terminal
   bool wasInterrupted(int percent) override;
 
  private:
   void clearLine();
 
   const bool show_;
+  const std::string work_;
   std::mutex mutex_;
   std::string stage_;
   bool lineShown_ = false;
   std::chrono::steady_clock::time_point lastShown_;
 };
 
-/// From now on Ctrl-C and termination requests are taken by Progress.
+/// From now on Ctrl-C, termination requests and a closed terminal are taken by Progress, and a
+/// write beyond the limit of file sizes fails like any other: no signal may end the program before
+/// it has removed its temporary files.
 void catchInterrupts();
 
 }  // namespace vdb_madf::tools

@@ -25,8 +25,7 @@ struct Options {
 };
 
 void run(const Options& o, const Common& common) {
-  if (!isVdb(o.input.path))
-    throw InvalidInput(o.input.path + ": not a VDB file; remerge takes what segment has written");
+  checkWritable(o.out);
   const auto grids = readVdb(o.input.path, {}, common.progress);
   Int32Grid::Ptr manifold;
   for (const auto& grid : grids)
@@ -35,7 +34,8 @@ void run(const Options& o, const Common& common) {
     throw InvalidInput(o.input.path + ": holds no manifolds: segment again with --keep manifold");
 
   const MergeOptions merge = o.merge.parse();
-  const Int32Grid::Ptr grain = remerge(*manifold, merge, common.progress);
+  const Int32Grid::Ptr grain =
+      naming(o.input.path, [&] { return remerge(*manifold, merge, common.progress); });
   const int64_t grains = *grainCount(*grain);
   // Every other grid of the segmentation goes along, told of the new merging.
   std::vector<openvdb::GridBase::ConstPtr> out{grain};
@@ -45,6 +45,7 @@ void run(const Options& o, const Common& common) {
     out.push_back(grid);
   }
   writeVdb(o.out, out, common.progress);
+  common.progress->end();
   if (!common.quiet) std::cout << o.out << ": " << grains << " grains\n";
 }
 
@@ -61,7 +62,8 @@ void addRemerge(CLI::App& app, Common& common, Action& action) {
   verb->callback([o, &common, &action] {
     o->merge.parse();
     if (!hasVdbEnding(o->out)) throw WrongUsage(o->out + ": the output's ending must be .vdb");
-    checkOutputIsNotInput(o->input.path, o->out);
+    o->input.outputs = {o->out};
+    o->input.parse();
     action = [o, &common] { run(*o, common); };
   });
 }

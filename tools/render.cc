@@ -90,6 +90,7 @@ void paint(const Slice& slice, int zoom, int left, int top, Picture& picture) {
 }
 
 void run(const Options& o, const Common& common) {
+  checkWritable(o.out);
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
   labels->tree().voxelizeActiveTiles();
   std::optional<CoordBBox> box = domain(*labels);
@@ -113,6 +114,7 @@ void run(const Options& o, const Common& common) {
     left += pixels(slice.width, scale) + kGap;
   }
   writePng(o.out, picture);
+  common.progress->end();
   if (!common.quiet)
     std::cout << o.out << ": middle slices x-y, x-z, y-z; "
               << (scale > 0 ? std::to_string(scale) + " pixels a voxel"
@@ -131,8 +133,9 @@ void addRender(CLI::App& app, Common& common, Action& action) {
   verb->add_option("--grid", o->input.gridName, "VDB input: the grid to take")->type_name("NAME");
   o->input.addRaw(*verb);
   verb->callback([o, &common, &action] {
+    if (!hasPngEnding(o->out)) throw WrongUsage(o->out + ": the output's ending must be .png");
+    o->input.outputs = {o->out};
     o->input.parse();
-    checkOutputIsNotInput(o->input.path, o->out);
     action = [o, &common] { run(*o, common); };
   });
 }

@@ -16,6 +16,7 @@
 #include "input.h"
 #include "json_file.h"
 #include "merge_options.h"
+#include "vdb_madf/errors.h"
 #include "vdb_madf/object_mask.h"
 #include "vdb_madf/segmentation_metadata.h"
 #include "vdb_madf/vdb_file.h"
@@ -45,6 +46,7 @@ int64_t peakMemoryBytes() {
 }
 
 void parse(Options& o) {
+  o.input.outputs = {o.out, o.json};
   o.input.parse();
   if (!hasVdbEnding(o.out)) throw WrongUsage(o.out + ": the output's ending must be .vdb");
   if (o.paper) {
@@ -71,8 +73,6 @@ void parse(Options& o) {
     else
       throw WrongUsage("--keep " + what + ": can keep distance, power, manifold and balls");
   }
-  checkOutputIsNotInput(o.input.path, o.out);
-  checkOutputIsNotInput(o.input.path, o.json);
 }
 
 struct Timing {
@@ -130,6 +130,13 @@ Json summary(const Options& o, const Common& common, const Segmentation& s, cons
   }
   if (const auto size = voxelSize(*s.grain)) json["voxel_size_mm"] = size->metres * 1e3;
   addGrainSizes(s, json);
+  for (const auto& [key, value] : {std::pair<const char*, std::string>{"grid", o.input.gridName},
+                                   {"phase", o.input.phase},
+                                   {"threshold", o.input.threshold},
+                                   {"range", o.input.range},
+                                   {"keep", o.keep}})
+    if (!value.empty()) json[key] = value;
+  if (o.input.invert) json["invert"] = true;
   json["gamma"] = o.segment.gamma;
   json["theta"] = o.segment.merge.theta;
   json["boundary"] = s.open ? "open" : "closed";
@@ -203,14 +210,19 @@ std::vector<Int32Grid::Ptr> ballGrids(const Segmentation& s) {
 void run(const Options& o, const Common& common) {
   const Clock::time_point start = Clock::now();
   Timing timing;
+  checkWritable(o.out);
   JsonFile jsonFile(o.json);
   common.progress->start("read");
   MaskGrid::Ptr object = loadObject(o.input, common.progress);
   SegmentOptions options = o.segment;
   if (options.boundary == Boundary::automatic) options.boundary = storedBoundary(*object);
+  if (options.boundary == Boundary::open && !domain(*object))
+    throw InvalidInput(o.input.path +
+                       ": its domain is unknown, so the boundary cannot be open: use --boundary "
+                       "closed, or give --domain x0,y0,z0:x1,y1,z1");
   timing.read = secondsSince(start);
 
-  Segmentation s = segment(*object, options, common.progress);
+  Segmentation s = naming(o.input.path, [&] { return segment(*object, options, common.progress); });
   object.reset();
 
   common.progress->start("write");
@@ -224,6 +236,7 @@ void run(const Options& o, const Common& common) {
   timing.total = secondsSince(start);
   timing.write = timing.total - timing.read;
   for (const StageTime& stage : s.times) timing.write -= stage.seconds;
+  common.progress->end();
   const Json json = summary(o, common, s, timing);
   jsonFile.write(json);
   if (!common.quiet && o.json != "-") printSummary(o, common, json);

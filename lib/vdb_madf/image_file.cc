@@ -96,13 +96,15 @@ std::unique_ptr<ImageReader> openImage(const std::string& path,
     case Format::nrrd:
       return detail::openNrrd(path);
     case Format::raw:
-      throw IoError(path + ": a raw file needs its size and sample type");
+      throw IoError(path + ": a raw file needs its size and sample type (--dims, --type)");
     case Format::vdb:
       throw IoError(path + ": is a VDB file, not an image");
     case Format::unknown:
       break;
   }
-  throw IoError(path + ": is not TIFF, MetaImage or NRRD; if it is raw, give its size and type");
+  throw IoError(
+      path +
+      ": is not TIFF, MetaImage or NRRD; if it is raw, give its size and type (--dims, --type)");
 }
 
 bool looksLikeImage(const std::string& path) {

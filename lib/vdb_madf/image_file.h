@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "vdb_madf/grid_metadata.h"
 #include "vdb_madf/grid_types.h"
@@ -34,6 +35,8 @@ class ImageReader {
   virtual ~ImageReader() = default;
   const ImageInfo& info() const { return info_; }
   const std::string& path() const { return path_; }
+  /// All files that are read: the path, or what a folder or a detached header names.
+  const std::vector<std::string>& files() const { return files_; }
   /// Slices [first, first + count), x fastest, native byte order, into count*ny*nx samples.
   /// Slices are read in ascending order (compressed formats cannot go back).
   /// @throw IoError
@@ -42,6 +45,7 @@ class ImageReader {
  protected:
   ImageInfo info_;
   std::string path_;
+  std::vector<std::string> files_;
 };
 
 /// How to read a headerless file.

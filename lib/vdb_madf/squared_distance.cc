@@ -194,7 +194,8 @@ Obstacles resolveBoundary(const LeafIndex& index, Boundary boundary,
         "the open boundary needs a known domain: give one, or use the closed boundary");
   if (domain && index.voxelCount() > 0 && !domain->isInside(index.boundingBox()))
     throw InvalidInput("the object leaves the domain: object " + toString(index.boundingBox()) +
-                       ", domain " + toString(*domain));
+                       ", domain " + toString(*domain) +
+                       "; crop the object, or give a domain that holds it");
   Obstacles obstacles;
   obstacles.open = domain && boundary != Boundary::closed;
   if (obstacles.open) obstacles.domain = *domain;

@@ -33,6 +33,7 @@ InputFile::InputFile(const std::string& header, const std::string& path)
 }
 
 void InputFile::open(const std::string& path) {
+  path_ = path;
   struct stat status;
   if (stat(path.c_str(), &status) != 0)
     throw IoError(name_ + ": cannot be opened: " + std::strerror(errno));

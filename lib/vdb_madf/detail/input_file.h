@@ -22,6 +22,7 @@ class InputFile {
 
   /// For messages.
   const std::string& name() const { return name_; }
+  const std::string& path() const { return path_; }
   uint64_t size() const { return size_; }
   /// Exactly `count` bytes from `offset` on. @throw IoError if there are fewer.
   void read(uint64_t offset, void* to, size_t count) const;
@@ -31,7 +32,7 @@ class InputFile {
  private:
   void open(const std::string& path);
 
-  std::string name_;
+  std::string name_, path_;
   int descriptor_ = -1;
   uint64_t size_ = 0;
 };

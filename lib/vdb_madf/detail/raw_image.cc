@@ -25,6 +25,7 @@ class SampleReader : public ImageReader {
                const SampleLayout& layout)
       : data_(std::move(data)), layout_(layout) {
     path_ = path;
+    files_ = {path, data_->path()};
     info_ = info;
   }
 

@@ -79,6 +79,7 @@ class TiffStack : public ImageReader {
  public:
   explicit TiffStack(const std::string& path) : file_(path) {
     path_ = path;
+    files_ = {path};
     for (;; file_.next()) {
       if (file_.isSlice()) addPage();
       if (file_.isLast()) break;
@@ -153,8 +154,9 @@ class TiffStack : public ImageReader {
 
 class TiffFolder : public ImageReader {
  public:
-  explicit TiffFolder(const std::string& path) : files_(tiffFilesIn(path)) {
+  explicit TiffFolder(const std::string& path) {
     path_ = path;
+    files_ = tiffFilesIn(path);
     if (files_.empty()) throw IoError(path + ": has no .tif or .tiff files");
     for (size_t z = 0; z < files_.size(); ++z) {
       const TiffFile file(files_[z]);
@@ -188,7 +190,6 @@ class TiffFolder : public ImageReader {
   }
 
  private:
-  std::vector<std::string> files_;
   TiffPage page_;
 };
 
