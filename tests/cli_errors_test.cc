@@ -1,0 +1,362 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What the command refuses, and how: the exit code, one line on stderr, nothing on stdout, no file
+// left.
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <csignal>
+
+#include "support/program.h"
+
+using namespace vdb_madf::test;
+
+namespace {
+
+constexpr int kFailed = 1, kWrongUsage = 2, kInterrupted = 130;
+
+const std::string kSpheres = "generate spheres --size 40 --count 5 --radius 6:9 ";
+
+void checkRefusal(const Outcome& outcome, int code, const std::vector<std::string>& says) {
+  CHECK(outcome.exitCode == code);
+  CHECK(outcome.out == "");
+  CHECK(outcome.err.find("vdb_madf: error: ") == 0);
+  CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+  CHECK((outcome.err.empty() ? ' ' : outcome.err.back()) == '\n');
+  for (const std::string& text : says) {
+    CAPTURE(text);
+    CHECK_THAT(outcome.err, Catch::Contains(text));
+  }
+}
+
+/// The program refuses, names what is wrong, and leaves the folder as it was.
+void refuses(const Bench& bench, int code, const std::string& arguments,
+             const std::vector<std::string>& says = {}, const RunOptions& options = {}) {
+  INFO("vdb_madf " << arguments);
+  const auto before = bench.names();
+  checkRefusal(bench.run(arguments, options), code, says);
+  CHECK(bench.names() == before);
+}
+
+/// Renames a metadata key in a VDB file, so that no program finds it.
+void hideMetadata(const Bench& bench, const std::string& file, const std::string& key) {
+  std::string bytes = bench.bytes(file);
+  size_t at = bytes.find(key);
+  REQUIRE(at != std::string::npos);
+  for (; at != std::string::npos; at = bytes.find(key, at)) bytes[at] = '_';
+  bench.write(file, bytes);
+}
+
+std::string floats(const std::vector<float>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
+}
+
+}  // namespace
+
+TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[cli]") {
+  const Bench bench;
+  const std::pair<const char*, const char*> cases[] = {
+      {"", "--help"},
+      {"-q", "--help"},
+      {"frobnicate", "frobnicate"},
+      {"generate", "generate --help"},
+      {"generate cubes x.vdb", "cubes"},
+      {"segment", "IN"},
+      {"segment in.vdb", "OUT.vdb"},
+      {"segment in.vdb out.vdb more", "more"},
+      {"segment in.vdb out.vdb --frobnicate", "--frobnicate"},
+      {"segment in.vdb out.tif", "out.tif"},
+      {"segment in.vdb in.vdb", "in.vdb"},
+      {"segment in.vdb out.vdb --json in.vdb", "in.vdb"},
+      {"segment in.vdb out.vdb --json out.vdb", "out.vdb"},
+      {"segment in.vdb out.vdb --theta nan", "--theta"},
+      {"segment in.vdb out.vdb --theta inf", "--theta"},
+      {"segment in.vdb out.vdb --theta -1.001", "--theta"},
+      {"segment in.vdb out.vdb --theta 1.001", "--theta"},
+      {"segment in.vdb out.vdb --theta", "--theta"},
+      {"segment in.vdb out.vdb --gamma -1", "--gamma"},
+      {"segment in.vdb out.vdb --gamma 0.5", "--gamma"},
+      {"segment in.vdb out.vdb --gamma 99999999999999999999", "--gamma"},
+      {"segment in.vdb out.vdb --paper --merge both", "--paper"},
+      {"segment in.vdb out.vdb --paper --adjacency cell", "--paper"},
+      {"segment in.vdb out.vdb --merge most", "--merge"},
+      {"segment in.vdb out.vdb --adjacency near", "--adjacency"},
+      {"segment in.vdb out.vdb --boundary wide", "--boundary"},
+      {"segment in.vdb out.vdb --keep distance,all", "all"},
+      {"segment in.vdb out.vdb --threads 0", "--threads"},
+      {"segment in.vdb out.vdb --threads -2", "--threads"},
+      {"segment in.vdb out.vdb --threads 1.5", "--threads"},
+      {"segment in.vdb out.vdb --voxel-size 8.5", "unit"},
+      {"segment in.vdb out.vdb --voxel-size um", "--voxel-size"},
+      {"segment in.vdb out.vdb --voxel-size 0um", "--voxel-size"},
+      {"segment in.vdb out.vdb --voxel-size -1mm", "--voxel-size"},
+      {"segment in.vdb out.vdb --voxel-size nanum", "--voxel-size"},
+      {"segment in.vdb out.vdb --domain 0,0,0", "--domain"},
+      {"segment in.vdb out.vdb --domain 5,5,5:4,9,9", "--domain"},
+      {"segment in.vdb out.vdb --domain 0,0,0:99999999,1,1", "--domain"},
+      {"segment in.vdb out.vdb --phase 1 --threshold 2", "--phase"},
+      {"segment in.vdb out.vdb --phase nan", "--phase"},
+      {"segment in.vdb out.vdb --range 3:1", "--range"},
+      {"segment in.vdb out.vdb --range 3", "--range"},
+      {"segment in.vdb out.vdb --threshold one", "--threshold"},
+      {"segment in.vdb out.vdb --threshold=", "--threshold"},
+      {"segment in.raw out.vdb --dims 4x4", "--dims"},
+      {"segment in.raw out.vdb --dims 4x4x0 --type uint8", "--dims"},
+      {"segment in.raw out.vdb --dims 4x4x4", "--type"},
+      {"segment in.raw out.vdb --dims 4x4x4 --type uint9", "uint9"},
+      {"segment in.raw out.vdb --type uint8", "--dims"},
+      {"segment in.raw out.vdb --big-endian", "--dims"},
+      {"convert in.tif out.jpg", "out.jpg"},
+      {"convert in.tif in.tif", "in.tif"},
+      {"convert in.raw in.mhd --dims 4x4x4 --type uint8", "in.raw"},
+      {"convert in.tif out.raw --out-type text", "text"},
+      {"convert in.tif out.vdb --out-type int32", "--out-type"},
+      {"remerge in.vdb out.tif", "out.tif"},
+      {"remerge in.vdb in.vdb", "in.vdb"},
+      {"remerge in.vdb out.vdb --theta 2", "--theta"},
+      {"remerge in.vdb out.vdb --gamma 2", "--gamma"},
+      {"compare in.vdb", "TEST"},
+      {"compare in.vdb other.vdb --json other.vdb", "other.vdb"},
+      {"render in.vdb out.jpg", "out.jpg"},
+      {"info", "FILE"},
+      {"generate snow out.jpg", "out.jpg"},
+      {"generate snow out.vdb --size 0", "--size"},
+      {"generate snow out.vdb --size 16 --dims 16x16x16", "--dims"},
+      {"generate snow out.vdb --size 16 --seed -1", "--seed"},
+      {"generate snow out.vdb --size 16 --length nan", "length"},
+      {"generate snow out.vdb --size 16 --fraction 1", "--fraction"},
+      {"generate pack out.vdb --size 16 --fraction nan", "--fraction"},
+      {"generate pack out.vdb --size 16 --radius 9:6", "--radius"},
+      {"generate spheres out.vdb --size 24 --count 0", "count"},
+      {"generate spheres out.vdb --size 24 --count 1000 --radius 4", "1000"},
+      {"generate sintered out.vdb --size 24 --neck -1", "neck"}};
+  for (const auto& [arguments, says] : cases) refuses(bench, kWrongUsage, arguments, {says});
+}
+
+TEST_CASE("cli: an empty argument is an unset variable, not a default", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate snow s.tif --size 16 --length 6");
+  for (const std::string option : {"--phase", "--theta", "--json", "--keep", "--grid"}) {
+    CAPTURE(option);
+    checkRefusal(bench.run(std::vector<std::string>{"segment", "s.tif", "o.vdb", option, ""}),
+                 kWrongUsage, {option});
+  }
+  checkRefusal(bench.run(std::vector<std::string>{"info", ""}), kWrongUsage, {"empty"});
+  CHECK(bench.names() == std::set<std::string>{"s.tif"});
+}
+
+TEST_CASE("cli: a file that is missing or none of ours is named", "[cli]") {
+  const Bench bench;
+  std::filesystem::create_directory(bench.path("folder"));
+  std::filesystem::create_directory(bench.path("folder.vdb"));
+  std::string garbage(3000, '\0');
+  uint32_t state = 1;
+  for (char& c : garbage) c = char((state = state * 1664525 + 1013904223) >> 24);
+  std::vector<std::string> files{"missing.vdb", "missing.tif", "missing", "folder", "folder.vdb"};
+  for (const std::string ending : {".vdb", ".tif", ".mhd", ".mha", ".nrrd", ".nhdr", ".xyz"}) {
+    files.push_back("empty" + ending);
+    files.push_back("garbage" + ending);
+    bench.write("empty" + ending, "");
+    bench.write("garbage" + ending, garbage);
+  }
+  for (const std::string& file : files) {
+    refuses(bench, kFailed, "segment " + file + " out.vdb", {file});
+    refuses(bench, kFailed, "convert " + file + " out.raw", {file});
+    refuses(bench, kFailed, "info " + file, {file});
+    refuses(bench, kFailed, "render " + file + " out.png", {file});
+    refuses(bench, kFailed, "remerge " + file + " out.vdb", {file});
+  }
+  for (const std::string file : {"missing.vdb", "folder.vdb"})
+    refuses(bench, kFailed, "remerge " + file + " out.vdb", {file});
+  refuses(bench, kFailed, "info garbage.vdb", {"not a VDB file"});
+  refuses(bench, kFailed, "compare missing.vdb empty.vdb", {"missing.vdb"});
+  bench.write("s.raw", std::string(64, '\1'));
+  refuses(bench, kFailed, "segment s.raw out.vdb", {"s.raw", "--dims"});
+  for (const std::string layout :
+       {"--dims 4x4x5 --type uint8", "--dims 4x4x3 --type uint8", "--dims 4x4x4 --type uint16"})
+    refuses(bench, kFailed, "segment s.raw out.vdb " + layout, {"s.raw", "64 bytes"});
+}
+
+TEST_CASE("cli: a truncated file is refused at any length", "[cli]") {
+  const Bench bench;
+  for (const std::string ending : {".vdb", ".tif", ".mha"}) {
+    bench.mustRun("generate snow s" + ending + " --size 24 --length 8");
+    const std::string bytes = bench.bytes("s" + ending), cut = "cut" + ending;
+    for (const double share : {0.01, 0.1, 0.5, 0.9, 0.999}) {
+      bench.write(cut, bytes.substr(0, size_t(share * double(bytes.size()))));
+      refuses(bench, kFailed, "segment " + cut + " out.vdb", {cut});
+    }
+  }
+  bench.mustRun("generate snow s.mhd --size 24 --length 8");
+  bench.write("s.raw", bench.bytes("s.raw").substr(0, 1000));
+  refuses(bench, kFailed, "segment s.mhd out.vdb", {"s.mhd", "s.raw"});
+}
+
+TEST_CASE("cli: a grid has to be there, usable and the only one", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSpheres + "s.vdb");
+  bench.mustRun("segment s.vdb g.vdb --keep power,manifold");
+  refuses(bench, kFailed, "segment s.vdb o.vdb --grid snow",
+          {"s.vdb", "'snow'", "object", "truth"});
+  refuses(bench, kFailed, "render s.vdb o.png --grid snow", {"s.vdb", "'snow'", "truth"});
+  refuses(bench, kFailed, "render s.vdb o.png --grid object", {"s.vdb", "'object'", "bool"});
+  refuses(bench, kFailed, "segment g.vdb o.vdb", {"g.vdb", "--grid", "grain", "power", "manifold"});
+  refuses(bench, kFailed, "compare s.vdb g.vdb --truth-grid snow", {"s.vdb", "'snow'"});
+  refuses(bench, kFailed, "remerge s.vdb o.vdb", {"s.vdb", "segment again with --keep manifold"});
+  bench.mustRun("convert s.vdb s.tif --grid truth");
+  refuses(bench, kFailed, "segment s.tif o.vdb --grid truth", {"s.tif", "--grid"});
+}
+
+TEST_CASE("cli: labels are whole numbers of one sample", "[cli]") {
+  const Bench bench;
+  const std::string layout = " --dims 2x2x1 --type float32";
+  bench.write("half.raw", floats({0, 1, 1.5f, 0}));
+  bench.write("nan.raw", floats({0, 1, std::stof("nan"), 0}));
+  bench.write("huge.raw", floats({0, 1, 3e9f, 0}));
+  for (const std::string file : {"half.raw", "nan.raw", "huge.raw"}) {
+    refuses(bench, kFailed, "render " + file + " o.png" + layout, {file});
+    refuses(bench, kFailed, "compare " + file + " " + file + layout, {file});
+    refuses(bench, kFailed, "convert " + file + " o.tif --out-type int32" + layout, {"int32"});
+  }
+  bench.write("a.raw", floats({1, 1, 0, 0}));
+  bench.write("b.raw", floats({0, 0, 1, 1}));
+  refuses(bench, kFailed, "compare a.raw b.raw" + layout, {"a.raw", "b.raw", "same sample"});
+}
+
+TEST_CASE("cli: the boundary and the domain have to fit the object", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSpheres + "s.vdb");
+  bench.mustRun(kSpheres + "s.tif");
+  for (const std::string file : {"s.vdb", "s.tif"})
+    refuses(bench, kFailed, "segment " + file + " o.vdb --domain 0,0,0:9,9,9",
+            {file, "leaves the domain"});
+  refuses(bench, kFailed, "segment s.tif o.vdb --threshold 0", {"s.tif", "closed"});
+  bench.mustRun("segment s.tif o.vdb --threshold 0 --boundary closed");
+  refuses(bench, kFailed, "segment s.vdb x.vdb --invert --domain 0,0,0:1048575,1048575,1048575",
+          {"s.vdb", "domain", "crop"});
+  refuses(bench, kFailed, "convert s.tif x.raw --domain 0,0,0:9,9,9", {"s.tif", "--domain"});
+
+  bench.write("unknown.vdb", bench.bytes("s.vdb"));
+  hideMetadata(bench, "unknown.vdb", "madf_domain_m");
+  refuses(bench, kFailed, "segment unknown.vdb x.vdb --boundary open",
+          {"unknown.vdb", "closed", "--domain"});
+  refuses(bench, kFailed, "segment unknown.vdb x.vdb --invert", {"unknown.vdb", "domain"});
+  bench.mustRun("segment unknown.vdb a.vdb");
+  bench.mustRun("segment unknown.vdb b.vdb --boundary closed");
+  CHECK(bench.bytes("a.vdb") == bench.bytes("b.vdb"));
+  bench.mustRun("segment unknown.vdb c.vdb --boundary open --domain 0,0,0:39,39,39");
+  bench.mustRun("segment s.vdb d.vdb");
+  CHECK(bench.bytes("c.vdb") == bench.bytes("d.vdb"));
+  CHECK_THAT(bench.mustRun("convert unknown.vdb u.raw --grid object"), Catch::Contains("origin"));
+}
+
+TEST_CASE("cli: no output where none can be, found out before the work", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSpheres + "s.vdb");
+  bench.mustRun("segment s.vdb g.vdb --keep manifold");
+  std::filesystem::create_directory(bench.path("d.vdb"));
+  for (const std::string out : {"none/o.vdb", "d.vdb", "s.vdb/o.vdb"}) {
+    refuses(bench, kFailed, "segment s.vdb " + out, {out});
+    refuses(bench, kFailed, "convert s.vdb " + out, {out});
+    refuses(bench, kFailed, "remerge g.vdb " + out, {out});
+    refuses(bench, kFailed, kSpheres + out, {out});
+  }
+  refuses(bench, kFailed, "render g.vdb none/o.png", {"none/o.png"});
+  refuses(bench, kFailed, "segment s.vdb o.vdb --json none/o.json", {"none/o.json"});
+  refuses(bench, kFailed, "segment s.vdb o.vdb --json d.vdb", {"d.vdb"});
+  refuses(bench, kFailed, "convert s.vdb none/o.raw", {"none/o.raw"});
+  if (::geteuid() != 0) {  // nothing is read-only for root
+    std::filesystem::create_directory(bench.path("locked"));
+    ::chmod(bench.path("locked").c_str(), 0500);
+    refuses(bench, kFailed, "segment s.vdb locked/o.vdb", {"locked/o.vdb"});
+    ::chmod(bench.path("locked").c_str(), 0700);
+  }
+}
+
+TEST_CASE("cli: the input is never overwritten, by whatever name", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate snow s.vdb --size 16 --length 6");
+  bench.mustRun("generate snow m.mhd --size 16 --length 6");
+  std::filesystem::create_symlink("s.vdb", bench.path("link.vdb"));
+  std::filesystem::create_hard_link(bench.path("s.vdb"), bench.path("hard.vdb"));
+  for (const std::string out : {"./s.vdb", "link.vdb", "hard.vdb"}) {
+    refuses(bench, kWrongUsage, "segment s.vdb " + out, {out});
+    refuses(bench, kWrongUsage, "convert s.vdb " + out, {out});
+  }
+  const std::string samples = bench.bytes("m.raw");
+  refuses(bench, kFailed, "convert m.mhd m.raw --out-type int32", {"m.raw", "m.mhd"});
+  refuses(bench, kFailed, "convert m.mhd m.raw --phase 1", {"m.raw", "m.mhd"});
+  refuses(bench, kWrongUsage, "convert m.raw m.mhd --dims 16x16x16 --type uint8", {"m.raw"});
+  CHECK(bench.bytes("m.raw") == samples);
+
+  std::filesystem::create_directory(bench.path("slices"));
+  bench.write("row.raw", std::string(8, '\1'));
+  bench.mustRun("convert row.raw slices/0.tif --dims 8x1x1 --type uint8");
+  bench.mustRun("convert row.raw slices/1.tif --dims 8x1x1 --type uint8");
+  refuses(bench, kFailed, "convert slices slices/1.tif", {"slices/1.tif"});
+  bench.mustRun("convert slices stack.tif");
+}
+
+TEST_CASE("cli: a full disk leaves nothing, and what was there before", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate snow s.vdb --size 64 --length 12");
+  bench.mustRun("generate snow s.tif --size 64 --length 12");
+  bench.mustRun("segment s.vdb g.vdb --keep manifold");
+  RunOptions full;
+  full.largestFile = 4096;
+  for (const std::string out : {"o.vdb", "o.raw", "o.tif", "o.mha", "o.mhd"}) {
+    refuses(bench, kFailed, "convert s.vdb " + out, {"o."}, full);
+    bench.write(out, "before");
+    refuses(bench, kFailed, "convert s.vdb " + out + " --threshold 1", {"o."}, full);
+    CHECK(bench.bytes(out) == "before");
+  }
+  refuses(bench, kFailed, "convert s.tif p.raw", {"p.raw"}, full);
+  refuses(bench, kFailed, "segment s.vdb p.vdb --json j.json", {"p.vdb"}, full);
+  refuses(bench, kFailed, "remerge g.vdb p.vdb", {"p.vdb"}, full);
+  refuses(bench, kFailed, "generate snow p.vdb --size 64 --length 12", {"p.vdb"}, full);
+  full.largestFile = 100;
+  refuses(bench, kFailed, "render g.vdb p.png", {"p.png"}, full);
+  refuses(bench, kFailed, "info g.vdb --json j.json", {"j.json"}, full);
+}
+
+TEST_CASE("cli: a standard output that takes nothing is an error", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate snow s.vdb --size 16 --length 6");
+  bench.mustRun("segment s.vdb g.vdb");
+  RunOptions full;
+  full.out = "/dev/full";
+  for (const std::string arguments :
+       {"--help", "segment --help", "--version", "info s.vdb", "compare g.vdb g.vdb",
+        "compare g.vdb g.vdb --json -", "segment s.vdb g.vdb", "render g.vdb g.png",
+        "info s.vdb --json /dev/full"}) {
+    CAPTURE(arguments);
+    const Outcome outcome = bench.run(arguments, full);
+    CHECK(outcome.exitCode == kFailed);
+    CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+  }
+}
+
+TEST_CASE("cli: a signal ends long work within a second and leaves nothing", "[cli]") {
+  const Bench bench;
+  // A sparse file: 512 MB of zeros, which the inversion turns into more work than a second's.
+  bench.write("zeros.raw", "");
+  std::filesystem::resize_file(bench.path("zeros.raw"), 800 * 800 * 800);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    CAPTURE(signal);
+    RunOptions interrupted;
+    interrupted.signal = signal;
+    interrupted.interruptOn = ".summary.json";  // the temporary file: the work has begun
+    const auto before = bench.names();
+    const Outcome outcome = bench.run(
+        "segment zeros.raw o.vdb --dims 800x800x800 --type uint8 --invert --boundary closed"
+        " --json summary.json",
+        interrupted);
+    checkRefusal(outcome, kInterrupted, {"interrupted"});
+    CHECK(outcome.secondsAfterSignal < 1);
+    CHECK(bench.names() == before);
+  }
+}

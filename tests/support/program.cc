@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "support/program.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <csignal>
+#include <sstream>
+#include <stdexcept>
+
+namespace vdb_madf::test {
+
+namespace {
+
+constexpr rlim_t kLongestSeconds = 120;  // of the processors; far more than any case takes
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+struct Pipe {
+  int ends[2] = {-1, -1};
+  Pipe() {
+    if (::pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+  }
+  ~Pipe() {
+    for (const int end : ends)
+      if (end >= 0) ::close(end);
+  }
+  void closeWriting() {
+    ::close(ends[1]);
+    ends[1] = -1;
+  }
+};
+
+/// Between fork and exec: nothing but system calls.
+[[noreturn]] void become(char* const* arguments, const char* folder, const RunOptions& options,
+                         const Pipe& out, const Pipe& err) {
+  const int to =
+      options.out.empty() ? out.ends[1] : ::open(options.out.c_str(), O_WRONLY | O_CLOEXEC);
+  ::dup2(to, STDOUT_FILENO);
+  ::dup2(err.ends[1], STDERR_FILENO);
+  if (options.largestFile > 0) {
+    const rlimit limit{rlim_t(options.largestFile), rlim_t(options.largestFile)};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  // A program that hangs, or that outlives an aborted test, must not stay.
+  const rlimit seconds{kLongestSeconds, kLongestSeconds};
+  ::setrlimit(RLIMIT_CPU, &seconds);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXFSZ}) ::signal(signal, SIG_DFL);
+  if (::chdir(folder) == 0) ::execv(VDB_MADF_TOOL, arguments);
+  ::_exit(127);
+}
+
+bool appears(const std::string& folder, const std::string& beginning) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.path().filename().string().compare(0, beginning.size(), beginning) == 0) return true;
+  return false;
+}
+
+}  // namespace
+
+Outcome Bench::run(const std::vector<std::string>& arguments, const RunOptions& options) const {
+  std::vector<std::string> texts{"vdb_madf"};
+  texts.insert(texts.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& text : texts) argv.push_back(text.data());
+  argv.push_back(nullptr);
+
+  Pipe out, err;
+  const auto start = Clock::now();
+  Clock::time_point signalled;
+  const pid_t child = ::fork();
+  if (child < 0) throw std::runtime_error("no process");
+  if (child == 0) become(argv.data(), folder_.path().c_str(), options, out, err);
+  out.closeWriting();
+  err.closeWriting();
+
+  Outcome outcome;
+  bool waiting = options.signal != 0;
+  pollfd ends[2] = {{out.ends[0], POLLIN, 0}, {err.ends[0], POLLIN, 0}};
+  std::string* const captured[2] = {&outcome.out, &outcome.err};
+  while (ends[0].fd >= 0 || ends[1].fd >= 0) {
+    ::poll(ends, 2, waiting ? 2 : -1);
+    for (int i = 0; i < 2; ++i) {
+      if (ends[i].fd < 0 || ends[i].revents == 0) continue;
+      char buffer[4096];
+      const ssize_t got = ::read(ends[i].fd, buffer, sizeof buffer);
+      if (got > 0)
+        captured[i]->append(buffer, size_t(got));
+      else
+        ends[i].fd = -1;  // poll passes over it
+    }
+    if (waiting && appears(folder_.path(), options.interruptOn)) {
+      waiting = false;
+      signalled = Clock::now();
+      ::kill(child, options.signal);
+    }
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  outcome.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+  outcome.seconds = secondsSince(start);
+  if (options.signal != 0 && !waiting) outcome.secondsAfterSignal = secondsSince(signalled);
+  return outcome;
+}
+
+Outcome Bench::run(const std::string& arguments, const RunOptions& options) const {
+  std::istringstream words(arguments);
+  std::vector<std::string> list;
+  for (std::string word; words >> word;) list.push_back(word);
+  return run(list, options);
+}
+
+std::string Bench::mustRun(const std::string& arguments) const {
+  INFO("vdb_madf " << arguments);
+  const Outcome outcome = run(arguments);
+  CHECK(outcome.err == "");
+  REQUIRE(outcome.exitCode == 0);
+  return outcome.out;
+}
+
+std::set<std::string> Bench::names() const {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_.path()))
+    names.insert(std::filesystem::relative(entry.path(), folder_.path()).string());
+  return names;
+}
+
+}  // namespace vdb_madf::test
