@@ -345,10 +345,13 @@ TEST_CASE("cli: a signal ends long work within a second and leaves nothing", "[c
   // A sparse file: 512 MB of zeros, which the inversion turns into more work than a second's.
   bench.write("zeros.raw", "");
   std::filesystem::resize_file(bench.path("zeros.raw"), 800 * 800 * 800);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    CAPTURE(signal);
+  const std::pair<int, double> cases[] = {
+      {SIGINT, 0.0}, {SIGINT, 0.3}, {SIGTERM, 0.1}, {SIGHUP, 0.1}};
+  for (const auto& [signal, delay] : cases) {
+    CAPTURE(signal, delay);
     RunOptions interrupted;
     interrupted.signal = signal;
+    interrupted.delay = delay;
     interrupted.interruptOn = ".summary.json";  // the temporary file: the work has begun
     const auto before = bench.names();
     const Outcome outcome = bench.run(

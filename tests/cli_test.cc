@@ -203,6 +203,7 @@ TEST_CASE("cli: segment reports what it did as JSON", "[cli]") {
 
   const Json alone = Json::parse(bench.mustRun("segment s.vdb g.vdb --json -"));
   CHECK(alone.at("grains").get<int>() > 1);
+  CHECK(Json::parse(bench.mustRun("segment s.vdb g.vdb --json /dev/stdout")).count("grains") == 1);
   CHECK(bench.mustRun("segment s.vdb g.vdb --json /dev/null -q") == "");
   CHECK(bench.mustRun("segment s.vdb g.vdb -q") == "");
 }
@@ -359,6 +360,11 @@ TEST_CASE("cli: an output replaces what was there, the content decides on the fo
   bench.write("o.vdb", "something else");
   bench.mustRun("segment s.tif o.vdb");
   CHECK(gridsOf(infoOf(bench, "o.vdb")) == std::set<std::string>{"grain"});
+  std::filesystem::create_symlink("real.vdb", bench.path("link.vdb"));
+  bench.write("real.vdb", "something else");
+  bench.mustRun("segment s.tif link.vdb");
+  CHECK(std::filesystem::is_symlink(bench.path("link.vdb")));
+  CHECK(bench.bytes("real.vdb") == bench.bytes("o.vdb"));
   bench.write("s.dat", bench.bytes("s.tif"));
   bench.write("o.dat", bench.bytes("o.vdb"));
   CHECK(infoOf(bench, "s.dat").at("format") == "tiff");

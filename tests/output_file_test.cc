@@ -138,6 +138,22 @@ TEST_CASE("output_file: replaces nothing but regular files", "[output_file]") {
   requireErrorNames(link);
 }
 
+TEST_CASE("output_file: replaces what a link points to, not the link", "[output_file]") {
+  const TemporaryFolder folder, other;
+  writeBytes(other.file("real"), "old");
+  const std::string link = folder.file("link");
+  REQUIRE(::symlink(other.file("real").c_str(), link.c_str()) == 0);
+  {
+    OutputFile file(link);
+    writeBytes(file.temporaryPath(), "new");
+    file.commit();
+  }
+  REQUIRE(std::filesystem::is_symlink(link));
+  REQUIRE(bytesOf(other.file("real")) == "new");
+  REQUIRE(folder.entries() == 1);
+  REQUIRE(other.entries() == 1);
+}
+
 TEST_CASE("output_file: respects permissions", "[output_file]") {
   if (::geteuid() == 0) {
     WARN("skipped: permissions do not bind root");

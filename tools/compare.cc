@@ -60,7 +60,7 @@ void run(const Options& o, const Common& common) {
                        ", so there is nothing to compare: give labels of the same sample");
   common.progress->end();
   jsonFile.write(summary(o, comparison));
-  if (!common.quiet && o.json != "-") print(comparison);
+  if (!common.quiet && !jsonFile.isStandardOutput()) print(comparison);
 }
 
 }  // namespace

@@ -102,7 +102,7 @@ void run(const Options& o, const Common& common) {
   }
   common.progress->end();
   jsonFile.write(json);
-  if (!common.quiet && o.json != "-") print(json);
+  if (!common.quiet && !jsonFile.isStandardOutput()) print(json);
 }
 
 }  // namespace

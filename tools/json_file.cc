@@ -13,8 +13,8 @@
 
 namespace vdb_madf::tools {
 
-JsonFile::JsonFile(const std::string& path) : path_(path) {
-  if (path.empty() || path == "-") return;
+JsonFile::JsonFile(const std::string& path) : path_(path == "/dev/stdout" ? "-" : path) {
+  if (path_.empty() || path_ == "-") return;
   // A pipe or a device can only be written in place.
   std::error_code ignored;
   const auto status = std::filesystem::status(path, ignored);

@@ -14,13 +14,14 @@ namespace vdb_madf::tools {
 
 using Json = nlohmann::ordered_json;
 
-/// Where a machine-readable summary goes: a file, standard output ("-"), or nowhere (""). Made
-/// before the work, so that a path that cannot be written is told at once.
+/// Where a machine-readable summary goes: a file, a pipe or device, standard output ("-"), or
+/// nowhere (""). Made before the work, so that a path that cannot be written is told at once.
 class JsonFile {
  public:
   explicit JsonFile(const std::string& path);
   /// A file appears whole or not at all.
   void write(const Json& json);
+  bool isStandardOutput() const { return path_ == "-"; }
 
  private:
   std::string path_;

@@ -239,7 +239,7 @@ void run(const Options& o, const Common& common) {
   common.progress->end();
   const Json json = summary(o, common, s, timing);
   jsonFile.write(json);
-  if (!common.quiet && o.json != "-") printSummary(o, common, json);
+  if (!common.quiet && !jsonFile.isStandardOutput()) printSummary(o, common, json);
 }
 
 }  // namespace

@@ -10,7 +10,9 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <utility>
 
 #include "vdb_madf/errors.h"
@@ -64,6 +66,14 @@ void checkTarget(const std::string& path) {
     fail(path, "the file there is write-protected", "remove it, or write it elsewhere");
 }
 
+/// The file that a link leads to: renaming over the link would remove the link, be it a user's or
+/// /dev/stdout. A dead link is itself replaced.
+std::string behindLinks(const std::string& path) {
+  const std::unique_ptr<char, decltype(&std::free)> found(::realpath(path.c_str(), nullptr),
+                                                          &std::free);
+  return found ? found.get() : path;
+}
+
 /// Makes the rename last. Some file systems cannot sync a folder: the file is in place all the
 /// same.
 void syncFolder(const std::string& path) {
@@ -79,9 +89,10 @@ void syncFolder(const std::string& path) {
 OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
   checkTarget(path_);
   static std::atomic<unsigned> counter{0};
-  const std::string folder = folderOf(path_);
+  target_ = behindLinks(path_);
+  const std::string folder = folderOf(target_);
   const std::string stem =
-      (folder == "." ? path_ : path_.substr(folder.size())).substr(0, kLongestStem);
+      (folder == "." ? target_ : target_.substr(folder.size())).substr(0, kLongestStem);
   // The number of the process tells programs apart, the counter threads and what a program of the
   // same number in another container left behind.
   int file = -1;
@@ -107,10 +118,10 @@ void OutputFile::commit() {
   int error = file < 0 ? errno : 0;
   if (file >= 0 && ::fsync(file) != 0 && errno != EINVAL) error = errno;
   if (file >= 0 && ::close(file) != 0 && errno != EINTR && error == 0) error = errno;
-  if (error == 0 && std::rename(temporaryPath_.c_str(), path_.c_str()) != 0) error = errno;
+  if (error == 0 && std::rename(temporaryPath_.c_str(), target_.c_str()) != 0) error = errno;
   if (error != 0) fail(path_, std::strerror(error), adviceFor(error));
   committed_ = true;
-  syncFolder(path_);
+  syncFolder(target_);
 }
 
 }  // namespace vdb_madf

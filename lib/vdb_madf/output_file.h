@@ -8,7 +8,8 @@
 namespace vdb_madf {
 
 /// A file that appears whole or not at all: write to temporaryPath() (same folder), then commit()
-/// syncs it to disk and renames it over `path`. Destroyed without commit: the temporary is removed.
+/// syncs it to disk and renames it over `path`, or over the file that a link there points to.
+/// Destroyed without commit: the temporary is removed.
 class OutputFile {
  public:
   /// @throw IoError if a file cannot be made there.
@@ -23,7 +24,7 @@ class OutputFile {
   void commit();
 
  private:
-  std::string path_, temporaryPath_;
+  std::string path_, target_, temporaryPath_;
   bool committed_ = false;
 };
 

@@ -15,6 +15,7 @@
 #include <csignal>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
 namespace vdb_madf::test {
 
@@ -104,6 +105,7 @@ Outcome Bench::run(const std::vector<std::string>& arguments, const RunOptions& 
     }
     if (waiting && appears(folder_.path(), options.interruptOn)) {
       waiting = false;
+      std::this_thread::sleep_for(std::chrono::duration<double>(options.delay));
       signalled = Clock::now();
       ::kill(child, options.signal);
     }

@@ -26,6 +26,7 @@ struct RunOptions {
   int64_t largestFile = 0;  ///< bytes; 0: no limit
   std::string interruptOn;  ///< send `signal` when a file appears whose name begins with this
   int signal = 0;
+  double delay = 0;  ///< seconds from then to the signal
 };
 
 /// A temporary folder in which the real vdb_madf command is run.
