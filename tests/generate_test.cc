@@ -203,7 +203,8 @@ TEST_CASE("generate: a sample explains itself", "[generate]") {
     CHECK(domain(*grid) == CoordBBox({0, 0, 0}, {60, 56, 65}));
     CHECK(!voxelSize(*grid));
     CHECK(grid->metaValue<std::string>("madf_source") ==
-          "generate spheres --dims 61x57x66 --count 9 --radius 8:11.5 --overlap 0.12 --seed 3");
+          "generate spheres --dims 61x57x66 --count 9 --radius 8:11.5 --overlap 0.12 --max-cover 2 "
+          "--seed 3");
   }
   CHECK(sample.object->getName() == "object");
   CHECK(sample.truth->getName() == "truth");
