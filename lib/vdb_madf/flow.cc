@@ -13,82 +13,74 @@ namespace vdb_madf {
 
 namespace {
 
-/// Other threads may shorten a voxel's path while this one reads it; both values lead to one root.
-VoxelId load(const VoxelArray<VoxelId>& site, VoxelId p) {
-  return __atomic_load_n(&site[p], __ATOMIC_RELAXED);
-}
-
-/// Points every voxel at its critical point; collects these and the voxels of their own cells.
-VoxelSet jumpToRoots(const LeafIndex& index, VoxelArray<VoxelId>& site, VoxelSet& direct,
-                     Interrupter* interrupter) {
-  VoxelSet critical(index.leafCount());
-  detail::parallelFor(index.leafCount(), detail::kLeafGrain, interrupter,
-                      [&](size_t begin, size_t end) {
-                        detail::forEachVoxel(index, begin, end, [&](VoxelId p) {
-                          const VoxelId first = load(site, p);
-                          VoxelId root = load(site, first);
-                          if (root == first) {
-                            direct.insert(p);  // a word belongs to one leaf, so to one thread
-                            if (first == p) critical.insert(p);
-                            return;
-                          }
-                          for (VoxelId next; (next = load(site, root)) != root;) root = next;
-                          __atomic_store_n(&site[p], root, __ATOMIC_RELAXED);
-                        });
-                      });
-  critical.rankMembers();
-  return critical;
+/// Follows the sites from ball to ball: the critical ball that each one flows to, by rank. Other
+/// threads may shorten a path while this one walks it; all lead to one root.
+std::vector<uint32_t> rootBalls(const LeafIndex& index, const VoxelArray<VoxelId>& site,
+                                const VoxelSet& balls, const std::vector<VoxelId>& ids,
+                                Interrupter* interrupter) {
+  constexpr size_t kBallGrain = 4096;
+  std::vector<uint32_t> next(ids.size());
+  detail::parallelFor(ids.size(), kBallGrain, interrupter, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) next[i] = balls.rank(site[index.rank(ids[i])]);
+  });
+  detail::parallelFor(ids.size(), kBallGrain, interrupter, [&](size_t begin, size_t end) {
+    const auto load = [&](size_t i) { return __atomic_load_n(&next[i], __ATOMIC_RELAXED); };
+    for (size_t i = begin; i < end; ++i) {
+      uint32_t root = load(i);
+      for (uint32_t further; (further = load(root)) != root;) root = further;
+      __atomic_store_n(&next[i], root, __ATOMIC_RELAXED);
+    }
+  });
+  return next;
 }
 
 }  // namespace
 
 Flow flow(const LeafIndex& index, VoxelArray<VoxelId> site, const VoxelArray<int32_t>& power,
-          Interrupter* interrupter) {
-  Flow result;
-  result.direct = VoxelSet(index.leafCount());
-  const VoxelSet critical = jumpToRoots(index, site, result.direct, interrupter);
+          const VoxelSet& balls, Interrupter* interrupter) {
+  const std::vector<VoxelId> ids = balls.members();
+  const std::vector<uint32_t> root = rootBalls(index, site, balls, ids, interrupter);
 
-  const std::vector<VoxelId> ids = critical.members();
-  std::vector<uint32_t> order(ids.size());
-  for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::sort(order.begin(), order.end(),
+  std::vector<uint32_t> critical;
+  for (uint32_t i = 0; i < ids.size(); ++i)
+    if (root[i] == i) critical.push_back(i);
+  std::sort(critical.begin(), critical.end(),
             [&](uint32_t a, uint32_t b) { return index.coord(ids[a]) < index.coord(ids[b]); });
-  std::vector<uint32_t> numberOfRank(ids.size());
-  result.criticalPoints.resize(ids.size());
-  for (uint32_t i = 0; i < order.size(); ++i) {
-    numberOfRank[order[i]] = i + 1;
+  Flow result;
+  result.criticalPoints.reserve(critical.size());
+  std::vector<uint32_t> manifold(ids.size());
+  for (const uint32_t i : critical) {
     // At a fixed point the power is -D.
-    result.criticalPoints[i] = {index.coord(ids[order[i]]), -power[ids[order[i]]], 0};
+    result.criticalPoints.push_back({index.coord(ids[i]), -power[index.rank(ids[i])], 0});
+    manifold[i] = uint32_t(result.criticalPoints.size()) | Flow::kOwnCell;
   }
+  for (uint32_t i = 0; i < ids.size(); ++i)
+    if (root[i] != i) manifold[i] = manifold[root[i]] & ~Flow::kOwnCell;
 
   detail::parallelFor(
       index.leafCount(), detail::kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-        VoxelId root = 0;
+        // Neighbours along z mostly share their ball: look up and count by runs.
+        VoxelId ball = 0;
         uint32_t number = 0;
         int64_t run = 0;
         const auto flush = [&] {
           if (run > 0)
-            __atomic_fetch_add(&result.criticalPoints[number - 1].voxels, run, __ATOMIC_RELAXED);
+            __atomic_fetch_add(&result.criticalPoints[(number & ~Flow::kOwnCell) - 1].voxels, run,
+                               __ATOMIC_RELAXED);
         };
-        for (size_t leaf = begin; leaf < end; ++leaf) {
-          for (size_t x = 0; x < 8; ++x) {
-            const uint64_t word = index.mask(leaf)[x];
-            VoxelId* values = site.data() + leaf * 512 + x * 64;
-            for (int bit = 0; bit < 64; ++bit) {
-              if (!(word >> bit & 1)) {
-                values[bit] = 0;
-                continue;
-              }
-              if (number == 0 || values[bit] != root) {
-                flush();
-                root = values[bit];
-                number = numberOfRank[critical.rank(root)];
-                run = 0;
-              }
-              ++run;
-              values[bit] = number;
+        const size_t stop = index.firstRank(end);
+        for (size_t rank = index.firstRank(begin); rank < stop; ++rank) {
+          if (number == 0 || site[rank] != ball) {
+            ball = site[rank];
+            const uint32_t found = manifold[balls.rank(ball)];
+            if (found != number) {
+              flush();
+              number = found;
+              run = 0;
             }
           }
+          ++run;
+          site[rank] = number;
         }
         flush();
       });

@@ -40,10 +40,10 @@ class GeodesicCompletion {
   void findUncovered(Interrupter* interrupter) {
     detail::parallelFor(index_.leafCount(), detail::kLeafGrain, interrupter,
                         [&](size_t begin, size_t end) {
-                          detail::forEachVoxel(index_, begin, end, [&](VoxelId p) {
-                            if (map_.power[p] < 0) return;
+                          detail::forEachVoxel(index_, begin, end, [&](VoxelId p, size_t rank) {
+                            if (map_.power[rank] < 0) return;
                             uncovered_.insert(p);  // a word belongs to one leaf, so to one thread
-                            map_.site[p] = kNoSite;
+                            map_.site[rank] = kNoSite;
                           });
                         });
   }
@@ -61,13 +61,14 @@ class GeodesicCompletion {
 
   /// The best of a voxel's own site and those of its neighbours.
   Change best(VoxelId p) const {
-    Change best{p, map_.site[p], map_.power[p]};
+    const size_t rank = index_.rank(p);
+    Change best{p, map_.site[rank], map_.power[rank]};
     const Coord position = index_.coord(p);
     VoxelId tried[6];
     int triedCount = 0;
     detail::forEachNeighbor(index_, p, [&](VoxelId q) {
       if (!detail::isObject(index_, q)) return;
-      const VoxelId site = map_.site[q];
+      const VoxelId site = map_.site[index_.rank(q)];
       if (site == kNoSite || site == best.site) return;
       for (int i = 0; i < triedCount; ++i)
         if (tried[i] == site) return;
@@ -96,7 +97,8 @@ class GeodesicCompletion {
           uint64_t& word = front_.word(words[w]);
           detail::forEachBit(word, [&](int bit) {
             const Change change = best(VoxelId(words[w]) * 64 + VoxelId(bit));
-            if (change.site != map_.site[change.voxel]) changes[chunk].push_back(change);
+            if (change.site != map_.site[index_.rank(change.voxel)])
+              changes[chunk].push_back(change);
           });
           word = 0;
         }
@@ -106,8 +108,9 @@ class GeodesicCompletion {
     detail::parallelFor(changes.size(), 1, interrupter, [&](size_t begin, size_t end) {
       for (size_t chunk = begin; chunk < end; ++chunk) {
         for (const Change& change : changes[chunk]) {
-          map_.site[change.voxel] = change.site;
-          map_.power[change.voxel] = change.power;
+          const size_t rank = index_.rank(change.voxel);
+          map_.site[rank] = change.site;
+          map_.power[rank] = change.power;
           detail::forEachNeighbor(index_, change.voxel, [&](VoxelId q) {
             if (uncovered_.contains(q)) front_.insertAtomic(q);
           });
@@ -161,11 +164,13 @@ PowerMap filteredPowerMap(const LeafIndex& index, PowerMap map, const VoxelSet& 
                           Interrupter* interrupter) {
   detail::parallelFor(
       index.leafCount(), detail::kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-        detail::forEachVoxel(index, begin, end, [&](VoxelId p) {
-          map.power[p] = kept.contains(p) ? -table.squaredRadius[balls.rank(p)] : kUncovered;
+        detail::forEachVoxel(index, begin, end, [&](VoxelId p, size_t rank) {
+          map.power[rank] = kept.contains(p) ? -table.squaredRadius[balls.rank(p)] : kUncovered;
         });
       });
-  sweepPower(index, map, interrupter);
+  int32_t largest = 0;
+  for (const int32_t radius2 : table.squaredRadius) largest = std::max(largest, radius2);
+  sweepPower(index, largest, map, interrupter);
   GeodesicCompletion(index, balls, table.squaredRadius, map).run(interrupter);
   return map;
 }

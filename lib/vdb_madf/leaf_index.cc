@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "vdb_madf/detail/parallel.h"
+#include "vdb_madf/detail/voxels.h"
 #include "vdb_madf/errors.h"
 
 namespace vdb_madf {
@@ -16,8 +17,8 @@ namespace {
 
 constexpr LeafIndex::Mask kFullMask = {~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull};
 
-/// Leaves per task when a leaf costs about a microsecond.
-constexpr size_t kLeafGrain = 64;
+/// Leaves per task: some hundred microseconds, and values enough for discarding whole pages.
+constexpr size_t kGridGrain = 512;
 
 struct SourceLeaf {
   Coord origin;
@@ -90,22 +91,29 @@ void linkNeighbors(const std::vector<Coord>& origins, int axis,
   }
 }
 
-/// Makes the leaves in parallel, then hangs them into a tree; fill(id) gives a voxel's value.
-template <typename Fill>
+/// Makes the leaves in parallel, then hangs them into a tree; value(rank) gives a voxel's value,
+/// done(begin, end) tells the ranks that are not asked for again.
+template <typename Value, typename Done>
 Int32Grid::Ptr makeGrid(const LeafIndex& index, const std::string& name, Interrupter* interrupter,
-                        const Fill& fill) {
+                        const Value& value, const Done& done) {
   using Leaf = Int32Tree::LeafNodeType;
   std::vector<std::unique_ptr<Leaf>> leaves(index.leafCount());
-  detail::parallelFor(leaves.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+  detail::parallelFor(leaves.size(), kGridGrain, interrupter, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       leaves[i] = std::make_unique<Leaf>(openvdb::PartialCreate(), index.origin(i));
       leaves[i]->buffer().allocate();
-      int32_t* values = leaves[i]->buffer().data();
-      for (size_t k = 0; k < 512; ++k) values[k] = fill(i * 512 + k);
+      int32_t* to = leaves[i]->buffer().data();
+      std::fill(to, to + 512, 0);
+      size_t rank = index.firstRank(i);
       Leaf::NodeMaskType mask;
-      for (size_t x = 0; x < 8; ++x) mask.template getWord<uint64_t>(int(x)) = index.mask(i)[x];
+      for (size_t x = 0; x < 8; ++x) {
+        mask.template getWord<uint64_t>(int(x)) = index.mask(i)[x];
+        detail::forEachBit(index.mask(i)[x],
+                           [&](int bit) { to[x * 64 + size_t(bit)] = value(rank++); });
+      }
       leaves[i]->setValueMask(mask);
     }
+    done(index.firstRank(begin), index.firstRank(end));
   });
   auto grid = Int32Grid::create(0);
   grid->setName(name);
@@ -123,26 +131,44 @@ LeafIndex::LeafIndex(const MaskGrid& object) {
   origins_.resize(leaves.size());
   masks_.resize(leaves.size());
   neighbors_.assign(leaves.size(), {kNone, kNone, kNone, kNone, kNone, kNone});
+  firstRank_.resize(leaves.size() + 1);
+  wordRank_.resize(leaves.size());
   for (size_t i = 0; i < leaves.size(); ++i) {
     origins_[i] = leaves[i].origin;
     masks_[i] = kFullMask;
     if (leaves[i].leaf)
       for (int x = 0; x < 8; ++x)
         masks_[i][x] = leaves[i].leaf->getValueMask().template getWord<uint64_t>(x);
-    for (const uint64_t word : masks_[i]) voxelCount_ += __builtin_popcountll(word);
+    uint32_t count = 0;
+    for (size_t x = 0; x < 8; ++x) {
+      wordRank_[i][x] = uint16_t(count);
+      count += uint32_t(__builtin_popcountll(masks_[i][x]));
+    }
+    firstRank_[i + 1] = firstRank_[i] + count;
   }
   for (int axis = 0; axis < 3; ++axis) linkNeighbors(origins_, axis, neighbors_);
 }
 
 Int32Grid::Ptr toGrid(const LeafIndex& index, const VoxelArray<int32_t>& values,
                       const std::string& name, Interrupter* interrupter) {
-  return makeGrid(index, name, interrupter, [&](size_t id) { return values[id]; });
+  return makeGrid(
+      index, name, interrupter, [&](size_t rank) { return values[rank]; }, [](size_t, size_t) {});
 }
 
 Int32Grid::Ptr toGrid(const LeafIndex& index, const VoxelArray<uint32_t>& values,
                       const std::vector<int32_t>& table, const std::string& name,
                       Interrupter* interrupter) {
-  return makeGrid(index, name, interrupter, [&](size_t id) { return table[values[id]]; });
+  return makeGrid(
+      index, name, interrupter, [&](size_t rank) { return table[values[rank] & 0x7fffffffu]; },
+      [](size_t, size_t) {});
+}
+
+Int32Grid::Ptr toGrid(const LeafIndex& index, VoxelArray<uint32_t>&& values,
+                      const std::vector<int32_t>& table, const std::string& name,
+                      Interrupter* interrupter) {
+  return makeGrid(
+      index, name, interrupter, [&](size_t rank) { return table[values[rank] & 0x7fffffffu]; },
+      [&](size_t begin, size_t end) { values.discard(begin, end); });
 }
 
 }  // namespace vdb_madf

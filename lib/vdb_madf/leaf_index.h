@@ -5,39 +5,17 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "vdb_madf/grid_types.h"
+#include "vdb_madf/voxel_array.h"
 
 namespace vdb_madf {
 
 /// Position of a voxel in a LeafIndex: leaf * 512 + offset, offset = x*64 + y*8 + z within the
 /// leaf.
 using VoxelId = uint32_t;
-
-/// One value per voxel of each leaf of a LeafIndex, at VoxelId; uninitialised when made. Every
-/// stage leaves 0 at the voxels outside the object.
-template <typename T>
-class VoxelArray {
- public:
-  VoxelArray() = default;
-  explicit VoxelArray(size_t size) : values_(new T[size]), size_(size) {}
-  T* data() { return values_.get(); }
-  const T* data() const { return values_.get(); }
-  size_t size() const { return size_; }
-  T& operator[](size_t i) { return values_[i]; }
-  const T& operator[](size_t i) const { return values_[i]; }
-  void clear() {
-    values_.reset();
-    size_ = 0;
-  }
-
- private:
-  std::unique_ptr<T[]> values_;
-  size_t size_ = 0;
-};
 
 /// The topology of the object X: its 8x8x8 leaves sorted by origin (x, then y, then z), their masks
 /// and their six neighbours. The one place that knows the topology; every stage works on it.
@@ -62,14 +40,23 @@ class LeafIndex {
   explicit LeafIndex(const MaskGrid& object);
 
   size_t leafCount() const { return origins_.size(); }
-  size_t idCount() const { return origins_.size() * 512; }  ///< size of a VoxelArray
-  int64_t voxelCount() const { return voxelCount_; }        ///< |X|
+  int64_t voxelCount() const { return firstRank_.back(); }  ///< |X|, size of a VoxelArray
   /// Of the active voxels; empty if there are none.
   const CoordBBox& boundingBox() const { return boundingBox_; }
 
   const Coord& origin(size_t leaf) const { return origins_[leaf]; }
   const Mask& mask(size_t leaf) const { return masks_[leaf]; }
   const Neighbors& neighbors(size_t leaf) const { return neighbors_[leaf]; }
+
+  /// Object voxels before a leaf, and in it.
+  size_t firstRank(size_t leaf) const { return firstRank_[leaf]; }
+  size_t leafVoxels(size_t leaf) const { return firstRank_[leaf + 1] - firstRank_[leaf]; }
+  /// Object voxels before a voxel: where a VoxelArray holds its value.
+  size_t rank(VoxelId id) const {
+    const size_t leaf = id >> 9, x = id >> 6 & 7;
+    const uint64_t before = masks_[leaf][x] & ((uint64_t(1) << (id & 63)) - 1);
+    return firstRank_[leaf] + wordRank_[leaf][x] + size_t(__builtin_popcountll(before));
+  }
 
   Coord coord(VoxelId id) const {
     const Coord& o = origins_[id >> 9];
@@ -80,16 +67,21 @@ class LeafIndex {
   std::vector<Coord> origins_;
   std::vector<Mask> masks_;
   std::vector<Neighbors> neighbors_;
+  std::vector<uint32_t> firstRank_{0};             // one more at the end
+  std::vector<std::array<uint16_t, 8>> wordRank_;  // object voxels of the leaf before each word
   CoordBBox boundingBox_;
-  int64_t voxelCount_ = 0;
 };
 
 /// An Int32 grid with the topology of X and the array's values; background 0, inactive elsewhere.
 /// @throw Interrupted
 Int32Grid::Ptr toGrid(const LeafIndex& index, const VoxelArray<int32_t>& values,
                       const std::string& name, Interrupter* interrupter = nullptr);
-/// The same of table[values[id]].
+/// The same of table[i], i = the lower 31 bits of values[rank].
 Int32Grid::Ptr toGrid(const LeafIndex& index, const VoxelArray<uint32_t>& values,
+                      const std::vector<int32_t>& table, const std::string& name,
+                      Interrupter* interrupter = nullptr);
+/// The same; the array's memory goes back to the system while the grid grows.
+Int32Grid::Ptr toGrid(const LeafIndex& index, VoxelArray<uint32_t>&& values,
                       const std::vector<int32_t>& table, const std::string& name,
                       Interrupter* interrupter = nullptr);
 

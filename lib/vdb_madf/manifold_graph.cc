@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <mutex>
 
+#include "vdb_madf/detail/leaf_values.h"
 #include "vdb_madf/detail/parallel.h"
+#include "vdb_madf/detail/simd.h"
 #include "vdb_madf/detail/voxels.h"
 #include "vdb_madf/flow.h"
 
@@ -101,48 +103,82 @@ class EdgeCollector {
                 EdgeTable& table)
       : index_(index), flow_(flow), power_(power), table_(table) {}
 
-  void collect(size_t leaf) {
-    const LeafIndex::Mask& mask = index_.mask(leaf);
-    const LeafIndex::Neighbors& next = index_.neighbors(leaf);
-    constexpr uint64_t kLastZ = 0x8080808080808080ull;
-    for (size_t x = 0; x < 8; ++x) {
-      const uint64_t word = mask[x];
-      if (!word) continue;
-      const VoxelId base = VoxelId(leaf * 512 + x * 64);
-      pairs(base, word & ~kLastZ & word >> 1, 1);
-      pairs(base, word & word >> 8, 8);
-      if (x < 7) pairs(base, word & mask[x + 1], 64);
-      // Through the faces of the leaf.
-      if (next[5] != LeafIndex::kNone)
-        pairs(base, word & kLastZ & index_.mask(next[5])[x] << 7, step(leaf, next[5], -7));
-      if (next[3] != LeafIndex::kNone)
-        pairs(base, word & index_.mask(next[3])[x] << 56, step(leaf, next[3], -56));
-      if (x == 7 && next[1] != LeafIndex::kNone)
-        pairs(base, word & index_.mask(next[1])[0], step(leaf, next[1], -448));
-    }
+  VDB_MADF_SIMD void collect(size_t leaf) {
+    load(leaf);
+    for (int x = 0; x < 8; ++x)
+      for (int y = 0; y < 8; ++y)
+        if (differs(x, y)) collectRow(leaf, x, y);
   }
 
  private:
-  static int64_t step(size_t from, size_t to, int64_t offset) {
-    return (int64_t(to) - int64_t(from)) * 512 + offset;
+  static constexpr uint32_t kNumber = ~Flow::kOwnCell;
+
+  /// Do two voxels (0: no object voxel) belong to different manifolds?
+  static uint32_t differ(uint32_t a, uint32_t b) {
+    return a != 0 && b != 0 ? (a ^ b) & kNumber : 0;
   }
 
-  /// The pairs (p, p + step) for the bits p - base of a word.
-  void pairs(VoxelId base, uint64_t word, int64_t step) {
-    const uint32_t* manifold = flow_.manifold.data() + base;
-    detail::forEachBit(word, [&](int bit) {
-      const uint32_t a = manifold[bit], b = manifold[bit + step];
-      if (a == b) return;
-      const VoxelId p = base + VoxelId(bit), q = VoxelId(p + step);
-      table_.add({std::min(a, b) - 1, std::max(a, b) - 1, 1, -std::max(power_[p], power_[q]),
-                  flow_.direct.contains(p) && flow_.direct.contains(q)});
-    });
+  /// Spreads the leaf's manifolds over block_, with the faces of the next leaves.
+  [[gnu::always_inline]] void load(size_t leaf) {
+    uint32_t dense[512];
+    detail::expandLeaf(index_.mask(leaf), flow_.manifold.data() + index_.firstRank(leaf), dense);
+    for (size_t x = 0; x < 8; ++x)
+      for (size_t y = 0; y < 8; ++y) std::copy_n(dense + x * 64 + y * 8, 8, block_[x][y]);
+    const LeafIndex::Neighbors& next = index_.neighbors(leaf);
+    for (uint32_t i = 0; i < 8; ++i) {
+      for (uint32_t j = 0; j < 8; ++j) {
+        block_[8][i][j] = value(next[1], i * 8 + j);
+        block_[i][8][j] = value(next[3], i * 64 + j);
+        block_[i][j][8] = value(next[5], i * 64 + j * 8);
+      }
+    }
+  }
+  [[gnu::always_inline]] uint32_t value(uint32_t leaf, uint32_t offset) const {
+    if (leaf == LeafIndex::kNone) return 0;
+    const VoxelId id = leaf * 512 + offset;
+    return detail::isObject(index_, id) ? flow_.manifold[index_.rank(id)] : 0;
+  }
+
+  /// Is there any pair of different manifolds from the row (x, y) on? Mostly not.
+  [[gnu::always_inline]] bool differs(int x, int y) const {
+    uint32_t any = 0;
+    for (int z = 0; z < 8; ++z) {
+      const uint32_t a = block_[x][y][z];
+      any |= differ(a, block_[x][y][z + 1]) | differ(a, block_[x][y + 1][z]) |
+             differ(a, block_[x + 1][y][z]);
+    }
+    return any != 0;
+  }
+
+  void collectRow(size_t leaf, int x, int y) {
+    for (int z = 0; z < 8; ++z) {
+      collectPair(leaf, {x, y, z}, {x, y, z + 1});
+      collectPair(leaf, {x, y, z}, {x, y + 1, z});
+      collectPair(leaf, {x, y, z}, {x + 1, y, z});
+    }
+  }
+
+  void collectPair(size_t leaf, const Coord& p, const Coord& q) {
+    const uint32_t a = block_[p.x()][p.y()][p.z()], b = block_[q.x()][q.y()][q.z()];
+    if (!differ(a, b)) return;
+    const uint32_t first = (a & kNumber) - 1, second = (b & kNumber) - 1;
+    table_.add({std::min(first, second), std::max(first, second), 1,
+                -std::max(powerAt(leaf, p), powerAt(leaf, q)), (a & b & Flow::kOwnCell) != 0});
+  }
+
+  /// Power at a place of the block; 8 is the first voxel of the next leaf.
+  int32_t powerAt(size_t leaf, const Coord& p) const {
+    for (size_t axis = 0; axis < 3; ++axis)
+      if (p[axis] == 8) leaf = index_.neighbors(leaf)[2 * axis + 1];
+    return power_[index_.rank(VoxelId(leaf * 512) +
+                              VoxelId((p.x() & 7) * 64 + (p.y() & 7) * 8 + (p.z() & 7)))];
   }
 
   const LeafIndex& index_;
   const Flow& flow_;
   const VoxelArray<int32_t>& power_;
   EdgeTable& table_;
+  uint32_t block_[9][9][9] = {};
 };
 
 }  // namespace

@@ -3,178 +3,309 @@
 
 #include "vdb_madf/power_map.h"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
+#include "vdb_madf/detail/leaf_values.h"
 #include "vdb_madf/detail/pencil.h"
+#include "vdb_madf/detail/simd.h"
 
 namespace vdb_madf {
 
 namespace {
 
-/// A parabola of the lower envelope: u -> (u - position)^2 + offset, least from `start` on.
+/// A parabola u -> (u - position)^2 + power of a lower envelope, with the order of ties put into
+/// one number: its key (u - position)^2 M + power M - D, M > every D, is less where the power is
+/// less or, at equal power, where D is larger. The envelope is then the lower convex hull of the
+/// points (position, key + position^2 M), here held without the u^2 M that all have in common.
+template <typename Key>
 struct Parabola {
-  int position;
-  int start;
-  int32_t offset;
+  Key key;          // (power + position^2) M - D
+  int32_t height;   // power + position^2
+  int32_t radius2;  // D
+  int32_t position;
   VoxelId site;
-
-  int32_t at(int u) const { return (u - position) * (u - position) + offset; }
 };
 
-/// Rows of a pencil one after the other; a few unused values between them keep rows off the same
-/// cache sets.
+/// A slab holds the values of a pencil's 64 rows at one position; the padding keeps the positions
+/// of a row off the same cache sets.
+constexpr size_t kSlab = 64 + 16;
+
+/// A pencil laid out with the swept axis slow: slab after slab, 0 outside the object.
+template <typename Key>
 struct Scratch {
   std::vector<uint32_t> leaves;
-  std::vector<int32_t> power;
+  std::vector<int32_t> power;  // one slab of padding at either end
   std::vector<VoxelId> site;
-  std::vector<Parabola> envelope;
-  size_t pitch = 0;
+  std::vector<int32_t> radius2;  // D of the site; one slab of padding at either end
+  // 8 positions per byte: is there an object voxel, can its parabola be part of an envelope?
+  std::vector<std::array<uint8_t, 64>> object, candidate;
+  std::vector<Parabola<Key>> envelope;
+  std::vector<uint32_t> starting;  // parabolas that become the least one at a position
 
+  /// Never shrinks: growing again would clear what is overwritten anyway.
   void resize(size_t length) {
-    pitch = length + 16;
-    power.resize(pitch * 64);
-    site.resize(pitch * 64);
-    envelope.resize(length);
+    if (envelope.size() < length) {
+      power.resize((length + 2) * kSlab);
+      site.resize(length * kSlab);
+      radius2.resize((length + 2) * kSlab);
+      object.resize(length / 8);
+      candidate.resize(length / 8);
+      envelope.resize(length);
+      starting.resize(length + 1);
+    }
+    std::fill_n(power.data() + (length + 1) * kSlab, kSlab, 0);
   }
 };
 
-/// D of a site, known from its partial power at a voxel of the row: the passes before this one have
-/// moved away from the site along z, then y.
-template <int Axis>
-int32_t squaredRadius(const LeafIndex& index, const Coord& row, VoxelId site,
-                      int32_t partialPower) {
-  if (Axis == 2) return -partialPower;
-  const Coord x = index.coord(site);
-  const int dz = x.z() - row.z();
-  const int dy = Axis == 0 ? x.y() - row.y() : 0;
-  return dy * dy + dz * dz - partialPower;
+/// Copies between a leaf's voxels (offset x*64 + y*8 + z) and its slabs.
+template <int Axis, typename T>
+[[gnu::always_inline]] inline void copyToSlabs(const T* dense, T* slab) {
+  for (size_t t = 0; t < 8; ++t)
+    for (int row = 0; row < 64; ++row)
+      slab[t * kSlab + size_t(row)] =
+          dense[detail::rowOffset<Axis>(row) + int(t) * detail::rowStride<Axis>()];
+}
+template <int Axis, typename T>
+[[gnu::always_inline]] inline void copyFromSlabs(const T* slab, T* dense) {
+  for (size_t t = 0; t < 8; ++t)
+    for (int row = 0; row < 64; ++row)
+      dense[detail::rowOffset<Axis>(row) + int(t) * detail::rowStride<Axis>()] =
+          slab[t * kSlab + size_t(row)];
 }
 
-/// Lower envelope over one run [0, length) of object voxels, in place. Sites are the positions of
-/// negative power. Ties: larger D, then the smaller position (the order z, y, x of the passes makes
-/// that the lexicographic order). Returns nothing where no parabola is negative.
-template <int Axis>
-void sweepRun(const LeafIndex& index, const Coord& row, int length, int32_t* power, VoxelId* site,
-              Parabola* envelope) {
-  // Does the later parabola win a tie against the earlier one?
-  const auto winsTie = [&](const Parabola& later, const Parabola& earlier) {
-    return squaredRadius<Axis>(index, row, later.site, later.offset) >
-           squaredRadius<Axis>(index, row, earlier.site, earlier.offset);
-  };
-  const auto beats = [&](const Parabola& later, const Parabola& earlier, int u) {
-    const int32_t a = later.at(u), b = earlier.at(u);
-    return a < b || (a == b && winsTie(later, earlier));
-  };
-
-  int count = 0;
-  for (int t = 0; t < length; ++t) {
-    if (power[t] >= 0) continue;
-    Parabola next{t, 0, power[t], site[t]};
-    while (count > 0 && beats(next, envelope[count - 1], envelope[count - 1].start)) --count;
-    if (count > 0) {
-      const Parabola& top = envelope[count - 1];
-      if (!beats(next, top, length - 1)) continue;
-      // next < top at u  <=>  n < u * d. The quotient of such small integers is exact enough in
-      // double precision for its floor to be that of the integer division.
-      const int64_t n = int64_t(next.offset) - top.offset + int64_t(next.position) * next.position -
-                        int64_t(top.position) * top.position;
-      const int64_t d = 2 * int64_t(next.position - top.position);
-      const int64_t quotient = int64_t(double(n) / double(d));
-      next.start = int(quotient) + (quotient * d == n && winsTie(next, top) ? 0 : 1);
-    }
-    envelope[count++] = next;
-  }
-
-  for (int i = 0, u = 0; u < length; ++i) {
-    if (i == count) {  // only where there is no site at all
-      std::fill(power, power + length, kUncovered);
-      return;
-    }
-    const Parabola& p = envelope[i];
-    const int end = i + 1 < count ? envelope[i + 1].start : length;
-    for (; u < end; ++u) {
-      const int32_t value = p.at(u);
-      power[u] = value < 0 ? value : kUncovered;
-      site[u] = p.site;
-    }
+template <int Axis, typename Key>
+VDB_MADF_SIMD void gather(const LeafIndex& index, const PowerMap& map, Scratch<Key>& s) {
+  int32_t power[512];
+  VoxelId site[512];
+  for (size_t i = 0; i < s.leaves.size(); ++i) {
+    const uint32_t leaf = s.leaves[i];
+    detail::expandLeaf(index.mask(leaf), map.power.data() + index.firstRank(leaf), power);
+    copyToSlabs<Axis>(power, s.power.data() + (i * 8 + 1) * kSlab);
+    if (Axis == 2)  // before the first pass every voxel is its own site
+      for (uint32_t k = 0; k < 512; ++k) site[k] = leaf * 512 + k;
+    else
+      detail::expandLeaf(index.mask(leaf), map.site.data() + index.firstRank(leaf), site);
+    copyToSlabs<Axis>(site, s.site.data() + i * 8 * kSlab);
   }
 }
 
-template <int Axis>
-void sweep(const LeafIndex& index, PowerMap& map, Interrupter* interrupter) {
-  constexpr int kStride = detail::rowStride<Axis>();
+template <int Axis, typename Key>
+VDB_MADF_SIMD void scatter(const LeafIndex& index, const Scratch<Key>& s, PowerMap& map) {
+  int32_t power[512];
+  VoxelId site[512];
+  for (size_t i = 0; i < s.leaves.size(); ++i) {
+    const uint32_t leaf = s.leaves[i];
+    copyFromSlabs<Axis>(s.power.data() + (i * 8 + 1) * kSlab, power);
+    copyFromSlabs<Axis>(s.site.data() + i * 8 * kSlab, site);
+    detail::packLeaf(index.mask(leaf), power, map.power.data() + index.firstRank(leaf));
+    detail::packLeaf(index.mask(leaf), site, map.site.data() + index.firstRank(leaf));
+  }
+}
+
+/// D of all sites, from their partial power: the passes before this one have moved away from the
+/// site along z, then y. `origin` is that of the pencil's first leaf.
+template <int Axis, typename Key>
+VDB_MADF_SIMD void computeRadii(const LeafIndex& index, const Coord& origin, Scratch<Key>& s) {
+  const Coord* origins = &index.origin(0);
+  for (size_t t = 0; t < s.leaves.size() * 8; ++t) {
+    const int32_t* power = s.power.data() + (t + 1) * kSlab;
+    const VoxelId* site = s.site.data() + t * kSlab;
+    int32_t* radius2 = s.radius2.data() + (t + 1) * kSlab;
+    for (int row = 0; row < 64; ++row) {
+      int32_t away = 0;
+      if (Axis != 2) {  // rows: x*8 + z along y, y*8 + z along x
+        const Coord& leaf = origins[site[row] >> 9];
+        const int dz = leaf.z() + int(site[row] & 7) - (origin.z() + (row & 7));
+        const int dy = leaf.y() + int(site[row] >> 3 & 7) - (origin.y() + (row >> 3));
+        away = dz * dz + (Axis == 0 ? dy * dy : 0);
+      }
+      radius2[row] = away - power[row];
+    }
+  }
+}
+
+/// Marks object voxels and candidates: sites whose parabola is below the chord over it between its
+/// two neighbours (or has a neighbour that is no site). Others are least nowhere. Where the chord
+/// goes right through it, the keys differ by D alone.
+template <typename Key>
+VDB_MADF_SIMD void markCandidates(Scratch<Key>& s) {
+  constexpr bool kFilter = sizeof(Key) == 8;  // wide keys: what follows could overflow
+  for (size_t i = 0; i < s.leaves.size(); ++i) {
+    uint8_t object[8][64], candidate[8][64];
+    for (size_t t = 0; t < 8; ++t) {
+      const int32_t* p = s.power.data() + (i * 8 + t + 1) * kSlab;
+      const int32_t* d = s.radius2.data() + (i * 8 + t + 1) * kSlab;
+      for (size_t row = 0; row < 64; ++row) {
+        const int32_t power = p[row], before = p[row - kSlab], after = p[row + kSlab];
+        const int32_t bend = (before - power) + (after - power) + 2;
+        const int32_t radiusBend = (d[row] - d[row - kSlab]) + (d[row] - d[row + kSlab]);
+        const bool below =
+            !kFilter | (bend > 0) | ((bend == 0) & (radiusBend > 0)) | (before >= 0) | (after >= 0);
+        object[t][row] = power != 0;
+        candidate[t][row] = (power < 0) & below;
+      }
+    }
+    for (size_t row = 0; row < 64; ++row) {
+      uint8_t objectBits = 0, candidateBits = 0;
+      for (size_t t = 0; t < 8; ++t) {
+        objectBits = uint8_t(objectBits | object[t][row] << t);
+        candidateBits = uint8_t(candidateBits | candidate[t][row] << t);
+      }
+      s.object[i][row] = objectBits;
+      s.candidate[i][row] = candidateBits;
+    }
+  }
+}
+
+/// The parabolas of candidates in [begin, end) of a row that are the least somewhere. Returns their
+/// number. At equal key the earlier one wins (the order z, y, x of the passes makes that the
+/// lexicographic order): on a straight line only the ends count.
+template <typename Key>
+[[gnu::always_inline]] inline int buildEnvelope(Scratch<Key>& s, size_t row, int begin, int end,
+                                                Key multiplier) {
+  Parabola<Key>* const first = s.envelope.data();
+  Parabola<Key>* next = first;
+  const int32_t* powers = s.power.data() + kSlab + row;
+  const int32_t* radii = s.radius2.data() + kSlab + row;
+  const VoxelId* sites = s.site.data() + row;
+  for (int i = begin >> 3; i << 3 < end; ++i) {
+    uint32_t bits = s.candidate[size_t(i)][row];
+    if (i << 3 < begin) bits &= 0xffu << (begin & 7);
+    if (end < (i + 1) << 3) bits &= 0xffu >> (8 - (end & 7));
+    for (; bits; bits &= bits - 1) {
+      const int t = i * 8 + __builtin_ctz(bits);
+      const size_t at = size_t(t) * kSlab;
+      const int32_t height = powers[at] + (t - begin) * (t - begin);
+      const Key key = height * multiplier - radii[at];
+      for (; next - first > 1; --next) {
+        const Parabola<Key>&b = next[-1], &a = next[-2];
+        if ((b.key - a.key) * (t - begin - b.position) < (key - b.key) * (b.position - a.position))
+          break;
+      }
+      *next++ = {key, height, radii[at], t - begin, sites[at]};
+    }
+  }
+  return int(next - first);
+}
+
+/// Lower envelope over one run [begin, end) of a row's object voxels, in place. Ties: larger D,
+/// then the smaller position. All is uncovered where there is no site.
+template <typename Key>
+[[gnu::always_inline]] inline void sweepRun(Scratch<Key>& s, size_t row, int begin, int end,
+                                            Key multiplier) {
+  const int length = end - begin;
+  const int count = buildEnvelope(s, row, begin, end, multiplier);
+  int32_t* power = s.power.data() + size_t(begin + 1) * kSlab + row;
+  VoxelId* site = s.site.data() + size_t(begin) * kSlab + row;
+  if (count == 0) {
+    for (int u = 0; u < length; ++u) power[size_t(u) * kSlab] = kUncovered;
+    return;
+  }
+  uint32_t* starting = s.starting.data();
+  for (int i = 1; i < count; ++i) {
+    // Less than the one before at u  <=>  rise < 2 u run. The quotient of such small integers is
+    // exact enough in double precision for its floor to be that of the integer division.
+    const Parabola<Key>&a = s.envelope[size_t(i) - 1], &b = s.envelope[size_t(i)];
+    const int64_t rise = int64_t(b.height) - a.height, twice = 2 * int64_t(b.position - a.position);
+    const int64_t quotient = int64_t(double(rise) / double(twice));
+    const bool winsTie = (quotient * twice == rise) & (b.radius2 > a.radius2);
+    const int64_t start = rise < 0 ? 0 : quotient + !winsTie;
+    ++starting[std::min<int64_t>(start, length)];
+  }
+  starting[length] = 0;
+  const Parabola<Key>* least = s.envelope.data();
+  for (int u = 0; u < length; ++u) {
+    least += starting[u];
+    starting[u] = 0;
+    const int32_t value = least->height + u * (u - 2 * least->position);
+    power[size_t(u) * kSlab] = value < 0 ? value : kUncovered;
+    site[size_t(u) * kSlab] = least->site;
+  }
+}
+
+/// First position from t on that is (in = 0) or is not (in = 0xff) an object voxel of the row.
+template <typename Key>
+[[gnu::always_inline]] inline int findObject(const Scratch<Key>& s, size_t row, int t, int length,
+                                             uint32_t invert) {
+  uint32_t bits = (s.object[size_t(t) >> 3][row] ^ invert) & 0xffu << (t & 7) & 0xffu;
+  for (t &= ~7; !bits;) {
+    t += 8;
+    if (t >= length) return length;
+    bits = s.object[size_t(t) >> 3][row] ^ invert;
+  }
+  return t + __builtin_ctz(bits);
+}
+
+/// All runs of the pencil's rows.
+template <typename Key>
+VDB_MADF_SIMD void sweepRows(Key multiplier, Scratch<Key>& s) {
+  const int length = int(s.leaves.size()) * 8;
+  for (size_t row = 0; row < 64; ++row) {
+    for (int end = 0; end < length;) {
+      const int begin = findObject(s, row, end, length, 0);
+      if (begin == length) break;
+      end = findObject(s, row, begin, length, 0xffu);
+      sweepRun(s, row, begin, end, multiplier);
+    }
+  }
+}
+
+template <int Axis, typename Key>
+void sweep(const LeafIndex& index, Key multiplier, PowerMap& map, Interrupter* interrupter) {
   const std::vector<uint32_t> starts = detail::pencilStarts(index, Axis);
-  detail::PerThread<Scratch> scratches;
-  detail::parallelFor(
-      starts.size(), detail::kPencilGrain, interrupter, [&](size_t begin, size_t end) {
-        Scratch& s = scratches.local();
-        for (size_t p = begin; p < end; ++p) {
-          detail::collectPencil(index, Axis, starts[p], s.leaves);
-          const int length = int(s.leaves.size()) * 8;
-          s.resize(length);
-          for (size_t i = 0; i < s.leaves.size(); ++i) {
-            const size_t leaf = size_t(s.leaves[i]) * 512;
-            for (int row = 0; row < 64; ++row) {
-              const size_t from = leaf + detail::rowOffset<Axis>(row), to = row * s.pitch + i * 8;
-              for (int t = 0; t < 8; ++t) {
-                s.power[to + t] = map.power[from + t * kStride];
-                // Before the first pass every voxel is its own site.
-                s.site[to + t] = Axis == 2 ? VoxelId(from + t) : map.site[from + t * kStride];
-              }
-            }
-          }
-          const Coord origin = index.origin(starts[p]);
-          for (int row = 0; row < 64; ++row) {
-            int32_t* power = s.power.data() + row * s.pitch;
-            VoxelId* site = s.site.data() + row * s.pitch;
-            const int slow = row >> 3, fast = row & 7;
-            const Coord rowCoord = origin + (Axis == 0   ? Coord(0, slow, fast)
-                                             : Axis == 1 ? Coord(slow, 0, fast)
-                                                         : Coord(slow, fast, 0));
-            for (int a = 0; a < length;) {
-              if (power[a] == 0) {
-                ++a;
-                continue;
-              }
-              int b = a + 1;
-              while (b < length && power[b] != 0) ++b;
-              sweepRun<Axis>(index, rowCoord, b - a, power + a, site + a, s.envelope.data());
-              a = b;
-            }
-          }
-          for (size_t i = 0; i < s.leaves.size(); ++i) {
-            const size_t leaf = size_t(s.leaves[i]) * 512;
-            for (int row = 0; row < 64; ++row) {
-              const size_t to = leaf + detail::rowOffset<Axis>(row), from = row * s.pitch + i * 8;
-              for (int t = 0; t < 8; ++t) {
-                map.power[to + t * kStride] = s.power[from + t];
-                map.site[to + t * kStride] = s.site[from + t];
-              }
-            }
-          }
-        }
-      });
+  detail::PerThread<Scratch<Key>> scratches;
+  detail::parallelFor(starts.size(), detail::kPencilGrain, interrupter,
+                      [&](size_t begin, size_t end) {
+                        Scratch<Key>& s = scratches.local();
+                        for (size_t p = begin; p < end; ++p) {
+                          detail::collectPencil(index, Axis, starts[p], s.leaves);
+                          s.resize(s.leaves.size() * 8);
+                          gather<Axis, Key>(index, map, s);
+                          computeRadii<Axis, Key>(index, index.origin(starts[p]), s);
+                          markCandidates<Key>(s);
+                          sweepRows<Key>(multiplier, s);
+                          scatter<Axis, Key>(index, s, map);
+                        }
+                      });
+}
+
+template <typename Key>
+void sweepAll(const LeafIndex& index, Key multiplier, PowerMap& map, Interrupter* interrupter) {
+  sweep<2, Key>(index, multiplier, map, interrupter);
+  sweep<1, Key>(index, multiplier, map, interrupter);
+  sweep<0, Key>(index, multiplier, map, interrupter);
+}
+
+/// Do products of a difference of keys and one of positions fit in 64 bits?
+bool fits64Bits(const LeafIndex& index, int32_t largestSquaredRadius) {
+  const Coord dim = index.boundingBox().dim();
+  const double length = 8 + std::max({dim.x(), dim.y(), dim.z()});
+  const double height = std::max<double>(length * length, largestSquaredRadius);
+  return 2 * height * (double(largestSquaredRadius) + 2) * length < 9e18;
 }
 
 }  // namespace
 
-PowerMap powerMap(const LeafIndex& index, VoxelArray<int32_t> squaredDistance,
-                  Interrupter* interrupter) {
+PowerMap powerMap(const LeafIndex& index, SquaredDistance distance, Interrupter* interrupter) {
   PowerMap map;
-  map.power = std::move(squaredDistance);
-  map.site = VoxelArray<VoxelId>(index.idCount());
+  map.power = std::move(distance.values);
+  map.site = VoxelArray<VoxelId>(size_t(index.voxelCount()));
   detail::parallelFor(map.power.size(), size_t(1) << 16, interrupter,
                       [&](size_t begin, size_t end) {
                         for (size_t i = begin; i < end; ++i) map.power[i] = -map.power[i];
                       });
-  sweepPower(index, map, interrupter);
+  sweepPower(index, distance.largest, map, interrupter);
   return map;
 }
 
-void sweepPower(const LeafIndex& index, PowerMap& map, Interrupter* interrupter) {
-  sweep<2>(index, map, interrupter);
-  sweep<1>(index, map, interrupter);
-  sweep<0>(index, map, interrupter);
+void sweepPower(const LeafIndex& index, int32_t largestSquaredRadius, PowerMap& map,
+                Interrupter* interrupter) {
+  if (fits64Bits(index, largestSquaredRadius))
+    sweepAll<int64_t>(index, int64_t(largestSquaredRadius) + 1, map, interrupter);
+  else
+    sweepAll<__int128>(index, __int128(largestSquaredRadius) + 1, map, interrupter);
 }
 
 }  // namespace vdb_madf

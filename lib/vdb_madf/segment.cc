@@ -105,10 +105,10 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
     result.distanceSquared = toGrid(index, distance.values, "distance_squared", interrupter);
 
   stages.begin("power_map");
-  PowerMap map = powerMap(index, std::move(distance.values), interrupter);
+  PowerMap map = powerMap(index, std::move(distance), interrupter);
 
   stages.begin("medial_balls");
-  const VoxelSet balls = medialBalls(index, map, interrupter);
+  VoxelSet balls = medialBalls(index, map, interrupter);
   const bool filter = options.gamma > 1;
   MedialBallTable table;
   if (filter || options.keepBalls) table = measureBalls(index, map, balls, interrupter);
@@ -117,13 +117,15 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
 
   if (filter) {
     stages.begin("gamma_filter");
-    const VoxelSet kept = keptBalls(index, balls, table, options.gamma);
+    VoxelSet kept = keptBalls(index, balls, table, options.gamma);
     counts.keptBalls = kept.size();
     map = filteredPowerMap(index, std::move(map), balls, table, kept, interrupter);
+    balls = std::move(kept);
+    table = {};
   }
 
   stages.begin("flow");
-  const Flow flowMap = flow(index, std::move(map.site), map.power, interrupter);
+  Flow flowMap = flow(index, std::move(map.site), map.power, balls, interrupter);
   counts.criticalPoints = int64_t(flowMap.criticalPoints.size());
 
   stages.begin("manifold_graph");
@@ -142,7 +144,8 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
   if (options.keepManifold)
     result.manifold = toGrid(index, flowMap.manifold, identity(result.graph.nodes.size() + 1),
                              "manifold", interrupter);
-  result.grain = toGrid(index, flowMap.manifold, labelTable(merging), "grain", interrupter);
+  result.grain =
+      toGrid(index, std::move(flowMap.manifold), labelTable(merging), "grain", interrupter);
   for (const Int32Grid::Ptr& grid :
        {result.grain, result.distanceSquared, result.power, result.manifold}) {
     if (!grid) continue;

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <sstream>
 
+#include "vdb_madf/detail/leaf_values.h"
 #include "vdb_madf/detail/pencil.h"
 #include "vdb_madf/detail/simd.h"
 #include "vdb_madf/errors.h"
@@ -34,8 +35,10 @@ constexpr int kLanes = 16;
 /// row], one slab of padding at either end.
 struct Scratch {
   std::vector<uint32_t> leaves;
+  std::vector<uint64_t> masks;
   std::vector<uint32_t> in, out;
   void resize(size_t length) {
+    if (in.size() >= (length + 2) * 64) return;
     in.resize((length + 2) * 64);
     out.resize((length + 2) * 64);
   }
@@ -122,12 +125,47 @@ VDB_MADF_SIMD void widenWindows(const uint32_t* in, int length, uint32_t* out) {
   }
 }
 
+/// Copies between a leaf's voxels (offset x*64 + y*8 + z) and its slabs.
+template <int Axis>
+void copyToSlabs(const int32_t* dense, uint32_t* slab) {
+  for (int t = 0; t < 8; ++t)
+    for (int row = 0; row < 64; ++row)
+      slab[t * 64 + row] =
+          uint32_t(dense[detail::rowOffset<Axis>(row) + t * detail::rowStride<Axis>()]);
+}
+template <int Axis>
+void copyFromSlabs(const uint32_t* slab, int32_t* dense) {
+  for (int t = 0; t < 8; ++t)
+    for (int row = 0; row < 64; ++row)
+      dense[detail::rowOffset<Axis>(row) + t * detail::rowStride<Axis>()] =
+          int32_t(slab[t * 64 + row]);
+}
+
+template <int Axis>
+VDB_MADF_SIMD void gather(const LeafIndex& index, const VoxelArray<int32_t>& values, Scratch& s) {
+  int32_t dense[512];
+  for (size_t i = 0; i < s.leaves.size(); ++i) {
+    const uint32_t leaf = s.leaves[i];
+    detail::expandLeaf(index.mask(leaf), values.data() + index.firstRank(leaf), dense);
+    copyToSlabs<Axis>(dense, s.in.data() + (i * 8 + 1) * 64);
+  }
+}
+
+template <int Axis>
+VDB_MADF_SIMD void scatter(const LeafIndex& index, const Scratch& s, VoxelArray<int32_t>& values) {
+  int32_t dense[512];
+  for (size_t i = 0; i < s.leaves.size(); ++i) {
+    const uint32_t leaf = s.leaves[i];
+    copyFromSlabs<Axis>(s.out.data() + (i * 8 + 1) * 64, dense);
+    detail::packLeaf(index.mask(leaf), dense, values.data() + index.firstRank(leaf));
+  }
+}
+
 /// One sweep along an axis over all pencils. The array holds int32 values; infinite ones have the
 /// sign bit set between passes.
 template <int Axis>
 void sweep(const LeafIndex& index, const Obstacles& obstacles, VoxelArray<int32_t>& values,
            Interrupter* interrupter) {
-  constexpr int kStride = detail::rowStride<Axis>();
   const std::vector<uint32_t> starts = detail::pencilStarts(index, Axis);
   detail::PerThread<Scratch> scratches;
   detail::parallelFor(
@@ -141,19 +179,12 @@ void sweep(const LeafIndex& index, const Obstacles& obstacles, VoxelArray<int32_
               pencilDomain(obstacles, Axis, index.origin(starts[p])[Axis], length);
           if (Axis == 0) {
             static_assert(sizeof(LeafIndex::Mask) == 64);
-            std::vector<uint64_t> masks;
-            masks.reserve(length);
+            s.masks.clear();
             for (const uint32_t leaf : s.leaves)
-              masks.insert(masks.end(), index.mask(leaf).begin(), index.mask(leaf).end());
-            scanRows(masks.data(), length, d, s.out.data());
+              s.masks.insert(s.masks.end(), index.mask(leaf).begin(), index.mask(leaf).end());
+            scanRows(s.masks.data(), length, d, s.out.data());
           } else {
-            for (size_t i = 0; i < s.leaves.size(); ++i) {
-              const int32_t* leaf = values.data() + size_t(s.leaves[i]) * 512;
-              uint32_t* slab = s.in.data() + (i * 8 + 1) * 64;
-              for (int row = 0; row < 64; ++row)
-                for (int t = 0; t < 8; ++t)
-                  slab[t * 64 + row] = uint32_t(leaf[detail::rowOffset<Axis>(row) + t * kStride]);
-            }
+            gather<Axis>(index, values, s);
             // Outside the domain nothing is known: not background.
             std::fill_n(s.in.data(), 64, d.before);
             std::fill_n(s.in.data() + 64, size_t(d.begin) * 64, kInfinite);
@@ -161,15 +192,7 @@ void sweep(const LeafIndex& index, const Obstacles& obstacles, VoxelArray<int32_
             std::fill_n(s.in.data() + (length + 1) * 64, 64, d.after);
             widenWindows(s.in.data() + 64, length, s.out.data() + 64);
           }
-          std::fill_n(s.out.data() + 64, size_t(d.begin) * 64, 0);
-          std::fill(s.out.data() + (d.end + 1) * 64, s.out.data() + (length + 1) * 64, 0);
-          for (size_t i = 0; i < s.leaves.size(); ++i) {
-            int32_t* leaf = values.data() + size_t(s.leaves[i]) * 512;
-            const uint32_t* slab = s.out.data() + (i * 8 + 1) * 64;
-            for (int row = 0; row < 64; ++row)
-              for (int t = 0; t < 8; ++t)
-                leaf[detail::rowOffset<Axis>(row) + t * kStride] = int32_t(slab[t * 64 + row]);
-          }
+          scatter<Axis>(index, s, values);
         }
       });
 }
@@ -210,7 +233,7 @@ SquaredDistance squaredDistance(const LeafIndex& index, const Obstacles& obstacl
         "the object fills the whole domain: with the open boundary there is no "
         "background to measure distances from; use the closed boundary");
   SquaredDistance result;
-  result.values = VoxelArray<int32_t>(index.idCount());
+  result.values = VoxelArray<int32_t>(size_t(index.voxelCount()));
   sweep<0>(index, obstacles, result.values, interrupter);
   sweep<1>(index, obstacles, result.values, interrupter);
   sweep<2>(index, obstacles, result.values, interrupter);

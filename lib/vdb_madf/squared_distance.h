@@ -28,7 +28,7 @@ Obstacles resolveBoundary(const LeafIndex& index, Boundary boundary,
                           const std::optional<CoordBBox>& domain);
 
 struct SquaredDistance {
-  VoxelArray<int32_t> values;  ///< D, voxels squared: >= 1 on X, 0 elsewhere
+  VoxelArray<int32_t> values;  ///< D >= 1, voxels squared
   int32_t largest = 0;         ///< 0 if X is empty
 };
 

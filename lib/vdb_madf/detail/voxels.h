@@ -16,13 +16,14 @@ void forEachBit(uint64_t word, const F& f) {
   for (; word; word &= word - 1) f(__builtin_ctzll(word));
 }
 
-/// f(id) for the object voxels of leaves [begin, end), ascending.
+/// f(id, rank) for the object voxels of leaves [begin, end), ascending.
 template <typename F>
 void forEachVoxel(const LeafIndex& index, size_t begin, size_t end, const F& f) {
+  size_t rank = index.firstRank(begin);
   for (size_t leaf = begin; leaf < end; ++leaf) {
     const LeafIndex::Mask& mask = index.mask(leaf);
     for (size_t x = 0; x < 8; ++x)
-      forEachBit(mask[x], [&](int bit) { f(VoxelId(leaf * 512 + x * 64 + bit)); });
+      forEachBit(mask[x], [&](int bit) { f(VoxelId(leaf * 512 + x * 64 + size_t(bit)), rank++); });
   }
 }
 
