@@ -18,9 +18,7 @@ constexpr VoxelId kNoSite = ~VoxelId(0);
 /// Completes the voxels that no kept ball covers.
 class GeodesicCompletion {
  public:
-  GeodesicCompletion(const LeafIndex& index, const VoxelSet& balls,
-                     const std::vector<int32_t>& squaredRadius, PowerMap& map)
-      : index_(index), balls_(balls), squaredRadius_(squaredRadius), map_(map) {}
+  GeodesicCompletion(const LeafIndex& index, PowerMap& map) : index_(index), map_(map) {}
 
   void run(Interrupter* interrupter) {
     uncovered_ = VoxelSet(index_.leafCount());
@@ -48,34 +46,33 @@ class GeodesicCompletion {
                         });
   }
 
-  int32_t powerAt(const Coord& p, VoxelId site) const {
+  int squaredDistance(const Coord& p, VoxelId site) const {
     const Coord d = p - index_.coord(site);
-    return d.x() * d.x() + d.y() * d.y() + d.z() * d.z() - squaredRadius_[balls_.rank(site)];
+    return d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
   }
 
-  /// Is site a better than b at equal power? Larger D, then smaller coordinate.
-  bool winsTie(VoxelId a, VoxelId b) const {
-    const int32_t da = squaredRadius_[balls_.rank(a)], db = squaredRadius_[balls_.rank(b)];
+  /// Is site a better than b at equal power at p? Larger D, that is farther; then smaller
+  /// coordinate.
+  bool winsTie(const Coord& p, VoxelId a, VoxelId b) const {
+    const int da = squaredDistance(p, a), db = squaredDistance(p, b);
     return da != db ? da > db : index_.coord(a) < index_.coord(b);
   }
 
-  /// The best of a voxel's own site and those of its neighbours.
+  /// The best of a voxel's own site and those of its neighbours. A neighbour's power, one step
+  /// away, tells that of its site here.
   Change best(VoxelId p) const {
     const size_t rank = index_.rank(p);
     Change best{p, map_.site[rank], map_.power[rank]};
     const Coord position = index_.coord(p);
-    VoxelId tried[6];
-    int triedCount = 0;
-    detail::forEachNeighbor(index_, p, [&](VoxelId q) {
+    detail::forEachNeighbor(index_, p, [&](VoxelId q, int axis, int step) {
       if (!detail::isObject(index_, q)) return;
-      const VoxelId site = map_.site[index_.rank(q)];
+      const size_t neighbor = index_.rank(q);
+      const VoxelId site = map_.site[neighbor];
       if (site == kNoSite || site == best.site) return;
-      for (int i = 0; i < triedCount; ++i)
-        if (tried[i] == site) return;
-      tried[triedCount++] = site;
-      const int32_t power = powerAt(position, site);
+      const int away = position[axis] - index_.coord(site)[axis];
+      const int32_t power = map_.power[neighbor] - 2 * step * away - 1;
       if (best.site == kNoSite || power < best.power ||
-          (power == best.power && winsTie(site, best.site)))
+          (power == best.power && winsTie(position, site, best.site)))
         best = {p, site, power};
     });
     return best;
@@ -111,7 +108,7 @@ class GeodesicCompletion {
           const size_t rank = index_.rank(change.voxel);
           map_.site[rank] = change.site;
           map_.power[rank] = change.power;
-          detail::forEachNeighbor(index_, change.voxel, [&](VoxelId q) {
+          detail::forEachNeighbor(index_, change.voxel, [&](VoxelId q, int, int) {
             if (uncovered_.contains(q)) front_.insertAtomic(q);
           });
         }
@@ -122,8 +119,6 @@ class GeodesicCompletion {
   }
 
   const LeafIndex& index_;
-  const VoxelSet& balls_;
-  const std::vector<int32_t>& squaredRadius_;
   PowerMap& map_;
   VoxelSet uncovered_;
   VoxelSet front_;  // uncovered voxels beside a change of the last round
@@ -170,8 +165,9 @@ PowerMap filteredPowerMap(const LeafIndex& index, PowerMap map, const VoxelSet& 
       });
   int32_t largest = 0;
   for (const int32_t radius2 : table.squaredRadius) largest = std::max(largest, radius2);
-  sweepPower(index, largest, map, interrupter);
-  GeodesicCompletion(index, balls, table.squaredRadius, map).run(interrupter);
+  detail::WorkPart sweeps(interrupter, 0, 75), rounds(interrupter, 75, 75);
+  sweepPower(index, largest, map, &sweeps);
+  GeodesicCompletion(index, map).run(&rounds);
   return map;
 }
 

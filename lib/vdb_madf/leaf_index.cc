@@ -142,7 +142,7 @@ LeafIndex::LeafIndex(const MaskGrid& object) {
     uint32_t count = 0;
     for (size_t x = 0; x < 8; ++x) {
       wordRank_[i][x] = uint16_t(count);
-      count += uint32_t(__builtin_popcountll(masks_[i][x]));
+      count += countBits(masks_[i][x]);
     }
     firstRank_[i + 1] = firstRank_[i] + count;
   }

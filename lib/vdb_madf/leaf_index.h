@@ -17,6 +17,15 @@ namespace vdb_madf {
 /// leaf.
 using VoxelId = uint32_t;
 
+/// Set bits of a word. Spelt out: without the popcnt instruction, which plain x86-64 lacks, the
+/// compiler's own is a call; where a function is built for more, it is recognised.
+inline uint32_t countBits(uint64_t word) {
+  word -= word >> 1 & 0x5555555555555555u;
+  word = (word & 0x3333333333333333u) + (word >> 2 & 0x3333333333333333u);
+  word = (word + (word >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+  return uint32_t(word * 0x0101010101010101u >> 56);
+}
+
 /// The topology of the object X: its 8x8x8 leaves sorted by origin (x, then y, then z), their masks
 /// and their six neighbours. The one place that knows the topology; every stage works on it.
 class LeafIndex {
@@ -55,7 +64,7 @@ class LeafIndex {
   size_t rank(VoxelId id) const {
     const size_t leaf = id >> 9, x = id >> 6 & 7;
     const uint64_t before = masks_[leaf][x] & ((uint64_t(1) << (id & 63)) - 1);
-    return firstRank_[leaf] + wordRank_[leaf][x] + size_t(__builtin_popcountll(before));
+    return firstRank_[leaf] + wordRank_[leaf][x] + countBits(before);
   }
 
   Coord coord(VoxelId id) const {

@@ -13,7 +13,7 @@ void VoxelSet::rankMembers() {
   uint32_t count = 0;
   for (size_t i = 0; i < words_.size(); ++i) {
     before_[i] = count;
-    count += uint32_t(__builtin_popcountll(words_[i]));
+    count += countBits(words_[i]);
   }
   size_ = count;
 }

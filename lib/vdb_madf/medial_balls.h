@@ -34,8 +34,7 @@ class VoxelSet {
   void rankMembers();
   uint32_t size() const { return size_; }
   uint32_t rank(VoxelId id) const {
-    return before_[id >> 6] +
-           uint32_t(__builtin_popcountll(words_[id >> 6] & ((uint64_t(1) << (id & 63)) - 1)));
+    return before_[id >> 6] + countBits(words_[id >> 6] & ((uint64_t(1) << (id & 63)) - 1));
   }
   /// Members in ascending order.
   std::vector<VoxelId> members() const;

@@ -16,6 +16,21 @@ namespace vdb_madf::detail {
 template <typename T>
 using PerThread = tbb::enumerable_thread_specific<T>;
 
+/// Part of a longer work, from `begin` to `end` per cent of it: what is done in several loops tells
+/// its progress as one.
+class WorkPart : public Interrupter {
+ public:
+  WorkPart(Interrupter* whole, int begin, int end) : whole_(whole), begin_(begin), end_(end) {}
+  bool wasInterrupted(int percent) override {
+    if (!whole_) return false;
+    return whole_->wasInterrupted(percent < 0 ? percent : begin_ + percent * (end_ - begin_) / 100);
+  }
+
+ private:
+  Interrupter* whole_;
+  int begin_, end_;
+};
+
 /// Runs body(begin, end) over [0, count) in chunks of at least `grain` items, in parallel. The
 /// interrupter is asked between chunks, with the percentage done.
 /// The one place that knows the threading library. @throw Interrupted; what body throws.

@@ -27,8 +27,8 @@ void forEachVoxel(const LeafIndex& index, size_t begin, size_t end, const F& f) 
   }
 }
 
-/// f(id) for the 6-neighbours of a voxel that lie in leaves of the index (whether or not
-/// they are object voxels).
+/// f(id, axis, step) for the 6-neighbours of a voxel, `step` (-1, 1) along `axis`, that lie in
+/// leaves of the index (whether or not they are object voxels).
 template <typename F>
 void forEachNeighbor(const LeafIndex& index, VoxelId id, const F& f) {
   const LeafIndex::Neighbors& leaves = index.neighbors(id >> 9);
@@ -37,13 +37,13 @@ void forEachNeighbor(const LeafIndex& index, VoxelId id, const F& f) {
   for (int axis = 0; axis < 3; ++axis) {
     const uint32_t step = 1u << kShift[axis], t = offset >> kShift[axis] & 7;
     if (t > 0)
-      f(leafBase + offset - step);
+      f(leafBase + offset - step, axis, -1);
     else if (leaves[2 * axis] != LeafIndex::kNone)
-      f(leaves[2 * axis] * 512 + offset + 7 * step);
+      f(leaves[2 * axis] * 512 + offset + 7 * step, axis, -1);
     if (t < 7)
-      f(leafBase + offset + step);
+      f(leafBase + offset + step, axis, 1);
     else if (leaves[2 * axis + 1] != LeafIndex::kNone)
-      f(leaves[2 * axis + 1] * 512 + offset - 7 * step);
+      f(leaves[2 * axis + 1] * 512 + offset - 7 * step, axis, 1);
   }
 }
 
