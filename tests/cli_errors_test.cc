@@ -363,3 +363,14 @@ TEST_CASE("cli: a signal ends long work within a second and leaves nothing", "[c
     CHECK(bench.names() == before);
   }
 }
+
+TEST_CASE("cli: segment refuses what needs more memory than allowed", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSpheres + "s.vdb");
+  refuses(bench, kFailed, "segment s.vdb g.vdb --max-memory 2M",
+          {"s.vdb", "bytes of memory", "--max-memory"});
+  for (const std::string size : {"0", "-1G", "3X", "much", "1GiBB", "nan"})
+    refuses(bench, kWrongUsage, "segment s.vdb g.vdb --max-memory " + size, {size, "12GiB"});
+  bench.mustRun("segment s.vdb g.vdb --max-memory 1.5GiB");
+  refuses(bench, kWrongUsage, "segment s.vdb", {"OUT.vdb"});
+}

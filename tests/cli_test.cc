@@ -370,3 +370,20 @@ TEST_CASE("cli: an output replaces what was there, the content decides on the fo
   CHECK(infoOf(bench, "s.dat").at("format") == "tiff");
   CHECK(infoOf(bench, "o.dat").at("format") == "vdb");
 }
+
+TEST_CASE("cli: segment --dry-run says what it would take, and does nothing", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate pack p.vdb --size 160 --radius 8:16");
+  const auto before = bench.names();
+  const Json estimate = Json::parse(bench.mustRun("segment p.vdb --dry-run --json -"));
+  CHECK(bench.names() == before);
+  CHECK(estimate.at("fits") == true);
+  const Json done = Json::parse(bench.mustRun("segment p.vdb g.vdb --json -"));
+  CHECK(estimate.at("object_voxels") == done.at("object_voxels"));
+  CHECK(estimate.at("leaves") == done.at("leaves"));
+  const double needed = estimate.at("estimated_memory_bytes"), peak = done.at("peak_memory_bytes");
+  CHECK(needed > 0.5 * peak);
+  CHECK(needed < 3 * peak);
+  CHECK(bench.mustRun("segment p.vdb --dry-run --max-memory 1M").find("it does not fit") !=
+        std::string::npos);
+}

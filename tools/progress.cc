@@ -56,12 +56,32 @@ bool Progress::wasInterrupted(int percent) {
     const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
     const auto now = std::chrono::steady_clock::now();
     if (lock.owns_lock() && now - lastShown_ > kShowEvery) {
-      std::fprintf(stderr, "\r\033[K%s %d %%", (stage_.empty() ? work_ : stage_).c_str(), percent);
+      std::fprintf(stderr, "\r\033[K%s %d %%%s", (stage_.empty() ? work_ : stage_).c_str(), percent,
+                   remainingTime(percent, now).c_str());
       lineShown_ = true;
       lastShown_ = now;
     }
   }
   return interruptRequested;
+}
+
+/// From the pace since the percentage began to grow; nothing while that tells little.
+std::string Progress::remainingTime(int percent, std::chrono::steady_clock::time_point now) {
+  constexpr int kFallback = 20;  // less: threads that report out of order
+  if (percent < lastPercent_ - kFallback) {
+    firstPercent_ = percent;
+    firstTime_ = now;
+  }
+  lastPercent_ = percent;
+  const double elapsed = std::chrono::duration<double>(now - firstTime_).count();
+  if (elapsed < 1 || percent - firstPercent_ < 3) return {};
+  const double seconds = elapsed * (100 - percent) / (percent - firstPercent_);
+  char text[64];
+  if (seconds < 90)
+    std::snprintf(text, sizeof text, ", %.0f s left", seconds);
+  else
+    std::snprintf(text, sizeof text, ", %.0f min left", seconds / 60);
+  return text;
 }
 
 void Progress::clearLine() {

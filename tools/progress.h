@@ -12,7 +12,8 @@
 
 namespace vdb_madf::tools {
 
-/// Shows one progress line on stderr when that is a terminal, and turns Ctrl-C into a cancel.
+/// Shows one progress line (stage, percentage, remaining time) on stderr when that is a terminal,
+/// and turns Ctrl-C into a cancel.
 class Progress : public Interrupter {
  public:
   /// @param work is shown outside of named stages
@@ -24,6 +25,7 @@ class Progress : public Interrupter {
 
  private:
   void clearLine();
+  std::string remainingTime(int percent, std::chrono::steady_clock::time_point now);
 
   const bool show_;
   const std::string work_;
@@ -31,6 +33,9 @@ class Progress : public Interrupter {
   std::string stage_;
   bool lineShown_ = false;
   std::chrono::steady_clock::time_point lastShown_;
+  // Where the percentage began to grow: it falls back when a new work begins.
+  int firstPercent_ = 0, lastPercent_ = 101;
+  std::chrono::steady_clock::time_point firstTime_;
 };
 
 /// From now on Ctrl-C, termination requests and a closed terminal are taken by Progress, and a

@@ -15,9 +15,11 @@
 #include "command.h"
 #include "input.h"
 #include "json_file.h"
+#include "memory_limit.h"
 #include "merge_options.h"
 #include "vdb_madf/errors.h"
 #include "vdb_madf/object_mask.h"
+#include "vdb_madf/segment_memory.h"
 #include "vdb_madf/segmentation_metadata.h"
 #include "vdb_madf/vdb_file.h"
 
@@ -29,9 +31,9 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
   InputOptions input;
-  std::string out, gamma = "0", boundary = "auto", keep, json;
+  std::string out, gamma = "0", boundary = "auto", keep, json, maxMemory;
   MergeArguments merge;
-  bool paper = false;
+  bool paper = false, dryRun = false;
   SegmentOptions segment;
 };
 
@@ -48,7 +50,10 @@ int64_t peakMemoryBytes() {
 void parse(Options& o) {
   o.input.outputs = {o.out, o.json};
   o.input.parse();
-  if (!hasVdbEnding(o.out)) throw WrongUsage(o.out + ": the output's ending must be .vdb");
+  if (!o.maxMemory.empty()) o.segment.maxMemory = parseMemory(o.maxMemory);
+  if (o.out.empty() && !o.dryRun) throw WrongUsage("OUT.vdb is required (or --dry-run)");
+  if (!o.out.empty() && !hasVdbEnding(o.out))
+    throw WrongUsage(o.out + ": the output's ending must be .vdb");
   if (o.paper) {
     if (!o.merge.mode.empty() || !o.merge.adjacency.empty())
       throw WrongUsage("--paper sets --merge and --adjacency itself: leave them out");
@@ -147,6 +152,8 @@ Json summary(const Options& o, const Common& common, const Segmentation& s, cons
   for (const StageTime& stage : s.times) json["seconds_" + stage.stage] = stage.seconds;
   json["seconds_write"] = timing.write;
   json["seconds_total"] = timing.total;
+  for (const StageTime& stage : s.times)
+    json["peak_memory_bytes_until_" + stage.stage] = stage.peakBytes;
   json["peak_memory_bytes"] = peakMemoryBytes();
   return json;
 }
@@ -207,10 +214,32 @@ std::vector<Int32Grid::Ptr> ballGrids(const Segmentation& s) {
   return grids;
 }
 
+/// What segmenting would take, without doing it.
+void printEstimate(const Options& o, const Common& common, const MaskGrid& object,
+                   const SegmentOptions& options, JsonFile& jsonFile) {
+  const ObjectSize size = objectSize(object);
+  const int64_t mask = int64_t(object.memUsage()), needed = mask + segmentMemory(size, options);
+  Json json;
+  json["input"] = o.input.path;
+  json["object_voxels"] = size.voxels;
+  json["leaves"] = size.leaves;
+  json["estimated_memory_bytes"] = needed;
+  json["memory_limit_bytes"] = mask + options.maxMemory;
+  json["fits"] = needed <= mask + options.maxMemory;
+  jsonFile.write(json);
+  if (common.quiet || jsonFile.isStandardOutput()) return;
+  std::printf("%s: %lld object voxels in %lld leaf nodes\n", o.input.path.c_str(),
+              (long long)size.voxels, (long long)size.leaves);
+  std::printf("  memory           about %s (%lld bytes) to segment it\n",
+              readableBytes(needed).c_str(), (long long)needed);
+  std::printf("  limit            %s: %s\n", readableBytes(mask + options.maxMemory).c_str(),
+              json["fits"].get<bool>() ? "it fits" : "it does not fit");
+}
+
 void run(const Options& o, const Common& common) {
   const Clock::time_point start = Clock::now();
   Timing timing;
-  checkWritable(o.out);
+  if (!o.dryRun) checkWritable(o.out);
   JsonFile jsonFile(o.json);
   common.progress->start("read");
   MaskGrid::Ptr object = loadObject(o.input, common.progress);
@@ -221,6 +250,16 @@ void run(const Options& o, const Common& common) {
                        ": its domain is unknown, so the boundary cannot be open: use --boundary "
                        "closed, or give --domain x0,y0,z0:x1,y1,z1");
   timing.read = secondsSince(start);
+
+  // What is free now, or what was allowed for the whole process, less the mask.
+  if (o.maxMemory.empty())
+    options.maxMemory = availableMemory();
+  else
+    options.maxMemory = std::max<int64_t>(1, options.maxMemory - int64_t(object->memUsage()));
+  if (o.dryRun) {
+    common.progress->end();
+    return printEstimate(o, common, *object, options, jsonFile);
+  }
 
   Segmentation s = naming(o.input.path, [&] { return segment(*object, options, common.progress); });
   object.reset();
@@ -249,7 +288,7 @@ void addSegment(CLI::App& app, Common& common, Action& action) {
   CLI::App* verb = addVerb(app, common, "segment", "cut the object into grains",
                            "vdb_madf segment scan.tif grains.vdb --phase 1 --voxel-size 8.5um");
   verb->add_option("IN", o->input.path, "any readable volume")->required();
-  verb->add_option("OUT.vdb", o->out, "gets the Int32 grid 'grain'")->required();
+  verb->add_option("OUT.vdb", o->out, "gets the Int32 grid 'grain'");
   o->input.addSelection(*verb);
   o->input.addRaw(*verb);
   o->input.addVoxelSize(*verb);
@@ -266,6 +305,10 @@ void addSegment(CLI::App& app, Common& common, Action& action) {
       ->type_name("LIST");
   verb->add_option("--json", o->json, "machine-readable summary (-: standard output)")
       ->type_name("FILE");
+  verb->add_option("--max-memory", o->maxMemory,
+                   "refuse what needs more, such as 12GiB (default: what the machine has free)")
+      ->type_name("SIZE");
+  verb->add_flag("--dry-run", o->dryRun, "only say how much memory it would take");
   verb->callback([o, &common, &action] {
     parse(*o);
     action = [o, &common] { run(*o, common); };

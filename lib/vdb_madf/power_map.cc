@@ -273,9 +273,11 @@ void sweep(const LeafIndex& index, Key multiplier, PowerMap& map, Interrupter* i
 
 template <typename Key>
 void sweepAll(const LeafIndex& index, Key multiplier, PowerMap& map, Interrupter* interrupter) {
-  sweep<2, Key>(index, multiplier, map, interrupter);
-  sweep<1, Key>(index, multiplier, map, interrupter);
-  sweep<0, Key>(index, multiplier, map, interrupter);
+  detail::WorkPart first(interrupter, 0, 33), second(interrupter, 33, 66),
+      third(interrupter, 66, 100);
+  sweep<2, Key>(index, multiplier, map, &first);
+  sweep<1, Key>(index, multiplier, map, &second);
+  sweep<0, Key>(index, multiplier, map, &third);
 }
 
 /// Do products of a difference of keys and one of positions fit in 64 bits?

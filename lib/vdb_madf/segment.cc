@@ -3,6 +3,8 @@
 
 #include "vdb_madf/segment.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -15,44 +17,94 @@
 #include "vdb_madf/leaf_index.h"
 #include "vdb_madf/medial_balls.h"
 #include "vdb_madf/power_map.h"
+#include "vdb_madf/segment_memory.h"
 #include "vdb_madf/segmentation_metadata.h"
 
 namespace vdb_madf {
 
 namespace {
 
-/// Tells the interrupter what is going on and keeps the time of each stage.
-class Stages {
+/// How long the stages take, roughly, for the percentage of the whole: nanoseconds per object
+/// voxel, 2 threads.
+struct StageWeight {
+  const char* stage;
+  int weight;
+};
+constexpr StageWeight kStageWeights[] = {{"leaf_index", 1},     {"squared_distance", 9},
+                                         {"power_map", 25},     {"medial_balls", 2},
+                                         {"gamma_filter", 25},  {"flow", 2},
+                                         {"manifold_graph", 4}, {"merge", 1},
+                                         {"labels", 4}};
+
+/// Keeps the time of each stage, and tells the caller's interrupter what is going on: the stage,
+/// and the percentage of all stages.
+class Stages : public Interrupter {
  public:
-  Stages(Interrupter* interrupter, std::vector<StageTime>& times)
-      : interrupter_(interrupter), times_(times) {}
-  ~Stages() { end(); }
+  Stages(Interrupter* interrupter, bool filter, std::vector<StageTime>& times)
+      : interrupter_(interrupter), filter_(filter), times_(times) {
+    for (const StageWeight& s : kStageWeights) total_ += weight(s);
+  }
+  ~Stages() override { finish(); }
   Stages(const Stages&) = delete;
   Stages& operator=(const Stages&) = delete;
 
   void begin(const char* stage) {
-    end();
-    times_.push_back({stage, 0});
-    begin_ = Clock::now();
+    finish();
+    times_.push_back({stage, 0, 0});
+    start_ = Clock::now();
     running_ = true;
+    before_ = 0;
+    for (const StageWeight& s : kStageWeights) {
+      weight_ = weight(s);
+      if (std::string(stage) == s.stage) break;
+      before_ += weight_;
+    }
     if (!interrupter_) return;
     interrupter_->start(stage);
-    if (interrupter_->wasInterrupted(0)) throw Interrupted();
+    if (wasInterrupted(0)) throw Interrupted();
   }
-  void end() {
+  void finish() {
     if (!running_) return;
-    times_.back().seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
+    times_.back().seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+    times_.back().peakBytes = peakMemory();
     if (interrupter_) interrupter_->end();
     running_ = false;
   }
 
+  bool wasInterrupted(int percent) override {
+    if (!interrupter_) return false;
+    return interrupter_->wasInterrupted(percent < 0 ? percent
+                                                    : (100 * before_ + percent * weight_) / total_);
+  }
+
  private:
   using Clock = std::chrono::steady_clock;
+
+  int weight(const StageWeight& s) const {
+    return std::string(s.stage) == "gamma_filter" && !filter_ ? 0 : s.weight;
+  }
+  static int64_t peakMemory() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return int64_t(usage.ru_maxrss) * 1024;
+  }
+
   Interrupter* interrupter_;
+  bool filter_;
   std::vector<StageTime>& times_;
-  Clock::time_point begin_;
+  Clock::time_point start_;
   bool running_ = false;
+  int before_ = 0, weight_ = 0, total_ = 0;
 };
+
+void checkMemory(const MaskGrid& object, const SegmentOptions& options) {
+  if (options.maxMemory == 0) return;
+  const int64_t needed = segmentMemory(objectSize(object), options);
+  if (needed <= options.maxMemory) return;
+  throw InvalidInput("segmenting needs about " + std::to_string(needed) + " bytes of memory, and " +
+                     std::to_string(options.maxMemory) +
+                     " may be used: crop or coarsen the volume, or allow more (--max-memory)");
+}
 
 std::vector<MedialBall> listBalls(const LeafIndex& index, const VoxelSet& balls,
                                   const MedialBallTable& table) {
@@ -88,7 +140,9 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
 
   Segmentation result;
   SegmentCounts& counts = result.counts;
-  Stages stages(interrupter, result.times);
+  const bool filter = options.gamma > 1;
+  checkMemory(object, options);
+  Stages stages(interrupter, filter, result.times);
   result.domain = options.domain ? options.domain : domain(object);
 
   stages.begin("leaf_index");
@@ -99,19 +153,18 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
   counts.leaves = int64_t(index.leafCount());
 
   stages.begin("squared_distance");
-  SquaredDistance distance = squaredDistance(index, obstacles, interrupter);
+  SquaredDistance distance = squaredDistance(index, obstacles, &stages);
   counts.largestSquaredDistance = distance.largest;
   if (options.keepDistance)
-    result.distanceSquared = toGrid(index, distance.values, "distance_squared", interrupter);
+    result.distanceSquared = toGrid(index, distance.values, "distance_squared", &stages);
 
   stages.begin("power_map");
-  PowerMap map = powerMap(index, std::move(distance), interrupter);
+  PowerMap map = powerMap(index, std::move(distance), &stages);
 
   stages.begin("medial_balls");
-  VoxelSet balls = medialBalls(index, map, interrupter);
-  const bool filter = options.gamma > 1;
+  VoxelSet balls = medialBalls(index, map, &stages);
   MedialBallTable table;
-  if (filter || options.keepBalls) table = measureBalls(index, map, balls, interrupter);
+  if (filter || options.keepBalls) table = measureBalls(index, map, balls, &stages);
   if (options.keepBalls) result.balls = listBalls(index, balls, table);
   counts.medialBalls = counts.keptBalls = balls.size();
 
@@ -119,18 +172,18 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
     stages.begin("gamma_filter");
     VoxelSet kept = keptBalls(index, balls, table, options.gamma);
     counts.keptBalls = kept.size();
-    map = filteredPowerMap(index, std::move(map), balls, table, kept, interrupter);
+    map = filteredPowerMap(index, std::move(map), balls, table, kept, &stages);
     balls = std::move(kept);
     table = {};
   }
 
   stages.begin("flow");
-  Flow flowMap = flow(index, std::move(map.site), map.power, balls, interrupter);
+  Flow flowMap = flow(index, std::move(map.site), map.power, balls, &stages);
   counts.criticalPoints = int64_t(flowMap.criticalPoints.size());
 
   stages.begin("manifold_graph");
-  result.graph = manifoldGraph(index, flowMap, map.power, interrupter);
-  if (options.keepPower) result.power = toGrid(index, map.power, "power", interrupter);
+  result.graph = manifoldGraph(index, flowMap, map.power, &stages);
+  if (options.keepPower) result.power = toGrid(index, map.power, "power", &stages);
   map.power.clear();
 
   stages.begin("merge");
@@ -143,9 +196,8 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
   stages.begin("labels");
   if (options.keepManifold)
     result.manifold = toGrid(index, flowMap.manifold, identity(result.graph.nodes.size() + 1),
-                             "manifold", interrupter);
-  result.grain =
-      toGrid(index, std::move(flowMap.manifold), labelTable(merging), "grain", interrupter);
+                             "manifold", &stages);
+  result.grain = toGrid(index, std::move(flowMap.manifold), labelTable(merging), "grain", &stages);
   for (const Int32Grid::Ptr& grid :
        {result.grain, result.distanceSquared, result.power, result.manifold}) {
     if (!grid) continue;
@@ -154,6 +206,7 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
     describeSegmentation(*grid, options, result);
   }
   if (result.manifold) setGraph(*result.manifold, result.graph);
+  stages.finish();
   return result;
 }
 

@@ -25,6 +25,8 @@ struct SegmentOptions {
   bool keepPower = false;     ///< return power
   bool keepManifold = false;  ///< return manifold
   bool keepBalls = false;     ///< return balls
+  /// Refuse what needs more memory than this, bytes (segment_memory.h); 0: no limit.
+  int64_t maxMemory = 0;
 };
 
 struct SegmentCounts {
@@ -47,6 +49,7 @@ struct MedialBall {
 struct StageTime {
   std::string stage;  ///< snake_case
   double seconds = 0;
+  int64_t peakBytes = 0;  ///< largest resident memory of the process until the stage's end
 };
 
 struct Segmentation {
@@ -68,9 +71,11 @@ struct Segmentation {
 ///
 /// The active voxels of `object` are X, active tiles included. Labels depend on nothing but X, the
 /// domain and the options: not on tiles, threads or the order of work. X empty: zero grains.
+/// The interrupter hears of the stages by name and of the percentage of the whole.
 /// @throw InvalidInput if an option is out of range, X leaves the domain, a limit of leaf_index.h
 /// is
-///   exceeded, or there is no background at all; Interrupted if the interrupter says so.
+///   exceeded, or there is no background at all, maxMemory is too little; Interrupted if the
+///   interrupter says so.
 Segmentation segment(const MaskGrid& object, const SegmentOptions& options = {},
                      Interrupter* interrupter = nullptr);
 

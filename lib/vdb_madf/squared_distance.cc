@@ -234,9 +234,11 @@ SquaredDistance squaredDistance(const LeafIndex& index, const Obstacles& obstacl
         "background to measure distances from; use the closed boundary");
   SquaredDistance result;
   result.values = VoxelArray<int32_t>(size_t(index.voxelCount()));
-  sweep<0>(index, obstacles, result.values, interrupter);
-  sweep<1>(index, obstacles, result.values, interrupter);
-  sweep<2>(index, obstacles, result.values, interrupter);
+  detail::WorkPart first(interrupter, 0, 20), second(interrupter, 20, 60),
+      third(interrupter, 60, 100);
+  sweep<0>(index, obstacles, result.values, &first);
+  sweep<1>(index, obstacles, result.values, &second);
+  sweep<2>(index, obstacles, result.values, &third);
   result.largest = largestValue(result.values);
   return result;
 }
