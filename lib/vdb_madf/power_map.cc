@@ -4,7 +4,6 @@
 #include "vdb_madf/power_map.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "vdb_madf/detail/leaf_values.h"
@@ -39,8 +38,10 @@ struct Scratch {
   std::vector<int32_t> power;  // one slab of padding at either end
   std::vector<VoxelId> site;
   std::vector<int32_t> radius2;  // D of the site; one slab of padding at either end
-  // 8 positions per byte: is there an object voxel, can its parabola be part of an envelope?
-  std::vector<std::array<uint8_t, 64>> object, candidate;
+  // A bit per position, row after row: is there an object voxel, can its parabola be part of an
+  // envelope? Words of 64 positions; what is beyond the pencil is 0.
+  std::vector<uint64_t> object, candidate;
+  size_t words = 0;  // per row
   std::vector<Parabola<Key>> envelope;
   std::vector<uint32_t> starting;  // parabolas that become the least one at a position
 
@@ -50,12 +51,15 @@ struct Scratch {
       power.resize((length + 2) * kSlab);
       site.resize(length * kSlab);
       radius2.resize((length + 2) * kSlab);
-      object.resize(length / 8);
-      candidate.resize(length / 8);
+      object.resize((length + 63) / 64 * 64);
+      candidate.resize((length + 63) / 64 * 64);
       envelope.resize(length);
       starting.resize(length + 1);
     }
     std::fill_n(power.data() + (length + 1) * kSlab, kSlab, 0);
+    words = (length + 63) / 64;
+    for (size_t row = 0; row < 64; ++row)
+      object[row * words + words - 1] = candidate[row * words + words - 1] = 0;
   }
 };
 
@@ -148,15 +152,23 @@ VDB_MADF_SIMD void markCandidates(Scratch<Key>& s) {
       }
     }
     for (size_t row = 0; row < 64; ++row) {
-      uint8_t objectBits = 0, candidateBits = 0;
+      uint64_t objectBits = 0, candidateBits = 0;
       for (size_t t = 0; t < 8; ++t) {
-        objectBits = uint8_t(objectBits | object[t][row] << t);
-        candidateBits = uint8_t(candidateBits | candidate[t][row] << t);
+        objectBits |= uint64_t(object[t][row]) << t;
+        candidateBits |= uint64_t(candidate[t][row]) << t;
       }
-      s.object[i][row] = objectBits;
-      s.candidate[i][row] = candidateBits;
+      const size_t word = row * s.words + i / 8, shift = i % 8 * 8;
+      s.object[word] = (shift ? s.object[word] : 0) | objectBits << shift;
+      s.candidate[word] = (shift ? s.candidate[word] : 0) | candidateBits << shift;
     }
   }
+}
+
+/// Bits [begin, end) of the 64 from `first` on.
+inline uint64_t bitsBetween(int first, int begin, int end) {
+  const uint64_t from = begin > first ? ~uint64_t(0) << (begin - first) : ~uint64_t(0);
+  const uint64_t to = end - first < 64 ? (uint64_t(1) << (end - first)) - 1 : ~uint64_t(0);
+  return from & to;
 }
 
 /// The parabolas of candidates in [begin, end) of a row that are the least somewhere. Returns their
@@ -170,12 +182,10 @@ template <typename Key>
   const int32_t* powers = s.power.data() + kSlab + row;
   const int32_t* radii = s.radius2.data() + kSlab + row;
   const VoxelId* sites = s.site.data() + row;
-  for (int i = begin >> 3; i << 3 < end; ++i) {
-    uint32_t bits = s.candidate[size_t(i)][row];
-    if (i << 3 < begin) bits &= 0xffu << (begin & 7);
-    if (end < (i + 1) << 3) bits &= 0xffu >> (8 - (end & 7));
+  for (int base = begin & ~63; base < end; base += 64) {
+    uint64_t bits = s.candidate[row * s.words + size_t(base) / 64] & bitsBetween(base, begin, end);
     for (; bits; bits &= bits - 1) {
-      const int t = i * 8 + __builtin_ctz(bits);
+      const int t = base + __builtin_ctzll(bits);
       const size_t at = size_t(t) * kSlab;
       const int32_t height = powers[at] + (t - begin) * (t - begin);
       const Key key = height * multiplier - radii[at];
@@ -225,17 +235,17 @@ template <typename Key>
   }
 }
 
-/// First position from t on that is (in = 0) or is not (in = 0xff) an object voxel of the row.
+/// First position from t on that is (invert = 0) or is not (all ones) an object voxel of the row.
 template <typename Key>
 [[gnu::always_inline]] inline int findObject(const Scratch<Key>& s, size_t row, int t, int length,
-                                             uint32_t invert) {
-  uint32_t bits = (s.object[size_t(t) >> 3][row] ^ invert) & 0xffu << (t & 7) & 0xffu;
-  for (t &= ~7; !bits;) {
-    t += 8;
+                                             uint64_t invert) {
+  uint64_t bits = (s.object[row * s.words + size_t(t) / 64] ^ invert) & ~uint64_t(0) << (t & 63);
+  for (t &= ~63; !bits;) {
+    t += 64;
     if (t >= length) return length;
-    bits = s.object[size_t(t) >> 3][row] ^ invert;
+    bits = s.object[row * s.words + size_t(t) / 64] ^ invert;
   }
-  return t + __builtin_ctz(bits);
+  return std::min(length, t + __builtin_ctzll(bits));
 }
 
 /// All runs of the pencil's rows.
@@ -246,7 +256,7 @@ VDB_MADF_SIMD void sweepRows(Key multiplier, Scratch<Key>& s) {
     for (int end = 0; end < length;) {
       const int begin = findObject(s, row, end, length, 0);
       if (begin == length) break;
-      end = findObject(s, row, begin, length, 0xffu);
+      end = findObject(s, row, begin, length, ~uint64_t(0));
       sweepRun(s, row, begin, end, multiplier);
     }
   }
