@@ -216,7 +216,7 @@ std::vector<Int32Grid::Ptr> ballGrids(const Segmentation& s) {
 
 /// What segmenting would take, without doing it.
 void printEstimate(const Options& o, const Common& common, const MaskGrid& object,
-                   const SegmentOptions& options, JsonFile& jsonFile) {
+                   const SegmentOptions& options, double secondsRead, JsonFile& jsonFile) {
   const ObjectSize size = objectSize(object);
   const int64_t mask = int64_t(object.memUsage()), needed = mask + segmentMemory(size, options);
   Json json;
@@ -225,6 +225,7 @@ void printEstimate(const Options& o, const Common& common, const MaskGrid& objec
   json["leaves"] = size.leaves;
   json["estimated_memory_bytes"] = needed;
   json["memory_limit_bytes"] = mask + options.maxMemory;
+  json["seconds_read"] = secondsRead;
   json["fits"] = needed <= mask + options.maxMemory;
   jsonFile.write(json);
   if (common.quiet || jsonFile.isStandardOutput()) return;
@@ -258,7 +259,7 @@ void run(const Options& o, const Common& common) {
     options.maxMemory = std::max<int64_t>(1, options.maxMemory - int64_t(object->memUsage()));
   if (o.dryRun) {
     common.progress->end();
-    return printEstimate(o, common, *object, options, jsonFile);
+    return printEstimate(o, common, *object, options, timing.read, jsonFile);
   }
 
   Segmentation s = naming(o.input.path, [&] { return segment(*object, options, common.progress); });
