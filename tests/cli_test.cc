@@ -282,6 +282,24 @@ TEST_CASE("cli: labels are written over the whole domain", "[cli]") {
   CHECK(infoOf(bench, "g.mhd").at("size") == Json({50, 40, 44}));
 }
 
+TEST_CASE("cli: labels in a TIFF are uint16, in other formats int32", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate spheres s.vdb --dims 50x40x44 --count 3 --radius 6:8 --voxel-size 8.5um");
+  bench.mustRun("segment s.vdb g.vdb");
+  bench.mustRun("convert g.vdb g.raw --grid grain");
+  for (const std::string to : {"g.tif", "g.nrrd", "g.npy"}) {
+    bench.mustRun("convert g.vdb " + to + " --grid grain");
+    const Json info = infoOf(bench, to);
+    CHECK(info.at("type") == (to == "g.tif" ? "uint16" : "int32"));
+    CHECK(info.at("size") == Json({50, 40, 44}));
+    CHECK(info.contains("voxel_size_mm") == (to != "g.npy"));
+    if (to != "g.npy") CHECK(info.at("voxel_size_mm") == 0.0085);
+    bench.mustRun("convert " + to + " back.raw --type int32");
+    CHECK(bench.bytes("back.raw") == bench.bytes("g.raw"));
+    bench.mustRun("compare g.vdb " + to);
+  }
+}
+
 TEST_CASE("cli: compare finds a file equal to itself", "[cli]") {
   const Bench bench;
   bench.mustRun(kSpheres + "s.vdb");

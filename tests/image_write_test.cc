@@ -226,11 +226,29 @@ TEST_CASE("image_write: what is not there to write is refused", "[image_write]")
   CHECK(folder.fileCount() == 0);
 }
 
+TEST_CASE("image_write: labels take the smallest unsigned type that programs expect",
+          "[image_write]") {
+  const auto grid = Int32Grid::create(0);
+  CHECK(labelType(*grid) == SampleType::uint16);
+  grid->tree().setValue(Coord(1, 2, 3), 65535);
+  CHECK(labelType(*grid) == SampleType::uint16);
+  grid->tree().setValueOff(Coord(100, 2, 3), 65536);  // inactive values are written, too
+  CHECK(labelType(*grid) == SampleType::uint32);
+  grid->tree().setValue(Coord(-1000, 2, 3), -1);
+  CHECK(labelType(*grid) == SampleType::int32);
+  const auto tiles = Int32Grid::create(0);
+  tiles->tree().addTile(2, Coord(0), 70000, true);
+  CHECK(labelType(*tiles) == SampleType::uint32);
+  tiles->tree().addTile(1, Coord(1024, 0, 0), -5, false);
+  CHECK(labelType(*tiles) == SampleType::int32);
+  CHECK(labelType(*Int32Grid::create(-1)) == SampleType::int32);
+}
+
 TEST_CASE("image_write: interrupted or out of space, nothing remains", "[image_write]") {
   const ScratchFolder folder;
   const auto grid = randomGrid<int32_t>(14, 0);
   const CoordBBox box(Coord(-30, -10, -20), Coord(70, 80, 79));
-  for (const std::string name : {"a.raw", "a.mhd", "a.mha", "a.tif"}) {
+  for (const std::string name : {"a.raw", "a.mhd", "a.mha", "a.tif", "a.nrrd", "a.npy"}) {
     CAPTURE(name);
     StopAfter three(3);
     CHECK_THROWS_AS(writeImage(folder / name, *grid, box, SampleType::int32, &three), Interrupted);

@@ -75,7 +75,8 @@ void addKind(CLI::App& verb, Common& common, Action& action, GenerateOptions& o,
              const std::function<void(CLI::App&)>& addOptions,
              const std::function<Sample(Interrupter*)>& make, const std::string& example) {
   CLI::App* app = addVerb(verb, common, kind, description, example);
-  app->add_option("OUT", o.out, "file to write: .vdb, .tif, .raw, .mhd, .mha")->required();
+  app->add_option("OUT", o.out, "file to write: .vdb, .tif, .raw, .mhd, .mha, .nrrd, .npy")
+      ->required();
   CLI::Option* size =
       app->add_option("--size", o.size, "edge of a cube, voxels")->check(CLI::Range(1, 26754));
   app->add_option("--dims", o.dims, "size NXxNYxNZ, voxels")->excludes(size);
@@ -86,7 +87,7 @@ void addKind(CLI::App& verb, Common& common, Action& action, GenerateOptions& o,
   addOptions(*app);
   app->callback([&common, &action, &o, make] {
     if (!hasVdbEnding(o.out) && !isImageEnding(o.out))
-      throw WrongUsage(o.out + ": the ending must be .vdb, .tif, .raw, .mhd or .mha");
+      throw WrongUsage(o.out + ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd or .npy");
     Coord dims;
     if (!o.dims.empty()) dims = parseDims(o.dims, "--dims");
     if (o.size > 0) dims = Coord(o.size);

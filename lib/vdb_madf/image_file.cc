@@ -5,10 +5,15 @@
 
 #include <filesystem>
 
+#include "vdb_madf/detail/dgtal_image.h"
 #include "vdb_madf/detail/header_text.h"
 #include "vdb_madf/detail/input_file.h"
+#include "vdb_madf/detail/isq_image.h"
 #include "vdb_madf/detail/meta_image.h"
+#include "vdb_madf/detail/nifti_image.h"
+#include "vdb_madf/detail/npy_image.h"
 #include "vdb_madf/detail/nrrd_image.h"
+#include "vdb_madf/detail/pyhst_image.h"
 #include "vdb_madf/detail/raw_image.h"
 #include "vdb_madf/detail/tiff_image.h"
 #include "vdb_madf/errors.h"
@@ -28,7 +33,7 @@ constexpr TypeName kTypes[] = {
     {SampleType::uint32, "uint32", 4},   {SampleType::int32, "int32", 4},
     {SampleType::float32, "float32", 4}, {SampleType::float64, "float64", 8}};
 
-enum class Format { unknown, tiff, folder, meta, nrrd, raw, vdb };
+enum class Format { unknown, tiff, folder, meta, nrrd, npy, isq, nifti, dgtal, pyhst, raw, vdb };
 
 std::string ending(const std::string& path) {
   return detail::lowerCase(std::filesystem::path(path).extension().string());
@@ -39,6 +44,15 @@ Format formatOfEnding(const std::string& path) {
   if (end == ".tif" || end == ".tiff") return Format::tiff;
   if (end == ".mhd" || end == ".mha") return Format::meta;
   if (end == ".nrrd" || end == ".nhdr") return Format::nrrd;
+  if (end == ".npy") return Format::npy;
+  if (end == ".isq") return Format::isq;
+  if (end == ".nii") return Format::nifti;
+  if (end == ".gz") {  // .nii.gz
+    const std::filesystem::path inner = std::filesystem::path(path).stem();
+    return ending(inner.string()) == ".nii" ? Format::nifti : Format::unknown;
+  }
+  if (end == ".longvol") return Format::dgtal;
+  if (end == ".vol" || end == ".info") return Format::pyhst;
   if (end == ".raw") return Format::raw;
   if (end == ".vdb") return Format::vdb;
   return Format::unknown;
@@ -51,8 +65,12 @@ Format formatOfContent(const std::string& head) {
   for (const char* magic : {"II*\0", "MM\0*", "II+\0", "MM\0+"})
     if (begins(magic, 4)) return Format::tiff;
   if (begins("NRRD0", 5)) return Format::nrrd;
+  if (detail::isNpyHeader(head)) return Format::npy;
   if (begins(" BDV\0\0\0\0", 8)) return Format::vdb;
+  if (detail::isIsqHeader(head)) return Format::isq;
   if (detail::isMetaHeader(head)) return Format::meta;
+  if (detail::isDgtalHeader(head)) return Format::dgtal;
+  if (detail::isPyhstHeader(head)) return Format::pyhst;
   return Format::unknown;
 }
 
@@ -63,8 +81,14 @@ constexpr size_t kHeadBytes = 1024;
 Format formatOf(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) return Format::folder;
-  const Format format = formatOfContent(detail::InputFile(path).head(kHeadBytes));
+  const detail::InputFile file(path);
+  const Format format =
+      detail::isNifti(file) ? Format::nifti : formatOfContent(file.head(kHeadBytes));
   return format == Format::unknown ? formatOfEnding(path) : format;
+}
+
+bool hasDatasets(Format) {
+  return false;
 }
 
 }  // namespace
@@ -83,10 +107,13 @@ std::optional<SampleType> sampleTypeFromName(const std::string& name) {
   return std::nullopt;
 }
 
-std::unique_ptr<ImageReader> openImage(const std::string& path,
-                                       const std::optional<RawLayout>& raw) {
+std::unique_ptr<ImageReader> openImage(const std::string& path, const std::optional<RawLayout>& raw,
+                                       const std::string& dataset) {
+  const Format format = raw ? Format::raw : formatOf(path);
+  if (!dataset.empty() && !hasDatasets(format))
+    throw IoError(path + ": has no datasets to choose from; leave out the choice (--dataset)");
   if (raw) return detail::openRaw(path, *raw);
-  switch (formatOf(path)) {
+  switch (format) {
     case Format::tiff:
       return detail::openTiff(path);
     case Format::folder:
@@ -95,6 +122,16 @@ std::unique_ptr<ImageReader> openImage(const std::string& path,
       return detail::openMeta(path);
     case Format::nrrd:
       return detail::openNrrd(path);
+    case Format::npy:
+      return detail::openNpy(path);
+    case Format::isq:
+      return detail::openIsq(path);
+    case Format::nifti:
+      return detail::openNifti(path);
+    case Format::dgtal:
+      return detail::openDgtal(path);
+    case Format::pyhst:
+      return detail::openPyhst(path);
     case Format::raw:
       throw IoError(path + ": a raw file needs its size and sample type (--dims, --type)");
     case Format::vdb:
@@ -104,7 +141,7 @@ std::unique_ptr<ImageReader> openImage(const std::string& path,
   }
   throw IoError(
       path +
-      ": is not TIFF, MetaImage or NRRD; if it is raw, give its size and type (--dims, --type)");
+      ": is no image of a known format; if it is raw, give its size and type (--dims, --type)");
 }
 
 bool looksLikeImage(const std::string& path) {
@@ -126,14 +163,21 @@ std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInf
       return detail::createMeta(path, info);
     case Format::tiff:
       return detail::createTiff(path, info);
+    case Format::npy:
+      return detail::createNpy(path, info);
+    case Format::nrrd:
+      if (ending(path) == ".nrrd") return detail::createNrrd(path, info);
+      break;
     default:
-      throw InvalidInput(path + ": images are written as .raw, .mhd, .mha, .tif or .tiff");
+      break;
   }
+  throw InvalidInput(path + ": images are written as .tif, .tiff, .raw, .mhd, .mha, .nrrd or .npy");
 }
 
 bool isImageEnding(const std::string& path) {
-  const Format format = formatOfEnding(path);
-  return format == Format::raw || format == Format::meta || format == Format::tiff;
+  const std::string end = ending(path);
+  return end == ".tif" || end == ".tiff" || end == ".raw" || end == ".mhd" || end == ".mha" ||
+         end == ".nrrd" || end == ".npy";
 }
 
 }  // namespace vdb_madf

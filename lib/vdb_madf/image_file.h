@@ -26,7 +26,7 @@ struct ImageInfo {
   Coord size;  ///< x, y, z; each 1 .. 2^20
   SampleType type = SampleType::uint8;
   std::optional<VoxelSize> voxelSize;
-  std::string format;  ///< "tiff", "raw", "mhd", "nrrd"
+  std::string format;  ///< "tiff", "raw", "mhd", "nrrd", "npy", "isq", "nifti" ...
 };
 
 /// Reads a volume as slabs of z-slices; never holds more than it is asked for.
@@ -55,12 +55,17 @@ struct RawLayout {
   bool bigEndian = false;
 };
 
-/// Opens TIFF (multi-page, BigTIFF), a folder of TIFF slices, MHD/MHA, NRRD (attached or detached
-/// header; raw or gzip), recognised by content, then by ending; RAW if `raw` is given. Sizes in a
-/// header are checked against the file before anything is allocated.
+/// Opens TIFF (multi-page, BigTIFF), MHD/MHA, NRRD, npy, ISQ, NIfTI-1, vol/longvol, PyHST's vol,
+/// PNG, BMP, a folder of TIFF, PNG or BMP slices, Zarr, HDF5 (if it was there when this was built),
+/// recognised by content, then by ending; RAW if `raw` is given. Sizes in a header are checked
+/// against the file before anything is allocated.
+/// @param dataset which array of a Zarr group or an HDF5 file; empty: the first scale of an
+/// OME-Zarr,
+///     or the only volume
 /// @throw IoError, one line that names the file.
 std::unique_ptr<ImageReader> openImage(const std::string& path,
-                                       const std::optional<RawLayout>& raw = std::nullopt);
+                                       const std::optional<RawLayout>& raw = std::nullopt,
+                                       const std::string& dataset = "");
 
 /// True if the path looks like one of the formats of openImage (never true for a .vdb file).
 bool looksLikeImage(const std::string& path);
@@ -84,7 +89,8 @@ class ImageWriter {
   virtual void finish() = 0;
 };
 
-/// By ending: .raw, .mhd (with .raw beside it), .mha, .tif/.tiff (BigTIFF when 4 GB or more).
+/// By ending: .raw, .mhd (with .raw beside it), .mha, .nrrd, .npy, .tif/.tiff (BigTIFF when 4 GB or
+/// more).
 /// @throw IoError; InvalidInput for another ending.
 std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInfo& info);
 /// True if createImage knows the ending.
@@ -95,6 +101,10 @@ bool isImageEnding(const std::string& path);
 /// @throw InvalidInput if a value does not fit the sample type, naming the value; IoError.
 void writeImage(const std::string& path, const openvdb::GridBase& grid, const CoordBBox& box,
                 SampleType type, Interrupter* interrupter = nullptr);
+
+/// The sample type in which programs expect labels: uint16 if all values of the grid fit, else
+/// uint32; int32 if there are negative ones.
+SampleType labelType(const Int32Grid& grid);
 
 /// Copies an image slab by slab into another format and sample type; \p voxelSize replaces its own.
 /// @throw InvalidInput if a value does not fit the sample type, naming the value; IoError;

@@ -216,6 +216,22 @@ SampleLayout layoutOf(const std::string& path, const NrrdHeader& header, SampleT
   return layout;
 }
 
+std::string headerText(const ImageInfo& info) {
+  const std::map<SampleType, std::string> names = {
+      {SampleType::uint8, "uint8"},   {SampleType::int8, "int8"},
+      {SampleType::uint16, "uint16"}, {SampleType::int16, "int16"},
+      {SampleType::uint32, "uint32"}, {SampleType::int32, "int32"},
+      {SampleType::float32, "float"}, {SampleType::float64, "double"}};
+  std::string text = "NRRD0004\ntype: " + names.at(info.type) + "\ndimension: 3\nsizes:";
+  for (int axis = 0; axis < 3; ++axis) text += " " + std::to_string(info.size[axis]);
+  if (info.voxelSize) {
+    const std::string edge = lengthIn(1e3, info.voxelSize->metres);
+    text += "\nspacings: " + edge + " " + edge + " " + edge;
+    text += "\nunits: \"mm\" \"mm\" \"mm\"";
+  }
+  return text + "\nendian: little\nencoding: raw\n\n";
+}
+
 }  // namespace
 
 std::unique_ptr<ImageReader> openNrrd(const std::string& path) {
@@ -249,6 +265,10 @@ std::unique_ptr<ImageReader> openNrrd(const std::string& path) {
   else
     layout.offset += uint64_t(bytes);
   return openSamples(path, info, std::move(file), layout);
+}
+
+std::unique_ptr<ImageWriter> createNrrd(const std::string& path, const ImageInfo& info) {
+  return createSamples(path, info, headerText(info));
 }
 
 }  // namespace vdb_madf::detail

@@ -3,11 +3,14 @@
 
 #include "vdb_madf/detail/raw_image.h"
 
-#include "vdb_madf/detail/byte_order.h"
+#include <algorithm>
+#include <vector>
+
 #include "vdb_madf/detail/header_text.h"
 #include "vdb_madf/detail/inflate_stream.h"
 #include "vdb_madf/detail/output_stream.h"
 #include "vdb_madf/detail/slice_counter.h"
+#include "vdb_madf/detail/stored_type.h"
 #include "vdb_madf/errors.h"
 
 namespace vdb_madf::detail {
@@ -19,51 +22,81 @@ std::string describe(const ImageInfo& info) {
          std::to_string(info.size.z()) + " " + sampleTypeName(info.type);
 }
 
+/// How many 64-bit integers are narrowed at a time.
+constexpr size_t kWideSamples = size_t(1) << 16;
+
+uint64_t storedBytes(const ImageInfo& info, const SampleLayout& layout) {
+  return layout.wide ? imageBytes(info) * 2 : imageBytes(info);
+}
+
 class SampleReader : public ImageReader {
  public:
   SampleReader(const std::string& path, const ImageInfo& info, std::unique_ptr<InputFile> data,
-               const SampleLayout& layout)
-      : data_(std::move(data)), layout_(layout) {
+               const SampleLayout& layout, const std::vector<std::string>& more)
+      : data_(std::move(data)), layout_(layout), stored_{info.type, layout.wide, layout.bigEndian} {
     path_ = path;
     files_ = {path, data_->path()};
+    files_.insert(files_.end(), more.begin(), more.end());
     info_ = info;
   }
 
   void read(int first, int count, void* samples) override {
     checkSlices(path_, info_, first, count);
-    const uint64_t slice = sliceBytes(info_);
-    if (layout_.deflated)
-      inflateSlices(first, count, samples);
-    else
-      data_->read(layout_.offset + slice * uint64_t(first), samples, size_t(slice) * size_t(count));
-    if (layout_.bigEndian)
-      swapBytes(samples, size_t(slice / sampleSize(info_.type)) * size_t(count),
-                sampleSize(info_.type));
+    const uint64_t slice = uint64_t(info_.size.x()) * uint64_t(info_.size.y());
+    moveTo(slice * uint64_t(first));
+    const size_t all = size_t(slice) * size_t(count);
+    if (layout_.wide) {
+      std::vector<char> wide(std::min(all, kWideSamples) * stored_.bytes());
+      char* place = static_cast<char*>(samples);
+      for (size_t left = all; left > 0;) {
+        const size_t some = std::min(left, kWideSamples);
+        readStored(wide.data(), some);
+        toSamples(path_, stored_, wide.data(), some, place);
+        place += some * sampleSize(info_.type);
+        left -= some;
+      }
+    } else {
+      readStored(samples, all);
+      toSamples(path_, stored_, samples, all, samples);
+    }
+    if (stream_ && first + count == info_.size.z()) stream_->expectEnd();
   }
 
  private:
-  void inflateSlices(int first, int count, void* samples) {
-    const uint64_t slice = sliceBytes(info_);
-    if (!stream_ || first < next_) {
-      stream_ = std::make_unique<InflateStream>(*data_, layout_.offset);
-      stream_->skip(layout_.skip);
-      next_ = 0;
+  void moveTo(uint64_t sample) {
+    if (layout_.deflated) {
+      if (!stream_ || sample < next_) {
+        stream_ = std::make_unique<InflateStream>(*data_, layout_.offset);
+        stream_->skip(layout_.skip);
+        next_ = 0;
+      }
+      stream_->skip((sample - next_) * stored_.bytes());
     }
-    stream_->skip(slice * uint64_t(first - next_));
-    stream_->read(samples, size_t(slice) * size_t(count));
-    next_ = first + count;
-    if (next_ == info_.size.z()) stream_->expectEnd();
+    next_ = sample;
+  }
+
+  void readStored(void* to, size_t count) {
+    const size_t bytes = count * stored_.bytes();
+    if (stream_)
+      stream_->read(to, bytes);
+    else
+      data_->read(layout_.offset + next_ * stored_.bytes(), to, bytes);
+    next_ += count;
   }
 
   std::unique_ptr<InputFile> data_;
   SampleLayout layout_;
+  StoredType stored_;
   std::unique_ptr<InflateStream> stream_;
-  int next_ = 0;
+  uint64_t next_ = 0;  ///< sample
 };
 
 class RawWriter : public ImageWriter {
  public:
-  RawWriter(const std::string& path, const ImageInfo& info) : counter_(path, info), out_(path) {}
+  RawWriter(const std::string& path, const ImageInfo& info, const std::string& header)
+      : counter_(path, info), out_(path) {
+    out_.write(header.data(), header.size());
+  }
   void write(int count, const void* samples) override { out_.write(samples, counter_.add(count)); }
   void finish() override {
     counter_.finish();
@@ -80,9 +113,10 @@ class RawWriter : public ImageWriter {
 
 std::unique_ptr<ImageReader> openSamples(const std::string& path, const ImageInfo& info,
                                          std::unique_ptr<InputFile> data,
-                                         const SampleLayout& layout) {
+                                         const SampleLayout& layout,
+                                         const std::vector<std::string>& more) {
   SampleLayout place = layout;
-  const uint64_t needed = imageBytes(info), size = data->size();
+  const uint64_t needed = storedBytes(info, layout), size = data->size();
   if (place.atEnd && needed <= size) place.offset = size - needed;
   if (place.offset > size)
     throw IoError(data->name() + ": has " + std::to_string(size) +
@@ -93,12 +127,12 @@ std::unique_ptr<ImageReader> openSamples(const std::string& path, const ImageInf
     if (place.skip > most || needed > most - place.skip)
       throw IoError(data->name() + ": has " + std::to_string(held) +
                     " compressed bytes, too few for " + describe(info));
-  } else if (held != needed) {
+  } else if (held < needed || held - needed > place.padding) {
     throw IoError(data->name() + ": has " + std::to_string(held) + " bytes of samples, but " +
                   describe(info) + " takes " + std::to_string(needed) +
                   ": check the size, the sample type and whether there is a header to skip");
   }
-  return std::make_unique<SampleReader>(path, info, std::move(data), place);
+  return std::make_unique<SampleReader>(path, info, std::move(data), place, more);
 }
 
 std::unique_ptr<ImageReader> openRaw(const std::string& path, const RawLayout& layout) {
@@ -121,8 +155,13 @@ std::unique_ptr<ImageReader> openRaw(const std::string& path, const RawLayout& l
   return openSamples(path, info, std::move(data), samples);
 }
 
+std::unique_ptr<ImageWriter> createSamples(const std::string& path, const ImageInfo& info,
+                                           const std::string& header) {
+  return std::make_unique<RawWriter>(path, info, header);
+}
+
 std::unique_ptr<ImageWriter> createRaw(const std::string& path, const ImageInfo& info) {
-  return std::make_unique<RawWriter>(path, info);
+  return createSamples(path, info, "");
 }
 
 }  // namespace vdb_madf::detail

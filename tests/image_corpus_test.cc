@@ -1,0 +1,171 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <catch2/catch.hpp>
+
+#include <map>
+
+#include "support/damage.h"
+#include "support/files.h"
+#include "support/header_files.h"
+#include "support/images.h"
+
+// What image_damage_test.cc does to TIFF, MetaImage and NRRD, done to the formats of one or more
+// files: thousands of changed files each, which either read or are refused with one line.
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+
+namespace {
+
+const Coord kSize(19, 17, 4);
+constexpr int kMutationsPerFile = 2500;
+/// The files have some kilobytes; a reader's buffers of fixed size and a stray page are allowed.
+constexpr uint64_t kMemory = uint64_t(64) << 20;
+/// Of zlib.
+constexpr uint64_t kDeflate = 1032;
+
+struct Sample {
+  std::string format, path;                  ///< what is opened
+  std::map<std::string, std::string> files;  ///< relative path to bytes
+  std::string changed;                       ///< the file that is damaged
+  size_t headerBytes;                        ///< most mutations hit these
+  uint64_t expansion = 1;
+  bool sameSize = true;  ///< files cut short never read
+
+  uint64_t bytes() const {
+    uint64_t sum = 0;
+    for (const auto& file : files) sum += file.second.size();
+    return sum;
+  }
+  void write(const ScratchFolder& folder) const {
+    for (const auto& [name, content] : files) {
+      std::filesystem::create_directories(std::filesystem::path(folder / name).parent_path());
+      writeFile(folder / name, content);
+    }
+  }
+};
+
+Sample oneFile(const std::string& format, const std::string& name, const std::string& bytes,
+               size_t headerBytes, uint64_t expansion = 1) {
+  return {format, name, {{name, bytes}}, name, headerBytes, expansion, true};
+}
+
+void addHeaderFiles(std::vector<Sample>& all) {
+  const std::string bytes = randomSamples(SampleType::int16, voxels(kSize), 1);
+  const std::string small = randomSamples(SampleType::uint8, voxels(kSize), 2);
+  std::string labels;
+  for (const char c : small) labels += c + std::string(7, '\0');
+  const std::string npy =
+      npyHeader("{'descr': '<i2', 'fortran_order': False, 'shape': (4, 17, 19), }", 1);
+  all.push_back(oneFile("npy", "a.npy", npy + bytes, npy.size()));
+  const std::string wide =
+      npyHeader("{'descr': '>i8', 'fortran_order': False, 'shape': (4, 17, 19), }", 2);
+  all.push_back(oneFile("npy", "a.npy", wide + swapped(labels, 8), wide.size()));
+  IsqLayout isq;
+  isq.voxels = kSize;
+  isq.micrometres = Coord(190, 170, 40);
+  isq.blocks = 1;
+  all.push_back(oneFile("isq", "a.isq", isqFile(isq, bytes), 80));
+  NiftiLayout nifti;
+  nifti.dim = {3, 19, 17, 4};
+  nifti.type = 4;
+  nifti.units = 2;
+  nifti.slope = 2;
+  all.push_back(oneFile("nifti", "a.nii", niftiFile(nifti, bytes), 352, 2));
+  all.push_back(
+      oneFile("nifti", "a.nii.gz", deflated(niftiFile(nifti, bytes), 31), 400, 2 * kDeflate));
+  for (const std::string version : {"2", "3"}) {
+    const auto coded = [&](const std::string& b) { return version == "3" ? deflated(b, 15) : b; };
+    const std::string sizes = "X: 19\nY: 17\nZ: 4\n", end = "Version: " + version + "\n.\n";
+    const uint64_t expansion = version == "3" ? kDeflate : 1;
+    all.push_back(
+        oneFile("vol", "a.vol", sizes + "Voxel-Size: 1\n" + end + coded(small), 50, expansion));
+    all.push_back(oneFile("longvol", "a.longvol", sizes + "Lvoxel-Size: 8\n" + end + coded(labels),
+                          50, expansion));
+  }
+  const std::string info =
+      "! PyHST_SLAVE VOLUME INFO FILE\nNUM_X = 19\nNUM_Y = 17\nNUM_Z = 4\nvoxelSize = 8.5\n"
+      "BYTEORDER = HIGHBYTEFIRST\n";
+  all.push_back({"pyhst",
+                 "a.vol",
+                 {{"a.vol", bytes}, {"a.vol.info", info}},
+                 "a.vol.info",
+                 info.size(),
+                 1,
+                 false});
+  all.push_back(
+      {"pyhst", "a.vol", {{"a.vol", bytes}, {"a.vol.info", info}}, "a.vol", 100, 1, true});
+}
+
+bool reads(const std::string& path) {
+  try {
+    readAll(*openImage(path));
+    return true;
+  } catch (const IoError&) {
+    return false;
+  }
+}
+
+std::vector<Sample> samples() {
+  std::vector<Sample> all;
+  addHeaderFiles(all);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("image_corpus: the samples are sound", "[image_corpus]") {
+  for (const Sample& sample : samples()) {
+    const ScratchFolder folder;
+    sample.write(folder);
+    CAPTURE(sample.format);
+    CHECK(openImage(folder / sample.path)->info().size == kSize);
+    CHECK(openImage(folder / sample.path)->info().format == sample.format);
+    CHECK(complaint(folder / sample.path, sample.bytes(), sample.expansion) == "");
+  }
+}
+
+TEST_CASE("image_corpus: files cut short are refused with one line that names them",
+          "[image_corpus]") {
+  const ScratchFolder other;
+  CapturedStderr output(other / "stderr");
+  for (const Sample& sample : samples()) {
+    const ScratchFolder folder;
+    sample.write(folder);
+    const MemoryLimit limit(kMemory);
+    const std::string &path = folder / sample.path, whole = sample.files.at(sample.changed);
+    const size_t step = whole.size() / 300 + 1;
+    for (size_t length = 0; length < whole.size(); length += step) {
+      writeFile(folder / sample.changed, whole.substr(0, length));
+      CAPTURE(sample.format, length);
+      REQUIRE(complaint(path, sample.bytes(), sample.expansion) == "");
+      if (!sample.sameSize) continue;
+      if (reads(path)) REQUIRE(length + 8 >= whole.size());  // only a checksum is missing
+    }
+  }
+  CHECK(output.text() == "");
+}
+
+TEST_CASE("image_corpus: changed files read or are refused with one line that names them",
+          "[image_corpus]") {
+  const ScratchFolder other;
+  CapturedStderr output(other / "stderr");
+  unsigned seed = 1000;
+  for (const Sample& sample : samples()) {
+    const ScratchFolder folder;
+    sample.write(folder);
+    const MemoryLimit limit(kMemory);
+    const std::string& whole = sample.files.at(sample.changed);
+    for (int i = 0; i < kMutationsPerFile; ++i) {
+      const std::string bytes = mutated(whole, sample.headerBytes, ++seed);
+      writeFile(folder / sample.changed, bytes);
+      const std::string wrong =
+          complaint(folder / sample.path, sample.bytes() + bytes.size(), sample.expansion);
+      if (wrong.empty()) continue;
+      CAPTURE(sample.format, seed, wrong);
+      REQUIRE(wrong.empty());
+    }
+  }
+  CHECK(output.text() == "");
+}
