@@ -23,8 +23,11 @@ struct Options {
   std::optional<SampleType> parsedOutType;
 };
 
-/// The smallest sample type that surely holds a grid's values.
-SampleType naturalType(const openvdb::GridBase& grid) {
+/// The smallest sample type that surely holds a grid's values. Programs that look at TIFF take
+/// signed samples for something else than labels, if they take them at all.
+SampleType naturalType(const openvdb::GridBase& grid, const std::string& path) {
+  if (isLabelGrid(grid) && hasTiffEnding(path))
+    return labelType(static_cast<const Int32Grid&>(grid));
   const std::string type = grid.valueType();
   if (grid.isType<MaskGrid>() || type == "bool") return SampleType::uint8;
   if (type == "float") return SampleType::float32;
@@ -58,7 +61,7 @@ void writeGridAsImage(const Options& o, const Common& common, const openvdb::Gri
                 << ": no known domain, so the active bounding box is written; its origin is "
                 << box->min() << "\n";
   }
-  const SampleType type = outputType(o).value_or(naturalType(grid));
+  const SampleType type = outputType(o).value_or(naturalType(grid, o.out));
   writeImage(o.out, grid, *box, type, common.progress);
   report(o, common, "grid '" + grid.getName() + "'", box->dim(), type);
 }
@@ -124,7 +127,8 @@ void addConvert(CLI::App& app, Common& common, Action& action) {
       addVerb(app, common, "convert", "any readable volume to any writable volume",
               "vdb_madf convert scan.raw ice.vdb --dims 301x301x251 --type uint8 --threshold 128");
   verb->add_option("IN", o->input.path, "any readable volume")->required();
-  verb->add_option("OUT", o->out, ".vdb (a mask, of an image), .tif, .raw, .mhd, .mha")->required();
+  verb->add_option("OUT", o->out, ".vdb (a mask, of an image), .tif, .raw, .mhd, .mha, .nrrd, .npy")
+      ->required();
   o->input.addSelection(*verb);
   o->input.addRaw(*verb);
   verb->add_option("--out-type", o->outType, "sample type of the output")->type_name("TYPE");
@@ -145,7 +149,7 @@ void addConvert(CLI::App& app, Common& common, Action& action) {
       if (!o->parsedOutType) throw WrongUsage("--out-type " + o->outType + ": no such sample type");
     }
     if (!hasVdbEnding(o->out) && !isImageEnding(o->out))
-      throw WrongUsage(o->out + ": the ending must be .vdb, .tif, .raw, .mhd or .mha");
+      throw WrongUsage(o->out + ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd or .npy");
     action = [o, &common] { run(*o, common); };
   });
 }

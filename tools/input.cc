@@ -204,6 +204,10 @@ bool isVdb(const std::string& path) {
 bool hasVdbEnding(const std::string& path) {
   return lowerCaseEnding(path) == ".vdb";
 }
+bool hasTiffEnding(const std::string& path) {
+  const std::string ending = lowerCaseEnding(path);
+  return ending == ".tif" || ending == ".tiff";
+}
 bool hasRawEnding(const std::string& path) {
   return lowerCaseEnding(path) == ".raw";
 }

@@ -53,6 +53,7 @@ VoxelSize parseVoxelSize(const std::string& text);
 /// True if the file is to be read as OpenVDB: by its first bytes, then by its ending.
 bool isVdb(const std::string& path);
 bool hasVdbEnding(const std::string& path);
+bool hasTiffEnding(const std::string& path);
 bool hasRawEnding(const std::string& path);
 bool hasPngEnding(const std::string& path);
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <algorithm>
+#include <limits>
+#include <mutex>
 #include <type_traits>
 #include <vector>
 
@@ -172,6 +174,35 @@ void writeImage(const std::string& path, const openvdb::GridBase& grid, const Co
       !tryGrid<double>(path, grid, box, info, interrupter))
     throw InvalidInput(path + ": grid '" + grid.getName() + "' of type " + grid.valueType() +
                        " cannot be an image: only bool, mask, int32, int64, float and double can");
+}
+
+SampleType labelType(const Int32Grid& grid) {
+  using Leaf = Int32Tree::LeafNodeType;
+  std::vector<const Leaf*> leaves;
+  leaves.reserve(grid.tree().leafCount());
+  grid.tree().getNodes(leaves);
+  int32_t least = grid.background(), most = least;
+  std::mutex mutex;
+  detail::parallelFor(leaves.size(), kPiecesPerChunk, nullptr, [&](size_t begin, size_t end) {
+    int32_t low = std::numeric_limits<int32_t>::max(), high = std::numeric_limits<int32_t>::min();
+    for (size_t i = begin; i < end; ++i) {
+      const int32_t* values = leaves[i]->buffer().data();
+      const auto [lowest, highest] = std::minmax_element(values, values + Leaf::SIZE);
+      low = std::min(low, *lowest);
+      high = std::max(high, *highest);
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    least = std::min(least, low);
+    most = std::max(most, high);
+  });
+  auto tile = grid.tree().cbeginValueAll();
+  tile.setMaxDepth(tile.getLeafDepth() - 1);
+  for (; tile; ++tile) {
+    least = std::min(least, *tile);
+    most = std::max(most, *tile);
+  }
+  if (least < 0) return SampleType::int32;
+  return most <= std::numeric_limits<uint16_t>::max() ? SampleType::uint16 : SampleType::uint32;
 }
 
 }  // namespace vdb_madf
