@@ -9,6 +9,7 @@
 #include "support/files.h"
 #include "support/header_files.h"
 #include "support/images.h"
+#include "support/picture_files.h"
 
 // What image_damage_test.cc does to TIFF, MetaImage and NRRD, done to the formats of one or more
 // files: thousands of changed files each, which either read or are refused with one line.
@@ -98,6 +99,48 @@ void addHeaderFiles(std::vector<Sample>& all) {
       {"pyhst", "a.vol", {{"a.vol", bytes}, {"a.vol.info", info}}, "a.vol", 100, 1, true});
 }
 
+void addPictures(std::vector<Sample>& all) {
+  const size_t slice = 19 * 17;
+  const auto add = [&](const std::string& kind, const auto& picture, uint64_t expansion) {
+    const std::string samples = randomSamples(SampleType::uint8, 2 * slice * 4, 3);
+    Sample sample{kind, "s", {}, "s/2." + kind, 90, expansion, true};
+    for (size_t z = 0; z < 4; ++z)
+      sample.files["s/" + std::to_string(z) + "." + kind] =
+          picture(samples.substr(2 * z * slice, 2 * slice));
+    all.push_back(sample);
+  };
+  for (const bool interlaced : {false, true})
+    for (const int bits : {1, 8, 16})
+      add(
+          "png",
+          [&](std::string s) {
+            if (bits == 1)
+              for (char& c : s) c &= 1;
+            return pngFile({19, 17, bits, 0, interlaced}, s);
+          },
+          8 * kDeflate);
+  add(
+      "png",
+      [](const std::string& s) {
+        std::string pixels;
+        for (size_t i = 0; i < slice; ++i) pixels += std::string(3, s[i]);
+        return pngFile({19, 17, 8, 2, true}, pixels);
+      },
+      8 * kDeflate);
+  add(
+      "bmp",
+      [](const std::string& s) {
+        return bmpFile({19, 17, 8, false, false, std::string(1024, 'a'), 0, 0}, s.substr(0, slice));
+      },
+      8);
+  add(
+      "bmp",
+      [](const std::string& s) {
+        return bmpFile({19, 17, 1, true, false, "aaaabbbb", 0, 0}, s.substr(0, 3 * 17));
+      },
+      8);
+}
+
 bool reads(const std::string& path) {
   try {
     readAll(*openImage(path));
@@ -110,6 +153,7 @@ bool reads(const std::string& path) {
 std::vector<Sample> samples() {
   std::vector<Sample> all;
   addHeaderFiles(all);
+  addPictures(all);
   return all;
 }
 
@@ -168,4 +212,23 @@ TEST_CASE("image_corpus: changed files read or are refused with one line that na
     }
   }
   CHECK(output.text() == "");
+}
+
+TEST_CASE("image_corpus: PNG of sound checksums and unsound content", "[image_corpus]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.png", samples = randomSamples(SampleType::uint8, 19 * 17, 4);
+  const std::string file = pngFile({19, 17, 8, 0, true}, samples);
+  const size_t first = 8 + 8;  // of the header's 13 bytes, behind signature, length and kind
+  const MemoryLimit limit(kMemory);
+  std::mt19937 random(5);
+  for (int i = 0; i < 2 * kMutationsPerFile; ++i) {
+    std::string header = file.substr(first, 13), rows;
+    for (unsigned k = random() % 3; k > 0; --k) header[random() % 13] = char(random() % 20);
+    if (random() % 4 == 0) header[random() % 8] = char(random());
+    for (unsigned k = random() % 500; k > 0; --k) rows += char(random() % 6);
+    writeFile(path, file.substr(0, 8) + pngChunk("IHDR", header) +
+                        pngChunk("IDAT", deflated(rows, 15)) + pngChunk("IEND", ""));
+    CAPTURE(i);
+    REQUIRE(complaint(path, file.size(), 8 * kDeflate) == "");
+  }
 }

@@ -13,8 +13,10 @@
 #include "vdb_madf/detail/nifti_image.h"
 #include "vdb_madf/detail/npy_image.h"
 #include "vdb_madf/detail/nrrd_image.h"
+#include "vdb_madf/detail/picture.h"
 #include "vdb_madf/detail/pyhst_image.h"
 #include "vdb_madf/detail/raw_image.h"
+#include "vdb_madf/detail/slice_folder.h"
 #include "vdb_madf/detail/tiff_image.h"
 #include "vdb_madf/errors.h"
 
@@ -33,7 +35,22 @@ constexpr TypeName kTypes[] = {
     {SampleType::uint32, "uint32", 4},   {SampleType::int32, "int32", 4},
     {SampleType::float32, "float32", 4}, {SampleType::float64, "float64", 8}};
 
-enum class Format { unknown, tiff, folder, meta, nrrd, npy, isq, nifti, dgtal, pyhst, raw, vdb };
+enum class Format {
+  unknown,
+  tiff,
+  tiffFolder,
+  picture,
+  pictureFolder,
+  meta,
+  nrrd,
+  npy,
+  isq,
+  nifti,
+  dgtal,
+  pyhst,
+  raw,
+  vdb
+};
 
 std::string ending(const std::string& path) {
   return detail::lowerCase(std::filesystem::path(path).extension().string());
@@ -44,6 +61,7 @@ Format formatOfEnding(const std::string& path) {
   if (end == ".tif" || end == ".tiff") return Format::tiff;
   if (end == ".mhd" || end == ".mha") return Format::meta;
   if (end == ".nrrd" || end == ".nhdr") return Format::nrrd;
+  if (end == ".png" || end == ".bmp") return Format::picture;
   if (end == ".npy") return Format::npy;
   if (end == ".isq") return Format::isq;
   if (end == ".nii") return Format::nifti;
@@ -64,6 +82,7 @@ Format formatOfContent(const std::string& head) {
   };
   for (const char* magic : {"II*\0", "MM\0*", "II+\0", "MM\0+"})
     if (begins(magic, 4)) return Format::tiff;
+  if (detail::isPngHeader(head) || detail::isBmpHeader(head)) return Format::picture;
   if (begins("NRRD0", 5)) return Format::nrrd;
   if (detail::isNpyHeader(head)) return Format::npy;
   if (begins(" BDV\0\0\0\0", 8)) return Format::vdb;
@@ -77,10 +96,15 @@ Format formatOfContent(const std::string& head) {
 /// Enough for every magic number, and for the comments that may precede the keys of a MetaImage.
 constexpr size_t kHeadBytes = 1024;
 
+/// Pictures in a folder of TIFF slices are previews.
+Format formatOfFolder(const std::string& path) {
+  return detail::tiffFilesIn(path).empty() ? Format::pictureFolder : Format::tiffFolder;
+}
+
 /// By content, then by ending.
 Format formatOf(const std::string& path) {
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) return Format::folder;
+  if (std::filesystem::is_directory(path, error)) return formatOfFolder(path);
   const detail::InputFile file(path);
   const Format format =
       detail::isNifti(file) ? Format::nifti : formatOfContent(file.head(kHeadBytes));
@@ -116,8 +140,12 @@ std::unique_ptr<ImageReader> openImage(const std::string& path, const std::optio
   switch (format) {
     case Format::tiff:
       return detail::openTiff(path);
-    case Format::folder:
+    case Format::tiffFolder:
       return detail::openTiffFolder(path);
+    case Format::picture:
+      return detail::openPicture(path);
+    case Format::pictureFolder:
+      return detail::openPictureFolder(path);
     case Format::meta:
       return detail::openMeta(path);
     case Format::nrrd:
@@ -147,7 +175,7 @@ std::unique_ptr<ImageReader> openImage(const std::string& path, const std::optio
 bool looksLikeImage(const std::string& path) {
   try {
     const Format format = formatOf(path);
-    if (format == Format::folder) return !detail::tiffFilesIn(path).empty();
+    if (format == Format::pictureFolder) return !detail::picturesIn(path).empty();
     return format != Format::unknown && format != Format::vdb;
   } catch (const IoError&) {  // nothing there to look at
     const Format format = formatOfEnding(path);

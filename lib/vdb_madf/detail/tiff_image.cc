@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 
 #include "vdb_madf/detail/byte_order.h"
 #include "vdb_madf/detail/header_text.h"
+#include "vdb_madf/detail/slice_folder.h"
 #include "vdb_madf/detail/tiff_page.h"
 #include "vdb_madf/errors.h"
 
@@ -173,6 +173,7 @@ class TiffFolder : public ImageReader {
                       " x " + std::to_string(page_.height) + " " + sampleTypeName(page_.type));
       }
     }
+    if (!info_.voxelSize) info_.voxelSize = voxelSizeInLog(path);
     info_.size = checkedSize(path, {page_.width, page_.height, int64_t(files_.size())});
     info_.type = page_.type;
     info_.format = "tiff";
@@ -193,49 +194,10 @@ class TiffFolder : public ImageReader {
   TiffPage page_;
 };
 
-bool isDigit(char c) {
-  return c >= '0' && c <= '9';
-}
-
-/// Runs of digits are compared as numbers, all else by bytes.
-bool naturallyBefore(const std::string& a, const std::string& b) {
-  size_t i = 0, j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (!isDigit(a[i]) || !isDigit(b[j])) {
-      if (a[i] != b[j]) return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
-      ++i, ++j;
-      continue;
-    }
-    while (i < a.size() && a[i] == '0') ++i;
-    while (j < b.size() && b[j] == '0') ++j;
-    size_t endA = i, endB = j;
-    while (endA < a.size() && isDigit(a[endA])) ++endA;
-    while (endB < b.size() && isDigit(b[endB])) ++endB;
-    if (endA - i != endB - j) return endA - i < endB - j;
-    const int order = a.compare(i, endA - i, b, j, endB - j);
-    if (order != 0) return order < 0;
-    i = endA, j = endB;
-  }
-  if (i < a.size() || j < b.size()) return j < b.size();
-  return a < b;  // they differ in leading zeros alone
-}
-
 }  // namespace
 
 std::vector<std::string> tiffFilesIn(const std::string& folder) {
-  std::vector<std::string> names, paths;
-  std::error_code error;
-  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    const std::string ending = lowerCase(entry->path().extension().string());
-    if (name[0] != '.' && (ending == ".tif" || ending == ".tiff")) names.push_back(name);
-  }
-  if (error) throw IoError(folder + ": cannot be listed: " + error.message());
-  std::sort(names.begin(), names.end(), naturallyBefore);
-  for (const std::string& name : names)
-    paths.push_back((std::filesystem::path(folder) / name).string());
-  return paths;
+  return slicesIn(folder, {".tif", ".tiff"});
 }
 
 std::unique_ptr<ImageReader> openTiff(const std::string& path) {
