@@ -8,3 +8,5 @@ find_package(Eigen3 3.3 REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(TIFF REQUIRED)
 find_package(PNG REQUIRED)
+find_package(Blosc REQUIRED)  # with OpenVDB's own find module
+find_package(nlohmann_json REQUIRED)

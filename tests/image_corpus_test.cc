@@ -10,6 +10,7 @@
 #include "support/header_files.h"
 #include "support/images.h"
 #include "support/picture_files.h"
+#include "support/zarr_files.h"
 
 // What image_damage_test.cc does to TIFF, MetaImage and NRRD, done to the formats of one or more
 // files: thousands of changed files each, which either read or are refused with one line.
@@ -141,6 +142,27 @@ void addPictures(std::vector<Sample>& all) {
       8);
 }
 
+void addZarr(std::vector<Sample>& all) {
+  const std::string samples = randomSamples(SampleType::uint16, voxels(kSize), 6);
+  for (const std::string codec : {"", "zlib", "lz4", "zstd", "blosclz"}) {
+    const ZarrLayout layout{kSize, Coord(10, 9, 2), "<u2", 2, codec, "C", ".", "0", 0};
+    std::map<std::string, std::string> files;
+    for (const auto& [name, bytes] : zarrFiles(layout, samples)) files["z/0/" + name] = bytes;
+    files["z/.zattrs"] =
+        R"({"multiscales": [{"axes": [{"unit": "micrometer"}, {"unit": "micrometer"},
+            {"unit": "micrometer"}], "datasets": [{"path": "0", "coordinateTransformations":
+            [{"type": "scale", "scale": [8.5, 8.5, 8.5]}]}]}]})";
+    // A chunk that is absent is no damage, so there is little to say of what the array may claim.
+    const auto add = [&](const std::string& changed, bool sameSize) {
+      const size_t length = files.at(changed).size();
+      all.push_back({"zarr", "z", files, changed, length, 4096 * kDeflate, sameSize});
+    };
+    add("z/0/1.1.0", true);
+    add("z/0/.zarray", true);
+    if (codec.empty()) add("z/.zattrs", true);
+  }
+}
+
 bool reads(const std::string& path) {
   try {
     readAll(*openImage(path));
@@ -154,6 +176,7 @@ std::vector<Sample> samples() {
   std::vector<Sample> all;
   addHeaderFiles(all);
   addPictures(all);
+  addZarr(all);
   return all;
 }
 

@@ -100,7 +100,7 @@ void copyVdb(const Options& o, const Common& common) {
 
 void run(const Options& o, const Common& common) {
   checkWritable(o.out);
-  const bool fromVdb = !o.input.size && isVdb(o.input.path);
+  const bool fromVdb = isVdb(o.input);
   if (o.input.selection || (!fromVdb && hasVdbEnding(o.out)))
     convertMask(o, common);
   else if (fromVdb)

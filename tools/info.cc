@@ -91,7 +91,7 @@ void run(const Options& o, const Common& common) {
   JsonFile jsonFile(o.json);
   Json json;
   json["file"] = o.input.path;
-  if (!o.input.size && isVdb(o.input.path)) {
+  if (isVdb(o.input)) {
     json["format"] = "vdb";
     json["grids"] = Json::array();
     for (const auto& grid : readVdb(o.input.path, {}, common.progress))

@@ -91,6 +91,15 @@ std::vector<std::string> filesOf(const std::vector<std::string>& outputs) {
   return files;
 }
 
+bool isVdbFile(const std::string& path) {
+  // OpenVDB's magic number: ' BDV' as a little-endian 64-bit integer.
+  constexpr char kMagic[8] = {' ', 'B', 'D', 'V', 0, 0, 0, 0};
+  std::ifstream file(path, std::ios::binary);
+  char start[8] = {};
+  if (file.read(start, 8) && std::memcmp(start, kMagic, 8) == 0) return true;
+  return hasVdbEnding(path) && !looksLikeImage(path);
+}
+
 }  // namespace
 
 double parseNumber(const std::string& text, const std::string& option) {
@@ -131,6 +140,7 @@ void InputOptions::addRaw(CLI::App& verb) {
   verb.add_option("--type", type,
                   "RAW input: its sample type (" + typeNames() + "); otherwise the output's");
   verb.add_flag("--big-endian", bigEndian, "RAW input: most significant byte first");
+  verb.add_option("--dataset", dataset, "Zarr or HDF5 input: the array to read")->type_name("NAME");
 }
 
 void InputOptions::addSelection(CLI::App& verb) {
@@ -192,13 +202,11 @@ std::optional<RawLayout> InputOptions::rawLayout() const {
   return RawLayout{*size, *sampleType, bigEndian};
 }
 
-bool isVdb(const std::string& path) {
-  // OpenVDB's magic number: ' BDV' as a little-endian 64-bit integer.
-  constexpr char kMagic[8] = {' ', 'B', 'D', 'V', 0, 0, 0, 0};
-  std::ifstream file(path, std::ios::binary);
-  char start[8] = {};
-  if (file.read(start, 8) && std::memcmp(start, kMagic, 8) == 0) return true;
-  return hasVdbEnding(path) && !looksLikeImage(path);
+bool isVdb(const InputOptions& input) {
+  if (input.size || !isVdbFile(input.path)) return false;
+  if (!input.dataset.empty())
+    throw InvalidInput(input.path + ": --dataset is for Zarr and HDF5; choose with --grid here");
+  return true;
 }
 
 bool hasVdbEnding(const std::string& path) {
@@ -257,7 +265,7 @@ openvdb::GridBase::Ptr chooseGrid(const std::vector<openvdb::GridBase::Ptr>& gri
 }
 
 std::unique_ptr<ImageReader> openInput(const InputOptions& input) {
-  auto image = openImage(input.path, input.rawLayout());
+  auto image = openImage(input.path, input.rawLayout(), input.dataset);
   for (const std::string& output : filesOf(input.outputs))
     for (const std::string& file : image->files())
       if (sameFile(file, output))
@@ -272,7 +280,7 @@ void checkWritable(const std::string& output) {
 
 MaskGrid::Ptr loadObject(const InputOptions& input, Interrupter* interrupter) {
   MaskGrid::Ptr object;
-  if (!input.size && isVdb(input.path)) {
+  if (isVdb(input)) {
     const auto grid = chooseGrid(readVdb(input.path, {}, interrupter), input.path, input.gridName,
                                  "--grid", {"object"}, isNumericGrid);
     if (input.domain) setDomain(*grid, *input.domain);  // an inversion needs it
@@ -291,7 +299,7 @@ MaskGrid::Ptr loadObject(const InputOptions& input, Interrupter* interrupter) {
 
 Int32Grid::Ptr loadLabels(const InputOptions& input, const std::string& gridOption,
                           Interrupter* interrupter) {
-  if (!input.size && isVdb(input.path)) {
+  if (isVdb(input)) {
     const auto grid = chooseGrid(readVdb(input.path, {}, interrupter), input.path, input.gridName,
                                  gridOption, {"grain", "truth"}, isLabelGrid);
     return openvdb::gridPtrCast<Int32Grid>(grid);

@@ -22,6 +22,7 @@ struct InputOptions {
   std::string path;
   std::vector<std::string> outputs;  ///< what the verb will write; empty names and "-" are none
   std::string gridName;
+  std::string dataset;        ///< of a Zarr group or an HDF5 file
   std::string dims, type;     ///< of a RAW file; `type` of the output if the input is not RAW
   bool typeIsOfInput = true;  ///< nothing but a RAW input takes a `type`
   bool bigEndian = false;
@@ -36,7 +37,7 @@ struct InputOptions {
   std::optional<VoxelSize> voxelSize;
   std::optional<CoordBBox> domain;
 
-  void addRaw(CLI::App& verb);
+  void addRaw(CLI::App& verb);  ///< and --dataset
   void addSelection(CLI::App& verb);
   void addVoxelSize(CLI::App& verb);
   void addDomain(CLI::App& verb);
@@ -50,8 +51,9 @@ double parseNumber(const std::string& text, const std::string& option);
 Coord parseDims(const std::string& text, const std::string& option);
 VoxelSize parseVoxelSize(const std::string& text);
 
-/// True if the file is to be read as OpenVDB: by its first bytes, then by its ending.
-bool isVdb(const std::string& path);
+/// True if the input is to be read as OpenVDB: by its first bytes, then by its ending.
+/// @throw InvalidInput if it is, and a dataset was asked for
+bool isVdb(const InputOptions& input);
 bool hasVdbEnding(const std::string& path);
 bool hasTiffEnding(const std::string& path);
 bool hasRawEnding(const std::string& path);

@@ -18,6 +18,7 @@
 #include "vdb_madf/detail/raw_image.h"
 #include "vdb_madf/detail/slice_folder.h"
 #include "vdb_madf/detail/tiff_image.h"
+#include "vdb_madf/detail/zarr_image.h"
 #include "vdb_madf/errors.h"
 
 namespace vdb_madf {
@@ -48,6 +49,7 @@ enum class Format {
   nifti,
   dgtal,
   pyhst,
+  zarr,
   raw,
   vdb
 };
@@ -98,6 +100,7 @@ constexpr size_t kHeadBytes = 1024;
 
 /// Pictures in a folder of TIFF slices are previews.
 Format formatOfFolder(const std::string& path) {
+  if (detail::isZarrFolder(path)) return Format::zarr;
   return detail::tiffFilesIn(path).empty() ? Format::pictureFolder : Format::tiffFolder;
 }
 
@@ -111,8 +114,8 @@ Format formatOf(const std::string& path) {
   return format == Format::unknown ? formatOfEnding(path) : format;
 }
 
-bool hasDatasets(Format) {
-  return false;
+bool hasDatasets(Format format) {
+  return format == Format::zarr;
 }
 
 }  // namespace
@@ -160,6 +163,8 @@ std::unique_ptr<ImageReader> openImage(const std::string& path, const std::optio
       return detail::openDgtal(path);
     case Format::pyhst:
       return detail::openPyhst(path);
+    case Format::zarr:
+      return detail::openZarr(path, dataset);
     case Format::raw:
       throw IoError(path + ": a raw file needs its size and sample type (--dims, --type)");
     case Format::vdb:
