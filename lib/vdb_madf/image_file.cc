@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "vdb_madf/detail/dgtal_image.h"
+#include "vdb_madf/detail/hdf5_image.h"
 #include "vdb_madf/detail/header_text.h"
 #include "vdb_madf/detail/input_file.h"
 #include "vdb_madf/detail/isq_image.h"
@@ -50,6 +51,7 @@ enum class Format {
   dgtal,
   pyhst,
   zarr,
+  hdf5,
   raw,
   vdb
 };
@@ -73,6 +75,7 @@ Format formatOfEnding(const std::string& path) {
   }
   if (end == ".longvol") return Format::dgtal;
   if (end == ".vol" || end == ".info") return Format::pyhst;
+  if (end == ".h5" || end == ".hdf5") return Format::hdf5;
   if (end == ".raw") return Format::raw;
   if (end == ".vdb") return Format::vdb;
   return Format::unknown;
@@ -87,6 +90,7 @@ Format formatOfContent(const std::string& head) {
   if (detail::isPngHeader(head) || detail::isBmpHeader(head)) return Format::picture;
   if (begins("NRRD0", 5)) return Format::nrrd;
   if (detail::isNpyHeader(head)) return Format::npy;
+  if (begins("\x89HDF\r\n\x1a\n", 8)) return Format::hdf5;
   if (begins(" BDV\0\0\0\0", 8)) return Format::vdb;
   if (detail::isIsqHeader(head)) return Format::isq;
   if (detail::isMetaHeader(head)) return Format::meta;
@@ -115,7 +119,7 @@ Format formatOf(const std::string& path) {
 }
 
 bool hasDatasets(Format format) {
-  return format == Format::zarr;
+  return format == Format::zarr || format == Format::hdf5;
 }
 
 }  // namespace
@@ -165,6 +169,12 @@ std::unique_ptr<ImageReader> openImage(const std::string& path, const std::optio
       return detail::openPyhst(path);
     case Format::zarr:
       return detail::openZarr(path, dataset);
+    case Format::hdf5:
+#ifdef VDB_MADF_HDF5
+      return detail::openHdf5(path, dataset);
+#else
+      throw IoError(path + ": HDF5 cannot be read by this program: build it with libhdf5-dev");
+#endif
     case Format::raw:
       throw IoError(path + ": a raw file needs its size and sample type (--dims, --type)");
     case Format::vdb:
