@@ -1,0 +1,121 @@
+# SPDX-FileCopyrightText: The vdb_madf authors
+# SPDX-License-Identifier: Apache-2.0
+"""Writes one volume in formats of other programs, or reads what we wrote, with those programs' own modules.
+
+    image_formats.py write FOLDER   volume.raw (int16, x fastest) and labels.raw (int64), and the same
+                                    as other files; prints a line each: "file TRUTH NAME METRES [DATASET]",
+                                    METRES 0 where the format knows none; or "skipped MODULE"
+    image_formats.py check FOLDER   compares ours.npy, ours.tif, ours.nrrd with labels.raw; prints "same NAME"
+
+The axes of the arrays are [z, y, x], all of other length; no two voxels of the volume are equal.
+"""
+import importlib
+import os
+import sys
+
+SHAPE = (6, 7, 11)
+UM = 8.5
+
+
+def module(name):
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        print("skipped", name)
+        return None
+
+
+def write_numpy(np, folder, volume, labels):
+    np.save(f"{folder}/volume.npy", volume)
+    print("file volume.raw volume.npy 0")
+    np.save(f"{folder}/labels.npy", labels)
+    print("file labels.raw labels.npy 0")
+
+
+def write_nifti(nib, folder, volume, labels):
+    for name in ("volume.nii", "volume.nii.gz"):
+        image = nib.Nifti1Image(volume.transpose(2, 1, 0), [[UM / 1e3, 0, 0, 0], [0, UM / 1e3, 0, 0],
+                                                           [0, 0, UM / 1e3, 0], [0, 0, 0, 1]])
+        image.header.set_xyzt_units("mm")
+        nib.save(image, f"{folder}/{name}")
+        print("file volume.raw", name, UM / 1e6)
+
+
+def write_zarr(zarr, folder, volume, labels):
+    import numcodecs
+    for name, compressor in (("blosc", numcodecs.Blosc(cname="zstd", shuffle=2)),
+                             ("zlib", numcodecs.Zlib()), ("gzip", numcodecs.GZip()), ("none", None)):
+        zarr.save_array(f"{folder}/{name}.zarr", volume, chunks=(4, 3, 5), compressor=compressor)
+        print(f"file volume.raw {name}.zarr 0")
+    store = zarr.DirectoryStore(f"{folder}/image.ome.zarr", dimension_separator="/")
+    group = zarr.group(store)
+    group.create_dataset("0", data=labels[None, None], chunks=(1, 1, 4, 3, 5), fill_value=0,
+                         write_empty_chunks=False)
+    group.create_dataset("1", data=volume[None, None], chunks=(1, 1, 2, 8, 8), order="F")
+    scale = [{"type": "scale", "scale": [1, 1, UM, UM, UM]}]
+    group.attrs["multiscales"] = [{
+        "version": "0.4",
+        "axes": [{"name": "t", "type": "time"}, {"name": "c", "type": "channel"}] +
+                [{"name": a, "type": "space", "unit": "micrometer"} for a in "zyx"],
+        "datasets": [{"path": p, "coordinateTransformations": scale} for p in "01"]}]
+    print("file labels.raw image.ome.zarr", UM / 1e6)
+    print("file volume.raw image.ome.zarr", UM / 1e6, "1")
+
+
+def write_hdf5(h5py, folder, volume, labels):
+    with h5py.File(f"{folder}/volume.h5", "w") as file:
+        data = file.create_dataset("exported_data", data=volume, chunks=(4, 3, 5), compression="gzip",
+                                   shuffle=True)
+        data.attrs["element_size_um"] = (UM, UM, UM)
+        file.create_dataset("more/labels", data=labels)
+    print("file volume.raw volume.h5", UM / 1e6, "exported_data")
+    print("file labels.raw volume.h5 0 more/labels")
+
+
+def write_slices(image, folder, volume, labels):
+    small = (labels % 251).astype("uint8")
+    small.tofile(f"{folder}/small.raw")
+    for kind in ("png", "bmp"):
+        os.mkdir(f"{folder}/{kind}")
+        for z, plane in enumerate(small):
+            image.fromarray(plane).save(f"{folder}/{kind}/slice{z}.{kind}")
+        print(f"file small.raw {kind} 0")
+
+
+def write(folder):
+    np = module("numpy")
+    if np is None:
+        return
+    count = SHAPE[0] * SHAPE[1] * SHAPE[2]
+    volume = (np.random.RandomState(1).permutation(count) - 200).astype("<i2").reshape(SHAPE)
+    labels = np.where(volume % 3 == 0, volume.astype("<i8") + 200, 0)
+    volume.tofile(f"{folder}/volume.raw")
+    labels.tofile(f"{folder}/labels.raw")
+    write_numpy(np, folder, volume, labels)
+    for name, function in (("nibabel", write_nifti), ("zarr", write_zarr), ("h5py", write_hdf5),
+                           ("PIL.Image", write_slices)):
+        found = module(name)
+        if found:
+            function(found, folder, volume, labels)
+
+
+def check(folder):
+    np = module("numpy")
+    if np is None:
+        return
+    labels = np.fromfile(f"{folder}/labels.raw", "<i8").reshape(SHAPE)
+    ours = {"ours.npy": np.load(f"{folder}/ours.npy")}
+    tifffile, nrrd = module("tifffile"), module("nrrd")
+    if tifffile:
+        ours["ours.tif"] = tifffile.imread(f"{folder}/ours.tif")
+    if nrrd:
+        ours["ours.nrrd"] = nrrd.read(f"{folder}/ours.nrrd", index_order="C")[0]
+    for name, array in ours.items():
+        if array.shape == labels.shape and (array == labels).all():
+            print("same", name, array.dtype)
+        else:
+            print("differs", name, array.dtype, array.shape)
+
+
+if __name__ == "__main__":
+    {"write": write, "check": check}[sys.argv[1]](sys.argv[2])
