@@ -157,7 +157,9 @@ TEST_CASE("cli: a file that is missing or none of ours is named", "[cli]") {
   uint32_t state = 1;
   for (char& c : garbage) c = char((state = state * 1664525 + 1013904223) >> 24);
   std::vector<std::string> files{"missing.vdb", "missing.tif", "missing", "folder", "folder.vdb"};
-  for (const std::string ending : {".vdb", ".tif", ".mhd", ".mha", ".nrrd", ".nhdr", ".xyz"}) {
+  for (const std::string ending :
+       {".vdb", ".tif", ".mhd", ".mha", ".nrrd", ".nhdr", ".npy", ".png", ".bmp", ".isq", ".nii",
+        ".nii.gz", ".vol", ".longvol", ".h5", ".xyz"}) {
     files.push_back("empty" + ending);
     files.push_back("garbage" + ending);
     bench.write("empty" + ending, "");
@@ -209,6 +211,8 @@ TEST_CASE("cli: a grid has to be there, usable and the only one", "[cli]") {
   refuses(bench, kFailed, "remerge s.vdb o.vdb", {"s.vdb", "segment again with --keep manifold"});
   bench.mustRun("convert s.vdb s.tif --grid truth");
   refuses(bench, kFailed, "segment s.tif o.vdb --grid truth", {"s.tif", "--grid"});
+  refuses(bench, kFailed, "segment s.tif o.vdb --dataset truth", {"s.tif", "--dataset"});
+  refuses(bench, kFailed, "segment s.vdb o.vdb --dataset truth", {"s.vdb", "--dataset", "--grid"});
 }
 
 TEST_CASE("cli: labels are whole numbers of one sample", "[cli]") {

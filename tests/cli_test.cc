@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 #include <cstring>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "support/program.h"
@@ -100,7 +101,8 @@ TEST_CASE("cli: convert keeps every sample through every format", "[cli]") {
   REQUIRE(samples.size() == 30 * 20 * 10);
   std::string from = "s.raw";
   std::string layout = " --dims 30x20x10 --type uint8";
-  for (const std::string to : {"a.tif", "a.mhd", "a.mha", "a.vdb", "b.tif", "b.vdb", "b.raw"}) {
+  for (const std::string to :
+       {"a.tif", "a.mhd", "a.mha", "a.nrrd", "a.npy", "a.vdb", "b.tif", "b.vdb", "b.raw"}) {
     bench.mustRun("convert " + from + " " + to + layout);
     from = to;
     layout = "";
@@ -123,6 +125,25 @@ TEST_CASE("cli: convert changes the sample type", "[cli]") {
   CHECK(bench.bytes("u.raw").size() == 16);
   bench.mustRun("convert ramp.raw big.raw --dims 4x1x1 --type uint16 --big-endian");
   CHECK(bench.bytes("big.raw") == std::string("\1\0\3\2\5\4\7\6", 8));
+}
+
+TEST_CASE("cli: a dataset is chosen by its name", "[cli]") {
+  const Bench bench;
+  for (const std::string name : {"a", "b"}) {
+    std::filesystem::create_directories(bench.path("z.zarr/" + name));
+    bench.write("z.zarr/" + name + "/.zarray",
+                R"({"zarr_format": 2, "shape": [1, 1, 8], "chunks": [1, 1, 8], "dtype": "|u1",
+                    "compressor": null, "fill_value": 0, "filters": null, "order": "C"})");
+    bench.write("z.zarr/" + name + "/0.0.0", name == "a" ? ramp() : std::string(8, '\7'));
+  }
+  bench.write("z.zarr/.zgroup", R"({"zarr_format": 2})");
+  const Outcome several = bench.run("info z.zarr");
+  CHECK(several.exitCode == 1);
+  CHECK(several.err.find("'a', 'b'") != std::string::npos);
+  bench.mustRun("convert z.zarr a.raw --dataset a");
+  CHECK(bench.bytes("a.raw") == ramp());
+  bench.mustRun("segment z.zarr b.vdb --dataset b");
+  CHECK(gridOf(infoOf(bench, "b.vdb"), "grain").at("active_voxels") == 8);
 }
 
 TEST_CASE("cli: the selection says what is object", "[cli]") {
