@@ -48,9 +48,10 @@ TEST_CASE("image_zarr: every type, codec, order and separator", "[image_zarr]") 
   const std::string path = folder / "a.zarr";
   const char* names[] = {"u1", "i1", "u2", "i2", "u4", "i4", "f4", "f8"};
   for (const SampleType type : kSampleTypes)
-    for (const std::string codec : {"", "zlib", "gzip", "blosc", "zstd", "zlib", "blosclz"})
+    for (const std::string codec : {"", "blosc", "zlib", "gzip", "zstd", "blosclz"})
       for (const std::string order : {"C", "F"}) {
-        if (type != SampleType::uint16 && (order == "F" || codec == "gzip")) continue;
+        if (type != SampleType::uint16 && (order == "F" || (codec != "" && codec != "blosc")))
+          continue;
         ZarrLayout layout{kSize,
                           kChunk,
                           "",
