@@ -108,7 +108,7 @@ std::pair<std::string, uint64_t> headerOf(const InputFile& file) {
 std::vector<int64_t> shapeOf(const std::string& path, std::string text) {
   std::replace(text.begin(), text.end(), ',', ' ');
   const auto shape = integers(text);
-  if (!shape) throw IoError(path + ": the shape " + quoted(text) + " cannot be read");
+  if (!shape) throw IoError(path + ": the shape " + detail::quoted(text) + " cannot be read");
   return {shape->rbegin(), shape->rend()};
 }
 
