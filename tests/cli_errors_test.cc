@@ -121,6 +121,8 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"remerge in.vdb out.vdb --gamma 2", "--gamma"},
       {"compare in.vdb", "TEST"},
       {"compare in.vdb other.vdb --json other.vdb", "other.vdb"},
+      {"compare in.vdb other.vdb --grains in.vdb", "in.vdb"},
+      {"compare in.vdb other.vdb --json a --confusion a", "a"},
       {"render in.vdb out.jpg", "out.jpg"},
       {"info", "FILE"},
       {"generate snow out.jpg", "out.jpg"},

@@ -140,6 +140,44 @@ Int32Grid::Ptr randomLabels(std::mt19937& random, const CoordBBox& box, int coun
   return labels(box, [&](const Coord&) { return int32_t(random() % unsigned(count + 1)); });
 }
 
+/// Splits by the definition, from the confusion matrix alone: each test grain goes to the truth
+/// grain that most of its voxels have. Exchanged roles give the merges.
+std::map<int32_t, std::vector<int32_t>> naiveSplits(const std::vector<Overlap>& overlaps,
+                                                    bool exchanged) {
+  std::map<int32_t, std::map<int32_t, int64_t>> byPiece;
+  for (const Overlap& o : overlaps)
+    if (o.truth && o.test)
+      byPiece[exchanged ? o.truth : o.test][exchanged ? o.test : o.truth] = o.voxels;
+  std::map<int32_t, std::vector<int32_t>> parts;
+  for (const auto& [piece, row] : byPiece) {
+    const auto most = std::max_element(row.begin(), row.end(), [](const auto& a, const auto& b) {
+      return a.second < b.second;  // the first of equals: the smallest id
+    });
+    parts[most->first].push_back(piece);
+  }
+  for (auto part = parts.begin(); part != parts.end();)
+    part = part->second.size() < 2 ? parts.erase(part) : std::next(part);
+  return parts;
+}
+
+std::map<int32_t, std::vector<int32_t>> asMap(const std::vector<GrainGroup>& groups) {
+  std::map<int32_t, std::vector<int32_t>> map;
+  for (const GrainGroup& group : groups) map[group.grain] = group.parts;
+  return map;
+}
+
+/// |A and B| / |A or B| by counting voxels.
+double naiveIou(const Int32Grid& truth, int32_t a, const Int32Grid& test, int32_t b,
+                const CoordBBox& box) {
+  int both = 0, either = 0;
+  for (auto p = box.begin(); p; ++p) {
+    const bool inA = truth.tree().getValue(*p) == a, inB = test.tree().getValue(*p) == b;
+    both += inA && inB;
+    either += inA || inB;
+  }
+  return both / double(either);
+}
+
 class Stop : public Interrupter {
  public:
   bool wasInterrupted(int) override { return true; }
@@ -318,6 +356,76 @@ TEST_CASE("compare: a shift of both grids changes nothing", "[compare]") {
       return labels(cube(11, by), [&](const Coord& p) { return grid.tree().getValue(p - by); });
     };
     requireEqual(compare(*shifted(*truth), *shifted(*test)), expected);
+  }
+}
+
+TEST_CASE("compare: rows of the grains, drawn by hand", "[compare]") {
+  // Truth 1 is split in 5 and 6; 2 and 3 went into 7; 4 was lost, 8 is new.
+  const auto truth = row({1, 1, 1, 1, 2, 2, 3, 3, 3, 4, 0, 0});
+  const auto test = row({5, 5, 5, 6, 7, 7, 7, 7, 0, 0, 8, 8});
+  const Comparison c = compare(*truth, *test);
+  REQUIRE(c.truthMatches.size() == 4);
+  const GrainMatch& one = c.truthMatches[0];
+  CHECK(one.grain == 1);
+  CHECK(one.voxels == 4);
+  CHECK(one.partner == 5);
+  CHECK(one.overlapVoxels == 3);
+  CHECK(one.intersectionOverUnion == 0.75);
+  CHECK(one.pieces == 2);
+  const GrainMatch& three = c.truthMatches[2];
+  CHECK(three.partner == 7);
+  CHECK(three.overlapVoxels == 2);
+  CHECK(three.intersectionOverUnion == Approx(2 / 5.0));
+  CHECK(three.pieces == 0);  // 7 shares as many voxels with 2, the smaller id
+  const GrainMatch& four = c.truthMatches[3];
+  CHECK(four.partner == 0);
+  CHECK(four.intersectionOverUnion == 0);
+  REQUIRE(c.testMatches.size() == 4);
+  CHECK(c.testMatches[2].grain == 7);
+  CHECK(c.testMatches[2].partner == 2);
+  CHECK(c.testMatches[2].pieces == 2);
+  CHECK(c.testMatches[3].partner == 0);
+
+  CHECK(c.foundGrains == 1);  // 2 has exactly one half
+  CHECK(c.meanIntersectionOverUnion == Approx((0.75 + 0.5 + 0.4 + 0) / 4));
+  CHECK(c.splits == 1);
+  CHECK(c.merges == 1);
+  CHECK(asMap(splits(c)) == std::map<int32_t, std::vector<int32_t>>{{1, {5, 6}}});
+  CHECK(asMap(merges(c)) == std::map<int32_t, std::vector<int32_t>>{{7, {2, 3}}});
+}
+
+TEST_CASE("compare: a misplaced border splits and merges nothing", "[compare]") {
+  const Comparison c = compare(*row({1, 1, 1, 1, 1, 2, 2, 2}), *row({1, 1, 1, 2, 2, 2, 2, 2}));
+  CHECK(c.misclassifiedPercent == 25);
+  CHECK(c.splits == 0);
+  CHECK(c.merges == 0);
+  CHECK(splits(c).empty());
+  CHECK(merges(c).empty());
+  CHECK(c.foundGrains == 2);
+}
+
+TEST_CASE("compare: rows of the grains equal the definitions on random labels", "[compare]") {
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    CAPTURE(seed);
+    std::mt19937 random(seed);
+    const CoordBBox box({-3, -9, 5}, {3, -2, 14});
+    const auto truth = randomLabels(random, box, 6);
+    const auto test = randomLabels(random, box, int(1 + random() % 90));
+    const Comparison c = compare(*truth, *test);
+    CHECK(asMap(splits(c)) == naiveSplits(c.overlaps, false));
+    CHECK(asMap(merges(c)) == naiveSplits(c.overlaps, true));
+    CHECK(c.splits == int64_t(splits(c).size()));
+    CHECK(c.merges == int64_t(merges(c).size()));
+    int64_t voxels = 0;
+    for (const Overlap& overlap : c.overlaps) voxels += overlap.voxels;
+    CHECK(voxels == c.commonVoxels + c.truthOnlyVoxels + c.testOnlyVoxels);
+    double sum = 0;
+    for (const GrainMatch& match : c.truthMatches) {
+      const double iou = naiveIou(*truth, match.grain, *test, match.partner, box);
+      CHECK(match.intersectionOverUnion == Approx(iou));
+      sum += iou;
+    }
+    CHECK(c.meanIntersectionOverUnion == Approx(sum / double(c.truthMatches.size())));
   }
 }
 

@@ -5,10 +5,12 @@
 
 #include <cstdio>
 #include <memory>
+#include <sstream>
 
 #include "command.h"
 #include "input.h"
 #include "json_file.h"
+#include "text_file.h"
 #include "vdb_madf/errors.h"
 
 namespace vdb_madf::tools {
@@ -17,8 +19,19 @@ namespace {
 
 struct Options {
   InputOptions truth, test;
-  std::string json;
+  std::string json, grains, confusion;
 };
+
+Json list(const std::vector<GrainGroup>& groups, const char* whole, const char* parts) {
+  Json json = Json::array();
+  for (const GrainGroup& group : groups)
+    json.push_back({{whole, group.grain}, {parts, group.parts}});
+  return json;
+}
+
+bool sameTopology(const Comparison& c) {
+  return c.truthOnlyVoxels == 0 && c.testOnlyVoxels == 0;
+}
 
 Json summary(const Options& o, const Comparison& c) {
   Json json;
@@ -29,12 +42,17 @@ Json summary(const Options& o, const Comparison& c) {
   json["common_voxels"] = c.commonVoxels;
   json["truth_only_voxels"] = c.truthOnlyVoxels;
   json["test_only_voxels"] = c.testOnlyVoxels;
+  json["same_topology"] = sameTopology(c);
   json["misclassified_percent"] = c.misclassifiedPercent;
   json["mirror_misclassified_percent"] = c.mirrorMisclassifiedPercent;
   json["adjusted_rand_index"] = c.adjustedRandIndex;
   json["variation_of_information_bits"] = c.variationOfInformation;
   json["variation_split_bits"] = c.variationSplit;
   json["variation_merge_bits"] = c.variationMerge;
+  json["found_grains"] = c.foundGrains;
+  json["mean_intersection_over_union"] = c.meanIntersectionOverUnion;
+  json["splits"] = list(splits(c), "truth", "test");
+  json["merges"] = list(merges(c), "test", "truth");
   return json;
 }
 
@@ -48,10 +66,40 @@ void print(const Comparison& c) {
   std::printf("adjusted Rand index       %.6f\n", c.adjustedRandIndex);
   std::printf("variation of information  %.6f bits (splits %.6f, merges %.6f)\n",
               c.variationOfInformation, c.variationSplit, c.variationMerge);
+  std::printf("grains found              %lld of %lld (mean intersection over union %.4f)\n",
+              (long long)c.foundGrains, (long long)c.truthGrains, c.meanIntersectionOverUnion);
+  std::printf("splits, merges            %lld truth grains split, %lld test grains merged\n",
+              (long long)c.splits, (long long)c.merges);
+  if (!sameTopology(c))
+    std::printf(
+        "note: the grids differ in topology; all but grains and their unions is compared over the "
+        "voxels labelled in both\n");
+}
+
+/// One line per grain of either grid.
+std::string grainTable(const Comparison& c) {
+  std::ostringstream csv;
+  csv << "side,grain,voxels,partner,overlap_voxels,intersection_over_union,pieces\n";
+  csv.precision(9);
+  for (const auto& [side, matches] :
+       {std::pair<const char*, const std::vector<GrainMatch>&>{"truth", c.truthMatches},
+        {"test", c.testMatches}})
+    for (const GrainMatch& m : matches)
+      csv << side << ',' << m.grain << ',' << m.voxels << ',' << m.partner << ',' << m.overlapVoxels
+          << ',' << m.intersectionOverUnion << ',' << m.pieces << '\n';
+  return csv.str();
+}
+
+std::string confusionTable(const Comparison& c) {
+  std::ostringstream csv;
+  csv << "truth,test,voxels\n";
+  for (const Overlap& o : c.overlaps) csv << o.truth << ',' << o.test << ',' << o.voxels << '\n';
+  return csv.str();
 }
 
 void run(const Options& o, const Common& common) {
   JsonFile jsonFile(o.json);
+  TextFile grainFile(o.grains), confusionFile(o.confusion);
   const Int32Grid::Ptr truth = loadLabels(o.truth, "--truth-grid", common.progress);
   const Int32Grid::Ptr test = loadLabels(o.test, "--test-grid", common.progress);
   const Comparison comparison = compare(*truth, *test, common.progress);
@@ -59,8 +107,12 @@ void run(const Options& o, const Common& common) {
     throw InvalidInput(o.test.path + ": no voxel is labelled both here and in " + o.truth.path +
                        ", so there is nothing to compare: give labels of the same sample");
   common.progress->end();
+  grainFile.write(grainTable(comparison));
+  confusionFile.write(confusionTable(comparison));
   jsonFile.write(summary(o, comparison));
-  if (!common.quiet && !jsonFile.isStandardOutput()) print(comparison);
+  const bool asked = jsonFile.isStandardOutput() || grainFile.isStandardOutput() ||
+                     confusionFile.isStandardOutput();
+  if (!common.quiet && !asked) print(comparison);
 }
 
 }  // namespace
@@ -75,9 +127,14 @@ void addCompare(CLI::App& app, Common& common, Action& action) {
   verb->add_option("--test-grid", o->test.gridName, "grid of TEST")->type_name("NAME");
   verb->add_option("--json", o->json, "machine-readable result (-: standard output)")
       ->type_name("FILE");
+  verb->add_option("--grains", o->grains, "CSV: a line per grain of either side")
+      ->type_name("FILE");
+  verb->add_option("--confusion", o->confusion, "CSV: voxels of each pair of labels that meets")
+      ->type_name("FILE");
   o->truth.addRaw(*verb);
   verb->callback([o, &common, &action] {
-    for (InputOptions* input : {&o->truth, &o->test}) input->outputs = {o->json};
+    for (InputOptions* input : {&o->truth, &o->test})
+      input->outputs = {o->json, o->grains, o->confusion};
     o->truth.parse();
     o->test.parse();
     // --dims describes whichever of the two is RAW.

@@ -3,29 +3,25 @@
 
 #pragma once
 
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "command.h"
-#include "vdb_madf/output_file.h"
+#include "text_file.h"
 
 namespace vdb_madf::tools {
 
 using Json = nlohmann::ordered_json;
 
-/// Where a machine-readable summary goes: a file, a pipe or device, standard output ("-"), or
-/// nowhere (""). Made before the work, so that a path that cannot be written is told at once.
+/// Where a machine-readable summary goes: see TextFile.
 class JsonFile {
  public:
-  explicit JsonFile(const std::string& path);
-  /// A file appears whole or not at all.
+  explicit JsonFile(const std::string& path) : file_(path) {}
   void write(const Json& json);
-  bool isStandardOutput() const { return path_ == "-"; }
+  bool isStandardOutput() const { return file_.isStandardOutput(); }
 
  private:
-  std::string path_;
-  std::unique_ptr<OutputFile> file_;
+  TextFile file_;
 };
 
 int usedThreads(const Common& common);

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 #include <mutex>
-#include <set>
 #include <unordered_map>
 #include <vector>
 
@@ -46,16 +45,12 @@ class Counts {
     for (const auto& [key, voxels] : other.counts_) counts_[key] += voxels;
   }
 
-  struct Entry {
-    int32_t truth, test;
-    int64_t voxels;
-  };
   /// By truth, then by test.
-  std::vector<Entry> sorted() const {
-    std::vector<Entry> entries;
+  std::vector<Overlap> sorted() const {
+    std::vector<Overlap> entries;
     for (const auto& [key, voxels] : counts_)
       entries.push_back({int32_t(key >> 32), int32_t(key & 0xffffffffu), voxels});
-    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    std::sort(entries.begin(), entries.end(), [](const Overlap& a, const Overlap& b) {
       return a.truth != b.truth ? a.truth < b.truth : a.test < b.test;
     });
     return entries;
@@ -152,29 +147,75 @@ class OverlapCounter {
   Counts counts_;
 };
 
-/// A partition of the common voxels, summed up by class.
-struct Marginal {
-  int64_t voxels = 0;
-  int64_t largest = 0;  ///< of the overlaps with the other partition's classes
+/// The grains of one grid, gathered from the overlaps.
+struct Grains {
+  std::map<int32_t, GrainMatch> matches;
+  std::map<int32_t, int64_t> common;  ///< voxels labelled in both grids, where there are any
+
+  void add(int32_t grain, int32_t other, int64_t voxels) {
+    if (!grain) return;
+    GrainMatch& match = matches[grain];
+    match.grain = grain;
+    match.voxels += voxels;
+    if (!other) return;
+    common[grain] += voxels;
+    if (voxels > match.overlapVoxels) {  // the first of equals: overlaps come in ascending order
+      match.partner = other;
+      match.overlapVoxels = voxels;
+    }
+  }
 };
+
+/// What a grain's match says of the partner: known once all overlaps are added.
+void link(Grains& grains, Grains& others) {
+  for (auto& [id, match] : grains.matches) {
+    if (!match.partner) continue;
+    GrainMatch& partner = others.matches[match.partner];
+    ++partner.pieces;
+    match.intersectionOverUnion =
+        double(match.overlapVoxels) / double(match.voxels + partner.voxels - match.overlapVoxels);
+  }
+}
+
+std::vector<GrainMatch> listed(const std::map<int32_t, GrainMatch>& matches) {
+  std::vector<GrainMatch> list;
+  for (const auto& [id, match] : matches) list.push_back(match);
+  return list;
+}
+
+int64_t countBroken(const std::vector<GrainMatch>& matches) {
+  return std::count_if(matches.begin(), matches.end(),
+                       [](const GrainMatch& match) { return match.pieces > 1; });
+}
+
+/// The broken grains of `matches` with their pieces among `others`.
+std::vector<GrainGroup> groups(const std::vector<GrainMatch>& matches,
+                               const std::vector<GrainMatch>& others) {
+  std::map<int32_t, std::vector<int32_t>> parts;
+  for (const GrainMatch& other : others) parts[other.partner].push_back(other.grain);
+  std::vector<GrainGroup> result;
+  for (const GrainMatch& match : matches)
+    if (match.pieces > 1) result.push_back({match.grain, parts[match.grain]});
+  return result;
+}
 
 PairCount pairs(int64_t voxels) {
   return voxels < 2 ? 0 : PairCount(voxels) * PairCount(voxels - 1) / 2;
 }
 
-double misclassifiedPercent(const std::map<int32_t, Marginal>& classes, int64_t common) {
-  int64_t voxels = 0;
-  for (const auto& [id, marginal] : classes) voxels += marginal.voxels - marginal.largest;
+double misclassifiedPercent(const Grains& grains, int64_t common) {
+  int64_t voxels = common;
+  for (const auto& [id, match] : grains.matches) voxels -= match.overlapVoxels;
   return common ? 100.0 * double(voxels) / double(common) : 0.0;
 }
 
-double adjustedRandIndex(const std::vector<Counts::Entry>& common,
-                         const std::map<int32_t, Marginal>& truths,
-                         const std::map<int32_t, Marginal>& tests, int64_t voxels) {
+double adjustedRandIndex(const std::vector<Overlap>& overlaps, const Grains& truths,
+                         const Grains& tests, int64_t voxels) {
   PairCount together = 0, inTruth = 0, inTest = 0;
-  for (const Counts::Entry& entry : common) together += pairs(entry.voxels);
-  for (const auto& [id, marginal] : truths) inTruth += pairs(marginal.voxels);
-  for (const auto& [id, marginal] : tests) inTest += pairs(marginal.voxels);
+  for (const Overlap& overlap : overlaps)
+    if (overlap.truth && overlap.test) together += pairs(overlap.voxels);
+  for (const auto& [id, common] : truths.common) inTruth += pairs(common);
+  for (const auto& [id, common] : tests.common) inTest += pairs(common);
   // One class on both sides, or single voxels on both: the index is 0/0, the partitions agree.
   const PairCount all = pairs(voxels);
   if (inTruth == inTest && (inTruth == 0 || inTruth == all)) return 1;
@@ -183,44 +224,62 @@ double adjustedRandIndex(const std::vector<Counts::Entry>& common,
   return (double(together) - expected) / (greatest - expected);
 }
 
-}  // namespace
-
-Comparison compare(const Int32Grid& truth, const Int32Grid& test, Interrupter* interrupter) {
-  const std::vector<Counts::Entry> overlaps =
-      OverlapCounter().count(truth.tree().root(), test.tree().root(), interrupter).sorted();
-
-  Comparison result;
-  std::vector<Counts::Entry> common;
-  std::map<int32_t, Marginal> truths, tests;  // of the common voxels
-  std::set<int32_t> truthIds, testIds;        // of all voxels
-  for (const Counts::Entry& overlap : overlaps) {
-    if (overlap.truth) truthIds.insert(overlap.truth);
-    if (overlap.test) testIds.insert(overlap.test);
-    if (!overlap.test) {
-      result.truthOnlyVoxels += overlap.voxels;
-    } else if (!overlap.truth) {
-      result.testOnlyVoxels += overlap.voxels;
-    } else {
-      result.commonVoxels += overlap.voxels;
-      common.push_back(overlap);
-      for (Marginal* marginal : {&truths[overlap.truth], &tests[overlap.test]}) {
-        marginal->voxels += overlap.voxels;
-        marginal->largest = std::max(marginal->largest, overlap.voxels);
-      }
-    }
-  }
-  result.truthGrains = int64_t(truthIds.size());
-  result.testGrains = int64_t(testIds.size());
-  result.misclassifiedPercent = misclassifiedPercent(truths, result.commonVoxels);
-  result.mirrorMisclassifiedPercent = misclassifiedPercent(tests, result.commonVoxels);
-  result.adjustedRandIndex = adjustedRandIndex(common, truths, tests, result.commonVoxels);
-  for (const Counts::Entry& overlap : common) {
+void addVariation(const Grains& truths, const Grains& tests, Comparison& result) {
+  for (const Overlap& overlap : result.overlaps) {
+    if (!overlap.truth || !overlap.test) continue;
     const double share = double(overlap.voxels) / double(result.commonVoxels);
     const auto voxels = double(overlap.voxels);
-    result.variationSplit += share * std::log2(double(truths[overlap.truth].voxels) / voxels);
-    result.variationMerge += share * std::log2(double(tests[overlap.test].voxels) / voxels);
+    result.variationSplit += share * std::log2(double(truths.common.at(overlap.truth)) / voxels);
+    result.variationMerge += share * std::log2(double(tests.common.at(overlap.test)) / voxels);
   }
   result.variationOfInformation = result.variationSplit + result.variationMerge;
+}
+
+void addMatches(Grains& truths, Grains& tests, Comparison& result) {
+  link(truths, tests);
+  link(tests, truths);
+  result.truthMatches = listed(truths.matches);
+  result.testMatches = listed(tests.matches);
+  result.splits = countBroken(result.truthMatches);
+  result.merges = countBroken(result.testMatches);
+  double sum = 0;
+  for (const GrainMatch& match : result.truthMatches) {
+    result.foundGrains += match.intersectionOverUnion > 0.5;
+    sum += match.intersectionOverUnion;
+  }
+  if (result.truthGrains) result.meanIntersectionOverUnion = sum / double(result.truthGrains);
+}
+
+}  // namespace
+
+std::vector<GrainGroup> splits(const Comparison& comparison) {
+  return groups(comparison.truthMatches, comparison.testMatches);
+}
+
+std::vector<GrainGroup> merges(const Comparison& comparison) {
+  return groups(comparison.testMatches, comparison.truthMatches);
+}
+
+Comparison compare(const Int32Grid& truth, const Int32Grid& test, Interrupter* interrupter) {
+  Comparison result;
+  result.overlaps =
+      OverlapCounter().count(truth.tree().root(), test.tree().root(), interrupter).sorted();
+
+  Grains truths, tests;
+  for (const Overlap& overlap : result.overlaps) {
+    truths.add(overlap.truth, overlap.test, overlap.voxels);
+    tests.add(overlap.test, overlap.truth, overlap.voxels);
+    (overlap.truth && overlap.test ? result.commonVoxels
+     : overlap.truth               ? result.truthOnlyVoxels
+                                   : result.testOnlyVoxels) += overlap.voxels;
+  }
+  result.truthGrains = int64_t(truths.matches.size());
+  result.testGrains = int64_t(tests.matches.size());
+  result.misclassifiedPercent = misclassifiedPercent(truths, result.commonVoxels);
+  result.mirrorMisclassifiedPercent = misclassifiedPercent(tests, result.commonVoxels);
+  result.adjustedRandIndex = adjustedRandIndex(result.overlaps, truths, tests, result.commonVoxels);
+  addVariation(truths, tests, result);
+  addMatches(truths, tests, result);
   return result;
 }
 
