@@ -53,7 +53,7 @@ TEST_CASE("cli: help names every verb and gives an example", "[cli]") {
   const Bench bench;
   const std::string help = bench.mustRun("--help");
   for (const std::string verb :
-       {"generate", "convert", "segment", "remerge", "compare", "render", "info"}) {
+       {"generate", "convert", "segment", "remerge", "sweep", "compare", "render", "info"}) {
     CHECK(help.find("  " + verb + " ") != std::string::npos);
     CHECK(bench.mustRun(verb + " --help").find("Example:\n  vdb_madf " + verb) !=
           std::string::npos);
@@ -319,6 +319,46 @@ TEST_CASE("cli: labels in a TIFF are uint16, in other formats int32", "[cli]") {
     CHECK(bench.bytes("back.raw") == bench.bytes("g.raw"));
     bench.mustRun("compare g.vdb " + to);
   }
+}
+
+TEST_CASE("cli: sweep gives a line for each choice, equal to its segmentation", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSnow + "s.vdb");
+  bench.mustRun(
+      "sweep s.vdb a.csv --gamma 0,9 --theta -1:-0.7:0.1,-0.95 --merge angle,both --small 50 "
+      "--plot a.svg");
+  std::istringstream csv(bench.bytes("a.csv"));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(csv, line);) lines.push_back(line);
+  REQUIRE(lines.size() == 1 + 2 * 2 * 5);
+  CHECK(lines[0].find("gamma,merge,theta,grains,median_voxels,small_grains,") == 0);
+  for (const auto& [line, options] :
+       {std::pair<size_t, std::string>{1, "--gamma 0 --theta -1 --merge angle"},
+        {3, "--gamma 0 --theta -0.8 --merge angle"},
+        {15, "--gamma 9 --theta -0.95 --merge angle"},
+        {19, "--gamma 9 --theta -0.7 --merge both"}}) {
+    const Json json = Json::parse(bench.mustRun("segment s.vdb g.vdb --json - " + options));
+    std::istringstream fields(lines[line]);
+    std::string gamma, merge, theta, grains;
+    for (std::string* field : {&gamma, &merge, &theta, &grains}) std::getline(fields, *field, ',');
+    CHECK(std::stoll(gamma) == json.at("gamma"));
+    CHECK(merge == json.at("merge"));
+    CHECK(std::stod(theta) == json.at("theta"));
+    CHECK(std::stoll(grains) == json.at("grains"));
+  }
+  const std::string svg = bench.bytes("a.svg");
+  CHECK(svg.find("<svg ") == 0);
+  CHECK(svg.substr(svg.size() - 7) == "</svg>\n");
+  CHECK(svg.find("nan") == std::string::npos);
+  size_t curves = 0;
+  for (size_t at = 0; (at = svg.find("<polyline", at)) != std::string::npos; ++at) ++curves;
+  CHECK(curves == 3 * 4);
+
+  bench.mustRun(
+      "sweep s.vdb b.csv --gamma 0,9 --theta -1:-0.7:0.1,-0.95 --merge angle,both --small 50 "
+      "--plot b.svg --threads 1");
+  CHECK(bench.bytes("a.csv") == bench.bytes("b.csv"));
+  CHECK(svg == bench.bytes("b.svg"));
 }
 
 TEST_CASE("cli: compare finds a file equal to itself", "[cli]") {

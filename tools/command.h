@@ -37,6 +37,7 @@ void addGenerate(CLI::App& app, Common& common, Action& action);
 void addConvert(CLI::App& app, Common& common, Action& action);
 void addSegment(CLI::App& app, Common& common, Action& action);
 void addRemerge(CLI::App& app, Common& common, Action& action);
+void addSweep(CLI::App& app, Common& common, Action& action);
 void addCompare(CLI::App& app, Common& common, Action& action);
 void addRender(CLI::App& app, Common& common, Action& action);
 void addInfo(CLI::App& app, Common& common, Action& action);

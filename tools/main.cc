@@ -83,6 +83,7 @@ int run(int argc, char** argv) {
   addConvert(app, common, action);
   addSegment(app, common, action);
   addRemerge(app, common, action);
+  addSweep(app, common, action);
   addCompare(app, common, action);
   addRender(app, common, action);
   addInfo(app, common, action);
