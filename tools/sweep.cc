@@ -11,6 +11,7 @@
 
 #include "command.h"
 #include "input.h"
+#include "memory_limit.h"
 #include "merge_options.h"
 #include "sweep_plot.h"
 #include "text_file.h"
@@ -131,6 +132,7 @@ void run(const Options& o, const Common& common) {
     throw InvalidInput(o.input.path +
                        ": its domain is unknown, so the boundary cannot be open: use --boundary "
                        "closed, or give --domain x0,y0,z0:x1,y1,z1");
+  options.maxMemory = availableMemory();
   const std::vector<SweepRow> rows =
       naming(o.input.path, [&] { return sweep(*object, options, common.progress); });
   csv.write(table(rows));

@@ -62,6 +62,7 @@ std::vector<SweepRow> sweep(const MaskGrid& object, const SweepOptions& options,
     segmentOptions.gamma = gamma;
     segmentOptions.boundary = options.boundary;
     segmentOptions.domain = options.domain;
+    segmentOptions.maxMemory = options.maxMemory;
     const ManifoldGraph graph = segment(object, segmentOptions, interrupter).graph;
 
     const size_t first = rows.size();

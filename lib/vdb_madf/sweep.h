@@ -22,6 +22,7 @@ struct SweepOptions {
   int64_t smallVoxels = 100;  ///< a grain of fewer voxels is small
   Boundary boundary = Boundary::automatic;
   std::optional<CoordBBox> domain;  ///< overrides the domain in the mask's metadata
+  int64_t maxMemory = 0;            ///< bytes that a segmentation may need; 0: no limit
 };
 
 /// The grains of one choice of parameters.
