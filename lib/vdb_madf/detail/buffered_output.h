@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <charconv>
+#include <cstring>
+#include <string>
+#include <type_traits>
+
+#include "vdb_madf/detail/byte_order.h"
+#include "vdb_madf/detail/output_stream.h"
+#include "vdb_madf/errors.h"
+#include "vdb_madf/grid_types.h"
+
+namespace vdb_madf::detail {
+
+/// The shortest decimal that reads back as the same number.
+template <typename T>
+std::string shortest(T value) {
+  char digits[64];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
+/// Many small pieces, text or binary (little-endian), into an OutputStream.
+class BufferedOutput {
+ public:
+  explicit BufferedOutput(const std::string& path, Interrupter* interrupter = nullptr)
+      : stream_(path), interrupter_(interrupter) {
+    buffer_.reserve(kCapacity);
+  }
+
+  void bytes(const void* data, size_t count) {
+    if (buffer_.size() + count > kCapacity) flush();
+    if (count > kCapacity)
+      stream_.write(data, count);
+    else
+      buffer_.append(static_cast<const char*>(data), count);
+  }
+  template <typename T>
+  void value(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    bytes(&value, sizeof value);
+  }
+  void text(const std::string& text) { bytes(text.data(), text.size()); }
+  template <typename T>
+  void number(T value) {
+    text(shortest(value));
+  }
+
+  void commit() {
+    flush();
+    stream_.close();
+    stream_.commit();
+  }
+
+ private:
+  static constexpr size_t kCapacity = size_t(1) << 20;
+
+  void flush() {
+    if (interrupter_ && interrupter_->wasInterrupted()) throw Interrupted();
+    stream_.write(buffer_.data(), buffer_.size());
+    buffer_.clear();
+  }
+
+  OutputStream stream_;
+  Interrupter* interrupter_;
+  std::string buffer_;
+};
+
+}  // namespace vdb_madf::detail
