@@ -40,6 +40,7 @@ void addRemerge(CLI::App& app, Common& common, Action& action);
 void addSweep(CLI::App& app, Common& common, Action& action);
 void addCompare(CLI::App& app, Common& common, Action& action);
 void addRender(CLI::App& app, Common& common, Action& action);
+void addExport(CLI::App& app, Common& common, Action& action);
 void addInfo(CLI::App& app, Common& common, Action& action);
 
 }  // namespace vdb_madf::tools

@@ -86,6 +86,7 @@ int run(int argc, char** argv) {
   addSweep(app, common, action);
   addCompare(app, common, action);
   addRender(app, common, action);
+  addExport(app, common, action);
   addInfo(app, common, action);
   try {
     app.parse(argc, argv);

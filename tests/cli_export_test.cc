@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The verb 'export', run as a user runs it; what is in the files: the tests of their writers.
+
+#include <catch2/catch.hpp>
+
+#include "support/program.h"
+
+using namespace vdb_madf::test;
+
+namespace {
+
+void makeLabels(const Bench& bench) {
+  bench.mustRun("generate spheres s.vdb --size 40 --count 5 --radius 6:9 --voxel-size 10um");
+  bench.mustRun("segment s.vdb g.vdb --keep balls");
+}
+
+}  // namespace
+
+TEST_CASE("cli: export writes every kind, the same for any number of threads", "[cli]") {
+  const Bench bench;
+  makeLabels(bench);
+  for (const std::string what :
+       {"m.ply", "m.obj", "m.stl --smooth 0", "m.vtp --as mesh", "v.vdb --as viz",
+        "w.vdb --as viz --max-dim 16", "l.vdb --as lod", "g2.vdb --as grids", "s2.vdb --as surface",
+        "i.vti", "c.vti --compress", "n.vtp --as network", "n.graphml", "n.csv --as network",
+        "c.csv --as clumps", "c.txt --as clumps --balls 3", "c.data --as clumps --uncovered 0.1",
+        "k.raw --as mask"}) {
+    CAPTURE(what);
+    const std::string file = what.substr(0, what.find(' '));
+    const std::string printed = bench.mustRun("export g.vdb " + what);
+    CHECK(printed.find(file) == 0);
+    const std::string bytes = bench.bytes(file);
+    CHECK(bytes.size() > 100);
+    bench.mustRun("export g.vdb " + what + " --threads 1 -q");
+    CHECK(bench.bytes(file) == bytes);
+  }
+  CHECK(bench.bytes("k.raw").size() == 40 * 40 * 40);
+  bench.mustRun("export g.vdb folder --as mesh");
+  CHECK(bench.bytes("folder/grain_000001.stl").size() > 84);
+}
+
+TEST_CASE("cli: export refuses what it cannot know or do", "[cli]") {
+  const Bench bench;
+  makeLabels(bench);
+  const auto refusal = [&](const std::string& arguments, int code, const std::string& word) {
+    CAPTURE(arguments);
+    const Outcome outcome = bench.run("export " + arguments);
+    CHECK(outcome.exitCode == code);
+    CHECK(outcome.err.find("vdb_madf: error: ") == 0);
+    CHECK(outcome.err.find(word) != std::string::npos);
+  };
+  refusal("g.vdb x.vdb", 2, "--as");
+  refusal("g.vdb x.vtp", 2, "--as");
+  refusal("g.vdb x.ply --as viz", 2, ".vdb");
+  refusal("g.vdb x.vdb --as picture", 2, "mesh");
+  refusal("g.vdb x.ply --smooth -1", 2, "smooth");
+  refusal("g.vdb x.vdb --as viz --reduce 2 --max-dim 9", 2, "max-dim");
+  refusal("g.vdb g.vdb --as viz", 2, "overwrite");
+  refusal("none.vdb x.ply", 1, "none.vdb");
+  refusal("s.vdb c.txt --as clumps", 1, "--keep balls");
+  CHECK(bench.names() == std::set<std::string>{"g.vdb", "s.vdb"});
+}
