@@ -1,0 +1,79 @@
+# SPDX-FileCopyrightText: The vdb_madf authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the proofs with other programs share: a label volume without any symmetry, and the command.
+
+The volume has voxels of 10 um: voxel (i,j,k) lies at (i,j,k) * 0.01 mm in every file we write.
+"""
+
+import array
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+SIZE = (11, 9, 8)
+EDGE = 0.01  # mm
+LABELS = {  # voxel: label; 1 is one voxel, 2 and 3 share two faces, 70000 needs more than 16 bits
+    (2, 3, 5): 1,
+    (7, 1, 2): 2, (8, 1, 2): 2, (7, 2, 2): 2, (8, 2, 2): 2,
+    (7, 1, 3): 3, (8, 1, 3): 3,
+    (0, 8, 7): 70000, (1, 8, 7): 70000,
+}
+VOXELS = {label: sum(l == label for l in LABELS.values()) for label in set(LABELS.values())}
+
+
+def skip(what):
+    print(f"SKIPPED: {what}")
+    sys.exit(0)
+
+
+def values():
+    """All labels of the volume, x fastest."""
+    nx, ny, nz = SIZE
+    return [LABELS.get((x, y, z), 0) for z in range(nz) for y in range(ny) for x in range(nx)]
+
+
+class Bench:
+    """A folder with the volume in it, in which the command runs. First argument: the command."""
+
+    def __init__(self):
+        self.tool = os.path.abspath(sys.argv[1])
+        self.folder = tempfile.mkdtemp(prefix="vdb_madf_")
+        with open(self.path("labels.raw"), "wb") as file:
+            file.write(array.array("i", values()).tobytes())
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.folder)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def run(self, verb, output, *options, source="labels.raw"):
+        """Writes an output of the volume; returns its path."""
+        raw = ["--dims", "x".join(map(str, SIZE)), "--type", "int32"] if source.endswith(".raw") else []
+        subprocess.run([self.tool, verb, self.path(source), self.path(output), "-q",
+                        *raw, "--voxel-size", "10um", *options], check=True)
+        return self.path(output)
+
+
+def near(a, b, tolerance=1e-6):
+    return len(a) == len(b) and all(abs(x - y) <= tolerance for x, y in zip(a, b))
+
+
+def check(truth, what):
+    if not truth:
+        sys.exit(f"FAILED: {what}")
+
+
+def box_of(label):
+    """World bounds of the voxels of a label: xmin, xmax, ymin ..."""
+    places = [p for p, l in LABELS.items() if l == label]
+    bounds = []
+    for axis in range(3):
+        bounds += [(min(p[axis] for p in places) - 0.5) * EDGE,
+                   (max(p[axis] for p in places) + 0.5) * EDGE]
+    return bounds
