@@ -1,8 +1,10 @@
 # SPDX-FileCopyrightText: The vdb_madf authors
 # SPDX-License-Identifier: Apache-2.0
-"""A picture of an exported PLY in the colours of its grains, by Blender without a display:
+"""A picture of an exported OBJ or PLY in the colours of its grains, by Blender without a display:
 
-    blender --background --factory-startup --python blender_picture.py -- grains.ply picture.png
+    blender --background --factory-startup --python blender_picture.py -- grains.obj picture.png
+
+Blender 3.4 reads OBJ many times faster than PLY.
 """
 
 import sys
@@ -57,5 +59,8 @@ if __name__ == "__main__":
     source, picture = sys.argv[sys.argv.index("--") + 1:]
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
-    bpy.ops.import_mesh.ply(filepath=source)
-    render(bpy.context.object, picture, 700, 32)
+    if source.lower().endswith(".obj"):
+        bpy.ops.wm.obj_import(filepath=source, forward_axis="Y", up_axis="Z")
+    else:
+        bpy.ops.import_mesh.ply(filepath=source)
+    render(bpy.context.selected_objects[0], picture, 600, 16)
