@@ -146,7 +146,7 @@ bool isMeshOutput(const std::string& out) {
 }
 
 void exportClumps(const Options& o, const Common& common, const Int32Grid& labels) {
-  if (o.input.size || !isVdb(o.input.path))
+  if (o.input.size || !isVdb(o.input))
     throw InvalidInput("clumps need the medial balls: segment with --keep balls into a VDB");
   const auto grids = readVdb(o.input.path, {}, common.progress);
   const auto found = std::find_if(grids.begin(), grids.end(), [](const auto& grid) {
