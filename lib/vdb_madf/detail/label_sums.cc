@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/detail/label_sums.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <unordered_map>
+
+#include "vdb_madf/detail/parallel.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+constexpr size_t kLeafGrain = 64;
+constexpr size_t kBondGrain = 16;
+
+/// Sums over voxels of one label in one leaf, relative to its origin.
+struct LeafSums {
+  int32_t label = 0;
+  int32_t voxels = 0;
+  std::array<int32_t, 3> sum{};
+  std::array<int32_t, 6> products{};
+  Coord min{8}, max{-1};
+
+  /// The voxels (x, y, z) with a bit z.
+  void add(int x, int y, unsigned bits) {
+    int32_t n = 0, z1 = 0, z2 = 0;
+    for (unsigned rest = bits; rest; rest &= rest - 1) {
+      const int z = __builtin_ctz(rest);
+      ++n;
+      z1 += z;
+      z2 += z * z;
+    }
+    voxels += n;
+    sum[0] += n * x;
+    sum[1] += n * y;
+    sum[2] += z1;
+    products[0] += n * x * x;
+    products[1] += n * y * y;
+    products[2] += z2;
+    products[3] += n * x * y;
+    products[4] += x * z1;
+    products[5] += y * z1;
+    min.minComponent(Coord(x, y, __builtin_ctz(bits)));
+    max.maxComponent(Coord(x, y, 31 - __builtin_clz(bits)));
+  }
+};
+
+/// Adds a leaf whose origin lies at `at` from the origin of all sums.
+void add(const LeafSums& leaf, const Coord& at, const Coord& origin, GrainSums& grain) {
+  const int64_t n = leaf.voxels, o[3] = {at.x(), at.y(), at.z()};
+  const int64_t s[3] = {leaf.sum[0], leaf.sum[1], leaf.sum[2]};
+  grain.voxels += n;
+  for (size_t i = 0; i < 3; ++i) {
+    grain.sum[i] += n * o[i] + s[i];
+    grain.products[i] += n * o[i] * o[i] + 2 * o[i] * s[i] + leaf.products[i];
+  }
+  for (size_t k = 3; k < 6; ++k) {
+    const size_t i = k == 5 ? 1 : 0, j = k == 3 ? 1 : 2;
+    grain.products[k] += n * o[i] * o[j] + o[i] * s[j] + o[j] * s[i] + leaf.products[k];
+  }
+  grain.box.expand(CoordBBox(origin + leaf.min, origin + leaf.max));
+}
+
+void add(const GrainSums& from, GrainSums& to) {
+  to.voxels += from.voxels;
+  for (size_t i = 0; i < 3; ++i) to.sum[i] += from.sum[i];
+  for (size_t i = 0; i < 6; ++i) to.products[i] += from.products[i];
+  to.box.expand(from.box);
+  to.surface.area += from.surface.area;
+  to.surface.cutFaces += from.surface.cutFaces;
+}
+
+struct PairHash {
+  size_t operator()(const std::pair<int32_t, int32_t>& pair) const {
+    return size_t(pair.first) * 0x9e3779b97f4a7c15ull ^ size_t(pair.second);
+  }
+};
+
+/// What one thread has seen.
+struct Partial {
+  std::unordered_map<int32_t, GrainSums> grains;
+  std::unordered_map<std::pair<int32_t, int32_t>, BondSums, PairHash> bonds;
+};
+
+class LeafCounter {
+ public:
+  LeafCounter(const LabelLeaves& labels, const std::optional<CoordBBox>& cutBy, const Coord& origin)
+      : labels_(&labels), surface_(labels, cutBy), origin_(origin) {}
+
+  void count(size_t leaf, Partial& partial) {
+    const Coord& at = labels_->index().origin(leaf);
+    sumVoxels(leaf);
+    for (const LeafSums& sums : sums_) add(sums, at - origin_, at, partial.grains[sums.label]);
+    surface_.measure(leaf);
+    for (const auto& [label, free] : surface_.free()) {
+      LeafSurface::Free& surface = partial.grains[label].surface;
+      surface.area += free.area;
+      surface.cutFaces += free.cutFaces;
+    }
+    for (const LeafSurface::Shared& shared : surface_.shared()) {
+      BondSums& bond = partial.bonds[{shared.first, shared.second}];
+      for (size_t i = 0; i < 3; ++i) bond.areas[i] += shared.areas[i];
+      bond.faces.insert(bond.faces.end(), shared.faces.begin(), shared.faces.end());
+    }
+  }
+
+ private:
+  LeafSums& sumsOf(int32_t label) {
+    for (LeafSums& sums : sums_)
+      if (sums.label == label) return sums;
+    sums_.emplace_back().label = label;
+    return sums_.back();
+  }
+
+  void sumVoxels(size_t leaf) {
+    sums_.clear();
+    const LeafIndex::Mask& mask = labels_->index().mask(leaf);
+    const int32_t single = labels_->single(leaf);
+    for (int x = 0; x < 8; ++x) {
+      for (int y = 0; y < 8; ++y) {
+        auto bits = unsigned(mask[size_t(x)] >> 8 * y & 0xff);
+        while (bits) {
+          const int row = x * 64 + y * 8;
+          const int32_t label = labels_->label(leaf, row + __builtin_ctz(bits));
+          unsigned same = bits;
+          if (!single)
+            for (unsigned rest = bits; rest; rest &= rest - 1)
+              if (labels_->label(leaf, row + __builtin_ctz(rest)) != label)
+                same &= ~(rest & (~rest + 1));
+          sumsOf(label).add(x, y, same);
+          bits &= ~same;
+        }
+      }
+    }
+  }
+
+  const LabelLeaves* labels_;
+  LeafSurface surface_;
+  Coord origin_;
+  std::vector<LeafSums> sums_;
+};
+
+bool faceOrder(const InterfaceFace& a, const InterfaceFace& b) {
+  return std::tie(a.lower, a.axis) < std::tie(b.lower, b.axis);
+}
+
+}  // namespace
+
+LabelSums labelSums(const LabelLeaves& labels, const std::optional<CoordBBox>& cutBy,
+                    Interrupter* interrupter) {
+  LabelSums result;
+  const LeafIndex& index = labels.index();
+  if (index.leafCount() == 0) return result;
+  result.origin = index.boundingBox().min();
+  PerThread<Partial> partials;
+  parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+    Partial& partial = partials.local();
+    LeafCounter counter(labels, cutBy, result.origin);
+    for (size_t leaf = begin; leaf < end; ++leaf) counter.count(leaf, partial);
+  });
+
+  std::map<int32_t, GrainSums> grains;
+  std::map<std::pair<int32_t, int32_t>, BondSums> bonds;
+  for (Partial& partial : partials) {
+    for (const auto& [label, sums] : partial.grains) add(sums, grains[label]);
+    for (auto& [pair, sums] : partial.bonds) {
+      BondSums& bond = bonds[pair];
+      for (size_t i = 0; i < 3; ++i) bond.areas[i] += sums.areas[i];
+      bond.faces.insert(bond.faces.end(), sums.faces.begin(), sums.faces.end());
+    }
+    partial = Partial();
+  }
+  for (auto& [label, sums] : grains) {
+    result.grains.push_back(std::move(sums));
+    result.grains.back().label = label;
+  }
+  for (auto& [pair, sums] : bonds) {
+    if (sums.faces.empty()) continue;  // pairs of voxels apart, beside the rim
+    result.bonds.push_back(std::move(sums));
+    result.bonds.back().first = pair.first;
+    result.bonds.back().second = pair.second;
+  }
+  parallelFor(result.bonds.size(), kBondGrain, interrupter, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      std::sort(result.bonds[i].faces.begin(), result.bonds[i].faces.end(), faceOrder);
+  });
+  return result;
+}
+
+}  // namespace vdb_madf::detail
