@@ -38,6 +38,7 @@ void addConvert(CLI::App& app, Common& common, Action& action);
 void addSegment(CLI::App& app, Common& common, Action& action);
 void addRemerge(CLI::App& app, Common& common, Action& action);
 void addSweep(CLI::App& app, Common& common, Action& action);
+void addMeasure(CLI::App& app, Common& common, Action& action);
 void addCompare(CLI::App& app, Common& common, Action& action);
 void addRender(CLI::App& app, Common& common, Action& action);
 void addExport(CLI::App& app, Common& common, Action& action);

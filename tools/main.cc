@@ -84,6 +84,7 @@ int run(int argc, char** argv) {
   addSegment(app, common, action);
   addRemerge(app, common, action);
   addSweep(app, common, action);
+  addMeasure(app, common, action);
   addCompare(app, common, action);
   addRender(app, common, action);
   addExport(app, common, action);
