@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vdb_madf/detail/parallel.h"
+#include "vdb_madf/detail/simd.h"
 
 namespace vdb_madf {
 
@@ -17,6 +18,13 @@ namespace {
 
 constexpr size_t kLeafGrain = 1024;
 constexpr uint64_t kFirstZ = 0x0101010101010101ull;
+
+/// Voxels that two leaves have in common.
+VDB_MADF_SIMD int64_t common(const uint64_t* a, const uint64_t* b) {
+  int64_t count = 0;
+  for (int i = 0; i < 8; ++i) count += __builtin_popcountll(a[i] & b[i]);
+  return count;
+}
 
 /// The leaves in pencils along an axis.
 class Pencils {
@@ -64,9 +72,9 @@ class Pencils {
     }
     const LeafIndex::Mask& own = index_->mask(order_[i]);
     const int s = lag & 7;
-    int64_t count = 0;
+    LeafIndex::Mask across;
     for (int x = 0; x < 8; ++x) {
-      uint64_t shifted;
+      uint64_t& shifted = across[size_t(x)];
       if (axis_ == 0) {
         shifted = x + s < 8 ? (*near)[size_t(x + s)] : (*far)[size_t(x + s - 8)];
       } else {
@@ -80,9 +88,8 @@ class Pencils {
           shifted = (a >> s & low) | (b << (8 - s) & ~low);
         }
       }
-      count += __builtin_popcountll(own[size_t(x)] & shifted);
     }
-    return count;
+    return common(own.data(), across.data());
   }
 
   const LeafIndex* index_;

@@ -65,7 +65,8 @@ std::vector<GrainMeasures> grainMeasures(const LabelSums& sums,
   }
   for (GrainMeasures& grain : grains) {
     const double ball = M_PI * grain.equivalentDiameter * grain.equivalentDiameter;
-    grain.sphericity = grain.totalArea() > 0 ? ball / grain.totalArea() : 0;
+    const double area = grain.totalArea() + grain.cutArea;
+    grain.sphericity = area > 0 ? ball / area : 0;
   }
   return grains;
 }

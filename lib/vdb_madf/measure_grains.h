@@ -35,7 +35,7 @@ struct GrainMeasures {
   double freeArea = 0;            ///< towards the background
   double sharedArea = 0;          ///< sum of the areas of its bonds
   double cutArea = 0;             ///< on the border of an open domain; part of no other area
-  double sphericity = 0;          ///< area of the ball of this volume / (free + shared area)
+  double sphericity = 0;          ///< area of the ball of this volume / area, the cut one included
   /// Axes of inertia and the lengths (not half lengths) of the axes of the ellipsoid that has the
   /// grain's second moments, voxels being cubes.
   Principal ellipsoid;

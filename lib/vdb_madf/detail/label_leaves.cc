@@ -100,6 +100,7 @@ void LabelWindow::copyLeaf(uint32_t leaf, int dx, int dy, int dz) {
       Code* out = codes_.data() + (row(x, y, dz * 8) - codes_.data());
       const uint64_t lanes[2] = {kLanesOf[bits & 15] * code, kLanesOf[bits >> 4] * code};
       std::memcpy(out, lanes, sizeof lanes);
+      labelled_[size_t((x - kBegin) * kSide + (y - kBegin))] |= bits << 8 * (dz + 1);
       if (single || !bits) continue;
       for (unsigned rest = bits; rest; rest &= rest - 1) {
         const int z = __builtin_ctz(rest);
@@ -117,6 +118,7 @@ void LabelWindow::copyLeaf(uint32_t leaf, int dx, int dy, int dz) {
 void LabelWindow::load(size_t leaf) {
   names_.assign(1, 0);
   codesByName_.clear();
+  labelled_.fill(0);
   const auto& around = neighborhood_.around(leaf);
   for (int dx = -1; dx <= 1; ++dx)
     for (int dy = -1; dy <= 1; ++dy)

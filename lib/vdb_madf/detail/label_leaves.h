@@ -50,6 +50,10 @@ class LabelWindow {
   const Code* row(int x, int y, int z) const {
     return codes_.data() + ((x - kBegin) * kSide + (y - kBegin)) * kRow + (z + 8);
   }
+  /// Bit z + 8: voxel (x, y, z) is labelled.
+  uint32_t labelled(int x, int y) const {
+    return labelled_[size_t((x - kBegin) * kSide + (y - kBegin))];
+  }
   int32_t label(Code code) const { return names_[code]; }
   size_t codeCount() const { return names_.size(); }  ///< 0 included
 
@@ -65,6 +69,7 @@ class LabelWindow {
   std::vector<int32_t> names_;
   std::unordered_map<int32_t, Code> codesByName_;  // used when there are many
   std::array<Code, kSide * kSide * kRow + kLanes> codes_{};
+  std::array<uint32_t, kSide * kSide> labelled_{};
 };
 
 }  // namespace vdb_madf::detail

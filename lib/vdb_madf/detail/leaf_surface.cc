@@ -61,7 +61,7 @@ LeafSurface::Group& LeafSurface::group(Code first, Code second) {
   Group& added = groups_[groupCount_++];
   added.first = first;
   added.second = second;
-  for (auto& component : added.faces) component.clear();
+  added.count = 0;
   added.owned.clear();
   if (groupCount_ > kFewGroups) {
     const size_t from = groupOf_.empty() ? 0 : groupCount_ - 1;
@@ -98,36 +98,48 @@ void LeafSurface::addFace(int axis, int x, int y, int z, Code lower, Code upper)
     }
   }
   Group& to = group(first, second);
-  if (owned) to.owned.push_back(uint32_t(to.faces[kX].size()));
+  const size_t i = to.count++;
+  if (i == to.faces[kX].size())
+    for (auto& component : to.faces) component.resize(2 * i + 64);
+  if (owned) to.owned.push_back(uint32_t(i));
   const int32_t sign = lowerIsFirst ? 1 : -1;
-  to.faces[kX].push_back(2 * x + (axis == 0));
-  to.faces[kY].push_back(2 * y + (axis == 1));
-  to.faces[kZ].push_back(2 * z + (axis == 2));
-  for (int i = 0; i < 3; ++i) to.faces[size_t(kNormalX + i)].push_back(i == axis ? sign : 0);
+  to.faces[kX][i] = 2 * x + (axis == 0);
+  to.faces[kY][i] = 2 * y + (axis == 1);
+  to.faces[kZ][i] = 2 * z + (axis == 2);
+  to.faces[kNormalX][i] = axis == 0 ? sign : 0;
+  to.faces[kNormalY][i] = axis == 1 ? sign : 0;
+  to.faces[kNormalZ][i] = axis == 2 ? sign : 0;
 }
 
-void LeafSurface::collectFaces(int axis, int x, int y) {
-  constexpr int kLanes = LabelWindow::kLanes;
-  for (int z = LabelWindow::kBegin; z < LabelWindow::kEnd; z += kLanes) {
-    const Code* lower = window_.row(x, y, z);
-    const Code* upper = window_.row(x + (axis == 0), y + (axis == 1), z + (axis == 2));
-    if (load(lower) == load(upper)) continue;
-    const int lanes = std::min(kLanes, LabelWindow::kEnd - (axis == 2) - z);
-    for (int i = 0; i < lanes; ++i)
-      if (lower[i] != upper[i]) addFace(axis, x, y, z + i, lower[i], upper[i]);
+/// Of the row (x, y) and the next one along the axis; bit z + 8 of `within`: which z.
+void LeafSurface::collectFaces(int axis, int x, int y, uint32_t within) {
+  const int nextX = x + (axis == 0), nextY = y + (axis == 1), dz = axis == 2;
+  const uint32_t a = window_.labelled(x, y), b = window_.labelled(nextX, nextY) >> dz;
+  uint32_t faces = a ^ b;
+  if (!oneLabel_ && (a & b & within)) {
+    constexpr int kLanes = LabelWindow::kLanes;
+    for (int z = LabelWindow::kBegin; z < LabelWindow::kEnd; z += kLanes) {
+      const Code *lower = window_.row(x, y, z), *upper = window_.row(nextX, nextY, z + dz);
+      if (load(lower) == load(upper)) continue;
+      for (int i = 0; i < kLanes; ++i) faces |= uint32_t(lower[i] != upper[i]) << (z + i + 8);
+    }
+  }
+  for (faces &= within; faces; faces &= faces - 1) {
+    const int z = __builtin_ctz(faces) - 8;
+    addFace(axis, x, y, z, *window_.row(x, y, z), *window_.row(nextX, nextY, z + dz));
   }
 }
 
 double LeafSurface::cosine(const Group& group, const std::array<int32_t, 6>& target,
                            int32_t squaredReach, bool sameSide) const {
-  const std::vector<int32_t>& x = group.faces[kX];
+  const int32_t* const x = group.faces[kX].data();
   const auto reach = int32_t(std::sqrt(double(squaredReach)));
-  const auto begin = size_t(std::lower_bound(x.begin(), x.end(), target[0] - reach) - x.begin());
-  const auto end = size_t(std::upper_bound(x.begin(), x.end(), target[0] + reach) - x.begin());
+  const auto begin = size_t(std::lower_bound(x, x + group.count, target[0] - reach) - x);
+  const auto end = size_t(std::upper_bound(x + begin, x + group.count, target[0] + reach) - x);
   std::array<int32_t, 6> around = target;
   if (!sameSide) around[3] = around[4] = around[5] = 0;
   int32_t sum[3];
-  sumNormals(x.data() + begin, group.faces[kY].data() + begin, group.faces[kZ].data() + begin,
+  sumNormals(x + begin, group.faces[kY].data() + begin, group.faces[kZ].data() + begin,
              group.faces[kNormalX].data() + begin, group.faces[kNormalY].data() + begin,
              group.faces[kNormalZ].data() + begin, end - begin, around.data(), squaredReach, sum);
   const double nx = sum[0], ny = sum[1], nz = sum[2];
@@ -139,8 +151,7 @@ double LeafSurface::cosine(const Group& group, const std::array<int32_t, 6>& tar
 void LeafSurface::measureFree(const Group& group) {
   int64_t area = 0;
   for (const uint32_t face : group.owned) {
-    std::array<int32_t, 6> target;
-    for (size_t i = 0; i < 6; ++i) target[i] = group.faces[i][face];
+    const std::array<int32_t, 6> target = group.face(face);
     area += std::llround(kAreaUnit * cosine(group, target, kFreeReach, true));
   }
   if (area) free_[window_.label(group.first)].area += area;
@@ -174,8 +185,7 @@ void LeafSurface::measureShared(const Group& group) {
   shared.first = window_.label(group.first);
   shared.second = window_.label(group.second);
   for (const uint32_t face : group.owned) {
-    std::array<int32_t, 6> target;
-    for (size_t i = 0; i < 6; ++i) target[i] = group.faces[i][face];
+    const std::array<int32_t, 6> target = group.face(face);
     shared.areas[0] += std::llround(kAreaUnit * cosine(group, target, kSharedReach, false));
     InterfaceFace stored;
     for (int axis = 0; axis < 3; ++axis) {
@@ -205,15 +215,17 @@ void LeafSurface::measure(size_t leaf) {
                                                       origin_.offsetBy(LabelWindow::kEnd)));
   window_.load(leaf);
   // One label: only free faces, whose normals need less around them.
-  const bool one = window_.codeCount() == 2;
-  const int begin = one ? -3 : LabelWindow::kBegin, last = one ? 10 : LabelWindow::kEnd - 1;
+  oneLabel_ = window_.codeCount() == 2;
+  const int begin = oneLabel_ ? -3 : LabelWindow::kBegin,
+            last = oneLabel_ ? 10 : LabelWindow::kEnd - 1;
+  const uint32_t all = (2u << (last + 8)) - (1u << (begin + 8));
   for (int x = begin; x <= last; ++x) {
     for (int y = begin; y <= last; ++y) {
-      if (y < last) collectFaces(1, x, y);
-      collectFaces(2, x, y);
+      if (y < last) collectFaces(1, x, y, all);
+      collectFaces(2, x, y, all >> 1 & all);
     }
     if (x < last)
-      for (int y = begin; y <= last; ++y) collectFaces(0, x, y);
+      for (int y = begin; y <= last; ++y) collectFaces(0, x, y, all);
   }
   for (size_t i = 0; i < groupCount_; ++i) {
     if (groups_[i].second == 0)
@@ -226,7 +238,7 @@ void LeafSurface::measure(size_t leaf) {
 double bondArea(const std::array<int64_t, 3>& areas) {
   const double one = double(areas[0]) / kAreaUnit, two = double(areas[1]) / (2 * kAreaUnit),
                four = double(areas[2]) / (4 * kAreaUnit);
-  return std::clamp(2 * two - four, 0.25 * one, 1.1 * one);
+  return std::clamp(one + 0.5 * two - 0.5 * four, 0.25 * one, 1.1 * one);
 }
 
 }  // namespace vdb_madf::detail

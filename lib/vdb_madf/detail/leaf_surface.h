@@ -61,13 +61,17 @@ class LeafSurface {
   /// axis with its sign, away from the first partner.
   struct Group {
     Code first = 0, second = 0;  // second 0: background
-    std::array<std::vector<int32_t>, 6> faces;
-    std::vector<uint32_t> owned;  // faces whose area is this leaf's
+    size_t count = 0;
+    std::array<std::vector<int32_t>, 6> faces;  // the first `count` of each
+    std::vector<uint32_t> owned;                // faces whose area is this leaf's
+    std::array<int32_t, 6> face(size_t i) const {
+      return {faces[0][i], faces[1][i], faces[2][i], faces[3][i], faces[4][i], faces[5][i]};
+    }
   };
 
   Group& group(Code first, Code second);
   const Group* findGroup(Code first, Code second) const;
-  void collectFaces(int axis, int x, int y);
+  void collectFaces(int axis, int x, int y, uint32_t within);
   void addFace(int axis, int x, int y, int z, Code lower, Code upper);
   void addPairs(int separation, Shared& shared, const Group& group);
   void measureFree(const Group& group);
@@ -81,6 +85,7 @@ class LeafSurface {
 
   Coord origin_;
   bool atBorder_ = false;
+  bool oneLabel_ = false;      // in the whole window
   std::vector<Group> groups_;  // the first groupCount_ are of this leaf; the rest keeps its memory
   size_t groupCount_ = 0;
   std::unordered_map<uint32_t, uint32_t> groupOf_;
@@ -88,8 +93,9 @@ class LeafSurface {
   std::vector<Shared> shared_;
 };
 
-/// The area of a bond, in voxel faces, from the sums of Shared::areas: 2 A(2) - A(4), where A(s) is
-/// that of pairs s apart per crossing. Held between a quarter and 1.1 times A(1), which matters for
+/// The area of a bond, in voxel faces, from the sums of Shared::areas. With A(s) that of pairs s
+/// apart per crossing: A(1) + A(2)/2 - A(4)/2, the value at distance 0 of the straight line of
+/// least squares through A(1) to A(4). Held between a quarter and 1.1 times A(1), which matters for
 /// bonds of a few faces and grains thinner than four voxels.
 double bondArea(const std::array<int64_t, 3>& areas);
 
