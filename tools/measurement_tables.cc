@@ -126,7 +126,7 @@ std::string bondTable(const std::vector<BondMeasures>& bonds, const Unit& unit) 
   Csv csv;
   const std::string& u = unit.name;
   for (const std::string& name : {std::string("first"), std::string("second"), std::string("faces"),
-                                 "area_" + u + "2", "radius_" + u})
+                                  "area_" + u + "2", "radius_" + u})
     csv.add(name);
   csv.addNames("centroid", "_" + u);
   csv.addNames("normal");
