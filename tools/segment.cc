@@ -10,14 +10,17 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <sstream>
 
 #include "command.h"
 #include "input.h"
 #include "json_file.h"
+#include "measurement_tables.h"
 #include "memory_limit.h"
 #include "merge_options.h"
 #include "vdb_madf/errors.h"
+#include "vdb_madf/measure.h"
 #include "vdb_madf/object_mask.h"
 #include "vdb_madf/segment_memory.h"
 #include "vdb_madf/segmentation_metadata.h"
@@ -31,7 +34,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
   InputOptions input;
-  std::string out, gamma = "0", boundary = "auto", keep, json, maxMemory;
+  std::string out, gamma = "0", boundary = "auto", keep, json, maxMemory, tables;
   MergeArguments merge;
   bool paper = false, dryRun = false;
   SegmentOptions segment;
@@ -49,6 +52,9 @@ int64_t peakMemoryBytes() {
 
 void parse(Options& o) {
   o.input.outputs = {o.out, o.json};
+  if (!o.tables.empty())
+    for (const std::string& path : MeasurementTables::paths(o.tables))
+      o.input.outputs.push_back(path);
   o.input.parse();
   if (!o.maxMemory.empty()) o.segment.maxMemory = parseMemory(o.maxMemory);
   if (o.out.empty() && !o.dryRun) throw WrongUsage("OUT.vdb is required (or --dry-run)");
@@ -81,7 +87,7 @@ void parse(Options& o) {
 }
 
 struct Timing {
-  double read = 0, write = 0, total = 0;
+  double read = 0, measure = 0, write = 0, total = 0;
 };
 
 constexpr int64_t kDustVoxels = 100;
@@ -150,6 +156,7 @@ Json summary(const Options& o, const Common& common, const Segmentation& s, cons
   json["threads"] = usedThreads(common);
   json["seconds_read"] = timing.read;
   for (const StageTime& stage : s.times) json["seconds_" + stage.stage] = stage.seconds;
+  if (!o.tables.empty()) json["seconds_measure"] = timing.measure;
   json["seconds_write"] = timing.write;
   json["seconds_total"] = timing.total;
   for (const StageTime& stage : s.times)
@@ -242,6 +249,8 @@ void run(const Options& o, const Common& common) {
   Timing timing;
   if (!o.dryRun) checkWritable(o.out);
   JsonFile jsonFile(o.json);
+  std::optional<MeasurementTables> tables;
+  if (!o.tables.empty() && !o.dryRun) tables.emplace(o.tables);
   common.progress->start("read");
   MaskGrid::Ptr object = loadObject(o.input, common.progress);
   SegmentOptions options = o.segment;
@@ -265,6 +274,12 @@ void run(const Options& o, const Common& common) {
   Segmentation s = naming(o.input.path, [&] { return segment(*object, options, common.progress); });
   object.reset();
 
+  if (tables) {
+    const Clock::time_point startMeasure = Clock::now();
+    tables->write(measure(*s.grain, {}, common.progress));
+    timing.measure = secondsSince(startMeasure);
+  }
+
   common.progress->start("write");
   std::vector<openvdb::GridBase::ConstPtr> grids{s.grain};
   for (const Int32Grid::Ptr& grid : {s.distanceSquared, s.power, s.manifold})
@@ -274,7 +289,7 @@ void run(const Options& o, const Common& common) {
   writeVdb(o.out, grids, common.progress);
 
   timing.total = secondsSince(start);
-  timing.write = timing.total - timing.read;
+  timing.write = timing.total - timing.read - timing.measure;
   for (const StageTime& stage : s.times) timing.write -= stage.seconds;
   common.progress->end();
   const Json json = summary(o, common, s, timing);
@@ -304,6 +319,9 @@ void addSegment(CLI::App& app, Common& common, Action& action) {
   verb->add_flag("--paper", o->paper, "the paper's merging: angle, cell, theta -0.8 unless given");
   verb->add_option("--keep", o->keep, "more grids: distance,power,manifold,balls")
       ->type_name("LIST");
+  verb->add_option("--tables", o->tables,
+                   "also measure: grains.csv, bonds.csv, sample.json in here")
+      ->type_name("DIR");
   verb->add_option("--json", o->json, "machine-readable summary (-: standard output)")
       ->type_name("FILE");
   verb->add_option("--max-memory", o->maxMemory,
