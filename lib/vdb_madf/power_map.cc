@@ -143,8 +143,10 @@ VDB_MADF_SIMD void markCandidates(Scratch<Key>& s) {
       const int32_t* d = s.radius2.data() + (i * 8 + t + 1) * kSlab;
       for (size_t row = 0; row < 64; ++row) {
         const int32_t power = p[row], before = p[row - kSlab], after = p[row + kSlab];
-        const int32_t bend = (before - power) + (after - power) + 2;
-        const int32_t radiusBend = (d[row] - d[row - kSlab]) + (d[row] - d[row + kSlab]);
+        // Unsigned, so that it wraps where nothing depends on it: beside voxels that are no sites.
+        const auto bend = int32_t(uint32_t(before) + uint32_t(after) - 2 * uint32_t(power) + 2);
+        const auto radiusBend =
+            int32_t(2 * uint32_t(d[row]) - uint32_t(d[row - kSlab]) - uint32_t(d[row + kSlab]));
         const bool below =
             !kFilter | (bend > 0) | ((bend == 0) & (radiusBend > 0)) | (before >= 0) | (after >= 0);
         object[t][row] = power != 0;
