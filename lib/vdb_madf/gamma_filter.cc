@@ -127,10 +127,10 @@ class GeodesicCompletion {
 }  // namespace
 
 VoxelSet keptBalls(const LeafIndex& index, const VoxelSet& balls, const MedialBallTable& table,
-                   int64_t gamma) {
+                   int64_t gamma, Interrupter* interrupter) {
   if (gamma <= 1) return balls;
   VoxelSet kept(index.leafCount());
-  const ObjectComponents components(index);
+  const ObjectComponents components(index, interrupter);
   std::vector<char> hasKept(components.count(), 0);
   const std::vector<VoxelId> members = balls.members();
   for (uint32_t i = 0; i < members.size(); ++i) {

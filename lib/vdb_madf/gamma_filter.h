@@ -12,7 +12,7 @@ namespace vdb_madf {
 /// 6-connected component of X where none does keeps its best one (largest D, then smaller
 /// coordinate), so that a small loose piece stays a grain. gamma <= 1 keeps all.
 VoxelSet keptBalls(const LeafIndex& index, const VoxelSet& balls, const MedialBallTable& table,
-                   int64_t gamma);
+                   int64_t gamma, Interrupter* interrupter = nullptr);
 
 /// The power map of the kept balls (paper, section 5.1). Voxels that none of them covers are
 /// completed geodesically (the paper takes the least power over all balls, also across a pore): in

@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "vdb_madf/detail/disjoint_sets.h"
+#include "vdb_madf/detail/parallel.h"
+#include "vdb_madf/detail/voxels.h"
 
 namespace vdb_madf {
 
@@ -35,43 +37,85 @@ LeafIndex::Mask flood(LeafIndex::Mask seed, const LeafIndex::Mask& mask) {
   return seed;
 }
 
-/// Do a piece and one of the next leaf along an axis touch through the face between them?
-bool touch(const LeafIndex::Mask& a, const LeafIndex::Mask& b, int axis) {
-  if (axis == 0) return a[7] & b[0];
-  for (int x = 0; x < 8; ++x) {
-    if (axis == 1 && ((a[x] & kLastY) >> 56 & b[x])) return true;
-    if (axis == 2 && ((a[x] & kLastZ) >> 7 & b[x])) return true;
+using Pieces = std::vector<LeafIndex::Mask>;
+
+/// The components of a mask by itself, in the order of their first voxels.
+void addPieces(const LeafIndex::Mask& mask, Pieces& pieces) {
+  LeafIndex::Mask rest = mask;
+  for (size_t x = 0; x < 8; ++x) {
+    while (rest[x]) {
+      LeafIndex::Mask seed{};
+      seed[x] = rest[x] & (~rest[x] + 1);
+      const LeafIndex::Mask piece = flood(seed, rest);
+      for (size_t i = 0; i < 8; ++i) rest[i] &= ~piece[i];
+      pieces.push_back(piece);
+    }
   }
-  return false;
+}
+
+constexpr uint32_t kNoPiece = ~0u;
+
+/// Writes `piece` to the places (64, by the other two coordinates) of a face that its voxels touch:
+/// the last face along an axis, or the first.
+void markFace(const LeafIndex::Mask& mask, int axis, bool last, uint32_t piece, uint32_t* face) {
+  if (axis == 0) {
+    detail::forEachBit(mask[last ? 7 : 0], [&](int bit) { face[bit] = piece; });
+    return;
+  }
+  for (size_t x = 0; x < 8; ++x) {
+    const uint64_t bits =
+        axis == 1 ? mask[x] & (last ? kLastY : kFirstY) : mask[x] & (last ? kLastZ : kFirstZ);
+    detail::forEachBit(
+        bits, [&](int bit) { face[x * 8 + size_t(axis == 1 ? bit & 7 : bit >> 3)] = piece; });
+  }
 }
 
 }  // namespace
 
-ObjectComponents::ObjectComponents(const LeafIndex& index) {
-  firstPiece_.reserve(index.leafCount() + 1);
-  for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
-    firstPiece_.push_back(uint32_t(pieces_.size()));
-    LeafIndex::Mask rest = index.mask(leaf);
-    for (int x = 0; x < 8; ++x) {
-      while (rest[x]) {
-        LeafIndex::Mask seed{};
-        seed[x] = rest[x] & (~rest[x] + 1);
-        const LeafIndex::Mask piece = flood(seed, rest);
-        for (int i = 0; i < 8; ++i) rest[i] &= ~piece[i];
-        pieces_.push_back({piece, 0});
+ObjectComponents::ObjectComponents(const LeafIndex& index, Interrupter* interrupter) {
+  constexpr size_t kChunk = 1024;
+  struct Chunk {
+    Pieces pieces;
+    std::vector<uint32_t> counts;  // per leaf
+  };
+  std::vector<Chunk> chunks((index.leafCount() + kChunk - 1) / kChunk);
+  detail::parallelFor(chunks.size(), 1, interrupter, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const size_t stop = std::min(index.leafCount(), (i + 1) * kChunk);
+      for (size_t leaf = i * kChunk; leaf < stop; ++leaf) {
+        const size_t before = chunks[i].pieces.size();
+        addPieces(index.mask(leaf), chunks[i].pieces);
+        chunks[i].counts.push_back(uint32_t(chunks[i].pieces.size() - before));
       }
     }
+  });
+  firstPiece_.reserve(index.leafCount() + 1);
+  firstPiece_.push_back(0);
+  for (Chunk& chunk : chunks) {
+    for (const uint32_t count : chunk.counts) firstPiece_.push_back(firstPiece_.back() + count);
+    for (const LeafIndex::Mask& mask : chunk.pieces) pieces_.push_back({mask, 0});
+    chunk = {};
   }
-  firstPiece_.push_back(uint32_t(pieces_.size()));
 
+  // Pieces that meet in a face between leaves belong together.
   detail::DisjointSets sets(pieces_.size());
   for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
     for (int axis = 0; axis < 3; ++axis) {
-      const uint32_t next = index.neighbors(leaf)[2 * axis + 1];
+      const uint32_t next = index.neighbors(leaf)[size_t(2 * axis + 1)];
       if (next == LeafIndex::kNone) continue;
+      uint32_t here[64], there[64];
+      std::fill(here, here + 64, kNoPiece);
+      std::fill(there, there + 64, kNoPiece);
       for (uint32_t i = firstPiece_[leaf]; i < firstPiece_[leaf + 1]; ++i)
-        for (uint32_t j = firstPiece_[next]; j < firstPiece_[next + 1]; ++j)
-          if (touch(pieces_[i].mask, pieces_[j].mask, axis)) sets.unite(i, j);
+        markFace(pieces_[i].mask, axis, true, i, here);
+      for (uint32_t i = firstPiece_[next]; i < firstPiece_[next + 1]; ++i)
+        markFace(pieces_[i].mask, axis, false, i, there);
+      uint32_t lastHere = kNoPiece, lastThere = kNoPiece;
+      for (int i = 0; i < 64; ++i) {
+        if (here[i] == kNoPiece || there[i] == kNoPiece) continue;
+        if (here[i] == lastHere && there[i] == lastThere) continue;
+        sets.unite(lastHere = here[i], lastThere = there[i]);
+      }
     }
   }
   // A root is its set's first piece: number components in that order.

@@ -13,7 +13,8 @@ namespace vdb_madf {
 /// union over the faces between leaves; memory is per leaf, not per voxel.
 class ObjectComponents {
  public:
-  explicit ObjectComponents(const LeafIndex& index);
+  /// @throw Interrupted
+  explicit ObjectComponents(const LeafIndex& index, Interrupter* interrupter = nullptr);
 
   uint32_t count() const { return count_; }
   /// Component of an object voxel, 0 .. count() - 1.

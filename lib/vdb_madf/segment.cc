@@ -170,7 +170,7 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
 
   if (filter) {
     stages.begin("gamma_filter");
-    VoxelSet kept = keptBalls(index, balls, table, options.gamma);
+    VoxelSet kept = keptBalls(index, balls, table, options.gamma, &stages);
     counts.keptBalls = kept.size();
     map = filteredPowerMap(index, std::move(map), balls, table, kept, &stages);
     balls = std::move(kept);
