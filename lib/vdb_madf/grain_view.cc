@@ -220,7 +220,8 @@ class Renderer {
     if (span.empty()) return false;
     CellWalk leaves(origin, camera_.direction, span.begin, 8, leafLow_, leafHigh_);
     for (; leaves.t() < span.end; leaves.advance()) {
-      const Coord corner = leaves.cell() << 3;
+      const Coord cell = leaves.cell();  // times 8: negative numbers must not be shifted left
+      const Coord corner(cell.x() * 8, cell.y() * 8, cell.z() * 8);
       const MaskLeaf* leaf = object.probeConstLeaf(corner);
       if (!leaf) continue;
       CellWalk voxels(origin, camera_.direction, leaves.t(), 1, corner, corner + Coord(7));
