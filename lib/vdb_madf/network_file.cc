@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 
 #include "vdb_madf/detail/buffered_output.h"
@@ -76,6 +77,7 @@ void writeGraphml(const std::string& path, const GrainNetwork& network, Interrup
   for (const Column& column : network.bondColumns) key("edge", column.name, "double");
   out.text("<graph id=\"grains\" edgedefault=\"undirected\">\n");
   const auto data = [&](const std::string& id, auto value) {
+    if (std::isnan(double(value))) return;
     out.text("<data key=\"" + id + "\">");
     out.number(value);
     out.text("</data>");
@@ -106,6 +108,10 @@ void writeCsv(const std::string& path, const GrainNetwork& network, Interrupter*
   out.text(",throat.conns[0],throat.conns[1]");
   for (const Column& column : network.bondColumns) out.text(",throat." + column.name);
   out.text("\n");
+  const auto cell = [&](double value) {
+    out.text(",");
+    if (!std::isnan(value)) out.number(value);
+  };
   const std::string noGrain(network.grainColumns.size() + 3, ','),
       noBond(network.bondColumns.size() + 2, ',');
   for (size_t i = 0; i < std::max(network.grains.size(), network.bonds.size()); ++i) {
@@ -115,10 +121,7 @@ void writeCsv(const std::string& path, const GrainNetwork& network, Interrupter*
         out.text(",");
       }
       out.number(network.grains[i]);
-      for (const Column& column : network.grainColumns) {
-        out.text(",");
-        out.number(column.values[i]);
-      }
+      for (const Column& column : network.grainColumns) cell(column.values[i]);
     } else {
       out.text(noGrain);
     }
@@ -127,10 +130,7 @@ void writeCsv(const std::string& path, const GrainNetwork& network, Interrupter*
         out.text(",");
         out.number(end);
       }
-      for (const Column& column : network.bondColumns) {
-        out.text(",");
-        out.number(column.values[i]);
-      }
+      for (const Column& column : network.bondColumns) cell(column.values[i]);
     } else {
       out.text(noBond);
     }

@@ -101,4 +101,6 @@ with Bench() as bench:
     check((bond["first_grain"], bond["second_grain"], bond["faces"]) == (2, 3, 2), f"bonds.vtp: {bond}")
     check(near((bond["center_x"], bond["center_y"], bond["center_z"]),
                (7.5 * EDGE, 1 * EDGE, 2.5 * EDGE)), f"bonds.vtp: center of the bond {bond}")
+    check((bond["normal_x"], bond["normal_y"], bond["normal_z"]) == (0, 0, 1), f"bonds.vtp: {bond}")
+    check(network.GetPointData().GetArray("sphericity").GetTuple1(0) > 0, "bonds.vtp: sphericity")
 print("VTK reads VTI, VTP, PLY, OBJ and STL")
