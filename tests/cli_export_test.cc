@@ -21,12 +21,26 @@ void makeLabels(const Bench& bench) {
 TEST_CASE("cli: export writes every kind, the same for any number of threads", "[cli]") {
   const Bench bench;
   makeLabels(bench);
-  for (const std::string what :
-       {"m.ply", "m.obj", "m.stl --smooth 0", "m.vtp --as mesh", "v.vdb --as viz",
-        "w.vdb --as viz --max-dim 16", "l.vdb --as lod", "g2.vdb --as grids", "s2.vdb --as surface",
-        "i.vti", "c.vti --compress", "n.vtp --as network", "n.graphml", "n.csv --as network",
-        "c.csv --as clumps", "c.txt --as clumps --balls 3", "c.data --as clumps --uncovered 0.1",
-        "k.raw --as mask"}) {
+  for (const std::string what : {"m.ply",
+                                 "m.obj",
+                                 "m.stl --smooth 0",
+                                 "m.vtp --as mesh",
+                                 "v.vdb --as viz",
+                                 "w.vdb --as viz --max-dim 16",
+                                 "l.vdb --as lod",
+                                 "g2.vdb --as grids",
+                                 "s2.vdb --as surface",
+                                 "i.vti",
+                                 "c.vti --compress",
+                                 "n.vtp --as network",
+                                 "n.graphml",
+                                 "n.csv --as network",
+                                 "c.csv --as clumps",
+                                 "c.txt --as clumps --balls 3",
+                                 "c.data --as clumps --uncovered 0.1",
+                                 "h.vtu",
+                                 "h.inp --as hexa",
+                                 "k.raw --as mask"}) {
     CAPTURE(what);
     const std::string file = what.substr(0, what.find(' '));
     const std::string printed = bench.mustRun("export g.vdb " + what);
@@ -55,6 +69,7 @@ TEST_CASE("cli: export refuses what it cannot know or do", "[cli]") {
   refusal("g.vdb x.vtp", 2, "--as");
   refusal("g.vdb x.ply --as viz", 2, ".vdb");
   refusal("g.vdb x.vdb --as picture", 2, "mesh");
+  refusal("g.vdb x.vtk --as hexa", 2, ".inp");
   refusal("g.vdb x.ply --smooth -1", 2, "smooth");
   refusal("g.vdb x.vdb --as viz --reduce 2 --max-dim 9", 2, "max-dim");
   refusal("g.vdb g.vdb --as viz", 2, "overwrite");

@@ -12,6 +12,7 @@
 #include "vdb_madf/clumps.h"
 #include "vdb_madf/errors.h"
 #include "vdb_madf/grain_network.h"
+#include "vdb_madf/hexa_file.h"
 #include "vdb_madf/label_preview.h"
 #include "vdb_madf/level_sets.h"
 #include "vdb_madf/mesh_file.h"
@@ -36,6 +37,7 @@ std::string kindOf(const std::string& out) {
   const std::string ending = std::filesystem::path(out).extension().string();
   if (ending == ".vti") return "vti";
   if (ending == ".graphml") return "network";
+  if (isHexahedraEnding(out)) return "hexa";
   return isMeshEnding(out) && ending != ".vtp" ? "mesh" : "";
 }
 
@@ -180,6 +182,13 @@ void exportClumps(const Options& o, const Common& common, const Int32Grid& label
           percent(outside - uncovered) + ", farthest voxel " + distance + " voxels from its balls");
 }
 
+void exportHexahedra(const Options& o, const Common& common, const Int32Grid& labels) {
+  const HexahedraCounts counts = writeHexahedra(o.out, labels, common.progress);
+  say(o, common,
+      counted(counts.grains, "grain") + ", " + counted(counts.elements, "element") + ", " +
+          counted(counts.nodes, "node"));
+}
+
 void exportMask(const Options& o, const Common& common, const Int32Grid& labels) {
   const CoordBBox box = boxOf(labels);
   writeImage(o.out, *objectMask(labels), box, SampleType::uint8, common.progress);
@@ -202,6 +211,7 @@ constexpr Kind kKinds[] = {
     {"surface", exportSurface, ".vdb", hasVdbEnding},
     {"vti", exportVti, ".vti", isVtiOutput},
     {"clumps", exportClumps, ".csv, .txt (YADE) or .data (LAMMPS)", isClumpEnding},
+    {"hexa", exportHexahedra, ".vtu or .inp (Abaqus)", isHexahedraEnding},
     {"mask", exportMask, ".raw, .mhd, .mha or .tif", isImageEnding},
     {"network", exportNetwork, ".vtp, .graphml or .csv", isNetworkEnding},
 };

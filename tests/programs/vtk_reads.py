@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The vdb_madf authors
 # SPDX-License-Identifier: Apache-2.0
-"""VTK (which ParaView reads files with) reads our VTI, VTP, PLY, OBJ and STL."""
+"""VTK (which ParaView reads files with) reads our VTI, VTP, VTU, PLY, OBJ and STL."""
 
 from proof import Bench, EDGE, LABELS, SIZE, VOXELS, box_of, check, near, skip, values
 
@@ -11,7 +11,9 @@ try:
     from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
     from vtkmodules.vtkIOGeometry import vtkOBJReader, vtkSTLReader
     from vtkmodules.vtkIOPLY import vtkPLYReader
-    from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLPolyDataReader
+    from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
+    from vtkmodules.vtkIOXML import (
+        vtkXMLImageDataReader, vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader)
 except ImportError as error:
     skip(f"what VTK reads: python3-vtk9 is not installed ({error})")
 
@@ -103,4 +105,24 @@ with Bench() as bench:
                (7.5 * EDGE, 1 * EDGE, 2.5 * EDGE)), f"bonds.vtp: center of the bond {bond}")
     check((bond["normal_x"], bond["normal_y"], bond["normal_z"]) == (0, 0, 1), f"bonds.vtp: {bond}")
     check(network.GetPointData().GetArray("sphericity").GetTuple1(0) > 0, "bonds.vtp: sphericity")
-print("VTK reads VTI, VTP, PLY, OBJ and STL")
+
+    elements = read(vtkXMLUnstructuredGridReader(), bench.run("export", "elements.vtu"))
+    check(elements.GetNumberOfCells() == len(LABELS), "elements.vtu: number of elements")
+    corners = {(x + dx, y + dy, z + dz) for x, y, z in LABELS
+               for dx in (0, 1) for dy in (0, 1) for dz in (0, 1)}
+    check(elements.GetNumberOfPoints() == len(corners), "elements.vtu: number of nodes")
+    sizes = vtkCellSizeFilter()
+    sizes.SetInputData(elements)
+    sizes.Update()
+    ids = elements.GetCellData().GetArray("grain_id")
+    found = {}
+    for number in range(len(LABELS)):
+        bounds = elements.GetCell(number).GetBounds()
+        middle = [(bounds[2 * axis] + bounds[2 * axis + 1]) / 2 / EDGE for axis in range(3)]
+        voxel = tuple(round(x) for x in middle)
+        check(near(voxel, middle), f"elements.vtu: an element at {middle}")
+        found[voxel] = int(ids.GetTuple1(number))
+        volume_of = sizes.GetOutput().GetCellData().GetArray("Volume").GetTuple1(number)
+        check(abs(volume_of / EDGE**3 - 1) < 1e-6, f"elements.vtu: volume {volume_of}")
+    check(found == LABELS, f"elements.vtu: {found}")
+print("VTK reads VTI, VTP, VTU, PLY, OBJ and STL")
