@@ -29,6 +29,7 @@ TEST_CASE("cli: export writes every kind, the same for any number of threads", "
                                  "w.vdb --as viz --max-dim 16",
                                  "l.vdb --as lod",
                                  "g2.vdb --as grids",
+                                 "b.vdb --as grids --bool",
                                  "s2.vdb --as surface",
                                  "i.vti",
                                  "c.vti --compress",

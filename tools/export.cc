@@ -11,6 +11,7 @@
 #include "input.h"
 #include "vdb_madf/clumps.h"
 #include "vdb_madf/errors.h"
+#include "vdb_madf/grain_masks.h"
 #include "vdb_madf/grain_network.h"
 #include "vdb_madf/hexa_file.h"
 #include "vdb_madf/label_preview.h"
@@ -28,7 +29,7 @@ struct Options {
   InputOptions input;
   std::string out, kind;
   int smoothing = 10, maxDim = 0, reduce = 0;
-  bool compress = false;
+  bool compress = false, asBool = false;
   ClumpOptions clumps;
 };
 
@@ -120,6 +121,12 @@ void exportNetwork(const Options& o, const Common& common, const Int32Grid& labe
 }
 
 void exportGrainGrids(const Options& o, const Common& common, const Int32Grid& labels) {
+  if (o.asBool) {
+    const auto grids = grainMasks(labels, common.progress);
+    writeVdb(o.out, {grids.begin(), grids.end()}, common.progress);
+    say(o, common, counted(grids.size(), "Bool grid"));
+    return;
+  }
   LevelSetOptions options;
   options.smoothing = o.smoothing;
   const auto grids = grainLevelSets(labels, options, common.progress);
@@ -265,6 +272,7 @@ void addExport(CLI::App& app, Common& common, Action& action) {
       ->check(CLI::Range(1, kLargestReduction))
       ->excludes(maxDim);
   verb->add_flag("--compress", o->compress, "vti: with zlib");
+  verb->add_flag("--bool", o->asBool, "grids: the voxels as Bool grids, not level sets");
   verb->add_option("--balls", o->clumps.mostBalls, "clumps: most balls per grain")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();

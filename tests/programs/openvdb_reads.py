@@ -53,6 +53,13 @@ with Bench() as bench:
     names = sorted(grid.name for grid in pyopenvdb.readAllGridMetadata(grids))
     check(names == ["grain_000001", "grain_000002", "grain_000003", "grain_070000"],
           f"grids.vdb holds {names}")
+    masks = bench.run("export", "masks.vdb", "--as", "grids", "--bool")
+    for label in set(LABELS.values()):
+        mask = pyopenvdb.read(masks, f"grain_{label:06d}")
+        check(mask.valueTypeName == "bool", f"masks.vdb: {mask.valueTypeName}")
+        voxels = [place for place in LABELS if mask.getAccessor().getValue(place)]
+        check(voxels == [place for place in LABELS if LABELS[place] == label], f"masks.vdb: {label}")
+        check(mask.activeVoxelCount() == len(voxels), f"masks.vdb: voxels of {label}")
     for path, name, inside in ((grids, "grain_000001", (2, 3, 5)), (surface, "surface", (7, 1, 2))):
         level_set = pyopenvdb.read(path, name)
         check(level_set.gridClass == "level set", f"{name} is no level set")

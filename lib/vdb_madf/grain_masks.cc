@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/grain_masks.h"
+
+#include <map>
+
+#include "vdb_madf/detail/label_leaves.h"
+#include "vdb_madf/errors.h"
+#include "vdb_madf/grid_metadata.h"
+#include "vdb_madf/level_sets.h"
+#include "vdb_madf/mesh_file.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using Leaf = BoolGrid::TreeType::LeafNodeType;
+
+class GrainMasks {
+ public:
+  explicit GrainMasks(const Int32Grid& labels) : labels_(labels) {}
+
+  Leaf& leaf(int32_t label, const Coord& origin) {
+    BoolGrid::Ptr& grid = grids_[label];
+    if (!grid) {
+      if (grids_.size() > kMostGrainGrids)
+        throw InvalidInput("there are more grains than files should have grids (at most " +
+                           std::to_string(kMostGrainGrids) + "): export the labels, or a preview");
+      grid = BoolGrid::create(false);
+      copyProvenance(labels_, *grid);
+      grid->setName(grainName(label));
+    }
+    return *grid->tree().touchLeaf(origin);
+  }
+
+  std::vector<BoolGrid::Ptr> grids() const {
+    std::vector<BoolGrid::Ptr> result;
+    for (const auto& [label, grid] : grids_) result.push_back(grid);
+    return result;
+  }
+
+ private:
+  const Int32Grid& labels_;
+  std::map<int32_t, BoolGrid::Ptr> grids_;
+};
+
+}  // namespace
+
+std::vector<BoolGrid::Ptr> grainMasks(const Int32Grid& labels, Interrupter* interrupter) {
+  const detail::LabelLeaves leaves(labels, interrupter);
+  const LeafIndex& index = leaves.index();
+  GrainMasks masks(labels);
+  for (size_t n = 0; n < index.leafCount(); ++n) {
+    if (interrupter && interrupter->wasInterrupted(int(100 * n / index.leafCount())))
+      throw Interrupted();
+    int32_t last = 0;
+    Leaf* leaf = nullptr;
+    for (int offset = 0; offset < 512; ++offset) {
+      if (!(index.mask(n)[size_t(offset) >> 6] >> (offset & 63) & 1)) continue;
+      const int32_t label = leaves.label(n, offset);
+      if (label != last) leaf = &masks.leaf(label, index.origin(n));
+      last = label;
+      leaf->setValueOn(openvdb::Index(offset), true);
+    }
+  }
+  return masks.grids();
+}
+
+}  // namespace vdb_madf
