@@ -24,6 +24,7 @@ TEST_CASE("cli: export writes every kind, the same for any number of threads", "
   for (const std::string what : {"m.ply",
                                  "m.obj",
                                  "m.stl --smooth 0",
+                                 "t.ply --triangles 3000",
                                  "m.vtp --as mesh",
                                  "v.vdb --as viz",
                                  "w.vdb --as viz --max-dim 16",
@@ -56,6 +57,29 @@ TEST_CASE("cli: export writes every kind, the same for any number of threads", "
   CHECK(bench.bytes("folder/grain_000001.stl").size() > 84);
 }
 
+TEST_CASE("cli: a mesh keeps to its triangles by the least reduction", "[cli]") {
+  const Bench bench;
+  makeLabels(bench);
+  const auto triangles = [&](const std::string& options) {
+    const std::string printed = bench.mustRun("export g.vdb m.ply " + options);
+    const size_t end = printed.find(" triangle");
+    REQUIRE(end != std::string::npos);
+    const std::string bytes = bench.bytes("m.ply");
+    const std::string number = printed.substr(printed.rfind(' ', end - 1) + 1);
+    CHECK(bytes.find("element face " + number.substr(0, number.find(' ')) + "\n") !=
+          std::string::npos);
+    return std::stoi(number);
+  };
+  const int half = triangles("--reduce 2"), third = triangles("--reduce 3");
+  REQUIRE(third < half);
+  REQUIRE(half < triangles(""));
+  for (const char* smooth : {" --smooth 0", " --smooth 5"}) {
+    CHECK(triangles("--triangles " + std::to_string(half) + smooth) == half);
+    CHECK(triangles("--triangles " + std::to_string(half - 1) + smooth) == third);
+  }
+  CHECK(triangles("--reduce 3 --triangles " + std::to_string(half)) == third);
+}
+
 TEST_CASE("cli: export refuses what it cannot know or do", "[cli]") {
   const Bench bench;
   makeLabels(bench);
@@ -74,6 +98,7 @@ TEST_CASE("cli: export refuses what it cannot know or do", "[cli]") {
   refusal("g.vdb x.ply --smooth -1", 2, "smooth");
   refusal("g.vdb x.vdb --as viz --reduce 2 --max-dim 9", 2, "max-dim");
   refusal("g.vdb g.vdb --as viz", 2, "overwrite");
+  refusal("g.vdb x.ply --triangles 3", 1, "allow more");
   refusal("none.vdb x.ply", 1, "none.vdb");
   refusal("s.vdb c.txt --as clumps", 1, "--keep balls");
   CHECK(bench.names() == std::set<std::string>{"g.vdb", "s.vdb"});

@@ -29,6 +29,7 @@ struct Options {
   InputOptions input;
   std::string out, kind;
   int smoothing = 10, maxDim = 0, reduce = 0;
+  int64_t mostTriangles = 0;  ///< 0: any number
   bool compress = false, asBool = false;
   ClumpOptions clumps;
 };
@@ -56,24 +57,6 @@ std::string counted(size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-void exportMesh(const Options& o, const Common& common, const Int32Grid& labels) {
-  GrainMeshOptions options;
-  options.smoothing = o.smoothing;
-  const GrainMesh mesh = grainMesh(labels, options, common.progress);
-  MeshFileOptions file;
-  file.transform = labels.constTransformPtr();
-  file.lengthUnit = unitOf(labels);
-  file.colors = grainColors(labels, common.progress);
-  if (isMeshEnding(o.out))
-    writeMesh(o.out, mesh, file, common.progress);
-  else
-    writeStlFolder(o.out, mesh, file, common.progress);
-  say(o, common,
-      counted(mesh.labels.size(), "grain") + ", " + counted(mesh.points.size(), "point") + ", " +
-          counted(mesh.triangles.size(), "triangle") + "; lengths in " +
-          (file.lengthUnit.empty() ? "voxels" : file.lengthUnit));
-}
-
 CoordBBox boxOf(const Int32Grid& labels) {
   const auto box = domain(labels);
   return box ? *box : labels.evalActiveVoxelBoundingBox();
@@ -84,6 +67,43 @@ int reductionOf(const Options& o, const Int32Grid& labels) {
   if (o.reduce > 0) return o.reduce;
   if (o.maxDim == 0) return 1;
   return reductionFor(boxOf(labels), o.maxDim);
+}
+
+/// The smallest reduction, from the options' on, whose mesh keeps to the budget of triangles.
+/// Smoothing moves points only: their number is that of the exact faces.
+int reductionForTriangles(const Options& o, const Common& common, const Int32Grid& labels) {
+  const int first = reductionOf(o, labels);
+  if (o.mostTriangles == 0) return first;
+  for (int factor = first; factor <= kLargestReduction; ++factor) {
+    const Int32Grid::Ptr reduced = reduceLabels(labels, factor, common.progress);
+    const size_t triangles = grainMesh(*reduced, {}, common.progress).triangles.size();
+    if (triangles == 0 && !labels.empty()) break;
+    if (triangles <= size_t(o.mostTriangles)) return factor;
+  }
+  throw InvalidInput("no reduction of the labels has a mesh of " + std::to_string(o.mostTriangles) +
+                     " triangles or fewer: allow more");
+}
+
+void exportMesh(const Options& o, const Common& common, const Int32Grid& labels) {
+  GrainMeshOptions options;
+  options.smoothing = o.smoothing;
+  const int factor = reductionForTriangles(o, common, labels);
+  const Int32Grid::ConstPtr meshed =
+      factor == 1 ? labels.copy() : reduceLabels(labels, factor, common.progress);
+  const GrainMesh mesh = grainMesh(*meshed, options, common.progress);
+  MeshFileOptions file;
+  file.transform = meshed->constTransformPtr();
+  file.lengthUnit = unitOf(labels);
+  file.colors = grainColors(labels, common.progress);
+  if (isMeshEnding(o.out))
+    writeMesh(o.out, mesh, file, common.progress);
+  else
+    writeStlFolder(o.out, mesh, file, common.progress);
+  say(o, common,
+      counted(mesh.labels.size(), "grain") + ", " + counted(mesh.points.size(), "point") + ", " +
+          counted(mesh.triangles.size(), "triangle") +
+          (factor == 1 ? "" : " (labels at 1/" + std::to_string(factor) + ")") + "; lengths in " +
+          (file.lengthUnit.empty() ? "voxels" : file.lengthUnit));
 }
 
 void exportPreview(const Options& o, const Common& common, const Int32Grid& labels) {
@@ -265,12 +285,15 @@ void addExport(CLI::App& app, Common& common, Action& action) {
                    "faces of the voxels")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
-  auto* maxDim =
-      verb->add_option("--max-dim", o->maxDim, "viz, lod: reduce until no axis has more voxels");
+  auto* maxDim = verb->add_option("--max-dim", o->maxDim,
+                                  "mesh, viz, lod: reduce until no axis has more voxels");
   maxDim->check(CLI::Range(1, 1 << 20));
-  verb->add_option("--reduce", o->reduce, "viz, lod: voxels per coarse voxel along an axis")
+  verb->add_option("--reduce", o->reduce, "mesh, viz, lod: voxels per coarse voxel along an axis")
       ->check(CLI::Range(1, kLargestReduction))
       ->excludes(maxDim);
+  verb->add_option("--triangles", o->mostTriangles,
+                   "mesh: most triangles; the labels are reduced until they suffice")
+      ->check(CLI::Range(int64_t(1), int64_t(0xffffffff)));
   verb->add_flag("--compress", o->compress, "vti: with zlib");
   verb->add_flag("--bool", o->asBool, "grids: the voxels as Bool grids, not level sets");
   verb->add_option("--balls", o->clumps.mostBalls, "clumps: most balls per grain")
