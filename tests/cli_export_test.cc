@@ -70,14 +70,14 @@ TEST_CASE("cli: a mesh keeps to its triangles by the least reduction", "[cli]") 
           std::string::npos);
     return std::stoi(number);
   };
-  const int half = triangles("--reduce 2"), third = triangles("--reduce 3");
-  REQUIRE(third < half);
-  REQUIRE(half < triangles(""));
+  const int atHalf = triangles("--reduce 2"), atThird = triangles("--reduce 3");
+  REQUIRE(atThird < atHalf);
+  REQUIRE(atHalf < triangles(""));
   for (const char* smooth : {" --smooth 0", " --smooth 5"}) {
-    CHECK(triangles("--triangles " + std::to_string(half) + smooth) == half);
-    CHECK(triangles("--triangles " + std::to_string(half - 1) + smooth) == third);
+    CHECK(triangles("--triangles " + std::to_string(atHalf) + smooth) == atHalf);
+    CHECK(triangles("--triangles " + std::to_string(atHalf - 1) + smooth) == atThird);
   }
-  CHECK(triangles("--reduce 3 --triangles " + std::to_string(half)) == third);
+  CHECK(triangles("--reduce 3 --triangles " + std::to_string(atHalf)) == atThird);
 }
 
 TEST_CASE("cli: export refuses what it cannot know or do", "[cli]") {
