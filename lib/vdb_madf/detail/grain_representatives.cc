@@ -20,13 +20,6 @@ void improve(const GrainRepresentative& candidate, GrainRepresentative& best) {
     best = candidate;
 }
 
-/// D as a grid with the topology of the labels.
-Int32Grid::Ptr distances(const LeafIndex& index, const Obstacles& obstacles,
-                         Interrupter* interrupter) {
-  return toGrid(index, squaredDistance(index, obstacles, interrupter).values, "distance_squared",
-                interrupter);
-}
-
 }  // namespace
 
 std::map<int32_t, GrainRepresentative> grainRepresentatives(const LabelLeaves& labels,
@@ -36,19 +29,18 @@ std::map<int32_t, GrainRepresentative> grainRepresentatives(const LabelLeaves& l
   const LeafIndex& index = labels.index();
   if (index.leafCount() == 0) return result;
   if (obstacles.open && uint64_t(index.voxelCount()) == obstacles.domain.volume()) return result;
-  const Int32Grid::Ptr grid = distances(index, obstacles, interrupter);
+  const VoxelArray<int32_t> distances = squaredDistance(index, obstacles, interrupter).values;
   using Best = std::unordered_map<int32_t, GrainRepresentative>;
   PerThread<Best> bests;
   parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
     Best& best = bests.local();
-    const Int32Grid::ConstAccessor accessor = grid->getConstAccessor();
     for (size_t leaf = begin; leaf < end; ++leaf) {
       const Coord& origin = index.origin(leaf);
-      const int32_t* d = accessor.probeConstLeaf(origin)->buffer().data();
+      const int32_t* d = distances.data() + index.firstRank(leaf);
       GrainRepresentative deepest;  // of a run of voxels of the same label
       int32_t last = 0;
       for (int x = 0; x < 8; ++x) {
-        for (uint64_t word = index.mask(leaf)[size_t(x)]; word; word &= word - 1) {
+        for (uint64_t word = index.mask(leaf)[size_t(x)]; word; word &= word - 1, ++d) {
           const int offset = x * 64 + __builtin_ctzll(word);
           const int32_t label = labels.label(leaf, offset);
           if (label != last) {
@@ -57,8 +49,8 @@ std::map<int32_t, GrainRepresentative> grainRepresentatives(const LabelLeaves& l
             deepest = GrainRepresentative();
           }
           // Voxels come in the order that decides ties.
-          if (d[offset] > deepest.squaredRadius)
-            deepest = {origin.offsetBy(x, offset >> 3 & 7, offset & 7), d[offset]};
+          if (*d > deepest.squaredRadius)
+            deepest = {origin.offsetBy(x, offset >> 3 & 7, offset & 7), *d};
         }
       }
       if (last) improve(deepest, best[last]);

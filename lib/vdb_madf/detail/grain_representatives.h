@@ -19,7 +19,7 @@ struct GrainRepresentative {
 
 /// By label; empty if there is no background. Computed from the labels alone; without a gamma
 /// filter these are the critical points that the segmentation numbers grains by.
-/// Memory while it runs: eight bytes per voxel of a touched leaf.
+/// Memory while it runs: four bytes per voxel.
 std::map<int32_t, GrainRepresentative> grainRepresentatives(const LabelLeaves& labels,
                                                             const Obstacles& obstacles,
                                                             Interrupter* interrupter);
