@@ -19,18 +19,44 @@ namespace {
 constexpr size_t kLeafGrain = 1024;
 constexpr uint64_t kFirstZ = 0x0101010101010101ull;
 
-/// Voxels that two leaves have in common.
-VDB_MADF_SIMD int64_t common(const uint64_t* a, const uint64_t* b) {
-  int64_t count = 0;
-  for (int i = 0; i < 8; ++i) count += __builtin_popcountll(a[i] & b[i]);
-  return count;
+/// A leaf, and the two that lie across it once it is shifted along its pencil; null: none.
+struct Across {
+  const uint64_t *own, *near, *far;
+};
+
+/// Voxels of the leaves that have another `shift` further along the axis, 0 to 7.
+VDB_MADF_SIMD int64_t countPairs(const Across* leaves, size_t count, int axis, int shift) {
+  static constexpr uint64_t kEmpty[8] = {};
+  const uint64_t low = kFirstZ * ((1u << (8 - shift)) - 1);  // z from 0 to 7 - shift
+  int64_t sum = 0;
+  for (const Across* leaf = leaves; leaf != leaves + count; ++leaf) {
+    const uint64_t *own = leaf->own, *near = leaf->near, *far = shift ? leaf->far : nullptr;
+    if (!near && !far) continue;
+    if (!near) near = kEmpty;
+    if (!far) far = kEmpty;
+    uint32_t both = 0;
+    if (axis == 0) {
+      for (int x = 0; x < 8 - shift; ++x) both += countBits(own[x] & near[x + shift]);
+      for (int x = 8 - shift; x < 8; ++x) both += countBits(own[x] & far[x + shift - 8]);
+    } else if (shift == 0) {
+      for (int x = 0; x < 8; ++x) both += countBits(own[x] & near[x]);
+    } else if (axis == 1) {
+      for (int x = 0; x < 8; ++x)
+        both += countBits(own[x] & (near[x] >> 8 * shift | far[x] << (64 - 8 * shift)));
+    } else {
+      for (int x = 0; x < 8; ++x)
+        both += countBits(own[x] & ((near[x] >> shift & low) | (far[x] << (8 - shift) & ~low)));
+    }
+    sum += both;
+  }
+  return sum;
 }
 
 /// The leaves in pencils along an axis.
 class Pencils {
  public:
   Pencils(const LeafIndex& index, int axis)
-      : index_(&index), axis_(axis), order_(index.leafCount()) {
+      : index_(&index), axis_(axis), order_(index.leafCount()), across_(index.leafCount()) {
     std::iota(order_.begin(), order_.end(), uint32_t(0));
     const int a = (axis + 1) % 3, b = (axis + 2) % 3;
     if (axis != 2)  // the order of the index
@@ -43,58 +69,40 @@ class Pencils {
   }
 
   /// Number of object voxels with an object voxel `lag` further along the axis.
-  int64_t pairs(int lag, Interrupter* interrupter) const {
+  int64_t pairs(int lag, Interrupter* interrupter) {
     std::atomic<int64_t> sum{0};
     detail::parallelFor(order_.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-      int64_t part = 0;
-      for (size_t i = begin; i < end; ++i) part += pairsOfLeaf(i, lag);
-      sum += part;  // integers: any order
+      if (lag >> 3 != leavesApart_)
+        for (size_t i = begin; i < end; ++i) across_[i] = across(i, lag & ~7);
+      sum += countPairs(&across_[begin], end - begin, axis_, lag & 7);  // integers: any order
     });
+    leavesApart_ = lag >> 3;
     return sum;
   }
 
  private:
-  int64_t pairsOfLeaf(size_t i, int lag) const {
-    static constexpr LeafIndex::Mask kEmpty{};
-    // The shifted leaf lies across two others of its pencil.
+  Across across(size_t i, int shift) const {
     Coord target = index_->origin(order_[i]);
-    target[axis_] += lag & ~7;
+    target[axis_] += shift;
     const int behind = target[axis_] + 8;
-    const LeafIndex::Mask *near = &kEmpty, *far = &kEmpty;
+    Across found = {index_->mask(order_[i]).data(), nullptr, nullptr};
     for (size_t j = i; j < order_.size(); ++j) {
       const Coord& origin = index_->origin(order_[j]);
       const int at = origin[axis_];
       Coord samePencil = origin;
       samePencil[axis_] = target[axis_];
       if (samePencil != target || at > behind) break;
-      if (at == target[axis_]) near = &index_->mask(order_[j]);
-      if (at == behind) far = &index_->mask(order_[j]);
+      if (at == target[axis_]) found.near = index_->mask(order_[j]).data();
+      if (at == behind) found.far = index_->mask(order_[j]).data();
     }
-    const LeafIndex::Mask& own = index_->mask(order_[i]);
-    const int s = lag & 7;
-    LeafIndex::Mask across;
-    for (int x = 0; x < 8; ++x) {
-      uint64_t& shifted = across[size_t(x)];
-      if (axis_ == 0) {
-        shifted = x + s < 8 ? (*near)[size_t(x + s)] : (*far)[size_t(x + s - 8)];
-      } else {
-        const uint64_t a = (*near)[size_t(x)], b = (*far)[size_t(x)];
-        if (s == 0) {
-          shifted = a;
-        } else if (axis_ == 1) {
-          shifted = a >> 8 * s | b << (64 - 8 * s);
-        } else {
-          const uint64_t low = kFirstZ * ((1u << (8 - s)) - 1);  // z from 0 to 7 - s
-          shifted = (a >> s & low) | (b << (8 - s) & ~low);
-        }
-      }
-    }
-    return common(own.data(), across.data());
+    return found;
   }
 
   const LeafIndex* index_;
   int axis_;
   std::vector<uint32_t> order_;
+  std::vector<Across> across_;  // in that order, for lags of
+  int leavesApart_ = -1;        // so many whole leaves
 };
 
 }  // namespace
@@ -108,7 +116,7 @@ std::array<std::optional<double>, 3> correlationLengths(const LeafIndex& index,
   if (!(share < 1)) return lengths;
   const double target = std::exp(-1.0);
   for (int axis = 0; axis < 3; ++axis) {
-    const Pencils pencils(index, axis);
+    Pencils pencils(index, axis);
     const int extent = box.dim()[axis];
     const double section = double(box.volume()) / extent;
     double before = 1;
