@@ -17,6 +17,24 @@ namespace {
 constexpr size_t kLeafGrain = 64;
 constexpr size_t kBondGrain = 16;
 
+/// Number, sum and sum of squares of the set bits' positions.
+struct BitSums {
+  int32_t count = 0, sum = 0, squares = 0;
+};
+constexpr std::array<BitSums, 256> makeBitSums() {
+  std::array<BitSums, 256> table{};
+  for (unsigned bits = 0; bits < 256; ++bits) {
+    for (int z = 0; z < 8; ++z) {
+      if (!(bits >> z & 1)) continue;
+      table[bits].count += 1;
+      table[bits].sum += z;
+      table[bits].squares += z * z;
+    }
+  }
+  return table;
+}
+constexpr std::array<BitSums, 256> kBitSums = makeBitSums();
+
 /// Sums over voxels of one label in one leaf, relative to its origin.
 struct LeafSums {
   int32_t label = 0;
@@ -27,13 +45,7 @@ struct LeafSums {
 
   /// The voxels (x, y, z) with a bit z.
   void add(int x, int y, unsigned bits) {
-    int32_t n = 0, z1 = 0, z2 = 0;
-    for (unsigned rest = bits; rest; rest &= rest - 1) {
-      const int z = __builtin_ctz(rest);
-      ++n;
-      z1 += z;
-      z2 += z * z;
-    }
+    const auto [n, z1, z2] = kBitSums[bits];
     voxels += n;
     sum[0] += n * x;
     sum[1] += n * y;
