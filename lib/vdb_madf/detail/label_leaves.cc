@@ -18,6 +18,10 @@ constexpr size_t kLeafGrain = 256;
 /// Up to this many labels a search beats a hash table.
 constexpr size_t kFewLabels = 24;
 
+// Bits y*8 + z of a word of a mask.
+constexpr uint64_t kFirstZ = 0x0101010101010101ull, kLastZ = kFirstZ << 7;
+constexpr uint64_t kFirstY = 0xffull, kLastY = kFirstY << 56;
+
 bool isFull(const LeafIndex::Mask& mask) {
   return std::all_of(mask.begin(), mask.end(), [](uint64_t word) { return word == ~0ull; });
 }
@@ -67,9 +71,18 @@ LabelLeaves::LabelLeaves(const Int32Grid& labels, Interrupter* interrupter)
 bool LabelLeaves::isInterior(size_t leaf) const {
   if (!singles_[leaf] || !isFull(index_.mask(leaf))) return false;
   for (const uint32_t next : index_.neighbors(leaf))
-    if (next == LeafIndex::kNone || singles_[next] != singles_[leaf] || !isFull(index_.mask(next)))
-      return false;
-  return true;
+    if (next == LeafIndex::kNone || singles_[next] != singles_[leaf]) return false;
+  const auto mask = [&](size_t side) -> const LeafIndex::Mask& {
+    return index_.mask(index_.neighbors(leaf)[side]);
+  };
+  uint64_t layers = mask(0)[7] & mask(1)[0];
+  for (size_t x = 0; x < 8; ++x) {
+    layers &= mask(2)[x] | ~kLastY;
+    layers &= mask(3)[x] | ~kFirstY;
+    layers &= mask(4)[x] | ~kLastZ;
+    layers &= mask(5)[x] | ~kFirstZ;
+  }
+  return layers == ~0ull;
 }
 
 LabelWindow::Code LabelWindow::codeOf(int32_t label) {
@@ -86,7 +99,27 @@ LabelWindow::Code LabelWindow::codeOf(int32_t label) {
   return entry->second;
 }
 
-void LabelWindow::copyLeaf(uint32_t leaf, int dx, int dy, int dz) {
+/// Of the three leaves of a column along z.
+void LabelWindow::copyMasks(const uint32_t* leaves, int dx, int dy) {
+  static constexpr LeafIndex::Mask kEmpty{};
+  const auto mask = [&](int i) -> const LeafIndex::Mask& {
+    return leaves[i] == LeafIndex::kNone ? kEmpty : labels_->index().mask(leaves[i]);
+  };
+  const LeafIndex::Mask &low = mask(0), &middle = mask(1), &high = mask(2);
+  const int beginX = std::max(kBegin, dx * 8), endX = std::min(kEnd, dx * 8 + 8);
+  const int beginY = std::max(kBegin, dy * 8), endY = std::min(kEnd, dy * 8 + 8);
+  for (int x = beginX; x < endX; ++x) {
+    const uint64_t words[3] = {low[size_t(x & 7)], middle[size_t(x & 7)], high[size_t(x & 7)]};
+    for (int y = beginY; y < endY; ++y) {
+      const int shift = (y & 7) * 8;
+      labelled_[size_t((x - kBegin) * kSide + (y - kBegin))] =
+          uint32_t(words[0] >> shift & 0xff) | uint32_t(words[1] >> shift & 0xff) << 8 |
+          uint32_t(words[2] >> shift & 0xff) << 16;
+    }
+  }
+}
+
+void LabelWindow::copyCodes(uint32_t leaf, int dx, int dy, int dz) {
   const int beginX = std::max(kBegin, dx * 8), endX = std::min(kEnd, dx * 8 + 8);
   const int beginY = std::max(kBegin, dy * 8), endY = std::min(kEnd, dy * 8 + 8);
   const int32_t single = leaf == LeafIndex::kNone ? 0 : labels_->single(leaf);
@@ -100,8 +133,12 @@ void LabelWindow::copyLeaf(uint32_t leaf, int dx, int dy, int dz) {
       Code* out = codes_.data() + (row(x, y, dz * 8) - codes_.data());
       const uint64_t lanes[2] = {kLanesOf[bits & 15] * code, kLanesOf[bits >> 4] * code};
       std::memcpy(out, lanes, sizeof lanes);
-      labelled_[size_t((x - kBegin) * kSide + (y - kBegin))] |= bits << 8 * (dz + 1);
-      if (single || !bits) continue;
+      if (!bits) continue;
+      Code& all = rowCodes_[size_t((x - kBegin) * kSide + (y - kBegin))];
+      if (single) {
+        all = all == 0 || all == code ? code : kMixed;
+        continue;
+      }
       for (unsigned rest = bits; rest; rest &= rest - 1) {
         const int z = __builtin_ctz(rest);
         const int32_t label = labels_->label(leaf, (x & 7) * 64 + (y & 7) * 8 + z);
@@ -110,20 +147,32 @@ void LabelWindow::copyLeaf(uint32_t leaf, int dx, int dy, int dz) {
           lastCode = codeOf(label);
         }
         out[z] = lastCode;
+        all = all == 0 || all == lastCode ? lastCode : kMixed;
       }
     }
   }
 }
 
 void LabelWindow::load(size_t leaf) {
-  names_.assign(1, 0);
-  codesByName_.clear();
-  labelled_.fill(0);
   const auto& around = neighborhood_.around(leaf);
+  const int32_t single = labels_->single(leaf);
+  oneLabel_ = single && std::all_of(around.begin(), around.end(), [&](uint32_t other) {
+                return other == LeafIndex::kNone || labels_->single(other) == single;
+              });
+  for (int dx = -1; dx <= 1; ++dx)
+    for (int dy = -1; dy <= 1; ++dy)
+      copyMasks(around.data() + ((dx + 1) * 9 + (dy + 1) * 3), dx, dy);
+  names_.assign(1, 0);
+  if (oneLabel_) {
+    names_.push_back(single);
+    return;
+  }
+  codesByName_.clear();
+  rowCodes_.fill(0);
   for (int dx = -1; dx <= 1; ++dx)
     for (int dy = -1; dy <= 1; ++dy)
       for (int dz = -1; dz <= 1; ++dz)
-        copyLeaf(around[size_t((dx + 1) * 9 + (dy + 1) * 3 + dz + 1)], dx, dy, dz);
+        copyCodes(around[size_t((dx + 1) * 9 + (dy + 1) * 3 + dz + 1)], dx, dy, dz);
 }
 
 }  // namespace vdb_madf::detail

@@ -13,44 +13,58 @@ namespace vdb_madf::detail {
 
 namespace {
 
-// Squares of twice the radius in which faces make a normal. Chosen on planes, spheres and discs: a
-// free surface is curved, and 2.5 voxels are enough; interfaces are flat but for their rims.
-constexpr int32_t kFreeReach = 25;    // 2.5 voxels
-constexpr int32_t kSharedReach = 64;  // 4 voxels
+// Twice the radii in which faces make a normal. Chosen on planes, spheres and discs: a free surface
+// is curved, and 2.5 voxels are enough; interfaces are flat but for their rims.
+constexpr int kFreeReach = 5;    // 2.5 voxels
+constexpr int kSharedReach = 8;  // 4 voxels
 
 /// Up to this many groups a search beats a hash table.
 constexpr size_t kFewGroups = 8;
 
-/// Sum of the weighted normals of the faces [begin, end) around a target. With a normal in the
-/// target, faces of opposite direction are left out.
-VDB_MADF_SIMD void sumNormals(const int32_t* x, const int32_t* y, const int32_t* z,
-                              const int32_t* nx, const int32_t* ny, const int32_t* nz, size_t count,
-                              const int32_t* target, int32_t squaredReach, int32_t* sum) {
-  const int32_t tx = target[0], ty = target[1], tz = target[2];
-  const int32_t tnx = target[3], tny = target[4], tnz = target[5];
-  int32_t sx = 0, sy = 0, sz = 0;
-  for (size_t i = 0; i < count; ++i) {
-    const int32_t dx = x[i] - tx, dy = y[i] - ty, dz = z[i] - tz;
-    const int32_t rest = squaredReach - dx * dx - dy * dy - dz * dz;
-    const int32_t along = nx[i] * tnx + ny[i] * tny + nz[i] * tnz;
-    const int32_t weight = rest > 0 && along >= 0 ? rest : 0;
-    sx += weight * nx[i];
-    sy += weight * ny[i];
-    sz += weight * nz[i];
+/// Faces that are summed together; a row of the window has not more than 32.
+constexpr size_t kTogether = 16;
+constexpr size_t kRoom = 32 + kTogether;
+
+/// Twice the coordinate of a face out of everyone's reach, whose square fits in 16 bits.
+constexpr int16_t kFarAway = 100;
+
+/// Sum of the weighted normals of `blocks` times kTogether faces around a target. With a normal in
+/// the target, faces of opposite direction are left out. In 16 bits: coordinates differ by 32 at
+/// most but for kFarAway; a sum is over the faces of one axis in reach, fewer than 300, of weight
+/// 64 at most.
+VDB_MADF_SIMD void sumNormals(const int16_t* x, const int16_t* y, const int16_t* z,
+                              const int16_t* nx, const int16_t* ny, const int16_t* nz,
+                              size_t blocks, const int16_t* target, int reach, int16_t* sum) {
+  const int16_t tx = target[0], ty = target[1], tz = target[2];
+  const int16_t tnx = target[3], tny = target[4], tnz = target[5];
+  const auto squaredReach = int16_t(reach * reach);
+  int16_t sx[kTogether] = {}, sy[kTogether] = {}, sz[kTogether] = {};
+  for (size_t first = 0; first < blocks * kTogether; first += kTogether) {
+    for (size_t lane = 0; lane < kTogether; ++lane) {
+      const size_t i = first + lane;
+      const auto dx = int16_t(x[i] - tx), dy = int16_t(y[i] - ty), dz = int16_t(z[i] - tz);
+      const auto rest = int16_t(squaredReach - dx * dx - dy * dy - dz * dz);
+      const auto along = int16_t(nx[i] * tnx + ny[i] * tny + nz[i] * tnz);
+      const int16_t near = rest > 0 ? rest : int16_t(0);
+      const int16_t weight = along >= 0 ? near : int16_t(0);
+      sx[lane] = int16_t(sx[lane] + weight * nx[i]);
+      sy[lane] = int16_t(sy[lane] + weight * ny[i]);
+      sz[lane] = int16_t(sz[lane] + weight * nz[i]);
+    }
   }
-  sum[0] = sx;
-  sum[1] = sy;
-  sum[2] = sz;
+  int16_t s[3] = {};
+  for (size_t lane = 0; lane < kTogether; ++lane) {
+    s[0] = int16_t(s[0] + sx[lane]);
+    s[1] = int16_t(s[1] + sy[lane]);
+    s[2] = int16_t(s[2] + sz[lane]);
+  }
+  for (int i = 0; i < 3; ++i) sum[i] = s[i];
 }
 
 uint64_t load(const LabelWindow::Code* codes) {
   uint64_t word;
   std::memcpy(&word, codes, sizeof word);
   return word;
-}
-
-bool inLeaf(int x, int y, int z) {
-  return ((x | y | z) & ~7) == 0;
 }
 
 }  // namespace
@@ -81,99 +95,131 @@ const LeafSurface::Group* LeafSurface::findGroup(Code first, Code second) const 
   return nullptr;
 }
 
-void LeafSurface::addFace(int axis, int x, int y, int z, Code lower, Code upper) {
+/// Bit z + 8: voxel (x, y, z) lies in the domain.
+uint32_t LeafSurface::insideDomain(int x, int y) const {
+  const CoordBBox& box = *domain_;
+  const Coord at = origin_.offsetBy(x, y, 0);
+  if (!box.isInside(Coord(at.x(), at.y(), box.min().z()))) return 0;
+  const int64_t first = std::max<int64_t>(int64_t(box.min().z()) - at.z() + 8, 0),
+                last = std::min<int64_t>(int64_t(box.max().z()) - at.z() + 8, 31);
+  return first <= last ? (2u << last) - (1u << first) : 0;
+}
+
+/// Bit z + 8: between voxel (x, y, z), of code `lower`, and the next one along the axis.
+void LeafSurface::addFaces(int axis, int x, int y, uint32_t bits, Code lower, Code upper) {
   // The first partner: the grain, or of two grains the one of smaller label.
   const bool lowerIsFirst =
       upper == 0 || (lower != 0 && window_.label(lower) < window_.label(upper));
   const Code first = lowerIsFirst ? lower : upper, second = lowerIsFirst ? upper : lower;
   const bool atUpper = second == 0 && !lowerIsFirst;  // the owner is the upper voxel
-  const bool owned =
-      atUpper ? inLeaf(x + (axis == 0), y + (axis == 1), z + (axis == 2)) : inLeaf(x, y, z);
+  const bool rowOwned =
+      ((x + (atUpper && axis == 0)) & ~7) == 0 && ((y + (atUpper && axis == 1)) & ~7) == 0;
+  const uint32_t owned = rowOwned ? 0xff00u >> (atUpper && axis == 2) : 0;
   if (atBorder_ && second == 0) {
-    Coord outer = origin_.offsetBy(x, y, z);
-    if (lowerIsFirst) outer[axis] += 1;
-    if (!domain_->isInside(outer)) {
-      if (owned) ++free_[window_.label(first)].cutFaces;
-      return;
-    }
+    const uint32_t inside = atUpper ? insideDomain(x, y)
+                                    : insideDomain(x + (axis == 0), y + (axis == 1)) >> (axis == 2);
+    if (const uint32_t cut = bits & ~inside & owned)
+      free_[window_.label(first)].cutFaces += countBits(cut);
+    bits &= inside;
+    if (!bits) return;
   }
   Group& to = group(first, second);
-  const size_t i = to.count++;
-  if (i == to.faces[kX].size())
-    for (auto& component : to.faces) component.resize(2 * i + 64);
-  if (owned) to.owned.push_back(uint32_t(i));
-  const int32_t sign = lowerIsFirst ? 1 : -1;
-  to.faces[kX][i] = 2 * x + (axis == 0);
-  to.faces[kY][i] = 2 * y + (axis == 1);
-  to.faces[kZ][i] = 2 * z + (axis == 2);
-  to.faces[kNormalX][i] = axis == 0 ? sign : 0;
-  to.faces[kNormalY][i] = axis == 1 ? sign : 0;
-  to.faces[kNormalZ][i] = axis == 2 ? sign : 0;
+  if (to.count + kRoom > to.faces[kX].size())
+    for (auto& component : to.faces) component.resize(2 * to.count + 2 * kRoom);
+  const auto sign = int16_t(lowerIsFirst ? 1 : -1);
+  for (; bits; bits &= bits - 1) {
+    const int bit = __builtin_ctz(bits);
+    const size_t i = to.count++;
+    to.faces[kX][i] = int16_t(2 * x + (axis == 0));
+    to.faces[kY][i] = int16_t(2 * y + (axis == 1));
+    to.faces[kZ][i] = int16_t(2 * (bit - 8) + (axis == 2));
+    to.faces[kNormalX][i] = axis == 0 ? sign : int16_t(0);
+    to.faces[kNormalY][i] = axis == 1 ? sign : int16_t(0);
+    to.faces[kNormalZ][i] = axis == 2 ? sign : int16_t(0);
+    if (owned >> bit & 1) to.owned.push_back(uint32_t(i));
+  }
 }
 
 /// Of the row (x, y) and the next one along the axis; bit z + 8 of `within`: which z.
 void LeafSurface::collectFaces(int axis, int x, int y, uint32_t within) {
   const int nextX = x + (axis == 0), nextY = y + (axis == 1), dz = axis == 2;
   const uint32_t a = window_.labelled(x, y), b = window_.labelled(nextX, nextY) >> dz;
-  uint32_t faces = a ^ b;
-  if (!oneLabel_ && (a & b & within)) {
-    constexpr int kLanes = LabelWindow::kLanes;
-    for (int z = LabelWindow::kBegin; z < LabelWindow::kEnd; z += kLanes) {
-      const Code *lower = window_.row(x, y, z), *upper = window_.row(nextX, nextY, z + dz);
-      if (load(lower) == load(upper)) continue;
-      for (int i = 0; i < kLanes; ++i) faces |= uint32_t(lower[i] != upper[i]) << (z + i + 8);
+  if (!((a | b) & within)) return;
+  const Code lower = window_.rowCode(x, y), upper = window_.rowCode(nextX, nextY);
+  if ((a & within && lower == LabelWindow::kMixed) ||
+      (b & within && upper == LabelWindow::kMixed)) {
+    uint32_t faces = a ^ b;
+    if (a & b & within) {
+      constexpr int kLanes = LabelWindow::kLanes;
+      for (int z = LabelWindow::kBegin; z < LabelWindow::kEnd; z += kLanes) {
+        const Code *low = window_.row(x, y, z), *high = window_.row(nextX, nextY, z + dz);
+        if (load(low) == load(high)) continue;
+        for (int i = 0; i < kLanes; ++i) faces |= uint32_t(low[i] != high[i]) << (z + i + 8);
+      }
     }
+    for (faces &= within; faces; faces &= faces - 1) {
+      const int z = __builtin_ctz(faces) - 8;
+      addFaces(axis, x, y, faces & (~faces + 1), *window_.row(x, y, z),
+               *window_.row(nextX, nextY, z + dz));
+    }
+    return;
   }
-  for (faces &= within; faces; faces &= faces - 1) {
-    const int z = __builtin_ctz(faces) - 8;
-    addFace(axis, x, y, z, *window_.row(x, y, z), *window_.row(nextX, nextY, z + dz));
-  }
+  if (const uint32_t faces = a & ~b & within) addFaces(axis, x, y, faces, lower, 0);
+  if (const uint32_t faces = b & ~a & within) addFaces(axis, x, y, faces, 0, upper);
+  if (lower == upper) return;
+  if (const uint32_t faces = a & b & within) addFaces(axis, x, y, faces, lower, upper);
 }
 
-double LeafSurface::cosine(const Group& group, const std::array<int32_t, 6>& target,
-                           int32_t squaredReach, bool sameSide) const {
-  const int32_t* const x = group.faces[kX].data();
-  const auto reach = int32_t(std::sqrt(double(squaredReach)));
-  const auto begin = size_t(std::lower_bound(x, x + group.count, target[0] - reach) - x);
-  const auto end = size_t(std::upper_bound(x + begin, x + group.count, target[0] + reach) - x);
-  std::array<int32_t, 6> around = target;
+/// What a target counts: the cosine between its normal and that of the surface.
+int64_t LeafSurface::area(const Group& group, const Face& target, int reach, bool sameSide,
+                          Near& near) const {
+  const int16_t* const x = group.faces[kX].data();
+  while (near.begin < group.count && x[near.begin] <= target[0] - reach) ++near.begin;
+  while (near.end < group.count && x[near.end] < target[0] + reach) ++near.end;
+  Face around = target;
   if (!sameSide) around[3] = around[4] = around[5] = 0;
-  int32_t sum[3];
-  sumNormals(x + begin, group.faces[kY].data() + begin, group.faces[kZ].data() + begin,
-             group.faces[kNormalX].data() + begin, group.faces[kNormalY].data() + begin,
-             group.faces[kNormalZ].data() + begin, end - begin, around.data(), squaredReach, sum);
+  int16_t sum[3];
+  // What a block has behind the end is out of reach.
+  const size_t blocks = (near.end - near.begin + kTogether - 1) / kTogether;
+  sumNormals(x + near.begin, group.faces[kY].data() + near.begin,
+             group.faces[kZ].data() + near.begin, group.faces[kNormalX].data() + near.begin,
+             group.faces[kNormalY].data() + near.begin, group.faces[kNormalZ].data() + near.begin,
+             blocks, around.data(), reach, sum);
   const double nx = sum[0], ny = sum[1], nz = sum[2];
-  const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
   const double along = nx * target[3] + ny * target[4] + nz * target[5];
-  return along > 0 ? along / length : 0.0;
+  if (!(along > 0)) return 0;
+  // Sums are small integers: the product is no fraction of 1, and this rounds it to the nearest.
+  return int64_t(kAreaUnit * (along / std::sqrt(nx * nx + ny * ny + nz * nz)) + 0.5);
 }
 
 void LeafSurface::measureFree(const Group& group) {
-  int64_t area = 0;
-  for (const uint32_t face : group.owned) {
-    const std::array<int32_t, 6> target = group.face(face);
-    area += std::llround(kAreaUnit * cosine(group, target, kFreeReach, true));
-  }
-  if (area) free_[window_.label(group.first)].area += area;
+  int64_t sum = 0;
+  Near near;
+  for (const uint32_t face : group.owned)
+    sum += area(group, group.face(face), kFreeReach, true, near);
+  if (sum) free_[window_.label(group.first)].area += sum;
 }
 
 /// Pairs of voxels of the two grains `separation` apart along an axis, the lower one in this leaf.
 void LeafSurface::addPairs(int separation, Shared& shared, const Group& group) {
-  int64_t& area = shared.areas[separation == 2 ? 1 : 2];
+  int64_t& sum = shared.areas[separation == 2 ? 1 : 2];
   for (int axis = 0; axis < 3; ++axis) {
     const int dx = axis == 0 ? separation : 0, dy = axis == 1 ? separation : 0,
               dz = axis == 2 ? separation : 0;
+    Near near;
     for (int x = 0; x < 8; ++x) {
       for (int y = 0; y < 8; ++y) {
+        const Code code = window_.rowCode(x, y);
+        if (code == window_.rowCode(x + dx, y + dy) && code != LabelWindow::kMixed) continue;
         const Code* lower = window_.row(x, y, 0);
         const Code* upper = window_.row(x + dx, y + dy, dz);
         if (load(lower) == load(upper) && load(lower + 4) == load(upper + 4)) continue;
         for (int z = 0; z < 8; ++z) {
           const bool forwards = lower[z] == group.first && upper[z] == group.second;
           if (!forwards && !(lower[z] == group.second && upper[z] == group.first)) continue;
-          std::array<int32_t, 6> target = {2 * x + dx, 2 * y + dy, 2 * z + dz, 0, 0, 0};
-          target[size_t(kNormalX + axis)] = forwards ? 1 : -1;
-          area += std::llround(kAreaUnit * cosine(group, target, kSharedReach, false));
+          Face target = {int16_t(2 * x + dx), int16_t(2 * y + dy), int16_t(2 * z + dz), 0, 0, 0};
+          target[size_t(kNormalX + axis)] = int16_t(forwards ? 1 : -1);
+          sum += area(group, target, kSharedReach, false, near);
         }
       }
     }
@@ -184,9 +230,10 @@ void LeafSurface::measureShared(const Group& group) {
   Shared shared;
   shared.first = window_.label(group.first);
   shared.second = window_.label(group.second);
+  Near near;
   for (const uint32_t face : group.owned) {
-    const std::array<int32_t, 6> target = group.face(face);
-    shared.areas[0] += std::llround(kAreaUnit * cosine(group, target, kSharedReach, false));
+    const Face target = group.face(face);
+    shared.areas[0] += area(group, target, kSharedReach, false, near);
     InterfaceFace stored;
     for (int axis = 0; axis < 3; ++axis) {
       // Halves are rounded down: the lower voxel.
@@ -214,24 +261,28 @@ void LeafSurface::measure(size_t leaf) {
   atBorder_ = domain_ && !domain_->isInside(CoordBBox(origin_.offsetBy(LabelWindow::kBegin),
                                                       origin_.offsetBy(LabelWindow::kEnd)));
   window_.load(leaf);
-  // One label: only free faces, whose normals need less around them.
-  oneLabel_ = window_.codeCount() == 2;
-  const int begin = oneLabel_ ? -3 : LabelWindow::kBegin,
-            last = oneLabel_ ? 10 : LabelWindow::kEnd - 1;
-  const uint32_t all = (2u << (last + 8)) - (1u << (begin + 8));
+  // Lower voxels of the faces in reach of those that are measured, along their axis; along the
+  // others one less. One label: only free faces, whose normals need less around them.
+  const int begin = window_.oneLabel() ? -3 : LabelWindow::kBegin,
+            last = window_.oneLabel() ? 9 : LabelWindow::kEnd - 2;
+  const uint32_t along = (2u << (last + 8)) - (1u << (begin + 8)),
+                 across = along & ~(1u << (begin + 8));
   for (int x = begin; x <= last; ++x) {
-    for (int y = begin; y <= last; ++y) {
-      if (y < last) collectFaces(1, x, y, all);
-      collectFaces(2, x, y, all >> 1 & all);
+    if (x > begin) {
+      for (int y = begin; y <= last; ++y) {
+        collectFaces(1, x, y, across);
+        if (y > begin) collectFaces(2, x, y, along);
+      }
     }
-    if (x < last)
-      for (int y = begin; y <= last; ++y) collectFaces(0, x, y, all);
+    for (int y = begin + 1; y <= last; ++y) collectFaces(0, x, y, across);
   }
   for (size_t i = 0; i < groupCount_; ++i) {
-    if (groups_[i].second == 0)
-      measureFree(groups_[i]);
+    Group& group = groups_[i];
+    std::fill_n(group.faces[kX].begin() + std::ptrdiff_t(group.count), kTogether, kFarAway);
+    if (group.second == 0)
+      measureFree(group);
     else
-      measureShared(groups_[i]);
+      measureShared(group);
   }
 }
 

@@ -57,27 +57,32 @@ class LeafSurface {
  private:
   using Code = LabelWindow::Code;
   enum Component { kX, kY, kZ, kNormalX, kNormalY, kNormalZ };
+  using Face = std::array<int16_t, 6>;
   /// The faces between two partners, sorted by x: twice the centre, relative to the leaf, and the
   /// axis with its sign, away from the first partner.
   struct Group {
     Code first = 0, second = 0;  // second 0: background
     size_t count = 0;
-    std::array<std::vector<int32_t>, 6> faces;  // the first `count` of each
+    std::array<std::vector<int16_t>, 6> faces;  // the first `count` of each, then room
     std::vector<uint32_t> owned;                // faces whose area is this leaf's
-    std::array<int32_t, 6> face(size_t i) const {
+    Face face(size_t i) const {
       return {faces[0][i], faces[1][i], faces[2][i], faces[3][i], faces[4][i], faces[5][i]};
     }
+  };
+  /// Faces [begin, end) of a group reach the target's x; targets come in rising order of x.
+  struct Near {
+    size_t begin = 0, end = 0;
   };
 
   Group& group(Code first, Code second);
   const Group* findGroup(Code first, Code second) const;
   void collectFaces(int axis, int x, int y, uint32_t within);
-  void addFace(int axis, int x, int y, int z, Code lower, Code upper);
+  void addFaces(int axis, int x, int y, uint32_t bits, Code lower, Code upper);
+  uint32_t insideDomain(int x, int y) const;
   void addPairs(int separation, Shared& shared, const Group& group);
   void measureFree(const Group& group);
   void measureShared(const Group& group);
-  double cosine(const Group& group, const std::array<int32_t, 6>& target, int32_t squaredReach,
-                bool sameSide) const;
+  int64_t area(const Group& group, const Face& target, int reach, bool sameSide, Near& near) const;
 
   const LabelLeaves* labels_;
   LabelWindow window_;
@@ -85,7 +90,6 @@ class LeafSurface {
 
   Coord origin_;
   bool atBorder_ = false;
-  bool oneLabel_ = false;      // in the whole window
   std::vector<Group> groups_;  // the first groupCount_ are of this leaf; the rest keeps its memory
   size_t groupCount_ = 0;
   std::unordered_map<uint32_t, uint32_t> groupOf_;
