@@ -68,6 +68,16 @@ LabelLeaves::LabelLeaves(const Int32Grid& labels, Interrupter* interrupter)
   });
 }
 
+LeafIndex::Mask LabelLeaves::maskOf(size_t leaf, int32_t label) const {
+  LeafIndex::Mask mask{};
+  if (singles_[leaf]) return singles_[leaf] == label ? index_.mask(leaf) : mask;
+  for (size_t x = 0; x < 8; ++x) {
+    for (size_t i = 0; i < 64; ++i) mask[x] |= uint64_t(values_[leaf][x * 64 + i] == label) << i;
+    mask[x] &= index_.mask(leaf)[x];
+  }
+  return mask;
+}
+
 bool LabelLeaves::isInterior(size_t leaf) const {
   if (!singles_[leaf] || !isFull(index_.mask(leaf))) return false;
   for (const uint32_t next : index_.neighbors(leaf))
@@ -100,21 +110,18 @@ LabelWindow::Code LabelWindow::codeOf(int32_t label) {
 }
 
 /// Of the three leaves of a column along z.
-void LabelWindow::copyMasks(const uint32_t* leaves, int dx, int dy) {
-  static constexpr LeafIndex::Mask kEmpty{};
-  const auto mask = [&](int i) -> const LeafIndex::Mask& {
-    return leaves[i] == LeafIndex::kNone ? kEmpty : labels_->index().mask(leaves[i]);
-  };
-  const LeafIndex::Mask &low = mask(0), &middle = mask(1), &high = mask(2);
+void LabelWindow::copyMasks(const std::array<const LeafIndex::Mask*, 3>& masks, int dx, int dy,
+                            Bits& bits) {
   const int beginX = std::max(kBegin, dx * 8), endX = std::min(kEnd, dx * 8 + 8);
   const int beginY = std::max(kBegin, dy * 8), endY = std::min(kEnd, dy * 8 + 8);
   for (int x = beginX; x < endX; ++x) {
-    const uint64_t words[3] = {low[size_t(x & 7)], middle[size_t(x & 7)], high[size_t(x & 7)]};
+    const size_t at = size_t(x & 7);
+    const uint64_t low = (*masks[0])[at], middle = (*masks[1])[at], high = (*masks[2])[at];
     for (int y = beginY; y < endY; ++y) {
       const int shift = (y & 7) * 8;
-      labelled_[size_t((x - kBegin) * kSide + (y - kBegin))] =
-          uint32_t(words[0] >> shift & 0xff) | uint32_t(words[1] >> shift & 0xff) << 8 |
-          uint32_t(words[2] >> shift & 0xff) << 16;
+      bits[size_t((x - kBegin) * kSide + (y - kBegin))] = uint32_t(low >> shift & 0xff) |
+                                                          uint32_t(middle >> shift & 0xff) << 8 |
+                                                          uint32_t(high >> shift & 0xff) << 16;
     }
   }
 }
@@ -154,14 +161,31 @@ void LabelWindow::copyCodes(uint32_t leaf, int dx, int dy, int dz) {
 }
 
 void LabelWindow::load(size_t leaf) {
+  static constexpr LeafIndex::Mask kEmpty{};
+  const LeafIndex& index = labels_->index();
   const auto& around = neighborhood_.around(leaf);
   const int32_t single = labels_->single(leaf);
-  oneLabel_ = single && std::all_of(around.begin(), around.end(), [&](uint32_t other) {
-                return other == LeafIndex::kNone || labels_->single(other) == single;
-              });
-  for (int dx = -1; dx <= 1; ++dx)
-    for (int dy = -1; dy <= 1; ++dy)
-      copyMasks(around.data() + ((dx + 1) * 9 + (dy + 1) * 3), dx, dy);
+  oneLabel_ = single != 0;
+  for (const size_t side : {1, 3, 5}) {
+    const uint32_t next = index.neighbors(leaf)[side];
+    oneLabel_ = oneLabel_ && (next == LeafIndex::kNone || labels_->single(next) == single);
+  }
+  for (size_t column = 0; column < 9; ++column) {
+    const int dx = int(column) / 3 - 1, dy = int(column) % 3 - 1;
+    std::array<const LeafIndex::Mask*, 3> all, same;
+    std::array<LeafIndex::Mask, 3> found;
+    bool differ = false;
+    for (size_t i = 0; i < 3; ++i) {
+      const uint32_t other = around[3 * column + i];
+      all[i] = same[i] = other == LeafIndex::kNone ? &kEmpty : &index.mask(other);
+      if (!oneLabel_ || other == LeafIndex::kNone || labels_->single(other) == single) continue;
+      found[i] = labels_->maskOf(other, single);
+      same[i] = &found[i];
+      differ = true;
+    }
+    copyMasks(all, dx, dy, labelled_);
+    if (oneLabel_) copyMasks(differ ? same : all, dx, dy, same_);
+  }
   names_.assign(1, 0);
   if (oneLabel_) {
     names_.push_back(single);

@@ -25,6 +25,8 @@ class LabelLeaves {
   int32_t label(size_t leaf, int offset) const {
     return singles_[leaf] ? singles_[leaf] : values_[leaf][offset];
   }
+  /// The voxels of a leaf that have a label.
+  LeafIndex::Mask maskOf(size_t leaf, int32_t label) const;
   /// Are all 512 voxels of the leaf labelled alike, and all that touch them the same, with no other
   /// label in the six neighbours? Then no surface is the leaf's.
   bool isInterior(size_t leaf) const;
@@ -36,8 +38,11 @@ class LabelLeaves {
 };
 
 /// The labels in and around a leaf, -4 to 13 along each axis from its origin, as short codes: 0 for
-/// none, else a number that stands for a label as long as the leaf is loaded. Most windows hold one
-/// label only: its code is 1, and which voxels are labelled says all. One per thread.
+/// none, else a number that stands for a label as long as the leaf is loaded. One per thread.
+///
+/// Most leaves lie away from all interfaces: their voxels have one label, and so have those of the
+/// next leaves up x, y and z. No voxel has a partner of another label up to 8 voxels further then,
+/// and which voxels have the leaf's label and which have any says all.
 class LabelWindow {
  public:
   using Code = uint16_t;
@@ -49,9 +54,11 @@ class LabelWindow {
       : labels_(&labels), neighborhood_(labels.index()) {}
 
   void load(size_t leaf);
-  /// All voxels labelled in the 27 leaves have one label.
+  /// The leaf lies away from interfaces as above; its label has code 1. No codes are known then.
   bool oneLabel() const { return oneLabel_; }
-  /// The codes from (x, y, z) on along z. Not with oneLabel().
+  /// With oneLabel(): bit z + 8: voxel (x, y, z) has that label.
+  uint32_t same(int x, int y) const { return same_[size_t((x - kBegin) * kSide + (y - kBegin))]; }
+  /// The codes from (x, y, z) on along z.
   const Code* row(int x, int y, int z) const {
     return codes_.data() + ((x - kBegin) * kSide + (y - kBegin)) * kRow + (z + 8);
   }
@@ -61,7 +68,7 @@ class LabelWindow {
   }
   /// The code that all labelled voxels of a row have, else kMixed. Of a row without: whatever.
   Code rowCode(int x, int y) const {
-    return oneLabel_ ? Code(1) : rowCodes_[size_t((x - kBegin) * kSide + (y - kBegin))];
+    return rowCodes_[size_t((x - kBegin) * kSide + (y - kBegin))];
   }
   int32_t label(Code code) const { return names_[code]; }
 
@@ -70,7 +77,9 @@ class LabelWindow {
   static constexpr int kRow = 24;  // z from -8 to 15: three whole leaves
 
   Code codeOf(int32_t label);
-  void copyMasks(const uint32_t* leaves, int dx, int dy);
+  using Bits = std::array<uint32_t, (kEnd - kBegin) * (kEnd - kBegin)>;
+  static void copyMasks(const std::array<const LeafIndex::Mask*, 3>& masks, int dx, int dy,
+                        Bits& bits);
   void copyCodes(uint32_t leaf, int dx, int dy, int dz);
 
   const LabelLeaves* labels_;
@@ -79,7 +88,7 @@ class LabelWindow {
   std::vector<int32_t> names_;
   std::unordered_map<int32_t, Code> codesByName_;  // used when there are many
   std::array<Code, kSide * kSide * kRow + kLanes> codes_{};
-  std::array<uint32_t, kSide * kSide> labelled_{};
+  Bits labelled_{}, same_{};
   std::array<Code, kSide * kSide> rowCodes_{};
 };
 

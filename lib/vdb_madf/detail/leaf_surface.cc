@@ -144,7 +144,14 @@ void LeafSurface::addFaces(int axis, int x, int y, uint32_t bits, Code lower, Co
 void LeafSurface::collectFaces(int axis, int x, int y, uint32_t within) {
   const int nextX = x + (axis == 0), nextY = y + (axis == 1), dz = axis == 2;
   const uint32_t a = window_.labelled(x, y), b = window_.labelled(nextX, nextY) >> dz;
-  if (!((a | b) & within)) return;
+  if (!((a | b) & within) || (window_.oneLabel() && !((a ^ b) & within))) return;
+  if (window_.oneLabel()) {
+    // Free faces of that label are all that may be this leaf's.
+    if (const uint32_t faces = window_.same(x, y) & ~b & within) addFaces(axis, x, y, faces, 1, 0);
+    if (const uint32_t faces = window_.same(nextX, nextY) >> dz & ~a & within)
+      addFaces(axis, x, y, faces, 0, 1);
+    return;
+  }
   const Code lower = window_.rowCode(x, y), upper = window_.rowCode(nextX, nextY);
   if ((a & within && lower == LabelWindow::kMixed) ||
       (b & within && upper == LabelWindow::kMixed)) {
