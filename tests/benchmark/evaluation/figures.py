@@ -27,12 +27,17 @@ def figures(report, work, sizes, scan):
     pictures["manifolds"] = report.picture(work / "all.vdb", "figure5-manifolds", "--grid", "manifold", "--only", "view", "--size", 400)
     side_by_side(report, pictures)
 
-    report.say("## Figure 7: growing theta", "The same shape, gamma 0, merged by the angle as in the paper.")
-    pictures = {}
-    for theta in (-1, -0.8, -0.5, 0, 1):
-        m.madf("remerge", work / "all.vdb", work / "merged.vdb", *m.LETTER, "--theta", theta)
-        pictures[f"theta {theta}"] = report.picture(work / "merged.vdb", f"figure7-theta{theta}", "--only", "view", "--size", 320)
-    side_by_side(report, pictures)
+    report.say("## Figure 7: growing theta", "The same shape, gamma 0, merged by the angle; in brackets the number of grains. To the letter "
+               "(`--adjacency cell`) only balls whose power cells touch are tested: a neck's small balls keep its two "
+               "sides apart at any theta. With `--adjacency manifold` large thetas merge across true necks.")
+    for adjacency in ("cell", "manifold"):
+        pictures = {}
+        for theta in (-1, -0.8, -0.5, 0, 0.5, 1):
+            m.madf("remerge", work / "all.vdb", work / "merged.vdb", "--merge", "angle", "--adjacency", adjacency, "--theta", theta)
+            grains = m.score(shape, work / "merged.vdb", work)["grains"]
+            pictures[f"{adjacency}, theta {theta} ({grains})"] = report.picture(
+                work / "merged.vdb", f"figure7-{adjacency}{theta}", "--only", "view", "--size", 320)
+        side_by_side(report, pictures)
 
     report.say("## Figure 8: sets of balls", "Seed 1; rows 1, 4 and 5 of Table 1 (a) (rows 1 and 4: balls that meet in pairs).")
     for row in (0, 3, CROPPED):

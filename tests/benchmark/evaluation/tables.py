@@ -16,9 +16,9 @@ def spread(values, digits):
     return f"{mean} ({min(values):.{ends}f} to {max(values):.{ends}f})"
 
 
-def mean_sd(values):
+def mean_sd(values, digits):
     values = [v for v in values if v is not None]
-    return f"{statistics.mean(values):.3f}, {statistics.pstdev(values):.3f}" if values else "none"
+    return f"{statistics.mean(values):.{digits}f}, {statistics.pstdev(values):.{digits}f}" if values else "none"
 
 
 def skipped(width):
@@ -119,7 +119,7 @@ def table2(report, done, scan):
     rows = []
     for head, result in [*((f"sintered, roughness {r}", done[r]) for r in (0, 0.3)), *([(scan[0], scan[1])] if scan else [])]:
         for name, all_of in result.items():
-            rows.append([head, name, len(all_of), *(mean_sd([v[k] for v in all_of]) for k in range(3))])
+            rows.append([head, name, len(all_of), *(mean_sd([v[k] for v in all_of], digits) for k, digits in enumerate((3, 5, 3)))])
             head = ""
         rows += [["", *cells] for cells in skipped(5)]
     quoted = {"MF": [("watershed", "0.055, 0.097", "0.042, 0.313", "2.861, 6.023"),
@@ -169,7 +169,7 @@ def table3(report, work, sizes, scan, runs):
         head = f"{name}, gamma {gamma}, theta {theta}"
         for threads in sorted({1, os.cpu_count()}):
             figures = seconds(work, volume, gamma, theta, threads, runs)
-            rows.append([head, f"MADF to the letter, {threads} thread{'s' * (threads > 1)}", *(f"{f:.2f}" for f in figures)])
+            rows.append([head, f"MADF to the letter, {threads} thread{'s' * (threads > 1)}", *(f"{f:.3f}" for f in figures)])
             head = ""
         if m.NO_WATERSHED:
             rows += [["", *cells] for cells in skipped(5)]
