@@ -28,7 +28,7 @@ def skipped(width):
 
 def table1(report, done, seeds, sizes):
     report.say("## Table 1 (a): sets of balls",
-               f"gamma 0. Seeds {', '.join(map(str, seeds))}: mean, and in brackets the least and the largest. *found*: true "
+               f"gamma 0, cubes of {sizes.balls}^3, radii in proportion to the paper's 300^3. Seeds {', '.join(map(str, seeds))}: mean, and in brackets the least and the largest. *found*: true "
                "grains that share more than half of the voxels of either with one grain. *% misclassified* as in the "
                "paper's section 6.1, which barely sees too many grains; *mirror*: the roles exchanged, which barely sees "
                "too few. The paper's rows are quoted: its sets are not public, and ours were made anew.")
