@@ -63,22 +63,6 @@ struct Scratch {
   }
 };
 
-/// Copies between a leaf's voxels (offset x*64 + y*8 + z) and its slabs.
-template <int Axis, typename T>
-[[gnu::always_inline]] inline void copyToSlabs(const T* dense, T* slab) {
-  for (size_t t = 0; t < 8; ++t)
-    for (int row = 0; row < 64; ++row)
-      slab[t * kSlab + size_t(row)] =
-          dense[detail::rowOffset<Axis>(row) + int(t) * detail::rowStride<Axis>()];
-}
-template <int Axis, typename T>
-[[gnu::always_inline]] inline void copyFromSlabs(const T* slab, T* dense) {
-  for (size_t t = 0; t < 8; ++t)
-    for (int row = 0; row < 64; ++row)
-      dense[detail::rowOffset<Axis>(row) + int(t) * detail::rowStride<Axis>()] =
-          slab[t * kSlab + size_t(row)];
-}
-
 template <int Axis, typename Key>
 VDB_MADF_SIMD void gather(const LeafIndex& index, const PowerMap& map, Scratch<Key>& s) {
   int32_t power[512];
@@ -86,12 +70,12 @@ VDB_MADF_SIMD void gather(const LeafIndex& index, const PowerMap& map, Scratch<K
   for (size_t i = 0; i < s.leaves.size(); ++i) {
     const uint32_t leaf = s.leaves[i];
     detail::expandLeaf(index.mask(leaf), map.power.data() + index.firstRank(leaf), power);
-    copyToSlabs<Axis>(power, s.power.data() + (i * 8 + 1) * kSlab);
+    detail::copyToSlabs<Axis>(power, kSlab, s.power.data() + (i * 8 + 1) * kSlab);
     if (Axis == 2)  // before the first pass every voxel is its own site
       for (uint32_t k = 0; k < 512; ++k) site[k] = leaf * 512 + k;
     else
       detail::expandLeaf(index.mask(leaf), map.site.data() + index.firstRank(leaf), site);
-    copyToSlabs<Axis>(site, s.site.data() + i * 8 * kSlab);
+    detail::copyToSlabs<Axis>(site, kSlab, s.site.data() + i * 8 * kSlab);
   }
 }
 
@@ -101,8 +85,8 @@ VDB_MADF_SIMD void scatter(const LeafIndex& index, const Scratch<Key>& s, PowerM
   VoxelId site[512];
   for (size_t i = 0; i < s.leaves.size(); ++i) {
     const uint32_t leaf = s.leaves[i];
-    copyFromSlabs<Axis>(s.power.data() + (i * 8 + 1) * kSlab, power);
-    copyFromSlabs<Axis>(s.site.data() + i * 8 * kSlab, site);
+    detail::copyFromSlabs<Axis>(s.power.data() + (i * 8 + 1) * kSlab, kSlab, power);
+    detail::copyFromSlabs<Axis>(s.site.data() + i * 8 * kSlab, kSlab, site);
     detail::packLeaf(index.mask(leaf), power, map.power.data() + index.firstRank(leaf));
     detail::packLeaf(index.mask(leaf), site, map.site.data() + index.firstRank(leaf));
   }

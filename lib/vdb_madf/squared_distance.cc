@@ -125,29 +125,13 @@ VDB_MADF_SIMD void widenWindows(const uint32_t* in, int length, uint32_t* out) {
   }
 }
 
-/// Copies between a leaf's voxels (offset x*64 + y*8 + z) and its slabs.
-template <int Axis>
-void copyToSlabs(const int32_t* dense, uint32_t* slab) {
-  for (int t = 0; t < 8; ++t)
-    for (int row = 0; row < 64; ++row)
-      slab[t * 64 + row] =
-          uint32_t(dense[detail::rowOffset<Axis>(row) + t * detail::rowStride<Axis>()]);
-}
-template <int Axis>
-void copyFromSlabs(const uint32_t* slab, int32_t* dense) {
-  for (int t = 0; t < 8; ++t)
-    for (int row = 0; row < 64; ++row)
-      dense[detail::rowOffset<Axis>(row) + t * detail::rowStride<Axis>()] =
-          int32_t(slab[t * 64 + row]);
-}
-
 template <int Axis>
 VDB_MADF_SIMD void gather(const LeafIndex& index, const VoxelArray<int32_t>& values, Scratch& s) {
   int32_t dense[512];
   for (size_t i = 0; i < s.leaves.size(); ++i) {
     const uint32_t leaf = s.leaves[i];
     detail::expandLeaf(index.mask(leaf), values.data() + index.firstRank(leaf), dense);
-    copyToSlabs<Axis>(dense, s.in.data() + (i * 8 + 1) * 64);
+    detail::copyToSlabs<Axis>(dense, 64, s.in.data() + (i * 8 + 1) * 64);
   }
 }
 
@@ -156,7 +140,7 @@ VDB_MADF_SIMD void scatter(const LeafIndex& index, const Scratch& s, VoxelArray<
   int32_t dense[512];
   for (size_t i = 0; i < s.leaves.size(); ++i) {
     const uint32_t leaf = s.leaves[i];
-    copyFromSlabs<Axis>(s.out.data() + (i * 8 + 1) * 64, dense);
+    detail::copyFromSlabs<Axis>(s.out.data() + (i * 8 + 1) * 64, 64, dense);
     detail::packLeaf(index.mask(leaf), dense, values.data() + index.firstRank(leaf));
   }
 }

@@ -43,4 +43,21 @@ constexpr int rowStride() {
   return Axis == 0 ? 64 : Axis == 1 ? 8 : 1;
 }
 
+/// Copies between the 512 voxels of a leaf and its 8 slabs: a slab holds the 64 rows at one
+/// position, `pitch` values before the next.
+template <int Axis, typename Dense, typename Slab>
+[[gnu::always_inline]] inline void copyToSlabs(const Dense* dense, size_t pitch, Slab* slab) {
+  for (size_t t = 0; t < 8; ++t)
+    for (int row = 0; row < 64; ++row)
+      slab[t * pitch + size_t(row)] =
+          Slab(dense[rowOffset<Axis>(row) + int(t) * rowStride<Axis>()]);
+}
+template <int Axis, typename Slab, typename Dense>
+[[gnu::always_inline]] inline void copyFromSlabs(const Slab* slab, size_t pitch, Dense* dense) {
+  for (size_t t = 0; t < 8; ++t)
+    for (int row = 0; row < 64; ++row)
+      dense[rowOffset<Axis>(row) + int(t) * rowStride<Axis>()] =
+          Dense(slab[t * pitch + size_t(row)]);
+}
+
 }  // namespace vdb_madf::detail
