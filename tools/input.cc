@@ -11,8 +11,10 @@
 
 #include "command.h"
 #include "vdb_madf/errors.h"
+#include "vdb_madf/file_ending.h"
 #include "vdb_madf/object_mask.h"
 #include "vdb_madf/output_file.h"
+#include "vdb_madf/segmentation_metadata.h"
 #include "vdb_madf/vdb_file.h"
 
 namespace vdb_madf::tools {
@@ -64,12 +66,6 @@ CoordBBox parseDomain(const std::string& text) {
                    ": write x0,y0,z0:x1,y1,z1 (inclusive, x0 <= x1 ..., within +-1048576)");
 }
 
-std::string lowerCaseEnding(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return ending;
-}
-
 std::string typeNames() {
   return "uint8, int8, uint16, int16, uint32, int32, float32 or float64";
 }
@@ -85,7 +81,7 @@ std::vector<std::string> filesOf(const std::vector<std::string>& outputs) {
   for (const std::string& output : outputs) {
     if (output.empty() || output == "-") continue;
     files.push_back(output);
-    if (lowerCaseEnding(output) == ".mhd")
+    if (fileEnding(output) == ".mhd")
       files.push_back(std::filesystem::path(output).replace_extension(".raw").string());
   }
   return files;
@@ -210,17 +206,17 @@ bool isVdb(const InputOptions& input) {
 }
 
 bool hasVdbEnding(const std::string& path) {
-  return lowerCaseEnding(path) == ".vdb";
+  return fileEnding(path) == ".vdb";
 }
 bool hasTiffEnding(const std::string& path) {
-  const std::string ending = lowerCaseEnding(path);
+  const std::string ending = fileEnding(path);
   return ending == ".tif" || ending == ".tiff";
 }
 bool hasRawEnding(const std::string& path) {
-  return lowerCaseEnding(path) == ".raw";
+  return fileEnding(path) == ".raw";
 }
 bool hasPngEnding(const std::string& path) {
-  return lowerCaseEnding(path) == ".png";
+  return fileEnding(path) == ".png";
 }
 
 bool isNumericGrid(const openvdb::GridBase& grid) {
@@ -276,6 +272,30 @@ std::unique_ptr<ImageReader> openInput(const InputOptions& input) {
 
 void checkWritable(const std::string& output) {
   const OutputFile probe(output);
+}
+
+Boundary parseBoundary(const std::string& boundary) {
+  return boundary == "open"     ? Boundary::open
+         : boundary == "closed" ? Boundary::closed
+                                : Boundary::automatic;
+}
+
+void addBoundary(CLI::App& verb, std::string& boundary) {
+  verb.add_option("--boundary", boundary,
+                  "beyond the scan's faces: open: unknown, closed: background")
+      ->check(CLI::IsMember({"auto", "open", "closed"}))
+      ->capture_default_str();
+}
+
+Boundary boundaryOf(const std::string& boundary, const InputOptions& input,
+                    const MaskGrid& object) {
+  Boundary result = parseBoundary(boundary);
+  if (result == Boundary::automatic) result = storedBoundary(object);
+  if (result == Boundary::open && !domain(object))
+    throw InvalidInput(input.path +
+                       ": its domain is unknown, so the boundary cannot be open: use --boundary "
+                       "closed, or give --domain x0,y0,z0:x1,y1,z1");
+  return result;
 }
 
 MaskGrid::Ptr loadObject(const InputOptions& input, Interrupter* interrupter) {

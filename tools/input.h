@@ -14,6 +14,7 @@
 #include "vdb_madf/grid_types.h"
 #include "vdb_madf/image_file.h"
 #include "vdb_madf/selection.h"
+#include "vdb_madf/squared_distance.h"
 
 namespace vdb_madf::tools {
 
@@ -76,6 +77,14 @@ auto naming(const std::string& path, const Work& work) -> decltype(work()) {
     throw InvalidInput(path + ": " + what);
   }
 }
+
+/// "auto", "open" or "closed".
+Boundary parseBoundary(const std::string& boundary);
+/// Adds --boundary for what lies beyond the faces of a scan.
+void addBoundary(CLI::App& verb, std::string& boundary);
+/// What --boundary says of an object: where it is `auto`, what the object's file says.
+/// @throw InvalidInput if it is open and the domain is unknown.
+Boundary boundaryOf(const std::string& boundary, const InputOptions& input, const MaskGrid& object);
 
 /// The object of any readable volume, with domain and voxel size as the options override them.
 MaskGrid::Ptr loadObject(const InputOptions& input, Interrupter* interrupter);

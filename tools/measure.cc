@@ -26,8 +26,7 @@ void parse(Options& o) {
   o.input.parse();
   if (!o.density.empty()) o.iceDensity = parseNumber(o.density, "--ice-density");
   if (!(o.iceDensity > 0)) throw WrongUsage("--ice-density " + o.density + ": must be above 0");
-  if (o.boundary == "open") o.measure.boundary = Boundary::open;
-  if (o.boundary == "closed") o.measure.boundary = Boundary::closed;
+  o.measure.boundary = parseBoundary(o.boundary);
 }
 
 void print(const Options& o, const Measurements& m, const Json& sample) {

@@ -3,8 +3,6 @@
 
 #include "vdb_madf/segment.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -44,12 +42,6 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-int64_t peakMemoryBytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return int64_t(usage.ru_maxrss) * 1024;
-}
-
 void parse(Options& o) {
   o.input.outputs = {o.out, o.json};
   if (!o.tables.empty())
@@ -69,8 +61,6 @@ void parse(Options& o) {
   }
   o.segment.merge = o.merge.parse();
   o.segment.gamma = parseGamma(o.gamma);
-  if (o.boundary == "open") o.segment.boundary = Boundary::open;
-  if (o.boundary == "closed") o.segment.boundary = Boundary::closed;
   std::stringstream keep(o.keep);
   for (std::string what; std::getline(keep, what, ',');) {
     if (what == "distance")
@@ -161,7 +151,7 @@ Json summary(const Options& o, const Common& common, const Segmentation& s, cons
   json["seconds_total"] = timing.total;
   for (const StageTime& stage : s.times)
     json["peak_memory_bytes_until_" + stage.stage] = stage.peakBytes;
-  json["peak_memory_bytes"] = peakMemoryBytes();
+  json["peak_memory_bytes"] = peakMemory();
   return json;
 }
 
@@ -254,11 +244,7 @@ void run(const Options& o, const Common& common) {
   common.progress->start("read");
   MaskGrid::Ptr object = loadObject(o.input, common.progress);
   SegmentOptions options = o.segment;
-  if (options.boundary == Boundary::automatic) options.boundary = storedBoundary(*object);
-  if (options.boundary == Boundary::open && !domain(*object))
-    throw InvalidInput(o.input.path +
-                       ": its domain is unknown, so the boundary cannot be open: use --boundary "
-                       "closed, or give --domain x0,y0,z0:x1,y1,z1");
+  options.boundary = boundaryOf(o.boundary, o.input, *object);
   timing.read = secondsSince(start);
 
   // What is free now, or what was allowed for the whole process, less the mask.
@@ -311,10 +297,7 @@ void addSegment(CLI::App& app, Common& common, Action& action) {
   o->input.addDomain(*verb);
   verb->add_option("--gamma", o->gamma, "least cell of a medial ball, voxels")
       ->capture_default_str();
-  verb->add_option("--boundary", o->boundary,
-                   "beyond the scan's faces: open: unknown, closed: background")
-      ->check(CLI::IsMember({"auto", "open", "closed"}))
-      ->capture_default_str();
+  addBoundary(*verb, o->boundary);
   o->merge.add(*verb);
   verb->add_flag("--paper", o->paper, "the paper's merging: angle, cell, theta -0.8 unless given");
   verb->add_option("--keep", o->keep, "more grids: distance,power,manifold,balls")

@@ -97,8 +97,6 @@ void parse(Options& o) {
   requireDifferent(sweep.modes, "--merge");
   requireDifferent(sweep.thetas, "--theta");
   if (o.adjacency == "cell") sweep.adjacency = Adjacency::cell;
-  if (o.boundary == "open") sweep.boundary = Boundary::open;
-  if (o.boundary == "closed") sweep.boundary = Boundary::closed;
   const double small = parseNumber(o.small, "--small");
   if (!(small >= 1 && small <= 1e15 && small == std::floor(small)))
     throw WrongUsage("--small " + o.small + ": must be a whole number of voxels, 1 or more");
@@ -127,11 +125,7 @@ void run(const Options& o, const Common& common) {
   common.progress->start("read");
   const MaskGrid::Ptr object = loadObject(o.input, common.progress);
   SweepOptions options = o.sweep;
-  if (options.boundary == Boundary::automatic) options.boundary = storedBoundary(*object);
-  if (options.boundary == Boundary::open && !domain(*object))
-    throw InvalidInput(o.input.path +
-                       ": its domain is unknown, so the boundary cannot be open: use --boundary "
-                       "closed, or give --domain x0,y0,z0:x1,y1,z1");
+  options.boundary = boundaryOf(o.boundary, o.input, *object);
   options.maxMemory = availableMemory();
   const std::vector<SweepRow> rows =
       naming(o.input.path, [&] { return sweep(*object, options, common.progress); });
@@ -167,10 +161,7 @@ void addSweep(CLI::App& app, Common& common, Action& action) {
   verb->add_option("--adjacency", o->adjacency, "what the angle test pairs: manifold, cell")
       ->check(CLI::IsMember({"manifold", "cell"}))
       ->capture_default_str();
-  verb->add_option("--boundary", o->boundary,
-                   "beyond the scan's faces: open: unknown, closed: background")
-      ->check(CLI::IsMember({"auto", "open", "closed"}))
-      ->capture_default_str();
+  addBoundary(*verb, o->boundary);
   verb->add_option("--small", o->small, "a grain of fewer voxels counts as small")
       ->type_name("N")
       ->capture_default_str();

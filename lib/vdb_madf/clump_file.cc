@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 
 #include "vdb_madf/clumps.h"
 #include "vdb_madf/detail/buffered_output.h"
 #include "vdb_madf/detail/cubic_transform.h"
 #include "vdb_madf/errors.h"
+#include "vdb_madf/file_ending.h"
 
 namespace vdb_madf {
 
@@ -17,12 +16,6 @@ namespace {
 
 using detail::BufferedOutput;
 using openvdb::Vec3d;
-
-std::string ending(const std::string& path) {
-  std::string text = std::filesystem::path(path).extension().string();
-  for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 /// f(clump number, centre, radius) for all balls, world.
 template <typename F>
@@ -55,22 +48,22 @@ void writeLammps(BufferedOutput& out, const std::vector<Clump>& clumps,
   out.text(std::to_string(atoms) + " atoms\n1 atom types\n\n");
   const char* names[3] = {" xlo xhi\n", " ylo yhi\n", " zlo zhi\n"};
   for (int axis = 0; axis < 3; ++axis)
-    out.text(detail::shortest(box.min()[axis]) + " " + detail::shortest(box.max()[axis]) +
-             names[axis]);
+    out.text(detail::shortestDecimal(box.min()[axis]) + " " +
+             detail::shortestDecimal(box.max()[axis]) + names[axis]);
   out.text("\nAtoms # hybrid sphere molecular\n\n");
   size_t atom = 0;
   forEachBall(clumps, world, [&](size_t n, const Vec3d& center, double radius) {
     out.number(++atom);
     out.text(" 1 ");
     numbers(out, center, ' ');
-    out.text(" " + detail::shortest(2 * radius) + " 1 " + std::to_string(n + 1) + "\n");
+    out.text(" " + detail::shortestDecimal(2 * radius) + " 1 " + std::to_string(n + 1) + "\n");
   });
 }
 
 }  // namespace
 
 bool isClumpEnding(const std::string& path) {
-  const std::string end = ending(path);
+  const std::string end = fileEnding(path);
   return end == ".csv" || end == ".txt" || end == ".data";
 }
 
@@ -80,15 +73,15 @@ void writeClumps(const std::string& path, const std::vector<Clump>& clumps,
   if (!isClumpEnding(path))
     throw InvalidInput(path + ": no clump format has this ending; use .csv, .txt or .data");
   BufferedOutput out(path, interrupter);
-  if (ending(path) == ".data") {
+  if (fileEnding(path) == ".data") {
     writeLammps(out, clumps, world);
   } else {
-    const bool isTable = ending(path) == ".csv";
+    const bool isTable = fileEnding(path) == ".csv";
     out.text(isTable ? "grain_id,x,y,z,radius\n" : "#format x_y_z_r_clumpId\n");
     forEachBall(clumps, world, [&](size_t n, const Vec3d& center, double radius) {
       if (isTable) out.text(std::to_string(clumps[n].label) + ",");
       numbers(out, center, isTable ? ',' : ' ');
-      out.text((isTable ? "," : " ") + detail::shortest(radius));
+      out.text((isTable ? "," : " ") + detail::shortestDecimal(radius));
       out.text(isTable ? "\n" : " " + std::to_string(n) + "\n");
     });
   }

@@ -11,6 +11,7 @@
 #include "vdb_madf/detail/label_blocks.h"
 #include "vdb_madf/detail/parallel.h"
 #include "vdb_madf/errors.h"
+#include "vdb_madf/leaf_index.h"
 
 namespace vdb_madf {
 
@@ -57,7 +58,7 @@ class BitBox {
   }
   int64_t count() const {
     int64_t sum = 0;
-    for (const uint64_t word : words_) sum += __builtin_popcountll(word);
+    for (const uint64_t word : words_) sum += countBits(word);
     return sum;
   }
   template <typename F>
@@ -84,8 +85,7 @@ class BitBox {
 
 int64_t gain(BitBox& uncovered, const Clump::Ball& ball) {
   int64_t sum = 0;
-  uncovered.forEachWord(
-      ball, [&](uint64_t word, uint64_t mask) { sum += __builtin_popcountll(word & mask); });
+  uncovered.forEachWord(ball, [&](uint64_t word, uint64_t mask) { sum += countBits(word & mask); });
   return sum;
 }
 

@@ -11,13 +11,13 @@
 
 #include "vdb_madf/detail/parallel.h"
 #include "vdb_madf/detail/simd.h"
+#include "vdb_madf/detail/voxels.h"
 
 namespace vdb_madf {
 
 namespace {
 
 constexpr size_t kLeafGrain = 1024;
-constexpr uint64_t kFirstZ = 0x0101010101010101ull;
 
 /// A leaf, and the two that lie across it once it is shifted along its pencil; null: none.
 struct Across {
@@ -27,7 +27,7 @@ struct Across {
 /// Voxels of the leaves that have another `shift` further along the axis, 0 to 7.
 VDB_MADF_SIMD int64_t countPairs(const Across* leaves, size_t count, int axis, int shift) {
   static constexpr uint64_t kEmpty[8] = {};
-  const uint64_t low = kFirstZ * ((1u << (8 - shift)) - 1);  // z from 0 to 7 - shift
+  const uint64_t low = detail::kFirstZ * ((1u << (8 - shift)) - 1);  // z from 0 to 7 - shift
   int64_t sum = 0;
   for (const Across* leaf = leaves; leaf != leaves + count; ++leaf) {
     const uint64_t *own = leaf->own, *near = leaf->near, *far = shift ? leaf->far : nullptr;

@@ -8,17 +8,16 @@
 
 #include "vdb_madf/detail/leaf_neighborhood.h"
 #include "vdb_madf/detail/parallel.h"
+#include "vdb_madf/detail/voxels.h"
 
 namespace vdb_madf {
 
 namespace {
 
 constexpr size_t kLeafGrain = 256;
-constexpr uint64_t kFirstZ = 0x0101010101010101ull;  // bits y*8 + z with z = 0
-constexpr uint64_t kLastZ = kFirstZ << 7;
 
 int64_t count(uint64_t word) {
-  return __builtin_popcountll(word);
+  return countBits(word);
 }
 
 /// Bit y*8 + z: the voxel (y, z) of a slice, and those one further along y, z and both.
@@ -30,7 +29,7 @@ uint64_t nextY(uint64_t word, uint64_t beyond) {
   return word >> 8 | beyond << 56;
 }
 uint64_t nextZ(uint64_t word, uint64_t beyond) {
-  return (word >> 1 & ~kLastZ) | (beyond & kFirstZ) << 7;
+  return (word >> 1 & ~detail::kLastZ) | (beyond & detail::kFirstZ) << 7;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "vdb_madf/detail/label_blocks.h"
 #include "vdb_madf/detail/parallel.h"
 #include "vdb_madf/leaf_index.h"
 #include "vdb_madf/object_mask.h"
@@ -43,73 +44,36 @@ constexpr std::array<Rgb, kPaletteSize> kPalette{{
 }};
 constexpr Rgb kUnknown{128, 128, 128};
 
-/// The labels of a leaf and of one voxel around it; 0: none. At (x+1)*100 + (y+1)*10 + z+1.
-class Halo {
- public:
-  void fill(const Int32Grid::ConstAccessor& grid, const Coord& origin) {
-    for (int dx = -1; dx <= 1; ++dx)
-      for (int dy = -1; dy <= 1; ++dy)
-        for (int dz = -1; dz <= 1; ++dz) copy(grid, origin, {dx, dy, dz});
-  }
+constexpr std::array<int, 13> kForward{1, 9, 10, 11, 89, 90, 91, 99, 100, 101, 109, 110, 111};
 
-  /// f(a, b) for all different labels at 26-adjacent voxels of which one lies in the leaf; pairs
-  /// may come more than once.
-  template <typename F>
-  void forEachContact(const F& f) const {
-    if (isUniform()) return;
-    for (int x = 1; x <= 8; ++x)
-      for (int y = 1; y <= 8; ++y)
-        for (int z = 1; z <= 8; ++z) {
-          const int at = x * 100 + y * 10 + z;
-          const int32_t a = values_[size_t(at)];
-          if (!a) continue;
-          // All 26: a neighbour in another leaf may be the only one to see it, or not be a leaf.
-          for (const int step : kForward) {
-            for (const int32_t b : {values_[size_t(at + step)], values_[size_t(at - step)]})
-              if (b && b != a) f(std::min(a, b), std::max(a, b));
-          }
+bool isUniform(const detail::LabelHalo& halo) {
+  int32_t label = 0;
+  for (const int32_t value : halo) {
+    if (!value || value == label) continue;
+    if (label) return false;
+    label = value;
+  }
+  return true;
+}
+
+/// f(a, b) for all different labels at 26-adjacent voxels of which one lies in the leaf; pairs
+/// may come more than once.
+template <typename F>
+void forEachContact(const detail::LabelHalo& halo, const F& f) {
+  if (isUniform(halo)) return;
+  for (int x = 1; x <= 8; ++x)
+    for (int y = 1; y <= 8; ++y)
+      for (int z = 1; z <= 8; ++z) {
+        const int at = x * 100 + y * 10 + z;
+        const int32_t a = halo[size_t(at)];
+        if (!a) continue;
+        // All 26: a neighbour in another leaf may be the only one to see it, or not be a leaf.
+        for (const int step : kForward) {
+          for (const int32_t b : {halo[size_t(at + step)], halo[size_t(at - step)]})
+            if (b && b != a) f(std::min(a, b), std::max(a, b));
         }
-  }
-
- private:
-  static constexpr std::array<int, 13> kForward{1,  9,   10,  11,  89,  90, 91,
-                                                99, 100, 101, 109, 110, 111};
-
-  void copy(const Int32Grid::ConstAccessor& grid, const Coord& origin, const Coord& d) {
-    const Coord from = origin + Coord(8 * d.x(), 8 * d.y(), 8 * d.z());
-    const Leaf* leaf = grid.probeConstLeaf(from);
-    int32_t constant = 0;
-    if (!leaf && (!grid.probeValue(from, constant) || constant < 0)) constant = 0;
-    int begin[3], end[3];  // of the part of that leaf which lies in the halo
-    for (int axis = 0; axis < 3; ++axis) {
-      begin[axis] = d[axis] < 0 ? 7 : 0;
-      end[axis] = d[axis] > 0 ? 1 : 8;
-    }
-    for (int x = begin[0]; x < end[0]; ++x)
-      for (int y = begin[1]; y < end[1]; ++y)
-        for (int z = begin[2]; z < end[2]; ++z) {
-          int32_t value = constant;
-          if (leaf) {
-            const auto offset = openvdb::Index(x * 64 + y * 8 + z);
-            value = leaf->isValueOn(offset) ? std::max(0, leaf->getValue(offset)) : 0;
-          }
-          values_[size_t((x + 8 * d.x() + 1) * 100 + (y + 8 * d.y() + 1) * 10 + z + 8 * d.z() +
-                         1)] = value;
-        }
-  }
-
-  bool isUniform() const {
-    int32_t label = 0;
-    for (const int32_t value : values_) {
-      if (!value || value == label) continue;
-      if (label) return false;
-      label = value;
-    }
-    return true;
-  }
-
-  std::array<int32_t, 1000> values_{};
-};
+      }
+}
 
 void sortUnique(std::vector<Pair>& pairs) {
   std::sort(pairs.begin(), pairs.end());
@@ -130,7 +94,7 @@ Contacts findContacts(const Int32Grid& grid, Interrupter* interrupter) {
     const Int32Grid::ConstAccessor accessor = grid.getConstAccessor();
     std::vector<int32_t> someLabels;
     std::vector<Pair> somePairs;
-    Halo halo;
+    detail::LabelHalo halo;
     for (size_t i = begin; i < end; ++i) {
       const Coord origin = index.origin(i);
       if (const Leaf* leaf = accessor.probeConstLeaf(origin)) {
@@ -140,8 +104,8 @@ Contacts findContacts(const Int32Grid& grid, Interrupter* interrupter) {
       } else {
         someLabels.push_back(accessor.getValue(origin));
       }
-      halo.fill(accessor, origin);
-      halo.forEachContact([&](int32_t a, int32_t b) {
+      detail::readLabelHalo(grid.tree(), origin, halo);
+      forEachContact(halo, [&](int32_t a, int32_t b) {
         if (somePairs.empty() || somePairs.back() != Pair(a, b)) somePairs.emplace_back(a, b);
       });
     }

@@ -16,6 +16,7 @@ namespace vdb_madf {
 namespace {
 
 using detail::LabelBlocks;
+using detail::LabelHalo;
 using detail::SurfaceNet;
 using openvdb::Vec3d;
 
@@ -165,8 +166,8 @@ class NetBuilder {
     }
     quads_.resize(firstQuad_.back());
     quadGrain_.resize(firstQuad_.back());
-    forEachBlock([&](size_t block, const LabelBlocks::Halo& halo) { placeCorners(block, halo); });
-    forEachBlock([&](size_t block, const LabelBlocks::Halo& halo) { makeQuads(block, halo); });
+    forEachBlock([&](size_t block, const LabelHalo& halo) { placeCorners(block, halo); });
+    forEachBlock([&](size_t block, const LabelHalo& halo) { makeQuads(block, halo); });
     if (withLinks_) packJunctions();
     sortQuads();
     return std::move(net_);
@@ -176,7 +177,7 @@ class NetBuilder {
   template <typename F>
   void forEachBlock(const F& f) const {
     detail::parallelFor(blocks_.size(), kBlockGrain, interrupter_, [&](size_t begin, size_t end) {
-      LabelBlocks::Halo halo;
+      LabelHalo halo;
       for (size_t block = begin; block < end; ++block) {
         blocks_.readHalo(block, halo);
         f(block, halo);
@@ -193,7 +194,7 @@ class NetBuilder {
 
   void count() {
     std::vector<std::array<uint32_t, 3>> counts(blocks_.size());
-    forEachBlock([&](size_t block, const LabelBlocks::Halo& halo) {
+    forEachBlock([&](size_t block, const LabelHalo& halo) {
       uint32_t corners = 0, points = 0, quads = 0;
       forEachPlace([&](int x, int y, int z) {
         const int32_t* at = &halo[haloAt(x, y, z)];
@@ -223,7 +224,7 @@ class NetBuilder {
     firstQuad_.push_back(uint32_t(quads));
   }
 
-  void placeCorners(size_t block, const LabelBlocks::Halo& halo) {
+  void placeCorners(size_t block, const LabelHalo& halo) {
     uint32_t number = firstCorner_[block], point = firstPoint_[block];
     forEachPlace([&](int x, int y, int z) {
       const Corner corner(&halo[haloAt(x, y, z)]);
@@ -257,7 +258,7 @@ class NetBuilder {
     }
   }
 
-  void makeQuads(size_t block, const LabelBlocks::Halo& halo) {
+  void makeQuads(size_t block, const LabelHalo& halo) {
     CornerTable table;
     readCorners(block, table);
     uint32_t next = firstQuad_[block];
@@ -276,7 +277,7 @@ class NetBuilder {
   }
 
   /// The face across `axis` below voxel p, as a grain below it (normal +axis) or above it sees it.
-  void addQuad(const LabelBlocks::Halo& halo, const CornerTable& table, const Coord& p, int axis,
+  void addQuad(const LabelHalo& halo, const CornerTable& table, const Coord& p, int axis,
                int32_t grain, bool isAbove, uint32_t number) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     static constexpr int kAround[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};

@@ -13,6 +13,7 @@
 #include "vdb_madf/detail/buffered_output.h"
 #include "vdb_madf/detail/cubic_transform.h"
 #include "vdb_madf/detail/label_leaves.h"
+#include "vdb_madf/detail/voxels.h"
 #include "vdb_madf/detail/vtk_file.h"
 #include "vdb_madf/errors.h"
 #include "vdb_madf/mesh_file.h"
@@ -36,7 +37,6 @@ std::string ending(const std::string& path) {
 
 /// Adds to a mask itself, moved by a voxel up an axis. Returns what falls into the next leaf.
 Mask spread(Mask& mask, int axis) {
-  constexpr uint64_t kFirstZ = 0x0101010101010101u;
   Mask next{};
   for (size_t x = 8; x-- > 0;) {
     const uint64_t word = mask[x];
@@ -46,8 +46,8 @@ Mask spread(Mask& mask, int axis) {
       next[x] = word >> 56;
       mask[x] |= word << 8;
     } else {
-      next[x] = word >> 7 & kFirstZ;
-      mask[x] |= word << 1 & ~kFirstZ;
+      next[x] = word >> 7 & detail::kFirstZ;
+      mask[x] |= word << 1 & ~detail::kFirstZ;
     }
   }
   return next;

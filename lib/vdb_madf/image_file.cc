@@ -21,6 +21,7 @@
 #include "vdb_madf/detail/tiff_image.h"
 #include "vdb_madf/detail/zarr_image.h"
 #include "vdb_madf/errors.h"
+#include "vdb_madf/file_ending.h"
 
 namespace vdb_madf {
 
@@ -56,12 +57,8 @@ enum class Format {
   vdb
 };
 
-std::string ending(const std::string& path) {
-  return detail::lowerCase(std::filesystem::path(path).extension().string());
-}
-
 Format formatOfEnding(const std::string& path) {
-  const std::string end = ending(path);
+  const std::string end = fileEnding(path);
   if (end == ".tif" || end == ".tiff") return Format::tiff;
   if (end == ".mhd" || end == ".mha") return Format::meta;
   if (end == ".nrrd" || end == ".nhdr") return Format::nrrd;
@@ -71,7 +68,7 @@ Format formatOfEnding(const std::string& path) {
   if (end == ".nii") return Format::nifti;
   if (end == ".gz") {  // .nii.gz
     const std::filesystem::path inner = std::filesystem::path(path).stem();
-    return ending(inner.string()) == ".nii" ? Format::nifti : Format::unknown;
+    return fileEnding(inner.string()) == ".nii" ? Format::nifti : Format::unknown;
   }
   if (end == ".longvol") return Format::dgtal;
   if (end == ".vol" || end == ".info") return Format::pyhst;
@@ -209,7 +206,7 @@ std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInf
     case Format::npy:
       return detail::createNpy(path, info);
     case Format::nrrd:
-      if (ending(path) == ".nrrd") return detail::createNrrd(path, info);
+      if (fileEnding(path) == ".nrrd") return detail::createNrrd(path, info);
       break;
     default:
       break;
@@ -218,7 +215,7 @@ std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInf
 }
 
 bool isImageEnding(const std::string& path) {
-  const std::string end = ending(path);
+  const std::string end = fileEnding(path);
   return end == ".tif" || end == ".tiff" || end == ".raw" || end == ".mhd" || end == ".mha" ||
          end == ".nrrd" || end == ".npy";
 }

@@ -95,4 +95,11 @@ Merging merge(const ManifoldGraph& graph, const MergeOptions& options) {
   return merging;
 }
 
+std::vector<int64_t> grainVoxels(const ManifoldGraph& graph, const Merging& merging) {
+  std::vector<int64_t> voxels(merging.representative.size(), 0);
+  for (size_t i = 0; i < graph.nodes.size(); ++i)
+    voxels[size_t(merging.grainOfNode[i] - 1)] += graph.nodes[i].voxels;
+  return voxels;
+}
+
 }  // namespace vdb_madf

@@ -43,4 +43,7 @@ void checkMergeOptions(const MergeOptions& options);
 /// @throw InvalidInput as checkMergeOptions.
 Merging merge(const ManifoldGraph& graph, const MergeOptions& options = {});
 
+/// Voxels of grain g at g - 1.
+std::vector<int64_t> grainVoxels(const ManifoldGraph& graph, const Merging& merging);
+
 }  // namespace vdb_madf

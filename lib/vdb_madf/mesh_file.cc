@@ -4,7 +4,6 @@
 #include "vdb_madf/mesh_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <limits>
@@ -13,6 +12,7 @@
 #include "vdb_madf/detail/buffered_output.h"
 #include "vdb_madf/detail/vtk_file.h"
 #include "vdb_madf/errors.h"
+#include "vdb_madf/file_ending.h"
 
 namespace vdb_madf {
 
@@ -21,12 +21,6 @@ namespace {
 using detail::BufferedOutput;
 using openvdb::Vec3d;
 using openvdb::Vec3f;
-
-std::string ending(const std::string& path) {
-  std::string text = std::filesystem::path(path).extension().string();
-  for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 /// The mesh in world coordinates.
 class WorldMesh {
@@ -211,14 +205,14 @@ std::string grainName(int32_t label) {
 }
 
 bool isMeshEnding(const std::string& path) {
-  const std::string end = ending(path);
+  const std::string end = fileEnding(path);
   return end == ".ply" || end == ".obj" || end == ".stl" || end == ".vtp";
 }
 
 void writeMesh(const std::string& path, const GrainMesh& mesh, const MeshFileOptions& options,
                Interrupter* interrupter) {
   const WorldMesh world(mesh, options, path);
-  const std::string end = ending(path);
+  const std::string end = fileEnding(path);
   if (end == ".ply")
     writePly(path, world, interrupter);
   else if (end == ".obj")

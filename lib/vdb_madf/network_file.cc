@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 
 #include "vdb_madf/detail/buffered_output.h"
 #include "vdb_madf/detail/vtk_file.h"
 #include "vdb_madf/errors.h"
+#include "vdb_madf/file_ending.h"
 #include "vdb_madf/grain_network.h"
 
 namespace vdb_madf {
@@ -17,12 +16,6 @@ namespace {
 
 using detail::BufferedOutput;
 using Column = GrainNetwork::Column;
-
-std::string ending(const std::string& path) {
-  std::string text = std::filesystem::path(path).extension().string();
-  for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 void addColumn(detail::VtkFile& file, const Column& column) {
   file.array("Float64", column.name, 1, 8 * column.values.size(), [&column](BufferedOutput& out) {
@@ -142,12 +135,12 @@ void writeCsv(const std::string& path, const GrainNetwork& network, Interrupter*
 }  // namespace
 
 bool isNetworkEnding(const std::string& path) {
-  const std::string end = ending(path);
+  const std::string end = fileEnding(path);
   return end == ".vtp" || end == ".graphml" || end == ".csv";
 }
 
 void writeNetwork(const std::string& path, const GrainNetwork& network, Interrupter* interrupter) {
-  const std::string end = ending(path);
+  const std::string end = fileEnding(path);
   if (end == ".vtp")
     writeVtp(path, network, interrupter);
   else if (end == ".graphml")

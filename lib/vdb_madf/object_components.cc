@@ -13,8 +13,6 @@ namespace vdb_madf {
 
 namespace {
 
-constexpr uint64_t kFirstZ = 0x0101010101010101ull;  // bits y*8 + z with z = 0
-constexpr uint64_t kLastZ = kFirstZ << 7;
 constexpr uint64_t kFirstY = 0xffull;
 constexpr uint64_t kLastY = kFirstY << 56;
 
@@ -24,7 +22,8 @@ LeafIndex::Mask flood(LeafIndex::Mask seed, const LeafIndex::Mask& mask) {
     grown = false;
     for (int x = 0; x < 8; ++x) {
       const uint64_t w = seed[x];
-      uint64_t next = w | (w & ~kLastZ) << 1 | (w & ~kFirstZ) >> 1 | w << 8 | w >> 8;
+      uint64_t next =
+          w | (w & ~detail::kLastZ) << 1 | (w & ~detail::kFirstZ) >> 1 | w << 8 | w >> 8;
       if (x > 0) next |= seed[x - 1];
       if (x < 7) next |= seed[x + 1];
       next &= mask[x];
@@ -63,8 +62,8 @@ void markFace(const LeafIndex::Mask& mask, int axis, bool last, uint32_t piece, 
     return;
   }
   for (size_t x = 0; x < 8; ++x) {
-    const uint64_t bits =
-        axis == 1 ? mask[x] & (last ? kLastY : kFirstY) : mask[x] & (last ? kLastZ : kFirstZ);
+    const uint64_t bits = axis == 1 ? mask[x] & (last ? kLastY : kFirstY)
+                                    : mask[x] & (last ? detail::kLastZ : detail::kFirstZ);
     detail::forEachBit(
         bits, [&](int bit) { face[x * 8 + size_t(axis == 1 ? bit & 7 : bit >> 3)] = piece; });
   }

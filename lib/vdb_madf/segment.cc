@@ -3,8 +3,6 @@
 
 #include "vdb_madf/segment.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -82,11 +80,6 @@ class Stages : public Interrupter {
 
   int weight(const StageWeight& s) const {
     return std::string(s.stage) == "gamma_filter" && !filter_ ? 0 : s.weight;
-  }
-  static int64_t peakMemory() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return int64_t(usage.ru_maxrss) * 1024;
   }
 
   Interrupter* interrupter_;
@@ -189,9 +182,7 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
   stages.begin("merge");
   const Merging merging = merge(result.graph, options.merge);
   counts.grains = int64_t(merging.representative.size());
-  result.grainVoxels.assign(merging.representative.size(), 0);
-  for (size_t i = 0; i < result.graph.nodes.size(); ++i)
-    result.grainVoxels[size_t(merging.grainOfNode[i] - 1)] += result.graph.nodes[i].voxels;
+  result.grainVoxels = grainVoxels(result.graph, merging);
 
   stages.begin("labels");
   if (options.keepManifold)

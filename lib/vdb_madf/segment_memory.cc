@@ -3,6 +3,8 @@
 
 #include "vdb_madf/segment_memory.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 
 namespace vdb_madf {
@@ -66,6 +68,12 @@ int64_t segmentMemory(const ObjectSize& size, const SegmentOptions& options) {
   if (options.keepManifold) peak = std::max(peak, kept + sets + kManifold * voxels);
   if (options.keepBalls) peak = std::max(peak, kept + 3 * perGrid);  // written as two grids
   return int64_t(peak);
+}
+
+int64_t peakMemory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return int64_t(usage.ru_maxrss) * 1024;
 }
 
 }  // namespace vdb_madf

@@ -24,4 +24,7 @@ ObjectSize objectSize(const MaskGrid& object);
 /// benchmark compare). Nothing in it depends on the bounding box.
 int64_t segmentMemory(const ObjectSize& size, const SegmentOptions& options = {});
 
+/// Largest resident memory of this process so far, bytes.
+int64_t peakMemory();
+
 }  // namespace vdb_madf

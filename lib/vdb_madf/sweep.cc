@@ -21,15 +21,6 @@ void check(const SweepOptions& options) {
   for (const double theta : options.thetas) checkMergeOptions({theta});
 }
 
-/// Sizes of the grains that a merging makes of the manifolds; ascending.
-std::vector<int64_t> grainSizes(const ManifoldGraph& graph, const Merging& merging) {
-  std::vector<int64_t> sizes(merging.representative.size(), 0);
-  for (size_t i = 0; i < graph.nodes.size(); ++i)
-    sizes[size_t(merging.grainOfNode[i] - 1)] += graph.nodes[i].voxels;
-  std::sort(sizes.begin(), sizes.end());
-  return sizes;
-}
-
 /// \p sizes ascending.
 double median(const std::vector<int64_t>& sizes) {
   if (sizes.empty()) return 0;
@@ -38,8 +29,9 @@ double median(const std::vector<int64_t>& sizes) {
 }
 
 void count(const ManifoldGraph& graph, const SweepOptions& options, SweepRow& row) {
-  const std::vector<int64_t> sizes =
-      grainSizes(graph, merge(graph, {row.theta, row.mode, options.adjacency}));
+  std::vector<int64_t> sizes =
+      grainVoxels(graph, merge(graph, {row.theta, row.mode, options.adjacency}));
+  std::sort(sizes.begin(), sizes.end());
   row.grains = int64_t(sizes.size());
   row.medianVoxels = median(sizes);
   row.largestVoxels = sizes.empty() ? 0 : sizes.back();

@@ -104,7 +104,7 @@ detail::VtkFile::Blocks deflatedBlocks(const Slabs& slabs, Interrupter* interrup
 
 std::string triple(const openvdb::Vec3d& v) {
   std::string text;
-  for (int axis = 0; axis < 3; ++axis) text += (axis ? " " : "") + detail::shortest(v[axis]);
+  for (int axis = 0; axis < 3; ++axis) text += (axis ? " " : "") + detail::shortestDecimal(v[axis]);
   return text;
 }
 

@@ -3,24 +3,17 @@
 
 #pragma once
 
-#include <charconv>
 #include <cstring>
 #include <string>
 #include <type_traits>
 
 #include "vdb_madf/detail/byte_order.h"
+#include "vdb_madf/detail/header_text.h"
 #include "vdb_madf/detail/output_stream.h"
 #include "vdb_madf/errors.h"
 #include "vdb_madf/grid_types.h"
 
 namespace vdb_madf::detail {
-
-/// The shortest decimal that reads back as the same number.
-template <typename T>
-std::string shortest(T value) {
-  char digits[64];
-  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
-}
 
 /// Many small pieces, text or binary (little-endian), into an OutputStream.
 class BufferedOutput {
@@ -45,7 +38,7 @@ class BufferedOutput {
   void text(const std::string& text) { bytes(text.data(), text.size()); }
   template <typename T>
   void number(T value) {
-    text(shortest(value));
+    text(shortestDecimal(value));
   }
 
   void commit() {

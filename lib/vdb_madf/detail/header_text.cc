@@ -69,11 +69,6 @@ std::optional<std::vector<double>> reals(const std::string& text) {
   return numbers<double>(text);
 }
 
-std::string shortestDecimal(double value) {
-  char text[32];
-  return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
-}
-
 std::string lengthIn(double unitsPerMetre, double metres) {
   const double value = metres * unitsPerMetre;
   for (const double candidate : {value, std::nextafter(value, 0.0), std::nextafter(value, 1e300)})

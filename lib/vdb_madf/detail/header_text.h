@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <charconv>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -22,8 +23,12 @@ std::string quoted(const std::string& text);
 /// All of the text as numbers between white space, independent of the locale.
 std::optional<std::vector<int64_t>> integers(const std::string& text);
 std::optional<std::vector<double>> reals(const std::string& text);
-/// The shortest decimal that reads back as the same double.
-std::string shortestDecimal(double value);
+/// The shortest decimal that reads back as the same number.
+template <typename T>
+std::string shortestDecimal(T value) {
+  char text[64];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
 /// A length as a decimal in another unit, such that the decimal / unitsPerMetre gives back `metres`
 /// to the last bit (or nearly, where no double does).
 std::string lengthIn(double unitsPerMetre, double metres);

@@ -49,6 +49,26 @@ Int32Tree::ConstPtr withoutTiles(const Int32Grid& labels) {
   return copy;
 }
 
+void readLabelHalo(const Int32Tree& tree, const Coord& origin, LabelHalo& halo) {
+  const openvdb::tree::ValueAccessor<const Int32Tree, false> accessor(tree);
+  for (int side = 0; side < 27; ++side) {
+    const int dx = side / 9, dy = side / 3 % 3, dz = side % 3;
+    const Coord from = origin.offsetBy(8 * dx - 8, 8 * dy - 8, 8 * dz - 8);
+    const Leaf* leaf = accessor.probeConstLeaf(from);
+    const int32_t* values = leaf ? leaf->buffer().data() : nullptr;
+    int32_t tile = 0;
+    if (!leaf && (!accessor.probeValue(from, tile) || tile < 0)) tile = 0;
+    const Span x = kSpans[dx], y = kSpans[dy], z = kSpans[dz];
+    for (int i = 0; i < x.count; ++i)
+      for (int j = 0; j < y.count; ++j)
+        for (int k = 0; k < z.count; ++k) {
+          const auto offset = openvdb::Index((x.from + i) * 64 + (y.from + j) * 8 + z.from + k);
+          halo[size_t((x.to + i) * 100 + (y.to + j) * 10 + z.to + k)] =
+              leaf ? labelAt(*leaf, values, offset) : tile;
+        }
+  }
+}
+
 LabelBlocks::LabelBlocks(const Int32Grid& labels) : tree_(withoutTiles(labels)) {
   std::vector<const Leaf*> leaves;
   tree_->getNodes(leaves);
@@ -95,23 +115,6 @@ size_t LabelBlocks::find(const Coord& origin) const {
 
 uint32_t LabelBlocks::number(int32_t label) const {
   return uint32_t(std::lower_bound(labels_.begin(), labels_.end(), label) - labels_.begin());
-}
-
-void LabelBlocks::readHalo(size_t block, Halo& halo) const {
-  halo.fill(0);
-  for (int side = 0; side < 27; ++side) {
-    const int dx = side / 9, dy = side / 3 % 3, dz = side % 3;
-    const Leaf* leaf =
-        tree_->probeConstLeaf(origins_[block].offsetBy(8 * dx - 8, 8 * dy - 8, 8 * dz - 8));
-    if (!leaf) continue;
-    const int32_t* values = leaf->buffer().data();
-    const Span x = kSpans[dx], y = kSpans[dy], z = kSpans[dz];
-    for (int i = 0; i < x.count; ++i)
-      for (int j = 0; j < y.count; ++j)
-        for (int k = 0; k < z.count; ++k)
-          halo[size_t((x.to + i) * 100 + (y.to + j) * 10 + z.to + k)] = labelAt(
-              *leaf, values, openvdb::Index((x.from + i) * 64 + (y.from + j) * 8 + z.from + k));
-  }
 }
 
 }  // namespace vdb_madf::detail

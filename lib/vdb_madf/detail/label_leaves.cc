@@ -7,19 +7,17 @@
 #include <cstring>
 
 #include "vdb_madf/detail/parallel.h"
+#include "vdb_madf/detail/voxels.h"
 #include "vdb_madf/object_mask.h"
 
 namespace vdb_madf::detail {
 
 namespace {
 
-constexpr size_t kLeafGrain = 256;
-
 /// Up to this many labels a search beats a hash table.
 constexpr size_t kFewLabels = 24;
 
 // Bits y*8 + z of a word of a mask.
-constexpr uint64_t kFirstZ = 0x0101010101010101ull, kLastZ = kFirstZ << 7;
 constexpr uint64_t kFirstY = 0xffull, kLastY = kFirstY << 56;
 
 bool isFull(const LeafIndex::Mask& mask) {

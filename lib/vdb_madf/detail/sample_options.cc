@@ -5,9 +5,9 @@
 
 #include <openvdb/Metadata.h>
 
-#include <charconv>
 #include <cmath>
 
+#include "vdb_madf/detail/header_text.h"
 #include "vdb_madf/errors.h"
 #include "vdb_madf/grid_metadata.h"
 #include "vdb_madf/leaf_index.h"
@@ -18,12 +18,6 @@ namespace {
 
 /// A smaller ball is no voxel, most of the time.
 constexpr double kMinRadius = 0.5;
-
-std::string shortest(double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  return {text, end};
-}
 
 }  // namespace
 
@@ -36,21 +30,21 @@ void checkSize(const Coord& size) {
 
 void checkRange(const char* name, double value, double lower, double upper) {
   if (!(value >= lower && value <= upper))  // false for NaN, too
-    throw InvalidInput(std::string(name) + " must be " + shortest(lower) + " to " +
-                       shortest(upper) + ", not " + shortest(value));
+    throw InvalidInput(std::string(name) + " must be " + shortestDecimal(lower) + " to " +
+                       shortestDecimal(upper) + ", not " + shortestDecimal(value));
 }
 
 void checkRadii(double minimum, double maximum) {
   checkRange("radius", minimum, kMinRadius, LeafIndex::kMaxExtent);
   checkRange("radius", maximum, kMinRadius, LeafIndex::kMaxExtent);
   if (minimum > maximum)
-    throw InvalidInput("smallest radius " + shortest(minimum) + " exceeds the largest, " +
-                       shortest(maximum));
+    throw InvalidInput("smallest radius " + shortestDecimal(minimum) + " exceeds the largest, " +
+                       shortestDecimal(maximum));
 }
 
 void checkFraction(double fraction) {
   if (!(fraction > 0 && fraction < 1))
-    throw InvalidInput("fraction must lie between 0 and 1, not be " + shortest(fraction));
+    throw InvalidInput("fraction must lie between 0 and 1, not be " + shortestDecimal(fraction));
 }
 
 void checkCount(int count) {
@@ -72,7 +66,7 @@ SourceText& SourceText::range(const char* option, double lower, double upper) {
 }
 
 std::string SourceText::number(double value) {
-  return shortest(value);
+  return shortestDecimal(value);
 }
 
 void describe(openvdb::GridBase& grid, const std::string& name, const Coord& size,

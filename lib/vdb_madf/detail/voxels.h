@@ -10,6 +10,9 @@ namespace vdb_madf::detail {
 /// Leaves per task of a loop over voxels: some tens of microseconds.
 constexpr size_t kLeafGrain = 64;
 
+/// Bits y*8 + z of a mask word with z = 0, with z = 7.
+constexpr uint64_t kFirstZ = 0x0101010101010101ull, kLastZ = kFirstZ << 7;
+
 /// f(bit) for the set bits of a word, ascending.
 template <typename F>
 void forEachBit(uint64_t word, const F& f) {
