@@ -6,6 +6,7 @@
 #include <map>
 
 #include "vdb_madf/detail/label_leaves.h"
+#include "vdb_madf/detail/voxels.h"
 #include "vdb_madf/errors.h"
 #include "vdb_madf/grid_metadata.h"
 #include "vdb_madf/level_sets.h"
@@ -54,14 +55,12 @@ std::vector<BoolGrid::Ptr> grainMasks(const Int32Grid& labels, Interrupter* inte
   for (size_t n = 0; n < index.leafCount(); ++n) {
     if (interrupter && interrupter->wasInterrupted(int(100 * n / index.leafCount())))
       throw Interrupted();
-    int32_t last = 0;
-    Leaf* leaf = nullptr;
-    for (int offset = 0; offset < 512; ++offset) {
-      if (!(index.mask(n)[size_t(offset) >> 6] >> (offset & 63) & 1)) continue;
-      const int32_t label = leaves.label(n, offset);
-      if (label != last) leaf = &masks.leaf(label, index.origin(n));
-      last = label;
-      leaf->setValueOn(openvdb::Index(offset), true);
+    for (const detail::LabelPart& part : leaves.parts(n)) {
+      Leaf& leaf = masks.leaf(part.label, index.origin(n));
+      for (size_t x = 0; x < 8; ++x)
+        detail::forEachBit(part.mask[x], [&](int bit) {
+          leaf.setValueOn(openvdb::Index(x * 64 + size_t(bit)), true);
+        });
     }
   }
   return masks.grids();

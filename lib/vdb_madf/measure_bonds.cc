@@ -43,17 +43,21 @@ FaceSums faceSums(const std::vector<InterfaceFace>& faces, const Coord& origin) 
   return sums;
 }
 
-int countPatches(const std::vector<InterfaceFace>& faces) {
-  std::vector<std::pair<Coord, uint32_t>> corners;
+int countPatches(const std::vector<InterfaceFace>& faces, const Coord& origin) {
+  // Corners from the origin, 21 bits each: an object is shorter (LeafIndex::kMaxExtent).
+  constexpr int kBits = 21;
+  std::vector<std::pair<uint64_t, uint32_t>> corners;
   corners.reserve(4 * faces.size());
   for (size_t i = 0; i < faces.size(); ++i) {
     const int axis = faces[i].axis, a = (axis + 1) % 3, b = (axis + 2) % 3;
     for (int k = 0; k < 4; ++k) {
-      Coord corner = faces[i].lower;
+      Coord corner = faces[i].lower - origin;
       corner[axis] += 1;
       corner[a] += k & 1;
       corner[b] += k >> 1;
-      corners.emplace_back(corner, uint32_t(i));
+      uint64_t key = 0;
+      for (int j = 0; j < 3; ++j) key = key << kBits | uint64_t(corner[j] + (1 << (kBits - 1)));
+      corners.emplace_back(key, uint32_t(i));
     }
   }
   std::sort(corners.begin(), corners.end());
@@ -84,7 +88,7 @@ BondMeasures measureBond(const BondSums& from) {
   bond.flatness = std::max(0.0, principal.values[2]);
   bond.normal = {double(sums.normal[0]), double(sums.normal[1]), double(sums.normal[2])};
   if (!bond.normal.normalize(0)) bond.normal = principal.axes[2];
-  bond.patches = countPatches(from.faces);
+  bond.patches = countPatches(from.faces, origin);
   bond.curvature = interfaceCurvature(from.faces);
   return bond;
 }

@@ -50,8 +50,8 @@ std::vector<GrainMeasures> grainMeasures(const LabelSums& sums,
     grain.box = from.box;
     grain.atDomainFace = touchesFace(from.box, domain);
     grain.equivalentDiameter = std::cbrt(6 * n / M_PI);
-    grain.freeArea = double(from.surface.area) / kAreaUnit;
-    grain.cutArea = double(from.surface.cutFaces);
+    grain.freeArea = double(from.freeArea) / kAreaUnit;
+    grain.cutArea = double(from.cutFaces);
     grain.ellipsoid = ellipsoidOf(from);
     row[grain.id] = grains.size();
     grains.push_back(grain);

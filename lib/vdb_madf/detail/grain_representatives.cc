@@ -3,21 +3,41 @@
 
 #include "vdb_madf/detail/grain_representatives.h"
 
+#include <algorithm>
 #include <unordered_map>
 
 #include "vdb_madf/detail/parallel.h"
+#include "vdb_madf/detail/simd.h"
+#include "vdb_madf/detail/voxels.h"
 
 namespace vdb_madf::detail {
 
 namespace {
-
-constexpr size_t kLeafGrain = 256;
 
 /// Takes over what is deeper; leaves may come in any order.
 void improve(const GrainRepresentative& candidate, GrainRepresentative& best) {
   if (candidate.squaredRadius > best.squaredRadius ||
       (candidate.squaredRadius == best.squaredRadius && candidate.voxel < best.voxel))
     best = candidate;
+}
+
+VDB_MADF_SIMD int32_t largest(const int32_t* values, size_t count) {
+  int32_t most = 0;
+  for (size_t i = 0; i < count; ++i) most = std::max(most, values[i]);
+  return most;
+}
+
+GrainRepresentative deepestOf(const LabelPart& part, const LeafIndex& index, size_t leaf,
+                              const VoxelArray<int32_t>& distances) {
+  GrainRepresentative deepest;
+  for (size_t x = 0; x < 8; ++x)
+    forEachBit(part.mask[x], [&](int bit) {
+      const auto id = VoxelId(leaf * 512 + x * 64 + size_t(bit));
+      const int32_t d = distances[index.rank(id)];
+      // Voxels come in the order that decides ties.
+      if (d > deepest.squaredRadius) deepest = {index.coord(id), d};
+    });
+  return deepest;
 }
 
 }  // namespace
@@ -35,25 +55,14 @@ std::map<int32_t, GrainRepresentative> grainRepresentatives(const LabelLeaves& l
   parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
     Best& best = bests.local();
     for (size_t leaf = begin; leaf < end; ++leaf) {
-      const Coord& origin = index.origin(leaf);
+      const LabelLeaves::Parts parts = labels.parts(leaf);
       const int32_t* d = distances.data() + index.firstRank(leaf);
-      GrainRepresentative deepest;  // of a run of voxels of the same label
-      int32_t last = 0;
-      for (int x = 0; x < 8; ++x) {
-        for (uint64_t word = index.mask(leaf)[size_t(x)]; word; word &= word - 1, ++d) {
-          const int offset = x * 64 + __builtin_ctzll(word);
-          const int32_t label = labels.label(leaf, offset);
-          if (label != last) {
-            if (last) improve(deepest, best[last]);
-            last = label;
-            deepest = GrainRepresentative();
-          }
-          // Voxels come in the order that decides ties.
-          if (*d > deepest.squaredRadius)
-            deepest = {origin.offsetBy(x, offset >> 3 & 7, offset & 7), *d};
-        }
+      for (const LabelPart& part : parts) {
+        GrainRepresentative& known = best[part.label];
+        // Most leaves hold nothing deeper than what is known.
+        if (parts.size() == 1 && largest(d, index.leafVoxels(leaf)) < known.squaredRadius) continue;
+        improve(deepestOf(part, index, leaf, distances), known);
       }
-      if (last) improve(deepest, best[last]);
     }
   });
   for (const Best& best : bests)

@@ -37,7 +37,6 @@ constexpr std::array<BitSums, 256> kBitSums = makeBitSums();
 
 /// Sums over voxels of one label in one leaf, relative to its origin.
 struct LeafSums {
-  int32_t label = 0;
   int32_t voxels = 0;
   std::array<int32_t, 3> sum{};
   std::array<int32_t, 6> products{};
@@ -61,6 +60,14 @@ struct LeafSums {
   }
 };
 
+LeafSums sumsOf(const LabelPart& part) {
+  LeafSums sums;
+  for (int x = 0; x < 8; ++x)
+    for (int y = 0; y < 8; ++y)
+      if (const auto bits = unsigned(part.mask[size_t(x)] >> 8 * y & 0xff)) sums.add(x, y, bits);
+  return sums;
+}
+
 /// Adds a leaf whose origin lies at `at` from the origin of all sums.
 void add(const LeafSums& leaf, const Coord& at, const Coord& origin, GrainSums& grain) {
   const int64_t n = leaf.voxels, o[3] = {at.x(), at.y(), at.z()};
@@ -82,8 +89,8 @@ void add(const GrainSums& from, GrainSums& to) {
   for (size_t i = 0; i < 3; ++i) to.sum[i] += from.sum[i];
   for (size_t i = 0; i < 6; ++i) to.products[i] += from.products[i];
   to.box.expand(from.box);
-  to.surface.area += from.surface.area;
-  to.surface.cutFaces += from.surface.cutFaces;
+  to.freeArea += from.freeArea;
+  to.cutFaces += from.cutFaces;
 }
 
 struct PairHash {
@@ -92,68 +99,36 @@ struct PairHash {
   }
 };
 
-/// What one thread has seen.
-struct Partial {
-  std::unordered_map<int32_t, GrainSums> grains;
-  std::unordered_map<std::pair<int32_t, int32_t>, BondSums, PairHash> bonds;
-};
-
+/// What one thread sees.
 class LeafCounter {
  public:
-  LeafCounter(const LabelLeaves& labels, const std::optional<CoordBBox>& cutBy, const Coord& origin)
-      : labels_(&labels), surface_(labels, cutBy), origin_(origin) {}
+  std::unordered_map<int32_t, GrainSums> grains;
+  std::unordered_map<std::pair<int32_t, int32_t>, BondSums, PairHash> bonds;
 
-  void count(size_t leaf, Partial& partial) {
+  LeafCounter(const LabelLeaves& labels, const std::optional<CoordBBox>& cutBy)
+      : labels_(&labels), surface_(labels, cutBy), origin_(labels.index().boundingBox().min()) {}
+
+  void count(size_t leaf) {
     const Coord& at = labels_->index().origin(leaf);
-    sumVoxels(leaf);
-    for (const LeafSums& sums : sums_) add(sums, at - origin_, at, partial.grains[sums.label]);
+    for (const LabelPart& part : labels_->parts(leaf))
+      add(sumsOf(part), at - origin_, at, grains[part.label]);
     surface_.measure(leaf);
-    for (const auto& [label, free] : surface_.free()) {
-      LeafSurface::Free& surface = partial.grains[label].surface;
-      surface.area += free.area;
-      surface.cutFaces += free.cutFaces;
+    for (const LeafSurface::Free& free : surface_.free()) {
+      GrainSums& grain = grains[free.label];
+      grain.freeArea += free.area;
+      grain.cutFaces += free.cutFaces;
     }
     for (const LeafSurface::Shared& shared : surface_.shared()) {
-      BondSums& bond = partial.bonds[{shared.first, shared.second}];
+      BondSums& bond = bonds[{shared.first, shared.second}];
       for (size_t i = 0; i < 3; ++i) bond.areas[i] += shared.areas[i];
       bond.faces.insert(bond.faces.end(), shared.faces.begin(), shared.faces.end());
     }
   }
 
  private:
-  LeafSums& sumsOf(int32_t label) {
-    for (LeafSums& sums : sums_)
-      if (sums.label == label) return sums;
-    sums_.emplace_back().label = label;
-    return sums_.back();
-  }
-
-  void sumVoxels(size_t leaf) {
-    sums_.clear();
-    const LeafIndex::Mask& mask = labels_->index().mask(leaf);
-    const int32_t single = labels_->single(leaf);
-    for (int x = 0; x < 8; ++x) {
-      for (int y = 0; y < 8; ++y) {
-        auto bits = unsigned(mask[size_t(x)] >> 8 * y & 0xff);
-        while (bits) {
-          const int row = x * 64 + y * 8;
-          const int32_t label = labels_->label(leaf, row + __builtin_ctz(bits));
-          unsigned same = bits;
-          if (!single)
-            for (unsigned rest = bits; rest; rest &= rest - 1)
-              if (labels_->label(leaf, row + __builtin_ctz(rest)) != label)
-                same &= ~(rest & (~rest + 1));
-          sumsOf(label).add(x, y, same);
-          bits &= ~same;
-        }
-      }
-    }
-  }
-
   const LabelLeaves* labels_;
   LeafSurface surface_;
   Coord origin_;
-  std::vector<LeafSums> sums_;
 };
 
 bool faceOrder(const InterfaceFace& a, const InterfaceFace& b) {
@@ -168,23 +143,23 @@ LabelSums labelSums(const LabelLeaves& labels, const std::optional<CoordBBox>& c
   const LeafIndex& index = labels.index();
   if (index.leafCount() == 0) return result;
   result.origin = index.boundingBox().min();
-  PerThread<Partial> partials;
+  PerThread<LeafCounter> counters([&] { return LeafCounter(labels, cutBy); });
   parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    Partial& partial = partials.local();
-    LeafCounter counter(labels, cutBy, result.origin);
-    for (size_t leaf = begin; leaf < end; ++leaf) counter.count(leaf, partial);
+    LeafCounter& counter = counters.local();
+    for (size_t leaf = begin; leaf < end; ++leaf) counter.count(leaf);
   });
 
   std::map<int32_t, GrainSums> grains;
   std::map<std::pair<int32_t, int32_t>, BondSums> bonds;
-  for (Partial& partial : partials) {
-    for (const auto& [label, sums] : partial.grains) add(sums, grains[label]);
-    for (auto& [pair, sums] : partial.bonds) {
+  for (LeafCounter& counter : counters) {
+    for (const auto& [label, sums] : counter.grains) add(sums, grains[label]);
+    for (auto& [pair, sums] : counter.bonds) {
       BondSums& bond = bonds[pair];
       for (size_t i = 0; i < 3; ++i) bond.areas[i] += sums.areas[i];
       bond.faces.insert(bond.faces.end(), sums.faces.begin(), sums.faces.end());
     }
-    partial = Partial();
+    counter.grains.clear();
+    counter.bonds.clear();
   }
   for (auto& [label, sums] : grains) {
     result.grains.push_back(std::move(sums));

@@ -20,7 +20,8 @@ struct GrainSums {
   std::array<int64_t, 3> sum{};       ///< of coordinates relative to LabelSums::origin
   std::array<int64_t, 6> products{};  ///< likewise: xx, yy, zz, xy, xz, yz
   CoordBBox box;
-  LeafSurface::Free surface;
+  int64_t freeArea = 0;  ///< in kAreaUnit
+  int64_t cutFaces = 0;
 };
 
 /// Two grains with at least one voxel face in common.

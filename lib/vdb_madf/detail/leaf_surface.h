@@ -6,16 +6,14 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
-#include "vdb_madf/detail/label_leaves.h"
+#include "vdb_madf/detail/label_window.h"
+#include "vdb_madf/detail/surface_faces.h"
 #include "vdb_madf/interface_curvature.h"
 
 namespace vdb_madf::detail {
-
-/// Areas are sums of integers, so that their order does not matter: parts of a voxel face.
-constexpr double kAreaUnit = 1 << 20;
 
 /// The surfaces that the voxels of a leaf own, and estimates of their area.
 ///
@@ -32,6 +30,7 @@ constexpr double kAreaUnit = 1 << 20;
 class LeafSurface {
  public:
   struct Free {
+    int32_t label = 0;
     int64_t area = 0;      ///< between grain and background, in kAreaUnit
     int64_t cutFaces = 0;  ///< voxel faces on the border of the domain
   };
@@ -51,49 +50,27 @@ class LeafSurface {
   /// lower voxel.
   void measure(size_t leaf);
 
-  const std::unordered_map<int32_t, Free>& free() const { return free_; }  ///< by label
+  const std::vector<Free>& free() const { return free_; }  ///< of the labels of the leaf
   const std::vector<Shared>& shared() const { return shared_; }
 
  private:
-  using Code = LabelWindow::Code;
-  enum Component { kX, kY, kZ, kNormalX, kNormalY, kNormalZ };
-  using Face = std::array<int16_t, 6>;
-  /// The faces between two partners, sorted by x: twice the centre, relative to the leaf, and the
-  /// axis with its sign, away from the first partner.
-  struct Group {
-    Code first = 0, second = 0;  // second 0: background
-    size_t count = 0;
-    std::array<std::vector<int16_t>, 6> faces;  // the first `count` of each, then room
-    std::vector<uint32_t> owned;                // faces whose area is this leaf's
-    Face face(size_t i) const {
-      return {faces[0][i], faces[1][i], faces[2][i], faces[3][i], faces[4][i], faces[5][i]};
-    }
-  };
-  /// Faces [begin, end) of a group reach the target's x; targets come in rising order of x.
-  struct Near {
-    size_t begin = 0, end = 0;
-  };
-
-  Group& group(Code first, Code second);
-  const Group* findGroup(Code first, Code second) const;
-  void collectFaces(int axis, int x, int y, uint32_t within);
-  void addFaces(int axis, int x, int y, uint32_t bits, Code lower, Code upper);
-  uint32_t insideDomain(int x, int y) const;
-  void addPairs(int separation, Shared& shared, const Group& group);
-  void measureFree(const Group& group);
-  void measureShared(const Group& group);
-  int64_t area(const Group& group, const Face& target, int reach, bool sameSide, Near& near) const;
+  void findBackground();
+  void measureFree(int32_t label);
+  void measureShared(int32_t label);
+  void measureBond(int32_t label, int32_t other);
 
   const LabelLeaves* labels_;
   LabelWindow window_;
   std::optional<CoordBBox> domain_;
 
   Coord origin_;
-  bool atBorder_ = false;
-  std::vector<Group> groups_;  // the first groupCount_ are of this leaf; the rest keeps its memory
-  size_t groupCount_ = 0;
-  std::unordered_map<uint32_t, uint32_t> groupOf_;
-  std::unordered_map<int32_t, Free> free_;
+  bool atBorder_ = false;                       // of the domain
+  WindowRows labelled_, background_, outside_;  // outside: of the domain
+  WindowRows own_, other_, near_;
+  std::vector<SurfaceTarget> targets_;
+  SurfaceFaces faces_;
+  std::vector<std::pair<int32_t, int32_t>> bonds_;  // that were measured
+  std::vector<Free> free_;
   std::vector<Shared> shared_;
 };
 
