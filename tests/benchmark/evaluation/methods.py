@@ -61,7 +61,7 @@ def cut(volume, work, methods):
                 madf("remerge", work / "stored.vdb", files[name], *options)
     files = {name: files[name] for name in methods}
     if not NO_WATERSHED:
-        result = watershed.grains(dense(volume, work, "--type", "uint8") > 0)
+        result = watershed.grains(dense(volume, work) > 0)
         for name, kind in WATERSHEDS.items():
             files[name] = work / f"{kind}.npy"
             numpy.save(files[name], result[kind][0])

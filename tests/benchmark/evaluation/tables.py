@@ -174,7 +174,7 @@ def table3(report, work, sizes, scan, runs):
         if m.NO_WATERSHED:
             rows += [["", *cells] for cells in skipped(5)]
             continue
-        solid = m.dense(volume, work, "--type", "uint8") > 0
+        solid = m.dense(volume, work) > 0
         for kind, its in m.WATERSHEDS.items():
             rows.append(["", kind, "", "", f"{m.watershed.grains(solid, [its])[its][1]:.2f}", ""])
     for sample, its in {"MF, 270^3": ("416.74", "915.44", "44", "10.69"), "RG, 256^3": ("330.73", "635.41", "40.16", "7.4")}.items():
