@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
+#include <sstream>
 
 #include "support/files.h"
 #include "support/label_shapes.h"
@@ -132,8 +133,8 @@ TEST_CASE("clumps: same for any number of threads; no balls, no labels, wrong op
 
 TEST_CASE("clumps: files hold every ball at its place in the world", "[clumps]") {
   const ScratchFolder folder;
-  const std::vector<Clump> made = {{5, {{Coord(1, 2, 3), 4}, {Coord(4, 2, 3), 1}}, 0, 0, 0, 0},
-                                   {9, {{Coord(-8, 0, 0), 9}}, 0, 0, 0, 0}};
+  const std::vector<Clump> made = {{5, {{Coord(1, 2, 3), 4}, {Coord(4, 2, 3), 1}}, 30, 0, 0, 0},
+                                   {9, {{Coord(-8, 0, 0), 9}}, 50, 0, 0, 0}};
   const auto transform = openvdb::math::Transform::createLinearTransform(0.5);
   writeClumps(folder / "c.csv", made, *transform);
   CHECK(readFile(folder / "c.csv") ==
@@ -144,7 +145,16 @@ TEST_CASE("clumps: files hold every ball at its place in the world", "[clumps]")
   writeClumps(folder / "c.data", made, *transform);
   const std::string data = readFile(folder / "c.data");
   CHECK(data.find("3 atoms\n1 atom types\n\n-5.5 2.5 xlo xhi\n") != std::string::npos);
-  CHECK(data.find("\n1 1 0.5 1 1.5 2 1 1\n2 1 2 1 1.5 1 1 1\n3 1 -4 0 0 3 1 2\n") !=
-        std::string::npos);
+  std::istringstream atoms(data.substr(data.find("molecular\n\n") + 11));
+  // Number, type, place, diameter, density, molecule. A grain's balls weigh what its voxels do.
+  const double kBall = 4.0 / 3.0 * 3.14159265358979323846;
+  const double first = 30 / (9 * kBall), second = 50 / (27 * kBall);
+  for (const double wanted : {1., 1., 0.5, 1., 1.5, 2., first,  1.,  //
+                              2., 1., 2.,  1., 1.5, 1., first,  1.,  //
+                              3., 1., -4., 0., 0.,  3., second, 2.}) {
+    double found = -1;
+    atoms >> found;
+    CHECK(found == Approx(wanted));
+  }
   CHECK_THROWS_AS(writeClumps(folder / "c.xyz", made, *transform), InvalidInput);
 }

@@ -34,6 +34,14 @@ void numbers(BufferedOutput& out, const Vec3d& center, char separator) {
   }
 }
 
+/// At which all balls of a clump weigh as much as its grain of density 1, however they overlap.
+double densityOfBalls(const Clump& clump) {
+  double volume = 0;
+  for (const Clump::Ball& ball : clump.balls)
+    volume += 4.0 / 3.0 * openvdb::math::pi<double>() * std::pow(double(ball.squaredRadius), 1.5);
+  return volume > 0 ? double(clump.voxels) / volume : 1;
+}
+
 void writeLammps(BufferedOutput& out, const std::vector<Clump>& clumps,
                  const detail::CubicTransform& world) {
   size_t atoms = 0;
@@ -51,12 +59,16 @@ void writeLammps(BufferedOutput& out, const std::vector<Clump>& clumps,
     out.text(detail::shortestDecimal(box.min()[axis]) + " " +
              detail::shortestDecimal(box.max()[axis]) + names[axis]);
   out.text("\nAtoms # hybrid sphere molecular\n\n");
+  std::vector<std::string> densities;
+  for (const Clump& clump : clumps)
+    densities.push_back(detail::shortestDecimal(densityOfBalls(clump)));
   size_t atom = 0;
   forEachBall(clumps, world, [&](size_t n, const Vec3d& center, double radius) {
     out.number(++atom);
     out.text(" 1 ");
     numbers(out, center, ' ');
-    out.text(" " + detail::shortestDecimal(2 * radius) + " 1 " + std::to_string(n + 1) + "\n");
+    out.text(" " + detail::shortestDecimal(2 * radius) + " " + densities[n] + " " +
+             std::to_string(n + 1) + "\n");
   });
 }
 

@@ -50,8 +50,9 @@ std::vector<Clump> clumps(const Int32Grid& labels, const Int32Grid& balls,
 /// - .csv: grain_id, x, y, z, radius
 /// - .txt: x y z radius clump, a line per ball, as YADE exports and ymport.textClumps reads; clumps
 ///   are numbered from 0
-/// - .data: LAMMPS data for `atom_style hybrid sphere molecular`: one atom per ball, density 1, the
-///   grain as molecule (numbered from 1), for `fix rigid/small molecule`
+/// - .data: LAMMPS data for `atom_style hybrid sphere molecular`: one atom per ball, the grain as
+///   molecule (numbered from 1), for `fix rigid/small molecule`. Balls overlap: their density is
+///   such that those of a grain together weigh what the grain does at density 1
 /// @throw InvalidInput for another ending, or voxels that are not cubes; IoError.
 void writeClumps(const std::string& path, const std::vector<Clump>& clumps,
                  const openvdb::math::Transform& transform, Interrupter* interrupter = nullptr);
