@@ -60,6 +60,21 @@ class Bench:
         return self.path(output)
 
 
+def run_in_blender(script, folder, what):
+    """Runs a script with a folder as its argument inside Blender; returns what it says is done."""
+    if not shutil.which("blender"):
+        skip(f"{what}: blender is not installed (tools/setup --blender)")
+    result = subprocess.run(
+        ["blender", "--background", "--factory-startup", "-noaudio", "--python-exit-code", "1",
+         "--python", os.path.abspath(script), "--", folder],
+        capture_output=True, text=True, timeout=900)
+    lines = [line for line in (result.stdout + result.stderr).splitlines()
+             if line.strip() and not line.startswith("Fra:")]
+    done = [line for line in lines if line.startswith("DONE: ")]
+    check(result.returncode == 0 and done, "Blender: " + "\n".join(lines[-20:]))
+    return done[0][len("DONE: "):]
+
+
 def near(a, b, tolerance=1e-6):
     return len(a) == len(b) and all(abs(x - y) <= tolerance for x, y in zip(a, b))
 
