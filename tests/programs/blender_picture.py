@@ -101,7 +101,7 @@ def render(corners, sunlight, path, pixels, samples):
 
 def render_export(thing, path, pixels, samples, corners=None):
     """A picture of what `opened` returned. Fog scatters light away: it wants a stronger sun."""
-    render(corners or box_of(thing), 8 if thing.type == "VOLUME" else 2, path, pixels, samples)
+    render(corners or box_of(thing), 14 if thing.type == "VOLUME" else 2, path, pixels, samples)
 
 
 def hues(path, kinds):
