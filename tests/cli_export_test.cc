@@ -53,6 +53,10 @@ TEST_CASE("cli: export writes every kind, the same for any number of threads", "
     CHECK(bench.bytes(file) == bytes);
   }
   CHECK(bench.bytes("k.raw").size() == 40 * 40 * 40);
+  // Clumps of an open scan reach beyond it, and the command says so.
+  CHECK(bench.mustRun("export g.vdb c.csv --as clumps").find("beyond") != std::string::npos);
+  bench.mustRun("segment s.vdb closed.vdb --keep balls --boundary closed");
+  CHECK(bench.mustRun("export closed.vdb c.csv --as clumps").find("beyond") == std::string::npos);
   bench.mustRun("export g.vdb folder --as mesh");
   CHECK(bench.bytes("folder/grain_000001.stl").size() > 84);
 }

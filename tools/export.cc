@@ -18,6 +18,7 @@
 #include "vdb_madf/level_sets.h"
 #include "vdb_madf/mesh_file.h"
 #include "vdb_madf/object_mask.h"
+#include "vdb_madf/segmentation_metadata.h"
 #include "vdb_madf/vdb_file.h"
 #include "vdb_madf/vti_file.h"
 
@@ -206,7 +207,11 @@ void exportClumps(const Options& o, const Common& common, const Int32Grid& label
   say(o, common,
       counted(made.size(), "grain") + ", " + counted(balls, "ball") + "; uncovered " +
           percent(uncovered) + ", outside the own grain " + percent(outside) + ", volume error " +
-          percent(outside - uncovered) + ", farthest voxel " + distance + " voxels from its balls");
+          percent(outside - uncovered) + ", farthest voxel " + distance + " voxels from its balls" +
+          // Distances ignore what may be beyond the faces of an open scan.
+          (storedBoundary(**found) == Boundary::open
+               ? "; balls reach beyond the scan (segment with --boundary closed to prevent that)"
+               : ""));
 }
 
 void exportHexahedra(const Options& o, const Common& common, const Int32Grid& labels) {
