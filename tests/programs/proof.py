@@ -24,8 +24,9 @@ VOXELS = {label: sum(l == label for l in LABELS.values()) for label in set(LABEL
 
 
 def skip(what):
+    """Ends the proof so that CTest says Skipped, not Passed."""
     print(f"SKIPPED: {what}")
-    sys.exit(0)
+    sys.exit(77)
 
 
 def values():
