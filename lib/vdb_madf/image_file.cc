@@ -195,18 +195,19 @@ bool looksLikeImage(const std::string& path) {
   }
 }
 
-std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInfo& info) {
+std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInfo& info,
+                                         const openvdb::Vec3d& origin) {
   switch (formatOfEnding(path)) {
     case Format::raw:
       return detail::createRaw(path, info);
     case Format::meta:
-      return detail::createMeta(path, info);
+      return detail::createMeta(path, info, origin);
     case Format::tiff:
       return detail::createTiff(path, info);
     case Format::npy:
       return detail::createNpy(path, info);
     case Format::nrrd:
-      if (fileEnding(path) == ".nrrd") return detail::createNrrd(path, info);
+      if (fileEnding(path) == ".nrrd") return detail::createNrrd(path, info, origin);
       break;
     default:
       break;

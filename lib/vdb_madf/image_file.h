@@ -91,12 +91,17 @@ class ImageWriter {
 
 /// By ending: .raw, .mhd (with .raw beside it), .mha, .nrrd, .npy, .tif/.tiff (BigTIFF when 4 GB or
 /// more).
+/// @param origin world position of the first voxel's centre in mm (in voxels, where there is no
+///     voxel size), for the formats that have a place for it: MetaImage (Offset) and NRRD (space
+///     origin). The readers take nothing over: what they read begins at voxel (0,0,0).
 /// @throw IoError; InvalidInput for another ending.
-std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInfo& info);
+std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInfo& info,
+                                         const openvdb::Vec3d& origin = openvdb::Vec3d(0));
 /// True if createImage knows the ending.
 bool isImageEnding(const std::string& path);
 
-/// Writes the grid's values over `box` (background outside its tiles and leaves), slab by slab.
+/// Writes the grid's values over `box` (background outside its tiles and leaves), slab by slab; the
+/// first voxel lies where the grid's transform has the box's lower corner, see createImage().
 /// Bool, Mask, Int32, Int64, Float and Double grids; values must be representable in info.type.
 /// @throw InvalidInput if a value does not fit the sample type, naming the value; IoError.
 void writeImage(const std::string& path, const openvdb::GridBase& grid, const CoordBBox& box,

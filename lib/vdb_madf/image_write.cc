@@ -115,15 +115,22 @@ class SlabReader {
   std::vector<Slab> slabs_;
 };
 
+struct Destination {
+  std::string path;
+  CoordBBox box;
+  ImageInfo info;
+  openvdb::Vec3d origin;  ///< as createImage() takes it
+};
+
 template <typename Sample, typename Tree>
-void writeAs(const std::string& path, const Tree& tree, const CoordBBox& box, const ImageInfo& info,
-             Interrupter* interrupter) {
+void writeAs(const Destination& to, const Tree& tree, Interrupter* interrupter) {
+  const auto& [path, box, info, origin] = to;
   const SlabReader<Tree> reader(tree, box);
   using Value = typename SlabReader<Tree>::Value;
   const size_t slice = size_t(info.size.x()) * size_t(info.size.y());
   std::vector<Value> values(slice * size_t(std::min(kLeaf, info.size.z())));
   std::vector<Sample> samples;
-  const auto writer = createImage(path, info);
+  const auto writer = createImage(path, info, origin);
   for (int number = 0; number < reader.slabCount(); ++number) {
     if (interrupter && interrupter->wasInterrupted(int(int64_t(number) * 100 / reader.slabCount())))
       throw Interrupted();
@@ -141,20 +148,24 @@ void writeAs(const std::string& path, const Tree& tree, const CoordBBox& box, co
 }
 
 template <typename Tree>
-void writeTree(const std::string& path, const Tree& tree, const CoordBBox& box,
-               const ImageInfo& info, Interrupter* interrupter) {
-  detail::withSampleType(info.type, [&](auto sample) {
-    writeAs<decltype(sample)>(path, tree, box, info, interrupter);
-  });
+void writeTree(const Destination& to, const Tree& tree, Interrupter* interrupter) {
+  detail::withSampleType(to.info.type,
+                         [&](auto sample) { writeAs<decltype(sample)>(to, tree, interrupter); });
 }
 
 template <typename Value>
-bool tryGrid(const std::string& path, const openvdb::GridBase& grid, const CoordBBox& box,
-             const ImageInfo& info, Interrupter* interrupter) {
+bool tryGrid(const Destination& to, const openvdb::GridBase& grid, Interrupter* interrupter) {
   using Grid = openvdb::Grid<StandardTree<Value>>;
   if (!grid.isType<Grid>()) return false;
-  writeTree(path, static_cast<const Grid&>(grid).tree(), box, info, interrupter);
+  writeTree(to, static_cast<const Grid&>(grid).tree(), interrupter);
   return true;
+}
+
+/// In mm; in voxels, where there is no voxel size.
+openvdb::Vec3d originOf(const openvdb::GridBase& grid, const Coord& first) {
+  const auto size = voxelSize(grid);
+  if (!size) return first.asVec3d();
+  return (size->unit() == "um" ? 1e-3 : 1.0) * grid.indexToWorld(first);
 }
 
 }  // namespace
@@ -166,12 +177,11 @@ void writeImage(const std::string& path, const openvdb::GridBase& grid, const Co
   info.size = box.dim();
   info.type = type;
   info.voxelSize = voxelSize(grid);
-  if (!tryGrid<bool>(path, grid, box, info, interrupter) &&
-      !tryGrid<openvdb::ValueMask>(path, grid, box, info, interrupter) &&
-      !tryGrid<int32_t>(path, grid, box, info, interrupter) &&
-      !tryGrid<int64_t>(path, grid, box, info, interrupter) &&
-      !tryGrid<float>(path, grid, box, info, interrupter) &&
-      !tryGrid<double>(path, grid, box, info, interrupter))
+  const Destination to{path, box, info, originOf(grid, box.min())};
+  if (!tryGrid<bool>(to, grid, interrupter) &&
+      !tryGrid<openvdb::ValueMask>(to, grid, interrupter) &&
+      !tryGrid<int32_t>(to, grid, interrupter) && !tryGrid<int64_t>(to, grid, interrupter) &&
+      !tryGrid<float>(to, grid, interrupter) && !tryGrid<double>(to, grid, interrupter))
     throw InvalidInput(path + ": grid '" + grid.getName() + "' of type " + grid.valueType() +
                        " cannot be an image: only bool, mask, int32, int64, float and double can");
 }

@@ -103,7 +103,8 @@ std::optional<VoxelSize> elementSpacing(const std::string& path, const MetaHeade
   return cubicVoxelSize(path, spacing, unitsPerMetre("mm"));
 }
 
-std::string headerText(const ImageInfo& info, const std::string& dataFile) {
+std::string headerText(const ImageInfo& info, const openvdb::Vec3d& origin,
+                       const std::string& dataFile) {
   std::string text =
       "ObjectType = Image\nNDims = 3\nBinaryData = True\n"
       "BinaryDataByteOrderMSB = False\nCompressedData = False\nDimSize =";
@@ -111,6 +112,10 @@ std::string headerText(const ImageInfo& info, const std::string& dataFile) {
   if (info.voxelSize) {
     const std::string edge = lengthIn(1e3, info.voxelSize->metres);
     text += "\nElementSpacing = " + edge + " " + edge + " " + edge;
+  }
+  if (origin != openvdb::Vec3d(0)) {
+    text += "\nOffset =";
+    for (int axis = 0; axis < 3; ++axis) text += " " + shortestDecimal(origin[axis]);
   }
   text += "\nElementType = ";
   for (const TypeName& known : kTypes)
@@ -120,12 +125,14 @@ std::string headerText(const ImageInfo& info, const std::string& dataFile) {
 
 class MetaWriter : public ImageWriter {
  public:
-  MetaWriter(const std::string& path, const ImageInfo& info) : counter_(path, info), out_(path) {
+  MetaWriter(const std::string& path, const ImageInfo& info, const openvdb::Vec3d& origin)
+      : counter_(path, info), out_(path) {
     const std::filesystem::path name(path);
     const bool local = lowerCase(name.extension().string()) == ".mha";
     const std::filesystem::path dataFile = std::filesystem::path(name).replace_extension(".raw");
     if (!local) data_.emplace(dataFile.string());
-    const std::string text = headerText(info, local ? "LOCAL" : dataFile.filename().string());
+    const std::string text =
+        headerText(info, origin, local ? "LOCAL" : dataFile.filename().string());
     out_.write(text.data(), text.size());
   }
   void write(int count, const void* samples) override {
@@ -196,8 +203,9 @@ std::unique_ptr<ImageReader> openMeta(const std::string& path) {
                      layout);
 }
 
-std::unique_ptr<ImageWriter> createMeta(const std::string& path, const ImageInfo& info) {
-  return std::make_unique<MetaWriter>(path, info);
+std::unique_ptr<ImageWriter> createMeta(const std::string& path, const ImageInfo& info,
+                                        const openvdb::Vec3d& origin) {
+  return std::make_unique<MetaWriter>(path, info, origin);
 }
 
 }  // namespace vdb_madf::detail

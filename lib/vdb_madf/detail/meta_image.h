@@ -16,7 +16,8 @@ namespace vdb_madf::detail {
 /// Not read: text data, several channels, data spread over several files.
 std::unique_ptr<ImageReader> openMeta(const std::string& path);
 /// .mha: one file. .mhd: the data in a .raw file beside it, which is put in place first.
-std::unique_ptr<ImageWriter> createMeta(const std::string& path, const ImageInfo& info);
+std::unique_ptr<ImageWriter> createMeta(const std::string& path, const ImageInfo& info,
+                                        const openvdb::Vec3d& origin);
 
 /// True for the first bytes of a MetaImage header.
 bool isMetaHeader(const std::string& head);

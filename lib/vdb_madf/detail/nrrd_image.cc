@@ -216,7 +216,15 @@ SampleLayout layoutOf(const std::string& path, const NrrdHeader& header, SampleT
   return layout;
 }
 
-std::string headerText(const ImageInfo& info) {
+/// An origin needs a space, and the edges as vectors in it.
+std::string placedEdges(const std::string& edge, const openvdb::Vec3d& origin) {
+  std::string place;
+  for (int axis = 0; axis < 3; ++axis) place += (axis ? "," : "") + shortestDecimal(origin[axis]);
+  return "\nspace dimension: 3\nspace directions: (" + edge + ",0,0) (0," + edge + ",0) (0,0," +
+         edge + ")\nspace origin: (" + place + ")";
+}
+
+std::string headerText(const ImageInfo& info, const openvdb::Vec3d& origin) {
   const std::map<SampleType, std::string> names = {
       {SampleType::uint8, "uint8"},   {SampleType::int8, "int8"},
       {SampleType::uint16, "uint16"}, {SampleType::int16, "int16"},
@@ -224,8 +232,11 @@ std::string headerText(const ImageInfo& info) {
       {SampleType::float32, "float"}, {SampleType::float64, "double"}};
   std::string text = "NRRD0004\ntype: " + names.at(info.type) + "\ndimension: 3\nsizes:";
   for (int axis = 0; axis < 3; ++axis) text += " " + std::to_string(info.size[axis]);
-  if (info.voxelSize) {
-    const std::string edge = lengthIn(1e3, info.voxelSize->metres);
+  const std::string edge = info.voxelSize ? lengthIn(1e3, info.voxelSize->metres) : "1";
+  if (origin != openvdb::Vec3d(0)) {
+    text += placedEdges(edge, origin);
+    if (info.voxelSize) text += "\nspace units: \"mm\" \"mm\" \"mm\"";
+  } else if (info.voxelSize) {
     text += "\nspacings: " + edge + " " + edge + " " + edge;
     text += "\nunits: \"mm\" \"mm\" \"mm\"";
   }
@@ -267,8 +278,9 @@ std::unique_ptr<ImageReader> openNrrd(const std::string& path) {
   return openSamples(path, info, std::move(file), layout);
 }
 
-std::unique_ptr<ImageWriter> createNrrd(const std::string& path, const ImageInfo& info) {
-  return createSamples(path, info, headerText(info));
+std::unique_ptr<ImageWriter> createNrrd(const std::string& path, const ImageInfo& info,
+                                        const openvdb::Vec3d& origin) {
+  return createSamples(path, info, headerText(info, origin));
 }
 
 }  // namespace vdb_madf::detail

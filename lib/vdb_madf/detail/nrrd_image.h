@@ -17,6 +17,7 @@ namespace vdb_madf::detail {
 /// Source: "Definition of NRRD File Format", teem.sourceforge.net/nrrd/format.html.
 std::unique_ptr<ImageReader> openNrrd(const std::string& path);
 /// One file, encoding raw. The spacing is written in millimetres, which is what ITK takes it for.
-std::unique_ptr<ImageWriter> createNrrd(const std::string& path, const ImageInfo& info);
+std::unique_ptr<ImageWriter> createNrrd(const std::string& path, const ImageInfo& info,
+                                        const openvdb::Vec3d& origin);
 
 }  // namespace vdb_madf::detail
