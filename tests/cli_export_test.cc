@@ -3,7 +3,9 @@
 
 // The verb 'export', run as a user runs it; what is in the files: the tests of their writers.
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <csignal>
 
 #include "support/program.h"
 
@@ -61,6 +63,93 @@ TEST_CASE("cli: export writes every kind, the same for any number of threads", "
   CHECK(bench.bytes("folder/grain_000001.stl").size() > 84);
 }
 
+TEST_CASE("cli: endings in upper case are the same", "[cli]") {
+  const Bench bench;
+  makeLabels(bench);
+  for (const auto& [lower, upper, as] : {std::tuple{"m.ply", "M.PLY", ""},
+                                         {"m.obj", "M.Obj", ""},
+                                         {"m.stl", "M.STL", ""},
+                                         {"m.vtp", "M.VTP", " --as mesh"},
+                                         {"i.vti", "I.VTI", ""},
+                                         {"n.graphml", "N.GraphML", ""},
+                                         {"n.vtp", "N.VTP", " --as network"},
+                                         {"h.vtu", "H.VTU", ""},
+                                         {"h.inp", "H.INP", ""},
+                                         {"c.csv", "C.CSV", " --as clumps"},
+                                         {"l.vdb", "L.VDB", " --as lod"},
+                                         {"k.raw", "K.RAW", " --as mask"}}) {
+    CAPTURE(upper);
+    bench.mustRun(std::string("export g.vdb ") + lower + as);
+    bench.mustRun(std::string("export g.vdb ") + upper + as);
+    CHECK(bench.bytes(upper) == bench.bytes(lower));
+  }
+  CHECK(bench.run("export g.vdb O.VTP").exitCode == 2);  // mesh or network: not clear
+}
+
+TEST_CASE("cli: labels without a voxel are exported, but for their surface", "[cli]") {
+  const Bench bench;
+  bench.write("zero.raw", std::string(4 * 64, '\0'));
+  const std::string layout = " --dims 4x4x4 --type int32";
+  for (const std::string out :
+       {"m.ply", "m.obj", "m.stl", "folder --as mesh", "m.vtp --as mesh", "v.vdb --as viz",
+        "l.vdb --as lod", "g.vdb --as grids", "i.vti", "n.vtp --as network", "n.graphml", "h.vtu",
+        "h.inp", "k.raw --as mask"})
+    bench.mustRun("export zero.raw " + out + layout);
+  const Outcome surface = bench.run("export zero.raw s.vdb --as surface" + layout);
+  CHECK(surface.exitCode == 1);
+  CHECK(surface.err.find("no labelled voxel") != std::string::npos);
+  CHECK(bench.names().count("s.vdb") == 0);
+}
+
+TEST_CASE("cli: an export onto a full disk leaves nothing", "[cli]") {
+  const Bench bench;
+  makeLabels(bench);
+  RunOptions full;
+  full.largestFile = 100;
+  const auto before = bench.names();
+  for (const std::string out : {"m.ply",
+                                "m.obj",
+                                "m.stl",
+                                "folder --as mesh",
+                                "m.vtp --as mesh",
+                                "v.vdb --as viz",
+                                "l.vdb --as lod",
+                                "q.vdb --as grids",
+                                "s2.vdb --as surface",
+                                "i.vti",
+                                "i.vti --compress",
+                                "n.vtp --as network",
+                                "n.graphml",
+                                "n.csv --as network",
+                                "c.csv --as clumps",
+                                "h.vtu",
+                                "h.inp",
+                                "k.raw --as mask",
+                                "k.tif --as mask",
+                                "k.mhd --as mask"}) {
+    CAPTURE(out);
+    const Outcome outcome = bench.run("export g.vdb " + out, full);
+    CHECK(outcome.exitCode == 1);
+    CHECK(outcome.err.find("vdb_madf: error: ") == 0);
+    CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+    CHECK(bench.names() == before);
+  }
+}
+
+TEST_CASE("cli: a signal ends an export and leaves nothing", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate spheres s.vdb --size 200 --count 40 --radius 18:24");
+  for (const std::string out : {"m.obj", "h.inp"}) {
+    RunOptions interrupted;
+    interrupted.signal = SIGINT;
+    interrupted.interruptOn = "." + out;  // the temporary file: the work has begun
+    const Outcome outcome = bench.run("export s.vdb --grid truth " + out, interrupted);
+    CHECK(outcome.exitCode == 130);
+    CHECK(outcome.err == "vdb_madf: error: interrupted\n");
+    CHECK(bench.names() == std::set<std::string>{"s.vdb"});
+  }
+}
+
 TEST_CASE("cli: a mesh keeps to its triangles by the least reduction", "[cli]") {
   const Bench bench;
   makeLabels(bench);
@@ -103,6 +192,13 @@ TEST_CASE("cli: export refuses what it cannot know or do", "[cli]") {
   refusal("g.vdb x.vdb --as viz --reduce 2 --max-dim 9", 2, "max-dim");
   refusal("g.vdb g.vdb --as viz", 2, "overwrite");
   refusal("g.vdb x.ply --triangles 3", 1, "allow more");
+  refusal("g.vdb c.csv --as clumps --uncovered nan", 2, "uncovered");
+  refusal("g.vdb c.csv --as clumps --uncovered 1.1", 2, "uncovered");
+  refusal("g.vdb x.ply --smooth nan", 2, "smooth");
+  refusal("g.vdb none/x.ply", 1, "none/x.ply");
+  refusal("g.vdb none/folder --as mesh", 1, "none/folder");
+  refusal("g.vdb s.vdb/folder --as mesh", 1, "s.vdb/folder");
+  refusal("g.vdb /dev/full --as mesh", 1, "/dev/full");
   refusal("none.vdb x.ply", 1, "none.vdb");
   refusal("s.vdb c.txt --as clumps", 1, "--keep balls");
   CHECK(bench.names() == std::set<std::string>{"g.vdb", "s.vdb"});

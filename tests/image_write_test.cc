@@ -3,14 +3,12 @@
 
 #include <catch2/catch.hpp>
 
-#include <signal.h>
-#include <sys/resource.h>
-
 #include <cmath>
 #include <limits>
 #include <random>
 
 #include "support/files.h"
+#include "support/full_disk.h"
 #include "support/images.h"
 #include "vdb_madf/errors.h"
 #include "vdb_madf/image_file.h"
@@ -124,24 +122,6 @@ class StopAfter : public Interrupter {
   int left_;
 };
 
-/// Makes every file end at `bytes`, as a full disk would.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : handler_(signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &saved_);
-    const rlimit limit{bytes, saved_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &saved_);
-    signal(SIGXFSZ, handler_);
-  }
-
- private:
-  rlimit saved_;
-  void (*handler_)(int);
-};
-
 }  // namespace
 
 TEST_CASE("image_write: equals the grid voxel by voxel", "[image_write]") {
@@ -161,7 +141,7 @@ TEST_CASE("image_write: every format, with the voxel size", "[image_write]") {
   const CoordBBox box(Coord(-20, -5, -13), Coord(11, 22, 9));
   writeImage(folder / "a.raw", *grid, box, SampleType::int32);
   const auto numbers = numbersIn(folder / "a.raw", RawLayout{box.dim(), SampleType::int32, false});
-  for (const std::string name : {"b.mhd", "b.mha", "b.tif"}) {
+  for (const std::string name : {"b.mhd", "b.mha", "b.tif", "b.nrrd"}) {
     writeImage(folder / name, *grid, box, SampleType::int32);
     CHECK(numbersIn(folder / name, std::nullopt) == numbers);
     CHECK(openImage(folder / name)->info().voxelSize->metres == 8.5e-6);
@@ -254,7 +234,7 @@ TEST_CASE("image_write: interrupted or out of space, nothing remains", "[image_w
     CHECK_THROWS_AS(writeImage(folder / name, *grid, box, SampleType::int32, &three), Interrupted);
     CHECK(folder.fileCount() == 0);
     {
-      const FileSizeLimit full(3000);
+      const FullDisk full(3000);
       const CapturedStderr quiet("/dev/null");
       CHECK_THROWS_AS(writeImage(folder / name, *grid, box, SampleType::int32), IoError);
     }

@@ -4,119 +4,19 @@
 #include "vdb_madf/mesh_file.h"
 
 #include <catch2/catch.hpp>
-#include <sstream>
 
 #include "support/files.h"
+#include "support/full_disk.h"
 #include "support/label_shapes.h"
+#include "support/mesh_files.h"
 #include "vdb_madf/errors.h"
 #include "vdb_madf/grid_metadata.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
 using openvdb::Vec3d;
-using openvdb::Vec3f;
 
 namespace {
-
-/// A triangle of a file with its grain, where the format has one.
-struct Face {
-  std::array<Vec3f, 3> corners;
-  int32_t grain = 0;
-};
-
-template <typename T>
-T take(const std::string& bytes, size_t& at) {
-  T value;
-  REQUIRE(at + sizeof value <= bytes.size());
-  std::memcpy(&value, bytes.data() + at, sizeof value);
-  at += sizeof value;
-  return value;
-}
-
-size_t numberAfter(const std::string& text, const std::string& word) {
-  const size_t at = text.find(word);
-  REQUIRE(at != std::string::npos);
-  return std::stoul(text.substr(at + word.size()));
-}
-
-std::vector<Face> readPly(const std::string& bytes) {
-  const size_t points = numberAfter(bytes, "element vertex "),
-               count = numberAfter(bytes, "element face ");
-  size_t at = bytes.find("end_header\n") + 11;
-  std::vector<Vec3f> positions;
-  std::vector<int32_t> grains;
-  for (size_t i = 0; i < points; ++i) {
-    positions.push_back(take<Vec3f>(bytes, at));
-    take<Rgb>(bytes, at);
-    grains.push_back(take<int32_t>(bytes, at));
-  }
-  std::vector<Face> faces(count);
-  for (Face& face : faces) {
-    REQUIRE(take<uint8_t>(bytes, at) == 3);
-    std::array<int32_t, 3> corners;
-    for (size_t n = 0; n < 3; ++n) {
-      corners[n] = take<int32_t>(bytes, at);
-      face.corners[n] = positions.at(size_t(corners[n]));
-    }
-    take<Rgb>(bytes, at);
-    face.grain = take<int32_t>(bytes, at);
-    for (const int32_t corner : corners) CHECK(grains[size_t(corner)] == face.grain);
-  }
-  CHECK(at == bytes.size());
-  return faces;
-}
-
-std::vector<Face> readObj(const std::string& text) {
-  std::istringstream lines(text);
-  std::vector<Vec3f> positions;
-  std::vector<Face> faces;
-  int32_t grain = 0;
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    std::string word;
-    words >> word;
-    if (word == "v") {
-      Vec3f p;
-      words >> p[0] >> p[1] >> p[2];
-      positions.push_back(p);
-      float channel = -1;
-      for (int c = 0; c < 3; ++c) {
-        words >> channel;
-        CHECK((channel >= 0 && channel <= 1));
-      }
-    } else if (word == "g") {
-      words >> word;
-      REQUIRE(word.substr(0, 6) == "grain_");
-      grain = std::stoi(word.substr(6));
-    } else if (word == "f") {
-      Face face;
-      face.grain = grain;
-      for (Vec3f& corner : face.corners) {
-        size_t number = 0;
-        words >> number;
-        corner = positions.at(number - 1);
-      }
-      faces.push_back(face);
-    }
-  }
-  return faces;
-}
-
-std::vector<Face> readStl(const std::string& bytes) {
-  REQUIRE(bytes.substr(0, 5) != "solid");
-  size_t at = 80;
-  std::vector<Face> faces(take<uint32_t>(bytes, at));
-  for (Face& face : faces) {
-    const Vec3f normal = take<Vec3f>(bytes, at);
-    for (Vec3f& corner : face.corners) corner = take<Vec3f>(bytes, at);
-    const Vec3f across =
-        (face.corners[1] - face.corners[0]).cross(face.corners[2] - face.corners[0]);
-    CHECK(normal.dot(across) == Approx(across.length()));
-    take<uint16_t>(bytes, at);
-  }
-  CHECK(at == bytes.size());
-  return faces;
-}
 
 /// Signed volume of each grain in a file.
 std::map<int32_t, double> fileVolumes(const std::vector<Face>& faces) {
@@ -152,14 +52,11 @@ TEST_CASE("mesh_file: every format has every triangle at its place in the world"
   setVoxelSize(*grid, VoxelSize{kEdge * 1e-3});
   const GrainMesh mesh = grainMesh(*grid);
   const auto volume = volumes(voxels);
-  for (const std::string end : {"ply", "obj", "stl"}) {
+  for (const std::string end : {"ply", "obj", "stl", "vtp"}) {
     CAPTURE(end);
     const std::string path = folder / ("mesh." + end);
     writeMesh(path, mesh, optionsOf(*grid));
-    const std::string bytes = readFile(path);
-    const auto faces = end == "ply"   ? readPly(bytes)
-                       : end == "obj" ? readObj(bytes)
-                                      : readStl(bytes);
+    const auto faces = readMesh(end, readFile(path));
     CHECK(faces.size() == mesh.triangles.size());
     const auto found = fileVolumes(faces);
     const double cube = kEdge * kEdge * kEdge;
@@ -188,6 +85,38 @@ TEST_CASE("mesh_file: one STL per grain", "[mesh_file]") {
     CHECK(fileVolumes(faces).at(0) == Approx(double(count)));
   }
   CHECK(grainName(123) == "grain_000123");
+}
+
+TEST_CASE("mesh_file: a folder of STL appears with all its files or not at all", "[mesh_file]") {
+  const ScratchFolder folder;
+  LabelMap voxels = twoBalls({0, 0, 0}, 4);
+  voxels[{-20, 0, 0}] = 1;  // its file alone is small
+  const auto grid = labelGrid(voxels);
+  const GrainMesh mesh = grainMesh(*grid);
+  const auto refused = [&](const std::string& path) {
+    CHECK_THROWS_WITH(writeStlFolder(path, mesh, optionsOf(*grid)), Catch::Contains(path));
+    CHECK_THROWS_AS(writeStlFolder(path, mesh, optionsOf(*grid)), IoError);
+  };
+  {
+    const FullDisk disk(1000);
+    refused(folder / "grains");
+    CHECK(folder.fileCount() == 0);
+    std::filesystem::create_directory(folder / "there");
+    writeFile(folder / "there/notes", "mine");
+    refused(folder / "there");
+  }
+  CHECK(folder.fileCount() == 1);
+  CHECK(std::distance(std::filesystem::directory_iterator(folder / "there"),
+                      std::filesystem::directory_iterator()) == 1);
+  writeFile(folder / "file", "mine");
+  refused(folder / "file");
+  refused(folder / "file/below");
+  refused(folder / "none/below");
+  CHECK(readFile(folder / "file") == "mine");
+  writeStlFolder(folder / "there", mesh, optionsOf(*grid));
+  CHECK(readStl(readFile(folder / "there/grain_000001.stl")).size() == 12);
+  CHECK(readFile(folder / "there/notes") == "mine");
+  CHECK(folder.fileCount() == 2);
 }
 
 TEST_CASE("mesh_file: a mirrored world keeps the outside outside", "[mesh_file]") {

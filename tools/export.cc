@@ -11,6 +11,7 @@
 #include "input.h"
 #include "vdb_madf/clumps.h"
 #include "vdb_madf/errors.h"
+#include "vdb_madf/file_ending.h"
 #include "vdb_madf/grain_masks.h"
 #include "vdb_madf/grain_network.h"
 #include "vdb_madf/hexa_file.h"
@@ -37,7 +38,7 @@ struct Options {
 
 /// The kind that the output's ending leaves no doubt about; else empty.
 std::string kindOf(const std::string& out) {
-  const std::string ending = std::filesystem::path(out).extension().string();
+  const std::string ending = fileEnding(out);
   if (ending == ".vti") return "vti";
   if (ending == ".graphml") return "network";
   if (isHexahedraEnding(out)) return "hexa";
@@ -231,7 +232,7 @@ void exportMask(const Options& o, const Common& common, const Int32Grid& labels)
 }
 
 bool isVtiOutput(const std::string& out) {
-  return std::filesystem::path(out).extension() == ".vti";
+  return fileEnding(out) == ".vti";
 }
 
 constexpr Kind kKinds[] = {
@@ -266,8 +267,24 @@ const Kind& findKind(const Options& o) {
   throw WrongUsage("--as " + wanted + ": must be one of " + kindNames());
 }
 
+/// Finds out before the work that there can be no such output.
+void checkOutput(const std::string& out) {
+  namespace fs = std::filesystem;
+  if (fs::path(out).has_extension()) {
+    checkWritable(out);
+    return;
+  }
+  std::error_code ignored;
+  const fs::path above = fs::absolute(fs::path(out) / "..", ignored).lexically_normal();
+  if (fs::exists(out, ignored) ? !fs::is_directory(out, ignored)
+                               : !fs::is_directory(above, ignored))
+    throw IoError("cannot write " + out +
+                  ": it is no folder, and none can be made there; give the " +
+                  "path of a folder, in one that is there");
+}
+
 void run(const Options& o, const Common& common, const Kind& kind) {
-  if (std::filesystem::path(o.out).has_extension()) checkWritable(o.out);
+  checkOutput(o.out);
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
   if (o.input.voxelSize) setVoxelSize(*labels, o.input.voxelSize);
   naming(o.input.path, [&] { kind.run(o, common, *labels); });
@@ -306,11 +323,12 @@ void addExport(CLI::App& app, Common& common, Action& action) {
       ->capture_default_str();
   verb->add_option("--uncovered", o->clumps.coverageError,
                    "clumps: part of a grain that may stay uncovered")
-      ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   o->input.addRaw(*verb);
   o->input.addVoxelSize(*verb);
   verb->callback([o, &common, &action] {
+    if (!(o->clumps.coverageError >= 0 && o->clumps.coverageError <= 1))
+      throw WrongUsage("--uncovered: must lie between 0 and 1");
     const Kind& kind = findKind(*o);
     o->input.outputs = {o->out};
     o->input.parse();

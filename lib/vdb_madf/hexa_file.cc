@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <vector>
 
 #include "vdb_madf/detail/buffered_output.h"
@@ -16,6 +15,7 @@
 #include "vdb_madf/detail/voxels.h"
 #include "vdb_madf/detail/vtk_file.h"
 #include "vdb_madf/errors.h"
+#include "vdb_madf/file_ending.h"
 #include "vdb_madf/mesh_file.h"
 
 namespace vdb_madf {
@@ -30,10 +30,6 @@ using Nodes = std::array<uint32_t, 8>;
 /// The corners of an element, in the order that VTK and Abaqus share: around the lower face
 /// counterclockwise seen from above, then the upper one. Bits: 4: +x, 2: +y, 1: +z.
 constexpr unsigned kCorners[8] = {0, 4, 6, 2, 1, 5, 7, 3};
-
-std::string ending(const std::string& path) {
-  return std::filesystem::path(path).extension().string();
-}
 
 /// Adds to a mask itself, moved by a voxel up an axis. Returns what falls into the next leaf.
 Mask spread(Mask& mask, int axis) {
@@ -209,7 +205,8 @@ void writeInp(const std::string& path, const Hexahedra& mesh, Interrupter* inter
 }  // namespace
 
 bool isHexahedraEnding(const std::string& path) {
-  return ending(path) == ".vtu" || ending(path) == ".inp";
+  const std::string end = fileEnding(path);
+  return end == ".vtu" || end == ".inp";
 }
 
 HexahedraCounts writeHexahedra(const std::string& path, const Int32Grid& labels,
@@ -217,7 +214,7 @@ HexahedraCounts writeHexahedra(const std::string& path, const Int32Grid& labels,
   if (!isHexahedraEnding(path))
     throw InvalidInput(path + ": no format of elements has this ending; use .vtu or .inp");
   const Hexahedra mesh(labels, interrupter);
-  if (ending(path) == ".vtu")
+  if (fileEnding(path) == ".vtu")
     writeVtu(path, mesh, interrupter);
   else
     writeInp(path, mesh, interrupter);

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "vdb_madf/detail/buffered_output.h"
@@ -137,10 +138,8 @@ void writeObj(const std::string& path, const WorldMesh& world, Interrupter* inte
 }
 
 /// Triangles of grains [begin, end).
-void writeStl(const std::string& path, const WorldMesh& world, size_t begin, size_t end,
-              Interrupter* interrupter) {
+void writeStl(BufferedOutput& out, const WorldMesh& world, size_t begin, size_t end) {
   const auto& first = world.mesh().firstTriangle;
-  BufferedOutput out(path, interrupter);
   std::string header = "vdb_madf grains; lengths in " + world.unit();  // not "solid": that is text
   header.resize(80, ' ');
   out.text(header);
@@ -157,7 +156,6 @@ void writeStl(const std::string& path, const WorldMesh& world, size_t begin, siz
     out.value(c);
     out.value(uint16_t(0));
   }
-  out.commit();
 }
 
 void writeVtp(const std::string& path, const WorldMesh& world, Interrupter* interrupter) {
@@ -196,6 +194,32 @@ void writeVtp(const std::string& path, const WorldMesh& world, Interrupter* inte
   file.write(path, interrupter);
 }
 
+/// A folder that is made unless it is there, and goes again, if it is empty, unless it is kept.
+class OutputFolder {
+ public:
+  explicit OutputFolder(const std::string& path) : path_(path) {
+    std::error_code error;
+    isNew_ = std::filesystem::create_directory(path, error);
+    if (!error && !std::filesystem::is_directory(path, error))
+      error = std::make_error_code(std::errc::not_a_directory);
+    if (error)
+      throw IoError("cannot write " + path + ": " + error.message() +
+                    "; give the path of a folder, in one that is there");
+  }
+  ~OutputFolder() {
+    std::error_code ignored;
+    if (isNew_) std::filesystem::remove(path_, ignored);
+  }
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  void keep() { isNew_ = false; }
+
+ private:
+  std::string path_;
+  bool isNew_ = false;
+};
+
 }  // namespace
 
 std::string grainName(int32_t label) {
@@ -217,23 +241,31 @@ void writeMesh(const std::string& path, const GrainMesh& mesh, const MeshFileOpt
     writePly(path, world, interrupter);
   else if (end == ".obj")
     writeObj(path, world, interrupter);
-  else if (end == ".stl")
-    writeStl(path, world, 0, world.grainCount(), interrupter);
   else if (end == ".vtp")
     writeVtp(path, world, interrupter);
-  else
+  else if (end == ".stl") {
+    BufferedOutput out(path, interrupter);
+    writeStl(out, world, 0, world.grainCount());
+    out.commit();
+  } else {
     throw InvalidInput(path + ": no mesh format has this ending; use .ply, .obj, .stl or .vtp");
+  }
 }
 
 void writeStlFolder(const std::string& folder, const GrainMesh& mesh,
                     const MeshFileOptions& options, Interrupter* interrupter) {
   const WorldMesh world(mesh, options, folder);
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw IoError("cannot write " + folder + ": " + error.message());
-  for (size_t grain = 0; grain < world.grainCount(); ++grain)
-    writeStl((std::filesystem::path(folder) / (grainName(world.label(grain)) + ".stl")).string(),
-             world, grain, grain + 1, interrupter);
+  OutputFolder made(folder);
+  std::vector<std::unique_ptr<BufferedOutput>> files;
+  for (size_t grain = 0; grain < world.grainCount(); ++grain) {
+    const std::string name = grainName(world.label(grain)) + ".stl";
+    files.push_back(std::make_unique<BufferedOutput>(
+        (std::filesystem::path(folder) / name).string(), interrupter));
+    writeStl(*files.back(), world, grain, grain + 1);
+    files.back()->close();
+  }
+  for (const auto& file : files) file->commitClosed();
+  made.keep();
 }
 
 }  // namespace vdb_madf

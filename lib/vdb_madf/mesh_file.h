@@ -31,8 +31,8 @@ void writeMesh(const std::string& path, const GrainMesh& mesh, const MeshFileOpt
 /// True if writeMesh knows the ending.
 bool isMeshEnding(const std::string& path);
 
-/// One binary STL per grain, `grain_000123.stl`, in a folder, which is made if need be. Each file
-/// appears whole or not at all.
+/// One binary STL per grain, `grain_000123.stl`, in a folder, which is made if need be (not those
+/// above it). All files appear together, whole, or none.
 /// @throw as writeMesh.
 void writeStlFolder(const std::string& folder, const GrainMesh& mesh,
                     const MeshFileOptions& options, Interrupter* interrupter = nullptr);

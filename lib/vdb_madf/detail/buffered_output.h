@@ -41,10 +41,16 @@ class BufferedOutput {
     text(shortestDecimal(value));
   }
 
-  void commit() {
+  /// The last of it into the temporary file; then only commitClosed() is left.
+  void close() {
     flush();
     stream_.close();
-    stream_.commit();
+    std::string().swap(buffer_);
+  }
+  void commitClosed() { stream_.commit(); }
+  void commit() {
+    close();
+    commitClosed();
   }
 
  private:
