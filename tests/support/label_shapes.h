@@ -50,6 +50,13 @@ inline LabelMap twoBalls(const Coord& center, int radius) {
   return voxels;
 }
 
+/// Labels without any symmetry, on both sides of the origin; 70000 needs more than 16 bits.
+inline LabelMap marker() {
+  return {{{2, 3, 5}, 1},  {{-7, 1, 2}, 2},     {{-6, 1, 2}, 2},
+          {{-7, 2, 2}, 2}, {{-6, 2, 2}, 2},     {{-7, 1, 3}, 3},
+          {{-6, 1, 3}, 3}, {{0, -8, 7}, 70000}, {{1, -8, 7}, 70000}};
+}
+
 /// Voxels that touch along edges and at corners only, a ring, a hollow box, sheets; labels 1 to 6.
 inline LabelMap awkwardLabels() {
   LabelMap voxels;
