@@ -23,7 +23,7 @@ namespace {
 
 const Coord kSize(19, 17, 4);
 /// Shared by the files of a format.
-constexpr int kMutationsPerFormat = 5000;
+const int kMutationsPerFormat = mutationsPerFormat(5000);
 /// The files have some kilobytes; a reader's buffers of fixed size and a stray page are allowed.
 constexpr uint64_t kMemory = uint64_t(64) << 20;
 /// Of zlib.

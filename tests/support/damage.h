@@ -6,6 +6,8 @@
 #include <sys/resource.h>
 
 #include <cstdint>
+#include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <random>
 #include <string>
@@ -16,13 +18,26 @@
 
 namespace vdb_madf::test {
 
+/// How many changed files of a format are tried: `usual`, or VDB_MADF_MUTATIONS of the environment.
+inline int mutationsPerFormat(int usual) {
+  const char* text = std::getenv("VDB_MADF_MUTATIONS");
+  return text ? std::stoi(text) : usual;
+}
+
+/// Seconds of computing that a file of some kilobytes may take, under sanitizers too.
+constexpr double kMostSeconds = 5;
+
 /// Opens a volume and reads all of it, eight slices at a time. Empty if it reads or is properly
-/// refused: with one line that names the path. Else what is wrong.
+/// refused: soon, with one line that names the path. Else what is wrong.
 /// @param fileBytes of all its files
 /// @param expansion how many bytes of samples a byte of the file may stand for
 inline std::string complaint(const std::string& path, uint64_t fileBytes, uint64_t expansion,
                              const std::string& dataset = "") {
   std::string message;
+  const std::clock_t start = std::clock();
+  const auto isSlow = [&] {
+    return double(std::clock() - start) > kMostSeconds * double(CLOCKS_PER_SEC);
+  };
   try {
     const auto image = openImage(path, {}, dataset);
     const ImageInfo& info = image->info();
@@ -33,7 +48,7 @@ inline std::string complaint(const std::string& path, uint64_t fileBytes, uint64
     std::vector<char> slab(size_t(slice) * size_t(step));
     for (int z = 0; z < info.size.z(); z += step)
       image->read(z, std::min(step, info.size.z() - z), slab.data());
-    return {};
+    return isSlow() ? "takes long" : "";
   } catch (const IoError& error) {
     message = error.what();
   } catch (const InvalidInput& error) {
@@ -41,6 +56,7 @@ inline std::string complaint(const std::string& path, uint64_t fileBytes, uint64
   } catch (const std::exception& error) {
     return std::string("another exception: ") + error.what();
   }
+  if (isSlow()) return "is refused late: " + message;
   if (message.find(path) == std::string::npos) return "does not name the file: " + message;
   if (message.find('\n') != std::string::npos) return "more than one line: " + message;
   if (message.size() > 2 * path.size() + 400) return "a long message: " + message;

@@ -1,0 +1,232 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The verbs segment, remerge, sweep and compare, run as a user runs them.
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "support/command_runs.h"
+
+using namespace vdb_madf::test;
+
+TEST_CASE("cli: segment reports what it did as JSON", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSnow + "s.vdb");
+  const std::string printed = bench.mustRun("segment s.vdb g.vdb --gamma 4 --json j.json");
+  CHECK(printed.find("grains") != std::string::npos);
+  const Json json = Json::parse(bench.bytes("j.json"));
+  for (const char* key : {"object_voxels",   "medial_balls",  "kept_balls",
+                          "critical_points", "grains",        "largest_squared_distance",
+                          "leaves",          "porosity",      "seconds_read",
+                          "seconds_write",   "seconds_total", "peak_memory_bytes",
+                          "threads",         "voxel_size_mm", "gamma",
+                          "theta",           "boundary",      "merge",
+                          "adjacency",       "input",         "output"})
+    CHECK(json.count(key) == 1);
+  CHECK(json.at("gamma") == 4);
+  CHECK(json.at("theta") == -0.9);
+  CHECK(json.at("merge") == "both");
+  CHECK(json.at("adjacency") == "manifold");
+  CHECK(json.at("boundary") == "open");
+  CHECK(json.at("grains").get<int>() > 1);
+  CHECK(json.at("porosity").get<double>() ==
+        Approx(1 - json.at("object_voxels").get<double>() / (48 * 48 * 48)));
+
+  double sum = 0;
+  int stages = 0;
+  for (const auto& [key, value] : json.items()) {
+    if (key.rfind("seconds_", 0) != 0 || key == "seconds_total") continue;
+    CHECK(value.get<double>() >= 0);
+    sum += value.get<double>();
+    ++stages;
+  }
+  CHECK(stages >= 8);
+  CHECK(sum == Approx(json.at("seconds_total").get<double>()));
+
+  const Json alone = Json::parse(bench.mustRun("segment s.vdb g.vdb --json -"));
+  CHECK(alone.at("grains").get<int>() > 1);
+  CHECK(Json::parse(bench.mustRun("segment s.vdb g.vdb --json /dev/stdout")).count("grains") == 1);
+  CHECK(bench.mustRun("segment s.vdb g.vdb --json /dev/null -q") == "");
+  CHECK(bench.mustRun("segment s.vdb g.vdb -q") == "");
+}
+
+TEST_CASE("cli: segment keeps the grids that are asked for, each with its metadata", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSnow + "s.vdb");
+  bench.mustRun("segment s.vdb g.vdb");
+  CHECK(gridsOf(infoOf(bench, "g.vdb")) == std::set<std::string>{"grain"});
+  bench.mustRun("segment s.vdb g.vdb --keep distance,power,manifold,balls --theta -0.7");
+  const Json info = infoOf(bench, "g.vdb");
+  CHECK(gridsOf(info) == std::set<std::string>{"grain", "distance_squared", "power", "manifold",
+                                               "balls", "balls_cell_size"});
+  for (const Json& grid : info.at("grids")) {
+    CAPTURE(grid.at("name"));
+    CHECK(grid.at("value_type") == "int32");
+    const Json& metadata = grid.at("metadata");
+    for (const char* key :
+         {"madf_version", "madf_gamma", "madf_boundary", "madf_merge", "madf_adjacency",
+          "madf_domain_min", "madf_domain_max", "madf_voxel_size_m", "madf_length_unit",
+          "madf_source", "madf_grains", "madf_object_voxels", "madf_critical_points"})
+      CHECK(metadata.count(key) == 1);
+    CHECK(metadata.at("madf_theta") == -0.7);
+  }
+  CHECK(gridOf(info, "manifold").at("metadata").count("madf_manifold_graph") == 1);
+  CHECK(gridOf(info, "balls").at("active_voxels") ==
+        gridOf(info, "balls").at("metadata").at("madf_medial_balls"));
+}
+
+TEST_CASE("cli: segment writes the same bytes for any number of threads", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSnow + "s.vdb");
+  for (const std::string options : {"", " --gamma 3 --keep distance,power,manifold,balls"}) {
+    bench.mustRun("segment s.vdb one.vdb --threads 1" + options);
+    bench.mustRun("segment s.vdb two.vdb --threads 2" + options);
+    CHECK(bench.bytes("one.vdb") == bench.bytes("two.vdb"));
+  }
+}
+
+TEST_CASE("cli: the paper's merging is a short form", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSnow + "s.vdb");
+  bench.mustRun("segment s.vdb short.vdb --paper");
+  bench.mustRun("segment s.vdb long.vdb --merge angle --adjacency cell --theta -0.8");
+  CHECK(bench.bytes("short.vdb") == bench.bytes("long.vdb"));
+  bench.mustRun("segment s.vdb short.vdb --paper --theta -0.6");
+  bench.mustRun("segment s.vdb long.vdb --merge angle --adjacency cell --theta -0.6");
+  CHECK(bench.bytes("short.vdb") == bench.bytes("long.vdb"));
+}
+
+TEST_CASE("cli: remerge equals a fresh segmentation", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSnow + "s.vdb");
+  bench.mustRun("segment s.vdb g.vdb --keep manifold");
+  for (const std::string options :
+       {"", " --theta -0.5", " --theta 1", " --merge angle --adjacency cell", " --merge neck"}) {
+    CAPTURE(options);
+    bench.mustRun("remerge g.vdb re.vdb" + options);
+    bench.mustRun("segment s.vdb fresh.vdb --keep manifold" + options);
+    CHECK(bench.bytes("re.vdb") == bench.bytes("fresh.vdb"));
+    bench.mustRun("remerge re.vdb back.vdb");  // the manifolds went along
+    CHECK(bench.bytes("back.vdb") == bench.bytes("g.vdb"));
+  }
+}
+
+TEST_CASE("cli: sweep gives a line for each choice, equal to its segmentation", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSnow + "s.vdb");
+  bench.mustRun(
+      "sweep s.vdb a.csv --gamma 0,9 --theta -1:-0.7:0.1,-0.95 --merge angle,both --small 50 "
+      "--plot a.svg");
+  std::istringstream csv(bench.bytes("a.csv"));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(csv, line);) lines.push_back(line);
+  REQUIRE(lines.size() == 1 + 2 * 2 * 5);
+  CHECK(lines[0].find("gamma,merge,theta,grains,median_voxels,small_grains,") == 0);
+  for (const auto& [line, options] :
+       {std::pair<size_t, std::string>{1, "--gamma 0 --theta -1 --merge angle"},
+        {3, "--gamma 0 --theta -0.8 --merge angle"},
+        {15, "--gamma 9 --theta -0.95 --merge angle"},
+        {19, "--gamma 9 --theta -0.7 --merge both"}}) {
+    const Json json = Json::parse(bench.mustRun("segment s.vdb g.vdb --json - " + options));
+    std::istringstream fields(lines[line]);
+    std::string gamma, merge, theta, grains;
+    for (std::string* field : {&gamma, &merge, &theta, &grains}) std::getline(fields, *field, ',');
+    CHECK(std::stoll(gamma) == json.at("gamma"));
+    CHECK(merge == json.at("merge"));
+    CHECK(std::stod(theta) == json.at("theta"));
+    CHECK(std::stoll(grains) == json.at("grains"));
+  }
+  const std::string svg = bench.bytes("a.svg");
+  CHECK(svg.find("<svg ") == 0);
+  CHECK(svg.substr(svg.size() - 7) == "</svg>\n");
+  CHECK(svg.find("nan") == std::string::npos);
+  size_t curves = 0;
+  for (size_t at = 0; (at = svg.find("<polyline", at)) != std::string::npos; ++at) ++curves;
+  CHECK(curves == 3 * 4);
+
+  bench.mustRun(
+      "sweep s.vdb b.csv --gamma 0,9 --theta -1:-0.7:0.1,-0.95 --merge angle,both --small 50 "
+      "--plot b.svg --threads 1");
+  CHECK(bench.bytes("a.csv") == bench.bytes("b.csv"));
+  CHECK(svg == bench.bytes("b.svg"));
+}
+
+TEST_CASE("cli: compare finds a file equal to itself", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSpheres + "s.vdb");
+  bench.mustRun(kSpheres + "s.tif");
+  for (const std::string pair : {"s.vdb s.vdb", "s.vdb s.truth.tif", "s.truth.tif s.vdb"}) {
+    CAPTURE(pair);
+    const Json json = Json::parse(bench.mustRun("compare " + pair + " --json -"));
+    CHECK(json.at("truth_grains") == 5);
+    CHECK(json.at("test_grains") == 5);
+    CHECK(json.at("misclassified_percent") == 0);
+    CHECK(json.at("adjusted_rand_index") == 1);
+    CHECK(json.at("variation_of_information_bits").get<double>() == Approx(0).margin(1e-12));
+  }
+  bench.mustRun("segment s.vdb one.vdb --theta 1 --merge angle --adjacency cell");
+  const Json json = Json::parse(bench.mustRun("compare s.vdb one.vdb --json -"));
+  CHECK(json.at("test_grains").get<int>() < 5);
+  CHECK(json.at("adjusted_rand_index").get<double>() < 1);
+  CHECK(bench.mustRun("compare s.vdb one.vdb").find("misclassified") != std::string::npos);
+  CHECK(bench.mustRun("compare s.vdb one.vdb -q") == "");
+
+  CHECK(json.at("same_topology") == true);
+  CHECK(json.at("splits").empty());
+  REQUIRE(json.at("merges").size() == 1);
+  CHECK(json.at("merges")[0].at("truth").size() >= 2);
+  bench.mustRun("compare s.vdb one.vdb --grains grains.csv --confusion confusion.csv");
+  const auto lines = [&](const std::string& file) {
+    const std::string text = bench.bytes(file);
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  CHECK(lines("grains.csv") == 1 + 5 + json.at("test_grains").get<int>());
+  CHECK(lines("confusion.csv") >= 1 + 5);
+}
+
+TEST_CASE("cli: compare says when the grids differ in topology", "[cli]") {
+  const Bench bench;
+  bench.write("a.raw", std::string("\1\1\2\2", 4));
+  bench.write("b.raw", std::string("\0\1\2\2", 4));
+  const std::string pair = "compare a.raw b.raw --dims 4x1x1 --type uint8";
+  CHECK(bench.mustRun(pair).find("differ in topology") != std::string::npos);
+  CHECK(Json::parse(bench.mustRun(pair + " --json -")).at("same_topology") == false);
+  CHECK(bench.mustRun(pair + " --grains -") ==
+        "side,grain,voxels,partner,overlap_voxels,intersection_over_union,pieces\n"
+        "truth,1,2,1,1,0.5,1\ntruth,2,2,2,2,1,1\ntest,1,1,1,1,0.5,1\ntest,2,2,2,2,1,1\n");
+  CHECK(bench.mustRun(pair + " --confusion -") == "truth,test,voxels\n1,0,1\n1,1,1\n2,2,2\n");
+}
+
+TEST_CASE("cli: an empty object has no grains", "[cli]") {
+  const Bench bench;
+  bench.write("zero.raw", std::string(64, '\0'));
+  for (const std::string boundary : {"open", "closed"}) {
+    const Json json = Json::parse(bench.mustRun(
+        "segment zero.raw g.vdb --dims 4x4x4 --type uint8 --json - --boundary " + boundary));
+    CHECK(json.at("grains") == 0);
+    CHECK(json.at("porosity") == 1);
+    bench.mustRun("render g.vdb g.png");
+    bench.mustRun("compare g.vdb g.vdb");
+    bench.mustRun("convert g.vdb g.raw");
+    CHECK(bench.bytes("g.raw") == std::string(4 * 64, '\0'));
+  }
+}
+
+TEST_CASE("cli: segment --dry-run says what it would take, and does nothing", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate pack p.vdb --size 160 --radius 8:16");
+  const auto before = bench.names();
+  const Json estimate = Json::parse(bench.mustRun("segment p.vdb --dry-run --json -"));
+  CHECK(bench.names() == before);
+  CHECK(estimate.at("fits") == true);
+  const Json done = Json::parse(bench.mustRun("segment p.vdb g.vdb --json -"));
+  CHECK(estimate.at("object_voxels") == done.at("object_voxels"));
+  CHECK(estimate.at("leaves") == done.at("leaves"));
+  const double needed = estimate.at("estimated_memory_bytes"), peak = done.at("peak_memory_bytes");
+  CHECK(needed > 0.5 * peak);
+  CHECK(needed < 3 * peak);
+  CHECK(bench.mustRun("segment p.vdb --dry-run --max-memory 1M").find("it does not fit") !=
+        std::string::npos);
+}
