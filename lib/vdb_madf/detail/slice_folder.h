@@ -19,7 +19,11 @@ std::vector<std::string> slicesIn(const std::string& folder,
                                   const std::vector<std::string>& endings);
 
 /// The pixel size that a reconstruction log in the folder tells: the only .log file that has a line
-/// "Pixel Size (um)=8.5" or "Image Pixel Size (um)=8.5", as SkyScan's NRecon writes it.
+/// "Pixel Size (um)=8.5" or "Image Pixel Size (um)=8.5", as SkyScan's NRecon writes it. NRecon
+/// appends its section to the log of the scan: [Acquisition] has "Image Pixel Size (um)", of the
+/// projections, then [Reconstruction] has "Pixel Size (um)", of the slices, which is taken.
+/// "Camera Pixel Size (um)" of [System] is that of the detector. Source: these keys and sections as
+/// read by public loaders of SkyScan data (readBruker.m: both; SkyScan loader of TIGRE).
 std::optional<VoxelSize> voxelSizeInLog(const std::string& folder);
 
 /// Each .png or .bmp file of the folder is a slice, of equal size and type. The voxel size comes
