@@ -182,8 +182,11 @@ TEST_CASE("grain_mesh: interfaces are shared, smoothed or not", "[grain_mesh]") 
 }
 
 TEST_CASE("grain_mesh: smoothed grains stay closed and keep their volume", "[grain_mesh]") {
-  for (const LabelMap& voxels :
-       {twoBalls({0, 0, 0}, 9), awkwardLabels(), randomLabels(4, Coord(-9), 14, 4, 80)}) {
+  std::vector<LabelMap> samples{twoBalls({0, 0, 0}, 9), awkwardLabels()};
+  for (unsigned seed = 1; seed <= 6; ++seed)
+    samples.push_back(
+        randomLabels(seed, Coord(-9, 3, int(seed)), 12, 1 + int(seed) * 2, int(seed) * 15));
+  for (const LabelMap& voxels : samples) {
     const auto volume = volumes(voxels), euler = eulerNumbers(voxels);
     for (const int smoothing : {1, 20}) {
       const GrainMesh mesh = grainMesh(*labelGrid(voxels), {smoothing});
