@@ -142,6 +142,12 @@ void addPictures(std::vector<Sample>& all) {
         return bmpFile({19, 17, 1, true, false, "aaaabbbb", 0, 0}, s.substr(0, 3 * 17));
       },
       8);
+  Sample log = all.back();
+  log.files["s/rec.log"] =
+      "[Acquisition]\nImage Pixel Size (um)= 8.4\n[Reconstruction]\nPixel Size (um)=8.5\n";
+  log.changed = "s/rec.log";
+  log.sameSize = false;
+  all.push_back(log);
 }
 
 void addZarr(std::vector<Sample>& all) {
