@@ -322,7 +322,7 @@ void addExport(CLI::App& app, Common& common, Action& action) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   verb->add_option("--uncovered", o->clumps.coverageError,
-                   "clumps: part of a grain that may stay uncovered")
+                   "clumps: part of a grain that may stay uncovered, 0 to 1")
       ->capture_default_str();
   o->input.addRaw(*verb);
   o->input.addVoxelSize(*verb);
