@@ -75,9 +75,11 @@ class LeafSurface {
 };
 
 /// The area of a bond, in voxel faces, from the sums of Shared::areas. With A(s) that of pairs s
-/// apart per crossing: A(1) + A(2)/2 - A(4)/2, the value at distance 0 of the straight line of
-/// least squares through A(1) to A(4). Held between a quarter and 1.1 times A(1), which matters for
-/// bonds of a few faces and grains thinner than four voxels.
+/// apart per crossing, A(0) of a straight line: in a groove, where A grows with s, through A(2) and
+/// A(4), which do not depend on where between two layers of voxels the interface lies if it runs
+/// along them (both grains widening alike); elsewhere, where A(4) is bent too far, through A(1) and
+/// A(2); between the two in a shallow groove. Held between a quarter and 1.1 times A(1), which
+/// matters for bonds of a few faces and grains thinner than four voxels.
 double bondArea(const std::array<int64_t, 3>& areas);
 
 }  // namespace vdb_madf::detail
