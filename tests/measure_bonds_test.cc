@@ -95,6 +95,25 @@ TEST_CASE("measure_bonds: curvature and flatness of a ball within a grain", "[me
   }
 }
 
+TEST_CASE("measure_bonds: how curvatures spread over an interface", "[measure_bonds]") {
+  // Two balls within a grain, of radius 8 and 16: points are taken evenly, a fifth from the small.
+  const auto labels = drawLabels({Coord(-18, -18, -18), Coord(40, 18, 18)}, [](const Vec3d& p) {
+    return p.lengthSqr() < 16 * 16 || (p - Vec3d(29, 0, 0)).lengthSqr() < 8 * 8 ? 1 : 2;
+  });
+  const InterfaceCurvature curvature = onlyBond(*labels).curvature.value();
+  CHECK(onlyBond(*labels).patches == 2);
+  CHECK(curvature.points == 32);
+  CHECK(curvature.mean == Approx(0.2 / 8 + 0.8 / 16).epsilon(0.1));
+  // From the two radii alone 0.025; the fits themselves spread as much.
+  CHECK(curvature.meanDeviation > 0.4 * (1.0 / 8 - 1.0 / 16));
+  CHECK(curvature.meanDeviation < 2 * 0.4 * (1.0 / 8 - 1.0 / 16));
+  CHECK(curvature.gaussian == Approx(0.2 / 64 + 0.8 / 256).epsilon(0.2));
+  CHECK(curvature.gaussianDeviation == Approx(0.4 * (1.0 / 64 - 1.0 / 256)).epsilon(0.4));
+  // The voxels' steps: of height 1 or less, spread evenly.
+  CHECK(curvature.residual < std::sqrt(1.0 / 12));
+  CHECK(curvature.residual > 0.5 * std::sqrt(1.0 / 12));
+}
+
 TEST_CASE("measure_bonds: curvature of a saddle", "[measure_bonds]") {
   constexpr double kRadius = 16;  // of both principal curvatures, at the centre
   const auto labels = drawLabels(cubeAround(10), [&](const Vec3d& p) {

@@ -232,7 +232,15 @@ TEST_CASE("measure_grains: turns with the labels", "[measure_grains]") {
   for (size_t i = 0; i < a.grains.size(); ++i) {
     CHECK(a.grains[i].freeArea == Approx(b.grains[i].freeArea));
     CHECK((turn(a.grains[i].centroid) - b.grains[i].centroid).length() < 1e-9);
-    CHECK(a.grains[i].ellipsoid.values[1] == Approx(b.grains[i].ellipsoid.values[1]));
+    const Vec3d low = turn(a.grains[i].box.min().asVec3d()),
+                high = turn(a.grains[i].box.max().asVec3d());
+    CHECK(b.grains[i].box == CoordBBox(Coord::round(openvdb::math::minComponent(low, high)),
+                                       Coord::round(openvdb::math::maxComponent(low, high))));
+    for (size_t k = 0; k < 3; ++k) {
+      CHECK(a.grains[i].ellipsoid.values[k] == Approx(b.grains[i].ellipsoid.values[k]));
+      CHECK(std::abs(turn(a.grains[i].ellipsoid.axes[k]).dot(b.grains[i].ellipsoid.axes[k])) ==
+            Approx(1));
+    }
     CHECK(a.grains[i].inscribedRadius == b.grains[i].inscribedRadius);
   }
   REQUIRE(a.bonds.size() == b.bonds.size());
@@ -265,6 +273,22 @@ TEST_CASE("measure_grains: the faces of an open domain are no surface", "[measur
   CHECK(closed.inscribedRadius < 9);
   options.domain = CoordBBox(Coord(-20), Coord(20));
   CHECK_FALSE(measure(*labels, options).grains.at(0).atDomainFace);
+}
+
+TEST_CASE("measure_grains: which grains touch a face of the domain", "[measure_grains]") {
+  MeasureOptions options;
+  options.domain = CoordBBox(Coord(-5), Coord(5));
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int at : {-5, -4, 4, 5}) {
+      Coord voxel(0);
+      voxel[axis] = at;
+      auto labels = Int32Grid::create(0);
+      labels->tree().setValue(voxel, 1);
+      const GrainMeasures grain = measure(*labels, options).grains.at(0);
+      CAPTURE(axis, at);
+      CHECK(grain.atDomainFace == (std::abs(at) == 5));
+      CHECK(grain.cutArea == (std::abs(at) == 5 ? 1 : 0));
+    }
 }
 
 TEST_CASE("measure_grains: tiles, values without meaning, and nothing at all", "[measure_grains]") {
