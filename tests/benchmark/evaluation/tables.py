@@ -114,7 +114,9 @@ def table2(report, done, scan):
                "of the covariance of the interface's points, voxel^2) from `vdb_madf measure`: mean, standard deviation over the "
                "interfaces. Curvatures are means over an interface's points of a quadratic fit of radius 5; the paper's "
                "estimator is another, and its volumes MF and RG are not public: only the ratios between methods "
-               "compare. (The true interfaces of sintered balls are flat by construction.)")
+               "compare. Each interface counts once: specks have interfaces of a few voxels, flat by their size (a lower "
+               "mean flatness) and without a curvature or with a poor one, so methods compare only where they have about "
+               "as many. (The true interfaces of sintered balls are flat by construction.)")
     titles = ["sample", "method", "interfaces", "mean curvature", "Gaussian curvature", "flatness"]
     rows = []
     for head, result in [*((f"sintered, roughness {r}", done[r]) for r in (0, 0.3)), *([(scan[0], scan[1])] if scan else [])]:
