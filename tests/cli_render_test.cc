@@ -109,6 +109,24 @@ TEST_CASE("cli: render draws a scale bar of a round length", "[cli]") {
   }
 }
 
+TEST_CASE("cli: render keeps scale bars and their texts below their own part", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSintered);
+  bench.mustRun("convert s.vdb s.mhd --grid truth --voxel-size 8.5um");
+  for (const int size : {64, 80, 128, 200}) {
+    CAPTURE(size);
+    bench.mustRun("render s.mhd s.png --size " + std::to_string(size) + " --only slices");
+    const Picture picture = readPng(bench.bytes("s.png"));
+    const int edge = 64 * (size / 64);
+    REQUIRE(picture.width == 3 * 12 + 2 * edge);
+    int outside = 0;
+    for (int y = 12 + edge; y < 12 + edge + 32; ++y)  // the captions of the upper row
+      for (const int left : {0, 12 + edge, 2 * (12 + edge)})
+        for (int x = left; x < left + 12; ++x) outside += picture.at(x, y)[0] < 128;
+    CHECK(outside == 0);
+  }
+}
+
 TEST_CASE("cli: render draws what it is asked for", "[cli]") {
   const Bench bench;
   bench.mustRun(kSintered);

@@ -165,17 +165,23 @@ Picture arrange(const std::vector<Panel>& panels, const std::optional<VoxelSize>
       drawText(whole, left, below + kCaptionHeight - kGlyphHeight * kCaptionScale, panel.caption,
                kInk, kCaptionScale);
       if (voxelSize) {
-        const int textEnd = textWidth(panel.caption, kCaptionScale) + kGap;
-        const int widest = std::min(widths[i % columns] - textEnd, panel.picture.width / 2);
-        if (const auto bar = fitScaleBar(panel.voxelsPerPixel * voxelSize->metres, widest))
-          draw(*bar, left + widths[i % columns] - bar->pixels, below + kCaptionHeight - 1, kInk,
-               whole);
+        const int nameWidth = textWidth(panel.caption, kCaptionScale) + kGap;
+        const int right = panel.picture.width;
+        const int widest = std::min(right - nameWidth, right / 2);
+        // A bar that is narrower than its text ends further left.
+        if (const auto bar = fitScaleBar(panel.voxelsPerPixel * voxelSize->metres, widest);
+            bar && width(*bar) <= right - nameWidth)
+          draw(*bar, left + right - width(*bar), below + kCaptionHeight - 1, kInk, whole);
       }
       left += widths[i % columns] + kGap;
     }
     top += heights[row] + kCaptionHeight + kGap;
   }
   return whole;
+}
+
+std::string count(long number, const char* what) {
+  return std::to_string(number) + " " + what + (number == 1 ? "" : "s");
 }
 
 void run(const Options& o, const Common& common) {
@@ -195,9 +201,8 @@ void run(const Options& o, const Common& common) {
   if (o.only != "view")
     std::cout << "middle slices x-y, x-z, y-z (z up), "
               << (panels[0].voxelsPerPixel <= 1
-                      ? std::to_string(std::lround(1 / panels[0].voxelsPerPixel)) +
-                            " pixels a voxel"
-                      : std::to_string(std::lround(panels[0].voxelsPerPixel)) + " voxels a pixel");
+                      ? count(std::lround(1 / panels[0].voxelsPerPixel), "pixel") + " a voxel"
+                      : count(std::lround(panels[0].voxelsPerPixel), "voxel") + " a pixel");
   if (o.only.empty()) std::cout << "; ";
   if (o.only != "slices")
     std::cout << "view from azimuth " << o.view.azimuth << ", elevation " << o.view.elevation
@@ -228,6 +233,9 @@ void addRender(CLI::App& app, Common& common, Action& action) {
   o->input.addRaw(*verb);
   verb->callback([o, &common, &action] {
     if (!hasPngEnding(o->out)) throw WrongUsage(o->out + ": the output's ending must be .png");
+    // CLI11's ranges let NaN pass.
+    if (!std::isfinite(o->view.azimuth)) throw WrongUsage("--azimuth: not a finite number");
+    if (!std::isfinite(o->view.elevation)) throw WrongUsage("--elevation: not a finite number");
     o->input.outputs = {o->out};
     o->input.parse();
     action = [o, &common] { run(*o, common); };

@@ -39,6 +39,10 @@ int height(const ScaleBar&) {
   return kThickness + kTextGap + kGlyphHeight * kTextScale;
 }
 
+int width(const ScaleBar& bar) {
+  return std::max(bar.pixels, textWidth(bar.text, kTextScale));
+}
+
 void draw(const ScaleBar& bar, int left, int bottom, const Rgb& color, Picture& picture) {
   for (int y = bottom - kThickness + 1; y <= bottom; ++y)
     for (int x = left; x < left + bar.pixels; ++x)

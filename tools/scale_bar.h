@@ -20,8 +20,11 @@ struct ScaleBar {
 /// pixels; none if even a nanometre is.
 std::optional<ScaleBar> fitScaleBar(double metresPerPixel, int widest);
 
-/// The bar with its text above it; (left, bottom): the first pixel column, the last row.
+/// The bar with its text above it; (left, bottom): the first pixel column of
+/// both, the last row.
 void draw(const ScaleBar& bar, int left, int bottom, const Rgb& color, Picture& picture);
 int height(const ScaleBar& bar);
+/// Of the bar or its text, whichever is wider.
+int width(const ScaleBar& bar);
 
 }  // namespace vdb_madf::tools
