@@ -130,6 +130,9 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"sweep in.vdb out.csv --gamma 3,3", "twice"},
       {"sweep in.vdb out.csv --merge cell", "cell"},
       {"sweep in.vdb out.csv --small 0.5", "--small"},
+      {"render in.vdb o.png --azimuth nan", "--azimuth"},
+      {"render in.vdb o.png --elevation nan", "--elevation"},
+      {"sweep in.vdb o.csv --plot o.png", "o.png"},
       {"compare in.vdb", "TEST"},
       {"compare in.vdb other.vdb --json other.vdb", "other.vdb"},
       {"compare in.vdb other.vdb --grains in.vdb", "in.vdb"},
@@ -222,6 +225,8 @@ TEST_CASE("cli: a grid has to be there, usable and the only one", "[cli]") {
           {"s.vdb", "'snow'", "object", "truth"});
   refuses(bench, kFailed, "render s.vdb o.png --grid snow", {"s.vdb", "'snow'", "truth"});
   refuses(bench, kFailed, "render s.vdb o.png --grid object", {"s.vdb", "'object'", "bool"});
+  bench.mustRun("convert s.vdb mask.vdb --grid object --phase 1");
+  refuses(bench, kFailed, "render mask.vdb o.png", {"mask.vdb", "labels (int32)", "segment"});
   refuses(bench, kFailed, "segment g.vdb o.vdb", {"g.vdb", "--grid", "grain", "power", "manifold"});
   refuses(bench, kFailed, "compare s.vdb g.vdb --truth-grid snow", {"s.vdb", "'snow'"});
   refuses(bench, kFailed, "remerge s.vdb o.vdb", {"s.vdb", "segment again with --keep manifold"});
@@ -244,7 +249,18 @@ TEST_CASE("cli: labels are whole numbers of one sample", "[cli]") {
   }
   bench.write("a.raw", floats({1, 1, 0, 0}));
   bench.write("b.raw", floats({0, 0, 1, 1}));
-  refuses(bench, kFailed, "compare a.raw b.raw" + layout, {"a.raw", "b.raw", "same sample"});
+  bench.write("none.raw", floats({0, 0, 0, 0}));
+  for (const auto& [truth, test] : {std::pair<std::string, std::string>{"a.raw", "b.raw"},
+                                    {"a.raw", "none.raw"},
+                                    {"none.raw", "b.raw"}})
+    refuses(bench, kFailed, "compare " + truth + " " + test + layout, {truth, test, "same sample"});
+  bench.mustRun("compare none.raw none.raw" + layout);
+
+  for (const std::string size : {"4", "8.5"})
+    bench.mustRun("convert a.raw a" + size + ".mha --voxel-size " + size + "um" + layout);
+  bench.mustRun("convert a.raw a.npy" + layout);
+  refuses(bench, kFailed, "compare a4.mha a8.5.mha", {"a4.mha", "a8.5.mha", "2.125 times"});
+  bench.mustRun("compare a4.mha a.npy");
 }
 
 TEST_CASE("cli: the boundary and the domain have to fit the object", "[cli]") {

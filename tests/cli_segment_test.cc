@@ -197,6 +197,11 @@ TEST_CASE("cli: compare says when the grids differ in topology", "[cli]") {
         "side,grain,voxels,partner,overlap_voxels,intersection_over_union,pieces\n"
         "truth,1,2,1,1,0.5,1\ntruth,2,2,2,2,1,1\ntest,1,1,1,1,0.5,1\ntest,2,2,2,2,1,1\n");
   CHECK(bench.mustRun(pair + " --confusion -") == "truth,test,voxels\n1,0,1\n1,1,1\n2,2,2\n");
+
+  CHECK(bench.mustRun(pair).find("domains differ") == std::string::npos);
+  bench.mustRun("convert a.raw a.npy --dims 4x1x1 --type uint8");
+  bench.mustRun("convert a.raw longer.npy --dims 2x2x1 --type uint8");
+  CHECK(bench.mustRun("compare a.npy longer.npy").find("domains differ") != std::string::npos);
 }
 
 TEST_CASE("cli: an empty object has no grains", "[cli]") {

@@ -3,6 +3,7 @@
 
 #include "vdb_madf/compare.h"
 
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <sstream>
@@ -12,6 +13,7 @@
 #include "json_file.h"
 #include "text_file.h"
 #include "vdb_madf/errors.h"
+#include "vdb_madf/grid_metadata.h"
 
 namespace vdb_madf::tools {
 
@@ -97,13 +99,32 @@ std::string confusionTable(const Comparison& c) {
   return csv.str();
 }
 
+std::string text(const CoordBBox& box) {
+  std::ostringstream text;
+  text << box.min() << " to " << box.max();
+  return text.str();
+}
+
+/// Voxels of equal index are compared, so they must be of equal size, where both are known.
+void checkSameVoxels(const Options& o, const Int32Grid& truth, const Int32Grid& test) {
+  constexpr double kTolerance = 1e-3;  // as for the spacings of an image
+  const auto a = voxelSize(truth), b = voxelSize(test);
+  if (!a || !b || std::abs(a->metres - b->metres) <= kTolerance * a->metres) return;
+  std::ostringstream text;
+  text.precision(4);
+  text << o.test.path << ": its voxels are " << b->metres / a->metres
+       << " times as long as those of " << o.truth.path << ": give labels of the same voxels";
+  throw InvalidInput(text.str());
+}
+
 void run(const Options& o, const Common& common) {
   JsonFile jsonFile(o.json);
   TextFile grainFile(o.grains), confusionFile(o.confusion);
   const Int32Grid::Ptr truth = loadLabels(o.truth, "--truth-grid", common.progress);
   const Int32Grid::Ptr test = loadLabels(o.test, "--test-grid", common.progress);
+  checkSameVoxels(o, *truth, *test);
   const Comparison comparison = compare(*truth, *test, common.progress);
-  if (comparison.commonVoxels == 0 && comparison.truthGrains > 0 && comparison.testGrains > 0)
+  if (comparison.commonVoxels == 0 && comparison.truthGrains + comparison.testGrains > 0)
     throw InvalidInput(o.test.path + ": no voxel is labelled both here and in " + o.truth.path +
                        ", so there is nothing to compare: give labels of the same sample");
   common.progress->end();
@@ -112,7 +133,12 @@ void run(const Options& o, const Common& common) {
   jsonFile.write(summary(o, comparison));
   const bool asked = jsonFile.isStandardOutput() || grainFile.isStandardOutput() ||
                      confusionFile.isStandardOutput();
-  if (!common.quiet && !asked) print(comparison);
+  if (common.quiet || asked) return;
+  print(comparison);
+  const auto truthDomain = domain(*truth), testDomain = domain(*test);
+  if (truthDomain && testDomain && *truthDomain != *testDomain)
+    std::printf("note: the domains differ: %s and %s; voxels of equal index are compared\n",
+                text(*truthDomain).c_str(), text(*testDomain).c_str());
 }
 
 }  // namespace

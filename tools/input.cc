@@ -254,10 +254,12 @@ openvdb::GridBase::Ptr chooseGrid(const std::vector<openvdb::GridBase::Ptr>& gri
     for (const auto& grid : candidates)
       if (grid->getName() == wanted) return grid;
   if (candidates.size() == 1) return candidates[0];
-  throw InvalidInput(
-      path + ": " +
-      (candidates.empty() ? "no grid can be used" : "choose a grid with " + gridOption) +
-      "; the file holds " + list);
+  throw InvalidInput(path + ": " +
+                     (!candidates.empty() ? "choose a grid with " + gridOption
+                      : usable == isLabelGrid
+                          ? "there is no grid of labels (int32), such as segment writes"
+                          : "there is no grid of a mask or numbers") +
+                     "; the file holds " + list);
 }
 
 std::unique_ptr<ImageReader> openInput(const InputOptions& input) {

@@ -16,6 +16,7 @@
 #include "sweep_plot.h"
 #include "text_file.h"
 #include "vdb_madf/errors.h"
+#include "vdb_madf/file_ending.h"
 #include "vdb_madf/segmentation_metadata.h"
 
 namespace vdb_madf::tools {
@@ -81,6 +82,8 @@ void parse(Options& o) {
   o.input.parse();
   if (o.out.size() < 4 || o.out.compare(o.out.size() - 4, 4, ".csv") != 0)
     throw WrongUsage(o.out + ": the output's ending must be .csv");
+  if (!o.plot.empty() && o.plot != "-" && fileEnding(o.plot) != ".svg")
+    throw WrongUsage(o.plot + ": the plot's ending must be .svg");
   SweepOptions& sweep = o.sweep;
   sweep.gammas.clear();
   for (const std::string& gamma : split(o.gamma, ',')) sweep.gammas.push_back(parseGamma(gamma));

@@ -70,7 +70,7 @@ template <typename Value>
   else
     text = shortestDecimal(double(value));
   throw InvalidInput(path + ": the value " + text + " does not fit " + sampleTypeName(type) +
-                     ": choose another sample type");
+                     ": choose another sample type (labels: whole numbers below 2^31)");
 }
 
 /// samples[i] = values[i], in parallel. @throw InvalidInput that names the file and the first value
