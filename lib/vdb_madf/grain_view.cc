@@ -225,7 +225,7 @@ class Renderer {
       const MaskLeaf* leaf = object.probeConstLeaf(corner);
       if (!leaf) continue;
       CellWalk voxels(origin, camera_.direction, leaves.t(), 1, corner, corner + Coord(7));
-      for (; voxels.cell() >> 3 == leaves.cell(); voxels.advance()) {
+      for (; (voxels.cell() >> 3) == leaves.cell(); voxels.advance()) {
         if (!leaf->isValueOn(voxels.cell())) continue;
         voxel = voxels.cell();
         t = voxels.t();

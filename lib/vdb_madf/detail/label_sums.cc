@@ -162,7 +162,7 @@ LabelSums labelSums(const LabelLeaves& labels, const std::optional<CoordBBox>& c
     counter.bonds.clear();
   }
   for (auto& [label, sums] : grains) {
-    result.grains.push_back(std::move(sums));
+    result.grains.push_back(sums);
     result.grains.back().label = label;
   }
   for (auto& [pair, sums] : bonds) {
