@@ -217,6 +217,12 @@ TEST_CASE("cli: an empty object has no grains", "[cli]") {
     bench.mustRun("convert g.vdb g.raw");
     CHECK(bench.bytes("g.raw") == std::string(4 * 64, '\0'));
   }
+  bench.mustRun(kSnow + "s.raw");
+  for (const char* verb : {"segment", "convert"}) {
+    const std::string command = std::string(verb) + " s.raw out.vdb --dims 48x48x48 --type uint8 ";
+    CHECK(bench.mustRun(command + "--phase 9").find("nothing is selected") != std::string::npos);
+    CHECK(bench.mustRun(command).find("nothing is selected") == std::string::npos);
+  }
 }
 
 TEST_CASE("cli: segment --dry-run says what it would take, and does nothing", "[cli]") {

@@ -77,7 +77,9 @@ void convertMask(const Options& o, const Common& common) {
     setBoundary(*grid, o.boundary == "open" ? Boundary::open : Boundary::closed);
   writeVdb(o.out, {grid}, common.progress);
   common.progress->end();
-  if (!common.quiet) std::cout << o.out << ": " << object->activeVoxelCount() << " object voxels\n";
+  const auto voxels = int64_t(object->activeVoxelCount());
+  if (!common.quiet)
+    std::cout << o.out << ": " << voxels << " object voxels" << hintIfEmpty(voxels) << "\n";
 }
 
 void copyVdb(const Options& o, const Common& common) {

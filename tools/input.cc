@@ -300,6 +300,11 @@ Boundary boundaryOf(const std::string& boundary, const InputOptions& input,
   return result;
 }
 
+const char* hintIfEmpty(int64_t objectVoxels) {
+  return objectVoxels > 0 ? ""
+                          : ": nothing is selected (see --phase, --threshold, --range, --invert)";
+}
+
 MaskGrid::Ptr loadObject(const InputOptions& input, Interrupter* interrupter) {
   MaskGrid::Ptr object;
   if (isVdb(input)) {

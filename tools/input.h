@@ -86,6 +86,9 @@ void addBoundary(CLI::App& verb, std::string& boundary);
 /// @throw InvalidInput if it is open and the domain is unknown.
 Boundary boundaryOf(const std::string& boundary, const InputOptions& input, const MaskGrid& object);
 
+/// What to add to the number of an object's voxels: nothing, if there are any.
+const char* hintIfEmpty(int64_t objectVoxels);
+
 /// The object of any readable volume, with domain and voxel size as the options override them.
 MaskGrid::Ptr loadObject(const InputOptions& input, Interrupter* interrupter);
 

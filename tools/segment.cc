@@ -159,8 +159,8 @@ void printSummary(const Options& o, const Common& common, const Json& json) {
   const auto number = [&](const char* key) { return json[key].get<double>(); };
   const auto count = [&](const char* key) { return (long long)json[key].get<int64_t>(); };
   std::printf("%s: %lld grains\n", o.out.c_str(), count("grains"));
-  std::printf("  object           %lld voxels in %lld leaf nodes\n", count("object_voxels"),
-              count("leaves"));
+  std::printf("  object           %lld voxels in %lld leaf nodes%s\n", count("object_voxels"),
+              count("leaves"), hintIfEmpty(count("object_voxels")));
   if (json.contains("porosity"))
     std::printf("  porosity         %.2f %%\n", 100 * number("porosity"));
   if (json.contains("voxel_size_mm"))
