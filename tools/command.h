@@ -4,6 +4,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <functional>
 #include <stdexcept>
 #include <string>
@@ -31,6 +32,11 @@ using Action = std::function<void()>;
 /// Adds a verb with the common options and an example under its help.
 CLI::App* addVerb(CLI::App& app, Common& common, const std::string& name,
                   const std::string& description, const std::string& example);
+
+/// "1 grain", "2 grains".
+inline std::string counted(int64_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
 
 // One function per verb; the returned action does the work once the command line is parsed.
 void addGenerate(CLI::App& app, Common& common, Action& action);

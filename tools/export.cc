@@ -55,10 +55,6 @@ void say(const Options& o, const Common& common, const std::string& text) {
   if (!common.quiet) std::cout << o.out << ": " << text << "\n";
 }
 
-std::string counted(size_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
-
 CoordBBox boxOf(const Int32Grid& labels) {
   const auto box = domain(labels);
   return box ? *box : labels.evalActiveVoxelBoundingBox();

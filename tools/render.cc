@@ -180,10 +180,6 @@ Picture arrange(const std::vector<Panel>& panels, const std::optional<VoxelSize>
   return whole;
 }
 
-std::string count(long number, const char* what) {
-  return std::to_string(number) + " " + what + (number == 1 ? "" : "s");
-}
-
 void run(const Options& o, const Common& common) {
   checkWritable(o.out);
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
@@ -201,8 +197,8 @@ void run(const Options& o, const Common& common) {
   if (o.only != "view")
     std::cout << "middle slices x-y, x-z, y-z (z up), "
               << (panels[0].voxelsPerPixel <= 1
-                      ? count(std::lround(1 / panels[0].voxelsPerPixel), "pixel") + " a voxel"
-                      : count(std::lround(panels[0].voxelsPerPixel), "voxel") + " a pixel");
+                      ? counted(std::lround(1 / panels[0].voxelsPerPixel), "pixel") + " a voxel"
+                      : counted(std::lround(panels[0].voxelsPerPixel), "voxel") + " a pixel");
   if (o.only.empty()) std::cout << "; ";
   if (o.only != "slices")
     std::cout << "view from azimuth " << o.view.azimuth << ", elevation " << o.view.elevation

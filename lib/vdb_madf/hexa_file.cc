@@ -136,10 +136,11 @@ class Hexahedra {
   }
 
   void addElements(size_t leaf) {
-    for (int offset = 0; offset < 512; ++offset)
-      if (labels_.index().mask(leaf)[size_t(offset) >> 6] >> (offset & 63) & 1)
-        elements_.push_back(uint64_t(labels_.label(leaf, offset)) << 32 |
-                            (leaf * 512 + size_t(offset)));
+    for (const detail::LabelPart& part : labels_.parts(leaf))
+      for (size_t x = 0; x < 8; ++x)
+        detail::forEachBit(part.mask[x], [&](int bit) {
+          elements_.push_back(uint64_t(part.label) << 32 | (leaf * 512 + x * 64 + size_t(bit)));
+        });
   }
 
   detail::CubicTransform world_;

@@ -104,10 +104,7 @@ def prove(name, bench, balls, volumes):
 if not any(shutil.which(program) for program, _, _ in PROGRAMS.values()):
     skip("what LAMMPS and LIGGGHTS read: neither is installed (tools/setup --programs)")
 with Bench() as bench:
-    subprocess.run([bench.tool, "generate", "sintered", bench.path("sample.vdb"), "--size", "40",
-                    "--count", "6", "--voxel-size", "10um", "-q"], check=True)
-    bench.run("segment", "grains.vdb", "--keep", "balls", "--boundary", "closed",
-              source="sample.vdb")
+    bench.segment_sintered(40, 6)
     for name in ("clumps.csv", "clumps.data"):
         bench.run("export", name, "--as", "clumps", "--balls", "6", "--uncovered", "0",
                   source="grains.vdb")

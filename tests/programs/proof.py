@@ -60,6 +60,13 @@ class Bench:
                         *raw, "--voxel-size", "10um", *options], check=True)
         return self.path(output)
 
+    def segment_sintered(self, size, count):
+        """Writes grains.vdb: grains of a sample of balls, with the balls that clumps are made of."""
+        subprocess.run([self.tool, "generate", "sintered", self.path("sample.vdb"), "--size", str(size),
+                        "--count", str(count), "--voxel-size", "10um", "-q"], check=True)
+        self.run("segment", "grains.vdb", "--keep", "balls", "--boundary", "closed",
+                 source="sample.vdb")
+
 
 def run_in_blender(script, folder, what):
     """Runs a script with a folder as its argument inside Blender; returns what it says is done."""

@@ -56,10 +56,7 @@ def union_of(balls):
 
 
 with Bench() as bench:
-    subprocess.run([bench.tool, "generate", "sintered", bench.path("sample.vdb"), "--size", "80",
-                    "--count", "12", "--voxel-size", "10um", "-q"], check=True)
-    bench.run("segment", "grains.vdb", "--keep", "balls", "--boundary", "closed",
-              source="sample.vdb")
+    bench.segment_sintered(80, 12)
     for name in ("clumps.txt", "clumps.csv"):
         bench.run("export", name, "--as", "clumps", "--balls", "20", source="grains.vdb")
     with open(bench.path("clumps.csv")) as file:

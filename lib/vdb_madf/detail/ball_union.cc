@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "vdb_madf/detail/parallel.h"
+#include "vdb_madf/leaf_index.h"
 
 namespace vdb_madf::detail {
 
@@ -69,9 +70,9 @@ void visitLeaves(const Ball& ball, const CoordBBox& within, const Visit& visit) 
     }
 }
 
-int64_t countBits(const LeafBits& words) {
+int64_t countAll(const LeafBits& words) {
   int64_t count = 0;
-  for (const uint64_t word : words) count += __builtin_popcountll(word);
+  for (const uint64_t word : words) count += countBits(word);
   return count;
 }
 
@@ -85,7 +86,7 @@ int64_t countNewIn(const Node* node, const CoordBBox& box, const Ball& ball) {
         return;
       }
     }
-    added += countBits(words);
+    added += countAll(words);
   });
   return added;
 }
@@ -96,13 +97,13 @@ int64_t addTo(Node& node, const CoordBBox& box, const Ball& ball, bool fullLeave
     Leaf* leaf = node.probeLeaf(origin);
     if (!leaf) {
       if (node.isValueOn(origin)) return;
-      if (countBits(words) == 0) return;
+      if (countAll(words) == 0) return;
       leaf = node.touchLeaf(origin);
     }
     uint64_t all = ~uint64_t(0);
     for (int x = 0; x < 8; ++x) {
       uint64_t& word = leaf->getValueMask().getWord<uint64_t>(x);
-      added += __builtin_popcountll(words[x] & ~word);
+      added += countBits(words[x] & ~word);
       word |= words[x];
       all &= word;
     }

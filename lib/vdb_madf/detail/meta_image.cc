@@ -12,6 +12,7 @@
 #include "vdb_madf/detail/raw_image.h"
 #include "vdb_madf/detail/slice_counter.h"
 #include "vdb_madf/errors.h"
+#include "vdb_madf/file_ending.h"
 
 namespace vdb_madf::detail {
 
@@ -128,7 +129,7 @@ class MetaWriter : public ImageWriter {
   MetaWriter(const std::string& path, const ImageInfo& info, const openvdb::Vec3d& origin)
       : counter_(path, info), out_(path) {
     const std::filesystem::path name(path);
-    const bool local = lowerCase(name.extension().string()) == ".mha";
+    const bool local = fileEnding(path) == ".mha";
     const std::filesystem::path dataFile = std::filesystem::path(name).replace_extension(".raw");
     if (!local) data_.emplace(dataFile.string());
     const std::string text =

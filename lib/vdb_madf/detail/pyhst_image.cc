@@ -10,6 +10,7 @@
 #include "vdb_madf/detail/header_text.h"
 #include "vdb_madf/detail/raw_image.h"
 #include "vdb_madf/errors.h"
+#include "vdb_madf/file_ending.h"
 
 namespace vdb_madf::detail {
 
@@ -20,7 +21,7 @@ constexpr size_t kLongestHeader = size_t(1) << 14;
 const std::string kInfoEnding = ".info";
 
 bool hasInfoEnding(const std::string& path) {
-  return lowerCase(std::filesystem::path(path).extension().string()) == kInfoEnding;
+  return fileEnding(path) == kInfoEnding;
 }
 
 /// Lines of KEY = value; those that begin with an exclamation mark are comments.

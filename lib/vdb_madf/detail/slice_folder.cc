@@ -9,6 +9,7 @@
 #include "vdb_madf/detail/header_text.h"
 #include "vdb_madf/detail/picture.h"
 #include "vdb_madf/errors.h"
+#include "vdb_madf/file_ending.h"
 
 namespace vdb_madf::detail {
 
@@ -109,7 +110,7 @@ std::vector<std::string> slicesIn(const std::string& folder,
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
     const std::string name = entry->path().filename().string();
-    const std::string ending = lowerCase(entry->path().extension().string());
+    const std::string ending = fileEnding(name);
     const std::string stem = entry->path().stem().string();
     const bool preview = stem.size() > 4 && stem.compare(stem.size() - 4, 4, "_spr") == 0;
     if (name[0] != '.' && !preview &&

@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "vdb_madf/leaf_index.h"
+
 namespace vdb_madf::detail {
 
 namespace {
@@ -30,7 +32,7 @@ using Mask = std::vector<uint64_t>;
 
 int64_t countOn(const Mask& mask) {
   int64_t count = 0;
-  for (const uint64_t word : mask) count += __builtin_popcountll(word);
+  for (const uint64_t word : mask) count += countBits(word);
   return count;
 }
 
