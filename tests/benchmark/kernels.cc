@@ -14,14 +14,16 @@
 #include <cstring>
 #include <optional>
 
-#include "vdb_madf/detail/parallel.h"
-#include "vdb_madf/flow.h"
-#include "vdb_madf/generate.h"
-#include "vdb_madf/leaf_index.h"
-#include "vdb_madf/manifold_graph.h"
-#include "vdb_madf/medial_balls.h"
-#include "vdb_madf/power_map.h"
-#include "vdb_madf/squared_distance.h"
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/leaves/leaf_grid.h"
+#include "vdb_madf/leaves/leaf_index.h"
+#include "vdb_madf/method/boundary.h"
+#include "vdb_madf/method/flow.h"
+#include "vdb_madf/method/manifold_graph.h"
+#include "vdb_madf/method/medial_balls.h"
+#include "vdb_madf/method/power_map.h"
+#include "vdb_madf/method/squared_distance.h"
+#include "vdb_madf/samples/generate.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "vdb_madf/detail/ball_union.h"
+#include "vdb_madf/samples/detail/ball_union.h"
 
 /// Balls and their power cells by the definitions, voxel by voxel.
 namespace vdb_madf::brute {

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "vdb_madf/leaves/leaf_grid.h"
+
 namespace vdb_madf::test {
 
 const std::array<Coord, 6> kSixNeighbors = {Coord(-1, 0, 0), Coord(1, 0, 0),  Coord(0, -1, 0),

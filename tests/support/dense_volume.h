@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "vdb_madf/grid_types.h"
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/leaves/leaf_grid.h"
 
 namespace vdb_madf::test {
 

@@ -41,7 +41,7 @@ inline std::string npyFile(const std::string& type, const std::string& shape,
 }
 
 struct IsqLayout {
-  Coord voxels, micrometres;
+  ImageSize voxels, micrometres;
   int32_t type = 3;
   int32_t blocks = 0;  ///< between the first block and the samples
 };

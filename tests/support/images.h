@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "vdb_madf/image_file.h"
+#include "vdb_madf/images/image.h"
 
 namespace vdb_madf::test {
 
@@ -26,8 +26,8 @@ constexpr SampleType kSampleTypes[] = {SampleType::uint8,   SampleType::int8,   
                                        SampleType::int16,   SampleType::uint32, SampleType::int32,
                                        SampleType::float32, SampleType::float64};
 
-inline size_t voxels(const Coord& size) {
-  return size_t(size.x()) * size_t(size.y()) * size_t(size.z());
+inline size_t voxels(const ImageSize& size) {
+  return size_t(size.x) * size_t(size.y) * size_t(size.z);
 }
 
 /// The bytes of `count` samples: half of them 0, 1 or 2, the others any number of the type.
@@ -86,11 +86,11 @@ inline std::string deflated(const std::string& bytes, int windowBits) {
 
 /// All samples of an image, read in slabs of `step` slices.
 inline std::string readAll(ImageReader& image, int step = 1 << 20) {
-  const Coord size = image.info().size;
-  const size_t slice = size_t(size.x()) * size_t(size.y()) * sampleSize(image.info().type);
-  std::string bytes(slice * size_t(size.z()), '\x5a');
-  for (int z = 0; z < size.z(); z += std::min(step, size.z() - z))
-    image.read(z, std::min(step, size.z() - z), bytes.data() + slice * size_t(z));
+  const ImageSize size = image.info().size;
+  const size_t slice = size_t(size.x) * size_t(size.y) * sampleSize(image.info().type);
+  std::string bytes(slice * size_t(size.z), '\x5a');
+  for (int z = 0; z < size.z; z += std::min(step, size.z - z))
+    image.read(z, std::min(step, size.z - z), bytes.data() + slice * size_t(z));
   return bytes;
 }
 
@@ -116,9 +116,10 @@ inline int formatOf(SampleType type) {
   return negative ? SAMPLEFORMAT_INT : SAMPLEFORMAT_UINT;
 }
 
-inline void setTiffTags(TIFF* tiff, const Coord& size, SampleType type, const TiffLayout& layout) {
-  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, uint32_t(size.x()));
-  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, uint32_t(size.y()));
+inline void setTiffTags(TIFF* tiff, const ImageSize& size, SampleType type,
+                        const TiffLayout& layout) {
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, uint32_t(size.x));
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, uint32_t(size.y));
   TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, layout.channels);
   TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, layout.bits ? layout.bits : int(8 * sampleSize(type)));
   TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, layout.format ? layout.format : formatOf(type));
@@ -135,7 +136,7 @@ inline void setTiffTags(TIFF* tiff, const Coord& size, SampleType type, const Ti
 }
 
 /// `bytes`: samples of the layout's bits, rows padded to whole bytes, native byte order.
-inline void writeTiff(const std::string& path, const Coord& size, SampleType type,
+inline void writeTiff(const std::string& path, const ImageSize& size, SampleType type,
                       const std::string& bytes, const TiffLayout& layout = {}) {
   TIFFOpenOptions* quiet = TIFFOpenOptionsAlloc();
   const auto ignore = [](TIFF*, void*, const char*, const char*, va_list) { return 1; };
@@ -144,31 +145,30 @@ inline void writeTiff(const std::string& path, const Coord& size, SampleType typ
   TIFFOpenOptionsFree(quiet);
   if (!tiff) throw std::runtime_error("cannot write " + path);
   const size_t bits = layout.bits ? size_t(layout.bits) : 8 * sampleSize(type);
-  const size_t row = (size_t(size.x()) * bits * size_t(layout.channels) + 7) / 8;
+  const size_t row = (size_t(size.x) * bits * size_t(layout.channels) + 7) / 8;
   std::string copy = bytes;  // libtiff swaps in place
-  for (int z = 0; z < size.z(); ++z) {
+  for (int z = 0; z < size.z; ++z) {
     setTiffTags(tiff, size, type, layout);
-    char* slice = copy.data() + row * size_t(size.y()) * size_t(z);
+    char* slice = copy.data() + row * size_t(size.y) * size_t(z);
     if (layout.tile) {
       const size_t wide = layout.tile, sample = sampleSize(type);
       TIFFSetField(tiff, TIFFTAG_TILEWIDTH, layout.tile);
       TIFFSetField(tiff, TIFFTAG_TILELENGTH, layout.tile);
       uint32_t number = 0;
-      for (size_t y = 0; y < size_t(size.y()); y += wide)
-        for (size_t x = 0; x < size_t(size.x()); x += wide) {
+      for (size_t y = 0; y < size_t(size.y); y += wide)
+        for (size_t x = 0; x < size_t(size.x); x += wide) {
           std::string tile(wide * wide * sample, '\0');
-          for (size_t j = 0; j < std::min(wide, size_t(size.y()) - y); ++j)
+          for (size_t j = 0; j < std::min(wide, size_t(size.y) - y); ++j)
             std::memcpy(&tile[j * wide * sample], slice + (y + j) * row + x * sample,
-                        std::min(wide, size_t(size.x()) - x) * sample);
+                        std::min(wide, size_t(size.x) - x) * sample);
           TIFFWriteEncodedTile(tiff, number++, tile.data(), tmsize_t(tile.size()));
         }
     } else {
       TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, layout.rowsPerStrip);
       uint32_t strip = 0;
-      for (uint32_t y = 0; y < uint32_t(size.y()); y += layout.rowsPerStrip)
-        TIFFWriteEncodedStrip(
-            tiff, strip++, slice + row * y,
-            tmsize_t(row * std::min(layout.rowsPerStrip, uint32_t(size.y()) - y)));
+      for (uint32_t y = 0; y < uint32_t(size.y); y += layout.rowsPerStrip)
+        TIFFWriteEncodedStrip(tiff, strip++, slice + row * y,
+                              tmsize_t(row * std::min(layout.rowsPerStrip, uint32_t(size.y) - y)));
     }
     TIFFWriteDirectory(tiff);
   }

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "support/random_volume.h"
-#include "vdb_madf/grid_types.h"
+#include "vdb_madf/grids/grid_types.h"
 
 /// Label grids drawn from functions, and the directions and points to draw them at.
 namespace vdb_madf::test {

@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "vdb_madf/grid_types.h"
+#include "vdb_madf/grids/grid_types.h"
 
 /// Label grids for what is made of labels, and what is true of their voxels by counting.
 namespace vdb_madf::test {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "support/vtk_arrays.h"
-#include "vdb_madf/mesh_file.h"
+#include "vdb_madf/exports/mesh_file.h"
 
 /// Readers of the meshes that are written, by the definitions of the formats.
 namespace vdb_madf::test {

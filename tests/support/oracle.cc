@@ -10,6 +10,8 @@
 #include <tuple>
 #include <utility>
 
+#include "vdb_madf/method/boundary.h"
+
 namespace vdb_madf::test {
 
 namespace {

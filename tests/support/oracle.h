@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "support/dense_volume.h"
-#include "vdb_madf/segment.h"
+#include "vdb_madf/method/boundary.h"
+#include "vdb_madf/method/segment.h"
 
 // The whole method by brute force, from its definitions, on dense volumes. Of the library it uses
 // the plain data of the public headers (options, graph, counts) and no code.

@@ -8,7 +8,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "vdb_madf/grid_metadata.h"
+#include "vdb_madf/grids/grid_metadata.h"
 
 namespace vdb_madf::test {
 

@@ -9,7 +9,7 @@
 
 #include "support/dense_volume.h"
 #include "support/random_volume.h"
-#include "vdb_madf/segment.h"
+#include "vdb_madf/method/segment.h"
 
 namespace vdb_madf::test {
 

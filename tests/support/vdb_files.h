@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "vdb_madf/errors.h"
-#include "vdb_madf/graph_metadata.h"
-#include "vdb_madf/vdb_file.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/method/graph_metadata.h"
+#include "vdb_madf/vdb/vdb_file.h"
 
 /// Grids and files for the tests of VDB files.
 namespace vdb_madf::test {

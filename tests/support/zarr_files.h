@@ -15,7 +15,7 @@
 namespace vdb_madf::test {
 
 struct ZarrLayout {
-  Coord size, chunk;
+  ImageSize size, chunk;
   std::string type = "|u1";
   size_t bytes = 1;   ///< of a sample
   std::string codec;  ///< "", "zlib", "gzip", "blosc", or one of blosc's: "zstd", "lz4hc" ...
@@ -34,11 +34,11 @@ inline std::string bloscOf(const std::string& bytes, size_t typeSize, const std:
 }
 
 inline std::string zarrDescription(const ZarrLayout& layout) {
-  const auto shape = [&](const Coord& c) {
+  const auto shape = [&](const ImageSize& c) {
     std::string text = "[";
     for (int i = 0; i < layout.leading; ++i) text += "1, ";
-    return text + std::to_string(c.z()) + ", " + std::to_string(c.y()) + ", " +
-           std::to_string(c.x()) + "]";
+    return text + std::to_string(c.z) + ", " + std::to_string(c.y) + ", " + std::to_string(c.x) +
+           "]";
   };
   const std::string compressor = layout.codec.empty() ? "null"
                                  : layout.codec == "zlib" || layout.codec == "gzip"
@@ -56,20 +56,20 @@ inline std::map<std::string, std::string> zarrFiles(const ZarrLayout& layout,
                                                     const std::string& samples) {
   std::map<std::string, std::string> files;
   files[".zarray"] = zarrDescription(layout);
-  const Coord &n = layout.size, &c = layout.chunk;
+  const ImageSize &n = layout.size, &c = layout.chunk;
   const size_t size = layout.bytes;
-  for (int k = 0; k * c.z() < n.z(); ++k)
-    for (int j = 0; j * c.y() < n.y(); ++j)
-      for (int i = 0; i * c.x() < n.x(); ++i) {
+  for (int k = 0; k * c.z < n.z; ++k)
+    for (int j = 0; j * c.y < n.y; ++j)
+      for (int i = 0; i * c.x < n.x; ++i) {
         std::string chunk(voxels(c) * size, '\x6b');
-        for (int z = 0; z < c.z(); ++z)
-          for (int y = 0; y < c.y(); ++y)
-            for (int x = 0; x < c.x(); ++x) {
-              const Coord p(i * c.x() + x, j * c.y() + y, k * c.z() + z);
-              if (p.x() >= n.x() || p.y() >= n.y() || p.z() >= n.z()) continue;
-              const size_t to = layout.order == "C" ? size_t((z * c.y() + y) * c.x() + x)
-                                                    : size_t((x * c.y() + y) * c.z() + z);
-              const size_t from = size_t((p.z() * n.y() + p.y()) * n.x() + p.x());
+        for (int z = 0; z < c.z; ++z)
+          for (int y = 0; y < c.y; ++y)
+            for (int x = 0; x < c.x; ++x) {
+              const ImageSize p{i * c.x + x, j * c.y + y, k * c.z + z};
+              if (p.x >= n.x || p.y >= n.y || p.z >= n.z) continue;
+              const size_t to = layout.order == "C" ? size_t((z * c.y + y) * c.x + x)
+                                                    : size_t((x * c.y + y) * c.z + z);
+              const size_t from = size_t((p.z * n.y + p.y) * n.x + p.x);
               chunk.replace(to * size, size, samples, from * size, size);
             }
         if (layout.codec == "zlib" || layout.codec == "gzip")

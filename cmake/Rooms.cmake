@@ -1,0 +1,74 @@
+# A room of the library: folders of lib/vdb_madf that make one target, vdb_madf::NAME.
+#
+#   vdb_madf_room(NAME
+#     [FOLDERS folder...]   from bottom to top; default: NAME
+#     HEADERS file...       public: installed; seen from lib/vdb_madf
+#     SOURCES file...       private headers are not listed
+#     [USES room...]        the rooms it may include and link, with all that these use
+#     [LINKS target...]     libraries that its headers need
+#     [PRIVATE target...]   libraries that only its sources need
+#     [PACKAGES name...]    what find_package(vdb_madf COMPONENTS NAME) has to find
+#     [GRIDS]               its sources see OpenVDB's grids: they share a precompiled header
+#     [SANITIZE])           with the tests, also built with sanitizers, as vdb_madf_NAME_sanitized
+#
+# USES is the one list of arrows between rooms. It is written to rooms.txt in the build folder, where
+# tests/rooms compares every #include with it.
+function(vdb_madf_room name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "GRIDS;SANITIZE" ""
+    "FOLDERS;HEADERS;SOURCES;USES;LINKS;PRIVATE;PACKAGES")
+  if(NOT arg_FOLDERS)
+    set(arg_FOLDERS ${name})
+  endif()
+  list(TRANSFORM arg_HEADERS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/vdb_madf/)
+  list(TRANSFORM arg_SOURCES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/vdb_madf/)
+  set(target vdb_madf_${name})
+  vdb_madf_room_library("")
+  add_library(vdb_madf::${name} ALIAS ${target})
+  target_sources(${target} PUBLIC FILE_SET HEADERS
+    BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR} FILES ${arg_HEADERS})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERIFY_INTERFACE_HEADER_SETS ON)
+  if(arg_SANITIZE AND VDB_MADF_BUILD_TESTS)
+    vdb_madf_room_library(_sanitized)
+    target_include_directories(${target}_sanitized PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
+    set_target_properties(${target}_sanitized PROPERTIES EXCLUDE_FROM_ALL ON)
+    vdb_madf_sanitize(${target}_sanitized)
+  endif()
+
+  set_property(GLOBAL APPEND PROPERTY vdb_madf_rooms ${name})
+  set_property(GLOBAL PROPERTY vdb_madf_${name}_uses ${arg_USES})
+  set_property(GLOBAL PROPERTY vdb_madf_${name}_packages ${arg_PACKAGES})
+  # Folders of one room see those before them.
+  set(below "")
+  foreach(folder IN LISTS arg_FOLDERS)
+    set_property(GLOBAL APPEND_STRING PROPERTY vdb_madf_arrows
+      "${folder} ${name}: ${below} ${arg_USES}\n")
+    list(APPEND below ${folder})
+    list(JOIN below " " below)
+    string(REPLACE " " ";" below "${below}")
+  endforeach()
+endfunction()
+
+# Part of vdb_madf_room(): the library, or with the suffix _sanitized its instrumented twin.
+macro(vdb_madf_room_library suffix)
+  add_library(${target}${suffix} STATIC ${arg_SOURCES})
+  vdb_madf_compiler_options(${target}${suffix})
+  target_compile_definitions(${target}${suffix} PRIVATE VDB_MADF_SIMD_LEVEL=${VDB_MADF_SIMD_LEVEL})
+  set_target_properties(${target}${suffix} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  foreach(room IN LISTS arg_USES)
+    target_link_libraries(${target}${suffix} PUBLIC vdb_madf_${room}${suffix})
+  endforeach()
+  target_link_libraries(${target}${suffix} PUBLIC ${arg_LINKS} PRIVATE ${arg_PRIVATE})
+  if(arg_GRIDS AND name STREQUAL core)
+    target_precompile_headers(${target}${suffix} PRIVATE
+      <vdb_madf/grids/grid_types.h> <vdb_madf/grids/detail/grid_instances.h>)
+  elseif(arg_GRIDS)
+    target_precompile_headers(${target}${suffix} REUSE_FROM vdb_madf_core${suffix})
+  endif()
+endmacro()
+
+# After the last room.
+function(vdb_madf_write_rooms file)
+  get_property(arrows GLOBAL PROPERTY vdb_madf_arrows)
+  string(REPLACE ";" " " arrows "${arrows}")
+  file(WRITE ${file} "${arrows}")
+endfunction()

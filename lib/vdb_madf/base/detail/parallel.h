@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_sort.h>
+
+#include <cstddef>
+#include <functional>
+
+#include "vdb_madf/base/interrupter.h"
+
+namespace vdb_madf::detail {
+
+/// Scratch space of one thread: local() is made on first use.
+template <typename T>
+using PerThread = tbb::enumerable_thread_specific<T>;
+
+/// Sorts in parallel. Equal items come in any order: give a total order.
+template <typename Iterator, typename Less>
+void parallelSort(Iterator begin, Iterator end, const Less& less) {
+  tbb::parallel_sort(begin, end, less);
+}
+template <typename Iterator>
+void parallelSort(Iterator begin, Iterator end) {
+  tbb::parallel_sort(begin, end);
+}
+
+/// Part of a longer work, from `begin` to `end` per cent of it: what is done in several loops tells
+/// its progress as one.
+class WorkPart : public Interrupter {
+ public:
+  WorkPart(Interrupter* whole, int begin, int end) : whole_(whole), begin_(begin), end_(end) {}
+  bool wasInterrupted(int percent) override {
+    if (!whole_) return false;
+    return whole_->wasInterrupted(percent < 0 ? percent : begin_ + percent * (end_ - begin_) / 100);
+  }
+
+ private:
+  Interrupter* whole_;
+  int begin_, end_;
+};
+
+/// Runs body(begin, end) over [0, count) in chunks of at least `grain` items, in parallel. The
+/// interrupter is asked between chunks, with the percentage done.
+/// The one place that knows the threading library. @throw Interrupted; what body throws.
+void parallelFor(size_t count, size_t grain, Interrupter* interrupter,
+                 const std::function<void(size_t begin, size_t end)>& body);
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vdb_madf::detail {
+
+/// Without the white space at both ends.
+std::string trimmed(const std::string& text);
+/// ASCII letters only.
+std::string lowerCase(std::string text);
+/// Text of a file in quotes for a message: printable, one line, clipped to 60 characters.
+std::string quoted(const std::string& text);
+/// All of the text as numbers between white space, independent of the locale.
+std::optional<std::vector<int64_t>> integers(const std::string& text);
+std::optional<std::vector<double>> reals(const std::string& text);
+/// The shortest decimal that reads back as the same number.
+template <typename T>
+std::string shortestDecimal(T value) {
+  char text[64];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+}  // namespace vdb_madf::detail

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/base/length_unit.h"
+
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include "vdb_madf/base/detail/text.h"
+
+namespace vdb_madf {
+
+using detail::shortestDecimal;
+
+std::string lengthIn(double unitsPerMetre, double metres) {
+  const double value = metres * unitsPerMetre;
+  for (const double candidate : {value, std::nextafter(value, 0.0), std::nextafter(value, 1e300)})
+    if (candidate / unitsPerMetre == metres) {
+      // 8.499999999999999 and 8.5 may both give 8.5e-6 back: the shorter is meant.
+      char text[40];
+      const auto end =
+          std::to_chars(text, text + sizeof text, candidate, std::chars_format::general, 15).ptr;
+      double rounded = 0;
+      std::from_chars(text, end, rounded);
+      if (rounded / unitsPerMetre == metres) return std::string(text, end);
+      return shortestDecimal(candidate);
+    }
+  return shortestDecimal(value);
+}
+
+std::optional<double> unitsPerMetre(const std::string& unit) {
+  static const std::map<std::string, double> kUnits = {{"nm", 1e9},
+                                                       {"nanometer", 1e9},
+                                                       {"nanometre", 1e9},
+                                                       {"um", 1e6},
+                                                       {"micron", 1e6},
+                                                       {"micrometer", 1e6},
+                                                       {"micrometre", 1e6},
+                                                       {"\u00b5m", 1e6},   // micro sign, UTF-8
+                                                       {"\u03bcm", 1e6},   // Greek mu, UTF-8
+                                                       {"\xb5m", 1e6},     // micro sign, Latin-1
+                                                       {"\\u00b5m", 1e6},  // as ImageJ escapes it
+                                                       {"mm", 1e3},
+                                                       {"millimeter", 1e3},
+                                                       {"millimetre", 1e3},
+                                                       {"cm", 1e2},
+                                                       {"centimeter", 1e2},
+                                                       {"centimetre", 1e2},
+                                                       {"m", 1},
+                                                       {"meter", 1},
+                                                       {"metre", 1}};
+  std::string name = detail::lowerCase(detail::trimmed(unit));
+  auto found = kUnits.find(name);
+  if (found == kUnits.end() && name.size() > 2 && name.back() == 's') {
+    name.pop_back();
+    found = kUnits.find(name);
+  }
+  if (found == kUnits.end()) return std::nullopt;
+  return found->second;
+}
+
+}  // namespace vdb_madf

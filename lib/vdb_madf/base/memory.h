@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+
+namespace vdb_madf {
+
+/// Largest resident memory of this process so far, bytes.
+int64_t peakMemory();
+
+/// Bytes that the machine has free for a program, caches given back, within the limit of its
+/// control group; 0 if that is unknown.
+int64_t availableMemory();
+
+/// Bytes that this process can have at most: the machine's memory, or the process's own limits.
+int64_t memoryLimit();
+
+}  // namespace vdb_madf

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+#include <cmath>
+
+#include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/exports/clump_file.h"
+#include "vdb_madf/files/detail/buffered_output.h"
+#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/grids/detail/world_transform.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using detail::BufferedOutput;
+using openvdb::Vec3d;
+
+/// f(clump number, centre, radius) for all balls, world.
+template <typename F>
+void forEachBall(const std::vector<Clump>& clumps, const detail::CubicTransform& world,
+                 const F& f) {
+  for (size_t n = 0; n < clumps.size(); ++n)
+    for (const Clump::Ball& ball : clumps[n].balls)
+      f(n, world.origin + world.edge * ball.center.asVec3d(),
+        world.edge * std::sqrt(double(ball.squaredRadius)));
+}
+
+void numbers(BufferedOutput& out, const Vec3d& center, char separator) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis) out.value(separator);
+    out.number(center[axis]);
+  }
+}
+
+/// At which all balls of a clump weigh as much as its grain of density 1, however they overlap.
+double densityOfBalls(const Clump& clump) {
+  double volume = 0;
+  for (const Clump::Ball& ball : clump.balls)
+    volume += 4.0 / 3.0 * openvdb::math::pi<double>() * std::pow(double(ball.squaredRadius), 1.5);
+  return volume > 0 ? double(clump.voxels) / volume : 1;
+}
+
+void writeLammps(BufferedOutput& out, const std::vector<Clump>& clumps,
+                 const detail::CubicTransform& world) {
+  size_t atoms = 0;
+  openvdb::BBoxd box;
+  forEachBall(clumps, world, [&](size_t, const Vec3d& center, double radius) {
+    ++atoms;
+    box.expand(center - Vec3d(radius));
+    box.expand(center + Vec3d(radius));
+  });
+  if (atoms == 0) box = openvdb::BBoxd(Vec3d(0), Vec3d(1));
+  out.text("LAMMPS data: grains as clumps of balls, a molecule each (vdb_madf)\n\n");
+  out.text(std::to_string(atoms) + " atoms\n1 atom types\n\n");
+  const char* names[3] = {" xlo xhi\n", " ylo yhi\n", " zlo zhi\n"};
+  for (int axis = 0; axis < 3; ++axis)
+    out.text(detail::shortestDecimal(box.min()[axis]) + " " +
+             detail::shortestDecimal(box.max()[axis]) + names[axis]);
+  out.text("\nAtoms # hybrid sphere molecular\n\n");
+  std::vector<std::string> densities;
+  for (const Clump& clump : clumps)
+    densities.push_back(detail::shortestDecimal(densityOfBalls(clump)));
+  size_t atom = 0;
+  forEachBall(clumps, world, [&](size_t n, const Vec3d& center, double radius) {
+    out.number(++atom);
+    out.text(" 1 ");
+    numbers(out, center, ' ');
+    out.text(" " + detail::shortestDecimal(2 * radius) + " " + densities[n] + " " +
+             std::to_string(n + 1) + "\n");
+  });
+}
+
+}  // namespace
+
+bool isClumpEnding(const std::string& path) {
+  const std::string end = fileEnding(path);
+  return end == ".csv" || end == ".txt" || end == ".data";
+}
+
+void writeClumps(const std::string& path, const std::vector<Clump>& clumps,
+                 const openvdb::math::Transform& transform, Interrupter* interrupter) {
+  const detail::CubicTransform world = detail::cubicTransform(transform);
+  if (!isClumpEnding(path))
+    throw InvalidInput(path + ": no clump format has this ending; use .csv, .txt or .data");
+  BufferedOutput out(path, interrupter);
+  if (fileEnding(path) == ".data") {
+    writeLammps(out, clumps, world);
+  } else {
+    const bool isTable = fileEnding(path) == ".csv";
+    out.text(isTable ? "grain_id,x,y,z,radius\n" : "#format x_y_z_r_clumpId\n");
+    forEachBall(clumps, world, [&](size_t n, const Vec3d& center, double radius) {
+      if (isTable) out.text(std::to_string(clumps[n].label) + ",");
+      numbers(out, center, isTable ? ',' : ' ');
+      out.text((isTable ? "," : " ") + detail::shortestDecimal(radius));
+      out.text(isTable ? "\n" : " " + std::to_string(n) + "\n");
+    });
+  }
+  out.commit();
+}
+
+}  // namespace vdb_madf

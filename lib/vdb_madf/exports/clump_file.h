@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vdb_madf/shapes/clumps.h"
+
+namespace vdb_madf {
+
+/// Writes world centres and radii, whole or not at all, by ending:
+/// - .csv: grain_id, x, y, z, radius
+/// - .txt: x y z radius clump, a line per ball, as YADE exports and ymport.textClumps reads; clumps
+///   are numbered from 0
+/// - .data: LAMMPS data for `atom_style hybrid sphere molecular`: one atom per ball, the grain as
+///   molecule (numbered from 1), for `fix rigid/small molecule`. Balls overlap: their density is
+///   such that those of a grain together weigh what the grain does at density 1
+/// @throw InvalidInput for another ending, or voxels that are not cubes; IoError.
+void writeClumps(const std::string& path, const std::vector<Clump>& clumps,
+                 const openvdb::math::Transform& transform, Interrupter* interrupter = nullptr);
+/// True if writeClumps knows the ending.
+bool isClumpEnding(const std::string& path);
+
+}  // namespace vdb_madf

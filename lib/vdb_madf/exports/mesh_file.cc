@@ -1,0 +1,266 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/exports/mesh_file.h"
+#include "vdb_madf/labels/grain_name.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/exports/detail/vtk_file.h"
+#include "vdb_madf/files/detail/buffered_output.h"
+#include "vdb_madf/files/file_ending.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using detail::BufferedOutput;
+using openvdb::Vec3d;
+using openvdb::Vec3f;
+
+/// The mesh in world coordinates.
+class WorldMesh {
+ public:
+  WorldMesh(const GrainMesh& mesh, const MeshFileOptions& options, const std::string& path)
+      : mesh_(mesh), options_(options) {
+    if (!options.transform) return;
+    if (!options.transform->isLinear())
+      throw InvalidInput(path + ": the grid's transform is not linear: resample the grid first");
+    isMirrored_ = options.transform->baseMap()->determinant() < 0;
+  }
+
+  const GrainMesh& mesh() const { return mesh_; }
+  size_t grainCount() const { return mesh_.labels.size(); }
+  int32_t label(size_t grain) const { return mesh_.labels[grain]; }
+  Rgb color(size_t grain) const { return options_.colors.of(mesh_.labels[grain]); }
+
+  Vec3f point(uint32_t index) const {
+    const Vec3f& p = mesh_.points[index];
+    return options_.transform ? Vec3f(options_.transform->indexToWorld(Vec3d(p))) : p;
+  }
+  /// A mirrored world turns triangles inside out.
+  std::array<uint32_t, 3> triangle(uint32_t index) const {
+    std::array<uint32_t, 3> result = mesh_.triangles[index];
+    if (isMirrored_) std::swap(result[1], result[2]);
+    return result;
+  }
+  std::string unit() const {
+    return options_.lengthUnit.empty() ? "voxels (no physical size known)" : options_.lengthUnit;
+  }
+
+  /// f(grain, index) for all points or triangles, in order.
+  template <typename F>
+  void forEachPoint(const F& f) const {
+    forEach(mesh_.firstPoint, f);
+  }
+  template <typename F>
+  void forEachTriangle(const F& f) const {
+    forEach(mesh_.firstTriangle, f);
+  }
+
+ private:
+  template <typename F>
+  void forEach(const std::vector<uint32_t>& first, const F& f) const {
+    for (size_t grain = 0; grain < grainCount(); ++grain)
+      for (uint32_t i = first[grain]; i < first[grain + 1]; ++i) f(grain, i);
+  }
+
+  const GrainMesh& mesh_;
+  const MeshFileOptions& options_;
+  bool isMirrored_ = false;
+};
+
+void writePly(const std::string& path, const WorldMesh& world, Interrupter* interrupter) {
+  if (world.mesh().points.size() > size_t(std::numeric_limits<int32_t>::max()))
+    throw InvalidInput(path +
+                       ": PLY numbers points with 31 bits, and the mesh has more: "
+                       "write .vtp");
+  BufferedOutput out(path, interrupter);
+  out.text("ply\nformat binary_little_endian 1.0\ncomment vdb_madf grains; lengths in " +
+           world.unit() + "\nelement vertex " + std::to_string(world.mesh().points.size()) +
+           "\nproperty float x\nproperty float y\nproperty float z\n"
+           "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+           "property int grain_id\nelement face " +
+           std::to_string(world.mesh().triangles.size()) +
+           "\nproperty list uchar int vertex_indices\n"
+           "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+           "property int grain_id\nend_header\n");
+  world.forEachPoint([&](size_t grain, uint32_t i) {
+    out.value(world.point(i));
+    out.value(world.color(grain));
+    out.value(world.label(grain));
+  });
+  world.forEachTriangle([&](size_t grain, uint32_t i) {
+    out.value(uint8_t(3));
+    out.value(world.triangle(i));
+    out.value(world.color(grain));
+    out.value(world.label(grain));
+  });
+  out.commit();
+}
+
+void writeObj(const std::string& path, const WorldMesh& world, Interrupter* interrupter) {
+  BufferedOutput out(path, interrupter);
+  out.text("# vdb_madf grains; lengths in " + world.unit() + "\n");
+  for (size_t grain = 0; grain < world.grainCount(); ++grain) {
+    const Rgb color = world.color(grain);
+    const auto& points = world.mesh().firstPoint;
+    for (uint32_t i = points[grain]; i < points[grain + 1]; ++i) {
+      const Vec3f p = world.point(i);
+      out.text("v");
+      for (int axis = 0; axis < 3; ++axis) {
+        out.text(" ");
+        out.number(p[axis]);
+      }
+      for (const uint8_t channel : color) {
+        out.text(" ");
+        out.number(float(channel) / 255.0f);
+      }
+      out.text("\n");
+    }
+    out.text("g " + grainName(world.label(grain)) + "\n");
+    const auto& triangles = world.mesh().firstTriangle;
+    for (uint32_t i = triangles[grain]; i < triangles[grain + 1]; ++i) {
+      out.text("f");
+      for (const uint32_t corner : world.triangle(i)) {
+        out.text(" ");
+        out.number(uint64_t(corner) + 1);
+      }
+      out.text("\n");
+    }
+  }
+  out.commit();
+}
+
+/// Triangles of grains [begin, end).
+void writeStl(BufferedOutput& out, const WorldMesh& world, size_t begin, size_t end) {
+  const auto& first = world.mesh().firstTriangle;
+  std::string header = "vdb_madf grains; lengths in " + world.unit();  // not "solid": that is text
+  header.resize(80, ' ');
+  out.text(header);
+  out.value(uint32_t(first[end] - first[begin]));
+  for (uint32_t i = first[begin]; i < first[end]; ++i) {
+    const auto triangle = world.triangle(i);
+    const Vec3f a = world.point(triangle[0]), b = world.point(triangle[1]),
+                c = world.point(triangle[2]);
+    const Vec3d normal = Vec3d(b - a).cross(Vec3d(c - a));
+    const double length = normal.length();
+    out.value(length > 0 ? Vec3f(normal / length) : Vec3f(0));
+    out.value(a);
+    out.value(b);
+    out.value(c);
+    out.value(uint16_t(0));
+  }
+}
+
+void writeVtp(const std::string& path, const WorldMesh& world, Interrupter* interrupter) {
+  const uint64_t points = world.mesh().points.size(), triangles = world.mesh().triangles.size();
+  detail::VtkFile file("PolyData");
+  file.xml("<PolyData>\n<Piece NumberOfPoints=\"" + std::to_string(points) +
+           "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
+           std::to_string(triangles) + "\">\n<PointData Scalars=\"grain_id\">\n");
+  file.array("Int32", "grain_id", 1, 4 * points, [&](BufferedOutput& out) {
+    world.forEachPoint([&](size_t grain, uint32_t) { out.value(world.label(grain)); });
+  });
+  file.array("UInt8", "color", 3, 3 * points, [&](BufferedOutput& out) {
+    world.forEachPoint([&](size_t grain, uint32_t) { out.value(world.color(grain)); });
+  });
+  file.xml("</PointData>\n<CellData Scalars=\"grain_id\">\n");
+  file.array("Int32", "grain_id", 1, 4 * triangles, [&](BufferedOutput& out) {
+    world.forEachTriangle([&](size_t grain, uint32_t) { out.value(world.label(grain)); });
+  });
+  file.array("UInt8", "color", 3, 3 * triangles, [&](BufferedOutput& out) {
+    world.forEachTriangle([&](size_t grain, uint32_t) { out.value(world.color(grain)); });
+  });
+  file.xml("</CellData>\n<Points>\n");
+  file.array("Float32", "Points", 3, 12 * points, [&](BufferedOutput& out) {
+    world.forEachPoint([&](size_t, uint32_t i) { out.value(world.point(i)); });
+  });
+  file.xml("</Points>\n<Polys>\n");
+  file.array("Int64", "connectivity", 1, 24 * triangles, [&](BufferedOutput& out) {
+    world.forEachTriangle([&](size_t, uint32_t i) {
+      for (const uint32_t corner : world.triangle(i)) out.value(int64_t(corner));
+    });
+  });
+  file.array("Int64", "offsets", 1, 8 * triangles, [&](BufferedOutput& out) {
+    for (uint64_t i = 1; i <= triangles; ++i) out.value(int64_t(3 * i));
+  });
+  file.xml("</Polys>\n</Piece>\n</PolyData>\n");
+  file.write(path, interrupter);
+}
+
+/// A folder that is made unless it is there, and goes again, if it is empty, unless it is kept.
+class OutputFolder {
+ public:
+  explicit OutputFolder(const std::string& path) : path_(path) {
+    std::error_code error;
+    isNew_ = std::filesystem::create_directory(path, error);
+    if (!error && !std::filesystem::is_directory(path, error))
+      error = std::make_error_code(std::errc::not_a_directory);
+    if (error)
+      throw IoError("cannot write " + path + ": " + error.message() +
+                    "; give the path of a folder, in one that is there");
+  }
+  ~OutputFolder() {
+    std::error_code ignored;
+    if (isNew_) std::filesystem::remove(path_, ignored);
+  }
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  void keep() { isNew_ = false; }
+
+ private:
+  std::string path_;
+  bool isNew_ = false;
+};
+
+}  // namespace
+
+bool isMeshEnding(const std::string& path) {
+  const std::string end = fileEnding(path);
+  return end == ".ply" || end == ".obj" || end == ".stl" || end == ".vtp";
+}
+
+void writeMesh(const std::string& path, const GrainMesh& mesh, const MeshFileOptions& options,
+               Interrupter* interrupter) {
+  const WorldMesh world(mesh, options, path);
+  const std::string end = fileEnding(path);
+  if (end == ".ply")
+    writePly(path, world, interrupter);
+  else if (end == ".obj")
+    writeObj(path, world, interrupter);
+  else if (end == ".vtp")
+    writeVtp(path, world, interrupter);
+  else if (end == ".stl") {
+    BufferedOutput out(path, interrupter);
+    writeStl(out, world, 0, world.grainCount());
+    out.commit();
+  } else {
+    throw InvalidInput(path + ": no mesh format has this ending; use .ply, .obj, .stl or .vtp");
+  }
+}
+
+void writeStlFolder(const std::string& folder, const GrainMesh& mesh,
+                    const MeshFileOptions& options, Interrupter* interrupter) {
+  const WorldMesh world(mesh, options, folder);
+  OutputFolder made(folder);
+  std::vector<std::unique_ptr<BufferedOutput>> files;
+  for (size_t grain = 0; grain < world.grainCount(); ++grain) {
+    const std::string name = grainName(world.label(grain)) + ".stl";
+    files.push_back(std::make_unique<BufferedOutput>(
+        (std::filesystem::path(folder) / name).string(), interrupter));
+    writeStl(*files.back(), world, grain, grain + 1);
+    files.back()->close();
+  }
+  for (const auto& file : files) file->commitClosed();
+  made.keep();
+}
+
+}  // namespace vdb_madf

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+#include <cmath>
+
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/exports/detail/vtk_file.h"
+#include "vdb_madf/exports/network_file.h"
+#include "vdb_madf/files/detail/buffered_output.h"
+#include "vdb_madf/files/file_ending.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using detail::BufferedOutput;
+using Column = GrainNetwork::Column;
+
+void addColumn(detail::VtkFile& file, const Column& column) {
+  file.array("Float64", column.name, 1, 8 * column.values.size(), [&column](BufferedOutput& out) {
+    out.bytes(column.values.data(), 8 * column.values.size());
+  });
+}
+
+void writeVtp(const std::string& path, const GrainNetwork& network, Interrupter* interrupter) {
+  const size_t grains = network.grains.size(), bonds = network.bonds.size();
+  detail::VtkFile file("PolyData");
+  file.xml("<PolyData>\n<Piece NumberOfPoints=\"" + std::to_string(grains) +
+           "\" NumberOfVerts=\"0\" NumberOfLines=\"" + std::to_string(bonds) +
+           "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<PointData Scalars=\"grain_id\">\n");
+  file.array("Int32", "grain_id", 1, 4 * grains,
+             [&](BufferedOutput& out) { out.bytes(network.grains.data(), 4 * grains); });
+  for (const Column& column : network.grainColumns) addColumn(file, column);
+  file.xml("</PointData>\n<CellData>\n");
+  for (const size_t end : {size_t(0), size_t(1)})
+    file.array("Int32", end == 0 ? "first_grain" : "second_grain", 1, 4 * bonds,
+               [&network, end](BufferedOutput& out) {
+                 for (const auto& bond : network.bonds) out.value(network.grains[bond[end]]);
+               });
+  for (const Column& column : network.bondColumns) addColumn(file, column);
+  file.xml("</CellData>\n<Points>\n");
+  file.array("Float64", "Points", 3, 24 * grains, [&](BufferedOutput& out) {
+    for (const openvdb::Vec3d& p : network.centers) out.value(p);
+  });
+  file.xml("</Points>\n<Lines>\n");
+  file.array("Int64", "connectivity", 1, 16 * bonds, [&](BufferedOutput& out) {
+    for (const auto& bond : network.bonds)
+      for (const uint32_t end : bond) out.value(int64_t(end));
+  });
+  file.array("Int64", "offsets", 1, 8 * bonds, [&](BufferedOutput& out) {
+    for (size_t i = 1; i <= bonds; ++i) out.value(int64_t(2 * i));
+  });
+  file.xml("</Lines>\n</Piece>\n</PolyData>\n");
+  file.write(path, interrupter);
+}
+
+void writeGraphml(const std::string& path, const GrainNetwork& network, Interrupter* interrupter) {
+  BufferedOutput out(path, interrupter);
+  out.text(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<graphml xmlns=\"http://graphml.graphdrawing.org/xmlns\">\n");
+  const auto key = [&](const std::string& of, const std::string& name, const char* type) {
+    out.text("<key id=\"" + of + "_" + name + "\" for=\"" + of + "\" attr.name=\"" + name +
+             "\" attr.type=\"" + type + "\"/>\n");
+  };
+  key("node", "grain_id", "int");
+  for (const char* axis : {"x", "y", "z"}) key("node", axis, "double");
+  for (const Column& column : network.grainColumns) key("node", column.name, "double");
+  for (const Column& column : network.bondColumns) key("edge", column.name, "double");
+  out.text("<graph id=\"grains\" edgedefault=\"undirected\">\n");
+  const auto data = [&](const std::string& id, auto value) {
+    if (std::isnan(double(value))) return;
+    out.text("<data key=\"" + id + "\">");
+    out.number(value);
+    out.text("</data>");
+  };
+  for (size_t i = 0; i < network.grains.size(); ++i) {
+    out.text("<node id=\"n" + std::to_string(network.grains[i]) + "\">");
+    data("node_grain_id", network.grains[i]);
+    data("node_x", network.centers[i].x());
+    data("node_y", network.centers[i].y());
+    data("node_z", network.centers[i].z());
+    for (const Column& column : network.grainColumns) data("node_" + column.name, column.values[i]);
+    out.text("</node>\n");
+  }
+  for (size_t i = 0; i < network.bonds.size(); ++i) {
+    out.text("<edge source=\"n" + std::to_string(network.grains[network.bonds[i][0]]) +
+             "\" target=\"n" + std::to_string(network.grains[network.bonds[i][1]]) + "\">");
+    for (const Column& column : network.bondColumns) data("edge_" + column.name, column.values[i]);
+    out.text("</edge>\n");
+  }
+  out.text("</graph>\n</graphml>\n");
+  out.commit();
+}
+
+void writeCsv(const std::string& path, const GrainNetwork& network, Interrupter* interrupter) {
+  BufferedOutput out(path, interrupter);
+  out.text("pore.coords[0],pore.coords[1],pore.coords[2],pore.grain_id");
+  for (const Column& column : network.grainColumns) out.text(",pore." + column.name);
+  out.text(",throat.conns[0],throat.conns[1]");
+  for (const Column& column : network.bondColumns) out.text(",throat." + column.name);
+  out.text("\n");
+  const auto cell = [&](double value) {
+    out.text(",");
+    if (!std::isnan(value)) out.number(value);
+  };
+  const std::string noGrain(network.grainColumns.size() + 3, ','),
+      noBond(network.bondColumns.size() + 2, ',');
+  for (size_t i = 0; i < std::max(network.grains.size(), network.bonds.size()); ++i) {
+    if (i < network.grains.size()) {
+      for (int axis = 0; axis < 3; ++axis) {
+        out.number(network.centers[i][axis]);
+        out.text(",");
+      }
+      out.number(network.grains[i]);
+      for (const Column& column : network.grainColumns) cell(column.values[i]);
+    } else {
+      out.text(noGrain);
+    }
+    if (i < network.bonds.size()) {
+      for (const uint32_t end : network.bonds[i]) {
+        out.text(",");
+        out.number(end);
+      }
+      for (const Column& column : network.bondColumns) cell(column.values[i]);
+    } else {
+      out.text(noBond);
+    }
+    out.text("\n");
+  }
+  out.commit();
+}
+
+}  // namespace
+
+bool isNetworkEnding(const std::string& path) {
+  const std::string end = fileEnding(path);
+  return end == ".vtp" || end == ".graphml" || end == ".csv";
+}
+
+void writeNetwork(const std::string& path, const GrainNetwork& network, Interrupter* interrupter) {
+  const std::string end = fileEnding(path);
+  if (end == ".vtp")
+    writeVtp(path, network, interrupter);
+  else if (end == ".graphml")
+    writeGraphml(path, network, interrupter);
+  else if (end == ".csv")
+    writeCsv(path, network, interrupter);
+  else
+    throw InvalidInput(path + ": no network format has this ending; use .vtp, .graphml or .csv");
+}
+
+}  // namespace vdb_madf

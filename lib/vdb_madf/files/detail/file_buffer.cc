@@ -1,0 +1,228 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/files/detail/file_buffer.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "vdb_madf/base/errors.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+/// Large enough that system calls do not count, small enough that an interrupt is seen at once.
+constexpr size_t kBufferSize = size_t(1) << 18;
+
+[[noreturn]] void failToRead(const std::string& path, const std::string& reason,
+                             const std::string& advice) {
+  throw IoError("cannot read " + path + ": " + reason + "; " + advice);
+}
+
+/// Where seekoff leads, or -1.
+int64_t target(int64_t offset, std::ios_base::seekdir direction, int64_t position, int64_t end) {
+  if (direction == std::ios_base::cur) return position + offset;
+  if (direction == std::ios_base::end) return end + offset;
+  return direction == std::ios_base::beg ? offset : -1;
+}
+
+}  // namespace
+
+InputBuffer::InputBuffer(const std::string& path, Interrupter* interrupter)
+    : path_(path), interrupter_(interrupter) {
+  // Without waiting: a pipe that nobody writes to would block here.
+  file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file_ < 0) failToRead(path, std::strerror(errno), "check the path and its permissions");
+  struct stat status {};
+  const bool known = ::fstat(file_, &status) == 0;
+  if (!known || !S_ISREG(status.st_mode)) {
+    const int error = known ? 0 : errno;
+    ::close(file_);
+    if (error) failToRead(path, std::strerror(error), "check the path and its permissions");
+    failToRead(path, S_ISDIR(status.st_mode) ? "it is a folder" : "it is not a regular file",
+               "give the path of a file");
+  }
+  size_ = status.st_size;
+  buffer_.resize(kBufferSize);
+  setg(buffer_.data(), buffer_.data(), buffer_.data());
+}
+
+InputBuffer::~InputBuffer() {
+  ::close(file_);
+}
+
+void InputBuffer::require(int64_t bytes) const {
+  if (bytes < 0 || bytes > left()) throw EarlyEnd();
+}
+
+void InputBuffer::moveTo(int64_t position) {
+  if (position < 0 || position > size_) throw EarlyEnd();
+  if (position >= start_ && position - start_ <= egptr() - eback()) {
+    setg(eback(), eback() + (position - start_), egptr());
+  } else {
+    start_ = position;
+    setg(buffer_.data(), buffer_.data(), buffer_.data());
+  }
+}
+
+void InputBuffer::skip(int64_t bytes) {
+  require(bytes);
+  moveTo(position() + bytes);
+}
+
+void InputBuffer::read(void* to, int64_t bytes) {
+  require(bytes);
+  // The file may have been cut since it was opened.
+  if (sgetn(static_cast<char*>(to), bytes) != bytes) throw EarlyEnd();
+}
+
+std::string InputBuffer::readString() {
+  const auto length = read<uint32_t>();
+  require(length);
+  std::string text(length, '\0');
+  read(text.data(), length);
+  return text;
+}
+
+InputBuffer::int_type InputBuffer::underflow() {
+  if (gptr() < egptr()) return traits_type::to_int_type(*gptr());
+  if (interrupter_ &&
+      interrupter_->wasInterrupted(int(position() * 100 / std::max<int64_t>(size_, 1))))
+    throw Interrupted();
+  start_ = position();
+  ssize_t count = 0;
+  do {
+    count = ::pread(file_, buffer_.data(), buffer_.size(), start_);
+  } while (count < 0 && errno == EINTR);
+  setg(buffer_.data(), buffer_.data(), buffer_.data() + std::max<ssize_t>(count, 0));
+  if (count < 0) failToRead(path_, std::strerror(errno), "check the disk, or copy the file");
+  return count == 0 ? traits_type::eof() : traits_type::to_int_type(*gptr());
+}
+
+InputBuffer::pos_type InputBuffer::seekoff(off_type offset, std::ios_base::seekdir direction,
+                                           std::ios_base::openmode) {
+  const int64_t to = target(offset, direction, position(), size_);
+  if (to < 0 || to > size_) return pos_type(off_type(-1));
+  if (to != position()) moveTo(to);
+  return pos_type(to);
+}
+
+InputBuffer::pos_type InputBuffer::seekpos(pos_type position, std::ios_base::openmode which) {
+  return seekoff(off_type(position), std::ios_base::beg, which);
+}
+
+OutputBuffer::OutputBuffer(const OutputFile& file, Interrupter* interrupter, int64_t unhashedStart,
+                           int64_t unhashed)
+    : path_(file.path()),
+      interrupter_(interrupter),
+      unhashedStart_(unhashedStart),
+      unhashedEnd_(unhashedStart + unhashed),
+      buffer_(kBufferSize),
+      // Any two different odd numbers; these are from the fractional part of the golden ratio.
+      hash_{0x9e3779b97f4a7c15u, 0xf39cc0605cedc835u} {
+  file_ = ::open(file.temporaryPath().c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
+  if (file_ < 0) fail(errno);
+  setp(buffer_.data(), buffer_.data() + buffer_.size());
+}
+
+OutputBuffer::~OutputBuffer() {
+  if (file_ >= 0) ::close(file_);
+}
+
+void OutputBuffer::fail(int error) const {
+  throw IoError("cannot write " + path_ + ": " + std::strerror(error) +
+                "; free some space, or write it elsewhere");
+}
+
+void OutputBuffer::flush() {
+  if (interrupter_ && interrupter_->wasInterrupted()) throw Interrupted();
+  const size_t count = size_t(pptr() - pbase());
+  addToHash(start_, pbase(), count);
+  writeAt(start_, pbase(), count);
+  start_ += int64_t(count);
+  setp(buffer_.data(), buffer_.data() + buffer_.size());
+}
+
+void OutputBuffer::replace(int64_t position, const std::string& bytes) {
+  flush();
+  writeAt(position, bytes.data(), bytes.size());
+}
+
+void OutputBuffer::close() {
+  flush();
+  const int file = file_;
+  file_ = -1;
+  if (::close(file) != 0 && errno != EINTR) fail(errno);
+}
+
+void OutputBuffer::writeAt(int64_t position, const char* bytes, size_t count) {
+  while (count > 0) {
+    const ssize_t written = ::pwrite(file_, bytes, count, position);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(errno);
+    bytes += written;
+    position += written;
+    count -= size_t(written);
+  }
+  end_ = std::max(end_, position);
+}
+
+/// Two lanes of multiply and xor-shift over 64-bit words: a checksum to tell contents apart, not a
+/// defence against forgery.
+void OutputBuffer::addToHash(int64_t position, const char* bytes, size_t count) {
+  const auto add = [this](uint64_t word) {
+    hash_[0] = (hash_[0] ^ word) * 0xff51afd7ed558ccdu;
+    hash_[0] ^= hash_[0] >> 32;
+    hash_[1] = (hash_[1] + word) * 0xc4ceb9fe1a85ec53u;
+    hash_[1] ^= hash_[1] >> 29;
+  };
+  const auto addBytes = [&](int64_t first, int64_t last) {
+    if (first >= last) return;
+    add(uint64_t(first));
+    add(uint64_t(last));
+    for (const char* p = bytes + (first - position); first < last; first += 8, p += 8) {
+      uint64_t word = 0;
+      std::memcpy(&word, p, size_t(std::min<int64_t>(8, last - first)));
+      add(word);
+    }
+  };
+  const int64_t end = position + int64_t(count);
+  addBytes(position, std::min(end, unhashedStart_));
+  addBytes(std::max(position, unhashedEnd_), end);
+}
+
+OutputBuffer::int_type OutputBuffer::overflow(int_type character) {
+  flush();
+  if (traits_type::eq_int_type(character, traits_type::eof()))
+    return traits_type::not_eof(character);
+  return sputc(traits_type::to_char_type(character));
+}
+
+int OutputBuffer::sync() {
+  flush();
+  return 0;
+}
+
+OutputBuffer::pos_type OutputBuffer::seekoff(off_type offset, std::ios_base::seekdir direction,
+                                             std::ios_base::openmode) {
+  const int64_t position = start_ + (pptr() - pbase());
+  const int64_t to = target(offset, direction, position, std::max(end_, position));
+  if (to < 0) return pos_type(off_type(-1));
+  if (to != position) {
+    flush();
+    start_ = to;
+  }
+  return pos_type(to);
+}
+
+OutputBuffer::pos_type OutputBuffer::seekpos(pos_type position, std::ios_base::openmode which) {
+  return seekoff(off_type(position), std::ios_base::beg, which);
+}
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/grids/grid_metadata.h"
+
+#include <openvdb/Metadata.h>
+
+#include "vdb_madf/base/errors.h"
+
+namespace vdb_madf {
+
+namespace {
+
+constexpr char kDomainMin[] = "madf_domain_min";
+constexpr char kDomainMax[] = "madf_domain_max";
+constexpr char kVoxelSize[] = "madf_voxel_size_m";
+constexpr char kLengthUnit[] = "madf_length_unit";
+constexpr char kSource[] = "madf_source";
+constexpr char kBoundary[] = "madf_boundary";
+
+}  // namespace
+
+std::optional<CoordBBox> domain(const openvdb::MetaMap& metadata) {
+  const auto lower = metadata.getMetadata<openvdb::Vec3IMetadata>(kDomainMin);
+  const auto upper = metadata.getMetadata<openvdb::Vec3IMetadata>(kDomainMax);
+  if (!lower && !upper) return std::nullopt;
+  if (!lower || !upper)
+    throw InvalidInput("metadata has only one of madf_domain_min and madf_domain_max");
+  const CoordBBox box{Coord(lower->value()), Coord(upper->value())};
+  if (box.empty()) throw InvalidInput("metadata madf_domain_min exceeds madf_domain_max");
+  return box;
+}
+
+void setDomain(openvdb::MetaMap& metadata, const CoordBBox& domain) {
+  metadata.insertMeta(kDomainMin, openvdb::Vec3IMetadata(domain.min().asVec3i()));
+  metadata.insertMeta(kDomainMax, openvdb::Vec3IMetadata(domain.max().asVec3i()));
+}
+
+std::optional<VoxelSize> voxelSize(const openvdb::MetaMap& metadata) {
+  const auto metres = metadata.getMetadata<openvdb::DoubleMetadata>(kVoxelSize);
+  if (!metres || !(metres->value() > 0)) return std::nullopt;
+  return VoxelSize{metres->value()};
+}
+
+void setVoxelSize(openvdb::GridBase& grid, const std::optional<VoxelSize>& size) {
+  grid.removeMeta(kVoxelSize);
+  grid.removeMeta(kLengthUnit);
+  if (size) {
+    grid.insertMeta(kVoxelSize, openvdb::DoubleMetadata(size->metres));
+    grid.insertMeta(kLengthUnit, openvdb::StringMetadata(size->unit()));
+  }
+  grid.setTransform(openvdb::math::Transform::createLinearTransform(size ? size->inUnit() : 1.0));
+}
+
+void copyProvenance(const openvdb::GridBase& from, openvdb::GridBase& to) {
+  for (const char* key : {kDomainMin, kDomainMax, kVoxelSize, kLengthUnit, kSource, kBoundary})
+    if (const auto value = from[key]) to.insertMeta(key, *value);
+  to.setTransform(from.transform().copy());
+}
+
+}  // namespace vdb_madf

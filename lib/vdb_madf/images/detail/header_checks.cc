@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/images/detail/header_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/length_unit.h"
+#include "vdb_madf/base/limits.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+/// Lengths beyond these are no voxels, and break transforms: an atom, a kilometre.
+constexpr double kMinVoxelMetres = 1e-10, kMaxVoxelMetres = 1e3;
+
+}  // namespace
+
+std::string besideHeader(const std::string& header, const std::string& name) {
+  return (std::filesystem::path(header).parent_path() / name).string();
+}
+
+std::optional<VoxelSize> cubicVoxelSize(const std::string& path,
+                                        const std::array<double, 3>& spacing,
+                                        std::optional<double> unitsPerMetre) {
+  const auto [min, max] = std::minmax_element(spacing.begin(), spacing.end());
+  const bool positive = std::all_of(spacing.begin(), spacing.end(),
+                                    [](double s) { return std::isfinite(s) && s > 0; });
+  if (!positive || *max > *min * kMaxEdgeRatio)
+    throw IoError(path + ": " + (positive ? "unequal" : "unusable") + " spacing " +
+                  shortestDecimal(spacing[0]) + ", " + shortestDecimal(spacing[1]) + ", " +
+                  shortestDecimal(spacing[2]) + ": resample it to cubic voxels");
+  if (!unitsPerMetre) return std::nullopt;
+  const double metres = spacing[0] / *unitsPerMetre;
+  if (metres < kMinVoxelMetres || metres > kMaxVoxelMetres)
+    throw IoError(path + ": a voxel size of " + shortestDecimal(metres) +
+                  " m is not plausible: correct the header");
+  return VoxelSize{metres};
+}
+
+ImageSize checkedSize(const std::string& path, const std::vector<int64_t>& size) {
+  if (size.size() != 3)
+    throw IoError(path + ": has " + std::to_string(size.size()) +
+                  " dimensions; only 3-D images can be read");
+  for (const int64_t n : size)
+    if (n < 1 || n > kMaxImageSide)
+      throw IoError(path + ": size " + std::to_string(size[0]) + " x " + std::to_string(size[1]) +
+                    " x " + std::to_string(size[2]) + " is not within 1 .. " +
+                    std::to_string(kMaxImageSide) + " a side");
+  return {int(size[0]), int(size[1]), int(size[2])};
+}
+
+void checkSlices(const std::string& path, const ImageInfo& info, int first, int count) {
+  if (first < 0 || count < 0 || count > info.size.z || first > info.size.z - count)
+    throw InvalidInput(path + ": has slices 0 .. " + std::to_string(info.size.z - 1) + ", not " +
+                       std::to_string(first) + " and " + std::to_string(count) + " in all");
+}
+
+}  // namespace vdb_madf::detail

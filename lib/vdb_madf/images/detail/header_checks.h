@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vdb_madf/base/length_unit.h"
+#include "vdb_madf/base/voxel_size.h"
+#include "vdb_madf/images/image.h"
+
+namespace vdb_madf::detail {
+
+// What the readers of images check in headers.
+
+/// `name` as seen from the folder of the file `header`.
+std::string besideHeader(const std::string& header, const std::string& name);
+
+/// The edge of a cubic voxel; the first of the three is the one returned. Without a unit there is
+/// no physical size, but voxels that are not cubes are still an error.
+/// @throw IoError if the spacing differs by more than 0.1 % or is no plausible length.
+std::optional<VoxelSize> cubicVoxelSize(const std::string& path,
+                                        const std::array<double, 3>& spacing,
+                                        std::optional<double> unitsPerMetre);
+
+/// @throw IoError unless each size is in 1 .. 2^20.
+ImageSize checkedSize(const std::string& path, const std::vector<int64_t>& size);
+
+inline uint64_t sliceBytes(const ImageInfo& info) {
+  return uint64_t(info.size.x) * uint64_t(info.size.y) * sampleSize(info.type);
+}
+inline uint64_t imageBytes(const ImageInfo& info) {  // < 2^64: sizes are at most 2^20
+  return sliceBytes(info) * uint64_t(info.size.z);
+}
+/// @throw InvalidInput unless the slices exist.
+void checkSlices(const std::string& path, const ImageInfo& info, int first, int count);
+
+}  // namespace vdb_madf::detail

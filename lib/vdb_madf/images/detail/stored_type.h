@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "vdb_madf/images/image.h"
+
+namespace vdb_madf::detail {
+
+/// Samples as a file holds them. Integers of 64 bits, which NumPy makes of most labels, are handed
+/// over as int32 or uint32; a value beyond is an error, never another value.
+struct StoredType {
+  SampleType type = SampleType::uint8;  ///< as which they are handed over
+  bool wide = false;                    ///< int32 or uint32 of 64-bit integers
+  bool bigEndian = false;
+
+  size_t bytes() const { return wide ? 8 : sampleSize(type); }
+};
+
+/// From stored samples to samples in native byte order; the two may be the same memory.
+/// @throw IoError that names the path and the first value beyond 32 bits.
+void toSamples(const std::string& path, const StoredType& stored, const void* from, size_t count,
+               void* samples);
+
+/// A type in NumPy's notation, as npy and Zarr files have it: "<u2", "|b1" (bool becomes uint8).
+/// Nothing for half floats, complex numbers, records, text ...
+std::optional<StoredType> storedTypeFromNumpy(const std::string& name);
+/// Little-endian: "<u2", "|u1".
+std::string numpyName(SampleType type);
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "vdb_madf/images/image.h"
+
+namespace vdb_madf::detail {
+
+/// A dataset [z, y, x] of an HDF5 file, maybe behind axes of length 1: the one that is named, else
+/// the only one. Integers, floats, h5py's bool; whatever layout and filters the library knows. The
+/// voxel size comes from the attribute element_size_um (z, y, x), which ilastik and the HDF5 plugin
+/// of ImageJ write.
+/// The library runs in a process of its own, as damaged files crash it. Built only where libhdf5 is
+/// found.
+std::unique_ptr<ImageReader> openHdf5(const std::string& path, const std::string& dataset);
+
+}  // namespace vdb_madf::detail

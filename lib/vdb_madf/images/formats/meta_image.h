@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "vdb_madf/images/image.h"
+
+namespace vdb_madf::detail {
+
+/// MetaImage (.mhd with a data file, .mha with the data in it), raw or zlib. Its spacing has no
+/// unit; by ITK's convention it is millimetres. A spacing of exactly 1 is what programs write that
+/// know nothing better: it gives no physical size.
+/// Not read: text data, several channels, data spread over several files.
+std::unique_ptr<ImageReader> openMeta(const std::string& path);
+/// .mha: one file. .mhd: the data in a .raw file beside it, which is put in place first.
+std::unique_ptr<ImageWriter> createMeta(const std::string& path, const ImageInfo& info,
+                                        const std::array<double, 3>& origin);
+
+/// True for the first bytes of a MetaImage header.
+bool isMetaHeader(const std::string& head);
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,288 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/images/formats/nrrd.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/length_unit.h"
+#include "vdb_madf/images/detail/header_checks.h"
+#include "vdb_madf/images/formats/raw.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+/// Headers hold key-value pairs of any program (DICOM tags, say), so they are allowed to be long.
+constexpr size_t kLongestHeader = size_t(1) << 20;
+/// A line skip beyond this is no header of text.
+constexpr int64_t kMostLines = 1 << 20;
+/// Largest cosine between axes that still counts as a right angle.
+constexpr double kShear = 1e-3;
+
+std::optional<SampleType> typeFromName(const std::string& name) {
+  static const std::map<std::string, SampleType> kTypes = {
+      {"signed char", SampleType::int8},
+      {"int8", SampleType::int8},
+      {"int8_t", SampleType::int8},
+      {"uchar", SampleType::uint8},
+      {"unsigned char", SampleType::uint8},
+      {"uint8", SampleType::uint8},
+      {"uint8_t", SampleType::uint8},
+      {"short", SampleType::int16},
+      {"short int", SampleType::int16},
+      {"signed short", SampleType::int16},
+      {"signed short int", SampleType::int16},
+      {"int16", SampleType::int16},
+      {"int16_t", SampleType::int16},
+      {"ushort", SampleType::uint16},
+      {"unsigned short", SampleType::uint16},
+      {"unsigned short int", SampleType::uint16},
+      {"uint16", SampleType::uint16},
+      {"uint16_t", SampleType::uint16},
+      {"int", SampleType::int32},
+      {"signed int", SampleType::int32},
+      {"int32", SampleType::int32},
+      {"int32_t", SampleType::int32},
+      {"uint", SampleType::uint32},
+      {"unsigned int", SampleType::uint32},
+      {"uint32", SampleType::uint32},
+      {"uint32_t", SampleType::uint32},
+      {"float", SampleType::float32},
+      {"double", SampleType::float64}};
+  const auto found = kTypes.find(lowerCase(name));
+  if (found == kTypes.end()) return std::nullopt;
+  return found->second;
+}
+
+/// "line skip", "lineskip" and "Line Skip" are one field.
+std::string fieldName(const std::string& text) {
+  std::string name = lowerCase(trimmed(text));
+  name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
+  return name;
+}
+
+class NrrdHeader {
+ public:
+  explicit NrrdHeader(const InputFile& file) : path_(file.name()) {
+    const std::string head = file.head(kLongestHeader);
+    if (head.compare(0, 4, "NRRD") != 0) throw IoError(path_ + ": does not begin with NRRD");
+    bool first = true;
+    while (dataOffset_ < head.size()) {
+      const size_t end = std::min(head.find('\n', dataOffset_), head.size());
+      std::string line = head.substr(dataOffset_, end - dataOffset_);
+      if (!line.empty() && line.back() == '\r') line.pop_back();
+      dataOffset_ = std::min(end + 1, head.size());
+      if (line.empty()) return;  // the data follow
+      if (!first && line[0] != '#') addField(line);
+      first = false;
+    }
+    if (file.size() > kLongestHeader) throw IoError(path_ + ": the NRRD header has no end");
+  }
+
+  size_t dataOffset() const { return dataOffset_; }
+
+  std::optional<std::string> find(const std::string& field) const {
+    const auto found = fields_.find(field);
+    if (found == fields_.end()) return std::nullopt;
+    return found->second;
+  }
+  std::string require(const std::string& field) const {
+    const auto value = find(field);
+    if (!value || value->empty()) throw IoError(path_ + ": the NRRD header lacks " + field);
+    return *value;
+  }
+  int64_t integer(const std::string& field, int64_t otherwise) const {
+    const auto text = find(field);
+    if (!text) return otherwise;
+    const auto values = integers(*text);
+    if (!values || values->size() != 1) fail(field);
+    return values->front();
+  }
+  [[noreturn]] void fail(const std::string& field) const {
+    throw IoError(path_ + ": " + field + ": " + quoted(find(field).value_or("")) +
+                  " cannot be read in this NRRD header");
+  }
+
+ private:
+  void addField(const std::string& line) {
+    const size_t colon = line.find(':');
+    if (colon == std::string::npos)
+      throw IoError(path_ + ": not an NRRD header: the line " + quoted(line) +
+                    " is not 'field: value'");
+    if (line.compare(colon, 2, ":=") == 0) return;  // a program's own key and value
+    fields_[fieldName(line.substr(0, colon))] = trimmed(line.substr(colon + 1));
+  }
+
+  std::string path_;
+  std::map<std::string, std::string> fields_;
+  size_t dataOffset_ = 0;
+};
+
+/// The unit that all three quoted names agree on: "mm" "mm" "mm".
+std::optional<double> commonUnit(const std::string& path, const std::optional<std::string>& text) {
+  if (!text) return std::nullopt;
+  std::vector<std::optional<double>> units;
+  size_t begin = 0;
+  while ((begin = text->find('"', begin)) != std::string::npos) {
+    const size_t end = text->find('"', begin + 1);
+    if (end == std::string::npos) break;
+    units.push_back(unitsPerMetre(text->substr(begin + 1, end - begin - 1)));
+    begin = end + 1;
+  }
+  if (units.size() != 3) return std::nullopt;
+  if (units[0] != units[1] || units[0] != units[2])
+    throw IoError(path + ": its axes have different units: " + quoted(*text));
+  return units[0];
+}
+
+std::optional<VoxelSize> spacingOfDirections(const std::string& path, const NrrdHeader& header) {
+  std::string text = header.require("spacedirections");
+  if (std::count(text.begin(), text.end(), '(') != 3) header.fail("spacedirections");
+  for (char& c : text)
+    if (c == '(' || c == ')' || c == ',') c = ' ';
+  const auto values = reals(text);
+  if (!values || values->size() != 9) header.fail("spacedirections");
+  const auto dot = [&](int a, int b) {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) sum += (*values)[size_t(3 * a + i)] * (*values)[size_t(3 * b + i)];
+    return sum;
+  };
+  std::array<double, 3> spacing;
+  for (int axis = 0; axis < 3; ++axis) spacing[size_t(axis)] = std::sqrt(dot(axis, axis));
+  for (int axis = 0; axis < 3; ++axis) {
+    const int next = (axis + 1) % 3;
+    if (std::abs(dot(axis, next)) > kShear * spacing[size_t(axis)] * spacing[size_t(next)])
+      throw IoError(path + ": its space directions are sheared: resample it to cubic voxels");
+  }
+  return cubicVoxelSize(path, spacing, commonUnit(path, header.find("spaceunits")));
+}
+
+std::optional<VoxelSize> spacingOf(const std::string& path, const NrrdHeader& header) {
+  if (header.find("spacedirections")) return spacingOfDirections(path, header);
+  const auto text = header.find("spacings");
+  if (!text) return std::nullopt;
+  const auto values = reals(*text);
+  if (!values || values->size() != 3) header.fail("spacings");
+  if (std::all_of(values->begin(), values->end(), [](double s) { return s != s; }))
+    return std::nullopt;  // NaN: unknown, by the definition of the format
+  auto units = header.find("units");
+  if (!units) units = header.find("spaceunits");
+  return cubicVoxelSize(path, {(*values)[0], (*values)[1], (*values)[2]}, commonUnit(path, units));
+}
+
+/// The place after `lines` lines of text from `offset` on.
+uint64_t skipLines(const InputFile& file, uint64_t offset, int64_t lines) {
+  std::string chunk;
+  while (lines > 0) {
+    if (offset >= file.size())
+      throw IoError(file.name() + ": has fewer lines than its header wants skipped");
+    chunk.resize(size_t(std::min<uint64_t>(1 << 16, file.size() - offset)));
+    file.read(offset, chunk.data(), chunk.size());
+    size_t used = 0;
+    while (lines > 0 && used < chunk.size()) {
+      const size_t end = chunk.find('\n', used);
+      if (end == std::string::npos) {
+        used = chunk.size();
+      } else {
+        used = end + 1;
+        --lines;
+      }
+    }
+    offset += used;
+  }
+  return offset;
+}
+
+std::unique_ptr<InputFile> openData(const std::string& path, const std::string& dataFile) {
+  if (dataFile.compare(0, 4, "LIST") == 0 || dataFile.find('%') != std::string::npos)
+    throw IoError(path + ": its data are spread over several files; write them into one");
+  return std::make_unique<InputFile>(path, besideHeader(path, dataFile));
+}
+
+SampleLayout layoutOf(const std::string& path, const NrrdHeader& header, SampleType type) {
+  SampleLayout layout;
+  const std::string encoding = lowerCase(header.require("encoding"));
+  layout.deflated = encoding == "gzip" || encoding == "gz";
+  if (!layout.deflated && encoding != "raw")
+    throw IoError(path + ": encoding " + quoted(encoding) + " cannot be read; write raw or gzip");
+  const std::string endian = lowerCase(header.find("endian").value_or(""));
+  if (endian != "little" && endian != "big" && (!endian.empty() || sampleSize(type) > 1))
+    throw IoError(path + ": the NRRD header does not say endian: little or big");
+  layout.bigEndian = endian == "big";
+  return layout;
+}
+
+/// An origin needs a space, and the edges as vectors in it.
+std::string placedEdges(const std::string& edge, const std::array<double, 3>& origin) {
+  std::string place;
+  for (int axis = 0; axis < 3; ++axis) place += (axis ? "," : "") + shortestDecimal(origin[axis]);
+  return "\nspace dimension: 3\nspace directions: (" + edge + ",0,0) (0," + edge + ",0) (0,0," +
+         edge + ")\nspace origin: (" + place + ")";
+}
+
+std::string headerText(const ImageInfo& info, const std::array<double, 3>& origin) {
+  const std::map<SampleType, std::string> names = {
+      {SampleType::uint8, "uint8"},   {SampleType::int8, "int8"},
+      {SampleType::uint16, "uint16"}, {SampleType::int16, "int16"},
+      {SampleType::uint32, "uint32"}, {SampleType::int32, "int32"},
+      {SampleType::float32, "float"}, {SampleType::float64, "double"}};
+  std::string text = "NRRD0004\ntype: " + names.at(info.type) + "\ndimension: 3\nsizes:";
+  for (int axis = 0; axis < 3; ++axis) text += " " + std::to_string(info.size[axis]);
+  const std::string edge = info.voxelSize ? lengthIn(1e3, info.voxelSize->metres) : "1";
+  if (origin != std::array<double, 3>{}) {
+    text += placedEdges(edge, origin);
+    if (info.voxelSize) text += "\nspace units: \"mm\" \"mm\" \"mm\"";
+  } else if (info.voxelSize) {
+    text += "\nspacings: " + edge + " " + edge + " " + edge;
+    text += "\nunits: \"mm\" \"mm\" \"mm\"";
+  }
+  return text + "\nendian: little\nencoding: raw\n\n";
+}
+
+}  // namespace
+
+std::unique_ptr<ImageReader> openNrrd(const std::string& path) {
+  auto file = std::make_unique<InputFile>(path);
+  const NrrdHeader header(*file);
+  ImageInfo info;
+  info.format = "nrrd";
+  const auto size = integers(header.require("sizes"));
+  if (!size) header.fail("sizes");
+  info.size = checkedSize(path, *size);
+  if (header.integer("dimension", 3) != 3) header.fail("dimension");
+  const auto type = typeFromName(header.require("type"));
+  if (!type) header.fail("type");
+  info.type = *type;
+  info.voxelSize = spacingOf(path, header);
+
+  SampleLayout layout = layoutOf(path, header, info.type);
+  if (const auto dataFile = header.find("datafile"))
+    file = openData(path, *dataFile);
+  else
+    layout.offset = header.dataOffset();
+  const int64_t lines = header.integer("lineskip", 0), bytes = header.integer("byteskip", 0);
+  if (lines < 0 || lines > kMostLines) header.fail("lineskip");
+  if (bytes < -1 || (bytes == -1 && layout.deflated)) header.fail("byteskip");
+  layout.offset = skipLines(*file, layout.offset, lines);
+  // Of compressed data, lines are skipped before and bytes after decompression.
+  if (layout.deflated)
+    layout.skip = uint64_t(bytes);
+  else if (bytes == -1)
+    layout.atEnd = true;
+  else
+    layout.offset += uint64_t(bytes);
+  return openSamples(path, info, std::move(file), layout);
+}
+
+std::unique_ptr<ImageWriter> createNrrd(const std::string& path, const ImageInfo& info,
+                                        const std::array<double, 3>& origin) {
+  return createSamples(path, info, headerText(info, origin));
+}
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,213 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/images/formats/tiff.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "vdb_madf/base/detail/byte_order.h"
+#include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/length_unit.h"
+#include "vdb_madf/images/detail/header_checks.h"
+#include "vdb_madf/images/formats/slice_folder.h"
+#include "vdb_madf/images/formats/tiff_page.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+/// What ImageJ writes into the description of a stack: lines of key=value.
+class ImageJDescription {
+ public:
+  explicit ImageJDescription(const std::string& text) {
+    if (text.compare(0, 7, "ImageJ=") != 0) return;
+    for (size_t begin = 0; begin < text.size();) {
+      const size_t end = std::min(text.find('\n', begin), text.size());
+      const std::string line = text.substr(begin, end - begin);
+      const size_t equals = line.find('=');
+      if (equals != std::string::npos)
+        values_[trimmed(line.substr(0, equals))] = trimmed(line.substr(equals + 1));
+      begin = end + 1;
+    }
+  }
+
+  std::optional<std::string> text(const std::string& key) const {
+    const auto found = values_.find(key);
+    if (found == values_.end()) return std::nullopt;
+    return found->second;
+  }
+  std::optional<double> number(const std::string& key) const {
+    const auto values = reals(text(key).value_or(""));
+    if (!values || values->size() != 1) return std::nullopt;
+    return values->front();
+  }
+
+ private:
+  std::map<std::string, std::string> values_;
+};
+
+ImageJDescription description(const TiffFile& file) {
+  const char* text = file.handle().field<const char*>(TIFFTAG_IMAGEDESCRIPTION, nullptr);
+  return ImageJDescription(text ? text : "");
+}
+
+/// Only ImageJ's calibration is trusted: the plain resolution tags are mostly a scanner's or a
+/// printer's default of 72 dots per inch.
+std::optional<VoxelSize> calibration(const TiffFile& file, const ImageJDescription& imageJ,
+                                     int slices) {
+  const auto unit = unitsPerMetre(imageJ.text("unit").value_or(""));
+  const float perX = file.handle().field<float>(TIFFTAG_XRESOLUTION, 0);
+  const float perY = file.handle().field<float>(TIFFTAG_YRESOLUTION, 0);
+  if (!unit || !(perX > 0) || !(perY > 0)) return std::nullopt;
+  const double x = 1.0 / double(perX), y = 1.0 / double(perY);
+  // ImageJ leaves out a slice spacing of 1; then nobody may have set it.
+  const auto z = imageJ.number("spacing");
+  if (!z && slices > 1 && std::abs(x - 1) > 1e-3) return std::nullopt;
+  // The text is exact where the tags are single precision: it goes first. The sign tells the order.
+  const double depth = z ? std::abs(*z) : slices > 1 ? 1.0 : x;
+  return cubicVoxelSize(file.path(), {depth, x, y}, unit);
+}
+
+void rejectHyperstack(const TiffFile& file, const ImageJDescription& imageJ) {
+  for (const char* axis : {"channels", "frames"})
+    if (imageJ.number(axis).value_or(1) > 1)
+      file.handle().fail(std::string("has several ") + axis + ": save one as a stack of its own");
+}
+
+class TiffStack : public ImageReader {
+ public:
+  explicit TiffStack(const std::string& path) : file_(path) {
+    path_ = path;
+    files_ = {path};
+    for (;; file_.next()) {
+      if (file_.isSlice()) addPage();
+      if (file_.isLast()) break;
+    }
+    if (pages_.empty()) throw IoError(path + ": has no page that is a slice");
+    file_.select(pages_.front());
+    const ImageJDescription imageJ = description(file_);
+    rejectHyperstack(file_, imageJ);
+    int64_t slices = int64_t(pages_.size());
+    if (slices == 1) slices = slicesWithoutPages(imageJ);
+    info_.size = checkedSize(path, {page_.width, page_.height, slices});
+    info_.type = page_.type;
+    info_.voxelSize = calibration(file_, imageJ, info_.size.z);
+    info_.format = "tiff";
+  }
+
+  void read(int first, int count, void* samples) override {
+    checkSlices(path_, info_, first, count);
+    char* place = static_cast<char*>(samples);
+    if (samplesOffset_) {
+      const size_t bytes = size_t(page_.bytes()) * size_t(count);
+      file_.data().read(*samplesOffset_ + page_.bytes() * uint64_t(first), place, bytes);
+      if (page_.swapped) swapBytes(place, bytes / sampleSize(page_.type), sampleSize(page_.type));
+      return;
+    }
+    for (int z = first; z < first + count; ++z, place += page_.bytes()) {
+      file_.select(pages_[size_t(z)]);
+      file_.decode(checkedPage(), place);
+    }
+  }
+
+ private:
+  void addPage() {
+    if (pages_.empty())
+      page_ = file_.page();
+    else
+      checkedPage();
+    pages_.push_back(file_.directory());
+  }
+
+  /// The current page, which has to be like the first.
+  TiffPage checkedPage() {
+    const TiffPage page = file_.page();
+    if (!page.sameAs(page_))
+      throw IoError(path_ + ": its pages differ: " + std::to_string(page_.width) + " x " +
+                    std::to_string(page_.height) + " " + sampleTypeName(page_.type) + " and " +
+                    std::to_string(page.width) + " x " + std::to_string(page.height) + " " +
+                    sampleTypeName(page.type));
+    return page;
+  }
+
+  /// ImageJ's stacks of 4 GB and more: one page, "images=N", the samples of all in one piece.
+  int64_t slicesWithoutPages(const ImageJDescription& imageJ) {
+    const double images = imageJ.number("images").value_or(1);
+    if (!(images > 1) || images > (1 << 20) || !page_.plain) return 1;
+    const auto offset = file_.contiguousOffset(page_);
+    if (!offset) return 1;
+    const uint64_t held = (file_.data().size() - *offset) / page_.bytes();
+    if (held < 2) return 1;  // a single slice that kept the description of its stack
+    if (held < uint64_t(images))
+      file_.handle().fail("is truncated: it says that it has " + shortestDecimal(images) +
+                          " images, but holds " + std::to_string(held));
+    samplesOffset_ = offset;
+    return int64_t(images);
+  }
+
+  TiffFile file_;
+  TiffPage page_;
+  std::vector<uint64_t> pages_;
+  std::optional<uint64_t> samplesOffset_;
+};
+
+class TiffFolder : public ImageReader {
+ public:
+  explicit TiffFolder(const std::string& path) {
+    path_ = path;
+    files_ = tiffFilesIn(path);
+    if (files_.empty()) throw IoError(path + ": has no .tif or .tiff files");
+    for (size_t z = 0; z < files_.size(); ++z) {
+      const TiffFile file(files_[z]);
+      const TiffPage page = file.page();
+      if (!file.isLast())
+        throw IoError(files_[z] + ": has several pages, but a slice of a folder has one");
+      if (z == 0) {
+        page_ = page;
+        info_.voxelSize = calibration(file, description(file), int(files_.size()));
+      } else if (!page.sameAs(page_)) {
+        throw IoError(files_[z] + ": is " + std::to_string(page.width) + " x " +
+                      std::to_string(page.height) + " " + sampleTypeName(page.type) +
+                      ", but the first slice of the folder is " + std::to_string(page_.width) +
+                      " x " + std::to_string(page_.height) + " " + sampleTypeName(page_.type));
+      }
+    }
+    if (!info_.voxelSize) info_.voxelSize = voxelSizeInLog(path);
+    info_.size = checkedSize(path, {page_.width, page_.height, int64_t(files_.size())});
+    info_.type = page_.type;
+    info_.format = "tiff";
+  }
+
+  void read(int first, int count, void* samples) override {
+    checkSlices(path_, info_, first, count);
+    char* place = static_cast<char*>(samples);
+    for (int z = first; z < first + count; ++z, place += page_.bytes()) {
+      const TiffFile file(files_[size_t(z)]);
+      const TiffPage page = file.page();
+      if (!page.sameAs(page_)) throw IoError(file.path() + ": changed while it was read");
+      file.decode(page, place);
+    }
+  }
+
+ private:
+  TiffPage page_;
+};
+
+}  // namespace
+
+std::vector<std::string> tiffFilesIn(const std::string& folder) {
+  return slicesIn(folder, {".tif", ".tiff"});
+}
+
+std::unique_ptr<ImageReader> openTiff(const std::string& path) {
+  return std::make_unique<TiffStack>(path);
+}
+
+std::unique_ptr<ImageReader> openTiffFolder(const std::string& path) {
+  return std::make_unique<TiffFolder>(path);
+}
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/images/formats/zarr.h"
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/length_unit.h"
+#include "vdb_madf/images/detail/header_checks.h"
+#include "vdb_madf/images/detail/json_text.h"
+#include "vdb_madf/images/formats/zarr_array.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A decoded layer of chunks up to this is kept for the next slabs.
+constexpr uint64_t kLargestLayer = uint64_t(256) << 20;
+
+bool isThere(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
+/// The first image of the group's OME-Zarr metadata; null if there is none.
+Json multiscale(const std::string& name, const fs::path& group) {
+  const fs::path path = group / ".zattrs";
+  if (!isThere(path)) return {};
+  const Json attributes = jsonObject(name, path.string());
+  const Json& images = member(attributes, "multiscales");
+  return images.is_array() && !images.empty() && images[0].is_object() ? images[0] : Json();
+}
+
+/// Multiplies by the scales of a list of transformations. False if it cannot be understood.
+bool applyScales(const Json& transformations, std::vector<double>& scale) {
+  if (transformations.is_null()) return true;
+  if (!transformations.is_array()) return false;
+  for (const Json& one : transformations) {
+    if (textOf(member(one, "type")) != "scale") continue;
+    const Json& factors = member(one, "scale");
+    if (!factors.is_array() || factors.size() != scale.size()) return false;
+    for (size_t i = 0; i < scale.size(); ++i) {
+      if (!factors[i].is_number()) return false;
+      scale[i] *= factors[i].get<double>();
+    }
+  }
+  return true;
+}
+
+/// Of the scale at `path` within the image.
+std::optional<VoxelSize> voxelSizeOf(const std::string& name, const Json& image,
+                                     const std::string& path, size_t axesCount) {
+  const Json &axes = member(image, "axes"), &datasets = member(image, "datasets");
+  if (!axes.is_array() || axes.size() != axesCount || !datasets.is_array()) return std::nullopt;
+  const auto dataset = std::find_if(datasets.begin(), datasets.end(), [&](const Json& one) {
+    return textOf(member(one, "path")) == path;
+  });
+  if (dataset == datasets.end()) return std::nullopt;
+  const Json& transformations = member(*dataset, "coordinateTransformations");
+  if (transformations.is_null()) return std::nullopt;  // before version 0.4
+  std::vector<double> scale(axesCount, 1.0);
+  if (!applyScales(transformations, scale) ||
+      !applyScales(member(image, "coordinateTransformations"), scale))
+    throw IoError(name + ": its scales cannot be read: give --voxel-size and correct .zattrs");
+  std::array<double, 3> edges;
+  std::array<std::optional<double>, 3> units;
+  for (size_t i = 0; i < 3; ++i) {  // x, y, z
+    edges[i] = scale[axesCount - 1 - i];
+    units[i] = unitsPerMetre(textOf(member(axes[axesCount - 1 - i], "unit")));
+  }
+  if (units[0] != units[1] || units[0] != units[2])
+    throw IoError(name + ": its axes have different units");
+  return cubicVoxelSize(name, edges, units[0]);
+}
+
+/// Which array of a group is meant if none is named.
+std::string chooseArray(const std::string& path, const Json& image) {
+  const Json& datasets = member(image, "datasets");
+  if (datasets.is_array() && !datasets.empty() && !textOf(member(datasets[0], "path")).empty())
+    return textOf(member(datasets[0], "path"));
+  std::vector<std::string> arrays;
+  std::error_code error;
+  for (fs::directory_iterator entry(path, error), end; !error && entry != end;
+       entry.increment(error))
+    if (isThere(entry->path() / ".zarray")) arrays.push_back(entry->path().filename().string());
+  std::sort(arrays.begin(), arrays.end());
+  if (arrays.size() == 1) return arrays[0];
+  std::string list;
+  for (size_t i = 0; i < arrays.size() && i < 8; ++i)
+    list += (i ? ", " : "") + detail::quoted(arrays[i]);
+  if (arrays.empty())
+    throw IoError(path +
+                  ": this Zarr group holds no array itself: name one of a group in it "
+                  "(--dataset)");
+  throw IoError(path + ": choose one of its arrays (--dataset): " + list +
+                (arrays.size() > 8 ? " ..." : ""));
+}
+
+class ZarrReader : public ImageReader {
+ public:
+  ZarrReader(const std::string& path, const std::string& folder) : array_(path, folder) {
+    path_ = path;
+    files_ = {path, array_.descriptionPath()};
+    info_.size = array_.size();
+    info_.type = array_.type();
+    info_.format = "zarr";
+    const uint64_t depth = uint64_t(std::min(array_.slicesPerChunk(), info_.size.z));
+    keepLayer_ = sliceBytes(info_) * depth <= kLargestLayer;
+  }
+  size_t axes() const { return array_.leadingAxes() + 3; }
+  void setVoxelSize(const std::optional<VoxelSize>& size) { info_.voxelSize = size; }
+
+  void read(int first, int count, void* samples) override {
+    checkSlices(path_, info_, first, count);
+    char* place = static_cast<char*>(samples);
+    if (!keepLayer_) return array_.read(first, count, place);
+    for (const int end = first + count; first < end;) {
+      loadLayer(first / array_.slicesPerChunk());
+      const int some = std::min(end, layerEnd()) - first;
+      const size_t slice = size_t(sliceBytes(info_));
+      std::memcpy(place, &layer_[slice * size_t(first - layerBegin())], slice * size_t(some));
+      place += slice * size_t(some);
+      first += some;
+    }
+  }
+
+ private:
+  int layerBegin() const { return number_ * array_.slicesPerChunk(); }
+  int layerEnd() const {
+    return int(std::min<int64_t>(info_.size.z, int64_t(layerBegin()) + array_.slicesPerChunk()));
+  }
+  void loadLayer(int number) {
+    if (number == number_) return;
+    number_ = number;
+    layer_.resize(size_t(sliceBytes(info_)) * size_t(layerEnd() - layerBegin()));
+    try {
+      array_.read(layerBegin(), layerEnd() - layerBegin(), layer_.data());
+    } catch (...) {
+      number_ = -1;
+      throw;
+    }
+  }
+
+  ZarrArray array_;
+  bool keepLayer_ = false;
+  int number_ = -1;  ///< of the layer that is kept
+  std::vector<char> layer_;
+};
+
+}  // namespace
+
+bool isZarrFolder(const std::string& path) {
+  for (const char* name : {".zarray", ".zgroup", ".zattrs", "zarr.json"})
+    if (isThere(fs::path(path) / name)) return true;
+  return false;
+}
+
+std::unique_ptr<ImageReader> openZarr(const std::string& path, const std::string& dataset) {
+  fs::path group(path), array(path);
+  if (!group.has_filename()) group = array = group.parent_path();  // ends with a slash
+  std::string name = dataset;
+  Json image;
+  if (dataset.empty() && isThere(array / ".zarray")) {
+    name = array.filename().string();
+    group = array.parent_path();
+    image = multiscale(path, group);
+  } else {
+    if (isThere(group / "zarr.json") && !isThere(group / ".zgroup"))
+      throw IoError(path + ": is Zarr of version 3; only version 2 can be read");
+    image = multiscale(path, group);
+    if (name.empty()) name = chooseArray(path, image);
+    array = group / name;
+  }
+  if (!isThere(array / ".zarray"))
+    throw IoError(path + ": there is no Zarr array " + detail::quoted(name) +
+                  " of version 2 in it");
+  auto reader = std::make_unique<ZarrReader>(path, array.string());
+  if (!image.is_null()) reader->setVoxelSize(voxelSizeOf(path, image, name, reader->axes()));
+  return reader;
+}
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "vdb_madf/images/image.h"
+
+namespace vdb_madf {
+
+/// How to read a headerless file.
+struct RawLayout {
+  ImageSize size;
+  SampleType type = SampleType::uint8;
+  bool bigEndian = false;
+};
+
+/// Opens TIFF (multi-page, BigTIFF), MHD/MHA, NRRD, npy, ISQ, NIfTI-1, vol/longvol, PyHST's vol,
+/// PNG, BMP, a folder of TIFF, PNG or BMP slices, Zarr, HDF5 (if it was there when this was built),
+/// recognised by content, then by ending; RAW if `raw` is given. Sizes in a header are checked
+/// against the file before anything is allocated.
+/// @param dataset which array of a Zarr group or an HDF5 file; empty: the first scale of an
+/// OME-Zarr,
+///     or the only volume
+/// @throw IoError, one line that names the file.
+std::unique_ptr<ImageReader> openImage(const std::string& path,
+                                       const std::optional<RawLayout>& raw = std::nullopt,
+                                       const std::string& dataset = "");
+
+/// True if the path looks like one of the formats of openImage (never true for a .vdb file).
+bool looksLikeImage(const std::string& path);
+
+/// By ending: .raw, .mhd (with .raw beside it), .mha, .nrrd, .npy, .tif/.tiff (BigTIFF when 4 GB or
+/// more).
+/// @param origin world position of the first voxel's centre in mm (in voxels, where there is no
+///     voxel size), for the formats that have a place for it: MetaImage (Offset) and NRRD (space
+///     origin). The readers take nothing over: what they read begins at voxel (0,0,0).
+/// @throw IoError; InvalidInput for another ending.
+std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInfo& info,
+                                         const std::array<double, 3>& origin = {});
+/// True if createImage knows the ending.
+bool isImageEnding(const std::string& path);
+
+}  // namespace vdb_madf

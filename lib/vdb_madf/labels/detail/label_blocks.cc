@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/labels/detail/label_blocks.h"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+
+#include "vdb_madf/base/detail/parallel.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+using Leaf = Int32Tree::LeafNodeType;
+
+constexpr size_t kLeafGrain = 256;
+
+/// Where a neighbour's voxels go along one axis: [from, from + count) of it to `to` of the halo.
+struct Span {
+  int from, count, to;
+};
+constexpr Span kSpans[3] = {{7, 1, 0}, {0, 8, 1}, {0, 1, 9}};
+
+/// Blocks whose corners the leaf's voxels touch: its own, and those beyond its upper faces that
+/// hold a label.
+void addOrigins(const Leaf& leaf, std::vector<Coord>& origins) {
+  const int32_t* values = leaf.buffer().data();
+  bool used[8] = {};
+  for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
+    if (!labelAt(leaf, values, i)) continue;
+    const int upper = ((i >> 6) == 7) * 4 + ((i >> 3 & 7) == 7) * 2 + ((i & 7) == 7);
+    for (int side = 0; side < 8; ++side)
+      if ((side & ~upper) == 0) used[side] = true;
+  }
+  for (int side = 0; side < 8; ++side)
+    if (used[side])
+      origins.push_back(leaf.origin() +
+                        Coord(8 * (side >> 2), 8 * (side >> 1 & 1), 8 * (side & 1)));
+}
+
+}  // namespace
+
+Int32Tree::ConstPtr withoutTiles(const Int32Grid& labels) {
+  if (!labels.tree().hasActiveTiles()) return labels.constTreePtr();
+  const auto copy = std::make_shared<Int32Tree>(labels.tree());
+  copy->voxelizeActiveTiles();
+  return copy;
+}
+
+void readLabelHalo(const Int32Tree& tree, const Coord& origin, LabelHalo& halo) {
+  const openvdb::tree::ValueAccessor<const Int32Tree, false> accessor(tree);
+  for (int side = 0; side < 27; ++side) {
+    const int dx = side / 9, dy = side / 3 % 3, dz = side % 3;
+    const Coord from = origin.offsetBy(8 * dx - 8, 8 * dy - 8, 8 * dz - 8);
+    const Leaf* leaf = accessor.probeConstLeaf(from);
+    const int32_t* values = leaf ? leaf->buffer().data() : nullptr;
+    int32_t tile = 0;
+    if (!leaf && (!accessor.probeValue(from, tile) || tile < 0)) tile = 0;
+    const Span x = kSpans[dx], y = kSpans[dy], z = kSpans[dz];
+    for (int i = 0; i < x.count; ++i)
+      for (int j = 0; j < y.count; ++j)
+        for (int k = 0; k < z.count; ++k) {
+          const auto offset = openvdb::Index((x.from + i) * 64 + (y.from + j) * 8 + z.from + k);
+          halo[size_t((x.to + i) * 100 + (y.to + j) * 10 + z.to + k)] =
+              leaf ? labelAt(*leaf, values, offset) : tile;
+        }
+  }
+}
+
+LabelBlocks::LabelBlocks(const Int32Grid& labels) : tree_(withoutTiles(labels)) {
+  std::vector<const Leaf*> leaves;
+  tree_->getNodes(leaves);
+  for (const Leaf* leaf : leaves) addOrigins(*leaf, origins_);
+  std::sort(origins_.begin(), origins_.end());
+  origins_.erase(std::unique(origins_.begin(), origins_.end()), origins_.end());
+  countLabels(leaves);
+}
+
+void LabelBlocks::countLabels(const std::vector<const Leaf*>& leaves) {
+  std::map<int32_t, int64_t> counts;
+  std::mutex mutex;
+  parallelFor(leaves.size(), kLeafGrain, nullptr, [&](size_t begin, size_t end) {
+    std::map<int32_t, int64_t> local;
+    for (size_t n = begin; n < end; ++n) {
+      const int32_t* values = leaves[n]->buffer().data();
+      int32_t label = 0;
+      int64_t run = 0;
+      for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
+        const int32_t here = labelAt(*leaves[n], values, i);
+        if (here != label) {
+          if (label) local[label] += run;
+          label = here;
+          run = 0;
+        }
+        ++run;
+      }
+      if (label) local[label] += run;
+    }
+    // Integer sums: the order in which the parts arrive does not matter.
+    const std::lock_guard<std::mutex> lock(mutex);
+    for (const auto& [label, voxels] : local) counts[label] += voxels;
+  });
+  for (const auto& [label, voxels] : counts) {
+    labels_.push_back(label);
+    voxelCounts_.push_back(voxels);
+  }
+}
+
+size_t LabelBlocks::find(const Coord& origin) const {
+  const auto found = std::lower_bound(origins_.begin(), origins_.end(), origin);
+  return found != origins_.end() && *found == origin ? size_t(found - origins_.begin()) : kNone;
+}
+
+uint32_t LabelBlocks::number(int32_t label) const {
+  return uint32_t(std::lower_bound(labels_.begin(), labels_.end(), label) - labels_.begin());
+}
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/labels/detail/label_leaves.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "vdb_madf/base/detail/bits.h"
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/simd.h"
+#include "vdb_madf/grids/object_mask.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+/// The voxels of a leaf with a value, of those in `within`.
+VDB_MADF_SIMD LeafIndex::Mask voxelsOf(const int32_t* values, int32_t value,
+                                       const LeafIndex::Mask& within) {
+  LeafIndex::Mask mask;
+  for (size_t x = 0; x < 8; ++x) {
+    uint8_t equal[64];
+    for (size_t i = 0; i < 64; ++i) equal[i] = values[x * 64 + i] == value;
+    uint64_t bits = 0;
+    for (size_t y = 0; y < 8; ++y) {
+      uint64_t bytes;
+      std::memcpy(&bytes, equal + 8 * y, sizeof bytes);
+      bits |= uint64_t(packBits(bytes)) << 8 * y;
+    }
+    mask[x] = bits & within[x];
+  }
+  return mask;
+}
+
+void addParts(const int32_t* values, LeafIndex::Mask rest, std::vector<LabelPart>& parts) {
+  for (size_t x = 0; x < 8; ++x) {
+    while (rest[x]) {
+      const int32_t label = values[x * 64 + size_t(__builtin_ctzll(rest[x]))];
+      parts.push_back({label, voxelsOf(values, label, rest)});
+      for (size_t i = x; i < 8; ++i) rest[i] &= ~parts.back().mask[i];
+    }
+  }
+}
+
+}  // namespace
+
+LabelLeaves::LabelLeaves(const Int32Grid& labels, Interrupter* interrupter)
+    : index_(*objectMask(labels)), chunks_((index_.leafCount() + kChunk - 1) / kChunk) {
+  parallelFor(chunks_.size(), 1, interrupter, [&](size_t begin, size_t end) {
+    const Int32Grid::ConstAccessor accessor = labels.getConstAccessor();
+    for (size_t i = begin; i < end; ++i) {
+      auto& [parts, first] = chunks_[i];
+      for (size_t leaf = i * kChunk; leaf < std::min((i + 1) * kChunk, index_.leafCount());
+           ++leaf) {
+        if (const auto* node = accessor.probeConstLeaf(index_.origin(leaf)))
+          addParts(node->buffer().data(), index_.mask(leaf), parts);
+        else
+          parts.push_back({accessor.getValue(index_.origin(leaf)), index_.mask(leaf)});
+        first.push_back(uint32_t(parts.size()));
+      }
+    }
+  });
+}
+
+int32_t LabelLeaves::label(size_t leaf, int offset) const {
+  for (const LabelPart& part : parts(leaf))
+    if (part.mask[size_t(offset) >> 6] >> (offset & 63) & 1) return part.label;
+  return 0;
+}
+
+}  // namespace vdb_madf::detail

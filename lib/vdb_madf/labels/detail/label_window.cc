@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/labels/detail/label_window.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "vdb_madf/base/detail/simd.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+/// Adds the voxels of a leaf, `side` of the 27 of a LeafNeighborhood.
+VDB_MADF_SIMD void addLeaf(const LeafIndex::Mask& mask, int side, WindowRows& rows) {
+  const int dx = side / 9 - 1, dy = side / 3 % 3 - 1, dz = side % 3 - 1;
+  const int begin = std::max(8 * dx, WindowRows::kBeginX),
+            end = std::min(8 * dx + 8, WindowRows::kEndX);
+  for (int x = begin; x < end; ++x) {
+    uint8_t bytes[8];
+    std::memcpy(bytes, &mask[size_t(x & 7)], sizeof bytes);
+    uint32_t* line = rows.line(x) + 8 * (dy + 1);
+    for (int y = 0; y < 8; ++y) line[y] |= uint32_t(bytes[y]) << 8 * (dz + 1);
+  }
+}
+
+}  // namespace
+
+void LabelWindow::labelled(WindowRows& rows) const {
+  rows.rows.fill(0);
+  for (int side = 0; side < 27; ++side)
+    if (const uint32_t leaf = around_[size_t(side)]; leaf != LeafIndex::kNone)
+      addLeaf(labels_->index().mask(leaf), side, rows);
+}
+
+void LabelWindow::labelled(int32_t label, WindowRows& rows) const {
+  rows.rows.fill(0);
+  for (int side = 0; side < 27; ++side) {
+    const uint32_t leaf = around_[size_t(side)];
+    if (leaf == LeafIndex::kNone) continue;
+    for (const LabelPart& part : labels_->parts(leaf))
+      if (part.label == label) addLeaf(part.mask, side, rows);
+  }
+}
+
+int32_t LabelWindow::label(int x, int y, int z) const {
+  const int side = ((x >> 3) + 1) * 9 + ((y >> 3) + 1) * 3 + (z >> 3) + 1;
+  return labels_->label(around_[size_t(side)], (x & 7) * 64 + (y & 7) * 8 + (z & 7));
+}
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "vdb_madf/labels/detail/label_leaves.h"
+#include "vdb_madf/leaves/detail/leaf_neighborhood.h"
+
+namespace vdb_madf::detail {
+
+/// A set of voxels in and around a leaf: x from -4 to 13 from its origin, y and z from -8 to 15.
+struct WindowRows {
+  static constexpr int kBeginX = -4, kEndX = 14;
+  static constexpr int kBegin = -8, kEnd = 16;  ///< of y and z
+  static constexpr int kLine = kEnd - kBegin;   ///< rows of a line
+
+  /// The rows of all y, from kBegin on; bit z + 8 of a row is voxel z.
+  const uint32_t* line(int x) const { return rows.data() + size_t((x - kBeginX) * kLine); }
+  uint32_t* line(int x) { return rows.data() + size_t((x - kBeginX) * kLine); }
+  uint32_t row(int x, int y) const { return line(x)[y - kBegin]; }
+
+  alignas(64) std::array<uint32_t, size_t((kEndX - kBeginX) * kLine)> rows;
+};
+
+/// Which voxels in and around a leaf have a label. One per thread.
+class LabelWindow {
+ public:
+  explicit LabelWindow(const LabelLeaves& labels)
+      : labels_(&labels), neighborhood_(labels.index()) {}
+
+  void moveTo(size_t leaf) { around_ = neighborhood_.around(leaf); }
+
+  /// The voxels that have any label, or this one.
+  void labelled(WindowRows& rows) const;
+  void labelled(int32_t label, WindowRows& rows) const;
+  /// Of a labelled voxel, -8 to 15 along each axis.
+  int32_t label(int x, int y, int z) const;
+
+ private:
+  const LabelLeaves* labels_;
+  LeafNeighborhood neighborhood_;
+  std::array<uint32_t, 27> around_{};
+};
+
+}  // namespace vdb_madf::detail

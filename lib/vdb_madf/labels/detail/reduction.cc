@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/labels/detail/reduction.h"
+
+#include <openvdb/Metadata.h>
+
+#include <algorithm>
+
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/labels/detail/label_blocks.h"
+#include "vdb_madf/labels/reduced_labels.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+constexpr size_t kLeafGrain = 4;
+
+int floorDiv(int a, int b) {
+  return a >= 0 ? a / b : -((b - 1 - a) / b);
+}
+
+}  // namespace
+
+Coord floorDiv(const Coord& a, int b) {
+  return {floorDiv(a.x(), b), floorDiv(a.y(), b), floorDiv(a.z(), b)};
+}
+
+Reduction::Reduction(const Int32Grid& labels, int factor)
+    : tree_(withoutTiles(labels)), factor_(factor) {
+  if (factor < 1 || factor > kMaxReduction)
+    throw InvalidInput("the reduction must lie between 1 and 256");
+  std::vector<const Leaf*> leaves;
+  tree_->getNodes(leaves);
+  for (const Leaf* leaf : leaves) {
+    const Coord low = floorDiv(leaf->origin(), factor) & ~7,
+                high = floorDiv(leaf->origin().offsetBy(7), factor) & ~7;
+    for (int x = low.x(); x <= high.x(); x += 8)
+      for (int y = low.y(); y <= high.y(); y += 8)
+        for (int z = low.z(); z <= high.z(); z += 8) pairs_.push_back({Coord(x, y, z), leaf});
+  }
+  std::sort(pairs_.begin(), pairs_.end());
+  for (size_t i = 0; i < pairs_.size(); ++i)
+    if (i == 0 || pairs_[i].origin != pairs_[i - 1].origin) first_.push_back(i);
+  first_.push_back(pairs_.size());
+}
+
+void Reduction::run(const std::function<void(size_t, const Coord&, const Cells&)>& f,
+                    Interrupter* interrupter) const {
+  parallelFor(leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+    std::vector<uint64_t> keys;
+    for (size_t n = begin; n < end; ++n) {
+      const Coord origin = pairs_[first_[n]].origin;
+      keys.clear();
+      for (size_t i = first_[n]; i < first_[n + 1]; ++i) collect(*pairs_[i].fine, origin, keys);
+      std::sort(keys.begin(), keys.end());
+      f(n, origin, count(keys));
+    }
+  });
+}
+
+/// One key per labelled voxel: its coarse voxel, then its label.
+void Reduction::collect(const Leaf& leaf, const Coord& origin, std::vector<uint64_t>& keys) const {
+  const int32_t* values = leaf.buffer().data();
+  for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
+    const int32_t label = labelAt(leaf, values, voxel.pos());
+    if (label == 0) continue;
+    const Coord p = floorDiv(voxel.getCoord(), factor_);
+    if ((p & ~7) == origin)
+      keys.push_back(uint64_t(Leaf::coordToOffset(p)) << 32 | uint32_t(label));
+  }
+}
+
+Cells Reduction::count(const std::vector<uint64_t>& keys) const {
+  const int64_t all = int64_t(factor_) * factor_ * factor_;
+  Cells cells;
+  for (size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
+    const size_t offset = keys[begin] >> 32;
+    int64_t most = 0;
+    while (end < keys.size() && keys[end] >> 32 == offset) {
+      const size_t run = end;
+      while (end < keys.size() && keys[end] == keys[run]) ++end;
+      if (int64_t(end - run) > most) {
+        most = int64_t(end - run);
+        cells[offset].label = int32_t(keys[run] & 0xffffffffu);
+      }
+    }
+    cells[offset].labelled = int64_t(end - begin);
+    cells[offset].majority = most > all - cells[offset].labelled ? cells[offset].label : 0;
+  }
+  return cells;
+}
+
+void placeReduced(openvdb::GridBase& grid, const Int32Grid& labels, int factor,
+                  const std::string& name) {
+  grid.setName(name);
+  copyProvenance(labels, grid);
+  if (factor == 1) return;
+  // index fine = factor * coarse + (factor - 1) / 2; what is applied first comes last here.
+  const auto transform = labels.transform().copy();
+  transform->preTranslate(openvdb::Vec3d((factor - 1) / 2.0));
+  transform->preScale(factor);
+  grid.setTransform(transform);
+  if (const auto box = domain(labels))
+    setDomain(grid, CoordBBox(floorDiv(box->min(), factor), floorDiv(box->max(), factor)));
+  if (const auto size = voxelSize(labels))  // the unit stays that of the transform
+    grid.insertMeta("madf_voxel_size_m", openvdb::DoubleMetadata(size->metres * factor));
+}
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vdb_madf/grids/grid_types.h"
+
+namespace vdb_madf::detail {
+
+/// Rounds towards minus infinity.
+Coord floorDiv(const Coord& a, int b);
+
+/// What the fine voxels of a coarse one are.
+struct Cell {
+  int32_t majority = 0;  ///< of all
+  int32_t label = 0;     ///< of the labelled ones
+  int64_t labelled = 0;
+};
+using Cells = std::array<Cell, Int32Tree::LeafNodeType::SIZE>;
+
+/// The voxels of a label grid, gathered by the coarse voxels of a whole factor.
+class Reduction {
+ public:
+  /// @throw InvalidInput if the factor is not 1 .. kMaxReduction
+  Reduction(const Int32Grid& labels, int factor);
+
+  size_t leafCount() const { return first_.size() - 1; }
+
+  /// f(number, origin, cells) for every coarse leaf, in parallel. @throw Interrupted
+  void run(const std::function<void(size_t, const Coord&, const Cells&)>& f,
+           Interrupter* interrupter) const;
+
+ private:
+  using Leaf = Int32Tree::LeafNodeType;
+
+  /// The fine leaves that a coarse leaf takes voxels from.
+  struct CoarseLeaf {
+    Coord origin;
+    const Leaf* fine;
+    bool operator<(const CoarseLeaf& o) const {
+      return origin != o.origin ? origin < o.origin : fine->origin() < o.fine->origin();
+    }
+  };
+
+  void collect(const Leaf& leaf, const Coord& origin, std::vector<uint64_t>& keys) const;
+  Cells count(const std::vector<uint64_t>& keys) const;
+
+  Int32Tree::ConstPtr tree_;
+  const int factor_;
+  std::vector<CoarseLeaf> pairs_;
+  std::vector<size_t> first_;
+};
+
+/// Tells a coarse grid its name, and where its voxels lie: transform, domain and voxel size of
+/// `labels`, times the factor.
+void placeReduced(openvdb::GridBase& grid, const Int32Grid& labels, int factor,
+                  const std::string& name);
+
+/// Makes a grid of the leaves that hold anything.
+template <typename Grid>
+typename Grid::Ptr gather(
+    std::vector<std::unique_ptr<typename Grid::TreeType::LeafNodeType>>& leaves,
+    const Int32Grid& labels, int factor, const std::string& name) {
+  const auto grid = Grid::create();
+  for (auto& leaf : leaves)
+    if (leaf && !leaf->isEmpty()) grid->tree().addLeaf(leaf.release());
+  placeReduced(*grid, labels, factor, name);
+  return grid;
+}
+
+template <typename Grid>
+auto leafAt(const Coord& origin) {
+  using GridLeaf = typename Grid::TreeType::LeafNodeType;
+  return std::make_unique<GridLeaf>(origin, typename GridLeaf::ValueType(0));
+}
+
+}  // namespace vdb_madf::detail

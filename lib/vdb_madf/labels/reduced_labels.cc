@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/labels/reduced_labels.h"
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/labels/detail/reduction.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using Leaf = Int32Tree::LeafNodeType;
+
+}  // namespace
+
+int reductionFor(const CoordBBox& box, int maxDim) {
+  if (maxDim < 1) throw InvalidInput("the largest size must be 1 voxel or more");
+  if (box.empty()) return 1;
+  for (int factor = 1; factor <= kMaxReduction; ++factor) {
+    const Coord size = detail::floorDiv(box.max(), factor) - detail::floorDiv(box.min(), factor);
+    if (std::max({size.x(), size.y(), size.z()}) < maxDim) return factor;
+  }
+  throw InvalidInput("a reduction of more than 256 would be needed: allow a larger size");
+}
+
+Int32Grid::Ptr reduceLabels(const Int32Grid& labels, int factor, Interrupter* interrupter) {
+  const detail::Reduction reduction(labels, factor);
+  std::vector<std::unique_ptr<Leaf>> leaves(reduction.leafCount());
+  reduction.run(
+      [&](size_t n, const Coord& origin, const detail::Cells& cells) {
+        leaves[n] = detail::leafAt<Int32Grid>(origin);
+        for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
+          if (cells[i].majority) leaves[n]->setValueOn(i, cells[i].majority);
+      },
+      interrupter);
+  return detail::gather<Int32Grid>(leaves, labels, factor, labels.getName());
+}
+
+}  // namespace vdb_madf

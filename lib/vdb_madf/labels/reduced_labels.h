@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include "vdb_madf/grids/grid_types.h"
+
+namespace vdb_madf {
+
+// Label grids made smaller by a whole factor: coarse voxel (i,j,k) stands for the fine voxels
+// factor * i .. factor * i + factor - 1 along each axis, and its centre lies at their centre in the
+// world. Domain and voxel size follow; provenance is carried over. Labels are the active voxels
+// (tiles included) of positive value. Factor 1 changes nothing but the topology: no tiles.
+
+constexpr int kMaxReduction = 256;
+
+/// The smallest factor that makes a box at most `maxDim` voxels long.
+/// @throw InvalidInput if that exceeds kMaxReduction, or maxDim < 1.
+int reductionFor(const CoordBBox& box, int maxDim);
+
+/// Each coarse voxel takes the most frequent value of its fine ones, background (0) included; of
+/// equally frequent ones the smallest. Labels are never averaged.
+/// @throw InvalidInput if the factor is not 1 .. kMaxReduction; Interrupted.
+Int32Grid::Ptr reduceLabels(const Int32Grid& labels, int factor,
+                            Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

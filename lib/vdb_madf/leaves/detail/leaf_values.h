@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+
+#include "vdb_madf/leaves/leaf_index.h"
+
+namespace vdb_madf::detail {
+
+/// Spreads the values of a leaf's object voxels, one after the other as a VoxelArray holds them,
+/// over all of its 512 voxels; 0 outside the object. Reads (and does not use) up to
+/// VoxelArray::kSlack values past the last.
+void expandLeaf(const LeafIndex::Mask& mask, const uint32_t* values, uint32_t* dense);
+
+/// The way back: the dense values of the object voxels, one after the other.
+void packLeaf(const LeafIndex::Mask& mask, const uint32_t* dense, uint32_t* values);
+
+inline void expandLeaf(const LeafIndex::Mask& mask, const int32_t* values, int32_t* dense) {
+  expandLeaf(mask, reinterpret_cast<const uint32_t*>(values), reinterpret_cast<uint32_t*>(dense));
+}
+inline void packLeaf(const LeafIndex::Mask& mask, const int32_t* dense, int32_t* values) {
+  packLeaf(mask, reinterpret_cast<const uint32_t*>(dense), reinterpret_cast<uint32_t*>(values));
+}
+
+}  // namespace vdb_madf::detail

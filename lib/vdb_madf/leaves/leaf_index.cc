@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/leaves/leaf_index.h"
+
+#include <algorithm>
+
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/leaves/detail/voxels.h"
+
+namespace vdb_madf {
+
+namespace {
+
+constexpr LeafIndex::Mask kFullMask = {~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull};
+
+struct SourceLeaf {
+  Coord origin;
+  const MaskTree::LeafNodeType* leaf;  // null: part of an active tile
+};
+
+/// Calls f(box) for every active tile.
+template <typename F>
+void forEachActiveTile(const MaskTree& tree, const F& f) {
+  auto tile = tree.cbeginValueOn();
+  tile.setMaxDepth(MaskTree::ValueOnCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile) {
+    CoordBBox box;
+    tile.getBoundingBox(box);
+    f(box);
+  }
+}
+
+/// The active bounding box; checks the limits before a tile is cut into leaves.
+CoordBBox checkedBoundingBox(const MaskTree& tree) {
+  size_t leaves = tree.leafCount();
+  forEachActiveTile(tree, [&](const CoordBBox& box) { leaves += box.volume() / 512; });
+  if (leaves > kMaxLeaves)
+    throw InvalidInput("the object touches " + std::to_string(leaves) +
+                       " leaf nodes, more than the " + std::to_string(kMaxLeaves) +
+                       " that 32-bit voxel ids can hold: crop or coarsen the volume");
+  CoordBBox box;
+  if (!tree.evalActiveVoxelBoundingBox(box)) return {};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.min()[axis] < -kMaxCoordinate || box.max()[axis] > kMaxCoordinate)
+      throw InvalidInput("the object has coordinates beyond +-" + std::to_string(kMaxCoordinate) +
+                         ": move it nearer to the origin");
+    if (int64_t(box.max()[axis]) - box.min()[axis] + 1 > kMaxExtent)
+      throw InvalidInput("the object is longer than " + std::to_string(kMaxExtent) +
+                         " voxels along an axis, beyond which squared distances overflow: crop or "
+                         "coarsen the volume");
+  }
+  return box;
+}
+
+std::vector<SourceLeaf> sortedLeaves(const MaskTree& tree) {
+  std::vector<SourceLeaf> leaves;
+  for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf)
+    if (!leaf->isEmpty()) leaves.push_back({leaf->origin(), &*leaf});
+  forEachActiveTile(tree, [&](const CoordBBox& box) {
+    for (int x = box.min().x(); x <= box.max().x(); x += 8)
+      for (int y = box.min().y(); y <= box.max().y(); y += 8)
+        for (int z = box.min().z(); z <= box.max().z(); z += 8)
+          leaves.push_back({Coord(x, y, z), nullptr});
+  });
+  detail::parallelSort(leaves.begin(), leaves.end(),
+                     [](const auto& a, const auto& b) { return a.origin < b.origin; });
+  return leaves;
+}
+
+/// Links each leaf to the one 8 voxels further along an axis. Shifting keeps the order of origins,
+/// so one merge-like walk finds all pairs.
+void linkNeighbors(const std::vector<Coord>& origins, int axis,
+                   std::vector<LeafIndex::Neighbors>& neighbors) {
+  size_t j = 0;
+  for (size_t i = 0; i < origins.size(); ++i) {
+    Coord target = origins[i];
+    target[axis] += 8;
+    while (j < origins.size() && origins[j] < target) ++j;
+    if (j < origins.size() && origins[j] == target) {
+      neighbors[i][2 * axis + 1] = uint32_t(j);
+      neighbors[j][2 * axis] = uint32_t(i);
+    }
+  }
+}
+
+/// Makes the leaves in parallel, then hangs them into a tree; value(rank) gives a voxel's value,
+}  // namespace
+
+LeafIndex::LeafIndex(const MaskGrid& object) {
+  const MaskTree& tree = object.constTree();
+  boundingBox_ = checkedBoundingBox(tree);
+  const std::vector<SourceLeaf> leaves = sortedLeaves(tree);
+  origins_.resize(leaves.size());
+  masks_.resize(leaves.size());
+  neighbors_.assign(leaves.size(), {kNone, kNone, kNone, kNone, kNone, kNone});
+  firstRank_.resize(leaves.size() + 1);
+  wordRank_.resize(leaves.size());
+  for (size_t i = 0; i < leaves.size(); ++i) {
+    origins_[i] = leaves[i].origin;
+    masks_[i] = kFullMask;
+    if (leaves[i].leaf)
+      for (int x = 0; x < 8; ++x)
+        masks_[i][x] = leaves[i].leaf->getValueMask().template getWord<uint64_t>(x);
+    uint32_t count = 0;
+    for (size_t x = 0; x < 8; ++x) {
+      wordRank_[i][x] = uint16_t(count);
+      count += detail::countBits(masks_[i][x]);
+    }
+    firstRank_[i + 1] = firstRank_[i] + count;
+  }
+  for (int axis = 0; axis < 3; ++axis) linkNeighbors(origins_, axis, neighbors_);
+}
+
+}  // namespace vdb_madf

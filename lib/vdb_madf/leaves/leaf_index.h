@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "vdb_madf/base/detail/bits.h"
+#include "vdb_madf/base/limits.h"
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/leaves/voxel_array.h"
+
+namespace vdb_madf {
+
+/// Position of a voxel in a LeafIndex: leaf * 512 + offset, offset = x*64 + y*8 + z within the
+/// leaf.
+using VoxelId = uint32_t;
+
+/// The topology of the object X: its 8x8x8 leaves sorted by origin (x, then y, then z), their masks
+/// and their six neighbours. The one place that knows the topology; every stage works on it.
+class LeafIndex {
+ public:
+  static constexpr uint32_t kNone = 0xffffffffu;  ///< no neighbour
+
+  /// Bit y*8 + z of word x is voxel (x, y, z) of the leaf.
+  using Mask = std::array<uint64_t, 8>;
+  /// -x, +x, -y, +y, -z, +z; kNone where there is no leaf.
+  using Neighbors = std::array<uint32_t, 6>;
+
+  LeafIndex() = default;
+  /// Active voxels of the mask, active tiles included.
+  /// @throw InvalidInput if there are more than kMaxLeaves leaves (tiles counted as leaves), the
+  ///   object is longer than kMaxExtent along an axis, or has coordinates beyond kMaxCoordinate.
+  explicit LeafIndex(const MaskGrid& object);
+
+  size_t leafCount() const { return origins_.size(); }
+  int64_t voxelCount() const { return firstRank_.back(); }  ///< |X|, size of a VoxelArray
+  /// Of the active voxels; empty if there are none.
+  const CoordBBox& boundingBox() const { return boundingBox_; }
+
+  const Coord& origin(size_t leaf) const { return origins_[leaf]; }
+  const Mask& mask(size_t leaf) const { return masks_[leaf]; }
+  const Neighbors& neighbors(size_t leaf) const { return neighbors_[leaf]; }
+
+  /// Object voxels before a leaf, and in it.
+  size_t firstRank(size_t leaf) const { return firstRank_[leaf]; }
+  size_t leafVoxels(size_t leaf) const { return firstRank_[leaf + 1] - firstRank_[leaf]; }
+  /// Object voxels before a voxel: where a VoxelArray holds its value.
+  size_t rank(VoxelId id) const {
+    const size_t leaf = id >> 9, x = id >> 6 & 7;
+    const uint64_t before = masks_[leaf][x] & ((uint64_t(1) << (id & 63)) - 1);
+    return firstRank_[leaf] + wordRank_[leaf][x] + detail::countBits(before);
+  }
+
+  Coord coord(VoxelId id) const {
+    const Coord& o = origins_[id >> 9];
+    return {o.x() + int(id >> 6 & 7), o.y() + int(id >> 3 & 7), o.z() + int(id & 7)};
+  }
+
+ private:
+  std::vector<Coord> origins_;
+  std::vector<Mask> masks_;
+  std::vector<Neighbors> neighbors_;
+  std::vector<uint32_t> firstRank_{0};             // one more at the end
+  std::vector<std::array<uint16_t, 8>> wordRank_;  // object voxels of the leaf before each word
+  CoordBBox boundingBox_;
+};
+
+}  // namespace vdb_madf

@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/measure/detail/leaf_surface.h"
+
+#include <algorithm>
+
+namespace vdb_madf::detail {
+
+namespace {
+
+// Twice the radii in which faces make a normal. Chosen on planes, spheres and discs: a free surface
+// is curved, and 2.5 voxels are enough; interfaces are flat but for their rims.
+constexpr int kFreeReach = 5;    // 2.5 voxels
+constexpr int kSharedReach = 8;  // 4 voxels
+
+/// How far apart two voxels of two grains are that make a pair.
+constexpr std::array<int, 3> kSteps = {1, 2, 4};
+
+/// In voxels: a rim that widens so much between pairs 2 and 4 apart lies in a groove, no less.
+/// Chosen on discs.
+constexpr double kGroove = 0.4;
+
+// Lower voxels of the faces in reach of those that are measured, along their axis.
+constexpr int kFreeBegin = -3, kFreeLast = 9, kSharedBegin = -4, kSharedLast = 12;
+
+/// Bit z + 8: voxel (x, y, z) of a leaf lies in the domain.
+uint32_t insideDomain(const CoordBBox& domain, const Coord& origin, int x, int y) {
+  const Coord at = origin.offsetBy(x, y, 0);
+  if (!domain.isInside(Coord(at.x(), at.y(), domain.min().z()))) return 0;
+  const int64_t first = std::max<int64_t>(int64_t(domain.min().z()) - at.z() + 8, 0),
+                last = std::min<int64_t>(int64_t(domain.max().z()) - at.z() + 8, 31);
+  return first <= last ? uint32_t((uint64_t(2) << last) - (uint64_t(1) << first)) : 0;
+}
+
+/// The voxels that lie 1, 2 or 4 above one of a set in the leaf.
+void reachUpwards(const WindowRows& set, WindowRows& reached) {
+  reached.rows.fill(0);
+  for (int x = 0; x < 8; ++x) {
+    for (int y = 0; y < 8; ++y) {
+      const uint32_t row = set.row(x, y) & 0xff00u;
+      for (const int step : kSteps) {
+        reached.line(x + step)[y - WindowRows::kBegin] |= row;
+        reached.line(x)[y + step - WindowRows::kBegin] |= row;
+        reached.line(x)[y - WindowRows::kBegin] |= row << step;
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void LeafSurface::findBackground() {
+  for (size_t i = 0; i < labelled_.rows.size(); ++i) background_.rows[i] = ~labelled_.rows[i];
+  const CoordBBox window(origin_.offsetBy(WindowRows::kBeginX),
+                         origin_.offsetBy(WindowRows::kEndX - 1));
+  atBorder_ = domain_ && !domain_->isInside(window);
+  if (!atBorder_) return;
+  for (int x = WindowRows::kBeginX; x < WindowRows::kEndX; ++x) {
+    for (int y = WindowRows::kBegin; y < WindowRows::kEnd; ++y) {
+      const uint32_t inside = insideDomain(*domain_, origin_, x, y);
+      outside_.line(x)[y - WindowRows::kBegin] = ~inside;
+      background_.line(x)[y - WindowRows::kBegin] &= inside;
+    }
+  }
+}
+
+void LeafSurface::measureFree(int32_t label) {
+  free_.emplace_back().label = label;
+  targets_.clear();
+  for (int side = 0; side < 6; ++side)
+    addTargets(own_, background_, side >> 1, side & 1 ? -1 : 1, side, targets_);
+  if (!targets_.empty()) {
+    faces_.collect(own_, background_, kFreeBegin, kFreeLast);
+    free_.back().area =
+        faces_.area(targets_.data(), targets_.data() + targets_.size(), kFreeReach, true);
+  }
+  if (!atBorder_) return;
+  targets_.clear();
+  for (int side = 0; side < 6; ++side)
+    addTargets(own_, outside_, side >> 1, side & 1 ? -1 : 1, side, targets_);
+  free_.back().cutFaces = int64_t(targets_.size());
+}
+
+/// All bonds with a voxel of a label below one of another, near enough for a pair.
+void LeafSurface::measureShared(int32_t label) {
+  reachUpwards(own_, near_);
+  for (size_t i = 0; i < near_.rows.size(); ++i) near_.rows[i] &= labelled_.rows[i] & ~own_.rows[i];
+  for (int x = 0; x < 12; ++x) {
+    for (int y = 0; y < 12; ++y) {
+      while (const uint32_t row = near_.row(x, y)) {
+        const int32_t other = window_.label(x, y, __builtin_ctz(row) - 8);
+        window_.labelled(other, other_);
+        for (size_t i = 0; i < near_.rows.size(); ++i) near_.rows[i] &= ~other_.rows[i];
+        measureBond(label, other);
+      }
+    }
+  }
+}
+
+void LeafSurface::measureBond(int32_t label, int32_t other) {
+  const auto bond = std::minmax(label, other);
+  if (std::find(bonds_.begin(), bonds_.end(), std::pair<int32_t, int32_t>(bond)) != bonds_.end())
+    return;
+  bonds_.emplace_back(bond);
+  const WindowRows& first = label < other ? own_ : other_;
+  const WindowRows& second = label < other ? other_ : own_;
+  faces_.collect(first, second, kSharedBegin, kSharedLast);
+  Shared shared;
+  shared.first = bond.first;
+  shared.second = bond.second;
+  for (size_t i = 0; i < kSteps.size(); ++i) {
+    targets_.clear();
+    for (int axis = 0; axis < 3; ++axis) {
+      addTargets(first, second, axis, kSteps[i], 2 * axis, targets_);
+      addTargets(second, first, axis, kSteps[i], 2 * axis + 1, targets_);
+    }
+    shared.areas[i] =
+        faces_.area(targets_.data(), targets_.data() + targets_.size(), kSharedReach, false);
+    if (kSteps[i] > 1) continue;
+    for (const SurfaceTarget& target : targets_) {
+      InterfaceFace face;
+      // Halves are rounded down: the lower voxel.
+      for (int k = 0; k < 3; ++k) face.lower[k] = origin_[k] + (target.center[size_t(k)] >> 1);
+      face.axis = int8_t(target.side >> 1);
+      face.sign = int8_t(target.side & 1 ? -1 : 1);
+      shared.faces.push_back(face);
+    }
+  }
+  if (!shared.faces.empty() || shared.areas[1] || shared.areas[2])
+    shared_.push_back(std::move(shared));
+}
+
+void LeafSurface::measure(size_t leaf) {
+  free_.clear();
+  shared_.clear();
+  bonds_.clear();
+  origin_ = labels_->index().origin(leaf);
+  window_.moveTo(leaf);
+  window_.labelled(labelled_);
+  findBackground();
+  for (const LabelPart& part : labels_->parts(leaf)) {
+    window_.labelled(part.label, own_);
+    measureFree(part.label);
+    measureShared(part.label);
+  }
+}
+
+double bondArea(const std::array<int64_t, 3>& areas) {
+  const double one = double(areas[0]) / kAreaUnit, two = double(areas[1]) / (2 * kAreaUnit),
+               four = double(areas[2]) / (4 * kAreaUnit);
+  // Two more voxels between the pairs widen the rim of a disc by so much.
+  const double widening = (four - two) / (2 * std::sqrt(M_PI * std::max(two, 1.0)));
+  const double groove = std::clamp(widening / kGroove, 0.0, 1.0);
+  const double atZero = (1 - groove) * (2 * one - two) + groove * (2 * two - four);
+  return std::clamp(atZero, 0.25 * one, 1.1 * one);
+}
+
+}  // namespace vdb_madf::detail

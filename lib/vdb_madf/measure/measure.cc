@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/measure/measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "vdb_madf/leaves/object_components.h"
+#include "vdb_madf/measure/correlation_length.h"
+#include "vdb_madf/measure/detail/grain_representatives.h"
+#include "vdb_madf/measure/detail/label_sums.h"
+#include "vdb_madf/measure/euler_characteristic.h"
+#include "vdb_madf/method/boundary.h"
+#include "vdb_madf/method/segmentation_metadata.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using Representatives = std::map<int32_t, detail::GrainRepresentative>;
+
+void setRepresentatives(const Representatives& representatives, Measurements& result) {
+  if (representatives.empty()) return;
+  for (GrainMeasures& grain : result.grains) {
+    const detail::GrainRepresentative& deepest = representatives.at(grain.id);
+    grain.representative = deepest.voxel;
+    grain.inscribedRadius = std::sqrt(double(deepest.squaredRadius));
+  }
+  for (BondMeasures& bond : result.bonds) {
+    const detail::GrainRepresentative &a = representatives.at(bond.first),
+                                      &b = representatives.at(bond.second);
+    int64_t squaredDistance = 0;
+    for (int i = 0; i < 3; ++i) {
+      const int64_t d = int64_t(a.voxel[i]) - b.voxel[i];
+      squaredDistance += d * d;
+    }
+    bond.distance = std::sqrt(double(squaredDistance));
+    bond.cosAlpha = double(squaredDistance - a.squaredRadius - b.squaredRadius) /
+                    (2 * std::sqrt(double(int64_t(a.squaredRadius) * int64_t(b.squaredRadius))));
+  }
+}
+
+}  // namespace
+
+Measurements measure(const Int32Grid& labels, const MeasureOptions& options,
+                     Interrupter* interrupter) {
+  const detail::LabelLeaves leaves(labels, interrupter);
+  const LeafIndex& index = leaves.index();
+  const std::optional<CoordBBox> domainBox = options.domain ? options.domain : domain(labels);
+  const Boundary boundary =
+      options.boundary == Boundary::automatic ? storedBoundary(labels) : options.boundary;
+  const Obstacles obstacles = resolveBoundary(index, boundary, domainBox);
+
+  Measurements result;
+  result.voxelSize = voxelSize(labels);
+  SampleMeasures& sample = result.sample;
+  sample.domainKnown = domainBox.has_value();
+  sample.box = domainBox.value_or(index.boundingBox());
+  {
+    const detail::LabelSums sums = detail::labelSums(
+        leaves, obstacles.open ? std::optional(obstacles.domain) : std::nullopt, interrupter);
+    result.bonds = detail::bondMeasures(sums, interrupter);
+    result.grains = detail::grainMeasures(sums, result.bonds, sample.box);
+  }
+  setRepresentatives(detail::grainRepresentatives(leaves, obstacles, interrupter), result);
+  detail::summarize(result.grains, result.bonds, sample);
+  sample.correlationLengths = correlationLengths(index, sample.box, interrupter);
+  sample.eulerCharacteristic = eulerCharacteristic(index, interrupter);
+  sample.components = ObjectComponents(index).count();
+  return result;
+}
+
+}  // namespace vdb_madf

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "vdb_madf/base/voxel_size.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/measure/measure_bonds.h"
+#include "vdb_madf/measure/measure_grains.h"
+#include "vdb_madf/measure/measure_sample.h"
+#include "vdb_madf/method/boundary.h"
+#include "vdb_madf/method/squared_distance.h"
+
+namespace vdb_madf {
+
+struct MeasureOptions {
+  /// What lies beyond the domain; automatic: what the grid says, else open if its domain is known.
+  /// Open: the faces of the domain are no surface (GrainMeasures::cutArea). Closed: they are.
+  Boundary boundary = Boundary::automatic;
+  std::optional<CoordBBox> domain;  ///< overrides the domain in the grid's metadata
+};
+
+/// Grains, bonds and the sample; lengths in voxels.
+struct Measurements {
+  std::vector<GrainMeasures> grains;  ///< by id
+  std::vector<BondMeasures> bonds;    ///< by first, then second
+  SampleMeasures sample;
+  std::optional<VoxelSize> voxelSize;  ///< of the grid
+};
+
+/// Measures labels: each value of the active voxels (tiles included) above 0 is a grain, in one
+/// piece or not. Areas are estimated (surface area: detail/leaf_surface.h says how), all else is
+/// exact. Depends on nothing but labels, domain and boundary: not on tiles or threads, bit for bit.
+/// Memory: per grain, per face of a bond, and for the representatives per voxel.
+/// @throw InvalidInput if labels leave the domain, the boundary is open without one, or a limit of
+///   leaf_index.h is exceeded; Interrupted.
+Measurements measure(const Int32Grid& labels, const MeasureOptions& options = {},
+                     Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

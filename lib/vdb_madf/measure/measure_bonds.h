@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/measure/interface_curvature.h"
+
+namespace vdb_madf {
+
+/// Two grains that share at least one voxel face; lengths in voxels.
+struct BondMeasures {
+  int32_t first = 0, second = 0;  ///< labels, first < second
+  int64_t faces = 0;              ///< voxel faces between them: overestimates the area
+  double area = 0;
+  double equivalentRadius = 0;  ///< of the disc of this area
+  openvdb::Vec3d centroid;      ///< mean of the centres of the faces
+  /// Unit vector from the first to the second grain: direction of the sum of the faces' normals. If
+  /// they cancel (one grain encloses the other), the direction of least extent.
+  openvdb::Vec3d normal;
+  double flatness = 0;  ///< smallest eigenvalue of the covariance of the faces' centres, voxels^2
+  int patches = 0;      ///< parts of the interface, faces with a common corner being one
+  std::optional<InterfaceCurvature> curvature;
+  /// Between the representatives c of the grains, with squared inscribed radii D: their distance
+  /// and cos alpha = (|c1 - c2|^2 - D1 - D2) / (2 sqrt(D1 D2)). None without background.
+  std::optional<double> distance, cosAlpha;
+};
+
+namespace detail {
+struct LabelSums;
+
+/// Without distance and angle. @throw Interrupted
+std::vector<BondMeasures> bondMeasures(const LabelSums& sums, Interrupter* interrupter);
+}  // namespace detail
+
+}  // namespace vdb_madf

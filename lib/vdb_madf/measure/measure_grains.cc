@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/measure/measure_grains.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "vdb_madf/measure/detail/label_sums.h"
+#include "vdb_madf/measure/detail/principal_axes.h"
+#include "vdb_madf/measure/measure_bonds.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+/// Second moment of a cube of one voxel about its centre, along each axis.
+constexpr double kVoxelMoment = 1.0 / 12;
+
+/// A solid ellipsoid of half axis a has the moment a^2 / 5 along it.
+Principal ellipsoidOf(const GrainSums& grain) {
+  std::array<double, 6> moments = covariance(grain.voxels, grain.sum, grain.products);
+  for (size_t i = 0; i < 3; ++i) moments[i] += kVoxelMoment;
+  Principal principal = principalAxes(moments);
+  for (double& value : principal.values) value = 2 * std::sqrt(5 * std::max(0.0, value));
+  return principal;
+}
+
+bool touchesFace(const CoordBBox& box, const CoordBBox& domain) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (box.min()[axis] <= domain.min()[axis] || box.max()[axis] >= domain.max()[axis]) return true;
+  return false;
+}
+
+}  // namespace
+
+std::vector<GrainMeasures> grainMeasures(const LabelSums& sums,
+                                         const std::vector<BondMeasures>& bonds,
+                                         const CoordBBox& domain) {
+  std::vector<GrainMeasures> grains;
+  std::unordered_map<int32_t, size_t> row;
+  for (const GrainSums& from : sums.grains) {
+    GrainMeasures grain;
+    grain.id = from.label;
+    grain.voxels = from.voxels;
+    const auto n = double(from.voxels);
+    for (int i = 0; i < 3; ++i)
+      grain.centroid[i] = sums.origin[i] + double(from.sum[size_t(i)]) / n;
+    grain.box = from.box;
+    grain.atDomainFace = touchesFace(from.box, domain);
+    grain.equivalentDiameter = std::cbrt(6 * n / M_PI);
+    grain.freeArea = double(from.freeArea) / kAreaUnit;
+    grain.cutArea = double(from.cutFaces);
+    grain.ellipsoid = ellipsoidOf(from);
+    row[grain.id] = grains.size();
+    grains.push_back(grain);
+  }
+  for (const BondMeasures& bond : bonds) {
+    for (const int32_t id : {bond.first, bond.second}) {
+      GrainMeasures& grain = grains[row.at(id)];
+      grain.sharedArea += bond.area;
+      ++grain.coordination;
+    }
+  }
+  for (GrainMeasures& grain : grains) {
+    const double ball = M_PI * grain.equivalentDiameter * grain.equivalentDiameter;
+    const double area = grain.totalArea() + grain.cutArea;
+    grain.sphericity = area > 0 ? ball / area : 0;
+  }
+  return grains;
+}
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "vdb_madf/grids/grid_types.h"
+
+namespace vdb_madf {
+
+/// Three orthogonal directions and what is measured along them, in falling order. Of a direction,
+/// the largest component is positive.
+struct Principal {
+  std::array<openvdb::Vec3d, 3> axes;
+  std::array<double, 3> values{};
+};
+
+/// A grain; lengths in voxels.
+struct GrainMeasures {
+  int32_t id = 0;           ///< its label
+  int64_t voxels = 0;       ///< = volume
+  openvdb::Vec3d centroid;  ///< of the voxels' centres
+  CoordBBox box;            ///< inclusive
+  bool atDomainFace =
+      false;  ///< the box touches a face of the domain (unknown: of all grains' box)
+  /// The voxel of largest squared distance to the background, of several the first; none without
+  /// background. Its distance is the inscribed radius.
+  std::optional<openvdb::Coord> representative;
+  double inscribedRadius = 0;
+  double equivalentDiameter = 0;  ///< of the ball of this volume
+  double freeArea = 0;            ///< towards the background
+  double sharedArea = 0;          ///< sum of the areas of its bonds
+  double cutArea = 0;             ///< on the border of an open domain; part of no other area
+  double sphericity = 0;          ///< area of the ball of this volume / area, the cut one included
+  /// Axes of inertia and the lengths (not half lengths) of the axes of the ellipsoid that has the
+  /// grain's second moments, voxels being cubes.
+  Principal ellipsoid;
+  int coordination = 0;  ///< number of bonds
+
+  double totalArea() const { return freeArea + sharedArea; }
+};
+
+struct BondMeasures;
+
+namespace detail {
+struct LabelSums;
+
+/// From the sums and the bonds; the representatives are left to be filled in.
+std::vector<GrainMeasures> grainMeasures(const LabelSums& sums,
+                                         const std::vector<BondMeasures>& bonds,
+                                         const CoordBBox& domain);
+}  // namespace detail
+
+}  // namespace vdb_madf

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/measure/measure_bonds.h"
+#include "vdb_madf/measure/measure_grains.h"
+
+namespace vdb_madf {
+
+/// Mean of n n^T over directions n: xx, yy, zz, xy, xz, yz; its trace is 1. Isotropic: a third on
+/// each axis. All 0 if there are none.
+struct FabricTensor {
+  std::array<double, 6> components{};
+  Principal principal;
+};
+
+/// A sample; lengths in voxels.
+struct SampleMeasures {
+  CoordBBox box;             ///< what fractions and correlations refer to
+  bool domainKnown = false;  ///< it is the domain; else the box of the grains
+  int64_t objectVoxels = 0;
+  double objectFraction = 0;
+  double freeArea = 0;         ///< of all grains
+  double sharedArea = 0;       ///< of all bonds
+  double specificSurface = 0;  ///< free area per volume of object, 1/voxel
+  std::array<std::optional<double>, 3> correlationLengths;  ///< see correlation_length.h
+  int64_t eulerCharacteristic = 0;                          ///< see euler_characteristic.h
+  int64_t components = 0;                                   ///< 6-connected parts of the object
+  std::vector<int64_t> coordinations;                       ///< grains with 0, 1, 2 ... bonds
+  double meanCoordination = 0;
+  FabricTensor grainFabric;  ///< of the grains' longest axes, weighted by volume
+  FabricTensor bondFabric;   ///< of the bonds' normals, weighted by area
+  /// Mean over the bonds of radius of equal area / radius of the ball of the smaller grain's
+  /// volume.
+  std::optional<double> bondToGrainRatio;
+};
+
+/// Equivalent-sphere diameter below or at which \p share of the grains lie, or of their volume.
+/// \p share in [0, 1]; 0 without grains.
+double diameterPercentile(const std::vector<GrainMeasures>& grains, double share, bool byVolume);
+
+namespace detail {
+/// What follows from the tables of grains and bonds alone.
+void summarize(const std::vector<GrainMeasures>& grains, const std::vector<BondMeasures>& bonds,
+               SampleMeasures& sample);
+}  // namespace detail
+
+}  // namespace vdb_madf

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/method/boundary.h"
+
+#include <sstream>
+
+#include "vdb_madf/base/errors.h"
+
+namespace vdb_madf {
+
+namespace {
+
+std::string toString(const CoordBBox& box) {
+  std::ostringstream text;
+  text << box;
+  return text.str();
+}
+
+}  // namespace
+
+Obstacles resolveBoundary(const LeafIndex& index, Boundary boundary,
+                          const std::optional<CoordBBox>& domain) {
+  if (boundary == Boundary::open && !domain)
+    throw InvalidInput(
+        "the open boundary needs a known domain: give one, or use the closed boundary");
+  if (domain && index.voxelCount() > 0 && !domain->isInside(index.boundingBox()))
+    throw InvalidInput("the object leaves the domain: object " + toString(index.boundingBox()) +
+                       ", domain " + toString(*domain) +
+                       "; crop the object, or give a domain that holds it");
+  Obstacles obstacles;
+  obstacles.open = domain && boundary != Boundary::closed;
+  if (obstacles.open) obstacles.domain = *domain;
+  return obstacles;
+}
+
+}  // namespace vdb_madf

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <optional>
+
+#include "vdb_madf/leaves/leaf_index.h"
+
+namespace vdb_madf {
+
+/// What lies beyond the faces of a scan.
+enum class Boundary {
+  /// Open if the domain is known, else closed.
+  automatic,
+  /// Only voxels inside the domain are background: a grain that a face of the scan cuts is not
+  /// rounded off there.
+  open,
+  /// Everything outside the object is background.
+  closed
+};
+
+/// Boundary and domain, resolved: an open one has a domain.
+struct Obstacles {
+  bool open = false;
+  CoordBBox domain;  ///< used if open
+};
+
+/// @throw InvalidInput: open without a domain, or voxels of `index` outside the domain.
+Obstacles resolveBoundary(const LeafIndex& index, Boundary boundary,
+                          const std::optional<CoordBBox>& domain);
+
+}  // namespace vdb_madf

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <optional>
+
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/method/manifold_graph.h"
+
+namespace vdb_madf {
+
+/// The manifold graph of a grid: one binary metadata value, `madf_manifold_graph`, of a type of the
+/// same name that initialize() registers. Programs that do not know the type skip it.
+///
+/// The value, in bytes, all integers little-endian: version 1 (u32), number of nodes (u32), number
+/// of edges (u32); per node x, y, z, squared radius (i32), voxels (i64); per edge first, second
+/// (u32), contact faces (i64), saddle height (i32), cells touch (u8, 0 or 1).
+/// @throw InvalidInput if the graph breaks a rule of manifold_graph.h (order, ranges), or takes
+///   4 GiB or more.
+void setGraph(openvdb::GridBase& grid, ManifoldGraph graph);
+
+/// Absent: the grid has no graph.
+std::optional<ManifoldGraph> graph(const openvdb::GridBase& grid);
+
+void removeGraph(openvdb::GridBase& grid);
+
+}  // namespace vdb_madf

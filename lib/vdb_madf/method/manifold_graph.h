@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/leaves/voxel_array.h"
+
+namespace vdb_madf {
+
+/// Critical points and how their stable manifolds touch: all that merging needs.
+struct ManifoldGraph {
+  /// A critical point c; nodes are in lexicographic order of position (x, then y, then z).
+  struct Node {
+    Coord position;
+    int32_t squaredRadius = 0;  ///< D(c), voxels squared
+    int64_t voxels = 0;         ///< of its stable manifold
+    bool operator==(const Node& o) const {
+      return position == o.position && squaredRadius == o.squaredRadius && voxels == o.voxels;
+    }
+  };
+  /// Two stable manifolds that contain 6-adjacent voxels. first < second; edges are sorted by both.
+  struct Edge {
+    uint32_t first = 0, second = 0;  ///< node indices
+    int64_t contactFaces = 0;        ///< adjacent voxel pairs, one in either manifold
+    int32_t saddleHeight = 0;        ///< largest min(H(p), H(q)) over these pairs, H = -power
+    bool cellsTouch = false;  ///< some pair lies in the cells of the critical points themselves
+    bool operator==(const Edge& o) const {
+      return first == o.first && second == o.second && contactFaces == o.contactFaces &&
+             saddleHeight == o.saddleHeight && cellsTouch == o.cellsTouch;
+    }
+  };
+  std::vector<Node> nodes;
+  std::vector<Edge> edges;
+};
+
+class LeafIndex;
+struct Flow;
+template <typename T>
+class VoxelArray;
+
+/// The graph of a flow; \p power is the (filtered) power map that it followed. Height of a voxel:
+/// H(p) = -power(p) = D(s) - |p - s|^2 with s = Pi(p).
+/// @throw Interrupted
+ManifoldGraph manifoldGraph(const LeafIndex& index, const Flow& flow,
+                            const VoxelArray<int32_t>& power, Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

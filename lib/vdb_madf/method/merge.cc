@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/method/merge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "vdb_madf/base/detail/disjoint_sets.h"
+#include "vdb_madf/base/errors.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using Node = ManifoldGraph::Node;
+using Edge = ManifoldGraph::Edge;
+
+/// Cosine of the angle at which two balls meet (paper, eq. 7): 1 where they touch from outside,
+/// -1 where one touches the other from inside.
+double cosine(const Node& a, const Node& b) {
+  int64_t squaredDistance = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int64_t d = int64_t(a.position[axis]) - b.position[axis];
+    squaredDistance += d * d;
+  }
+  const int64_t numerator = squaredDistance - a.squaredRadius - b.squaredRadius;
+  const double product = double(int64_t(a.squaredRadius) * b.squaredRadius);
+  return double(numerator) / (2 * std::sqrt(product));
+}
+
+void mergeByAngle(const ManifoldGraph& graph, const MergeOptions& options,
+                  detail::DisjointSets& grains) {
+  for (const Edge& edge : graph.edges) {
+    if (options.adjacency == Adjacency::cell && !edge.cellsTouch) continue;
+    if (cosine(graph.nodes[edge.first], graph.nodes[edge.second]) < options.theta)
+      grains.unite(edge.first, edge.second);
+  }
+}
+
+void mergeByNeck(const ManifoldGraph& graph, double theta, detail::DisjointSets& grains) {
+  std::vector<int32_t> top(graph.nodes.size(), 0);  // largest D of a class, at its root
+  for (uint32_t i = 0; i < graph.nodes.size(); ++i) {
+    int32_t& t = top[grains.find(i)];
+    t = std::max(t, graph.nodes[i].squaredRadius);
+  }
+  std::vector<uint32_t> order;
+  for (uint32_t i = 0; i < graph.edges.size(); ++i)
+    if (graph.edges[i].saddleHeight > 0) order.push_back(i);
+  // Edges are sorted by their pair, and nodes lexicographically: a stable sort settles ties.
+  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    return graph.edges[a].saddleHeight > graph.edges[b].saddleHeight;
+  });
+  const double factor = (1 - theta) / 2;
+  for (const uint32_t i : order) {
+    const Edge& edge = graph.edges[i];
+    const uint32_t a = grains.find(edge.first), b = grains.find(edge.second);
+    if (a == b || !(edge.saddleHeight >= factor * std::min(top[a], top[b]))) continue;
+    const int32_t merged = std::max(top[a], top[b]);
+    grains.unite(a, b);
+    top[grains.find(a)] = merged;
+  }
+}
+
+}  // namespace
+
+void checkMergeOptions(const MergeOptions& options) {
+  if (!(options.theta >= -1 && options.theta <= 1))
+    throw InvalidInput("theta is a cosine: it must lie between -1 and 1");
+}
+
+Merging merge(const ManifoldGraph& graph, const MergeOptions& options) {
+  checkMergeOptions(options);
+  detail::DisjointSets grains(graph.nodes.size());
+  if (options.mode != MergeMode::neck) mergeByAngle(graph, options, grains);
+  if (options.mode != MergeMode::angle) mergeByNeck(graph, options.theta, grains);
+
+  // Nodes are in lexicographic order, so the first of the largest is the representative.
+  const uint32_t count = uint32_t(graph.nodes.size());
+  std::vector<uint32_t> best(count);
+  std::iota(best.begin(), best.end(), 0u);
+  for (uint32_t i = 0; i < count; ++i) {
+    uint32_t& b = best[grains.find(i)];
+    if (graph.nodes[i].squaredRadius > graph.nodes[b].squaredRadius) b = i;
+  }
+  Merging merging;
+  for (uint32_t i = 0; i < count; ++i)
+    if (best[grains.find(i)] == i) merging.representative.push_back(i);
+  std::vector<int32_t> grainOfRoot(count, 0);
+  for (size_t g = 0; g < merging.representative.size(); ++g)
+    grainOfRoot[grains.find(merging.representative[g])] = int32_t(g + 1);
+  merging.grainOfNode.resize(count);
+  for (uint32_t i = 0; i < count; ++i) merging.grainOfNode[i] = grainOfRoot[grains.find(i)];
+  return merging;
+}
+
+std::vector<int64_t> grainVoxels(const ManifoldGraph& graph, const Merging& merging) {
+  std::vector<int64_t> voxels(merging.representative.size(), 0);
+  for (size_t i = 0; i < graph.nodes.size(); ++i)
+    voxels[size_t(merging.grainOfNode[i] - 1)] += graph.nodes[i].voxels;
+  return voxels;
+}
+
+}  // namespace vdb_madf

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vdb_madf/method/manifold_graph.h"
+
+namespace vdb_madf {
+
+enum class MergeMode { both, angle, neck };
+enum class Adjacency {
+  manifold,  ///< the angle test sees all edges of the graph
+  cell       ///< only those where the cells of the critical points touch (as the paper words it)
+};
+
+struct MergeOptions {
+  double theta = -0.9;  ///< cosine in [-1, 1]; -1 merges least
+  MergeMode mode = MergeMode::both;
+  Adjacency adjacency = Adjacency::manifold;
+};
+
+/// Grains as classes of critical points.
+struct Merging {
+  std::vector<int32_t> grainOfNode;  ///< 1..grains, one per node
+  std::vector<uint32_t>
+      representative;  ///< node of grain g at g - 1: largest D, then smaller coordinate
+};
+
+/// @throw InvalidInput unless theta is in [-1, 1] (NaN is not).
+void checkMergeOptions(const MergeOptions& options);
+
+/// Merges critical points by the angle of their balls (paper, section 5.2, eq. 7), then by the
+/// neck.
+///
+/// Angle: cos alpha = (|ci-cj|^2 - D(ci) - D(cj)) / (2 sqrt(D(ci) D(cj))) < theta, each edge tested
+/// once on the original balls. Neck (not in the paper): edges of saddle height h > 0 in descending
+/// order (then ascending pair) merge two classes if h >= (1 - theta)/2 * min(top, top), top =
+/// largest D of a class so far. Grains are numbered in lexicographic order of their
+/// representatives.
+/// @throw InvalidInput as checkMergeOptions.
+Merging merge(const ManifoldGraph& graph, const MergeOptions& options = {});
+
+/// Voxels of grain g at g - 1.
+std::vector<int64_t> grainVoxels(const ManifoldGraph& graph, const Merging& merging);
+
+}  // namespace vdb_madf

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/method/boundary.h"
+#include "vdb_madf/method/merge.h"
+#include "vdb_madf/method/squared_distance.h"
+
+namespace vdb_madf {
+
+/// Every combination of gamma, mode and theta is a row.
+struct SweepOptions {
+  std::vector<int64_t> gammas{0};  ///< voxels, 0 or more
+  std::vector<MergeMode> modes{MergeMode::both};
+  std::vector<double> thetas{-0.9};  ///< cosines in [-1, 1]
+  Adjacency adjacency = Adjacency::manifold;
+  int64_t smallVoxels = 100;  ///< a grain of fewer voxels is small
+  Boundary boundary = Boundary::automatic;
+  std::optional<CoordBBox> domain;  ///< overrides the domain in the mask's metadata
+  int64_t maxMemory = 0;            ///< bytes that a segmentation may need; 0: no limit
+};
+
+/// The grains of one choice of parameters.
+struct SweepRow {
+  int64_t gamma = 0;
+  MergeMode mode = MergeMode::both;
+  double theta = 0;
+  int64_t grains = 0;
+  double medianVoxels = 0;  ///< of the grains' sizes; of an even number the mean of the middle two
+  int64_t smallGrains = 0;  ///< of fewer than smallVoxels voxels
+  int64_t smallVoxels = 0;  ///< in small grains
+  int64_t largestVoxels = 0;  ///< of the largest grain
+  int64_t objectVoxels = 0;
+};
+
+/// The grains for each gamma (in the order given), mode and theta: the volume is segmented once for
+/// each gamma, the graph of manifolds then merged for each mode and theta. Each row equals what
+/// segment() says with these options; the rows do not depend on threads.
+/// @throw InvalidInput if a list is empty, an option is out of range, or as segment(); Interrupted.
+std::vector<SweepRow> sweep(const MaskGrid& object, const SweepOptions& options,
+                            Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include "vdb_madf/leaves/leaf_index.h"
+#include "vdb_madf/leaves/voxel_array.h"
+#include "vdb_madf/method/squared_distance.h"
+
+namespace vdb_madf {
+
+/// For each p in X (arrays by rank, see leaf_index.h) the ball of least power distance pi_x(p) = |p
+/// - x|^2 - D(x) among the balls (x, D(x)) of the sites x; equal power: larger D, then the
+/// lexicographically smaller x.
+struct PowerMap {
+  VoxelArray<int32_t> power;  ///< pi(p), voxels squared
+  VoxelArray<VoxelId> site;   ///< Pi(p); only meaningful where power < 0
+};
+
+/// In a filtered map: an object voxel that no ball covers (least power >= 0), still without a site.
+constexpr int32_t kUncovered = 1;
+
+/// Power map of all balls (p, D(p)), p in X (paper, section 4, eq. 5). D is overwritten in place:
+/// D(Pi(p)) = |p - Pi(p)|^2 - pi(p). Every object voxel gets pi(p) <= -D(p) < 0.
+/// @throw Interrupted
+PowerMap powerMap(const LeafIndex& index, SquaredDistance distance,
+                  Interrupter* interrupter = nullptr);
+
+/// The same of some balls only: `negativeRadii` holds -D(x) at the sites, kUncovered at the other
+/// object voxels. Voxels that no ball covers stay kUncovered.
+///
+/// Separable lower envelopes (Coeurjolly & Montanvert 2007) along z, y, x. They stay within the
+/// runs of X, exactly: if pi_x(p) < 0 the path x -> z -> y -> p lies in the open ball (x, D(x)),
+/// which holds no background. No ball may be larger than `largestSquaredRadius`; if that and the
+/// object are so large that 64-bit keys overflow, the slower 128-bit ones are used.
+void sweepPower(const LeafIndex& index, int32_t largestSquaredRadius, PowerMap& map,
+                Interrupter* interrupter = nullptr);
+
+/// D(x) of the site x of a voxel with the given least power.
+inline int32_t siteSquaredRadius(const LeafIndex& index, VoxelId voxel, VoxelId site,
+                                 int32_t power) {
+  const Coord d = index.coord(voxel) - index.coord(site);
+  return d.x() * d.x() + d.y() * d.y() + d.z() * d.z() - power;
+}
+
+}  // namespace vdb_madf

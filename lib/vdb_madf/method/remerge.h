@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include "vdb_madf/method/merge.h"
+
+namespace vdb_madf {
+
+/// Other grains from a stored `manifold` grid (segment with keepManifold) and the graph on it:
+/// equal to a fresh segmentation with these merge options, without its voxel work.
+/// @return the grid `grain`, with the manifold grid's metadata (less the graph) brought up to date.
+/// @throw InvalidInput if the grid carries no graph or does not fit it; Interrupted.
+Int32Grid::Ptr remerge(const Int32Grid& manifold, const MergeOptions& options = {},
+                       Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/method/boundary.h"
+#include "vdb_madf/method/manifold_graph.h"
+#include "vdb_madf/method/merge.h"
+#include "vdb_madf/method/squared_distance.h"
+
+namespace vdb_madf {
+
+/// What decides the labels.
+struct SegmentOptions {
+  int64_t gamma = 0;  ///< least cell size of a medial ball, voxels; 0, 1: no filter
+  Boundary boundary = Boundary::automatic;  ///< see squared_distance.h
+  std::optional<CoordBBox> domain;          ///< overrides the domain in the mask's metadata
+  MergeOptions merge;                       ///< theta, mode, adjacency
+  bool keepDistance = false;  ///< return distanceSquared (4 bytes more per leaf voxel)
+  bool keepPower = false;     ///< return power
+  bool keepManifold = false;  ///< return manifold
+  bool keepBalls = false;     ///< return balls
+  /// Refuse what needs more memory than this, bytes (segment_memory.h); 0: no limit.
+  int64_t maxMemory = 0;
+};
+
+struct SegmentCounts {
+  int64_t objectVoxels = 0;
+  int64_t medialBalls = 0;     ///< of the unfiltered power map
+  int64_t keptBalls = 0;       ///< after the filter; = medialBalls without one
+  int64_t criticalPoints = 0;  ///< fixed points of the (filtered) power map
+  int64_t grains = 0;
+  int64_t largestSquaredDistance = 0;
+  int64_t leaves = 0;  ///< touched 8x8x8 leaf nodes
+};
+
+/// A ball of the reduced medial axis of the unfiltered power map.
+struct MedialBall {
+  Coord center;
+  int32_t squaredRadius = 0;  ///< D(center), voxels squared
+  int64_t cellSize = 0;       ///< voxels that map to it
+};
+
+struct StageTime {
+  std::string stage;  ///< snake_case
+  double seconds = 0;
+  int64_t peakBytes = 0;  ///< largest resident memory of the process until the stage's end
+};
+
+struct Segmentation {
+  Int32Grid::Ptr grain;              ///< labels 1..N on X; background 0, inactive
+  Int32Grid::Ptr distanceSquared;    ///< D, if kept
+  Int32Grid::Ptr power;              ///< pi' = least power, if kept
+  Int32Grid::Ptr manifold;           ///< critical points 1..K, if kept
+  std::vector<MedialBall> balls;     ///< lexicographic centres, if kept
+  ManifoldGraph graph;               ///< node i is critical point i + 1
+  std::vector<int64_t> grainVoxels;  ///< voxels of grain g at g - 1
+  SegmentCounts counts;
+  std::optional<CoordBBox> domain;
+  bool open = false;             ///< the boundary that was used
+  std::vector<StageTime> times;  ///< disjoint, in the order of work
+};
+
+/// Cuts the object into grains: distance -> power map -> filter -> flow -> graph -> merge -> labels
+/// (the whole of Wang et al. 2014, section 4 and 5, with the neck test besides).
+///
+/// The active voxels of `object` are X, active tiles included. Labels depend on nothing but X, the
+/// domain and the options: not on tiles, threads or the order of work. X empty: zero grains.
+/// The interrupter hears of the stages by name and of the percentage of the whole.
+/// @throw InvalidInput if an option is out of range, X leaves the domain, a limit of leaf_index.h
+/// is
+///   exceeded, or there is no background at all, maxMemory is too little; Interrupted if the
+///   interrupter says so.
+Segmentation segment(const MaskGrid& object, const SegmentOptions& options = {},
+                     Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

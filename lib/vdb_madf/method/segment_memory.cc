@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/method/segment_memory.h"
+
+#include <algorithm>
+
+namespace vdb_madf {
+
+namespace {
+
+// Bytes per leaf.
+constexpr double kIndex = 128;    // origin, mask, neighbours, ranks
+constexpr double kVoxelSet = 96;  // one bit per voxel, and ranks
+constexpr double kGrid = 2224;    // an Int32 leaf as the heap holds it, and its share of the tree
+constexpr double kPieces = 160;   // connected pieces within leaves
+
+// Bytes per object voxel.
+constexpr double kPower = 4, kSite = 4, kManifold = 4;
+// Medial balls are 1 to 8 % of the voxels: their ids and roots, or cells and radii, of 4 bytes
+// each.
+constexpr double kBalls = 0.08 * 12, kBallTable = 0.08 * 16, kBallList = 0.08 * 48;
+// Voxels that change in one round of the geodesic completion, 12 bytes each in growing lists.
+constexpr double kCompletion = 0.12 * 24;
+
+// Threads' scratch space and stacks, the graph, code.
+constexpr double kBase = 48 << 20;
+
+}  // namespace
+
+ObjectSize objectSize(const MaskGrid& object) {
+  const MaskTree& tree = object.constTree();
+  ObjectSize size;
+  size.leaves = int64_t(tree.leafCount());
+  size.voxels = int64_t(tree.activeVoxelCount());
+  size.leaves += (size.voxels - int64_t(tree.activeLeafVoxelCount())) / 512;
+  return size;
+}
+
+int64_t segmentMemory(const ObjectSize& size, const SegmentOptions& options) {
+  const bool filter = options.gamma > 1;
+  const double leaves = double(size.leaves), voxels = double(size.voxels);
+  const double perGrid = kGrid * leaves;
+  // What lives until the end.
+  double kept = kBase + kIndex * leaves;
+  if (options.keepDistance) kept += perGrid;
+
+  double peak = kept + (kPower + kSite) * voxels;  // power map
+  if (options.keepBalls) kept += kBallList * voxels;
+  double sets = kVoxelSet * leaves;
+  double balls = kBalls * voxels;
+  if (filter) {
+    sets += (kVoxelSet + kPieces) * leaves;
+    balls += kBallTable * voxels;
+    peak = std::max(peak, kept + (kPower + kSite + kCompletion) * voxels + balls + sets +
+                              2 * kVoxelSet * leaves);
+  }
+  peak = std::max(peak, kept + (kPower + kSite) * voxels + balls + sets);  // flow
+  if (options.keepPower) {
+    kept += perGrid;
+    peak = std::max(peak, kept + (kPower + kManifold) * voxels + sets);
+  }
+  if (options.keepManifold) kept += perGrid;
+  // The labels' grid grows while the manifolds shrink.
+  peak = std::max(peak, kept + sets + std::max(kManifold * voxels, perGrid));
+  if (options.keepManifold) peak = std::max(peak, kept + sets + kManifold * voxels);
+  if (options.keepBalls) peak = std::max(peak, kept + 3 * perGrid);  // written as two grids
+  return int64_t(peak);
+}
+
+}  // namespace vdb_madf

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/method/segmentation_metadata.h"
+
+#include <openvdb/Metadata.h>
+
+#include <string>
+
+#include "vdb_madf/base/version.h"
+
+namespace vdb_madf {
+
+namespace {
+
+constexpr char kGrains[] = "madf_grains";
+constexpr char kBoundary[] = "madf_boundary";
+
+void setText(openvdb::GridBase& grid, const char* key, const std::string& value) {
+  grid.insertMeta(key, openvdb::StringMetadata(value));
+}
+void setCount(openvdb::GridBase& grid, const char* key, int64_t value) {
+  grid.insertMeta(key, openvdb::Int64Metadata(value));
+}
+
+}  // namespace
+
+const char* name(MergeMode mode) {
+  switch (mode) {
+    case MergeMode::both:
+      return "both";
+    case MergeMode::angle:
+      return "angle";
+    case MergeMode::neck:
+      break;
+  }
+  return "neck";
+}
+
+const char* name(Adjacency adjacency) {
+  return adjacency == Adjacency::manifold ? "manifold" : "cell";
+}
+
+void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options,
+                          const Segmentation& segmentation) {
+  const SegmentCounts& counts = segmentation.counts;
+  setText(grid, "madf_version", kVersion);
+  setCount(grid, "madf_gamma", options.gamma);
+  setBoundary(grid, segmentation.open ? Boundary::open : Boundary::closed);
+  setCount(grid, "madf_object_voxels", counts.objectVoxels);
+  setCount(grid, "madf_medial_balls", counts.medialBalls);
+  setCount(grid, "madf_kept_balls", counts.keptBalls);
+  setCount(grid, "madf_critical_points", counts.criticalPoints);
+  setCount(grid, "madf_largest_squared_distance", counts.largestSquaredDistance);
+  setCount(grid, "madf_leaves", counts.leaves);
+  describeMerging(grid, options.merge, counts.grains);
+}
+
+void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int64_t grains) {
+  grid.insertMeta("madf_theta", openvdb::DoubleMetadata(options.theta));
+  setText(grid, "madf_merge", name(options.mode));
+  setText(grid, "madf_adjacency", name(options.adjacency));
+  setCount(grid, kGrains, grains);
+}
+
+void setBoundary(openvdb::GridBase& grid, Boundary boundary) {
+  grid.removeMeta(kBoundary);
+  if (boundary != Boundary::automatic)
+    setText(grid, kBoundary, boundary == Boundary::open ? "open" : "closed");
+}
+
+Boundary storedBoundary(const openvdb::GridBase& grid) {
+  const auto text = grid.getMetadata<openvdb::StringMetadata>(kBoundary);
+  if (!text) return Boundary::automatic;
+  return text->value() == "open" ? Boundary::open : Boundary::closed;
+}
+
+std::optional<int64_t> grainCount(const openvdb::GridBase& grid) {
+  const auto count = grid.getMetadata<openvdb::Int64Metadata>(kGrains);
+  if (!count) return std::nullopt;
+  return count->value();
+}
+
+}  // namespace vdb_madf

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include "vdb_madf/method/boundary.h"
+#include "vdb_madf/method/segment.h"
+
+namespace vdb_madf {
+
+/// Writes how a segmentation was made onto one of its grids: `madf_version`, `madf_gamma`,
+/// `madf_boundary` ("open", "closed"), `madf_theta`, `madf_merge`, `madf_adjacency`, and the
+/// counts `madf_object_voxels`, `madf_medial_balls`, `madf_kept_balls`, `madf_critical_points`,
+/// `madf_grains`, `madf_largest_squared_distance`, `madf_leaves` (int64).
+void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options,
+                          const Segmentation& segmentation);
+
+/// Replaces what another merging changes: theta, mode, adjacency and the number of grains.
+void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int64_t grains);
+
+/// The boundary that a grid says it wants or was segmented with; automatic if it says nothing.
+Boundary storedBoundary(const openvdb::GridBase& grid);
+void setBoundary(openvdb::GridBase& grid, Boundary boundary);  ///< automatic: says nothing
+
+/// The number of grains that a grid says it has.
+std::optional<int64_t> grainCount(const openvdb::GridBase& grid);
+
+const char* name(MergeMode mode);
+const char* name(Adjacency adjacency);
+
+}  // namespace vdb_madf

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include "vdb_madf/leaves/leaf_index.h"
+#include "vdb_madf/leaves/voxel_array.h"
+#include "vdb_madf/method/boundary.h"
+
+namespace vdb_madf {
+
+struct SquaredDistance {
+  VoxelArray<int32_t> values;  ///< D >= 1, voxels squared
+  int32_t largest = 0;         ///< 0 if X is empty
+};
+
+/// Exact squared Euclidean distance D(p) = min |p - q|^2 over background voxels q, for p in X.
+/// Separable passes (Meijster et al. 2000) along x, y, z, each within the runs of X in its rows: a
+/// background voxel ends whatever lies beyond it, so the sweeps never leave X.
+/// @throw InvalidInput if there is no background (X fills an open domain); Interrupted.
+SquaredDistance squaredDistance(const LeafIndex& index, const Obstacles& obstacles,
+                                Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

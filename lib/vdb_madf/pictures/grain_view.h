@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/labels/grain_colors.h"
+#include "vdb_madf/pictures/picture.h"
+
+namespace vdb_madf {
+
+struct ViewOptions {
+  double azimuth = 35;    ///< degrees: 0 looks along +y with x to the right; 90: along -x
+  double elevation = 25;  ///< degrees above the x-y plane, -90..90; z is up
+  int edge = 512;         ///< pixels along the longer side, 1..16384
+  Rgb background{255, 255, 255};
+};
+
+struct GrainView {
+  Picture picture;
+  std::vector<int32_t> labels;  ///< of each pixel, in the picture's order; 0: background
+  double voxelsPerPixel = 0;    ///< in the plane of the picture
+};
+
+/// A shaded view of coloured grains from outside, in parallel projection: what lies in the box, cut
+/// off at its faces.
+///
+/// A ray through the centre of each pixel walks through the leaves, then through the voxels of a
+/// leaf (Amanatides & Woo 1987), to the first voxel (a cube of edge 1) that has a label. Normal:
+/// the gradient of the object's indicator, smoothed by a Gaussian of sigma 1.5 voxels. Light:
+/// ambient, less in concave places, and diffuse from above on the left; what is farther is a little
+/// darker. The result does not depend on threads. An empty box gives a picture of one background
+/// pixel.
+/// @throw InvalidInput for an option out of range; Interrupted.
+GrainView viewGrains(const Int32Grid& labels, const CoordBBox& box, const GrainColors& colors,
+                     const ViewOptions& options = {}, Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/pictures/preview_volume.h"
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "vdb_madf/labels/detail/reduction.h"
+#include "vdb_madf/labels/grain_colors.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using openvdb::Vec3f;
+
+/// The inverse of the sRGB transfer function (IEC 61966-2-1).
+float linear(uint8_t channel) {
+  const double c = channel / 255.0;
+  return float(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+}
+
+}  // namespace
+
+LabelPreview previewLabels(const Int32Grid& labels, int factor, Interrupter* interrupter) {
+  const detail::Reduction reduction(labels, factor);
+  const GrainColors colors = grainColors(labels, interrupter);
+  const float whole = float(int64_t(factor) * factor * factor);
+  std::vector<std::unique_ptr<FloatGrid::TreeType::LeafNodeType>> densities(reduction.leafCount());
+  std::vector<std::unique_ptr<ColorGrid::TreeType::LeafNodeType>> shades(reduction.leafCount());
+  reduction.run(
+      [&](size_t n, const Coord& origin, const detail::Cells& cells) {
+        densities[n] = detail::leafAt<FloatGrid>(origin);
+        shades[n] = detail::leafAt<ColorGrid>(origin);
+        for (openvdb::Index i = 0; i < Int32Tree::LeafNodeType::SIZE; ++i) {
+          if (!cells[i].labelled) continue;
+          const Rgb rgb = colors.of(cells[i].label);
+          densities[n]->setValueOn(i, float(cells[i].labelled) / whole);
+          shades[n]->setValueOn(i, Vec3f(linear(rgb[0]), linear(rgb[1]), linear(rgb[2])));
+        }
+      },
+      interrupter);
+  LabelPreview preview;
+  preview.density = detail::gather<FloatGrid>(densities, labels, factor, "density");
+  preview.density->setGridClass(openvdb::GRID_FOG_VOLUME);
+  preview.color = detail::gather<ColorGrid>(shades, labels, factor, "color");
+  preview.color->setVectorType(openvdb::VEC_INVARIANT);
+  return preview;
+}
+
+}  // namespace vdb_madf

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/samples/detail/mask_blocks.h"
+
+namespace vdb_madf::detail {
+
+/// The open ball |p - c| < r: voxel p is inside if (dx*dx + dy*dy) + dz*dz < r*r in doubles.
+struct Ball {
+  double x = 0, y = 0, z = 0, radius = 0;
+};
+
+/// Sorts balls by centre (x, then y, then z): the order in which the true grains are numbered.
+void sortByCentre(std::vector<Ball>& balls);
+
+/// Voxels along z; empty if last < first.
+struct RowRange {
+  int first = 0, last = -1;
+};
+
+/// The voxels of row (x, y) inside the ball, cut to [zMin, zMax].
+RowRange ballRow(const Ball& ball, int x, int y, int zMin, int zMax);
+
+/// A box that contains the ball's voxels.
+CoordBBox ballBox(const Ball& ball);
+
+/// The union of balls in [0, size - 1], grown ball by ball, with an exact count of its voxels.
+/// Memory: the mask leaves on the balls' surfaces; full leaves become tiles if asked for.
+class BallUnion {
+ public:
+  BallUnion(const Coord& size, bool fullLeavesAsTiles) : blocks_(size), tiles_(fullLeavesAsTiles) {}
+
+  /// The number of voxels that the ball would add.
+  int64_t countNew(const Ball& ball) const;
+  void add(const Ball& ball);
+  /// Parallel over blocks. @throw Interrupted
+  void add(const std::vector<Ball>& balls, Interrupter* interrupter);
+
+  int64_t voxelCount() const { return voxelCount_; }
+  MaskTree::Ptr takeTree() { return blocks_.takeTree(); }
+
+ private:
+  MaskBlocks blocks_;
+  bool tiles_;
+  int64_t voxelCount_ = 0;
+};
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/samples/detail/sample_options.h"
+
+#include <openvdb/Metadata.h>
+
+#include <cmath>
+
+#include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/limits.h"
+#include "vdb_madf/grids/grid_metadata.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+/// A smaller ball is no voxel, most of the time.
+constexpr double kMinRadius = 0.5;
+
+}  // namespace
+
+void checkSize(const Coord& size) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (size[axis] < 1 || size[axis] > kMaxExtent)
+      throw InvalidInput("size must be 1 to " + std::to_string(kMaxExtent) +
+                         " voxels along each axis, not " + std::to_string(size[axis]));
+}
+
+void checkRange(const char* name, double value, double lower, double upper) {
+  if (!(value >= lower && value <= upper))  // false for NaN, too
+    throw InvalidInput(std::string(name) + " must be " + shortestDecimal(lower) + " to " +
+                       shortestDecimal(upper) + ", not " + shortestDecimal(value));
+}
+
+void checkRadii(double minimum, double maximum) {
+  checkRange("radius", minimum, kMinRadius, kMaxExtent);
+  checkRange("radius", maximum, kMinRadius, kMaxExtent);
+  if (minimum > maximum)
+    throw InvalidInput("smallest radius " + shortestDecimal(minimum) + " exceeds the largest, " +
+                       shortestDecimal(maximum));
+}
+
+void checkFraction(double fraction) {
+  if (!(fraction > 0 && fraction < 1))
+    throw InvalidInput("fraction must lie between 0 and 1, not be " + shortestDecimal(fraction));
+}
+
+void checkCount(int count) {
+  if (count < 1) throw InvalidInput("count must be 1 or more, not " + std::to_string(count));
+}
+
+SourceText& SourceText::add(const char* option, const std::string& value) {
+  text_ += std::string(" --") + option + " " + value;
+  return *this;
+}
+
+SourceText& SourceText::size(const Coord& size) {
+  return add("dims", std::to_string(size.x()) + "x" + std::to_string(size.y()) + "x" +
+                         std::to_string(size.z()));
+}
+
+SourceText& SourceText::range(const char* option, double lower, double upper) {
+  return add(option, number(lower) + ":" + number(upper));
+}
+
+std::string SourceText::number(double value) {
+  return shortestDecimal(value);
+}
+
+void describe(openvdb::GridBase& grid, const std::string& name, const Coord& size,
+              const SourceText& source) {
+  grid.setName(name);
+  setDomain(grid, {Coord(0), size.offsetBy(-1)});
+  setVoxelSize(grid, std::nullopt);
+  grid.insertMeta("madf_source", openvdb::StringMetadata(source.str()));
+}
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <string>
+
+#include "vdb_madf/grids/grid_types.h"
+
+namespace vdb_madf::detail {
+
+/// Each @throw InvalidInput, one line that names the option and its range.
+void checkSize(const Coord& size);
+void checkRadii(double minimum, double maximum);
+void checkFraction(double fraction);
+void checkCount(int count);
+/// `name` must be finite and lie in [lower, upper].
+void checkRange(const char* name, double value, double lower, double upper);
+
+/// The words of a `generate` command, as the metadata `madf_source` records them.
+class SourceText {
+ public:
+  explicit SourceText(const std::string& sample) : text_("generate " + sample) {}
+  SourceText& size(const Coord& size);
+  SourceText& add(const char* option, const std::string& value);
+  SourceText& add(const char* option, double value) { return add(option, number(value)); }
+  SourceText& range(const char* option, double lower, double upper);
+  const std::string& str() const { return text_; }
+
+ private:
+  /// The shortest decimal that reads back as the same double, in any locale.
+  static std::string number(double value);
+
+  std::string text_;
+};
+
+/// Gives a sample's grid its name, the domain [0, size - 1] and its source.
+void describe(openvdb::GridBase& grid, const std::string& name, const Coord& size,
+              const SourceText& source);
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/samples/detail/ball_union.h"
+#include "vdb_madf/samples/detail/random.h"
+#include "vdb_madf/samples/detail/sample_options.h"
+#include "vdb_madf/samples/generate.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using detail::Ball;
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Half of what the documentation promises.
+constexpr double kFractionTolerance = 0.0025;
+
+/// With fewer balls than this to go they are added one by one, each counted.
+constexpr int64_t kMinBatch = 1024;
+/// Bounds the memory of a batch, and the time until an interruption is seen.
+constexpr int64_t kMaxBatch = 1 << 18;
+/// A batch aims at this part of what is missing, many standard deviations short of the goal.
+constexpr double kBatchPart = 0.8;
+
+/// So many balls in a row that add nothing, or too much for what is missing: give up.
+constexpr int kMaxFailures = 100000;
+constexpr int kPollInterval = 64;
+
+class PackBuilder {
+ public:
+  PackBuilder(const PackOptions& options, Interrupter* interrupter)
+      : options_(options),
+        interrupter_(interrupter),
+        random_(options.seed, 0),
+        balls_(options.size, true),
+        boxVoxels_(double(options.size.x()) * options.size.y() * options.size.z()),
+        goal_(options.fraction * boxVoxels_) {
+    // Centres lie in the box grown by the largest radius, so that the faces see as many balls as
+    // the middle.
+    const double grow = 2 * options.maxRadius;
+    centreVolume_ =
+        (options.size.x() + grow) * (options.size.y() + grow) * (options.size.z() + grow);
+  }
+
+  MaskTree::Ptr build() {
+    while (addBatch()) {
+    }
+    addSingly();
+    return balls_.takeTree();
+  }
+
+ private:
+  Ball drawBall() {
+    const double r = options_.maxRadius;
+    Ball ball;
+    ball.radius = random_.uniform(options_.minRadius, options_.maxRadius);
+    ball.x = random_.uniform(-0.5 - r, options_.size.x() - 0.5 + r);
+    ball.y = random_.uniform(-0.5 - r, options_.size.y() - 0.5 + r);
+    ball.z = random_.uniform(-0.5 - r, options_.size.z() - 0.5 + r);
+    return ball;
+  }
+
+  bool meetsBox(const Ball& ball) const {
+    CoordBBox box = detail::ballBox(ball);
+    box.intersect({Coord(0), options_.size.offsetBy(-1)});
+    return !box.empty();
+  }
+
+  double missing() const { return goal_ - double(balls_.voxelCount()); }
+
+  /// Draws balls until their volumes sum to a part of what the union can take before it reaches the
+  /// goal. (A sum of volumes V in the volume of the centres covers at most V / that volume of
+  /// what is still free.) False, and nothing drawn, if too few would do.
+  bool addBatch() {
+    const double r = options_.maxRadius;
+    const double largest = 4.0 / 3.0 * kPi * r * r * r;
+    const double free = boxVoxels_ - double(balls_.voxelCount());
+    const double volume = kBatchPart * missing() / free * centreVolume_;
+    if (volume < double(kMinBatch) * largest) return false;
+    std::vector<Ball> batch;
+    double sum = 0;
+    for (int64_t drawn = 0; sum < volume && drawn < kMaxBatch; ++drawn) {
+      const Ball ball = drawBall();
+      sum += 4.0 / 3.0 * kPi * ball.radius * ball.radius * ball.radius;
+      if (meetsBox(ball)) batch.push_back(ball);
+    }
+    balls_.add(batch, interrupter_);
+    return true;
+  }
+
+  void addSingly() {
+    const double tolerance = kFractionTolerance * boxVoxels_;
+    int failures = 0;
+    for (int64_t step = 0; missing() > tolerance; ++step) {
+      if (step % kPollInterval == 0 && interrupter_ && interrupter_->wasInterrupted())
+        throw Interrupted();
+      const Ball ball = drawBall();
+      const int64_t added = meetsBox(ball) ? balls_.countNew(ball) : 0;
+      if (added > 0 && double(added) <= missing() + tolerance) {
+        balls_.add(ball);
+        failures = 0;
+      } else if (++failures == kMaxFailures) {
+        throw InvalidInput(
+            "the fraction cannot be met with so large balls in so small a box: use smaller radii "
+            "or a larger size");
+      }
+    }
+  }
+
+  PackOptions options_;
+  Interrupter* interrupter_;
+  detail::RandomSequence random_;
+  detail::BallUnion balls_;
+  double boxVoxels_, goal_, centreVolume_ = 0;
+};
+
+}  // namespace
+
+Sample generatePack(const PackOptions& options, Interrupter* interrupter) {
+  detail::checkSize(options.size);
+  detail::checkRadii(options.minRadius, options.maxRadius);
+  detail::checkFraction(options.fraction);
+
+  Sample sample;
+  sample.object = MaskGrid::create(PackBuilder(options, interrupter).build());
+  detail::SourceText source("pack");
+  source.size(options.size)
+      .add("fraction", options.fraction)
+      .range("radius", options.minRadius, options.maxRadius)
+      .add("seed", std::to_string(options.seed));
+  detail::describe(*sample.object, "object", options.size, source);
+  return sample;
+}
+
+}  // namespace vdb_madf

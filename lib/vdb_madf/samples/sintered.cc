@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+#include <vector>
+
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/samples/detail/ball_union.h"
+#include "vdb_madf/samples/detail/gaussian_blur.h"
+#include "vdb_madf/samples/detail/mask_blocks.h"
+#include "vdb_madf/samples/detail/power_cells.h"
+#include "vdb_madf/samples/detail/random.h"
+#include "vdb_madf/samples/detail/sample_options.h"
+#include "vdb_madf/samples/detail/sphere_placement.h"
+#include "vdb_madf/samples/generate.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using detail::Ball;
+using detail::FloatBox;
+using detail::MaskBlocks;
+
+// The surface: rounded by the blur, roughened by the noise, cut a little outside the balls, where
+// necks are thick.
+constexpr double kBlurSigma = 2;
+constexpr double kNoiseSigma = 1;
+constexpr double kNoiseAmplitude = 1.5;
+constexpr float kCut = 0.45f;
+
+/// Stream 0 places the balls.
+constexpr uint64_t kNoiseStream = 1;
+
+/// 1 inside the balls, 0 outside; also beyond the faces of the sample, so that the blur sees no
+/// surface there.
+FloatBox indicator(const CoordBBox& box, const std::vector<Ball>& balls) {
+  FloatBox field(box);
+  for (const Ball& ball : balls) {
+    CoordBBox near = detail::ballBox(ball);
+    near.intersect(box);
+    for (int x = near.min().x(); x <= near.max().x(); ++x)
+      for (int y = near.min().y(); y <= near.max().y(); ++y) {
+        const auto row = detail::ballRow(ball, x, y, near.min().z(), near.max().z());
+        if (row.last < row.first) continue;
+        float* values = field.values.data() + field.offset(x, y, row.first);
+        std::fill(values, values + (row.last - row.first + 1), 1.0f);
+      }
+  }
+  return field;
+}
+
+FloatBox whiteNoise(const CoordBBox& box, uint64_t seed) {
+  FloatBox field(box);
+  const detail::WhiteNoise noise(seed, kNoiseStream);
+  float* values = field.values.data();
+  for (int x = box.min().x(); x <= box.max().x(); ++x)
+    for (int y = box.min().y(); y <= box.max().y(); ++y) {
+      const uint64_t row = noise.row(x, y);
+      for (int z = box.min().z(); z <= box.max().z(); ++z) *values++ = noise.value(row, z);
+    }
+  return field;
+}
+
+/// Fills the object block by block; only the blocks at work are held as dense arrays.
+class SurfaceBuilder {
+ public:
+  SurfaceBuilder(const SinteredOptions& options, const std::vector<Ball>& balls)
+      : options_(options),
+        balls_(balls),
+        blurKernel_(detail::gaussianKernel(kBlurSigma)),
+        noiseKernel_(detail::gaussianKernel(kNoiseSigma)),
+        blocks_(options.size) {}
+
+  MaskTree::Ptr build(Interrupter* interrupter) {
+    detail::parallelFor(blocks_.count(), 1, interrupter, [&](size_t begin, size_t end) {
+      for (size_t block = begin; block < end; ++block) fillBlock(block);
+    });
+    return blocks_.takeTree();
+  }
+
+ private:
+  FloatBox surfaceField(const CoordBBox& box) const {
+    CoordBBox seen = box;
+    seen.expand(detail::kernelRadius(blurKernel_));
+    FloatBox field = detail::blurred(indicator(seen, balls_), blurKernel_, nullptr);
+    if (options_.roughness == 0) return field;
+    seen = box;
+    seen.expand(detail::kernelRadius(noiseKernel_));
+    const FloatBox noise = detail::blurred(whiteNoise(seen, options_.seed), noiseKernel_, nullptr);
+    const float amplitude = float(options_.roughness * kNoiseAmplitude);
+    for (size_t i = 0; i < field.values.size(); ++i) field.values[i] += amplitude * noise.values[i];
+    return field;
+  }
+
+  void fillBlock(size_t block) {
+    const CoordBBox box = blocks_.box(block);
+    const FloatBox field = surfaceField(box);
+    for (int x = box.min().x(); x <= box.max().x(); ++x)
+      for (int y = box.min().y(); y <= box.max().y(); ++y)
+        for (int z = box.min().z(); z <= box.max().z(); z += 8) {
+          const float* values = field.values.data() + field.offset(x, y, z);
+          const int count = std::min(8, box.max().z() + 1 - z);
+          uint64_t row = 0;
+          for (int i = 0; i < count; ++i) row |= uint64_t(values[i] >= kCut) << i;
+          if (row == 0) continue;
+          auto& mask = blocks_.node(block).touchLeaf({x, y, z})->getValueMask();
+          mask.getWord<uint64_t>(x & 7) |= row << (8 * (y & 7));
+        }
+  }
+
+  SinteredOptions options_;
+  const std::vector<Ball>& balls_;
+  std::vector<float> blurKernel_, noiseKernel_;
+  MaskBlocks blocks_;
+};
+
+}  // namespace
+
+Sample generateSintered(const SinteredOptions& options, Interrupter* interrupter) {
+  detail::checkSize(options.size);
+  detail::checkCount(options.count);
+  detail::checkRadii(options.minRadius, options.maxRadius);
+  detail::checkRange("neck", options.neck, 0, 10);
+  detail::checkRange("roughness", options.roughness, 0, 10);
+
+  const std::vector<Ball> balls = detail::placeSintered(options, interrupter);
+  Sample sample;
+  sample.object = MaskGrid::create(SurfaceBuilder(options, balls).build(interrupter));
+  sample.truth = Int32Grid::create(detail::powerCells(sample.object->tree(), balls, interrupter));
+  detail::SourceText source("sintered");
+  source.size(options.size)
+      .add("count", std::to_string(options.count))
+      .range("radius", options.minRadius, options.maxRadius)
+      .add("neck", options.neck)
+      .add("roughness", options.roughness)
+      .add("seed", std::to_string(options.seed));
+  detail::describe(*sample.object, "object", options.size, source);
+  detail::describe(*sample.truth, "truth", options.size, source);
+  return sample;
+}
+
+}  // namespace vdb_madf

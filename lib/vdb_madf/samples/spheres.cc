@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/samples/detail/ball_union.h"
+#include "vdb_madf/samples/detail/power_cells.h"
+#include "vdb_madf/samples/detail/sample_options.h"
+#include "vdb_madf/samples/detail/sphere_placement.h"
+#include "vdb_madf/samples/generate.h"
+
+namespace vdb_madf {
+
+namespace {
+
+constexpr double kMaxOverlap = 100;
+
+void checkOptions(const SphereOptions& options) {
+  detail::checkSize(options.size);
+  detail::checkCount(options.count);
+  detail::checkRadii(options.minRadius, options.maxRadius);
+  detail::checkRange("overlap", options.overlap, 0, kMaxOverlap);
+  if (options.maxCover < 0) throw InvalidInput("the largest cover must be 1 or more, or 0 for any");
+  const int shortest = std::min({options.size.x(), options.size.y(), options.size.z()});
+  if (2 * int(std::ceil(options.maxRadius)) > shortest - 1)
+    throw InvalidInput("balls of the largest radius do not fit into " + std::to_string(shortest) +
+                       " voxels: use a smaller radius or a larger size");
+}
+
+}  // namespace
+
+Sample generateSpheres(const SphereOptions& options, Interrupter* interrupter) {
+  checkOptions(options);
+  const std::vector<detail::Ball> balls = detail::placeSpheres(options, interrupter);
+  detail::BallUnion object(options.size, false);
+  object.add(balls, interrupter);
+
+  Sample sample;
+  sample.object = MaskGrid::create(object.takeTree());
+  sample.truth = Int32Grid::create(detail::powerCells(sample.object->tree(), balls, interrupter));
+  detail::SourceText source("spheres");
+  source.size(options.size)
+      .add("count", std::to_string(options.count))
+      .range("radius", options.minRadius, options.maxRadius)
+      .add("overlap", options.overlap)
+      .add("max-cover", std::to_string(options.maxCover))
+      .add("seed", std::to_string(options.seed));
+  detail::describe(*sample.object, "object", options.size, source);
+  detail::describe(*sample.truth, "truth", options.size, source);
+  return sample;
+}
+
+}  // namespace vdb_madf

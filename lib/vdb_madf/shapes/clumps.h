@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "vdb_madf/grids/grid_types.h"
+
+namespace vdb_madf {
+
+/// A grain as some of its medial balls, for discrete-element programs; index coordinates, voxels.
+struct Clump {
+  /// Holds the voxels p with |p - center|^2 < squaredRadius.
+  struct Ball {
+    Coord center;
+    int32_t squaredRadius;
+  };
+  int32_t label = 0;
+  std::vector<Ball> balls;  ///< in the order in which they were chosen
+  int64_t voxels = 0;       ///< of the grain
+  int64_t uncovered = 0;    ///< of them, in no ball
+  int64_t outside = 0;      ///< voxels of the balls that are not the grain's, each counted once
+  /// Largest distance from the center of a voxel of the grain to the balls: the one-sided Hausdorff
+  /// distance from the grain to its balls.
+  double farthest = 0;
+
+  /// (volume of the balls' voxels - volume of the grain) / volume of the grain
+  double volumeError() const { return voxels ? double(outside - uncovered) / double(voxels) : 0; }
+};
+
+struct ClumpOptions {
+  int mostBalls = 100;          ///< per grain, 1 or more
+  double coverageError = 0.02;  ///< part of a grain that may stay uncovered, 0 .. 1
+};
+
+/// A clump per label (active, > 0), ascending. \p balls: active at the centres of the medial balls,
+/// value = squared radius (grid `balls` of a segmentation); a ball belongs to the grain of its
+/// centre. Balls are chosen greedily, each the one that covers most voxels of the grain not covered
+/// yet (tie: larger, then smaller centre), until enough is covered or there are `mostBalls`.
+/// Memory: one bit per voxel of the box of each grain that a thread works on. The same for any
+/// number of threads.
+/// @throw InvalidInput for options out of range; Interrupted.
+std::vector<Clump> clumps(const Int32Grid& labels, const Int32Grid& balls,
+                          const ClumpOptions& options = {}, Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

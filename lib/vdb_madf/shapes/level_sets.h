@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <vector>
+
+#include "vdb_madf/grids/grid_types.h"
+
+namespace vdb_madf {
+
+struct LevelSetOptions {
+  int smoothing = 0;       ///< of the mesh that the distances are measured to; see grain_mesh.h
+  float halfWidth = 3.0f;  ///< of the narrow band, voxels, 1 .. 16
+};
+
+/// A narrow-band level set of every label, named `grain_000123`, ascending: signed distance in
+/// world units to the grain's mesh, negative inside. An empty grid has none.
+/// @throw InvalidInput if there are more than kMaxGrainGrids labels, or as grainMesh();
+/// Interrupted.
+std::vector<FloatGrid::Ptr> grainLevelSets(const Int32Grid& labels,
+                                           const LevelSetOptions& options = {},
+                                           Interrupter* interrupter = nullptr);
+
+/// The same of all labels as one object, named `surface`.
+FloatGrid::Ptr surfaceLevelSet(const Int32Grid& labels, const LevelSetOptions& options = {},
+                               Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

@@ -1,0 +1,326 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/vdb/vdb_file.h"
+
+#include <openvdb/io/Archive.h>
+#include <openvdb/io/GridDescriptor.h>
+#include <openvdb/io/io.h>
+#include <openvdb/openvdb.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ios>
+#include <istream>
+#include <limits>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <ostream>
+#include <stdexcept>
+#include <utility>
+
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/memory.h"
+#include "vdb_madf/method/initialize.h"
+#include "vdb_madf/files/detail/file_buffer.h"
+#include "vdb_madf/files/output_file.h"
+#include "vdb_madf/vdb/detail/vdb_tree_check.h"
+
+namespace vdb_madf {
+
+namespace {
+
+namespace io = openvdb::io;
+using openvdb::GridBase;
+
+// --- reading
+
+// The file, in OpenVDB's format 222 to 224: a header (magic number, versions, a flag for offsets,
+// UUID), metadata, the number of grids; per grid a descriptor (name, type, name of the grid that it
+// shares its tree with, three offsets), compression flags, metadata, transform, topology, buffers.
+// Here we read what frames the grids, and leave to OpenVDB what it cannot get wrong: values of
+// checked length, and trees that checkTree() has walked over.
+
+constexpr uint32_t kOldestFormat = openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION;
+constexpr size_t kUuidStart = 21, kUuidLength = 36;
+constexpr char kNameSuffix = '\x1e';  // what follows it only tells grids of the same name apart
+
+/// Printable, on one line and short, whatever a corrupt file made of it.
+std::string clipped(const std::string& text, size_t longest = 160) {
+  std::string line = text.substr(0, longest);
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return c < 0x20 || c > 0x7e; }, '?');
+  return text.size() > longest ? line + "..." : line;
+}
+
+/// What is in the way of reading this file at all.
+[[noreturn]] void refuse(const detail::InputBuffer& file, const std::string& reasonAndAdvice) {
+  throw IoError("cannot read " + file.path() + ": " + reasonAndAdvice);
+}
+
+/// What only a damaged file has.
+[[noreturn]] void damaged(const std::string& what) {
+  throw std::runtime_error(what);
+}
+
+struct Header {
+  uint32_t format = 0;
+  openvdb::VersionId library;
+  bool hasOffsets = false;
+};
+
+Header readHeader(detail::InputBuffer& file) {
+  if (file.size() == 0) refuse(file, "it is empty; write or copy it again");
+  constexpr int64_t kMagicLength = 8;
+  if (file.left() < kMagicLength || file.read<int64_t>() != openvdb::OPENVDB_MAGIC)
+    refuse(file, "it is not a VDB file; give a file that OpenVDB has written");
+  Header header;
+  header.format = file.read<uint32_t>();
+  const std::string format = "its VDB format " + std::to_string(header.format);
+  if (header.format > openvdb::OPENVDB_FILE_VERSION)
+    refuse(file, format + " is newer than " + std::to_string(openvdb::OPENVDB_FILE_VERSION) +
+                     "; save it from an older program, or update this one");
+  if (header.format < kOldestFormat)
+    refuse(file, format + " is older than " + std::to_string(kOldestFormat) +
+                     "; save it again from a newer program");
+  header.library.first = file.read<uint32_t>();
+  header.library.second = file.read<uint32_t>();
+  const auto flag = file.read<uint8_t>();
+  if (flag > 1) damaged("its header is wrong");
+  header.hasOffsets = flag == 1;
+  file.skip(kUuidLength);
+  return header;
+}
+
+struct Descriptor {
+  std::string name, type, parent;
+  int64_t start = 0, buffers = 0, end = 0;
+  bool isInstance() const { return !parent.empty(); }
+};
+
+Descriptor readDescriptor(detail::InputBuffer& file) {
+  Descriptor descriptor;
+  descriptor.name = file.readString();
+  descriptor.type = file.readString();
+  descriptor.parent = file.readString();
+  // The suffix repeats what metadata says of the grid.
+  static const std::string half = "_HalfFloat";
+  std::string& type = descriptor.type;
+  if (type.size() > half.size() && type.substr(type.size() - half.size()) == half)
+    type.resize(type.size() - half.size());
+  descriptor.start = file.read<int64_t>();
+  descriptor.buffers = file.read<int64_t>();
+  descriptor.end = file.read<int64_t>();
+  return descriptor;
+}
+
+/// Into `metadata`, or over it if that is null.
+void readMetadata(detail::InputBuffer& file, std::istream& stream, openvdb::MetaMap* metadata) {
+  const auto count = file.read<uint32_t>();
+  for (uint32_t i = 0; i < count; ++i) {
+    const std::string name = file.readString(), type = file.readString();
+    const int64_t start = file.position();
+    const auto bytes = file.read<uint32_t>();
+    file.require(bytes);
+    const int64_t end = file.position() + bytes;
+    // Two underscores mark values that only serve reading, such as the sizes for delayed loading,
+    // whose reader trusts the counts in the file.
+    if (metadata && type.compare(0, 2, "__") != 0) {
+      if (type == "bool" && (bytes != 1 || file.read<uint8_t>() > 1))
+        damaged("metadata is neither true nor false");
+      file.moveTo(start);
+      const auto value = openvdb::Metadata::isRegisteredType(type)
+                             ? openvdb::Metadata::createMetadata(type)
+                             : std::make_shared<openvdb::UnknownMetadata>(type);
+      value->read(stream);
+      if (file.position() != end) damaged("metadata '" + clipped(name) + "' has the wrong size");
+      metadata->insertMeta(name, *value);
+    }
+    file.moveTo(end);
+  }
+}
+
+/// A frustum holds another transform, to any depth that a corrupt file likes; programs write one.
+void readTransform(detail::InputBuffer& file, std::istream& stream, GridBase& grid) {
+  constexpr char kFrustum[] = "NonlinearFrustumMap";
+  constexpr int64_t kFrustumBytes = 8 * sizeof(double);
+  const int64_t start = file.position();
+  std::string type = file.readString();
+  if (type == kFrustum) {
+    file.skip(kFrustumBytes);
+    type = file.readString();
+    if (type == kFrustum) damaged("a frustum holds a frustum");
+  }
+  if (!openvdb::math::MapRegistry::isRegistered(type))
+    damaged("transform '" + clipped(type) + "' is unknown");
+  file.moveTo(start);
+  grid.readTransform(stream);
+}
+
+class Reader {
+ public:
+  Reader(detail::InputBuffer& file, const VdbReadOptions& options)
+      : file_(file), stream_(&file), options_(options) {
+    stream_.exceptions(std::ios_base::badbit | std::ios_base::failbit | std::ios_base::eofbit);
+  }
+
+  std::vector<GridBase::Ptr> read() {
+    header_ = readHeader(file_);
+    // OpenVDB's readers ask the stream for these.
+    io::setStreamMetadataPtr(stream_, streamState_, /*transfer=*/false);
+    io::setVersion(stream_, header_.library, header_.format);
+
+    readMetadata(file_, stream_, nullptr);
+    const auto count = file_.read<int32_t>();
+    if (count < 0) damaged("its number of grids is negative");
+    std::vector<GridBase::Ptr> grids;
+    std::map<std::string, GridBase::Ptr> named;
+    std::vector<std::pair<GridBase::Ptr, std::string>> instances;
+    for (int32_t i = 0; i < count; ++i) {
+      const Descriptor descriptor = readDescriptor(file_);
+      const GridBase::Ptr grid = readGrid(descriptor);
+      if (!grid) continue;
+      grids.push_back(grid);
+      named[descriptor.name] = grid;
+      if (descriptor.isInstance()) instances.emplace_back(grid, descriptor.parent);
+    }
+    if (file_.left() != 0) damaged("something follows its last grid");
+    for (const auto& [grid, parent] : instances) {
+      const auto found = named.find(parent);
+      if (found == named.end()) damaged("a grid shares the tree of a grid that is missing");
+      grid->setTree(found->second->baseTreePtr());
+    }
+    return grids;
+  }
+
+ private:
+  /// Null for a grid that is no volume.
+  GridBase::Ptr readGrid(const Descriptor& descriptor) {
+    if (header_.hasOffsets && descriptor.start != file_.position())
+      damaged("a grid is not where its offset says");
+    const auto layout = detail::treeLayout(descriptor.type);
+    if (!layout || !GridBase::isRegistered(descriptor.type)) {
+      skipGrid(descriptor);
+      return nullptr;
+    }
+    const auto compression = file_.read<uint32_t>();
+    if (compression & ~uint32_t(io::COMPRESS_ZIP | io::COMPRESS_ACTIVE_MASK | io::COMPRESS_BLOSC))
+      refuse(file_, "a grid is compressed in an unknown way; save it again without compression");
+
+    const GridBase::Ptr grid = GridBase::createGrid(descriptor.type);
+    readMetadata(file_, stream_, grid.get());
+    if (grid->getName().empty())
+      grid->setName(descriptor.name.substr(0, descriptor.name.find(kNameSuffix)));
+    readTransform(file_, stream_, *grid);
+    if (!descriptor.isInstance()) readTree(descriptor, *layout, compression, *grid);
+    if (header_.hasOffsets && descriptor.end != file_.position())
+      damaged("a grid does not end where its offset says");
+    return grid;
+  }
+
+  void skipGrid(const Descriptor& descriptor) {
+    if (!header_.hasOffsets)
+      refuse(file_, "it holds a grid of type '" + clipped(descriptor.type) +
+                        "'; save the volumes in a file of their own");
+    if (descriptor.end < file_.position()) damaged("a grid does not end where its offset says");
+    file_.moveTo(descriptor.end);
+  }
+
+  void readTree(const Descriptor& descriptor, const detail::TreeLayout& layout,
+                uint32_t compression, GridBase& grid) {
+    const int64_t start = file_.position();
+    const detail::TreeSettings settings{layout, grid.saveFloatAsHalf(), compression,
+                                        options_.maxVoxels, options_.maxCoordinate};
+    io::setDataCompression(stream_, compression);
+    io::setGridClass(stream_, grid.getGridClass());
+    io::setHalfFloat(stream_, settings.half);
+    io::setGridBackgroundValuePtr(stream_, nullptr);
+
+    const detail::TreeExtent extent = checkTree(file_, stream_, settings);
+    if (header_.hasOffsets && descriptor.buffers != extent.topologyEnd)
+      damaged("the voxels of a grid are not where their offset says");
+    if (extent.memoryBytes > memoryLimit())
+      refuse(file_, "it takes " + std::to_string(extent.memoryBytes >> 20) +
+                        " MiB of memory, more than there is; crop it, or use a larger computer");
+    file_.moveTo(start);
+    grid.readTopology(stream_);
+    if (file_.position() != extent.topologyEnd) damaged("its nodes have the wrong size");
+    grid.readBuffers(stream_);
+    if (file_.position() != extent.end) damaged("its voxels have the wrong size");
+  }
+
+  detail::InputBuffer& file_;
+  std::istream stream_;
+  io::StreamMetadata::Ptr streamState_ = std::make_shared<io::StreamMetadata>();
+  const VdbReadOptions& options_;
+  Header header_;
+};
+
+// --- writing
+
+class Writer : public io::Archive {
+ public:
+  /// With offsets: other programs then need not read all grids to read one.
+  void writeAll(std::ostream& stream, const openvdb::GridCPtrVec& grids) const {
+    Archive::write(stream, grids, /*seekable=*/true);
+  }
+};
+
+/// In the form of a UUID of version 8 (RFC 9562: contents defined by the application).
+std::string uuidFrom(const std::array<uint64_t, 2>& hash) {
+  const uint64_t high = (hash[0] & ~uint64_t(0xf000)) | 0x8000;
+  const uint64_t low = (hash[1] & ~(uint64_t(3) << 62)) | uint64_t(1) << 63;
+  char text[kUuidLength + 1];
+  std::snprintf(text, sizeof(text), "%08x-%04x-%04x-%04x-%012llx", unsigned(high >> 32),
+                unsigned(high >> 16 & 0xffff), unsigned(high & 0xffff), unsigned(low >> 48),
+                static_cast<unsigned long long>(low & 0xffffffffffffu));
+  return text;
+}
+
+}  // namespace
+
+std::vector<GridBase::Ptr> readVdb(const std::string& path, const VdbReadOptions& options,
+                                   Interrupter* interrupter) {
+  initialize();
+  detail::InputBuffer file(path, interrupter);
+  const auto refuseDamaged = [&file](const std::string& what) {
+    refuse(file, "it is damaged (" + what + "); make or copy it again");
+  };
+  try {
+    return Reader(file, options).read();
+  } catch (const IoError&) {
+    throw;
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const detail::BeyondLimits& error) {
+    refuse(file, error.what() + std::string("; crop it, or make it again if it is not so large"));
+  } catch (const std::bad_alloc&) {
+    refuse(file, "there is not enough memory; close other programs, or crop it");
+  } catch (const std::ios_base::failure&) {
+    refuseDamaged(detail::EarlyEnd().what());
+  } catch (const std::exception& error) {
+    refuseDamaged(clipped(error.what()));
+  }
+  return {};
+}
+
+void writeVdb(const std::string& path, const std::vector<GridBase::ConstPtr>& grids,
+              Interrupter* interrupter) {
+  initialize();
+  OutputFile output(path);
+  detail::OutputBuffer buffer(output, interrupter, kUuidStart, kUuidLength);
+  std::ostream stream(&buffer);
+  stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
+  Writer().writeAll(stream, grids);
+  buffer.flush();
+  buffer.replace(kUuidStart, uuidFrom(buffer.hash()));
+  buffer.close();
+  output.commit();
+}
+
+}  // namespace vdb_madf

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vdb_madf/grids/grid_types.h"
+
+namespace vdb_madf {
+
+struct VdbReadOptions {
+  /// Largest number of voxels that active tiles and leaves of one grid may hold, and the largest
+  /// |coordinate|: a file beyond them is refused before its tiles are touched.
+  int64_t maxVoxels = int64_t(1) << 32;
+  int maxCoordinate = 1 << 20;
+};
+
+/// The volumes of a .vdb file in its order, read eagerly (no delayed loading) from a file that may
+/// be damaged; point grids are left out. Formats 222 to 224. The structure of
+/// each grid is checked before OpenVDB reads it; linked against OpenVDB before 11, a program also
+/// needs the checked decompression of tools/ for files that may change while they are read.
+/// @throw IoError, one line that names the file, if it is missing, truncated, corrupt or not VDB;
+///   Interrupted.
+std::vector<openvdb::GridBase::Ptr> readVdb(const std::string& path,
+                                            const VdbReadOptions& options = {},
+                                            Interrupter* interrupter = nullptr);
+
+/// Writes the grids whole or not at all: a temporary file beside `path`, every write checked,
+/// synced to disk, then renamed. The file's bytes depend on its grids alone (OpenVDB's random UUID
+/// is replaced by one derived from the content).
+/// @throw IoError, one line that names the file (disk full, no permission, ...); Interrupted.
+void writeVdb(const std::string& path, const std::vector<openvdb::GridBase::ConstPtr>& grids,
+              Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/volumes/label_type.h"
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <vector>
+
+#include "vdb_madf/base/detail/parallel.h"
+
+namespace vdb_madf {
+
+namespace {
+
+constexpr size_t kLeafGrain = 64;
+
+}  // namespace
+
+SampleType labelType(const Int32Grid& grid) {
+  using Leaf = Int32Tree::LeafNodeType;
+  std::vector<const Leaf*> leaves;
+  leaves.reserve(grid.tree().leafCount());
+  grid.tree().getNodes(leaves);
+  int32_t min = grid.background(), max = min;
+  std::mutex mutex;
+  detail::parallelFor(leaves.size(), kLeafGrain, nullptr, [&](size_t begin, size_t end) {
+    int32_t low = std::numeric_limits<int32_t>::max(), high = std::numeric_limits<int32_t>::min();
+    for (size_t i = begin; i < end; ++i) {
+      const int32_t* values = leaves[i]->buffer().data();
+      const auto [lowest, highest] = std::minmax_element(values, values + Leaf::SIZE);
+      low = std::min(low, *lowest);
+      high = std::max(high, *highest);
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    min = std::min(min, low);
+    max = std::max(max, high);
+  });
+  auto tile = grid.tree().cbeginValueAll();
+  tile.setMaxDepth(tile.getLeafDepth() - 1);
+  for (; tile; ++tile) {
+    min = std::min(min, *tile);
+    max = std::max(max, *tile);
+  }
+  if (min < 0) return SampleType::int32;
+  return max <= std::numeric_limits<uint16_t>::max() ? SampleType::uint16 : SampleType::uint32;
+}
+
+}  // namespace vdb_madf

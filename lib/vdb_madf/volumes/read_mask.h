@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/selection.h"
+#include "vdb_madf/images/image.h"
+
+namespace vdb_madf {
+
+/// Reads the image slab by slab and keeps one bit per voxel of the leaves that hold object. The
+/// mask carries domain and source metadata, voxel size and transform. Peak memory: the mask and one
+/// slab of eight slices.
+MaskGrid::Ptr readMask(ImageReader& image, const Selection& selection = {},
+                       Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <string>
+
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/images/image.h"
+
+namespace vdb_madf {
+
+/// Writes the grid's values over `box` (background outside its tiles and leaves), slab by slab; the
+/// first voxel lies where the grid's transform has the box's lower corner, see createImage().
+/// Bool, Mask, Int32, Int64, Float and Double grids; values must be representable in info.type.
+/// @throw InvalidInput if a value does not fit the sample type, naming the value; IoError.
+void writeImage(const std::string& path, const openvdb::GridBase& grid, const CoordBBox& box,
+                SampleType type, Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

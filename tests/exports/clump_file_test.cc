@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/exports/clump_file.h"
+#include "vdb_madf/shapes/clumps.h"
+
+#include <tbb/global_control.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include "support/files.h"
+#include "support/label_shapes.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+
+namespace {
+
+/// Every voxel with its squared distance to the nearest voxel that has no label, nearer than 40.
+LabelMap distances(const LabelMap& voxels) {
+  LabelMap result;
+  for (const auto& [p, label] : voxels) {
+    int64_t nearest = 1600;
+    const int reach = 12;
+    for (int x = -reach; x <= reach; ++x)
+      for (int y = -reach; y <= reach; ++y)
+        for (int z = -reach; z <= reach; ++z)
+          if (x * x + y * y + z * z < nearest && !voxels.count(p.offsetBy(x, y, z)))
+            nearest = x * x + y * y + z * z;
+    result[p] = int32_t(nearest);
+  }
+  return result;
+}
+
+struct Truth {
+  int64_t uncovered = 0, outside = 0;
+  double farthest = 0;
+};
+
+/// By visiting every voxel.
+Truth measured(const LabelMap& voxels, const Clump& clump) {
+  Truth truth;
+  std::set<Coord> covered;
+  for (const Clump::Ball& ball : clump.balls) {
+    const int reach = int(std::sqrt(double(ball.squaredRadius))) + 1;
+    for (int x = -reach; x <= reach; ++x)
+      for (int y = -reach; y <= reach; ++y)
+        for (int z = -reach; z <= reach; ++z)
+          if (x * x + y * y + z * z < ball.squaredRadius)
+            covered.insert(ball.center.offsetBy(x, y, z));
+  }
+  for (const auto& [p, label] : voxels) {
+    if (label != clump.label || covered.count(p)) continue;
+    ++truth.uncovered;
+    double nearest = 1e9;
+    for (const Clump::Ball& ball : clump.balls)
+      nearest = std::min(
+          nearest, (p - ball.center).asVec3d().length() - std::sqrt(double(ball.squaredRadius)));
+    truth.farthest = std::max({truth.farthest, nearest, 0.0});
+  }
+  for (const Coord& p : covered) {
+    const auto found = voxels.find(p);
+    truth.outside += found == voxels.end() || found->second != clump.label;
+  }
+  return truth;
+}
+
+}  // namespace
+
+TEST_CASE("clumps: cover, excess and distance are those of the voxels", "[clumps]") {
+  const LabelMap voxels = twoBalls({-5, 60, 3}, 7);
+  const auto labels = labelGrid(voxels), balls = labelGrid(distances(voxels));
+  for (const ClumpOptions& options : {ClumpOptions{1, 0}, ClumpOptions{5, 0},
+                                      ClumpOptions{1000, 0.05}, ClumpOptions{100000, 0}}) {
+    const auto made = clumps(*labels, *balls, options);
+    REQUIRE(made.size() == 2);
+    for (const Clump& clump : made) {
+      const Truth truth = measured(voxels, clump);
+      CHECK(clump.voxels == volumes(voxels).at(clump.label));
+      CHECK(clump.uncovered == truth.uncovered);
+      CHECK(clump.outside == truth.outside);
+      CHECK(clump.farthest == Approx(truth.farthest));
+      CHECK(int(clump.balls.size()) <= options.mostBalls);
+      if (int(clump.balls.size()) < options.mostBalls)
+        CHECK(double(clump.uncovered) <= options.coverageError * double(clump.voxels));
+      for (const Clump::Ball& ball : clump.balls) CHECK(voxels.at(ball.center) == clump.label);
+    }
+  }
+}
+
+TEST_CASE("clumps: the ball that covers most comes first", "[clumps]") {
+  LabelMap voxels;
+  for (int x = -9; x <= 30; ++x)
+    for (int y = -9; y <= 9; ++y)
+      for (int z = -9; z <= 9; ++z) {
+        const int rest = y * y + z * z;
+        if (x * x + rest < 64 || (x - 11) * (x - 11) + rest < 25) voxels[{x, y, z}] = 1;
+      }
+  const auto made = clumps(*labelGrid(voxels), *labelGrid(distances(voxels)), {2, 0});
+  REQUIRE(made[0].balls.size() == 2);
+  CHECK(made[0].balls[0].center == Coord(0));
+  CHECK(made[0].balls[0].squaredRadius == 64);
+  CHECK(made[0].balls[1].center == Coord(11, 0, 0));
+  CHECK(made[0].farthest < 2);
+  CHECK(std::abs(made[0].volumeError()) < 0.02);
+}
+
+TEST_CASE("clumps: same for any number of threads; no balls, no labels, wrong options",
+          "[clumps]") {
+  const LabelMap voxels = randomLabels(3, Coord(-4), 12, 4, 95);
+  const auto labels = labelGrid(voxels), balls = labelGrid(distances(voxels));
+  const auto made = clumps(*labels, *balls, {7, 0.01});
+  {
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const auto other = clumps(*labels, *balls, {7, 0.01});
+    for (size_t g = 0; g < made.size(); ++g) {
+      REQUIRE(other[g].balls.size() == made[g].balls.size());
+      for (size_t i = 0; i < made[g].balls.size(); ++i)
+        CHECK(other[g].balls[i].center == made[g].balls[i].center);
+    }
+  }
+  const auto without = clumps(*labels, *labelGrid({}));
+  CHECK(without[0].balls.empty());
+  CHECK(without[0].uncovered == without[0].voxels);
+  CHECK(clumps(*labelGrid({}), *balls).empty());
+  CHECK_THROWS_AS(clumps(*labels, *balls, {0, 0}), InvalidInput);
+  CHECK_THROWS_AS(clumps(*labels, *balls, {1, 1.5}), InvalidInput);
+}
+
+TEST_CASE("clumps: files hold every ball at its place in the world", "[clumps]") {
+  const ScratchFolder folder;
+  const std::vector<Clump> made = {{5, {{Coord(1, 2, 3), 4}, {Coord(4, 2, 3), 1}}, 30, 0, 0, 0},
+                                   {9, {{Coord(-8, 0, 0), 9}}, 50, 0, 0, 0}};
+  const auto transform = openvdb::math::Transform::createLinearTransform(0.5);
+  writeClumps(folder / "c.csv", made, *transform);
+  CHECK(readFile(folder / "c.csv") ==
+        "grain_id,x,y,z,radius\n5,0.5,1,1.5,1\n5,2,1,1.5,0.5\n9,-4,0,0,1.5\n");
+  writeClumps(folder / "c.txt", made, *transform);
+  CHECK(readFile(folder / "c.txt") ==
+        "#format x_y_z_r_clumpId\n0.5 1 1.5 1 0\n2 1 1.5 0.5 0\n-4 0 0 1.5 1\n");
+  writeClumps(folder / "c.data", made, *transform);
+  const std::string data = readFile(folder / "c.data");
+  CHECK(data.find("3 atoms\n1 atom types\n\n-5.5 2.5 xlo xhi\n") != std::string::npos);
+  std::istringstream atoms(data.substr(data.find("molecular\n\n") + 11));
+  // Number, type, place, diameter, density, molecule. A grain's balls weigh what its voxels do.
+  const double kBall = 4.0 / 3.0 * 3.14159265358979323846;
+  const double first = 30 / (9 * kBall), second = 50 / (27 * kBall);
+  for (const double wanted : {1., 1., 0.5, 1., 1.5, 2., first,  1.,  //
+                              2., 1., 2.,  1., 1.5, 1., first,  1.,  //
+                              3., 1., -4., 0., 0.,  3., second, 2.}) {
+    double found = -1;
+    atoms >> found;
+    CHECK(found == Approx(wanted));
+  }
+  CHECK_THROWS_AS(writeClumps(folder / "c.xyz", made, *transform), InvalidInput);
+}

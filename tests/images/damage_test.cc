@@ -1,0 +1,215 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+#include "support/files.h"
+#include "support/image_damage.h"
+#include "support/images.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/images/open_image.h"
+
+// Files that are cut short or changed at random: each either reads or is refused with one line that
+// names it. Most valuable in a build with sanitizers.
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+
+namespace {
+
+const ImageSize kSize{19, 17, 4};
+constexpr int kMutationsPerFile = 1500;
+/// What a header may make us allocate, as a multiple of the file: Deflate's and LZW's expansion,
+/// and eight slices at a time.
+constexpr uint64_t kMostExpansion = 8 * 4096;
+/// The files have some kilobytes; a reader's buffers of fixed size and a stray page are allowed.
+constexpr uint64_t kMemory = uint64_t(64) << 20;
+
+struct Sample {
+  std::string name, bytes;
+  /// Beside the file, for detached headers.
+  std::string dataName, data;
+  size_t headerBytes;  ///< most mutations hit these
+};
+
+std::string tiff(const ScratchFolder& folder, SampleType type, const TiffLayout& layout) {
+  const std::string path = folder / "sample.tif";
+  const size_t row = layout.bits == 1 ? size_t(kSize.x + 7) / 8 : size_t(kSize.x);
+  std::string bytes = randomSamples(type, row * size_t(kSize.y) * size_t(kSize.z), 21);
+  writeTiff(path, kSize, type, bytes, layout);
+  return readFile(path);
+}
+
+std::vector<Sample> samples(const ScratchFolder& folder) {
+  std::vector<Sample> all;
+  for (const int compression :
+       {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS})
+    for (const std::string mode : {"wl", "wb8"})
+      for (const uint32_t tile : {0u, 16u}) {
+        TiffLayout layout;
+        layout.mode = mode;
+        layout.compression = compression;
+        layout.tile = tile;
+        layout.rowsPerStrip = 8;
+        layout.description = "ImageJ=1.5\nimages=4\nunit=um\nspacing=2\n";
+        layout.resolution = 0.5;
+        const std::string bytes = tiff(folder, SampleType::uint16, layout);
+        all.push_back({"a.tif", bytes, "", "", bytes.size()});
+      }
+  for (const int compression :
+       {COMPRESSION_CCITTRLE, COMPRESSION_CCITTFAX3, COMPRESSION_CCITTFAX4}) {
+    TiffLayout layout;
+    layout.bits = 1;
+    layout.compression = compression;
+    const std::string bytes = tiff(folder, SampleType::uint8, layout);
+    all.push_back({"a.tif", bytes, "", "", bytes.size()});
+  }
+  const std::string voxelBytes = randomSamples(SampleType::int16, voxels(kSize), 22);
+  const std::string meta =
+      "ObjectType = Image\nNDims = 3\nBinaryDataByteOrderMSB = False\nDimSize = 19 17 4\n"
+      "ElementSpacing = 0.01 0.01 0.01\nElementType = MET_SHORT\n";
+  const std::string nrrd =
+      "NRRD0004\ntype: short\ndimension: 3\nsizes: 19 17 4\nendian: little\nspacings: 2 2 2\n"
+      "units: \"um\" \"um\" \"um\"\nencoding: ";
+  const auto add = [&](const std::string& name, const std::string& header,
+                       const std::string& data) {
+    all.push_back({name, header + data, "", "", header.size() + 8});
+  };
+  add("a.mha", meta + "ElementDataFile = LOCAL\n", voxelBytes);
+  add("a.mha", meta + "CompressedData = True\nElementDataFile = LOCAL\n", deflated(voxelBytes, 15));
+  all.push_back({"a.mhd", meta + "HeaderSize = 7\nElementDataFile = b.raw\n", "b.raw",
+                 "header\n" + voxelBytes, meta.size()});
+  add("a.nrrd", nrrd + "raw\n\n", voxelBytes);
+  add("a.nrrd", nrrd + "gzip\nbyte skip: 2\n\n", deflated("xx" + voxelBytes, 31));
+  all.push_back({"a.nhdr", nrrd + "raw\nline skip: 1\nbyte skip: 3\ndata file: b.raw\n", "b.raw",
+                 "header\n...." + voxelBytes.substr(1), nrrd.size()});
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("image_file: the samples of the damage tests are sound", "[image_file]") {
+  const ScratchFolder folder;
+  for (const Sample& sample : samples(folder)) {
+    writeFile(folder / sample.name, sample.bytes);
+    if (!sample.dataName.empty()) writeFile(folder / sample.dataName, sample.data);
+    CHECK(openImage(folder / sample.name)->info().size == kSize);
+    const std::string samples = readAll(*openImage(folder / sample.name));
+    CHECK(samples.find_first_not_of('\0') != std::string::npos);
+  }
+}
+
+TEST_CASE("image_file: files cut short are refused with one line that names them", "[image_file]") {
+  const ScratchFolder folder;
+  const ScratchFolder other;
+  CapturedStderr output(other / "stderr");
+  for (const Sample& sample : samples(folder)) {
+    const std::string path = folder / sample.name;
+    const size_t step = sample.bytes.size() / 150 + 1;
+    for (size_t length = 0; length < sample.bytes.size(); length += step) {
+      writeFile(path, sample.bytes.substr(0, length));
+      if (!sample.dataName.empty()) writeFile(folder / sample.dataName, sample.data);
+      CAPTURE(sample.name, length);
+      REQUIRE(complaint(path, sample.bytes.size() + sample.data.size(), kMostExpansion) == "");
+    }
+    if (sample.dataName.empty()) continue;
+    writeFile(path, sample.bytes);
+    for (size_t length = 0; length < sample.data.size(); length += 97) {
+      writeFile(folder / sample.dataName, sample.data.substr(0, length));
+      CHECK_THROWS_AS(openImage(path), IoError);
+      REQUIRE(complaint(path, sample.bytes.size() + sample.data.size(), kMostExpansion) == "");
+    }
+  }
+  CHECK(output.text() == "");
+}
+
+TEST_CASE("image_file: a truncated volume is never read as a shorter one", "[image_file]") {
+  const ScratchFolder folder;
+  for (const Sample& sample : samples(folder)) {
+    if (!sample.dataName.empty()) continue;
+    const std::string path = folder / sample.name;
+    for (const size_t missing : {1u, 5u, 200u, 600u}) {
+      writeFile(path, sample.bytes.substr(0, sample.bytes.size() - missing));
+      CAPTURE(sample.name, missing);
+      try {
+        const auto image = openImage(path);
+        readAll(*image);
+        CHECK(image->info().size == kSize);  // only padding was lost
+      } catch (const IoError&) {
+        SUCCEED();
+      }
+    }
+  }
+}
+
+TEST_CASE("image_file: mutated files read or are refused with one line that names them",
+          "[image_file]") {
+  const ScratchFolder folder;
+  const ScratchFolder other;
+  CapturedStderr output(other / "stderr");
+  unsigned seed = 1000;
+  const std::vector<Sample> all = samples(folder);
+  for (const Sample& sample : all) {
+    const std::string path = folder / sample.name;
+    const auto files = std::count_if(all.begin(), all.end(), [&](const Sample& another) {
+      return another.name.substr(0, 3) == sample.name.substr(0, 3);  // of the format
+    });
+    if (!sample.dataName.empty()) writeFile(folder / sample.dataName, sample.data);
+    const int mutations = mutationsPerFormat(kMutationsPerFile * int(files)) / int(files);
+    const MemoryLimit limit(kMemory);
+    for (int i = 0; i < mutations; ++i) {
+      const std::string bytes = mutated(sample.bytes, sample.headerBytes, ++seed);
+      writeFile(path, bytes);
+      const std::string wrong = complaint(path, bytes.size() + sample.data.size(), kMostExpansion);
+      if (wrong.empty()) continue;
+      CAPTURE(sample.name, seed, wrong);
+      REQUIRE(wrong.empty());
+    }
+  }
+  CHECK(output.text() == "");
+}
+
+TEST_CASE("image_file: missing, empty and meaningless files", "[image_file]") {
+  const ScratchFolder folder;
+  std::mt19937 random(3);
+  std::string noise;
+  for (int i = 0; i < 5000; ++i) noise.push_back(char(random()));
+  for (const std::string ending : {"tif", "mhd", "mha", "nrrd", "nhdr", "raw", "dat"}) {
+    const std::string path = folder / ("a." + ending);
+    CAPTURE(path);
+    CHECK_THROWS_AS(openImage(folder / "none/b.tif"), IoError);
+    CHECK_THROWS_AS(openImage(folder / ("b." + ending)), IoError);
+    for (const std::string& content : {std::string(), std::string(1, '\0'), noise}) {
+      writeFile(path, content);
+      CHECK_THROWS_AS(openImage(path), IoError);
+      CHECK(complaint(path, 100, kMostExpansion) == "");
+    }
+  }
+  CHECK_THROWS_AS(openImage("/dev/null"), IoError);
+}
+
+TEST_CASE("image_file: TIFF pages in a circle end", "[image_file]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.tif";
+  TiffLayout layout;
+  layout.mode = "wl";
+  writeTiff(path, kSize, SampleType::uint8, randomSamples(SampleType::uint8, voxels(kSize), 1),
+            layout);
+  std::string bytes = readFile(path);
+  const auto word = [&](size_t place, size_t count) {
+    uint32_t value = 0;
+    std::memcpy(&value, &bytes[place], count);
+    return value;
+  };
+  const uint32_t first = word(4, 4);
+  uint32_t directory = first, link = 0;
+  while (directory) {
+    link = directory + 2 + 12 * word(directory, 2);
+    directory = word(link, 4);
+  }
+  std::memcpy(&bytes[link], &first, 4);
+  writeFile(path, bytes);
+  CHECK_THROWS_AS(openImage(path), IoError);
+}

@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <catch2/catch.hpp>
+
+#include "support/files.h"
+#include "support/image_damage.h"
+#include "support/images.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/images/image.h"
+#include "vdb_madf/images/open_image.h"
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+using Catch::Matchers::Contains;
+
+#ifndef VDB_MADF_HDF5
+
+TEST_CASE("image_hdf5: a build without the library says so", "[image_hdf5]") {
+  WARN("SKIPPED: reading HDF5: built without libhdf5-dev");
+  const ScratchFolder folder;
+  writeFile(folder / "a.dat", "\x89HDF\r\n\x1a\n" + std::string(100, 'a'));
+  CHECK_THROWS_WITH(openImage(folder / "a.dat"), Contains("a.dat") && Contains("libhdf5"));
+}
+
+#else
+
+#include "support/hdf5_files.h"
+
+namespace {
+
+const ImageSize kSize{11, 7, 9};
+const std::vector<hsize_t> kShape{9, 7, 11};
+
+struct Types {
+  hid_t little, big, memory;
+};
+
+Types typesOf(SampleType type) {
+  switch (type) {
+    case SampleType::uint8:
+      return {H5T_STD_U8LE, H5T_STD_U8BE, H5T_NATIVE_UINT8};
+    case SampleType::int8:
+      return {H5T_STD_I8LE, H5T_STD_I8BE, H5T_NATIVE_INT8};
+    case SampleType::uint16:
+      return {H5T_STD_U16LE, H5T_STD_U16BE, H5T_NATIVE_UINT16};
+    case SampleType::int16:
+      return {H5T_STD_I16LE, H5T_STD_I16BE, H5T_NATIVE_INT16};
+    case SampleType::uint32:
+      return {H5T_STD_U32LE, H5T_STD_U32BE, H5T_NATIVE_UINT32};
+    case SampleType::int32:
+      return {H5T_STD_I32LE, H5T_STD_I32BE, H5T_NATIVE_INT32};
+    case SampleType::float32:
+      return {H5T_IEEE_F32LE, H5T_IEEE_F32BE, H5T_NATIVE_FLOAT};
+    case SampleType::float64:
+      break;
+  }
+  return {H5T_IEEE_F64LE, H5T_IEEE_F64BE, H5T_NATIVE_DOUBLE};
+}
+
+void writeHdf5(const std::string& path, const std::string& name, const Hdf5Layout& layout,
+               const void* samples) {
+  const hid_t file = newHdf5(path);
+  addHdf5(file, name, layout, samples);
+  H5Fclose(file);
+}
+
+}  // namespace
+
+TEST_CASE("image_hdf5: every type, byte order and layout", "[image_hdf5]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.h5";
+  for (const SampleType type : kSampleTypes)
+    for (const bool bigEndian : {false, true})
+      for (const int kind : {0, 1, 2, 3}) {
+        CAPTURE(sampleTypeName(type), bigEndian, kind);
+        const std::string bytes = randomSamples(type, voxels(kSize), 1);
+        const Types types = typesOf(type);
+        Hdf5Layout layout{kShape, {}, bigEndian ? types.big : types.little, types.memory, 0, {}};
+        if (kind > 0) layout.chunk = {5, 3, 4};
+        if (kind > 1) layout.deflate = 3;
+        if (kind > 2) {
+          layout.shape.insert(layout.shape.begin(), 2, 1);
+          layout.chunk.insert(layout.chunk.begin(), 2, 1);
+        }
+        writeHdf5(path, "entry/data/volume", layout, bytes.data());
+        CHECK(looksLikeImage(path));
+        const auto image = openImage(path);
+        CHECK(image->info().size == kSize);
+        CHECK(image->info().type == type);
+        CHECK(image->info().format == "hdf5");
+        CHECK_FALSE(image->info().voxelSize);
+        for (const int step : {1, 2, 8, 100}) CHECK(readAll(*image, step) == bytes);
+        CHECK(readAll(*openImage(path, {}, "/entry/data/volume")) == bytes);
+      }
+}
+
+TEST_CASE("image_hdf5: 64-bit labels and h5py's bool", "[image_hdf5]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.h5";
+  std::vector<int64_t> labels;
+  for (int i = 0; i < int(voxels(kSize)); ++i) labels.push_back(i % 7 ? i * 1000003 : -i);
+  const Hdf5Layout wide{kShape, {}, H5T_STD_I64BE, H5T_NATIVE_INT64, 0, {}};
+  writeHdf5(path, "labels", wide, labels.data());
+  CHECK(openImage(path)->info().type == SampleType::int32);
+  const std::string bytes = readAll(*openImage(path), 2);
+  for (size_t i = 0; i < labels.size(); ++i) {
+    int32_t label;
+    std::memcpy(&label, &bytes[4 * i], 4);
+    REQUIRE(label == labels[i]);
+  }
+  labels[400] = int64_t(1) << 33;
+  writeHdf5(path, "labels", wide, labels.data());
+  CHECK_THROWS_WITH(readAll(*openImage(path)), Contains(path) && Contains("beyond 32 bits"));
+
+  const hid_t flag = H5Tenum_create(H5T_NATIVE_INT8);
+  for (const int8_t value : {0, 1}) H5Tenum_insert(flag, value ? "TRUE" : "FALSE", &value);
+  std::string flags;
+  for (size_t i = 0; i < voxels(kSize); ++i) flags += char(i % 3 == 0);
+  writeHdf5(path, "mask", {kShape, {}, flag, flag, 0, {}}, flags.data());
+  CHECK(openImage(path)->info().type == SampleType::int8);
+  CHECK(readAll(*openImage(path), 2) == flags);
+  H5Tclose(flag);
+}
+
+TEST_CASE("image_hdf5: the dataset is the only volume, or is named", "[image_hdf5]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.h5";
+  const std::string bytes = randomSamples(SampleType::uint8, voxels(kSize), 2);
+  const Hdf5Layout volume{kShape, {}, H5T_STD_U8LE, H5T_NATIVE_UINT8, 0, {8.5, 8.5, 8.5}};
+  hid_t file = newHdf5(path);
+  addHdf5(file, "g/curve", {{693}, {}, H5T_STD_U8LE, H5T_NATIVE_UINT8, 0, {}}, bytes.data());
+  addHdf5(file, "g/v", volume, bytes.data());
+  H5Fclose(file);
+  CHECK(readAll(*openImage(path)) == bytes);
+  CHECK(openImage(path)->info().voxelSize->metres == 8.5e-6);
+  CHECK_THROWS_WITH(openImage(path, {}, "g/curve"), Contains(path) && Contains("1 dimensions"));
+  CHECK_THROWS_WITH(openImage(path, {}, "g/w"), Contains(path) && Contains("'g/w'"));
+  CHECK_THROWS_WITH(openImage(path, {}, "g"), Contains(path) && Contains("'g'"));
+
+  file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  addHdf5(file, "second", volume, bytes.data());
+  H5Fclose(file);
+  CHECK_THROWS_WITH(openImage(path), Contains("--dataset") && Contains("'g/v', 'second'"));
+  CHECK(readAll(*openImage(path, {}, "second")) == bytes);
+
+  const auto refused = [&](const Hdf5Layout& layout, const std::string& why, const void* samples) {
+    writeHdf5(path, "d", layout, samples);
+    CHECK_THROWS_WITH(openImage(path, {}, "d"), Contains(path) && Contains(why));
+  };
+  Hdf5Layout other = volume;
+  other.elementSize = {8.5, 8.5, 9};
+  refused(other, "unequal", bytes.data());
+  other.elementSize = {8.5};
+  refused(other, "element_size_um", bytes.data());
+  other = volume;
+  other.shape = {3, 3, 7, 11};
+  refused(other, "3 volumes", bytes.data());
+  other.shape = {1 << 20, 1 << 20, 1 << 20};
+  other.chunk = {1, 1, 16};
+  refused(other, "too few", nullptr);
+  other = volume;
+  other.type = other.memory = H5T_C_S1;
+  refused(other, "no integers", bytes.data());
+  writeHdf5(path, "curve", {{693}, {}, H5T_STD_U8LE, H5T_NATIVE_UINT8, 0, {}}, bytes.data());
+  CHECK_THROWS_WITH(openImage(path), Contains(path) && Contains("no dataset"));
+}
+
+TEST_CASE("image_hdf5: damaged files read or are refused with one line", "[image_hdf5]") {
+  const ScratchFolder folder;
+  const ScratchFolder other;
+  CapturedStderr output(other / "stderr");
+  const std::string path = folder / "a.h5";
+  const std::string bytes = randomSamples(SampleType::uint16, voxels(kSize), 3);
+  unsigned seed = 1;
+  for (const bool chunked : {false, true}) {
+    Hdf5Layout layout{kShape, {}, H5T_STD_U16BE, H5T_NATIVE_UINT16, 0, {2, 2, 2}};
+    if (chunked) {
+      layout.chunk = {5, 3, 4};
+      layout.deflate = 1;
+    }
+    writeHdf5(path, "v", layout, bytes.data());
+    const std::string whole = readFile(path);
+    REQUIRE(complaint(path, whole.size(), 1 << 16) == "");
+    const MemoryLimit limit(uint64_t(512) << 20);
+    for (int i = 0; i < mutationsPerFormat(2000) / 2; ++i) {
+      writeFile(path, mutated(whole, whole.size(), ++seed));
+      CAPTURE(chunked, seed);
+      REQUIRE(complaint(path, 2 * whole.size(), 1 << 16) == "");
+    }
+    for (size_t length = 0; length < whole.size(); length += whole.size() / 100) {
+      writeFile(path, whole.substr(0, length));
+      CAPTURE(chunked, length);
+      REQUIRE(complaint(path, whole.size(), 1 << 16) == "");
+    }
+  }
+  CHECK(output.text() == "");
+}
+
+#endif

@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <catch2/catch.hpp>
+
+#include "support/files.h"
+#include "support/images.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/images/image.h"
+#include "vdb_madf/images/open_image.h"
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const ImageSize kSize{21, 18, 3};
+
+/// Pages of fewer or other pixels after those that are there.
+void appendPages(const std::string& path, const ImageSize& size, SampleType type) {
+  TiffLayout layout;
+  layout.mode = "a";
+  writeTiff(path, size, type, randomSamples(type, voxels(size), 9), layout);
+}
+
+/// Bits of rows, padded to bytes, as a byte each.
+std::string expanded(const std::string& packed, const ImageSize& size, bool invert) {
+  const size_t row = size_t(size.x + 7) / 8;
+  std::string bytes;
+  for (size_t r = 0; r < size_t(size.y * size.z); ++r)
+    for (size_t x = 0; x < size_t(size.x); ++x) {
+      const bool bit =
+          (static_cast<unsigned char>(packed[r * row + x / 8]) >> (7 - x % 8) & 1) != 0;
+      bytes.push_back(char(bit != invert));
+    }
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("image_file: TIFF of every type, byte order, compression and layout", "[image_file]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.tif";
+  for (const SampleType type : kSampleTypes)
+    for (const std::string mode : {"wl", "wb", "wl8", "wb8"})
+      for (const int compression : {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE,
+                                    COMPRESSION_DEFLATE, COMPRESSION_PACKBITS})
+        for (const uint32_t rows : {1u, 5u, 18u, 1000u})
+          for (const uint32_t tile : {0u, 16u}) {
+            if (tile && rows > 1) continue;
+            CAPTURE(sampleTypeName(type), mode, compression, rows, tile);
+            TiffLayout layout;
+            layout.mode = mode;
+            layout.compression = compression;
+            layout.rowsPerStrip = rows;
+            layout.tile = tile;
+            if (type == SampleType::uint16 && compression == COMPRESSION_LZW) layout.predictor = 2;
+            const std::string bytes = randomSamples(type, voxels(kSize), 6);
+            writeTiff(path, kSize, type, bytes, layout);
+            const auto image = openImage(path);
+            REQUIRE(image->info().size == kSize);
+            REQUIRE(image->info().type == type);
+            REQUIRE(image->info().format == "tiff");
+            REQUIRE(readAll(*image) == bytes);
+            REQUIRE(readAll(*image, 2) == bytes);
+          }
+}
+
+TEST_CASE("image_file: in 1-bit TIFF white is 1, however it is coded", "[image_file]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.tif";
+  const size_t row = size_t(kSize.x + 7) / 8;
+  std::string packed = randomSamples(SampleType::uint8, row * size_t(kSize.y * kSize.z), 7);
+  for (size_t i = row - 1; i < packed.size(); i += row) packed[i] = char(packed[i] & 0xf8);
+  for (const int compression :
+       {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS,
+        COMPRESSION_CCITTRLE, COMPRESSION_CCITTFAX3, COMPRESSION_CCITTFAX4})
+    for (const int photometric : {PHOTOMETRIC_MINISBLACK, PHOTOMETRIC_MINISWHITE})
+      for (const uint32_t rows : {1u, 7u, 18u}) {
+        CAPTURE(compression, photometric, rows);
+        TiffLayout layout;
+        layout.bits = 1;
+        layout.compression = compression;
+        layout.photometric = photometric;
+        layout.rowsPerStrip = rows;
+        writeTiff(path, kSize, SampleType::uint8, packed, layout);
+        const auto image = openImage(path);
+        REQUIRE(image->info().type == SampleType::uint8);
+        REQUIRE(readAll(*image) == expanded(packed, kSize, photometric == PHOTOMETRIC_MINISWHITE));
+      }
+}
+
+TEST_CASE("image_file: of wider TIFF samples the stored value counts", "[image_file]") {
+  const ScratchFolder folder;
+  TiffLayout layout;
+  layout.photometric = PHOTOMETRIC_MINISWHITE;
+  const std::string bytes = randomSamples(SampleType::uint8, voxels(kSize), 8);
+  writeTiff(folder / "a.tif", kSize, SampleType::uint8, bytes, layout);
+  CHECK(readAll(*openImage(folder / "a.tif")) == bytes);
+}
+
+TEST_CASE("image_file: TIFF that is not a grey volume is refused", "[image_file]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.tif";
+  TiffLayout layout;
+  layout.channels = 3;
+  layout.photometric = PHOTOMETRIC_RGB;
+  writeTiff(path, kSize, SampleType::uint8, std::string(3 * voxels(kSize), 'a'), layout);
+  CHECK_THROWS_WITH(openImage(path), Contains(path) && Contains("grey"));
+
+  layout = {};
+  layout.bits = 4;
+  writeTiff(path, kSize, SampleType::uint8, std::string(voxels(kSize), 'a'), layout);
+  CHECK_THROWS_WITH(openImage(path), Contains("4 bits"));
+  layout.bits = 16;
+  layout.format = SAMPLEFORMAT_IEEEFP;
+  writeTiff(path, kSize, SampleType::uint16, std::string(2 * voxels(kSize), 'a'), layout);
+  CHECK_THROWS_WITH(openImage(path), Contains("16 bits"));
+
+  for (const ImageSize& other : {ImageSize{21, 17, 1}, ImageSize{20, 18, 1}}) {
+    writeTiff(path, kSize, SampleType::uint8, std::string(voxels(kSize), 'a'));
+    appendPages(path, other, SampleType::uint8);
+    CHECK_THROWS_WITH(openImage(path), Contains("pages differ"));
+  }
+  writeTiff(path, kSize, SampleType::uint8, std::string(voxels(kSize), 'a'));
+  appendPages(path, kSize, SampleType::int8);
+  CHECK_THROWS_WITH(openImage(path), Contains("pages differ") && Contains("int8"));
+}
+
+TEST_CASE("image_file: a folder of slices is read in natural order", "[image_file]") {
+  const ScratchFolder folder;
+  const ImageSize slice{kSize.x, kSize.y, 1};
+  const std::string names[] = {"s2.tif", "s09.TIF", "s10.tiff", "s0100.tif"};
+  std::string bytes;
+  unsigned seed = 0;
+  for (const std::string& name : names) {
+    const std::string samples = randomSamples(SampleType::uint16, voxels(slice), ++seed);
+    writeTiff(folder / name, slice, SampleType::uint16, samples);
+    bytes += samples;
+  }
+  writeFile(folder / "notes.txt", "not a slice");
+  writeFile(folder / "._s2.tif", "not a slice either");
+  CHECK(looksLikeImage(folder.path()));
+  const auto image = openImage(folder.path());
+  CHECK(image->info().size == ImageSize{kSize.x, kSize.y, 4});
+  CHECK(readAll(*image, 3) == bytes);
+
+  writeTiff(folder / "s11.tif", slice, SampleType::uint8, std::string(voxels(slice), 'a'));
+  CHECK_THROWS_WITH(openImage(folder.path()), Contains("s11.tif") && Contains("uint8"));
+  writeTiff(folder / "s11.tif", kSize, SampleType::uint16, std::string(2 * voxels(kSize), 'a'));
+  CHECK_THROWS_WITH(openImage(folder.path()), Contains("s11.tif") && Contains("several pages"));
+  writeFile(folder / "s11.tif", "II");
+  CHECK_THROWS_WITH(openImage(folder.path()), Contains("s11.tif"));
+  const ScratchFolder empty;
+  CHECK_FALSE(looksLikeImage(empty.path()));
+  CHECK_THROWS_WITH(openImage(empty.path()), Contains(empty.path()));
+}
+
+TEST_CASE("image_file: TIFF voxel size as ImageJ writes it", "[image_file]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.tif";
+  const auto size = [&](const std::string& description, double resolution) {
+    TiffLayout layout;
+    layout.description = description;
+    layout.resolution = resolution;
+    writeTiff(path, kSize, SampleType::uint8, std::string(voxels(kSize), 'a'), layout);
+    return openImage(path)->info().voxelSize;
+  };
+  CHECK(size("ImageJ=1.52a\nslices=3\nunit=micron\nspacing=4.0\n", 0.25)->metres == 4e-6);
+  CHECK(size("ImageJ=1.52a\nunit=\\u00B5m\nspacing=4\n", 0.25)->metres == 4e-6);
+  CHECK(size("ImageJ=1.52a\nunit=\u00b5m\nspacing=-4\n", 0.25)->metres == 4e-6);
+  CHECK(size("ImageJ=1.52a\nunit=mm\n", 1)->metres == 1e-3);
+  CHECK_FALSE(size("ImageJ=1.52a\nunit=mm\n", 4));
+  CHECK_FALSE(size("ImageJ=1.52a\nunit=pixel\nspacing=1\n", 1));
+  CHECK_FALSE(size("ImageJ=1.52a\nspacing=4\n", 0.25));
+  CHECK_FALSE(size("unit=mm\nspacing=4\n", 0.25));
+  CHECK_FALSE(size("", 72));
+  CHECK_THROWS_WITH(size("ImageJ=1.52a\nunit=mm\nspacing=4\n", 1), Contains("unequal spacing"));
+  CHECK_THROWS_WITH(size("ImageJ=1.52a\nchannels=3\n", 0), Contains("channels"));
+}
+
+TEST_CASE("image_file: ImageJ's large stacks have one page and all samples behind it",
+          "[image_file]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.tif";
+  const ImageSize slice{kSize.x, kSize.y, 1};
+  const std::string bytes = randomSamples(SampleType::uint16, voxels(kSize), 10);
+  TiffLayout layout;
+  layout.mode = "wb";
+  layout.rowsPerStrip = 1000;
+  layout.description = "ImageJ=1.52a\nimages=3\nslices=3\n";
+  writeTiff(path, slice, SampleType::uint16, bytes.substr(0, bytes.size() / 3), layout);
+  CHECK(openImage(path)->info().size.z == 1);  // one slice that kept its description
+
+  // libtiff puts the samples first: move them to the end of the file, with all that belongs there.
+  std::string file = readFile(path);
+  const size_t end = file.size();
+  const uint32_t directory =
+      uint32_t(static_cast<unsigned char>(file[6])) << 8 | static_cast<unsigned char>(file[7]);
+  const size_t entries = static_cast<unsigned char>(file[directory + 1]);
+  for (size_t i = 0; i < entries; ++i) {
+    const size_t entry = directory + 2 + 12 * i;
+    const int tag =
+        static_cast<unsigned char>(file[entry]) << 8 | static_cast<unsigned char>(file[entry + 1]);
+    if (tag != TIFFTAG_STRIPOFFSETS) continue;
+    file[entry + 3] = 4;  // LONG
+    for (size_t b = 0; b < 4; ++b) file[entry + 8 + b] = char(end >> (24 - 8 * b));
+  }
+  writeFile(path, file + swapped(bytes, 2));
+  const auto image = openImage(path);
+  CHECK(image->info().size == kSize);
+  CHECK(readAll(*image, 2) == bytes);
+  writeFile(path, (file + swapped(bytes, 2)).substr(0, file.size() + bytes.size() - 1));
+  CHECK_THROWS_WITH(openImage(path), Contains("truncated") && Contains("3 images"));
+}
+
+TEST_CASE("image_file: the real scan has the known phase", "[image_file]") {
+  const auto path = dataFile("nmc.tif");
+  if (!path) {
+    WARN("SKIPPED: nmc.tif not found; set VDB_MADF_DATA to its folder");
+    return;
+  }
+  const auto image = openImage(*path);
+  CHECK(image->info().size == ImageSize{301, 301, 251});
+  CHECK(image->info().type == SampleType::uint8);
+  const std::string samples = readAll(*image, 8);
+  CHECK(std::count(samples.begin(), samples.end(), '\1') == 11357945);
+}

@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/labels/grain_colors.h"
+
+#include <tbb/global_control.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <random>
+#include <set>
+
+#include "vdb_madf/base/errors.h"
+
+using namespace vdb_madf;
+
+namespace {
+
+using Pairs = std::set<std::pair<int32_t, int32_t>>;
+
+Int32Grid::Ptr randomLabels(unsigned seed, const CoordBBox& box, int count, int blockEdge) {
+  std::mt19937 random(seed);
+  auto grid = Int32Grid::create(0);
+  auto accessor = grid->getAccessor();
+  for (int x = box.min().x(); x <= box.max().x(); x += blockEdge)
+    for (int y = box.min().y(); y <= box.max().y(); y += blockEdge)
+      for (int z = box.min().z(); z <= box.max().z(); z += blockEdge) {
+        const auto label = int32_t(random() % unsigned(count + 1));
+        if (!label) continue;
+        for (int i = 0; i < blockEdge * blockEdge * blockEdge; ++i)
+          accessor.setValue(Coord(x + i / blockEdge / blockEdge, y + i / blockEdge % blockEdge,
+                                  z + i % blockEdge),
+                            label * 7);
+      }
+  return grid;
+}
+
+/// Labels at 26-adjacent voxels, by walking all voxels of the box.
+Pairs naiveContacts(const Int32Grid& grid, const CoordBBox& box) {
+  const auto accessor = grid.getConstAccessor();
+  const auto at = [&](const Coord& p) {
+    return accessor.isValueOn(p) ? std::max(0, accessor.getValue(p)) : 0;
+  };
+  Pairs pairs;
+  for (auto p = box.begin(); p; ++p) {
+    const int32_t a = at(*p);
+    if (!a) continue;
+    for (auto d = CoordBBox(Coord(-1), Coord(1)).begin(); d; ++d) {
+      const int32_t b = at(*p + *d);
+      if (b > a) pairs.emplace(a, b);
+    }
+  }
+  return pairs;
+}
+
+/// CIELAB of sRGB under D65 (IEC 61966-2-1; CIE 15).
+std::array<double, 3> lab(const Rgb& color) {
+  double c[3];
+  for (size_t i = 0; i < 3; ++i) {
+    const double v = color[i] / 255.0;
+    c[i] = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+  }
+  const double xyz[3] = {
+      (0.4124564 * c[0] + 0.3575761 * c[1] + 0.1804375 * c[2]) / 0.95047,
+      0.2126729 * c[0] + 0.7151522 * c[1] + 0.0721750 * c[2],
+      (0.0193339 * c[0] + 0.1191920 * c[1] + 0.9503041 * c[2]) / 1.08883,
+  };
+  double f[3];
+  for (int i = 0; i < 3; ++i)
+    f[i] = xyz[i] > 216.0 / 24389 ? std::cbrt(xyz[i]) : (24389.0 / 27 * xyz[i] + 16) / 116;
+  return {116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])};
+}
+
+double difference(const Rgb& a, const Rgb& b) {
+  const auto p = lab(a), q = lab(b);
+  return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+}
+
+/// The least difference of touching labels; the colours must be there for all labels of the grid.
+double leastDifference(const Int32Grid& grid, const GrainColors& colors, const Pairs& contacts) {
+  std::set<int32_t> labels;
+  for (auto voxel = grid.cbeginValueOn(); voxel; ++voxel)
+    if (*voxel > 0) labels.insert(*voxel);
+  CHECK(std::set<int32_t>(colors.labels.begin(), colors.labels.end()) == labels);
+  CHECK(colors.labels.size() == colors.colors.size());
+  CHECK(colors.touchingPairs == int64_t(contacts.size()));
+  double least = 1e9;
+  for (const auto& [a, b] : contacts)
+    least = std::min(least, difference(colors.of(a), colors.of(b)));
+  return least;
+}
+
+CoordBBox cube(int edge, const Coord& origin = Coord(0)) {
+  return CoordBBox::createCube(origin, edge);
+}
+
+}  // namespace
+
+TEST_CASE("grain_colors: touching grains are at least 35 apart", "[grain_colors]") {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    CAPTURE(seed);
+    const CoordBBox box = cube(24, Coord(-11, 3, -5));
+    const auto grid = randomLabels(seed, box, 60, 4);  // blocks of 4^3 in a sea of few others
+    const Pairs contacts = naiveContacts(*grid, cube(30, Coord(-13, 1, -7)));
+    REQUIRE(contacts.size() > 100);
+    const GrainColors colors = grainColors(*grid);
+    CHECK(colors.alikePairs == 0);
+    CHECK(leastDifference(*grid, colors, contacts) >= 35);
+  }
+}
+
+TEST_CASE("grain_colors: many labels that all touch get the wider palette", "[grain_colors]") {
+  // Single voxels at random: each of 50 labels meets each other.
+  const auto grid = randomLabels(3, cube(32), 50, 1);
+  const Pairs contacts = naiveContacts(*grid, cube(32));
+  REQUIRE(contacts.size() == 50 * 49 / 2);
+  const GrainColors colors = grainColors(*grid);
+  CHECK(colors.alikePairs == 0);
+  CHECK(leastDifference(*grid, colors, contacts) >= 19);
+}
+
+TEST_CASE("grain_colors: noise beyond the palette is counted", "[grain_colors]") {
+  const auto grid = randomLabels(4, cube(40), 80, 1);
+  const Pairs contacts = naiveContacts(*grid, cube(40));
+  const GrainColors colors = grainColors(*grid);
+  int64_t alike = 0;
+  for (const auto& [a, b] : contacts) alike += colors.of(a) == colors.of(b);
+  CHECK(alike >= 80 - 64);
+  CHECK(colors.alikePairs == alike);
+}
+
+TEST_CASE("grain_colors: corners touch, across leaves and tiles too", "[grain_colors]") {
+  for (const Coord& step : {Coord(1, 0, 0), Coord(1, -1, 0), Coord(-1, 1, 1)}) {
+    for (int at = 0; at <= 8; ++at) {
+      const auto grid = Int32Grid::create(0);
+      grid->tree().setValue(Coord(at), 5);
+      grid->tree().setValue(Coord(at) + step, 9);
+      CHECK(grainColors(*grid).touchingPairs == 1);
+    }
+  }
+  const auto tiled = Int32Grid::create(0);
+  tiled->fill(CoordBBox(Coord(0), Coord(7)), 1);
+  tiled->fill(CoordBBox(Coord(8), Coord(15)), 2);
+  REQUIRE(tiled->tree().activeTileCount() == 2);
+  tiled->tree().setValue(Coord(16, 15, 15), 3);
+  const GrainColors colors = grainColors(*tiled);
+  CHECK(colors.labels == std::vector<int32_t>{1, 2, 3});
+  CHECK(colors.touchingPairs == 2);
+}
+
+TEST_CASE("grain_colors: distance and what is no label do not touch", "[grain_colors]") {
+  const auto grid = Int32Grid::create(0);
+  grid->tree().setValue(Coord(0), 1);
+  grid->tree().setValue(Coord(2, 0, 0), 2);
+  grid->tree().setValue(Coord(1, 0, 0), -4);
+  grid->tree().setValueOff(Coord(1, 1, 0), 7);
+  const GrainColors colors = grainColors(*grid);
+  CHECK(colors.labels == std::vector<int32_t>{1, 2});
+  CHECK(colors.touchingPairs == 0);
+  CHECK(colors.of(7) == Rgb{128, 128, 128});
+  CHECK(grainColors(*Int32Grid::create(0)).labels.empty());
+}
+
+TEST_CASE("grain_colors: neighbouring numbers spread over the palette", "[grain_colors]") {
+  const auto grid = Int32Grid::create(0);
+  for (int i = 0; i < 240; ++i) grid->tree().setValue(Coord(3 * i, 0, 0), i + 1);
+  std::map<Rgb, int> uses;
+  const GrainColors colors = grainColors(*grid);
+  for (const Rgb& color : colors.colors) ++uses[color];
+  CHECK(uses.size() == 24);
+  for (const auto& [color, count] : uses) CHECK(count <= 20);
+}
+
+TEST_CASE("grain_colors: threads do not matter", "[grain_colors]") {
+  const auto grid = randomLabels(5, cube(64), 400, 4);
+  const GrainColors parallel = grainColors(*grid);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const GrainColors sequential = grainColors(*grid);
+  CHECK(parallel.labels == sequential.labels);
+  CHECK(parallel.colors == sequential.colors);
+  CHECK(parallel.touchingPairs == sequential.touchingPairs);
+}

@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/method/graph_metadata.h"
+#include "vdb_madf/method/initialize.h"
+
+#include <openvdb/Metadata.h>
+
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <sstream>
+#include <string>
+
+#include "vdb_madf/base/errors.h"
+
+using namespace vdb_madf;
+
+namespace {
+
+constexpr char kName[] = "madf_manifold_graph";
+
+ManifoldGraph emptyGraph() {
+  return {};
+}
+
+/// Values at the ends of their ranges.
+ManifoldGraph extremeGraph() {
+  constexpr int32_t kLow = std::numeric_limits<int32_t>::min(),
+                    kHigh = std::numeric_limits<int32_t>::max();
+  constexpr int64_t kMany = std::numeric_limits<int64_t>::max();
+  ManifoldGraph graph;
+  graph.nodes = {{Coord(kLow, kHigh, -1), kHigh, kMany},
+                 {Coord(-1, kLow, 5), 1, 1},
+                 {Coord(-1, kLow, 6), 0x01020304, 0x0102030405060708},
+                 {Coord(kHigh, kHigh, kHigh), 2, 2}};
+  graph.edges = {{0, 1, kMany, kLow, true}, {0, 3, 1, kHigh, false}, {2, 3, 7, -1, true}};
+  return graph;
+}
+
+ManifoldGraph randomGraph(uint32_t seed, int nodes) {
+  std::mt19937 random(seed);
+  ManifoldGraph graph;
+  int x = -50000;
+  for (int i = 0; i < nodes; ++i) {
+    x += 1 + int(random() % 9);
+    graph.nodes.push_back({Coord(x, int(random() % 99) - 50, int(random() % 99)),
+                           int(random() % 9999), int64_t(random())});
+  }
+  for (uint32_t i = 0; i + 1 < uint32_t(nodes); ++i) {
+    for (uint32_t j = i + 1; j < uint32_t(nodes) && j < i + 5; ++j)
+      if (random() % 2)
+        graph.edges.push_back({i, j, int64_t(random()), int(random()), random() % 2 == 0});
+  }
+  return graph;
+}
+
+bool equal(const ManifoldGraph& a, const ManifoldGraph& b) {
+  return a.nodes == b.nodes && a.edges == b.edges;
+}
+
+/// As in a file: size (u32), value.
+std::string stored(const ManifoldGraph& graph) {
+  const auto grid = Int32Grid::create();
+  setGraph(*grid, graph);
+  std::ostringstream stream;
+  (*grid)[kName]->write(stream);
+  return stream.str();
+}
+
+/// Read from such bytes; `exceptions`: of the stream.
+ManifoldGraph restored(const std::string& bytes, bool exceptions) {
+  std::istringstream stream(bytes);
+  if (exceptions) stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
+  const auto metadata = openvdb::Metadata::createMetadata(kName);
+  metadata->read(stream);
+  const auto grid = Int32Grid::create();
+  grid->insertMeta(kName, *metadata);
+  return graph(*grid).value();
+}
+
+std::string withSize(std::string bytes) {
+  const uint32_t size = uint32_t(bytes.size() - 4);
+  std::memcpy(bytes.data(), &size, 4);
+  return bytes;
+}
+
+}  // namespace
+
+TEST_CASE("graph_metadata: a grid gives back its graph", "[graph_metadata]") {
+  initialize();
+  for (const ManifoldGraph& original :
+       {emptyGraph(), extremeGraph(), randomGraph(1, 2), randomGraph(2, 10000)}) {
+    const auto grid = Int32Grid::create();
+    REQUIRE_FALSE(graph(*grid));
+    setGraph(*grid, original);
+    REQUIRE(equal(graph(*grid).value(), original));
+    // A copy of the grid keeps it, and is not touched by what happens to the first.
+    const auto copy = grid->deepCopy();
+    setGraph(*grid, emptyGraph());
+    REQUIRE(equal(graph(*grid).value(), emptyGraph()));
+    REQUIRE(equal(graph(*copy).value(), original));
+  }
+}
+
+TEST_CASE("graph_metadata: bytes give back the graph", "[graph_metadata]") {
+  initialize();
+  for (const ManifoldGraph& original : {emptyGraph(), extremeGraph(), randomGraph(3, 7000)}) {
+    REQUIRE(equal(restored(stored(original), false), original));
+    REQUIRE(equal(restored(stored(original), true), original));
+  }
+}
+
+TEST_CASE("graph_metadata: layout is little-endian and of the stated size", "[graph_metadata]") {
+  initialize();
+  ManifoldGraph graph;
+  graph.nodes = {{Coord(1, -2, 3), 4, 5}, {Coord(0x01020304, 0, 0), 6, 7}};
+  graph.edges = {{0, 1, 0x0102030405060708, -1, true}};
+  const std::string expected(
+      "\x51\0\0\0"                         // 12 + 2 * 24 + 21 bytes
+      "\1\0\0\0\2\0\0\0\1\0\0\0"           // version, nodes, edges
+      "\1\0\0\0\xfe\xff\xff\xff\3\0\0\0"   // position
+      "\4\0\0\0\5\0\0\0\0\0\0\0"           // squared radius, voxels
+      "\4\3\2\1\0\0\0\0\0\0\0\0"           // position
+      "\6\0\0\0\7\0\0\0\0\0\0\0"           // squared radius, voxels
+      "\0\0\0\0\1\0\0\0\x8\7\6\5\4\3\2\1"  // first, second, contact faces
+      "\xff\xff\xff\xff\1",                // saddle height, cells touch
+      85);
+  REQUIRE(stored(graph) == expected);
+}
+
+TEST_CASE("graph_metadata: says briefly what it is", "[graph_metadata]") {
+  initialize();
+  const auto grid = Int32Grid::create();
+  setGraph(*grid, extremeGraph());
+  REQUIRE((*grid)[kName]->str() == "4 critical points, 3 edges");
+  REQUIRE((*grid)[kName]->asBool());
+  REQUIRE((*grid)[kName]->typeName() == kName);
+  setGraph(*grid, emptyGraph());
+  REQUIRE_FALSE((*grid)[kName]->asBool());
+}
+
+TEST_CASE("graph_metadata: replaces other metadata of its name", "[graph_metadata]") {
+  initialize();
+  const auto grid = Int32Grid::create();
+  grid->insertMeta(kName, openvdb::Int32Metadata(5));
+  REQUIRE_FALSE(graph(*grid));
+  setGraph(*grid, extremeGraph());
+  REQUIRE(equal(graph(*grid).value(), extremeGraph()));
+}
+
+TEST_CASE("graph_metadata: a graph that breaks the rules is refused", "[graph_metadata]") {
+  initialize();
+  const auto refused = [](auto change) {
+    ManifoldGraph graph = extremeGraph();
+    change(graph);
+    const auto grid = Int32Grid::create();
+    REQUIRE_THROWS_AS(setGraph(*grid, graph), InvalidInput);
+    REQUIRE(grid->metaCount() == 0);
+  };
+  refused([](ManifoldGraph& g) { std::swap(g.nodes[1], g.nodes[2]); });
+  refused([](ManifoldGraph& g) { g.nodes[1] = g.nodes[2]; });
+  refused([](ManifoldGraph& g) { g.nodes[1].voxels = -1; });
+  refused([](ManifoldGraph& g) { g.nodes[1].squaredRadius = -1; });
+  refused([](ManifoldGraph& g) { std::swap(g.edges[0], g.edges[1]); });
+  refused([](ManifoldGraph& g) { g.edges[1] = g.edges[0]; });
+  refused([](ManifoldGraph& g) { g.edges[2].second = 4; });
+  refused([](ManifoldGraph& g) { g.edges[2].first = 3; });
+  refused([](ManifoldGraph& g) { g.edges[2].contactFaces = -1; });
+}
+
+TEST_CASE("graph_metadata: bytes that end early are refused", "[graph_metadata]") {
+  initialize();
+  const std::string bytes = stored(extremeGraph());
+  for (size_t length = 4; length < bytes.size(); ++length) {
+    for (const bool exceptions : {false, true}) {
+      REQUIRE_THROWS_AS(restored(bytes.substr(0, length), exceptions), std::exception);
+      REQUIRE_THROWS_AS(restored(withSize(bytes.substr(0, length)), exceptions), std::exception);
+    }
+  }
+}
+
+TEST_CASE("graph_metadata: huge counts are refused before memory is taken", "[graph_metadata]") {
+  initialize();
+  const std::string bytes = stored(extremeGraph());
+  for (const size_t count : {size_t(8), size_t(12)}) {  // of nodes, of edges
+    std::string changed = bytes;
+    std::memset(&changed[count], 0xff, 4);
+    REQUIRE_THROWS_AS(restored(changed, false), std::exception);
+  }
+  // Counts that agree with the size, over a file that is not there.
+  std::string changed = bytes.substr(0, 16);
+  const uint32_t nodes = 0x7fffff0 / 24, size = 12 + 24 * nodes;
+  std::memcpy(&changed[0], &size, 4);
+  std::memcpy(&changed[8], &nodes, 4);
+  std::memset(&changed[12], 0, 4);
+  REQUIRE_THROWS_AS(restored(changed, false), std::exception);
+  // A size that only a 64-bit product shows to be wrong.
+  changed = bytes.substr(0, 16);
+  const uint32_t many = 0x80000000u, wrapped = 12 + uint32_t(24u * many);
+  std::memcpy(&changed[0], &wrapped, 4);
+  std::memcpy(&changed[8], &many, 4);
+  std::memset(&changed[12], 0, 4);
+  REQUIRE_THROWS_AS(restored(changed, false), std::exception);
+}
+
+TEST_CASE("graph_metadata: damaged bytes are read or refused", "[graph_metadata]") {
+  initialize();
+  const uint32_t seed = GENERATE(1u, 2u, 3u);
+  INFO("seed " << seed);
+  std::mt19937 random(seed);
+  const std::string bytes = stored(randomGraph(seed, 20));
+  int refused = 0;
+  for (int round = 0; round < 3000; ++round) {
+    std::string changed = bytes;
+    for (uint32_t i = 0, n = 1 + random() % 3; i < n; ++i) {
+      char& byte = changed[random() % changed.size()];
+      byte = random() % 2 ? char(byte ^ (1 << random() % 8)) : char(random());
+    }
+    try {
+      const ManifoldGraph graph = restored(changed, random() % 2 == 0);
+      for (const auto& edge : graph.edges) REQUIRE(edge.second < graph.nodes.size());
+    } catch (const std::exception&) {
+      ++refused;
+    }
+  }
+  REQUIRE(refused > 300);
+}

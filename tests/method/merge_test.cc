@@ -1,0 +1,247 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Every hand-drawn case is put to the oracle's merge, too: the oracle answers for itself here.
+
+#include "vdb_madf/method/merge.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "support/oracle.h"
+#include "support/random_volume.h"
+#include "vdb_madf/base/errors.h"
+
+namespace {
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+using Labels = std::vector<int32_t>;
+using Nodes = std::vector<uint32_t>;
+
+/// Balls on the x axis: positions and squared radii.
+ManifoldGraph ballsOnAxis(const std::vector<std::pair<int, int>>& balls) {
+  ManifoldGraph graph;
+  for (const auto& [x, squaredRadius] : balls) graph.nodes.push_back({{x, 0, 0}, squaredRadius, 1});
+  return graph;
+}
+
+void connect(ManifoldGraph& graph, uint32_t first, uint32_t second, int saddleHeight,
+             bool cellsTouch = true) {
+  graph.edges.push_back({first, second, 1, saddleHeight, cellsTouch});
+}
+
+MergeOptions options(double theta, MergeMode mode, Adjacency adjacency = Adjacency::manifold) {
+  return {theta, mode, adjacency};
+}
+
+void check(const ManifoldGraph& graph, const MergeOptions& merging, const Labels& labels,
+           const Nodes& representatives) {
+  const Merging result = merge(graph, merging), expected = oracleMerge(graph, merging);
+  CHECK(result.grainOfNode == labels);
+  CHECK(result.representative == representatives);
+  CHECK(expected.grainOfNode == labels);
+  CHECK(expected.representative == representatives);
+}
+
+}  // namespace
+
+TEST_CASE("merge: no nodes, no grains", "[merge]") {
+  for (const MergeMode mode : {MergeMode::both, MergeMode::angle, MergeMode::neck})
+    check({}, options(1, mode), {}, {});
+}
+
+TEST_CASE("merge: nodes without edges stay alone", "[merge]") {
+  for (const MergeMode mode : {MergeMode::both, MergeMode::angle, MergeMode::neck})
+    check(ballsOnAxis({{0, 4}, {1, 4}, {2, 9}}), options(1, mode), {1, 2, 3}, {0, 1, 2});
+}
+
+TEST_CASE("merge: the angle must be strictly below theta", "[merge]") {
+  // Two balls of D = 4, 2 apart: cos = (4 - 8) / 8 = -0.5, exact in binary.
+  ManifoldGraph graph = ballsOnAxis({{0, 4}, {2, 4}});
+  connect(graph, 0, 1, 3);
+  check(graph, options(-0.5, MergeMode::angle), {1, 2}, {0, 1});
+  check(graph, options(std::nextafter(-0.5, 0.0), MergeMode::angle), {1, 1}, {0});
+  check(graph, options(std::nextafter(-0.5, -1.0), MergeMode::angle), {1, 2}, {0, 1});
+}
+
+TEST_CASE("merge: the angle is computed in double precision as written", "[merge]") {
+  // D = 5 and 10, |ci - cj|^2 = 5: cos = -10 / (2 sqrt(50)) = -0.70710678118654752...: the nearest
+  // double to theta must be told from its neighbours.
+  ManifoldGraph graph;
+  graph.nodes = {{{0, 0, 0}, 5, 1}, {{1, 2, 0}, 10, 1}};
+  connect(graph, 0, 1, 0);
+  const double cosine = -10.0 / (2 * std::sqrt(50.0));
+  check(graph, options(cosine, MergeMode::angle), {1, 2}, {0, 1});
+  check(graph, options(std::nextafter(cosine, 0.0), MergeMode::angle), {1, 1}, {1});
+}
+
+TEST_CASE("merge: large radii do not overflow", "[merge]") {
+  // D = 2^30 and two balls 2^15 apart: |ci - cj|^2 = 2^30; cos = (2^30 - 2^31) / 2^31 = -0.5.
+  const int squaredRadius = 1 << 30;
+  ManifoldGraph graph = ballsOnAxis({{0, squaredRadius}, {1 << 15, squaredRadius}});
+  connect(graph, 0, 1, squaredRadius / 2);
+  check(graph, options(-0.5, MergeMode::angle), {1, 2}, {0, 1});
+  check(graph, options(-0.49, MergeMode::angle), {1, 1}, {0});
+  check(graph, options(0, MergeMode::neck), {1, 1}, {0});  // 2^29 >= 0.5 * 2^30
+  check(graph, options(-0.01, MergeMode::neck), {1, 2}, {0, 1});
+  // Far apart: the cosine is beyond 1, no theta merges.
+  ManifoldGraph far = ballsOnAxis({{0, 1}, {26753, 1}});
+  connect(far, 0, 1, -100);
+  check(far, options(1, MergeMode::both), {1, 2}, {0, 1});
+}
+
+TEST_CASE("merge: angle merges are transitive, on the original balls", "[merge]") {
+  // Neighbours 1 apart with D = 4: cos = (1 - 8) / 8 = -0.875; the ends are not tested at all.
+  ManifoldGraph graph = ballsOnAxis({{0, 4}, {1, 4}, {2, 4}, {9, 4}});
+  connect(graph, 0, 1, 1);
+  connect(graph, 1, 2, 1);
+  connect(graph, 2, 3, 1);  // cos = (49 - 8) / 8 > 1
+  check(graph, options(-0.8, MergeMode::angle), {1, 1, 1, 2}, {0, 3});
+}
+
+TEST_CASE("merge: theta -1 merges nothing by angle", "[merge]") {
+  // 1 apart with D = 4 and 1: touching from inside, cos = (1 - 5) / 4 = -1.
+  ManifoldGraph graph = ballsOnAxis({{0, 4}, {1, 1}});
+  connect(graph, 0, 1, 0);
+  check(graph, options(-1, MergeMode::angle), {1, 2}, {0, 1});
+  check(graph, options(std::nextafter(-1.0, 0.0), MergeMode::angle), {1, 1}, {0});
+}
+
+TEST_CASE("merge: theta -1 merges a node that is no local maximum of the height", "[merge]") {
+  // The neck is as high as the lower of the two: factor 1.
+  ManifoldGraph graph = ballsOnAxis({{0, 9}, {3, 4}, {6, 9}});
+  connect(graph, 0, 1, 4);
+  connect(graph, 1, 2, 3);
+  check(graph, options(-1, MergeMode::neck), {1, 1, 2}, {0, 2});
+  check(graph, options(-1, MergeMode::both), {1, 1, 2}, {0, 2});
+}
+
+TEST_CASE("merge: the neck must reach its share of the lower top, or more", "[merge]") {
+  // theta -0.5: factor 0.75; 0.75 * 8 = 6.
+  for (const int height : {5, 6, 7}) {
+    ManifoldGraph graph = ballsOnAxis({{0, 8}, {5, 16}});
+    connect(graph, 0, 1, height);
+    if (height < 6)
+      check(graph, options(-0.5, MergeMode::neck), {1, 2}, {0, 1});
+    else
+      check(graph, options(-0.5, MergeMode::neck), {1, 1}, {1});
+  }
+}
+
+TEST_CASE("merge: necks of no height never merge", "[merge]") {
+  // theta 1: factor 0, so every h > 0 merges.
+  for (const int height : {-3, 0, 1}) {
+    ManifoldGraph graph = ballsOnAxis({{0, 9}, {100, 9}});
+    connect(graph, 0, 1, height);
+    if (height <= 0)
+      check(graph, options(1, MergeMode::neck), {1, 2}, {0, 1});
+    else
+      check(graph, options(1, MergeMode::neck), {1, 1}, {0});
+  }
+}
+
+TEST_CASE("merge: necks are visited from the highest down, and tops grow", "[merge]") {
+  // theta -0.6: factor 0.8. D = 10, 10, 100 in a row.
+  SECTION("the small one joins the large one first: its top is then 100") {
+    ManifoldGraph graph = ballsOnAxis({{0, 10}, {10, 10}, {20, 100}});
+    connect(graph, 0, 1, 8);   // second: 8 >= 0.8 * min(10, 100)
+    connect(graph, 1, 2, 10);  // first: 10 >= 0.8 * min(10, 100)
+    check(graph, options(-0.6, MergeMode::neck), {1, 1, 1}, {2});
+  }
+  SECTION("two large ones do not meet over a small one") {
+    // D = 100, 10, 100: 9 >= 8 joins node 1 to the left, and then 8 < 0.8 * min(100, 100).
+    ManifoldGraph graph = ballsOnAxis({{0, 100}, {20, 10}, {40, 100}});
+    connect(graph, 0, 1, 9);
+    connect(graph, 1, 2, 8);
+    check(graph, options(-0.6, MergeMode::neck), {1, 1, 2}, {0, 2});
+    // ... and to the right, if that neck is the higher one.
+    std::swap(graph.edges[0].saddleHeight, graph.edges[1].saddleHeight);
+    check(graph, options(-0.6, MergeMode::neck), {1, 2, 2}, {0, 2});
+  }
+  SECTION("equal necks: the pair with the smaller first node, then the smaller second") {
+    ManifoldGraph graph = ballsOnAxis({{0, 100}, {20, 10}, {40, 100}});
+    connect(graph, 0, 1, 9);
+    connect(graph, 1, 2, 9);
+    check(graph, options(-0.6, MergeMode::neck), {1, 1, 2}, {0, 2});
+    // Node 0 is the small one between 1 and 2.
+    graph = ballsOnAxis({{0, 10}, {20, 100}, {40, 100}});
+    connect(graph, 0, 1, 9);
+    connect(graph, 0, 2, 9);
+    check(graph, options(-0.6, MergeMode::neck), {1, 1, 2}, {1, 2});
+  }
+}
+
+TEST_CASE("merge: tops include what the angle merged", "[merge]") {
+  // Nodes 0 and 1 (D = 100, 81; 2 apart: cos = (4 - 181) / 180 = -0.983) merge by angle at -0.9;
+  // the neck between 1 and 2 is tested with top 100, not 81.
+  ManifoldGraph graph = ballsOnAxis({{0, 100}, {2, 81}, {30, 100}});
+  connect(graph, 0, 1, 1);
+  connect(graph, 1, 2, 90);
+  // 0.95 * 81 = 76.95 <= 90 < 95 = 0.95 * 100
+  check(graph, options(-0.9, MergeMode::neck), {1, 2, 2}, {0, 2});
+  check(graph, options(-0.9, MergeMode::both), {1, 1, 2}, {0, 2});
+  check(graph, options(-0.9, MergeMode::angle), {1, 1, 2}, {0, 2});
+}
+
+TEST_CASE("merge: adjacency of cells restricts the angle test only", "[merge]") {
+  ManifoldGraph graph = ballsOnAxis({{0, 4}, {1, 4}, {2, 4}});
+  connect(graph, 0, 1, 1, false);  // cos = -0.875
+  connect(graph, 1, 2, 1, true);
+  check(graph, options(-0.8, MergeMode::angle, Adjacency::manifold), {1, 1, 1}, {0});
+  check(graph, options(-0.8, MergeMode::angle, Adjacency::cell), {1, 2, 2}, {0, 1});
+  graph.edges[0].saddleHeight = 4;
+  check(graph, options(-0.8, MergeMode::neck, Adjacency::cell), {1, 1, 2}, {0, 2});
+  check(graph, options(-0.8, MergeMode::both, Adjacency::cell), {1, 1, 1}, {0});
+}
+
+TEST_CASE("merge: grains are numbered by their representatives", "[merge]") {
+  // {0, 3} has its largest ball at 3, {1, 2} at 1 (equal to 2: smaller coordinate).
+  ManifoldGraph graph = ballsOnAxis({{0, 4}, {10, 9}, {20, 9}, {30, 5}});
+  connect(graph, 0, 3, 4);
+  connect(graph, 1, 2, 9);
+  check(graph, options(-1, MergeMode::neck), {2, 1, 1, 2}, {1, 3});
+}
+
+TEST_CASE("merge: theta outside [-1, 1] is refused", "[merge]") {
+  ManifoldGraph graph = ballsOnAxis({{0, 4}});
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const double theta :
+       {std::nan(""), inf, -inf, std::nextafter(1.0, 2.0), std::nextafter(-1.0, -2.0)})
+    for (const MergeMode mode : {MergeMode::both, MergeMode::angle, MergeMode::neck}) {
+      CHECK_THROWS_AS(merge(graph, options(theta, mode)), InvalidInput);
+      CHECK_THROWS_AS(merge({}, options(theta, mode)), InvalidInput);
+    }
+}
+
+TEST_CASE("merge: agrees with the oracle on random graphs", "[merge]") {
+  // Few different radii, heights and positions: many ties.
+  for (uint64_t seed = 1; seed <= 4000; ++seed) {
+    Rng rng(seed);
+    std::set<Coord> positions;
+    const int side = rng.between(2, 12), count = rng.between(1, 24), radii = rng.between(1, 20);
+    for (int i = 0; i < count; ++i)
+      positions.insert({rng.below(side), rng.below(side), rng.below(side)});
+    ManifoldGraph graph;
+    for (const Coord& p : positions) graph.nodes.push_back({p, 1 + rng.below(radii), 1});
+    const double density = rng.unit();
+    for (uint32_t a = 0; a < graph.nodes.size(); ++a)
+      for (uint32_t b = a + 1; b < graph.nodes.size(); ++b) {
+        if (!rng.chance(density)) continue;
+        const int lower = std::min(graph.nodes[a].squaredRadius, graph.nodes[b].squaredRadius);
+        connect(graph, a, b, rng.between(-2, lower), rng.chance(0.7));
+      }
+    const double thetas[] = {-1, -0.95, -0.9, -0.8, -0.5, 0, 0.5, 1, 2 * rng.unit() - 1};
+    const MergeOptions merging = options(thetas[rng.below(9)], MergeMode(rng.below(3)),
+                                         rng.chance(0.5) ? Adjacency::cell : Adjacency::manifold);
+    const Merging result = merge(graph, merging), expected = oracleMerge(graph, merging);
+    INFO("seed " << seed);
+    REQUIRE(result.grainOfNode == expected.grainOfNode);
+    REQUIRE(result.representative == expected.representative);
+  }
+}

@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/method/parameter_sweep.h"
+
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "support/random_volume.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/method/segment.h"
+
+using namespace vdb_madf;
+
+namespace {
+
+/// Balls with noise near their surface, in a domain.
+MaskGrid::Ptr rough() {
+  const CoordBBox box(Coord(0), Coord(55, 47, 51));
+  test::Rng rng(1);
+  const MaskGrid::Ptr object =
+      test::toMask(test::randomVolume(test::VolumeKind::roughBalls, box, rng));
+  setDomain(*object, box);
+  return object;
+}
+
+SweepOptions wide() {
+  SweepOptions options;
+  options.gammas = {12, 0};
+  options.modes = {MergeMode::neck, MergeMode::both, MergeMode::angle};
+  options.thetas = {-0.5, -1, -0.85};
+  options.smallVoxels = 40;
+  return options;
+}
+
+/// From the voxels of the labels of a fresh segmentation.
+void requireRow(const SweepRow& row, const MaskGrid& object, const SweepOptions& options) {
+  CAPTURE(row.gamma, int(row.mode), row.theta);
+  SegmentOptions one;
+  one.gamma = row.gamma;
+  one.merge = {row.theta, row.mode, options.adjacency};
+  one.boundary = options.boundary;
+  const Segmentation segmentation = segment(object, one);
+  std::map<int32_t, int64_t> voxels;
+  for (auto voxel = segmentation.grain->cbeginValueOn(); voxel; ++voxel) ++voxels[*voxel];
+  std::vector<int64_t> sizes;
+  int64_t small = 0, inSmall = 0, all = 0;
+  for (const auto& [label, size] : voxels) {
+    sizes.push_back(size);
+    all += size;
+    if (size < options.smallVoxels) {
+      ++small;
+      inSmall += size;
+    }
+  }
+  std::sort(sizes.begin(), sizes.end());
+  const size_t n = sizes.size();
+  CHECK(row.grains == int64_t(n));
+  CHECK(row.medianVoxels == double(sizes[n / 2] + sizes[(n - 1) / 2]) / 2);
+  CHECK(row.smallGrains == small);
+  CHECK(row.smallVoxels == inSmall);
+  CHECK(row.largestVoxels == sizes.back());
+  CHECK(row.objectVoxels == all);
+}
+
+bool equal(const SweepRow& a, const SweepRow& b) {
+  return a.gamma == b.gamma && a.mode == b.mode && a.theta == b.theta && a.grains == b.grains &&
+         a.medianVoxels == b.medianVoxels && a.smallGrains == b.smallGrains &&
+         a.smallVoxels == b.smallVoxels && a.largestVoxels == b.largestVoxels &&
+         a.objectVoxels == b.objectVoxels;
+}
+
+}  // namespace
+
+TEST_CASE("parameter_sweep: each row is what a segmentation with its options gives",
+          "[parameter_sweep]") {
+  const MaskGrid::Ptr object = rough();
+  SweepOptions options = wide();
+  for (const Adjacency adjacency : {Adjacency::manifold, Adjacency::cell}) {
+    options.adjacency = adjacency;
+    const std::vector<SweepRow> rows = sweep(*object, options);
+    REQUIRE(rows.size() == 18);
+    for (const SweepRow& row : rows) requireRow(row, *object, options);
+    // Rough surfaces: the choices do matter here.
+    CHECK(rows[0].grains < rows[1].grains);
+    CHECK(rows.back().grains > rows[0].grains);
+  }
+}
+
+TEST_CASE("parameter_sweep: rows come by gamma, mode and theta, as asked for",
+          "[parameter_sweep]") {
+  const SweepOptions options = wide();
+  const std::vector<SweepRow> rows = sweep(*rough(), options);
+  size_t i = 0;
+  for (const int64_t gamma : options.gammas)
+    for (const MergeMode mode : options.modes)
+      for (const double theta : options.thetas) {
+        CHECK(rows[i].gamma == gamma);
+        CHECK(rows[i].mode == mode);
+        CHECK(rows[i++].theta == theta);
+      }
+}
+
+TEST_CASE("parameter_sweep: a larger theta merges more", "[parameter_sweep]") {
+  SweepOptions options;
+  options.modes = {MergeMode::angle, MergeMode::neck};
+  options.thetas.clear();
+  for (int i = 0; i <= 10; ++i) options.thetas.push_back(-1 + 0.1 * i);
+  const std::vector<SweepRow> rows = sweep(*rough(), options);
+  for (size_t i = 1; i < rows.size(); ++i)
+    if (rows[i].mode == rows[i - 1].mode) CHECK(rows[i].grains <= rows[i - 1].grains);
+}
+
+TEST_CASE("parameter_sweep: the boundary and the domain are heeded", "[parameter_sweep]") {
+  const MaskGrid::Ptr object = rough();
+  SweepOptions options;
+  options.modes = {MergeMode::angle};
+  options.boundary = Boundary::closed;
+  const SweepRow closed = sweep(*object, options)[0];
+  requireRow(closed, *object, options);
+  options.boundary = Boundary::open;
+  const SweepRow open = sweep(*object, options)[0];
+  requireRow(open, *object, options);
+  CHECK(open.grains != closed.grains);
+}
+
+TEST_CASE("parameter_sweep: nothing, and options out of range", "[parameter_sweep]") {
+  const SweepRow none = sweep(MaskGrid(), {})[0];
+  CHECK(none.grains + none.smallGrains + none.largestVoxels + none.objectVoxels == 0);
+  CHECK(none.medianVoxels == 0);
+  const MaskGrid empty;
+  SweepOptions options;
+  options.gammas = {0, -1};
+  CHECK_THROWS_AS(sweep(empty, options), InvalidInput);
+  options.gammas = {};
+  CHECK_THROWS_AS(sweep(empty, options), InvalidInput);
+  options.gammas = {0};
+  options.thetas = {-1.01};
+  CHECK_THROWS_AS(sweep(empty, options), InvalidInput);
+}
+
+TEST_CASE("parameter_sweep: threads do not matter", "[parameter_sweep]") {
+  const MaskGrid::Ptr object = rough();
+  const std::vector<SweepRow> parallel = sweep(*object, wide());
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const std::vector<SweepRow> sequential = sweep(*object, wide());
+  CHECK(std::equal(parallel.begin(), parallel.end(), sequential.begin(), sequential.end(), equal));
+}

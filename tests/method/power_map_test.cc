@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/method/power_map.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "support/oracle.h"
+#include "support/random_case.h"
+
+namespace {
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+
+/// Voxels where the map is not the oracle's: power and, where it is negative, site.
+int differences(const LeafIndex& index, const PowerMap& map, const ObjectVolume& object,
+                const OraclePower& expected) {
+  int count = 0;
+  for (int i = 0; i < object.size(); ++i) {
+    if (!object[i]) continue;
+    const Coord p = object.coord(i);
+    size_t leaf = 0;
+    while (index.origin(leaf) != (p & ~7)) ++leaf;
+    const size_t rank =
+        index.rank(VoxelId(leaf * 512) + VoxelId((p.x() & 7) * 64 + (p.y() & 7) * 8 + (p.z() & 7)));
+    if (expected.site[i] == kNoSite)
+      count += map.power[rank] != kUncovered;
+    else
+      count += map.power[rank] != expected.power[i] ||
+               index.coord(map.site[rank]) != object.coord(expected.site[i]);
+  }
+  return count;
+}
+
+/// Arrays by rank of a dense volume.
+VoxelArray<int32_t> byRank(const LeafIndex& index, const DenseVolume<int64_t>& values) {
+  VoxelArray<int32_t> array(size_t(index.voxelCount()));
+  for (size_t id = 0; id < index.leafCount() * 512; ++id)
+    if (index.mask(id >> 9)[id >> 6 & 7] >> (id & 63) & 1)
+      array[index.rank(VoxelId(id))] = int32_t(values[index.coord(VoxelId(id))]);
+  return array;
+}
+
+// A bound on D this large needs 128-bit keys.
+constexpr int32_t kHugeBound = std::numeric_limits<int32_t>::max();
+
+}  // namespace
+
+TEST_CASE("power_map: agrees with the oracle, with keys of either width", "[power_map]") {
+  int voxels = 0;
+  for (uint64_t seed = 1; seed <= 150; ++seed) {
+    Rng rng(seed + 20000);
+    const RandomCase c =
+        randomCase(seed, Coord(rng.between(1, 20), rng.between(1, 20), rng.between(1, 20)));
+    INFO(describe(c));
+    const LeafIndex index(*toMask(c.object, c.tiles));
+    const auto distance = oracleDistance(c.object, false, {});
+    const OraclePower expected = oraclePower(c.object, distance, c.object);
+    int32_t largest = 0;
+    for (int i = 0; i < c.object.size(); ++i)
+      if (c.object[i]) largest = std::max(largest, int32_t(distance[i]));
+    for (const int32_t bound : {largest, kHugeBound}) {
+      const PowerMap map = powerMap(index, {byRank(index, distance), bound});
+      REQUIRE(differences(index, map, c.object, expected) == 0);
+    }
+    voxels += countObject(c.object);
+  }
+  CHECK(voxels > 10000);
+}
+
+TEST_CASE("power_map: of some balls only, with keys of either width", "[power_map]") {
+  for (uint64_t seed = 1; seed <= 150; ++seed) {
+    Rng rng(seed + 30000);
+    const RandomCase c =
+        randomCase(seed, Coord(rng.between(1, 20), rng.between(1, 20), rng.between(1, 20)));
+    INFO(describe(c));
+    const LeafIndex index(*toMask(c.object, c.tiles));
+    const auto distance = oracleDistance(c.object, false, {});
+    ObjectVolume sites = c.object;
+    const double kept = rng.chance(0.5) ? 0.05 : 0.5;
+    DenseVolume<int64_t> start(c.object.box());
+    int32_t largest = 0;
+    for (int i = 0; i < sites.size(); ++i) {
+      sites[i] = c.object[i] && rng.chance(kept);
+      start[i] = sites[i] ? -distance[i] : kUncovered;
+      if (sites[i]) largest = std::max(largest, int32_t(distance[i]));
+    }
+    const OraclePower expected = oraclePower(c.object, distance, sites);
+    for (const int32_t bound : {largest, kHugeBound}) {
+      PowerMap map{byRank(index, start), VoxelArray<VoxelId>(size_t(index.voxelCount()))};
+      sweepPower(index, bound, map);
+      REQUIRE(differences(index, map, c.object, expected) == 0);
+    }
+  }
+}

@@ -1,0 +1,175 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/method/squared_distance.h"
+#include "vdb_madf/base/limits.h"
+#include "vdb_madf/method/boundary.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "support/oracle.h"
+#include "support/random_case.h"
+#include "vdb_madf/base/errors.h"
+
+namespace {
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+
+/// Values of the array on the object's voxels, 0 elsewhere in the box.
+DenseVolume<int64_t> values(const LeafIndex& index, const VoxelArray<int32_t>& array,
+                            const CoordBBox& box) {
+  DenseVolume<int64_t> result(box);
+  REQUIRE(array.size() == size_t(index.voxelCount()));
+  for (size_t id = 0; id < index.leafCount() * 512; ++id) {
+    const Coord p = index.coord(VoxelId(id));
+    if (index.mask(id >> 9)[id >> 6 & 7] >> (id & 63) & 1)
+      result[p] = array[index.rank(VoxelId(id))];
+  }
+  return result;
+}
+
+DenseVolume<int64_t> closedDistance(const ObjectVolume& object) {
+  const LeafIndex index(*toMask(object));
+  return values(index, squaredDistance(index, {}).values, object.box());
+}
+
+}  // namespace
+
+TEST_CASE("squared_distance: a cube, closed", "[squared_distance]") {
+  // n voxels a side: D = (1 + distance to the nearest face)^2.
+  for (const int n : {1, 2, 7, 8, 9, 20}) {
+    const ObjectVolume object(boxAt({-5, 3, -8}, Coord(n)), 1);
+    const DenseVolume<int64_t> distance = closedDistance(object);
+    for (int i = 0; i < object.size(); ++i) {
+      const Coord a = object.coord(i) - object.box().min(), b = Coord(n - 1) - a;
+      const int depth = 1 + std::min({a.x(), a.y(), a.z(), b.x(), b.y(), b.z()});
+      REQUIRE(distance[i] == depth * depth);
+    }
+  }
+}
+
+TEST_CASE("squared_distance: one background voxel in an open block", "[squared_distance]") {
+  // The block fills the domain: all distances are to the hole.
+  const CoordBBox box = boxAt({-3, -11, 6}, {19, 12, 30});
+  for (const Coord& hole : {box.min(), box.max(), Coord(5, -4, 20)}) {
+    ObjectVolume object(box, 1);
+    object[hole] = 0;
+    const LeafIndex index(*toMask(object));
+    const SquaredDistance distance = squaredDistance(index, {true, box});
+    const DenseVolume<int64_t> result = values(index, distance.values, box);
+    int64_t largest = 0;
+    for (int i = 0; i < object.size(); ++i) {
+      const Coord d = object.coord(i) - hole;
+      const int64_t expected = d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
+      REQUIRE(result[i] == expected);
+      largest = std::max(largest, expected);
+    }
+    CHECK(distance.largest == largest);
+  }
+}
+
+TEST_CASE("squared_distance: a long row keeps its 32 bits", "[squared_distance]") {
+  // Open, with background at one end only: D = n^2 at the other end, at the longest extent.
+  constexpr int kLength = kMaxExtent;
+  for (int axis = 0; axis < 3; ++axis) {
+    Coord dim(1);
+    dim[axis] = kLength;
+    const ObjectVolume object(boxAt(Coord(0), dim), 1);
+    CoordBBox domain = object.box();
+    --domain.min()[axis];
+    const LeafIndex index(*toMask(object));
+    const SquaredDistance distance = squaredDistance(index, {true, domain});
+    CHECK(distance.largest == int64_t(kLength) * kLength);
+    const DenseVolume<int64_t> result = values(index, distance.values, object.box());
+    for (int i = 0; i < kLength; ++i) REQUIRE(result[i] == int64_t(i + 1) * (i + 1));
+  }
+}
+
+TEST_CASE("squared_distance: agrees with the oracle", "[squared_distance]") {
+  for (uint64_t seed = 1; seed <= 400; ++seed) {
+    Rng rng(seed + 10000);
+    const RandomCase c =
+        randomCase(seed, Coord(rng.between(1, 20), rng.between(1, 20), rng.between(1, 20)));
+    const LeafIndex index(*toMask(c.object, c.tiles));
+    INFO(describe(c));
+    Obstacles obstacles;
+    try {
+      obstacles = resolveBoundary(index, c.options.boundary, c.domain);
+    } catch (const InvalidInput&) {
+      REQUIRE_THROWS_AS(oracleBoundary(c.object, c.options.boundary, c.domain), Undefined);
+      continue;
+    }
+    REQUIRE(obstacles.open == oracleBoundary(c.object, c.options.boundary, c.domain));
+    SquaredDistance distance;
+    try {
+      distance = squaredDistance(index, obstacles);
+    } catch (const InvalidInput&) {
+      REQUIRE_THROWS_AS(oracleDistance(c.object, obstacles.open, obstacles.domain), Undefined);
+      continue;
+    }
+    const auto expected = oracleDistance(c.object, obstacles.open, obstacles.domain);
+    REQUIRE(values(index, distance.values, c.object.box()) == expected);
+    int64_t largest = 0;
+    for (int i = 0; i < c.object.size(); ++i)
+      if (c.object[i]) largest = std::max(largest, expected[i]);
+    REQUIRE(distance.largest == largest);
+  }
+}
+
+TEST_CASE("squared_distance: permuted and mirrored axes permute and mirror it",
+          "[squared_distance]") {
+  Rng rng(11);
+  for (int round = 0; round < 10; ++round) {
+    const Coord size(rng.between(1, 30), rng.between(1, 20), rng.between(1, 10));
+    const ObjectVolume object =
+        randomVolume(VolumeKind::blurredNoise, boxAt(randomOrigin(rng), size), rng);
+    const AxisMap map{{2, 0, 1}, {rng.chance(0.5), rng.chance(0.5), rng.chance(0.5)}};
+    REQUIRE(closedDistance(permuted(object, map)) == permuted(closedDistance(object), map));
+  }
+}
+
+TEST_CASE("leaf_index: holds the object's leaves in order, with their neighbours", "[leaf_index]") {
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    Rng rng(seed);
+    const Coord size(rng.between(1, 40), rng.between(1, 30), rng.between(1, 30));
+    const auto kind = VolumeKind(int(seed) % kVolumeKinds);
+    const ObjectVolume object = randomVolume(kind, boxAt(randomOrigin(rng), size), rng);
+    for (const Tiles tiles : {Tiles::none, Tiles::wherePossible}) {
+      const LeafIndex index(*toMask(object, tiles));
+      INFO("seed " << seed << ", " << name(kind));
+      std::set<Coord> blocks;
+      for (int i = 0; i < object.size(); ++i)
+        if (object[i]) blocks.insert(object.coord(i) & ~7);
+      REQUIRE(index.leafCount() == blocks.size());
+      REQUIRE(index.voxelCount() == countObject(object));
+      if (!blocks.empty()) REQUIRE(index.boundingBox() == objectBox(object));
+      size_t leaf = 0, rank = 0;
+      for (const Coord& origin : blocks) {  // ascending x, then y, then z
+        REQUIRE(index.origin(leaf) == origin);
+        REQUIRE(index.firstRank(leaf) == rank);
+        for (size_t n = 0; n < 6; ++n) {
+          const auto found =
+              blocks.find(origin + Coord(8 * kSixNeighbors[n].x(), 8 * kSixNeighbors[n].y(),
+                                         8 * kSixNeighbors[n].z()));
+          const auto expected = found == blocks.end()
+                                    ? LeafIndex::kNone
+                                    : uint32_t(std::distance(blocks.begin(), found));
+          REQUIRE(index.neighbors(leaf)[n] == expected);
+        }
+        for (int offset = 0; offset < 512; ++offset) {
+          const Coord p = index.coord(VoxelId(leaf * 512 + size_t(offset)));
+          REQUIRE(p == origin + Coord(offset / 64, offset / 8 % 8, offset % 8));
+          const bool active = index.mask(leaf)[size_t(offset / 64)] >> (offset % 64) & 1;
+          REQUIRE(active == (object.get(p, 0) != 0));
+          REQUIRE(index.rank(VoxelId(leaf * 512 + size_t(offset))) == rank);
+          rank += active;
+        }
+        REQUIRE(index.leafVoxels(leaf) == rank - index.firstRank(leaf));
+        ++leaf;
+      }
+    }
+  }
+}

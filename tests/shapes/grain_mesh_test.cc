@@ -1,0 +1,253 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/shapes/grain_mesh.h"
+
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "support/label_shapes.h"
+#include "vdb_madf/base/errors.h"
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+using openvdb::Vec3f;
+
+namespace {
+
+/// Empty if every grain of the mesh is closed and oriented by itself: each edge is used as often
+/// one way as the other, every triangle has three points, all points are used and those of its
+/// grain.
+std::string whyNotClosed(const GrainMesh& mesh) {
+  if (mesh.firstPoint.size() != mesh.labels.size() + 1 || mesh.firstPoint.front() != 0 ||
+      mesh.firstPoint.back() != mesh.points.size() ||
+      mesh.firstTriangle.size() != mesh.labels.size() + 1 || mesh.firstTriangle.front() != 0 ||
+      mesh.firstTriangle.back() != mesh.triangles.size())
+    return "ranges";
+  for (size_t g = 0; g < mesh.labels.size(); ++g) {
+    std::map<std::pair<uint32_t, uint32_t>, int> edges;
+    std::set<uint32_t> used;
+    for (uint32_t t = mesh.firstTriangle[g]; t < mesh.firstTriangle[g + 1]; ++t) {
+      const auto& triangle = mesh.triangles[t];
+      for (size_t n = 0; n < 3; ++n) {
+        const uint32_t from = triangle[n], to = triangle[(n + 1) % 3];
+        if (from < mesh.firstPoint[g] || from >= mesh.firstPoint[g + 1]) return "foreign point";
+        if (from == to) return "degenerate triangle";
+        used.insert(from);
+        ++edges[{std::min(from, to), std::max(from, to)}];
+        edges[{std::min(from, to), std::max(from, to)}] += from < to ? 1000 : -1000;
+      }
+    }
+    if (used.size() != mesh.firstPoint[g + 1] - mesh.firstPoint[g]) return "unused point";
+    for (const auto& [edge, uses] : edges)
+      if (uses != 2 && uses != 4) return "open edge, " + std::to_string(uses);
+  }
+  return "";
+}
+
+/// Empty if the triangles around every point make one disc: each of its edges in one fan.
+std::string whyNoDisc(const GrainMesh& mesh) {
+  std::vector<std::map<uint32_t, std::vector<uint32_t>>> next(mesh.points.size());
+  for (const auto& t : mesh.triangles)
+    for (size_t n = 0; n < 3; ++n) next[t[n]][t[(n + 1) % 3]].push_back(t[(n + 2) % 3]);
+  for (const auto& ring : next) {
+    size_t length = 0;
+    for (const auto& [from, to] : ring) length += to.size();
+    if (length != ring.size()) continue;  // an edge shared by four triangles: told by whyNotClosed
+    uint32_t at = ring.begin()->first;
+    size_t steps = 0;
+    do {
+      at = ring.at(at)[0];
+      ++steps;
+    } while (at != ring.begin()->first && steps <= length);
+    if (steps != length) return "several fans";
+  }
+  return "";
+}
+
+void checkExact(const LabelMap& voxels) {
+  const GrainMesh mesh = grainMesh(*labelGrid(voxels));
+  CHECK(whyNotClosed(mesh) == "");
+  CHECK(whyNoDisc(mesh) == "");
+  const auto volume = volumes(voxels), euler = eulerNumbers(voxels);
+  const std::vector<double> found = meshVolumes(mesh);
+  REQUIRE(mesh.labels.size() == volume.size());
+  for (size_t g = 0; g < mesh.labels.size(); ++g) {
+    CAPTURE(mesh.labels[g]);
+    CHECK(found[g] == double(volume.at(mesh.labels[g])));  // to the bit
+    const int64_t points = mesh.firstPoint[g + 1] - mesh.firstPoint[g],
+                  triangles = mesh.firstTriangle[g + 1] - mesh.firstTriangle[g];
+    CHECK(points - triangles / 2 == 2 * euler.at(mesh.labels[g]));
+  }
+}
+
+using Corners = std::array<std::array<float, 3>, 3>;
+
+/// The corners of a triangle, rotated to begin with the least: equal if it is the same one.
+Corners cornersOf(const GrainMesh& mesh, const std::array<uint32_t, 3>& triangle, bool turned) {
+  Corners corners;
+  for (size_t n = 0; n < 3; ++n) {
+    const Vec3f& p = mesh.points[triangle[turned ? 2 - n : n]];
+    corners[n] = {p.x(), p.y(), p.z()};
+  }
+  std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
+/// Triangles of a grain that another grain has turned over.
+size_t sharedTriangles(const GrainMesh& mesh, size_t a, size_t b) {
+  std::multiset<Corners> others;
+  for (uint32_t t = mesh.firstTriangle[b]; t < mesh.firstTriangle[b + 1]; ++t)
+    others.insert(cornersOf(mesh, mesh.triangles[t], true));
+  size_t count = 0;
+  for (uint32_t t = mesh.firstTriangle[a]; t < mesh.firstTriangle[a + 1]; ++t)
+    count += others.count(cornersOf(mesh, mesh.triangles[t], false));
+  return count;
+}
+
+size_t contactFaces(const LabelMap& voxels, int32_t a, int32_t b) {
+  size_t count = 0;
+  for (const auto& [p, label] : voxels)
+    for (const Coord& step : {Coord(1, 0, 0), Coord(0, 1, 0), Coord(0, 0, 1)}) {
+      const auto other = voxels.find(p + step);
+      if (other == voxels.end()) continue;
+      count += std::min(label, other->second) == a && std::max(label, other->second) == b;
+    }
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("grain_mesh: no voxel, one voxel", "[grain_mesh]") {
+  const GrainMesh nothing = grainMesh(*labelGrid({}), {5});
+  CHECK(nothing.labels.empty());
+  CHECK(whyNotClosed(nothing) == "");
+
+  const GrainMesh one = grainMesh(*labelGrid({{Coord(7, -8, 15), 9}}));
+  REQUIRE(one.labels == std::vector<int32_t>{9});
+  CHECK(one.points.size() == 8);
+  CHECK(one.triangles.size() == 12);
+  openvdb::BBoxd box;
+  for (const Vec3f& p : one.points) box.expand(openvdb::Vec3d(p));
+  CHECK(box.min() == openvdb::Vec3d(6.5, -8.5, 14.5));
+  CHECK(box.max() == openvdb::Vec3d(7.5, -7.5, 15.5));
+  checkExact({{Coord(7, -8, 15), 9}});
+}
+
+TEST_CASE("grain_mesh: every grain is closed and has its voxels' volume and Euler number",
+          "[grain_mesh]") {
+  checkExact(awkwardLabels());
+  checkExact(twoBalls({3, -4, 5}, 7));
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    CAPTURE(seed);
+    checkExact(
+        randomLabels(seed, Coord(-5, 3, int(seed)), 12, 1 + int(seed % 3), 25 + 6 * int(seed)));
+  }
+}
+
+TEST_CASE("grain_mesh: the checks see a hole, a turned triangle and a pinched point",
+          "[grain_mesh]") {
+  GrainMesh mesh = grainMesh(*labelGrid(twoBalls({0, 0, 0}, 4)));
+  REQUIRE(whyNotClosed(mesh) == "");
+  GrainMesh turned = mesh;
+  std::swap(turned.triangles[5][0], turned.triangles[5][1]);
+  CHECK(whyNotClosed(turned) != "");
+  mesh.triangles.pop_back();
+  --mesh.firstTriangle.back();
+  CHECK(whyNotClosed(mesh) != "");
+
+  // Two voxels at a corner, with one point there instead of two.
+  GrainMesh pinched = grainMesh(*labelGrid({{Coord(-1, -1, -1), 1}, {Coord(0, 0, 0), 1}}));
+  REQUIRE(whyNoDisc(pinched) == "");
+  std::vector<uint32_t> same;
+  for (uint32_t i = 0; i < pinched.points.size(); ++i)
+    if (pinched.points[i] == Vec3f(-0.5f)) same.push_back(i);
+  REQUIRE(same.size() == 2);
+  for (auto& triangle : pinched.triangles)
+    std::replace(triangle.begin(), triangle.end(), same[1], same[0]);
+  pinched.points[same[1]] = Vec3f(100);
+  CHECK(whyNotClosed(pinched) != "");
+}
+
+TEST_CASE("grain_mesh: interfaces are shared, smoothed or not", "[grain_mesh]") {
+  const LabelMap voxels = twoBalls({2, 2, 2}, 8);
+  for (const int smoothing : {0, 10}) {
+    const GrainMesh mesh = grainMesh(*labelGrid(voxels), {smoothing});
+    REQUIRE(mesh.labels == std::vector<int32_t>{3, 7});
+    CHECK(sharedTriangles(mesh, 0, 1) == 2 * contactFaces(voxels, 3, 7));
+  }
+}
+
+TEST_CASE("grain_mesh: smoothed grains stay closed and keep their volume", "[grain_mesh]") {
+  std::vector<LabelMap> samples{twoBalls({0, 0, 0}, 9), awkwardLabels()};
+  for (unsigned seed = 1; seed <= 6; ++seed)
+    samples.push_back(
+        randomLabels(seed, Coord(-9, 3, int(seed)), 12, 1 + int(seed) * 2, int(seed) * 15));
+  for (const LabelMap& voxels : samples) {
+    const auto volume = volumes(voxels), euler = eulerNumbers(voxels);
+    for (const int smoothing : {1, 20}) {
+      const GrainMesh mesh = grainMesh(*labelGrid(voxels), {smoothing});
+      CHECK(whyNotClosed(mesh) == "");
+      const std::vector<double> found = meshVolumes(mesh);
+      for (size_t g = 0; g < found.size(); ++g) {
+        CAPTURE(mesh.labels[g], smoothing);
+        CHECK(found[g] == Approx(double(volume.at(mesh.labels[g]))).epsilon(0.01));
+        CHECK(int64_t(mesh.firstPoint[g + 1] - mesh.firstPoint[g]) -
+                  int64_t(mesh.firstTriangle[g + 1] - mesh.firstTriangle[g]) / 2 ==
+              2 * euler.at(mesh.labels[g]));
+      }
+    }
+  }
+}
+
+TEST_CASE("grain_mesh: a smoothed ball is rounder than its voxels", "[grain_mesh]") {
+  LabelMap ball;
+  constexpr double kRadius = 10;
+  for (int x = -10; x <= 10; ++x)
+    for (int y = -10; y <= 10; ++y)
+      for (int z = -10; z <= 10; ++z)
+        if (x * x + y * y + z * z < kRadius * kRadius) ball[{x, y, z}] = 1;
+  const auto grid = labelGrid(ball);
+  const auto area = [](const GrainMesh& mesh) {
+    double sum = 0;
+    for (const auto& t : mesh.triangles)
+      sum += 0.5 * double((mesh.points[t[1]] - mesh.points[t[0]])
+                              .cross(mesh.points[t[2]] - mesh.points[t[0]])
+                              .length());
+    return sum;
+  };
+  const double sphere = 4 * M_PI * std::pow(3 * double(ball.size()) / (4 * M_PI), 2.0 / 3);
+  CHECK(area(grainMesh(*grid)) > 1.4 * sphere);
+  CHECK(area(grainMesh(*grid, {20})) == Approx(sphere).epsilon(0.03));
+  for (const Vec3f& p : grainMesh(*grid, {20}).points)
+    CHECK(double(p.length()) == Approx(kRadius).margin(0.6));
+}
+
+TEST_CASE("grain_mesh: same bits for any number of threads and with tiles", "[grain_mesh]") {
+  LabelMap voxels = randomLabels(8, Coord(-20), 16, 5, 70);
+  for (int x = 0; x < 24; ++x)
+    for (int y = 0; y < 8; ++y)
+      for (int z = 0; z < 8; ++z) voxels[{x, y, z}] = 2;
+  const auto grid = labelGrid(voxels);
+  const GrainMesh mesh = grainMesh(*grid, {5});
+  const auto tiled = grid->deepCopy();
+  tiled->pruneGrid();
+  REQUIRE(tiled->tree().hasActiveTiles());
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  for (const auto& other : {grainMesh(*grid, {5}), grainMesh(*tiled, {5})}) {
+    CHECK(other.labels == mesh.labels);
+    CHECK(other.points == mesh.points);
+    CHECK(other.triangles == mesh.triangles);
+  }
+}
+
+TEST_CASE("grain_mesh: inactive and negative values are background", "[grain_mesh]") {
+  const auto grid = labelGrid({{Coord(0, 0, 0), 1}, {Coord(1, 0, 0), -4}});
+  grid->tree().setValueOff({0, 1, 0}, 5);
+  CHECK(grainMesh(*grid).labels == std::vector<int32_t>{1});
+  CHECK_THROWS_AS(grainMesh(*grid, {-1}), InvalidInput);
+  CHECK_THROWS_AS(grainMesh(*grid, {1001}), InvalidInput);
+}

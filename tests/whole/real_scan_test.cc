@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Reference numbers of real data: nmc.tif, the tomography of a battery electrode (phase 1, 301 x
+// 301 x 251 voxels; NREL MATBOX example data). The folder that holds it is named by the environment
+// variable VDB_MADF_DATA or, without it, by the definition VDB_MADF_DATA_DIR. An independent dense
+// implementation of the method computed the numbers.
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include "support/invariants.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/images/open_image.h"
+#include "vdb_madf/method/segment.h"
+#include "vdb_madf/volumes/read_mask.h"
+
+namespace {
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+
+std::string dataFile() {
+  const char* folder = std::getenv("VDB_MADF_DATA");
+#ifdef VDB_MADF_DATA_DIR
+  if (!folder) folder = VDB_MADF_DATA_DIR;
+#endif
+  return folder ? std::string(folder) + "/nmc.tif" : std::string();
+}
+
+/// Read once for all sections. Null, with a warning, if there is no such file.
+MaskGrid::Ptr nmc() {
+  static const MaskGrid::Ptr kMask = []() -> MaskGrid::Ptr {
+    const std::string path = dataFile();
+    if (path.empty() || !std::ifstream(path)) return nullptr;
+    const auto image = openImage(path);
+    return readMask(*image, Selection::phase(1));
+  }();
+  if (!kMask)
+    WARN("SKIPPED: no nmc.tif"
+         << (dataFile().empty() ? std::string() : " at " + dataFile())
+         << ". Set VDB_MADF_DATA to the folder that holds it. Nothing was checked.");
+  return kMask;
+}
+
+struct Row {
+  Boundary boundary;
+  int64_t gamma;
+  int64_t medialBalls, keptBalls, criticalPoints;
+  int64_t angle, both, neck;  // grains at theta -0.8
+};
+
+constexpr Row kRows[] = {{Boundary::closed, 0, 868123, 868123, 87324, 56699, 2047, 2098},
+                         {Boundary::closed, 20, 868123, 103610, 11795, 4661, 2606, 2667},
+                         {Boundary::closed, 160, 868123, 10864, 3216, 1697, 1624, 1626},
+                         {Boundary::open, 0, 768750, 768750, 38793, 30506, 2156, 2188},
+                         {Boundary::open, 20, 768750, 100368, 7927, 3901, 2232, 2254},
+                         {Boundary::open, 160, 768750, 11756, 3205, 1815, 1747, 1748}};
+
+int64_t grains(const ManifoldGraph& graph, double theta, MergeMode mode) {
+  const Merging merging = merge(graph, {theta, mode, Adjacency::manifold});
+  return int64_t(merging.representative.size());
+}
+
+}  // namespace
+
+TEST_CASE("nmc: the image is read as described", "[nmc]") {
+  const MaskGrid::Ptr mask = nmc();
+  if (!mask) return;
+  CHECK(mask->activeVoxelCount() == 11357945);
+  CHECK(domain(*mask) == CoordBBox(Coord(0), Coord(300, 300, 250)));
+}
+
+TEST_CASE("nmc: all reference counts", "[nmc]") {
+  const MaskGrid::Ptr mask = nmc();
+  if (!mask) return;
+  for (const Row& row : kRows) {
+    SegmentOptions options;
+    options.gamma = row.gamma;
+    options.boundary = row.boundary;
+    options.merge = {-0.8, MergeMode::both, Adjacency::manifold};
+    const Segmentation result = segment(*mask, options);
+    INFO((result.open ? "open" : "closed") << ", gamma " << row.gamma);
+    CHECK(result.counts.objectVoxels == 11357945);
+    CHECK(result.counts.medialBalls == row.medialBalls);
+    CHECK(result.counts.keptBalls == row.keptBalls);
+    CHECK(result.counts.criticalPoints == row.criticalPoints);
+    CHECK(result.counts.grains == row.both);
+    CHECK(grains(result.graph, -0.8, MergeMode::angle) == row.angle);
+    CHECK(grains(result.graph, -0.8, MergeMode::both) == row.both);
+    CHECK(grains(result.graph, -0.8, MergeMode::neck) == row.neck);
+    if (row.gamma != 0) continue;
+    const bool open = row.boundary == Boundary::open;
+    CHECK(grains(result.graph, -0.9, MergeMode::angle) == (open ? 32638 : 66910));
+    CHECK(grains(result.graph, -0.9, MergeMode::both) == (open ? 2315 : 2214));
+    CHECK(grains(result.graph, -0.9, MergeMode::neck) == (open ? 2382 : 2291));
+  }
+}
+
+TEST_CASE("nmc: the invariants hold", "[nmc]") {
+  const MaskGrid::Ptr mask = nmc();
+  if (!mask) return;
+  SegmentOptions options;
+  options.keepDistance = options.keepPower = options.keepManifold = options.keepBalls = true;
+  for (const int64_t gamma : {0, 20}) {
+    options.gamma = gamma;
+    options.boundary = gamma == 0 ? Boundary::open : Boundary::closed;
+    const Segmentation result = segment(*mask, options);
+    INFO("gamma " << gamma);
+    CHECK(anyViolation(result, *mask, gamma) == "");
+  }
+}

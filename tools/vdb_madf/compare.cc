@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/labels/compare.h"
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <sstream>
+
+#include "command.h"
+#include "input.h"
+#include "json_file.h"
+#include "text_file.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
+
+namespace vdb_madf::tools {
+
+namespace {
+
+struct Options {
+  InputOptions truth, test;
+  std::string json, grains, confusion;
+};
+
+Json list(const std::vector<GrainGroup>& groups, const char* whole, const char* parts) {
+  Json json = Json::array();
+  for (const GrainGroup& group : groups)
+    json.push_back({{whole, group.grain}, {parts, group.parts}});
+  return json;
+}
+
+bool sameTopology(const Comparison& c) {
+  return c.truthOnlyVoxels == 0 && c.testOnlyVoxels == 0;
+}
+
+Json summary(const Options& o, const Comparison& c) {
+  Json json;
+  json["truth"] = o.truth.path;
+  json["test"] = o.test.path;
+  json["truth_grains"] = c.truthGrains;
+  json["test_grains"] = c.testGrains;
+  json["common_voxels"] = c.commonVoxels;
+  json["truth_only_voxels"] = c.truthOnlyVoxels;
+  json["test_only_voxels"] = c.testOnlyVoxels;
+  json["same_topology"] = sameTopology(c);
+  json["misclassified_percent"] = c.misclassifiedPercent;
+  json["mirror_misclassified_percent"] = c.mirrorMisclassifiedPercent;
+  json["adjusted_rand_index"] = c.adjustedRandIndex;
+  json["variation_of_information_bits"] = c.variationOfInformation;
+  json["variation_split_bits"] = c.variationSplit;
+  json["variation_merge_bits"] = c.variationMerge;
+  json["found_grains"] = c.foundGrains;
+  json["mean_intersection_over_union"] = c.meanIntersectionOverUnion;
+  json["splits"] = list(splits(c), "truth", "test");
+  json["merges"] = list(merges(c), "test", "truth");
+  return json;
+}
+
+void print(const Comparison& c) {
+  std::printf("grains                    truth %lld, test %lld\n", (long long)c.truthGrains,
+              (long long)c.testGrains);
+  std::printf("voxels labelled           in both %lld, in truth only %lld, in test only %lld\n",
+              (long long)c.commonVoxels, (long long)c.truthOnlyVoxels, (long long)c.testOnlyVoxels);
+  std::printf("misclassified             %.4f %% (mirror %.4f %%)\n", c.misclassifiedPercent,
+              c.mirrorMisclassifiedPercent);
+  std::printf("adjusted Rand index       %.6f\n", c.adjustedRandIndex);
+  std::printf("variation of information  %.6f bits (splits %.6f, merges %.6f)\n",
+              c.variationOfInformation, c.variationSplit, c.variationMerge);
+  std::printf("grains found              %lld of %lld (mean intersection over union %.4f)\n",
+              (long long)c.foundGrains, (long long)c.truthGrains, c.meanIntersectionOverUnion);
+  std::printf("splits, merges            %lld truth grains split, %lld test grains merged\n",
+              (long long)c.splits, (long long)c.merges);
+  if (!sameTopology(c))
+    std::printf(
+        "note: the grids differ in topology; all but grains and their unions is compared over the "
+        "voxels labelled in both\n");
+}
+
+/// One line per grain of either grid.
+std::string grainTable(const Comparison& c) {
+  std::ostringstream csv;
+  csv << "side,grain,voxels,partner,overlap_voxels,intersection_over_union,pieces\n";
+  csv.precision(9);
+  for (const auto& [side, matches] :
+       {std::pair<const char*, const std::vector<GrainMatch>&>{"truth", c.truthMatches},
+        {"test", c.testMatches}})
+    for (const GrainMatch& m : matches)
+      csv << side << ',' << m.grain << ',' << m.voxels << ',' << m.partner << ',' << m.overlapVoxels
+          << ',' << m.intersectionOverUnion << ',' << m.pieces << '\n';
+  return csv.str();
+}
+
+std::string confusionTable(const Comparison& c) {
+  std::ostringstream csv;
+  csv << "truth,test,voxels\n";
+  for (const Overlap& o : c.overlaps) csv << o.truth << ',' << o.test << ',' << o.voxels << '\n';
+  return csv.str();
+}
+
+std::string text(const CoordBBox& box) {
+  std::ostringstream text;
+  text << box.min() << " to " << box.max();
+  return text.str();
+}
+
+/// Voxels of equal index are compared, so they must be of equal size, where both are known.
+void checkSameVoxels(const Options& o, const Int32Grid& truth, const Int32Grid& test) {
+  constexpr double kTolerance = 1e-3;  // as for the spacings of an image
+  const auto a = voxelSize(truth), b = voxelSize(test);
+  if (!a || !b || std::abs(a->metres - b->metres) <= kTolerance * a->metres) return;
+  std::ostringstream text;
+  text.precision(4);
+  text << o.test.path << ": its voxels are " << b->metres / a->metres
+       << " times as long as those of " << o.truth.path << ": give labels of the same voxels";
+  throw InvalidInput(text.str());
+}
+
+void run(const Options& o, const Common& common) {
+  JsonFile jsonFile(o.json);
+  TextFile grainFile(o.grains), confusionFile(o.confusion);
+  const Int32Grid::Ptr truth = loadLabels(o.truth, "--truth-grid", common.progress);
+  const Int32Grid::Ptr test = loadLabels(o.test, "--test-grid", common.progress);
+  checkSameVoxels(o, *truth, *test);
+  const Comparison comparison = compare(*truth, *test, common.progress);
+  if (comparison.commonVoxels == 0 && comparison.truthGrains + comparison.testGrains > 0)
+    throw InvalidInput(o.test.path + ": no voxel is labelled both here and in " + o.truth.path +
+                       ", so there is nothing to compare: give labels of the same sample");
+  common.progress->end();
+  grainFile.write(grainTable(comparison));
+  confusionFile.write(confusionTable(comparison));
+  jsonFile.write(summary(o, comparison));
+  const bool asked = jsonFile.isStandardOutput() || grainFile.isStandardOutput() ||
+                     confusionFile.isStandardOutput();
+  if (common.quiet || asked) return;
+  print(comparison);
+  const auto truthDomain = domain(*truth), testDomain = domain(*test);
+  if (truthDomain && testDomain && *truthDomain != *testDomain)
+    std::printf("note: the domains differ: %s and %s; voxels of equal index are compared\n",
+                text(*truthDomain).c_str(), text(*testDomain).c_str());
+}
+
+}  // namespace
+
+void addCompare(CLI::App& app, Common& common, Action& action) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = addVerb(app, common, "compare", "how well labels agree with the truth",
+                           "vdb_madf compare balls.vdb grains.vdb");
+  verb->add_option("TRUTH", o->truth.path, "labels: VDB or integer image")->required();
+  verb->add_option("TEST", o->test.path, "labels: VDB or integer image")->required();
+  verb->add_option("--truth-grid", o->truth.gridName, "grid of TRUTH")->type_name("NAME");
+  verb->add_option("--test-grid", o->test.gridName, "grid of TEST")->type_name("NAME");
+  verb->add_option("--json", o->json, "machine-readable result (-: standard output)")
+      ->type_name("FILE");
+  verb->add_option("--grains", o->grains, "CSV: a line per grain of either side")
+      ->type_name("FILE");
+  verb->add_option("--confusion", o->confusion, "CSV: voxels of each pair of labels that meets")
+      ->type_name("FILE");
+  o->truth.addRaw(*verb);
+  verb->callback([o, &common, &action] {
+    for (InputOptions* input : {&o->truth, &o->test})
+      input->outputs = {o->json, o->grains, o->confusion};
+    o->truth.parse();
+    o->test.parse();
+    // --dims describes whichever of the two is RAW.
+    for (InputOptions* input : {&o->truth, &o->test}) {
+      input->sampleType = o->truth.sampleType;
+      input->bigEndian = o->truth.bigEndian;
+    }
+    o->test.size = o->truth.size;
+    for (InputOptions* input : {&o->truth, &o->test})
+      if (!hasRawEnding(input->path)) input->size.reset();
+    action = [o, &common] { run(*o, common); };
+  });
+}
+
+}  // namespace vdb_madf::tools

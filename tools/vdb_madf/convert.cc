@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <type_traits>
+
+#include "command.h"
+#include "input.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/images/copy_image.h"
+#include "vdb_madf/images/image.h"
+#include "vdb_madf/images/open_image.h"
+#include "vdb_madf/method/segmentation_metadata.h"
+#include "vdb_madf/vdb/vdb_file.h"
+#include "vdb_madf/volumes/image_box.h"
+#include "vdb_madf/volumes/label_type.h"
+#include "vdb_madf/volumes/write_image.h"
+
+namespace vdb_madf::tools {
+
+namespace {
+
+struct Options {
+  InputOptions input;
+  std::string out, outType, boundary = "auto";
+  std::optional<SampleType> parsedOutType;
+};
+
+/// The smallest sample type that surely holds a grid's values. Programs that look at TIFF take
+/// signed samples for something else than labels, if they take them at all.
+SampleType naturalType(const openvdb::GridBase& grid, const std::string& path) {
+  if (isLabelGrid(grid) && hasTiffEnding(path))
+    return labelType(static_cast<const Int32Grid&>(grid));
+  const std::string type = grid.valueType();
+  if (grid.isType<MaskGrid>() || type == "bool") return SampleType::uint8;
+  if (type == "float") return SampleType::float32;
+  if (type == "double") return SampleType::float64;
+  return SampleType::int32;
+}
+
+std::optional<SampleType> outputType(const Options& o) {
+  if (o.parsedOutType) return o.parsedOutType;
+  return o.input.size ? std::nullopt : o.input.sampleType;
+}
+
+/// A RAW file does not tell these itself.
+void report(const Options& o, const Common& common, const std::string& what, const Coord& size,
+            SampleType type) {
+  common.progress->end();
+  if (common.quiet) return;
+  std::cout << o.out << ": " << what << ", " << size.x() << "x" << size.y() << "x" << size.z()
+            << " voxels of type " << sampleTypeName(type) << "\n";
+}
+
+void writeGridAsImage(const Options& o, const Common& common, const openvdb::GridBase& grid) {
+  std::optional<CoordBBox> box = domain(grid);
+  if (!box) {
+    box = grid.evalActiveVoxelBoundingBox();
+    if (grid.activeVoxelCount() == 0)
+      throw InvalidInput(o.input.path + ": grid '" + grid.getName() +
+                         "' is empty and has no domain: there is nothing to write; give --domain");
+    if (!common.quiet)
+      std::cout << o.out
+                << ": no known domain, so the active bounding box is written; its origin is "
+                << box->min() << "\n";
+  }
+  const SampleType type = outputType(o).value_or(naturalType(grid, o.out));
+  writeImage(o.out, grid, *box, type, common.progress);
+  report(o, common, "grid '" + grid.getName() + "'", box->dim(), type);
+}
+
+void convertMask(const Options& o, const Common& common) {
+  const MaskGrid::Ptr object = loadObject(o.input, common.progress);
+  if (!hasVdbEnding(o.out)) {
+    writeGridAsImage(o, common, *object);
+    return;
+  }
+  const BoolGrid::Ptr grid = toBoolGrid(*object);
+  if (o.boundary != "auto")
+    setBoundary(*grid, o.boundary == "open" ? Boundary::open : Boundary::closed);
+  writeVdb(o.out, {grid}, common.progress);
+  common.progress->end();
+  const auto voxels = int64_t(object->activeVoxelCount());
+  if (!common.quiet)
+    std::cout << o.out << ": " << voxels << " object voxels" << hintIfEmpty(voxels) << "\n";
+}
+
+void copyVdb(const Options& o, const Common& common) {
+  auto grids = readVdb(o.input.path, {}, common.progress);
+  if (!o.input.gridName.empty() || !hasVdbEnding(o.out))
+    grids = {chooseGrid(grids, o.input.path, o.input.gridName, "--grid",
+                        {"grain", "truth", "object"}, isNumericGrid)};
+  for (const auto& grid : grids) {
+    if (o.input.domain) setDomain(*grid, *o.input.domain);
+    if (o.input.voxelSize) setVoxelSize(*grid, o.input.voxelSize);
+    if (o.boundary != "auto")
+      setBoundary(*grid, o.boundary == "open" ? Boundary::open : Boundary::closed);
+  }
+  if (!hasVdbEnding(o.out)) {
+    writeGridAsImage(o, common, *grids[0]);
+    return;
+  }
+  writeVdb(o.out, {grids.begin(), grids.end()}, common.progress);
+}
+
+void run(const Options& o, const Common& common) {
+  checkWritable(o.out);
+  const bool fromVdb = isVdb(o.input);
+  if (o.input.selection || (!fromVdb && hasVdbEnding(o.out)))
+    convertMask(o, common);
+  else if (fromVdb)
+    copyVdb(o, common);
+  else {
+    if (!o.input.gridName.empty())
+      throw InvalidInput(o.input.path + ": --grid is for VDB files, and this is none");
+    if (o.input.domain || o.boundary != "auto")
+      throw InvalidInput(o.input.path +
+                         ": --domain and --boundary are for VDB files and masks, and this is "
+                         "copied from image to image; leave them out");
+    const auto image = openInput(o.input);
+    const SampleType type = outputType(o).value_or(image->info().type);
+    copyImage(o.out, *image, type, o.input.voxelSize, common.progress);
+    report(o, common, "all values", toCoord(image->info().size), type);
+  }
+}
+
+}  // namespace
+
+void addConvert(CLI::App& app, Common& common, Action& action) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb =
+      addVerb(app, common, "convert", "any readable volume to any writable volume",
+              "vdb_madf convert scan.raw ice.vdb --dims 301x301x251 --type uint8 --threshold 128");
+  verb->add_option("IN", o->input.path, "any readable volume")->required();
+  verb->add_option("OUT", o->out, ".vdb (a mask, of an image), .tif, .raw, .mhd, .mha, .nrrd, .npy")
+      ->required();
+  o->input.addSelection(*verb);
+  o->input.addRaw(*verb);
+  verb->add_option("--out-type", o->outType, "sample type of the output")->type_name("TYPE");
+  o->input.addVoxelSize(*verb);
+  o->input.addDomain(*verb);
+  verb->add_option("--boundary", o->boundary,
+                   "what 'segment --boundary auto' shall take the mask for")
+      ->check(CLI::IsMember({"auto", "open", "closed"}))
+      ->capture_default_str();
+  verb->callback([o, &common, &action] {
+    o->input.outputs = {o->out};
+    o->input.typeIsOfInput = hasVdbEnding(o->out);
+    o->input.parse();
+    if (!o->outType.empty()) {
+      if (hasVdbEnding(o->out))
+        throw WrongUsage("--out-type is for images, and " + o->out + " is none: leave it out");
+      o->parsedOutType = sampleTypeFromName(o->outType);
+      if (!o->parsedOutType) throw WrongUsage("--out-type " + o->outType + ": no such sample type");
+    }
+    if (!hasVdbEnding(o->out) && !isImageEnding(o->out))
+      throw WrongUsage(o->out + ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd or .npy");
+    action = [o, &common] { run(*o, common); };
+  });
+}
+
+}  // namespace vdb_madf::tools

@@ -1,0 +1,340 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "command.h"
+#include "input.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/exports/clump_file.h"
+#include "vdb_madf/exports/hexahedra_file.h"
+#include "vdb_madf/exports/mesh_file.h"
+#include "vdb_madf/exports/network_file.h"
+#include "vdb_madf/exports/vti_file.h"
+#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/images/open_image.h"
+#include "vdb_madf/labels/grain_masks.h"
+#include "vdb_madf/labels/reduced_labels.h"
+#include "vdb_madf/measure/grain_network.h"
+#include "vdb_madf/method/segmentation_metadata.h"
+#include "vdb_madf/pictures/preview_volume.h"
+#include "vdb_madf/shapes/clumps.h"
+#include "vdb_madf/shapes/level_sets.h"
+#include "vdb_madf/vdb/vdb_file.h"
+#include "vdb_madf/volumes/write_image.h"
+
+namespace vdb_madf::tools {
+
+namespace {
+
+struct Options {
+  InputOptions input;
+  std::string out, kind;
+  int smoothing = 10, maxDim = 0, reduce = 0;
+  int64_t mostTriangles = 0;  ///< 0: any number
+  bool compress = false, asBool = false;
+  ClumpOptions clumps;
+};
+
+/// The kind that the output's ending leaves no doubt about; else empty.
+std::string kindOf(const std::string& out) {
+  const std::string ending = fileEnding(out);
+  if (ending == ".vti") return "vti";
+  if (ending == ".graphml") return "network";
+  if (isHexahedraEnding(out)) return "hexa";
+  return isMeshEnding(out) && ending != ".vtp" ? "mesh" : "";
+}
+
+std::string unitOf(const openvdb::GridBase& grid) {
+  const auto size = voxelSize(grid);
+  return size ? size->unit() : std::string();
+}
+
+void say(const Options& o, const Common& common, const std::string& text) {
+  common.progress->end();
+  if (!common.quiet) std::cout << o.out << ": " << text << "\n";
+}
+
+CoordBBox boxOf(const Int32Grid& labels) {
+  const auto box = domain(labels);
+  return box ? *box : labels.evalActiveVoxelBoundingBox();
+}
+
+/// 1 unless the options ask for a smaller volume.
+int reductionOf(const Options& o, const Int32Grid& labels) {
+  if (o.reduce > 0) return o.reduce;
+  if (o.maxDim == 0) return 1;
+  return reductionFor(boxOf(labels), o.maxDim);
+}
+
+/// The smallest reduction, from the options' on, whose mesh keeps to the budget of triangles.
+/// Smoothing moves points only: their number is that of the exact faces.
+int reductionForTriangles(const Options& o, const Common& common, const Int32Grid& labels) {
+  const int first = reductionOf(o, labels);
+  if (o.mostTriangles == 0) return first;
+  for (int factor = first; factor <= kMaxReduction; ++factor) {
+    const Int32Grid::Ptr reduced = reduceLabels(labels, factor, common.progress);
+    const size_t triangles = grainMesh(*reduced, {}, common.progress).triangles.size();
+    if (triangles == 0 && !labels.empty()) break;
+    if (triangles <= size_t(o.mostTriangles)) return factor;
+  }
+  throw InvalidInput("no reduction of the labels has a mesh of " + std::to_string(o.mostTriangles) +
+                     " triangles or fewer: allow more");
+}
+
+void exportMesh(const Options& o, const Common& common, const Int32Grid& labels) {
+  GrainMeshOptions options;
+  options.smoothing = o.smoothing;
+  const int factor = reductionForTriangles(o, common, labels);
+  const Int32Grid::ConstPtr meshed =
+      factor == 1 ? labels.copy() : reduceLabels(labels, factor, common.progress);
+  const GrainMesh mesh = grainMesh(*meshed, options, common.progress);
+  MeshFileOptions file;
+  file.transform = meshed->constTransformPtr();
+  file.lengthUnit = unitOf(labels);
+  file.colors = grainColors(labels, common.progress);
+  if (isMeshEnding(o.out))
+    writeMesh(o.out, mesh, file, common.progress);
+  else
+    writeStlFolder(o.out, mesh, file, common.progress);
+  say(o, common,
+      counted(mesh.labels.size(), "grain") + ", " + counted(mesh.points.size(), "point") + ", " +
+          counted(mesh.triangles.size(), "triangle") +
+          (factor == 1 ? "" : " (labels at 1/" + std::to_string(factor) + ")") + "; lengths in " +
+          (file.lengthUnit.empty() ? "voxels" : file.lengthUnit));
+}
+
+void exportPreview(const Options& o, const Common& common, const Int32Grid& labels) {
+  const int factor = reductionOf(o, labels);
+  const LabelPreview preview = previewLabels(labels, factor, common.progress);
+  writeVdb(o.out, {preview.color, preview.density}, common.progress);
+  say(o, common,
+      "density (fog) and color at 1/" + std::to_string(factor) + ", " +
+          counted(preview.density->activeVoxelCount(), "voxel"));
+}
+
+void exportReduced(const Options& o, const Common& common, const Int32Grid& labels) {
+  const int factor = o.reduce == 0 && o.maxDim == 0 ? 2 : reductionOf(o, labels);
+  const Int32Grid::Ptr reduced = reduceLabels(labels, factor, common.progress);
+  writeVdb(o.out, {reduced}, common.progress);
+  say(o, common,
+      "labels at 1/" + std::to_string(factor) + ", " +
+          counted(reduced->activeVoxelCount(), "voxel"));
+}
+
+void exportVti(const Options& o, const Common& common, const Int32Grid& labels) {
+  const CoordBBox box = boxOf(labels);
+  writeVti(o.out, labels, box, o.compress, common.progress);
+  const Coord size = box.dim();
+  say(o, common,
+      "cell data grain_id, " + std::to_string(size.x()) + "x" + std::to_string(size.y()) + "x" +
+          std::to_string(size.z()) + " voxels");
+}
+
+void exportNetwork(const Options& o, const Common& common, const Int32Grid& labels) {
+  const GrainNetwork network = grainNetwork(labels, common.progress);
+  writeNetwork(o.out, network, common.progress);
+  say(o, common,
+      counted(network.grains.size(), "grain") + ", " + counted(network.bonds.size(), "bond"));
+}
+
+void exportGrainGrids(const Options& o, const Common& common, const Int32Grid& labels) {
+  if (o.asBool) {
+    const auto grids = grainMasks(labels, common.progress);
+    writeVdb(o.out, {grids.begin(), grids.end()}, common.progress);
+    say(o, common, counted(grids.size(), "Bool grid"));
+    return;
+  }
+  LevelSetOptions options;
+  options.smoothing = o.smoothing;
+  const auto grids = grainLevelSets(labels, options, common.progress);
+  writeVdb(o.out, {grids.begin(), grids.end()}, common.progress);
+  say(o, common, counted(grids.size(), "level set"));
+}
+
+void exportSurface(const Options& o, const Common& common, const Int32Grid& labels) {
+  LevelSetOptions options;
+  options.smoothing = o.smoothing;
+  const auto grid = surfaceLevelSet(labels, options, common.progress);
+  writeVdb(o.out, {grid}, common.progress);
+  say(o, common,
+      "level set of the ice, " + counted(grid->activeVoxelCount(), "voxel") + " in its band");
+}
+
+struct Kind {
+  const char* name;
+  void (*run)(const Options&, const Common&, const Int32Grid&);
+  const char* endings;  ///< in words
+  bool (*accepts)(const std::string& out);
+};
+
+bool isMeshOutput(const std::string& out) {
+  return isMeshEnding(out) || !std::filesystem::path(out).has_extension();
+}
+
+void exportClumps(const Options& o, const Common& common, const Int32Grid& labels) {
+  if (o.input.size || !isVdb(o.input))
+    throw InvalidInput("clumps need the medial balls: segment with --keep balls into a VDB");
+  const auto grids = readVdb(o.input.path, {}, common.progress);
+  const auto found = std::find_if(grids.begin(), grids.end(), [](const auto& grid) {
+    return grid->getName() == "balls" && grid->template isType<Int32Grid>();
+  });
+  if (found == grids.end())
+    throw InvalidInput("there is no grid 'balls': segment again with --keep balls");
+  const auto made =
+      clumps(labels, *openvdb::gridPtrCast<Int32Grid>(*found), o.clumps, common.progress);
+  writeClumps(o.out, made, labels.transform(), common.progress);
+  size_t balls = 0;
+  int64_t voxels = 0, uncovered = 0, outside = 0;
+  double farthest = 0;
+  for (const Clump& clump : made) {
+    balls += clump.balls.size();
+    voxels += clump.voxels;
+    uncovered += clump.uncovered;
+    outside += clump.outside;
+    farthest = std::max(farthest, clump.farthest);
+  }
+  const auto percent = [&](int64_t part) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f %%", voxels ? 100.0 * double(part) / double(voxels) : 0);
+    return std::string(text);
+  };
+  char distance[32];
+  std::snprintf(distance, sizeof distance, "%.2f", farthest);
+  say(o, common,
+      counted(made.size(), "grain") + ", " + counted(balls, "ball") + "; uncovered " +
+          percent(uncovered) + ", outside the own grain " + percent(outside) + ", volume error " +
+          percent(outside - uncovered) + ", farthest voxel " + distance + " voxels from its balls" +
+          // Distances ignore what may be beyond the faces of an open scan.
+          (storedBoundary(**found) == Boundary::open
+               ? "; balls reach beyond the scan (segment with --boundary closed to prevent that)"
+               : ""));
+}
+
+void exportHexahedra(const Options& o, const Common& common, const Int32Grid& labels) {
+  const HexahedraCounts counts = writeHexahedra(o.out, labels, common.progress);
+  say(o, common,
+      counted(counts.grains, "grain") + ", " + counted(counts.elements, "element") + ", " +
+          counted(counts.nodes, "node"));
+}
+
+void exportMask(const Options& o, const Common& common, const Int32Grid& labels) {
+  const CoordBBox box = boxOf(labels);
+  writeImage(o.out, *objectMask(labels), box, SampleType::uint8, common.progress);
+  const Coord size = box.dim();
+  say(o, common,
+      "1 = grain, 0 = background, " + std::to_string(size.x()) + "x" + std::to_string(size.y()) +
+          "x" + std::to_string(size.z()) + " voxels of type uint8, x fastest");
+}
+
+bool isVtiOutput(const std::string& out) {
+  return fileEnding(out) == ".vti";
+}
+
+constexpr Kind kKinds[] = {
+    {"mesh", exportMesh, ".ply, .obj, .stl or .vtp, or a folder name without an ending (STL)",
+     isMeshOutput},
+    {"viz", exportPreview, ".vdb", hasVdbEnding},
+    {"lod", exportReduced, ".vdb", hasVdbEnding},
+    {"grids", exportGrainGrids, ".vdb", hasVdbEnding},
+    {"surface", exportSurface, ".vdb", hasVdbEnding},
+    {"vti", exportVti, ".vti", isVtiOutput},
+    {"clumps", exportClumps, ".csv, .txt (YADE) or .data (LAMMPS)", isClumpEnding},
+    {"hexa", exportHexahedra, ".vtu or .inp (Abaqus)", isHexahedraEnding},
+    {"mask", exportMask, ".raw, .mhd, .mha or .tif", isImageEnding},
+    {"network", exportNetwork, ".vtp, .graphml or .csv", isNetworkEnding},
+};
+
+std::string kindNames() {
+  std::string names;
+  for (const Kind& kind : kKinds) names += (names.empty() ? "" : ", ") + std::string(kind.name);
+  return names;
+}
+
+const Kind& findKind(const Options& o) {
+  const std::string wanted = o.kind.empty() ? kindOf(o.out) : o.kind;
+  if (wanted.empty()) throw WrongUsage(o.out + ": say what to write with --as: " + kindNames());
+  for (const Kind& kind : kKinds) {
+    if (wanted != kind.name) continue;
+    if (!kind.accepts(o.out))
+      throw WrongUsage(o.out + ": the ending for --as " + wanted + " must be " + kind.endings);
+    return kind;
+  }
+  throw WrongUsage("--as " + wanted + ": must be one of " + kindNames());
+}
+
+/// Finds out before the work that there can be no such output.
+void checkOutput(const std::string& out) {
+  namespace fs = std::filesystem;
+  if (fs::path(out).has_extension()) {
+    checkWritable(out);
+    return;
+  }
+  std::error_code ignored;
+  const fs::path above = fs::absolute(fs::path(out) / "..", ignored).lexically_normal();
+  if (fs::exists(out, ignored) ? !fs::is_directory(out, ignored)
+                               : !fs::is_directory(above, ignored))
+    throw IoError("cannot write " + out +
+                  ": it is no folder, and none can be made there; give the " +
+                  "path of a folder, in one that is there");
+}
+
+void run(const Options& o, const Common& common, const Kind& kind) {
+  checkOutput(o.out);
+  const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
+  if (o.input.voxelSize) setVoxelSize(*labels, o.input.voxelSize);
+  naming(o.input.path, [&] { kind.run(o, common, *labels); });
+}
+
+}  // namespace
+
+void addExport(CLI::App& app, Common& common, Action& action) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = addVerb(app, common, "export", "labels for other programs",
+                           "vdb_madf export grains.vdb grains.ply\n"
+                           "  vdb_madf export grains.vdb view.vdb --as viz --max-dim 512");
+  verb->add_option("LABELS", o->input.path, "labels: VDB or integer image")->required();
+  verb->add_option("OUT", o->out, "what is written")->required();
+  verb->add_option("--as", o->kind, kindNames() + "; default: by the ending, where that is clear")
+      ->type_name("KIND");
+  verb->add_option("--grid", o->input.gridName, "VDB input: the grid to take")->type_name("NAME");
+  verb->add_option("--smooth", o->smoothing,
+                   "mesh, grids, surface: rounds of smoothing; 0: the exact "
+                   "faces of the voxels")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
+  auto* maxDim = verb->add_option("--max-dim", o->maxDim,
+                                  "mesh, viz, lod: reduce until no axis has more voxels");
+  maxDim->check(CLI::Range(1, 1 << 20));
+  verb->add_option("--reduce", o->reduce, "mesh, viz, lod: voxels per coarse voxel along an axis")
+      ->check(CLI::Range(1, kMaxReduction))
+      ->excludes(maxDim);
+  verb->add_option("--triangles", o->mostTriangles,
+                   "mesh: most triangles; the labels are reduced until they suffice")
+      ->check(CLI::Range(int64_t(1), int64_t(0xffffffff)));
+  verb->add_flag("--compress", o->compress, "vti: with zlib");
+  verb->add_flag("--bool", o->asBool, "grids: the voxels as Bool grids, not level sets");
+  verb->add_option("--balls", o->clumps.mostBalls, "clumps: most balls per grain")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  verb->add_option("--uncovered", o->clumps.coverageError,
+                   "clumps: part of a grain that may stay uncovered, 0 to 1")
+      ->capture_default_str();
+  o->input.addRaw(*verb);
+  o->input.addVoxelSize(*verb);
+  verb->callback([o, &common, &action] {
+    if (!(o->clumps.coverageError >= 0 && o->clumps.coverageError <= 1))
+      throw WrongUsage("--uncovered: must lie between 0 and 1");
+    const Kind& kind = findKind(*o);
+    o->input.outputs = {o->out};
+    o->input.parse();
+    action = [o, &common, &kind] { run(*o, common, kind); };
+  });
+}
+
+}  // namespace vdb_madf::tools

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <iostream>
+#include <memory>
+#include <sstream>
+
+#include "command.h"
+#include "input.h"
+#include "json_file.h"
+#include "vdb_madf/images/image.h"
+#include "vdb_madf/vdb/vdb_file.h"
+#include "vdb_madf/volumes/image_box.h"
+
+namespace vdb_madf::tools {
+
+namespace {
+
+struct Options {
+  InputOptions input;
+  std::string json;
+};
+
+Json corner(const Coord& c) {
+  return {c.x(), c.y(), c.z()};
+}
+
+/// Metadata as text, numbers as numbers.
+Json metadataValue(const openvdb::Metadata& value) {
+  if (value.typeName() == "int64") return static_cast<const openvdb::Int64Metadata&>(value).value();
+  if (value.typeName() == "int32") return static_cast<const openvdb::Int32Metadata&>(value).value();
+  if (value.typeName() == "double")
+    return static_cast<const openvdb::DoubleMetadata&>(value).value();
+  if (value.typeName() == "float") return static_cast<const openvdb::FloatMetadata&>(value).value();
+  if (value.typeName() == "bool") return static_cast<const openvdb::BoolMetadata&>(value).value();
+  return value.str();
+}
+
+Json describeGrid(const openvdb::GridBase& grid) {
+  Json json;
+  json["name"] = grid.getName();
+  json["value_type"] = grid.valueType();
+  json["class"] = openvdb::GridBase::gridClassToString(grid.getGridClass());
+  json["active_voxels"] = grid.activeVoxelCount();
+  const CoordBBox box = grid.evalActiveVoxelBoundingBox();
+  if (grid.activeVoxelCount() > 0) {
+    json["active_min"] = corner(box.min());
+    json["active_max"] = corner(box.max());
+  }
+  const openvdb::Vec3d edge = grid.voxelSize();
+  json["voxel_size_units"] = {edge.x(), edge.y(), edge.z()};
+  if (const auto size = voxelSize(grid)) json["voxel_size_mm"] = size->metres * 1e3;
+  json["memory_bytes"] = grid.memUsage();
+  Json metadata = Json::object();
+  for (auto meta = grid.beginMeta(); meta != grid.endMeta(); ++meta)
+    if (meta->first != "name" && meta->first != "class")
+      metadata[meta->first] = metadataValue(*meta->second);
+  json["metadata"] = metadata;
+  return json;
+}
+
+Json describeImage(const ImageReader& image) {
+  const ImageInfo& info = image.info();
+  Json json;
+  json["format"] = info.format;
+  json["size"] = corner(toCoord(info.size));
+  json["type"] = sampleTypeName(info.type);
+  if (info.voxelSize) json["voxel_size_mm"] = info.voxelSize->metres * 1e3;
+  return json;
+}
+
+std::string plain(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+void print(const Json& json) {
+  std::cout << json["file"].get<std::string>() << ": " << json["format"].get<std::string>() << "\n";
+  for (const auto& [key, value] : json.items())
+    if (key != "file" && key != "format" && key != "grids")
+      std::cout << "  " << key << ": " << plain(value) << "\n";
+  if (!json.contains("grids")) return;
+  for (const Json& grid : json["grids"]) {
+    std::cout << "  grid " << grid["name"].get<std::string>() << "\n";
+    for (const auto& [key, value] : grid.items())
+      if (key != "name" && key != "metadata")
+        std::cout << "    " << key << ": " << plain(value) << "\n";
+    for (const auto& [key, value] : grid["metadata"].items())
+      std::cout << "    " << key << " = " << plain(value) << "\n";
+  }
+}
+
+void run(const Options& o, const Common& common) {
+  JsonFile jsonFile(o.json);
+  Json json;
+  json["file"] = o.input.path;
+  if (isVdb(o.input)) {
+    json["format"] = "vdb";
+    json["grids"] = Json::array();
+    for (const auto& grid : readVdb(o.input.path, {}, common.progress))
+      json["grids"].push_back(describeGrid(*grid));
+  } else {
+    const auto image = openInput(o.input);
+    json.update(describeImage(*image));
+  }
+  common.progress->end();
+  jsonFile.write(json);
+  if (!common.quiet && !jsonFile.isStandardOutput()) print(json);
+}
+
+}  // namespace
+
+void addInfo(CLI::App& app, Common& common, Action& action) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = addVerb(app, common, "info", "what is in a file", "vdb_madf info grains.vdb");
+  verb->add_option("FILE", o->input.path, "any readable volume")->required();
+  o->input.addRaw(*verb);
+  verb->add_option("--json", o->json, "machine-readable result (-: standard output)")
+      ->type_name("FILE");
+  verb->callback([o, &common, &action] {
+    o->input.outputs = {o->json};
+    o->input.parse();
+    action = [o, &common] { run(*o, common); };
+  });
+}
+
+}  // namespace vdb_madf::tools

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/measure/measure.h"
+
+#include <cstdio>
+#include <memory>
+
+#include "command.h"
+#include "input.h"
+#include "measurement_tables.h"
+
+namespace vdb_madf::tools {
+
+namespace {
+
+struct Options {
+  InputOptions input;
+  std::string folder, boundary = "auto", density;
+  double iceDensity = kIceDensity;
+  MeasureOptions measure;
+};
+
+void parse(Options& o) {
+  o.input.outputs = MeasurementTables::paths(o.folder);
+  o.input.parse();
+  if (!o.density.empty()) o.iceDensity = parseNumber(o.density, "--ice-density");
+  if (!(o.iceDensity > 0)) throw WrongUsage("--ice-density " + o.density + ": must be above 0");
+  o.measure.boundary = parseBoundary(o.boundary);
+}
+
+void print(const Options& o, const Measurements& m, const Json& sample) {
+  const std::string unit = sample["length_unit"];
+  const double length = m.voxelSize ? m.voxelSize->inUnit() : 1;
+  std::printf("%s: %zu grains, %zu bonds\n", o.folder.c_str(), m.grains.size(), m.bonds.size());
+  if (!m.voxelSize)
+    std::printf("  voxel size          unknown, so lengths are in voxels (give --voxel-size)\n");
+  std::printf("  ice fraction        %.4f of the %s, %.1f kg/m3\n", m.sample.objectFraction,
+              m.sample.domainKnown ? "domain" : "box of the grains (the domain is unknown)",
+              sample["density_kg_per_m3"].get<double>());
+  std::printf("  specific surface    %.5g /%s", m.sample.specificSurface / length, unit.c_str());
+  if (m.voxelSize) std::printf(" = %.4g m2/kg", sample["specific_surface_m2_per_kg"].get<double>());
+  std::printf("\n  grain diameter      d50 %.5g %s by number, %.5g by volume\n",
+              length * diameterPercentile(m.grains, 0.5, false), unit.c_str(),
+              length * diameterPercentile(m.grains, 0.5, true));
+  std::printf("  bonds a grain       %.2f\n", m.sample.meanCoordination);
+}
+
+void run(const Options& o, const Common& common) {
+  MeasurementTables tables(o.folder);
+  common.progress->start("read");
+  const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
+  if (o.input.voxelSize) setVoxelSize(*labels, o.input.voxelSize);
+  if (o.input.domain) setDomain(*labels, *o.input.domain);
+  common.progress->start("measure");
+  const Measurements measurements =
+      naming(o.input.path, [&] { return measure(*labels, o.measure, common.progress); });
+  const Json sample = tables.write(measurements, o.iceDensity);
+  common.progress->end();
+  if (!common.quiet) print(o, measurements, sample);
+}
+
+}  // namespace
+
+void addMeasure(CLI::App& app, Common& common, Action& action) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = addVerb(app, common, "measure", "tables of grains, bonds and the sample",
+                           "vdb_madf measure grains.vdb tables --voxel-size 8.5um");
+  verb->add_option("LABELS", o->input.path, "labels: VDB or integer image")->required();
+  verb->add_option("OUT_DIR", o->folder, "gets grains.csv, bonds.csv and sample.json")->required();
+  verb->add_option("--grid", o->input.gridName, "VDB input: the grid to take")->type_name("NAME");
+  o->input.addRaw(*verb);
+  o->input.addVoxelSize(*verb);
+  o->input.addDomain(*verb);
+  verb->add_option("--boundary", o->boundary,
+                   "beyond the scan's faces: open: unknown, closed: background")
+      ->check(CLI::IsMember({"auto", "open", "closed"}))
+      ->capture_default_str();
+  verb->add_option("--ice-density", o->density, "kg/m3 (default: 917)")->type_name("D");
+  verb->callback([o, &common, &action] {
+    parse(*o);
+    action = [o, &common] { run(*o, common); };
+  });
+}
+
+}  // namespace vdb_madf::tools

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <string>
+
+#include "vdb_madf/grids/grid_types.h"
+
+namespace vdb_madf::tools {
+
+/// Shows one progress line (stage, percentage, remaining time) on stderr when that is a terminal,
+/// and turns Ctrl-C into a cancel.
+class Progress : public Interrupter {
+ public:
+  /// @param work is shown outside of named stages
+  Progress(bool quiet, std::string work);
+  ~Progress() override;
+  void start(const char* name) override;
+  void end() override;  ///< also takes the line away: results may follow on the same terminal
+  bool wasInterrupted(int percent) override;
+
+ private:
+  void clearLine();
+  std::string remainingTime(int percent, std::chrono::steady_clock::time_point now);
+
+  const bool show_;
+  const std::string work_;
+  std::mutex mutex_;
+  std::string stage_;
+  bool lineShown_ = false;
+  std::chrono::steady_clock::time_point lastShown_;
+  // Where the percentage began to grow: it falls back when a new work begins.
+  int firstPercent_ = 0, lastPercent_ = 101;
+  std::chrono::steady_clock::time_point firstTime_;
+};
+
+/// From now on Ctrl-C, termination requests and a closed terminal are taken by Progress, and a
+/// write beyond the limit of file sizes fails like any other: no signal may end the program before
+/// it has removed its temporary files.
+void catchInterrupts();
+
+}  // namespace vdb_madf::tools

@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/method/remerge.h"
+
+#include <iostream>
+#include <memory>
+
+#include "command.h"
+#include "input.h"
+#include "merge_options.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/method/graph_metadata.h"
+#include "vdb_madf/method/segmentation_metadata.h"
+#include "vdb_madf/vdb/vdb_file.h"
+
+namespace vdb_madf::tools {
+
+namespace {
+
+struct Options {
+  InputOptions input;
+  std::string out;
+  MergeArguments merge;
+};
+
+void run(const Options& o, const Common& common) {
+  checkWritable(o.out);
+  const auto grids = readVdb(o.input.path, {}, common.progress);
+  Int32Grid::Ptr manifold;
+  for (const auto& grid : grids)
+    if (grid->getName() == "manifold") manifold = openvdb::gridPtrCast<Int32Grid>(grid);
+  if (!manifold)
+    throw InvalidInput(o.input.path + ": holds no manifolds: segment again with --keep manifold");
+
+  const MergeOptions merge = o.merge.parse();
+  const Int32Grid::Ptr grain =
+      naming(o.input.path, [&] { return remerge(*manifold, merge, common.progress); });
+  const int64_t grains = *grainCount(*grain);
+  // Every other grid of the segmentation goes along, told of the new merging.
+  std::vector<openvdb::GridBase::ConstPtr> out{grain};
+  for (const auto& grid : grids) {
+    if (grid->getName() == "grain") continue;
+    if (grainCount(*grid)) describeMerging(*grid, merge, grains);
+    out.push_back(grid);
+  }
+  writeVdb(o.out, out, common.progress);
+  common.progress->end();
+  if (!common.quiet) std::cout << o.out << ": " << grains << " grains\n";
+}
+
+}  // namespace
+
+void addRemerge(CLI::App& app, Common& common, Action& action) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb =
+      addVerb(app, common, "remerge", "merge stored manifolds anew, without voxel work",
+              "vdb_madf remerge grains.vdb coarser.vdb --theta -0.7");
+  verb->add_option("SEG.vdb", o->input.path, "made by segment with --keep manifold")->required();
+  verb->add_option("OUT.vdb", o->out, "gets the new 'grain' and all other grids")->required();
+  o->merge.add(*verb);
+  verb->callback([o, &common, &action] {
+    o->merge.parse();
+    if (!hasVdbEnding(o->out)) throw WrongUsage(o->out + ": the output's ending must be .vdb");
+    o->input.outputs = {o->out};
+    o->input.parse();
+    action = [o, &common] { run(*o, common); };
+  });
+}
+
+}  // namespace vdb_madf::tools

@@ -1,0 +1,180 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/base/memory.h"
+#include "vdb_madf/method/parameter_sweep.h"
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <set>
+#include <sstream>
+
+#include "command.h"
+#include "input.h"
+#include "memory_limit.h"
+#include "merge_options.h"
+#include "sweep_plot.h"
+#include "text_file.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/method/segmentation_metadata.h"
+
+namespace vdb_madf::tools {
+
+namespace {
+
+struct Options {
+  InputOptions input;
+  std::string out, plot, gamma = "0,20,160", theta = "-1:-0.5:0.05", merge = "both,angle,neck";
+  std::string adjacency = "manifold", boundary = "auto", small = "100";
+  SweepOptions sweep;
+};
+
+constexpr int kMostThetas = 1000;
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::stringstream stream(text);
+  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
+  return parts;
+}
+
+/// The double next to the number's decimals, so that step 3 of -1:-0.5:0.05 is the -0.85 of others.
+double asTyped(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.10g", number);
+  return std::stod(text);
+}
+
+/// A list of cosines and of ranges FIRST:LAST:STEP, the last included.
+std::vector<double> parseThetas(const std::string& text) {
+  std::vector<double> thetas;
+  for (const std::string& part : split(text, ',')) {
+    std::vector<double> range;
+    for (const std::string& number : split(part, ':'))
+      range.push_back(parseNumber(number, "--theta"));
+    if (range.size() == 1) {
+      thetas.push_back(range[0]);
+    } else {
+      const double count = range.size() == 3 ? (range[1] - range[0]) / range[2] : -1;
+      if (!(count >= 0 && count < kMostThetas))
+        throw WrongUsage("--theta " + part + ": must be a number or FIRST:LAST:STEP of at most " +
+                         std::to_string(kMostThetas) + " steps from FIRST to LAST");
+      for (int i = 0; i <= int(count + 1e-9); ++i)
+        thetas.push_back(asTyped(range[0] + i * range[2]));
+    }
+  }
+  for (const double theta : thetas)
+    if (!(theta >= -1 && theta <= 1))
+      throw WrongUsage("--theta " + text + ": cosines must lie between -1 and 1");
+  return thetas;
+}
+
+template <typename T>
+void requireDifferent(const std::vector<T>& values, const std::string& option) {
+  if (values.empty()) throw WrongUsage(option + ": the list is empty");
+  if (std::set<T>(values.begin(), values.end()).size() < values.size())
+    throw WrongUsage(option + ": a value is there twice");
+}
+
+void parse(Options& o) {
+  o.input.outputs = {o.out, o.plot};
+  o.input.parse();
+  if (o.out.size() < 4 || o.out.compare(o.out.size() - 4, 4, ".csv") != 0)
+    throw WrongUsage(o.out + ": the output's ending must be .csv");
+  if (!o.plot.empty() && o.plot != "-" && fileEnding(o.plot) != ".svg")
+    throw WrongUsage(o.plot + ": the plot's ending must be .svg");
+  SweepOptions& sweep = o.sweep;
+  sweep.gammas.clear();
+  for (const std::string& gamma : split(o.gamma, ',')) sweep.gammas.push_back(parseGamma(gamma));
+  sweep.modes.clear();
+  for (const std::string& mode : split(o.merge, ',')) {
+    MergeArguments arguments;
+    arguments.mode = mode;
+    sweep.modes.push_back(arguments.parse().mode);
+    if (mode != name(sweep.modes.back()))
+      throw WrongUsage("--merge " + mode + ": the tests are both, angle and neck");
+  }
+  sweep.thetas = parseThetas(o.theta);
+  requireDifferent(sweep.gammas, "--gamma");
+  requireDifferent(sweep.modes, "--merge");
+  requireDifferent(sweep.thetas, "--theta");
+  if (o.adjacency == "cell") sweep.adjacency = Adjacency::cell;
+  const double small = parseNumber(o.small, "--small");
+  if (!(small >= 1 && small <= 1e15 && small == std::floor(small)))
+    throw WrongUsage("--small " + o.small + ": must be a whole number of voxels, 1 or more");
+  sweep.smallVoxels = int64_t(small);
+}
+
+double share(int64_t part, int64_t whole) {
+  return whole ? double(part) / double(whole) : 0;
+}
+
+std::string table(const std::vector<SweepRow>& rows) {
+  std::ostringstream csv;
+  csv << "gamma,merge,theta,grains,median_voxels,small_grains,small_grains_share,"
+         "small_grains_volume_share,largest_grain_volume_share\n";
+  csv.precision(9);
+  for (const SweepRow& row : rows)
+    csv << row.gamma << ',' << name(row.mode) << ',' << row.theta << ',' << row.grains << ','
+        << row.medianVoxels << ',' << row.smallGrains << ',' << share(row.smallGrains, row.grains)
+        << ',' << share(row.smallVoxels, row.objectVoxels) << ','
+        << share(row.largestVoxels, row.objectVoxels) << '\n';
+  return csv.str();
+}
+
+void run(const Options& o, const Common& common) {
+  TextFile csv(o.out), plot(o.plot);
+  common.progress->start("read");
+  const MaskGrid::Ptr object = loadObject(o.input, common.progress);
+  SweepOptions options = o.sweep;
+  options.boundary = boundaryOf(o.boundary, o.input, *object);
+  options.maxMemory = availableMemory();
+  const std::vector<SweepRow> rows =
+      naming(o.input.path, [&] { return sweep(*object, options, common.progress); });
+  csv.write(table(rows));
+  plot.write(sweepPlot(rows, options.smallVoxels));
+  common.progress->end();
+  if (!common.quiet)
+    std::printf("%s: %zu rows, of %zu segmentations\n", o.out.c_str(), rows.size(),
+                options.gammas.size());
+}
+
+}  // namespace
+
+void addSweep(CLI::App& app, Common& common, Action& action) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb =
+      addVerb(app, common, "sweep", "grains for many gamma, theta and merge modes",
+              "vdb_madf sweep scan.tif sweep.csv --phase 1 --plot sweep.svg --gamma 0,20");
+  verb->add_option("IN", o->input.path, "any readable volume")->required();
+  verb->add_option("OUT.csv", o->out, "a line per gamma, merge mode and theta")->required();
+  o->input.addSelection(*verb);
+  o->input.addRaw(*verb);
+  o->input.addDomain(*verb);
+  verb->add_option("--gamma", o->gamma, "list of gammas, voxels; one segmentation each")
+      ->type_name("LIST")
+      ->capture_default_str();
+  verb->add_option("--theta", o->theta, "list of cosines and of ranges FIRST:LAST:STEP")
+      ->type_name("LIST")
+      ->capture_default_str();
+  verb->add_option("--merge", o->merge, "list of the tests: both, angle, neck")
+      ->type_name("LIST")
+      ->capture_default_str();
+  verb->add_option("--adjacency", o->adjacency, "what the angle test pairs: manifold, cell")
+      ->check(CLI::IsMember({"manifold", "cell"}))
+      ->capture_default_str();
+  addBoundary(*verb, o->boundary);
+  verb->add_option("--small", o->small, "a grain of fewer voxels counts as small")
+      ->type_name("N")
+      ->capture_default_str();
+  verb->add_option("--plot", o->plot, "SVG: grains, median size and share of small ones")
+      ->type_name("FILE.svg");
+  verb->callback([o, &common, &action] {
+    parse(*o);
+    action = [o, &common] { run(*o, common); };
+  });
+}
+
+}  // namespace vdb_madf::tools
