@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "support/by_rank.h"
 #include "support/oracle.h"
 #include "support/random_case.h"
 
@@ -21,10 +22,7 @@ int differences(const LeafIndex& index, const PowerMap& map, const ObjectVolume&
   for (int i = 0; i < object.size(); ++i) {
     if (!object[i]) continue;
     const Coord p = object.coord(i);
-    size_t leaf = 0;
-    while (index.origin(leaf) != (p & ~7)) ++leaf;
-    const size_t rank =
-        index.rank(VoxelId(leaf * 512) + VoxelId((p.x() & 7) * 64 + (p.y() & 7) * 8 + (p.z() & 7)));
+    const size_t rank = index.rank(idOf(index, p));
     if (expected.site[i] == kNoSite)
       count += map.power[rank] != kUncovered;
     else
@@ -32,15 +30,6 @@ int differences(const LeafIndex& index, const PowerMap& map, const ObjectVolume&
                index.coord(map.site[rank]) != object.coord(expected.site[i]);
   }
   return count;
-}
-
-/// Arrays by rank of a dense volume.
-VoxelArray<int32_t> byRank(const LeafIndex& index, const DenseVolume<int64_t>& values) {
-  VoxelArray<int32_t> array(size_t(index.voxelCount()));
-  for (size_t id = 0; id < index.leafCount() * 512; ++id)
-    if (index.mask(id >> 9)[id >> 6 & 7] >> (id & 63) & 1)
-      array[index.rank(VoxelId(id))] = int32_t(values[index.coord(VoxelId(id))]);
-  return array;
 }
 
 // A bound on D this large needs 128-bit keys.
@@ -62,7 +51,7 @@ TEST_CASE("power_map: agrees with the oracle, with keys of either width", "[powe
     for (int i = 0; i < c.object.size(); ++i)
       if (c.object[i]) largest = std::max(largest, int32_t(distance[i]));
     for (const int32_t bound : {largest, kHugeBound}) {
-      const PowerMap map = powerMap(index, {byRank(index, distance), bound});
+      const PowerMap map = powerMap(index, {byRank<int32_t>(index, distance), bound});
       REQUIRE(differences(index, map, c.object, expected) == 0);
     }
     voxels += countObject(c.object);
@@ -89,7 +78,7 @@ TEST_CASE("power_map: of some balls only, with keys of either width", "[power_ma
     }
     const OraclePower expected = oraclePower(c.object, distance, sites);
     for (const int32_t bound : {largest, kHugeBound}) {
-      PowerMap map{byRank(index, start), VoxelArray<VoxelId>(size_t(index.voxelCount()))};
+      PowerMap map{byRank<int32_t>(index, start), VoxelArray<VoxelId>(size_t(index.voxelCount()))};
       sweepPower(index, bound, map);
       REQUIRE(differences(index, map, c.object, expected) == 0);
     }

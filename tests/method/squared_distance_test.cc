@@ -7,8 +7,8 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <set>
 
+#include "support/by_rank.h"
 #include "support/oracle.h"
 #include "support/random_case.h"
 #include "vdb_madf/base/errors.h"
@@ -18,22 +18,9 @@ namespace {
 using namespace vdb_madf;
 using namespace vdb_madf::test;
 
-/// Values of the array on the object's voxels, 0 elsewhere in the box.
-DenseVolume<int64_t> values(const LeafIndex& index, const VoxelArray<int32_t>& array,
-                            const CoordBBox& box) {
-  DenseVolume<int64_t> result(box);
-  REQUIRE(array.size() == size_t(index.voxelCount()));
-  for (size_t id = 0; id < index.leafCount() * 512; ++id) {
-    const Coord p = index.coord(VoxelId(id));
-    if (index.mask(id >> 9)[id >> 6 & 7] >> (id & 63) & 1)
-      result[p] = array[index.rank(VoxelId(id))];
-  }
-  return result;
-}
-
 DenseVolume<int64_t> closedDistance(const ObjectVolume& object) {
   const LeafIndex index(*toMask(object));
-  return values(index, squaredDistance(index, {}).values, object.box());
+  return dense(index, squaredDistance(index, {}).values, object.box());
 }
 
 }  // namespace
@@ -59,7 +46,7 @@ TEST_CASE("squared_distance: one background voxel in an open block", "[squared_d
     object[hole] = 0;
     const LeafIndex index(*toMask(object));
     const SquaredDistance distance = squaredDistance(index, {true, box});
-    const DenseVolume<int64_t> result = values(index, distance.values, box);
+    const DenseVolume<int64_t> result = dense(index, distance.values, box);
     int64_t largest = 0;
     for (int i = 0; i < object.size(); ++i) {
       const Coord d = object.coord(i) - hole;
@@ -83,7 +70,7 @@ TEST_CASE("squared_distance: a long row keeps its 32 bits", "[squared_distance]"
     const LeafIndex index(*toMask(object));
     const SquaredDistance distance = squaredDistance(index, {true, domain});
     CHECK(distance.largest == int64_t(kLength) * kLength);
-    const DenseVolume<int64_t> result = values(index, distance.values, object.box());
+    const DenseVolume<int64_t> result = dense(index, distance.values, object.box());
     for (int i = 0; i < kLength; ++i) REQUIRE(result[i] == int64_t(i + 1) * (i + 1));
   }
 }
@@ -111,7 +98,7 @@ TEST_CASE("squared_distance: agrees with the oracle", "[squared_distance]") {
       continue;
     }
     const auto expected = oracleDistance(c.object, obstacles.open, obstacles.domain);
-    REQUIRE(values(index, distance.values, c.object.box()) == expected);
+    REQUIRE(dense(index, distance.values, c.object.box()) == expected);
     int64_t largest = 0;
     for (int i = 0; i < c.object.size(); ++i)
       if (c.object[i]) largest = std::max(largest, expected[i]);
@@ -128,48 +115,5 @@ TEST_CASE("squared_distance: permuted and mirrored axes permute and mirror it",
         randomVolume(VolumeKind::blurredNoise, boxAt(randomOrigin(rng), size), rng);
     const AxisMap map{{2, 0, 1}, {rng.chance(0.5), rng.chance(0.5), rng.chance(0.5)}};
     REQUIRE(closedDistance(permuted(object, map)) == permuted(closedDistance(object), map));
-  }
-}
-
-TEST_CASE("leaf_index: holds the object's leaves in order, with their neighbours", "[leaf_index]") {
-  for (uint64_t seed = 1; seed <= 100; ++seed) {
-    Rng rng(seed);
-    const Coord size(rng.between(1, 40), rng.between(1, 30), rng.between(1, 30));
-    const auto kind = VolumeKind(int(seed) % kVolumeKinds);
-    const ObjectVolume object = randomVolume(kind, boxAt(randomOrigin(rng), size), rng);
-    for (const Tiles tiles : {Tiles::none, Tiles::wherePossible}) {
-      const LeafIndex index(*toMask(object, tiles));
-      INFO("seed " << seed << ", " << name(kind));
-      std::set<Coord> blocks;
-      for (int i = 0; i < object.size(); ++i)
-        if (object[i]) blocks.insert(object.coord(i) & ~7);
-      REQUIRE(index.leafCount() == blocks.size());
-      REQUIRE(index.voxelCount() == countObject(object));
-      if (!blocks.empty()) REQUIRE(index.boundingBox() == objectBox(object));
-      size_t leaf = 0, rank = 0;
-      for (const Coord& origin : blocks) {  // ascending x, then y, then z
-        REQUIRE(index.origin(leaf) == origin);
-        REQUIRE(index.firstRank(leaf) == rank);
-        for (size_t n = 0; n < 6; ++n) {
-          const auto found =
-              blocks.find(origin + Coord(8 * kSixNeighbors[n].x(), 8 * kSixNeighbors[n].y(),
-                                         8 * kSixNeighbors[n].z()));
-          const auto expected = found == blocks.end()
-                                    ? LeafIndex::kNone
-                                    : uint32_t(std::distance(blocks.begin(), found));
-          REQUIRE(index.neighbors(leaf)[n] == expected);
-        }
-        for (int offset = 0; offset < 512; ++offset) {
-          const Coord p = index.coord(VoxelId(leaf * 512 + size_t(offset)));
-          REQUIRE(p == origin + Coord(offset / 64, offset / 8 % 8, offset % 8));
-          const bool active = index.mask(leaf)[size_t(offset / 64)] >> (offset % 64) & 1;
-          REQUIRE(active == (object.get(p, 0) != 0));
-          REQUIRE(index.rank(VoxelId(leaf * 512 + size_t(offset))) == rank);
-          rank += active;
-        }
-        REQUIRE(index.leafVoxels(leaf) == rank - index.firstRank(leaf));
-        ++leaf;
-      }
-    }
   }
 }

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include "vdb_madf/grid_types.h"
+
+/// Ways to run a stage: with a number of threads, and stopped at once.
+namespace vdb_madf::test {
+
+/// What f() returns with that many threads, whatever the machine has.
+template <typename F>
+auto withThreads(int threads, const F& f) {
+  // The arena allows more threads than the machine has cores, the control fewer.
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
+  return tbb::task_arena(threads).execute(f);
+}
+
+class StopAtOnce : public Interrupter {
+ public:
+  bool wasInterrupted(int /*percent*/) override { return true; }
+};
+
+}  // namespace vdb_madf::test
