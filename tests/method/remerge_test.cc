@@ -1,0 +1,210 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/remerge.h"
+
+#include <openvdb/Metadata.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "support/edge_cases.h"
+#include "support/oracle.h"
+#include "support/random_case.h"
+#include "support/runs.h"
+#include "vdb_madf/errors.h"
+#include "vdb_madf/graph_metadata.h"
+#include "vdb_madf/grid_metadata.h"
+
+namespace {
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+
+/// Manifolds 1, 2 and 3 in a row of balls of D = 9, 4, 4: the first two meet in a wide neck, the
+/// others in a narrow one, outside the cells of their critical points.
+ManifoldGraph rowGraph() {
+  ManifoldGraph graph;
+  graph.nodes = {{{0, 0, 0}, 9, 2}, {{0, 0, 3}, 4, 2}, {{0, 0, 6}, 4, 3}};
+  graph.edges = {{0, 1, 1, 4, true}, {1, 2, 1, 1, false}};
+  return graph;
+}
+
+Int32Grid::Ptr rowGrid() {
+  const auto grid = Int32Grid::create(0);
+  grid->setName("manifold");
+  const std::vector<int32_t> numbers = {1, 1, 2, 2, 3, 3, 3};
+  for (int z = 0; z < 7; ++z) grid->tree().setValueOn(Coord(0, 0, z), numbers[size_t(z)]);
+  setGraph(*grid, rowGraph());
+  return grid;
+}
+
+std::vector<int32_t> row(const Int32Grid& grid) {
+  std::vector<int32_t> values;
+  for (int z = 0; z < 7; ++z) values.push_back(grid.tree().getValue(Coord(0, 0, z)));
+  return values;
+}
+
+/// Names, types and values of all metadata.
+std::map<std::string, std::string> texts(const openvdb::MetaMap& metadata) {
+  std::map<std::string, std::string> result;
+  for (auto entry = metadata.beginMeta(); entry != metadata.endMeta(); ++entry)
+    result[entry->first] = entry->second->typeName() + " " + entry->second->str();
+  return result;
+}
+
+const std::vector<MergeOptions> kMergings = {
+    {-1, MergeMode::both, Adjacency::manifold},    {-0.9, MergeMode::both, Adjacency::manifold},
+    {-0.8, MergeMode::angle, Adjacency::manifold}, {-0.8, MergeMode::angle, Adjacency::cell},
+    {-0.6, MergeMode::neck, Adjacency::manifold},  {1, MergeMode::both, Adjacency::cell}};
+
+/// Labels as the oracle merges its own manifolds, and all else as a fresh segmentation has it.
+void requireFresh(RandomCase c) {
+  INFO(describe(c));
+  OracleResult oracle;
+  try {
+    oracle = oracleSegment(c.object, c.domain, c.options);
+  } catch (const Undefined&) {
+    return;
+  }
+  const Segmentation first = segment(*maskOf(c), optionsOf(c));
+  for (const MergeOptions& merging : kMergings) {
+    CAPTURE(merging.theta, int(merging.mode), int(merging.adjacency));
+    const std::vector<int32_t> grainOf = oracleMerge(oracle.graph, merging).grainOfNode;
+    DenseVolume<int64_t> expected(c.object.box());
+    for (int i = 0; i < c.object.size(); ++i)
+      if (c.object[i]) expected[i] = grainOf[size_t(oracle.manifold[i] - 1)];
+    const auto grain = remerge(*first.manifold, merging);
+    REQUIRE(difference("grain", *grain, c.object, expected) == "");
+    c.options.merge = merging;
+    const Segmentation fresh = segment(*maskOf(c), optionsOf(c));
+    REQUIRE(texts(*grain) == texts(*fresh.grain));
+    REQUIRE(grain->transform() == fresh.grain->transform());
+  }
+}
+
+}  // namespace
+
+TEST_CASE("remerge: a row, drawn by hand", "[remerge]") {
+  const auto manifold = rowGrid();
+  const auto labels = [&](double theta, MergeMode mode, Adjacency adjacency = Adjacency::manifold) {
+    return row(*remerge(*manifold, {theta, mode, adjacency}));
+  };
+  using Row = std::vector<int32_t>;
+  // 4 >= (1 - theta)/2 * 4 for all theta; 1 >= (1 - theta)/2 * 4 from 0.5 on.
+  CHECK(labels(-1, MergeMode::neck) == Row{1, 1, 1, 1, 2, 2, 2});
+  CHECK(labels(0.49, MergeMode::neck) == Row{1, 1, 1, 1, 2, 2, 2});
+  CHECK(labels(0.5, MergeMode::neck) == Row{1, 1, 1, 1, 1, 1, 1});
+  // Cosines (9 - 9 - 4)/12 = -1/3 and (9 - 4 - 4)/8 = 1/8.
+  CHECK(labels(-0.4, MergeMode::angle) == Row{1, 1, 2, 2, 3, 3, 3});
+  CHECK(labels(-0.3, MergeMode::angle) == Row{1, 1, 1, 1, 2, 2, 2});
+  CHECK(labels(0.13, MergeMode::angle) == Row{1, 1, 1, 1, 1, 1, 1});
+  CHECK(labels(0.13, MergeMode::angle, Adjacency::cell) == Row{1, 1, 1, 1, 2, 2, 2});
+}
+
+TEST_CASE("remerge: leaves the manifolds as they are", "[remerge]") {
+  const auto manifold = rowGrid();
+  setVoxelSize(*manifold, VoxelSize{5e-6});
+  manifold->insertMeta("madf_source", openvdb::StringMetadata("scan.tif"));
+  manifold->insertMeta("madf_grains", openvdb::Int64Metadata(99));
+  const auto before = texts(*manifold);
+  const auto grain = remerge(*manifold, {0.5, MergeMode::neck, Adjacency::cell});
+  CHECK(row(*manifold) == std::vector<int32_t>{1, 1, 2, 2, 3, 3, 3});
+  CHECK(texts(*manifold) == before);
+  CHECK(graph(*manifold)->nodes == rowGraph().nodes);
+  CHECK_FALSE(graph(*grain).has_value());
+  CHECK(grain->getName() == "grain");
+  CHECK(grain->transform() == manifold->transform());
+  CHECK(grain->metaValue<std::string>("madf_source") == "scan.tif");
+  CHECK(grain->metaValue<int64_t>("madf_grains") == 1);
+  CHECK(grain->metaValue<double>("madf_theta") == 0.5);
+  CHECK(grain->metaValue<std::string>("madf_merge") == "neck");
+  CHECK(grain->metaValue<std::string>("madf_adjacency") == "cell");
+}
+
+TEST_CASE("remerge: of edge cases, as a fresh segmentation", "[remerge]") {
+  for (const EdgeCase& edge : edgeCases())
+    for (const int64_t gamma : {0, 30}) {
+      RandomCase c;
+      c.object = edge.object;
+      c.tiles = edge.tiles;
+      c.options.gamma = gamma;
+      requireFresh(c);
+    }
+}
+
+TEST_CASE("remerge: as a fresh segmentation", "[remerge]") {
+  for (uint64_t seed = 1; seed <= 108; ++seed) {
+    Rng rng(seed);
+    requireFresh(
+        randomCase(seed, Coord(rng.between(1, 12), rng.between(1, 12), rng.between(1, 12))));
+  }
+}
+
+TEST_CASE("remerge: takes active tiles", "[remerge]") {
+  // As a pruned grid has them: 8^3 voxels of the first manifold, 128^3 of the second.
+  const auto manifold = rowGrid();
+  manifold->tree().addTile(1, Coord(-8, 0, 0), 1, true);
+  manifold->tree().addTile(2, Coord(-128, 128, 0), 3, true);
+  const auto grain = remerge(*manifold, {-1, MergeMode::neck, Adjacency::manifold});
+  CHECK(grain->activeVoxelCount() == 7 + 512 + 128 * 128 * 128);
+  for (const Coord& p : {Coord(-8, 0, 0), Coord(-1, 7, 7)}) CHECK(grain->tree().getValue(p) == 1);
+  for (const Coord& p : {Coord(-128, 128, 0), Coord(-1, 255, 127)})
+    CHECK(grain->tree().getValue(p) == 2);
+  CHECK(grain->tree().getValue(Coord(-9, 0, 0)) == 0);
+  CHECK(row(*grain) == std::vector<int32_t>{1, 1, 1, 1, 2, 2, 2});
+}
+
+TEST_CASE("remerge: what does not fit is refused", "[remerge]") {
+  const auto manifold = rowGrid();
+  SECTION("no graph") {
+    removeGraph(*manifold);
+    CHECK_THROWS_AS(remerge(*manifold), InvalidInput);
+  }
+  SECTION("a number that the graph does not know") {
+    for (const int32_t number : {0, -1, 4, 1000000}) {
+      manifold->tree().setValueOn(Coord(50, 60, 70), number);
+      CAPTURE(number);
+      CHECK_THROWS_AS(remerge(*manifold), InvalidInput);
+    }
+    manifold->tree().setValueOff(Coord(50, 60, 70), 0);
+    CHECK_NOTHROW(remerge(*manifold));
+  }
+  SECTION("theta") {
+    for (const double theta : {-1.01, 1.01, std::nan("")})
+      CHECK_THROWS_AS(remerge(*manifold, {theta, MergeMode::both, Adjacency::manifold}),
+                      InvalidInput);
+  }
+  SECTION("interrupted") {
+    StopAtOnce stop;
+    CHECK_THROWS_AS(remerge(*manifold, {}, &stop), Interrupted);
+  }
+}
+
+TEST_CASE("remerge: threads do not matter, nor where the grid lies", "[remerge]") {
+  Rng rng(7);  // more leaves than one task takes
+  const ObjectVolume object =
+      randomVolume(VolumeKind::roughBalls, boxAt({-43, -40, 100}, {60, 53, 57}), rng);
+  SegmentOptions options;
+  options.keepManifold = true;
+  const MergeOptions merging{-0.7, MergeMode::both, Adjacency::manifold};
+  options.merge = merging;
+  const auto expected = segment(*toMask(object), options).grain;
+  DenseVolume<int64_t> labels(object.box());
+  for (int i = 0; i < object.size(); ++i) labels[i] = expected->tree().getValue(object.coord(i));
+  options.merge = {};
+  for (int step = 0; step <= 4; ++step) {
+    const ObjectVolume moved = translated(object, Coord(step, -step, 3 * step));
+    const auto manifold = segment(*toMask(moved), options).manifold;
+    DenseVolume<int64_t> there(moved.box());
+    for (int i = 0; i < labels.size(); ++i) there[i] = labels[i];
+    CAPTURE(step);
+    for (const int threads : {1, 4}) {
+      const auto grain = withThreads(threads, [&] { return remerge(*manifold, merging); });
+      REQUIRE(difference("grain", *grain, moved, there) == "");
+    }
+  }
+}
