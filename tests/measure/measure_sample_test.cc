@@ -8,8 +8,6 @@
 #include <catch2/catch.hpp>
 
 #include "support/known_bodies.h"
-#include "vdb_madf/measure/correlation_length.h"
-#include "vdb_madf/measure/euler_characteristic.h"
 #include "vdb_madf/measure/measure.h"
 #include "vdb_madf/method/segment.h"
 
@@ -21,39 +19,6 @@ namespace {
 template <typename Inside>
 int64_t euler(const CoordBBox& box, const Inside& inside) {
   return measure(*drawLabels(box, inside)).sample.eulerCharacteristic;
-}
-
-/// Voxels - edges + squares - cubes, one by one.
-int64_t naiveEuler(const ObjectVolume& object) {
-  int64_t sum = 0;
-  for (int i = 0; i < object.size(); ++i)
-    for (int cell = 0; cell < 8; ++cell) {  // the directions in which it extends
-      bool full = true;
-      for (int k = 0; k < 8; ++k)
-        if ((k & cell) == k)
-          full = full && object.get(object.coord(i) + Coord(k & 1, k >> 1 & 1, k >> 2), 0);
-      if (full) sum += __builtin_popcount(unsigned(cell)) % 2 ? -1 : 1;
-    }
-  return sum;
-}
-
-std::optional<double> naiveCorrelationLength(const ObjectVolume& object, int axis) {
-  const double n = countObject(object), all = object.size(), f = n / all;
-  double before = 1;
-  for (int lag = 1; 2 * lag <= object.box().dim()[axis]; ++lag) {
-    double both = 0, pairs = 0;
-    for (int i = 0; i < object.size(); ++i) {
-      Coord other = object.coord(i);
-      other[axis] += lag;
-      if (!object.contains(other)) continue;
-      ++pairs;
-      both += object[i] && object[other];
-    }
-    const double c = (both / pairs - f * f) / (f - f * f), target = std::exp(-1.0);
-    if (c <= target) return lag - 1 + (before - target) / (before - c);
-    before = c;
-  }
-  return std::nullopt;
 }
 
 }  // namespace
@@ -82,28 +47,6 @@ TEST_CASE("measure_sample: Euler characteristic of known bodies", "[measure_samp
                : 0;
   };
   CHECK(euler(box, leaky) == 1);
-}
-
-TEST_CASE("measure_sample: by the definitions on random volumes", "[measure_sample]") {
-  for (int seed = 1; seed <= 60; ++seed) {
-    Rng rng{uint64_t(seed)};
-    const auto kind = VolumeKind(rng.below(kVolumeKinds));
-    const CoordBBox box =
-        boxAt(randomOrigin(rng), Coord(rng.between(1, 26), rng.between(1, 26), rng.between(1, 26)));
-    const ObjectVolume object = randomVolume(kind, box, rng);
-    CAPTURE(seed, name(kind), toString(box));
-    const LeafIndex index(*toMask(object));
-    CHECK(eulerCharacteristic(index) == naiveEuler(object));
-    const int64_t n = countObject(object);
-    if (n == 0) continue;
-    const auto lengths = correlationLengths(index, box);
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto expected =
-          n == object.size() ? std::nullopt : naiveCorrelationLength(object, axis);
-      REQUIRE(lengths[size_t(axis)].has_value() == expected.has_value());
-      if (expected) CHECK(*lengths[size_t(axis)] == Approx(*expected));
-    }
-  }
 }
 
 TEST_CASE("measure_sample: layers correlate along themselves", "[measure_sample]") {
