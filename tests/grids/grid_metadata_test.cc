@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/grid_metadata.h"
+#include "vdb_madf/grids/grid_metadata.h"
 
 #include <openvdb/Metadata.h>
 
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "support/random_volume.h"
-#include "vdb_madf/errors.h"
+#include "vdb_madf/base/errors.h"
 
 namespace {
 
@@ -45,12 +45,12 @@ TEST_CASE("grid_metadata: a domain comes back", "[grid_metadata]") {
                                   boxAt({-1000000000, 0, 5}, {2000000000, 1, 1})};
   for (int i = 0; i < 20; ++i) boxes.push_back(boxAt(randomOrigin(rng), randomSize(rng)));
   openvdb::MetaMap metadata;
-  CHECK_FALSE(domain(metadata).has_value());
+  CHECK_FALSE(storedDomain(metadata).has_value());
   for (const CoordBBox& box : boxes) {  // each replaces the one before
     setDomain(metadata, box);
     CAPTURE(toString(box));
-    REQUIRE(domain(metadata).has_value());
-    CHECK(*domain(metadata) == box);
+    REQUIRE(storedDomain(metadata).has_value());
+    CHECK(*storedDomain(metadata) == box);
     CHECK(metadata.metaCount() == 2);
   }
 }
@@ -67,18 +67,18 @@ TEST_CASE("grid_metadata: half a domain, and an inverted one, are refused", "[gr
     openvdb::MetaMap metadata;
     metadata.insertMeta(left, Vec3IMetadata(Vec3i(1, 2, 3)));
     CAPTURE(left);
-    CHECK_THROWS_AS(domain(metadata), InvalidInput);
+    CHECK_THROWS_AS(storedDomain(metadata), InvalidInput);
   }
   for (int axis = 0; axis < 3; ++axis) {
     Vec3i upper(3, 3, 3);
     openvdb::MetaMap metadata;
     metadata.insertMeta("madf_domain_min", Vec3IMetadata(Vec3i(3, 3, 3)));
     metadata.insertMeta("madf_domain_max", Vec3IMetadata(upper));
-    CHECK(domain(metadata)->volume() == 1);
+    CHECK(storedDomain(metadata)->volume() == 1);
     --upper[axis];
     metadata.insertMeta("madf_domain_max", Vec3IMetadata(upper));
     CAPTURE(axis);
-    CHECK_THROWS_AS(domain(metadata), InvalidInput);
+    CHECK_THROWS_AS(storedDomain(metadata), InvalidInput);
   }
 }
 
@@ -103,8 +103,8 @@ TEST_CASE("grid_metadata: a voxel size comes back and places the voxels", "[grid
     CAPTURE(seed, metres);
     const auto grid = Int32Grid::create();
     setVoxelSize(*grid, VoxelSize{metres});
-    REQUIRE(voxelSize(*grid).has_value());
-    CHECK(voxelSize(*grid)->metres == metres);
+    REQUIRE(storedVoxelSize(*grid).has_value());
+    CHECK(storedVoxelSize(*grid)->metres == metres);
     CHECK(grid->getMetadata<DoubleMetadata>("madf_voxel_size_m")->value() == metres);
     CHECK(text(*grid, "madf_length_unit") == VoxelSize{metres}.unit());
     // The centre of voxel p lies at p * size; the unit is the only thing between the two.
@@ -118,12 +118,12 @@ TEST_CASE("grid_metadata: a voxel size comes back and places the voxels", "[grid
 
 TEST_CASE("grid_metadata: without a size one voxel is one unit", "[grid_metadata]") {
   const auto grid = Int32Grid::create();
-  CHECK_FALSE(voxelSize(*grid).has_value());
+  CHECK_FALSE(storedVoxelSize(*grid).has_value());
   setVoxelSize(*grid, VoxelSize{1e-8});
   setVoxelSize(*grid, VoxelSize{1e-5});  // another unit
   CHECK(text(*grid, "madf_length_unit") == "mm");
   setVoxelSize(*grid, std::nullopt);
-  CHECK_FALSE(voxelSize(*grid).has_value());
+  CHECK_FALSE(storedVoxelSize(*grid).has_value());
   CHECK(all(*grid).empty());
   CHECK(grid->indexToWorld(Coord(-3, 0, 7)) == Vec3d(-3, 0, 7));
 }
@@ -133,7 +133,7 @@ TEST_CASE("grid_metadata: a size that is none counts as absent", "[grid_metadata
     openvdb::MetaMap metadata;
     metadata.insertMeta("madf_voxel_size_m", DoubleMetadata(metres));
     CAPTURE(metres);
-    CHECK_FALSE(voxelSize(metadata).has_value());
+    CHECK_FALSE(storedVoxelSize(metadata).has_value());
   }
 }
 
@@ -154,8 +154,8 @@ TEST_CASE("grid_metadata: provenance is copied, and nothing else", "[grid_metada
   copyProvenance(*from, *to);
 
   CHECK(to->getName() == "to");
-  CHECK(domain(*to) == domain(*from));
-  CHECK(voxelSize(*to)->metres == 3e-6);
+  CHECK(storedDomain(*to) == storedDomain(*from));
+  CHECK(storedVoxelSize(*to)->metres == 3e-6);
   CHECK(text(*to, "madf_length_unit") == "mm");
   CHECK(text(*to, "madf_source") == "scan.tif");
   CHECK(text(*to, "madf_boundary") == "open");
@@ -180,6 +180,6 @@ TEST_CASE("grid_metadata: a grid that says nothing gives its transform", "[grid_
   to->transform().postTranslate(Vec3d(5));
   copyProvenance(*from, *to);
   CHECK(all(*to).empty());
-  CHECK_FALSE(domain(*to).has_value());
+  CHECK_FALSE(storedDomain(*to).has_value());
   CHECK(to->indexToWorld(Coord(1, 2, 3)) == Vec3d(1, 2, 3));
 }

@@ -66,7 +66,7 @@ bool expected(const GridOf<Value>& grid, typename GridOf<Value>::ConstAccessor& 
   Selection plain = *selection;
   plain.invert = false;
   if (!selection->invert) return active && plain(double(value));
-  const auto extent = domain(grid);
+  const auto extent = storedDomain(grid);
   return extent->isInside(p) && value == value && !(active && plain(double(value)));
 }
 
@@ -183,8 +183,8 @@ TEST_CASE("object_mask: an empty grid gives an empty mask with its provenance", 
   grid->insertMeta("madf_source", openvdb::StringMetadata("scan.tif"));
   const auto mask = objectMask(*grid);
   CHECK(mask->empty());
-  CHECK(domain(*mask) == CoordBBox(Coord(-1), Coord(7)));
-  CHECK(voxelSize(*mask)->metres == 8.5e-6);
+  CHECK(storedDomain(*mask) == CoordBBox(Coord(-1), Coord(7)));
+  CHECK(storedVoxelSize(*mask)->metres == 8.5e-6);
   CHECK(mask->metaValue<std::string>("madf_source") == "scan.tif");
   CHECK(mask->transform() == grid->transform());
 }

@@ -23,7 +23,7 @@ const ImageSize kSize{19, 17, 4};
 constexpr int kMutationsPerFile = 1500;
 /// What a header may make us allocate, as a multiple of the file: Deflate's and LZW's expansion,
 /// and eight slices at a time.
-constexpr uint64_t kMostExpansion = 8 * 4096;
+constexpr uint64_t kMaxExpansion = 8 * 4096;
 /// The files have some kilobytes; a reader's buffers of fixed size and a stray page are allowed.
 constexpr uint64_t kMemory = uint64_t(64) << 20;
 
@@ -112,14 +112,14 @@ TEST_CASE("image_file: files cut short are refused with one line that names them
       writeFile(path, sample.bytes.substr(0, length));
       if (!sample.dataName.empty()) writeFile(folder / sample.dataName, sample.data);
       CAPTURE(sample.name, length);
-      REQUIRE(complaint(path, sample.bytes.size() + sample.data.size(), kMostExpansion) == "");
+      REQUIRE(complaint(path, sample.bytes.size() + sample.data.size(), kMaxExpansion) == "");
     }
     if (sample.dataName.empty()) continue;
     writeFile(path, sample.bytes);
     for (size_t length = 0; length < sample.data.size(); length += 97) {
       writeFile(folder / sample.dataName, sample.data.substr(0, length));
       CHECK_THROWS_AS(openImage(path), IoError);
-      REQUIRE(complaint(path, sample.bytes.size() + sample.data.size(), kMostExpansion) == "");
+      REQUIRE(complaint(path, sample.bytes.size() + sample.data.size(), kMaxExpansion) == "");
     }
   }
   CHECK(output.text() == "");
@@ -162,7 +162,7 @@ TEST_CASE("image_file: mutated files read or are refused with one line that name
     for (int i = 0; i < mutations; ++i) {
       const std::string bytes = mutated(sample.bytes, sample.headerBytes, ++seed);
       writeFile(path, bytes);
-      const std::string wrong = complaint(path, bytes.size() + sample.data.size(), kMostExpansion);
+      const std::string wrong = complaint(path, bytes.size() + sample.data.size(), kMaxExpansion);
       if (wrong.empty()) continue;
       CAPTURE(sample.name, seed, wrong);
       REQUIRE(wrong.empty());
@@ -184,7 +184,7 @@ TEST_CASE("image_file: missing, empty and meaningless files", "[image_file]") {
     for (const std::string& content : {std::string(), std::string(1, '\0'), noise}) {
       writeFile(path, content);
       CHECK_THROWS_AS(openImage(path), IoError);
-      CHECK(complaint(path, 100, kMostExpansion) == "");
+      CHECK(complaint(path, 100, kMaxExpansion) == "");
     }
   }
   CHECK_THROWS_AS(openImage("/dev/null"), IoError);

@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/leaf_index.h"
+#include "vdb_madf/leaves/leaf_index.h"
+#include "vdb_madf/base/detail/bits.h"
+#include "vdb_madf/base/limits.h"
+#include "vdb_madf/leaves/leaf_grid.h"
 
 #include <catch2/catch.hpp>
 #include <iterator>
@@ -13,7 +16,7 @@
 #include "support/edge_cases.h"
 #include "support/random_volume.h"
 #include "support/runs.h"
-#include "vdb_madf/errors.h"
+#include "vdb_madf/base/errors.h"
 
 namespace {
 
@@ -152,28 +155,28 @@ TEST_CASE("leaf_index: objects beyond the limits are refused", "[leaf_index]") {
   }
   SECTION("too long") {
     mask->tree().setValueOn(Coord(0, -7, 0));
-    mask->tree().setValueOn(Coord(0, LeafIndex::kMaxExtent - 8, 0));
+    mask->tree().setValueOn(Coord(0, kMaxExtent - 8, 0));
     CHECK(LeafIndex(*mask).voxelCount() == 2);
-    mask->tree().setValueOn(Coord(0, LeafIndex::kMaxExtent - 7, 0));
+    mask->tree().setValueOn(Coord(0, kMaxExtent - 7, 0));
     CHECK_THROWS_AS(LeafIndex(*mask), InvalidInput);
   }
   SECTION("too far out") {
-    mask->tree().setValueOn(Coord(0, 0, -LeafIndex::kMaxCoordinate));
+    mask->tree().setValueOn(Coord(0, 0, -kMaxCoordinate));
     CHECK(LeafIndex(*mask).voxelCount() == 1);
-    mask->tree().setValueOn(Coord(0, 0, -LeafIndex::kMaxCoordinate - 1));
+    mask->tree().setValueOn(Coord(0, 0, -kMaxCoordinate - 1));
     CHECK_THROWS_AS(LeafIndex(*mask), InvalidInput);
   }
 }
 
 TEST_CASE("leaf_index: counts the bits of a word", "[leaf_index]") {
-  CHECK(countBits(0) == 0);
-  CHECK(countBits(~uint64_t(0)) == 64);
+  CHECK(detail::countBits(0) == 0);
+  CHECK(detail::countBits(~uint64_t(0)) == 64);
   Rng rng(3);
   for (int round = 0; round < 1000; ++round) {
     const uint64_t word = rng.next() & (round % 2 ? rng.next() : ~uint64_t(0));
     uint32_t bits = 0;
     for (int bit = 0; bit < 64; ++bit) bits += word >> bit & 1;
-    REQUIRE(countBits(word) == bits);
+    REQUIRE(detail::countBits(word) == bits);
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/object_components.h"
+#include "vdb_madf/leaves/object_components.h"
 
 #include <catch2/catch.hpp>
 #include <map>
@@ -13,7 +13,7 @@
 #include "support/oracle.h"
 #include "support/random_volume.h"
 #include "support/runs.h"
-#include "vdb_madf/errors.h"
+#include "vdb_madf/base/errors.h"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include "support/by_rank.h"
 #include "support/edge_cases.h"
 #include "support/random_volume.h"
-#include "vdb_madf/medial_balls.h"
+#include "vdb_madf/leaves/voxel_set.h"
 
 namespace {
 

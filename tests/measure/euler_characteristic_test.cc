@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/euler_characteristic.h"
+#include "vdb_madf/measure/euler_characteristic.h"
 
 #include <catch2/catch.hpp>
 #include <map>
@@ -11,7 +11,7 @@
 #include "support/edge_cases.h"
 #include "support/random_volume.h"
 #include "support/runs.h"
-#include "vdb_madf/errors.h"
+#include "vdb_madf/base/errors.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/interface_curvature.h"
+#include "vdb_madf/measure/interface_curvature.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -129,8 +129,8 @@ TEST_CASE("interface_curvature: of balls, cylinders and their insides", "[interf
   for (const double radius : {9.0, 14.0}) {
     CAPTURE(radius);
     const int edge = int(radius) + 3;
-    const Vec3d centre(rng.unit(), rng.unit(), rng.unit());
-    const auto ball = [&](const Vec3d& p) { return (p - centre).lengthSqr() < radius * radius; };
+    const Vec3d center(rng.unit(), rng.unit(), rng.unit());
+    const auto ball = [&](const Vec3d& p) { return (p - center).lengthSqr() < radius * radius; };
     const Faces sphere = facesOf({Coord(-edge), Coord(edge)}, ball);
     const InterfaceCurvature out = interfaceCurvature(sphere).value();
     CHECK(out.points == 32);
@@ -139,7 +139,7 @@ TEST_CASE("interface_curvature: of balls, cylinders and their insides", "[interf
     CHECK(out.residual < std::sqrt(1.0 / 12));  // the voxels' steps
     for (int axis = 0; axis < 3; ++axis) {
       const auto rod = [&](const Vec3d& p) {
-        Vec3d d = p - centre;
+        Vec3d d = p - center;
         d[axis] = 0;
         return d.lengthSqr() < radius * radius;
       };
@@ -178,10 +178,10 @@ TEST_CASE("interface_curvature: moved and turned over", "[interface_curvature]")
   for (uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
-    const Vec3d centre(4 * rng.unit(), 4 * rng.unit(), 4 * rng.unit());
+    const Vec3d center(4 * rng.unit(), 4 * rng.unit(), 4 * rng.unit());
     const double radius = 5 + 4 * rng.unit(), shape = 0.5 + rng.unit();
     const auto body = [&](const Vec3d& p) {
-      const Vec3d d = p - centre;
+      const Vec3d d = p - center;
       return d.x() * d.x() + shape * d.y() * d.y() + d.z() * d.z() / shape < radius * radius;
     };
     const Faces faces = facesOf({Coord(-5), Coord(12)}, body);

@@ -83,11 +83,11 @@ TEST_CASE("surface_area: planes between grains at many angles", "[surface_area]"
   Rng rng(2);
   Errors errors, counted;
   for (int i = 0; i < 60; ++i) {
-    const Vec3d n = slope(i), centre = randomPoint(rng);
+    const Vec3d n = slope(i), center = randomPoint(rng);
     const double radius = 10 + 14 * rng.unit();
     const auto labels = drawLabels(cubeAround(radius + 2), [&](const Vec3d& p) {
-      if ((p - centre).lengthSqr() >= radius * radius) return 0;
-      return n.dot(p - centre) < 0 ? 1 : 2;
+      if ((p - center).lengthSqr() >= radius * radius) return 0;
+      return n.dot(p - center) < 0 ? 1 : 2;
     });
     const BondMeasures bond = measure(*labels).bonds.at(0);
     const double truth = M_PI * radius * radius;
@@ -108,9 +108,9 @@ TEST_CASE("surface_area: balls of many radii", "[surface_area]") {
     Errors errors;
     for (int i = 0; i < 12; ++i) {
       const double radius = least * (1 + 0.2 * rng.unit());
-      const Vec3d centre = randomPoint(rng);
+      const Vec3d center = randomPoint(rng);
       const auto labels = drawLabels(cubeAround(radius + 2), [&](const Vec3d& p) {
-        return (p - centre).lengthSqr() < radius * radius;
+        return (p - center).lengthSqr() < radius * radius;
       });
       errors.add(measure(*labels).grains.at(0).freeArea, 4 * M_PI * radius * radius);
     }
@@ -132,7 +132,7 @@ TEST_CASE("surface_area: discs between two balls, and the caps beside them", "[s
         TwoBalls balls;
         balls.radius = least * (1 + 0.15 * rng.unit());
         balls.first = balls.second = balls.radius / neck;
-        balls.centre = randomPoint(rng);
+        balls.center = randomPoint(rng);
         balls.normal = randomDirection(rng);
         const Measurements m = measure(*drawLabels(balls.box(), balls));
         REQUIRE(m.bonds.size() == 1);
@@ -163,7 +163,7 @@ TEST_CASE("surface_area: discs between unequal balls", "[surface_area]") {
     balls.radius = 8 + 8 * rng.unit();
     balls.first = balls.radius * (1.05 + 0.6 * rng.unit());
     balls.second = balls.radius * (1.05 + 0.6 * rng.unit());
-    balls.centre = randomPoint(rng);
+    balls.center = randomPoint(rng);
     balls.normal = randomDirection(rng);
     errors.add(measure(*drawLabels(balls.box(), balls)).bonds.at(0).area,
                M_PI * balls.radius * balls.radius);
@@ -179,7 +179,7 @@ namespace {
 /// drawn: the rest of the balls has no part in it.
 double discError(const TwoBalls& balls) {
   constexpr double kNear = 6, kAround = 12;
-  const Vec3d &n = balls.normal, &c = balls.centre;
+  const Vec3d &n = balls.normal, &c = balls.center;
   Coord corner;
   for (int i = 0; i < 3; ++i) {
     const double across = std::sqrt(std::max(0.0, 1 - n[i] * n[i]));
@@ -198,7 +198,7 @@ TwoBalls anyTwoBalls(double leastRadius, double mostRatio, Rng& rng) {
   balls.radius = leastRadius * std::pow(3, rng.unit());
   balls.first = balls.second = balls.radius / (0.4 + 0.57 * rng.unit());
   (rng.chance(0.5) ? balls.first : balls.second) *= 1 + (mostRatio - 1) * rng.unit();
-  balls.centre = randomPoint(rng);
+  balls.center = randomPoint(rng);
   return balls;
 }
 

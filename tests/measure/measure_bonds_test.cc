@@ -28,7 +28,7 @@ TEST_CASE("measure_bonds: the disc between two balls", "[measure_bonds]") {
     balls.radius = 10 + 3 * rng.unit();
     balls.first = balls.radius * (1.1 + 0.3 * rng.unit());
     balls.second = balls.radius * (1.1 + 0.3 * rng.unit());
-    balls.centre = randomPoint(rng);
+    balls.center = randomPoint(rng);
     balls.normal = randomDirection(rng);
     const BondMeasures bond = onlyBond(*drawLabels(balls.box(), balls));
     CAPTURE(i, balls.normal);
@@ -36,7 +36,7 @@ TEST_CASE("measure_bonds: the disc between two balls", "[measure_bonds]") {
     CHECK(bond.second == 2);
     CHECK(bond.equivalentRadius == Approx(balls.radius).epsilon(0.04));
     CHECK(bond.equivalentRadius == Approx(std::sqrt(bond.area / M_PI)));
-    CHECK((bond.centroid - balls.centre).length() < 0.8);
+    CHECK((bond.centroid - balls.center).length() < 0.8);
     CHECK(bond.normal.length() == Approx(1));
     CHECK(bond.normal.dot(balls.normal) > 0.995);
     CHECK(bond.patches == 1);

@@ -25,9 +25,9 @@ struct Frame {
   }
 };
 
-Int32Grid::Ptr ellipsoid(const Vec3d& centre, const Frame& frame, const Vec3d& semiAxes) {
+Int32Grid::Ptr ellipsoid(const Vec3d& center, const Frame& frame, const Vec3d& semiAxes) {
   return drawLabels(cubeAround(semiAxes[0] + 3), [&](const Vec3d& p) {
-    const Vec3d q = p - centre;
+    const Vec3d q = p - center;
     const double a = q.dot(frame.u) / semiAxes[0], b = q.dot(frame.v) / semiAxes[1],
                  c = q.dot(frame.w) / semiAxes[2];
     return a * a + b * b + c * c < 1 ? 7 : 0;
@@ -99,11 +99,11 @@ TEST_CASE("measure_grains: ellipsoids in any position", "[measure_grains]") {
   for (int i = 0; i < 6; ++i) {
     const Frame frame(rng);
     const Vec3d semiAxes{20 + 4 * rng.unit(), 13 + 2 * rng.unit(), 8 + 2 * rng.unit()};
-    const Vec3d centre = randomPoint(rng);
-    const GrainMeasures grain = measure(*ellipsoid(centre, frame, semiAxes)).grains.at(0);
+    const Vec3d center = randomPoint(rng);
+    const GrainMeasures grain = measure(*ellipsoid(center, frame, semiAxes)).grains.at(0);
     CHECK(double(grain.voxels) ==
           Approx(4 * M_PI / 3 * semiAxes[0] * semiAxes[1] * semiAxes[2]).epsilon(0.01));
-    CHECK((grain.centroid - centre).length() < 0.1);
+    CHECK((grain.centroid - center).length() < 0.1);
     for (int k = 0; k < 3; ++k)
       CHECK(grain.ellipsoid.values[size_t(k)] == Approx(2 * semiAxes[k]).epsilon(0.01));
     CHECK(std::abs(grain.ellipsoid.axes[0].dot(frame.u)) > 0.999);
@@ -113,7 +113,7 @@ TEST_CASE("measure_grains: ellipsoids in any position", "[measure_grains]") {
       CHECK(std::max({axis[0], axis[1], axis[2]}) >= -std::min({axis[0], axis[1], axis[2]}) - 1e-6);
     }
     CHECK(grain.inscribedRadius == Approx(semiAxes[2]).margin(1));
-    CHECK((grain.representative->asVec3d() - centre).length() < 3);
+    CHECK((grain.representative->asVec3d() - center).length() < 3);
     CHECK(grain.sphericity < 0.95);
   }
 }

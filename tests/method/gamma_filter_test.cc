@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/gamma_filter.h"
+#include "vdb_madf/method/gamma_filter.h"
 
 #include <catch2/catch.hpp>
 #include <limits>
@@ -14,7 +14,7 @@
 #include "support/random_volume.h"
 #include "support/runs.h"
 #include "support/stage_input.h"
-#include "vdb_madf/errors.h"
+#include "vdb_madf/base/errors.h"
 
 namespace {
 
@@ -58,9 +58,9 @@ ObjectVolume rod() {
   return fromPicture(slice + "|" + slice + "|" + slice);
 }
 
-void addBlock(ObjectVolume& object, const Coord& centre) {
+void addBlock(ObjectVolume& object, const Coord& center) {
   for (int i = 0; i < object.size(); ++i)
-    if (CoordBBox(centre - Coord(1), centre + Coord(1)).isInside(object.coord(i))) object[i] = 1;
+    if (CoordBBox(center - Coord(1), center + Coord(1)).isInside(object.coord(i))) object[i] = 1;
 }
 
 int64_t squaredLength(const Coord& d) {

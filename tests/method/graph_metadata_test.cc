@@ -77,7 +77,7 @@ ManifoldGraph restored(const std::string& bytes, bool exceptions) {
   metadata->read(stream);
   const auto grid = Int32Grid::create();
   grid->insertMeta(kName, *metadata);
-  return graph(*grid).value();
+  return storedGraph(*grid).value();
 }
 
 std::string withSize(std::string bytes) {
@@ -93,14 +93,14 @@ TEST_CASE("graph_metadata: a grid gives back its graph", "[graph_metadata]") {
   for (const ManifoldGraph& original :
        {emptyGraph(), extremeGraph(), randomGraph(1, 2), randomGraph(2, 10000)}) {
     const auto grid = Int32Grid::create();
-    REQUIRE_FALSE(graph(*grid));
+    REQUIRE_FALSE(storedGraph(*grid));
     setGraph(*grid, original);
-    REQUIRE(equal(graph(*grid).value(), original));
+    REQUIRE(equal(storedGraph(*grid).value(), original));
     // A copy of the grid keeps it, and is not touched by what happens to the first.
     const auto copy = grid->deepCopy();
     setGraph(*grid, emptyGraph());
-    REQUIRE(equal(graph(*grid).value(), emptyGraph()));
-    REQUIRE(equal(graph(*copy).value(), original));
+    REQUIRE(equal(storedGraph(*grid).value(), emptyGraph()));
+    REQUIRE(equal(storedGraph(*copy).value(), original));
   }
 }
 
@@ -145,9 +145,9 @@ TEST_CASE("graph_metadata: replaces other metadata of its name", "[graph_metadat
   initialize();
   const auto grid = Int32Grid::create();
   grid->insertMeta(kName, openvdb::Int32Metadata(5));
-  REQUIRE_FALSE(graph(*grid));
+  REQUIRE_FALSE(storedGraph(*grid));
   setGraph(*grid, extremeGraph());
-  REQUIRE(equal(graph(*grid).value(), extremeGraph()));
+  REQUIRE(equal(storedGraph(*grid).value(), extremeGraph()));
 }
 
 TEST_CASE("graph_metadata: a graph that breaks the rules is refused", "[graph_metadata]") {

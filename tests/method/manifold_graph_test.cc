@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/manifold_graph.h"
+#include "vdb_madf/method/manifold_graph.h"
+#include "vdb_madf/leaves/leaf_grid.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -15,8 +16,8 @@
 #include "support/random_volume.h"
 #include "support/runs.h"
 #include "support/stage_input.h"
-#include "vdb_madf/errors.h"
-#include "vdb_madf/flow.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/method/flow.h"
 
 namespace {
 

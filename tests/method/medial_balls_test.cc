@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/medial_balls.h"
+#include "vdb_madf/method/medial_balls.h"
 
 #include <catch2/catch.hpp>
 #include <map>
@@ -12,7 +12,7 @@
 #include "support/random_volume.h"
 #include "support/runs.h"
 #include "support/stage_input.h"
-#include "vdb_madf/errors.h"
+#include "vdb_madf/base/errors.h"
 
 namespace {
 

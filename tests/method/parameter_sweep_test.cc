@@ -82,7 +82,7 @@ TEST_CASE("parameter_sweep: each row is what a segmentation with its options giv
   SweepOptions options = wide();
   for (const Adjacency adjacency : {Adjacency::manifold, Adjacency::cell}) {
     options.adjacency = adjacency;
-    const std::vector<SweepRow> rows = sweep(*object, options);
+    const std::vector<SweepRow> rows = parameterSweep(*object, options);
     REQUIRE(rows.size() == 18);
     for (const SweepRow& row : rows) requireRow(row, *object, options);
     // Rough surfaces: the choices do matter here.
@@ -94,7 +94,7 @@ TEST_CASE("parameter_sweep: each row is what a segmentation with its options giv
 TEST_CASE("parameter_sweep: rows come by gamma, mode and theta, as asked for",
           "[parameter_sweep]") {
   const SweepOptions options = wide();
-  const std::vector<SweepRow> rows = sweep(*rough(), options);
+  const std::vector<SweepRow> rows = parameterSweep(*rough(), options);
   size_t i = 0;
   for (const int64_t gamma : options.gammas)
     for (const MergeMode mode : options.modes)
@@ -110,7 +110,7 @@ TEST_CASE("parameter_sweep: a larger theta merges more", "[parameter_sweep]") {
   options.modes = {MergeMode::angle, MergeMode::neck};
   options.thetas.clear();
   for (int i = 0; i <= 10; ++i) options.thetas.push_back(-1 + 0.1 * i);
-  const std::vector<SweepRow> rows = sweep(*rough(), options);
+  const std::vector<SweepRow> rows = parameterSweep(*rough(), options);
   for (size_t i = 1; i < rows.size(); ++i)
     if (rows[i].mode == rows[i - 1].mode) CHECK(rows[i].grains <= rows[i - 1].grains);
 }
@@ -120,33 +120,33 @@ TEST_CASE("parameter_sweep: the boundary and the domain are heeded", "[parameter
   SweepOptions options;
   options.modes = {MergeMode::angle};
   options.boundary = Boundary::closed;
-  const SweepRow closed = sweep(*object, options)[0];
+  const SweepRow closed = parameterSweep(*object, options)[0];
   requireRow(closed, *object, options);
   options.boundary = Boundary::open;
-  const SweepRow open = sweep(*object, options)[0];
+  const SweepRow open = parameterSweep(*object, options)[0];
   requireRow(open, *object, options);
   CHECK(open.grains != closed.grains);
 }
 
 TEST_CASE("parameter_sweep: nothing, and options out of range", "[parameter_sweep]") {
-  const SweepRow none = sweep(MaskGrid(), {})[0];
+  const SweepRow none = parameterSweep(MaskGrid(), {})[0];
   CHECK(none.grains + none.smallGrains + none.largestVoxels + none.objectVoxels == 0);
   CHECK(none.medianVoxels == 0);
   const MaskGrid empty;
   SweepOptions options;
   options.gammas = {0, -1};
-  CHECK_THROWS_AS(sweep(empty, options), InvalidInput);
+  CHECK_THROWS_AS(parameterSweep(empty, options), InvalidInput);
   options.gammas = {};
-  CHECK_THROWS_AS(sweep(empty, options), InvalidInput);
+  CHECK_THROWS_AS(parameterSweep(empty, options), InvalidInput);
   options.gammas = {0};
   options.thetas = {-1.01};
-  CHECK_THROWS_AS(sweep(empty, options), InvalidInput);
+  CHECK_THROWS_AS(parameterSweep(empty, options), InvalidInput);
 }
 
 TEST_CASE("parameter_sweep: threads do not matter", "[parameter_sweep]") {
   const MaskGrid::Ptr object = rough();
-  const std::vector<SweepRow> parallel = sweep(*object, wide());
+  const std::vector<SweepRow> parallel = parameterSweep(*object, wide());
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const std::vector<SweepRow> sequential = sweep(*object, wide());
+  const std::vector<SweepRow> sequential = parameterSweep(*object, wide());
   CHECK(std::equal(parallel.begin(), parallel.end(), sequential.begin(), sequential.end(), equal));
 }

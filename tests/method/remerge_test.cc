@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/remerge.h"
+#include "vdb_madf/method/remerge.h"
 
 #include <openvdb/Metadata.h>
 
@@ -15,9 +15,9 @@
 #include "support/oracle.h"
 #include "support/random_case.h"
 #include "support/runs.h"
-#include "vdb_madf/errors.h"
-#include "vdb_madf/graph_metadata.h"
-#include "vdb_madf/grid_metadata.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/method/graph_metadata.h"
 
 namespace {
 
@@ -114,8 +114,8 @@ TEST_CASE("remerge: leaves the manifolds as they are", "[remerge]") {
   const auto grain = remerge(*manifold, {0.5, MergeMode::neck, Adjacency::cell});
   CHECK(row(*manifold) == std::vector<int32_t>{1, 1, 2, 2, 3, 3, 3});
   CHECK(texts(*manifold) == before);
-  CHECK(graph(*manifold)->nodes == rowGraph().nodes);
-  CHECK_FALSE(graph(*grain).has_value());
+  CHECK(storedGraph(*manifold)->nodes == rowGraph().nodes);
+  CHECK_FALSE(storedGraph(*grain).has_value());
   CHECK(grain->getName() == "grain");
   CHECK(grain->transform() == manifold->transform());
   CHECK(grain->metaValue<std::string>("madf_source") == "scan.tif");

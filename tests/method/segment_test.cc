@@ -263,8 +263,8 @@ TEST_CASE("segment: returns the grids that were asked for", "[segment]") {
     for (const auto& grid : {result.grain, result.distanceSquared, result.power, result.manifold}) {
       if (!grid) continue;
       CHECK_FALSE(grid->getName().empty());
-      CHECK(domain(*grid) == domain(*mask));
-      REQUIRE(voxelSize(*grid));
+      CHECK(storedDomain(*grid) == storedDomain(*mask));
+      REQUIRE(storedVoxelSize(*grid));
       CHECK(grid->transform() == mask->transform());
     }
     CHECK_FALSE(result.times.empty());

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/segmentation_metadata.h"
+#include "vdb_madf/method/segmentation_metadata.h"
 
 #include <openvdb/Metadata.h>
 
@@ -14,7 +14,7 @@
 #include "support/edge_cases.h"
 #include "support/oracle.h"
 #include "support/random_case.h"
-#include "vdb_madf/version.h"
+#include "vdb_madf/base/version.h"
 
 namespace {
 
@@ -127,9 +127,9 @@ TEST_CASE("segmentation_metadata: the number of grains comes back", "[segmentati
 
 TEST_CASE("segmentation_metadata: names", "[segmentation_metadata]") {
   for (const MergeMode mode : {MergeMode::both, MergeMode::angle, MergeMode::neck})
-    CHECK(name(mode) == word(mode));
+    CHECK(toString(mode) == word(mode));
   for (const Adjacency adjacency : {Adjacency::manifold, Adjacency::cell})
-    CHECK(name(adjacency) == word(adjacency));
+    CHECK(toString(adjacency) == word(adjacency));
 }
 
 TEST_CASE("segmentation_metadata: a segmentation describes itself on each of its grids",

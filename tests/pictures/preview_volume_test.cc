@@ -111,8 +111,8 @@ TEST_CASE("label_preview: grids are what renderers take", "[label_preview]") {
   CHECK(preview.color->getName() == "color");
   CHECK(preview.color->getVectorType() == openvdb::VEC_INVARIANT);
   CHECK(preview.color->transform() == preview.density->transform());
-  CHECK(voxelSize(*preview.density)->metres == Approx(25.5e-6));
-  CHECK(*domain(*preview.density) == CoordBBox(Coord(-3), Coord(6)));
+  CHECK(storedVoxelSize(*preview.density)->metres == Approx(25.5e-6));
+  CHECK(*storedDomain(*preview.density) == CoordBBox(Coord(-3), Coord(6)));
   CHECK(reduceLabels(*grid, 3)->getName() == "grain");
 }
 

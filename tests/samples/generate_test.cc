@@ -73,7 +73,7 @@ SinteredOptions smallSintered() {
 /// The bits of object and truth, whatever the trees hold as tiles.
 uint64_t hash(const Sample& sample) {
   uint64_t state = 0;
-  const CoordBBox box = *domain(*sample.object);
+  const CoordBBox box = *storedDomain(*sample.object);
   const auto object = sample.object->getConstAccessor();
   for (auto p = box.begin(); p; ++p) {
     const int32_t label = sample.truth ? sample.truth->tree().getValue(*p) : 0;
@@ -89,7 +89,7 @@ double overlapOf(const std::vector<Ball>& balls, int64_t unionVoxels) {
 }
 
 double solidFraction(const Sample& sample) {
-  return double(sample.object->activeVoxelCount()) / double(domain(*sample.object)->volume());
+  return double(sample.object->activeVoxelCount()) / double(storedDomain(*sample.object)->volume());
 }
 
 std::set<int32_t> labelsOf(const Int32Grid& grid) {
@@ -200,8 +200,8 @@ TEST_CASE("generate: a sample explains itself", "[generate]") {
   for (const openvdb::GridBase* grid :
        {static_cast<const openvdb::GridBase*>(sample.object.get()),
         static_cast<const openvdb::GridBase*>(sample.truth.get())}) {
-    CHECK(domain(*grid) == CoordBBox({0, 0, 0}, {60, 56, 65}));
-    CHECK(!voxelSize(*grid));
+    CHECK(storedDomain(*grid) == CoordBBox({0, 0, 0}, {60, 56, 65}));
+    CHECK(!storedVoxelSize(*grid));
     CHECK(grid->metaValue<std::string>("madf_source") ==
           "generate spheres --dims 61x57x66 --count 9 --radius 8:11.5 --overlap 0.12 --max-cover 2 "
           "--seed 3");
@@ -215,7 +215,7 @@ TEST_CASE("generate: a sample explains itself", "[generate]") {
 TEST_CASE("generate: no voxel lies outside the box", "[generate]") {
   for (const Sample& sample : {generateSpheres(smallSpheres()), generatePack(smallPack()),
                                generateSnow(smallSnow()), generateSintered(smallSintered())})
-    CHECK(domain(*sample.object)->isInside(sample.object->evalActiveVoxelBoundingBox()));
+    CHECK(storedDomain(*sample.object)->isInside(sample.object->evalActiveVoxelBoundingBox()));
 }
 
 TEST_CASE("generate: spheres are as documented", "[generate]") {
@@ -227,11 +227,11 @@ TEST_CASE("generate: spheres are as documented", "[generate]") {
     REQUIRE(int(balls.size()) == options.count);
     for (const Ball& a : balls) {
       CHECK((a.radius >= options.minRadius && a.radius <= options.maxRadius));
-      const double centre[] = {a.x, a.y, a.z};
+      const double center[] = {a.x, a.y, a.z};
       for (int axis = 0; axis < 3; ++axis) {
-        CHECK(centre[axis] == std::round(centre[axis]));
-        CHECK(centre[axis] - a.radius >= 0);
-        CHECK(centre[axis] + a.radius <= options.size[axis] - 1);
+        CHECK(center[axis] == std::round(center[axis]));
+        CHECK(center[axis] - a.radius >= 0);
+        CHECK(center[axis] + a.radius <= options.size[axis] - 1);
       }
     }
     const Sample sample = generateSpheres(options);

@@ -72,7 +72,7 @@ TEST_CASE("generate: power cells equal the definition, gaps in the numbers close
   auto balls = randomBalls(random, 30, 130);
   balls.push_back({60, 60, 60, 12});
   balls.push_back({60, 61, 60, 1});  // owns nothing
-  detail::sortByCentre(balls);
+  detail::sortByCenter(balls);
   MaskTree object;
   for (int i = 0; i < 20000; ++i)
     object.setValue(Coord(int(random() % 130), int(random() % 130), int(random() % 130)), true);

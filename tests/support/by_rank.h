@@ -7,7 +7,8 @@
 #include <stdexcept>
 
 #include "support/dense_volume.h"
-#include "vdb_madf/leaf_index.h"
+#include "vdb_madf/leaves/leaf_index.h"
+#include "vdb_madf/leaves/voxel_array.h"
 
 /// From the dense volumes that tests draw to the arrays that the stages work on, and back.
 namespace vdb_madf::test {

@@ -10,6 +10,8 @@
 
 #include "support/images.h"
 
+#include "vdb_madf/images/image.h"
+
 // Files of formats with a header, built by hand from their definitions.
 
 namespace vdb_madf::test {

@@ -10,6 +10,7 @@
 
 #include "support/damage.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/images/image.h"
 #include "vdb_madf/images/open_image.h"
 
 namespace vdb_madf::test {

@@ -44,7 +44,7 @@ inline Vec3d randomPoint(Rng& rng) {
 
 /// Two balls that overlap in a lens: their surfaces meet in a circle around the origin.
 struct TwoBalls {
-  Vec3d centre;                    ///< of the circle
+  Vec3d center;                    ///< of the circle
   Vec3d normal{1, 0, 0};           ///< from the first to the second ball
   double radius = 8;               ///< of the circle
   double first = 12, second = 12;  ///< of the balls, at least that of the circle
@@ -56,7 +56,7 @@ struct TwoBalls {
   }
   /// 1 and 2, parted by the plane of the circle.
   int32_t operator()(const Vec3d& p) const {
-    const Vec3d q = p - centre;
+    const Vec3d q = p - center;
     const double along = q.dot(normal);
     const Vec3d a = q + firstOffset() * normal, b = q - secondOffset() * normal;
     if (a.lengthSqr() >= first * first && b.lengthSqr() >= second * second) return 0;

@@ -21,7 +21,7 @@ namespace vdb_madf::test {
 
 namespace {
 
-constexpr rlim_t kLongestSeconds = 120;  // of the processors; far more than any case takes
+constexpr rlim_t kMaxSeconds = 120;  // of the processors; far more than any case takes
 
 using Clock = std::chrono::steady_clock;
 
@@ -56,7 +56,7 @@ struct Pipe {
     ::setrlimit(RLIMIT_FSIZE, &limit);
   }
   // A program that hangs, or that outlives an aborted test, must not stay.
-  const rlimit seconds{kLongestSeconds, kLongestSeconds};
+  const rlimit seconds{kMaxSeconds, kMaxSeconds};
   ::setrlimit(RLIMIT_CPU, &seconds);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXFSZ}) ::signal(signal, SIG_DFL);

@@ -160,7 +160,7 @@ SegmentOptions optionsOf(const RandomCase& c) {
 }
 
 std::string describe(const RandomCase& c) {
-  constexpr int kLargestPicture = 3000;
+  constexpr int kMaxPictureBytes = 3000;
   std::ostringstream text;
   const Coord dim = c.object.size() ? c.object.box().dim() : Coord(0);
   text << "seed " << c.seed << ": " << name(c.kind) << ", " << dim << " voxels from "
@@ -172,7 +172,7 @@ std::string describe(const RandomCase& c) {
        << kModeNames[size_t(c.options.merge.mode)] << ", adjacency "
        << (c.options.merge.adjacency == Adjacency::cell ? "cell" : "manifold") << ", "
        << (c.tiles == Tiles::none ? "no tiles, " : "tiles, ") << c.threads << " threads\n";
-  if (c.object.size() <= kLargestPicture) text << picture(c.object);
+  if (c.object.size() <= kMaxPictureBytes) text << picture(c.object);
   return text.str();
 }
 

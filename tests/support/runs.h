@@ -6,7 +6,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
-#include "vdb_madf/grid_types.h"
+#include "vdb_madf/grids/grid_types.h"
 
 /// Ways to run a stage: with a number of threads, and stopped at once.
 namespace vdb_madf::test {

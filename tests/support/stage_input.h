@@ -8,7 +8,8 @@
 
 #include "support/by_rank.h"
 #include "support/oracle.h"
-#include "vdb_madf/medial_balls.h"
+#include "vdb_madf/leaves/voxel_set.h"
+#include "vdb_madf/method/medial_balls.h"
 
 /// What the oracle found in the form that the stages take: each is tested by itself.
 namespace vdb_madf::test {

@@ -10,6 +10,8 @@
 
 #include "support/images.h"
 
+#include "vdb_madf/images/image.h"
+
 // Zarr version 2 arrays, built by hand from the definition.
 
 namespace vdb_madf::test {

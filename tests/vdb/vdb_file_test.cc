@@ -111,7 +111,7 @@ TEMPLATE_TEST_CASE("vdb_file: a grid comes back as it was", "[vdb_file]", BoolGr
   CHECK(same(*empty, *grids[0]));
   CHECK(same(*ball, *grids[1]));
   CHECK(grids[1]->metaValue<std::string>("text") == "several\nlines");
-  CHECK(voxelSize(*grids[1])->metres == 8.5e-6);
+  CHECK(storedVoxelSize(*grids[1])->metres == 8.5e-6);
   CHECK(folder.entries() == 1);
 
   // The comparison sees a value that differs, inactive or not.
@@ -133,7 +133,7 @@ TEST_CASE("vdb_file: the graph of the manifolds comes back", "[vdb_file]") {
   const auto grid = ballWithTiles<Int32Grid>(Coord(0), 3, "manifold");
   setGraph(*grid, smallGraph());
   writeVdb(folder.file("graph.vdb"), {grid});
-  const auto read = graph(*readVdb(folder.file("graph.vdb")).at(0));
+  const auto read = storedGraph(*readVdb(folder.file("graph.vdb")).at(0));
   REQUIRE(read);
   REQUIRE(read->nodes == smallGraph().nodes);
   REQUIRE(read->edges == smallGraph().edges);

@@ -212,14 +212,14 @@ TEST_CASE("image_mask: says where it comes from", "[image_mask]") {
   auto mask = readMask(image);
   CHECK(mask->empty());
   CHECK(mask->getName() == "object");
-  CHECK(domain(*mask) == CoordBBox(Coord(0), Coord(4, 5, 6)));
-  CHECK_FALSE(voxelSize(*mask));
+  CHECK(storedDomain(*mask) == CoordBBox(Coord(0), Coord(4, 5, 6)));
+  CHECK_FALSE(storedVoxelSize(*mask));
   CHECK(mask->voxelSize()[0] == 1.0);
   CHECK(mask->metaValue<std::string>("madf_source") == "memory.tif");
   image.setVoxelSize(8.5e-6);
   image.setPath("/scans/sample7/");
   mask = readMask(image);
-  CHECK(voxelSize(*mask)->metres == 8.5e-6);
+  CHECK(storedVoxelSize(*mask)->metres == 8.5e-6);
   CHECK(mask->voxelSize()[0] == Approx(0.0085));
   CHECK(mask->metaValue<std::string>("madf_source") == "sample7");
 }

@@ -161,7 +161,7 @@ TEST_CASE("image_write: a mask comes back as it went", "[image_write]") {
   const CoordBBox box(Coord(0), Coord(40, 39, 38));
   writeImage(folder / "a.tif", *grid, box, SampleType::uint8);
   const auto mask = readMask(*openImage(folder / "a.tif"));
-  CHECK(domain(*mask) == box);
+  CHECK(storedDomain(*mask) == box);
   size_t wrong = 0;
   for (auto p = box.begin(); p != box.end(); ++p)
     wrong += mask->tree().isValueOn(*p) != grid->tree().isValueOn(*p);

@@ -71,7 +71,7 @@ TEST_CASE("nmc: the image is read as described", "[nmc]") {
   const MaskGrid::Ptr mask = nmc();
   if (!mask) return;
   CHECK(mask->activeVoxelCount() == 11357945);
-  CHECK(domain(*mask) == CoordBBox(Coord(0), Coord(300, 300, 250)));
+  CHECK(storedDomain(*mask) == CoordBBox(Coord(0), Coord(300, 300, 250)));
 }
 
 TEST_CASE("nmc: all reference counts", "[nmc]") {

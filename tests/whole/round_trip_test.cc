@@ -184,12 +184,12 @@ TEST_CASE("round_trip: labels in VDB, and as their own reduction by one", "[roun
   const auto same = reduceLabels(*grid, 1);
   checkSame(*same, voxels, Coord(0));
   CHECK(same->transform() == grid->transform());
-  CHECK(*domain(*same) == kBox);
+  CHECK(*storedDomain(*same) == kBox);
   writeVdb(folder / "a.vdb", {grid, same});
   for (const auto& read : readVdb(folder / "a.vdb")) {
     checkSame(*openvdb::gridPtrCast<Int32Grid>(read), voxels, Coord(0));
     CHECK(read->transform() == grid->transform());
-    CHECK(*domain(*read) == kBox);
-    CHECK(voxelSize(*read)->metres == 8.5e-6);
+    CHECK(*storedDomain(*read) == kBox);
+    CHECK(storedVoxelSize(*read)->metres == 8.5e-6);
   }
 }

@@ -108,7 +108,7 @@ std::string text(const CoordBBox& box) {
 /// Voxels of equal index are compared, so they must be of equal size, where both are known.
 void checkSameVoxels(const Options& o, const Int32Grid& truth, const Int32Grid& test) {
   constexpr double kTolerance = 1e-3;  // as for the spacings of an image
-  const auto a = voxelSize(truth), b = voxelSize(test);
+  const auto a = storedVoxelSize(truth), b = storedVoxelSize(test);
   if (!a || !b || std::abs(a->metres - b->metres) <= kTolerance * a->metres) return;
   std::ostringstream text;
   text.precision(4);
@@ -135,7 +135,7 @@ void run(const Options& o, const Common& common) {
                      confusionFile.isStandardOutput();
   if (common.quiet || asked) return;
   print(comparison);
-  const auto truthDomain = domain(*truth), testDomain = domain(*test);
+  const auto truthDomain = storedDomain(*truth), testDomain = storedDomain(*test);
   if (truthDomain && testDomain && *truthDomain != *testDomain)
     std::printf("note: the domains differ: %s and %s; voxels of equal index are compared\n",
                 text(*truthDomain).c_str(), text(*testDomain).c_str());

@@ -56,7 +56,7 @@ void report(const Options& o, const Common& common, const std::string& what, con
 }
 
 void writeGridAsImage(const Options& o, const Common& common, const openvdb::GridBase& grid) {
-  std::optional<CoordBBox> box = domain(grid);
+  std::optional<CoordBBox> box = storedDomain(grid);
   if (!box) {
     box = grid.evalActiveVoxelBoundingBox();
     if (grid.activeVoxelCount() == 0)

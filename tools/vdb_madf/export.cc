@@ -51,7 +51,7 @@ std::string kindOf(const std::string& out) {
 }
 
 std::string unitOf(const openvdb::GridBase& grid) {
-  const auto size = voxelSize(grid);
+  const auto size = storedVoxelSize(grid);
   return size ? size->unit() : std::string();
 }
 
@@ -61,7 +61,7 @@ void say(const Options& o, const Common& common, const std::string& text) {
 }
 
 CoordBBox boxOf(const Int32Grid& labels) {
-  const auto box = domain(labels);
+  const auto box = storedDomain(labels);
   return box ? *box : labels.evalActiveVoxelBoundingBox();
 }
 

@@ -56,7 +56,7 @@ void writeSample(const std::string& out, Sample& sample, Interrupter* interrupte
     writeVdb(out, grids, interrupter);
     return;
   }
-  const CoordBBox box = *domain(*sample.object);
+  const CoordBBox box = *storedDomain(*sample.object);
   writeImage(out, *sample.object, box, SampleType::uint8, interrupter);
   if (sample.truth) writeImage(truthPath(out), *sample.truth, box, SampleType::int32, interrupter);
 }
@@ -119,7 +119,7 @@ void addKind(CLI::App& verb, Common& common, Action& action, GenerateOptions& o,
       if (!common.quiet)
         std::cout << o.out << ": " << sample.object->activeVoxelCount() << " object voxels, "
                   << 100.0 * double(sample.object->activeVoxelCount()) /
-                         double(domain(*sample.object)->volume())
+                         double(storedDomain(*sample.object)->volume())
                   << " % of the volume\n";
     };
   });

@@ -49,7 +49,7 @@ Json describeGrid(const openvdb::GridBase& grid) {
   }
   const openvdb::Vec3d edge = grid.voxelSize();
   json["voxel_size_units"] = {edge.x(), edge.y(), edge.z()};
-  if (const auto size = voxelSize(grid)) json["voxel_size_mm"] = size->metres * 1e3;
+  if (const auto size = storedVoxelSize(grid)) json["voxel_size_mm"] = size->metres * 1e3;
   json["memory_bytes"] = grid.memUsage();
   Json metadata = Json::object();
   for (auto meta = grid.beginMeta(); meta != grid.endMeta(); ++meta)

@@ -298,7 +298,7 @@ Boundary boundaryOf(const std::string& boundary, const InputOptions& input,
                     const MaskGrid& object) {
   Boundary result = parseBoundary(boundary);
   if (result == Boundary::automatic) result = storedBoundary(object);
-  if (result == Boundary::open && !domain(object))
+  if (result == Boundary::open && !storedDomain(object))
     throw InvalidInput(input.path +
                        ": its domain is unknown, so the boundary cannot be open: use --boundary "
                        "closed, or give --domain x0,y0,z0:x1,y1,z1");

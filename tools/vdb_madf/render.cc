@@ -184,13 +184,13 @@ void run(const Options& o, const Common& common) {
   checkWritable(o.out);
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
   labels->tree().voxelizeActiveTiles();
-  std::optional<CoordBBox> box = domain(*labels);
+  std::optional<CoordBBox> box = storedDomain(*labels);
   if (!box) box = labels->evalActiveVoxelBoundingBox();
   if (box->empty())
     throw InvalidInput(o.input.path + ": has no labels and no domain: nothing to show");
 
   const std::vector<Panel> panels = drawPanels(o, *labels, *box, common.progress);
-  writePng(o.out, arrange(panels, voxelSize(*labels)));
+  writePng(o.out, arrange(panels, storedVoxelSize(*labels)));
   common.progress->end();
   if (common.quiet) return;
   std::cout << o.out << ": ";

@@ -130,7 +130,7 @@ Json summary(const Options& o, const Common& common, const Segmentation& s, cons
     json["domain_max"] = {s.domain->max().x(), s.domain->max().y(), s.domain->max().z()};
     json["porosity"] = 1 - double(counts.objectVoxels) / volume;
   }
-  if (const auto size = voxelSize(*s.grain)) json["voxel_size_mm"] = size->metres * 1e3;
+  if (const auto size = storedVoxelSize(*s.grain)) json["voxel_size_mm"] = size->metres * 1e3;
   addGrainSizes(s, json);
   for (const auto& [key, value] : {std::pair<const char*, std::string>{"grid", o.input.gridName},
                                    {"phase", o.input.phase},
@@ -142,8 +142,8 @@ Json summary(const Options& o, const Common& common, const Segmentation& s, cons
   json["gamma"] = o.segment.gamma;
   json["theta"] = o.segment.merge.theta;
   json["boundary"] = s.open ? "open" : "closed";
-  json["merge"] = name(o.segment.merge.mode);
-  json["adjacency"] = name(o.segment.merge.adjacency);
+  json["merge"] = toString(o.segment.merge.mode);
+  json["adjacency"] = toString(o.segment.merge.adjacency);
   json["threads"] = usedThreads(common);
   json["seconds_read"] = timing.read;
   for (const StageTime& stage : s.times) json["seconds_" + stage.stage] = stage.seconds;

@@ -31,7 +31,7 @@ struct Options {
   SweepOptions sweep;
 };
 
-constexpr int kMostThetas = 1000;
+constexpr int kMaxThetas = 1000;
 
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
@@ -58,9 +58,9 @@ std::vector<double> parseThetas(const std::string& text) {
       thetas.push_back(range[0]);
     } else {
       const double count = range.size() == 3 ? (range[1] - range[0]) / range[2] : -1;
-      if (!(count >= 0 && count < kMostThetas))
+      if (!(count >= 0 && count < kMaxThetas))
         throw WrongUsage("--theta " + part + ": must be a number or FIRST:LAST:STEP of at most " +
-                         std::to_string(kMostThetas) + " steps from FIRST to LAST");
+                         std::to_string(kMaxThetas) + " steps from FIRST to LAST");
       for (int i = 0; i <= int(count + 1e-9); ++i)
         thetas.push_back(asTyped(range[0] + i * range[2]));
     }
@@ -93,7 +93,7 @@ void parse(Options& o) {
     MergeArguments arguments;
     arguments.mode = mode;
     sweep.modes.push_back(arguments.parse().mode);
-    if (mode != name(sweep.modes.back()))
+    if (mode != toString(sweep.modes.back()))
       throw WrongUsage("--merge " + mode + ": the tests are both, angle and neck");
   }
   sweep.thetas = parseThetas(o.theta);
@@ -117,7 +117,7 @@ std::string table(const std::vector<SweepRow>& rows) {
          "small_grains_volume_share,largest_grain_volume_share\n";
   csv.precision(9);
   for (const SweepRow& row : rows)
-    csv << row.gamma << ',' << name(row.mode) << ',' << row.theta << ',' << row.grains << ','
+    csv << row.gamma << ',' << toString(row.mode) << ',' << row.theta << ',' << row.grains << ','
         << row.medianVoxels << ',' << row.smallGrains << ',' << share(row.smallGrains, row.grains)
         << ',' << share(row.smallVoxels, row.objectVoxels) << ','
         << share(row.largestVoxels, row.objectVoxels) << '\n';
@@ -132,7 +132,7 @@ void run(const Options& o, const Common& common) {
   options.boundary = boundaryOf(o.boundary, o.input, *object);
   options.maxMemory = availableMemory();
   const std::vector<SweepRow> rows =
-      naming(o.input.path, [&] { return sweep(*object, options, common.progress); });
+      naming(o.input.path, [&] { return parameterSweep(*object, options, common.progress); });
   csv.write(table(rows));
   plot.write(sweepPlot(rows, options.smallVoxels));
   common.progress->end();

@@ -179,7 +179,7 @@ std::string sweepPlot(const std::vector<SweepRow>& rows, int64_t smallVoxels) {
     const double x = kLeft + double(i % columns) * kLegendColumn;
     const double y = top + double(i / columns) * kLegendRow;
     svg << "<path " << lines[i].style << " d=\"M" << x << ' ' << y << "h34\"/><text x=\"" << x + 42
-        << "\" y=\"" << y + 4 << "\">gamma " << lines[i].gamma << ", " << name(lines[i].mode)
+        << "\" y=\"" << y + 4 << "\">gamma " << lines[i].gamma << ", " << toString(lines[i].mode)
         << "</text>\n";
   }
   svg << "</svg>\n";

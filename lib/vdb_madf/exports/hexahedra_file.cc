@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "vdb_madf/exports/hexahedra_file.h"
-#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/detail/bits.h"
+#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/labels/grain_name.h"
 
 #include <algorithm>
@@ -75,9 +75,9 @@ class Hexahedra {
   Hexahedra(const Int32Grid& labels, Interrupter* interrupter)
       : world_(detail::cubicTransform(labels.transform())), labels_(labels, interrupter) {
     const auto voxels = size_t(labels_.index().voxelCount());
-    if (voxels > kMostHexahedra)
+    if (voxels > kMaxHexahedra)
       throw InvalidInput("one element for each of " + std::to_string(voxels) +
-                         " voxels is too much (at most " + std::to_string(kMostHexahedra) +
+                         " voxels is too much (at most " + std::to_string(kMaxHexahedra) +
                          "): make the labels smaller first (export --as lod)");
     corners_ = cornersOf(labels_.index());
     around_.resize(labels_.index().leafCount());

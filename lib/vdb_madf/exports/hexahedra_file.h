@@ -11,7 +11,7 @@
 namespace vdb_madf {
 
 /// One element per voxel: more are some gigabytes of text, and more than solvers take.
-constexpr size_t kMostHexahedra = 20000000;
+constexpr size_t kMaxHexahedra = 20000000;
 
 struct HexahedraCounts {
   size_t grains = 0, elements = 0, nodes = 0;
@@ -28,7 +28,7 @@ struct HexahedraCounts {
 /// the same for any number of threads. No labels: no elements.
 /// Memory: some 20 bytes per voxel.
 /// @throw InvalidInput for another ending, voxels that are not cubes along the axes, more than
-///   kMostHexahedra voxels or a limit of leaf_index.h; IoError; Interrupted.
+///   kMaxHexahedra voxels or a limit of leaf_index.h; IoError; Interrupted.
 HexahedraCounts writeHexahedra(const std::string& path, const Int32Grid& labels,
                                Interrupter* interrupter = nullptr);
 /// True if writeHexahedra knows the ending.

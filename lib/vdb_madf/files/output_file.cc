@@ -22,7 +22,7 @@ namespace vdb_madf {
 namespace {
 
 /// File systems allow names of 255 bytes; what is added to the name takes less than 55.
-constexpr size_t kLongestStem = 200;
+constexpr size_t kMaxStem = 200;
 
 [[noreturn]] void fail(const std::string& path, const std::string& reason,
                        const std::string& advice) {
@@ -92,7 +92,7 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
   target_ = behindLinks(path_);
   const std::string folder = folderOf(target_);
   const std::string stem =
-      (folder == "." ? target_ : target_.substr(folder.size())).substr(0, kLongestStem);
+      (folder == "." ? target_ : target_.substr(folder.size())).substr(0, kMaxStem);
   // The number of the process tells programs apart, the counter threads and what a program of the
   // same number in another container left behind.
   int file = -1;

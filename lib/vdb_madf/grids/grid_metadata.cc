@@ -20,7 +20,7 @@ constexpr char kBoundary[] = "madf_boundary";
 
 }  // namespace
 
-std::optional<CoordBBox> domain(const openvdb::MetaMap& metadata) {
+std::optional<CoordBBox> storedDomain(const openvdb::MetaMap& metadata) {
   const auto lower = metadata.getMetadata<openvdb::Vec3IMetadata>(kDomainMin);
   const auto upper = metadata.getMetadata<openvdb::Vec3IMetadata>(kDomainMax);
   if (!lower && !upper) return std::nullopt;
@@ -36,7 +36,7 @@ void setDomain(openvdb::MetaMap& metadata, const CoordBBox& domain) {
   metadata.insertMeta(kDomainMax, openvdb::Vec3IMetadata(domain.max().asVec3i()));
 }
 
-std::optional<VoxelSize> voxelSize(const openvdb::MetaMap& metadata) {
+std::optional<VoxelSize> storedVoxelSize(const openvdb::MetaMap& metadata) {
   const auto metres = metadata.getMetadata<openvdb::DoubleMetadata>(kVoxelSize);
   if (!metres || !(metres->value() > 0)) return std::nullopt;
   return VoxelSize{metres->value()};

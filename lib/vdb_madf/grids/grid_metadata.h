@@ -13,12 +13,12 @@ namespace vdb_madf {
 /// The image domain B of a grid, both corners inclusive: metadata `madf_domain_min` and
 /// `madf_domain_max` (Vec3i). Absent: unknown.
 /// @throw InvalidInput if only one of the two is there, or min > max.
-std::optional<CoordBBox> domain(const openvdb::MetaMap& metadata);
+std::optional<CoordBBox> storedDomain(const openvdb::MetaMap& metadata);
 void setDomain(openvdb::MetaMap& metadata, const CoordBBox& domain);
 
 /// Physical voxel size: metadata `madf_voxel_size_m` (double), and the unit of the transform in
 /// `madf_length_unit`. Absent: no physical size, one voxel is one unit.
-std::optional<VoxelSize> voxelSize(const openvdb::MetaMap& metadata);
+std::optional<VoxelSize> storedVoxelSize(const openvdb::MetaMap& metadata);
 /// Sets the metadata and the grid's linear transform: world = index * size, so that the world
 /// position of voxel (i,j,k) is its centre. Without a size the transform is the identity.
 void setVoxelSize(openvdb::GridBase& grid, const std::optional<VoxelSize>& size);

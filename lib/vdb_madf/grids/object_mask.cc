@@ -121,7 +121,7 @@ MaskTree::Ptr objectOf(const Grid& grid, const std::optional<Selection>& selecti
     return active ? (*selection)(double(value)) : selection->invert && isNumber(value);
   };
   if (!selection->invert) return listedVoxels(tree, accepts);
-  const auto extent = domain(grid);
+  const auto extent = storedDomain(grid);
   if (!extent)
     throw InvalidInput("grid '" + grid.getName() +
                        "': an inverted selection needs a domain, which this grid does not carry");

@@ -65,7 +65,7 @@ std::vector<SourceLeaf> sortedLeaves(const MaskTree& tree) {
           leaves.push_back({Coord(x, y, z), nullptr});
   });
   detail::parallelSort(leaves.begin(), leaves.end(),
-                     [](const auto& a, const auto& b) { return a.origin < b.origin; });
+                       [](const auto& a, const auto& b) { return a.origin < b.origin; });
   return leaves;
 }
 

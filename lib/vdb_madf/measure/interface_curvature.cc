@@ -13,11 +13,11 @@ namespace vdb_madf {
 namespace {
 
 constexpr double kReach = 5;        // voxels: flattens interfaces of a lesser radius
-constexpr int kMostPoints = 32;     // of one interface: time, not memory
-constexpr int kFewestFaces = 10;    // for the six coefficients
+constexpr int kMaxPoints = 32;      // of one interface: time, not memory
+constexpr int kMinFaces = 10;       // for the six coefficients
 constexpr double kSingular = 1e-5;  // least pivot of the scaled normal equations, of the largest
 
-Eigen::Vector3d centre(const InterfaceFace& face) {
+Eigen::Vector3d center(const InterfaceFace& face) {
   Eigen::Vector3d point(face.lower.x(), face.lower.y(), face.lower.z());
   point[face.axis] += 0.5;
   return point;
@@ -33,7 +33,7 @@ class Fit {
  public:
   std::optional<Jet> operator()(const std::vector<InterfaceFace>& faces, size_t at) {
     gather(faces, at);
-    if (points_.size() < size_t(kFewestFaces)) return std::nullopt;
+    if (points_.size() < size_t(kMinFaces)) return std::nullopt;
     const Eigen::Vector3d normal = normals_.normalized();
     if (!(normals_.norm() > 0)) return std::nullopt;
     const Eigen::Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
@@ -55,7 +55,7 @@ class Fit {
     }
     const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(matrix);
     const auto pivots = solver.vectorD();
-    if (rows_.size() < size_t(kFewestFaces) || !(pivots.minCoeff() > kSingular * pivots.maxCoeff()))
+    if (rows_.size() < size_t(kMinFaces) || !(pivots.minCoeff() > kSingular * pivots.maxCoeff()))
       return std::nullopt;
     const Eigen::Matrix<double, 6, 1> c = solver.solve(right);
     const double hu = c[1], hv = c[2], huu = 2 * c[3], huv = c[4], hvv = 2 * c[5];
@@ -86,12 +86,12 @@ class Fit {
   void gather(const std::vector<InterfaceFace>& faces, size_t at) {
     points_.clear();
     normals_.setZero();
-    const Eigen::Vector3d here = centre(faces[at]);
+    const Eigen::Vector3d here = center(faces[at]);
     const auto first =
         std::lower_bound(faces.begin(), faces.end(), int(std::floor(here.x() - kReach)) - 1,
                          [](const InterfaceFace& face, int x) { return face.lower.x() < x; });
     for (auto face = first; face != faces.end() && face->lower.x() <= here.x() + kReach; ++face) {
-      const Eigen::Vector3d offset = centre(*face) - here;
+      const Eigen::Vector3d offset = center(*face) - here;
       if (offset.squaredNorm() > kReach * kReach) continue;
       points_.push_back({offset / kReach, face->axis, face->sign});
       normals_[face->axis] += face->sign;
@@ -111,7 +111,7 @@ double deviation(double sum, double squares, double count) {
 }  // namespace
 
 std::optional<InterfaceCurvature> interfaceCurvature(const std::vector<InterfaceFace>& faces) {
-  const size_t count = std::min(faces.size(), size_t(kMostPoints));
+  const size_t count = std::min(faces.size(), size_t(kMaxPoints));
   InterfaceCurvature result;
   double mean = 0, meanSquares = 0, gaussian = 0, gaussianSquares = 0, squares = 0, weights = 0;
   Fit fit;

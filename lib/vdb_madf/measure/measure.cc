@@ -48,13 +48,13 @@ Measurements measure(const Int32Grid& labels, const MeasureOptions& options,
                      Interrupter* interrupter) {
   const detail::LabelLeaves leaves(labels, interrupter);
   const LeafIndex& index = leaves.index();
-  const std::optional<CoordBBox> domainBox = options.domain ? options.domain : domain(labels);
+  const std::optional<CoordBBox> domainBox = options.domain ? options.domain : storedDomain(labels);
   const Boundary boundary =
       options.boundary == Boundary::automatic ? storedBoundary(labels) : options.boundary;
   const Obstacles obstacles = resolveBoundary(index, boundary, domainBox);
 
   Measurements result;
-  result.voxelSize = voxelSize(labels);
+  result.voxelSize = storedVoxelSize(labels);
   SampleMeasures& sample = result.sample;
   sample.domainKnown = domainBox.has_value();
   sample.box = domainBox.value_or(index.boundingBox());

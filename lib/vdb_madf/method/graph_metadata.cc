@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include "vdb_madf/method/detail/graph_metadata_type.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/method/detail/graph_metadata_type.h"
 
 namespace vdb_madf {
 
@@ -212,7 +212,7 @@ void setGraph(openvdb::GridBase& grid, ManifoldGraph graph) {
   grid.insertMeta(kName, GraphMetadata(std::move(graph)));
 }
 
-std::optional<ManifoldGraph> graph(const openvdb::GridBase& grid) {
+std::optional<ManifoldGraph> storedGraph(const openvdb::GridBase& grid) {
   const auto metadata = std::dynamic_pointer_cast<const GraphMetadata>(grid[kName]);
   if (!metadata) return std::nullopt;
   return metadata->value();

@@ -21,7 +21,7 @@ namespace vdb_madf {
 void setGraph(openvdb::GridBase& grid, ManifoldGraph graph);
 
 /// Absent: the grid has no graph.
-std::optional<ManifoldGraph> graph(const openvdb::GridBase& grid);
+std::optional<ManifoldGraph> storedGraph(const openvdb::GridBase& grid);
 
 void removeGraph(openvdb::GridBase& grid);
 

@@ -45,8 +45,8 @@ void count(const ManifoldGraph& graph, const SweepOptions& options, SweepRow& ro
 
 }  // namespace
 
-std::vector<SweepRow> sweep(const MaskGrid& object, const SweepOptions& options,
-                            Interrupter* interrupter) {
+std::vector<SweepRow> parameterSweep(const MaskGrid& object, const SweepOptions& options,
+                                     Interrupter* interrupter) {
   check(options);
   std::vector<SweepRow> rows;
   for (const int64_t gamma : options.gammas) {

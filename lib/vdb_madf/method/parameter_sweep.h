@@ -43,7 +43,7 @@ struct SweepRow {
 /// each gamma, the graph of manifolds then merged for each mode and theta. Each row equals what
 /// segment() says with these options; the rows do not depend on threads.
 /// @throw InvalidInput if a list is empty, an option is out of range, or as segment(); Interrupted.
-std::vector<SweepRow> sweep(const MaskGrid& object, const SweepOptions& options,
-                            Interrupter* interrupter = nullptr);
+std::vector<SweepRow> parameterSweep(const MaskGrid& object, const SweepOptions& options,
+                                     Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

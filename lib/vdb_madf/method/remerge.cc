@@ -21,7 +21,7 @@ constexpr size_t kLeafGrain = 64;
 Int32Grid::Ptr remerge(const Int32Grid& manifold, const MergeOptions& options,
                        Interrupter* interrupter) {
   checkMergeOptions(options);
-  const std::optional<ManifoldGraph> graph = vdb_madf::graph(manifold);
+  const std::optional<ManifoldGraph> graph = vdb_madf::storedGraph(manifold);
   if (!graph)
     throw InvalidInput("grid '" + manifold.getName() +
                        "' carries no graph of manifolds: segment again with --keep manifold");

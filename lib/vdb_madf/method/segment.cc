@@ -70,7 +70,7 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
   const bool filter = options.gamma > 1;
   checkMemory(object, options);
   detail::Stages stages(interrupter, filter, result.times);
-  result.domain = options.domain ? options.domain : domain(object);
+  result.domain = options.domain ? options.domain : storedDomain(object);
 
   stages.begin("leaf_index");
   const LeafIndex index(object);

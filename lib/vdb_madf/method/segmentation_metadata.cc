@@ -25,7 +25,7 @@ void setCount(openvdb::GridBase& grid, const char* key, int64_t value) {
 
 }  // namespace
 
-const char* name(MergeMode mode) {
+const char* toString(MergeMode mode) {
   switch (mode) {
     case MergeMode::both:
       return "both";
@@ -37,7 +37,7 @@ const char* name(MergeMode mode) {
   return "neck";
 }
 
-const char* name(Adjacency adjacency) {
+const char* toString(Adjacency adjacency) {
   return adjacency == Adjacency::manifold ? "manifold" : "cell";
 }
 
@@ -58,8 +58,8 @@ void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options
 
 void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int64_t grains) {
   grid.insertMeta("madf_theta", openvdb::DoubleMetadata(options.theta));
-  setText(grid, "madf_merge", name(options.mode));
-  setText(grid, "madf_adjacency", name(options.adjacency));
+  setText(grid, "madf_merge", toString(options.mode));
+  setText(grid, "madf_adjacency", toString(options.adjacency));
   setCount(grid, kGrains, grains);
 }
 

@@ -25,7 +25,7 @@ void setBoundary(openvdb::GridBase& grid, Boundary boundary);  ///< automatic: s
 /// The number of grains that a grid says it has.
 std::optional<int64_t> grainCount(const openvdb::GridBase& grid);
 
-const char* name(MergeMode mode);
-const char* name(Adjacency adjacency);
+const char* toString(MergeMode mode);
+const char* toString(Adjacency adjacency);
 
 }  // namespace vdb_madf

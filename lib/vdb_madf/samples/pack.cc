@@ -43,7 +43,7 @@ class PackBuilder {
     // Centres lie in the box grown by the largest radius, so that the faces see as many balls as
     // the middle.
     const double grow = 2 * options.maxRadius;
-    centreVolume_ =
+    centerVolume_ =
         (options.size.x() + grow) * (options.size.y() + grow) * (options.size.z() + grow);
   }
 
@@ -80,7 +80,7 @@ class PackBuilder {
     const double r = options_.maxRadius;
     const double largest = 4.0 / 3.0 * kPi * r * r * r;
     const double free = boxVoxels_ - double(balls_.voxelCount());
-    const double volume = kBatchPart * missing() / free * centreVolume_;
+    const double volume = kBatchPart * missing() / free * centerVolume_;
     if (volume < double(kMinBatch) * largest) return false;
     std::vector<Ball> batch;
     double sum = 0;
@@ -116,7 +116,7 @@ class PackBuilder {
   Interrupter* interrupter_;
   detail::RandomSequence random_;
   detail::BallUnion balls_;
-  double boxVoxels_, goal_, centreVolume_ = 0;
+  double boxVoxels_, goal_, centerVolume_ = 0;
 };
 
 }  // namespace

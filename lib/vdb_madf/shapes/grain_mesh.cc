@@ -22,7 +22,7 @@ using openvdb::Vec3d;
 
 constexpr size_t kBlockGrain = 16;
 constexpr size_t kItemGrain = 1 << 16;
-constexpr int kMostRounds = 1000;
+constexpr int kMaxRounds = 1000;
 
 // --- around one corner
 
@@ -385,7 +385,7 @@ std::vector<openvdb::Vec3f> latticePositions(const SurfaceNet& net) {
 
 GrainMesh grainMesh(const Int32Grid& labels, const GrainMeshOptions& options,
                     Interrupter* interrupter) {
-  if (options.smoothing < 0 || options.smoothing > kMostRounds)
+  if (options.smoothing < 0 || options.smoothing > kMaxRounds)
     throw InvalidInput("smoothing must lie between 0 and 1000");
   const LabelBlocks blocks(labels);
   SurfaceNet net = NetBuilder(blocks, options.smoothing > 0, interrupter).build();

@@ -19,11 +19,11 @@ namespace {
 
 using openvdb::Vec3s;
 
-constexpr float kWidestBand = 16;
+constexpr float kMaxHalfWidth = 16;
 constexpr size_t kLeafGrain = 256;
 
 void check(const LevelSetOptions& options) {
-  if (!(options.halfWidth >= 1) || options.halfWidth > kWidestBand)
+  if (!(options.halfWidth >= 1) || options.halfWidth > kMaxHalfWidth)
     throw InvalidInput("the half width of the narrow band must lie between 1 and 16 voxels");
 }
 

@@ -26,9 +26,9 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/memory.h"
-#include "vdb_madf/method/initialize.h"
 #include "vdb_madf/files/detail/file_buffer.h"
 #include "vdb_madf/files/output_file.h"
+#include "vdb_madf/method/initialize.h"
 #include "vdb_madf/vdb/detail/vdb_tree_check.h"
 
 namespace vdb_madf {

@@ -168,7 +168,7 @@ bool tryGrid(const Destination& to, const openvdb::GridBase& grid, Interrupter* 
 
 /// In mm; in voxels, where there is no voxel size.
 std::array<double, 3> originOf(const openvdb::GridBase& grid, const Coord& first) {
-  const auto size = voxelSize(grid);
+  const auto size = storedVoxelSize(grid);
   const openvdb::Vec3d place =
       size ? (size->unit() == "um" ? 1e-3 : 1.0) * grid.indexToWorld(first) : first.asVec3d();
   return {place.x(), place.y(), place.z()};
@@ -182,7 +182,7 @@ void writeImage(const std::string& path, const openvdb::GridBase& grid, const Co
   ImageInfo info;
   info.size = toImageSize(box.dim());
   info.type = type;
-  info.voxelSize = voxelSize(grid);
+  info.voxelSize = storedVoxelSize(grid);
   const Destination to{path, box, info, originOf(grid, box.min())};
   if (!tryGrid<bool>(to, grid, interrupter) &&
       !tryGrid<openvdb::ValueMask>(to, grid, interrupter) &&

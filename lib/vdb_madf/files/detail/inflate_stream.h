@@ -17,7 +17,7 @@ class InflateStream {
  public:
   /// No byte of deflated data stands for more bytes than this (258 bytes in two bits): the bound on
   /// what a header may claim.
-  static constexpr uint64_t kMostExpansion = 1032;
+  static constexpr uint64_t kMaxExpansion = 1032;
 
   InflateStream(const InputFile& file, uint64_t offset);
   ~InflateStream();

@@ -19,7 +19,7 @@ namespace vdb_madf::detail {
 namespace {
 
 /// Linux moves at most 2 GiB in one call.
-constexpr size_t kMostPerCall = size_t(1) << 30;
+constexpr size_t kMaxBytesPerCall = size_t(1) << 30;
 
 }  // namespace
 
@@ -53,7 +53,7 @@ void InputFile::read(uint64_t offset, void* to, size_t count) const {
                   std::to_string(offset + count) + " needed");
   char* place = static_cast<char*>(to);
   while (count > 0) {
-    const ssize_t got = pread(descriptor_, place, std::min(count, kMostPerCall), off_t(offset));
+    const ssize_t got = pread(descriptor_, place, std::min(count, kMaxBytesPerCall), off_t(offset));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) throw IoError(name_ + ": cannot be read: " + std::strerror(errno));
     if (got == 0) throw IoError(name_ + ": became shorter while it was read");

@@ -17,7 +17,7 @@ namespace vdb_madf::detail {
 namespace {
 
 /// Linux moves at most 2 GiB in one call.
-constexpr size_t kMostPerCall = size_t(1) << 30;
+constexpr size_t kMaxBytesPerCall = size_t(1) << 30;
 
 }  // namespace
 
@@ -33,7 +33,7 @@ OutputStream::~OutputStream() {
 void OutputStream::write(const void* bytes, size_t count) {
   const char* place = static_cast<const char*>(bytes);
   while (count > 0) {
-    const ssize_t put = ::write(descriptor_, place, std::min(count, kMostPerCall));
+    const ssize_t put = ::write(descriptor_, place, std::min(count, kMaxBytesPerCall));
     if (put < 0 && errno == EINTR) continue;
     if (put <= 0) throw IoError(file_.path() + ": cannot be written: " + std::strerror(errno));
     place += put;

@@ -15,13 +15,13 @@ namespace vdb_madf::detail {
 namespace {
 
 /// DGtal itself takes 20 lines of 128 characters.
-constexpr size_t kLongestHeader = 4096;
+constexpr size_t kMaxHeaderBytes = 4096;
 
 /// Lines of "Key: value" up to a line with a full stop.
 class DgtalHeader {
  public:
   explicit DgtalHeader(const InputFile& file) : path_(file.name()) {
-    const std::string head = file.head(kLongestHeader);
+    const std::string head = file.head(kMaxHeaderBytes);
     while (true) {
       const size_t end = head.find('\n', dataOffset_);
       if (end == std::string::npos)

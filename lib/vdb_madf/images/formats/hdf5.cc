@@ -22,14 +22,14 @@ namespace vdb_madf::detail {
 namespace {
 
 /// Chunks up to this are kept for the next slabs.
-constexpr uint64_t kLargestCache = uint64_t(256) << 20;
+constexpr uint64_t kMaxCacheBytes = uint64_t(256) << 20;
 /// A prime number well above the chunks of a layer.
 constexpr size_t kCacheSlots = 12421;
 /// A byte of the file may stand for so many of samples: compression, and chunks that were never
 /// written and hold the fill value.
-constexpr uint64_t kMostExpansion = uint64_t(1) << 16;
-constexpr size_t kMostListed = 8;
-constexpr int kMostAxes = 8;
+constexpr uint64_t kMaxExpansion = uint64_t(1) << 16;
+constexpr size_t kMaxListed = 8;
+constexpr int kMaxAxes = 8;
 
 /// An open object of the library.
 class Handle {
@@ -77,7 +77,7 @@ std::vector<hsize_t> lengthsOf(hid_t dataset) {
   const Handle space(H5Dget_space(dataset), H5Sclose);
   if (!space) return {};
   const int axes = H5Sget_simple_extent_ndims(space);
-  if (axes < 1 || axes > kMostAxes) return {};
+  if (axes < 1 || axes > kMaxAxes) return {};
   std::vector<hsize_t> lengths(static_cast<size_t>(axes));
   if (H5Sget_simple_extent_dims(space, lengths.data(), nullptr) < 0) return {};
   return lengths;
@@ -135,10 +135,10 @@ std::string onlyVolume(const std::string& path, hid_t file) {
   if (volumes.empty())
     throw IoError(path + ": holds no dataset of three dimensions with numbers in it");
   std::string list;
-  for (size_t i = 0; i < volumes.size() && i < kMostListed; ++i)
+  for (size_t i = 0; i < volumes.size() && i < kMaxListed; ++i)
     list += (i ? ", " : "") + detail::quoted(volumes[i]);
   throw IoError(path + ": choose one of its datasets (--dataset): " + list +
-                (volumes.size() > kMostListed ? " ..." : ""));
+                (volumes.size() > kMaxListed ? " ..." : ""));
 }
 
 ImageSize sizeOf(const std::string& path, const std::string& name,
@@ -214,7 +214,7 @@ class Hdf5Reader : public ImageReader {
     const uint64_t held =
         std::min<uint64_t>(H5Dget_storage_size(dataset_), InputFile(path_).size());
     const uint64_t bytes = imageBytes(info_) / sampleSize(info_.type) * stored_.bytes();
-    if (bytes / kMostExpansion > held || held == 0)
+    if (bytes / kMaxExpansion > held || held == 0)
       fail("has " + std::to_string(held) + " bytes in the file, too few for " +
            std::to_string(bytes) + " of samples");
     const Handle creation(H5Dget_create_plist(dataset_), H5Pclose);
@@ -226,14 +226,14 @@ class Hdf5Reader : public ImageReader {
     if (H5Pget_chunk(creation, int(chunk.size()), chunk.data()) < 0) fail("is damaged");
     uint64_t chunkBytes = stored_.bytes();
     for (const hsize_t n : chunk)
-      if (n < 1 || (chunkBytes *= n) > std::max(bytes, held * kMostExpansion))
+      if (n < 1 || (chunkBytes *= n) > std::max(bytes, held * kMaxExpansion))
         fail("has chunks that are too large for it");
     const uint64_t depth =
         std::min<uint64_t>(chunk[chunk.size() - 3], lengths_[lengths_.size() - 3]);
     const uint64_t layer = bytes / lengths_[lengths_.size() - 3] * depth;
     const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
-    H5Pset_chunk_cache(access, kCacheSlots, size_t(std::min(kLargestCache, layer * 2 + chunkBytes)),
-                       1.0);
+    H5Pset_chunk_cache(access, kCacheSlots,
+                       size_t(std::min(kMaxCacheBytes, layer * 2 + chunkBytes)), 1.0);
     dataset_ = openDataset(file_, name_, access);
     if (!dataset_) fail("cannot be opened again");
   }

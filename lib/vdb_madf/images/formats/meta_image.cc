@@ -21,7 +21,7 @@ namespace vdb_madf::detail {
 namespace {
 
 /// Real headers have well under 2 KiB.
-constexpr size_t kLongestHeader = size_t(1) << 16;
+constexpr size_t kMaxHeaderBytes = size_t(1) << 16;
 
 struct TypeName {
   const char* name;
@@ -37,7 +37,7 @@ constexpr TypeName kTypes[] = {
 class MetaHeader {
  public:
   explicit MetaHeader(const InputFile& file) : path_(file.name()) {
-    const std::string head = file.head(kLongestHeader);
+    const std::string head = file.head(kMaxHeaderBytes);
     while (dataOffset_ < head.size() && !find("ElementDataFile")) {
       const size_t end = std::min(head.find('\n', dataOffset_), head.size());
       const std::string line = trimmed(head.substr(dataOffset_, end - dataOffset_));

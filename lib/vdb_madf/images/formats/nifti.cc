@@ -24,9 +24,9 @@ namespace {
 
 constexpr size_t kHeaderBytes = 348;
 /// The header is followed by the four bytes of an extension.
-constexpr double kLeastOffset = 352;
+constexpr double kMinOffset = 352;
 /// Extensions (DICOM headers, say) lie before the samples.
-constexpr double kMostOffset = 1 << 26;
+constexpr double kMaxOffset = 1 << 26;
 // Byte offsets in the header.
 constexpr size_t kDim = 40, kDataType = 70, kPixDim = 76, kVoxOffset = 108, kSlope = 112,
                  kIntercept = 116, kUnits = 123, kMagic = 344;
@@ -104,7 +104,7 @@ class NiftiHeader {
 
   uint64_t offset() const {
     const double offset = double(number<float>(kVoxOffset));
-    if (!(offset >= kLeastOffset && offset <= kMostOffset) || offset != std::floor(offset))
+    if (!(offset >= kMinOffset && offset <= kMaxOffset) || offset != std::floor(offset))
       throw IoError(path_ + ": its samples begin at byte " + shortestDecimal(offset) +
                     ", which cannot be: the NIfTI header is damaged");
     return uint64_t(offset);

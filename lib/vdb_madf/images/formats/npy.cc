@@ -18,7 +18,7 @@ namespace {
 
 const std::string kMagic = "\x93NUMPY";
 /// Records of many fields have long headers, a volume has not.
-constexpr size_t kLongestHeader = size_t(1) << 16;
+constexpr size_t kMaxHeaderBytes = size_t(1) << 16;
 /// The samples begin at a multiple of this.
 constexpr size_t kAlignment = 64;
 
@@ -89,7 +89,7 @@ class Dictionary {
 
 /// The text of the header, and where the samples begin.
 std::pair<std::string, uint64_t> headerOf(const InputFile& file) {
-  const std::string head = file.head(kLongestHeader);
+  const std::string head = file.head(kMaxHeaderBytes);
   const auto byte = [&](size_t i) { return size_t(static_cast<unsigned char>(head[i])); };
   if (!isNpyHeader(head) || head.size() < 12)
     throw IoError(file.name() + ": is not a whole npy file");

@@ -19,9 +19,9 @@ namespace vdb_madf::detail {
 namespace {
 
 /// Headers hold key-value pairs of any program (DICOM tags, say), so they are allowed to be long.
-constexpr size_t kLongestHeader = size_t(1) << 20;
+constexpr size_t kMaxHeaderBytes = size_t(1) << 20;
 /// A line skip beyond this is no header of text.
-constexpr int64_t kMostLines = 1 << 20;
+constexpr int64_t kMaxLines = 1 << 20;
 /// Largest cosine between axes that still counts as a right angle.
 constexpr double kShear = 1e-3;
 
@@ -70,7 +70,7 @@ std::string fieldName(const std::string& text) {
 class NrrdHeader {
  public:
   explicit NrrdHeader(const InputFile& file) : path_(file.name()) {
-    const std::string head = file.head(kLongestHeader);
+    const std::string head = file.head(kMaxHeaderBytes);
     if (head.compare(0, 4, "NRRD") != 0) throw IoError(path_ + ": does not begin with NRRD");
     bool first = true;
     while (dataOffset_ < head.size()) {
@@ -82,7 +82,7 @@ class NrrdHeader {
       if (!first && line[0] != '#') addField(line);
       first = false;
     }
-    if (file.size() > kLongestHeader) throw IoError(path_ + ": the NRRD header has no end");
+    if (file.size() > kMaxHeaderBytes) throw IoError(path_ + ": the NRRD header has no end");
   }
 
   size_t dataOffset() const { return dataOffset_; }
@@ -267,7 +267,7 @@ std::unique_ptr<ImageReader> openNrrd(const std::string& path) {
   else
     layout.offset = header.dataOffset();
   const int64_t lines = header.integer("lineskip", 0), bytes = header.integer("byteskip", 0);
-  if (lines < 0 || lines > kMostLines) header.fail("lineskip");
+  if (lines < 0 || lines > kMaxLines) header.fail("lineskip");
   if (bytes < -1 || (bytes == -1 && layout.deflated)) header.fail("byteskip");
   layout.offset = skipLines(*file, layout.offset, lines);
   // Of compressed data, lines are skipped before and bytes after decompression.

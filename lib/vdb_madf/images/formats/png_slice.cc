@@ -106,7 +106,7 @@ Picture pictureOf(const Source& source, const Decoder& decoder) {
   if (bits == 16 && channels > 2)
     throw IoError(name + ": has colours of 16 bits: convert it to grey values first");
   const uint64_t bytes = picture.samples() / 8 * uint64_t(bits * channels);
-  if (bytes / InflateStream::kMostExpansion > source.file.size())
+  if (bytes / InflateStream::kMaxExpansion > source.file.size())
     throw IoError(name + ": has " + std::to_string(source.file.size()) + " bytes, too few for " +
                   picture.text());
   return picture;

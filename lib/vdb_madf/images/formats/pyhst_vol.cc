@@ -19,7 +19,7 @@ namespace vdb_madf::detail {
 namespace {
 
 /// A dozen lines.
-constexpr size_t kLongestHeader = size_t(1) << 14;
+constexpr size_t kMaxHeaderBytes = size_t(1) << 14;
 const std::string kInfoEnding = ".info";
 
 bool hasInfoEnding(const std::string& path) {
@@ -30,7 +30,7 @@ bool hasInfoEnding(const std::string& path) {
 class PyhstHeader {
  public:
   explicit PyhstHeader(const InputFile& file) : path_(file.name()) {
-    const std::string text = file.head(kLongestHeader);
+    const std::string text = file.head(kMaxHeaderBytes);
     if (file.size() > text.size()) throw IoError(path_ + ": is too long for an .info file");
     for (size_t begin = 0; begin < text.size();) {
       const size_t end = std::min(text.find('\n', begin), text.size());

@@ -124,7 +124,7 @@ std::unique_ptr<ImageReader> openSamples(const std::string& path, const ImageInf
                   " bytes, but its samples begin at " + std::to_string(place.offset));
   const uint64_t held = size - place.offset;
   if (place.deflated) {
-    const uint64_t most = held * InflateStream::kMostExpansion;
+    const uint64_t most = held * InflateStream::kMaxExpansion;
     if (place.skip > most || needed > most - place.skip)
       throw IoError(data->name() + ": has " + std::to_string(held) +
                     " compressed bytes, too few for " + describe(info));

@@ -18,7 +18,7 @@ namespace vdb_madf::detail {
 namespace {
 
 /// Logs have some kilobytes.
-constexpr uint64_t kLongestLog = uint64_t(1) << 20;
+constexpr uint64_t kMaxLogBytes = uint64_t(1) << 20;
 
 bool isDigit(char c) {
   return c >= '0' && c <= '9';
@@ -131,7 +131,7 @@ std::optional<VoxelSize> voxelSizeInLog(const std::string& folder) {
   for (const std::string& path : slicesIn(folder, {".log"})) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) continue;
-    const auto edge = micrometresIn(InputFile(path).head(kLongestLog));
+    const auto edge = micrometresIn(InputFile(path).head(kMaxLogBytes));
     if (!edge) continue;
     if (size) return std::nullopt;  // which one belongs to the slices?
     size = cubicVoxelSize(path, {*edge, *edge, *edge}, unitsPerMetre("um"));

@@ -21,14 +21,14 @@ constexpr int kDeflateLevel = 1;
 /// Readers decode a strip at a time.
 constexpr uint64_t kStripBytes = uint64_t(1) << 20;
 /// Offsets of classic TIFF have 32 bits.
-constexpr uint64_t kLargestClassic = uint64_t(4000) << 20;
+constexpr uint64_t kMaxClassicBytes = uint64_t(4000) << 20;
 /// Tags of a page and its strip table, generously.
 constexpr uint64_t kPageOverhead = 4096;
 
 /// Deflate may add a little to what it cannot compress.
 bool needsBigTiff(const ImageInfo& info) {
   const uint64_t bytes = imageBytes(info);
-  return bytes + bytes / 256 + kPageOverhead * uint64_t(info.size.z) > kLargestClassic;
+  return bytes + bytes / 256 + kPageOverhead * uint64_t(info.size.z) > kMaxClassicBytes;
 }
 
 uint16_t sampleFormat(SampleType type) {

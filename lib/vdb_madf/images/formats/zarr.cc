@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A decoded layer of chunks up to this is kept for the next slabs.
-constexpr uint64_t kLargestLayer = uint64_t(256) << 20;
+constexpr uint64_t kMaxLayerBytes = uint64_t(256) << 20;
 
 bool isThere(const fs::path& path) {
   std::error_code error;
@@ -113,7 +113,7 @@ class ZarrReader : public ImageReader {
     info_.type = array_.type();
     info_.format = "zarr";
     const uint64_t depth = uint64_t(std::min(array_.slicesPerChunk(), info_.size.z));
-    keepLayer_ = sliceBytes(info_) * depth <= kLargestLayer;
+    keepLayer_ = sliceBytes(info_) * depth <= kMaxLayerBytes;
   }
   size_t axes() const { return array_.leadingAxes() + 3; }
   void setVoxelSize(const std::optional<VoxelSize>& size) { info_.voxelSize = size; }

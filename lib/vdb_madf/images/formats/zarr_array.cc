@@ -22,14 +22,14 @@ namespace vdb_madf::detail {
 namespace {
 
 /// Blosc and numcodecs count in 31 bits.
-constexpr uint64_t kLargestChunk = (uint64_t(1) << 31) - 1;
+constexpr uint64_t kMaxChunkBytes = (uint64_t(1) << 31) - 1;
 /// Chunks beyond this are decoded one after the other, for the memory they take.
 constexpr uint64_t kLargeChunk = uint64_t(1) << 26;
 /// The most that any of blosc's codecs makes of a byte: zstd's runs, 128 KiB in four bytes.
-constexpr uint64_t kMostBloscExpansion = uint64_t(1) << 15;
+constexpr uint64_t kMaxBloscExpansion = uint64_t(1) << 15;
 /// Of so many chunks one at least has to be there.
-constexpr uint64_t kSparsest = 4096;
-constexpr uint64_t kLongestSide = uint64_t(1) << 20;
+constexpr uint64_t kMaxChunksPerStored = 4096;
+constexpr uint64_t kMaxImageSide = uint64_t(1) << 20;
 
 /// The axes of a shape: x, y, z of the last three, the others have to be 1.
 ImageSize lastThree(const std::string& name, const char* key, const Json& shape) {
@@ -41,9 +41,9 @@ ImageSize lastThree(const std::string& name, const char* key, const Json& shape)
   for (size_t i = 0; i < shape.size(); ++i) {
     const Json& length = shape[i];
     if (!length.is_number_unsigned() || length.get<uint64_t>() < 1 ||
-        length.get<uint64_t>() > kLongestSide)
+        length.get<uint64_t>() > kMaxImageSide)
       throw IoError(name + ": its " + key + " " + detail::quoted(text) + " is not within 1 .. " +
-                    std::to_string(kLongestSide) + " a side");
+                    std::to_string(kMaxImageSide) + " a side");
     const auto n = length.get<uint64_t>();
     if (i + 3 >= shape.size())
       last[int(shape.size() - 1 - i)] = int(n);
@@ -118,7 +118,7 @@ ZarrArray::ZarrArray(const std::string& name, const std::string& folder)
     throw IoError(name + ": its fill value " +
                   detail::quoted(member(json, "fill_value").dump(-1, ' ', true)) + " is no " +
                   sampleTypeName(stored_.type));
-  if (chunkSamples() > kLargestChunk / stored_.bytes())
+  if (chunkSamples() > kMaxChunkBytes / stored_.bytes())
     throw IoError(name + ": its chunks are larger than 2 GB");
   checkPresence();
 }
@@ -134,7 +134,7 @@ void ZarrArray::checkPresence() const {
        !error && entry != end; entry.increment(error))
     present += entry->path().filename().string()[0] != '.' && !entry->is_directory(error);
   const uint64_t samples = uint64_t(size_.x) * uint64_t(size_.y) * uint64_t(size_.z);
-  if (samples / kSparsest > present * chunkSamples() || present == 0)
+  if (samples / kMaxChunksPerStored > present * chunkSamples() || present == 0)
     throw IoError(name_ + ": has " + std::to_string(present) +
                   " chunks, too few for its shape: is a part missing?");
 }
@@ -161,19 +161,19 @@ bool ZarrArray::decode(const ChunkNumber& chunk, std::vector<char>& stored) cons
     stored.resize(size_t(bytes));
     file.read(0, stored.data(), stored.size());
   } else if (codec_ == Codec::deflate) {
-    if (bytes > file.size() * InflateStream::kMostExpansion) fail(file.size());
+    if (bytes > file.size() * InflateStream::kMaxExpansion) fail(file.size());
     stored.resize(size_t(bytes));
     InflateStream stream(file, 0);
     stream.read(stored.data(), stored.size());
     stream.expectEnd();
   } else {
-    if (file.size() > kLargestChunk) fail(file.size());
+    if (file.size() > kMaxChunkBytes) fail(file.size());
     const std::string coded = file.head(size_t(file.size()));
     size_t held = 0;
     if (coded.size() < BLOSC_MIN_HEADER_LENGTH ||
         blosc_cbuffer_validate(coded.data(), coded.size(), &held) != 0)
       throw IoError(file.name() + ": the blosc data are damaged");
-    if (held != bytes || bytes > file.size() * kMostBloscExpansion) fail(held);
+    if (held != bytes || bytes > file.size() * kMaxBloscExpansion) fail(held);
     stored.resize(size_t(bytes));
     if (blosc_decompress_ctx(coded.data(), stored.data(), stored.size(), 1) != int(bytes))
       throw IoError(file.name() + ": the blosc data are damaged");

@@ -104,9 +104,9 @@ void placeReduced(openvdb::GridBase& grid, const Int32Grid& labels, int factor,
   transform->preTranslate(openvdb::Vec3d((factor - 1) / 2.0));
   transform->preScale(factor);
   grid.setTransform(transform);
-  if (const auto box = domain(labels))
+  if (const auto box = storedDomain(labels))
     setDomain(grid, CoordBBox(floorDiv(box->min(), factor), floorDiv(box->max(), factor)));
-  if (const auto size = voxelSize(labels))  // the unit stays that of the transform
+  if (const auto size = storedVoxelSize(labels))  // the unit stays that of the transform
     grid.insertMeta("madf_voxel_size_m", openvdb::DoubleMetadata(size->metres * factor));
 }
 

@@ -123,7 +123,7 @@ void visitBlocks(const MaskBlocks& blocks, const CoordBBox& ball, const Visit& v
 
 }  // namespace
 
-void sortByCentre(std::vector<Ball>& balls) {
+void sortByCenter(std::vector<Ball>& balls) {
   std::stable_sort(balls.begin(), balls.end(), [](const Ball& a, const Ball& b) {
     return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
   });

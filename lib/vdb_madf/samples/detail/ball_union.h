@@ -17,7 +17,7 @@ struct Ball {
 };
 
 /// Sorts balls by centre (x, then y, then z): the order in which the true grains are numbered.
-void sortByCentre(std::vector<Ball>& balls);
+void sortByCenter(std::vector<Ball>& balls);
 
 /// Voxels along z; empty if last < first.
 struct RowRange {

@@ -29,11 +29,11 @@ struct PowerRange {
 
 /// Of the ball's power over the voxels of a cube.
 PowerRange powerRange(const Ball& ball, const Coord& lower, int edge) {
-  const double centre[3] = {ball.x, ball.y, ball.z};
+  const double center[3] = {ball.x, ball.y, ball.z};
   double nearest = 0, farthest = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const double below = centre[axis] - lower[axis];
-    const double above = lower[axis] + edge - 1 - centre[axis];
+    const double below = center[axis] - lower[axis];
+    const double above = lower[axis] + edge - 1 - center[axis];
     const double outside = std::max({0.0, -below, above < 0 ? -above : 0.0});
     const double reach = std::max(below, above);
     nearest += outside * outside;

@@ -50,7 +50,7 @@ std::vector<Ball> placeSintered(const SinteredOptions& options, Interrupter* int
     } while (!keepsDistance(ball, balls, options.neck));
     balls.push_back(ball);
   }
-  sortByCentre(balls);
+  sortByCenter(balls);
   return balls;
 }
 

@@ -27,12 +27,12 @@ constexpr int64_t kSearchMoves = 20000, kSearchMovesPerBall = 500;
 constexpr int64_t kMixingMovesPerBall = 100;
 constexpr int kPollInterval = 16;
 
-enum Stream : uint64_t { kRadiusStream = 0, kCentreStream = 1, kMoveStream = 2 };
+enum Stream : uint64_t { kRadiusStream = 0, kCenterStream = 1, kMoveStream = 2 };
 
 /// A ball on the lattice: for each row (dx, dy) of voxels, how far it reaches along z.
 class LatticeBall {
  public:
-  LatticeBall(double radius, const Coord& c) : centre(c), radius_(radius) {
+  LatticeBall(double radius, const Coord& c) : center(c), radius_(radius) {
     reach_ = int(std::ceil(radius)) - 1;
     halfLengths_.resize(size_t(reach_ + 1) * (reach_ + 1), -1);
     for (int x = 0; x <= reach_; ++x)
@@ -43,7 +43,7 @@ class LatticeBall {
       }
   }
 
-  Coord centre;
+  Coord center;
 
   double radius() const { return radius_; }
   double volume() const { return 4.0 / 3.0 * kPi * radius_ * radius_ * radius_; }
@@ -52,10 +52,10 @@ class LatticeBall {
 
   /// Of row (x, y) of the space, along z.
   RowRange row(int x, int y) const {
-    const int dx = std::abs(x - centre.x()), dy = std::abs(y - centre.y());
+    const int dx = std::abs(x - center.x()), dy = std::abs(y - center.y());
     if (dx > reach_ || dy > reach_) return {0, -1};
     const int half = halfLengths_[size_t(dx) * (reach_ + 1) + dy];
-    return {centre.z() - half, centre.z() + half};
+    return {center.z() - half, center.z() + half};
   }
 
  private:
@@ -82,7 +82,7 @@ class Placement {
     mix();
     std::vector<Ball> result;
     for (const LatticeBall& ball : balls_)
-      result.push_back({double(ball.centre.x()), double(ball.centre.y()), double(ball.centre.z()),
+      result.push_back({double(ball.center.x()), double(ball.center.y()), double(ball.center.z()),
                         ball.radius()});
     return result;
   }
@@ -90,7 +90,7 @@ class Placement {
  private:
   void placeAtRandom() {
     RandomSequence radii(options_.seed, kRadiusStream);
-    RandomSequence centres(options_.seed, kCentreStream);
+    RandomSequence centers(options_.seed, kCenterStream);
     for (int i = 0; i < options_.count; ++i) {
       balls_.emplace_back(radii.uniform(options_.minRadius, options_.maxRadius), Coord(0));
       int tries = 0;
@@ -101,8 +101,8 @@ class Placement {
         if (tries++ == kMaxTries)
           throw InvalidInput("only " + std::to_string(i) + " of " + std::to_string(options_.count) +
                              " balls find a place: use fewer or smaller balls, or a larger size");
-        balls_.back().centre = anyCentre(balls_.back().radius(), centres);
-        if (!ownsCentres(size_t(i))) continue;
+        balls_.back().center = anyCenter(balls_.back().radius(), centers);
+        if (!ownsCenters(size_t(i))) continue;
         now = share(size_t(i));
         placed = fits(now);
       } while (!placed);
@@ -140,49 +140,49 @@ class Placement {
   void tryMove(const Accept& accept) {
     const size_t i = size_t(moves_.integer(0, options_.count - 1));
     LatticeBall& ball = balls_[i];
-    const Coord oldCentre = ball.centre;
+    const Coord oldCenter = ball.center;
     const int64_t oldUnion = unionVoxels_;
-    Coord newCentre;
+    Coord newCenter;
     if (moves_.integer(0, 1)) {
-      newCentre = anyCentre(ball.radius(), moves_);
+      newCenter = anyCenter(ball.radius(), moves_);
     } else {
       const int step = 1 + ball.reach() / 4;
       for (int axis = 0; axis < 3; ++axis)
-        newCentre[axis] = oldCentre[axis] + moves_.integer(-step, step);
-      if (!centreBox(ball.radius()).isInside(newCentre)) return;
+        newCenter[axis] = oldCenter[axis] + moves_.integer(-step, step);
+      if (!centerBox(ball.radius()).isInside(newCenter)) return;
     }
-    ball.centre = newCentre;
-    if (ownsCentres(i)) {
+    ball.center = newCenter;
+    if (ownsCenters(i)) {
       const Share now = share(i);
-      ball.centre = oldCentre;
+      ball.center = oldCenter;
       unionVoxels_ += now.own - share(i).own;
-      ball.centre = newCentre;
+      ball.center = newCenter;
       if (fits(now) && accept()) return;
     }
-    ball.centre = oldCentre;
+    ball.center = oldCenter;
     unionVoxels_ = oldUnion;
   }
 
   /// Where a ball lies wholly inside, its real surface between the outermost voxels' centres.
-  CoordBBox centreBox(double radius) const {
+  CoordBBox centerBox(double radius) const {
     const int margin = int(std::ceil(radius));
     return {Coord(margin), options_.size.offsetBy(-1 - margin)};
   }
 
-  Coord anyCentre(double radius, RandomSequence& random) const {
-    const CoordBBox box = centreBox(radius);
-    Coord centre;
+  Coord anyCenter(double radius, RandomSequence& random) const {
+    const CoordBBox box = centerBox(radius);
+    Coord center;
     for (int axis = 0; axis < 3; ++axis)
-      centre[axis] = random.integer(box.min()[axis], box.max()[axis]);
-    return centre;
+      center[axis] = random.integer(box.min()[axis], box.max()[axis]);
+    return center;
   }
 
   /// Of ball i and any other, each has the least power at its own centre.
-  bool ownsCentres(size_t i) const {
+  bool ownsCenters(size_t i) const {
     const LatticeBall& ball = balls_[i];
     const double square = ball.radius() * ball.radius();
     for (size_t j = 0; j < balls_.size(); ++j)
-      if (j != i && !(squaredDistance(ball.centre, balls_[j].centre) >
+      if (j != i && !(squaredDistance(ball.center, balls_[j].center) >
                       std::abs(square - balls_[j].radius() * balls_[j].radius())))
         return false;
     return true;
@@ -203,7 +203,7 @@ class Placement {
     std::vector<const LatticeBall*> others;
     for (size_t j = 0; j < balls_.size(); ++j) {
       const double touch = ball.radius() + balls_[j].radius();
-      if (j != i && squaredDistance(ball.centre, balls_[j].centre) < touch * touch)
+      if (j != i && squaredDistance(ball.center, balls_[j].center) < touch * touch)
         others.push_back(&balls_[j]);
     }
     Share share;
@@ -213,8 +213,8 @@ class Placement {
     }
     std::vector<RowRange> covered;
     const int r = ball.reach();
-    for (int x = ball.centre.x() - r; x <= ball.centre.x() + r; ++x)
-      for (int y = ball.centre.y() - r; y <= ball.centre.y() + r; ++y) {
+    for (int x = ball.center.x() - r; x <= ball.center.x() + r; ++x)
+      for (int y = ball.center.y() - r; y <= ball.center.y() + r; ++y) {
         const RowRange row = ball.row(x, y);
         if (row.last < row.first) continue;
         covered.clear();
@@ -271,7 +271,7 @@ class Placement {
 
 std::vector<Ball> placeSpheres(const SphereOptions& options, Interrupter* interrupter) {
   std::vector<Ball> balls = Placement(options, interrupter).find();
-  sortByCentre(balls);
+  sortByCenter(balls);
   return balls;
 }
 

@@ -24,7 +24,7 @@ constexpr double kStep = 0.5;
 constexpr float kReach = 0.5f;
 /// Volumes are met to this part of themselves, or after so many corrections.
 constexpr double kVolumeTolerance = 1e-3;
-constexpr int kMostCorrections = 60;
+constexpr int kMaxCorrections = 60;
 /// Jacobi steps on a matrix whose eigenvalues, scaled by its diagonal, lie in [0, 2].
 constexpr double kRelaxation = 0.6;
 
@@ -53,8 +53,7 @@ class Relaxation {
     pressures_.resize(volumes_.size());
     points_.assign(volumes_.size() + 1, 0);
     listPoints();
-    for (int round = 0; round < kMostCorrections && largestVolumeError() > kVolumeTolerance;
-         ++round)
+    for (int round = 0; round < kMaxCorrections && largestVolumeError() > kVolumeTolerance; ++round)
       correctVolumes();
     return std::move(positions_);
   }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/bits.h"
+#include "vdb_madf/volumes/read_mask.h"
 
 namespace vdb_madf::detail {
 
