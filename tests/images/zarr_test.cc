@@ -99,7 +99,7 @@ TEST_CASE("image_zarr: chunks that are not there are the fill value", "[image_za
     writeZarr(path, {kSize, kChunk, "|u1", 1, "", "C", ".", fill, 0}, std::string(693, 'a'));
     CHECK_THROWS_WITH(openImage(path), Contains(path) && Contains("fill value"));
   }
-  ZarrLayout layout{ImageSize{2}, ImageSize{1}, "<f4", 4, "", "C", ".", "\"NaN\"", 0};
+  ZarrLayout layout{ImageSize{2, 2, 2}, ImageSize{1, 1, 1}, "<f4", 4, "", "C", ".", "\"NaN\"", 0};
   writeZarr(path, layout, std::string(32, '\0'));
   std::filesystem::remove(path + "/0.0.1");
   float values[8];
@@ -132,7 +132,8 @@ TEST_CASE("image_zarr: OME-Zarr gives the first scale and its voxel size", "[ima
   const auto write = [&](const std::string& attributes) {
     std::filesystem::remove_all(path);
     writeZarr(path + "/0", {kSize, kChunk, "<u2", 2, "blosc", "C", "/", "0", 2}, fine);
-    writeZarr(path + "/1", {ImageSize{2}, ImageSize{2}, "<u2", 2, "", "C", "/", "0", 2}, coarse);
+    writeZarr(path + "/1", {ImageSize{2, 2, 2}, ImageSize{2, 2, 2}, "<u2", 2, "", "C", "/", "0", 2},
+              coarse);
     writeFile(path + "/.zgroup", "{\"zarr_format\": 2}");
     writeFile(path + "/.zattrs", attributes);
   };
@@ -145,7 +146,7 @@ TEST_CASE("image_zarr: OME-Zarr gives the first scale and its voxel size", "[ima
     CHECK(image->info().voxelSize->metres == 8.5e-6);
   }
   const auto second = openImage(path, {}, "1");
-  CHECK(second->info().size == ImageSize{2});
+  CHECK(second->info().size == ImageSize{2, 2, 2});
   CHECK(second->info().voxelSize->metres == 17e-6);
   CHECK(readAll(*second) == coarse);
   CHECK_THROWS_WITH(openImage(path, {}, "2"), Contains(path) && Contains("'2'"));
@@ -160,9 +161,9 @@ TEST_CASE("image_zarr: OME-Zarr gives the first scale and its voxel size", "[ima
   CHECK_FALSE(openImage(path)->info().voxelSize);
   write("{}");
   CHECK_THROWS_WITH(openImage(path), Contains("--dataset") && Contains("'0', '1'"));
-  CHECK(openImage(path, {}, "1")->info().size == ImageSize{2});
+  CHECK(openImage(path, {}, "1")->info().size == ImageSize{2, 2, 2});
   write("{\"multiscales\": [{\"datasets\": [{\"path\": \"1\"}]}]}");  // before version 0.4
-  CHECK(openImage(path)->info().size == ImageSize{2});
+  CHECK(openImage(path)->info().size == ImageSize{2, 2, 2});
   CHECK_FALSE(openImage(path)->info().voxelSize);
   std::string uneven = omeAttributes("micrometer", 8.5);
   uneven.replace(uneven.find("8.5"), 3, "9.5");

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/bits.h"
-#include "vdb_madf/volumes/read_mask.h"
 
 namespace vdb_madf::detail {
 
