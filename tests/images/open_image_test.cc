@@ -140,8 +140,9 @@ TEST_CASE("image_file: a raw file of the wrong size is refused with both numbers
                     Contains("120") && Contains("75") && Contains("5 x 5 x 3"));
   CHECK_THROWS_AS(openImage(path, RawLayout{ImageSize{0, 5, 3}, SampleType::uint8, false}),
                   IoError);
-  CHECK_THROWS_AS(openImage(path, RawLayout{ImageSize{1 << 20}, SampleType::float64, false}),
-                  IoError);
+  CHECK_THROWS_AS(
+      openImage(path, RawLayout{ImageSize{1 << 20, 1 << 20, 1 << 20}, SampleType::float64, false}),
+      IoError);
   CHECK_THROWS_WITH(openImage(path), Contains("size"));
 }
 
