@@ -4,6 +4,8 @@
 // What a program that links the whole library looks like: it makes balls, segments and measures
 // them, and writes what it found.
 
+#include "all_headers.h"
+
 #include <filesystem>
 #include <iostream>
 
