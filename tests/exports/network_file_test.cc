@@ -14,6 +14,7 @@
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/measure.h"
 
 using namespace vdb_madf;
@@ -85,14 +86,31 @@ TEST_CASE("grain_network: grains and bonds are those of the voxels", "[grain_net
             Approx(double(own.size()) * kEdge * kEdge));
       CHECK(column(network.bondColumns, "length")[i] ==
             Approx((network.centers[first] - network.centers[second]).length()));
-      const Vec3d center(column(network.bondColumns, "center_x")[i],
-                         column(network.bondColumns, "center_y")[i],
-                         column(network.bondColumns, "center_z")[i]);
+      const Vec3d center(column(network.bondColumns, "centroid_x")[i],
+                         column(network.bondColumns, "centroid_y")[i],
+                         column(network.bondColumns, "centroid_z")[i]);
       CHECK((center - mean(own)).length() < 1e-9);
       ++i;
     }
     CHECK(column(network.grainColumns, "coordination") == coordination);
   }
+}
+
+TEST_CASE("grain_network: the columns are those of the tables, in their order", "[grain_network]") {
+  const GrainNetwork network = grainNetwork(*labelGrid(twoBalls({-3, 8, 5}, 6)));
+  const auto requireNames =
+      [](const std::vector<GrainNetwork::Column>& columns, const std::vector<MeasureColumn>& tables,
+         const std::set<std::string>& leftOut, const std::vector<std::string>& more) {
+        std::vector<std::string> names, wanted;
+        for (const auto& one : columns) names.push_back(one.name);
+        for (const auto& one : tables)
+          if (!leftOut.count(one.name)) wanted.push_back(one.name);
+        wanted.insert(wanted.end(), more.begin(), more.end());
+        CHECK(names == wanted);
+      };
+  requireNames(network.grainColumns, grainColumns({}),
+               {"id", "centroid_x", "centroid_y", "centroid_z"}, {});
+  requireNames(network.bondColumns, bondColumns({}), {"first", "second"}, {"face_area", "length"});
 }
 
 TEST_CASE("grain_network: every measure is there, in world units", "[grain_network]") {
@@ -131,7 +149,7 @@ TEST_CASE("grain_network: every measure is there, in world units", "[grain_netwo
       const std::string& name = one[i].name;
       CAPTURE(name);
       CHECK(other[i].name == name);
-      const bool isPlace = name.rfind("center_", 0) == 0 || name.rfind("representative_", 0) == 0;
+      const bool isPlace = name.rfind("centroid_", 0) == 0 || name.rfind("representative_", 0) == 0;
       const auto power = powers.find(name);
       for (size_t row = 0; row < one[i].values.size(); ++row) {
         double expected = one[i].values[row];

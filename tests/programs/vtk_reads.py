@@ -101,7 +101,7 @@ with Bench() as bench:
     bond = {network.GetCellData().GetArrayName(i): network.GetCellData().GetArray(i).GetTuple1(0)
             for i in range(network.GetCellData().GetNumberOfArrays())}
     check((bond["first_grain"], bond["second_grain"], bond["faces"]) == (2, 3, 2), f"bonds.vtp: {bond}")
-    check(near((bond["center_x"], bond["center_y"], bond["center_z"]),
+    check(near((bond["centroid_x"], bond["centroid_y"], bond["centroid_z"]),
                (7.5 * EDGE, 1 * EDGE, 2.5 * EDGE)), f"bonds.vtp: center of the bond {bond}")
     check((bond["normal_x"], bond["normal_y"], bond["normal_z"]) == (0, 0, 1), f"bonds.vtp: {bond}")
     check(network.GetPointData().GetArray("sphericity").GetTuple1(0) > 0, "bonds.vtp: sphericity")

@@ -261,7 +261,7 @@ TEST_CASE("world_place: networks", "[world_place]") {
   }
   // The only bond: between 2 and 3, of two faces.
   const auto bond = [&](const std::string& name) { return vtp.values<double>(name).at(0); };
-  CHECK(near(Vec3d(bond("center_x"), bond("center_y"), bond("center_z")),
+  CHECK(near(Vec3d(bond("centroid_x"), bond("centroid_y"), bond("centroid_z")),
              placeOf(Vec3d(-6.5, 1, 2.5))));
 }
 

@@ -16,6 +16,7 @@
 #include "vdb_madf/exports/network_file.h"
 #include "vdb_madf/exports/vti_file.h"
 #include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/output_folder.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/images/open_image.h"
 #include "vdb_madf/labels/grain_masks.h"
@@ -268,24 +269,11 @@ const Kind& findKind(const Options& o) {
   throw WrongUsage("--as " + wanted + ": must be one of " + kindNames());
 }
 
-/// Finds out before the work that there can be no such output.
-void checkOutput(const std::string& out) {
-  namespace fs = std::filesystem;
-  if (fs::path(out).has_extension()) {
-    checkWritable(out);
-    return;
-  }
-  std::error_code ignored;
-  const fs::path above = fs::absolute(fs::path(out) / "..", ignored).lexically_normal();
-  if (fs::exists(out, ignored) ? !fs::is_directory(out, ignored)
-                               : !fs::is_directory(above, ignored))
-    throw IoError("cannot write " + out +
-                  ": it is no folder, and none can be made there; give the " +
-                  "path of a folder, in one that is there");
-}
-
 void run(const Options& o, const Common& common, const Kind& kind) {
-  checkOutput(o.out);
+  if (std::filesystem::path(o.out).has_extension())
+    checkWritable(o.out);
+  else
+    checkOutputFolder(o.out);
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
   if (o.input.voxelSize) setVoxelSize(*labels, o.input.voxelSize);
   naming(o.input.path, [&] { kind.run(o, common, *labels); });

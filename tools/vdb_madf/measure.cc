@@ -8,7 +8,7 @@
 
 #include "command.h"
 #include "input.h"
-#include "measurement_tables.h"
+#include "vdb_madf/exports/measurement_files.h"
 
 namespace vdb_madf::tools {
 
@@ -29,17 +29,18 @@ void parse(Options& o) {
   o.measure.boundary = parseBoundary(o.boundary);
 }
 
-void print(const Options& o, const Measurements& m, const Json& sample) {
-  const std::string unit = sample["length_unit"];
+void print(const Options& o, const Measurements& m) {
+  const std::string unit = m.voxelSize ? m.voxelSize->unit() : "voxel";
   const double length = m.voxelSize ? m.voxelSize->inUnit() : 1;
   std::printf("%s: %zu grains, %zu bonds\n", o.folder.c_str(), m.grains.size(), m.bonds.size());
   if (!m.voxelSize)
     std::printf("  voxel size          unknown, so lengths are in voxels (give --voxel-size)\n");
   std::printf("  ice fraction        %.4f of the %s, %.1f kg/m3\n", m.sample.objectFraction,
               m.sample.domainKnown ? "domain" : "box of the grains (the domain is unknown)",
-              sample["density_kg_per_m3"].get<double>());
+              o.iceDensity * m.sample.objectFraction);
   std::printf("  specific surface    %.5g /%s", m.sample.specificSurface / length, unit.c_str());
-  if (m.voxelSize) std::printf(" = %.4g m2/kg", sample["specific_surface_m2_per_kg"].get<double>());
+  if (m.voxelSize)
+    std::printf(" = %.4g m2/kg", m.sample.specificSurface / m.voxelSize->metres / o.iceDensity);
   std::printf("\n  grain diameter      d50 %.5g %s by number, %.5g by volume\n",
               length * diameterPercentile(m.grains, 0.5, false), unit.c_str(),
               length * diameterPercentile(m.grains, 0.5, true));
@@ -55,9 +56,9 @@ void run(const Options& o, const Common& common) {
   common.progress->start("measure");
   const Measurements measurements =
       naming(o.input.path, [&] { return measure(*labels, o.measure, common.progress); });
-  const Json sample = tables.write(measurements, o.iceDensity);
+  tables.write(measurements, o.iceDensity);
   common.progress->end();
-  if (!common.quiet) print(o, measurements, sample);
+  if (!common.quiet) print(o, measurements);
 }
 
 }  // namespace

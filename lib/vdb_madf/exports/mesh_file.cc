@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "vdb_madf/exports/detail/vtk_file.h"
 #include "vdb_madf/files/detail/buffered_output.h"
 #include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/output_folder.h"
 
 namespace vdb_madf {
 
@@ -195,32 +195,6 @@ void writeVtp(const std::string& path, const WorldMesh& world, Interrupter* inte
   file.write(path, interrupter);
 }
 
-/// A folder that is made unless it is there, and goes again, if it is empty, unless it is kept.
-class OutputFolder {
- public:
-  explicit OutputFolder(const std::string& path) : path_(path) {
-    std::error_code error;
-    isNew_ = std::filesystem::create_directory(path, error);
-    if (!error && !std::filesystem::is_directory(path, error))
-      error = std::make_error_code(std::errc::not_a_directory);
-    if (error)
-      throw IoError("cannot write " + path + ": " + error.message() +
-                    "; give the path of a folder, in one that is there");
-  }
-  ~OutputFolder() {
-    std::error_code ignored;
-    if (isNew_) std::filesystem::remove(path_, ignored);
-  }
-  OutputFolder(const OutputFolder&) = delete;
-  OutputFolder& operator=(const OutputFolder&) = delete;
-
-  void keep() { isNew_ = false; }
-
- private:
-  std::string path_;
-  bool isNew_ = false;
-};
-
 }  // namespace
 
 bool isMeshEnding(const std::string& path) {
@@ -254,8 +228,7 @@ void writeStlFolder(const std::string& folder, const GrainMesh& mesh,
   std::vector<std::unique_ptr<BufferedOutput>> files;
   for (size_t grain = 0; grain < world.grainCount(); ++grain) {
     const std::string name = grainName(world.label(grain)) + ".stl";
-    files.push_back(std::make_unique<BufferedOutput>(
-        (std::filesystem::path(folder) / name).string(), interrupter));
+    files.push_back(std::make_unique<BufferedOutput>(made.file(name), interrupter));
     writeStl(*files.back(), world, grain, grain + 1);
     files.back()->close();
   }

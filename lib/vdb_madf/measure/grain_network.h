@@ -29,15 +29,9 @@ struct GrainNetwork {
 /// places are in world units. NaN: not known (no background; an interface too small for a
 /// curvature).
 ///
-/// Of grains: `voxels`, `volume`, `equivalent_diameter`, `coordination`, `representative_x`, `_y`,
-/// `_z`, `inscribed_radius`, `area`, `free_area`, `shared_area`, `cut_area`, `sphericity`,
-/// `axis1_length` and `axis1_x`, `_y`, `_z` to `axis3...`, `aspect_2_to_1`, `aspect_3_to_2`,
-/// `box_min_x` ..., `box_max_x` ... (voxels), `at_domain_face` (0 or 1).
-/// Of bonds: `faces` (shared voxel faces), `face_area` (theirs: overestimates oblique bonds),
-/// `center_x`, `_y`, `_z` (mean of the centres of the faces), `area`, `radius`, `normal_x`, `_y`,
-/// `_z`, `distance`, `cos_alpha`, `flatness`, `patches`, `curvature_points`, `mean_curvature`,
-/// `mean_curvature_sd`, `gaussian_curvature`, `gaussian_curvature_sd`, `curvature_residual`,
-/// `length` (between the centroids).
+/// Columns are those of columns.h in their order, but for what `grains`, `centers` and `bonds` hold.
+/// Bonds have two more: `face_area` (of the voxel faces: overestimates oblique bonds) and `length`
+/// (between the centroids).
 /// @throw InvalidInput if the transform is not linear with cubic voxels, or as measure();
 ///   Interrupted.
 GrainNetwork grainNetwork(const Int32Grid& labels, Interrupter* interrupter = nullptr);

@@ -7,16 +7,23 @@
 #include <string>
 #include <vector>
 
-#include "json_file.h"
+#include "vdb_madf/files/output_folder.h"
 #include "vdb_madf/measure/measure.h"
 
-namespace vdb_madf::tools {
+namespace vdb_madf {
+
+namespace detail {
+class BufferedOutput;
+}
 
 constexpr double kIceDensity = 917;  // kg/m^3, at 0 degrees Celsius
 
 /// grains.csv, bonds.csv and sample.json in a folder, which is made if it is not there. Made before
-/// the work, so that a folder that cannot be written to is told at once. The files appear whole or
-/// not at all.
+/// the work, so that a folder that cannot be written to is reported before it. The files appear
+/// whole or not at all.
+///
+/// The columns are those of columns.h; lengths are in the unit of the voxel size, which the names
+/// end with, else in voxels. An unknown number is an empty cell, or null.
 class MeasurementTables {
  public:
   /// @throw IoError
@@ -25,17 +32,15 @@ class MeasurementTables {
   MeasurementTables(const MeasurementTables&) = delete;
   MeasurementTables& operator=(const MeasurementTables&) = delete;
 
-  /// Lengths in the unit of the voxel size, which the columns name, else in voxels.
-  /// @return what sample.json holds. @throw IoError
-  Json write(const Measurements& measurements, double iceDensity = kIceDensity);
+  /// \p iceDensity in kg/m^3. @throw IoError
+  void write(const Measurements& measurements, double iceDensity = kIceDensity);
 
   /// The paths of the three files.
   static std::vector<std::string> paths(const std::string& folder);
 
  private:
-  std::string folder_;
-  bool made_ = false, done_ = false;
-  std::vector<std::unique_ptr<OutputFile>> files_;
+  OutputFolder folder_;  // goes after the files
+  std::vector<std::unique_ptr<detail::BufferedOutput>> files_;
 };
 
-}  // namespace vdb_madf::tools
+}  // namespace vdb_madf

@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/exports/measurement_files.h"
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "vdb_madf/files/detail/buffered_output.h"
+#include "vdb_madf/measure/columns.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Factors and names of the unit of length.
+struct Unit {
+  std::string name = "voxel";
+  double length = 1;  ///< of a voxel edge
+
+  explicit Unit(const std::optional<VoxelSize>& size) {
+    if (!size) return;
+    name = size->unit();
+    length = size->inUnit();
+  }
+  double area() const { return length * length; }
+  double volume() const { return length * length * length; }
+};
+
+/// Nine digits; whole numbers whole; empty where there is no value.
+std::string cell(const MeasureColumn& column, size_t row, double edge) {
+  const double value = column.values[row];
+  if (std::isnan(value)) return "";
+  if (column.kind == MeasureColumn::Kind::count) return std::to_string(int64_t(value));
+  const double number = scaled(value, column.power, edge);
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, number == 0 ? 0.0 : number,
+                                 std::chars_format::general, 9);
+  return {text, end.ptr};
+}
+
+/// Comma-separated values.
+std::string table(const std::vector<MeasureColumn>& columns, const Unit& unit) {
+  std::string text;
+  for (const MeasureColumn& column : columns)
+    text += (text.empty() ? "" : ",") + column.name + unitSuffix(column.power, unit.name);
+  text += '\n';
+  for (size_t row = 0; row < columns.front().values.size(); ++row) {
+    for (const MeasureColumn& column : columns) {
+      if (&column != &columns.front()) text += ',';
+      text += cell(column, row, unit.length);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+Json toJson(const openvdb::Vec3d& vector) {
+  return {vector[0], vector[1], vector[2]};
+}
+
+Json toJson(const FabricTensor& fabric) {
+  const auto& c = fabric.components;
+  Json json;
+  json["tensor"] = {{c[0], c[3], c[4]}, {c[3], c[1], c[5]}, {c[4], c[5], c[2]}};
+  json["eigenvalues"] = fabric.principal.values;
+  Json vectors = Json::array();
+  for (const openvdb::Vec3d& axis : fabric.principal.axes) vectors.push_back(toJson(axis));
+  json["eigenvectors"] = vectors;
+  return json;
+}
+
+Json sampleJson(const Measurements& m, const Unit& unit, double iceDensity) {
+  const SampleMeasures& s = m.sample;
+  const std::string& u = unit.name;
+  Json json;
+  json["length_unit"] = u;
+  if (m.voxelSize) json["voxel_size_" + u] = unit.length;
+  json["box"] = s.domainKnown ? "domain" : "grains";
+  json["box_min"] = {s.box.min().x(), s.box.min().y(), s.box.min().z()};
+  json["box_max"] = {s.box.max().x(), s.box.max().y(), s.box.max().z()};
+  json["grains"] = m.grains.size();
+  json["bonds"] = m.bonds.size();
+  json["object_voxels"] = s.objectVoxels;
+  json["object_volume_" + u + "3"] = double(s.objectVoxels) * unit.volume();
+  json["ice_fraction"] = s.objectFraction;
+  json["ice_density_kg_per_m3"] = iceDensity;
+  json["density_kg_per_m3"] = iceDensity * s.objectFraction;
+  json["free_area_" + u + "2"] = s.freeArea * unit.area();
+  json["shared_area_" + u + "2"] = s.sharedArea * unit.area();
+  json["area_estimator"] = "voxel faces weighted by local normals";
+  json["specific_surface_per_" + u] = s.specificSurface / unit.length;
+  if (m.voxelSize)
+    json["specific_surface_m2_per_kg"] = s.specificSurface / m.voxelSize->metres / iceDensity;
+  Json lengths = Json::array();
+  for (const auto& length : s.correlationLengths)
+    lengths.push_back(length ? Json(*length * unit.length) : Json());
+  json["correlation_length_" + u] = lengths;
+  json["euler_characteristic"] = s.eulerCharacteristic;
+  json["components"] = s.components;
+  json["mean_coordination"] = s.meanCoordination;
+  json["coordination_distribution"] = s.coordinations;
+  json["bond_to_grain_ratio"] = s.bondToGrainRatio ? Json(*s.bondToGrainRatio) : Json();
+  for (const bool byVolume : {false, true}) {
+    Json sizes;
+    for (const int percent : {5, 10, 25, 50, 75, 90, 95})
+      sizes["d" + std::to_string(percent)] =
+          diameterPercentile(m.grains, percent / 100.0, byVolume) * unit.length;
+    json[std::string("grain_diameter_by_") + (byVolume ? "volume_" : "number_") + u] = sizes;
+  }
+  json["grain_axis_fabric"] = toJson(s.grainFabric);
+  json["bond_normal_fabric"] = toJson(s.bondFabric);
+  return json;
+}
+
+}  // namespace
+
+std::vector<std::string> MeasurementTables::paths(const std::string& folder) {
+  std::vector<std::string> result;
+  for (const char* name : {"grains.csv", "bonds.csv", "sample.json"})
+    result.push_back((std::filesystem::path(folder) / name).string());
+  return result;
+}
+
+MeasurementTables::MeasurementTables(const std::string& folder) : folder_(folder) {
+  for (const std::string& path : paths(folder))
+    files_.push_back(std::make_unique<detail::BufferedOutput>(path));
+}
+
+MeasurementTables::~MeasurementTables() = default;
+
+void MeasurementTables::write(const Measurements& measurements, double iceDensity) {
+  const Unit unit(measurements.voxelSize);
+  files_.at(0)->text(table(grainColumns(measurements.grains), unit));
+  files_.at(1)->text(table(bondColumns(measurements.bonds), unit));
+  files_.at(2)->text(sampleJson(measurements, unit, iceDensity).dump(2) + "\n");
+  for (const auto& file : files_) file->close();
+  for (const auto& file : files_) {
+    file->commitClosed();
+    folder_.keep();
+  }
+}
+
+}  // namespace vdb_madf

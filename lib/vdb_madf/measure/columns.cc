@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/measure/columns.h"
+
+#include <cstdlib>
+#include <limits>
+#include <utility>
+
+namespace vdb_madf {
+
+namespace {
+
+using openvdb::Vec3d;
+using Kind = MeasureColumn::Kind;
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// Makes columns of the items of a list, one by one.
+template <typename Item>
+class ColumnMaker {
+ public:
+  explicit ColumnMaker(const std::vector<Item>& items) : items_(items) {}
+
+  template <typename Number>
+  void add(const std::string& name, int power, const Number& number, Kind kind = Kind::number,
+           int axis = 0) {
+    MeasureColumn column{name, kind, power, axis, {}};
+    column.values.reserve(items_.size());
+    for (const Item& item : items_) column.values.push_back(double(number(item)));
+    columns_.push_back(std::move(column));
+  }
+  template <typename Number>
+  void addCount(const std::string& name, const Number& number) {
+    add(name, 0, number, Kind::count);
+  }
+  /// Three columns.
+  template <typename Vector>
+  void addVector(const std::string& name, const Vector& vector, Kind kind = Kind::number) {
+    for (int axis = 0; axis < 3; ++axis)
+      add(
+          name + "_" + "xyz"[axis], kind == Kind::place ? 1 : 0,
+          [&](const Item& item) { return vector(item)[axis]; }, kind, axis);
+  }
+  std::vector<MeasureColumn> columns() { return std::move(columns_); }
+
+ private:
+  const std::vector<Item>& items_;
+  std::vector<MeasureColumn> columns_;
+};
+
+}  // namespace
+
+std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains) {
+  using G = GrainMeasures;
+  ColumnMaker<G> make(grains);
+  make.addCount("id", [](const G& g) { return g.id; });
+  make.addCount("voxels", [](const G& g) { return g.voxels; });
+  make.add("volume", 3, [](const G& g) { return g.voxels; });
+  make.add("equivalent_diameter", 1, [](const G& g) { return g.equivalentDiameter; });
+  make.addVector(
+      "centroid", [](const G& g) { return g.centroid; }, Kind::place);
+  make.addVector(
+      "representative",
+      [](const G& g) { return g.representative ? g.representative->asVec3d() : Vec3d(kNone); },
+      Kind::place);
+  make.add("inscribed_radius", 1,
+           [](const G& g) { return g.representative ? g.inscribedRadius : kNone; });
+  make.add("area", 2, [](const G& g) { return g.totalArea(); });
+  make.add("free_area", 2, [](const G& g) { return g.freeArea; });
+  make.add("shared_area", 2, [](const G& g) { return g.sharedArea; });
+  make.add("cut_area", 2, [](const G& g) { return g.cutArea; });
+  make.add("sphericity", 0, [](const G& g) { return g.sphericity; });
+  const std::string axes[] = {"axis1", "axis2", "axis3"};
+  for (size_t i = 0; i < 3; ++i)
+    make.add(axes[i] + "_length", 1, [i](const G& g) { return g.ellipsoid.values[i]; });
+  make.add("aspect_2_to_1", 0,
+           [](const G& g) { return g.ellipsoid.values[1] / g.ellipsoid.values[0]; });
+  make.add("aspect_3_to_2", 0,
+           [](const G& g) { return g.ellipsoid.values[2] / g.ellipsoid.values[1]; });
+  for (size_t i = 0; i < 3; ++i)
+    make.addVector(axes[i], [i](const G& g) { return g.ellipsoid.axes[i]; });
+  make.addVector(
+      "box_min", [](const G& g) { return g.box.min(); }, Kind::count);
+  make.addVector(
+      "box_max", [](const G& g) { return g.box.max(); }, Kind::count);
+  make.addCount("coordination", [](const G& g) { return g.coordination; });
+  make.addCount("at_domain_face", [](const G& g) { return g.atDomainFace; });
+  return make.columns();
+}
+
+std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds) {
+  using B = BondMeasures;
+  ColumnMaker<B> make(bonds);
+  make.addCount("first", [](const B& b) { return b.first; });
+  make.addCount("second", [](const B& b) { return b.second; });
+  make.addCount("faces", [](const B& b) { return b.faces; });
+  make.add("area", 2, [](const B& b) { return b.area; });
+  make.add("radius", 1, [](const B& b) { return b.equivalentRadius; });
+  make.addVector(
+      "centroid", [](const B& b) { return b.centroid; }, Kind::place);
+  make.addVector("normal", [](const B& b) { return b.normal; });
+  make.add("distance", 1, [](const B& b) { return b.distance.value_or(kNone); });
+  make.add("cos_alpha", 0, [](const B& b) { return b.cosAlpha.value_or(kNone); });
+  make.add("flatness", 2, [](const B& b) { return b.flatness; });
+  make.addCount("patches", [](const B& b) { return b.patches; });
+  make.addCount("curvature_points",
+                [](const B& b) { return b.curvature ? b.curvature->points : 0; });
+  const auto addCurvature = [&](const std::string& name, int power, auto member) {
+    make.add(name, power,
+             [member](const B& b) { return b.curvature ? (*b.curvature).*member : kNone; });
+  };
+  addCurvature("mean_curvature", -1, &InterfaceCurvature::mean);
+  addCurvature("mean_curvature_sd", -1, &InterfaceCurvature::meanDeviation);
+  addCurvature("gaussian_curvature", -2, &InterfaceCurvature::gaussian);
+  addCurvature("gaussian_curvature_sd", -2, &InterfaceCurvature::gaussianDeviation);
+  addCurvature("curvature_residual", 1, &InterfaceCurvature::residual);
+  return make.columns();
+}
+
+std::string unitSuffix(int power, const std::string& unit) {
+  if (power == 0) return "";
+  const int size = std::abs(power);
+  return (power < 0 ? "_per_" : "_") + unit + (size == 1 ? "" : std::to_string(size));
+}
+
+double scaled(double value, int power, double edge) {
+  double factor = 1;
+  for (int i = 0; i < std::abs(power); ++i) factor *= edge;
+  return power < 0 ? value / factor : value * factor;
+}
+
+}  // namespace vdb_madf

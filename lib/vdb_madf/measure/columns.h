@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vdb_madf/measure/measure_bonds.h"
+#include "vdb_madf/measure/measure_grains.h"
+
+namespace vdb_madf {
+
+/// A column of the table of grains or of bonds: the one list that the files of tables and networks
+/// are written from.
+struct MeasureColumn {
+  enum class Kind {
+    number,
+    count,  ///< whole numbers
+    place   ///< a coordinate of a place, along `axis`
+  };
+  std::string name;  ///< letters, digits, underscores; without the unit
+  Kind kind = Kind::number;
+  int power = 0;               ///< of the length that it is measured in: 2 is an area; -2 to 3
+  int axis = 0;                ///< 0, 1, 2: x, y, z; of places
+  std::vector<double> values;  ///< a row each, in voxels; NaN: not known
+};
+
+/// `id`, `voxels`, `volume`, `equivalent_diameter`, `centroid_x`, `_y`, `_z`, `representative_x`,
+/// `_y`, `_z`, `inscribed_radius`, `area`, `free_area`, `shared_area`, `cut_area`, `sphericity`,
+/// `axis1_length` to `axis3_length`, `aspect_2_to_1`, `aspect_3_to_2`, `axis1_x`, `_y`, `_z` to
+/// `axis3...`, `box_min_x` ..., `box_max_x` ... (index coordinates), `coordination`,
+/// `at_domain_face` (0 or 1).
+std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains);
+
+/// `first`, `second`, `faces` (shared voxel faces), `area`, `radius`, `centroid_x`, `_y`, `_z`
+/// (mean of the centres of the faces), `normal_x`, `_y`, `_z`, `distance`, `cos_alpha`, `flatness`,
+/// `patches`, `curvature_points`, `mean_curvature`, `mean_curvature_sd`, `gaussian_curvature`,
+/// `gaussian_curvature_sd`, `curvature_residual`.
+std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds);
+
+/// What a power of a length appends to a name: "" (0), "_mm", "_mm2", "_per_mm", "_per_mm2" ...
+std::string unitSuffix(int power, const std::string& unit);
+
+/// A number in voxels, of that power of a length, where voxels have this edge.
+double scaled(double value, int power, double edge);
+
+}  // namespace vdb_madf

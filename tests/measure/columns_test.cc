@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/measure/columns.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+
+using namespace vdb_madf;
+
+namespace {
+
+std::string names(const std::vector<MeasureColumn>& columns) {
+  std::string text;
+  for (const MeasureColumn& column : columns)
+    text += (text.empty() ? "" : " ") + column.name + unitSuffix(column.power, "u");
+  return text;
+}
+
+const MeasureColumn& column(const std::vector<MeasureColumn>& columns, const std::string& name) {
+  for (const MeasureColumn& candidate : columns)
+    if (candidate.name == name) return candidate;
+  throw std::runtime_error("no column " + name);
+}
+
+}  // namespace
+
+TEST_CASE("columns: names, units and order of the table of grains", "[columns]") {
+  CHECK(names(grainColumns({})) ==
+        "id voxels volume_u3 equivalent_diameter_u centroid_x_u centroid_y_u centroid_z_u "
+        "representative_x_u representative_y_u representative_z_u inscribed_radius_u area_u2 "
+        "free_area_u2 shared_area_u2 cut_area_u2 sphericity axis1_length_u axis2_length_u "
+        "axis3_length_u aspect_2_to_1 aspect_3_to_2 axis1_x axis1_y axis1_z axis2_x axis2_y "
+        "axis2_z axis3_x axis3_y axis3_z box_min_x box_min_y box_min_z box_max_x box_max_y "
+        "box_max_z coordination at_domain_face");
+}
+
+TEST_CASE("columns: names, units and order of the table of bonds", "[columns]") {
+  CHECK(names(bondColumns({})) ==
+        "first second faces area_u2 radius_u centroid_x_u centroid_y_u centroid_z_u normal_x "
+        "normal_y normal_z distance_u cos_alpha flatness_u2 patches curvature_points "
+        "mean_curvature_per_u mean_curvature_sd_per_u gaussian_curvature_per_u2 "
+        "gaussian_curvature_sd_per_u2 curvature_residual_u");
+}
+
+TEST_CASE("columns: each holds the measure of its name", "[columns]") {
+  GrainMeasures grain;
+  grain.id = 7;
+  grain.voxels = 9007199254740991;  // the largest count that is exact
+  grain.equivalentDiameter = 1.5;
+  grain.centroid = {2, 3, 4};
+  grain.representative = Coord(-5, 6, 8);
+  grain.inscribedRadius = 9;
+  grain.freeArea = 10;
+  grain.sharedArea = 11;
+  grain.cutArea = 12;
+  grain.sphericity = 0.5;
+  grain.ellipsoid = {
+      {openvdb::Vec3d(13, 14, 15), openvdb::Vec3d(16, 17, 18), openvdb::Vec3d(19, 20, 22)},
+      {32, 16, 4}};
+  grain.box = {Coord(-1, -2, -3), Coord(23, 24, 25)};
+  grain.coordination = 26;
+  grain.atDomainFace = true;
+  GrainMeasures bare;  // its representative is not known
+  const std::vector<MeasureColumn> grains = grainColumns({grain, bare});
+  std::vector<double> row;
+  for (const MeasureColumn& one : grains) {
+    REQUIRE(one.values.size() == 2);
+    row.push_back(one.values[0]);
+  }
+  CHECK(row == std::vector<double>{7,
+                                   9007199254740991.,
+                                   9007199254740991.,
+                                   1.5,
+                                   2,
+                                   3,
+                                   4,
+                                   -5,
+                                   6,
+                                   8,
+                                   9,
+                                   21,
+                                   10,
+                                   11,
+                                   12,
+                                   0.5,
+                                   32,
+                                   16,
+                                   4,
+                                   0.5,
+                                   0.25,
+                                   13,
+                                   14,
+                                   15,
+                                   16,
+                                   17,
+                                   18,
+                                   19,
+                                   20,
+                                   22,
+                                   -1,
+                                   -2,
+                                   -3,
+                                   23,
+                                   24,
+                                   25,
+                                   26,
+                                   1});
+  for (const char* name :
+       {"representative_x", "representative_y", "representative_z", "inscribed_radius"})
+    CHECK(std::isnan(column(grains, name).values[1]));
+
+  BondMeasures bond;
+  bond.first = 1;
+  bond.second = 2;
+  bond.faces = 3;
+  bond.area = 4;
+  bond.equivalentRadius = 5;
+  bond.centroid = {6, 7, 8};
+  bond.normal = {9, 10, 11};
+  bond.distance = 12;
+  bond.cosAlpha = -0.5;
+  bond.flatness = 13;
+  bond.patches = 14;
+  bond.curvature = InterfaceCurvature{15, 16, 17, 18, 19, 20};
+  const std::vector<MeasureColumn> bonds = bondColumns({bond, BondMeasures()});
+  row.clear();
+  std::set<std::string> unknown;
+  for (const MeasureColumn& one : bonds) {
+    row.push_back(one.values.at(0));
+    if (std::isnan(one.values.at(1))) unknown.insert(one.name);
+  }
+  CHECK(row == std::vector<double>{1,  2,    3,  4,  5,  6,  7,  8,  9,  10, 11,
+                                   12, -0.5, 13, 14, 15, 16, 17, 18, 19, 20});
+  CHECK(unknown == std::set<std::string>{"distance", "cos_alpha", "mean_curvature",
+                                         "mean_curvature_sd", "gaussian_curvature",
+                                         "gaussian_curvature_sd", "curvature_residual"});
+}
+
+TEST_CASE("columns: places know their axes, counts are marked", "[columns]") {
+  const std::vector<MeasureColumn> grains = grainColumns({}), bonds = bondColumns({});
+  for (const auto* columns : {&grains, &bonds})
+    for (const char* axis : {"x", "y", "z"}) {
+      const MeasureColumn& place = column(*columns, std::string("centroid_") + axis);
+      CHECK(place.kind == MeasureColumn::Kind::place);
+      CHECK(place.axis == axis[0] - 'x');
+    }
+  std::string counts;
+  for (const auto* columns : {&grains, &bonds})
+    for (const MeasureColumn& one : *columns)
+      if (one.kind == MeasureColumn::Kind::count) counts += one.name + " ";
+  CHECK(counts ==
+        "id voxels box_min_x box_min_y box_min_z box_max_x box_max_y box_max_z coordination "
+        "at_domain_face first second faces patches curvature_points ");
+}
+
+TEST_CASE("columns: powers of a length", "[columns]") {
+  CHECK(unitSuffix(0, "mm").empty());
+  CHECK(unitSuffix(1, "mm") == "_mm");
+  CHECK(unitSuffix(3, "mm") == "_mm3");
+  CHECK(unitSuffix(-1, "mm") == "_per_mm");
+  CHECK(unitSuffix(-2, "mm") == "_per_mm2");
+  CHECK(scaled(3, 0, 0.5) == 3);
+  CHECK(scaled(3, 1, 0.5) == 1.5);
+  CHECK(scaled(3, 3, 0.5) == 0.375);
+  CHECK(scaled(3, -1, 0.5) == 6);
+  CHECK(scaled(3, -2, 0.5) == 12);
+}
