@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "vdb_madf/leaves/object_components.h"
 #include "vdb_madf/measure/correlation_length.h"
+#include "vdb_madf/measure/detail/bond_measures.h"
+#include "vdb_madf/measure/detail/grain_measures.h"
 #include "vdb_madf/measure/detail/grain_representatives.h"
 #include "vdb_madf/measure/detail/label_sums.h"
+#include "vdb_madf/measure/detail/sample_measures.h"
 #include "vdb_madf/measure/euler_characteristic.h"
 #include "vdb_madf/method/boundary.h"
 #include "vdb_madf/method/segmentation_metadata.h"
@@ -19,16 +21,17 @@ namespace vdb_madf {
 
 namespace {
 
-using Representatives = std::map<int32_t, detail::GrainRepresentative>;
-
-void setRepresentatives(const Representatives& representatives, Measurements& result) {
-  if (representatives.empty()) return;
-  for (GrainMeasures& grain : result.grains) {
-    const detail::GrainRepresentative& deepest = representatives.at(grain.id);
+void setRepresentatives(
+    const std::map<int32_t, detail::GrainRepresentative> &representatives,
+    Measurements &result) {
+  if (representatives.empty())
+    return;
+  for (GrainMeasures &grain : result.grains) {
+    const detail::GrainRepresentative &deepest = representatives.at(grain.id);
     grain.representative = deepest.voxel;
     grain.inscribedRadius = std::sqrt(double(deepest.squaredRadius));
   }
-  for (BondMeasures& bond : result.bonds) {
+  for (BondMeasures &bond : result.bonds) {
     const detail::GrainRepresentative &a = representatives.at(bond.first),
                                       &b = representatives.at(bond.second);
     int64_t squaredDistance = 0;
@@ -37,39 +40,46 @@ void setRepresentatives(const Representatives& representatives, Measurements& re
       squaredDistance += d * d;
     }
     bond.distance = std::sqrt(double(squaredDistance));
-    bond.cosAlpha = double(squaredDistance - a.squaredRadius - b.squaredRadius) /
-                    (2 * std::sqrt(double(int64_t(a.squaredRadius) * int64_t(b.squaredRadius))));
+    bond.cosAlpha =
+        double(squaredDistance - a.squaredRadius - b.squaredRadius) /
+        (2 * std::sqrt(
+                 double(int64_t(a.squaredRadius) * int64_t(b.squaredRadius))));
   }
 }
 
-}  // namespace
+} // namespace
 
-Measurements measure(const Int32Grid& labels, const MeasureOptions& options,
-                     Interrupter* interrupter) {
+Measurements measure(const Int32Grid &labels, const MeasureOptions &options,
+                     Interrupter *interrupter) {
   const detail::LabelLeaves leaves(labels, interrupter);
-  const LeafIndex& index = leaves.index();
-  const std::optional<CoordBBox> domainBox = options.domain ? options.domain : storedDomain(labels);
-  const Boundary boundary =
-      options.boundary == Boundary::automatic ? storedBoundary(labels) : options.boundary;
+  const LeafIndex &index = leaves.index();
+  const std::optional<CoordBBox> domainBox =
+      options.domain ? options.domain : storedDomain(labels);
+  const Boundary boundary = options.boundary == Boundary::automatic
+                                ? storedBoundary(labels)
+                                : options.boundary;
   const Obstacles obstacles = resolveBoundary(index, boundary, domainBox);
 
   Measurements result;
   result.voxelSize = storedVoxelSize(labels);
-  SampleMeasures& sample = result.sample;
-  sample.domainKnown = domainBox.has_value();
-  sample.box = domainBox.value_or(index.boundingBox());
+  const CoordBBox box = domainBox.value_or(index.boundingBox());
   {
     const detail::LabelSums sums = detail::labelSums(
-        leaves, obstacles.open ? std::optional(obstacles.domain) : std::nullopt, interrupter);
+        leaves, obstacles.open ? std::optional(obstacles.domain) : std::nullopt,
+        interrupter);
     result.bonds = detail::bondMeasures(sums, interrupter);
-    result.grains = detail::grainMeasures(sums, result.bonds, sample.box);
+    result.grains = detail::grainMeasures(sums, result.bonds, box);
   }
-  setRepresentatives(detail::grainRepresentatives(leaves, obstacles, interrupter), result);
-  detail::summarize(result.grains, result.bonds, sample);
-  sample.correlationLengths = correlationLengths(index, sample.box, interrupter);
+  setRepresentatives(
+      detail::grainRepresentatives(leaves, obstacles, interrupter), result);
+  SampleMeasures &sample = result.sample;
+  sample = detail::sampleMeasures(result.grains, result.bonds, box);
+  sample.domainKnown = domainBox.has_value();
+  sample.correlationLengths =
+      correlationLengths(index, sample.box, interrupter);
   sample.eulerCharacteristic = eulerCharacteristic(index, interrupter);
   sample.components = ObjectComponents(index).count();
   return result;
 }
 
-}  // namespace vdb_madf
+} // namespace vdb_madf

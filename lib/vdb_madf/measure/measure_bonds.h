@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/measure/interface_curvature.h"
@@ -29,12 +28,5 @@ struct BondMeasures {
   /// and cos alpha = (|c1 - c2|^2 - D1 - D2) / (2 sqrt(D1 D2)). None without background.
   std::optional<double> distance, cosAlpha;
 };
-
-namespace detail {
-struct LabelSums;
-
-/// Without distance and angle. @throw Interrupted
-std::vector<BondMeasures> bondMeasures(const LabelSums& sums, Interrupter* interrupter);
-}  // namespace detail
 
 }  // namespace vdb_madf

@@ -44,15 +44,4 @@ struct GrainMeasures {
   double totalArea() const { return freeArea + sharedArea; }
 };
 
-struct BondMeasures;
-
-namespace detail {
-struct LabelSums;
-
-/// From the sums and the bonds; the representatives are left to be filled in.
-std::vector<GrainMeasures> grainMeasures(const LabelSums& sums,
-                                         const std::vector<BondMeasures>& bonds,
-                                         const CoordBBox& domain);
-}  // namespace detail
-
 }  // namespace vdb_madf

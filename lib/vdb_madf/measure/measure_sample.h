@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "vdb_madf/grids/grid_types.h"
-#include "vdb_madf/measure/measure_bonds.h"
 #include "vdb_madf/measure/measure_grains.h"
 
 namespace vdb_madf {
@@ -45,11 +44,5 @@ struct SampleMeasures {
 /// Equivalent-sphere diameter below or at which \p share of the grains lie, or of their volume.
 /// \p share in [0, 1]; 0 without grains.
 double diameterPercentile(const std::vector<GrainMeasures>& grains, double share, bool byVolume);
-
-namespace detail {
-/// What follows from the tables of grains and bonds alone.
-void summarize(const std::vector<GrainMeasures>& grains, const std::vector<BondMeasures>& bonds,
-               SampleMeasures& sample);
-}  // namespace detail
 
 }  // namespace vdb_madf

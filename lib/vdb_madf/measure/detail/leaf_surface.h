@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "vdb_madf/labels/detail/label_window.h"
+#include "vdb_madf/measure/detail/fit_curvature.h"
 #include "vdb_madf/measure/detail/surface_faces.h"
-#include "vdb_madf/measure/interface_curvature.h"
 
 namespace vdb_madf::detail {
 

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/measure/interface_curvature.h"
+#include "vdb_madf/measure/detail/fit_curvature.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-namespace vdb_madf {
+namespace vdb_madf::detail {
 
 namespace {
 
@@ -110,7 +110,7 @@ double deviation(double sum, double squares, double count) {
 
 }  // namespace
 
-std::optional<InterfaceCurvature> interfaceCurvature(const std::vector<InterfaceFace>& faces) {
+std::optional<InterfaceCurvature> fitCurvature(const std::vector<InterfaceFace>& faces) {
   const size_t count = std::min(faces.size(), size_t(kMaxPoints));
   InterfaceCurvature result;
   double mean = 0, meanSquares = 0, gaussian = 0, gaussianSquares = 0, squares = 0, weights = 0;
@@ -135,4 +135,4 @@ std::optional<InterfaceCurvature> interfaceCurvature(const std::vector<Interface
   return result;
 }
 
-}  // namespace vdb_madf
+}  // namespace vdb_madf::detail

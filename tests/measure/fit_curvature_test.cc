@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/measure/interface_curvature.h"
+#include "vdb_madf/measure/detail/fit_curvature.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -16,6 +16,7 @@
 namespace {
 
 using namespace vdb_madf;
+using namespace vdb_madf::detail;
 using namespace vdb_madf::test;
 using Faces = std::vector<InterfaceFace>;
 using openvdb::Vec3d;
@@ -74,7 +75,7 @@ Spread spread(const std::vector<double>& values) {
 
 }  // namespace
 
-TEST_CASE("interface_curvature: exact on surfaces of degree 2", "[interface_curvature]") {
+TEST_CASE("fit_curvature: exact on surfaces of degree 2", "[fit_curvature]") {
   // Faces of one axis at every place of a small patch: each fit goes through all of its points, so
   // the curvatures are those of the surface, whatever the plane's slope.
   const std::vector<Paraboloid> surfaces = {{0, 0, 0, 0, 0},  {0, 0, 0, 1, 0},   {1, 0, 0, 0, 0},
@@ -100,7 +101,7 @@ TEST_CASE("interface_curvature: exact on surfaces of degree 2", "[interface_curv
             means.push_back(sign * surface.mean(x, y));
             gaussians.push_back(surface.gaussian(x, y));
           }
-        const auto found = interfaceCurvature(sorted(faces));
+        const auto found = fitCurvature(sorted(faces));
         REQUIRE(found.has_value());
         REQUIRE(found->points == 25);
         const Spread mean = spread(means), gaussian = spread(gaussians);
@@ -112,19 +113,19 @@ TEST_CASE("interface_curvature: exact on surfaces of degree 2", "[interface_curv
       }
 }
 
-TEST_CASE("interface_curvature: how far the faces lie from the fit", "[interface_curvature]") {
+TEST_CASE("fit_curvature: how far the faces lie from the fit", "[fit_curvature]") {
   // A chequered plane, half a voxel up and down from the best fit: along x and y no polynomial of
   // degree 2 follows it.
   Faces faces;
   for (int x = 0; x < 40; ++x)
     for (int y = 0; y < 40; ++y) faces.push_back({Coord(x, y, (x + y) & 1), 2, 1});
-  const InterfaceCurvature found = interfaceCurvature(faces).value();
+  const InterfaceCurvature found = fitCurvature(faces).value();
   CHECK(found.points == 32);
   CHECK(found.residual == Approx(0.5).epsilon(0.03));
   CHECK(found.mean == Approx(0).margin(0.01));
 }
 
-TEST_CASE("interface_curvature: of balls, cylinders and their insides", "[interface_curvature]") {
+TEST_CASE("fit_curvature: of balls, cylinders and their insides", "[fit_curvature]") {
   Rng rng(12);
   for (const double radius : {9.0, 14.0}) {
     CAPTURE(radius);
@@ -132,7 +133,7 @@ TEST_CASE("interface_curvature: of balls, cylinders and their insides", "[interf
     const Vec3d center(rng.unit(), rng.unit(), rng.unit());
     const auto ball = [&](const Vec3d& p) { return (p - center).lengthSqr() < radius * radius; };
     const Faces sphere = facesOf({Coord(-edge), Coord(edge)}, ball);
-    const InterfaceCurvature out = interfaceCurvature(sphere).value();
+    const InterfaceCurvature out = fitCurvature(sphere).value();
     CHECK(out.points == 32);
     CHECK(out.mean == Approx(1 / radius).epsilon(0.15));
     CHECK(out.gaussian == Approx(1 / (radius * radius)).epsilon(0.3));
@@ -144,7 +145,7 @@ TEST_CASE("interface_curvature: of balls, cylinders and their insides", "[interf
         return d.lengthSqr() < radius * radius;
       };
       const InterfaceCurvature round =
-          interfaceCurvature(facesOf({Coord(-edge), Coord(edge)}, rod)).value();
+          fitCurvature(facesOf({Coord(-edge), Coord(edge)}, rod)).value();
       CAPTURE(axis);
       CHECK(round.mean == Approx(0.5 / radius).epsilon(0.2));
       CHECK(round.gaussian == Approx(0).margin(0.2 / (radius * radius)));
@@ -152,29 +153,29 @@ TEST_CASE("interface_curvature: of balls, cylinders and their insides", "[interf
   }
 }
 
-TEST_CASE("interface_curvature: too few faces, or all in a row", "[interface_curvature]") {
-  CHECK_FALSE(interfaceCurvature({}).has_value());
+TEST_CASE("fit_curvature: too few faces, or all in a row", "[fit_curvature]") {
+  CHECK_FALSE(fitCurvature({}).has_value());
   Faces square, row, cross;
   for (int i = 0; i < 9; ++i) square.push_back({Coord(i / 3, i % 3, -1), 2, 1});
-  CHECK_FALSE(interfaceCurvature(square).has_value());  // nine
+  CHECK_FALSE(fitCurvature(square).has_value());  // nine
   square.push_back({Coord(3, 0, -1), 2, 1});
   square.push_back({Coord(3, 1, -1), 2, 1});
-  CHECK(interfaceCurvature(square).has_value());
-  CHECK(interfaceCurvature(square)->mean == Approx(0).margin(1e-12));
+  CHECK(fitCurvature(square).has_value());
+  CHECK(fitCurvature(square)->mean == Approx(0).margin(1e-12));
   for (int i = 0; i < 40; ++i) row.push_back({Coord(5, i, 0), 2, 1});
-  CHECK_FALSE(interfaceCurvature(row).has_value());
+  CHECK_FALSE(fitCurvature(row).has_value());
   // Two sheets that look away from each other have no common plane.
   for (int i = 0; i < 100; ++i)
     for (const int8_t sign : {int8_t(1), int8_t(-1)})
       cross.push_back({Coord(i / 10, i % 10, 0), 2, sign});
-  CHECK_FALSE(interfaceCurvature(sorted(cross)).has_value());
+  CHECK_FALSE(fitCurvature(sorted(cross)).has_value());
   // Nine here, nine far away.
   Faces apart;
   for (int i = 0; i < 18; ++i) apart.push_back({Coord(i / 3 + i / 9 * 20, i % 3, 0), 2, 1});
-  CHECK_FALSE(interfaceCurvature(apart).has_value());
+  CHECK_FALSE(fitCurvature(apart).has_value());
 }
 
-TEST_CASE("interface_curvature: moved and turned over", "[interface_curvature]") {
+TEST_CASE("fit_curvature: moved and turned over", "[fit_curvature]") {
   for (uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -186,7 +187,7 @@ TEST_CASE("interface_curvature: moved and turned over", "[interface_curvature]")
     };
     const Faces faces = facesOf({Coord(-5), Coord(12)}, body);
     REQUIRE(faces.size() > 32);
-    const InterfaceCurvature expected = interfaceCurvature(faces).value();
+    const InterfaceCurvature expected = fitCurvature(faces).value();
     const auto sameAs = [&](const InterfaceCurvature& other, double sign) {
       CHECK(other.points == expected.points);
       CHECK(other.mean == Approx(sign * expected.mean));
@@ -198,15 +199,15 @@ TEST_CASE("interface_curvature: moved and turned over", "[interface_curvature]")
     Faces moved = faces, other = faces;
     for (InterfaceFace& face : moved) face.lower += Coord(1000001, -77, 4096);
     for (InterfaceFace& face : other) face.sign = int8_t(-face.sign);  // the grains change places
-    sameAs(interfaceCurvature(moved).value(), 1);
-    sameAs(interfaceCurvature(other).value(), -1);
+    sameAs(fitCurvature(moved).value(), 1);
+    sameAs(fitCurvature(other).value(), -1);
     // y and z change places: the faces keep their order in x alone, so all must be taken.
     Faces few(faces.begin(), faces.begin() + 30), turned = few;
     for (InterfaceFace& face : turned) {
       std::swap(face.lower.y(), face.lower.z());
       if (face.axis != 0) face.axis = int8_t(3 - face.axis);
     }
-    const auto a = interfaceCurvature(few), b = interfaceCurvature(turned);
+    const auto a = fitCurvature(few), b = fitCurvature(turned);
     REQUIRE(a.has_value() == b.has_value());
     if (!a) continue;
     CHECK(a->points == b->points);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/measure/measure_bonds.h"
+#include "vdb_madf/measure/detail/bond_measures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include "vdb_madf/base/detail/disjoint_sets.h"
 #include "vdb_madf/base/detail/parallel.h"
-#include "vdb_madf/measure/detail/label_sums.h"
+#include "vdb_madf/measure/detail/fit_curvature.h"
 #include "vdb_madf/measure/detail/principal_axes.h"
 
 namespace vdb_madf::detail {
@@ -89,7 +89,7 @@ BondMeasures measureBond(const BondSums& from) {
   bond.normal = {double(sums.normal[0]), double(sums.normal[1]), double(sums.normal[2])};
   if (!bond.normal.normalize(0)) bond.normal = principal.axes[2];
   bond.patches = countPatches(from.faces, origin);
-  bond.curvature = interfaceCurvature(from.faces);
+  bond.curvature = fitCurvature(from.faces);
   return bond;
 }
 

@@ -1,15 +1,13 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/measure/measure_grains.h"
+#include "vdb_madf/measure/detail/grain_measures.h"
 
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
-#include "vdb_madf/measure/detail/label_sums.h"
 #include "vdb_madf/measure/detail/principal_axes.h"
-#include "vdb_madf/measure/measure_bonds.h"
 
 namespace vdb_madf::detail {
 

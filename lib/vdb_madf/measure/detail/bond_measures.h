@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <vector>
+
+#include "vdb_madf/measure/detail/label_sums.h"
+#include "vdb_madf/measure/measure_bonds.h"
+
+namespace vdb_madf::detail {
+
+/// Without distance and angle. @throw Interrupted
+std::vector<BondMeasures> bondMeasures(const LabelSums& sums, Interrupter* interrupter);
+
+}  // namespace vdb_madf::detail
