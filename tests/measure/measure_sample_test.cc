@@ -112,6 +112,38 @@ TEST_CASE("measure_sample: specific surface of a ball", "[measure_sample]") {
   CHECK(sample.freeArea / double(sample.objectVoxels) == Approx(sample.specificSurface));
 }
 
+TEST_CASE("measure_sample: a segmentation measures as its labels do", "[measure_sample]") {
+  Rng rng(7);
+  bool wasFiltered = false;
+  for (const int64_t gamma : {0, 1, 8})
+    for (const Boundary boundary : {Boundary::open, Boundary::closed})
+      for (const VolumeKind kind : {VolumeKind::blurredNoise, VolumeKind::denseNoise}) {
+        const ObjectVolume object = randomVolume(kind, CoordBBox(Coord(-9), Coord(30)), rng);
+        SegmentOptions options;
+        options.gamma = gamma;
+        options.boundary = boundary;
+        options.domain = CoordBBox(Coord(-9), Coord(30));
+        const Segmentation grains = segment(*toMask(object), options);
+        wasFiltered = wasFiltered || grains.counts.keptBalls < grains.counts.medialBalls;
+        const Measurements a = measure(grains), b = measure(*grains.grain);
+        CAPTURE(gamma, int(boundary), int(kind));
+        REQUIRE(a.grains.size() == b.grains.size());
+        REQUIRE(a.bonds.size() == b.bonds.size());
+        REQUIRE(a.grains.size() > 3);
+        for (size_t i = 0; i < a.grains.size(); ++i) {
+          REQUIRE(a.grains[i].representative.has_value());
+          CHECK(a.grains[i].representative == b.grains[i].representative);
+          CHECK(a.grains[i].inscribedRadius == b.grains[i].inscribedRadius);
+          CHECK(a.grains[i].cutArea == b.grains[i].cutArea);
+        }
+        for (size_t i = 0; i < a.bonds.size(); ++i) {
+          CHECK(a.bonds[i].distance == b.bonds[i].distance);
+          CHECK(a.bonds[i].cosAlpha == b.bonds[i].cosAlpha);
+        }
+      }
+  CHECK(wasFiltered);
+}
+
 TEST_CASE("measure_sample: the same bits with one thread and with four", "[measure_sample]") {
   Rng rng(1);
   const ObjectVolume object =

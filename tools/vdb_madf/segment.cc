@@ -263,7 +263,7 @@ void run(const Options& o, const Common& common) {
 
   if (tables) {
     const Clock::time_point startMeasure = Clock::now();
-    tables->write(measure(*s.grain, {}, common.progress));
+    tables->write(measure(s, common.progress));
     timing.measure = secondsSince(startMeasure);
   }
 

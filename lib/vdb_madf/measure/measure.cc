@@ -15,23 +15,21 @@
 #include "vdb_madf/measure/detail/sample_measures.h"
 #include "vdb_madf/measure/euler_characteristic.h"
 #include "vdb_madf/method/boundary.h"
+#include "vdb_madf/method/segment.h"
 #include "vdb_madf/method/segmentation_metadata.h"
 
 namespace vdb_madf {
 
 namespace {
 
-void setRepresentatives(
-    const std::map<int32_t, detail::GrainRepresentative> &representatives,
-    Measurements &result) {
-  if (representatives.empty())
-    return;
-  for (GrainMeasures &grain : result.grains) {
-    const detail::GrainRepresentative &deepest = representatives.at(grain.id);
+void setRepresentatives(const detail::GrainRepresentatives& representatives, Measurements& result) {
+  if (representatives.empty()) return;
+  for (GrainMeasures& grain : result.grains) {
+    const detail::GrainRepresentative& deepest = representatives.at(grain.id);
     grain.representative = deepest.voxel;
     grain.inscribedRadius = std::sqrt(double(deepest.squaredRadius));
   }
-  for (BondMeasures &bond : result.bonds) {
+  for (BondMeasures& bond : result.bonds) {
     const detail::GrainRepresentative &a = representatives.at(bond.first),
                                       &b = representatives.at(bond.second);
     int64_t squaredDistance = 0;
@@ -40,24 +38,19 @@ void setRepresentatives(
       squaredDistance += d * d;
     }
     bond.distance = std::sqrt(double(squaredDistance));
-    bond.cosAlpha =
-        double(squaredDistance - a.squaredRadius - b.squaredRadius) /
-        (2 * std::sqrt(
-                 double(int64_t(a.squaredRadius) * int64_t(b.squaredRadius))));
+    bond.cosAlpha = double(squaredDistance - a.squaredRadius - b.squaredRadius) /
+                    (2 * std::sqrt(double(int64_t(a.squaredRadius) * int64_t(b.squaredRadius))));
   }
 }
 
-} // namespace
-
-Measurements measure(const Int32Grid &labels, const MeasureOptions &options,
-                     Interrupter *interrupter) {
+/// \p graph: of the segmentation, if it tells the representatives; else null.
+Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& options,
+                           const ManifoldGraph* graph, Interrupter* interrupter) {
   const detail::LabelLeaves leaves(labels, interrupter);
-  const LeafIndex &index = leaves.index();
-  const std::optional<CoordBBox> domainBox =
-      options.domain ? options.domain : storedDomain(labels);
-  const Boundary boundary = options.boundary == Boundary::automatic
-                                ? storedBoundary(labels)
-                                : options.boundary;
+  const LeafIndex& index = leaves.index();
+  const std::optional<CoordBBox> domainBox = options.domain ? options.domain : storedDomain(labels);
+  const Boundary boundary =
+      options.boundary == Boundary::automatic ? storedBoundary(labels) : options.boundary;
   const Obstacles obstacles = resolveBoundary(index, boundary, domainBox);
 
   Measurements result;
@@ -65,21 +58,33 @@ Measurements measure(const Int32Grid &labels, const MeasureOptions &options,
   const CoordBBox box = domainBox.value_or(index.boundingBox());
   {
     const detail::LabelSums sums = detail::labelSums(
-        leaves, obstacles.open ? std::optional(obstacles.domain) : std::nullopt,
-        interrupter);
+        leaves, obstacles.open ? std::optional(obstacles.domain) : std::nullopt, interrupter);
     result.bonds = detail::bondMeasures(sums, interrupter);
     result.grains = detail::grainMeasures(sums, result.bonds, box);
   }
-  setRepresentatives(
-      detail::grainRepresentatives(leaves, obstacles, interrupter), result);
-  SampleMeasures &sample = result.sample;
+  setRepresentatives(graph ? detail::grainRepresentatives(labels, *graph)
+                           : detail::grainRepresentatives(leaves, obstacles, interrupter),
+                     result);
+  SampleMeasures& sample = result.sample;
   sample = detail::sampleMeasures(result.grains, result.bonds, box);
   sample.domainKnown = domainBox.has_value();
-  sample.correlationLengths =
-      correlationLengths(index, sample.box, interrupter);
+  sample.correlationLengths = correlationLengths(index, sample.box, interrupter);
   sample.eulerCharacteristic = eulerCharacteristic(index, interrupter);
   sample.components = ObjectComponents(index).count();
   return result;
 }
 
-} // namespace vdb_madf
+}  // namespace
+
+Measurements measure(const Int32Grid& labels, const MeasureOptions& options,
+                     Interrupter* interrupter) {
+  return measureLabels(labels, options, nullptr, interrupter);
+}
+
+Measurements measure(const Segmentation& segmentation, Interrupter* interrupter) {
+  const bool isFiltered = segmentation.counts.keptBalls < segmentation.counts.medialBalls;
+  return measureLabels(*segmentation.grain, {}, isFiltered ? nullptr : &segmentation.graph,
+                       interrupter);
+}
+
+}  // namespace vdb_madf

@@ -16,6 +16,8 @@
 
 namespace vdb_madf {
 
+struct Segmentation;
+
 struct MeasureOptions {
   /// What lies beyond the domain; automatic: what the grid says, else open if its domain is known.
   /// Open: the faces of the domain are no surface (GrainMeasures::cutArea). Closed: they are.
@@ -39,5 +41,9 @@ struct Measurements {
 ///   leaf_index.h is exceeded; Interrupted.
 Measurements measure(const Int32Grid& labels, const MeasureOptions& options = {},
                      Interrupter* interrupter = nullptr);
+
+/// The same of a segmentation's labels, with their own domain and boundary. Faster: unless balls
+/// were filtered out, what is known of its critical points spares the distance map.
+Measurements measure(const Segmentation& segmentation, Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

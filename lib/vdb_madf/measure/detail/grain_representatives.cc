@@ -44,10 +44,9 @@ GrainRepresentative deepestOf(const LabelPart& part, const LeafIndex& index, siz
 
 }  // namespace
 
-std::map<int32_t, GrainRepresentative> grainRepresentatives(const LabelLeaves& labels,
-                                                            const Obstacles& obstacles,
-                                                            Interrupter* interrupter) {
-  std::map<int32_t, GrainRepresentative> result;
+GrainRepresentatives grainRepresentatives(const LabelLeaves& labels, const Obstacles& obstacles,
+                                          Interrupter* interrupter) {
+  GrainRepresentatives result;
   const LeafIndex& index = labels.index();
   if (index.leafCount() == 0) return result;
   if (obstacles.open && uint64_t(index.voxelCount()) == obstacles.domain.volume()) return result;
@@ -69,6 +68,14 @@ std::map<int32_t, GrainRepresentative> grainRepresentatives(const LabelLeaves& l
   });
   for (const Best& best : bests)
     for (const auto& [label, representative] : best) improve(representative, result[label]);
+  return result;
+}
+
+GrainRepresentatives grainRepresentatives(const Int32Grid& labels, const ManifoldGraph& graph) {
+  GrainRepresentatives result;
+  const auto accessor = labels.getConstAccessor();
+  for (const ManifoldGraph::Node& node : graph.nodes)
+    improve({node.position, node.squaredRadius}, result[accessor.getValue(node.position)]);
   return result;
 }
 

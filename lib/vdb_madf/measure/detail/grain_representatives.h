@@ -7,6 +7,7 @@
 
 #include "vdb_madf/labels/detail/label_leaves.h"
 #include "vdb_madf/method/boundary.h"
+#include "vdb_madf/method/manifold_graph.h"
 #include "vdb_madf/method/squared_distance.h"
 
 namespace vdb_madf::detail {
@@ -18,11 +19,17 @@ struct GrainRepresentative {
   int32_t squaredRadius = 0;  ///< voxels squared
 };
 
-/// By label; empty if there is no background. Computed from the labels alone; without a gamma
-/// filter these are the critical points that the segmentation numbers grains by.
+/// By label.
+using GrainRepresentatives = std::map<int32_t, GrainRepresentative>;
+
+/// Empty if there is no background. Computed from the labels alone.
 /// Memory while it runs: four bytes per voxel.
-std::map<int32_t, GrainRepresentative> grainRepresentatives(const LabelLeaves& labels,
-                                                            const Obstacles& obstacles,
-                                                            Interrupter* interrupter);
+GrainRepresentatives grainRepresentatives(const LabelLeaves& labels, const Obstacles& obstacles,
+                                          Interrupter* interrupter);
+
+/// The same of labels that were segmented without a filter, from the critical points. The deepest
+/// voxel p of a grain is one of them: were p in the cell of a ball s != p, then by
+/// |p - s|^2 - D(s) <= -D(p) that s, of the same grain, would lie deeper.
+GrainRepresentatives grainRepresentatives(const Int32Grid& labels, const ManifoldGraph& graph);
 
 }  // namespace vdb_madf::detail
