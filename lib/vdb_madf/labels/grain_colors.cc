@@ -44,7 +44,11 @@ constexpr std::array<Rgb, kPaletteSize> kPalette{{
 }};
 constexpr Rgb kUnknown{128, 128, 128};
 
-constexpr std::array<int, 13> kForward{1, 9, 10, 11, 89, 90, 91, 99, 100, 101, 109, 110, 111};
+constexpr int kX = detail::kHaloStride[0], kY = detail::kHaloStride[1], kZ = detail::kHaloStride[2];
+/// To half of the 26 neighbours; the others lie opposite.
+constexpr std::array<int, 13> kForward{kZ,           kY - kZ, kY, kY + kZ, kX - kY - kZ, kX - kY,
+                                       kX - kY + kZ, kX - kZ, kX, kX + kZ, kX + kY - kZ, kX + kY,
+                                       kX + kY + kZ};
 
 bool isUniform(const detail::LabelHalo& halo) {
   int32_t label = 0;
@@ -61,10 +65,10 @@ bool isUniform(const detail::LabelHalo& halo) {
 template <typename F>
 void forEachContact(const detail::LabelHalo& halo, const F& f) {
   if (isUniform(halo)) return;
-  for (int x = 1; x <= 8; ++x)
-    for (int y = 1; y <= 8; ++y)
-      for (int z = 1; z <= 8; ++z) {
-        const int at = x * 100 + y * 10 + z;
+  for (int x = 0; x < 8; ++x)
+    for (int y = 0; y < 8; ++y)
+      for (int z = 0; z < 8; ++z) {
+        const auto at = int(detail::haloAt(x, y, z));
         const int32_t a = halo[size_t(at)];
         if (!a) continue;
         // All 26: a neighbour in another leaf may be the only one to see it, or not be a leaf.

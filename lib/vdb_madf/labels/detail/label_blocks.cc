@@ -17,11 +17,11 @@ using Leaf = Int32Tree::LeafNodeType;
 
 constexpr size_t kLeafGrain = 256;
 
-/// Where a neighbour's voxels go along one axis: [from, from + count) of it to `to` of the halo.
+/// Where a neighbour's voxels go along one axis: [from, from + count) of it to `to` of the block.
 struct Span {
   int from, count, to;
 };
-constexpr Span kSpans[3] = {{7, 1, 0}, {0, 8, 1}, {0, 1, 9}};
+constexpr Span kSpans[3] = {{7, 1, -1}, {0, 8, 0}, {0, 1, 8}};
 
 /// Blocks whose corners the leaf's voxels touch: its own, and those beyond its upper faces that
 /// hold a label.
@@ -63,8 +63,7 @@ void readLabelHalo(const Int32Tree& tree, const Coord& origin, LabelHalo& halo) 
       for (int j = 0; j < y.count; ++j)
         for (int k = 0; k < z.count; ++k) {
           const auto offset = openvdb::Index((x.from + i) * 64 + (y.from + j) * 8 + z.from + k);
-          halo[size_t((x.to + i) * 100 + (y.to + j) * 10 + z.to + k)] =
-              leaf ? labelAt(*leaf, values, offset) : tile;
+          halo[haloAt(x.to + i, y.to + j, z.to + k)] = leaf ? labelAt(*leaf, values, offset) : tile;
         }
   }
 }

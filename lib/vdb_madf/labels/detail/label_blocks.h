@@ -19,9 +19,13 @@ inline int32_t labelAt(const Int32Tree::LeafNodeType& leaf, const int32_t* value
   return leaf.isValueOn(offset) && values[offset] > 0 ? values[offset] : 0;
 }
 
-/// Labels of an 8x8x8 block with one voxel more on each side, at (x + 1) * 100 + (y + 1) * 10 + z +
-/// 1; 0: none.
+/// Labels of an 8x8x8 block with one voxel more on each side: -1 to 8 along x, y and z; 0: none.
 using LabelHalo = std::array<int32_t, 1000>;
+/// From a voxel of it to the next along x, y and z.
+constexpr int kHaloStride[3] = {100, 10, 1};
+inline size_t haloAt(int x, int y, int z) {
+  return size_t((x + 1) * kHaloStride[0] + (y + 1) * kHaloStride[1] + (z + 1) * kHaloStride[2]);
+}
 /// Reads the block at an origin; tiles are read as the voxels that they stand for.
 void readLabelHalo(const Int32Tree& tree, const Coord& origin, LabelHalo& halo);
 

@@ -1,0 +1,224 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/shapes/detail/net_builder.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/shapes/detail/corner_fans.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+constexpr size_t kBlockGrain = 16;
+
+class NetBuilder {
+ public:
+  NetBuilder(const LabelBlocks& blocks, bool withLinks, Interrupter* interrupter)
+      : blocks_(blocks), withLinks_(withLinks), interrupter_(interrupter) {}
+
+  SurfaceNet build() {
+    count();
+    net_.corners.resize(firstCorner_.back());
+    net_.firstPoint.resize(net_.corners.size() + 1);
+    net_.firstPoint.back() = firstPoint_.back();
+    net_.pointGrain.resize(firstPoint_.back());
+    net_.pointCorner.resize(firstPoint_.back());
+    if (withLinks_) {
+      std::array<uint32_t, 6> none;
+      none.fill(SurfaceNet::kNone);
+      net_.links.assign(net_.corners.size(), none);
+      // Bits of both ends are set by the block of the lower one: a byte per direction until then.
+      junctionBytes_.resize(net_.corners.size());
+    }
+    quads_.resize(firstQuad_.back());
+    quadGrain_.resize(firstQuad_.back());
+    forEachBlock([&](size_t block, const LabelHalo& halo) { placeCorners(block, halo); });
+    forEachBlock([&](size_t block, const LabelHalo& halo) { makeQuads(block, halo); });
+    if (withLinks_) packJunctions();
+    sortQuads();
+    return std::move(net_);
+  }
+
+ private:
+  template <typename F>
+  void forEachBlock(const F& f) const {
+    parallelFor(blocks_.size(), kBlockGrain, interrupter_, [&](size_t begin, size_t end) {
+      LabelHalo halo;
+      for (size_t block = begin; block < end; ++block) {
+        blocks_.readHalo(block, halo);
+        f(block, halo);
+      }
+    });
+  }
+
+  template <typename F>
+  static void forEachPlace(const F& f) {
+    for (int x = 0; x < 8; ++x)
+      for (int y = 0; y < 8; ++y)
+        for (int z = 0; z < 8; ++z) f(x, y, z);
+  }
+
+  void count() {
+    std::vector<std::array<uint32_t, 3>> counts(blocks_.size());
+    forEachBlock([&](size_t block, const LabelHalo& halo) {
+      uint32_t corners = 0, points = 0, quads = 0;
+      forEachPlace([&](int x, int y, int z) {
+        const int32_t* at = &halo[haloAt(x, y, z)];
+        const Corner corner(at);
+        corners += corner.labels > 0;
+        points += uint32_t(corner.pointCount);
+        for (const int step : kHaloStride)
+          if (at[0] != at[-step]) quads += uint32_t(at[0] > 0) + uint32_t(at[-step] > 0);
+      });
+      counts[block] = {corners, points, quads};
+    });
+    uint64_t corners = 0, points = 0, quads = 0;
+    for (const auto& [c, p, q] : counts) {
+      firstCorner_.push_back(uint32_t(corners));
+      firstPoint_.push_back(uint32_t(points));
+      firstQuad_.push_back(uint32_t(quads));
+      corners += c;
+      points += p;
+      quads += q;
+      if (std::max(points, 2 * quads) >= std::numeric_limits<uint32_t>::max())
+        throw InvalidInput(
+            "the meshes have more than 4,294,967,294 points or triangles: "
+            "coarsen or crop the volume");
+    }
+    firstCorner_.push_back(uint32_t(corners));
+    firstPoint_.push_back(uint32_t(points));
+    firstQuad_.push_back(uint32_t(quads));
+  }
+
+  void placeCorners(size_t block, const LabelHalo& halo) {
+    uint32_t number = firstCorner_[block], point = firstPoint_[block];
+    forEachPlace([&](int x, int y, int z) {
+      const Corner corner(&halo[haloAt(x, y, z)]);
+      if (corner.labels == 0) return;
+      net_.corners[number] = blocks_.origin(block).offsetBy(x, y, z);
+      net_.firstPoint[number] = point;
+      for (int g = 0; g < corner.grains; ++g)
+        for (int fan = 0; fan < fans().count[corner.set[size_t(g)]]; ++fan) {
+          net_.pointGrain[point] = blocks_.number(corner.label[size_t(g)]);
+          net_.pointCorner[point++] = number;
+        }
+      ++number;
+    });
+  }
+
+  /// Numbers of the corners 0 .. 8 of a block, its own and those of the blocks above it.
+  static constexpr int kSide = 9;
+  using CornerTable = std::array<uint32_t, kSide * kSide * kSide>;
+  static size_t tableAt(int x, int y, int z) { return size_t((x * kSide + y) * kSide + z); }
+
+  void readCorners(size_t block, CornerTable& table) const {
+    table.fill(SurfaceNet::kNone);
+    const Coord origin = blocks_.origin(block);
+    for (int side = 0; side < 8; ++side) {
+      const Coord step(8 * (side >> 2), 8 * (side >> 1 & 1), 8 * (side & 1));
+      const size_t other = side == 0 ? block : blocks_.find(origin + step);
+      if (other == LabelBlocks::kNone) continue;
+      for (uint32_t i = firstCorner_[other]; i < firstCorner_[other + 1]; ++i) {
+        const Coord p = net_.corners[i] - origin;
+        if (p.x() <= 8 && p.y() <= 8 && p.z() <= 8) table[tableAt(p.x(), p.y(), p.z())] = i;
+      }
+    }
+  }
+
+  void makeQuads(size_t block, const LabelHalo& halo) {
+    CornerTable table;
+    readCorners(block, table);
+    uint32_t next = firstQuad_[block];
+    forEachPlace([&](int x, int y, int z) {
+      const int32_t* at = &halo[haloAt(x, y, z)];
+      for (int axis = 0; axis < 3; ++axis) {
+        const int32_t above = at[0], below = at[-kHaloStride[axis]];
+        if (above != below) {
+          if (below > 0) addQuad(halo, table, Coord(x, y, z), axis, below, false, next++);
+          if (above > 0) addQuad(halo, table, Coord(x, y, z), axis, above, true, next++);
+        }
+        if (withLinks_) addLink(at, table, Coord(x, y, z), axis);
+      }
+    });
+  }
+
+  /// The face across `axis` below voxel p, as a grain below it (normal +axis) or above it sees it.
+  void addQuad(const LabelHalo& halo, const CornerTable& table, const Coord& p, int axis,
+               int32_t grain, bool isAbove, uint32_t number) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    static constexpr int kAround[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    std::array<uint32_t, 4> quad;
+    for (size_t n = 0; n < 4; ++n) {
+      Coord q = p;
+      q[u] += kAround[n][0];
+      q[v] += kAround[n][1];
+      const uint32_t corner = table[tableAt(q.x(), q.y(), q.z())];
+      // Seen from this corner, the face lies on the other side of it along u and v.
+      const int face = axis * 4 + (1 - kAround[n][0]) * 2 + (1 - kAround[n][1]);
+      const Corner around(&halo[haloAt(q.x(), q.y(), q.z())]);
+      quad[n] = net_.firstPoint[corner] + around.point(grain, face);
+    }
+    if (isAbove) std::swap(quad[1], quad[3]);
+    quads_[number] = quad;
+    quadGrain_[number] = blocks_.number(grain);
+  }
+
+  /// The edge of the lattice from corner p upwards along `axis`.
+  void addLink(const int32_t* at, const CornerTable& table, const Coord& p, int axis) {
+    const int u = kHaloStride[(axis + 1) % 3], v = kHaloStride[(axis + 2) % 3];
+    std::array<int32_t, 4> around{at[0], at[-u], at[-v], at[-u - v]};
+    std::sort(around.begin(), around.end());
+    const auto labels = std::unique(around.begin(), around.end()) - around.begin();
+    if (labels == 1) return;
+    Coord q = p;
+    ++q[axis];
+    const uint32_t low = table[tableAt(p.x(), p.y(), p.z())],
+                   high = table[tableAt(q.x(), q.y(), q.z())];
+    net_.links[low][size_t(2 * axis + 1)] = high;
+    net_.links[high][size_t(2 * axis)] = low;
+    if (labels < 3) return;
+    junctionBytes_[low][size_t(2 * axis + 1)] = 1;
+    junctionBytes_[high][size_t(2 * axis)] = 1;
+  }
+
+  void packJunctions() {
+    net_.junctions.resize(net_.corners.size());
+    for (size_t i = 0; i < net_.corners.size(); ++i)
+      for (size_t d = 0; d < 6; ++d)
+        net_.junctions[i] = uint8_t(net_.junctions[i] | junctionBytes_[i][d] << d);
+    junctionBytes_.clear();
+    junctionBytes_.shrink_to_fit();
+  }
+
+  void sortQuads() {
+    net_.firstQuad.assign(blocks_.labels().size() + 1, 0);
+    for (const uint32_t grain : quadGrain_) ++net_.firstQuad[grain + 1];
+    for (size_t g = 1; g < net_.firstQuad.size(); ++g) net_.firstQuad[g] += net_.firstQuad[g - 1];
+    std::vector<uint32_t> next(net_.firstQuad.begin(), net_.firstQuad.end() - 1);
+    net_.quads.resize(quads_.size());
+    for (size_t i = 0; i < quads_.size(); ++i) net_.quads[next[quadGrain_[i]]++] = quads_[i];
+  }
+
+  const LabelBlocks& blocks_;
+  const bool withLinks_;
+  Interrupter* interrupter_;
+  std::vector<uint32_t> firstCorner_, firstPoint_, firstQuad_;  // per block, one more at the end
+  std::vector<std::array<uint8_t, 6>> junctionBytes_;
+  std::vector<std::array<uint32_t, 4>> quads_;
+  std::vector<uint32_t> quadGrain_;
+  SurfaceNet net_;
+};
+
+}  // namespace
+
+SurfaceNet buildNet(const LabelBlocks& blocks, bool withLinks, Interrupter* interrupter) {
+  return NetBuilder(blocks, withLinks, interrupter).build();
+}
+
+}  // namespace vdb_madf::detail
