@@ -11,6 +11,7 @@
 
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/labels/reduced_labels.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
@@ -250,4 +251,35 @@ TEST_CASE("grain_mesh: inactive and negative values are background", "[grain_mes
   CHECK(grainMesh(*grid).labels == std::vector<int32_t>{1});
   CHECK_THROWS_AS(grainMesh(*grid, {-1}), InvalidInput);
   CHECK_THROWS_AS(grainMesh(*grid, {1001}), InvalidInput);
+}
+
+TEST_CASE("grain_mesh: triangles are counted without meshing", "[grain_mesh]") {
+  for (const LabelMap& voxels : {LabelMap(), awkwardLabels(), twoBalls({-3, 8, 5}, 6),
+                                 randomLabels(3, Coord(-13), 20, 4, 60)}) {
+    const auto grid = labelGrid(voxels);
+    grid->tree().setValueOn({40, 0, 0}, -3);  // background
+    CHECK(countTriangles(*grid) == grainMesh(*grid).triangles.size());
+    CHECK(countTriangles(*grid) == grainMesh(*grid, {3}).triangles.size());
+  }
+  auto tiled = labelGrid({});
+  tiled->fill(CoordBBox(Coord(0), Coord(15, 7, 7)), 5);
+  REQUIRE(tiled->tree().hasActiveTiles());
+  CHECK(countTriangles(*tiled) == 2 * (2 * 64 + 4 * 128));
+}
+
+TEST_CASE("grain_mesh: the least reduction for so many triangles", "[grain_mesh]") {
+  const auto grid = labelGrid(twoBalls({-3, 8, 5}, 9));
+  std::vector<uint64_t> counts{0, countTriangles(*grid)};
+  for (int factor = 2; factor <= 4; ++factor)
+    counts.push_back(grainMesh(*reduceLabels(*grid, factor)).triangles.size());
+  REQUIRE(counts[1] > counts[2]);
+  REQUIRE(counts[2] > counts[3]);
+  REQUIRE(counts[3] > counts[4]);
+  CHECK(reductionForTriangles(*grid, counts[1]) == 1);
+  CHECK(reductionForTriangles(*grid, counts[1], 2) == 2);
+  CHECK(reductionForTriangles(*grid, counts[1] - 1) == 2);
+  CHECK(reductionForTriangles(*grid, counts[2] - 1) == 3);
+  CHECK(reductionForTriangles(*grid, counts[4]) == 4);
+  CHECK_THROWS_AS(reductionForTriangles(*grid, 1), InvalidInput);
+  CHECK(reductionForTriangles(*labelGrid({}), 1, 3) == 3);
 }

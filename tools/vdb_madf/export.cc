@@ -73,25 +73,12 @@ int reductionOf(const Options& o, const Int32Grid& labels) {
   return reductionFor(boxOf(labels), o.maxDim);
 }
 
-/// The smallest reduction, from the options' on, whose mesh keeps to the budget of triangles.
-/// Smoothing moves points only: their number is that of the exact faces.
-int reductionForTriangles(const Options& o, const Common& common, const Int32Grid& labels) {
-  const int first = reductionOf(o, labels);
-  if (o.mostTriangles == 0) return first;
-  for (int factor = first; factor <= kMaxReduction; ++factor) {
-    const Int32Grid::Ptr reduced = reduceLabels(labels, factor, common.progress);
-    const size_t triangles = grainMesh(*reduced, {}, common.progress).triangles.size();
-    if (triangles == 0 && !labels.empty()) break;
-    if (triangles <= size_t(o.mostTriangles)) return factor;
-  }
-  throw InvalidInput("no reduction of the labels has a mesh of " + std::to_string(o.mostTriangles) +
-                     " triangles or fewer: allow more");
-}
-
 void exportMesh(const Options& o, const Common& common, const Int32Grid& labels) {
   GrainMeshOptions options;
   options.smoothing = o.smoothing;
-  const int factor = reductionForTriangles(o, common, labels);
+  int factor = reductionOf(o, labels);
+  if (o.mostTriangles > 0)
+    factor = reductionForTriangles(labels, uint64_t(o.mostTriangles), factor, common.progress);
   const Int32Grid::ConstPtr meshed =
       factor == 1 ? labels.copy() : reduceLabels(labels, factor, common.progress);
   const GrainMesh mesh = grainMesh(*meshed, options, common.progress);

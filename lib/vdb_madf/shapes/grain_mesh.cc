@@ -3,9 +3,13 @@
 
 #include "vdb_madf/shapes/grain_mesh.h"
 
+#include <numeric>
+#include <string>
+
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
+#include "vdb_madf/labels/reduced_labels.h"
 #include "vdb_madf/shapes/detail/net_builder.h"
 
 namespace vdb_madf {
@@ -16,6 +20,7 @@ using detail::LabelBlocks;
 using detail::SurfaceNet;
 using openvdb::Vec3d;
 
+constexpr size_t kBlockGrain = 16;
 constexpr size_t kItemGrain = 1 << 16;
 constexpr int kMaxRounds = 1000;
 
@@ -68,6 +73,39 @@ GrainMesh grainMesh(const Int32Grid& labels, const GrainMeshOptions& options,
                                                                blocks.voxelCounts(), interrupter)
                                                : latticePositions(net);
   return assemble(net, positions, blocks.labels());
+}
+
+uint64_t countTriangles(const Int32Grid& labels, Interrupter* interrupter) {
+  const LabelBlocks blocks(labels);
+  std::vector<uint64_t> quads(blocks.size());
+  detail::parallelFor(blocks.size(), kBlockGrain, interrupter, [&](size_t begin, size_t end) {
+    detail::LabelHalo halo;
+    for (size_t block = begin; block < end; ++block) {
+      blocks.readHalo(block, halo);
+      // The faces below the voxels of a block are its own; each grain at a face has it.
+      for (int x = 0; x < 8; ++x)
+        for (int y = 0; y < 8; ++y)
+          for (int z = 0; z < 8; ++z) {
+            const int32_t* at = &halo[detail::haloAt(x, y, z)];
+            for (const int step : detail::kHaloStride)
+              if (at[0] != at[-step]) quads[block] += uint64_t(at[0] > 0) + uint64_t(at[-step] > 0);
+          }
+    }
+  });
+  return 2 * std::accumulate(quads.begin(), quads.end(), uint64_t(0));
+}
+
+int reductionForTriangles(const Int32Grid& labels, uint64_t maxTriangles, int first,
+                          Interrupter* interrupter) {
+  for (int factor = first; factor <= kMaxReduction; ++factor) {
+    const uint64_t triangles =
+        factor == 1 ? countTriangles(labels, interrupter)
+                    : countTriangles(*reduceLabels(labels, factor, interrupter), interrupter);
+    if (triangles == 0 && !labels.empty()) break;
+    if (triangles <= maxTriangles) return factor;
+  }
+  throw InvalidInput("no reduction of the labels has a mesh of " + std::to_string(maxTriangles) +
+                     " triangles or fewer: allow more");
 }
 
 std::vector<double> meshVolumes(const GrainMesh& mesh) {

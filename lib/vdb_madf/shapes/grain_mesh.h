@@ -48,6 +48,16 @@ struct GrainMeshOptions {
 GrainMesh grainMesh(const Int32Grid& labels, const GrainMeshOptions& options = {},
                     Interrupter* interrupter = nullptr);
 
+/// Triangles of grainMesh(), without meshing: two for each voxel face of a grain that is not
+/// towards a voxel of its own. @throw Interrupted
+uint64_t countTriangles(const Int32Grid& labels, Interrupter* interrupter = nullptr);
+
+/// The smallest factor, from \p first on, by which reduced labels (reduced_labels.h) have a mesh of
+/// at most so many triangles. Smoothing moves points only, so it does not matter.
+/// @throw InvalidInput if that exceeds kMaxReduction, or no voxel would be left; Interrupted.
+int reductionForTriangles(const Int32Grid& labels, uint64_t maxTriangles, int first = 1,
+                          Interrupter* interrupter = nullptr);
+
 /// Signed volume of each grain, in voxels.
 std::vector<double> meshVolumes(const GrainMesh& mesh);
 
