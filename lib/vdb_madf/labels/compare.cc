@@ -61,7 +61,8 @@ class Counts {
 };
 
 /// Walks both trees side by side. Tiles are counted whole wherever the other tree is constant too;
-/// the leaves that remain are counted in parallel.
+/// the leaves that remain are counted in parallel. (LabelLeaves and LabelBlocks walk one grid, and
+/// make leaves of its tiles.)
 class OverlapCounter {
  public:
   Counts count(const Root& truth, const Root& test, Interrupter* interrupter) {

@@ -27,13 +27,13 @@ void check(const LevelSetOptions& options) {
     throw InvalidInput("the half width of the narrow band must lie between 1 and 16 voxels");
 }
 
-/// Makes the distances of the voxels of a label negative.
-void negateInside(FloatGrid& grid, const Int32Grid& labels, int32_t label) {
+/// Makes the distances of the voxels of a label negative. \p labels: without tiles.
+void negateInside(FloatGrid& grid, const Int32Tree& labels, int32_t label) {
   std::vector<FloatGrid::TreeType::LeafNodeType*> leaves;
   grid.tree().getNodes(leaves);
   detail::parallelFor(leaves.size(), kLeafGrain, nullptr, [&](size_t begin, size_t end) {
     for (size_t n = begin; n < end; ++n) {
-      const auto* inside = labels.tree().probeConstLeaf(leaves[n]->origin());
+      const auto* inside = labels.probeConstLeaf(leaves[n]->origin());
       if (!inside) continue;
       const int32_t* values = inside->buffer().data();
       float* distances = leaves[n]->buffer().data();
@@ -44,9 +44,10 @@ void negateInside(FloatGrid& grid, const Int32Grid& labels, int32_t label) {
   });
 }
 
-/// \p labels: without tiles.
+/// \p leaves: the tree of the labels without tiles.
 FloatGrid::Ptr levelSet(const GrainMesh& mesh, size_t grain, const Int32Grid& labels,
-                        const LevelSetOptions& options, Interrupter* interrupter) {
+                        const Int32Tree& leaves, const LevelSetOptions& options,
+                        Interrupter* interrupter) {
   const int32_t label = mesh.labels[grain];
   const uint32_t first = mesh.firstPoint[grain];
   const std::vector<Vec3s> points(mesh.points.begin() + first,
@@ -64,24 +65,18 @@ FloatGrid::Ptr levelSet(const GrainMesh& mesh, size_t grain, const Int32Grid& la
       interrupter ? *interrupter : none, surface, labels.transform(), options.halfWidth,
       options.halfWidth, openvdb::tools::UNSIGNED_DISTANCE_FIELD);
   if (interrupter && interrupter->wasInterrupted()) throw Interrupted();
-  negateInside(*grid, labels, label);
+  negateInside(*grid, leaves, label);
   openvdb::tools::signedFloodFill(grid->tree());
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
   copyProvenance(labels, *grid);
   return grid;
 }
 
-/// A copy without tiles.
-Int32Grid::Ptr leavesOnly(const Int32Grid& labels) {
-  const auto copy = Int32Grid::create(std::make_shared<Int32Tree>(labels.tree()));
-  copy->tree().voxelizeActiveTiles();
-  copyProvenance(labels, *copy);
-  return copy;
-}
-
-/// The same with all labels as label 1.
+/// A copy without tiles, with all labels as label 1.
 Int32Grid::Ptr asOneLabel(const Int32Grid& labels) {
-  const auto one = leavesOnly(labels);
+  const auto one = Int32Grid::create(std::make_shared<Int32Tree>(labels.tree()));
+  one->tree().voxelizeActiveTiles();
+  copyProvenance(labels, *one);
   std::vector<Int32Tree::LeafNodeType*> leaves;
   one->tree().getNodes(leaves);
   detail::parallelFor(leaves.size(), kLeafGrain, nullptr, [&](size_t begin, size_t end) {
@@ -105,11 +100,11 @@ std::vector<FloatGrid::Ptr> grainLevelSets(const Int32Grid& labels, const LevelS
                        " grains is too much (at most 2000): export a mesh, or a preview");
   GrainMeshOptions meshOptions;
   meshOptions.smoothing = options.smoothing;
-  const Int32Grid::Ptr leaves = leavesOnly(labels);
-  const GrainMesh mesh = grainMesh(*leaves, meshOptions, interrupter);
+  const Int32Tree::ConstPtr leaves = detail::withoutTiles(labels);
+  const GrainMesh mesh = grainMesh(labels, meshOptions, interrupter);
   std::vector<FloatGrid::Ptr> grids;
   for (size_t grain = 0; grain < mesh.labels.size(); ++grain) {
-    grids.push_back(levelSet(mesh, grain, *leaves, options, interrupter));
+    grids.push_back(levelSet(mesh, grain, labels, *leaves, options, interrupter));
     grids.back()->setName(grainName(mesh.labels[grain]));
   }
   return grids;
@@ -123,7 +118,7 @@ FloatGrid::Ptr surfaceLevelSet(const Int32Grid& labels, const LevelSetOptions& o
   const Int32Grid::Ptr one = asOneLabel(labels);
   const GrainMesh mesh = grainMesh(*one, meshOptions, interrupter);
   if (mesh.labels.empty()) throw InvalidInput("there is no labelled voxel: no surface to write");
-  const FloatGrid::Ptr grid = levelSet(mesh, 0, *one, options, interrupter);
+  const FloatGrid::Ptr grid = levelSet(mesh, 0, *one, one->tree(), options, interrupter);
   grid->setName("surface");
   return grid;
 }
