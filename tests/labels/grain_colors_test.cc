@@ -87,7 +87,7 @@ double leastDifference(const Int32Grid& grid, const GrainColors& colors, const P
   CHECK(colors.touchingPairs == int64_t(contacts.size()));
   double least = 1e9;
   for (const auto& [a, b] : contacts)
-    least = std::min(least, difference(colors.of(a), colors.of(b)));
+    least = std::min(least, difference(colors.colorOf(a), colors.colorOf(b)));
   return least;
 }
 
@@ -125,7 +125,7 @@ TEST_CASE("grain_colors: noise beyond the palette is counted", "[grain_colors]")
   const Pairs contacts = naiveContacts(*grid, cube(40));
   const GrainColors colors = grainColors(*grid);
   int64_t alike = 0;
-  for (const auto& [a, b] : contacts) alike += colors.of(a) == colors.of(b);
+  for (const auto& [a, b] : contacts) alike += colors.colorOf(a) == colors.colorOf(b);
   CHECK(alike >= 80 - 64);
   CHECK(colors.alikePairs == alike);
 }
@@ -158,7 +158,7 @@ TEST_CASE("grain_colors: distance and what is no label do not touch", "[grain_co
   const GrainColors colors = grainColors(*grid);
   CHECK(colors.labels == std::vector<int32_t>{1, 2});
   CHECK(colors.touchingPairs == 0);
-  CHECK(colors.of(7) == Rgb{128, 128, 128});
+  CHECK(colors.colorOf(7) == Rgb{128, 128, 128});
   CHECK(grainColors(*Int32Grid::create(0)).labels.empty());
 }
 

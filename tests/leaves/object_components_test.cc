@@ -32,7 +32,7 @@ void requireComponents(const ObjectVolume& object, Tiles tiles = Tiles::none) {
   std::map<uint32_t, int> expectedOf;
   std::map<int, uint32_t> foundOf;
   forEachId(index, [&](VoxelId id) {
-    const uint32_t found = components.of(id);
+    const uint32_t found = components.componentOf(id);
     const int wanted = expected[index.coord(id)];
     REQUIRE(found < components.count());
     REQUIRE(expectedOf.insert({found, wanted}).first->second == wanted);
@@ -143,7 +143,7 @@ TEST_CASE("object_components: threads do not matter", "[object_components]") {
     const ObjectComponents components =
         withThreads(threads, [&] { return ObjectComponents(index); });
     std::vector<uint32_t> all;
-    forEachId(index, [&](VoxelId id) { all.push_back(components.of(id)); });
+    forEachId(index, [&](VoxelId id) { all.push_back(components.componentOf(id)); });
     return all;
   };
   const std::vector<uint32_t> expected = numbers(1);

@@ -89,7 +89,7 @@ TEST_CASE("label_preview: density is the labelled part, color that of the common
       for (const auto& [label, count] : counts) labelled += count;
       CHECK(preview.density->tree().getValue(p) ==
             Approx(double(labelled) / (factor * factor * factor)));
-      const Rgb rgb = colors.of(mode(counts));
+      const Rgb rgb = colors.colorOf(mode(counts));
       const openvdb::Vec3f color = preview.color->tree().getValue(p);
       for (int c = 0; c < 3; ++c) {
         // Back to sRGB.

@@ -83,7 +83,7 @@ Picture paint(const Slice& slice, int zoom, const GrainColors& colors) {
     for (int x = 0; x < picture.width; ++x) {
       const int i = zoom > 0 ? x / zoom : x * -zoom, j = zoom > 0 ? y / zoom : y * -zoom;
       const int32_t label = slice.labels[size_t(j) * slice.width + i];
-      if (label > 0) picture.at(x, y) = colors.of(label);
+      if (label > 0) picture.at(x, y) = colors.colorOf(label);
     }
   }
   return picture;

@@ -38,7 +38,7 @@ class WorldMesh {
   const GrainMesh& mesh() const { return mesh_; }
   size_t grainCount() const { return mesh_.labels.size(); }
   int32_t label(size_t grain) const { return mesh_.labels[grain]; }
-  Rgb color(size_t grain) const { return options_.colors.of(mesh_.labels[grain]); }
+  Rgb color(size_t grain) const { return options_.colors.colorOf(mesh_.labels[grain]); }
 
   Vec3f point(uint32_t index) const {
     const Vec3f& p = mesh_.points[index];

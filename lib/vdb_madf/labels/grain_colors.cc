@@ -182,7 +182,7 @@ size_t pick(int32_t label, const std::array<bool, kPaletteSize>& used) {
 
 }  // namespace
 
-Rgb GrainColors::of(int32_t label) const {
+Rgb GrainColors::colorOf(int32_t label) const {
   const auto found = std::lower_bound(labels.begin(), labels.end(), label);
   return found == labels.end() || *found != label ? kUnknown
                                                   : colors[size_t(found - labels.begin())];

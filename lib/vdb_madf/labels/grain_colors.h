@@ -21,7 +21,7 @@ struct GrainColors {
   int64_t alikePairs = 0;
 
   /// Colour of a label; grey if the grid does not have it.
-  Rgb of(int32_t label) const;
+  Rgb colorOf(int32_t label) const;
 };
 
 /// Colours the graph of touching labels: two labels touch if they have voxels that share a face, an

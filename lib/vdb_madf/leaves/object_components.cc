@@ -125,7 +125,7 @@ ObjectComponents::ObjectComponents(const LeafIndex& index, Interrupter* interrup
   }
 }
 
-uint32_t ObjectComponents::of(VoxelId id) const {
+uint32_t ObjectComponents::componentOf(VoxelId id) const {
   const uint32_t leaf = id >> 9;
   uint32_t piece = firstPiece_[leaf];
   while (piece + 1 < firstPiece_[leaf + 1] && !(pieces_[piece].mask[id >> 6 & 7] >> (id & 63) & 1))

@@ -18,7 +18,7 @@ class ObjectComponents {
 
   uint32_t count() const { return count_; }
   /// Component of an object voxel, 0 .. count() - 1.
-  uint32_t of(VoxelId id) const;
+  uint32_t componentOf(VoxelId id) const;
 
  private:
   struct Piece {  // a component within one leaf

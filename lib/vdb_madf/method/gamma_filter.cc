@@ -137,11 +137,11 @@ VoxelSet keptBalls(const LeafIndex& index, const VoxelSet& balls, const MedialBa
   for (uint32_t i = 0; i < members.size(); ++i) {
     if (table.cellSize[i] < gamma) continue;
     kept.insert(members[i]);
-    hasKept[components.of(members[i])] = 1;
+    hasKept[components.componentOf(members[i])] = 1;
   }
   std::vector<uint32_t> best(components.count(), ~0u);
   for (uint32_t i = 0; i < members.size(); ++i) {
-    const uint32_t component = components.of(members[i]);
+    const uint32_t component = components.componentOf(members[i]);
     if (hasKept[component]) continue;
     uint32_t& b = best[component];
     if (b == ~0u || table.squaredRadius[i] > table.squaredRadius[b] ||

@@ -208,7 +208,7 @@ class Renderer {
       if (!firstVoxel(object, camera_.origin(x, y), voxel, t)) continue;
       const int32_t label = labels.getValue(voxel);
       view.labels[size_t(y) * size_t(camera_.width) + size_t(x)] = label;
-      view.picture.at(x, y) = shade(colors_.of(label), smoothing_.at(object, voxel), t);
+      view.picture.at(x, y) = shade(colors_.colorOf(label), smoothing_.at(object, voxel), t);
     }
   }
 

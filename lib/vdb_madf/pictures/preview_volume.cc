@@ -36,7 +36,7 @@ LabelPreview previewLabels(const Int32Grid& labels, int factor, Interrupter* int
         shades[n] = detail::leafAt<ColorGrid>(origin);
         for (openvdb::Index i = 0; i < Int32Tree::LeafNodeType::SIZE; ++i) {
           if (!cells[i].labelled) continue;
-          const Rgb rgb = colors.of(cells[i].label);
+          const Rgb rgb = colors.colorOf(cells[i].label);
           densities[n]->setValueOn(i, float(cells[i].labelled) / whole);
           shades[n]->setValueOn(i, Vec3f(linear(rgb[0]), linear(rgb[1]), linear(rgb[2])));
         }
