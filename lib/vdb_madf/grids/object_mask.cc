@@ -9,6 +9,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/grids/detail/number_grids.h"
 #include "vdb_madf/grids/grid_metadata.h"
 
 namespace vdb_madf {
@@ -128,25 +129,14 @@ MaskTree::Ptr objectOf(const Grid& grid, const std::optional<Selection>& selecti
   return voxelsOfDomain(tree, *extent, accepts);
 }
 
-template <typename Value>
-bool tryGrid(const openvdb::GridBase& grid, const std::optional<Selection>& selection,
-             MaskTree::Ptr& mask) {
-  using Grid = openvdb::Grid<StandardTree<Value>>;
-  if (!grid.isType<Grid>()) return false;
-  mask = objectOf(static_cast<const Grid&>(grid), selection);
-  return true;
-}
-
 }  // namespace
 
 MaskGrid::Ptr objectMask(const openvdb::GridBase& grid, const std::optional<Selection>& selection) {
   MaskTree::Ptr mask;
-  if (!tryGrid<bool>(grid, selection, mask) &&
-      !tryGrid<openvdb::ValueMask>(grid, selection, mask) &&
-      !tryGrid<int32_t>(grid, selection, mask) && !tryGrid<int64_t>(grid, selection, mask) &&
-      !tryGrid<float>(grid, selection, mask) && !tryGrid<double>(grid, selection, mask))
+  if (!grid.apply<detail::NumberGrids>(
+          [&](const auto& numbers) { mask = objectOf(numbers, selection); }))
     throw InvalidInput("grid '" + grid.getName() + "' of type " + grid.valueType() +
-                       " has no object: only bool, mask, int32, int64, float and double have");
+                       " has no object: only " + detail::kNumberGrids + " have");
   const auto object = MaskGrid::create(mask);
   object->setName("object");
   copyProvenance(grid, *object);

@@ -12,6 +12,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/detail/number_grids.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
 #include "vdb_madf/images/open_image.h"
@@ -158,14 +159,6 @@ void writeTree(const Destination& to, const Tree& tree, Interrupter* interrupter
                          [&](auto sample) { writeAs<decltype(sample)>(to, tree, interrupter); });
 }
 
-template <typename Value>
-bool tryGrid(const Destination& to, const openvdb::GridBase& grid, Interrupter* interrupter) {
-  using Grid = openvdb::Grid<StandardTree<Value>>;
-  if (!grid.isType<Grid>()) return false;
-  writeTree(to, static_cast<const Grid&>(grid).tree(), interrupter);
-  return true;
-}
-
 /// In mm; in voxels, where there is no voxel size.
 std::array<double, 3> originOf(const openvdb::GridBase& grid, const Coord& first) {
   const auto size = storedVoxelSize(grid);
@@ -184,12 +177,10 @@ void writeImage(const std::string& path, const openvdb::GridBase& grid, const Co
   info.type = type;
   info.voxelSize = storedVoxelSize(grid);
   const Destination to{path, box, info, originOf(grid, box.min())};
-  if (!tryGrid<bool>(to, grid, interrupter) &&
-      !tryGrid<openvdb::ValueMask>(to, grid, interrupter) &&
-      !tryGrid<int32_t>(to, grid, interrupter) && !tryGrid<int64_t>(to, grid, interrupter) &&
-      !tryGrid<float>(to, grid, interrupter) && !tryGrid<double>(to, grid, interrupter))
+  if (!grid.apply<detail::NumberGrids>(
+          [&](const auto& numbers) { writeTree(to, numbers.tree(), interrupter); }))
     throw InvalidInput(path + ": grid '" + grid.getName() + "' of type " + grid.valueType() +
-                       " cannot be an image: only bool, mask, int32, int64, float and double can");
+                       " cannot be an image: only " + detail::kNumberGrids + " can");
 }
 
 }  // namespace vdb_madf
