@@ -13,71 +13,42 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/detail/vtk_file.h"
 #include "vdb_madf/files/detail/buffered_output.h"
+#include "vdb_madf/grids/detail/grid_slabs.h"
 #include "vdb_madf/grids/detail/world_transform.h"
-#include "vdb_madf/labels/detail/label_blocks.h"
 
 namespace vdb_madf {
 
 namespace {
 
-using Leaf = Int32Tree::LeafNodeType;
-
 constexpr int kSlab = 8;  // slices
 /// Label images are mostly runs: more effort gains little.
 constexpr int kZlibLevel = 3;
 
-/// The labels of a box, eight slices at a time.
+struct LabelOf {
+  int32_t operator()(int32_t value, bool active) const { return active && value > 0 ? value : 0; }
+};
+
+/// The labels of a box, eight slices at a time from its lowest on: all slabs but the last are of
+/// one size, as the format wants its compressed blocks.
 class Slabs {
  public:
-  Slabs(const Int32Grid& labels, const CoordBBox& box)
-      : tree_(detail::withoutTiles(labels)), box_(box) {
-    std::vector<const Leaf*> leaves;
-    tree_->getNodes(leaves);
-    leaves_.resize(count());
-    for (const Leaf* leaf : leaves) {
-      CoordBBox part = leaf->getNodeBoundingBox();
-      part.intersect(box);
-      if (part.empty()) continue;
-      const size_t first = slabOf(part.min().z()), last = slabOf(part.max().z());
-      leaves_[first].push_back(leaf);
-      if (last != first) leaves_[last].push_back(leaf);
-    }
-  }
+  Slabs(const Int32Grid& labels, const CoordBBox& box) : slabs_(labels.tree(), box), box_(box) {}
 
   size_t count() const { return size_t(box_.dim().z() + kSlab - 1) / kSlab; }
   CoordBBox slabBox(size_t slab) const {
-    CoordBBox result = box_;
-    result.min().z() = box_.min().z() + int(slab) * kSlab;
-    result.max().z() = std::min(result.min().z() + kSlab - 1, box_.max().z());
-    return result;
+    const int z = box_.min().z() + int(slab) * kSlab;
+    return detail::slicesOf(box_, z, std::min(kSlab, box_.max().z() - z + 1));
   }
   std::vector<int32_t> read(size_t slab) const {
     const CoordBBox box = slabBox(slab);
     std::vector<int32_t> values(box.volume());
-    for (const Leaf* leaf : leaves_[slab]) copy(*leaf, box, values);
+    slabs_.read(box.min().z(), box.dim().z(), values.data());
     return values;
   }
 
  private:
-  size_t slabOf(int z) const { return size_t(z - box_.min().z()) / kSlab; }
-
-  static void copy(const Leaf& leaf, const CoordBBox& box, std::vector<int32_t>& values) {
-    const int32_t* data = leaf.buffer().data();
-    CoordBBox part = leaf.getNodeBoundingBox();
-    part.intersect(box);
-    const Coord size = box.dim();
-    for (int z = part.min().z(); z <= part.max().z(); ++z)
-      for (int y = part.min().y(); y <= part.max().y(); ++y)
-        for (int x = part.min().x(); x <= part.max().x(); ++x) {
-          const Coord p = Coord(x, y, z) - box.min();
-          values[(size_t(p.z()) * size_t(size.y()) + size_t(p.y())) * size_t(size.x()) +
-                 size_t(p.x())] = detail::labelAt(leaf, data, Leaf::coordToOffset(Coord(x, y, z)));
-        }
-  }
-
-  Int32Tree::ConstPtr tree_;
+  detail::GridSlabs<Int32Tree, LabelOf> slabs_;
   CoordBBox box_;
-  std::vector<std::vector<const Leaf*>> leaves_;  // of each slab
 };
 
 std::string deflated(const std::vector<int32_t>& values) {

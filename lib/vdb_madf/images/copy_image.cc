@@ -6,17 +6,11 @@
 #include <algorithm>
 #include <vector>
 
-#include "vdb_madf/base/errors.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
+#include "vdb_madf/images/detail/slabs.h"
 #include "vdb_madf/images/open_image.h"
 
 namespace vdb_madf {
-
-namespace {
-
-constexpr int kSlicesPerSlab = 8;
-
-}  // namespace
 
 void copyImage(const std::string& path, ImageReader& image, SampleType type,
                const std::optional<VoxelSize>& voxelSize, Interrupter* interrupter) {
@@ -25,13 +19,10 @@ void copyImage(const std::string& path, ImageReader& image, SampleType type,
   info.type = type;
   if (voxelSize) info.voxelSize = voxelSize;
   const size_t slice = size_t(info.size.x) * info.size.y;
-  const int depth = std::min(kSlicesPerSlab, info.size.z);
+  const int depth = std::min(detail::kSlab, info.size.z);
   std::vector<char> in(slice * depth * sampleSize(from)), out(slice * depth * sampleSize(type));
   const auto writer = createImage(path, info);
-  for (int z = 0; z < info.size.z; z += depth) {
-    if (interrupter && interrupter->wasInterrupted(int(int64_t(z) * 100 / info.size.z)))
-      throw Interrupted();
-    const int count = std::min(depth, info.size.z - z);
+  detail::forEachSlab(0, info.size.z, interrupter, [&](int z, int count) {
     image.read(z, count, in.data());
     detail::withSampleType(from, [&](auto value) {
       detail::withSampleType(type, [&](auto sample) {
@@ -41,7 +32,7 @@ void copyImage(const std::string& path, ImageReader& image, SampleType type,
       });
     });
     writer->write(count, out.data());
-  }
+  });
   writer->finish();
 }
 
