@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <ios>
 #include <istream>
 #include <limits>
@@ -169,7 +170,43 @@ class Reader {
     stream_.exceptions(std::ios_base::badbit | std::ios_base::failbit | std::ios_base::eofbit);
   }
 
+  /// All grids without their trees.
+  std::vector<GridBase::Ptr> readHeaders() {
+    readEntries([](const GridBase&) { return false; });
+    std::vector<GridBase::Ptr> grids;
+    for (const Entry& entry : entries_) grids.push_back(entry.grid);
+    return grids;
+  }
+
   std::vector<GridBase::Ptr> read() {
+    readEntries(options_.wanted ? options_.wanted : [](const GridBase&) { return true; });
+    std::map<std::string, Entry*> named;
+    for (Entry& entry : entries_) named[entry.descriptor.name] = &entry;
+    std::vector<GridBase::Ptr> grids;
+    for (Entry& entry : entries_) {
+      if (!entry.wanted) continue;
+      grids.push_back(entry.grid);
+      if (!entry.descriptor.isInstance()) continue;
+      const auto found = named.find(entry.descriptor.parent);
+      if (found == named.end()) damaged("a grid shares the tree of a grid that is missing");
+      Entry& parent = *found->second;
+      if (!parent.hasTree && !parent.descriptor.isInstance()) readTree(parent);
+      entry.grid->setTree(parent.grid->baseTreePtr());
+    }
+    return grids;
+  }
+
+ private:
+  struct Entry {
+    Descriptor descriptor;
+    GridBase::Ptr grid;
+    detail::TreeSettings settings;
+    int64_t treeStart = 0;
+    bool wanted = false, hasTree = false;
+  };
+
+  /// The volumes, with the trees of those that are wanted.
+  void readEntries(const std::function<bool(const GridBase&)>& wanted) {
     header_ = readHeader(file_);
     // OpenVDB's readers ask the stream for these.
     io::setStreamMetadataPtr(stream_, streamState_, /*transfer=*/false);
@@ -178,36 +215,21 @@ class Reader {
     readMetadata(file_, stream_, nullptr);
     const auto count = file_.read<int32_t>();
     if (count < 0) damaged("its number of grids is negative");
-    std::vector<GridBase::Ptr> grids;
-    std::map<std::string, GridBase::Ptr> named;
-    std::vector<std::pair<GridBase::Ptr, std::string>> instances;
     for (int32_t i = 0; i < count; ++i) {
       const Descriptor descriptor = readDescriptor(file_);
-      const GridBase::Ptr grid = readGrid(descriptor);
-      if (!grid) continue;
-      grids.push_back(grid);
-      named[descriptor.name] = grid;
-      if (descriptor.isInstance()) instances.emplace_back(grid, descriptor.parent);
+      if (header_.hasOffsets && descriptor.start != file_.position())
+        damaged("a grid is not where its offset says");
+      const auto layout = detail::treeLayout(descriptor.type);
+      if (layout && GridBase::isRegistered(descriptor.type))
+        readEntry(descriptor, *layout, wanted);
+      else
+        skipGrid(descriptor);
     }
     if (file_.left() != 0) damaged("something follows its last grid");
-    for (const auto& [grid, parent] : instances) {
-      const auto found = named.find(parent);
-      if (found == named.end()) damaged("a grid shares the tree of a grid that is missing");
-      grid->setTree(found->second->baseTreePtr());
-    }
-    return grids;
   }
 
- private:
-  /// Null for a grid that is no volume.
-  GridBase::Ptr readGrid(const Descriptor& descriptor) {
-    if (header_.hasOffsets && descriptor.start != file_.position())
-      damaged("a grid is not where its offset says");
-    const auto layout = detail::treeLayout(descriptor.type);
-    if (!layout || !GridBase::isRegistered(descriptor.type)) {
-      skipGrid(descriptor);
-      return nullptr;
-    }
+  void readEntry(const Descriptor& descriptor, const detail::TreeLayout& layout,
+                 const std::function<bool(const GridBase&)>& wanted) {
     const auto compression = file_.read<uint32_t>();
     if (compression & ~uint32_t(io::COMPRESS_ZIP | io::COMPRESS_ACTIVE_MASK | io::COMPRESS_BLOSC))
       refuse(file_, "a grid is compressed in an unknown way; save it again without compression");
@@ -217,10 +239,18 @@ class Reader {
     if (grid->getName().empty())
       grid->setName(descriptor.name.substr(0, descriptor.name.find(kNameSuffix)));
     readTransform(file_, stream_, *grid);
-    if (!descriptor.isInstance()) readTree(descriptor, *layout, compression, *grid);
+    const detail::TreeSettings settings{layout, grid->saveFloatAsHalf(), compression,
+                                        options_.maxVoxels, options_.maxCoordinate};
+    Entry entry{descriptor, grid, settings, file_.position(), wanted(*grid), false};
+    if (!descriptor.isInstance()) {
+      if (entry.wanted)
+        readTree(entry);
+      else
+        skipTree(entry);
+    }
     if (header_.hasOffsets && descriptor.end != file_.position())
       damaged("a grid does not end where its offset says");
-    return grid;
+    entries_.push_back(entry);
   }
 
   void skipGrid(const Descriptor& descriptor) {
@@ -231,27 +261,40 @@ class Reader {
     file_.moveTo(descriptor.end);
   }
 
-  void readTree(const Descriptor& descriptor, const detail::TreeLayout& layout,
-                uint32_t compression, GridBase& grid) {
-    const int64_t start = file_.position();
-    const detail::TreeSettings settings{layout, grid.saveFloatAsHalf(), compression,
-                                        options_.maxVoxels, options_.maxCoordinate};
-    io::setDataCompression(stream_, compression);
-    io::setGridClass(stream_, grid.getGridClass());
-    io::setHalfFloat(stream_, settings.half);
-    io::setGridBackgroundValuePtr(stream_, nullptr);
+  void skipTree(const Entry& entry) {
+    const int64_t buffers = entry.descriptor.buffers, end = entry.descriptor.end;
+    if (!header_.hasOffsets) {
+      file_.moveTo(findExtent(entry).end);
+    } else if (buffers < file_.position() || end < buffers) {
+      damaged("the voxels of a grid are not where their offset says");
+    } else {
+      file_.moveTo(end);
+    }
+  }
 
-    const detail::TreeExtent extent = checkTree(file_, stream_, settings);
-    if (header_.hasOffsets && descriptor.buffers != extent.topologyEnd)
+  /// Leaves the file somewhere in the tree.
+  detail::TreeExtent findExtent(const Entry& entry) {
+    io::setDataCompression(stream_, entry.settings.compression);
+    io::setGridClass(stream_, entry.grid->getGridClass());
+    io::setHalfFloat(stream_, entry.settings.half);
+    io::setGridBackgroundValuePtr(stream_, nullptr);
+    file_.moveTo(entry.treeStart);
+    return checkTree(file_, stream_, entry.settings);
+  }
+
+  void readTree(Entry& entry) {
+    const detail::TreeExtent extent = findExtent(entry);
+    if (header_.hasOffsets && entry.descriptor.buffers != extent.topologyEnd)
       damaged("the voxels of a grid are not where their offset says");
     if (extent.memoryBytes > memoryLimit())
       refuse(file_, "it takes " + std::to_string(extent.memoryBytes >> 20) +
                         " MiB of memory, more than there is; crop it, or use a larger computer");
-    file_.moveTo(start);
-    grid.readTopology(stream_);
+    file_.moveTo(entry.treeStart);
+    entry.grid->readTopology(stream_);
     if (file_.position() != extent.topologyEnd) damaged("its nodes have the wrong size");
-    grid.readBuffers(stream_);
+    entry.grid->readBuffers(stream_);
     if (file_.position() != extent.end) damaged("its voxels have the wrong size");
+    entry.hasTree = true;
   }
 
   detail::InputBuffer& file_;
@@ -259,7 +302,36 @@ class Reader {
   io::StreamMetadata::Ptr streamState_ = std::make_shared<io::StreamMetadata>();
   const VdbReadOptions& options_;
   Header header_;
+  std::vector<Entry> entries_;
 };
+
+/// f(Reader) with one line for whatever is wrong with the file.
+template <typename F>
+std::vector<GridBase::Ptr> readWith(const std::string& path, const VdbReadOptions& options,
+                                    Interrupter* interrupter, const F& f) {
+  initialize();
+  detail::InputBuffer file(path, interrupter);
+  const auto refuseDamaged = [&file](const std::string& what) {
+    refuse(file, "it is damaged (" + what + "); make or copy it again");
+  };
+  try {
+    Reader reader(file, options);
+    return f(reader);
+  } catch (const IoError&) {
+    throw;
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const detail::BeyondLimits& error) {
+    refuse(file, error.what() + std::string("; crop it, or make it again if it is not so large"));
+  } catch (const std::bad_alloc&) {
+    refuse(file, "there is not enough memory; close other programs, or crop it");
+  } catch (const std::ios_base::failure&) {
+    refuseDamaged(detail::EarlyEnd().what());
+  } catch (const std::exception& error) {
+    refuseDamaged(clipped(error.what()));
+  }
+  return {};
+}
 
 // --- writing
 
@@ -286,27 +358,11 @@ std::string uuidFrom(const std::array<uint64_t, 2>& hash) {
 
 std::vector<GridBase::Ptr> readVdb(const std::string& path, const VdbReadOptions& options,
                                    Interrupter* interrupter) {
-  initialize();
-  detail::InputBuffer file(path, interrupter);
-  const auto refuseDamaged = [&file](const std::string& what) {
-    refuse(file, "it is damaged (" + what + "); make or copy it again");
-  };
-  try {
-    return Reader(file, options).read();
-  } catch (const IoError&) {
-    throw;
-  } catch (const Interrupted&) {
-    throw;
-  } catch (const detail::BeyondLimits& error) {
-    refuse(file, error.what() + std::string("; crop it, or make it again if it is not so large"));
-  } catch (const std::bad_alloc&) {
-    refuse(file, "there is not enough memory; close other programs, or crop it");
-  } catch (const std::ios_base::failure&) {
-    refuseDamaged(detail::EarlyEnd().what());
-  } catch (const std::exception& error) {
-    refuseDamaged(clipped(error.what()));
-  }
-  return {};
+  return readWith(path, options, interrupter, [](Reader& reader) { return reader.read(); });
+}
+
+std::vector<GridBase::Ptr> readVdbHeaders(const std::string& path, Interrupter* interrupter) {
+  return readWith(path, {}, interrupter, [](Reader& reader) { return reader.readHeaders(); });
 }
 
 void writeVdb(const std::string& path, const std::vector<GridBase::ConstPtr>& grids,

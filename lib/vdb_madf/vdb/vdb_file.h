@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,10 @@ struct VdbReadOptions {
   /// |coordinate|: a file beyond them is refused before its tiles are touched.
   int64_t maxVoxels = int64_t(1) << 32;
   int maxCoordinate = 1 << 20;
+  /// Which grids to read: asked with each, that has its name, type, metadata and transform but an
+  /// empty tree. Absent: all. The trees of the others are passed over unread, and what is wrong
+  /// within them is not seen; a tree that a wanted grid shares with another is read.
+  std::function<bool(const openvdb::GridBase&)> wanted;
 };
 
 /// The volumes of a .vdb file in its order, read eagerly (no delayed loading) from a file that may
@@ -26,6 +31,12 @@ struct VdbReadOptions {
 std::vector<openvdb::GridBase::Ptr> readVdb(const std::string& path,
                                             const VdbReadOptions& options = {},
                                             Interrupter* interrupter = nullptr);
+
+/// The volumes of a .vdb file, in its order, with empty trees: names, types, metadata, transforms.
+/// Trees are passed over as with VdbReadOptions::wanted, so that a large file is listed at once
+/// (a file without offsets, such as a stream has, is walked through). @throw as readVdb.
+std::vector<openvdb::GridBase::Ptr> readVdbHeaders(const std::string& path,
+                                                   Interrupter* interrupter = nullptr);
 
 /// Writes the grids whole or not at all: a temporary file beside `path`, every write checked,
 /// synced to disk, then renamed. The file's bytes depend on its grids alone (OpenVDB's random UUID
