@@ -13,10 +13,7 @@ namespace {
 
 constexpr char kDomainMin[] = "madf_domain_min";
 constexpr char kDomainMax[] = "madf_domain_max";
-constexpr char kVoxelSize[] = "madf_voxel_size_m";
 constexpr char kLengthUnit[] = "madf_length_unit";
-constexpr char kSource[] = "madf_source";
-constexpr char kBoundary[] = "madf_boundary";
 
 }  // namespace
 
@@ -37,23 +34,24 @@ void setDomain(openvdb::MetaMap& metadata, const CoordBBox& domain) {
 }
 
 std::optional<VoxelSize> storedVoxelSize(const openvdb::MetaMap& metadata) {
-  const auto metres = metadata.getMetadata<openvdb::DoubleMetadata>(kVoxelSize);
+  const auto metres = metadata.getMetadata<openvdb::DoubleMetadata>(kVoxelSizeKey);
   if (!metres || !(metres->value() > 0)) return std::nullopt;
   return VoxelSize{metres->value()};
 }
 
 void setVoxelSize(openvdb::GridBase& grid, const std::optional<VoxelSize>& size) {
-  grid.removeMeta(kVoxelSize);
+  grid.removeMeta(kVoxelSizeKey);
   grid.removeMeta(kLengthUnit);
   if (size) {
-    grid.insertMeta(kVoxelSize, openvdb::DoubleMetadata(size->metres));
+    grid.insertMeta(kVoxelSizeKey, openvdb::DoubleMetadata(size->metres));
     grid.insertMeta(kLengthUnit, openvdb::StringMetadata(size->unit()));
   }
   grid.setTransform(openvdb::math::Transform::createLinearTransform(size ? size->inUnit() : 1.0));
 }
 
 void copyProvenance(const openvdb::GridBase& from, openvdb::GridBase& to) {
-  for (const char* key : {kDomainMin, kDomainMax, kVoxelSize, kLengthUnit, kSource, kBoundary})
+  for (const char* key :
+       {kDomainMin, kDomainMax, kVoxelSizeKey, kLengthUnit, kSourceKey, kBoundaryKey})
     if (const auto value = from[key]) to.insertMeta(key, *value);
   to.setTransform(from.transform().copy());
 }

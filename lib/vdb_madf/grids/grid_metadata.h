@@ -10,6 +10,11 @@
 
 namespace vdb_madf {
 
+/// Keys of the metadata that grids share.
+inline constexpr char kVoxelSizeKey[] = "madf_voxel_size_m";
+inline constexpr char kSourceKey[] = "madf_source";      ///< where a grid comes from (string)
+inline constexpr char kBoundaryKey[] = "madf_boundary";  ///< "open" or "closed": see storedBoundary
+
 /// The image domain B of a grid, both corners inclusive: metadata `madf_domain_min` and
 /// `madf_domain_max` (Vec3i). Absent: unknown.
 /// @throw InvalidInput if only one of the two is there, or min > max.

@@ -3,9 +3,12 @@
 
 #include "vdb_madf/method/boundary.h"
 
+#include <openvdb/Metadata.h>
+
 #include <sstream>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
 
 namespace vdb_madf {
 
@@ -32,6 +35,19 @@ Obstacles resolveBoundary(const LeafIndex& index, Boundary boundary,
   obstacles.open = domain && boundary != Boundary::closed;
   if (obstacles.open) obstacles.domain = *domain;
   return obstacles;
+}
+
+Boundary storedBoundary(const openvdb::GridBase& grid) {
+  const auto text = grid.getMetadata<openvdb::StringMetadata>(kBoundaryKey);
+  if (!text) return Boundary::automatic;
+  return text->value() == "open" ? Boundary::open : Boundary::closed;
+}
+
+void setBoundary(openvdb::GridBase& grid, Boundary boundary) {
+  grid.removeMeta(kBoundaryKey);
+  if (boundary != Boundary::automatic)
+    grid.insertMeta(kBoundaryKey,
+                    openvdb::StringMetadata(boundary == Boundary::open ? "open" : "closed"));
 }
 
 }  // namespace vdb_madf

@@ -30,4 +30,9 @@ struct Obstacles {
 Obstacles resolveBoundary(const LeafIndex& index, Boundary boundary,
                           const std::optional<CoordBBox>& domain);
 
+/// The boundary that a grid says it wants or was segmented with (`madf_boundary`: "open",
+/// "closed"); automatic if it says nothing.
+Boundary storedBoundary(const openvdb::GridBase& grid);
+void setBoundary(openvdb::GridBase& grid, Boundary boundary);  ///< automatic: says nothing
+
 }  // namespace vdb_madf

@@ -14,7 +14,6 @@ namespace vdb_madf {
 namespace {
 
 constexpr char kGrains[] = "madf_grains";
-constexpr char kBoundary[] = "madf_boundary";
 
 void setText(openvdb::GridBase& grid, const char* key, const std::string& value) {
   grid.insertMeta(key, openvdb::StringMetadata(value));
@@ -61,18 +60,6 @@ void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int64
   setText(grid, "madf_merge", toString(options.mode));
   setText(grid, "madf_adjacency", toString(options.adjacency));
   setCount(grid, kGrains, grains);
-}
-
-void setBoundary(openvdb::GridBase& grid, Boundary boundary) {
-  grid.removeMeta(kBoundary);
-  if (boundary != Boundary::automatic)
-    setText(grid, kBoundary, boundary == Boundary::open ? "open" : "closed");
-}
-
-Boundary storedBoundary(const openvdb::GridBase& grid) {
-  const auto text = grid.getMetadata<openvdb::StringMetadata>(kBoundary);
-  if (!text) return Boundary::automatic;
-  return text->value() == "open" ? Boundary::open : Boundary::closed;
 }
 
 std::optional<int64_t> grainCount(const openvdb::GridBase& grid) {

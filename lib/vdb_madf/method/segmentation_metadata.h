@@ -18,10 +18,6 @@ void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options
 /// Replaces what another merging changes: theta, mode, adjacency and the number of grains.
 void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int64_t grains);
 
-/// The boundary that a grid says it wants or was segmented with; automatic if it says nothing.
-Boundary storedBoundary(const openvdb::GridBase& grid);
-void setBoundary(openvdb::GridBase& grid, Boundary boundary);  ///< automatic: says nothing
-
 /// The number of grains that a grid says it has.
 std::optional<int64_t> grainCount(const openvdb::GridBase& grid);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/limits.h"
 #include "vdb_madf/grids/grid_types.h"
 
 namespace vdb_madf::detail {
@@ -18,7 +19,6 @@ struct CubicTransform {
 
 /// @throw InvalidInput if voxels are not cubes along the axes of the world.
 inline CubicTransform cubicTransform(const openvdb::math::Transform& transform) {
-  constexpr double kTolerance = 1e-3;
   CubicTransform result;
   bool isCubic = transform.isLinear();
   if (isCubic) {
@@ -29,7 +29,7 @@ inline CubicTransform cubicTransform(const openvdb::math::Transform& transform) 
       unit[axis] = 1;
       wanted[axis] = result.edge;
       const openvdb::Vec3d found = transform.indexToWorld(unit) - result.origin;
-      isCubic = isCubic && (found - wanted).length() <= kTolerance * std::abs(result.edge);
+      isCubic = isCubic && (found - wanted).length() <= (kMaxEdgeRatio - 1) * std::abs(result.edge);
     }
   }
   if (!isCubic || !(result.edge > 0))

@@ -107,7 +107,7 @@ void placeReduced(openvdb::GridBase& grid, const Int32Grid& labels, int factor,
   if (const auto box = storedDomain(labels))
     setDomain(grid, CoordBBox(floorDiv(box->min(), factor), floorDiv(box->max(), factor)));
   if (const auto size = storedVoxelSize(labels))  // the unit stays that of the transform
-    grid.insertMeta("madf_voxel_size_m", openvdb::DoubleMetadata(size->metres * factor));
+    grid.insertMeta(kVoxelSizeKey, openvdb::DoubleMetadata(size->metres * factor));
 }
 
 }  // namespace vdb_madf::detail

@@ -74,7 +74,7 @@ void describe(openvdb::GridBase& grid, const std::string& name, const Coord& siz
   grid.setName(name);
   setDomain(grid, {Coord(0), size.offsetBy(-1)});
   setVoxelSize(grid, std::nullopt);
-  grid.insertMeta("madf_source", openvdb::StringMetadata(source.str()));
+  grid.insertMeta(kSourceKey, openvdb::StringMetadata(source.str()));
 }
 
 }  // namespace vdb_madf::detail

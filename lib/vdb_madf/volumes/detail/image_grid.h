@@ -21,7 +21,7 @@ inline void describeImageGrid(const ImageReader& image, openvdb::GridBase& grid)
   setVoxelSize(grid, image.info().voxelSize);
   const std::filesystem::path path(image.path());
   const std::string name = (path.has_filename() ? path : path.parent_path()).filename().string();
-  grid.insertMeta("madf_source", openvdb::StringMetadata(name));
+  grid.insertMeta(kSourceKey, openvdb::StringMetadata(name));
 }
 
 }  // namespace vdb_madf::detail
