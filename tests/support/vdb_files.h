@@ -12,7 +12,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/method/graph_metadata.h"
-#include "vdb_madf/vdb/vdb_file.h"
+#include "vdb_madf/vdb/read_vdb.h"
 
 /// Grids and files for the tests of VDB files.
 namespace vdb_madf::test {

@@ -15,7 +15,6 @@
 
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/method/initialize.h"
-#include "vdb_madf/vdb/vdb_file.h"
 
 using namespace vdb_madf;
 namespace io = openvdb::io;

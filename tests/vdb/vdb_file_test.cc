@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/vdb/vdb_file.h"
+#include "vdb_madf/vdb/read_vdb.h"
+#include "vdb_madf/vdb/write_vdb.h"
 
 #include <openvdb/io/File.h>
 #include <openvdb/io/Stream.h>

@@ -26,7 +26,8 @@
 #include "vdb_madf/pictures/preview_volume.h"
 #include "vdb_madf/shapes/clumps.h"
 #include "vdb_madf/shapes/level_sets.h"
-#include "vdb_madf/vdb/vdb_file.h"
+#include "vdb_madf/vdb/read_vdb.h"
+#include "vdb_madf/vdb/write_vdb.h"
 #include "vdb_madf/volumes/write_image.h"
 
 namespace vdb_madf::tools {

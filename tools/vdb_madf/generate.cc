@@ -14,7 +14,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/output_file.h"
 #include "vdb_madf/grids/object_mask.h"
-#include "vdb_madf/vdb/vdb_file.h"
+#include "vdb_madf/vdb/write_vdb.h"
 
 namespace vdb_madf::tools {
 

@@ -9,7 +9,7 @@
 #include "input.h"
 #include "json_file.h"
 #include "vdb_madf/images/image.h"
-#include "vdb_madf/vdb/vdb_file.h"
+#include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/volumes/image_box.h"
 
 namespace vdb_madf::tools {

@@ -17,7 +17,7 @@
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/images/open_image.h"
 #include "vdb_madf/method/segmentation_metadata.h"
-#include "vdb_madf/vdb/vdb_file.h"
+#include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/volumes/image_box.h"
 #include "vdb_madf/volumes/read_labels.h"
 #include "vdb_madf/volumes/read_mask.h"

@@ -14,7 +14,6 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/version.h"
 #include "vdb_madf/method/initialize.h"
-#include "vdb_madf/vdb/vdb_file.h"
 
 namespace vdb_madf::tools {
 

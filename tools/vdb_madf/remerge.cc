@@ -12,7 +12,8 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/method/segmentation_metadata.h"
-#include "vdb_madf/vdb/vdb_file.h"
+#include "vdb_madf/vdb/read_vdb.h"
+#include "vdb_madf/vdb/write_vdb.h"
 
 namespace vdb_madf::tools {
 

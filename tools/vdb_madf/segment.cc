@@ -23,7 +23,7 @@
 #include "vdb_madf/measure/measure.h"
 #include "vdb_madf/method/segment_memory.h"
 #include "vdb_madf/method/segmentation_metadata.h"
-#include "vdb_madf/vdb/vdb_file.h"
+#include "vdb_madf/vdb/write_vdb.h"
 
 namespace vdb_madf::tools {
 

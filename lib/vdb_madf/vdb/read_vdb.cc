@@ -1,35 +1,26 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/vdb/vdb_file.h"
+#include "vdb_madf/vdb/read_vdb.h"
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
-#include <openvdb/io/io.h>
 #include <openvdb/openvdb.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <functional>
 #include <ios>
 #include <istream>
-#include <limits>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <new>
-#include <optional>
-#include <ostream>
 #include <stdexcept>
-#include <utility>
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/files/detail/file_buffer.h"
-#include "vdb_madf/files/output_file.h"
 #include "vdb_madf/method/initialize.h"
+#include "vdb_madf/vdb/detail/uuid_place.h"
 #include "vdb_madf/vdb/detail/vdb_tree_check.h"
 
 namespace vdb_madf {
@@ -39,8 +30,6 @@ namespace {
 namespace io = openvdb::io;
 using openvdb::GridBase;
 
-// --- reading
-
 // The file, in OpenVDB's format 222 to 224: a header (magic number, versions, a flag for offsets,
 // UUID), metadata, the number of grids; per grid a descriptor (name, type, name of the grid that it
 // shares its tree with, three offsets), compression flags, metadata, transform, topology, buffers.
@@ -48,7 +37,6 @@ using openvdb::GridBase;
 // checked length, and trees that checkTree() has walked over.
 
 constexpr uint32_t kOldestFormat = openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION;
-constexpr size_t kUuidStart = 21, kUuidLength = 36;
 constexpr char kNameSuffix = '\x1e';  // what follows it only tells grids of the same name apart
 
 /// Printable, on one line and short, whatever a corrupt file made of it.
@@ -94,7 +82,7 @@ Header readHeader(detail::InputBuffer& file) {
   const auto flag = file.read<uint8_t>();
   if (flag > 1) damaged("its header is wrong");
   header.hasOffsets = flag == 1;
-  file.skip(kUuidLength);
+  file.skip(detail::kUuidLength);
   return header;
 }
 
@@ -333,27 +321,6 @@ std::vector<GridBase::Ptr> readWith(const std::string& path, const VdbReadOption
   return {};
 }
 
-// --- writing
-
-class Writer : public io::Archive {
- public:
-  /// With offsets: other programs then need not read all grids to read one.
-  void writeAll(std::ostream& stream, const openvdb::GridCPtrVec& grids) const {
-    Archive::write(stream, grids, /*seekable=*/true);
-  }
-};
-
-/// In the form of a UUID of version 8 (RFC 9562: contents defined by the application).
-std::string uuidFrom(const std::array<uint64_t, 2>& hash) {
-  const uint64_t high = (hash[0] & ~uint64_t(0xf000)) | 0x8000;
-  const uint64_t low = (hash[1] & ~(uint64_t(3) << 62)) | uint64_t(1) << 63;
-  char text[kUuidLength + 1];
-  std::snprintf(text, sizeof(text), "%08x-%04x-%04x-%04x-%012llx", unsigned(high >> 32),
-                unsigned(high >> 16 & 0xffff), unsigned(high & 0xffff), unsigned(low >> 48),
-                static_cast<unsigned long long>(low & 0xffffffffffffu));
-  return text;
-}
-
 }  // namespace
 
 std::vector<GridBase::Ptr> readVdb(const std::string& path, const VdbReadOptions& options,
@@ -363,20 +330,6 @@ std::vector<GridBase::Ptr> readVdb(const std::string& path, const VdbReadOptions
 
 std::vector<GridBase::Ptr> readVdbHeaders(const std::string& path, Interrupter* interrupter) {
   return readWith(path, {}, interrupter, [](Reader& reader) { return reader.readHeaders(); });
-}
-
-void writeVdb(const std::string& path, const std::vector<GridBase::ConstPtr>& grids,
-              Interrupter* interrupter) {
-  initialize();
-  OutputFile output(path);
-  detail::OutputBuffer buffer(output, interrupter, kUuidStart, kUuidLength);
-  std::ostream stream(&buffer);
-  stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
-  Writer().writeAll(stream, grids);
-  buffer.flush();
-  buffer.replace(kUuidStart, uuidFrom(buffer.hash()));
-  buffer.close();
-  output.commit();
 }
 
 }  // namespace vdb_madf

@@ -38,11 +38,4 @@ std::vector<openvdb::GridBase::Ptr> readVdb(const std::string& path,
 std::vector<openvdb::GridBase::Ptr> readVdbHeaders(const std::string& path,
                                                    Interrupter* interrupter = nullptr);
 
-/// Writes the grids whole or not at all: a temporary file beside `path`, every write checked,
-/// synced to disk, then renamed. The file's bytes depend on its grids alone (OpenVDB's random UUID
-/// is replaced by one derived from the content).
-/// @throw IoError, one line that names the file (disk full, no permission, ...); Interrupted.
-void writeVdb(const std::string& path, const std::vector<openvdb::GridBase::ConstPtr>& grids,
-              Interrupter* interrupter = nullptr);
-
 }  // namespace vdb_madf

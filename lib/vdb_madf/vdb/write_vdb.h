@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vdb_madf/grids/grid_types.h"
+
+namespace vdb_madf {
+
+/// Writes the grids whole or not at all: a temporary file beside `path`, every write checked,
+/// synced to disk, then renamed. The file's bytes depend on its grids alone (OpenVDB's random UUID
+/// is replaced by one derived from the content).
+/// @throw IoError, one line that names the file (disk full, no permission, ...); Interrupted.
+void writeVdb(const std::string& path, const std::vector<openvdb::GridBase::ConstPtr>& grids,
+              Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf
