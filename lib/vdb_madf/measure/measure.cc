@@ -16,7 +16,6 @@
 #include "vdb_madf/measure/euler_characteristic.h"
 #include "vdb_madf/method/boundary.h"
 #include "vdb_madf/method/segment.h"
-#include "vdb_madf/method/segmentation_metadata.h"
 
 namespace vdb_madf {
 
