@@ -4,7 +4,6 @@
 #include "vdb_madf/images/formats/meta_image.h"
 
 #include <filesystem>
-#include <map>
 #include <optional>
 
 #include "vdb_madf/base/detail/text.h"
@@ -13,6 +12,7 @@
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/images/detail/header_checks.h"
+#include "vdb_madf/images/detail/key_value_header.h"
 #include "vdb_madf/images/detail/slice_counter.h"
 #include "vdb_madf/images/formats/raw.h"
 
@@ -33,69 +33,31 @@ constexpr TypeName kTypes[] = {
     {"MET_UINT", SampleType::uint32},   {"MET_INT", SampleType::int32},
     {"MET_FLOAT", SampleType::float32}, {"MET_DOUBLE", SampleType::float64}};
 
-/// The fields of a header, up to and with ElementDataFile.
-class MetaHeader {
- public:
-  explicit MetaHeader(const InputFile& file) : path_(file.name()) {
-    const std::string head = file.head(kMaxHeaderBytes);
-    while (dataOffset_ < head.size() && !find("ElementDataFile")) {
-      const size_t end = std::min(head.find('\n', dataOffset_), head.size());
-      const std::string line = trimmed(head.substr(dataOffset_, end - dataOffset_));
-      dataOffset_ = std::min(end + 1, head.size());
-      if (line.empty()) continue;
-      const size_t equals = line.find('=');
-      if (equals == std::string::npos)
-        throw IoError(path_ + ": not a MetaImage header: the line " + quoted(line) +
-                      " is not 'Key = Value'");
-      fields_[trimmed(line.substr(0, equals))] = trimmed(line.substr(equals + 1));
-    }
-    require("ElementDataFile");
-  }
+HeaderSyntax metaSyntax() {
+  HeaderSyntax syntax;
+  syntax.name = "MetaImage header";
+  syntax.lacks = "the MetaImage header lacks ";
+  syntax.lineForm = "Key = Value";
+  syntax.endKey = "ElementDataFile";
+  syntax.skipsBlankLines = true;
+  return syntax;
+}
 
-  size_t dataOffset() const { return dataOffset_; }
+bool flag(const KeyValueHeader& header, const std::string& key) {
+  const std::string text = lowerCase(header.find(key).value_or("false"));
+  if (text == "true" || text == "1") return true;
+  if (text != "false" && text != "0") header.fail(key);
+  return false;
+}
 
-  std::optional<std::string> find(const std::string& key) const {
-    const auto found = fields_.find(key);
-    if (found == fields_.end()) return std::nullopt;
-    return found->second;
-  }
-  std::string require(const std::string& key) const {
-    const auto value = find(key);
-    if (!value || value->empty()) throw IoError(path_ + ": the MetaImage header lacks " + key);
-    return *value;
-  }
-  int64_t integer(const std::string& key, int64_t otherwise) const {
-    const auto text = find(key);
-    if (!text) return otherwise;
-    const auto values = integers(*text);
-    if (!values || values->size() != 1) fail(key);
-    return values->front();
-  }
-  bool flag(const std::string& key) const {
-    const std::string text = lowerCase(find(key).value_or("false"));
-    if (text == "true" || text == "1") return true;
-    if (text != "false" && text != "0") fail(key);
-    return false;
-  }
-  [[noreturn]] void fail(const std::string& key) const {
-    throw IoError(path_ + ": " + key + " = " + quoted(find(key).value_or("")) +
-                  " cannot be read in this MetaImage header");
-  }
-
- private:
-  std::string path_;
-  std::map<std::string, std::string> fields_;
-  size_t dataOffset_ = 0;
-};
-
-SampleType elementType(const MetaHeader& header) {
+SampleType elementType(const KeyValueHeader& header) {
   const std::string name = header.require("ElementType");
   for (const TypeName& known : kTypes)
     if (name == known.name) return known.type;
   header.fail("ElementType");
 }
 
-std::optional<VoxelSize> elementSpacing(const std::string& path, const MetaHeader& header) {
+std::optional<VoxelSize> elementSpacing(const std::string& path, const KeyValueHeader& header) {
   const char* key = header.find("ElementSpacing") ? "ElementSpacing" : "ElementSize";
   const auto text = header.find(key);
   if (!text) return std::nullopt;
@@ -167,13 +129,14 @@ bool isMetaHeader(const std::string& head) {
 
 std::unique_ptr<ImageReader> openMeta(const std::string& path) {
   auto file = std::make_unique<InputFile>(path);
-  const MetaHeader header(*file);
+  const KeyValueHeader header(path, file->head(kMaxHeaderBytes), metaSyntax());
+  const std::string dataFile = header.require("ElementDataFile");
   if (header.find("ObjectType").value_or("Image") != "Image") header.fail("ObjectType");
-  if (header.integer("NDims", 3) != 3)
+  if (header.findInteger("NDims").value_or(3) != 3)
     throw IoError(path + ": NDims is not 3; only 3-D images can be read");
-  if (header.find("BinaryData") && !header.flag("BinaryData"))
+  if (header.find("BinaryData") && !flag(header, "BinaryData"))
     throw IoError(path + ": its samples are text; write them in binary form");
-  if (header.integer("ElementNumberOfChannels", 1) != 1)
+  if (header.findInteger("ElementNumberOfChannels").value_or(1) != 1)
     throw IoError(path + ": has several channels; convert it to grey values first");
 
   ImageInfo info;
@@ -185,13 +148,12 @@ std::unique_ptr<ImageReader> openMeta(const std::string& path) {
   info.voxelSize = elementSpacing(path, header);
 
   SampleLayout layout;
-  layout.deflated = header.flag("CompressedData");
-  layout.bigEndian = header.flag("BinaryDataByteOrderMSB") || header.flag("ElementByteOrderMSB");
-  const int64_t headerSize = header.integer("HeaderSize", 0);
+  layout.deflated = flag(header, "CompressedData");
+  layout.bigEndian = flag(header, "BinaryDataByteOrderMSB") || flag(header, "ElementByteOrderMSB");
+  const int64_t headerSize = header.findInteger("HeaderSize").value_or(0);
   if (headerSize < -1 || (headerSize == -1 && layout.deflated)) header.fail("HeaderSize");
   layout.atEnd = headerSize == -1;
 
-  const std::string dataFile = header.require("ElementDataFile");
   if (dataFile == "LOCAL" || dataFile == "Local" || dataFile == "local") {
     if (headerSize <= 0)
       layout.offset = header.dataOffset();

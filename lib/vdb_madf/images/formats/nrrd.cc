@@ -12,6 +12,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/images/detail/header_checks.h"
+#include "vdb_madf/images/detail/key_value_header.h"
 #include "vdb_madf/images/formats/raw.h"
 
 namespace vdb_madf::detail {
@@ -62,67 +63,35 @@ std::optional<SampleType> typeFromName(const std::string& name) {
 
 /// "line skip", "lineskip" and "Line Skip" are one field.
 std::string fieldName(const std::string& text) {
-  std::string name = lowerCase(trimmed(text));
+  std::string name = lowerCase(text);
   name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
   return name;
 }
 
-class NrrdHeader {
- public:
-  explicit NrrdHeader(const InputFile& file) : path_(file.name()) {
-    const std::string head = file.head(kMaxHeaderBytes);
-    if (head.compare(0, 4, "NRRD") != 0) throw IoError(path_ + ": does not begin with NRRD");
-    bool first = true;
-    while (dataOffset_ < head.size()) {
-      const size_t end = std::min(head.find('\n', dataOffset_), head.size());
-      std::string line = head.substr(dataOffset_, end - dataOffset_);
-      if (!line.empty() && line.back() == '\r') line.pop_back();
-      dataOffset_ = std::min(end + 1, head.size());
-      if (line.empty()) return;  // the data follow
-      if (!first && line[0] != '#') addField(line);
-      first = false;
-    }
-    if (file.size() > kMaxHeaderBytes) throw IoError(path_ + ": the NRRD header has no end");
-  }
+HeaderSyntax nrrdSyntax() {
+  HeaderSyntax syntax;
+  syntax.article = "an";
+  syntax.name = "NRRD header";
+  syntax.lacks = "the NRRD header lacks ";
+  syntax.lineForm = "field: value";
+  syntax.separator = ':';
+  syntax.foreignSeparator = ":=";
+  syntax.comment = '#';
+  syntax.endLine = "";
+  syntax.canonicalKey = fieldName;
+  return syntax;
+}
 
-  size_t dataOffset() const { return dataOffset_; }
-
-  std::optional<std::string> find(const std::string& field) const {
-    const auto found = fields_.find(field);
-    if (found == fields_.end()) return std::nullopt;
-    return found->second;
-  }
-  std::string require(const std::string& field) const {
-    const auto value = find(field);
-    if (!value || value->empty()) throw IoError(path_ + ": the NRRD header lacks " + field);
-    return *value;
-  }
-  int64_t integer(const std::string& field, int64_t otherwise) const {
-    const auto text = find(field);
-    if (!text) return otherwise;
-    const auto values = integers(*text);
-    if (!values || values->size() != 1) fail(field);
-    return values->front();
-  }
-  [[noreturn]] void fail(const std::string& field) const {
-    throw IoError(path_ + ": " + field + ": " + quoted(find(field).value_or("")) +
-                  " cannot be read in this NRRD header");
-  }
-
- private:
-  void addField(const std::string& line) {
-    const size_t colon = line.find(':');
-    if (colon == std::string::npos)
-      throw IoError(path_ + ": not an NRRD header: the line " + quoted(line) +
-                    " is not 'field: value'");
-    if (line.compare(colon, 2, ":=") == 0) return;  // a program's own key and value
-    fields_[fieldName(line.substr(0, colon))] = trimmed(line.substr(colon + 1));
-  }
-
-  std::string path_;
-  std::map<std::string, std::string> fields_;
-  size_t dataOffset_ = 0;
-};
+/// The fields after the first line; the data follow an empty one.
+KeyValueHeader headerOf(const InputFile& file) {
+  const std::string text = file.head(kMaxHeaderBytes);
+  if (text.compare(0, 4, "NRRD") != 0) throw IoError(file.name() + ": does not begin with NRRD");
+  const size_t second = std::min(text.find('\n'), text.size() - 1) + 1;
+  KeyValueHeader header(file.name(), text, nrrdSyntax(), second);
+  if (!header.ended() && file.size() > kMaxHeaderBytes)
+    throw IoError(file.name() + ": the NRRD header has no end");
+  return header;
+}
 
 /// The unit that all three quoted names agree on: "mm" "mm" "mm".
 std::optional<double> commonUnit(const std::string& path, const std::optional<std::string>& text) {
@@ -141,7 +110,8 @@ std::optional<double> commonUnit(const std::string& path, const std::optional<st
   return units[0];
 }
 
-std::optional<VoxelSize> spacingOfDirections(const std::string& path, const NrrdHeader& header) {
+std::optional<VoxelSize> spacingOfDirections(const std::string& path,
+                                             const KeyValueHeader& header) {
   std::string text = header.require("spacedirections");
   if (std::count(text.begin(), text.end(), '(') != 3) header.fail("spacedirections");
   for (char& c : text)
@@ -163,7 +133,7 @@ std::optional<VoxelSize> spacingOfDirections(const std::string& path, const Nrrd
   return cubicVoxelSize(path, spacing, commonUnit(path, header.find("spaceunits")));
 }
 
-std::optional<VoxelSize> spacingOf(const std::string& path, const NrrdHeader& header) {
+std::optional<VoxelSize> spacingOf(const std::string& path, const KeyValueHeader& header) {
   if (header.find("spacedirections")) return spacingOfDirections(path, header);
   const auto text = header.find("spacings");
   if (!text) return std::nullopt;
@@ -205,7 +175,7 @@ std::unique_ptr<InputFile> openData(const std::string& path, const std::string& 
   return std::make_unique<InputFile>(path, besideHeader(path, dataFile));
 }
 
-SampleLayout layoutOf(const std::string& path, const NrrdHeader& header, SampleType type) {
+SampleLayout layoutOf(const std::string& path, const KeyValueHeader& header, SampleType type) {
   SampleLayout layout;
   const std::string encoding = lowerCase(header.require("encoding"));
   layout.deflated = encoding == "gzip" || encoding == "gz";
@@ -249,13 +219,13 @@ std::string headerText(const ImageInfo& info, const std::array<double, 3>& origi
 
 std::unique_ptr<ImageReader> openNrrd(const std::string& path) {
   auto file = std::make_unique<InputFile>(path);
-  const NrrdHeader header(*file);
+  const KeyValueHeader header = headerOf(*file);
   ImageInfo info;
   info.format = "nrrd";
   const auto size = integers(header.require("sizes"));
   if (!size) header.fail("sizes");
   info.size = checkedSize(path, *size);
-  if (header.integer("dimension", 3) != 3) header.fail("dimension");
+  if (header.findInteger("dimension").value_or(3) != 3) header.fail("dimension");
   const auto type = typeFromName(header.require("type"));
   if (!type) header.fail("type");
   info.type = *type;
@@ -266,7 +236,8 @@ std::unique_ptr<ImageReader> openNrrd(const std::string& path) {
     file = openData(path, *dataFile);
   else
     layout.offset = header.dataOffset();
-  const int64_t lines = header.integer("lineskip", 0), bytes = header.integer("byteskip", 0);
+  const int64_t lines = header.findInteger("lineskip").value_or(0),
+                bytes = header.findInteger("byteskip").value_or(0);
   if (lines < 0 || lines > kMaxLines) header.fail("lineskip");
   if (bytes < -1 || (bytes == -1 && layout.deflated)) header.fail("byteskip");
   layout.offset = skipLines(*file, layout.offset, lines);

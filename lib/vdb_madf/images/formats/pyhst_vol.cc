@@ -4,7 +4,6 @@
 #include "vdb_madf/images/formats/pyhst_vol.h"
 
 #include <filesystem>
-#include <map>
 #include <optional>
 
 #include "vdb_madf/base/detail/text.h"
@@ -12,6 +11,7 @@
 #include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/images/detail/header_checks.h"
+#include "vdb_madf/images/detail/key_value_header.h"
 #include "vdb_madf/images/formats/raw.h"
 
 namespace vdb_madf::detail {
@@ -27,68 +27,41 @@ bool hasInfoEnding(const std::string& path) {
 }
 
 /// Lines of KEY = value; those that begin with an exclamation mark are comments.
-class PyhstHeader {
- public:
-  explicit PyhstHeader(const InputFile& file) : path_(file.name()) {
-    const std::string text = file.head(kMaxHeaderBytes);
-    if (file.size() > text.size()) throw IoError(path_ + ": is too long for an .info file");
-    for (size_t begin = 0; begin < text.size();) {
-      const size_t end = std::min(text.find('\n', begin), text.size());
-      const std::string line = trimmed(text.substr(begin, end - begin));
-      begin = end + 1;
-      if (line.empty() || line[0] == '!') continue;
-      const size_t equals = line.find('=');
-      if (equals == std::string::npos)
-        throw IoError(path_ + ": not an .info file: the line " + quoted(line) +
-                      " is not 'KEY = value'");
-      fields_[trimmed(line.substr(0, equals))] = trimmed(line.substr(equals + 1));
-    }
-  }
+KeyValueHeader headerOf(const InputFile& file) {
+  HeaderSyntax syntax;
+  syntax.article = "an";
+  syntax.name = ".info file";
+  syntax.lacks = "lacks ";
+  syntax.lineForm = "KEY = value";
+  syntax.comment = '!';
+  syntax.skipsBlankLines = true;
+  if (file.size() > kMaxHeaderBytes) throw IoError(file.name() + ": is too long for an .info file");
+  return KeyValueHeader(file.name(), file.head(kMaxHeaderBytes), syntax);
+}
 
-  std::optional<std::string> find(const std::string& key) const {
-    const auto found = fields_.find(key);
-    if (found == fields_.end()) return std::nullopt;
-    return found->second;
-  }
-  int64_t integer(const std::string& key) const {
-    const auto text = find(key);
-    if (!text) throw IoError(path_ + ": lacks " + key);
-    const auto values = integers(*text);
-    if (!values || values->size() != 1) fail(key);
-    return values->front();
-  }
-  std::optional<VoxelSize> voxelSize() const {
-    const auto text = find("voxelSize");
-    if (!text) return std::nullopt;
-    const auto edge = reals(*text);
-    if (!edge || edge->size() != 1) fail("voxelSize");
-    return cubicVoxelSize(path_, {edge->front(), edge->front(), edge->front()},
-                          unitsPerMetre("um"));
-  }
-  bool bigEndian() const {
-    const std::string order = find("BYTEORDER").value_or("LOWBYTEFIRST");
-    if (order != "LOWBYTEFIRST" && order != "HIGHBYTEFIRST") fail("BYTEORDER");
-    return order == "HIGHBYTEFIRST";
-  }
-  std::optional<SampleType> type() const {
-    const auto name = find("DATA_TYPE");
-    if (!name) return std::nullopt;
-    auto known = sampleTypeFromName(lowerCase(*name));
-    if (lowerCase(*name) == "float") known = SampleType::float32;
-    if (lowerCase(*name) == "double") known = SampleType::float64;
-    if (!known) fail("DATA_TYPE");
-    return known;
-  }
+std::optional<VoxelSize> voxelSizeOf(const std::string& path, const KeyValueHeader& header) {
+  const auto text = header.find("voxelSize");
+  if (!text) return std::nullopt;
+  const auto edge = reals(*text);
+  if (!edge || edge->size() != 1) header.fail("voxelSize");
+  return cubicVoxelSize(path, {edge->front(), edge->front(), edge->front()}, unitsPerMetre("um"));
+}
 
- private:
-  [[noreturn]] void fail(const std::string& key) const {
-    throw IoError(path_ + ": " + key + " = " + quoted(find(key).value_or("")) +
-                  " cannot be read in this .info file");
-  }
+bool isBigEndian(const KeyValueHeader& header) {
+  const std::string order = header.find("BYTEORDER").value_or("LOWBYTEFIRST");
+  if (order != "LOWBYTEFIRST" && order != "HIGHBYTEFIRST") header.fail("BYTEORDER");
+  return order == "HIGHBYTEFIRST";
+}
 
-  std::string path_;
-  std::map<std::string, std::string> fields_;
-};
+std::optional<SampleType> typeOf(const KeyValueHeader& header) {
+  const auto name = header.find("DATA_TYPE");
+  if (!name) return std::nullopt;
+  auto known = sampleTypeFromName(lowerCase(*name));
+  if (lowerCase(*name) == "float") known = SampleType::float32;
+  if (lowerCase(*name) == "double") known = SampleType::float64;
+  if (!known) header.fail("DATA_TYPE");
+  return known;
+}
 
 SampleType typeBySize(const ImageInfo& info, uint64_t bytes) {
   const uint64_t voxels = imageBytes(info) / sampleSize(info.type);
@@ -110,18 +83,19 @@ std::unique_ptr<ImageReader> openPyhst(const std::string& path) {
   if (!named && !std::filesystem::exists(infoPath, error))
     throw IoError(path + ": is no DGtal file, and there is no " + infoPath +
                   " of PyHST beside it; if it is raw, give its size and type (--dims, --type)");
-  const PyhstHeader header(named ? InputFile(path) : InputFile(path, infoPath));
+  const InputFile infoFile = named ? InputFile(path) : InputFile(path, infoPath);
+  const KeyValueHeader header = headerOf(infoFile);
   ImageInfo info;
   info.format = "pyhst";
-  info.size = checkedSize(
-      path, {header.integer("NUM_X"), header.integer("NUM_Y"), header.integer("NUM_Z")});
-  info.voxelSize = header.voxelSize();
+  info.size = checkedSize(path, {header.requireInteger("NUM_X"), header.requireInteger("NUM_Y"),
+                                 header.requireInteger("NUM_Z")});
+  info.voxelSize = voxelSizeOf(infoFile.name(), header);
   auto data =
       named ? std::make_unique<InputFile>(path, path.substr(0, path.size() - kInfoEnding.size()))
             : std::make_unique<InputFile>(path);
-  info.type = header.type().value_or(typeBySize(info, data->size()));
+  info.type = typeOf(header).value_or(typeBySize(info, data->size()));
   SampleLayout layout;
-  layout.bigEndian = header.bigEndian();
+  layout.bigEndian = isBigEndian(header);
   return openSamples(path, info, std::move(data), layout, {infoPath});
 }
 

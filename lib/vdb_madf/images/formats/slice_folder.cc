@@ -11,6 +11,7 @@
 #include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/images/detail/header_checks.h"
+#include "vdb_madf/images/detail/key_value_header.h"
 #include "vdb_madf/images/formats/picture_slice.h"
 
 namespace vdb_madf::detail {
@@ -48,16 +49,14 @@ bool naturallyBefore(const std::string& a, const std::string& b) {
 }
 
 /// The last line of the log that tells it: that of the reconstruction comes after the camera's.
-std::optional<double> micrometresIn(const std::string& log) {
+std::optional<double> micrometresIn(const std::string& path, const std::string& log) {
+  HeaderSyntax syntax;
+  syntax.skipsOtherLines = true;
+  syntax.canonicalKey = [](const std::string& key) { return lowerCase(key); };
   std::optional<double> found;
-  for (size_t begin = 0; begin < log.size();) {
-    const size_t end = std::min(log.find('\n', begin), log.size());
-    const std::string line = log.substr(begin, end - begin);
-    begin = end + 1;
-    const size_t equals = line.find('=');
-    if (equals == std::string::npos) continue;
-    const std::string key = lowerCase(trimmed(line.substr(0, equals)));
-    const auto value = reals(line.substr(equals + 1));
+  const KeyValueHeader header(path, log, syntax);
+  for (const auto& [key, text] : header.fields()) {
+    const auto value = reals(text);
     if ((key == "pixel size (um)" || key == "image pixel size (um)") && value && value->size() == 1)
       found = value->front();
   }
@@ -131,7 +130,7 @@ std::optional<VoxelSize> voxelSizeInLog(const std::string& folder) {
   for (const std::string& path : slicesIn(folder, {".log"})) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) continue;
-    const auto edge = micrometresIn(InputFile(path).head(kMaxLogBytes));
+    const auto edge = micrometresIn(path, InputFile(path).head(kMaxLogBytes));
     if (!edge) continue;
     if (size) return std::nullopt;  // which one belongs to the slices?
     size = cubicVoxelSize(path, {*edge, *edge, *edge}, unitsPerMetre("um"));

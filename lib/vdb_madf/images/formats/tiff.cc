@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <optional>
 
 #include "vdb_madf/base/detail/byte_order.h"
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/images/detail/header_checks.h"
+#include "vdb_madf/images/detail/key_value_header.h"
 #include "vdb_madf/images/formats/slice_folder.h"
 #include "vdb_madf/images/formats/tiff_page.h"
 
@@ -20,60 +21,40 @@ namespace vdb_madf::detail {
 namespace {
 
 /// What ImageJ writes into the description of a stack: lines of key=value.
-class ImageJDescription {
- public:
-  explicit ImageJDescription(const std::string& text) {
-    if (text.compare(0, 7, "ImageJ=") != 0) return;
-    for (size_t begin = 0; begin < text.size();) {
-      const size_t end = std::min(text.find('\n', begin), text.size());
-      const std::string line = text.substr(begin, end - begin);
-      const size_t equals = line.find('=');
-      if (equals != std::string::npos)
-        values_[trimmed(line.substr(0, equals))] = trimmed(line.substr(equals + 1));
-      begin = end + 1;
-    }
-  }
+KeyValueHeader imageJDescription(const TiffFile& file) {
+  HeaderSyntax syntax;
+  syntax.skipsOtherLines = true;
+  const char* found = file.handle().field<const char*>(TIFFTAG_IMAGEDESCRIPTION, nullptr);
+  const std::string text = found ? found : "";
+  return KeyValueHeader(file.path(), text.compare(0, 7, "ImageJ=") == 0 ? text : "", syntax);
+}
 
-  std::optional<std::string> text(const std::string& key) const {
-    const auto found = values_.find(key);
-    if (found == values_.end()) return std::nullopt;
-    return found->second;
-  }
-  std::optional<double> number(const std::string& key) const {
-    const auto values = reals(text(key).value_or(""));
-    if (!values || values->size() != 1) return std::nullopt;
-    return values->front();
-  }
-
- private:
-  std::map<std::string, std::string> values_;
-};
-
-ImageJDescription description(const TiffFile& file) {
-  const char* text = file.handle().field<const char*>(TIFFTAG_IMAGEDESCRIPTION, nullptr);
-  return ImageJDescription(text ? text : "");
+std::optional<double> numberIn(const KeyValueHeader& imageJ, const std::string& key) {
+  const auto values = reals(imageJ.find(key).value_or(""));
+  if (!values || values->size() != 1) return std::nullopt;
+  return values->front();
 }
 
 /// Only ImageJ's calibration is trusted: the plain resolution tags are mostly a scanner's or a
 /// printer's default of 72 dots per inch.
-std::optional<VoxelSize> calibration(const TiffFile& file, const ImageJDescription& imageJ,
+std::optional<VoxelSize> calibration(const TiffFile& file, const KeyValueHeader& imageJ,
                                      int slices) {
-  const auto unit = unitsPerMetre(imageJ.text("unit").value_or(""));
+  const auto unit = unitsPerMetre(imageJ.find("unit").value_or(""));
   const float perX = file.handle().field<float>(TIFFTAG_XRESOLUTION, 0);
   const float perY = file.handle().field<float>(TIFFTAG_YRESOLUTION, 0);
   if (!unit || !(perX > 0) || !(perY > 0)) return std::nullopt;
   const double x = 1.0 / double(perX), y = 1.0 / double(perY);
   // ImageJ leaves out a slice spacing of 1; then nobody may have set it.
-  const auto z = imageJ.number("spacing");
+  const auto z = numberIn(imageJ, "spacing");
   if (!z && slices > 1 && std::abs(x - 1) > 1e-3) return std::nullopt;
   // The text is exact where the tags are single precision: it goes first. The sign tells the order.
   const double depth = z ? std::abs(*z) : slices > 1 ? 1.0 : x;
   return cubicVoxelSize(file.path(), {depth, x, y}, unit);
 }
 
-void rejectHyperstack(const TiffFile& file, const ImageJDescription& imageJ) {
+void rejectHyperstack(const TiffFile& file, const KeyValueHeader& imageJ) {
   for (const char* axis : {"channels", "frames"})
-    if (imageJ.number(axis).value_or(1) > 1)
+    if (numberIn(imageJ, axis).value_or(1) > 1)
       file.handle().fail(std::string("has several ") + axis + ": save one as a stack of its own");
 }
 
@@ -88,7 +69,7 @@ class TiffStack : public ImageReader {
     }
     if (pages_.empty()) throw IoError(path + ": has no page that is a slice");
     file_.select(pages_.front());
-    const ImageJDescription imageJ = description(file_);
+    const KeyValueHeader imageJ = imageJDescription(file_);
     rejectHyperstack(file_, imageJ);
     int64_t slices = int64_t(pages_.size());
     if (slices == 1) slices = slicesWithoutPages(imageJ);
@@ -134,8 +115,8 @@ class TiffStack : public ImageReader {
   }
 
   /// ImageJ's stacks of 4 GB and more: one page, "images=N", the samples of all in one piece.
-  int64_t slicesWithoutPages(const ImageJDescription& imageJ) {
-    const double images = imageJ.number("images").value_or(1);
+  int64_t slicesWithoutPages(const KeyValueHeader& imageJ) {
+    const double images = numberIn(imageJ, "images").value_or(1);
     if (!(images > 1) || images > (1 << 20) || !page_.plain) return 1;
     const auto offset = file_.contiguousOffset(page_);
     if (!offset) return 1;
@@ -167,7 +148,7 @@ class TiffFolder : public ImageReader {
         throw IoError(files_[z] + ": has several pages, but a slice of a folder has one");
       if (z == 0) {
         page_ = page;
-        info_.voxelSize = calibration(file, description(file), int(files_.size()));
+        info_.voxelSize = calibration(file, imageJDescription(file), int(files_.size()));
       } else if (!page.sameAs(page_)) {
         throw IoError(files_[z] + ": is " + std::to_string(page.width) + " x " +
                       std::to_string(page.height) + " " + sampleTypeName(page.type) +
