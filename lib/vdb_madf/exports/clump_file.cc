@@ -7,7 +7,7 @@
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/clump_file.h"
-#include "vdb_madf/files/detail/buffered_output.h"
+#include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 
@@ -15,7 +15,7 @@ namespace vdb_madf {
 
 namespace {
 
-using detail::BufferedOutput;
+using detail::OutputStream;
 using openvdb::Vec3d;
 
 /// f(clump number, centre, radius) for all balls, world.
@@ -28,7 +28,7 @@ void forEachBall(const std::vector<Clump>& clumps, const detail::CubicTransform&
         world.edge * std::sqrt(double(ball.squaredRadius)));
 }
 
-void numbers(BufferedOutput& out, const Vec3d& center, char separator) {
+void numbers(OutputStream& out, const Vec3d& center, char separator) {
   for (int axis = 0; axis < 3; ++axis) {
     if (axis) out.value(separator);
     out.number(center[axis]);
@@ -43,7 +43,7 @@ double densityOfBalls(const Clump& clump) {
   return volume > 0 ? double(clump.voxels) / volume : 1;
 }
 
-void writeLammps(BufferedOutput& out, const std::vector<Clump>& clumps,
+void writeLammps(OutputStream& out, const std::vector<Clump>& clumps,
                  const detail::CubicTransform& world) {
   size_t atoms = 0;
   openvdb::BBoxd box;
@@ -85,7 +85,7 @@ void writeClumps(const std::string& path, const std::vector<Clump>& clumps,
   const detail::CubicTransform world = detail::cubicTransform(transform);
   if (!isClumpEnding(path))
     throw InvalidInput(path + ": no clump format has this ending; use .csv, .txt or .data");
-  BufferedOutput out(path, interrupter);
+  OutputStream out(path, interrupter);
   if (fileEnding(path) == ".data") {
     writeLammps(out, clumps, world);
   } else {

@@ -5,7 +5,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/detail/vtk_file.h"
-#include "vdb_madf/files/detail/buffered_output.h"
+#include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/labels/grain_name.h"
 
@@ -13,7 +13,7 @@ namespace vdb_madf {
 
 namespace {
 
-using detail::BufferedOutput;
+using detail::OutputStream;
 using openvdb::Vec3d;
 
 void writeVtu(const std::string& path, const Hexahedra& mesh, Interrupter* interrupter) {
@@ -23,21 +23,21 @@ void writeVtu(const std::string& path, const Hexahedra& mesh, Interrupter* inter
   file.xml("<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(nodes) +
            "\" NumberOfCells=\"" + std::to_string(elements) +
            "\">\n<CellData Scalars=\"grain_id\">\n");
-  file.array("Int32", "grain_id", 1, 4 * elements, [&](BufferedOutput& out) {
+  file.array("Int32", "grain_id", 1, 4 * elements, [&](OutputStream& out) {
     for (size_t i = 0; i < elements; ++i) out.value(mesh.label(i));
   });
   file.xml("</CellData>\n<Points>\n");
-  file.array("Float64", "Points", 3, 24 * nodes, [&](BufferedOutput& out) {
+  file.array("Float64", "Points", 3, 24 * nodes, [&](OutputStream& out) {
     mesh.forEachNode([&](const Vec3d& place) { out.value(place); });
   });
   file.xml("</Points>\n<Cells>\n");
-  file.array("Int32", "connectivity", 1, 32 * elements, [&](BufferedOutput& out) {
+  file.array("Int32", "connectivity", 1, 32 * elements, [&](OutputStream& out) {
     for (size_t i = 0; i < elements; ++i) out.value(mesh.nodes(i));
   });
-  file.array("Int32", "offsets", 1, 4 * elements, [&](BufferedOutput& out) {
+  file.array("Int32", "offsets", 1, 4 * elements, [&](OutputStream& out) {
     for (size_t i = 1; i <= elements; ++i) out.value(int32_t(8 * i));
   });
-  file.array("UInt8", "types", 1, elements, [&](BufferedOutput& out) {
+  file.array("UInt8", "types", 1, elements, [&](OutputStream& out) {
     for (size_t i = 0; i < elements; ++i) out.value(kVtkHexahedron);
   });
   file.xml("</Cells>\n</Piece>\n</UnstructuredGrid>\n");
@@ -45,7 +45,7 @@ void writeVtu(const std::string& path, const Hexahedra& mesh, Interrupter* inter
 }
 
 void writeInp(const std::string& path, const Hexahedra& mesh, Interrupter* interrupter) {
-  BufferedOutput out(path, interrupter);
+  OutputStream out(path, interrupter);
   out.text("** Voxels of grains as elements (vdb_madf)\n*NODE\n");
   size_t node = 0;
   mesh.forEachNode([&](const Vec3d& place) {

@@ -12,7 +12,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/detail/vtk_file.h"
-#include "vdb_madf/files/detail/buffered_output.h"
+#include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/output_folder.h"
 
@@ -20,7 +20,7 @@ namespace vdb_madf {
 
 namespace {
 
-using detail::BufferedOutput;
+using detail::OutputStream;
 using openvdb::Vec3d;
 using openvdb::Vec3f;
 
@@ -81,7 +81,7 @@ void writePly(const std::string& path, const WorldMesh& world, Interrupter* inte
     throw InvalidInput(path +
                        ": PLY numbers points with 31 bits, and the mesh has more: "
                        "write .vtp");
-  BufferedOutput out(path, interrupter);
+  OutputStream out(path, interrupter);
   out.text("ply\nformat binary_little_endian 1.0\ncomment vdb_madf grains; lengths in " +
            world.unit() + "\nelement vertex " + std::to_string(world.mesh().points.size()) +
            "\nproperty float x\nproperty float y\nproperty float z\n"
@@ -106,7 +106,7 @@ void writePly(const std::string& path, const WorldMesh& world, Interrupter* inte
 }
 
 void writeObj(const std::string& path, const WorldMesh& world, Interrupter* interrupter) {
-  BufferedOutput out(path, interrupter);
+  OutputStream out(path, interrupter);
   out.text("# vdb_madf grains; lengths in " + world.unit() + "\n");
   for (size_t grain = 0; grain < world.grainCount(); ++grain) {
     const Rgb color = world.color(grain);
@@ -139,7 +139,7 @@ void writeObj(const std::string& path, const WorldMesh& world, Interrupter* inte
 }
 
 /// Triangles of grains [begin, end).
-void writeStl(BufferedOutput& out, const WorldMesh& world, size_t begin, size_t end) {
+void writeStl(OutputStream& out, const WorldMesh& world, size_t begin, size_t end) {
   const auto& first = world.mesh().firstTriangle;
   std::string header = "vdb_madf grains; lengths in " + world.unit();  // not "solid": that is text
   header.resize(80, ' ');
@@ -165,30 +165,30 @@ void writeVtp(const std::string& path, const WorldMesh& world, Interrupter* inte
   file.xml("<PolyData>\n<Piece NumberOfPoints=\"" + std::to_string(points) +
            "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
            std::to_string(triangles) + "\">\n<PointData Scalars=\"grain_id\">\n");
-  file.array("Int32", "grain_id", 1, 4 * points, [&](BufferedOutput& out) {
+  file.array("Int32", "grain_id", 1, 4 * points, [&](OutputStream& out) {
     world.forEachPoint([&](size_t grain, uint32_t) { out.value(world.label(grain)); });
   });
-  file.array("UInt8", "color", 3, 3 * points, [&](BufferedOutput& out) {
+  file.array("UInt8", "color", 3, 3 * points, [&](OutputStream& out) {
     world.forEachPoint([&](size_t grain, uint32_t) { out.value(world.color(grain)); });
   });
   file.xml("</PointData>\n<CellData Scalars=\"grain_id\">\n");
-  file.array("Int32", "grain_id", 1, 4 * triangles, [&](BufferedOutput& out) {
+  file.array("Int32", "grain_id", 1, 4 * triangles, [&](OutputStream& out) {
     world.forEachTriangle([&](size_t grain, uint32_t) { out.value(world.label(grain)); });
   });
-  file.array("UInt8", "color", 3, 3 * triangles, [&](BufferedOutput& out) {
+  file.array("UInt8", "color", 3, 3 * triangles, [&](OutputStream& out) {
     world.forEachTriangle([&](size_t grain, uint32_t) { out.value(world.color(grain)); });
   });
   file.xml("</CellData>\n<Points>\n");
-  file.array("Float32", "Points", 3, 12 * points, [&](BufferedOutput& out) {
+  file.array("Float32", "Points", 3, 12 * points, [&](OutputStream& out) {
     world.forEachPoint([&](size_t, uint32_t i) { out.value(world.point(i)); });
   });
   file.xml("</Points>\n<Polys>\n");
-  file.array("Int64", "connectivity", 1, 24 * triangles, [&](BufferedOutput& out) {
+  file.array("Int64", "connectivity", 1, 24 * triangles, [&](OutputStream& out) {
     world.forEachTriangle([&](size_t, uint32_t i) {
       for (const uint32_t corner : world.triangle(i)) out.value(int64_t(corner));
     });
   });
-  file.array("Int64", "offsets", 1, 8 * triangles, [&](BufferedOutput& out) {
+  file.array("Int64", "offsets", 1, 8 * triangles, [&](OutputStream& out) {
     for (uint64_t i = 1; i <= triangles; ++i) out.value(int64_t(3 * i));
   });
   file.xml("</Polys>\n</Piece>\n</PolyData>\n");
@@ -213,7 +213,7 @@ void writeMesh(const std::string& path, const GrainMesh& mesh, const MeshFileOpt
   else if (end == ".vtp")
     writeVtp(path, world, interrupter);
   else if (end == ".stl") {
-    BufferedOutput out(path, interrupter);
+    OutputStream out(path, interrupter);
     writeStl(out, world, 0, world.grainCount());
     out.commit();
   } else {
@@ -225,14 +225,14 @@ void writeStlFolder(const std::string& folder, const GrainMesh& mesh,
                     const MeshFileOptions& options, Interrupter* interrupter) {
   const WorldMesh world(mesh, options, folder);
   OutputFolder made(folder);
-  std::vector<std::unique_ptr<BufferedOutput>> files;
+  std::vector<std::unique_ptr<OutputStream>> files;
   for (size_t grain = 0; grain < world.grainCount(); ++grain) {
     const std::string name = grainName(world.label(grain)) + ".stl";
-    files.push_back(std::make_unique<BufferedOutput>(made.file(name), interrupter));
+    files.push_back(std::make_unique<OutputStream>(made.file(name), interrupter));
     writeStl(*files.back(), world, grain, grain + 1);
     files.back()->close();
   }
-  for (const auto& file : files) file->commitClosed();
+  for (const auto& file : files) file->commit();
   made.keep();
 }
 

@@ -7,18 +7,18 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/detail/vtk_file.h"
 #include "vdb_madf/exports/network_file.h"
-#include "vdb_madf/files/detail/buffered_output.h"
+#include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/files/file_ending.h"
 
 namespace vdb_madf {
 
 namespace {
 
-using detail::BufferedOutput;
+using detail::OutputStream;
 using Column = GrainNetwork::Column;
 
 void addColumn(detail::VtkFile& file, const Column& column) {
-  file.array("Float64", column.name, 1, 8 * column.values.size(), [&column](BufferedOutput& out) {
+  file.array("Float64", column.name, 1, 8 * column.values.size(), [&column](OutputStream& out) {
     out.bytes(column.values.data(), 8 * column.values.size());
   });
 }
@@ -30,25 +30,25 @@ void writeVtp(const std::string& path, const GrainNetwork& network, Interrupter*
            "\" NumberOfVerts=\"0\" NumberOfLines=\"" + std::to_string(bonds) +
            "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<PointData Scalars=\"grain_id\">\n");
   file.array("Int32", "grain_id", 1, 4 * grains,
-             [&](BufferedOutput& out) { out.bytes(network.grains.data(), 4 * grains); });
+             [&](OutputStream& out) { out.bytes(network.grains.data(), 4 * grains); });
   for (const Column& column : network.grainColumns) addColumn(file, column);
   file.xml("</PointData>\n<CellData>\n");
   for (const size_t end : {size_t(0), size_t(1)})
     file.array("Int32", end == 0 ? "first_grain" : "second_grain", 1, 4 * bonds,
-               [&network, end](BufferedOutput& out) {
+               [&network, end](OutputStream& out) {
                  for (const auto& bond : network.bonds) out.value(network.grains[bond[end]]);
                });
   for (const Column& column : network.bondColumns) addColumn(file, column);
   file.xml("</CellData>\n<Points>\n");
-  file.array("Float64", "Points", 3, 24 * grains, [&](BufferedOutput& out) {
+  file.array("Float64", "Points", 3, 24 * grains, [&](OutputStream& out) {
     for (const openvdb::Vec3d& p : network.centers) out.value(p);
   });
   file.xml("</Points>\n<Lines>\n");
-  file.array("Int64", "connectivity", 1, 16 * bonds, [&](BufferedOutput& out) {
+  file.array("Int64", "connectivity", 1, 16 * bonds, [&](OutputStream& out) {
     for (const auto& bond : network.bonds)
       for (const uint32_t end : bond) out.value(int64_t(end));
   });
-  file.array("Int64", "offsets", 1, 8 * bonds, [&](BufferedOutput& out) {
+  file.array("Int64", "offsets", 1, 8 * bonds, [&](OutputStream& out) {
     for (size_t i = 1; i <= bonds; ++i) out.value(int64_t(2 * i));
   });
   file.xml("</Lines>\n</Piece>\n</PolyData>\n");
@@ -56,7 +56,7 @@ void writeVtp(const std::string& path, const GrainNetwork& network, Interrupter*
 }
 
 void writeGraphml(const std::string& path, const GrainNetwork& network, Interrupter* interrupter) {
-  BufferedOutput out(path, interrupter);
+  OutputStream out(path, interrupter);
   out.text(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<graphml xmlns=\"http://graphml.graphdrawing.org/xmlns\">\n");
@@ -95,7 +95,7 @@ void writeGraphml(const std::string& path, const GrainNetwork& network, Interrup
 }
 
 void writeCsv(const std::string& path, const GrainNetwork& network, Interrupter* interrupter) {
-  BufferedOutput out(path, interrupter);
+  OutputStream out(path, interrupter);
   out.text("pore.coords[0],pore.coords[1],pore.coords[2],pore.grain_id");
   for (const Column& column : network.grainColumns) out.text(",pore." + column.name);
   out.text(",throat.conns[0],throat.conns[1]");

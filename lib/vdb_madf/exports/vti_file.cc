@@ -12,7 +12,7 @@
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/detail/vtk_file.h"
-#include "vdb_madf/files/detail/buffered_output.h"
+#include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/grids/detail/grid_slabs.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 
@@ -99,13 +99,12 @@ void writeVti(const std::string& path, const Int32Grid& labels, const CoordBBox&
   if (compressed) {
     file.compressedArray("Int32", "grain_id", 1, deflatedBlocks(slabs, interrupter));
   } else {
-    file.array("Int32", "grain_id", 1, 4 * uint64_t(box.volume()),
-               [&](detail::BufferedOutput& out) {
-                 for (size_t slab = 0; slab < slabs.count(); ++slab) {
-                   const std::vector<int32_t> values = slabs.read(slab);
-                   out.bytes(values.data(), 4 * values.size());
-                 }
-               });
+    file.array("Int32", "grain_id", 1, 4 * uint64_t(box.volume()), [&](detail::OutputStream& out) {
+      for (size_t slab = 0; slab < slabs.count(); ++slab) {
+        const std::vector<int32_t> values = slabs.read(slab);
+        out.bytes(values.data(), 4 * values.size());
+      }
+    });
   }
   file.xml("</CellData>\n</Piece>\n</ImageData>\n");
   file.write(path, interrupter);

@@ -43,14 +43,13 @@ std::string uuidFrom(const std::array<uint64_t, 2>& hash) {
 void writeVdb(const std::string& path, const std::vector<openvdb::GridBase::ConstPtr>& grids,
               Interrupter* interrupter) {
   initialize();
-  OutputFile output(path);
+  detail::OutputStream output(path);
   detail::OutputBuffer buffer(output, interrupter, detail::kUuidStart, detail::kUuidLength);
   std::ostream stream(&buffer);
   stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
   Writer().writeAll(stream, grids);
   buffer.flush();
   buffer.replace(detail::kUuidStart, uuidFrom(buffer.hash()));
-  buffer.close();
   output.commit();
 }
 

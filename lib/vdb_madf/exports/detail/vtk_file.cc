@@ -19,7 +19,7 @@ void VtkFile::addArray(const std::string& vtkType, const std::string& name, int 
 void VtkFile::array(const std::string& vtkType, const std::string& name, int components,
                     uint64_t bytes, Writer write) {
   addArray(vtkType, name, components, sizeof(uint64_t) + bytes,
-           [bytes, values = std::move(write)](BufferedOutput& out) {
+           [bytes, values = std::move(write)](OutputStream& out) {
              out.value(bytes);
              values(out);
            });
@@ -30,7 +30,7 @@ void VtkFile::compressedArray(const std::string& vtkType, const std::string& nam
   isCompressed_ = true;
   uint64_t bytes = (3 + blocks.data.size()) * sizeof(uint64_t);
   for (const std::string& block : blocks.data) bytes += block.size();
-  addArray(vtkType, name, components, bytes, [blocks = std::move(blocks)](BufferedOutput& out) {
+  addArray(vtkType, name, components, bytes, [blocks = std::move(blocks)](OutputStream& out) {
     out.value(uint64_t(blocks.data.size()));
     out.value(blocks.wholeBytes);
     out.value(blocks.lastBytes == blocks.wholeBytes ? uint64_t(0) : blocks.lastBytes);
@@ -40,7 +40,7 @@ void VtkFile::compressedArray(const std::string& vtkType, const std::string& nam
 }
 
 void VtkFile::write(const std::string& path, Interrupter* interrupter) const {
-  BufferedOutput out(path, interrupter);
+  OutputStream out(path, interrupter);
   out.text("<?xml version=\"1.0\"?>\n<VTKFile type=\"" + type_ +
            "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\"" +
            (isCompressed_ ? " compressor=\"vtkZLibDataCompressor\"" : "") + ">\n" + xml_ +

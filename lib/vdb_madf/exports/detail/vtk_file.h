@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "vdb_madf/files/detail/buffered_output.h"
+#include "vdb_madf/files/detail/output_stream.h"
 
 namespace vdb_madf::detail {
 
@@ -15,7 +15,7 @@ namespace vdb_madf::detail {
 /// text and arrays in the order of the file, then the values.
 class VtkFile {
  public:
-  using Writer = std::function<void(BufferedOutput&)>;
+  using Writer = std::function<void(OutputStream&)>;
 
   /// \p type: "PolyData", "UnstructuredGrid" ...
   explicit VtkFile(std::string type) : type_(std::move(type)) {}

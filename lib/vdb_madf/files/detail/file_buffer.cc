@@ -3,12 +3,7 @@
 
 #include "vdb_madf/files/detail/file_buffer.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 
 #include "vdb_madf/base/errors.h"
@@ -20,11 +15,6 @@ namespace {
 /// Large enough that system calls do not count, small enough that an interrupt is seen at once.
 constexpr size_t kBufferSize = size_t(1) << 18;
 
-[[noreturn]] void failToRead(const std::string& path, const std::string& reason,
-                             const std::string& advice) {
-  throw IoError("cannot read " + path + ": " + reason + "; " + advice);
-}
-
 /// Where seekoff leads, or -1.
 int64_t target(int64_t offset, std::ios_base::seekdir direction, int64_t position, int64_t end) {
   if (direction == std::ios_base::cur) return position + offset;
@@ -35,26 +25,8 @@ int64_t target(int64_t offset, std::ios_base::seekdir direction, int64_t positio
 }  // namespace
 
 InputBuffer::InputBuffer(const std::string& path, Interrupter* interrupter)
-    : path_(path), interrupter_(interrupter) {
-  // Without waiting: a pipe that nobody writes to would block here.
-  file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file_ < 0) failToRead(path, std::strerror(errno), "check the path and its permissions");
-  struct stat status {};
-  const bool known = ::fstat(file_, &status) == 0;
-  if (!known || !S_ISREG(status.st_mode)) {
-    const int error = known ? 0 : errno;
-    ::close(file_);
-    if (error) failToRead(path, std::strerror(error), "check the path and its permissions");
-    failToRead(path, S_ISDIR(status.st_mode) ? "it is a folder" : "it is not a regular file",
-               "give the path of a file");
-  }
-  size_ = status.st_size;
-  buffer_.resize(kBufferSize);
+    : file_(path), interrupter_(interrupter), buffer_(kBufferSize) {
   setg(buffer_.data(), buffer_.data(), buffer_.data());
-}
-
-InputBuffer::~InputBuffer() {
-  ::close(file_);
 }
 
 void InputBuffer::require(int64_t bytes) const {
@@ -62,7 +34,7 @@ void InputBuffer::require(int64_t bytes) const {
 }
 
 void InputBuffer::moveTo(int64_t position) {
-  if (position < 0 || position > size_) throw EarlyEnd();
+  if (position < 0 || position > size()) throw EarlyEnd();
   if (position >= start_ && position - start_ <= egptr() - eback()) {
     setg(eback(), eback() + (position - start_), egptr());
   } else {
@@ -93,22 +65,18 @@ std::string InputBuffer::readString() {
 InputBuffer::int_type InputBuffer::underflow() {
   if (gptr() < egptr()) return traits_type::to_int_type(*gptr());
   if (interrupter_ &&
-      interrupter_->wasInterrupted(int(position() * 100 / std::max<int64_t>(size_, 1))))
+      interrupter_->wasInterrupted(int(position() * 100 / std::max<int64_t>(size(), 1))))
     throw Interrupted();
   start_ = position();
-  ssize_t count = 0;
-  do {
-    count = ::pread(file_, buffer_.data(), buffer_.size(), start_);
-  } while (count < 0 && errno == EINTR);
-  setg(buffer_.data(), buffer_.data(), buffer_.data() + std::max<ssize_t>(count, 0));
-  if (count < 0) failToRead(path_, std::strerror(errno), "check the disk, or copy the file");
+  const size_t count = file_.readSome(uint64_t(start_), buffer_.data(), buffer_.size());
+  setg(buffer_.data(), buffer_.data(), buffer_.data() + count);
   return count == 0 ? traits_type::eof() : traits_type::to_int_type(*gptr());
 }
 
 InputBuffer::pos_type InputBuffer::seekoff(off_type offset, std::ios_base::seekdir direction,
                                            std::ios_base::openmode) {
-  const int64_t to = target(offset, direction, position(), size_);
-  if (to < 0 || to > size_) return pos_type(off_type(-1));
+  const int64_t to = target(offset, direction, position(), size());
+  if (to < 0 || to > size()) return pos_type(off_type(-1));
   if (to != position()) moveTo(to);
   return pos_type(to);
 }
@@ -117,60 +85,30 @@ InputBuffer::pos_type InputBuffer::seekpos(pos_type position, std::ios_base::ope
   return seekoff(off_type(position), std::ios_base::beg, which);
 }
 
-OutputBuffer::OutputBuffer(const OutputFile& file, Interrupter* interrupter, int64_t unhashedStart,
+OutputBuffer::OutputBuffer(OutputStream& file, Interrupter* interrupter, int64_t unhashedStart,
                            int64_t unhashed)
-    : path_(file.path()),
+    : file_(file),
       interrupter_(interrupter),
       unhashedStart_(unhashedStart),
       unhashedEnd_(unhashedStart + unhashed),
       buffer_(kBufferSize),
       // Any two different odd numbers; these are from the fractional part of the golden ratio.
       hash_{0x9e3779b97f4a7c15u, 0xf39cc0605cedc835u} {
-  file_ = ::open(file.temporaryPath().c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
-  if (file_ < 0) fail(errno);
   setp(buffer_.data(), buffer_.data() + buffer_.size());
-}
-
-OutputBuffer::~OutputBuffer() {
-  if (file_ >= 0) ::close(file_);
-}
-
-void OutputBuffer::fail(int error) const {
-  throw IoError("cannot write " + path_ + ": " + std::strerror(error) +
-                "; free some space, or write it elsewhere");
 }
 
 void OutputBuffer::flush() {
   if (interrupter_ && interrupter_->wasInterrupted()) throw Interrupted();
   const size_t count = size_t(pptr() - pbase());
   addToHash(start_, pbase(), count);
-  writeAt(start_, pbase(), count);
+  file_.writeAt(uint64_t(start_), pbase(), count);
   start_ += int64_t(count);
   setp(buffer_.data(), buffer_.data() + buffer_.size());
 }
 
 void OutputBuffer::replace(int64_t position, const std::string& bytes) {
   flush();
-  writeAt(position, bytes.data(), bytes.size());
-}
-
-void OutputBuffer::close() {
-  flush();
-  const int file = file_;
-  file_ = -1;
-  if (::close(file) != 0 && errno != EINTR) fail(errno);
-}
-
-void OutputBuffer::writeAt(int64_t position, const char* bytes, size_t count) {
-  while (count > 0) {
-    const ssize_t written = ::pwrite(file_, bytes, count, position);
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(errno);
-    bytes += written;
-    position += written;
-    count -= size_t(written);
-  }
-  end_ = std::max(end_, position);
+  file_.writeAt(uint64_t(position), bytes.data(), bytes.size());
 }
 
 /// Two lanes of multiply and xor-shift over 64-bit words: a checksum to tell contents apart, not a
@@ -212,7 +150,7 @@ int OutputBuffer::sync() {
 OutputBuffer::pos_type OutputBuffer::seekoff(off_type offset, std::ios_base::seekdir direction,
                                              std::ios_base::openmode) {
   const int64_t position = start_ + (pptr() - pbase());
-  const int64_t to = target(offset, direction, position, std::max(end_, position));
+  const int64_t to = target(offset, direction, position, std::max(int64_t(file_.size()), position));
   if (to < 0) return pos_type(off_type(-1));
   if (to != position) {
     flush();

@@ -12,7 +12,8 @@
 #include <vector>
 
 #include "vdb_madf/base/interrupter.h"
-#include "vdb_madf/files/output_file.h"
+#include "vdb_madf/files/detail/input_file.h"
+#include "vdb_madf/files/detail/output_stream.h"
 
 namespace vdb_madf::detail {
 
@@ -22,21 +23,18 @@ class EarlyEnd : public std::runtime_error {
   EarlyEnd() : std::runtime_error("it ends early") {}
 };
 
-/// A regular file behind one large buffer. Unlike std::filebuf it keeps the buffer when it moves
-/// within it, knows how much is left, says why a read failed, and asks the interrupter whenever it
-/// is filled.
+/// An InputFile behind one large buffer, for a std::istream. Unlike std::filebuf it keeps the buffer
+/// when it moves within it, knows how much is left, says why a read failed, and asks the interrupter
+/// whenever it is filled.
 class InputBuffer final : public std::streambuf {
  public:
   /// @throw IoError if it cannot be opened or is not a regular file.
   explicit InputBuffer(const std::string& path, Interrupter* interrupter = nullptr);
-  ~InputBuffer() override;
-  InputBuffer(const InputBuffer&) = delete;
-  InputBuffer& operator=(const InputBuffer&) = delete;
 
-  const std::string& path() const { return path_; }
-  int64_t size() const { return size_; }
+  const std::string& path() const { return file_.path(); }
+  int64_t size() const { return int64_t(file_.size()); }
   int64_t position() const { return start_ + (gptr() - eback()); }
-  int64_t left() const { return size_ - position(); }
+  int64_t left() const { return size() - position(); }
 
   /// @throw EarlyEnd unless so many bytes are left.
   void require(int64_t bytes) const;
@@ -60,26 +58,21 @@ class InputBuffer final : public std::streambuf {
   pos_type seekpos(pos_type position, std::ios_base::openmode which) override;
 
  private:
-  std::string path_;
+  InputFile file_;
   Interrupter* interrupter_;
-  int file_ = -1;
-  int64_t size_ = 0;
   int64_t start_ = 0;  ///< position of the buffer's first byte
   std::vector<char> buffer_;
 };
 
-/// The temporary of an OutputFile behind one large buffer. A write that fails throws instead of
+/// An OutputStream behind one large buffer, for a std::ostream. A write that fails throws instead of
 /// setting a flag, the interrupter is asked whenever the buffer is written, and what is written is
 /// hashed on its way.
 class OutputBuffer final : public std::streambuf {
  public:
   /// `unhashed` bytes from `unhashedStart` on are left out of the hash.
   /// @throw IoError
-  OutputBuffer(const OutputFile& file, Interrupter* interrupter, int64_t unhashedStart = 0,
+  OutputBuffer(OutputStream& file, Interrupter* interrupter, int64_t unhashedStart = 0,
                int64_t unhashed = 0);
-  ~OutputBuffer() override;
-  OutputBuffer(const OutputBuffer&) = delete;
-  OutputBuffer& operator=(const OutputBuffer&) = delete;
 
   /// Writes what is buffered. @throw IoError; Interrupted.
   void flush();
@@ -87,8 +80,6 @@ class OutputBuffer final : public std::streambuf {
   std::array<uint64_t, 2> hash() const { return hash_; }
   /// Flushes, then replaces bytes that were written before; they are not hashed.
   void replace(int64_t position, const std::string& bytes);
-  /// Flushes, then closes the file. @throw IoError; Interrupted.
-  void close();
 
  protected:
   int_type overflow(int_type character) override;
@@ -98,16 +89,12 @@ class OutputBuffer final : public std::streambuf {
   pos_type seekpos(pos_type position, std::ios_base::openmode which) override;
 
  private:
-  void writeAt(int64_t position, const char* bytes, size_t count);
   void addToHash(int64_t position, const char* bytes, size_t count);
-  [[noreturn]] void fail(int error) const;
 
-  std::string path_;
+  OutputStream& file_;
   Interrupter* interrupter_;
   int64_t unhashedStart_, unhashedEnd_;
-  int file_ = -1;
   int64_t start_ = 0;  ///< position of the buffer's first byte
-  int64_t end_ = 0;    ///< of what is in the file
   std::vector<char> buffer_;
   std::array<uint64_t, 2> hash_;
 };

@@ -23,44 +23,55 @@ constexpr size_t kMaxBytesPerCall = size_t(1) << 30;
 
 }  // namespace
 
-InputFile::InputFile(const std::string& path) : name_(path) {
-  open(path);
+InputFile::InputFile(const std::string& path) : name_(path), path_(path) {
+  open();
 }
 
 InputFile::InputFile(const std::string& header, const std::string& path)
-    : name_(header + ": its data file " + quoted(path)) {
-  open(path);
+    : name_(header + ": its data file " + quoted(path)), path_(path) {
+  open();
 }
 
-void InputFile::open(const std::string& path) {
-  path_ = path;
-  struct stat status;
-  if (stat(path.c_str(), &status) != 0)
-    throw IoError(name_ + ": cannot be opened: " + std::strerror(errno));
-  if (!S_ISREG(status.st_mode)) throw IoError(name_ + ": is not a regular file");
-  descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor_ < 0) throw IoError(name_ + ": cannot be opened: " + std::strerror(errno));
-  size_ = uint64_t(status.st_size);
+void InputFile::open() {
+  // Without waiting: a pipe that nobody writes to would block here.
+  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  int error = descriptor_ < 0 ? errno : 0;
+  struct stat status {};
+  if (error == 0 && ::fstat(descriptor_, &status) != 0) error = errno;
+  if (error == 0 && S_ISREG(status.st_mode)) {
+    size_ = uint64_t(status.st_size);
+    return;
+  }
+  if (descriptor_ >= 0) ::close(descriptor_);
+  // (A socket cannot even be opened.)
+  if (error != 0 && error != ENXIO)
+    throw IoError(name_ + ": cannot be opened: " + std::strerror(error));
+  throw IoError(name_ + (S_ISDIR(status.st_mode) ? ": is a folder" : ": is not a regular file"));
 }
 
 InputFile::~InputFile() {
-  close(descriptor_);
+  ::close(descriptor_);
 }
 
 void InputFile::read(uint64_t offset, void* to, size_t count) const {
   if (offset > size_ || count > size_ - offset)
     throw IoError(name_ + ": ends early: " + std::to_string(size_) + " bytes, at least " +
                   std::to_string(offset + count) + " needed");
-  char* place = static_cast<char*>(to);
-  while (count > 0) {
-    const ssize_t got = pread(descriptor_, place, std::min(count, kMaxBytesPerCall), off_t(offset));
+  if (readSome(offset, to, count) < count)
+    throw IoError(name_ + ": became shorter while it was read");
+}
+
+size_t InputFile::readSome(uint64_t offset, void* to, size_t count) const {
+  size_t done = 0;
+  while (done < count) {
+    const ssize_t got = ::pread(descriptor_, static_cast<char*>(to) + done,
+                                std::min(count - done, kMaxBytesPerCall), off_t(offset + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) throw IoError(name_ + ": cannot be read: " + std::strerror(errno));
-    if (got == 0) throw IoError(name_ + ": became shorter while it was read");
-    place += got;
-    offset += uint64_t(got);
-    count -= size_t(got);
+    if (got == 0) break;
+    done += size_t(got);
   }
+  return done;
 }
 
 std::string InputFile::head(size_t count) const {

@@ -26,11 +26,13 @@ class InputFile {
   uint64_t size() const { return size_; }
   /// Exactly `count` bytes from `offset` on. @throw IoError if there are fewer.
   void read(uint64_t offset, void* to, size_t count) const;
+  /// Returns how many of the `count` bytes there are: fewer at the end of the file.
+  size_t readSome(uint64_t offset, void* to, size_t count) const;
   /// At most the first `count` bytes.
   std::string head(size_t count) const;
 
  private:
-  void open(const std::string& path);
+  void open();
 
   std::string name_, path_;
   int descriptor_ = -1;

@@ -16,35 +16,81 @@ namespace vdb_madf::detail {
 
 namespace {
 
+constexpr size_t kBufferBytes = size_t(1) << 20;
 /// Linux moves at most 2 GiB in one call.
 constexpr size_t kMaxBytesPerCall = size_t(1) << 30;
 
 }  // namespace
 
-OutputStream::OutputStream(const std::string& path) : file_(path) {
-  descriptor_ = open(file_.temporaryPath().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) throw IoError(path + ": cannot be written: " + std::strerror(errno));
+OutputStream::OutputStream(const std::string& path, Interrupter* interrupter)
+    : file_(path), interrupter_(interrupter) {
+  descriptor_ = ::open(file_.temporaryPath().c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor_ < 0) fail(errno);
 }
 
 OutputStream::~OutputStream() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-void OutputStream::write(const void* bytes, size_t count) {
-  const char* place = static_cast<const char*>(bytes);
-  while (count > 0) {
-    const ssize_t put = ::write(descriptor_, place, std::min(count, kMaxBytesPerCall));
-    if (put < 0 && errno == EINTR) continue;
-    if (put <= 0) throw IoError(file_.path() + ": cannot be written: " + std::strerror(errno));
-    place += put;
-    count -= size_t(put);
+void OutputStream::bytes(const void* data, size_t count) {
+  if (buffer_.size() + count > kBufferBytes) flush();
+  if (count > kBufferBytes) {
+    writeAt(size_, data, count);
+  } else {
+    buffer_.reserve(kBufferBytes);
+    buffer_.append(static_cast<const char*>(data), count);
   }
 }
 
+void OutputStream::flush() {
+  if (interrupter_ && interrupter_->wasInterrupted()) throw Interrupted();
+  writeAt(size_, buffer_.data(), buffer_.size());
+  buffer_.clear();
+}
+
+void OutputStream::writeAt(uint64_t position, const void* data, size_t count) {
+  const char* next = static_cast<const char*>(data);
+  while (count > 0) {
+    const ssize_t put =
+        ::pwrite(descriptor_, next, std::min(count, kMaxBytesPerCall), off_t(position));
+    if (put < 0 && errno == EINTR) continue;
+    if (put <= 0) fail(errno);
+    next += put;
+    position += uint64_t(put);
+    count -= size_t(put);
+  }
+  size_ = std::max(size_, position);
+}
+
+size_t OutputStream::readAt(uint64_t position, void* to, size_t count) const {
+  size_t done = 0;
+  while (done < count) {
+    const ssize_t got = ::pread(descriptor_, static_cast<char*>(to) + done,
+                                std::min(count - done, kMaxBytesPerCall), off_t(position + done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail(errno);
+    if (got == 0) break;
+    done += size_t(got);
+  }
+  return done;
+}
+
 void OutputStream::close() {
-  const int result = ::close(descriptor_);
+  flush();
+  std::string().swap(buffer_);
+  const int descriptor = descriptor_;
   descriptor_ = -1;
-  if (result != 0) throw IoError(file_.path() + ": cannot be written: " + std::strerror(errno));
+  if (::close(descriptor) != 0 && errno != EINTR) fail(errno);
+}
+
+void OutputStream::commit() {
+  if (descriptor_ >= 0) close();
+  file_.commit();
+}
+
+void OutputStream::fail(int error) const {
+  throw IoError("cannot write " + file_.path() + ": " + std::strerror(error) +
+                "; free some space, or write it elsewhere");
 }
 
 }  // namespace vdb_madf::detail

@@ -3,28 +3,62 @@
 
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <type_traits>
 
+#include "vdb_madf/base/detail/byte_order.h"
+#include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/interrupter.h"
 #include "vdb_madf/files/output_file.h"
 
 namespace vdb_madf::detail {
 
-/// Bytes in order into an OutputFile; every write is checked, so that a full disk is noticed.
+/// An OutputFile that is open for writing: pieces of any size one after the other, text or binary
+/// (little-endian), behind one buffer; or bytes at any place of the file. Every write is checked,
+/// so that a full disk is noticed. @throw IoError; Interrupted whenever the buffer is written.
 class OutputStream {
  public:
-  explicit OutputStream(const std::string& path);
+  explicit OutputStream(const std::string& path, Interrupter* interrupter = nullptr);
   ~OutputStream();
   OutputStream(const OutputStream&) = delete;
   OutputStream& operator=(const OutputStream&) = delete;
 
-  void write(const void* bytes, size_t count);
+  const std::string& path() const { return file_.path(); }
+
+  void bytes(const void* data, size_t count);
+  template <typename T>
+  void value(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    bytes(&value, sizeof value);
+  }
+  void text(const std::string& text) { bytes(text.data(), text.size()); }
+  template <typename T>
+  void number(T value) {
+    text(shortestDecimal(value));
+  }
+
+  // At any place, without the buffer: not together with the functions above.
+  void writeAt(uint64_t position, const void* data, size_t count);
+  /// Reads back what was written; returns how many bytes there were.
+  size_t readAt(uint64_t position, void* to, size_t count) const;
+  /// The bytes that are in the file.
+  uint64_t size() const { return size_; }
+
+  /// Writes what is buffered and frees buffer and descriptor: only commit() is left.
   void close();
-  /// After close().
-  void commit() { file_.commit(); }
+  /// Closes the file if it is open.
+  void commit();
 
  private:
+  void flush();
+  [[noreturn]] void fail(int error) const;
+
   OutputFile file_;
+  Interrupter* interrupter_;
   int descriptor_ = -1;
+  uint64_t size_ = 0;
+  std::string buffer_;
 };
 
 }  // namespace vdb_madf::detail

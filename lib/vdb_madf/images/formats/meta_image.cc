@@ -96,12 +96,10 @@ class MetaWriter : public ImageWriter {
     const bool local = fileEnding(path) == ".mha";
     const std::filesystem::path dataFile = std::filesystem::path(name).replace_extension(".raw");
     if (!local) data_.emplace(dataFile.string());
-    const std::string text =
-        headerText(info, origin, local ? "LOCAL" : dataFile.filename().string());
-    out_.write(text.data(), text.size());
+    out_.text(headerText(info, origin, local ? "LOCAL" : dataFile.filename().string()));
   }
   void write(int count, const void* samples) override {
-    (data_ ? *data_ : out_).write(samples, counter_.add(count));
+    (data_ ? *data_ : out_).bytes(samples, counter_.add(count));
   }
   void finish() override {
     counter_.finish();

@@ -96,12 +96,11 @@ class RawWriter : public ImageWriter {
  public:
   RawWriter(const std::string& path, const ImageInfo& info, const std::string& header)
       : counter_(path, info), out_(path) {
-    out_.write(header.data(), header.size());
+    out_.text(header);
   }
-  void write(int count, const void* samples) override { out_.write(samples, counter_.add(count)); }
+  void write(int count, const void* samples) override { out_.bytes(samples, counter_.add(count)); }
   void finish() override {
     counter_.finish();
-    out_.close();
     out_.commit();
   }
 

@@ -22,17 +22,67 @@ int TiffHandle::collect(TIFF*, void* text, const char*, const char* format, va_l
   return 1;  // handled: libtiff's global handler, which prints, is not called
 }
 
-TiffHandle::TiffHandle(const std::string& path, const std::string& shownPath, const char* mode,
-                       int64_t mostAllocation)
-    : path_(shownPath), messages_(std::make_unique<Messages>()) {
-  messages_->error.reserve(200);
-  messages_->warning.reserve(200);
+// These are called from C, too: libtiff gets to know that they failed, and nothing is thrown.
+
+tmsize_t TiffHandle::read(thandle_t handle, void* to, tmsize_t count) {
+  Client& client = *static_cast<Client*>(handle);
+  try {
+    const size_t got = client.input ? client.input->readSome(client.position, to, size_t(count))
+                                    : client.output->readAt(client.position, to, size_t(count));
+    client.position += got;
+    return tmsize_t(got);
+  } catch (const std::exception&) {
+    return -1;
+  }
+}
+
+tmsize_t TiffHandle::write(thandle_t handle, void* from, tmsize_t count) {
+  Client& client = *static_cast<Client*>(handle);
+  if (!client.output) return -1;
+  try {
+    client.output->writeAt(client.position, from, size_t(count));
+    client.position += uint64_t(count);
+    return count;
+  } catch (const std::exception&) {
+    return -1;
+  }
+}
+
+toff_t TiffHandle::seek(thandle_t handle, toff_t offset, int from) {
+  Client& client = *static_cast<Client*>(handle);
+  const toff_t origin = from == SEEK_CUR ? client.position : from == SEEK_END ? size(handle) : 0;
+  return client.position = origin + offset;
+}
+
+toff_t TiffHandle::size(thandle_t handle) {
+  const Client& client = *static_cast<Client*>(handle);
+  return client.input ? client.input->size() : client.output->size();
+}
+
+TiffHandle::TiffHandle(const InputFile& file, int64_t maxAllocation)
+    : path_(file.name()), client_(std::make_unique<Client>()) {
+  client_->input = &file;
+  // No memory mapping: a file that shrinks meanwhile would be a SIGBUS.
+  open("rm", maxAllocation);
+}
+
+TiffHandle::TiffHandle(OutputStream& file, bool bigTiff)
+    : path_(file.path()), client_(std::make_unique<Client>()) {
+  client_->output = &file;
+  open(bigTiff ? "w8" : "w", 0);
+}
+
+void TiffHandle::open(const char* mode, int64_t maxAllocation) {
+  client_->error.reserve(200);
+  client_->warning.reserve(200);
   const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(),
                                                                              TIFFOpenOptionsFree);
-  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), collect, &messages_->error);
-  TIFFOpenOptionsSetWarningHandlerExtR(options.get(), collect, &messages_->warning);
-  TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), tmsize_t(mostAllocation));
-  tiff_ = TIFFOpenExt(path.c_str(), mode, options.get());
+  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), collect, &client_->error);
+  TIFFOpenOptionsSetWarningHandlerExtR(options.get(), collect, &client_->warning);
+  TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), tmsize_t(maxAllocation));
+  const auto leaveOpen = [](thandle_t) { return 0; };
+  tiff_ = TIFFClientOpenExt(path_.c_str(), mode, client_.get(), read, write, seek, leaveOpen, size,
+                            nullptr, nullptr, options.get());
   if (!tiff_) fail("cannot be opened as TIFF");
 }
 
@@ -47,12 +97,12 @@ void TiffHandle::close() {
 
 void TiffHandle::fail(const std::string& what) const {
   throw IoError(path_ + ": " + what +
-                (messages_->error.empty() ? std::string() : " (" + messages_->error + ")"));
+                (client_->error.empty() ? std::string() : " (" + client_->error + ")"));
 }
 
 void TiffHandle::forgetMessages() {
-  messages_->error.clear();
-  messages_->warning.clear();
+  client_->error.clear();
+  client_->warning.clear();
 }
 
 }  // namespace vdb_madf::detail

@@ -8,16 +8,20 @@
 #include <memory>
 #include <string>
 
+#include "vdb_madf/files/detail/input_file.h"
+#include "vdb_madf/files/detail/output_stream.h"
+
 namespace vdb_madf::detail {
 
-/// An open libtiff file that collects what libtiff has to say instead of printing it.
+/// libtiff on a file that is open already; it collects what libtiff has to say instead of printing
+/// it. The file has to outlive it.
 class TiffHandle {
  public:
-  /// @param shownPath the name in messages: not a temporary one
-  /// @param mostAllocation what libtiff may allocate in one piece; 0: no limit
+  /// @param maxAllocation what libtiff may allocate in one piece, in bytes
   /// @throw IoError
-  TiffHandle(const std::string& path, const std::string& shownPath, const char* mode,
-             int64_t mostAllocation);
+  TiffHandle(const InputFile& file, int64_t maxAllocation);
+  /// @throw IoError
+  TiffHandle(OutputStream& file, bool bigTiff);
   ~TiffHandle();
   TiffHandle(const TiffHandle&) = delete;
   TiffHandle& operator=(const TiffHandle&) = delete;
@@ -28,7 +32,7 @@ class TiffHandle {
 
   /// @throw IoError with the path, what went wrong, and libtiff's first error.
   [[noreturn]] void fail(const std::string& what) const;
-  bool warned() const { return !messages_->warning.empty(); }
+  bool warned() const { return !client_->warning.empty(); }
   void forgetMessages();
 
   template <typename T>
@@ -38,13 +42,22 @@ class TiffHandle {
   }
 
  private:
-  struct Messages {  // libtiff keeps its address
+  /// What libtiff calls back with: it keeps the address.
+  struct Client {
+    const InputFile* input = nullptr;
+    OutputStream* output = nullptr;
+    uint64_t position = 0;
     std::string error, warning;
   };
+  void open(const char* mode, int64_t maxAllocation);
+  static tmsize_t read(thandle_t client, void* to, tmsize_t count);
+  static tmsize_t write(thandle_t client, void* from, tmsize_t count);
+  static toff_t seek(thandle_t client, toff_t offset, int from);
+  static toff_t size(thandle_t client);
   static int collect(TIFF*, void* text, const char* module, const char* format, va_list arguments);
 
   std::string path_;
-  std::unique_ptr<Messages> messages_;
+  std::unique_ptr<Client> client_;
   TIFF* tiff_ = nullptr;
 };
 

@@ -71,9 +71,7 @@ void expandBits(const unsigned char* bits, size_t count, bool invert, char* byte
 }  // namespace
 
 TiffFile::TiffFile(const std::string& path)
-    : data_(path),
-      // No memory mapping: a file that shrinks meanwhile would be a SIGBUS.
-      tiff_(path, path, "rm", int64_t(data_.size()) + kCoderAllocation) {}
+    : data_(path), tiff_(data_, int64_t(data_.size()) + kCoderAllocation) {}
 
 bool TiffFile::isSlice() const {
   return (tiff_.field<uint32_t>(TIFFTAG_SUBFILETYPE, 0) &

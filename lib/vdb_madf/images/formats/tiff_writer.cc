@@ -5,7 +5,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/length_unit.h"
-#include "vdb_madf/files/output_file.h"
+#include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/slice_counter.h"
 #include "vdb_madf/images/formats/tiff.h"
@@ -48,9 +48,7 @@ uint16_t sampleFormat(SampleType type) {
 class TiffWriter : public ImageWriter {
  public:
   TiffWriter(const std::string& path, const ImageInfo& info)
-      : counter_(path, info),
-        file_(path),
-        tiff_(file_.temporaryPath(), path, needsBigTiff(info) ? "w8" : "w", 0) {}
+      : counter_(path, info), file_(path), tiff_(file_, needsBigTiff(info)) {}
 
   void write(int count, const void* samples) override {
     const char* slice = static_cast<const char*>(samples);
@@ -119,7 +117,7 @@ class TiffWriter : public ImageWriter {
   }
 
   SliceCounter counter_;
-  OutputFile file_;
+  OutputStream file_;
   TiffHandle tiff_;
   uint32_t rows_ = 1;
 };
