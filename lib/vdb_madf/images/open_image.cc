@@ -3,7 +3,10 @@
 
 #include "vdb_madf/images/open_image.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/detail/input_file.h"
@@ -26,133 +29,162 @@ namespace vdb_madf {
 
 namespace {
 
-enum class Format {
-  unknown,
-  tiff,
-  tiffFolder,
-  picture,
-  pictureFolder,
-  meta,
-  nrrd,
-  npy,
-  isq,
-  nifti,
-  dgtal,
-  pyhst,
-  zarr,
-  hdf5,
-  raw,
-  vdb
+/// One format of files, from its first bytes to its reader and writer.
+struct FileFormat {
+  /// True if the file's content is of this format; null: told by its ending alone.
+  bool (*recognize)(const detail::InputFile& file, const std::string& head);
+  /// In lower case; those that are written come first.
+  std::vector<std::string> endings;
+  /// Null: not an image.
+  std::unique_ptr<ImageReader> (*open)(std::unique_ptr<detail::InputFile> file,
+                                       const std::string& dataset);
+  /// Null: the format is not written.
+  std::unique_ptr<ImageWriter> (*create)(const std::string& path, const ImageInfo& info,
+                                         const std::array<double, 3>& origin) = nullptr;
+  size_t writtenEndings = 0;
 };
 
-Format formatOfEnding(const std::string& path) {
-  const std::string end = fileEnding(path);
-  if (end == ".tif" || end == ".tiff") return Format::tiff;
-  if (end == ".mhd" || end == ".mha") return Format::meta;
-  if (end == ".nrrd" || end == ".nhdr") return Format::nrrd;
-  if (end == ".png" || end == ".bmp") return Format::picture;
-  if (end == ".npy") return Format::npy;
-  if (end == ".isq") return Format::isq;
-  if (end == ".nii") return Format::nifti;
-  if (end == ".gz") {  // .nii.gz
-    const std::filesystem::path inner = std::filesystem::path(path).stem();
-    return fileEnding(inner.string()) == ".nii" ? Format::nifti : Format::unknown;
-  }
-  if (end == ".longvol") return Format::dgtal;
-  if (end == ".vol" || end == ".info") return Format::pyhst;
-  if (end == ".h5" || end == ".hdf5") return Format::hdf5;
-  if (end == ".raw") return Format::raw;
-  if (end == ".vdb") return Format::vdb;
-  return Format::unknown;
+void refuseDataset(const std::string& path, const std::string& dataset) {
+  if (!dataset.empty())
+    throw IoError(path + ": has no datasets to choose from; leave out the choice (--dataset)");
 }
 
-Format formatOfContent(const std::string& head) {
-  const auto begins = [&](const char* text, size_t length) {
-    return head.compare(0, length, text, length) == 0;
-  };
-  for (const char* magic : {"II*\0", "MM\0*", "II+\0", "MM\0+"})
-    if (begins(magic, 4)) return Format::tiff;
-  if (detail::isPngHeader(head) || detail::isBmpHeader(head)) return Format::picture;
-  if (begins("NRRD0", 5)) return Format::nrrd;
-  if (detail::isNpyHeader(head)) return Format::npy;
-  if (begins("\x89HDF\r\n\x1a\n", 8)) return Format::hdf5;
-  if (begins(" BDV\0\0\0\0", 8)) return Format::vdb;
-  if (detail::isIsqHeader(head)) return Format::isq;
-  if (detail::isMetaHeader(head)) return Format::meta;
-  if (detail::isDgtalHeader(head)) return Format::dgtal;
-  if (detail::isPyhstHeader(head)) return Format::pyhst;
-  return Format::unknown;
+bool begins(const std::string& head, const std::string& magic) {
+  return head.compare(0, magic.size(), magic) == 0;
+}
+
+bool isTiffHeader(const std::string& head) {
+  using namespace std::string_literals;
+  return begins(head, "II*\0"s) || begins(head, "MM\0*"s) || begins(head, "II+\0"s) ||
+         begins(head, "MM\0+"s);
+}
+
+template <bool isHeader(const std::string&)>
+bool hasHeader(const detail::InputFile&, const std::string& head) {
+  return isHeader(head);
+}
+
+template <std::unique_ptr<ImageReader> openFile(std::unique_ptr<detail::InputFile>)>
+std::unique_ptr<ImageReader> openOnly(std::unique_ptr<detail::InputFile> file,
+                                      const std::string& dataset) {
+  refuseDataset(file->path(), dataset);
+  return openFile(std::move(file));
+}
+
+template <std::unique_ptr<ImageWriter> createFile(const std::string&, const ImageInfo&)>
+std::unique_ptr<ImageWriter> createPlaceless(const std::string& path, const ImageInfo& info,
+                                             const std::array<double, 3>&) {
+  return createFile(path, info);
+}
+
+bool isPicture(const std::string& head) {
+  return detail::isPngHeader(head) || detail::isBmpHeader(head);
+}
+bool isNrrd(const std::string& head) {
+  return begins(head, "NRRD0");
+}
+bool isHdf5(const std::string& head) {
+  return begins(head, "\x89HDF\r\n\x1a\n");
+}
+bool isVdb(const std::string& head) {
+  return begins(head, std::string(" BDV\0\0\0\0", 8));
+}
+
+std::unique_ptr<ImageReader> openHdf5File(std::unique_ptr<detail::InputFile> file,
+                                          [[maybe_unused]] const std::string& dataset) {
+#ifdef VDB_MADF_HDF5
+  return detail::openHdf5(file->path(), dataset);
+#else
+  throw IoError(file->path() + ": HDF5 cannot be read by this program: build it with libhdf5-dev");
+#endif
+}
+
+std::unique_ptr<ImageReader> refuseRaw(std::unique_ptr<detail::InputFile> file) {
+  throw IoError(file->path() + ": a raw file needs its size and sample type (--dims, --type)");
+}
+
+/// The formats of files. The first that recognizes the content is taken, else the first with the
+/// ending of the file.
+const std::vector<FileFormat>& fileFormats() {
+  using namespace detail;
+  static const std::vector<FileFormat> kFormats = {
+      {[](const InputFile& file, const std::string&) { return isNifti(file); },
+       {".nii", ".nii.gz"},
+       openOnly<openNifti>},
+      {hasHeader<isTiffHeader>,
+       {".tif", ".tiff"},
+       openOnly<openTiff>,
+       createPlaceless<createTiff>,
+       2},
+      {hasHeader<isPicture>, {".png", ".bmp"}, openOnly<openPicture>},
+      {hasHeader<isNrrd>, {".nrrd", ".nhdr"}, openOnly<openNrrd>, createNrrd, 1},
+      {hasHeader<isNpyHeader>, {".npy"}, openOnly<openNpy>, createPlaceless<createNpy>, 1},
+      {hasHeader<isHdf5>, {".h5", ".hdf5"}, openHdf5File},
+      {hasHeader<isVdb>, {".vdb"}, nullptr},
+      {hasHeader<isIsqHeader>, {".isq"}, openOnly<openIsq>},
+      {hasHeader<isMetaHeader>, {".mhd", ".mha"}, openOnly<openMeta>, createMeta, 2},
+      {hasHeader<isDgtalHeader>, {".longvol"}, openOnly<openDgtal>},
+      {hasHeader<isPyhstHeader>, {".vol", ".info"}, openOnly<openPyhst>},
+      {nullptr, {".raw"}, openOnly<refuseRaw>, createPlaceless<createRaw>, 1}};
+  return kFormats;
 }
 
 /// Enough for every magic number, and for the comments that may precede the keys of a MetaImage.
 constexpr size_t kHeadBytes = 1024;
 
-/// Pictures in a folder of TIFF slices are previews.
-Format formatOfFolder(const std::string& path) {
-  if (detail::isZarrFolder(path)) return Format::zarr;
-  return detail::tiffFilesIn(path).empty() ? Format::pictureFolder : Format::tiffFolder;
+/// Null if no format has the ending.
+const FileFormat* formatOfEnding(const std::string& path) {
+  std::string ending = fileEnding(path);
+  if (ending == ".gz") ending = fileEnding(std::filesystem::path(path).stem().string()) + ending;
+  for (const FileFormat& format : fileFormats())
+    if (std::find(format.endings.begin(), format.endings.end(), ending) != format.endings.end())
+      return &format;
+  return nullptr;
 }
 
-/// By content, then by ending.
-Format formatOf(const std::string& path) {
+/// By content, then by ending; null if neither is known.
+const FileFormat* formatOf(const detail::InputFile& file) {
+  const std::string head = file.head(kHeadBytes);
+  for (const FileFormat& format : fileFormats())
+    if (format.recognize && format.recognize(file, head)) return &format;
+  return formatOfEnding(file.path());
+}
+
+/// The format whose writer takes such an ending, or null.
+const FileFormat* writtenFormat(const std::string& path) {
+  const std::string ending = fileEnding(path);
+  for (const FileFormat& format : fileFormats()) {
+    const auto end = format.endings.begin() + std::ptrdiff_t(format.writtenEndings);
+    if (std::find(format.endings.begin(), end, ending) != end) return &format;
+  }
+  return nullptr;
+}
+
+bool isFolder(const std::string& path) {
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) return formatOfFolder(path);
-  const detail::InputFile file(path);
-  const Format format =
-      detail::isNifti(file) ? Format::nifti : formatOfContent(file.head(kHeadBytes));
-  return format == Format::unknown ? formatOfEnding(path) : format;
+  return std::filesystem::is_directory(path, error);
 }
 
-bool hasDatasets(Format format) {
-  return format == Format::zarr || format == Format::hdf5;
+/// Pictures in a folder of TIFF slices are previews.
+std::unique_ptr<ImageReader> openFolder(const std::string& path, const std::string& dataset) {
+  if (detail::isZarrFolder(path)) return detail::openZarr(path, dataset);
+  refuseDataset(path, dataset);
+  if (!detail::tiffFilesIn(path).empty()) return detail::openTiffFolder(path);
+  return detail::openPictureFolder(path);
 }
 
 }  // namespace
 
 std::unique_ptr<ImageReader> openImage(const std::string& path, const std::optional<RawLayout>& raw,
                                        const std::string& dataset) {
-  const Format format = raw ? Format::raw : formatOf(path);
-  if (!dataset.empty() && !hasDatasets(format))
-    throw IoError(path + ": has no datasets to choose from; leave out the choice (--dataset)");
-  if (raw) return detail::openRaw(path, *raw);
-  switch (format) {
-    case Format::tiff:
-      return detail::openTiff(path);
-    case Format::tiffFolder:
-      return detail::openTiffFolder(path);
-    case Format::picture:
-      return detail::openPicture(path);
-    case Format::pictureFolder:
-      return detail::openPictureFolder(path);
-    case Format::meta:
-      return detail::openMeta(path);
-    case Format::nrrd:
-      return detail::openNrrd(path);
-    case Format::npy:
-      return detail::openNpy(path);
-    case Format::isq:
-      return detail::openIsq(path);
-    case Format::nifti:
-      return detail::openNifti(path);
-    case Format::dgtal:
-      return detail::openDgtal(path);
-    case Format::pyhst:
-      return detail::openPyhst(path);
-    case Format::zarr:
-      return detail::openZarr(path, dataset);
-    case Format::hdf5:
-#ifdef VDB_MADF_HDF5
-      return detail::openHdf5(path, dataset);
-#else
-      throw IoError(path + ": HDF5 cannot be read by this program: build it with libhdf5-dev");
-#endif
-    case Format::raw:
-      throw IoError(path + ": a raw file needs its size and sample type (--dims, --type)");
-    case Format::vdb:
-      throw IoError(path + ": is a VDB file, not an image");
-    case Format::unknown:
-      break;
-  }
+  if (!raw && isFolder(path)) return openFolder(path, dataset);
+  if (raw) refuseDataset(path, dataset);
+  auto file = std::make_unique<detail::InputFile>(path);
+  if (raw) return detail::openRaw(std::move(file), *raw);
+  const FileFormat* format = formatOf(*file);
+  if (format && format->open) return format->open(std::move(file), dataset);
+  refuseDataset(path, dataset);
+  if (format) throw IoError(path + ": is a VDB file, not an image");
   throw IoError(
       path +
       ": is no image of a known format; if it is raw, give its size and type (--dims, --type)");
@@ -160,39 +192,25 @@ std::unique_ptr<ImageReader> openImage(const std::string& path, const std::optio
 
 bool looksLikeImage(const std::string& path) {
   try {
-    const Format format = formatOf(path);
-    if (format == Format::pictureFolder) return !detail::picturesIn(path).empty();
-    return format != Format::unknown && format != Format::vdb;
+    if (isFolder(path))
+      return detail::isZarrFolder(path) || !detail::tiffFilesIn(path).empty() ||
+             !detail::picturesIn(path).empty();
+    const FileFormat* format = formatOf(detail::InputFile(path));
+    return format && format->open;
   } catch (const IoError&) {  // nothing there to look at
-    const Format format = formatOfEnding(path);
-    return format != Format::unknown && format != Format::vdb;
+    const FileFormat* format = formatOfEnding(path);
+    return format && format->open;
   }
 }
 
 std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInfo& info,
                                          const std::array<double, 3>& origin) {
-  switch (formatOfEnding(path)) {
-    case Format::raw:
-      return detail::createRaw(path, info);
-    case Format::meta:
-      return detail::createMeta(path, info, origin);
-    case Format::tiff:
-      return detail::createTiff(path, info);
-    case Format::npy:
-      return detail::createNpy(path, info);
-    case Format::nrrd:
-      if (fileEnding(path) == ".nrrd") return detail::createNrrd(path, info, origin);
-      break;
-    default:
-      break;
-  }
+  if (const FileFormat* format = writtenFormat(path)) return format->create(path, info, origin);
   throw InvalidInput(path + ": images are written as .tif, .tiff, .raw, .mhd, .mha, .nrrd or .npy");
 }
 
 bool isImageEnding(const std::string& path) {
-  const std::string end = fileEnding(path);
-  return end == ".tif" || end == ".tiff" || end == ".raw" || end == ".mhd" || end == ".mha" ||
-         end == ".nrrd" || end == ".npy";
+  return writtenFormat(path) != nullptr;
 }
 
 }  // namespace vdb_madf

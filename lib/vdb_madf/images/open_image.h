@@ -21,11 +21,11 @@ struct RawLayout {
 
 /// Opens TIFF (multi-page, BigTIFF), MHD/MHA, NRRD, npy, ISQ, NIfTI-1, vol/longvol, PyHST's vol,
 /// PNG, BMP, a folder of TIFF, PNG or BMP slices, Zarr, HDF5 (if it was there when this was built),
-/// recognised by content, then by ending; RAW if `raw` is given. Sizes in a header are checked
-/// against the file before anything is allocated.
+/// recognized by content, then by ending (the table in open_image.cc, where a new format gets its
+/// line); RAW if `raw` is given. Sizes in a header are checked against the file before anything is
+/// allocated.
 /// @param dataset which array of a Zarr group or an HDF5 file; empty: the first scale of an
-/// OME-Zarr,
-///     or the only volume
+///     OME-Zarr, or the only volume
 /// @throw IoError, one line that names the file.
 std::unique_ptr<ImageReader> openImage(const std::string& path,
                                        const std::optional<RawLayout>& raw = std::nullopt,
@@ -38,7 +38,7 @@ bool looksLikeImage(const std::string& path);
 /// more).
 /// @param origin world position of the first voxel's centre in mm (in voxels, where there is no
 ///     voxel size), for the formats that have a place for it: MetaImage (Offset) and NRRD (space
-///     origin). The readers take nothing over: what they read begins at voxel (0,0,0).
+///     origin). The readers ignore it: what they read begins at voxel (0,0,0).
 /// @throw IoError; InvalidInput for another ending.
 std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInfo& info,
                                          const std::array<double, 3>& origin = {});

@@ -16,7 +16,7 @@ namespace {
 struct NumpyName {
   const char* name;  ///< kind and bytes
   SampleType type;
-  bool wide;
+  bool is64Bit;
 };
 constexpr NumpyName kNames[] = {
     {"u1", SampleType::uint8, false},   {"i1", SampleType::int8, false},
@@ -47,9 +47,9 @@ void narrow(const std::string& path, bool bigEndian, const void* from, size_t co
 
 void toSamples(const std::string& path, const StoredType& stored, const void* from, size_t count,
                void* samples) {
-  if (stored.wide && stored.type == SampleType::uint32)
+  if (stored.is64Bit && stored.type == SampleType::uint32)
     return narrow<uint64_t, uint32_t>(path, stored.bigEndian, from, count, samples);
-  if (stored.wide) return narrow<int64_t, int32_t>(path, stored.bigEndian, from, count, samples);
+  if (stored.is64Bit) return narrow<int64_t, int32_t>(path, stored.bigEndian, from, count, samples);
   if (from != samples) std::memcpy(samples, from, count * stored.bytes());
   if (stored.bigEndian) swapBytes(samples, count, stored.bytes());
 }
@@ -59,7 +59,7 @@ std::optional<StoredType> storedTypeFromNumpy(const std::string& name) {
     return std::nullopt;
   for (const NumpyName& known : kNames)
     if (name.compare(1, 2, known.name) == 0) {
-      const StoredType stored{known.type, known.wide, name[0] == '>'};
+      const StoredType stored{known.type, known.is64Bit, name[0] == '>'};
       if (name[0] == '|' && stored.bytes() > 1) return std::nullopt;
       return stored;
     }

@@ -15,10 +15,10 @@ namespace vdb_madf::detail {
 /// over as int32 or uint32; a value beyond is an error, never another value.
 struct StoredType {
   SampleType type = SampleType::uint8;  ///< as which they are handed over
-  bool wide = false;                    ///< int32 or uint32 of 64-bit integers
+  bool is64Bit = false;                 ///< int32 or uint32 of 64-bit integers
   bool bigEndian = false;
 
-  size_t bytes() const { return wide ? 8 : sampleSize(type); }
+  size_t bytes() const { return is64Bit ? 8 : sampleSize(type); }
 };
 
 /// From stored samples to samples in native byte order; the two may be the same memory.

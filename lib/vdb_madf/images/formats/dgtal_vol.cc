@@ -7,7 +7,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/key_value_header.h"
-#include "vdb_madf/images/formats/raw.h"
+#include "vdb_madf/images/detail/stored_samples.h"
 
 namespace vdb_madf::detail {
 
@@ -42,8 +42,8 @@ bool isDgtalHeader(const std::string& head) {
   return false;
 }
 
-std::unique_ptr<ImageReader> openDgtal(const std::string& path) {
-  auto file = std::make_unique<InputFile>(path);
+std::unique_ptr<ImageReader> openDgtal(std::unique_ptr<InputFile> file) {
+  const std::string path = file->path();
   const KeyValueHeader header = headerOf(*file);
   const bool longVoxels = header.has("Lvoxel-Size");
   if (!header.has("Version"))
@@ -64,7 +64,8 @@ std::unique_ptr<ImageReader> openDgtal(const std::string& path) {
   layout.offset = header.dataOffset();
   layout.deflated = version == 3;
   // What Lvoxel-Size says is 4 for eight bytes, too.
-  layout.wide = longVoxels && (layout.deflated || file->size() - layout.offset != imageBytes(info));
+  layout.is64Bit =
+      longVoxels && (layout.deflated || file->size() - layout.offset != imageBytes(info));
   return openSamples(path, info, std::move(file), layout);
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/images/image.h"
 
 namespace vdb_madf::detail {
@@ -14,7 +15,7 @@ namespace vdb_madf::detail {
 /// programs are told by the size of the file), version 2 (plain) and 3 (zlib), little-endian. They
 /// know no voxel size; the centre is passed over: voxels are numbered from 0. Not read: version 1.
 /// Source: VolReader, VolWriter, LongvolReader and LongvolWriter of DGtal.
-std::unique_ptr<ImageReader> openDgtal(const std::string& path);
+std::unique_ptr<ImageReader> openDgtal(std::unique_ptr<InputFile> file);
 
 /// True for the first bytes of such a file.
 bool isDgtalHeader(const std::string& head);

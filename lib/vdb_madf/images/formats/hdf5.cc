@@ -195,12 +195,12 @@ class Hdf5Reader : public ImageReader {
     const Quiet quiet;
     checkSlices(path_, info_, first, count);
     char* place = static_cast<char*>(samples);
-    if (!stored_.wide) return readStored(first, count, place);
+    if (!stored_.is64Bit) return readStored(first, count, place);
     const size_t slice = size_t(info_.size.x) * size_t(info_.size.y);
-    std::vector<char> wide(slice * stored_.bytes());
+    std::vector<char> piece(slice * stored_.bytes());
     for (int z = first; z < first + count; ++z, place += sliceBytes(info_)) {
-      readStored(z, 1, wide.data());
-      toSamples(path_, stored_, wide.data(), slice, place);
+      readStored(z, 1, piece.data());
+      toSamples(path_, stored_, piece.data(), slice, place);
     }
   }
 

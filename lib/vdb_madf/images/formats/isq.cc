@@ -9,7 +9,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/images/detail/header_checks.h"
-#include "vdb_madf/images/formats/raw.h"
+#include "vdb_madf/images/detail/stored_samples.h"
 
 namespace vdb_madf::detail {
 
@@ -45,8 +45,8 @@ bool isIsqHeader(const std::string& head) {
   return head.compare(0, 16, "CTDATA-HEADER_V1") == 0;
 }
 
-std::unique_ptr<ImageReader> openIsq(const std::string& path) {
-  auto file = std::make_unique<InputFile>(path);
+std::unique_ptr<ImageReader> openIsq(std::unique_ptr<InputFile> file) {
+  const std::string path = file->path();
   const std::string header = file->head(kBlock);
   if (!isIsqHeader(header) || header.size() < kBlock)
     throw IoError(path + ": is not a whole ISQ file");
@@ -64,7 +64,7 @@ std::unique_ptr<ImageReader> openIsq(const std::string& path) {
                   ", which cannot be: the ISQ header is damaged");
   SampleLayout layout;
   layout.offset = (uint64_t(blocks) + 1) * kBlock;
-  layout.padding = kBlock - 1;
+  layout.maxPadding = kBlock - 1;
   return openSamples(path, info, std::move(file), layout);
 }
 

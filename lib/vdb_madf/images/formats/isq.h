@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/images/image.h"
 
 namespace vdb_madf::detail {
@@ -14,7 +15,7 @@ namespace vdb_madf::detail {
 /// is the field of view over the voxels, which the header has in whole micrometres. Not read:
 /// projections (.rad), .aim. Source: layout of the header as in itk::ScancoImageIO (ITKIOScanco)
 /// and BoneJ's ISQReader.
-std::unique_ptr<ImageReader> openIsq(const std::string& path);
+std::unique_ptr<ImageReader> openIsq(std::unique_ptr<InputFile> file);
 
 /// True for the first bytes of such a file.
 bool isIsqHeader(const std::string& head);

@@ -14,7 +14,7 @@
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/key_value_header.h"
 #include "vdb_madf/images/detail/slice_counter.h"
-#include "vdb_madf/images/formats/raw.h"
+#include "vdb_madf/images/detail/stored_samples.h"
 
 namespace vdb_madf::detail {
 
@@ -125,8 +125,8 @@ bool isMetaHeader(const std::string& head) {
   return false;
 }
 
-std::unique_ptr<ImageReader> openMeta(const std::string& path) {
-  auto file = std::make_unique<InputFile>(path);
+std::unique_ptr<ImageReader> openMeta(std::unique_ptr<InputFile> file) {
+  const std::string path = file->path();
   const KeyValueHeader header(path, file->head(kMaxHeaderBytes), metaSyntax());
   const std::string dataFile = header.require("ElementDataFile");
   if (header.find("ObjectType").value_or("Image") != "Image") header.fail("ObjectType");

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/images/image.h"
 
 namespace vdb_madf::detail {
@@ -14,7 +15,7 @@ namespace vdb_madf::detail {
 /// unit; by ITK's convention it is millimetres. A spacing of exactly 1 is what programs write that
 /// know nothing better: it gives no physical size.
 /// Not read: text data, several channels, data spread over several files.
-std::unique_ptr<ImageReader> openMeta(const std::string& path);
+std::unique_ptr<ImageReader> openMeta(std::unique_ptr<InputFile> file);
 /// .mha: one file. .mhd: the data in a .raw file beside it, which is put in place first.
 std::unique_ptr<ImageWriter> createMeta(const std::string& path, const ImageInfo& info,
                                         const std::array<double, 3>& origin);

@@ -15,8 +15,8 @@
 #include "vdb_madf/files/detail/inflate_stream.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
+#include "vdb_madf/images/detail/stored_samples.h"
 #include "vdb_madf/images/detail/stored_type.h"
-#include "vdb_madf/images/formats/raw.h"
 
 namespace vdb_madf::detail {
 
@@ -82,13 +82,13 @@ class NiftiHeader {
 
   StoredType type() const {
     const int code = number<int16_t>(kDataType);
-    for (const auto& [known, type, wide] :
+    for (const auto& [known, type, is64Bit] :
          {Code{2, SampleType::uint8, false}, Code{4, SampleType::int16, false},
           Code{8, SampleType::int32, false}, Code{16, SampleType::float32, false},
           Code{64, SampleType::float64, false}, Code{256, SampleType::int8, false},
           Code{512, SampleType::uint16, false}, Code{768, SampleType::uint32, false},
           Code{1024, SampleType::int32, true}, Code{1280, SampleType::uint32, true}})
-      if (code == known) return {type, wide, bigEndian_};
+      if (code == known) return {type, is64Bit, bigEndian_};
     throw IoError(path_ + ": its data type " + std::to_string(code) +
                   " cannot be read: write integers or floats");
   }
@@ -114,7 +114,7 @@ class NiftiHeader {
   struct Code {
     int number;
     SampleType type;
-    bool wide;
+    bool is64Bit;
   };
   int dim(int axis) const { return number<int16_t>(kDim + 2 * size_t(axis)); }
   /// As a double that prints like the float: 0.0085 rather than 0.008500000461935997.
@@ -173,8 +173,8 @@ bool isNifti(const InputFile& file) {
   }
 }
 
-std::unique_ptr<ImageReader> openNifti(const std::string& path) {
-  auto file = std::make_unique<InputFile>(path);
+std::unique_ptr<ImageReader> openNifti(std::unique_ptr<InputFile> file) {
+  const std::string path = file->path();
   const NiftiHeader header(*file);
   const StoredType stored = header.type();
   ImageInfo info;
@@ -186,7 +186,7 @@ std::unique_ptr<ImageReader> openNifti(const std::string& path) {
   layout.deflated = isGzip(*file);
   (layout.deflated ? layout.skip : layout.offset) = header.offset();
   layout.bigEndian = stored.bigEndian;
-  layout.wide = stored.wide;
+  layout.is64Bit = stored.is64Bit;
   auto reader = openSamples(path, info, std::move(file), layout);
   // A slope of 0 means that there is none, by the definition of the format.
   const double slope = double(header.number<float>(kSlope)),

@@ -16,7 +16,7 @@ namespace vdb_madf::detail {
 /// its unit. Voxels stay where they are stored: the orientation in the patient is not applied.
 /// Not read: a header apart from its data (.hdr, .img), NIfTI-2, more than three dimensions.
 /// Source: nifti1.h, the official definition of the header, R. W. Cox, NIMH.
-std::unique_ptr<ImageReader> openNifti(const std::string& path);
+std::unique_ptr<ImageReader> openNifti(std::unique_ptr<InputFile> file);
 
 /// True if the file, or what is compressed in it, begins like one of NIfTI-1.
 bool isNifti(const InputFile& file);

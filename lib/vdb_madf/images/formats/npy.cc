@@ -9,8 +9,8 @@
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/images/detail/header_checks.h"
+#include "vdb_madf/images/detail/stored_samples.h"
 #include "vdb_madf/images/detail/stored_type.h"
-#include "vdb_madf/images/formats/raw.h"
 
 namespace vdb_madf::detail {
 
@@ -67,10 +67,10 @@ class Dictionary {
     return found;
   }
   std::string quotedText() {
-    const bool twofold = next('"');
-    if (!twofold && !next('\'')) fail();
+    const bool doubleQuoted = next('"');
+    if (!doubleQuoted && !next('\'')) fail();
     ++place_;
-    return upTo(twofold ? '"' : '\'');
+    return upTo(doubleQuoted ? '"' : '\'');
   }
   std::string value() {
     if (next('\'') || next('"')) return quotedText();
@@ -129,8 +129,8 @@ bool isNpyHeader(const std::string& head) {
   return head.compare(0, kMagic.size(), kMagic) == 0;
 }
 
-std::unique_ptr<ImageReader> openNpy(const std::string& path) {
-  auto file = std::make_unique<InputFile>(path);
+std::unique_ptr<ImageReader> openNpy(std::unique_ptr<InputFile> file) {
+  const std::string path = file->path();
   const auto [text, offset] = headerOf(*file);
   const Dictionary header(path, text);
   const std::string type = header.require("descr");
@@ -147,7 +147,7 @@ std::unique_ptr<ImageReader> openNpy(const std::string& path) {
   SampleLayout layout;
   layout.offset = offset;
   layout.bigEndian = stored->bigEndian;
-  layout.wide = stored->wide;
+  layout.is64Bit = stored->is64Bit;
   return openSamples(path, info, std::move(file), layout);
 }
 

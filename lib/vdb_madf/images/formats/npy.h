@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/images/image.h"
 
 namespace vdb_madf::detail {
@@ -14,7 +15,7 @@ namespace vdb_madf::detail {
 /// floats of 32 or 64 bits, either byte order. It knows no voxel size.
 /// Not read: Fortran order (its slices lie scattered over the file), other than three dimensions.
 /// Source: numpy.lib.format in NumPy's documentation.
-std::unique_ptr<ImageReader> openNpy(const std::string& path);
+std::unique_ptr<ImageReader> openNpy(std::unique_ptr<InputFile> file);
 /// Version 1, C order, little-endian: np.load(path)[z, y, x].
 std::unique_ptr<ImageWriter> createNpy(const std::string& path, const ImageInfo& info);
 

@@ -13,7 +13,7 @@
 #include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/key_value_header.h"
-#include "vdb_madf/images/formats/raw.h"
+#include "vdb_madf/images/detail/stored_samples.h"
 
 namespace vdb_madf::detail {
 
@@ -217,8 +217,8 @@ std::string headerText(const ImageInfo& info, const std::array<double, 3>& origi
 
 }  // namespace
 
-std::unique_ptr<ImageReader> openNrrd(const std::string& path) {
-  auto file = std::make_unique<InputFile>(path);
+std::unique_ptr<ImageReader> openNrrd(std::unique_ptr<InputFile> file) {
+  const std::string path = file->path();
   const KeyValueHeader header = headerOf(*file);
   ImageInfo info;
   info.format = "nrrd";

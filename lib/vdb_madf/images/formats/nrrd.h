@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/images/image.h"
 
 namespace vdb_madf::detail {
@@ -15,7 +16,7 @@ namespace vdb_madf::detail {
 /// none. A rotated frame is fine, a sheared one is an error.
 /// Not read: text and bzip2 encodings, other than three dimensions, data spread over several files.
 /// Source: "Definition of NRRD File Format", teem.sourceforge.net/nrrd/format.html.
-std::unique_ptr<ImageReader> openNrrd(const std::string& path);
+std::unique_ptr<ImageReader> openNrrd(std::unique_ptr<InputFile> file);
 /// One file, encoding raw. The spacing is written in millimetres, which is what ITK takes it for.
 std::unique_ptr<ImageWriter> createNrrd(const std::string& path, const ImageInfo& info,
                                         const std::array<double, 3>& origin);

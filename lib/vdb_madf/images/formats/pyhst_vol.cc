@@ -12,7 +12,7 @@
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/key_value_header.h"
-#include "vdb_madf/images/formats/raw.h"
+#include "vdb_madf/images/detail/stored_samples.h"
 
 namespace vdb_madf::detail {
 
@@ -76,23 +76,24 @@ bool isPyhstHeader(const std::string& head) {
   return head.compare(0, 7, "! PyHST") == 0 || head.compare(0, 5, "NUM_X") == 0;
 }
 
-std::unique_ptr<ImageReader> openPyhst(const std::string& path) {
+std::unique_ptr<ImageReader> openPyhst(std::unique_ptr<InputFile> file) {
+  const std::string path = file->path();
   const bool named = hasInfoEnding(path);
   const std::string infoPath = named ? path : path + kInfoEnding;
   std::error_code error;
   if (!named && !std::filesystem::exists(infoPath, error))
     throw IoError(path + ": is no DGtal file, and there is no " + infoPath +
                   " of PyHST beside it; if it is raw, give its size and type (--dims, --type)");
-  const InputFile infoFile = named ? InputFile(path) : InputFile(path, infoPath);
-  const KeyValueHeader header = headerOf(infoFile);
+  const auto infoFile = named ? std::move(file) : std::make_unique<InputFile>(path, infoPath);
+  const KeyValueHeader header = headerOf(*infoFile);
   ImageInfo info;
   info.format = "pyhst";
   info.size = checkedSize(path, {header.requireInteger("NUM_X"), header.requireInteger("NUM_Y"),
                                  header.requireInteger("NUM_Z")});
-  info.voxelSize = voxelSizeOf(infoFile.name(), header);
+  info.voxelSize = voxelSizeOf(infoFile->name(), header);
   auto data =
       named ? std::make_unique<InputFile>(path, path.substr(0, path.size() - kInfoEnding.size()))
-            : std::make_unique<InputFile>(path);
+            : std::move(file);
   info.type = typeOf(header).value_or(typeBySize(info, data->size()));
   SampleLayout layout;
   layout.bigEndian = isBigEndian(header);

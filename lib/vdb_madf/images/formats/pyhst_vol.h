@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/images/image.h"
 
 namespace vdb_madf::detail {
@@ -19,7 +20,7 @@ namespace vdb_madf::detail {
 /// (microns)") and by EDFTomoScan of the ESRF's tomoscan, which multiplies that key with 1e-6 m.
 /// Source of the keys: the mock volumes of the ESRF's tomwer (NUM_X, NUM_Y, NUM_Z, voxelSize,
 /// BYTEORDER, ValMin ...); HST_info and HST_write of pymicro (DATA_TYPE, names as of NumPy).
-std::unique_ptr<ImageReader> openPyhst(const std::string& path);
+std::unique_ptr<ImageReader> openPyhst(std::unique_ptr<InputFile> file);
 
 /// True for the first bytes of an .info file.
 bool isPyhstHeader(const std::string& head);

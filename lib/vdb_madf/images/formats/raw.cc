@@ -3,161 +3,30 @@
 
 #include "vdb_madf/images/formats/raw.h"
 
-#include <algorithm>
-#include <vector>
-
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/files/detail/inflate_stream.h"
-#include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/images/detail/header_checks.h"
-#include "vdb_madf/images/detail/slice_counter.h"
-#include "vdb_madf/images/detail/stored_type.h"
-#include "vdb_madf/images/open_image.h"
+#include "vdb_madf/images/detail/stored_samples.h"
 
 namespace vdb_madf::detail {
 
-namespace {
-
-std::string describe(const ImageInfo& info) {
-  return std::to_string(info.size.x) + " x " + std::to_string(info.size.y) + " x " +
-         std::to_string(info.size.z) + " " + sampleTypeName(info.type);
-}
-
-/// How many 64-bit integers are narrowed at a time.
-constexpr size_t kWideSamples = size_t(1) << 16;
-
-uint64_t storedBytes(const ImageInfo& info, const SampleLayout& layout) {
-  return layout.wide ? imageBytes(info) * 2 : imageBytes(info);
-}
-
-class SampleReader : public ImageReader {
- public:
-  SampleReader(const std::string& path, const ImageInfo& info, std::unique_ptr<InputFile> data,
-               const SampleLayout& layout, const std::vector<std::string>& more)
-      : data_(std::move(data)), layout_(layout), stored_{info.type, layout.wide, layout.bigEndian} {
-    path_ = path;
-    files_ = {path, data_->path()};
-    files_.insert(files_.end(), more.begin(), more.end());
-    info_ = info;
-  }
-
-  void read(int first, int count, void* samples) override {
-    checkSlices(path_, info_, first, count);
-    const uint64_t slice = uint64_t(info_.size.x) * uint64_t(info_.size.y);
-    moveTo(slice * uint64_t(first));
-    const size_t all = size_t(slice) * size_t(count);
-    if (layout_.wide) {
-      std::vector<char> wide(std::min(all, kWideSamples) * stored_.bytes());
-      char* place = static_cast<char*>(samples);
-      for (size_t left = all; left > 0;) {
-        const size_t some = std::min(left, kWideSamples);
-        readStored(wide.data(), some);
-        toSamples(path_, stored_, wide.data(), some, place);
-        place += some * sampleSize(info_.type);
-        left -= some;
-      }
-    } else {
-      readStored(samples, all);
-      toSamples(path_, stored_, samples, all, samples);
-    }
-    if (stream_ && first + count == info_.size.z) stream_->expectEnd();
-  }
-
- private:
-  void moveTo(uint64_t sample) {
-    if (layout_.deflated) {
-      if (!stream_ || sample < next_) {
-        stream_ = std::make_unique<InflateStream>(*data_, layout_.offset);
-        stream_->skip(layout_.skip);
-        next_ = 0;
-      }
-      stream_->skip((sample - next_) * stored_.bytes());
-    }
-    next_ = sample;
-  }
-
-  void readStored(void* to, size_t count) {
-    const size_t bytes = count * stored_.bytes();
-    if (stream_)
-      stream_->read(to, bytes);
-    else
-      data_->read(layout_.offset + next_ * stored_.bytes(), to, bytes);
-    next_ += count;
-  }
-
-  std::unique_ptr<InputFile> data_;
-  SampleLayout layout_;
-  StoredType stored_;
-  std::unique_ptr<InflateStream> stream_;
-  uint64_t next_ = 0;  ///< sample
-};
-
-class RawWriter : public ImageWriter {
- public:
-  RawWriter(const std::string& path, const ImageInfo& info, const std::string& header)
-      : counter_(path, info), out_(path) {
-    out_.text(header);
-  }
-  void write(int count, const void* samples) override { out_.bytes(samples, counter_.add(count)); }
-  void finish() override {
-    counter_.finish();
-    out_.commit();
-  }
-
- private:
-  SliceCounter counter_;
-  OutputStream out_;
-};
-
-}  // namespace
-
-std::unique_ptr<ImageReader> openSamples(const std::string& path, const ImageInfo& info,
-                                         std::unique_ptr<InputFile> data,
-                                         const SampleLayout& layout,
-                                         const std::vector<std::string>& more) {
-  SampleLayout place = layout;
-  const uint64_t needed = storedBytes(info, layout), size = data->size();
-  if (place.atEnd && needed <= size) place.offset = size - needed;
-  if (place.offset > size)
-    throw IoError(data->name() + ": has " + std::to_string(size) +
-                  " bytes, but its samples begin at " + std::to_string(place.offset));
-  const uint64_t held = size - place.offset;
-  if (place.deflated) {
-    const uint64_t most = held * InflateStream::kMaxExpansion;
-    if (place.skip > most || needed > most - place.skip)
-      throw IoError(data->name() + ": has " + std::to_string(held) +
-                    " compressed bytes, too few for " + describe(info));
-  } else if (held < needed || held - needed > place.padding) {
-    throw IoError(data->name() + ": has " + std::to_string(held) + " bytes of samples, but " +
-                  describe(info) + " takes " + std::to_string(needed) +
-                  ": check the size, the sample type and whether there is a header to skip");
-  }
-  return std::make_unique<SampleReader>(path, info, std::move(data), place, more);
-}
-
-std::unique_ptr<ImageReader> openRaw(const std::string& path, const RawLayout& layout) {
+std::unique_ptr<ImageReader> openRaw(std::unique_ptr<InputFile> file, const RawLayout& layout) {
+  const std::string path = file->path();
   ImageInfo info;
   info.size = checkedSize(path, {layout.size.x, layout.size.y, layout.size.z});
   info.type = layout.type;
   info.format = "raw";
   SampleLayout samples;
   samples.bigEndian = layout.bigEndian;
-  auto data = std::make_unique<InputFile>(path);
   const uint64_t needed = imageBytes(info);
   for (const SampleType other :
        {SampleType::uint8, SampleType::uint16, SampleType::int32, SampleType::float64})
-    if (data->size() != needed &&
-        data->size() == needed / sampleSize(info.type) * sampleSize(other))
-      throw IoError(path + ": has " + std::to_string(data->size()) + " bytes, but " +
+    if (file->size() != needed &&
+        file->size() == needed / sampleSize(info.type) * sampleSize(other))
+      throw IoError(path + ": has " + std::to_string(file->size()) + " bytes, but " +
                     describe(info) + " takes " + std::to_string(needed) +
                     ": the size fits samples of " + std::to_string(sampleSize(other)) +
                     " bytes: give another type");
-  return openSamples(path, info, std::move(data), samples);
-}
-
-std::unique_ptr<ImageWriter> createSamples(const std::string& path, const ImageInfo& info,
-                                           const std::string& header) {
-  return std::make_unique<RawWriter>(path, info, header);
+  return openSamples(path, info, std::move(file), samples);
 }
 
 std::unique_ptr<ImageWriter> createRaw(const std::string& path, const ImageInfo& info) {

@@ -5,7 +5,6 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/images/image.h"
@@ -13,31 +12,8 @@
 
 namespace vdb_madf::detail {
 
-/// Where the samples lie in a file and how they are coded.
-struct SampleLayout {
-  uint64_t offset = 0;
-  bool atEnd = false;     ///< the last bytes of the file, whatever comes before (not if deflated)
-  bool deflated = false;  ///< zlib or gzip from `offset` to the end of the file
-  uint64_t skip = 0;      ///< decompressed bytes before the first sample
-  bool bigEndian = false;
-  uint64_t padding = 0;  ///< at most so many bytes may follow the samples
-  bool wide = false;     ///< integers of 64 bits, handed over as the int32 or uint32 of the info
-};
-
-/// Samples of a binary file, for any header that describes them so. The file has to hold exactly
-/// what is asked for: a wrong size or type is an error, never a sheared picture.
-/// @param path the file the user named: info().path and the messages about the header
-/// @param more files that were read for the header, besides the path and the data
-std::unique_ptr<ImageReader> openSamples(const std::string& path, const ImageInfo& info,
-                                         std::unique_ptr<InputFile> data,
-                                         const SampleLayout& layout,
-                                         const std::vector<std::string>& more = {});
-
-/// One file: a header, then the samples, little-endian.
-std::unique_ptr<ImageWriter> createSamples(const std::string& path, const ImageInfo& info,
-                                           const std::string& header);
-
-std::unique_ptr<ImageReader> openRaw(const std::string& path, const RawLayout& layout);
+/// Samples without a header.
+std::unique_ptr<ImageReader> openRaw(std::unique_ptr<InputFile> file, const RawLayout& layout);
 std::unique_ptr<ImageWriter> createRaw(const std::string& path, const ImageInfo& info);
 
 }  // namespace vdb_madf::detail

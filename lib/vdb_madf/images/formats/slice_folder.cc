@@ -153,8 +153,8 @@ std::unique_ptr<ImageReader> openPictureFolder(const std::string& folder) {
   return stack;
 }
 
-std::unique_ptr<ImageReader> openPicture(const std::string& path) {
-  return std::make_unique<PictureStack>(path, std::vector<std::string>{path});
+std::unique_ptr<ImageReader> openPicture(std::unique_ptr<InputFile> file) {
+  return std::make_unique<PictureStack>(file->path(), std::vector<std::string>{file->path()});
 }
 
 }  // namespace vdb_madf::detail

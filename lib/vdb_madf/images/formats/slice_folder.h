@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vdb_madf/base/voxel_size.h"
+#include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/images/image.h"
 
 namespace vdb_madf::detail {
@@ -31,7 +32,7 @@ std::optional<VoxelSize> voxelSizeInLog(const std::string& folder);
 /// from a log; the resolution in the pictures is a printer's.
 std::unique_ptr<ImageReader> openPictureFolder(const std::string& folder);
 /// One PNG or BMP file: one slice.
-std::unique_ptr<ImageReader> openPicture(const std::string& path);
+std::unique_ptr<ImageReader> openPicture(std::unique_ptr<InputFile> file);
 /// The slices of such a folder. @throw IoError if it has both kinds.
 std::vector<std::string> picturesIn(const std::string& folder);
 

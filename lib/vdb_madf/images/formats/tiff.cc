@@ -60,20 +60,20 @@ void rejectHyperstack(const TiffFile& file, const KeyValueHeader& imageJ) {
 
 class TiffStack : public ImageReader {
  public:
-  explicit TiffStack(const std::string& path) : file_(path) {
-    path_ = path;
-    files_ = {path};
+  explicit TiffStack(std::unique_ptr<InputFile> file) : file_(std::move(file)) {
+    path_ = file_.path();
+    files_ = {path_};
     for (;; file_.next()) {
       if (file_.isSlice()) addPage();
       if (file_.isLast()) break;
     }
-    if (pages_.empty()) throw IoError(path + ": has no page that is a slice");
+    if (pages_.empty()) throw IoError(path_ + ": has no page that is a slice");
     file_.select(pages_.front());
     const KeyValueHeader imageJ = imageJDescription(file_);
     rejectHyperstack(file_, imageJ);
     int64_t slices = int64_t(pages_.size());
     if (slices == 1) slices = slicesWithoutPages(imageJ);
-    info_.size = checkedSize(path, {page_.width, page_.height, slices});
+    info_.size = checkedSize(path_, {page_.width, page_.height, slices});
     info_.type = page_.type;
     info_.voxelSize = calibration(file_, imageJ, info_.size.z);
     info_.format = "tiff";
@@ -183,8 +183,8 @@ std::vector<std::string> tiffFilesIn(const std::string& folder) {
   return slicesIn(folder, {".tif", ".tiff"});
 }
 
-std::unique_ptr<ImageReader> openTiff(const std::string& path) {
-  return std::make_unique<TiffStack>(path);
+std::unique_ptr<ImageReader> openTiff(std::unique_ptr<InputFile> file) {
+  return std::make_unique<TiffStack>(std::move(file));
 }
 
 std::unique_ptr<ImageReader> openTiffFolder(const std::string& path) {

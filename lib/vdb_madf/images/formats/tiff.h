@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/images/image.h"
 
 namespace vdb_madf::detail {
@@ -21,7 +22,7 @@ namespace vdb_madf::detail {
 
 /// Each page is a slice; or, as ImageJ writes stacks of 4 GB and more, one page that is followed by
 /// the others' samples.
-std::unique_ptr<ImageReader> openTiff(const std::string& path);
+std::unique_ptr<ImageReader> openTiff(std::unique_ptr<InputFile> file);
 
 /// Each .tif or .tiff file of the folder is a slice, ordered by name with numbers compared as
 /// numbers: slice2 comes before slice10. Files that start with a dot are passed over.

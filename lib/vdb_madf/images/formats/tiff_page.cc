@@ -70,8 +70,10 @@ void expandBits(const unsigned char* bits, size_t count, bool invert, char* byte
 
 }  // namespace
 
-TiffFile::TiffFile(const std::string& path)
-    : data_(path), tiff_(data_, int64_t(data_.size()) + kCoderAllocation) {}
+TiffFile::TiffFile(std::unique_ptr<InputFile> file)
+    : data_(std::move(file)), tiff_(*data_, int64_t(data_->size()) + kCoderAllocation) {}
+
+TiffFile::TiffFile(const std::string& path) : TiffFile(std::make_unique<InputFile>(path)) {}
 
 bool TiffFile::isSlice() const {
   return (tiff_.field<uint32_t>(TIFFTAG_SUBFILETYPE, 0) &
@@ -132,19 +134,19 @@ void TiffFile::checkExtent(const TiffPage& page) const {
   for (uint32_t i = 0; i < pieces; ++i) {
     const uint64_t offset = TIFFGetStrileOffset(tiff_.get(), i);
     const uint64_t bytes = TIFFGetStrileByteCount(tiff_.get(), i);
-    if (bytes == 0 || offset > data_.size() || bytes > data_.size() - offset)
+    if (bytes == 0 || offset > data_->size() || bytes > data_->size() - offset)
       tiff_.fail("is truncated or damaged: the samples of a page lie outside the file");
     stored += bytes;
     // Pieces that share their bytes could make a large image of a small file.
-    if (stored > data_.size()) tiff_.fail("is damaged: the parts of a page overlap");
+    if (stored > data_->size()) tiff_.fail("is damaged: the parts of a page overlap");
   }
   const uint64_t packed = (uint64_t(page.width) * page.bits + 7) / 8 * page.height;
   uint64_t needed = packed;
   if (page.tiled) {
     needed = uint64_t(TIFFTileSize64(tiff_.get())) * pieces;
-    const uint64_t wide = tiff_.field<uint32_t>(TIFFTAG_TILEWIDTH, 0);
-    const uint64_t high = tiff_.field<uint32_t>(TIFFTAG_TILELENGTH, 0);
-    if (wide < 1 || high < 1 || wide > kLargestSize || high > kLargestSize ||
+    const uint64_t tileWidth = tiff_.field<uint32_t>(TIFFTAG_TILEWIDTH, 0);
+    const uint64_t tileHeight = tiff_.field<uint32_t>(TIFFTAG_TILELENGTH, 0);
+    if (tileWidth < 1 || tileHeight < 1 || tileWidth > kLargestSize || tileHeight > kLargestSize ||
         tiff_.field<uint32_t>(TIFFTAG_TILEDEPTH, 1) != 1)
       tiff_.fail("has tiles of an impossible size");
   }
@@ -189,14 +191,14 @@ void TiffFile::readPlain(const TiffPage& page, char* samples) const {
     if (TIFFGetStrileByteCount(tiff_.get(), i) < bytes)
       tiff_.fail("is truncated or damaged: a strip is too short");
     if (offset != begin + pending) {
-      data_.read(begin, samples + done, size_t(pending));
+      data_->read(begin, samples + done, size_t(pending));
       done += pending;
       begin = offset;
       pending = 0;
     }
     pending += bytes;
   }
-  data_.read(begin, samples + done, size_t(pending));
+  data_->read(begin, samples + done, size_t(pending));
   if (done + pending != page.bytes()) tiff_.fail("is damaged: strips are missing");
   if (page.swapped) swapBytes(samples, size_t(page.width) * page.height, sampleSize(page.type));
 }
@@ -224,20 +226,20 @@ void TiffFile::decodeStrips(const TiffPage& page, char* samples) const {
 }
 
 void TiffFile::decodeTiles(const TiffPage& page, char* samples) const {
-  const uint32_t wide = tiff_.field<uint32_t>(TIFFTAG_TILEWIDTH, 1);
-  const uint32_t high = tiff_.field<uint32_t>(TIFFTAG_TILELENGTH, 1);
-  const size_t rowBytes = (size_t(wide) * page.bits + 7) / 8;
+  const uint32_t tileWidth = tiff_.field<uint32_t>(TIFFTAG_TILEWIDTH, 1);
+  const uint32_t tileHeight = tiff_.field<uint32_t>(TIFFTAG_TILELENGTH, 1);
+  const size_t rowBytes = (size_t(tileWidth) * page.bits + 7) / 8;
   const size_t sample = sampleSize(page.type);
-  const tmsize_t tileBytes = tmsize_t(rowBytes * high);
+  const tmsize_t tileBytes = tmsize_t(rowBytes * tileHeight);
   const std::unique_ptr<char[]> tile(new char[size_t(tileBytes)]);
-  for (uint32_t y = 0; y < page.height; y += high)
-    for (uint32_t x = 0; x < page.width; x += wide) {
+  for (uint32_t y = 0; y < page.height; y += tileHeight)
+    for (uint32_t x = 0; x < page.width; x += tileWidth) {
       const uint32_t number = TIFFComputeTile(tiff_.get(), x, y, 0, 0);
       if (TIFFReadEncodedTile(tiff_.get(), number, tile.get(), tileBytes) != tileBytes)
         tiff_.fail("is damaged: a tile cannot be decoded");
       if (isFax(page.compression) && tiff_.warned()) tiff_.fail("is damaged: fax rows are broken");
-      const size_t columns = std::min(wide, page.width - x);
-      for (uint32_t row = 0; row < std::min(high, page.height - y); ++row) {
+      const size_t columns = std::min(tileWidth, page.width - x);
+      for (uint32_t row = 0; row < std::min(tileHeight, page.height - y); ++row) {
         const char* from = tile.get() + rowBytes * row;
         char* to = samples + (size_t(y + row) * page.width + x) * sample;
         if (page.bits == 1)

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -33,9 +34,10 @@ struct TiffPage {
 /// A TIFF file, page by page. Nothing is decoded before decode() is called.
 class TiffFile {
  public:
+  explicit TiffFile(std::unique_ptr<InputFile> file);
   explicit TiffFile(const std::string& path);
 
-  const std::string& path() const { return data_.name(); }
+  const std::string& path() const { return data_->name(); }
   /// The current page. Its strips and tiles lie within the file and can hold what it claims.
   /// @throw IoError if it is not a grey image of a known type.
   TiffPage page() const;
@@ -50,7 +52,7 @@ class TiffFile {
 
   /// Plain pages only: the place of the samples if they lie in one piece.
   std::optional<uint64_t> contiguousOffset(const TiffPage& page) const;
-  const InputFile& data() const { return data_; }
+  const InputFile& data() const { return *data_; }
   const TiffHandle& handle() const { return tiff_; }
 
  private:
@@ -59,7 +61,7 @@ class TiffFile {
   void decodeStrips(const TiffPage& page, char* samples) const;
   void decodeTiles(const TiffPage& page, char* samples) const;
 
-  InputFile data_;
+  std::unique_ptr<InputFile> data_;
   TiffHandle tiff_;
 };
 
