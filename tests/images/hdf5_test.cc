@@ -141,7 +141,8 @@ TEST_CASE("image_hdf5: the dataset is the only volume, or is named", "[image_hdf
   file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
   addHdf5(file, "second", volume, bytes.data());
   H5Fclose(file);
-  CHECK_THROWS_WITH(openImage(path), Contains("--dataset") && Contains("'g/v', 'second'"));
+  CHECK_THROWS_WITH(openImage(path),
+                    Contains("choose one of its datasets") && Contains("'g/v', 'second'"));
   CHECK(readAll(*openImage(path, {}, "second")) == bytes);
 
   const auto refused = [&](const Hdf5Layout& layout, const std::string& why, const void* samples) {

@@ -160,7 +160,7 @@ TEST_CASE("image_zarr: OME-Zarr gives the first scale and its voxel size", "[ima
   write(omeAttributes("", 8.5));
   CHECK_FALSE(openImage(path)->info().voxelSize);
   write("{}");
-  CHECK_THROWS_WITH(openImage(path), Contains("--dataset") && Contains("'0', '1'"));
+  CHECK_THROWS_WITH(openImage(path), Contains("choose one of its arrays") && Contains("'0', '1'"));
   CHECK(openImage(path, {}, "1")->info().size == ImageSize{2, 2, 2});
   write("{\"multiscales\": [{\"datasets\": [{\"path\": \"1\"}]}]}");  // before version 0.4
   CHECK(openImage(path)->info().size == ImageSize{2, 2, 2});
@@ -190,7 +190,7 @@ TEST_CASE("image_zarr: what cannot be read says why", "[image_zarr]") {
   refused("\"|u1\"", "[[\"a\", \"|u1\"]]", "type");
   refused("[9, 7, 11]", "[2, 9, 7, 11]", "2 volumes");
   refused("[9, 7, 11]", "[1, 9, 7, 11]", "numbers of axes");
-  refused("[9, 7, 11]", "[7, 11]", "--dataset");
+  refused("[9, 7, 11]", "[7, 11]", "choose another array");
   refused("[9, 7, 11]", "[9, 0, 11]", "not within");
   refused("[9, 7, 11]", "[9, 7, 1e9]", "not within");
   refused("[9, 7, 11]", "[9, 7, -1]", "not within");
@@ -220,5 +220,5 @@ TEST_CASE("image_zarr: what cannot be read says why", "[image_zarr]") {
   CHECK(looksLikeImage(path));
   CHECK_THROWS_WITH(openImage(path), Contains("version 3"));
   writeFile(folder / "a.npy", "x");
-  CHECK_THROWS_WITH(openImage(folder / "a.npy", {}, "0"), Contains("--dataset"));
+  CHECK_THROWS_WITH(openImage(folder / "a.npy", {}, "0"), Contains("no datasets"));
 }

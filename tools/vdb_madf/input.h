@@ -77,7 +77,7 @@ auto naming(const std::string& path, const Work& work) -> decltype(work()) {
   } catch (const InvalidInput& error) {
     const std::string what = error.what();
     if (what.compare(0, path.size(), path) == 0) throw;
-    throw InvalidInput(path + ": " + what);
+    throw InvalidInput(path + ": " + what, error.hint());
   }
 }
 

@@ -40,6 +40,27 @@ int fail(int code, std::string what) {
   return code;
 }
 
+/// How the user of the command does what an error of the library hints at.
+const char* optionFor(Hint hint) {
+  switch (hint) {
+    case Hint::none:
+      break;
+    case Hint::rawLayout:
+      return " (--dims, --type)";
+    case Hint::dataset:
+      return " (--dataset)";
+    case Hint::voxelSize:
+      return " (--voxel-size)";
+    case Hint::memoryLimit:
+      return " (--max-memory)";
+    case Hint::manifolds:
+      return " with --keep manifold";
+    case Hint::smallerLabels:
+      return " (export --as lod)";
+  }
+  return "";
+}
+
 /// An unset variable of a script must not turn `--phase "$PHASE"` into the default.
 void rejectEmptyArguments(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
@@ -130,6 +151,10 @@ int main(int argc, char** argv) {
     return fail(kWrongUsage, error.what());
   } catch (const vdb_madf::Interrupted&) {
     return fail(kInterrupted, "interrupted");
+  } catch (const vdb_madf::InvalidInput& error) {
+    return fail(kFailed, std::string(error.what()) + optionFor(error.hint()));
+  } catch (const vdb_madf::IoError& error) {
+    return fail(kFailed, std::string(error.what()) + optionFor(error.hint()));
   } catch (const std::bad_alloc&) {
     return fail(kFailed,
                 "out of memory: crop or coarsen the volume, or use a machine with more memory");

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "vdb_madf/files/detail/buffered_output.h"
+#include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/measure/columns.h"
 
 namespace vdb_madf {
@@ -128,7 +128,7 @@ std::vector<std::string> MeasurementTables::paths(const std::string& folder) {
 
 MeasurementTables::MeasurementTables(const std::string& folder) : folder_(folder) {
   for (const std::string& path : paths(folder))
-    files_.push_back(std::make_unique<detail::BufferedOutput>(path));
+    files_.push_back(std::make_unique<detail::OutputStream>(path));
 }
 
 MeasurementTables::~MeasurementTables() = default;
@@ -140,7 +140,7 @@ void MeasurementTables::write(const Measurements& measurements, double iceDensit
   files_.at(2)->text(sampleJson(measurements, unit, iceDensity).dump(2) + "\n");
   for (const auto& file : files_) file->close();
   for (const auto& file : files_) {
-    file->commitClosed();
+    file->commit();
     folder_.keep();
   }
 }

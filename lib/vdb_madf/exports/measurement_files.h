@@ -13,7 +13,7 @@
 namespace vdb_madf {
 
 namespace detail {
-class BufferedOutput;
+class OutputStream;
 }
 
 constexpr double kIceDensity = 917;  // kg/m^3, at 0 degrees Celsius
@@ -40,7 +40,7 @@ class MeasurementTables {
 
  private:
   OutputFolder folder_;  // goes after the files
-  std::vector<std::unique_ptr<detail::BufferedOutput>> files_;
+  std::vector<std::unique_ptr<detail::OutputStream>> files_;
 };
 
 }  // namespace vdb_madf

@@ -46,7 +46,7 @@ struct FileFormat {
 
 void refuseDataset(const std::string& path, const std::string& dataset) {
   if (!dataset.empty())
-    throw IoError(path + ": has no datasets to choose from; leave out the choice (--dataset)");
+    throw IoError(path + ": has no datasets to choose from; leave out the choice", Hint::dataset);
 }
 
 bool begins(const std::string& head, const std::string& magic) {
@@ -100,7 +100,7 @@ std::unique_ptr<ImageReader> openHdf5File(std::unique_ptr<detail::InputFile> fil
 }
 
 std::unique_ptr<ImageReader> refuseRaw(std::unique_ptr<detail::InputFile> file) {
-  throw IoError(file->path() + ": a raw file needs its size and sample type (--dims, --type)");
+  throw IoError(file->path() + ": a raw file needs its size and sample type", Hint::rawLayout);
 }
 
 /// The formats of files. The first that recognizes the content is taken, else the first with the
@@ -185,9 +185,8 @@ std::unique_ptr<ImageReader> openImage(const std::string& path, const std::optio
   if (format && format->open) return format->open(std::move(file), dataset);
   refuseDataset(path, dataset);
   if (format) throw IoError(path + ": is a VDB file, not an image");
-  throw IoError(
-      path +
-      ": is no image of a known format; if it is raw, give its size and type (--dims, --type)");
+  throw IoError(path + ": is no image of a known format; if it is raw, give its size and type",
+                Hint::rawLayout);
 }
 
 bool looksLikeImage(const std::string& path) {

@@ -23,8 +23,9 @@ Int32Grid::Ptr remerge(const Int32Grid& manifold, const MergeOptions& options,
   checkMergeOptions(options);
   const std::optional<ManifoldGraph> graph = vdb_madf::storedGraph(manifold);
   if (!graph)
-    throw InvalidInput("grid '" + manifold.getName() +
-                       "' carries no graph of manifolds: segment again with --keep manifold");
+    throw InvalidInput(
+        "grid '" + manifold.getName() + "' carries no graph of manifolds: segment again",
+        Hint::manifolds);
   const Merging merging = merge(*graph, options);
 
   auto grain = manifold.deepCopy();

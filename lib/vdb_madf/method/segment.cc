@@ -29,8 +29,9 @@ void checkMemory(const MaskGrid& object, const SegmentOptions& options) {
   const int64_t needed = segmentMemory(objectSize(object), options);
   if (needed <= options.maxMemory) return;
   throw InvalidInput("segmenting needs about " + std::to_string(needed) + " bytes of memory, and " +
-                     std::to_string(options.maxMemory) +
-                     " may be used: crop or coarsen the volume, or allow more (--max-memory)");
+                         std::to_string(options.maxMemory) +
+                         " may be used: crop or coarsen the volume, or allow more",
+                     Hint::memoryLimit);
 }
 
 std::vector<MedialBall> listBalls(const LeafIndex& index, const VoxelSet& balls,

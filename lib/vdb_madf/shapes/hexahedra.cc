@@ -80,8 +80,9 @@ Hexahedra::Hexahedra(const Int32Grid& labels, Interrupter* interrupter) {
   const auto count = size_t(voxels.voxelCount());
   if (count > kMaxHexahedra)
     throw InvalidInput("one element for each of " + std::to_string(count) +
-                       " voxels is too much (at most " + std::to_string(kMaxHexahedra) +
-                       "): make the labels smaller first (export --as lod)");
+                           " voxels is too much (at most " + std::to_string(kMaxHexahedra) +
+                           "): make the labels smaller first",
+                       Hint::smallerLabels);
   corners_ = cornersOf(voxels);
   around_.resize(voxels.leafCount());
   size_t corner = 0;

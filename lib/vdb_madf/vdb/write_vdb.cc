@@ -11,7 +11,7 @@
 #include <ostream>
 
 #include "vdb_madf/files/detail/file_buffer.h"
-#include "vdb_madf/files/output_file.h"
+#include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/method/initialize.h"
 #include "vdb_madf/vdb/detail/uuid_place.h"
 

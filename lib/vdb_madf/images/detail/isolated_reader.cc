@@ -64,6 +64,7 @@ struct Request {
 /// What precedes samples, a description or a message.
 struct Reply {
   enum Kind { good, ioError, invalidInput } kind;
+  Hint hint;
   uint64_t bytes;
 };
 
@@ -75,8 +76,8 @@ struct Description {
   char format[16];
 };
 
-bool reply(const Line& line, Reply::Kind kind, const void* bytes, uint64_t count) {
-  const Reply head{kind, count};
+bool reply(const Line& line, Reply::Kind kind, Hint hint, const void* bytes, uint64_t count) {
+  const Reply head{kind, hint, count};
   return line.send(&head, sizeof head) && line.send(bytes, size_t(count));
 }
 
@@ -85,17 +86,20 @@ template <typename Work>
 bool handOver(const Line& line, const Work& work) {
   std::string message;
   Reply::Kind kind = Reply::ioError;
+  Hint hint = Hint::none;
   try {
     return work();
   } catch (const InvalidInput& error) {
     kind = Reply::invalidInput;
     message = error.what();
+    hint = error.hint();
   } catch (const IoError& error) {
     message = error.what();
+    hint = error.hint();
   } catch (const std::exception&) {  // out of memory, most likely
     return false;
   }
-  return reply(line, kind, message.data(), message.size());
+  return reply(line, kind, hint, message.data(), message.size());
 }
 
 /// The other process: a crash is silent and leaves nothing behind; signals are for the first one.
@@ -117,14 +121,14 @@ bool handOver(const Line& line, const Work& work) {
     description.type = info.type;
     description.metres = info.voxelSize ? info.voxelSize->metres : 0;
     std::strncpy(description.format, info.format.c_str(), sizeof description.format - 1);
-    return reply(line, Reply::good, &description, sizeof description);
+    return reply(line, Reply::good, Hint::none, &description, sizeof description);
   });
   std::vector<char> samples;
   for (Request request{}; going && reader && line.receive(&request, sizeof request);)
     going = handOver(line, [&] {
       samples.resize(size_t(sliceBytes(reader->info())) * size_t(request.count));
       reader->read(request.first, request.count, samples.data());
-      return reply(line, Reply::good, samples.data(), samples.size());
+      return reply(line, Reply::good, Hint::none, samples.data(), samples.size());
     });
   _exit(0);
 }
@@ -184,8 +188,8 @@ class IsolatedReader : public ImageReader {
     }
     std::string message(size_t(std::min<uint64_t>(head.bytes, 1 << 16)), '\0');
     if (!line_->receive(message.data(), message.size())) failToAnswer();
-    if (head.kind == Reply::invalidInput) throw InvalidInput(message);
-    throw IoError(message);
+    if (head.kind == Reply::invalidInput) throw InvalidInput(message, head.hint);
+    throw IoError(message, head.hint);
   }
 
   void end() {

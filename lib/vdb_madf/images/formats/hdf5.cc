@@ -130,15 +130,16 @@ herr_t collectVolume(hid_t group, const char* name, const H5L_info_t*, void* lis
 std::string onlyVolume(const std::string& path, hid_t file) {
   std::vector<std::string> volumes;
   if (H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, collectVolume, &volumes) < 0)
-    throw IoError(path + ": its list of datasets is damaged: name one (--dataset)");
+    throw IoError(path + ": its list of datasets is damaged: name one", Hint::dataset);
   if (volumes.size() == 1) return volumes[0];
   if (volumes.empty())
     throw IoError(path + ": holds no dataset of three dimensions with numbers in it");
   std::string list;
   for (size_t i = 0; i < volumes.size() && i < kMaxListed; ++i)
     list += (i ? ", " : "") + detail::quoted(volumes[i]);
-  throw IoError(path + ": choose one of its datasets (--dataset): " + list +
-                (volumes.size() > kMaxListed ? " ..." : ""));
+  throw IoError(
+      path + ": choose one of its datasets: " + list + (volumes.size() > kMaxListed ? " ..." : ""),
+      Hint::dataset);
 }
 
 ImageSize sizeOf(const std::string& path, const std::string& name,

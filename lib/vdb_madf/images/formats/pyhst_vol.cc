@@ -83,7 +83,8 @@ std::unique_ptr<ImageReader> openPyhst(std::unique_ptr<InputFile> file) {
   std::error_code error;
   if (!named && !std::filesystem::exists(infoPath, error))
     throw IoError(path + ": is no DGtal file, and there is no " + infoPath +
-                  " of PyHST beside it; if it is raw, give its size and type (--dims, --type)");
+                      " of PyHST beside it; if it is raw, give its size and type",
+                  Hint::rawLayout);
   const auto infoFile = named ? std::move(file) : std::make_unique<InputFile>(path, infoPath);
   const KeyValueHeader header = headerOf(*infoFile);
   ImageInfo info;

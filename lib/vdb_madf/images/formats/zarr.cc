@@ -69,7 +69,8 @@ std::optional<VoxelSize> voxelSizeOf(const std::string& name, const Json& image,
   std::vector<double> scale(axesCount, 1.0);
   if (!applyScales(transformations, scale) ||
       !applyScales(member(image, "coordinateTransformations"), scale))
-    throw IoError(name + ": its scales cannot be read: give --voxel-size and correct .zattrs");
+    throw IoError(name + ": its scales cannot be read: correct .zattrs, or give the voxel size",
+                  Hint::voxelSize);
   std::array<double, 3> edges;
   std::array<std::optional<double>, 3> units;
   for (size_t i = 0; i < 3; ++i) {  // x, y, z
@@ -97,11 +98,10 @@ std::string chooseArray(const std::string& path, const Json& image) {
   for (size_t i = 0; i < arrays.size() && i < 8; ++i)
     list += (i ? ", " : "") + detail::quoted(arrays[i]);
   if (arrays.empty())
-    throw IoError(path +
-                  ": this Zarr group holds no array itself: name one of a group in it "
-                  "(--dataset)");
-  throw IoError(path + ": choose one of its arrays (--dataset): " + list +
-                (arrays.size() > 8 ? " ..." : ""));
+    throw IoError(path + ": this Zarr group holds no array itself: name one of a group in it",
+                  Hint::dataset);
+  throw IoError(path + ": choose one of its arrays: " + list + (arrays.size() > 8 ? " ..." : ""),
+                Hint::dataset);
 }
 
 class ZarrReader : public ImageReader {

@@ -36,7 +36,8 @@ ImageSize lastThree(const std::string& name, const char* key, const Json& shape)
   std::string text = shape.dump(-1, ' ', true);
   if (!shape.is_array() || shape.size() < 3 || shape.size() > 8)
     throw IoError(name + ": its " + key + " " + detail::quoted(text) +
-                  " is not that of a volume: choose another array (--dataset)");
+                      " is not that of a volume: choose another array",
+                  Hint::dataset);
   ImageSize last;
   for (size_t i = 0; i < shape.size(); ++i) {
     const Json& length = shape[i];
