@@ -27,7 +27,7 @@ std::optional<VoxelSize> cubicVoxelSize(const std::string& path,
                                         const std::array<double, 3>& spacing,
                                         std::optional<double> unitsPerMetre);
 
-/// @throw IoError unless each size is in 1 .. 2^20.
+/// @throw IoError unless each size is in 1 .. kMaxImageSide.
 ImageSize checkedSize(const std::string& path, const std::vector<int64_t>& size);
 
 inline uint64_t sliceBytes(const ImageInfo& info) {

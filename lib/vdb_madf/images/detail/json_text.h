@@ -16,10 +16,10 @@ using Json = nlohmann::json;
 
 /// The object in a JSON file. @throw IoError
 inline Json jsonObject(const std::string& name, const std::string& path) {
-  constexpr uint64_t kLongest = uint64_t(1) << 22;
+  constexpr uint64_t kMaxBytes = uint64_t(1) << 22;
   const InputFile file(name, path);
-  if (file.size() > kLongest) throw IoError(file.name() + ": is too long for a description");
-  Json json = Json::parse(file.head(kLongest), nullptr, false);
+  if (file.size() > kMaxBytes) throw IoError(file.name() + ": is too long for a description");
+  Json json = Json::parse(file.head(kMaxBytes), nullptr, false);
   if (!json.is_object()) throw IoError(file.name() + ": is no JSON object");
   return json;
 }

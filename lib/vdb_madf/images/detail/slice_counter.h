@@ -6,6 +6,7 @@
 #include <string>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/limits.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/image.h"
 
@@ -17,8 +18,9 @@ class SliceCounter {
   /// @throw InvalidInput for sizes that no image has.
   SliceCounter(const std::string& path, const ImageInfo& info) : path_(path), info_(info) {
     for (int axis = 0; axis < 3; ++axis)
-      if (info.size[axis] < 1 || info.size[axis] > (1 << 20))
-        throw InvalidInput(path + ": an image is 1 .. 1048576 voxels a side");
+      if (info.size[axis] < 1 || info.size[axis] > kMaxImageSide)
+        throw InvalidInput(path + ": an image is 1 .. " + std::to_string(kMaxImageSide) +
+                           " voxels a side");
   }
 
   const ImageInfo& info() const { return info_; }

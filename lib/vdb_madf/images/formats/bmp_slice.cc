@@ -103,12 +103,12 @@ bool isBmpHeader(const std::string& head) {
   return headerSize == kCoreHeader || (headerSize >= kInfoHeader && headerSize <= 1024);
 }
 
-Picture bmpHeader(const InputFile& file) {
+PictureHeader bmpHeader(const InputFile& file) {
   const BmpLayout layout = layoutOf(file);
   return {layout.width, layout.height, SampleType::uint8};
 }
 
-void readBmp(const InputFile& file, const Picture& picture, void* samples) {
+void readBmp(const InputFile& file, const PictureHeader& picture, void* samples) {
   const BmpLayout layout = layoutOf(file);
   if (layout.width != picture.width || layout.height != picture.height)
     throw IoError(file.name() + ": changed while it was read");

@@ -4,14 +4,14 @@
 #include "vdb_madf/images/formats/picture_slice.h"
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/limits.h"
 
 namespace vdb_madf::detail {
 
 void checkPictureSize(const std::string& name, int64_t width, int64_t height) {
-  constexpr int64_t kLargest = int64_t(1) << 20;
-  if (width < 1 || height < 1 || width > kLargest || height > kLargest)
+  if (width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide)
     throw IoError(name + ": size " + std::to_string(width) + " x " + std::to_string(height) +
-                  " is not within 1 .. " + std::to_string(kLargest) + " a side");
+                  " is not within 1 .. " + std::to_string(kMaxImageSide) + " a side");
 }
 
 void greyOfColours(const std::string& name, const unsigned char* pixels, size_t bytesPerPixel,

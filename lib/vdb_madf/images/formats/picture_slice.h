@@ -11,12 +11,12 @@
 namespace vdb_madf::detail {
 
 /// What the header of a PNG or BMP file says. Checked: the file can hold what it claims.
-struct Picture {
-  int64_t width = 0, height = 0;  ///< 1 .. 2^20
+struct PictureHeader {
+  int64_t width = 0, height = 0;  ///< each 1 .. kMaxImageSide
   SampleType type = SampleType::uint8;
 
   uint64_t samples() const { return uint64_t(width) * uint64_t(height); }
-  bool sameAs(const Picture& other) const {
+  bool sameAs(const PictureHeader& other) const {
     return width == other.width && height == other.height && type == other.type;
   }
   std::string text() const {
@@ -30,19 +30,19 @@ struct Picture {
 
 /// PNG of 1, 2, 4, 8 (uint8) or 16 bits (uint16), interlaced or not.
 /// Source: Portable Network Graphics specification; decoded by libpng.
-Picture pngHeader(const InputFile& file);
-void readPng(const InputFile& file, const Picture& picture, void* samples);
+PictureHeader pngHeader(const InputFile& file);
+void readPng(const InputFile& file, const PictureHeader& picture, void* samples);
 
 /// BMP of 1, 4, 8, 24 or 32 bits, uncompressed, either row order. Of two colours the brighter is 1.
 /// Source: BITMAPFILEHEADER, BITMAPCOREHEADER and BITMAPINFOHEADER of the Windows documentation.
-Picture bmpHeader(const InputFile& file);
-void readBmp(const InputFile& file, const Picture& picture, void* samples);
+PictureHeader bmpHeader(const InputFile& file);
+void readBmp(const InputFile& file, const PictureHeader& picture, void* samples);
 
 /// True for the first bytes of such a file.
 bool isPngHeader(const std::string& head);
 bool isBmpHeader(const std::string& head);
 
-/// @throw IoError unless each side is in 1 .. 2^20.
+/// @throw IoError unless each side is in 1 .. kMaxImageSide.
 void checkPictureSize(const std::string& name, int64_t width, int64_t height);
 /// Grey samples of `count` pixels of three or four bytes, of which the first three have to be
 /// equal.

@@ -94,9 +94,9 @@ bool readRows(Decoder& decoder, png_bytepp rows) {
   throw IoError(source.file.name() + ": is damaged or no PNG file: " + source.error);
 }
 
-Picture pictureOf(const Source& source, const Decoder& decoder) {
+PictureHeader pictureOf(const Source& source, const Decoder& decoder) {
   const std::string& name = source.file.name();
-  Picture picture;
+  PictureHeader picture;
   picture.width = png_get_image_width(decoder.png, decoder.info);
   picture.height = png_get_image_height(decoder.png, decoder.info);
   checkPictureSize(name, picture.width, picture.height);
@@ -118,14 +118,14 @@ bool isPngHeader(const std::string& head) {
   return head.compare(0, 8, "\x89PNG\r\n\x1a\n") == 0;
 }
 
-Picture pngHeader(const InputFile& file) {
+PictureHeader pngHeader(const InputFile& file) {
   Source source{file, 0, {}};
   Decoder decoder(source);
   if (!readHeader(decoder)) fail(source);
   return pictureOf(source, decoder);
 }
 
-void readPng(const InputFile& file, const Picture& picture, void* samples) {
+void readPng(const InputFile& file, const PictureHeader& picture, void* samples) {
   Source source{file, 0, {}};
   Decoder decoder(source);
   if (!readHeader(decoder)) fail(source);

@@ -70,7 +70,7 @@ class PictureStack : public ImageReader {
     files_ = files;
     for (const std::string& name : files_) {
       const InputFile file(name);
-      const Picture picture = isPng(file) ? pngHeader(file) : bmpHeader(file);
+      const PictureHeader picture = isPng(file) ? pngHeader(file) : bmpHeader(file);
       if (name == files_.front()) {
         picture_ = picture;
         info_.format = isPng(file) ? "png" : "bmp";
@@ -99,7 +99,7 @@ class PictureStack : public ImageReader {
  private:
   static bool isPng(const InputFile& file) { return isPngHeader(file.head(8)); }
 
-  Picture picture_;
+  PictureHeader picture_;
 };
 
 }  // namespace

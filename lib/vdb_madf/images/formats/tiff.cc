@@ -11,6 +11,7 @@
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/length_unit.h"
+#include "vdb_madf/base/limits.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/key_value_header.h"
 #include "vdb_madf/images/formats/slice_folder.h"
@@ -117,7 +118,7 @@ class TiffStack : public ImageReader {
   /// ImageJ's stacks of 4 GB and more: one page, "images=N", the samples of all in one piece.
   int64_t slicesWithoutPages(const KeyValueHeader& imageJ) {
     const double images = numberIn(imageJ, "images").value_or(1);
-    if (!(images > 1) || images > (1 << 20) || !page_.plain) return 1;
+    if (!(images > 1) || images > kMaxImageSide || !page_.plain) return 1;
     const auto offset = file_.contiguousOffset(page_);
     if (!offset) return 1;
     const uint64_t held = (file_.data().size() - *offset) / page_.bytes();

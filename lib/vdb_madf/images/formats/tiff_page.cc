@@ -9,17 +9,18 @@
 
 #include "vdb_madf/base/detail/byte_order.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/limits.h"
 
 namespace vdb_madf::detail {
 
 namespace {
 
-constexpr uint32_t kLargestSize = 1 << 20;
+constexpr uint32_t kMaxSide = kMaxImageSide;
 /// libtiff allocates tag values, raw strips (no larger than the file) and coder states.
 constexpr int64_t kCoderAllocation = int64_t(1) << 25;
 
-/// At most how many bytes one compressed byte can stand for; 0: a compression that is not read.
-uint64_t mostExpansion(uint16_t compression, uint32_t width) {
+/// How many bytes one compressed byte stands for at most; 0: a compression that is not read.
+uint64_t maxExpansion(uint16_t compression, uint32_t width) {
   switch (compression) {
     case COMPRESSION_NONE:
       return 1;
@@ -92,9 +93,9 @@ TiffPage TiffFile::page() const {
   TiffPage page;
   page.width = tiff_.field<uint32_t>(TIFFTAG_IMAGEWIDTH, 0);
   page.height = tiff_.field<uint32_t>(TIFFTAG_IMAGELENGTH, 0);
-  if (page.width < 1 || page.width > kLargestSize || page.height < 1 || page.height > kLargestSize)
+  if (page.width < 1 || page.width > kMaxSide || page.height < 1 || page.height > kMaxSide)
     tiff_.fail("a page of " + std::to_string(page.width) + " x " + std::to_string(page.height) +
-               " is not within 1 .. " + std::to_string(kLargestSize) + " a side");
+               " is not within 1 .. " + std::to_string(kMaxSide) + " a side");
   uint16_t channels = 1, format = SAMPLEFORMAT_UINT;
   TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_SAMPLESPERPIXEL, &channels);
   TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_BITSPERSAMPLE, &page.bits);
@@ -110,8 +111,8 @@ TiffPage TiffFile::page() const {
                ": only 1, 8, 16 and 32-bit integers and 32 and 64-bit floats can be read");
   page.type = *type;
   page.compression = tiff_.field<uint16_t>(TIFFTAG_COMPRESSION, COMPRESSION_NONE);
-  if (mostExpansion(page.compression, page.width) == 0 ||
-      !TIFFIsCODECConfigured(page.compression) || (isFax(page.compression) && page.bits != 1))
+  if (maxExpansion(page.compression, page.width) == 0 || !TIFFIsCODECConfigured(page.compression) ||
+      (isFax(page.compression) && page.bits != 1))
     tiff_.fail("compression " + std::to_string(page.compression) +
                " cannot be read: write it uncompressed, or as LZW or Deflate");
   page.tiled = TIFFIsTiled(tiff_.get()) != 0;
@@ -146,11 +147,11 @@ void TiffFile::checkExtent(const TiffPage& page) const {
     needed = uint64_t(TIFFTileSize64(tiff_.get())) * pieces;
     const uint64_t tileWidth = tiff_.field<uint32_t>(TIFFTAG_TILEWIDTH, 0);
     const uint64_t tileHeight = tiff_.field<uint32_t>(TIFFTAG_TILELENGTH, 0);
-    if (tileWidth < 1 || tileHeight < 1 || tileWidth > kLargestSize || tileHeight > kLargestSize ||
+    if (tileWidth < 1 || tileHeight < 1 || tileWidth > kMaxSide || tileHeight > kMaxSide ||
         tiff_.field<uint32_t>(TIFFTAG_TILEDEPTH, 1) != 1)
       tiff_.fail("has tiles of an impossible size");
   }
-  if (needed == 0 || needed / mostExpansion(page.compression, page.width) > stored)
+  if (needed == 0 || needed / maxExpansion(page.compression, page.width) > stored)
     tiff_.fail("is truncated or damaged: " + std::to_string(stored) +
                " bytes are too few for a page of " + std::to_string(page.width) + " x " +
                std::to_string(page.height));

@@ -90,8 +90,8 @@ class TiffWriter : public ImageWriter {
   /// As ImageJ does, but for "images=": that would promise it samples in one piece.
   bool setCalibration(const VoxelSize& size, bool first) {
     const bool small = size.metres < 1e-7, large = size.metres >= 1e-2;
-    const double perMetre = small ? 1e9 : large ? 1e3 : 1e6;
     const std::string unit = small ? "nm" : large ? "mm" : "micron";
+    const double perMetre = unitsPerMetre(unit).value();
     const std::string text =
         "ImageJ=1.53k\nunit=" + unit + "\nspacing=" + lengthIn(perMetre, size.metres) + "\n";
     const double perUnit = 1 / (size.metres * perMetre);

@@ -13,6 +13,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/limits.h"
 #include "vdb_madf/files/detail/inflate_stream.h"
 #include "vdb_madf/images/detail/json_text.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
@@ -29,7 +30,7 @@ constexpr uint64_t kLargeChunk = uint64_t(1) << 26;
 constexpr uint64_t kMaxBloscExpansion = uint64_t(1) << 15;
 /// Of so many chunks one at least has to be there.
 constexpr uint64_t kMaxChunksPerStored = 4096;
-constexpr uint64_t kMaxImageSide = uint64_t(1) << 20;
+constexpr uint64_t kMaxSide = kMaxImageSide;
 
 /// The axes of a shape: x, y, z of the last three, the others have to be 1.
 ImageSize lastThree(const std::string& name, const char* key, const Json& shape) {
@@ -42,9 +43,9 @@ ImageSize lastThree(const std::string& name, const char* key, const Json& shape)
   for (size_t i = 0; i < shape.size(); ++i) {
     const Json& length = shape[i];
     if (!length.is_number_unsigned() || length.get<uint64_t>() < 1 ||
-        length.get<uint64_t>() > kMaxImageSide)
+        length.get<uint64_t>() > kMaxSide)
       throw IoError(name + ": its " + key + " " + detail::quoted(text) + " is not within 1 .. " +
-                    std::to_string(kMaxImageSide) + " a side");
+                    std::to_string(kMaxSide) + " a side");
     const auto n = length.get<uint64_t>();
     if (i + 3 >= shape.size())
       last[int(shape.size() - 1 - i)] = int(n);
