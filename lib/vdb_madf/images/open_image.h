@@ -36,8 +36,8 @@ bool looksLikeImage(const std::string& path);
 
 /// By ending: .raw, .mhd (with .raw beside it), .mha, .nrrd, .npy, .tif/.tiff (BigTIFF when 4 GB or
 /// more).
-/// @param origin world position of the first voxel's centre in mm (in voxels, where there is no
-///     voxel size), for the formats that have a place for it: MetaImage (Offset) and NRRD (space
+/// @param origin world position of the first voxel's center in mm (in voxels if there is no
+///     voxel size), for the formats that can store it: MetaImage (Offset) and NRRD (space
 ///     origin). The readers ignore it: what they read begins at voxel (0,0,0).
 /// @throw IoError; InvalidInput for another ending.
 std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInfo& info,

@@ -31,23 +31,23 @@ class Line {
 
   /// False if the other side is gone.
   bool send(const void* bytes, size_t count) const {
-    const char* place = static_cast<const char*>(bytes);
+    const char* next = static_cast<const char*>(bytes);
     while (count > 0) {
-      const ssize_t sent = ::send(descriptor_, place, count, MSG_NOSIGNAL);
+      const ssize_t sent = ::send(descriptor_, next, count, MSG_NOSIGNAL);
       if (sent < 0 && errno == EINTR) continue;
       if (sent <= 0) return false;
-      place += sent;
+      next += sent;
       count -= size_t(sent);
     }
     return true;
   }
   bool receive(void* bytes, size_t count) const {
-    char* place = static_cast<char*>(bytes);
+    char* next = static_cast<char*>(bytes);
     while (count > 0) {
-      const ssize_t got = recv(descriptor_, place, count, 0);
+      const ssize_t got = recv(descriptor_, next, count, 0);
       if (got < 0 && errno == EINTR) continue;
       if (got <= 0) return false;
-      place += got;
+      next += got;
       count -= size_t(got);
     }
     return true;
@@ -81,9 +81,9 @@ bool reply(const Line& line, Reply::Kind kind, Hint hint, const void* bytes, uin
   return line.send(&head, sizeof head) && line.send(bytes, size_t(count));
 }
 
-/// Runs `work`, and hands over what it throws. False: no more requests are to be served.
+/// Runs `work`, and sends what it throws as a reply. False: no more requests are to be served.
 template <typename Work>
-bool handOver(const Line& line, const Work& work) {
+bool answer(const Line& line, const Work& work) {
   std::string message;
   Reply::Kind kind = Reply::ioError;
   Hint hint = Hint::none;
@@ -113,7 +113,7 @@ bool handOver(const Line& line, const Work& work) {
   if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);
 
   std::unique_ptr<ImageReader> reader;
-  bool going = handOver(line, [&] {
+  bool going = answer(line, [&] {
     reader = open();
     const ImageInfo& info = reader->info();
     Description description{};
@@ -125,7 +125,7 @@ bool handOver(const Line& line, const Work& work) {
   });
   std::vector<char> samples;
   for (Request request{}; going && reader && line.receive(&request, sizeof request);)
-    going = handOver(line, [&] {
+    going = answer(line, [&] {
       samples.resize(size_t(sliceBytes(reader->info())) * size_t(request.count));
       reader->read(request.first, request.count, samples.data());
       return reply(line, Reply::good, Hint::none, samples.data(), samples.size());

@@ -12,7 +12,7 @@
 namespace vdb_madf::detail {
 
 /// The reader that `open` makes, in a process of its own: for libraries that crash on damaged
-/// files. The process is a fork of this one; it opens the file, hands over slices through a socket,
+/// files. The process is a fork of this one; it opens the file, sends slices through a socket,
 /// and ends with the reader. If it crashes, that is an IoError like any other.
 /// @param open runs in that process, which has no other thread: it must not start any
 /// @throw IoError, InvalidInput: what `open` throws; IoError if it crashed

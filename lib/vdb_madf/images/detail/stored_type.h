@@ -11,11 +11,11 @@
 
 namespace vdb_madf::detail {
 
-/// Samples as a file holds them. Integers of 64 bits, which NumPy makes of most labels, are handed
-/// over as int32 or uint32; a value beyond is an error, never another value.
+/// Samples as a file holds them. Integers of 64 bits, which NumPy makes of most labels, are read as
+/// int32 or uint32; a value that does not fit is an error, never another value.
 struct StoredType {
-  SampleType type = SampleType::uint8;  ///< as which they are handed over
-  bool is64Bit = false;                 ///< int32 or uint32 of 64-bit integers
+  SampleType type = SampleType::uint8;  ///< the type they are read as
+  bool is64Bit = false;                 ///< stored as integers of 64 bits
   bool bigEndian = false;
 
   size_t bytes() const { return is64Bit ? 8 : sampleSize(type); }

@@ -20,7 +20,7 @@ struct BmpLayout {
   int64_t width = 0, height = 0;
   bool topDown = false;
   int bits = 0;
-  uint64_t offset = 0, paletteOffset = 0, colourBytes = 4;
+  uint64_t offset = 0, paletteOffset = 0, colorBytes = 4;
 
   uint64_t rowBytes() const { return (uint64_t(width) * uint64_t(bits) + 31) / 32 * 4; }
 };
@@ -45,7 +45,7 @@ BmpLayout layoutOf(const InputFile& file) {
     layout.width = numberAt<uint16_t>(head, 18);
     layout.height = numberAt<uint16_t>(head, 20);
     layout.bits = numberAt<uint16_t>(head, 24);
-    layout.colourBytes = 3;
+    layout.colorBytes = 3;
   } else if (headerSize >= kInfoHeader && headerSize <= 1024) {
     layout.width = numberAt<int32_t>(head, 18);
     layout.height = numberAt<int32_t>(head, 22);
@@ -74,11 +74,11 @@ BmpLayout layoutOf(const InputFile& file) {
 
 /// White and black may be numbered either way.
 bool firstIsBrighter(const InputFile& file, const BmpLayout& layout) {
-  unsigned char colours[8] = {};
-  file.read(layout.paletteOffset, colours, 2 * layout.colourBytes);
+  unsigned char colors[8] = {};
+  file.read(layout.paletteOffset, colors, 2 * layout.colorBytes);
   const auto brightness = [&](size_t i) {
-    const unsigned char* colour = colours + i * layout.colourBytes;
-    return int(colour[0]) + colour[1] + colour[2];
+    const unsigned char* color = colors + i * layout.colorBytes;
+    return int(color[0]) + color[1] + color[2];
   };
   return brightness(0) > brightness(1);
 }
@@ -117,14 +117,14 @@ void readBmp(const InputFile& file, const PictureHeader& picture, void* samples)
   std::vector<unsigned char> row(size_t(layout.rowBytes()));
   for (int64_t y = 0; y < layout.height; ++y) {
     file.read(layout.offset + layout.rowBytes() * uint64_t(y), row.data(), row.size());
-    const int64_t place = layout.topDown ? y : layout.height - 1 - y;
-    unsigned char* to = static_cast<unsigned char*>(samples) + size_t(place) * width;
+    const int64_t line = layout.topDown ? y : layout.height - 1 - y;
+    unsigned char* to = static_cast<unsigned char*>(samples) + size_t(line) * width;
     if (layout.bits < 8)
       unpack(row.data(), layout.bits, width, flip, to);
     else if (layout.bits == 8)
       std::memcpy(to, row.data(), width);
     else
-      greyOfColours(file.name(), row.data(), size_t(layout.bits) / 8, width, to);
+      grayOfColors(file.name(), row.data(), size_t(layout.bits) / 8, width, to);
   }
 }
 

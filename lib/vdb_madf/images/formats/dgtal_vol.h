@@ -13,7 +13,7 @@ namespace vdb_madf::detail {
 
 /// DGtal's .vol (uint8) and .longvol (64-bit integers, read as uint32; 32-bit ones of older
 /// programs are told by the size of the file), version 2 (plain) and 3 (zlib), little-endian. They
-/// know no voxel size; the centre is passed over: voxels are numbered from 0. Not read: version 1.
+/// know no voxel size; the center is ignored: voxels are numbered from 0. Not read: version 1.
 /// Source: VolReader, VolWriter, LongvolReader and LongvolWriter of DGtal.
 std::unique_ptr<ImageReader> openDgtal(std::unique_ptr<InputFile> file);
 

@@ -195,13 +195,13 @@ class Hdf5Reader : public ImageReader {
   void read(int first, int count, void* samples) override {
     const Quiet quiet;
     checkSlices(path_, info_, first, count);
-    char* place = static_cast<char*>(samples);
-    if (!stored_.is64Bit) return readStored(first, count, place);
+    char* to = static_cast<char*>(samples);
+    if (!stored_.is64Bit) return readStored(first, count, to);
     const size_t slice = size_t(info_.size.x) * size_t(info_.size.y);
     std::vector<char> piece(slice * stored_.bytes());
-    for (int z = first; z < first + count; ++z, place += sliceBytes(info_)) {
+    for (int z = first; z < first + count; ++z, to += sliceBytes(info_)) {
       readStored(z, 1, piece.data());
-      toSamples(path_, stored_, piece.data(), slice, place);
+      toSamples(path_, stored_, piece.data(), slice, to);
     }
   }
 

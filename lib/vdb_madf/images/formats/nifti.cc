@@ -145,14 +145,13 @@ class ScaledReader : public ImageReader {
   void read(int first, int count, void* samples) override {
     checkSlices(path_, info_, first, count);
     const size_t slice = size_t(info_.size.x) * size_t(info_.size.y);
-    auto* place = static_cast<float*>(samples);
+    auto* to = static_cast<float*>(samples);
     std::vector<char> buffer(size_t(sliceBytes(stored_->info())));
-    for (int z = first; z < first + count; ++z, place += slice) {
+    for (int z = first; z < first + count; ++z, to += slice) {
       stored_->read(z, 1, buffer.data());
       withSampleType(stored_->info().type, [&](auto type) {
         const auto* values = reinterpret_cast<const decltype(type)*>(buffer.data());
-        for (size_t i = 0; i < slice; ++i)
-          place[i] = float(slope_ * double(values[i]) + intercept_);
+        for (size_t i = 0; i < slice; ++i) to[i] = float(slope_ * double(values[i]) + intercept_);
       });
     }
   }

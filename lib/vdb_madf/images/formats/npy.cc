@@ -17,13 +17,13 @@ namespace vdb_madf::detail {
 namespace {
 
 const std::string kMagic = "\x93NUMPY";
-/// Records of many fields have long headers, a volume has not.
+/// Only records of many fields have longer headers.
 constexpr size_t kMaxHeaderBytes = size_t(1) << 16;
 /// The samples begin at a multiple of this.
 constexpr size_t kAlignment = 64;
 
 /// The dictionary of the header, a Python literal: {'descr': '<u2', 'shape': (3, 4, 5), ...}.
-/// The values are kept as text: of a string without its quotes, of a tuple without its brackets.
+/// The values are kept as text, strings without their quotes and tuples without their brackets.
 class Dictionary {
  public:
   Dictionary(const std::string& path, const std::string& text) : path_(path), text_(text) {

@@ -146,7 +146,7 @@ std::optional<VoxelSize> spacingOf(const std::string& path, const KeyValueHeader
   return cubicVoxelSize(path, {(*values)[0], (*values)[1], (*values)[2]}, commonUnit(path, units));
 }
 
-/// The place after `lines` lines of text from `offset` on.
+/// The offset after `lines` lines of text from `offset` on.
 uint64_t skipLines(const InputFile& file, uint64_t offset, int64_t lines) {
   std::string chunk;
   while (lines > 0) {

@@ -24,9 +24,9 @@ struct PictureHeader {
   }
 };
 
-// Samples are handed over as stored, the top row first: grey values, or the numbers of a palette,
-// which is what a program that writes labels means. Of colours there are only those that are grey,
-// (n, n, n) is n; any other is an error. An opacity is passed over.
+// Samples are returned as stored, the top row first: gray values, or the numbers of a palette, which
+// is what a program that writes labels means. A color (n, n, n) is the gray value n; any other color
+// is an error. Opacity is ignored.
 
 /// PNG of 1, 2, 4, 8 (uint8) or 16 bits (uint16), interlaced or not.
 /// Source: Portable Network Graphics specification; decoded by libpng.
@@ -44,10 +44,10 @@ bool isBmpHeader(const std::string& head);
 
 /// @throw IoError unless each side is in 1 .. kMaxImageSide.
 void checkPictureSize(const std::string& name, int64_t width, int64_t height);
-/// Grey samples of `count` pixels of three or four bytes, of which the first three have to be
+/// Gray samples of `count` pixels of three or four bytes, of which the first three have to be
 /// equal.
 /// @throw IoError that names the file.
-void greyOfColours(const std::string& name, const unsigned char* pixels, size_t bytesPerPixel,
-                   size_t count, unsigned char* samples);
+void grayOfColors(const std::string& name, const unsigned char* pixels, size_t bytesPerPixel,
+                  size_t count, unsigned char* samples);
 
 }  // namespace vdb_madf::detail

@@ -18,7 +18,7 @@ namespace {
 /// What libpng reads from, and what it has to say when it cannot.
 struct Source {
   const InputFile& file;
-  uint64_t place = 0;
+  uint64_t position = 0;
   std::string error;
 };
 
@@ -37,8 +37,8 @@ void readBytes(png_structp png, png_bytep to, size_t count) {
   Source& source = sourceOf(png);
   bool good = false;
   try {
-    source.file.read(source.place, to, count);
-    source.place += count;
+    source.file.read(source.position, to, count);
+    source.position += count;
     good = true;
   } catch (const std::exception&) {  // must not leave through C
   }
@@ -134,15 +134,15 @@ void readPng(const InputFile& file, const PictureHeader& picture, void* samples)
   if (!transform(decoder)) fail(source);
   const size_t width = size_t(picture.width), height = size_t(picture.height);
   const size_t rowBytes = png_get_rowbytes(decoder.png, decoder.info);
-  const bool grey = png_get_channels(decoder.png, decoder.info) == 1;
-  if (grey && rowBytes != width * sampleSize(picture.type))
+  const bool gray = png_get_channels(decoder.png, decoder.info) == 1;
+  if (gray && rowBytes != width * sampleSize(picture.type))
     throw IoError(file.name() + ": its rows have " + std::to_string(rowBytes) + " bytes");
   auto* out = static_cast<unsigned char*>(samples);
-  std::vector<unsigned char> colours(grey ? 0 : rowBytes * height);
+  std::vector<unsigned char> colors(gray ? 0 : rowBytes * height);
   std::vector<png_bytep> rows(height);
-  for (size_t y = 0; y < height; ++y) rows[y] = (grey ? out : colours.data()) + y * rowBytes;
+  for (size_t y = 0; y < height; ++y) rows[y] = (gray ? out : colors.data()) + y * rowBytes;
   if (!readRows(decoder, rows.data())) fail(source);
-  if (!grey) greyOfColours(file.name(), colours.data(), 3, width * height, out);
+  if (!gray) grayOfColors(file.name(), colors.data(), 3, width * height, out);
 }
 
 }  // namespace vdb_madf::detail

@@ -12,7 +12,7 @@
 namespace vdb_madf::detail {
 
 /// What PyHST of the ESRF writes: samples in NAME.vol, their size in the text file NAME.vol.info.
-/// Either can be named. The type is DATA_TYPE if it is given (other programs do), else told by the
+/// Either of the two can be given. The type is DATA_TYPE if it is given (other programs do), else told by the
 /// size of the file: float32, uint16 or uint8.
 ///
 /// No source says the unit of voxelSize. It is taken for that of IMAGE_PIXEL_SIZE_1, which it is

@@ -45,10 +45,10 @@ bool naturallyBefore(const std::string& a, const std::string& b) {
     i = endA, j = endB;
   }
   if (i < a.size() || j < b.size()) return j < b.size();
-  return a < b;  // they differ in leading zeros alone
+  return a < b;  // they differ only in leading zeros
 }
 
-/// The last line of the log that tells it: that of the reconstruction comes after the camera's.
+/// From the last line of the log that has it: the section of the reconstruction is the last.
 std::optional<double> micrometresIn(const std::string& path, const std::string& log) {
   HeaderSyntax syntax;
   syntax.skipsOtherLines = true;
@@ -86,13 +86,13 @@ class PictureStack : public ImageReader {
 
   void read(int first, int count, void* samples) override {
     checkSlices(path_, info_, first, count);
-    char* place = static_cast<char*>(samples);
-    for (int z = first; z < first + count; ++z, place += sliceBytes(info_)) {
+    char* to = static_cast<char*>(samples);
+    for (int z = first; z < first + count; ++z, to += sliceBytes(info_)) {
       const InputFile file(files_[size_t(z)]);
       if (isPng(file))
-        readPng(file, picture_, place);
+        readPng(file, picture_, to);
       else
-        readBmp(file, picture_, place);
+        readBmp(file, picture_, to);
     }
   }
 

@@ -15,16 +15,16 @@
 namespace vdb_madf::detail {
 
 /// The files of a folder with one of the endings (lower case, ".tif"), ordered by name with numbers
-/// compared as numbers: slice2 comes before slice10. Files that start with a dot are passed over,
-/// and the previews NAME_spr.bmp of SkyScan's NRecon. @throw IoError if it cannot be listed.
+/// compared as numbers: slice2 comes before slice10. Files that start with a dot and
+/// the previews NAME_spr.bmp of SkyScan's NRecon are ignored. @throw IoError if it cannot be listed.
 std::vector<std::string> slicesIn(const std::string& folder,
                                   const std::vector<std::string>& endings);
 
-/// The pixel size that a reconstruction log in the folder tells: the only .log file that has a line
+/// The pixel size in a reconstruction log of the folder: the only .log file that has a line
 /// "Pixel Size (um)=8.5" or "Image Pixel Size (um)=8.5", as SkyScan's NRecon writes it. NRecon
-/// appends its section to the log of the scan: [Acquisition] has "Image Pixel Size (um)", of the
-/// projections, then [Reconstruction] has "Pixel Size (um)", of the slices, which is taken.
-/// "Camera Pixel Size (um)" of [System] is that of the detector. Source: these keys and sections as
+/// appends its section to the log of the scan: [Acquisition] has the "Image Pixel Size (um)" of the
+/// projections, and [Reconstruction] after it the "Pixel Size (um)" of the slices. The last of these
+/// lines counts. "Camera Pixel Size (um)" of [System] is that of the detector. Source: these keys and sections as
 /// read by public loaders of SkyScan data (readBruker.m: both; SkyScan loader of TIGRE).
 std::optional<VoxelSize> voxelSizeInLog(const std::string& folder);
 

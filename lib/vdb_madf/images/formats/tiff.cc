@@ -48,7 +48,8 @@ std::optional<VoxelSize> calibration(const TiffFile& file, const KeyValueHeader&
   // ImageJ leaves out a slice spacing of 1; then nobody may have set it.
   const auto z = numberIn(imageJ, "spacing");
   if (!z && slices > 1 && std::abs(x - 1) > 1e-3) return std::nullopt;
-  // The text is exact where the tags are single precision: it goes first. The sign tells the order.
+  // The text is exact and the tags are single precision: the text comes first. Its sign is the order
+  // of the slices.
   const double depth = z ? std::abs(*z) : slices > 1 ? 1.0 : x;
   return cubicVoxelSize(file.path(), {depth, x, y}, unit);
 }
@@ -82,16 +83,16 @@ class TiffStack : public ImageReader {
 
   void read(int first, int count, void* samples) override {
     checkSlices(path_, info_, first, count);
-    char* place = static_cast<char*>(samples);
+    char* to = static_cast<char*>(samples);
     if (samplesOffset_) {
       const size_t bytes = size_t(page_.bytes()) * size_t(count);
-      file_.data().read(*samplesOffset_ + page_.bytes() * uint64_t(first), place, bytes);
-      if (page_.swapped) swapBytes(place, bytes / sampleSize(page_.type), sampleSize(page_.type));
+      file_.data().read(*samplesOffset_ + page_.bytes() * uint64_t(first), to, bytes);
+      if (page_.swapped) swapBytes(to, bytes / sampleSize(page_.type), sampleSize(page_.type));
       return;
     }
-    for (int z = first; z < first + count; ++z, place += page_.bytes()) {
+    for (int z = first; z < first + count; ++z, to += page_.bytes()) {
       file_.select(pages_[size_t(z)]);
-      file_.decode(checkedPage(), place);
+      file_.decode(checkedPage(), to);
     }
   }
 
@@ -165,12 +166,12 @@ class TiffFolder : public ImageReader {
 
   void read(int first, int count, void* samples) override {
     checkSlices(path_, info_, first, count);
-    char* place = static_cast<char*>(samples);
-    for (int z = first; z < first + count; ++z, place += page_.bytes()) {
+    char* to = static_cast<char*>(samples);
+    for (int z = first; z < first + count; ++z, to += page_.bytes()) {
       const TiffFile file(files_[size_t(z)]);
       const TiffPage page = file.page();
       if (!page.sameAs(page_)) throw IoError(file.path() + ": changed while it was read");
-      file.decode(page, place);
+      file.decode(page, to);
     }
   }
 

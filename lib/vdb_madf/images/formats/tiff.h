@@ -12,20 +12,20 @@
 
 namespace vdb_madf::detail {
 
-// Grey TIFF of 1, 8, 16 or 32 bits, signed, unsigned or float, and float64; strips or tiles; either
+// Gray TIFF of 1, 8, 16 or 32 bits, signed, unsigned or float, and float64; strips or tiles; either
 // byte order; uncompressed, LZW, Deflate, PackBits, CCITT, Zstandard.
 //
-// Samples are handed over as stored, in stored row order: a palette or "minimum is white" changes
+// Samples are returned as stored, in stored row order: a palette or "minimum is white" changes
 // how a picture looks, not the values of a measurement. The exception is 1 bit, where black and
 // white is all there is: white is 1 and black is 0, whichever way the file codes them.
-// Pages marked as thumbnails or transparency masks are passed over.
+// Pages marked as thumbnails or transparency masks are ignored.
 
 /// Each page is a slice; or, as ImageJ writes stacks of 4 GB and more, one page that is followed by
 /// the others' samples.
 std::unique_ptr<ImageReader> openTiff(std::unique_ptr<InputFile> file);
 
 /// Each .tif or .tiff file of the folder is a slice, ordered by name with numbers compared as
-/// numbers: slice2 comes before slice10. Files that start with a dot are passed over.
+/// numbers: slice2 comes before slice10. Files that start with a dot are ignored.
 std::unique_ptr<ImageReader> openTiffFolder(const std::string& path);
 /// The slices of such a folder, in order; empty if there are none.
 std::vector<std::string> tiffFilesIn(const std::string& folder);

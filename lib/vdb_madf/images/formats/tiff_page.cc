@@ -170,13 +170,13 @@ std::optional<uint64_t> TiffFile::contiguousOffset(const TiffPage& page) const {
 }
 
 void TiffFile::decode(const TiffPage& page, void* samples) const {
-  char* place = static_cast<char*>(samples);
+  char* to = static_cast<char*>(samples);
   if (page.plain)
-    readPlain(page, place);
+    readPlain(page, to);
   else if (page.tiled)
-    decodeTiles(page, place);
+    decodeTiles(page, to);
   else
-    decodeStrips(page, place);
+    decodeStrips(page, to);
 }
 
 void TiffFile::readPlain(const TiffPage& page, char* samples) const {
@@ -214,9 +214,9 @@ void TiffFile::decodeStrips(const TiffPage& page, char* samples) const {
   if (page.bits == 1) packed.reset(new char[rowBytes * rows]);
   for (uint32_t strip = 0, y = 0; y < page.height; ++strip, y += rows) {
     const uint32_t count = std::min(rows, page.height - y);
-    char* place = packed ? packed.get() : samples + rowSamples * y;
+    char* to = packed ? packed.get() : samples + rowSamples * y;
     const tmsize_t bytes = tmsize_t(rowBytes * count);
-    if (TIFFReadEncodedStrip(tiff_.get(), strip, place, bytes) != bytes)
+    if (TIFFReadEncodedStrip(tiff_.get(), strip, to, bytes) != bytes)
       tiff_.fail("is damaged: a page cannot be decoded");
     // The fax decoders fill up damaged rows and only warn.
     if (isFax(page.compression) && tiff_.warned()) tiff_.fail("is damaged: fax rows are broken");

@@ -21,7 +21,7 @@ struct TiffPage {
   SampleType type = SampleType::uint8;
   uint16_t compression = COMPRESSION_NONE;
   bool tiled = false;
-  bool whiteIsZero = false;  ///< of 1-bit pages alone
+  bool whiteIsZero = false;  ///< only of 1-bit pages
   bool plain = false;        ///< the bytes in the file are the samples, but for their order
   bool swapped = false;      ///< plain samples are in foreign byte order
 
@@ -39,7 +39,7 @@ class TiffFile {
 
   const std::string& path() const { return data_->name(); }
   /// The current page. Its strips and tiles lie within the file and can hold what it claims.
-  /// @throw IoError if it is not a grey image of a known type.
+  /// @throw IoError if it is not a gray image of a known type.
   TiffPage page() const;
   /// Thumbnails and transparency masks are not slices.
   bool isSlice() const;
@@ -50,7 +50,7 @@ class TiffFile {
   /// The samples of the current page, native byte order.
   void decode(const TiffPage& page, void* samples) const;
 
-  /// Plain pages only: the place of the samples if they lie in one piece.
+  /// Plain pages only: where the samples begin if they lie in one piece.
   std::optional<uint64_t> contiguousOffset(const TiffPage& page) const;
   const InputFile& data() const { return *data_; }
   const TiffHandle& handle() const { return tiff_; }

@@ -120,14 +120,14 @@ class ZarrReader : public ImageReader {
 
   void read(int first, int count, void* samples) override {
     checkSlices(path_, info_, first, count);
-    char* place = static_cast<char*>(samples);
-    if (!keepLayer_) return array_.read(first, count, place);
+    char* to = static_cast<char*>(samples);
+    if (!keepLayer_) return array_.read(first, count, to);
     for (const int end = first + count; first < end;) {
       loadLayer(first / array_.slicesPerChunk());
       const int some = std::min(end, layerEnd()) - first;
       const size_t slice = size_t(sliceBytes(info_));
-      std::memcpy(place, &layer_[slice * size_t(first - layerBegin())], slice * size_t(some));
-      place += slice * size_t(some);
+      std::memcpy(to, &layer_[slice * size_t(first - layerBegin())], slice * size_t(some));
+      to += slice * size_t(some);
       first += some;
     }
   }
