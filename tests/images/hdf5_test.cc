@@ -143,6 +143,10 @@ TEST_CASE("image_hdf5: the dataset is the only volume, or is named", "[image_hdf
   H5Fclose(file);
   CHECK_THROWS_WITH(openImage(path),
                     Contains("choose one of its datasets") && Contains("'g/v', 'second'"));
+  // (The hint comes from another process.)
+  CHECK_THROWS_MATCHES(openImage(path), IoError,
+                       Catch::Predicate<IoError>(
+                           [](const IoError& error) { return error.hint() == Hint::dataset; }));
   CHECK(readAll(*openImage(path, {}, "second")) == bytes);
 
   const auto refused = [&](const Hdf5Layout& layout, const std::string& why, const void* samples) {
