@@ -15,6 +15,7 @@
 #include "vdb_madf/measure/detail/sample_measures.h"
 #include "vdb_madf/measure/euler_characteristic.h"
 #include "vdb_madf/method/boundary.h"
+#include "vdb_madf/method/detail/metric.h"
 #include "vdb_madf/method/segment.h"
 
 namespace vdb_madf {
@@ -31,14 +32,9 @@ void setRepresentatives(const detail::GrainRepresentatives& representatives, Mea
   for (BondMeasures& bond : result.bonds) {
     const detail::GrainRepresentative &a = representatives.at(bond.first),
                                       &b = representatives.at(bond.second);
-    int64_t squaredDistance = 0;
-    for (int i = 0; i < 3; ++i) {
-      const int64_t d = int64_t(a.voxel[i]) - b.voxel[i];
-      squaredDistance += d * d;
-    }
+    const int64_t squaredDistance = detail::squaredBetween(a.voxel, b.voxel);
     bond.distance = std::sqrt(double(squaredDistance));
-    bond.cosAlpha = double(squaredDistance - a.squaredRadius - b.squaredRadius) /
-                    (2 * std::sqrt(double(int64_t(a.squaredRadius) * int64_t(b.squaredRadius))));
+    bond.cosAlpha = detail::cosAlpha(squaredDistance, a.squaredRadius, b.squaredRadius);
   }
 }
 

@@ -3,12 +3,15 @@
 
 #include "vdb_madf/method/gamma_filter.h"
 
+#include <algorithm>
+#include <atomic>
 #include <utility>
 
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 #include "vdb_madf/leaves/object_components.h"
+#include "vdb_madf/method/detail/metric.h"
 
 namespace vdb_madf {
 
@@ -47,20 +50,17 @@ class GeodesicCompletion {
                         });
   }
 
-  int squaredDistance(const Coord& p, VoxelId site) const {
-    const Coord d = p - index_.coord(site);
-    return d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
-  }
-
-  /// Is site a better than b at equal power at p? Larger D, that is farther; then smaller
-  /// coordinate.
+  /// Is site a better than b at equal power at p? The larger D wins, then the smaller coordinate.
+  /// At equal power |p - a|^2 - D(a) = |p - b|^2 - D(b) the larger D is that of the farther site.
   bool winsTie(const Coord& p, VoxelId a, VoxelId b) const {
-    const int da = squaredDistance(p, a), db = squaredDistance(p, b);
-    return da != db ? da > db : index_.coord(a) < index_.coord(b);
+    const Coord siteA = index_.coord(a), siteB = index_.coord(b);
+    const int64_t awayA = detail::squaredBetween(p, siteA),
+                  awayB = detail::squaredBetween(p, siteB);
+    return awayA != awayB ? awayA > awayB : siteA < siteB;
   }
 
-  /// The best of a voxel's own site and those of its neighbours. A neighbour's power, one step
-  /// away, tells that of its site here.
+  /// The best of a voxel's own site and those of its neighbors q = p + step e. The power of q's
+  /// site x here follows from that at q: pi_x(p) = pi_x(q) + |p - x|^2 - |q - x|^2.
   Change best(VoxelId p) const {
     const size_t rank = index_.rank(p);
     Change best{p, map_.site[rank], map_.power[rank]};
@@ -71,7 +71,7 @@ class GeodesicCompletion {
       const VoxelId site = map_.site[neighbor];
       if (site == kNoSite || site == best.site) return;
       const int away = position[axis] - index_.coord(site)[axis];
-      const int32_t power = map_.power[neighbor] - 2 * step * away - 1;
+      const int32_t power = map_.power[neighbor] - detail::addedByStep(away, step);
       if (best.site == kNoSite || power < best.power ||
           (power == best.power && winsTie(position, site, best.site)))
         best = {p, site, power};

@@ -5,6 +5,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/detail/voxels.h"
+#include "vdb_madf/method/detail/metric.h"
 
 namespace vdb_madf {
 
@@ -39,8 +40,8 @@ MedialBallTable measureBalls(const LeafIndex& index, const PowerMap& map, const 
           if (run == 0) return;
           const uint32_t ball = balls.rank(site);
           __atomic_fetch_add(&table.cellSize[ball], run, __ATOMIC_RELAXED);
-          __atomic_store_n(&table.squaredRadius[ball], siteSquaredRadius(index, first, site, power),
-                           __ATOMIC_RELAXED);
+          __atomic_store_n(&table.squaredRadius[ball],
+                           detail::siteSquaredRadius(index, first, site, power), __ATOMIC_RELAXED);
         };
         detail::forEachVoxel(index, begin, end, [&](VoxelId p, size_t rank) {
           if (run > 0 && map.site[rank] == site) {

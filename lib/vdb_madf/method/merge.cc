@@ -4,11 +4,11 @@
 #include "vdb_madf/method/merge.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "vdb_madf/base/detail/disjoint_sets.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/method/detail/metric.h"
 
 namespace vdb_madf {
 
@@ -17,24 +17,16 @@ namespace {
 using Node = ManifoldGraph::Node;
 using Edge = ManifoldGraph::Edge;
 
-/// Cosine of the angle at which two balls meet (paper, eq. 7): 1 where they touch from outside,
-/// -1 where one touches the other from inside.
-double cosine(const Node& a, const Node& b) {
-  int64_t squaredDistance = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const int64_t d = int64_t(a.position[axis]) - b.position[axis];
-    squaredDistance += d * d;
-  }
-  const int64_t numerator = squaredDistance - a.squaredRadius - b.squaredRadius;
-  const double product = double(int64_t(a.squaredRadius) * b.squaredRadius);
-  return double(numerator) / (2 * std::sqrt(product));
+double cosAlpha(const Node& a, const Node& b) {
+  return detail::cosAlpha(detail::squaredBetween(a.position, b.position), a.squaredRadius,
+                          b.squaredRadius);
 }
 
 void mergeByAngle(const ManifoldGraph& graph, const MergeOptions& options,
                   detail::DisjointSets& grains) {
   for (const Edge& edge : graph.edges) {
     if (options.adjacency == Adjacency::cell && !edge.cellsTouch) continue;
-    if (cosine(graph.nodes[edge.first], graph.nodes[edge.second]) < options.theta)
+    if (cosAlpha(graph.nodes[edge.first], graph.nodes[edge.second]) < options.theta)
       grains.unite(edge.first, edge.second);
   }
 }

@@ -9,6 +9,7 @@
 #include "vdb_madf/base/detail/simd.h"
 #include "vdb_madf/leaves/detail/leaf_values.h"
 #include "vdb_madf/leaves/detail/pencil.h"
+#include "vdb_madf/method/detail/metric.h"
 
 namespace vdb_madf {
 
@@ -107,7 +108,7 @@ VDB_MADF_SIMD void computeRadii(const LeafIndex& index, const Coord& origin, Scr
         const Coord& leaf = origins[site[row] >> 9];
         const int dz = leaf.z() + int(site[row] & 7) - (origin.z() + (row & 7));
         const int dy = leaf.y() + int(site[row] >> 3 & 7) - (origin.y() + (row >> 3));
-        away = dz * dz + (Axis == 0 ? dy * dy : 0);
+        away = detail::squaredAlong(dz) + (Axis == 0 ? detail::squaredAlong(dy) : 0);
       }
       radius2[row] = away - power[row];
     }
@@ -173,7 +174,7 @@ template <typename Key>
     for (; bits; bits &= bits - 1) {
       const int t = base + __builtin_ctzll(bits);
       const size_t at = size_t(t) * kSlab;
-      const int32_t height = powers[at] + (t - begin) * (t - begin);
+      const int32_t height = powers[at] + detail::squaredAlong(t - begin);
       const Key key = height * multiplier - radii[at];
       for (; next - first > 1; --next) {
         const Parabola<Key>&b = next[-1], &a = next[-2];

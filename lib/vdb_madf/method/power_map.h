@@ -36,11 +36,4 @@ PowerMap powerMap(const LeafIndex& index, SquaredDistance distance,
 void sweepPower(const LeafIndex& index, int32_t largestSquaredRadius, PowerMap& map,
                 Interrupter* interrupter = nullptr);
 
-/// D(x) of the site x of a voxel with the given least power.
-inline int32_t siteSquaredRadius(const LeafIndex& index, VoxelId voxel, VoxelId site,
-                                 int32_t power) {
-  const Coord d = index.coord(voxel) - index.coord(site);
-  return d.x() * d.x() + d.y() * d.y() + d.z() * d.z() - power;
-}
-
 }  // namespace vdb_madf

@@ -11,6 +11,7 @@
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/leaves/detail/leaf_values.h"
 #include "vdb_madf/leaves/detail/pencil.h"
+#include "vdb_madf/method/detail/metric.h"
 
 namespace vdb_madf {
 
@@ -74,7 +75,7 @@ VDB_MADF_SIMD void scanRows(const uint64_t* masks, int length, const PencilDomai
     uint32_t* slab = out + (t + 1) * 64;
     advance(t, slab, false);
     for (int row = 0; row < 64; ++row)
-      slab[row] = slab[row] >= kFar ? kInfinite : slab[row] * slab[row];
+      slab[row] = slab[row] >= kFar ? kInfinite : detail::squaredAlong(slab[row]);
   }
 }
 
@@ -92,8 +93,8 @@ VDB_MADF_SIMD void widenWindows(const uint32_t* in, int length, uint32_t* out) {
       }
       const int both = std::min(t + 1, length - t);
       int k = 1;
-      for (; k <= both && uint32_t(k) * k < worst; ++k) {
-        const uint32_t k2 = uint32_t(k) * k;
+      for (; k <= both && detail::squaredAlong(uint32_t(k)) < worst; ++k) {
+        const uint32_t k2 = detail::squaredAlong(uint32_t(k));
         const uint32_t* below = center - k * 64;
         const uint32_t* above = center + k * 64;
         worst = 0;
@@ -105,8 +106,8 @@ VDB_MADF_SIMD void widenWindows(const uint32_t* in, int length, uint32_t* out) {
       // Beyond the nearer end only the other side is left.
       const int step = t + 1 < length - t ? 64 : -64;
       const int last = std::max(t + 1, length - t);
-      for (; k <= last && uint32_t(k) * k < worst; ++k) {
-        const uint32_t k2 = uint32_t(k) * k;
+      for (; k <= last && detail::squaredAlong(uint32_t(k)) < worst; ++k) {
+        const uint32_t k2 = detail::squaredAlong(uint32_t(k));
         const uint32_t* side = center + k * step;
         worst = 0;
         for (int i = 0; i < kLanes; ++i) {
