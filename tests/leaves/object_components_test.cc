@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/leaves/object_components.h"
+#include "vdb_madf/leaves/detail/object_components.h"
 
 #include <catch2/catch.hpp>
 #include <map>
@@ -19,6 +19,7 @@ namespace {
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
+using detail::ObjectComponents;
 
 uint32_t count(const ObjectVolume& object) {
   return ObjectComponents(LeafIndex(*toMask(object))).count();

@@ -9,6 +9,7 @@
 #include "support/by_rank.h"
 #include "support/oracle.h"
 #include "support/random_case.h"
+#include "vdb_madf/method/detail/power_passes.h"
 
 namespace {
 
@@ -79,7 +80,7 @@ TEST_CASE("power_map: of some balls only, with keys of either width", "[power_ma
     const OraclePower expected = oraclePower(c.object, distance, sites);
     for (const int32_t bound : {largest, kHugeBound}) {
       PowerMap map{byRank<int32_t>(index, start), VoxelArray<VoxelId>(size_t(index.voxelCount()))};
-      sweepPower(index, bound, map);
+      detail::sweepPower(index, bound, map);
       REQUIRE(differences(index, map, c.object, expected) == 0);
     }
   }

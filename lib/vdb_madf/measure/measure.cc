@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vdb_madf/leaves/object_components.h"
+#include "vdb_madf/leaves/detail/object_components.h"
 #include "vdb_madf/measure/correlation_length.h"
 #include "vdb_madf/measure/detail/bond_measures.h"
 #include "vdb_madf/measure/detail/grain_measures.h"
@@ -65,7 +65,7 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
   sample.domainKnown = domainBox.has_value();
   sample.correlationLengths = correlationLengths(index, sample.box, interrupter);
   sample.eulerCharacteristic = eulerCharacteristic(index, interrupter);
-  sample.components = ObjectComponents(index).count();
+  sample.components = detail::ObjectComponents(index).count();
   return result;
 }
 

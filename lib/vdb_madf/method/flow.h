@@ -3,11 +3,13 @@
 
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
+#include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/leaves/voxel_array.h"
 #include "vdb_madf/leaves/voxel_set.h"
-#include "vdb_madf/method/manifold_graph.h"
-#include "vdb_madf/method/medial_balls.h"
-#include "vdb_madf/method/power_map.h"
+#include "vdb_madf/method/critical_point.h"
 
 namespace vdb_madf {
 
@@ -18,7 +20,7 @@ struct Flow {
   /// 1 + the index in criticalPoints of the critical point that a voxel flows to, and kOwnCell.
   VoxelArray<uint32_t> manifold;
   /// Fixed points of Pi with D and the size of their stable manifolds, lexicographic by position.
-  std::vector<ManifoldGraph::Node> criticalPoints;
+  std::vector<CriticalPoint> criticalPoints;
 };
 
 /// Follows p -> Pi(p) -> Pi(Pi(p)) ... to the fixed points, by pointer jumping on the balls: a set

@@ -6,22 +6,17 @@
 #include <cstdint>
 #include <vector>
 
-#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/leaves/voxel_array.h"
+#include "vdb_madf/method/critical_point.h"
+#include "vdb_madf/method/flow.h"
 
 namespace vdb_madf {
 
 /// Critical points and how their stable manifolds touch: all that merging needs.
 struct ManifoldGraph {
-  /// A critical point c; nodes are in lexicographic order of position (x, then y, then z).
-  struct Node {
-    Coord position;
-    int32_t squaredRadius = 0;  ///< D(c), voxels squared
-    int64_t voxels = 0;         ///< of its stable manifold
-    bool operator==(const Node& o) const {
-      return position == o.position && squaredRadius == o.squaredRadius && voxels == o.voxels;
-    }
-  };
+  /// Nodes are in lexicographic order of position (x, then y, then z).
+  using Node = CriticalPoint;
   /// Two stable manifolds that contain 6-adjacent voxels. first < second; edges are sorted by both.
   struct Edge {
     uint32_t first = 0, second = 0;  ///< node indices
@@ -36,11 +31,6 @@ struct ManifoldGraph {
   std::vector<Node> nodes;
   std::vector<Edge> edges;
 };
-
-class LeafIndex;
-struct Flow;
-template <typename T>
-class VoxelArray;
 
 /// The graph of a flow; \p power is the (filtered) power map that it followed. Height of a voxel:
 /// H(p) = -power(p) = D(s) - |p - s|^2 with s = Pi(p).

@@ -10,6 +10,7 @@
 #include "vdb_madf/leaves/detail/leaf_values.h"
 #include "vdb_madf/leaves/detail/pencil.h"
 #include "vdb_madf/method/detail/metric.h"
+#include "vdb_madf/method/detail/power_passes.h"
 
 namespace vdb_madf {
 
@@ -287,6 +288,14 @@ bool fits64Bits(const LeafIndex& index, int32_t largestSquaredRadius) {
 
 }  // namespace
 
+void detail::sweepPower(const LeafIndex& index, int32_t maxSquaredRadius, PowerMap& map,
+                        Interrupter* interrupter) {
+  if (fits64Bits(index, maxSquaredRadius))
+    sweepAll<int64_t>(index, int64_t(maxSquaredRadius) + 1, map, interrupter);
+  else
+    sweepAll<__int128>(index, __int128(maxSquaredRadius) + 1, map, interrupter);
+}
+
 PowerMap powerMap(const LeafIndex& index, SquaredDistance distance, Interrupter* interrupter) {
   PowerMap map;
   map.power = std::move(distance.values);
@@ -295,16 +304,8 @@ PowerMap powerMap(const LeafIndex& index, SquaredDistance distance, Interrupter*
                       [&](size_t begin, size_t end) {
                         for (size_t i = begin; i < end; ++i) map.power[i] = -map.power[i];
                       });
-  sweepPower(index, distance.largest, map, interrupter);
+  detail::sweepPower(index, distance.largest, map, interrupter);
   return map;
-}
-
-void sweepPower(const LeafIndex& index, int32_t largestSquaredRadius, PowerMap& map,
-                Interrupter* interrupter) {
-  if (fits64Bits(index, largestSquaredRadius))
-    sweepAll<int64_t>(index, int64_t(largestSquaredRadius) + 1, map, interrupter);
-  else
-    sweepAll<__int128>(index, __int128(largestSquaredRadius) + 1, map, interrupter);
 }
 
 }  // namespace vdb_madf

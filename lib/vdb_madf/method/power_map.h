@@ -26,14 +26,4 @@ constexpr int32_t kUncovered = 1;
 PowerMap powerMap(const LeafIndex& index, SquaredDistance distance,
                   Interrupter* interrupter = nullptr);
 
-/// The same of some balls only: `negativeRadii` holds -D(x) at the sites, kUncovered at the other
-/// object voxels. Voxels that no ball covers stay kUncovered.
-///
-/// Separable lower envelopes (Coeurjolly & Montanvert 2007) along z, y, x. They stay within the
-/// runs of X, exactly: if pi_x(p) < 0 the path x -> z -> y -> p lies in the open ball (x, D(x)),
-/// which holds no background. No ball may be larger than `largestSquaredRadius`; if that and the
-/// object are so large that 64-bit keys overflow, the slower 128-bit ones are used.
-void sweepPower(const LeafIndex& index, int32_t largestSquaredRadius, PowerMap& map,
-                Interrupter* interrupter = nullptr);
-
 }  // namespace vdb_madf

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/leaves/object_components.h"
+#include "vdb_madf/leaves/detail/object_components.h"
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 
-namespace vdb_madf {
+namespace vdb_madf::detail {
 
 namespace {
 
@@ -23,8 +23,7 @@ LeafIndex::Mask flood(LeafIndex::Mask seed, const LeafIndex::Mask& mask) {
     grown = false;
     for (int x = 0; x < 8; ++x) {
       const uint64_t w = seed[x];
-      uint64_t next =
-          w | (w & ~detail::kLastZ) << 1 | (w & ~detail::kFirstZ) >> 1 | w << 8 | w >> 8;
+      uint64_t next = w | (w & ~kLastZ) << 1 | (w & ~kFirstZ) >> 1 | w << 8 | w >> 8;
       if (x > 0) next |= seed[x - 1];
       if (x < 7) next |= seed[x + 1];
       next &= mask[x];
@@ -59,14 +58,14 @@ constexpr uint32_t kNoPiece = ~0u;
 /// the last face along an axis, or the first.
 void markFace(const LeafIndex::Mask& mask, int axis, bool last, uint32_t piece, uint32_t* face) {
   if (axis == 0) {
-    detail::forEachBit(mask[last ? 7 : 0], [&](int bit) { face[bit] = piece; });
+    forEachBit(mask[last ? 7 : 0], [&](int bit) { face[bit] = piece; });
     return;
   }
   for (size_t x = 0; x < 8; ++x) {
-    const uint64_t bits = axis == 1 ? mask[x] & (last ? kLastY : kFirstY)
-                                    : mask[x] & (last ? detail::kLastZ : detail::kFirstZ);
-    detail::forEachBit(
-        bits, [&](int bit) { face[x * 8 + size_t(axis == 1 ? bit & 7 : bit >> 3)] = piece; });
+    const uint64_t bits =
+        axis == 1 ? mask[x] & (last ? kLastY : kFirstY) : mask[x] & (last ? kLastZ : kFirstZ);
+    forEachBit(bits,
+               [&](int bit) { face[x * 8 + size_t(axis == 1 ? bit & 7 : bit >> 3)] = piece; });
   }
 }
 
@@ -79,7 +78,7 @@ ObjectComponents::ObjectComponents(const LeafIndex& index, Interrupter* interrup
     std::vector<uint32_t> counts;  // per leaf
   };
   std::vector<Chunk> chunks((index.leafCount() + kChunk - 1) / kChunk);
-  detail::parallelFor(chunks.size(), 1, interrupter, [&](size_t begin, size_t end) {
+  parallelFor(chunks.size(), 1, interrupter, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const size_t stop = std::min(index.leafCount(), (i + 1) * kChunk);
       for (size_t leaf = i * kChunk; leaf < stop; ++leaf) {
@@ -98,7 +97,7 @@ ObjectComponents::ObjectComponents(const LeafIndex& index, Interrupter* interrup
   }
 
   // Pieces that meet in a face between leaves belong together.
-  detail::DisjointSets sets(pieces_.size());
+  DisjointSets sets(pieces_.size());
   for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
     for (int axis = 0; axis < 3; ++axis) {
       const uint32_t next = index.neighbors(leaf)[size_t(2 * axis + 1)];
@@ -133,4 +132,4 @@ uint32_t ObjectComponents::componentOf(VoxelId id) const {
   return pieces_[piece].component;
 }
 
-}  // namespace vdb_madf
+}  // namespace vdb_madf::detail

@@ -7,7 +7,7 @@
 
 #include "vdb_madf/leaves/leaf_index.h"
 
-namespace vdb_madf {
+namespace vdb_madf::detail {
 
 /// The 6-connected components of X. Found from masks alone: flood fill by words within a leaf, then
 /// union over the faces between leaves; memory is per leaf, not per voxel.
@@ -30,4 +30,4 @@ class ObjectComponents {
   uint32_t count_ = 0;
 };
 
-}  // namespace vdb_madf
+}  // namespace vdb_madf::detail
