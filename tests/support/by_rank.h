@@ -16,8 +16,8 @@ namespace vdb_madf::test {
 /// f(id) for the object voxels, ascending.
 template <typename F>
 void forEachId(const LeafIndex& index, const F& f) {
-  for (size_t id = 0; id < index.leafCount() * 512; ++id)
-    if (index.mask(id >> 9)[id >> 6 & 7] >> (id & 63) & 1) f(VoxelId(id));
+  for (VoxelId id = 0; id < index.leafCount() * 512; ++id)
+    if (index.mask(leafOf(id))[wordOf(id)] >> bitOf(id) & 1) f(id);
 }
 
 /// The id of a voxel of one of the leaves.

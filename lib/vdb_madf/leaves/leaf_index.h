@@ -15,9 +15,22 @@
 
 namespace vdb_madf {
 
-/// Position of a voxel in a LeafIndex: leaf * 512 + offset, offset = x*64 + y*8 + z within the
-/// leaf.
+/// Position of a voxel in a LeafIndex: leaf * 512 + offset, offset = x*64 + y*8 + z within the leaf.
+/// In a leaf's mask (see LeafIndex::Mask) it is a bit of a word.
 using VoxelId = uint32_t;
+
+constexpr uint32_t leafOf(VoxelId id) {
+  return id >> 9;
+}
+constexpr uint32_t offsetOf(VoxelId id) {
+  return id & 511;
+}
+constexpr uint32_t wordOf(VoxelId id) {  ///< x within the leaf
+  return id >> 6 & 7;
+}
+constexpr uint32_t bitOf(VoxelId id) {  ///< y*8 + z within the leaf
+  return id & 63;
+}
 
 /// The topology of the object X: its 8x8x8 leaves sorted by origin (x, then y, then z), their masks
 /// and their six neighbours. The one place that knows the topology; every stage works on it.
@@ -50,14 +63,14 @@ class LeafIndex {
   size_t leafVoxels(size_t leaf) const { return firstRank_[leaf + 1] - firstRank_[leaf]; }
   /// Object voxels before a voxel: where a VoxelArray holds its value.
   size_t rank(VoxelId id) const {
-    const size_t leaf = id >> 9, x = id >> 6 & 7;
-    const uint64_t before = masks_[leaf][x] & ((uint64_t(1) << (id & 63)) - 1);
+    const size_t leaf = leafOf(id), x = wordOf(id);
+    const uint64_t before = masks_[leaf][x] & ((uint64_t(1) << bitOf(id)) - 1);
     return firstRank_[leaf] + wordRank_[leaf][x] + detail::countBits(before);
   }
 
   Coord coord(VoxelId id) const {
-    const Coord& o = origins_[id >> 9];
-    return {o.x() + int(id >> 6 & 7), o.y() + int(id >> 3 & 7), o.z() + int(id & 7)};
+    const Coord& o = origins_[leafOf(id)];
+    return {o.x() + int(wordOf(id)), o.y() + int(bitOf(id) >> 3), o.z() + int(bitOf(id) & 7)};
   }
 
  private:

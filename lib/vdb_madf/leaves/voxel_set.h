@@ -18,13 +18,13 @@ class VoxelSet {
   VoxelSet() = default;
   explicit VoxelSet(size_t leafCount) : words_(leafCount * 8) {}
 
-  bool contains(VoxelId id) const { return words_[id >> 6] >> (id & 63) & 1; }
-  void insert(VoxelId id) { words_[id >> 6] |= uint64_t(1) << (id & 63); }
-  void erase(VoxelId id) { words_[id >> 6] &= ~(uint64_t(1) << (id & 63)); }
+  bool contains(VoxelId id) const { return words_[id >> 6] >> bitOf(id) & 1; }
+  void insert(VoxelId id) { words_[id >> 6] |= uint64_t(1) << bitOf(id); }
+  void erase(VoxelId id) { words_[id >> 6] &= ~(uint64_t(1) << bitOf(id)); }
   /// Safe from several threads at a time.
   void insertAtomic(VoxelId id) {
     uint64_t* word = &words_[id >> 6];
-    const uint64_t bit = uint64_t(1) << (id & 63);
+    const uint64_t bit = uint64_t(1) << bitOf(id);
     if (!(__atomic_load_n(word, __ATOMIC_RELAXED) & bit))
       __atomic_fetch_or(word, bit, __ATOMIC_RELAXED);
   }
@@ -36,7 +36,7 @@ class VoxelSet {
   void rankMembers();
   uint32_t size() const { return size_; }
   uint32_t rank(VoxelId id) const {
-    return before_[id >> 6] + detail::countBits(words_[id >> 6] & ((uint64_t(1) << (id & 63)) - 1));
+    return before_[id >> 6] + detail::countBits(words_[id >> 6] & ((uint64_t(1) << bitOf(id)) - 1));
   }
   /// Members in ascending order.
   std::vector<VoxelId> members() const;

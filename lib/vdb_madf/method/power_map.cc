@@ -106,9 +106,9 @@ VDB_MADF_SIMD void computeRadii(const LeafIndex& index, const Coord& origin, Scr
     for (int row = 0; row < 64; ++row) {
       int32_t away = 0;
       if (Axis != 2) {  // rows: x*8 + z along y, y*8 + z along x
-        const Coord& leaf = origins[site[row] >> 9];
+        const Coord& leaf = origins[leafOf(site[row])];
         const int dz = leaf.z() + int(site[row] & 7) - (origin.z() + (row & 7));
-        const int dy = leaf.y() + int(site[row] >> 3 & 7) - (origin.y() + (row >> 3));
+        const int dy = leaf.y() + int(bitOf(site[row]) >> 3) - (origin.y() + (row >> 3));
         away = detail::squaredAlong(dz) + (Axis == 0 ? detail::squaredAlong(dy) : 0);
       }
       radius2[row] = away - power[row];

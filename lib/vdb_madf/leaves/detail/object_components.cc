@@ -125,9 +125,9 @@ ObjectComponents::ObjectComponents(const LeafIndex& index, Interrupter* interrup
 }
 
 uint32_t ObjectComponents::componentOf(VoxelId id) const {
-  const uint32_t leaf = id >> 9;
+  const uint32_t leaf = leafOf(id);
   uint32_t piece = firstPiece_[leaf];
-  while (piece + 1 < firstPiece_[leaf + 1] && !(pieces_[piece].mask[id >> 6 & 7] >> (id & 63) & 1))
+  while (piece + 1 < firstPiece_[leaf + 1] && !(pieces_[piece].mask[wordOf(id)] >> bitOf(id) & 1))
     ++piece;
   return pieces_[piece].component;
 }

@@ -29,8 +29,8 @@ void forEachVoxel(const LeafIndex& index, size_t begin, size_t end, const F& f) 
 /// leaves of the index (whether or not they are object voxels).
 template <typename F>
 void forEachNeighbor(const LeafIndex& index, VoxelId id, const F& f) {
-  const LeafIndex::Neighbors& leaves = index.neighbors(id >> 9);
-  const uint32_t leafBase = id & ~VoxelId(511), offset = id & 511;
+  const LeafIndex::Neighbors& leaves = index.neighbors(leafOf(id));
+  const uint32_t offset = offsetOf(id), leafBase = id - offset;
   constexpr int kShift[3] = {6, 3, 0};
   for (int axis = 0; axis < 3; ++axis) {
     const uint32_t step = 1u << kShift[axis], t = offset >> kShift[axis] & 7;
@@ -46,7 +46,7 @@ void forEachNeighbor(const LeafIndex& index, VoxelId id, const F& f) {
 }
 
 inline bool isObject(const LeafIndex& index, VoxelId id) {
-  return index.mask(id >> 9)[id >> 6 & 7] >> (id & 63) & 1;
+  return index.mask(leafOf(id))[wordOf(id)] >> bitOf(id) & 1;
 }
 
 }  // namespace vdb_madf::detail
