@@ -6,15 +6,13 @@
 #include <cmath>
 #include <cstdint>
 
-#include "vdb_madf/leaves/leaf_index.h"
-
 // The metric of the method: |v|^2 = x^2 + y^2 + z^2, in voxels squared, exact in integers.
 //
-// An anisotropic metric (integer weights: |v|^2 = a x^2 + b y^2 + c z^2) would go here. squaredAlong()
-// is the only square of a coordinate difference; the separable passes of squared_distance.cc and
-// power_map.cc call it for one axis at a time and would pass the weight of that axis on to their
-// kernels. The bounds that keep squares within 32 bits (base/limits.h) and those of the keys of
-// lower_envelope.h would have to follow the weights.
+// An anisotropic metric, |v|^2 = a x^2 + b y^2 + c z^2 with integer weights, would go here: all
+// stages take their squares from squaredAlong(). Those that know the axis would name it; the
+// kernels work along one axis at a time and would be given its weight. The bounds that keep squares
+// within 32 bits (base/limits.h) and keys within 64 (fits64Bits in power_map.cc) would follow.
+// Written for unit weights are the formulas of lower_envelope.cc that expand (u - x)^2.
 
 namespace vdb_madf::detail {
 
@@ -24,8 +22,9 @@ constexpr T squaredAlong(T n) {
   return n * n;
 }
 
-/// |p - q|^2
-inline int64_t squaredBetween(const Coord& p, const Coord& q) {
+/// |p - q|^2 of two voxels (Coord).
+template <typename Voxel>
+int64_t squaredBetween(const Voxel& p, const Voxel& q) {
   int64_t sum = 0;
   for (int axis = 0; axis < 3; ++axis) sum += squaredAlong(int64_t(p[axis]) - q[axis]);
   return sum;
@@ -35,12 +34,6 @@ inline int64_t squaredBetween(const Coord& p, const Coord& q) {
 /// distance.
 constexpr int32_t addedByStep(int32_t along, int32_t step) {
   return squaredAlong(along + step) - squaredAlong(along);
-}
-
-/// D(x) of the site x of a voxel p: pi(p) = |p - x|^2 - D(x).
-inline int32_t siteSquaredRadius(const LeafIndex& index, VoxelId voxel, VoxelId site,
-                                 int32_t power) {
-  return int32_t(squaredBetween(index.coord(voxel), index.coord(site)) - power);
 }
 
 /// Cosine of the angle at which two balls meet (paper, eq. 7), from the squared distance of their

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+
+// The passes of the squared distance along 64 rows at a time, on plain arrays. A slab holds the
+// values of the 64 rows at one position; slab follows slab.
+
+namespace vdb_madf::detail {
+
+/// No background voxel known yet. Adding a squared row length to it does not overflow 32 bits.
+constexpr uint32_t kInfinite = 1u << 31;
+
+/// The positions of rows that lie in the domain (all, where the boundary is closed), and what the
+/// positions just before the first and just after the last count as.
+struct RowDomain {
+  int begin, end;          ///< positions [begin, end) lie in the domain
+  uint32_t before, after;  ///< 0 (background) or kInfinite (unknown)
+};
+
+/// First pass: out(t) = the squared distance along the row to the nearest background voxel, or
+/// kInfinite if there is none. Bit `row` of masks[t] tells whether a voxel is in the object; voxels
+/// outside the object and the domain are unknown, not background.
+/// `out` holds `length` slabs.
+void scanRows(const uint64_t* masks, int length, const RowDomain& domain, uint32_t* out);
+
+/// Other passes: out(t) = min over s of in(s) + (s - t)^2, at most kInfinite. `in` and `out` point
+/// to the slab of position 0; `in` has one more slab at either end, the positions -1 and `length`.
+void widenWindows(const uint32_t* in, int length, uint32_t* out);
+
+}  // namespace vdb_madf::detail

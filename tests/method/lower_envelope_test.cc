@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/method/kernels/lower_envelope.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <random>
+#include <vector>
+
+namespace {
+
+using namespace vdb_madf::detail;
+
+size_t at(int t, int row) {
+  return size_t(t) * kEnvelopeSlab + size_t(row);
+}
+
+/// Rows with gaps in the object, sites among the rest, and so few values that ties are common.
+template <typename Key>
+EnvelopeRows<Key> randomRows(int length, int maxRadius2, uint32_t seed) {
+  std::mt19937 random(seed);
+  EnvelopeRows<Key> rows;
+  rows.resize(size_t(length));
+  for (int t = 0; t < length; ++t) {
+    for (int row = 0; row < 64; ++row) {
+      const bool object = random() % 12 != 0, site = random() % (1 + unsigned(row) % 5) == 0;
+      const int radius2 = 1 + int(random() % unsigned(maxRadius2));
+      const int power = -1 - int(random() % unsigned(radius2));
+      rows.power[at(t + 1, row)] = !object ? 0 : site ? power : kNotNegative;
+      rows.site[at(t, row)] = uint32_t(t);
+      rows.radius2[at(t + 1, row)] = radius2;
+    }
+  }
+  return rows;
+}
+
+/// Voxels where the pass is not what its definition says.
+template <typename Key>
+int differences(int length, int maxRadius2, uint32_t seed) {
+  const EnvelopeRows<Key> in = randomRows<Key>(length, maxRadius2, seed);
+  EnvelopeRows<Key> out = in;
+  lowerEnvelopes(length, Key(maxRadius2) + 1, out);
+  const auto power = [&](int t, int row) { return in.power[at(t + 1, row)]; };
+  int wrong = 0;
+  for (int row = 0; row < 64; ++row) {
+    for (int t = 0; t < length; ++t) {
+      if (power(t, row) == 0) continue;
+      int begin = t, end = t;
+      while (begin > 0 && power(begin - 1, row) != 0) --begin;
+      while (end < length && power(end, row) != 0) ++end;
+      int best = kNotNegative, site = -1;
+      for (int s = begin; s < end; ++s) {
+        if (power(s, row) >= 0) continue;
+        const int value = power(s, row) + (s - t) * (s - t);
+        if (value >= 0) continue;
+        if (value < best ||
+            (value == best && in.radius2[at(s + 1, row)] > in.radius2[at(site + 1, row)])) {
+          best = value;
+          site = s;
+        }
+      }
+      wrong += out.power[at(t + 1, row)] != best;
+      if (site >= 0) wrong += out.site[at(t, row)] != uint32_t(site);
+    }
+  }
+  return wrong;
+}
+
+}  // namespace
+
+TEST_CASE("lower_envelope: by its definition, with keys of either width", "[lower_envelope]") {
+  for (const int length : {8, 64, 136}) {
+    for (const int maxRadius2 : {1, 3, 40, 2000}) {
+      for (uint32_t seed = 1; seed <= 10; ++seed) {
+        CAPTURE(length, maxRadius2, seed);
+        REQUIRE(differences<int64_t>(length, maxRadius2, seed) == 0);
+        REQUIRE(differences<__int128>(length, maxRadius2, seed) == 0);
+      }
+    }
+  }
+}
