@@ -23,7 +23,7 @@
 #include "vdb_madf/method/medial_balls.h"
 #include "vdb_madf/method/power_map.h"
 #include "vdb_madf/method/squared_distance.h"
-#include "vdb_madf/samples/generate.h"
+#include "vdb_madf/samples/pack.h"
 
 namespace {
 

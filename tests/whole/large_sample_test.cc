@@ -8,7 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "vdb_madf/method/segment.h"
-#include "vdb_madf/samples/generate.h"
+#include "vdb_madf/samples/pack.h"
 
 namespace {
 

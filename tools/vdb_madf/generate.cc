@@ -1,10 +1,6 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/samples/generate.h"
-#include "vdb_madf/images/open_image.h"
-#include "vdb_madf/volumes/write_image.h"
-
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -14,7 +10,13 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/output_file.h"
 #include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/images/open_image.h"
+#include "vdb_madf/samples/pack.h"
+#include "vdb_madf/samples/sintered.h"
+#include "vdb_madf/samples/snow.h"
+#include "vdb_madf/samples/spheres.h"
 #include "vdb_madf/vdb/write_vdb.h"
+#include "vdb_madf/volumes/write_image.h"
 
 namespace vdb_madf::tools {
 

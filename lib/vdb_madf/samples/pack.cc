@@ -1,21 +1,21 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include "vdb_madf/samples/pack.h"
+
 #include <algorithm>
+#include <cmath>
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/samples/detail/ball_union.h"
 #include "vdb_madf/samples/detail/random.h"
 #include "vdb_madf/samples/detail/sample_options.h"
-#include "vdb_madf/samples/generate.h"
 
 namespace vdb_madf {
 
 namespace {
 
 using detail::Ball;
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Half of what the documentation promises.
 constexpr double kFractionTolerance = 0.0025;
@@ -78,7 +78,7 @@ class PackBuilder {
   /// what is still free.) False, and nothing drawn, if too few would do.
   bool addBatch() {
     const double r = options_.maxRadius;
-    const double largest = 4.0 / 3.0 * kPi * r * r * r;
+    const double largest = 4.0 / 3.0 * M_PI * r * r * r;
     const double free = boxVoxels_ - double(balls_.voxelCount());
     const double volume = kBatchPart * missing() / free * centerVolume_;
     if (volume < double(kMinBatch) * largest) return false;
@@ -86,7 +86,7 @@ class PackBuilder {
     double sum = 0;
     for (int64_t drawn = 0; sum < volume && drawn < kMaxBatch; ++drawn) {
       const Ball ball = drawBall();
-      sum += 4.0 / 3.0 * kPi * ball.radius * ball.radius * ball.radius;
+      sum += 4.0 / 3.0 * M_PI * ball.radius * ball.radius * ball.radius;
       if (meetsBox(ball)) batch.push_back(ball);
     }
     balls_.add(batch, interrupter_);

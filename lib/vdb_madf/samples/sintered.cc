@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include "vdb_madf/samples/sintered.h"
+
 #include <algorithm>
 #include <vector>
 
@@ -9,10 +11,9 @@
 #include "vdb_madf/samples/detail/gaussian_blur.h"
 #include "vdb_madf/samples/detail/mask_blocks.h"
 #include "vdb_madf/samples/detail/power_cells.h"
-#include "vdb_madf/samples/detail/random.h"
 #include "vdb_madf/samples/detail/sample_options.h"
-#include "vdb_madf/samples/detail/sphere_placement.h"
-#include "vdb_madf/samples/generate.h"
+#include "vdb_madf/samples/detail/sintered_placement.h"
+#include "vdb_madf/samples/detail/white_noise.h"
 
 namespace vdb_madf {
 
@@ -50,18 +51,6 @@ FloatBox indicator(const CoordBBox& box, const std::vector<Ball>& balls) {
   return field;
 }
 
-FloatBox whiteNoise(const CoordBBox& box, uint64_t seed) {
-  FloatBox field(box);
-  const detail::WhiteNoise noise(seed, kNoiseStream);
-  float* values = field.values.data();
-  for (int x = box.min().x(); x <= box.max().x(); ++x)
-    for (int y = box.min().y(); y <= box.max().y(); ++y) {
-      const uint64_t row = noise.row(x, y);
-      for (int z = box.min().z(); z <= box.max().z(); ++z) *values++ = noise.value(row, z);
-    }
-  return field;
-}
-
 /// Fills the object block by block; only the blocks at work are held as dense arrays.
 class SurfaceBuilder {
  public:
@@ -87,7 +76,8 @@ class SurfaceBuilder {
     if (options_.roughness == 0) return field;
     seen = box;
     seen.expand(detail::kernelRadius(noiseKernel_));
-    const FloatBox noise = detail::blurred(whiteNoise(seen, options_.seed), noiseKernel_, nullptr);
+    const FloatBox noise = detail::blurred(
+        detail::whiteNoise(seen, options_.seed, kNoiseStream, nullptr), noiseKernel_, nullptr);
     const float amplitude = float(options_.roughness * kNoiseAmplitude);
     for (size_t i = 0; i < field.values.size(); ++i) field.values[i] += amplitude * noise.values[i];
     return field;

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include "vdb_madf/samples/snow.h"
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -11,9 +13,8 @@
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/samples/detail/gaussian_blur.h"
 #include "vdb_madf/samples/detail/mask_blocks.h"
-#include "vdb_madf/samples/detail/random.h"
 #include "vdb_madf/samples/detail/sample_options.h"
-#include "vdb_madf/samples/generate.h"
+#include "vdb_madf/samples/detail/white_noise.h"
 
 namespace vdb_madf {
 
@@ -21,8 +22,6 @@ namespace {
 
 using detail::FloatBox;
 using detail::MaskBlocks;
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// The field is so smooth that it is made on every n-th voxel only, its Gaussian's sigma at least
 /// this many lattice steps, and interpolated by cubic splines: of the peak wavelength, 0.01 % of
@@ -37,7 +36,7 @@ constexpr double kMinLength = 4;
 /// short of the Laplacian by the factor 1 - k^2/20, averaged over the directions, and the spline
 /// blurs with variance 1/3: the peak stays at k = 2 pi / length if sigma^2 = 2 / k^2 - 1/10 - 1/3.
 double gaussianSigma(double length) {
-  const double k = 2 * kPi / length;
+  const double k = 2 * M_PI / length;
   return std::sqrt(2 / (k * k) - (1.0 / 10 + 1.0 / 3));
 }
 
@@ -110,8 +109,8 @@ class RandomField {
     const auto kernel = detail::gaussianKernel(gaussianSigma(options.length / step_));
     CoordBBox noiseBox = lattice;
     noiseBox.expand(detail::kernelRadius(kernel) + 1);
-    const FloatBox smooth =
-        detail::blurred(whiteNoise(noiseBox, options.seed, interrupter), kernel, interrupter);
+    const FloatBox smooth = detail::blurred(
+        detail::whiteNoise(noiseBox, options.seed, 0, interrupter), kernel, interrupter);
 
     // The one layer around the lattice that is left serves the differences.
     FloatBox field(lattice);
@@ -128,20 +127,6 @@ class RandomField {
         }
     });
     return field;
-  }
-
-  static FloatBox whiteNoise(const CoordBBox& box, uint64_t seed, Interrupter* interrupter) {
-    FloatBox noise(box);
-    const detail::WhiteNoise source(seed, 0);
-    detail::parallelFor(size_t(box.dim().x()), 1, interrupter, [&](size_t begin, size_t end) {
-      for (int x = box.min().x() + int(begin); x < box.min().x() + int(end); ++x)
-        for (int y = box.min().y(); y <= box.max().y(); ++y) {
-          const uint64_t row = source.row(x, y);
-          float* out = noise.values.data() + noise.offset(x, y, box.min().z());
-          for (int z = box.min().z(); z <= box.max().z(); ++z) *out++ = source.value(row, z);
-        }
-    });
-    return noise;
   }
 
   int step_;

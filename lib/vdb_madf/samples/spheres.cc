@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include "vdb_madf/samples/spheres.h"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -11,7 +13,6 @@
 #include "vdb_madf/samples/detail/power_cells.h"
 #include "vdb_madf/samples/detail/sample_options.h"
 #include "vdb_madf/samples/detail/sphere_placement.h"
-#include "vdb_madf/samples/generate.h"
 
 namespace vdb_madf {
 

@@ -101,9 +101,10 @@ std::array<uint32_t, 8> Hexahedra::nodes(size_t element) const {
   const auto id = VoxelId(elements_[element] & 0xffffffffu);
   std::array<uint32_t, 8> result;
   for (size_t i = 0; i < 8; ++i) {
-    const unsigned x = (id >> 6 & 7) + (kCorners[i] >> 2),
-                   y = (id >> 3 & 7) + (kCorners[i] >> 1 & 1), z = (id & 7) + (kCorners[i] & 1);
-    const uint32_t leaf = around_[id >> 9][(x >> 3) * 4 + (y >> 3) * 2 + (z >> 3)];
+    const unsigned x = wordOf(id) + (kCorners[i] >> 2),
+                   y = (bitOf(id) >> 3) + (kCorners[i] >> 1 & 1),
+                   z = (bitOf(id) & 7) + (kCorners[i] & 1);
+    const uint32_t leaf = around_[leafOf(id)][(x >> 3) * 4 + (y >> 3) * 2 + (z >> 3)];
     result[i] = uint32_t(corners_.rank(leaf * 512 + (x & 7) * 64 + (y & 7) * 8 + (z & 7)));
   }
   return result;

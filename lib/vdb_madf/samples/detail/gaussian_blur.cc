@@ -11,9 +11,6 @@ namespace vdb_madf::detail {
 
 namespace {
 
-/// Boxes below this many values are blurred by the calling thread alone.
-constexpr size_t kSequentialValues = size_t(1) << 23;
-
 /// exp(-t) for 0 <= t <= 8: a Taylor series on t/256, squared eight times.
 double decay(double t) {
   const double x = -t / 256;

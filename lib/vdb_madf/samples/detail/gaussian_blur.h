@@ -22,6 +22,9 @@ struct FloatBox {
   }
 };
 
+/// Boxes below this many values are worked on by the calling thread alone.
+constexpr size_t kSequentialValues = size_t(1) << 23;
+
 /// One side of a normalised, sampled Gaussian, centre first, cut at 4 sigma. The same bits on every
 /// machine: no library exponential.
 std::vector<float> gaussianKernel(double sigma);

@@ -5,7 +5,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/samples/detail/random.h"
-#include "vdb_madf/samples/detail/sphere_placement.h"
+#include "vdb_madf/samples/detail/sintered_placement.h"
 
 namespace vdb_madf::detail {
 

@@ -14,8 +14,6 @@ namespace vdb_madf::detail {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// Relative; half of what the documentation promises.
 constexpr double kOverlapTolerance = 0.005;
 
@@ -46,7 +44,7 @@ class LatticeBall {
   Coord center;
 
   double radius() const { return radius_; }
-  double volume() const { return 4.0 / 3.0 * kPi * radius_ * radius_ * radius_; }
+  double volume() const { return 4.0 / 3.0 * M_PI * radius_ * radius_ * radius_; }
   int64_t voxels() const { return voxels_; }
   int reach() const { return reach_; }
 

@@ -6,13 +6,12 @@
 #include <vector>
 
 #include "vdb_madf/samples/detail/ball_union.h"
-#include "vdb_madf/samples/generate.h"
+#include "vdb_madf/samples/spheres.h"
 
 namespace vdb_madf::detail {
 
-/// The balls of a sample, sorted by centre (x, then y, then z), for options in range.
+/// The balls of a sample, sorted by center (x, then y, then z), for options in range.
 /// @throw InvalidInput if they cannot be placed; Interrupted.
 std::vector<Ball> placeSpheres(const SphereOptions& options, Interrupter* interrupter);
-std::vector<Ball> placeSintered(const SinteredOptions& options, Interrupter* interrupter);
 
 }  // namespace vdb_madf::detail
