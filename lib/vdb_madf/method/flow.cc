@@ -34,38 +34,40 @@ std::vector<uint32_t> rootBalls(const LeafIndex& index, const VoxelArray<VoxelId
   return next;
 }
 
-}  // namespace
-
-Flow flow(const LeafIndex& index, VoxelArray<VoxelId> site, const VoxelArray<int32_t>& power,
-          const VoxelSet& balls, Interrupter* interrupter) {
-  const std::vector<VoxelId> ids = balls.members();
-  const std::vector<uint32_t> root = rootBalls(index, site, balls, ids, interrupter);
-
-  std::vector<uint32_t> critical;
+/// The ranks of the fixed points among the balls, in lexicographic order of position.
+std::vector<uint32_t> fixedPoints(const LeafIndex& index, const std::vector<VoxelId>& ids,
+                                  const std::vector<uint32_t>& root) {
+  std::vector<uint32_t> fixed;
   for (uint32_t i = 0; i < ids.size(); ++i)
-    if (root[i] == i) critical.push_back(i);
-  std::sort(critical.begin(), critical.end(),
+    if (root[i] == i) fixed.push_back(i);
+  std::sort(fixed.begin(), fixed.end(),
             [&](uint32_t a, uint32_t b) { return index.coord(ids[a]) < index.coord(ids[b]); });
-  Flow result;
-  result.criticalPoints.reserve(critical.size());
-  std::vector<uint32_t> manifold(ids.size());
-  for (const uint32_t i : critical) {
-    // At a fixed point the power is -D.
-    result.criticalPoints.push_back({index.coord(ids[i]), -power[index.rank(ids[i])], 0});
-    manifold[i] = uint32_t(result.criticalPoints.size()) | Flow::kOwnCell;
-  }
-  for (uint32_t i = 0; i < ids.size(); ++i)
-    if (root[i] != i) manifold[i] = manifold[root[i]] & ~Flow::kOwnCell;
+  return fixed;
+}
 
+/// What Flow::manifold holds for the voxels of each ball's cell.
+std::vector<uint32_t> manifoldOfBall(const std::vector<uint32_t>& root,
+                                     const std::vector<uint32_t>& fixed) {
+  std::vector<uint32_t> manifold(root.size());
+  for (uint32_t i = 0; i < fixed.size(); ++i) manifold[fixed[i]] = (i + 1) | Flow::kOwnCell;
+  for (uint32_t i = 0; i < root.size(); ++i)
+    if (root[i] != i) manifold[i] = manifold[root[i]] & ~Flow::kOwnCell;
+  return manifold;
+}
+
+/// Replaces each voxel's site by its manifold, and counts the voxels of each manifold.
+void replaceSites(const LeafIndex& index, const VoxelSet& balls,
+                  const std::vector<uint32_t>& manifold, VoxelArray<VoxelId>& site,
+                  std::vector<CriticalPoint>& criticalPoints, Interrupter* interrupter) {
   detail::parallelFor(
       index.leafCount(), detail::kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-        // Neighbours along z mostly share their ball: look up and count by runs.
+        // Neighbors along z mostly share their ball: look up and count by runs.
         VoxelId ball = 0;
         uint32_t number = 0;
         int64_t run = 0;
         const auto flush = [&] {
           if (run > 0)
-            __atomic_fetch_add(&result.criticalPoints[(number & ~Flow::kOwnCell) - 1].voxels, run,
+            __atomic_fetch_add(&criticalPoints[(number & ~Flow::kOwnCell) - 1].voxels, run,
                                __ATOMIC_RELAXED);
         };
         const size_t stop = index.firstRank(end);
@@ -84,6 +86,20 @@ Flow flow(const LeafIndex& index, VoxelArray<VoxelId> site, const VoxelArray<int
         }
         flush();
       });
+}
+
+}  // namespace
+
+Flow flow(const LeafIndex& index, VoxelArray<VoxelId> site, const VoxelArray<int32_t>& power,
+          const VoxelSet& balls, Interrupter* interrupter) {
+  const std::vector<VoxelId> ids = balls.members();
+  const std::vector<uint32_t> root = rootBalls(index, site, balls, ids, interrupter);
+  const std::vector<uint32_t> fixed = fixedPoints(index, ids, root);
+  Flow result;
+  result.criticalPoints.reserve(fixed.size());
+  for (const uint32_t i : fixed)  // at a fixed point the power is -D
+    result.criticalPoints.push_back({index.coord(ids[i]), -power[index.rank(ids[i])], 0});
+  replaceSites(index, balls, manifoldOfBall(root, fixed), site, result.criticalPoints, interrupter);
   result.manifold = std::move(site);
   return result;
 }

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "vdb_madf/base/detail/bits.h"
-#include "vdb_madf/base/detail/disjoint_sets.h"
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 
@@ -72,6 +71,13 @@ void markFace(const LeafIndex::Mask& mask, int axis, bool last, uint32_t piece, 
 }  // namespace
 
 ObjectComponents::ObjectComponents(const LeafIndex& index, Interrupter* interrupter) {
+  findPieces(index, interrupter);
+  DisjointSets sets(pieces_.size());
+  joinPieces(index, sets);
+  numberComponents(sets);
+}
+
+void ObjectComponents::findPieces(const LeafIndex& index, Interrupter* interrupter) {
   constexpr size_t kChunk = 1024;
   struct Chunk {
     Pieces pieces;
@@ -95,29 +101,37 @@ ObjectComponents::ObjectComponents(const LeafIndex& index, Interrupter* interrup
     for (const LeafIndex::Mask& mask : chunk.pieces) pieces_.push_back({mask, 0});
     chunk = {};
   }
+}
 
-  // Pieces that meet in a face between leaves belong together.
-  DisjointSets sets(pieces_.size());
+/// Pieces that meet in a face between leaves belong together.
+void ObjectComponents::joinPieces(const LeafIndex& index, DisjointSets& sets) const {
   for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
     for (int axis = 0; axis < 3; ++axis) {
       const uint32_t next = index.neighbors(leaf)[size_t(2 * axis + 1)];
-      if (next == LeafIndex::kNone) continue;
-      uint32_t here[64], there[64];
-      std::fill(here, here + 64, kNoPiece);
-      std::fill(there, there + 64, kNoPiece);
-      for (uint32_t i = firstPiece_[leaf]; i < firstPiece_[leaf + 1]; ++i)
-        markFace(pieces_[i].mask, axis, true, i, here);
-      for (uint32_t i = firstPiece_[next]; i < firstPiece_[next + 1]; ++i)
-        markFace(pieces_[i].mask, axis, false, i, there);
-      uint32_t lastHere = kNoPiece, lastThere = kNoPiece;
-      for (int i = 0; i < 64; ++i) {
-        if (here[i] == kNoPiece || there[i] == kNoPiece) continue;
-        if (here[i] == lastHere && there[i] == lastThere) continue;
-        sets.unite(lastHere = here[i], lastThere = there[i]);
-      }
+      if (next != LeafIndex::kNone) joinFaces(uint32_t(leaf), next, axis, sets);
     }
   }
-  // A root is its set's first piece: number components in that order.
+}
+
+/// The pieces on both sides of the face between a leaf and the next one along an axis.
+void ObjectComponents::joinFaces(uint32_t leaf, uint32_t next, int axis, DisjointSets& sets) const {
+  uint32_t here[64], there[64];
+  std::fill(here, here + 64, kNoPiece);
+  std::fill(there, there + 64, kNoPiece);
+  for (uint32_t i = firstPiece_[leaf]; i < firstPiece_[leaf + 1]; ++i)
+    markFace(pieces_[i].mask, axis, true, i, here);
+  for (uint32_t i = firstPiece_[next]; i < firstPiece_[next + 1]; ++i)
+    markFace(pieces_[i].mask, axis, false, i, there);
+  uint32_t lastHere = kNoPiece, lastThere = kNoPiece;
+  for (int i = 0; i < 64; ++i) {
+    if (here[i] == kNoPiece || there[i] == kNoPiece) continue;
+    if (here[i] == lastHere && there[i] == lastThere) continue;
+    sets.unite(lastHere = here[i], lastThere = there[i]);
+  }
+}
+
+/// A root is its set's first piece: components are numbered in that order.
+void ObjectComponents::numberComponents(DisjointSets& sets) {
   for (uint32_t i = 0; i < pieces_.size(); ++i) {
     const uint32_t root = sets.find(i);
     pieces_[i].component = root == i ? count_++ : pieces_[root].component;

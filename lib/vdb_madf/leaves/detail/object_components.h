@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "vdb_madf/base/detail/disjoint_sets.h"
 #include "vdb_madf/leaves/leaf_index.h"
 
 namespace vdb_madf::detail {
@@ -25,6 +26,11 @@ class ObjectComponents {
     LeafIndex::Mask mask;
     uint32_t component;
   };
+  void findPieces(const LeafIndex& index, Interrupter* interrupter);
+  void joinPieces(const LeafIndex& index, DisjointSets& sets) const;
+  void joinFaces(uint32_t leaf, uint32_t next, int axis, DisjointSets& sets) const;
+  void numberComponents(DisjointSets& sets);
+
   std::vector<Piece> pieces_;
   std::vector<uint32_t> firstPiece_;  // per leaf; one more at the end
   uint32_t count_ = 0;
