@@ -9,8 +9,9 @@
 #include <sstream>
 
 #include "command.h"
-#include "input.h"
+#include "input_options.h"
 #include "json_file.h"
+#include "outputs.h"
 #include "text_file.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -143,22 +144,20 @@ void run(const Options& o, const Common& common) {
 
 }  // namespace
 
-void addCompare(CLI::App& app, Common& common, Action& action) {
+void addCompare(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = addVerb(app, common, "compare", "how well labels agree with the truth",
-                           "vdb_madf compare balls.vdb grains.vdb");
-  verb->add_option("TRUTH", o->truth.path, "labels: VDB or integer image")->required();
-  verb->add_option("TEST", o->test.path, "labels: VDB or integer image")->required();
-  verb->add_option("--truth-grid", o->truth.gridName, "grid of TRUTH")->type_name("NAME");
-  verb->add_option("--test-grid", o->test.gridName, "grid of TEST")->type_name("NAME");
-  verb->add_option("--json", o->json, "machine-readable result (-: standard output)")
-      ->type_name("FILE");
-  verb->add_option("--grains", o->grains, "CSV: a line per grain of either side")
-      ->type_name("FILE");
-  verb->add_option("--confusion", o->confusion, "CSV: voxels of each pair of labels that meets")
-      ->type_name("FILE");
-  o->truth.addRaw(*verb);
-  verb->callback([o, &common, &action] {
+  Verb verb = addVerb(command, common, "compare", "how well labels agree with the truth",
+                      "vdb_madf compare balls.vdb grains.vdb");
+  verb.option("TRUTH", o->truth.path, "labels: VDB or integer image").required();
+  verb.option("TEST", o->test.path, "labels: VDB or integer image").required();
+  verb.option("--truth-grid", o->truth.gridName, "grid of TRUTH").typeName("NAME");
+  verb.option("--test-grid", o->test.gridName, "grid of TEST").typeName("NAME");
+  verb.option("--json", o->json, "machine-readable result (-: standard output)").typeName("FILE");
+  verb.option("--grains", o->grains, "CSV: a line per grain of either side").typeName("FILE");
+  verb.option("--confusion", o->confusion, "CSV: voxels of each pair of labels that meets")
+      .typeName("FILE");
+  o->truth.addRaw(verb);
+  verb.onParsed([o, &common, &action] {
     for (InputOptions* input : {&o->truth, &o->test})
       input->outputs = {o->json, o->grains, o->confusion};
     o->truth.parse();

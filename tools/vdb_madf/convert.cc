@@ -7,8 +7,11 @@
 #include <type_traits>
 
 #include "command.h"
-#include "input.h"
+#include "input_options.h"
+#include "outputs.h"
+#include "parse.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/images/copy_image.h"
 #include "vdb_madf/images/image.h"
@@ -33,7 +36,7 @@ struct Options {
 /// The smallest sample type that surely holds a grid's values. Programs that look at TIFF take
 /// signed samples for something else than labels, if they take them at all.
 SampleType naturalType(const openvdb::GridBase& grid, const std::string& path) {
-  if (isLabelGrid(grid) && hasTiffEnding(path))
+  if (grid.isType<Int32Grid>() && hasTiffEnding(path))
     return labelType(static_cast<const Int32Grid&>(grid));
   const std::string type = grid.valueType();
   if (grid.isType<MaskGrid>() || type == "bool") return SampleType::uint8;
@@ -80,8 +83,7 @@ void convertMask(const Options& o, const Common& common) {
     return;
   }
   const BoolGrid::Ptr grid = toBoolGrid(*object);
-  if (o.boundary != "auto")
-    setBoundary(*grid, o.boundary == "open" ? Boundary::open : Boundary::closed);
+  if (o.boundary != "auto") setBoundary(*grid, parseBoundary(o.boundary));
   writeVdb(o.out, {grid}, common.progress);
   common.progress->end();
   const auto voxels = int64_t(object->activeVoxelCount());
@@ -91,14 +93,11 @@ void convertMask(const Options& o, const Common& common) {
 
 void copyVdb(const Options& o, const Common& common) {
   auto grids = readVdb(o.input.path, {}, common.progress);
-  if (!o.input.gridName.empty() || !hasVdbEnding(o.out))
-    grids = {chooseGrid(grids, o.input.path, o.input.gridName, "--grid",
-                        {"grain", "truth", "object"}, isNumericGrid)};
+  if (!o.input.gridName.empty() || !hasVdbEnding(o.out)) grids = {chooseGrid(o.input, grids)};
   for (const auto& grid : grids) {
     if (o.input.domain) setDomain(*grid, *o.input.domain);
     if (o.input.voxelSize) setVoxelSize(*grid, o.input.voxelSize);
-    if (o.boundary != "auto")
-      setBoundary(*grid, o.boundary == "open" ? Boundary::open : Boundary::closed);
+    if (o.boundary != "auto") setBoundary(*grid, parseBoundary(o.boundary));
   }
   if (!hasVdbEnding(o.out)) {
     writeGridAsImage(o, common, *grids[0]);
@@ -115,13 +114,12 @@ void run(const Options& o, const Common& common) {
   else if (fromVdb)
     copyVdb(o, common);
   else {
-    if (!o.input.gridName.empty())
-      throw InvalidInput(o.input.path + ": --grid is for VDB files, and this is none");
+    checkNoGrid(o.input, "--grid");
     if (o.input.domain || o.boundary != "auto")
       throw InvalidInput(o.input.path +
                          ": --domain and --boundary are for VDB files and masks, and this is "
                          "copied from image to image; leave them out");
-    const auto image = openInput(o.input);
+    const auto image = openVolumeImage(o.input.path, o.input.volume());
     const SampleType type = outputType(o).value_or(image->info().type);
     copyImage(o.out, *image, type, o.input.voxelSize, common.progress);
     report(o, common, "all values", toCoord(image->info().size), type);
@@ -130,24 +128,23 @@ void run(const Options& o, const Common& common) {
 
 }  // namespace
 
-void addConvert(CLI::App& app, Common& common, Action& action) {
+void addConvert(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb =
-      addVerb(app, common, "convert", "any readable volume to any writable volume",
+  Verb verb =
+      addVerb(command, common, "convert", "any readable volume to any writable volume",
               "vdb_madf convert scan.raw ice.vdb --dims 301x301x251 --type uint8 --threshold 128");
-  verb->add_option("IN", o->input.path, "any readable volume")->required();
-  verb->add_option("OUT", o->out, ".vdb (a mask, of an image), .tif, .raw, .mhd, .mha, .nrrd, .npy")
-      ->required();
-  o->input.addSelection(*verb);
-  o->input.addRaw(*verb);
-  verb->add_option("--out-type", o->outType, "sample type of the output")->type_name("TYPE");
-  o->input.addVoxelSize(*verb);
-  o->input.addDomain(*verb);
-  verb->add_option("--boundary", o->boundary,
-                   "what 'segment --boundary auto' shall take the mask for")
-      ->check(CLI::IsMember({"auto", "open", "closed"}))
-      ->capture_default_str();
-  verb->callback([o, &common, &action] {
+  verb.option("IN", o->input.path, "any readable volume").required();
+  verb.option("OUT", o->out, ".vdb (a mask, of an image), .tif, .raw, .mhd, .mha, .nrrd, .npy")
+      .required();
+  o->input.addSelection(verb);
+  o->input.addRaw(verb);
+  verb.option("--out-type", o->outType, "sample type of the output").typeName("TYPE");
+  o->input.addVoxelSize(verb);
+  o->input.addDomain(verb);
+  verb.option("--boundary", o->boundary, "what 'segment --boundary auto' shall take the mask for")
+      .oneOf({"auto", "open", "closed"})
+      .showDefault();
+  verb.onParsed([o, &common, &action] {
     o->input.outputs = {o->out};
     o->input.typeIsOfInput = hasVdbEnding(o->out);
     o->input.parse();

@@ -8,8 +8,10 @@
 #include <memory>
 
 #include "command.h"
-#include "input.h"
+#include "input_options.h"
+#include "outputs.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/limits.h"
 #include "vdb_madf/exports/clump_file.h"
 #include "vdb_madf/exports/hexahedra_file.h"
 #include "vdb_madf/exports/mesh_file.h"
@@ -17,6 +19,7 @@
 #include "vdb_madf/exports/vti_file.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/output_folder.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/images/open_image.h"
 #include "vdb_madf/labels/grain_masks.h"
@@ -263,47 +266,46 @@ void run(const Options& o, const Common& common, const Kind& kind) {
   else
     checkOutputFolder(o.out);
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
-  if (o.input.voxelSize) setVoxelSize(*labels, o.input.voxelSize);
-  naming(o.input.path, [&] { kind.run(o, common, *labels); });
+  withFileName(o.input.path, [&] { kind.run(o, common, *labels); });
 }
 
 }  // namespace
 
-void addExport(CLI::App& app, Common& common, Action& action) {
+void addExport(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = addVerb(app, common, "export", "labels for other programs",
-                           "vdb_madf export grains.vdb grains.ply\n"
-                           "  vdb_madf export grains.vdb view.vdb --as viz --max-dim 512");
-  verb->add_option("LABELS", o->input.path, "labels: VDB or integer image")->required();
-  verb->add_option("OUT", o->out, "what is written")->required();
-  verb->add_option("--as", o->kind, kindNames() + "; default: by the ending, where that is clear")
-      ->type_name("KIND");
-  verb->add_option("--grid", o->input.gridName, "VDB input: the grid to take")->type_name("NAME");
-  verb->add_option("--smooth", o->smoothing,
-                   "mesh, grids, surface: rounds of smoothing; 0: the exact "
-                   "faces of the voxels")
-      ->check(CLI::Range(0, 1000))
-      ->capture_default_str();
-  auto* maxDim = verb->add_option("--max-dim", o->maxDim,
-                                  "mesh, viz, lod: reduce until no axis has more voxels");
-  maxDim->check(CLI::Range(1, 1 << 20));
-  verb->add_option("--reduce", o->reduce, "mesh, viz, lod: voxels per coarse voxel along an axis")
-      ->check(CLI::Range(1, kMaxReduction))
-      ->excludes(maxDim);
-  verb->add_option("--triangles", o->mostTriangles,
-                   "mesh: most triangles; the labels are reduced until they suffice")
-      ->check(CLI::Range(int64_t(1), int64_t(0xffffffff)));
-  verb->add_flag("--compress", o->compress, "vti: with zlib");
-  verb->add_flag("--bool", o->asBool, "grids: the voxels as Bool grids, not level sets");
-  verb->add_option("--balls", o->clumps.mostBalls, "clumps: most balls per grain")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  verb->add_option("--uncovered", o->clumps.coverageError,
-                   "clumps: part of a grain that may stay uncovered, 0 to 1")
-      ->capture_default_str();
-  o->input.addRaw(*verb);
-  o->input.addVoxelSize(*verb);
-  verb->callback([o, &common, &action] {
+  Verb verb = addVerb(command, common, "export", "labels for other programs",
+                      "vdb_madf export grains.vdb grains.ply\n"
+                      "  vdb_madf export grains.vdb view.vdb --as viz --max-dim 512");
+  verb.option("LABELS", o->input.path, "labels: VDB or integer image").required();
+  verb.option("OUT", o->out, "what is written").required();
+  verb.option("--as", o->kind, kindNames() + "; default: by the ending, where that is clear")
+      .typeName("KIND");
+  verb.option("--grid", o->input.gridName, "VDB input: the grid to take").typeName("NAME");
+  verb.option("--smooth", o->smoothing,
+              "mesh, grids, surface: rounds of smoothing; 0: the exact "
+              "faces of the voxels")
+      .range(0, 1000)
+      .showDefault();
+  Option maxDim =
+      verb.option("--max-dim", o->maxDim, "mesh, viz, lod: reduce until no axis has more voxels");
+  maxDim.range(1, kMaxImageSide);
+  verb.option("--reduce", o->reduce, "mesh, viz, lod: voxels per coarse voxel along an axis")
+      .range(1, kMaxReduction)
+      .excludes(maxDim);
+  verb.option("--triangles", o->mostTriangles,
+              "mesh: most triangles; the labels are reduced until they suffice")
+      .range(int64_t(1), int64_t(0xffffffff));
+  verb.flag("--compress", o->compress, "vti: with zlib");
+  verb.flag("--bool", o->asBool, "grids: the voxels as Bool grids, not level sets");
+  verb.option("--balls", o->clumps.mostBalls, "clumps: most balls per grain")
+      .range(1, 1000000)
+      .showDefault();
+  verb.option("--uncovered", o->clumps.coverageError,
+              "clumps: part of a grain that may stay uncovered, 0 to 1")
+      .showDefault();
+  o->input.addRaw(verb);
+  o->input.addVoxelSize(verb);
+  verb.onParsed([o, &common, &action] {
     if (!(o->clumps.coverageError >= 0 && o->clumps.coverageError <= 1))
       throw WrongUsage("--uncovered: must lie between 0 and 1");
     const Kind& kind = findKind(*o);

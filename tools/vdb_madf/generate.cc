@@ -4,11 +4,15 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "command.h"
-#include "input.h"
+#include "outputs.h"
+#include "parse.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/limits.h"
 #include "vdb_madf/files/output_file.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/images/open_image.h"
 #include "vdb_madf/samples/pack.h"
@@ -22,27 +26,114 @@ namespace vdb_madf::tools {
 
 namespace {
 
-struct GenerateOptions {
-  std::string out, dims, radius, voxelSize;
+/// What is typed for any kind of sample, and the options of each kind.
+struct Options {
+  std::string out, dims, radius, voxelSizeText;
   int size = 0;
   uint64_t seed = 1;
+  std::optional<VoxelSize> voxelSize;
   SphereOptions spheres;
   PackOptions pack;
   SnowOptions snow;
   SinteredOptions sintered;
 };
 
-void parseRadius(const std::string& text, double& low, double& high) {
+/// A kind of sample: its own options, and the call that makes it.
+struct Kind {
+  const char *name, *description, *example;
+  void (*add)(Verb verb, Options& options);
+  /// Turns what was typed into the options of the kind. @throw WrongUsage
+  void (*parse)(Options& options);
+  Sample (*make)(const Options& options, Interrupter* interrupter);
+};
+
+template <typename KindOptions>
+void parseSizeAndSeed(const Options& typed, KindOptions& kind) {
+  if (!typed.dims.empty()) kind.size = parseDims(typed.dims, "--dims");
+  if (typed.size > 0) kind.size = Coord(typed.size);
+  kind.seed = typed.seed;
+}
+
+template <typename KindOptions>
+void parseRadius(const Options& typed, KindOptions& kind) {
+  const std::string& text = typed.radius;
   if (text.empty()) return;
   const size_t colon = text.find(':');
-  low = parseNumber(text.substr(0, colon), "--radius");
-  high = colon == std::string::npos ? low : parseNumber(text.substr(colon + 1), "--radius");
-  if (!(low > 0 && low <= high)) throw WrongUsage("--radius " + text + ": write A:B, 0 < A <= B");
+  kind.minRadius = parseNumber(text.substr(0, colon), "--radius");
+  kind.maxRadius =
+      colon == std::string::npos ? kind.minRadius : parseNumber(text.substr(colon + 1), "--radius");
+  if (!(kind.minRadius > 0 && kind.minRadius <= kind.maxRadius))
+    throw WrongUsage("--radius " + text + ": write A:B, 0 < A <= B");
 }
 
 void checkFraction(double fraction) {
   if (!(fraction > 0 && fraction < 1)) throw WrongUsage("--fraction must lie between 0 and 1");
 }
+
+constexpr Kind kKinds[] = {
+    {"spheres", "overlapping balls with known grains (paper, Table 1)",
+     "vdb_madf generate spheres balls.vdb --count 100 --radius 20:30 --overlap 0.084",
+     [](Verb verb, Options& options) {
+       SphereOptions& spheres = options.spheres;
+       verb.option("--count", spheres.count, "number of balls").showDefault();
+       verb.option("--radius", options.radius, "radii A:B, voxels (default 20:30)");
+       verb.option("--overlap", spheres.overlap, "overlap of the balls (paper, section 6.1)")
+           .showDefault();
+       verb.option("--max-cover", spheres.maxCover, "most balls that may share a voxel (0: any)")
+           .notNegative()
+           .showDefault();
+     },
+     [](Options& options) {
+       parseSizeAndSeed(options, options.spheres);
+       parseRadius(options, options.spheres);
+     },
+     [](const Options& options, Interrupter* interrupter) {
+       return generateSpheres(options.spheres, interrupter);
+     }},
+    {"pack", "many balls at a given solid fraction",
+     "vdb_madf generate pack pack.vdb --size 512 --fraction 0.25",
+     [](Verb verb, Options& options) {
+       verb.option("--fraction", options.pack.fraction, "solid fraction").showDefault();
+       verb.option("--radius", options.radius, "radii A:B, voxels (default 8:28)");
+     },
+     [](Options& options) {
+       parseSizeAndSeed(options, options.pack);
+       parseRadius(options, options.pack);
+       checkFraction(options.pack.fraction);
+     },
+     [](const Options& options, Interrupter* interrupter) {
+       return generatePack(options.pack, interrupter);
+     }},
+    {"snow", "a snow-like random structure",
+     "vdb_madf generate snow snow.vdb --size 256 --fraction 0.3 --voxel-size 10um",
+     [](Verb verb, Options& options) {
+       verb.option("--fraction", options.snow.fraction, "ice fraction").showDefault();
+       verb.option("--length", options.snow.length, "peak wavelength, voxels").showDefault();
+     },
+     [](Options& options) {
+       parseSizeAndSeed(options, options.snow);
+       checkFraction(options.snow.fraction);
+     },
+     [](const Options& options, Interrupter* interrupter) {
+       return generateSnow(options.snow, interrupter);
+     }},
+    {"sintered", "sintered balls with known grains",
+     "vdb_madf generate sintered grains.vdb --count 90 --roughness 0.15",
+     [](Verb verb, Options& options) {
+       SinteredOptions& sintered = options.sintered;
+       verb.option("--count", sintered.count, "number of balls").showDefault();
+       verb.option("--radius", options.radius, "radii A:B, voxels (default 12:22)");
+       verb.option("--neck", sintered.neck, "least distance of centres / (ri + rj)").showDefault();
+       verb.option("--roughness", sintered.roughness, "amplitude of surface noise").showDefault();
+     },
+     [](Options& options) {
+       parseSizeAndSeed(options, options.sintered);
+       parseRadius(options, options.sintered);
+     },
+     [](const Options& options, Interrupter* interrupter) {
+       return generateSintered(options.sintered, interrupter);
+     }},
+};
 
 /// OUT.tif -> OUT.truth.tif
 std::string truthPath(const std::string& out) {
@@ -64,123 +155,66 @@ void writeSample(const std::string& out, Sample& sample, Interrupter* interrupte
 }
 
 /// Nothing is read, so whatever cannot be made is the fault of the options.
-Sample makeSample(const std::function<Sample(Interrupter*)>& make, Interrupter* interrupter) {
+Sample makeSample(const Kind& kind, const Options& options, Interrupter* interrupter) {
   try {
-    return make(interrupter);
+    return kind.make(options, interrupter);
   } catch (const InvalidInput& error) {
     throw WrongUsage(std::string("cannot generate this: ") + error.what());
   }
 }
 
-/// A kind of sample: its own options besides those that all share, and the call that makes it.
-void addKind(CLI::App& verb, Common& common, Action& action, GenerateOptions& o,
-             const std::string& kind, const std::string& description,
-             const std::function<void(CLI::App&)>& addOptions,
-             const std::function<Sample(Interrupter*)>& make, const std::string& example) {
-  CLI::App* app = addVerb(verb, common, kind, description, example);
-  app->add_option("OUT", o.out, "file to write: .vdb, .tif, .raw, .mhd, .mha, .nrrd, .npy")
-      ->required();
-  CLI::Option* size =
-      app->add_option("--size", o.size, "edge of a cube, voxels")->check(CLI::Range(1, 26754));
-  app->add_option("--dims", o.dims, "size NXxNYxNZ, voxels")->excludes(size);
-  app->add_option("--seed", o.seed, "same seed, same bits")
-      ->check(CLI::NonNegativeNumber)  // would wrap around
-      ->capture_default_str();
-  app->add_option("--voxel-size", o.voxelSize, "edge of a voxel with unit, for example 8.5um");
-  addOptions(*app);
-  app->callback([&common, &action, &o, make] {
-    if (!hasVdbEnding(o.out) && !isImageEnding(o.out))
-      throw WrongUsage(o.out + ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd or .npy");
-    Coord dims;
-    if (!o.dims.empty()) dims = parseDims(o.dims, "--dims");
-    if (o.size > 0) dims = Coord(o.size);
-    const auto common_ = [&](auto& options) {
-      if (dims != Coord()) options.size = dims;
-      options.seed = o.seed;
-    };
-    common_(o.spheres);
-    common_(o.pack);
-    common_(o.snow);
-    common_(o.sintered);
-    parseRadius(o.radius, o.spheres.minRadius, o.spheres.maxRadius);
-    parseRadius(o.radius, o.pack.minRadius, o.pack.maxRadius);
-    parseRadius(o.radius, o.sintered.minRadius, o.sintered.maxRadius);
-    checkFraction(o.pack.fraction);
-    checkFraction(o.snow.fraction);
-    std::optional<VoxelSize> voxelSize;
-    if (!o.voxelSize.empty()) voxelSize = parseVoxelSize(o.voxelSize);
-    action = [&common, &o, make, voxelSize] {
-      checkWritable(o.out);
-      Sample sample = makeSample(make, common.progress);
-      if (voxelSize) {
-        setVoxelSize(*sample.object, voxelSize);
-        if (sample.truth) setVoxelSize(*sample.truth, voxelSize);
-      }
-      writeSample(o.out, sample, common.progress);
-      common.progress->end();
-      if (!common.quiet)
-        std::cout << o.out << ": " << sample.object->activeVoxelCount() << " object voxels, "
-                  << 100.0 * double(sample.object->activeVoxelCount()) /
-                         double(storedDomain(*sample.object)->volume())
-                  << " % of the volume\n";
-    };
+void parse(const Kind& kind, Options& options) {
+  if (!hasVdbEnding(options.out) && !isImageEnding(options.out))
+    throw WrongUsage(options.out +
+                     ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd or .npy");
+  kind.parse(options);
+  if (!options.voxelSizeText.empty()) options.voxelSize = parseVoxelSize(options.voxelSizeText);
+}
+
+void run(const Kind& kind, const Options& options, const Common& common) {
+  checkWritable(options.out);
+  Sample sample = makeSample(kind, options, common.progress);
+  if (options.voxelSize) {
+    setVoxelSize(*sample.object, options.voxelSize);
+    if (sample.truth) setVoxelSize(*sample.truth, options.voxelSize);
+  }
+  writeSample(options.out, sample, common.progress);
+  common.progress->end();
+  if (common.quiet) return;
+  const auto voxels = sample.object->activeVoxelCount();
+  std::cout << options.out << ": " << voxels << " object voxels, "
+            << 100.0 * double(voxels) / double(storedDomain(*sample.object)->volume())
+            << " % of the volume\n";
+}
+
+void addKind(Verb generate, Common& common, Action& action, const Kind& kind) {
+  auto options = std::make_shared<Options>();
+  Verb verb = addVerb(generate, common, kind.name, kind.description, kind.example);
+  verb.option("OUT", options->out, "file to write: .vdb, .tif, .raw, .mhd, .mha, .nrrd, .npy")
+      .required();
+  const Option size =
+      verb.option("--size", options->size, "edge of a cube, voxels").range(1, kMaxExtent);
+  verb.option("--dims", options->dims, "size NXxNYxNZ, voxels").excludes(size);
+  verb.option("--seed", options->seed, "same seed, same bits")
+      .notNegative()  // would wrap around
+      .showDefault();
+  verb.option("--voxel-size", options->voxelSizeText,
+              "edge of a voxel with unit, for example 8.5um");
+  kind.add(verb, *options);
+  verb.onParsed([options, &common, &action, &kind] {
+    parse(kind, *options);
+    action = [options, &common, &kind] { run(kind, *options, common); };
   });
 }
 
 }  // namespace
 
-void addGenerate(CLI::App& app, Common& common, Action& action) {
-  CLI::App* verb = app.add_subcommand("generate", "make a synthetic sample");
-  verb->require_subcommand(0, 1);
-  verb->footer(
+void addGenerate(Verb command, Common& common, Action& action) {
+  Verb generate = command.verb("generate", "make a synthetic sample");
+  generate.footer(
       "vdb_madf generate KIND --help explains a kind.\nExample:\n"
       "  vdb_madf generate snow snow.vdb --size 256");
-  auto o = std::make_shared<GenerateOptions>();
-  // The options live as long as the parser, which holds the callbacks that hold them.
-  verb->final_callback([o] {});
-
-  addKind(
-      *verb, common, action, *o, "spheres", "overlapping balls with known grains (paper, Table 1)",
-      [&](CLI::App& a) {
-        a.add_option("--count", o->spheres.count, "number of balls")->capture_default_str();
-        a.add_option("--radius", o->radius, "radii A:B, voxels (default 20:30)");
-        a.add_option("--overlap", o->spheres.overlap, "overlap of the balls (paper, section 6.1)")
-            ->capture_default_str();
-        a.add_option("--max-cover", o->spheres.maxCover,
-                     "most balls that may share a voxel (0: any)")
-            ->check(CLI::NonNegativeNumber)
-            ->capture_default_str();
-      },
-      [o](Interrupter* i) { return generateSpheres(o->spheres, i); },
-      "vdb_madf generate spheres balls.vdb --count 100 --radius 20:30 --overlap 0.084");
-  addKind(
-      *verb, common, action, *o, "pack", "many balls at a given solid fraction",
-      [&](CLI::App& a) {
-        a.add_option("--fraction", o->pack.fraction, "solid fraction")->capture_default_str();
-        a.add_option("--radius", o->radius, "radii A:B, voxels (default 8:28)");
-      },
-      [o](Interrupter* i) { return generatePack(o->pack, i); },
-      "vdb_madf generate pack pack.vdb --size 512 --fraction 0.25");
-  addKind(
-      *verb, common, action, *o, "snow", "a snow-like random structure",
-      [&](CLI::App& a) {
-        a.add_option("--fraction", o->snow.fraction, "ice fraction")->capture_default_str();
-        a.add_option("--length", o->snow.length, "peak wavelength, voxels")->capture_default_str();
-      },
-      [o](Interrupter* i) { return generateSnow(o->snow, i); },
-      "vdb_madf generate snow snow.vdb --size 256 --fraction 0.3 --voxel-size 10um");
-  addKind(
-      *verb, common, action, *o, "sintered", "sintered balls with known grains",
-      [&](CLI::App& a) {
-        a.add_option("--count", o->sintered.count, "number of balls")->capture_default_str();
-        a.add_option("--radius", o->radius, "radii A:B, voxels (default 12:22)");
-        a.add_option("--neck", o->sintered.neck, "least distance of centres / (ri + rj)")
-            ->capture_default_str();
-        a.add_option("--roughness", o->sintered.roughness, "amplitude of surface noise")
-            ->capture_default_str();
-      },
-      [o](Interrupter* i) { return generateSintered(o->sintered, i); },
-      "vdb_madf generate sintered grains.vdb --count 90 --roughness 0.15");
+  for (const Kind& kind : kKinds) addKind(generate, common, action, kind);
 }
 
 }  // namespace vdb_madf::tools

@@ -6,8 +6,9 @@
 #include <sstream>
 
 #include "command.h"
-#include "input.h"
+#include "input_options.h"
 #include "json_file.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/volumes/image_box.h"
@@ -99,7 +100,7 @@ void run(const Options& o, const Common& common) {
     for (const auto& grid : readVdb(o.input.path, {}, common.progress))
       json["grids"].push_back(describeGrid(*grid));
   } else {
-    const auto image = openInput(o.input);
+    const auto image = openVolumeImage(o.input.path, o.input.volume());
     json.update(describeImage(*image));
   }
   common.progress->end();
@@ -109,14 +110,13 @@ void run(const Options& o, const Common& common) {
 
 }  // namespace
 
-void addInfo(CLI::App& app, Common& common, Action& action) {
+void addInfo(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = addVerb(app, common, "info", "what is in a file", "vdb_madf info grains.vdb");
-  verb->add_option("FILE", o->input.path, "any readable volume")->required();
-  o->input.addRaw(*verb);
-  verb->add_option("--json", o->json, "machine-readable result (-: standard output)")
-      ->type_name("FILE");
-  verb->callback([o, &common, &action] {
+  Verb verb = addVerb(command, common, "info", "what is in a file", "vdb_madf info grains.vdb");
+  verb.option("FILE", o->input.path, "any readable volume").required();
+  o->input.addRaw(verb);
+  verb.option("--json", o->json, "machine-readable result (-: standard output)").typeName("FILE");
+  verb.onParsed([o, &common, &action] {
     o->input.outputs = {o->json};
     o->input.parse();
     action = [o, &common] { run(*o, common); };

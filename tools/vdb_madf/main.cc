@@ -8,23 +8,22 @@
 #include <new>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "command.h"
+#include "command_line.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/version.h"
 #include "vdb_madf/method/initialize.h"
 
 namespace vdb_madf::tools {
 
-CLI::App* addVerb(CLI::App& app, Common& common, const std::string& name,
-                  const std::string& description, const std::string& example) {
-  CLI::App* verb = app.add_subcommand(name, description);
-  verb->add_option("--threads", common.threads, "number of threads (default: all)")
-      ->check(CLI::Range(1, 4096));
-  verb->add_flag("-q,--quiet", common.quiet, "print nothing but errors");
-  verb->add_flag("-v,--verbose", common.verbose, "print more");
-  verb->footer("Example:\n  " + example);
+Verb addVerb(Verb parent, Common& common, const std::string& name, const std::string& description,
+             const std::string& example) {
+  Verb verb = parent.verb(name, description);
+  verb.option("--threads", common.threads, "number of threads (default: all)").range(1, 4096);
+  verb.flag("-q,--quiet", common.quiet, "print nothing but errors");
+  verb.flag("-v,--verbose", common.verbose, "print more");
+  verb.footer("Example:\n  " + example);
   return verb;
 }
 
@@ -73,13 +72,6 @@ void rejectEmptyArguments(int argc, char** argv) {
   }
 }
 
-/// "vdb_madf segment", as far as the command line was understood.
-std::string parsedCommand(const CLI::App& app) {
-  std::string command = app.get_name();
-  const std::vector<CLI::App*> verbs = app.get_subcommands();
-  return verbs.empty() ? command : command + " " + parsedCommand(*verbs.front());
-}
-
 void flushStandardOutput() {
   std::fflush(stdout);
   std::cout.flush();
@@ -88,47 +80,36 @@ void flushStandardOutput() {
 
 int run(int argc, char** argv) {
   rejectEmptyArguments(argc, argv);
-  CLI::App app("Separates the grains of granular microstructures in micro-CT volumes.", "vdb_madf");
-  app.set_version_flag("--version", std::string("vdb_madf ") + kVersion);
-  app.require_subcommand(0, 1);  // its absence is told below, in our words
-  app.get_formatter()->column_width(34);
-  app.get_formatter()->label("SUBCOMMAND", "VERB");
-  app.get_formatter()->label("Subcommands", "Verbs");
-  app.footer(
+  CommandLine line("vdb_madf",
+                   "Separates the grains of granular microstructures in micro-CT volumes.",
+                   kVersion);
+  Verb command = line.command();
+  command.footer(
       "vdb_madf VERB --help explains a verb.\nExample:\n"
       "  vdb_madf segment scan.tif grains.vdb --phase 1 --voxel-size 8.5um");
 
   Common common;
   Action action;
-  addGenerate(app, common, action);
-  addConvert(app, common, action);
-  addSegment(app, common, action);
-  addRemerge(app, common, action);
-  addSweep(app, common, action);
-  addMeasure(app, common, action);
-  addCompare(app, common, action);
-  addRender(app, common, action);
-  addExport(app, common, action);
-  addInfo(app, common, action);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    std::cout << app.help();
+  addGenerate(command, common, action);
+  addConvert(command, common, action);
+  addSegment(command, common, action);
+  addRemerge(command, common, action);
+  addSweep(command, common, action);
+  addMeasure(command, common, action);
+  addCompare(command, common, action);
+  addRender(command, common, action);
+  addExport(command, common, action);
+  addInfo(command, common, action);
+  if (const std::optional<std::string> text = line.parse(argc, argv)) {
+    std::cout << *text;
     flushStandardOutput();
     return kDone;
-  } catch (const CLI::CallForVersion&) {
-    std::cout << "vdb_madf " << kVersion << "\n";
-    flushStandardOutput();
-    return kDone;
-  } catch (const CLI::ParseError& error) {
-    return fail(kWrongUsage,
-                std::string(error.what()) + " (see " + parsedCommand(app) + " --help)");
   }
-  const std::string command = parsedCommand(app);
-  if (!action) return fail(kWrongUsage, "say what to do: see " + command + " --help");
+  const std::string given = line.given();
+  if (!action) throw WrongUsage("say what to do: see " + given + " --help");
 
   catchInterrupts();
-  Progress progress(common.quiet, command.substr(command.find(' ') + 1));
+  Progress progress(common.quiet, given.substr(given.find(' ') + 1));
   common.progress = &progress;
   std::optional<tbb::global_control> threads;
   if (common.threads > 0)

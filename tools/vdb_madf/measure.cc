@@ -7,7 +7,8 @@
 #include <memory>
 
 #include "command.h"
-#include "input.h"
+#include "input_options.h"
+#include "parse.h"
 #include "vdb_madf/exports/measurement_files.h"
 
 namespace vdb_madf::tools {
@@ -51,11 +52,9 @@ void run(const Options& o, const Common& common) {
   MeasurementTables tables(o.folder);
   common.progress->start("read");
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
-  if (o.input.voxelSize) setVoxelSize(*labels, o.input.voxelSize);
-  if (o.input.domain) setDomain(*labels, *o.input.domain);
   common.progress->start("measure");
   const Measurements measurements =
-      naming(o.input.path, [&] { return measure(*labels, o.measure, common.progress); });
+      withFileName(o.input.path, [&] { return measure(*labels, o.measure, common.progress); });
   tables.write(measurements, o.iceDensity);
   common.progress->end();
   if (!common.quiet) print(o, measurements);
@@ -63,22 +62,19 @@ void run(const Options& o, const Common& common) {
 
 }  // namespace
 
-void addMeasure(CLI::App& app, Common& common, Action& action) {
+void addMeasure(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = addVerb(app, common, "measure", "tables of grains, bonds and the sample",
-                           "vdb_madf measure grains.vdb tables --voxel-size 8.5um");
-  verb->add_option("LABELS", o->input.path, "labels: VDB or integer image")->required();
-  verb->add_option("OUT_DIR", o->folder, "gets grains.csv, bonds.csv and sample.json")->required();
-  verb->add_option("--grid", o->input.gridName, "VDB input: the grid to take")->type_name("NAME");
-  o->input.addRaw(*verb);
-  o->input.addVoxelSize(*verb);
-  o->input.addDomain(*verb);
-  verb->add_option("--boundary", o->boundary,
-                   "beyond the scan's faces: open: unknown, closed: background")
-      ->check(CLI::IsMember({"auto", "open", "closed"}))
-      ->capture_default_str();
-  verb->add_option("--ice-density", o->density, "kg/m3 (default: 917)")->type_name("D");
-  verb->callback([o, &common, &action] {
+  Verb verb = addVerb(command, common, "measure", "tables of grains, bonds and the sample",
+                      "vdb_madf measure grains.vdb tables --voxel-size 8.5um");
+  verb.option("LABELS", o->input.path, "labels: VDB or integer image").required();
+  verb.option("OUT_DIR", o->folder, "gets grains.csv, bonds.csv and sample.json").required();
+  verb.option("--grid", o->input.gridName, "VDB input: the grid to take").typeName("NAME");
+  o->input.addRaw(verb);
+  o->input.addVoxelSize(verb);
+  o->input.addDomain(verb);
+  addBoundary(verb, o->boundary);
+  verb.option("--ice-density", o->density, "kg/m3 (default: 917)").typeName("D");
+  verb.onParsed([o, &common, &action] {
     parse(*o);
     action = [o, &common] { run(*o, common); };
   });

@@ -3,9 +3,9 @@
 
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
+#include "command_line.h"
 #include "vdb_madf/method/merge.h"
 
 namespace vdb_madf::tools {
@@ -13,12 +13,9 @@ namespace vdb_madf::tools {
 /// The merge options as typed; empty: not given.
 struct MergeArguments {
   std::string theta, mode, adjacency;
-  void add(CLI::App& verb);
+  void add(Verb verb);
   /// @throw WrongUsage
   MergeOptions parse() const;
 };
-
-/// @throw WrongUsage unless a whole number >= 0.
-int64_t parseGamma(const std::string& text);
 
 }  // namespace vdb_madf::tools

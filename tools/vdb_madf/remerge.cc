@@ -7,8 +7,9 @@
 #include <memory>
 
 #include "command.h"
-#include "input.h"
+#include "input_options.h"
 #include "merge_options.h"
+#include "outputs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/method/segmentation_metadata.h"
@@ -36,7 +37,7 @@ void run(const Options& o, const Common& common) {
 
   const MergeOptions merge = o.merge.parse();
   const Int32Grid::Ptr grain =
-      naming(o.input.path, [&] { return remerge(*manifold, merge, common.progress); });
+      withFileName(o.input.path, [&] { return remerge(*manifold, merge, common.progress); });
   const int64_t grains = *grainCount(*grain);
   // Every other grid of the segmentation goes along, told of the new merging.
   std::vector<openvdb::GridBase::ConstPtr> out{grain};
@@ -52,15 +53,14 @@ void run(const Options& o, const Common& common) {
 
 }  // namespace
 
-void addRemerge(CLI::App& app, Common& common, Action& action) {
+void addRemerge(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb =
-      addVerb(app, common, "remerge", "merge stored manifolds anew, without voxel work",
-              "vdb_madf remerge grains.vdb coarser.vdb --theta -0.7");
-  verb->add_option("SEG.vdb", o->input.path, "made by segment with --keep manifold")->required();
-  verb->add_option("OUT.vdb", o->out, "gets the new 'grain' and all other grids")->required();
-  o->merge.add(*verb);
-  verb->callback([o, &common, &action] {
+  Verb verb = addVerb(command, common, "remerge", "merge stored manifolds anew, without voxel work",
+                      "vdb_madf remerge grains.vdb coarser.vdb --theta -0.7");
+  verb.option("SEG.vdb", o->input.path, "made by segment with --keep manifold").required();
+  verb.option("OUT.vdb", o->out, "gets the new 'grain' and all other grids").required();
+  o->merge.add(verb);
+  verb.onParsed([o, &common, &action] {
     o->merge.parse();
     if (!hasVdbEnding(o->out)) throw WrongUsage(o->out + ": the output's ending must be .vdb");
     o->input.outputs = {o->out};

@@ -9,10 +9,12 @@
 
 #include "bitmap_font.h"
 #include "command.h"
-#include "input.h"
+#include "input_options.h"
+#include "outputs.h"
 #include "png_file.h"
 #include "scale_bar.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/grain_colors.h"
 #include "vdb_madf/pictures/grain_view.h"
 
@@ -208,28 +210,27 @@ void run(const Options& o, const Common& common) {
 
 }  // namespace
 
-void addRender(CLI::App& app, Common& common, Action& action) {
+void addRender(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = addVerb(app, common, "render", "coloured slices of labels and a shaded view",
-                           "vdb_madf render grains.vdb grains.png --azimuth 60");
-  verb->add_option("LABELS", o->input.path, "labels: VDB or integer image")->required();
-  verb->add_option("OUT.png", o->out, "the three middle slices and a view from outside")
-      ->required();
-  verb->add_option("--grid", o->input.gridName, "VDB input: the grid to take")->type_name("NAME");
-  verb->add_option("--only", o->only, "slices or view")->check(CLI::IsMember({"slices", "view"}));
-  verb->add_option("--size", o->size, "edge of each part, about, in pixels")
-      ->check(CLI::Range(16, 8192))
-      ->capture_default_str();
-  verb->add_option("--azimuth", o->view.azimuth, "of the view, degrees: 0 along y, 90 against x")
-      ->check(CLI::Range(-360.0, 360.0))
-      ->capture_default_str();
-  verb->add_option("--elevation", o->view.elevation, "of the view, degrees: 90 from above (z)")
-      ->check(CLI::Range(-90.0, 90.0))
-      ->capture_default_str();
-  o->input.addRaw(*verb);
-  verb->callback([o, &common, &action] {
+  Verb verb = addVerb(command, common, "render", "coloured slices of labels and a shaded view",
+                      "vdb_madf render grains.vdb grains.png --azimuth 60");
+  verb.option("LABELS", o->input.path, "labels: VDB or integer image").required();
+  verb.option("OUT.png", o->out, "the three middle slices and a view from outside").required();
+  verb.option("--grid", o->input.gridName, "VDB input: the grid to take").typeName("NAME");
+  verb.option("--only", o->only, "slices or view").oneOf({"slices", "view"});
+  verb.option("--size", o->size, "edge of each part, about, in pixels")
+      .range(16, 8192)
+      .showDefault();
+  verb.option("--azimuth", o->view.azimuth, "of the view, degrees: 0 along y, 90 against x")
+      .range(-360.0, 360.0)
+      .showDefault();
+  verb.option("--elevation", o->view.elevation, "of the view, degrees: 90 from above (z)")
+      .range(-90.0, 90.0)
+      .showDefault();
+  o->input.addRaw(verb);
+  verb.onParsed([o, &common, &action] {
     if (!hasPngEnding(o->out)) throw WrongUsage(o->out + ": the output's ending must be .png");
-    // CLI11's ranges let NaN pass.
+    // Option::range() lets NaN pass.
     if (!std::isfinite(o->view.azimuth)) throw WrongUsage("--azimuth: not a finite number");
     if (!std::isfinite(o->view.elevation)) throw WrongUsage("--elevation: not a finite number");
     o->input.outputs = {o->out};

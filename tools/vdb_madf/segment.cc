@@ -13,10 +13,11 @@
 #include <sstream>
 
 #include "command.h"
-#include "input.h"
+#include "input_options.h"
 #include "json_file.h"
-#include "memory_limit.h"
 #include "merge_options.h"
+#include "outputs.h"
+#include "parse.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/grids/object_mask.h"
@@ -258,7 +259,8 @@ void run(const Options& o, const Common& common) {
     return printEstimate(o, common, *object, options, timing.read, jsonFile);
   }
 
-  Segmentation s = naming(o.input.path, [&] { return segment(*object, options, common.progress); });
+  Segmentation s =
+      withFileName(o.input.path, [&] { return segment(*object, options, common.progress); });
   object.reset();
 
   if (tables) {
@@ -286,33 +288,29 @@ void run(const Options& o, const Common& common) {
 
 }  // namespace
 
-void addSegment(CLI::App& app, Common& common, Action& action) {
+void addSegment(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = addVerb(app, common, "segment", "cut the object into grains",
-                           "vdb_madf segment scan.tif grains.vdb --phase 1 --voxel-size 8.5um");
-  verb->add_option("IN", o->input.path, "any readable volume")->required();
-  verb->add_option("OUT.vdb", o->out, "gets the Int32 grid 'grain'");
-  o->input.addSelection(*verb);
-  o->input.addRaw(*verb);
-  o->input.addVoxelSize(*verb);
-  o->input.addDomain(*verb);
-  verb->add_option("--gamma", o->gamma, "least cell of a medial ball, voxels")
-      ->capture_default_str();
-  addBoundary(*verb, o->boundary);
-  o->merge.add(*verb);
-  verb->add_flag("--paper", o->paper, "the paper's merging: angle, cell, theta -0.8 unless given");
-  verb->add_option("--keep", o->keep, "more grids: distance,power,manifold,balls")
-      ->type_name("LIST");
-  verb->add_option("--tables", o->tables,
-                   "also measure: grains.csv, bonds.csv, sample.json in here")
-      ->type_name("DIR");
-  verb->add_option("--json", o->json, "machine-readable summary (-: standard output)")
-      ->type_name("FILE");
-  verb->add_option("--max-memory", o->maxMemory,
-                   "refuse what needs more, such as 12GiB (default: what the machine has free)")
-      ->type_name("SIZE");
-  verb->add_flag("--dry-run", o->dryRun, "only say how much memory it would take");
-  verb->callback([o, &common, &action] {
+  Verb verb = addVerb(command, common, "segment", "cut the object into grains",
+                      "vdb_madf segment scan.tif grains.vdb --phase 1 --voxel-size 8.5um");
+  verb.option("IN", o->input.path, "any readable volume").required();
+  verb.option("OUT.vdb", o->out, "gets the Int32 grid 'grain'");
+  o->input.addSelection(verb);
+  o->input.addRaw(verb);
+  o->input.addVoxelSize(verb);
+  o->input.addDomain(verb);
+  verb.option("--gamma", o->gamma, "least cell of a medial ball, voxels").showDefault();
+  addBoundary(verb, o->boundary);
+  o->merge.add(verb);
+  verb.flag("--paper", o->paper, "the paper's merging: angle, cell, theta -0.8 unless given");
+  verb.option("--keep", o->keep, "more grids: distance,power,manifold,balls").typeName("LIST");
+  verb.option("--tables", o->tables, "also measure: grains.csv, bonds.csv, sample.json in here")
+      .typeName("DIR");
+  verb.option("--json", o->json, "machine-readable summary (-: standard output)").typeName("FILE");
+  verb.option("--max-memory", o->maxMemory,
+              "refuse what needs more, such as 12GiB (default: what the machine has free)")
+      .typeName("SIZE");
+  verb.flag("--dry-run", o->dryRun, "only say how much memory it would take");
+  verb.onParsed([o, &common, &action] {
     parse(*o);
     action = [o, &common] { run(*o, common); };
   });

@@ -11,9 +11,9 @@
 #include <sstream>
 
 #include "command.h"
-#include "input.h"
-#include "memory_limit.h"
+#include "input_options.h"
 #include "merge_options.h"
+#include "parse.h"
 #include "sweep_plot.h"
 #include "text_file.h"
 #include "vdb_madf/base/errors.h"
@@ -33,7 +33,8 @@ struct Options {
 
 constexpr int kMaxThetas = 1000;
 
-std::vector<std::string> split(const std::string& text, char separator) {
+/// As split(), but nothing need follow the last separator.
+std::vector<std::string> listed(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::stringstream stream(text);
   for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
@@ -50,9 +51,9 @@ double asTyped(double number) {
 /// A list of cosines and of ranges FIRST:LAST:STEP, the last included.
 std::vector<double> parseThetas(const std::string& text) {
   std::vector<double> thetas;
-  for (const std::string& part : split(text, ',')) {
+  for (const std::string& part : listed(text, ',')) {
     std::vector<double> range;
-    for (const std::string& number : split(part, ':'))
+    for (const std::string& number : listed(part, ':'))
       range.push_back(parseNumber(number, "--theta"));
     if (range.size() == 1) {
       thetas.push_back(range[0]);
@@ -87,9 +88,9 @@ void parse(Options& o) {
     throw WrongUsage(o.plot + ": the plot's ending must be .svg");
   SweepOptions& sweep = o.sweep;
   sweep.gammas.clear();
-  for (const std::string& gamma : split(o.gamma, ',')) sweep.gammas.push_back(parseGamma(gamma));
+  for (const std::string& gamma : listed(o.gamma, ',')) sweep.gammas.push_back(parseGamma(gamma));
   sweep.modes.clear();
-  for (const std::string& mode : split(o.merge, ',')) {
+  for (const std::string& mode : listed(o.merge, ',')) {
     MergeArguments arguments;
     arguments.mode = mode;
     sweep.modes.push_back(arguments.parse().mode);
@@ -132,7 +133,7 @@ void run(const Options& o, const Common& common) {
   options.boundary = boundaryOf(o.boundary, o.input, *object);
   options.maxMemory = availableMemory();
   const std::vector<SweepRow> rows =
-      naming(o.input.path, [&] { return parameterSweep(*object, options, common.progress); });
+      withFileName(o.input.path, [&] { return parameterSweep(*object, options, common.progress); });
   csv.write(table(rows));
   plot.write(sweepPlot(rows, options.smallVoxels));
   common.progress->end();
@@ -143,35 +144,34 @@ void run(const Options& o, const Common& common) {
 
 }  // namespace
 
-void addSweep(CLI::App& app, Common& common, Action& action) {
+void addSweep(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb =
-      addVerb(app, common, "sweep", "grains for many gamma, theta and merge modes",
-              "vdb_madf sweep scan.tif sweep.csv --phase 1 --plot sweep.svg --gamma 0,20");
-  verb->add_option("IN", o->input.path, "any readable volume")->required();
-  verb->add_option("OUT.csv", o->out, "a line per gamma, merge mode and theta")->required();
-  o->input.addSelection(*verb);
-  o->input.addRaw(*verb);
-  o->input.addDomain(*verb);
-  verb->add_option("--gamma", o->gamma, "list of gammas, voxels; one segmentation each")
-      ->type_name("LIST")
-      ->capture_default_str();
-  verb->add_option("--theta", o->theta, "list of cosines and of ranges FIRST:LAST:STEP")
-      ->type_name("LIST")
-      ->capture_default_str();
-  verb->add_option("--merge", o->merge, "list of the tests: both, angle, neck")
-      ->type_name("LIST")
-      ->capture_default_str();
-  verb->add_option("--adjacency", o->adjacency, "what the angle test pairs: manifold, cell")
-      ->check(CLI::IsMember({"manifold", "cell"}))
-      ->capture_default_str();
-  addBoundary(*verb, o->boundary);
-  verb->add_option("--small", o->small, "a grain of fewer voxels counts as small")
-      ->type_name("N")
-      ->capture_default_str();
-  verb->add_option("--plot", o->plot, "SVG: grains, median size and share of small ones")
-      ->type_name("FILE.svg");
-  verb->callback([o, &common, &action] {
+  Verb verb = addVerb(command, common, "sweep", "grains for many gamma, theta and merge modes",
+                      "vdb_madf sweep scan.tif sweep.csv --phase 1 --plot sweep.svg --gamma 0,20");
+  verb.option("IN", o->input.path, "any readable volume").required();
+  verb.option("OUT.csv", o->out, "a line per gamma, merge mode and theta").required();
+  o->input.addSelection(verb);
+  o->input.addRaw(verb);
+  o->input.addDomain(verb);
+  verb.option("--gamma", o->gamma, "list of gammas, voxels; one segmentation each")
+      .typeName("LIST")
+      .showDefault();
+  verb.option("--theta", o->theta, "list of cosines and of ranges FIRST:LAST:STEP")
+      .typeName("LIST")
+      .showDefault();
+  verb.option("--merge", o->merge, "list of the tests: both, angle, neck")
+      .typeName("LIST")
+      .showDefault();
+  verb.option("--adjacency", o->adjacency, "what the angle test pairs: manifold, cell")
+      .oneOf({"manifold", "cell"})
+      .showDefault();
+  addBoundary(verb, o->boundary);
+  verb.option("--small", o->small, "a grain of fewer voxels counts as small")
+      .typeName("N")
+      .showDefault();
+  verb.option("--plot", o->plot, "SVG: grains, median size and share of small ones")
+      .typeName("FILE.svg");
+  verb.onParsed([o, &common, &action] {
     parse(*o);
     action = [o, &common] { run(*o, common); };
   });

@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/volumes/volume.h"
+
+#include "vdb_madf/files/detail/input_file.h"
+#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/same_file.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/vdb/read_vdb.h"
+#include "vdb_madf/volumes/read_labels.h"
+#include "vdb_madf/volumes/read_mask.h"
+
+namespace vdb_madf {
+
+namespace {
+
+bool isUsable(const openvdb::GridBase& grid, GridUse use) {
+  if (use == GridUse::labels) return grid.isType<Int32Grid>();
+  const std::string type = grid.valueType();
+  return grid.isType<MaskGrid>() || type == "bool" || type == "int32" || type == "int64" ||
+         type == "float" || type == "double";
+}
+
+std::vector<const char*> preferredNames(GridUse use) {
+  switch (use) {
+    case GridUse::object:
+      return {"object"};
+    case GridUse::labels:
+      return {"grain", "truth"};
+    case GridUse::values:
+      break;
+  }
+  return {"grain", "truth", "object"};
+}
+
+/// @throw InvalidInput if the options name a part that only other files have
+bool isReadAsVdb(const std::string& path, const VolumeOptions& options) {
+  const bool isVdb = !options.raw && isVdbFile(path);
+  if (isVdb && !options.dataset.empty())
+    throw InvalidInput(path + ": a dataset is named, and this is a VDB file: name a grid");
+  if (!isVdb && !options.grid.empty())
+    throw InvalidInput(path + ": a grid is named, and this is no VDB file");
+  return isVdb;
+}
+
+openvdb::GridBase::Ptr readGrid(const std::string& path, GridUse use, const VolumeOptions& options,
+                                Interrupter* interrupter) {
+  return chooseGrid(readVdb(path, {}, interrupter), path, use, options.grid);
+}
+
+MaskGrid::Ptr objectOf(const openvdb::GridBase& grid, const std::string& path,
+                       const VolumeOptions& options) {
+  try {
+    return objectMask(grid, options.selection);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(path + ": " + error.what());
+  }
+}
+
+void override(openvdb::GridBase& grid, const VolumeOptions& options) {
+  if (options.domain) setDomain(grid, *options.domain);
+  if (options.voxelSize) setVoxelSize(grid, options.voxelSize);
+}
+
+}  // namespace
+
+AmbiguousGrid::AmbiguousGrid(const std::string& path, const std::string& grids)
+    : InvalidInput(path + ": choose a grid by its name; the file holds " + grids), grids_(grids) {}
+
+bool isVdbFile(const std::string& path) {
+  try {
+    // OpenVDB's magic number: ' BDV' as a little-endian 64-bit integer.
+    if (detail::InputFile(path).head(8) == std::string(" BDV\0\0\0\0", 8)) return true;
+  } catch (const IoError&) {  // nothing there to look at
+  }
+  return fileEnding(path) == ".vdb" && !looksLikeImage(path);
+}
+
+openvdb::GridBase::Ptr chooseGrid(const std::vector<openvdb::GridBase::Ptr>& grids,
+                                  const std::string& path, GridUse use, const std::string& name) {
+  std::string list;
+  std::vector<openvdb::GridBase::Ptr> usable;
+  for (const auto& grid : grids) {
+    list += (list.empty() ? "" : ", ") + grid->getName() + " (" + grid->valueType() + ")";
+    if (isUsable(*grid, use)) usable.push_back(grid);
+  }
+  if (list.empty()) throw InvalidInput(path + ": the file holds no grid");
+  if (!name.empty()) {
+    for (const auto& grid : grids) {
+      if (grid->getName() != name) continue;
+      if (isUsable(*grid, use)) return grid;
+      throw InvalidInput(path + ": grid '" + name + "' holds " + grid->valueType() +
+                         " values, which this command cannot use");
+    }
+    throw InvalidInput(path + ": there is no grid '" + name + "'; the file holds " + list);
+  }
+  for (const char* preferred : preferredNames(use))
+    for (const auto& grid : usable)
+      if (grid->getName() == preferred) return grid;
+  if (usable.size() == 1) return usable[0];
+  if (!usable.empty()) throw AmbiguousGrid(path, list);
+  throw InvalidInput(path +
+                     (use == GridUse::labels
+                          ? ": there is no grid of labels (int32), such as segment writes"
+                          : ": there is no grid of a mask or numbers") +
+                     "; the file holds " + list);
+}
+
+std::unique_ptr<ImageReader> openVolumeImage(const std::string& path,
+                                             const VolumeOptions& options) {
+  auto image = openImage(path, options.raw, options.dataset);
+  for (const std::string& output : options.outputs)
+    for (const std::string& file : image->files())
+      if (isSameFile(file, output))
+        throw InvalidInput(output + ": holds samples of " + path +
+                           ", which the output would overwrite; choose another name");
+  return image;
+}
+
+MaskGrid::Ptr loadObject(const std::string& path, const VolumeOptions& options,
+                         Interrupter* interrupter) {
+  MaskGrid::Ptr object;
+  if (isReadAsVdb(path, options)) {
+    const auto grid = readGrid(path, GridUse::object, options, interrupter);
+    if (options.domain) setDomain(*grid, *options.domain);  // an inversion needs it
+    object = objectOf(*grid, path, options);
+  } else {
+    const auto image = openVolumeImage(path, options);
+    object = readMask(*image, options.selection.value_or(Selection{}), interrupter);
+  }
+  override(*object, options);
+  object->setName("object");
+  return object;
+}
+
+Int32Grid::Ptr loadLabels(const std::string& path, const VolumeOptions& options,
+                          Interrupter* interrupter) {
+  Int32Grid::Ptr labels;
+  if (isReadAsVdb(path, options)) {
+    labels = openvdb::gridPtrCast<Int32Grid>(readGrid(path, GridUse::labels, options, interrupter));
+  } else {
+    const auto image = openVolumeImage(path, options);
+    labels = readLabels(*image, interrupter);
+  }
+  override(*labels, options);
+  return labels;
+}
+
+}  // namespace vdb_madf

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/voxel_size.h"
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/selection.h"
+#include "vdb_madf/images/image.h"
+#include "vdb_madf/images/open_image.h"
+
+namespace vdb_madf {
+
+/// Any readable file, OpenVDB or an image of openImage(), as one volume. The defaults suit every
+/// file that describes itself and holds one volume.
+struct VolumeOptions {
+  std::string grid;                    ///< name of the grid of a VDB file; empty: see GridUse
+  std::string dataset;                 ///< array of a Zarr group or an HDF5 file: see openImage()
+  std::optional<RawLayout> raw;        ///< of a file without a header
+  std::optional<Selection> selection;  ///< object only: by value; default: see loadObject()
+  std::optional<VoxelSize> voxelSize;  ///< instead of the file's
+  std::optional<CoordBBox> domain;     ///< of the scan, in voxels, instead of the file's
+  /// Files that the caller will write: an image that has samples in one of them is refused.
+  std::vector<std::string> outputs;
+};
+
+/// What a grid is wanted for. Where none is named, it is the first that is there of the names in
+/// parentheses, else the only one of a type that can be used.
+enum class GridUse {
+  object,  ///< a mask, bool, int32, int64, float or double ("object")
+  labels,  ///< int32 ("grain", "truth")
+  values   ///< the types of `object` ("grain", "truth", "object")
+};
+
+/// Several grids can be used, and none was named.
+class AmbiguousGrid : public InvalidInput {
+ public:
+  AmbiguousGrid(const std::string& path, const std::string& grids);
+  /// The grids of the file with their types: "a (int32), b (int32)".
+  const std::string& grids() const { return grids_; }
+
+ private:
+  std::string grids_;
+};
+
+/// True if the file is OpenVDB by its first bytes; where they do not tell, by the ending .vdb.
+/// A file that is missing is judged by its ending.
+bool isVdbFile(const std::string& path);
+
+/// One of the grids of the file at `path`, which the messages name.
+/// @param name of the grid; empty: see GridUse
+/// @throw InvalidInput if there is no such grid or it cannot be used; AmbiguousGrid.
+openvdb::GridBase::Ptr chooseGrid(const std::vector<openvdb::GridBase::Ptr>& grids,
+                                  const std::string& path, GridUse use,
+                                  const std::string& name = "");
+
+/// openImage() with `raw` and `dataset` of the options.
+/// @throw InvalidInput if it has samples in one of the outputs; IoError.
+std::unique_ptr<ImageReader> openVolumeImage(const std::string& path,
+                                             const VolumeOptions& options = {});
+
+/// The object in a volume, as a grid "object" with domain and voxel size, as far as the file or the
+/// options tell them. Without a selection: of a grid as objectMask(), of an image as readMask().
+/// Peak memory: see readVdb() and readMask().
+/// @throw InvalidInput, one line that names the file, for a volume that does not fit the options
+///   (also AmbiguousGrid); IoError; Interrupted.
+MaskGrid::Ptr loadObject(const std::string& path, const VolumeOptions& options = {},
+                         Interrupter* interrupter = nullptr);
+
+/// The labels in a volume, an int32 grid or an image of integers: active where they are not 0.
+/// (Of a VDB file: the grid as it is.)
+/// @throw as loadObject(); InvalidInput if a value is no integer or beyond int32.
+Int32Grid::Ptr loadLabels(const std::string& path, const VolumeOptions& options = {},
+                          Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

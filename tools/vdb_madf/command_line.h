@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "wrong_usage.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace vdb_madf::tools {
+
+/// What more there is to say of an option, after Verb::option(). Its calls can be chained.
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+
+  Option& required();
+  /// What the help shows in the place of the value.
+  Option& typeName(const std::string& name);
+  /// The help shows the value that the variable has now.
+  Option& showDefault();
+  Option& oneOf(const std::vector<std::string>& values);
+  /// From `low` to `high`, both included. NaN passes.
+  Option& range(int low, int high);
+  Option& range(int64_t low, int64_t high);
+  Option& range(double low, double high);
+  Option& notNegative();
+  Option& excludes(const Option& other);
+
+ private:
+  CLI::Option* option_;
+};
+
+/// A verb, or the command itself: what its options and arguments are. The variables live until the
+/// command line is parsed.
+class Verb {
+ public:
+  explicit Verb(CLI::App* app) : app_(app) {}
+
+  /// A verb below this one; at most one of them is given.
+  Verb verb(const std::string& name, const std::string& description);
+  /// An option ("--size" or "-s,--size") or, without dashes, an argument by its place.
+  Option option(const std::string& name, std::string& value, const std::string& help);
+  Option option(const std::string& name, int& value, const std::string& help);
+  Option option(const std::string& name, uint64_t& value, const std::string& help);
+  Option option(const std::string& name, int64_t& value, const std::string& help);
+  Option option(const std::string& name, double& value, const std::string& help);
+  void flag(const std::string& name, bool& value, const std::string& help);
+  /// Text below the help.
+  void footer(const std::string& text);
+  /// Called when the verb was given and its options have their values; may throw WrongUsage.
+  void onParsed(std::function<void()> call);
+
+ private:
+  CLI::App* app_;
+};
+
+/// The command line as a whole. This is the one file that knows the library which parses it: its
+/// header takes longer to compile than most of our files.
+class CommandLine {
+ public:
+  CommandLine(const std::string& name, const std::string& description, const std::string& version);
+  ~CommandLine();
+
+  Verb command();
+  /// @return what is to be printed instead of any work, the help or the version
+  /// @throw WrongUsage
+  std::optional<std::string> parse(int argc, char** argv);
+  /// "vdb_madf segment": the command and the verbs that were given, after parse().
+  std::string given() const;
+
+ private:
+  std::unique_ptr<CLI::App> app_;
+};
+
+}  // namespace vdb_madf::tools

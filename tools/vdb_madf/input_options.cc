@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "input_options.h"
+
+#include "outputs.h"
+#include "parse.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/method/segmentation_metadata.h"
+#include "vdb_madf/volumes/image_box.h"
+#include "wrong_usage.h"
+
+namespace vdb_madf::tools {
+
+namespace {
+
+std::string typeNames() {
+  return "uint8, int8, uint16, int16, uint32, int32, float32 or float64";
+}
+
+/// Runs `choose`; if the grid has to be named, the message says by which option.
+template <typename Choose>
+auto withGridOption(const InputOptions& input, const std::string& gridOption,
+                    const Choose& choose) {
+  try {
+    return choose();
+  } catch (const AmbiguousGrid& error) {
+    throw InvalidInput(input.path + ": choose a grid with " + gridOption + "; the file holds " +
+                       error.grids());
+  }
+}
+
+}  // namespace
+
+void InputOptions::addRaw(Verb verb) {
+  verb.option("--dims", dims, "RAW input: size NXxNYxNZ, x fastest");
+  verb.option("--type", type,
+              "RAW input: its sample type (" + typeNames() + "); otherwise the output's");
+  verb.flag("--big-endian", bigEndian, "RAW input: most significant byte first");
+  verb.option("--dataset", dataset, "Zarr or HDF5 input: the array to read").typeName("NAME");
+}
+
+void InputOptions::addSelection(Verb verb) {
+  verb.option("--phase", phase, "object: value equals V").typeName("V");
+  verb.option("--threshold", threshold, "object: value >= T").typeName("T");
+  verb.option("--range", range, "object: A <= value <= B").typeName("A:B");
+  verb.flag("--invert", invert, "object: all other voxels");
+  verb.option("--grid", gridName, "VDB input: the grid to take").typeName("NAME");
+}
+
+void InputOptions::addVoxelSize(Verb verb) {
+  verb.option("--voxel-size", voxelSizeText, "edge of a voxel with unit, for example 8.5um");
+}
+
+void InputOptions::addDomain(Verb verb) {
+  verb.option("--domain", domainText,
+              "image domain x0,y0,z0:x1,y1,z1 (inclusive), instead of the file's");
+}
+
+void InputOptions::parse() {
+  if (!dims.empty()) size = parseDims(dims, "--dims");
+  if (!type.empty()) {
+    sampleType = sampleTypeFromName(type);
+    if (!sampleType) throw WrongUsage("--type " + type + ": must be " + typeNames());
+  }
+  if (typeIsOfInput && sampleType && !size)
+    throw WrongUsage("--type describes a RAW input: give --dims too");
+  if (bigEndian && !size) throw WrongUsage("--big-endian describes a RAW input: give --dims too");
+  if (size && !sampleType) throw WrongUsage("a RAW input needs --type: " + typeNames());
+  if (int(!phase.empty()) + int(!threshold.empty()) + int(!range.empty()) > 1)
+    throw WrongUsage("give only one of --phase, --threshold and --range");
+  if (!phase.empty()) selection = Selection::phase(parseNumber(phase, "--phase"));
+  if (!threshold.empty()) selection = Selection::threshold(parseNumber(threshold, "--threshold"));
+  if (!range.empty()) {
+    const std::vector<std::string> ends = split(range, ':');
+    if (ends.size() != 2) throw WrongUsage("--range " + range + ": write A:B");
+    selection = Selection::range(parseNumber(ends[0], "--range"), parseNumber(ends[1], "--range"));
+    if (selection->low > selection->high)
+      throw WrongUsage("--range " + range + ": the first value exceeds the second");
+  }
+  if (invert) {
+    if (!selection) selection = Selection{};
+    selection->invert = true;
+  }
+  if (!voxelSizeText.empty()) voxelSize = parseVoxelSize(voxelSizeText);
+  if (!domainText.empty()) domain = parseDomain(domainText);
+  checkOutputs(outputs, path);
+}
+
+VolumeOptions InputOptions::volume() const {
+  VolumeOptions options;
+  options.grid = gridName;
+  options.dataset = dataset;
+  if (size) options.raw = RawLayout{toImageSize(*size), *sampleType, bigEndian};
+  options.selection = selection;
+  options.voxelSize = voxelSize;
+  options.domain = domain;
+  options.outputs = filesOf(outputs);
+  return options;
+}
+
+bool isVdb(const InputOptions& input) {
+  if (input.size || !isVdbFile(input.path)) return false;
+  if (!input.dataset.empty())
+    throw InvalidInput(input.path + ": --dataset is for Zarr and HDF5; choose with --grid here");
+  return true;
+}
+
+void checkNoGrid(const InputOptions& input, const std::string& gridOption) {
+  if (!input.gridName.empty())
+    throw InvalidInput(input.path + ": " + gridOption + " is for VDB files, and this is none");
+}
+
+openvdb::GridBase::Ptr chooseGrid(const InputOptions& input,
+                                  const std::vector<openvdb::GridBase::Ptr>& grids) {
+  return withGridOption(input, "--grid", [&] {
+    return vdb_madf::chooseGrid(grids, input.path, GridUse::values, input.gridName);
+  });
+}
+
+MaskGrid::Ptr loadObject(const InputOptions& input, Interrupter* interrupter) {
+  if (!isVdb(input)) checkNoGrid(input, "--grid");
+  return withGridOption(input, "--grid", [&] {
+    return vdb_madf::loadObject(input.path, input.volume(), interrupter);
+  });
+}
+
+Int32Grid::Ptr loadLabels(const InputOptions& input, const std::string& gridOption,
+                          Interrupter* interrupter) {
+  if (!isVdb(input)) checkNoGrid(input, gridOption);
+  return withGridOption(input, gridOption, [&] {
+    return vdb_madf::loadLabels(input.path, input.volume(), interrupter);
+  });
+}
+
+void addBoundary(Verb verb, std::string& boundary) {
+  verb.option("--boundary", boundary, "beyond the scan's faces: open: unknown, closed: background")
+      .oneOf({"auto", "open", "closed"})
+      .showDefault();
+}
+
+Boundary boundaryOf(const std::string& boundary, const InputOptions& input,
+                    const MaskGrid& object) {
+  Boundary result = parseBoundary(boundary);
+  if (result == Boundary::automatic) result = storedBoundary(object);
+  if (result == Boundary::open && !storedDomain(object))
+    throw InvalidInput(input.path +
+                       ": its domain is unknown, so the boundary cannot be open: use --boundary "
+                       "closed, or give --domain x0,y0,z0:x1,y1,z1");
+  return result;
+}
+
+const char* hintIfEmpty(int64_t objectVoxels) {
+  return objectVoxels > 0 ? ""
+                          : ": nothing is selected (see --phase, --threshold, --range, --invert)";
+}
+
+}  // namespace vdb_madf::tools

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command_line.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/voxel_size.h"
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/selection.h"
+#include "vdb_madf/images/image.h"
+#include "vdb_madf/method/boundary.h"
+#include "vdb_madf/volumes/volume.h"
+
+namespace vdb_madf::tools {
+
+/// What the command line says of a volume to read. The text of each option is checked by parse().
+struct InputOptions {
+  std::string path;
+  std::vector<std::string> outputs;  ///< what the verb will write; empty names and "-" are none
+  std::string gridName;
+  std::string dataset;        ///< of a Zarr group or an HDF5 file
+  std::string dims, type;     ///< of a RAW file; `type` of the output if the input is not RAW
+  bool typeIsOfInput = true;  ///< nothing but a RAW input takes a `type`
+  bool bigEndian = false;
+  std::string phase, threshold, range;
+  bool invert = false;
+  std::string voxelSizeText, domainText;
+
+  // Filled by parse().
+  std::optional<Coord> size;
+  std::optional<SampleType> sampleType;
+  std::optional<Selection> selection;
+  std::optional<VoxelSize> voxelSize;
+  std::optional<CoordBBox> domain;
+
+  void addRaw(Verb verb);  ///< and --dataset
+  void addSelection(Verb verb);
+  void addVoxelSize(Verb verb);
+  void addDomain(Verb verb);
+  /// Also checks that the outputs overwrite neither the input nor each other. @throw WrongUsage
+  void parse();
+  VolumeOptions volume() const;
+};
+
+/// True if the input is to be read as OpenVDB.
+/// @throw InvalidInput if it is, and a dataset was asked for
+bool isVdb(const InputOptions& input);
+/// Where the input is no VDB file. @throw InvalidInput if a grid was asked for
+void checkNoGrid(const InputOptions& input, const std::string& gridOption);
+
+// The functions of volumes/volume.h; messages name the options.
+openvdb::GridBase::Ptr chooseGrid(const InputOptions& input,
+                                  const std::vector<openvdb::GridBase::Ptr>& grids);
+MaskGrid::Ptr loadObject(const InputOptions& input, Interrupter* interrupter);
+Int32Grid::Ptr loadLabels(const InputOptions& input, const std::string& gridOption,
+                          Interrupter* interrupter);
+
+/// Runs `work`; what the library has to say against the data then names the file, too.
+template <typename Work>
+auto withFileName(const std::string& path, const Work& work) -> decltype(work()) {
+  try {
+    return work();
+  } catch (const InvalidInput& error) {
+    const std::string what = error.what();
+    if (what.compare(0, path.size(), path) == 0) throw;
+    throw InvalidInput(path + ": " + what, error.hint());
+  }
+}
+
+/// Adds --boundary for what lies beyond the faces of a scan.
+void addBoundary(Verb verb, std::string& boundary);
+/// What --boundary says of an object: where it is `auto`, what the object's file says.
+/// @throw InvalidInput if it is open and the domain is unknown.
+Boundary boundaryOf(const std::string& boundary, const InputOptions& input, const MaskGrid& object);
+
+/// What to add to the number of an object's voxels: nothing, if there are any.
+const char* hintIfEmpty(int64_t objectVoxels);
+
+}  // namespace vdb_madf::tools

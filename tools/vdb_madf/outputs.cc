@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "outputs.h"
+
+#include <filesystem>
+
+#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/output_file.h"
+#include "vdb_madf/files/same_file.h"
+#include "wrong_usage.h"
+
+namespace vdb_madf::tools {
+
+std::vector<std::string> filesOf(const std::vector<std::string>& outputs) {
+  std::vector<std::string> files;
+  for (const std::string& output : outputs) {
+    if (output.empty() || output == "-") continue;
+    files.push_back(output);
+    if (fileEnding(output) == ".mhd")
+      files.push_back(std::filesystem::path(output).replace_extension(".raw").string());
+  }
+  return files;
+}
+
+void checkOutputs(const std::vector<std::string>& outputs, const std::string& input) {
+  const std::vector<std::string> files = filesOf(outputs);
+  for (size_t i = 0; i < files.size(); ++i) {
+    if (isSameFile(input, files[i]))
+      throw WrongUsage(files[i] + ": the output would overwrite the input; choose another name");
+    for (size_t j = 0; j < i; ++j)
+      if (isSameFile(files[j], files[i]))
+        throw WrongUsage(files[i] + ": two outputs would go to this file; choose another name");
+  }
+}
+
+void checkWritable(const std::string& output) {
+  const OutputFile probe(output);
+}
+
+bool hasVdbEnding(const std::string& path) {
+  return fileEnding(path) == ".vdb";
+}
+bool hasTiffEnding(const std::string& path) {
+  const std::string ending = fileEnding(path);
+  return ending == ".tif" || ending == ".tiff";
+}
+bool hasRawEnding(const std::string& path) {
+  return fileEnding(path) == ".raw";
+}
+bool hasPngEnding(const std::string& path) {
+  return fileEnding(path) == ".png";
+}
+
+}  // namespace vdb_madf::tools

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vdb_madf::tools {
+
+/// All files that the outputs are written to: an .mhd has its samples in a file beside it. Empty
+/// names and "-" are none.
+std::vector<std::string> filesOf(const std::vector<std::string>& outputs);
+/// @throw WrongUsage if the outputs would overwrite the input or each other
+void checkOutputs(const std::vector<std::string>& outputs, const std::string& input);
+/// Finds out before the work, not after it, that the output cannot be written. @throw IoError
+void checkWritable(const std::string& output);
+
+bool hasVdbEnding(const std::string& path);
+bool hasTiffEnding(const std::string& path);
+bool hasRawEnding(const std::string& path);
+bool hasPngEnding(const std::string& path);
+
+}  // namespace vdb_madf::tools

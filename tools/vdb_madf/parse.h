@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "vdb_madf/base/voxel_size.h"
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/method/boundary.h"
+
+namespace vdb_madf::tools {
+
+// Strict: the whole text must be what is asked for. Each function throws a WrongUsage that names the
+// option.
+
+/// Finite.
+double parseNumber(const std::string& text, const std::string& option);
+/// "301x301x251", each from 1 to kMaxImageSide.
+Coord parseDims(const std::string& text, const std::string& option);
+/// --domain: "x0,y0,z0:x1,y1,z1", both corners inclusive.
+CoordBBox parseDomain(const std::string& text);
+/// --voxel-size: "8.5um"
+VoxelSize parseVoxelSize(const std::string& text);
+/// --gamma: a whole number >= 0.
+int64_t parseGamma(const std::string& text);
+/// --max-memory: "500M", "12GiB", "16e9" in bytes; K, M, G, T with or without iB are powers of 1024,
+/// with B of 1000.
+int64_t parseMemory(const std::string& text);
+
+/// "auto", "open" or "closed"; does not throw.
+Boundary parseBoundary(const std::string& text);
+/// The parts between separators, also empty ones; at least one.
+std::vector<std::string> split(const std::string& text, char separator);
+/// "3.2 GiB"
+std::string readableBytes(int64_t bytes);
+
+}  // namespace vdb_madf::tools
