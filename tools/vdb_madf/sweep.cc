@@ -14,11 +14,11 @@
 #include "input_options.h"
 #include "merge_options.h"
 #include "parse.h"
-#include "sweep_plot.h"
 #include "text_file.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/method/segmentation_metadata.h"
+#include "vdb_madf/pictures/sweep_plot.h"
 
 namespace vdb_madf::tools {
 

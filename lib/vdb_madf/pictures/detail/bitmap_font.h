@@ -7,7 +7,7 @@
 
 #include "vdb_madf/pictures/picture.h"
 
-namespace vdb_madf::tools {
+namespace vdb_madf::detail {
 
 constexpr int kGlyphHeight = 7;  ///< pixels at scale 1
 
@@ -19,4 +19,4 @@ int textWidth(const std::string& text, int scale);
 void drawText(Picture& picture, int left, int top, const std::string& text, const Rgb& color,
               int scale);
 
-}  // namespace vdb_madf::tools
+}  // namespace vdb_madf::detail

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "bitmap_font.h"
+#include "vdb_madf/pictures/detail/bitmap_font.h"
 
 #include <array>
 #include <string_view>
 
-namespace vdb_madf::tools {
+namespace vdb_madf::detail {
 
 namespace {
 
@@ -65,4 +65,4 @@ void drawText(Picture& picture, int left, int top, const std::string& text, cons
   }
 }
 
-}  // namespace vdb_madf::tools
+}  // namespace vdb_madf::detail

@@ -9,11 +9,11 @@
 
 #include "vdb_madf/method/parameter_sweep.h"
 
-namespace vdb_madf::tools {
+namespace vdb_madf {
 
-/// An SVG of three diagrams against theta: number of grains and median size (logarithmic axes), and
+/// The text of an SVG file, of three diagrams against theta: number of grains and median size (logarithmic axes), and
 /// share of grains below `smallVoxels`. A line for each gamma (colour) and merge mode (dashes);
-/// rows in the order of sweep(). Values of 0 have no place on a logarithmic axis and are left out.
+/// rows in the order of parameterSweep(). Values of 0 have no place on a logarithmic axis and are left out.
 std::string sweepPlot(const std::vector<SweepRow>& rows, int64_t smallVoxels);
 
-}  // namespace vdb_madf::tools
+}  // namespace vdb_madf

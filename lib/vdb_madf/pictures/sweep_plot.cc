@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "sweep_plot.h"
+#include "vdb_madf/pictures/sweep_plot.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 
 #include "vdb_madf/method/segmentation_metadata.h"
 
-namespace vdb_madf::tools {
+namespace vdb_madf {
 
 namespace {
 
@@ -186,4 +186,4 @@ std::string sweepPlot(const std::vector<SweepRow>& rows, int64_t smallVoxels) {
   return svg.str();
 }
 
-}  // namespace vdb_madf::tools
+}  // namespace vdb_madf

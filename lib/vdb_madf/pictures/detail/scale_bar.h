@@ -8,7 +8,7 @@
 
 #include "vdb_madf/pictures/picture.h"
 
-namespace vdb_madf::tools {
+namespace vdb_madf::detail {
 
 struct ScaleBar {
   double metres = 0;
@@ -27,4 +27,4 @@ int height(const ScaleBar& bar);
 /// Of the bar or its text, whichever is wider.
 int width(const ScaleBar& bar);
 
-}  // namespace vdb_madf::tools
+}  // namespace vdb_madf::detail

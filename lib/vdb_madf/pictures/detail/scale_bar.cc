@@ -1,15 +1,15 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "scale_bar.h"
+#include "vdb_madf/pictures/detail/scale_bar.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "bitmap_font.h"
+#include "vdb_madf/pictures/detail/bitmap_font.h"
 
-namespace vdb_madf::tools {
+namespace vdb_madf::detail {
 
 namespace {
 
@@ -52,4 +52,4 @@ void draw(const ScaleBar& bar, int left, int bottom, const Rgb& color, Picture& 
            kTextScale);
 }
 
-}  // namespace vdb_madf::tools
+}  // namespace vdb_madf::detail

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <string>
+
+#include "vdb_madf/pictures/picture.h"
+
+namespace vdb_madf {
+
+/// Writes an RGB PNG of 8 bits a channel, whole or not at all. It is made in memory first: about
+/// three bytes a pixel. The picture has at least one pixel.
+/// @throw IoError, one line that names the file.
+void writePng(const std::string& path, const Picture& picture);
+
+}  // namespace vdb_madf

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/pictures/png_file.h"
+
+#include <png.h>
+
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <random>
+
+#include "support/files.h"
+#include "vdb_madf/base/errors.h"
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+
+TEST_CASE("png_file: a picture is read back as it was", "[png_file]") {
+  const ScratchFolder folder;
+  std::mt19937 random(1);
+  for (const auto& [width, height] : {std::pair<int, int>{1, 1}, {7, 3}, {300, 200}}) {
+    Picture picture(width, height, Rgb{});
+    for (Rgb& pixel : picture.pixels)
+      for (uint8_t& channel : pixel) channel = uint8_t(random());
+    writePng(folder / "a.png", picture);
+    const std::string bytes = readFile(folder / "a.png");
+    png_image image;
+    std::memset(&image, 0, sizeof image);
+    image.version = PNG_IMAGE_VERSION;
+    REQUIRE(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()));
+    REQUIRE(int(image.width) == width);
+    REQUIRE(int(image.height) == height);
+    image.format = PNG_FORMAT_RGB;
+    Picture read(width, height, Rgb{});
+    REQUIRE(png_image_finish_read(&image, nullptr, read.pixels.data(), 0, nullptr));
+    CHECK(read.pixels == picture.pixels);
+  }
+}
+
+TEST_CASE("png_file: nothing is left where it cannot be written", "[png_file]") {
+  const ScratchFolder folder;
+  CHECK_THROWS_AS(writePng(folder / "none/a.png", Picture(2, 2, Rgb{})), IoError);
+  CHECK_THROWS_AS(writePng(folder / "b.png", Picture(0, 0, Rgb{})), IoError);
+  CHECK(folder.fileCount() == 0);
+}

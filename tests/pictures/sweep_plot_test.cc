@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/pictures/sweep_plot.h"
+
+#include <catch2/catch.hpp>
+#include <string>
+
+using namespace vdb_madf;
+using Catch::Matchers::Contains;
+
+namespace {
+
+int occurrences(const std::string& text, const std::string& what) {
+  int found = 0;
+  for (size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++found;
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("sweep_plot: a line a gamma and mode in each of three diagrams", "[sweep_plot]") {
+  std::vector<SweepRow> rows;
+  for (const int64_t gamma : {0, 20})
+    for (const MergeMode mode : {MergeMode::both, MergeMode::neck})
+      for (const double theta : {-0.9, -1.0, -0.5}) {
+        SweepRow row;
+        row.gamma = gamma;
+        row.mode = mode;
+        row.theta = theta;
+        row.grains = 100 + gamma;
+        row.medianVoxels = 50;
+        rows.push_back(row);
+      }
+  const std::string svg = sweepPlot(rows, 123);
+  CHECK(occurrences(svg, "<svg ") == 1);
+  CHECK(occurrences(svg, "</svg>") == 1);
+  CHECK(occurrences(svg, "<polyline ") == 3 * 4);
+  CHECK_THAT(svg, Contains("smaller than 123 voxels") && Contains(">gamma 20, neck<"));
+}
+
+TEST_CASE("sweep_plot: zeros have no place on a logarithmic axis", "[sweep_plot]") {
+  const std::string svg = sweepPlot({SweepRow()}, 100);
+  CHECK(occurrences(svg, "points=\"\"") == 2);
+  CHECK(occurrences(svg, "nan") == 0);
+  CHECK(occurrences(svg, "inf") == 0);
+  CHECK(occurrences(sweepPlot({}, 100), "<polyline ") == 0);
+}
