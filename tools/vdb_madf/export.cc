@@ -25,6 +25,7 @@
 #include "vdb_madf/labels/grain_masks.h"
 #include "vdb_madf/labels/reduced_labels.h"
 #include "vdb_madf/measure/grain_network.h"
+#include "vdb_madf/method/ball_grids.h"
 #include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/pictures/preview_volume.h"
 #include "vdb_madf/shapes/clumps.h"
@@ -173,19 +174,15 @@ void exportClumps(const Options& o, const Common& common, const Int32Grid& label
   if (o.input.size || !isVdb(o.input))
     throw InvalidInput("clumps need the medial balls: segment with --keep balls into a VDB");
   const auto grids = readVdb(o.input.path, {}, common.progress);
-  const auto found = std::find_if(grids.begin(), grids.end(), [](const auto& grid) {
-    return grid->getName() == "balls" && grid->template isType<Int32Grid>();
-  });
-  if (found == grids.end())
-    throw InvalidInput("there is no grid 'balls': segment again with --keep balls");
-  const auto made =
-      clumps(labels, *openvdb::gridPtrCast<Int32Grid>(*found), o.clumps, common.progress);
+  const Int32Grid::Ptr balls = storedBalls(grids);
+  if (!balls) throw InvalidInput("there is no grid 'balls': segment again with --keep balls");
+  const auto made = clumps(labels, *balls, o.clumps, common.progress);
   writeClumps(o.out, made, labels.transform(), common.progress);
-  size_t balls = 0;
+  size_t ballCount = 0;
   int64_t voxels = 0, uncovered = 0, outside = 0;
   double farthest = 0;
   for (const Clump& clump : made) {
-    balls += clump.balls.size();
+    ballCount += clump.balls.size();
     voxels += clump.voxels;
     uncovered += clump.uncovered;
     outside += clump.outside;
@@ -199,11 +196,11 @@ void exportClumps(const Options& o, const Common& common, const Int32Grid& label
   char distance[32];
   std::snprintf(distance, sizeof distance, "%.2f", farthest);
   say(o, common,
-      counted(made.size(), "grain") + ", " + counted(balls, "ball") + "; uncovered " +
+      counted(made.size(), "grain") + ", " + counted(ballCount, "ball") + "; uncovered " +
           percent(uncovered) + ", outside the own grain " + percent(outside) + ", volume error " +
           percent(outside - uncovered) + ", farthest voxel " + distance + " voxels from its balls" +
           // Distances ignore what may be beyond the faces of an open scan.
-          (storedBoundary(**found) == Boundary::open
+          (storedBoundary(*balls) == Boundary::open
                ? "; balls reach beyond the scan (segment with --boundary closed to prevent that)"
                : ""));
 }

@@ -3,18 +3,11 @@
 
 #include "json_file.h"
 
-#include <tbb/global_control.h>
-
 namespace vdb_madf::tools {
 
 void JsonFile::write(const Json& json) {
   // A file name need not be UTF-8: replace what is not.
   file_.write(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-}
-
-int usedThreads(const Common& common) {
-  if (common.threads > 0) return common.threads;
-  return int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 }
 
 }  // namespace vdb_madf::tools

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "command.h"
 #include "text_file.h"
 
 namespace vdb_madf::tools {
@@ -23,7 +22,5 @@ class JsonFile {
  private:
   TextFile file_;
 };
-
-int usedThreads(const Common& common);
 
 }  // namespace vdb_madf::tools

@@ -3,6 +3,7 @@
 
 #include "progress.h"
 
+#include <tbb/global_control.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -87,6 +88,11 @@ std::string Progress::remainingTime(int percent, std::chrono::steady_clock::time
 void Progress::clearLine() {
   if (lineShown_) std::fprintf(stderr, "\r\033[K");
   lineShown_ = false;
+}
+
+int usedThreads(int option) {
+  if (option > 0) return option;
+  return int(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
 }
 
 }  // namespace vdb_madf::tools

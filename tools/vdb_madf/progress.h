@@ -43,4 +43,7 @@ class Progress : public Interrupter {
 /// it has removed its temporary files.
 void catchInterrupts();
 
+/// The number of threads that work: what the option says, or all (0).
+int usedThreads(int option);
+
 }  // namespace vdb_madf::tools

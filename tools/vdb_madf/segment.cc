@@ -6,11 +6,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 #include "command.h"
 #include "input_options.h"
@@ -20,8 +21,11 @@
 #include "parse.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/measurement_files.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/measure/grain_sizes.h"
 #include "vdb_madf/measure/measure.h"
+#include "vdb_madf/method/ball_grids.h"
 #include "vdb_madf/method/segment_memory.h"
 #include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/vdb/write_vdb.h"
@@ -82,39 +86,47 @@ struct Timing {
   double read = 0, measure = 0, write = 0, total = 0;
 };
 
-constexpr int64_t kDustVoxels = 100;
+/// What is said of a segmentation, by the lines that are printed and by the JSON.
+struct Summary {
+  SegmentCounts counts;
+  GrainSizes sizes;
+  std::optional<CoordBBox> domain;
+  std::optional<VoxelSize> voxelSize;
+  bool open = false;
+  int threads = 0;
+  std::vector<std::pair<std::string, double>> seconds;  ///< of each part of the work, then "total"
+  std::vector<std::pair<std::string, int64_t>> peakBytesUntil;  ///< the end of each stage
+  int64_t peakBytes = 0;
 
-/// Diameter of the ball of a grain's volume, in voxels, of which the given share of the object
-/// lies in smaller grains. \p sizes ascending.
-double diameterAtShare(const std::vector<int64_t>& sizes, int64_t object, double share) {
-  int64_t below = 0;
-  for (const int64_t size : sizes) {
-    below += size;
-    if (double(below) >= share * double(object)) return std::cbrt(6 * double(size) / M_PI);
+  std::optional<double> porosity() const {
+    if (!domain) return std::nullopt;
+    return 1 - double(counts.objectVoxels) / double(domain->volume());
   }
-  return 0;
+};
+
+Summary summarize(const Options& o, const Common& common, const Segmentation& s,
+                  const Timing& timing) {
+  Summary summary;
+  summary.counts = s.counts;
+  summary.sizes = grainSizes(s.grainVoxels);
+  summary.domain = s.domain;
+  summary.voxelSize = storedVoxelSize(*s.grain);
+  summary.open = s.open;
+  summary.threads = usedThreads(common.threads);
+  summary.seconds.emplace_back("read", timing.read);
+  for (const StageTime& stage : s.times) {
+    summary.seconds.emplace_back(stage.stage, stage.seconds);
+    summary.peakBytesUntil.emplace_back(stage.stage, stage.peakBytes);
+  }
+  if (!o.tables.empty()) summary.seconds.emplace_back("measure", timing.measure);
+  summary.seconds.emplace_back("write", timing.write);
+  summary.seconds.emplace_back("total", timing.total);
+  summary.peakBytes = peakMemory();
+  return summary;
 }
 
-/// Size distribution: by volume, so that dust does not hide the grains.
-void addGrainSizes(const Segmentation& s, Json& json) {
-  std::vector<int64_t> sizes = s.grainVoxels;
-  std::sort(sizes.begin(), sizes.end());
-  int64_t dust = 0, dustVoxels = 0;
-  for (const int64_t size : sizes) {
-    if (size >= kDustVoxels) break;
-    ++dust;
-    dustVoxels += size;
-  }
-  json["grains_under_100_voxels"] = dust;
-  json["voxels_in_grains_under_100_voxels"] = dustVoxels;
-  for (const auto& [key, share] : {std::pair<const char*, double>{"grain_diameter_d10_voxels", 0.1},
-                                   {"grain_diameter_d50_voxels", 0.5},
-                                   {"grain_diameter_d90_voxels", 0.9}})
-    json[key] = diameterAtShare(sizes, s.counts.objectVoxels, share);
-}
-
-Json summary(const Options& o, const Common& common, const Segmentation& s, const Timing& timing) {
-  const SegmentCounts& counts = s.counts;
+Json toJson(const Options& o, const Summary& summary) {
+  const SegmentCounts& counts = summary.counts;
   Json json;
   json["input"] = o.input.path;
   json["output"] = o.out;
@@ -125,14 +137,17 @@ Json summary(const Options& o, const Common& common, const Segmentation& s, cons
   json["grains"] = counts.grains;
   json["largest_squared_distance"] = counts.largestSquaredDistance;
   json["leaves"] = counts.leaves;
-  if (s.domain) {
-    const double volume = double(s.domain->volume());
-    json["domain_min"] = {s.domain->min().x(), s.domain->min().y(), s.domain->min().z()};
-    json["domain_max"] = {s.domain->max().x(), s.domain->max().y(), s.domain->max().z()};
-    json["porosity"] = 1 - double(counts.objectVoxels) / volume;
+  if (const auto& domain = summary.domain) {
+    json["domain_min"] = {domain->min().x(), domain->min().y(), domain->min().z()};
+    json["domain_max"] = {domain->max().x(), domain->max().y(), domain->max().z()};
+    json["porosity"] = *summary.porosity();
   }
-  if (const auto size = storedVoxelSize(*s.grain)) json["voxel_size_mm"] = size->metres * 1e3;
-  addGrainSizes(s, json);
+  if (summary.voxelSize) json["voxel_size_mm"] = summary.voxelSize->metres * 1e3;
+  json["grains_under_100_voxels"] = summary.sizes.dustGrains;
+  json["voxels_in_grains_under_100_voxels"] = summary.sizes.dustVoxels;
+  json["grain_diameter_d10_voxels"] = summary.sizes.d10;
+  json["grain_diameter_d50_voxels"] = summary.sizes.d50;
+  json["grain_diameter_d90_voxels"] = summary.sizes.d90;
   for (const auto& [key, value] : {std::pair<const char*, std::string>{"grid", o.input.gridName},
                                    {"phase", o.input.phase},
                                    {"threshold", o.input.threshold},
@@ -142,75 +157,49 @@ Json summary(const Options& o, const Common& common, const Segmentation& s, cons
   if (o.input.invert) json["invert"] = true;
   json["gamma"] = o.segment.gamma;
   json["theta"] = o.segment.merge.theta;
-  json["boundary"] = s.open ? "open" : "closed";
+  json["boundary"] = summary.open ? "open" : "closed";
   json["merge"] = toString(o.segment.merge.mode);
   json["adjacency"] = toString(o.segment.merge.adjacency);
-  json["threads"] = usedThreads(common);
-  json["seconds_read"] = timing.read;
-  for (const StageTime& stage : s.times) json["seconds_" + stage.stage] = stage.seconds;
-  if (!o.tables.empty()) json["seconds_measure"] = timing.measure;
-  json["seconds_write"] = timing.write;
-  json["seconds_total"] = timing.total;
-  for (const StageTime& stage : s.times)
-    json["peak_memory_bytes_until_" + stage.stage] = stage.peakBytes;
-  json["peak_memory_bytes"] = peakMemory();
+  json["threads"] = summary.threads;
+  for (const auto& [part, seconds] : summary.seconds) json["seconds_" + part] = seconds;
+  for (const auto& [stage, bytes] : summary.peakBytesUntil)
+    json["peak_memory_bytes_until_" + stage] = bytes;
+  json["peak_memory_bytes"] = summary.peakBytes;
   return json;
 }
 
-void printSummary(const Options& o, const Common& common, const Json& json) {
-  const auto number = [&](const char* key) { return json[key].get<double>(); };
-  const auto count = [&](const char* key) { return (long long)json[key].get<int64_t>(); };
-  std::printf("%s: %lld grains\n", o.out.c_str(), count("grains"));
-  std::printf("  object           %lld voxels in %lld leaf nodes%s\n", count("object_voxels"),
-              count("leaves"), hintIfEmpty(count("object_voxels")));
-  if (json.contains("porosity"))
-    std::printf("  porosity         %.2f %%\n", 100 * number("porosity"));
-  if (json.contains("voxel_size_mm"))
-    std::printf("  voxel size       %g um\n", 1e3 * number("voxel_size_mm"));
+void print(const Options& o, const Common& common, const Summary& summary) {
+  const SegmentCounts& counts = summary.counts;
+  const GrainSizes& sizes = summary.sizes;
+  const auto count = [](int64_t number) { return (long long)number; };
+  std::printf("%s: %lld grains\n", o.out.c_str(), count(counts.grains));
+  std::printf("  object           %lld voxels in %lld leaf nodes%s\n", count(counts.objectVoxels),
+              count(counts.leaves), hintIfEmpty(counts.objectVoxels));
+  if (summary.domain) std::printf("  porosity         %.2f %%\n", 100 * *summary.porosity());
+  const double um = summary.voxelSize ? 1e3 * (summary.voxelSize->metres * 1e3) : 0;
+  if (summary.voxelSize)
+    std::printf("  voxel size       %g um\n", um);
   else
     std::printf("  voxel size       unknown, so no physical sizes (give --voxel-size)\n");
-  const double d10 = number("grain_diameter_d10_voxels"), d50 = number("grain_diameter_d50_voxels"),
-               d90 = number("grain_diameter_d90_voxels");
-  std::printf("  grain diameter   d10 %.1f, d50 %.1f, d90 %.1f voxels", d10, d50, d90);
-  if (json.contains("voxel_size_mm")) {
-    const double um = 1e3 * number("voxel_size_mm");
-    std::printf(" = %.4g, %.4g, %.4g um", um * d10, um * d50, um * d90);
-  }
+  std::printf("  grain diameter   d10 %.1f, d50 %.1f, d90 %.1f voxels", sizes.d10, sizes.d50,
+              sizes.d90);
+  if (summary.voxelSize)
+    std::printf(" = %.4g, %.4g, %.4g um", um * sizes.d10, um * sizes.d50, um * sizes.d90);
   std::printf(" (equal volume, by volume)\n");
-  std::printf(
-      "  dust             %lld grains under 100 voxels, %.3f %% of the object\n",
-      count("grains_under_100_voxels"),
-      100 * number("voxels_in_grains_under_100_voxels") / std::max(1.0, number("object_voxels")));
-  std::printf("  medial balls     %lld, kept %lld; critical points %lld\n", count("medial_balls"),
-              count("kept_balls"), count("critical_points"));
+  std::printf("  dust             %lld grains under 100 voxels, %.3f %% of the object\n",
+              count(sizes.dustGrains),
+              100 * double(sizes.dustVoxels) / std::max(1.0, double(counts.objectVoxels)));
+  std::printf("  medial balls     %lld, kept %lld; critical points %lld\n",
+              count(counts.medialBalls), count(counts.keptBalls), count(counts.criticalPoints));
   std::printf("  settings         gamma %lld, theta %g, merge %s, adjacency %s, boundary %s\n",
-              count("gamma"), number("theta"), json["merge"].get<std::string>().c_str(),
-              json["adjacency"].get<std::string>().c_str(),
-              json["boundary"].get<std::string>().c_str());
-  std::printf("  time, memory     %.2f s with %lld threads, %.0f MiB at the peak\n",
-              number("seconds_total"), count("threads"), number("peak_memory_bytes") / (1 << 20));
+              count(o.segment.gamma), o.segment.merge.theta, toString(o.segment.merge.mode),
+              toString(o.segment.merge.adjacency), summary.open ? "open" : "closed");
+  std::printf("  time, memory     %.2f s with %d threads, %.0f MiB at the peak\n",
+              summary.seconds.back().second, summary.threads,
+              double(summary.peakBytes) / (1 << 20));
   if (!common.verbose) return;
-  for (const auto& [key, value] : json.items())
-    if (key.rfind("seconds_", 0) == 0)
-      std::printf("    %-24s %8.3f s\n", key.c_str() + 8, value.get<double>());
-}
-
-/// The medial balls as two grids that share their voxels, the centres: squared radius, cell size.
-std::vector<Int32Grid::Ptr> ballGrids(const Segmentation& s) {
-  std::vector<Int32Grid::Ptr> grids;
-  for (const char* gridName : {"balls", "balls_cell_size"}) {
-    auto grid = Int32Grid::create(0);
-    auto accessor = grid->getAccessor();
-    const bool radius = grids.empty();
-    for (const MedialBall& ball : s.balls)
-      accessor.setValueOn(ball.center, radius ? ball.squaredRadius : int32_t(ball.cellSize));
-    for (auto meta = s.grain->beginMeta(); meta != s.grain->endMeta(); ++meta)
-      grid->insertMeta(meta->first, *meta->second);
-    grid->setName(gridName);
-    grid->setTransform(s.grain->transform().copy());
-    grids.push_back(grid);
-  }
-  return grids;
+  for (const auto& [part, seconds] : summary.seconds)
+    std::printf("    %-24s %8.3f s\n", part.c_str(), seconds);
 }
 
 /// What segmenting would take, without doing it.
@@ -225,7 +214,8 @@ void printEstimate(const Options& o, const Common& common, const MaskGrid& objec
   json["estimated_memory_bytes"] = needed;
   json["memory_limit_bytes"] = mask + options.maxMemory;
   json["seconds_read"] = secondsRead;
-  json["fits"] = needed <= mask + options.maxMemory;
+  const bool fits = needed <= mask + options.maxMemory;
+  json["fits"] = fits;
   jsonFile.write(json);
   if (common.quiet || jsonFile.isStandardOutput()) return;
   std::printf("%s: %lld object voxels in %lld leaf nodes\n", o.input.path.c_str(),
@@ -233,7 +223,7 @@ void printEstimate(const Options& o, const Common& common, const MaskGrid& objec
   std::printf("  memory           about %s (%lld bytes) to segment it\n",
               readableBytes(needed).c_str(), (long long)needed);
   std::printf("  limit            %s: %s\n", readableBytes(mask + options.maxMemory).c_str(),
-              json["fits"].get<bool>() ? "it fits" : "it does not fit");
+              fits ? "it fits" : "it does not fit");
 }
 
 void run(const Options& o, const Common& common) {
@@ -281,9 +271,9 @@ void run(const Options& o, const Common& common) {
   timing.write = timing.total - timing.read - timing.measure;
   for (const StageTime& stage : s.times) timing.write -= stage.seconds;
   common.progress->end();
-  const Json json = summary(o, common, s, timing);
-  jsonFile.write(json);
-  if (!common.quiet && !jsonFile.isStandardOutput()) printSummary(o, common, json);
+  const Summary summary = summarize(o, common, s, timing);
+  jsonFile.write(toJson(o, summary));
+  if (!common.quiet && !jsonFile.isStandardOutput()) print(o, common, summary);
 }
 
 }  // namespace

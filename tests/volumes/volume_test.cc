@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/volumes/volume.h"
+
+#include <catch2/catch.hpp>
+
+#include "support/files.h"
+#include "support/label_shapes.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/same_file.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/vdb/vdb_file.h"
+#include "vdb_madf/volumes/write_image.h"
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+
+namespace {
+
+const CoordBBox kBox(Coord(0), Coord(11, 9, 8));
+
+/// Labels 1 to 5 in a domain, with a voxel size.
+Int32Grid::Ptr labelsOfSample() {
+  const Int32Grid::Ptr labels = labelGrid(randomLabels(1, Coord(0), 8, 5, 60));
+  setDomain(*labels, kBox);
+  setVoxelSize(*labels, VoxelSize{1e-5});
+  return labels;
+}
+
+Int32Grid::Ptr named(const Int32Grid& grid, const std::string& name) {
+  const Int32Grid::Ptr copy = grid.deepCopy();
+  copy->setName(name);
+  return copy;
+}
+
+bool sameValues(const Int32Grid& a, const Int32Grid& b) {
+  bool same = a.activeVoxelCount() == b.activeVoxelCount();
+  for (auto voxel = a.cbeginValueOn(); voxel; ++voxel) {
+    int32_t value = 0;
+    same &= b.tree().probeValue(voxel.getCoord(), value) && value == *voxel;
+  }
+  return same;
+}
+
+}  // namespace
+
+TEST_CASE("volume: labels and object are the same from every kind of file", "[volume]") {
+  const ScratchFolder folder;
+  const Int32Grid::Ptr labels = labelsOfSample();
+  const MaskGrid::Ptr object = objectMask(*labels),
+                      second = objectMask(*labels, Selection::phase(2));
+  for (const char* name : {"a.vdb", "a.npy", "a.mha", "a.tif", "a.raw"}) {
+    CAPTURE(name);
+    const std::string path = folder / name;
+    VolumeOptions options;
+    if (fileEnding(path) == ".vdb")
+      writeVdb(path, {labels});
+    else
+      writeImage(path, *labels, kBox, SampleType::int32);
+    if (fileEnding(path) == ".raw") options.raw = RawLayout{{12, 10, 9}, SampleType::int32};
+    CHECK(isVdbFile(path) == (fileEnding(path) == ".vdb"));
+    CHECK(sameValues(*labels, *loadLabels(path, options)));
+    const MaskGrid::Ptr found = loadObject(path, options);
+    CHECK(found->getName() == "object");
+    CHECK(found->tree().hasSameTopology(object->tree()));
+    CHECK(storedDomain(*found) == std::optional<CoordBBox>(kBox));
+    options.selection = Selection::phase(2);
+    CHECK(loadObject(path, options)->activeVoxelCount() == second->activeVoxelCount());
+  }
+}
+
+TEST_CASE("volume: domain and voxel size of the options replace the file's", "[volume]") {
+  const ScratchFolder folder;
+  const Int32Grid::Ptr labels = labelsOfSample();
+  writeVdb(folder / "a.vdb", {labels});
+  writeImage(folder / "a.mha", *labels, kBox, SampleType::int32);
+  VolumeOptions options;
+  options.domain = CoordBBox(Coord(-1), Coord(20));
+  options.voxelSize = VoxelSize{3e-6};
+  for (const char* name : {"a.vdb", "a.mha"}) {
+    CAPTURE(name);
+    const auto check = [&](const openvdb::GridBase& grid) {
+      CHECK(storedDomain(grid) == options.domain);
+      REQUIRE(storedVoxelSize(grid));
+      CHECK(storedVoxelSize(grid)->metres == 3e-6);
+    };
+    check(*loadLabels(folder / name, options));
+    check(*loadObject(folder / name, options));
+  }
+  // An inverted selection is one of the new domain.
+  options.selection = Selection{};
+  options.selection->invert = true;
+  CHECK(int64_t(loadObject(folder / "a.vdb", options)->activeVoxelCount()) ==
+        22 * 22 * 22 - int64_t(labels->activeVoxelCount()));
+}
+
+TEST_CASE("volume: the grid is the named one, a usual one or the only one", "[volume]") {
+  const ScratchFolder folder;
+  const Int32Grid::Ptr labels = labelsOfSample();
+  const Int32Grid::Ptr other = named(*labelGrid({{{1, 1, 1}, 4}}), "b");
+  writeVdb(folder / "usual.vdb", {other, named(*labels, "truth"), named(*labels, "a")});
+  writeVdb(folder / "two.vdb", {named(*labels, "a"), other});
+  writeVdb(folder / "mask.vdb", {toBoolGrid(*objectMask(*labels))});
+  CHECK(loadLabels(folder / "usual.vdb")->getName() == "truth");
+  VolumeOptions options;
+  options.grid = "b";
+  CHECK(sameValues(*other, *loadLabels(folder / "usual.vdb", options)));
+  try {
+    loadLabels(folder / "two.vdb");
+    FAIL("took one of two");
+  } catch (const AmbiguousGrid& error) {
+    CHECK(error.grids() == "a (int32), b (int32)");
+    CHECK_THAT(error.what(), StartsWith(folder / "two.vdb"));
+  }
+  CHECK_THROWS_WITH(loadLabels(folder / "mask.vdb"),
+                    StartsWith(folder / "mask.vdb") && Contains("no grid of labels"));
+  options.grid = "c";
+  CHECK_THROWS_WITH(loadObject(folder / "two.vdb", options),
+                    Contains("no grid 'c'; the file holds a (int32), b (int32)"));
+}
+
+TEST_CASE("volume: options that do not fit the file are refused", "[volume]") {
+  const ScratchFolder folder;
+  const Int32Grid::Ptr labels = labelsOfSample();
+  writeVdb(folder / "a.vdb", {labels});
+  writeImage(folder / "a.mhd", *labels, kBox, SampleType::int32);
+  VolumeOptions grid, dataset, outputs;
+  grid.grid = "grain";
+  dataset.dataset = "scan";
+  CHECK_THROWS_AS(loadLabels(folder / "a.mhd", grid), InvalidInput);
+  CHECK_THROWS_AS(loadLabels(folder / "a.vdb", dataset), InvalidInput);
+  // The samples lie beside the header; a link leads to them, too.
+  std::filesystem::create_symlink(folder / "a.raw", folder / "link.raw");
+  CHECK(isSameFile(folder / "a.raw", folder / "link.raw"));
+  CHECK_FALSE(isSameFile(folder / "a.raw", folder / "a.mhd"));
+  outputs.outputs = {folder / "link.raw"};
+  CHECK_THROWS_WITH(loadObject(folder / "a.mhd", outputs), Contains("would overwrite"));
+  outputs.outputs = {folder / "b.raw"};
+  CHECK(loadObject(folder / "a.mhd", outputs)->activeVoxelCount() == labels->activeVoxelCount());
+  CHECK_THROWS_AS(loadLabels(folder / "none.vdb"), IoError);
+  CHECK_THROWS_AS(loadLabels(folder / "none.tif"), IoError);
+}
