@@ -35,7 +35,7 @@ TEST_CASE("ball_grids: the balls are read back, with the labels' transform and m
 }
 
 TEST_CASE("ball_grids: none are found where none were kept", "[ball_grids]") {
-  const auto other = openvdb::FloatGrid::create();
+  const auto other = BoolGrid::create();
   other->setName("balls");
   CHECK_FALSE(storedBalls({other}));
   CHECK_FALSE(storedBalls({}));

@@ -210,7 +210,7 @@ TEST_CASE("vdb_file: a file beyond the limits is refused before it is loaded", "
     writeVdb(path, {grid});
   };
   const auto readable = [&](int64_t voxels, int coordinate) {
-    const std::string error = errorOf(path, {voxels, coordinate});
+    const std::string error = errorOf(path, {voxels, coordinate, {}});
     if (!error.empty()) requireOneLineNaming(error, path);
     return error.empty();
   };

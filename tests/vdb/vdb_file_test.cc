@@ -293,7 +293,7 @@ std::vector<std::string> filesOf(const TemporaryFolder& folder, const Grids& gri
 TEST_CASE("vdb_file: of the grids those that are wanted are read", "[vdb_file]") {
   initialize();
   const TemporaryFolder folder;
-  const auto labels = ballWithTiles<Int32Grid>(Coord(-5, 3, 9), 9, "grain", true);
+  const auto labels = ballWithTiles<Int32Grid>(Coord(-5, 3, 9), 9, "grain");
   const auto flags = ballWithTiles<BoolGrid>(Coord(4000, 0, -4), 5, "object");
   const auto surface = levelSet();
   for (const std::string& path : filesOf(folder, {labels, flags, surface})) {
@@ -318,7 +318,7 @@ TEST_CASE("vdb_file: of the grids those that are wanted are read", "[vdb_file]")
 TEST_CASE("vdb_file: what is asked for a grid sees all but its tree", "[vdb_file]") {
   initialize();
   const TemporaryFolder folder;
-  const auto labels = ballWithTiles<Int32Grid>(Coord(-5, 3, 9), 9, "grain", true);
+  const auto labels = ballWithTiles<Int32Grid>(Coord(-5, 3, 9), 9, "grain");
   setVoxelSize(*labels, VoxelSize{8.5e-6});
   const auto surface = levelSet();
   const auto check = [&](const GridBase& grid) {
