@@ -85,7 +85,6 @@ void linkNeighbors(const std::vector<Coord>& origins, int axis,
   }
 }
 
-/// Makes the leaves in parallel, then hangs them into a tree; value(rank) gives a voxel's value,
 }  // namespace
 
 LeafIndex::LeafIndex(const MaskGrid& object) {

@@ -12,11 +12,11 @@ namespace vdb_madf {
 
 /// One value per object voxel, in the order of VoxelIds: the value of voxel `id` is at
 /// LeafIndex::rank(id), those of a leaf follow each other from LeafIndex::firstRank(leaf) on.
-/// Uninitialised when made.
+/// Uninitialized when made.
 template <typename T>
 class VoxelArray {
  public:
-  /// Values past the last that may be read, whatever they are: wide loads need not stop short.
+  /// Readable padding after the last value, so that SIMD loads may overrun it.
   static constexpr size_t kSlack = 16;
 
   VoxelArray() = default;

@@ -103,8 +103,8 @@ class Pencils {
   const LeafIndex* index_;
   int axis_;
   std::vector<uint32_t> order_;
-  std::vector<Across> across_;  // in that order, for lags of
-  int leavesApart_ = -1;        // so many whole leaves
+  std::vector<Across> across_;  // leaf pairs for the current shift, in that order
+  int leavesApart_ = -1;        // the current shift, in leaves; -1: none
 };
 
 }  // namespace

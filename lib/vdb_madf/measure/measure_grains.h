@@ -12,8 +12,8 @@
 
 namespace vdb_madf {
 
-/// Three orthogonal directions and what is measured along them, in falling order. Of a direction,
-/// the largest component is positive.
+/// Three orthogonal directions and what is measured along them, in descending order. The largest
+/// component of each direction is positive.
 struct Principal {
   std::array<openvdb::Vec3d, 3> axes;
   std::array<double, 3> values{};
@@ -23,10 +23,10 @@ struct Principal {
 struct GrainMeasures {
   int32_t id = 0;           ///< its label
   int64_t voxels = 0;       ///< = volume
-  openvdb::Vec3d centroid;  ///< of the voxels' centres
+  openvdb::Vec3d centroid;  ///< of the voxels' centers
   CoordBBox box;            ///< inclusive
-  bool atDomainFace =
-      false;  ///< the box touches a face of the domain (unknown: of all grains' box)
+  /// The box touches a face of the domain or, if that is unknown, of the box of all grains.
+  bool atDomainFace = false;
   /// The voxel of largest squared distance to the background, of several the first; none without
   /// background. Its distance is the inscribed radius.
   std::optional<openvdb::Coord> representative;

@@ -25,8 +25,8 @@ struct MergeOptions {
 /// Grains as classes of critical points.
 struct Merging {
   std::vector<int32_t> grainOfNode;  ///< 1..grains, one per node
-  std::vector<uint32_t>
-      representative;  ///< node of grain g at g - 1: largest D, then smaller coordinate
+  /// Node of grain g at g - 1: the one of largest D, then of smaller coordinate.
+  std::vector<uint32_t> representative;
 };
 
 /// @throw InvalidInput unless theta is in [-1, 1] (NaN is not).
@@ -35,11 +35,14 @@ void checkMergeOptions(const MergeOptions& options);
 /// Merges critical points by the angle of their balls (paper, section 5.2, eq. 7), then by the
 /// neck.
 ///
-/// Angle: cos alpha = (|ci-cj|^2 - D(ci) - D(cj)) / (2 sqrt(D(ci) D(cj))) < theta, each edge tested
-/// once on the original balls. Neck (not in the paper): edges of saddle height h > 0 in descending
-/// order (then ascending pair) merge two classes if h >= (1 - theta)/2 * min(top, top), top =
-/// largest D of a class so far. Grains are numbered in lexicographic order of their
-/// representatives.
+/// Angle: an edge merges its nodes if
+///   cos alpha = (|ci - cj|^2 - D(ci) - D(cj)) / (2 sqrt(D(ci) D(cj))) < theta;
+/// each edge is tested once, on the original balls.
+/// Neck (not in the paper): the edges of saddle height h > 0, in descending order of h (then by
+/// ascending pair), merge the classes a, b of their nodes if
+///   h >= (1 - theta) / 2 * min(top(a), top(b)),
+/// where top is the largest D of a class so far.
+/// Grains are numbered in lexicographic order of their representatives.
 /// @throw InvalidInput as checkMergeOptions.
 Merging merge(const ManifoldGraph& graph, const MergeOptions& options = {});
 

@@ -9,8 +9,9 @@
 
 namespace vdb_madf {
 
-/// For each p in X (arrays by rank, see leaf_index.h) the ball of least power distance pi_x(p) = |p
-/// - x|^2 - D(x) among the balls (x, D(x)) of the sites x; equal power: larger D, then the
+/// For each p in X (arrays by rank, see leaf_index.h) the ball of least power distance
+///   pi_x(p) = |p - x|^2 - D(x)
+/// among the balls (x, D(x)) of the sites x. At equal power the larger D wins, then the
 /// lexicographically smaller x.
 struct PowerMap {
   VoxelArray<int32_t> power;  ///< pi(p), voxels squared

@@ -18,11 +18,13 @@ namespace vdb_madf {
 
 /// What decides the labels.
 struct SegmentOptions {
-  int64_t gamma = 0;  ///< least cell size of a medial ball, voxels; 0, 1: no filter
-  Boundary boundary = Boundary::automatic;  ///< see squared_distance.h
+  /// Smallest cell of a medial ball that is kept, in voxels; 0 and 1: no filter.
+  int64_t gamma = 0;
+  Boundary boundary = Boundary::automatic;  ///< see boundary.h
   std::optional<CoordBBox> domain;          ///< overrides the domain in the mask's metadata
   MergeOptions merge;                       ///< theta, mode, adjacency
-  bool keepDistance = false;  ///< return distanceSquared (4 bytes more per leaf voxel)
+  /// Return distanceSquared; 4 bytes more per leaf voxel.
+  bool keepDistance = false;
   bool keepPower = false;     ///< return power
   bool keepManifold = false;  ///< return manifold
   bool keepBalls = false;     ///< return balls
@@ -72,10 +74,9 @@ struct Segmentation {
 ///
 /// The active voxels of `object` are X, active tiles included. Labels depend on nothing but X, the
 /// domain and the options: not on tiles, threads or the order of work. X empty: zero grains.
-/// The interrupter hears of the stages by name and of the percentage of the whole.
+/// The interrupter is told each stage's name and the percentage of the whole.
 /// @throw InvalidInput if an option is out of range, X leaves the domain, a limit of leaf_index.h
-/// is
-///   exceeded, or there is no background at all, maxMemory is too little; Interrupted if the
+///   is exceeded, there is no background at all, or maxMemory is too little; Interrupted if the
 ///   interrupter says so.
 Segmentation segment(const MaskGrid& object, const SegmentOptions& options = {},
                      Interrupter* interrupter = nullptr);

@@ -35,7 +35,7 @@ std::vector<char> encoded(const std::string& path, const Picture& picture) {
 void writePng(const std::string& path, const Picture& picture) {
   detail::OutputStream file(path);
   const std::vector<char> bytes = encoded(path, picture);
-  file.write(bytes.data(), bytes.size());
+  file.bytes(bytes.data(), bytes.size());
   file.close();
   file.commit();
 }

@@ -10,9 +10,9 @@
 namespace vdb_madf {
 
 /// Isotropic Gaussian random field with peak wavelength `length` (voxels), cut to the ice fraction
-/// (met within 0.5 % absolute). No truth. The spectral density is k^4 exp(-2 k^2 / k0^2) with k0 =
-/// 2 pi / length, the same up to the faces; full leaves are active tiles. Memory: dense floats on
-/// every n-th voxel along each axis, n about length / 11, and on length around the box.
+/// (met within 0.5 % absolute). No truth. The spectral density is k^4 exp(-2 k^2 / k0^2), with
+/// k0 = 2 pi / length, the same up to the faces; full leaves are active tiles. Memory: dense floats
+/// on every n-th voxel along each axis, n about length / 11, and on length around the box.
 struct SnowOptions {
   Coord size{256, 256, 256};
   uint64_t seed = 1;

@@ -11,7 +11,8 @@
 
 namespace vdb_madf::detail {
 
-/// A set of voxels in and around a leaf: x from -4 to 13 from its origin, y and z from -8 to 15.
+/// A set of voxels in and around a leaf: x from -4 to 13 from its origin, y and z from -8 to 15,
+/// the 27 leaves. measure/detail/leaf_surface.h draws where the numbers come from.
 struct WindowRows {
   static constexpr int kBeginX = -4, kEndX = 14;
   static constexpr int kBegin = -8, kEnd = 16;  ///< of y and z

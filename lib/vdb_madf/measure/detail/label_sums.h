@@ -13,7 +13,7 @@
 
 namespace vdb_madf::detail {
 
-/// Integer sums over the voxels of a grain: exact, in any order the same.
+/// Integer sums over the voxels of a grain: exact, so independent of the order of summation.
 struct GrainSums {
   int32_t label = 0;
   int64_t voxels = 0;

@@ -17,11 +17,11 @@ constexpr int kSharedReach = 8;  // 4 voxels
 /// How far apart two voxels of two grains are that make a pair.
 constexpr std::array<int, 3> kSteps = {1, 2, 4};
 
-/// In voxels: a rim that widens so much between pairs 2 and 4 apart lies in a groove, no less.
+/// In voxels: a rim that widens by this much or more between pairs 2 and 4 apart lies in a groove.
 /// Chosen on discs.
 constexpr double kGroove = 0.4;
 
-// Lower voxels of the faces in reach of those that are measured, along their axis.
+// Lower voxels of the faces in reach of what is measured, along an axis (drawn in leaf_surface.h).
 constexpr int kFreeBegin = -3, kFreeLast = 9, kSharedBegin = -4, kSharedLast = 12;
 
 /// Bit z + 8: voxel (x, y, z) of a leaf lies in the domain.

@@ -27,6 +27,20 @@ namespace vdb_madf::detail {
 /// face each other belong to both grains although the line between them leaves the object. What
 /// such lines add grows in proportion to the distance of the two voxels, so pairs of voxels two and
 /// four apart are measured in the same way and extrapolated to distance zero (bondArea()).
+///
+/// Voxels that take part, along an axis, counted from the leaf's origin:
+///
+///    -8      -4       0             7        12    15
+///                     [-------------]                   0 .. 7: the leaf
+///               [-----------------------]               -3 .. 9: free faces
+///             [-------------------------------]         -4 .. 12: shared faces
+///             [---------------------------------]       -4 .. 13: WindowRows, x
+///     [---------------------------------------------]   -8 .. 15: WindowRows, y and z
+///
+/// Faces and pairs start at a voxel of the leaf. Free faces are centered at -1/2 .. 7 1/2 and reach
+/// 2 1/2 voxels; pairs, up to 4 apart, are centered at 0 .. 9 and reach 4. The bars "free" and
+/// "shared" hold the lower voxels of the faces within that reach (kFreeBegin ... of
+/// leaf_surface.cc), the window along x also the upper ones. Along y and z it holds the 27 leaves.
 class LeafSurface {
  public:
   struct Free {
@@ -74,12 +88,16 @@ class LeafSurface {
   std::vector<Shared> shared_;
 };
 
-/// The area of a bond, in voxel faces, from the sums of Shared::areas. With A(s) that of pairs s
-/// apart per crossing, A(0) of a straight line: in a groove, where A grows with s, through A(2) and
-/// A(4), which do not depend on where between two layers of voxels the interface lies if it runs
-/// along them (both grains widening alike); elsewhere, where A(4) is bent too far, through A(1) and
-/// A(2); between the two in a shallow groove. Held between a quarter and 1.1 times A(1), which
-/// matters for bonds of a few faces and grains thinner than four voxels.
+/// The area of a bond, in voxel faces, from the sums of Shared::areas:
+///   As = area of the pairs of voxels s apart, per crossing,
+///   w = (A4 - A2) / (2 sqrt(pi max(A2, 1))),  g = clamp(w / 0.4, 0, 1),
+///   A0 = (1 - g) (2 A1 - A2) + g (2 A2 - A4),  the result = clamp(A0, A1 / 4, 1.1 A1).
+/// w tells how far the rim of a disc widens between pairs two and four apart: g = 0 without a
+/// groove, 1 in a deep one. 2 A1 - A2 is the straight line through A1 and A2 at distance 0: where
+/// there is no groove, A4 is bent too far to be used. 2 A2 - A4 is that through A2 and A4: they do
+/// not depend on where between two layers of voxels an interface lies that runs along them (both
+/// grains widening alike). The bounds matter for bonds of a few faces and grains thinner than four
+/// voxels.
 double bondArea(const std::array<int64_t, 3>& areas);
 
 }  // namespace vdb_madf::detail

@@ -30,7 +30,8 @@ void addTargets(const WindowRows& own, const WindowRows& other, int axis, int st
 class SurfaceFaces {
  public:
   /// Faces between voxels of `first` and `second`, which lie from `begin` to `last` along the two
-  /// axes of the face, and one less or more along its normal. Normals point away from `first`.
+  /// axes of the face, and one less or more along its normal (drawn in leaf_surface.h). Normals
+  /// point away from `first`.
   void collect(const WindowRows& first, const WindowRows& second, int begin, int last);
 
   /// Sum over the targets of the cosine between their axis and the normal of the surface around
@@ -40,7 +41,7 @@ class SurfaceFaces {
   int64_t area(const SurfaceTarget* begin, const SurfaceTarget* end, int reach, bool oneSheet);
 
  private:
-  /// Faces that are summed together.
+  /// Faces per block of the SIMD loop.
   static constexpr size_t kTogether = 32;
   static constexpr int kSide = WindowRows::kEndX - WindowRows::kBeginX;
   static constexpr size_t kRoom = size_t(kSide * kSide * kSide) + kTogether;

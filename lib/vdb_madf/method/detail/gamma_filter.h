@@ -16,10 +16,10 @@ VoxelSet keptBalls(const LeafIndex& index, const VoxelSet& balls, const MedialBa
                    int64_t gamma, Interrupter* interrupter = nullptr);
 
 /// The power map of the kept balls (paper, section 5.1). Voxels that none of them covers are
-/// completed geodesically (the paper takes the least power over all balls, also across a pore): in
+/// completed geodesically (the paper takes the least power over all balls, also across a pore). In
 /// synchronous rounds each takes the best, in the order of power_map.h, of its own site and those
-/// of its six neighbours in X after the round before, until nothing changes. Their power may be >=
-/// 0.
+/// of its six neighbors in X after the round before, until nothing changes.
+/// Their power may be 0 or more.
 /// @throw Interrupted
 PowerMap filteredPowerMap(const LeafIndex& index, PowerMap unfiltered, const VoxelSet& balls,
                           const MedialBallTable& table, const VoxelSet& kept,
