@@ -16,7 +16,7 @@ namespace {
 /// What a pixel must show, by the definition: voxel (right, down) of the slice.
 Rgb expected(const LabelMap& voxels, const GrainColors& colors, const Coord& p, const Rgb& empty) {
   const auto found = voxels.find(p);
-  return found == voxels.end() ? empty : colors.of(found->second);
+  return found == voxels.end() ? empty : colors.colorOf(found->second);
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ TEST_CASE("label_slices: tiles are shown, inactive values are not", "[label_slic
   const GrainColors colors = grainColors(*labels);
   const LabelSlices slices =
       middleSlices(*labels, CoordBBox(Coord(0), Coord(15, 7, 7)), colors, 16);
-  CHECK(slices.pictures[0].at(7, 7) == colors.of(5));
+  CHECK(slices.pictures[0].at(7, 7) == colors.colorOf(5));
   CHECK(slices.pictures[0].at(8, 7) == Rgb{18, 20, 26});
 }
 

@@ -12,7 +12,7 @@
 #include "vdb_madf/files/same_file.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
-#include "vdb_madf/vdb/vdb_file.h"
+#include "vdb_madf/vdb/write_vdb.h"
 #include "vdb_madf/volumes/write_image.h"
 
 using namespace vdb_madf;

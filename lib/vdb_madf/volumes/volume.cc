@@ -45,9 +45,15 @@ bool isReadAsVdb(const std::string& path, const VolumeOptions& options) {
   return isVdb;
 }
 
+/// Chooses by name and type first: the other grids of the file are not loaded.
 openvdb::GridBase::Ptr readGrid(const std::string& path, GridUse use, const VolumeOptions& options,
                                 Interrupter* interrupter) {
-  return chooseGrid(readVdb(path, {}, interrupter), path, use, options.grid);
+  const auto chosen = chooseGrid(readVdbHeaders(path, interrupter), path, use, options.grid);
+  VdbReadOptions reading;
+  reading.wanted = [&chosen](const openvdb::GridBase& grid) {
+    return grid.getName() == chosen->getName() && grid.type() == chosen->type();
+  };
+  return readVdb(path, reading, interrupter).at(0);
 }
 
 MaskGrid::Ptr objectOf(const openvdb::GridBase& grid, const std::string& path,
