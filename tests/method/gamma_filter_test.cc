@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/method/detail/gamma_filter.h"
+#include "vdb_madf/method/gamma_filter.h"
 
 #include <catch2/catch.hpp>
 #include <limits>
@@ -20,8 +20,6 @@ namespace {
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-using detail::filteredPowerMap;
-using detail::keptBalls;
 using Values = std::vector<int64_t>;
 
 /// What the filter takes, from the stages before it, and the filtered map as dense volumes.

@@ -11,9 +11,9 @@
 #include "vdb_madf/leaves/leaf_grid.h"
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/method/boundary.h"
-#include "vdb_madf/method/detail/gamma_filter.h"
 #include "vdb_madf/method/detail/stages.h"
 #include "vdb_madf/method/flow.h"
+#include "vdb_madf/method/gamma_filter.h"
 #include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/method/medial_balls.h"
 #include "vdb_madf/method/power_map.h"
@@ -98,9 +98,9 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
 
   if (filter) {
     stages.begin("gamma_filter");
-    VoxelSet kept = detail::keptBalls(index, balls, table, options.gamma, &stages);
+    VoxelSet kept = keptBalls(index, balls, table, options.gamma, &stages);
     counts.keptBalls = kept.size();
-    map = detail::filteredPowerMap(index, std::move(map), balls, table, kept, &stages);
+    map = filteredPowerMap(index, std::move(map), balls, table, kept, &stages);
     balls = std::move(kept);
     table = {};
   }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/method/detail/gamma_filter.h"
+#include "vdb_madf/method/gamma_filter.h"
 
 #include <algorithm>
 #include <atomic>
@@ -14,7 +14,7 @@
 #include "vdb_madf/method/detail/metric.h"
 #include "vdb_madf/method/detail/power_passes.h"
 
-namespace vdb_madf::detail {
+namespace vdb_madf {
 
 namespace {
 
@@ -41,20 +41,22 @@ class GeodesicCompletion {
   };
 
   void findUncovered(Interrupter* interrupter) {
-    parallelFor(index_.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-      forEachVoxel(index_, begin, end, [&](VoxelId p, size_t rank) {
-        if (map_.power[rank] < 0) return;
-        uncovered_.insert(p);  // a word belongs to one leaf, so to one thread
-        map_.site[rank] = kNoSite;
-      });
-    });
+    detail::parallelFor(index_.leafCount(), detail::kLeafGrain, interrupter,
+                        [&](size_t begin, size_t end) {
+                          detail::forEachVoxel(index_, begin, end, [&](VoxelId p, size_t rank) {
+                            if (map_.power[rank] < 0) return;
+                            uncovered_.insert(p);  // a word belongs to one leaf, so to one thread
+                            map_.site[rank] = kNoSite;
+                          });
+                        });
   }
 
   /// Is site a better than b at equal power at p? The larger D wins, then the smaller coordinate.
   /// At equal power |p - a|^2 - D(a) = |p - b|^2 - D(b) the larger D is that of the farther site.
   bool winsTie(const Coord& p, VoxelId a, VoxelId b) const {
     const Coord siteA = index_.coord(a), siteB = index_.coord(b);
-    const int64_t awayA = squaredBetween(p, siteA), awayB = squaredBetween(p, siteB);
+    const int64_t awayA = detail::squaredBetween(p, siteA),
+                  awayB = detail::squaredBetween(p, siteB);
     return awayA != awayB ? awayA > awayB : siteA < siteB;
   }
 
@@ -64,13 +66,13 @@ class GeodesicCompletion {
     const size_t rank = index_.rank(p);
     Change best{p, map_.site[rank], map_.power[rank]};
     const Coord position = index_.coord(p);
-    forEachNeighbor(index_, p, [&](VoxelId q, int axis, int step) {
-      if (!isObject(index_, q)) return;
+    detail::forEachNeighbor(index_, p, [&](VoxelId q, int axis, int step) {
+      if (!detail::isObject(index_, q)) return;
       const size_t neighbor = index_.rank(q);
       const VoxelId site = map_.site[neighbor];
       if (site == kNoSite || site == best.site) return;
       const int away = position[axis] - index_.coord(site)[axis];
-      const int32_t power = map_.power[neighbor] - addedByStep(away, step);
+      const int32_t power = map_.power[neighbor] - detail::addedByStep(away, step);
       if (best.site == kNoSite || power < best.power ||
           (power == best.power && winsTie(position, site, best.site)))
         best = {p, site, power};
@@ -87,12 +89,12 @@ class GeodesicCompletion {
       if (front_.word(i)) words.push_back(uint32_t(i));
     constexpr size_t kWordsPerChunk = 256;
     std::vector<std::vector<Change>> changes((words.size() + kWordsPerChunk - 1) / kWordsPerChunk);
-    parallelFor(changes.size(), 1, interrupter, [&](size_t begin, size_t end) {
+    detail::parallelFor(changes.size(), 1, interrupter, [&](size_t begin, size_t end) {
       for (size_t chunk = begin; chunk < end; ++chunk) {
         const size_t last = std::min(words.size(), (chunk + 1) * kWordsPerChunk);
         for (size_t w = chunk * kWordsPerChunk; w < last; ++w) {
           uint64_t& word = front_.word(words[w]);
-          forEachBit(word, [&](int bit) {
+          detail::forEachBit(word, [&](int bit) {
             const Change change = best(VoxelId(words[w]) * 64 + VoxelId(bit));
             if (change.site != map_.site[index_.rank(change.voxel)])
               changes[chunk].push_back(change);
@@ -102,13 +104,13 @@ class GeodesicCompletion {
       }
     });
     std::atomic<bool> changed{false};
-    parallelFor(changes.size(), 1, interrupter, [&](size_t begin, size_t end) {
+    detail::parallelFor(changes.size(), 1, interrupter, [&](size_t begin, size_t end) {
       for (size_t chunk = begin; chunk < end; ++chunk) {
         for (const Change& change : changes[chunk]) {
           const size_t rank = index_.rank(change.voxel);
           map_.site[rank] = change.site;
           map_.power[rank] = change.power;
-          forEachNeighbor(index_, change.voxel, [&](VoxelId q, int, int) {
+          detail::forEachNeighbor(index_, change.voxel, [&](VoxelId q, int, int) {
             if (uncovered_.contains(q)) front_.insertAtomic(q);
           });
         }
@@ -130,7 +132,7 @@ VoxelSet keptBalls(const LeafIndex& index, const VoxelSet& balls, const MedialBa
                    int64_t gamma, Interrupter* interrupter) {
   if (gamma <= 1) return balls;
   VoxelSet kept(index.leafCount());
-  const ObjectComponents components(index, interrupter);
+  const detail::ObjectComponents components(index, interrupter);
   std::vector<char> hasKept(components.count(), 0);
   const std::vector<VoxelId> members = balls.members();
   for (uint32_t i = 0; i < members.size(); ++i) {
@@ -157,17 +159,18 @@ VoxelSet keptBalls(const LeafIndex& index, const VoxelSet& balls, const MedialBa
 PowerMap filteredPowerMap(const LeafIndex& index, PowerMap map, const VoxelSet& balls,
                           const MedialBallTable& table, const VoxelSet& kept,
                           Interrupter* interrupter) {
-  parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    forEachVoxel(index, begin, end, [&](VoxelId p, size_t rank) {
-      map.power[rank] = kept.contains(p) ? -table.squaredRadius[balls.rank(p)] : kUncovered;
-    });
-  });
+  detail::parallelFor(
+      index.leafCount(), detail::kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+        detail::forEachVoxel(index, begin, end, [&](VoxelId p, size_t rank) {
+          map.power[rank] = kept.contains(p) ? -table.squaredRadius[balls.rank(p)] : kUncovered;
+        });
+      });
   int32_t largest = 0;
   for (const int32_t radius2 : table.squaredRadius) largest = std::max(largest, radius2);
-  WorkPart sweeps(interrupter, 0, 75), rounds(interrupter, 75, 75);
-  sweepPower(index, largest, map, &sweeps);
+  detail::WorkPart sweeps(interrupter, 0, 75), rounds(interrupter, 75, 75);
+  detail::sweepPower(index, largest, map, &sweeps);
   GeodesicCompletion(index, map).run(&rounds);
   return map;
 }
 
-}  // namespace vdb_madf::detail
+}  // namespace vdb_madf

@@ -7,7 +7,7 @@
 #include "vdb_madf/method/medial_balls.h"
 #include "vdb_madf/method/power_map.h"
 
-namespace vdb_madf::detail {
+namespace vdb_madf {
 
 /// The medial balls that survive the filter: those whose cell holds at least gamma voxels. A
 /// 6-connected component of X where none does keeps its best one (largest D, then smaller
@@ -25,4 +25,4 @@ PowerMap filteredPowerMap(const LeafIndex& index, PowerMap unfiltered, const Vox
                           const MedialBallTable& table, const VoxelSet& kept,
                           Interrupter* interrupter = nullptr);
 
-}  // namespace vdb_madf::detail
+}  // namespace vdb_madf
