@@ -43,8 +43,6 @@ function(vdb_madf_room name)
     set_property(GLOBAL APPEND_STRING PROPERTY vdb_madf_arrows
       "${folder} ${name}: ${below} ${arg_USES}\n")
     list(APPEND below ${folder})
-    list(JOIN below " " below)
-    string(REPLACE " " ";" below "${below}")
   endforeach()
 endfunction()
 

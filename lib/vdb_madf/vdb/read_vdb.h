@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "vdb_madf/base/limits.h"
 #include "vdb_madf/grids/grid_types.h"
 
 namespace vdb_madf {
@@ -15,7 +16,7 @@ struct VdbReadOptions {
   /// Largest number of voxels that active tiles and leaves of one grid may hold, and the largest
   /// |coordinate|: a file beyond them is refused before its tiles are touched.
   int64_t maxVoxels = int64_t(1) << 32;
-  int maxCoordinate = 1 << 20;
+  int maxCoordinate = kMaxImageSide;
   /// Which grids to read: asked with each, that has its name, type, metadata and transform but an
   /// empty tree. Absent: all. The trees of the others are passed over unread, and what is wrong
   /// within them is not seen; a tree that a wanted grid shares with another is read.
