@@ -4,6 +4,7 @@
 #     [FOLDERS folder...]   from bottom to top; default: NAME
 #     HEADERS file...       public: installed; seen from lib/vdb_madf
 #     SOURCES file...       private headers are not listed
+#     [OBJECTS target...]   object libraries that become part of it
 #     [USES room...]        the rooms it may include and link, with all that these use
 #     [LINKS target...]     libraries that its headers need
 #     [PRIVATE target...]   libraries that only its sources need
@@ -15,7 +16,7 @@
 # tests/rooms compares every #include with it.
 function(vdb_madf_room name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "GRIDS;SANITIZE" ""
-    "FOLDERS;HEADERS;SOURCES;USES;LINKS;PRIVATE;PACKAGES")
+    "FOLDERS;HEADERS;SOURCES;OBJECTS;USES;LINKS;PRIVATE;PACKAGES")
   if(NOT arg_FOLDERS)
     set(arg_FOLDERS ${name})
   endif()
@@ -49,6 +50,9 @@ endfunction()
 # Part of vdb_madf_room(): the library, or with the suffix _sanitized its instrumented twin.
 macro(vdb_madf_room_library suffix)
   add_library(${target}${suffix} STATIC ${arg_SOURCES})
+  foreach(objects IN LISTS arg_OBJECTS)
+    target_sources(${target}${suffix} PRIVATE $<TARGET_OBJECTS:${objects}>)
+  endforeach()
   vdb_madf_compiler_options(${target}${suffix})
   target_compile_definitions(${target}${suffix} PRIVATE VDB_MADF_SIMD_LEVEL=${VDB_MADF_SIMD_LEVEL})
   set_target_properties(${target}${suffix} PROPERTIES POSITION_INDEPENDENT_CODE ON)

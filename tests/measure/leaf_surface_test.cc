@@ -121,7 +121,8 @@ TEST_CASE("surface_area: balls of many radii", "[surface_area]") {
   }
 }
 
-TEST_CASE("surface_area: discs between two balls, and the caps beside them", "[surface_area]") {
+TEST_CASE("surface_area: discs between two balls, and the caps beside them",
+          "[surface_area][long]") {
   Rng rng(4);
   // Radius of the disc over that of the balls: from a deep groove to a shallow one.
   for (const double neck : {0.5, 0.7, 0.8, 0.9, 0.95}) {
@@ -232,7 +233,7 @@ Vec3d normalOf(int position, Rng& rng) {
 
 }  // namespace
 
-TEST_CASE("surface_area: discs between any equal balls", "[surface_area]") {
+TEST_CASE("surface_area: discs between any equal balls", "[surface_area][long]") {
   for (int position = 0; position < 4; ++position) {
     for (const double least : {8.0, 12.0}) {
       Rng rng{uint64_t(60 + position)};
@@ -253,7 +254,7 @@ TEST_CASE("surface_area: discs between any equal balls", "[surface_area]") {
   }
 }
 
-TEST_CASE("surface_area: discs between any unequal balls", "[surface_area]") {
+TEST_CASE("surface_area: discs between any unequal balls", "[surface_area][long]") {
   for (const double ratio : {1.4, 3.0}) {
     for (int position = 0; position < 4; ++position) {
       Rng rng{uint64_t(70 + position)};

@@ -58,7 +58,7 @@ TEST_CASE("squared_distance: one background voxel in an open block", "[squared_d
   }
 }
 
-TEST_CASE("squared_distance: a long row keeps its 32 bits", "[squared_distance]") {
+TEST_CASE("squared_distance: a long row keeps its 32 bits", "[squared_distance][long]") {
   // Open, with background at one end only: D = n^2 at the other end, at the longest extent.
   constexpr int kLength = kMaxExtent;
   for (int axis = 0; axis < 3; ++axis) {
