@@ -16,7 +16,7 @@
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/images/open_image.h"
 
-// What image_damage_test.cc does to TIFF, MetaImage and NRRD, done to the formats of one or more
+// What damage_test.cc does to TIFF, MetaImage and NRRD, done to the formats of one or more
 // files: thousands of changed files each, which either read or are refused with one line.
 
 using namespace vdb_madf;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The table of bonds: interfaces whose measures are known. Areas: surface_area_test.cc.
+// The table of bonds: interfaces whose measures are known. Areas: leaf_surface_test.cc.
 
 #include <catch2/catch.hpp>
 

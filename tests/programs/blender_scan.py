@@ -3,7 +3,7 @@
 """A real scan goes the whole way: segment, export as preview volume and as mesh, and Blender's
 pictures of both show the same grains in the same many colours.
 
-The folder that holds nmc.tif (see nmc_test.cc) is $VDB_MADF_DATA, without it $VDB_MADF_DATA_DIR.
+The folder that holds nmc.tif (see tests/whole/real_scan_test.cc) is $VDB_MADF_DATA, without it $VDB_MADF_DATA_DIR.
 Runs itself again inside Blender. With a second argument the pictures are kept in that folder.
 """
 

@@ -27,7 +27,7 @@ struct Candidate {
   Coord center;
 };
 
-/// Section 3: least power; equal: the larger D; equal too: the lexicographically smaller
+/// Step 2: least power; equal: the larger D; equal too: the lexicographically smaller
 /// coordinate.
 bool better(const Candidate& a, const Candidate& b) {
   if (a.power != b.power) return a.power < b.power;
@@ -42,7 +42,7 @@ Candidate candidate(const Coord& p, const Coord& center, int64_t squaredRadius) 
 
 }  // namespace
 
-// ---------------------------------------------------------------------------------- Section 1
+// ------------------------------------------------------------------------------- The boundary
 
 bool oracleBoundary(const ObjectVolume& object, Boundary boundary,
                     const std::optional<CoordBBox>& domain) {
@@ -55,7 +55,7 @@ bool oracleBoundary(const ObjectVolume& object, Boundary boundary,
   return boundary == Boundary::open;
 }
 
-// ---------------------------------------------------------------------------------- Section 2
+// ------------------------------------------------------------------------------------- Step 1
 
 DenseVolume<int64_t> oracleDistance(const ObjectVolume& object, bool open,
                                     const CoordBBox& domain) {
@@ -90,7 +90,7 @@ DenseVolume<int64_t> oracleDistance(const ObjectVolume& object, bool open,
   return distance;
 }
 
-// ---------------------------------------------------------------------------------- Section 3
+// ------------------------------------------------------------------------------ Steps 2 and 3
 
 OraclePower oraclePower(const ObjectVolume& object, const DenseVolume<int64_t>& distance,
                         const ObjectVolume& sites) {
@@ -136,7 +136,7 @@ std::vector<MedialBall> oracleBalls(const OraclePower& power,
   return balls;
 }
 
-// ---------------------------------------------------------------------------------- Section 5
+// ------------------------------------------------------------------------------------- Step 4
 
 DenseVolume<int> sixComponents(const ObjectVolume& object) {
   DenseVolume<int> component(object.box());
@@ -182,13 +182,13 @@ ObjectVolume oracleKeptBalls(const ObjectVolume& object, const std::vector<Media
 
 OraclePower oracleFilteredPower(const ObjectVolume& object, const DenseVolume<int64_t>& distance,
                                 const ObjectVolume& kept) {
-  // Step 2: covered voxels, those that get a site here.
+  // Covered voxels, those that get a site here.
   OraclePower result = oraclePower(object, distance, kept);
   std::vector<int> uncovered;
   for (int i = 0; i < object.size(); ++i)
     if (object[i] && result.site[i] == kNoSite) uncovered.push_back(i);
 
-  // Step 3: synchronous rounds, all from the sites at the end of the round before.
+  // The completion: synchronous rounds, all from the sites at the end of the round before.
   for (bool changed = true; changed;) {
     changed = false;
     const SiteMap before = result.site;
@@ -217,7 +217,7 @@ OraclePower oracleFilteredPower(const ObjectVolume& object, const DenseVolume<in
   return result;
 }
 
-// ---------------------------------------------------------------------------------- Section 4
+// ------------------------------------------------------------------------------------- Step 5
 
 SiteMap oracleFlow(const SiteMap& site) {
   SiteMap critical(site.box(), kNoSite);
@@ -233,7 +233,7 @@ SiteMap oracleFlow(const SiteMap& site) {
   return critical;
 }
 
-// ---------------------------------------------------------------------------------- Section 6
+// ------------------------------------------------------------------------------- Steps 6 to 8
 
 ManifoldGraph oracleGraph(const ObjectVolume& object, const DenseVolume<int64_t>& distance,
                           const OraclePower& power, const SiteMap& critical) {
@@ -256,13 +256,13 @@ ManifoldGraph oracleGraph(const ObjectVolume& object, const DenseVolume<int64_t>
       if (!object.get(q, 0) || critical[p] == critical[q]) continue;
       const uint32_t a = node[critical[p]], b = node[critical[q]];
       const auto pair = std::minmax(a, b);
-      // 6.2: H(p) = -pi'(p)
+      // H(p) = -pi'(p)
       const auto height = int32_t(std::min(-power.power[p], -power.power[q]));
       auto [entry, isNew] = edges.insert({pair, {pair.first, pair.second, 0, height, false}});
       ManifoldGraph::Edge& edge = entry->second;
       ++edge.contactFaces;
       edge.saddleHeight = std::max(edge.saddleHeight, height);
-      // 6.1, adjacency of cells: p and q map to the critical points in one step
+      // Adjacency of cells: p and q map to the critical points in one step
       if (power.site[p] == critical[p] && power.site[q] == critical[q]) edge.cellsTouch = true;
     }
   }
@@ -289,7 +289,7 @@ Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
     return largest;
   };
 
-  // 6.1
+  // The angle test.
   if (options.mode != MergeMode::neck)
     for (const auto& edge : graph.edges) {
       if (options.adjacency == Adjacency::cell && !edge.cellsTouch) continue;
@@ -301,7 +301,8 @@ Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
         unite(edge.first, edge.second);
     }
 
-  // 6.2. Nodes are in lexicographic order, so the order of pairs is that of their indices.
+  // The neck test. Nodes are in lexicographic order, so the order of pairs is that of their
+  // indices.
   if (options.mode != MergeMode::angle) {
     auto edges = graph.edges;
     std::sort(edges.begin(), edges.end(), [](const auto& a, const auto& b) {
@@ -317,7 +318,7 @@ Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
     }
   }
 
-  // Section 7: the representative has the largest D; of equal ones the first in node order.
+  // Step 8: the representative has the largest D; of equal ones the first in node order.
   std::map<uint32_t, uint32_t> representative;  // by class
   for (uint32_t i = 0; i < nodes.size(); ++i) {
     const auto known = representative.find(classOf[i]);
@@ -335,7 +336,7 @@ Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
   return merging;
 }
 
-// ---------------------------------------------------------------------------------- Section 7
+// ---------------------------------------------------------------------------------- All steps
 
 OracleResult oracleSegment(const ObjectVolume& object, const std::optional<CoordBBox>& domain,
                            const SegmentOptions& options) {

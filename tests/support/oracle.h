@@ -12,7 +12,8 @@
 #include "vdb_madf/method/segment.h"
 
 // The whole method by brute force, from its definitions, on dense volumes. Of the library it uses
-// the plain data of the public headers (options, graph, counts) and no code.
+// the plain data of the public headers (options, graph, counts) and no code. Steps are those of
+// "The method" in the README.md of the project.
 
 namespace vdb_madf::test {
 
@@ -45,39 +46,39 @@ struct OracleResult {
   bool open = false;
 };
 
-/// Section 1: is the boundary open? @throw Undefined
+/// Before all steps: is the boundary open (boundary.h)? @throw Undefined
 bool oracleBoundary(const ObjectVolume& object, Boundary boundary,
                     const std::optional<CoordBBox>& domain);
 
-/// Section 2. `domain` is used if open. @throw Undefined if there is no background.
+/// Step 1. `domain` is used if open. @throw Undefined if there is no background.
 DenseVolume<int64_t> oracleDistance(const ObjectVolume& object, bool open, const CoordBBox& domain);
 
-/// Section 3, over the balls of some sites only; kNoSite where none of their balls has a negative
+/// Step 2, over the balls of some sites only; kNoSite where none of their balls has a negative
 /// power.
 OraclePower oraclePower(const ObjectVolume& object, const DenseVolume<int64_t>& distance,
                         const ObjectVolume& sites);
 
-/// Section 3: the medial balls and the sizes of their cells.
+/// Step 3: the medial balls and the sizes of their cells.
 std::vector<MedialBall> oracleBalls(const OraclePower& power, const DenseVolume<int64_t>& distance);
 
 /// Number of the 6-connected component of each object voxel, from 1 on; 0: background.
 DenseVolume<int> sixComponents(const ObjectVolume& object);
 
-/// Section 5, step 1.
+/// Step 4: the balls that the filter keeps.
 ObjectVolume oracleKeptBalls(const ObjectVolume& object, const std::vector<MedialBall>& balls,
                              int64_t gamma);
-/// Section 5, steps 2 and 3.
+/// Step 4: the power map of the kept balls, completed within the grains.
 OraclePower oracleFilteredPower(const ObjectVolume& object, const DenseVolume<int64_t>& distance,
                                 const ObjectVolume& kept);
 
-/// Section 4: the critical point, as an index, that each voxel reaches.
+/// Step 5: the critical point, as an index, that each voxel reaches.
 SiteMap oracleFlow(const SiteMap& site);
 
-/// Section 6, before merging.
+/// Step 6.
 ManifoldGraph oracleGraph(const ObjectVolume& object, const DenseVolume<int64_t>& distance,
                           const OraclePower& power, const SiteMap& critical);
 
-/// Sections 6 and 7: the classes, numbered. @throw Undefined unless theta is in [-1, 1]
+/// Steps 7 and 8: the classes, numbered. @throw Undefined unless theta is in [-1, 1]
 Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options);
 
 /// All of it. @throw Undefined

@@ -15,6 +15,7 @@ namespace vdb_madf {
 struct BondMeasures {
   int32_t first = 0, second = 0;  ///< labels, first < second
   int64_t faces = 0;              ///< voxel faces between them: overestimates the area
+  /// Of the interface, estimated, in voxels^2; README.md beside this says how.
   double area = 0;
   double equivalentRadius = 0;  ///< of the disc of this area
   openvdb::Vec3d centroid;      ///< mean of the centres of the faces
