@@ -235,7 +235,7 @@ constexpr Kind kKinds[] = {
     {"vti", exportVti, ".vti", isVtiOutput},
     {"clumps", exportClumps, ".csv, .txt (YADE) or .data (LAMMPS)", isClumpEnding},
     {"hexa", exportHexahedra, ".vtu or .inp (Abaqus)", isHexahedraEnding},
-    {"mask", exportMask, ".raw, .mhd, .mha or .tif", isImageEnding},
+    {"mask", exportMask, ".tif, .raw, .mhd, .mha, .nrrd or .npy", isImageEnding},
     {"network", exportNetwork, ".vtp, .graphml or .csv", isNetworkEnding},
 };
 
