@@ -6,6 +6,7 @@
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/leaves/leaf_grid.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <iterator>
 #include <set>
@@ -183,18 +184,12 @@ TEST_CASE("leaf_index: counts the bits of a word", "[leaf_index]") {
 TEST_CASE("leaf_index: a grid has the object's voxels and the array's values", "[leaf_index]") {
   std::vector<EdgeCase> cases = edgeCases();
   cases.push_back({"many leaves", manyLeaves(), Tiles::none});
-  constexpr int kTable = 1000;
-  std::vector<int32_t> table;
-  for (int i = 0; i < kTable; ++i) table.push_back(7 * i - 3000);
   for (const EdgeCase& c : cases) {
     INFO(c.name);
     const LeafIndex index(*toMask(c.object, c.tiles));
     Rng rng(23);
-    DenseVolume<int64_t> values(c.object.box()), looked(c.object.box());
-    for (int i = 0; i < c.object.size(); ++i) {
-      values[i] = rng.below(kTable);
-      looked[i] = table[size_t(values[i])];
-    }
+    DenseVolume<int64_t> values(c.object.box());
+    for (int i = 0; i < c.object.size(); ++i) values[i] = rng.below(1000);
     for (const int threads : {1, 4}) {
       const auto signedValues = byRank<int32_t>(index, [&](const Coord& p) { return -values[p]; });
       DenseVolume<int64_t> negative = values;
@@ -202,19 +197,53 @@ TEST_CASE("leaf_index: a grid has the object's voxels and the array's values", "
       const auto plain = withThreads(threads, [&] { return toGrid(index, signedValues, "plain"); });
       CHECK(plain->getName() == "plain");
       CHECK(difference("plain", *plain, c.object, negative) == "");
-      // The highest bit is not part of the place in the table.
-      auto places = byRank<uint32_t>(index, [&](const Coord& p) {
+      // The highest bit is not part of the value.
+      auto flagged = byRank<uint32_t>(index, [&](const Coord& p) {
         return uint32_t(values[p]) | ((p.x() + p.z()) % 2 ? 1u << 31 : 0);
       });
-      const auto copied =
-          withThreads(threads, [&] { return toGrid(index, places, table, "copied"); });
+      const auto copied = withThreads(threads, [&] { return toGrid(index, flagged, "copied"); });
       CHECK(copied->getName() == "copied");
-      CHECK(difference("copied", *copied, c.object, looked) == "");
+      CHECK(difference("copied", *copied, c.object, values) == "");
       const auto moved =
-          withThreads(threads, [&] { return toGrid(index, std::move(places), table, "moved"); });
+          withThreads(threads, [&] { return toGrid(index, std::move(flagged), "moved"); });
       CHECK(moved->getName() == "moved");
-      CHECK(difference("moved", *moved, c.object, looked) == "");
+      CHECK(difference("moved", *moved, c.object, values) == "");
     }
+  }
+}
+
+TEST_CASE("leaf_index: an object and more voxels", "[leaf_index]") {
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    Rng rng(seed);
+    const CoordBBox box =
+        boxAt(randomOrigin(rng), Coord(rng.between(1, 30), rng.between(1, 20), 25));
+    const ObjectVolume object = randomVolume(VolumeKind(int(seed) % kVolumeKinds), box, rng);
+    ObjectVolume both = object, added(box);
+    for (int i = 0; i < both.size(); ++i)
+      if (!both[i] && rng.chance(0.02)) both[i] = added[i] = 1;
+    const LeafIndex before(*toMask(object)), extra(*toMask(added));
+    std::vector<LeafIndex::LeafVoxels> more;
+    for (size_t leaf = 0; leaf < extra.leafCount(); ++leaf)
+      more.push_back({extra.origin(leaf), extra.mask(leaf)});
+    const LeafIndex index(before, more);
+    INFO("seed " << seed);
+    requireIndexOf(index, both);
+    for (size_t leaf = 0; leaf < index.leafCount(); ++leaf)
+      REQUIRE(index.findLeaf(index.origin(leaf)).value() == leaf);
+    CHECK_FALSE(index.findLeaf(box.min().offsetBy(-1000) & ~7).has_value());
+
+    // And without them again.
+    std::vector<VoxelId> ids;
+    DenseVolume<int64_t> values(box);
+    for (int i = 0; i < both.size(); ++i) {
+      values[i] = 1 + i;
+      if (added[i]) ids.push_back(idOf(index, both.coord(i)));
+    }
+    std::sort(ids.begin(), ids.end());
+    const auto grid = toGrid(index, byRank<int32_t>(index, values), "all");
+    removeVoxels(*grid, index, ids);
+    REQUIRE(difference("grid", *grid, object, values) == "");
+    REQUIRE(int64_t(grid->tree().leafCount()) == int64_t(before.leafCount()));
   }
 }
 

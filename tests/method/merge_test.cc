@@ -37,7 +37,7 @@ void connect(ManifoldGraph& graph, uint32_t first, uint32_t second, int saddleHe
 }
 
 MergeOptions options(double theta, MergeMode mode, Adjacency adjacency = Adjacency::manifold) {
-  return {theta, mode, adjacency};
+  return {theta, mode, adjacency, 0};
 }
 
 void check(const ManifoldGraph& graph, const MergeOptions& merging, const Labels& labels,
@@ -200,6 +200,71 @@ TEST_CASE("merge: adjacency of cells restricts the angle test only", "[merge]") 
   check(graph, options(-0.8, MergeMode::both, Adjacency::cell), {1, 1, 1}, {0});
 }
 
+TEST_CASE("merge: a neck that is narrower by less than delta merges", "[merge]") {
+  // sqrt(100) - sqrt(81) = 1 voxel: 8 eighths. Strictly less.
+  ManifoldGraph graph = ballsOnAxis({{0, 100}, {20, 144}});
+  connect(graph, 0, 1, 81);
+  for (const MergeMode mode : {MergeMode::neck, MergeMode::both}) {
+    MergeOptions merging = options(-1, mode);
+    for (const int delta : {0, 2, 8}) {
+      merging.delta = delta;
+      check(graph, merging, {1, 2}, {0, 1});
+    }
+    for (const int delta : {9, 80}) {
+      merging.delta = delta;
+      check(graph, merging, {1, 1}, {1});
+    }
+  }
+  MergeOptions angle = options(-1, MergeMode::angle);
+  angle.delta = 80;
+  check(graph, angle, {1, 2}, {0, 1});
+}
+
+TEST_CASE("merge: delta sees tops as they grow, and no neck without height", "[merge]") {
+  // Node 1 (D = 16) joins node 0 (D = 100) at h = 16; then 16 is far below 100.
+  ManifoldGraph graph = ballsOnAxis({{0, 100}, {20, 16}, {40, 100}});
+  connect(graph, 0, 1, 16);
+  connect(graph, 1, 2, 15);
+  MergeOptions merging = options(-1, MergeMode::neck);
+  merging.delta = 2;  // sqrt(16) - sqrt(15) = 0.127 voxels would pass
+  check(graph, merging, {1, 1, 2}, {0, 2});
+  graph.edges[0].saddleHeight = 0;
+  graph.edges[1].saddleHeight = -1;
+  merging.delta = kMaxDelta;  // 4 - 0 < 10
+  check(graph, merging, {1, 2, 3}, {0, 1, 2});
+}
+
+TEST_CASE("merge: delta at the largest radii", "[merge]") {
+  // L is near 2^31 and beyond, where its square would not fit.
+  const int top = 26754 * 26754;
+  for (const int height :
+       {1, 1000000, top / 2, top - 600000, top - 535000, top - 534000, top - 1}) {
+    ManifoldGraph graph = ballsOnAxis({{0, top}, {1000, top}});
+    connect(graph, 0, 1, height);
+    for (const int delta : {1, 2, 79, 80}) {
+      MergeOptions merging = options(-1, MergeMode::neck);
+      merging.delta = delta;
+      const bool within =
+          std::sqrt((long double)top) - std::sqrt((long double)height) < delta / 8.0L;
+      CAPTURE(height, delta);
+      if (within)
+        check(graph, merging, {1, 1}, {0});
+      else
+        check(graph, merging, {1, 2}, {0, 1});
+    }
+  }
+}
+
+TEST_CASE("merge: a class without a voxel of the object is no grain", "[merge]") {
+  ManifoldGraph graph = ballsOnAxis({{0, 4}, {10, 9}, {20, 5}, {30, 5}});
+  graph.nodes[0].voxels = graph.nodes[1].voxels = 0;
+  connect(graph, 1, 2, 5);
+  // Node 0 alone has none; 1 and 2 are one grain, represented by node 1.
+  check(graph, options(-1, MergeMode::neck), {0, 1, 1, 2}, {1, 3});
+  CHECK(grainVoxels(graph, merge(graph, options(-1, MergeMode::neck))) ==
+        std::vector<int64_t>{1, 1});
+}
+
 TEST_CASE("merge: grains are numbered by their representatives", "[merge]") {
   // {0, 3} has its largest ball at 3, {1, 2} at 1 (equal to 2: smaller coordinate).
   ManifoldGraph graph = ballsOnAxis({{0, 4}, {10, 9}, {20, 9}, {30, 5}});
@@ -217,6 +282,9 @@ TEST_CASE("merge: theta outside [-1, 1] is refused", "[merge]") {
       CHECK_THROWS_AS(merge(graph, options(theta, mode)), InvalidInput);
       CHECK_THROWS_AS(merge({}, options(theta, mode)), InvalidInput);
     }
+  for (const int delta : {-1, kMaxDelta + 1})
+    CHECK_THROWS_AS(merge(graph, {-0.9, MergeMode::both, Adjacency::manifold, delta}),
+                    InvalidInput);
 }
 
 TEST_CASE("merge: agrees with the oracle on random graphs", "[merge]") {
@@ -228,7 +296,9 @@ TEST_CASE("merge: agrees with the oracle on random graphs", "[merge]") {
     for (int i = 0; i < count; ++i)
       positions.insert({rng.below(side), rng.below(side), rng.below(side)});
     ManifoldGraph graph;
-    for (const Coord& p : positions) graph.nodes.push_back({p, 1 + rng.below(radii), 1});
+    const double empty = rng.chance(0.2) ? 0.3 : 0;  // nodes without voxels of the object
+    for (const Coord& p : positions)
+      graph.nodes.push_back({p, 1 + rng.below(radii), rng.chance(empty) ? 0 : 1});
     const double density = rng.unit();
     for (uint32_t a = 0; a < graph.nodes.size(); ++a)
       for (uint32_t b = a + 1; b < graph.nodes.size(); ++b) {
@@ -237,8 +307,9 @@ TEST_CASE("merge: agrees with the oracle on random graphs", "[merge]") {
         connect(graph, a, b, rng.between(-2, lower), rng.chance(0.7));
       }
     const double thetas[] = {-1, -0.95, -0.9, -0.8, -0.5, 0, 0.5, 1, 2 * rng.unit() - 1};
-    const MergeOptions merging = options(thetas[rng.below(9)], MergeMode(rng.below(3)),
-                                         rng.chance(0.5) ? Adjacency::cell : Adjacency::manifold);
+    MergeOptions merging = options(thetas[rng.below(9)], MergeMode(rng.below(3)),
+                                   rng.chance(0.5) ? Adjacency::cell : Adjacency::manifold);
+    merging.delta = rng.chance(0.5) ? 0 : rng.between(0, kMaxDelta);
     const Merging result = merge(graph, merging), expected = oracleMerge(graph, merging);
     INFO("seed " << seed);
     REQUIRE(result.grainOfNode == expected.grainOfNode);

@@ -41,6 +41,8 @@ SegmentOptions merging(double theta, MergeMode mode, int64_t gamma = 0) {
   options.gamma = gamma;
   options.merge.theta = theta;
   options.merge.mode = mode;
+  options.merge.delta = 0;
+  options.fillHoles = options.tidy = 0;
   return options;
 }
 
@@ -259,7 +261,7 @@ TEST_CASE("oracle: the restriction of the candidates loses nothing", "[oracle]")
     INFO("seed " << seed << ", " << name(kind) << "\n" << picture(object));
     OracleResult result;
     try {
-      result = oracleSegment(object, domain, {});
+      result = oracleSegment(object, domain, merging(-0.9, MergeMode::both));
     } catch (const Undefined&) {
       continue;
     }

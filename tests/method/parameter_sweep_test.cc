@@ -33,16 +33,19 @@ SweepOptions wide() {
   options.gammas = {12, 0};
   options.modes = {MergeMode::neck, MergeMode::both, MergeMode::angle};
   options.thetas = {-0.5, -1, -0.85};
+  options.deltas = {4, 0};
+  options.tidy = 1;
   options.smallVoxels = 40;
   return options;
 }
 
 /// From the voxels of the labels of a fresh segmentation.
 void requireRow(const SweepRow& row, const MaskGrid& object, const SweepOptions& options) {
-  CAPTURE(row.gamma, int(row.mode), row.theta);
+  CAPTURE(row.gamma, int(row.mode), row.theta, row.delta);
   SegmentOptions one;
   one.gamma = row.gamma;
-  one.merge = {row.theta, row.mode, options.adjacency};
+  one.merge = {row.theta, row.mode, options.adjacency, row.delta};
+  one.tidy = options.tidy;
   one.boundary = options.boundary;
   const Segmentation segmentation = segment(object, one);
   std::map<int32_t, int64_t> voxels;
@@ -65,10 +68,14 @@ void requireRow(const SweepRow& row, const MaskGrid& object, const SweepOptions&
   CHECK(row.smallVoxels == inSmall);
   CHECK(row.largestVoxels == sizes.back());
   CHECK(row.objectVoxels == all);
+  CHECK(row.flaws.crumbs == segmentation.flaws.crumbs);
+  CHECK(row.flaws.slivers == segmentation.flaws.slivers);
+  CHECK(row.flaws.inPieces == segmentation.flaws.inPieces);
 }
 
 bool equal(const SweepRow& a, const SweepRow& b) {
-  return a.gamma == b.gamma && a.mode == b.mode && a.theta == b.theta && a.grains == b.grains &&
+  return a.gamma == b.gamma && a.mode == b.mode && a.theta == b.theta && a.delta == b.delta &&
+         a.grains == b.grains && a.flaws.crumbs == b.flaws.crumbs &&
          a.medianVoxels == b.medianVoxels && a.smallGrains == b.smallGrains &&
          a.smallVoxels == b.smallVoxels && a.largestVoxels == b.largestVoxels &&
          a.objectVoxels == b.objectVoxels;
@@ -83,7 +90,7 @@ TEST_CASE("parameter_sweep: each row is what a segmentation with its options giv
   for (const Adjacency adjacency : {Adjacency::manifold, Adjacency::cell}) {
     options.adjacency = adjacency;
     const std::vector<SweepRow> rows = parameterSweep(*object, options);
-    REQUIRE(rows.size() == 18);
+    REQUIRE(rows.size() == 36);
     for (const SweepRow& row : rows) requireRow(row, *object, options);
     // Rough surfaces: the choices do matter here.
     CHECK(rows[0].grains < rows[1].grains);
@@ -91,18 +98,20 @@ TEST_CASE("parameter_sweep: each row is what a segmentation with its options giv
   }
 }
 
-TEST_CASE("parameter_sweep: rows come by gamma, mode and theta, as asked for",
+TEST_CASE("parameter_sweep: rows come by gamma, mode, delta and theta, as asked for",
           "[parameter_sweep]") {
   const SweepOptions options = wide();
   const std::vector<SweepRow> rows = parameterSweep(*rough(), options);
   size_t i = 0;
   for (const int64_t gamma : options.gammas)
     for (const MergeMode mode : options.modes)
-      for (const double theta : options.thetas) {
-        CHECK(rows[i].gamma == gamma);
-        CHECK(rows[i].mode == mode);
-        CHECK(rows[i++].theta == theta);
-      }
+      for (const int delta : options.deltas)
+        for (const double theta : options.thetas) {
+          CHECK(rows[i].gamma == gamma);
+          CHECK(rows[i].mode == mode);
+          CHECK(rows[i].delta == delta);
+          CHECK(rows[i++].theta == theta);
+        }
 }
 
 TEST_CASE("parameter_sweep: a larger theta merges more", "[parameter_sweep]") {
@@ -140,6 +149,9 @@ TEST_CASE("parameter_sweep: nothing, and options out of range", "[parameter_swee
   CHECK_THROWS_AS(parameterSweep(empty, options), InvalidInput);
   options.gammas = {0};
   options.thetas = {-1.01};
+  CHECK_THROWS_AS(parameterSweep(empty, options), InvalidInput);
+  options.thetas = {-1};
+  options.deltas = {2, 81};
   CHECK_THROWS_AS(parameterSweep(empty, options), InvalidInput);
 }
 

@@ -56,10 +56,12 @@ std::map<std::string, std::string> texts(const openvdb::MetaMap& metadata) {
   return result;
 }
 
-const std::vector<MergeOptions> kMergings = {
-    {-1, MergeMode::both, Adjacency::manifold},    {-0.9, MergeMode::both, Adjacency::manifold},
-    {-0.8, MergeMode::angle, Adjacency::manifold}, {-0.8, MergeMode::angle, Adjacency::cell},
-    {-0.6, MergeMode::neck, Adjacency::manifold},  {1, MergeMode::both, Adjacency::cell}};
+const std::vector<MergeOptions> kMergings = {{-1, MergeMode::both, Adjacency::manifold, 0},
+                                             {-0.9, MergeMode::both, Adjacency::manifold, 2},
+                                             {-0.8, MergeMode::angle, Adjacency::manifold, 0},
+                                             {-0.8, MergeMode::angle, Adjacency::cell, 0},
+                                             {-0.6, MergeMode::neck, Adjacency::manifold, 5},
+                                             {1, MergeMode::both, Adjacency::cell, 80}};
 
 /// Labels as the oracle merges its own manifolds, and all else as a fresh segmentation has it.
 void requireFresh(RandomCase c) {
@@ -72,14 +74,21 @@ void requireFresh(RandomCase c) {
   }
   const Segmentation first = segment(*maskOf(c), optionsOf(c));
   for (const MergeOptions& merging : kMergings) {
-    CAPTURE(merging.theta, int(merging.mode), int(merging.adjacency));
-    const std::vector<int32_t> grainOf = oracleMerge(oracle.graph, merging).grainOfNode;
+    const int tidy = merging.theta < -0.7 ? 2 : 0;
+    CAPTURE(merging.theta, int(merging.mode), int(merging.adjacency), tidy);
+    const Merging merged = oracleMerge(oracle.graph, merging);
+    std::vector<Coord> representatives;
+    for (const uint32_t node : merged.representative)
+      representatives.push_back(oracle.graph.nodes[node].position);
     DenseVolume<int64_t> expected(c.object.box());
     for (int i = 0; i < c.object.size(); ++i)
-      if (c.object[i]) expected[i] = grainOf[size_t(oracle.manifold[i] - 1)];
-    const auto grain = remerge(*first.manifold, merging);
-    REQUIRE(difference("grain", *grain, c.object, expected) == "");
+      if (c.object[i])
+        expected[i] = merged.grainOfNode[size_t(oracle.manifold[c.object.coord(i)] - 1)];
+    const auto grain = remerge(*first.manifold, merging, tidy);
+    REQUIRE(difference("grain", *grain, c.object, oracleTidy(expected, representatives, tidy)) ==
+            "");
     c.options.merge = merging;
+    c.options.tidy = tidy;
     const Segmentation fresh = segment(*maskOf(c), optionsOf(c));
     REQUIRE(texts(*grain) == texts(*fresh.grain));
     REQUIRE(grain->transform() == fresh.grain->transform());
@@ -91,7 +100,7 @@ void requireFresh(RandomCase c) {
 TEST_CASE("remerge: a row, drawn by hand", "[remerge]") {
   const auto manifold = rowGrid();
   const auto labels = [&](double theta, MergeMode mode, Adjacency adjacency = Adjacency::manifold) {
-    return row(*remerge(*manifold, {theta, mode, adjacency}));
+    return row(*remerge(*manifold, {theta, mode, adjacency, 0}, 0));
   };
   using Row = std::vector<int32_t>;
   // 4 >= (1 - theta)/2 * 4 for all theta; 1 >= (1 - theta)/2 * 4 from 0.5 on.
@@ -111,7 +120,7 @@ TEST_CASE("remerge: leaves the manifolds as they are", "[remerge]") {
   manifold->insertMeta("madf_source", openvdb::StringMetadata("scan.tif"));
   manifold->insertMeta("madf_grains", openvdb::Int64Metadata(99));
   const auto before = texts(*manifold);
-  const auto grain = remerge(*manifold, {0.5, MergeMode::neck, Adjacency::cell});
+  const auto grain = remerge(*manifold, {0.5, MergeMode::neck, Adjacency::cell, 3}, 4);
   CHECK(row(*manifold) == std::vector<int32_t>{1, 1, 2, 2, 3, 3, 3});
   CHECK(texts(*manifold) == before);
   CHECK(storedGraph(*manifold)->nodes == rowGraph().nodes);
@@ -123,6 +132,8 @@ TEST_CASE("remerge: leaves the manifolds as they are", "[remerge]") {
   CHECK(grain->metaValue<double>("madf_theta") == 0.5);
   CHECK(grain->metaValue<std::string>("madf_merge") == "neck");
   CHECK(grain->metaValue<std::string>("madf_adjacency") == "cell");
+  CHECK(grain->metaValue<int64_t>("madf_delta") == 3);
+  CHECK(grain->metaValue<int64_t>("madf_tidy") == 4);
 }
 
 TEST_CASE("remerge: of edge cases, as a fresh segmentation", "[remerge]") {
@@ -149,7 +160,7 @@ TEST_CASE("remerge: takes active tiles", "[remerge]") {
   const auto manifold = rowGrid();
   manifold->tree().addTile(1, Coord(-8, 0, 0), 1, true);
   manifold->tree().addTile(2, Coord(-128, 128, 0), 3, true);
-  const auto grain = remerge(*manifold, {-1, MergeMode::neck, Adjacency::manifold});
+  const auto grain = remerge(*manifold, {-1, MergeMode::neck, Adjacency::manifold, 0}, 0);
   CHECK(grain->activeVoxelCount() == 7 + 512 + 128 * 128 * 128);
   for (const Coord& p : {Coord(-8, 0, 0), Coord(-1, 7, 7)}) CHECK(grain->tree().getValue(p) == 1);
   for (const Coord& p : {Coord(-128, 128, 0), Coord(-1, 255, 127)})
@@ -178,9 +189,21 @@ TEST_CASE("remerge: what does not fit is refused", "[remerge]") {
       CHECK_THROWS_AS(remerge(*manifold, {theta, MergeMode::both, Adjacency::manifold}),
                       InvalidInput);
   }
+  SECTION("delta and tidy") {
+    for (const int delta : {-1, 81})
+      CHECK_THROWS_AS(remerge(*manifold, {-0.9, MergeMode::both, Adjacency::manifold, delta}),
+                      InvalidInput);
+    CHECK_THROWS_AS(remerge(*manifold, {}, -1), InvalidInput);
+  }
+  SECTION("voxels of a manifold that has none, by its graph") {
+    ManifoldGraph graph = rowGraph();
+    for (auto& node : graph.nodes) node.voxels = 0;
+    setGraph(*manifold, graph);
+    CHECK_THROWS_AS(remerge(*manifold), InvalidInput);
+  }
   SECTION("interrupted") {
     StopAtOnce stop;
-    CHECK_THROWS_AS(remerge(*manifold, {}, &stop), Interrupted);
+    CHECK_THROWS_AS(remerge(*manifold, {}, 0, &stop), Interrupted);
   }
 }
 

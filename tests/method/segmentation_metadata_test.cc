@@ -46,13 +46,19 @@ std::string asText(const openvdb::Metadata& value) {
 }
 
 /// What describeSegmentation() says, from its description.
-Texts expectedTexts(const SegmentOptions& options, bool open, const SegmentCounts& counts) {
+Texts expectedTexts(const SegmentOptions& options, bool open, const SegmentCounts& counts,
+                    int64_t fillHoles) {
   return {{"madf_version", asText(StringMetadata(kVersion))},
           {"madf_gamma", asText(Int64Metadata(options.gamma))},
           {"madf_boundary", asText(StringMetadata(open ? "open" : "closed"))},
           {"madf_theta", asText(DoubleMetadata(options.merge.theta))},
           {"madf_merge", asText(StringMetadata(word(options.merge.mode)))},
           {"madf_adjacency", asText(StringMetadata(word(options.merge.adjacency)))},
+          {"madf_delta", asText(Int64Metadata(options.merge.delta))},
+          {"madf_fill_holes", asText(Int64Metadata(fillHoles))},
+          {"madf_tidy", asText(Int64Metadata(options.tidy))},
+          {"madf_cavities", asText(Int64Metadata(counts.cavities))},
+          {"madf_cavity_voxels", asText(Int64Metadata(counts.cavityVoxels))},
           {"madf_object_voxels", asText(Int64Metadata(counts.objectVoxels))},
           {"madf_medial_balls", asText(Int64Metadata(counts.medialBalls))},
           {"madf_kept_balls", asText(Int64Metadata(counts.keptBalls))},
@@ -65,7 +71,9 @@ Texts expectedTexts(const SegmentOptions& options, bool open, const SegmentCount
 /// A different number in each place.
 Segmentation numbered(int64_t first) {
   Segmentation s;
-  s.counts = {first, first + 1, first + 2, first + 3, first + 4, first + 5, first + 6};
+  s.counts = {first,     first + 1, first + 2, first + 3, first + 4,
+              first + 5, first + 6, first + 7, first + 8};
+  s.fillHoles = first + 9;
   return s;
 }
 
@@ -81,26 +89,29 @@ TEST_CASE("segmentation_metadata: every option and count has its key", "[segment
           Segmentation s = numbered(first);
           s.open = open;
           SegmentOptions options;
-          options.gamma = first + 7;
+          options.gamma = first + 10;
+          s.tidy = options.tidy = 11;
           // What was used counts, not what was asked for.
           options.boundary = open ? Boundary::automatic : Boundary::open;
-          options.merge = {-0.1234567890123, mode, adjacency};
+          options.merge = {-0.1234567890123, mode, adjacency, 12};
           describeSegmentation(*grid, options, s);
-          CHECK(stored(*grid) == expectedTexts(options, open, s.counts));
+          CHECK(stored(*grid) == expectedTexts(options, open, s.counts, s.fillHoles));
           CHECK(grid->metaValue<double>("madf_theta") == -0.1234567890123);
         }
 }
 
-TEST_CASE("segmentation_metadata: another merging changes four values", "[segmentation_metadata]") {
+TEST_CASE("segmentation_metadata: another merging changes six values", "[segmentation_metadata]") {
   const auto grid = Int32Grid::create();
   grid->insertMeta("madf_source", StringMetadata("scan.tif"));
   const Segmentation s = numbered(100);
   describeSegmentation(*grid, {}, s);
   Texts expected = stored(*grid);
-  describeMerging(*grid, {0.25, MergeMode::angle, Adjacency::cell}, 77);
+  describeMerging(*grid, {0.25, MergeMode::angle, Adjacency::cell, 5}, 6, 77);
   expected["madf_theta"] = asText(DoubleMetadata(0.25));
   expected["madf_merge"] = asText(StringMetadata("angle"));
   expected["madf_adjacency"] = asText(StringMetadata("cell"));
+  expected["madf_delta"] = asText(Int64Metadata(5));
+  expected["madf_tidy"] = asText(Int64Metadata(6));
   expected["madf_grains"] = asText(Int64Metadata(77));
   CHECK(stored(*grid) == expected);
 }
@@ -120,7 +131,7 @@ TEST_CASE("segmentation_metadata: the number of grains comes back", "[segmentati
   const auto grid = Int32Grid::create();
   CHECK_FALSE(grainCount(*grid).has_value());
   for (const int64_t grains : {int64_t(0), int64_t(5), std::numeric_limits<int64_t>::max()}) {
-    describeMerging(*grid, {}, grains);
+    describeMerging(*grid, {}, 0, grains);
     CHECK(grainCount(*grid).value() == grains);
   }
 }
@@ -144,7 +155,8 @@ TEST_CASE("segmentation_metadata: a segmentation describes itself on each of its
       return;
     }
     const Segmentation s = segment(*maskOf(c), optionsOf(c));
-    const Texts texts = expectedTexts(c.options, expected.open, expected.counts);
+    const Texts texts = expectedTexts(c.options, expected.open, expected.counts,
+                                      oracleFillHoles(c.options, c.domain));
     for (const auto& grid : {s.grain, s.distanceSquared, s.power, s.manifold}) {
       const Texts found = stored(*grid);
       CAPTURE(grid->getName());

@@ -28,6 +28,7 @@ TEST_CASE("sweep_plot: a line a gamma and mode in each of three diagrams", "[swe
         row.gamma = gamma;
         row.mode = mode;
         row.theta = theta;
+        row.delta = 2;
         row.grains = 100 + gamma;
         row.medianVoxels = 50;
         rows.push_back(row);
@@ -36,7 +37,7 @@ TEST_CASE("sweep_plot: a line a gamma and mode in each of three diagrams", "[swe
   CHECK(occurrences(svg, "<svg ") == 1);
   CHECK(occurrences(svg, "</svg>") == 1);
   CHECK(occurrences(svg, "<polyline ") == 3 * 4);
-  CHECK_THAT(svg, Contains("smaller than 123 voxels") && Contains(">gamma 20, neck<"));
+  CHECK_THAT(svg, Contains("smaller than 123 voxels") && Contains(">gamma 20, neck, delta 2<"));
 }
 
 TEST_CASE("sweep_plot: zeros have no place on a logarithmic axis", "[sweep_plot]") {

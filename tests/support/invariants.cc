@@ -256,6 +256,32 @@ std::string ballsFillObject(const std::vector<MedialBall>& balls,
   return voxels == active ? std::string() : text("the cells hold ", voxels, " voxels of ", active);
 }
 
+std::string grainsAreConnected(const Int32Grid& grain) {
+  const auto grainAt = grain.getConstAccessor();
+  const Int32Grid::Ptr left = grain.deepCopy();
+  auto leftAt = left->getAccessor();
+  std::map<int32_t, Coord> seed;
+  std::vector<Coord> front;
+  return forEachActive(grain, [&](const Coord& start, int32_t label) {
+    if (!leftAt.isValueOn(start)) return std::string();
+    const auto [known, isNew] = seed.insert({label, start});
+    if (!isNew) return text("grain ", label, " has pieces at ", known->second, " and ", start);
+    leftAt.setValueOff(start);
+    front.push_back(start);
+    while (!front.empty()) {
+      const Coord p = front.back();
+      front.pop_back();
+      for (const Coord& step : kForward)
+        for (const Coord& q : {p + step, p - step})
+          if (leftAt.isValueOn(q) && grainAt.getValue(q) == label) {
+            leftAt.setValueOff(q);
+            front.push_back(q);
+          }
+    }
+    return std::string();
+  });
+}
+
 std::string countsAgree(const Segmentation& segmentation, const MaskGrid& object, int64_t gamma) {
   const SegmentCounts& counts = segmentation.counts;
   if (counts.objectVoxels != int64_t(object.activeVoxelCount()))
@@ -263,9 +289,9 @@ std::string countsAgree(const Segmentation& segmentation, const MaskGrid& object
   if (counts.criticalPoints != int64_t(segmentation.graph.nodes.size()))
     return text(counts.criticalPoints, " critical points, ", segmentation.graph.nodes.size(),
                 " nodes");
-  if (counts.objectVoxels < counts.medialBalls || counts.medialBalls < counts.keptBalls ||
-      counts.keptBalls < counts.criticalPoints || counts.criticalPoints < counts.grains ||
-      (counts.objectVoxels > 0) != (counts.grains > 0))
+  if (counts.objectVoxels + counts.cavityVoxels < counts.medialBalls ||
+      counts.medialBalls < counts.keptBalls || counts.keptBalls < counts.criticalPoints ||
+      counts.criticalPoints < counts.grains || (counts.objectVoxels > 0) != (counts.grains > 0))
     return text("voxels, balls, kept balls, critical points, grains: ", counts.objectVoxels, " ",
                 counts.medialBalls, " ", counts.keptBalls, " ", counts.criticalPoints, " ",
                 counts.grains);
@@ -285,20 +311,23 @@ std::string anyViolation(const Segmentation& s, const MaskGrid& object, int64_t 
     if (!violation.empty()) all << what << ": " << violation << '\n';
   };
   add("labels", labelsCoverObject(object, *s.grain, s.counts.grains));
-  add("order of grains", grainsAreInCanonicalOrder(s.graph, *s.grain));
-  add("components", grainsStayInOneComponent(object, *s.grain));
+  const bool filled = s.counts.cavities > 0, tidied = s.tidy > 0;
+  if (!filled && !tidied) add("order of grains", grainsAreInCanonicalOrder(s.graph, *s.grain));
+  if (!filled) add("components", grainsStayInOneComponent(object, *s.grain));
+  if (!filled && tidied) add("pieces", grainsAreConnected(*s.grain));
   add("counts", countsAgree(s, object, gamma));
   if (s.distanceSquared) add("distance", distanceIsLipschitz(object, *s.distanceSquared));
   if (s.distanceSquared && s.power && gamma <= 1)
     add("power", powerIsAtMostMinusDistance(*s.distanceSquared, *s.power));
-  if (s.distanceSquared && !s.balls.empty())
+  if (s.distanceSquared && !s.balls.empty() && !filled)
     add("balls", ballsFillObject(s.balls, *s.distanceSquared));
   if (s.manifold) {
-    add("manifolds", labelsCoverObject(object, *s.manifold, s.counts.criticalPoints));
-    add("unions", grainsAreUnionsOfManifolds(*s.manifold, *s.grain));
+    if (!filled) add("manifolds", labelsCoverObject(object, *s.manifold, s.counts.criticalPoints));
+    if (!tidied) add("unions", grainsAreUnionsOfManifolds(*s.manifold, *s.grain));
   }
   if (s.manifold && s.power) {
     add("heights", heightsClimb(*s.power, *s.manifold, s.graph));
+    if (filled) return all.str();
     add("nodes", nodesMatchManifolds(s.graph, *s.manifold, *s.power));
     add("edges", edgesMatchManifolds(s.graph, *s.manifold, *s.power));
   }

@@ -50,10 +50,15 @@ std::string grainsStayInOneComponent(const MaskGrid& object, const Int32Grid& gr
 /// Balls ascend lexicographically, have D of the grid, and their cells make up the object.
 std::string ballsFillObject(const std::vector<MedialBall>& balls, const Int32Grid& distanceSquared);
 
+/// The voxels of each label are 6-connected: tidied labels of an object without cavities.
+std::string grainsAreConnected(const Int32Grid& grain);
+
 /// The counts agree with each other and with the graph.
 std::string countsAgree(const Segmentation& segmentation, const MaskGrid& object, int64_t gamma);
 
-/// All of the above that can be checked with the grids that the segmentation kept.
+/// All of the above that can be checked with the grids that the segmentation kept, and that hold
+/// for its options: what ties labels to manifolds holds before they are tidied, what ties a grid
+/// to the balls and the graph where no cavity was filled.
 std::string anyViolation(const Segmentation& segmentation, const MaskGrid& object, int64_t gamma);
 
 }  // namespace vdb_madf::test

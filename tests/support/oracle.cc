@@ -55,6 +55,52 @@ bool oracleBoundary(const ObjectVolume& object, Boundary boundary,
   return boundary == Boundary::open;
 }
 
+// -------------------------------------------------------------------------------- Cavities
+
+int64_t oracleFillHoles(const SegmentOptions& options, const std::optional<CoordBBox>& domain) {
+  if (options.fillHoles) return *options.fillHoles;
+  if (domain)
+    for (int axis = 0; axis < 3; ++axis)
+      if (domain->dim()[axis] == 1) return 0;
+  return 27;
+}
+
+OracleBody oracleBody(const ObjectVolume& object, const std::optional<CoordBBox>& domain, bool open,
+                      int64_t fillHoles) {
+  OracleBody body{object, 0};
+  if (countObject(object) == 0) return body;
+  // Without a domain: one layer more, which belongs to the unbounded outside.
+  CoordBBox space = object.box();
+  if (domain)
+    space = *domain;
+  else
+    space.expand(1);
+  CoordBBox inner = space;
+  inner.expand(-1);
+  ObjectVolume background(space, 1);
+  for (int i = 0; i < object.size(); ++i)
+    if (object[i]) background[object.coord(i)] = 0;
+  std::vector<Coord> filled;
+  const DenseVolume<int> component = sixComponents(background);
+  std::map<int, std::vector<Coord>> components;
+  for (int i = 0; i < background.size(); ++i)
+    if (background[i]) components[component[i]].push_back(background.coord(i));
+  for (const auto& [number, voxels] : components) {
+    if (int64_t(voxels.size()) >= fillHoles) continue;
+    bool reachesFace = false;
+    for (const Coord& p : voxels) reachesFace = reachesFace || !inner.isInside(p);
+    if (!open && reachesFace) continue;
+    ++body.cavities;
+    filled.insert(filled.end(), voxels.begin(), voxels.end());
+  }
+  if (open && int64_t(filled.size()) == countObject(background)) return {object, 0};
+  CoordBBox box = object.box();
+  for (const Coord& p : filled) box.expand(p);
+  body.voxels = withBox(object, box);
+  for (const Coord& p : filled) body.voxels[p] = 1;
+  return body;
+}
+
 // ------------------------------------------------------------------------------------- Step 1
 
 DenseVolume<int64_t> oracleDistance(const ObjectVolume& object, bool open,
@@ -273,6 +319,7 @@ ManifoldGraph oracleGraph(const ObjectVolume& object, const DenseVolume<int64_t>
 Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
   const double theta = options.theta;
   if (!(theta >= -1 && theta <= 1)) throw Undefined("theta is not in [-1, 1]");
+  if (options.delta < 0 || options.delta > 80) throw Undefined("delta is not in 0..80");
   const auto& nodes = graph.nodes;
   // The class of a node is named after any one of its nodes.
   std::vector<uint32_t> classOf(nodes.size());
@@ -313,7 +360,11 @@ Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
       if (edge.saddleHeight <= 0) break;
       const uint32_t a = classOf[edge.first], b = classOf[edge.second];
       if (a == b) continue;
-      if (double(edge.saddleHeight) >= ((1 - theta) / 2) * double(std::min(top(a), top(b))))
+      const int32_t m = std::min(top(a), top(b));
+      // sqrt(m) - sqrt(h) < k / 8, so 64 (m - h) - k^2 < 16 k sqrt(h)
+      const __int128 k = options.delta, h = edge.saddleHeight, l = 64 * (m - h) - k * k;
+      const bool within = l < 0 || l * l < 256 * k * k * h;
+      if (double(edge.saddleHeight) >= ((1 - theta) / 2) * double(m) || (k > 0 && within))
         unite(edge.first, edge.second);
     }
   }
@@ -327,7 +378,12 @@ Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
       representative[classOf[i]] = i;
   }
   Merging merging;
-  for (const auto& entry : representative) merging.representative.push_back(entry.second);
+  for (const auto& [c, node] : representative) {
+    int64_t voxels = 0;
+    for (size_t i = 0; i < nodes.size(); ++i)
+      if (classOf[i] == c) voxels += nodes[i].voxels;
+    if (voxels > 0) merging.representative.push_back(node);  // else it is no grain
+  }
   std::sort(merging.representative.begin(), merging.representative.end());
   std::map<uint32_t, int32_t> number;
   int32_t grains = 0;
@@ -336,51 +392,197 @@ Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
   return merging;
 }
 
-// ---------------------------------------------------------------------------------- All steps
+// ------------------------------------------------------------------------------------ Tidy
+
+namespace {
+
+/// The voxel of a label that is nearest to a point, then of smaller coordinate.
+Coord nearestOf(const DenseVolume<int64_t>& labels, int64_t label, const Coord& point) {
+  int best = -1;  // volumes are in the order of coordinates
+  for (int i = 0; i < labels.size(); ++i)
+    if (labels[i] == label && (best < 0 || squaredLength(labels.coord(i) - point) <
+                                               squaredLength(labels.coord(best) - point)))
+      best = i;
+  return labels.coord(best);
+}
+
+int64_t smoothed(const DenseVolume<int64_t>& labels, const Coord& p) {
+  const int64_t own = labels[p];
+  std::set<int64_t> candidates{own};
+  for (const Coord& step : kSixNeighbors)
+    if (const int64_t label = labels.get(p + step, 0)) candidates.insert(label);
+  std::map<int64_t, int> count;
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = -1; z <= 1; ++z) ++count[labels.get(p + Coord(x, y, z), 0)];
+  int largest = 0;
+  for (const int64_t c : candidates) largest = std::max(largest, count[c]);
+  if (count[own] == largest) return own;
+  for (const int64_t c : candidates)  // ascending
+    if (count[c] == largest) return c;
+  throw std::logic_error("no label has the largest count");
+}
+
+/// The voxels that a 6-connected path of their label joins with one of the seeds.
+ObjectVolume reached(const DenseVolume<int64_t>& labels, std::vector<Coord> front) {
+  ObjectVolume held(labels.box());
+  for (const Coord& p : front) held[p] = 1;
+  while (!front.empty()) {
+    const Coord p = front.back();
+    front.pop_back();
+    for (const Coord& step : kSixNeighbors) {
+      const Coord q = p + step;
+      if (labels.get(q, 0) != labels[p] || held[q]) continue;
+      held[q] = 1;
+      front.push_back(q);
+    }
+  }
+  return held;
+}
+
+}  // namespace
+
+DenseVolume<int64_t> oracleTidy(const DenseVolume<int64_t>& given,
+                                const std::vector<Coord>& representatives, int rounds) {
+  if (rounds < 0) throw Undefined("tidy is negative");
+  if (rounds == 0) return given;
+  std::vector<Coord> anchors;
+  for (size_t g = 0; g < representatives.size(); ++g)
+    anchors.push_back(nearestOf(given, int64_t(g) + 1, representatives[g]));
+  const std::set<Coord> fixed(anchors.begin(), anchors.end());
+
+  DenseVolume<int64_t> labels = given;
+  for (int round = 0; round < rounds; ++round) {
+    const DenseVolume<int64_t> before = labels;
+    for (int i = 0; i < labels.size(); ++i)
+      if (before[i] && !fixed.count(before.coord(i))) labels[i] = smoothed(before, before.coord(i));
+  }
+
+  const DenseVolume<int64_t> smooth = labels;
+  const ObjectVolume held = reached(smooth, anchors);
+  for (int i = 0; i < labels.size(); ++i)
+    if (!held[i]) labels[i] = 0;
+  for (bool changed = true; changed;) {
+    changed = false;
+    const DenseVolume<int64_t> before = labels;
+    for (int i = 0; i < labels.size(); ++i) {
+      if (!given[i] || before[i]) continue;
+      std::map<int64_t, int> count;
+      for (const Coord& step : kSixNeighbors)
+        if (const int64_t label = before.get(before.coord(i) + step, 0)) ++count[label];
+      int largest = 0;
+      for (const auto& [label, faces] : count)
+        if (faces > largest) {  // of equal ones the smallest
+          largest = faces;
+          labels[i] = label;
+          changed = true;
+        }
+    }
+  }
+  for (int i = 0; i < labels.size(); ++i)
+    if (given[i] && !labels[i]) labels[i] = smooth[i];
+  return labels;
+}
+
+LabelFlaws oracleFlaws(const DenseVolume<int64_t>& labels, int64_t grains,
+                       const std::optional<CoordBBox>& domain) {
+  LabelFlaws flaws;
+  for (int64_t g = 1; g <= grains; ++g) {
+    ObjectVolume grain(labels.box());
+    bool touches = false, deep = false;
+    for (int i = 0; i < labels.size(); ++i) {
+      if (labels[i] != g) continue;
+      grain[i] = 1;
+      const Coord p = labels.coord(i);
+      for (const Coord& step : kSixNeighbors) {
+        const int64_t other = labels.get(p + step, 0);
+        touches = touches || (other != 0 && other != g);
+      }
+      bool all = true;
+      for (int x = -1; x <= 1; ++x)
+        for (int y = -1; y <= 1; ++y)
+          for (int z = -1; z <= 1; ++z) {
+            const Coord q = p + Coord(x, y, z);
+            all = all && (labels.get(q, 0) == g || (domain && !domain->isInside(q)));
+          }
+      deep = deep || all;
+    }
+    const int64_t voxels = countObject(grain);
+    const DenseVolume<int> component = sixComponents(grain);
+    int components = 0;
+    for (int i = 0; i < component.size(); ++i) components = std::max(components, component[i]);
+    flaws.crumbs += voxels < 100 && touches;
+    flaws.specks += voxels < 100 && !touches;
+    flaws.slivers += voxels >= 20 && touches && !deep;
+    flaws.inPieces += components > 1;
+  }
+  return flaws;
+}
+
+// ------------------------------------------------------------------------------------ All
 
 OracleResult oracleSegment(const ObjectVolume& object, const std::optional<CoordBBox>& domain,
                            const SegmentOptions& options) {
   if (options.gamma < 0) throw Undefined("gamma is negative");
+  if (options.fillHoles.value_or(0) < 0) throw Undefined("fill-holes is negative");
   OracleResult result;
   result.open = oracleBoundary(object, options.boundary, domain);
-  result.distance = oracleDistance(object, result.open, domain.value_or(CoordBBox()));
-  result.unfiltered = oraclePower(object, result.distance, object);
+  const OracleBody filled =
+      oracleBody(object, domain, result.open, oracleFillHoles(options, domain));
+  const ObjectVolume& body = filled.voxels;
+  result.distance = oracleDistance(body, result.open, domain.value_or(CoordBBox()));
+  result.unfiltered = oraclePower(body, result.distance, body);
   result.balls = oracleBalls(result.unfiltered, result.distance);
 
   result.filtered = result.unfiltered;
   if (options.gamma > 0) {
-    const ObjectVolume kept = oracleKeptBalls(object, result.balls, options.gamma);
+    const ObjectVolume kept = oracleKeptBalls(body, result.balls, options.gamma);
     for (const MedialBall& ball : result.balls)
       if (kept[ball.center]) result.kept.push_back(ball.center);
-    result.filtered = oracleFilteredPower(object, result.distance, kept);
+    result.filtered = oracleFilteredPower(body, result.distance, kept);
   } else {
     for (const MedialBall& ball : result.balls) result.kept.push_back(ball.center);
   }
 
   const SiteMap critical = oracleFlow(result.filtered.site);
-  result.graph = oracleGraph(object, result.distance, result.filtered, critical);
+  result.graph = oracleGraph(body, result.distance, result.filtered, critical);
+  std::map<Coord, size_t> node;
+  for (size_t i = 0; i < result.graph.nodes.size(); ++i) {
+    node[result.graph.nodes[i].position] = i;
+    result.graph.nodes[i].voxels = 0;  // of the object alone
+  }
+  result.manifold = DenseVolume<int64_t>(body.box());
+  for (int i = 0; i < body.size(); ++i) {
+    if (!body[i]) continue;
+    const size_t n = node.at(body.coord(critical[i]));
+    result.manifold[i] = int64_t(n) + 1;
+    if (object.get(body.coord(i), 0)) ++result.graph.nodes[n].voxels;
+  }
   result.merging = oracleMerge(result.graph, options.merge);
 
-  result.manifold = DenseVolume<int64_t>(object.box());
-  result.grain = DenseVolume<int64_t>(object.box());
-  std::map<Coord, size_t> node;
-  for (size_t i = 0; i < result.graph.nodes.size(); ++i) node[result.graph.nodes[i].position] = i;
+  result.grain = DenseVolume<int64_t>(body.box());
   std::set<Coord> blocks;
   SegmentCounts& counts = result.counts;
-  for (int i = 0; i < object.size(); ++i) {
-    if (!object[i]) continue;
-    const size_t n = node.at(object.coord(critical[i]));
-    result.manifold[i] = int64_t(n) + 1;
-    result.grain[i] = result.merging.grainOfNode[n];
-    ++counts.objectVoxels;
+  for (int i = 0; i < body.size(); ++i) {
+    if (!body[i]) continue;
     counts.largestSquaredDistance = std::max(counts.largestSquaredDistance, result.distance[i]);
-    blocks.insert(object.coord(i) & ~7);
     if (result.filtered.site[i] == i) ++counts.criticalPoints;
+    if (!object.get(body.coord(i), 0)) continue;
+    result.grain[i] = result.merging.grainOfNode[size_t(result.manifold[i] - 1)];
+    ++counts.objectVoxels;
+    blocks.insert(body.coord(i) & ~7);
   }
+  std::vector<Coord> representatives;
+  for (const uint32_t n : result.merging.representative)
+    representatives.push_back(result.graph.nodes[n].position);
+  result.grain = oracleTidy(result.grain, representatives, options.tidy);
   counts.leaves = int64_t(blocks.size());
+  counts.cavities = filled.cavities;
+  counts.cavityVoxels = countObject(body) - counts.objectVoxels;
   counts.medialBalls = int64_t(result.balls.size());
   counts.keptBalls = int64_t(result.kept.size());
   counts.grains = int64_t(result.merging.representative.size());
+  result.flaws = oracleFlaws(result.grain, counts.grains, domain);
   return result;
 }
 

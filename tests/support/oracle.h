@@ -23,7 +23,7 @@ class Undefined : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A function X -> X as indices into the object's volume; kNoSite where it has no value.
+/// A function X -> X as indices into the volume of the body; kNoSite where it has no value.
 using SiteMap = DenseVolume<int>;
 constexpr int kNoSite = -1;
 
@@ -32,6 +32,8 @@ struct OraclePower {
   DenseVolume<int64_t> power;  ///< pi of p to the ball at its site
 };
 
+/// Volumes are those of the body: distance, power and so on have values in cavities too; grain has
+/// none there.
 struct OracleResult {
   DenseVolume<int64_t> distance;  ///< D
   OraclePower unfiltered;         ///< Pi, pi
@@ -43,12 +45,24 @@ struct OracleResult {
   ManifoldGraph graph;
   Merging merging;
   SegmentCounts counts;
+  LabelFlaws flaws;
   bool open = false;
 };
 
 /// Before all steps: is the boundary open (boundary.h)? @throw Undefined
 bool oracleBoundary(const ObjectVolume& object, Boundary boundary,
                     const std::optional<CoordBBox>& domain);
+
+/// What is filled if the options do not say it.
+int64_t oracleFillHoles(const SegmentOptions& options, const std::optional<CoordBBox>& domain);
+
+/// The body: the object and its cavities, and how many there are.
+struct OracleBody {
+  ObjectVolume voxels;  ///< in a box that holds the object's
+  int64_t cavities = 0;
+};
+OracleBody oracleBody(const ObjectVolume& object, const std::optional<CoordBBox>& domain, bool open,
+                      int64_t fillHoles);
 
 /// Step 1. `domain` is used if open. @throw Undefined if there is no background.
 DenseVolume<int64_t> oracleDistance(const ObjectVolume& object, bool open, const CoordBBox& domain);
@@ -80,6 +94,14 @@ ManifoldGraph oracleGraph(const ObjectVolume& object, const DenseVolume<int64_t>
 
 /// Steps 7 and 8: the classes, numbered. @throw Undefined unless theta is in [-1, 1]
 Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options);
+
+/// Step 9, on labels of the object (0: none), given the representatives of grains 1, 2, ...
+DenseVolume<int64_t> oracleTidy(const DenseVolume<int64_t>& labels,
+                                const std::vector<Coord>& representatives, int rounds);
+
+/// What is wrong with labels (label_flaws.h).
+LabelFlaws oracleFlaws(const DenseVolume<int64_t>& labels, int64_t grains,
+                       const std::optional<CoordBBox>& domain);
 
 /// All of it. @throw Undefined
 OracleResult oracleSegment(const ObjectVolume& object, const std::optional<CoordBBox>& domain,

@@ -15,6 +15,9 @@ namespace vdb_madf::test {
 namespace {
 
 constexpr std::array<int64_t, 6> kGammas = {0, 1, 2, 5, 20, 100};
+constexpr std::array<int64_t, 6> kFillHoles = {0, 2, 5, 27, 100, 100000};
+constexpr std::array<int, 6> kDeltas = {0, 1, 2, 4, 20, 80};
+constexpr std::array<int, 4> kTidies = {0, 1, 2, 5};
 constexpr std::array<double, 8> kThetas = {-1, -0.95, -0.9, -0.8, -0.5, 0, 0.5, 1};
 constexpr std::array<const char*, 3> kBoundaryNames = {"automatic", "open", "closed"};
 constexpr std::array<const char*, 3> kModeNames = {"both", "angle", "neck"};
@@ -96,6 +99,9 @@ class Shrinker {
     attempt(best_.threads != 1, [](RandomCase& c) { c.threads = 1; });
     attempt(best_.tiles != Tiles::none, [](RandomCase& c) { c.tiles = Tiles::none; });
     attempt(best_.options.gamma != 0, [](RandomCase& c) { c.options.gamma = 0; });
+    attempt(best_.options.fillHoles != 0, [](RandomCase& c) { c.options.fillHoles = 0; });
+    attempt(best_.options.merge.delta != 0, [](RandomCase& c) { c.options.merge.delta = 0; });
+    attempt(best_.options.tidy != 0, [](RandomCase& c) { c.options.tidy = 0; });
     attempt(best_.domain.has_value(), [](RandomCase& c) {
       c.domain.reset();
       c.domainInMetadata = false;
@@ -134,6 +140,10 @@ RandomCase randomCase(uint64_t seed, const std::optional<Coord>& size) {
   Rng rng(seed);
   c.options.gamma = kGammas[size_t(rng.below(int(kGammas.size())))];
   c.options.merge.theta = kThetas[size_t(rng.below(int(kThetas.size())))];
+  const int holes = rng.below(int(kFillHoles.size()) + 2);  // twice the default
+  if (holes < int(kFillHoles.size())) c.options.fillHoles = kFillHoles[size_t(holes)];
+  c.options.merge.delta = kDeltas[size_t(rng.below(int(kDeltas.size())))];
+  c.options.tidy = kTidies[size_t(rng.below(int(kTidies.size())))];
   c.kind = VolumeKind(rng.below(kVolumeKinds));
   const Coord origin = randomOrigin(rng), drawn = randomSize(rng);
   c.object = randomVolume(c.kind, boxAt(origin, size.value_or(drawn)), rng);
@@ -170,7 +180,9 @@ std::string describe(const RandomCase& c) {
        << kBoundaryNames[size_t(c.options.boundary)] << ", gamma " << c.options.gamma << ", theta "
        << std::setprecision(17) << c.options.merge.theta << ", mode "
        << kModeNames[size_t(c.options.merge.mode)] << ", adjacency "
-       << (c.options.merge.adjacency == Adjacency::cell ? "cell" : "manifold") << ", "
+       << (c.options.merge.adjacency == Adjacency::cell ? "cell" : "manifold") << ", fill-holes "
+       << (c.options.fillHoles ? std::to_string(*c.options.fillHoles) : "default") << ", delta "
+       << c.options.merge.delta << ", tidy " << c.options.tidy << ", "
        << (c.tiles == Tiles::none ? "no tiles, " : "tiles, ") << c.threads << " threads\n";
   if (c.object.size() <= kMaxPictureBytes) text << picture(c.object);
   return text.str();

@@ -167,6 +167,22 @@ void comb(ObjectVolume& object, Rng& rng) {
   }
 }
 
+/// Single background voxels, and walks of some steps.
+void pinholes(ObjectVolume& object, Rng& rng) {
+  if (rng.chance(0.3))
+    fillBox(object, object.box());
+  else
+    balls(object, rng.chance(0.3), rng);
+  const int holes = 1 + rng.below(1 + object.size() / (rng.chance(0.5) ? 300 : 40));
+  for (int n = 0; n < holes; ++n) {
+    Coord p = object.coord(rng.below(object.size()));
+    for (int steps = rng.chance(0.5) ? 1 : rng.between(1, 40); steps > 0; --steps) {
+      if (object.contains(p)) object[p] = 0;
+      p += kSixNeighbors[size_t(rng.below(6))];
+    }
+  }
+}
+
 void hollowShell(ObjectVolume& object, Rng& rng) {
   const int wall = rng.between(1, 4);
   if (rng.chance(0.5)) {
@@ -205,7 +221,7 @@ std::string name(VolumeKind kind) {
       "touching faces", "one-voxel sheet", "two equal maxima", "whole leaves",
       "two components", "sparse noise",    "dense noise",      "ball union",
       "blurred noise",  "rough balls",     "box union",        "thin rods",
-      "comb",           "hollow shell",    "checkerboard"};
+      "comb",           "hollow shell",    "pinholes",         "checkerboard"};
   return kNames[size_t(kind)];
 }
 
@@ -270,6 +286,9 @@ ObjectVolume randomVolume(VolumeKind kind, const CoordBBox& box, Rng& rng) {
       break;
     case VolumeKind::hollowShell:
       hollowShell(object, rng);
+      break;
+    case VolumeKind::pinholes:
+      pinholes(object, rng);
       break;
     case VolumeKind::checkerboard:
       for (int i = 0; i < object.size(); ++i) {

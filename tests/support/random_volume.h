@@ -46,6 +46,7 @@ enum class VolumeKind {
   thinRods,        ///< along the axes, one or two voxels thick
   comb,            ///< teeth on a back: concave, many equal distances
   hollowShell,     ///< a ball or box with a cavity
+  pinholes,        ///< something smooth with small holes, single voxels and larger
   checkerboard,    ///< no voxel has a 6-neighbour
   count_
 };

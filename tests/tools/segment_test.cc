@@ -17,19 +17,32 @@ TEST_CASE("cli: segment reports what it did as JSON", "[cli]") {
   const std::string printed = bench.mustRun("segment s.vdb g.vdb --gamma 4 --json j.json");
   CHECK(printed.find("grains") != std::string::npos);
   const Json json = Json::parse(bench.bytes("j.json"));
-  for (const char* key : {"object_voxels",   "medial_balls",  "kept_balls",
-                          "critical_points", "grains",        "largest_squared_distance",
-                          "leaves",          "porosity",      "seconds_read",
-                          "seconds_write",   "seconds_total", "peak_memory_bytes",
-                          "threads",         "voxel_size_mm", "gamma",
-                          "theta",           "boundary",      "merge",
-                          "adjacency",       "input",         "output"})
+  for (const char* key : {"object_voxels", "medial_balls",
+                          "kept_balls",    "critical_points",
+                          "grains",        "largest_squared_distance",
+                          "leaves",        "porosity",
+                          "seconds_read",  "seconds_write",
+                          "seconds_total", "peak_memory_bytes",
+                          "threads",       "voxel_size_mm",
+                          "gamma",         "theta",
+                          "boundary",      "merge",
+                          "adjacency",     "input",
+                          "output",        "fill_holes",
+                          "delta",         "tidy",
+                          "cavities",      "cavity_voxels",
+                          "crumbs",        "specks",
+                          "slivers",       "grains_in_pieces",
+                          "hints"})
     CHECK(json.count(key) == 1);
   CHECK(json.at("gamma") == 4);
   CHECK(json.at("theta") == -0.9);
   CHECK(json.at("merge") == "both");
   CHECK(json.at("adjacency") == "manifold");
   CHECK(json.at("boundary") == "open");
+  CHECK(json.at("fill_holes") == 27);
+  CHECK(json.at("delta") == 2);
+  CHECK(json.at("tidy") == 2);
+  CHECK(json.at("grains_in_pieces") == 0);
   CHECK(json.at("grains").get<int>() > 1);
   CHECK(json.at("porosity").get<double>() ==
         Approx(1 - json.at("object_voxels").get<double>() / (48 * 48 * 48)));
@@ -91,10 +104,11 @@ TEST_CASE("cli: the paper's merging is a short form", "[cli]") {
   const Bench bench;
   bench.mustRun(kSnow + "s.vdb");
   bench.mustRun("segment s.vdb short.vdb --paper");
-  bench.mustRun("segment s.vdb long.vdb --merge angle --adjacency cell --theta -0.8");
+  const std::string plain = " --delta 0 --fill-holes 0 --tidy 0";
+  bench.mustRun("segment s.vdb long.vdb --merge angle --adjacency cell --theta -0.8" + plain);
   CHECK(bench.bytes("short.vdb") == bench.bytes("long.vdb"));
   bench.mustRun("segment s.vdb short.vdb --paper --theta -0.6");
-  bench.mustRun("segment s.vdb long.vdb --merge angle --adjacency cell --theta -0.6");
+  bench.mustRun("segment s.vdb long.vdb --merge angle --adjacency cell --theta -0.6" + plain);
   CHECK(bench.bytes("short.vdb") == bench.bytes("long.vdb"));
 }
 
@@ -103,7 +117,8 @@ TEST_CASE("cli: remerge equals a fresh segmentation", "[cli]") {
   bench.mustRun(kSnow + "s.vdb");
   bench.mustRun("segment s.vdb g.vdb --keep manifold");
   for (const std::string options :
-       {"", " --theta -0.5", " --theta 1", " --merge angle --adjacency cell", " --merge neck"}) {
+       {"", " --theta -0.5", " --theta 1", " --merge angle --adjacency cell", " --merge neck",
+        " --delta 0 --tidy 0", " --delta 9 --tidy 5"}) {
     CAPTURE(options);
     bench.mustRun("remerge g.vdb re.vdb" + options);
     bench.mustRun("segment s.vdb fresh.vdb --keep manifold" + options);
@@ -118,21 +133,28 @@ TEST_CASE("cli: sweep gives a line for each choice, equal to its segmentation", 
   bench.mustRun(kSnow + "s.vdb");
   bench.mustRun(
       "sweep s.vdb a.csv --gamma 0,9 --theta -1:-0.7:0.1,-0.95 --merge angle,both --small 50 "
-      "--plot a.svg");
+      "--delta 2,4 --tidy 1 --fill-holes 9 --plot a.svg");
   std::istringstream csv(bench.bytes("a.csv"));
   std::vector<std::string> lines;
   for (std::string line; std::getline(csv, line);) lines.push_back(line);
-  REQUIRE(lines.size() == 1 + 2 * 2 * 5);
-  CHECK(lines[0].find("gamma,merge,theta,grains,median_voxels,small_grains,") == 0);
+  REQUIRE(lines.size() == 1 + 2 * 2 * 2 * 5);
+  CHECK(lines[0].find("gamma,merge,delta,theta,grains,median_voxels,small_grains,") == 0);
   for (const auto& [line, options] :
        {std::pair<size_t, std::string>{1, "--gamma 0 --theta -1 --merge angle"},
-        {3, "--gamma 0 --theta -0.8 --merge angle"},
-        {15, "--gamma 9 --theta -0.95 --merge angle"},
-        {19, "--gamma 9 --theta -0.7 --merge both"}}) {
-    const Json json = Json::parse(bench.mustRun("segment s.vdb g.vdb --json - " + options));
+        {8, "--gamma 0 --theta -0.8 --merge angle --delta 4"},
+        {25, "--gamma 9 --theta -0.95 --merge angle"},
+        {39, "--gamma 9 --theta -0.7 --merge both --delta 4"}}) {
+    const Json json = Json::parse(
+        bench.mustRun("segment s.vdb g.vdb --tidy 1 --fill-holes 9 --json - " + options));
     std::istringstream fields(lines[line]);
-    std::string gamma, merge, theta, grains;
-    for (std::string* field : {&gamma, &merge, &theta, &grains}) std::getline(fields, *field, ',');
+    std::string gamma, merge, delta, theta, grains;
+    for (std::string* field : {&gamma, &merge, &delta, &theta, &grains})
+      std::getline(fields, *field, ',');
+    CHECK(std::stoi(delta) == json.at("delta"));
+    const std::string flaws = "," + std::to_string(json.at("crumbs").get<int>()) + "," +
+                              std::to_string(json.at("slivers").get<int>()) + "," +
+                              std::to_string(json.at("grains_in_pieces").get<int>());
+    CHECK(lines[line].substr(lines[line].size() - flaws.size()) == flaws);
     CHECK(std::stoll(gamma) == json.at("gamma"));
     CHECK(merge == json.at("merge"));
     CHECK(std::stod(theta) == json.at("theta"));
@@ -144,11 +166,11 @@ TEST_CASE("cli: sweep gives a line for each choice, equal to its segmentation", 
   CHECK(svg.find("nan") == std::string::npos);
   size_t curves = 0;
   for (size_t at = 0; (at = svg.find("<polyline", at)) != std::string::npos; ++at) ++curves;
-  CHECK(curves == 3 * 4);
+  CHECK(curves == 3 * 8);
 
   bench.mustRun(
       "sweep s.vdb b.csv --gamma 0,9 --theta -1:-0.7:0.1,-0.95 --merge angle,both --small 50 "
-      "--plot b.svg --threads 1");
+      "--delta 2,4 --tidy 1 --fill-holes 9 --plot b.svg --threads 1");
   CHECK(bench.bytes("a.csv") == bench.bytes("b.csv"));
   CHECK(svg == bench.bytes("b.svg"));
 }

@@ -61,7 +61,7 @@ constexpr Row kRows[] = {{Boundary::closed, 0, 868123, 868123, 87324, 56699, 204
                          {Boundary::open, 160, 768750, 11756, 3205, 1815, 1747, 1748}};
 
 int64_t grains(const ManifoldGraph& graph, double theta, MergeMode mode) {
-  const Merging merging = merge(graph, {theta, mode, Adjacency::manifold});
+  const Merging merging = merge(graph, {theta, mode, Adjacency::manifold, 0});
   return int64_t(merging.representative.size());
 }
 
@@ -81,7 +81,8 @@ TEST_CASE("nmc: all reference counts", "[nmc]") {
     SegmentOptions options;
     options.gamma = row.gamma;
     options.boundary = row.boundary;
-    options.merge = {-0.8, MergeMode::both, Adjacency::manifold};
+    options.merge = {-0.8, MergeMode::both, Adjacency::manifold, 0};
+    options.fillHoles = options.tidy = 0;
     const Segmentation result = segment(*mask, options);
     INFO((result.open ? "open" : "closed") << ", gamma " << row.gamma);
     CHECK(result.counts.objectVoxels == 11357945);
@@ -100,6 +101,40 @@ TEST_CASE("nmc: all reference counts", "[nmc]") {
   }
 }
 
+TEST_CASE("nmc: cavities, and necks narrower by less than delta", "[nmc]") {
+  struct Filled {
+    Boundary boundary;
+    int64_t fillHoles;
+    int delta;
+    int64_t cavities, cavityVoxels, medialBalls, criticalPoints, grains;
+  };
+  const MaskGrid::Ptr mask = nmc();
+  if (!mask) return;
+  for (const Filled& row : {Filled{Boundary::open, 0, 2, 0, 0, 768750, 38793, 2105},
+                            Filled{Boundary::open, 27, 0, 326, 664, 767175, 38533, 2304},
+                            Filled{Boundary::open, 27, 2, 326, 664, 767175, 38533, 2099},
+                            Filled{Boundary::open, 100, 2, 328, 721, 767117, 38515, 2099},
+                            Filled{Boundary::closed, 0, 2, 0, 0, 868123, 87324, 1995},
+                            Filled{Boundary::closed, 27, 0, 291, 548, 866770, 87058, 2204},
+                            Filled{Boundary::closed, 27, 2, 291, 548, 866770, 87058, 1988},
+                            Filled{Boundary::closed, 100, 2, 292, 578, 866744, 87055, 1988}}) {
+    SegmentOptions options;
+    options.boundary = row.boundary;
+    options.fillHoles = row.fillHoles;
+    options.merge.delta = row.delta;
+    const Segmentation result = segment(*mask, options);
+    INFO((result.open ? "open" : "closed")
+         << ", fill-holes " << row.fillHoles << ", delta " << row.delta);
+    CHECK(result.counts.objectVoxels == 11357945);
+    CHECK(result.counts.cavities == row.cavities);
+    CHECK(result.counts.cavityVoxels == row.cavityVoxels);
+    CHECK(result.counts.medialBalls == row.medialBalls);
+    CHECK(result.counts.criticalPoints == row.criticalPoints);
+    CHECK(result.counts.grains == row.grains);
+    CHECK(result.flaws.inPieces == 0);
+  }
+}
+
 TEST_CASE("nmc: the invariants hold", "[nmc]") {
   const MaskGrid::Ptr mask = nmc();
   if (!mask) return;
@@ -108,6 +143,7 @@ TEST_CASE("nmc: the invariants hold", "[nmc]") {
   for (const int64_t gamma : {0, 20}) {
     options.gamma = gamma;
     options.boundary = gamma == 0 ? Boundary::open : Boundary::closed;
+    if (gamma > 0) options.fillHoles = options.tidy = 0;  // then more of them apply
     const Segmentation result = segment(*mask, options);
     INFO("gamma " << gamma);
     CHECK(anyViolation(result, *mask, gamma) == "");

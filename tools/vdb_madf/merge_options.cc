@@ -4,6 +4,7 @@
 #include "merge_options.h"
 
 #include "parse.h"
+#include "vdb_madf/method/tidy.h"
 #include "wrong_usage.h"
 
 namespace vdb_madf::tools {
@@ -16,6 +17,9 @@ void MergeArguments::add(Verb verb) {
   verb.option("--adjacency", adjacency,
               "what the angle test pairs: manifold, cell (default manifold)")
       .oneOf({"manifold", "cell"});
+  verb.option("--delta", delta,
+              "merge at necks narrower than the grain by less, eighths of a voxel (default 2)")
+      .typeName("K");
 }
 
 MergeOptions MergeArguments::parse() const {
@@ -26,7 +30,42 @@ MergeOptions MergeArguments::parse() const {
   if (mode == "angle") options.mode = MergeMode::angle;
   if (mode == "neck") options.mode = MergeMode::neck;
   if (adjacency == "cell") options.adjacency = Adjacency::cell;
+  if (!delta.empty()) options.delta = parseDelta(delta);
   return options;
+}
+
+int parseDelta(const std::string& text) {
+  const int64_t delta = parseCount(text, "--delta");
+  if (delta > kMaxDelta)
+    throw WrongUsage("--delta " + text + ": is in eighths of a voxel, it must lie between 0 and " +
+                     std::to_string(kMaxDelta));
+  return int(delta);
+}
+
+void addFillHoles(Verb verb, std::string& text) {
+  verb.option(
+          "--fill-holes", text,
+          "fill cavities of fewer voxels for the distance; 0: none (default 27; 0 for one slice)")
+      .typeName("N");
+}
+
+std::optional<int64_t> parseFillHoles(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  return parseCount(text, "--fill-holes");
+}
+
+void addTidy(Verb verb, std::string& text) {
+  verb.option("--tidy", text,
+              "rounds that smooth interfaces, then one piece a grain; 0: neither (default 2)")
+      .typeName("N");
+}
+
+int parseTidy(const std::string& text) {
+  constexpr int64_t kMaxRounds = 1000;
+  const int64_t rounds = text.empty() ? kTidy : parseCount(text, "--tidy");
+  if (rounds > kMaxRounds)
+    throw WrongUsage("--tidy " + text + ": at most " + std::to_string(kMaxRounds) + " rounds");
+  return int(rounds);
 }
 
 }  // namespace vdb_madf::tools

@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "command_line.h"
@@ -12,10 +14,23 @@ namespace vdb_madf::tools {
 
 /// The merge options as typed; empty: not given.
 struct MergeArguments {
-  std::string theta, mode, adjacency;
+  std::string theta, mode, adjacency, delta;
   void add(Verb verb);
   /// @throw WrongUsage
   MergeOptions parse() const;
 };
+
+/// --delta. @throw WrongUsage
+int parseDelta(const std::string& text);
+
+/// --fill-holes: how cavities are filled; empty: not given.
+void addFillHoles(Verb verb, std::string& text);
+/// @throw WrongUsage
+std::optional<int64_t> parseFillHoles(const std::string& text);
+
+/// --tidy; empty: not given.
+void addTidy(Verb verb, std::string& text);
+/// @throw WrongUsage
+int parseTidy(const std::string& text);
 
 }  // namespace vdb_madf::tools

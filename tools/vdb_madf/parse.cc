@@ -97,12 +97,12 @@ VoxelSize parseVoxelSize(const std::string& text) {
   throw WrongUsage("--voxel-size " + text + ": give a unit (nm, um, mm or m), for example 8.5um");
 }
 
-int64_t parseGamma(const std::string& text) {
-  int64_t gamma = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), gamma);
-  if (error != std::errc() || end != text.data() + text.size() || gamma < 0)
-    throw WrongUsage("--gamma " + text + ": must be a whole number of voxels, 0 or more");
-  return gamma;
+int64_t parseCount(const std::string& text, const std::string& option) {
+  int64_t count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (error != std::errc() || end != text.data() + text.size() || count < 0)
+    throw WrongUsage(option + " " + text + ": must be a whole number, 0 or more");
+  return count;
 }
 
 Boundary parseBoundary(const std::string& boundary) {

@@ -24,8 +24,8 @@ Coord parseDims(const std::string& text, const std::string& option);
 CoordBBox parseDomain(const std::string& text);
 /// --voxel-size: "8.5um"
 VoxelSize parseVoxelSize(const std::string& text);
-/// --gamma: a whole number >= 0.
-int64_t parseGamma(const std::string& text);
+/// A whole number >= 0.
+int64_t parseCount(const std::string& text, const std::string& option);
 /// --max-memory: "500M", "12GiB", "16e9" in bytes; K, M, G, T with or without iB are powers of 1024,
 /// with B of 1000.
 int64_t parseMemory(const std::string& text);

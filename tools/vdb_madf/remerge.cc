@@ -24,6 +24,7 @@ struct Options {
   InputOptions input;
   std::string out;
   MergeArguments merge;
+  std::string tidy;
 };
 
 void run(const Options& o, const Common& common) {
@@ -36,14 +37,15 @@ void run(const Options& o, const Common& common) {
     throw InvalidInput(o.input.path + ": holds no manifolds: segment again with --keep manifold");
 
   const MergeOptions merge = o.merge.parse();
+  const int tidy = parseTidy(o.tidy);
   const Int32Grid::Ptr grain =
-      withFileName(o.input.path, [&] { return remerge(*manifold, merge, common.progress); });
+      withFileName(o.input.path, [&] { return remerge(*manifold, merge, tidy, common.progress); });
   const int64_t grains = *grainCount(*grain);
   // Every other grid of the segmentation goes along, told of the new merging.
   std::vector<openvdb::GridBase::ConstPtr> out{grain};
   for (const auto& grid : grids) {
     if (grid->getName() == "grain") continue;
-    if (grainCount(*grid)) describeMerging(*grid, merge, grains);
+    if (grainCount(*grid)) describeMerging(*grid, merge, tidy, grains);
     out.push_back(grid);
   }
   writeVdb(o.out, out, common.progress);
@@ -60,8 +62,10 @@ void addRemerge(Verb command, Common& common, Action& action) {
   verb.option("SEG.vdb", o->input.path, "made by segment with --keep manifold").required();
   verb.option("OUT.vdb", o->out, "gets the new 'grain' and all other grids").required();
   o->merge.add(verb);
+  addTidy(verb, o->tidy);
   verb.onParsed([o, &common, &action] {
     o->merge.parse();
+    parseTidy(o->tidy);
     if (!hasVdbEnding(o->out)) throw WrongUsage(o->out + ": the output's ending must be .vdb");
     o->input.outputs = {o->out};
     o->input.parse();

@@ -27,7 +27,8 @@ namespace {
 struct Options {
   InputOptions input;
   std::string out, plot, gamma = "0,20,160", theta = "-1:-0.5:0.05", merge = "both,angle,neck";
-  std::string adjacency = "manifold", boundary = "auto", small = "100";
+  std::string adjacency = "manifold", boundary = "auto", small = "100", delta = "2";
+  std::string fillHoles, tidy;
   SweepOptions sweep;
 };
 
@@ -88,7 +89,8 @@ void parse(Options& o) {
     throw WrongUsage(o.plot + ": the plot's ending must be .svg");
   SweepOptions& sweep = o.sweep;
   sweep.gammas.clear();
-  for (const std::string& gamma : listed(o.gamma, ',')) sweep.gammas.push_back(parseGamma(gamma));
+  for (const std::string& gamma : listed(o.gamma, ','))
+    sweep.gammas.push_back(parseCount(gamma, "--gamma"));
   sweep.modes.clear();
   for (const std::string& mode : listed(o.merge, ',')) {
     MergeArguments arguments;
@@ -98,6 +100,11 @@ void parse(Options& o) {
       throw WrongUsage("--merge " + mode + ": the tests are both, angle and neck");
   }
   sweep.thetas = parseThetas(o.theta);
+  sweep.deltas.clear();
+  for (const std::string& delta : listed(o.delta, ',')) sweep.deltas.push_back(parseDelta(delta));
+  sweep.fillHoles = parseFillHoles(o.fillHoles);
+  sweep.tidy = parseTidy(o.tidy);
+  requireDifferent(sweep.deltas, "--delta");
   requireDifferent(sweep.gammas, "--gamma");
   requireDifferent(sweep.modes, "--merge");
   requireDifferent(sweep.thetas, "--theta");
@@ -114,14 +121,15 @@ double share(int64_t part, int64_t whole) {
 
 std::string table(const std::vector<SweepRow>& rows) {
   std::ostringstream csv;
-  csv << "gamma,merge,theta,grains,median_voxels,small_grains,small_grains_share,"
-         "small_grains_volume_share,largest_grain_volume_share\n";
+  csv << "gamma,merge,delta,theta,grains,median_voxels,small_grains,small_grains_share,"
+         "small_grains_volume_share,largest_grain_volume_share,crumbs,slivers,grains_in_pieces\n";
   csv.precision(9);
   for (const SweepRow& row : rows)
-    csv << row.gamma << ',' << toString(row.mode) << ',' << row.theta << ',' << row.grains << ','
-        << row.medianVoxels << ',' << row.smallGrains << ',' << share(row.smallGrains, row.grains)
-        << ',' << share(row.smallVoxels, row.objectVoxels) << ','
-        << share(row.largestVoxels, row.objectVoxels) << '\n';
+    csv << row.gamma << ',' << toString(row.mode) << ',' << row.delta << ',' << row.theta << ','
+        << row.grains << ',' << row.medianVoxels << ',' << row.smallGrains << ','
+        << share(row.smallGrains, row.grains) << ',' << share(row.smallVoxels, row.objectVoxels)
+        << ',' << share(row.largestVoxels, row.objectVoxels) << ',' << row.flaws.crumbs << ','
+        << row.flaws.slivers << ',' << row.flaws.inPieces << '\n';
   return csv.str();
 }
 
@@ -162,6 +170,11 @@ void addSweep(Verb command, Common& common, Action& action) {
   verb.option("--merge", o->merge, "list of the tests: both, angle, neck")
       .typeName("LIST")
       .showDefault();
+  verb.option("--delta", o->delta, "list of tolerances, eighths of a voxel")
+      .typeName("LIST")
+      .showDefault();
+  addFillHoles(verb, o->fillHoles);
+  addTidy(verb, o->tidy);
   verb.option("--adjacency", o->adjacency, "what the angle test pairs: manifold, cell")
       .oneOf({"manifold", "cell"})
       .showDefault();

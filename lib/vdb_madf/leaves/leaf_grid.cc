@@ -53,19 +53,29 @@ Int32Grid::Ptr toGrid(const LeafIndex& index, const VoxelArray<int32_t>& values,
 }
 
 Int32Grid::Ptr toGrid(const LeafIndex& index, const VoxelArray<uint32_t>& values,
-                      const std::vector<int32_t>& table, const std::string& name,
-                      Interrupter* interrupter) {
+                      const std::string& name, Interrupter* interrupter) {
   return makeGrid(
-      index, name, interrupter, [&](size_t rank) { return table[values[rank] & 0x7fffffffu]; },
+      index, name, interrupter, [&](size_t rank) { return int32_t(values[rank] & 0x7fffffffu); },
       [](size_t, size_t) {});
 }
 
 Int32Grid::Ptr toGrid(const LeafIndex& index, VoxelArray<uint32_t>&& values,
-                      const std::vector<int32_t>& table, const std::string& name,
-                      Interrupter* interrupter) {
+                      const std::string& name, Interrupter* interrupter) {
   return makeGrid(
-      index, name, interrupter, [&](size_t rank) { return table[values[rank] & 0x7fffffffu]; },
+      index, name, interrupter, [&](size_t rank) { return int32_t(values[rank] & 0x7fffffffu); },
       [&](size_t begin, size_t end) { values.discard(begin, end); });
+}
+
+void removeVoxels(Int32Grid& grid, const LeafIndex& index, const std::vector<VoxelId>& voxels) {
+  constexpr openvdb::Index kLeafTile = 1;  // level of a tile as large as a leaf
+  for (size_t i = 0; i < voxels.size();) {
+    const uint32_t number = leafOf(voxels[i]);
+    const Coord& origin = index.origin(number);
+    Int32Tree::LeafNodeType* leaf = grid.tree().probeLeaf(origin);
+    for (; i < voxels.size() && leafOf(voxels[i]) == number; ++i)
+      leaf->setValueOff(offsetOf(voxels[i]), 0);
+    if (leaf->isEmpty()) grid.tree().addTile(kLeafTile, origin, 0, false);
+  }
 }
 
 }  // namespace vdb_madf

@@ -16,13 +16,15 @@ namespace vdb_madf {
 /// @throw Interrupted
 Int32Grid::Ptr toGrid(const LeafIndex& index, const VoxelArray<int32_t>& values,
                       const std::string& name, Interrupter* interrupter = nullptr);
-/// Writes table[values[rank] & 0x7fffffff] to each voxel.
+/// Writes values[rank] & 0x7fffffff to each voxel.
 Int32Grid::Ptr toGrid(const LeafIndex& index, const VoxelArray<uint32_t>& values,
-                      const std::vector<int32_t>& table, const std::string& name,
-                      Interrupter* interrupter = nullptr);
+                      const std::string& name, Interrupter* interrupter = nullptr);
 /// The same; the array's memory goes back to the system while the grid grows.
 Int32Grid::Ptr toGrid(const LeafIndex& index, VoxelArray<uint32_t>&& values,
-                      const std::vector<int32_t>& table, const std::string& name,
-                      Interrupter* interrupter = nullptr);
+                      const std::string& name, Interrupter* interrupter = nullptr);
+
+/// Makes voxels of the index background, 0 and inactive; leaves without active voxels go. `voxels`
+/// ascends.
+void removeVoxels(Int32Grid& grid, const LeafIndex& index, const std::vector<VoxelId>& voxels);
 
 }  // namespace vdb_madf

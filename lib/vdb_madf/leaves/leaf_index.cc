@@ -32,16 +32,14 @@ void forEachActiveTile(const MaskTree& tree, const F& f) {
   }
 }
 
-/// The active bounding box; checks the limits before a tile is cut into leaves.
-CoordBBox checkedBoundingBox(const MaskTree& tree) {
-  size_t leaves = tree.leafCount();
-  forEachActiveTile(tree, [&](const CoordBBox& box) { leaves += box.volume() / 512; });
+void checkLeafCount(size_t leaves) {
   if (leaves > kMaxLeaves)
     throw InvalidInput("the object touches " + std::to_string(leaves) +
                        " leaf nodes, more than the " + std::to_string(kMaxLeaves) +
                        " that 32-bit voxel ids can hold: crop or coarsen the volume");
-  CoordBBox box;
-  if (!tree.evalActiveVoxelBoundingBox(box)) return {};
+}
+
+void checkExtent(const CoordBBox& box) {
   for (int axis = 0; axis < 3; ++axis) {
     if (box.min()[axis] < -kMaxCoordinate || box.max()[axis] > kMaxCoordinate)
       throw InvalidInput("the object has coordinates beyond +-" + std::to_string(kMaxCoordinate) +
@@ -51,6 +49,25 @@ CoordBBox checkedBoundingBox(const MaskTree& tree) {
                          " voxels along an axis, beyond which squared distances overflow: crop or "
                          "coarsen the volume");
   }
+}
+
+/// The active bounding box; checks the limits before a tile is cut into leaves.
+CoordBBox checkedBoundingBox(const MaskTree& tree) {
+  size_t leaves = tree.leafCount();
+  forEachActiveTile(tree, [&](const CoordBBox& box) { leaves += box.volume() / 512; });
+  checkLeafCount(leaves);
+  CoordBBox box;
+  if (!tree.evalActiveVoxelBoundingBox(box)) return {};
+  checkExtent(box);
+  return box;
+}
+
+/// The voxels of a leaf's mask.
+CoordBBox maskBox(const Coord& origin, const LeafIndex::Mask& mask) {
+  CoordBBox box;
+  for (size_t x = 0; x < 8; ++x)
+    detail::forEachBit(mask[x],
+                       [&](int bit) { box.expand(origin.offsetBy(int(x), bit >> 3, bit & 7)); });
   return box;
 }
 
@@ -93,15 +110,52 @@ LeafIndex::LeafIndex(const MaskGrid& object) {
   const std::vector<SourceLeaf> leaves = sortedLeaves(tree);
   origins_.resize(leaves.size());
   masks_.resize(leaves.size());
-  neighbors_.assign(leaves.size(), {kNone, kNone, kNone, kNone, kNone, kNone});
-  firstRank_.resize(leaves.size() + 1);
-  wordRank_.resize(leaves.size());
   for (size_t i = 0; i < leaves.size(); ++i) {
     origins_[i] = leaves[i].origin;
     masks_[i] = kFullMask;
     if (leaves[i].leaf)
       for (int x = 0; x < 8; ++x)
         masks_[i][x] = leaves[i].leaf->getValueMask().template getWord<uint64_t>(x);
+  }
+  finish();
+}
+
+LeafIndex::LeafIndex(const LeafIndex& object, const std::vector<LeafVoxels>& more)
+    : boundingBox_(object.boundingBox_) {
+  origins_.reserve(object.leafCount());
+  masks_.reserve(object.leafCount());
+  size_t i = 0;
+  for (const LeafVoxels& leaf : more) {
+    for (; i < object.leafCount() && object.origin(i) < leaf.origin; ++i) {
+      origins_.push_back(object.origin(i));
+      masks_.push_back(object.mask(i));
+    }
+    origins_.push_back(leaf.origin);
+    masks_.push_back(leaf.mask);
+    boundingBox_.expand(maskBox(leaf.origin, leaf.mask));
+    if (i == object.leafCount() || object.origin(i) != leaf.origin) continue;
+    for (size_t x = 0; x < 8; ++x) masks_.back()[x] |= object.mask(i)[x];
+    ++i;
+  }
+  origins_.insert(origins_.end(), object.origins_.begin() + std::ptrdiff_t(i),
+                  object.origins_.end());
+  masks_.insert(masks_.end(), object.masks_.begin() + std::ptrdiff_t(i), object.masks_.end());
+  checkLeafCount(leafCount());
+  if (leafCount() > 0) checkExtent(boundingBox_);
+  finish();
+}
+
+std::optional<uint32_t> LeafIndex::findLeaf(const Coord& origin) const {
+  const auto found = std::lower_bound(origins_.begin(), origins_.end(), origin);
+  if (found == origins_.end() || *found != origin) return std::nullopt;
+  return uint32_t(found - origins_.begin());
+}
+
+void LeafIndex::finish() {
+  neighbors_.assign(leafCount(), {kNone, kNone, kNone, kNone, kNone, kNone});
+  firstRank_.resize(leafCount() + 1);
+  wordRank_.resize(leafCount());
+  for (size_t i = 0; i < leafCount(); ++i) {
     uint32_t count = 0;
     for (size_t x = 0; x < 8; ++x) {
       wordRank_[i][x] = uint16_t(count);

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,15 @@ class LeafIndex {
   ///   object is longer than kMaxExtent along an axis, or has coordinates beyond kMaxCoordinate.
   explicit LeafIndex(const MaskGrid& object);
 
+  /// Voxels of one leaf.
+  struct LeafVoxels {
+    Coord origin;
+    Mask mask;
+  };
+  /// The voxels of `object` and `more` besides, which ascends by origin, each origin once.
+  /// @throw InvalidInput as above.
+  LeafIndex(const LeafIndex& object, const std::vector<LeafVoxels>& more);
+
   size_t leafCount() const { return origins_.size(); }
   int64_t voxelCount() const { return firstRank_.back(); }  ///< |X|, size of a VoxelArray
   /// Of the active voxels; empty if there are none.
@@ -57,6 +67,9 @@ class LeafIndex {
   const Coord& origin(size_t leaf) const { return origins_[leaf]; }
   const Mask& mask(size_t leaf) const { return masks_[leaf]; }
   const Neighbors& neighbors(size_t leaf) const { return neighbors_[leaf]; }
+
+  /// The leaf at an origin, by bisection.
+  std::optional<uint32_t> findLeaf(const Coord& origin) const;
 
   /// Object voxels before a leaf, and in it.
   size_t firstRank(size_t leaf) const { return firstRank_[leaf]; }
@@ -74,6 +87,9 @@ class LeafIndex {
   }
 
  private:
+  /// Counts the voxels of origins_ and masks_, and links the leaves.
+  void finish();
+
   std::vector<Coord> origins_;
   std::vector<Mask> masks_;
   std::vector<Neighbors> neighbors_;

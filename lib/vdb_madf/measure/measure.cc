@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vdb_madf/leaves/detail/object_components.h"
+#include "vdb_madf/leaves/detail/connected_components.h"
 #include "vdb_madf/measure/correlation_length.h"
 #include "vdb_madf/measure/detail/bond_measures.h"
 #include "vdb_madf/measure/detail/grain_measures.h"
@@ -65,7 +65,7 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
   sample.domainKnown = domainBox.has_value();
   sample.correlationLengths = correlationLengths(index, sample.box, interrupter);
   sample.eulerCharacteristic = eulerCharacteristic(index, interrupter);
-  sample.components = detail::ObjectComponents(index).count();
+  sample.components = detail::ConnectedComponents(index).count();
   return result;
 }
 
@@ -77,8 +77,11 @@ Measurements measure(const Int32Grid& labels, const MeasureOptions& options,
 }
 
 Measurements measure(const Segmentation& segmentation, Interrupter* interrupter) {
-  const bool isFiltered = segmentation.counts.keptBalls < segmentation.counts.medialBalls;
-  return measureLabels(*segmentation.grain, {}, isFiltered ? nullptr : &segmentation.graph,
+  // The labels' own: of unfiltered balls, no cavity filled, each voxel where the flow led it.
+  const SegmentCounts& counts = segmentation.counts;
+  const bool graphTells =
+      counts.keptBalls == counts.medialBalls && counts.cavities == 0 && segmentation.tidy == 0;
+  return measureLabels(*segmentation.grain, {}, graphTells ? &segmentation.graph : nullptr,
                        interrupter);
 }
 

@@ -9,7 +9,7 @@
 
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
-#include "vdb_madf/leaves/detail/object_components.h"
+#include "vdb_madf/leaves/detail/connected_components.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 #include "vdb_madf/method/detail/metric.h"
 #include "vdb_madf/method/detail/power_passes.h"
@@ -132,7 +132,7 @@ VoxelSet keptBalls(const LeafIndex& index, const VoxelSet& balls, const MedialBa
                    int64_t gamma, Interrupter* interrupter) {
   if (gamma <= 1) return balls;
   VoxelSet kept(index.leafCount());
-  const detail::ObjectComponents components(index, interrupter);
+  const detail::ConnectedComponents components(index, interrupter);
   std::vector<char> hasKept(components.count(), 0);
   const std::vector<VoxelId> members = balls.members();
   for (uint32_t i = 0; i < members.size(); ++i) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <string>
 
 #include "vdb_madf/base/detail/disjoint_sets.h"
 #include "vdb_madf/base/errors.h"
@@ -31,7 +32,15 @@ void mergeByAngle(const ManifoldGraph& graph, const MergeOptions& options,
   }
 }
 
-void mergeByNeck(const ManifoldGraph& graph, double theta, detail::DisjointSets& grains) {
+/// Is the neck of squared radius h, 0 < h, less than k / 8 voxels narrower than a ball of squared
+/// radius m? sqrt(m) < sqrt(h) + k / 8, squared twice; 16 k sqrt(h) < 2^31 bounds L.
+bool isWithin(int k, int64_t m, int64_t h) {
+  const int64_t l = 64 * (m - h) - int64_t(k) * k;
+  return k > 0 && (l < 0 || (l < int64_t(1) << 31 && l * l < 256 * int64_t(k) * k * h));
+}
+
+void mergeByNeck(const ManifoldGraph& graph, const MergeOptions& options,
+                 detail::DisjointSets& grains) {
   std::vector<int32_t> top(graph.nodes.size(), 0);  // largest D of a class, at its root
   for (uint32_t i = 0; i < graph.nodes.size(); ++i) {
     int32_t& t = top[grains.find(i)];
@@ -44,11 +53,15 @@ void mergeByNeck(const ManifoldGraph& graph, double theta, detail::DisjointSets&
   std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
     return graph.edges[a].saddleHeight > graph.edges[b].saddleHeight;
   });
-  const double factor = (1 - theta) / 2;
+  const double factor = (1 - options.theta) / 2;
   for (const uint32_t i : order) {
     const Edge& edge = graph.edges[i];
     const uint32_t a = grains.find(edge.first), b = grains.find(edge.second);
-    if (a == b || !(edge.saddleHeight >= factor * std::min(top[a], top[b]))) continue;
+    if (a == b) continue;
+    const int32_t smaller = std::min(top[a], top[b]);
+    if (!(edge.saddleHeight >= factor * smaller) &&
+        !isWithin(options.delta, smaller, edge.saddleHeight))
+      continue;
     const int32_t merged = std::max(top[a], top[b]);
     grains.unite(a, b);
     top[grains.find(a)] = merged;
@@ -60,25 +73,31 @@ void mergeByNeck(const ManifoldGraph& graph, double theta, detail::DisjointSets&
 void checkMergeOptions(const MergeOptions& options) {
   if (!(options.theta >= -1 && options.theta <= 1))
     throw InvalidInput("theta is a cosine: it must lie between -1 and 1");
+  if (options.delta < 0 || options.delta > kMaxDelta)
+    throw InvalidInput("delta is in eighths of a voxel: it must lie between 0 and " +
+                       std::to_string(kMaxDelta));
 }
 
 Merging merge(const ManifoldGraph& graph, const MergeOptions& options) {
   checkMergeOptions(options);
   detail::DisjointSets grains(graph.nodes.size());
   if (options.mode != MergeMode::neck) mergeByAngle(graph, options, grains);
-  if (options.mode != MergeMode::angle) mergeByNeck(graph, options.theta, grains);
+  if (options.mode != MergeMode::angle) mergeByNeck(graph, options, grains);
 
   // Nodes are in lexicographic order, so the first of the largest is the representative.
   const uint32_t count = uint32_t(graph.nodes.size());
   std::vector<uint32_t> best(count);
+  std::vector<char> hasVoxels(count, 0);
   std::iota(best.begin(), best.end(), 0u);
   for (uint32_t i = 0; i < count; ++i) {
-    uint32_t& b = best[grains.find(i)];
-    if (graph.nodes[i].squaredRadius > graph.nodes[b].squaredRadius) b = i;
+    const uint32_t root = grains.find(i);
+    if (graph.nodes[i].squaredRadius > graph.nodes[best[root]].squaredRadius) best[root] = i;
+    if (graph.nodes[i].voxels > 0) hasVoxels[root] = 1;
   }
   Merging merging;
   for (uint32_t i = 0; i < count; ++i)
-    if (best[grains.find(i)] == i) merging.representative.push_back(i);
+    if (const uint32_t root = grains.find(i); best[root] == i && hasVoxels[root])
+      merging.representative.push_back(i);
   std::vector<int32_t> grainOfRoot(count, 0);
   for (size_t g = 0; g < merging.representative.size(); ++g)
     grainOfRoot[grains.find(merging.representative[g])] = int32_t(g + 1);
@@ -90,7 +109,8 @@ Merging merge(const ManifoldGraph& graph, const MergeOptions& options) {
 std::vector<int64_t> grainVoxels(const ManifoldGraph& graph, const Merging& merging) {
   std::vector<int64_t> voxels(merging.representative.size(), 0);
   for (size_t i = 0; i < graph.nodes.size(); ++i)
-    voxels[size_t(merging.grainOfNode[i] - 1)] += graph.nodes[i].voxels;
+    if (merging.grainOfNode[i] > 0)
+      voxels[size_t(merging.grainOfNode[i] - 1)] += graph.nodes[i].voxels;
   return voxels;
 }
 

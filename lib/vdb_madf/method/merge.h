@@ -20,16 +20,22 @@ struct MergeOptions {
   double theta = -0.9;  ///< cosine in [-1, 1]; -1 merges least
   MergeMode mode = MergeMode::both;
   Adjacency adjacency = Adjacency::manifold;
+  /// How much narrower than the smaller grain a neck has to be at least, in eighths of a voxel; 0
+  /// to kMaxDelta; 0: theta alone decides.
+  int delta = 2;
 };
+
+constexpr int kMaxDelta = 80;  ///< ten voxels
 
 /// Grains as classes of critical points.
 struct Merging {
-  std::vector<int32_t> grainOfNode;  ///< 1..grains, one per node
+  /// 1..grains, one per node; 0: the node's class holds no voxel of the object.
+  std::vector<int32_t> grainOfNode;
   /// Node of grain g at g - 1: the one of largest D, then of smaller coordinate.
   std::vector<uint32_t> representative;
 };
 
-/// @throw InvalidInput unless theta is in [-1, 1] (NaN is not).
+/// @throw InvalidInput unless theta is in [-1, 1] (NaN is not) and delta in [0, kMaxDelta].
 void checkMergeOptions(const MergeOptions& options);
 
 /// Merges critical points by the angle of their balls (paper, section 5.2, eq. 7), then by the
@@ -41,7 +47,10 @@ void checkMergeOptions(const MergeOptions& options);
 /// Neck (not in the paper): the edges of saddle height h > 0, in descending order of h (then by
 /// ascending pair), merge the classes a, b of their nodes if
 ///   h >= (1 - theta) / 2 * min(top(a), top(b)),
-/// where top is the largest D of a class so far.
+/// where top is the largest D of a class so far; or if, with m = min(top(a), top(b)),
+///   sqrt(m) - sqrt(h) < delta / 8:
+/// theta compares radii in proportion, but the error of a digital radius is some tenths of a voxel
+/// whatever the grain. (Decided in integers.)
 /// Grains are numbered in lexicographic order of their representatives.
 /// @throw InvalidInput as checkMergeOptions.
 Merging merge(const ManifoldGraph& graph, const MergeOptions& options = {});

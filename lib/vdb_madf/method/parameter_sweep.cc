@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/method/detail/manifold_labels.h"
 #include "vdb_madf/method/segment.h"
 
 namespace vdb_madf {
@@ -14,11 +14,21 @@ namespace vdb_madf {
 namespace {
 
 void check(const SweepOptions& options) {
-  if (options.gammas.empty() || options.modes.empty() || options.thetas.empty())
-    throw InvalidInput("nothing to sweep: give at least one gamma, one merge mode and one theta");
+  if (options.gammas.empty() || options.modes.empty() || options.thetas.empty() ||
+      options.deltas.empty())
+    throw InvalidInput(
+        "nothing to sweep: give at least one gamma, one merge mode, one theta and one delta");
   for (const int64_t gamma : options.gammas)
     if (gamma < 0) throw InvalidInput("gamma is a number of voxels: it must not be negative");
-  for (const double theta : options.thetas) checkMergeOptions({theta});
+  MergeOptions merge;
+  for (const double theta : options.thetas) {
+    merge.theta = theta;
+    checkMergeOptions(merge);
+  }
+  for (const int delta : options.deltas) {
+    merge.delta = delta;
+    checkMergeOptions(merge);
+  }
 }
 
 /// \p sizes ascending.
@@ -28,16 +38,15 @@ double median(const std::vector<int64_t>& sizes) {
   return sizes.size() % 2 ? double(sizes[middle]) : 0.5 * double(sizes[middle - 1] + sizes[middle]);
 }
 
-void count(const ManifoldGraph& graph, const SweepOptions& options, SweepRow& row) {
-  std::vector<int64_t> sizes =
-      grainVoxels(graph, merge(graph, {row.theta, row.mode, options.adjacency}));
+/// What a row says of the sizes of its grains.
+void count(std::vector<int64_t> sizes, int64_t smallVoxels, SweepRow& row) {
   std::sort(sizes.begin(), sizes.end());
   row.grains = int64_t(sizes.size());
   row.medianVoxels = median(sizes);
   row.largestVoxels = sizes.empty() ? 0 : sizes.back();
   for (const int64_t size : sizes) {
     row.objectVoxels += size;
-    if (size >= options.smallVoxels) continue;
+    if (size >= smallVoxels) continue;
     ++row.smallGrains;
     row.smallVoxels += size;
   }
@@ -48,6 +57,7 @@ void count(const ManifoldGraph& graph, const SweepOptions& options, SweepRow& ro
 std::vector<SweepRow> parameterSweep(const MaskGrid& object, const SweepOptions& options,
                                      Interrupter* interrupter) {
   check(options);
+  checkTidy(options.tidy);
   std::vector<SweepRow> rows;
   for (const int64_t gamma : options.gammas) {
     SegmentOptions segmentOptions;
@@ -55,19 +65,29 @@ std::vector<SweepRow> parameterSweep(const MaskGrid& object, const SweepOptions&
     segmentOptions.boundary = options.boundary;
     segmentOptions.domain = options.domain;
     segmentOptions.maxMemory = options.maxMemory;
-    const ManifoldGraph graph = segment(object, segmentOptions, interrupter).graph;
-
-    const size_t first = rows.size();
+    segmentOptions.fillHoles = options.fillHoles;
+    segmentOptions.tidy = 0;
+    segmentOptions.keepManifold = true;
+    const Segmentation segmentation = segment(object, segmentOptions, interrupter);
+    const ManifoldGraph& graph = segmentation.graph;
+    const LeafIndex index = detail::topologyOf(*segmentation.manifold);
     for (const MergeMode mode : options.modes)
-      for (const double theta : options.thetas) {
-        rows.emplace_back();
-        rows.back().gamma = gamma;
-        rows.back().mode = mode;
-        rows.back().theta = theta;
-      }
-    detail::parallelFor(rows.size() - first, 1, interrupter, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) count(graph, options, rows[first + i]);
-    });
+      for (const int delta : options.deltas)
+        for (const double theta : options.thetas) {
+          SweepRow row;
+          row.gamma = gamma;
+          row.mode = mode;
+          row.theta = theta;
+          row.delta = delta;
+          const Merging merging = merge(graph, {theta, mode, options.adjacency, delta});
+          GrainLabels grains =
+              detail::labelGrains(*segmentation.manifold, index, graph, merging, interrupter);
+          tidy(index, options.tidy, grains, interrupter);
+          row.flaws =
+              labelFlaws(index, grains.label, grains.voxels, segmentation.domain, interrupter);
+          count(std::move(grains.voxels), options.smallVoxels, row);
+          rows.push_back(row);
+        }
   }
   return rows;
 }

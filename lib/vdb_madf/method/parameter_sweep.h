@@ -9,18 +9,23 @@
 
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/method/boundary.h"
+#include "vdb_madf/method/label_flaws.h"
 #include "vdb_madf/method/merge.h"
 #include "vdb_madf/method/squared_distance.h"
+#include "vdb_madf/method/tidy.h"
 
 namespace vdb_madf {
 
-/// Every combination of gamma, mode and theta is a row.
+/// Every combination of gamma, mode, delta and theta is a row.
 struct SweepOptions {
   std::vector<int64_t> gammas{0};  ///< voxels, 0 or more
   std::vector<MergeMode> modes{MergeMode::both};
   std::vector<double> thetas{-0.9};  ///< cosines in [-1, 1]
+  std::vector<int> deltas{2};        ///< eighths of a voxel, see MergeOptions
   Adjacency adjacency = Adjacency::manifold;
-  int64_t smallVoxels = 100;  ///< a grain of fewer voxels is small
+  int64_t smallVoxels = 100;         ///< a grain of fewer voxels is small
+  std::optional<int64_t> fillHoles;  ///< as SegmentOptions
+  int tidy = kTidy;                  ///< rounds, as SegmentOptions
   Boundary boundary = Boundary::automatic;
   std::optional<CoordBBox> domain;  ///< overrides the domain in the mask's metadata
   int64_t maxMemory = 0;            ///< bytes that a segmentation may need; 0: no limit
@@ -31,16 +36,18 @@ struct SweepRow {
   int64_t gamma = 0;
   MergeMode mode = MergeMode::both;
   double theta = 0;
+  int delta = 0;
   int64_t grains = 0;
   double medianVoxels = 0;  ///< of the grains' sizes; of an even number the mean of the middle two
   int64_t smallGrains = 0;  ///< of fewer than smallVoxels voxels
   int64_t smallVoxels = 0;  ///< in small grains
   int64_t largestVoxels = 0;  ///< of the largest grain
   int64_t objectVoxels = 0;
+  LabelFlaws flaws;
 };
 
-/// The grains for each gamma (in the order given), mode and theta: the volume is segmented once for
-/// each gamma, the graph of manifolds then merged for each mode and theta. Each row equals what
+/// The grains for each gamma (in the order given), mode, delta and theta: the volume is segmented
+/// once for each gamma, the manifolds then merged and tidied for each row. Each row equals what
 /// segment() says with these options; the rows do not depend on threads.
 /// @throw InvalidInput if a list is empty, an option is out of range, or as segment(); Interrupted.
 std::vector<SweepRow> parameterSweep(const MaskGrid& object, const SweepOptions& options,

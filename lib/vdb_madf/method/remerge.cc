@@ -3,24 +3,18 @@
 
 #include "vdb_madf/method/remerge.h"
 
-#include <openvdb/tree/LeafManager.h>
-
-#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/leaves/leaf_grid.h"
+#include "vdb_madf/method/detail/manifold_labels.h"
 #include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/method/segmentation_metadata.h"
 
 namespace vdb_madf {
 
-namespace {
-
-constexpr size_t kLeafGrain = 64;
-
-}  // namespace
-
-Int32Grid::Ptr remerge(const Int32Grid& manifold, const MergeOptions& options,
+Int32Grid::Ptr remerge(const Int32Grid& manifold, const MergeOptions& options, int tidyRounds,
                        Interrupter* interrupter) {
   checkMergeOptions(options);
+  checkTidy(tidyRounds);
   const std::optional<ManifoldGraph> graph = vdb_madf::storedGraph(manifold);
   if (!graph)
     throw InvalidInput(
@@ -28,23 +22,16 @@ Int32Grid::Ptr remerge(const Int32Grid& manifold, const MergeOptions& options,
         Hint::manifolds);
   const Merging merging = merge(*graph, options);
 
-  auto grain = manifold.deepCopy();
-  grain->setName("grain");
+  const LeafIndex index = detail::topologyOf(manifold);
+  GrainLabels grains = detail::labelGrains(manifold, index, *graph, merging, interrupter);
+  tidy(index, tidyRounds, grains, interrupter);
+  const Int32Grid::Ptr grain = toGrid(index, std::move(grains.label), "grain", interrupter);
+  for (auto meta = manifold.beginMeta(); meta != manifold.endMeta(); ++meta)
+    if (meta->first != openvdb::GridBase::META_GRID_NAME)
+      grain->insertMeta(meta->first, *meta->second);
+  grain->setTransform(manifold.transform().copy());
   removeGraph(*grain);
-  grain->tree().voxelizeActiveTiles();
-  openvdb::tree::LeafManager<Int32Tree> leaves(grain->tree());
-  detail::parallelFor(leaves.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      for (auto voxel = leaves.leaf(i).beginValueOn(); voxel; ++voxel) {
-        const int32_t number = *voxel;
-        if (number < 1 || size_t(number) > merging.grainOfNode.size())
-          throw InvalidInput("grid '" + manifold.getName() + "' has a manifold number " +
-                             std::to_string(number) + " that its graph does not know");
-        voxel.setValue(merging.grainOfNode[size_t(number - 1)]);
-      }
-    }
-  });
-  describeMerging(*grain, options, int64_t(merging.representative.size()));
+  describeMerging(*grain, options, tidyRounds, int64_t(merging.representative.size()));
   return grain;
 }
 

@@ -6,11 +6,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/leaves/leaf_grid.h"
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/method/boundary.h"
+#include "vdb_madf/method/cavities.h"
+#include "vdb_madf/method/detail/manifold_labels.h"
 #include "vdb_madf/method/detail/stages.h"
 #include "vdb_madf/method/flow.h"
 #include "vdb_madf/method/gamma_filter.h"
@@ -46,45 +49,101 @@ std::vector<MedialBall> listBalls(const LeafIndex& index, const VoxelSet& balls,
   return list;
 }
 
-std::vector<int32_t> identity(size_t count) {
-  std::vector<int32_t> table(count);
-  for (size_t i = 0; i < count; ++i) table[i] = int32_t(i);
-  return table;
+void checkSegmentOptions(const SegmentOptions& options) {
+  if (options.gamma < 0) throw InvalidInput("gamma is a number of voxels: it must not be negative");
+  if (options.fillHoles.value_or(0) < 0)
+    throw InvalidInput("cavities are filled below a number of voxels: it must not be negative");
+  checkTidy(options.tidy);
+  checkMergeOptions(options.merge);
 }
 
-/// Grain label by manifold number; 0 outside the object.
-std::vector<int32_t> labelTable(const Merging& merging) {
-  std::vector<int32_t> table(1, 0);
-  table.insert(table.end(), merging.grainOfNode.begin(), merging.grainOfNode.end());
-  return table;
+/// What the method runs on: the object with its cavities filled.
+struct Body {
+  LeafIndex index;
+  std::vector<VoxelId> cavities;  ///< voxels that are none of the object, ascending
+};
+
+Body fillCavities(LeafIndex object, const Cavities& cavities) {
+  if (cavities.count == 0) return {std::move(object), {}};
+  Body body{LeafIndex(object, cavities.leaves), {}};
+  body.cavities = cavityVoxels(body.index, cavities);
+  return body;
+}
+
+/// Critical points count the voxels of the object alone.
+void uncountCavities(const Body& body, Flow& flow) {
+  for (const VoxelId id : body.cavities)
+    --flow.criticalPoints[(flow.manifold[body.index.rank(id)] & ~Flow::kOwnCell) - 1].voxels;
+}
+
+/// A grid on the object.
+template <typename Values>
+Int32Grid::Ptr toObjectGrid(const Body& body, Values&& values, const char* name,
+                            Interrupter* interrupter) {
+  const auto grid = toGrid(body.index, std::forward<Values>(values), name, interrupter);
+  removeVoxels(*grid, body.index, body.cavities);
+  return grid;
+}
+
+/// Grain labels from the manifolds, which they replace.
+GrainLabels labelGrains(const Body& body, VoxelArray<uint32_t> manifold, const ManifoldGraph& graph,
+                        const Merging& merging, Interrupter* interrupter) {
+  GrainLabels grains = detail::grainsOf(graph, merging);
+  grains.label = std::move(manifold);
+  detail::parallelFor(grains.label.size(), size_t(1) << 16, interrupter,
+                      [&](size_t begin, size_t end) {
+                        for (size_t i = begin; i < end; ++i) {
+                          const uint32_t node = (grains.label[i] & ~Flow::kOwnCell) - 1;
+                          grains.label[i] = uint32_t(merging.grainOfNode[node]);
+                        }
+                      });
+  for (const VoxelId id : body.cavities) grains.label[body.index.rank(id)] = 0;
+  return grains;
+}
+
+std::vector<std::string> omittedStages(const SegmentOptions& options, int64_t fillHoles) {
+  std::vector<std::string> omitted;
+  if (fillHoles <= 1) omitted.push_back("cavities");
+  if (options.gamma <= 1) omitted.push_back("gamma_filter");
+  return omitted;
 }
 
 }  // namespace
 
 Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
                      Interrupter* interrupter) {
-  if (options.gamma < 0) throw InvalidInput("gamma is a number of voxels: it must not be negative");
-  checkMergeOptions(options.merge);
-
+  checkSegmentOptions(options);
   Segmentation result;
   SegmentCounts& counts = result.counts;
   const bool filter = options.gamma > 1;
   checkMemory(object, options);
-  detail::Stages stages(interrupter, filter, result.times);
   result.domain = options.domain ? options.domain : storedDomain(object);
+  result.fillHoles = options.fillHoles.value_or(defaultFillHoles(result.domain));
+  result.tidy = options.tidy;
+  detail::Stages stages(interrupter, omittedStages(options, result.fillHoles), result.times);
 
   stages.begin("leaf_index");
-  const LeafIndex index(object);
-  const Obstacles obstacles = resolveBoundary(index, options.boundary, result.domain);
+  LeafIndex objectIndex(object);
+  const Obstacles obstacles = resolveBoundary(objectIndex, options.boundary, result.domain);
   result.open = obstacles.open;
-  counts.objectVoxels = index.voxelCount();
-  counts.leaves = int64_t(index.leafCount());
+  counts.objectVoxels = objectIndex.voxelCount();
+  counts.leaves = int64_t(objectIndex.leafCount());
+
+  Cavities cavities;
+  if (result.fillHoles > 1) {
+    stages.begin("cavities");
+    cavities = findCavities(objectIndex, result.domain, result.open, result.fillHoles, &stages);
+    counts.cavities = cavities.count;
+    counts.cavityVoxels = cavities.voxels;
+  }
+  const Body body = fillCavities(std::move(objectIndex), cavities);
+  const LeafIndex& index = body.index;
 
   stages.begin("squared_distance");
   SquaredDistance distance = squaredDistance(index, obstacles, &stages);
   counts.largestSquaredDistance = distance.largest;
   if (options.keepDistance)
-    result.distanceSquared = toGrid(index, distance.values, "distance_squared", &stages);
+    result.distanceSquared = toObjectGrid(body, distance.values, "distance_squared", &stages);
 
   stages.begin("power_map");
   PowerMap map = powerMap(index, std::move(distance), &stages);
@@ -108,22 +167,28 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
   stages.begin("flow");
   Flow flowMap = flow(index, std::move(map.site), map.power, balls, &stages);
   counts.criticalPoints = int64_t(flowMap.criticalPoints.size());
+  uncountCavities(body, flowMap);
 
   stages.begin("manifold_graph");
   result.graph = manifoldGraph(index, flowMap, map.power, &stages);
-  if (options.keepPower) result.power = toGrid(index, map.power, "power", &stages);
+  if (options.keepPower) result.power = toObjectGrid(body, map.power, "power", &stages);
+  if (options.keepManifold)
+    result.manifold = toObjectGrid(body, flowMap.manifold, "manifold", &stages);
   map.power.clear();
 
   stages.begin("merge");
   const Merging merging = merge(result.graph, options.merge);
   counts.grains = int64_t(merging.representative.size());
-  result.grainVoxels = grainVoxels(result.graph, merging);
+
+  stages.begin("tidy");
+  GrainLabels grains =
+      labelGrains(body, std::move(flowMap.manifold), result.graph, merging, &stages);
+  tidy(index, options.tidy, grains, &stages);
+  result.flaws = labelFlaws(index, grains.label, grains.voxels, result.domain, &stages);
+  result.grainVoxels = std::move(grains.voxels);
 
   stages.begin("labels");
-  if (options.keepManifold)
-    result.manifold = toGrid(index, flowMap.manifold, identity(result.graph.nodes.size() + 1),
-                             "manifold", &stages);
-  result.grain = toGrid(index, std::move(flowMap.manifold), labelTable(merging), "grain", &stages);
+  result.grain = toObjectGrid(body, std::move(grains.label), "grain", &stages);
   for (const Int32Grid::Ptr& grid :
        {result.grain, result.distanceSquared, result.power, result.manifold}) {
     if (!grid) continue;

@@ -10,9 +10,11 @@
 
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/method/boundary.h"
+#include "vdb_madf/method/label_flaws.h"
 #include "vdb_madf/method/manifold_graph.h"
 #include "vdb_madf/method/merge.h"
 #include "vdb_madf/method/squared_distance.h"
+#include "vdb_madf/method/tidy.h"
 
 namespace vdb_madf {
 
@@ -22,7 +24,11 @@ struct SegmentOptions {
   int64_t gamma = 0;
   Boundary boundary = Boundary::automatic;  ///< see boundary.h
   std::optional<CoordBBox> domain;          ///< overrides the domain in the mask's metadata
-  MergeOptions merge;                       ///< theta, mode, adjacency
+  MergeOptions merge;                       ///< theta, mode, adjacency, delta
+  /// Cavities of fewer voxels are filled while the method runs (cavities.h); 0: none; absent:
+  /// defaultFillHoles().
+  std::optional<int64_t> fillHoles;
+  int tidy = kTidy;  ///< rounds of smoothing the interfaces (tidy.h); 0: labels as merged
   /// Return distanceSquared; 4 bytes more per leaf voxel.
   bool keepDistance = false;
   bool keepPower = false;     ///< return power
@@ -32,8 +38,12 @@ struct SegmentOptions {
   int64_t maxMemory = 0;
 };
 
+/// Balls and critical points are those of the body, cavities filled; voxels, leaves and grains those
+/// of the object.
 struct SegmentCounts {
   int64_t objectVoxels = 0;
+  int64_t cavities = 0;        ///< that were filled
+  int64_t cavityVoxels = 0;    ///< in them
   int64_t medialBalls = 0;     ///< of the unfiltered power map
   int64_t keptBalls = 0;       ///< after the filter; = medialBalls without one
   int64_t criticalPoints = 0;  ///< fixed points of the (filtered) power map
@@ -57,20 +67,24 @@ struct StageTime {
 
 struct Segmentation {
   Int32Grid::Ptr grain;              ///< labels 1..N on X; background 0, inactive
-  Int32Grid::Ptr distanceSquared;    ///< D, if kept
+  Int32Grid::Ptr distanceSquared;    ///< D, if kept; of the body, on X
   Int32Grid::Ptr power;              ///< pi' = least power, if kept
   Int32Grid::Ptr manifold;           ///< critical points 1..K, if kept
   std::vector<MedialBall> balls;     ///< lexicographic centres, if kept
-  ManifoldGraph graph;               ///< node i is critical point i + 1
+  ManifoldGraph graph;               ///< node i is critical point i + 1; voxels: those of X
   std::vector<int64_t> grainVoxels;  ///< voxels of grain g at g - 1
   SegmentCounts counts;
+  LabelFlaws flaws;       ///< of the final labels
+  int64_t fillHoles = 0;  ///< the number that was used
+  int tidy = 0;           ///< rounds
   std::optional<CoordBBox> domain;
   bool open = false;             ///< the boundary that was used
   std::vector<StageTime> times;  ///< disjoint, in the order of work
 };
 
-/// Cuts the object into grains: distance -> power map -> filter -> flow -> graph -> merge -> labels
-/// (the whole of Wang et al. 2014, section 4 and 5, with the neck test besides).
+/// Cuts the object into grains: cavities -> distance -> power map -> filter -> flow -> graph -> merge
+/// -> tidy (the whole of Wang et al. 2014, section 4 and 5; cavities, the neck test, its tolerance
+/// and tidying are ours, and can be turned off).
 ///
 /// The active voxels of `object` are X, active tiles included. Labels depend on nothing but X, the
 /// domain and the options: not on tiles, threads or the order of work. X empty: zero grains.

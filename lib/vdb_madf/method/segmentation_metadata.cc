@@ -46,19 +46,25 @@ void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options
   setText(grid, "madf_version", kVersion);
   setCount(grid, "madf_gamma", options.gamma);
   setBoundary(grid, segmentation.open ? Boundary::open : Boundary::closed);
+  setCount(grid, "madf_fill_holes", segmentation.fillHoles);
   setCount(grid, "madf_object_voxels", counts.objectVoxels);
+  setCount(grid, "madf_cavities", counts.cavities);
+  setCount(grid, "madf_cavity_voxels", counts.cavityVoxels);
   setCount(grid, "madf_medial_balls", counts.medialBalls);
   setCount(grid, "madf_kept_balls", counts.keptBalls);
   setCount(grid, "madf_critical_points", counts.criticalPoints);
   setCount(grid, "madf_largest_squared_distance", counts.largestSquaredDistance);
   setCount(grid, "madf_leaves", counts.leaves);
-  describeMerging(grid, options.merge, counts.grains);
+  describeMerging(grid, options.merge, segmentation.tidy, counts.grains);
 }
 
-void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int64_t grains) {
+void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int tidy,
+                     int64_t grains) {
   grid.insertMeta("madf_theta", openvdb::DoubleMetadata(options.theta));
   setText(grid, "madf_merge", toString(options.mode));
   setText(grid, "madf_adjacency", toString(options.adjacency));
+  setCount(grid, "madf_delta", options.delta);
+  setCount(grid, "madf_tidy", tidy);
   setCount(grid, kGrains, grains);
 }
 

@@ -9,14 +9,17 @@
 namespace vdb_madf {
 
 /// Writes how a segmentation was made onto one of its grids: `madf_version`, `madf_gamma`,
-/// `madf_boundary` ("open", "closed"), `madf_theta`, `madf_merge`, `madf_adjacency`, and the
-/// counts `madf_object_voxels`, `madf_medial_balls`, `madf_kept_balls`, `madf_critical_points`,
+/// `madf_boundary` ("open", "closed"), `madf_theta`, `madf_merge`, `madf_adjacency`,
+/// `madf_fill_holes`, `madf_delta`, `madf_tidy`, and the counts `madf_object_voxels`,
+/// `madf_cavities`, `madf_cavity_voxels`, `madf_medial_balls`, `madf_kept_balls`, `madf_critical_points`,
 /// `madf_grains`, `madf_largest_squared_distance`, `madf_leaves` (int64).
 void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options,
                           const Segmentation& segmentation);
 
-/// Replaces what another merging changes: theta, mode, adjacency and the number of grains.
-void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int64_t grains);
+/// Replaces what another merging changes: theta, mode, adjacency, delta, tidy and the number of
+/// grains.
+void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int tidy,
+                     int64_t grains);
 
 /// The number of grains that a grid says it has.
 std::optional<int64_t> grainCount(const openvdb::GridBase& grid);

@@ -17,7 +17,7 @@ namespace {
 
 // Pixels of the drawing.
 constexpr double kWidth = 360, kHeight = 260, kLeft = 64, kTop = 34, kStep = kLeft + kWidth + 14;
-constexpr double kBelow = 46, kLegendRow = 18, kLegendColumn = 190;
+constexpr double kBelow = 46, kLegendRow = 18, kLegendColumn = 230;
 
 /// Okabe & Ito: told apart by colour-blind readers, too.
 constexpr std::array<const char*, 7> kColors{"#0072B2", "#D55E00", "#009E73", "#CC79A7",
@@ -90,23 +90,30 @@ class Axis {
 struct Line {
   int64_t gamma = 0;
   MergeMode mode = MergeMode::both;
+  int delta = 0;
   std::string style;
   std::vector<SweepRow> rows;  ///< by theta
 };
 
-/// Rows of equal gamma and mode follow each other.
+/// Rows of equal gamma, mode and delta follow each other.
 std::vector<Line> linesOf(const std::vector<SweepRow>& rows) {
   std::vector<Line> lines;
   std::vector<int64_t> gammas;
+  std::vector<int> deltas;
   for (const SweepRow& row : rows) {
-    if (lines.empty() || lines.back().gamma != row.gamma || lines.back().mode != row.mode) {
+    if (lines.empty() || lines.back().gamma != row.gamma || lines.back().mode != row.mode ||
+        lines.back().delta != row.delta) {
       if (gammas.empty() || gammas.back() != row.gamma) gammas.push_back(row.gamma);
+      auto delta = std::find(deltas.begin(), deltas.end(), row.delta);
+      if (delta == deltas.end()) delta = deltas.insert(delta, row.delta);
       const char* dashes = row.mode == MergeMode::angle  ? " stroke-dasharray=\"7 4\""
                            : row.mode == MergeMode::neck ? " stroke-dasharray=\"2 3\""
                                                          : "";
       lines.push_back({row.gamma,
                        row.mode,
-                       std::string("fill=\"none\" stroke-width=\"2\" stroke=\"") +
+                       row.delta,
+                       "fill=\"none\" stroke-width=\"" +
+                           number(2 + double(delta - deltas.begin())) + "\" stroke=\"" +
                            kColors[(gammas.size() - 1) % kColors.size()] + "\"" + dashes,
                        {}});
     }
@@ -180,7 +187,7 @@ std::string sweepPlot(const std::vector<SweepRow>& rows, int64_t smallVoxels) {
     const double y = top + double(i / columns) * kLegendRow;
     svg << "<path " << lines[i].style << " d=\"M" << x << ' ' << y << "h34\"/><text x=\"" << x + 42
         << "\" y=\"" << y + 4 << "\">gamma " << lines[i].gamma << ", " << toString(lines[i].mode)
-        << "</text>\n";
+        << ", delta " << lines[i].delta << "</text>\n";
   }
   svg << "</svg>\n";
   return svg.str();

@@ -18,6 +18,11 @@ class DisjointSets {
   explicit DisjointSets(size_t count) : parent_(count) {
     std::iota(parent_.begin(), parent_.end(), 0u);
   }
+  /// Another set, of one new element.
+  uint32_t add() {
+    parent_.push_back(uint32_t(parent_.size()));
+    return parent_.back();
+  }
   uint32_t find(uint32_t i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;

@@ -7,6 +7,9 @@ namespace vdb_madf::detail {
 
 namespace {
 
+/// Up to so many leaves ahead, walking is quicker than bisection.
+constexpr size_t kWalk = 32;
+
 /// First leaf at or behind `origin`.
 size_t lowerBound(const LeafIndex& index, const Coord& origin) {
   size_t first = 0, count = index.leafCount();
@@ -25,12 +28,13 @@ size_t lowerBound(const LeafIndex& index, const Coord& origin) {
 }  // namespace
 
 const std::array<uint32_t, 27>& LeafNeighborhood::around(size_t leaf) {
+  if (leaf == last_) return found_;
   const LeafIndex& index = *index_;
-  const bool next = leaf == last_ + 1 && last_ != ~size_t(0);
+  const bool ahead = last_ != ~size_t(0) && leaf >= last_ && leaf - last_ < kWalk;
   for (int column = 0; column < 9; ++column) {
     const Coord first = index.origin(leaf).offsetBy(8 * (column / 3 - 1), 8 * (column % 3 - 1), -8);
     size_t& cursor = cursors_[size_t(column)];
-    if (!next) cursor = lowerBound(index, first);
+    if (!ahead) cursor = lowerBound(index, first);
     while (cursor < index.leafCount() && index.origin(cursor) < first) ++cursor;
     size_t at = cursor;
     for (int dz = 0; dz < 3; ++dz) {

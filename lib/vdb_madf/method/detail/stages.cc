@@ -3,6 +3,7 @@
 
 #include "vdb_madf/method/detail/stages.h"
 
+#include <algorithm>
 #include <string>
 
 #include "vdb_madf/base/errors.h"
@@ -18,21 +19,22 @@ struct StageWeight {
   const char* stage;
   int weight;
 };
-constexpr StageWeight kStageWeights[] = {{"leaf_index", 1},     {"squared_distance", 9},
-                                         {"power_map", 25},     {"medial_balls", 2},
-                                         {"gamma_filter", 25},  {"flow", 2},
-                                         {"manifold_graph", 4}, {"merge", 1},
-                                         {"labels", 4}};
+constexpr StageWeight kStageWeights[] = {
+    {"leaf_index", 1}, {"cavities", 1},       {"squared_distance", 9},
+    {"power_map", 25}, {"medial_balls", 2},   {"gamma_filter", 25},
+    {"flow", 2},       {"manifold_graph", 4}, {"merge", 1},
+    {"tidy", 4},       {"labels", 4}};
 
-int weight(const StageWeight& s, bool filter) {
-  return std::string(s.stage) == "gamma_filter" && !filter ? 0 : s.weight;
+int weight(const StageWeight& s, const std::vector<std::string>& omitted) {
+  return std::find(omitted.begin(), omitted.end(), s.stage) == omitted.end() ? s.weight : 0;
 }
 
 }  // namespace
 
-Stages::Stages(Interrupter* interrupter, bool filter, std::vector<StageTime>& times)
-    : interrupter_(interrupter), filter_(filter), times_(times) {
-  for (const StageWeight& s : kStageWeights) total_ += weight(s, filter_);
+Stages::Stages(Interrupter* interrupter, const std::vector<std::string>& omitted,
+               std::vector<StageTime>& times)
+    : interrupter_(interrupter), omitted_(omitted), times_(times) {
+  for (const StageWeight& s : kStageWeights) total_ += weight(s, omitted_);
 }
 
 void Stages::begin(const char* stage) {
@@ -42,7 +44,7 @@ void Stages::begin(const char* stage) {
   running_ = true;
   before_ = 0;
   for (const StageWeight& s : kStageWeights) {
-    weight_ = weight(s, filter_);
+    weight_ = weight(s, omitted_);
     if (std::string(stage) == s.stage) break;
     before_ += weight_;
   }

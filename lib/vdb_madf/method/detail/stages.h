@@ -4,6 +4,7 @@
 #pragma once
 
 #include <chrono>
+#include <string>
 #include <vector>
 
 #include "vdb_madf/method/segment.h"
@@ -14,8 +15,9 @@ namespace vdb_madf::detail {
 /// the stage, and the percentage of all stages.
 class Stages : public Interrupter {
  public:
-  /// @param filter whether the gamma filter is one of the stages
-  Stages(Interrupter* interrupter, bool filter, std::vector<StageTime>& times);
+  /// @param omitted stages that are not done
+  Stages(Interrupter* interrupter, const std::vector<std::string>& omitted,
+         std::vector<StageTime>& times);
   ~Stages() override { finish(); }
   Stages(const Stages&) = delete;
   Stages& operator=(const Stages&) = delete;
@@ -30,7 +32,7 @@ class Stages : public Interrupter {
   using Clock = std::chrono::steady_clock;
 
   Interrupter* interrupter_;
-  bool filter_;
+  std::vector<std::string> omitted_;
   std::vector<StageTime>& times_;
   Clock::time_point start_;
   bool running_ = false;

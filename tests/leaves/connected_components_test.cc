@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/leaves/detail/object_components.h"
+#include "vdb_madf/leaves/detail/connected_components.h"
 
 #include <catch2/catch.hpp>
 #include <map>
@@ -19,16 +19,16 @@ namespace {
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-using detail::ObjectComponents;
+using detail::ConnectedComponents;
 
 uint32_t count(const ObjectVolume& object) {
-  return ObjectComponents(LeafIndex(*toMask(object))).count();
+  return ConnectedComponents(LeafIndex(*toMask(object))).count();
 }
 
 /// The components are those of a flood fill, numbered 0, 1, ... in some order.
 void requireComponents(const ObjectVolume& object, Tiles tiles = Tiles::none) {
   const LeafIndex index(*toMask(object, tiles));
-  const ObjectComponents components(index);
+  const ConnectedComponents components(index);
   const DenseVolume<int> expected = sixComponents(object);
   std::map<uint32_t, int> expectedOf;
   std::map<int, uint32_t> foundOf;
@@ -58,7 +58,7 @@ ObjectVolume serpentine(const CoordBBox& box) {
 
 }  // namespace
 
-TEST_CASE("object_components: drawn by hand", "[object_components]") {
+TEST_CASE("connected_components: drawn by hand", "[connected_components]") {
   CHECK(count(fromPicture("###/..#/###")) == 1);
   CHECK(count(fromPicture("###/.../###")) == 2);
   CHECK(count(fromPicture("#./.#")) == 2);        // along an edge
@@ -73,19 +73,19 @@ TEST_CASE("object_components: drawn by hand", "[object_components]") {
   CHECK(count(fromPicture("####/..../####", {0, 0, 6})) == 2);
 }
 
-TEST_CASE("object_components: of edge cases", "[object_components]") {
+TEST_CASE("connected_components: of edge cases", "[connected_components]") {
   const std::map<std::string, uint32_t> expected = {
       {"no voxels, no box", 0}, {"empty", 0}, {"two components", 2}, {"corner to corner", 2}};
   for (const EdgeCase& c : edgeCases()) {
     INFO(c.name);
     requireComponents(c.object, c.tiles);
     const auto known = expected.find(c.name.substr(0, c.name.find(", tiles")));
-    const ObjectComponents components(LeafIndex(*toMask(c.object, c.tiles)));
+    const ConnectedComponents components(LeafIndex(*toMask(c.object, c.tiles)));
     CHECK(components.count() == (known == expected.end() ? 1 : known->second));
   }
 }
 
-TEST_CASE("object_components: agree with a flood fill", "[object_components]") {
+TEST_CASE("connected_components: agree with a flood fill", "[connected_components]") {
   for (uint64_t seed = 1; seed <= 300; ++seed) {
     Rng rng(seed);
     const auto kind = VolumeKind(int(seed) % kVolumeKinds);
@@ -96,7 +96,7 @@ TEST_CASE("object_components: agree with a flood fill", "[object_components]") {
   }
 }
 
-TEST_CASE("object_components: a long way round is one component", "[object_components]") {
+TEST_CASE("connected_components: a long way round is one component", "[connected_components]") {
   for (const Coord& origin : {Coord(0), Coord(-13, 3, 6)}) {
     ObjectVolume path = serpentine(boxAt(origin, {19, 21, 23}));
     CHECK(count(path) == 1);
@@ -108,7 +108,7 @@ TEST_CASE("object_components: a long way round is one component", "[object_compo
   }
 }
 
-TEST_CASE("object_components: translated and padded they stay", "[object_components]") {
+TEST_CASE("connected_components: translated and padded they stay", "[connected_components]") {
   for (uint64_t seed = 1; seed <= 8; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
@@ -133,7 +133,7 @@ TEST_CASE("object_components: translated and padded they stay", "[object_compone
   }
 }
 
-TEST_CASE("object_components: threads do not matter", "[object_components]") {
+TEST_CASE("connected_components: threads do not matter", "[connected_components]") {
   // More leaves than one task takes, on both sides of a border of leaves.
   Rng rng(9);
   const ObjectVolume object =
@@ -141,8 +141,8 @@ TEST_CASE("object_components: threads do not matter", "[object_components]") {
   const LeafIndex index(*toMask(object));
   REQUIRE(index.leafCount() > 2048);
   const auto numbers = [&](int threads) {
-    const ObjectComponents components =
-        withThreads(threads, [&] { return ObjectComponents(index); });
+    const ConnectedComponents components =
+        withThreads(threads, [&] { return ConnectedComponents(index); });
     std::vector<uint32_t> all;
     forEachId(index, [&](VoxelId id) { all.push_back(components.componentOf(id)); });
     return all;
@@ -152,8 +152,8 @@ TEST_CASE("object_components: threads do not matter", "[object_components]") {
   requireComponents(object);
 }
 
-TEST_CASE("object_components: none once interrupted", "[object_components]") {
+TEST_CASE("connected_components: none once interrupted", "[connected_components]") {
   const LeafIndex index(*toMask(fromPicture("##")));
   StopAtOnce stop;
-  CHECK_THROWS_AS(ObjectComponents(index, &stop), Interrupted);
+  CHECK_THROWS_AS(ConnectedComponents(index, &stop), Interrupted);
 }

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/leaves/detail/leaf_mask.h"
+
+#include <algorithm>
+
+namespace vdb_madf::detail {
+
+namespace {
+
+/// A word and its neighbours along y and z.
+uint64_t dilateWord(uint64_t w) {
+  return w | (w & ~kLastZ) << 1 | (w & ~kFirstZ) >> 1 | w << 8 | w >> 8;
+}
+
+}  // namespace
+
+LeafIndex::Mask flood(LeafIndex::Mask seed, const LeafIndex::Mask& mask) {
+  if (seed == mask) return seed;
+  bool grown = true;
+  const auto grow = [&](size_t x) {
+    uint64_t next = dilateWord(seed[x]);
+    if (x > 0) next |= seed[x - 1];
+    if (x < 7) next |= seed[x + 1];
+    next = dilateWord(next & mask[x]) & mask[x];
+    grown = grown || next != seed[x];
+    seed[x] = next;
+  };
+  while (grown) {  // to and fro, so that it grows far in either direction
+    grown = false;
+    for (size_t x = 0; x < 8; ++x) grow(x);
+    for (size_t x = 8; x-- > 0;) grow(x);
+  }
+  return seed;
+}
+
+LeafIndex::Mask dilate(const LeafIndex::Mask& mask) {
+  LeafIndex::Mask result;
+  for (size_t x = 0; x < 8; ++x) {
+    result[x] = dilateWord(mask[x]);
+    if (x > 0) result[x] |= mask[x - 1];
+    if (x < 7) result[x] |= mask[x + 1];
+  }
+  return result;
+}
+
+LeafIndex::Mask across(const LeafIndex::Mask& mask, size_t side) {
+  LeafIndex::Mask result{};
+  if (side == 0) result[7] = mask[0];
+  if (side == 1) result[0] = mask[7];
+  if (side < 2) return result;
+  for (size_t x = 0; x < 8; ++x) {
+    if (side == 2) result[x] = mask[x] << 56;
+    if (side == 3) result[x] = mask[x] >> 56;
+    if (side == 4) result[x] = (mask[x] & kFirstZ) << 7;
+    if (side == 5) result[x] = (mask[x] & kLastZ) >> 7;
+  }
+  return result;
+}
+
+LeafIndex::Mask inBox(const Coord& origin, const CoordBBox& box) {
+  LeafIndex::Mask result{};
+  int first[3], last[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    first[axis] = int(std::max<int64_t>(0, int64_t(box.min()[axis]) - origin[axis]));
+    last[axis] = int(std::min<int64_t>(7, int64_t(box.max()[axis]) - origin[axis]));
+  }
+  for (int x = first[0]; x <= last[0]; ++x)
+    for (int y = first[1]; y <= last[1]; ++y)
+      for (int z = first[2]; z <= last[2]; ++z) result[size_t(x)] |= uint64_t(1) << (y * 8 + z);
+  return result;
+}
+
+}  // namespace vdb_madf::detail

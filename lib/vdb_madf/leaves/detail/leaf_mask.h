@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include "vdb_madf/base/detail/bits.h"
+#include "vdb_madf/leaves/detail/voxels.h"
+#include "vdb_madf/leaves/leaf_index.h"
+
+// Sets of voxels of one leaf, 64 at a time.
+
+namespace vdb_madf::detail {
+
+/// Bits y*8 + z of a mask word with y = 0, with y = 7.
+constexpr uint64_t kFirstY = 0xffull, kLastY = kFirstY << 56;
+
+inline bool anyVoxel(const LeafIndex::Mask& mask) {
+  uint64_t any = 0;
+  for (const uint64_t word : mask) any |= word;
+  return any != 0;
+}
+
+inline uint32_t countVoxels(const LeafIndex::Mask& mask) {
+  uint32_t count = 0;
+  for (const uint64_t word : mask) count += countBits(word);
+  return count;
+}
+
+inline bool meet(const LeafIndex::Mask& a, const LeafIndex::Mask& b) {
+  uint64_t any = 0;
+  for (size_t x = 0; x < 8; ++x) any |= a[x] & b[x];
+  return any != 0;
+}
+
+inline bool holds(const LeafIndex::Mask& mask, uint32_t offset) {
+  return mask[offset >> 6] >> (offset & 63) & 1;
+}
+
+/// Grows `seed` to the 6-connected component of `mask` that holds it.
+LeafIndex::Mask flood(LeafIndex::Mask seed, const LeafIndex::Mask& mask);
+
+/// The voxels of the leaf on a side (in the order of LeafIndex::Neighbors) that are neighbours of
+/// voxels of `mask`.
+LeafIndex::Mask across(const LeafIndex::Mask& mask, size_t side);
+
+/// Has a voxel of `mask` a neighbor in `next`, a mask of the next leaf along an axis?
+inline bool touchNext(const LeafIndex::Mask& mask, const LeafIndex::Mask& next, size_t axis) {
+  if (axis == 0) return (mask[7] & next[0]) != 0;
+  uint64_t touch = 0;
+  for (size_t x = 0; x < 8; ++x)
+    touch |= axis == 1 ? mask[x] >> 56 & next[x] : (mask[x] & kLastZ) >> 7 & next[x];
+  return touch != 0;
+}
+
+/// The side that faces a side.
+constexpr size_t opposite(size_t side) {
+  return side ^ 1;
+}
+
+/// The voxels of `mask` and their neighbours within the leaf.
+LeafIndex::Mask dilate(const LeafIndex::Mask& mask);
+
+/// The voxels of the leaf at `origin` that lie in a box.
+LeafIndex::Mask inBox(const Coord& origin, const CoordBBox& box);
+
+/// f(piece) for the 6-connected components of a mask, in the order of their first voxels.
+template <typename F>
+void forEachPiece(LeafIndex::Mask rest, const F& f) {
+  for (size_t x = 0; x < 8; ++x) {
+    while (rest[x]) {
+      LeafIndex::Mask seed{};
+      seed[x] = rest[x] & (~rest[x] + 1);
+      const LeafIndex::Mask piece = flood(seed, rest);
+      for (size_t i = 0; i < 8; ++i) rest[i] &= ~piece[i];
+      f(piece);
+    }
+  }
+}
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,259 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/method/cavities.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "vdb_madf/base/detail/disjoint_sets.h"
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/leaves/detail/leaf_mask.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using Mask = LeafIndex::Mask;
+
+/// The origin of the leaf on a side (in the order of LeafIndex::Neighbors).
+Coord beside(Coord origin, size_t side) {
+  origin[side / 2] += side % 2 ? 8 : -8;
+  return origin;
+}
+
+Mask without(Mask mask, const Mask& other) {
+  for (size_t x = 0; x < 8; ++x) mask[x] &= ~other[x];
+  return mask;
+}
+
+struct CoordHash {
+  size_t operator()(const Coord& c) const { return c.hash(); }
+};
+
+/// Builds the components of the background that may be cavities. Their nodes are the small pieces
+/// of background within touched leaves, and whole untouched leaves beside them. A piece that is too
+/// large by itself belongs to no cavity, nor does what it touches.
+class CavityFinder {
+ public:
+  CavityFinder(const LeafIndex& object, const std::optional<CoordBBox>& domain, bool open,
+               int64_t fillHoles)
+      : object_(object), domain_(domain), fillHoles_(fillHoles) {
+    if (open) return;
+    inner_ = object.boundingBox();  // what leaves it reaches the outside
+    if (!domain_) return;
+    CoordBBox withoutFaces = *domain_;
+    withoutFaces.expand(-1);
+    inner_->intersect(withoutFaces);
+  }
+
+  Cavities run(Interrupter* interrupter) {
+    findPieces(interrupter);
+    sets_.emplace(0);
+    for (const Piece& piece : pieces_) addNode(int64_t(detail::countVoxels(piece.mask)));
+    for (uint32_t i = 0; i < pieces_.size(); ++i) joinPiece(i);
+    for (size_t leaf = 0; leaf < object_.leafCount(); ++leaf) addEmptyLeavesBeside(leaf);
+    return collect();
+  }
+
+ private:
+  struct Piece {
+    uint32_t leaf;
+    Mask mask;
+  };
+
+  /// The background of a leaf within the domain.
+  Mask background(size_t leaf) const {
+    Mask mask =
+        without(Mask{~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull}, object_.mask(leaf));
+    return domain_ ? within(*domain_, object_.origin(leaf), mask) : mask;
+  }
+  static Mask within(const CoordBBox& box, const Coord& origin, Mask mask) {
+    if (box.isInside(origin) && box.isInside(origin.offsetBy(7))) return mask;
+    const Mask inside = detail::inBox(origin, box);
+    for (size_t x = 0; x < 8; ++x) mask[x] &= inside[x];
+    return mask;
+  }
+  bool reachesFace(const Coord& origin, const Mask& mask) const {
+    return inner_ && detail::anyVoxel(without(mask, within(*inner_, origin, mask)));
+  }
+
+  void findPieces(Interrupter* interrupter) {
+    constexpr size_t kChunk = 1024;
+    std::vector<std::vector<Piece>> chunks((object_.leafCount() + kChunk - 1) / kChunk);
+    detail::parallelFor(chunks.size(), 1, interrupter, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        const size_t stop = std::min(object_.leafCount(), (i + 1) * kChunk);
+        for (size_t leaf = i * kChunk; leaf < stop; ++leaf)
+          detail::forEachPiece(background(leaf), [&](const Mask& piece) {
+            if (detail::countVoxels(piece) < fillHoles_ &&
+                !reachesFace(object_.origin(leaf), piece))
+              chunks[i].push_back({uint32_t(leaf), piece});
+          });
+      }
+    });
+    for (const std::vector<Piece>& chunk : chunks)
+      pieces_.insert(pieces_.end(), chunk.begin(), chunk.end());
+  }
+
+  uint32_t addNode(int64_t size) {
+    size_.push_back(size);
+    outside_.push_back(false);
+    return sets_->add();
+  }
+
+  void unite(uint32_t a, uint32_t b) {
+    a = sets_->find(a);
+    b = sets_->find(b);
+    if (a == b) return;
+    sets_->unite(a, b);
+    const uint32_t root = sets_->find(a);
+    size_[root] = size_[a] + size_[b];
+    outside_[root] = outside_[a] || outside_[b] || size_[root] >= fillHoles_;
+  }
+  void markOutside(uint32_t node) { outside_[sets_->find(node)] = true; }
+  bool isOutside(uint32_t node) { return outside_[sets_->find(node)]; }
+
+  /// Joins what a piece touches in the six leaves around it.
+  void joinPiece(uint32_t i) {
+    const Piece& piece = pieces_[i];
+    for (size_t side = 0; side < 6; ++side) {
+      Mask touched = detail::across(piece.mask, side);
+      if (!detail::anyVoxel(touched)) continue;
+      const uint32_t next = object_.neighbors(piece.leaf)[side];
+      if (next != LeafIndex::kNone) {
+        joinTouched(i, next, touched);
+        continue;
+      }
+      const Coord origin = beside(object_.origin(piece.leaf), side);
+      if (domain_) touched = within(*domain_, origin, touched);
+      if (detail::anyVoxel(touched)) unite(i, emptyLeaf(origin));
+    }
+  }
+
+  /// The untouched leaves at a face that is all object: no piece of background leads into them.
+  void addEmptyLeavesBeside(size_t leaf) {
+    for (size_t side = 0; side < 6; ++side) {
+      if (object_.neighbors(leaf)[side] != LeafIndex::kNone) continue;
+      const Coord origin = beside(object_.origin(leaf), side);
+      const Mask mask = emptyMask(origin);
+      const uint32_t voxels = detail::countVoxels(mask);
+      if (voxels > 0 && voxels < fillHoles_ && !reachesFace(origin, mask)) emptyLeaf(origin);
+    }
+  }
+
+  /// Joins a node with the small pieces of a leaf that hold some of the voxels.
+  void joinTouched(uint32_t node, uint32_t leaf, const Mask& voxels) {
+    Mask rest = background(leaf);
+    for (size_t x = 0; x < 8; ++x) rest[x] &= voxels[x];
+    const auto first =
+        std::lower_bound(pieces_.begin(), pieces_.end(), leaf,
+                         [](const Piece& piece, uint32_t l) { return piece.leaf < l; });
+    for (auto piece = first; piece != pieces_.end() && piece->leaf == leaf; ++piece) {
+      if (!detail::meet(piece->mask, rest)) continue;
+      unite(node, uint32_t(piece - pieces_.begin()));
+      rest = without(rest, piece->mask);
+    }
+    if (detail::anyVoxel(rest)) markOutside(node);  // a large piece
+  }
+
+  /// The node of an untouched leaf that has voxels of the domain. On the way all that are connected
+  /// with it, until they are too many for a cavity.
+  uint32_t emptyLeaf(const Coord& start) {
+    if (const auto known = empty_.find(start); known != empty_.end()) return known->second;
+    const uint32_t node = addEmptyLeaf(start);
+    std::vector<Coord> front{start};
+    while (!front.empty() && !isOutside(node)) {
+      const Coord origin = front.back();
+      front.pop_back();
+      const Mask here = emptyMask(origin);
+      for (size_t side = 0; side < 6 && !isOutside(node); ++side) {
+        const Coord next = beside(origin, side);
+        Mask touched = detail::across(here, side);
+        if (domain_) touched = within(*domain_, next, touched);
+        if (!detail::anyVoxel(touched)) continue;
+        if (const auto leaf = object_.findLeaf(next)) {
+          joinTouched(node, *leaf, touched);
+        } else if (const auto known = empty_.find(next); known != empty_.end()) {
+          unite(node, known->second);
+        } else {
+          unite(node, addEmptyLeaf(next));
+          front.push_back(next);
+        }
+      }
+    }
+    return node;
+  }
+  Mask emptyMask(const Coord& origin) const {
+    const Mask full{~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull};
+    return domain_ ? within(*domain_, origin, full) : full;
+  }
+  uint32_t addEmptyLeaf(const Coord& origin) {
+    const Mask mask = emptyMask(origin);
+    const uint32_t node = addNode(int64_t(detail::countVoxels(mask)));
+    if (size_[node] >= fillHoles_ || reachesFace(origin, mask)) markOutside(node);
+    empty_.emplace(origin, node);
+    return node;
+  }
+
+  Cavities collect() {
+    Cavities found;
+    for (uint32_t node = 0; node < size_.size(); ++node) {
+      if (sets_->find(node) != node || outside_[node]) continue;
+      ++found.count;
+      found.voxels += size_[node];
+    }
+    for (uint32_t i = 0; i < pieces_.size(); ++i) {
+      if (isOutside(i)) continue;
+      const Coord& origin = object_.origin(pieces_[i].leaf);
+      if (found.leaves.empty() || found.leaves.back().origin != origin)
+        found.leaves.push_back({origin, Mask{}});
+      for (size_t x = 0; x < 8; ++x) found.leaves.back().mask[x] |= pieces_[i].mask[x];
+    }
+    for (const auto& [origin, node] : empty_)
+      if (!isOutside(node)) found.leaves.push_back({origin, emptyMask(origin)});
+    std::sort(found.leaves.begin(), found.leaves.end(),
+              [](const auto& a, const auto& b) { return a.origin < b.origin; });
+    return found;
+  }
+
+  const LeafIndex& object_;
+  std::optional<CoordBBox> domain_;
+  std::optional<CoordBBox> inner_;  // where all of a cavity lies
+  int64_t fillHoles_;
+  std::vector<Piece> pieces_;  // ascending by leaf; the first nodes
+  std::unordered_map<Coord, uint32_t, CoordHash> empty_;
+  std::optional<detail::DisjointSets> sets_;
+  std::vector<int64_t> size_;  // of a component, at its root
+  std::vector<bool> outside_;  // no cavity, at the root
+};
+
+}  // namespace
+
+int64_t defaultFillHoles(const std::optional<CoordBBox>& domain) {
+  if (!domain) return kFillHoles;
+  const Coord dim = domain->dim();
+  return std::min({dim.x(), dim.y(), dim.z()}) == 1 ? 0 : kFillHoles;
+}
+
+Cavities findCavities(const LeafIndex& object, const std::optional<CoordBBox>& domain, bool open,
+                      int64_t fillHoles, Interrupter* interrupter) {
+  if (fillHoles <= 1 || object.voxelCount() == 0) return {};
+  Cavities found = CavityFinder(object, domain, open, fillHoles).run(interrupter);
+  if (open && domain && uint64_t(object.voxelCount() + found.voxels) == domain->volume()) return {};
+  return found;
+}
+
+std::vector<VoxelId> cavityVoxels(const LeafIndex& body, const Cavities& cavities) {
+  std::vector<VoxelId> ids;
+  ids.reserve(size_t(cavities.voxels));
+  for (const LeafIndex::LeafVoxels& leaf : cavities.leaves) {
+    const uint32_t number = *body.findLeaf(leaf.origin);
+    for (uint32_t x = 0; x < 8; ++x)
+      detail::forEachBit(leaf.mask[x],
+                         [&](int bit) { ids.push_back(number * 512 + x * 64 + uint32_t(bit)); });
+  }
+  return ids;
+}
+
+}  // namespace vdb_madf

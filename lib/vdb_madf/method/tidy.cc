@@ -1,0 +1,275 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/method/tidy.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/leaves/detail/connected_components.h"
+#include "vdb_madf/leaves/detail/leaf_mask.h"
+#include "vdb_madf/leaves/detail/leaf_neighborhood.h"
+#include "vdb_madf/leaves/detail/voxels.h"
+#include "vdb_madf/method/detail/label_block.h"
+#include "vdb_madf/method/detail/metric.h"
+
+namespace vdb_madf {
+
+namespace {
+
+constexpr VoxelId kNoVoxel = ~VoxelId(0);
+
+/// A grain's voxel that may become its anchor.
+struct Candidate {
+  int64_t away = -1;  // squared distance from the representative; -1: none
+  Coord position;
+  VoxelId voxel = kNoVoxel;
+
+  void improve(const Candidate& other) {
+    if (other.away < 0) return;
+    if (away < 0 || std::tie(other.away, other.position) < std::tie(away, position)) *this = other;
+  }
+};
+
+/// Of each grain the voxel nearest to its representative. `lost`: those that have to be looked for.
+void findLostAnchors(const LeafIndex& index, const GrainLabels& grains,
+                     const std::vector<uint32_t>& lost, std::vector<VoxelId>& anchor,
+                     Interrupter* interrupter) {
+  std::vector<uint32_t> placeOf(anchor.size() + 1, 0);  // of a label in `lost`, plus 1
+  for (uint32_t i = 0; i < lost.size(); ++i) placeOf[lost[i] + 1] = i + 1;
+  detail::PerThread<std::vector<Candidate>> found{std::vector<Candidate>(lost.size())};
+  detail::parallelFor(index.leafCount(), detail::kLeafGrain, interrupter,
+                      [&](size_t begin, size_t end) {
+                        std::vector<Candidate>& best = found.local();
+                        detail::forEachVoxel(index, begin, end, [&](VoxelId id, size_t rank) {
+                          const uint32_t label = grains.label[rank], place = placeOf[label];
+                          if (place == 0) return;
+                          const Coord p = index.coord(id);
+                          best[place - 1].improve(
+                              {detail::squaredBetween(p, grains.representative[label - 1]), p, id});
+                        });
+                      });
+  std::vector<Candidate> best(lost.size());
+  for (const std::vector<Candidate>& part : found)
+    for (size_t i = 0; i < lost.size(); ++i) best[i].improve(part[i]);
+  for (size_t i = 0; i < lost.size(); ++i) anchor[lost[i]] = best[i].voxel;
+}
+
+/// The anchor of grain g at g - 1.
+std::vector<VoxelId> findAnchors(const LeafIndex& index, const GrainLabels& grains,
+                                 Interrupter* interrupter) {
+  std::vector<VoxelId> anchor(grains.representative.size(), kNoVoxel);
+  std::vector<uint32_t> lost;
+  for (uint32_t g = 0; g < anchor.size(); ++g) {
+    const Coord& c = grains.representative[g];
+    const auto leaf = index.findLeaf(c & ~7);
+    const uint32_t offset = uint32_t((c.x() & 7) * 64 + (c.y() & 7) * 8 + (c.z() & 7));
+    const VoxelId id = leaf.value_or(0) * 512 + offset;
+    if (leaf && detail::isObject(index, id) && grains.label[index.rank(id)] == g + 1)
+      anchor[g] = id;
+    else
+      lost.push_back(g);
+  }
+  if (!lost.empty()) findLostAnchors(index, grains, lost, anchor, interrupter);
+  return anchor;
+}
+
+/// The synchronous rounds of smoothing. A round only looks at leaves where something may change:
+/// first those with an interface, then those that see a change of the round before.
+class Smoothing {
+ public:
+  Smoothing(const LeafIndex& index, GrainLabels& grains, const std::vector<VoxelId>& anchor)
+      : index_(index), grains_(grains), anchor_(anchor) {}
+
+  void run(int rounds, Interrupter* interrupter) {
+    std::vector<uint32_t> leaves = leavesWithInterfaces(interrupter);
+    for (int round = 0; round < rounds && !leaves.empty(); ++round) {
+      const std::vector<std::vector<Change>> changes = decide(leaves, interrupter);
+      leaves = apply(changes);
+    }
+  }
+
+ private:
+  struct Change {
+    VoxelId voxel;
+    uint32_t label;
+  };
+
+  /// The leaves with more than one label, or beside a leaf with another one.
+  std::vector<uint32_t> leavesWithInterfaces(Interrupter* interrupter) const {
+    std::vector<uint32_t> only(index_.leafCount());  // label of all voxels of a leaf; 0: several
+    detail::parallelFor(only.size(), detail::kLeafGrain, interrupter,
+                        [&](size_t begin, size_t end) {
+                          for (size_t leaf = begin; leaf < end; ++leaf) {
+                            const uint32_t* labels = grains_.label.data() + index_.firstRank(leaf);
+                            uint32_t differ = 0;
+                            for (size_t i = 0; i < index_.leafVoxels(leaf); ++i)
+                              differ |= labels[i] ^ labels[0];
+                            only[leaf] = differ ? 0 : labels[0];
+                          }
+                        });
+    std::vector<uint32_t> leaves;
+    for (uint32_t leaf = 0; leaf < only.size(); ++leaf) {
+      bool alone = only[leaf] != 0;
+      for (const uint32_t next : index_.neighbors(leaf))
+        alone = alone && (next == LeafIndex::kNone || only[next] == only[leaf]);
+      if (!alone) leaves.push_back(leaf);
+    }
+    return leaves;
+  }
+
+  /// What a round changes, by chunks of leaves in rising order.
+  std::vector<std::vector<Change>> decide(const std::vector<uint32_t>& leaves,
+                                          Interrupter* interrupter) const {
+    std::vector<std::vector<Change>> changes((leaves.size() + kChunk - 1) / kChunk);
+    detail::parallelFor(changes.size(), 1, interrupter, [&](size_t begin, size_t end) {
+      detail::LeafNeighborhood neighborhood(index_);
+      detail::LabelBlock block;
+      const size_t stop = std::min(leaves.size(), end * kChunk);
+      for (size_t i = begin * kChunk; i < stop; ++i) {
+        block.load(index_, grains_.label, neighborhood.around(leaves[i]));
+        const LeafIndex::Mask candidates = block.interfaces();
+        for (uint32_t x = 0; x < 8; ++x)
+          detail::forEachBit(candidates[x], [&](int bit) {
+            const uint32_t offset = x * 64 + uint32_t(bit);
+            const uint32_t label = block.majority(offset), own = block.at(offset);
+            const VoxelId voxel = leaves[i] * 512 + offset;
+            if (label != own && anchor_[own - 1] != voxel)
+              changes[i / kChunk].push_back({voxel, label});
+          });
+      }
+    });
+    return changes;
+  }
+
+  /// The leaves that see one of the changes, ascending.
+  std::vector<uint32_t> apply(const std::vector<std::vector<Change>>& changes) {
+    std::vector<char> sees(index_.leafCount(), 0);
+    detail::LeafNeighborhood neighborhood(index_);
+    for (const std::vector<Change>& chunk : changes)
+      for (const Change& change : chunk) {
+        uint32_t& label = grains_.label[index_.rank(change.voxel)];
+        --grains_.voxels[label - 1];
+        label = change.label;
+        ++grains_.voxels[label - 1];
+        markLeaves(neighborhood.around(leafOf(change.voxel)), offsetOf(change.voxel), sees);
+      }
+    std::vector<uint32_t> leaves;
+    for (uint32_t leaf = 0; leaf < sees.size(); ++leaf)
+      if (sees[leaf]) leaves.push_back(leaf);
+    return leaves;
+  }
+
+  /// The leaf of a voxel, and those whose layer of neighbors holds it.
+  static void markLeaves(const std::array<uint32_t, 27>& around, uint32_t offset,
+                         std::vector<char>& sees) {
+    const uint32_t t[3] = {offset >> 6, offset >> 3 & 7, offset & 7};
+    uint32_t first[3], last[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      first[axis] = t[axis] == 0 ? 0 : 1;
+      last[axis] = t[axis] == 7 ? 2 : 1;
+    }
+    for (uint32_t x = first[0]; x <= last[0]; ++x)
+      for (uint32_t y = first[1]; y <= last[1]; ++y)
+        for (uint32_t z = first[2]; z <= last[2]; ++z)
+          if (const uint32_t leaf = around[x * 9 + y * 3 + z]; leaf != LeafIndex::kNone)
+            sees[leaf] = 1;
+  }
+
+  static constexpr size_t kChunk = 64;
+  const LeafIndex& index_;
+  GrainLabels& grains_;
+  const std::vector<VoxelId>& anchor_;
+};
+
+/// A voxel that is not connected with the anchor of its grain, and the label it lost.
+struct LooseVoxel {
+  VoxelId id;
+  uint32_t lost;
+};
+
+std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+                                    const std::vector<VoxelId>& anchor, Interrupter* interrupter) {
+  const detail::ConnectedComponents components(index, labels, interrupter);
+  std::vector<char> held(components.count(), 0);
+  for (const VoxelId id : anchor)
+    if (id != kNoVoxel) held[components.componentOf(id)] = 1;
+  std::vector<LooseVoxel> loose;
+  for (uint32_t leaf = 0; leaf < index.leafCount(); ++leaf)
+    for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece) {
+      if (held[piece->component]) continue;
+      for (uint32_t x = 0; x < 8; ++x)
+        detail::forEachBit(piece->mask[x], [&](int bit) {
+          loose.push_back({leaf * 512 + x * 64 + uint32_t(bit), piece->label});
+        });
+    }
+  return loose;
+}
+
+/// The most frequent label among the neighbors of a voxel, of equally frequent ones the smallest; 0
+/// if none has one.
+uint32_t mostFrequentAround(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+                            VoxelId id) {
+  uint32_t around[6], count = 0;
+  detail::forEachNeighbor(index, id, [&](VoxelId q, int, int) {
+    if (!detail::isObject(index, q)) return;
+    if (const uint32_t label = labels[index.rank(q)]) around[count++] = label;
+  });
+  uint32_t best = 0;
+  int64_t most = 0;
+  for (uint32_t i = 0; i < count; ++i) {
+    const int64_t same = std::count(around, around + count, around[i]);
+    if (same > most || (same == most && around[i] < best)) {
+      best = around[i];
+      most = same;
+    }
+  }
+  return best;
+}
+
+/// Gives every voxel that is not connected with its grain's anchor to a neighbor.
+void connect(const LeafIndex& index, const std::vector<VoxelId>& anchor, GrainLabels& grains,
+             Interrupter* interrupter) {
+  constexpr size_t kVoxelGrain = 1024;
+  std::vector<LooseVoxel> loose = looseVoxels(index, grains.label, anchor, interrupter);
+  for (const LooseVoxel& voxel : loose) grains.label[index.rank(voxel.id)] = 0;
+  std::vector<uint32_t> found;
+  for (bool changed = true; changed && !loose.empty();) {
+    found.resize(loose.size());
+    detail::parallelFor(loose.size(), kVoxelGrain, interrupter, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i)
+        found[i] = mostFrequentAround(index, grains.label, loose[i].id);
+    });
+    size_t left = 0;
+    for (size_t i = 0; i < loose.size(); ++i) {
+      if (found[i] == 0) {
+        loose[left++] = loose[i];
+        continue;
+      }
+      grains.label[index.rank(loose[i].id)] = found[i];
+      --grains.voxels[loose[i].lost - 1];
+      ++grains.voxels[found[i] - 1];
+    }
+    changed = left < loose.size();
+    loose.resize(left);
+  }
+  for (const LooseVoxel& voxel : loose) grains.label[index.rank(voxel.id)] = voxel.lost;
+}
+
+}  // namespace
+
+void checkTidy(int rounds) {
+  if (rounds < 0) throw InvalidInput("tidy is a number of rounds: it must not be negative");
+}
+
+void tidy(const LeafIndex& index, int rounds, GrainLabels& grains, Interrupter* interrupter) {
+  checkTidy(rounds);
+  if (rounds == 0) return;
+  const std::vector<VoxelId> anchor = findAnchors(index, grains, interrupter);
+  Smoothing(index, grains, anchor).run(rounds, interrupter);
+  connect(index, anchor, grains, interrupter);
+}
+
+}  // namespace vdb_madf

@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "segment_summary.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "outputs.h"
+#include "vdb_madf/base/memory.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/method/segmentation_metadata.h"
+
+namespace vdb_madf::tools {
+
+namespace {
+
+/// What to turn if the grains are hardly true ones.
+std::vector<std::string> hints(const SegmentOptions& options, const SegmentSummary& summary) {
+  const int64_t grains = summary.counts.grains;
+  const LabelFlaws& flaws = summary.flaws;
+  std::vector<std::string> all;
+  const auto share = [&](int64_t part) {
+    return std::to_string(part) + " of " + std::to_string(grains) + " grains";
+  };
+  const bool neck = options.merge.mode != MergeMode::angle;
+  if (2 * flaws.crumbs > grains)
+    all.push_back(share(flaws.crumbs) + " are crumbs: " +
+                  (neck ? "raise --delta or --theta, or try --gamma 20"
+                        : "the angle alone needs --gamma, such as 20 or 160"));
+  else if (flaws.slivers >= 10 && 50 * flaws.slivers > grains)
+    all.push_back(share(flaws.slivers) + " are slivers: raise " +
+                  (neck && options.merge.delta < 8 ? "--delta or " : "") + "--theta; see sweep");
+  if (flaws.specks >= 10 && 5 * flaws.specks > grains)
+    all.push_back(share(flaws.specks) +
+                  " are loose specks under 100 voxels: noise of the scan? Filter it before");
+  if (summary.counts.cavities >= 10 && 5 * summary.counts.cavities > grains &&
+      summary.fillHoles < 100)
+    all.push_back(std::to_string(summary.counts.cavities) +
+                  " small cavities: a noisy scan may need --fill-holes 100");
+  return all;
+}
+
+}  // namespace
+
+std::optional<double> SegmentSummary::porosity() const {
+  if (!domain) return std::nullopt;
+  return 1 - double(counts.objectVoxels) / double(domain->volume());
+}
+
+SegmentSummary summarize(const SegmentArguments& o, const Common& common, const Segmentation& s,
+                         const SegmentTiming& timing) {
+  SegmentSummary summary;
+  summary.counts = s.counts;
+  summary.sizes = grainSizes(s.grainVoxels);
+  summary.flaws = s.flaws;
+  summary.fillHoles = s.fillHoles;
+  summary.domain = s.domain;
+  summary.voxelSize = storedVoxelSize(*s.grain);
+  summary.open = s.open;
+  summary.threads = usedThreads(common.threads);
+  summary.seconds.emplace_back("read", timing.read);
+  for (const StageTime& stage : s.times) {
+    summary.seconds.emplace_back(stage.stage, stage.seconds);
+    summary.peakBytesUntil.emplace_back(stage.stage, stage.peakBytes);
+  }
+  if (!o.tables.empty()) summary.seconds.emplace_back("measure", timing.measure);
+  summary.seconds.emplace_back("write", timing.write);
+  summary.seconds.emplace_back("total", timing.total);
+  summary.peakBytes = peakMemory();
+  summary.hints = hints(o.segment, summary);
+  return summary;
+}
+
+Json toJson(const SegmentArguments& o, const SegmentSummary& summary) {
+  const SegmentCounts& counts = summary.counts;
+  Json json;
+  json["input"] = o.input.path;
+  json["output"] = o.out;
+  json["object_voxels"] = counts.objectVoxels;
+  json["cavities"] = counts.cavities;
+  json["cavity_voxels"] = counts.cavityVoxels;
+  json["medial_balls"] = counts.medialBalls;
+  json["kept_balls"] = counts.keptBalls;
+  json["critical_points"] = counts.criticalPoints;
+  json["grains"] = counts.grains;
+  json["largest_squared_distance"] = counts.largestSquaredDistance;
+  json["leaves"] = counts.leaves;
+  if (const auto& domain = summary.domain) {
+    json["domain_min"] = {domain->min().x(), domain->min().y(), domain->min().z()};
+    json["domain_max"] = {domain->max().x(), domain->max().y(), domain->max().z()};
+    json["porosity"] = *summary.porosity();
+  }
+  if (summary.voxelSize) json["voxel_size_mm"] = summary.voxelSize->metres * 1e3;
+  json["grains_under_100_voxels"] = summary.sizes.dustGrains;
+  json["voxels_in_grains_under_100_voxels"] = summary.sizes.dustVoxels;
+  json["crumbs"] = summary.flaws.crumbs;
+  json["specks"] = summary.flaws.specks;
+  json["slivers"] = summary.flaws.slivers;
+  json["grains_in_pieces"] = summary.flaws.inPieces;
+  json["grain_diameter_d10_voxels"] = summary.sizes.d10;
+  json["grain_diameter_d50_voxels"] = summary.sizes.d50;
+  json["grain_diameter_d90_voxels"] = summary.sizes.d90;
+  for (const auto& [key, value] : {std::pair<const char*, std::string>{"grid", o.input.gridName},
+                                   {"phase", o.input.phase},
+                                   {"threshold", o.input.threshold},
+                                   {"range", o.input.range},
+                                   {"keep", o.keep}})
+    if (!value.empty()) json[key] = value;
+  if (o.input.invert) json["invert"] = true;
+  json["gamma"] = o.segment.gamma;
+  json["theta"] = o.segment.merge.theta;
+  json["boundary"] = summary.open ? "open" : "closed";
+  json["merge"] = toString(o.segment.merge.mode);
+  json["adjacency"] = toString(o.segment.merge.adjacency);
+  json["fill_holes"] = summary.fillHoles;
+  json["delta"] = o.segment.merge.delta;
+  json["tidy"] = o.segment.tidy;
+  json["threads"] = summary.threads;
+  for (const auto& [part, seconds] : summary.seconds) json["seconds_" + part] = seconds;
+  for (const auto& [stage, bytes] : summary.peakBytesUntil)
+    json["peak_memory_bytes_until_" + stage] = bytes;
+  json["peak_memory_bytes"] = summary.peakBytes;
+  json["hints"] = summary.hints;
+  return json;
+}
+
+void print(const SegmentArguments& o, const Common& common, const SegmentSummary& summary) {
+  const SegmentCounts& counts = summary.counts;
+  const GrainSizes& sizes = summary.sizes;
+  const auto count = [](int64_t number) { return (long long)number; };
+  std::printf("%s: %lld grains\n", o.out.c_str(), count(counts.grains));
+  std::printf("  object           %lld voxels in %lld leaf nodes%s\n", count(counts.objectVoxels),
+              count(counts.leaves), hintIfEmpty(counts.objectVoxels));
+  if (summary.domain) std::printf("  porosity         %.2f %%\n", 100 * *summary.porosity());
+  const double um = summary.voxelSize ? 1e3 * (summary.voxelSize->metres * 1e3) : 0;
+  if (summary.voxelSize)
+    std::printf("  voxel size       %g um\n", um);
+  else
+    std::printf("  voxel size       unknown, so no physical sizes (give --voxel-size)\n");
+  std::printf("  grain diameter   d10 %.1f, d50 %.1f, d90 %.1f voxels", sizes.d10, sizes.d50,
+              sizes.d90);
+  if (summary.voxelSize)
+    std::printf(" = %.4g, %.4g, %.4g um", um * sizes.d10, um * sizes.d50, um * sizes.d90);
+  std::printf(" (equal volume, by volume)\n");
+  std::printf("  dust             %lld grains under 100 voxels, %.3f %% of the object\n",
+              count(sizes.dustGrains),
+              100 * double(sizes.dustVoxels) / std::max(1.0, double(counts.objectVoxels)));
+  std::printf("  flaws            %lld crumbs, %lld slivers, %lld grains in pieces\n",
+              count(summary.flaws.crumbs), count(summary.flaws.slivers),
+              count(summary.flaws.inPieces));
+  if (summary.fillHoles > 1)
+    std::printf("  cavities         %lld under %lld voxels filled for the distance, %lld voxels\n",
+                count(counts.cavities), count(summary.fillHoles), count(counts.cavityVoxels));
+  std::printf("  medial balls     %lld, kept %lld; critical points %lld\n",
+              count(counts.medialBalls), count(counts.keptBalls), count(counts.criticalPoints));
+  std::printf("  settings         gamma %lld, theta %g, merge %s, adjacency %s, boundary %s,\n",
+              count(o.segment.gamma), o.segment.merge.theta, toString(o.segment.merge.mode),
+              toString(o.segment.merge.adjacency), summary.open ? "open" : "closed");
+  std::printf("                   fill-holes %lld, delta %d, tidy %d\n", count(summary.fillHoles),
+              o.segment.merge.delta, o.segment.tidy);
+  std::printf("  time, memory     %.2f s with %d threads, %.0f MiB at the peak\n",
+              summary.seconds.back().second, summary.threads,
+              double(summary.peakBytes) / (1 << 20));
+  for (const std::string& hint : summary.hints)
+    std::printf("  hint             %s\n", hint.c_str());
+  if (!common.verbose) return;
+  for (const auto& [part, seconds] : summary.seconds)
+    std::printf("    %-24s %8.3f s\n", part.c_str(), seconds);
+}
+
+}  // namespace vdb_madf::tools

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "command.h"
+#include "input_options.h"
+#include "json_file.h"
+#include "merge_options.h"
+#include "vdb_madf/measure/grain_sizes.h"
+#include "vdb_madf/method/segment.h"
+
+namespace vdb_madf::tools {
+
+/// What was typed after `segment`, and what it means.
+struct SegmentArguments {
+  InputOptions input;
+  std::string out, gamma = "0", boundary = "auto", keep, json, maxMemory, tables;
+  std::string fillHoles, tidy;
+  MergeArguments merge;
+  bool paper = false, dryRun = false;
+  SegmentOptions segment;
+};
+
+struct SegmentTiming {
+  double read = 0, measure = 0, write = 0, total = 0;
+};
+
+/// What is said of a segmentation, by the lines that are printed and by the JSON.
+struct SegmentSummary {
+  SegmentCounts counts;
+  GrainSizes sizes;
+  LabelFlaws flaws;
+  int64_t fillHoles = 0;
+  std::optional<CoordBBox> domain;
+  std::optional<VoxelSize> voxelSize;
+  bool open = false;
+  int threads = 0;
+  std::vector<std::pair<std::string, double>> seconds;  ///< of each part of the work, then "total"
+  std::vector<std::pair<std::string, int64_t>> peakBytesUntil;  ///< the end of each stage
+  int64_t peakBytes = 0;
+  std::vector<std::string> hints;  ///< what to turn if the grains look wrong
+
+  std::optional<double> porosity() const;
+};
+
+SegmentSummary summarize(const SegmentArguments& o, const Common& common, const Segmentation& s,
+                         const SegmentTiming& timing);
+Json toJson(const SegmentArguments& o, const SegmentSummary& summary);
+void print(const SegmentArguments& o, const Common& common, const SegmentSummary& summary);
+
+}  // namespace vdb_madf::tools
