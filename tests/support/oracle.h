@@ -53,10 +53,10 @@ struct OracleResult {
 bool oracleBoundary(const ObjectVolume& object, Boundary boundary,
                     const std::optional<CoordBBox>& domain);
 
-/// What is filled if the options do not say it.
+/// Step 0: what is filled if the options do not say it.
 int64_t oracleFillHoles(const SegmentOptions& options, const std::optional<CoordBBox>& domain);
 
-/// The body: the object and its cavities, and how many there are.
+/// Step 0, the body: the object and its cavities, and how many there are.
 struct OracleBody {
   ObjectVolume voxels;  ///< in a box that holds the object's
   int64_t cavities = 0;

@@ -7,13 +7,11 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/leaves/detail/voxels.h"
+#include "vdb_madf/leaves/detail/leaf_mask.h"
 
 namespace vdb_madf {
 
 namespace {
-
-constexpr LeafIndex::Mask kFullMask = {~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull};
 
 struct SourceLeaf {
   Coord origin;
@@ -112,7 +110,7 @@ LeafIndex::LeafIndex(const MaskGrid& object) {
   masks_.resize(leaves.size());
   for (size_t i = 0; i < leaves.size(); ++i) {
     origins_[i] = leaves[i].origin;
-    masks_[i] = kFullMask;
+    masks_[i] = detail::kFullMask;
     if (leaves[i].leaf)
       for (int x = 0; x < 8; ++x)
         masks_[i][x] = leaves[i].leaf->getValueMask().template getWord<uint64_t>(x);

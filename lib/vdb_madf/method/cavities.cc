@@ -64,8 +64,7 @@ class CavityFinder {
 
   /// The background of a leaf within the domain.
   Mask background(size_t leaf) const {
-    Mask mask =
-        without(Mask{~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull}, object_.mask(leaf));
+    const Mask mask = without(detail::kFullMask, object_.mask(leaf));
     return domain_ ? within(*domain_, object_.origin(leaf), mask) : mask;
   }
   static Mask within(const CoordBBox& box, const Coord& origin, Mask mask) {
@@ -185,8 +184,7 @@ class CavityFinder {
     return node;
   }
   Mask emptyMask(const Coord& origin) const {
-    const Mask full{~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull};
-    return domain_ ? within(*domain_, origin, full) : full;
+    return domain_ ? within(*domain_, origin, detail::kFullMask) : detail::kFullMask;
   }
   uint32_t addEmptyLeaf(const Coord& origin) {
     const Mask mask = emptyMask(origin);

@@ -38,10 +38,8 @@ VDB_MADF_SIMD LeafIndex::Mask equalTo(uint32_t label, const uint32_t* dense) {
   return mask;
 }
 
-constexpr LeafIndex::Mask kFull{~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull};
-
 void addPieces(const LeafIndex::Mask& mask, uint32_t label, Pieces& pieces) {
-  if (mask == kFull) {
+  if (mask == kFullMask) {
     pieces.push_back({mask, label, 0});
     return;
   }

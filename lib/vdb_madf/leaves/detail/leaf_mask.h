@@ -14,6 +14,9 @@ namespace vdb_madf::detail {
 /// Bits y*8 + z of a mask word with y = 0, with y = 7.
 constexpr uint64_t kFirstY = 0xffull, kLastY = kFirstY << 56;
 
+/// All voxels of a leaf.
+constexpr LeafIndex::Mask kFullMask{~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull};
+
 inline bool anyVoxel(const LeafIndex::Mask& mask) {
   uint64_t any = 0;
   for (const uint64_t word : mask) any |= word;
