@@ -15,7 +15,7 @@ IMAGES = ("tif", "raw", "mhd", "mha", "nrrd", "npy")
 TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
 VERBS = ("generate", "convert", "segment", "remerge", "sweep", "measure", "compare", "render", "export", "info")
 KINDS = {"spheres": "--count 6 --radius 6:9", "pack": "--radius 4:8", "snow": "--length 12",
-         "sintered": "--count 6 --radius 7:9"}
+         "sintered": "--count 6 --radius 7:9", "particles": "--count 6 --radius 7:9"}
 
 
 def layout(name, size="32x32x32", kind="uint8"):
@@ -56,7 +56,9 @@ def generate():
             "pack --fraction 0.05 --radius 6", "snow --fraction 0.1 --length 9", "snow --fraction 0.9 --length 30",
             "sintered --count 9 --radius 6:8 --neck 0.6 --roughness 0.3",
             "sintered --count 9 --radius 6:8 --neck 0.95 --roughness 1",
-            "sintered --count 9 --radius 7 --roughness 0")):
+            "sintered --count 9 --radius 7 --roughness 0", "particles --count 9 --radius 6:8 --shape balls --neck 0.7",
+            "particles --count 9 --radius 4:9 --lognormal 0.3 --shape plates",
+            "particles --count 9 --radius 6:8 --shape prisms", "particles --count 9 --radius 6 --shape polyhedra")):
         kind, rest = options.split(" ", 1)
         yield f"generate {kind} option{number}.vdb --size 40 {rest}"
     yield "generate snow one.vdb --size 1 --length 4"

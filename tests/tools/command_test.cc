@@ -37,7 +37,7 @@ TEST_CASE("cli: help names every verb and gives an example", "[cli]") {
     CHECK(bench.mustRun(verb + " --help").find("Example:\n  vdb_madf " + verb) !=
           std::string::npos);
   }
-  for (const std::string kind : {"spheres", "pack", "snow", "sintered"})
+  for (const std::string kind : {"spheres", "pack", "snow", "sintered", "particles"})
     CHECK(bench.mustRun("generate " + kind + " --help").find("vdb_madf generate " + kind) !=
           std::string::npos);
   CHECK(bench.mustRun("--version").find("vdb_madf ") == 0);
@@ -47,7 +47,8 @@ TEST_CASE("cli: generate makes the same file of the same seed", "[cli]") {
   const Bench bench;
   for (const std::string kind :
        {"spheres --size 40 --count 4 --radius 6:8", "pack --size 24 --radius 3:5",
-        "snow --dims 24x16x20 --length 8", "sintered --size 40 --count 4 --radius 6:9"}) {
+        "snow --dims 24x16x20 --length 8", "sintered --size 40 --count 4 --radius 6:9",
+        "particles --size 40 --count 4 --radius 6:9 --shape polyhedra"}) {
     CAPTURE(kind);
     bench.mustRun("generate " + kind + " a.vdb");
     bench.mustRun("generate " + kind + " b.vdb --threads 1");

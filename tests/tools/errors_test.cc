@@ -163,7 +163,9 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"generate pack out.vdb --size 16 --radius 9:6", "--radius"},
       {"generate spheres out.vdb --size 24 --count 0", "count"},
       {"generate spheres out.vdb --size 24 --count 1000 --radius 4", "1000"},
-      {"generate sintered out.vdb --size 24 --neck -1", "neck"}};
+      {"generate sintered out.vdb --size 24 --neck -1", "neck"},
+      {"generate particles out.vdb --size 24 --shape cubes", "--shape"},
+      {"generate particles out.vdb --size 24 --lognormal 2", "lognormal"}};
   for (const auto& [arguments, says] : cases) refuses(bench, kWrongUsage, arguments, {says});
 }
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -16,6 +17,7 @@
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/images/open_image.h"
 #include "vdb_madf/samples/pack.h"
+#include "vdb_madf/samples/particles.h"
 #include "vdb_madf/samples/sintered.h"
 #include "vdb_madf/samples/snow.h"
 #include "vdb_madf/samples/spheres.h"
@@ -28,7 +30,7 @@ namespace {
 
 /// What is typed for any kind of sample, and the options of each kind.
 struct Options {
-  std::string out, dims, radius, voxelSizeText;
+  std::string out, dims, radius, shape, voxelSizeText;
   int size = 0;
   uint64_t seed = 1;
   std::optional<VoxelSize> voxelSize;
@@ -36,6 +38,7 @@ struct Options {
   PackOptions pack;
   SnowOptions snow;
   SinteredOptions sintered;
+  ParticleOptions particles;
 };
 
 /// A kind of sample: its own options, and the call that makes it.
@@ -64,6 +67,12 @@ void parseRadius(const Options& typed, KindOptions& kind) {
       colon == std::string::npos ? kind.minRadius : parseNumber(text.substr(colon + 1), "--radius");
   if (!(kind.minRadius > 0 && kind.minRadius <= kind.maxRadius))
     throw WrongUsage("--radius " + text + ": write A:B, 0 < A <= B");
+}
+
+void parseShape(const std::string& text, ParticleShape& shape) {
+  const auto& names = particleShapeNames();
+  const auto name = std::find(names.begin(), names.end(), text);
+  if (name != names.end()) shape = ParticleShape(name - names.begin());
 }
 
 void checkFraction(double fraction) {
@@ -132,6 +141,29 @@ constexpr Kind kKinds[] = {
      },
      [](const Options& options, Interrupter* interrupter) {
        return generateSintered(options.sintered, interrupter);
+     }},
+    {"particles", "convex particles of one shape with known grains",
+     "vdb_madf generate particles plates.vdb --shape plates --count 90 --radius 12:22",
+     [](Verb verb, Options& options) {
+       ParticleOptions& particles = options.particles;
+       verb.option("--shape", options.shape, "what they are (default ellipsoids)")
+           .oneOf(particleShapeNames());
+       verb.option("--count", particles.count, "number of particles").showDefault();
+       verb.option("--radius", options.radius,
+                   "radii A:B of the balls of equal volume, voxels (default 12:22)");
+       verb.option("--lognormal", particles.lognormal,
+                   "standard deviation of the logarithm of the radii (0: uniform radii)")
+           .showDefault();
+       verb.option("--neck", particles.neck, "size to which they shrink until none share a voxel")
+           .showDefault();
+     },
+     [](Options& options) {
+       parseSizeAndSeed(options, options.particles);
+       parseRadius(options, options.particles);
+       parseShape(options.shape, options.particles.shape);
+     },
+     [](const Options& options, Interrupter* interrupter) {
+       return generateParticles(options.particles, interrupter);
      }},
 };
 

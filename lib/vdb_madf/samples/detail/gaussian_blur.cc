@@ -6,22 +6,11 @@
 #include <algorithm>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/samples/detail/portable_math.h"
 
 namespace vdb_madf::detail {
 
 namespace {
-
-/// exp(-t) for 0 <= t <= 8: a Taylor series on t/256, squared eight times.
-double decay(double t) {
-  const double x = -t / 256;
-  double term = 1, sum = 1;
-  for (int n = 1; n <= 12; ++n) {
-    term *= x / n;
-    sum += term;
-  }
-  for (int n = 0; n < 8; ++n) sum *= sum;
-  return sum;
-}
 
 /// out[i] = sum of kernel[|k|] * in[i + k * stride], for a row of values next to each other.
 void convolveRow(const float* in, ptrdiff_t stride, const std::vector<float>& kernel, float* out,
@@ -61,7 +50,7 @@ std::vector<float> gaussianKernel(double sigma) {
   std::vector<double> weights;
   double sum = 0;
   for (int k = 0; k <= radius; ++k) {
-    weights.push_back(decay(k * k / (2 * sigma * sigma)));
+    weights.push_back(exponential(-(k * k / (2 * sigma * sigma))));
     sum += k == 0 ? weights[k] : 2 * weights[k];
   }
   std::vector<float> kernel;

@@ -1,0 +1,173 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/samples/detail/particle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vdb_madf/samples/detail/portable_math.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+constexpr double kUnitBall = 4.0 / 3.0 * M_PI;
+
+/// The half-spaces of a polyhedron: how many, how far, and the half edge of the cube that bounds
+/// them.
+constexpr int kMinFaces = 8, kMaxFaces = 14;
+constexpr double kMinDistance = 0.8, kMaxDistance = 1.2;
+constexpr double kHalfCube = 1.6;
+/// Points along half an edge of the cube whose share inside a polyhedron gives its volume.
+constexpr int kHalfLattice = 24;
+
+/// Three unit vectors at right angles.
+struct Frame {
+  Vector axes[3];
+};
+
+/// Uniform over all rotations: a unit quaternion from the ball of four dimensions.
+Frame drawFrame(RandomSequence& random) {
+  double a, b, c, d, square;
+  do {
+    a = random.uniform(-1, 1);
+    b = random.uniform(-1, 1);
+    c = random.uniform(-1, 1);
+    d = random.uniform(-1, 1);
+    square = a * a + b * b + c * c + d * d;
+  } while (square > 1 || square < 1e-6);
+  const double s = 2 / square;
+  return {{{1 - s * (c * c + d * d), s * (b * c + a * d), s * (b * d - a * c)},
+           {s * (b * c - a * d), 1 - s * (b * b + d * d), s * (c * d + a * b)},
+           {s * (b * d + a * c), s * (c * d - a * b), 1 - s * (b * b + c * c)}}};
+}
+
+Vector drawDirection(RandomSequence& random) {
+  Vector v;
+  double square;
+  do {
+    for (int axis = 0; axis < 3; ++axis) v[axis] = random.uniform(-1, 1);
+    square = v.dot(v);
+  } while (square > 1 || square < 1e-6);
+  return v / std::sqrt(square);
+}
+
+Particle ellipsoid(const Frame& frame, double a, double b, double c) {
+  Particle particle;
+  particle.round = true;
+  particle.rows = {frame.axes[0] / a, frame.axes[1] / b, frame.axes[2] / c};
+  particle.reach = std::max({a, b, c});
+  return particle;
+}
+
+/// Of unit width between opposite sides.
+Particle hexagonalPrism(const Frame& frame, double height) {
+  Particle particle;
+  const double root = std::sqrt(3.0);
+  const Vector across = frame.axes[1] * (root / 2);
+  for (const Vector& normal :
+       {frame.axes[0], frame.axes[0] * 0.5 + across, frame.axes[0] * 0.5 - across}) {
+    particle.rows.push_back(normal * 2.0);
+    particle.rows.push_back(normal * -2.0);
+  }
+  particle.rows.push_back(frame.axes[2] * (2 / height));
+  particle.rows.push_back(frame.axes[2] * (-2 / height));
+  particle.reach = std::sqrt(1.0 / 3.0 + height * height / 4);
+  return particle;
+}
+
+Particle polyhedron(RandomSequence& random) {
+  Particle particle;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {-1, 1}) {
+      Vector row(0, 0, 0);
+      row[axis] = side / kHalfCube;
+      particle.rows.push_back(row);
+    }
+  const int faces = random.integer(kMinFaces, kMaxFaces);
+  for (int i = 0; i < faces; ++i) {
+    const Vector normal = drawDirection(random);
+    particle.rows.push_back(normal / random.uniform(kMinDistance, kMaxDistance));
+  }
+  particle.reach = kHalfCube * std::sqrt(3.0);
+  return particle;
+}
+
+/// The volume of a polyhedron, by a lattice of points in the cube.
+double latticeVolume(const Particle& polyhedron) {
+  const double step = kHalfCube / kHalfLattice;
+  const auto at = [&](int i) { return (i - kHalfLattice + 0.5) * step; };
+  int inside = 0;
+  for (int x = 0; x < 2 * kHalfLattice; ++x)
+    for (int y = 0; y < 2 * kHalfLattice; ++y)
+      for (int z = 0; z < 2 * kHalfLattice; ++z)
+        inside += polyhedron.value({at(x), at(y), at(z)}) < 1;
+  return inside * step * step * step;
+}
+
+void scale(Particle& particle, double factor) {
+  for (Vector& row : particle.rows) row = row / factor;
+  particle.reach *= factor;
+}
+
+/// Of the volume of the unit ball.
+Particle drawUnit(ParticleShape shape, RandomSequence& random) {
+  Particle particle;
+  double volume = 0;
+  if (shape == ParticleShape::polyhedra) {
+    particle = polyhedron(random);
+    volume = latticeVolume(particle);
+  } else {
+    const Frame frame = drawFrame(random);
+    if (shape == ParticleShape::balls) return ellipsoid(frame, 1, 1, 1);
+    if (shape == ParticleShape::ellipsoids) {
+      const double b = random.uniform(1.2, 1.4), c = random.uniform(1.55, 1.85);
+      particle = ellipsoid(frame, 1, b, c);
+      volume = kUnitBall * b * c;
+    } else {
+      const bool flat = shape == ParticleShape::plates;
+      const double height = flat ? random.uniform(0.28, 0.39) : random.uniform(1.7, 2.3);
+      particle = hexagonalPrism(frame, height);
+      volume = std::sqrt(3.0) / 2 * height;
+    }
+  }
+  scale(particle, cubeRoot(kUnitBall / volume));
+  return particle;
+}
+
+}  // namespace
+
+double Particle::value(const Vector& p) const {
+  const Vector v = p - center;
+  double result = 0;
+  if (round) {
+    for (const Vector& row : rows) result += row.dot(v) * row.dot(v);
+    return std::sqrt(result);
+  }
+  for (const Vector& row : rows) result = std::max(result, row.dot(v));
+  return result;
+}
+
+double Particle::slope() const {
+  double square = 0;
+  for (const Vector& row : rows) square = std::max(square, row.dot(row));
+  return std::sqrt(square);
+}
+
+CoordBBox Particle::box(double scale) const {
+  const double r = reach * scale;
+  const auto corner = [&](double sign) {
+    return Coord(int(std::floor(center.x() + sign * r)), int(std::floor(center.y() + sign * r)),
+                 int(std::floor(center.z() + sign * r)));
+  };
+  return {corner(-1), corner(1).offsetBy(1)};
+}
+
+Particle drawParticle(ParticleShape shape, double radius, RandomSequence& random) {
+  Particle particle = drawUnit(shape, random);
+  scale(particle, radius);
+  return particle;
+}
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "vdb_madf/samples/sample.h"
+
+namespace vdb_madf {
+
+/// Convex particles. Axes and sides vary a little from particle to particle.
+enum class ParticleShape {
+  balls,
+  ellipsoids,  ///< axes about 1 : 1.3 : 1.7
+  plates,      ///< flat hexagonal prisms, as high as a third of their width
+  prisms,      ///< hexagonal prisms, twice as high as wide
+  polyhedra,   ///< 8 to 14 random half-spaces, cut by a cube of 3.2 times their distance
+};
+
+/// As the enumerators are called, in their order.
+const std::vector<std::string>& particleShapeNames();
+
+/// Particles of one shape with known grains, turned at random, cropped at the faces. Their size is
+/// the radius of the ball of equal volume (of polyhedra to 2 %). Centers are uniform in the box,
+/// where
+/// - the distance of two centers is at least `neck` times the sum of what the line between them
+///   passes inside the two particles;
+/// - no voxel lies in two particles that are shrunk to `neck` of their size about their centers.
+/// For balls these say the same. Each particle keeps its size and orientation, and tries up to
+/// 50000 centers.
+///
+/// The object is the union. Truth = the particle of least value at the voxel, where the value is
+/// the factor by which a particle would have to be scaled about its center to reach the voxel
+/// (tie: the smaller number). A particle that owns no voxel is no grain.
+struct ParticleOptions {
+  Coord size{180, 180, 180};
+  uint64_t seed = 1;
+  ParticleShape shape = ParticleShape::ellipsoids;
+  int count = 140;
+  double minRadius = 12, maxRadius = 22;
+  /// 0: radii are uniform; else the standard deviation of their logarithm about that of the
+  /// geometric mean of the two, and a radius beyond them is drawn again. 0..1
+  double lognormal = 0;
+  double neck = 0.82;  ///< 0..2
+};
+Sample generateParticles(const ParticleOptions& options, Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf
