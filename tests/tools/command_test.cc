@@ -48,7 +48,8 @@ TEST_CASE("cli: generate makes the same file of the same seed", "[cli]") {
   for (const std::string kind :
        {"spheres --size 40 --count 4 --radius 6:8", "pack --size 24 --radius 3:5",
         "snow --dims 24x16x20 --length 8", "sintered --size 40 --count 4 --radius 6:9",
-        "particles --size 40 --count 4 --radius 6:9 --shape polyhedra"}) {
+        "particles --size 40 --count 4 --radius 6:9 --shape polyhedra",
+        "particles --size 40 --count 4 --radius 6:9 --surface 1:5 --scan-noise 1:0.2"}) {
     CAPTURE(kind);
     bench.mustRun("generate " + kind + " a.vdb");
     bench.mustRun("generate " + kind + " b.vdb --threads 1");

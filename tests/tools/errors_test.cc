@@ -165,7 +165,11 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"generate spheres out.vdb --size 24 --count 1000 --radius 4", "1000"},
       {"generate sintered out.vdb --size 24 --neck -1", "neck"},
       {"generate particles out.vdb --size 24 --shape cubes", "--shape"},
-      {"generate particles out.vdb --size 24 --lognormal 2", "lognormal"}};
+      {"generate particles out.vdb --size 24 --lognormal 2", "lognormal"},
+      {"generate spheres out.vdb --size 40 --count 3 --radius 6 --surface 1", "--surface"},
+      {"generate sintered out.vdb --size 24 --surface 1:99", "length"},
+      {"generate sintered out.vdb --size 24 --scan-noise 1:x", "--scan-noise"},
+      {"generate sintered out.vdb --size 24 --scan-noise 1:2", "noise"}};
   for (const auto& [arguments, says] : cases) refuses(bench, kWrongUsage, arguments, {says});
 }
 

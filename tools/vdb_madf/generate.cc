@@ -18,6 +18,7 @@
 #include "vdb_madf/images/open_image.h"
 #include "vdb_madf/samples/pack.h"
 #include "vdb_madf/samples/particles.h"
+#include "vdb_madf/samples/scan.h"
 #include "vdb_madf/samples/sintered.h"
 #include "vdb_madf/samples/snow.h"
 #include "vdb_madf/samples/spheres.h"
@@ -30,7 +31,7 @@ namespace {
 
 /// What is typed for any kind of sample, and the options of each kind.
 struct Options {
-  std::string out, dims, radius, shape, voxelSizeText;
+  std::string out, dims, radius, shape, surface, scanNoise, voxelSizeText;
   int size = 0;
   uint64_t seed = 1;
   std::optional<VoxelSize> voxelSize;
@@ -39,6 +40,7 @@ struct Options {
   SnowOptions snow;
   SinteredOptions sintered;
   ParticleOptions particles;
+  ScanOptions scan;
 };
 
 /// A kind of sample: its own options, and the call that makes it.
@@ -67,6 +69,15 @@ void parseRadius(const Options& typed, KindOptions& kind) {
       colon == std::string::npos ? kind.minRadius : parseNumber(text.substr(colon + 1), "--radius");
   if (!(kind.minRadius > 0 && kind.minRadius <= kind.maxRadius))
     throw WrongUsage("--radius " + text + ": write A:B, 0 < A <= B");
+}
+
+/// "1.5:8"
+void parsePair(const std::string& text, const std::string& option, double& first, double& second) {
+  if (text.empty()) return;
+  const auto parts = split(text, ':');
+  if (parts.size() != 2) throw WrongUsage(option + " " + text + ": write two numbers, A:B");
+  first = parseNumber(parts[0], option);
+  second = parseNumber(parts[1], option);
 }
 
 void parseShape(const std::string& text, ParticleShape& shape) {
@@ -189,7 +200,9 @@ void writeSample(const std::string& out, Sample& sample, Interrupter* interrupte
 /// Nothing is read, so whatever cannot be made is the fault of the options.
 Sample makeSample(const Kind& kind, const Options& options, Interrupter* interrupter) {
   try {
-    return kind.make(options, interrupter);
+    checkScan(options.scan);
+    const Sample sample = kind.make(options, interrupter);
+    return scanned(sample, options.scan, interrupter);
   } catch (const InvalidInput& error) {
     throw WrongUsage(std::string("cannot generate this: ") + error.what());
   }
@@ -200,6 +213,9 @@ void parse(const Kind& kind, Options& options) {
     throw WrongUsage(options.out +
                      ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd or .npy");
   kind.parse(options);
+  options.scan.seed = options.seed;
+  parsePair(options.surface, "--surface", options.scan.surface, options.scan.surfaceLength);
+  parsePair(options.scanNoise, "--scan-noise", options.scan.blur, options.scan.noise);
   if (!options.voxelSizeText.empty()) options.voxelSize = parseVoxelSize(options.voxelSizeText);
 }
 
@@ -233,6 +249,11 @@ void addKind(Verb generate, Common& common, Action& action, const Kind& kind) {
   verb.option("--voxel-size", options->voxelSizeText,
               "edge of a voxel with unit, for example 8.5um");
   kind.add(verb, *options);
+  verb.option("--surface", options->surface,
+              "A:L moves the surface by a smooth random field of standard deviation A and "
+              "correlation length L, voxels");
+  verb.option("--scan-noise", options->scanNoise,
+              "B:S blurs the object by B voxels, adds noise of standard deviation S, cuts at 0.5");
   verb.onParsed([options, &common, &action, &kind] {
     parse(kind, *options);
     action = [options, &common, &kind] { run(kind, *options, common); };

@@ -15,8 +15,9 @@ namespace vdb_madf {
 /// Each generator @throw InvalidInput for options out of range, or that cannot be met; Interrupted.
 struct Sample {
   MaskGrid::Ptr object;  ///< named `object`
-  /// Named `truth`, the object's topology: labels 1..N of the true grains, numbered by the centres
-  /// of their balls (x, then y, then z). Null where there is no truth.
+  /// Named `truth`, the object's topology but for specks of noise (scan.h): labels 1..N of the true
+  /// grains, numbered by the centers of their balls or particles (x, then y, then z). Null where
+  /// there is no truth.
   Int32Grid::Ptr truth;
 };
 

@@ -51,6 +51,12 @@ void checkCount(int count) {
   if (count < 1) throw InvalidInput("count must be 1 or more, not " + std::to_string(count));
 }
 
+SourceText SourceText::of(const openvdb::GridBase& grid) {
+  SourceText source;
+  source.text_ = grid.metaValue<std::string>(kSourceKey);
+  return source;
+}
+
 SourceText& SourceText::add(const char* option, const std::string& value) {
   text_ += std::string(" --") + option + " " + value;
   return *this;

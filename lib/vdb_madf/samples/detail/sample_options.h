@@ -21,6 +21,8 @@ void checkRange(const char* name, double value, double lower, double upper);
 class SourceText {
  public:
   explicit SourceText(const std::string& sample) : text_("generate " + sample) {}
+  /// As a grid has it, to add to it.
+  static SourceText of(const openvdb::GridBase& grid);
   SourceText& size(const Coord& size);
   SourceText& add(const char* option, const std::string& value);
   SourceText& add(const char* option, double value) { return add(option, number(value)); }
@@ -28,6 +30,7 @@ class SourceText {
   const std::string& str() const { return text_; }
 
  private:
+  SourceText() = default;
   /// The shortest decimal that reads back as the same double, in any locale.
   static std::string number(double value);
 

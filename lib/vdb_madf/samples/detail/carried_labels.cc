@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/samples/detail/carried_labels.h"
+
+#include <openvdb/tools/Prune.h>
+#include <openvdb/tree/ValueAccessor.h>
+
+#include <algorithm>
+#include <tuple>
+#include <vector>
+
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/samples/detail/least_cells.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+struct Step {
+  int square;
+  Coord offset;
+};
+
+/// To all voxels within reach, the nearest first.
+std::vector<Step> stepsWithin(int reach) {
+  std::vector<Step> steps;
+  for (auto k = CoordBBox(Coord(-reach), Coord(reach)).begin(); k; ++k) {
+    const Coord offset = *k;
+    const int square = offset.x() * offset.x() + offset.y() * offset.y() + offset.z() * offset.z();
+    if (square <= reach * reach) steps.push_back({square, offset});
+  }
+  std::sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) {
+    return std::tie(a.square, a.offset) < std::tie(b.square, b.offset);
+  });
+  return steps;
+}
+
+/// 0 if no label is within reach.
+template <typename Labels>
+int32_t nearestLabel(const Labels& labels, const Coord& p, const std::vector<Step>& steps) {
+  int32_t best = 0;
+  int square = 0;
+  for (const Step& step : steps) {
+    if (best > 0 && step.square > square) break;
+    const int32_t label = labels.getValue(p + step.offset);
+    if (label == 0 || (best > 0 && best < label)) continue;
+    best = label;
+    square = step.square;
+  }
+  return best;
+}
+
+}  // namespace
+
+Int32Tree::Ptr carriedLabels(const Int32Tree& labels, const MaskTree& object, int reach,
+                             Interrupter* interrupter) {
+  auto result = std::make_shared<Int32Tree>(object, 0, openvdb::TopologyCopy());
+  std::vector<Int32Tree::LeafNodeType*> leaves;
+  result->getNodes(leaves);
+  const std::vector<Step> steps = stepsWithin(reach);
+  parallelFor(leaves.size(), 16, interrupter, [&](size_t begin, size_t end) {
+    const openvdb::tree::ValueAccessor<const Int32Tree> known(labels);
+    for (size_t i = begin; i < end; ++i)
+      for (auto voxel = leaves[i]->beginValueOn(); voxel; ++voxel) {
+        const int32_t label = nearestLabel(known, voxel.getCoord(), steps);
+        voxel.setValue(label);
+        if (label == 0) voxel.setValueOff();
+      }
+  });
+  openvdb::tools::pruneInactive(*result);
+  int32_t largest = 0;
+  for (auto voxel = labels.cbeginValueOn(); voxel; ++voxel) largest = std::max(largest, *voxel);
+  numberOwners(*result, size_t(largest), interrupter);
+  return result;
+}
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+
+#include "vdb_madf/samples/sample.h"
+
+namespace vdb_madf {
+
+/// What makes a sample look like a scan of real particles, in this order; lengths in voxels. Beyond
+/// a face the object goes on as its voxels at the face.
+struct ScanOptions {
+  uint64_t seed = 1;
+
+  /// The surface is moved outwards by a Gaussian random field of this standard deviation (0..8;
+  /// no place moves farther than four of them), whose correlation falls to 1/e at `surfaceLength`
+  /// (1..32). Voxel p stays or becomes object if its distance from the surface, negative inside, is
+  /// at most the field at p: the distance to the nearest voxel of the other kind, less a half.
+  double surface = 0;
+  double surfaceLength = 8;
+
+  /// The gray values of a scan: 1 in the object and 0 in the air, blurred by a Gaussian of standard
+  /// deviation `blur` (0..8), plus white noise of standard deviation `noise` (0..1). Object is what
+  /// reaches 0.5.
+  double blur = 0;
+  double noise = 0;
+};
+
+/// @throw InvalidInput for options out of range.
+void checkScan(const ScanOptions& options);
+
+/// The sample as a scan shows it. Voxels that stay keep their true grain. One that is new gets the
+/// grain of the nearest true voxel (tie: the smaller number); if noise made it and no true voxel
+/// lies within 2 voxels, it is object without a true grain: inactive in the truth. Grains that have
+/// lost all voxels leave no gap in the numbers.
+/// @throw InvalidInput for options out of range; Interrupted.
+Sample scanned(const Sample& sample, const ScanOptions& options,
+               Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

@@ -1,0 +1,271 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/samples/scan.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+
+#include "support/samples.h"
+#include "vdb_madf/samples/detail/sample_options.h"
+#include "vdb_madf/samples/detail/surface_distance.h"
+#include "vdb_madf/samples/pack.h"
+#include "vdb_madf/samples/particles.h"
+#include "vdb_madf/samples/sintered.h"
+
+namespace {
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+
+Sample plates() {
+  ParticleOptions options;
+  options.size = {66, 58, 61};
+  options.shape = ParticleShape::plates;
+  options.count = 10;
+  options.minRadius = 7;
+  options.maxRadius = 11;
+  return generateParticles(options);
+}
+
+ScanOptions badScan() {
+  ScanOptions options;
+  options.seed = 3;
+  options.surface = 1.2;
+  options.surfaceLength = 5;
+  options.blur = 1;
+  options.noise = 0.2;
+  return options;
+}
+
+/// The object below a height, with two grains that meet at half of its width.
+Sample halfSpace(const Coord& size, int height) {
+  Sample sample;
+  sample.object = MaskGrid::create();
+  sample.truth = Int32Grid::create();
+  for (int x = 0; x < size.x(); ++x)
+    for (int y = 0; y < size.y(); ++y)
+      for (int z = 0; z < height; ++z) {
+        sample.object->tree().setValueOn({x, y, z});
+        sample.truth->tree().setValueOn({x, y, z}, x < size.x() / 2 ? 1 : 2);
+      }
+  const detail::SourceText source("wall");
+  detail::describe(*sample.object, "object", size, source);
+  detail::describe(*sample.truth, "truth", size, source);
+  return sample;
+}
+
+/// By the definition: 0 if no labeled voxel lies within reach.
+int32_t nearestTrue(const Sample& before, const Coord& p, int reach) {
+  std::map<int, int32_t> least;
+  for (auto k = CoordBBox(Coord(-reach), Coord(reach)).begin(); k; ++k) {
+    const Coord d = *k;
+    const int square = d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
+    const int32_t label = before.truth->tree().getValue(p + d);
+    if (label == 0 || square > reach * reach) continue;
+    const auto [place, isNew] = least.insert({square, label});
+    if (!isNew) place->second = std::min(place->second, label);
+  }
+  return least.empty() ? 0 : least.begin()->second;
+}
+
+int64_t countMoved(const Sample& a, const Sample& b) {
+  int64_t moved = 0;
+  for (auto p = storedDomain(*a.object)->begin(); p; ++p)
+    moved += a.object->tree().isValueOn(*p) != b.object->tree().isValueOn(*p);
+  return moved;
+}
+
+}  // namespace
+
+TEST_CASE("scan: the bits are fixed", "[scan]") {
+  CHECK(hash(scanned(plates(), badScan())) == 0x766dda86e654f9c9u);
+}
+
+TEST_CASE("scan: seeds differ, threads do not matter", "[scan]") {
+  const Sample sample = plates();
+  ScanOptions options = badScan();
+  requireSeedsDiffer([&](uint64_t seed) {
+    options.seed = seed;
+    return scanned(sample, options);
+  });
+  SinteredOptions large;
+  large.size = {140, 60, 135};  // several blocks
+  large.count = 12;
+  const Sample sintered = generateSintered(large);
+  requireSameForAnyThreads([&] { return scanned(sintered, options); });
+}
+
+TEST_CASE("scan: without defects the sample stays as it is", "[scan]") {
+  const Sample sample = plates();
+  CHECK(hash(scanned(sample, {})) == hash(sample));
+  ScanOptions tiny;
+  tiny.surface = 0.01;
+  tiny.noise = 0.01;
+  CHECK(hash(scanned(sample, tiny)) == hash(sample));
+}
+
+TEST_CASE("scan: says what was done to the sample", "[scan]") {
+  const Sample before = plates(), after = scanned(before, badScan());
+  const auto source = [](const openvdb::GridBase& grid) {
+    return grid.metaValue<std::string>(kSourceKey);
+  };
+  CHECK(source(*after.object) == source(*before.object) + " --surface 1.2:5 --scan-noise 1:0.2");
+  CHECK(source(*after.truth) == source(*after.object));
+  CHECK(*storedDomain(*after.object) == *storedDomain(*before.object));
+}
+
+TEST_CASE("scan: distances from the surface equal the definition", "[scan]") {
+  std::mt19937 random(1);
+  detail::FloatBox object(CoordBBox(Coord(-3), {14, 12, 13}));
+  for (float& v : object.values) v = random() % 12 != 0;
+  constexpr int kReach = 3;
+  const detail::FloatBox distance = detail::surfaceDistance(object, kReach);
+  CHECK(distance.box == CoordBBox(Coord(0), {11, 9, 10}));
+  for (auto p = distance.box.begin(); p; ++p) {
+    const auto at = [&](const Coord& q) {
+      return object.values[object.offset(q.x(), q.y(), q.z())];
+    };
+    double least = std::numeric_limits<double>::infinity();
+    for (auto q = object.box.begin(); q; ++q)
+      if (at(*q) != at(*p)) least = std::min(least, (*q - *p).asVec3d().length());
+    const float value = distance.values[distance.offset((*p).x(), (*p).y(), (*p).z())];
+    if (least <= kReach)
+      CHECK(value == Approx(at(*p) == 1 ? 0.5 - least : least - 0.5));
+    else
+      CHECK(std::abs(value) > kReach - 0.5);
+  }
+}
+
+TEST_CASE("scan: a flat surface gets the amplitude and the length", "[scan]") {
+  const Coord size(160, 160, 40);
+  ScanOptions options;
+  options.surface = 2;
+  options.surfaceLength = 6;
+  const Sample after = scanned(halfSpace(size, 20), options);
+  std::vector<double> heights;
+  for (int x = 0; x < size.x(); ++x)
+    for (int y = 0; y < size.y(); ++y) {
+      int height = 0;
+      for (int z = 0; z < size.z(); ++z) height += after.object->tree().isValueOn({x, y, z});
+      heights.push_back(height - 20);
+    }
+  double sum = 0, squares = 0, atLength = 0;
+  for (const double h : heights) {
+    sum += h;
+    squares += h * h;
+  }
+  for (int x = 0; x + 6 < size.x(); ++x)
+    for (int y = 0; y < size.y(); ++y)
+      atLength += heights[size_t(x * size.y() + y)] * heights[size_t((x + 6) * size.y() + y)];
+  const double n = double(heights.size());
+  CHECK(sum / n == Approx(0).margin(0.3));
+  CHECK(std::sqrt(squares / n) == Approx(2).epsilon(0.15));
+  CHECK(atLength / (n * (size.x() - 6.0) / size.x()) / (squares / n) ==
+        Approx(std::exp(-1)).margin(0.1));
+}
+
+TEST_CASE("scan: a voxel that stays keeps its grain, a new one gets the nearest", "[scan]") {
+  const Sample before = plates();
+  ScanOptions surface;
+  surface.surface = 1.2;
+  surface.surfaceLength = 5;
+  ScanOptions noise;
+  noise.blur = 0.8;
+  noise.noise = 0.25;
+  for (const auto& options : {surface, noise}) {
+    const int reach = options.surface > 0 ? 6 : 2;
+    const Sample after = scanned(before, options);
+    requireInsideDomain(after);
+    CHECK(countMoved(before, after) > 1000);
+    CHECK(labelsOf(*after.truth) == labelsOf(*before.truth));
+    int64_t wrong = 0, specks = 0;
+    for (auto voxel = after.object->cbeginValueOn(); voxel; ++voxel) {
+      const Coord p = voxel.getCoord();
+      const int32_t expected = nearestTrue(before, p, reach);
+      wrong += after.truth->tree().getValue(p) != expected;
+      wrong += after.truth->tree().isValueOn(p) != (expected > 0);
+      specks += expected == 0;
+    }
+    CHECK(wrong == 0);
+    CHECK((specks > 0) == (options.noise > 0));
+    CHECK(after.truth->activeVoxelCount() + uint64_t(specks) == after.object->activeVoxelCount());
+  }
+}
+
+TEST_CASE("scan: the gray values are the blurred object with white noise", "[scan]") {
+  const Sample before = halfSpace({40, 30, 20}, 10);
+  ScanOptions options;
+  options.blur = 1.5;
+  options.noise = 0.3;
+  const Sample after = scanned(before, options);
+  const detail::WhiteNoise noise(options.seed, 3);
+  double sum = 0, weights[20];
+  for (int k = -9; k <= 10; ++k) sum += weights[k + 9] = std::exp(-k * k / (2 * 1.5 * 1.5));
+  for (auto p = CoordBBox(Coord(0), {39, 29, 19}).begin(); p; ++p) {
+    // Through the faces at the bottom and the sides it goes on.
+    double gray = 0;
+    for (int k = -6; k <= 6; ++k)
+      if ((*p).z() + k < 10) gray += weights[k + 9] / sum;
+    const double value = gray + 0.3 * noise.value(noise.row((*p).x(), (*p).y()), (*p).z());
+    if (std::abs(value - 0.5) < 1e-3) continue;
+    CHECK(after.object->tree().isValueOn(*p) == (value > 0.5));
+  }
+}
+
+TEST_CASE("scan: grains that vanish leave no gap", "[scan]") {
+  Sample sample = halfSpace(Coord(30), 8);
+  for (auto voxel = sample.truth->beginValueOn(); voxel; ++voxel) voxel.setValue(*voxel + 1);
+  sample.object->tree().setValueOn({15, 15, 20});
+  sample.truth->tree().setValueOn({15, 15, 20}, 1);
+  ScanOptions blur;
+  blur.blur = 1;
+  const Sample after = scanned(sample, blur);
+  CHECK(labelsOf(*after.truth) == std::set<int32_t>{1, 2});
+  CHECK(hash(after) == hash(halfSpace(Coord(30), 8)));
+}
+
+TEST_CASE("scan: samples without truth", "[scan]") {
+  PackOptions pack;
+  pack.size = {70, 64, 57};
+  const Sample before = generatePack(pack), after = scanned(before, badScan());
+  CHECK(!after.truth);
+  CHECK(countMoved(before, after) > 1000);
+  requireInsideDomain(after);
+}
+
+TEST_CASE("scan: an empty object and two voxels", "[scan]") {
+  Sample empty = halfSpace(Coord(9), 0);
+  ScanOptions options = badScan();
+  options.noise = 0;
+  CHECK(scanned(empty, options).truth->activeVoxelCount() == 0);
+  const Sample two = halfSpace({2, 1, 1}, 1);
+  CHECK(hash(scanned(two, options)) == hash(two));
+}
+
+TEST_CASE("scan: bad options are refused", "[scan]") {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Sample sample = halfSpace(Coord(5), 2);
+  const auto refuses = [&](auto change) {
+    ScanOptions options = badScan();
+    change(options);
+    CHECK_THROWS_AS(scanned(sample, options), InvalidInput);
+  };
+  refuses([](auto& o) { o.surface = -1; });
+  refuses([&](auto& o) { o.surface = nan; });
+  refuses([](auto& o) { o.surfaceLength = 0; });
+  refuses([](auto& o) { o.surfaceLength = 33; });
+  refuses([](auto& o) { o.blur = -1; });
+  refuses([](auto& o) { o.blur = 9; });
+  refuses([](auto& o) { o.noise = 1.5; });
+  refuses([&](auto& o) { o.noise = nan; });
+}
+
+TEST_CASE("scan: stops when asked to", "[scan]") {
+  const Sample sample = plates();
+  requireStops([&](Interrupter* stop) { return scanned(sample, badScan(), stop); });
+}
