@@ -114,7 +114,7 @@ TEST_CASE("scan: says what was done to the sample", "[scan]") {
   const auto source = [](const openvdb::GridBase& grid) {
     return grid.metaValue<std::string>(kSourceKey);
   };
-  CHECK(source(*after.object) == source(*before.object) + " --surface 1.2:5 --scan-noise 1:0.2");
+  CHECK(source(*after.object) == source(*before.object) + " --surface 1.2:5 --scan-noise 1:0.2:0");
   CHECK(source(*after.truth) == source(*after.object));
   CHECK(*storedDomain(*after.object) == *storedDomain(*before.object));
 }
@@ -217,6 +217,26 @@ TEST_CASE("scan: the gray values are the blurred object with white noise", "[sca
   }
 }
 
+TEST_CASE("scan: noise has the standard deviation and the length", "[scan]") {
+  Sample air;
+  air.object = MaskGrid::create();
+  detail::describe(*air.object, "object", {100, 90, 80}, detail::SourceText("air"));
+  ScanOptions options;
+  options.noise = 0.5;  // object is what exceeds one standard deviation
+  for (const double length : {0.0, 3.0}) {
+    CAPTURE(length);
+    options.noiseLength = length;
+    const Sample after = scanned(air, options);
+    CHECK(solidFraction(after) == Approx(0.1587).margin(0.01));
+    int64_t pairs = 0;
+    for (auto voxel = after.object->cbeginValueOn(); voxel; ++voxel)
+      pairs += after.object->tree().isValueOn(voxel.getCoord().offsetBy(3, 0, 0));
+    // Two normal variables of correlation 1/e both exceed 1 in 5.1 % of cases, independent ones in
+    // 2.5 %.
+    CHECK(double(pairs) / (97 * 90 * 80) == Approx(length > 0 ? 0.0509 : 0.0252).margin(0.005));
+  }
+}
+
 TEST_CASE("scan: grains that vanish leave no gap", "[scan]") {
   Sample sample = halfSpace(Coord(30), 8);
   for (auto voxel = sample.truth->beginValueOn(); voxel; ++voxel) voxel.setValue(*voxel + 1);
@@ -263,6 +283,7 @@ TEST_CASE("scan: bad options are refused", "[scan]") {
   refuses([](auto& o) { o.blur = 9; });
   refuses([](auto& o) { o.noise = 1.5; });
   refuses([&](auto& o) { o.noise = nan; });
+  refuses([](auto& o) { o.noiseLength = 33; });
 }
 
 TEST_CASE("scan: stops when asked to", "[scan]") {

@@ -59,7 +59,7 @@ def generate():
             "sintered --count 9 --radius 7 --roughness 0", "particles --count 9 --radius 6:8 --shape balls --neck 0.7",
             "particles --count 9 --radius 4:9 --lognormal 0.3 --shape plates",
             "particles --count 9 --radius 6:8 --shape prisms --surface 1:5",
-            "spheres --count 9 --radius 6:8 --surface 1.5:4 --scan-noise 0.8:0.1", "snow --scan-noise 0:0.3", "particles --count 9 --radius 6 --shape polyhedra")):
+            "spheres --count 9 --radius 6:8 --surface 1.5:4 --scan-noise 0.8:0.1", "snow --scan-noise 0:0.3:2", "particles --count 9 --radius 6 --shape polyhedra")):
         kind, rest = options.split(" ", 1)
         yield f"generate {kind} option{number}.vdb --size 40 {rest}"
     yield "generate snow one.vdb --size 1 --length 4"

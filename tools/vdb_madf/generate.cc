@@ -71,13 +71,21 @@ void parseRadius(const Options& typed, KindOptions& kind) {
     throw WrongUsage("--radius " + text + ": write A:B, 0 < A <= B");
 }
 
-/// "1.5:8"
-void parsePair(const std::string& text, const std::string& option, double& first, double& second) {
+/// Numbers between colons; those that are not typed stay as they are.
+void parseNumbers(const std::string& text, const std::string& option, const std::string& form,
+                  const std::vector<double*>& values) {
   if (text.empty()) return;
   const auto parts = split(text, ':');
-  if (parts.size() != 2) throw WrongUsage(option + " " + text + ": write two numbers, A:B");
-  first = parseNumber(parts[0], option);
-  second = parseNumber(parts[1], option);
+  if (parts.size() < 2 || parts.size() > values.size())
+    throw WrongUsage(option + " " + text + ": write " + form);
+  for (size_t i = 0; i < parts.size(); ++i) *values[i] = parseNumber(parts[i], option);
+}
+
+void parseScan(const Options& typed, ScanOptions& scan) {
+  scan.seed = typed.seed;
+  parseNumbers(typed.surface, "--surface", "A:L", {&scan.surface, &scan.surfaceLength});
+  parseNumbers(typed.scanNoise, "--scan-noise", "B:S or B:S:L",
+               {&scan.blur, &scan.noise, &scan.noiseLength});
 }
 
 void parseShape(const std::string& text, ParticleShape& shape) {
@@ -213,9 +221,7 @@ void parse(const Kind& kind, Options& options) {
     throw WrongUsage(options.out +
                      ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd or .npy");
   kind.parse(options);
-  options.scan.seed = options.seed;
-  parsePair(options.surface, "--surface", options.scan.surface, options.scan.surfaceLength);
-  parsePair(options.scanNoise, "--scan-noise", options.scan.blur, options.scan.noise);
+  parseScan(options, options.scan);
   if (!options.voxelSizeText.empty()) options.voxelSize = parseVoxelSize(options.voxelSizeText);
 }
 
@@ -253,7 +259,8 @@ void addKind(Verb generate, Common& common, Action& action, const Kind& kind) {
               "A:L moves the surface by a smooth random field of standard deviation A and "
               "correlation length L, voxels");
   verb.option("--scan-noise", options->scanNoise,
-              "B:S blurs the object by B voxels, adds noise of standard deviation S, cuts at 0.5");
+              "B:S blurs the object by B voxels, adds noise of standard deviation S, cuts at 0.5; "
+              "B:S:L for noise of correlation length L, voxels");
   verb.onParsed([options, &common, &action, &kind] {
     parse(kind, *options);
     action = [options, &common, &kind] { run(kind, *options, common); };

@@ -34,7 +34,8 @@ const std::vector<std::string>& particleShapeNames();
 ///
 /// The object is the union. Truth = the particle of least value at the voxel, where the value is
 /// the factor by which a particle would have to be scaled about its center to reach the voxel
-/// (tie: the smaller number). A particle that owns no voxel is no grain.
+/// (tie: the smaller number). A particle that owns no voxel is no grain. Of a sharp corner a voxel or
+/// two may be left that no face joins to their grain.
 struct ParticleOptions {
   Coord size{180, 180, 180};
   uint64_t seed = 1;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/samples/detail/carried_labels.h"
 #include "vdb_madf/samples/detail/gaussian_blur.h"
@@ -35,10 +36,33 @@ constexpr double kFarthestMove = 4;
 constexpr int kNoiseReach = 2;
 constexpr float kCut = 0.5f;
 
-/// A Gaussian blur of white noise by sigma has the correlation exp(-r^2 / (4 sigma^2)).
-double sigmaOfLength(double length) {
-  return length / 2;
-}
+/// A Gaussian random field on Z^3, the same whatever box is looked at. A Gaussian blur of white
+/// noise by sigma has the correlation exp(-r^2 / (4 sigma^2)).
+class SmoothNoise {
+ public:
+  /// Length 0: white noise.
+  SmoothNoise(uint64_t seed, uint64_t stream, double deviation, double length)
+      : seed_(seed),
+        stream_(stream),
+        kernel_(length == 0 ? std::vector<float>{1} : detail::gaussianKernel(length / 2)) {
+    double squares = -double(kernel_[0]) * kernel_[0];
+    for (const float weight : kernel_) squares += 2 * double(weight) * weight;
+    factor_ = float(deviation / (squares * std::sqrt(squares)));
+  }
+
+  FloatBox in(CoordBBox box) const {
+    box.expand(detail::kernelRadius(kernel_));
+    FloatBox field =
+        detail::blurred(detail::whiteNoise(box, seed_, stream_, nullptr), kernel_, nullptr);
+    for (float& value : field.values) value *= factor_;
+    return field;
+  }
+
+ private:
+  uint64_t seed_, stream_;
+  std::vector<float> kernel_;
+  float factor_;
+};
 
 /// 1 in the object, 0 outside; beyond the faces as at the faces.
 FloatBox indicator(const MaskTree& object, const CoordBBox& domain, const CoordBBox& box) {
@@ -56,16 +80,11 @@ FloatBox indicator(const MaskTree& object, const CoordBBox& domain, const CoordB
   return field;
 }
 
-CoordBBox grown(CoordBBox box, int by) {
-  box.expand(by);
-  return box;
-}
-
 /// The object after one change, block by block; only the blocks at work are held as dense arrays.
 class Change {
  public:
-  Change(const Sample& sample, const ScanOptions& options)
-      : object_(sample.object->tree()), domain_(*storedDomain(*sample.object)), options_(options) {}
+  explicit Change(const Sample& sample)
+      : object_(sample.object->tree()), domain_(*storedDomain(*sample.object)) {}
   virtual ~Change() = default;
 
   MaskTree::Ptr apply(Interrupter* interrupter) const {
@@ -85,63 +104,57 @@ class Change {
   /// The object is where this is not negative.
   virtual FloatBox height(const CoordBBox& box) const = 0;
 
-  FloatBox indicatorIn(const CoordBBox& box) const { return indicator(object_, domain_, box); }
-  const ScanOptions& options() const { return options_; }
+  FloatBox indicatorIn(CoordBBox box, int margin) const {
+    box.expand(margin);
+    return indicator(object_, domain_, box);
+  }
 
  private:
   const MaskTree& object_;
   CoordBBox domain_;
-  ScanOptions options_;
 };
 
 class SurfaceChange : public Change {
  public:
   SurfaceChange(const Sample& sample, const ScanOptions& options)
-      : Change(sample, options),
-        kernel_(detail::gaussianKernel(sigmaOfLength(options.surfaceLength))),
-        farthest_(float(kFarthestMove * options.surface)) {
-    double squares = -double(kernel_[0]) * kernel_[0];
-    for (const float weight : kernel_) squares += 2 * double(weight) * weight;
-    factor_ = float(options.surface / (squares * std::sqrt(squares)));
-  }
+      : Change(sample),
+        noise_(options.seed, kSurfaceStream, options.surface, options.surfaceLength),
+        farthest_(float(kFarthestMove * options.surface)) {}
 
   /// How far a new voxel is from the old object, at most.
   int reach() const { return int(std::ceil(farthest_ + 0.5f)); }
 
  private:
   FloatBox height(const CoordBBox& box) const override {
-    FloatBox field = detail::blurred(detail::whiteNoise(grown(box, detail::kernelRadius(kernel_)),
-                                                        options().seed, kSurfaceStream, nullptr),
-                                     kernel_, nullptr);
-    const FloatBox distance = detail::surfaceDistance(indicatorIn(grown(box, reach())), reach());
+    FloatBox field = noise_.in(box);
+    const FloatBox distance = detail::surfaceDistance(indicatorIn(box, reach()), reach());
     for (size_t i = 0; i < field.values.size(); ++i)
-      field.values[i] =
-          std::clamp(factor_ * field.values[i], -farthest_, farthest_) - distance.values[i];
+      field.values[i] = std::clamp(field.values[i], -farthest_, farthest_) - distance.values[i];
     return field;
   }
 
-  std::vector<float> kernel_;
-  float farthest_, factor_;
+  SmoothNoise noise_;
+  float farthest_;
 };
 
 class GrayChange : public Change {
  public:
   GrayChange(const Sample& sample, const ScanOptions& options)
-      : Change(sample, options),
-        kernel_(options.blur == 0 ? std::vector<float>{1} : detail::gaussianKernel(options.blur)) {}
+      : Change(sample),
+        kernel_(options.blur == 0 ? std::vector<float>{1} : detail::gaussianKernel(options.blur)),
+        noise_(options.seed, kNoiseStream, options.noise, options.noiseLength) {}
 
  private:
   FloatBox height(const CoordBBox& box) const override {
     FloatBox field =
-        detail::blurred(indicatorIn(grown(box, detail::kernelRadius(kernel_))), kernel_, nullptr);
-    const FloatBox noise = detail::whiteNoise(box, options().seed, kNoiseStream, nullptr);
-    const float amplitude = float(options().noise);
-    for (size_t i = 0; i < field.values.size(); ++i)
-      field.values[i] += amplitude * noise.values[i] - kCut;
+        detail::blurred(indicatorIn(box, detail::kernelRadius(kernel_)), kernel_, nullptr);
+    const FloatBox noise = noise_.in(box);
+    for (size_t i = 0; i < field.values.size(); ++i) field.values[i] += noise.values[i] - kCut;
     return field;
   }
 
   std::vector<float> kernel_;
+  SmoothNoise noise_;
 };
 
 Sample changed(const Sample& sample, const Change& change, int reach, Interrupter* interrupter) {
@@ -165,6 +178,7 @@ void checkScan(const ScanOptions& options) {
   detail::checkRange("length of the surface", options.surfaceLength, 1, 32);
   detail::checkRange("blur of the scan", options.blur, 0, 8);
   detail::checkRange("noise of the scan", options.noise, 0, 1);
+  detail::checkRange("length of the noise", options.noiseLength, 0, 32);
 }
 
 Sample scanned(const Sample& sample, const ScanOptions& options, Interrupter* interrupter) {
@@ -179,7 +193,10 @@ Sample scanned(const Sample& sample, const ScanOptions& options, Interrupter* in
   }
   if (options.blur > 0 || options.noise > 0) {
     result = changed(result, GrayChange(result, options), kNoiseReach, interrupter);
-    describe(result, size, source.range("scan-noise", options.blur, options.noise));
+    source.add("scan-noise", detail::shortestDecimal(options.blur) + ":" +
+                                 detail::shortestDecimal(options.noise) + ":" +
+                                 detail::shortestDecimal(options.noiseLength));
+    describe(result, size, source);
   }
   return result;
 }

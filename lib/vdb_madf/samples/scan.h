@@ -22,10 +22,11 @@ struct ScanOptions {
   double surfaceLength = 8;
 
   /// The gray values of a scan: 1 in the object and 0 in the air, blurred by a Gaussian of standard
-  /// deviation `blur` (0..8), plus white noise of standard deviation `noise` (0..1). Object is what
-  /// reaches 0.5.
+  /// deviation `blur` (0..8), plus noise of standard deviation `noise` (0..1), which is white or
+  /// whose correlation falls to 1/e at `noiseLength` (0..32; 0: white). Object is what reaches 0.5.
   double blur = 0;
   double noise = 0;
+  double noiseLength = 0;
 };
 
 /// @throw InvalidInput for options out of range.
