@@ -1,4 +1,4 @@
-"""What tests/benchmark/paper runs on one volume: vdb_madf and the watershed, and how both are judged."""
+"""What tests/benchmark/paper and accuracy run on one volume: vdb_madf and the watershed, and how both are judged."""
 import csv
 import json
 import os

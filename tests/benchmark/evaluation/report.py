@@ -3,8 +3,9 @@ from evaluation import methods as m
 
 
 class Report:
-    def __init__(self, folder):
+    def __init__(self, folder, name="report.md"):
         self.folder = folder
+        self.name = name
         self.lines = []
 
     def say(self, *paragraphs):
@@ -21,6 +22,6 @@ class Report:
         return f"![{name}]({name}.png)"
 
     def write(self):
-        fresh = self.folder / "report.md.part"
+        fresh = self.folder / f"{self.name}.part"
         fresh.write_text("\n".join(self.lines))
-        fresh.rename(self.folder / "report.md")
+        fresh.rename(self.folder / self.name)

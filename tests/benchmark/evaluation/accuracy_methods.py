@@ -1,0 +1,93 @@
+"""The methods of tests/benchmark/accuracy and how each is judged on one sample."""
+import csv
+import json
+import statistics
+
+import numpy
+from scipy import ndimage
+from skimage import measure
+
+from evaluation import methods as m, watershed
+
+OURS = {"ours, default": "",
+        "ours, before (fill-holes 0, delta 0, tidy 0)": "--fill-holes 0 --delta 0 --tidy 0",
+        "ours, fill-holes 100": "--fill-holes 100",
+        "the paper to the letter (160, -0.8)": "--paper --gamma 160 --theta -0.8"}
+WATERSHEDS = {"watershed, every maximum": "plain", "watershed, smoothed": "smoothed", "SNOW's steps": "snow",
+              "watershed, h-maxima": "h_maxima"}
+FILLED = ", holes filled"
+METHODS = [*OURS, *WATERSHEDS, *(name + FILLED for name in WATERSHEDS)]
+TRUTH = "the truth"
+SLIVER = 20  # voxels; smaller grains are no slivers
+
+
+def grains(solid, work):
+    """name -> file of labels, of the object by each method."""
+    numpy.save(work / "object.npy", solid.astype(numpy.uint8))
+    files = {}
+
+    def keep(name, labels):
+        files[name] = work / f"{len(files)}.npy"
+        numpy.save(files[name], labels)
+    for name, options in OURS.items():
+        m.madf("segment", work / "object.npy", work / "grains.vdb", *options.split())
+        keep(name, m.dense(work / "grains.vdb", work))
+    for name, kind in WATERSHEDS.items():
+        keep(name, watershed.grains(solid, [kind])[kind][0])
+    body = watershed.filled(solid)
+    for name, kind in WATERSHEDS.items():
+        if (body == solid).all():
+            files[name + FILLED] = files[name]
+        else:
+            keep(name + FILLED, numpy.where(solid, watershed.grains(body, [kind])[kind][0], 0))
+    return files
+
+
+def form(labels):
+    """How many crumbs, slivers and grains in pieces there are; accuracy_report.py says what these are."""
+    sizes = numpy.bincount(labels.ravel())
+    sizes[0] = 0
+    touching = numpy.zeros(len(sizes), bool)
+    for axis in range(3):
+        a, b = (numpy.moveaxis(labels, axis, 0)[ends] for ends in (slice(None, -1), slice(1, None)))
+        meet = (a > 0) & (b > 0) & (a != b)
+        touching[a[meet]] = touching[b[meet]] = True
+    deep = numpy.zeros(len(sizes), bool)
+    deep[labels[ndimage.minimum_filter(labels, 3) == ndimage.maximum_filter(labels, 3)]] = True
+    pieces = measure.label(labels, background=0, connectivity=1)
+    first = numpy.unique(pieces, return_index=True)[1]
+    counts = numpy.bincount(labels.ravel()[first], minlength=len(sizes))
+    counts[0] = 0
+    return {"crumbs": int((touching & (sizes < m.DUST)).sum()),
+            "slivers": int((touching & ~deep & (sizes >= SLIVER)).sum()), "in_pieces": int((counts > 1).sum())}
+
+
+def flatness(file, work):
+    values = [flat for _, _, flat in m.interfaces(file, work) if flat is not None]
+    return statistics.mean(values) if values else None
+
+
+def agreement(truth, file, work):
+    m.madf("compare", truth, file, "--json", work / "compare.json", "--grains", work / "grains.csv")
+    all_of = json.loads((work / "compare.json").read_text())
+    with open(work / "grains.csv", newline="") as lines:
+        rows = [(r["side"], int(r["voxels"]), float(r["intersection_over_union"])) for r in csv.DictReader(lines)]
+    true = all_of["truth_grains"]
+    found = sum(side == "truth" and share > 0.5 for side, _, share in rows)
+    spurious = sum(side == "test" and voxels >= m.DUST and share <= 0.5 for side, voxels, share in rows)
+    return {"true": true, "grains": all_of["test_grains"], "found": found, "spurious": spurious,
+            "found_percent": 100 * found / true, "spurious_percent": 100 * spurious / true,
+            "missed_percent": 100 * (true - found) / true,
+            "misclassified_percent": all_of["misclassified_percent"],
+            "adjusted_rand_index": all_of["adjusted_rand_index"],
+            "variation_of_information_bits": all_of["variation_of_information_bits"]}
+
+
+def judge(solid, truth, work):
+    """name -> its figures, of all methods and the truth itself."""
+    files = {TRUTH: work / "truth.npy"}
+    numpy.save(files[TRUTH], truth)
+    files.update(grains(solid, work))
+    figures = {file: {**agreement(files[TRUTH], file, work), **form(numpy.load(file)),
+                      "flatness_voxel2": flatness(file, work)} for file in dict.fromkeys(files.values())}
+    return {name: figures[file] for name, file in files.items()}
