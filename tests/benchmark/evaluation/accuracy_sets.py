@@ -1,6 +1,7 @@
 """The samples of tests/benchmark/accuracy, in groups; a further one is one more line of SETS."""
 import dataclasses
 import subprocess
+import sys
 
 import numpy
 
@@ -26,12 +27,13 @@ SETS = [
     Set("sintered", "0.95", "sintered --neck 0.95 --radius 12:18", (70, 25)),
     Set("beds", "5 rounds", bed=(16, 25, 5)),
     Set("beds", "10 rounds", bed=(16, 25, 10)),
-    Set("shapes", "ellipsoids", "particles --shape ellipsoids"),
-    Set("shapes", "plates", "particles --shape plates"),
-    Set("shapes", "prisms", "particles --shape prisms"),
-    Set("shapes", "polyhedra", "particles --shape polyhedra"),
+    Set("shapes", "ellipsoids", "particles --shape ellipsoids --radius 10:16", (70, 25)),
+    Set("shapes", "plates", "particles --shape plates --radius 10:16", (70, 25)),
+    Set("shapes", "prisms", "particles --shape prisms --radius 10:16", (70, 25)),
+    Set("shapes", "polyhedra", "particles --shape polyhedra --radius 10:16", (70, 25)),
     Set("rough surfaces", "0.3", "sintered --roughness 0.3 --radius 12:18"),
     Set("rough surfaces", "0.6", "sintered --roughness 0.6 --radius 12:18"),
+    Set("rough surfaces", "surface 1.5:8", "sintered --surface 1.5:8 --radius 12:18"),
     Set("noise", "roughness 1", "sintered --roughness 1 --radius 12:18"),
     Set("noise", "scan, 0.1", "sintered --radius 12:18", noise=(1, 0.1)),
     Set("noise", "scan, 0.2", "sintered --radius 12:18", noise=(1, 0.2)),
@@ -48,7 +50,7 @@ def sample(its, quick, seed, work):
     """The object (bool) and its true grains (int32) as arrays [z, y, x]."""
     size = 100 if quick else 140
     if its.bed:
-        truth = beds.bed(size, *its.bed, seed)
+        solid = truth = beds.bed(size, *its.bed, seed)
     else:
         options = [*its.generate.split(), "--size", size, "--seed", seed]
         if its.count:
@@ -59,8 +61,9 @@ def sample(its, quick, seed, work):
         if done.returncode == 2:  # a kind or an option that this command does not have
             raise Skipped("skipped: this vdb_madf has no generate " + its.generate)
         if done.returncode:
-            raise RuntimeError(done.stderr)
-        truth = m.dense(work / "set.vdb", work, "--grid", "truth")
+            print(done.stderr, end="", file=sys.stderr)
+            done.check_returncode()
+        solid, truth = (m.dense(work / "set.vdb", work, "--grid", grid) for grid in ("object", "truth"))
     if its.noise:
         return scan_noise.noisy(truth, *its.noise, seed)
-    return truth > 0, truth
+    return solid > 0, truth

@@ -6,7 +6,7 @@ distance map, flooded from the markers, 6-connected, within the object):
 - smoothed: the maxima of the distance map blurred by a Gaussian of SIGMA, at least APART apart: what is
   commonly done against too many grains;
 - snow: the steps of J. T. Gostick, "Versatile and efficient pore network extraction method using
-  marker-based watershed segmentation", Phys. Rev. E 96 (2017) 023307, with its parameters: the map blurred
+  marker-based watershed segmentation", Phys. Rev. E 96 (2017) 023307, written anew: the map blurred
   by a Gaussian of SNOW_SIGMA; peaks are the maxima over balls of SNOW_RADIUS; a peak whose plateau is no
   regional maximum is a saddle point and goes; of two nearest peaks that are nearer to each other than to
   the background goes the one that is nearer to the background;
