@@ -52,19 +52,22 @@ def write(folder, done, seeds, quick):
     report.table(["method", *groups], [[name, *(brief([r[name] for _, _, r in runs]) for runs in groups.values())]
                                        for name in METHODS])
     for group in dict.fromkeys([its.group for its, _, _ in done]):
-        runs = groups.get(group, [])
         report.say(f"## {group[0].upper()}{group[1:]}")
-        if runs:
-            sets = dict.fromkeys(describe(its, quick) for its, _, _ in runs)
-            true = mean([r[TRUTH] for _, _, r in runs], "true", 1)
-            report.say(f"{'; '.join(sets)}. True grains: {true} a sample.")
-            report.table(["method", *COLUMNS],
-                         [[name, *(mean([r[name] for _, _, r in runs], *column) for column in COLUMNS.values())]
-                          for name in (TRUTH, *METHODS)])
+        if group in groups:
+            write_group(report, groups[group], quick)
         for name, reason in skipped.get(group, {}).items():
             report.say(f"{name}: {reason}.")
     report.write()
     write_runs(folder, done)
+
+
+def write_group(report, runs, quick):
+    sets = dict.fromkeys(describe(its, quick) for its, _, _ in runs)
+    true = mean([r[TRUTH] for _, _, r in runs], "true", 1)
+    report.say(f"{'; '.join(sets)}. True grains: {true} a sample.")
+    report.table(["method", *COLUMNS],
+                 [[name, *(mean([r[name] for _, _, r in runs], *column) for column in COLUMNS.values())]
+                  for name in (TRUTH, *METHODS)])
 
 
 def describe(its, quick):
