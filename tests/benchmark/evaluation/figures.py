@@ -45,13 +45,13 @@ def figures(report, work, sizes, scan):
             report.say(m.NO_NUMPY)
             continue
         volume = balls(work, row, 2, 1, sizes.balls)
-        files = m.cut(volume, work, {k: m.BALL_METHODS[k] for k in list(m.BALL_METHODS)[::2]})
+        files = m.cut(volume, work, {k: m.BALL_METHODS[k] for k in list(m.BALL_METHODS)[::2]}, tune=True)
         side_by_side(report, {name: report.picture(file, f"figure8-row{row + 1}-{i}", "--size", 240)
                               for i, (name, file) in enumerate({"true grains": volume, **files}.items())})
 
     report.say("## Figure 10: the methods side by side, and the interfaces alone")
     volume = sintered(work / "ten.vdb", sizes.interfaces, sizes.interface_grains, 0.7, 0.3)
-    samples = [("Sintered, neck 0.7, roughness 0.3", {"true grains": volume, **m.cut(volume, work, m.SNOW_METHODS)})]
+    samples = [("Sintered, neck 0.7, roughness 0.3", {"true grains": volume, **m.cut(volume, work, m.SNOW_METHODS, tune=True)})]
     if scan:
         samples.append((scan[0], None))
     for s, (title, files) in enumerate(samples):

@@ -1,4 +1,5 @@
-"""What tests/benchmark/paper and accuracy run on one volume: vdb_madf and the watershed, and how both are judged."""
+"""What tests/benchmark/paper and accuracy run on one volume: vdb_madf, the watershed and CDGS, and how they are
+judged."""
 import csv
 import json
 import os
@@ -20,7 +21,14 @@ try:
 except ImportError:
     NO_WATERSHED = "skipped: python3-scipy, python3-skimage are not installed"
 
+try:
+    from evaluation import cdgs
+    NO_CDGS = None
+except ImportError:
+    NO_CDGS = "skipped: python3-numpy, python3-scipy are not installed"
+
 WATERSHEDS = {"watershed, every maximum": "plain", "watershed, smoothed": "smoothed"}
+CDGS, CDGS_TUNED = "CDGS, default", "CDGS, tuned"
 LETTER = ["--merge", "angle", "--adjacency", "cell"]  # what --paper stands for
 
 
@@ -50,8 +58,17 @@ def dense(volume, work, *options):
     return numpy.load(work / "dense.npy")
 
 
-def cut(volume, work, methods):
-    """The grains by each method and each watershed that can run: name -> file of labels."""
+def true_grains(volume, work):
+    """How many grains a generated sample has."""
+    options = [] if volume.suffix == ".npy" else ["--grid", "truth", "--type", "int32"]
+    return len(numpy.unique(dense(volume, work, *options))) - 1
+
+
+def cut(volume, work, methods, tune=False):
+    """The grains by each method, each watershed and CDGS, where they can run: name -> file of labels.
+
+    tune: CDGS tuned to the number of true grains, too; what it took is in work / "tuned.txt".
+    """
     files = {}
     for gamma in sorted({gamma for gamma, _ in methods.values()}):
         madf("segment", volume, work / "stored.vdb", "--gamma", gamma, "--keep", "manifold")
@@ -65,7 +82,24 @@ def cut(volume, work, methods):
         for name, kind in WATERSHEDS.items():
             files[name] = work / f"{kind}.npy"
             numpy.save(files[name], result[kind][0])
+    if not NO_CDGS:
+        solid = dense(volume, work) > 0
+        files[CDGS] = work / "cdgs.npy"
+        numpy.save(files[CDGS], cdgs.grains(solid))
+        if tune:
+            files[CDGS_TUNED] = work / "cdgs_tuned.npy"
+            labels, taken = cdgs.tuned(solid, true_grains(volume, work))
+            numpy.save(files[CDGS_TUNED], labels)
+            (work / "tuned.txt").write_text(taken)
     return files
+
+
+def judge(volume, work, methods):
+    """The score of each method on a sample with known truth."""
+    scores = {name: score(volume, file, work) for name, file in cut(volume, work, methods, tune=True).items()}
+    if CDGS_TUNED in scores:
+        scores[CDGS_TUNED]["tuned"] = (work / "tuned.txt").read_text()
+    return scores
 
 
 def score(truth, test, work):

@@ -23,7 +23,24 @@ def mean_sd(values, digits):
 
 def skipped(width):
     """Rows that say what is missing."""
-    return [[name, m.NO_WATERSHED, *[""] * (width - 2)] for name in m.WATERSHEDS] if m.NO_WATERSHED else []
+    missing = [(name, m.NO_WATERSHED) for name in m.WATERSHEDS] + [("CDGS", m.NO_CDGS)]
+    return [[name, why, *[""] * (width - 2)] for name, why in missing if why]
+
+
+def cdgs_parameters():
+    """What CDGS takes, in words."""
+    if m.NO_CDGS:
+        return m.NO_CDGS
+
+    def words(its):
+        return (f"windows of {', '.join(map(str, its['windows']))} voxels, tolerance {its['tolerance']} degrees, grooves "
+                f"widened by {its['widen']}")
+    c = m.cdgs
+    styles = "; ".join(f"*{name}*, {words(its)}" for name, its in c.STYLES.items())
+    return (f"*default*: {words(c.DEFAULT)}, curvature below {c.DEFAULT['threshold']} per voxel, regions of "
+            f"{c.DEFAULT['least']} voxels or more. *Tuned*, as its authors did for each set: to each sample the style and threshold "
+            f"of the curvature that give the number of grains nearest to the true number, of the styles {styles} and the "
+            f"thresholds {', '.join(map(str, c.THRESHOLDS))}. No other method is told the true number.")
 
 
 def table1(report, done, seeds, sizes):
@@ -47,7 +64,8 @@ def table1(report, done, seeds, sizes):
             scores = done[i, cover]
             for name in scores[0]:
                 own = [s[name] for s in scores]
-                rows.append(["", name, *(spread([s[key] for s in own], digits) for key, digits in
+                taken = sorted({s["tuned"] for s in own if "tuned" in s})
+                rows.append(["", name + f" ({'; '.join(taken)})" * bool(taken), *(spread([s[key] for s in own], digits) for key, digits in
                                          (("grains", 1), ("found", 1), ("percent", 2), ("mirror", 2)))])
             rows += [["", *cells] for cells in skipped(5)]
             for name, text in zip(("watershed", "CDGS", "MADF"), quoted):
@@ -93,7 +111,7 @@ def table1b(report, done, sizes):
             cells = []
             for rough in sizes.roughness:
                 own = [scores[name] for scores, _ in done[neck, rough]]
-                mean = {key: statistics.mean(s[key] for s in own) for key in own[0]}
+                mean = {key: statistics.mean(s[key] for s in own) for key in ("found", "extra", "dust", "percent")}
                 cell = f"{mean['found']:.1f} ({mean['extra']:.1f}, {mean['dust']:.0f}) {mean['percent']:.2f} %"
                 wrong = fails(own)
                 cells.append(f"**{cell}**" if wrong else cell)
@@ -156,10 +174,10 @@ def seconds(work, volume, gamma, theta, threads, runs):
 
 def table3(report, work, sizes, scan, runs):
     report.say("## Table 3: times",
-               f"Seconds, on {os.cpu_count()} processors, median of {runs} runs (watershed: one), in this run, nothing beside. *Pre-process*: "
+               f"Seconds, on {os.cpu_count()} processors, median of {runs} runs (watershed and CDGS: one), in this run, nothing beside. *Pre-process*: "
                "all up to the graph of manifolds, which another theta does not need again; *merge*: merging and labels. "
-               "*Whole*: `segment` with reading and writing; *another theta*: the whole `remerge`. Watershed: with the distance "
-               "map, without reading and writing, one thread. The samples have the paper's sizes, gamma and theta, but not its "
+               "*Whole*: `segment` with reading and writing; *another theta*: the whole `remerge`. Watershed and CDGS (default): with "
+               "the distance map, without reading and writing, one thread. The samples have the paper's sizes, gamma and theta, but not its "
                "snow.")
     rows = []
     first, second = sizes.times
@@ -173,12 +191,15 @@ def table3(report, work, sizes, scan, runs):
             figures = seconds(work, volume, gamma, theta, threads, runs)
             rows.append([head, f"MADF to the letter, {threads} thread{'s' * (threads > 1)}", *(f"{f:.3f}" for f in figures)])
             head = ""
-        if m.NO_WATERSHED:
-            rows += [["", *cells] for cells in skipped(5)]
-            continue
-        solid = m.dense(volume, work) > 0
-        for kind, its in m.WATERSHEDS.items():
-            rows.append(["", kind, "", "", f"{m.watershed.grains(solid, [its])[its][1]:.2f}", ""])
+        rows += [["", *cells] for cells in skipped(5)]
+        solid = None if m.NO_NUMPY else m.dense(volume, work) > 0
+        if not m.NO_WATERSHED:
+            for kind, its in m.WATERSHEDS.items():
+                rows.append(["", kind, "", "", f"{m.watershed.grains(solid, [its])[its][1]:.2f}", ""])
+        if not m.NO_CDGS:
+            start = time.perf_counter()
+            m.cdgs.grains(solid)
+            rows.append(["", m.CDGS, "", "", f"{time.perf_counter() - start:.2f}", ""])
     for sample, its in {"MF, 270^3": ("416.74", "915.44", "44", "10.69"), "RG, 256^3": ("330.73", "635.41", "40.16", "7.4")}.items():
         rows += [[f"*the paper's {sample} (4 processors, 2014)*", "*watershed*", "", "", its[0], ""],
                  ["", "*CDGS*", "", "", its[1], ""], ["", "*MADF*", its[2], its[3], "", ""]]
