@@ -31,7 +31,7 @@ What the outline leaves open, and what was decided:
 - A border between grains where two regions are equally near: the region's voxel first in the order z, y, x.
 - The border of the volume: not a surface, for the object goes on behind it.
 - A piece of the object (connected by faces) that no region reaches: a grain of its own.
-- How parameters were chosen: `tuned` takes those which give the number of regions nearest to the true number.
+- How parameters were chosen: `tuned` takes those whose regions match the true grains best, see there.
 """
 import numpy
 from scipy import ndimage
@@ -42,10 +42,11 @@ FULL = numpy.ones((3, 3, 3), bool)
 FAR = numpy.iinfo(numpy.int64).max
 
 DEFAULT = {"threshold": -0.01, "windows": (2, 3), "tolerance": 30, "widen": 1, "least": 30}
-# What `tuned` chooses from: for creases between smooth grains, and for rough ones.
+# What `tuned` chooses from: for creases between smooth grains, and for rougher and rougher ones.
 STYLES = {"fine": {"windows": (1, 1.5, 2, 3), "tolerance": 20, "widen": 0},
-          "coarse": {"windows": (2, 3), "tolerance": 30, "widen": 1}}
-THRESHOLDS = (-0.05, -0.03, -0.02, -0.01, 0, 0.01, 0.02, 0.03)
+          "coarse": {"windows": (2, 3), "tolerance": 30, "widen": 1},
+          "wide": {"windows": (2, 3, 4), "tolerance": 30, "widen": 2}}
+THRESHOLDS = (-0.05, -0.03, -0.02, -0.01, 0, 0.01, 0.02, 0.03, 0.04)
 
 
 def grains(solid, **parameters):
@@ -56,17 +57,30 @@ def grains(solid, **parameters):
     return spread(solid, regions(curvature, **chosen))
 
 
-def tuned(solid, count):
-    """The grains with the parameters that give the number of regions nearest to count; and these in words."""
-    best = None
+def tuned(truth):
+    """The grains with the parameters whose regions match the true grains best; and these in words.
+
+    Least is the number of true grains without a region of their own and of regions beyond these; first, of equals.
+    """
+    best, solid = None, truth > 0
     for style, its in STYLES.items():
         curvature = mean_curvature(solid, its["windows"], its["tolerance"])
         for threshold in THRESHOLDS:
             found = regions(curvature, threshold, its["widen"], DEFAULT["least"])
-            miss = abs(int(found.max(initial=0)) - count)
+            miss = mismatches(truth, found)
             if best is None or miss < best[0]:
                 best = miss, found, f"{style}, {threshold}"
     return spread(solid, best[1]), best[2]
+
+
+def mismatches(truth, found):
+    """True grains and regions that do not have more than half of each other's voxels in regions."""
+    at = found > 0
+    pairs, shared = numpy.unique(numpy.stack([truth[at], found[at]]), axis=1, return_counts=True)
+    of_grain, of_region = (numpy.bincount(ids, shared) for ids in pairs)
+    matched = numpy.sum((2 * shared > of_grain[pairs[0]]) & (2 * shared > of_region[pairs[1]]))
+    true = numpy.unique(truth[truth > 0]).size
+    return int(true + found.max(initial=0) - 2 * matched)
 
 
 def unit(vectors):

@@ -58,16 +58,10 @@ def dense(volume, work, *options):
     return numpy.load(work / "dense.npy")
 
 
-def true_grains(volume, work):
-    """How many grains a generated sample has."""
-    options = [] if volume.suffix == ".npy" else ["--grid", "truth", "--type", "int32"]
-    return len(numpy.unique(dense(volume, work, *options))) - 1
-
-
 def cut(volume, work, methods, tune=False):
     """The grains by each method, each watershed and CDGS, where they can run: name -> file of labels.
 
-    tune: CDGS tuned to the number of true grains, too; what it took is in work / "tuned.txt".
+    tune: CDGS tuned to the true grains, too; what it took is in work / "tuned.txt".
     """
     files = {}
     for gamma in sorted({gamma for gamma, _ in methods.values()}):
@@ -88,7 +82,8 @@ def cut(volume, work, methods, tune=False):
         numpy.save(files[CDGS], cdgs.grains(solid))
         if tune:
             files[CDGS_TUNED] = work / "cdgs_tuned.npy"
-            labels, taken = cdgs.tuned(solid, true_grains(volume, work))
+            grid = () if volume.suffix == ".npy" else ("--grid", "truth")
+            labels, taken = cdgs.tuned(dense(volume, work, *grid, "--type", "int32"))
             numpy.save(files[CDGS_TUNED], labels)
             (work / "tuned.txt").write_text(taken)
     return files

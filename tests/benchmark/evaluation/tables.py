@@ -39,8 +39,8 @@ def cdgs_parameters():
     styles = "; ".join(f"*{name}*, {words(its)}" for name, its in c.STYLES.items())
     return (f"*default*: {words(c.DEFAULT)}, curvature below {c.DEFAULT['threshold']} per voxel, regions of "
             f"{c.DEFAULT['least']} voxels or more. *Tuned*, as its authors did for each set: to each sample the style and threshold "
-            f"of the curvature that give the number of grains nearest to the true number, of the styles {styles} and the "
-            f"thresholds {', '.join(map(str, c.THRESHOLDS))}. No other method is told the true number.")
+            f"of the curvature whose regions on the surface match the true grains best, of the styles {styles} and the "
+            f"thresholds {', '.join(map(str, c.THRESHOLDS))}. No other method is told the true grains.")
 
 
 def table1(report, done, seeds, sizes):
