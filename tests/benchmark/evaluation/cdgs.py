@@ -50,7 +50,10 @@ THRESHOLDS = (-0.05, -0.03, -0.02, -0.01, 0, 0.01, 0.02, 0.03, 0.04)
 
 
 def grains(solid, **parameters):
-    """Labels 1..N (int32, 0: background) of a boolean volume [z, y, x]; parameters other than DEFAULT's by name."""
+    """Labels 1..N (int32, 0: background) of a boolean volume [z, y, x], at least 2 voxels along each edge.
+
+    Parameters other than DEFAULT's are given by name.
+    """
     chosen = {**DEFAULT, **parameters}
     solid = numpy.asarray(solid, bool)
     curvature = mean_curvature(solid, chosen.pop("windows"), chosen.pop("tolerance"))
