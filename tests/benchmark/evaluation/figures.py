@@ -11,7 +11,8 @@ def side_by_side(report, pictures):
 def figures(report, work, sizes, scan):
     n = sizes.picture
     shape = sintered(work / "shape.vdb", n, 14, 0.6)
-    m.madf("segment", shape, work / "all.vdb", "--theta", -1, "--merge", "angle", "--keep", "manifold,balls")
+    m.madf("segment", shape, work / "all.vdb", "--theta", -1, "--merge", "angle",
+           *m.LETTER_SEGMENT, "--keep", "manifold,balls")
     report.say("## Figure 5: medial balls and their power map",
                "The centres of the medial balls (`--keep balls`; colours: squared radii), a slice of their power map (a colour "
                "per ball; drawn by this script, the program keeps only the least power), and what flows to one "
@@ -33,7 +34,8 @@ def figures(report, work, sizes, scan):
     for adjacency in ("cell", "manifold"):
         pictures = {}
         for theta in (-1, -0.8, -0.5, 0, 0.5, 1):
-            m.madf("remerge", work / "all.vdb", work / "merged.vdb", "--merge", "angle", "--adjacency", adjacency, "--theta", theta)
+            m.madf("remerge", work / "all.vdb", work / "merged.vdb", "--merge", "angle", "--adjacency", adjacency, "--theta", theta,
+                   "--tidy", 0)
             grains = m.score(shape, work / "merged.vdb", work)["grains"]
             pictures[f"{adjacency}, theta {theta} ({grains})"] = report.picture(
                 work / "merged.vdb", f"figure7-{adjacency}{theta}", "--only", "view", "--size", 320)

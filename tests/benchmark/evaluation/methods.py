@@ -29,19 +29,21 @@ except ImportError:
 
 WATERSHEDS = {"watershed, every maximum": "plain", "watershed, smoothed": "smoothed"}
 CDGS, CDGS_TUNED = "CDGS, default", "CDGS, tuned"
-LETTER = ["--merge", "angle", "--adjacency", "cell"]  # what --paper stands for
+# What --paper stands for, of segment and of remerge.
+LETTER_SEGMENT = ["--fill-holes", 0]
+LETTER = ["--merge", "angle", "--adjacency", "cell", "--delta", 0, "--tidy", 0]
 
 
 def angle(gamma, theta):
-    return gamma, [*LETTER, "--theta", theta]
+    return ["--gamma", gamma, *LETTER_SEGMENT], [*LETTER, "--theta", theta]
 
 
-def both(theta):
-    return 0, ["--merge", "both", "--theta", theta]
+def both(theta, delta=2):
+    return [], ["--merge", "both", "--theta", theta, "--delta", delta]
 
 
 # Of the gammas and thetas the paper took: 0, -1 for balls; 160, -0.8 for MF; 20, -0.5 for RG.
-BALL_METHODS = {"MADF to the letter, theta -1": angle(0, -1), "MADF, both tests, theta -1": both(-1),
+BALL_METHODS = {"MADF to the letter, theta -1": angle(0, -1), "MADF, both tests, theta -1, delta 0": both(-1, 0),
                 "MADF, our default (theta -0.9)": both(-0.9)}
 SNOW_METHODS = {"MADF, our default": both(-0.9), "MADF to the letter, 0, -0.8": angle(0, -0.8),
                 "MADF to the letter, 20, -0.5": angle(20, -0.5),
@@ -64,10 +66,10 @@ def cut(volume, work, methods, tune=False):
     tune: CDGS tuned to the true grains, too; what it took is in work / "tuned.txt".
     """
     files = {}
-    for gamma in sorted({gamma for gamma, _ in methods.values()}):
-        madf("segment", volume, work / "stored.vdb", "--gamma", gamma, "--keep", "manifold")
+    for segmentation in dict.fromkeys(tuple(segmentation) for segmentation, _ in methods.values()):
+        madf("segment", volume, work / "stored.vdb", *segmentation, "--keep", "manifold")
         for i, (name, (its, options)) in enumerate(methods.items()):
-            if its == gamma:
+            if tuple(its) == segmentation:
                 files[name] = work / f"madf{i}.vdb"
                 madf("remerge", work / "stored.vdb", files[name], *options)
     files = {name: files[name] for name in methods}

@@ -38,7 +38,7 @@ def cdgs_parameters():
     c = m.cdgs
     styles = "; ".join(f"*{name}*, {words(its)}" for name, its in c.STYLES.items())
     return (f"*default*: {words(c.DEFAULT)}, curvature below {c.DEFAULT['threshold']} per voxel, regions of "
-            f"{c.DEFAULT['least']} voxels or more. *Tuned*, as its authors did for each set: to each sample the style and threshold "
+            f"{c.DEFAULT['least']} voxels or more. *Tuned*: to each sample the style and threshold "
             f"of the curvature whose regions on the surface match the true grains best, of the styles {styles} and the "
             f"thresholds {', '.join(map(str, c.THRESHOLDS))}. No other method is told the true grains.")
 
@@ -154,7 +154,7 @@ def table2(report, done, scan):
     report.table(titles, rows)
 
 
-PRE = ["leaf_index", "squared_distance", "power_map", "medial_balls", "gamma_filter", "flow", "manifold_graph"]
+PRE = ["leaf_index", "cavities", "squared_distance", "power_map", "medial_balls", "gamma_filter", "flow", "manifold_graph"]
 
 
 def seconds(work, volume, gamma, theta, threads, runs):
@@ -167,7 +167,7 @@ def seconds(work, volume, gamma, theta, threads, runs):
         start = time.perf_counter()
         m.madf("remerge", work / "timed.vdb", work / "again.vdb", *m.LETTER, "--theta", theta, threads=threads)
         again = time.perf_counter() - start
-        results.append([sum(r.get(f"seconds_{s}", 0) for s in PRE), r["seconds_merge"] + r["seconds_labels"],
+        results.append([sum(r.get(f"seconds_{s}", 0) for s in PRE), r["seconds_merge"] + r["seconds_tidy"] + r["seconds_labels"],
                         r["seconds_total"], again])
     return [statistics.median(column) for column in zip(*results)]
 
