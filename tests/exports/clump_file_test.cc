@@ -110,6 +110,24 @@ TEST_CASE("clumps: the ball that covers most comes first", "[clumps]") {
   CHECK(std::abs(made[0].volumeError()) < 0.02);
 }
 
+TEST_CASE("clumps: a ball whose center lies in a cavity is that of the grain around it",
+          "[clumps]") {
+  LabelMap voxels, balls;
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = -1; z <= 1; ++z)
+        if (x || y || z) voxels[{x, y, z}] = z < 1 ? 5 : 3;
+  balls[Coord(0)] = 4;
+  balls[Coord(40, 0, 0)] = 1000000;  // of no grain
+  const auto made = clumps(*labelGrid(voxels), *labelGrid(balls), {10, 0});
+  REQUIRE(made.size() == 2);
+  CHECK(made[0].label == 3);
+  CHECK(made[0].balls.empty());
+  REQUIRE(made[1].balls.size() == 1);  // at (-1, 0, 0), as near as (0, 0, 1)
+  CHECK(made[1].balls[0].center == Coord(0));
+  CHECK(made[1].uncovered == 0);
+}
+
 TEST_CASE("clumps: same for any number of threads; no balls, no labels, wrong options",
           "[clumps]") {
   const LabelMap voxels = randomLabels(3, Coord(-4), 12, 4, 95);

@@ -62,6 +62,16 @@ TEST_CASE("grid_metadata: a domain is its two corners, both inclusive", "[grid_m
   CHECK(metadata.getMetadata<Vec3IMetadata>("madf_domain_max")->value() == Vec3i(4, 5, 3));
 }
 
+TEST_CASE("grid_metadata: a domain beyond the largest coordinate is refused", "[grid_metadata]") {
+  for (const int far : {1 << 30, 2147483647}) {
+    openvdb::MetaMap metadata;
+    setDomain(metadata, CoordBBox(Coord(0), Coord(5, far, 5)));
+    CHECK_THROWS_AS(storedDomain(metadata), InvalidInput);
+    setDomain(metadata, CoordBBox(Coord(5, 5, -far), Coord(6)));
+    CHECK_THROWS_AS(storedDomain(metadata), InvalidInput);
+  }
+}
+
 TEST_CASE("grid_metadata: half a domain, and an inverted one, are refused", "[grid_metadata]") {
   for (const char* left : {"madf_domain_min", "madf_domain_max"}) {
     openvdb::MetaMap metadata;

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/limits.h"
 
 using namespace vdb_madf;
 
@@ -30,11 +31,13 @@ ManifoldGraph extremeGraph() {
   constexpr int32_t kLow = std::numeric_limits<int32_t>::min(),
                     kHigh = std::numeric_limits<int32_t>::max();
   constexpr int64_t kMany = std::numeric_limits<int64_t>::max();
+  constexpr int64_t kMaxVoxels = int64_t(kMaxLeaves) * 512;
+  constexpr int kFar = kMaxCoordinate;
   ManifoldGraph graph;
-  graph.nodes = {{Coord(kLow, kHigh, -1), kHigh, kMany},
-                 {Coord(-1, kLow, 5), 1, 1},
-                 {Coord(-1, kLow, 6), 0x01020304, 0x0102030405060708},
-                 {Coord(kHigh, kHigh, kHigh), 2, 2}};
+  graph.nodes = {{Coord(-kFar, kFar, -1), kHigh, kMaxVoxels},
+                 {Coord(-1, -kFar, 5), 1, 1},
+                 {Coord(-1, -kFar, 6), 0x01020304, 0x04050607},
+                 {Coord(kFar, kFar, kFar), 2, 2}};
   graph.edges = {{0, 1, kMany, kLow, true}, {0, 3, 1, kHigh, false}, {2, 3, 7, -1, true}};
   return graph;
 }
@@ -163,6 +166,9 @@ TEST_CASE("graph_metadata: a graph that breaks the rules is refused", "[graph_me
   refused([](ManifoldGraph& g) { g.nodes[1] = g.nodes[2]; });
   refused([](ManifoldGraph& g) { g.nodes[1].voxels = -1; });
   refused([](ManifoldGraph& g) { g.nodes[1].squaredRadius = -1; });
+  refused([](ManifoldGraph& g) { ++g.nodes[0].voxels; });
+  refused([](ManifoldGraph& g) { ++g.nodes[3].position.z(); });
+  refused([](ManifoldGraph& g) { --g.nodes[0].position.x(); });
   refused([](ManifoldGraph& g) { std::swap(g.edges[0], g.edges[1]); });
   refused([](ManifoldGraph& g) { g.edges[1] = g.edges[0]; });
   refused([](ManifoldGraph& g) { g.edges[2].second = 4; });

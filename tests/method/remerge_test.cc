@@ -160,6 +160,10 @@ TEST_CASE("remerge: takes active tiles", "[remerge]") {
   const auto manifold = rowGrid();
   manifold->tree().addTile(1, Coord(-8, 0, 0), 1, true);
   manifold->tree().addTile(2, Coord(-128, 128, 0), 3, true);
+  ManifoldGraph graph = rowGraph();
+  graph.nodes[0].voxels += 512;
+  graph.nodes[2].voxels += 128 * 128 * 128;
+  setGraph(*manifold, graph);
   const auto grain = remerge(*manifold, {-1, MergeMode::neck, Adjacency::manifold, 0}, 0);
   CHECK(grain->activeVoxelCount() == 7 + 512 + 128 * 128 * 128);
   for (const Coord& p : {Coord(-8, 0, 0), Coord(-1, 7, 7)}) CHECK(grain->tree().getValue(p) == 1);
@@ -195,10 +199,12 @@ TEST_CASE("remerge: what does not fit is refused", "[remerge]") {
                       InvalidInput);
     CHECK_THROWS_AS(remerge(*manifold, {}, -1), InvalidInput);
   }
-  SECTION("voxels of a manifold that has none, by its graph") {
-    ManifoldGraph graph = rowGraph();
-    for (auto& node : graph.nodes) node.voxels = 0;
-    setGraph(*manifold, graph);
+  SECTION("more or fewer voxels of a manifold than its graph says") {
+    manifold->tree().setValueOn(Coord(0, 0, 7), 3);
+    CHECK_THROWS_AS(remerge(*manifold), InvalidInput);
+    manifold->tree().setValueOff(Coord(0, 0, 7), 0);
+    CHECK_NOTHROW(remerge(*manifold));
+    manifold->tree().setValueOff(Coord(0, 0, 6), 0);
     CHECK_THROWS_AS(remerge(*manifold), InvalidInput);
   }
   SECTION("interrupted") {

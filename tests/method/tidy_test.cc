@@ -210,6 +210,7 @@ TEST_CASE("tidy: bad options, and interruption", "[tidy]") {
   grains.representative = {Coord(4)};
   grains.voxels = {729};
   CHECK_THROWS_AS(tidy(index, -1, grains), InvalidInput);
+  CHECK_THROWS_AS(tidy(index, kMaxTidy + 1, grains), InvalidInput);
   StopAtOnce stop;
   CHECK_THROWS_AS(tidy(index, 1, grains, &stop), Interrupted);
 }

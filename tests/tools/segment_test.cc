@@ -152,6 +152,7 @@ TEST_CASE("cli: sweep gives a line for each choice, equal to its segmentation", 
       std::getline(fields, *field, ',');
     CHECK(std::stoi(delta) == json.at("delta"));
     const std::string flaws = "," + std::to_string(json.at("crumbs").get<int>()) + "," +
+                              std::to_string(json.at("specks").get<int>()) + "," +
                               std::to_string(json.at("slivers").get<int>()) + "," +
                               std::to_string(json.at("grains_in_pieces").get<int>());
     CHECK(lines[line].substr(lines[line].size() - flaws.size()) == flaws);

@@ -18,7 +18,7 @@ void MergeArguments::add(Verb verb) {
               "what the angle test pairs: manifold, cell (default manifold)")
       .oneOf({"manifold", "cell"});
   verb.option("--delta", delta,
-              "merge at necks narrower than the grain by less, eighths of a voxel (default 2)")
+              "also merge where the neck is under K/8 voxel narrower than the grain (default 2)")
       .typeName("K");
 }
 
@@ -61,10 +61,9 @@ void addTidy(Verb verb, std::string& text) {
 }
 
 int parseTidy(const std::string& text) {
-  constexpr int64_t kMaxRounds = 1000;
   const int64_t rounds = text.empty() ? kTidy : parseCount(text, "--tidy");
-  if (rounds > kMaxRounds)
-    throw WrongUsage("--tidy " + text + ": at most " + std::to_string(kMaxRounds) + " rounds");
+  if (rounds > kMaxTidy)
+    throw WrongUsage("--tidy " + text + ": at most " + std::to_string(kMaxTidy) + " rounds");
   return int(rounds);
 }
 

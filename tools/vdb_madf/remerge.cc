@@ -57,7 +57,8 @@ void run(const Options& o, const Common& common) {
 
 void addRemerge(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<Options>();
-  Verb verb = addVerb(command, common, "remerge", "merge stored manifolds anew, without voxel work",
+  Verb verb = addVerb(command, common, "remerge",
+                      "merge stored manifolds anew, without distances and power map",
                       "vdb_madf remerge grains.vdb coarser.vdb --theta -0.7");
   verb.option("SEG.vdb", o->input.path, "made by segment with --keep manifold").required();
   verb.option("OUT.vdb", o->out, "gets the new 'grain' and all other grids").required();

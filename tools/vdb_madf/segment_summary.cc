@@ -146,9 +146,9 @@ void print(const SegmentArguments& o, const Common& common, const SegmentSummary
   std::printf("  dust             %lld grains under 100 voxels, %.3f %% of the object\n",
               count(sizes.dustGrains),
               100 * double(sizes.dustVoxels) / std::max(1.0, double(counts.objectVoxels)));
-  std::printf("  flaws            %lld crumbs, %lld slivers, %lld grains in pieces\n",
-              count(summary.flaws.crumbs), count(summary.flaws.slivers),
-              count(summary.flaws.inPieces));
+  std::printf("  flaws            %lld crumbs, %lld specks, %lld slivers, %lld grains in pieces\n",
+              count(summary.flaws.crumbs), count(summary.flaws.specks),
+              count(summary.flaws.slivers), count(summary.flaws.inPieces));
   if (summary.fillHoles > 1)
     std::printf("  cavities         %lld under %lld voxels filled for the distance, %lld voxels\n",
                 count(counts.cavities), count(summary.fillHoles), count(counts.cavityVoxels));

@@ -122,14 +122,15 @@ double share(int64_t part, int64_t whole) {
 std::string table(const std::vector<SweepRow>& rows) {
   std::ostringstream csv;
   csv << "gamma,merge,delta,theta,grains,median_voxels,small_grains,small_grains_share,"
-         "small_grains_volume_share,largest_grain_volume_share,crumbs,slivers,grains_in_pieces\n";
+         "small_grains_volume_share,largest_grain_volume_share,crumbs,specks,slivers,grains_in_"
+         "pieces\n";
   csv.precision(9);
   for (const SweepRow& row : rows)
     csv << row.gamma << ',' << toString(row.mode) << ',' << row.delta << ',' << row.theta << ','
         << row.grains << ',' << row.medianVoxels << ',' << row.smallGrains << ','
         << share(row.smallGrains, row.grains) << ',' << share(row.smallVoxels, row.objectVoxels)
         << ',' << share(row.largestVoxels, row.objectVoxels) << ',' << row.flaws.crumbs << ','
-        << row.flaws.slivers << ',' << row.flaws.inPieces << '\n';
+        << row.flaws.specks << ',' << row.flaws.slivers << ',' << row.flaws.inPieces << '\n';
   return csv.str();
 }
 
@@ -154,10 +155,11 @@ void run(const Options& o, const Common& common) {
 
 void addSweep(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<Options>();
-  Verb verb = addVerb(command, common, "sweep", "grains for many gamma, theta and merge modes",
-                      "vdb_madf sweep scan.tif sweep.csv --phase 1 --plot sweep.svg --gamma 0,20");
+  Verb verb =
+      addVerb(command, common, "sweep", "grains for many gamma, theta, delta and merge modes",
+              "vdb_madf sweep scan.tif sweep.csv --phase 1 --plot sweep.svg --gamma 0,20");
   verb.option("IN", o->input.path, "any readable volume").required();
-  verb.option("OUT.csv", o->out, "a line per gamma, merge mode and theta").required();
+  verb.option("OUT.csv", o->out, "a line per gamma, merge mode, delta and theta").required();
   o->input.addSelection(verb);
   o->input.addRaw(verb);
   o->input.addDomain(verb);

@@ -5,7 +5,10 @@
 
 #include <openvdb/Metadata.h>
 
+#include <string>
+
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/limits.h"
 
 namespace vdb_madf {
 
@@ -25,6 +28,10 @@ std::optional<CoordBBox> storedDomain(const openvdb::MetaMap& metadata) {
     throw InvalidInput("metadata has only one of madf_domain_min and madf_domain_max");
   const CoordBBox box{Coord(lower->value()), Coord(upper->value())};
   if (box.empty()) throw InvalidInput("metadata madf_domain_min exceeds madf_domain_max");
+  for (int axis = 0; axis < 3; ++axis)
+    if (box.min()[axis] < -kMaxCoordinate || box.max()[axis] > kMaxCoordinate)
+      throw InvalidInput("metadata madf_domain_min or madf_domain_max lies beyond +-" +
+                         std::to_string(kMaxCoordinate));
   return box;
 }
 

@@ -4,10 +4,12 @@
 #include "vdb_madf/method/cavities.h"
 
 #include <algorithm>
+#include <string>
 #include <unordered_map>
 
 #include "vdb_madf/base/detail/disjoint_sets.h"
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/errors.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 
 namespace vdb_madf {
@@ -48,11 +50,15 @@ class CavityFinder {
   }
 
   Cavities run(Interrupter* interrupter) {
+    constexpr size_t kPoll = 1024;
     findPieces(interrupter);
     sets_.emplace(0);
     for (const Piece& piece : pieces_) addNode(int64_t(detail::countVoxels(piece.mask)));
-    for (uint32_t i = 0; i < pieces_.size(); ++i) joinPiece(i);
-    for (size_t leaf = 0; leaf < object_.leafCount(); ++leaf) addEmptyLeavesBeside(leaf);
+    for (size_t leaf = 0; leaf < object_.leafCount(); ++leaf) {
+      if (leaf % kPoll == 0 && interrupter && interrupter->wasInterrupted(-1)) throw Interrupted();
+      for (uint32_t i = firstPiece_[leaf]; i < firstPiece_[leaf + 1]; ++i) joinPiece(i);
+      addEmptyLeavesBeside(leaf);
+    }
     return collect();
   }
 
@@ -80,6 +86,7 @@ class CavityFinder {
   void findPieces(Interrupter* interrupter) {
     constexpr size_t kChunk = 1024;
     std::vector<std::vector<Piece>> chunks((object_.leafCount() + kChunk - 1) / kChunk);
+    firstPiece_.assign(object_.leafCount() + 1, 0);
     detail::parallelFor(chunks.size(), 1, interrupter, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         const size_t stop = std::min(object_.leafCount(), (i + 1) * kChunk);
@@ -91,8 +98,16 @@ class CavityFinder {
           });
       }
     });
-    for (const std::vector<Piece>& chunk : chunks)
+    size_t count = 0;
+    for (const std::vector<Piece>& chunk : chunks) count += chunk.size();
+    pieces_.reserve(count);
+    for (std::vector<Piece>& chunk : chunks) {
       pieces_.insert(pieces_.end(), chunk.begin(), chunk.end());
+      chunk = {};
+    }
+    for (const Piece& piece : pieces_) ++firstPiece_[piece.leaf + 1];
+    for (size_t leaf = 0; leaf < object_.leafCount(); ++leaf)
+      firstPiece_[leaf + 1] += firstPiece_[leaf];
   }
 
   uint32_t addNode(int64_t size) {
@@ -116,7 +131,8 @@ class CavityFinder {
   /// Joins what a piece touches in the six leaves around it.
   void joinPiece(uint32_t i) {
     const Piece& piece = pieces_[i];
-    for (size_t side = 0; side < 6; ++side) {
+    // Once it is known to be no cavity, those beside it find that out from their own side.
+    for (size_t side = 0; side < 6 && !isOutside(i); ++side) {
       Mask touched = detail::across(piece.mask, side);
       if (!detail::anyVoxel(touched)) continue;
       const uint32_t next = object_.neighbors(piece.leaf)[side];
@@ -145,13 +161,10 @@ class CavityFinder {
   void joinTouched(uint32_t node, uint32_t leaf, const Mask& voxels) {
     Mask rest = background(leaf);
     for (size_t x = 0; x < 8; ++x) rest[x] &= voxels[x];
-    const auto first =
-        std::lower_bound(pieces_.begin(), pieces_.end(), leaf,
-                         [](const Piece& piece, uint32_t l) { return piece.leaf < l; });
-    for (auto piece = first; piece != pieces_.end() && piece->leaf == leaf; ++piece) {
-      if (!detail::meet(piece->mask, rest)) continue;
-      unite(node, uint32_t(piece - pieces_.begin()));
-      rest = without(rest, piece->mask);
+    for (uint32_t i = firstPiece_[leaf]; i < firstPiece_[leaf + 1] && detail::anyVoxel(rest); ++i) {
+      if (!detail::meet(pieces_[i].mask, rest)) continue;
+      unite(node, i);
+      rest = without(rest, pieces_[i].mask);
     }
     if (detail::anyVoxel(rest)) markOutside(node);  // a large piece
   }
@@ -191,6 +204,9 @@ class CavityFinder {
     const uint32_t node = addNode(int64_t(detail::countVoxels(mask)));
     if (size_[node] >= fillHoles_ || reachesFace(origin, mask)) markOutside(node);
     empty_.emplace(origin, node);
+    if (empty_.size() > kMaxLeaves)
+      throw InvalidInput("cavities of fewer than " + std::to_string(fillHoles_) +
+                         " voxels take too many leaf nodes to look for: fill smaller ones");
     return node;
   }
 
@@ -219,26 +235,36 @@ class CavityFinder {
   std::optional<CoordBBox> domain_;
   std::optional<CoordBBox> inner_;  // where all of a cavity lies
   int64_t fillHoles_;
-  std::vector<Piece> pieces_;  // ascending by leaf; the first nodes
+  std::vector<Piece> pieces_;         // ascending by leaf; the first nodes
+  std::vector<uint32_t> firstPiece_;  // per leaf; one more at the end
   std::unordered_map<Coord, uint32_t, CoordHash> empty_;
   std::optional<detail::DisjointSets> sets_;
   std::vector<int64_t> size_;  // of a component, at its root
   std::vector<bool> outside_;  // no cavity, at the root
 };
 
+/// Beyond 64 bits in domains far larger than any object.
+__int128 volumeOf(const CoordBBox& box) {
+  __int128 volume = 1;
+  for (int axis = 0; axis < 3; ++axis) volume *= int64_t(box.max()[axis]) - box.min()[axis] + 1;
+  return volume;
+}
+
 }  // namespace
 
 int64_t defaultFillHoles(const std::optional<CoordBBox>& domain) {
-  if (!domain) return kFillHoles;
-  const Coord dim = domain->dim();
-  return std::min({dim.x(), dim.y(), dim.z()}) == 1 ? 0 : kFillHoles;
+  for (int axis = 0; domain && axis < 3; ++axis)
+    if (domain->min()[axis] == domain->max()[axis]) return 0;
+  return kFillHoles;
 }
 
 Cavities findCavities(const LeafIndex& object, const std::optional<CoordBBox>& domain, bool open,
                       int64_t fillHoles, Interrupter* interrupter) {
   if (fillHoles <= 1 || object.voxelCount() == 0) return {};
+  const __int128 background = open && domain ? volumeOf(*domain) - object.voxelCount() : 0;
+  if (open && background < fillHoles) return {};  // all of it would be filled
   Cavities found = CavityFinder(object, domain, open, fillHoles).run(interrupter);
-  if (open && domain && uint64_t(object.voxelCount() + found.voxels) == domain->volume()) return {};
+  if (open && background == found.voxels) return {};
   return found;
 }
 

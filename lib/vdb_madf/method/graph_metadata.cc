@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <istream>
 #include <limits>
 #include <memory>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/limits.h"
 #include "vdb_madf/method/detail/graph_metadata_type.h"
 
 namespace vdb_madf {
@@ -38,8 +40,13 @@ uint64_t byteCount(uint64_t nodes, uint64_t edges) {
 /// The rule that the graph breaks; empty if none.
 std::string brokenRule(const ManifoldGraph& graph) {
   const auto& nodes = graph.nodes;
+  constexpr int64_t kMaxVoxels = int64_t(kMaxLeaves) * 512;
   for (size_t i = 0; i < nodes.size(); ++i) {
     if (nodes[i].squaredRadius < 0 || nodes[i].voxels < 0) return "a node has a negative size";
+    if (nodes[i].voxels > kMaxVoxels) return "a node has more voxels than fit in a grid";
+    for (int axis = 0; axis < 3; ++axis)
+      if (std::abs(int64_t(nodes[i].position[axis])) > kMaxCoordinate)
+        return "a node lies beyond the largest coordinate";
     if (i > 0 && !(nodes[i - 1].position < nodes[i].position)) return "its nodes are out of order";
   }
   const auto& edges = graph.edges;

@@ -68,7 +68,8 @@ std::vector<SweepRow> parameterSweep(const MaskGrid& object, const SweepOptions&
     segmentOptions.fillHoles = options.fillHoles;
     segmentOptions.tidy = 0;
     segmentOptions.keepManifold = true;
-    const Segmentation segmentation = segment(object, segmentOptions, interrupter);
+    Segmentation segmentation = segment(object, segmentOptions, interrupter);
+    segmentation.grain.reset();
     const ManifoldGraph& graph = segmentation.graph;
     const LeafIndex index = detail::topologyOf(*segmentation.manifold);
     for (const MergeMode mode : options.modes)

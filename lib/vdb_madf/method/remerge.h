@@ -9,8 +9,8 @@
 namespace vdb_madf {
 
 /// Other grains from a stored `manifold` grid (segment with keepManifold) and the graph on it:
-/// equal to a fresh segmentation with these merge options and rounds of tidying, without its voxel
-/// work.
+/// equal to a fresh segmentation with these merge options and rounds of tidying, without
+/// distances and power map.
 /// @return the grid `grain`, with the manifold grid's metadata (less the graph) brought up to date.
 /// @throw InvalidInput if the grid carries no graph or does not fit it; Interrupted.
 Int32Grid::Ptr remerge(const Int32Grid& manifold, const MergeOptions& options = {},

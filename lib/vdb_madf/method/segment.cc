@@ -27,9 +27,9 @@ namespace vdb_madf {
 
 namespace {
 
-void checkMemory(const MaskGrid& object, const SegmentOptions& options) {
+void checkMemory(const ObjectSize& size, const SegmentOptions& options) {
   if (options.maxMemory == 0) return;
-  const int64_t needed = segmentMemory(objectSize(object), options);
+  const int64_t needed = segmentMemory(size, options);
   if (needed <= options.maxMemory) return;
   throw InvalidInput("segmenting needs about " + std::to_string(needed) + " bytes of memory, and " +
                          std::to_string(options.maxMemory) +
@@ -116,7 +116,7 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
   Segmentation result;
   SegmentCounts& counts = result.counts;
   const bool filter = options.gamma > 1;
-  checkMemory(object, options);
+  if (options.maxMemory > 0) checkMemory(objectSize(object), options);
   result.domain = options.domain ? options.domain : storedDomain(object);
   result.fillHoles = options.fillHoles.value_or(defaultFillHoles(result.domain));
   result.tidy = options.tidy;
@@ -138,6 +138,7 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
   }
   const Body body = fillCavities(std::move(objectIndex), cavities);
   const LeafIndex& index = body.index;
+  checkMemory({int64_t(index.leafCount()), index.voxelCount()}, options);
 
   stages.begin("squared_distance");
   SquaredDistance distance = squaredDistance(index, obstacles, &stages);

@@ -70,7 +70,7 @@ struct Segmentation {
   Int32Grid::Ptr distanceSquared;    ///< D, if kept; of the body, on X
   Int32Grid::Ptr power;              ///< pi' = least power, if kept
   Int32Grid::Ptr manifold;           ///< critical points 1..K, if kept
-  std::vector<MedialBall> balls;     ///< lexicographic centres, if kept
+  std::vector<MedialBall> balls;     ///< lexicographic centers, if kept; some in cavities
   ManifoldGraph graph;               ///< node i is critical point i + 1; voxels: those of X
   std::vector<int64_t> grainVoxels;  ///< voxels of grain g at g - 1
   SegmentCounts counts;

@@ -13,7 +13,7 @@ namespace {
 constexpr double kIndex = 128;    // origin, mask, neighbours, ranks
 constexpr double kVoxelSet = 96;  // one bit per voxel, and ranks
 constexpr double kGrid = 2224;    // an Int32 leaf as the heap holds it, and its share of the tree
-constexpr double kPieces = 160;   // connected pieces within leaves
+constexpr double kPieces = 160;   // connected pieces within leaves, of the object or of labels
 
 // Bytes per object voxel.
 constexpr double kPower = 4, kSite = 4, kManifold = 4;
@@ -61,6 +61,7 @@ int64_t segmentMemory(const ObjectSize& size, const SegmentOptions& options) {
     peak = std::max(peak, kept + (kPower + kManifold) * voxels + sets);
   }
   if (options.keepManifold) kept += perGrid;
+  peak = std::max(peak, kept + sets + kManifold * voxels + kPieces * leaves);  // tidy
   // The labels' grid grows while the manifolds shrink.
   peak = std::max(peak, kept + sets + std::max(kManifold * voxels, perGrid));
   if (options.keepManifold) peak = std::max(peak, kept + sets + kManifold * voxels);

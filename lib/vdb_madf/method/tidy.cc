@@ -4,6 +4,7 @@
 #include "vdb_madf/method/tidy.h"
 
 #include <algorithm>
+#include <string>
 #include <tuple>
 
 #include "vdb_madf/base/detail/parallel.h"
@@ -261,7 +262,9 @@ void connect(const LeafIndex& index, const std::vector<VoxelId>& anchor, GrainLa
 }  // namespace
 
 void checkTidy(int rounds) {
-  if (rounds < 0) throw InvalidInput("tidy is a number of rounds: it must not be negative");
+  if (rounds < 0 || rounds > kMaxTidy)
+    throw InvalidInput("tidy is a number of rounds: it must lie between 0 and " +
+                       std::to_string(kMaxTidy));
 }
 
 void tidy(const LeafIndex& index, int rounds, GrainLabels& grains, Interrupter* interrupter) {

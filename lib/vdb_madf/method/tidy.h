@@ -11,9 +11,10 @@
 
 namespace vdb_madf {
 
-constexpr int kTidy = 2;  ///< rounds of smoothing, by default
+constexpr int kTidy = 2;        ///< rounds of smoothing, by default
+constexpr int kMaxTidy = 1000;  ///< labels may go to and fro for ever
 
-/// @throw InvalidInput if rounds is negative.
+/// @throw InvalidInput unless rounds is in [0, kMaxTidy].
 void checkTidy(int rounds);
 
 /// Grain labels by voxel, and what is kept of each grain g at g - 1.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <queue>
 
@@ -13,6 +14,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/leaves/leaf_index.h"
+#include "vdb_madf/method/detail/metric.h"
 
 namespace vdb_madf {
 
@@ -156,6 +158,42 @@ struct Grains {
   std::vector<std::vector<Clump::Ball>> balls;
 };
 
+/// The label nearest to a ball's center, within the ball and kMaxReach (tie: the smaller coordinate);
+/// 0: none. In cubes of growing size.
+int32_t nearestLabel(const openvdb::tree::ValueAccessor<const Int32Tree>& labels,
+                     const Clump::Ball& ball) {
+  constexpr int kMaxReach = 16;  // a cavity is small
+  int32_t label = 0;
+  int64_t nearest = ball.squaredRadius;
+  for (int reach = 1; reach <= kMaxReach && int64_t(reach) * reach < nearest; ++reach) {
+    CoordBBox cube(ball.center, ball.center);
+    cube.expand(reach);
+    for (auto p = cube.begin(); p; ++p) {
+      const Coord away = *p - ball.center;
+      if (std::max({std::abs(away.x()), std::abs(away.y()), std::abs(away.z())}) != reach) continue;
+      const int64_t square = detail::squaredBetween(*p, ball.center);
+      int32_t value = 0;
+      if (square >= nearest || !labels.probeValue(*p, value) || value <= 0) continue;
+      nearest = square;
+      label = value;
+    }
+  }
+  return label;
+}
+
+/// Gives the balls whose center has no label, in filled cavities, to the grain around it.
+void collectCavityBalls(const Int32Tree& labels, const Int32Tree& balls,
+                        const detail::LabelBlocks& blocks, Grains& grains) {
+  const openvdb::tree::ValueAccessor<const Int32Tree> labelAt(labels);
+  for (auto ball = balls.cbeginValueOn(); ball; ++ball) {
+    int32_t here = 0;
+    if (*ball <= 0 || (labelAt.probeValue(ball.getCoord(), here) && here > 0)) continue;
+    const Clump::Ball own{ball.getCoord(), *ball};
+    if (const int32_t label = nearestLabel(labelAt, own))
+      grains.balls[blocks.number(label)].push_back(own);
+  }
+}
+
 Grains collect(const Int32Tree& labels, const Int32Tree& balls, const detail::LabelBlocks& blocks) {
   Grains grains{std::vector<CoordBBox>(blocks.labels().size()),
                 std::vector<std::vector<Clump::Ball>>(blocks.labels().size())};
@@ -174,6 +212,7 @@ Grains collect(const Int32Tree& labels, const Int32Tree& balls, const detail::La
         grains.balls[grain].push_back({p, ballLeaf->getValue(i)});
     }
   }
+  collectCavityBalls(labels, balls, blocks, grains);
   return grains;
 }
 

@@ -38,7 +38,8 @@ struct ClumpOptions {
 
 /// A clump per label (active, > 0), ascending. \p balls: active at the centres of the medial balls,
 /// value = squared radius (grid `balls` of a segmentation); a ball belongs to the grain of its
-/// centre. Balls are chosen greedily, each the one that covers most voxels of the grain not covered
+/// center, or, if that lies in a filled cavity, to the nearest within the ball and 16 voxels (tie: at
+/// the smaller coordinate). Balls are chosen greedily, each the one that covers most voxels of the grain not covered
 /// yet (tie: larger, then smaller centre), until enough is covered or there are `mostBalls`.
 /// Memory: one bit per voxel of the box of each grain that a thread works on. The same for any
 /// number of threads.
