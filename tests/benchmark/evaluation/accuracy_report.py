@@ -75,8 +75,7 @@ def describe(its, quick):
         low, high, rounds = its.bed
         return f"balls of radii {low}:{high} fallen into a bed, {rounds} rounds of curvature flow"
     count = f" --count {its.count[quick]}" if its.count else ""
-    noise = f", with CT noise (blur {its.noise[0]}, level {its.noise[1]})" if its.noise else ""
-    return f"`generate {its.generate}{count}`{noise}"
+    return f"`generate {its.generate}{count}`"
 
 
 def cell(value):

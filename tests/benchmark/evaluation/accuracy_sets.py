@@ -3,9 +3,7 @@ import dataclasses
 import subprocess
 import sys
 
-import numpy
-
-from evaluation import beds, methods as m, scan_noise
+from evaluation import beds, methods as m
 
 
 @dataclasses.dataclass
@@ -14,7 +12,6 @@ class Set:
     name: str
     generate: str = ""  # a kind of `vdb_madf generate` and its options
     count: tuple = (90, 33)  # grains: at 140^3, and at 100^3 (--quick); None: the kind has no such option
-    noise: tuple = ()  # blur, level: see scan_noise
     bed: tuple = ()  # least and largest radius, rounds: see beds
 
 
@@ -35,9 +32,9 @@ SETS = [
     Set("rough surfaces", "0.6", "sintered --roughness 0.6 --radius 12:18"),
     Set("rough surfaces", "surface 1.5:8", "sintered --surface 1.5:8 --radius 12:18"),
     Set("noise", "roughness 1", "sintered --roughness 1 --radius 12:18"),
-    Set("noise", "scan, 0.1", "sintered --radius 12:18", noise=(1, 0.1)),
-    Set("noise", "scan, 0.2", "sintered --radius 12:18", noise=(1, 0.2)),
-    Set("noise", "scan, 0.3", "sintered --radius 12:18", noise=(1, 0.3)),
+    Set("noise", "scan, 0.1", "sintered --radius 12:18 --scan-noise 1:0.1"),
+    Set("noise", "scan, 0.2", "sintered --radius 12:18 --scan-noise 1:0.2"),
+    Set("noise", "scan, 0.3", "sintered --radius 12:18 --scan-noise 1:0.3"),
 ]
 GROUPS = list(dict.fromkeys(s.group for s in SETS))
 
@@ -64,6 +61,4 @@ def sample(its, quick, seed, work):
             print(done.stderr, end="", file=sys.stderr)
             done.check_returncode()
         solid, truth = (m.dense(work / "set.vdb", work, "--grid", grid) for grid in ("object", "truth"))
-    if its.noise:
-        return scan_noise.noisy(truth, *its.noise, seed)
     return solid > 0, truth
