@@ -149,6 +149,13 @@ std::optional<uint32_t> LeafIndex::findLeaf(const Coord& origin) const {
   return uint32_t(found - origins_.begin());
 }
 
+std::optional<VoxelId> LeafIndex::findVoxel(const Coord& p) const {
+  const auto leaf = findLeaf(p & ~7);
+  const uint32_t offset = uint32_t((p.x() & 7) * 64 + (p.y() & 7) * 8 + (p.z() & 7));
+  if (!leaf || !detail::holds(masks_[*leaf], offset)) return std::nullopt;
+  return *leaf * 512 + offset;
+}
+
 void LeafIndex::finish() {
   neighbors_.assign(leafCount(), {kNone, kNone, kNone, kNone, kNone, kNone});
   firstRank_.resize(leafCount() + 1);

@@ -70,6 +70,8 @@ class LeafIndex {
 
   /// The leaf at an origin, by bisection.
   std::optional<uint32_t> findLeaf(const Coord& origin) const;
+  /// The object voxel at a place, by bisection.
+  std::optional<VoxelId> findVoxel(const Coord& p) const;
 
   /// Object voxels before a leaf, and in it.
   size_t firstRank(size_t leaf) const { return firstRank_[leaf]; }

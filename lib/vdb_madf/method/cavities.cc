@@ -52,7 +52,6 @@ class CavityFinder {
   Cavities run(Interrupter* interrupter) {
     constexpr size_t kPoll = 1024;
     findPieces(interrupter);
-    sets_.emplace(0);
     for (const Piece& piece : pieces_) addNode(int64_t(detail::countVoxels(piece.mask)));
     for (size_t leaf = 0; leaf < object_.leafCount(); ++leaf) {
       if (leaf % kPoll == 0 && interrupter && interrupter->wasInterrupted(-1)) throw Interrupted();
@@ -113,20 +112,20 @@ class CavityFinder {
   uint32_t addNode(int64_t size) {
     size_.push_back(size);
     outside_.push_back(false);
-    return sets_->add();
+    return sets_.add();
   }
 
   void unite(uint32_t a, uint32_t b) {
-    a = sets_->find(a);
-    b = sets_->find(b);
+    a = sets_.find(a);
+    b = sets_.find(b);
     if (a == b) return;
-    sets_->unite(a, b);
-    const uint32_t root = sets_->find(a);
+    sets_.unite(a, b);
+    const uint32_t root = sets_.find(a);
     size_[root] = size_[a] + size_[b];
     outside_[root] = outside_[a] || outside_[b] || size_[root] >= fillHoles_;
   }
-  void markOutside(uint32_t node) { outside_[sets_->find(node)] = true; }
-  bool isOutside(uint32_t node) { return outside_[sets_->find(node)]; }
+  void markOutside(uint32_t node) { outside_[sets_.find(node)] = true; }
+  bool isOutside(uint32_t node) { return outside_[sets_.find(node)]; }
 
   /// Joins what a piece touches in the six leaves around it.
   void joinPiece(uint32_t i) {
@@ -213,7 +212,7 @@ class CavityFinder {
   Cavities collect() {
     Cavities found;
     for (uint32_t node = 0; node < size_.size(); ++node) {
-      if (sets_->find(node) != node || outside_[node]) continue;
+      if (sets_.find(node) != node || outside_[node]) continue;
       ++found.count;
       found.voxels += size_[node];
     }
@@ -238,7 +237,7 @@ class CavityFinder {
   std::vector<Piece> pieces_;         // ascending by leaf; the first nodes
   std::vector<uint32_t> firstPiece_;  // per leaf; one more at the end
   std::unordered_map<Coord, uint32_t, CoordHash> empty_;
-  std::optional<detail::DisjointSets> sets_;
+  detail::DisjointSets sets_{0};
   std::vector<int64_t> size_;  // of a component, at its root
   std::vector<bool> outside_;  // no cavity, at the root
 };

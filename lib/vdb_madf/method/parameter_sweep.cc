@@ -75,6 +75,11 @@ std::vector<SweepRow> parameterSweep(const MaskGrid& object, const SweepOptions&
     for (const MergeMode mode : options.modes)
       for (const int delta : options.deltas)
         for (const double theta : options.thetas) {
+          if (mode == MergeMode::angle && delta != options.deltas.front()) {  // it has no delta
+            rows.push_back(rows[rows.size() - options.thetas.size()]);
+            rows.back().delta = delta;
+            continue;
+          }
           SweepRow row;
           row.gamma = gamma;
           row.mode = mode;

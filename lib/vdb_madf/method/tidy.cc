@@ -12,6 +12,7 @@
 #include "vdb_madf/leaves/detail/connected_components.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/leaf_neighborhood.h"
+#include "vdb_madf/leaves/detail/leaf_values.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 #include "vdb_madf/method/detail/label_block.h"
 #include "vdb_madf/method/detail/metric.h"
@@ -64,12 +65,9 @@ std::vector<VoxelId> findAnchors(const LeafIndex& index, const GrainLabels& grai
   std::vector<VoxelId> anchor(grains.representative.size(), kNoVoxel);
   std::vector<uint32_t> lost;
   for (uint32_t g = 0; g < anchor.size(); ++g) {
-    const Coord& c = grains.representative[g];
-    const auto leaf = index.findLeaf(c & ~7);
-    const uint32_t offset = uint32_t((c.x() & 7) * 64 + (c.y() & 7) * 8 + (c.z() & 7));
-    const VoxelId id = leaf.value_or(0) * 512 + offset;
-    if (leaf && detail::isObject(index, id) && grains.label[index.rank(id)] == g + 1)
-      anchor[g] = id;
+    const auto voxel = index.findVoxel(grains.representative[g]);
+    if (voxel && grains.label[index.rank(*voxel)] == g + 1)
+      anchor[g] = *voxel;
     else
       lost.push_back(g);
   }
@@ -101,16 +99,13 @@ class Smoothing {
   /// The leaves with more than one label, or beside a leaf with another one.
   std::vector<uint32_t> leavesWithInterfaces(Interrupter* interrupter) const {
     std::vector<uint32_t> only(index_.leafCount());  // label of all voxels of a leaf; 0: several
-    detail::parallelFor(only.size(), detail::kLeafGrain, interrupter,
-                        [&](size_t begin, size_t end) {
-                          for (size_t leaf = begin; leaf < end; ++leaf) {
-                            const uint32_t* labels = grains_.label.data() + index_.firstRank(leaf);
-                            uint32_t differ = 0;
-                            for (size_t i = 0; i < index_.leafVoxels(leaf); ++i)
-                              differ |= labels[i] ^ labels[0];
-                            only[leaf] = differ ? 0 : labels[0];
-                          }
-                        });
+    detail::parallelFor(
+        only.size(), detail::kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+          for (size_t leaf = begin; leaf < end; ++leaf) {
+            const uint32_t* labels = grains_.label.data() + index_.firstRank(leaf);
+            only[leaf] = detail::allEqual(labels, index_.leafVoxels(leaf)) ? labels[0] : 0;
+          }
+        });
     std::vector<uint32_t> leaves;
     for (uint32_t leaf = 0; leaf < only.size(); ++leaf) {
       bool alone = only[leaf] != 0;

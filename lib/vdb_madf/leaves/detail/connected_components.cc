@@ -18,13 +18,6 @@ namespace {
 
 using Pieces = std::vector<ConnectedComponents::Piece>;
 
-/// Are all values the first one?
-VDB_MADF_SIMD bool allEqual(const uint32_t* values, size_t count) {
-  uint32_t differ = 0;
-  for (size_t i = 0; i < count; ++i) differ |= values[i] ^ values[0];
-  return differ == 0;
-}
-
 /// The voxels of a leaf that have a label.
 VDB_MADF_SIMD LeafIndex::Mask equalTo(uint32_t label, const uint32_t* dense) {
   uint8_t equal[512];

@@ -78,6 +78,12 @@ __attribute__((target("arch=x86-64-v4"))) uint32_t* packV4(const LeafIndex::Mask
 
 }  // namespace
 
+VDB_MADF_SIMD bool allEqual(const uint32_t* values, size_t count) {
+  uint32_t differ = 0;
+  for (size_t i = 0; i < count; ++i) differ |= values[i] ^ values[0];
+  return differ == 0;
+}
+
 void expandLeaf(const LeafIndex::Mask& mask, const uint32_t* values, uint32_t* dense) {
 #ifdef VDB_MADF_SIMD_V4
   if (__builtin_cpu_supports("avx512vl")) return expandV4(mask, values, dense);

@@ -17,6 +17,9 @@ void expandLeaf(const LeafIndex::Mask& mask, const uint32_t* values, uint32_t* d
 /// The way back: the dense values of the object voxels, one after the other.
 void packLeaf(const LeafIndex::Mask& mask, const uint32_t* dense, uint32_t* values);
 
+/// Are all values the first one?
+bool allEqual(const uint32_t* values, size_t count);
+
 inline void expandLeaf(const LeafIndex::Mask& mask, const int32_t* values, int32_t* dense) {
   expandLeaf(mask, reinterpret_cast<const uint32_t*>(values), reinterpret_cast<uint32_t*>(dense));
 }
