@@ -56,7 +56,7 @@ def grains(solid, **parameters):
     """
     chosen = {**DEFAULT, **parameters}
     solid = numpy.asarray(solid, bool)
-    curvature = mean_curvature(solid, chosen.pop("windows"), chosen.pop("tolerance"))
+    curvature = mean_curvature(Normals(solid), chosen.pop("windows"), chosen.pop("tolerance"))
     return spread(solid, regions(curvature, **chosen))
 
 
@@ -66,8 +66,9 @@ def tuned(truth):
     Least is the number of true grains without a region of their own and of regions beyond these; first, of equals.
     """
     best, solid = None, truth > 0
+    normals = Normals(solid)
     for style, its in STYLES.items():
-        curvature = mean_curvature(solid, its["windows"], its["tolerance"])
+        curvature = mean_curvature(normals, its["windows"], its["tolerance"])
         for threshold in THRESHOLDS:
             found = regions(curvature, threshold, its["widen"], DEFAULT["least"])
             miss = mismatches(truth, found)
@@ -79,7 +80,8 @@ def tuned(truth):
 def mismatches(truth, found):
     """True grains and regions that do not have more than half of each other's voxels in regions."""
     at = found > 0
-    pairs, shared = numpy.unique(numpy.stack([truth[at], found[at]]), axis=1, return_counts=True)
+    pairs, shared = numpy.unique(truth[at].astype(numpy.int64) << 32 | found[at], return_counts=True)
+    pairs = pairs >> 32, pairs & 0xffffffff
     of_grain, of_region = (numpy.bincount(ids, shared) for ids in pairs)
     matched = numpy.sum((2 * shared > of_grain[pairs[0]]) & (2 * shared > of_region[pairs[1]]))
     true = numpy.unique(truth[truth > 0]).size
@@ -91,25 +93,40 @@ def unit(vectors):
     return [v / numpy.maximum(length, 1e-6) for v in vectors], length
 
 
-def mean_curvature(solid, windows, tolerance):
-    """Steps 1 and 2: float32, not a number but at surface voxels."""
-    inside = ndimage.distance_transform_edt(solid).astype(numpy.float32)
-    outside = ndimage.distance_transform_edt(~solid).astype(numpy.float32)
-    distance = numpy.where(solid, 0.5 - inside, outside - 0.5)  # grows outward; 0 between two voxels
-    band = (numpy.abs(distance) <= BAND).astype(numpy.float32)
-    gradient = unit([g * band for g in numpy.gradient(distance)])[0]
-    at = numpy.nonzero(solid & ndimage.binary_dilation(~solid, FULL))
-    values = numpy.zeros(len(at[0]), numpy.float32)
-    agreeing = numpy.ones(len(at[0]), bool)
+class Normals:
+    """Step 1 but the choice: of each surface voxel, for a window, half the divergence of the averaged normals and the
+    length of their mean."""
+
+    def __init__(self, solid):
+        inside = ndimage.distance_transform_edt(solid).astype(numpy.float32)
+        outside = ndimage.distance_transform_edt(~solid).astype(numpy.float32)
+        distance = numpy.where(solid, 0.5 - inside, outside - 0.5)  # grows outward; 0 between two voxels
+        self.band = (numpy.abs(distance) <= BAND).astype(numpy.float32)
+        self.gradient = unit([g * self.band for g in numpy.gradient(distance)])[0]
+        self.shape = solid.shape
+        self.at = numpy.nonzero(solid & ndimage.binary_dilation(~solid, FULL))
+        self.windows = {}  # what was averaged already
+
+    def averaged(self, window):
+        if window not in self.windows:
+            normal, length = unit([ndimage.gaussian_filter(g, window, truncate=TRUNCATE) for g in self.gradient])
+            weight = ndimage.gaussian_filter(self.band, window, truncate=TRUNCATE)
+            divergence = sum(numpy.gradient(n, axis=axis) for axis, n in enumerate(normal))
+            self.windows[window] = divergence[self.at] / 2, length[self.at], weight[self.at]
+        return self.windows[window]
+
+
+def mean_curvature(normals, windows, tolerance):
+    """Step 2, with the largest window that agrees: float32, not a number but at surface voxels."""
+    values = numpy.zeros(len(normals.at[0]), numpy.float32)
+    agreeing = numpy.ones(len(normals.at[0]), bool)
     for i, window in enumerate(windows):
-        normal, length = unit([ndimage.gaussian_filter(g, window, truncate=TRUNCATE) for g in gradient])
+        curvature, length, weight = normals.averaged(window)
         if i > 0:  # the smallest window needs no agreement
-            weight = ndimage.gaussian_filter(band, window, truncate=TRUNCATE)
-            agreeing &= length[at] >= numpy.cos(numpy.deg2rad(tolerance)) * weight[at]
-        divergence = sum(numpy.gradient(n, axis=axis) for axis, n in enumerate(normal))
-        values[agreeing] = divergence[at][agreeing] / 2
-    curvature = numpy.full(solid.shape, numpy.nan, numpy.float32)
-    curvature[at] = values
+            agreeing &= length >= numpy.cos(numpy.deg2rad(tolerance)) * weight
+        values[agreeing] = curvature[agreeing]
+    curvature = numpy.full(normals.shape, numpy.nan, numpy.float32)
+    curvature[normals.at] = values
     return curvature
 
 
