@@ -15,7 +15,8 @@ IMAGES = ("tif", "raw", "mhd", "mha", "nrrd", "npy")
 TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
 VERBS = ("generate", "convert", "segment", "remerge", "sweep", "measure", "compare", "render", "export", "info")
 KINDS = {"spheres": "--count 6 --radius 6:9", "pack": "--radius 4:8", "snow": "--length 12",
-         "sintered": "--count 6 --radius 7:9", "particles": "--count 6 --radius 7:9"}
+         "sintered": "--count 6 --radius 7:9", "particles": "--count 6 --radius 7:9",
+         "bed": "--radius 7:9 --rounds 2"}
 
 
 def layout(name, size="32x32x32", kind="uint8"):
@@ -59,7 +60,8 @@ def generate():
             "sintered --count 9 --radius 7 --roughness 0", "particles --count 9 --radius 6:8 --shape balls --neck 0.7",
             "particles --count 9 --radius 4:9 --lognormal 0.3 --shape plates",
             "particles --count 9 --radius 6:8 --shape prisms --surface 1:5",
-            "spheres --count 9 --radius 6:8 --surface 1.5:4 --scan-noise 0.8:0.1", "snow --scan-noise 0:0.3:2", "particles --count 9 --radius 6 --shape polyhedra")):
+            "spheres --count 9 --radius 6:8 --surface 1.5:4 --scan-noise 0.8:0.1", "snow --scan-noise 0:0.3:2",
+            "particles --count 9 --radius 6 --shape polyhedra", "bed --radius 5:9 --rounds 0 --surface 1:4")):
         kind, rest = options.split(" ", 1)
         yield f"generate {kind} option{number}.vdb --size 40 {rest}"
     yield "generate snow one.vdb --size 1 --length 4"

@@ -37,7 +37,7 @@ TEST_CASE("cli: help names every verb and gives an example", "[cli]") {
     CHECK(bench.mustRun(verb + " --help").find("Example:\n  vdb_madf " + verb) !=
           std::string::npos);
   }
-  for (const std::string kind : {"spheres", "pack", "snow", "sintered", "particles"})
+  for (const std::string kind : {"spheres", "pack", "snow", "sintered", "particles", "bed"})
     CHECK(bench.mustRun("generate " + kind + " --help").find("vdb_madf generate " + kind) !=
           std::string::npos);
   CHECK(bench.mustRun("--version").find("vdb_madf ") == 0);
@@ -49,6 +49,7 @@ TEST_CASE("cli: generate makes the same file of the same seed", "[cli]") {
        {"spheres --size 40 --count 4 --radius 6:8", "pack --size 24 --radius 3:5",
         "snow --dims 24x16x20 --length 8", "sintered --size 40 --count 4 --radius 6:9",
         "particles --size 40 --count 4 --radius 6:9 --shape polyhedra",
+        "bed --size 40 --radius 6:9 --rounds 2",
         "particles --size 40 --count 4 --radius 6:9 --surface 1:5 --scan-noise 1:0.2"}) {
     CAPTURE(kind);
     bench.mustRun("generate " + kind + " a.vdb");

@@ -166,6 +166,7 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"generate sintered out.vdb --size 24 --neck -1", "neck"},
       {"generate particles out.vdb --size 24 --shape cubes", "--shape"},
       {"generate particles out.vdb --size 24 --lognormal 2", "lognormal"},
+      {"generate bed out.vdb --size 24 --rounds -1", "rounds"},
       {"generate spheres out.vdb --size 40 --count 3 --radius 6 --surface 1", "--surface"},
       {"generate sintered out.vdb --size 24 --surface 1:99", "length"},
       {"generate sintered out.vdb --size 24 --scan-noise 1:x", "--scan-noise"},

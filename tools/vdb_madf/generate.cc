@@ -16,6 +16,7 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/images/open_image.h"
+#include "vdb_madf/samples/bed.h"
 #include "vdb_madf/samples/pack.h"
 #include "vdb_madf/samples/particles.h"
 #include "vdb_madf/samples/scan.h"
@@ -40,6 +41,7 @@ struct Options {
   SnowOptions snow;
   SinteredOptions sintered;
   ParticleOptions particles;
+  BedOptions bed;
   ScanOptions scan;
 };
 
@@ -183,6 +185,19 @@ constexpr Kind kKinds[] = {
      },
      [](const Options& options, Interrupter* interrupter) {
        return generateParticles(options.particles, interrupter);
+     }},
+    {"bed", "a bed of balls, sintered by curvature flow, with known grains",
+     "vdb_madf generate bed bed.vdb --size 200 --radius 16:25 --rounds 10",
+     [](Verb verb, Options& options) {
+       verb.option("--radius", options.radius, "radii A:B, voxels (default 12:22)");
+       verb.option("--rounds", options.bed.rounds, "rounds of sintering").showDefault();
+     },
+     [](Options& options) {
+       parseSizeAndSeed(options, options.bed);
+       parseRadius(options, options.bed);
+     },
+     [](const Options& options, Interrupter* interrupter) {
+       return generateBed(options.bed, interrupter);
      }},
 };
 

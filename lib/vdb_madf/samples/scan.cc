@@ -3,18 +3,14 @@
 
 #include "vdb_madf/samples/scan.h"
 
-#include <openvdb/tree/ValueAccessor.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/samples/detail/carried_labels.h"
 #include "vdb_madf/samples/detail/gaussian_blur.h"
-#include "vdb_madf/samples/detail/mask_blocks.h"
+#include "vdb_madf/samples/detail/object_change.h"
 #include "vdb_madf/samples/detail/sample_options.h"
 #include "vdb_madf/samples/detail/surface_distance.h"
 #include "vdb_madf/samples/detail/white_noise.h"
@@ -24,7 +20,6 @@ namespace vdb_madf {
 namespace {
 
 using detail::FloatBox;
-using detail::MaskBlocks;
 
 /// The samples themselves draw from streams 0 and 1.
 constexpr uint64_t kSurfaceStream = 2;
@@ -64,60 +59,10 @@ class SmoothNoise {
   float factor_;
 };
 
-/// 1 in the object, 0 outside; beyond the faces as at the faces.
-FloatBox indicator(const MaskTree& object, const CoordBBox& domain, const CoordBBox& box) {
-  FloatBox field(box);
-  const openvdb::tree::ValueAccessor<const MaskTree> values(object);
-  const auto inside = [&](int i, int axis) {
-    return std::clamp(i, domain.min()[axis], domain.max()[axis]);
-  };
-  for (int x = box.min().x(); x <= box.max().x(); ++x)
-    for (int y = box.min().y(); y <= box.max().y(); ++y) {
-      float* row = field.values.data() + field.offset(x, y, box.min().z());
-      for (int z = box.min().z(); z <= box.max().z(); ++z)
-        *row++ = values.isValueOn({inside(x, 0), inside(y, 1), inside(z, 2)});
-    }
-  return field;
-}
-
-/// The object after one change, block by block; only the blocks at work are held as dense arrays.
-class Change {
- public:
-  explicit Change(const Sample& sample)
-      : object_(sample.object->tree()), domain_(*storedDomain(*sample.object)) {}
-  virtual ~Change() = default;
-
-  MaskTree::Ptr apply(Interrupter* interrupter) const {
-    MaskBlocks blocks(domain_.dim());
-    detail::parallelFor(blocks.count(), 1, interrupter, [&](size_t begin, size_t end) {
-      for (size_t block = begin; block < end; ++block) {
-        const FloatBox field = height(blocks.box(block));
-        size_t i = 0;
-        for (auto p = field.box.begin(); p; ++p, ++i)
-          if (field.values[i] >= 0) blocks.node(block).touchLeaf(*p)->setValueOn(*p);
-      }
-    });
-    return blocks.takeTree();
-  }
-
- protected:
-  /// The object is where this is not negative.
-  virtual FloatBox height(const CoordBBox& box) const = 0;
-
-  FloatBox indicatorIn(CoordBBox box, int margin) const {
-    box.expand(margin);
-    return indicator(object_, domain_, box);
-  }
-
- private:
-  const MaskTree& object_;
-  CoordBBox domain_;
-};
-
-class SurfaceChange : public Change {
+class SurfaceChange : public detail::ObjectChange {
  public:
   SurfaceChange(const Sample& sample, const ScanOptions& options)
-      : Change(sample),
+      : ObjectChange(sample),
         noise_(options.seed, kSurfaceStream, options.surface, options.surfaceLength),
         farthest_(float(kFarthestMove * options.surface)) {}
 
@@ -137,10 +82,10 @@ class SurfaceChange : public Change {
   float farthest_;
 };
 
-class GrayChange : public Change {
+class GrayChange : public detail::ObjectChange {
  public:
   GrayChange(const Sample& sample, const ScanOptions& options)
-      : Change(sample),
+      : ObjectChange(sample),
         kernel_(options.blur == 0 ? std::vector<float>{1} : detail::gaussianKernel(options.blur)),
         noise_(options.seed, kNoiseStream, options.noise, options.noiseLength) {}
 
@@ -156,15 +101,6 @@ class GrayChange : public Change {
   std::vector<float> kernel_;
   SmoothNoise noise_;
 };
-
-Sample changed(const Sample& sample, const Change& change, int reach, Interrupter* interrupter) {
-  Sample result;
-  result.object = MaskGrid::create(change.apply(interrupter));
-  if (sample.truth)
-    result.truth = Int32Grid::create(
-        detail::carriedLabels(sample.truth->tree(), result.object->tree(), reach, interrupter));
-  return result;
-}
 
 void describe(Sample& sample, const Coord& size, const detail::SourceText& source) {
   detail::describe(*sample.object, "object", size, source);
@@ -188,11 +124,11 @@ Sample scanned(const Sample& sample, const ScanOptions& options, Interrupter* in
   Sample result = sample;
   if (options.surface > 0) {
     const SurfaceChange change(result, options);
-    result = changed(result, change, change.reach(), interrupter);
+    result = detail::changed(result, change, change.reach(), interrupter);
     describe(result, size, source.range("surface", options.surface, options.surfaceLength));
   }
   if (options.blur > 0 || options.noise > 0) {
-    result = changed(result, GrayChange(result, options), kNoiseReach, interrupter);
+    result = detail::changed(result, GrayChange(result, options), kNoiseReach, interrupter);
     source.add("scan-noise", detail::shortestDecimal(options.blur) + ":" +
                                  detail::shortestDecimal(options.noise) + ":" +
                                  detail::shortestDecimal(options.noiseLength));

@@ -71,9 +71,6 @@ def write_group(report, runs, quick):
 
 
 def describe(its, quick):
-    if its.bed:
-        low, high, rounds = its.bed
-        return f"balls of radii {low}:{high} fallen into a bed, {rounds} rounds of curvature flow"
     count = f" --count {its.count[quick]}" if its.count else ""
     return f"`generate {its.generate}{count}`"
 

@@ -3,16 +3,15 @@ import dataclasses
 import subprocess
 import sys
 
-from evaluation import beds, methods as m
+from evaluation import methods as m
 
 
 @dataclasses.dataclass
 class Set:
     group: str
     name: str
-    generate: str = ""  # a kind of `vdb_madf generate` and its options
+    generate: str  # a kind of `vdb_madf generate` and its options
     count: tuple = (90, 33)  # grains: at 140^3, and at 100^3 (--quick); None: the kind has no such option
-    bed: tuple = ()  # least and largest radius, rounds: see beds
 
 
 SETS = [
@@ -22,8 +21,8 @@ SETS = [
     Set("deep necks", "0.55", "sintered --neck 0.55 --radius 6:20", (100, 36)),
     Set("sintered", "0.82", "sintered --neck 0.82 --radius 12:18"),
     Set("sintered", "0.95", "sintered --neck 0.95 --radius 12:18", (70, 25)),
-    Set("beds", "5 rounds", bed=(16, 25, 5)),
-    Set("beds", "10 rounds", bed=(16, 25, 10)),
+    Set("beds", "5 rounds", "bed --radius 16:25 --rounds 5", None),
+    Set("beds", "10 rounds", "bed --radius 16:25 --rounds 10", None),
     Set("shapes", "ellipsoids", "particles --shape ellipsoids --radius 10:16", (70, 25)),
     Set("shapes", "plates", "particles --shape plates --radius 10:16", (70, 25)),
     Set("shapes", "prisms", "particles --shape prisms --radius 10:16", (70, 25)),
@@ -46,19 +45,16 @@ class Skipped(Exception):
 def sample(its, quick, seed, work):
     """The object (bool) and its true grains (int32) as arrays [z, y, x]."""
     size = 100 if quick else 140
-    if its.bed:
-        solid = truth = beds.bed(size, *its.bed, seed)
-    else:
-        options = [*its.generate.split(), "--size", size, "--seed", seed]
-        if its.count:
-            options += ["--count", its.count[quick]]
-        kind, *options = map(str, options)
-        done = subprocess.run([m.MADF, "generate", kind, work / "set.vdb", *options, "--threads", "1", "-q"],
-                              stderr=subprocess.PIPE, text=True)
-        if done.returncode == 2:  # a kind or an option that this command does not have
-            raise Skipped("skipped: this vdb_madf has no generate " + its.generate)
-        if done.returncode:
-            print(done.stderr, end="", file=sys.stderr)
-            done.check_returncode()
-        solid, truth = (m.dense(work / "set.vdb", work, "--grid", grid) for grid in ("object", "truth"))
+    options = [*its.generate.split(), "--size", size, "--seed", seed]
+    if its.count:
+        options += ["--count", its.count[quick]]
+    kind, *options = map(str, options)
+    done = subprocess.run([m.MADF, "generate", kind, work / "set.vdb", *options, "--threads", "1", "-q"],
+                          stderr=subprocess.PIPE, text=True)
+    if done.returncode == 2:  # a kind or an option that this command does not have
+        raise Skipped("skipped: this vdb_madf has no generate " + its.generate)
+    if done.returncode:
+        print(done.stderr, end="", file=sys.stderr)
+        done.check_returncode()
+    solid, truth = (m.dense(work / "set.vdb", work, "--grid", grid) for grid in ("object", "truth"))
     return solid > 0, truth
