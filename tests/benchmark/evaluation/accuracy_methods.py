@@ -7,7 +7,7 @@ import numpy
 from scipy import ndimage
 from skimage import measure
 
-from evaluation import methods as m, watershed
+from evaluation import cdgs, methods as m, watershed
 
 OURS = {"ours, default": "",
         "ours, before (fill-holes 0, delta 0, tidy 0)": "--fill-holes 0 --delta 0 --tidy 0",
@@ -15,13 +15,14 @@ OURS = {"ours, default": "",
         "the paper to the letter (160, -0.8)": "--paper --gamma 160 --theta -0.8"}
 WATERSHEDS = {"watershed, every maximum": "plain", "watershed, smoothed": "smoothed", "SNOW's steps": "snow",
               "watershed, h-maxima": "h_maxima"}
+CDGS = "CDGS, tuned to the truth"
 FILLED = ", holes filled"
-METHODS = [*OURS, *WATERSHEDS, *(name + FILLED for name in WATERSHEDS)]
+METHODS = [*OURS, *WATERSHEDS, CDGS, *(name + FILLED for name in WATERSHEDS), CDGS + FILLED]
 TRUTH = "the truth"
 SLIVER = 20  # voxels; smaller grains are no slivers
 
 
-def grains(solid, work):
+def grains(solid, truth, work):
     """name -> file of labels, of the object by each method."""
     numpy.save(work / "object.npy", solid.astype(numpy.uint8))
     files = {}
@@ -34,12 +35,14 @@ def grains(solid, work):
         keep(name, m.dense(work / "grains.vdb", work))
     for name, kind in WATERSHEDS.items():
         keep(name, watershed.grains(solid, [kind])[kind][0])
+    keep(CDGS, cdgs.tuned(truth, solid)[0])
     body = watershed.filled(solid)
+    if (body == solid).all():
+        files.update({name + FILLED: files[name] for name in (*WATERSHEDS, CDGS)})
+        return files
     for name, kind in WATERSHEDS.items():
-        if (body == solid).all():
-            files[name + FILLED] = files[name]
-        else:
-            keep(name + FILLED, numpy.where(solid, watershed.grains(body, [kind])[kind][0], 0))
+        keep(name + FILLED, numpy.where(solid, watershed.grains(body, [kind])[kind][0], 0))
+    keep(CDGS + FILLED, numpy.where(solid, cdgs.tuned(truth, body)[0], 0))
     return files
 
 
@@ -87,7 +90,7 @@ def judge(solid, truth, work):
     """name -> its figures, of all methods and the truth itself."""
     files = {TRUTH: work / "truth.npy"}
     numpy.save(files[TRUTH], truth)
-    files.update(grains(solid, work))
+    files.update(grains(solid, truth, work))
     figures = {file: {**agreement(files[TRUTH], file, work), **form(numpy.load(file)),
                       "flatness_voxel2": flatness(file, work)} for file in dict.fromkeys(files.values())}
     return {name: figures[file] for name, file in files.items()}

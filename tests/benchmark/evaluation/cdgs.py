@@ -60,12 +60,14 @@ def grains(solid, **parameters):
     return spread(solid, regions(curvature, **chosen))
 
 
-def tuned(truth):
+def tuned(truth, solid=None):
     """The grains with the parameters whose regions match the true grains best; and these in words.
+
+    solid: what is cut, if not just the true grains.
 
     Least is the number of true grains without a region of their own and of regions beyond these; first, of equals.
     """
-    best, solid = None, truth > 0
+    best, solid = None, truth > 0 if solid is None else solid
     normals = Normals(solid)
     for style, its in STYLES.items():
         curvature = mean_curvature(normals, its["windows"], its["tolerance"])
@@ -79,7 +81,7 @@ def tuned(truth):
 
 def mismatches(truth, found):
     """True grains and regions that do not have more than half of each other's voxels in regions."""
-    at = found > 0
+    at = (found > 0) & (truth > 0)
     pairs, shared = numpy.unique(truth[at].astype(numpy.int64) << 32 | found[at], return_counts=True)
     pairs = pairs >> 32, pairs & 0xffffffff
     of_grain, of_region = (numpy.bincount(ids, shared) for ids in pairs)
