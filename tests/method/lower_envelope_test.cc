@@ -40,7 +40,7 @@ template <typename Key>
 int differences(int length, int maxRadius2, uint32_t seed) {
   const EnvelopeRows<Key> in = randomRows<Key>(length, maxRadius2, seed);
   EnvelopeRows<Key> out = in;
-  lowerEnvelopes(length, Key(maxRadius2) + 1, out);
+  lowerEnvelopes<1>(length, Key(maxRadius2) + 1, out);
   const auto power = [&](int t, int row) { return in.power[at(t + 1, row)]; };
   int wrong = 0;
   for (int row = 0; row < 64; ++row) {

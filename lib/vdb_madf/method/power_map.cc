@@ -91,7 +91,7 @@ void sweep(const LeafIndex& index, Key multiplier, PowerMap& map, Interrupter* i
                           s.rows.resize(size_t(length));
                           gather<Axis, Key>(index, map, s);
                           computeRadii<Axis, Key>(index, index.origin(starts[p]), s);
-                          detail::lowerEnvelopes(length, multiplier, s.rows);
+                          detail::lowerEnvelopes<Axis + 1>(length, multiplier, s.rows);
                           scatter<Axis, Key>(index, s, map);
                         }
                       });

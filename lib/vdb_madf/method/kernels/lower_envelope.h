@@ -51,9 +51,12 @@ struct EnvelopeRows {
 ///   power(t) = min over s in the run, power(s) < 0, of power(s) + (t - s)^2,  site(t) = site(s);
 /// of several such s the one of larger D, then the smaller s. kNotNegative, and any site, where
 /// that is 0 or more, or there is no such s.
+/// AxesLeft counts the axes still to be swept, this one included, with rows a * 8 + b beside rows of
+/// a - 1, a + 1 (if 2 or 3) and b - 1, b + 1 (if 3). A site of which nothing will be left after the
+/// passes along these, for a neighbor is better, may be left out of this one.
 /// multiplier: larger than any D. With 64-bit keys 2 max(length^2, D) (multiplier + 1) length must
 /// be less than 2^63.
-void lowerEnvelopes(int length, int64_t multiplier, EnvelopeRows<int64_t>& rows);
-void lowerEnvelopes(int length, __int128 multiplier, EnvelopeRows<__int128>& rows);
+template <int AxesLeft, typename Key>
+void lowerEnvelopes(int length, Key multiplier, EnvelopeRows<Key>& rows);
 
 }  // namespace vdb_madf::detail
