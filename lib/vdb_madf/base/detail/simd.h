@@ -10,8 +10,10 @@
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #if VDB_MADF_SIMD_LEVEL >= 4
 #define VDB_MADF_SIMD_V4
+#define VDB_MADF_SIMD_V3
 #define VDB_MADF_SIMD __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #elif VDB_MADF_SIMD_LEVEL == 3
+#define VDB_MADF_SIMD_V3
 #define VDB_MADF_SIMD __attribute__((target_clones("arch=x86-64-v3", "default")))
 #else
 #define VDB_MADF_SIMD

@@ -3,11 +3,12 @@
 
 #include "vdb_madf/leaves/detail/leaf_values.h"
 
+#include <array>
 #include <cstring>
 
 #include "vdb_madf/base/detail/simd.h"
 
-#ifdef VDB_MADF_SIMD_V4
+#ifdef VDB_MADF_SIMD_V3
 #include <immintrin.h>
 #endif
 
@@ -49,6 +50,83 @@ uint32_t* packPortable(const LeafIndex::Mask& mask, const uint32_t* dense, uint3
   return values;
 }
 
+#ifdef VDB_MADF_SIMD_V3
+/// Lanes for a permutation of 8, a byte each, by the mask of the lanes that are object voxels.
+using Lanes = std::array<uint64_t, 256>;
+
+/// Lane i: how many object lanes come before it.
+constexpr Lanes spreadingLanes() {
+  Lanes lanes{};
+  for (uint32_t mask = 0; mask < 256; ++mask) {
+    uint64_t before = 0;
+    for (uint32_t lane = 0; lane < 8; ++lane) {
+      lanes[mask] |= before << (8 * lane);
+      before += mask >> lane & 1;
+    }
+  }
+  return lanes;
+}
+
+/// Lane i: the object lane that i others come before.
+constexpr Lanes packingLanes() {
+  Lanes lanes{};
+  for (uint32_t mask = 0; mask < 256; ++mask) {
+    uint32_t before = 0;
+    for (uint64_t lane = 0; lane < 8; ++lane)
+      if (mask >> lane & 1) lanes[mask] |= lane << (8 * before++);
+  }
+  return lanes;
+}
+
+constexpr Lanes kSpreading = spreadingLanes(), kPacking = packingLanes();
+
+__attribute__((target("arch=x86-64-v3"))) inline __m256i permuted(__m256i values, uint64_t lanes) {
+  return _mm256_permutevar8x32_epi32(values,
+                                     _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(int64_t(lanes))));
+}
+
+__attribute__((target("arch=x86-64-v3"))) void expandV3(const LeafIndex::Mask& mask,
+                                                        const uint32_t* values, uint32_t* dense) {
+  const __m256i bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+  for (size_t x = 0; x < 8; ++x, dense += 64) {
+    if (mask[x] == ~uint64_t(0)) {
+      std::memcpy(dense, values, 64 * sizeof(uint32_t));
+      values += 64;
+      continue;
+    }
+    for (size_t lane = 0; lane < 64; lane += 8) {
+      const uint32_t inside = uint32_t(mask[x] >> lane & 0xff);
+      const __m256i object =
+          _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(int(inside)), bits), bits);
+      const __m256i packed = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(values));
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(dense + lane),
+                          _mm256_and_si256(permuted(packed, kSpreading[inside]), object));
+      values += __builtin_popcount(inside);
+    }
+  }
+}
+
+/// Writes up to 8 values past the end that it returns.
+__attribute__((target("arch=x86-64-v3"))) uint32_t* packV3(const LeafIndex::Mask& mask,
+                                                           const uint32_t* dense,
+                                                           uint32_t* values) {
+  for (size_t x = 0; x < 8; ++x, dense += 64) {
+    if (mask[x] == ~uint64_t(0)) {
+      std::memcpy(values, dense, 64 * sizeof(uint32_t));
+      values += 64;
+      continue;
+    }
+    for (size_t lane = 0; lane < 64; lane += 8) {
+      const uint32_t inside = uint32_t(mask[x] >> lane & 0xff);
+      const __m256i spread = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(dense + lane));
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(values), permuted(spread, kPacking[inside]));
+      values += __builtin_popcount(inside);
+    }
+  }
+  return values;
+}
+#endif
+
 #ifdef VDB_MADF_SIMD_V4
 __attribute__((target("arch=x86-64-v4"))) void expandV4(const LeafIndex::Mask& mask,
                                                         const uint32_t* values, uint32_t* dense) {
@@ -76,6 +154,17 @@ __attribute__((target("arch=x86-64-v4"))) uint32_t* packV4(const LeafIndex::Mask
 }
 #endif
 
+/// As the processor can.
+uint32_t* packWith(const LeafIndex::Mask& mask, const uint32_t* dense, uint32_t* values) {
+#ifdef VDB_MADF_SIMD_V4
+  if (__builtin_cpu_supports("avx512vl")) return packV4(mask, dense, values);
+#endif
+#ifdef VDB_MADF_SIMD_V3
+  if (__builtin_cpu_supports("avx2")) return packV3(mask, dense, values);
+#endif
+  return packPortable(mask, dense, values);
+}
+
 }  // namespace
 
 VDB_MADF_SIMD bool allEqual(const uint32_t* values, size_t count) {
@@ -88,19 +177,16 @@ void expandLeaf(const LeafIndex::Mask& mask, const uint32_t* values, uint32_t* d
 #ifdef VDB_MADF_SIMD_V4
   if (__builtin_cpu_supports("avx512vl")) return expandV4(mask, values, dense);
 #endif
+#ifdef VDB_MADF_SIMD_V3
+  if (__builtin_cpu_supports("avx2")) return expandV3(mask, values, dense);
+#endif
   expandPortable(mask, values, dense);
 }
 
 void packLeaf(const LeafIndex::Mask& mask, const uint32_t* dense, uint32_t* values) {
   // Not in place: the next leaf's values may be another thread's.
   uint32_t packed[512 + 16];
-  uint32_t* end;
-#ifdef VDB_MADF_SIMD_V4
-  if (__builtin_cpu_supports("avx512vl"))
-    end = packV4(mask, dense, packed);
-  else
-#endif
-    end = packPortable(mask, dense, packed);
+  const uint32_t* end = packWith(mask, dense, packed);
   std::memcpy(values, packed, size_t(end - packed) * sizeof(uint32_t));
 }
 
