@@ -316,3 +316,21 @@ TEST_CASE("merge: agrees with the oracle on random graphs", "[merge]") {
     REQUIRE(result.representative == expected.representative);
   }
 }
+
+TEST_CASE("merge: classes of one's own are numbered as merge() numbers grains", "[merge]") {
+  ManifoldGraph graph = ballsOnAxis({{0, 4}, {5, 9}, {10, 9}, {15, 1}});
+  const auto check = [&](const Nodes& classes, const Labels& labels, const Nodes& representatives) {
+    const Merging merging = mergeClasses(graph, classes);
+    CHECK(merging.grainOfNode == labels);
+    CHECK(merging.representative == representatives);
+  };
+  check({0, 0, 0, 0}, {1, 1, 1, 1}, {1});           // of equal D the first
+  check({4, 3, 2, 1}, {1, 2, 3, 4}, {0, 1, 2, 3});  // in the order of their representatives
+  check({2, 0, 2, 0}, {2, 1, 2, 1}, {1, 2});        // classes need not touch
+  graph.nodes[3].voxels = 0;                        // in a cavity
+  check({0, 0, 0, 1}, {1, 1, 1, 0}, {1});
+  check({1, 0, 0, 1}, {1, 2, 2, 1}, {0, 1});
+  CHECK_THROWS_AS(mergeClasses(graph, {0, 0, 0}), InvalidInput);
+  CHECK_THROWS_AS(mergeClasses(graph, {0, 0, 0, 5}), InvalidInput);
+  CHECK(mergeClasses({}, {}).representative.empty());
+}

@@ -173,6 +173,56 @@ TEST_CASE("remerge: takes active tiles", "[remerge]") {
   CHECK(row(*grain) == std::vector<int32_t>{1, 1, 1, 1, 2, 2, 2});
 }
 
+TEST_CASE("remerge: a merging of one's own", "[remerge]") {
+  const auto manifold = rowGrid();
+  manifold->insertMeta("madf_source", openvdb::StringMetadata("scan.tif"));
+  manifold->insertMeta("madf_theta", openvdb::DoubleMetadata(-0.9));
+  const ManifoldGraph graph = storedGraph(*manifold).value();
+  const auto ends = applyMerging(*manifold, mergeClasses(graph, {0, 1, 0}), 0);
+  CHECK(row(*ends) == std::vector<int32_t>{1, 1, 2, 2, 1, 1, 1});
+  CHECK(ends->getName() == "grain");
+  CHECK(ends->metaValue<std::string>("madf_source") == "scan.tif");
+  CHECK(ends->metaValue<std::string>("madf_merge") == "own");
+  CHECK(ends->metaValue<int64_t>("madf_grains") == 2);
+  CHECK(ends->metaValue<int64_t>("madf_tidy") == 0);
+  CHECK_FALSE(storedGraph(*ends).has_value());
+  for (const char* key : {"madf_theta", "madf_adjacency", "madf_delta"}) CHECK_FALSE((*ends)[key]);
+  // What merge() says gives the labels of remerge(), tidied too.
+  Rng rng(5);
+  const ObjectVolume object =
+      randomVolume(VolumeKind::roughBalls, boxAt({-3, -4, 10}, {30, 33, 27}), rng);
+  SegmentOptions options;
+  options.keepManifold = true;
+  const auto result = segment(*toMask(object), options);
+  const MergeOptions merging{-0.7, MergeMode::both, Adjacency::manifold};
+  for (const int rounds : {0, 2}) {
+    const auto expected = remerge(*result.manifold, merging, rounds),
+               own = applyMerging(*result.manifold, merge(result.graph, merging), rounds);
+    REQUIRE(own->activeVoxelCount() == expected->activeVoxelCount());
+    for (auto voxel = expected->cbeginValueOn(); voxel; ++voxel)
+      REQUIRE(own->tree().getValue(voxel.getCoord()) == *voxel);
+  }
+}
+
+TEST_CASE("remerge: a merging that does not fit its graph is refused", "[remerge]") {
+  const auto manifold = rowGrid();
+  const Merging good{{1, 1, 2}, {0, 2}};
+  CHECK_NOTHROW(applyMerging(*manifold, good, 0));
+  CHECK_THROWS_AS(applyMerging(*manifold, good, -1), InvalidInput);
+  for (const Merging& bad :
+       {Merging{{1, 1}, {0}}, Merging{{1, 1, 2, 2}, {0, 2}}, Merging{{1, 1, 3}, {0, 2}},
+        Merging{{1, 1, -1}, {0}}, Merging{{1, 1, 0}, {0}}, Merging{{1, 1, 2}, {2, 0}},
+        Merging{{1, 1, 2}, {0, 3}}, Merging{{1, 1, 2}, {0, 2, 2}}})
+    CHECK_THROWS_AS(applyMerging(*manifold, bad, 0), InvalidInput);
+  ManifoldGraph graph = rowGraph();
+  graph.nodes.push_back({{0, 0, 9}, 1, 0});  // in a cavity
+  setGraph(*manifold, graph);
+  CHECK_NOTHROW(applyMerging(*manifold, {{1, 1, 2, 0}, {0, 2}}, 0));
+  CHECK_THROWS_AS(applyMerging(*manifold, {{1, 1, 2, 3}, {0, 2, 3}}, 0), InvalidInput);
+  removeGraph(*manifold);
+  CHECK_THROWS_AS(applyMerging(*manifold, good, 0), InvalidInput);
+}
+
 TEST_CASE("remerge: what does not fit is refused", "[remerge]") {
   const auto manifold = rowGrid();
   SECTION("no graph") {

@@ -4,7 +4,6 @@
 #include "vdb_madf/method/merge.h"
 
 #include <algorithm>
-#include <numeric>
 #include <string>
 
 #include "vdb_madf/base/detail/disjoint_sets.h"
@@ -84,25 +83,39 @@ Merging merge(const ManifoldGraph& graph, const MergeOptions& options) {
   if (options.mode != MergeMode::neck) mergeByAngle(graph, options, grains);
   if (options.mode != MergeMode::angle) mergeByNeck(graph, options, grains);
 
+  std::vector<uint32_t> classOfNode(graph.nodes.size());
+  for (uint32_t i = 0; i < classOfNode.size(); ++i) classOfNode[i] = grains.find(i);
+  return mergeClasses(graph, classOfNode);
+}
+
+Merging mergeClasses(const ManifoldGraph& graph, const std::vector<uint32_t>& classOfNode) {
+  const auto count = uint32_t(graph.nodes.size());
+  if (classOfNode.size() != count)
+    throw InvalidInput("there are " + std::to_string(classOfNode.size()) + " classes for " +
+                       std::to_string(count) + " manifolds");
   // Nodes are in lexicographic order, so the first of the largest is the representative.
-  const uint32_t count = uint32_t(graph.nodes.size());
-  std::vector<uint32_t> best(count);
-  std::vector<char> hasVoxels(count, 0);
-  std::iota(best.begin(), best.end(), 0u);
+  std::vector<uint32_t> best(size_t(count) + 1, count);
+  std::vector<char> hasVoxels(size_t(count) + 1, 0);
   for (uint32_t i = 0; i < count; ++i) {
-    const uint32_t root = grains.find(i);
-    if (graph.nodes[i].squaredRadius > graph.nodes[best[root]].squaredRadius) best[root] = i;
-    if (graph.nodes[i].voxels > 0) hasVoxels[root] = 1;
+    const uint32_t c = classOfNode[i];
+    if (c > count)
+      throw InvalidInput("manifold " + std::to_string(i + 1) + " has the class " +
+                         std::to_string(c) + ": it must lie between 0 and " +
+                         std::to_string(count));
+    if (best[c] == count || graph.nodes[i].squaredRadius > graph.nodes[best[c]].squaredRadius)
+      best[c] = i;
+    if (graph.nodes[i].voxels > 0) hasVoxels[c] = 1;
   }
   Merging merging;
-  for (uint32_t i = 0; i < count; ++i)
-    if (const uint32_t root = grains.find(i); best[root] == i && hasVoxels[root])
-      merging.representative.push_back(i);
-  std::vector<int32_t> grainOfRoot(count, 0);
-  for (size_t g = 0; g < merging.representative.size(); ++g)
-    grainOfRoot[grains.find(merging.representative[g])] = int32_t(g + 1);
-  merging.grainOfNode.resize(count);
-  for (uint32_t i = 0; i < count; ++i) merging.grainOfNode[i] = grainOfRoot[grains.find(i)];
+  std::vector<int32_t> grainOfClass(size_t(count) + 1, 0);
+  for (uint32_t i = 0; i < count; ++i) {
+    const uint32_t c = classOfNode[i];
+    if (best[c] != i || !hasVoxels[c]) continue;
+    merging.representative.push_back(i);
+    grainOfClass[c] = int32_t(merging.representative.size());
+  }
+  merging.grainOfNode.reserve(count);
+  for (const uint32_t c : classOfNode) merging.grainOfNode.push_back(grainOfClass[c]);
   return merging;
 }
 

@@ -55,6 +55,11 @@ void checkMergeOptions(const MergeOptions& options);
 /// @throw InvalidInput as checkMergeOptions.
 Merging merge(const ManifoldGraph& graph, const MergeOptions& options = {});
 
+/// The grains of a rule of one's own: nodes of one class are one grain; classes may have any number
+/// from 0 to the number of nodes. Grains are numbered as by merge(), whatever the classes' numbers.
+/// @throw InvalidInput unless every node has a class in that range.
+Merging mergeClasses(const ManifoldGraph& graph, const std::vector<uint32_t>& classOfNode);
+
 /// Voxels of grain g at g - 1.
 std::vector<int64_t> grainVoxels(const ManifoldGraph& graph, const Merging& merging);
 

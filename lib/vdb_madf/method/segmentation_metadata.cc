@@ -68,6 +68,13 @@ void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int t
   setCount(grid, kGrains, grains);
 }
 
+void describeOwnMerging(openvdb::GridBase& grid, int tidy, int64_t grains) {
+  for (const char* key : {"madf_theta", "madf_adjacency", "madf_delta"}) grid.removeMeta(key);
+  setText(grid, "madf_merge", "own");
+  setCount(grid, "madf_tidy", tidy);
+  setCount(grid, kGrains, grains);
+}
+
 std::optional<int64_t> grainCount(const openvdb::GridBase& grid) {
   const auto count = grid.getMetadata<openvdb::Int64Metadata>(kGrains);
   if (!count) return std::nullopt;

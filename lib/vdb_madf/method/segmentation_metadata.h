@@ -21,6 +21,9 @@ void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options
 void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int tidy,
                      int64_t grains);
 
+/// The same for a merging of one's own: `madf_merge` is "own"; theta, adjacency and delta go.
+void describeOwnMerging(openvdb::GridBase& grid, int tidy, int64_t grains);
+
 /// The number of grains that a grid says it has.
 std::optional<int64_t> grainCount(const openvdb::GridBase& grid);
 
