@@ -283,3 +283,34 @@ TEST_CASE("grain_mesh: the least reduction for so many triangles", "[grain_mesh]
   CHECK_THROWS_AS(reductionForTriangles(*grid, 1), InvalidInput);
   CHECK(reductionForTriangles(*labelGrid({}), 1, 3) == 3);
 }
+
+TEST_CASE("grain_mesh: one grain is its part of the mesh of all", "[grain_mesh]") {
+  for (const LabelMap& voxels :
+       {twoBalls({3, -4, 5}, 7), awkwardLabels(), randomLabels(5, Coord(-6), 12, 4, 60)}) {
+    const auto labels = labelGrid(voxels);
+    const GrainMesh all = grainMesh(*labels);
+    for (size_t g = 0; g < all.labels.size(); ++g) {
+      CAPTURE(all.labels[g]);
+      const GrainMesh one = meshOfGrains(*labels, {all.labels[g]});
+      CHECK(whyNotClosed(one) == "");
+      REQUIRE(one.labels == std::vector<int32_t>{all.labels[g]});
+      CHECK(one.points == std::vector<Vec3f>(all.points.begin() + all.firstPoint[g],
+                                             all.points.begin() + all.firstPoint[g + 1]));
+      auto triangles = one.triangles;
+      for (auto& triangle : triangles)
+        for (uint32_t& point : triangle) point += all.firstPoint[g];
+      CHECK(triangles == decltype(triangles)(all.triangles.begin() + all.firstTriangle[g],
+                                             all.triangles.begin() + all.firstTriangle[g + 1]));
+    }
+  }
+}
+
+TEST_CASE("grain_mesh: some grains, smoothed, keep their volumes", "[grain_mesh]") {
+  const LabelMap voxels = twoBalls({3, -4, 5}, 9);
+  const auto labels = labelGrid(voxels);
+  const GrainMesh one = meshOfGrains(*labels, {7}, {20});
+  CHECK(whyNotClosed(one) == "");
+  CHECK(meshVolumes(one).at(0) == Approx(double(volumes(voxels).at(7))).epsilon(0.001));
+  CHECK(meshOfGrains(*labels, {7, 3}, {20}).points == grainMesh(*labels, {20}).points);
+  CHECK_THROWS_AS(meshOfGrains(*labels, {4}), InvalidInput);
+}

@@ -10,6 +10,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/reduced_labels.h"
+#include "vdb_madf/labels/select_grains.h"
 #include "vdb_madf/shapes/detail/net_builder.h"
 
 namespace vdb_madf {
@@ -73,6 +74,11 @@ GrainMesh grainMesh(const Int32Grid& labels, const GrainMeshOptions& options,
                                                                blocks.voxelCounts(), interrupter)
                                                : latticePositions(net);
   return assemble(net, positions, blocks.labels());
+}
+
+GrainMesh meshOfGrains(const Int32Grid& labels, const std::vector<int32_t>& grains,
+                       const GrainMeshOptions& options, Interrupter* interrupter) {
+  return grainMesh(*selectGrains(labels, grains, interrupter), options, interrupter);
 }
 
 uint64_t countTriangles(const Int32Grid& labels, Interrupter* interrupter) {

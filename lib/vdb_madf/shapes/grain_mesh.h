@@ -48,6 +48,12 @@ struct GrainMeshOptions {
 GrainMesh grainMesh(const Int32Grid& labels, const GrainMeshOptions& options = {},
                     Interrupter* interrupter = nullptr);
 
+/// The same of some grains alone (select_grains.h), at their cost: each a closed mesh. Unsmoothed it
+/// is their part of the mesh of all, to the bit; smoothed they move as if no other grain were there.
+/// @throw InvalidInput also if there is no such grain; Interrupted.
+GrainMesh meshOfGrains(const Int32Grid& labels, const std::vector<int32_t>& grains,
+                       const GrainMeshOptions& options = {}, Interrupter* interrupter = nullptr);
+
 /// Triangles of grainMesh(), without meshing: two for each voxel face of a grain that is not
 /// towards a voxel of its own. @throw Interrupted
 uint64_t countTriangles(const Int32Grid& labels, Interrupter* interrupter = nullptr);

@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/labels/select_grains.h"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using Leaf = Int32Tree::LeafNodeType;
+constexpr size_t kLeafGrain = 64;
+
+/// The labels asked for, ascending, and which of them were found.
+class Wanted {
+ public:
+  explicit Wanted(std::vector<int32_t> labels) : labels_(std::move(labels)) {
+    std::sort(labels_.begin(), labels_.end());
+    labels_.erase(std::unique(labels_.begin(), labels_.end()), labels_.end());
+    if (!labels_.empty() && labels_.front() < 1)
+      throw InvalidInput("grain " + std::to_string(labels_.front()) +
+                         " cannot be: labels are 1 and more");
+    found_.assign(labels_.size(), 0);
+  }
+  bool holds(int32_t label) const {
+    return std::binary_search(labels_.begin(), labels_.end(), label);
+  }
+  void find(int32_t label) {
+    found_[size_t(std::lower_bound(labels_.begin(), labels_.end(), label) - labels_.begin())] = 1;
+  }
+  void checkAllFound() const {
+    for (size_t i = 0; i < labels_.size(); ++i)
+      if (!found_[i]) throw InvalidInput("there is no grain " + std::to_string(labels_[i]));
+  }
+
+ private:
+  std::vector<int32_t> labels_;
+  std::vector<char> found_;
+};
+
+/// Null if nothing of the leaf is wanted.
+std::unique_ptr<Leaf> wantedPart(const Leaf& leaf, const Wanted& wanted) {
+  std::unique_ptr<Leaf> part;
+  int32_t last = 0;  // neighbors mostly share their label
+  bool keep = false;
+  for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
+    if (*voxel != last) {
+      last = *voxel;
+      keep = wanted.holds(last);
+    }
+    if (!keep) continue;
+    if (!part) part = std::make_unique<Leaf>(leaf.origin(), 0);
+    part->setValueOn(voxel.pos(), last);
+  }
+  return part;
+}
+
+}  // namespace
+
+Int32Grid::Ptr selectGrains(const Int32Grid& labels, const std::vector<int32_t>& grains,
+                            Interrupter* interrupter) {
+  Wanted wanted(grains);
+  const auto selected = Int32Grid::create(0);
+  copyProvenance(labels, *selected);
+  selected->setName(labels.getName());
+  auto tile = labels.tree().cbeginValueOn();
+  tile.setMaxDepth(Int32Tree::ValueOnCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile) {
+    if (!wanted.holds(*tile)) continue;
+    selected->tree().sparseFill(tile.getBoundingBox(), *tile, true);
+    wanted.find(*tile);
+  }
+
+  std::vector<const Leaf*> leaves;
+  labels.tree().getNodes(leaves);
+  std::vector<std::unique_ptr<Leaf>> parts(leaves.size());
+  detail::parallelFor(leaves.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n) parts[n] = wantedPart(*leaves[n], wanted);
+  });
+  for (std::unique_ptr<Leaf>& part : parts) {
+    if (!part) continue;
+    for (auto voxel = part->cbeginValueOn(); voxel; ++voxel) wanted.find(*voxel);
+    selected->tree().addLeaf(part.release());
+  }
+  wanted.checkAllFound();
+  return selected;
+}
+
+}  // namespace vdb_madf
