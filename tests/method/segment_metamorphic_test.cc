@@ -11,7 +11,9 @@
 #include <catch2/catch.hpp>
 #include <map>
 #include <set>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include "support/invariants.h"
 #include "support/random_case.h"
@@ -255,6 +257,37 @@ TEST_CASE("segment: threads do not change anything", "[segment]") {
         REQUIRE(all == *expected);
       }
     }
+}
+
+TEST_CASE("segment: two calls at once do not disturb each other", "[segment]") {
+  // Two objects and options, each cut by two threads of the caller's: also the same mask twice.
+  std::vector<MaskGrid::Ptr> masks;
+  std::vector<CoordBBox> boxes;
+  std::vector<SegmentOptions> options;
+  std::vector<Everything> expected;
+  for (const int64_t gamma : {0, 20}) {
+    Rng rng(uint64_t(gamma) + 15);
+    const ObjectVolume object =
+        randomVolume(VolumeKind::roughBalls, boxAt({-43, -40, 100}, {50, 43, 57}), rng);
+    masks.push_back(toMask(object));
+    boxes.push_back(object.box());
+    options.push_back(keepAll());
+    options.back().gamma = gamma;
+    expected.emplace_back(segment(*masks.back(), options.back()), boxes.back());
+  }
+  std::atomic<int> differences{0};
+  const auto work = [&](size_t first) {
+    for (size_t i = 0; i < 6; ++i) {
+      const size_t n = (first + i / 2) % 2;
+      if (!(Everything(segment(*masks[n], options[n]), boxes[n]) == expected[n])) ++differences;
+    }
+  };
+  // One with TBB's own threads, one that keeps to itself.
+  std::thread limited([&] { tbb::task_arena(1).execute([&] { work(0); }); });
+  std::thread free([&] { work(1); });
+  limited.join();
+  free.join();
+  CHECK(differences == 0);
 }
 
 TEST_CASE("segment: tiles are the voxels they hold", "[segment]") {
