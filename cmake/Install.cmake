@@ -28,6 +28,30 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/vdb_madfConfigVersion.cma
 install(FILES ${PROJECT_BINARY_DIR}/vdb_madfConfig.cmake
   ${PROJECT_BINARY_DIR}/vdb_madfConfigVersion.cmake cmake/FindSerialHDF5.cmake
   DESTINATION ${package_dir})
+
+# For pkg-config: all rooms, each before those that it uses, as static libraries want it. OpenVDB has
+# no such file of its own.
+set(pkgconfig_rooms "")
+foreach(room IN LISTS rooms)
+  string(PREPEND pkgconfig_rooms " -lvdb_madf_${room}")
+endforeach()
+set(pkgconfig_requires "tbb zlib libtiff-4 libpng blosc")
+if(TARGET Imath::Imath)  # OpenVDB's headers call it
+  string(APPEND pkgconfig_requires " Imath")
+endif()
+if(TARGET SerialHDF5::hdf5)
+  string(APPEND pkgconfig_requires " hdf5-serial")
+endif()
+file(RELATIVE_PATH pkgconfig_prefix
+  ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})  # relocatable
+# What OpenVDB's headers were compiled with decides how its grids lie in memory.
+get_target_property(pkgconfig_definitions OpenVDB::openvdb INTERFACE_COMPILE_DEFINITIONS)
+list(TRANSFORM pkgconfig_definitions PREPEND -D)
+list(JOIN pkgconfig_definitions " " pkgconfig_definitions)
+configure_file(cmake/vdb_madf.pc.in ${PROJECT_BINARY_DIR}/vdb_madf.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/vdb_madf.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 if(VDB_MADF_BUILD_TOOLS)
   install(TARGETS vdb_madf_tool DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
