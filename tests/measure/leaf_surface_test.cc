@@ -15,13 +15,6 @@ using namespace vdb_madf::test;
 
 namespace {
 
-/// Prints with VDB_MADF_PRINT_AREAS set: the numbers of the README.
-void report(const char* what, const Errors& errors) {
-  if (std::getenv("VDB_MADF_PRINT_AREAS"))
-    std::printf("%-40s mean %.2f %%, worst %.2f %%\n", what, 100 * errors.mean(),
-                100 * errors.worst());
-}
-
 /// Area of the part of the plane n . p = offset in a cube: columns along its steepest axis.
 double planeInCube(const Vec3d& n, double offset, double low, double high) {
   int k = 0;
@@ -176,21 +169,9 @@ TEST_CASE("surface_area: discs between unequal balls", "[surface_area]") {
 
 namespace {
 
-/// Area of the disc between two balls, relative to the truth. Only what lies near the disc is
-/// drawn: the rest of the balls has no part in it.
+/// Error of the area of the disc between two balls.
 double discError(const TwoBalls& balls) {
-  constexpr double kNear = 6, kAround = 12;
-  const Vec3d &n = balls.normal, &c = balls.center;
-  Coord corner;
-  for (int i = 0; i < 3; ++i) {
-    const double across = std::sqrt(std::max(0.0, 1 - n[i] * n[i]));
-    corner[i] = int(std::ceil((balls.radius + kAround) * across + kNear * std::abs(n[i]))) + 1;
-  }
-  const auto labels = drawLabels({Coord(0) - corner, corner}, [&](const Vec3d& p) {
-    const double along = (p - c).dot(n);
-    return std::abs(along) < kNear ? balls(p) : 0;
-  });
-  return std::abs(measure(*labels).bonds.at(0).area / (M_PI * balls.radius * balls.radius) - 1);
+  return std::abs(measure(*drawDisc(balls)).bonds.at(0).area / balls.discArea() - 1);
 }
 
 /// From the smallest radius to three times that, evenly in its logarithm; grooves of all depths.

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
 
 #include "support/random_volume.h"
 #include "vdb_madf/grids/grid_types.h"
@@ -51,6 +54,7 @@ struct TwoBalls {
 
   double firstOffset() const { return std::sqrt(first * first - radius * radius); }
   double secondOffset() const { return std::sqrt(second * second - radius * radius); }
+  double discArea() const { return M_PI * radius * radius; }
   CoordBBox box() const {
     return cubeAround(std::max(first + firstOffset(), second + secondOffset()) + 2);
   }
@@ -64,6 +68,21 @@ struct TwoBalls {
   }
 };
 
+/// The two balls near their disc alone: the rest of them has no part in its area.
+inline Int32Grid::Ptr drawDisc(const TwoBalls& balls) {
+  constexpr double kNear = 6, kAround = 12;
+  const Vec3d &n = balls.normal, &c = balls.center;
+  Coord corner;
+  for (int i = 0; i < 3; ++i) {
+    const double across = std::sqrt(std::max(0.0, 1 - n[i] * n[i]));
+    corner[i] = int(std::ceil((balls.radius + kAround) * across + kNear * std::abs(n[i]))) + 1;
+  }
+  return drawLabels({Coord(0) - corner, corner}, [&](const Vec3d& p) {
+    const double along = (p - c).dot(n);
+    return std::abs(along) < kNear ? balls(p) : 0;
+  });
+}
+
 /// Errors relative to the truth.
 class Errors {
  public:
@@ -75,10 +94,18 @@ class Errors {
   }
   double mean() const { return sum_ / count_; }
   double worst() const { return worst_; }
+  int count() const { return count_; }
 
  private:
   double sum_ = 0, worst_ = 0;
   int count_ = 0;
 };
+
+/// Prints with VDB_MADF_PRINT_AREAS set: a row of the tables of lib/vdb_madf/measure/README.md.
+inline void report(const std::string& what, const Errors& errors) {
+  if (std::getenv("VDB_MADF_PRINT_AREAS"))
+    std::printf("%-52s mean %.2f %%, worst %.2f %% of %d\n", what.c_str(), 100 * errors.mean(),
+                100 * errors.worst(), errors.count());
+}
 
 }  // namespace vdb_madf::test
