@@ -12,10 +12,15 @@ namespace vdb_madf::detail {
 
 namespace {
 
-constexpr double kReach = 5;        // voxels: flattens interfaces of a lesser radius
-constexpr int kMaxPoints = 32;      // of one interface: time, not memory
-constexpr int kMinFaces = 10;       // for the six coefficients
-constexpr double kSingular = 1e-5;  // least pivot of the scaled normal equations, of the largest
+constexpr double kReach = 5;          // voxels along the tangent plane
+constexpr double kWithin = 1 + 1e-9;  // its square: ties, of which there are many, are in reach
+constexpr double kRange = 5.5;        // voxels in space: of a ball of radius 7 all that is in reach
+constexpr int kMaxPoints = 32;        // of one interface: time, not memory
+constexpr int kMinFaces = 10;         // for the six coefficients
+constexpr double kSingular = 1e-5;    // least pivot of the scaled normal equations, of the largest
+constexpr int kMaxRounds = 10;
+constexpr double kSettled = 1e-3;     // change of the curvatures, 1 / kReach
+constexpr double kSteepest = 3. / 4;  // squared sine of the slope that a round surface may have
 
 Eigen::Vector3d center(const InterfaceFace& face) {
   Eigen::Vector3d point(face.lower.x(), face.lower.y(), face.lower.z());
@@ -28,49 +33,35 @@ struct Jet {
   double squares, weights;  ///< of the residuals
 };
 
+using Shape = Eigen::Matrix2d;  ///< second derivatives of the height
+using Terms = Eigen::Matrix<double, 6, 1>;
+
+/// How much deeper than a paraboloid a round surface lies at (a, b): a ball or cylinder of curvature
+/// k is 1 - sqrt(1 - s^2) deep in units of 1/k, where s = k |(a, b)|, and the paraboloid s^2 / 2.
+double roundness(const Shape& shape, double a, double b) {
+  const double slope = std::min((shape * Eigen::Vector2d(a, b)).squaredNorm(), kSteepest);
+  return 2 / (1 + std::sqrt(1 - slope));
+}
+
 /// Faces in reach of one, relative to it and in units of the reach.
 class Fit {
  public:
   std::optional<Jet> operator()(const std::vector<InterfaceFace>& faces, size_t at) {
     gather(faces, at);
-    if (points_.size() < size_t(kMinFaces)) return std::nullopt;
-    const Eigen::Vector3d normal = normals_.normalized();
     if (!(normals_.norm() > 0)) return std::nullopt;
-    const Eigen::Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
-    Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
-    Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
-    rows_.clear();
-    for (const Point& point : points_) {
-      // By area, and none of a sheet that folds back.
-      const double weight = normal[point.axis] * point.sign;
-      if (weight <= 0) continue;
-      const double a = point.position.dot(u), b = point.position.dot(v);
-      Row row;
-      row.terms << 1, a, b, a * a, a * b, b * b;
-      row.height = point.position.dot(normal);
-      row.weight = weight;
-      matrix.noalias() += weight * row.terms * row.terms.transpose();
-      right.noalias() += weight * row.height * row.terms;
-      rows_.push_back(row);
+    makeRows(normals_.normalized());
+    if (rows_.size() < size_t(kMinFaces)) return std::nullopt;
+    // The first round fits a paraboloid; each other one is as deep as the curvatures before say.
+    Shape shape = Shape::Zero();
+    for (int round = 0; round < kMaxRounds; ++round) {
+      if (!solve(shape)) return std::nullopt;
+      Shape next;
+      next << 2 * solution_[3], solution_[4], solution_[4], 2 * solution_[5];
+      const double change = (next - shape).norm();
+      shape = next;
+      if (change < kSettled) break;
     }
-    const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(matrix);
-    const auto pivots = solver.vectorD();
-    if (rows_.size() < size_t(kMinFaces) || !(pivots.minCoeff() > kSingular * pivots.maxCoeff()))
-      return std::nullopt;
-    const Eigen::Matrix<double, 6, 1> c = solver.solve(right);
-    const double hu = c[1], hv = c[2], huu = 2 * c[3], huv = c[4], hvv = 2 * c[5];
-    const double metric = 1 + hu * hu + hv * hv;
-    Jet jet;
-    jet.mean = -((1 + hv * hv) * huu - 2 * hu * hv * huv + (1 + hu * hu) * hvv) /
-               (2 * metric * std::sqrt(metric) * kReach);
-    jet.gaussian = (huu * hvv - huv * huv) / (metric * metric * kReach * kReach);
-    jet.squares = jet.weights = 0;
-    for (const Row& row : rows_) {
-      const double miss = kReach * (row.height - c.dot(row.terms));
-      jet.squares += row.weight * miss * miss;
-      jet.weights += row.weight;
-    }
-    return jet;
+    return jetOf(shape);
   }
 
  private:
@@ -79,20 +70,69 @@ class Fit {
     int axis, sign;
   };
   struct Row {
-    Eigen::Matrix<double, 6, 1> terms;
-    double height, weight;
+    double a, b, height, weight;
+    Terms terms = Terms::Zero();
   };
+
+  void makeRows(const Eigen::Vector3d& normal) {
+    const Eigen::Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
+    rows_.clear();
+    for (const Point& point : points_) {
+      Row row;
+      // By area, and none of a sheet that folds back.
+      row.weight = normal[point.axis] * point.sign;
+      row.a = point.position.dot(u);
+      row.b = point.position.dot(v);
+      // By distance along the plane: to leave out the deeper ones at the rim would flatten the fit.
+      if (row.weight <= 0 || row.a * row.a + row.b * row.b > kWithin) continue;
+      row.height = point.position.dot(normal);
+      rows_.push_back(row);
+    }
+  }
+
+  bool solve(const Shape& shape) {
+    Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
+    Terms right = Terms::Zero();
+    for (Row& row : rows_) {
+      const double a = row.a, b = row.b, deeper = roundness(shape, a, b);
+      row.terms << 1, a, b, deeper * a * a, deeper * a * b, deeper * b * b;
+      matrix.noalias() += row.weight * row.terms * row.terms.transpose();
+      right.noalias() += row.weight * row.height * row.terms;
+    }
+    const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(matrix);
+    const auto pivots = solver.vectorD();
+    if (!(pivots.minCoeff() > kSingular * pivots.maxCoeff())) return false;
+    solution_ = solver.solve(right);
+    return true;
+  }
+
+  Jet jetOf(const Shape& shape) const {
+    const double hu = solution_[1], hv = solution_[2];
+    const double huu = shape(0, 0), huv = shape(0, 1), hvv = shape(1, 1);
+    const double metric = 1 + hu * hu + hv * hv;
+    Jet jet;
+    jet.mean = -((1 + hv * hv) * huu - 2 * hu * hv * huv + (1 + hu * hu) * hvv) /
+               (2 * metric * std::sqrt(metric) * kReach);
+    jet.gaussian = (huu * hvv - huv * huv) / (metric * metric * kReach * kReach);
+    jet.squares = jet.weights = 0;
+    for (const Row& row : rows_) {
+      const double miss = kReach * (row.height - solution_.dot(row.terms));
+      jet.squares += row.weight * miss * miss;
+      jet.weights += row.weight;
+    }
+    return jet;
+  }
 
   void gather(const std::vector<InterfaceFace>& faces, size_t at) {
     points_.clear();
     normals_.setZero();
     const Eigen::Vector3d here = center(faces[at]);
     const auto first =
-        std::lower_bound(faces.begin(), faces.end(), int(std::floor(here.x() - kReach)) - 1,
+        std::lower_bound(faces.begin(), faces.end(), int(std::floor(here.x() - kRange)) - 1,
                          [](const InterfaceFace& face, int x) { return face.lower.x() < x; });
-    for (auto face = first; face != faces.end() && face->lower.x() <= here.x() + kReach; ++face) {
+    for (auto face = first; face != faces.end() && face->lower.x() <= here.x() + kRange; ++face) {
       const Eigen::Vector3d offset = center(*face) - here;
-      if (offset.squaredNorm() > kReach * kReach) continue;
+      if (offset.squaredNorm() > kRange * kRange) continue;
       points_.push_back({offset / kReach, face->axis, face->sign});
       normals_[face->axis] += face->sign;
     }
@@ -101,6 +141,7 @@ class Fit {
   std::vector<Point> points_;
   std::vector<Row> rows_;
   Eigen::Vector3d normals_;
+  Terms solution_;
 };
 
 double deviation(double sum, double squares, double count) {
