@@ -4,7 +4,9 @@
 // Where areas and curvatures are least right: bodies placed symmetrically on the lattice, whose
 // errors do not average out, bodies with edges, small balls.
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -134,6 +136,41 @@ TEST_CASE("hard_bodies: cubes lose area at their edges", "[hard_bodies]") {
     CHECK(along.worst() < 0.8 / edge);
     CHECK(turned.worst() < 0.8 / edge);
   }
+}
+
+TEST_CASE("hard_bodies: rounded edges lose little", "[hard_bodies]") {
+  Errors errors;
+  Rng rng(uint64_t(11));
+  for (int i = 0; i < 24; ++i) {
+    const double edge = 8 + 8 * rng.unit(), round = 2 + 2 * rng.unit();  // of the flat faces
+    const Vec3d center = randomPoint(rng);
+    const Axes axes = Axes::random(rng);
+    const double area = freeArea(edge + round, [&](const Vec3d& p) {
+      const Vec3d q = p - center;
+      double squared = 0;
+      for (const Vec3d& axis : {axes.x, axes.y, axes.z})
+        squared += std::pow(std::max(0.0, std::abs(q.dot(axis)) - edge / 2), 2);
+      return squared < round * round;
+    });
+    errors.add(area, 6 * edge * edge + 6 * M_PI * edge * round + 4 * M_PI * round * round);
+  }
+  report("cubes with edges rounded by 2 to 4 voxels, turned", errors);
+  CHECK(errors.mean() < 0.01);
+  CHECK(errors.worst() < 0.02);
+}
+
+TEST_CASE("hard_bodies: noise at the surface adds area", "[hard_bodies]") {
+  Errors errors;
+  Rng rng(uint64_t(12));
+  for (int i = 0; i < 12; ++i) {
+    const double radius = 12 + 6 * rng.unit();
+    const Vec3d center = randomPoint(rng);
+    const double area = freeArea(
+        radius, [&](const Vec3d& p) { return (p - center).length() < radius + rng.unit() - 0.5; });
+    errors.add(area, 4 * M_PI * radius * radius);
+  }
+  report("balls, each voxel's distance off by up to 1/2", errors);
+  CHECK(errors.mean() < 0.15);
 }
 
 TEST_CASE("hard_bodies: cylinders lose area at their edges", "[hard_bodies]") {
