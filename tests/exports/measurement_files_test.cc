@@ -86,15 +86,28 @@ TEST_CASE("measurement_files: the sample", "[measurement_files]") {
   const ScratchFolder scratch;
   Measurements m = fewMeasurements();
   m.voxelSize = VoxelSize{0.5e-3};
-  MeasurementTables(scratch / "t").write(m, 900);
+  MeasurementTables(scratch / "t").write(m, {900});
   const auto sample = nlohmann::json::parse(readFile(scratch / "t/sample.json"));
   CHECK(sample.at("length_unit") == "mm");
   CHECK(sample.at("object_volume_mm3") == 1);
-  CHECK(sample.at("density_kg_per_m3") == 450);
+  CHECK(sample.at("solid_fraction") == 0.5);
+  CHECK(sample.at("solid_density_kg_per_m3") == 900);
+  CHECK(sample.at("bulk_density_kg_per_m3") == 450);
   CHECK(sample.at("specific_surface_per_mm") == 6);
   CHECK(sample.at("specific_surface_m2_per_kg").get<double>() == Approx(6000 / 900.0));
   CHECK(sample.at("correlation_length_mm") == nlohmann::json({0.75, nullptr, 1.0}));
   CHECK(sample.at("bond_to_grain_ratio").is_null());
+}
+
+TEST_CASE("measurement_files: no word of a mass without a density", "[measurement_files]") {
+  const ScratchFolder scratch;
+  Measurements m = fewMeasurements();
+  m.voxelSize = VoxelSize{0.5e-3};
+  MeasurementTables(scratch / "t").write(m);
+  const std::string text = readFile(scratch / "t/sample.json");
+  CHECK(nlohmann::json::parse(text).at("solid_fraction") == 0.5);
+  CHECK(text.find("kg") == std::string::npos);
+  CHECK(text.find("ice_") == std::string::npos);
 }
 
 TEST_CASE("measurement_files: whole or not at all", "[measurement_files]") {

@@ -74,7 +74,7 @@ with Bench() as bench:
               f"view.vdb: place of {place}")
     coarse = pyopenvdb.read(half, "density")
     check(near(coarse.transform.indexToWorld((0, 0, 0)), [0.5 * EDGE] * 3), "half.vdb: half a voxel")
-    check(abs(coarse.getAccessor().getValue((1, 1, 2)) - 1 / 8) < 1e-6, "half.vdb: ice fraction")
+    check(abs(coarse.getAccessor().getValue((1, 1, 2)) - 1 / 8) < 1e-6, "half.vdb: solid fraction")
 
     names = sorted(grid.name for grid in pyopenvdb.readAllGridMetadata(grids))
     check(names == ["grain_000001", "grain_000002", "grain_000003", "grain_070000"],

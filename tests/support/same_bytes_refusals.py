@@ -46,7 +46,7 @@ def wrong_command_lines():
                   "in.vdb o.csv --theta -0.5,-0.5", "in.vdb o.csv --gamma 0,x", "in.vdb o.csv --gamma 3,3",
                   "in.vdb o.csv --merge cell", "in.vdb o.csv --small 0.5", "in.vdb o.csv --plot o.png",
                   "in.vdb o.csv --theta ,", "in.vdb o.csv --gamma ,"),
-        "measure": ("in.vdb", "in.vdb o_dir --ice-density 0", "in.vdb o_dir --ice-density ice",
+        "measure": ("in.vdb", "in.vdb o_dir --density 0", "in.vdb o_dir --density ice",
                     "in.vdb o_dir --boundary wide", "o_dir/grains.csv o_dir"),
         "compare": ("in.vdb", "in.vdb other.vdb --json other.vdb", "in.vdb other.vdb --grains in.vdb",
                     "in.vdb other.vdb --json a.x --confusion a.x"),

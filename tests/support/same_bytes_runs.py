@@ -207,7 +207,7 @@ def measure():
         yield f"measure all_{sample}_0.vdb measured_{sample}_dir"
     for boundary in ("auto", "open", "closed"):
         yield f"measure open_0_both_manifold.vdb measured_{boundary}_dir --boundary {boundary}"
-    yield "measure all_snow_20.vdb measured_options_dir --voxel-size 12nm --ice-density 900 --threads 1"
+    yield "measure all_snow_20.vdb measured_options_dir --voxel-size 12nm --density 900 --threads 1"
     yield "measure all_snow_20.vdb measured_options_dir --voxel-size 8.5um --threads 2 --verbose"
     yield "measure all_snow_20.vdb measured_grid_dir --grid grain --domain -8,-8,-8:71,72,73"
     yield "measure large_labels.vdb measured_large_dir --quiet"

@@ -145,7 +145,7 @@ TEST_CASE("cli: measure writes tables that fit together", "[cli]") {
   const Bench bench;
   bench.mustRun("generate snow --size 64 --length 14 --voxel-size 10um snow.vdb");
   bench.mustRun("segment snow.vdb grains.vdb");
-  const std::string said = bench.mustRun("measure grains.vdb tables");
+  const std::string said = bench.mustRun("measure grains.vdb tables --ice");
   const Table grains(bench.bytes("tables/grains.csv")), bonds(bench.bytes("tables/bonds.csv"));
   const Json sample = Json::parse(bench.bytes("tables/sample.json"));
 
@@ -157,9 +157,9 @@ TEST_CASE("cli: measure writes tables that fit together", "[cli]") {
   CHECK(sample.at("voxel_size_mm").get<double>() == Approx(0.01));
   CHECK(grains.sum("voxels") == sample.at("object_voxels").get<double>());
   CHECK(grains.sum("volume_mm3") == Approx(sample.at("object_voxels").get<double>() * 1e-6));
-  CHECK(sample.at("ice_fraction").get<double>() == Approx(grains.sum("voxels") / (64.0 * 64 * 64)));
-  CHECK(sample.at("density_kg_per_m3").get<double>() ==
-        Approx(917 * sample.at("ice_fraction").get<double>()));
+  const double fraction = grains.sum("voxels") / (64.0 * 64 * 64);
+  CHECK(sample.at("solid_fraction").get<double>() == Approx(fraction));
+  CHECK(sample.at("bulk_density_kg_per_m3").get<double>() == Approx(917 * fraction));
   CHECK(sample.at("specific_surface_per_mm").get<double>() ==
         Approx(grains.sum("free_area_mm2") / grains.sum("volume_mm3")));
   CHECK(sample.at("specific_surface_m2_per_kg").get<double>() ==
@@ -169,12 +169,29 @@ TEST_CASE("cli: measure writes tables that fit together", "[cli]") {
   requireSumsFit(bench, "tables");
 }
 
+TEST_CASE("cli: measure says nothing of ice or masses unasked", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate spheres --size 40 --count 4 --radius 6:8 --voxel-size 20um balls.vdb");
+  const std::string said = bench.mustRun("measure balls.vdb plain"),
+                    dense = bench.mustRun("measure balls.vdb dense --density 2650");
+  for (const std::string word : {"ice", "kg"}) {
+    CHECK(said.find(word) == std::string::npos);
+    CHECK(bench.bytes("plain/sample.json").find(word) == std::string::npos);
+  }
+  CHECK(dense.find("kg/m3") != std::string::npos);
+  CHECK(dense.find("m2/kg") != std::string::npos);
+  // What the flag is short for.
+  bench.mustRun("measure balls.vdb ice --ice");
+  bench.mustRun("measure balls.vdb same --density 917");
+  CHECK(bench.bytes("ice/sample.json") == bench.bytes("same/sample.json"));
+}
+
 TEST_CASE("cli: measure scales with the voxel size", "[cli]") {
   const Bench bench;
   bench.mustRun("generate spheres --size 60 --count 8 --radius 8:11 balls.vdb");
   const std::string said = bench.mustRun("measure balls.vdb voxels");  // the grid truth
   CHECK(said.find("voxel size          unknown") != std::string::npos);
-  bench.mustRun("measure balls.vdb sized --voxel-size 20um --ice-density 900");
+  bench.mustRun("measure balls.vdb sized --voxel-size 20um --density 900");
   bench.mustRun("measure balls.vdb tiny --voxel-size 5nm -q");
   const Table grains(bench.bytes("voxels/grains.csv")), bonds(bench.bytes("voxels/bonds.csv"));
   requireScaled(grains, Table(bench.bytes("sized/grains.csv")), "mm", 0.02);
@@ -225,7 +242,8 @@ TEST_CASE("cli: measure says what each column says, to the digit", "[cli]") {
   brick(23, 5, 7, 6, 12, 8, 5);
   brick(0, 0, 0, 4, 3, 5, 9);
   bench.write("bricks.raw", raw);
-  bench.mustRun("measure bricks.raw out --dims 40x30x25 --type uint8 --voxel-size 20um");
+  bench.mustRun(
+      "measure bricks.raw out --dims 40x30x25 --type uint8 --voxel-size 20um --density 2650");
   constexpr double e = 0.02;
 
   using Row = std::map<std::string, double>;
@@ -316,13 +334,13 @@ TEST_CASE("cli: measure says what each column says, to the digit", "[cli]") {
   CHECK(sample.at("bonds") == 1);
   CHECK(number("object_voxels") == voxels);
   CHECK(number("object_volume_mm3") == Approx(voxels * e * e * e));
-  CHECK(number("ice_fraction") == Approx(fraction));
-  CHECK(number("ice_density_kg_per_m3") == 917);
-  CHECK(number("density_kg_per_m3") == Approx(917 * fraction));
+  CHECK(number("solid_fraction") == Approx(fraction));
+  CHECK(number("solid_density_kg_per_m3") == 2650);
+  CHECK(number("bulk_density_kg_per_m3") == Approx(2650 * fraction));
   CHECK(number("free_area_mm2") == Approx(free * e * e));
   CHECK(number("shared_area_mm2") == Approx(96 * e * e));
   CHECK(number("specific_surface_per_mm") == Approx(free / voxels / e));
-  CHECK(number("specific_surface_m2_per_kg") == Approx(free / voxels / (e * 1e-3) / 917));
+  CHECK(number("specific_surface_m2_per_kg") == Approx(free / voxels / (e * 1e-3) / 2650));
   CHECK(sample.at("area_estimator").is_string());
   CHECK(sample.at("euler_characteristic") == 2);
   CHECK(sample.at("components") == 2);
@@ -397,8 +415,9 @@ TEST_CASE("cli: measure refuses, and leaves nothing behind", "[cli]") {
   bench.write("file", "");
   const auto names = bench.names();
   CHECK(bench.run("measure balls.vdb").exitCode == 2);
-  CHECK(bench.run("measure balls.vdb out --ice-density 0").exitCode == 2);
-  CHECK(bench.run("measure balls.vdb out --ice-density ice").exitCode == 2);
+  CHECK(bench.run("measure balls.vdb out --density 0").exitCode == 2);
+  CHECK(bench.run("measure balls.vdb out --density ice").exitCode == 2);
+  CHECK(bench.run("measure balls.vdb out --density 900 --ice").exitCode == 2);
   CHECK(bench.run("measure balls.vdb out --grid none").exitCode == 1);
   CHECK(bench.run("measure missing.vdb out").exitCode == 1);
   CHECK(bench.run("measure balls.vdb file").exitCode == 1);

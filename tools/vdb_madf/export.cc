@@ -156,7 +156,7 @@ void exportSurface(const Options& o, const Common& common, const Int32Grid& labe
   const auto grid = surfaceLevelSet(labels, options, common.progress);
   writeVdb(o.out, {grid}, common.progress);
   say(o, common,
-      "level set of the ice, " + counted(grid->activeVoxelCount(), "voxel") + " in its band");
+      "level set of the object, " + counted(grid->activeVoxelCount(), "voxel") + " in its band");
 }
 
 struct Kind {

@@ -18,15 +18,20 @@ namespace {
 struct Options {
   InputOptions input;
   std::string folder, boundary = "auto", density;
-  double iceDensity = kIceDensity;
+  bool ice = false;
   MeasureOptions measure;
+  TableOptions tables;
 };
 
 void parse(Options& o) {
   o.input.outputs = MeasurementTables::paths(o.folder);
   o.input.parse();
-  if (!o.density.empty()) o.iceDensity = parseNumber(o.density, "--ice-density");
-  if (!(o.iceDensity > 0)) throw WrongUsage("--ice-density " + o.density + ": must be above 0");
+  if (o.ice) o.tables.density = kIceDensity;
+  if (!o.density.empty()) {
+    if (o.ice) throw WrongUsage("--ice is --density 917: give one of the two");
+    o.tables.density = parseNumber(o.density, "--density");
+    if (!(*o.tables.density > 0)) throw WrongUsage("--density " + o.density + ": must be above 0");
+  }
   o.measure.boundary = parseBoundary(o.boundary);
 }
 
@@ -36,12 +41,13 @@ void print(const Options& o, const Measurements& m) {
   std::printf("%s: %zu grains, %zu bonds\n", o.folder.c_str(), m.grains.size(), m.bonds.size());
   if (!m.voxelSize)
     std::printf("  voxel size          unknown, so lengths are in voxels (give --voxel-size)\n");
-  std::printf("  ice fraction        %.4f of the %s, %.1f kg/m3\n", m.sample.objectFraction,
-              m.sample.domainKnown ? "domain" : "box of the grains (the domain is unknown)",
-              o.iceDensity * m.sample.objectFraction);
-  std::printf("  specific surface    %.5g /%s", m.sample.specificSurface / length, unit.c_str());
-  if (m.voxelSize)
-    std::printf(" = %.4g m2/kg", m.sample.specificSurface / m.voxelSize->metres / o.iceDensity);
+  const std::optional<double>& density = o.tables.density;
+  std::printf("  solid fraction      %.4f of the %s", m.sample.objectFraction,
+              m.sample.domainKnown ? "domain" : "box of the grains (the domain is unknown)");
+  if (density) std::printf(", %.1f kg/m3", *density * m.sample.objectFraction);
+  std::printf("\n  specific surface    %.5g /%s", m.sample.specificSurface / length, unit.c_str());
+  if (m.voxelSize && density)
+    std::printf(" = %.4g m2/kg", m.sample.specificSurface / m.voxelSize->metres / *density);
   std::printf("\n  grain diameter      d50 %.5g %s by number, %.5g by volume\n",
               length * diameterPercentile(m.grains, 0.5, false), unit.c_str(),
               length * diameterPercentile(m.grains, 0.5, true));
@@ -55,7 +61,7 @@ void run(const Options& o, const Common& common) {
   common.progress->start("measure");
   const Measurements measurements =
       withFileName(o.input.path, [&] { return measure(*labels, o.measure, common.progress); });
-  tables.write(measurements, o.iceDensity);
+  tables.write(measurements, o.tables);
   common.progress->end();
   if (!common.quiet) print(o, measurements);
 }
@@ -65,7 +71,7 @@ void run(const Options& o, const Common& common) {
 void addMeasure(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<Options>();
   Verb verb = addVerb(command, common, "measure", "tables of grains, bonds and the sample",
-                      "vdb_madf measure grains.vdb tables --voxel-size 8.5um");
+                      "vdb_madf measure grains.vdb tables --voxel-size 8.5um --ice");
   verb.option("LABELS", o->input.path, "labels: VDB or integer image").required();
   verb.option("OUT_DIR", o->folder, "gets grains.csv, bonds.csv and sample.json").required();
   verb.option("--grid", o->input.gridName, "VDB input: the grid to take").typeName("NAME");
@@ -73,7 +79,9 @@ void addMeasure(Verb command, Common& common, Action& action) {
   o->input.addVoxelSize(verb);
   o->input.addDomain(verb);
   addBoundary(verb, o->boundary);
-  verb.option("--ice-density", o->density, "kg/m3 (default: 917)").typeName("D");
+  verb.option("--density", o->density, "of the grains' material, kg/m3: adds what is per mass")
+      .typeName("D");
+  verb.flag("--ice", o->ice, "the density of ice: --density 917");
   verb.onParsed([o, &common, &action] {
     parse(*o);
     action = [o, &common] { run(*o, common); };

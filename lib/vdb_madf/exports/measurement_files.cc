@@ -74,7 +74,7 @@ Json toJson(const FabricTensor& fabric) {
   return json;
 }
 
-Json sampleJson(const Measurements& m, const Unit& unit, double iceDensity) {
+Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& options) {
   const SampleMeasures& s = m.sample;
   const std::string& u = unit.name;
   Json json;
@@ -87,15 +87,17 @@ Json sampleJson(const Measurements& m, const Unit& unit, double iceDensity) {
   json["bonds"] = m.bonds.size();
   json["object_voxels"] = s.objectVoxels;
   json["object_volume_" + u + "3"] = double(s.objectVoxels) * unit.volume();
-  json["ice_fraction"] = s.objectFraction;
-  json["ice_density_kg_per_m3"] = iceDensity;
-  json["density_kg_per_m3"] = iceDensity * s.objectFraction;
+  json["solid_fraction"] = s.objectFraction;
+  if (options.density) {
+    json["solid_density_kg_per_m3"] = *options.density;
+    json["bulk_density_kg_per_m3"] = *options.density * s.objectFraction;
+  }
   json["free_area_" + u + "2"] = s.freeArea * unit.area();
   json["shared_area_" + u + "2"] = s.sharedArea * unit.area();
   json["area_estimator"] = "voxel faces weighted by local normals";
   json["specific_surface_per_" + u] = s.specificSurface / unit.length;
-  if (m.voxelSize)
-    json["specific_surface_m2_per_kg"] = s.specificSurface / m.voxelSize->metres / iceDensity;
+  if (m.voxelSize && options.density)
+    json["specific_surface_m2_per_kg"] = s.specificSurface / m.voxelSize->metres / *options.density;
   Json lengths = Json::array();
   for (const auto& length : s.correlationLengths)
     lengths.push_back(length ? Json(*length * unit.length) : Json());
@@ -133,11 +135,11 @@ MeasurementTables::MeasurementTables(const std::string& folder) : folder_(folder
 
 MeasurementTables::~MeasurementTables() = default;
 
-void MeasurementTables::write(const Measurements& measurements, double iceDensity) {
+void MeasurementTables::write(const Measurements& measurements, const TableOptions& options) {
   const Unit unit(measurements.voxelSize);
   files_.at(0)->text(table(grainColumns(measurements.grains), unit));
   files_.at(1)->text(table(bondColumns(measurements.bonds), unit));
-  files_.at(2)->text(sampleJson(measurements, unit, iceDensity).dump(2) + "\n");
+  files_.at(2)->text(sampleJson(measurements, unit, options).dump(2) + "\n");
   for (const auto& file : files_) file->close();
   for (const auto& file : files_) {
     file->commit();

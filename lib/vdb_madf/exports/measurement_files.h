@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,12 @@ class OutputStream;
 }
 
 constexpr double kIceDensity = 917;  // kg/m^3, at 0 degrees Celsius
+
+/// What the tables say besides the measures.
+struct TableOptions {
+  /// Of the grains' material, kg/m^3, above 0; none: nothing is said of masses.
+  std::optional<double> density;
+};
 
 /// grains.csv, bonds.csv and sample.json in a folder, which is made if it is not there. Made before
 /// the work, so that a folder that cannot be written to is reported before it. The files appear
@@ -32,8 +39,8 @@ class MeasurementTables {
   MeasurementTables(const MeasurementTables&) = delete;
   MeasurementTables& operator=(const MeasurementTables&) = delete;
 
-  /// \p iceDensity in kg/m^3. @throw IoError
-  void write(const Measurements& measurements, double iceDensity = kIceDensity);
+  /// @throw IoError
+  void write(const Measurements& measurements, const TableOptions& options = {});
 
   /// The paths of the three files.
   static std::vector<std::string> paths(const std::string& folder);

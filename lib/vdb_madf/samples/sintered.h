@@ -14,7 +14,7 @@ namespace vdb_madf {
 /// (sigma 2), plus roughness * 1.5 * (unit white noise blurred with sigma 1), cut at 0.45.
 /// truth = power cell of the input balls. Each ball keeps its radius and tries up to 50000 centres;
 /// balls continue beyond the faces, so that the blur rounds nothing off there. A ball that owns no
-/// ice voxel is no grain. Works in blocks of 128^3: no dense array over the box.
+/// object voxel is no grain. Works in blocks of 128^3: no dense array over the box.
 struct SinteredOptions {
   Coord size{180, 180, 180};
   uint64_t seed = 1;
