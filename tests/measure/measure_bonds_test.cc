@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "support/known_bodies.h"
+#include "vdb_madf/base/errors.h"
 #include "vdb_madf/measure/measure.h"
 
 using namespace vdb_madf;
@@ -149,6 +150,50 @@ TEST_CASE("measure_bonds: patches", "[measure_bonds]") {
   }
   CHECK(onlyBond(*corner).faces == 2);
   CHECK(onlyBond(*corner).patches == 1);
+}
+
+TEST_CASE("measure_bonds: contacts of too few faces are left out, their areas are not",
+          "[measure_bonds]") {
+  // 1 and 2 share 16 faces; 3 stands on 2 with a foot of one voxel.
+  const auto labels = drawLabels({Coord(0), Coord(7, 3, 8)}, [](const Vec3d& p) {
+    if (p[2] < 4) return p[0] < 4 ? 1 : 2;
+    return p[2] > 4 || p == Vec3d(5, 1, 4) ? 3 : 0;
+  });
+  const Measurements all = measure(*labels);
+  CHECK(all.bonds.size() == 2);
+  CHECK(all.sample.contactsLeftOut == 0);
+  CHECK(all.sample.areaLeftOut == 0);
+  CHECK(all.sample.bondsWithoutCurvature == 1);
+  MeasureOptions options;
+  for (const int64_t minFaces : {0, 1, 2, 16, 17}) {
+    CAPTURE(minFaces);
+    options.minFaces = minFaces;
+    const Measurements some = measure(*labels, options);
+    const size_t bonds = minFaces < 2 ? 2 : minFaces < 17 ? 1 : 0;
+    CHECK(some.minFaces == minFaces);
+    REQUIRE(some.bonds.size() == bonds);
+    CHECK(some.sample.contactsLeftOut == int64_t(2 - bonds));
+    if (bonds > 0) CHECK(some.bonds[0].faces == 16);
+    CHECK(some.sample.meanCoordination == Approx(2.0 * double(bonds) / 3));
+    CHECK(some.grains[1].coordination == int(bonds));
+    CHECK(some.grains[2].coordination == (bonds == 2 ? 1 : 0));
+    CHECK(some.sample.bondsWithoutCurvature == (bonds == 2 ? 1 : 0));
+    if (bonds == 1)
+      CHECK(some.sample.bondToGrainRatio.value() ==
+            Approx(2 * all.bonds[0].equivalentRadius / all.grains[0].equivalentDiameter));
+    CHECK(some.sample.bondToGrainRatio.has_value() == (bonds > 0));
+    double area = some.sample.areaLeftOut;
+    for (const BondMeasures& bond : some.bonds) area += bond.area;
+    CHECK(area == Approx(all.sample.sharedArea));
+    CHECK(some.sample.sharedArea == Approx(all.sample.sharedArea));
+    CHECK(some.sample.freeArea == all.sample.freeArea);
+    for (size_t i = 0; i < 3; ++i) {
+      CHECK(some.grains[i].sharedArea == all.grains[i].sharedArea);
+      CHECK(some.grains[i].sphericity == all.grains[i].sphericity);
+    }
+  }
+  options.minFaces = -1;
+  CHECK_THROWS_AS(measure(*labels, options), InvalidInput);
 }
 
 TEST_CASE("measure_bonds: the smallest of bonds", "[measure_bonds]") {

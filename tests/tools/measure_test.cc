@@ -186,6 +186,44 @@ TEST_CASE("cli: measure says nothing of ice or masses unasked", "[cli]") {
   CHECK(bench.bytes("ice/sample.json") == bench.bytes("same/sample.json"));
 }
 
+TEST_CASE("cli: measure and the network leave out contacts of few faces, and say how many",
+          "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate snow --size 64 --length 14 --voxel-size 10um snow.vdb");
+  bench.mustRun("segment snow.vdb grains.vdb");
+  bench.mustRun("measure grains.vdb all");
+  const std::string said = bench.mustRun("measure grains.vdb some --min-faces 10");
+  const Table all(bench.bytes("all/bonds.csv")), some(bench.bytes("some/bonds.csv")),
+      allGrains(bench.bytes("all/grains.csv")), grains(bench.bytes("some/grains.csv"));
+  const Json sample = Json::parse(bench.bytes("some/sample.json"));
+  size_t small = 0, withoutCurvature = 0;
+  double area = 0;
+  for (size_t i = 0; i < all.rows.size(); ++i) {
+    const bool few = all.at(i, "faces") < 10;
+    small += few;
+    if (few) area += all.at(i, "area_mm2");
+    const bool bare = all.at(i, "curvature_points") == 0;
+    withoutCurvature += bare;
+    CHECK((bare || !few));  // ten points are the fewest
+    CHECK(all.rows[i][all.column("mean_curvature_per_mm")].empty() == bare);
+  }
+  REQUIRE(small > 0);
+  REQUIRE(small < all.rows.size());
+  CHECK(some.rows.size() == all.rows.size() - small);
+  for (size_t i = 0; i < some.rows.size(); ++i) CHECK(some.at(i, "faces") >= 10);
+  CHECK(sample.at("min_faces") == 10);
+  CHECK(sample.at("contacts_left_out") == small);
+  CHECK(sample.at("contacts_left_out_area_mm2").get<double>() == Approx(area));
+  CHECK(Json::parse(bench.bytes("all/sample.json")).at("bonds_without_curvature") ==
+        withoutCurvature);
+  CHECK(said.find(std::to_string(small) + " contact") != std::string::npos);
+  CHECK(grains.sum("coordination") == 2 * double(some.rows.size()));
+  CHECK(grains.sum("shared_area_mm2") == allGrains.sum("shared_area_mm2"));
+  const std::string network = bench.mustRun("export grains.vdb n.graphml --min-faces 10");
+  CHECK(network.find(std::to_string(some.rows.size()) + " bond") != std::string::npos);
+  CHECK(network.find(std::to_string(small) + " contact") != std::string::npos);
+}
+
 TEST_CASE("cli: measure scales with the voxel size", "[cli]") {
   const Bench bench;
   bench.mustRun("generate spheres --size 60 --count 8 --radius 8:11 balls.vdb");
@@ -332,6 +370,10 @@ TEST_CASE("cli: measure says what each column says, to the digit", "[cli]") {
   CHECK(sample.at("box_max") == Json({kX - 1, kY - 1, kZ - 1}));
   CHECK(sample.at("grains") == 3);
   CHECK(sample.at("bonds") == 1);
+  CHECK(sample.at("bonds_without_curvature") == 0);
+  CHECK(sample.at("min_faces") == 1);
+  CHECK(sample.at("contacts_left_out") == 0);
+  CHECK(sample.at("contacts_left_out_area_mm2") == 0);
   CHECK(number("object_voxels") == voxels);
   CHECK(number("object_volume_mm3") == Approx(voxels * e * e * e));
   CHECK(number("solid_fraction") == Approx(fraction));
@@ -374,7 +416,7 @@ TEST_CASE("cli: measure says what each column says, to the digit", "[cli]") {
   for (size_t i = 0; i < 3; ++i)
     CHECK(fabric.at("eigenvalues").at(i).get<double>() == Approx(weights[i]));
   CHECK(sample.at("correlation_length_mm").size() == 3);
-  CHECK(sample.size() == 27);  // no key that is not looked at
+  CHECK(sample.size() == 31);  // no key that is not looked at
 }
 
 TEST_CASE("cli: segment writes the tables that measure writes, with any threads", "[cli]") {
@@ -418,6 +460,8 @@ TEST_CASE("cli: measure refuses, and leaves nothing behind", "[cli]") {
   CHECK(bench.run("measure balls.vdb out --density 0").exitCode == 2);
   CHECK(bench.run("measure balls.vdb out --density ice").exitCode == 2);
   CHECK(bench.run("measure balls.vdb out --density 900 --ice").exitCode == 2);
+  CHECK(bench.run("measure balls.vdb out --min-faces -1").exitCode == 2);
+  CHECK(bench.run("measure balls.vdb out --min-faces few").exitCode == 2);
   CHECK(bench.run("measure balls.vdb out --grid none").exitCode == 1);
   CHECK(bench.run("measure missing.vdb out").exitCode == 1);
   CHECK(bench.run("measure balls.vdb file").exitCode == 1);

@@ -10,6 +10,7 @@
 #include "command.h"
 #include "input_options.h"
 #include "outputs.h"
+#include "parse.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/exports/clump_file.h"
@@ -40,11 +41,12 @@ namespace {
 
 struct Options {
   InputOptions input;
-  std::string out, kind;
+  std::string out, kind, minFaces = "1";
   int smoothing = 10, maxDim = 0, reduce = 0;
   int64_t mostTriangles = 0;  ///< 0: any number
   bool compress = false, asBool = false;
   ClumpOptions clumps;
+  MeasureOptions measure;
 };
 
 /// The kind that the output's ending leaves no doubt about; else empty.
@@ -130,10 +132,14 @@ void exportVti(const Options& o, const Common& common, const Int32Grid& labels) 
 }
 
 void exportNetwork(const Options& o, const Common& common, const Int32Grid& labels) {
-  const GrainNetwork network = grainNetwork(labels, common.progress);
+  const GrainNetwork network = grainNetwork(labels, o.measure, common.progress);
   writeNetwork(o.out, network, common.progress);
   say(o, common,
-      counted(network.grains.size(), "grain") + ", " + counted(network.bonds.size(), "bond"));
+      counted(network.grains.size(), "grain") + ", " + counted(network.bonds.size(), "bond") +
+          (o.measure.minFaces > 1
+               ? " (" + counted(network.contactsLeftOut, "contact") + " of fewer than " +
+                     std::to_string(o.measure.minFaces) + " faces left out)"
+               : ""));
 }
 
 void exportGrainGrids(const Options& o, const Common& common, const Int32Grid& labels) {
@@ -300,11 +306,15 @@ void addExport(Verb command, Common& common, Action& action) {
   verb.option("--uncovered", o->clumps.coverageError,
               "clumps: part of a grain that may stay uncovered, 0 to 1")
       .showDefault();
+  verb.option("--min-faces", o->minFaces, "network: fewest voxel faces of a bond")
+      .typeName("N")
+      .showDefault();
   o->input.addRaw(verb);
   o->input.addVoxelSize(verb);
   verb.onParsed([o, &common, &action] {
     if (!(o->clumps.coverageError >= 0 && o->clumps.coverageError <= 1))
       throw WrongUsage("--uncovered: must lie between 0 and 1");
+    o->measure.minFaces = parseCount(o->minFaces, "--min-faces");
     const Kind& kind = findKind(*o);
     o->input.outputs = {o->out};
     o->input.parse();

@@ -17,7 +17,7 @@ namespace {
 
 struct Options {
   InputOptions input;
-  std::string folder, boundary = "auto", density;
+  std::string folder, boundary = "auto", density, minFaces = "1";
   bool ice = false;
   MeasureOptions measure;
   TableOptions tables;
@@ -33,12 +33,14 @@ void parse(Options& o) {
     if (!(*o.tables.density > 0)) throw WrongUsage("--density " + o.density + ": must be above 0");
   }
   o.measure.boundary = parseBoundary(o.boundary);
+  o.measure.minFaces = parseCount(o.minFaces, "--min-faces");
 }
 
 void print(const Options& o, const Measurements& m) {
   const std::string unit = m.voxelSize ? m.voxelSize->unit() : "voxel";
   const double length = m.voxelSize ? m.voxelSize->inUnit() : 1;
-  std::printf("%s: %zu grains, %zu bonds\n", o.folder.c_str(), m.grains.size(), m.bonds.size());
+  std::printf("%s: %s, %s\n", o.folder.c_str(), counted(int64_t(m.grains.size()), "grain").c_str(),
+              counted(int64_t(m.bonds.size()), "bond").c_str());
   if (!m.voxelSize)
     std::printf("  voxel size          unknown, so lengths are in voxels (give --voxel-size)\n");
   const std::optional<double>& density = o.tables.density;
@@ -52,6 +54,12 @@ void print(const Options& o, const Measurements& m) {
               length * diameterPercentile(m.grains, 0.5, false), unit.c_str(),
               length * diameterPercentile(m.grains, 0.5, true));
   std::printf("  bonds a grain       %.2f\n", m.sample.meanCoordination);
+  if (m.minFaces > 1)
+    std::printf("  left out            %s of fewer than %lld faces\n",
+                counted(m.sample.contactsLeftOut, "contact").c_str(), (long long)m.minFaces);
+  if (m.sample.bondsWithoutCurvature > 0)
+    std::printf("  too small to curve  %s (under 10 faces, or all in a row)\n",
+                counted(m.sample.bondsWithoutCurvature, "bond").c_str());
 }
 
 void run(const Options& o, const Common& common) {
@@ -79,6 +87,10 @@ void addMeasure(Verb command, Common& common, Action& action) {
   o->input.addVoxelSize(verb);
   o->input.addDomain(verb);
   addBoundary(verb, o->boundary);
+  verb.option("--min-faces", o->minFaces,
+              "fewest voxel faces of a bond; the areas keep what smaller contacts share")
+      .typeName("N")
+      .showDefault();
   verb.option("--density", o->density, "of the grains' material, kg/m3: adds what is per mass")
       .typeName("D");
   verb.flag("--ice", o->ice, "the density of ice: --density 917");

@@ -85,6 +85,10 @@ Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& opt
   json["box_max"] = {s.box.max().x(), s.box.max().y(), s.box.max().z()};
   json["grains"] = m.grains.size();
   json["bonds"] = m.bonds.size();
+  json["bonds_without_curvature"] = s.bondsWithoutCurvature;
+  json["min_faces"] = m.minFaces;
+  json["contacts_left_out"] = s.contactsLeftOut;
+  json["contacts_left_out_area_" + u + "2"] = s.areaLeftOut * unit.area();
   json["object_voxels"] = s.objectVoxels;
   json["object_volume_" + u + "3"] = double(s.objectVoxels) * unit.volume();
   json["solid_fraction"] = s.objectFraction;

@@ -9,7 +9,6 @@
 
 #include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/measure/columns.h"
-#include "vdb_madf/measure/measure.h"
 
 namespace vdb_madf {
 
@@ -39,11 +38,13 @@ uint32_t position(const std::vector<int32_t>& labels, int32_t label) {
 
 }  // namespace
 
-GrainNetwork grainNetwork(const Int32Grid& labels, Interrupter* interrupter) {
+GrainNetwork grainNetwork(const Int32Grid& labels, const MeasureOptions& options,
+                          Interrupter* interrupter) {
   const CubicTransform world = detail::cubicTransform(labels.transform());
-  const Measurements measured = measure(labels, {}, interrupter);
+  const Measurements measured = measure(labels, options, interrupter);
 
   GrainNetwork network;
+  network.contactsLeftOut = measured.sample.contactsLeftOut;
   for (const GrainMeasures& grain : measured.grains) {
     network.grains.push_back(grain.id);
     network.centers.push_back(world.origin + world.edge * grain.centroid);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/measure/measure.h"
 
 namespace vdb_madf {
 
@@ -22,9 +23,10 @@ struct GrainNetwork {
   std::vector<openvdb::Vec3d> centers;         ///< centroids of the grains, world
   std::vector<std::array<uint32_t, 2>> bonds;  ///< positions in `grains`, first < second; sorted
   std::vector<Column> grainColumns, bondColumns;
+  int64_t contactsLeftOut = 0;  ///< pairs of grains with too few faces for a bond
 };
 
-/// Measures the labels (measure.h: domain and boundary are what the grid says) and names the
+/// Measures the labels (measure.h) and names the
 /// numbers as the tables of `vdb_madf measure` do, without units; lengths, areas, volumes and
 /// places are in world units. NaN: not known (no background; an interface too small for a
 /// curvature).
@@ -34,6 +36,7 @@ struct GrainNetwork {
 /// (between the centroids).
 /// @throw InvalidInput if the transform is not linear with cubic voxels, or as measure();
 ///   Interrupted.
-GrainNetwork grainNetwork(const Int32Grid& labels, Interrupter* interrupter = nullptr);
+GrainNetwork grainNetwork(const Int32Grid& labels, const MeasureOptions& options = {},
+                          Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vdb_madf/base/errors.h"
 #include "vdb_madf/leaves/detail/connected_components.h"
 #include "vdb_madf/measure/correlation_length.h"
 #include "vdb_madf/measure/detail/bond_measures.h"
@@ -38,9 +39,27 @@ void setRepresentatives(const detail::GrainRepresentatives& representatives, Mea
   }
 }
 
+/// Takes away the bonds of fewer faces, also from the coordination numbers, and returns them.
+std::vector<BondMeasures> takeSmallBonds(Measurements& result) {
+  std::vector<BondMeasures>& bonds = result.bonds;
+  const auto firstSmall = std::stable_partition(
+      bonds.begin(), bonds.end(),
+      [&](const BondMeasures& bond) { return bond.faces >= result.minFaces; });
+  std::vector<BondMeasures> small(firstSmall, bonds.end());
+  bonds.erase(firstSmall, bonds.end());
+  for (const BondMeasures& bond : small)
+    for (const int32_t id : {bond.first, bond.second})
+      --std::lower_bound(result.grains.begin(), result.grains.end(), id,
+                         [](const GrainMeasures& grain, int32_t label) { return grain.id < label; })
+            ->coordination;
+  return small;
+}
+
 /// \p graph: of the segmentation, if it tells the representatives; else null.
 Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& options,
                            const ManifoldGraph* graph, Interrupter* interrupter) {
+  if (options.minFaces < 0)
+    throw InvalidInput("the least number of faces of a bond must not be negative");
   const detail::LabelLeaves leaves(labels, interrupter);
   const LeafIndex& index = leaves.index();
   const std::optional<CoordBBox> domainBox = options.domain ? options.domain : storedDomain(labels);
@@ -50,6 +69,7 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
 
   Measurements result;
   result.voxelSize = storedVoxelSize(labels);
+  result.minFaces = options.minFaces;
   const CoordBBox box = domainBox.value_or(index.boundingBox());
   {
     const detail::LabelSums sums = detail::labelSums(
@@ -60,8 +80,12 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
   setRepresentatives(graph ? detail::grainRepresentatives(labels, *graph)
                            : detail::grainRepresentatives(leaves, obstacles, interrupter),
                      result);
+  const std::vector<BondMeasures> leftOut = takeSmallBonds(result);
   SampleMeasures& sample = result.sample;
   sample = detail::sampleMeasures(result.grains, result.bonds, box);
+  sample.contactsLeftOut = int64_t(leftOut.size());
+  for (const BondMeasures& contact : leftOut) sample.areaLeftOut += contact.area;
+  sample.sharedArea += sample.areaLeftOut;
   sample.domainKnown = domainBox.has_value();
   sample.correlationLengths = correlationLengths(index, sample.box, interrupter);
   sample.eulerCharacteristic = eulerCharacteristic(index, interrupter);

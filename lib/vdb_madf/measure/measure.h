@@ -23,6 +23,9 @@ struct MeasureOptions {
   /// Open: the faces of the domain are no surface (GrainMeasures::cutArea). Closed: they are.
   Boundary boundary = Boundary::automatic;
   std::optional<CoordBBox> domain;  ///< overrides the domain in the grid's metadata
+  /// Grains that share fewer voxel faces have no bond; what they share stays part of their areas.
+  /// 0 and 1: all that touch have one.
+  int64_t minFaces = 1;
 };
 
 /// Grains, bonds and the sample; lengths in voxels.
@@ -31,14 +34,15 @@ struct Measurements {
   std::vector<BondMeasures> bonds;    ///< by first, then second
   SampleMeasures sample;
   std::optional<VoxelSize> voxelSize;  ///< of the grid
+  int64_t minFaces = 1;                ///< that a bond had to have
 };
 
 /// Measures labels: each value of the active voxels (tiles included) above 0 is a grain, in one
 /// piece or not. Areas are estimated (surface area: detail/leaf_surface.h says how), all else is
 /// exact. Depends on nothing but labels, domain and boundary: not on tiles or threads, bit for bit.
 /// Memory: per grain, per face of a bond, and for the representatives per voxel.
-/// @throw InvalidInput if labels leave the domain, the boundary is open without one, or a limit of
-///   leaf_index.h is exceeded; Interrupted.
+/// @throw InvalidInput if labels leave the domain, the boundary is open without one, minFaces is
+///   negative, or a limit of leaf_index.h is exceeded; Interrupted.
 Measurements measure(const Int32Grid& labels, const MeasureOptions& options = {},
                      Interrupter* interrupter = nullptr);
 

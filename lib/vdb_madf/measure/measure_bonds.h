@@ -24,6 +24,7 @@ struct BondMeasures {
   openvdb::Vec3d normal;
   double flatness = 0;  ///< smallest eigenvalue of the covariance of the faces' centres, voxels^2
   int patches = 0;      ///< parts of the interface, faces with a common corner being one
+  /// None of an interface of fewer than 10 faces, or of faces in a row.
   std::optional<InterfaceCurvature> curvature;
   /// Between the representatives c of the grains, with squared inscribed radii D: their distance
   /// and cos alpha = (|c1 - c2|^2 - D1 - D2) / (2 sqrt(D1 D2)). None without background.

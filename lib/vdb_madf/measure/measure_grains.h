@@ -33,7 +33,7 @@ struct GrainMeasures {
   double inscribedRadius = 0;
   double equivalentDiameter = 0;  ///< of the ball of this volume
   double freeArea = 0;            ///< towards the background
-  double sharedArea = 0;          ///< sum of the areas of its bonds
+  double sharedArea = 0;          ///< towards other grains, be there a bond or too few faces for it
   double cutArea = 0;             ///< on the border of an open domain; part of no other area
   double sphericity = 0;          ///< area of the ball of this volume / area, the cut one included
   /// Axes of inertia and the lengths (not half lengths) of the axes of the ellipsoid that has the

@@ -27,13 +27,16 @@ struct SampleMeasures {
   int64_t objectVoxels = 0;
   double objectFraction = 0;
   double freeArea = 0;         ///< of all grains
-  double sharedArea = 0;       ///< of all bonds
+  double sharedArea = 0;       ///< of all bonds and of the contacts that were left out
   double specificSurface = 0;  ///< free area per volume of object, 1/voxel
   std::array<std::optional<double>, 3> correlationLengths;  ///< see correlation_length.h
   int64_t eulerCharacteristic = 0;                          ///< see euler_characteristic.h
   int64_t components = 0;                                   ///< 6-connected parts of the object
   std::vector<int64_t> coordinations;                       ///< grains with 0, 1, 2 ... bonds
   double meanCoordination = 0;
+  int64_t contactsLeftOut = 0;  ///< pairs of grains that share too few faces for a bond
+  double areaLeftOut = 0;       ///< what they share
+  int64_t bondsWithoutCurvature = 0;
   FabricTensor grainFabric;  ///< of the grains' longest axes, weighted by volume
   FabricTensor bondFabric;   ///< of the bonds' normals, weighted by area
   /// Mean over the bonds of radius of equal area / radius of the ball of the smaller grain's

@@ -54,6 +54,7 @@ SampleMeasures sampleMeasures(const std::vector<GrainMeasures>& grains,
   double ratios = 0;
   for (const BondMeasures& bond : bonds) {
     sample.sharedArea += bond.area;
+    sample.bondsWithoutCurvature += bond.curvature ? 0 : 1;
     bondFabric.add(bond.normal, bond.area);
     ratios += 2 * bond.equivalentRadius / std::min(diameters[bond.first], diameters[bond.second]);
   }
