@@ -3,12 +3,15 @@
 
 #include "vdb_madf/exports/measurement_files.h"
 
+#include <openvdb/Metadata.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "support/files.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/version.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
@@ -86,7 +89,7 @@ TEST_CASE("measurement_files: the sample", "[measurement_files]") {
   const ScratchFolder scratch;
   Measurements m = fewMeasurements();
   m.voxelSize = VoxelSize{0.5e-3};
-  MeasurementTables(scratch / "t").write(m, {900});
+  MeasurementTables(scratch / "t").write(m, {"", "", 900});
   const auto sample = nlohmann::json::parse(readFile(scratch / "t/sample.json"));
   CHECK(sample.at("length_unit") == "mm");
   CHECK(sample.at("object_volume_mm3") == 1);
@@ -108,6 +111,49 @@ TEST_CASE("measurement_files: no word of a mass without a density", "[measuremen
   CHECK(nlohmann::json::parse(text).at("solid_fraction") == 0.5);
   CHECK(text.find("kg") == std::string::npos);
   CHECK(text.find("ice_") == std::string::npos);
+}
+
+TEST_CASE("measurement_files: where the numbers come from", "[measurement_files]") {
+  const ScratchFolder scratch;
+  Measurements m = fewMeasurements();
+  m.gridName = "grain";
+  m.labelDigest = "0123";
+  m.open = true;
+  m.metadata.insertMeta("madf_theta", openvdb::DoubleMetadata(-0.9));
+  m.metadata.insertMeta("madf_gamma", openvdb::Int64Metadata(20));
+  m.metadata.insertMeta("madf_source", openvdb::StringMetadata("scan \xff.tif"));
+  m.metadata.insertMeta("madf_voxel_size_m", openvdb::DoubleMetadata(1));
+  m.metadata.insertMeta("file_bbox_min", openvdb::Int32Metadata(3));
+  m.metadata.insertMeta("madf_domain_min", openvdb::Vec3IMetadata(openvdb::Vec3i(1)));
+  MeasurementTables(scratch / "t").write(m, {"a/grains.vdb", "", std::nullopt});
+  const auto sample = nlohmann::json::parse(readFile(scratch / "t/sample.json"));
+  CHECK(sample.at("labels") == "a/grains.vdb");
+  CHECK(sample.at("grid") == "grain");
+  CHECK(sample.at("labels_digest") == "0123");
+  CHECK(sample.at("boundary") == "open");
+  CHECK(sample.at("version") == kVersion);
+  CHECK_FALSE(sample.contains("sample"));
+  CHECK(sample.at("segmentation") ==
+        nlohmann::json({{"theta", -0.9}, {"gamma", 20}, {"source", "scan \xef\xbf\xbd.tif"}}));
+}
+
+TEST_CASE("measurement_files: a named sample stands in every row", "[measurement_files]") {
+  const ScratchFolder scratch;
+  const Measurements m = fewMeasurements();
+  MeasurementTables(scratch / "plain").write(m);
+  MeasurementTables(scratch / "named").write(m, {"", "core 3, \"wet\"", std::nullopt});
+  CHECK(nlohmann::json::parse(readFile(scratch / "named/sample.json")).at("sample") ==
+        "core 3, \"wet\"");
+  // The tables are the same but for the first column.
+  for (const std::string table : {"grains.csv", "bonds.csv"}) {
+    std::string named = readFile(scratch / ("named/" + table));
+    CHECK(named.compare(0, 7, "sample,") == 0);
+    named.erase(0, 7);
+    const std::string cell = "\n\"core 3, \"\"wet\"\"\",";
+    for (size_t at = named.find(cell); at != std::string::npos; at = named.find(cell))
+      named.erase(at + 1, cell.size() - 1);
+    CHECK(named == readFile(scratch / ("plain/" + table)));
+  }
 }
 
 TEST_CASE("measurement_files: whole or not at all", "[measurement_files]") {

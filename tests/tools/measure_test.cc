@@ -363,6 +363,11 @@ TEST_CASE("cli: measure says what each column says, to the digit", "[cli]") {
   const Json sample = Json::parse(bench.bytes("out/sample.json"));
   const double voxels = 1920 + 576 + 60, fraction = voxels / (kX * kY * kZ);
   const auto number = [&](const char* key) { return sample.at(key).get<double>(); };
+  CHECK(sample.at("version").is_string());
+  CHECK(sample.at("labels") == "bricks.raw");
+  CHECK(sample.at("labels_digest").get<std::string>().size() == 32);
+  CHECK(sample.at("segmentation") == Json({{"source", "bricks.raw"}}));
+  CHECK(sample.at("boundary") == "open");
   CHECK(sample.at("length_unit") == "mm");
   CHECK(number("voxel_size_mm") == Approx(e));
   CHECK(sample.at("box") == "domain");
@@ -416,7 +421,7 @@ TEST_CASE("cli: measure says what each column says, to the digit", "[cli]") {
   for (size_t i = 0; i < 3; ++i)
     CHECK(fabric.at("eigenvalues").at(i).get<double>() == Approx(weights[i]));
   CHECK(sample.at("correlation_length_mm").size() == 3);
-  CHECK(sample.size() == 31);  // no key that is not looked at
+  CHECK(sample.size() == 36);  // no key that is not looked at
 }
 
 TEST_CASE("cli: segment writes the tables that measure writes, with any threads", "[cli]") {
@@ -425,11 +430,50 @@ TEST_CASE("cli: segment writes the tables that measure writes, with any threads"
   bench.mustRun("segment pack.vdb one.vdb --tables one --threads 1");
   bench.mustRun("segment pack.vdb two.vdb --tables two --threads 2");
   bench.mustRun("measure one.vdb measured --threads 2");
-  for (const std::string file : {"grains.csv", "bonds.csv", "sample.json"}) {
+  for (const std::string file : {"grains.csv", "bonds.csv"})
     CHECK(bench.bytes("one/" + file) == bench.bytes("two/" + file));
+  for (const std::string file : {"grains.csv", "bonds.csv", "sample.json"})
     CHECK(bench.bytes("one/" + file) == bench.bytes("measured/" + file));
-  }
+  Json one = Json::parse(bench.bytes("one/sample.json"));
+  CHECK(one.at("labels") == "one.vdb");
+  one["labels"] = "two.vdb";
+  CHECK(one == Json::parse(bench.bytes("two/sample.json")));
   requireSumsFit(bench, "one");
+}
+
+TEST_CASE("cli: sample.json tells where the labels come from and how they were made", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate snow --size 48 --length 14 --voxel-size 10um snow.tif");
+  bench.mustRun("segment snow.tif g.vdb --gamma 20 --theta -0.7 --delta 4 --fill-holes 9 --tidy 1");
+  bench.mustRun("measure g.vdb t --sample first");
+  const Json sample = Json::parse(bench.bytes("t/sample.json"));
+  CHECK(sample.at("sample") == "first");
+  CHECK(sample.at("labels") == "g.vdb");
+  CHECK(sample.at("grid") == "grain");
+  const Json& made = sample.at("segmentation");
+  CHECK(made.at("source") == "snow.tif");
+  CHECK(made.at("gamma") == 20);
+  CHECK(made.at("theta") == -0.7);
+  CHECK(made.at("delta") == 4);
+  CHECK(made.at("fill_holes") == 9);
+  CHECK(made.at("tidy") == 1);
+  CHECK(made.at("merge") == "both");
+  CHECK(made.at("boundary") == "open");
+  CHECK(made.at("version") == sample.at("version"));
+  const Table grains(bench.bytes("t/grains.csv")), bonds(bench.bytes("t/bonds.csv"));
+  for (const Table* table : {&grains, &bonds}) {
+    CHECK(table->names.at(0) == "sample");
+    for (const auto& row : table->rows) CHECK(row.at(0) == "first");
+  }
+  // The labels have one digest in each format, and other labels another.
+  bench.mustRun("convert g.vdb g.npy --grid grain");
+  bench.mustRun("measure g.npy same --boundary open");
+  bench.mustRun("segment snow.tif other.vdb --tables other");
+  const auto digest = [&](const std::string& folder) {
+    return Json::parse(bench.bytes(folder + "/sample.json")).at("labels_digest");
+  };
+  CHECK(digest("same") == digest("t"));
+  CHECK(digest("other") != digest("t"));
 }
 
 TEST_CASE("cli: the tables of a CT scan, with one thread and with two", "[cli]") {

@@ -69,7 +69,9 @@ void run(const Options& o, const Common& common) {
   common.progress->start("measure");
   const Measurements measurements =
       withFileName(o.input.path, [&] { return measure(*labels, o.measure, common.progress); });
-  tables.write(measurements, o.tables);
+  TableOptions options = o.tables;
+  options.labels = o.input.path;
+  tables.write(measurements, options);
   common.progress->end();
   if (!common.quiet) print(o, measurements);
 }
@@ -87,6 +89,9 @@ void addMeasure(Verb command, Common& common, Action& action) {
   o->input.addVoxelSize(verb);
   o->input.addDomain(verb);
   addBoundary(verb, o->boundary);
+  verb.option("--sample", o->tables.sample,
+              "name of the sample: becomes the first column of both tables")
+      .typeName("NAME");
   verb.option("--min-faces", o->minFaces,
               "fewest voxel faces of a bond; the areas keep what smaller contacts share")
       .typeName("N")

@@ -134,7 +134,9 @@ void run(const SegmentArguments& o, const Common& common) {
 
   if (tables) {
     const Clock::time_point startMeasure = Clock::now();
-    tables->write(measure(s, common.progress));
+    TableOptions about;
+    about.labels = o.out;
+    tables->write(measure(s, common.progress), about);
     timing.measure = secondsSince(startMeasure);
   }
 

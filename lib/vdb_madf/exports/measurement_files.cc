@@ -3,11 +3,15 @@
 
 #include "vdb_madf/exports/measurement_files.h"
 
+#include <openvdb/Metadata.h>
+
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "vdb_madf/base/version.h"
+#include "vdb_madf/files/csv_cell.h"
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/measure/columns.h"
 
@@ -44,12 +48,16 @@ std::string cell(const MeasureColumn& column, size_t row, double edge) {
 }
 
 /// Comma-separated values.
-std::string table(const std::vector<MeasureColumn>& columns, const Unit& unit) {
-  std::string text;
+std::string table(const std::vector<MeasureColumn>& columns, const Unit& unit,
+                  const std::string& sample) {
+  const std::string first = sample.empty() ? "" : csvCell(sample) + ",";
+  std::string text = sample.empty() ? "" : "sample,";
   for (const MeasureColumn& column : columns)
-    text += (text.empty() ? "" : ",") + column.name + unitSuffix(column.power, unit.name);
+    text += (&column == &columns.front() ? "" : ",") + column.name +
+            unitSuffix(column.power, unit.name);
   text += '\n';
   for (size_t row = 0; row < columns.front().values.size(); ++row) {
+    text += first;
     for (const MeasureColumn& column : columns) {
       if (&column != &columns.front()) text += ',';
       text += cell(column, row, unit.length);
@@ -74,10 +82,45 @@ Json toJson(const FabricTensor& fabric) {
   return json;
 }
 
+/// Null if it is neither number nor text.
+Json toJson(const openvdb::Metadata& value) {
+  if (value.typeName() == "string")
+    return static_cast<const openvdb::StringMetadata&>(value).value();
+  if (value.typeName() == "int64") return static_cast<const openvdb::Int64Metadata&>(value).value();
+  if (value.typeName() == "int32") return static_cast<const openvdb::Int32Metadata&>(value).value();
+  if (value.typeName() == "double")
+    return static_cast<const openvdb::DoubleMetadata&>(value).value();
+  if (value.typeName() == "float") return static_cast<const openvdb::FloatMetadata&>(value).value();
+  if (value.typeName() == "bool") return static_cast<const openvdb::BoolMetadata&>(value).value();
+  return {};
+}
+
+/// How the labels were made, as their grid tells it. Of the voxel size the tables say more.
+Json segmentationJson(const openvdb::MetaMap& metadata) {
+  const std::string prefix = "madf_";
+  Json json = Json::object();
+  for (auto item = metadata.beginMeta(); item != metadata.endMeta(); ++item) {
+    const std::string& key = item->first;
+    if (key.compare(0, prefix.size(), prefix) != 0 || key == "madf_voxel_size_m" ||
+        key == "madf_length_unit")
+      continue;
+    const Json value = toJson(*item->second);
+    if (!value.is_null()) json[key.substr(prefix.size())] = value;
+  }
+  return json;
+}
+
 Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& options) {
   const SampleMeasures& s = m.sample;
   const std::string& u = unit.name;
   Json json;
+  if (!options.sample.empty()) json["sample"] = options.sample;
+  json["version"] = kVersion;
+  if (!options.labels.empty()) json["labels"] = options.labels;
+  if (!m.gridName.empty()) json["grid"] = m.gridName;
+  json["labels_digest"] = m.labelDigest;
+  json["segmentation"] = segmentationJson(m.metadata);
+  json["boundary"] = m.open ? "open" : "closed";
   json["length_unit"] = u;
   if (m.voxelSize) json["voxel_size_" + u] = unit.length;
   json["box"] = s.domainKnown ? "domain" : "grains";
@@ -141,9 +184,12 @@ MeasurementTables::~MeasurementTables() = default;
 
 void MeasurementTables::write(const Measurements& measurements, const TableOptions& options) {
   const Unit unit(measurements.voxelSize);
-  files_.at(0)->text(table(grainColumns(measurements.grains), unit));
-  files_.at(1)->text(table(bondColumns(measurements.bonds), unit));
-  files_.at(2)->text(sampleJson(measurements, unit, options).dump(2) + "\n");
+  files_.at(0)->text(table(grainColumns(measurements.grains), unit, options.sample));
+  files_.at(1)->text(table(bondColumns(measurements.bonds), unit, options.sample));
+  // A file name need not be UTF-8: what is not is replaced.
+  files_.at(2)->text(
+      sampleJson(measurements, unit, options).dump(2, ' ', false, Json::error_handler_t::replace) +
+      "\n");
   for (const auto& file : files_) file->close();
   for (const auto& file : files_) {
     file->commit();

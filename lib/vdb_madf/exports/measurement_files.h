@@ -21,6 +21,10 @@ constexpr double kIceDensity = 917;  // kg/m^3, at 0 degrees Celsius
 
 /// What the tables say besides the measures.
 struct TableOptions {
+  std::string labels;  ///< where they are, such as the path of their file; empty: not said
+  /// Name of the sample: the first column of both tables, so that those of several samples can be
+  /// joined. Empty: no such column.
+  std::string sample;
   /// Of the grains' material, kg/m^3, above 0; none: nothing is said of masses.
   std::optional<double> density;
 };
@@ -30,7 +34,9 @@ struct TableOptions {
 /// whole or not at all.
 ///
 /// The columns are those of columns.h; lengths are in the unit of the voxel size, which the names
-/// end with, else in voxels. An unknown number is an empty cell, or null.
+/// end with, else in voxels. An unknown number is an empty cell, or null. sample.json also says
+/// where the numbers come from: our version, the labels and their digest, and of the metadata of
+/// their grid the numbers and texts whose names begin with `madf_`.
 class MeasurementTables {
  public:
   /// @throw IoError

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/labels/detail/label_digest.h"
 #include "vdb_madf/leaves/detail/connected_components.h"
 #include "vdb_madf/measure/correlation_length.h"
 #include "vdb_madf/measure/detail/bond_measures.h"
@@ -70,6 +71,10 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
   Measurements result;
   result.voxelSize = storedVoxelSize(labels);
   result.minFaces = options.minFaces;
+  result.open = obstacles.open;
+  result.gridName = labels.getName();
+  result.metadata = labels;
+  result.labelDigest = detail::labelDigest(leaves);
   const CoordBBox box = domainBox.value_or(index.boundingBox());
   {
     const detail::LabelSums sums = detail::labelSums(

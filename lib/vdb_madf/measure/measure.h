@@ -3,7 +3,10 @@
 
 #pragma once
 
+#include <openvdb/MetaMap.h>
+
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "vdb_madf/base/voxel_size.h"
@@ -33,8 +36,14 @@ struct Measurements {
   std::vector<GrainMeasures> grains;  ///< by id
   std::vector<BondMeasures> bonds;    ///< by first, then second
   SampleMeasures sample;
-  std::optional<VoxelSize> voxelSize;  ///< of the grid
   int64_t minFaces = 1;                ///< that a bond had to have
+  bool open = false;                   ///< the boundary
+  std::optional<VoxelSize> voxelSize;  ///< of the grid
+  std::string gridName;
+  openvdb::MetaMap metadata;  ///< of the grid: how the labels were made
+  /// Of the places and labels of the voxels, 32 hexadecimal digits: a checksum that equal labels
+  /// share, whatever file or grid they come from.
+  std::string labelDigest;
 };
 
 /// Measures labels: each value of the active voxels (tiles included) above 0 is a grain, in one

@@ -91,9 +91,7 @@ OutputBuffer::OutputBuffer(OutputStream& file, Interrupter* interrupter, int64_t
       interrupter_(interrupter),
       unhashedStart_(unhashedStart),
       unhashedEnd_(unhashedStart + unhashed),
-      buffer_(kBufferSize),
-      // Any two different odd numbers; these are from the fractional part of the golden ratio.
-      hash_{0x9e3779b97f4a7c15u, 0xf39cc0605cedc835u} {
+      buffer_(kBufferSize) {
   setp(buffer_.data(), buffer_.data() + buffer_.size());
 }
 
@@ -111,23 +109,15 @@ void OutputBuffer::replace(int64_t position, const std::string& bytes) {
   file_.writeAt(uint64_t(position), bytes.data(), bytes.size());
 }
 
-/// Two lanes of multiply and xor-shift over 64-bit words: a checksum to tell contents apart, not a
-/// defence against forgery.
 void OutputBuffer::addToHash(int64_t position, const char* bytes, size_t count) {
-  const auto add = [this](uint64_t word) {
-    hash_[0] = (hash_[0] ^ word) * 0xff51afd7ed558ccdu;
-    hash_[0] ^= hash_[0] >> 32;
-    hash_[1] = (hash_[1] + word) * 0xc4ceb9fe1a85ec53u;
-    hash_[1] ^= hash_[1] >> 29;
-  };
   const auto addBytes = [&](int64_t first, int64_t last) {
     if (first >= last) return;
-    add(uint64_t(first));
-    add(uint64_t(last));
+    hash_.add(uint64_t(first));
+    hash_.add(uint64_t(last));
     for (const char* p = bytes + (first - position); first < last; first += 8, p += 8) {
       uint64_t word = 0;
       std::memcpy(&word, p, size_t(std::min<int64_t>(8, last - first)));
-      add(word);
+      hash_.add(word);
     }
   };
   const int64_t end = position + int64_t(count);

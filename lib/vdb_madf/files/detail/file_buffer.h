@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "vdb_madf/base/detail/checksum.h"
 #include "vdb_madf/base/interrupter.h"
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/files/detail/output_stream.h"
@@ -77,7 +78,7 @@ class OutputBuffer final : public std::streambuf {
   /// Writes what is buffered. @throw IoError; Interrupted.
   void flush();
   /// Of the sequence of writes up to the last flush: where, and which bytes.
-  std::array<uint64_t, 2> hash() const { return hash_; }
+  std::array<uint64_t, 2> hash() const { return hash_.value(); }
   /// Flushes, then replaces bytes that were written before; they are not hashed.
   void replace(int64_t position, const std::string& bytes);
 
@@ -96,7 +97,7 @@ class OutputBuffer final : public std::streambuf {
   int64_t unhashedStart_, unhashedEnd_;
   int64_t start_ = 0;  ///< position of the buffer's first byte
   std::vector<char> buffer_;
-  std::array<uint64_t, 2> hash_;
+  Checksum hash_;
 };
 
 }  // namespace vdb_madf::detail

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/labels/detail/label_digest.h"
+
+#include <cinttypes>
+#include <cstdio>
+
+#include "vdb_madf/base/detail/checksum.h"
+
+namespace vdb_madf::detail {
+
+std::string labelDigest(const LabelLeaves& labels) {
+  Checksum sum;
+  const LeafIndex& index = labels.index();
+  for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
+    const LabelLeaves::Parts parts = labels.parts(leaf);
+    for (int axis = 0; axis < 3; ++axis) sum.add(uint64_t(int64_t(index.origin(leaf)[axis])));
+    sum.add(parts.size());
+    for (const LabelPart& part : parts) {
+      sum.add(uint64_t(part.label));
+      for (const uint64_t word : part.mask) sum.add(word);
+    }
+  }
+  char text[33];
+  std::snprintf(text, sizeof text, "%016" PRIx64 "%016" PRIx64, sum.value()[0], sum.value()[1]);
+  return text;
+}
+
+}  // namespace vdb_madf::detail
