@@ -48,6 +48,7 @@ def wrong_command_lines():
                   "in.vdb o.csv --theta ,", "in.vdb o.csv --gamma ,"),
         "measure": ("in.vdb", "in.vdb o_dir --density 0", "in.vdb o_dir --density ice",
                     "in.vdb o_dir --boundary wide", "o_dir/grains.csv o_dir"),
+        "collect": ("o_dir", "o_dir o.txt", "o.csv"),
         "compare": ("in.vdb", "in.vdb other.vdb --json other.vdb", "in.vdb other.vdb --grains in.vdb",
                     "in.vdb other.vdb --json a.x --confusion a.x"),
         "render": ("in.vdb o.jpg", "in.vdb o.png --only all", "in.vdb o.png --size 0", "in.vdb o.png --elevation 100",

@@ -13,7 +13,7 @@ from same_bytes_refusals import DAMAGED, Edit
 
 IMAGES = ("tif", "raw", "mhd", "mha", "nrrd", "npy")
 TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
-VERBS = ("generate", "convert", "segment", "remerge", "sweep", "measure", "compare", "render", "export", "info")
+VERBS = ("generate", "convert", "segment", "remerge", "sweep", "measure", "collect", "compare", "render", "export", "info")
 KINDS = {"spheres": "--count 6 --radius 6:9", "pack": "--radius 4:8", "snow": "--length 12",
          "sintered": "--count 6 --radius 7:9", "particles": "--count 6 --radius 7:9",
          "bed": "--radius 7:9 --rounds 2"}
@@ -220,6 +220,15 @@ def measure():
     yield "measure i8_little.npy measured_noise_dir"
 
 
+def collect():
+    yield "collect measured_snow_dir measured_pack_dir all_sintered_20_dir collected.csv"
+    yield "collect measured_spheres_dir measured_tiles_dir measured_none_dir collected_voxels.csv --quiet"
+    yield "collect measured_snow_dir png_dir measured_snow_dir collected_one.csv"
+    yield "collect measured_snow_dir -"
+    yield "! collect measured_snow_dir measured_spheres_dir mixed.csv"
+    yield "! collect png_dir never.csv"
+
+
 def compare():
     truth = "compare sintered.vdb all_sintered_0.vdb"
     yield truth
@@ -374,6 +383,7 @@ def all_runs(images, grids, with_scan):
     yield from remerge()
     yield from sweep()
     yield from measure()
+    yield from collect()
     yield from compare()
     yield from render()
     yield from export()

@@ -55,6 +55,8 @@ class Verb {
   Option option(const std::string& name, uint64_t& value, const std::string& help);
   Option option(const std::string& name, int64_t& value, const std::string& help);
   Option option(const std::string& name, double& value, const std::string& help);
+  /// One or more values.
+  Option option(const std::string& name, std::vector<std::string>& values, const std::string& help);
   void flag(const std::string& name, bool& value, const std::string& help);
   /// Text below the help.
   void footer(const std::string& text);

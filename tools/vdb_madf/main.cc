@@ -96,6 +96,7 @@ int run(int argc, char** argv) {
   addRemerge(command, common, action);
   addSweep(command, common, action);
   addMeasure(command, common, action);
+  addCollect(command, common, action);
   addCompare(command, common, action);
   addRender(command, common, action);
   addExport(command, common, action);
