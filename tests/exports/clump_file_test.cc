@@ -8,6 +8,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <sstream>
 
@@ -148,6 +149,90 @@ TEST_CASE("clumps: same for any number of threads; no balls, no labels, wrong op
   CHECK(clumps(*labelGrid({}), *balls).empty());
   CHECK_THROWS_AS(clumps(*labels, *balls, {0, 0}), InvalidInput);
   CHECK_THROWS_AS(clumps(*labels, *balls, {1, 1.5}), InvalidInput);
+}
+
+namespace {
+
+/// Squared distance from a point to the nearest voxel of another grain.
+int64_t toOtherGrain(const LabelMap& voxels, const Coord& p, int32_t label) {
+  int64_t nearest = std::numeric_limits<int32_t>::max();
+  for (const auto& [q, other] : voxels)
+    if (other != label) nearest = std::min(nearest, int64_t((q - p).asVec3d().lengthSqr()));
+  return nearest;
+}
+
+/// The squared radius that a ball has to have, from the definition: it ends at voxels of other
+/// grains, then at the planes between it and the other balls (with such radii).
+double radiusApart(const LabelMap& voxels, const LabelMap& balls, const std::vector<Clump>& made,
+                   const Clump& own, const Coord& center) {
+  const auto inOwnGrain = [&](const Coord& p, int32_t label) {
+    return double(std::min<int64_t>(balls.at(p), toOtherGrain(voxels, p, label)));
+  };
+  const double square = inOwnGrain(center, own.label);
+  double radius = std::sqrt(square);
+  for (const Clump& clump : made)
+    for (const Clump::Ball& ball : clump.balls) {
+      if (clump.label == own.label) continue;
+      const double other = inOwnGrain(ball.center, clump.label),
+                   d = (ball.center - center).asVec3d().length();
+      if (std::sqrt(square) + std::sqrt(other) > d)
+        radius = std::min(radius, (d * d + square - other) / (2 * d));
+    }
+  return radius * radius;
+}
+
+}  // namespace
+
+TEST_CASE("clumps: kept apart, balls end at other grains and do not overlap theirs", "[clumps]") {
+  LabelMap three = twoBalls({-5, 60, 3}, 7);
+  for (const auto& [p, label] : twoBalls({-1, 68, 5}, 5))
+    if (!three.count(p)) three[p] = 11;
+  for (const LabelMap& voxels : {three, randomLabels(5, Coord(-3), 8, 3, 97)}) {
+    const LabelMap map = distances(voxels);
+    const auto labels = labelGrid(voxels), balls = labelGrid(map);
+    double deepest = 0;  // overlap without the option: there is something to do
+    for (const int most : {100000, 4}) {
+      const auto made = clumps(*labels, *balls, {most, 0, true});
+      for (const Clump& clump : clumps(*labels, *balls, {most, 0}))
+        deepest = std::max(deepest, double(clump.outside));
+      for (const Clump& clump : made) {
+        REQUIRE_FALSE(clump.balls.empty());
+        const Truth truth = measured(voxels, clump);
+        CHECK(clump.uncovered == truth.uncovered);
+        CHECK(clump.outside == truth.outside);
+        CHECK(clump.outside == 0);
+        CHECK(clump.farthest == Approx(truth.farthest));
+        for (const Clump::Ball& ball : clump.balls) {
+          CHECK(ball.squaredRadius ==
+                Approx(radiusApart(voxels, map, made, clump, ball.center)).epsilon(1e-12));
+          for (const Clump& other : made)
+            for (const Clump::Ball& there : other.balls)
+              if (other.label != clump.label)
+                CHECK(std::sqrt(ball.squaredRadius) + std::sqrt(there.squaredRadius) <=
+                      (there.center - ball.center).asVec3d().length() + 1e-9);
+        }
+      }
+    }
+    CHECK(deepest > 0);
+  }
+}
+
+TEST_CASE("clumps: kept apart, a grain that touches none is as it was", "[clumps]") {
+  LabelMap voxels = twoBalls({-5, 60, 3}, 7);
+  for (auto& [p, label] : voxels) label = 4;
+  voxels[{60, 60, 60}] = 9;
+  const auto labels = labelGrid(voxels), balls = labelGrid(distances(voxels));
+  const auto whole = clumps(*labels, *balls, {20, 0}),
+             apart = clumps(*labels, *balls, {20, 0, true});
+  REQUIRE(apart.size() == 2);
+  for (size_t g = 0; g < apart.size(); ++g) {
+    REQUIRE(apart[g].balls.size() == whole[g].balls.size());
+    for (size_t i = 0; i < apart[g].balls.size(); ++i) {
+      CHECK(apart[g].balls[i].center == whole[g].balls[i].center);
+      CHECK(apart[g].balls[i].squaredRadius == whole[g].balls[i].squaredRadius);
+    }
+  }
+  CHECK(clumps(*labelGrid({}), *labelGrid({}), {20, 0, true}).empty());
 }
 
 TEST_CASE("clumps: files hold every ball at its place in the world", "[clumps]") {

@@ -42,6 +42,7 @@ TEST_CASE("cli: export writes every kind, the same for any number of threads", "
                                  "c.csv --as clumps",
                                  "c.txt --as clumps --balls 3",
                                  "c.data --as clumps --uncovered 0.1",
+                                 "a.txt --as clumps --apart",
                                  "h.vtu",
                                  "h.inp --as hexa",
                                  "k.raw --as mask"}) {

@@ -309,6 +309,9 @@ void addExport(Verb command, Common& common, Action& action) {
   verb.option("--min-faces", o->minFaces, "network: fewest voxel faces of a bond")
       .typeName("N")
       .showDefault();
+  verb.flag(
+      "--apart", o->clumps.apart,
+      "clumps: balls of different grains do not overlap, so that a simulation starts at rest");
   o->input.addRaw(verb);
   o->input.addVoxelSize(verb);
   verb.onParsed([o, &common, &action] {

@@ -25,7 +25,7 @@ void forEachBall(const std::vector<Clump>& clumps, const detail::CubicTransform&
   for (size_t n = 0; n < clumps.size(); ++n)
     for (const Clump::Ball& ball : clumps[n].balls)
       f(n, world.origin + world.edge * ball.center.asVec3d(),
-        world.edge * std::sqrt(double(ball.squaredRadius)));
+        world.edge * std::sqrt(ball.squaredRadius));
 }
 
 void numbers(OutputStream& out, const Vec3d& center, char separator) {
@@ -39,7 +39,7 @@ void numbers(OutputStream& out, const Vec3d& center, char separator) {
 double densityOfBalls(const Clump& clump) {
   double volume = 0;
   for (const Clump::Ball& ball : clump.balls)
-    volume += 4.0 / 3.0 * openvdb::math::pi<double>() * std::pow(double(ball.squaredRadius), 1.5);
+    volume += 4.0 / 3.0 * openvdb::math::pi<double>() * std::pow(ball.squaredRadius, 1.5);
   return volume > 0 ? double(clump.voxels) / volume : 1;
 }
 

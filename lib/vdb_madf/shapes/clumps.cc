@@ -15,82 +15,27 @@
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/method/detail/metric.h"
+#include "vdb_madf/shapes/detail/balls_apart.h"
+#include "vdb_madf/shapes/detail/bit_box.h"
 
 namespace vdb_madf {
 
 namespace {
 
 using Leaf = Int32Tree::LeafNodeType;
+using detail::BitBox;
 using openvdb::Index;
-
-/// A bit per voxel of a box, in rows along z.
-class BitBox {
- public:
-  explicit BitBox(const CoordBBox& box)
-      : box_(box),
-        wordsPerRow_((size_t(box.dim().z()) + 63) / 64),
-        words_(size_t(box.dim().x()) * size_t(box.dim().y()) * wordsPerRow_) {}
-
-  void set(const Coord& p) {
-    const size_t z = size_t(p.z() - box_.min().z());
-    row(p.x(), p.y())[z / 64] |= uint64_t(1) << (z & 63);
-  }
-  /// f(word, mask) for the words of a ball; the mask has the bits of the ball.
-  template <typename F>
-  void forEachWord(const Clump::Ball& ball, const F& f) {
-    const int reach = int(std::sqrt(double(ball.squaredRadius - 1)));
-    const Coord& c = ball.center;
-    for (int x = std::max(c.x() - reach, box_.min().x());
-         x <= std::min(c.x() + reach, box_.max().x()); ++x)
-      for (int y = std::max(c.y() - reach, box_.min().y());
-           y <= std::min(c.y() + reach, box_.max().y()); ++y) {
-        const int64_t dx = x - c.x(), dy = y - c.y(),
-                      rest = ball.squaredRadius - 1 - dx * dx - dy * dy;
-        if (rest < 0) continue;
-        const int half = int(std::sqrt(double(rest)));  // exact: rest is below 2^31
-        const int low = std::max(c.z() - half, box_.min().z()) - box_.min().z(),
-                  high = std::min(c.z() + half, box_.max().z()) - box_.min().z();
-        uint64_t* words = row(x, y);
-        for (int word = low / 64; low <= high && word <= high / 64; ++word) {
-          uint64_t mask = ~uint64_t(0);
-          if (word == low / 64) mask &= ~uint64_t(0) << (low & 63);
-          if (word == high / 64) mask &= ~uint64_t(0) >> (63 - (high & 63));
-          f(words[word], mask);
-        }
-      }
-  }
-  int64_t count() const {
-    int64_t sum = 0;
-    for (const uint64_t word : words_) sum += detail::countBits(word);
-    return sum;
-  }
-  template <typename F>
-  void forEachSet(const F& f) const {
-    size_t i = 0;
-    for (int x = box_.min().x(); x <= box_.max().x(); ++x)
-      for (int y = box_.min().y(); y <= box_.max().y(); ++y)
-        for (size_t word = 0; word < wordsPerRow_; ++word)
-          for (uint64_t bits = words_[i++]; bits; bits &= bits - 1)
-            f(Coord(x, y, box_.min().z() + int(word * 64) + __builtin_ctzll(bits)));
-  }
-
- private:
-  uint64_t* row(int x, int y) {
-    return &words_[(size_t(x - box_.min().x()) * size_t(box_.dim().y()) +
-                    size_t(y - box_.min().y())) *
-                   wordsPerRow_];
-  }
-
-  CoordBBox box_;
-  size_t wordsPerRow_;
-  std::vector<uint64_t> words_;
-};
 
 int64_t gain(BitBox& uncovered, const Clump::Ball& ball) {
   int64_t sum = 0;
-  uncovered.forEachWord(
-      ball, [&](uint64_t word, uint64_t mask) { sum += detail::countBits(word & mask); });
+  uncovered.forEachWord(ball, [&](uint64_t word, uint64_t mask, const Coord&) {
+    sum += detail::countBits(word & mask);
+  });
   return sum;
+}
+
+void cover(BitBox& uncovered, const Clump::Ball& ball) {
+  uncovered.forEachWord(ball, [](uint64_t& word, uint64_t mask, const Coord&) { word &= ~mask; });
 }
 
 /// What a ball would cover when it was last asked: it can only have become less.
@@ -108,6 +53,7 @@ struct Candidate {
 /// Lazy greedy cover (Minoux 1978).
 void chooseBalls(const std::vector<Clump::Ball>& balls, const ClumpOptions& options,
                  BitBox& uncovered, Clump& clump) {
+  clump.uncovered = clump.voxels;
   std::priority_queue<Candidate> queue;
   for (const Clump::Ball& ball : balls) queue.push({gain(uncovered, ball), ball});
   const double enough = options.coverageError * double(clump.voxels);
@@ -122,7 +68,7 @@ void chooseBalls(const std::vector<Clump::Ball>& balls, const ClumpOptions& opti
       queue.push(best);
       continue;
     }
-    uncovered.forEachWord(best.ball, [](uint64_t& word, uint64_t mask) { word &= ~mask; });
+    cover(uncovered, best.ball);
     clump.balls.push_back(best.ball);
     clump.uncovered -= now;
   }
@@ -131,21 +77,27 @@ void chooseBalls(const std::vector<Clump::Ball>& balls, const ClumpOptions& opti
 double distanceTo(const std::vector<Clump::Ball>& balls, const Coord& p) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Clump::Ball& ball : balls)
-    nearest = std::min(
-        nearest, (p - ball.center).asVec3d().length() - std::sqrt(double(ball.squaredRadius)));
+    nearest =
+        std::min(nearest, (p - ball.center).asVec3d().length() - std::sqrt(ball.squaredRadius));
   return std::max(nearest, 0.0);
 }
 
-void measure(const BitBox& uncovered, Clump& clump) {
-  if (clump.balls.empty()) return;
+CoordBBox boxOf(const std::vector<Clump::Ball>& balls) {
   CoordBBox box;
-  for (const Clump::Ball& ball : clump.balls) {
-    const int reach = int(std::sqrt(double(ball.squaredRadius)));
+  for (const Clump::Ball& ball : balls) {
+    const int reach = int(std::sqrt(ball.squaredRadius));
     box.expand(CoordBBox(ball.center.offsetBy(-reach), ball.center.offsetBy(reach)));
   }
-  BitBox all(box);
+  return box;
+}
+
+/// The figures of a clump, from its balls and the voxels that they leave.
+void measure(const BitBox& uncovered, Clump& clump) {
+  clump.uncovered = uncovered.count();
+  if (clump.balls.empty()) return;
+  BitBox all(boxOf(clump.balls));
   for (const Clump::Ball& ball : clump.balls)
-    all.forEachWord(ball, [](uint64_t& word, uint64_t mask) { word |= mask; });
+    all.forEachWord(ball, [](uint64_t& word, uint64_t mask, const Coord&) { word |= mask; });
   clump.outside = all.count() - (clump.voxels - clump.uncovered);
   uncovered.forEachSet([&](const Coord& p) {
     clump.farthest = std::max(clump.farthest, distanceTo(clump.balls, p));
@@ -164,7 +116,7 @@ int32_t nearestLabel(const openvdb::tree::ValueAccessor<const Int32Tree>& labels
                      const Clump::Ball& ball) {
   constexpr int kMaxReach = 16;  // a cavity is small
   int32_t label = 0;
-  int64_t nearest = ball.squaredRadius;
+  int64_t nearest = int64_t(ball.squaredRadius);
   for (int reach = 1; reach <= kMaxReach && int64_t(reach) * reach < nearest; ++reach) {
     CoordBBox cube(ball.center, ball.center);
     cube.expand(reach);
@@ -188,7 +140,7 @@ void collectCavityBalls(const Int32Tree& labels, const Int32Tree& balls,
   for (auto ball = balls.cbeginValueOn(); ball; ++ball) {
     int32_t here = 0;
     if (*ball <= 0 || (labelAt.probeValue(ball.getCoord(), here) && here > 0)) continue;
-    const Clump::Ball own{ball.getCoord(), *ball};
+    const Clump::Ball own{ball.getCoord(), double(*ball)};
     if (const int32_t label = nearestLabel(labelAt, own))
       grains.balls[blocks.number(label)].push_back(own);
   }
@@ -209,14 +161,16 @@ Grains collect(const Int32Tree& labels, const Int32Tree& balls, const detail::La
       const Coord p = leaf->offsetToGlobalCoord(i);
       grains.boxes[grain].expand(p);
       if (ballLeaf && ballLeaf->isValueOn(i) && ballLeaf->getValue(i) > 0)
-        grains.balls[grain].push_back({p, ballLeaf->getValue(i)});
+        grains.balls[grain].push_back({p, double(ballLeaf->getValue(i))});
     }
   }
   collectCavityBalls(labels, balls, blocks, grains);
   return grains;
 }
 
-BitBox voxelsOf(const Int32Tree& labels, int32_t label, const CoordBBox& box) {
+/// The voxels of a box whose label (0: none) is wanted.
+template <typename Wanted>
+BitBox voxelsOf(const Int32Tree& labels, const CoordBBox& box, const Wanted& wanted) {
   BitBox bits(box);
   const Coord low = box.min() & ~7, high = box.max();
   for (int x = low.x(); x <= high.x(); x += 8)
@@ -226,9 +180,35 @@ BitBox voxelsOf(const Int32Tree& labels, int32_t label, const CoordBBox& box) {
         if (!leaf) continue;
         const int32_t* values = leaf->buffer().data();
         for (Index i = 0; i < Leaf::SIZE; ++i)
-          if (values[i] == label && leaf->isValueOn(i)) bits.set(leaf->offsetToGlobalCoord(i));
+          if (wanted(detail::labelAt(*leaf, values, i))) {
+            const Coord p = leaf->offsetToGlobalCoord(i);
+            if (box.isInside(p)) bits.set(p);
+          }
       }
   return bits;
+}
+
+BitBox voxelsOfGrain(const Int32Tree& labels, int32_t label, const CoordBBox& box) {
+  return voxelsOf(labels, box, [label](int32_t here) { return here == label; });
+}
+
+/// Makes balls end at the nearest voxel of another grain.
+void endAtOtherGrains(const Int32Tree& labels, const CoordBBox& bounds, int32_t label,
+                      std::vector<Clump::Ball>& balls) {
+  CoordBBox box = boxOf(balls);
+  box.intersect(bounds);
+  if (box.empty()) return;
+  BitBox others =
+      voxelsOf(labels, box, [label](int32_t here) { return here > 0 && here != label; });
+  for (Clump::Ball& ball : balls) {
+    int64_t nearest = int64_t(ball.squaredRadius);
+    others.forEachWord(ball, [&](uint64_t word, uint64_t mask, const Coord& first) {
+      BitBox::forEachBit(word & mask, first, [&](const Coord& p) {
+        nearest = std::min(nearest, detail::squaredBetween(p, ball.center));
+      });
+    });
+    ball.squaredRadius = double(nearest);
+  }
 }
 
 }  // namespace
@@ -241,16 +221,30 @@ std::vector<Clump> clumps(const Int32Grid& labels, const Int32Grid& balls,
   const detail::LabelBlocks blocks(labels);
   const Int32Tree::ConstPtr tree = detail::withoutTiles(labels),
                             ballTree = detail::withoutTiles(balls);
-  const Grains grains = collect(*tree, *ballTree, blocks);
+  Grains grains = collect(*tree, *ballTree, blocks);
+  CoordBBox bounds;
+  for (const CoordBBox& box : grains.boxes) bounds.expand(box);
   std::vector<Clump> result(blocks.labels().size());
-  detail::parallelFor(result.size(), 1, interrupter, [&](size_t begin, size_t end) {
+  detail::WorkPart choosing(interrupter, 0, options.apart ? 80 : 100);
+  detail::parallelFor(result.size(), 1, &choosing, [&](size_t begin, size_t end) {
     for (size_t g = begin; g < end; ++g) {
       Clump& clump = result[g];
       clump.label = blocks.labels()[g];
-      clump.voxels = clump.uncovered = blocks.voxelCounts()[g];
-      BitBox uncovered = voxelsOf(*tree, clump.label, grains.boxes[g]);
+      clump.voxels = blocks.voxelCounts()[g];
+      if (options.apart) endAtOtherGrains(*tree, bounds, clump.label, grains.balls[g]);
+      BitBox uncovered = voxelsOfGrain(*tree, clump.label, grains.boxes[g]);
       chooseBalls(grains.balls[g], options, uncovered, clump);
-      measure(uncovered, clump);
+      if (!options.apart) measure(uncovered, clump);
+    }
+  });
+  if (!options.apart) return result;
+  detail::WorkPart shortening(interrupter, 80, 90), measuring(interrupter, 90, 100);
+  detail::keepBallsApart(result, &shortening);
+  detail::parallelFor(result.size(), 1, &measuring, [&](size_t begin, size_t end) {
+    for (size_t g = begin; g < end; ++g) {
+      BitBox uncovered = voxelsOfGrain(*tree, result[g].label, grains.boxes[g]);
+      for (const Clump::Ball& ball : result[g].balls) cover(uncovered, ball);
+      measure(uncovered, result[g]);
     }
   });
   return result;

@@ -16,7 +16,7 @@ struct Clump {
   /// Holds the voxels p with |p - center|^2 < squaredRadius.
   struct Ball {
     Coord center;
-    int32_t squaredRadius;
+    double squaredRadius;  ///< a whole number, unless it ends at a ball of another grain
   };
   int32_t label = 0;
   std::vector<Ball> balls;  ///< in the order in which they were chosen
@@ -34,6 +34,7 @@ struct Clump {
 struct ClumpOptions {
   int mostBalls = 100;          ///< per grain, 1 or more
   double coverageError = 0.02;  ///< part of a grain that may stay uncovered, 0 .. 1
+  bool apart = false;           ///< no two balls of different grains overlap; see clumps()
 };
 
 /// A clump per label (active, > 0), ascending. \p balls: active at the centres of the medial balls,
@@ -41,8 +42,16 @@ struct ClumpOptions {
 /// center, or, if that lies in a filled cavity, to the nearest within the ball and 16 voxels (tie: at
 /// the smaller coordinate). Balls are chosen greedily, each the one that covers most voxels of the grain not covered
 /// yet (tie: larger, then smaller centre), until enough is covered or there are `mostBalls`.
-/// Memory: one bit per voxel of the box of each grain that a thread works on. The same for any
-/// number of threads.
+///
+/// Medial balls of touching grains overlap near the neck. With `apart` they do not. First, each ends
+/// at the nearest voxel of another grain: its squared radius becomes the squared distance to that
+/// voxel, if this is less; the cover is chosen from such balls. Then, where two chosen balls of
+/// different grains, with radii r and s and centers d apart, still overlap (by less than the diagonal
+/// of a voxel), they end at the plane of their equal power, (d^2 + r^2 - s^2) / (2 d) from the first
+/// center; of several such planes the nearest counts. A ball of which nothing is left is left out.
+///
+/// Memory: one bit per voxel of the box of each grain that a thread works on, and with `apart` of the
+/// box of its balls, cut to that of all labels. The same for any number of threads.
 /// @throw InvalidInput for options out of range; Interrupted.
 std::vector<Clump> clumps(const Int32Grid& labels, const Int32Grid& balls,
                           const ClumpOptions& options = {}, Interrupter* interrupter = nullptr);

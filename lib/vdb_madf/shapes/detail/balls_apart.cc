@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/shapes/detail/balls_apart.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+#include "vdb_madf/base/detail/parallel.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+using openvdb::BBoxd;
+using openvdb::Vec3d;
+
+BBoxd boxOf(const Clump& clump) {
+  BBoxd box;
+  for (const Clump::Ball& ball : clump.balls) {
+    const Vec3d center = ball.center.asVec3d(), reach(std::sqrt(ball.squaredRadius));
+    box.expand(center - reach);
+    box.expand(center + reach);
+  }
+  return box;
+}
+
+/// Of each clump the others whose boxes meet its own, from a sweep along x.
+std::vector<std::vector<size_t>> neighborsOf(const std::vector<BBoxd>& boxes) {
+  std::vector<size_t> order(boxes.size());
+  std::iota(order.begin(), order.end(), size_t(0));
+  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    const double left = boxes[a].min().x(), right = boxes[b].min().x();
+    return left != right ? left < right : a < b;
+  });
+  std::vector<std::vector<size_t>> neighbors(boxes.size());
+  for (size_t i = 0; i < order.size(); ++i) {
+    const BBoxd& box = boxes[order[i]];
+    for (size_t j = i + 1; j < order.size() && boxes[order[j]].min().x() < box.max().x(); ++j)
+      if (box.hasOverlap(boxes[order[j]])) {
+        neighbors[order[i]].push_back(order[j]);
+        neighbors[order[j]].push_back(order[i]);
+      }
+  }
+  return neighbors;
+}
+
+/// Shortens `radius`, that of a ball, to the planes between it and the balls of another clump.
+void shorten(double& radius, const Clump::Ball& ball, const Clump& other) {
+  const double r = std::sqrt(ball.squaredRadius);
+  for (const Clump::Ball& there : other.balls) {
+    const Vec3d between = (there.center - ball.center).asVec3d();
+    const double reach = r + std::sqrt(there.squaredRadius), square = between.lengthSqr();
+    if (square >= reach * reach) continue;
+    const double d = std::sqrt(square);
+    radius = std::min(radius, (square + ball.squaredRadius - there.squaredRadius) / (2 * d));
+  }
+}
+
+}  // namespace
+
+void keepBallsApart(std::vector<Clump>& clumps, Interrupter* interrupter) {
+  std::vector<BBoxd> boxes;
+  for (const Clump& clump : clumps) boxes.push_back(boxOf(clump));
+  const auto neighbors = neighborsOf(boxes);
+  std::vector<std::vector<Clump::Ball>> kept(clumps.size());
+  parallelFor(clumps.size(), 1, interrupter, [&](size_t begin, size_t end) {
+    for (size_t g = begin; g < end; ++g)
+      for (const Clump::Ball& ball : clumps[g].balls) {
+        const double whole = std::sqrt(ball.squaredRadius);
+        double radius = whole;
+        for (const size_t other : neighbors[g]) shorten(radius, ball, clumps[other]);
+        if (radius == whole)
+          kept[g].push_back(ball);
+        else if (radius > 0)
+          kept[g].push_back({ball.center, radius * radius});
+      }
+  });
+  for (size_t g = 0; g < clumps.size(); ++g) clumps[g].balls = std::move(kept[g]);
+}
+
+}  // namespace vdb_madf::detail

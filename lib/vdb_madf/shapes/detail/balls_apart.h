@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <vector>
+
+#include "vdb_madf/shapes/clumps.h"
+
+namespace vdb_madf::detail {
+
+/// Makes balls of different clumps end at the plane of their equal power where they overlap, as
+/// clumps() says. All planes are those of the radii as they come. The figures of the clumps stay.
+/// @throw Interrupted.
+void keepBallsApart(std::vector<Clump>& clumps, Interrupter* interrupter);
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "vdb_madf/base/detail/bits.h"
+#include "vdb_madf/shapes/clumps.h"
+
+namespace vdb_madf::detail {
+
+/// A bit per voxel of a box, in rows along z.
+class BitBox {
+ public:
+  explicit BitBox(const CoordBBox& box)
+      : box_(box),
+        wordsPerRow_((size_t(box.dim().z()) + 63) / 64),
+        words_(size_t(box.dim().x()) * size_t(box.dim().y()) * wordsPerRow_) {}
+
+  const CoordBBox& box() const { return box_; }
+  void set(const Coord& p) {
+    const size_t z = size_t(p.z() - box_.min().z());
+    row(p.x(), p.y())[z / 64] |= uint64_t(1) << (z & 63);
+  }
+  /// f(word, mask, voxel of bit 0) for the words of a ball; the mask has the bits of the ball.
+  template <typename F>
+  void forEachWord(const Clump::Ball& ball, const F& f) {
+    // Whole numbers below the squared radius are those up to this one.
+    const int64_t last = int64_t(std::ceil(ball.squaredRadius)) - 1;
+    if (last < 0) return;
+    const int reach = int(std::sqrt(double(last)));
+    const Coord& c = ball.center;
+    for (int x = std::max(c.x() - reach, box_.min().x());
+         x <= std::min(c.x() + reach, box_.max().x()); ++x)
+      for (int y = std::max(c.y() - reach, box_.min().y());
+           y <= std::min(c.y() + reach, box_.max().y()); ++y) {
+        const int64_t dx = x - c.x(), dy = y - c.y(), rest = last - dx * dx - dy * dy;
+        if (rest < 0) continue;
+        const int half = int(std::sqrt(double(rest)));  // exact: rest is below 2^31
+        const int low = std::max(c.z() - half, box_.min().z()) - box_.min().z(),
+                  high = std::min(c.z() + half, box_.max().z()) - box_.min().z();
+        uint64_t* words = row(x, y);
+        for (int word = low / 64; low <= high && word <= high / 64; ++word) {
+          uint64_t mask = ~uint64_t(0);
+          if (word == low / 64) mask &= ~uint64_t(0) << (low & 63);
+          if (word == high / 64) mask &= ~uint64_t(0) >> (63 - (high & 63));
+          f(words[word], mask, Coord(x, y, box_.min().z() + word * 64));
+        }
+      }
+  }
+  int64_t count() const {
+    int64_t sum = 0;
+    for (const uint64_t word : words_) sum += countBits(word);
+    return sum;
+  }
+  template <typename F>
+  void forEachSet(const F& f) const {
+    size_t i = 0;
+    for (int x = box_.min().x(); x <= box_.max().x(); ++x)
+      for (int y = box_.min().y(); y <= box_.max().y(); ++y)
+        for (size_t word = 0; word < wordsPerRow_; ++word)
+          forEachBit(words_[i++], Coord(x, y, box_.min().z() + int(word * 64)), f);
+  }
+  /// f(voxel) for the bits of a word.
+  template <typename F>
+  static void forEachBit(uint64_t bits, const Coord& first, const F& f) {
+    for (; bits; bits &= bits - 1) f(first.offsetBy(0, 0, __builtin_ctzll(bits)));
+  }
+
+ private:
+  uint64_t* row(int x, int y) {
+    return &words_[(size_t(x - box_.min().x()) * size_t(box_.dim().y()) +
+                    size_t(y - box_.min().y())) *
+                   wordsPerRow_];
+  }
+
+  CoordBBox box_;
+  size_t wordsPerRow_;
+  std::vector<uint64_t> words_;
+};
+
+}  // namespace vdb_madf::detail
