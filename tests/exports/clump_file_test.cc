@@ -248,14 +248,16 @@ TEST_CASE("clumps: files hold every ball at its place in the world", "[clumps]")
         "#format x_y_z_r_clumpId\n0.5 1 1.5 1 0\n2 1 1.5 0.5 0\n-4 0 0 1.5 1\n");
   writeClumps(folder / "c.data", made, *transform);
   const std::string data = readFile(folder / "c.data");
-  CHECK(data.find("3 atoms\n1 atom types\n\n-5.5 2.5 xlo xhi\n") != std::string::npos);
+  CHECK(data.find("4 atoms\n1 atom types\n\n-5.5 2.5 xlo xhi\n") != std::string::npos);
   std::istringstream atoms(data.substr(data.find("molecular\n\n") + 11));
-  // Number, type, place, diameter, density, molecule. A grain's balls weigh what its voxels do.
+  // Number, type, place, diameter, density, molecule. A grain's balls weigh what its voxels do; a
+  // single one has another in it, for LAMMPS takes no body of one atom.
   const double kBall = 4.0 / 3.0 * 3.14159265358979323846;
-  const double first = 30 / (9 * kBall), second = 50 / (27 * kBall);
-  for (const double wanted : {1., 1., 0.5, 1., 1.5, 2., first,  1.,  //
-                              2., 1., 2.,  1., 1.5, 1., first,  1.,  //
-                              3., 1., -4., 0., 0.,  3., second, 2.}) {
+  const double first = 30 / (9 * kBall), second = 50 / ((27 + 27.0 / 8) * kBall);
+  for (const double wanted : {1., 1., 0.5,      1., 1.5, 2.,  first,  1.,  //
+                              2., 1., 2.,       1., 1.5, 1.,  first,  1.,  //
+                              3., 1., -4.,      0., 0.,  3.,  second, 2.,  //
+                              4., 1., -3.90625, 0., 0.,  1.5, second, 2.}) {
     double found = -1;
     atoms >> found;
     CHECK(found == Approx(wanted));

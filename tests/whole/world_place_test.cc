@@ -292,6 +292,9 @@ TEST_CASE("world_place: clumps", "[world_place]") {
   const std::string atoms = data.substr(data.find("\nAtoms") + 1);
   for (const auto& row : rowsOf("first line\n" + atoms.substr(atoms.find("\n\n") + 2), ' '))
     lammps.push_back({int(row[7]) - 1, {row[2], row[3], row[4]}});
+  REQUIRE(lammps.size() == marker().size() + 1);  // grain 1 has one ball, and so a second in it
+  CHECK(near(lammps.back().second, placeOf(Vec3d(2 + 1.0 / 16, 3, 5))));
+  lammps.pop_back();
   check(csv, true);
   check(yade, false);
   check(lammps, false);

@@ -35,17 +35,27 @@ void numbers(OutputStream& out, const Vec3d& center, char separator) {
   }
 }
 
-/// At which all balls of a clump weigh as much as its grain of density 1, however they overlap.
-double densityOfBalls(const Clump& clump) {
+/// `fix rigid` refuses bodies of one atom, or of atoms at one place: such a clump has a second one
+/// within its ball, which touches nothing. Its radius, and how far it is from the center along x, in
+/// radii of the ball.
+constexpr double kCoreRadius = 0.5, kCoreShift = 1.0 / 16;
+
+bool needsCore(const Clump& clump) {
+  return clump.balls.size() == 1;
+}
+
+/// At which all atoms of a clump weigh as much as its grain of density 1, however they overlap.
+double densityOfAtoms(const Clump& clump) {
   double volume = 0;
   for (const Clump::Ball& ball : clump.balls)
     volume += 4.0 / 3.0 * openvdb::math::pi<double>() * std::pow(ball.squaredRadius, 1.5);
+  if (needsCore(clump)) volume *= 1 + std::pow(kCoreRadius, 3);
   return volume > 0 ? double(clump.voxels) / volume : 1;
 }
 
 void writeLammps(OutputStream& out, const std::vector<Clump>& clumps,
                  const detail::CubicTransform& world) {
-  size_t atoms = 0;
+  size_t atoms = size_t(std::count_if(clumps.begin(), clumps.end(), needsCore));
   openvdb::BBoxd box;
   forEachBall(clumps, world, [&](size_t, const Vec3d& center, double radius) {
     ++atoms;
@@ -54,7 +64,8 @@ void writeLammps(OutputStream& out, const std::vector<Clump>& clumps,
   });
   if (atoms == 0) box = openvdb::BBoxd(Vec3d(0), Vec3d(1));
   out.text("LAMMPS data: grains as clumps of balls, a molecule each (vdb_madf)\n\n");
-  out.text(std::to_string(atoms) + " atoms\n1 atom types\n\n");
+  out.text(std::to_string(atoms) + " atoms\n1 atom types\n");
+  out.text("\n");
   const char* names[3] = {" xlo xhi\n", " ylo yhi\n", " zlo zhi\n"};
   for (int axis = 0; axis < 3; ++axis)
     out.text(detail::shortestDecimal(box.min()[axis]) + " " +
@@ -62,14 +73,19 @@ void writeLammps(OutputStream& out, const std::vector<Clump>& clumps,
   out.text("\nAtoms # hybrid sphere molecular\n\n");
   std::vector<std::string> densities;
   for (const Clump& clump : clumps)
-    densities.push_back(detail::shortestDecimal(densityOfBalls(clump)));
+    densities.push_back(detail::shortestDecimal(densityOfAtoms(clump)));
   size_t atom = 0;
-  forEachBall(clumps, world, [&](size_t n, const Vec3d& center, double radius) {
+  const auto writeAtom = [&](size_t n, const Vec3d& center, double radius) {
     out.number(++atom);
     out.text(" 1 ");
     numbers(out, center, ' ');
     out.text(" " + detail::shortestDecimal(2 * radius) + " " + densities[n] + " " +
              std::to_string(n + 1) + "\n");
+  };
+  forEachBall(clumps, world, writeAtom);
+  forEachBall(clumps, world, [&](size_t n, const Vec3d& center, double radius) {
+    if (needsCore(clumps[n]))
+      writeAtom(n, center + Vec3d(kCoreShift * radius, 0, 0), kCoreRadius * radius);
   });
 }
 

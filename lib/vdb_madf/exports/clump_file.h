@@ -15,8 +15,10 @@ namespace vdb_madf {
 /// - .txt: x y z radius clump, a line per ball, as YADE exports and ymport.textClumps reads; clumps
 ///   are numbered from 0
 /// - .data: LAMMPS data for `atom_style hybrid sphere molecular`: one atom per ball, the grain as
-///   molecule (numbered from 1), for `fix rigid/small molecule`. Balls overlap: their density is
-///   such that those of a grain together weigh what the grain does at density 1
+///   molecule (numbered from 1), for `fix rigid/small molecule`. That refuses a body of one atom:
+///   at the end of the list a grain of one ball has a second one, of half the radius, within it.
+///   Balls overlap: their density is such that those of a grain together weigh what the grain does
+///   at density 1
 /// @throw InvalidInput for another ending, or voxels that are not cubes; IoError.
 void writeClumps(const std::string& path, const std::vector<Clump>& clumps,
                  const openvdb::math::Transform& transform, Interrupter* interrupter = nullptr);
