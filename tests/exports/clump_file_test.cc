@@ -235,6 +235,42 @@ TEST_CASE("clumps: kept apart, a grain that touches none is as it was", "[clumps
   CHECK(clumps(*labelGrid({}), *labelGrid({}), {20, 0, true}).empty());
 }
 
+TEST_CASE("clumps: bonds join the nearest balls, and stand in both files", "[clumps]") {
+  const ScratchFolder folder;
+  const std::vector<Clump> made = {
+      {2, {{Coord(0), 4}, {Coord(4, 0, 0), 4}, {Coord(-4, 0, 0), 9}}, 30, 3, 1, 0.25},
+      {5, {}, 1, 1, 0, 0},
+      {6, {{Coord(9, 0, 0), 4}, {Coord(0, 5, 0), 4}}, 50, 0, 0, 0}};
+  BondMeasures measures, lost;
+  measures.first = lost.first = 2;
+  measures.second = 6;
+  lost.second = 5;  // has no balls
+  measures.area = 12;
+  measures.equivalentRadius = 2;
+  measures.centroid = openvdb::Vec3d(6, 1, 0);
+  measures.normal = openvdb::Vec3d(1, 0, 0);
+  const auto bonds = clumpBonds(made, {lost, measures});
+  REQUIRE(bonds.size() == 1);  // balls 1 and 3 are 1 voxel apart, and so are 0 and 4: the first
+  const auto transform = openvdb::math::Transform::createLinearTransform(0.5);
+  writeClumpBonds(folder / "b.csv", bonds, *transform);
+  CHECK(readFile(folder / "b.csv") ==
+        "bond,first_grain,second_grain,first_clump,second_clump,first_ball,second_ball,distance,"
+        "area,radius,x,y,z,normal_x,normal_y,normal_z\n"
+        "1,2,6,0,2,0,4,2.5,3,1,3,0.5,0,1,0,0\n");
+  writeClumps(folder / "c.data", made, *transform, bonds);
+  const std::string data = readFile(folder / "c.data");
+  CHECK(data.find("5 atoms\n1 atom types\n1 bonds\n1 bond types\n\n") != std::string::npos);
+  CHECK(data.substr(data.find("\nBonds")) == "\nBonds\n\n1 1 1 5\n");
+  writeClumps(folder / "d.data", made, *transform);
+  CHECK(readFile(folder / "d.data").find("ond") == std::string::npos);
+  writeClumpCover(folder / "cover.csv", made, *transform);
+  CHECK(readFile(folder / "cover.csv") ==
+        "grain_id,voxels,balls,uncovered,outside,volume_error,farthest\n"
+        "2,30,3,3,1,-0.06666666666666667,0.125\n5,1,0,1,0,-1,0\n6,50,2,0,0,0,0\n");
+  CHECK_THROWS_AS(writeClumpBonds(folder / "b.txt", bonds, *transform), InvalidInput);
+  CHECK_THROWS_AS(writeClumpCover(folder / "b.txt", made, *transform), InvalidInput);
+}
+
 TEST_CASE("clumps: files hold every ball at its place in the world", "[clumps]") {
   const ScratchFolder folder;
   const std::vector<Clump> made = {{5, {{Coord(1, 2, 3), 4}, {Coord(4, 2, 3), 1}}, 30, 0, 0, 0},

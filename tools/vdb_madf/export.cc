@@ -13,6 +13,7 @@
 #include "parse.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/exports/clump_bonds.h"
 #include "vdb_madf/exports/clump_file.h"
 #include "vdb_madf/exports/hexahedra_file.h"
 #include "vdb_madf/exports/mesh_file.h"
@@ -26,6 +27,7 @@
 #include "vdb_madf/labels/grain_masks.h"
 #include "vdb_madf/labels/reduced_labels.h"
 #include "vdb_madf/measure/grain_network.h"
+#include "vdb_madf/measure/measure.h"
 #include "vdb_madf/method/ball_grids.h"
 #include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/pictures/preview_volume.h"
@@ -42,6 +44,7 @@ namespace {
 struct Options {
   InputOptions input;
   std::string out, kind, minFaces = "1";
+  std::string bonds, cover;  ///< of clumps; empty: not written
   int smoothing = 10, maxDim = 0, reduce = 0;
   int64_t mostTriangles = 0;  ///< 0: any number
   bool compress = false, asBool = false;
@@ -176,6 +179,18 @@ bool isMeshOutput(const std::string& out) {
   return isMeshEnding(out) || !std::filesystem::path(out).has_extension();
 }
 
+/// Writes the tables of the bonds and of the cover, if they are asked for.
+/// @return the bonds
+std::vector<ClumpBond> exportClumpTables(const Options& o, const Common& common,
+                                         const Int32Grid& labels,
+                                         const std::vector<Clump>& clumps) {
+  if (!o.cover.empty()) writeClumpCover(o.cover, clumps, labels.transform(), common.progress);
+  if (o.bonds.empty()) return {};
+  const auto bonds = clumpBonds(clumps, measure(labels, {}, common.progress).bonds);
+  writeClumpBonds(o.bonds, bonds, labels.transform(), common.progress);
+  return bonds;
+}
+
 void exportClumps(const Options& o, const Common& common, const Int32Grid& labels) {
   if (o.input.size || !isVdb(o.input))
     throw InvalidInput("clumps need the medial balls: segment with --keep balls into a VDB");
@@ -183,12 +198,14 @@ void exportClumps(const Options& o, const Common& common, const Int32Grid& label
   const Int32Grid::Ptr balls = storedBalls(grids);
   if (!balls) throw InvalidInput("there is no grid 'balls': segment again with --keep balls");
   const auto made = clumps(labels, *balls, o.clumps, common.progress);
-  writeClumps(o.out, made, labels.transform(), common.progress);
-  size_t ballCount = 0;
+  const auto bonds = exportClumpTables(o, common, labels, made);
+  writeClumps(o.out, made, labels.transform(), bonds, common.progress);
+  size_t ballCount = 0, without = 0;
   int64_t voxels = 0, uncovered = 0, outside = 0;
   double farthest = 0;
   for (const Clump& clump : made) {
     ballCount += clump.balls.size();
+    without += clump.balls.empty();
     voxels += clump.voxels;
     uncovered += clump.uncovered;
     outside += clump.outside;
@@ -205,6 +222,8 @@ void exportClumps(const Options& o, const Common& common, const Int32Grid& label
       counted(made.size(), "grain") + ", " + counted(ballCount, "ball") + "; uncovered " +
           percent(uncovered) + ", outside the own grain " + percent(outside) + ", volume error " +
           percent(outside - uncovered) + ", farthest voxel " + distance + " voxels from its balls" +
+          (without ? "; " + counted(without, "grain") + " without a ball" : "") +
+          (o.bonds.empty() ? "" : "; " + counted(bonds.size(), "bond") + " in " + o.bonds) +
           // Distances ignore what may be beyond the faces of an open scan.
           (storedBoundary(*balls) == Boundary::open
                ? "; balls reach beyond the scan (segment with --boundary closed to prevent that)"
@@ -263,11 +282,24 @@ const Kind& findKind(const Options& o) {
   throw WrongUsage("--as " + wanted + ": must be one of " + kindNames());
 }
 
+/// @throw WrongUsage for tables that would not be written
+void checkTables(const Options& o, const Kind& kind) {
+  for (const auto& [option, file] : {std::pair("--bonds", &o.bonds), {"--cover", &o.cover}}) {
+    if (file->empty()) continue;
+    if (kind.run != exportClumps)
+      throw WrongUsage(std::string(option) + " is a table of --as clumps");
+    if (fileEnding(*file) != ".csv")
+      throw WrongUsage(*file + ": the ending for " + option + " must be .csv");
+  }
+}
+
 void run(const Options& o, const Common& common, const Kind& kind) {
   if (std::filesystem::path(o.out).has_extension())
     checkWritable(o.out);
   else
     checkOutputFolder(o.out);
+  for (const std::string& file : {o.bonds, o.cover})
+    if (!file.empty()) checkWritable(file);
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
   withFileName(o.input.path, [&] { kind.run(o, common, *labels); });
 }
@@ -312,6 +344,10 @@ void addExport(Verb command, Common& common, Action& action) {
   verb.flag(
       "--apart", o->clumps.apart,
       "clumps: balls of different grains do not overlap, so that a simulation starts at rest");
+  verb.option("--bonds", o->bonds, "clumps: also a table of the bonds between them")
+      .typeName("FILE.csv");
+  verb.option("--cover", o->cover, "clumps: also a table of how well each grain is covered")
+      .typeName("FILE.csv");
   o->input.addRaw(verb);
   o->input.addVoxelSize(verb);
   verb.onParsed([o, &common, &action] {
@@ -319,7 +355,8 @@ void addExport(Verb command, Common& common, Action& action) {
       throw WrongUsage("--uncovered: must lie between 0 and 1");
     o->measure.minFaces = parseCount(o->minFaces, "--min-faces");
     const Kind& kind = findKind(*o);
-    o->input.outputs = {o->out};
+    checkTables(*o, kind);
+    o->input.outputs = {o->out, o->bonds, o->cover};
     o->input.parse();
     action = [o, &common, &kind] { run(*o, common, kind); };
   });

@@ -53,8 +53,17 @@ double densityOfAtoms(const Clump& clump) {
   return volume > 0 ? double(clump.voxels) / volume : 1;
 }
 
+void writeBonds(OutputStream& out, const std::vector<ClumpBond>& bonds) {
+  if (bonds.empty()) return;
+  out.text("\nBonds\n\n");
+  for (size_t bond = 1; bond <= bonds.size(); ++bond)
+    out.text(std::to_string(bond) + " " + std::to_string(bond) + " " +
+             std::to_string(bonds[bond - 1].firstBall + 1) + " " +
+             std::to_string(bonds[bond - 1].secondBall + 1) + "\n");
+}
+
 void writeLammps(OutputStream& out, const std::vector<Clump>& clumps,
-                 const detail::CubicTransform& world) {
+                 const std::vector<ClumpBond>& bonds, const detail::CubicTransform& world) {
   size_t atoms = size_t(std::count_if(clumps.begin(), clumps.end(), needsCore));
   openvdb::BBoxd box;
   forEachBall(clumps, world, [&](size_t, const Vec3d& center, double radius) {
@@ -65,6 +74,9 @@ void writeLammps(OutputStream& out, const std::vector<Clump>& clumps,
   if (atoms == 0) box = openvdb::BBoxd(Vec3d(0), Vec3d(1));
   out.text("LAMMPS data: grains as clumps of balls, a molecule each (vdb_madf)\n\n");
   out.text(std::to_string(atoms) + " atoms\n1 atom types\n");
+  if (!bonds.empty())
+    out.text(std::to_string(bonds.size()) + " bonds\n" + std::to_string(bonds.size()) +
+             " bond types\n");
   out.text("\n");
   const char* names[3] = {" xlo xhi\n", " ylo yhi\n", " zlo zhi\n"};
   for (int axis = 0; axis < 3; ++axis)
@@ -87,6 +99,7 @@ void writeLammps(OutputStream& out, const std::vector<Clump>& clumps,
     if (needsCore(clumps[n]))
       writeAtom(n, center + Vec3d(kCoreShift * radius, 0, 0), kCoreRadius * radius);
   });
+  writeBonds(out, bonds);
 }
 
 }  // namespace
@@ -97,13 +110,14 @@ bool isClumpEnding(const std::string& path) {
 }
 
 void writeClumps(const std::string& path, const std::vector<Clump>& clumps,
-                 const openvdb::math::Transform& transform, Interrupter* interrupter) {
+                 const openvdb::math::Transform& transform, const std::vector<ClumpBond>& bonds,
+                 Interrupter* interrupter) {
   const detail::CubicTransform world = detail::cubicTransform(transform);
   if (!isClumpEnding(path))
     throw InvalidInput(path + ": no clump format has this ending; use .csv, .txt or .data");
   OutputStream out(path, interrupter);
   if (fileEnding(path) == ".data") {
-    writeLammps(out, clumps, world);
+    writeLammps(out, clumps, bonds, world);
   } else {
     const bool isTable = fileEnding(path) == ".csv";
     out.text(isTable ? "grain_id,x,y,z,radius\n" : "#format x_y_z_r_clumpId\n");
@@ -113,6 +127,22 @@ void writeClumps(const std::string& path, const std::vector<Clump>& clumps,
       out.text((isTable ? "," : " ") + detail::shortestDecimal(radius));
       out.text(isTable ? "\n" : " " + std::to_string(n) + "\n");
     });
+  }
+  out.commit();
+}
+
+void writeClumpCover(const std::string& path, const std::vector<Clump>& clumps,
+                     const openvdb::math::Transform& transform, Interrupter* interrupter) {
+  const detail::CubicTransform world = detail::cubicTransform(transform);
+  if (fileEnding(path) != ".csv")
+    throw InvalidInput(path + ": the cover of the grains is written as .csv");
+  OutputStream out(path, interrupter);
+  out.text("grain_id,voxels,balls,uncovered,outside,volume_error,farthest\n");
+  for (const Clump& clump : clumps) {
+    out.text(std::to_string(clump.label) + "," + std::to_string(clump.voxels) + "," +
+             std::to_string(clump.balls.size()) + "," + std::to_string(clump.uncovered) + "," +
+             std::to_string(clump.outside) + "," + detail::shortestDecimal(clump.volumeError()) +
+             "," + detail::shortestDecimal(world.edge * clump.farthest) + "\n");
   }
   out.commit();
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "vdb_madf/exports/clump_bonds.h"
 #include "vdb_madf/shapes/clumps.h"
 
 namespace vdb_madf {
@@ -18,10 +19,18 @@ namespace vdb_madf {
 ///   molecule (numbered from 1), for `fix rigid/small molecule`. That refuses a body of one atom:
 ///   at the end of the list a grain of one ball has a second one, of half the radius, within it.
 ///   Balls overlap: their density is such that those of a grain together weigh what the grain does
-///   at density 1
+///   at density 1. With \p bonds (the other endings leave them out) also a section Bonds, in which
+///   each has a type of its own: its number in the file of writeClumpBonds()
 /// @throw InvalidInput for another ending, or voxels that are not cubes; IoError.
 void writeClumps(const std::string& path, const std::vector<Clump>& clumps,
-                 const openvdb::math::Transform& transform, Interrupter* interrupter = nullptr);
+                 const openvdb::math::Transform& transform,
+                 const std::vector<ClumpBond>& bonds = {}, Interrupter* interrupter = nullptr);
+/// Writes a line per grain, whole or not at all: `grain_id`, `voxels`, `balls`, `uncovered` (voxels of
+/// the grain in no ball), `outside` (voxels of the balls that are not the grain's), `volume_error`
+/// ((outside - uncovered) / voxels), `farthest` (largest distance of a voxel from the balls, world).
+/// @throw InvalidInput for an ending other than .csv, or voxels that are not cubes; IoError.
+void writeClumpCover(const std::string& path, const std::vector<Clump>& clumps,
+                     const openvdb::math::Transform& transform, Interrupter* interrupter = nullptr);
 /// True if writeClumps knows the ending.
 bool isClumpEnding(const std::string& path);
 
