@@ -40,7 +40,12 @@ TEST_CASE("cli: help names every verb and gives an example", "[cli]") {
   for (const std::string kind : {"spheres", "pack", "snow", "sintered", "particles", "bed"})
     CHECK(bench.mustRun("generate " + kind + " --help").find("vdb_madf generate " + kind) !=
           std::string::npos);
-  CHECK(bench.mustRun("--version").find("vdb_madf ") == 0);
+  const std::string version = bench.mustRun("--version");
+  CHECK(version.find("vdb_madf ") == 0);
+  bench.write("a.h5", "\x89HDF\r\n\x1a\n" + std::string(100, 'a'));
+  const bool isBuiltIn = bench.run("info a.h5").err.find("libhdf5-dev") == std::string::npos;
+  CHECK((version.find("\nHDF5 is read\n") != std::string::npos) == isBuiltIn);
+  CHECK((version.find("\nHDF5 is not read: ") != std::string::npos) != isBuiltIn);
 }
 
 TEST_CASE("cli: generate makes the same file of the same seed", "[cli]") {

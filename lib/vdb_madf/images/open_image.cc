@@ -95,7 +95,9 @@ std::unique_ptr<ImageReader> openHdf5File(std::unique_ptr<detail::InputFile> fil
 #ifdef VDB_MADF_HDF5
   return detail::openHdf5(file->path(), dataset);
 #else
-  throw IoError(file->path() + ": HDF5 cannot be read by this program: build it with libhdf5-dev");
+  throw IoError(file->path() +
+                ": HDF5 cannot be read by this program: install libhdf5-dev, then configure and "
+                "build it again");
 #endif
 }
 
@@ -187,6 +189,14 @@ std::unique_ptr<ImageReader> openImage(const std::string& path, const std::optio
   if (format) throw IoError(path + ": is a VDB file, not an image");
   throw IoError(path + ": is no image of a known format; if it is raw, give its size and type",
                 Hint::rawLayout);
+}
+
+bool readsHdf5() {
+#ifdef VDB_MADF_HDF5
+  return true;
+#else
+  return false;
+#endif
 }
 
 bool looksLikeImage(const std::string& path) {

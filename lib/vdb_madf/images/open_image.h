@@ -31,6 +31,9 @@ std::unique_ptr<ImageReader> openImage(const std::string& path,
                                        const std::optional<RawLayout>& raw = std::nullopt,
                                        const std::string& dataset = "");
 
+/// True if HDF5 was there when this was built, and is read.
+bool readsHdf5();
+
 /// True if the path looks like one of the formats of openImage (never true for a .vdb file).
 bool looksLikeImage(const std::string& path);
 
