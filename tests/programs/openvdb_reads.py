@@ -50,6 +50,12 @@ with Bench() as bench:
         broken.write(whole.read()[:800])
     check(complaint(bench.path("broken.vdb")), "vdb_print has nothing against a broken file")
 
+    try:  # what the manual says of labels
+        pyopenvdb.readAllGridMetadata(lod)
+        print("pyopenvdb reads Int32 grids here")
+    except TypeError as error:
+        check("int32" in str(error), f"pyopenvdb on labels: {error}")
+
     metadata = {grid.name: grid for grid in pyopenvdb.readAllGridMetadata(view)}
     check(sorted(metadata) == ["color", "density"], f"view.vdb holds {sorted(metadata)}")
     for path in (view, half, surface, grids):
