@@ -58,6 +58,7 @@ def wrong_command_lines():
                    "in.vdb o.vdb --as mask", "in.vdb o.vdb --as network", "in.vdb o.ply --smooth -1",
                    "in.vdb o.ply --reduce 0", "in.vdb o.ply --reduce 2 --max-dim 9", "in.vdb o.ply --triangles 0",
                    "in.vdb o.csv --as clumps --balls 0", "in.vdb o.csv --as clumps --uncovered 1.5", "in.vdb in.ply --as",
+                   "in.vdb o.ply --bonds b.csv",
                    "in.ply in.ply"),
         "info": ("in.vdb --json in.vdb", "in.vdb more"),
         "generate": ("snow o.jpg", "snow o.vdb --size 0", "snow o.vdb --size 16 --dims 16x16x16",

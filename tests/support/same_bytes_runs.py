@@ -301,6 +301,7 @@ def export():
             yield f"{labels} clumps{number}.{ending} --as clumps {options}"
         yield f"export threads1.vdb clumps_open.{ending} --as clumps --balls 20"
         yield f"export solid_labels.vdb clumps_solid.{ending} --as clumps"
+        yield f"{labels} clumps_apart.{ending} --as clumps --apart --bonds bonds_{ending}.csv --cover cover_{ending}.csv"
     for ending in ("vtu", "inp"):
         yield f"{labels} hexa.{ending}"
         yield f"{labels} hexa_named.{ending} --as hexa --voxel-size 1um"
