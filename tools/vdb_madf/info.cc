@@ -97,7 +97,9 @@ void run(const Options& o, const Common& common) {
   if (isVdb(o.input)) {
     json["format"] = "vdb";
     json["grids"] = Json::array();
-    for (const auto& grid : readVdb(o.input.path, {}, common.progress))
+    VdbReadOptions reading;
+    reading.anyVoxelShape = true;
+    for (const auto& grid : readVdb(o.input.path, reading, common.progress))
       json["grids"].push_back(describeGrid(*grid));
   } else {
     const auto image = openVolumeImage(o.input.path, o.input.volume());

@@ -8,6 +8,7 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <ios>
 #include <istream>
@@ -16,9 +17,11 @@
 #include <new>
 #include <stdexcept>
 
+#include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/files/detail/file_buffer.h"
+#include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/method/initialize.h"
 #include "vdb_madf/vdb/detail/uuid_place.h"
 #include "vdb_madf/vdb/detail/vdb_tree_check.h"
@@ -151,6 +154,19 @@ void readTransform(detail::InputBuffer& file, std::istream& stream, GridBase& gr
   grid.readTransform(stream);
 }
 
+void requireCubes(const detail::InputBuffer& file, const GridBase& grid) {
+  const auto edges = detail::edgesAlongAxes(grid.transform());
+  if (edges && detail::areEdgesOfCube(*edges)) return;
+  std::string what = "turned, sheared or of different sizes";
+  if (edges) {
+    what.clear();
+    for (int axis = 0; axis < 3; ++axis)
+      what += (axis > 0 ? " x " : "") + detail::shortestDecimal(std::abs((*edges)[axis]));
+  }
+  refuse(file, "the voxels of grid '" + clipped(grid.getName()) + "' are no cubes but " + what +
+                   ": resample it to cubic voxels");
+}
+
 class Reader {
  public:
   Reader(detail::InputBuffer& file, const VdbReadOptions& options)
@@ -230,6 +246,7 @@ class Reader {
     const detail::TreeSettings settings{layout, grid->saveFloatAsHalf(), compression,
                                         options_.maxVoxels, options_.maxCoordinate};
     Entry entry{descriptor, grid, settings, file_.position(), wanted(*grid), false};
+    if (entry.wanted && !options_.anyVoxelShape) requireCubes(file_, *grid);
     if (!descriptor.isInstance()) {
       if (entry.wanted)
         readTree(entry);

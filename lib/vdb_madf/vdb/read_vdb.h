@@ -21,21 +21,26 @@ struct VdbReadOptions {
   /// empty tree. Absent: all. The trees of the others are passed over unread, and what is wrong
   /// within them is not seen; a tree that a wanted grid shares with another is read.
   std::function<bool(const openvdb::GridBase&)> wanted;
+  /// Reads grids whatever the shape of their voxels. Everything here measures in cubes: otherwise a
+  /// wanted grid is refused whose voxels have edges that differ by more than 0.1 % in the world, or
+  /// are turned or sheared. (Readers of images refuse unequal spacings likewise.)
+  bool anyVoxelShape = false;
 };
 
 /// The volumes of a .vdb file in its order, read eagerly (no delayed loading) from a file that may
 /// be damaged; point grids are left out. Formats 222 to 224. The structure of
 /// each grid is checked before OpenVDB reads it; linked against OpenVDB before 11, a program also
 /// needs the checked decompression of tools/ for files that may change while they are read.
-/// @throw IoError, one line that names the file, if it is missing, truncated, corrupt or not VDB;
-///   Interrupted.
+/// @throw IoError, one line that names the file, if it is missing, truncated, corrupt or not VDB, or
+///   has voxels that are no cubes; Interrupted.
 std::vector<openvdb::GridBase::Ptr> readVdb(const std::string& path,
                                             const VdbReadOptions& options = {},
                                             Interrupter* interrupter = nullptr);
 
 /// The volumes of a .vdb file, in its order, with empty trees: names, types, metadata, transforms.
 /// Trees are passed over as with VdbReadOptions::wanted, so that a large file is listed at once
-/// (a file without offsets, such as a stream has, is walked through). @throw as readVdb.
+/// (a file without offsets, such as a stream has, is walked through). Voxels may have any shape.
+/// @throw as readVdb.
 std::vector<openvdb::GridBase::Ptr> readVdbHeaders(const std::string& path,
                                                    Interrupter* interrupter = nullptr);
 
