@@ -56,7 +56,7 @@ TEST_CASE("image_file: sample types have names and sizes", "[image_file]") {
 
 TEST_CASE("image_file: what createImage writes, openImage reads", "[image_file]") {
   const ScratchFolder folder;
-  for (const std::string ending : {"raw", "mhd", "mha", "tif", "TIFF", "nrrd", "npy"})
+  for (const std::string ending : {"mhd", "raw", "mha", "tif", "TIFF", "nrrd", "npy"})
     for (const SampleType type : kSampleTypes)
       for (const ImageSize& size : {ImageSize{1, 1, 1}, kSize, ImageSize{17, 1, 9}})
         for (const double metres : {0.0, 8.5e-6, 3.3e-8, 1.0 / 3e5, 0.05}) {

@@ -11,7 +11,7 @@ import same_bytes_refusals
 from hand_made_files import REFUSED
 from same_bytes_refusals import DAMAGED, Edit
 
-IMAGES = ("tif", "raw", "mhd", "mha", "nrrd", "npy")
+IMAGES = ("tif", "mhd", "raw", "mha", "nrrd", "npy")  # an .mhd would not replace the .raw of another
 TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
 VERBS = ("generate", "convert", "segment", "remerge", "sweep", "measure", "collect", "compare", "render", "export", "info")
 KINDS = {"spheres": "--count 6 --radius 6:9", "pack": "--radius 4:8", "snow": "--length 12",

@@ -67,7 +67,7 @@ TEST_CASE("cli: generate makes the same file of the same seed", "[cli]") {
 
 TEST_CASE("cli: generate writes the truth beside an image", "[cli]") {
   const Bench bench;
-  for (const std::string ending : {".vdb", ".raw", ".tif", ".mhd"})
+  for (const std::string ending : {".vdb", ".mhd", ".raw", ".tif"})
     bench.mustRun(kSpheres + "s" + ending);
   CHECK(gridsOf(infoOf(bench, "s.vdb")) == std::set<std::string>{"object", "truth"});
   for (const std::string name : {"s.truth.raw", "s.truth.tif", "s.truth.mhd", "s.raw"})
@@ -185,8 +185,8 @@ TEST_CASE("cli: labels are written over the whole domain", "[cli]") {
   bench.mustRun("convert g.vdb g.tif --grid grain --type int32");
   bench.mustRun("convert g.tif h.raw");
   CHECK(bench.bytes("h.raw") == bench.bytes("g.raw"));
-  bench.mustRun("convert g.vdb g.mhd --grid grain --type int32");
-  CHECK(infoOf(bench, "g.mhd").at("size") == Json({50, 40, 44}));
+  bench.mustRun("convert g.vdb m.mhd --grid grain --type int32");
+  CHECK(infoOf(bench, "m.mhd").at("size") == Json({50, 40, 44}));
 }
 
 TEST_CASE("cli: labels in a TIFF are uint16, in other formats int32", "[cli]") {

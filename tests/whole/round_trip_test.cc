@@ -151,7 +151,7 @@ TEST_CASE("round_trip: labels in images", "[round_trip]") {
     const LabelMap voxels = manyLabels(type == SampleType::uint16 ? 65535 : kLargest);
     const auto grid = gridOf(voxels);
     const std::string samples = samplesOf(voxels, type);
-    for (const std::string ending : {"raw", "tif", "mhd", "mha", "nrrd", "npy"}) {
+    for (const std::string ending : {"mhd", "raw", "tif", "mha", "nrrd", "npy"}) {
       CAPTURE(ending, sampleTypeName(type));
       const std::string path = folder / ("a." + ending);
       writeImage(path, *grid, kBox, type);

@@ -12,7 +12,7 @@
 #include "parse.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
-#include "vdb_madf/files/output_file.h"
+#include "vdb_madf/files/written_together.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/images/open_image.h"
@@ -52,6 +52,7 @@ struct Kind {
   /// Turns what was typed into the options of the kind. @throw WrongUsage
   void (*parse)(Options& options);
   Sample (*make)(const Options& options, Interrupter* interrupter);
+  bool hasTruth = true;
 };
 
 template <typename KindOptions>
@@ -133,7 +134,8 @@ constexpr Kind kKinds[] = {
      },
      [](const Options& options, Interrupter* interrupter) {
        return generatePack(options.pack, interrupter);
-     }},
+     },
+     false},
     {"snow", "a snow-like random structure",
      "vdb_madf generate snow snow.vdb --size 256 --fraction 0.3 --voxel-size 10um",
      [](Verb verb, Options& options) {
@@ -146,7 +148,8 @@ constexpr Kind kKinds[] = {
      },
      [](const Options& options, Interrupter* interrupter) {
        return generateSnow(options.snow, interrupter);
-     }},
+     },
+     false},
     {"sintered", "sintered balls with known grains",
      "vdb_madf generate sintered grains.vdb --count 90 --roughness 0.15",
      [](Verb verb, Options& options) {
@@ -242,6 +245,10 @@ void parse(const Kind& kind, Options& options) {
 
 void run(const Kind& kind, const Options& options, const Common& common) {
   checkWritable(options.out);
+  if (kind.hasTruth && !hasVdbEnding(options.out)) {
+    checkWrittenTogether(options.out, {truthPath(options.out)});
+    checkWritable(truthPath(options.out));
+  }
   Sample sample = makeSample(kind, options, common.progress);
   if (options.voxelSize) {
     setVoxelSize(*sample.object, options.voxelSize);

@@ -8,6 +8,7 @@
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/output_file.h"
 #include "vdb_madf/files/same_file.h"
+#include "vdb_madf/images/open_image.h"
 #include "wrong_usage.h"
 
 namespace vdb_madf::tools {
@@ -35,7 +36,8 @@ void checkOutputs(const std::vector<std::string>& outputs, const std::string& in
 }
 
 void checkWritable(const std::string& output) {
-  const OutputFile probe(output);
+  checkImagePlace(output);
+  for (const std::string& file : filesOf({output})) const OutputFile probe(file);
 }
 
 bool hasVdbEnding(const std::string& path) {

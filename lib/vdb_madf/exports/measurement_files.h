@@ -31,7 +31,8 @@ struct TableOptions {
 
 /// grains.csv, bonds.csv and sample.json in a folder, which is made if it is not there. Made before
 /// the work, so that a folder that cannot be written to is reported before it. The files appear
-/// whole or not at all.
+/// whole or not at all. A run replaces the files of an earlier one; if one of them is there without
+/// the others, it is not of a run, and is left alone.
 ///
 /// The columns are those of columns.h; lengths are in the unit of the voxel size, which the names
 /// end with, else in voxels. An unknown number is an empty cell, or null. sample.json also says

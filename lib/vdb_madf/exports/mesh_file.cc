@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <memory>
+#include <set>
 #include <vector>
 
 #include "vdb_madf/base/errors.h"
@@ -195,6 +197,26 @@ void writeVtp(const std::string& path, const WorldMesh& world, Interrupter* inte
   file.write(path, interrupter);
 }
 
+std::string stlName(int32_t label) {
+  return grainName(label) + ".stl";
+}
+
+/// Grains of another sample among these would pass for grains of this one.
+void checkNoOtherGrains(const std::string& folder, const WorldMesh& world) {
+  std::set<std::string> ours;
+  for (size_t grain = 0; grain < world.grainCount(); ++grain)
+    ours.insert(stlName(world.label(grain)));
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    int label = 0;
+    if (std::sscanf(name.c_str(), "grain_%d", &label) == 1 && name == stlName(label) &&
+        ours.count(name) == 0)
+      throw IoError("cannot write " + folder + ": " + name +
+                    " is there from another export; empty the folder, or choose another name");
+  }
+}
+
 }  // namespace
 
 bool isMeshEnding(const std::string& path) {
@@ -225,9 +247,10 @@ void writeStlFolder(const std::string& folder, const GrainMesh& mesh,
                     const MeshFileOptions& options, Interrupter* interrupter) {
   const WorldMesh world(mesh, options, folder);
   OutputFolder made(folder);
+  checkNoOtherGrains(folder, world);
   std::vector<std::unique_ptr<OutputStream>> files;
   for (size_t grain = 0; grain < world.grainCount(); ++grain) {
-    const std::string name = grainName(world.label(grain)) + ".stl";
+    const std::string name = stlName(world.label(grain));
     files.push_back(std::make_unique<OutputStream>(made.file(name), interrupter));
     writeStl(*files.back(), world, grain, grain + 1);
     files.back()->close();

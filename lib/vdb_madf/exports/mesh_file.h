@@ -32,8 +32,8 @@ void writeMesh(const std::string& path, const GrainMesh& mesh, const MeshFileOpt
 bool isMeshEnding(const std::string& path);
 
 /// One binary STL per grain, `grain_000123.stl`, in a folder, which is made if need be (not those
-/// above it). All files appear together, whole, or none.
-/// @throw as writeMesh.
+/// above it). All files appear together, whole, or none. @throw as writeMesh; IoError if the folder
+/// has such a file of another grain, which would pass for one of this sample.
 void writeStlFolder(const std::string& folder, const GrainMesh& mesh,
                     const MeshFileOptions& options, Interrupter* interrupter = nullptr);
 

@@ -218,6 +218,10 @@ std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInf
   throw InvalidInput(path + ": images are written as .tif, .tiff, .raw, .mhd, .mha, .nrrd or .npy");
 }
 
+void checkImagePlace(const std::string& path) {
+  if (fileEnding(path) == ".mhd") detail::checkMetaPlace(path);
+}
+
 bool isImageEnding(const std::string& path) {
   return writtenFormat(path) != nullptr;
 }

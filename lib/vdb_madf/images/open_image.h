@@ -42,9 +42,11 @@ bool looksLikeImage(const std::string& path);
 /// @param origin world position of the first voxel's center in mm (in voxels if there is no
 ///     voxel size), for the formats that can store it: MetaImage (Offset) and NRRD (space
 ///     origin). The readers ignore it: what they read begins at voxel (0,0,0).
-/// @throw IoError; InvalidInput for another ending.
+/// @throw IoError, also as checkImagePlace(); InvalidInput for another ending.
 std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInfo& info,
                                          const std::array<double, 3>& origin = {});
+/// Finds out before the work. @throw IoError if an .mhd would replace a .raw file that is not its own.
+void checkImagePlace(const std::string& path);
 /// True if createImage knows the ending.
 bool isImageEnding(const std::string& path);
 

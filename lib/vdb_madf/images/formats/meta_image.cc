@@ -11,6 +11,7 @@
 #include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/same_file.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/key_value_header.h"
 #include "vdb_madf/images/detail/slice_counter.h"
@@ -88,15 +89,31 @@ std::string headerText(const ImageInfo& info, const std::array<double, 3>& origi
   return text + "\nElementDataFile = " + dataFile + "\n";
 }
 
+/// Where the samples of an .mhd go.
+std::string dataFileOf(const std::string& header) {
+  return std::filesystem::path(header).replace_extension(".raw").string();
+}
+
+bool namesDataFile(const std::string& header, const std::string& data) {
+  try {
+    const KeyValueHeader fields(header, InputFile(header).head(kMaxHeaderBytes), metaSyntax());
+    const auto name = fields.find("ElementDataFile");
+    return name && isSameFile(besideHeader(header, *name), data);
+  } catch (const IoError&) {  // no header that we could read
+    return false;
+  }
+}
+
 class MetaWriter : public ImageWriter {
  public:
   MetaWriter(const std::string& path, const ImageInfo& info, const std::array<double, 3>& origin)
       : counter_(path, info), out_(path) {
-    const std::filesystem::path name(path);
     const bool local = fileEnding(path) == ".mha";
-    const std::filesystem::path dataFile = std::filesystem::path(name).replace_extension(".raw");
-    if (!local) data_.emplace(dataFile.string());
-    out_.text(headerText(info, origin, local ? "LOCAL" : dataFile.filename().string()));
+    const std::string dataFile = dataFileOf(path);
+    checkMetaPlace(path);
+    if (!local) data_.emplace(dataFile);
+    out_.text(headerText(info, origin,
+                         local ? "LOCAL" : std::filesystem::path(dataFile).filename().string()));
   }
   void write(int count, const void* samples) override {
     (data_ ? *data_ : out_).bytes(samples, counter_.add(count));
@@ -164,6 +181,16 @@ std::unique_ptr<ImageReader> openMeta(std::unique_ptr<InputFile> file) {
   layout.offset = uint64_t(std::max<int64_t>(headerSize, 0));
   return openSamples(path, info, std::make_unique<InputFile>(path, besideHeader(path, dataFile)),
                      layout);
+}
+
+void checkMetaPlace(const std::string& path) {
+  if (fileEnding(path) == ".mha") return;
+  const std::string data = dataFileOf(path);
+  std::error_code ignored;
+  if (std::filesystem::exists(data, ignored) && !namesDataFile(path, data))
+    throw IoError("cannot write " + path + ": its samples would replace " + data +
+                  ", which is there and not part of it; move that away, choose another name, or "
+                  "write .mha, which is one file");
 }
 
 std::unique_ptr<ImageWriter> createMeta(const std::string& path, const ImageInfo& info,

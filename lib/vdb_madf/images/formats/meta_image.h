@@ -16,7 +16,11 @@ namespace vdb_madf::detail {
 /// know nothing better: it gives no physical size.
 /// Not read: text data, several channels, data spread over several files.
 std::unique_ptr<ImageReader> openMeta(std::unique_ptr<InputFile> file);
+/// Finds out before the work. @throw IoError if the .raw file beside an .mhd would replace one that
+/// the .mhd there, if any, does not name.
+void checkMetaPlace(const std::string& path);
 /// .mha: one file. .mhd: the data in a .raw file beside it, which is put in place first.
+/// @throw as checkMetaPlace().
 std::unique_ptr<ImageWriter> createMeta(const std::string& path, const ImageInfo& info,
                                         const std::array<double, 3>& origin);
 
