@@ -4,9 +4,11 @@
 #include "vdb_madf/files/output_file.h"
 
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <iterator>
 #include <set>
 #include <string>
 
@@ -152,6 +154,62 @@ TEST_CASE("output_file: replaces what a link points to, not the link", "[output_
   REQUIRE(bytesOf(other.file("real")) == "new");
   REQUIRE(folder.entries() == 1);
   REQUIRE(other.entries() == 1);
+}
+
+TEST_CASE("output_file: makes what a dead link points to", "[output_file]") {
+  const TemporaryFolder folder, other;
+  const std::string link = folder.file("link");
+  REQUIRE(::symlink("second", link.c_str()) == 0);
+  REQUIRE(::symlink(other.file("new").c_str(), folder.file("second").c_str()) == 0);
+  {
+    OutputFile file(link);
+    CHECK(file.temporaryPath().find(other.path()) == 0);
+    writeBytes(file.temporaryPath(), "new");
+    file.commit();
+  }
+  CHECK(std::filesystem::is_symlink(link));
+  CHECK(std::filesystem::is_symlink(folder.file("second")));
+  CHECK(bytesOf(other.file("new")) == "new");
+  CHECK(folder.entries() == 2);
+  CHECK(other.entries() == 1);
+
+  REQUIRE(::symlink("circle", folder.file("circle").c_str()) == 0);
+  requireErrorNames(folder.file("circle"));
+  REQUIRE(::symlink("/missing/folder/file", folder.file("nowhere").c_str()) == 0);
+  requireErrorNames(folder.file("nowhere"));
+}
+
+TEST_CASE("output_file: what killed programs left of a file is removed", "[output_file]") {
+  const pid_t gone = ::fork();
+  if (gone == 0) ::_exit(0);
+  REQUIRE(gone > 0);
+  REQUIRE(::waitpid(gone, nullptr, 0) == gone);
+  const std::string dead = std::to_string(gone), alive = std::to_string(::getppid());
+  const TemporaryFolder folder, other;
+  const std::string left[] = {".out.vdb." + dead + "-0.tmp", ".out.vdb." + dead + "-17.tmp"};
+  const std::string others[] = {".out.vdb." + alive + "-0.tmp",
+                                ".out.vdb." + std::to_string(::getpid()) + "-0.tmp",
+                                ".out." + dead + "-0.tmp",
+                                ".my.out.vdb." + dead + "-0.tmp",
+                                "out.vdb." + dead + "-0.tmp",
+                                ".out.vdb." + dead + ".tmp",
+                                ".out.vdb." + dead + "-0.tmp.txt",
+                                ".out.vdb." + dead + "-00.tmp",
+                                ".out.vdb.0-0.tmp",
+                                ".out.vdb.-1-0.tmp",
+                                ".out.vdb.text-0.tmp",
+                                ".tmp"};
+  for (const std::string& name : left) writeBytes(folder.file(name), "half a file");
+  for (const std::string& name : others) writeBytes(folder.file(name), "another's");
+  writeBytes(other.file(left[0]), "half a file");
+  REQUIRE(::symlink(other.file("out.vdb").c_str(), folder.file("linked").c_str()) == 0);
+  removeLeftovers({folder.file("out.vdb"), folder.file("linked"), "/missing/file", ""});
+  CHECK(folder.entries() == int(std::size(others)) + 1);
+  for (const std::string& name : others) {
+    CAPTURE(name);
+    CHECK(std::filesystem::exists(folder.file(name)));
+  }
+  CHECK(other.entries() == 0);
 }
 
 TEST_CASE("output_file: respects permissions", "[output_file]") {

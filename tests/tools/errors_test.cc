@@ -407,7 +407,7 @@ TEST_CASE("cli: a signal ends long work within a second and leaves nothing", "[c
   bench.write("zeros.raw", "");
   std::filesystem::resize_file(bench.path("zeros.raw"), 800 * 800 * 800);
   const std::pair<int, double> cases[] = {
-      {SIGINT, 0.0}, {SIGINT, 0.3}, {SIGTERM, 0.1}, {SIGHUP, 0.1}};
+      {SIGINT, 0.0}, {SIGINT, 0.3}, {SIGTERM, 0.1}, {SIGHUP, 0.1}, {SIGQUIT, 0.1}};
   for (const auto& [signal, delay] : cases) {
     CAPTURE(signal, delay);
     RunOptions interrupted;

@@ -88,3 +88,32 @@ TEST_CASE("cli: a folder of meshes holds the grains of one sample", "[cli]") {
   CHECK(outcome.exitCode == 1);
   CHECK_THAT(outcome.err, Catch::Contains("grain_000077.stl"));
 }
+
+TEST_CASE("cli: what a killed run left goes with the next run that writes there", "[cli]") {
+  const Bench bench;
+  // As a process of this number would name it; it is beyond the largest number of a process.
+  const std::string left = ".a.tif.2000000000-0.tmp", log = ".log.json.2000000000-1.tmp";
+  for (const std::string& name : {left, log}) bench.write(name, "half a file");
+  bench.mustRun("generate snow a.tif --size 16 --length 6");
+  CHECK(bench.names() == std::set<std::string>{"a.tif", log});
+  bench.mustRun("info a.tif --json log.json");
+  CHECK(bench.names() == std::set<std::string>{"a.tif", "log.json"});
+}
+
+TEST_CASE("cli: outputs go through links, to be or there", "[cli]") {
+  const Bench bench;
+  std::filesystem::create_directory(bench.path("real"));
+  for (const std::string name : {"a.tif", "g.vdb", "g.ply", "g.json", "p.png"})
+    std::filesystem::create_symlink("real/" + name, bench.path(name));
+  for (int run = 0; run < 2; ++run) {
+    bench.mustRun("generate snow a.tif --size 24 --length 8");
+    bench.mustRun("segment a.tif g.vdb --json g.json");
+    bench.mustRun("export g.vdb g.ply");
+    bench.mustRun("render g.vdb p.png");
+    for (const std::string name : {"a.tif", "g.vdb", "g.ply", "g.json", "p.png"}) {
+      CAPTURE(run, name);
+      CHECK(std::filesystem::is_symlink(bench.path(name)));
+      CHECK(std::filesystem::is_regular_file(bench.path("real/" + name)));
+    }
+  }
+}

@@ -37,7 +37,9 @@ void checkOutputs(const std::vector<std::string>& outputs, const std::string& in
 
 void checkWritable(const std::string& output) {
   checkImagePlace(output);
-  for (const std::string& file : filesOf({output})) const OutputFile probe(file);
+  const std::vector<std::string> files = filesOf({output});
+  removeLeftovers(files);
+  for (const std::string& file : files) const OutputFile probe(file);
 }
 
 bool hasVdbEnding(const std::string& path) {

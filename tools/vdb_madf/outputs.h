@@ -14,7 +14,7 @@ std::vector<std::string> filesOf(const std::vector<std::string>& outputs);
 /// @throw WrongUsage if the outputs would overwrite the input or each other
 void checkOutputs(const std::vector<std::string>& outputs, const std::string& input);
 /// Finds out before the work, not after it, that the output cannot be written or would replace what
-/// is not its own. @throw IoError
+/// is not its own; clears away what killed runs left there. @throw IoError
 void checkWritable(const std::string& output);
 
 bool hasVdbEnding(const std::string& path);

@@ -30,6 +30,7 @@ constexpr auto kShowEvery = std::chrono::milliseconds(100);
 void catchInterrupts() {
   std::signal(SIGINT, onSignal);
   std::signal(SIGTERM, onSignal);
+  std::signal(SIGQUIT, onSignal);
   if (std::signal(SIGHUP, onSignal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
   std::signal(SIGXFSZ, SIG_IGN);
 }

@@ -38,7 +38,7 @@ class Progress : public Interrupter {
   std::chrono::steady_clock::time_point firstTime_;
 };
 
-/// From now on Ctrl-C, termination requests and a closed terminal are taken by Progress, and a
+/// From now on Ctrl-C, SIGQUIT, termination requests and a closed terminal are taken by Progress, and a
 /// write beyond the limit of file sizes fails like any other: no signal may end the program before
 /// it has removed its temporary files.
 void catchInterrupts();

@@ -17,6 +17,7 @@ TextFile::TextFile(const std::string& path) : path_(path == "/dev/stdout" ? "-" 
   std::error_code ignored;
   const auto status = std::filesystem::status(path, ignored);
   if (std::filesystem::is_fifo(status) || std::filesystem::is_character_file(status)) return;
+  removeLeftovers({path});
   file_ = std::make_unique<OutputFile>(path);
 }
 

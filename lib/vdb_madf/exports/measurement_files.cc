@@ -13,6 +13,7 @@
 #include "vdb_madf/base/version.h"
 #include "vdb_madf/files/csv_cell.h"
 #include "vdb_madf/files/detail/output_stream.h"
+#include "vdb_madf/files/output_file.h"
 #include "vdb_madf/files/written_together.h"
 #include "vdb_madf/measure/columns.h"
 
@@ -178,6 +179,7 @@ std::vector<std::string> MeasurementTables::paths(const std::string& folder) {
 
 MeasurementTables::MeasurementTables(const std::string& folder) : folder_(folder) {
   const std::vector<std::string> files = paths(folder);
+  removeLeftovers(files);
   checkWrittenTogether(files[2], {files[0], files[1]});
   checkWrittenTogether(files[0], {files[2]});
   for (const std::string& path : paths(folder))

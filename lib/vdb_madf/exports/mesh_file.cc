@@ -202,10 +202,8 @@ std::string stlName(int32_t label) {
 }
 
 /// Grains of another sample among these would pass for grains of this one.
-void checkNoOtherGrains(const std::string& folder, const WorldMesh& world) {
-  std::set<std::string> ours;
-  for (size_t grain = 0; grain < world.grainCount(); ++grain)
-    ours.insert(stlName(world.label(grain)));
+void checkNoOtherGrains(const std::string& folder, const std::vector<std::string>& names) {
+  const std::set<std::string> ours(names.begin(), names.end());
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
     const std::string name = entry.path().filename().string();
@@ -247,11 +245,16 @@ void writeStlFolder(const std::string& folder, const GrainMesh& mesh,
                     const MeshFileOptions& options, Interrupter* interrupter) {
   const WorldMesh world(mesh, options, folder);
   OutputFolder made(folder);
-  checkNoOtherGrains(folder, world);
+  std::vector<std::string> names, paths;
+  for (const int32_t label : mesh.labels) {
+    names.push_back(stlName(label));
+    paths.push_back(made.file(names.back()));
+  }
+  checkNoOtherGrains(folder, names);
+  removeLeftovers(paths);
   std::vector<std::unique_ptr<OutputStream>> files;
   for (size_t grain = 0; grain < world.grainCount(); ++grain) {
-    const std::string name = stlName(world.label(grain));
-    files.push_back(std::make_unique<OutputStream>(made.file(name), interrupter));
+    files.push_back(std::make_unique<OutputStream>(paths[grain], interrupter));
     writeStl(*files.back(), world, grain, grain + 1);
     files.back()->close();
   }

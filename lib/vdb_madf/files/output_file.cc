@@ -9,10 +9,15 @@
 
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include "vdb_madf/base/errors.h"
@@ -23,6 +28,8 @@ namespace {
 
 /// File systems allow names of 255 bytes; what is added to the name takes less than 55.
 constexpr size_t kMaxStem = 200;
+/// As many as the system follows.
+constexpr int kMaxLinks = 40;
 
 [[noreturn]] void fail(const std::string& path, const std::string& reason,
                        const std::string& advice) {
@@ -66,12 +73,61 @@ void checkTarget(const std::string& path) {
     fail(path, "the file there is write-protected", "remove it, or write it elsewhere");
 }
 
-/// The file that a link leads to: renaming over the link would remove the link, be it a user's or
-/// /dev/stdout. A dead link is itself replaced.
-std::string behindLinks(const std::string& path) {
-  const std::unique_ptr<char, decltype(&std::free)> found(::realpath(path.c_str(), nullptr),
-                                                          &std::free);
-  return found ? found.get() : path;
+/// The file that a link leads to, even if it is not there yet: renaming over the link would remove
+/// the link, be it a user's or /dev/stdout.
+std::string behindLinks(std::string path) {
+  for (int links = 0; links < kMaxLinks; ++links) {
+    const std::unique_ptr<char, decltype(&std::free)> found(::realpath(path.c_str(), nullptr),
+                                                            &std::free);
+    if (found) return found.get();
+    std::error_code error;
+    const std::filesystem::path next = std::filesystem::read_symlink(path, error);
+    if (error) break;
+    path = (std::filesystem::path(path).parent_path() / next).string();
+  }
+  return path;
+}
+
+/// What the temporaries of a file are called: this, the number of the process, that of the file
+/// within it, and an ending: ".out.vdb.1234-0.tmp".
+std::string temporaryStem(const std::string& name) {
+  return "." + name.substr(0, kMaxStem) + ".";
+}
+constexpr char kTemporaryEnding[] = ".tmp";
+std::string temporaryName(const std::string& stem, int process, unsigned number) {
+  return stem + std::to_string(process) + "-" + std::to_string(number) + kTemporaryEnding;
+}
+
+/// Where a file goes, in parts.
+struct Place {
+  std::string folder, name;  ///< the folder with its slash; "." for that of the process
+};
+Place placeOf(const std::string& target) {
+  const std::string folder = folderOf(target);
+  return {folder, folder == "." ? target : target.substr(folder.size())};
+}
+
+/// The name of a temporary in parts; nothing if it is none.
+struct Temporary {
+  std::string stem;
+  int process = 0;
+};
+std::optional<Temporary> temporaryOf(const std::string& name) {
+  const size_t end = name.rfind(kTemporaryEnding);
+  if (end == std::string::npos || end == 0) return std::nullopt;
+  const size_t stemEnd = name.rfind('.', end - 1);
+  if (stemEnd == std::string::npos) return std::nullopt;
+  const std::string stem = name.substr(0, stemEnd + 1);
+  int process = 0;
+  unsigned number = 0;
+  if (std::sscanf(name.c_str() + stem.size(), "%d-%u", &process, &number) != 2 || process <= 0 ||
+      name != temporaryName(stem, process, number))
+    return std::nullopt;
+  return Temporary{stem, process};
+}
+
+bool isGone(int process) {
+  return ::kill(process, 0) != 0 && errno == ESRCH;
 }
 
 /// Makes the rename last. Some file systems cannot sync a folder: the file is in place all the
@@ -90,15 +146,13 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
   checkTarget(path_);
   static std::atomic<unsigned> counter{0};
   target_ = behindLinks(path_);
-  const std::string folder = folderOf(target_);
-  const std::string stem =
-      (folder == "." ? target_ : target_.substr(folder.size())).substr(0, kMaxStem);
+  const auto [folder, name] = placeOf(target_);
   // The number of the process tells programs apart, the counter threads and what a program of the
   // same number in another container left behind.
   int file = -1;
   do {
-    temporaryPath_ = folder + (folder == "." ? "/." : ".") + stem + "." +
-                     std::to_string(::getpid()) + "-" + std::to_string(counter++) + ".tmp";
+    temporaryPath_ = folder + (folder == "." ? "/" : "") +
+                     temporaryName(temporaryStem(name), ::getpid(), counter++);
     file = ::open(temporaryPath_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   } while (file < 0 && (errno == EEXIST || errno == EINTR));
   if (file < 0) {
@@ -122,6 +176,23 @@ void OutputFile::commit() {
   if (error != 0) fail(path_, std::strerror(error), adviceFor(error));
   committed_ = true;
   syncFolder(target_);
+}
+
+void removeLeftovers(const std::vector<std::string>& paths) {
+  std::map<std::string, std::set<std::string>> stems;  // by folder, so that each is listed once
+  for (const std::string& path : paths) {
+    const auto [folder, name] = placeOf(behindLinks(path));
+    stems[folder].insert(temporaryStem(name));
+  }
+  for (const auto& [folder, ofFolder] : stems) {
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+      const auto temporary = temporaryOf(entry->path().filename().string());
+      if (temporary && ofFolder.count(temporary->stem) > 0 && isGone(temporary->process))
+        ::unlink(entry->path().c_str());
+    }
+  }
 }
 
 }  // namespace vdb_madf

@@ -4,11 +4,13 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace vdb_madf {
 
 /// A file that appears whole or not at all: write to temporaryPath() (same folder), then commit()
-/// syncs it to disk and renames it over `path`, or over the file that a link there points to.
+/// syncs it to disk and renames it over `path`. Through a link it goes to where the link leads, be
+/// there a file or not yet, and the temporary is in that folder.
 /// Destroyed without commit: the temporary is removed.
 class OutputFile {
  public:
@@ -27,5 +29,9 @@ class OutputFile {
   std::string path_, target_, temporaryPath_;
   bool committed_ = false;
 };
+
+/// Removes what is left of killed programs that were writing these files: the temporaries with the
+/// number of a process that does not exist (on this machine). What cannot be removed stays.
+void removeLeftovers(const std::vector<std::string>& paths);
 
 }  // namespace vdb_madf
