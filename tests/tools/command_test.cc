@@ -226,6 +226,18 @@ TEST_CASE("cli: render writes a PNG", "[cli]") {
   CHECK(bench.bytes("t.png") == png);
 }
 
+TEST_CASE("cli: a length is understood as it is written", "[cli]") {
+  const Bench bench;
+  for (const std::string length : {"8.5um", "8.5 um", "8.5UM", "8.5\u00b5m", "8.5 \u03bcm",
+                                   "8.5 microns", "0.0085mm", "8500 nm", "8.5e-6 m"}) {
+    CAPTURE(length);
+    const Outcome outcome = bench.run(std::vector<std::string>{
+        "generate", "snow", "a.tif", "--size", "8", "--length", "4", "--voxel-size", length});
+    CHECK(outcome.err == "");
+    CHECK(infoOf(bench, "a.tif").at("voxel_size_mm") == Approx(0.0085));
+  }
+}
+
 TEST_CASE("cli: info says what is in a file", "[cli]") {
   const Bench bench;
   bench.mustRun("generate snow s.raw --dims 20x16x12 --length 6");

@@ -102,6 +102,12 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"segment in.vdb out.vdb --voxel-size 0um", "--voxel-size"},
       {"segment in.vdb out.vdb --voxel-size -1mm", "--voxel-size"},
       {"segment in.vdb out.vdb --voxel-size nanum", "--voxel-size"},
+      {"segment in.vdb out.vdb --voxel-size 8,5um", "write a point"},
+      {"segment in.vdb out.vdb --voxel-size 8.5.5um", "unit"},
+      {"segment in.vdb out.vdb --voxel-size 8.5foot", "unit"},
+      {"segment in.vdb out.vdb --threshold 0,5", "write a point"},
+      {"segment in.vdb out.vdb --range :5", "A:B"},
+      {"segment in.vdb out.vdb --range 5:", "A:B"},
       {"segment in.vdb out.vdb --domain 0,0,0", "--domain"},
       {"segment in.vdb out.vdb --domain 5,5,5:4,9,9", "--domain"},
       {"segment in.vdb out.vdb --domain 0,0,0:99999999,1,1", "--domain"},
@@ -429,9 +435,11 @@ TEST_CASE("cli: segment refuses what needs more memory than allowed", "[cli]") {
   const Bench bench;
   bench.mustRun(kSpheres + "s.vdb");
   refuses(bench, kFailed, "segment s.vdb g.vdb --max-memory 2M",
-          {"s.vdb", "bytes of memory", "--max-memory"});
-  for (const std::string size : {"0", "-1G", "3X", "much", "1GiBB", "nan"})
+          {"s.vdb", "MiB of memory, and", "MiB may be used", "--max-memory"});
+  for (const std::string size : {"0", "-1G", "3X", "much", "1GiBB", "nan", "100", "16e9", "1,5G"})
     refuses(bench, kWrongUsage, "segment s.vdb g.vdb --max-memory " + size, {size, "12GiB"});
   bench.mustRun("segment s.vdb g.vdb --max-memory 1.5GiB");
+  for (const std::string size : {"1.5 GiB", "2gib", "2gb", "900M", "1e9B", "1e6 kb"})
+    CHECK(bench.run({"segment", "s.vdb", "g.vdb", "--max-memory", size}).exitCode == 0);
   refuses(bench, kWrongUsage, "segment s.vdb", {"OUT.vdb"});
 }

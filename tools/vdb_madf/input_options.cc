@@ -73,7 +73,9 @@ void InputOptions::parse() {
   if (!threshold.empty()) selection = Selection::threshold(parseNumber(threshold, "--threshold"));
   if (!range.empty()) {
     const std::vector<std::string> ends = split(range, ':');
-    if (ends.size() != 2) throw WrongUsage("--range " + range + ": write A:B");
+    if (ends.size() != 2 || ends[0].empty() || ends[1].empty())
+      throw WrongUsage("--range " + range +
+                       ": write A:B, for example 1:5; --threshold A takes all from A on");
     selection = Selection::range(parseNumber(ends[0], "--range"), parseNumber(ends[1], "--range"));
     if (selection->low > selection->high)
       throw WrongUsage("--range " + range + ": the first value exceeds the second");

@@ -3,13 +3,13 @@
 
 #include "parse.h"
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <optional>
 
+#include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/base/limits.h"
 #include "wrong_usage.h"
 
@@ -36,6 +36,11 @@ std::optional<Coord> parseCoord(const std::string& text, char separator) {
   return coord;
 }
 
+/// For a decimal comma, as much of the world writes it.
+std::string commaHint(const std::string& text) {
+  return text.find(',') == std::string::npos ? "" : ": write a point, not a comma, before decimals";
+}
+
 }  // namespace
 
 std::vector<std::string> split(const std::string& text, char separator) {
@@ -53,7 +58,7 @@ double parseNumber(const std::string& text, const std::string& option) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   if (text.empty() || *end != '\0' || !std::isfinite(value))
-    throw WrongUsage(option + " " + text + ": not a finite number");
+    throw WrongUsage(option + " " + text + ": not a finite number" + commaHint(text));
   return value;
 }
 
@@ -83,18 +88,20 @@ CoordBBox parseDomain(const std::string& text) {
 }
 
 VoxelSize parseVoxelSize(const std::string& text) {
-  for (const auto& [unit, metres] :
-       {std::pair<const char*, double>{"nm", 1e-9}, {"um", 1e-6}, {"mm", 1e-3}, {"m", 1.0}}) {
-    const size_t length = std::strlen(unit);
-    if (text.size() <= length || text.compare(text.size() - length, length, unit) != 0) continue;
-    const std::string number = text.substr(0, text.size() - length);
-    const double value = parseNumber(number, "--voxel-size");
-    // Dividing by a power of ten keeps decimal inputs exact to the last bit.
-    const double size = metres == 1.0 ? value : value / std::round(1 / metres);
-    if (size >= 1e-10 && size <= 1) return {size};
-    throw WrongUsage("--voxel-size " + text + ": must lie between 0.1nm and 1m");
-  }
-  throw WrongUsage("--voxel-size " + text + ": give a unit (nm, um, mm or m), for example 8.5um");
+  const std::string given = "--voxel-size " + text;
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (end == text.c_str() || !std::isfinite(value))
+    throw WrongUsage(given + ": not a finite number");
+  const auto perMetre = unitsPerMetre(end);
+  if (!perMetre)
+    throw WrongUsage(given + (end[0] == ','
+                                  ? commaHint(text)
+                                  : ": give a unit (nm, um, mm or m), for example 8.5um"));
+  // Dividing by a power of ten keeps decimal inputs exact to the last bit.
+  const double size = value / *perMetre;
+  if (size >= 1e-10 && size <= 1) return {size};
+  throw WrongUsage(given + ": must lie between 0.1nm and 1m");
 }
 
 int64_t parseCount(const std::string& text, const std::string& option) {
@@ -114,33 +121,20 @@ Boundary parseBoundary(const std::string& boundary) {
 int64_t parseMemory(const std::string& text) {
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
-  std::string unit = end;
-  double factor = 1;
-  if (!unit.empty() && unit != "B") {
-    const size_t power = std::string("KMGT").find(char(std::toupper(unit[0]))) + 1;
-    unit.erase(0, 1);
-    if (unit.empty() || unit == "iB")
-      factor = std::pow(1024.0, double(power));
-    else if (unit == "B")
-      factor = std::pow(1000.0, double(power));
-    else
-      factor = 0;
-    if (power == 0) factor = 0;
-  }
+  std::string unit;
+  for (const char* c = end; *c != '\0'; ++c)
+    if (*c != ' ') unit += char(std::tolower(static_cast<unsigned char>(*c)));
+  double factor = unit == "b" ? 1 : 0;
+  const size_t power = unit.empty() ? 0 : std::string("kmgt").find(unit[0]) + 1;
+  if (power > 0 && (unit.size() == 1 || unit.substr(1) == "ib"))
+    factor = std::pow(1024.0, double(power));
+  else if (power > 0 && unit.substr(1) == "b")
+    factor = std::pow(1000.0, double(power));
   const double bytes = number * factor;
   if (end == text.c_str() || !(bytes >= 1) || !(bytes < 9e18))
-    throw WrongUsage("--max-memory " + text + ": give a size such as 12GiB or 500M");
+    throw WrongUsage("--max-memory " + text + ": give a size with its unit, such as 12GiB or 500M" +
+                     commaHint(text));
   return int64_t(bytes);
-}
-
-std::string readableBytes(int64_t bytes) {
-  const char* const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
-  double number = double(bytes);
-  size_t unit = 0;
-  for (; number >= 1024 && unit < 4; ++unit) number /= 1024;
-  char text[32];
-  std::snprintf(text, sizeof text, unit == 0 ? "%.0f %s" : "%.3g %s", number, units[unit]);
-  return text;
 }
 
 }  // namespace vdb_madf::tools

@@ -22,19 +22,17 @@ double parseNumber(const std::string& text, const std::string& option);
 Coord parseDims(const std::string& text, const std::string& option);
 /// --domain: "x0,y0,z0:x1,y1,z1", both corners inclusive.
 CoordBBox parseDomain(const std::string& text);
-/// --voxel-size: "8.5um"
+/// --voxel-size: "8.5um", with or without a space; units as unitsPerMetre() knows them.
 VoxelSize parseVoxelSize(const std::string& text);
 /// A whole number >= 0.
 int64_t parseCount(const std::string& text, const std::string& option);
-/// --max-memory: "500M", "12GiB", "16e9" in bytes; K, M, G, T with or without iB are powers of 1024,
-/// with B of 1000.
+/// --max-memory: "500M", "12 GiB", "1e6B" in bytes; K, M, G, T with or without iB are powers of 1024,
+/// with B of 1000; upper and lower case are the same. A number alone is refused: of what?
 int64_t parseMemory(const std::string& text);
 
 /// "auto", "open" or "closed"; does not throw.
 Boundary parseBoundary(const std::string& text);
 /// The parts between separators, also empty ones; at least one.
 std::vector<std::string> split(const std::string& text, char separator);
-/// "3.2 GiB"
-std::string readableBytes(int64_t bytes);
 
 }  // namespace vdb_madf::tools

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <string>
@@ -56,6 +57,17 @@ int64_t memoryLimit() {
       bytes = std::min(bytes, int64_t(limit.rlim_cur));
   }
   return bytes;
+}
+
+std::string readableBytes(int64_t bytes) {
+  const char* const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
+  double number = double(bytes);
+  size_t unit = 0;
+  for (; number >= 1024 && unit < 4; ++unit) number /= 1024;
+  char text[32];
+  std::snprintf(text, sizeof text, unit == 0 || number >= 100 ? "%.0f %s" : "%.3g %s", number,
+                units[unit]);
+  return text;
 }
 
 }  // namespace vdb_madf

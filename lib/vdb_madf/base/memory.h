@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace vdb_madf {
 
@@ -16,5 +17,8 @@ int64_t availableMemory();
 
 /// Bytes that this process can have at most: the machine's memory, or the process's own limits.
 int64_t memoryLimit();
+
+/// How messages write a number of bytes: "154 MiB", with three digits; units are powers of 1024.
+std::string readableBytes(int64_t bytes);
 
 }  // namespace vdb_madf

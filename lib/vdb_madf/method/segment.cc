@@ -8,6 +8,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/memory.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/leaves/leaf_grid.h"
 #include "vdb_madf/leaves/leaf_index.h"
@@ -31,8 +32,8 @@ void checkMemory(const ObjectSize& size, const SegmentOptions& options) {
   if (options.maxMemory == 0) return;
   const int64_t needed = segmentMemory(size, options);
   if (needed <= options.maxMemory) return;
-  throw InvalidInput("segmenting needs about " + std::to_string(needed) + " bytes of memory, and " +
-                         std::to_string(options.maxMemory) +
+  throw InvalidInput("segmenting needs about " + readableBytes(needed) + " of memory, and " +
+                         readableBytes(options.maxMemory) +
                          " may be used: crop or coarsen the volume, or allow more",
                      Hint::memoryLimit);
 }
