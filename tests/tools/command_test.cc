@@ -250,8 +250,9 @@ TEST_CASE("cli: info says what is in a file", "[cli]") {
         std::string::npos);
   bench.mustRun("convert s.tif s.vdb");
   const Json vdb = infoOf(bench, "s.vdb");
+  CHECK(gridOf(vdb, "object").at("metadata").at("madf_domain_min") == Json({0, 0, 0}));
+  CHECK(gridOf(vdb, "object").at("metadata").at("madf_domain_max") == Json({19, 15, 11}));
   CHECK(vdb.at("format") == "vdb");
-  CHECK(gridOf(vdb, "object").at("metadata").at("madf_domain_max") == "[19, 15, 11]");
   CHECK(bench.mustRun("info s.vdb").find("grid object") != std::string::npos);
 }
 

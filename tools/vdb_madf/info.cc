@@ -26,8 +26,24 @@ Json corner(const Coord& c) {
   return {c.x(), c.y(), c.z()};
 }
 
-/// Metadata as text, numbers as numbers.
+/// Its value as a list of numbers, if it is a vector of this type.
+template <typename Vector>
+bool addVector(const openvdb::Metadata& value, Json& list) {
+  using Typed = openvdb::TypedMetadata<Vector>;
+  if (value.typeName() != Typed::staticTypeName()) return false;
+  const Vector& vector = static_cast<const Typed&>(value).value();
+  list = Json::array();
+  for (int i = 0; i < Vector::size; ++i) list.push_back(vector[i]);
+  return true;
+}
+
+/// Metadata as text, numbers as numbers, vectors as lists of them.
 Json metadataValue(const openvdb::Metadata& value) {
+  Json list;
+  if (addVector<openvdb::Vec3i>(value, list) || addVector<openvdb::Vec3s>(value, list) ||
+      addVector<openvdb::Vec3d>(value, list) || addVector<openvdb::Vec2i>(value, list) ||
+      addVector<openvdb::Vec2s>(value, list) || addVector<openvdb::Vec2d>(value, list))
+    return list;
   if (value.typeName() == "int64") return static_cast<const openvdb::Int64Metadata&>(value).value();
   if (value.typeName() == "int32") return static_cast<const openvdb::Int32Metadata&>(value).value();
   if (value.typeName() == "double")
