@@ -169,7 +169,7 @@ TEST_CASE("cli: the voxel size goes from the option through every file", "[cli]"
     CHECK(grid.at("metadata").at("madf_length_unit") == "mm");
   }
   CHECK(Json::parse(bench.bytes("e.json")).at("voxel_size_mm").get<double>() == Approx(0.0085));
-  bench.mustRun("convert b.vdb f.vdb --voxel-size 0.02mm");
+  bench.mustRun("convert b.vdb f.vdb --voxel-size 0.02mm -q");
   CHECK(infoOf(bench, "f.vdb").at("grids").at(0).at("voxel_size_mm").get<double>() == Approx(0.02));
 
   bench.mustRun("generate snow a.vdb --size 16 --length 6");

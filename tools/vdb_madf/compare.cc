@@ -131,7 +131,9 @@ void run(const Options& o, const Common& common) {
   common.progress->end();
   grainFile.write(grainTable(comparison));
   confusionFile.write(confusionTable(comparison));
-  jsonFile.write(summary(o, comparison));
+  Json json = summary(o, comparison);
+  addNotes(json, *common.progress);
+  jsonFile.write(json);
   const bool asked = jsonFile.isStandardOutput() || grainFile.isStandardOutput() ||
                      confusionFile.isStandardOutput();
   if (common.quiet || asked) return;

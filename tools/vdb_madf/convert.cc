@@ -95,8 +95,7 @@ void copyVdb(const Options& o, const Common& common) {
   auto grids = readVdb(o.input.path, {}, common.progress);
   if (!o.input.gridName.empty() || !hasVdbEnding(o.out)) grids = {chooseGrid(o.input, grids)};
   for (const auto& grid : grids) {
-    if (o.input.domain) setDomain(*grid, *o.input.domain);
-    if (o.input.voxelSize) setVoxelSize(*grid, o.input.voxelSize);
+    overrideFile(*grid, o.input.path, o.input.volume(common.progress));
     if (o.boundary != "auto") setBoundary(*grid, parseBoundary(o.boundary));
   }
   if (!hasVdbEnding(o.out)) {
@@ -119,7 +118,7 @@ void run(const Options& o, const Common& common) {
       throw InvalidInput(o.input.path +
                          ": --domain and --boundary are for VDB files and masks, and this is "
                          "copied from image to image; leave them out");
-    const auto image = openVolumeImage(o.input.path, o.input.volume());
+    const auto image = openVolumeImage(o.input.path, o.input.volume(common.progress));
     const SampleType type = outputType(o).value_or(image->info().type);
     copyImage(o.out, *image, type, o.input.voxelSize, common.progress);
     report(o, common, "all values", toCoord(image->info().size), type);

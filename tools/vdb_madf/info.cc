@@ -93,7 +93,7 @@ std::string plain(const Json& value) {
 void print(const Json& json) {
   std::cout << json["file"].get<std::string>() << ": " << json["format"].get<std::string>() << "\n";
   for (const auto& [key, value] : json.items())
-    if (key != "file" && key != "format" && key != "grids")
+    if (key != "file" && key != "format" && key != "grids" && key != "notes")
       std::cout << "  " << key << ": " << plain(value) << "\n";
   if (!json.contains("grids")) return;
   for (const Json& grid : json["grids"]) {
@@ -115,13 +115,18 @@ void run(const Options& o, const Common& common) {
     json["grids"] = Json::array();
     VdbReadOptions reading;
     reading.anyVoxelShape = true;
-    for (const auto& grid : readVdb(o.input.path, reading, common.progress))
+    for (const auto& grid : readVdb(o.input.path, reading, common.progress)) {
       json["grids"].push_back(describeGrid(*grid));
+      if (!hasCubicVoxels(*grid))
+        common.progress->note(o.input.path + ": the voxels of grid '" + grid->getName() +
+                              "' are no cubes along the axes; only info reads it");
+    }
   } else {
-    const auto image = openVolumeImage(o.input.path, o.input.volume());
+    const auto image = openVolumeImage(o.input.path, o.input.volume(common.progress));
     json.update(describeImage(*image));
   }
   common.progress->end();
+  addNotes(json, *common.progress);
   jsonFile.write(json);
   if (!common.quiet && !jsonFile.isStandardOutput()) print(json);
 }

@@ -89,7 +89,7 @@ void InputOptions::parse() {
   checkOutputs(outputs, path);
 }
 
-VolumeOptions InputOptions::volume() const {
+VolumeOptions InputOptions::volume(Progress* progress) const {
   VolumeOptions options;
   options.grid = gridName;
   options.dataset = dataset;
@@ -98,6 +98,11 @@ VolumeOptions InputOptions::volume() const {
   options.voxelSize = voxelSize;
   options.domain = domain;
   options.outputs = filesOf(outputs);
+  options.note = [progress](const std::string& text, NoteAbout about) {
+    progress->note(text + (about == NoteAbout::voxelSize ? " (--voxel-size)"
+                           : about == NoteAbout::labels  ? " (convert --labels keeps them apart)"
+                                                         : ""));
+  };
   return options;
 }
 
@@ -120,18 +125,18 @@ openvdb::GridBase::Ptr chooseGrid(const InputOptions& input,
   });
 }
 
-MaskGrid::Ptr loadObject(const InputOptions& input, Interrupter* interrupter) {
+MaskGrid::Ptr loadObject(const InputOptions& input, Progress* progress) {
   if (!isVdb(input)) checkNoGrid(input, "--grid");
   return withGridOption(input, "--grid", [&] {
-    return vdb_madf::loadObject(input.path, input.volume(), interrupter);
+    return vdb_madf::loadObject(input.path, input.volume(progress), progress);
   });
 }
 
 Int32Grid::Ptr loadLabels(const InputOptions& input, const std::string& gridOption,
-                          Interrupter* interrupter) {
+                          Progress* progress) {
   if (!isVdb(input)) checkNoGrid(input, gridOption);
   return withGridOption(input, gridOption, [&] {
-    return vdb_madf::loadLabels(input.path, input.volume(), interrupter);
+    return vdb_madf::loadLabels(input.path, input.volume(progress), progress);
   });
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "command_line.h"
+#include "progress.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/voxel_size.h"
 #include "vdb_madf/grids/grid_types.h"
@@ -44,7 +45,8 @@ struct InputOptions {
   void addDomain(Verb verb);
   /// Also checks that the outputs overwrite neither the input nor each other. @throw WrongUsage
   void parse();
-  VolumeOptions volume() const;
+  /// Its notes go to `progress`, which has to live as long as they come.
+  VolumeOptions volume(Progress* progress) const;
 };
 
 /// True if the input is to be read as OpenVDB.
@@ -56,9 +58,9 @@ void checkNoGrid(const InputOptions& input, const std::string& gridOption);
 // The functions of volumes/volume.h; messages name the options.
 openvdb::GridBase::Ptr chooseGrid(const InputOptions& input,
                                   const std::vector<openvdb::GridBase::Ptr>& grids);
-MaskGrid::Ptr loadObject(const InputOptions& input, Interrupter* interrupter);
+MaskGrid::Ptr loadObject(const InputOptions& input, Progress* progress);
 Int32Grid::Ptr loadLabels(const InputOptions& input, const std::string& gridOption,
-                          Interrupter* interrupter);
+                          Progress* progress);
 
 /// Runs `work`; what the library has to say against the data then names the file, too.
 template <typename Work>

@@ -5,6 +5,10 @@
 
 namespace vdb_madf::tools {
 
+void addNotes(Json& json, const Progress& progress) {
+  if (!progress.notes().empty()) json["notes"] = progress.notes();
+}
+
 void JsonFile::write(const Json& json) {
   // A file name need not be UTF-8: replace what is not.
   file_.write(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");

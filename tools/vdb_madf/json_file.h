@@ -6,11 +6,15 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "progress.h"
 #include "text_file.h"
 
 namespace vdb_madf::tools {
 
 using Json = nlohmann::ordered_json;
+
+/// "notes", if there are any.
+void addNotes(Json& json, const Progress& progress);
 
 /// Where a machine-readable summary goes: see TextFile.
 class JsonFile {

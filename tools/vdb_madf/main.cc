@@ -11,6 +11,7 @@
 
 #include "command.h"
 #include "command_line.h"
+#include "message.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/version.h"
 #include "vdb_madf/images/open_image.h"
@@ -32,11 +33,8 @@ namespace {
 
 constexpr int kDone = 0, kFailed = 1, kWrongUsage = 2, kInterrupted = 130;
 
-/// One line, whatever a file name or a corrupt header brought into it.
-int fail(int code, std::string what) {
-  for (char& c : what)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  std::cerr << "vdb_madf: error: " << what << std::endl;
+int fail(int code, const std::string& what) {
+  printMessage("error", what);
   return code;
 }
 

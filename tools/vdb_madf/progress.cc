@@ -6,9 +6,12 @@
 #include <tbb/global_control.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <utility>
+
+#include "message.h"
 
 namespace vdb_madf::tools {
 
@@ -36,7 +39,7 @@ void catchInterrupts() {
 }
 
 Progress::Progress(bool quiet, std::string work)
-    : show_(!quiet && isatty(STDERR_FILENO)), work_(std::move(work)) {}
+    : quiet_(quiet), show_(!quiet && isatty(STDERR_FILENO)), work_(std::move(work)) {}
 
 Progress::~Progress() {
   clearLine();
@@ -51,6 +54,14 @@ void Progress::end() {
   const std::lock_guard<std::mutex> lock(mutex_);
   stage_.clear();
   clearLine();
+}
+
+void Progress::note(const std::string& text) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (std::find(notes_.begin(), notes_.end(), text) != notes_.end()) return;
+  notes_.push_back(text);
+  clearLine();
+  if (!quiet_) printMessage("note", text);
 }
 
 bool Progress::wasInterrupted(int percent) {

@@ -7,13 +7,14 @@
 #include <chrono>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "vdb_madf/grids/grid_types.h"
 
 namespace vdb_madf::tools {
 
-/// Shows one progress line (stage, percentage, remaining time) on stderr when that is a terminal,
-/// and turns Ctrl-C into a cancel.
+/// What is said while the work is under way: one progress line (stage, percentage, remaining time) on
+/// stderr when that is a terminal, and notes. Also turns Ctrl-C into a cancel.
 class Progress : public Interrupter {
  public:
   /// @param work is shown outside of named stages
@@ -22,15 +23,19 @@ class Progress : public Interrupter {
   void start(const char* name) override;
   void end() override;  ///< also takes the line away: results may follow on the same terminal
   bool wasInterrupted(int percent) override;
+  /// Prints what the user should know though it is no error, once, unless quiet.
+  void note(const std::string& text);
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   void clearLine();
   std::string remainingTime(int percent, std::chrono::steady_clock::time_point now);
 
-  const bool show_;
+  const bool quiet_, show_;
   const std::string work_;
   std::mutex mutex_;
   std::string stage_;
+  std::vector<std::string> notes_;
   bool lineShown_ = false;
   std::chrono::steady_clock::time_point lastShown_;
   // Where the percentage began to grow: it falls back when a new work begins.

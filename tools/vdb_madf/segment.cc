@@ -95,6 +95,7 @@ void printEstimate(const SegmentArguments& o, const Common& common, const MaskGr
   json["seconds_read"] = secondsRead;
   const bool fits = needed <= mask + options.maxMemory;
   json["fits"] = fits;
+  addNotes(json, *common.progress);
   jsonFile.write(json);
   if (common.quiet || jsonFile.isStandardOutput()) return;
   std::printf("%s: %lld object voxels in %lld leaf nodes\n", o.input.path.c_str(),
@@ -153,7 +154,9 @@ void run(const SegmentArguments& o, const Common& common) {
   for (const StageTime& stage : s.times) timing.write -= stage.seconds;
   common.progress->end();
   const SegmentSummary summary = summarize(o, common, s, timing);
-  jsonFile.write(toJson(o, summary));
+  Json json = toJson(o, summary);
+  addNotes(json, *common.progress);
+  jsonFile.write(json);
   if (!common.quiet && !jsonFile.isStandardOutput()) print(o, common, summary);
 }
 

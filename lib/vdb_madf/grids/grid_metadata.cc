@@ -9,6 +9,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/grids/detail/world_transform.h"
 
 namespace vdb_madf {
 
@@ -54,6 +55,11 @@ void setVoxelSize(openvdb::GridBase& grid, const std::optional<VoxelSize>& size)
     grid.insertMeta(kLengthUnit, openvdb::StringMetadata(size->unit()));
   }
   grid.setTransform(openvdb::math::Transform::createLinearTransform(size ? size->inUnit() : 1.0));
+}
+
+bool hasCubicVoxels(const openvdb::GridBase& grid) {
+  const auto edges = detail::edgesAlongAxes(grid.transform());
+  return edges && detail::areEdgesOfCube(*edges);
 }
 
 void copyProvenance(const openvdb::GridBase& from, openvdb::GridBase& to) {

@@ -42,6 +42,8 @@ class ImageReader {
   const std::string& path() const { return path_; }
   /// All files that are read: the path, or what a folder or a detached header names.
   const std::vector<std::string>& files() const { return files_; }
+  /// What a user should know of these files though it is no error: one line each, that names them.
+  const std::vector<std::string>& notes() const { return notes_; }
   /// Slices [first, first + count), x fastest, native byte order, into count*ny*nx samples.
   /// Slices are read in ascending order (compressed formats cannot go back).
   /// @throw IoError
@@ -50,7 +52,7 @@ class ImageReader {
  protected:
   ImageInfo info_;
   std::string path_;
-  std::vector<std::string> files_;
+  std::vector<std::string> files_, notes_;
 };
 
 /// Writes slices in ascending order; whole or not at all (finish() renames the temporary file).

@@ -3,12 +3,16 @@
 
 #include "vdb_madf/volumes/volume.h"
 
+#include <algorithm>
+#include <cstdio>
+
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/same_file.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/vdb/read_vdb.h"
+#include "vdb_madf/volumes/detail/watched_image.h"
 #include "vdb_madf/volumes/read_labels.h"
 #include "vdb_madf/volumes/read_mask.h"
 
@@ -65,6 +69,31 @@ MaskGrid::Ptr objectOf(const openvdb::GridBase& grid, const std::string& path,
   }
 }
 
+/// "8.5 um"
+std::string text(const VoxelSize& size) {
+  const auto [unit, perMetre] = size.metres < 1e-6   ? std::pair("nm", 1e9)
+                                : size.metres < 1e-3 ? std::pair("um", 1e6)
+                                                     : std::pair("mm", 1e3);
+  char text[40];
+  std::snprintf(text, sizeof text, "%.4g %s", size.metres * perMetre, unit);
+  return text;
+}
+
+/// Mostly a slip of the unit, or another sample's size.
+void noteVoxelSize(const std::string& path, const std::optional<VoxelSize>& ofFile,
+                   const VolumeOptions& options) {
+  constexpr double kTolerance = 1.01;
+  if (!options.note || !options.voxelSize || !ofFile) return;
+  const double ratio = options.voxelSize->metres / ofFile->metres,
+               factor = std::max(ratio, 1 / ratio);
+  if (factor <= kTolerance) return;
+  char times[40];
+  std::snprintf(times, sizeof times, "%.4g times as %s", factor, ratio > 1 ? "long" : "short");
+  options.note(path + ": the file says that a voxel is " + text(*ofFile) + " long; " +
+                   text(*options.voxelSize) + ", " + times + ", was given and is taken",
+               NoteAbout::voxelSize);
+}
+
 void override(openvdb::GridBase& grid, const VolumeOptions& options) {
   if (options.domain) setDomain(grid, *options.domain);
   if (options.voxelSize) setVoxelSize(grid, options.voxelSize);
@@ -114,6 +143,11 @@ openvdb::GridBase::Ptr chooseGrid(const std::vector<openvdb::GridBase::Ptr>& gri
                      "; the file holds " + list);
 }
 
+void overrideFile(openvdb::GridBase& grid, const std::string& path, const VolumeOptions& options) {
+  noteVoxelSize(path, storedVoxelSize(grid), options);
+  override(grid, options);
+}
+
 std::unique_ptr<ImageReader> openVolumeImage(const std::string& path,
                                              const VolumeOptions& options) {
   auto image = openImage(path, options.raw, options.dataset);
@@ -122,6 +156,9 @@ std::unique_ptr<ImageReader> openVolumeImage(const std::string& path,
       if (isSameFile(file, output))
         throw InvalidInput(output + ": holds samples of " + path +
                            ", which the output would overwrite; choose another name");
+  if (options.note)
+    for (const std::string& note : image->notes()) options.note(note, NoteAbout::file);
+  noteVoxelSize(path, image->info().voxelSize, options);
   return image;
 }
 
@@ -132,9 +169,16 @@ MaskGrid::Ptr loadObject(const std::string& path, const VolumeOptions& options,
     const auto grid = readGrid(path, GridUse::object, options, interrupter);
     if (options.domain) setDomain(*grid, *options.domain);  // an inversion needs it
     object = objectOf(*grid, path, options);
+    noteVoxelSize(path, storedVoxelSize(*object), options);
   } else {
     const auto image = openVolumeImage(path, options);
-    object = readMask(*image, options.selection.value_or(Selection{}), interrupter);
+    detail::WatchedImage watched(*image);
+    const bool isPlain = !options.selection;
+    object =
+        readMask(isPlain ? watched : *image, options.selection.value_or(Selection{}), interrupter);
+    if (isPlain && watched.looksLikeLabels() && options.note)
+      options.note(path + ": it has several values besides 0, and all of them become one mask",
+                   NoteAbout::labels);
   }
   override(*object, options);
   object->setName("object");
@@ -146,6 +190,7 @@ Int32Grid::Ptr loadLabels(const std::string& path, const VolumeOptions& options,
   Int32Grid::Ptr labels;
   if (isReadAsVdb(path, options)) {
     labels = openvdb::gridPtrCast<Int32Grid>(readGrid(path, GridUse::labels, options, interrupter));
+    noteVoxelSize(path, storedVoxelSize(*labels), options);
   } else {
     const auto image = openVolumeImage(path, options);
     labels = readLabels(*image, interrupter);

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +18,9 @@
 
 namespace vdb_madf {
 
+/// What a note is about: a program with options can add the one that matters.
+enum class NoteAbout { file, voxelSize, labels };
+
 /// Any readable file, OpenVDB or an image of openImage(), as one volume. The defaults suit every
 /// file that describes itself and holds one volume.
 struct VolumeOptions {
@@ -28,6 +32,8 @@ struct VolumeOptions {
   std::optional<CoordBBox> domain;     ///< of the scan, in voxels, instead of the file's
   /// Files that the caller will write: an image that has samples in one of them is refused.
   std::vector<std::string> outputs;
+  /// Is told what a user should know of the volume though it is no error: one line that names it.
+  std::function<void(const std::string& text, NoteAbout about)> note;
 };
 
 /// What a grid is wanted for. Where none is named, it is the first that is there of the names in
@@ -60,7 +66,12 @@ openvdb::GridBase::Ptr chooseGrid(const std::vector<openvdb::GridBase::Ptr>& gri
                                   const std::string& path, GridUse use,
                                   const std::string& name = "");
 
-/// openImage() with `raw` and `dataset` of the options.
+/// Gives a grid of the file at `path` the domain and the voxel size of the options, if they have
+/// any. A voxel size that differs by more than 1 % from the file's is worth a note.
+void overrideFile(openvdb::GridBase& grid, const std::string& path, const VolumeOptions& options);
+
+/// openImage() with `raw` and `dataset` of the options. Also says its notes, and that the voxel size
+/// of the options differs by more than 1 % from the file's.
 /// @throw InvalidInput if it has samples in one of the outputs; IoError.
 std::unique_ptr<ImageReader> openVolumeImage(const std::string& path,
                                              const VolumeOptions& options = {});

@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What the command says though it is no error: on stderr, unless quiet, and in JSON.
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "support/command_runs.h"
+#include "vdb_madf/method/initialize.h"
+#include "vdb_madf/vdb/write_vdb.h"
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+
+namespace {
+
+/// The command succeeds with one note that says all of this.
+void notes(const Bench& bench, const std::string& arguments, const std::vector<std::string>& says) {
+  INFO("vdb_madf " << arguments);
+  const Outcome outcome = bench.run(arguments);
+  CHECK(outcome.exitCode == 0);
+  CHECK(outcome.err.find("vdb_madf: note: ") == 0);
+  CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+  for (const std::string& text : says) CHECK_THAT(outcome.err, Catch::Contains(text));
+  bench.mustRun(arguments + " -q");  // without a word
+}
+
+void writeGrid(const Bench& bench, const std::string& file, const openvdb::Vec3d& edges) {
+  initialize();
+  const auto grid = Int32Grid::create();
+  grid->denseFill(CoordBBox(Coord(0), Coord(7)), 1);
+  const auto transform = openvdb::math::Transform::createLinearTransform();
+  transform->preScale(edges);
+  grid->setTransform(transform);
+  grid->setName("grain");
+  writeVdb(bench.path(file), {grid});
+}
+
+}  // namespace
+
+TEST_CASE("cli: a voxel size that contradicts the file is said", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate snow a.tif --size 24 --length 8 --voxel-size 10um");
+  bench.mustRun("segment a.tif g.vdb --voxel-size 10.05um");
+  const std::vector<std::string> says{"10 um", "8.5 mm", "850 times as long"};
+  for (const std::string arguments :
+       {"segment a.tif o.vdb", "segment a.tif --dry-run", "convert a.tif o.npy",
+        "convert a.tif o.vdb", "export a.tif o.ply"}) {
+    std::vector<std::string> all = says;
+    all.push_back("a.tif");
+    notes(bench, arguments + std::string(" --voxel-size 8.5mm"), all);
+  }
+  notes(bench, "convert g.vdb o.vdb --voxel-size 1um",
+        {"g.vdb", "10.05 um", "10.05 times as short"});
+  notes(bench, "measure g.vdb tables --voxel-size 11um", {"g.vdb", "10.05 um", "11 um"});
+
+  const std::string options = " --voxel-size 8.5mm --json j.json -q";
+  bench.mustRun("segment a.tif o.vdb" + options);
+  CHECK(Json::parse(bench.bytes("j.json")).at("notes").size() == 1);
+  bench.mustRun("segment a.tif o.vdb --dry-run" + options);
+  CHECK(Json::parse(bench.bytes("j.json")).at("notes").size() == 1);
+  bench.mustRun("segment a.tif o.vdb --json j.json");
+  CHECK(Json::parse(bench.bytes("j.json")).count("notes") == 0);
+}
+
+TEST_CASE("cli: that labels become a mask is said", "[cli]") {
+  const Bench bench;
+  bench.write("labels.raw", std::string({0, 7, 7, 0, 0, 9, 9, 0}));
+  bench.write("mask.raw", std::string({0, 7, 7, 0, 0, 7, 7, 0}));
+  const std::string layout = " --dims 8x1x1 --type uint8 ";
+  notes(bench, "convert labels.raw o.vdb" + layout, {"labels.raw", "one mask", "--labels"});
+  notes(bench, "segment labels.raw o.vdb" + layout, {"labels.raw", "one mask", "--labels"});
+  bench.mustRun("convert mask.raw o.vdb" + layout);
+  bench.mustRun("convert labels.raw o.vdb --phase 7" + layout);
+  bench.mustRun("convert labels.raw o.npy" + layout);
+  bench.mustRun("measure labels.raw tables" + layout);
+}
+
+TEST_CASE("cli: a VDB of voxels that are no cubes is refused by all but info", "[cli]") {
+  const Bench bench;
+  writeGrid(bench, "flat.vdb", {1, 1, 2});
+  writeGrid(bench, "cubic.vdb", {1, 1, 1});
+  const auto before = bench.names();
+  for (const std::string arguments :
+       {"segment flat.vdb o.vdb", "segment flat.vdb o.vdb --voxel-size 5um",
+        "measure flat.vdb tables", "export flat.vdb o.ply", "export flat.vdb o.vti",
+        "convert flat.vdb o.mhd", "convert flat.vdb o.vdb", "render flat.vdb o.png",
+        "sweep flat.vdb o.csv", "remerge flat.vdb o.vdb", "compare flat.vdb cubic.vdb",
+        "compare cubic.vdb flat.vdb"}) {
+    CAPTURE(arguments);
+    const Outcome outcome = bench.run(arguments);
+    CHECK(outcome.exitCode == 1);
+    CHECK_THAT(outcome.err, Catch::Contains("flat.vdb") && Catch::Contains("1 x 1 x 2"));
+    CHECK(bench.names() == before);
+  }
+  notes(bench, "info flat.vdb", {"flat.vdb", "'grain'", "no cubes"});
+}
