@@ -66,6 +66,22 @@ TEST_CASE("cli: a voxel size that contradicts the file is said", "[cli]") {
   CHECK(Json::parse(bench.bytes("j.json")).count("notes") == 0);
 }
 
+TEST_CASE("cli: a slice that is missing is said", "[cli]") {
+  const Bench bench;
+  std::filesystem::create_directory(bench.path("scan"));
+  bench.write("s.raw", std::string(32, '\0') + std::string(32, '\1'));
+  for (const std::string z : {"1", "2", "3", "5", "6"})
+    bench.mustRun("convert s.raw scan/s" + z + ".tif --dims 8x8x1 --type uint8");
+  const std::vector<std::string> says{"scan: 1 slice missing between s3.tif and s5.tif"};
+  notes(bench, "info scan", says);
+  notes(bench, "convert scan o.vdb", says);
+  notes(bench, "segment scan o.vdb", says);
+  bench.mustRun("info scan -q --json j.json");
+  CHECK(Json::parse(bench.bytes("j.json")).at("notes").size() == 1);
+  bench.mustRun("convert s.raw scan/s4.tif --dims 8x8x1 --type uint8");
+  bench.mustRun("info scan");
+}
+
 TEST_CASE("cli: that labels become a mask is said", "[cli]") {
   const Bench bench;
   bench.write("labels.raw", std::string({0, 7, 7, 0, 0, 9, 9, 0}));

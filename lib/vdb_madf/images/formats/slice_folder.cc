@@ -13,6 +13,7 @@
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/key_value_header.h"
 #include "vdb_madf/images/formats/picture_slice.h"
+#include "vdb_madf/images/formats/slice_names.h"
 
 namespace vdb_madf::detail {
 
@@ -83,6 +84,7 @@ class PictureStack : public ImageReader {
     info_.type = picture_.type;
   }
   void setVoxelSize(const std::optional<VoxelSize>& size) { info_.voxelSize = size; }
+  void setNotes(const std::vector<std::string>& notes) { notes_ = notes; }
 
   void read(int first, int count, void* samples) override {
     checkSlices(path_, info_, first, count);
@@ -150,6 +152,7 @@ std::unique_ptr<ImageReader> openPictureFolder(const std::string& folder) {
   if (files.empty()) throw IoError(folder + ": has no slices: no .tif, .tiff, .png or .bmp files");
   auto stack = std::make_unique<PictureStack>(folder, files);
   stack->setVoxelSize(voxelSizeInLog(folder));
+  stack->setNotes(numberingNotes(folder, files));
   return stack;
 }
 

@@ -15,6 +15,7 @@
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/key_value_header.h"
 #include "vdb_madf/images/formats/slice_folder.h"
+#include "vdb_madf/images/formats/slice_names.h"
 #include "vdb_madf/images/formats/tiff_page.h"
 
 namespace vdb_madf::detail {
@@ -162,6 +163,7 @@ class TiffFolder : public ImageReader {
     info_.size = checkedSize(path, {page_.width, page_.height, int64_t(files_.size())});
     info_.type = page_.type;
     info_.format = "tiff";
+    notes_ = numberingNotes(path, files_);
   }
 
   void read(int first, int count, void* samples) override {

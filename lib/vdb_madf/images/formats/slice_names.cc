@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/images/formats/slice_names.h"
+
+#include <cctype>
+#include <filesystem>
+#include <map>
+#include <set>
+
+namespace vdb_madf::detail {
+
+namespace {
+
+/// Longer numbers, of which an int64_t might not hold the difference, are left as text.
+constexpr size_t kMaxDigits = 18;
+
+struct SliceName {
+  std::string name;
+  std::string kind;  ///< the name with '#' for each number
+  std::vector<int64_t> numbers;
+};
+
+bool isDigit(char c) {
+  return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+SliceName parsed(const std::string& path) {
+  SliceName result;
+  result.name = std::filesystem::path(path).filename().string();
+  const std::string& name = result.name;
+  for (size_t i = 0; i < name.size();) {
+    size_t end = i;
+    while (end < name.size() && isDigit(name[end])) ++end;
+    if (end == i || end - i > kMaxDigits) {
+      end += end == i;
+      result.kind.append(name, i, end - i);
+    } else {
+      result.kind += '#';
+      result.numbers.push_back(std::stoll(name.substr(i, end - i)));
+    }
+    i = end;
+  }
+  return result;
+}
+
+using Names = std::vector<SliceName>;
+
+struct Gaps {
+  int64_t missing = 0;
+  size_t places = 0, twice = 0;
+  std::string first, firstTwice;  ///< "a6.tif and a8.tif"
+};
+
+std::string both(const SliceName& a, const SliceName& b) {
+  return a.name + " and " + b.name;
+}
+
+/// Which number counts the slices; that of any if all names are equal but for leading zeros.
+size_t counterOf(const Names& names, size_t begin, size_t end) {
+  for (size_t n = 0; n < names[begin].numbers.size(); ++n)
+    for (size_t i = begin; i < end; ++i)
+      if (names[i].numbers[n] != names[begin].numbers[n]) return n;
+  return 0;
+}
+
+/// The step that most neighbours have, the smaller of two; 0 if it is not that of half of them.
+int64_t usualStep(const std::vector<int64_t>& steps) {
+  std::map<int64_t, size_t> counts;
+  for (const int64_t step : steps)
+    if (step > 0) ++counts[step];
+  int64_t usual = 0;
+  for (const auto& [step, count] : counts)
+    if (usual == 0 || count > counts[usual]) usual = step;
+  return usual > 0 && 2 * counts[usual] >= steps.size() ? usual : 0;
+}
+
+/// Of names [begin, end), which are of one kind.
+void addGaps(const Names& names, size_t begin, size_t end, Gaps& gaps) {
+  if (end - begin < 2 || names[begin].numbers.empty()) return;
+  const size_t counter = counterOf(names, begin, end);
+  std::vector<int64_t> steps;
+  for (size_t i = begin + 1; i < end; ++i) {
+    steps.push_back(names[i].numbers[counter] - names[i - 1].numbers[counter]);
+    if (names[i].numbers != names[i - 1].numbers) continue;
+    if (gaps.twice++ == 0) gaps.firstTwice = both(names[i - 1], names[i]);
+  }
+  const int64_t step = usualStep(steps);
+  if (step == 0) return;
+  for (size_t i = 0; i < steps.size(); ++i) {
+    if (steps[i] < 2 * step) continue;
+    gaps.missing += steps[i] / step - 1;
+    if (gaps.places++ == 0) gaps.first = both(names[begin + i], names[begin + i + 1]);
+  }
+}
+
+std::string counted(int64_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+std::vector<std::string> numberingNotes(const std::string& folder,
+                                        const std::vector<std::string>& paths) {
+  Names names;
+  for (const std::string& path : paths) names.push_back(parsed(path));
+  Gaps gaps;
+  std::set<std::string> kinds;
+  std::string change;  // where the first kind ends
+  bool isNumbered = false;
+  for (size_t begin = 0, end = 0; begin < names.size(); begin = end) {
+    while (end < names.size() && names[end].kind == names[begin].kind) ++end;
+    addGaps(names, begin, end, gaps);
+    kinds.insert(names[begin].kind);
+    isNumbered = isNumbered || (end - begin > 1 && !names[begin].numbers.empty());
+    if (change.empty() && end < names.size()) change = both(names[end - 1], names[end]);
+  }
+
+  std::vector<std::string> notes;
+  if (gaps.missing > 0)
+    notes.push_back(folder + ": " + counted(gaps.missing, "slice") + " missing " +
+                    (gaps.places == 1
+                         ? "between "
+                         : "in " + std::to_string(gaps.places) + " places, the first between ") +
+                    gaps.first + ", by their numbers; what follows is moved up to close the gap");
+  if (gaps.twice > 0)
+    notes.push_back(folder + ": " + counted(gaps.twice, "number") +
+                    " of slices there twice, as in " + gaps.firstTwice + "; both are taken");
+  if (kinds.size() > 1 && isNumbered)
+    notes.push_back(folder + ": names of " + std::to_string(kinds.size()) + " kinds, as " + change +
+                    "; all files are taken for slices of one stack");
+  return notes;
+}
+
+}  // namespace vdb_madf::detail
