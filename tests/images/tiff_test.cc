@@ -25,14 +25,14 @@ void appendPages(const std::string& path, const ImageSize& size, SampleType type
 }
 
 /// Bits of rows, padded to bytes, as a byte each.
-std::string expanded(const std::string& packed, const ImageSize& size, bool invert) {
+std::string expanded(const std::string& packed, const ImageSize& size) {
   const size_t row = size_t(size.x + 7) / 8;
   std::string bytes;
   for (size_t r = 0; r < size_t(size.y * size.z); ++r)
     for (size_t x = 0; x < size_t(size.x); ++x) {
       const bool bit =
           (static_cast<unsigned char>(packed[r * row + x / 8]) >> (7 - x % 8) & 1) != 0;
-      bytes.push_back(char(bit != invert));
+      bytes.push_back(char(bit));
     }
   return bytes;
 }
@@ -67,7 +67,7 @@ TEST_CASE("image_file: TIFF of every type, byte order, compression and layout", 
           }
 }
 
-TEST_CASE("image_file: in 1-bit TIFF white is 1, however it is coded", "[image_file]") {
+TEST_CASE("image_file: of 1-bit TIFF the stored bit counts, be it black or white", "[image_file]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.tif";
   const size_t row = size_t(kSize.x + 7) / 8;
@@ -87,7 +87,8 @@ TEST_CASE("image_file: in 1-bit TIFF white is 1, however it is coded", "[image_f
         writeTiff(path, kSize, SampleType::uint8, packed, layout);
         const auto image = openImage(path);
         REQUIRE(image->info().type == SampleType::uint8);
-        REQUIRE(readAll(*image) == expanded(packed, kSize, photometric == PHOTOMETRIC_MINISWHITE));
+        REQUIRE(readAll(*image) == expanded(packed, kSize));
+        CHECK(image->notes().size() == (photometric == PHOTOMETRIC_MINISWHITE ? 1u : 0u));
       }
 }
 
@@ -97,7 +98,26 @@ TEST_CASE("image_file: of wider TIFF samples the stored value counts", "[image_f
   layout.photometric = PHOTOMETRIC_MINISWHITE;
   const std::string bytes = randomSamples(SampleType::uint8, voxels(kSize), 8);
   writeTiff(folder / "a.tif", kSize, SampleType::uint8, bytes, layout);
-  CHECK(readAll(*openImage(folder / "a.tif")) == bytes);
+  const auto image = openImage(folder / "a.tif");
+  CHECK(readAll(*image) == bytes);
+  REQUIRE(image->notes().size() == 1);
+  CHECK_THAT(image->notes()[0], Contains(folder / "a.tif") && Contains("0 is white in it"));
+}
+
+TEST_CASE("image_file: a folder says which slices have another white, and which are missing",
+          "[image_file]") {
+  const ScratchFolder folder;
+  const ImageSize slice{kSize.x, kSize.y, 1};
+  for (const int z : {1, 2, 3, 5}) {
+    TiffLayout layout;
+    if (z == 5) layout.photometric = PHOTOMETRIC_MINISWHITE;
+    writeTiff(folder / ("s" + std::to_string(z) + ".tif"), slice, SampleType::uint8,
+              std::string(voxels(slice), char(z)), layout);
+  }
+  const auto notes = openImage(folder.path())->notes();
+  REQUIRE(notes.size() == 2);
+  CHECK_THAT(notes[0], Contains(folder.path()) && Contains("s3.tif and s5.tif"));
+  CHECK_THAT(notes[1], Contains(folder.path()) && Contains("1 of its 4 slices"));
 }
 
 TEST_CASE("image_file: TIFF that is not a grey volume is refused", "[image_file]") {

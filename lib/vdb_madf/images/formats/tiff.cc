@@ -61,6 +61,15 @@ void rejectHyperstack(const TiffFile& file, const KeyValueHeader& imageJ) {
       file.handle().fail(std::string("has several ") + axis + ": save one as a stack of its own");
 }
 
+/// For `pages` of `all`, all or some of which a viewer shows inverted.
+std::string whiteIsZeroNote(const std::string& path, size_t pages, size_t all) {
+  return path + ": 0 is white in " +
+         (pages == all ? "it"
+                       : std::to_string(pages) + " of its " + std::to_string(all) + " slices") +
+         " by its TIFF tags; the values are taken as stored, so what is dark in a viewer is high "
+         "here";
+}
+
 class TiffStack : public ImageReader {
  public:
   explicit TiffStack(std::unique_ptr<InputFile> file) : file_(std::move(file)) {
@@ -80,6 +89,7 @@ class TiffStack : public ImageReader {
     info_.type = page_.type;
     info_.voxelSize = calibration(file_, imageJ, info_.size.z);
     info_.format = "tiff";
+    if (whiteIsZero_ > 0) notes_.push_back(whiteIsZeroNote(path_, whiteIsZero_, pages_.size()));
   }
 
   void read(int first, int count, void* samples) override {
@@ -99,10 +109,8 @@ class TiffStack : public ImageReader {
 
  private:
   void addPage() {
-    if (pages_.empty())
-      page_ = file_.page();
-    else
-      checkedPage();
+    if (pages_.empty()) page_ = file_.page();
+    whiteIsZero_ += checkedPage().whiteIsZero;
     pages_.push_back(file_.directory());
   }
 
@@ -135,6 +143,7 @@ class TiffStack : public ImageReader {
   TiffFile file_;
   TiffPage page_;
   std::vector<uint64_t> pages_;
+  size_t whiteIsZero_ = 0;
   std::optional<uint64_t> samplesOffset_;
 };
 
@@ -144,11 +153,13 @@ class TiffFolder : public ImageReader {
     path_ = path;
     files_ = tiffFilesIn(path);
     if (files_.empty()) throw IoError(path + ": has no .tif or .tiff files");
+    size_t whiteIsZero = 0;
     for (size_t z = 0; z < files_.size(); ++z) {
       const TiffFile file(files_[z]);
       const TiffPage page = file.page();
       if (!file.isLast())
         throw IoError(files_[z] + ": has several pages, but a slice of a folder has one");
+      whiteIsZero += page.whiteIsZero;
       if (z == 0) {
         page_ = page;
         info_.voxelSize = calibration(file, imageJDescription(file), int(files_.size()));
@@ -164,6 +175,7 @@ class TiffFolder : public ImageReader {
     info_.type = page_.type;
     info_.format = "tiff";
     notes_ = numberingNotes(path, files_);
+    if (whiteIsZero > 0) notes_.push_back(whiteIsZeroNote(path, whiteIsZero, files_.size()));
   }
 
   void read(int first, int count, void* samples) override {

@@ -15,9 +15,9 @@ namespace vdb_madf::detail {
 // Gray TIFF of 1, 8, 16 or 32 bits, signed, unsigned or float, and float64; strips or tiles; either
 // byte order; uncompressed, LZW, Deflate, PackBits, CCITT, Zstandard.
 //
-// Samples are returned as stored, in stored row order: a palette or "minimum is white" changes
-// how a picture looks, not the values of a measurement. The exception is 1 bit, where black and
-// white is all there is: white is 1 and black is 0, whichever way the file codes them.
+// Samples are returned as stored, in stored row order and of any number of bits: a palette or "0 is
+// white" changes how a picture looks, not the values of a measurement. (tifffile and ImageJ's wider
+// samples do the same.) Of files where 0 is white there is a note: viewers show them inverted.
 // Pages marked as thumbnails or transparency masks are ignored.
 
 /// Each page is a slice; or, as ImageJ writes stacks of 4 GB and more, one page that is followed by

@@ -64,9 +64,8 @@ std::optional<SampleType> sampleType(uint16_t bits, uint16_t format) {
 }
 
 /// `count` bits, first in the highest bit, to a byte each.
-void expandBits(const unsigned char* bits, size_t count, bool invert, char* bytes) {
-  const unsigned flip = invert ? 1 : 0;
-  for (size_t i = 0; i < count; ++i) bytes[i] = char((bits[i >> 3] >> (7 - (i & 7)) & 1u) ^ flip);
+void expandBits(const unsigned char* bits, size_t count, char* bytes) {
+  for (size_t i = 0; i < count; ++i) bytes[i] = char(bits[i >> 3] >> (7 - (i & 7)) & 1u);
 }
 
 }  // namespace
@@ -117,7 +116,6 @@ TiffPage TiffFile::page() const {
                " cannot be read: write it uncompressed, or as LZW or Deflate");
   page.tiled = TIFFIsTiled(tiff_.get()) != 0;
   page.whiteIsZero =
-      page.bits == 1 &&
       tiff_.field<uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_MINISWHITE;
   uint16_t fillOrder = FILLORDER_MSB2LSB;
   TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_FILLORDER, &fillOrder);
@@ -222,7 +220,7 @@ void TiffFile::decodeStrips(const TiffPage& page, char* samples) const {
     if (isFax(page.compression) && tiff_.warned()) tiff_.fail("is damaged: fax rows are broken");
     for (uint32_t row = 0; packed && row < count; ++row)
       expandBits(reinterpret_cast<unsigned char*>(packed.get()) + rowBytes * row, page.width,
-                 page.whiteIsZero, samples + rowSamples * (y + row));
+                 samples + rowSamples * (y + row));
   }
 }
 
@@ -244,7 +242,7 @@ void TiffFile::decodeTiles(const TiffPage& page, char* samples) const {
         const char* from = tile.get() + rowBytes * row;
         char* to = samples + (size_t(y + row) * page.width + x) * sample;
         if (page.bits == 1)
-          expandBits(reinterpret_cast<const unsigned char*>(from), columns, page.whiteIsZero, to);
+          expandBits(reinterpret_cast<const unsigned char*>(from), columns, to);
         else
           std::memcpy(to, from, columns * sample);
       }

@@ -21,7 +21,7 @@ struct TiffPage {
   SampleType type = SampleType::uint8;
   uint16_t compression = COMPRESSION_NONE;
   bool tiled = false;
-  bool whiteIsZero = false;  ///< only of 1-bit pages
+  bool whiteIsZero = false;  ///< viewers show it inverted
   bool plain = false;        ///< the bytes in the file are the samples, but for their order
   bool swapped = false;      ///< plain samples are in foreign byte order
 
