@@ -443,3 +443,15 @@ TEST_CASE("cli: segment refuses what needs more memory than allowed", "[cli]") {
     CHECK(bench.run({"segment", "s.vdb", "g.vdb", "--max-memory", size}).exitCode == 0);
   refuses(bench, kWrongUsage, "segment s.vdb", {"OUT.vdb"});
 }
+
+TEST_CASE("cli: an image that is too long is refused before its samples are read", "[cli]") {
+  const Bench bench;
+  bench.write("long.mha",
+              "ObjectType = Image\nNDims = 3\nDimSize = 2 2 30000\nElementType = MET_UCHAR\n"
+              "CompressedData = True\nElementDataFile = LOCAL\n" +
+                  std::string(1000, 'x'));
+  for (const std::string arguments :
+       {"segment long.mha o.vdb", "segment long.mha --dry-run", "sweep long.mha o.csv"})
+    refuses(bench, kFailed, arguments, {"long.mha", "30000 voxels long", "26754"});
+  CHECK_THAT(bench.mustRun("info long.mha"), Catch::Contains("30000"));
+}

@@ -98,6 +98,7 @@ VolumeOptions InputOptions::volume(Progress* progress) const {
   options.voxelSize = voxelSize;
   options.domain = domain;
   options.outputs = filesOf(outputs);
+  options.longestSide = longestSide;
   options.note = [progress](const std::string& text, NoteAbout about) {
     progress->note(text + (about == NoteAbout::voxelSize ? " (--voxel-size)"
                            : about == NoteAbout::labels  ? " (convert --labels keeps them apart)"

@@ -30,6 +30,7 @@ struct InputOptions {
   bool bigEndian = false;
   std::string phase, threshold, range;
   bool invert = false;
+  int longestSide = 0;  ///< see VolumeOptions
   std::string voxelSizeText, domainText;
 
   // Filled by parse().

@@ -21,6 +21,7 @@
 #include "parse.h"
 #include "segment_summary.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/limits.h"
 #include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
@@ -44,6 +45,7 @@ void parse(SegmentArguments& o) {
   if (!o.tables.empty())
     for (const std::string& path : MeasurementTables::paths(o.tables))
       o.input.outputs.push_back(path);
+  o.input.longestSide = kMaxExtent;
   o.input.parse();
   if (!o.maxMemory.empty()) o.segment.maxMemory = parseMemory(o.maxMemory);
   if (o.out.empty() && !o.dryRun) throw WrongUsage("OUT.vdb is required (or --dry-run)");

@@ -16,6 +16,7 @@
 #include "parse.h"
 #include "text_file.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/limits.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/pictures/sweep_plot.h"
@@ -82,6 +83,7 @@ void requireDifferent(const std::vector<T>& values, const std::string& option) {
 
 void parse(Options& o) {
   o.input.outputs = {o.out, o.plot};
+  o.input.longestSide = kMaxExtent;
   o.input.parse();
   if (o.out.size() < 4 || o.out.compare(o.out.size() - 4, 4, ".csv") != 0)
     throw WrongUsage(o.out + ": the output's ending must be .csv");

@@ -156,6 +156,11 @@ std::unique_ptr<ImageReader> openVolumeImage(const std::string& path,
       if (isSameFile(file, output))
         throw InvalidInput(output + ": holds samples of " + path +
                            ", which the output would overwrite; choose another name");
+  for (int axis = 0; axis < 3; ++axis)
+    if (options.longestSide > 0 && image->info().size[axis] > options.longestSide)
+      throw InvalidInput(path + ": is " + std::to_string(image->info().size[axis]) +
+                         " voxels long, and at most " + std::to_string(options.longestSide) +
+                         " can be worked with here: crop or coarsen it");
   if (options.note)
     for (const std::string& note : image->notes()) options.note(note, NoteAbout::file);
   noteVoxelSize(path, image->info().voxelSize, options);

@@ -32,6 +32,8 @@ struct VolumeOptions {
   std::optional<CoordBBox> domain;     ///< of the scan, in voxels, instead of the file's
   /// Files that the caller will write: an image that has samples in one of them is refused.
   std::vector<std::string> outputs;
+  /// An image of more voxels along an axis is refused before its samples are read. 0: any.
+  int longestSide = 0;
   /// Is told what a user should know of the volume though it is no error: one line that names it.
   std::function<void(const std::string& text, NoteAbout about)> note;
 };
@@ -72,7 +74,7 @@ void overrideFile(openvdb::GridBase& grid, const std::string& path, const Volume
 
 /// openImage() with `raw` and `dataset` of the options. Also says its notes, and that the voxel size
 /// of the options differs by more than 1 % from the file's.
-/// @throw InvalidInput if it has samples in one of the outputs; IoError.
+/// @throw InvalidInput if it has samples in one of the outputs or is longer than allowed; IoError.
 std::unique_ptr<ImageReader> openVolumeImage(const std::string& path,
                                              const VolumeOptions& options = {});
 
