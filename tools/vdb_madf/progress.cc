@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <utility>
 
 #include "message.h"
@@ -28,6 +30,12 @@ void onSignal(int signal) {
 
 constexpr auto kShowEvery = std::chrono::milliseconds(100);
 
+/// A terminal on which a line can be written anew.
+bool isTerminal() {
+  const char* kind = std::getenv("TERM");
+  return isatty(STDERR_FILENO) && kind && std::strcmp(kind, "dumb") != 0;
+}
+
 }  // namespace
 
 void catchInterrupts() {
@@ -39,7 +47,7 @@ void catchInterrupts() {
 }
 
 Progress::Progress(bool quiet, std::string work)
-    : quiet_(quiet), show_(!quiet && isatty(STDERR_FILENO)), work_(std::move(work)) {}
+    : quiet_(quiet), show_(!quiet && isTerminal()), work_(std::move(work)) {}
 
 Progress::~Progress() {
   clearLine();

@@ -14,7 +14,7 @@
 namespace vdb_madf::tools {
 
 /// What is said while the work is under way: one progress line (stage, percentage, remaining time) on
-/// stderr when that is a terminal, and notes. Also turns Ctrl-C into a cancel.
+/// stderr when that is a terminal (TERM not dumb), and notes. Also turns Ctrl-C into a cancel.
 class Progress : public Interrupter {
  public:
   /// @param work is shown outside of named stages
