@@ -176,12 +176,12 @@ MaskGrid::Ptr loadObject(const std::string& path, const VolumeOptions& options,
     object = objectOf(*grid, path, options);
     noteVoxelSize(path, storedVoxelSize(*object), options);
   } else {
-    const auto image = openVolumeImage(path, options);
-    detail::WatchedImage watched(*image);
-    const bool isPlain = !options.selection;
-    object =
-        readMask(isPlain ? watched : *image, options.selection.value_or(Selection{}), interrupter);
-    if (isPlain && watched.looksLikeLabels() && options.note)
+    bool looksLikeLabels = false;
+    std::unique_ptr<ImageReader> image = openVolumeImage(path, options);
+    if (!options.selection)
+      image = std::make_unique<detail::WatchedImage>(std::move(image), looksLikeLabels);
+    object = readMask(*image, options.selection.value_or(Selection{}), interrupter);
+    if (looksLikeLabels && options.note)
       options.note(path + ": it has several values besides 0, and all of them become one mask",
                    NoteAbout::labels);
   }

@@ -3,8 +3,10 @@
 
 #pragma once
 
-#include <algorithm>
+#include <cstdint>
+#include <memory>
 #include <type_traits>
+#include <utility>
 
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
@@ -12,18 +14,21 @@
 
 namespace vdb_madf::detail {
 
-/// An image, and whether the samples that were read of it look like labels: whole numbers, and
+/// An image that tells, while it is read, that its samples look like labels: whole numbers, and
 /// several of them besides 0.
 class WatchedImage : public ImageReader {
  public:
-  explicit WatchedImage(ImageReader& image) : image_(image) {
-    info_ = image.info();
-    path_ = image.path();
-    files_ = image.files();
+  /// @param looksLikeLabels set once it is so; has to live as long
+  WatchedImage(std::unique_ptr<ImageReader> image, bool& looksLikeLabels)
+      : image_(std::move(image)), looksLikeLabels_(looksLikeLabels) {
+    info_ = image_->info();
+    path_ = image_->path();
+    files_ = image_->files();
+    notes_ = image_->notes();
   }
 
   void read(int first, int count, void* samples) override {
-    image_.read(first, count, samples);
+    image_->read(first, count, samples);
     withSampleType(info_.type, [&](auto sample) {
       using Sample = decltype(sample);
       if constexpr (std::is_integral_v<Sample>) {
@@ -32,23 +37,20 @@ class WatchedImage : public ImageReader {
       }
     });
   }
-  bool looksLikeLabels() const { return several_; }
 
  private:
   template <typename Sample>
   void watch(const Sample* begin, const Sample* end) {
-    if (several_) return;
-    for (const Sample* sample = begin; sample != end; ++sample) {
+    for (const Sample* sample = begin; sample != end && !looksLikeLabels_; ++sample) {
       if (*sample == 0 || int64_t(*sample) == value_) continue;
-      several_ = value_ != 0;
+      looksLikeLabels_ = value_ != 0;
       value_ = int64_t(*sample);
-      if (several_) return;
     }
   }
 
-  ImageReader& image_;
+  std::unique_ptr<ImageReader> image_;
+  bool& looksLikeLabels_;
   int64_t value_ = 0;  ///< the first that is not 0
-  bool several_ = false;
 };
 
 }  // namespace vdb_madf::detail
