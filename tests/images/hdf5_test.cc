@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "support/files.h"
@@ -169,6 +170,92 @@ TEST_CASE("image_hdf5: the dataset is the only volume, or is named", "[image_hdf
   refused(other, "no integers", bytes.data());
   writeHdf5(path, "curve", {{693}, {}, H5T_STD_U8LE, H5T_NATIVE_UINT8, 0, {}}, bytes.data());
   CHECK_THROWS_WITH(openImage(path), Contains(path) && Contains("no dataset"));
+}
+
+TEST_CASE("image_hdf5: several links to one dataset count once", "[image_hdf5]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.h5";
+  const std::string bytes = randomSamples(SampleType::uint8, voxels(kSize), 4);
+  const Hdf5Layout volume{kShape, {}, H5T_STD_U8LE, H5T_NATIVE_UINT8, 0, {}};
+  const auto write = [&](double x, double y, const std::string& unit) {
+    const hid_t file = newHdf5(path);
+    addHdf5(file, "entry/instrument/detector/data", volume, bytes.data());
+    addHdf5(file, "entry/data/other", {{2}, {}, H5T_STD_U8LE, H5T_NATIVE_UINT8, 0, {}}, "ab");
+    H5Lcreate_soft("/entry/instrument/detector/data", file, "entry/data/data", H5P_DEFAULT,
+                   H5P_DEFAULT);
+    H5Lcreate_hard(file, "entry/instrument/detector/data", file, "entry/data/again", H5P_DEFAULT,
+                   H5P_DEFAULT);
+    addHdf5Length(file, "entry/instrument/detector/x_pixel_size", x, unit);
+    addHdf5Length(file, "entry/instrument/detector/y_pixel_size", y, unit);
+    H5Fclose(file);
+  };
+  write(2.5, 2.5, "um");
+  CHECK(readAll(*openImage(path)) == bytes);
+  // NeXus' size of a pixel is that of the detector, by whatever name its data are read.
+  for (const std::string name : {"", "entry/data/data", "/entry/instrument/detector/data"})
+    CHECK(openImage(path, {}, name)->info().voxelSize->metres == 2.5e-6);
+  write(2.5, 2.5, "");
+  CHECK_FALSE(openImage(path)->info().voxelSize);
+  write(2.5, 5, "mm");
+  CHECK_THROWS_WITH(openImage(path), Contains(path) && Contains("unequal"));
+}
+
+TEST_CASE("image_hdf5: samples in other files are read, or said to be missing", "[image_hdf5]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.h5", part = folder / "part.h5";
+  const std::string bytes = randomSamples(SampleType::uint8, voxels(kSize), 5);
+  const Hdf5Layout volume{kShape, {}, H5T_STD_U8LE, H5T_NATIVE_UINT8, 0, {}};
+  writeHdf5(part, "g/v", volume, bytes.data());
+
+  hid_t file = newHdf5(path);
+  H5Lcreate_external("part.h5", "g/v", file, "linked", H5P_DEFAULT, H5P_DEFAULT);
+  H5Fclose(file);
+  auto image = openImage(path);
+  CHECK(readAll(*image) == bytes);
+  CHECK(std::count(image->files().begin(), image->files().end(), part) == 1);
+  image.reset();  // it locks its files
+  file = newHdf5(path);
+  H5Lcreate_external("part.h5", "g", file, "group", H5P_DEFAULT, H5P_DEFAULT);
+  H5Fclose(file);
+  CHECK(readAll(*openImage(path, {}, "group/v")) == bytes);
+  CHECK_THROWS_WITH(openImage(path), Contains("'group' is a group of another file"));
+  file = newHdf5(path);
+  H5Lcreate_external("none.h5", "g/v", file, "linked", H5P_DEFAULT, H5P_DEFAULT);
+  H5Fclose(file);
+  for (const std::string name : {"", "linked"})
+    CHECK_THROWS_WITH(openImage(path, {}, name),
+                      Contains("'linked' is a link to another file, 'none.h5'"));
+
+  // Two halves along z, of two files.
+  const size_t half = 4 * 7 * 11;
+  const auto piece = [&](const std::string& name, hsize_t slices, const std::string& samples) {
+    writeHdf5(folder / name, "d",
+              {{slices, 7, 11}, {3, 4, 5}, H5T_STD_U8LE, H5T_NATIVE_UINT8, 3, {}}, samples.data());
+  };
+  const auto virtualOf = [&](const std::string& first, const std::string& second) {
+    file = newHdf5(path);
+    addVirtualHdf5(file, "v", kShape, {{first, 0, 4}, {second, 4, 5}});
+    H5Fclose(file);
+    return readAll(*openImage(path), 2);
+  };
+  piece("first.h5", 4, bytes.substr(0, half));
+  piece("second.h5", 5, bytes.substr(half));
+  CHECK(virtualOf("first.h5", "second.h5") == bytes);
+  image = openImage(path);
+  for (const std::string name : {"first.h5", "second.h5"})
+    CHECK(std::count(image->files().begin(), image->files().end(), folder / name) == 1);
+  image.reset();
+  CHECK_THROWS_WITH(virtualOf("first.h5", "none.h5"), Contains("virtual") && Contains("none.h5"));
+  CHECK_THROWS_WITH(virtualOf("first.h5", "part.h5"), Contains("'d' of the file 'part.h5'"));
+  CHECK_THROWS_WITH(virtualOf("first.h5", "first.h5"), Contains("of another size"));
+  CHECK_THROWS_WITH(virtualOf("first.h5", "a%%b.h5"), Contains("any number of files"));
+  writeFile(folder / "text.h5", "no HDF5");
+  CHECK_THROWS_WITH(virtualOf("first.h5", "text.h5"), Contains("text.h5") && Contains("damaged"));
+
+  file = newHdf5(path);
+  addHdf5External(file, "d", kShape, "samples.bin");
+  H5Fclose(file);
+  CHECK_THROWS_WITH(openImage(path), Contains("raw files") && Contains("h5repack"));
 }
 
 TEST_CASE("image_hdf5: damaged files read or are refused with one line", "[image_hdf5]") {

@@ -21,6 +21,9 @@ namespace vdb_madf::detail {
 
 namespace {
 
+/// What the names of all files may take.
+constexpr uint64_t kMaxFileBytes = uint64_t(1) << 26;
+
 /// One end of the socket. What goes over it are plain values of one program.
 class Line {
  public:
@@ -121,7 +124,10 @@ bool answer(const Line& line, const Work& work) {
     description.type = info.type;
     description.metres = info.voxelSize ? info.voxelSize->metres : 0;
     std::strncpy(description.format, info.format.c_str(), sizeof description.format - 1);
-    return reply(line, Reply::good, Hint::none, &description, sizeof description);
+    std::string files;
+    for (const std::string& file : reader->files()) files += file + '\0';
+    return reply(line, Reply::good, Hint::none, &description, sizeof description) &&
+           reply(line, Reply::good, Hint::none, files.data(), files.size());
   });
   std::vector<char> samples;
   for (Request request{}; going && reader && line.receive(&request, sizeof request);)
@@ -138,7 +144,6 @@ class IsolatedReader : public ImageReader {
   IsolatedReader(const std::string& path,
                  const std::function<std::unique_ptr<ImageReader>()>& open) {
     path_ = path;
-    files_ = {path};
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) failToStart();
     line_ = std::make_unique<Line>(ends[0]);
@@ -157,6 +162,7 @@ class IsolatedReader : public ImageReader {
       info_.type = description.type;
       if (description.metres > 0) info_.voxelSize = VoxelSize{description.metres};
       info_.format = description.format;
+      receiveFiles();
     } catch (...) {
       end();
       throw;
@@ -180,12 +186,22 @@ class IsolatedReader : public ImageReader {
   }
 
   void receive(void* to, uint64_t count) const {
+    if (receiveHead() != count || !line_->receive(to, size_t(count))) failToAnswer();
+  }
+
+  /// Names, each with a zero behind it.
+  void receiveFiles() {
+    std::string names(size_t(std::min(receiveHead(), kMaxFileBytes)), '\0');
+    if (!line_->receive(names.data(), names.size())) failToAnswer();
+    for (size_t begin = 0, end; (end = names.find('\0', begin)) != names.npos; begin = end + 1)
+      files_.push_back(names.substr(begin, end - begin));
+  }
+
+  /// How many bytes follow. @throw what the other process threw
+  uint64_t receiveHead() const {
     Reply head;
     if (!line_->receive(&head, sizeof head)) failToAnswer();
-    if (head.kind == Reply::good) {
-      if (head.bytes != count || !line_->receive(to, size_t(count))) failToAnswer();
-      return;
-    }
+    if (head.kind == Reply::good) return head.bytes;
     std::string message(size_t(std::min<uint64_t>(head.bytes, 1 << 16)), '\0');
     if (!line_->receive(message.data(), message.size())) failToAnswer();
     if (head.kind == Reply::invalidInput) throw InvalidInput(message, head.hint);

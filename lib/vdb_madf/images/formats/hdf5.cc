@@ -3,19 +3,20 @@
 
 #include "vdb_madf/images/formats/hdf5.h"
 
-#include <hdf5.h>
-
 #include <algorithm>
+#include <map>
 #include <utility>
 #include <vector>
 
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/isolated_reader.h"
 #include "vdb_madf/images/detail/stored_type.h"
+#include "vdb_madf/images/formats/hdf5_handle.h"
+#include "vdb_madf/images/formats/hdf5_sources.h"
+#include "vdb_madf/images/formats/hdf5_voxel_size.h"
 
 namespace vdb_madf::detail {
 
@@ -29,28 +30,6 @@ constexpr size_t kCacheSlots = 12421;
 /// written and hold the fill value.
 constexpr uint64_t kMaxExpansion = uint64_t(1) << 16;
 constexpr size_t kMaxListed = 8;
-constexpr int kMaxAxes = 8;
-
-/// An open object of the library.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  Handle(Handle&& other) noexcept : id_(other.id_), close_(other.close_) { other.id_ = -1; }
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  Handle& operator=(Handle&& other) noexcept {
-    std::swap(id_, other.id_);
-    std::swap(close_, other.close_);
-    return *this;
-  }
-  explicit operator bool() const { return id_ >= 0; }
-  operator hid_t() const { return id_; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
 
 /// While it lives, the library does not print its errors.
 class Quiet {
@@ -68,33 +47,18 @@ class Quiet {
   void* data_ = nullptr;
 };
 
-Handle openDataset(hid_t file, const std::string& name, hid_t access = H5P_DEFAULT) {
-  return Handle(H5Dopen2(file, name.c_str(), access), H5Dclose);
-}
-
-/// The lengths of the axes; empty if there are none or too many.
-std::vector<hsize_t> lengthsOf(hid_t dataset) {
-  const Handle space(H5Dget_space(dataset), H5Sclose);
-  if (!space) return {};
-  const int axes = H5Sget_simple_extent_ndims(space);
-  if (axes < 1 || axes > kMaxAxes) return {};
-  std::vector<hsize_t> lengths(static_cast<size_t>(axes));
-  if (H5Sget_simple_extent_dims(space, lengths.data(), nullptr) < 0) return {};
-  return lengths;
-}
-
 /// The type that the samples have in memory.
-Handle nativeType(hid_t dataset) {
-  const Handle type(H5Dget_type(dataset), H5Tclose);
-  return Handle(type ? H5Tget_native_type(type, H5T_DIR_ASCEND) : -1, H5Tclose);
+Hdf5Handle nativeType(hid_t dataset) {
+  const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
+  return Hdf5Handle(type ? H5Tget_native_type(type, H5T_DIR_ASCEND) : -1, H5Tclose);
 }
 
 /// Nothing for text, records, half floats ...
 std::optional<StoredType> storedType(hid_t native) {
   H5T_class_t kind = H5Tget_class(native);
-  Handle base(H5Tcopy(native), H5Tclose);
+  Hdf5Handle base(H5Tcopy(native), H5Tclose);
   if (kind == H5T_ENUM) {  // h5py's bool
-    base = Handle(H5Tget_super(native), H5Tclose);
+    base = Hdf5Handle(H5Tget_super(native), H5Tclose);
     kind = H5Tget_class(base);
   }
   const size_t size = H5Tget_size(base);
@@ -110,48 +74,104 @@ std::optional<StoredType> storedType(hid_t native) {
 }
 
 bool isVolume(hid_t dataset) {
-  const std::vector<hsize_t> lengths = lengthsOf(dataset);
-  const Handle native = nativeType(dataset);
+  const std::vector<hsize_t> lengths = hdf5Lengths(dataset);
+  const Hdf5Handle native = nativeType(dataset);
   return lengths.size() >= 3 && native && storedType(native);
 }
 
+/// The volumes that the links of a file lead to.
+struct VolumeList {
+  std::vector<std::vector<std::string>> volumes;  ///< all names of each, in the order of the links
+  std::map<std::string, size_t> places;           ///< in `volumes`, of each object
+  std::vector<std::string> otherGroups;  ///< links to groups of other files, which are not visited
+  std::vector<std::string> deadLinks;    ///< links to other files that lead nowhere
+};
+
+/// Which object of which file it is, whatever link led to it.
+std::string identityOf(hid_t object) {
+#if H5_VERSION_GE(1, 12, 0)
+  H5O_info2_t info;
+  if (H5Oget_info3(object, &info, H5O_INFO_BASIC) < 0) return "";
+  return std::to_string(info.fileno) + std::string(1, ' ') +
+         std::string(reinterpret_cast<const char*>(&info.token), sizeof info.token);
+#else
+  H5O_info_t info;
+  if (H5Oget_info2(object, &info, H5O_INFO_BASIC) < 0) return "";
+  return std::to_string(info.fileno) + " " + std::to_string(info.addr);
+#endif
+}
+
+void addVolume(VolumeList& list, const std::string& object, const std::string& name) {
+  const auto [place, isNew] =
+      list.places.emplace(object.empty() ? name : object, list.volumes.size());
+  if (isNew) list.volumes.emplace_back();
+  list.volumes[place->second].push_back(name);
+}
+
 /// Visits the links of a file; must not throw through the library.
-herr_t collectVolume(hid_t group, const char* name, const H5L_info_t*, void* list) {
+herr_t collectVolume(hid_t group, const char* name, const H5L_info_t* link, void* to) {
   try {
-    const Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
-    if (object && H5Iget_type(object) == H5I_DATASET && isVolume(object))
-      static_cast<std::vector<std::string>*>(list)->push_back(name);
+    auto& list = *static_cast<VolumeList*>(to);
+    const Hdf5Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
+    const H5I_type_t type = object ? H5Iget_type(object) : H5I_BADID;
+    if (type == H5I_DATASET && isVolume(object))
+      addVolume(list, identityOf(object), name);
+    else if (link->type == H5L_TYPE_EXTERNAL && type == H5I_GROUP)
+      list.otherGroups.push_back(name);
+    else if (link->type == H5L_TYPE_EXTERNAL && !object)
+      list.deadLinks.push_back(name);
     return 0;
   } catch (const std::exception&) {
     return -1;
   }
 }
 
-std::string onlyVolume(const std::string& path, hid_t file) {
-  std::vector<std::string> volumes;
-  if (H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, collectVolume, &volumes) < 0)
-    throw IoError(path + ": its list of datasets is damaged: name one", Hint::dataset);
-  if (volumes.size() == 1) return volumes[0];
-  if (volumes.empty())
+[[noreturn]] void failAtLink(const std::string& path, const std::string& name,
+                             const std::string& target) {
+  throw IoError(path + ": " + quoted(name) + " is a link to another file, " + target +
+                ", that cannot be opened: put that file beside this one");
+}
+
+/// All names of the dataset that is wanted, the one to open first.
+std::vector<std::string> namesOf(const std::string& path, hid_t file, const std::string& wanted) {
+  VolumeList list;
+  const bool visited = H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, collectVolume, &list) >= 0;
+  if (!wanted.empty()) {
+    std::vector<std::string> names = {wanted};
+    const Hdf5Handle dataset = openHdf5Dataset(file, wanted);
+    const auto place = dataset ? list.places.find(identityOf(dataset)) : list.places.end();
+    if (place != list.places.end())
+      for (const std::string& name : list.volumes[place->second]) names.push_back(name);
+    return names;
+  }
+  if (!visited) throw IoError(path + ": its list of datasets is damaged: name one", Hint::dataset);
+  if (list.volumes.size() == 1) return list.volumes[0];
+  if (list.volumes.empty() && !list.deadLinks.empty())
+    failAtLink(path, list.deadLinks[0], missingHdf5Link(file, list.deadLinks[0]));
+  if (list.volumes.empty() && !list.otherGroups.empty())
+    throw IoError(path + ": holds no volume itself, and " + quoted(list.otherGroups[0]) +
+                      " is a group of another file: name a dataset in it",
+                  Hint::dataset);
+  if (list.volumes.empty())
     throw IoError(path + ": holds no dataset of three dimensions with numbers in it");
-  std::string list;
-  for (size_t i = 0; i < volumes.size() && i < kMaxListed; ++i)
-    list += (i ? ", " : "") + detail::quoted(volumes[i]);
-  throw IoError(
-      path + ": choose one of its datasets: " + list + (volumes.size() > kMaxListed ? " ..." : ""),
-      Hint::dataset);
+  std::string text;
+  for (size_t i = 0; i < list.volumes.size() && i < kMaxListed; ++i)
+    text += (i ? ", " : "") + quoted(list.volumes[i][0]);
+  throw IoError(path + ": choose one of its datasets: " + text +
+                    (list.volumes.size() > kMaxListed ? " ..." : ""),
+                Hint::dataset);
 }
 
 ImageSize sizeOf(const std::string& path, const std::string& name,
                  const std::vector<hsize_t>& lengths) {
   if (lengths.size() < 3)
-    throw IoError(path + ": dataset " + detail::quoted(name) + " has " +
-                  std::to_string(lengths.size()) + " dimensions; only 3-D ones can be read");
+    throw IoError(path + ": dataset " + quoted(name) + " has " + std::to_string(lengths.size()) +
+                  " dimensions; only 3-D ones can be read");
   std::vector<int64_t> size;
   for (size_t i = 0; i < lengths.size(); ++i) {
     if (i + 3 < lengths.size() && lengths[i] != 1)
-      throw IoError(path + ": dataset " + detail::quoted(name) + " has " +
-                    std::to_string(lengths[i]) + " volumes along axis " + std::to_string(i) +
+      throw IoError(path + ": dataset " + quoted(name) + " has " + std::to_string(lengths[i]) +
+                    " volumes along axis " + std::to_string(i) +
                     ": save one as a dataset of its own");
     if (i + 3 >= lengths.size())
       size.insert(size.begin(), int64_t(std::min<hsize_t>(lengths[i], hsize_t(1) << 40)));
@@ -159,36 +179,28 @@ ImageSize sizeOf(const std::string& path, const std::string& name,
   return checkedSize(path, size);
 }
 
-std::optional<VoxelSize> elementSize(const std::string& path, hid_t dataset) {
-  const char* name = "element_size_um";
-  if (H5Aexists(dataset, name) <= 0) return std::nullopt;
-  const Handle attribute(H5Aopen(dataset, name, H5P_DEFAULT), H5Aclose);
-  const Handle space(attribute ? H5Aget_space(attribute) : -1, H5Sclose);
-  double edges[3] = {};
-  if (!space || H5Sget_simple_extent_npoints(space) != 3 ||
-      H5Aread(attribute, H5T_NATIVE_DOUBLE, edges) < 0)
-    throw IoError(path + ": the attribute element_size_um cannot be read as three numbers");
-  return cubicVoxelSize(path, {edges[2], edges[1], edges[0]}, unitsPerMetre("um"));
-}
-
 class Hdf5Reader : public ImageReader {
  public:
-  Hdf5Reader(const std::string& path, Handle file, const std::string& name)
+  Hdf5Reader(const std::string& path, Hdf5Handle file, const std::vector<std::string>& names)
       : file_(std::move(file)),
-        name_(name),
-        dataset_(openDataset(file_, name)),
-        native_(dataset_ ? nativeType(dataset_) : Handle(-1, H5Tclose)) {
+        name_(names.front()),
+        dataset_(openHdf5Dataset(file_, name_)),
+        native_(dataset_ ? nativeType(dataset_) : Hdf5Handle(-1, H5Tclose)) {
     path_ = path;
     files_ = {path};
-    if (!dataset_) fail("cannot be opened: there is none or it is damaged");
-    lengths_ = lengthsOf(dataset_);
+    if (!dataset_) {
+      const std::string target = missingHdf5Link(file_, name_);
+      if (!target.empty()) failAtLink(path, name_, target);
+      fail("cannot be opened: there is none or it is damaged");
+    }
+    lengths_ = hdf5Lengths(dataset_);
     const auto stored = native_ ? storedType(native_) : std::nullopt;
     if (!stored) fail("holds no integers, bool, float32 or float64");
     stored_ = *stored;
-    info_.size = sizeOf(path, name, lengths_);
+    info_.size = sizeOf(path, name_, lengths_);
     info_.type = stored_.type;
     info_.format = "hdf5";
-    info_.voxelSize = elementSize(path, dataset_);
+    info_.voxelSize = hdf5VoxelSize(path, file_, dataset_, names);
     checkStorage();
   }
 
@@ -207,18 +219,20 @@ class Hdf5Reader : public ImageReader {
 
  private:
   [[noreturn]] void fail(const std::string& why) const {
-    throw IoError(path_ + ": dataset " + detail::quoted(name_) + " " + why);
+    throw IoError(path_ + ": dataset " + quoted(name_) + " " + why);
   }
 
-  /// The file can hold what is claimed. Chunks are then kept from slab to slab.
+  /// The files can hold what is claimed. Chunks are then kept from slab to slab.
   void checkStorage() {
-    const uint64_t held =
-        std::min<uint64_t>(H5Dget_storage_size(dataset_), InputFile(path_).size());
+    const Hdf5Sources sources = hdf5Sources(path_, name_, dataset_);
+    files_.insert(files_.end(), sources.files.begin(), sources.files.end());
+    const uint64_t held = sources.bytes;
     const uint64_t bytes = imageBytes(info_) / sampleSize(info_.type) * stored_.bytes();
     if (bytes / kMaxExpansion > held || held == 0)
       fail("has " + std::to_string(held) + " bytes in the file, too few for " +
            std::to_string(bytes) + " of samples");
-    const Handle creation(H5Dget_create_plist(dataset_), H5Pclose);
+    if (sources.isVirtual) return;
+    const Hdf5Handle creation(H5Dget_create_plist(dataset_), H5Pclose);
     if (!creation || H5Pget_layout(creation) != H5D_CHUNKED) {
       if (held < bytes) fail("is cut short");
       return;
@@ -232,10 +246,10 @@ class Hdf5Reader : public ImageReader {
     const uint64_t depth =
         std::min<uint64_t>(chunk[chunk.size() - 3], lengths_[lengths_.size() - 3]);
     const uint64_t layer = bytes / lengths_[lengths_.size() - 3] * depth;
-    const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+    const Hdf5Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
     H5Pset_chunk_cache(access, kCacheSlots,
                        size_t(std::min(kMaxCacheBytes, layer * 2 + chunkBytes)), 1.0);
-    dataset_ = openDataset(file_, name_, access);
+    dataset_ = openHdf5Dataset(file_, name_, access);
     if (!dataset_) fail("cannot be opened again");
   }
 
@@ -243,8 +257,8 @@ class Hdf5Reader : public ImageReader {
     std::vector<hsize_t> begin(lengths_.size(), 0), extent(lengths_);
     begin[begin.size() - 3] = hsize_t(first);
     extent[extent.size() - 3] = hsize_t(count);
-    const Handle file(H5Dget_space(dataset_), H5Sclose);
-    const Handle memory(H5Screate_simple(int(extent.size()), extent.data(), nullptr), H5Sclose);
+    const Hdf5Handle file(H5Dget_space(dataset_), H5Sclose);
+    const Hdf5Handle memory(H5Screate_simple(int(extent.size()), extent.data(), nullptr), H5Sclose);
     if (!file || !memory ||
         H5Sselect_hyperslab(file, H5S_SELECT_SET, begin.data(), nullptr, extent.data(), nullptr) <
             0 ||
@@ -253,19 +267,19 @@ class Hdf5Reader : public ImageReader {
            " on: it is damaged, or has a filter that is not installed");
   }
 
-  Handle file_;
+  Hdf5Handle file_;
   std::string name_;
-  Handle dataset_, native_;
+  Hdf5Handle dataset_, native_;
   std::vector<hsize_t> lengths_;  ///< as in the file: ... z, y, x
   StoredType stored_;
 };
 
 std::unique_ptr<ImageReader> openHere(const std::string& path, const std::string& dataset) {
   const Quiet quiet;
-  Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  Hdf5Handle file = openHdf5File(path);
   if (!file) throw IoError(path + ": is damaged or no HDF5 file");
-  const std::string name = dataset.empty() ? onlyVolume(path, file) : dataset;
-  return std::make_unique<Hdf5Reader>(path, std::move(file), name);
+  const std::vector<std::string> names = namesOf(path, file, dataset);
+  return std::make_unique<Hdf5Reader>(path, std::move(file), names);
 }
 
 }  // namespace
