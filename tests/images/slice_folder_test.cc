@@ -113,8 +113,13 @@ TEST_CASE("image_pictures: colours are read when they are grey, else refused", "
       if (colour == 2)
         CHECK_THROWS_WITH(readAll(*openImage(path)), Contains(path) && Contains("colours"));
     }
-  writeFile(path, pngFile({kWidth, kHeight, 16, 2, false}, repeated(grey, 6)));
-  CHECK_THROWS_WITH(openImage(path), Contains("16 bits"));
+  std::string wide = repeated(grey, 6);  // both bytes of three samples
+  writeFile(path, pngFile({kWidth, kHeight, 16, 2, false}, wide));
+  CHECK(openImage(path)->info().type == SampleType::uint16);
+  CHECK(readAll(*openImage(path)) == repeated(grey, 2));
+  wide[5] = char(wide[5] ^ 1);
+  writeFile(path, pngFile({kWidth, kHeight, 16, 2, false}, wide));
+  CHECK_THROWS_WITH(readAll(*openImage(path)), Contains(path) && Contains("colours"));
 }
 
 TEST_CASE("image_pictures: a folder of slices", "[image_pictures]") {

@@ -120,12 +120,43 @@ TEST_CASE("image_file: a folder says which slices have another white, and which 
   CHECK_THAT(notes[1], Contains(folder.path()) && Contains("1 of its 4 slices"));
 }
 
+TEST_CASE("image_file: colours of a TIFF are read when they are grey, else refused",
+          "[image_file]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.tif";
+  for (const SampleType type : {SampleType::uint8, SampleType::uint16, SampleType::float32})
+    for (const int channels : {3, 4})
+      for (const int compression : {COMPRESSION_NONE, COMPRESSION_LZW})
+        for (const uint32_t tile : {0u, 16u})
+          for (const std::string mode : {"wl", "wb"}) {
+            CAPTURE(sampleTypeName(type), channels, compression, tile, mode);
+            const std::string gray = randomSamples(type, voxels(kSize), 11);
+            const size_t bytes = sampleSize(type);
+            std::string colors;
+            for (size_t i = 0; i < gray.size(); i += bytes) {
+              for (int channel = 0; channel < 3; ++channel) colors += gray.substr(i, bytes);
+              if (channels == 4) colors += std::string(bytes, '\1');
+            }
+            TiffLayout layout;
+            layout.mode = mode;
+            layout.channels = channels;
+            layout.photometric = PHOTOMETRIC_RGB;
+            layout.compression = compression;
+            layout.tile = tile;
+            writeTiff(path, kSize, type, colors, layout);
+            CHECK(openImage(path)->info().type == type);
+            CHECK(readAll(*openImage(path), 2) == gray);
+            colors[bytes] = char(colors[bytes] ^ 1);
+            writeTiff(path, kSize, type, colors, layout);
+            CHECK_THROWS_WITH(readAll(*openImage(path)), Contains(path) && Contains("colours"));
+          }
+}
+
 TEST_CASE("image_file: TIFF that is not a grey volume is refused", "[image_file]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.tif";
   TiffLayout layout;
   layout.channels = 3;
-  layout.photometric = PHOTOMETRIC_RGB;
   writeTiff(path, kSize, SampleType::uint8, std::string(3 * voxels(kSize), 'a'), layout);
   CHECK_THROWS_WITH(openImage(path), Contains(path) && Contains("grey"));
 

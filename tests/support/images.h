@@ -151,7 +151,7 @@ inline void writeTiff(const std::string& path, const ImageSize& size, SampleType
     setTiffTags(tiff, size, type, layout);
     char* slice = copy.data() + row * size_t(size.y) * size_t(z);
     if (layout.tile) {
-      const size_t wide = layout.tile, sample = sampleSize(type);
+      const size_t wide = layout.tile, sample = sampleSize(type) * size_t(layout.channels);
       TIFFSetField(tiff, TIFFTAG_TILEWIDTH, layout.tile);
       TIFFSetField(tiff, TIFFTAG_TILELENGTH, layout.tile);
       uint32_t number = 0;

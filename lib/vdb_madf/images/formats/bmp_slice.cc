@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/images/detail/gray_colors.h"
 #include "vdb_madf/images/formats/picture_slice.h"
 
 namespace vdb_madf::detail {
@@ -124,7 +125,7 @@ void readBmp(const InputFile& file, const PictureHeader& picture, void* samples)
     else if (layout.bits == 8)
       std::memcpy(to, row.data(), width);
     else
-      grayOfColors(file.name(), row.data(), size_t(layout.bits) / 8, width, to);
+      grayOfColors(file.name(), row.data(), size_t(layout.bits) / 8, 1, width, to);
   }
 }
 

@@ -14,13 +14,4 @@ void checkPictureSize(const std::string& name, int64_t width, int64_t height) {
                   " is not within 1 .. " + std::to_string(kMaxImageSide) + " a side");
 }
 
-void grayOfColors(const std::string& name, const unsigned char* pixels, size_t bytesPerPixel,
-                  size_t count, unsigned char* samples) {
-  for (size_t i = 0; i < count; ++i, pixels += bytesPerPixel) {
-    if (pixels[0] != pixels[1] || pixels[0] != pixels[2])
-      throw IoError(name + ": is a picture in colours: convert it to grey values first");
-    samples[i] = pixels[0];
-  }
-}
-
 }  // namespace vdb_madf::detail

@@ -44,10 +44,4 @@ bool isBmpHeader(const std::string& head);
 
 /// @throw IoError unless each side is in 1 .. kMaxImageSide.
 void checkPictureSize(const std::string& name, int64_t width, int64_t height);
-/// Gray samples of `count` pixels of three or four bytes, of which the first three have to be
-/// equal.
-/// @throw IoError that names the file.
-void grayOfColors(const std::string& name, const unsigned char* pixels, size_t bytesPerPixel,
-                  size_t count, unsigned char* samples);
-
 }  // namespace vdb_madf::detail

@@ -8,6 +8,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/detail/inflate_stream.h"
+#include "vdb_madf/images/detail/gray_colors.h"
 #include "vdb_madf/images/formats/picture_slice.h"
 #include "vdb_madf/images/image.h"
 
@@ -103,8 +104,6 @@ PictureHeader pictureOf(const Source& source, const Decoder& decoder) {
   const int bits = png_get_bit_depth(decoder.png, decoder.info),
             channels = png_get_channels(decoder.png, decoder.info);
   picture.type = bits == 16 ? SampleType::uint16 : SampleType::uint8;
-  if (bits == 16 && channels > 2)
-    throw IoError(name + ": has colours of 16 bits: convert it to grey values first");
   const uint64_t bytes = picture.samples() / 8 * uint64_t(bits * channels);
   if (bytes / InflateStream::kMaxExpansion > source.file.size())
     throw IoError(name + ": has " + std::to_string(source.file.size()) + " bytes, too few for " +
@@ -142,7 +141,8 @@ void readPng(const InputFile& file, const PictureHeader& picture, void* samples)
   std::vector<png_bytep> rows(height);
   for (size_t y = 0; y < height; ++y) rows[y] = (gray ? out : colors.data()) + y * rowBytes;
   if (!readRows(decoder, rows.data())) fail(source);
-  if (!gray) grayOfColors(file.name(), colors.data(), 3, width * height, out);
+  if (!gray)
+    grayOfColors(file.name(), colors.data(), 3, sampleSize(picture.type), width * height, out);
 }
 
 }  // namespace vdb_madf::detail

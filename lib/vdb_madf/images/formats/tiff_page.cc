@@ -10,12 +10,15 @@
 #include "vdb_madf/base/detail/byte_order.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/images/detail/gray_colors.h"
 
 namespace vdb_madf::detail {
 
 namespace {
 
 constexpr uint32_t kMaxSide = kMaxImageSide;
+/// Red, green, blue, and opacity or whatever a program adds.
+constexpr uint16_t kMaxChannels = 16;
 /// libtiff allocates tag values, raw strips (no larger than the file) and coder states.
 constexpr int64_t kCoderAllocation = int64_t(1) << 25;
 
@@ -95,13 +98,13 @@ TiffPage TiffFile::page() const {
   if (page.width < 1 || page.width > kMaxSide || page.height < 1 || page.height > kMaxSide)
     tiff_.fail("a page of " + std::to_string(page.width) + " x " + std::to_string(page.height) +
                " is not within 1 .. " + std::to_string(kMaxSide) + " a side");
-  uint16_t channels = 1, format = SAMPLEFORMAT_UINT;
-  TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_SAMPLESPERPIXEL, &channels);
+  uint16_t format = SAMPLEFORMAT_UINT;
+  TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_SAMPLESPERPIXEL, &page.channels);
   TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_BITSPERSAMPLE, &page.bits);
   TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_SAMPLEFORMAT, &format);
-  if (channels != 1)
-    tiff_.fail("has " + std::to_string(channels) +
-               " samples per pixel (colour or transparency): convert it to grey values first");
+  if (page.channels != 1 && !isColor(page))
+    tiff_.fail("has " + std::to_string(page.channels) +
+               " samples per pixel, and not as a plain colour: convert it to grey values first");
   if (tiff_.field<uint32_t>(TIFFTAG_IMAGEDEPTH, 1) != 1) tiff_.fail("has pages with a depth");
   const auto type = sampleType(page.bits, format);
   if (!type)
@@ -120,10 +123,25 @@ TiffPage TiffFile::page() const {
   uint16_t fillOrder = FILLORDER_MSB2LSB;
   TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_FILLORDER, &fillOrder);
   page.plain = page.compression == COMPRESSION_NONE && page.bits >= 8 && !page.tiled &&
-               fillOrder == FILLORDER_MSB2LSB;
+               page.channels == 1 && fillOrder == FILLORDER_MSB2LSB;
   page.swapped = TIFFIsByteSwapped(tiff_.get()) != 0;
   checkExtent(page);
   return page;
+}
+
+bool TiffFile::isColor(const TiffPage& page) const {
+  return page.channels >= 3 && page.channels <= kMaxChannels && page.bits >= 8 &&
+         tiff_.field<uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_RGB &&
+         tiff_.field<uint16_t>(TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) == PLANARCONFIG_CONTIG;
+}
+
+void TiffFile::unpackRow(const TiffPage& page, const char* from, size_t count, char* to) const {
+  if (page.channels > 1)
+    grayOfColors(path(), from, page.channels, sampleSize(page.type), count, to);
+  else if (page.bits == 1)
+    expandBits(reinterpret_cast<const unsigned char*>(from), count, to);
+  else
+    std::memcpy(to, from, count * sampleSize(page.type));
 }
 
 void TiffFile::checkExtent(const TiffPage& page) const {
@@ -139,7 +157,7 @@ void TiffFile::checkExtent(const TiffPage& page) const {
     // Pieces that share their bytes could make a large image of a small file.
     if (stored > data_->size()) tiff_.fail("is damaged: the parts of a page overlap");
   }
-  const uint64_t packed = (uint64_t(page.width) * page.bits + 7) / 8 * page.height;
+  const uint64_t packed = (page.rowBits() + 7) / 8 * page.height;
   uint64_t needed = packed;
   if (page.tiled) {
     needed = uint64_t(TIFFTileSize64(tiff_.get())) * pieces;
@@ -206,10 +224,10 @@ void TiffFile::decodeStrips(const TiffPage& page, char* samples) const {
   const uint32_t rows =
       std::min(tiff_.field<uint32_t>(TIFFTAG_ROWSPERSTRIP, page.height), page.height);
   if (rows == 0) tiff_.fail("has strips without rows");
-  const size_t rowBytes = (size_t(page.width) * page.bits + 7) / 8;
+  const size_t rowBytes = size_t(page.rowBits() + 7) / 8;
   const size_t rowSamples = size_t(page.width) * sampleSize(page.type);
   std::unique_ptr<char[]> packed;
-  if (page.bits == 1) packed.reset(new char[rowBytes * rows]);
+  if (page.bits == 1 || page.channels > 1) packed.reset(new char[rowBytes * rows]);
   for (uint32_t strip = 0, y = 0; y < page.height; ++strip, y += rows) {
     const uint32_t count = std::min(rows, page.height - y);
     char* to = packed ? packed.get() : samples + rowSamples * y;
@@ -219,15 +237,14 @@ void TiffFile::decodeStrips(const TiffPage& page, char* samples) const {
     // The fax decoders fill up damaged rows and only warn.
     if (isFax(page.compression) && tiff_.warned()) tiff_.fail("is damaged: fax rows are broken");
     for (uint32_t row = 0; packed && row < count; ++row)
-      expandBits(reinterpret_cast<unsigned char*>(packed.get()) + rowBytes * row, page.width,
-                 samples + rowSamples * (y + row));
+      unpackRow(page, packed.get() + rowBytes * row, page.width, samples + rowSamples * (y + row));
   }
 }
 
 void TiffFile::decodeTiles(const TiffPage& page, char* samples) const {
   const uint32_t tileWidth = tiff_.field<uint32_t>(TIFFTAG_TILEWIDTH, 1);
   const uint32_t tileHeight = tiff_.field<uint32_t>(TIFFTAG_TILELENGTH, 1);
-  const size_t rowBytes = (size_t(tileWidth) * page.bits + 7) / 8;
+  const size_t rowBytes = (size_t(tileWidth) * page.bits * page.channels + 7) / 8;
   const size_t sample = sampleSize(page.type);
   const tmsize_t tileBytes = tmsize_t(rowBytes * tileHeight);
   const std::unique_ptr<char[]> tile(new char[size_t(tileBytes)]);
@@ -240,11 +257,7 @@ void TiffFile::decodeTiles(const TiffPage& page, char* samples) const {
       const size_t columns = std::min(tileWidth, page.width - x);
       for (uint32_t row = 0; row < std::min(tileHeight, page.height - y); ++row) {
         const char* from = tile.get() + rowBytes * row;
-        char* to = samples + (size_t(y + row) * page.width + x) * sample;
-        if (page.bits == 1)
-          expandBits(reinterpret_cast<const unsigned char*>(from), columns, to);
-        else
-          std::memcpy(to, from, columns * sample);
+        unpackRow(page, from, columns, samples + (size_t(y + row) * page.width + x) * sample);
       }
     }
 }

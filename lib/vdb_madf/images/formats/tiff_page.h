@@ -18,6 +18,7 @@ namespace vdb_madf::detail {
 struct TiffPage {
   uint32_t width = 0, height = 0;
   uint16_t bits = 0;
+  uint16_t channels = 1;  ///< stored for a pixel; of a color the first three have to be equal
   SampleType type = SampleType::uint8;
   uint16_t compression = COMPRESSION_NONE;
   bool tiled = false;
@@ -25,6 +26,8 @@ struct TiffPage {
   bool plain = false;        ///< the bytes in the file are the samples, but for their order
   bool swapped = false;      ///< plain samples are in foreign byte order
 
+  /// Of a row as it is stored.
+  uint64_t rowBits() const { return uint64_t(width) * bits * channels; }
   uint64_t bytes() const { return uint64_t(width) * height * sampleSize(type); }
   bool sameAs(const TiffPage& other) const {
     return width == other.width && height == other.height && type == other.type;
@@ -56,7 +59,9 @@ class TiffFile {
   const TiffHandle& handle() const { return tiff_; }
 
  private:
+  bool isColor(const TiffPage& page) const;
   void checkExtent(const TiffPage& page) const;
+  void unpackRow(const TiffPage& page, const char* from, size_t count, char* to) const;
   void readPlain(const TiffPage& page, char* samples) const;
   void decodeStrips(const TiffPage& page, char* samples) const;
   void decodeTiles(const TiffPage& page, char* samples) const;
