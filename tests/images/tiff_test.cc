@@ -231,6 +231,50 @@ TEST_CASE("image_file: TIFF voxel size as ImageJ writes it", "[image_file]") {
   CHECK_THROWS_WITH(size("ImageJ=1.52a\nchannels=3\n", 0), Contains("channels"));
 }
 
+TEST_CASE("image_file: TIFF voxel size as OME writes it", "[image_file]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.ome.tif";
+  const auto open = [&](const std::string& description) {
+    TiffLayout layout;
+    layout.description = description;
+    writeTiff(path, kSize, SampleType::uint8, std::string(voxels(kSize), 'a'), layout);
+    return openImage(path)->info().voxelSize;
+  };
+  const auto size = [&](const std::string& attributes) {
+    return open(
+        "<?xml version=\"1.0\"?><OME xmlns=\"x\"><Image Name=\"PhysicalSizeX=1\"><Pixels "
+        "SizeZ=\"3\" " +
+        attributes + "><Channel/></Pixels></Image></OME>");
+  };
+  const std::string x = "PhysicalSizeX='8.5' ", y = "PhysicalSizeY=\"8.5\" ",
+                    z = "PhysicalSizeZ = \"8.5\"";
+  CHECK(size(x + y + z)->metres == 8.5e-6);
+  CHECK(size(x + y + "PhysicalSizeZ='8500' PhysicalSizeZUnit='nm'")->metres == 8.5e-6);
+  for (const std::string unit : {"\u00b5m", "\u03bcm", "&#181;m", "&#xB5;m", "um"}) {
+    const auto of = [&](const std::string& axis) {
+      return " PhysicalSize" + axis + "Unit='" + unit + "'";
+    };
+    CHECK(size(x + y + z + of("X") + of("Y") + of("Z"))->metres == 8.5e-6);
+  }
+  CHECK(open("<ome:OME><ome:Image><ome:Pixels " + x + y + z + "/></ome:Image></ome:OME>")->metres ==
+        8.5e-6);
+  CHECK_FALSE(size(""));
+  CHECK_FALSE(size(x + y));
+  CHECK_FALSE(size(x + y + z + " PhysicalSizeXUnit='pixel'"));
+  CHECK_FALSE(size(x + y + z + " PhysicalSizeXUnit='reference frame' PhysicalSizeYUnit='pixel'"));
+  CHECK_FALSE(open("<Pixels " + x + y + z + "/>"));  // not OME's
+  CHECK_THROWS_WITH(size(x + y + "PhysicalSizeZ='17'"), Contains("unequal spacing 8.5, 8.5, 17"));
+  CHECK_THROWS_WITH(size(x + y + "PhysicalSizeZ='-8.5'"), Contains("unusable spacing"));
+  CHECK_THROWS_WITH(size("SizeC='3'"), Contains("several channels"));
+  CHECK_THROWS_WITH(size("SizeT='2'"), Contains("several times"));
+  CHECK_THROWS_WITH(open("<OME><Pixels SizeZ='4'/></OME>"), Contains("3 of the 4 slices"));
+  CHECK_THROWS_WITH(open("<OME><Pixels /><Pixels /></OME>"), Contains("several images"));
+  // A text that ends anywhere is read as far as it goes.
+  const std::string whole = "<OME><Pixels SizeZ=\"3\" " + x + y + z + "/></OME>";
+  for (size_t length = 1; length < whole.size(); ++length)
+    CHECK_NOTHROW(open(whole.substr(0, length)));
+}
+
 TEST_CASE("image_file: ImageJ's large stacks have one page and all samples behind it",
           "[image_file]") {
   const ScratchFolder folder;

@@ -14,6 +14,7 @@
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/key_value_header.h"
+#include "vdb_madf/images/formats/ome_xml.h"
 #include "vdb_madf/images/formats/slice_folder.h"
 #include "vdb_madf/images/formats/slice_names.h"
 #include "vdb_madf/images/formats/tiff_page.h"
@@ -22,12 +23,16 @@ namespace vdb_madf::detail {
 
 namespace {
 
+std::string description(const TiffFile& file) {
+  const char* found = file.handle().field<const char*>(TIFFTAG_IMAGEDESCRIPTION, nullptr);
+  return found ? found : "";
+}
+
 /// What ImageJ writes into the description of a stack: lines of key=value.
 KeyValueHeader imageJDescription(const TiffFile& file) {
   HeaderSyntax syntax;
   syntax.skipsOtherLines = true;
-  const char* found = file.handle().field<const char*>(TIFFTAG_IMAGEDESCRIPTION, nullptr);
-  const std::string text = found ? found : "";
+  const std::string text = description(file);
   return KeyValueHeader(file.path(), text.compare(0, 7, "ImageJ=") == 0 ? text : "", syntax);
 }
 
@@ -37,10 +42,11 @@ std::optional<double> numberIn(const KeyValueHeader& imageJ, const std::string& 
   return values->front();
 }
 
-/// Only ImageJ's calibration is trusted: the plain resolution tags are mostly a scanner's or a
+/// Only the calibrations of OME and ImageJ are trusted: the plain resolution tags are mostly a scanner's or a
 /// printer's default of 72 dots per inch.
 std::optional<VoxelSize> calibration(const TiffFile& file, const KeyValueHeader& imageJ,
-                                     int slices) {
+                                     const OmePixels& ome, int slices) {
+  if (ome.images() > 0) return ome.voxelSize(file.path());
   const auto unit = unitsPerMetre(imageJ.find("unit").value_or(""));
   const float perX = file.handle().field<float>(TIFFTAG_XRESOLUTION, 0);
   const float perY = file.handle().field<float>(TIFFTAG_YRESOLUTION, 0);
@@ -53,6 +59,18 @@ std::optional<VoxelSize> calibration(const TiffFile& file, const KeyValueHeader&
   // of the slices.
   const double depth = z ? std::abs(*z) : slices > 1 ? 1.0 : x;
   return cubicVoxelSize(file.path(), {depth, x, y}, unit);
+}
+
+/// The pages have to be the slices of one volume, and all of them.
+void checkOme(const TiffFile& file, const OmePixels& ome, uint16_t channels, int64_t slices) {
+  if (ome.images() > 1) file.handle().fail("has several images: save one as a stack of its own");
+  for (const auto& [axis, name] : {std::pair{"C", "channels"}, {"T", "times"}})
+    if (ome.size(axis) > (axis[0] == 'C' ? channels : 1))
+      file.handle().fail(std::string("has several ") + name + ": save one as a stack of its own");
+  if (ome.size("Z") > slices)
+    file.handle().fail("holds " + std::to_string(slices) + " of the " +
+                       std::to_string(ome.size("Z")) +
+                       " slices that it describes: the others are in other files; save one stack");
 }
 
 void rejectHyperstack(const TiffFile& file, const KeyValueHeader& imageJ) {
@@ -87,7 +105,9 @@ class TiffStack : public ImageReader {
     if (slices == 1) slices = slicesWithoutPages(imageJ);
     info_.size = checkedSize(path_, {page_.width, page_.height, slices});
     info_.type = page_.type;
-    info_.voxelSize = calibration(file_, imageJ, info_.size.z);
+    const OmePixels ome(description(file_));
+    checkOme(file_, ome, page_.channels, slices);
+    info_.voxelSize = calibration(file_, imageJ, ome, info_.size.z);
     info_.format = "tiff";
     if (whiteIsZero_ > 0) notes_.push_back(whiteIsZeroNote(path_, whiteIsZero_, pages_.size()));
   }
@@ -162,7 +182,8 @@ class TiffFolder : public ImageReader {
       whiteIsZero += page.whiteIsZero;
       if (z == 0) {
         page_ = page;
-        info_.voxelSize = calibration(file, imageJDescription(file), int(files_.size()));
+        info_.voxelSize = calibration(file, imageJDescription(file), OmePixels(description(file)),
+                                      int(files_.size()));
       } else if (!page.sameAs(page_)) {
         throw IoError(files_[z] + ": is " + std::to_string(page.width) + " x " +
                       std::to_string(page.height) + " " + sampleTypeName(page.type) +
