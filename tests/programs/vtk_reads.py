@@ -94,13 +94,17 @@ with Bench() as bench:
     network = read(vtkXMLPolyDataReader(), bench.run("export", "bonds.vtp", "--as", "network"))
     ids = vtk_to_numpy(network.GetPointData().GetArray("grain_id")).tolist()
     check(ids == sorted(VOXELS), f"bonds.vtp: grains {ids}")
+    of_mesh = dict(zip(vtk_to_numpy(mesh.GetCellData().GetArray("grain_id")).tolist(),
+                       vtk_to_numpy(mesh.GetCellData().GetArray("color")).tolist()))
+    colors = vtk_to_numpy(network.GetPointData().GetArray("color")).tolist()
+    check(dict(zip(ids, colors)) == of_mesh, f"bonds.vtp: colors {colors}")
     sizes = vtk_to_numpy(network.GetPointData().GetArray("voxels")).tolist()
     check(sizes == [VOXELS[label] for label in ids], f"bonds.vtp: sizes {sizes}")
     check(near(network.GetPoint(0), (2 * EDGE, 3 * EDGE, 5 * EDGE)), "bonds.vtp: place of grain 1")
     check(network.GetNumberOfLines() == 1, "bonds.vtp: number of bonds")
     bond = {network.GetCellData().GetArrayName(i): network.GetCellData().GetArray(i).GetTuple1(0)
             for i in range(network.GetCellData().GetNumberOfArrays())}
-    check((bond["first_grain"], bond["second_grain"], bond["faces"]) == (2, 3, 2), f"bonds.vtp: {bond}")
+    check((bond["first"], bond["second"], bond["faces"]) == (2, 3, 2), f"bonds.vtp: {bond}")
     check(near((bond["centroid_x"], bond["centroid_y"], bond["centroid_z"]),
                (7.5 * EDGE, 1 * EDGE, 2.5 * EDGE)), f"bonds.vtp: center of the bond {bond}")
     check((bond["normal_x"], bond["normal_y"], bond["normal_z"]) == (0, 0, 1), f"bonds.vtp: {bond}")

@@ -250,6 +250,9 @@ TEST_CASE("world_place: networks", "[world_place]") {
   REQUIRE(csv.size() == wanted.size());
   for (size_t i = 0; i < ids.size(); ++i) {
     CHECK(near(places[i], wanted.at(ids[i])));
+    CHECK(near(Vec3d(vtp.values<double>("centroid_x")[i], vtp.values<double>("centroid_y")[i],
+                     vtp.values<double>("centroid_z")[i]),
+               wanted.at(ids[i])));
     CHECK(near(Vec3d(csv[i][0], csv[i][1], csv[i][2]), wanted.at(int32_t(csv[i][3]))));
     const std::string node =
         graphml.substr(graphml.find("<node id=\"n" + std::to_string(ids[i]) + "\">"));
@@ -260,7 +263,8 @@ TEST_CASE("world_place: networks", "[world_place]") {
     }
   }
   // The only bond: between 2 and 3, of two faces.
-  const auto bond = [&](const std::string& name) { return vtp.values<double>(name).at(0); };
+  // (The first arrays of these names are the grains'.)
+  const auto bond = [&](const std::string& name) { return vtp.values<double>(name, 1).at(0); };
   CHECK(near(Vec3d(bond("centroid_x"), bond("centroid_y"), bond("centroid_z")),
              placeOf(Vec3d(-6.5, 1, 2.5))));
 }

@@ -31,10 +31,13 @@ void writeVtp(const std::string& path, const GrainNetwork& network, Interrupter*
            "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<PointData Scalars=\"grain_id\">\n");
   file.array("Int32", "grain_id", 1, 4 * grains,
              [&](OutputStream& out) { out.bytes(network.grains.data(), 4 * grains); });
+  file.array("UInt8", "color", 3, 3 * grains, [&](OutputStream& out) {
+    for (const Rgb& color : network.colors) out.value(color);
+  });
   for (const Column& column : network.grainColumns) addColumn(file, column);
   file.xml("</PointData>\n<CellData>\n");
   for (const size_t end : {size_t(0), size_t(1)})
-    file.array("Int32", end == 0 ? "first_grain" : "second_grain", 1, 4 * bonds,
+    file.array("Int32", end == 0 ? "first" : "second", 1, 4 * bonds,
                [&network, end](OutputStream& out) {
                  for (const auto& bond : network.bonds) out.value(network.grains[bond[end]]);
                });

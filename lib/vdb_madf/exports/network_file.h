@@ -11,7 +11,7 @@ namespace vdb_madf {
 
 /// Writes the network, whole or not at all, by ending:
 /// - .vtp: VTK points with the grains' columns and Int32 `grain_id`, lines with the bonds' columns
-///   and `first_grain`, `second_grain`
+///   and Int32 `first`, `second`; points have UInt8 `color`, too
 /// - .graphml: nodes `n<label>` with `grain_id`, x, y, z and the columns; undirected edges
 /// - .csv: a table in OpenPNM's naming: pore.coords[0..2], pore.<column>, throat.conns[0..1],
 ///   throat.<column>; the shorter of the two lists is filled up with empty cells

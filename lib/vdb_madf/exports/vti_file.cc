@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
@@ -15,6 +16,7 @@
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/grids/detail/grid_slabs.h"
 #include "vdb_madf/grids/detail/world_transform.h"
+#include "vdb_madf/labels/grain_colors.h"
 
 namespace vdb_madf {
 
@@ -35,6 +37,7 @@ class Slabs {
   Slabs(const Int32Grid& labels, const CoordBBox& box) : slabs_(labels.tree(), box), box_(box) {}
 
   size_t count() const { return size_t(box_.dim().z() + kSlab - 1) / kSlab; }
+  uint64_t voxels() const { return uint64_t(box_.volume()); }
   CoordBBox slabBox(size_t slab) const {
     const int z = box_.min().z() + int(slab) * kSlab;
     return detail::slicesOf(box_, z, std::min(kSlab, box_.max().z() - z + 1));
@@ -51,8 +54,24 @@ class Slabs {
   CoordBBox box_;
 };
 
-std::string deflated(const std::vector<int32_t>& values) {
-  const uLong bytes = uLong(4 * values.size());
+/// Of the voxels; background is black.
+std::vector<Rgb> colorsOf(const std::vector<int32_t>& labels, const GrainColors& colors) {
+  std::vector<Rgb> result(labels.size());
+  int32_t last = 0;
+  Rgb color{};
+  for (size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] != last) {
+      last = labels[i];
+      color = last > 0 ? colors.colorOf(last) : Rgb{};
+    }
+    result[i] = color;
+  }
+  return result;
+}
+
+template <typename T>
+std::string deflated(const std::vector<T>& values) {
+  const uLong bytes = uLong(sizeof(T) * values.size());
   std::string result(compressBound(bytes), '\0');
   uLongf length = uLongf(result.size());
   if (compress2(reinterpret_cast<Bytef*>(result.data()), &length,
@@ -63,15 +82,31 @@ std::string deflated(const std::vector<int32_t>& values) {
   return result;
 }
 
-detail::VtkFile::Blocks deflatedBlocks(const Slabs& slabs, Interrupter* interrupter) {
+/// An array of cell data: valuesOf(labels of a slab) for each slab.
+template <typename ValuesOf>
+void addArray(detail::VtkFile& file, const Slabs& slabs, bool compressed, const std::string& type,
+              const std::string& name, int components, Interrupter* interrupter,
+              const ValuesOf& valuesOf) {
+  const uint64_t bytes = sizeof valuesOf({})[0];
+  if (!compressed) {
+    file.array(type, name, components, bytes * slabs.voxels(),
+               [=, &slabs](detail::OutputStream& out) {
+                 for (size_t slab = 0; slab < slabs.count(); ++slab) {
+                   const auto values = valuesOf(slabs.read(slab));
+                   out.bytes(values.data(), bytes * values.size());
+                 }
+               });
+    return;
+  }
   detail::VtkFile::Blocks blocks;
   blocks.data.resize(slabs.count());
   detail::parallelFor(slabs.count(), 1, interrupter, [&](size_t begin, size_t end) {
-    for (size_t slab = begin; slab < end; ++slab) blocks.data[slab] = deflated(slabs.read(slab));
+    for (size_t slab = begin; slab < end; ++slab)
+      blocks.data[slab] = deflated(valuesOf(slabs.read(slab)));
   });
-  blocks.wholeBytes = 4 * uint64_t(slabs.slabBox(0).volume());
-  blocks.lastBytes = 4 * uint64_t(slabs.slabBox(slabs.count() - 1).volume());
-  return blocks;
+  blocks.wholeBytes = bytes * uint64_t(slabs.slabBox(0).volume());
+  blocks.lastBytes = bytes * uint64_t(slabs.slabBox(slabs.count() - 1).volume());
+  file.compressedArray(type, name, components, std::move(blocks));
 }
 
 std::string triple(const openvdb::Vec3d& v) {
@@ -96,16 +131,11 @@ void writeVti(const std::string& path, const Int32Grid& labels, const CoordBBox&
            triple(world.origin - openvdb::Vec3d(0.5 * world.edge)) + "\" Spacing=\"" +
            triple(openvdb::Vec3d(world.edge)) + "\">\n<Piece Extent=\"" + extent +
            "\">\n<CellData Scalars=\"grain_id\">\n");
-  if (compressed) {
-    file.compressedArray("Int32", "grain_id", 1, deflatedBlocks(slabs, interrupter));
-  } else {
-    file.array("Int32", "grain_id", 1, 4 * uint64_t(box.volume()), [&](detail::OutputStream& out) {
-      for (size_t slab = 0; slab < slabs.count(); ++slab) {
-        const std::vector<int32_t> values = slabs.read(slab);
-        out.bytes(values.data(), 4 * values.size());
-      }
-    });
-  }
+  const GrainColors colors = grainColors(labels, interrupter);
+  addArray(file, slabs, compressed, "Int32", "grain_id", 1, interrupter,
+           [](std::vector<int32_t> ids) { return ids; });
+  addArray(file, slabs, compressed, "UInt8", "color", 3, interrupter,
+           [&colors](const std::vector<int32_t>& ids) { return colorsOf(ids, colors); });
   file.xml("</CellData>\n</Piece>\n</ImageData>\n");
   file.write(path, interrupter);
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "vdb_madf/grids/detail/world_transform.h"
+#include "vdb_madf/labels/grain_colors.h"
 #include "vdb_madf/measure/columns.h"
 
 namespace vdb_madf {
@@ -23,9 +24,11 @@ std::vector<GrainNetwork::Column> inWorld(std::vector<MeasureColumn> columns,
   std::vector<GrainNetwork::Column> result;
   for (MeasureColumn& column : columns) {
     if (leftOut.count(column.name)) continue;
+    const bool isBox = column.name.compare(0, 4, "box_") == 0;  // voxels, in the tables
+    const bool isPlace = isBox || column.kind == MeasureColumn::Kind::place;
     for (double& value : column.values) {
-      value = scaled(value, column.power, world.edge);
-      if (column.kind == MeasureColumn::Kind::place) value += world.origin[column.axis];
+      value = scaled(value, isBox ? 1 : column.power, world.edge);
+      if (isPlace) value += world.origin[column.axis];
     }
     result.push_back({std::move(column.name), std::move(column.values)});
   }
@@ -57,8 +60,9 @@ GrainNetwork grainNetwork(const Int32Grid& labels, const MeasureOptions& options
     faceArea.values.push_back(scaled(double(bond.faces), 2, world.edge));
     length.values.push_back((network.centers[second] - network.centers[first]).length());
   }
-  network.grainColumns = inWorld(grainColumns(measured.grains),
-                                 {"id", "centroid_x", "centroid_y", "centroid_z"}, world);
+  const GrainColors colors = grainColors(labels, interrupter);
+  for (const int32_t label : network.grains) network.colors.push_back(colors.colorOf(label));
+  network.grainColumns = inWorld(grainColumns(measured.grains), {"id"}, world);
   network.bondColumns = inWorld(bondColumns(measured.bonds), {"first", "second"}, world);
   network.bondColumns.push_back(std::move(faceArea));
   network.bondColumns.push_back(std::move(length));

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "vdb_madf/base/color.h"
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/measure/measure.h"
 
@@ -21,6 +22,7 @@ struct GrainNetwork {
   };
   std::vector<int32_t> grains;                 ///< labels, ascending
   std::vector<openvdb::Vec3d> centers;         ///< centroids of the grains, world
+  std::vector<Rgb> colors;                     ///< of the grains, by grainColors()
   std::vector<std::array<uint32_t, 2>> bonds;  ///< positions in `grains`, first < second; sorted
   std::vector<Column> grainColumns, bondColumns;
   int64_t contactsLeftOut = 0;  ///< pairs of grains with too few faces for a bond
@@ -31,8 +33,8 @@ struct GrainNetwork {
 /// places are in world units. NaN: not known (no background; an interface too small for a
 /// curvature).
 ///
-/// Columns are those of columns.h in their order, but for what `grains`, `centers` and `bonds` hold.
-/// Bonds have two more: `face_area` (of the voxel faces: overestimates oblique bonds) and `length`
+/// Columns are those of columns.h in their order, but for the labels, which `grains` and `bonds`
+/// hold. `box_min` and `box_max` are the places of the outermost voxels (their centers). Bonds have two more: `face_area` (of the voxel faces: overestimates oblique bonds) and `length`
 /// (between the centroids).
 /// @throw InvalidInput if the transform is not linear with cubic voxels, or as measure();
 ///   Interrupted.
