@@ -207,6 +207,26 @@ TEST_CASE("cli: labels in a TIFF are uint16, in other formats int32", "[cli]") {
   }
 }
 
+TEST_CASE("cli: a header of a RAW file is skipped", "[cli]") {
+  const Bench bench;
+  bench.write("plain.raw", ramp());
+  bench.write("headed.raw", "a header of any kind" + ramp());
+  const std::string dims = " --dims 8x1x1 --type uint8";
+  bench.mustRun("convert headed.raw out.raw --skip 20" + dims);
+  CHECK(bench.bytes("out.raw") == ramp());
+  bench.mustRun("convert headed.raw out.raw --dims 3x1x1 --type uint16 --big-endian --skip 22");
+  CHECK(bench.bytes("out.raw") == std::string("\3\2\5\4\7\6", 6));
+  bench.mustRun("compare headed.raw headed.raw --skip 20" + dims);
+  for (const auto& [skip, says] : {std::pair<const char*, const char*>{"", "a header of 20 bytes"},
+                                   {" --skip 19", "a header of 20 bytes"},
+                                   {" --skip 21", "20 bytes"},
+                                   {" --skip 99", "99 are to be skipped"}}) {
+    const Outcome outcome = bench.run("info headed.raw" + dims + skip);
+    CHECK(outcome.exitCode == 1);
+    CHECK(outcome.err.find(says) != std::string::npos);
+  }
+}
+
 TEST_CASE("cli: render writes a PNG", "[cli]") {
   const Bench bench;
   bench.mustRun(kSpheres + "s.vdb");

@@ -168,6 +168,7 @@ void addCompare(Verb command, Common& common, Action& action) {
     for (InputOptions* input : {&o->truth, &o->test}) {
       input->sampleType = o->truth.sampleType;
       input->bigEndian = o->truth.bigEndian;
+      input->bytesToSkip = o->truth.bytesToSkip;
     }
     o->test.size = o->truth.size;
     for (InputOptions* input : {&o->truth, &o->test})

@@ -28,6 +28,7 @@ struct InputOptions {
   std::string dims, type;     ///< of a RAW file; `type` of the output if the input is not RAW
   bool typeIsOfInput = true;  ///< nothing but a RAW input takes a `type`
   bool bigEndian = false;
+  std::string skip;  ///< of a RAW file, bytes before its samples
   std::string phase, threshold, range;
   bool invert = false;
   int longestSide = 0;  ///< see VolumeOptions
@@ -36,6 +37,7 @@ struct InputOptions {
   // Filled by parse().
   std::optional<Coord> size;
   std::optional<SampleType> sampleType;
+  uint64_t bytesToSkip = 0;
   std::optional<Selection> selection;
   std::optional<VoxelSize> voxelSize;
   std::optional<CoordBBox> domain;

@@ -44,7 +44,7 @@ const char* optionFor(Hint hint) {
     case Hint::none:
       break;
     case Hint::rawLayout:
-      return " (--dims, --type)";
+      return " (--dims, --type, --skip)";
     case Hint::dataset:
       return " (--dataset)";
     case Hint::voxelSize:
@@ -90,7 +90,7 @@ int run(int argc, char** argv) {
                    kVersion + optionalFormats());
   Verb command = line.command();
   command.footer(
-      "vdb_madf VERB --help explains a verb.\nExample:\n"
+      "vdb_madf help VERB explains a verb.\nExample:\n"
       "  vdb_madf segment scan.tif grains.vdb --phase 1 --voxel-size 8.5um");
 
   Common common;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,11 +13,12 @@
 
 namespace vdb_madf {
 
-/// How to read a headerless file.
+/// How to read a file whose header is unknown or missing.
 struct RawLayout {
   ImageSize size;
   SampleType type = SampleType::uint8;
   bool bigEndian = false;
+  uint64_t skip = 0;  ///< bytes before the first sample: a header
 };
 
 /// Opens TIFF (multi-page, BigTIFF), MHD/MHA, NRRD, npy, ISQ, NIfTI-1, vol/longvol, PyHST's vol,

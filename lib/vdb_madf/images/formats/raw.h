@@ -12,7 +12,7 @@
 
 namespace vdb_madf::detail {
 
-/// Samples without a header.
+/// Samples without a header, or after one of a known length; nothing follows them.
 std::unique_ptr<ImageReader> openRaw(std::unique_ptr<InputFile> file, const RawLayout& layout);
 std::unique_ptr<ImageWriter> createRaw(const std::string& path, const ImageInfo& info);
 
