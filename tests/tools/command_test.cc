@@ -46,6 +46,9 @@ TEST_CASE("cli: help names every verb and gives an example", "[cli]") {
   const bool isBuiltIn = bench.run("info a.h5").err.find("libhdf5-dev") == std::string::npos;
   CHECK((version.find("\nHDF5 is read\n") != std::string::npos) == isBuiltIn);
   CHECK((version.find("\nHDF5 is not read: ") != std::string::npos) != isBuiltIn);
+  CHECK(bench.mustRun("help") == help);
+  CHECK(bench.mustRun("help segment") == bench.mustRun("segment --help"));
+  CHECK(bench.mustRun("help generate snow") == bench.mustRun("generate snow --help"));
 }
 
 TEST_CASE("cli: generate makes the same file of the same seed", "[cli]") {

@@ -189,6 +189,25 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
   for (const auto& [arguments, says] : cases) refuses(bench, kWrongUsage, arguments, {says});
 }
 
+TEST_CASE("cli: a misspelt verb or option is named first, with what was likely meant", "[cli]") {
+  const Bench bench;
+  const std::pair<const char*, const char*> cases[] = {
+      {"segmnt a.tif o.vdb", "there is no verb segmnt: did you mean segment?"},
+      {"sgement --help", "there is no verb sgement: did you mean segment?"},
+      {"help convrt", "there is no verb convrt: did you mean convert?"},
+      {"generate sphere x.vdb", "there is no verb sphere: did you mean spheres?"},
+      {"segment a.tif o.vdb --treshold 3",
+       "there is no option --treshold: did you mean --threshold?"},
+      {"segment a.tif --treshold 3", "there is no option --treshold: did you mean --threshold?"},
+      {"segment a.tif o.vdb --voxelsize=3um",
+       "there is no option --voxelsize: did you mean --voxel-size?"},
+      {"segment a.tif o.vdb --thresh 1", "did you mean --threshold?"},
+      {"segment a.tif o.vdb more and more", "not expected: more and more (see"}};
+  for (const auto& [arguments, says] : cases) refuses(bench, kWrongUsage, arguments, {says});
+  for (const char* far : {"frobnicate a b", "segment a.tif o.vdb --frobnicate"})
+    CHECK(bench.run(far).err.find("did you mean") == std::string::npos);
+}
+
 TEST_CASE("cli: an empty argument is an unset variable, not a default", "[cli]") {
   const Bench bench;
   bench.mustRun("generate snow s.tif --size 16 --length 6");

@@ -6,6 +6,8 @@
 #include <CLI/CLI.hpp>
 #include <utility>
 
+#include "nearest_name.h"
+
 namespace vdb_madf::tools {
 
 namespace {
@@ -14,6 +16,57 @@ std::string givenBelow(const CLI::App& app) {
   const std::string name = app.get_name();
   const std::vector<CLI::App*> verbs = app.get_subcommands();
   return verbs.empty() ? name : name + " " + givenBelow(*verbs.front());
+}
+
+/// The innermost verb that was given.
+const CLI::App& lastVerb(const CLI::App& app) {
+  const std::vector<CLI::App*> verbs = app.get_subcommands();
+  return verbs.empty() ? app : lastVerb(*verbs.front());
+}
+
+std::string didYouMean(const std::string& given, const std::vector<std::string>& names) {
+  const auto name = nearestName(given, names);
+  return name ? ": did you mean " + *name + "?" : "";
+}
+
+std::string unknownOption(const CLI::App& verb, const std::string& argument) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : verb.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  const std::string given = argument.substr(0, argument.find('='));
+  return "there is no option " + given + didYouMean(given, names);
+}
+
+std::string unknownVerb(const CLI::App& app, const std::string& given) {
+  std::vector<std::string> names;
+  for (const CLI::App* verb : app.get_subcommands(nullptr)) names.push_back(verb->get_name());
+  return "there is no verb " + given + didYouMean(given, names);
+}
+
+/// What is wrong with the arguments that nothing took, the likeliest cause first: a misspelt verb,
+/// then a misspelt option, whose value may have been taken for something else. Empty if nothing is
+/// left over.
+std::string unexpected(const CLI::App& app) {
+  const std::vector<std::string> arguments = app.remaining(true);
+  if (arguments.empty()) return "";
+  const CLI::App& verb = lastVerb(app);
+  if (!verb.get_subcommands(nullptr).empty() && arguments.front().front() != '-')
+    return unknownVerb(verb, arguments.front());
+  for (const std::string& argument : arguments)
+    if (argument.size() > 1 && argument.front() == '-') return unknownOption(verb, argument);
+  std::string list;
+  for (const std::string& argument : arguments) list += (list.empty() ? "" : " ") + argument;
+  return "not expected: " + list;
+}
+
+/// In the order in which the parser takes them, the last first. "help VERB" is "VERB --help".
+std::vector<std::string> argumentsOf(int argc, char** argv) {
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  if (!arguments.empty() && arguments.front() == "help") {
+    arguments.erase(arguments.begin());
+    arguments.push_back("--help");
+  }
+  return {arguments.rbegin(), arguments.rend()};
 }
 
 }  // namespace
@@ -122,13 +175,16 @@ Verb CommandLine::command() {
 
 std::optional<std::string> CommandLine::parse(int argc, char** argv) {
   try {
-    app_->parse(argc, argv);
+    app_->parse(argumentsOf(argc, argv));
   } catch (const CLI::CallForHelp&) {
-    return app_->help();
+    const std::string unknown = app_->get_subcommands().empty() ? unexpected(*app_) : "";
+    if (unknown.empty()) return app_->help();
+    throw WrongUsage(unknown + " (see " + given() + " --help)");
   } catch (const CLI::CallForVersion& version) {
     return version.what() + std::string("\n");
   } catch (const CLI::ParseError& error) {
-    throw WrongUsage(std::string(error.what()) + " (see " + given() + " --help)");
+    const std::string unknown = unexpected(*app_);
+    throw WrongUsage((unknown.empty() ? error.what() : unknown) + " (see " + given() + " --help)");
   }
   return std::nullopt;
 }

@@ -37,9 +37,9 @@ void InputOptions::addRaw(Verb verb) {
   verb.option("--type", type,
               "RAW input: its sample type (" + typeNames() + "); otherwise the output's");
   verb.flag("--big-endian", bigEndian, "RAW input: most significant byte first");
-  verb.option("--dataset", dataset, "Zarr or HDF5 input: the array to read").typeName("NAME");
   verb.option("--skip", skip, "RAW input: bytes before the first sample, a header")
       .typeName("BYTES");
+  verb.option("--dataset", dataset, "Zarr or HDF5 input: the array to read").typeName("NAME");
 }
 
 void InputOptions::addSelection(Verb verb) {
@@ -68,9 +68,9 @@ void InputOptions::parse() {
   if (typeIsOfInput && sampleType && !size)
     throw WrongUsage("--type describes a RAW input: give --dims too");
   if (bigEndian && !size) throw WrongUsage("--big-endian describes a RAW input: give --dims too");
-  if (size && !sampleType) throw WrongUsage("a RAW input needs --type: " + typeNames());
   if (!skip.empty() && !size) throw WrongUsage("--skip describes a RAW input: give --dims too");
   if (!skip.empty()) bytesToSkip = uint64_t(parseCount(skip, "--skip"));
+  if (size && !sampleType) throw WrongUsage("a RAW input needs --type: " + typeNames());
   if (int(!phase.empty()) + int(!threshold.empty()) + int(!range.empty()) > 1)
     throw WrongUsage("give only one of --phase, --threshold and --range");
   if (!phase.empty()) selection = Selection::phase(parseNumber(phase, "--phase"));
