@@ -66,10 +66,11 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"generate", "generate --help"},
       {"generate cubes x.vdb", "cubes"},
       {"segment", "IN"},
-      {"segment in.vdb", "OUT.vdb"},
+      {"segment in.vdb", "OUT"},
       {"segment in.vdb out.vdb more", "more"},
       {"segment in.vdb out.vdb --frobnicate", "--frobnicate"},
-      {"segment in.vdb out.tif", "out.tif"},
+      {"segment in.vdb out.jpg", "out.jpg"},
+      {"segment in.vdb out.tif --keep balls", "--keep"},
       {"segment in.vdb in.vdb", "in.vdb"},
       {"segment in.vdb out.vdb --json in.vdb", "in.vdb"},
       {"segment in.vdb out.vdb --json out.vdb", "out.vdb"},
@@ -130,7 +131,7 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"convert in.raw in.mhd --dims 4x4x4 --type uint8", "in.raw"},
       {"convert in.tif out.raw --out-type text", "text"},
       {"convert in.tif out.vdb --out-type int32", "--out-type"},
-      {"remerge in.vdb out.tif", "out.tif"},
+      {"remerge in.vdb out.jpg", "out.jpg"},
       {"remerge in.vdb in.vdb", "in.vdb"},
       {"remerge in.vdb out.vdb --theta 2", "--theta"},
       {"remerge in.vdb out.vdb --gamma 2", "--gamma"},
@@ -462,7 +463,7 @@ TEST_CASE("cli: segment refuses what needs more memory than allowed", "[cli]") {
   bench.mustRun("segment s.vdb g.vdb --max-memory 1.5GiB");
   for (const std::string size : {"1.5 GiB", "2gib", "2gb", "900M", "1e9B", "1e6 kb"})
     CHECK(bench.run({"segment", "s.vdb", "g.vdb", "--max-memory", size}).exitCode == 0);
-  refuses(bench, kWrongUsage, "segment s.vdb", {"OUT.vdb"});
+  refuses(bench, kWrongUsage, "segment s.vdb", {"OUT is required"});
 }
 
 TEST_CASE("cli: an image that is too long is refused before its samples are read", "[cli]") {

@@ -128,6 +128,24 @@ TEST_CASE("cli: remerge equals a fresh segmentation", "[cli]") {
   }
 }
 
+TEST_CASE("cli: segment and remerge write images as convert does", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSnow + "s.vdb");
+  bench.mustRun("segment s.vdb g.vdb --keep manifold");
+  bench.mustRun("remerge g.vdb r.vdb --theta -0.5");
+  for (const std::string ending : {".tif", ".raw", ".mha", ".nrrd", ".npy"}) {
+    CAPTURE(ending);
+    const std::string said = bench.mustRun("segment s.vdb segmented" + ending);
+    CHECK(said.find("segmented" + ending + ": grid 'grain', 48x48x48 voxels of type ") == 0);
+    bench.mustRun("convert g.vdb wanted" + ending);
+    CHECK(bench.bytes("segmented" + ending) == bench.bytes("wanted" + ending));
+    bench.mustRun("remerge g.vdb remerged" + ending + " --theta -0.5");
+    bench.mustRun("convert r.vdb wanted" + ending);
+    CHECK(bench.bytes("remerged" + ending) == bench.bytes("wanted" + ending));
+  }
+  CHECK(Json::parse(bench.mustRun("segment s.vdb x.tif --json -")).at("output") == "x.tif");
+}
+
 TEST_CASE("cli: sweep gives a line for each choice, equal to its segmentation", "[cli]") {
   const Bench bench;
   bench.mustRun(kSnow + "s.vdb");

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <iostream>
-#include <limits>
 #include <memory>
-#include <type_traits>
 
 #include "command.h"
+#include "grid_image.h"
 #include "input_options.h"
 #include "outputs.h"
 #include "parse.h"
@@ -20,8 +19,6 @@
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/write_vdb.h"
 #include "vdb_madf/volumes/image_box.h"
-#include "vdb_madf/volumes/label_type.h"
-#include "vdb_madf/volumes/write_image.h"
 
 namespace vdb_madf::tools {
 
@@ -33,53 +30,15 @@ struct Options {
   std::optional<SampleType> parsedOutType;
 };
 
-/// The smallest sample type that surely holds a grid's values. Programs that look at TIFF take
-/// signed samples for something else than labels, if they take them at all.
-SampleType naturalType(const openvdb::GridBase& grid, const std::string& path) {
-  if (grid.isType<Int32Grid>() && hasTiffEnding(path))
-    return labelType(static_cast<const Int32Grid&>(grid));
-  const std::string type = grid.valueType();
-  if (grid.isType<MaskGrid>() || type == "bool") return SampleType::uint8;
-  if (type == "float") return SampleType::float32;
-  if (type == "double") return SampleType::float64;
-  return SampleType::int32;
-}
-
 std::optional<SampleType> outputType(const Options& o) {
   if (o.parsedOutType) return o.parsedOutType;
   return o.input.size ? std::nullopt : o.input.sampleType;
 }
 
-/// A RAW file does not tell these itself.
-void report(const Options& o, const Common& common, const std::string& what, const Coord& size,
-            SampleType type) {
-  common.progress->end();
-  if (common.quiet) return;
-  std::cout << o.out << ": " << what << ", " << size.x() << "x" << size.y() << "x" << size.z()
-            << " voxels of type " << sampleTypeName(type) << "\n";
-}
-
-void writeGridAsImage(const Options& o, const Common& common, const openvdb::GridBase& grid) {
-  std::optional<CoordBBox> box = storedDomain(grid);
-  if (!box) {
-    box = grid.evalActiveVoxelBoundingBox();
-    if (grid.activeVoxelCount() == 0)
-      throw InvalidInput(o.input.path + ": grid '" + grid.getName() +
-                         "' is empty and has no domain: there is nothing to write; give --domain");
-    if (!common.quiet)
-      std::cout << o.out
-                << ": no known domain, so the active bounding box is written; its origin is "
-                << box->min() << "\n";
-  }
-  const SampleType type = outputType(o).value_or(naturalType(grid, o.out));
-  writeImage(o.out, grid, *box, type, common.progress);
-  report(o, common, "grid '" + grid.getName() + "'", box->dim(), type);
-}
-
 void convertMask(const Options& o, const Common& common) {
   const MaskGrid::Ptr object = loadObject(o.input, common.progress);
   if (!hasVdbEnding(o.out)) {
-    writeGridAsImage(o, common, *object);
+    writeGridAsImage(o.out, *object, outputType(o), o.input.path, common);
     return;
   }
   const BoolGrid::Ptr grid = toBoolGrid(*object);
@@ -88,7 +47,7 @@ void convertMask(const Options& o, const Common& common) {
   common.progress->end();
   const auto voxels = int64_t(object->activeVoxelCount());
   if (!common.quiet)
-    std::cout << o.out << ": " << voxels << " object voxels" << hintIfEmpty(voxels) << "\n";
+    std::cout << o.out << ": " << counted(voxels, "object voxel") << hintIfEmpty(voxels) << "\n";
 }
 
 void copyVdb(const Options& o, const Common& common) {
@@ -99,7 +58,7 @@ void copyVdb(const Options& o, const Common& common) {
     if (o.boundary != "auto") setBoundary(*grid, parseBoundary(o.boundary));
   }
   if (!hasVdbEnding(o.out)) {
-    writeGridAsImage(o, common, *grids[0]);
+    writeGridAsImage(o.out, *grids[0], outputType(o), o.input.path, common);
     return;
   }
   writeVdb(o.out, {grids.begin(), grids.end()}, common.progress);
@@ -121,7 +80,7 @@ void run(const Options& o, const Common& common) {
     const auto image = openVolumeImage(o.input.path, o.input.volume(common.progress));
     const SampleType type = outputType(o).value_or(image->info().type);
     copyImage(o.out, *image, type, o.input.voxelSize, common.progress);
-    report(o, common, "all values", toCoord(image->info().size), type);
+    reportImage(o.out, "all values", toCoord(image->info().size), type, common);
   }
 }
 
@@ -133,7 +92,8 @@ void addConvert(Verb command, Common& common, Action& action) {
       addVerb(command, common, "convert", "any readable volume to any writable volume",
               "vdb_madf convert scan.raw ice.vdb --dims 301x301x251 --type uint8 --threshold 128");
   verb.option("IN", o->input.path, "any readable volume").required();
-  verb.option("OUT", o->out, ".vdb (a mask, of an image), .tif, .raw, .mhd, .mha, .nrrd, .npy")
+  verb.option("OUT", o->out,
+              ".vdb (a mask, of an image), .tif, .raw, .mhd, .mha, .nrrd, .npy")
       .required();
   o->input.addSelection(verb);
   o->input.addRaw(verb);
@@ -153,8 +113,7 @@ void addConvert(Verb command, Common& common, Action& action) {
       o->parsedOutType = sampleTypeFromName(o->outType);
       if (!o->parsedOutType) throw WrongUsage("--out-type " + o->outType + ": no such sample type");
     }
-    if (!hasVdbEnding(o->out) && !isImageEnding(o->out))
-      throw WrongUsage(o->out + ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd or .npy");
+    checkVolumeEnding(o->out);
     action = [o, &common] { run(*o, common); };
   });
 }

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "command.h"
+#include "grid_image.h"
 #include "input_options.h"
 #include "merge_options.h"
 #include "outputs.h"
@@ -41,6 +42,11 @@ void run(const Options& o, const Common& common) {
   const Int32Grid::Ptr grain =
       withFileName(o.input.path, [&] { return remerge(*manifold, merge, tidy, common.progress); });
   const int64_t grains = *grainCount(*grain);
+  if (!hasVdbEnding(o.out)) {
+    writeGridAsImage(o.out, *grain, std::nullopt, o.input.path, common);
+    if (!common.quiet) std::cout << o.out << ": " << counted(grains, "grain") << "\n";
+    return;
+  }
   // Every other grid of the segmentation goes along, told of the new merging.
   std::vector<openvdb::GridBase::ConstPtr> out{grain};
   for (const auto& grid : grids) {
@@ -50,7 +56,7 @@ void run(const Options& o, const Common& common) {
   }
   writeVdb(o.out, out, common.progress);
   common.progress->end();
-  if (!common.quiet) std::cout << o.out << ": " << grains << " grains\n";
+  if (!common.quiet) std::cout << o.out << ": " << counted(grains, "grain") << "\n";
 }
 
 }  // namespace
@@ -61,15 +67,15 @@ void addRemerge(Verb command, Common& common, Action& action) {
                       "merge stored manifolds anew, without distances and power map",
                       "vdb_madf remerge grains.vdb coarser.vdb --theta -0.7");
   verb.option("SEG.vdb", o->input.path, "made by segment with --keep manifold").required();
-  verb.option("OUT.vdb", o->out, "gets the new 'grain' and all other grids").required();
+  verb.option("OUT", o->out, "gets the new labels; a .vdb all other grids too").required();
   o->merge.add(verb);
   addTidy(verb, o->tidy);
   verb.onParsed([o, &common, &action] {
     o->merge.parse();
     parseTidy(o->tidy);
-    if (!hasVdbEnding(o->out)) throw WrongUsage(o->out + ": the output's ending must be .vdb");
     o->input.outputs = {o->out};
     o->input.parse();
+    checkVolumeEnding(o->out);
     action = [o, &common] { run(*o, common); };
   });
 }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "command.h"
+#include "grid_image.h"
 #include "input_options.h"
 #include "json_file.h"
 #include "merge_options.h"
@@ -48,9 +49,11 @@ void parse(SegmentArguments& o) {
   o.input.longestSide = kMaxExtent;
   o.input.parse();
   if (!o.maxMemory.empty()) o.segment.maxMemory = parseMemory(o.maxMemory);
-  if (o.out.empty() && !o.dryRun) throw WrongUsage("OUT.vdb is required (or --dry-run)");
-  if (!o.out.empty() && !hasVdbEnding(o.out))
-    throw WrongUsage(o.out + ": the output's ending must be .vdb");
+  if (o.out.empty() && !o.dryRun) throw WrongUsage("OUT is required (or --dry-run)");
+  if (!o.out.empty()) checkVolumeEnding(o.out);
+  if (!o.out.empty() && !hasVdbEnding(o.out) && !o.keep.empty())
+    throw WrongUsage("--keep is for .vdb files, and " + o.out +
+                     " takes the labels alone: leave it out, or write a .vdb and convert it");
   if (o.paper) {
     for (const std::string* given :
          {&o.merge.mode, &o.merge.adjacency, &o.merge.delta, &o.fillHoles, &o.tidy})
@@ -149,7 +152,13 @@ void run(const SegmentArguments& o, const Common& common) {
     if (grid) grids.push_back(grid);
   if (options.keepBalls)
     for (const Int32Grid::Ptr& grid : ballGrids(s)) grids.push_back(grid);
-  writeVdb(o.out, grids, common.progress);
+  if (hasVdbEnding(o.out)) {
+    writeVdb(o.out, grids, common.progress);
+  } else {
+    Common heard = common;
+    heard.quiet |= jsonFile.isStandardOutput();
+    writeGridAsImage(o.out, *s.grain, std::nullopt, o.input.path, heard);
+  }
 
   timing.total = secondsSince(start);
   timing.write = timing.total - timing.read - timing.measure;
@@ -169,7 +178,8 @@ void addSegment(Verb command, Common& common, Action& action) {
   Verb verb = addVerb(command, common, "segment", "cut the object into grains",
                       "vdb_madf segment scan.tif grains.vdb --phase 1 --voxel-size 8.5um");
   verb.option("IN", o->input.path, "any readable volume").required();
-  verb.option("OUT.vdb", o->out, "gets the Int32 grid 'grain'");
+  verb.option("OUT", o->out,
+              "gets the labels: .vdb (Int32 grid 'grain'), or an image: .tif, .npy ...");
   o->input.addSelection(verb);
   o->input.addRaw(verb);
   o->input.addVoxelSize(verb);
