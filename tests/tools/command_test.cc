@@ -210,6 +210,65 @@ TEST_CASE("cli: labels in a TIFF are uint16, in other formats int32", "[cli]") {
   }
 }
 
+TEST_CASE("cli: labels of another program become a VDB that all verbs read", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSpheres + "s.tif");
+  const std::string said = bench.mustRun("convert s.truth.tif l.vdb --labels --voxel-size 10um");
+  CHECK(said.find("l.vdb: grid 'grain'") == 0);
+  const Json grid = gridOf(infoOf(bench, "l.vdb"), "grain");
+  CHECK(grid.at("value_type") == "int32");
+  CHECK(grid.at("metadata").at("madf_domain_max") == "[39, 39, 39]");
+  CHECK(grid.at("voxel_size_mm") == 0.01);
+  bench.mustRun("convert l.vdb back.raw");
+  bench.mustRun("convert s.truth.tif there.raw --out-type int32");
+  CHECK(bench.bytes("back.raw") == bench.bytes("there.raw"));
+
+  bench.mustRun("measure l.vdb tables");
+  bench.mustRun("measure s.truth.tif wanted --voxel-size 10um");
+  for (const std::string table : {"/grains.csv", "/bonds.csv", "/sample.json"})
+    CHECK(bench.bytes("tables" + table) == bench.bytes("wanted" + table));
+  bench.mustRun("export l.vdb m.ply");
+  bench.mustRun("render l.vdb m.png --size 64");
+  bench.mustRun("compare l.vdb s.truth.tif");
+  // Balls that were not kept are those of a closed segmentation.
+  bench.mustRun("export l.vdb c.csv --as clumps");
+  bench.mustRun("segment s.tif g.vdb --keep balls --boundary closed --tidy 0");
+  bench.mustRun("segment s.tif without.vdb --boundary closed --tidy 0");
+  bench.mustRun("export g.vdb kept.csv --as clumps");
+  bench.mustRun("export without.vdb computed.csv --as clumps");
+  CHECK(bench.bytes("c.csv").size() > 100);
+  CHECK(bench.bytes("computed.csv") == bench.bytes("kept.csv"));
+
+  bench.write("v.raw", std::string({1, 0, 0, 0, -1, -1, -1, -1}));
+  Outcome outcome = bench.run("convert v.raw v.vdb --dims 2x1x1 --type int32 --labels");
+  CHECK(outcome.exitCode == 1);
+  CHECK(outcome.err.find("the label -1") != std::string::npos);
+  outcome = bench.run("convert v.raw v.vdb --dims 2x1x1 --type uint32 --labels");
+  CHECK(outcome.exitCode == 1);
+  CHECK(outcome.err.find("4294967295") != std::string::npos);
+  CHECK(bench.names().count("v.vdb") == 0);
+  bench.write("m.raw", std::string(8, '\1'));
+  CHECK(bench.mustRun("convert m.raw m.vdb --dims 2x2x2 --type uint8 --labels").find("mask?") !=
+        std::string::npos);
+  CHECK(bench.mustRun("measure m.raw mask --dims 2x2x2 --type uint8")
+            .find("mask: 1 grain, 0 bonds: is this a mask? segment it first\n") == 0);
+}
+
+TEST_CASE("cli: convert selects among the grid that it would copy", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSpheres + "s.vdb");
+  bench.mustRun("segment s.vdb g.vdb --keep distance,manifold");
+  bench.mustRun("convert g.vdb g.npy");
+  for (const std::string selection : {"--phase 2", "--threshold 2", "--range 1:2"}) {
+    bench.mustRun("convert g.vdb one.vdb " + selection);
+    bench.mustRun("convert g.npy wanted.vdb " + selection);
+    bench.mustRun("convert one.vdb one.raw");
+    bench.mustRun("convert wanted.vdb wanted.raw");
+    CHECK(bench.bytes("one.raw") == bench.bytes("wanted.raw"));
+    CHECK(bench.bytes("one.raw").find('\1') != std::string::npos);
+  }
+}
+
 TEST_CASE("cli: a header of a RAW file is skipped", "[cli]") {
   const Bench bench;
   bench.write("plain.raw", ramp());

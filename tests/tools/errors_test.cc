@@ -125,6 +125,8 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"segment in.raw out.vdb --type uint8", "--dims"},
       {"segment in.raw out.vdb --big-endian", "--dims"},
       {"convert in.tif out.jpg", "out.jpg"},
+      {"convert in.tif out.tif --labels", "--labels"},
+      {"convert in.tif out.vdb --labels --phase 1", "--labels"},
       {"segment in.raw out.vdb --skip 4", "--dims"},
       {"segment in.raw out.vdb --dims 4x4x4 --type uint8 --skip -4", "--skip"},
       {"convert in.tif in.tif", "in.tif"},

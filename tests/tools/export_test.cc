@@ -204,6 +204,5 @@ TEST_CASE("cli: export refuses what it cannot know or do", "[cli]") {
   refusal("g.vdb s.vdb/folder --as mesh", 1, "s.vdb/folder");
   refusal("g.vdb /dev/full --as mesh", 1, "/dev/full");
   refusal("none.vdb x.ply", 1, "none.vdb");
-  refusal("s.vdb c.txt --as clumps", 1, "--keep balls");
   CHECK(bench.names() == std::set<std::string>{"g.vdb", "s.vdb"});
 }

@@ -71,8 +71,8 @@ void print(const Comparison& c) {
               c.variationOfInformation, c.variationSplit, c.variationMerge);
   std::printf("grains found              %lld of %lld (mean intersection over union %.4f)\n",
               (long long)c.foundGrains, (long long)c.truthGrains, c.meanIntersectionOverUnion);
-  std::printf("splits, merges            %lld truth grains split, %lld test grains merged\n",
-              (long long)c.splits, (long long)c.merges);
+  std::printf("splits, merges            %s split, %s merged\n",
+              counted(c.splits, "truth grain").c_str(), counted(c.merges, "test grain").c_str());
   if (!sameTopology(c))
     std::printf(
         "note: the grids differ in topology; all but grains and their unions is compared over the "

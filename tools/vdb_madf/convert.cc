@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include <openvdb/tools/Count.h>
+
 #include <iostream>
 #include <memory>
 
@@ -27,6 +29,7 @@ namespace {
 struct Options {
   InputOptions input;
   std::string out, outType, boundary = "auto";
+  bool labels = false;
   std::optional<SampleType> parsedOutType;
 };
 
@@ -35,8 +38,16 @@ std::optional<SampleType> outputType(const Options& o) {
   return o.input.size ? std::nullopt : o.input.sampleType;
 }
 
+/// Values are chosen of the grid that would be copied: a label is a phase of the labels.
+InputOptions withGridOfValues(InputOptions input) {
+  const bool byValue = !(input.phase + input.threshold + input.range).empty();
+  if (byValue && input.gridName.empty() && isVdb(input))
+    input.gridName = chooseGrid(input, readVdbHeaders(input.path))->getName();
+  return input;
+}
+
 void convertMask(const Options& o, const Common& common) {
-  const MaskGrid::Ptr object = loadObject(o.input, common.progress);
+  const MaskGrid::Ptr object = loadObject(withGridOfValues(o.input), common.progress);
   if (!hasVdbEnding(o.out)) {
     writeGridAsImage(o.out, *object, outputType(o), o.input.path, common);
     return;
@@ -48,6 +59,27 @@ void convertMask(const Options& o, const Common& common) {
   const auto voxels = int64_t(object->activeVoxelCount());
   if (!common.quiet)
     std::cout << o.out << ": " << counted(voxels, "object voxel") << hintIfEmpty(voxels) << "\n";
+}
+
+/// Labels of another program become what `segment` writes, but for the method's own metadata.
+void convertLabels(const Options& o, const Common& common) {
+  const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
+  const auto range = openvdb::tools::minMax(labels->tree());
+  if (range.min() < 0)
+    throw InvalidInput(
+        o.input.path + ": has the label " + std::to_string(range.min()) +
+        "; grains have numbers above 0, and 0 is background: set negative ones to 0");
+  labels->setName("grain");
+  if (o.boundary != "auto") setBoundary(*labels, parseBoundary(o.boundary));
+  writeVdb(o.out, {labels}, common.progress);
+  common.progress->end();
+  if (common.quiet) return;
+  const int64_t voxels = int64_t(labels->activeVoxelCount());
+  std::cout << o.out << ": grid 'grain', " << counted(voxels, "labelled voxel");
+  if (voxels > 0) std::cout << ", largest label " << range.max();
+  if (voxels > 0 && range.min() == range.max())
+    std::cout << ", which all of them have: is this a mask? segment it";
+  std::cout << "\n";
 }
 
 void copyVdb(const Options& o, const Common& common) {
@@ -67,7 +99,9 @@ void copyVdb(const Options& o, const Common& common) {
 void run(const Options& o, const Common& common) {
   checkWritable(o.out);
   const bool fromVdb = isVdb(o.input);
-  if (o.input.selection || (!fromVdb && hasVdbEnding(o.out)))
+  if (o.labels)
+    convertLabels(o, common);
+  else if (o.input.selection || (!fromVdb && hasVdbEnding(o.out)))
     convertMask(o, common);
   else if (fromVdb)
     copyVdb(o, common);
@@ -93,10 +127,12 @@ void addConvert(Verb command, Common& common, Action& action) {
               "vdb_madf convert scan.raw ice.vdb --dims 301x301x251 --type uint8 --threshold 128");
   verb.option("IN", o->input.path, "any readable volume").required();
   verb.option("OUT", o->out,
-              ".vdb (a mask, of an image), .tif, .raw, .mhd, .mha, .nrrd, .npy")
+              ".vdb (of an image a mask, or see --labels), .tif, .raw, .mhd, .mha, .nrrd, .npy")
       .required();
   o->input.addSelection(verb);
   o->input.addRaw(verb);
+  verb.flag("--labels", o->labels,
+            "IN holds grains of another program: write them as labels, the Int32 grid 'grain'");
   verb.option("--out-type", o->outType, "sample type of the output").typeName("TYPE");
   o->input.addVoxelSize(verb);
   o->input.addDomain(verb);
@@ -107,6 +143,11 @@ void addConvert(Verb command, Common& common, Action& action) {
     o->input.outputs = {o->out};
     o->input.typeIsOfInput = hasVdbEnding(o->out);
     o->input.parse();
+    if (o->labels && !hasVdbEnding(o->out))
+      throw WrongUsage("--labels makes a .vdb; images keep their values in any case: leave it out");
+    if (o->labels && o->input.selection)
+      throw WrongUsage(
+          "--labels takes all values: leave out --phase, --threshold, --range, --invert");
     if (!o->outType.empty()) {
       if (hasVdbEnding(o->out))
         throw WrongUsage("--out-type is for images, and " + o->out + " is none: leave it out");

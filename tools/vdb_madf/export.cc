@@ -13,6 +13,7 @@
 #include "parse.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/base/memory.h"
 #include "vdb_madf/exports/clump_bonds.h"
 #include "vdb_madf/exports/clump_file.h"
 #include "vdb_madf/exports/hexahedra_file.h"
@@ -29,6 +30,7 @@
 #include "vdb_madf/measure/grain_network.h"
 #include "vdb_madf/measure/measure.h"
 #include "vdb_madf/method/ball_grids.h"
+#include "vdb_madf/method/segment.h"
 #include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/pictures/preview_volume.h"
 #include "vdb_madf/shapes/clumps.h"
@@ -179,6 +181,18 @@ bool isMeshOutput(const std::string& out) {
   return isMeshEnding(out) || !std::filesystem::path(out).has_extension();
 }
 
+/// The medial balls that were kept with the labels, else those of the labels' voxels. These are
+/// computed with air beyond the faces, so that none reaches beyond the scan.
+Int32Grid::Ptr ballsOf(const Options& o, const Common& common, const Int32Grid& labels) {
+  if (!o.input.size && isVdb(o.input))
+    if (const auto kept = storedBalls(readVdb(o.input.path, {}, common.progress))) return kept;
+  SegmentOptions options;
+  options.boundary = Boundary::closed;
+  options.keepBalls = true;
+  options.maxMemory = availableMemory();
+  return ballGrids(segment(*objectMask(labels), options, common.progress)).front();
+}
+
 /// Writes the tables of the bonds and of the cover, if they are asked for.
 /// @return the bonds
 std::vector<ClumpBond> exportClumpTables(const Options& o, const Common& common,
@@ -192,11 +206,7 @@ std::vector<ClumpBond> exportClumpTables(const Options& o, const Common& common,
 }
 
 void exportClumps(const Options& o, const Common& common, const Int32Grid& labels) {
-  if (o.input.size || !isVdb(o.input))
-    throw InvalidInput("clumps need the medial balls: segment with --keep balls into a VDB");
-  const auto grids = readVdb(o.input.path, {}, common.progress);
-  const Int32Grid::Ptr balls = storedBalls(grids);
-  if (!balls) throw InvalidInput("there is no grid 'balls': segment again with --keep balls");
+  const Int32Grid::Ptr balls = ballsOf(o, common, labels);
   const auto made = clumps(labels, *balls, o.clumps, common.progress);
   const auto bonds = exportClumpTables(o, common, labels, made);
   writeClumps(o.out, made, labels.transform(), bonds, common.progress);

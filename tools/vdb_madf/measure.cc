@@ -39,8 +39,10 @@ void parse(Options& o) {
 void print(const Options& o, const Measurements& m) {
   const std::string unit = m.voxelSize ? m.voxelSize->unit() : "voxel";
   const double length = m.voxelSize ? m.voxelSize->inUnit() : 1;
-  std::printf("%s: %s, %s\n", o.folder.c_str(), counted(int64_t(m.grains.size()), "grain").c_str(),
-              counted(int64_t(m.bonds.size()), "bond").c_str());
+  std::printf("%s: %s, %s%s\n", o.folder.c_str(),
+              counted(int64_t(m.grains.size()), "grain").c_str(),
+              counted(int64_t(m.bonds.size()), "bond").c_str(),
+              m.grains.size() == 1 ? ": is this a mask? segment it first" : "");
   if (!m.voxelSize)
     std::printf("  voxel size          unknown, so lengths are in voxels (give --voxel-size)\n");
   const std::optional<double>& density = o.tables.density;

@@ -129,7 +129,7 @@ void print(const SegmentArguments& o, const Common& common, const SegmentSummary
   const SegmentCounts& counts = summary.counts;
   const GrainSizes& sizes = summary.sizes;
   const auto count = [](int64_t number) { return (long long)number; };
-  std::printf("%s: %lld grains\n", o.out.c_str(), count(counts.grains));
+  std::printf("%s: %s\n", o.out.c_str(), counted(counts.grains, "grain").c_str());
   std::printf("  object           %lld voxels in %lld leaf nodes%s\n", count(counts.objectVoxels),
               count(counts.leaves), hintIfEmpty(counts.objectVoxels));
   if (summary.domain) std::printf("  porosity         %.2f %%\n", 100 * *summary.porosity());
@@ -143,12 +143,14 @@ void print(const SegmentArguments& o, const Common& common, const SegmentSummary
   if (summary.voxelSize)
     std::printf(" = %.4g, %.4g, %.4g um", um * sizes.d10, um * sizes.d50, um * sizes.d90);
   std::printf(" (equal volume, by volume)\n");
-  std::printf("  dust             %lld grains under 100 voxels, %.3f %% of the object\n",
-              count(sizes.dustGrains),
+  std::printf("  dust             %s under 100 voxels, %.3f %% of the object\n",
+              counted(sizes.dustGrains, "grain").c_str(),
               100 * double(sizes.dustVoxels) / std::max(1.0, double(counts.objectVoxels)));
-  std::printf("  flaws            %lld crumbs, %lld specks, %lld slivers, %lld grains in pieces\n",
-              count(summary.flaws.crumbs), count(summary.flaws.specks),
-              count(summary.flaws.slivers), count(summary.flaws.inPieces));
+  std::printf("  flaws            %s, %s, %s, %s in pieces\n",
+              counted(summary.flaws.crumbs, "crumb").c_str(),
+              counted(summary.flaws.specks, "speck").c_str(),
+              counted(summary.flaws.slivers, "sliver").c_str(),
+              counted(summary.flaws.inPieces, "grain").c_str());
   if (summary.fillHoles > 1)
     std::printf("  cavities         %lld under %lld voxels filled for the distance, %lld voxels\n",
                 count(counts.cavities), count(summary.fillHoles), count(counts.cavityVoxels));
