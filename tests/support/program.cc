@@ -46,7 +46,10 @@ struct Pipe {
 
 /// Between fork and exec: nothing but system calls.
 [[noreturn]] void become(char* const* arguments, const char* folder, const RunOptions& options,
-                         const Pipe& out, const Pipe& err) {
+                         const Pipe& in, const Pipe& out, const Pipe& err) {
+  const int from =
+      options.in.empty() ? in.ends[0] : ::open(options.in.c_str(), O_RDONLY | O_CLOEXEC);
+  ::dup2(from, STDIN_FILENO);
   const int to =
       options.out.empty() ? out.ends[1] : ::open(options.out.c_str(), O_WRONLY | O_CLOEXEC);
   ::dup2(to, STDOUT_FILENO);
@@ -79,12 +82,17 @@ Outcome Bench::run(const std::vector<std::string>& arguments, const RunOptions& 
   for (std::string& text : texts) argv.push_back(text.data());
   argv.push_back(nullptr);
 
-  Pipe out, err;
+  Pipe in, out, err;
+  // A pipe holds so much without a reader.
+  if (::write(in.ends[1], options.piped.data(), options.piped.size()) !=
+      ssize_t(options.piped.size()))
+    throw std::runtime_error("too much for a pipe");
+  in.closeWriting();
   const auto start = Clock::now();
   Clock::time_point signalled;
   const pid_t child = ::fork();
   if (child < 0) throw std::runtime_error("no process");
-  if (child == 0) become(argv.data(), folder_.path().c_str(), options, out, err);
+  if (child == 0) become(argv.data(), folder_.path().c_str(), options, in, out, err);
   out.closeWriting();
   err.closeWriting();
 

@@ -22,6 +22,8 @@ struct Outcome {
 
 /// How to run the program other than by its arguments.
 struct RunOptions {
+  std::string in;           ///< file for standard input; empty: see `piped`
+  std::string piped;        ///< what comes through a pipe there, at most 64 KiB
   std::string out;          ///< file or device for standard output, which is then not captured
   int64_t largestFile = 0;  ///< bytes; 0: no limit
   std::string interruptOn;  ///< send `signal` when a file appears whose name begins with this

@@ -289,6 +289,44 @@ TEST_CASE("cli: a header of a RAW file is skipped", "[cli]") {
   }
 }
 
+TEST_CASE("cli: volumes come from standard input and go to standard output", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate spheres s.raw --size 20 --count 3 --radius 4:5");
+  const std::string dims = " --dims 20x20x20 --type uint8";
+  bench.mustRun("convert s.raw s.vdb" + dims);
+  bench.mustRun("convert s.raw s.npy" + dims);
+  bench.mustRun("convert s.raw s.nrrd" + dims);
+  bench.mustRun("convert s.raw s.tif" + dims);
+  const auto piped = [&](const std::string& arguments, const std::string& bytes) {
+    RunOptions options;
+    options.piped = bytes;
+    const Outcome outcome = bench.run(arguments, options);
+    CHECK(outcome.err == "");
+    CHECK(outcome.exitCode == 0);
+    return outcome.out;
+  };
+  for (const std::string name : {"s.npy", "s.nrrd", "s.tif", "s.vdb"}) {
+    CAPTURE(name);
+    CHECK(piped("convert - raw:-", bench.bytes(name)) == bench.bytes("s.raw"));
+  }
+  CHECK(piped("convert - npy:-" + dims, bench.bytes("s.raw")) == bench.bytes("s.npy"));
+  CHECK(piped("convert - nrrd:- --skip 1" + dims, "x" + bench.bytes("s.raw")) ==
+        bench.bytes("s.nrrd"));
+  bench.mustRun("segment s.vdb g.npy --boundary closed");
+  CHECK(piped("segment - npy:- --boundary closed", bench.bytes("s.npy")) == bench.bytes("g.npy"));
+  CHECK(Json::parse(piped("info - --json -", bench.bytes("s.npy"))).at("size") ==
+        Json({20, 20, 20}));
+  CHECK(piped("sweep - - --theta -1", bench.bytes("s.npy")).find("gamma,") == 0);
+  CHECK(piped("export - csv:- --as network", bench.bytes("g.npy")).find("pore.") == 0);
+
+  RunOptions redirected;
+  redirected.in = bench.path("s.npy");
+  CHECK(bench.run("convert - raw:-", redirected).out == bench.bytes("s.raw"));
+  const Outcome none = bench.run("info -");
+  CHECK(none.exitCode == 1);
+  CHECK(none.err.find("-: is no image") != std::string::npos);
+}
+
 TEST_CASE("cli: render writes a PNG", "[cli]") {
   const Bench bench;
   bench.mustRun(kSpheres + "s.vdb");

@@ -26,6 +26,9 @@ using Action = std::function<void()>;
 Verb addVerb(Verb parent, Common& common, const std::string& name, const std::string& description,
              const std::string& example);
 
+/// With what is printed left out where it would get into an output on standard output.
+Common besideOutput(Common common, const std::string& output);
+
 /// "1 grain", "2 grains".
 inline std::string counted(int64_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");

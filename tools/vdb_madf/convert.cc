@@ -155,7 +155,7 @@ void addConvert(Verb command, Common& common, Action& action) {
       if (!o->parsedOutType) throw WrongUsage("--out-type " + o->outType + ": no such sample type");
     }
     checkVolumeEnding(o->out);
-    action = [o, &common] { run(*o, common); };
+    action = [o, &common] { run(*o, besideOutput(common, o->out)); };
   });
 }
 

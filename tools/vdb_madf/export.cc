@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -178,7 +177,7 @@ struct Kind {
 };
 
 bool isMeshOutput(const std::string& out) {
-  return isMeshEnding(out) || !std::filesystem::path(out).has_extension();
+  return isMeshEnding(out) || fileEnding(out).empty();
 }
 
 /// The medial balls that were kept with the labels, else those of the labels' voxels. These are
@@ -304,10 +303,10 @@ void checkTables(const Options& o, const Kind& kind) {
 }
 
 void run(const Options& o, const Common& common, const Kind& kind) {
-  if (std::filesystem::path(o.out).has_extension())
-    checkWritable(o.out);
-  else
+  if (fileEnding(o.out).empty())
     checkOutputFolder(o.out);
+  else
+    checkWritable(o.out);
   for (const std::string& file : {o.bonds, o.cover})
     if (!file.empty()) checkWritable(file);
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
@@ -368,7 +367,7 @@ void addExport(Verb command, Common& common, Action& action) {
     checkTables(*o, kind);
     o->input.outputs = {o->out, o->bonds, o->cover};
     o->input.parse();
-    action = [o, &common, &kind] { run(*o, common, kind); };
+    action = [o, &common, &kind] { run(*o, besideOutput(common, o->out), kind); };
   });
 }
 

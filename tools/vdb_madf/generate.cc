@@ -235,6 +235,8 @@ Sample makeSample(const Kind& kind, const Options& options, Interrupter* interru
 }
 
 void parse(const Kind& kind, Options& options) {
+  if (isOnStandardOutput(options.out))
+    throw WrongUsage(options.out + ": samples are written to files only; give the path of one");
   if (!hasVdbEnding(options.out) && !isImageEnding(options.out))
     throw WrongUsage(options.out +
                      ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd or .npy");

@@ -31,6 +31,7 @@ SampleType naturalType(const openvdb::GridBase& grid, const std::string& path) {
 }  // namespace
 
 void checkVolumeEnding(const std::string& path) {
+  if (path == "-") throw WrongUsage("-: say in which format: raw:-, npy:- or nrrd:-");
   if (!hasVdbEnding(path) && !isImageEnding(path))
     throw WrongUsage(path + ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd or .npy");
 }

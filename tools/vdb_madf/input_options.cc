@@ -5,6 +5,7 @@
 
 #include "outputs.h"
 #include "parse.h"
+#include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/volumes/image_box.h"
@@ -91,6 +92,7 @@ void InputOptions::parse() {
   if (!voxelSizeText.empty()) voxelSize = parseVoxelSize(voxelSizeText);
   if (!domainText.empty()) domain = parseDomain(domainText);
   checkOutputs(outputs, path);
+  if (isStandardInput(path)) keepStandardInput();  // before signals are caught: it may have to wait
 }
 
 VolumeOptions InputOptions::volume(Progress* progress) const {

@@ -12,6 +12,7 @@
 #include "command.h"
 #include "command_line.h"
 #include "message.h"
+#include "outputs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/version.h"
 #include "vdb_madf/images/open_image.h"
@@ -27,6 +28,11 @@ Verb addVerb(Verb parent, Common& common, const std::string& name, const std::st
   verb.flag("-v,--verbose", common.verbose, "print more");
   verb.footer("Example:\n  " + example);
   return verb;
+}
+
+Common besideOutput(Common common, const std::string& output) {
+  common.quiet |= isOnStandardOutput(output);
+  return common;
 }
 
 namespace {

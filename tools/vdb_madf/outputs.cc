@@ -3,11 +3,13 @@
 
 #include "outputs.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/output_file.h"
 #include "vdb_madf/files/same_file.h"
+#include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/images/open_image.h"
 #include "wrong_usage.h"
 
@@ -16,7 +18,7 @@ namespace vdb_madf::tools {
 std::vector<std::string> filesOf(const std::vector<std::string>& outputs) {
   std::vector<std::string> files;
   for (const std::string& output : outputs) {
-    if (output.empty() || output == "-") continue;
+    if (output.empty() || isOnStandardOutput(output)) continue;
     files.push_back(output);
     if (fileEnding(output) == ".mhd")
       files.push_back(std::filesystem::path(output).replace_extension(".raw").string());
@@ -24,7 +26,16 @@ std::vector<std::string> filesOf(const std::vector<std::string>& outputs) {
   return files;
 }
 
+bool isOnStandardOutput(const std::string& output) {
+  return output == "-" || isStandardOutput(output);
+}
+
 void checkOutputs(const std::vector<std::string>& outputs, const std::string& input) {
+  if (std::count_if(outputs.begin(), outputs.end(), isOnStandardOutput) > 1)
+    throw WrongUsage("two outputs would go to standard output; give one the name of a file");
+  for (const std::string& output : outputs)
+    if (isStandardOutput(output) && !isImageEnding(output) && fileEnding(output) != ".csv")
+      throw WrongUsage(output + ": standard output takes raw:-, npy:-, nrrd:- and csv:-");
   const std::vector<std::string> files = filesOf(outputs);
   for (size_t i = 0; i < files.size(); ++i) {
     if (isSameFile(input, files[i]))
@@ -36,6 +47,7 @@ void checkOutputs(const std::vector<std::string>& outputs, const std::string& in
 }
 
 void checkWritable(const std::string& output) {
+  if (isStandardOutput(output)) return;
   checkImagePlace(output);
   const std::vector<std::string> files = filesOf({output});
   removeLeftovers(files);

@@ -76,7 +76,7 @@ void addRemerge(Verb command, Common& common, Action& action) {
     o->input.outputs = {o->out};
     o->input.parse();
     checkVolumeEnding(o->out);
-    action = [o, &common] { run(*o, common); };
+    action = [o, &common] { run(*o, besideOutput(common, o->out)); };
   });
 }
 

@@ -201,7 +201,7 @@ void addSegment(Verb command, Common& common, Action& action) {
   verb.flag("--dry-run", o->dryRun, "only say how much memory it would take");
   verb.onParsed([o, &common, &action] {
     parse(*o);
-    action = [o, &common] { run(*o, common); };
+    action = [o, &common] { run(*o, besideOutput(common, o->out)); };
   });
 }
 

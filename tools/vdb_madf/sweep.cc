@@ -85,7 +85,7 @@ void parse(Options& o) {
   o.input.outputs = {o.out, o.plot};
   o.input.longestSide = kMaxExtent;
   o.input.parse();
-  if (o.out.size() < 4 || o.out.compare(o.out.size() - 4, 4, ".csv") != 0)
+  if (o.out != "-" && (o.out.size() < 4 || o.out.compare(o.out.size() - 4, 4, ".csv") != 0))
     throw WrongUsage(o.out + ": the output's ending must be .csv");
   if (!o.plot.empty() && o.plot != "-" && fileEnding(o.plot) != ".svg")
     throw WrongUsage(o.plot + ": the plot's ending must be .svg");
@@ -149,8 +149,8 @@ void run(const Options& o, const Common& common) {
   plot.write(sweepPlot(rows, options.smallVoxels));
   common.progress->end();
   if (!common.quiet)
-    std::printf("%s: %zu rows, of %zu segmentations\n", o.out.c_str(), rows.size(),
-                options.gammas.size());
+    std::printf("%s: %s, of %s\n", o.out.c_str(), counted(int64_t(rows.size()), "row").c_str(),
+                counted(int64_t(options.gammas.size()), "segmentation").c_str());
 }
 
 }  // namespace
@@ -190,7 +190,7 @@ void addSweep(Verb command, Common& common, Action& action) {
       .typeName("FILE.svg");
   verb.onParsed([o, &common, &action] {
     parse(*o);
-    action = [o, &common] { run(*o, common); };
+    action = [o, &common] { run(*o, besideOutput(common, o->out)); };
   });
 }
 

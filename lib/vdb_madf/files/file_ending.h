@@ -7,11 +7,15 @@
 #include <filesystem>
 #include <string>
 
+#include "vdb_madf/files/standard_streams.h"
+
 namespace vdb_madf {
 
-/// The ending of a file name with its dot, in lower case: ".vdb"; empty if there is none.
+/// The ending of a file name with its dot, in lower case: ".vdb"; empty if there is none. That of
+/// "npy:-", standard output, is ".npy".
 inline std::string fileEnding(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
+  std::string ending = isStandardOutput(path) ? "." + path.substr(0, path.size() - 2)
+                                              : std::filesystem::path(path).extension().string();
   for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
   return ending;
 }

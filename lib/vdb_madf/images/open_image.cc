@@ -11,6 +11,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/images/formats/dgtal_vol.h"
 #include "vdb_madf/images/formats/hdf5.h"
 #include "vdb_madf/images/formats/isq.h"
@@ -42,6 +43,7 @@ struct FileFormat {
   std::unique_ptr<ImageWriter> (*create)(const std::string& path, const ImageInfo& info,
                                          const std::array<double, 3>& origin) = nullptr;
   size_t writtenEndings = 0;
+  bool isStreamed = false;  ///< written from the beginning to the end, be it to standard output
 };
 
 void refuseDataset(const std::string& path, const std::string& dataset) {
@@ -93,6 +95,8 @@ bool isVdb(const std::string& head) {
 std::unique_ptr<ImageReader> openHdf5File(std::unique_ptr<detail::InputFile> file,
                                           [[maybe_unused]] const std::string& dataset) {
 #ifdef VDB_MADF_HDF5
+  if (isStandardInput(file->path()))
+    throw IoError("-: HDF5 cannot be read from standard input: give the path of a file");
   return detail::openHdf5(file->path(), dataset);
 #else
   throw IoError(file->path() +
@@ -119,15 +123,15 @@ const std::vector<FileFormat>& fileFormats() {
        createPlaceless<createTiff>,
        2},
       {hasHeader<isPicture>, {".png", ".bmp"}, openOnly<openPicture>},
-      {hasHeader<isNrrd>, {".nrrd", ".nhdr"}, openOnly<openNrrd>, createNrrd, 1},
-      {hasHeader<isNpyHeader>, {".npy"}, openOnly<openNpy>, createPlaceless<createNpy>, 1},
+      {hasHeader<isNrrd>, {".nrrd", ".nhdr"}, openOnly<openNrrd>, createNrrd, 1, true},
+      {hasHeader<isNpyHeader>, {".npy"}, openOnly<openNpy>, createPlaceless<createNpy>, 1, true},
       {hasHeader<isHdf5>, {".h5", ".hdf5"}, openHdf5File},
       {hasHeader<isVdb>, {".vdb"}, nullptr},
       {hasHeader<isIsqHeader>, {".isq"}, openOnly<openIsq>},
       {hasHeader<isMetaHeader>, {".mhd", ".mha"}, openOnly<openMeta>, createMeta, 2},
       {hasHeader<isDgtalHeader>, {".longvol"}, openOnly<openDgtal>},
       {hasHeader<isPyhstHeader>, {".vol", ".info"}, openOnly<openPyhst>},
-      {nullptr, {".raw"}, openOnly<refuseRaw>, createPlaceless<createRaw>, 1}};
+      {nullptr, {".raw"}, openOnly<refuseRaw>, createPlaceless<createRaw>, 1, true}};
   return kFormats;
 }
 
@@ -157,7 +161,8 @@ const FileFormat* writtenFormat(const std::string& path) {
   const std::string ending = fileEnding(path);
   for (const FileFormat& format : fileFormats()) {
     const auto end = format.endings.begin() + std::ptrdiff_t(format.writtenEndings);
-    if (std::find(format.endings.begin(), end, ending) != end) return &format;
+    if (std::find(format.endings.begin(), end, ending) != end)
+      return isStandardOutput(path) && !format.isStreamed ? nullptr : &format;
   }
   return nullptr;
 }
@@ -215,7 +220,10 @@ bool looksLikeImage(const std::string& path) {
 std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInfo& info,
                                          const std::array<double, 3>& origin) {
   if (const FileFormat* format = writtenFormat(path)) return format->create(path, info, origin);
-  throw InvalidInput(path + ": images are written as .tif, .tiff, .raw, .mhd, .mha, .nrrd or .npy");
+  throw InvalidInput(path + (isStandardOutput(path)
+                                 ? ": images on standard output are raw:-, nrrd:- or npy:-"
+                                 : ": images are written as .tif, .tiff, .raw, .mhd, .mha, .nrrd "
+                                   "or .npy"));
 }
 
 void checkImagePlace(const std::string& path) {

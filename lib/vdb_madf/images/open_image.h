@@ -25,7 +25,7 @@ struct RawLayout {
 /// PNG, BMP, a folder of TIFF, PNG or BMP slices, Zarr, HDF5 (if it was there when this was built),
 /// recognized by content, then by ending (the table in open_image.cc, where a new format gets its
 /// line); RAW if `raw` is given. Sizes in a header are checked against the file before anything is
-/// allocated.
+/// allocated. The path "-" is standard input (standard_streams.h), of any format but HDF5.
 /// @param dataset which array of a Zarr group or an HDF5 file; empty: the first scale of an
 ///     OME-Zarr, or the only volume
 /// @throw IoError, one line that names the file.
@@ -40,7 +40,7 @@ bool readsHdf5();
 bool looksLikeImage(const std::string& path);
 
 /// By ending: .raw, .mhd (with .raw beside it), .mha, .nrrd, .npy, .tif/.tiff (BigTIFF when 4 GB or
-/// more).
+/// more); raw:-, nrrd:- and npy:- go to standard output.
 /// @param origin world position of the first voxel's center in mm (in voxels if there is no
 ///     voxel size), for the formats that can store it: MetaImage (Offset) and NRRD (space
 ///     origin). The readers ignore it: what they read begins at voxel (0,0,0).
@@ -49,7 +49,7 @@ std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInf
                                          const std::array<double, 3>& origin = {});
 /// Finds out before the work. @throw IoError if an .mhd would replace a .raw file that is not its own.
 void checkImagePlace(const std::string& path);
-/// True if createImage knows the ending.
+/// True if createImage takes such a path.
 bool isImageEnding(const std::string& path);
 
 }  // namespace vdb_madf

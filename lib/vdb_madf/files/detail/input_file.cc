@@ -13,6 +13,8 @@
 
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/detail/standard_descriptors.h"
+#include "vdb_madf/files/standard_streams.h"
 
 namespace vdb_madf::detail {
 
@@ -34,7 +36,8 @@ InputFile::InputFile(const std::string& header, const std::string& path)
 
 void InputFile::open() {
   // Without waiting: a pipe that nobody writes to would block here.
-  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  descriptor_ = isStandardInput(path_) ? openStandardInput()
+                                       : ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   int error = descriptor_ < 0 ? errno : 0;
   struct stat status {};
   if (error == 0 && ::fstat(descriptor_, &status) != 0) error = errno;
@@ -46,7 +49,10 @@ void InputFile::open() {
   // (A socket cannot even be opened.)
   if (error != 0 && error != ENXIO)
     throw IoError(name_ + ": cannot be opened: " + std::strerror(error));
-  throw IoError(name_ + (S_ISDIR(status.st_mode) ? ": is a folder" : ": is not a regular file"));
+  throw IoError(name_ +
+                (S_ISDIR(status.st_mode)
+                     ? ": is a folder"
+                     : ": is not a regular file; a pipe is read from standard input, as -"));
 }
 
 InputFile::~InputFile() {

@@ -9,7 +9,8 @@
 
 namespace vdb_madf::detail {
 
-/// A regular file, open for reading at any place; every read is checked.
+/// A regular file, or "-" for standard input (standard_streams.h), open for reading at any place;
+/// every read is checked.
 class InputFile {
  public:
   /// @throw IoError if it is missing, not a regular file (a pipe would block) or not readable.

@@ -11,6 +11,8 @@
 #include <cstring>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/detail/standard_descriptors.h"
+#include "vdb_madf/files/standard_streams.h"
 
 namespace vdb_madf::detail {
 
@@ -23,8 +25,13 @@ constexpr size_t kMaxBytesPerCall = size_t(1) << 30;
 }  // namespace
 
 OutputStream::OutputStream(const std::string& path, Interrupter* interrupter)
-    : file_(path), interrupter_(interrupter) {
-  descriptor_ = ::open(file_.temporaryPath().c_str(), O_RDWR | O_CLOEXEC);
+    : path_(path), interrupter_(interrupter) {
+  if (isStandardOutput(path)) {
+    descriptor_ = openStandardOutput();
+    return;
+  }
+  file_.emplace(path);
+  descriptor_ = ::open(file_->temporaryPath().c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor_ < 0) fail(errno);
 }
 
@@ -49,10 +56,12 @@ void OutputStream::flush() {
 }
 
 void OutputStream::writeAt(uint64_t position, const void* data, size_t count) {
+  if (!file_ && position != size_) fail(ESPIPE);
   const char* next = static_cast<const char*>(data);
   while (count > 0) {
-    const ssize_t put =
-        ::pwrite(descriptor_, next, std::min(count, kMaxBytesPerCall), off_t(position));
+    const size_t some = std::min(count, kMaxBytesPerCall);
+    const ssize_t put = file_ ? ::pwrite(descriptor_, next, some, off_t(position))
+                              : ::write(descriptor_, next, some);
     if (put < 0 && errno == EINTR) continue;
     if (put <= 0) fail(errno);
     next += put;
@@ -85,11 +94,11 @@ void OutputStream::close() {
 
 void OutputStream::commit() {
   if (descriptor_ >= 0) close();
-  file_.commit();
+  if (file_) file_->commit();
 }
 
 void OutputStream::fail(int error) const {
-  throw IoError("cannot write " + file_.path() + ": " + std::strerror(error) +
+  throw IoError("cannot write " + path_ + ": " + std::strerror(error) +
                 "; free some space, or write it elsewhere");
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <type_traits>
 
@@ -16,7 +17,9 @@ namespace vdb_madf::detail {
 
 /// An OutputFile that is open for writing: pieces of any size one after the other, text or binary
 /// (little-endian), behind one buffer; or bytes at any place of the file. Every write is checked,
-/// so that a full disk is noticed. @throw IoError; Interrupted whenever the buffer is written.
+/// so that a full disk is noticed. On standard output (standard_streams.h) one piece follows the
+/// other, and what was written stays written.
+/// @throw IoError; Interrupted whenever the buffer is written.
 class OutputStream {
  public:
   explicit OutputStream(const std::string& path, Interrupter* interrupter = nullptr);
@@ -24,7 +27,7 @@ class OutputStream {
   OutputStream(const OutputStream&) = delete;
   OutputStream& operator=(const OutputStream&) = delete;
 
-  const std::string& path() const { return file_.path(); }
+  const std::string& path() const { return path_; }
 
   void bytes(const void* data, size_t count);
   template <typename T>
@@ -54,7 +57,8 @@ class OutputStream {
   void flush();
   [[noreturn]] void fail(int error) const;
 
-  OutputFile file_;
+  std::string path_;
+  std::optional<OutputFile> file_;  ///< none: standard output
   Interrupter* interrupter_;
   int descriptor_ = -1;
   uint64_t size_ = 0;
