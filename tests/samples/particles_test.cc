@@ -11,7 +11,7 @@
 
 #include "support/samples.h"
 #include "vdb_madf/samples/detail/particle_placement.h"
-#include "vdb_madf/samples/detail/portable_math.h"
+#include "vdb_madf/base/detail/portable_math.h"
 
 namespace {
 

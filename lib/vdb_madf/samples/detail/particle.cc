@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vdb_madf/samples/detail/portable_math.h"
+#include "vdb_madf/base/detail/portable_math.h"
 
 namespace vdb_madf::detail {
 

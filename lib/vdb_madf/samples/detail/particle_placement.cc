@@ -8,7 +8,7 @@
 #include <string>
 
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/samples/detail/portable_math.h"
+#include "vdb_madf/base/detail/portable_math.h"
 
 namespace vdb_madf::detail {
 

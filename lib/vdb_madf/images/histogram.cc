@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/images/histogram.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "vdb_madf/images/detail/header_checks.h"
+#include "vdb_madf/images/detail/histogram_builder.h"
+#include "vdb_madf/images/detail/slabs.h"
+
+namespace vdb_madf {
+
+namespace {
+
+/// Bins of a histogram whose modes are looked for.
+constexpr size_t kModeBins = 256;
+constexpr int kMaxRounds = 10000;
+/// Voxels in a run of a label, on average.
+constexpr int64_t kLabelRun = 3;
+
+bool hasBinPerValue(const Histogram& histogram) {
+  return histogram.whole && histogram.width == 1;
+}
+
+/// The mean of three neighbors; beyond the ends stands the last bin again.
+std::vector<double> smoothed(const std::vector<double>& bins) {
+  std::vector<double> means(bins.size());
+  for (size_t i = 0; i < bins.size(); ++i)
+    means[i] = (bins[i == 0 ? 0 : i - 1] + bins[i] + bins[std::min(i + 1, bins.size() - 1)]) / 3;
+  return means;
+}
+
+/// Bins after which it falls, having risen before (or from the first on); of a plateau the last.
+std::vector<size_t> maxima(const std::vector<double>& bins) {
+  std::vector<size_t> found;
+  bool rising = true;
+  for (size_t i = 0; i + 1 < bins.size(); ++i) {
+    if (rising && bins[i + 1] < bins[i]) {
+      rising = false;
+      found.push_back(i);
+    } else if (!rising && bins[i + 1] > bins[i]) {
+      rising = true;
+    }
+  }
+  return found;
+}
+
+std::string text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.6g", value);
+  return buffer;
+}
+
+}  // namespace
+
+Histogram histogramOf(ImageReader& image, Interrupter* interrupter) {
+  const ImageInfo& info = image.info();
+  std::vector<char> samples(size_t(detail::sliceBytes(info)) *
+                            size_t(std::min(detail::kSlab, info.size.z)));
+  detail::CountedImage counted(image);
+  detail::forEachSlab(0, info.size.z, interrupter,
+                      [&](int z, int count) { counted.read(z, count, samples.data()); });
+  return counted.histogram();
+}
+
+ImageKind kindOf(const Histogram& histogram) {
+  const std::vector<double>& few = histogram.few;
+  if (histogram.onlyFew && (few.size() < 2 || (few.size() == 2 && (few[0] == 0 || few[1] == 0))))
+    return ImageKind::mask;
+  if (!histogram.whole) return ImageKind::gray;
+  if (histogram.onlyFew) return ImageKind::phases;
+  size_t bins = 0, labels = 0;
+  for (size_t i = 0; i < histogram.counts.size(); ++i) {
+    if (histogram.counts[i] == 0 || histogram.first + int64_t(i) == 0) continue;
+    ++bins;
+    labels += histogram.counts[i] >= kLabelRun * histogram.runs[i];
+  }
+  return 2 * labels >= bins ? ImageKind::labels : ImageKind::gray;
+}
+
+std::optional<double> otsuThreshold(const Histogram& histogram) {
+  // Bins are numbered from 0: sums of up to 2^16 times the voxels are exact.
+  const std::vector<int64_t>& counts = histogram.counts;
+  int64_t sum = 0, sumBelow = 0, below = 0;
+  for (size_t i = 0; i < counts.size(); ++i) sum += counts[i] * int64_t(i);
+  double largest = -1;
+  size_t last = 0;
+  for (size_t i = 0; i + 1 < counts.size(); ++i) {
+    below += counts[i];
+    sumBelow += counts[i] * int64_t(i);
+    const auto lower = double(below), upper = double(histogram.finite - below);
+    const double difference = double(sumBelow) / lower - double(sum - sumBelow) / upper;
+    const double variance = lower * upper * difference * difference;
+    if (variance <= largest) continue;
+    largest = variance;
+    last = i;
+  }
+  if (largest < 0) return std::nullopt;
+  size_t next = last + 1;
+  while (counts[next] == 0) ++next;
+  return (histogram.lowerEdge(last + 1) + histogram.lowerEdge(next)) / 2;
+}
+
+std::optional<double> valleyThreshold(const Histogram& histogram) {
+  const bool direct = hasBinPerValue(histogram) && histogram.counts.size() <= kModeBins;
+  std::vector<double> bins(histogram.counts.begin(), histogram.counts.end());
+  if (!direct) bins = gathered(histogram, histogram.min, histogram.max, kModeBins);
+  for (int round = 0; round < kMaxRounds; ++round) {
+    bins = smoothed(bins);
+    const std::vector<size_t> modes = maxima(bins);
+    if (modes.size() > 2) continue;
+    if (modes.size() < 2) return std::nullopt;
+    const auto least = std::min_element(bins.begin() + std::ptrdiff_t(modes[0]),
+                                        bins.begin() + std::ptrdiff_t(modes[1]) + 1);
+    const auto bin = size_t(least - bins.begin());
+    if (direct) return histogram.lowerEdge(bin + 1);
+    return histogram.min +
+           (histogram.max - histogram.min) * (double(bin) + 0.5) / double(kModeBins);
+  }
+  return std::nullopt;
+}
+
+int64_t voxelsFrom(const Histogram& histogram, double threshold) {
+  int64_t voxels = 0;
+  for (size_t i = histogram.counts.size(); i > 0 && histogram.lowerEdge(i - 1) >= threshold; --i)
+    voxels += histogram.counts[i - 1];
+  return voxels;
+}
+
+double quantile(const Histogram& histogram, double share) {
+  int64_t below = 0;
+  for (size_t i = 0; i < histogram.counts.size(); ++i) {
+    below += histogram.counts[i];
+    if (double(below) > share * double(histogram.finite)) return histogram.lowerEdge(i);
+  }
+  return histogram.max;
+}
+
+std::vector<double> gathered(const Histogram& histogram, double low, double high, size_t bins) {
+  std::vector<double> sums(bins);
+  for (size_t i = 0; i < histogram.counts.size(); ++i) {
+    const double middle = histogram.lowerEdge(i) + (histogram.whole ? 0 : histogram.width / 2);
+    const double value = std::min(std::max(middle, histogram.min), histogram.max);
+    const double place = (value - low) / (high - low) * double(bins);
+    if (place >= 0 && value <= high && histogram.counts[i] > 0)
+      sums[std::min(size_t(place), bins - 1)] += double(histogram.counts[i]);
+  }
+  return sums;
+}
+
+std::string histogramLine(const Histogram& histogram, size_t characters) {
+  if (histogram.counts.empty()) return "no finite values";
+  constexpr char kHeights[] = " .:-=+*#%@";
+  constexpr size_t kLargest = sizeof kHeights - 2;
+  const double low = quantile(histogram, 0.001), high = quantile(histogram, 0.999);
+  if (high > low) {
+    const std::vector<double> bins = gathered(histogram, low, high, characters);
+    const double most = *std::max_element(bins.begin(), bins.end());
+    std::string line;
+    for (const double bin : bins)
+      line += kHeights[size_t(std::ceil(std::sqrt(bin / most) * double(kLargest)))];
+    return text(low) + " |" + line + "| " + text(high);
+  }
+  return text(low) + " |" + kHeights[kLargest] + "| " + text(high);
+}
+
+}  // namespace vdb_madf

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vdb_madf/base/interrupter.h"
+#include "vdb_madf/images/image.h"
+
+namespace vdb_madf {
+
+/// How often the values of an image occur, in at most 65536 bins. The width of a bin is the least
+/// power of two that suffices, but 1 or more for integers: images of 8 and 16 bits have one bin a
+/// value. The bins depend on the least and greatest value alone, so one pass over the image makes
+/// them. NaN and infinities are counted apart.
+struct Histogram {
+  SampleType type = SampleType::uint8;
+  double width = 1;
+  int64_t first = 0;            ///< bin i holds the values with floor(value / width) = first + i
+  std::vector<int64_t> counts;  ///< neither first nor last is 0; empty if no value is finite
+  std::vector<int64_t> runs;    ///< how many runs of equal values, along x, these voxels make
+  double min = 0, max = 0;      ///< finite values
+  int64_t finite = 0, notFinite = 0;  ///< voxels
+  bool whole = true;                  ///< all finite values are whole numbers
+  /// All finite values, ascending, if there are at most kFewValues; else the least that were met.
+  std::vector<double> few;
+  bool onlyFew = true;  ///< `few` has all values
+
+  double lowerEdge(size_t bin) const { return double(first + int64_t(bin)) * width; }
+};
+
+/// An image with this many values at most has phases.
+constexpr size_t kFewValues = 4;
+
+/// @throw IoError; Interrupted.
+Histogram histogramOf(ImageReader& image, Interrupter* interrupter = nullptr);
+
+/// What an image seems to be.
+enum class ImageKind {
+  mask,    ///< 0 and another value, or one value alone
+  phases,  ///< at most kFewValues values, whole numbers
+  labels,  ///< whole numbers, and half of the bins without 0 hold runs of three voxels on average
+  gray     ///< anything else
+};
+ImageKind kindOf(const Histogram& histogram);
+
+/// Otsu's threshold: the one with the largest variance between the voxels below and the others
+/// (the least, if several are equal), put into the middle of the empty bins above the last bin
+/// below. With one bin a value the voxels at or above it are those above scikit-image's
+/// threshold_otsu(). None if there is but one bin.
+std::optional<double> otsuThreshold(const Histogram& histogram);
+
+/// The deepest place between two modes: the histogram, gathered into 256 bins from the least to the
+/// greatest value if it has more, is smoothed (by means of three bins, at most 10000 times) until it
+/// has two maxima; the threshold is the least bin between them, as scikit-image's
+/// threshold_minimum() finds it: with one bin a value the next value, else the middle of the bin.
+/// None if there are no two maxima.
+std::optional<double> valleyThreshold(const Histogram& histogram);
+
+/// Voxels at or above a threshold (one of those above, or any edge of a bin).
+int64_t voxelsFrom(const Histogram& histogram, double threshold);
+
+/// The value below which a share of the voxels lies, to the edge of a bin.
+double quantile(const Histogram& histogram, double share);
+
+/// Counts gathered into `bins` equal parts from `low` to `high`; what lies outside is left out.
+std::vector<double> gathered(const Histogram& histogram, double low, double high, size_t bins);
+
+/// A line of characters from ' ' to '@' that grow with the square root of the counts, between the
+/// values of a thousandth and of 999 thousandths of the voxels: "1210 |.:=@*:.| 43000".
+std::string histogramLine(const Histogram& histogram, size_t characters = 40);
+
+}  // namespace vdb_madf
