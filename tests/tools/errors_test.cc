@@ -117,6 +117,13 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"segment in.vdb out.vdb --range 3:1", "--range"},
       {"segment in.vdb out.vdb --range 3", "--range"},
       {"segment in.vdb out.vdb --threshold one", "--threshold"},
+      {"segment in.vdb out.vdb --threshold 5:3", "exceeds"},
+      {"segment in.vdb out.vdb --threshold 1:2:3", "LOW:HIGH"},
+      {"segment in.vdb out.vdb --phase 1,", "--phase"},
+      {"segment in.vdb out.vdb --median 4", "--median"},
+      {"segment in.vdb out.vdb --smooth -1", "--smooth"},
+      {"segment in.vdb out.vdb --smooth 21", "--smooth"},
+      {"segment in.vdb out.vdb --despeckle -1", "--despeckle"},
       {"segment in.vdb out.vdb --threshold=", "--threshold"},
       {"segment in.raw out.vdb --dims 4x4", "--dims"},
       {"segment in.raw out.vdb --dims 4x4x0 --type uint8", "--dims"},
@@ -330,7 +337,7 @@ TEST_CASE("cli: the boundary and the domain have to fit the object", "[cli]") {
   for (const std::string file : {"s.vdb", "s.tif"})
     refuses(bench, kFailed, "segment " + file + " o.vdb --domain 0,0,0:9,9,9",
             {file, "leaves the domain"});
-  refuses(bench, kFailed, "segment s.tif o.vdb --threshold 0", {"s.tif", "closed"});
+  refuses(bench, kFailed, "segment s.tif o.vdb --threshold 0", {"s.tif", "by value", "threshold"});
   bench.mustRun("segment s.tif o.vdb --threshold 0 --boundary closed");
   refuses(bench, kFailed, "segment s.vdb x.vdb --invert --domain 0,0,0:1048575,1048575,1048575",
           {"s.vdb", "domain", "crop"});

@@ -127,6 +127,9 @@ std::vector<Selection> selections() {
       Selection::range(-300, -200),
       Selection::range(70000, 80000),
       Selection::range(0, std::nan("")),
+      Selection::phases({1, 3}),
+      Selection::phases({2, 0, -1, 0.5, 255, 70000}),
+      Selection::phases({std::nan(""), 0.1, double(0.1F), infinity}),
   };
   const size_t count = all.size();
   for (size_t i = 0; i < count; ++i) {

@@ -52,13 +52,15 @@ void convertMask(const Options& o, const Common& common) {
     writeGridAsImage(o.out, *object, outputType(o), o.input.path, common);
     return;
   }
+  const std::string steps = objectSteps(*object);
   const BoolGrid::Ptr grid = toBoolGrid(*object);
   if (o.boundary != "auto") setBoundary(*grid, parseBoundary(o.boundary));
   writeVdb(o.out, {grid}, common.progress);
   common.progress->end();
   const auto voxels = int64_t(object->activeVoxelCount());
   if (!common.quiet)
-    std::cout << o.out << ": " << counted(voxels, "object voxel") << hintIfEmpty(voxels) << "\n";
+    std::cout << o.out << ": " << counted(voxels, "object voxel") << hintIfEmpty(voxels)
+              << (steps.empty() ? "" : ": ") << steps << "\n";
 }
 
 /// Labels of another program become what `segment` writes, but for the method's own metadata.
@@ -99,9 +101,11 @@ void copyVdb(const Options& o, const Common& common) {
 void run(const Options& o, const Common& common) {
   checkWritable(o.out);
   const bool fromVdb = isVdb(o.input);
+  if (fromVdb && readsGray(o.input.gray) && !o.input.selection)
+    throw InvalidInput(o.input.path + ": --median and --smooth are for images; leave them out");
   if (o.labels)
     convertLabels(o, common);
-  else if (o.input.selection || (!fromVdb && hasVdbEnding(o.out)))
+  else if (o.input.selection || o.input.gray.despeckle > 0 || (!fromVdb && hasVdbEnding(o.out)))
     convertMask(o, common);
   else if (fromVdb)
     copyVdb(o, common);
@@ -111,7 +115,8 @@ void run(const Options& o, const Common& common) {
       throw InvalidInput(o.input.path +
                          ": --domain and --boundary are for VDB files and masks, and this is "
                          "copied from image to image; leave them out");
-    const auto image = openVolumeImage(o.input.path, o.input.volume(common.progress));
+    const auto image =
+        filteredImage(openVolumeImage(o.input.path, o.input.volume(common.progress)), o.input.gray);
     const SampleType type = outputType(o).value_or(image->info().type);
     copyImage(o.out, *image, type, o.input.voxelSize, common.progress);
     reportImage(o.out, "all values", toCoord(image->info().size), type, common);

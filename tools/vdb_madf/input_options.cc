@@ -3,10 +3,14 @@
 
 #include "input_options.h"
 
+#include <openvdb/Metadata.h>
+
 #include "outputs.h"
 #include "parse.h"
 #include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/grids/object_keys.h"
+#include "vdb_madf/images/filtered_image.h"
 #include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/volumes/image_box.h"
 #include "wrong_usage.h"
@@ -17,6 +21,17 @@ namespace {
 
 std::string typeNames() {
   return "uint8, int8, uint16, int16, uint32, int32, float32 or float64";
+}
+
+/// Runs `load`; if it has to be said what is object, the message says by which options.
+template <typename Load>
+auto withSelectionOptions(const Load& load) {
+  try {
+    return load();
+  } catch (const SelectionNeeded& error) {
+    throw InvalidInput(error.what() +
+                       std::string(" (--threshold otsu or a value, --phase, --range)"));
+  }
 }
 
 /// Runs `choose`; if the grid has to be named, the message says by which option.
@@ -44,10 +59,18 @@ void InputOptions::addRaw(Verb verb) {
 }
 
 void InputOptions::addSelection(Verb verb) {
-  verb.option("--phase", phase, "object: value equals V").typeName("V");
-  verb.option("--threshold", threshold, "object: value >= T").typeName("T");
+  verb.option("--phase", phase, "object: value equals V, or one of V,W,...").typeName("V");
+  verb.option("--threshold", threshold,
+              "object: value >= T; otsu, valley: found in the histogram; LOW:HIGH: hysteresis")
+      .typeName("T");
   verb.option("--range", range, "object: A <= value <= B").typeName("A:B");
   verb.flag("--invert", invert, "object: all other voxels");
+  verb.option("--median", median, "image: first a median, of cubes of 2 R + 1 voxels (R: 1 to 3)")
+      .typeName("R");
+  verb.option("--smooth", smooth, "image: then a Gaussian of standard deviation S voxels")
+      .typeName("S");
+  verb.option("--despeckle", despeckle, "last: drop islands, fill cavities under N voxels")
+      .typeName("N");
   verb.option("--grid", gridName, "VDB input: the grid to take").typeName("NAME");
 }
 
@@ -72,10 +95,37 @@ void InputOptions::parse() {
   if (!skip.empty() && !size) throw WrongUsage("--skip describes a RAW input: give --dims too");
   if (!skip.empty()) bytesToSkip = uint64_t(parseCount(skip, "--skip"));
   if (size && !sampleType) throw WrongUsage("a RAW input needs --type: " + typeNames());
+  parseSelection();
+  parseGray();
+  if (!voxelSizeText.empty()) voxelSize = parseVoxelSize(voxelSizeText);
+  if (!domainText.empty()) domain = parseDomain(domainText);
+  checkOutputs(outputs, path);
+  if (isStandardInput(path)) keepStandardInput();  // before signals are caught: it may have to wait
+}
+
+void InputOptions::parseSelection() {
   if (int(!phase.empty()) + int(!threshold.empty()) + int(!range.empty()) > 1)
     throw WrongUsage("give only one of --phase, --threshold and --range");
-  if (!phase.empty()) selection = Selection::phase(parseNumber(phase, "--phase"));
-  if (!threshold.empty()) selection = Selection::threshold(parseNumber(threshold, "--threshold"));
+  if (!phase.empty()) {
+    std::vector<double> values;
+    for (const std::string& value : split(phase, ','))
+      values.push_back(parseNumber(value, "--phase"));
+    selection = Selection::phases(values);
+  }
+  if (threshold == "otsu" || threshold == "valley") {
+    gray.automatic = threshold == "otsu" ? AutomaticThreshold::otsu : AutomaticThreshold::valley;
+    selection = Selection::threshold(0);  // to be replaced
+  } else if (!threshold.empty()) {
+    const std::vector<std::string> parts = split(threshold, ':');
+    if (parts.size() > 2)
+      throw WrongUsage("--threshold " + threshold + ": write T, LOW:HIGH, otsu or valley");
+    selection = Selection::threshold(parseNumber(parts.back(), "--threshold"));
+    if (parts.size() == 2) {
+      gray.low = parseNumber(parts[0], "--threshold");
+      if (*gray.low > selection->low)
+        throw WrongUsage("--threshold " + threshold + ": the first value exceeds the second");
+    }
+  }
   if (!range.empty()) {
     const std::vector<std::string> ends = split(range, ':');
     if (ends.size() != 2 || ends[0].empty() || ends[1].empty())
@@ -89,10 +139,23 @@ void InputOptions::parse() {
     if (!selection) selection = Selection{};
     selection->invert = true;
   }
-  if (!voxelSizeText.empty()) voxelSize = parseVoxelSize(voxelSizeText);
-  if (!domainText.empty()) domain = parseDomain(domainText);
-  checkOutputs(outputs, path);
-  if (isStandardInput(path)) keepStandardInput();  // before signals are caught: it may have to wait
+}
+
+void InputOptions::parseGray() {
+  if (!median.empty()) {
+    const int64_t radius = parseCount(median, "--median");
+    if (radius > kMaxMedianRadius)
+      throw WrongUsage("--median " + median + ": must be a radius of 0 to " +
+                       std::to_string(kMaxMedianRadius) + " voxels");
+    gray.median = int(radius);
+  }
+  if (!smooth.empty()) {
+    gray.smooth = parseNumber(smooth, "--smooth");
+    if (!(gray.smooth >= 0 && gray.smooth <= kMaxSmoothing))
+      throw WrongUsage("--smooth " + smooth + ": must lie between 0 and " +
+                       std::to_string(int(kMaxSmoothing)) + " voxels");
+  }
+  if (!despeckle.empty()) gray.despeckle = parseCount(despeckle, "--despeckle");
 }
 
 VolumeOptions InputOptions::volume(Progress* progress) const {
@@ -101,6 +164,7 @@ VolumeOptions InputOptions::volume(Progress* progress) const {
   options.dataset = dataset;
   if (size) options.raw = RawLayout{toImageSize(*size), *sampleType, bigEndian, bytesToSkip};
   options.selection = selection;
+  options.gray = gray;
   options.voxelSize = voxelSize;
   options.domain = domain;
   options.outputs = filesOf(outputs);
@@ -135,7 +199,8 @@ openvdb::GridBase::Ptr chooseGrid(const InputOptions& input,
 MaskGrid::Ptr loadObject(const InputOptions& input, Progress* progress) {
   if (!isVdb(input)) checkNoGrid(input, "--grid");
   return withGridOption(input, "--grid", [&] {
-    return vdb_madf::loadObject(input.path, input.volume(progress), progress);
+    return withSelectionOptions(
+        [&] { return vdb_madf::loadObject(input.path, input.volume(progress), progress); });
   });
 }
 
@@ -162,6 +227,11 @@ Boundary boundaryOf(const std::string& boundary, const InputOptions& input,
                        ": its domain is unknown, so the boundary cannot be open: use --boundary "
                        "closed, or give --domain x0,y0,z0:x1,y1,z1");
   return result;
+}
+
+std::string objectSteps(const openvdb::GridBase& grid) {
+  const auto steps = grid.getMetadata<openvdb::StringMetadata>(kObjectKey);
+  return steps ? steps->value() : "";
 }
 
 const char* hintIfEmpty(int64_t objectVoxels) {

@@ -31,6 +31,7 @@ struct InputOptions {
   std::string skip;  ///< of a RAW file, bytes before its samples
   std::string phase, threshold, range;
   bool invert = false;
+  std::string median, smooth, despeckle;
   int longestSide = 0;  ///< see VolumeOptions
   std::string voxelSizeText, domainText;
 
@@ -39,6 +40,7 @@ struct InputOptions {
   std::optional<SampleType> sampleType;
   uint64_t bytesToSkip = 0;
   std::optional<Selection> selection;
+  GrayOptions gray;
   std::optional<VoxelSize> voxelSize;
   std::optional<CoordBBox> domain;
 
@@ -50,6 +52,10 @@ struct InputOptions {
   void parse();
   /// Its notes go to `progress`, which has to live as long as they come.
   VolumeOptions volume(Progress* progress) const;
+
+ private:
+  void parseSelection();
+  void parseGray();
 };
 
 /// True if the input is to be read as OpenVDB.
@@ -83,6 +89,8 @@ void addBoundary(Verb verb, std::string& boundary);
 /// @throw InvalidInput if it is open and the domain is unknown.
 Boundary boundaryOf(const std::string& boundary, const InputOptions& input, const MaskGrid& object);
 
+/// How an object was made of a gray image, as its metadata tell; empty if it was not.
+std::string objectSteps(const openvdb::GridBase& grid);
 /// What to add to the number of an object's voxels: nothing, if there are any.
 const char* hintIfEmpty(int64_t objectVoxels);
 

@@ -3,12 +3,15 @@
 
 #include "segment_summary.h"
 
+#include <openvdb/Metadata.h>
+
 #include <algorithm>
 #include <cstdio>
 
 #include "outputs.h"
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/grids/object_keys.h"
 #include "vdb_madf/method/segmentation_metadata.h"
 
 namespace vdb_madf::tools {
@@ -57,6 +60,9 @@ SegmentSummary summarize(const SegmentArguments& o, const Common& common, const 
   summary.fillHoles = s.fillHoles;
   summary.domain = s.domain;
   summary.voxelSize = storedVoxelSize(*s.grain);
+  summary.objectSteps = objectSteps(*s.grain);
+  if (const auto threshold = s.grain->getMetadata<openvdb::DoubleMetadata>(kThresholdKey))
+    summary.threshold = threshold->value();
   summary.open = s.open;
   summary.threads = usedThreads(common.threads);
   summary.seconds.emplace_back("read", timing.read);
@@ -108,6 +114,8 @@ Json toJson(const SegmentArguments& o, const SegmentSummary& summary) {
                                    {"keep", o.keep}})
     if (!value.empty()) json[key] = value;
   if (o.input.invert) json["invert"] = true;
+  if (!summary.objectSteps.empty()) json["object"] = summary.objectSteps;
+  if (summary.threshold) json["threshold_value"] = *summary.threshold;
   json["gamma"] = o.segment.gamma;
   json["theta"] = o.segment.merge.theta;
   json["boundary"] = summary.open ? "open" : "closed";
@@ -132,6 +140,8 @@ void print(const SegmentArguments& o, const Common& common, const SegmentSummary
   std::printf("%s: %s\n", o.out.c_str(), counted(counts.grains, "grain").c_str());
   std::printf("  object           %lld voxels in %lld leaf nodes%s\n", count(counts.objectVoxels),
               count(counts.leaves), hintIfEmpty(counts.objectVoxels));
+  if (!summary.objectSteps.empty())
+    std::printf("                   %s\n", summary.objectSteps.c_str());
   if (summary.domain) std::printf("  porosity         %.2f %%\n", 100 * *summary.porosity());
   const double um = summary.voxelSize ? 1e3 * (summary.voxelSize->metres * 1e3) : 0;
   if (summary.voxelSize)

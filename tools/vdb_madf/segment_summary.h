@@ -39,6 +39,8 @@ struct SegmentSummary {
   int64_t fillHoles = 0;
   std::optional<CoordBBox> domain;
   std::optional<VoxelSize> voxelSize;
+  std::string objectSteps;  ///< from a gray image
+  std::optional<double> threshold;
   bool open = false;
   int threads = 0;
   std::vector<std::pair<std::string, double>> seconds;  ///< of each part of the work, then "total"

@@ -10,6 +10,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/grids/detail/world_transform.h"
+#include "vdb_madf/grids/object_keys.h"
 
 namespace vdb_madf {
 
@@ -63,8 +64,8 @@ bool hasCubicVoxels(const openvdb::GridBase& grid) {
 }
 
 void copyProvenance(const openvdb::GridBase& from, openvdb::GridBase& to) {
-  for (const char* key :
-       {kDomainMin, kDomainMax, kVoxelSizeKey, kLengthUnit, kSourceKey, kBoundaryKey})
+  for (const char* key : {kDomainMin, kDomainMax, kVoxelSizeKey, kLengthUnit, kSourceKey,
+                          kBoundaryKey, kObjectKey, kThresholdKey, kThresholdLowKey})
     if (const auto value = from[key]) to.insertMeta(key, *value);
   to.setTransform(from.transform().copy());
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <limits>
+#include <vector>
 
 namespace vdb_madf {
 
@@ -14,8 +15,13 @@ struct Selection {
   double low = 0;   ///< phase: the value; threshold: least value; range: least value
   double high = 0;  ///< range: largest value (inclusive)
   bool invert = false;
+  std::vector<double> more = {};  ///< phase: further values that are object
 
   static Selection phase(double value) { return {Kind::phase, value, value, false}; }
+  /// Any of the values, of which there is at least one.
+  static Selection phases(const std::vector<double>& values) {
+    return {Kind::phase, values.at(0), values[0], false, {values.begin() + 1, values.end()}};
+  }
   static Selection threshold(double value) {
     return {Kind::threshold, value, std::numeric_limits<double>::infinity(), false};
   }
@@ -23,7 +29,8 @@ struct Selection {
 
   bool operator()(double value) const {
     if (value != value) return false;
-    const bool in = kind == Kind::nonZero ? value != 0 : value >= low && value <= high;
+    bool in = kind == Kind::nonZero ? value != 0 : value >= low && value <= high;
+    for (const double other : more) in |= value == other;
     return in != invert;
   }
 };

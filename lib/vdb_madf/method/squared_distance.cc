@@ -112,8 +112,8 @@ SquaredDistance squaredDistance(const LeafIndex& index, const Obstacles& obstacl
   if (obstacles.open && index.voxelCount() > 0 && index.boundingBox() == obstacles.domain &&
       uint64_t(index.voxelCount()) == obstacles.domain.volume())
     throw InvalidInput(
-        "the object fills the whole domain: with the open boundary there is no "
-        "background to measure distances from; use the closed boundary");
+        "the object fills the whole domain, so there is no background to measure distances from; "
+        "choose by value what is object, with a threshold or a phase");
   SquaredDistance result;
   result.values = VoxelArray<int32_t>(size_t(index.voxelCount()));
   detail::WorkPart first(interrupter, 0, 20), second(interrupter, 20, 60),

@@ -17,9 +17,11 @@
 
 namespace vdb_madf {
 
-MaskGrid::Ptr readMask(ImageReader& image, const Selection& selection, Interrupter* interrupter) {
+std::vector<MaskGrid::Ptr> readMasks(ImageReader& image, const std::vector<Selection>& selections,
+                                     Interrupter* interrupter) {
   const ImageInfo& info = image.info();
-  const auto grid = MaskGrid::create();
+  std::vector<MaskGrid::Ptr> grids;
+  for (size_t i = 0; i < selections.size(); ++i) grids.push_back(MaskGrid::create());
   const int slices = std::min(detail::kSlab, info.size.z);
   const size_t slabBytes = size_t(detail::sliceBytes(info)) * size_t(slices);
   const std::unique_ptr<char[]> samples(new (std::nothrow) char[slabBytes]);
@@ -28,12 +30,19 @@ MaskGrid::Ptr readMask(ImageReader& image, const Selection& selection, Interrupt
                   " bytes are needed for eight");
   detail::forEachSlab(0, info.size.z, interrupter, [&](int z, int count) {
     image.read(z, count, samples.get());
-    detail::packMask(samples.get(), info.type, detail::slicesOf(imageBox(info.size), z, count),
-                     selection, grid->tree());
+    for (size_t i = 0; i < selections.size(); ++i)
+      detail::packMask(samples.get(), info.type, detail::slicesOf(imageBox(info.size), z, count),
+                       selections[i], grids[i]->tree());
   });
-  grid->setName("object");
-  detail::describeImageGrid(image, *grid);
-  return grid;
+  for (const MaskGrid::Ptr& grid : grids) {
+    grid->setName("object");
+    detail::describeImageGrid(image, *grid);
+  }
+  return grids;
+}
+
+MaskGrid::Ptr readMask(ImageReader& image, const Selection& selection, Interrupter* interrupter) {
+  return readMasks(image, {selection}, interrupter)[0];
 }
 
 }  // namespace vdb_madf

@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <vector>
+
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/grids/selection.h"
 #include "vdb_madf/images/image.h"
@@ -14,5 +16,9 @@ namespace vdb_madf {
 /// slab of eight slices.
 MaskGrid::Ptr readMask(ImageReader& image, const Selection& selection = {},
                        Interrupter* interrupter = nullptr);
+
+/// Several such masks in one pass.
+std::vector<MaskGrid::Ptr> readMasks(ImageReader& image, const std::vector<Selection>& selections,
+                                     Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

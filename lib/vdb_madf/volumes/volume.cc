@@ -14,7 +14,6 @@
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/volumes/detail/watched_image.h"
 #include "vdb_madf/volumes/read_labels.h"
-#include "vdb_madf/volumes/read_mask.h"
 
 namespace vdb_madf {
 
@@ -171,16 +170,24 @@ MaskGrid::Ptr loadObject(const std::string& path, const VolumeOptions& options,
                          Interrupter* interrupter) {
   MaskGrid::Ptr object;
   if (isReadAsVdb(path, options)) {
+    if (readsGray(options.gray))
+      throw InvalidInput(path +
+                         ": smoothing and automatic thresholds are for images, and this is "
+                         "a VDB file: leave them out");
     const auto grid = readGrid(path, GridUse::object, options, interrupter);
     if (options.domain) setDomain(*grid, *options.domain);  // an inversion needs it
     object = objectOf(*grid, path, options);
     noteVoxelSize(path, storedVoxelSize(*object), options);
+    despeckleObject(*object, options.gray.despeckle, interrupter);
   } else {
     bool looksLikeLabels = false;
-    std::unique_ptr<ImageReader> image = openVolumeImage(path, options);
-    if (!options.selection)
-      image = std::make_unique<detail::WatchedImage>(std::move(image), looksLikeLabels);
-    object = readMask(*image, options.selection.value_or(Selection{}), interrupter);
+    const auto open = [&] {
+      std::unique_ptr<ImageReader> image = openVolumeImage(path, options);
+      if (!options.selection)
+        image = std::make_unique<detail::WatchedImage>(std::move(image), looksLikeLabels);
+      return image;
+    };
+    object = imageObject(open, options.selection, options.gray, interrupter);
     if (looksLikeLabels && options.note)
       options.note(path + ": it has several values besides 0, and all of them become one mask",
                    NoteAbout::labels);

@@ -15,6 +15,7 @@
 #include "vdb_madf/grids/selection.h"
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/images/open_image.h"
+#include "vdb_madf/volumes/image_object.h"
 
 namespace vdb_madf {
 
@@ -28,6 +29,7 @@ struct VolumeOptions {
   std::string dataset;                 ///< array of a Zarr group or an HDF5 file: see openImage()
   std::optional<RawLayout> raw;        ///< of a file without a header
   std::optional<Selection> selection;  ///< object only: by value; default: see loadObject()
+  GrayOptions gray;                    ///< object only: filters and thresholds of a gray image
   std::optional<VoxelSize> voxelSize;  ///< instead of the file's
   std::optional<CoordBBox> domain;     ///< of the scan, in voxels, instead of the file's
   /// Files that the caller will write: an image that has samples in one of them is refused.
@@ -79,8 +81,8 @@ std::unique_ptr<ImageReader> openVolumeImage(const std::string& path,
                                              const VolumeOptions& options = {});
 
 /// The object in a volume, as a grid "object" with domain and voxel size, as far as the file or the
-/// options tell them. Without a selection: of a grid as objectMask(), of an image as readMask().
-/// Peak memory: see readVdb() and readMask().
+/// options tell them: of a grid as objectMask(), of an image as imageObject().
+/// Peak memory: see readVdb() and imageObject().
 /// @throw InvalidInput, one line that names the file, for a volume that does not fit the options
 ///   (also AmbiguousGrid); IoError; Interrupted.
 MaskGrid::Ptr loadObject(const std::string& path, const VolumeOptions& options = {},

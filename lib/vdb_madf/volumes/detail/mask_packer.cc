@@ -24,12 +24,16 @@ constexpr int kLeaf = 8;
 /// A chunk of the parallel loop packs at least this many samples.
 constexpr size_t kSamplesPerChunk = size_t(1) << 16;
 
-/// A Selection in the samples' own type: object is what lies in [low, high], or what does not.
+/// Part of a Selection in the samples' own type: what lies in [low, high], or what does not.
 template <typename T>
 struct Interval {
   T low, high;
   bool inside;
 };
+
+/// Object is what lies in one of the intervals, or what lies in none; all are of one kind.
+template <typename T>
+using Intervals = std::vector<Interval<T>>;
 
 /// The least T that is >= value; `empty` if there is none.
 template <typename T>
@@ -73,6 +77,14 @@ Interval<T> intervalOf(const Selection& selection) {
   return {low, high, !selection.invert};
 }
 
+template <typename T>
+Intervals<T> intervalsOf(const Selection& selection) {
+  Intervals<T> intervals{intervalOf<T>(selection)};
+  for (const double value : selection.more)
+    intervals.push_back(intervalOf<T>({selection.kind, value, value, selection.invert}));
+  return intervals;
+}
+
 /// One byte, 0 or 1, per sample; plain comparisons that compilers turn into vector code.
 template <typename T>
 void mark(const T* samples, size_t count, const Interval<T>& object, uint8_t* marks) {
@@ -82,6 +94,20 @@ void mark(const T* samples, size_t count, const Interval<T>& object, uint8_t* ma
       marks[i] = uint8_t((samples[i] >= low) & (samples[i] <= high));
   else
     for (size_t i = 0; i < count; ++i) marks[i] = uint8_t((samples[i] < low) | (samples[i] > high));
+}
+
+/// `scratch`: of the same length as the marks, where there are several intervals.
+template <typename T>
+void mark(const T* samples, size_t count, const Intervals<T>& object, uint8_t* scratch,
+          uint8_t* marks) {
+  mark(samples, count, object[0], marks);
+  for (size_t i = 1; i < object.size(); ++i) {
+    mark(samples, count, object[i], scratch);
+    if (object[i].inside)
+      for (size_t j = 0; j < count; ++j) marks[j] |= scratch[j];
+    else
+      for (size_t j = 0; j < count; ++j) marks[j] &= scratch[j];
+  }
 }
 
 /// The bits of eight marks, each 0 or 1.
@@ -129,17 +155,19 @@ size_t leavesAlong(const CoordBBox& slab, int axis) {
 /// fastest: so eight samples along x become a byte, eight such bytes along z one block that is
 /// transposed.
 template <typename T>
-LeafRow packRow(const T* samples, const CoordBBox& slab, const Interval<T>& object, int y0) {
+LeafRow packRow(const T* samples, const CoordBBox& slab, const Intervals<T>& object, int y0) {
   const Coord size = slab.dim(), first = slab.min() & ~(kLeaf - 1);
   const size_t nx = size_t(size.x()), columns = leavesAlong(slab, 0);
   std::vector<uint8_t> marks(columns * kLeaf, 0);            // zero beyond the samples
   std::vector<uint64_t> blocks(columns * size_t(kLeaf), 0);  // [y][leaf], byte z, bit x
+  std::vector<uint8_t> scratch(object.size() > 1 ? nx : 0);
   auto* bytes = reinterpret_cast<uint8_t*>(blocks.data());
   const int yBegin = std::max(y0, slab.min().y()), yEnd = std::min(y0 + kLeaf - 1, slab.max().y());
   for (int z = slab.min().z(); z <= slab.max().z(); ++z)
     for (int y = yBegin; y <= yEnd; ++y) {
       const size_t row = size_t(z - slab.min().z()) * size_t(size.y()) + size_t(y - slab.min().y());
-      mark(samples + row * nx, nx, object, &marks[size_t(slab.min().x() - first.x())]);
+      mark(samples + row * nx, nx, object, scratch.data(),
+           &marks[size_t(slab.min().x() - first.x())]);
       for (size_t column = 0; column < columns; ++column)
         bytes[(size_t(y - y0) * columns + column) * 8 + size_t(z - first.z())] =
             packMarks(&marks[column * kLeaf]);
@@ -154,7 +182,7 @@ LeafRow packRow(const T* samples, const CoordBBox& slab, const Interval<T>& obje
 
 template <typename T>
 void packAs(const T* samples, const CoordBBox& slab, const Selection& selection, MaskTree& tree) {
-  const Interval<T> object = intervalOf<T>(selection);
+  const Intervals<T> object = intervalsOf<T>(selection);
   const size_t samplesPerRow = size_t(slab.dim().x()) * size_t(kLeaf * slab.dim().z());
   std::vector<LeafRow> rows(leavesAlong(slab, 1));
   parallelFor(

@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/volumes/image_object.h"
+
+#include <openvdb/Metadata.h>
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/object_keys.h"
+#include "vdb_madf/images/detail/histogram_builder.h"
+#include "vdb_madf/images/filtered_image.h"
+#include "vdb_madf/images/histogram.h"
+#include "vdb_madf/volumes/mask_cleaning.h"
+#include "vdb_madf/volumes/read_mask.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using detail::shortestDecimal;
+
+std::string percent(int64_t part, int64_t whole) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f %%", 100 * double(part) / double(whole));
+  return text;
+}
+
+std::string grayRefusal(const Histogram& histogram) {
+  std::string text = "is a gray image (" + sampleTypeName(histogram.type) + ", values " +
+                     shortestDecimal(histogram.min) + " to " + shortestDecimal(histogram.max) +
+                     "; " + histogramLine(histogram) + "): say which values are object";
+  if (const auto otsu = otsuThreshold(histogram))
+    text += "; Otsu's threshold is " + shortestDecimal(*otsu) + ", which takes " +
+            percent(voxelsFrom(histogram, *otsu), histogram.finite + histogram.notFinite);
+  return text;
+}
+
+std::string phasesRefusal(const Histogram& histogram) {
+  std::string text = "has the values";
+  for (const double value : histogram.few)
+    text += (value == histogram.few[0] ? " " : ", ") + shortestDecimal(value);
+  return text + ": say which of them are object";
+}
+
+/// Without a selection: what is not 0, unless that would be a guess.
+MaskGrid::Ptr plainMask(ImageReader& image, Interrupter* interrupter) {
+  detail::CountedImage counted(image);
+  MaskGrid::Ptr mask = readMask(counted, {}, interrupter);
+  const Histogram histogram = counted.histogram();
+  const ImageKind kind = kindOf(histogram);
+  if (kind == ImageKind::gray) throw SelectionNeeded(image.path() + ": " + grayRefusal(histogram));
+  if (kind == ImageKind::phases)
+    throw SelectionNeeded(image.path() + ": " + phasesRefusal(histogram));
+  return mask;
+}
+
+double automaticThreshold(ImageReader& image, AutomaticThreshold method, Interrupter* interrupter) {
+  const Histogram histogram = histogramOf(image, interrupter);
+  if (method == AutomaticThreshold::otsu) {
+    const auto threshold = otsuThreshold(histogram);
+    if (threshold) return *threshold;
+    throw InvalidInput(image.path() + ": has but one value, so Otsu's threshold cannot divide it");
+  }
+  const auto threshold = valleyThreshold(histogram);
+  if (!threshold)
+    throw SelectionNeeded(
+        image.path() + ": its histogram (" + histogramLine(histogram) +
+        ") has no two modes with a valley between them: choose another threshold");
+  return *threshold;
+}
+
+/// Voxels from `high` on, and those from `low` on that are connected with them; if the selection is
+/// inverted, all others.
+MaskGrid::Ptr hysteresisMask(ImageReader& image, double low, const Selection& high,
+                             Interrupter* interrupter) {
+  Selection below = Selection::threshold(low);
+  below.invert = true;
+  std::vector<Selection> selections{Selection::threshold(low), Selection::threshold(high.low)};
+  if (high.invert) selections.push_back(below);
+  std::vector<MaskGrid::Ptr> masks = readMasks(image, selections, interrupter);
+  const MaskGrid::Ptr object = masks[0];
+  if (!high.invert) {
+    keepSeeded(*object, *masks[1], interrupter);
+    return object;
+  }
+  const MaskGrid::Ptr seeded = object->deepCopy();
+  keepSeeded(*seeded, *masks[1], interrupter);
+  object->tree().topologyDifference(seeded->tree());
+  object->tree().topologyUnion(masks[2]->tree());
+  return object;
+}
+
+std::string describe(const Selection& selection, const GrayOptions& gray) {
+  const std::string low = shortestDecimal(selection.low), high = shortestDecimal(selection.high);
+  std::string text;
+  switch (selection.kind) {
+    case Selection::Kind::nonZero:
+      text = "value not 0";
+      break;
+    case Selection::Kind::phase:
+      text = "value " + low;
+      for (const double value : selection.more) text += " or " + shortestDecimal(value);
+      break;
+    case Selection::Kind::threshold:
+      text = "value >= " + low;
+      break;
+    case Selection::Kind::range:
+      text = "value " + low + " to " + high;
+      break;
+  }
+  if (gray.automatic == AutomaticThreshold::otsu) text += " (otsu)";
+  if (gray.automatic == AutomaticThreshold::valley) text += " (valley)";
+  if (gray.low) text += ", or >= " + shortestDecimal(*gray.low) + " connected with such";
+  return text + (selection.invert ? ", inverted" : "");
+}
+
+void setText(openvdb::GridBase& grid, const std::string& text) {
+  grid.insertMeta(kObjectKey, openvdb::StringMetadata(text));
+}
+
+void describeObject(const Selection& selection, const GrayOptions& gray, MaskGrid& object) {
+  std::string text;
+  if (gray.median > 0) text += "median " + std::to_string(gray.median) + ", ";
+  if (gray.smooth > 0) text += "smooth " + shortestDecimal(gray.smooth) + ", ";
+  setText(object, text + describe(selection, gray));
+  if (selection.kind == Selection::Kind::threshold)
+    object.insertMeta(kThresholdKey, openvdb::DoubleMetadata(selection.low));
+  if (gray.low) object.insertMeta(kThresholdLowKey, openvdb::DoubleMetadata(*gray.low));
+}
+
+}  // namespace
+
+bool readsGray(const GrayOptions& gray) {
+  return gray.median > 0 || gray.smooth > 0 || gray.low ||
+         gray.automatic != AutomaticThreshold::none;
+}
+
+std::unique_ptr<ImageReader> filteredImage(std::unique_ptr<ImageReader> image,
+                                           const GrayOptions& gray) {
+  if (gray.median != 0) image = medianImage(std::move(image), gray.median);
+  if (gray.smooth != 0) image = smoothedImage(std::move(image), gray.smooth);
+  return image;
+}
+
+MaskGrid::Ptr imageObject(const std::function<std::unique_ptr<ImageReader>()>& open,
+                          const std::optional<Selection>& selection, const GrayOptions& gray,
+                          Interrupter* interrupter) {
+  const auto image = [&] { return filteredImage(open(), gray); };
+  const bool automatic = gray.automatic != AutomaticThreshold::none;
+  Selection chosen = selection.value_or(Selection{});
+  if (automatic) {
+    detail::WorkPart counting(interrupter, 0, 50);
+    const bool invert = chosen.invert;
+    chosen = Selection::threshold(automaticThreshold(*image(), gray.automatic, &counting));
+    chosen.invert = invert;
+  }
+  detail::WorkPart reading(interrupter, automatic ? 50 : 0, 100);
+  MaskGrid::Ptr object;
+  if (gray.low)
+    object = hysteresisMask(*image(), *gray.low, chosen, &reading);
+  else if (selection || automatic)
+    object = readMask(*image(), chosen, &reading);
+  else
+    object = plainMask(*image(), &reading);
+  if (readsGray(gray)) describeObject(chosen, gray, *object);
+  despeckleObject(*object, gray.despeckle, interrupter);
+  return object;
+}
+
+void despeckleObject(MaskGrid& object, int64_t voxels, Interrupter* interrupter) {
+  if (voxels <= 1) return;
+  const Despeckled counts = despeckle(object, voxels, interrupter);
+  const auto before = object.getMetadata<openvdb::StringMetadata>(kObjectKey);
+  setText(object, (before ? before->value() + ", " : "") + "despeckle " + std::to_string(voxels) +
+                      " (" + std::to_string(counts.islandVoxels) + " voxels dropped, " +
+                      std::to_string(counts.cavityVoxels) + " filled)");
+}
+
+}  // namespace vdb_madf

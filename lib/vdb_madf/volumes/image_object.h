@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/selection.h"
+#include "vdb_madf/images/image.h"
+
+namespace vdb_madf {
+
+/// Which values of an image are object has to be said; what() says it without options.
+class SelectionNeeded : public InvalidInput {
+ public:
+  explicit SelectionNeeded(const std::string& what) : InvalidInput(what) {}
+};
+
+enum class AutomaticThreshold { none, otsu, valley };
+
+/// What is done to a gray image, besides a selection, to make an object of it; in this order.
+struct GrayOptions {
+  int median = 0;     ///< radius of the cube, voxels: see medianImage(); 0: none
+  double smooth = 0;  ///< standard deviation, voxels: see smoothedImage(); 0: none
+  /// Takes the place of the selection's threshold: see otsuThreshold(), valleyThreshold().
+  AutomaticThreshold automatic = AutomaticThreshold::none;
+  /// Hysteresis: the selection is a threshold, and voxels from `low` on are object, too, if they are
+  /// 6-connected with one that it selects by others such as they.
+  std::optional<double> low;
+  int64_t despeckle = 0;  ///< see despeckle(); it works on any object
+};
+
+/// True if anything but despeckling is asked for: of images alone.
+bool readsGray(const GrayOptions& gray);
+
+/// The image behind the median and the Gaussian that are asked for.
+std::unique_ptr<ImageReader> filteredImage(std::unique_ptr<ImageReader> image,
+                                           const GrayOptions& gray);
+
+/// The object of an image, as readMask() makes it, with all steps. How it was made is said by
+/// `madf_object`, `madf_threshold` and `madf_threshold_low` if one of the gray options was used.
+/// Peak memory: the mask (three with hysteresis), what despeckle() needs, and one slab with as many
+/// slices on either side as the filters reach. An automatic threshold takes two passes.
+/// @param open called for each pass over the image
+/// @param selection absent: the values that are not 0 of a mask or a label image (see kindOf())
+/// @throw SelectionNeeded, one line that names the file, for a gray image or one of phases without a
+///   selection, and for a histogram without a valley; InvalidInput; IoError; Interrupted.
+MaskGrid::Ptr imageObject(const std::function<std::unique_ptr<ImageReader>()>& open,
+                          const std::optional<Selection>& selection, const GrayOptions& gray = {},
+                          Interrupter* interrupter = nullptr);
+
+/// Despeckles the object and adds that to what it says of itself.
+void despeckleObject(MaskGrid& object, int64_t voxels, Interrupter* interrupter);
+
+}  // namespace vdb_madf

@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// From a gray scan to grains, run as a user runs it.
+
+#include <catch2/catch.hpp>
+#include <cstring>
+
+#include "support/command_runs.h"
+
+using namespace vdb_madf::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// A snow sample as a scan of 16 bits: `s.tif`; the object from which it was made is `clean.vdb`.
+void makeScan(const Bench& bench) {
+  bench.mustRun("generate snow clean.tif --size 64 --length 24");
+  bench.mustRun("convert clean.tif clean.vdb");
+  bench.mustRun("convert clean.tif soft.raw --smooth 0.6");
+  const std::string soft = bench.bytes("soft.raw");
+  std::string gray;
+  uint32_t state = 1;
+  for (size_t i = 0; i + 4 <= soft.size(); i += 4) {
+    float value;
+    std::memcpy(&value, &soft[i], 4);
+    state = state * 1664525 + 1013904223;
+    const auto sample = uint16_t(20000 + 15000 * value + float(state >> 20));
+    gray.append(reinterpret_cast<const char*>(&sample), 2);
+  }
+  bench.write("s.raw", gray);
+  bench.mustRun("convert s.raw s.tif --dims 64x64x64 --type uint16");
+}
+
+Outcome refused(const Bench& bench, const std::string& arguments) {
+  const Outcome outcome = bench.run(arguments);
+  CHECK(outcome.exitCode == 1);
+  CHECK_THAT(outcome.err, !Contains("closed"));
+  return outcome;
+}
+
+}  // namespace
+
+TEST_CASE("gray: a scan without a selection is refused by every verb", "[gray]") {
+  const Bench bench;
+  makeScan(bench);
+  const auto before = bench.names();
+  for (const std::string verb : {"segment s.tif o.vdb", "segment s.tif o.vdb --boundary closed",
+                                 "convert s.tif o.vdb", "sweep s.tif o.csv"}) {
+    CAPTURE(verb);
+    CHECK_THAT(refused(bench, verb).err, Contains("s.tif: is a gray image (uint16, values ") &&
+                                             Contains("Otsu's threshold is ") &&
+                                             Contains("--threshold otsu"));
+  }
+  bench.mustRun("convert clean.vdb ones.tif --threshold 0");
+  CHECK(bench.names().size() == before.size() + 1);
+  bench.mustRun("convert s.tif all.vdb --threshold 1");
+  CHECK_THAT(refused(bench, "segment all.vdb o.vdb").err, Contains("fills the whole domain"));
+}
+
+TEST_CASE("gray: Otsu's threshold takes the object back out of a scan", "[gray]") {
+  const Bench bench;
+  makeScan(bench);
+  const std::string options = " --threshold otsu --median 1 --smooth 0.3 --despeckle 20";
+  const std::string printed = bench.mustRun("segment s.tif g.vdb --json j.json" + options);
+  const Json json = Json::parse(bench.bytes("j.json"));
+  const auto steps = json.at("object").get<std::string>();
+  CHECK_THAT(steps, Catch::Matchers::StartsWith("median 1, smooth 0.3, value >= ") &&
+                        Contains("(otsu), despeckle 20 ("));
+  CHECK_THAT(printed, Contains(steps));
+  CHECK(json.at("threshold") == "otsu");
+  CHECK(json.at("threshold_value").get<double>() == Approx(29500).margin(1500));
+  const Json metadata = gridOf(infoOf(bench, "g.vdb"), "grain").at("metadata");
+  CHECK(metadata.at("madf_object") == steps);
+  CHECK(metadata.at("madf_threshold") == json.at("threshold_value"));
+  // By way of a mask the labels are the same, and say the same of themselves.
+  CHECK_THAT(bench.mustRun("convert s.tif m.vdb" + options), Contains(steps));
+  bench.mustRun("segment m.vdb h.vdb");
+  CHECK(gridOf(infoOf(bench, "h.vdb"), "grain").at("metadata").at("madf_object") == steps);
+  bench.mustRun("segment s.tif one.vdb --threads 1" + options);
+  CHECK(bench.bytes("one.vdb") == bench.bytes("g.vdb"));
+
+  bench.mustRun("convert s.tif otsu.vdb --threshold otsu");
+  const double found = infoOf(bench, "otsu.vdb").at("grids")[0].at("active_voxels");
+  CHECK(
+      found ==
+      Approx(double(infoOf(bench, "clean.vdb").at("grids")[0].at("active_voxels"))).epsilon(0.01));
+}
+
+TEST_CASE("gray: several phases make one object", "[gray]") {
+  const Bench bench;
+  bench.write("p.raw", std::string("\0\1\2\3\0\1\2\3", 8));
+  const std::string layout = " --dims 4x2x1 --type uint8";
+  CHECK_THAT(
+      refused(bench, "convert p.raw o.vdb" + layout).err,
+      Contains("has the values 0, 1, 2, 3: say which of them are object") && Contains("--phase"));
+  bench.mustRun("convert p.raw o.raw --phase 1,3" + layout);
+  CHECK(bench.bytes("o.raw") == std::string("\0\1\0\1\0\1\0\1", 8));
+  bench.mustRun("convert p.raw o.raw --phase 1,3 --invert" + layout);
+  CHECK(bench.bytes("o.raw") == std::string("\1\0\1\0\1\0\1\0", 8));
+  bench.mustRun("convert p.raw o.raw --threshold 1:3" + layout);
+  CHECK(bench.bytes("o.raw") == std::string("\0\1\1\1\0\1\1\1", 8));
+}
+
+TEST_CASE("gray: filters are for images, despeckling is for any volume", "[gray]") {
+  const Bench bench;
+  makeScan(bench);
+  for (const std::string option : {"--threshold otsu", "--threshold 1:2", "--median 1"}) {
+    CHECK_THAT(refused(bench, "segment clean.vdb o.vdb " + option).err, Contains("images"));
+    CHECK_THAT(refused(bench, "convert clean.vdb o.vdb " + option).err, Contains("images"));
+  }
+  bench.mustRun("convert clean.vdb d.vdb --despeckle 1000");
+  CHECK_THAT(gridOf(infoOf(bench, "d.vdb"), "object").at("metadata").at("madf_object"),
+             Catch::Matchers::Predicate<std::string>(
+                 [](const std::string& steps) { return steps.rfind("despeckle 1000 (", 0) == 0; }));
+  // Without a selection a filter leaves an image an image.
+  bench.mustRun("convert s.tif median.tif --median 1");
+  CHECK(infoOf(bench, "median.tif").at("type") == "uint16");
+}
