@@ -184,3 +184,13 @@ TEST_CASE("histogram: a line shows it between its ends", "[histogram]") {
   CHECK(histogramLine(histogramOfRow(samples), 5) == "100 |@   +| 120");
   CHECK(histogramLine(histogramOfRow<uint8_t>({3, 3}), 5) == "3 |@| 3");
 }
+
+TEST_CASE("histogram: labels are counted one by one, however wide the bins are", "[histogram]") {
+  for (const int32_t step : {1, 7, 20000001}) {
+    CAPTURE(step);
+    std::vector<int32_t> samples;
+    for (int i = 0; i < 90; ++i) samples.insert(samples.end(), 4, i % 30 * step);
+    const Histogram histogram = histogramOfRow(samples);
+    CHECK(countLabels(histogram, *imageOf<int32_t>({360, 1, 1}, samples)) == 29);
+  }
+}

@@ -117,3 +117,49 @@ TEST_CASE("gray: filters are for images, despeckling is for any volume", "[gray]
   bench.mustRun("convert s.tif median.tif --median 1");
   CHECK(infoOf(bench, "median.tif").at("type") == "uint16");
 }
+
+TEST_CASE("gray: info says what the values of an image are", "[gray]") {
+  const Bench bench;
+  makeScan(bench);
+  const Json scan = Json::parse(bench.mustRun("info s.tif --json - --histogram h.svg"));
+  CHECK(scan.at("kind") == "gray");
+  CHECK(scan.at("type") == "uint16");
+  CHECK(scan.at("value_min").get<int>() >= 20000);
+  CHECK(scan.at("value_max").get<int>() <= 39096);
+  CHECK(scan.at("otsu_threshold").get<double>() == Approx(29500).margin(1500));
+  CHECK(scan.at("otsu_object_share").get<double>() == Approx(0.3).margin(0.2));
+  CHECK(scan.at("histogram_counts").size() == 256);
+  CHECK_THAT(bench.bytes("h.svg"), Contains("otsu"));
+  const std::string printed = bench.mustRun("info s.tif");
+  CHECK_THAT(printed, Contains("kind: gray") && Contains("otsu_threshold: ") &&
+                          Contains("histogram: ") && !Contains("histogram_counts"));
+  // What it suggests is what --threshold otsu takes.
+  bench.mustRun("convert s.tif m.vdb --threshold otsu");
+  CHECK(gridOf(infoOf(bench, "m.vdb"), "object").at("metadata").at("madf_threshold") ==
+        scan.at("otsu_threshold"));
+  CHECK(infoOf(bench, "s.tif --header").count("kind") == 0);
+
+  const Json mask = infoOf(bench, "clean.tif");
+  CHECK(mask.at("kind") == "mask");
+  CHECK(mask.at("voxels_of_value").size() == 2);
+  CHECK(mask.at("voxels_of_value")[0][1].get<int>() + mask.at("voxels_of_value")[1][1].get<int>() ==
+        64 * 64 * 64);
+  const int grains = Json::parse(bench.mustRun("segment clean.vdb g.vdb --json -")).at("grains");
+  bench.mustRun("convert g.vdb g.tif");
+  const Json labels = infoOf(bench, "g.tif");
+  CHECK(labels.at("kind") == (grains > 4 ? "labels" : "phases"));
+  CHECK(labels.value("labels", grains) == grains);
+}
+
+TEST_CASE("gray: info of a folder says how many slices there are, and which", "[gray]") {
+  const Bench bench;
+  bench.mustRun("generate snow a.tif --dims 20x20x1 --length 8");
+  std::filesystem::create_directory(bench.path("slices"));
+  for (const std::string name : {"s9.tif", "s10.tif", "s11.tif"})
+    bench.write("slices/" + name, bench.bytes("a.tif"));
+  const Json info = infoOf(bench, "slices");
+  CHECK(info.at("files") == 3);
+  CHECK(info.at("first_file") == "s9.tif");
+  CHECK(info.at("last_file") == "s11.tif");
+  CHECK(infoOf(bench, "a.tif").count("files") == 0);
+}

@@ -1,13 +1,17 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <sstream>
 
 #include "command.h"
+#include "image_values.h"
 #include "input_options.h"
 #include "json_file.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/vdb/read_vdb.h"
@@ -19,7 +23,8 @@ namespace {
 
 struct Options {
   InputOptions input;
-  std::string json;
+  std::string json, histogram;
+  bool header = false;
 };
 
 Json corner(const Coord& c) {
@@ -83,6 +88,13 @@ Json describeImage(const ImageReader& image) {
   json["size"] = corner(toCoord(info.size));
   json["type"] = sampleTypeName(info.type);
   if (info.voxelSize) json["voxel_size_mm"] = info.voxelSize->metres * 1e3;
+  // Of slices in a folder; a Zarr group names itself, too.
+  if (const auto& files = image.files();
+      std::filesystem::is_directory(image.path()) && files.front() != image.path()) {
+    json["files"] = files.size();
+    json["first_file"] = std::filesystem::path(files.front()).filename().string();
+    json["last_file"] = std::filesystem::path(files.back()).filename().string();
+  }
   return json;
 }
 
@@ -93,7 +105,8 @@ std::string plain(const Json& value) {
 void print(const Json& json) {
   std::cout << json["file"].get<std::string>() << ": " << json["format"].get<std::string>() << "\n";
   for (const auto& [key, value] : json.items())
-    if (key != "file" && key != "format" && key != "grids" && key != "notes")
+    if (key != "file" && key != "format" && key != "grids" && key != "notes" &&
+        key != "histogram_counts")
       std::cout << "  " << key << ": " << plain(value) << "\n";
   if (!json.contains("grids")) return;
   for (const Json& grid : json["grids"]) {
@@ -108,9 +121,12 @@ void print(const Json& json) {
 
 void run(const Options& o, const Common& common) {
   JsonFile jsonFile(o.json);
+  TextFile plot(o.histogram);
   Json json;
   json["file"] = o.input.path;
   if (isVdb(o.input)) {
+    if (!plot.isNowhere())
+      throw InvalidInput(o.input.path + ": --histogram is for images, and this is a VDB file");
     json["format"] = "vdb";
     json["grids"] = Json::array();
     VdbReadOptions reading;
@@ -124,6 +140,11 @@ void run(const Options& o, const Common& common) {
   } else {
     const auto image = openVolumeImage(o.input.path, o.input.volume(common.progress));
     json.update(describeImage(*image));
+    if (!o.header) {
+      const Histogram histogram = countValues(o.input, common.progress);
+      describeValues(o.input, histogram, json, common.progress);
+      if (!plot.isNowhere()) plot.write(plotValues(o.input, histogram));
+    }
   }
   common.progress->end();
   addNotes(json, *common.progress);
@@ -138,9 +159,16 @@ void addInfo(Verb command, Common& common, Action& action) {
   Verb verb = addVerb(command, common, "info", "what is in a file", "vdb_madf info grains.vdb");
   verb.option("FILE", o->input.path, "any readable volume").required();
   o->input.addRaw(verb);
+  verb.flag("--header", o->header, "only what headers say: does not read the voxels of an image");
+  verb.option("--histogram", o->histogram, "SVG: the histogram of an image").typeName("FILE.svg");
   verb.option("--json", o->json, "machine-readable result (-: standard output)").typeName("FILE");
   verb.onParsed([o, &common, &action] {
-    o->input.outputs = {o->json};
+    o->input.outputs = {o->json, o->histogram};
+    if (!o->histogram.empty() && fileEnding(o->histogram) != ".svg")
+      throw WrongUsage(o->histogram + ": the histogram's ending must be .svg");
+    if (!o->histogram.empty() && o->header)
+      throw WrongUsage(
+          "--header reads no voxels, so there is no --histogram: leave one of them out");
     o->input.parse();
     action = [o, &common] { run(*o, common); };
   });

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <unordered_set>
 
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/histogram_builder.h"
+#include "vdb_madf/images/detail/sample_conversion.h"
 #include "vdb_madf/images/detail/slabs.h"
 
 namespace vdb_madf {
@@ -79,6 +81,28 @@ ImageKind kindOf(const Histogram& histogram) {
     labels += histogram.counts[i] >= kLabelRun * histogram.runs[i];
   }
   return 2 * labels >= bins ? ImageKind::labels : ImageKind::gray;
+}
+
+int64_t countLabels(const Histogram& histogram, ImageReader& image, Interrupter* interrupter) {
+  int64_t labels = 0;
+  if (histogram.width <= 1) {
+    for (size_t i = 0; i < histogram.counts.size(); ++i)
+      labels += histogram.counts[i] > 0 && histogram.first + int64_t(i) != 0;
+    return labels;
+  }
+  std::unordered_set<int64_t> values;
+  const ImageInfo& info = image.info();
+  const size_t slice = size_t(info.size.x) * size_t(info.size.y);
+  std::vector<char> samples(slice * sampleSize(info.type) * size_t(detail::kSlab));
+  detail::forEachSlab(0, info.size.z, interrupter, [&](int z, int count) {
+    image.read(z, count, samples.data());
+    detail::withSampleType(info.type, [&](auto sample) {
+      const auto* value = reinterpret_cast<const decltype(sample)*>(samples.data());
+      for (size_t i = 0; i < slice * size_t(count); ++i)
+        if (value[i] != 0 && (i == 0 || value[i] != value[i - 1])) values.insert(int64_t(value[i]));
+    });
+  });
+  return int64_t(values.size());
 }
 
 std::optional<double> otsuThreshold(const Histogram& histogram) {

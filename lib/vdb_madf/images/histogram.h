@@ -48,6 +48,11 @@ enum class ImageKind {
 };
 ImageKind kindOf(const Histogram& histogram);
 
+/// How many values but 0 there are, all of which are whole numbers. Takes another pass over the image
+/// where a bin holds several values; memory is that of the values. @throw IoError; Interrupted.
+int64_t countLabels(const Histogram& histogram, ImageReader& image,
+                    Interrupter* interrupter = nullptr);
+
 /// Otsu's threshold: the one with the largest variance between the voxels below and the others
 /// (the least, if several are equal), put into the middle of the empty bins above the last bin
 /// below. With one bin a value the voxels at or above it are those above scikit-image's
