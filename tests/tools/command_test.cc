@@ -143,7 +143,7 @@ TEST_CASE("cli: the selection says what is object", "[cli]") {
   bench.mustRun("convert ramp.raw ramp.tif --dims 8x1x1 --type uint8");
   const std::pair<const char*, const char*> cases[] = {
       {"--phase 3", "00010000"},           {"--threshold 5", "00000111"},
-      {"--range 2:4", "00111000"},         {"--invert", "10000000"},
+      {"--range 2:4", "00111000"},         {"--threshold 1 --invert", "10000000"},
       {"--phase 3 --invert", "11101111"},  {"--threshold 5 --invert", "11111000"},
       {"--range 2:4 --invert", "11000111"}};
   for (const auto& [selection, object] : cases) {

@@ -45,8 +45,9 @@ TEST_CASE("gray: a scan without a selection is refused by every verb", "[gray]")
   const Bench bench;
   makeScan(bench);
   const auto before = bench.names();
-  for (const std::string verb : {"segment s.tif o.vdb", "segment s.tif o.vdb --boundary closed",
-                                 "convert s.tif o.vdb", "sweep s.tif o.csv"}) {
+  for (const std::string verb :
+       {"segment s.tif o.vdb", "segment s.tif o.vdb --boundary closed", "convert s.tif o.vdb",
+        "sweep s.tif o.csv", "segment s.tif o.vdb --invert"}) {
     CAPTURE(verb);
     CHECK_THAT(refused(bench, verb).err, Contains("s.tif: is a gray image (uint16, values ") &&
                                              Contains("Otsu's threshold is ") &&

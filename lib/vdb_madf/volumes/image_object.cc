@@ -50,10 +50,10 @@ std::string phasesRefusal(const Histogram& histogram) {
   return text + ": say which of them are object";
 }
 
-/// Without a selection: what is not 0, unless that would be a guess.
-MaskGrid::Ptr plainMask(ImageReader& image, Interrupter* interrupter) {
+/// What is not 0 (or, inverted, what is), unless that would be a guess.
+MaskGrid::Ptr plainMask(ImageReader& image, const Selection& nonZero, Interrupter* interrupter) {
   detail::CountedImage counted(image);
-  MaskGrid::Ptr mask = readMask(counted, {}, interrupter);
+  MaskGrid::Ptr mask = readMask(counted, nonZero, interrupter);
   const Histogram histogram = counted.histogram();
   const ImageKind kind = kindOf(histogram);
   if (kind == ImageKind::gray) throw SelectionNeeded(image.path() + ": " + grayRefusal(histogram));
@@ -87,12 +87,13 @@ MaskGrid::Ptr hysteresisMask(ImageReader& image, double low, const Selection& hi
   if (high.invert) selections.push_back(below);
   std::vector<MaskGrid::Ptr> masks = readMasks(image, selections, interrupter);
   const MaskGrid::Ptr object = masks[0];
+  detail::WorkPart end(interrupter, 100, 100);
   if (!high.invert) {
-    keepSeeded(*object, *masks[1], interrupter);
+    keepSeeded(*object, *masks[1], &end);
     return object;
   }
   const MaskGrid::Ptr seeded = object->deepCopy();
-  keepSeeded(*seeded, *masks[1], interrupter);
+  keepSeeded(*seeded, *masks[1], &end);
   object->tree().topologyDifference(seeded->tree());
   object->tree().topologyUnion(masks[2]->tree());
   return object;
@@ -166,10 +167,10 @@ MaskGrid::Ptr imageObject(const std::function<std::unique_ptr<ImageReader>()>& o
   MaskGrid::Ptr object;
   if (gray.low)
     object = hysteresisMask(*image(), *gray.low, chosen, &reading);
-  else if (selection || automatic)
-    object = readMask(*image(), chosen, &reading);
+  else if (chosen.kind == Selection::Kind::nonZero)
+    object = plainMask(*image(), chosen, &reading);
   else
-    object = plainMask(*image(), &reading);
+    object = readMask(*image(), chosen, &reading);
   if (readsGray(gray)) describeObject(chosen, gray, *object);
   despeckleObject(*object, gray.despeckle, interrupter);
   return object;
@@ -177,7 +178,8 @@ MaskGrid::Ptr imageObject(const std::function<std::unique_ptr<ImageReader>()>& o
 
 void despeckleObject(MaskGrid& object, int64_t voxels, Interrupter* interrupter) {
   if (voxels <= 1) return;
-  const Despeckled counts = despeckle(object, voxels, interrupter);
+  detail::WorkPart end(interrupter, 100, 100);
+  const Despeckled counts = despeckle(object, voxels, &end);
   const auto before = object.getMetadata<openvdb::StringMetadata>(kObjectKey);
   setText(object, (before ? before->value() + ", " : "") + "despeckle " + std::to_string(voxels) +
                       " (" + std::to_string(counts.islandVoxels) + " voxels dropped, " +

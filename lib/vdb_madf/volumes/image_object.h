@@ -48,9 +48,10 @@ std::unique_ptr<ImageReader> filteredImage(std::unique_ptr<ImageReader> image,
 /// Peak memory: the mask (three with hysteresis), what despeckle() needs, and one slab with as many
 /// slices on either side as the filters reach. An automatic threshold takes two passes.
 /// @param open called for each pass over the image
-/// @param selection absent: the values that are not 0 of a mask or a label image (see kindOf())
-/// @throw SelectionNeeded, one line that names the file, for a gray image or one of phases without a
-///   selection, and for a histogram without a valley; InvalidInput; IoError; Interrupted.
+/// @param selection absent: what is not 0. That, inverted or not, is taken of masks and label images
+///   alone (see kindOf()): other images need a selection by value.
+/// @throw SelectionNeeded, one line that names the file, for a gray image or one of phases without
+///   one, and for a histogram without a valley; InvalidInput; IoError; Interrupted.
 MaskGrid::Ptr imageObject(const std::function<std::unique_ptr<ImageReader>()>& open,
                           const std::optional<Selection>& selection, const GrayOptions& gray = {},
                           Interrupter* interrupter = nullptr);

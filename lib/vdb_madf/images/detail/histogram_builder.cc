@@ -44,7 +44,9 @@ int neededExponent(double low, double high, bool isIntegral) {
 }  // namespace
 
 int64_t HistogramBuilder::binOf(double value) const {
-  return int64_t(std::floor(std::ldexp(value, -exponent_)));
+  const double scaled = value * scale_;  // below 2^53
+  const auto bin = int64_t(scaled);
+  return bin - (double(bin) > scaled);
 }
 
 void HistogramBuilder::widen(int exponent) {
@@ -58,14 +60,19 @@ void HistogramBuilder::widen(int exponent) {
   }
   counts_.swap(counts);
   runs_.swap(runs);
+  setExponent(exponent);
+}
+
+void HistogramBuilder::setExponent(int exponent) {
   exponent_ = exponent;
+  scale_ = std::ldexp(1, -exponent);
 }
 
 void HistogramBuilder::include(double low, double high, bool isIntegral) {
   if (!any_) {
     counts_.assign(size_t{kBins}, 0);
     runs_.assign(size_t{kBins}, 0);
-    exponent_ = neededExponent(low, high, isIntegral);
+    setExponent(neededExponent(low, high, isIntegral));
     min_ = low;
     max_ = high;
     any_ = true;
@@ -120,7 +127,7 @@ void HistogramBuilder::addRuns(const T* samples, size_t count) {
     const auto value = double(samples[i]);
     this->count(binOf(value), int64_t(end - i), 1);
     addValue(value);
-    whole_ &= value == std::floor(value);
+    if constexpr (!std::is_integral_v<T>) whole_ &= value == std::floor(value);
     i = end;
   }
 }

@@ -31,6 +31,7 @@ class HistogramBuilder {
   /// Makes the bins wide enough for these values, too.
   void include(double low, double high, bool isIntegral);
   void widen(int exponent);
+  void setExponent(int exponent);
   void addValue(double value);
   int64_t binOf(double value) const;
   void count(int64_t bin, int64_t voxels, int64_t runs) {
@@ -41,6 +42,7 @@ class HistogramBuilder {
   // Bins span less than kBins, so that each has a place of its own modulo kBins.
   std::vector<int64_t> counts_, runs_;
   int exponent_ = 0;  // of the width
+  double scale_ = 1;  // one over the width
   bool any_ = false;
   double min_ = 0, max_ = 0;
   int64_t finite_ = 0, notFinite_ = 0;
