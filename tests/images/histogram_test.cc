@@ -194,3 +194,27 @@ TEST_CASE("histogram: labels are counted one by one, however wide the bins are",
     CHECK(countLabels(histogram, *imageOf<int32_t>({360, 1, 1}, samples)) == 29);
   }
 }
+
+TEST_CASE("histogram: the value at the corners of all slices can be left out", "[histogram]") {
+  std::vector<int16_t> samples(3 * 3 * 4, -5);
+  for (int z = 0; z < 4; ++z) samples[size_t(9 * z + 4)] = int16_t(z);
+  const Histogram histogram = histogramOf(*imageOf<int16_t>({3, 3, 4}, samples));
+  CHECK(histogram.corner == -5.0);
+  const auto inside = withoutCorner(histogram);
+  REQUIRE(inside);
+  CHECK(inside->counts == std::vector<int64_t>(4, 1));
+  CHECK(inside->runs == std::vector<int64_t>(4, 1));
+  CHECK(inside->first == 0);
+  CHECK(inside->min == 0);
+  CHECK(inside->max == 3);
+  CHECK(inside->finite == 4);
+  CHECK(otsuThreshold(*inside) == 2.0);
+  samples[9 * 3 + 8] = 7;
+  CHECK_FALSE(histogramOf(*imageOf<int16_t>({3, 3, 4}, samples)).corner);
+  CHECK_FALSE(withoutCorner(histogramOfRow<uint8_t>({3, 3})));
+  // A value in the place of the greatest.
+  const auto low = withoutCorner(histogramOf(*imageOf<uint8_t>({3, 1, 1}, {9, 4, 9})));
+  REQUIRE(low);
+  CHECK(low->counts == std::vector<int64_t>{1});
+  CHECK(low->max == 4);
+}

@@ -10,8 +10,8 @@
 #include <random>
 
 #include "support/samples.h"
-#include "vdb_madf/samples/detail/particle_placement.h"
 #include "vdb_madf/base/detail/portable_math.h"
+#include "vdb_madf/samples/detail/particle_placement.h"
 
 namespace {
 

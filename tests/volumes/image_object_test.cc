@@ -134,6 +134,31 @@ TEST_CASE("image_object: a gray image without a selection is refused with what O
   CHECK_THROWS_AS(objectOf(kSize, randomVoxels(30, 2), std::nullopt, smooth), SelectionNeeded);
 }
 
+TEST_CASE("image_object: a round field of view does not pass for pores", "[image_object]") {
+  const ImageSize size{40, 40, 9};
+  std::vector<uint16_t> samples;
+  const auto noise = randomNumbers<uint16_t>(voxels(size), 0, 400, 7);
+  for (int i = 0; i < int(voxels(size)); ++i) {
+    const int x = i % 40 - 20, y = i / 40 % 40 - 20;
+    const int value = x * x + y * y > 19 * 19 ? 0 : (x / 5 + y / 5) % 2 ? 4000 : 3000;
+    samples.push_back(uint16_t(value + (value > 0 ? noise[size_t(i)] : 0)));
+  }
+  GrayOptions gray;
+  gray.automatic = AutomaticThreshold::otsu;
+  CHECK_THROWS_WITH(objectOf(size, samples, std::nullopt, gray),
+                    Contains("the threshold would be ") &&
+                        Contains("but 3700.5 without the value 0") &&
+                        Contains("choose one of the two by its value"));
+  CHECK_THROWS_AS(objectOf(size, samples, std::nullopt, gray), SelectionNeeded);
+  CHECK_THROWS_WITH(objectOf(size, samples, std::nullopt),
+                    Contains("or 3700.5 without the value 0"));
+  for (uint16_t& sample : samples) sample = uint16_t(std::max<int>(sample, 3000));
+  CHECK_NOTHROW(objectOf(size, samples, std::nullopt, gray));
+  // A mask has zeros at its corners, too.
+  for (uint16_t& sample : samples) sample = sample > 3700;
+  CHECK_NOTHROW(objectOf(size, samples, std::nullopt, gray));
+}
+
 TEST_CASE("image_object: phases have to be chosen, masks and labels are taken", "[image_object]") {
   CHECK_THROWS_WITH(objectOf(kSize, randomNumbers<uint8_t>(voxels(kSize), 0, 2, 1), std::nullopt),
                     Contains("has the values 0, 1, 2: say which of them are object"));

@@ -35,8 +35,9 @@ std::vector<std::string> hints(const SegmentOptions& options, const SegmentSumma
     all.push_back(share(flaws.slivers) + " are slivers: raise " +
                   (neck && options.merge.delta < 8 ? "--delta or " : "") + "--theta; see sweep");
   if (flaws.specks >= 10 && 5 * flaws.specks > grains)
-    all.push_back(share(flaws.specks) +
-                  " are loose specks under 100 voxels: noise of the scan? --despeckle 100 drops them");
+    all.push_back(
+        share(flaws.specks) +
+        " are loose specks under 100 voxels: noise of the scan? --despeckle 100 drops them");
   if (summary.counts.cavities >= 10 && 5 * summary.counts.cavities > grains &&
       summary.fillHoles < 100)
     all.push_back(std::to_string(summary.counts.cavities) +

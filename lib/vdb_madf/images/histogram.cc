@@ -147,6 +147,29 @@ std::optional<double> valleyThreshold(const Histogram& histogram) {
   return std::nullopt;
 }
 
+std::optional<Histogram> withoutCorner(const Histogram& histogram) {
+  if (!histogram.corner || !(histogram.max > histogram.min)) return std::nullopt;
+  Histogram rest = histogram;
+  const auto bin = size_t(int64_t(std::floor(*rest.corner / rest.width)) - rest.first);
+  rest.finite -= rest.counts[bin];
+  rest.counts[bin] = rest.runs[bin] = 0;
+  while (!rest.counts.empty() && rest.counts.back() == 0) {
+    rest.counts.pop_back();
+    rest.runs.pop_back();
+    rest.max = rest.lowerEdge(rest.counts.size() - 1);
+  }
+  const auto begin =
+      std::find_if(rest.counts.begin(), rest.counts.end(), [](int64_t count) { return count > 0; });
+  if (begin == rest.counts.end()) return std::nullopt;
+  const auto empty = begin - rest.counts.begin();
+  rest.counts.erase(rest.counts.begin(), begin);
+  rest.runs.erase(rest.runs.begin(), rest.runs.begin() + empty);
+  rest.first += empty;
+  if (empty > 0) rest.min = rest.lowerEdge(0);
+  rest.corner.reset();
+  return rest;
+}
+
 int64_t voxelsFrom(const Histogram& histogram, double threshold) {
   int64_t voxels = 0;
   for (size_t i = histogram.counts.size(); i > 0 && histogram.lowerEdge(i - 1) >= threshold; --i)

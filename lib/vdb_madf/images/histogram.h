@@ -29,6 +29,8 @@ struct Histogram {
   /// All finite values, ascending, if there are at most kFewValues; else the least that were met.
   std::vector<double> few;
   bool onlyFew = true;  ///< `few` has all values
+  /// The one value at the four corners of all slices, as around a round field of view.
+  std::optional<double> corner;
 
   double lowerEdge(size_t bin) const { return double(first + int64_t(bin)) * width; }
 };
@@ -65,6 +67,9 @@ std::optional<double> otsuThreshold(const Histogram& histogram);
 /// threshold_minimum() finds it: with one bin a value the next value, else the middle of the bin.
 /// None if there are no two maxima.
 std::optional<double> valleyThreshold(const Histogram& histogram);
+
+/// The histogram without the value at all corners; none if they differ, or nothing else is there.
+std::optional<Histogram> withoutCorner(const Histogram& histogram);
 
 /// Voxels at or above a threshold (one of those above, or any edge of a bin).
 int64_t voxelsFrom(const Histogram& histogram, double threshold);

@@ -33,13 +33,39 @@ std::string percent(int64_t part, int64_t whole) {
   return text;
 }
 
+using ThresholdOf = std::optional<double> (*)(const Histogram&);
+
+/// What the threshold would be without a value that fills the corners of all slices of a gray image,
+/// as it does around a round field of view; none if that hardly changes the object.
+std::optional<double> thresholdInside(const Histogram& histogram, ThresholdOf thresholdOf,
+                                      double threshold) {
+  constexpr double kLittle = 0.001;  // of the voxels
+  if (kindOf(histogram) != ImageKind::gray) return std::nullopt;
+  const auto inside = withoutCorner(histogram);
+  const auto other = inside ? thresholdOf(*inside) : std::nullopt;
+  if (!other) return std::nullopt;
+  const auto change = double(voxelsFrom(histogram, threshold) - voxelsFrom(histogram, *other));
+  if (std::abs(change) <= kLittle * double(histogram.finite)) return std::nullopt;
+  return other;
+}
+
+std::string cornerText(const Histogram& histogram) {
+  return "without the value " + shortestDecimal(*histogram.corner) +
+         ", which the corners of all slices have";
+}
+
 std::string grayRefusal(const Histogram& histogram) {
   std::string text = "is a gray image (" + sampleTypeName(histogram.type) + ", values " +
                      shortestDecimal(histogram.min) + " to " + shortestDecimal(histogram.max) +
                      "; " + histogramLine(histogram) + "): say which values are object";
-  if (const auto otsu = otsuThreshold(histogram))
+  if (const auto otsu = otsuThreshold(histogram)) {
+    const auto voxels = histogram.finite + histogram.notFinite;
     text += "; Otsu's threshold is " + shortestDecimal(*otsu) + ", which takes " +
-            percent(voxelsFrom(histogram, *otsu), histogram.finite + histogram.notFinite);
+            percent(voxelsFrom(histogram, *otsu), voxels);
+    if (const auto inside = thresholdInside(histogram, otsuThreshold, *otsu))
+      text += ", or " + shortestDecimal(*inside) + " " + cornerText(histogram) + ", which takes " +
+              percent(voxelsFrom(histogram, *inside), voxels);
+  }
   return text;
 }
 
@@ -64,16 +90,19 @@ MaskGrid::Ptr plainMask(ImageReader& image, const Selection& nonZero, Interrupte
 
 double automaticThreshold(ImageReader& image, AutomaticThreshold method, Interrupter* interrupter) {
   const Histogram histogram = histogramOf(image, interrupter);
-  if (method == AutomaticThreshold::otsu) {
-    const auto threshold = otsuThreshold(histogram);
-    if (threshold) return *threshold;
+  const bool isOtsu = method == AutomaticThreshold::otsu;
+  const ThresholdOf thresholdOf = isOtsu ? otsuThreshold : valleyThreshold;
+  const auto threshold = thresholdOf(histogram);
+  if (!threshold && isOtsu)
     throw InvalidInput(image.path() + ": has but one value, so Otsu's threshold cannot divide it");
-  }
-  const auto threshold = valleyThreshold(histogram);
   if (!threshold)
     throw SelectionNeeded(
         image.path() + ": its histogram (" + histogramLine(histogram) +
         ") has no two modes with a valley between them: choose another threshold");
+  if (const auto inside = thresholdInside(histogram, thresholdOf, *threshold))
+    throw SelectionNeeded(image.path() + ": the threshold would be " + shortestDecimal(*threshold) +
+                          ", but " + shortestDecimal(*inside) + " " + cornerText(histogram) +
+                          " (a round field of view?): choose one of the two by its value");
   return *threshold;
 }
 

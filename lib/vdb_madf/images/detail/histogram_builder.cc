@@ -194,9 +194,14 @@ CountedImage::CountedImage(ImageReader& image) : image_(image) {
 
 void CountedImage::read(int first, int count, void* samples) {
   image_.read(first, count, samples);
-  const auto nx = size_t(info_.size.x);
+  const auto nx = size_t(info_.size.x), ny = size_t(info_.size.y);
   withSampleType(info_.type, [&](auto sample) {
     const auto* rows = static_cast<const decltype(sample)*>(samples);
+    for (size_t z = 0; z < size_t(count); ++z) {
+      const auto *firstRow = rows + z * nx * ny, *lastRow = firstRow + (ny - 1) * nx;
+      lookAtCorners({double(firstRow[0]), double(firstRow[nx - 1]), double(lastRow[0]),
+                     double(lastRow[nx - 1])});
+    }
     parallelFor(size_t(info_.size.y) * size_t(count), kRowsPerChunk, nullptr,
                 [&](size_t begin, size_t end) {
                   HistogramBuilder& builder = builders_.local();
@@ -205,10 +210,17 @@ void CountedImage::read(int first, int count, void* samples) {
   });
 }
 
+void CountedImage::lookAtCorners(const double (&corners)[4]) {
+  if (!corner_) corner_ = corners[0];
+  for (const double corner : corners) cornersDiffer_ |= !(corner == *corner_);
+}
+
 Histogram CountedImage::histogram() const {
   HistogramBuilder all;
   for (const HistogramBuilder& builder : builders_) all.add(builder);
-  return all.result(info_.type);
+  Histogram histogram = all.result(info_.type);
+  if (corner_ && !cornersDiffer_ && isFinite(*corner_)) histogram.corner = corner_;
+  return histogram;
 }
 
 }  // namespace vdb_madf::detail

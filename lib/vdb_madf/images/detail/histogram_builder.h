@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
@@ -58,7 +59,11 @@ class CountedImage : public ImageReader {
   Histogram histogram() const;  ///< of the slices read so far
 
  private:
+  void lookAtCorners(const double (&corners)[4]);
+
   ImageReader& image_;
+  std::optional<double> corner_;
+  bool cornersDiffer_ = false;
   mutable PerThread<HistogramBuilder> builders_;
 };
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string>
 
-#include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/detail/portable_math.h"
+#include "vdb_madf/base/errors.h"
 
 namespace vdb_madf::detail {
 
