@@ -37,12 +37,12 @@ Json number(double value) {
 
 }  // namespace
 
-Histogram countValues(const InputOptions& input, Interrupter* interrupter) {
-  return histogramOf(*openVolumeImage(input.path, input.volume()), interrupter);
+Histogram countValues(const InputOptions& input, Progress* progress) {
+  return histogramOf(*openVolumeImage(input.path, input.volume(progress)), progress);
 }
 
 void describeValues(const InputOptions& input, const Histogram& histogram, Json& json,
-                    Interrupter* interrupter) {
+                    Progress* progress) {
   const ImageKind kind = kindOf(histogram);
   json["kind"] = nameOf(kind);
   if (histogram.notFinite > 0) json["voxels_not_finite"] = histogram.notFinite;
@@ -60,7 +60,7 @@ void describeValues(const InputOptions& input, const Histogram& histogram, Json&
                (i + 1 < histogram.few.size() ? voxelsFrom(histogram, histogram.few[i + 1]) : 0)});
   if (kind == ImageKind::labels)
     json["labels"] =
-        countLabels(histogram, *openVolumeImage(input.path, input.volume()), interrupter);
+        countLabels(histogram, *openVolumeImage(input.path, input.volume(progress)), progress);
   if (kind != ImageKind::gray) return;
   if (const auto otsu = otsuThreshold(histogram)) {
     json["otsu_threshold"] = number(*otsu);

@@ -12,9 +12,9 @@
 namespace vdb_madf::tools {
 
 /// What `info` says of the values of an image, which it counts. @throw as histogramOf()
-Histogram countValues(const InputOptions& input, Interrupter* interrupter);
+Histogram countValues(const InputOptions& input, Progress* progress);
 void describeValues(const InputOptions& input, const Histogram& histogram, Json& json,
-                    Interrupter* interrupter);
+                    Progress* progress);
 /// An SVG of the histogram. @throw InvalidInput if it has one value at most
 std::string plotValues(const InputOptions& input, const Histogram& histogram);
 
