@@ -7,6 +7,7 @@
 
 #include "support/random_volume.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/memory.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
@@ -45,6 +46,6 @@ TEST_CASE("segment_memory: what does not fit is refused before work starts", "[s
   options.maxMemory = needed;
   CHECK(segment(*mask, options).counts.grains == 1);
   options.maxMemory = needed - 1;
-  CHECK_THROWS_WITH(segment(*mask, options), Catch::Contains(std::to_string(needed) + " bytes"));
+  CHECK_THROWS_WITH(segment(*mask, options), Catch::Contains(readableBytes(needed) + " of memory"));
   CHECK_THROWS_AS(segment(*mask, options), InvalidInput);
 }

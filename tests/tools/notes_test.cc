@@ -84,9 +84,11 @@ TEST_CASE("cli: a slice that is missing is said", "[cli]") {
 
 TEST_CASE("cli: that labels become a mask is said", "[cli]") {
   const Bench bench;
-  bench.write("labels.raw", std::string({0, 7, 7, 0, 0, 9, 9, 0}));
-  bench.write("mask.raw", std::string({0, 7, 7, 0, 0, 7, 7, 0}));
-  const std::string layout = " --dims 8x1x1 --type uint8 ";
+  std::string labels(4, '\0');
+  for (const char label : {7, 9, 1, 2, 3}) labels += std::string(4, label);
+  bench.write("labels.raw", labels);
+  bench.write("mask.raw", std::string(12, '\0') + std::string(12, '\7'));
+  const std::string layout = " --dims 24x1x1 --type uint8 ";
   notes(bench, "convert labels.raw o.vdb" + layout, {"labels.raw", "one mask", "--labels"});
   notes(bench, "segment labels.raw o.vdb" + layout, {"labels.raw", "one mask", "--labels"});
   bench.mustRun("convert mask.raw o.vdb" + layout);
