@@ -88,6 +88,29 @@ TEST_CASE("gray: Otsu's threshold takes the object back out of a scan", "[gray]"
       Approx(double(infoOf(bench, "clean.vdb").at("grids")[0].at("active_voxels"))).epsilon(0.01));
 }
 
+TEST_CASE("gray: a scan is no image of labels, and what selects nothing is said", "[gray]") {
+  const Bench bench;
+  makeScan(bench);
+  for (const std::string verb : {"measure s.tif t", "render s.tif o.png", "export s.tif o.ply",
+                                 "compare s.tif s.tif", "convert s.tif o.vdb --labels"}) {
+    CAPTURE(verb);
+    CHECK_THAT(refused(bench, verb).err,
+               Contains("s.tif: is a gray image, with values from ") && Contains("segment it"));
+  }
+  const Outcome nothing = bench.run("segment s.tif o.vdb --phase 1");
+  CHECK(nothing.exitCode == 0);
+  CHECK_THAT(nothing.err, Contains("vdb_madf: note: s.tif: nothing is selected"));
+}
+
+TEST_CASE("gray: an object says how it was made, not how the one before was", "[gray]") {
+  const Bench bench;
+  makeScan(bench);
+  bench.mustRun("convert s.tif a.vdb --threshold OTSU");
+  CHECK_THAT(bench.mustRun("info a.vdb"), Contains("madf_threshold = "));
+  bench.mustRun("convert a.vdb b.vdb --invert");
+  CHECK_THAT(bench.mustRun("info b.vdb"), !Contains("madf_threshold") && !Contains("otsu"));
+}
+
 TEST_CASE("gray: several phases make one object", "[gray]") {
   const Bench bench;
   bench.write("p.raw", std::string("\0\1\2\3\0\1\2\3", 8));

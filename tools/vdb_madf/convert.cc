@@ -153,6 +153,9 @@ void addConvert(Verb command, Common& common, Action& action) {
     if (o->labels && o->input.selection)
       throw WrongUsage(
           "--labels takes all values: leave out --phase, --threshold, --range, --invert");
+    if (o->labels && (readsGray(o->input.gray) || o->input.gray.despeckle > 0))
+      throw WrongUsage(
+          "--labels takes values as they are: leave out --median, --smooth, --despeckle");
     if (!o->outType.empty()) {
       if (hasVdbEnding(o->out))
         throw WrongUsage("--out-type is for images, and " + o->out + " is none: leave it out");

@@ -5,6 +5,8 @@
 
 #include <openvdb/Metadata.h>
 
+#include <cctype>
+
 #include "outputs.h"
 #include "parse.h"
 #include "vdb_madf/files/standard_streams.h"
@@ -25,12 +27,15 @@ std::string typeNames() {
 
 /// Runs `load`; if it has to be said what is object, the message says by which options.
 template <typename Load>
-auto withSelectionOptions(const Load& load) {
+auto withSelectionOptions(const InputOptions& input, const Load& load) {
   try {
     return load();
   } catch (const SelectionNeeded& error) {
-    throw InvalidInput(error.what() +
-                       std::string(" (--threshold otsu or a value, --phase, --range)"));
+    const char* options = input.gray.automatic == AutomaticThreshold::none
+                              ? " (--threshold otsu or a value, --phase, --range; labels of "
+                                "grains: convert --labels)"
+                              : " (--threshold VALUE)";
+    throw InvalidInput(error.what() + std::string(options));
   }
 }
 
@@ -112,8 +117,10 @@ void InputOptions::parseSelection() {
       values.push_back(parseNumber(value, "--phase"));
     selection = Selection::phases(values);
   }
-  if (threshold == "otsu" || threshold == "valley") {
-    gray.automatic = threshold == "otsu" ? AutomaticThreshold::otsu : AutomaticThreshold::valley;
+  std::string automatic = threshold;
+  for (char& c : automatic) c = char(std::tolower(static_cast<unsigned char>(c)));
+  if (automatic == "otsu" || automatic == "valley") {
+    gray.automatic = automatic == "otsu" ? AutomaticThreshold::otsu : AutomaticThreshold::valley;
     selection = Selection::threshold(0);  // to be replaced
   } else if (!threshold.empty()) {
     const std::vector<std::string> parts = split(threshold, ':');
@@ -151,8 +158,8 @@ void InputOptions::parseGray() {
   }
   if (!smooth.empty()) {
     gray.smooth = parseNumber(smooth, "--smooth");
-    if (!(gray.smooth >= 0 && gray.smooth <= kMaxSmoothing))
-      throw WrongUsage("--smooth " + smooth + ": must lie between 0 and " +
+    if (gray.smooth != 0 && !(gray.smooth >= kMinSmoothing && gray.smooth <= kMaxSmoothing))
+      throw WrongUsage("--smooth " + smooth + ": must be 0, or 0.1 to " +
                        std::to_string(int(kMaxSmoothing)) + " voxels");
   }
   if (!despeckle.empty()) gray.despeckle = parseCount(despeckle, "--despeckle");
@@ -198,10 +205,17 @@ openvdb::GridBase::Ptr chooseGrid(const InputOptions& input,
 
 MaskGrid::Ptr loadObject(const InputOptions& input, Progress* progress) {
   if (!isVdb(input)) checkNoGrid(input, "--grid");
-  return withGridOption(input, "--grid", [&] {
+  const MaskGrid::Ptr object = withGridOption(input, "--grid", [&] {
     return withSelectionOptions(
-        [&] { return vdb_madf::loadObject(input.path, input.volume(progress), progress); });
+        input, [&] { return vdb_madf::loadObject(input.path, input.volume(progress), progress); });
   });
+  if (input.selection && object->empty())
+    progress->note(input.path +
+                   (input.gray.despeckle > 0
+                        ? ": nothing is left after --despeckle, or was selected"
+                        : hintIfEmpty(0)) +
+                   "; vdb_madf info says what values there are");
+  return object;
 }
 
 Int32Grid::Ptr loadLabels(const InputOptions& input, const std::string& gridOption,

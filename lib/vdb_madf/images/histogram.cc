@@ -83,6 +83,16 @@ ImageKind kindOf(const Histogram& histogram) {
   return 2 * labels >= bins ? ImageKind::labels : ImageKind::gray;
 }
 
+double meanRun(const Histogram& histogram) {
+  int64_t voxels = 0, runs = 0;
+  for (size_t i = 0; i < histogram.counts.size(); ++i) {
+    if (histogram.first + int64_t(i) == 0) continue;
+    voxels += histogram.counts[i];
+    runs += histogram.runs[i];
+  }
+  return runs > 0 ? double(voxels) / double(runs) : 1;
+}
+
 int64_t countLabels(const Histogram& histogram, ImageReader& image, Interrupter* interrupter) {
   int64_t labels = 0;
   if (histogram.width <= 1) {

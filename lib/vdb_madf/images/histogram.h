@@ -50,6 +50,9 @@ enum class ImageKind {
 };
 ImageKind kindOf(const Histogram& histogram);
 
+/// How many voxels along x have the same value, on average; 0 is not counted. 1 if there is no other.
+double meanRun(const Histogram& histogram);
+
 /// How many values but 0 there are, all of which are whole numbers. Takes another pass over the image
 /// where a bin holds several values; memory is that of the values. @throw IoError; Interrupted.
 int64_t countLabels(const Histogram& histogram, ImageReader& image,

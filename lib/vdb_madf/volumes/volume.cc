@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/same_file.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/images/histogram.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/volumes/detail/watched_image.h"
 #include "vdb_madf/volumes/read_labels.h"
@@ -93,6 +95,19 @@ void noteVoxelSize(const std::string& path, const std::optional<VoxelSize>& ofFi
                NoteAbout::voxelSize);
 }
 
+/// A gray scan would have millions of grains: it has many values, and hardly two voxels side by side
+/// have the same.
+void checkLabels(const std::string& path, const VolumeOptions& options, Interrupter* interrupter) {
+  constexpr double kNoise = 1.5;
+  constexpr size_t kFewValues = 100;
+  const Histogram values = histogramOf(*openVolumeImage(path, options), interrupter);
+  if (values.counts.size() > kFewValues && kindOf(values) == ImageKind::gray &&
+      meanRun(values) < kNoise)
+    throw InvalidInput(path + ": is a gray image, with values from " +
+                       detail::shortestDecimal(values.min) + " to " +
+                       detail::shortestDecimal(values.max) + ", not labels: segment it first");
+}
+
 void override(openvdb::GridBase& grid, const VolumeOptions& options) {
   if (options.domain) setDomain(grid, *options.domain);
   if (options.voxelSize) setVoxelSize(grid, options.voxelSize);
@@ -171,9 +186,10 @@ MaskGrid::Ptr loadObject(const std::string& path, const VolumeOptions& options,
   MaskGrid::Ptr object;
   if (isReadAsVdb(path, options)) {
     if (readsGray(options.gray))
-      throw InvalidInput(path +
-                         ": smoothing and automatic thresholds are for images, and this is "
-                         "a VDB file: leave them out");
+      throw InvalidInput(
+          path +
+          ": smoothing, hysteresis and automatic thresholds are for images, and this is "
+          "a VDB file: leave them out");
     const auto grid = readGrid(path, GridUse::object, options, interrupter);
     if (options.domain) setDomain(*grid, *options.domain);  // an inversion needs it
     object = objectOf(*grid, path, options);
@@ -204,6 +220,7 @@ Int32Grid::Ptr loadLabels(const std::string& path, const VolumeOptions& options,
     labels = openvdb::gridPtrCast<Int32Grid>(readGrid(path, GridUse::labels, options, interrupter));
     noteVoxelSize(path, storedVoxelSize(*labels), options);
   } else {
+    checkLabels(path, options, interrupter);
     const auto image = openVolumeImage(path, options);
     labels = readLabels(*image, interrupter);
   }
