@@ -11,6 +11,7 @@
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/grids/detail/number_grids.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/grids/object_keys.h"
 
 namespace vdb_madf {
 
@@ -140,6 +141,8 @@ MaskGrid::Ptr objectMask(const openvdb::GridBase& grid, const std::optional<Sele
   const auto object = MaskGrid::create(mask);
   object->setName("object");
   copyProvenance(grid, *object);
+  if (selection)  // what made the first object does not tell how this one was made
+    for (const char* key : {kObjectKey, kThresholdKey, kThresholdLowKey}) object->removeMeta(key);
   return object;
 }
 
