@@ -15,6 +15,7 @@
 
 #include "command.h"
 #include "json_file.h"
+#include "outputs.h"
 #include "text_file.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/csv_cell.h"
@@ -41,10 +42,6 @@ struct Sample {
   Json json;
 };
 
-bool isStandardOutput(const std::string& path) {
-  return path == "-" || path == "/dev/stdout";
-}
-
 /// A forgotten OUT.csv makes an output of the last file that a shell found: no table but our own is
 /// replaced.
 void checkReplaces(const std::string& out) {
@@ -61,9 +58,9 @@ void checkReplaces(const std::string& out) {
 void parse(Options& o) {
   o.out = o.folders.back();
   o.folders.pop_back();
-  if (!isStandardOutput(o.out) && fileEnding(o.out) != ".csv")
+  if (!isOnStandardOutput(o.out) && fileEnding(o.out) != ".csv")
     throw WrongUsage(o.out + ": the last name is the table to write: its ending must be .csv");
-  if (!isStandardOutput(o.out)) checkReplaces(o.out);
+  if (!isOnStandardOutput(o.out)) checkReplaces(o.out);
   if (o.folders.empty()) throw WrongUsage("give folders that measure has filled, then OUT.csv");
 }
 

@@ -14,6 +14,7 @@
 #include "outputs.h"
 #include "text_file.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/grids/grid_metadata.h"
 
 namespace vdb_madf::tools {
@@ -172,7 +173,7 @@ void addCompare(Verb command, Common& common, Action& action) {
     }
     o->test.size = o->truth.size;
     for (InputOptions* input : {&o->truth, &o->test})
-      if (!hasRawEnding(input->path)) input->size.reset();
+      if (!hasRawEnding(input->path) && !isStandardInput(input->path)) input->size.reset();
     action = [o, &common] { run(*o, common); };
   });
 }

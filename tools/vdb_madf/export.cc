@@ -199,7 +199,7 @@ std::vector<ClumpBond> exportClumpTables(const Options& o, const Common& common,
                                          const std::vector<Clump>& clumps) {
   if (!o.cover.empty()) writeClumpCover(o.cover, clumps, labels.transform(), common.progress);
   if (o.bonds.empty()) return {};
-  const auto bonds = clumpBonds(clumps, measure(labels, {}, common.progress).bonds);
+  const auto bonds = clumpBonds(clumps, measure(labels, o.measure, common.progress).bonds);
   writeClumpBonds(o.bonds, bonds, labels.transform(), common.progress);
   return bonds;
 }
@@ -367,7 +367,13 @@ void addExport(Verb command, Common& common, Action& action) {
     checkTables(*o, kind);
     o->input.outputs = {o->out, o->bonds, o->cover};
     o->input.parse();
-    action = [o, &common, &kind] { run(*o, besideOutput(common, o->out), kind); };
+    if (o->out == "-")
+      throw WrongUsage("OUT: standard output takes raw:-, npy:-, nrrd:- and csv:-");
+    action = [o, &common, &kind] {
+      Common quiet = common;
+      for (const std::string& output : o->input.outputs) quiet = besideOutput(quiet, output);
+      run(*o, quiet, kind);
+    };
   });
 }
 

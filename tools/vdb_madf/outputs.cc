@@ -27,7 +27,7 @@ std::vector<std::string> filesOf(const std::vector<std::string>& outputs) {
 }
 
 bool isOnStandardOutput(const std::string& output) {
-  return output == "-" || isStandardOutput(output);
+  return output == "-" || output == "/dev/stdout" || isStandardOutput(output);
 }
 
 void checkOutputs(const std::vector<std::string>& outputs, const std::string& input) {

@@ -7,13 +7,12 @@
 #include <fstream>
 #include <iostream>
 
+#include "outputs.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/files/standard_streams.h"
 
 namespace vdb_madf::tools {
 
-TextFile::TextFile(const std::string& path)
-    : path_(path == "/dev/stdout" || vdb_madf::isStandardOutput(path) ? "-" : path) {
+TextFile::TextFile(const std::string& path) : path_(isOnStandardOutput(path) ? "-" : path) {
   if (path_.empty() || path_ == "-") return;
   // A pipe or a device can only be written in place.
   std::error_code ignored;

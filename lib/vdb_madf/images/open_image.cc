@@ -184,7 +184,7 @@ std::unique_ptr<ImageReader> openFolder(const std::string& path, const std::stri
 
 std::unique_ptr<ImageReader> openImage(const std::string& path, const std::optional<RawLayout>& raw,
                                        const std::string& dataset) {
-  if (!raw && isFolder(path)) return openFolder(path, dataset);
+  if (!raw && !isStandardInput(path) && isFolder(path)) return openFolder(path, dataset);
   if (raw) refuseDataset(path, dataset);
   auto file = std::make_unique<detail::InputFile>(path);
   if (raw) return detail::openRaw(std::move(file), *raw);
@@ -206,7 +206,7 @@ bool readsHdf5() {
 
 bool looksLikeImage(const std::string& path) {
   try {
-    if (isFolder(path))
+    if (!isStandardInput(path) && isFolder(path))
       return detail::isZarrFolder(path) || !detail::tiffFilesIn(path).empty() ||
              !detail::picturesIn(path).empty();
     const FileFormat* format = formatOf(detail::InputFile(path));
