@@ -157,10 +157,10 @@ __attribute__((target("arch=x86-64-v4"))) uint32_t* packV4(const LeafIndex::Mask
 /// As the processor can.
 uint32_t* packWith(const LeafIndex::Mask& mask, const uint32_t* dense, uint32_t* values) {
 #ifdef VDB_MADF_SIMD_V4
-  if (__builtin_cpu_supports("avx512vl")) return packV4(mask, dense, values);
+  if (__builtin_cpu_supports("x86-64-v4")) return packV4(mask, dense, values);
 #endif
 #ifdef VDB_MADF_SIMD_V3
-  if (__builtin_cpu_supports("avx2")) return packV3(mask, dense, values);
+  if (__builtin_cpu_supports("x86-64-v3")) return packV3(mask, dense, values);
 #endif
   return packPortable(mask, dense, values);
 }
@@ -175,10 +175,10 @@ VDB_MADF_SIMD bool allEqual(const uint32_t* values, size_t count) {
 
 void expandLeaf(const LeafIndex::Mask& mask, const uint32_t* values, uint32_t* dense) {
 #ifdef VDB_MADF_SIMD_V4
-  if (__builtin_cpu_supports("avx512vl")) return expandV4(mask, values, dense);
+  if (__builtin_cpu_supports("x86-64-v4")) return expandV4(mask, values, dense);
 #endif
 #ifdef VDB_MADF_SIMD_V3
-  if (__builtin_cpu_supports("avx2")) return expandV3(mask, values, dense);
+  if (__builtin_cpu_supports("x86-64-v3")) return expandV3(mask, values, dense);
 #endif
   expandPortable(mask, values, dense);
 }

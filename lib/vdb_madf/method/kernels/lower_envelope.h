@@ -15,7 +15,7 @@ namespace vdb_madf::detail {
 constexpr int32_t kNotNegative = 1;
 
 /// A slab holds the values of the 64 rows at one position; the padding keeps the positions of a row
-/// off the same cache sets.
+/// off the same cache sets, and is 0.
 constexpr size_t kEnvelopeSlab = 64 + 16;
 
 /// The parabola f(u) = power + (u - position)^2 of a site.
