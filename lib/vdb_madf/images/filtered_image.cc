@@ -236,8 +236,9 @@ std::unique_ptr<ImageReader> medianImage(std::unique_ptr<ImageReader> image, int
 }
 
 std::unique_ptr<ImageReader> smoothedImage(std::unique_ptr<ImageReader> image, double sigma) {
-  if (!(sigma > 0 && sigma <= kMaxSmoothing))
-    throw InvalidInput("the Gaussian's standard deviation is above 0 and at most " +
+  if (!(sigma >= kMinSmoothing && sigma <= kMaxSmoothing))
+    throw InvalidInput("the Gaussian's standard deviation lies between " +
+                       detail::shortestDecimal(kMinSmoothing) + " and " +
                        detail::shortestDecimal(kMaxSmoothing) + " voxels, and " +
                        detail::shortestDecimal(sigma) + " was given");
   const SampleType type = image->info().type;

@@ -14,7 +14,7 @@ namespace vdb_madf {
 // image (c b a | a b c). The same bits for any number of threads, and however it is read.
 
 constexpr int kMaxMedianRadius = 3;
-constexpr double kMaxSmoothing = 20;
+constexpr double kMinSmoothing = 0.1, kMaxSmoothing = 20;
 
 /// The median of the cube of 2 radius + 1 voxels around each: scipy.ndimage.median_filter() of that
 /// size. The sample type stays. Where NaN is in the cube, any of its values.
@@ -25,7 +25,7 @@ std::unique_ptr<ImageReader> medianImage(std::unique_ptr<ImageReader> image, int
 /// int(4 sigma + 0.5) voxels: scipy.ndimage.gaussian_filter() of the image as float32 (as float64,
 /// if its samples have 32 bits and are integers, or 64). Sums are in double precision, and rounded
 /// after each axis: z, y, x.
-/// @throw InvalidInput unless 0 < sigma <= kMaxSmoothing
+/// @throw InvalidInput unless kMinSmoothing <= sigma <= kMaxSmoothing
 std::unique_ptr<ImageReader> smoothedImage(std::unique_ptr<ImageReader> image, double sigma);
 
 }  // namespace vdb_madf

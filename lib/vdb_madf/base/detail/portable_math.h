@@ -6,7 +6,7 @@
 /// Functions with the same bits on every machine, unlike the library's.
 namespace vdb_madf::detail {
 
-/// exp(x) for -8 <= x <= 8: a Taylor series on x/256, squared eight times.
+/// exp(x) for -64 <= x <= 8: a Taylor series on x/256, squared eight times.
 inline double exponential(double x) {
   x /= 256;
   double term = 1, sum = 1;

@@ -51,7 +51,8 @@ void PlotAxis::placeDecades() {
 
 /// Multiples of 1, 2 or 5 times a power of ten; the axis ends at ticks.
 void PlotAxis::placeEvenly() {
-  if (!(high_ > low_)) high_ = low_ + (low_ == 0 ? 1 : std::abs(low_) * 0.1);
+  const double least = 1e-9 * std::max(std::abs(low_), std::abs(high_));  // ticks have to differ
+  if (!(high_ - low_ > least)) high_ = low_ + (low_ == 0 ? 1 : std::abs(low_) * 0.1);
   double step = std::pow(10.0, std::floor(std::log10((high_ - low_) / 5)));
   for (const double factor : {2.0, 2.5, 2.0})
     if ((high_ - low_) / step > 6) step *= factor;

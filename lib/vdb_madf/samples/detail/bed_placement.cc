@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/samples/detail/random.h"
@@ -14,6 +15,7 @@ namespace vdb_madf::detail {
 namespace {
 
 constexpr int kPlaces = 300;
+constexpr size_t kMaxBalls = 20000;  // minutes: the time grows with the square of their number
 constexpr double kFloor = -0.5;
 constexpr uint64_t kBallStream = 0;
 
@@ -46,6 +48,9 @@ std::vector<Ball> dropBalls(const BedOptions& options, Interrupter* interrupter)
       if (place == 0 || ball.z < lowest.z) lowest = ball;
     }
     if (lowest.z - lowest.radius > top) return balls;
+    if (balls.size() == kMaxBalls)
+      throw InvalidInput("more than " + std::to_string(kMaxBalls) +
+                         " balls fit: use a larger radius or a smaller size");
     balls.push_back(lowest);
   }
 }

@@ -13,7 +13,8 @@ namespace vdb_madf::detail {
 /// Two balls of a bed touch at this part of the sum of their radii.
 constexpr double kBedContact = 0.97;
 
-/// The balls of a bed in the order of their fall, for options in range. @throw Interrupted
+/// The balls of a bed in the order of their fall, for options in range. @throw InvalidInput
+/// for more than 20000; Interrupted
 std::vector<Ball> dropBalls(const BedOptions& options, Interrupter* interrupter);
 
 }  // namespace vdb_madf::detail
