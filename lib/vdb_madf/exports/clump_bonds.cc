@@ -75,8 +75,8 @@ void writeClumpBonds(const std::string& path, const std::vector<ClumpBond>& bond
     throw InvalidInput(path + ": bonds of clumps are written as .csv");
   detail::OutputStream out(path, interrupter);
   out.text(
-      "bond,first_grain,second_grain,first_clump,second_clump,first_ball,second_ball,distance,"
-      "area,radius,x,y,z,normal_x,normal_y,normal_z\n");
+      "bond,first,second,first_clump,second_clump,first_ball,second_ball,distance,"
+      "area,radius,centroid_x,centroid_y,centroid_z,normal_x,normal_y,normal_z\n");
   size_t row = 0;
   for (const ClumpBond& bond : bonds) {
     out.number(++row);

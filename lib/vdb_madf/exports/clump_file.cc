@@ -139,10 +139,11 @@ void writeClumpCover(const std::string& path, const std::vector<Clump>& clumps,
   OutputStream out(path, interrupter);
   out.text("grain_id,voxels,balls,uncovered,outside,volume_error,farthest\n");
   for (const Clump& clump : clumps) {
-    out.text(std::to_string(clump.label) + "," + std::to_string(clump.voxels) + "," +
-             std::to_string(clump.balls.size()) + "," + std::to_string(clump.uncovered) + "," +
-             std::to_string(clump.outside) + "," + detail::shortestDecimal(clump.volumeError()) +
-             "," + detail::shortestDecimal(world.edge * clump.farthest) + "\n");
+    out.text(
+        std::to_string(clump.label) + "," + std::to_string(clump.voxels) + "," +
+        std::to_string(clump.balls.size()) + "," + std::to_string(clump.uncovered) + "," +
+        std::to_string(clump.outside) + "," + detail::shortestDecimal(clump.volumeError()) + "," +
+        (clump.balls.empty() ? "" : detail::shortestDecimal(world.edge * clump.farthest)) + "\n");
   }
   out.commit();
 }
