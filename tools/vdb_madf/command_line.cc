@@ -34,6 +34,7 @@ std::string unknownOption(const CLI::App& verb, const std::string& argument) {
   for (const CLI::Option* option : verb.get_options())
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   const std::string given = argument.substr(0, argument.find('='));
+  if (verb.get_option_no_throw(given)) return given + ": write options after the verb";
   return "there is no option " + given + didYouMean(given, names);
 }
 

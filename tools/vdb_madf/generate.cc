@@ -139,7 +139,7 @@ constexpr Kind kKinds[] = {
     {"snow", "a snow-like random structure",
      "vdb_madf generate snow snow.vdb --size 256 --fraction 0.3 --voxel-size 10um",
      [](Verb verb, Options& options) {
-       verb.option("--fraction", options.snow.fraction, "ice fraction").showDefault();
+       verb.option("--fraction", options.snow.fraction, "solid fraction").showDefault();
        verb.option("--length", options.snow.length, "peak wavelength, voxels").showDefault();
      },
      [](Options& options) {

@@ -83,7 +83,7 @@ void run(const Options& o, const Common& common) {
 
 void addRender(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<Options>();
-  Verb verb = addVerb(command, common, "render", "coloured slices of labels and a shaded view",
+  Verb verb = addVerb(command, common, "render", "colored slices of labels and a shaded view",
                       "vdb_madf render grains.vdb grains.png --azimuth 60");
   verb.option("LABELS", o->input.path, "labels: VDB or integer image").required();
   verb.option("OUT.png", o->out, "the three middle slices and a view from outside").required();

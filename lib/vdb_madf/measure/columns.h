@@ -36,8 +36,8 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
 /// `first`, `second`, `faces` (shared voxel faces), `area`, `radius`, `centroid_x`, `_y`, `_z`
 /// (mean of the centres of the faces), `normal_x`, `_y`, `_z`, `distance`, `cos_alpha`, `flatness`,
 /// `patches`, `curvature_points`, `mean_curvature`, `mean_curvature_sd`, `gaussian_curvature`,
-/// `gaussian_curvature_sd`, `curvature_residual`. A bond without a curvature has no
-/// `curvature_points`.
+/// `gaussian_curvature_sd`, `curvature_residual`. A bond without a curvature has 0
+/// `curvature_points` and none of the four.
 std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds);
 
 /// What a power of a length appends to a name: "" (0), "_mm", "_mm2", "_per_mm", "_per_mm2" ...
