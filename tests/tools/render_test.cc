@@ -109,6 +109,17 @@ TEST_CASE("cli: render draws a scale bar of a round length", "[cli]") {
   }
 }
 
+TEST_CASE("cli: labels without a voxel size are drawn with the one that is given", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate spheres s.vdb --size 40 --count 4 --radius 6:8 --voxel-size 8.5um");
+  bench.mustRun("convert s.vdb l.npy --grid truth");
+  bench.mustRun("render s.vdb with.png --size 120");
+  bench.mustRun("render l.npy without.png --size 120");
+  bench.mustRun("render l.npy given.png --size 120 --voxel-size 8.5um");
+  CHECK(bench.bytes("given.png") == bench.bytes("with.png"));
+  CHECK(bench.bytes("without.png") != bench.bytes("with.png"));
+}
+
 TEST_CASE("cli: render keeps scale bars and their texts below their own part", "[cli]") {
   const Bench bench;
   bench.mustRun(kSintered);

@@ -99,6 +99,7 @@ void addRender(Verb command, Common& common, Action& action) {
       .range(-90.0, 90.0)
       .showDefault();
   o->input.addRaw(verb);
+  o->input.addVoxelSize(verb);
   verb.onParsed([o, &common, &action] {
     if (!hasPngEnding(o->out)) throw WrongUsage(o->out + ": the output's ending must be .png");
     // Option::range() lets NaN pass.
