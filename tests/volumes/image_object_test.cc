@@ -42,7 +42,7 @@ Voxels voxelsOf(const MaskGrid& mask, const ImageSize& size) {
 template <typename T>
 MaskGrid::Ptr objectOf(const ImageSize& size, const std::vector<T>& samples,
                        const std::optional<Selection>& selection, const GrayOptions& gray = {}) {
-  return imageObject([&] { return imageOf(size, samples); }, selection, gray);
+  return imageObject([&] { return imageOf(size, samples); }, selection, gray).mask;
 }
 
 /// The 6-connected component of each voxel among those of equal value, and the components' sizes.
@@ -314,7 +314,7 @@ TEST_CASE("image_object: equals SciPy and scikit-image", "[image_object]") {
         gray.low = first;
         selection = Selection::threshold(second);
       }
-      const Voxels found = voxelsOf(*imageObject(open, selection, gray), size);
+      const Voxels found = voxelsOf(*imageObject(open, selection, gray).mask, size);
       CHECK((std::string(found.begin(), found.end()) == bytes));
     }
     ++compared;

@@ -49,7 +49,7 @@ void checkComesBack(const MaskGrid& clean, const ImageSize& size) {
   const auto gray = grayScan(clean, size);
   GrayOptions options;
   options.automatic = AutomaticThreshold::otsu;
-  const auto found = imageObject([&] { return imageOf(size, gray); }, std::nullopt, options);
+  const auto found = imageObject([&] { return imageOf(size, gray); }, std::nullopt, options).mask;
   MaskTree both(clean.tree());
   both.topologyIntersection(found->tree());
   const auto voxels = double(clean.activeVoxelCount());
@@ -81,6 +81,6 @@ TEST_CASE("gray_scan: battery particles come back", "[gray_scan]") {
   }
   const auto image = openImage(*path);
   const ImageSize size = image->info().size;
-  const auto clean = imageObject([&] { return openImage(*path); }, Selection::phase(1));
+  const auto clean = imageObject([&] { return openImage(*path); }, Selection::phase(1)).mask;
   checkComesBack(*clean, size);
 }

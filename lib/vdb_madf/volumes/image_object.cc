@@ -77,15 +77,15 @@ std::string phasesRefusal(const Histogram& histogram) {
 }
 
 /// What is not 0 (or, inverted, what is), unless that would be a guess.
-MaskGrid::Ptr plainMask(ImageReader& image, const Selection& nonZero, Interrupter* interrupter) {
+ImageObject plainMask(ImageReader& image, const Selection& nonZero, Interrupter* interrupter) {
   detail::CountedImage counted(image);
-  MaskGrid::Ptr mask = readMask(counted, nonZero, interrupter);
+  const MaskGrid::Ptr mask = readMask(counted, nonZero, interrupter);
   const Histogram histogram = counted.histogram();
   const ImageKind kind = kindOf(histogram);
   if (kind == ImageKind::gray) throw SelectionNeeded(image.path() + ": " + grayRefusal(histogram));
   if (kind == ImageKind::phases)
     throw SelectionNeeded(image.path() + ": " + phasesRefusal(histogram));
-  return mask;
+  return {mask, kind == ImageKind::labels && !nonZero.invert};
 }
 
 double automaticThreshold(ImageReader& image, AutomaticThreshold method, Interrupter* interrupter) {
@@ -180,9 +180,9 @@ std::unique_ptr<ImageReader> filteredImage(std::unique_ptr<ImageReader> image,
   return image;
 }
 
-MaskGrid::Ptr imageObject(const std::function<std::unique_ptr<ImageReader>()>& open,
-                          const std::optional<Selection>& selection, const GrayOptions& gray,
-                          Interrupter* interrupter) {
+ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& open,
+                        const std::optional<Selection>& selection, const GrayOptions& gray,
+                        Interrupter* interrupter) {
   const auto image = [&] { return filteredImage(open(), gray); };
   const bool automatic = gray.automatic != AutomaticThreshold::none;
   Selection chosen = selection.value_or(Selection{});
@@ -193,15 +193,15 @@ MaskGrid::Ptr imageObject(const std::function<std::unique_ptr<ImageReader>()>& o
     chosen.invert = invert;
   }
   detail::WorkPart reading(interrupter, automatic ? 50 : 0, 100);
-  MaskGrid::Ptr object;
+  ImageObject object;
   if (gray.low)
-    object = hysteresisMask(*image(), *gray.low, chosen, &reading);
+    object.mask = hysteresisMask(*image(), *gray.low, chosen, &reading);
   else if (chosen.kind == Selection::Kind::nonZero)
     object = plainMask(*image(), chosen, &reading);
   else
-    object = readMask(*image(), chosen, &reading);
-  if (readsGray(gray)) describeObject(chosen, gray, *object);
-  despeckleObject(*object, gray.despeckle, interrupter);
+    object.mask = readMask(*image(), chosen, &reading);
+  if (readsGray(gray)) describeObject(chosen, gray, *object.mask);
+  despeckleObject(*object.mask, gray.despeckle, interrupter);
   return object;
 }
 

@@ -36,6 +36,12 @@ struct GrayOptions {
   int64_t despeckle = 0;  ///< see despeckle(); it works on any object
 };
 
+struct ImageObject {
+  MaskGrid::Ptr mask;
+  /// No values were chosen, and the image is one of labels, which are all in one mask now.
+  bool fromLabels = false;
+};
+
 /// True if anything but despeckling is asked for: of images alone.
 bool readsGray(const GrayOptions& gray);
 
@@ -52,9 +58,9 @@ std::unique_ptr<ImageReader> filteredImage(std::unique_ptr<ImageReader> image,
 ///   alone (see kindOf()): other images need a selection by value.
 /// @throw SelectionNeeded, one line that names the file, for a gray image or one of phases without
 ///   one, and for a histogram without a valley; InvalidInput; IoError; Interrupted.
-MaskGrid::Ptr imageObject(const std::function<std::unique_ptr<ImageReader>()>& open,
-                          const std::optional<Selection>& selection, const GrayOptions& gray = {},
-                          Interrupter* interrupter = nullptr);
+ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& open,
+                        const std::optional<Selection>& selection, const GrayOptions& gray = {},
+                        Interrupter* interrupter = nullptr);
 
 /// Despeckles the object and adds that to what it says of itself.
 void despeckleObject(MaskGrid& object, int64_t voxels, Interrupter* interrupter);

@@ -14,7 +14,6 @@
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/images/histogram.h"
 #include "vdb_madf/vdb/read_vdb.h"
-#include "vdb_madf/volumes/detail/watched_image.h"
 #include "vdb_madf/volumes/read_labels.h"
 
 namespace vdb_madf {
@@ -196,15 +195,10 @@ MaskGrid::Ptr loadObject(const std::string& path, const VolumeOptions& options,
     noteVoxelSize(path, storedVoxelSize(*object), options);
     despeckleObject(*object, options.gray.despeckle, interrupter);
   } else {
-    bool looksLikeLabels = false;
-    const auto open = [&] {
-      std::unique_ptr<ImageReader> image = openVolumeImage(path, options);
-      if (!options.selection)
-        image = std::make_unique<detail::WatchedImage>(std::move(image), looksLikeLabels);
-      return image;
-    };
-    object = imageObject(open, options.selection, options.gray, interrupter);
-    if (looksLikeLabels && options.note)
+    const ImageObject found = imageObject([&] { return openVolumeImage(path, options); },
+                                          options.selection, options.gray, interrupter);
+    object = found.mask;
+    if (found.fromLabels && options.note)
       options.note(path + ": it has several values besides 0, and all of them become one mask",
                    NoteAbout::labels);
   }
