@@ -44,18 +44,16 @@ bool addVector(const openvdb::Metadata& value, Json& list) {
 
 /// Metadata as text, numbers as numbers, vectors as lists of them.
 Json metadataValue(const openvdb::Metadata& value) {
-  Json list;
-  if (addVector<openvdb::Vec3i>(value, list) || addVector<openvdb::Vec3s>(value, list) ||
-      addVector<openvdb::Vec3d>(value, list) || addVector<openvdb::Vec2i>(value, list) ||
-      addVector<openvdb::Vec2s>(value, list) || addVector<openvdb::Vec2d>(value, list))
-    return list;
-  if (value.typeName() == "int64") return static_cast<const openvdb::Int64Metadata&>(value).value();
-  if (value.typeName() == "int32") return static_cast<const openvdb::Int32Metadata&>(value).value();
-  if (value.typeName() == "double")
-    return static_cast<const openvdb::DoubleMetadata&>(value).value();
-  if (value.typeName() == "float") return static_cast<const openvdb::FloatMetadata&>(value).value();
-  if (value.typeName() == "bool") return static_cast<const openvdb::BoolMetadata&>(value).value();
-  return value.str();
+  Json json;
+  if (addVector<openvdb::Vec3i>(value, json) || addVector<openvdb::Vec3s>(value, json) ||
+      addVector<openvdb::Vec3d>(value, json) || addVector<openvdb::Vec2i>(value, json) ||
+      addVector<openvdb::Vec2s>(value, json) || addVector<openvdb::Vec2d>(value, json))
+    return json;
+  if (const auto plain = plainValue(value))
+    std::visit([&](const auto& typed) { json = typed; }, *plain);
+  else
+    json = value.str();
+  return json;
 }
 
 Json describeGrid(const openvdb::GridBase& grid) {

@@ -84,19 +84,6 @@ Json toJson(const FabricTensor& fabric) {
   return json;
 }
 
-/// Null if it is neither number nor text.
-Json toJson(const openvdb::Metadata& value) {
-  if (value.typeName() == "string")
-    return static_cast<const openvdb::StringMetadata&>(value).value();
-  if (value.typeName() == "int64") return static_cast<const openvdb::Int64Metadata&>(value).value();
-  if (value.typeName() == "int32") return static_cast<const openvdb::Int32Metadata&>(value).value();
-  if (value.typeName() == "double")
-    return static_cast<const openvdb::DoubleMetadata&>(value).value();
-  if (value.typeName() == "float") return static_cast<const openvdb::FloatMetadata&>(value).value();
-  if (value.typeName() == "bool") return static_cast<const openvdb::BoolMetadata&>(value).value();
-  return {};
-}
-
 /// How the labels were made, as their grid tells it. Of the voxel size the tables say more.
 Json segmentationJson(const openvdb::MetaMap& metadata) {
   const std::string prefix = "madf_";
@@ -106,8 +93,8 @@ Json segmentationJson(const openvdb::MetaMap& metadata) {
     if (key.compare(0, prefix.size(), prefix) != 0 || key == "madf_voxel_size_m" ||
         key == "madf_length_unit")
       continue;
-    const Json value = toJson(*item->second);
-    if (!value.is_null()) json[key.substr(prefix.size())] = value;
+    if (const auto value = plainValue(*item->second))
+      std::visit([&](const auto& plain) { json[key.substr(prefix.size())] = plain; }, *value);
   }
   return json;
 }

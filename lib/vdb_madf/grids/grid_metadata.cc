@@ -63,6 +63,17 @@ bool hasCubicVoxels(const openvdb::GridBase& grid) {
   return edges && detail::areEdgesOfCube(*edges);
 }
 
+std::optional<MetadataValue> plainValue(const openvdb::Metadata& metadata) {
+  const std::string type = metadata.typeName();
+  if (type == "bool") return static_cast<const openvdb::BoolMetadata&>(metadata).value();
+  if (type == "int32") return int64_t{static_cast<const openvdb::Int32Metadata&>(metadata).value()};
+  if (type == "int64") return int64_t{static_cast<const openvdb::Int64Metadata&>(metadata).value()};
+  if (type == "float") return double{static_cast<const openvdb::FloatMetadata&>(metadata).value()};
+  if (type == "double") return static_cast<const openvdb::DoubleMetadata&>(metadata).value();
+  if (type == "string") return static_cast<const openvdb::StringMetadata&>(metadata).value();
+  return {};
+}
+
 void copyProvenance(const openvdb::GridBase& from, openvdb::GridBase& to) {
   for (const char* key : {kDomainMin, kDomainMax, kVoxelSizeKey, kLengthUnit, kSourceKey,
                           kBoundaryKey, kObjectKey, kThresholdKey, kThresholdLowKey})

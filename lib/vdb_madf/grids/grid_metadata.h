@@ -3,7 +3,10 @@
 
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <string>
+#include <variant>
 
 #include "vdb_madf/base/voxel_size.h"
 #include "vdb_madf/grids/grid_types.h"
@@ -31,6 +34,10 @@ void setVoxelSize(openvdb::GridBase& grid, const std::optional<VoxelSize>& size)
 /// True if voxels are cubes along the axes of the world, mirrored or not: edges differ by at most
 /// 0.1 %. Of other grids readVdb() gives none unless it is told to.
 bool hasCubicVoxels(const openvdb::GridBase& grid);
+
+/// A truth value, number or text of metadata; none for other types.
+using MetadataValue = std::variant<bool, int64_t, double, std::string>;
+std::optional<MetadataValue> plainValue(const openvdb::Metadata& metadata);
 
 /// Copies domain, voxel size, transform, `madf_source` and `madf_boundary` from one grid to
 /// another.
