@@ -9,6 +9,7 @@
 
 #include "command_line.h"
 #include "progress.h"
+#include "vdb_madf/base/counted.h"
 
 namespace vdb_madf::tools {
 
@@ -28,11 +29,6 @@ Verb addVerb(Verb parent, Common& common, const std::string& name, const std::st
 
 /// With what is printed left out where it would get into an output on standard output.
 Common besideOutput(Common common, const std::string& output);
-
-/// "1 grain", "2 grains".
-inline std::string counted(int64_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
 
 // One function per verb; the returned action does the work once the command line is parsed.
 void addGenerate(Verb command, Common& common, Action& action);

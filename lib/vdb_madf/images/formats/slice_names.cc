@@ -8,6 +8,8 @@
 #include <map>
 #include <set>
 
+#include "vdb_madf/base/counted.h"
+
 namespace vdb_madf::detail {
 
 namespace {
@@ -92,10 +94,6 @@ void addGaps(const Names& names, size_t begin, size_t end, Gaps& gaps) {
     gaps.missing += steps[i] / step - 1;
     if (gaps.places++ == 0) gaps.first = both(names[begin + i], names[begin + i + 1]);
   }
-}
-
-std::string counted(int64_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
 }  // namespace
