@@ -5,8 +5,6 @@
 
 #include <openvdb/Metadata.h>
 
-#include <cctype>
-
 #include "outputs.h"
 #include "parse.h"
 #include "vdb_madf/files/standard_streams.h"
@@ -117,8 +115,7 @@ void InputOptions::parseSelection() {
       values.push_back(parseNumber(value, "--phase"));
     selection = Selection::phases(values);
   }
-  std::string automatic = threshold;
-  for (char& c : automatic) c = char(std::tolower(static_cast<unsigned char>(c)));
+  const std::string automatic = lowerCase(threshold);
   if (automatic == "otsu" || automatic == "valley") {
     gray.automatic = automatic == "otsu" ? AutomaticThreshold::otsu : AutomaticThreshold::valley;
     selection = Selection::threshold(0);  // to be replaced

@@ -3,6 +3,7 @@
 
 #include "parse.h"
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -112,6 +113,11 @@ int64_t parseCount(const std::string& text, const std::string& option) {
   return count;
 }
 
+std::string lowerCase(std::string text) {
+  for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
 Boundary parseBoundary(const std::string& boundary) {
   return boundary == "open"     ? Boundary::open
          : boundary == "closed" ? Boundary::closed
@@ -121,9 +127,8 @@ Boundary parseBoundary(const std::string& boundary) {
 int64_t parseMemory(const std::string& text) {
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
-  std::string unit;
-  for (const char* c = end; *c != '\0'; ++c)
-    if (*c != ' ') unit += char(std::tolower(static_cast<unsigned char>(*c)));
+  std::string unit = lowerCase(end);
+  unit.erase(std::remove(unit.begin(), unit.end(), ' '), unit.end());
   double factor = unit == "b" ? 1 : 0;
   const size_t power = unit.empty() ? 0 : std::string("kmgt").find(unit[0]) + 1;
   if (power > 0 && (unit.size() == 1 || unit.substr(1) == "ib"))
