@@ -89,7 +89,7 @@ std::vector<Sample> readSamples(const Options& o, const Common& common) {
   std::vector<Sample> samples;
   std::set<fs::path> known;
   const auto leaveOut = [&](const std::string& folder, const char* why) {
-    if (!common.quiet) std::cerr << "vdb_madf: note: " << folder << ": left out: " << why << "\n";
+    common.progress->note(folder + ": left out: " + why);
   };
   for (const std::string& folder : o.folders) {
     std::error_code ignored;
