@@ -4,43 +4,16 @@
 // What the command refuses, and how: the exit code, one line on stderr, nothing on stdout, no file
 // left.
 
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <csignal>
 
-#include "support/program.h"
+#include "support/refusals.h"
 
 using namespace vdb_madf::test;
 
 namespace {
 
-constexpr int kFailed = 1, kWrongUsage = 2, kInterrupted = 130;
-
 const std::string kSpheres = "generate spheres --size 40 --count 5 --radius 6:9 ";
-
-void checkRefusal(const Outcome& outcome, int code, const std::vector<std::string>& says) {
-  CHECK(outcome.exitCode == code);
-  CHECK(outcome.out == "");
-  CHECK(outcome.err.find("vdb_madf: error: ") == 0);
-  CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
-  CHECK((outcome.err.empty() ? ' ' : outcome.err.back()) == '\n');
-  for (const std::string& text : says) {
-    CAPTURE(text);
-    CHECK_THAT(outcome.err, Catch::Contains(text));
-  }
-}
-
-/// The program refuses, names what is wrong, and leaves the folder as it was.
-void refuses(const Bench& bench, int code, const std::string& arguments,
-             const std::vector<std::string>& says = {}, const RunOptions& options = {}) {
-  INFO("vdb_madf " << arguments);
-  const auto before = bench.names();
-  checkRefusal(bench.run(arguments, options), code, says);
-  CHECK(bench.names() == before);
-}
 
 /// Renames a metadata key in a VDB file, so that no program finds it.
 void hideMetadata(const Bench& bench, const std::string& file, const std::string& key) {
@@ -355,92 +328,6 @@ TEST_CASE("cli: the boundary and the domain have to fit the object", "[cli]") {
   bench.mustRun("segment s.vdb d.vdb");
   CHECK(bench.bytes("c.vdb") == bench.bytes("d.vdb"));
   CHECK_THAT(bench.mustRun("convert unknown.vdb u.raw --grid object"), Catch::Contains("origin"));
-}
-
-TEST_CASE("cli: no output where none can be, found out before the work", "[cli]") {
-  const Bench bench;
-  bench.mustRun(kSpheres + "s.vdb");
-  bench.mustRun("segment s.vdb g.vdb --keep manifold");
-  std::filesystem::create_directory(bench.path("d.vdb"));
-  for (const std::string out : {"none/o.vdb", "d.vdb", "s.vdb/o.vdb"}) {
-    refuses(bench, kFailed, "segment s.vdb " + out, {out});
-    refuses(bench, kFailed, "convert s.vdb " + out, {out});
-    refuses(bench, kFailed, "remerge g.vdb " + out, {out});
-    refuses(bench, kFailed, kSpheres + out, {out});
-  }
-  refuses(bench, kFailed, "render g.vdb none/o.png", {"none/o.png"});
-  refuses(bench, kFailed, "segment s.vdb o.vdb --json none/o.json", {"none/o.json"});
-  refuses(bench, kFailed, "segment s.vdb o.vdb --json d.vdb", {"d.vdb"});
-  refuses(bench, kFailed, "convert s.vdb none/o.raw", {"none/o.raw"});
-  if (::geteuid() != 0) {  // nothing is read-only for root
-    std::filesystem::create_directory(bench.path("locked"));
-    ::chmod(bench.path("locked").c_str(), 0500);
-    refuses(bench, kFailed, "segment s.vdb locked/o.vdb", {"locked/o.vdb"});
-    ::chmod(bench.path("locked").c_str(), 0700);
-  }
-}
-
-TEST_CASE("cli: the input is never overwritten, by whatever name", "[cli]") {
-  const Bench bench;
-  bench.mustRun("generate snow s.vdb --size 16 --length 6");
-  bench.mustRun("generate snow m.mhd --size 16 --length 6");
-  std::filesystem::create_symlink("s.vdb", bench.path("link.vdb"));
-  std::filesystem::create_hard_link(bench.path("s.vdb"), bench.path("hard.vdb"));
-  for (const std::string out : {"./s.vdb", "link.vdb", "hard.vdb"}) {
-    refuses(bench, kWrongUsage, "segment s.vdb " + out, {out});
-    refuses(bench, kWrongUsage, "convert s.vdb " + out, {out});
-  }
-  const std::string samples = bench.bytes("m.raw");
-  refuses(bench, kFailed, "convert m.mhd m.raw --out-type int32", {"m.raw", "m.mhd"});
-  refuses(bench, kFailed, "convert m.mhd m.raw --phase 1", {"m.raw", "m.mhd"});
-  refuses(bench, kWrongUsage, "convert m.raw m.mhd --dims 16x16x16 --type uint8", {"m.raw"});
-  CHECK(bench.bytes("m.raw") == samples);
-
-  std::filesystem::create_directory(bench.path("slices"));
-  bench.write("row.raw", std::string(8, '\1'));
-  bench.mustRun("convert row.raw slices/0.tif --dims 8x1x1 --type uint8");
-  bench.mustRun("convert row.raw slices/1.tif --dims 8x1x1 --type uint8");
-  refuses(bench, kFailed, "convert slices slices/1.tif", {"slices/1.tif"});
-  bench.mustRun("convert slices stack.tif");
-}
-
-TEST_CASE("cli: a full disk leaves nothing, and what was there before", "[cli]") {
-  const Bench bench;
-  bench.mustRun("generate snow s.vdb --size 64 --length 12");
-  bench.mustRun("generate snow s.tif --size 64 --length 12");
-  bench.mustRun("segment s.vdb g.vdb --keep manifold");
-  RunOptions full;
-  full.largestFile = 4096;
-  for (const std::string out : {"o.vdb", "o.raw", "o.tif", "o.mha", "o.mhd"}) {
-    refuses(bench, kFailed, "convert s.vdb " + out, {"o."}, full);
-    bench.write(out, "before");
-    refuses(bench, kFailed, "convert s.vdb " + out + " --threshold 1", {"o."}, full);
-    CHECK(bench.bytes(out) == "before");
-  }
-  refuses(bench, kFailed, "convert s.tif p.raw", {"p.raw"}, full);
-  refuses(bench, kFailed, "segment s.vdb p.vdb --json j.json", {"p.vdb"}, full);
-  refuses(bench, kFailed, "remerge g.vdb p.vdb", {"p.vdb"}, full);
-  refuses(bench, kFailed, "generate snow p.vdb --size 64 --length 12", {"p.vdb"}, full);
-  full.largestFile = 100;
-  refuses(bench, kFailed, "render g.vdb p.png", {"p.png"}, full);
-  refuses(bench, kFailed, "info g.vdb --json j.json", {"j.json"}, full);
-}
-
-TEST_CASE("cli: a standard output that takes nothing is an error", "[cli]") {
-  const Bench bench;
-  bench.mustRun("generate snow s.vdb --size 16 --length 6");
-  bench.mustRun("segment s.vdb g.vdb");
-  RunOptions full;
-  full.out = "/dev/full";
-  for (const std::string arguments :
-       {"--help", "segment --help", "--version", "info s.vdb", "compare g.vdb g.vdb",
-        "compare g.vdb g.vdb --json -", "segment s.vdb g.vdb", "render g.vdb g.png",
-        "info s.vdb --json /dev/full"}) {
-    CAPTURE(arguments);
-    const Outcome outcome = bench.run(arguments, full);
-    CHECK(outcome.exitCode == kFailed);
-    CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
-  }
 }
 
 TEST_CASE("cli: a signal ends long work within a second and leaves nothing", "[cli]") {

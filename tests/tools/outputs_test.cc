@@ -1,16 +1,22 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What happens to files that are there already.
+// Where outputs go: what is in the way is not lost, and what cannot be written is said.
 
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
 
-#include "support/program.h"
+#include "support/refusals.h"
 
 using namespace vdb_madf::test;
 
 namespace {
+
+const std::string kSpheres = "generate spheres --size 40 --count 5 --radius 6:9 ";
 
 /// The command fails, says what is in the way, and leaves all as it was.
 void leavesAlone(const Bench& bench, const std::string& arguments, const std::string& file) {
@@ -115,5 +121,91 @@ TEST_CASE("cli: outputs go through links, to be or there", "[cli]") {
       CHECK(std::filesystem::is_symlink(bench.path(name)));
       CHECK(std::filesystem::is_regular_file(bench.path("real/" + name)));
     }
+  }
+}
+
+TEST_CASE("cli: no output where none can be, found out before the work", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSpheres + "s.vdb");
+  bench.mustRun("segment s.vdb g.vdb --keep manifold");
+  std::filesystem::create_directory(bench.path("d.vdb"));
+  for (const std::string out : {"none/o.vdb", "d.vdb", "s.vdb/o.vdb"}) {
+    refuses(bench, kFailed, "segment s.vdb " + out, {out});
+    refuses(bench, kFailed, "convert s.vdb " + out, {out});
+    refuses(bench, kFailed, "remerge g.vdb " + out, {out});
+    refuses(bench, kFailed, kSpheres + out, {out});
+  }
+  refuses(bench, kFailed, "render g.vdb none/o.png", {"none/o.png"});
+  refuses(bench, kFailed, "segment s.vdb o.vdb --json none/o.json", {"none/o.json"});
+  refuses(bench, kFailed, "segment s.vdb o.vdb --json d.vdb", {"d.vdb"});
+  refuses(bench, kFailed, "convert s.vdb none/o.raw", {"none/o.raw"});
+  if (::geteuid() != 0) {  // nothing is read-only for root
+    std::filesystem::create_directory(bench.path("locked"));
+    ::chmod(bench.path("locked").c_str(), 0500);
+    refuses(bench, kFailed, "segment s.vdb locked/o.vdb", {"locked/o.vdb"});
+    ::chmod(bench.path("locked").c_str(), 0700);
+  }
+}
+
+TEST_CASE("cli: the input is never overwritten, by whatever name", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate snow s.vdb --size 16 --length 6");
+  bench.mustRun("generate snow m.mhd --size 16 --length 6");
+  std::filesystem::create_symlink("s.vdb", bench.path("link.vdb"));
+  std::filesystem::create_hard_link(bench.path("s.vdb"), bench.path("hard.vdb"));
+  for (const std::string out : {"./s.vdb", "link.vdb", "hard.vdb"}) {
+    refuses(bench, kWrongUsage, "segment s.vdb " + out, {out});
+    refuses(bench, kWrongUsage, "convert s.vdb " + out, {out});
+  }
+  const std::string samples = bench.bytes("m.raw");
+  refuses(bench, kFailed, "convert m.mhd m.raw --out-type int32", {"m.raw", "m.mhd"});
+  refuses(bench, kFailed, "convert m.mhd m.raw --phase 1", {"m.raw", "m.mhd"});
+  refuses(bench, kWrongUsage, "convert m.raw m.mhd --dims 16x16x16 --type uint8", {"m.raw"});
+  CHECK(bench.bytes("m.raw") == samples);
+
+  std::filesystem::create_directory(bench.path("slices"));
+  bench.write("row.raw", std::string(8, '\1'));
+  bench.mustRun("convert row.raw slices/0.tif --dims 8x1x1 --type uint8");
+  bench.mustRun("convert row.raw slices/1.tif --dims 8x1x1 --type uint8");
+  refuses(bench, kFailed, "convert slices slices/1.tif", {"slices/1.tif"});
+  bench.mustRun("convert slices stack.tif");
+}
+
+TEST_CASE("cli: a full disk leaves nothing, and what was there before", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate snow s.vdb --size 64 --length 12");
+  bench.mustRun("generate snow s.tif --size 64 --length 12");
+  bench.mustRun("segment s.vdb g.vdb --keep manifold");
+  RunOptions full;
+  full.largestFile = 4096;
+  for (const std::string out : {"o.vdb", "o.raw", "o.tif", "o.mha", "o.mhd"}) {
+    refuses(bench, kFailed, "convert s.vdb " + out, {"o."}, full);
+    bench.write(out, "before");
+    refuses(bench, kFailed, "convert s.vdb " + out + " --threshold 1", {"o."}, full);
+    CHECK(bench.bytes(out) == "before");
+  }
+  refuses(bench, kFailed, "convert s.tif p.raw", {"p.raw"}, full);
+  refuses(bench, kFailed, "segment s.vdb p.vdb --json j.json", {"p.vdb"}, full);
+  refuses(bench, kFailed, "remerge g.vdb p.vdb", {"p.vdb"}, full);
+  refuses(bench, kFailed, "generate snow p.vdb --size 64 --length 12", {"p.vdb"}, full);
+  full.largestFile = 100;
+  refuses(bench, kFailed, "render g.vdb p.png", {"p.png"}, full);
+  refuses(bench, kFailed, "info g.vdb --json j.json", {"j.json"}, full);
+}
+
+TEST_CASE("cli: a standard output that takes nothing is an error", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate snow s.vdb --size 16 --length 6");
+  bench.mustRun("segment s.vdb g.vdb");
+  RunOptions full;
+  full.out = "/dev/full";
+  for (const std::string arguments :
+       {"--help", "segment --help", "--version", "info s.vdb", "compare g.vdb g.vdb",
+        "compare g.vdb g.vdb --json -", "segment s.vdb g.vdb", "render g.vdb g.png",
+        "info s.vdb --json /dev/full"}) {
+    CAPTURE(arguments);
+    const Outcome outcome = bench.run(arguments, full);
+    CHECK(outcome.exitCode == kFailed);
+    CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
   }
 }
