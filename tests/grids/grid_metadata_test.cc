@@ -84,7 +84,7 @@ TEST_CASE("grid_metadata: half a domain, and an inverted one, are refused", "[gr
     openvdb::MetaMap metadata;
     metadata.insertMeta("madf_domain_min", Vec3IMetadata(Vec3i(3, 3, 3)));
     metadata.insertMeta("madf_domain_max", Vec3IMetadata(upper));
-    CHECK(storedDomain(metadata)->volume() == 1);
+    CHECK(storedDomain(metadata)->voxelCount() == 1);
     --upper[axis];
     metadata.insertMeta("madf_domain_max", Vec3IMetadata(upper));
     CAPTURE(axis);

@@ -24,8 +24,11 @@ TEST_CASE("distance_rows: the first pass by its definition", "[distance_rows]") 
     for (int i = 0; i < 40; ++i) {
       const int begin = i % 2 ? int(random() % 4) : 0, end = length - int(random() % 4);
       // Only where the domain reaches an end of the rows, it can go on behind it.
-      const RowDomain domain{begin, end, begin == 0 && i % 3 ? 0 : kInfinite,
-                             end == length && i % 5 ? 0 : kInfinite};
+      RowDomain domain{begin, end, {}, {}};
+      for (size_t row = 0; row < 64; ++row) {
+        domain.before[row] = begin == 0 && (i + row) % 3 ? 0 : kInfinite;
+        domain.after[row] = end == length && (i + row) % 5 ? 0 : kInfinite;
+      }
       std::vector<uint64_t> masks(size_t(length), ~uint64_t(0));
       for (int t = 0; t < length; ++t)
         masks[size_t(t)] =
@@ -34,8 +37,8 @@ TEST_CASE("distance_rows: the first pass by its definition", "[distance_rows]") 
       scanRows(masks.data(), length, domain, out.data());
       // -1: before the rows, length: after them.
       const auto isBackground = [&](int t, int row) {
-        if (t < 0) return domain.before == 0;
-        if (t >= length) return domain.after == 0;
+        if (t < 0) return domain.before[size_t(row)] == 0;
+        if (t >= length) return domain.after[size_t(row)] == 0;
         return t >= begin && t < end && !(masks[size_t(t)] >> row & 1);
       };
       int wrong = 0;
@@ -60,14 +63,18 @@ TEST_CASE("distance_rows: the other passes by their definition", "[distance_rows
       std::vector<uint32_t> in((size_t(length) + 2) * 64, kInfinite), out(size_t(length) * 64);
       for (uint32_t& value : in)
         if (random() % unsigned(2 + 10 * i) == 0) value = random() % 500;
-      widenWindows(in.data() + 64, length, out.data());
+      const int reach = i % 3 ? int(random() % 30) : length + 1;
+      widenWindows(in.data() + 64, length, reach, out.data());
       int wrong = 0;
       for (int t = 0; t < length; ++t) {
         for (int row = 0; row < 64; ++row) {
           uint32_t expected = kInfinite;
           for (int s = -1; s <= length; ++s)
             expected = std::min(expected, in[at(s + 1, row)] + uint32_t((s - t) * (s - t)));
-          wrong += out[at(t, row)] != expected;
+          if (expected <= uint32_t(reach * reach))
+            wrong += out[at(t, row)] != expected;
+          else
+            wrong += out[at(t, row)] <= uint32_t(reach * reach);
         }
       }
       REQUIRE(wrong == 0);

@@ -107,8 +107,8 @@ Sites oracleSites(const ObjectVolume& object, int64_t gamma) {
   const auto distance = oracleDistance(object, false, {});
   OraclePower power = oraclePower(object, distance, object);
   if (gamma > 0)
-    power = oracleFilteredPower(object, distance,
-                                oracleKeptBalls(object, oracleBalls(power, distance), gamma));
+    power = oracleFilteredPower(
+        object, distance, oracleKeptBalls(object, power, oracleBalls(power, distance), gamma));
   return {object, power.site, distance};
 }
 

@@ -37,7 +37,7 @@ struct Filter {
     PowerMap map = powerMap(index, squaredDistance(index, {}));
     balls = medialBalls(index, map);
     table = measureBalls(index, map, balls);
-    kept = keptBalls(index, balls, table, gamma);
+    kept = keptBalls(index, map, balls, table, gamma);
     map = filteredPowerMap(index, std::move(map), balls, table, kept);
     power = dense(index, map.power, object.box());
     site = dense(index, map.site, object.box());
@@ -71,7 +71,7 @@ void requireOracle(const ObjectVolume& object, int64_t gamma, Tiles tiles) {
   const Filter filter(object, gamma, tiles);
   const OraclePower unfiltered = oraclePower(object, filter.distance, object);
   const ObjectVolume kept =
-      oracleKeptBalls(object, oracleBalls(unfiltered, filter.distance), gamma);
+      oracleKeptBalls(object, unfiltered, oracleBalls(unfiltered, filter.distance), gamma);
   std::vector<Coord> expected;
   for (int i = 0; i < kept.size(); ++i)
     if (kept[i]) expected.push_back(kept.coord(i));
@@ -227,6 +227,6 @@ TEST_CASE("gamma_filter: none once interrupted", "[gamma_filter]") {
   const VoxelSet balls = medialBalls(index, map);
   const MedialBallTable table = measureBalls(index, map, balls);
   StopAtOnce stop;
-  CHECK_THROWS_AS(keptBalls(index, balls, table, 10, &stop), Interrupted);
+  CHECK_THROWS_AS(keptBalls(index, map, balls, table, 10, &stop), Interrupted);
   CHECK_THROWS_AS(filteredPowerMap(index, std::move(map), balls, table, balls, &stop), Interrupted);
 }

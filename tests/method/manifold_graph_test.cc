@@ -127,8 +127,8 @@ Manifolds oracleManifolds(const ObjectVolume& object, int64_t gamma) {
   m.distance = oracleDistance(object, false, {});
   m.map = oraclePower(object, m.distance, object);
   if (gamma > 0)
-    m.map = oracleFilteredPower(object, m.distance,
-                                oracleKeptBalls(object, oracleBalls(m.map, m.distance), gamma));
+    m.map = oracleFilteredPower(
+        object, m.distance, oracleKeptBalls(object, m.map, oracleBalls(m.map, m.distance), gamma));
   m.critical = oracleFlow(m.map.site);
   return m;
 }

@@ -94,10 +94,11 @@ TEST_CASE("squared_distance: agrees with the oracle", "[squared_distance]") {
     try {
       distance = squaredDistance(index, obstacles);
     } catch (const InvalidInput&) {
-      REQUIRE_THROWS_AS(oracleDistance(c.object, obstacles.open, obstacles.domain), Undefined);
+      REQUIRE_THROWS_AS(oracleDistance(c.object, obstacles.open, obstacles.domain.box()),
+                        Undefined);
       continue;
     }
-    const auto expected = oracleDistance(c.object, obstacles.open, obstacles.domain);
+    const auto expected = oracleDistance(c.object, obstacles.open, obstacles.domain.box());
     REQUIRE(dense(index, distance.values, c.object.box()) == expected);
     int64_t largest = 0;
     for (int i = 0; i < c.object.size(); ++i)

@@ -104,7 +104,7 @@ TEST_CASE("label_preview: density is the labelled part, color that of the common
 TEST_CASE("label_preview: grids are what renderers take", "[label_preview]") {
   const auto grid = labelGrid(twoBalls({0, 0, 0}, 5));
   setVoxelSize(*grid, VoxelSize{8.5e-6});
-  setDomain(*grid, {Coord(-9), Coord(20)});
+  setDomain(*grid, CoordBBox(Coord(-9), Coord(20)));
   const LabelPreview preview = previewLabels(*grid, 3);
   CHECK(preview.density->getName() == "density");
   CHECK(preview.density->getGridClass() == openvdb::GRID_FOG_VOLUME);

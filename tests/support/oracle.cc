@@ -45,7 +45,7 @@ Candidate candidate(const Coord& p, const Coord& center, int64_t squaredRadius) 
 // ------------------------------------------------------------------------------- The boundary
 
 bool oracleBoundary(const ObjectVolume& object, Boundary boundary,
-                    const std::optional<CoordBBox>& domain) {
+                    const std::optional<OracleDomain>& domain) {
   if (domain)
     for (int i = 0; i < object.size(); ++i)
       if (object[i] && !domain->isInside(object.coord(i)))
@@ -57,29 +57,32 @@ bool oracleBoundary(const ObjectVolume& object, Boundary boundary,
 
 // -------------------------------------------------------------------------------- Cavities
 
-int64_t oracleFillHoles(const SegmentOptions& options, const std::optional<CoordBBox>& domain) {
+int64_t oracleFillHoles(const SegmentOptions& options, const std::optional<OracleDomain>& domain) {
   if (options.fillHoles) return *options.fillHoles;
   if (domain)
     for (int axis = 0; axis < 3; ++axis)
-      if (domain->dim()[axis] == 1) return 0;
+      if (domain->box().dim()[axis] == 1) return 0;
   return 27;
 }
 
-OracleBody oracleBody(const ObjectVolume& object, const std::optional<CoordBBox>& domain, bool open,
-                      int64_t fillHoles) {
+OracleBody oracleBody(const ObjectVolume& object, const std::optional<OracleDomain>& domain,
+                      bool open, int64_t fillHoles) {
   OracleBody body{object, 0};
   if (countObject(object) == 0) return body;
   // Without a domain: one layer more, which belongs to the unbounded outside.
   CoordBBox space = object.box();
   if (domain)
-    space = *domain;
+    space = domain->box();
   else
     space.expand(1);
-  CoordBBox inner = space;
-  inner.expand(-1);
-  ObjectVolume background(space, 1);
-  for (int i = 0; i < object.size(); ++i)
-    if (object[i]) background[object.coord(i)] = 0;
+  const auto isInside = [&](const Coord& p) {
+    return domain ? domain->isInside(p) : space.isInside(p);
+  };
+  ObjectVolume background(space);
+  for (int i = 0; i < background.size(); ++i) {
+    const Coord p = background.coord(i);
+    background[i] = isInside(p) && !object.get(p, 0);
+  }
   std::vector<Coord> filled;
   const DenseVolume<int> component = sixComponents(background);
   std::map<int, std::vector<Coord>> components;
@@ -88,7 +91,8 @@ OracleBody oracleBody(const ObjectVolume& object, const std::optional<CoordBBox>
   for (const auto& [number, voxels] : components) {
     if (int64_t(voxels.size()) >= fillHoles) continue;
     bool reachesFace = false;
-    for (const Coord& p : voxels) reachesFace = reachesFace || !inner.isInside(p);
+    for (const Coord& p : voxels)
+      for (const Coord& step : kSixNeighbors) reachesFace = reachesFace || !isInside(p + step);
     if (!open && reachesFace) continue;
     ++body.cavities;
     filled.insert(filled.end(), voxels.begin(), voxels.end());
@@ -104,19 +108,23 @@ OracleBody oracleBody(const ObjectVolume& object, const std::optional<CoordBBox>
 // ------------------------------------------------------------------------------------- Step 1
 
 DenseVolume<int64_t> oracleDistance(const ObjectVolume& object, bool open,
-                                    const CoordBBox& domain) {
-  // Only the background voxels that have a 6-neighbour in X can be nearest to a p in X: from the
-  // nearest one, q, a step along an axis in which q and p differ leads nearer to p (and stays in a
-  // box that holds both), so what lies there is not background; then it is in X.
+                                    const OracleDomain& domain) {
+  // Only the background voxels that have a 6-neighbour that is none can be nearest to a p in X: from
+  // the nearest one, q, a step along an axis in which q and p differ leads nearer to p, so what lies
+  // there is not background; then it is in X, or outside the domain.
   CoordBBox around = object.box();
   if (!around.empty()) around.expand(1);
+  if (!around.empty() && open) around = domain.box();
   const ObjectVolume space(around);
+  const auto isBackground = [&](const Coord& q) {
+    return !object.get(q, 0) && (!open || domain.isInside(q));
+  };
   std::vector<Coord> background;
   for (int i = 0; i < space.size(); ++i) {
     const Coord q = space.coord(i);
-    if (object.get(q, 0) || (open && !domain.isInside(q))) continue;
+    if (!isBackground(q)) continue;
     for (const Coord& step : kSixNeighbors)
-      if (object.get(q + step, 0)) {
+      if (!isBackground(q + step)) {
         background.push_back(q);
         break;
       }
@@ -205,8 +213,8 @@ DenseVolume<int> sixComponents(const ObjectVolume& object) {
   return component;
 }
 
-ObjectVolume oracleKeptBalls(const ObjectVolume& object, const std::vector<MedialBall>& balls,
-                             int64_t gamma) {
+ObjectVolume oracleKeptBalls(const ObjectVolume& object, const OraclePower& power,
+                             const std::vector<MedialBall>& balls, int64_t gamma) {
   ObjectVolume kept(object.box());
   const DenseVolume<int> component = sixComponents(object);
   std::map<int, MedialBall> best;  // of each component: largest D, then smaller coordinate
@@ -221,6 +229,21 @@ ObjectVolume oracleKeptBalls(const ObjectVolume& object, const std::vector<Media
     kept[ball.center] = 1;
     served.insert(number);
   }
+  // Components without a ball, whose voxels all map to others across what is unknown: the best of
+  // the balls that they map to.
+  std::map<int, MedialBall> ballAt;  // by site
+  for (const MedialBall& ball : balls) ballAt[object.index(ball.center)] = ball;
+  std::map<int, MedialBall> bestElsewhere;
+  for (int i = 0; i < object.size(); ++i) {
+    const int number = component[i];
+    if (!object[i] || best.count(number)) continue;
+    const MedialBall& ball = ballAt.at(power.site[i]);
+    const auto known = bestElsewhere.find(number);
+    if (known == bestElsewhere.end() || ball.squaredRadius > known->second.squaredRadius ||
+        (ball.squaredRadius == known->second.squaredRadius && ball.center < known->second.center))
+      bestElsewhere[number] = ball;
+  }
+  best.insert(bestElsewhere.begin(), bestElsewhere.end());
   for (const auto& [number, ball] : best)
     if (!served.count(number)) kept[ball.center] = 1;
   return kept;
@@ -485,7 +508,7 @@ DenseVolume<int64_t> oracleTidy(const DenseVolume<int64_t>& given,
 }
 
 LabelFlaws oracleFlaws(const DenseVolume<int64_t>& labels, int64_t grains,
-                       const std::optional<CoordBBox>& domain) {
+                       const std::optional<OracleDomain>& domain) {
   LabelFlaws flaws;
   for (int64_t g = 1; g <= grains; ++g) {
     ObjectVolume grain(labels.box());
@@ -521,7 +544,7 @@ LabelFlaws oracleFlaws(const DenseVolume<int64_t>& labels, int64_t grains,
 
 // ------------------------------------------------------------------------------------ All
 
-OracleResult oracleSegment(const ObjectVolume& object, const std::optional<CoordBBox>& domain,
+OracleResult oracleSegment(const ObjectVolume& object, const std::optional<OracleDomain>& domain,
                            const SegmentOptions& options) {
   if (options.gamma < 0) throw Undefined("gamma is negative");
   if (options.fillHoles.value_or(0) < 0) throw Undefined("fill-holes is negative");
@@ -530,13 +553,13 @@ OracleResult oracleSegment(const ObjectVolume& object, const std::optional<Coord
   const OracleBody filled =
       oracleBody(object, domain, result.open, oracleFillHoles(options, domain));
   const ObjectVolume& body = filled.voxels;
-  result.distance = oracleDistance(body, result.open, domain.value_or(CoordBBox()));
+  result.distance = oracleDistance(body, result.open, domain.value_or(OracleDomain()));
   result.unfiltered = oraclePower(body, result.distance, body);
   result.balls = oracleBalls(result.unfiltered, result.distance);
 
   result.filtered = result.unfiltered;
   if (options.gamma > 0) {
-    const ObjectVolume kept = oracleKeptBalls(body, result.balls, options.gamma);
+    const ObjectVolume kept = oracleKeptBalls(body, result.unfiltered, result.balls, options.gamma);
     for (const MedialBall& ball : result.balls)
       if (kept[ball.center]) result.kept.push_back(ball.center);
     result.filtered = oracleFilteredPower(body, result.distance, kept);

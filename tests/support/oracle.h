@@ -49,23 +49,40 @@ struct OracleResult {
   bool open = false;
 };
 
+/// The domain B: a box, or the voxels of a region.
+class OracleDomain {
+ public:
+  OracleDomain() = default;
+  OracleDomain(const CoordBBox& box) : box_(box) {}  // NOLINT: a box is a domain
+  explicit OracleDomain(const ObjectVolume& region) : box_(objectBox(region)), region_(region) {}
+  const CoordBBox& box() const { return box_; }
+  bool isInside(const Coord& p) const {
+    return region_ ? region_->get(p, 0) != 0 : box_.isInside(p);
+  }
+
+ private:
+  CoordBBox box_;
+  std::optional<ObjectVolume> region_;
+};
+
 /// Before all steps: is the boundary open (boundary.h)? @throw Undefined
 bool oracleBoundary(const ObjectVolume& object, Boundary boundary,
-                    const std::optional<CoordBBox>& domain);
+                    const std::optional<OracleDomain>& domain);
 
 /// Step 0: what is filled if the options do not say it.
-int64_t oracleFillHoles(const SegmentOptions& options, const std::optional<CoordBBox>& domain);
+int64_t oracleFillHoles(const SegmentOptions& options, const std::optional<OracleDomain>& domain);
 
 /// Step 0, the body: the object and its cavities, and how many there are.
 struct OracleBody {
   ObjectVolume voxels;  ///< in a box that holds the object's
   int64_t cavities = 0;
 };
-OracleBody oracleBody(const ObjectVolume& object, const std::optional<CoordBBox>& domain, bool open,
-                      int64_t fillHoles);
+OracleBody oracleBody(const ObjectVolume& object, const std::optional<OracleDomain>& domain,
+                      bool open, int64_t fillHoles);
 
 /// Step 1. `domain` is used if open. @throw Undefined if there is no background.
-DenseVolume<int64_t> oracleDistance(const ObjectVolume& object, bool open, const CoordBBox& domain);
+DenseVolume<int64_t> oracleDistance(const ObjectVolume& object, bool open,
+                                    const OracleDomain& domain);
 
 /// Step 2, over the balls of some sites only; kNoSite where none of their balls has a negative
 /// power.
@@ -79,8 +96,8 @@ std::vector<MedialBall> oracleBalls(const OraclePower& power, const DenseVolume<
 DenseVolume<int> sixComponents(const ObjectVolume& object);
 
 /// Step 4: the balls that the filter keeps.
-ObjectVolume oracleKeptBalls(const ObjectVolume& object, const std::vector<MedialBall>& balls,
-                             int64_t gamma);
+ObjectVolume oracleKeptBalls(const ObjectVolume& object, const OraclePower& power,
+                             const std::vector<MedialBall>& balls, int64_t gamma);
 /// Step 4: the power map of the kept balls, completed within the grains.
 OraclePower oracleFilteredPower(const ObjectVolume& object, const DenseVolume<int64_t>& distance,
                                 const ObjectVolume& kept);
@@ -101,10 +118,10 @@ DenseVolume<int64_t> oracleTidy(const DenseVolume<int64_t>& labels,
 
 /// What is wrong with labels (label_flaws.h).
 LabelFlaws oracleFlaws(const DenseVolume<int64_t>& labels, int64_t grains,
-                       const std::optional<CoordBBox>& domain);
+                       const std::optional<OracleDomain>& domain);
 
 /// All of it. @throw Undefined
-OracleResult oracleSegment(const ObjectVolume& object, const std::optional<CoordBBox>& domain,
+OracleResult oracleSegment(const ObjectVolume& object, const std::optional<OracleDomain>& domain,
                            const SegmentOptions& options);
 
 }  // namespace vdb_madf::test

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 
@@ -22,6 +23,37 @@ constexpr std::array<double, 8> kThetas = {-1, -0.95, -0.9, -0.8, -0.5, 0, 0.5, 
 constexpr std::array<const char*, 3> kBoundaryNames = {"automatic", "open", "closed"};
 constexpr std::array<const char*, 3> kModeNames = {"both", "angle", "neck"};
 
+void setRegion(RandomCase& c, const ObjectVolume& region) {
+  const CoordBBox box = objectBox(region);
+  if (box.empty()) {
+    c.region.reset();
+    return;
+  }
+  c.domain = box;
+  c.region = withBox(region, box);
+}
+
+/// A round or ragged part of a box.
+ObjectVolume randomRegion(const CoordBBox& box, Rng& rng) {
+  ObjectVolume region(box);
+  const int kind = rng.below(6), axis = rng.below(3);
+  const openvdb::Vec3d center = box.getCenter(), half = box.dim().asVec3d() / 2;
+  const double inner = rng.unit() * 0.8, share = 0.3 + 0.7 * rng.unit();
+  for (int i = 0; i < region.size(); ++i) {
+    const Coord p = region.coord(i);
+    openvdb::Vec3d d = (p.asVec3d() - center) / half;
+    bool inside = false;
+    if (kind == 0) d[axis] = 0;                                        // a cylinder
+    if (kind <= 1) inside = d.length() <= 1;                           // a ball
+    if (kind == 2) inside = d.length() <= 1.2 && d.length() >= inner;  // a shell
+    if (kind == 3) inside = rng.chance(share);                         // noise
+    if (kind == 4) inside = std::abs(d[axis]) > inner * 0.8;           // two parts
+    if (kind == 5) inside = d[0] + d[1] * inner + d[2] * share < 0.3;  // cut off at an angle
+    region[i] = inside;
+  }
+  return region;
+}
+
 /// Without the slice at `position`; what lies beyond it moves down by one.
 CoordBBox withoutSlice(CoordBBox box, int axis, int position) {
   if (box.min()[axis] > position) --box.min()[axis];
@@ -38,6 +70,15 @@ RandomCase withoutSlice(const RandomCase& c, int axis, int position) {
     result.object[i] = c.object[p];
   }
   if (c.domain) result.domain = withoutSlice(*c.domain, axis, position);
+  if (c.region) {
+    ObjectVolume region(*result.domain);
+    for (int i = 0; i < region.size(); ++i) {
+      Coord p = region.coord(i);
+      if (p[axis] >= position) ++p[axis];
+      region[i] = c.region->get(p, 0);
+    }
+    setRegion(result, region);
+  }
   return result;
 }
 
@@ -104,14 +145,17 @@ class Shrinker {
     attempt(best_.options.tidy != 0, [](RandomCase& c) { c.options.tidy = 0; });
     attempt(best_.domain.has_value(), [](RandomCase& c) {
       c.domain.reset();
+      c.region.reset();
       c.domainInMetadata = false;
       c.options.boundary = Boundary::automatic;
     });
+    attempt(best_.region.has_value(), [](RandomCase& c) { c.region.reset(); });
     attempt(best_.domainInMetadata, [](RandomCase& c) { c.domainInMetadata = false; });
     const Coord origin = best_.object.box().min();
     attempt(origin != Coord(0), [&](RandomCase& c) {
       c.object = translated(c.object, Coord(0) - origin);
       if (c.domain) c.domain->translate(Coord(0) - origin);
+      if (c.region) c.region = translated(*c.region, Coord(0) - origin);
     });
     return simpler;
   }
@@ -156,15 +200,39 @@ RandomCase randomCase(uint64_t seed, const std::optional<Coord>& size) {
   return c;
 }
 
+void drawRegion(RandomCase& c) {
+  if (!c.domain) return;
+  Rng rng(c.seed + 77);
+  CoordBBox box = *c.domain;
+  if (rng.chance(0.3) && box.dim().x() > 2) box.min().x() += 1;  // the object loses a face
+  ObjectVolume region = randomRegion(box, rng);
+  if (objectBox(region).empty()) return;
+  setRegion(c, region);
+  for (int i = 0; i < c.object.size(); ++i)
+    if (!c.region->get(c.object.coord(i), 0)) c.object[i] = 0;
+}
+
+std::optional<Domain> domainOf(const RandomCase& c) {
+  if (c.region) return Domain(toMask(*c.region, c.tiles)->tree());
+  if (c.domain) return Domain(*c.domain);
+  return {};
+}
+
+std::optional<OracleDomain> oracleDomainOf(const RandomCase& c) {
+  if (c.region) return OracleDomain(*c.region);
+  if (c.domain) return OracleDomain(*c.domain);
+  return {};
+}
+
 MaskGrid::Ptr maskOf(const RandomCase& c) {
   auto mask = toMask(c.object, c.tiles);
-  if (c.domain && c.domainInMetadata) setDomain(*mask, *c.domain);
+  if (c.domain && c.domainInMetadata) setDomain(*mask, *domainOf(c));
   return mask;
 }
 
 SegmentOptions optionsOf(const RandomCase& c) {
   SegmentOptions options = c.options;
-  if (!c.domainInMetadata) options.domain = c.domain;
+  if (!c.domainInMetadata) options.domain = domainOf(c);
   options.keepDistance = options.keepPower = options.keepManifold = options.keepBalls = true;
   return options;
 }
@@ -185,6 +253,8 @@ std::string describe(const RandomCase& c) {
        << c.options.merge.delta << ", tidy " << c.options.tidy << ", "
        << (c.tiles == Tiles::none ? "no tiles, " : "tiles, ") << c.threads << " threads\n";
   if (c.object.size() <= kMaxPictureBytes) text << picture(c.object);
+  if (c.region) text << "in a region of " << countObject(*c.region) << " voxels\n";
+  if (c.region && c.region->size() <= kMaxPictureBytes) text << picture(*c.region);
   return text.str();
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "support/dense_volume.h"
+#include "support/oracle.h"
 #include "support/random_volume.h"
 #include "vdb_madf/method/segment.h"
 
@@ -19,7 +20,8 @@ struct RandomCase {
   VolumeKind kind = VolumeKind::empty;
   ObjectVolume object;
   std::optional<CoordBBox> domain;
-  bool domainInMetadata = false;  ///< of the mask; else in the options
+  std::optional<ObjectVolume> region;  ///< the voxels of the domain, if it is not its whole box
+  bool domainInMetadata = false;       ///< of the mask; else in the options
   Tiles tiles = Tiles::none;
   int threads = 1;
   SegmentOptions options;  ///< without the domain
@@ -31,6 +33,14 @@ constexpr int kCombinations = 3 * 2 * 3 * 3;
 
 /// The case of a seed; all else is drawn at random. `size`: of the volume, random if absent.
 RandomCase randomCase(uint64_t seed, const std::optional<Coord>& size = {});
+
+/// Makes the domain of a case a region, if it has one: part of a box around the object, which loses
+/// what lies outside of it.
+void drawRegion(RandomCase& c);
+
+/// The domain, for either side.
+std::optional<Domain> domainOf(const RandomCase& c);
+std::optional<OracleDomain> oracleDomainOf(const RandomCase& c);
 
 /// The mask with or without tiles, and with its domain if that is where it goes.
 MaskGrid::Ptr maskOf(const RandomCase& c);

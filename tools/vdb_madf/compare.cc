@@ -142,7 +142,7 @@ void run(const Options& o, const Common& common) {
   const auto truthDomain = storedDomain(*truth), testDomain = storedDomain(*test);
   if (truthDomain && testDomain && *truthDomain != *testDomain)
     std::printf("note: the domains differ: %s and %s; voxels of equal index are compared\n",
-                text(*truthDomain).c_str(), text(*testDomain).c_str());
+                text(truthDomain->box()).c_str(), text(testDomain->box()).c_str());
 }
 
 }  // namespace

@@ -73,8 +73,8 @@ void say(const Options& o, const Common& common, const std::string& text) {
 }
 
 CoordBBox boxOf(const Int32Grid& labels) {
-  const auto box = storedDomain(labels);
-  return box ? *box : labels.evalActiveVoxelBoundingBox();
+  const auto domain = storedDomain(labels);
+  return domain ? domain->box() : labels.evalActiveVoxelBoundingBox();
 }
 
 /// 1 unless the options ask for a smaller volume.

@@ -218,7 +218,7 @@ void writeSample(const std::string& out, Sample& sample, Interrupter* interrupte
     writeVdb(out, grids, interrupter);
     return;
   }
-  const CoordBBox box = *storedDomain(*sample.object);
+  const CoordBBox box = storedDomain(*sample.object)->box();
   writeImage(out, *sample.object, box, SampleType::uint8, interrupter);
   if (sample.truth) writeImage(truthPath(out), *sample.truth, box, SampleType::int32, interrupter);
 }
@@ -261,7 +261,7 @@ void run(const Kind& kind, const Options& options, const Common& common) {
   if (common.quiet) return;
   const auto voxels = sample.object->activeVoxelCount();
   std::cout << options.out << ": " << voxels << " object voxels, "
-            << 100.0 * double(voxels) / double(storedDomain(*sample.object)->volume())
+            << 100.0 * double(voxels) / double(storedDomain(*sample.object)->voxelCount())
             << " % of the volume\n";
 }
 

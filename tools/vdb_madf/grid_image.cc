@@ -39,8 +39,10 @@ void checkVolumeEnding(const std::string& path) {
 void writeGridAsImage(const std::string& path, const openvdb::GridBase& grid,
                       const std::optional<SampleType>& type, const std::string& source,
                       const Common& common) {
-  std::optional<CoordBBox> box = storedDomain(grid);
-  if (!box) {
+  std::optional<CoordBBox> box;
+  if (const auto domain = storedDomain(grid)) {
+    box = domain->box();
+  } else {
     box = grid.evalActiveVoxelBoundingBox();
     if (grid.activeVoxelCount() == 0)
       throw InvalidInput(source + ": grid '" + grid.getName() +

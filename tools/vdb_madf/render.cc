@@ -57,12 +57,12 @@ std::vector<PicturePanel> drawPanels(const Options& o, const Int32Grid& labels,
 void run(const Options& o, const Common& common) {
   checkWritable(o.out);
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
-  std::optional<CoordBBox> box = storedDomain(*labels);
-  if (!box) box = labels->evalActiveVoxelBoundingBox();
-  if (box->empty())
+  const auto domain = storedDomain(*labels);
+  const CoordBBox box = domain ? domain->box() : labels->evalActiveVoxelBoundingBox();
+  if (box.empty())
     throw InvalidInput(o.input.path + ": has no labels and no domain: nothing to show");
 
-  const std::vector<PicturePanel> panels = drawPanels(o, *labels, *box, common.progress);
+  const std::vector<PicturePanel> panels = drawPanels(o, *labels, box, common.progress);
   writePng(o.out, pictureSheet(panels, storedVoxelSize(*labels)));
   common.progress->end();
   if (common.quiet) return;

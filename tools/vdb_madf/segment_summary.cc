@@ -49,7 +49,7 @@ std::vector<std::string> hints(const SegmentOptions& options, const SegmentSumma
 
 std::optional<double> SegmentSummary::porosity() const {
   if (!domain) return std::nullopt;
-  return 1 - double(counts.objectVoxels) / double(domain->volume());
+  return 1 - double(counts.objectVoxels) / double(domain->voxelCount());
 }
 
 SegmentSummary summarize(const SegmentArguments& o, const Common& common, const Segmentation& s,
@@ -94,8 +94,10 @@ Json toJson(const SegmentArguments& o, const SegmentSummary& summary) {
   json["largest_squared_distance"] = counts.largestSquaredDistance;
   json["leaves"] = counts.leaves;
   if (const auto& domain = summary.domain) {
-    json["domain_min"] = {domain->min().x(), domain->min().y(), domain->min().z()};
-    json["domain_max"] = {domain->max().x(), domain->max().y(), domain->max().z()};
+    json["domain_min"] = {domain->box().min().x(), domain->box().min().y(),
+                          domain->box().min().z()};
+    json["domain_max"] = {domain->box().max().x(), domain->box().max().y(),
+                          domain->box().max().z()};
     json["porosity"] = *summary.porosity();
   }
   if (summary.voxelSize) json["voxel_size_mm"] = summary.voxelSize->metres * 1e3;

@@ -37,7 +37,7 @@ struct SegmentSummary {
   GrainSizes sizes;
   LabelFlaws flaws;
   int64_t fillHoles = 0;
-  std::optional<CoordBBox> domain;
+  std::optional<Domain> domain;
   std::optional<VoxelSize> voxelSize;
   std::string objectSteps;  ///< from a gray image
   std::optional<double> threshold;

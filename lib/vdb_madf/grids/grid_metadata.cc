@@ -9,6 +9,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/grids/detail/region_metadata.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/grids/object_keys.h"
 
@@ -22,7 +23,7 @@ constexpr char kLengthUnit[] = "madf_length_unit";
 
 }  // namespace
 
-std::optional<CoordBBox> storedDomain(const openvdb::MetaMap& metadata) {
+std::optional<Domain> storedDomain(const openvdb::MetaMap& metadata) {
   const auto lower = metadata.getMetadata<openvdb::Vec3IMetadata>(kDomainMin);
   const auto upper = metadata.getMetadata<openvdb::Vec3IMetadata>(kDomainMax);
   if (!lower && !upper) return std::nullopt;
@@ -34,12 +35,21 @@ std::optional<CoordBBox> storedDomain(const openvdb::MetaMap& metadata) {
     if (box.min()[axis] < -kMaxCoordinate || box.max()[axis] > kMaxCoordinate)
       throw InvalidInput("metadata madf_domain_min or madf_domain_max lies beyond +-" +
                          std::to_string(kMaxCoordinate));
-  return box;
+  const openvdb::Metadata::ConstPtr named = metadata[detail::kRegionKey];
+  if (!named) return box;
+  const auto* region = dynamic_cast<const detail::RegionMetadata*>(named.get());
+  if (!region)
+    throw InvalidInput("the domain is the region in grid '" + named->str() +
+                       "', which was not read with it: keep them in one file");
+  return Domain(region->region(), box);
 }
 
-void setDomain(openvdb::MetaMap& metadata, const CoordBBox& domain) {
-  metadata.insertMeta(kDomainMin, openvdb::Vec3IMetadata(domain.min().asVec3i()));
-  metadata.insertMeta(kDomainMax, openvdb::Vec3IMetadata(domain.max().asVec3i()));
+void setDomain(openvdb::MetaMap& metadata, const Domain& domain) {
+  metadata.insertMeta(kDomainMin, openvdb::Vec3IMetadata(domain.box().min().asVec3i()));
+  metadata.insertMeta(kDomainMax, openvdb::Vec3IMetadata(domain.box().max().asVec3i()));
+  metadata.removeMeta(detail::kRegionKey);
+  if (!domain.isBox())
+    metadata.insertMeta(detail::kRegionKey, detail::RegionMetadata(domain.region()));
 }
 
 std::optional<VoxelSize> storedVoxelSize(const openvdb::MetaMap& metadata) {
@@ -75,8 +85,8 @@ std::optional<MetadataValue> plainValue(const openvdb::Metadata& metadata) {
 }
 
 void copyProvenance(const openvdb::GridBase& from, openvdb::GridBase& to) {
-  for (const char* key : {kDomainMin, kDomainMax, kVoxelSizeKey, kLengthUnit, kSourceKey,
-                          kBoundaryKey, kObjectKey, kThresholdKey, kThresholdLowKey})
+  for (const char* key : {kDomainMin, kDomainMax, detail::kRegionKey, kVoxelSizeKey, kLengthUnit,
+                          kSourceKey, kBoundaryKey, kObjectKey, kThresholdKey, kThresholdLowKey})
     if (const auto value = from[key]) to.insertMeta(key, *value);
   to.setTransform(from.transform().copy());
 }

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "vdb_madf/base/voxel_size.h"
+#include "vdb_madf/grids/domain.h"
 #include "vdb_madf/grids/grid_types.h"
 
 namespace vdb_madf {
@@ -18,11 +19,13 @@ inline constexpr char kVoxelSizeKey[] = "madf_voxel_size_m";
 inline constexpr char kSourceKey[] = "madf_source";      ///< where a grid comes from (string)
 inline constexpr char kBoundaryKey[] = "madf_boundary";  ///< "open" or "closed": see storedBoundary
 
-/// The image domain B of a grid, both corners inclusive: metadata `madf_domain_min` and
-/// `madf_domain_max` (Vec3i). Absent: unknown.
-/// @throw InvalidInput if only one of the two is there, or min > max.
-std::optional<CoordBBox> storedDomain(const openvdb::MetaMap& metadata);
-void setDomain(openvdb::MetaMap& metadata, const CoordBBox& domain);
+/// The image domain B of a grid: the box, both corners inclusive, in the metadata
+/// `madf_domain_min` and `madf_domain_max` (Vec3i), a region besides in `madf_region`
+/// (detail/region_metadata.h). Absent: unknown.
+/// @throw InvalidInput if only one of the two corners is there, min > max, or the region that a file
+///   names is not there.
+std::optional<Domain> storedDomain(const openvdb::MetaMap& metadata);
+void setDomain(openvdb::MetaMap& metadata, const Domain& domain);
 
 /// Physical voxel size: metadata `madf_voxel_size_m` (double), and the unit of the transform in
 /// `madf_length_unit`. Absent: no physical size, one voxel is one unit.

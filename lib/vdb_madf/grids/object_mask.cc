@@ -127,7 +127,9 @@ MaskTree::Ptr objectOf(const Grid& grid, const std::optional<Selection>& selecti
   if (!extent)
     throw InvalidInput("grid '" + grid.getName() +
                        "': an inverted selection needs a domain, which this grid does not carry");
-  return voxelsOfDomain(tree, *extent, accepts);
+  const MaskTree::Ptr object = voxelsOfDomain(tree, extent->box(), accepts);
+  if (!extent->isBox()) object->topologyIntersection(*extent->region());
+  return object;
 }
 
 }  // namespace

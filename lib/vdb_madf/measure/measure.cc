@@ -63,10 +63,10 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
     throw InvalidInput("the least number of faces of a bond must not be negative");
   const detail::LabelLeaves leaves(labels, interrupter);
   const LeafIndex& index = leaves.index();
-  const std::optional<CoordBBox> domainBox = options.domain ? options.domain : storedDomain(labels);
+  const std::optional<Domain> domain = options.domain ? options.domain : storedDomain(labels);
   const Boundary boundary =
       options.boundary == Boundary::automatic ? storedBoundary(labels) : options.boundary;
-  const Obstacles obstacles = resolveBoundary(index, boundary, domainBox);
+  const Obstacles obstacles = resolveBoundary(index, boundary, domain);
 
   Measurements result;
   result.voxelSize = storedVoxelSize(labels);
@@ -75,10 +75,10 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
   result.gridName = labels.getName();
   result.metadata = labels;
   result.labelDigest = detail::labelDigest(leaves);
-  const CoordBBox box = domainBox.value_or(index.boundingBox());
+  const CoordBBox box = domain ? domain->box() : index.boundingBox();
   {
     const detail::LabelSums sums = detail::labelSums(
-        leaves, obstacles.open ? std::optional(obstacles.domain) : std::nullopt, interrupter);
+        leaves, obstacles.open ? std::optional(obstacles.domain.box()) : std::nullopt, interrupter);
     result.bonds = detail::bondMeasures(sums, interrupter);
     result.grains = detail::grainMeasures(sums, result.bonds, box);
   }
@@ -91,7 +91,7 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
   sample.contactsLeftOut = int64_t(leftOut.size());
   for (const BondMeasures& contact : leftOut) sample.areaLeftOut += contact.area;
   sample.sharedArea += sample.areaLeftOut;
-  sample.domainKnown = domainBox.has_value();
+  sample.domainKnown = domain.has_value();
   sample.correlationLengths = correlationLengths(index, sample.box, interrupter);
   sample.eulerCharacteristic = eulerCharacteristic(index, interrupter);
   sample.components = detail::ConnectedComponents(index).count();

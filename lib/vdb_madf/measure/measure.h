@@ -25,7 +25,7 @@ struct MeasureOptions {
   /// What lies beyond the domain; automatic: what the grid says, else open if its domain is known.
   /// Open: the faces of the domain are no surface (GrainMeasures::cutArea). Closed: they are.
   Boundary boundary = Boundary::automatic;
-  std::optional<CoordBBox> domain;  ///< overrides the domain in the grid's metadata
+  std::optional<Domain> domain;  ///< overrides the domain in the grid's metadata
   /// Grains that share fewer voxel faces have no bond; what they share stays part of their areas.
   /// 0 and 1: all that touch have one.
   int64_t minFaces = 1;

@@ -9,6 +9,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/leaves/detail/leaf_mask.h"
 
 namespace vdb_madf {
 
@@ -20,17 +21,28 @@ std::string toString(const CoordBBox& box) {
   return text.str();
 }
 
+bool leavesRegion(const LeafIndex& index, const Domain& domain) {
+  for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
+    const LeafIndex::Mask inside = detail::insideMask(domain, index.origin(leaf));
+    for (size_t x = 0; x < 8; ++x)
+      if (index.mask(leaf)[x] & ~inside[x]) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Obstacles resolveBoundary(const LeafIndex& index, Boundary boundary,
-                          const std::optional<CoordBBox>& domain) {
+                          const std::optional<Domain>& domain) {
   if (boundary == Boundary::open && !domain)
     throw InvalidInput(
         "the open boundary needs a known domain: give one, or use the closed boundary");
-  if (domain && index.voxelCount() > 0 && !domain->isInside(index.boundingBox()))
+  if (domain && index.voxelCount() > 0 && !domain->box().isInside(index.boundingBox()))
     throw InvalidInput("the object leaves the domain: object " + toString(index.boundingBox()) +
-                       ", domain " + toString(*domain) +
+                       ", domain " + toString(domain->box()) +
                        "; crop the object, or give a domain that holds it");
+  if (domain && !domain->isBox() && leavesRegion(index, *domain))
+    throw InvalidInput("the object leaves the region: crop the object, or give one that holds it");
   Obstacles obstacles;
   obstacles.open = domain && boundary != Boundary::closed;
   if (obstacles.open) obstacles.domain = *domain;

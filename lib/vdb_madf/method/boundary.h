@@ -5,16 +5,17 @@
 
 #include <optional>
 
+#include "vdb_madf/grids/domain.h"
 #include "vdb_madf/leaves/leaf_index.h"
 
 namespace vdb_madf {
 
-/// What lies beyond the faces of a scan.
+/// What lies beyond the faces of a scan, or outside its region.
 enum class Boundary {
   /// Open if the domain is known, else closed.
   automatic,
-  /// Only voxels inside the domain are background: a grain that a face of the scan cuts is not
-  /// rounded off there.
+  /// Only voxels inside the domain are background, the others are unknown: a grain that a face of
+  /// the scan cuts is not rounded off there.
   open,
   /// Everything outside the object is background.
   closed
@@ -23,12 +24,12 @@ enum class Boundary {
 /// Boundary and domain, resolved: an open one has a domain.
 struct Obstacles {
   bool open = false;
-  CoordBBox domain;  ///< used if open
+  Domain domain;  ///< used if open
 };
 
 /// @throw InvalidInput: open without a domain, or voxels of `index` outside the domain.
 Obstacles resolveBoundary(const LeafIndex& index, Boundary boundary,
-                          const std::optional<CoordBBox>& domain);
+                          const std::optional<Domain>& domain);
 
 /// The boundary that a grid says it wants or was segmented with (`madf_boundary`: "open",
 /// "closed"); automatic if it says nothing.

@@ -18,16 +18,9 @@ namespace {
 
 using Mask = LeafIndex::Mask;
 
-/// The origin of the leaf on a side (in the order of LeafIndex::Neighbors).
-Coord beside(Coord origin, size_t side) {
-  origin[side / 2] += side % 2 ? 8 : -8;
-  return origin;
-}
-
-Mask without(Mask mask, const Mask& other) {
-  for (size_t x = 0; x < 8; ++x) mask[x] &= ~other[x];
-  return mask;
-}
+using detail::beside;
+using detail::both;
+using detail::without;
 
 struct CoordHash {
   size_t operator()(const Coord& c) const { return c.hash(); }
@@ -38,16 +31,9 @@ struct CoordHash {
 /// large by itself belongs to no cavity, nor does what it touches.
 class CavityFinder {
  public:
-  CavityFinder(const LeafIndex& object, const std::optional<CoordBBox>& domain, bool open,
+  CavityFinder(const LeafIndex& object, const std::optional<Domain>& domain, bool open,
                int64_t fillHoles)
-      : object_(object), domain_(domain), fillHoles_(fillHoles) {
-    if (open) return;
-    inner_ = object.boundingBox();  // what leaves it reaches the outside
-    if (!domain_) return;
-    CoordBBox withoutFaces = *domain_;
-    withoutFaces.expand(-1);
-    inner_->intersect(withoutFaces);
-  }
+      : object_(object), domain_(domain), open_(open), fillHoles_(fillHoles) {}
 
   Cavities run(Interrupter* interrupter) {
     constexpr size_t kPoll = 1024;
@@ -69,17 +55,18 @@ class CavityFinder {
 
   /// The background of a leaf within the domain.
   Mask background(size_t leaf) const {
-    const Mask mask = without(detail::kFullMask, object_.mask(leaf));
-    return domain_ ? within(*domain_, object_.origin(leaf), mask) : mask;
+    return without(domainMask(object_.origin(leaf)), object_.mask(leaf));
   }
-  static Mask within(const CoordBBox& box, const Coord& origin, Mask mask) {
-    if (box.isInside(origin) && box.isInside(origin.offsetBy(7))) return mask;
-    const Mask inside = detail::inBox(origin, box);
-    for (size_t x = 0; x < 8; ++x) mask[x] &= inside[x];
-    return mask;
+  /// The voxels of the domain in a leaf, touched or not.
+  Mask domainMask(const Coord& origin) const {
+    return domain_ ? detail::insideMask(*domain_, origin) : detail::kFullMask;
   }
+  /// Does background reach the outside, if that is background, too?
   bool reachesFace(const Coord& origin, const Mask& mask) const {
-    return inner_ && detail::anyVoxel(without(mask, within(*inner_, origin, mask)));
+    if (open_) return false;
+    const Mask beyond = without(mask, detail::insideMask(object_.boundingBox(), origin));
+    if (detail::anyVoxel(beyond)) return true;
+    return domain_ && detail::anyVoxel(without(mask, detail::innerMask(*domain_, origin)));
   }
 
   void findPieces(Interrupter* interrupter) {
@@ -140,8 +127,7 @@ class CavityFinder {
         continue;
       }
       const Coord origin = beside(object_.origin(piece.leaf), side);
-      if (domain_) touched = within(*domain_, origin, touched);
-      if (detail::anyVoxel(touched)) unite(i, emptyLeaf(origin));
+      if (detail::anyVoxel(both(touched, domainMask(origin)))) unite(i, emptyLeaf(origin));
     }
   }
 
@@ -150,7 +136,7 @@ class CavityFinder {
     for (size_t side = 0; side < 6; ++side) {
       if (object_.neighbors(leaf)[side] != LeafIndex::kNone) continue;
       const Coord origin = beside(object_.origin(leaf), side);
-      const Mask mask = emptyMask(origin);
+      const Mask mask = domainMask(origin);
       const uint32_t voxels = detail::countVoxels(mask);
       if (voxels > 0 && voxels < fillHoles_ && !reachesFace(origin, mask)) emptyLeaf(origin);
     }
@@ -158,8 +144,7 @@ class CavityFinder {
 
   /// Joins a node with the small pieces of a leaf that hold some of the voxels.
   void joinTouched(uint32_t node, uint32_t leaf, const Mask& voxels) {
-    Mask rest = background(leaf);
-    for (size_t x = 0; x < 8; ++x) rest[x] &= voxels[x];
+    Mask rest = both(background(leaf), voxels);
     for (uint32_t i = firstPiece_[leaf]; i < firstPiece_[leaf + 1] && detail::anyVoxel(rest); ++i) {
       if (!detail::meet(pieces_[i].mask, rest)) continue;
       unite(node, i);
@@ -177,11 +162,10 @@ class CavityFinder {
     while (!front.empty() && !isOutside(node)) {
       const Coord origin = front.back();
       front.pop_back();
-      const Mask here = emptyMask(origin);
+      const Mask here = domainMask(origin);
       for (size_t side = 0; side < 6 && !isOutside(node); ++side) {
         const Coord next = beside(origin, side);
-        Mask touched = detail::across(here, side);
-        if (domain_) touched = within(*domain_, next, touched);
+        const Mask touched = both(detail::across(here, side), domainMask(next));
         if (!detail::anyVoxel(touched)) continue;
         if (const auto leaf = object_.findLeaf(next)) {
           joinTouched(node, *leaf, touched);
@@ -195,11 +179,8 @@ class CavityFinder {
     }
     return node;
   }
-  Mask emptyMask(const Coord& origin) const {
-    return domain_ ? within(*domain_, origin, detail::kFullMask) : detail::kFullMask;
-  }
   uint32_t addEmptyLeaf(const Coord& origin) {
-    const Mask mask = emptyMask(origin);
+    const Mask mask = domainMask(origin);
     const uint32_t node = addNode(int64_t(detail::countVoxels(mask)));
     if (size_[node] >= fillHoles_ || reachesFace(origin, mask)) markOutside(node);
     empty_.emplace(origin, node);
@@ -224,15 +205,15 @@ class CavityFinder {
       for (size_t x = 0; x < 8; ++x) found.leaves.back().mask[x] |= pieces_[i].mask[x];
     }
     for (const auto& [origin, node] : empty_)
-      if (!isOutside(node)) found.leaves.push_back({origin, emptyMask(origin)});
+      if (!isOutside(node)) found.leaves.push_back({origin, domainMask(origin)});
     std::sort(found.leaves.begin(), found.leaves.end(),
               [](const auto& a, const auto& b) { return a.origin < b.origin; });
     return found;
   }
 
   const LeafIndex& object_;
-  std::optional<CoordBBox> domain_;
-  std::optional<CoordBBox> inner_;  // where all of a cavity lies
+  std::optional<Domain> domain_;
+  bool open_;
   int64_t fillHoles_;
   std::vector<Piece> pieces_;         // ascending by leaf; the first nodes
   std::vector<uint32_t> firstPiece_;  // per leaf; one more at the end
@@ -242,27 +223,35 @@ class CavityFinder {
   std::vector<bool> outside_;  // no cavity, at the root
 };
 
-/// Beyond 64 bits in domains far larger than any object.
-__int128 volumeOf(const CoordBBox& box) {
-  __int128 volume = 1;
-  for (int axis = 0; axis < 3; ++axis) volume *= int64_t(box.max()[axis]) - box.min()[axis] + 1;
-  return volume;
+/// The object, and without a voxel of it the leaves of a region of which only a part is inside: other
+/// untouched ones are in one piece.
+LeafIndex withPartialLeaves(const LeafIndex& object, const MaskTree& region) {
+  std::vector<LeafIndex::LeafVoxels> leaves;
+  for (auto leaf = region.cbeginLeaf(); leaf; ++leaf) leaves.push_back({leaf->origin(), Mask{}});
+  std::sort(leaves.begin(), leaves.end(),
+            [](const auto& a, const auto& b) { return a.origin < b.origin; });
+  return {object, leaves};
 }
 
 }  // namespace
 
-int64_t defaultFillHoles(const std::optional<CoordBBox>& domain) {
+int64_t defaultFillHoles(const std::optional<Domain>& domain) {
   for (int axis = 0; domain && axis < 3; ++axis)
-    if (domain->min()[axis] == domain->max()[axis]) return 0;
+    if (domain->box().min()[axis] == domain->box().max()[axis]) return 0;
   return kFillHoles;
 }
 
-Cavities findCavities(const LeafIndex& object, const std::optional<CoordBBox>& domain, bool open,
+Cavities findCavities(const LeafIndex& object, const std::optional<Domain>& domain, bool open,
                       int64_t fillHoles, Interrupter* interrupter) {
   if (fillHoles <= 1 || object.voxelCount() == 0) return {};
-  const __int128 background = open && domain ? volumeOf(*domain) - object.voxelCount() : 0;
+  const __int128 background = open && domain ? domain->voxelCount() - object.voxelCount() : 0;
   if (open && background < fillHoles) return {};  // all of it would be filled
-  Cavities found = CavityFinder(object, domain, open, fillHoles).run(interrupter);
+  Cavities found;
+  if (domain && !domain->isBox())
+    found = CavityFinder(withPartialLeaves(object, *domain->region()), domain, open, fillHoles)
+                .run(interrupter);
+  else
+    found = CavityFinder(object, domain, open, fillHoles).run(interrupter);
   if (open && background == found.voxels) return {};
   return found;
 }

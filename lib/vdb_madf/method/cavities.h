@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "vdb_madf/grids/domain.h"
 #include "vdb_madf/leaves/leaf_index.h"
 
 namespace vdb_madf {
@@ -26,7 +27,7 @@ constexpr int64_t kFillHoles = 27;
 
 /// What is filled if nothing is said: kFillHoles, but 0 in a domain one voxel thick, where a
 /// background pixel is surrounded by four neighbors only.
-int64_t defaultFillHoles(const std::optional<CoordBBox>& domain);
+int64_t defaultFillHoles(const std::optional<Domain>& domain);
 
 /// The 6-connected components of the background, within the domain, of fewer than \p fillHoles
 /// voxels. If `closed`, components that reach a face of the domain are none. Without a domain the
@@ -34,7 +35,7 @@ int64_t defaultFillHoles(const std::optional<CoordBBox>& domain);
 /// are no cavities. Object empty or fillHoles at most 1: none. Memory is per touched leaf node, and per
 /// untouched one in a component of fewer than fillHoles voxels.
 /// @throw InvalidInput if these are more than kMaxLeaves; Interrupted
-Cavities findCavities(const LeafIndex& object, const std::optional<CoordBBox>& domain, bool open,
+Cavities findCavities(const LeafIndex& object, const std::optional<Domain>& domain, bool open,
                       int64_t fillHoles, Interrupter* interrupter = nullptr);
 
 /// The voxels of the cavities in the index of the body, ascending.

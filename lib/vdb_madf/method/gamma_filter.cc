@@ -19,6 +19,7 @@ namespace vdb_madf {
 namespace {
 
 constexpr VoxelId kNoSite = ~VoxelId(0);
+constexpr uint32_t kNoBall = ~uint32_t(0);
 
 /// Completes the voxels that no kept ball covers.
 class GeodesicCompletion {
@@ -128,8 +129,8 @@ class GeodesicCompletion {
 
 }  // namespace
 
-VoxelSet keptBalls(const LeafIndex& index, const VoxelSet& balls, const MedialBallTable& table,
-                   int64_t gamma, Interrupter* interrupter) {
+VoxelSet keptBalls(const LeafIndex& index, const PowerMap& map, const VoxelSet& balls,
+                   const MedialBallTable& table, int64_t gamma, Interrupter* interrupter) {
   if (gamma <= 1) return balls;
   VoxelSet kept(index.leafCount());
   const detail::ConnectedComponents components(index, interrupter);
@@ -140,18 +141,32 @@ VoxelSet keptBalls(const LeafIndex& index, const VoxelSet& balls, const MedialBa
     kept.insert(members[i]);
     hasKept[components.componentOf(members[i])] = 1;
   }
-  std::vector<uint32_t> best(components.count(), ~0u);
-  for (uint32_t i = 0; i < members.size(); ++i) {
-    const uint32_t component = components.componentOf(members[i]);
-    if (hasKept[component]) continue;
+  std::vector<uint32_t> best(components.count(), kNoBall);
+  const auto offer = [&](uint32_t component, uint32_t i) {
     uint32_t& b = best[component];
-    if (b == ~0u || table.squaredRadius[i] > table.squaredRadius[b] ||
+    if (b == kNoBall || table.squaredRadius[i] > table.squaredRadius[b] ||
         (table.squaredRadius[i] == table.squaredRadius[b] &&
          index.coord(members[i]) < index.coord(members[b])))
       b = i;
+  };
+  for (uint32_t i = 0; i < members.size(); ++i) {
+    const uint32_t component = components.componentOf(members[i]);
+    if (!hasKept[component]) offer(component, i);
+  }
+  if (map.passage) {  // balls may reach across what is unknown
+    std::vector<char> hasNone(components.count(), 0);
+    for (uint32_t c = 0; c < components.count(); ++c)
+      hasNone[c] = !hasKept[c] && best[c] == kNoBall;
+    for (uint32_t leaf = 0; leaf < index.leafCount(); ++leaf)
+      for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece)
+        for (uint32_t x = 0; x < 8 && hasNone[piece->component]; ++x)
+          detail::forEachBit(piece->mask[x], [&](int bit) {
+            const size_t rank = index.rank(leaf * 512 + x * 64 + uint32_t(bit));
+            offer(piece->component, balls.rank(map.site[rank]));
+          });
   }
   for (const uint32_t b : best)
-    if (b != ~0u) kept.insert(members[b]);
+    if (b != kNoBall) kept.insert(members[b]);
   kept.rankMembers();
   return kept;
 }

@@ -46,7 +46,7 @@ Mask erode(const Mask& mask) {
 class FlawFinder {
  public:
   FlawFinder(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
-             const detail::ConnectedComponents& components, const std::optional<CoordBBox>& domain)
+             const detail::ConnectedComponents& components, const std::optional<Domain>& domain)
       : index_(index), labels_(labels), components_(components), domain_(domain) {}
 
   /// Has a piece a voxel that is two layers deep?
@@ -93,7 +93,7 @@ class FlawFinder {
   const LeafIndex& index_;
   const VoxelArray<uint32_t>& labels_;
   const detail::ConnectedComponents& components_;
-  std::optional<CoordBBox> domain_;
+  std::optional<Domain> domain_;
 };
 
 /// f(leaf, piece) for all pieces, in parallel.
@@ -125,8 +125,8 @@ std::vector<uint32_t> countPieces(const LeafIndex& index,
 }  // namespace
 
 LabelFlaws labelFlaws(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
-                      const std::vector<int64_t>& grainVoxels,
-                      const std::optional<CoordBBox>& domain, Interrupter* interrupter) {
+                      const std::vector<int64_t>& grainVoxels, const std::optional<Domain>& domain,
+                      Interrupter* interrupter) {
   constexpr int64_t kCrumbVoxels = 100, kSliverVoxels = 20;
   const detail::ConnectedComponents components(index, labels, interrupter);
   const FlawFinder finder(index, labels, components, domain);

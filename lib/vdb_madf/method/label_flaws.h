@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "vdb_madf/grids/domain.h"
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/leaves/voxel_array.h"
 
@@ -24,7 +25,7 @@ struct LabelFlaws {
 /// \p labels: 1 .. grains by voxel, 0: not of the object. \p grainVoxels: of grain g at g - 1.
 /// @throw Interrupted
 LabelFlaws labelFlaws(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
-                      const std::vector<int64_t>& grainVoxels,
-                      const std::optional<CoordBBox>& domain, Interrupter* interrupter = nullptr);
+                      const std::vector<int64_t>& grainVoxels, const std::optional<Domain>& domain,
+                      Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

@@ -27,8 +27,8 @@ struct SweepOptions {
   std::optional<int64_t> fillHoles;  ///< as SegmentOptions
   int tidy = kTidy;                  ///< rounds, as SegmentOptions
   Boundary boundary = Boundary::automatic;
-  std::optional<CoordBBox> domain;  ///< overrides the domain in the mask's metadata
-  int64_t maxMemory = 0;            ///< bytes that a segmentation may need; 0: no limit
+  std::optional<Domain> domain;  ///< overrides the domain in the mask's metadata
+  int64_t maxMemory = 0;         ///< bytes that a segmentation may need; 0: no limit
 };
 
 /// The grains of one choice of parameters.

@@ -10,6 +10,7 @@
 #include "vdb_madf/leaves/detail/leaf_values.h"
 #include "vdb_madf/leaves/detail/pencil.h"
 #include "vdb_madf/method/detail/metric.h"
+#include "vdb_madf/method/detail/passage.h"
 #include "vdb_madf/method/detail/power_passes.h"
 #include "vdb_madf/method/kernels/lower_envelope.h"
 
@@ -114,20 +115,33 @@ bool fits64Bits(const LeafIndex& index, int32_t largestSquaredRadius) {
   return 2 * height * (double(largestSquaredRadius) + 2) * length < 9e18;
 }
 
-}  // namespace
-
-void detail::sweepPower(const LeafIndex& index, int32_t maxSquaredRadius, PowerMap& map,
-                        Interrupter* interrupter) {
+void sweepWithin(const LeafIndex& index, int32_t maxSquaredRadius, PowerMap& map,
+                 Interrupter* interrupter) {
   if (fits64Bits(index, maxSquaredRadius))
     sweepAll<int64_t>(index, int64_t(maxSquaredRadius) + 1, map, interrupter);
   else
     sweepAll<__int128>(index, __int128(maxSquaredRadius) + 1, map, interrupter);
 }
 
+}  // namespace
+
+void detail::sweepPower(const LeafIndex& index, int32_t maxSquaredRadius, PowerMap& map,
+                        Interrupter* interrupter) {
+  if (!map.passage) return sweepWithin(index, maxSquaredRadius, map, interrupter);
+  const Passage& passage = *map.passage;
+  PowerMap passed;
+  passed.power = passage.spread(index, map.power, kUncovered);
+  passed.site = VoxelArray<VoxelId>(passed.power.size());
+  sweepWithin(passage.index(), maxSquaredRadius, passed, interrupter);
+  passage.collect(index, passed.power, map.power);
+  passage.collectIds(index, passed.site, map.site);
+}
+
 PowerMap powerMap(const LeafIndex& index, SquaredDistance distance, Interrupter* interrupter) {
   PowerMap map;
   map.power = std::move(distance.values);
   map.site = VoxelArray<VoxelId>(size_t(index.voxelCount()));
+  map.passage = std::move(distance.passage);
   detail::parallelFor(map.power.size(), size_t(1) << 16, interrupter,
                       [&](size_t begin, size_t end) {
                         for (size_t i = begin; i < end; ++i) map.power[i] = -map.power[i];

@@ -14,8 +14,9 @@ namespace vdb_madf {
 /// among the balls (x, D(x)) of the sites x. At equal power the larger D wins, then the
 /// lexicographically smaller x.
 struct PowerMap {
-  VoxelArray<int32_t> power;  ///< pi(p), voxels squared
-  VoxelArray<VoxelId> site;   ///< Pi(p); only meaningful where power < 0
+  VoxelArray<int32_t> power;                         ///< pi(p), voxels squared
+  VoxelArray<VoxelId> site;                          ///< Pi(p); only meaningful where power < 0
+  std::shared_ptr<const detail::Passage> passage{};  ///< that of the distances
 };
 
 /// In a filtered map: an object voxel that no ball covers (least power >= 0), still without a site.

@@ -159,7 +159,7 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
 
   if (filter) {
     stages.begin("gamma_filter");
-    VoxelSet kept = keptBalls(index, balls, table, options.gamma, &stages);
+    VoxelSet kept = keptBalls(index, map, balls, table, options.gamma, &stages);
     counts.keptBalls = kept.size();
     map = filteredPowerMap(index, std::move(map), balls, table, kept, &stages);
     balls = std::move(kept);

@@ -23,7 +23,7 @@ struct SegmentOptions {
   /// Smallest cell of a medial ball that is kept, in voxels; 0 and 1: no filter.
   int64_t gamma = 0;
   Boundary boundary = Boundary::automatic;  ///< see boundary.h
-  std::optional<CoordBBox> domain;          ///< overrides the domain in the mask's metadata
+  std::optional<Domain> domain;             ///< overrides the domain in the mask's metadata
   MergeOptions merge;                       ///< theta, mode, adjacency, delta
   /// Cavities of fewer voxels are filled while the method runs (cavities.h); 0: none; absent:
   /// defaultFillHoles().
@@ -77,7 +77,7 @@ struct Segmentation {
   LabelFlaws flaws;       ///< of the final labels
   int64_t fillHoles = 0;  ///< the number that was used
   int tidy = 0;           ///< rounds
-  std::optional<CoordBBox> domain;
+  std::optional<Domain> domain;
   bool open = false;             ///< the boundary that was used
   std::vector<StageTime> times;  ///< disjoint, in the order of work
 };

@@ -5,11 +5,15 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <limits>
 
 #include "vdb_madf/base/detail/simd.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/leaf_values.h"
 #include "vdb_madf/leaves/detail/pencil.h"
+#include "vdb_madf/method/detail/passage.h"
 #include "vdb_madf/method/kernels/distance_rows.h"
 
 namespace vdb_madf {
@@ -29,12 +33,40 @@ struct Scratch {
   }
 };
 
-detail::RowDomain rowDomain(const Obstacles& obstacles, int axis, int origin, int length) {
-  if (!obstacles.open) return {0, length, 0, 0};
-  const int64_t lower = int64_t(obstacles.domain.min()[axis]) - origin;
-  const int64_t upper = int64_t(obstacles.domain.max()[axis]) - origin;
-  return {int(std::max<int64_t>(lower, 0)), int(std::min<int64_t>(upper + 1, length)),
-          lower < 0 ? 0 : detail::kInfinite, upper >= length ? 0 : detail::kInfinite};
+using RowEnds = std::array<uint32_t, 64>;
+
+/// What lies beyond the ends of the 64 rows of a pencil: 0 where that is background, kInfinite where
+/// it is outside the region. `origin` is that of the leaf there, `last` says which of its slabs.
+template <int Axis>
+RowEnds beyondRegion(const Domain& region, const Coord& origin, bool last) {
+  const LeafIndex::Mask inside = detail::insideMask(region, origin);
+  RowEnds ends;
+  for (int row = 0; row < 64; ++row) {
+    const int offset = detail::rowOffset<Axis>(row) + (last ? 7 * detail::rowStride<Axis>() : 0);
+    ends[size_t(row)] = detail::holds(inside, uint32_t(offset)) ? 0 : detail::kInfinite;
+  }
+  return ends;
+}
+
+/// Of the pencil of `length` voxels whose first leaf is at `origin`.
+template <int Axis>
+detail::RowDomain rowDomain(const Obstacles& obstacles, const Coord& origin, int length) {
+  if (!obstacles.open) return {0, length, {}, {}};
+  if (!obstacles.domain.isBox()) {
+    Coord before = origin, after = origin;
+    before[Axis] -= 8;
+    after[Axis] += length;
+    return {0, length, beyondRegion<Axis>(obstacles.domain, before, true),
+            beyondRegion<Axis>(obstacles.domain, after, false)};
+  }
+  const CoordBBox& box = obstacles.domain.box();
+  const int64_t lower = int64_t(box.min()[Axis]) - origin[Axis];
+  const int64_t upper = int64_t(box.max()[Axis]) - origin[Axis];
+  detail::RowDomain d{
+      int(std::max<int64_t>(lower, 0)), int(std::min<int64_t>(upper + 1, length)), {}, {}};
+  if (lower >= 0) d.before.fill(detail::kInfinite);
+  if (upper < length) d.after.fill(detail::kInfinite);
+  return d;
 }
 
 template <int Axis>
@@ -60,8 +92,8 @@ VDB_MADF_SIMD void scatter(const LeafIndex& index, const Scratch& s, VoxelArray<
 /// One sweep along an axis over all pencils. The array holds int32 values; infinite ones have the
 /// sign bit set between passes.
 template <int Axis>
-void sweep(const LeafIndex& index, const Obstacles& obstacles, VoxelArray<int32_t>& values,
-           Interrupter* interrupter) {
+void sweep(const LeafIndex& index, const Obstacles& obstacles, int reach,
+           VoxelArray<int32_t>& values, Interrupter* interrupter) {
   const std::vector<uint32_t> starts = detail::pencilStarts(index, Axis);
   detail::PerThread<Scratch> scratches;
   detail::parallelFor(
@@ -71,8 +103,7 @@ void sweep(const LeafIndex& index, const Obstacles& obstacles, VoxelArray<int32_
           detail::collectPencil(index, Axis, starts[p], s.leaves);
           const int length = int(s.leaves.size()) * 8;
           s.resize(length);
-          const detail::RowDomain d =
-              rowDomain(obstacles, Axis, index.origin(starts[p])[Axis], length);
+          const detail::RowDomain d = rowDomain<Axis>(obstacles, index.origin(starts[p]), length);
           if (Axis == 0) {
             static_assert(sizeof(LeafIndex::Mask) == 64);
             s.masks.clear();
@@ -82,46 +113,78 @@ void sweep(const LeafIndex& index, const Obstacles& obstacles, VoxelArray<int32_
           } else {
             gather<Axis>(index, values, s);
             // Outside the domain nothing is known: not background.
-            std::fill_n(s.in.data(), 64, d.before);
+            std::copy(d.before.begin(), d.before.end(), s.in.data());
             std::fill_n(s.in.data() + 64, size_t(d.begin) * 64, detail::kInfinite);
             std::fill(s.in.data() + (d.end + 1) * 64, s.in.data() + (length + 1) * 64,
                       detail::kInfinite);
-            std::fill_n(s.in.data() + (length + 1) * 64, 64, d.after);
-            detail::widenWindows(s.in.data() + 64, length, s.out.data() + 64);
+            std::copy(d.after.begin(), d.after.end(), s.in.data() + (length + 1) * 64);
+            detail::widenWindows(s.in.data() + 64, length, reach, s.out.data() + 64);
           }
           scatter<Axis>(index, s, values);
         }
       });
 }
 
-int32_t largestValue(const VoxelArray<int32_t>& values) {
-  std::atomic<int32_t> largest{0};
+VoxelArray<int32_t> sweepAll(const LeafIndex& index, const Obstacles& obstacles, int reach,
+                             Interrupter* interrupter) {
+  VoxelArray<int32_t> values(size_t(index.voxelCount()));
+  detail::WorkPart first(interrupter, 0, 20), second(interrupter, 20, 60),
+      third(interrupter, 60, 100);
+  sweep<0>(index, obstacles, reach, values, &first);
+  sweep<1>(index, obstacles, reach, values, &second);
+  sweep<2>(index, obstacles, reach, values, &third);
+  return values;
+}
+
+/// Infinite values are the largest.
+uint32_t largestValue(const VoxelArray<int32_t>& values) {
+  std::atomic<uint32_t> largest{0};
   detail::parallelFor(values.size(), size_t(1) << 16, nullptr, [&](size_t begin, size_t end) {
-    const int32_t local = *std::max_element(values.data() + begin, values.data() + end);
-    int32_t seen = largest.load();
+    const auto* const unsignedValues = reinterpret_cast<const uint32_t*>(values.data());
+    const uint32_t local = *std::max_element(unsignedValues + begin, unsignedValues + end);
+    uint32_t seen = largest.load();
     while (seen < local && !largest.compare_exchange_weak(seen, local)) {
     }
   });
   return largest;
 }
 
+/// Most balls are smaller than the first reach. If there is a larger one, the value found for it is
+/// the distance of some background voxel, so it tells how far to reach to find all that are nearer.
+SquaredDistance distanceInRegion(const LeafIndex& index, const Obstacles& obstacles,
+                                 Interrupter* interrupter) {
+  constexpr int kFirstReach = 32;
+  SquaredDistance result;
+  result.values = VoxelArray<int32_t>(size_t(index.voxelCount()));
+  for (int reach = kFirstReach;;) {
+    const auto passage = std::make_shared<detail::Passage>(index, obstacles.domain, reach);
+    const uint32_t exact = passage->exactUpTo();
+    const int window = exact == detail::kInfinite ? std::numeric_limits<int>::max()
+                                                  : int(std::lround(std::sqrt(double(exact))));
+    passage->collect(index, sweepAll(passage->index(), obstacles, window, interrupter),
+                     result.values);
+    const uint32_t largest = largestValue(result.values);
+    result.largest = int32_t(largest);
+    result.passage = passage;
+    if (largest <= exact) return result;
+    reach = largest == detail::kInfinite ? 2 * reach : int(std::ceil(std::sqrt(double(largest))));
+  }
+}
+
 }  // namespace
 
 SquaredDistance squaredDistance(const LeafIndex& index, const Obstacles& obstacles,
                                 Interrupter* interrupter) {
-  if (obstacles.open && index.voxelCount() > 0 && index.boundingBox() == obstacles.domain &&
-      uint64_t(index.voxelCount()) == obstacles.domain.volume())
+  if (obstacles.open && index.voxelCount() > 0 &&
+      index.voxelCount() == obstacles.domain.voxelCount())
     throw InvalidInput(
         "the object fills the whole domain, so there is no background to measure distances from; "
         "choose by value what is object, with a threshold or a phase");
+  if (obstacles.open && !obstacles.domain.isBox() && index.voxelCount() > 0)
+    return distanceInRegion(index, obstacles, interrupter);
   SquaredDistance result;
-  result.values = VoxelArray<int32_t>(size_t(index.voxelCount()));
-  detail::WorkPart first(interrupter, 0, 20), second(interrupter, 20, 60),
-      third(interrupter, 60, 100);
-  sweep<0>(index, obstacles, result.values, &first);
-  sweep<1>(index, obstacles, result.values, &second);
-  sweep<2>(index, obstacles, result.values, &third);
-  result.largest = largestValue(result.values);
+  result.values = sweepAll(index, obstacles, std::numeric_limits<int>::max(), interrupter);
+  result.largest = int32_t(largestValue(result.values));
   return result;
 }
 

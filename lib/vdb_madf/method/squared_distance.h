@@ -3,20 +3,30 @@
 
 #pragma once
 
+#include <memory>
+
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/leaves/voxel_array.h"
 #include "vdb_madf/method/boundary.h"
 
 namespace vdb_madf {
 
+namespace detail {
+class Passage;
+}
+
 struct SquaredDistance {
   VoxelArray<int32_t> values;  ///< D >= 1, voxels squared
   int32_t largest = 0;         ///< 0 if X is empty
+  /// What the sweeps of the power map have to pass; null where the object is all of it, as it is
+  /// unless an open domain is a region.
+  std::shared_ptr<const detail::Passage> passage{};
 };
 
 /// Exact squared Euclidean distance D(p) = min |p - q|^2 over background voxels q, for p in X.
 /// Separable passes (Meijster et al. 2000) along x, y, z, each within the runs of X in its rows: a
-/// background voxel ends whatever lies beyond it, so the sweeps never leave X.
+/// background voxel ends whatever lies beyond it, so the sweeps never leave X. In an open region
+/// they also pass the unknown voxels around X (detail/passage.h).
 /// @throw InvalidInput if there is no background (X fills an open domain); Interrupted.
 SquaredDistance squaredDistance(const LeafIndex& index, const Obstacles& obstacles,
                                 Interrupter* interrupter = nullptr);

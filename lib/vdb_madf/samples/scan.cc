@@ -119,7 +119,7 @@ void checkScan(const ScanOptions& options) {
 
 Sample scanned(const Sample& sample, const ScanOptions& options, Interrupter* interrupter) {
   checkScan(options);
-  const Coord size = storedDomain(*sample.object)->dim();
+  const Coord size = storedDomain(*sample.object)->box().dim();
   auto source = detail::SourceText::of(*sample.object);
   Sample result = sample;
   if (options.surface > 0) {

@@ -105,7 +105,8 @@ void placeReduced(openvdb::GridBase& grid, const Int32Grid& labels, int factor,
   transform->preScale(factor);
   grid.setTransform(transform);
   if (const auto box = storedDomain(labels))
-    setDomain(grid, CoordBBox(floorDiv(box->min(), factor), floorDiv(box->max(), factor)));
+    setDomain(grid,
+              CoordBBox(floorDiv(box->box().min(), factor), floorDiv(box->box().max(), factor)));
   if (const auto size = storedVoxelSize(labels))  // the unit stays that of the transform
     grid.insertMeta(kVoxelSizeKey, openvdb::DoubleMetadata(size->metres * factor));
 }

@@ -72,4 +72,28 @@ LeafIndex::Mask inBox(const Coord& origin, const CoordBBox& box) {
   return result;
 }
 
+LeafIndex::Mask insideMask(const Domain& domain, const Coord& origin) {
+  if (domain.isBox()) {
+    const CoordBBox& box = domain.box();
+    return box.isInside(origin) && box.isInside(origin.offsetBy(7)) ? kFullMask
+                                                                    : inBox(origin, box);
+  }
+  const MaskTree& tree = *domain.region();
+  const MaskTree::LeafNodeType* const leaf = tree.probeConstLeaf(origin);
+  if (!leaf) return tree.isValueOn(origin) ? kFullMask : LeafIndex::Mask{};
+  LeafIndex::Mask mask;
+  for (openvdb::Index x = 0; x < 8; ++x) mask[x] = leaf->getValueMask().getWord<uint64_t>(x);
+  return mask;
+}
+
+LeafIndex::Mask innerMask(const Domain& domain, const Coord& origin) {
+  const LeafIndex::Mask inside = insideMask(domain, origin);
+  LeafIndex::Mask inner = without(inside, dilate(without(kFullMask, inside)));
+  for (size_t side = 0; side < 6; ++side) {
+    const LeafIndex::Mask next = insideMask(domain, beside(origin, side));
+    inner = without(inner, across(without(kFullMask, next), opposite(side)));
+  }
+  return inner;
+}
+
 }  // namespace vdb_madf::detail

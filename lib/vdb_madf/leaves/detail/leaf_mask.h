@@ -4,6 +4,7 @@
 #pragma once
 
 #include "vdb_madf/base/detail/bits.h"
+#include "vdb_madf/grids/domain.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 #include "vdb_madf/leaves/leaf_index.h"
 
@@ -65,6 +66,27 @@ LeafIndex::Mask dilate(const LeafIndex::Mask& mask);
 
 /// The voxels of the leaf at `origin` that lie in a box.
 LeafIndex::Mask inBox(const Coord& origin, const CoordBBox& box);
+
+/// The voxels of the leaf at `origin` that lie in a domain.
+LeafIndex::Mask insideMask(const Domain& domain, const Coord& origin);
+
+/// Those of them whose six neighbors lie in it, too.
+LeafIndex::Mask innerMask(const Domain& domain, const Coord& origin);
+
+/// The origin of the leaf on a side.
+inline Coord beside(Coord origin, size_t side) {
+  origin[side / 2] += side % 2 ? 8 : -8;
+  return origin;
+}
+
+inline LeafIndex::Mask without(LeafIndex::Mask mask, const LeafIndex::Mask& other) {
+  for (size_t x = 0; x < 8; ++x) mask[x] &= ~other[x];
+  return mask;
+}
+inline LeafIndex::Mask both(LeafIndex::Mask mask, const LeafIndex::Mask& other) {
+  for (size_t x = 0; x < 8; ++x) mask[x] &= other[x];
+  return mask;
+}
 
 /// f(piece) for the 6-connected components of a mask, in the order of their first voxels.
 template <typename F>

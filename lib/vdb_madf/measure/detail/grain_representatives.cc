@@ -49,7 +49,7 @@ GrainRepresentatives grainRepresentatives(const LabelLeaves& labels, const Obsta
   GrainRepresentatives result;
   const LeafIndex& index = labels.index();
   if (index.leafCount() == 0) return result;
-  if (obstacles.open && uint64_t(index.voxelCount()) == obstacles.domain.volume()) return result;
+  if (obstacles.open && index.voxelCount() == obstacles.domain.voxelCount()) return result;
   const VoxelArray<int32_t> distances = squaredDistance(index, obstacles, interrupter).values;
   using Best = std::unordered_map<int32_t, GrainRepresentative>;
   PerThread<Best> bests;

@@ -34,9 +34,9 @@ VDB_MADF_SIMD void scanRows(const uint64_t* masks, int length, const RowDomain& 
       slab[row] = forward ? state[row] : std::min(slab[row], state[row]);
     }
   };
-  std::fill(state, state + 64, domain.before ? kFar : 0);
+  for (size_t row = 0; row < 64; ++row) state[row] = domain.before[row] ? kFar : 0;
   for (int t = 0; t < length; ++t) advance(t, out + t * 64, true);
-  std::fill(state, state + 64, domain.after ? kFar : 0);
+  for (size_t row = 0; row < 64; ++row) state[row] = domain.after[row] ? kFar : 0;
   for (int t = length - 1; t >= 0; --t) {
     uint32_t* slab = out + t * 64;
     advance(t, slab, false);
@@ -49,12 +49,12 @@ VDB_MADF_SIMD void scanRows(const uint64_t* masks, int length, const RowDomain& 
 //   best = min over |s - t| <= k of in(s) + (s - t)^2.
 // What is further away than k - 1 adds at least k^2 to in >= 0, so nothing can gain once
 //   k^2 >= best
-// in all lanes. Beyond an end of the row the padding there is looked at again, from further away
+// in all lanes, nor anything of reach^2 or less after k = reach. Beyond an end of the row the padding there is looked at again, from further away
 // than before, which changes nothing: so the nearer end needs no loop of its own.
-VDB_MADF_SIMD void widenWindows(const uint32_t* in, int length, uint32_t* out) {
+VDB_MADF_SIMD void widenWindows(const uint32_t* in, int length, int reach, uint32_t* out) {
   for (int t = 0; t < length; ++t) {
     const int toBegin = t + 1, toEnd = length - t;  // distances of the padding
-    const int last = std::max(toBegin, toEnd);
+    const int last = std::min(reach, std::max(toBegin, toEnd));
     for (int lane = 0; lane < 64; lane += kLanes) {
       const uint32_t* center = in + t * 64 + lane;
       uint32_t best[kLanes];

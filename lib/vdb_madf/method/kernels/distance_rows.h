@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 // The passes of the squared distance along 64 rows at a time, on plain arrays. A slab holds the
@@ -14,10 +15,10 @@ namespace vdb_madf::detail {
 constexpr uint32_t kInfinite = 1u << 31;
 
 /// The positions of rows that lie in the domain (all, where the boundary is closed), and what the
-/// positions just before the first and just after the last count as.
+/// positions of each row just before the first and just after the last count as.
 struct RowDomain {
-  int begin, end;          ///< positions [begin, end) lie in the domain
-  uint32_t before, after;  ///< 0 (background) or kInfinite (unknown)
+  int begin, end;                            ///< positions [begin, end) lie in the domain
+  std::array<uint32_t, 64> before, after{};  ///< 0 (background) or kInfinite (unknown)
 };
 
 /// First pass: out(t) = the squared distance along the row to the nearest background voxel, or
@@ -26,8 +27,9 @@ struct RowDomain {
 /// `out` holds `length` slabs.
 void scanRows(const uint64_t* masks, int length, const RowDomain& domain, uint32_t* out);
 
-/// Other passes: out(t) = min over s of in(s) + (s - t)^2, at most kInfinite. `in` and `out` point
-/// to the slab of position 0; `in` has one more slab at either end, the positions -1 and `length`.
-void widenWindows(const uint32_t* in, int length, uint32_t* out);
+/// Other passes: out(t) = min over s of in(s) + (s - t)^2, at most kInfinite; where that is more
+/// than reach^2, anything more. `in` and `out` point to the slab of position 0; `in` has one more
+/// slab at either end, the positions -1 and `length`.
+void widenWindows(const uint32_t* in, int length, int reach, uint32_t* out);
 
 }  // namespace vdb_madf::detail

@@ -15,7 +15,7 @@
 namespace vdb_madf::detail {
 
 ObjectChange::ObjectChange(const Sample& sample)
-    : object_(sample.object->tree()), domain_(*storedDomain(*sample.object)) {}
+    : object_(sample.object->tree()), domain_(storedDomain(*sample.object)->box()) {}
 
 MaskTree::Ptr ObjectChange::apply(Interrupter* interrupter) const {
   MaskBlocks blocks(domain_.dim());

@@ -78,7 +78,7 @@ std::string SourceText::number(double value) {
 void describe(openvdb::GridBase& grid, const std::string& name, const Coord& size,
               const SourceText& source) {
   grid.setName(name);
-  setDomain(grid, {Coord(0), size.offsetBy(-1)});
+  setDomain(grid, CoordBBox(Coord(0), size.offsetBy(-1)));
   setVoxelSize(grid, std::nullopt);
   grid.insertMeta(kSourceKey, openvdb::StringMetadata(source.str()));
 }
