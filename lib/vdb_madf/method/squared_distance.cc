@@ -60,8 +60,8 @@ VDB_MADF_SIMD void scatter(const LeafIndex& index, const Scratch& s, VoxelArray<
 /// One sweep along an axis over all pencils. The array holds int32 values; infinite ones have the
 /// sign bit set between passes.
 template <int Axis>
-void sweep(const LeafIndex& index, const Obstacles& obstacles, VoxelArray<int32_t>& values,
-           Interrupter* interrupter) {
+void sweep(const LeafIndex& index, const Obstacles& obstacles, int32_t weight,
+           VoxelArray<int32_t>& values, Interrupter* interrupter) {
   const std::vector<uint32_t> starts = detail::pencilStarts(index, Axis);
   detail::PerThread<Scratch> scratches;
   detail::parallelFor(
@@ -78,7 +78,7 @@ void sweep(const LeafIndex& index, const Obstacles& obstacles, VoxelArray<int32_
             s.masks.clear();
             for (const uint32_t leaf : s.leaves)
               s.masks.insert(s.masks.end(), index.mask(leaf).begin(), index.mask(leaf).end());
-            detail::scanRows(s.masks.data(), length, d, s.out.data() + 64);
+            detail::scanRows(s.masks.data(), length, d, weight, s.out.data() + 64);
           } else {
             gather<Axis>(index, values, s);
             // Outside the domain nothing is known: not background.
@@ -87,7 +87,7 @@ void sweep(const LeafIndex& index, const Obstacles& obstacles, VoxelArray<int32_
             std::fill(s.in.data() + (d.end + 1) * 64, s.in.data() + (length + 1) * 64,
                       detail::kInfinite);
             std::fill_n(s.in.data() + (length + 1) * 64, 64, d.after);
-            detail::widenWindows(s.in.data() + 64, length, s.out.data() + 64);
+            detail::widenWindows(s.in.data() + 64, length, weight, s.out.data() + 64);
           }
           scatter<Axis>(index, s, values);
         }
@@ -108,19 +108,21 @@ int32_t largestValue(const VoxelArray<int32_t>& values) {
 }  // namespace
 
 SquaredDistance squaredDistance(const LeafIndex& index, const Obstacles& obstacles,
-                                Interrupter* interrupter) {
+                                const VoxelWeights& weights, Interrupter* interrupter) {
   if (obstacles.open && index.voxelCount() > 0 && index.boundingBox() == obstacles.domain &&
       uint64_t(index.voxelCount()) == obstacles.domain.volume())
     throw InvalidInput(
         "the object fills the whole domain, so there is no background to measure distances from; "
         "choose by value what is object, with a threshold or a phase");
+  checkWeights(weights, index.boundingBox().dim());
   SquaredDistance result;
+  result.weights = weights;
   result.values = VoxelArray<int32_t>(size_t(index.voxelCount()));
   detail::WorkPart first(interrupter, 0, 20), second(interrupter, 20, 60),
       third(interrupter, 60, 100);
-  sweep<0>(index, obstacles, result.values, &first);
-  sweep<1>(index, obstacles, result.values, &second);
-  sweep<2>(index, obstacles, result.values, &third);
+  sweep<0>(index, obstacles, weights.x, result.values, &first);
+  sweep<1>(index, obstacles, weights.y, result.values, &second);
+  sweep<2>(index, obstacles, weights.z, result.values, &third);
   result.largest = largestValue(result.values);
   return result;
 }

@@ -6,19 +6,25 @@
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/leaves/voxel_array.h"
 #include "vdb_madf/method/boundary.h"
+#include "vdb_madf/method/voxel_weights.h"
 
 namespace vdb_madf {
 
 struct SquaredDistance {
-  VoxelArray<int32_t> values;  ///< D >= 1, voxels squared
+  VoxelArray<int32_t> values;  ///< D >= 1
   int32_t largest = 0;         ///< 0 if X is empty
+  VoxelWeights weights{};      ///< whose squared distances these are
 };
 
 /// Exact squared Euclidean distance D(p) = min |p - q|^2 over background voxels q, for p in X.
 /// Separable passes (Meijster et al. 2000) along x, y, z, each within the runs of X in its rows: a
 /// background voxel ends whatever lies beyond it, so the sweeps never leave X.
-/// @throw InvalidInput if there is no background (X fills an open domain); Interrupted.
+/// With weights |p - q|^2 is that of voxel_weights.h, and the same holds: it is a sum over the axes
+/// that grows with every step away along one.
+/// @throw InvalidInput if there is no background (X fills an open domain), or as checkWeights();
+///   Interrupted.
 SquaredDistance squaredDistance(const LeafIndex& index, const Obstacles& obstacles,
+                                const VoxelWeights& weights = {},
                                 Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf
