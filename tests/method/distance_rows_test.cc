@@ -12,6 +12,9 @@ namespace {
 
 using namespace vdb_madf::detail;
 
+// Weights of an axis. The largest stays below 2^31 with the longest row's square.
+constexpr int kWeights[] = {1, 2, 144, 100000};
+
 size_t at(int t, int row) {
   return size_t(t) * 64 + size_t(row);
 }
@@ -22,6 +25,7 @@ TEST_CASE("distance_rows: the first pass by its definition", "[distance_rows]") 
   std::mt19937 random(1);
   for (const int length : {8, 24, 80}) {
     for (int i = 0; i < 40; ++i) {
+      const int weight = kWeights[i / 2 % 4];
       const int begin = i % 2 ? int(random() % 4) : 0, end = length - int(random() % 4);
       // Only where the domain reaches an end of the rows, it can go on behind it.
       RowDomain domain{begin, end, {}, {}};
@@ -34,7 +38,7 @@ TEST_CASE("distance_rows: the first pass by its definition", "[distance_rows]") 
         masks[size_t(t)] =
             t >= begin && t < end ? uint64_t(random()) << 32 | random() | ~0u >> i : 0;
       std::vector<uint32_t> out(masks.size() * 64);
-      scanRows(masks.data(), length, domain, out.data());
+      scanRows(masks.data(), length, domain, weight, out.data());
       // -1: before the rows, length: after them.
       const auto isBackground = [&](int t, int row) {
         if (t < 0) return domain.before[size_t(row)] == 0;
@@ -46,7 +50,8 @@ TEST_CASE("distance_rows: the first pass by its definition", "[distance_rows]") 
         for (int row = 0; row < 64; ++row) {
           uint32_t expected = kInfinite;
           for (int s = -1; s <= length; ++s)
-            if (isBackground(s, row)) expected = std::min(expected, uint32_t((s - t) * (s - t)));
+            if (isBackground(s, row))
+              expected = std::min(expected, uint32_t(weight * (s - t) * (s - t)));
           wrong += out[at(t, row)] != expected;
         }
       }
@@ -58,23 +63,26 @@ TEST_CASE("distance_rows: the first pass by its definition", "[distance_rows]") 
 TEST_CASE("distance_rows: the other passes by their definition", "[distance_rows]") {
   std::mt19937 random(2);
   for (const int length : {8, 16, 104}) {
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 80; ++i) {
+      const int weight = kWeights[i % 4];
       // Slab 0 is position -1. Few small values, so that windows grow wide; some rows have none.
       std::vector<uint32_t> in((size_t(length) + 2) * 64, kInfinite), out(size_t(length) * 64);
       for (uint32_t& value : in)
-        if (random() % unsigned(2 + 10 * i) == 0) value = random() % 500;
+        if (random() % unsigned(2 + 5 * i) == 0) value = random() % unsigned(500 * weight);
       const int reach = i % 3 ? int(random() % 30) : length + 1;
-      widenWindows(in.data() + 64, length, reach, out.data());
+      const auto known = uint32_t(weight * reach * reach);
+      widenWindows(in.data() + 64, length, weight, reach, out.data());
       int wrong = 0;
       for (int t = 0; t < length; ++t) {
         for (int row = 0; row < 64; ++row) {
           uint32_t expected = kInfinite;
           for (int s = -1; s <= length; ++s)
-            expected = std::min(expected, in[at(s + 1, row)] + uint32_t((s - t) * (s - t)));
-          if (expected <= uint32_t(reach * reach))
+            expected =
+                std::min(expected, in[at(s + 1, row)] + uint32_t(weight * (s - t) * (s - t)));
+          if (expected <= known)
             wrong += out[at(t, row)] != expected;
           else
-            wrong += out[at(t, row)] <= uint32_t(reach * reach);
+            wrong += out[at(t, row)] <= known;
         }
       }
       REQUIRE(wrong == 0);

@@ -30,6 +30,7 @@ Segmentation asSegmentation(const ObjectVolume& object, const OracleResult& resu
   s.graph = result.graph;
   s.counts = result.counts;
   s.open = result.open;
+  s.weights = result.graph.weights;
   s.tidy = tidy;
   return s;
 }

@@ -11,6 +11,7 @@
 namespace {
 
 using namespace vdb_madf::detail;
+using vdb_madf::VoxelWeights;
 
 size_t at(int t, int row) {
   return size_t(t) * kEnvelopeSlab + size_t(row);
@@ -37,10 +38,10 @@ EnvelopeRows<Key> randomRows(int length, int maxRadius2, uint32_t seed) {
 
 /// Voxels where the pass is not what its definition says.
 template <typename Key>
-int differences(int length, int maxRadius2, uint32_t seed) {
+int differences(int length, int maxRadius2, int weight, uint32_t seed) {
   const EnvelopeRows<Key> in = randomRows<Key>(length, maxRadius2, seed);
   EnvelopeRows<Key> out = in;
-  lowerEnvelopes<1>(length, Key(maxRadius2) + 1, out);
+  lowerEnvelopes<1>(length, Key(maxRadius2) + 1, VoxelWeights{weight, 3, 5}, out);
   const auto power = [&](int t, int row) { return in.power[at(t + 1, row)]; };
   int wrong = 0;
   for (int row = 0; row < 64; ++row) {
@@ -52,7 +53,7 @@ int differences(int length, int maxRadius2, uint32_t seed) {
       int best = kNotNegative, site = -1;
       for (int s = begin; s < end; ++s) {
         if (power(s, row) >= 0) continue;
-        const int value = power(s, row) + (s - t) * (s - t);
+        const int value = power(s, row) + weight * (s - t) * (s - t);
         if (value >= 0) continue;
         if (value < best ||
             (value == best && in.radius2[at(s + 1, row)] > in.radius2[at(site + 1, row)])) {
@@ -74,8 +75,25 @@ TEST_CASE("lower_envelope: by its definition, with keys of either width", "[lowe
     for (const int maxRadius2 : {1, 3, 40, 2000}) {
       for (uint32_t seed = 1; seed <= 10; ++seed) {
         CAPTURE(length, maxRadius2, seed);
-        REQUIRE(differences<int64_t>(length, maxRadius2, seed) == 0);
-        REQUIRE(differences<__int128>(length, maxRadius2, seed) == 0);
+        REQUIRE(differences<int64_t>(length, maxRadius2, 1, seed) == 0);
+        REQUIRE(differences<__int128>(length, maxRadius2, 1, seed) == 0);
+      }
+    }
+  }
+}
+
+TEST_CASE("lower_envelope: by its definition, with weights", "[lower_envelope]") {
+  for (const int length : {8, 136}) {
+    for (const int weight : {2, 9, 144, 100000}) {
+      for (const int reach : {1, 3, 40}) {
+        // Radii that reach so many voxels far; the remainder decides ties.
+        const int maxRadius2 = weight * reach * reach + weight % 7;
+        const bool fits = 2.0 * weight * length * length * (maxRadius2 + 2.0) * length < 9e18;
+        for (uint32_t seed = 1; seed <= 5; ++seed) {
+          CAPTURE(length, weight, reach, seed);
+          if (fits) REQUIRE(differences<int64_t>(length, maxRadius2, weight, seed) == 0);
+          REQUIRE(differences<__int128>(length, maxRadius2, weight, seed) == 0);
+        }
       }
     }
   }

@@ -220,6 +220,28 @@ TEST_CASE("merge: a neck that is narrower by less than delta merges", "[merge]")
   check(graph, angle, {1, 2}, {0, 1});
 }
 
+TEST_CASE("merge: angles and delta are those of the weights", "[merge]") {
+  // On the axis of weight 9, 1 voxel: 3 lengths of balls of radius 2: cos = (9 - 4 - 4) / 8.
+  ManifoldGraph graph = ballsOnAxis({{0, 4}, {1, 4}});
+  connect(graph, 0, 1, 1);
+  check(graph, options(-0.7, MergeMode::angle), {1, 1}, {0});
+  graph.weights = {9, 9, 9};
+  check(graph, options(0.125, MergeMode::angle), {1, 2}, {0, 1});
+  check(graph, options(0.13, MergeMode::angle), {1, 1}, {0});
+  // sqrt(400) - sqrt(324) = 2 is the shortest edge, the root of 4: 8 eighths.
+  graph = ballsOnAxis({{0, 400}, {20, 500}});
+  connect(graph, 0, 1, 324);
+  for (const VoxelWeights& weights :
+       {VoxelWeights{4, 9, 25}, VoxelWeights{9, 4, 25}, VoxelWeights{25, 9, 4}}) {
+    graph.weights = weights;
+    MergeOptions merging = options(-1, MergeMode::neck);
+    merging.delta = 8;
+    check(graph, merging, {1, 2}, {0, 1});
+    merging.delta = 9;
+    check(graph, merging, {1, 1}, {1});
+  }
+}
+
 TEST_CASE("merge: delta sees tops as they grow, and no neck without height", "[merge]") {
   // Node 1 (D = 16) joins node 0 (D = 100) at h = 16; then 16 is far below 100.
   ManifoldGraph graph = ballsOnAxis({{0, 100}, {20, 16}, {40, 100}});
@@ -244,13 +266,15 @@ TEST_CASE("merge: delta at the largest radii", "[merge]") {
     for (const int delta : {1, 2, 79, 80}) {
       MergeOptions merging = options(-1, MergeMode::neck);
       merging.delta = delta;
-      const bool within =
-          std::sqrt((long double)top) - std::sqrt((long double)height) < delta / 8.0L;
-      CAPTURE(height, delta);
-      if (within)
-        check(graph, merging, {1, 1}, {0});
-      else
-        check(graph, merging, {1, 2}, {0, 1});
+      for (const int edge : {1, 100, 30000}) {
+        graph.weights = {edge * edge, edge * edge + 1, edge * edge};
+        const long double narrower = std::sqrt((long double)top) - std::sqrt((long double)height);
+        CAPTURE(height, delta, edge);
+        if (narrower < edge * delta / 8.0L)
+          check(graph, merging, {1, 1}, {0});
+        else
+          check(graph, merging, {1, 2}, {0, 1});
+      }
     }
   }
 }
@@ -307,6 +331,7 @@ TEST_CASE("merge: agrees with the oracle on random graphs", "[merge]") {
         connect(graph, a, b, rng.between(-2, lower), rng.chance(0.7));
       }
     const double thetas[] = {-1, -0.95, -0.9, -0.8, -0.5, 0, 0.5, 1, 2 * rng.unit() - 1};
+    if (rng.chance(0.5)) graph.weights = {rng.between(1, 9), rng.between(1, 9), rng.between(1, 9)};
     MergeOptions merging = options(thetas[rng.below(9)], MergeMode(rng.below(3)),
                                    rng.chance(0.5) ? Adjacency::cell : Adjacency::manifold);
     merging.delta = rng.chance(0.5) ? 0 : rng.between(0, kMaxDelta);

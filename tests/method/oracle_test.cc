@@ -106,6 +106,24 @@ TEST_CASE("oracle: on a thin row every voxel is critical", "[oracle]") {
   CHECK(grains(object, -1, MergeMode::neck) == 1);  // 1 >= 1 * 1
 }
 
+TEST_CASE("oracle: weights measure along their axes", "[oracle]") {
+  // A row along z. Background is 3 away beside it and 2 at its ends: D = 4 or 9. At an end
+  // the next voxel's ball has 4 - 9. Neighbors: cos = (4 - 9 - 9) / 18 = -0.78.
+  const ObjectVolume object = fromPicture("#####");
+  SegmentOptions options = merging(-0.8, MergeMode::angle);
+  options.weights = VoxelWeights{9, 9, 4};
+  const OracleResult result = oracleSegment(object, {}, options);
+  CHECK(row(result.distance, 0, 0) == Values{4, 9, 9, 9, 4});
+  CHECK(row(result.filtered.power, 0, 0) == Values{-5, -9, -9, -9, -5});
+  CHECK(row(result.manifold, 0, 0) == Values{1, 1, 2, 3, 3});
+  CHECK(result.counts.grains == 3);
+  options.merge.theta = -0.7;
+  CHECK(oracleSegment(object, {}, options).counts.grains == 1);
+  // Across the row 1 is nearest.
+  options.weights = VoxelWeights{9, 1, 4};
+  CHECK(row(oracleSegment(object, {}, options).distance, 0, 0) == Values{1, 1, 1, 1, 1});
+}
+
 TEST_CASE("oracle: equal power goes to the larger ball", "[oracle]") {
   // A 3 x 3 x 3 block: D = 4 at the centre, 1 elsewhere. pi of the centre's ball is 1 - 4, 2 - 4,
   // 3 - 4 at face, edge and corner voxels; the corners' own balls have -1 too.
@@ -258,15 +276,22 @@ TEST_CASE("oracle: the restriction of the candidates loses nothing", "[oracle]")
     const Coord size(rng.between(1, 6), rng.between(1, 6), rng.between(1, 6));
     const ObjectVolume object = randomVolume(kind, boxAt(randomOrigin(rng), size), rng);
     const auto domain = randomDomain(object, rng);
-    INFO("seed " << seed << ", " << name(kind) << "\n" << picture(object));
+    SegmentOptions options = merging(-0.9, MergeMode::both);
+    VoxelWeights weights;
+    if (seed % 2)
+      options.weights = weights = {rng.between(1, 9), rng.between(1, 9), rng.between(1, 9)};
+    INFO("seed " << seed << ", " << name(kind) << ", " << weights.toString() << "\n"
+                 << picture(object));
     OracleResult result;
     try {
-      result = oracleSegment(object, domain, merging(-0.9, MergeMode::both));
+      result = oracleSegment(object, domain, options);
     } catch (const Undefined&) {
       continue;
     }
-    const auto squared = [](const Coord& d) {
-      return int64_t(d.x()) * d.x() + int64_t(d.y()) * d.y() + int64_t(d.z()) * d.z();
+    const auto squared = [&](const Coord& d) {
+      int64_t sum = 0;
+      for (int axis = 0; axis < 3; ++axis) sum += int64_t(weights[axis]) * d[axis] * d[axis];
+      return sum;
     };
     CoordBBox universe = object.box();
     universe.expand(1);

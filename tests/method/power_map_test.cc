@@ -46,13 +46,14 @@ TEST_CASE("power_map: agrees with the oracle, with keys of either width", "[powe
         randomCase(seed, Coord(rng.between(1, 20), rng.between(1, 20), rng.between(1, 20)));
     INFO(describe(c));
     const LeafIndex index(*toMask(c.object, c.tiles));
-    const auto distance = oracleDistance(c.object, false, {});
-    const OraclePower expected = oraclePower(c.object, distance, c.object);
+    const VoxelWeights weights = c.options.weights.value_or(VoxelWeights{});
+    const auto distance = oracleDistance(c.object, false, {}, weights);
+    const OraclePower expected = oraclePower(c.object, distance, c.object, weights);
     int32_t largest = 0;
     for (int i = 0; i < c.object.size(); ++i)
       if (c.object[i]) largest = std::max(largest, int32_t(distance[i]));
     for (const int32_t bound : {largest, kHugeBound}) {
-      const PowerMap map = powerMap(index, {byRank<int32_t>(index, distance), bound});
+      const PowerMap map = powerMap(index, {byRank<int32_t>(index, distance), bound, weights});
       REQUIRE(differences(index, map, c.object, expected) == 0);
     }
     voxels += countObject(c.object);
@@ -67,7 +68,8 @@ TEST_CASE("power_map: of some balls only, with keys of either width", "[power_ma
         randomCase(seed, Coord(rng.between(1, 20), rng.between(1, 20), rng.between(1, 20)));
     INFO(describe(c));
     const LeafIndex index(*toMask(c.object, c.tiles));
-    const auto distance = oracleDistance(c.object, false, {});
+    const VoxelWeights weights = c.options.weights.value_or(VoxelWeights{});
+    const auto distance = oracleDistance(c.object, false, {}, weights);
     ObjectVolume sites = c.object;
     const double kept = rng.chance(0.5) ? 0.05 : 0.5;
     DenseVolume<int64_t> start(c.object.box());
@@ -77,9 +79,10 @@ TEST_CASE("power_map: of some balls only, with keys of either width", "[power_ma
       start[i] = sites[i] ? -distance[i] : kUncovered;
       if (sites[i]) largest = std::max(largest, int32_t(distance[i]));
     }
-    const OraclePower expected = oraclePower(c.object, distance, sites);
+    const OraclePower expected = oraclePower(c.object, distance, sites, weights);
     for (const int32_t bound : {largest, kHugeBound}) {
-      PowerMap map{byRank<int32_t>(index, start), VoxelArray<VoxelId>(size_t(index.voxelCount()))};
+      PowerMap map{byRank<int32_t>(index, start), VoxelArray<VoxelId>(size_t(index.voxelCount())),
+                   weights};
       detail::sweepPower(index, bound, map);
       REQUIRE(differences(index, map, c.object, expected) == 0);
     }

@@ -85,8 +85,8 @@ void requireFresh(RandomCase c) {
       if (c.object[i])
         expected[i] = merged.grainOfNode[size_t(oracle.manifold[c.object.coord(i)] - 1)];
     const auto grain = remerge(*first.manifold, merging, tidy);
-    REQUIRE(difference("grain", *grain, c.object, oracleTidy(expected, representatives, tidy)) ==
-            "");
+    REQUIRE(difference("grain", *grain, c.object,
+                       oracleTidy(expected, representatives, tidy, oracle.graph.weights)) == "");
     c.options.merge = merging;
     c.options.tidy = tidy;
     const Segmentation fresh = segment(*maskOf(c), optionsOf(c));

@@ -160,6 +160,7 @@ std::string disagreement(const RandomCase& c) {
   add(difference(result.graph, expected->graph));
   if (result.open != expected->open) add("the other boundary");
   if (result.domain != domainOf(c)) add("another domain");
+  if (result.weights != c.options.weights.value_or(VoxelWeights{})) add("other weights");
   if (all.str().empty()) add(anyViolation(result, *mask, c.options.gamma));
   return all.str();
 }

@@ -165,6 +165,9 @@ TEST_CASE("segmentation_metadata: a segmentation describes itself on each of its
         REQUIRE(found.at(key) == value);
         seen.insert(key + value);
       }
+      const VoxelWeights weights = c.options.weights.value_or(VoxelWeights{});
+      REQUIRE(storedWeights(*grid) == weights);
+      REQUIRE(bool((*grid)["madf_weights"]) == (weights != VoxelWeights{}));
       REQUIRE(grainCount(*grid).value() == expected.counts.grains);
       REQUIRE((storedBoundary(*grid) == Boundary::open) == expected.open);
     }

@@ -75,6 +75,33 @@ TEST_CASE("squared_distance: a long row keeps its 32 bits", "[squared_distance][
   }
 }
 
+TEST_CASE("squared_distance: weights are used up to 32 bits and refused beyond",
+          "[squared_distance]") {
+  // Open, with background at one end only, along each axis: D = w n^2 at the other end.
+  constexpr int kLength = 1000;
+  for (int axis = 0; axis < 3; ++axis) {
+    Coord dim(1);
+    dim[axis] = kLength;
+    const ObjectVolume object(boxAt(Coord(0), dim), 1);
+    CoordBBox domain = object.box();
+    --domain.min()[axis];
+    const LeafIndex index(*toMask(object));
+    // w (1000 + 14)^2 + 2 (1 + 14)^2 < 2^31, just so.
+    constexpr int kLargest = 2088;
+    const auto weights = [&](int w) {
+      return VoxelWeights{axis == 0 ? w : 1, axis == 1 ? w : 1, axis == 2 ? w : 1};
+    };
+    const SquaredDistance distance = squaredDistance(index, {true, domain}, weights(kLargest));
+    CHECK(distance.largest == kLargest * kLength * kLength);
+    CHECK(distance.weights == weights(kLargest));
+    const DenseVolume<int64_t> result = dense(index, distance.values, object.box());
+    for (int i = 0; i < kLength; ++i) REQUIRE(result[i] == int64_t(kLargest) * (i + 1) * (i + 1));
+    CHECK_THROWS_AS(squaredDistance(index, {true, domain}, weights(kLargest + 1)), InvalidInput);
+    CHECK_THROWS_AS(squaredDistance(index, {true, domain}, weights(0)), InvalidInput);
+    CHECK_THROWS_AS(squaredDistance(index, {true, domain}, weights(-1)), InvalidInput);
+  }
+}
+
 TEST_CASE("squared_distance: agrees with the oracle", "[squared_distance]") {
   for (uint64_t seed = 1; seed <= 400; ++seed) {
     Rng rng(seed + 10000);
@@ -90,15 +117,18 @@ TEST_CASE("squared_distance: agrees with the oracle", "[squared_distance]") {
       continue;
     }
     REQUIRE(obstacles.open == oracleBoundary(c.object, c.options.boundary, c.domain));
+    const VoxelWeights weights = c.options.weights.value_or(VoxelWeights{});
+    const auto oracle = [&] {
+      return oracleDistance(c.object, obstacles.open, obstacles.domain.box(), weights);
+    };
     SquaredDistance distance;
     try {
-      distance = squaredDistance(index, obstacles);
+      distance = squaredDistance(index, obstacles, weights);
     } catch (const InvalidInput&) {
-      REQUIRE_THROWS_AS(oracleDistance(c.object, obstacles.open, obstacles.domain.box()),
-                        Undefined);
+      REQUIRE_THROWS_AS(oracle(), Undefined);
       continue;
     }
-    const auto expected = oracleDistance(c.object, obstacles.open, obstacles.domain.box());
+    const auto expected = oracle();
     REQUIRE(dense(index, distance.values, c.object.box()) == expected);
     int64_t largest = 0;
     for (int i = 0; i < c.object.size(); ++i)

@@ -66,18 +66,20 @@ std::string labelsCoverObject(const MaskGrid& object, const Int32Grid& labels, i
   return {};
 }
 
-std::string distanceIsLipschitz(const MaskGrid& object, const Int32Grid& distanceSquared) {
+std::string distanceIsLipschitz(const MaskGrid& object, const Int32Grid& distanceSquared,
+                                const VoxelWeights& weights) {
   const auto distance = distanceSquared.getConstAccessor();
   return forEachActive(object, [&](const Coord& p, bool) {
     const int64_t d = distance.getValue(p);
     if (d < 1) return text("D = ", d, " at ", p);
     for (const Coord& step : kForward) {
+      const int64_t w = step.x() ? weights.x : step.y() ? weights.y : weights.z;
       int32_t value = 0;
       if (!distance.probeValue(p + step, value)) continue;
-      // sqrt(e) <= sqrt(d) + 1, and the other way round, in integers
+      // sqrt(e) <= sqrt(d) + sqrt(w), and the other way round, in integers
       const int64_t least = std::min<int64_t>(d, value),
                     excess = std::max<int64_t>(d, value) - least;
-      if (excess > 1 && (excess - 1) * (excess - 1) > 4 * least)
+      if (excess > w && (excess - w) * (excess - w) > 4 * w * least)
         return text("D = ", d, " at ", p, ", but ", value, " at ", p + step);
     }
     return std::string();
@@ -318,7 +320,8 @@ std::string anyViolation(const Segmentation& s, const MaskGrid& object, int64_t 
   if (!filled && !gaps) add("components", grainsStayInOneComponent(object, *s.grain));
   if (!filled && !gaps && tidied) add("pieces", grainsAreConnected(*s.grain));
   add("counts", countsAgree(s, object, gamma));
-  if (s.distanceSquared) add("distance", distanceIsLipschitz(object, *s.distanceSquared));
+  if (s.distanceSquared)
+    add("distance", distanceIsLipschitz(object, *s.distanceSquared, s.weights));
   if (s.distanceSquared && s.power && gamma <= 1)
     add("power", powerIsAtMostMinusDistance(*s.distanceSquared, *s.power));
   if (s.distanceSquared && !s.balls.empty() && !filled)

@@ -17,8 +17,10 @@ namespace vdb_madf::test {
 /// is 0.
 std::string labelsCoverObject(const MaskGrid& object, const Int32Grid& labels, int64_t count);
 
-/// D >= 1 on the object, and sqrt(D) differs by at most 1 between 6-neighbours.
-std::string distanceIsLipschitz(const MaskGrid& object, const Int32Grid& distanceSquared);
+/// D >= 1 on the object, and sqrt(D) differs by at most the edge sqrt(w) between 6-neighbours, w the
+/// weight of their axis.
+std::string distanceIsLipschitz(const MaskGrid& object, const Int32Grid& distanceSquared,
+                                const VoxelWeights& weights = {});
 
 /// Without a filter: power <= -D (the ball at p itself is a candidate).
 std::string powerIsAtMostMinusDistance(const Int32Grid& distanceSquared, const Int32Grid& power);

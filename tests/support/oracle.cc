@@ -16,8 +16,8 @@ namespace vdb_madf::test {
 
 namespace {
 
-int64_t squaredLength(const Coord& d) {
-  return int64_t(d.x()) * d.x() + int64_t(d.y()) * d.y() + int64_t(d.z()) * d.z();
+int64_t squaredLength(const Coord& d, const VoxelWeights& w) {
+  return int64_t(w.x) * d.x() * d.x() + int64_t(w.y) * d.y() * d.y() + int64_t(w.z) * d.z() * d.z();
 }
 
 /// A ball as one voxel p sees it: pi_x(p), D(x), x.
@@ -36,8 +36,9 @@ bool better(const Candidate& a, const Candidate& b) {
          std::make_tuple(b.center.x(), b.center.y(), b.center.z());
 }
 
-Candidate candidate(const Coord& p, const Coord& center, int64_t squaredRadius) {
-  return {squaredLength(p - center) - squaredRadius, squaredRadius, center};
+Candidate candidate(const Coord& p, const Coord& center, int64_t squaredRadius,
+                    const VoxelWeights& weights) {
+  return {squaredLength(p - center, weights) - squaredRadius, squaredRadius, center};
 }
 
 }  // namespace
@@ -108,7 +109,7 @@ OracleBody oracleBody(const ObjectVolume& object, const std::optional<OracleDoma
 // ------------------------------------------------------------------------------------- Step 1
 
 DenseVolume<int64_t> oracleDistance(const ObjectVolume& object, bool open,
-                                    const OracleDomain& domain) {
+                                    const OracleDomain& domain, const VoxelWeights& weights) {
   // Only the background voxels that have a 6-neighbour that is none can be nearest to a p in X: from
   // the nearest one, q, a step along an axis in which q and p differ leads nearer to p, so what lies
   // there is not background; then it is in X, or outside the domain.
@@ -129,15 +130,16 @@ DenseVolume<int64_t> oracleDistance(const ObjectVolume& object, bool open,
         break;
       }
   }
+  const int shortest = std::min({weights.x, weights.y, weights.z});
   DenseVolume<int64_t> distance(object.box());
   for (int i = 0; i < object.size(); ++i) {
     if (!object[i]) continue;
     if (background.empty()) throw Undefined("there is no background");
     const Coord p = object.coord(i);
-    int64_t least = squaredLength(p - background.front());
+    int64_t least = squaredLength(p - background.front(), weights);
     for (const Coord& q : background) {
-      least = std::min(least, squaredLength(p - q));
-      if (least == 1) break;  // nothing is nearer
+      least = std::min(least, squaredLength(p - q, weights));
+      if (least <= shortest) break;  // nothing is nearer
     }
     distance[i] = least;
   }
@@ -147,20 +149,25 @@ DenseVolume<int64_t> oracleDistance(const ObjectVolume& object, bool open,
 // ------------------------------------------------------------------------------ Steps 2 and 3
 
 OraclePower oraclePower(const ObjectVolume& object, const DenseVolume<int64_t>& distance,
-                        const ObjectVolume& sites) {
+                        const ObjectVolume& sites, const VoxelWeights& weights) {
   // A negative power means |p - x|^2 < D(x), so x lies within `reach` of p along each axis.
   // (For the power map itself nothing is lost: the ball at p is a candidate, of power -D(p) < 0.)
   int64_t largest = 0;
   for (int i = 0; i < sites.size(); ++i)
     if (sites[i]) largest = std::max(largest, distance[i]);
-  int reach = 0;
-  while (int64_t(reach + 1) * (reach + 1) < largest) ++reach;
+  Coord reach(0);
+  const auto grow = [&](int& along, int64_t weight) {
+    while (weight * (along + 1) * (along + 1) < largest) ++along;
+  };
+  grow(reach.x(), weights.x);
+  grow(reach.y(), weights.y);
+  grow(reach.z(), weights.z);
 
   OraclePower result{SiteMap(object.box(), kNoSite), DenseVolume<int64_t>(object.box())};
   for (int i = 0; i < object.size(); ++i) {
     if (!object[i]) continue;
     const Coord p = object.coord(i);
-    CoordBBox window(p - Coord(reach), p + Coord(reach));
+    CoordBBox window(p - reach, p + reach);
     window.intersect(object.box());
     Candidate best;  // of power 0: only a negative one beats it
     for (int x = window.min().x(); x <= window.max().x(); ++x)
@@ -168,7 +175,7 @@ OraclePower oraclePower(const ObjectVolume& object, const DenseVolume<int64_t>& 
         int site = object.index(Coord(x, y, window.min().z()));
         for (int z = window.min().z(); z <= window.max().z(); ++z, ++site) {
           if (!sites[site]) continue;
-          const Candidate other = candidate(p, Coord(x, y, z), distance[site]);
+          const Candidate other = candidate(p, Coord(x, y, z), distance[site], weights);
           if (other.power >= 0 || other.power > best.power || !better(other, best)) continue;
           best = other;
           result.site[i] = site;
@@ -250,9 +257,9 @@ ObjectVolume oracleKeptBalls(const ObjectVolume& object, const OraclePower& powe
 }
 
 OraclePower oracleFilteredPower(const ObjectVolume& object, const DenseVolume<int64_t>& distance,
-                                const ObjectVolume& kept) {
+                                const ObjectVolume& kept, const VoxelWeights& weights) {
   // Covered voxels, those that get a site here.
-  OraclePower result = oraclePower(object, distance, kept);
+  OraclePower result = oraclePower(object, distance, kept, weights);
   std::vector<int> uncovered;
   for (int i = 0; i < object.size(); ++i)
     if (object[i] && result.site[i] == kNoSite) uncovered.push_back(i);
@@ -271,9 +278,9 @@ OraclePower oracleFilteredPower(const ObjectVolume& object, const DenseVolume<in
       }
       if (offered.empty()) continue;
       int bestSite = offered.front();
-      Candidate best = candidate(p, object.coord(bestSite), distance[bestSite]);
+      Candidate best = candidate(p, object.coord(bestSite), distance[bestSite], weights);
       for (const int site : offered) {
-        const Candidate other = candidate(p, object.coord(site), distance[site]);
+        const Candidate other = candidate(p, object.coord(site), distance[site], weights);
         if (!better(other, best)) continue;
         best = other;
         bestSite = site;
@@ -344,6 +351,8 @@ Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
   if (!(theta >= -1 && theta <= 1)) throw Undefined("theta is not in [-1, 1]");
   if (options.delta < 0 || options.delta > 80) throw Undefined("delta is not in 0..80");
   const auto& nodes = graph.nodes;
+  const VoxelWeights& weights = graph.weights;
+  const int shortest = std::min({weights.x, weights.y, weights.z});  // an edge, squared
   // The class of a node is named after any one of its nodes.
   std::vector<uint32_t> classOf(nodes.size());
   for (uint32_t i = 0; i < nodes.size(); ++i) classOf[i] = i;
@@ -365,7 +374,7 @@ Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
       if (options.adjacency == Adjacency::cell && !edge.cellsTouch) continue;
       const auto &ci = nodes[edge.first], &cj = nodes[edge.second];
       const int64_t numerator =
-          squaredLength(ci.position - cj.position) - ci.squaredRadius - cj.squaredRadius;
+          squaredLength(ci.position - cj.position, weights) - ci.squaredRadius - cj.squaredRadius;
       const int64_t product = int64_t(ci.squaredRadius) * cj.squaredRadius;
       if (double(numerator) / (2 * std::sqrt(double(product))) < theta)
         unite(edge.first, edge.second);
@@ -384,9 +393,10 @@ Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
       const uint32_t a = classOf[edge.first], b = classOf[edge.second];
       if (a == b) continue;
       const int32_t m = std::min(top(a), top(b));
-      // sqrt(m) - sqrt(h) < k / 8, so 64 (m - h) - k^2 < 16 k sqrt(h)
-      const __int128 k = options.delta, h = edge.saddleHeight, l = 64 * (m - h) - k * k;
-      const bool within = l < 0 || l * l < 256 * k * k * h;
+      // sqrt(m) - sqrt(h) < k sqrt(w) / 8, so 64 (m - h) - k^2 w < 16 k sqrt(w h)
+      const __int128 k = options.delta, h = edge.saddleHeight, w = shortest,
+                     l = 64 * (m - h) - k * k * w;
+      const bool within = l < 0 || l * l < 256 * k * k * w * h;
       if (double(edge.saddleHeight) >= ((1 - theta) / 2) * double(m) || (k > 0 && within))
         unite(edge.first, edge.second);
     }
@@ -420,11 +430,12 @@ Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
 namespace {
 
 /// The voxel of a label that is nearest to a point, then of smaller coordinate.
-Coord nearestOf(const DenseVolume<int64_t>& labels, int64_t label, const Coord& point) {
+Coord nearestOf(const DenseVolume<int64_t>& labels, int64_t label, const Coord& point,
+                const VoxelWeights& weights) {
   int best = -1;  // volumes are in the order of coordinates
   for (int i = 0; i < labels.size(); ++i)
-    if (labels[i] == label && (best < 0 || squaredLength(labels.coord(i) - point) <
-                                               squaredLength(labels.coord(best) - point)))
+    if (labels[i] == label && (best < 0 || squaredLength(labels.coord(i) - point, weights) <
+                                               squaredLength(labels.coord(best) - point, weights)))
       best = i;
   return labels.coord(best);
 }
@@ -466,12 +477,13 @@ ObjectVolume reached(const DenseVolume<int64_t>& labels, std::vector<Coord> fron
 }  // namespace
 
 DenseVolume<int64_t> oracleTidy(const DenseVolume<int64_t>& given,
-                                const std::vector<Coord>& representatives, int rounds) {
+                                const std::vector<Coord>& representatives, int rounds,
+                                const VoxelWeights& weights) {
   if (rounds < 0) throw Undefined("tidy is negative");
   if (rounds == 0) return given;
   std::vector<Coord> anchors;
   for (size_t g = 0; g < representatives.size(); ++g)
-    anchors.push_back(nearestOf(given, int64_t(g) + 1, representatives[g]));
+    anchors.push_back(nearestOf(given, int64_t(g) + 1, representatives[g], weights));
   const std::set<Coord> fixed(anchors.begin(), anchors.end());
 
   DenseVolume<int64_t> labels = given;
@@ -548,13 +560,14 @@ OracleResult oracleSegment(const ObjectVolume& object, const std::optional<Oracl
                            const SegmentOptions& options) {
   if (options.gamma < 0) throw Undefined("gamma is negative");
   if (options.fillHoles.value_or(0) < 0) throw Undefined("fill-holes is negative");
+  const VoxelWeights weights = options.weights.value_or(VoxelWeights{});
   OracleResult result;
   result.open = oracleBoundary(object, options.boundary, domain);
   const OracleBody filled =
       oracleBody(object, domain, result.open, oracleFillHoles(options, domain));
   const ObjectVolume& body = filled.voxels;
-  result.distance = oracleDistance(body, result.open, domain.value_or(OracleDomain()));
-  result.unfiltered = oraclePower(body, result.distance, body);
+  result.distance = oracleDistance(body, result.open, domain.value_or(OracleDomain()), weights);
+  result.unfiltered = oraclePower(body, result.distance, body, weights);
   result.balls = oracleBalls(result.unfiltered, result.distance);
 
   result.filtered = result.unfiltered;
@@ -562,13 +575,14 @@ OracleResult oracleSegment(const ObjectVolume& object, const std::optional<Oracl
     const ObjectVolume kept = oracleKeptBalls(body, result.unfiltered, result.balls, options.gamma);
     for (const MedialBall& ball : result.balls)
       if (kept[ball.center]) result.kept.push_back(ball.center);
-    result.filtered = oracleFilteredPower(body, result.distance, kept);
+    result.filtered = oracleFilteredPower(body, result.distance, kept, weights);
   } else {
     for (const MedialBall& ball : result.balls) result.kept.push_back(ball.center);
   }
 
   const SiteMap critical = oracleFlow(result.filtered.site);
   result.graph = oracleGraph(body, result.distance, result.filtered, critical);
+  result.graph.weights = weights;
   std::map<Coord, size_t> node;
   for (size_t i = 0; i < result.graph.nodes.size(); ++i) {
     node[result.graph.nodes[i].position] = i;
@@ -598,7 +612,7 @@ OracleResult oracleSegment(const ObjectVolume& object, const std::optional<Oracl
   std::vector<Coord> representatives;
   for (const uint32_t n : result.merging.representative)
     representatives.push_back(result.graph.nodes[n].position);
-  result.grain = oracleTidy(result.grain, representatives, options.tidy);
+  result.grain = oracleTidy(result.grain, representatives, options.tidy, weights);
   counts.leaves = int64_t(blocks.size());
   counts.cavities = filled.cavities;
   counts.cavityVoxels = countObject(body) - counts.objectVoxels;

@@ -13,7 +13,8 @@
 
 // The whole method by brute force, from its definitions, on dense volumes. Of the library it uses
 // the plain data of the public headers (options, graph, counts) and no code. Steps are those of
-// "The method" in the README.md of the project.
+// "The method" in the README.md of the project. All squared lengths are those of the weights; the
+// weights of a grid's transform are not looked at.
 
 namespace vdb_madf::test {
 
@@ -82,12 +83,12 @@ OracleBody oracleBody(const ObjectVolume& object, const std::optional<OracleDoma
 
 /// Step 1. `domain` is used if open. @throw Undefined if there is no background.
 DenseVolume<int64_t> oracleDistance(const ObjectVolume& object, bool open,
-                                    const OracleDomain& domain);
+                                    const OracleDomain& domain, const VoxelWeights& weights = {});
 
 /// Step 2, over the balls of some sites only; kNoSite where none of their balls has a negative
 /// power.
 OraclePower oraclePower(const ObjectVolume& object, const DenseVolume<int64_t>& distance,
-                        const ObjectVolume& sites);
+                        const ObjectVolume& sites, const VoxelWeights& weights = {});
 
 /// Step 3: the medial balls and the sizes of their cells.
 std::vector<MedialBall> oracleBalls(const OraclePower& power, const DenseVolume<int64_t>& distance);
@@ -100,7 +101,7 @@ ObjectVolume oracleKeptBalls(const ObjectVolume& object, const OraclePower& powe
                              const std::vector<MedialBall>& balls, int64_t gamma);
 /// Step 4: the power map of the kept balls, completed within the grains.
 OraclePower oracleFilteredPower(const ObjectVolume& object, const DenseVolume<int64_t>& distance,
-                                const ObjectVolume& kept);
+                                const ObjectVolume& kept, const VoxelWeights& weights = {});
 
 /// Step 5: the critical point, as an index, that each voxel reaches.
 SiteMap oracleFlow(const SiteMap& site);
@@ -114,7 +115,8 @@ Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options);
 
 /// Step 9, on labels of the object (0: none), given the representatives of grains 1, 2, ...
 DenseVolume<int64_t> oracleTidy(const DenseVolume<int64_t>& labels,
-                                const std::vector<Coord>& representatives, int rounds);
+                                const std::vector<Coord>& representatives, int rounds,
+                                const VoxelWeights& weights = {});
 
 /// What is wrong with labels (label_flaws.h).
 LabelFlaws oracleFlaws(const DenseVolume<int64_t>& labels, int64_t grains,

@@ -82,6 +82,29 @@ RandomCase withoutSlice(const RandomCase& c, int axis, int position) {
   return result;
 }
 
+/// Of a third of the cases: small ones, those of likely voxels, any; all along every axis. A
+/// generator of its own leaves the rest of a case as it was.
+std::optional<VoxelWeights> randomWeights(uint64_t seed) {
+  Rng rng(seed * 3 + (uint64_t(1) << 40));
+  if (rng.chance(2. / 3)) return std::nullopt;
+  constexpr std::array<std::array<int, 3>, 8> kTriples = {{{1, 1, 2},
+                                                           {1, 1, 4},
+                                                           {1, 2, 3},
+                                                           {1, 4, 9},
+                                                           {1, 1, 400},
+                                                           {25, 25, 144},
+                                                           {4, 4, 4},
+                                                           {9, 9, 1}}};
+  const int which = rng.below(int(kTriples.size()) + 2);
+  std::array<int, 3> w{};
+  if (which < int(kTriples.size()))
+    w = kTriples[size_t(which)];
+  else
+    for (int& weight : w) weight = rng.between(1, which % 2 ? 12 : 100000);
+  for (int i = 2; i > 0; --i) std::swap(w[size_t(i)], w[size_t(rng.below(i + 1))]);
+  return VoxelWeights{w[0], w[1], w[2]};
+}
+
 class Shrinker {
  public:
   Shrinker(RandomCase failing, const std::function<bool(const RandomCase&)>& fails, int tries)
@@ -143,6 +166,7 @@ class Shrinker {
     attempt(best_.options.fillHoles != 0, [](RandomCase& c) { c.options.fillHoles = 0; });
     attempt(best_.options.merge.delta != 0, [](RandomCase& c) { c.options.merge.delta = 0; });
     attempt(best_.options.tidy != 0, [](RandomCase& c) { c.options.tidy = 0; });
+    attempt(best_.options.weights.has_value(), [](RandomCase& c) { c.options.weights.reset(); });
     attempt(best_.domain.has_value(), [](RandomCase& c) {
       c.domain.reset();
       c.region.reset();
@@ -197,6 +221,7 @@ RandomCase randomCase(uint64_t seed, const std::optional<Coord>& size) {
     c.domain = c.object.box();
   c.domainInMetadata = c.domain && rng.chance(0.5);
   c.tiles = rng.chance(0.5) ? Tiles::wherePossible : Tiles::none;
+  c.options.weights = randomWeights(seed);
   return c;
 }
 
@@ -250,7 +275,8 @@ std::string describe(const RandomCase& c) {
        << kModeNames[size_t(c.options.merge.mode)] << ", adjacency "
        << (c.options.merge.adjacency == Adjacency::cell ? "cell" : "manifold") << ", fill-holes "
        << (c.options.fillHoles ? std::to_string(*c.options.fillHoles) : "default") << ", delta "
-       << c.options.merge.delta << ", tidy " << c.options.tidy << ", "
+       << c.options.merge.delta << ", tidy " << c.options.tidy << ", weights "
+       << c.options.weights.value_or(VoxelWeights{}).toString() << ", "
        << (c.tiles == Tiles::none ? "no tiles, " : "tiles, ") << c.threads << " threads\n";
   if (c.object.size() <= kMaxPictureBytes) text << picture(c.object);
   if (c.region) text << "in a region of " << countObject(*c.region) << " voxels\n";

@@ -34,7 +34,7 @@ void setRepresentatives(const detail::GrainRepresentatives& representatives, Mea
   for (BondMeasures& bond : result.bonds) {
     const detail::GrainRepresentative &a = representatives.at(bond.first),
                                       &b = representatives.at(bond.second);
-    const int64_t squaredDistance = detail::squaredBetween(a.voxel, b.voxel);
+    const int64_t squaredDistance = detail::squaredBetween(a.voxel, b.voxel, VoxelWeights{});
     bond.distance = std::sqrt(double(squaredDistance));
     bond.cosAlpha = detail::cosAlpha(squaredDistance, a.squaredRadius, b.squaredRadius);
   }
@@ -108,8 +108,8 @@ Measurements measure(const Int32Grid& labels, const MeasureOptions& options,
 Measurements measure(const Segmentation& segmentation, Interrupter* interrupter) {
   // The labels' own: of unfiltered balls, no cavity filled, each voxel where the flow led it.
   const SegmentCounts& counts = segmentation.counts;
-  const bool graphTells =
-      counts.keptBalls == counts.medialBalls && counts.cavities == 0 && segmentation.tidy == 0;
+  const bool graphTells = counts.keptBalls == counts.medialBalls && counts.cavities == 0 &&
+                          segmentation.tidy == 0 && segmentation.weights == VoxelWeights{};
   return measureLabels(*segmentation.grain, {}, graphTells ? &segmentation.graph : nullptr,
                        interrupter);
 }

@@ -12,7 +12,7 @@ namespace vdb_madf {
 /// A fixed point c of the flow p -> Pi(p), with its stable manifold: the voxels that flow to it.
 struct CriticalPoint {
   Coord position;
-  int32_t squaredRadius = 0;  ///< D(c), voxels squared
+  int32_t squaredRadius = 0;  ///< D(c)
   int64_t voxels = 0;         ///< of its stable manifold
   bool operator==(const CriticalPoint& o) const {
     return position == o.position && squaredRadius == o.squaredRadius && voxels == o.voxels;

@@ -56,8 +56,8 @@ class GeodesicCompletion {
   /// At equal power |p - a|^2 - D(a) = |p - b|^2 - D(b) the larger D is that of the farther site.
   bool winsTie(const Coord& p, VoxelId a, VoxelId b) const {
     const Coord siteA = index_.coord(a), siteB = index_.coord(b);
-    const int64_t awayA = detail::squaredBetween(p, siteA),
-                  awayB = detail::squaredBetween(p, siteB);
+    const int64_t awayA = detail::squaredBetween(p, siteA, map_.weights),
+                  awayB = detail::squaredBetween(p, siteB, map_.weights);
     return awayA != awayB ? awayA > awayB : siteA < siteB;
   }
 
@@ -73,7 +73,8 @@ class GeodesicCompletion {
       const VoxelId site = map_.site[neighbor];
       if (site == kNoSite || site == best.site) return;
       const int away = position[axis] - index_.coord(site)[axis];
-      const int32_t power = map_.power[neighbor] - detail::addedByStep(away, step);
+      const int32_t power =
+          map_.power[neighbor] - detail::addedByStep(away, step, map_.weights[axis]);
       if (best.site == kNoSite || power < best.power ||
           (power == best.power && winsTie(position, site, best.site)))
         best = {p, site, power};

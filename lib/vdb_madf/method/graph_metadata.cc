@@ -61,6 +61,13 @@ std::string brokenRule(const ManifoldGraph& graph) {
   return {};
 }
 
+/// Of the nodes, whose squared distances have to fit.
+Coord extentOf(const ManifoldGraph& graph) {
+  CoordBBox box;
+  for (const ManifoldGraph::Node& node : graph.nodes) box.expand(node.position);
+  return box.empty() ? Coord(0) : box.dim();
+}
+
 template <typename T>
 char* put(char* to, T value) {
   const auto bits = std::make_unsigned_t<T>(value);
@@ -216,13 +223,17 @@ void setGraph(openvdb::GridBase& grid, ManifoldGraph graph) {
         "the manifold graph takes 4 GiB or more and cannot be stored: cut the "
         "volume, or do not keep the manifolds");
   grid.removeMeta(kName);
+  setWeights(grid, graph.weights);
   grid.insertMeta(kName, GraphMetadata(std::move(graph)));
 }
 
 std::optional<ManifoldGraph> storedGraph(const openvdb::GridBase& grid) {
   const auto metadata = std::dynamic_pointer_cast<const GraphMetadata>(grid[kName]);
   if (!metadata) return std::nullopt;
-  return metadata->value();
+  ManifoldGraph graph = metadata->value();
+  graph.weights = storedWeights(grid);
+  checkWeights(graph.weights, extentOf(graph));
+  return graph;
 }
 
 void removeGraph(openvdb::GridBase& grid) {

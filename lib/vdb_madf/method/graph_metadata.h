@@ -15,12 +15,13 @@ namespace vdb_madf {
 ///
 /// The value, in bytes, all integers little-endian: version 1 (u32), number of nodes (u32), number
 /// of edges (u32); per node x, y, z, squared radius (i32), voxels (i64); per edge first, second
-/// (u32), contact faces (i64), saddle height (i32), cells touch (u8, 0 or 1).
+/// (u32), contact faces (i64), saddle height (i32), cells touch (u8, 0 or 1). The graph's weights
+/// stand beside it, in `madf_weights` (voxel_weights.h).
 /// @throw InvalidInput if the graph breaks a rule of manifold_graph.h (order, ranges), or takes
 ///   4 GiB or more.
 void setGraph(openvdb::GridBase& grid, ManifoldGraph graph);
 
-/// Absent: the grid has no graph.
+/// Absent: the grid has no graph. @throw InvalidInput if `madf_weights` cannot be those of the graph.
 std::optional<ManifoldGraph> storedGraph(const openvdb::GridBase& grid);
 
 void removeGraph(openvdb::GridBase& grid);

@@ -10,6 +10,7 @@
 #include "vdb_madf/leaves/voxel_array.h"
 #include "vdb_madf/method/critical_point.h"
 #include "vdb_madf/method/flow.h"
+#include "vdb_madf/method/voxel_weights.h"
 
 namespace vdb_madf {
 
@@ -30,10 +31,11 @@ struct ManifoldGraph {
   };
   std::vector<Node> nodes;
   std::vector<Edge> edges;
+  VoxelWeights weights{};  ///< in whose metric radii and heights are
 };
 
-/// The graph of a flow; \p power is the (filtered) power map that it followed. Height of a voxel:
-/// H(p) = -power(p) = D(s) - |p - s|^2 with s = Pi(p).
+/// The graph of a flow, all but the weights; \p power is the (filtered) power map that it followed.
+/// Height of a voxel: H(p) = -power(p) = D(s) - |p - s|^2 with s = Pi(p).
 /// @throw Interrupted
 ManifoldGraph manifoldGraph(const LeafIndex& index, const Flow& flow,
                             const VoxelArray<int32_t>& power, Interrupter* interrupter = nullptr);

@@ -12,8 +12,9 @@ namespace vdb_madf {
 namespace {
 
 /// D(x) of the site x of a voxel p with the least power pi(p) = |p - x|^2 - D(x).
-int32_t siteSquaredRadius(const LeafIndex& index, VoxelId voxel, VoxelId site, int32_t power) {
-  return int32_t(detail::squaredBetween(index.coord(voxel), index.coord(site)) - power);
+int32_t siteSquaredRadius(const LeafIndex& index, const VoxelWeights& weights, VoxelId voxel,
+                          VoxelId site, int32_t power) {
+  return int32_t(detail::squaredBetween(index.coord(voxel), index.coord(site), weights) - power);
 }
 
 }  // namespace
@@ -49,7 +50,8 @@ MedialBallTable measureBalls(const LeafIndex& index, const PowerMap& map, const 
           if (run == 0) return;
           const uint32_t ball = balls.rank(site);
           __atomic_fetch_add(&table.cellSize[ball], run, __ATOMIC_RELAXED);
-          __atomic_store_n(&table.squaredRadius[ball], siteSquaredRadius(index, first, site, power),
+          __atomic_store_n(&table.squaredRadius[ball],
+                           siteSquaredRadius(index, map.weights, first, site, power),
                            __ATOMIC_RELAXED);
         };
         detail::forEachVoxel(index, begin, end, [&](VoxelId p, size_t rank) {

@@ -17,8 +17,8 @@ namespace {
 using Node = ManifoldGraph::Node;
 using Edge = ManifoldGraph::Edge;
 
-double cosAlpha(const Node& a, const Node& b) {
-  return detail::cosAlpha(detail::squaredBetween(a.position, b.position), a.squaredRadius,
+double cosAlpha(const Node& a, const Node& b, const VoxelWeights& weights) {
+  return detail::cosAlpha(detail::squaredBetween(a.position, b.position, weights), a.squaredRadius,
                           b.squaredRadius);
 }
 
@@ -26,16 +26,18 @@ void mergeByAngle(const ManifoldGraph& graph, const MergeOptions& options,
                   detail::DisjointSets& grains) {
   for (const Edge& edge : graph.edges) {
     if (options.adjacency == Adjacency::cell && !edge.cellsTouch) continue;
-    if (cosAlpha(graph.nodes[edge.first], graph.nodes[edge.second]) < options.theta)
+    if (cosAlpha(graph.nodes[edge.first], graph.nodes[edge.second], graph.weights) < options.theta)
       grains.unite(edge.first, edge.second);
   }
 }
 
-/// Is the neck of squared radius h, 0 < h, less than k / 8 voxels narrower than a ball of squared
-/// radius m? sqrt(m) < sqrt(h) + k / 8, squared twice; 16 k sqrt(h) < 2^31 bounds L.
-bool isWithin(int k, int64_t m, int64_t h) {
-  const int64_t l = 64 * (m - h) - int64_t(k) * k;
-  return k > 0 && (l < 0 || (l < int64_t(1) << 31 && l * l < 256 * int64_t(k) * k * h));
+/// Is the neck of squared radius h, 0 < h, less than k / 8 of the shortest edge narrower than a ball
+/// of squared radius m? That edge is sqrt(w), w its weight:
+///   sqrt(m) < sqrt(h) + k sqrt(w) / 8  <=>  L := 64 (m - h) - k^2 w < 16 k sqrt(w h)
+///                                      <=>  L < 0  or  L^2 < 256 k^2 w h   (where k > 0).
+bool isWithin(int k, int64_t m, int64_t h, int64_t w) {
+  const __int128 l = 64 * (m - h) - k * k * w;
+  return k > 0 && (l < 0 || l * l < __int128(256 * k * k) * w * h);
 }
 
 void mergeByNeck(const ManifoldGraph& graph, const MergeOptions& options,
@@ -59,7 +61,7 @@ void mergeByNeck(const ManifoldGraph& graph, const MergeOptions& options,
     if (a == b) continue;
     const int32_t smaller = std::min(top[a], top[b]);
     if (!(edge.saddleHeight >= factor * smaller) &&
-        !isWithin(options.delta, smaller, edge.saddleHeight))
+        !isWithin(options.delta, smaller, edge.saddleHeight, graph.weights.least()))
       continue;
     const int32_t merged = std::max(top[a], top[b]);
     grains.unite(a, b);

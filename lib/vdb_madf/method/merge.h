@@ -20,8 +20,8 @@ struct MergeOptions {
   double theta = -0.9;  ///< cosine in [-1, 1]; -1 merges least
   MergeMode mode = MergeMode::both;
   Adjacency adjacency = Adjacency::manifold;
-  /// How much narrower than the smaller grain a neck has to be at least to divide, in eighths of a
-  /// voxel; 0 to kMaxDelta; 0: theta alone decides.
+  /// How much narrower than the smaller grain a neck has to be at least to divide, in eighths of the
+  /// shortest edge of a voxel; 0 to kMaxDelta; 0: theta alone decides.
   int delta = 2;
 };
 
@@ -48,7 +48,7 @@ void checkMergeOptions(const MergeOptions& options);
 /// ascending pair), merge the classes a, b of their nodes if
 ///   h >= (1 - theta) / 2 * min(top(a), top(b)),
 /// where top is the largest D of a class so far; or if, with m = min(top(a), top(b)),
-///   sqrt(m) - sqrt(h) < delta / 8:
+///   sqrt(m) - sqrt(h) < delta / 8 of the shortest edge of a voxel:
 /// theta compares radii in proportion, but the error of a digital radius is some tenths of a voxel
 /// whatever the grain. (Decided in integers.)
 /// Grains are numbered in lexicographic order of their representatives.

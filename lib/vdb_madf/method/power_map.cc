@@ -60,7 +60,8 @@ VDB_MADF_SIMD void scatter(const LeafIndex& index, const Scratch<Key>& s, PowerM
 /// D of all sites, from their partial power: the passes before this one have moved away from the
 /// site along z, then y. `origin` is that of the pencil's first leaf.
 template <int Axis, typename Key>
-VDB_MADF_SIMD void computeRadii(const LeafIndex& index, const Coord& origin, Scratch<Key>& s) {
+VDB_MADF_SIMD void computeRadii(const LeafIndex& index, const Coord& origin,
+                                const VoxelWeights& weights, Scratch<Key>& s) {
   const Coord* origins = &index.origin(0);
   for (size_t t = 0; t < s.leaves.size() * 8; ++t) {
     const int32_t* power = s.rows.power.data() + (t + 1) * kSlab;
@@ -72,7 +73,8 @@ VDB_MADF_SIMD void computeRadii(const LeafIndex& index, const Coord& origin, Scr
         const Coord& leaf = origins[leafOf(site[row])];
         const int dz = leaf.z() + int(site[row] & 7) - (origin.z() + (row & 7));
         const int dy = leaf.y() + int(bitOf(site[row]) >> 3) - (origin.y() + (row >> 3));
-        away = detail::squaredAlong(dz) + (Axis == 0 ? detail::squaredAlong(dy) : 0);
+        away = detail::squaredAlong(dz, weights.z) +
+               (Axis == 0 ? detail::squaredAlong(dy, weights.y) : 0);
       }
       radius2[row] = away - power[row];
     }
@@ -91,8 +93,8 @@ void sweep(const LeafIndex& index, Key multiplier, PowerMap& map, Interrupter* i
                           const int length = int(s.leaves.size()) * 8;
                           s.rows.resize(size_t(length));
                           gather<Axis, Key>(index, map, s);
-                          computeRadii<Axis, Key>(index, index.origin(starts[p]), s);
-                          detail::lowerEnvelopes<Axis + 1>(length, multiplier, s.rows);
+                          computeRadii<Axis, Key>(index, index.origin(starts[p]), map.weights, s);
+                          detail::lowerEnvelopes<Axis + 1>(length, multiplier, map.weights, s.rows);
                           scatter<Axis, Key>(index, s, map);
                         }
                       });
@@ -108,16 +110,18 @@ void sweepAll(const LeafIndex& index, Key multiplier, PowerMap& map, Interrupter
 }
 
 /// Do products of a difference of keys and one of positions fit in 64 bits?
-bool fits64Bits(const LeafIndex& index, int32_t largestSquaredRadius) {
-  const Coord dim = index.boundingBox().dim();
-  const double length = 8 + std::max({dim.x(), dim.y(), dim.z()});
-  const double height = std::max<double>(length * length, largestSquaredRadius);
-  return 2 * height * (double(largestSquaredRadius) + 2) * length < 9e18;
+bool fits64Bits(const LeafIndex& index, const VoxelWeights& weights, int32_t largestSquaredRadius) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double length = 8 + index.boundingBox().dim()[axis];
+    const double height = std::max<double>(weights[axis] * length * length, largestSquaredRadius);
+    if (2 * height * (double(largestSquaredRadius) + 2) * length >= 9e18) return false;
+  }
+  return true;
 }
 
 void sweepWithin(const LeafIndex& index, int32_t maxSquaredRadius, PowerMap& map,
                  Interrupter* interrupter) {
-  if (fits64Bits(index, maxSquaredRadius))
+  if (fits64Bits(index, map.weights, maxSquaredRadius))
     sweepAll<int64_t>(index, int64_t(maxSquaredRadius) + 1, map, interrupter);
   else
     sweepAll<__int128>(index, __int128(maxSquaredRadius) + 1, map, interrupter);
@@ -130,6 +134,7 @@ void detail::sweepPower(const LeafIndex& index, int32_t maxSquaredRadius, PowerM
   if (!map.passage) return sweepWithin(index, maxSquaredRadius, map, interrupter);
   const Passage& passage = *map.passage;
   PowerMap passed;
+  passed.weights = map.weights;
   passed.power = passage.spread(index, map.power, kUncovered);
   passed.site = VoxelArray<VoxelId>(passed.power.size());
   sweepWithin(passage.index(), maxSquaredRadius, passed, interrupter);
@@ -140,6 +145,7 @@ void detail::sweepPower(const LeafIndex& index, int32_t maxSquaredRadius, PowerM
 PowerMap powerMap(const LeafIndex& index, SquaredDistance distance, Interrupter* interrupter) {
   PowerMap map;
   map.power = std::move(distance.values);
+  map.weights = distance.weights;
   map.site = VoxelArray<VoxelId>(size_t(index.voxelCount()));
   map.passage = std::move(distance.passage);
   detail::parallelFor(map.power.size(), size_t(1) << 16, interrupter,

@@ -14,15 +14,17 @@ namespace vdb_madf {
 /// among the balls (x, D(x)) of the sites x. At equal power the larger D wins, then the
 /// lexicographically smaller x.
 struct PowerMap {
-  VoxelArray<int32_t> power;                         ///< pi(p), voxels squared
+  VoxelArray<int32_t> power;                         ///< pi(p)
   VoxelArray<VoxelId> site;                          ///< Pi(p); only meaningful where power < 0
+  VoxelWeights weights{};                            ///< of |p - x|^2
   std::shared_ptr<const detail::Passage> passage{};  ///< that of the distances
 };
 
 /// In a filtered map: an object voxel that no ball covers (least power >= 0), still without a site.
 constexpr int32_t kUncovered = 1;
 
-/// Power map of all balls (p, D(p)), p in X (paper, section 4, eq. 5). D is overwritten in place:
+/// Power map of all balls (p, D(p)), p in X (paper, section 4, eq. 5), with the weights of the
+/// distance. D is overwritten in place:
 /// D(Pi(p)) = |p - Pi(p)|^2 - pi(p). Every object voxel gets pi(p) <= -D(p) < 0.
 /// @throw Interrupted
 PowerMap powerMap(const LeafIndex& index, SquaredDistance distance,

@@ -58,6 +58,14 @@ void checkSegmentOptions(const SegmentOptions& options) {
   checkMergeOptions(options.merge);
 }
 
+/// The weights that are asked for, or those of the edges.
+WeightsOfEdges resolveWeights(const std::optional<VoxelWeights>& weights,
+                              const std::array<double, 3>& edges, const Coord& extent) {
+  if (!weights) return weightsOfEdges(edges, extent);
+  checkWeights(*weights, extent);
+  return {*weights, 0};
+}
+
 /// What the method runs on: the object with its cavities filled.
 struct Body {
   LeafIndex index;
@@ -117,6 +125,8 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
   Segmentation result;
   SegmentCounts& counts = result.counts;
   const bool filter = options.gamma > 1;
+  const std::array<double, 3> edges =
+      options.weights ? std::array<double, 3>{1, 1, 1} : voxelEdges(object.transform());
   if (options.maxMemory > 0) checkMemory(objectSize(object), options);
   result.domain = options.domain ? options.domain : storedDomain(object);
   result.fillHoles = options.fillHoles.value_or(defaultFillHoles(result.domain));
@@ -140,9 +150,15 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
   const Body body = fillCavities(std::move(objectIndex), cavities);
   const LeafIndex& index = body.index;
   checkMemory({int64_t(index.leafCount()), index.voxelCount()}, options);
+  // Across a region the nearest background may lie anywhere.
+  const bool inRegion = obstacles.open && !obstacles.domain.isBox();
+  const CoordBBox& extent = inRegion ? obstacles.domain.box() : index.boundingBox();
+  const WeightsOfEdges weights = resolveWeights(options.weights, edges, extent.dim());
+  result.weights = weights.weights;
+  result.weightsError = weights.error;
 
   stages.begin("squared_distance");
-  SquaredDistance distance = squaredDistance(index, obstacles, &stages);
+  SquaredDistance distance = squaredDistance(index, obstacles, result.weights, &stages);
   counts.largestSquaredDistance = distance.largest;
   if (options.keepDistance)
     result.distanceSquared = toObjectGrid(body, distance.values, "distance_squared", &stages);
@@ -173,6 +189,7 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
 
   stages.begin("manifold_graph");
   result.graph = manifoldGraph(index, flowMap, map.power, &stages);
+  result.graph.weights = result.weights;
   if (options.keepPower) result.power = toObjectGrid(body, map.power, "power", &stages);
   if (options.keepManifold)
     result.manifold = toObjectGrid(body, flowMap.manifold, "manifold", &stages);

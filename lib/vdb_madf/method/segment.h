@@ -15,6 +15,7 @@
 #include "vdb_madf/method/merge.h"
 #include "vdb_madf/method/squared_distance.h"
 #include "vdb_madf/method/tidy.h"
+#include "vdb_madf/method/voxel_weights.h"
 
 namespace vdb_madf {
 
@@ -24,7 +25,9 @@ struct SegmentOptions {
   int64_t gamma = 0;
   Boundary boundary = Boundary::automatic;  ///< see boundary.h
   std::optional<Domain> domain;             ///< overrides the domain in the mask's metadata
-  MergeOptions merge;                       ///< theta, mode, adjacency, delta
+  /// Overrides the weights that the edges in the mask's transform give (voxel_weights.h).
+  std::optional<VoxelWeights> weights;
+  MergeOptions merge;  ///< theta, mode, adjacency, delta
   /// Cavities of fewer voxels are filled while the method runs (cavities.h); 0: none; absent:
   /// defaultFillHoles().
   std::optional<int64_t> fillHoles;
@@ -55,7 +58,7 @@ struct SegmentCounts {
 /// A ball of the reduced medial axis of the unfiltered power map.
 struct MedialBall {
   Coord center;
-  int32_t squaredRadius = 0;  ///< D(center), voxels squared
+  int32_t squaredRadius = 0;  ///< D(center)
   int64_t cellSize = 0;       ///< voxels that map to it
 };
 
@@ -78,7 +81,10 @@ struct Segmentation {
   int64_t fillHoles = 0;  ///< the number that was used
   int tidy = 0;           ///< rounds
   std::optional<Domain> domain;
-  bool open = false;             ///< the boundary that was used
+  bool open = false;  ///< the boundary that was used
+  /// That were used: all squared lengths here are in their units, voxels squared for 1:1:1.
+  VoxelWeights weights;
+  double weightsError = 0;       ///< of squared lengths, relative (WeightsOfEdges)
   std::vector<StageTime> times;  ///< disjoint, in the order of work
 };
 
@@ -87,11 +93,13 @@ struct Segmentation {
 /// and tidying are ours, and can be turned off).
 ///
 /// The active voxels of `object` are X, active tiles included. Labels depend on nothing but X, the
-/// domain and the options: not on tiles, threads or the order of work. X empty: zero grains.
+/// domain, the shape of voxels and the options: not on tiles, threads or the order of work. X empty:
+/// zero grains. Voxels that are no cubes, which the mask's transform tells, get the weights of
+/// weightsOfEdges() for the object's extent, cavities filled.
 /// The interrupter is told each stage's name and the percentage of the whole.
 /// @throw InvalidInput if an option is out of range, X leaves the domain, a limit of leaf_index.h
-///   is exceeded, there is no background at all, or maxMemory is too little; Interrupted if the
-///   interrupter says so.
+///   is exceeded, there is no background at all, voxels are turned or sheared, no weights fit, or
+///   maxMemory is too little; Interrupted if the interrupter says so.
 Segmentation segment(const MaskGrid& object, const SegmentOptions& options = {},
                      Interrupter* interrupter = nullptr);
 

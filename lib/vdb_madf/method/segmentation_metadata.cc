@@ -47,6 +47,7 @@ void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options
   setCount(grid, "madf_gamma", options.gamma);
   setBoundary(grid, segmentation.open ? Boundary::open : Boundary::closed);
   setCount(grid, "madf_fill_holes", segmentation.fillHoles);
+  setWeights(grid, segmentation.weights);
   setCount(grid, "madf_object_voxels", counts.objectVoxels);
   setCount(grid, "madf_cavities", counts.cavities);
   setCount(grid, "madf_cavity_voxels", counts.cavityVoxels);

@@ -12,7 +12,8 @@ namespace vdb_madf {
 /// `madf_boundary` ("open", "closed"), `madf_theta`, `madf_merge`, `madf_adjacency`,
 /// `madf_fill_holes`, `madf_delta`, `madf_tidy`, and the counts `madf_object_voxels`,
 /// `madf_cavities`, `madf_cavity_voxels`, `madf_medial_balls`, `madf_kept_balls`, `madf_critical_points`,
-/// `madf_grains`, `madf_largest_squared_distance`, `madf_leaves` (int64).
+/// `madf_grains`, `madf_largest_squared_distance`, `madf_leaves` (int64); and `madf_weights`, if they
+/// are not 1:1:1 (voxel_weights.h).
 void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options,
                           const Segmentation& segmentation);
 

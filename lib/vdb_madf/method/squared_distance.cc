@@ -92,7 +92,7 @@ VDB_MADF_SIMD void scatter(const LeafIndex& index, const Scratch& s, VoxelArray<
 /// One sweep along an axis over all pencils. The array holds int32 values; infinite ones have the
 /// sign bit set between passes.
 template <int Axis>
-void sweep(const LeafIndex& index, const Obstacles& obstacles, int reach,
+void sweep(const LeafIndex& index, const Obstacles& obstacles, int32_t weight, int reach,
            VoxelArray<int32_t>& values, Interrupter* interrupter) {
   const std::vector<uint32_t> starts = detail::pencilStarts(index, Axis);
   detail::PerThread<Scratch> scratches;
@@ -109,7 +109,7 @@ void sweep(const LeafIndex& index, const Obstacles& obstacles, int reach,
             s.masks.clear();
             for (const uint32_t leaf : s.leaves)
               s.masks.insert(s.masks.end(), index.mask(leaf).begin(), index.mask(leaf).end());
-            detail::scanRows(s.masks.data(), length, d, s.out.data() + 64);
+            detail::scanRows(s.masks.data(), length, d, weight, s.out.data() + 64);
           } else {
             gather<Axis>(index, values, s);
             // Outside the domain nothing is known: not background.
@@ -118,21 +118,29 @@ void sweep(const LeafIndex& index, const Obstacles& obstacles, int reach,
             std::fill(s.in.data() + (d.end + 1) * 64, s.in.data() + (length + 1) * 64,
                       detail::kInfinite);
             std::copy(d.after.begin(), d.after.end(), s.in.data() + (length + 1) * 64);
-            detail::widenWindows(s.in.data() + 64, length, reach, s.out.data() + 64);
+            detail::widenWindows(s.in.data() + 64, length, weight, reach, s.out.data() + 64);
           }
           scatter<Axis>(index, s, values);
         }
       });
 }
 
-VoxelArray<int32_t> sweepAll(const LeafIndex& index, const Obstacles& obstacles, int reach,
+/// How far a sweep has to look along an axis of that weight for all distances up to `exactUpTo`.
+int reachAlong(uint32_t exactUpTo, int32_t weight) {
+  if (exactUpTo == detail::kInfinite) return std::numeric_limits<int>::max();
+  return int(std::sqrt(double(exactUpTo) / weight)) + 1;
+}
+
+VoxelArray<int32_t> sweepAll(const LeafIndex& index, const Obstacles& obstacles,
+                             const VoxelWeights& weights, uint32_t exactUpTo,
                              Interrupter* interrupter) {
   VoxelArray<int32_t> values(size_t(index.voxelCount()));
   detail::WorkPart first(interrupter, 0, 20), second(interrupter, 20, 60),
       third(interrupter, 60, 100);
-  sweep<0>(index, obstacles, reach, values, &first);
-  sweep<1>(index, obstacles, reach, values, &second);
-  sweep<2>(index, obstacles, reach, values, &third);
+  const auto reach = [&](int32_t weight) { return reachAlong(exactUpTo, weight); };
+  sweep<0>(index, obstacles, weights.x, reach(weights.x), values, &first);
+  sweep<1>(index, obstacles, weights.y, reach(weights.y), values, &second);
+  sweep<2>(index, obstacles, weights.z, reach(weights.z), values, &third);
   return values;
 }
 
@@ -151,39 +159,44 @@ uint32_t largestValue(const VoxelArray<int32_t>& values) {
 
 /// Most balls are smaller than the first reach. If there is a larger one, the value found for it is
 /// the distance of some background voxel, so it tells how far to reach to find all that are nearer.
-SquaredDistance distanceInRegion(const LeafIndex& index, const Obstacles& obstacles,
-                                 Interrupter* interrupter) {
+void measureInRegion(const LeafIndex& index, const Obstacles& obstacles, Interrupter* interrupter,
+                     SquaredDistance& result) {
   constexpr int kFirstReach = 32;
-  SquaredDistance result;
+  const VoxelWeights& weights = result.weights;
   result.values = VoxelArray<int32_t>(size_t(index.voxelCount()));
   for (int reach = kFirstReach;;) {
-    const auto passage = std::make_shared<detail::Passage>(index, obstacles.domain, reach);
+    const auto passage = std::make_shared<detail::Passage>(index, obstacles.domain, reach, weights);
     const uint32_t exact = passage->exactUpTo();
-    const int window = exact == detail::kInfinite ? std::numeric_limits<int>::max()
-                                                  : int(std::lround(std::sqrt(double(exact))));
-    passage->collect(index, sweepAll(passage->index(), obstacles, window, interrupter),
+    passage->collect(index, sweepAll(passage->index(), obstacles, weights, exact, interrupter),
                      result.values);
     const uint32_t largest = largestValue(result.values);
     result.largest = int32_t(largest);
     result.passage = passage;
-    if (largest <= exact) return result;
-    reach = largest == detail::kInfinite ? 2 * reach : int(std::ceil(std::sqrt(double(largest))));
+    if (largest <= exact) return;
+    reach = largest == detail::kInfinite
+                ? 2 * reach
+                : int(std::ceil(std::sqrt(double(largest) / weights.least())));
   }
 }
 
 }  // namespace
 
 SquaredDistance squaredDistance(const LeafIndex& index, const Obstacles& obstacles,
-                                Interrupter* interrupter) {
+                                const VoxelWeights& weights, Interrupter* interrupter) {
   if (obstacles.open && index.voxelCount() > 0 &&
       index.voxelCount() == obstacles.domain.voxelCount())
     throw InvalidInput(
         "the object fills the whole domain, so there is no background to measure distances from; "
         "choose by value what is object, with a threshold or a phase");
-  if (obstacles.open && !obstacles.domain.isBox() && index.voxelCount() > 0)
-    return distanceInRegion(index, obstacles, interrupter);
+  const bool region = obstacles.open && !obstacles.domain.isBox() && index.voxelCount() > 0;
+  checkWeights(weights, region ? obstacles.domain.box().dim() : index.boundingBox().dim());
   SquaredDistance result;
-  result.values = sweepAll(index, obstacles, std::numeric_limits<int>::max(), interrupter);
+  result.weights = weights;
+  if (region) {
+    measureInRegion(index, obstacles, interrupter, result);
+    return result;
+  }
+  result.values = sweepAll(index, obstacles, weights, detail::kInfinite, interrupter);
   result.largest = int32_t(largestValue(result.values));
   return result;
 }

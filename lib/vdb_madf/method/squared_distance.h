@@ -8,6 +8,7 @@
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/leaves/voxel_array.h"
 #include "vdb_madf/method/boundary.h"
+#include "vdb_madf/method/voxel_weights.h"
 
 namespace vdb_madf {
 
@@ -16,8 +17,9 @@ class Passage;
 }
 
 struct SquaredDistance {
-  VoxelArray<int32_t> values;  ///< D >= 1, voxels squared
+  VoxelArray<int32_t> values;  ///< D >= 1
   int32_t largest = 0;         ///< 0 if X is empty
+  VoxelWeights weights{};      ///< whose squared distances these are
   /// What the sweeps of the power map have to pass; null where the object is all of it, as it is
   /// unless an open domain is a region.
   std::shared_ptr<const detail::Passage> passage{};
@@ -27,8 +29,12 @@ struct SquaredDistance {
 /// Separable passes (Meijster et al. 2000) along x, y, z, each within the runs of X in its rows: a
 /// background voxel ends whatever lies beyond it, so the sweeps never leave X. In an open region
 /// they also pass the unknown voxels around X (detail/passage.h).
-/// @throw InvalidInput if there is no background (X fills an open domain); Interrupted.
+/// With weights |p - q|^2 is that of voxel_weights.h, and the same holds: it is a sum over the axes
+/// that grows with every step away along one.
+/// @throw InvalidInput if there is no background (X fills an open domain), or as checkWeights();
+///   Interrupted.
 SquaredDistance squaredDistance(const LeafIndex& index, const Obstacles& obstacles,
+                                const VoxelWeights& weights = {},
                                 Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

@@ -42,17 +42,17 @@ void findLostAnchors(const LeafIndex& index, const GrainLabels& grains,
   std::vector<uint32_t> placeOf(anchor.size() + 1, 0);  // of a label in `lost`, plus 1
   for (uint32_t i = 0; i < lost.size(); ++i) placeOf[lost[i] + 1] = i + 1;
   detail::PerThread<std::vector<Candidate>> found{std::vector<Candidate>(lost.size())};
-  detail::parallelFor(index.leafCount(), detail::kLeafGrain, interrupter,
-                      [&](size_t begin, size_t end) {
-                        std::vector<Candidate>& best = found.local();
-                        detail::forEachVoxel(index, begin, end, [&](VoxelId id, size_t rank) {
-                          const uint32_t label = grains.label[rank], place = placeOf[label];
-                          if (place == 0) return;
-                          const Coord p = index.coord(id);
-                          best[place - 1].improve(
-                              {detail::squaredBetween(p, grains.representative[label - 1]), p, id});
-                        });
-                      });
+  detail::parallelFor(
+      index.leafCount(), detail::kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+        std::vector<Candidate>& best = found.local();
+        detail::forEachVoxel(index, begin, end, [&](VoxelId id, size_t rank) {
+          const uint32_t label = grains.label[rank], place = placeOf[label];
+          if (place == 0) return;
+          const Coord p = index.coord(id);
+          best[place - 1].improve(
+              {detail::squaredBetween(p, grains.representative[label - 1], grains.weights), p, id});
+        });
+      });
   std::vector<Candidate> best(lost.size());
   for (const std::vector<Candidate>& part : found)
     for (size_t i = 0; i < lost.size(); ++i) best[i].improve(part[i]);

@@ -8,6 +8,7 @@
 
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/leaves/voxel_array.h"
+#include "vdb_madf/method/voxel_weights.h"
 
 namespace vdb_madf {
 
@@ -22,6 +23,7 @@ struct GrainLabels {
   VoxelArray<uint32_t> label;  ///< 1 .. grains; 0: not of the object (a cavity)
   std::vector<Coord> representative;
   std::vector<int64_t> voxels;
+  VoxelWeights weights{};  ///< of the metric in which a voxel is nearest to a representative
 };
 
 /// Tidies the interfaces of grains (not in the paper): manifolds meet in combs and leave crumbs,

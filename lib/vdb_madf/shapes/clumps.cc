@@ -123,7 +123,7 @@ int32_t nearestLabel(const openvdb::tree::ValueAccessor<const Int32Tree>& labels
     for (auto p = cube.begin(); p; ++p) {
       const Coord away = *p - ball.center;
       if (std::max({std::abs(away.x()), std::abs(away.y()), std::abs(away.z())}) != reach) continue;
-      const int64_t square = detail::squaredBetween(*p, ball.center);
+      const int64_t square = detail::squaredBetween(*p, ball.center, VoxelWeights{});
       int32_t value = 0;
       if (square >= nearest || !labels.probeValue(*p, value) || value <= 0) continue;
       nearest = square;
@@ -204,7 +204,7 @@ void endAtOtherGrains(const Int32Tree& labels, const CoordBBox& bounds, int32_t 
     int64_t nearest = int64_t(ball.squaredRadius);
     others.forEachWord(ball, [&](uint64_t word, uint64_t mask, const Coord& first) {
       BitBox::forEachBit(word & mask, first, [&](const Coord& p) {
-        nearest = std::min(nearest, detail::squaredBetween(p, ball.center));
+        nearest = std::min(nearest, detail::squaredBetween(p, ball.center, VoxelWeights{}));
       });
     });
     ball.squaredRadius = double(nearest);

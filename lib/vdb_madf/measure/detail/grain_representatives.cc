@@ -50,7 +50,8 @@ GrainRepresentatives grainRepresentatives(const LabelLeaves& labels, const Obsta
   const LeafIndex& index = labels.index();
   if (index.leafCount() == 0) return result;
   if (obstacles.open && index.voxelCount() == obstacles.domain.voxelCount()) return result;
-  const VoxelArray<int32_t> distances = squaredDistance(index, obstacles, interrupter).values;
+  const VoxelArray<int32_t> distances =
+      squaredDistance(index, obstacles, VoxelWeights{}, interrupter).values;
   using Best = std::unordered_map<int32_t, GrainRepresentative>;
   PerThread<Best> bests;
   parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {

@@ -21,6 +21,7 @@ LeafIndex topologyOf(const Int32Grid& manifold) {
 GrainLabels grainsOf(const ManifoldGraph& graph, const Merging& merging) {
   GrainLabels grains;
   grains.voxels = grainVoxels(graph, merging);
+  grains.weights = graph.weights;
   grains.representative.reserve(merging.representative.size());
   for (const uint32_t node : merging.representative)
     grains.representative.push_back(graph.nodes[node].position);

@@ -5,35 +5,40 @@
 
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 
-// The metric of the method: |v|^2 = x^2 + y^2 + z^2, in voxels squared, exact in integers.
-//
-// An anisotropic metric, |v|^2 = a x^2 + b y^2 + c z^2 with integer weights, would go here: all
-// stages take their squares from squaredAlong(). Those that know the axis would name it; the
-// kernels work along one axis at a time and would be given its weight. The bounds that keep squares
-// within 32 bits (base/limits.h) and keys within 64 (fits64Bits in power_map.cc) would follow.
-// Written for unit weights are the formulas of lower_envelope.cc that expand (u - x)^2.
+#include "vdb_madf/method/voxel_weights.h"
+
+// The metric of the method: |v|^2 = wx x^2 + wy y^2 + wz z^2 with the weights of voxel_weights.h,
+// exact in integers. All stages take their squares from here. The kernels work along one axis at a
+// time and are given its weight; written out in lower_envelope.cc are formulas that expand
+// w (u - x)^2.
 
 namespace vdb_madf::detail {
 
-/// |n e|^2 of a difference of n voxels along an axis with the unit vector e.
-template <typename T>
-constexpr T squaredAlong(T n) {
-  return n * n;
+/// The weight of an axis where it is known to be 1 when compiling: kernels for cubes never multiply
+/// by it.
+using UnitWeight = std::integral_constant<int32_t, 1>;
+
+/// |n e|^2 of a difference of n voxels along an axis with the unit vector e, of that weight.
+template <typename T, typename Weight>
+constexpr T squaredAlong(T n, Weight weight) {
+  return T(weight) * n * n;
 }
 
 /// |p - q|^2 of two voxels (Coord).
 template <typename Voxel>
-int64_t squaredBetween(const Voxel& p, const Voxel& q) {
+int64_t squaredBetween(const Voxel& p, const Voxel& q, const VoxelWeights& weights) {
   int64_t sum = 0;
-  for (int axis = 0; axis < 3; ++axis) sum += squaredAlong(int64_t(p[axis]) - q[axis]);
+  for (int axis = 0; axis < 3; ++axis)
+    sum += squaredAlong(int64_t(p[axis]) - q[axis], weights[axis]);
   return sum;
 }
 
 /// |v + step e|^2 - |v|^2 of a vector v with v e = along: what one step along an axis adds to the
 /// distance.
-constexpr int32_t addedByStep(int32_t along, int32_t step) {
-  return squaredAlong(along + step) - squaredAlong(along);
+constexpr int32_t addedByStep(int32_t along, int32_t step, int32_t weight) {
+  return squaredAlong(along + step, weight) - squaredAlong(along, weight);
 }
 
 /// Cosine of the angle at which two balls meet (paper, eq. 7), from the squared distance of their

@@ -10,6 +10,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/leaf_values.h"
+#include "vdb_madf/method/detail/metric.h"
 #include "vdb_madf/method/kernels/distance_rows.h"
 
 namespace vdb_madf::detail {
@@ -56,10 +57,12 @@ void packObject(const LeafIndex::Mask& here, const LeafIndex::Mask& object, cons
 
 }  // namespace
 
-Passage::Passage(const LeafIndex& object, const Domain& region, int reach) {
+Passage::Passage(const LeafIndex& object, const Domain& region, int reach,
+                 const VoxelWeights& weights) {
   const int side = longestSide(region.box());
   const int leaves = (std::min(reach, side) + 7) / 8;
-  exactUpTo_ = leaves * 8 >= side ? kInfinite : uint32_t(leaves * 8) * uint32_t(leaves * 8);
+  exactUpTo_ = leaves * 8 >= side ? kInfinite
+                                  : squaredAlong(uint32_t(leaves * 8), uint32_t(weights.least()));
   index_ = LeafIndex(object, unknownVoxels(object, region, leaves));
   leafOfObject_.assign(index_.leafCount(), LeafIndex::kNone);
   leafHere_.reserve(object.leafCount());

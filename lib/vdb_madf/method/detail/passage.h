@@ -9,6 +9,7 @@
 #include "vdb_madf/grids/domain.h"
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/leaves/voxel_array.h"
+#include "vdb_madf/method/voxel_weights.h"
 
 namespace vdb_madf::detail {
 
@@ -21,10 +22,12 @@ namespace vdb_madf::detail {
 /// in the sweeps: they carry values on, and have none of their own.
 ///
 /// They do so at least up to `reach` voxels away from the object along each axis, and within the box
-/// of the region. So a squared distance D is exact if D <= reach^2; a larger one may be too large.
+/// of the region. So a squared distance D is exact if D <= w reach^2, w the least weight; a larger
+/// one may be too large.
 class Passage {
  public:
-  Passage(const LeafIndex& object, const Domain& region, int reach);
+  Passage(const LeafIndex& object, const Domain& region, int reach,
+          const VoxelWeights& weights = {});
 
   /// Of the object and those unknown voxels, in leaves of 8 voxels as always: a voxel of one of its
   /// leaves that is none of them is background.

@@ -20,10 +20,9 @@ static_assert(kFar > kMaxExtent + 8);
 /// Lanes that stop their search for a nearer background voxel together.
 constexpr int kLanes = 16;
 
-}  // namespace
-
-VDB_MADF_SIMD void scanRows(const uint64_t* masks, int length, const RowDomain& domain,
-                            uint32_t* out) {
+template <typename Weight>
+VDB_MADF_SIMD void scan(const uint64_t* masks, int length, const RowDomain& domain, Weight weight,
+                        uint32_t* out) {
   uint32_t state[64];
   const auto advance = [&](int t, uint32_t* slab, bool forward) {
     const uint64_t word = masks[t];
@@ -41,17 +40,29 @@ VDB_MADF_SIMD void scanRows(const uint64_t* masks, int length, const RowDomain& 
     uint32_t* slab = out + t * 64;
     advance(t, slab, false);
     for (int row = 0; row < 64; ++row)
-      slab[row] = slab[row] >= kFar ? kInfinite : squaredAlong(slab[row]);
+      slab[row] = slab[row] >= kFar ? kInfinite : squaredAlong(slab[row], weight);
   }
 }
 
+}  // namespace
+
+void scanRows(const uint64_t* masks, int length, const RowDomain& domain, int32_t weight,
+              uint32_t* out) {
+  if (weight == 1)
+    scan(masks, length, domain, UnitWeight(), out);
+  else
+    scan(masks, length, domain, weight, out);
+}
+
 // The window around t grows by one position at either end, k = 1, 2, ...: after step k
-//   best = min over |s - t| <= k of in(s) + (s - t)^2.
-// What is further away than k - 1 adds at least k^2 to in >= 0, so nothing can gain once
-//   k^2 >= best
-// in all lanes, nor anything of reach^2 or less after k = reach. Beyond an end of the row the padding there is looked at again, from further away
-// than before, which changes nothing: so the nearer end needs no loop of its own.
-VDB_MADF_SIMD void widenWindows(const uint32_t* in, int length, int reach, uint32_t* out) {
+//   best = min over |s - t| <= k of in(s) + w (s - t)^2,  w = weight.
+// What is further away than k - 1 adds at least w k^2 to in >= 0, so nothing can gain once
+//   w k^2 >= best
+// in all lanes, nor anything of w reach^2 or less after k = reach. Beyond an end of the row the
+// padding there is looked at again, from further away than before, which changes nothing: so the
+// nearer end needs no loop of its own.
+VDB_MADF_SIMD void widenWindows(const uint32_t* in, int length, int32_t weight, int reach,
+                                uint32_t* out) {
   for (int t = 0; t < length; ++t) {
     const int toBegin = t + 1, toEnd = length - t;  // distances of the padding
     const int last = std::min(reach, std::max(toBegin, toEnd));
@@ -63,8 +74,8 @@ VDB_MADF_SIMD void widenWindows(const uint32_t* in, int length, int reach, uint3
         best[i] = center[i];
         worst = std::max(worst, best[i]);
       }
-      for (int k = 1; k <= last && squaredAlong(uint32_t(k)) < worst; ++k) {
-        const uint32_t k2 = squaredAlong(uint32_t(k));
+      for (int k = 1; k <= last && squaredAlong(uint32_t(k), weight) < worst; ++k) {
+        const uint32_t k2 = squaredAlong(uint32_t(k), weight);
         const uint32_t* below = center - std::min(k, toBegin) * 64;
         const uint32_t* above = center + std::min(k, toEnd) * 64;
         worst = 0;

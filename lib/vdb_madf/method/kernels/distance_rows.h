@@ -11,8 +11,11 @@
 
 namespace vdb_madf::detail {
 
-/// No background voxel known yet. Adding a squared row length to it does not overflow 32 bits.
+/// No background voxel known yet. Adding the square of a row's length to it does not overflow 32
+/// bits.
 constexpr uint32_t kInfinite = 1u << 31;
+
+// `weight` is that of the axis (voxel_weights.h); weight * length^2 must be less than 2^31.
 
 /// The positions of rows that lie in the domain (all, where the boundary is closed), and what the
 /// positions of each row just before the first and just after the last count as.
@@ -25,11 +28,12 @@ struct RowDomain {
 /// kInfinite if there is none. Bit `row` of masks[t] tells whether a voxel is in the object; voxels
 /// outside the object and the domain are unknown, not background.
 /// `out` holds `length` slabs.
-void scanRows(const uint64_t* masks, int length, const RowDomain& domain, uint32_t* out);
+void scanRows(const uint64_t* masks, int length, const RowDomain& domain, int32_t weight,
+              uint32_t* out);
 
-/// Other passes: out(t) = min over s of in(s) + (s - t)^2, at most kInfinite; where that is more
-/// than reach^2, anything more. `in` and `out` point to the slab of position 0; `in` has one more
-/// slab at either end, the positions -1 and `length`.
-void widenWindows(const uint32_t* in, int length, int reach, uint32_t* out);
+/// Other passes: out(t) = min over s of in(s) + weight (s - t)^2, at most kInfinite; where that is
+/// more than weight * reach^2, anything more. `in` and `out` point to the slab of position 0; `in` has
+/// one more slab at either end, the positions -1 and `length`.
+void widenWindows(const uint32_t* in, int length, int32_t weight, int reach, uint32_t* out);
 
 }  // namespace vdb_madf::detail

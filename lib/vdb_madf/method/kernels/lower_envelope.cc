@@ -4,20 +4,24 @@
 #include "vdb_madf/method/kernels/lower_envelope.h"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "vdb_madf/base/detail/simd.h"
 #include "vdb_madf/method/detail/metric.h"
 
-// The order of parabolas at u, f(u) = power + (u - x)^2, x = position, with the rule of ties put
-// into one number:
+// The order of parabolas at u, f(u) = power + w (u - x)^2, x = position, w = weight of the axis,
+// with the rule of ties put into one number:
 //   key(u) = M f(u) - D,  M > max D.
 // D is in 1 .. M - 1, so
 //   f_a(u) < f_b(u)  =>  key_a(u) <= M f_b(u) - M - D_a < M f_b(u) - D_b = key_b(u),
 //   f_a(u) = f_b(u)  =>  key_a(u) < key_b(u) <=> D_a > D_b;
 // comparing keys compares f, then prefers the larger D. At equal keys the earlier position wins
 // (the order z, y, x of the passes makes that the lexicographic order). Expanded,
-//   key(u) = M u^2 - 2 M x u + k,  k = M height - D,  height = power + x^2:
-// M u^2 is common to all, so only the lines k - 2 M x u are compared. k is Parabola::key.
+//   key(u) = M w u^2 - 2 M w x u + k,  k = M height - D,  height = power + w x^2:
+// M w u^2 is common to all, so only the lines k - 2 M w x u are compared. k is Parabola::key.
+//
+// The weight is a type here: UnitWeight where all axes that are left have the weight 1, else a
+// number.
 
 namespace vdb_madf::detail {
 
@@ -110,20 +114,22 @@ template <int AxesLeft, typename Key>
 
 /// Marks object voxels and candidates. Let a, b, c be the parabolas of the positions t - 1, t, t + 1.
 /// At every u
-///   f_a(u) + f_c(u) - 2 f_b(u) = p_a + p_c - 2 p_b + 2 =: bend,
+///   f_a(u) + f_c(u) - 2 f_b(u) = p_a + p_c - 2 p_b + 2 w =: bend,
 /// so b is
 ///   bend < 0:  least nowhere, for a or c is less;
 ///   bend = 0:  least only where all three are equal, and it wins that tie only if D_b > D_a and
 ///              D_b >= D_c, which needs 2 D_b - D_a - D_c =: radiusBend > 0;
 ///   bend > 0:  a candidate. So it is where a or c is no site.
-/// Sites that are dominated are none. Whatever is left out has a better one wherever it is below 0,
-/// so the best one of a voxel is never left out, nor are its parabolas in the passes before.
-template <int AxesLeft, typename Key>
-VDB_MADF_SIMD void markCandidates(size_t length, EnvelopeRows<Key>& s) {
+/// Sites that are dominated are none; they are only looked for where all axes left have the weight 1.
+/// Whatever is left out has a better one wherever it is below 0, so the best one of a voxel is never
+/// left out, nor are its parabolas in the passes before.
+template <int AxesLeft, typename Key, typename Weight>
+VDB_MADF_SIMD void markCandidates(size_t length, Weight weight, EnvelopeRows<Key>& s) {
+  constexpr bool kUnit = std::is_same_v<Weight, UnitWeight>;
   constexpr bool kFilter = sizeof(Key) == 8;  // wide keys: what follows could overflow
   for (size_t i = 0; i < length / 8; ++i) {
     uint8_t object[8][64], candidate[8][64], dominated[8][64] = {};
-    if (kFilter) markDominated<AxesLeft>(s, i * 8, length, dominated);
+    if (kFilter && kUnit) markDominated<AxesLeft>(s, i * 8, length, dominated);
     for (size_t t = 0; t < 8; ++t) {
       const int32_t* p = s.power.data() + (i * 8 + t + 1) * kEnvelopeSlab;
       const int32_t* d = s.radius2.data() + (i * 8 + t + 1) * kEnvelopeSlab;
@@ -131,7 +137,8 @@ VDB_MADF_SIMD void markCandidates(size_t length, EnvelopeRows<Key>& s) {
         const int32_t power = p[row], before = p[row - kEnvelopeSlab],
                       after = p[row + kEnvelopeSlab];
         // Unsigned, so that it wraps where nothing depends on it: beside voxels that are no sites.
-        const auto bend = int32_t(uint32_t(before) + uint32_t(after) - 2 * uint32_t(power) + 2);
+        const auto bend = int32_t(uint32_t(before) + uint32_t(after) - 2 * uint32_t(power) +
+                                  2 * uint32_t(weight));
         const auto radiusBend = int32_t(2 * uint32_t(d[row]) - uint32_t(d[row - kEnvelopeSlab]) -
                                         uint32_t(d[row + kEnvelopeSlab]));
         const bool below =
@@ -163,15 +170,15 @@ inline uint64_t bitsBetween(int first, int begin, int end) {
 /// The envelope of the candidates in [begin, end) of a row, in s.envelope. Returns their number.
 ///
 /// In the order of keys, c less than b means, with x = position,
-///   key_c(u) < key_b(u)  <=>  k_c - 2 M x_c u < k_b - 2 M x_b u
-///                        <=>  u > (k_c - k_b) / (2 M (x_c - x_b))  =: u_bc.
+///   key_c(u) < key_b(u)  <=>  k_c - 2 M w x_c u < k_b - 2 M w x_b u
+///                        <=>  u > (k_c - k_b) / (2 M w (x_c - x_b))  =: u_bc.
 /// So b, between a and c, is least for u_ab < u <= u_bc, and it stays if
 ///   u_ab < u_bc  <=>  (k_b - k_a) / (x_b - x_a) < (k_c - k_b) / (x_c - x_b)
 ///                <=>  (k_b - k_a) (x_c - x_b) < (k_c - k_b) (x_b - x_a).
 /// Else it goes when c comes: the points (x, k) of what stays are a lower convex hull.
-template <typename Key>
+template <typename Key, typename Weight>
 [[gnu::always_inline]] inline int buildEnvelope(EnvelopeRows<Key>& s, size_t row, int begin,
-                                                int end, Key multiplier) {
+                                                int end, Key multiplier, Weight weight) {
   Parabola<Key>* const first = s.envelope.data();
   Parabola<Key>* next = first;
   const int32_t* powers = s.power.data() + kEnvelopeSlab + row;
@@ -182,7 +189,7 @@ template <typename Key>
     for (; bits; bits &= bits - 1) {
       const int t = base + __builtin_ctzll(bits);
       const size_t at = size_t(t) * kEnvelopeSlab;
-      const int32_t height = powers[at] + detail::squaredAlong(t - begin);
+      const int32_t height = powers[at] + squaredAlong(t - begin, weight);
       const Key key = height * multiplier - radii[at];
       for (; next - first > 1; --next) {
         const Parabola<Key>&a = next[-2], &b = next[-1];
@@ -199,18 +206,18 @@ template <typename Key>
 /// `begin`.
 ///
 /// Of two neighbors a, b on the envelope, b is less than a from its start on:
-///   f_b(u) - f_a(u) = rise - u twice,  rise = height_b - height_a,  twice = 2 (x_b - x_a) > 0,
+///   f_b(u) - f_a(u) = rise - u twice,  rise = height_b - height_a,  twice = 2 w (x_b - x_a) > 0,
 ///   key_b(u) < key_a(u)  <=>  u twice > rise,  or  u twice = rise and D_b > D_a,
 ///   start = 0                       if rise < 0,
 ///           floor(rise / twice)     if twice divides rise and D_b > D_a,
 ///           floor(rise / twice) + 1 else.
 /// The quotient of integers this small is exact enough in double precision for its floor to be that
 /// of the integer division.
-template <typename Key>
+template <typename Key, typename Weight>
 [[gnu::always_inline]] inline void sweepRun(EnvelopeRows<Key>& s, size_t row, int begin, int end,
-                                            Key multiplier) {
+                                            Key multiplier, Weight weight) {
   const int length = end - begin;
-  const int count = buildEnvelope(s, row, begin, end, multiplier);
+  const int count = buildEnvelope(s, row, begin, end, multiplier, weight);
   int32_t* power = s.power.data() + size_t(begin + 1) * kEnvelopeSlab + row;
   uint32_t* site = s.site.data() + size_t(begin) * kEnvelopeSlab + row;
   if (count == 0) {
@@ -220,7 +227,8 @@ template <typename Key>
   uint32_t* starting = s.starting.data();
   for (int i = 1; i < count; ++i) {
     const Parabola<Key>&a = s.envelope[size_t(i) - 1], &b = s.envelope[size_t(i)];
-    const int64_t rise = int64_t(b.height) - a.height, twice = 2 * int64_t(b.position - a.position);
+    const int64_t rise = int64_t(b.height) - a.height,
+                  twice = 2 * weight * int64_t(b.position - a.position);
     const int64_t quotient = int64_t(double(rise) / double(twice));
     const bool winsTie = (quotient * twice == rise) & (b.radius2 > a.radius2);
     const int64_t start = rise < 0 ? 0 : quotient + !winsTie;
@@ -231,7 +239,8 @@ template <typename Key>
   for (int u = 0; u < length; ++u) {
     least += starting[u];
     starting[u] = 0;
-    const int32_t value = least->height + u * (u - 2 * least->position);  // power + (u - x)^2
+    // power + w (u - x)^2
+    const int32_t value = least->height + weight * (u * (u - 2 * least->position));
     power[size_t(u) * kEnvelopeSlab] = value < 0 ? value : kNotNegative;
     site[size_t(u) * kEnvelopeSlab] = least->site;
   }
@@ -251,14 +260,14 @@ template <typename Key>
 }
 
 /// All runs of all rows.
-template <typename Key>
-VDB_MADF_SIMD void sweepRows(int length, Key multiplier, EnvelopeRows<Key>& s) {
+template <typename Key, typename Weight>
+VDB_MADF_SIMD void sweepRows(int length, Key multiplier, Weight weight, EnvelopeRows<Key>& s) {
   for (size_t row = 0; row < 64; ++row) {
     for (int end = 0; end < length;) {
       const int begin = findObject(s, row, end, length, 0);
       if (begin == length) break;
       end = findObject(s, row, begin, length, ~uint64_t(0));
-      sweepRun(s, row, begin, end, multiplier);
+      sweepRun(s, row, begin, end, multiplier, weight);
     }
   }
 }
@@ -266,16 +275,25 @@ VDB_MADF_SIMD void sweepRows(int length, Key multiplier, EnvelopeRows<Key>& s) {
 }  // namespace
 
 template <int AxesLeft, typename Key>
-void lowerEnvelopes(int length, Key multiplier, EnvelopeRows<Key>& rows) {
-  markCandidates<AxesLeft>(size_t(length), rows);
-  sweepRows(length, multiplier, rows);
+void lowerEnvelopes(int length, Key multiplier, const VoxelWeights& weights,
+                    EnvelopeRows<Key>& rows) {
+  bool unit = true;
+  for (int axis = 0; axis < AxesLeft; ++axis) unit = unit && weights[axis] == 1;
+  if (unit) {
+    markCandidates<AxesLeft>(size_t(length), UnitWeight(), rows);
+    sweepRows(length, multiplier, UnitWeight(), rows);
+  } else {
+    const int32_t weight = weights[AxesLeft - 1];
+    markCandidates<AxesLeft>(size_t(length), weight, rows);
+    sweepRows(length, multiplier, weight, rows);
+  }
 }
 
-template void lowerEnvelopes<3>(int, int64_t, EnvelopeRows<int64_t>&);
-template void lowerEnvelopes<2>(int, int64_t, EnvelopeRows<int64_t>&);
-template void lowerEnvelopes<1>(int, int64_t, EnvelopeRows<int64_t>&);
-template void lowerEnvelopes<3>(int, __int128, EnvelopeRows<__int128>&);
-template void lowerEnvelopes<2>(int, __int128, EnvelopeRows<__int128>&);
-template void lowerEnvelopes<1>(int, __int128, EnvelopeRows<__int128>&);
+template void lowerEnvelopes<3>(int, int64_t, const VoxelWeights&, EnvelopeRows<int64_t>&);
+template void lowerEnvelopes<2>(int, int64_t, const VoxelWeights&, EnvelopeRows<int64_t>&);
+template void lowerEnvelopes<1>(int, int64_t, const VoxelWeights&, EnvelopeRows<int64_t>&);
+template void lowerEnvelopes<3>(int, __int128, const VoxelWeights&, EnvelopeRows<__int128>&);
+template void lowerEnvelopes<2>(int, __int128, const VoxelWeights&, EnvelopeRows<__int128>&);
+template void lowerEnvelopes<1>(int, __int128, const VoxelWeights&, EnvelopeRows<__int128>&);
 
 }  // namespace vdb_madf::detail

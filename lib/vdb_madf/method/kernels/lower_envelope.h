@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "vdb_madf/method/voxel_weights.h"
+
 // A pass of the power map along 64 rows at a time, on plain arrays.
 
 namespace vdb_madf::detail {
@@ -18,11 +20,11 @@ constexpr int32_t kNotNegative = 1;
 /// off the same cache sets, and is 0.
 constexpr size_t kEnvelopeSlab = 64 + 16;
 
-/// The parabola f(u) = power + (u - position)^2 of a site.
+/// The parabola f(u) = power + w (u - position)^2 of a site; w is the weight of the axis.
 template <typename Key>
 struct Parabola {
   Key key;          // M height - D, see lower_envelope.cc
-  int32_t height;   // power + position^2
+  int32_t height;   // power + w position^2
   int32_t radius2;  // D
   int32_t position;
   uint32_t site;
@@ -48,15 +50,17 @@ struct EnvelopeRows {
 };
 
 /// In place, for each row and each of its runs of object voxels (power not 0):
-///   power(t) = min over s in the run, power(s) < 0, of power(s) + (t - s)^2,  site(t) = site(s);
+///   power(t) = min over s in the run, power(s) < 0, of power(s) + w (t - s)^2,  site(t) = site(s);
 /// of several such s the one of larger D, then the smaller s. kNotNegative, and any site, where
 /// that is 0 or more, or there is no such s.
-/// AxesLeft counts the axes still to be swept, this one included, with rows a * 8 + b beside rows of
+/// AxesLeft counts the axes still to be swept, this one included: axis AxesLeft - 1, whose weight is
+/// w, then those before it, with rows a * 8 + b beside rows of
 /// a - 1, a + 1 (if 2 or 3) and b - 1, b + 1 (if 3). A site of which nothing will be left after the
 /// passes along these, for a neighbor is better, may be left out of this one.
-/// multiplier: larger than any D. With 64-bit keys 2 max(length^2, D) (multiplier + 1) length must
-/// be less than 2^63.
+/// multiplier: larger than any D. w length^2 must be less than 2^31, and with 64-bit keys
+/// 2 max(w length^2, D) (multiplier + 1) length less than 2^63.
 template <int AxesLeft, typename Key>
-void lowerEnvelopes(int length, Key multiplier, EnvelopeRows<Key>& rows);
+void lowerEnvelopes(int length, Key multiplier, const VoxelWeights& weights,
+                    EnvelopeRows<Key>& rows);
 
 }  // namespace vdb_madf::detail
