@@ -137,6 +137,20 @@ TEST_CASE("parameter_sweep: the boundary and the domain are heeded", "[parameter
   CHECK(open.grains != closed.grains);
 }
 
+TEST_CASE("parameter_sweep: unequal voxels are measured as they are", "[parameter_sweep]") {
+  const MaskGrid::Ptr object = rough();
+  SweepOptions options;
+  options.thetas = {-0.9, -0.5};
+  options.deltas = {8};
+  const SweepRow cubes = parameterSweep(*object, options)[0];
+  openvdb::Mat4d matrix = openvdb::Mat4d::identity();
+  matrix.preScale(openvdb::Vec3d(0.5, 0.5, 1.2));
+  object->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
+  const std::vector<SweepRow> rows = parameterSweep(*object, options);
+  for (const SweepRow& row : rows) requireRow(row, *object, options);
+  CHECK_FALSE(equal(rows[0], cubes));
+}
+
 TEST_CASE("parameter_sweep: nothing, and options out of range", "[parameter_sweep]") {
   const SweepRow none = parameterSweep(MaskGrid(), {})[0];
   CHECK(none.grains + none.smallGrains + none.largestVoxels + none.objectVoxels == 0);
