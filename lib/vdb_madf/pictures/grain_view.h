@@ -29,8 +29,8 @@ struct GrainView {
 /// off at its faces.
 ///
 /// A ray through the centre of each pixel walks through the leaves, then through the voxels of a
-/// leaf (Amanatides & Woo 1987), to the first voxel (a box in true proportions) that has a label. Normal:
-/// the gradient of the object's indicator, smoothed by a Gaussian of sigma 1.5 voxels. Light:
+/// leaf (Amanatides & Woo 1987), to the first voxel (a box in true proportions) that has a label.
+/// Normal: the gradient of the object's indicator, smoothed by a Gaussian of sigma 1.5 voxels. Light:
 /// ambient, less in concave places, and diffuse from above on the left; what is farther is a little
 /// darker. The result does not depend on threads. An empty box gives a picture of one background
 /// pixel.

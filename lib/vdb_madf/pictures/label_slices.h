@@ -15,8 +15,8 @@ namespace vdb_madf {
 struct LabelSlices {
   /// x-y (x to the right, y down, as image viewers show it), x-z and y-z (z up).
   std::array<Picture, 3> pictures;
-  /// Shortest edges of a voxel in a pixel: 1 / (a whole number of pixels), or a whole number: of cubes,
-  /// every so manieth is shown.
+  /// Shortest edges of a voxel in a pixel: 1 / (a whole number of pixels), or a whole number: of
+  /// cubes, every so manieth is shown.
   double voxelsPerPixel = 1;
 };
 

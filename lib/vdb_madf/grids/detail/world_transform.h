@@ -61,8 +61,6 @@ inline openvdb::Vec3d proportions(const openvdb::math::Transform& transform) {
 struct WorldTransform {
   openvdb::Vec3d origin;  ///< of the centre of voxel (0,0,0)
   openvdb::Vec3d edges{1, 1, 1};
-
-  openvdb::Vec3d operator()(const openvdb::Vec3d& index) const { return origin + edges * index; }
 };
 
 /// @throw InvalidInput if voxels are not along the axes of the world, or mirrored.
