@@ -104,6 +104,49 @@ TEST_CASE("grid_metadata: millimetres, below 20 nanometres micrometres", "[grid_
   CHECK(VoxelSize{below}.inUnit() == Approx(0.02));
   CHECK(VoxelSize{1e-9}.unit() == "um");
   CHECK(VoxelSize{1e-9}.inUnit() == Approx(0.001));
+  CHECK(VoxelSize({1e-6, 1e-6, 19e-9}).unit() == "um");  // by the shortest
+  CHECK(VoxelSize({1e-6, 1e-6, 20e-9}).unit() == "mm");
+}
+
+TEST_CASE("grid_metadata: edges that nearly agree are those of a cube", "[grid_metadata]") {
+  const VoxelSize cube({1e-6, 1.0009e-6, 1.0001e-6}), flat({1e-6, 4e-6, 2e-6});
+  CHECK(cube.isCube());
+  CHECK(cube.edge() == 1e-6);
+  CHECK(cube.edges() == std::array<double, 3>{1e-6, 1e-6, 1e-6});
+  CHECK_FALSE(VoxelSize({1e-6, 1e-6, 1.002e-6}).isCube());
+  CHECK_FALSE(flat.isCube());
+  CHECK(flat.shortestEdge() == 1e-6);
+  CHECK(flat.meanEdge() == Approx(2e-6));
+  CHECK_FALSE(areEdgesOfCube({0, 0, 0}));
+}
+
+TEST_CASE("grid_metadata: three edges come back and place the voxels", "[grid_metadata]") {
+  for (const double scale : {1e-6, 3e-9, 2e-10}) {
+    const std::array<double, 3> edges{0.5 * scale, 1.2 * scale, 3 * scale};
+    const VoxelSize size(edges);
+    const auto grid = Int32Grid::create();
+    setVoxelSize(*grid, VoxelSize{1e-6});
+    setVoxelSize(*grid, size);
+    CHECK((*grid)["madf_voxel_size_m"] == nullptr);  // who knows cubes alone must not read one
+    CHECK(storedVoxelSize(*grid)->edges() == edges);
+    CHECK(text(*grid, "madf_length_unit") == size.unit());
+    const Vec3d place = grid->indexToWorld(Coord(7, -2, 9));
+    const auto inUnit = size.edgesInUnit();
+    CHECK(place.eq(Vec3d(7 * inUnit[0], -2 * inUnit[1], 9 * inUnit[2]), 1e-12));
+    CHECK_FALSE(hasCubicVoxels(*grid));
+    CHECK(hasVoxelsAlongAxes(*grid));
+    CHECK_THROWS_WITH(requireCubicVoxels(*grid, "weighing"),
+                      Catch::Contains("weighing needs cubic voxels"));
+
+    const auto copy = Int32Grid::create();
+    copyProvenance(*grid, *copy);
+    CHECK(storedVoxelSize(*copy)->edges() == edges);
+    CHECK(copy->transform() == grid->transform());
+    setVoxelSize(*grid, VoxelSize{2e-6});
+    CHECK(storedVoxelSize(*grid)->edge() == 2e-6);
+    CHECK(hasCubicVoxels(*grid));
+    CHECK_NOTHROW(requireCubicVoxels(*grid, "weighing"));
+  }
 }
 
 TEST_CASE("grid_metadata: a voxel size comes back and places the voxels", "[grid_metadata]") {
@@ -114,7 +157,7 @@ TEST_CASE("grid_metadata: a voxel size comes back and places the voxels", "[grid
     const auto grid = Int32Grid::create();
     setVoxelSize(*grid, VoxelSize{metres});
     REQUIRE(storedVoxelSize(*grid).has_value());
-    CHECK(storedVoxelSize(*grid)->metres == metres);
+    CHECK(storedVoxelSize(*grid)->edge() == metres);
     CHECK(grid->getMetadata<DoubleMetadata>("madf_voxel_size_m")->value() == metres);
     CHECK(text(*grid, "madf_length_unit") == VoxelSize{metres}.unit());
     // The centre of voxel p lies at p * size; the unit is the only thing between the two.
@@ -144,6 +187,9 @@ TEST_CASE("grid_metadata: a size that is none counts as absent", "[grid_metadata
     metadata.insertMeta("madf_voxel_size_m", DoubleMetadata(metres));
     CAPTURE(metres);
     CHECK_FALSE(storedVoxelSize(metadata).has_value());
+    openvdb::MetaMap edges;
+    edges.insertMeta("madf_voxel_edges_m", openvdb::Vec3DMetadata(Vec3d(1e-6, metres, 1e-6)));
+    CHECK_FALSE(storedVoxelSize(edges).has_value());
   }
 }
 
@@ -165,7 +211,7 @@ TEST_CASE("grid_metadata: provenance is copied, and nothing else", "[grid_metada
 
   CHECK(to->getName() == "to");
   CHECK(storedDomain(*to) == storedDomain(*from));
-  CHECK(storedVoxelSize(*to)->metres == 3e-6);
+  CHECK(storedVoxelSize(*to)->edge() == 3e-6);
   CHECK(text(*to, "madf_length_unit") == "mm");
   CHECK(text(*to, "madf_source") == "scan.tif");
   CHECK(text(*to, "madf_boundary") == "open");

@@ -184,7 +184,7 @@ TEST_CASE("object_mask: an empty grid gives an empty mask with its provenance", 
   const auto mask = objectMask(*grid);
   CHECK(mask->empty());
   CHECK(storedDomain(*mask) == CoordBBox(Coord(-1), Coord(7)));
-  CHECK(storedVoxelSize(*mask)->metres == 8.5e-6);
+  CHECK(storedVoxelSize(*mask)->edge() == 8.5e-6);
   CHECK(mask->metaValue<std::string>("madf_source") == "scan.tif");
   CHECK(mask->transform() == grid->transform());
 }

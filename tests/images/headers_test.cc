@@ -140,7 +140,7 @@ TEST_CASE("image_headers: ISQ", "[image_headers]") {
       CHECK(image->info().size == kSize);
       CHECK(image->info().type == SampleType::int16);
       CHECK(image->info().format == "isq");
-      CHECK(image->info().voxelSize->metres == 1e-5);
+      CHECK(image->info().voxelSize->edge() == 1e-5);
       CHECK(readAll(*image, 2) == bytes);
     }
   const auto edge = [&](const ImageSize& micrometres) {
@@ -148,13 +148,15 @@ TEST_CASE("image_headers: ISQ", "[image_headers]") {
     layout.voxels = kSize;
     layout.micrometres = micrometres;
     writeFile(path, isqFile(layout, bytes));
-    return openImage(path)->info().voxelSize->metres;
+    return openImage(path)->info().voxelSize->edge();
   };
-  CHECK(edge(ImageSize{52, 41, 31}) == 10.4 / 1e6);  // 10.4 um, each side rounded
-  CHECK_THROWS_WITH(edge(ImageSize{50, 40, 60}), Contains("unequal"));
-  CHECK_THROWS_WITH(edge(ImageSize{50, 0, 30}), Contains("spacing"));
   IsqLayout layout;
   layout.voxels = kSize;
+  CHECK(edge(ImageSize{52, 41, 31}) == 10.4 / 1e6);  // 10.4 um, each side rounded
+  layout.micrometres = ImageSize{50, 40, 60};
+  writeFile(path, isqFile(layout, bytes));
+  CHECK(openImage(path)->info().voxelSize->edges() == std::array<double, 3>{1e-5, 1e-5, 2e-5});
+  CHECK_THROWS_WITH(edge(ImageSize{50, 0, 30}), Contains("spacing"));
   layout.micrometres = ImageSize{50, 40, 30};
   const auto refused = [&](const std::string& file, const std::string& why) {
     writeFile(path, file);
@@ -197,7 +199,7 @@ TEST_CASE("image_headers: NIfTI-1, plain and compressed, in either byte order", 
         CHECK(image->info().size == kSize);
         CHECK(image->info().type == type);
         CHECK(image->info().format == "nifti");
-        CHECK(image->info().voxelSize->metres == 8.5e-6);
+        CHECK(image->info().voxelSize->edge() == 8.5e-6);
         CHECK(readAll(*image, 1) == bytes);
         CHECK(readAll(*image, 2) == bytes);
         writeFile(folder / "b.dat", file);  // by content
@@ -239,12 +241,15 @@ TEST_CASE("image_headers: NIfTI-1 applies slope and unit, and says what it canno
   for (const auto& [units, metres] : {std::pair(0, 0.0), {1, 3.0}, {2, 3e-3}, {3, 3e-6}}) {
     layout.units = units;
     const auto size = open(bytes)->info().voxelSize;
-    CHECK((size ? size->metres : 0) == metres);
+    CHECK((size ? size->edge() : 0) == metres);
   }
+  layout.edge = {0.5f, 0.7f, 1.2f};
+  CHECK(open(bytes)->info().voxelSize->edges() == std::array<double, 3>{0.5e-6, 0.7e-6, 1.2e-6});
   layout.edge = {-3, 3, 3};  // a mirrored axis
-  CHECK(open(bytes)->info().voxelSize->metres == 3e-6);
+  CHECK(open(bytes)->info().voxelSize->edge() == 3e-6);
   const auto refused = [&](const NiftiLayout& changed, const std::string& why) {
     writeFile(path, niftiFile(changed, bytes));
+    INFO(why);
     CHECK_THROWS_WITH(openImage(path), Contains(path) && Contains(why));
   };
   const auto with = [&](const auto& change) {
@@ -252,7 +257,12 @@ TEST_CASE("image_headers: NIfTI-1 applies slope and unit, and says what it canno
     change(changed);
     return changed;
   };
-  refused(with([](auto& l) { l.edge = {3, 3, 4}; }), "unequal");
+  refused(with([](auto& l) { l.edge = {3, 3, 0}; }), "unusable");
+  refused(with([](auto& l) {
+            l.edge = {3, 3, 4};
+            l.units = 0;
+          }),
+          "unequal spacing 3, 3, 4 without a unit");
   refused(with([](auto& l) { l.dim = {4, 5, 4, 3, 2}; }), "2 volumes");
   refused(with([](auto& l) { l.dim = {2, 5, 12}; }), "2 dimensions");
   refused(with([](auto& l) { l.dim = {3, 5, 4, -3}; }), "size");
@@ -325,7 +335,7 @@ TEST_CASE("image_headers: PyHST's vol with its info file", "[image_headers]") {
         CHECK(image->info().size == kSize);
         CHECK(image->info().type == type);
         CHECK(image->info().format == "pyhst");
-        CHECK(image->info().voxelSize->metres == 8.5e-6);
+        CHECK(image->info().voxelSize->edge() == 8.5e-6);
         CHECK(readAll(*image, 2) == bytes);
         CHECK(std::count(image->files().begin(), image->files().end(), path) > 0);
         CHECK(std::count(image->files().begin(), image->files().end(), infoPath) > 0);

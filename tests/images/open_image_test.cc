@@ -84,10 +84,31 @@ TEST_CASE("image_file: what createImage writes, openImage reads", "[image_file]"
           CHECK(readAll(*image) == bytes);
           if (!raw && ending != "npy") {
             REQUIRE(bool(image->info().voxelSize) == (metres > 0));
-            if (metres > 0) CHECK(image->info().voxelSize->metres == metres);
+            if (metres > 0) CHECK(image->info().voxelSize->edge() == metres);
           }
         }
   CHECK(folder.fileCount() == 7);  // the data of the .mhd are a .raw
+}
+
+TEST_CASE("image_file: unequal edges come back, to the last bit where they are decimals",
+          "[image_file]") {
+  const ScratchFolder folder;
+  const std::string bytes = randomSamples(SampleType::uint8, voxels(kSize), 1);
+  ImageInfo info;
+  info.size = kSize;
+  for (const std::string ending : {"mhd", "mha", "tif", "nrrd"})
+    for (const std::array<double, 3>& edges : {std::array<double, 3>{0.5e-6, 0.5e-6, 1.2e-6},
+                                               {1.2e-6, 0.7e-6, 0.5e-6},
+                                               {33e-9, 33e-9, 5e-9},
+                                               {123 / 1e6, 85.7 / 1e6, 3141.59 / 1e6},
+                                               {0.05, 0.02, 0.3}}) {
+      CAPTURE(ending, edges[0], edges[1], edges[2]);
+      info.voxelSize = VoxelSize(edges);
+      const auto writer = createImage(folder / ("a." + ending), info);
+      writer->write(kSize.z, bytes.data());
+      writer->finish();
+      CHECK(openImage(folder / ("a." + ending))->info().voxelSize->edges() == edges);
+    }
 }
 
 TEST_CASE("image_file: a writer takes exactly its slices, or leaves nothing", "[image_file]") {
@@ -184,11 +205,12 @@ TEST_CASE("image_file: MetaImage spacing is millimetres unless it is 1", "[image
     writeFile(path, metaHeader("MET_UCHAR", line + "\n", "LOCAL") + std::string(60, 'a'));
     return openImage(path)->info().voxelSize;
   };
-  CHECK(spacing("ElementSpacing = 0.0085 0.0085 0.0085")->metres == 8.5e-6);
-  CHECK(spacing("ElementSize = 2 2 2")->metres == 2e-3);
-  CHECK(spacing("ElementSpacing = 0.01 0.010005 0.01")->metres == 1e-5);
+  CHECK(spacing("ElementSpacing = 0.0085 0.0085 0.0085")->edge() == 8.5e-6);
+  CHECK(spacing("ElementSize = 2 2 2")->edge() == 2e-3);
+  CHECK(spacing("ElementSpacing = 0.01 0.010005 0.01")->edge() == 1e-5);
   CHECK_FALSE(spacing("ElementSpacing = 1 1.0 1"));
-  CHECK_THROWS_WITH(spacing("ElementSpacing = 1 1 2"), Contains("unequal spacing"));
+  CHECK(spacing("ElementSpacing = 1 1 2")->edges() == std::array<double, 3>{1e-3, 1e-3, 2e-3});
+  CHECK_THROWS_AS(spacing("ElementSpacing = 1 1 0"), IoError);
   CHECK_THROWS_AS(spacing("ElementSpacing = 0 0 0"), IoError);
   CHECK_THROWS_AS(spacing("ElementSpacing = nan nan nan"), IoError);
   CHECK_THROWS_AS(spacing("ElementSpacing = 1e-300 1e-300 1e-300"), IoError);
@@ -258,12 +280,16 @@ TEST_CASE("image_file: NRRD spacing needs a unit", "[image_file]") {
   };
   CHECK_FALSE(spacing("spacings: 0.5 0.5 0.5"));
   CHECK_FALSE(spacing("spacings: nan nan nan"));
-  CHECK(spacing("spacings: 8.5 8.5 8.5\nunits: \"um\" \"um\" \"um\"")->metres == 8.5e-6);
+  CHECK(spacing("spacings: 8.5 8.5 8.5\nunits: \"um\" \"um\" \"um\"")->edge() == 8.5e-6);
   CHECK(spacing("space directions: (2,0,0) (0,-2,0) (0,0,2)\nspace units: \"mm\" \"mm\" \"mm\"")
-            ->metres == 2e-3);
+            ->edge() == 2e-3);
   CHECK(spacing("space directions: (0,3,0) (0,0,3) (3,0,0)\nspace units: \"nm\" \"nm\" \"nm\"")
-            ->metres == 3e-9);
-  CHECK_THROWS_WITH(spacing("spacings: 1 1 2"), Contains("unequal spacing"));
+            ->edge() == 3e-9);
+  CHECK(spacing("spacings: 0.5 1.2 3\nunits: \"um\" \"um\" \"um\"")->edges() ==
+        std::array<double, 3>{0.5e-6, 1.2e-6, 3e-6});
+  CHECK(spacing("space directions: (0,3,0) (0,0,4) (5,0,0)\nspace units: \"mm\" \"mm\" \"mm\"")
+            ->edges() == std::array<double, 3>{3e-3, 4e-3, 5e-3});
+  CHECK_THROWS_WITH(spacing("spacings: 1 1 2"), Contains("unequal spacing 1, 1, 2 without a unit"));
   CHECK_THROWS_AS(spacing("spacings: 1 1 1\nunits: \"mm\" \"mm\" \"um\""), IoError);
   CHECK_THROWS_AS(spacing("space directions: (1,0,0) (0.5,1,0) (0,0,1)"), IoError);
   CHECK_THROWS_AS(spacing("space directions: none (1,0,0) (0,1,0)"), IoError);

@@ -74,7 +74,7 @@ TEST_CASE("image_python: files of other programs give the same voxels", "[image_
 #endif
     const auto image = openImage(folder / name, {}, dataset);
     CHECK(image->info().size == ImageSize{11, 7, 6});
-    CHECK((image->info().voxelSize ? image->info().voxelSize->metres : 0) == metres);
+    CHECK((image->info().voxelSize ? image->info().voxelSize->edge() : 0) == metres);
     const bool same = readAll(*image, 4) == truthOf(folder / truth, voxels(ImageSize{11, 7, 6}));
     CHECK(same);
   }

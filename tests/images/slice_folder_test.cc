@@ -153,7 +153,7 @@ TEST_CASE("image_pictures: a folder of slices", "[image_pictures]") {
               "[System]\r\nCamera Pixel Size (um)=  9.0\r\n[Acquisition]\r\n"
               "Image Pixel Size (um)=  8.4\r\n[Reconstruction]\r\nPixel Size (um)=8.5\r\n");
     writeFile(folder / "other.log", "nothing of interest\n");
-    CHECK(openImage(folder.path())->info().voxelSize->metres == 8.5e-6);
+    CHECK(openImage(folder.path())->info().voxelSize->edge() == 8.5e-6);
     writeFile(folder / "other.log", "Pixel Size (um)=7\n");
     CHECK_FALSE(openImage(folder.path())->info().voxelSize);
     writeFile(folder / "other.log", "Pixel Size (um)=-7\n");
@@ -177,7 +177,7 @@ TEST_CASE("image_pictures: previews beside TIFF slices are passed over", "[image
   writeFile(folder / "a.log", "Pixel Size (um) = 12\n");
   const auto image = openImage(folder.path());
   CHECK(image->info().format == "tiff");
-  CHECK(image->info().voxelSize->metres == 1.2e-5);
+  CHECK(image->info().voxelSize->edge() == 1.2e-5);
   CHECK(readAll(*image) == bytes);
 }
 

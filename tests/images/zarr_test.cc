@@ -143,20 +143,20 @@ TEST_CASE("image_zarr: OME-Zarr gives the first scale and its voxel size", "[ima
     const auto image = openImage(named);
     CHECK(readAll(*image, 8) == fine);
     REQUIRE(image->info().voxelSize);
-    CHECK(image->info().voxelSize->metres == 8.5e-6);
+    CHECK(image->info().voxelSize->edge() == 8.5e-6);
   }
   const auto second = openImage(path, {}, "1");
   CHECK(second->info().size == ImageSize{2, 2, 2});
-  CHECK(second->info().voxelSize->metres == 17e-6);
+  CHECK(second->info().voxelSize->edge() == 17e-6);
   CHECK(readAll(*second) == coarse);
   CHECK_THROWS_WITH(openImage(path, {}, "2"), Contains(path) && Contains("'2'"));
 
   write(omeAttributes("micrometer", 8.5,
                       ", \"coordinateTransformations\": [{\"type\": \"scale\", \"scale\": "
                       "[1, 1, 2, 2, 2]}]"));
-  CHECK(openImage(path)->info().voxelSize->metres == 17e-6);
+  CHECK(openImage(path)->info().voxelSize->edge() == 17e-6);
   write(omeAttributes("millimeter", 0.25));
-  CHECK(openImage(path)->info().voxelSize->metres == 0.25e-3);
+  CHECK(openImage(path)->info().voxelSize->edge() == 0.25e-3);
   write(omeAttributes("", 8.5));
   CHECK_FALSE(openImage(path)->info().voxelSize);
   write("{}");
@@ -168,7 +168,8 @@ TEST_CASE("image_zarr: OME-Zarr gives the first scale and its voxel size", "[ima
   std::string uneven = omeAttributes("micrometer", 8.5);
   uneven.replace(uneven.find("8.5"), 3, "9.5");
   write(uneven);
-  CHECK_THROWS_WITH(openImage(path), Contains("unequal"));
+  CHECK(openImage(path)->info().voxelSize->edges() ==
+        std::array<double, 3>{8.5e-6, 8.5e-6, 9.5e-6});
 }
 
 TEST_CASE("image_zarr: what cannot be read says why", "[image_zarr]") {

@@ -12,6 +12,7 @@
 #include <random>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
 
 using namespace vdb_madf;
 
@@ -48,7 +49,7 @@ struct Seen {
   bool doubtful = false;
 };
 
-Seen naiveSeen(const Int32Grid& grid, const CoordBBox& box, const Vec& origin,
+Seen naiveSeen(const Int32Grid& grid, const CoordBBox& box, const Vec& edges, const Vec& origin,
                const Vec& direction) {
   Seen seen;
   double first = std::numeric_limits<double>::infinity();
@@ -57,15 +58,15 @@ Seen naiveSeen(const Int32Grid& grid, const CoordBBox& box, const Vec& origin,
     double in = -1e9, out = 1e9;
     bool grazed = false;  // along a face
     for (int axis = 0; axis < 3; ++axis) {
-      const double low = voxel.getCoord()[axis] - 0.5;
+      const double edge = edges[axis], low = edge * (voxel.getCoord()[axis] - 0.5);
       if (std::abs(direction[axis]) < 1e-12) {
-        const double off = std::abs(origin[axis] - low - 0.5);
-        if (off > 0.5 + 1e-9) out = -1e9;
-        grazed |= std::abs(off - 0.5) <= 1e-9;
+        const double off = std::abs(origin[axis] - low - 0.5 * edge);
+        if (off > 0.5 * edge + 1e-9) out = -1e9;
+        grazed |= std::abs(off - 0.5 * edge) <= 1e-9;
         continue;
       }
       const double a = (low - origin[axis]) / direction[axis];
-      const double b = (low + 1 - origin[axis]) / direction[axis];
+      const double b = (low + edge - origin[axis]) / direction[axis];
       in = std::max(in, std::min(a, b));
       out = std::min(out, std::max(a, b));
     }
@@ -84,14 +85,16 @@ Seen naiveSeen(const Int32Grid& grid, const CoordBBox& box, const Vec& origin,
 }
 
 /// The view equals the naive one wherever that is sure, and it mostly is.
-void requireNaiveView(const Int32Grid& grid, const CoordBBox& box, const ViewOptions& options) {
+/// @param edges of a voxel; the shortest is 1
+void requireNaiveView(const Int32Grid& grid, const CoordBBox& box, const ViewOptions& options,
+                      const Vec& edges = Vec(1)) {
   CAPTURE(options.azimuth, options.elevation);
   const GrainView view = viewGrains(grid, box, grainColors(grid), options);
   const double a = options.azimuth * M_PI / 180, e = options.elevation * M_PI / 180;
   const Vec right(std::cos(a), std::sin(a), 0);
   const Vec up(-std::sin(e) * std::sin(a), std::sin(e) * std::cos(a), std::cos(e));
   const Vec along = up.cross(right);
-  const Vec center = 0.5 * (box.min().asVec3d() + box.max().asVec3d());
+  const Vec center = 0.5 * edges * (box.min().asVec3d() + box.max().asVec3d());
   const int width = view.picture.width, height = view.picture.height;
   REQUIRE(view.labels.size() == size_t(width) * size_t(height));
   int wrong = 0, doubtful = 0, hits = 0;
@@ -99,7 +102,7 @@ void requireNaiveView(const Int32Grid& grid, const CoordBBox& box, const ViewOpt
     for (int x = 0; x < width; ++x) {
       const Vec origin = center + (x + 0.5 - width / 2.0) * view.voxelsPerPixel * right +
                          (height / 2.0 - y - 0.5) * view.voxelsPerPixel * up;
-      const Seen seen = naiveSeen(grid, box, origin, along);
+      const Seen seen = naiveSeen(grid, box, edges, origin, along);
       doubtful += seen.doubtful;
       hits += seen.label > 0;
       wrong += !seen.doubtful && seen.label != view.labels[size_t(y * width + x)];
@@ -126,6 +129,42 @@ TEST_CASE("grain_view: each pixel shows the first voxel on its ray", "[grain_vie
     const CoordBBox box(Coord(-9, 4, -20), Coord(10, 16, 3));
     requireNaiveView(*randomVoxels(seed++, box, 60), box, options);
   }
+}
+
+TEST_CASE("grain_view: unequal voxels are shown in true proportions", "[grain_view]") {
+  ViewOptions options;
+  options.edge = 41;
+  const CoordBBox box(Coord(-9, 4, -20), Coord(10, 16, 3));
+  for (const Vec& edges : {Vec(1, 1, 3), Vec(2.5, 1, 1.7)})
+    for (const double elevation : {25.0, -50.0, 0.0, 60.0}) {
+      const Int32Grid::Ptr grid = randomVoxels(7, box, 60);
+      setVoxelSize(*grid, VoxelSize({edges[0] * 1e-6, edges[1] * 1e-6, edges[2] * 1e-6}));
+      options.elevation = elevation;
+      requireNaiveView(*grid, box, options, edges);
+    }
+  // A ball that voxels of 1 : 1 : 2 sample is round, and lit as one of cubes.
+  auto flat = Int32Grid::create(0);
+  for (auto p = CoordBBox(Coord(-21, -21, -11), Coord(21, 21, 11)).begin(); p; ++p)
+    if (((*p).asVec3d() * Vec(1, 1, 2)).length() < 20) flat->tree().setValue(*p, 1);
+  setVoxelSize(*flat, VoxelSize({1e-6, 1e-6, 2e-6}));
+  const Int32Grid::Ptr cubes = ball(Coord(0), 20, 1);
+  options.edge = 88;
+  options.elevation = 25;
+  const GrainView a = viewGrains(*flat, CoordBBox(Coord(-21, -21, -11), Coord(21, 21, 10)),
+                                 grainColors(*flat), options),
+                  b = viewGrains(*cubes, CoordBBox(Coord(-21, -21, -22), Coord(21, 21, 21)),
+                                 grainColors(*cubes), options);
+  REQUIRE(a.labels.size() == b.labels.size());
+  size_t unlike = 0, hits = 0, otherLight = 0;
+  for (size_t i = 0; i < a.labels.size(); ++i) {
+    unlike += a.labels[i] != b.labels[i];
+    if (!a.labels[i] || !b.labels[i]) continue;
+    ++hits;
+    otherLight += std::abs(brightness(a.picture.pixels[i]) - brightness(b.picture.pixels[i])) > 90;
+  }
+  CHECK(hits > 1000);
+  CHECK(double(unlike) < 0.06 * double(hits));
+  CHECK(double(otherLight) < 0.05 * double(hits));
 }
 
 TEST_CASE("grain_view: along the axes, and cut off at the box", "[grain_view]") {

@@ -7,6 +7,7 @@
 
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
@@ -45,6 +46,39 @@ TEST_CASE("label_slices: pixels are the voxels of the middle planes", "[label_sl
           Coord p = middle;
           p[right] = box.min()[right] + int(x * scale);
           p[down] = down == 2 ? box.max().z() - int(y * scale) : box.min()[down] + int(y * scale);
+          REQUIRE(picture.at(x, y) == expected(voxels, colors, p, Rgb{18, 20, 26}));
+        }
+    }
+  }
+}
+
+TEST_CASE("label_slices: unequal voxels are shown in true proportions", "[label_slices]") {
+  const CoordBBox box(Coord(-3, 2, -9), Coord(9, 12, 4));  // 13, 11, 14 voxels
+  const LabelMap voxels = randomLabels(4, box.min(), 14, 6, 50);
+  const Int32Grid::Ptr labels = labelGrid(voxels);
+  setVoxelSize(*labels, VoxelSize({2e-6, 1e-6, 2.5e-6}));
+  const double edges[3] = {2, 1, 2.5};  // 26 x 11 x 35
+  const GrainColors colors = grainColors(*labels);
+  const Coord middle(3, 7, -3);
+  for (const auto& [edge, scale] : {std::pair<int, double>{35, 1}, {80, 0.5}, {12, 3}}) {
+    CAPTURE(edge);
+    const LabelSlices slices = middleSlices(*labels, box, colors, edge);
+    CHECK(slices.voxelsPerPixel == scale);
+    const int axes[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+    for (size_t i = 0; i < 3; ++i) {
+      const auto [right, down] = axes[i];
+      const Picture& picture = slices.pictures[i];
+      const auto pixels = [&](int axis) {
+        return int(std::ceil(box.extents()[axis] * edges[axis] / scale));
+      };
+      REQUIRE(picture.width == pixels(right));
+      REQUIRE(picture.height == pixels(down));
+      for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) {
+          const int column = int(x * scale / edges[right]), row = int(y * scale / edges[down]);
+          Coord p = middle;
+          p[right] = box.min()[right] + column;
+          p[down] = down == 2 ? box.max().z() - row : box.min()[down] + row;
           REQUIRE(picture.at(x, y) == expected(voxels, colors, p, Rgb{18, 20, 26}));
         }
     }

@@ -111,7 +111,9 @@ TEST_CASE("label_preview: grids are what renderers take", "[label_preview]") {
   CHECK(preview.color->getName() == "color");
   CHECK(preview.color->getVectorType() == openvdb::VEC_INVARIANT);
   CHECK(preview.color->transform() == preview.density->transform());
-  CHECK(storedVoxelSize(*preview.density)->metres == Approx(25.5e-6));
+  CHECK(storedVoxelSize(*preview.density)->edge() == Approx(25.5e-6));
+  setVoxelSize(*grid, VoxelSize({1e-6, 1e-6, 2e-6}));
+  CHECK(storedVoxelSize(*previewLabels(*grid, 3).density)->edges()[2] == Approx(6e-6));
   CHECK(*storedDomain(*preview.density) == CoordBBox(Coord(-3), Coord(6)));
   CHECK(reduceLabels(*grid, 3)->getName() == "grain");
 }

@@ -28,12 +28,14 @@ void notes(const Bench& bench, const std::string& arguments, const std::vector<s
   bench.mustRun(arguments + " -q");  // without a word
 }
 
-void writeGrid(const Bench& bench, const std::string& file, const openvdb::Vec3d& edges) {
+void writeGrid(const Bench& bench, const std::string& file, const openvdb::Vec3d& edges,
+               double shear = 0) {
   initialize();
   const auto grid = Int32Grid::create();
   grid->denseFill(CoordBBox(Coord(0), Coord(7)), 1);
   const auto transform = openvdb::math::Transform::createLinearTransform();
   transform->preScale(edges);
+  if (shear > 0) transform->preShear(shear, openvdb::math::X_AXIS, openvdb::math::Y_AXIS);
   grid->setTransform(transform);
   grid->setName("grain");
   writeVdb(bench.path(file), {grid});
@@ -97,9 +99,9 @@ TEST_CASE("cli: that labels become a mask is said", "[cli]") {
   bench.mustRun("measure labels.raw tables" + layout);
 }
 
-TEST_CASE("cli: a VDB of voxels that are no cubes is refused by all but info", "[cli]") {
+TEST_CASE("cli: a VDB of sheared voxels is refused by all but info", "[cli]") {
   const Bench bench;
-  writeGrid(bench, "flat.vdb", {1, 1, 2});
+  writeGrid(bench, "flat.vdb", {1, 1, 2}, 0.3);
   writeGrid(bench, "cubic.vdb", {1, 1, 1});
   const auto before = bench.names();
   for (const std::string arguments :
@@ -111,8 +113,44 @@ TEST_CASE("cli: a VDB of voxels that are no cubes is refused by all but info", "
     CAPTURE(arguments);
     const Outcome outcome = bench.run(arguments);
     CHECK(outcome.exitCode == 1);
-    CHECK_THAT(outcome.err, Catch::Contains("flat.vdb") && Catch::Contains("1 x 1 x 2"));
+    CHECK_THAT(outcome.err, Catch::Contains("flat.vdb") && Catch::Contains("turned, sheared"));
     CHECK(bench.names() == before);
   }
-  notes(bench, "info flat.vdb", {"flat.vdb", "'grain'", "no cubes"});
+  notes(bench, "info flat.vdb", {"flat.vdb", "'grain'", "not along the axes"});
+}
+
+TEST_CASE("cli: unequal voxels keep their shape, and what needs cubes says so", "[cli]") {
+  const Bench bench;
+  writeGrid(bench, "plain.vdb", {1, 1, 1});
+  bench.mustRun("convert plain.vdb flat.vdb --voxel-size 0.5x0.7x1.2um");
+  bench.mustRun("convert plain.vdb cubes.vdb --voxel-size 0.5um");
+  for (const std::string file : {"flat.vdb", "flat.mhd", "flat.nrrd", "flat.tif"}) {
+    if (file != "flat.vdb") bench.mustRun("convert flat.vdb " + file);
+    const std::string said = bench.mustRun("info " + file);
+    CHECK_THAT(said, Catch::Contains("voxel_size_mm: [0.0005,0.0007,0.0012]"));
+  }
+  for (const std::string arguments :
+       {"convert flat.mhd o.vdb --labels", "render flat.vdb o.png", "export flat.vdb o.ply",
+        "export flat.vdb o.vti", "export flat.vdb o.inp", "export flat.vdb o.vdb --as viz",
+        "export flat.vdb o.vdb --as lod", "compare flat.vdb flat.tif", "info flat.vdb"})
+    bench.mustRun(arguments);
+  for (const std::string arguments :
+       {"measure flat.vdb t", "export flat.vdb n.graphml", "export flat.vdb c.csv --as clumps",
+        "export flat.vdb s.vdb --as surface", "export flat.vdb s.vdb --as grids",
+        "segment flat.vdb s.vdb --tables t"}) {
+    CAPTURE(arguments);
+    const auto before = bench.names();
+    const Outcome outcome = bench.run(arguments);
+    CHECK(outcome.exitCode == 1);
+    CHECK_THAT(outcome.err, Catch::Contains("flat.vdb") && Catch::Contains("needs cubic voxels"));
+    CHECK(bench.names() == before);
+  }
+  for (const std::string arguments :
+       {"convert flat.vdb o.npy", "convert flat.mhd o.raw", "export flat.vdb o.raw --as mask"})
+    notes(bench, arguments, {"does not say that its voxels are no cubes", "--voxel-size"});
+  const Outcome other = bench.run("compare flat.vdb cubes.vdb");
+  CHECK(other.exitCode == 1);
+  CHECK_THAT(other.err, Catch::Contains("1, 0.7143, 0.4167 times as long"));
+  notes(bench, "convert flat.vdb o.vdb --voxel-size 0.5x0.7x1.3um",
+        {"0.5 x 0.7 x 1.2 um", "0.5 x 0.7 x 1.3 um"});
 }

@@ -112,7 +112,7 @@ TEMPLATE_TEST_CASE("vdb_file: a grid comes back as it was", "[vdb_file]", BoolGr
   CHECK(same(*empty, *grids[0]));
   CHECK(same(*ball, *grids[1]));
   CHECK(grids[1]->metaValue<std::string>("text") == "several\nlines");
-  CHECK(storedVoxelSize(*grids[1])->metres == 8.5e-6);
+  CHECK(storedVoxelSize(*grids[1])->edge() == 8.5e-6);
   CHECK(folder.entries() == 1);
 
   // The comparison sees a value that differs, inactive or not.

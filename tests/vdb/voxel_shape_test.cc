@@ -62,24 +62,23 @@ std::string errorWith(const Transform::Ptr& transform, const VdbReadOptions& opt
 
 }  // namespace
 
-TEST_CASE("vdb_file: voxels that are no cubes along the axes are refused", "[vdb_file]") {
-  for (const auto& transform : {scaled({1, 1, 2}), scaled({1, 1.002, 1}), turned(0.01),
-                                turned(1.5707963267948966), sheared(), frustum()}) {
+TEST_CASE("vdb_file: voxels that are no boxes along the axes are refused", "[vdb_file]") {
+  for (const auto& transform : {turned(0.01), turned(1.5707963267948966), sheared(), frustum()}) {
     const std::string error = errorWith(transform);
     CHECK_THAT(error, Catch::Contains("'grain'"));
-    CHECK_THAT(error, Catch::Contains("resample it to cubic voxels"));
+    CHECK_THAT(error, Catch::Contains("resample it to voxels along the axes"));
     VdbReadOptions any;
     any.anyVoxelShape = true;
     CHECK(errorWith(transform, any) == "");
   }
-  CHECK_THAT(errorWith(scaled({0.01, 0.01, 0.025})), Catch::Contains("0.01 x 0.01 x 0.025"));
 }
 
-TEST_CASE("vdb_file: cubes are read wherever they lie, mirrored too", "[vdb_file]") {
+TEST_CASE("vdb_file: boxes are read wherever they lie, mirrored too", "[vdb_file]") {
   const auto moved = Transform::createLinearTransform(0.0085);
   moved->postTranslate(Vec3d(1e4, -1e4, 0.5));
   for (const auto& transform :
-       {scaled({1, 1, 1}), scaled({1, 1.0005, 1}), scaled({2, -2, 2}), scaled(Vec3d(1e-4)), moved})
+       {scaled({1, 1, 1}), scaled({1, 1.0005, 1}), scaled({2, -2, 2}), scaled(Vec3d(1e-4)), moved,
+        scaled({1, 1, 2}), scaled({0.01, -0.025, 0.5})})
     CHECK(errorWith(transform) == "");
 }
 
@@ -87,7 +86,7 @@ TEST_CASE("vdb_file: the shape of voxels counts in grids that are wanted", "[vdb
   initialize();
   const TemporaryFolder folder;
   const std::string path = folder.file("two.vdb");
-  const auto other = gridOf(scaled({1, 1, 2}));
+  const auto other = gridOf(sheared());
   other->setName("other");
   writeWithOpenVdb(path, {other, gridOf(scaled({1, 1, 1}))});
   CHECK_THAT(errorOf(path), Catch::Contains("'other'"));

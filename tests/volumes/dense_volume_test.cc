@@ -256,7 +256,7 @@ TEST_CASE("dense_volume: nothing but zeros gives empty grids with their domain a
        {openvdb::GridBase::ConstPtr(mask), openvdb::GridBase::ConstPtr(labels)}) {
     CHECK(grid->empty());
     CHECK(storedDomain(*grid) == box);
-    CHECK(storedVoxelSize(*grid)->metres == 8.5e-6);
+    CHECK(storedVoxelSize(*grid)->edge() == 8.5e-6);
     CHECK(grid->voxelSize()[0] == Approx(0.0085));
   }
   CHECK_FALSE(storedVoxelSize(*maskFromDense(zeros.data(), layout)));

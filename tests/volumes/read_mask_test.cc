@@ -222,7 +222,7 @@ TEST_CASE("image_mask: says where it comes from", "[image_mask]") {
   image.setVoxelSize(8.5e-6);
   image.setPath("/scans/sample7/");
   mask = readMask(image);
-  CHECK(storedVoxelSize(*mask)->metres == 8.5e-6);
+  CHECK(storedVoxelSize(*mask)->edge() == 8.5e-6);
   CHECK(mask->voxelSize()[0] == Approx(0.0085));
   CHECK(mask->metaValue<std::string>("madf_source") == "sample7");
 }

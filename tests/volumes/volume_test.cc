@@ -89,7 +89,7 @@ TEST_CASE("volume: domain and voxel size of the options replace the file's", "[v
     const auto check = [&](const openvdb::GridBase& grid) {
       CHECK(storedDomain(grid) == options.domain);
       REQUIRE(storedVoxelSize(grid));
-      CHECK(storedVoxelSize(grid)->metres == 3e-6);
+      CHECK(storedVoxelSize(grid)->edge() == 3e-6);
     };
     check(*loadLabels(folder / name, options));
     check(*loadObject(folder / name, options));

@@ -151,7 +151,7 @@ TEST_CASE("image_write: every format, with the voxel size", "[image_write]") {
   for (const std::string name : {"b.mhd", "b.mha", "b.tif", "b.nrrd"}) {
     writeImage(folder / name, *grid, box, SampleType::int32);
     CHECK(numbersIn(folder / name, std::nullopt) == numbers);
-    CHECK(openImage(folder / name)->info().voxelSize->metres == 8.5e-6);
+    CHECK(openImage(folder / name)->info().voxelSize->edge() == 8.5e-6);
   }
 }
 

@@ -34,20 +34,24 @@ using openvdb::Vec3d;
 
 namespace {
 
-constexpr double kEdge = 0.25;  // mm; all places are exact, in float too
+constexpr double kEdge = 0.25;                       // mm; all places are exact, in float too
+const Vec3d kCube(kEdge), kFlat(0.25, 0.5, 0.0625);  // voxels
 const Vec3d kShift(10, -20.5, 3.25);
 constexpr double kExact = 1e-12;
 
-Vec3d placeOf(const Vec3d& voxel) {
-  return kEdge * voxel + kShift;
+Vec3d placeOf(const Vec3d& voxel, const Vec3d& edges = kCube) {
+  return edges * voxel + kShift;
 }
-Vec3d placeOf(const Coord& voxel) {
-  return placeOf(voxel.asVec3d());
+Vec3d placeOf(const Coord& voxel, const Vec3d& edges = kCube) {
+  return placeOf(voxel.asVec3d(), edges);
+}
+Coord voxelAt(const Vec3d& place, const Vec3d& edges) {
+  return Coord::round((place - kShift) / edges);
 }
 
-Int32Grid::Ptr markedGrid() {
+Int32Grid::Ptr markedGrid(const Vec3d& edges = kCube) {
   const auto grid = labelGrid(marker());
-  setVoxelSize(*grid, VoxelSize{kEdge * 1e-3});
+  setVoxelSize(*grid, VoxelSize({edges[0] * 1e-3, edges[1] * 1e-3, edges[2] * 1e-3}));
   grid->transform().postTranslate(kShift);
   return grid;
 }
@@ -91,12 +95,12 @@ bool near(const Vec3d& a, const Vec3d& b) {
 }
 
 /// Label of each voxel with a label, at its place in an image of this first place.
-void checkImage(const std::string& path, const Vec3d& first) {
+void checkImage(const std::string& path, const Vec3d& first, const Vec3d& edges) {
   const auto labels = readLabels(*openImage(path));
   CHECK(labels->activeVoxelCount() == marker().size());
   for (const auto& [p, label] : marker()) {
-    const Coord voxel = Coord::round((placeOf(p) - first) / kEdge);
-    CHECK(near(first + kEdge * voxel.asVec3d(), placeOf(p)));
+    const Coord voxel = Coord::round((placeOf(p, edges) - first) / edges);
+    CHECK(near(first + edges * voxel.asVec3d(), placeOf(p, edges)));
     CHECK(labels->tree().getValue(voxel) == label);
   }
 }
@@ -105,24 +109,29 @@ void checkImage(const std::string& path, const Vec3d& first) {
 
 TEST_CASE("world_place: images that have an origin", "[world_place]") {
   const ScratchFolder folder;
-  const auto grid = markedGrid();
   const CoordBBox box(Coord(-9, -8, 1), Coord(4, 6, 8));
-  for (const std::string name : {"a.mhd", "a.mha"}) {
-    writeImage(folder / name, *grid, box, SampleType::int32);
-    const std::string text = readFile(folder / name);
-    CHECK(numbersAfter(text, "\nElementSpacing =") == Vec3d(kEdge));
-    CHECK(near(numbersAfter(text, "\nOffset ="), placeOf(box.min())));
-    checkImage(folder / name, numbersAfter(text, "\nOffset ="));
+  for (const auto& [edges, directions] : {std::pair(kCube, "(0.25,0,0) (0,0.25,0) (0,0,0.25)"),
+                                          {kFlat, "(0.25,0,0) (0,0.5,0) (0,0,0.0625)"}}) {
+    const auto grid = markedGrid(edges);
+    for (const std::string name : {"a.mhd", "a.mha"}) {
+      writeImage(folder / name, *grid, box, SampleType::int32);
+      const std::string text = readFile(folder / name);
+      CHECK(numbersAfter(text, "\nElementSpacing =") == edges);
+      CHECK(near(numbersAfter(text, "\nOffset ="), placeOf(box.min(), edges)));
+      checkImage(folder / name, numbersAfter(text, "\nOffset ="), edges);
+    }
+    writeImage(folder / "a.nrrd", *grid, box, SampleType::int32);
+    const std::string text = readFile(folder / "a.nrrd");
+    CHECK(text.find("\nspace dimension: 3\n") != std::string::npos);
+    CHECK(text.find(std::string("\nspace directions: ") + directions + "\n") != std::string::npos);
+    CHECK(text.find("\nspace units: \"mm\" \"mm\" \"mm\"\n") != std::string::npos);
+    CHECK(near(numbersAfter(text, "\nspace origin:"), placeOf(box.min(), edges)));
+    checkImage(folder / "a.nrrd", numbersAfter(text, "\nspace origin:"), edges);
+    CHECK(openImage(folder / "a.nrrd")->info().voxelSize->edges() ==
+          storedVoxelSize(*grid)->edges());
   }
-  writeImage(folder / "a.nrrd", *grid, box, SampleType::int32);
-  const std::string text = readFile(folder / "a.nrrd");
-  CHECK(text.find("\nspace dimension: 3\n") != std::string::npos);
-  CHECK(text.find("\nspace directions: (0.25,0,0) (0,0.25,0) (0,0,0.25)\n") != std::string::npos);
-  CHECK(text.find("\nspace units: \"mm\" \"mm\" \"mm\"\n") != std::string::npos);
-  CHECK(near(numbersAfter(text, "\nspace origin:"), placeOf(box.min())));
-  checkImage(folder / "a.nrrd", numbersAfter(text, "\nspace origin:"));
-  CHECK(openImage(folder / "a.nrrd")->info().voxelSize->metres == kEdge * 1e-3);
 
+  const auto grid = markedGrid();
   // Smaller voxels have transforms in micrometres, but these formats want millimetres.
   setVoxelSize(*grid, VoxelSize{1e-8});
   writeImage(folder / "b.mha", *grid, box, SampleType::int32);
@@ -139,8 +148,8 @@ TEST_CASE("world_place: images that have an origin", "[world_place]") {
 TEST_CASE("world_place: VTI, compressed or not", "[world_place]") {
   const ScratchFolder folder;
   const CoordBBox box(Coord(-9, -8, 1), Coord(4, 6, 8));
-  for (const bool compressed : {false, true}) {
-    writeVti(folder / "a.vti", *markedGrid(), box, compressed);
+  for (const auto& [compressed, edges] : {std::pair(false, kCube), {true, kCube}, {false, kFlat}}) {
+    writeVti(folder / "a.vti", *markedGrid(edges), box, compressed);
     const VtkArrays file(readFile(folder / "a.vti"));
     const Vec3d origin = numbersAfter(file.attribute("ImageData", "Origin"), ""),
                 spacing = numbersAfter(file.attribute("ImageData", "Spacing"), "");
@@ -157,8 +166,8 @@ TEST_CASE("world_place: VTI, compressed or not", "[world_place]") {
           if (label == 0) continue;
           ++found;
           const Vec3d middle = origin + spacing * Vec3d(x + 0.5, y + 0.5, z + 0.5);
-          const Coord voxel = Coord::round((middle - kShift) / kEdge);
-          CHECK(near(middle, placeOf(voxel)));
+          const Coord voxel = voxelAt(middle, edges);
+          CHECK(near(middle, placeOf(voxel, edges)));
           CHECK(marker().at(voxel) == label);
         }
     CHECK(i == values.size());
@@ -168,37 +177,39 @@ TEST_CASE("world_place: VTI, compressed or not", "[world_place]") {
 
 TEST_CASE("world_place: meshes", "[world_place]") {
   const ScratchFolder folder;
-  const auto grid = markedGrid();
-  MeshFileOptions options;
-  options.transform = grid->constTransformPtr();
-  for (const std::string ending : {"ply", "obj", "stl", "vtp"}) {
-    CAPTURE(ending);
+  for (const auto& [ending, edges] : std::vector<std::pair<std::string, Vec3d>>{
+           {"ply", kCube}, {"obj", kCube}, {"stl", kCube}, {"vtp", kCube}, {"obj", kFlat}}) {
+    CAPTURE(ending, edges);
+    const auto grid = markedGrid(edges);
+    MeshFileOptions options;
+    options.transform = grid->constTransformPtr();
     writeMesh(folder / ("m." + ending), grainMesh(*grid), options);
     std::map<int32_t, openvdb::BBoxd> found, wanted;
     for (const Face& face : readMesh(ending, readFile(folder / ("m." + ending))))
       for (const Vec3f& corner : face.corners) found[face.grain].expand(Vec3d(corner));
     for (const auto& [p, label] : marker())
       for (const double side : {-0.5, 0.5})
-        wanted[ending == "stl" ? 0 : label].expand(placeOf(p.asVec3d() + Vec3d(side)));
+        wanted[ending == "stl" ? 0 : label].expand(placeOf(p.asVec3d() + Vec3d(side), edges));
     CHECK(found == wanted);
   }
 }
 
 TEST_CASE("world_place: grids for rendering, reduced or not", "[world_place]") {
-  const auto grid = markedGrid();
+  const Vec3d edges = GENERATE(kCube, kFlat);
+  const auto grid = markedGrid(edges);
   const auto full = reduceLabels(*grid, 1);
   const auto preview = previewLabels(*grid, 1);
   CHECK(full->activeVoxelCount() == marker().size());
   CHECK(preview.density->activeVoxelCount() == marker().size());
   CHECK(preview.color->activeVoxelCount() == marker().size());
   for (auto voxel = full->cbeginValueOn(); voxel; ++voxel) {
-    const Coord p = Coord::round((full->indexToWorld(voxel.getCoord()) - kShift) / kEdge);
-    CHECK(near(placeOf(p), full->indexToWorld(voxel.getCoord())));
+    const Coord p = voxelAt(full->indexToWorld(voxel.getCoord()), edges);
+    CHECK(near(placeOf(p, edges), full->indexToWorld(voxel.getCoord())));
     CHECK(marker().at(p) == *voxel);
   }
   for (auto voxel = preview.density->cbeginValueOn(); voxel; ++voxel) {
     const Vec3d place = preview.density->indexToWorld(voxel.getCoord());
-    CHECK(marker().count(Coord::round((place - kShift) / kEdge)) == 1);
+    CHECK(marker().count(voxelAt(place, edges)) == 1);
     CHECK(near(place, preview.color->indexToWorld(voxel.getCoord())));
   }
   // Reduced, a coarse voxel lies at the middle of the eight that it stands for.
@@ -208,7 +219,7 @@ TEST_CASE("world_place: grids for rendering, reduced or not", "[world_place]") {
   CHECK(coarse->activeVoxelCount() == counts.size());
   for (const auto& [p, count] : counts) {
     CHECK(coarse->tree().getValue(p) == Approx(count / 8.0));
-    CHECK(near(coarse->indexToWorld(p), placeOf(2 * p.asVec3d() + Vec3d(0.5))));
+    CHECK(near(coarse->indexToWorld(p), placeOf(2 * p.asVec3d() + Vec3d(0.5), edges)));
   }
 }
 
@@ -306,8 +317,9 @@ TEST_CASE("world_place: clumps", "[world_place]") {
 
 TEST_CASE("world_place: elements", "[world_place]") {
   const ScratchFolder folder;
-  writeHexahedra(folder / "h.vtu", *markedGrid());
-  writeHexahedra(folder / "h.inp", *markedGrid());
+  const Vec3d edges = GENERATE(kCube, kFlat);
+  writeHexahedra(folder / "h.vtu", *markedGrid(edges));
+  writeHexahedra(folder / "h.inp", *markedGrid(edges));
   const VtkArrays vtu(readFile(folder / "h.vtu"));
   const auto nodes = vtu.values<Vec3d>("Points");
   const auto corners = vtu.values<int32_t>("connectivity"),
@@ -316,8 +328,8 @@ TEST_CASE("world_place: elements", "[world_place]") {
   for (size_t i = 0; i < grains.size(); ++i) {
     Vec3d middle(0);
     for (size_t n = 0; n < 8; ++n) middle += nodes.at(size_t(corners.at(8 * i + n))) / 8;
-    const Coord p = Coord::round((middle - kShift) / kEdge);
-    CHECK(near(middle, placeOf(p)));
+    const Coord p = voxelAt(middle, edges);
+    CHECK(near(middle, placeOf(p, edges)));
     CHECK(marker().at(p) == grains[i]);
   }
   // Abaqus: the same nodes; its elements are those of hexa_file_test.cc.
@@ -327,4 +339,17 @@ TEST_CASE("world_place: elements", "[world_place]") {
   REQUIRE(rows.size() == nodes.size());
   for (size_t i = 0; i < rows.size(); ++i)
     CHECK(near(Vec3d(rows[i][1], rows[i][2], rows[i][3]), nodes[i]));
+}
+
+TEST_CASE("world_place: what needs cubes refuses other voxels", "[world_place]") {
+  const auto flat = markedGrid(kFlat);
+  const auto refuses = [](const auto& work) {
+    CHECK_THROWS_WITH(
+        work(), Catch::Contains("needs cubic voxels") && Catch::Contains("0.25 x 0.5 x 0.0625"));
+  };
+  refuses([&] { measure(*flat); });
+  refuses([&] { grainNetwork(*flat); });
+  refuses([&] { clumps(*flat, *flat); });
+  refuses([&] { grainLevelSets(*flat); });
+  refuses([&] { surfaceLevelSet(*flat); });
 }

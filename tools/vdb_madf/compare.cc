@@ -3,6 +3,8 @@
 
 #include "vdb_madf/labels/compare.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -111,11 +113,17 @@ std::string text(const CoordBBox& box) {
 void checkSameVoxels(const Options& o, const Int32Grid& truth, const Int32Grid& test) {
   constexpr double kTolerance = 1e-3;  // as for the spacings of an image
   const auto a = storedVoxelSize(truth), b = storedVoxelSize(test);
-  if (!a || !b || std::abs(a->metres - b->metres) <= kTolerance * a->metres) return;
+  if (!a || !b) return;
+  std::array<double, 3> ratios;
+  for (size_t axis = 0; axis < 3; ++axis) ratios[axis] = b->edges()[axis] / a->edges()[axis];
+  if (std::all_of(ratios.begin(), ratios.end(),
+                  [](double ratio) { return std::abs(ratio - 1) <= kTolerance; }))
+    return;
   std::ostringstream text;
   text.precision(4);
-  text << o.test.path << ": its voxels are " << b->metres / a->metres
-       << " times as long as those of " << o.truth.path << ": give labels of the same voxels";
+  text << o.test.path << ": its voxels are " << ratios[0];
+  if (!a->isCube() || !b->isCube()) text << ", " << ratios[1] << ", " << ratios[2];
+  text << " times as long as those of " << o.truth.path << ": give labels of the same voxels";
   throw InvalidInput(text.str());
 }
 

@@ -119,6 +119,8 @@ void run(const Options& o, const Common& common) {
         filteredImage(openVolumeImage(o.input.path, o.input.volume(common.progress)), o.input.gray);
     const SampleType type = outputType(o).value_or(image->info().type);
     copyImage(o.out, *image, type, o.input.voxelSize, common.progress);
+    const auto size = o.input.voxelSize ? o.input.voxelSize : image->info().voxelSize;
+    noteLostEdges(o.out, !size || size->isCube(), size, common);
     reportImage(o.out, "all values", toCoord(image->info().size), type, common);
   }
 }

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "command.h"
+#include "grid_image.h"
 #include "input_options.h"
 #include "outputs.h"
 #include "parse.h"
@@ -249,6 +250,7 @@ void exportHexahedra(const Options& o, const Common& common, const Int32Grid& la
 void exportMask(const Options& o, const Common& common, const Int32Grid& labels) {
   const CoordBBox box = boxOf(labels);
   writeImage(o.out, *objectMask(labels), box, SampleType::uint8, common.progress);
+  noteLostEdges(o.out, hasCubicVoxels(labels), storedVoxelSize(labels), common);
   const Coord size = box.dim();
   say(o, common,
       "1 = grain, 0 = background, " + std::to_string(size.x()) + "x" + std::to_string(size.y()) +

@@ -243,6 +243,9 @@ void parse(const Kind& kind, Options& options) {
   kind.parse(options);
   parseScan(options, options.scan);
   if (!options.voxelSizeText.empty()) options.voxelSize = parseVoxelSize(options.voxelSizeText);
+  if (options.voxelSize && !options.voxelSize->isCube())
+    throw WrongUsage("--voxel-size " + options.voxelSizeText +
+                     ": samples are made of cubes; give one edge");
 }
 
 void run(const Kind& kind, const Options& options, const Common& common) {

@@ -7,6 +7,7 @@
 
 #include "outputs.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/open_image.h"
 #include "vdb_madf/volumes/label_type.h"
@@ -54,7 +55,17 @@ void writeGridAsImage(const std::string& path, const openvdb::GridBase& grid,
   }
   const SampleType chosen = type.value_or(naturalType(grid, path));
   writeImage(path, grid, *box, chosen, common.progress);
+  noteLostEdges(path, hasCubicVoxels(grid), storedVoxelSize(grid), common);
   reportImage(path, "grid '" + grid.getName() + "'", box->dim(), chosen, common);
+}
+
+void noteLostEdges(const std::string& path, bool areCubes, const std::optional<VoxelSize>& size,
+                   const Common& common) {
+  const std::string ending = fileEnding(path);
+  if (areCubes || (size && ending != ".raw" && ending != ".npy")) return;
+  common.progress->note(path +
+                        ": does not say that its voxels are no cubes: give their edges again "
+                        "where it is read (--voxel-size)");
 }
 
 void reportImage(const std::string& path, const std::string& what, const Coord& size,

@@ -23,6 +23,12 @@ void writeGridAsImage(const std::string& path, const openvdb::GridBase& grid,
                       const std::optional<SampleType>& type, const std::string& source,
                       const Common& common);
 
+/// A note if the image will not say that its voxels are no cubes.
+/// @param areCubes the voxels
+/// @param size unknown: there is nothing to write
+void noteLostEdges(const std::string& path, bool areCubes, const std::optional<VoxelSize>& size,
+                   const Common& common);
+
 /// Says what samples an image has, unless the user wants to hear nothing.
 void reportImage(const std::string& path, const std::string& what, const Coord& size,
                  SampleType type, const Common& common);

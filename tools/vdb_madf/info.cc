@@ -69,7 +69,7 @@ Json describeGrid(const openvdb::GridBase& grid) {
   }
   const openvdb::Vec3d edge = grid.voxelSize();
   json["voxel_size_units"] = {edge.x(), edge.y(), edge.z()};
-  if (const auto size = storedVoxelSize(grid)) json["voxel_size_mm"] = size->metres * 1e3;
+  if (const auto size = storedVoxelSize(grid)) json["voxel_size_mm"] = inMillimetres(*size);
   json["memory_bytes"] = grid.memUsage();
   Json metadata = Json::object();
   for (auto meta = grid.beginMeta(); meta != grid.endMeta(); ++meta)
@@ -85,7 +85,7 @@ Json describeImage(const ImageReader& image) {
   json["format"] = info.format;
   json["size"] = corner(toCoord(info.size));
   json["type"] = sampleTypeName(info.type);
-  if (info.voxelSize) json["voxel_size_mm"] = info.voxelSize->metres * 1e3;
+  if (info.voxelSize) json["voxel_size_mm"] = inMillimetres(*info.voxelSize);
   // Of slices in a folder; a Zarr group names itself, too.
   if (const auto& files = image.files();
       std::filesystem::is_directory(image.path()) && files.front() != image.path()) {
@@ -131,9 +131,9 @@ void run(const Options& o, const Common& common) {
     reading.anyVoxelShape = true;
     for (const auto& grid : readVdb(o.input.path, reading, common.progress)) {
       json["grids"].push_back(describeGrid(*grid));
-      if (!hasCubicVoxels(*grid))
+      if (!hasVoxelsAlongAxes(*grid))
         common.progress->note(o.input.path + ": the voxels of grid '" + grid->getName() +
-                              "' are no cubes along the axes; only info reads it");
+                              "' are not along the axes; only info reads it");
     }
   } else {
     const auto image = openVolumeImage(o.input.path, o.input.volume(common.progress));

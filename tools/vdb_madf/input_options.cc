@@ -78,7 +78,8 @@ void InputOptions::addSelection(Verb verb) {
 }
 
 void InputOptions::addVoxelSize(Verb verb) {
-  verb.option("--voxel-size", voxelSizeText, "edge of a voxel with unit, for example 8.5um");
+  verb.option("--voxel-size", voxelSizeText,
+              "edge of a voxel with unit, for example 8.5um, or its three: 0.5x0.5x1.2um");
 }
 
 void InputOptions::addDomain(Verb verb) {

@@ -8,10 +8,14 @@
 
 #include "progress.h"
 #include "text_file.h"
+#include "vdb_madf/base/voxel_size.h"
 
 namespace vdb_madf::tools {
 
 using Json = nlohmann::ordered_json;
+
+/// The edge of a cube, or the three of another voxel.
+Json inMillimetres(const VoxelSize& size);
 
 /// "notes", if there are any.
 void addNotes(Json& json, const Progress& progress);

@@ -51,7 +51,7 @@ void print(const Options& o, const Measurements& m) {
   if (density) std::printf(", %.1f kg/m3", *density * m.sample.objectFraction);
   std::printf("\n  specific surface    %.5g /%s", m.sample.specificSurface / length, unit.c_str());
   if (m.voxelSize && density)
-    std::printf(" = %.4g m2/kg", m.sample.specificSurface / m.voxelSize->metres / *density);
+    std::printf(" = %.4g m2/kg", m.sample.specificSurface / m.voxelSize->edge() / *density);
   std::printf("\n  grain diameter      d50 %.5g %s by number, %.5g by volume\n",
               length * diameterPercentile(m.grains, 0.5, false), unit.c_str(),
               length * diameterPercentile(m.grains, 0.5, true));

@@ -90,19 +90,29 @@ CoordBBox parseDomain(const std::string& text) {
 
 VoxelSize parseVoxelSize(const std::string& text) {
   const std::string given = "--voxel-size " + text;
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (end == text.c_str() || !std::isfinite(value))
-    throw WrongUsage(given + ": not a finite number");
-  const auto perMetre = unitsPerMetre(end);
-  if (!perMetre)
-    throw WrongUsage(given + (end[0] == ','
-                                  ? commaHint(text)
-                                  : ": give a unit (nm, um, mm or m), for example 8.5um"));
-  // Dividing by a power of ten keeps decimal inputs exact to the last bit.
-  const double size = value / *perMetre;
-  if (size >= 1e-10 && size <= 1) return {size};
-  throw WrongUsage(given + ": must lie between 0.1nm and 1m");
+  const std::vector<std::string> parts = split(text, 'x');
+  if (parts.size() != 1 && parts.size() != 3)
+    throw WrongUsage(given + ": write one edge or three, for example 8.5um or 0.5x0.5x1.2um");
+  std::vector<double> edges;
+  std::string unit;
+  for (auto part = parts.rbegin(); part != parts.rend(); ++part) {  // the last has the unit of all
+    char* end = nullptr;
+    const double value = std::strtod(part->c_str(), &end);
+    if (end == part->c_str() || !std::isfinite(value))
+      throw WrongUsage(given + ": not a finite number");
+    const std::string rest = end;
+    if (rest.find_first_not_of(' ') != std::string::npos) unit = rest;
+    const auto perMetre = unitsPerMetre(unit);
+    if (!perMetre)
+      throw WrongUsage(given + (rest[0] == ','
+                                    ? commaHint(text)
+                                    : ": give a unit (nm, um, mm or m), for example 8.5um"));
+    // Dividing by a power of ten keeps decimal inputs exact to the last bit.
+    edges.push_back(value / *perMetre);
+    if (!(edges.back() >= 1e-10 && edges.back() <= 1))
+      throw WrongUsage(given + ": must lie between 0.1nm and 1m");
+  }
+  return edges.size() == 1 ? VoxelSize(edges[0]) : VoxelSize({edges[2], edges[1], edges[0]});
 }
 
 int64_t parseCount(const std::string& text, const std::string& option) {

@@ -22,7 +22,8 @@ double parseNumber(const std::string& text, const std::string& option);
 Coord parseDims(const std::string& text, const std::string& option);
 /// --domain: "x0,y0,z0:x1,y1,z1", both corners inclusive.
 CoordBBox parseDomain(const std::string& text);
-/// --voxel-size: "8.5um", with or without a space; units as unitsPerMetre() knows them.
+/// --voxel-size: "8.5um", "0.5x0.5x1.2um" (or a unit for each), with or without a space; units as
+/// unitsPerMetre() knows them.
 VoxelSize parseVoxelSize(const std::string& text);
 /// A whole number >= 0.
 int64_t parseCount(const std::string& text, const std::string& option);

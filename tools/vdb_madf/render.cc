@@ -71,7 +71,8 @@ void run(const Options& o, const Common& common) {
     std::cout << "middle slices x-y, x-z, y-z (z up), "
               << (panels[0].voxelsPerPixel <= 1
                       ? counted(std::lround(1 / panels[0].voxelsPerPixel), "pixel") + " a voxel"
-                      : counted(std::lround(panels[0].voxelsPerPixel), "voxel") + " a pixel");
+                      : counted(std::lround(panels[0].voxelsPerPixel), "voxel") + " a pixel")
+              << (hasCubicVoxels(*labels) ? "" : " along its shortest edge");
   if (o.only.empty()) std::cout << "; ";
   if (o.only != "slices")
     std::cout << "view from azimuth " << o.view.azimuth << ", elevation " << o.view.elevation

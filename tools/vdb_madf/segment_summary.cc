@@ -100,7 +100,7 @@ Json toJson(const SegmentArguments& o, const SegmentSummary& summary) {
                           domain->box().max().z()};
     json["porosity"] = *summary.porosity();
   }
-  if (summary.voxelSize) json["voxel_size_mm"] = summary.voxelSize->metres * 1e3;
+  if (summary.voxelSize) json["voxel_size_mm"] = inMillimetres(*summary.voxelSize);
   json["grains_under_100_voxels"] = summary.sizes.dustGrains;
   json["voxels_in_grains_under_100_voxels"] = summary.sizes.dustVoxels;
   json["crumbs"] = summary.flaws.crumbs;
@@ -146,8 +146,11 @@ void print(const SegmentArguments& o, const Common& common, const SegmentSummary
   if (!summary.objectSteps.empty())
     std::printf("                   %s\n", summary.objectSteps.c_str());
   if (summary.domain) std::printf("  porosity         %.2f %%\n", 100 * *summary.porosity());
-  const double um = summary.voxelSize ? 1e3 * (summary.voxelSize->metres * 1e3) : 0;
-  if (summary.voxelSize)
+  const double um = summary.voxelSize ? 1e3 * (summary.voxelSize->meanEdge() * 1e3) : 0;
+  if (summary.voxelSize && !summary.voxelSize->isCube())
+    std::printf("  voxel size       %g x %g x %g um\n", 1e6 * summary.voxelSize->edges()[0],
+                1e6 * summary.voxelSize->edges()[1], 1e6 * summary.voxelSize->edges()[2]);
+  else if (summary.voxelSize)
     std::printf("  voxel size       %g um\n", um);
   else
     std::printf("  voxel size       unknown, so no physical sizes (give --voxel-size)\n");

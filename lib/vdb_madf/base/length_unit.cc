@@ -29,6 +29,11 @@ std::string lengthIn(double unitsPerMetre, double metres) {
   return shortestDecimal(value);
 }
 
+std::array<std::string, 3> lengthsIn(double unitsPerMetre, const std::array<double, 3>& metres) {
+  return {lengthIn(unitsPerMetre, metres[0]), lengthIn(unitsPerMetre, metres[1]),
+          lengthIn(unitsPerMetre, metres[2])};
+}
+
 std::optional<double> unitsPerMetre(const std::string& unit) {
   static const std::map<std::string, double> kUnits = {{"nm", 1e9},
                                                        {"nanometer", 1e9},

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -15,5 +16,7 @@ std::optional<double> unitsPerMetre(const std::string& unit);
 /// A length as a decimal in another unit, such that the decimal / unitsPerMetre gives back `metres`
 /// to the last bit (or nearly, where no double does).
 std::string lengthIn(double unitsPerMetre, double metres);
+/// The same of three lengths.
+std::array<std::string, 3> lengthsIn(double unitsPerMetre, const std::array<double, 3>& metres);
 
 }  // namespace vdb_madf

@@ -3,21 +3,44 @@
 
 #pragma once
 
+#include <array>
 #include <string>
 
 namespace vdb_madf {
 
-/// Edge of a cubic voxel and the unit that the transform of a grid is written in.
+/// True for three lengths > 0 that differ by at most 0.1 % (kMaxEdgeRatio).
+bool areEdgesOfCube(const std::array<double, 3>& edges);
+
+/// Edges of a voxel and the unit that the transform of a grid is written in.
 ///
 /// OpenVDB refuses transforms with a voxel volume below 3e-15, so metres do not work for micro-CT:
 /// grids are written in millimetres (below 20 nm: micrometres), the SI size stands in metadata.
-struct VoxelSize {
-  double metres = 0;  ///< > 0
+class VoxelSize {
+ public:
+  /// A cube. @param edge metres, > 0
+  explicit VoxelSize(double edge) : edges_{edge, edge, edge} {}
+  /// @param edges metres, > 0, along x, y and z. Those of a cube are all taken for that along x.
+  explicit VoxelSize(const std::array<double, 3>& edges);
 
-  /// "mm", or "um" below 20 nm.
+  /// Metres, along x, y and z.
+  const std::array<double, 3>& edges() const { return edges_; }
+  bool isCube() const { return edges_[0] == edges_[1] && edges_[0] == edges_[2]; }
+  /// Metres. @pre isCube()
+  double edge() const;
+  /// Metres.
+  double shortestEdge() const;
+  /// Metres: of the cube of equal volume; the edge, if it is a cube.
+  double meanEdge() const;
+
+  /// "mm", or "um" if an edge is below 20 nm.
   std::string unit() const;
-  /// Edge in unit().
+  /// Edges in unit().
+  std::array<double, 3> edgesInUnit() const;
+  /// Edge in unit(). @pre isCube()
   double inUnit() const;
+
+ private:
+  std::array<double, 3> edges_;
 };
 
 }  // namespace vdb_madf

@@ -90,7 +90,7 @@ Json segmentationJson(const openvdb::MetaMap& metadata) {
   Json json = Json::object();
   for (auto item = metadata.beginMeta(); item != metadata.endMeta(); ++item) {
     const std::string& key = item->first;
-    if (key.compare(0, prefix.size(), prefix) != 0 || key == "madf_voxel_size_m" ||
+    if (key.compare(0, prefix.size(), prefix) != 0 || key == kVoxelSizeKey ||
         key == "madf_length_unit")
       continue;
     if (const auto value = plainValue(*item->second))
@@ -133,7 +133,7 @@ Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& opt
   json["area_estimator"] = "voxel faces weighted by local normals";
   json["specific_surface_per_" + u] = s.specificSurface / unit.length;
   if (m.voxelSize && options.density)
-    json["specific_surface_m2_per_kg"] = s.specificSurface / m.voxelSize->metres / *options.density;
+    json["specific_surface_m2_per_kg"] = s.specificSurface / m.voxelSize->edge() / *options.density;
   Json lengths = Json::array();
   for (const auto& length : s.correlationLengths)
     lengths.push_back(length ? Json(*length * unit.length) : Json());

@@ -120,7 +120,7 @@ std::string triple(const openvdb::Vec3d& v) {
 void writeVti(const std::string& path, const Int32Grid& labels, const CoordBBox& box,
               bool compressed, Interrupter* interrupter) {
   if (box.empty()) throw InvalidInput("there is no voxel and no domain: nothing to write");
-  const detail::CubicTransform world = detail::cubicTransform(labels.transform());
+  const detail::WorldTransform world = detail::worldTransform(labels.transform());
   const Slabs slabs(labels, box);
   std::string extent;
   for (int axis = 0; axis < 3; ++axis)
@@ -128,9 +128,8 @@ void writeVti(const std::string& path, const Int32Grid& labels, const CoordBBox&
               std::to_string(int64_t(box.max()[axis]) + 1);
   detail::VtkFile file("ImageData");
   file.xml("<ImageData WholeExtent=\"" + extent + "\" Origin=\"" +
-           triple(world.origin - openvdb::Vec3d(0.5 * world.edge)) + "\" Spacing=\"" +
-           triple(openvdb::Vec3d(world.edge)) + "\">\n<Piece Extent=\"" + extent +
-           "\">\n<CellData Scalars=\"grain_id\">\n");
+           triple(world.origin - 0.5 * world.edges) + "\" Spacing=\"" + triple(world.edges) +
+           "\">\n<Piece Extent=\"" + extent + "\">\n<CellData Scalars=\"grain_id\">\n");
   const GrainColors colors = grainColors(labels, interrupter);
   addArray(file, slabs, compressed, "Int32", "grain_id", 1, interrupter,
            [](std::vector<int32_t> ids) { return ids; });

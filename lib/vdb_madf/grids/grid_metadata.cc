@@ -4,7 +4,11 @@
 #include "vdb_madf/grids/grid_metadata.h"
 
 #include <openvdb/Metadata.h>
+#include <openvdb/math/Maps.h>
 
+#include <algorithm>
+#include <array>
+#include <memory>
 #include <string>
 
 #include "vdb_madf/base/errors.h"
@@ -53,24 +57,55 @@ void setDomain(openvdb::MetaMap& metadata, const Domain& domain) {
 }
 
 std::optional<VoxelSize> storedVoxelSize(const openvdb::MetaMap& metadata) {
-  const auto metres = metadata.getMetadata<openvdb::DoubleMetadata>(kVoxelSizeKey);
-  if (!metres || !(metres->value() > 0)) return std::nullopt;
-  return VoxelSize{metres->value()};
+  const auto isLength = [](double metres) { return metres > 0; };
+  if (const auto cube = metadata.getMetadata<openvdb::DoubleMetadata>(kVoxelSizeKey))
+    return isLength(cube->value()) ? std::optional(VoxelSize(cube->value())) : std::nullopt;
+  const auto metres = metadata.getMetadata<openvdb::Vec3DMetadata>(kVoxelEdgesKey);
+  if (!metres) return std::nullopt;
+  const std::array<double, 3> edges{metres->value().x(), metres->value().y(), metres->value().z()};
+  if (!std::all_of(edges.begin(), edges.end(), isLength)) return std::nullopt;
+  return VoxelSize(edges);
+}
+
+void setStoredVoxelSize(openvdb::MetaMap& metadata, const std::optional<VoxelSize>& size) {
+  metadata.removeMeta(kVoxelSizeKey);
+  metadata.removeMeta(kVoxelEdgesKey);
+  if (!size) return;
+  const auto& [x, y, z] = size->edges();
+  if (size->isCube())
+    metadata.insertMeta(kVoxelSizeKey, openvdb::DoubleMetadata(x));
+  else
+    metadata.insertMeta(kVoxelEdgesKey, openvdb::Vec3DMetadata(openvdb::Vec3d(x, y, z)));
 }
 
 void setVoxelSize(openvdb::GridBase& grid, const std::optional<VoxelSize>& size) {
-  grid.removeMeta(kVoxelSizeKey);
+  setStoredVoxelSize(grid, size);
   grid.removeMeta(kLengthUnit);
-  if (size) {
-    grid.insertMeta(kVoxelSizeKey, openvdb::DoubleMetadata(size->metres));
-    grid.insertMeta(kLengthUnit, openvdb::StringMetadata(size->unit()));
+  if (size) grid.insertMeta(kLengthUnit, openvdb::StringMetadata(size->unit()));
+  if (!size || size->isCube()) {
+    grid.setTransform(openvdb::math::Transform::createLinearTransform(size ? size->inUnit() : 1.0));
+    return;
   }
-  grid.setTransform(openvdb::math::Transform::createLinearTransform(size ? size->inUnit() : 1.0));
+  const auto& [x, y, z] = size->edgesInUnit();
+  const openvdb::math::MapBase::Ptr scale =
+      std::make_shared<openvdb::math::ScaleMap>(openvdb::Vec3d(x, y, z));
+  grid.setTransform(std::make_shared<openvdb::math::Transform>(scale));
 }
 
 bool hasCubicVoxels(const openvdb::GridBase& grid) {
   const auto edges = detail::edgesAlongAxes(grid.transform());
   return edges && detail::areEdgesOfCube(*edges);
+}
+
+void requireCubicVoxels(const openvdb::GridBase& grid, const std::string& what) {
+  const auto edges = detail::edgesAlongAxes(grid.transform());
+  if (edges && !detail::areEdgesOfCube(*edges))
+    throw InvalidInput(what + " needs cubic voxels, and these are " + detail::timesText(*edges) +
+                       ": resample the grid to cubes first");
+}
+
+bool hasVoxelsAlongAxes(const openvdb::GridBase& grid) {
+  return detail::edgesAlongAxes(grid.transform()).has_value();
 }
 
 std::optional<MetadataValue> plainValue(const openvdb::Metadata& metadata) {
@@ -85,8 +120,9 @@ std::optional<MetadataValue> plainValue(const openvdb::Metadata& metadata) {
 }
 
 void copyProvenance(const openvdb::GridBase& from, openvdb::GridBase& to) {
-  for (const char* key : {kDomainMin, kDomainMax, detail::kRegionKey, kVoxelSizeKey, kLengthUnit,
-                          kSourceKey, kBoundaryKey, kObjectKey, kThresholdKey, kThresholdLowKey})
+  for (const char* key :
+       {kDomainMin, kDomainMax, detail::kRegionKey, kVoxelSizeKey, kVoxelEdgesKey, kLengthUnit,
+        kSourceKey, kBoundaryKey, kObjectKey, kThresholdKey, kThresholdLowKey})
     if (const auto value = from[key]) to.insertMeta(key, *value);
   to.setTransform(from.transform().copy());
 }

@@ -15,7 +15,8 @@
 namespace vdb_madf {
 
 /// Keys of the metadata that grids share.
-inline constexpr char kVoxelSizeKey[] = "madf_voxel_size_m";
+inline constexpr char kVoxelSizeKey[] = "madf_voxel_size_m";    ///< of cubes (double)
+inline constexpr char kVoxelEdgesKey[] = "madf_voxel_edges_m";  ///< of other voxels (Vec3d)
 inline constexpr char kSourceKey[] = "madf_source";      ///< where a grid comes from (string)
 inline constexpr char kBoundaryKey[] = "madf_boundary";  ///< "open" or "closed": see storedBoundary
 
@@ -27,16 +28,25 @@ inline constexpr char kBoundaryKey[] = "madf_boundary";  ///< "open" or "closed"
 std::optional<Domain> storedDomain(const openvdb::MetaMap& metadata);
 void setDomain(openvdb::MetaMap& metadata, const Domain& domain);
 
-/// Physical voxel size: metadata `madf_voxel_size_m` (double), and the unit of the transform in
-/// `madf_length_unit`. Absent: no physical size, one voxel is one unit.
+/// Physical voxel size: metadata `madf_voxel_size_m` (double), of voxels that are no cubes
+/// `madf_voxel_edges_m` (Vec3d: x, y, z), and the unit of the transform in `madf_length_unit`.
+/// Absent: no physical size, one voxel is one unit.
 std::optional<VoxelSize> storedVoxelSize(const openvdb::MetaMap& metadata);
-/// Sets the metadata and the grid's linear transform: world = index * size, so that the world
-/// position of voxel (i,j,k) is its centre. Without a size the transform is the identity.
+/// Sets the metadata alone, but for the unit.
+void setStoredVoxelSize(openvdb::MetaMap& metadata, const std::optional<VoxelSize>& size);
+/// Sets the metadata and the grid's linear transform: world = index * size along each axis, so that
+/// the world position of voxel (i,j,k) is its centre. Without a size the transform is the identity.
 void setVoxelSize(openvdb::GridBase& grid, const std::optional<VoxelSize>& size);
 
 /// True if voxels are cubes along the axes of the world, mirrored or not: edges differ by at most
-/// 0.1 %. Of other grids readVdb() gives none unless it is told to.
+/// 0.1 %.
 bool hasCubicVoxels(const openvdb::GridBase& grid);
+/// For what does not know other voxels yet. \p what: begins the message, as in "measuring".
+/// @throw InvalidInput for boxes along the axes that are no cubes
+void requireCubicVoxels(const openvdb::GridBase& grid, const std::string& what);
+/// True if voxels are boxes along the axes of the world, mirrored or not. Of other grids readVdb()
+/// gives none unless it is told to.
+bool hasVoxelsAlongAxes(const openvdb::GridBase& grid);
 
 /// A truth value, number or text of metadata; none for other types.
 using MetadataValue = std::variant<bool, int64_t, double, std::string>;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "vdb_madf/grids/detail/world_transform.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/grain_colors.h"
 #include "vdb_madf/measure/columns.h"
 
@@ -43,6 +44,7 @@ uint32_t position(const std::vector<int32_t>& labels, int32_t label) {
 
 GrainNetwork grainNetwork(const Int32Grid& labels, const MeasureOptions& options,
                           Interrupter* interrupter) {
+  requireCubicVoxels(labels, "measuring");
   const CubicTransform world = detail::cubicTransform(labels.transform());
   const Measurements measured = measure(labels, options, interrupter);
 

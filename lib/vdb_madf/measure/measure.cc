@@ -61,6 +61,7 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
                            const ManifoldGraph* graph, Interrupter* interrupter) {
   if (options.minFaces < 0)
     throw InvalidInput("the least number of faces of a bond must not be negative");
+  requireCubicVoxels(labels, "measuring");
   const detail::LabelLeaves leaves(labels, interrupter);
   const LeafIndex& index = leaves.index();
   const std::optional<Domain> domain = options.domain ? options.domain : storedDomain(labels);

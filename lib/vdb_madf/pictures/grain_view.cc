@@ -10,6 +10,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/grids/object_mask.h"
 
 namespace vdb_madf {
@@ -27,16 +28,16 @@ constexpr double kAmbient = 0.45, kDiffuse = 0.65;
 constexpr double kFarthest = 0.6;  ///< the back of the box against its front
 
 /// A walk through the cells of a lattice along a ray: Amanatides & Woo 1987. Cell (i, j, k) is the
-/// cube from (i, j, k) * size to (i + 1, j + 1, k + 1) * size.
+/// box from (i, j, k) * size to (i + 1, j + 1, k + 1) * size, along each axis.
 class CellWalk {
  public:
   /// From the ray's point at `t` on, which lies in (or, for rounding, next to) the cells from `low`
   /// to `high`.
-  CellWalk(const Vec& origin, const Vec& direction, double t, int size, const Coord& low,
+  CellWalk(const Vec& origin, const Vec& direction, double t, const Vec& size, const Coord& low,
            const Coord& high)
       : origin_(origin), direction_(direction), size_(size), t_(t) {
     for (int axis = 0; axis < 3; ++axis) {
-      const double p = (origin[axis] + t * direction[axis]) / size;
+      const double p = (origin[axis] + t * direction[axis]) / size[axis];
       cell_[axis] = std::clamp(int(std::floor(p)), low[axis], high[axis]);
       setNext(axis);
     }
@@ -55,12 +56,12 @@ class CellWalk {
   void setNext(int axis) {
     next_[axis] = direction_[axis] == 0
                       ? std::numeric_limits<double>::infinity()
-                      : ((cell_[axis] + (direction_[axis] > 0)) * double(size_) - origin_[axis]) /
+                      : ((cell_[axis] + (direction_[axis] > 0)) * size_[axis] - origin_[axis]) /
                             direction_[axis];
   }
   const Vec& origin_;
   const Vec& direction_;
-  const int size_;
+  const Vec& size_;
   Coord cell_;
   double t_;
   double next_[3];
@@ -107,7 +108,8 @@ class Smoothing {
     double fill = 0;  ///< smoothed indicator, 0..1
   };
 
-  Surface at(const MaskGrid::ConstAccessor& object, const Coord& voxel) const {
+  /// @param edges of a voxel
+  Surface at(const MaskGrid::ConstAccessor& object, const Coord& voxel, const Vec& edges) const {
     const Coord low = voxel - Coord(kReach);
     const Coord firstLeaf(low.x() & ~7, low.y() & ~7, low.z() & ~7);
     const MaskLeaf* leaves[2][2]
@@ -129,6 +131,7 @@ class Smoothing {
         gradient += weight * Vec((dx - kReach) * row.sum, (dy - kReach) * row.sum, row.moment);
       }
     }
+    gradient = gradient / edges;
     const double length = gradient.length();
     return {length > 1e-9 ? gradient / -length : Vec(0), sum / total_};
   }
@@ -152,21 +155,21 @@ class Smoothing {
 };
 
 /// The camera: where each pixel's ray starts, and how all rays run. Voxel (i, j, k) is here the
-/// cube from (i, j, k) to (i + 1, j + 1, k + 1).
+/// box from (i, j, k) to (i + 1, j + 1, k + 1), times its edges.
 struct Camera {
   Vec right, up, direction;
   Vec center;  ///< of the box
   double voxelsPerPixel = 0;
   int width = 0, height = 0;
 
-  Camera(const CoordBBox& box, const ViewOptions& options) {
+  Camera(const CoordBBox& box, const Vec& edges, const ViewOptions& options) {
     const double a = options.azimuth * M_PI / 180, e = options.elevation * M_PI / 180;
     const Vec towards(std::cos(e) * std::sin(a), -std::cos(e) * std::cos(a), std::sin(e));
     right = Vec(std::cos(a), std::sin(a), 0);
     up = towards.cross(right);
     direction = -towards;
-    const Vec size = box.extents().asVec3d();
-    center = box.min().asVec3d() + 0.5 * size;
+    const Vec size = edges * box.extents().asVec3d();
+    center = edges * box.min().asVec3d() + 0.5 * size;
     double across = 0, high = 0;
     for (int axis = 0; axis < 3; ++axis) {
       across += std::abs(right[axis]) * size[axis];
@@ -184,14 +187,21 @@ struct Camera {
 
 class Renderer {
  public:
-  Renderer(const Int32Grid& labels, const CoordBBox& box, const GrainColors& colors,
-           const Camera& camera)
-      : labels_(labels), box_(box), colors_(colors), camera_(camera), object_(objectMask(labels)) {
+  /// @param edges of a voxel; the shortest is 1
+  Renderer(const Int32Grid& labels, const CoordBBox& box, const Vec& edges,
+           const GrainColors& colors, const Camera& camera)
+      : labels_(labels),
+        box_(box),
+        edges_(edges),
+        leafEdges_(8 * edges),
+        colors_(colors),
+        camera_(camera),
+        object_(objectMask(labels)) {
     object_->clip(box_);  // makes tiles of full leaves
     object_->tree().voxelizeActiveTiles();
     for (int axis = 0; axis < 3; ++axis) {
-      low_[axis] = box.min()[axis];
-      high_[axis] = box.max()[axis] + 1;
+      low_[axis] = edges[axis] * box.min()[axis];
+      high_[axis] = edges[axis] * (box.max()[axis] + 1);
       leafLow_[axis] = box.min()[axis] >> 3;
       leafHigh_[axis] = box.max()[axis] >> 3;
       depth_ += std::abs(camera.direction[axis]) * (high_[axis] - low_[axis]);
@@ -208,7 +218,8 @@ class Renderer {
       if (!firstVoxel(object, camera_.origin(x, y), voxel, t)) continue;
       const int32_t label = labels.getValue(voxel);
       view.labels[size_t(y) * size_t(camera_.width) + size_t(x)] = label;
-      view.picture.at(x, y) = shade(colors_.colorOf(label), smoothing_.at(object, voxel), t);
+      view.picture.at(x, y) =
+          shade(colors_.colorOf(label), smoothing_.at(object, voxel, edges_), t);
     }
   }
 
@@ -218,13 +229,13 @@ class Renderer {
                   double& t) const {
     const Span span(origin, camera_.direction, low_, high_);
     if (span.empty()) return false;
-    CellWalk leaves(origin, camera_.direction, span.begin, 8, leafLow_, leafHigh_);
+    CellWalk leaves(origin, camera_.direction, span.begin, leafEdges_, leafLow_, leafHigh_);
     for (; leaves.t() < span.end; leaves.advance()) {
       const Coord cell = leaves.cell();  // times 8: negative numbers must not be shifted left
       const Coord corner(cell.x() * 8, cell.y() * 8, cell.z() * 8);
       const MaskLeaf* leaf = object.probeConstLeaf(corner);
       if (!leaf) continue;
-      CellWalk voxels(origin, camera_.direction, leaves.t(), 1, corner, corner + Coord(7));
+      CellWalk voxels(origin, camera_.direction, leaves.t(), edges_, corner, corner + Coord(7));
       for (; (voxels.cell() >> 3) == leaves.cell(); voxels.advance()) {
         if (!leaf->isValueOn(voxels.cell())) continue;
         voxel = voxels.cell();
@@ -250,6 +261,7 @@ class Renderer {
 
   const Int32Grid& labels_;
   const CoordBBox box_;
+  const Vec edges_, leafEdges_;
   const GrainColors& colors_;
   const Camera& camera_;
   const MaskGrid::Ptr object_;  ///< no tiles, nothing beyond the box
@@ -274,11 +286,12 @@ GrainView viewGrains(const Int32Grid& labels, const CoordBBox& box, const GrainC
                      const ViewOptions& options, Interrupter* interrupter) {
   check(options);
   if (box.empty()) return {Picture(1, 1, options.background), {0}, 1};
-  const Camera camera(box, options);
+  const Vec edges = detail::proportions(labels.transform());
+  const Camera camera(box, edges, options);
   GrainView view{Picture(camera.width, camera.height, options.background), {}, 0};
   view.labels.assign(view.picture.pixels.size(), 0);
   view.voxelsPerPixel = camera.voxelsPerPixel;
-  const Renderer renderer(labels, box, colors, camera);
+  const Renderer renderer(labels, box, edges, colors, camera);
   detail::parallelFor(size_t(camera.height), kRowGrain, interrupter, [&](size_t begin, size_t end) {
     for (size_t y = begin; y < end; ++y) renderer.drawRow(int(y), view);
   });

@@ -22,15 +22,15 @@ struct ViewOptions {
 struct GrainView {
   Picture picture;
   std::vector<int32_t> labels;  ///< of each pixel, in the picture's order; 0: background
-  double voxelsPerPixel = 0;    ///< in the plane of the picture
+  double voxelsPerPixel = 0;    ///< shortest edges of a voxel, in the plane of the picture
 };
 
 /// A shaded view of coloured grains from outside, in parallel projection: what lies in the box, cut
 /// off at its faces.
 ///
 /// A ray through the centre of each pixel walks through the leaves, then through the voxels of a
-/// leaf (Amanatides & Woo 1987), to the first voxel (a cube of edge 1) that has a label. Normal:
-/// the gradient of the object's indicator, smoothed by a Gaussian of sigma 1.5 voxels. Light:
+/// leaf (Amanatides & Woo 1987), to the first voxel (a box in true proportions) that has a label.
+/// Normal: the gradient of the object's indicator, smoothed by a Gaussian of sigma 1.5 voxels. Light:
 /// ambient, less in concave places, and diffuse from above on the left; what is farther is a little
 /// darker. The result does not depend on threads. An empty box gives a picture of one background
 /// pixel.

@@ -11,11 +11,12 @@
 
 namespace vdb_madf {
 
-/// The slices through the middle of a box, in one scale.
+/// The slices through the middle of a box, in one scale and in true proportions.
 struct LabelSlices {
   /// x-y (x to the right, y down, as image viewers show it), x-z and y-z (z up).
   std::array<Picture, 3> pictures;
-  /// 1 / (a whole number of pixels a voxel), or a whole number: every so manieth voxel is shown.
+  /// Shortest edges of a voxel in a pixel: 1 / (a whole number of pixels), or a whole number: of
+  /// cubes, every so manieth is shown.
   double voxelsPerPixel = 1;
 };
 

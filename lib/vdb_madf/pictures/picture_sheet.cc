@@ -71,7 +71,8 @@ Picture pictureSheet(const std::vector<PicturePanel>& panels,
         const int right = panel.picture.width;
         const int widest = std::min(right - nameWidth, right / 2);
         // A bar that is narrower than its text ends further left.
-        if (const auto bar = detail::fitScaleBar(panel.voxelsPerPixel * voxelSize->metres, widest);
+        if (const auto bar =
+                detail::fitScaleBar(panel.voxelsPerPixel * voxelSize->shortestEdge(), widest);
             bar && detail::width(*bar) <= right - nameWidth)
           detail::draw(*bar, left + right - detail::width(*bar), below + kCaptionHeight - 1, kInk,
                        whole);

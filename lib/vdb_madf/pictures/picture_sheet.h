@@ -15,8 +15,8 @@ namespace vdb_madf {
 /// A picture of a sample with its name and its scale.
 struct PicturePanel {
   Picture picture;
-  std::string caption;  ///< digits, ".", "-" and the letters m n u x y z are drawn
-  double voxelsPerPixel = 1;
+  std::string caption;        ///< digits, ".", "-" and the letters m n u x y z are drawn
+  double voxelsPerPixel = 1;  ///< of their shortest edge
 };
 
 /// The panels, in reading order in two columns on white, each with its name below and, where the

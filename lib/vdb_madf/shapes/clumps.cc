@@ -12,6 +12,7 @@
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/method/detail/metric.h"
@@ -218,6 +219,7 @@ std::vector<Clump> clumps(const Int32Grid& labels, const Int32Grid& balls,
   if (options.mostBalls < 1) throw InvalidInput("a clump needs at least one ball");
   if (!(options.coverageError >= 0 && options.coverageError <= 1))
     throw InvalidInput("the part of a grain that may stay uncovered must lie between 0 and 1");
+  requireCubicVoxels(labels, "a clump of balls");
   const detail::LabelBlocks blocks(labels);
   const Int32Tree::ConstPtr tree = detail::withoutTiles(labels),
                             ballTree = detail::withoutTiles(balls);

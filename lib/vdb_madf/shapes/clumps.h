@@ -52,7 +52,7 @@ struct ClumpOptions {
 ///
 /// Memory: one bit per voxel of the box of each grain that a thread works on, and with `apart` of the
 /// box of its balls, cut to that of all labels. The same for any number of threads.
-/// @throw InvalidInput for options out of range; Interrupted.
+/// @throw InvalidInput for options out of range, or voxels that are no cubes; Interrupted.
 std::vector<Clump> clumps(const Int32Grid& labels, const Int32Grid& balls,
                           const ClumpOptions& options = {}, Interrupter* interrupter = nullptr);
 

@@ -72,9 +72,9 @@ void addElements(const detail::LabelLeaves& leaves, size_t leaf, std::vector<uin
 }  // namespace
 
 Hexahedra::Hexahedra(const Int32Grid& labels, Interrupter* interrupter) {
-  const detail::CubicTransform world = detail::cubicTransform(labels.transform());
+  const detail::WorldTransform world = detail::worldTransform(labels.transform());
   origin_ = world.origin;
-  edge_ = world.edge;
+  edges_ = world.edges;
   const detail::LabelLeaves leaves(labels, interrupter);
   const LeafIndex& voxels = leaves.index();
   const auto count = size_t(voxels.voxelCount());
@@ -115,7 +115,7 @@ void Hexahedra::forEachNode(const std::function<void(const openvdb::Vec3d&)>& f)
     for (unsigned offset = 0; offset < 512; ++offset)
       if (corners_.mask(leaf)[offset >> 6] >> (offset & 63) & 1)
         f(origin_ +
-          edge_ * (corners_.coord(VoxelId(leaf * 512 + offset)).asVec3d() - openvdb::Vec3d(0.5)));
+          edges_ * (corners_.coord(VoxelId(leaf * 512 + offset)).asVec3d() - openvdb::Vec3d(0.5)));
 }
 
 /// The leaf of corners and those above it, as in kCorners.

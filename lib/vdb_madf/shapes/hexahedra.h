@@ -30,7 +30,7 @@ struct HexahedraCounts {
 /// Memory: some 20 bytes per voxel.
 class Hexahedra {
  public:
-  /// @throw InvalidInput for voxels that are not cubes along the axes, more than kMaxHexahedra
+  /// @throw InvalidInput for voxels that are not along the axes, more than kMaxHexahedra
   ///   voxels or a limit of leaf_index.h; Interrupted.
   explicit Hexahedra(const Int32Grid& labels, Interrupter* interrupter = nullptr);
 
@@ -50,7 +50,7 @@ class Hexahedra {
   std::array<uint32_t, 8> leavesFrom(uint32_t leaf) const;
 
   openvdb::Vec3d origin_;  // of the world
-  double edge_ = 1;
+  openvdb::Vec3d edges_{1, 1, 1};
   LeafIndex corners_;
   std::vector<std::array<uint32_t, 8>> around_;  // leaves of corners_ of each leaf of voxels
   std::vector<uint64_t> elements_;               // label, then VoxelId

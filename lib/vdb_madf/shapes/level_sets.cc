@@ -22,9 +22,10 @@ using openvdb::Vec3s;
 constexpr float kMaxHalfWidth = 16;
 constexpr size_t kLeafGrain = 256;
 
-void check(const LevelSetOptions& options) {
+void check(const Int32Grid& labels, const LevelSetOptions& options) {
   if (!(options.halfWidth >= 1) || options.halfWidth > kMaxHalfWidth)
     throw InvalidInput("the half width of the narrow band must lie between 1 and 16 voxels");
+  requireCubicVoxels(labels, "a level set");  // OpenVDB measures distances in voxels
 }
 
 /// Makes the distances of the voxels of a label negative. \p labels: without tiles.
@@ -93,7 +94,7 @@ Int32Grid::Ptr asOneLabel(const Int32Grid& labels) {
 
 std::vector<FloatGrid::Ptr> grainLevelSets(const Int32Grid& labels, const LevelSetOptions& options,
                                            Interrupter* interrupter) {
-  check(options);
+  check(labels, options);
   const size_t count = detail::LabelBlocks(labels).labels().size();
   if (count > kMaxGrainGrids)
     throw InvalidInput("one grid for each of " + std::to_string(count) +
@@ -112,7 +113,7 @@ std::vector<FloatGrid::Ptr> grainLevelSets(const Int32Grid& labels, const LevelS
 
 FloatGrid::Ptr surfaceLevelSet(const Int32Grid& labels, const LevelSetOptions& options,
                                Interrupter* interrupter) {
-  check(options);
+  check(labels, options);
   GrainMeshOptions meshOptions;
   meshOptions.smoothing = options.smoothing;
   const Int32Grid::Ptr one = asOneLabel(labels);

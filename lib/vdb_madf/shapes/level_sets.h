@@ -16,8 +16,8 @@ struct LevelSetOptions {
 
 /// A narrow-band level set of every label, named `grain_000123`, ascending: signed distance in
 /// world units to the grain's mesh, negative inside. An empty grid has none.
-/// @throw InvalidInput if there are more than kMaxGrainGrids labels, or as grainMesh();
-/// Interrupted.
+/// @throw InvalidInput if there are more than kMaxGrainGrids labels, for voxels that are no cubes, or
+/// as grainMesh(); Interrupted.
 std::vector<FloatGrid::Ptr> grainLevelSets(const Int32Grid& labels,
                                            const LevelSetOptions& options = {},
                                            Interrupter* interrupter = nullptr);

@@ -154,17 +154,11 @@ void readTransform(detail::InputBuffer& file, std::istream& stream, GridBase& gr
   grid.readTransform(stream);
 }
 
-void requireCubes(const detail::InputBuffer& file, const GridBase& grid) {
-  const auto edges = detail::edgesAlongAxes(grid.transform());
-  if (edges && detail::areEdgesOfCube(*edges)) return;
-  std::string what = "turned, sheared or of different sizes";
-  if (edges) {
-    what.clear();
-    for (int axis = 0; axis < 3; ++axis)
-      what += (axis > 0 ? " x " : "") + detail::shortestDecimal(std::abs((*edges)[axis]));
-  }
-  refuse(file, "the voxels of grid '" + clipped(grid.getName()) + "' are no cubes but " + what +
-                   ": resample it to cubic voxels");
+void requireBoxes(const detail::InputBuffer& file, const GridBase& grid) {
+  if (detail::edgesAlongAxes(grid.transform())) return;
+  refuse(file,
+         "the voxels of grid '" + clipped(grid.getName()) +
+             "' are turned, sheared or of different sizes: resample it to voxels along the axes");
 }
 
 class Reader {
@@ -246,7 +240,7 @@ class Reader {
     const detail::TreeSettings settings{layout, grid->saveFloatAsHalf(), compression,
                                         options_.maxVoxels, options_.maxCoordinate};
     Entry entry{descriptor, grid, settings, file_.position(), wanted(*grid), false};
-    if (entry.wanted && !options_.anyVoxelShape) requireCubes(file_, *grid);
+    if (entry.wanted && !options_.anyVoxelShape) requireBoxes(file_, *grid);
     if (!descriptor.isInstance()) {
       if (entry.wanted)
         readTree(entry);

@@ -69,26 +69,45 @@ MaskGrid::Ptr objectOf(const openvdb::GridBase& grid, const std::string& path,
   }
 }
 
-/// "8.5 um"
+/// "8.5 um", "0.5 x 0.5 x 1.2 um"
 std::string text(const VoxelSize& size) {
-  const auto [unit, perMetre] = size.metres < 1e-6   ? std::pair("nm", 1e9)
-                                : size.metres < 1e-3 ? std::pair("um", 1e6)
-                                                     : std::pair("mm", 1e3);
-  char text[40];
-  std::snprintf(text, sizeof text, "%.4g %s", size.metres * perMetre, unit);
-  return text;
+  const double longest = *std::max_element(size.edges().begin(), size.edges().end());
+  const auto [unit, perMetre] = longest < 1e-6   ? std::pair("nm", 1e9)
+                                : longest < 1e-3 ? std::pair("um", 1e6)
+                                                 : std::pair("mm", 1e3);
+  std::string text;
+  for (size_t axis = 0; axis < (size.isCube() ? 1 : 3); ++axis) {
+    char edge[40];
+    std::snprintf(edge, sizeof edge, "%s%.4g", axis > 0 ? " x " : "",
+                  size.edges()[axis] * perMetre);
+    text += edge;
+  }
+  return text + " " + unit;
+}
+
+/// "2.5 times as long"; empty if they differ by no more than 1 %.
+std::string difference(const VoxelSize& given, const VoxelSize& ofFile) {
+  constexpr double kTolerance = 1.01;
+  double ratio = 1, factor = 1;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const double here = given.edges()[axis] / ofFile.edges()[axis];
+    if (std::max(here, 1 / here) <= factor) continue;
+    ratio = here;
+    factor = std::max(here, 1 / here);
+  }
+  if (factor <= kTolerance) return "";
+  if (!given.isCube() || !ofFile.isCube()) return "which differs";
+  char times[40];
+  std::snprintf(times, sizeof times, "%.4g times as %s", factor, ratio > 1 ? "long" : "short");
+  return times;
 }
 
 /// Mostly a slip of the unit, or another sample's size.
 void noteVoxelSize(const std::string& path, const std::optional<VoxelSize>& ofFile,
                    const VolumeOptions& options) {
-  constexpr double kTolerance = 1.01;
   if (!options.note || !options.voxelSize || !ofFile) return;
-  const double ratio = options.voxelSize->metres / ofFile->metres,
-               factor = std::max(ratio, 1 / ratio);
-  if (factor <= kTolerance) return;
-  char times[40];
-  std::snprintf(times, sizeof times, "%.4g times as %s", factor, ratio > 1 ? "long" : "short");
+  const std::string times = difference(*options.voxelSize, *ofFile);
+  if (times.empty()) return;
   options.note(path + ": the file says that a voxel is " + text(*ofFile) + " long; " +
                    text(*options.voxelSize) + ", " + times + ", was given and is taken",
                NoteAbout::voxelSize);

@@ -45,6 +45,10 @@ std::string lowerCase(std::string text) {
   return text;
 }
 
+double decimalOf(float value) {
+  return reals(shortestDecimal(value)).value_or(std::vector<double>{double(value)}).front();
+}
+
 std::string quoted(const std::string& text) {
   std::string printable = "'" + text.substr(0, kMaxQuote);
   for (char& c : printable)

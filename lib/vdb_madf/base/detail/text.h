@@ -26,4 +26,7 @@ std::string shortestDecimal(T value) {
   char text[64];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
+/// As a double that prints like the float: 0.0085 rather than 0.008500000461935997.
+double decimalOf(float value);
+
 }  // namespace vdb_madf::detail

@@ -25,22 +25,25 @@ std::string besideHeader(const std::string& header, const std::string& name) {
   return (std::filesystem::path(header).parent_path() / name).string();
 }
 
-std::optional<VoxelSize> cubicVoxelSize(const std::string& path,
-                                        const std::array<double, 3>& spacing,
-                                        std::optional<double> unitsPerMetre) {
-  const auto [min, max] = std::minmax_element(spacing.begin(), spacing.end());
+std::optional<VoxelSize> checkedVoxelSize(const std::string& path,
+                                          const std::array<double, 3>& spacing,
+                                          std::optional<double> unitsPerMetre) {
   const bool positive = std::all_of(spacing.begin(), spacing.end(),
                                     [](double s) { return std::isfinite(s) && s > 0; });
-  if (!positive || *max > *min * kMaxEdgeRatio)
-    throw IoError(path + ": " + (positive ? "unequal" : "unusable") + " spacing " +
-                  shortestDecimal(spacing[0]) + ", " + shortestDecimal(spacing[1]) + ", " +
-                  shortestDecimal(spacing[2]) + ": resample it to cubic voxels");
-  if (!unitsPerMetre) return std::nullopt;
-  const double metres = spacing[0] / *unitsPerMetre;
-  if (metres < kMinVoxelMetres || metres > kMaxVoxelMetres)
-    throw IoError(path + ": a voxel size of " + shortestDecimal(metres) +
-                  " m is not plausible: correct the header");
-  return VoxelSize{metres};
+  const std::string text = shortestDecimal(spacing[0]) + ", " + shortestDecimal(spacing[1]) + ", " +
+                           shortestDecimal(spacing[2]);
+  if (!positive) throw IoError(path + ": unusable spacing " + text + ": correct the header");
+  if (!unitsPerMetre && areEdgesOfCube(spacing)) return std::nullopt;
+  if (!unitsPerMetre)
+    throw IoError(path + ": unequal spacing " + text + " without a unit: add it to the header");
+  std::array<double, 3> edges = spacing;
+  for (double& edge : edges) {
+    edge /= *unitsPerMetre;
+    if (edge < kMinVoxelMetres || edge > kMaxVoxelMetres)
+      throw IoError(path + ": a voxel size of " + shortestDecimal(edge) +
+                    " m is not plausible: correct the header");
+  }
+  return VoxelSize(edges);
 }
 
 ImageSize checkedSize(const std::string& path, const std::vector<int64_t>& size) {

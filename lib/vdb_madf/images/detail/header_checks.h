@@ -20,12 +20,12 @@ namespace vdb_madf::detail {
 /// `name` as seen from the folder of the file `header`.
 std::string besideHeader(const std::string& header, const std::string& name);
 
-/// The edge of a cubic voxel; the first of the three is the one returned. Without a unit there is
-/// no physical size, but voxels that are not cubes are still an error.
-/// @throw IoError if the spacing differs by more than 0.1 % or is no plausible length.
-std::optional<VoxelSize> cubicVoxelSize(const std::string& path,
-                                        const std::array<double, 3>& spacing,
-                                        std::optional<double> unitsPerMetre);
+/// The edges of a voxel from the spacing along x, y and z. Without a unit there is no physical size,
+/// but voxels that are not cubes are an error: they would be taken for cubes.
+/// @throw IoError if a spacing is no plausible length.
+std::optional<VoxelSize> checkedVoxelSize(const std::string& path,
+                                          const std::array<double, 3>& spacing,
+                                          std::optional<double> unitsPerMetre);
 
 /// @throw IoError unless each size is in 1 .. kMaxImageSide.
 ImageSize checkedSize(const std::string& path, const std::vector<int64_t>& size);

@@ -10,8 +10,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 #include <vector>
 
 #include "vdb_madf/base/errors.h"
@@ -75,7 +77,7 @@ struct Reply {
 struct Description {
   int size[3];
   SampleType type;
-  double metres;  ///< 0: unknown
+  double edges[3];  ///< metres; 0: unknown
   char format[16];
 };
 
@@ -122,7 +124,8 @@ bool answer(const Line& line, const Work& work) {
     Description description{};
     for (int axis = 0; axis < 3; ++axis) description.size[axis] = info.size[axis];
     description.type = info.type;
-    description.metres = info.voxelSize ? info.voxelSize->metres : 0;
+    if (info.voxelSize)
+      std::copy_n(info.voxelSize->edges().begin(), 3, std::begin(description.edges));
     std::strncpy(description.format, info.format.c_str(), sizeof description.format - 1);
     std::string files;
     for (const std::string& file : reader->files()) files += file + '\0';
@@ -160,7 +163,8 @@ class IsolatedReader : public ImageReader {
       receive(&description, sizeof description);
       info_.size = {description.size[0], description.size[1], description.size[2]};
       info_.type = description.type;
-      if (description.metres > 0) info_.voxelSize = VoxelSize{description.metres};
+      const auto& [x, y, z] = description.edges;
+      if (x > 0) info_.voxelSize = VoxelSize({x, y, z});
       info_.format = description.format;
       receiveFiles();
     } catch (...) {

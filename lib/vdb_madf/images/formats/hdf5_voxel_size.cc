@@ -27,7 +27,10 @@ std::optional<VoxelSize> elementSize(const std::string& path, hid_t dataset) {
   if (!space || H5Sget_simple_extent_npoints(space) != 3 ||
       H5Aread(attribute, H5T_NATIVE_DOUBLE, edges) < 0)
     throw IoError(path + ": the attribute element_size_um cannot be read as three numbers");
-  return cubicVoxelSize(path, {edges[2], edges[1], edges[0]}, unitsPerMetre("um"));
+  const Hdf5Handle type(H5Aget_type(attribute), H5Tclose);
+  if (type && H5Tget_size(type) == sizeof(float) && !areEdgesOfCube({edges[0], edges[1], edges[2]}))
+    for (double& edge : edges) edge = decimalOf(float(edge));  // the ratio of the edges counts
+  return checkedVoxelSize(path, {edges[2], edges[1], edges[0]}, unitsPerMetre("um"));
 }
 
 /// A text of one piece, of fixed or variable length; else empty.
@@ -78,7 +81,7 @@ std::optional<VoxelSize> hdf5VoxelSize(const std::string& path, hid_t file, hid_
     const auto x = length(path, file, group + "x_pixel_size"),
                y = length(path, file, group + "y_pixel_size"),
                z = length(path, file, group + "z_pixel_size");
-    if (x && y) return cubicVoxelSize(path, {*x, *y, z.value_or(*x)}, 1.0);
+    if (x && y) return checkedVoxelSize(path, {*x, *y, z.value_or(*x)}, 1.0);
   }
   return std::nullopt;
 }

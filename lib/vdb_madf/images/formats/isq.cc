@@ -36,7 +36,7 @@ std::optional<VoxelSize> spacing(const std::string& path, const ImageSize& size,
     edges[axis] = side / size[int(axis)];
     if (std::abs(side - edges[0] * size[int(axis)]) <= 1) edges[axis] = edges[0];
   }
-  return cubicVoxelSize(path, edges, unitsPerMetre("um"));
+  return checkedVoxelSize(path, edges, unitsPerMetre("um"));
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ std::optional<VoxelSize> elementSpacing(const std::string& path, const KeyValueH
   if (!values || values->size() != 3) header.fail(key);
   const std::array<double, 3> spacing{(*values)[0], (*values)[1], (*values)[2]};
   if (spacing == std::array<double, 3>{1, 1, 1}) return std::nullopt;
-  return cubicVoxelSize(path, spacing, unitsPerMetre("mm"));
+  return checkedVoxelSize(path, spacing, unitsPerMetre("mm"));
 }
 
 std::string headerText(const ImageInfo& info, const std::array<double, 3>& origin,
@@ -76,8 +76,8 @@ std::string headerText(const ImageInfo& info, const std::array<double, 3>& origi
       "BinaryDataByteOrderMSB = False\nCompressedData = False\nDimSize =";
   for (int axis = 0; axis < 3; ++axis) text += " " + std::to_string(info.size[axis]);
   if (info.voxelSize) {
-    const std::string edge = lengthIn(1e3, info.voxelSize->metres);
-    text += "\nElementSpacing = " + edge + " " + edge + " " + edge;
+    text += "\nElementSpacing =";
+    for (const std::string& edge : lengthsIn(1e3, info.voxelSize->edges())) text += " " + edge;
   }
   if (origin != std::array<double, 3>{}) {
     text += "\nOffset =";

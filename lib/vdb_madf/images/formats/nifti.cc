@@ -3,7 +3,6 @@
 
 #include "vdb_madf/images/formats/nifti.h"
 
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -99,7 +98,7 @@ class NiftiHeader {
     if (code == 1) unit = unitsPerMetre("m");
     if (code == 2) unit = unitsPerMetre("mm");
     if (code == 3) unit = unitsPerMetre("um");
-    return cubicVoxelSize(path_, {edge(1), edge(2), edge(3)}, unit);
+    return checkedVoxelSize(path_, {edge(1), edge(2), edge(3)}, unit);
   }
 
   uint64_t offset() const {
@@ -117,14 +116,8 @@ class NiftiHeader {
     bool is64Bit;
   };
   int dim(int axis) const { return number<int16_t>(kDim + 2 * size_t(axis)); }
-  /// As a double that prints like the float: 0.0085 rather than 0.008500000461935997.
   double edge(int axis) const {
-    const float value = number<float>(kPixDim + 4 * size_t(axis));
-    char text[32];
-    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-    double decimal = double(value);
-    std::from_chars(text, end, decimal);
-    return std::abs(decimal);
+    return std::abs(decimalOf(number<float>(kPixDim + 4 * size_t(axis))));
   }
 
   std::string path_, bytes_;

@@ -130,7 +130,7 @@ std::optional<VoxelSize> spacingOfDirections(const std::string& path,
     if (std::abs(dot(axis, next)) > kShear * spacing[size_t(axis)] * spacing[size_t(next)])
       throw IoError(path + ": its space directions are sheared: resample it to cubic voxels");
   }
-  return cubicVoxelSize(path, spacing, commonUnit(path, header.find("spaceunits")));
+  return checkedVoxelSize(path, spacing, commonUnit(path, header.find("spaceunits")));
 }
 
 std::optional<VoxelSize> spacingOf(const std::string& path, const KeyValueHeader& header) {
@@ -143,7 +143,8 @@ std::optional<VoxelSize> spacingOf(const std::string& path, const KeyValueHeader
     return std::nullopt;  // NaN: unknown, by the definition of the format
   auto units = header.find("units");
   if (!units) units = header.find("spaceunits");
-  return cubicVoxelSize(path, {(*values)[0], (*values)[1], (*values)[2]}, commonUnit(path, units));
+  return checkedVoxelSize(path, {(*values)[0], (*values)[1], (*values)[2]},
+                          commonUnit(path, units));
 }
 
 /// The offset after `lines` lines of text from `offset` on.
@@ -189,11 +190,12 @@ SampleLayout layoutOf(const std::string& path, const KeyValueHeader& header, Sam
 }
 
 /// An origin needs a space, and the edges as vectors in it.
-std::string placedEdges(const std::string& edge, const std::array<double, 3>& origin) {
+std::string placedEdges(const std::array<std::string, 3>& edges,
+                        const std::array<double, 3>& origin) {
   std::string place;
   for (int axis = 0; axis < 3; ++axis) place += (axis ? "," : "") + shortestDecimal(origin[axis]);
-  return "\nspace dimension: 3\nspace directions: (" + edge + ",0,0) (0," + edge + ",0) (0,0," +
-         edge + ")\nspace origin: (" + place + ")";
+  return "\nspace dimension: 3\nspace directions: (" + edges[0] + ",0,0) (0," + edges[1] +
+         ",0) (0,0," + edges[2] + ")\nspace origin: (" + place + ")";
 }
 
 std::string headerText(const ImageInfo& info, const std::array<double, 3>& origin) {
@@ -204,12 +206,14 @@ std::string headerText(const ImageInfo& info, const std::array<double, 3>& origi
       {SampleType::float32, "float"}, {SampleType::float64, "double"}};
   std::string text = "NRRD0004\ntype: " + names.at(info.type) + "\ndimension: 3\nsizes:";
   for (int axis = 0; axis < 3; ++axis) text += " " + std::to_string(info.size[axis]);
-  const std::string edge = info.voxelSize ? lengthIn(1e3, info.voxelSize->metres) : "1";
+  const std::array<std::string, 3> edges = info.voxelSize
+                                               ? lengthsIn(1e3, info.voxelSize->edges())
+                                               : std::array<std::string, 3>{"1", "1", "1"};
   if (origin != std::array<double, 3>{}) {
-    text += placedEdges(edge, origin);
+    text += placedEdges(edges, origin);
     if (info.voxelSize) text += "\nspace units: \"mm\" \"mm\" \"mm\"";
   } else if (info.voxelSize) {
-    text += "\nspacings: " + edge + " " + edge + " " + edge;
+    text += "\nspacings: " + edges[0] + " " + edges[1] + " " + edges[2];
     text += "\nunits: \"mm\" \"mm\" \"mm\"";
   }
   return text + "\nendian: little\nencoding: raw\n\n";

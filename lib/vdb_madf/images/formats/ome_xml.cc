@@ -89,12 +89,12 @@ std::optional<VoxelSize> OmePixels::voxelSize(const std::string& path) const {
     edges[size_t(axis)] = values->front();
     units[size_t(axis)] = unitsPerMetre(unescaped(attribute(name + "Unit", "um")));
   }
-  if (units[0] == units[1] && units[0] == units[2]) return cubicVoxelSize(path, edges, units[0]);
+  if (units[0] == units[1] && units[0] == units[2]) return checkedVoxelSize(path, edges, units[0]);
   for (size_t axis = 0; axis < 3; ++axis) {
     if (!units[axis]) return std::nullopt;
     edges[axis] /= *units[axis];
   }
-  return cubicVoxelSize(path, edges, 1.0);
+  return checkedVoxelSize(path, edges, 1.0);
 }
 
 std::string OmePixels::attribute(const std::string& name, const std::string& otherwise) const {

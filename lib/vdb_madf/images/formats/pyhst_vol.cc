@@ -44,7 +44,7 @@ std::optional<VoxelSize> voxelSizeOf(const std::string& path, const KeyValueHead
   if (!text) return std::nullopt;
   const auto edge = reals(*text);
   if (!edge || edge->size() != 1) header.fail("voxelSize");
-  return cubicVoxelSize(path, {edge->front(), edge->front(), edge->front()}, unitsPerMetre("um"));
+  return checkedVoxelSize(path, {edge->front(), edge->front(), edge->front()}, unitsPerMetre("um"));
 }
 
 bool isBigEndian(const KeyValueHeader& header) {

@@ -135,7 +135,7 @@ std::optional<VoxelSize> voxelSizeInLog(const std::string& folder) {
     const auto edge = micrometresIn(path, InputFile(path).head(kMaxLogBytes));
     if (!edge) continue;
     if (size) return std::nullopt;  // which one belongs to the slices?
-    size = cubicVoxelSize(path, {*edge, *edge, *edge}, unitsPerMetre("um"));
+    size = checkedVoxelSize(path, {*edge, *edge, *edge}, unitsPerMetre("um"));
   }
   return size;
 }

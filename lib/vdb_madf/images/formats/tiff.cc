@@ -4,7 +4,9 @@
 #include "vdb_madf/images/formats/tiff.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "vdb_madf/base/detail/byte_order.h"
@@ -42,6 +44,25 @@ std::optional<double> numberIn(const KeyValueHeader& imageJ, const std::string& 
   return values->front();
 }
 
+/// The shortest decimal whose reciprocal is the number, to its precision: who wrote 0.8333333 meant an
+/// edge of 1.2, and the method weighs axes by the ratio of their edges.
+double decimalOfReciprocal(float number) {
+  constexpr int kMaxDigits = 8;
+  const double exact = 1.0 / double(number);
+  for (int digits = 1; digits <= kMaxDigits; ++digits) {
+    char text[32];
+    const auto end =
+        std::to_chars(text, text + sizeof text, exact, std::chars_format::scientific, digits - 1)
+            .ptr;
+    double decimal = 0;
+    std::from_chars(text, end, decimal);
+    if (std::abs(1.0 / decimal - double(number)) <=
+        std::numeric_limits<float>::epsilon() * double(number))
+      return decimal;
+  }
+  return exact;
+}
+
 /// Only the calibrations of OME and ImageJ are trusted: the plain resolution tags are mostly a scanner's or a
 /// printer's default of 72 dots per inch.
 std::optional<VoxelSize> calibration(const TiffFile& file, const KeyValueHeader& imageJ,
@@ -58,7 +79,10 @@ std::optional<VoxelSize> calibration(const TiffFile& file, const KeyValueHeader&
   // The text is exact and the tags are single precision: the text comes first. Its sign is the order
   // of the slices.
   const double depth = z ? std::abs(*z) : slices > 1 ? 1.0 : x;
-  return cubicVoxelSize(file.path(), {depth, x, y}, unit);
+  if (areEdgesOfCube({depth, x, y}))
+    return checkedVoxelSize(file.path(), {depth, depth, depth}, unit);
+  return checkedVoxelSize(file.path(),
+                          {decimalOfReciprocal(perX), decimalOfReciprocal(perY), depth}, unit);
 }
 
 /// The pages have to be the slices of one volume, and all of them.

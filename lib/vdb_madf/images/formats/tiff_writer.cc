@@ -89,14 +89,15 @@ class TiffWriter : public ImageWriter {
 
   /// As ImageJ does, but for "images=": that would promise it samples in one piece.
   bool setCalibration(const VoxelSize& size, bool first) {
-    const bool small = size.metres < 1e-7, large = size.metres >= 1e-2;
+    const auto& [x, y, z] = size.edges();
+    const double smallest = std::min({x, y, z});
+    const bool small = smallest < 1e-7, large = smallest >= 1e-2;
     const std::string unit = small ? "nm" : large ? "mm" : "micron";
     const double perMetre = unitsPerMetre(unit).value();
     const std::string text =
-        "ImageJ=1.53k\nunit=" + unit + "\nspacing=" + lengthIn(perMetre, size.metres) + "\n";
-    const double perUnit = 1 / (size.metres * perMetre);
-    return TIFFSetField(tiff_.get(), TIFFTAG_XRESOLUTION, perUnit) &&
-           TIFFSetField(tiff_.get(), TIFFTAG_YRESOLUTION, perUnit) &&
+        "ImageJ=1.53k\nunit=" + unit + "\nspacing=" + lengthIn(perMetre, z) + "\n";
+    return TIFFSetField(tiff_.get(), TIFFTAG_XRESOLUTION, 1 / (x * perMetre)) &&
+           TIFFSetField(tiff_.get(), TIFFTAG_YRESOLUTION, 1 / (y * perMetre)) &&
            TIFFSetField(tiff_.get(), TIFFTAG_RESOLUTIONUNIT, RESUNIT_NONE) &&
            (!first || TIFFSetField(tiff_.get(), TIFFTAG_IMAGEDESCRIPTION, text.c_str()));
   }

@@ -79,7 +79,7 @@ std::optional<VoxelSize> voxelSizeOf(const std::string& name, const Json& image,
   }
   if (units[0] != units[1] || units[0] != units[2])
     throw IoError(name + ": its axes have different units");
-  return cubicVoxelSize(name, edges, units[0]);
+  return checkedVoxelSize(name, edges, units[0]);
 }
 
 /// Which array of a group is meant if none is named.

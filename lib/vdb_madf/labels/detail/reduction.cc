@@ -108,7 +108,8 @@ void placeReduced(openvdb::GridBase& grid, const Int32Grid& labels, int factor,
     setDomain(grid,
               CoordBBox(floorDiv(box->box().min(), factor), floorDiv(box->box().max(), factor)));
   if (const auto size = storedVoxelSize(labels))  // the unit stays that of the transform
-    grid.insertMeta(kVoxelSizeKey, openvdb::DoubleMetadata(size->metres * factor));
+    setStoredVoxelSize(grid, VoxelSize({size->edges()[0] * factor, size->edges()[1] * factor,
+                                        size->edges()[2] * factor}));
 }
 
 }  // namespace vdb_madf::detail
