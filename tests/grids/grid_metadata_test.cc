@@ -169,6 +169,17 @@ TEST_CASE("grid_metadata: a voxel size comes back and places the voxels", "[grid
   }
 }
 
+TEST_CASE("grid_metadata: proportions are a transform alone", "[grid_metadata]") {
+  const auto grid = Int32Grid::create();
+  setProportions(*grid, {1, 0.5, 3});
+  CHECK(grid->indexToWorld(Coord(1, 1, 1)) == Vec3d(1, 0.5, 3));
+  CHECK(all(*grid).empty());
+  setProportions(*grid, {5e-7, 5e-7, 1.2e-6});  // metres, which OpenVDB would refuse
+  const Vec3d place = grid->indexToWorld(Coord(1, 1, 1));
+  CHECK(place.z() / place.x() == Approx(2.4).epsilon(1e-12));
+  CHECK(place.y() == place.x());
+}
+
 TEST_CASE("grid_metadata: without a size one voxel is one unit", "[grid_metadata]") {
   const auto grid = Int32Grid::create();
   CHECK_FALSE(storedVoxelSize(*grid).has_value());

@@ -245,6 +245,9 @@ TEST_CASE("image_headers: NIfTI-1 applies slope and unit, and says what it canno
   }
   layout.edge = {0.5f, 0.7f, 1.2f};
   CHECK(open(bytes)->info().voxelSize->edges() == std::array<double, 3>{0.5e-6, 0.7e-6, 1.2e-6});
+  layout.units = 0;
+  CHECK(open(bytes)->info().proportions == std::array<double, 3>{0.5, 0.7, 1.2});
+  layout.units = 3;
   layout.edge = {-3, 3, 3};  // a mirrored axis
   CHECK(open(bytes)->info().voxelSize->edge() == 3e-6);
   const auto refused = [&](const NiftiLayout& changed, const std::string& why) {
@@ -258,11 +261,6 @@ TEST_CASE("image_headers: NIfTI-1 applies slope and unit, and says what it canno
     return changed;
   };
   refused(with([](auto& l) { l.edge = {3, 3, 0}; }), "unusable");
-  refused(with([](auto& l) {
-            l.edge = {3, 3, 4};
-            l.units = 0;
-          }),
-          "unequal spacing 3, 3, 4 without a unit");
   refused(with([](auto& l) { l.dim = {4, 5, 4, 3, 2}; }), "2 volumes");
   refused(with([](auto& l) { l.dim = {2, 5, 12}; }), "2 dimensions");
   refused(with([](auto& l) { l.dim = {3, 5, 4, -3}; }), "size");

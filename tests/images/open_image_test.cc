@@ -289,7 +289,15 @@ TEST_CASE("image_file: NRRD spacing needs a unit", "[image_file]") {
         std::array<double, 3>{0.5e-6, 1.2e-6, 3e-6});
   CHECK(spacing("space directions: (0,3,0) (0,0,4) (5,0,0)\nspace units: \"mm\" \"mm\" \"mm\"")
             ->edges() == std::array<double, 3>{3e-3, 4e-3, 5e-3});
-  CHECK_THROWS_WITH(spacing("spacings: 1 1 2"), Contains("unequal spacing 1, 1, 2 without a unit"));
+  CHECK_FALSE(spacing("spacings: 1 1 2"));
+  CHECK(openImage(path)->info().proportions == std::array<double, 3>{1, 1, 2});
+  CHECK_FALSE(spacing("space directions: (3,0,0) (0,4,0) (0,0,5)"));
+  CHECK(openImage(path)->info().proportions == std::array<double, 3>{3, 4, 5});
+  CHECK_FALSE(spacing("spacings: 2 2 2"));
+  CHECK_FALSE(openImage(path)->info().proportions);
+  CHECK_THROWS_AS(spacing("spacings: 1 1 0"), IoError);
+  CHECK_THROWS_AS(spacing("spacings: 1 1 inf"), IoError);
+  CHECK_THROWS_AS(spacing("spacings: 1 1 -2"), IoError);
   CHECK_THROWS_AS(spacing("spacings: 1 1 1\nunits: \"mm\" \"mm\" \"um\""), IoError);
   CHECK_THROWS_AS(spacing("space directions: (1,0,0) (0.5,1,0) (0,0,1)"), IoError);
   CHECK_THROWS_AS(spacing("space directions: none (1,0,0) (0,1,0)"), IoError);

@@ -148,6 +148,21 @@ TEST_CASE("cli: unequal voxels keep their shape, and what needs cubes says so", 
   for (const std::string arguments :
        {"convert flat.vdb o.npy", "convert flat.mhd o.raw", "export flat.vdb o.raw --as mask"})
     notes(bench, arguments, {"does not say that its voxels are no cubes", "--voxel-size"});
+  // Of an unknown unit: the shape is kept, and a size may be given.
+  bench.write("flat.nrrd",
+              "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 3\n"
+              "encoding: raw\n\n" +
+                  std::string("\1\1\1\1\1\0\0\0", 8));
+  CHECK_THAT(bench.mustRun("info flat.nrrd"), Catch::Contains("voxel_size_units: [1.0,1.0,3.0]"));
+  bench.mustRun("convert flat.nrrd unknown.vdb");
+  const std::string unknown = bench.mustRun("info unknown.vdb");
+  CHECK_THAT(unknown, Catch::Contains("voxel_size_units: [1.0,1.0,3.0]"));
+  CHECK(unknown.find("voxel_size_mm") == std::string::npos);
+  bench.mustRun("convert flat.nrrd known.vdb --voxel-size 1x1x3um");
+  CHECK_THAT(bench.mustRun("info known.vdb"),
+             Catch::Contains("voxel_size_mm: [0.001,0.001,0.003]"));
+  notes(bench, "convert flat.nrrd o.tif", {"does not say that its voxels are no cubes"});
+  notes(bench, "convert unknown.vdb o.mhd", {"does not say that its voxels are no cubes"});
   const Outcome other = bench.run("compare flat.vdb cubes.vdb");
   CHECK(other.exitCode == 1);
   CHECK_THAT(other.err, Catch::Contains("1, 0.7143, 0.4167 times as long"));

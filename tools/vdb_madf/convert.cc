@@ -120,7 +120,7 @@ void run(const Options& o, const Common& common) {
     const SampleType type = outputType(o).value_or(image->info().type);
     copyImage(o.out, *image, type, o.input.voxelSize, common.progress);
     const auto size = o.input.voxelSize ? o.input.voxelSize : image->info().voxelSize;
-    noteLostEdges(o.out, !size || size->isCube(), size, common);
+    noteLostEdges(o.out, size ? size->isCube() : !image->info().proportions, size, common);
     reportImage(o.out, "all values", toCoord(image->info().size), type, common);
   }
 }

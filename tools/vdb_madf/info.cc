@@ -86,6 +86,7 @@ Json describeImage(const ImageReader& image) {
   json["size"] = corner(toCoord(info.size));
   json["type"] = sampleTypeName(info.type);
   if (info.voxelSize) json["voxel_size_mm"] = inMillimetres(*info.voxelSize);
+  if (const auto& edges = info.proportions) json["voxel_size_units"] = *edges;
   // Of slices in a folder; a Zarr group names itself, too.
   if (const auto& files = image.files();
       std::filesystem::is_directory(image.path()) && files.front() != image.path()) {

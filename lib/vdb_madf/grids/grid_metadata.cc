@@ -86,10 +86,16 @@ void setVoxelSize(openvdb::GridBase& grid, const std::optional<VoxelSize>& size)
     grid.setTransform(openvdb::math::Transform::createLinearTransform(size ? size->inUnit() : 1.0));
     return;
   }
-  const auto& [x, y, z] = size->edgesInUnit();
-  const openvdb::math::MapBase::Ptr scale =
-      std::make_shared<openvdb::math::ScaleMap>(openvdb::Vec3d(x, y, z));
-  grid.setTransform(std::make_shared<openvdb::math::Transform>(scale));
+  setProportions(grid, size->edgesInUnit());
+}
+
+void setProportions(openvdb::GridBase& grid, const std::array<double, 3>& edges) {
+  // OpenVDB refuses voxel volumes below 3e-15; a thousandth of an unknown unit is as good as the unit.
+  constexpr double kMinEdge = 1.9e-5, kStep = 1e3;
+  openvdb::Vec3d scale(edges[0], edges[1], edges[2]);
+  while (std::min({scale[0], scale[1], scale[2]}) < kMinEdge) scale *= kStep;
+  const openvdb::math::MapBase::Ptr map = std::make_shared<openvdb::math::ScaleMap>(scale);
+  grid.setTransform(std::make_shared<openvdb::math::Transform>(map));
 }
 
 bool hasCubicVoxels(const openvdb::GridBase& grid) {

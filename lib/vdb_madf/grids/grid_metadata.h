@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -37,6 +38,9 @@ void setStoredVoxelSize(openvdb::MetaMap& metadata, const std::optional<VoxelSiz
 /// Sets the metadata and the grid's linear transform: world = index * size along each axis, so that
 /// the world position of voxel (i,j,k) is its centre. Without a size the transform is the identity.
 void setVoxelSize(openvdb::GridBase& grid, const std::optional<VoxelSize>& size);
+
+/// Sets the grid's transform alone, for edges > 0 along x, y and z in an unknown unit.
+void setProportions(openvdb::GridBase& grid, const std::array<double, 3>& edges);
 
 /// True if voxels are cubes along the axes of the world, mirrored or not: edges differ by at most
 /// 0.1 %.

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -31,6 +32,9 @@ struct ImageInfo {
   ImageSize size;  ///< each 1 .. kMaxImageSide
   SampleType type = SampleType::uint8;
   std::optional<VoxelSize> voxelSize;
+  /// Edges along x, y and z of voxels that are no cubes, in a unit that the file does not say; then
+  /// there is no voxelSize.
+  std::optional<std::array<double, 3>> proportions;
   std::string format;  ///< "tiff", "raw", "mhd", "nrrd", "npy", "isq", "nifti" ...
 };
 

@@ -46,6 +46,15 @@ std::optional<VoxelSize> checkedVoxelSize(const std::string& path,
   return VoxelSize(edges);
 }
 
+void setSpacing(ImageInfo& info, const std::string& path, const std::array<double, 3>& spacing,
+                std::optional<double> unitsPerMetre) {
+  const auto [min, max] = std::minmax_element(spacing.begin(), spacing.end());
+  if (unitsPerMetre || !(*min > 0 && std::isfinite(*max)) || areEdgesOfCube(spacing))
+    info.voxelSize = checkedVoxelSize(path, spacing, unitsPerMetre);
+  else
+    info.proportions = spacing;
+}
+
 ImageSize checkedSize(const std::string& path, const std::vector<int64_t>& size) {
   if (size.size() != 3)
     throw IoError(path + ": has " + std::to_string(size.size()) +

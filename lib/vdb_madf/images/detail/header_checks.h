@@ -27,6 +27,11 @@ std::optional<VoxelSize> checkedVoxelSize(const std::string& path,
                                           const std::array<double, 3>& spacing,
                                           std::optional<double> unitsPerMetre);
 
+/// Sets what is known of the voxels: their size, or without a unit their proportions.
+/// @throw IoError if a spacing is no plausible length.
+void setSpacing(ImageInfo& info, const std::string& path, const std::array<double, 3>& spacing,
+                std::optional<double> unitsPerMetre);
+
 /// @throw IoError unless each size is in 1 .. kMaxImageSide.
 ImageSize checkedSize(const std::string& path, const std::vector<int64_t>& size);
 

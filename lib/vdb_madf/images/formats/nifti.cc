@@ -92,13 +92,13 @@ class NiftiHeader {
                   " cannot be read: write integers or floats");
   }
 
-  std::optional<VoxelSize> voxelSize() const {
+  void setSpacing(ImageInfo& info) const {
     std::optional<double> unit;
     const int code = static_cast<unsigned char>(bytes_[kUnits]) & 7;
     if (code == 1) unit = unitsPerMetre("m");
     if (code == 2) unit = unitsPerMetre("mm");
     if (code == 3) unit = unitsPerMetre("um");
-    return checkedVoxelSize(path_, {edge(1), edge(2), edge(3)}, unit);
+    detail::setSpacing(info, path_, {edge(1), edge(2), edge(3)}, unit);
   }
 
   uint64_t offset() const {
@@ -173,7 +173,7 @@ std::unique_ptr<ImageReader> openNifti(std::unique_ptr<InputFile> file) {
   info.format = "nifti";
   info.size = header.size();
   info.type = stored.type;
-  info.voxelSize = header.voxelSize();
+  header.setSpacing(info);
   SampleLayout layout;
   layout.deflated = isGzip(*file);
   (layout.deflated ? layout.skip : layout.offset) = header.offset();

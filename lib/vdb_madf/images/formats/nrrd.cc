@@ -110,8 +110,8 @@ std::optional<double> commonUnit(const std::string& path, const std::optional<st
   return units[0];
 }
 
-std::optional<VoxelSize> spacingOfDirections(const std::string& path,
-                                             const KeyValueHeader& header) {
+void setSpacingOfDirections(ImageInfo& info, const std::string& path,
+                            const KeyValueHeader& header) {
   std::string text = header.require("spacedirections");
   if (std::count(text.begin(), text.end(), '(') != 3) header.fail("spacedirections");
   for (char& c : text)
@@ -130,21 +130,20 @@ std::optional<VoxelSize> spacingOfDirections(const std::string& path,
     if (std::abs(dot(axis, next)) > kShear * spacing[size_t(axis)] * spacing[size_t(next)])
       throw IoError(path + ": its space directions are sheared: resample it to cubic voxels");
   }
-  return checkedVoxelSize(path, spacing, commonUnit(path, header.find("spaceunits")));
+  setSpacing(info, path, spacing, commonUnit(path, header.find("spaceunits")));
 }
 
-std::optional<VoxelSize> spacingOf(const std::string& path, const KeyValueHeader& header) {
-  if (header.find("spacedirections")) return spacingOfDirections(path, header);
+void setSpacingOf(ImageInfo& info, const std::string& path, const KeyValueHeader& header) {
+  if (header.find("spacedirections")) return setSpacingOfDirections(info, path, header);
   const auto text = header.find("spacings");
-  if (!text) return std::nullopt;
+  if (!text) return;
   const auto values = reals(*text);
   if (!values || values->size() != 3) header.fail("spacings");
   if (std::all_of(values->begin(), values->end(), [](double s) { return s != s; }))
-    return std::nullopt;  // NaN: unknown, by the definition of the format
+    return;  // NaN: unknown, by the definition of the format
   auto units = header.find("units");
   if (!units) units = header.find("spaceunits");
-  return checkedVoxelSize(path, {(*values)[0], (*values)[1], (*values)[2]},
-                          commonUnit(path, units));
+  setSpacing(info, path, {(*values)[0], (*values)[1], (*values)[2]}, commonUnit(path, units));
 }
 
 /// The offset after `lines` lines of text from `offset` on.
@@ -233,7 +232,7 @@ std::unique_ptr<ImageReader> openNrrd(std::unique_ptr<InputFile> file) {
   const auto type = typeFromName(header.require("type"));
   if (!type) header.fail("type");
   info.type = *type;
-  info.voxelSize = spacingOf(path, header);
+  setSpacingOf(info, path, header);
 
   SampleLayout layout = layoutOf(path, header, info.type);
   if (const auto dataFile = header.find("datafile"))

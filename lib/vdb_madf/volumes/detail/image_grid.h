@@ -19,6 +19,7 @@ namespace vdb_madf::detail {
 inline void describeImageGrid(const ImageReader& image, openvdb::GridBase& grid) {
   setDomain(grid, imageBox(image.info().size));
   setVoxelSize(grid, image.info().voxelSize);
+  if (image.info().proportions) setProportions(grid, *image.info().proportions);
   const std::filesystem::path path(image.path());
   const std::string name = (path.has_filename() ? path : path.parent_path()).filename().string();
   grid.insertMeta(kSourceKey, openvdb::StringMetadata(name));
