@@ -91,7 +91,7 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
   for (const BondMeasures& contact : leftOut) sample.areaLeftOut += contact.area;
   sample.sharedArea += sample.areaLeftOut;
   sample.domainKnown = domain.has_value();
-  sample.correlationLengths = correlationLengths(index, sample.box, interrupter);
+  sample.correlationLengths = correlationLengths(index, whole, interrupter);
   sample.eulerCharacteristic = eulerCharacteristic(index, interrupter);
   sample.components = detail::ConnectedComponents(index).count();
   return result;
