@@ -18,6 +18,7 @@
 #include "support/runs.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/measure.h"
+#include "vdb_madf/method/segment.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
@@ -277,6 +278,29 @@ TEST_CASE("measure_region: what the wall does not touch stays as it was", "[meas
   }
   CHECK(inner > 200);
   CHECK(cutOff > 50);
+}
+
+TEST_CASE("measure_region: a segmentation measures as its labels do, with any threads",
+          "[measure_region]") {
+  Rng rng(5);
+  const Domain core = roundCore(24, 24);
+  const ObjectVolume block = randomVolume(VolumeKind::blurredNoise, core.box(), rng);
+  const MaskGrid::Ptr object = toMask(block);
+  object->tree().topologyIntersection(*core.region());
+  SegmentOptions options;
+  options.domain = core;
+  options.fillHoles = options.tidy = 0;  // then the graph tells the representatives
+  const Segmentation grains = segment(*object, options);
+  const Measurements expected = withThreads(1, [&] { return measure(*grains.grain); });
+  REQUIRE(expected.open);
+  REQUIRE(expected.sample.regionVoxels == int64_t(core.voxelCount()));
+  REQUIRE(expected.grains.size() > 20);
+  CHECK(sameTables(measure(grains), expected));
+  for (const int threads : {2, 4}) {
+    const Measurements m = withThreads(threads, [&] { return measure(*grains.grain); });
+    CHECK(sameTables(m, expected));
+    CHECK(m.sample.correlationLengths == expected.sample.correlationLengths);
+  }
 }
 
 TEST_CASE("measure_region: a plane across a round core is an ellipse", "[measure_region]") {
