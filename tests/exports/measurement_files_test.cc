@@ -137,6 +137,23 @@ TEST_CASE("measurement_files: where the numbers come from", "[measurement_files]
         nlohmann::json({{"theta", -0.9}, {"gamma", 20}, {"source", "scan \xef\xbf\xbd.tif"}}));
 }
 
+TEST_CASE("measurement_files: what fractions refer to", "[measurement_files]") {
+  const ScratchFolder scratch;
+  Measurements m = fewMeasurements();
+  const auto sample = [&] {
+    MeasurementTables(scratch / "t").write(m);
+    return nlohmann::json::parse(readFile(scratch / "t/sample.json"));
+  };
+  m.sample.domainKnown = false;
+  CHECK(sample().at("box") == "grains");
+  m.sample.domainKnown = true;
+  CHECK(sample().at("box") == "domain");
+  CHECK_FALSE(sample().contains("domain_voxels"));
+  m.sample.regionVoxels = 6000000000;
+  CHECK(sample().at("box") == "region");
+  CHECK(sample().at("domain_voxels") == 6000000000);
+}
+
 TEST_CASE("measurement_files: a named sample stands in every row", "[measurement_files]") {
   const ScratchFolder scratch;
   const Measurements m = fewMeasurements();

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "support/edge_cases.h"
+#include "support/random_case.h"
 #include "support/random_volume.h"
 #include "support/runs.h"
 #include "vdb_madf/base/errors.h"
@@ -26,20 +27,22 @@ Lengths lengths(const ObjectVolume& object, Tiles tiles = Tiles::none) {
   return correlationLengths(LeafIndex(*toMask(object, tiles)), object.box());
 }
 
-/// By the definition, pair by pair.
-std::optional<double> naiveLength(const ObjectVolume& object, int axis) {
-  const double n = double(countObject(object)), all = object.size(), f = n / all;
+/// By the definition, pair by pair. Of a region as of a box.
+std::optional<double> naiveLength(const ObjectVolume& object, const ObjectVolume& region,
+                                  int axis) {
+  const double n = double(countObject(object)), all = double(countObject(region)), f = n / all;
   if (n == 0 || n == all) return std::nullopt;
   double before = 1;
-  for (int lag = 1; 2 * lag <= object.box().dim()[axis]; ++lag) {
+  for (int lag = 1; 2 * lag <= region.box().dim()[axis]; ++lag) {
     double both = 0, pairs = 0;
-    for (int i = 0; i < object.size(); ++i) {
-      Coord other = object.coord(i);
+    for (int i = 0; i < region.size(); ++i) {
+      Coord other = region.coord(i);
       other[axis] += lag;
-      if (!object.contains(other)) continue;
+      if (!region[i] || !region.get(other, 0)) continue;
       ++pairs;
-      both += object[i] && object[other];
+      both += object.get(region.coord(i), 0) && object.get(other, 0);
     }
+    if (pairs == 0) return std::nullopt;
     const double c = (both / pairs - f * f) / (f - f * f);
     if (c <= kTarget) return lag - 1 + (before - kTarget) / (before - c);
     before = c;
@@ -47,13 +50,16 @@ std::optional<double> naiveLength(const ObjectVolume& object, int axis) {
   return std::nullopt;
 }
 
-void requireNaive(const Lengths& found, const ObjectVolume& object) {
+void requireNaive(const Lengths& found, const ObjectVolume& object, const ObjectVolume& region) {
   for (int axis = 0; axis < 3; ++axis) {
     CAPTURE(axis);
-    const auto expected = naiveLength(object, axis);
+    const auto expected = naiveLength(object, region, axis);
     REQUIRE(found[size_t(axis)].has_value() == expected.has_value());
     if (expected) REQUIRE(*found[size_t(axis)] == Approx(*expected));
   }
+}
+void requireNaive(const Lengths& found, const ObjectVolume& object) {
+  requireNaive(found, object, ObjectVolume(object.box(), 1));
 }
 
 /// Layers across an axis, `thick` voxels of object and as many of background in turn.
@@ -118,6 +124,61 @@ TEST_CASE("correlation_length: by the definition on random volumes", "[correlati
     INFO("seed " << seed << ", " << name(kind) << ", " << toString(object.box()));
     requireNaive(lengths(object, seed % 2 ? Tiles::wherePossible : Tiles::none), object);
   }
+}
+
+TEST_CASE("correlation_length: in a region only its pairs count", "[correlation_length]") {
+  int regions = 0, lengthsFound = 0;
+  for (uint64_t seed = 1; seed <= 250; ++seed) {
+    RandomCase c = randomCase(seed);
+    if (!c.domain) c.domain = c.object.box();
+    drawRegion(c);
+    if (!c.region) continue;
+    INFO(describe(c));
+    const Domain domain = *domainOf(c);
+    const LeafIndex index(*toMask(c.object));
+    const Lengths found = withThreads(c.threads, [&] { return correlationLengths(index, domain); });
+    requireNaive(found, c.object, *c.region);
+    regions += !domain.isBox();
+    for (const auto& length : found) lengthsFound += length.has_value();
+  }
+  CHECK(regions > 120);
+  CHECK(lengthsFound > 120);
+}
+
+TEST_CASE("correlation_length: in a region of many tiles and leaves", "[correlation_length]") {
+  // A box of tiles with ragged ends and two gaps, one of them a whole leaf; layers of object across
+  // each axis in turn.
+  for (int axis = 0; axis < 3; ++axis) {
+    CAPTURE(axis);
+    Coord dim(35);
+    dim[axis] = 330;
+    const CoordBBox box = boxAt(Coord(-5, -131, 120), dim);
+    ObjectVolume region(box, 1), object = layers(box, axis, 23);
+    for (int i = 0; i < region.size(); ++i) {
+      const Coord d = region.coord(i) - box.min();
+      const int along = d[axis], across = d[(axis + 1) % 3];
+      const bool inLeaf = region.coord(i)[axis] >> 3 == 20;
+      if (inLeaf || std::abs(along - 110) < 9 || along < across % 7) region[i] = object[i] = 0;
+    }
+    const Domain domain(toMask(region, Tiles::wherePossible)->tree());
+    REQUIRE(domain.region()->activeTileCount() > 100);
+    const Lengths found = correlationLengths(LeafIndex(*toMask(object)), domain);
+    CHECK(found[size_t(axis)].has_value());
+    requireNaive(found, object, region);
+  }
+}
+
+TEST_CASE("correlation_length: none between parts of a region that have no pairs",
+          "[correlation_length]") {
+  // Two pairs of voxels, ten apart: f = 3/4, S(1) = 1/2, (1/2 - 9/16) / (3/16) = -1/3.
+  ObjectVolume region = fromPicture("##..........##"), object = fromPicture("##..........#.");
+  const auto length = [&] {
+    return correlationLengths(LeafIndex(*toMask(object)), Domain(toMask(region)->tree()))[2];
+  };
+  CHECK(length().value() == Approx((1 - kTarget) * 3 / 4));
+  // Single voxels, with no pair at lag 1.
+  region = fromPicture("#..#..#"), object = fromPicture("#..#...");
+  CHECK_FALSE(length().has_value());
 }
 
 TEST_CASE("correlation_length: beyond many leaves, empty ones between", "[correlation_length]") {

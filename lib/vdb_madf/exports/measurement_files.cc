@@ -112,9 +112,10 @@ Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& opt
   json["boundary"] = m.open ? "open" : "closed";
   json["length_unit"] = u;
   if (m.voxelSize) json["voxel_size_" + u] = unit.length;
-  json["box"] = s.domainKnown ? "domain" : "grains";
+  json["box"] = s.regionVoxels ? "region" : s.domainKnown ? "domain" : "grains";
   json["box_min"] = {s.box.min().x(), s.box.min().y(), s.box.min().z()};
   json["box_max"] = {s.box.max().x(), s.box.max().y(), s.box.max().z()};
+  if (s.regionVoxels) json["domain_voxels"] = *s.regionVoxels;
   json["grains"] = m.grains.size();
   json["bonds"] = m.bonds.size();
   json["bonds_without_curvature"] = s.bondsWithoutCurvature;

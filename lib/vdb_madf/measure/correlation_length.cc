@@ -13,6 +13,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/detail/simd.h"
 #include "vdb_madf/leaves/detail/voxels.h"
+#include "vdb_madf/measure/detail/domain_pairs.h"
 
 namespace vdb_madf {
 
@@ -110,20 +111,22 @@ class Pencils {
 }  // namespace
 
 std::array<std::optional<double>, 3> correlationLengths(const LeafIndex& index,
-                                                        const CoordBBox& box,
+                                                        const Domain& domain,
                                                         Interrupter* interrupter) {
   std::array<std::optional<double>, 3> lengths;
   if (index.voxelCount() == 0) return lengths;
-  const double share = double(index.voxelCount()) / double(box.volume());
+  const double share = double(index.voxelCount()) / double(domain.voxelCount());
   if (!(share < 1)) return lengths;
   const double target = std::exp(-1.0);
   for (int axis = 0; axis < 3; ++axis) {
     Pencils pencils(index, axis);
-    const int extent = box.dim()[axis];
-    const double section = double(box.volume()) / extent;
+    const detail::DomainPairs all(domain, axis);
+    const int extent = domain.box().dim()[axis];
     double before = 1;
     for (int lag = 1; 2 * lag <= extent; ++lag) {
-      const double both = double(pencils.pairs(lag, interrupter)) / (section * (extent - lag));
+      const double pairs = all.count(lag, interrupter);
+      if (pairs == 0) break;
+      const double both = double(pencils.pairs(lag, interrupter)) / pairs;
       const double correlation = (both - share * share) / (share - share * share);
       if (correlation <= target) {
         lengths[size_t(axis)] = lag - 1 + (before - target) / (before - correlation);

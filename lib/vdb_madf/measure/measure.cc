@@ -76,24 +76,23 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
   result.gridName = labels.getName();
   result.metadata = labels;
   result.labelDigest = detail::labelDigest(leaves);
-  const CoordBBox box = domain ? domain->box() : index.boundingBox();
+  const Domain whole = domain.value_or(index.boundingBox());
   {
-    const detail::LabelSums sums = detail::labelSums(
-        leaves, obstacles.open ? std::optional(obstacles.domain.box()) : std::nullopt, interrupter);
+    const detail::LabelSums sums = detail::labelSums(leaves, whole, obstacles.open, interrupter);
     result.bonds = detail::bondMeasures(sums, interrupter);
-    result.grains = detail::grainMeasures(sums, result.bonds, box);
+    result.grains = detail::grainMeasures(sums, result.bonds, whole);
   }
   setRepresentatives(graph ? detail::grainRepresentatives(labels, *graph)
                            : detail::grainRepresentatives(leaves, obstacles, interrupter),
                      result);
   const std::vector<BondMeasures> leftOut = takeSmallBonds(result);
   SampleMeasures& sample = result.sample;
-  sample = detail::sampleMeasures(result.grains, result.bonds, box);
+  sample = detail::sampleMeasures(result.grains, result.bonds, whole);
   sample.contactsLeftOut = int64_t(leftOut.size());
   for (const BondMeasures& contact : leftOut) sample.areaLeftOut += contact.area;
   sample.sharedArea += sample.areaLeftOut;
   sample.domainKnown = domain.has_value();
-  sample.correlationLengths = correlationLengths(index, sample.box, interrupter);
+  sample.correlationLengths = correlationLengths(index, whole, interrupter);
   sample.eulerCharacteristic = eulerCharacteristic(index, interrupter);
   sample.components = detail::ConnectedComponents(index).count();
   return result;

@@ -23,7 +23,8 @@ struct Segmentation;
 
 struct MeasureOptions {
   /// What lies beyond the domain; automatic: what the grid says, else open if its domain is known.
-  /// Open: the faces of the domain are no surface (GrainMeasures::cutArea). Closed: they are.
+  /// Open: the faces of the domain, or the wall of a region, are no surface
+  /// (GrainMeasures::cutArea). Closed: they are.
   Boundary boundary = Boundary::automatic;
   std::optional<Domain> domain;  ///< overrides the domain in the grid's metadata
   /// Grains that share fewer voxel faces have no bond; what they share stays part of their areas.

@@ -25,7 +25,7 @@ struct GrainMeasures {
   int64_t voxels = 0;       ///< = volume
   openvdb::Vec3d centroid;  ///< of the voxels' centers
   CoordBBox box;            ///< inclusive
-  /// The box touches a face of the domain or, if that is unknown, of the box of all grains.
+  /// A voxel has a face neighbor outside the domain or, if that is unknown, the box of all grains.
   bool atDomainFace = false;
   /// The voxel of largest squared distance to the background, of several the first; none without
   /// background. Its distance is the inscribed radius.
@@ -34,7 +34,7 @@ struct GrainMeasures {
   double equivalentDiameter = 0;  ///< of the ball of this volume
   double freeArea = 0;            ///< towards the background
   double sharedArea = 0;          ///< towards other grains, be there a bond or too few faces for it
-  double cutArea = 0;             ///< on the border of an open domain; part of no other area
+  double cutArea = 0;             ///< voxel faces at the wall of an open domain; in no other area
   double sphericity = 0;          ///< area of the ball of this volume / area, the cut one included
   /// Axes of inertia and the lengths (not half lengths) of the axes of the ellipsoid that has the
   /// grain's second moments, voxels being cubes.

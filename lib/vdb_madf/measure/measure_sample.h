@@ -22,8 +22,10 @@ struct FabricTensor {
 
 /// A sample; lengths in voxels.
 struct SampleMeasures {
-  CoordBBox box;             ///< what fractions and correlations refer to
-  bool domainKnown = false;  ///< it is the domain; else the box of the grains
+  CoordBBox box;             ///< what fractions and correlations refer to, or bounds it
+  bool domainKnown = false;  ///< that is the domain; else the box of the grains
+  /// The domain is a region of so many voxels: fractions and correlations refer to them.
+  std::optional<int64_t> regionVoxels;
   int64_t objectVoxels = 0;
   double objectFraction = 0;
   double freeArea = 0;         ///< of all grains

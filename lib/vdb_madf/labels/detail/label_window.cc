@@ -10,9 +10,6 @@
 
 namespace vdb_madf::detail {
 
-namespace {
-
-/// Adds the voxels of a leaf, `side` of the 27 of a LeafNeighborhood.
 VDB_MADF_SIMD void addLeaf(const LeafIndex::Mask& mask, int side, WindowRows& rows) {
   const int dx = side / 9 - 1, dy = side / 3 % 3 - 1, dz = side % 3 - 1;
   const int begin = std::max(8 * dx, WindowRows::kBeginX),
@@ -24,8 +21,6 @@ VDB_MADF_SIMD void addLeaf(const LeafIndex::Mask& mask, int side, WindowRows& ro
     for (int y = 0; y < 8; ++y) line[y] |= uint32_t(bytes[y]) << 8 * (dz + 1);
   }
 }
-
-}  // namespace
 
 void LabelWindow::labelled(WindowRows& rows) const {
   rows.rows.fill(0);

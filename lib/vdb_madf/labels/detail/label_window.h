@@ -26,6 +26,9 @@ struct WindowRows {
   alignas(64) std::array<uint32_t, size_t((kEndX - kBeginX) * kLine)> rows;
 };
 
+/// Adds voxels of one of the 27 leaves, `side` as in LeafNeighborhood.
+void addLeaf(const LeafIndex::Mask& mask, int side, WindowRows& rows);
+
 /// Which voxels in and around a leaf have a label. One per thread.
 class LabelWindow {
  public:

@@ -65,10 +65,12 @@ LeafIndex::Mask inBox(const Coord& origin, const CoordBBox& box) {
   for (int axis = 0; axis < 3; ++axis) {
     first[axis] = int(std::max<int64_t>(0, int64_t(box.min()[axis]) - origin[axis]));
     last[axis] = int(std::min<int64_t>(7, int64_t(box.max()[axis]) - origin[axis]));
+    if (first[axis] > last[axis]) return result;
   }
-  for (int x = first[0]; x <= last[0]; ++x)
-    for (int y = first[1]; y <= last[1]; ++y)
-      for (int z = first[2]; z <= last[2]; ++z) result[size_t(x)] |= uint64_t(1) << (y * 8 + z);
+  const uint64_t row = (uint64_t(2) << last[2]) - (uint64_t(1) << first[2]);
+  uint64_t slice = 0;
+  for (int y = first[1]; y <= last[1]; ++y) slice |= row << 8 * y;
+  for (int x = first[0]; x <= last[0]; ++x) result[size_t(x)] = slice;
   return result;
 }
 

@@ -35,7 +35,7 @@ bool touchesFace(const CoordBBox& box, const CoordBBox& domain) {
 
 std::vector<GrainMeasures> grainMeasures(const LabelSums& sums,
                                          const std::vector<BondMeasures>& bonds,
-                                         const CoordBBox& domain) {
+                                         const Domain& domain) {
   std::vector<GrainMeasures> grains;
   std::unordered_map<int32_t, size_t> row;
   for (const GrainSums& from : sums.grains) {
@@ -46,7 +46,7 @@ std::vector<GrainMeasures> grainMeasures(const LabelSums& sums,
     for (int i = 0; i < 3; ++i)
       grain.centroid[i] = sums.origin[i] + double(from.sum[size_t(i)]) / n;
     grain.box = from.box;
-    grain.atDomainFace = touchesFace(from.box, domain);
+    grain.atDomainFace = domain.isBox() ? touchesFace(from.box, domain.box()) : from.atRegionWall;
     grain.equivalentDiameter = std::cbrt(6 * n / M_PI);
     grain.freeArea = double(from.freeArea) / kAreaUnit;
     grain.cutArea = double(from.cutFaces);

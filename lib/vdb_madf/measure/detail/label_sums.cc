@@ -5,16 +5,17 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <unordered_map>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/leaves/detail/leaf_mask.h"
 
 namespace vdb_madf::detail {
 
 namespace {
 
-constexpr size_t kLeafGrain = 64;
 constexpr size_t kBondGrain = 16;
 
 /// Number, sum and sum of squares of the set bits' positions.
@@ -91,6 +92,7 @@ void add(const GrainSums& from, GrainSums& to) {
   to.box.expand(from.box);
   to.freeArea += from.freeArea;
   to.cutFaces += from.cutFaces;
+  to.atRegionWall = to.atRegionWall || from.atRegionWall;
 }
 
 struct PairHash {
@@ -105,13 +107,20 @@ class LeafCounter {
   std::unordered_map<int32_t, GrainSums> grains;
   std::unordered_map<std::pair<int32_t, int32_t>, BondSums, PairHash> bonds;
 
-  LeafCounter(const LabelLeaves& labels, const std::optional<CoordBBox>& cutBy)
-      : labels_(&labels), surface_(labels, cutBy), origin_(labels.index().boundingBox().min()) {}
+  LeafCounter(const LabelLeaves& labels, const Domain& domain, bool open)
+      : labels_(&labels),
+        domain_(domain),
+        surface_(labels, open ? std::optional(domain) : std::nullopt),
+        origin_(labels.index().boundingBox().min()) {}
 
   void count(size_t leaf) {
     const Coord& at = labels_->index().origin(leaf);
-    for (const LabelPart& part : labels_->parts(leaf))
-      add(sumsOf(part), at - origin_, at, grains[part.label]);
+    const LeafIndex::Mask wall = domain_.isBox() ? LeafIndex::Mask{} : wallMask(leaf);
+    for (const LabelPart& part : labels_->parts(leaf)) {
+      GrainSums& grain = grains[part.label];
+      add(sumsOf(part), at - origin_, at, grain);
+      grain.atRegionWall = grain.atRegionWall || meet(part.mask, wall);
+    }
     surface_.measure(leaf);
     for (const LeafSurface::Free& free : surface_.free()) {
       GrainSums& grain = grains[free.label];
@@ -126,7 +135,13 @@ class LeafCounter {
   }
 
  private:
+  /// The voxels that have a face neighbor outside the domain.
+  LeafIndex::Mask wallMask(size_t leaf) const {
+    return without(labels_->index().mask(leaf), innerMask(domain_, labels_->index().origin(leaf)));
+  }
+
   const LabelLeaves* labels_;
+  Domain domain_;
   LeafSurface surface_;
   Coord origin_;
 };
@@ -137,13 +152,13 @@ bool faceOrder(const InterfaceFace& a, const InterfaceFace& b) {
 
 }  // namespace
 
-LabelSums labelSums(const LabelLeaves& labels, const std::optional<CoordBBox>& cutBy,
+LabelSums labelSums(const LabelLeaves& labels, const Domain& domain, bool open,
                     Interrupter* interrupter) {
   LabelSums result;
   const LeafIndex& index = labels.index();
   if (index.leafCount() == 0) return result;
   result.origin = index.boundingBox().min();
-  PerThread<LeafCounter> counters([&] { return LeafCounter(labels, cutBy); });
+  PerThread<LeafCounter> counters([&] { return LeafCounter(labels, domain, open); });
   parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
     LeafCounter& counter = counters.local();
     for (size_t leaf = begin; leaf < end; ++leaf) counter.count(leaf);

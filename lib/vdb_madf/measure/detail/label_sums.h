@@ -5,9 +5,9 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
+#include "vdb_madf/grids/domain.h"
 #include "vdb_madf/labels/detail/label_leaves.h"
 #include "vdb_madf/measure/detail/leaf_surface.h"
 
@@ -22,6 +22,7 @@ struct GrainSums {
   CoordBBox box;
   int64_t freeArea = 0;  ///< in kAreaUnit
   int64_t cutFaces = 0;
+  bool atRegionWall = false;  ///< the domain is a region, and a face neighbor lies outside of it
 };
 
 /// Two grains with at least one voxel face in common.
@@ -38,8 +39,9 @@ struct LabelSums {
 };
 
 /// All that grains and bonds are measured from, in one pass over the leaves. Memory: per grain,
-/// per bond and per face of a bond, for each thread.
-LabelSums labelSums(const LabelLeaves& labels, const std::optional<CoordBBox>& cutBy,
+/// per bond and per face of a bond, for each thread. `open`: what lies outside the domain is no
+/// background but unknown.
+LabelSums labelSums(const LabelLeaves& labels, const Domain& domain, bool open,
                     Interrupter* interrupter);
 
 }  // namespace vdb_madf::detail

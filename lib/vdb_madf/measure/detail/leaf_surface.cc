@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "vdb_madf/leaves/detail/leaf_mask.h"
+
 namespace vdb_madf::detail {
 
 namespace {
@@ -24,15 +26,6 @@ constexpr double kGroove = 0.4;
 // Lower voxels of the faces in reach of what is measured, along an axis (drawn in leaf_surface.h).
 constexpr int kFreeBegin = -3, kFreeLast = 9, kSharedBegin = -4, kSharedLast = 12;
 
-/// Bit z + 8: voxel (x, y, z) of a leaf lies in the domain.
-uint32_t insideDomain(const CoordBBox& domain, const Coord& origin, int x, int y) {
-  const Coord at = origin.offsetBy(x, y, 0);
-  if (!domain.isInside(Coord(at.x(), at.y(), domain.min().z()))) return 0;
-  const int64_t first = std::max<int64_t>(int64_t(domain.min().z()) - at.z() + 8, 0),
-                last = std::min<int64_t>(int64_t(domain.max().z()) - at.z() + 8, 31);
-  return first <= last ? uint32_t((uint64_t(2) << last) - (uint64_t(1) << first)) : 0;
-}
-
 /// The voxels that lie 1, 2 or 4 above one of a set in the leaf.
 void reachUpwards(const WindowRows& set, WindowRows& reached) {
   reached.rows.fill(0);
@@ -50,19 +43,29 @@ void reachUpwards(const WindowRows& set, WindowRows& reached) {
 
 }  // namespace
 
-void LeafSurface::findBackground() {
-  for (size_t i = 0; i < labelled_.rows.size(); ++i) background_.rows[i] = ~labelled_.rows[i];
+/// Whether any of the voxels around the leaf lie outside the domain.
+bool LeafSurface::findOutside() {
   const CoordBBox window(origin_.offsetBy(WindowRows::kBeginX),
                          origin_.offsetBy(WindowRows::kEndX - 1));
-  atBorder_ = domain_ && !domain_->isInside(window);
-  if (!atBorder_) return;
-  for (int x = WindowRows::kBeginX; x < WindowRows::kEndX; ++x) {
-    for (int y = WindowRows::kBegin; y < WindowRows::kEnd; ++y) {
-      const uint32_t inside = insideDomain(*domain_, origin_, x, y);
-      outside_.line(x)[y - WindowRows::kBegin] = ~inside;
-      background_.line(x)[y - WindowRows::kBegin] &= inside;
-    }
+  if (domain_->isBox() && domain_->box().isInside(window)) return false;
+  outside_.rows.fill(0);
+  bool any = false;
+  for (int side = 0; side < 27; ++side) {
+    const Coord leaf =
+        origin_.offsetBy(8 * (side / 9 - 1), 8 * (side / 3 % 3 - 1), 8 * (side % 3 - 1));
+    const LeafIndex::Mask beyond = without(kFullMask, insideMask(*domain_, leaf));
+    if (!anyVoxel(beyond)) continue;
+    addLeaf(beyond, side, outside_);
+    any = true;
   }
+  return any;
+}
+
+void LeafSurface::findBackground() {
+  for (size_t i = 0; i < labelled_.rows.size(); ++i) background_.rows[i] = ~labelled_.rows[i];
+  atBorder_ = domain_ && findOutside();
+  if (!atBorder_) return;
+  for (size_t i = 0; i < outside_.rows.size(); ++i) background_.rows[i] &= ~outside_.rows[i];
 }
 
 void LeafSurface::measureFree(int32_t label) {

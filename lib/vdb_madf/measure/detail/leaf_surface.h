@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_madf/grids/domain.h"
 #include "vdb_madf/labels/detail/label_window.h"
 #include "vdb_madf/measure/detail/fit_curvature.h"
 #include "vdb_madf/measure/detail/surface_faces.h"
@@ -57,7 +58,7 @@ class LeafSurface {
   };
 
   /// Faces on the border of `domain` are no surface but counted apart; none: there are no such.
-  LeafSurface(const LabelLeaves& labels, const std::optional<CoordBBox>& domain)
+  LeafSurface(const LabelLeaves& labels, const std::optional<Domain>& domain)
       : labels_(&labels), window_(labels), domain_(domain) {}
 
   /// Free faces belong to the leaf of their labelled voxel, shared ones and pairs to that of their
@@ -68,6 +69,7 @@ class LeafSurface {
   const std::vector<Shared>& shared() const { return shared_; }
 
  private:
+  bool findOutside();
   void findBackground();
   void measureFree(int32_t label);
   void measureShared(int32_t label);
@@ -75,7 +77,7 @@ class LeafSurface {
 
   const LabelLeaves* labels_;
   LabelWindow window_;
-  std::optional<CoordBBox> domain_;
+  std::optional<Domain> domain_;
 
   Coord origin_;
   bool atBorder_ = false;                       // of the domain

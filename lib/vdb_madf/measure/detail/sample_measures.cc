@@ -37,9 +37,10 @@ class Fabric {
 }  // namespace
 
 SampleMeasures sampleMeasures(const std::vector<GrainMeasures>& grains,
-                              const std::vector<BondMeasures>& bonds, const CoordBBox& box) {
+                              const std::vector<BondMeasures>& bonds, const Domain& domain) {
   SampleMeasures sample;
-  sample.box = box;
+  sample.box = domain.box();
+  if (!domain.isBox()) sample.regionVoxels = int64_t(domain.voxelCount());
   Fabric grainFabric, bondFabric;
   std::map<int32_t, double> diameters;
   for (const GrainMeasures& grain : grains) {
@@ -61,7 +62,7 @@ SampleMeasures sampleMeasures(const std::vector<GrainMeasures>& grains,
   if (!bonds.empty()) sample.bondToGrainRatio = ratios / double(bonds.size());
   if (!grains.empty()) sample.meanCoordination = 2.0 * double(bonds.size()) / double(grains.size());
   if (sample.objectVoxels > 0) {
-    sample.objectFraction = double(sample.objectVoxels) / double(sample.box.volume());
+    sample.objectFraction = double(sample.objectVoxels) / double(domain.voxelCount());
     sample.specificSurface = sample.freeArea / double(sample.objectVoxels);
   }
   sample.grainFabric = grainFabric.mean();
