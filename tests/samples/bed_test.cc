@@ -40,7 +40,7 @@ double distance(const detail::Ball& a, const detail::Ball& b) {
 
 /// The indicator of a sample, beyond the faces as at the faces, blurred at a voxel.
 double blurredAt(const Sample& sample, const Coord& p) {
-  const CoordBBox domain = *storedDomain(*sample.object);
+  const CoordBBox domain = storedDomain(*sample.object)->box();
   double sum = 0, weights = 0;
   for (auto k = CoordBBox(Coord(-8), Coord(8)).begin(); k; ++k) {
     const Coord d = *k,

@@ -75,7 +75,8 @@ int32_t nearestTrue(const Sample& before, const Coord& p, int reach) {
 
 int64_t countMoved(const Sample& a, const Sample& b) {
   int64_t moved = 0;
-  for (auto p = storedDomain(*a.object)->begin(); p; ++p)
+  const CoordBBox box = storedDomain(*a.object)->box();
+  for (auto p = box.begin(); p; ++p)
     moved += a.object->tree().isValueOn(*p) != b.object->tree().isValueOn(*p);
   return moved;
 }

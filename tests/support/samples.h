@@ -22,7 +22,7 @@ namespace vdb_madf::test {
 /// The bits of object and truth, whatever the trees hold as tiles.
 inline uint64_t hash(const Sample& sample) {
   uint64_t state = 0;
-  const CoordBBox box = *storedDomain(*sample.object);
+  const CoordBBox box = storedDomain(*sample.object)->box();
   const auto object = sample.object->getConstAccessor();
   for (auto p = box.begin(); p; ++p) {
     const int32_t label = sample.truth ? sample.truth->tree().getValue(*p) : 0;
@@ -32,7 +32,7 @@ inline uint64_t hash(const Sample& sample) {
 }
 
 inline double solidFraction(const Sample& sample) {
-  return double(sample.object->activeVoxelCount()) / double(storedDomain(*sample.object)->volume());
+  return double(sample.object->activeVoxelCount()) / double(storedDomain(*sample.object)->voxelCount());
 }
 
 inline std::set<int32_t> labelsOf(const Int32Grid& grid) {
@@ -82,7 +82,7 @@ void requireStops(const Generate& generate) {
 }
 
 inline void requireInsideDomain(const Sample& sample) {
-  CHECK(storedDomain(*sample.object)->isInside(sample.object->evalActiveVoxelBoundingBox()));
+  CHECK(storedDomain(*sample.object)->box().isInside(sample.object->evalActiveVoxelBoundingBox()));
 }
 
 /// generate(seed): three seeds, three samples.

@@ -165,18 +165,19 @@ void measureInRegion(const LeafIndex& index, const Obstacles& obstacles, Interru
   const VoxelWeights& weights = result.weights;
   result.values = VoxelArray<int32_t>(size_t(index.voxelCount()));
   for (int reach = kFirstReach;;) {
-    const auto passage = std::make_shared<detail::Passage>(index, obstacles.domain, reach, weights);
-    const uint32_t exact = passage->exactUpTo();
-    passage->collect(index, sweepAll(passage->index(), obstacles, weights, exact, interrupter),
-                     result.values);
+    const detail::Passage passage(index, obstacles.domain, reach, weights);
+    const uint32_t exact = passage.exactUpTo();
+    passage.collect(index, sweepAll(passage.index(), obstacles, weights, exact, interrupter),
+                    result.values);
     const uint32_t largest = largestValue(result.values);
     result.largest = int32_t(largest);
-    result.passage = passage;
-    if (largest <= exact) return;
+    if (largest <= exact) break;
     reach = largest == detail::kInfinite
                 ? 2 * reach
                 : int(std::ceil(std::sqrt(double(largest) / weights.least())));
   }
+  result.passage =
+      std::make_shared<detail::Passage>(index, obstacles.domain, result.values, weights);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <openvdb/tools/Morphology.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
@@ -17,18 +18,30 @@ namespace vdb_madf::detail {
 
 namespace {
 
-/// The unknown voxels of the leaves up to `leaves` away from the object's, as far as the box of the
-/// region goes.
-std::vector<LeafIndex::LeafVoxels> unknownVoxels(const LeafIndex& object, const Domain& region,
-                                                 int leaves) {
-  MaskTree near;  // a voxel stands for a leaf
-  for (size_t leaf = 0; leaf < object.leafCount(); ++leaf)
-    near.setValueOn(object.origin(leaf) >> 3);
-  openvdb::tools::dilateActiveValues(near, leaves, openvdb::tools::NN_FACE_EDGE_VERTEX,
-                                     openvdb::tools::EXPAND_TILES);
-  near.clip({region.box().min() >> 3, region.box().max() >> 3});
+/// The leaves, a voxel for each, that are up to reach(leaf) leaves away from a leaf of the object.
+template <typename Reach>
+MaskTree leavesAround(const LeafIndex& object, const Reach& reach) {
+  std::vector<std::vector<uint32_t>> byReach;
+  for (uint32_t leaf = 0; leaf < object.leafCount(); ++leaf) {
+    const auto r = size_t(reach(leaf));
+    if (r >= byReach.size()) byReach.resize(r + 1);
+    byReach[r].push_back(leaf);
+  }
+  MaskTree leaves;
+  for (size_t r = byReach.size(); r-- > 0;) {  // those of the longest reach grow most often
+    for (const uint32_t leaf : byReach[r]) leaves.setValueOn(object.origin(leaf) >> 3);
+    if (r > 0)
+      openvdb::tools::dilateActiveValues(leaves, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
+                                         openvdb::tools::EXPAND_TILES);
+  }
+  return leaves;
+}
+
+/// The unknown voxels of leaves, as far as the box of the region goes.
+std::vector<LeafIndex::LeafVoxels> unknownVoxels(MaskTree leaves, const Domain& region) {
+  leaves.clip({region.box().min() >> 3, region.box().max() >> 3});
   std::vector<LeafIndex::LeafVoxels> unknown;
-  for (auto at = near.cbeginValueOn(); at; ++at) {
+  for (auto at = leaves.cbeginValueOn(); at; ++at) {
     CoordBBox tile;
     at.getBoundingBox(tile);
     for (const Coord& place : tile) {
@@ -63,7 +76,23 @@ Passage::Passage(const LeafIndex& object, const Domain& region, int reach,
   const int leaves = (std::min(reach, side) + 7) / 8;
   exactUpTo_ = leaves * 8 >= side ? kInfinite
                                   : squaredAlong(uint32_t(leaves * 8), uint32_t(weights.least()));
-  index_ = LeafIndex(object, unknownVoxels(object, region, leaves));
+  index_ = LeafIndex(object,
+                     unknownVoxels(leavesAround(object, [&](uint32_t) { return leaves; }), region));
+  linkLeaves(object);
+}
+
+Passage::Passage(const LeafIndex& object, const Domain& region,
+                 const VoxelArray<int32_t>& squaredRadii, const VoxelWeights& weights) {
+  const auto reach = [&](uint32_t leaf) {
+    const int32_t* const first = squaredRadii.data() + object.firstRank(leaf);
+    const int32_t largest = *std::max_element(first, first + object.leafVoxels(leaf));
+    return (int(std::sqrt(double(largest) / weights.least())) + 7) / 8;
+  };
+  index_ = LeafIndex(object, unknownVoxels(leavesAround(object, reach), region));
+  linkLeaves(object);
+}
+
+void Passage::linkLeaves(const LeafIndex& object) {
   leafOfObject_.assign(index_.leafCount(), LeafIndex::kNone);
   leafHere_.reserve(object.leafCount());
   for (uint32_t here = 0; leafHere_.size() < object.leafCount(); ++here) {

@@ -21,18 +21,21 @@ namespace vdb_madf::detail {
 /// a box domain none of it is unknown. In a region some of it may be, so unknown voxels take part
 /// in the sweeps: they carry values on, and have none of their own.
 ///
-/// They do so at least up to `reach` voxels away from the object along each axis, and within the box
-/// of the region. So a squared distance D is exact if D <= w reach^2, w the least weight; a larger
-/// one may be too large.
+/// They do so within the box of the region, at least as far away from the object, along each axis, as
+/// is needed.
 class Passage {
  public:
-  Passage(const LeafIndex& object, const Domain& region, int reach,
-          const VoxelWeights& weights = {});
+  /// For distances: `reach` voxels. So a squared distance D is exact if D <= w reach^2, w the least
+  /// weight; a larger one may be too large.
+  Passage(const LeafIndex& object, const Domain& region, int reach, const VoxelWeights& weights);
+  /// For powers: around each voxel the radius of its ball.
+  Passage(const LeafIndex& object, const Domain& region, const VoxelArray<int32_t>& squaredRadii,
+          const VoxelWeights& weights);
 
   /// Of the object and those unknown voxels, in leaves of 8 voxels as always: a voxel of one of its
   /// leaves that is none of them is background.
   const LeafIndex& index() const { return index_; }
-  /// The largest D that is exact; kInfinite (distance_rows.h) if all are.
+  /// The largest D that is exact, of distances; kInfinite (distance_rows.h) if all are.
   uint32_t exactUpTo() const { return exactUpTo_; }
 
   /// Values of the object's voxels as an array of this index, `unknown` for the other voxels.
@@ -46,6 +49,8 @@ class Passage {
                   VoxelArray<VoxelId>& ofObject) const;
 
  private:
+  void linkLeaves(const LeafIndex& object);
+
   LeafIndex index_;
   uint32_t exactUpTo_ = 0;
   std::vector<uint32_t> leafHere_;      // of a leaf of the object
