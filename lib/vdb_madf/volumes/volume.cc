@@ -10,6 +10,7 @@
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/same_file.h"
+#include "vdb_madf/grids/detail/region_metadata.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/images/histogram.h"
@@ -25,6 +26,14 @@ bool isUsable(const openvdb::GridBase& grid, GridUse use) {
   const std::string type = grid.valueType();
   return grid.isType<MaskGrid>() || type == "bool" || type == "int32" || type == "int64" ||
          type == "float" || type == "double";
+}
+
+/// The domain of another grid is a part of that one.
+bool isRegion(const openvdb::GridBase& grid, const std::vector<openvdb::GridBase::Ptr>& grids) {
+  return std::any_of(grids.begin(), grids.end(), [&](const auto& other) {
+    const openvdb::Metadata::ConstPtr named = (*other)[detail::kRegionKey];
+    return named && named->str() == grid.getName() && other.get() != &grid;
+  });
 }
 
 std::vector<const char*> preferredNames(GridUse use) {
@@ -132,7 +141,7 @@ openvdb::GridBase::Ptr chooseGrid(const std::vector<openvdb::GridBase::Ptr>& gri
   std::vector<openvdb::GridBase::Ptr> usable;
   for (const auto& grid : grids) {
     list += (list.empty() ? "" : ", ") + grid->getName() + " (" + grid->valueType() + ")";
-    if (isUsable(*grid, use)) usable.push_back(grid);
+    if (isUsable(*grid, use) && !isRegion(*grid, grids)) usable.push_back(grid);
   }
   if (list.empty()) throw InvalidInput(path + ": the file holds no grid");
   if (!name.empty()) {

@@ -41,7 +41,8 @@ struct VolumeOptions {
 };
 
 /// What a grid is wanted for. Where none is named, it is the first that is there of the names in
-/// parentheses, else the only one of a type that can be used.
+/// parentheses, else the only one of a type that can be used. The region of another grid is taken
+/// only by its name.
 enum class GridUse {
   object,  ///< a mask, bool, int32, int64, float or double ("object")
   labels,  ///< int32 ("grain", "truth")
