@@ -26,6 +26,7 @@
 #include "vdb_madf/grids/detail/region_metadata.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/grids/domain.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/method/initialize.h"
 #include "vdb_madf/vdb/detail/region_grid.h"
@@ -318,7 +319,7 @@ class Reader {
 
   /// Puts the domain of a grid together again, if another grid holds its voxels.
   void findRegion(Entry& entry) {
-    const std::string name = detail::regionNameOf(*entry.grid);
+    const std::string name = regionName(*entry.grid);
     if (name.empty()) return;
     const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& other) {
       return other.grid->getName() == name && other.grid->isType<BoolGrid>();

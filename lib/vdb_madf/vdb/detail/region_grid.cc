@@ -65,11 +65,6 @@ std::vector<GridBase::ConstPtr> withRegionGrid(const std::string& path,
   return all;
 }
 
-std::string regionNameOf(const GridBase& grid) {
-  const openvdb::Metadata::ConstPtr named = grid[kRegionKey];
-  return named ? named->str() : std::string();
-}
-
 void takeRegion(GridBase& grid, const Domain& domain) {
   grid.removeMeta(kRegionKey);
   const auto box = storedDomain(grid);

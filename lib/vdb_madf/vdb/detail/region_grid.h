@@ -20,9 +20,6 @@ namespace vdb_madf::detail {
 std::vector<openvdb::GridBase::ConstPtr> withRegionGrid(
     const std::string& path, const std::vector<openvdb::GridBase::ConstPtr>& grids);
 
-/// The name of the grid that holds the domain of a grid; empty if it is a box or unknown.
-std::string regionNameOf(const openvdb::GridBase& grid);
-
 /// Gives a grid the domain that its file holds in another one.
 /// @throw std::runtime_error if its box differs from what the grid says of it.
 void takeRegion(openvdb::GridBase& grid, const Domain& domain);
