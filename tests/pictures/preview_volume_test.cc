@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
 
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
@@ -72,6 +74,38 @@ TEST_CASE("label_preview: ties go to the smaller id, background included", "[lab
   const auto reduced = reduceLabels(*labelGrid(voxels), 2);
   CHECK(!reduced->tree().isValueOn({0, 0, 0}));
   CHECK(reduced->tree().getValue({1, 0, 0}) == 5);
+}
+
+TEST_CASE("label_preview: of a region those coarse voxels are left that are half of it",
+          "[label_preview]") {
+  for (const int factor : {2, 3, 8, 11, 20}) {
+    CAPTURE(factor);
+    // Noise, and tiles of both sizes that the coarse voxels cut.
+    LabelMap voxels = randomLabels(unsigned(factor), Coord(-13, -7, 4), 23, 3, 50);
+    const auto labels = labelGrid(voxels);
+    MaskTree region(labels->tree(), false, true, openvdb::TopologyCopy());
+    region.addTile(1, Coord(24, 8, 0), true, true);
+    region.addTile(2, Coord(0, 128, 0), true, true);
+    setDomain(*labels, Domain(region));
+    std::map<Coord, int> fine;
+    const CoordBBox box = Domain(region).box();
+    for (auto p = box.begin(); p != box.end(); ++p) {
+      if (!region.isValueOn(*p)) continue;
+      Coord coarse = *p;
+      for (int axis = 0; axis < 3; ++axis)
+        coarse[axis] = int(std::floor(double((*p)[axis]) / factor));
+      ++fine[coarse];
+    }
+    const auto domain = storedDomain(*reduceLabels(*labels, factor));
+    REQUIRE(domain);
+    int64_t inside = 0;
+    for (const auto& [coarse, count] : fine) {
+      const bool isIn = 2 * count >= factor * factor * factor;
+      inside += isIn;
+      CHECK(domain->isInside(coarse) == isIn);
+    }
+    CHECK(domain->voxelCount() == inside);
+  }
 }
 
 TEST_CASE("label_preview: density is the labelled part, color that of the commonest label",

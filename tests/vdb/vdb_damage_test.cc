@@ -45,6 +45,8 @@ std::vector<NamedBytes> smallFiles() {
   labels->insertMeta("flag", openvdb::BoolMetadata(true));
   const auto flags = ballWithTiles<BoolGrid>(Coord(4000, 0, -4), 5, "object");
   const auto mask = ballWithTiles<MaskGrid>(Coord(0, -8, 0), 5, "mask");
+  const auto inRegion = ballWithTiles<Int32Grid>(Coord(0), 2, "color");
+  setDomain(*inRegion, Domain(mask->tree()));
   const auto colors = ballWithTiles<Vec3sGrid>(Coord(1, 2, 3), 4, "color");
   const auto half = ballWithTiles<FloatGrid>(Coord(1, 2, 3), 5, "density");
   half->setSaveFloatAsHalf(true);
@@ -53,6 +55,7 @@ std::vector<NamedBytes> smallFiles() {
   sharing->setName("shared");
 
   add("ours", [&](auto& path) { writeVdb(path, {labels, flags}); });
+  add("region", [&](auto& path) { writeVdb(path, {inRegion}); });
   add("blosc", [&](auto& path) { writeWithOpenVdb(path, {labels, mask, sharing}); });
   add("zip", [&](auto& path) {
     writeWithOpenVdb(path, {labels, colors}, io::COMPRESS_ZIP | io::COMPRESS_ACTIVE_MASK);

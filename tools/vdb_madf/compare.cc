@@ -103,9 +103,10 @@ std::string confusionTable(const Comparison& c) {
   return csv.str();
 }
 
-std::string text(const CoordBBox& box) {
+std::string text(const Domain& domain) {
   std::ostringstream text;
-  text << box.min() << " to " << box.max();
+  text << domain.box().min() << " to " << domain.box().max();
+  if (!domain.isBox()) text << " (region, " << regionText(domain) << ")";
   return text.str();
 }
 
@@ -150,7 +151,7 @@ void run(const Options& o, const Common& common) {
   const auto truthDomain = storedDomain(*truth), testDomain = storedDomain(*test);
   if (truthDomain && testDomain && *truthDomain != *testDomain)
     std::printf("note: the domains differ: %s and %s; voxels of equal index are compared\n",
-                text(truthDomain->box()).c_str(), text(testDomain->box()).c_str());
+                text(*truthDomain).c_str(), text(*testDomain).c_str());
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <openvdb/tools/Count.h>
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -86,6 +87,12 @@ void convertLabels(const Options& o, const Common& common) {
 
 void copyVdb(const Options& o, const Common& common) {
   auto grids = readVdb(o.input.path, {}, common.progress);
+  if (o.input.domain) {  // the region that was is none any more
+    const auto all = grids;
+    grids.erase(std::remove_if(grids.begin(), grids.end(),
+                               [&](const auto& grid) { return isRegion(*grid, all); }),
+                grids.end());
+  }
   if (!o.input.gridName.empty() || !hasVdbEnding(o.out)) grids = {chooseGrid(o.input, grids)};
   for (const auto& grid : grids) {
     overrideFile(*grid, o.input.path, o.input.volume(common.progress));
@@ -105,7 +112,8 @@ void run(const Options& o, const Common& common) {
     throw InvalidInput(o.input.path + ": --median and --smooth are for images; leave them out");
   if (o.labels)
     convertLabels(o, common);
-  else if (o.input.selection || o.input.gray.despeckle > 0 || (!fromVdb && hasVdbEnding(o.out)))
+  else if (o.input.selection || o.input.gray.despeckle > 0 || o.input.region.any() ||
+           (!fromVdb && hasVdbEnding(o.out)))
     convertMask(o, common);
   else if (fromVdb)
     copyVdb(o, common);
@@ -143,6 +151,7 @@ void addConvert(Verb command, Common& common, Action& action) {
   verb.option("--out-type", o->outType, "sample type of the output").typeName("TYPE");
   o->input.addVoxelSize(verb);
   o->input.addDomain(verb);
+  o->input.addRegion(verb);
   verb.option("--boundary", o->boundary, "what 'segment --boundary auto' shall take the mask for")
       .oneOf({"auto", "open", "closed"})
       .showDefault();
@@ -155,6 +164,8 @@ void addConvert(Verb command, Common& common, Action& action) {
     if (o->labels && o->input.selection)
       throw WrongUsage(
           "--labels takes all values: leave out --phase, --threshold, --range, --invert");
+    if (o->labels && o->input.region.any())
+      throw WrongUsage("--labels takes all of IN: leave out --roi and --crop");
     if (o->labels && (readsGray(o->input.gray) || o->input.gray.despeckle > 0))
       throw WrongUsage(
           "--labels takes values as they are: leave out --median, --smooth, --despeckle");

@@ -56,6 +56,16 @@ Json metadataValue(const openvdb::Metadata& value) {
   return json;
 }
 
+/// Wrong metadata of a domain are listed as they are.
+std::optional<Domain> regionOf(const openvdb::GridBase& grid) {
+  try {
+    const auto domain = storedDomain(grid);
+    if (domain && !domain->isBox()) return domain;
+  } catch (const InvalidInput&) {
+  }
+  return std::nullopt;
+}
+
 Json describeGrid(const openvdb::GridBase& grid) {
   Json json;
   json["name"] = grid.getName();
@@ -71,6 +81,10 @@ Json describeGrid(const openvdb::GridBase& grid) {
   json["voxel_size_units"] = {edge.x(), edge.y(), edge.z()};
   if (const auto size = storedVoxelSize(grid)) json["voxel_size_mm"] = inMillimetres(*size);
   json["memory_bytes"] = grid.memUsage();
+  if (const auto domain = regionOf(grid)) {
+    json["domain"] = "region, " + regionText(*domain);
+    json["region_voxels"] = int64_t(domain->voxelCount());
+  }
   Json metadata = Json::object();
   for (auto meta = grid.beginMeta(); meta != grid.endMeta(); ++meta)
     if (meta->first != "name" && meta->first != "class")

@@ -87,6 +87,14 @@ void InputOptions::addDomain(Verb verb) {
               "image domain x0,y0,z0:x1,y1,z1 (inclusive), instead of the file's");
 }
 
+void InputOptions::addRegion(Verb verb) {
+  verb.option("--roi", roi,
+              "work within a region: cylinder[:x|y|z[:CX,CY[:RADIUS]]], or a mask, not 0 inside")
+      .typeName("REGION");
+  verb.option("--crop", cropText, "work within x0,y0,z0:x1,y1,z1 (inclusive); coordinates stay")
+      .typeName("BOX");
+}
+
 void InputOptions::parse() {
   if (!dims.empty()) size = parseDims(dims, "--dims");
   if (!type.empty()) {
@@ -102,9 +110,22 @@ void InputOptions::parse() {
   parseSelection();
   parseGray();
   if (!voxelSizeText.empty()) voxelSize = parseVoxelSize(voxelSizeText);
-  if (!domainText.empty()) domain = parseDomain(domainText);
+  if (!domainText.empty()) domain = parseBox(domainText, "--domain");
+  parseRegion();
   checkOutputs(outputs, path);
   if (isStandardInput(path)) keepStandardInput();  // before signals are caught: it may have to wait
+}
+
+void InputOptions::parseRegion() {
+  if (!roi.empty()) region = parseRoi(roi);
+  if (!cropText.empty()) region.crop = parseBox(cropText, "--crop");
+  if (region.mask.empty()) return;
+  if (isStandardInput(region.mask))
+    throw WrongUsage("--roi " + roi + ": a region is read from a file");
+  if (hasRawEnding(region.mask))
+    throw WrongUsage("--roi " + roi +
+                     ": a RAW file does not say how large it is: convert it to .tif or .npy first");
+  checkOutputs(outputs, region.mask);
 }
 
 void InputOptions::parseSelection() {
@@ -172,6 +193,7 @@ VolumeOptions InputOptions::volume(Progress* progress) const {
   options.gray = gray;
   options.voxelSize = voxelSize;
   options.domain = domain;
+  options.region = region;
   options.outputs = filesOf(outputs);
   options.longestSide = longestSide;
   options.note = [progress](const std::string& text, NoteAbout about) {
@@ -244,6 +266,11 @@ Boundary boundaryOf(const std::string& boundary, const InputOptions& input,
 std::string objectSteps(const openvdb::GridBase& grid) {
   const auto steps = grid.getMetadata<openvdb::StringMetadata>(kObjectKey);
   return steps ? steps->value() : "";
+}
+
+std::string regionText(const Domain& domain) {
+  return std::to_string(int64_t(domain.voxelCount())) + " of " +
+         std::to_string(int64_t(Domain(domain.box()).voxelCount())) + " voxels of the box";
 }
 
 const char* hintIfEmpty(int64_t objectVoxels) {

@@ -33,7 +33,7 @@ struct InputOptions {
   bool invert = false;
   std::string median, smooth, despeckle;
   int longestSide = 0;  ///< see VolumeOptions
-  std::string voxelSizeText, domainText;
+  std::string voxelSizeText, domainText, roi, cropText;
 
   // Filled by parse().
   std::optional<Coord> size;
@@ -43,17 +43,20 @@ struct InputOptions {
   GrayOptions gray;
   std::optional<VoxelSize> voxelSize;
   std::optional<CoordBBox> domain;
+  RegionOptions region;
 
   void addRaw(Verb verb);  ///< and --dataset
   void addSelection(Verb verb);
   void addVoxelSize(Verb verb);
   void addDomain(Verb verb);
+  void addRegion(Verb verb);  ///< --roi and --crop
   /// Also checks that the outputs overwrite neither the input nor each other. @throw WrongUsage
   void parse();
   /// Its notes go to `progress`, which has to live as long as they come.
   VolumeOptions volume(Progress* progress) const;
 
  private:
+  void parseRegion();
   void parseSelection();
   void parseGray();
 };
@@ -91,6 +94,8 @@ Boundary boundaryOf(const std::string& boundary, const InputOptions& input, cons
 
 /// How an object was made of a gray image, as its metadata tell; empty if it was not.
 std::string objectSteps(const openvdb::GridBase& grid);
+/// "3 of 4 voxels of the box": how large a domain is that is no box.
+std::string regionText(const Domain& domain);
 /// What to add to the number of an object's voxels: nothing, if there are any.
 const char* hintIfEmpty(int64_t objectVoxels);
 

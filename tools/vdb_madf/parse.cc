@@ -72,7 +72,7 @@ Coord parseDims(const std::string& text, const std::string& option) {
   return *size;
 }
 
-CoordBBox parseDomain(const std::string& text) {
+CoordBBox parseBox(const std::string& text, const std::string& option) {
   const std::vector<std::string> corners = split(text, ':');
   if (corners.size() == 2) {
     const std::optional<Coord> lower = parseCoord(corners[0], ','),
@@ -83,9 +83,42 @@ CoordBBox parseDomain(const std::string& text) {
         return box;
     }
   }
-  throw WrongUsage("--domain " + text +
+  throw WrongUsage(option + " " + text +
                    ": write x0,y0,z0:x1,y1,z1 (inclusive, x0 <= x1 ..., within +-" +
                    std::to_string(kMaxImageSide) + ")");
+}
+
+RegionOptions parseRoi(const std::string& text) {
+  RegionOptions region;
+  const std::vector<std::string> parts = split(text, ':');
+  if (parts[0] != "cylinder") {
+    region.mask = text;
+    return region;
+  }
+  CylinderOptions cylinder;
+  const auto require = [&](bool holds, const std::string& what) {
+    if (!holds)
+      throw WrongUsage("--roi " + text + ": " + what +
+                       "; write cylinder[:AXIS[:CX,CY[:RADIUS]]], for example cylinder:z, "
+                       "cylinder:z:150,150:149, or the file of a mask");
+  };
+  require(parts.size() <= 4, "too many parts");
+  if (parts.size() > 1) {
+    const std::string axis = lowerCase(parts[1]);
+    require(axis == "x" || axis == "y" || axis == "z", "the axis must be x, y or z");
+    cylinder.axis = axis[0] - 'x';
+  }
+  if (parts.size() > 2 && !parts[2].empty()) {
+    const std::vector<std::string> center = split(parts[2], ',');
+    require(center.size() == 2, "the center is two numbers");
+    cylinder.center = {parseNumber(center[0], "--roi"), parseNumber(center[1], "--roi")};
+  }
+  if (parts.size() > 3) {
+    cylinder.radius = parseNumber(parts[3], "--roi");
+    require(*cylinder.radius > 0, "the radius must be above 0");
+  }
+  region.cylinder = cylinder;
+  return region;
 }
 
 VoxelSize parseVoxelSize(const std::string& text) {

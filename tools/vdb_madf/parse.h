@@ -10,6 +10,7 @@
 #include "vdb_madf/base/voxel_size.h"
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/method/boundary.h"
+#include "vdb_madf/volumes/scan_region.h"
 
 namespace vdb_madf::tools {
 
@@ -20,8 +21,10 @@ namespace vdb_madf::tools {
 double parseNumber(const std::string& text, const std::string& option);
 /// "301x301x251", each from 1 to kMaxImageSide.
 Coord parseDims(const std::string& text, const std::string& option);
-/// --domain: "x0,y0,z0:x1,y1,z1", both corners inclusive.
-CoordBBox parseDomain(const std::string& text);
+/// "x0,y0,z0:x1,y1,z1", both corners inclusive.
+CoordBBox parseBox(const std::string& text, const std::string& option);
+/// --roi: "cylinder", "cylinder:z:CX,CY:RADIUS" with as many parts as one likes, or a file.
+RegionOptions parseRoi(const std::string& text);
 /// --voxel-size: "8.5um", "0.5x0.5x1.2um" (or a unit for each), with or without a space; units as
 /// unitsPerMetre() knows them.
 VoxelSize parseVoxelSize(const std::string& text);

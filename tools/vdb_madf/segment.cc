@@ -186,6 +186,7 @@ void addSegment(Verb command, Common& common, Action& action) {
   o->input.addRaw(verb);
   o->input.addVoxelSize(verb);
   o->input.addDomain(verb);
+  o->input.addRegion(verb);
   verb.option("--gamma", o->gamma, "least cell of a medial ball, voxels").showDefault();
   addBoundary(verb, o->boundary);
   addFillHoles(verb, o->fillHoles);

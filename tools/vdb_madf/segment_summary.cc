@@ -98,6 +98,7 @@ Json toJson(const SegmentArguments& o, const SegmentSummary& summary) {
                           domain->box().min().z()};
     json["domain_max"] = {domain->box().max().x(), domain->box().max().y(),
                           domain->box().max().z()};
+    if (!domain->isBox()) json["region_voxels"] = int64_t(domain->voxelCount());
     json["porosity"] = *summary.porosity();
   }
   if (summary.voxelSize) json["voxel_size_mm"] = inMillimetres(*summary.voxelSize);
@@ -145,6 +146,8 @@ void print(const SegmentArguments& o, const Common& common, const SegmentSummary
               count(counts.leaves), hintIfEmpty(counts.objectVoxels));
   if (!summary.objectSteps.empty())
     std::printf("                   %s\n", summary.objectSteps.c_str());
+  if (summary.domain && !summary.domain->isBox())
+    std::printf("  region           %s\n", regionText(*summary.domain).c_str());
   if (summary.domain) std::printf("  porosity         %.2f %%\n", 100 * *summary.porosity());
   const double um = summary.voxelSize ? 1e3 * (summary.voxelSize->meanEdge() * 1e3) : 0;
   if (summary.voxelSize && !summary.voxelSize->isCube())

@@ -165,6 +165,7 @@ void addSweep(Verb command, Common& common, Action& action) {
   o->input.addSelection(verb);
   o->input.addRaw(verb);
   o->input.addDomain(verb);
+  o->input.addRegion(verb);
   verb.option("--gamma", o->gamma, "list of gammas, voxels; one segmentation each")
       .typeName("LIST")
       .showDefault();

@@ -41,14 +41,18 @@ bool Domain::isInside(const Coord& voxel) const {
   return region_ ? region_->isValueOn(voxel) : box_.isInside(voxel);
 }
 
-Domain Domain::within(const CoordBBox& box) const {
+Domain Domain::within(const Domain& other) const {
   if (region_) {
     MaskTree inside(*region_);
-    inside.clip(box);
+    if (other.region_)
+      inside.topologyIntersection(*other.region_);
+    else
+      inside.clip(other.box_);
     return Domain(inside);
   }
+  if (other.region_) return other.within(*this);
   CoordBBox both = box_;
-  both.intersect(box);
+  both.intersect(other.box_);
   return both.empty() ? Domain(MaskTree()) : Domain(both);  // the former says that it is empty
 }
 

@@ -30,8 +30,8 @@ class Domain {
   /// Voxels of B; beyond 64 bits in boxes far larger than any object.
   __int128 voxelCount() const;
   bool isInside(const Coord& voxel) const;  ///< one look-up in a tree
-  /// The voxels of B that lie in a box. @throw InvalidInput if there are none.
-  Domain within(const CoordBBox& box) const;
+  /// The voxels of B that lie in another one, such as a box. @throw InvalidInput if there are none.
+  Domain within(const Domain& other) const;
 
   friend bool operator==(const Domain& a, const Domain& b);
   friend bool operator!=(const Domain& a, const Domain& b) { return !(a == b); }

@@ -56,6 +56,18 @@ void setDomain(openvdb::MetaMap& metadata, const Domain& domain) {
     metadata.insertMeta(detail::kRegionKey, detail::RegionMetadata(domain.region()));
 }
 
+std::string regionName(const openvdb::MetaMap& metadata) {
+  const openvdb::Metadata::ConstPtr named = metadata[detail::kRegionKey];
+  return named ? named->str() : std::string();
+}
+
+bool isRegion(const openvdb::GridBase& grid, const std::vector<openvdb::GridBase::Ptr>& grids) {
+  return std::any_of(grids.begin(), grids.end(), [&](const openvdb::GridBase::Ptr& other) {
+    const std::string name = regionName(*other);
+    return other.get() != &grid && !name.empty() && name == grid.getName();
+  });
+}
+
 std::optional<VoxelSize> storedVoxelSize(const openvdb::MetaMap& metadata) {
   const auto isLength = [](double metres) { return metres > 0; };
   if (const auto cube = metadata.getMetadata<openvdb::DoubleMetadata>(kVoxelSizeKey))

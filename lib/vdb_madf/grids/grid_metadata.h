@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "vdb_madf/base/voxel_size.h"
 #include "vdb_madf/grids/domain.h"
@@ -28,6 +29,10 @@ inline constexpr char kBoundaryKey[] = "madf_boundary";  ///< "open" or "closed"
 ///   names is not there.
 std::optional<Domain> storedDomain(const openvdb::MetaMap& metadata);
 void setDomain(openvdb::MetaMap& metadata, const Domain& domain);
+/// The name of the grid that holds the region in a file; empty if the domain is none.
+std::string regionName(const openvdb::MetaMap& metadata);
+/// True if `grid` is the one that holds, in their file, the region of another of the grids.
+bool isRegion(const openvdb::GridBase& grid, const std::vector<openvdb::GridBase::Ptr>& grids);
 
 /// Physical voxel size: metadata `madf_voxel_size_m` (double), of voxels that are no cubes
 /// `madf_voxel_edges_m` (Vec3d: x, y, z), and the unit of the transform in `madf_length_unit`.

@@ -12,17 +12,24 @@
 #include <functional>
 #include <ios>
 #include <istream>
+#include <limits>
 #include <map>
 #include <memory>
 #include <new>
+#include <optional>
 #include <stdexcept>
 
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/files/detail/file_buffer.h"
+#include "vdb_madf/grids/detail/region_metadata.h"
 #include "vdb_madf/grids/detail/world_transform.h"
+#include "vdb_madf/grids/domain.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/method/initialize.h"
+#include "vdb_madf/vdb/detail/region_grid.h"
 #include "vdb_madf/vdb/detail/uuid_place.h"
 #include "vdb_madf/vdb/detail/vdb_tree_check.h"
 
@@ -178,19 +185,15 @@ class Reader {
 
   std::vector<GridBase::Ptr> read() {
     readEntries(options_.wanted ? options_.wanted : [](const GridBase&) { return true; });
-    std::map<std::string, Entry*> named;
-    for (Entry& entry : entries_) named[entry.descriptor.name] = &entry;
+    for (Entry& entry : entries_) named_[entry.descriptor.name] = &entry;
     std::vector<GridBase::Ptr> grids;
     for (Entry& entry : entries_) {
       if (!entry.wanted) continue;
       grids.push_back(entry.grid);
-      if (!entry.descriptor.isInstance()) continue;
-      const auto found = named.find(entry.descriptor.parent);
-      if (found == named.end()) damaged("a grid shares the tree of a grid that is missing");
-      Entry& parent = *found->second;
-      if (!parent.hasTree && !parent.descriptor.isInstance()) readTree(parent);
-      entry.grid->setTree(parent.grid->baseTreePtr());
+      if (entry.descriptor.isInstance()) shareTree(entry);
     }
+    for (Entry& entry : entries_)
+      if (entry.wanted) findRegion(entry);
     return grids;
   }
 
@@ -201,6 +204,7 @@ class Reader {
     detail::TreeSettings settings;
     int64_t treeStart = 0;
     bool wanted = false, hasTree = false;
+    std::optional<Domain> voxels;  ///< of a region
   };
 
   /// The volumes, with the trees of those that are wanted.
@@ -237,9 +241,12 @@ class Reader {
     if (grid->getName().empty())
       grid->setName(descriptor.name.substr(0, descriptor.name.find(kNameSuffix)));
     readTransform(file_, stream_, *grid);
-    const detail::TreeSettings settings{layout, grid->saveFloatAsHalf(), compression,
-                                        options_.maxVoxels, options_.maxCoordinate};
-    Entry entry{descriptor, grid, settings, file_.position(), wanted(*grid), false};
+    const bool mayBeRegion = grid->getName() == detail::kRegionGrid && grid->isType<BoolGrid>();
+    const detail::TreeSettings settings{
+        layout, grid->saveFloatAsHalf(), compression,
+        mayBeRegion ? std::numeric_limits<int64_t>::max() : options_.maxVoxels,
+        options_.maxCoordinate};
+    Entry entry{descriptor, grid, settings, file_.position(), wanted(*grid), false, {}};
     if (entry.wanted && !options_.anyVoxelShape) requireBoxes(file_, *grid);
     if (!descriptor.isInstance()) {
       if (entry.wanted)
@@ -296,12 +303,42 @@ class Reader {
     entry.hasTree = true;
   }
 
+  void shareTree(Entry& entry) {
+    const auto found = named_.find(entry.descriptor.parent);
+    if (found == named_.end()) damaged("a grid shares the tree of a grid that is missing");
+    Entry& parent = *found->second;
+    if (!parent.hasTree && !parent.descriptor.isInstance()) readTree(parent);
+    entry.grid->setTree(parent.grid->baseTreePtr());
+  }
+
+  /// Puts the domain of a grid together again, if another grid holds its voxels.
+  void findRegion(Entry& entry) {
+    const std::string name = regionName(*entry.grid);
+    if (name.empty()) return;
+    const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& other) {
+      return other.grid->getName() == name && other.grid->isType<BoolGrid>();
+    });
+    if (found == entries_.end())
+      refuse(file_, "the domain of grid '" + clipped(entry.grid->getName()) +
+                        "' is a region, and the Bool grid '" + clipped(name) +
+                        "' that should hold it is missing: keep them in one file");
+    if (!found->voxels) {
+      if (found->descriptor.isInstance())
+        shareTree(*found);
+      else if (!found->hasTree)
+        readTree(*found);
+      found->voxels = Domain(objectMask(*found->grid)->tree());
+    }
+    detail::takeRegion(*entry.grid, *found->voxels);
+  }
+
   detail::InputBuffer& file_;
   std::istream stream_;
   io::StreamMetadata::Ptr streamState_ = std::make_shared<io::StreamMetadata>();
   const VdbReadOptions& options_;
   Header header_;
   std::vector<Entry> entries_;
+  std::map<std::string, Entry*> named_;
 };
 
 /// f(Reader) with one line for whatever is wrong with the file.

@@ -13,6 +13,7 @@
 #include "vdb_madf/files/detail/file_buffer.h"
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/method/initialize.h"
+#include "vdb_madf/vdb/detail/region_grid.h"
 #include "vdb_madf/vdb/detail/uuid_place.h"
 
 namespace vdb_madf {
@@ -43,11 +44,12 @@ std::string uuidFrom(const std::array<uint64_t, 2>& hash) {
 void writeVdb(const std::string& path, const std::vector<openvdb::GridBase::ConstPtr>& grids,
               Interrupter* interrupter) {
   initialize();
+  const auto all = detail::withRegionGrid(path, grids);
   detail::OutputStream output(path);
   detail::OutputBuffer buffer(output, interrupter, detail::kUuidStart, detail::kUuidLength);
   std::ostream stream(&buffer);
   stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
-  Writer().writeAll(stream, grids);
+  Writer().writeAll(stream, all);
   buffer.flush();
   buffer.replace(detail::kUuidStart, uuidFrom(buffer.hash()));
   output.commit();

@@ -18,6 +18,7 @@
 #include "vdb_madf/images/detail/histogram_builder.h"
 #include "vdb_madf/images/filtered_image.h"
 #include "vdb_madf/images/histogram.h"
+#include "vdb_madf/volumes/detail/scan_part.h"
 #include "vdb_madf/volumes/mask_cleaning.h"
 #include "vdb_madf/volumes/read_mask.h"
 
@@ -76,20 +77,43 @@ std::string phasesRefusal(const Histogram& histogram) {
   return text + ": say which of them are object";
 }
 
+using Part = std::optional<ScanPart>;
+
+struct PartMasks {
+  std::vector<MaskGrid::Ptr> masks;
+  int64_t leftOut = 0;  ///< of the first
+};
+
+/// One mask a selection, of the part of the image.
+PartMasks readPart(ImageReader& image, const std::vector<Selection>& selections, const Part& part,
+                   Interrupter* interrupter) {
+  if (!part) return {readMasks(image, selections, interrupter), 0};
+  PartMasks result{
+      readMasks(image, selections, interrupter, detail::boxOf(*part, image.info().size)), 0};
+  for (const MaskGrid::Ptr& mask : result.masks) {
+    const int64_t leftOut = detail::cutTo(*part, *mask);
+    if (mask == result.masks[0] && !selections[0].invert) result.leftOut = leftOut;
+  }
+  return result;
+}
+
 /// What is not 0 (or, inverted, what is), unless that would be a guess.
-ImageObject plainMask(ImageReader& image, const Selection& nonZero, Interrupter* interrupter) {
-  detail::CountedImage counted(image);
-  const MaskGrid::Ptr mask = readMask(counted, nonZero, interrupter);
+ImageObject plainMask(ImageReader& image, const Selection& nonZero, const Part& part,
+                      Interrupter* interrupter) {
+  detail::CountedImage counted(image, part ? detail::rowsOf(*part, image.info().size) : nullptr);
+  const PartMasks read = readPart(counted, {nonZero}, part, interrupter);
   const Histogram histogram = counted.histogram();
   const ImageKind kind = kindOf(histogram);
   if (kind == ImageKind::gray) throw SelectionNeeded(image.path() + ": " + grayRefusal(histogram));
   if (kind == ImageKind::phases)
     throw SelectionNeeded(image.path() + ": " + phasesRefusal(histogram));
-  return {mask, kind == ImageKind::labels && !nonZero.invert};
+  return {read.masks[0], read.leftOut, kind == ImageKind::labels && !nonZero.invert};
 }
 
-double automaticThreshold(ImageReader& image, AutomaticThreshold method, Interrupter* interrupter) {
-  const Histogram histogram = histogramOf(image, interrupter);
+double automaticThreshold(ImageReader& image, AutomaticThreshold method, const Part& part,
+                          Interrupter* interrupter) {
+  const Histogram histogram =
+      part ? detail::histogramIn(*part, image, interrupter) : histogramOf(image, interrupter);
   const bool isOtsu = method == AutomaticThreshold::otsu;
   const ThresholdOf thresholdOf = isOtsu ? otsuThreshold : valleyThreshold;
   const auto threshold = thresholdOf(histogram);
@@ -108,24 +132,25 @@ double automaticThreshold(ImageReader& image, AutomaticThreshold method, Interru
 
 /// Voxels from `high` on, and those from `low` on that are connected with them; if the selection is
 /// inverted, all others.
-MaskGrid::Ptr hysteresisMask(ImageReader& image, double low, const Selection& high,
-                             Interrupter* interrupter) {
+ImageObject hysteresisMask(ImageReader& image, double low, const Selection& high, const Part& part,
+                           Interrupter* interrupter) {
   Selection below = Selection::threshold(low);
   below.invert = true;
   std::vector<Selection> selections{Selection::threshold(low), Selection::threshold(high.low)};
   if (high.invert) selections.push_back(below);
-  std::vector<MaskGrid::Ptr> masks = readMasks(image, selections, interrupter);
+  const PartMasks read = readPart(image, selections, part, interrupter);
+  const std::vector<MaskGrid::Ptr>& masks = read.masks;
   const MaskGrid::Ptr object = masks[0];
   detail::WorkPart end(interrupter, 100, 100);
   if (!high.invert) {
     keepSeeded(*object, *masks[1], &end);
-    return object;
+    return {object, read.leftOut};
   }
   const MaskGrid::Ptr seeded = object->deepCopy();
   keepSeeded(*seeded, *masks[1], &end);
   object->tree().topologyDifference(seeded->tree());
   object->tree().topologyUnion(masks[2]->tree());
-  return object;
+  return {object};
 }
 
 std::string describe(const Selection& selection, const GrayOptions& gray) {
@@ -182,24 +207,26 @@ std::unique_ptr<ImageReader> filteredImage(std::unique_ptr<ImageReader> image,
 
 ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& open,
                         const std::optional<Selection>& selection, const GrayOptions& gray,
-                        Interrupter* interrupter) {
+                        const std::optional<ScanPart>& part, Interrupter* interrupter) {
   const auto image = [&] { return filteredImage(open(), gray); };
   const bool automatic = gray.automatic != AutomaticThreshold::none;
   Selection chosen = selection.value_or(Selection{});
   if (automatic) {
     detail::WorkPart counting(interrupter, 0, 50);
     const bool invert = chosen.invert;
-    chosen = Selection::threshold(automaticThreshold(*image(), gray.automatic, &counting));
+    chosen = Selection::threshold(automaticThreshold(*image(), gray.automatic, part, &counting));
     chosen.invert = invert;
   }
   detail::WorkPart reading(interrupter, automatic ? 50 : 0, 100);
   ImageObject object;
   if (gray.low)
-    object.mask = hysteresisMask(*image(), *gray.low, chosen, &reading);
+    object = hysteresisMask(*image(), *gray.low, chosen, part, &reading);
   else if (chosen.kind == Selection::Kind::nonZero)
-    object = plainMask(*image(), chosen, &reading);
-  else
-    object.mask = readMask(*image(), chosen, &reading);
+    object = plainMask(*image(), chosen, part, &reading);
+  else {
+    const PartMasks read = readPart(*image(), {chosen}, part, &reading);
+    object = {read.masks[0], read.leftOut};
+  }
   if (readsGray(gray)) describeObject(chosen, gray, *object.mask);
   despeckleObject(*object.mask, gray.despeckle, interrupter);
   return object;

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/domain.h"
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/grids/selection.h"
 #include "vdb_madf/images/image.h"
@@ -36,8 +37,17 @@ struct GrayOptions {
   int64_t despeckle = 0;  ///< see despeckle(); it works on any object
 };
 
+/// The part of a scan that is looked at.
+struct ScanPart {
+  CoordBBox box = CoordBBox::inf();  ///< what lies outside is left out without a word
+  Domain domain;                     ///< of the object: the rest of it is left out
+};
+
 struct ImageObject {
   MaskGrid::Ptr mask;
+  /// Voxels of the box that were selected and do not lie in the domain (0 for an inverted selection;
+  /// with hysteresis those from the lower threshold on).
+  int64_t leftOut = 0;
   /// No values were chosen, and the image is one of labels, which are all in one mask now.
   bool fromLabels = false;
 };
@@ -54,12 +64,15 @@ std::unique_ptr<ImageReader> filteredImage(std::unique_ptr<ImageReader> image,
 /// Peak memory: the mask (three with hysteresis), what despeckle() needs, and one slab with as many
 /// slices on either side as the filters reach. An automatic threshold takes two passes.
 /// @param open called for each pass over the image
+/// @param part absent: all of the image. Thresholds are found, and voxels connected, within its
+///   domain alone; filters look beyond it.
 /// @param selection absent: what is not 0. That, inverted or not, is taken of masks and label images
 ///   alone (see kindOf()): other images need a selection by value.
 /// @throw SelectionNeeded, one line that names the file, for a gray image or one of phases without
 ///   one, and for a histogram without a valley; InvalidInput; IoError; Interrupted.
 ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& open,
                         const std::optional<Selection>& selection, const GrayOptions& gray = {},
+                        const std::optional<ScanPart>& part = std::nullopt,
                         Interrupter* interrupter = nullptr);
 
 /// Despeckles the object and adds that to what it says of itself.

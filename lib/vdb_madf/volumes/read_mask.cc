@@ -18,7 +18,8 @@
 namespace vdb_madf {
 
 std::vector<MaskGrid::Ptr> readMasks(ImageReader& image, const std::vector<Selection>& selections,
-                                     Interrupter* interrupter) {
+                                     Interrupter* interrupter,
+                                     const std::optional<CoordBBox>& box) {
   const ImageInfo& info = image.info();
   std::vector<MaskGrid::Ptr> grids;
   for (size_t i = 0; i < selections.size(); ++i) grids.push_back(MaskGrid::create());
@@ -28,13 +29,15 @@ std::vector<MaskGrid::Ptr> readMasks(ImageReader& image, const std::vector<Selec
   if (!samples)
     throw IoError(image.path() + ": its slices are too large: " + std::to_string(slabBytes) +
                   " bytes are needed for eight");
-  detail::forEachSlab(0, info.size.z, interrupter, [&](int z, int count) {
+  const CoordBBox part = box.value_or(imageBox(info.size));
+  detail::forEachSlab(part.min().z(), part.max().z() + 1, interrupter, [&](int z, int count) {
     image.read(z, count, samples.get());
     for (size_t i = 0; i < selections.size(); ++i)
       detail::packMask(samples.get(), info.type, detail::slicesOf(imageBox(info.size), z, count),
                        selections[i], grids[i]->tree());
   });
   for (const MaskGrid::Ptr& grid : grids) {
+    if (part != imageBox(info.size)) grid->tree().clip(part);
     grid->setName("object");
     detail::describeImageGrid(image, *grid);
   }

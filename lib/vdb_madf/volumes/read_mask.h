@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "vdb_madf/grids/grid_types.h"
@@ -18,7 +19,9 @@ MaskGrid::Ptr readMask(ImageReader& image, const Selection& selection = {},
                        Interrupter* interrupter = nullptr);
 
 /// Several such masks in one pass.
+/// @param box a part of the image's: what lies outside is not read, or left out
 std::vector<MaskGrid::Ptr> readMasks(ImageReader& image, const std::vector<Selection>& selections,
-                                     Interrupter* interrupter = nullptr);
+                                     Interrupter* interrupter = nullptr,
+                                     const std::optional<CoordBBox>& box = std::nullopt);
 
 }  // namespace vdb_madf

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "vdb_madf/base/counted.h"
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/files/file_ending.h"
@@ -14,6 +15,10 @@
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/images/histogram.h"
 #include "vdb_madf/vdb/read_vdb.h"
+#include "vdb_madf/volumes/detail/chosen_part.h"
+#include "vdb_madf/volumes/detail/field_of_view.h"
+#include "vdb_madf/volumes/detail/scan_part.h"
+#include "vdb_madf/volumes/image_box.h"
 #include "vdb_madf/volumes/read_labels.h"
 
 namespace vdb_madf {
@@ -60,12 +65,20 @@ openvdb::GridBase::Ptr readGrid(const std::string& path, GridUse use, const Volu
   return readVdb(path, reading, interrupter).at(0);
 }
 
-MaskGrid::Ptr objectOf(const openvdb::GridBase& grid, const std::string& path,
-                       const VolumeOptions& options) {
+/// Runs `work`; what is wrong with the data then names the file, too, unless it names a mask.
+template <typename Work>
+auto naming(const std::string& path, const std::string& mask, const Work& work)
+    -> decltype(work()) {
   try {
-    return objectMask(grid, options.selection);
+    return work();
+  } catch (const SelectionNeeded&) {
+    throw;
+  } catch (const AmbiguousGrid&) {
+    throw;
   } catch (const InvalidInput& error) {
-    throw InvalidInput(path + ": " + error.what());
+    const std::string what = error.what();
+    if (what.find(path) == 0 || (!mask.empty() && what.find(mask) == 0)) throw;
+    throw InvalidInput(path + ": " + what, error.hint());
   }
 }
 
@@ -126,6 +139,71 @@ void checkLabels(const std::string& path, const VolumeOptions& options, Interrup
                        detail::shortestDecimal(values.max) + ", not labels: segment it first");
 }
 
+/// The part of a grid that the options choose, whose domain it then has.
+std::optional<ScanPart> partOf(openvdb::GridBase& grid, const std::string& path,
+                               const VolumeOptions& options, Interrupter* interrupter) {
+  if (!options.region.any()) return std::nullopt;
+  detail::ScanExtent extent;
+  extent.domain = storedDomain(grid);
+  if (options.region.cylinder) {
+    const MaskGrid::Ptr voxels = objectMask(grid);
+    extent.box = voxels->evalActiveVoxelBoundingBox();
+    extent.farthestFromAxis = [voxels](const detail::CylinderAxis& axis) {
+      return detail::farthestFromAxis(voxels->tree(), axis);
+    };
+  }
+  const ScanPart part = detail::chosenPart(path, options, extent, interrupter);
+  setDomain(grid, part.domain);
+  return part;
+}
+
+std::optional<ScanPart> partOfImage(const std::string& path, const VolumeOptions& options,
+                                    Interrupter* interrupter) {
+  if (!options.region.any()) return std::nullopt;
+  const auto image = openVolumeImage(path, options);
+  const CoordBBox box = imageBox(image->info().size);
+  detail::ScanExtent extent{Domain(options.domain.value_or(box)), box,
+                            [&](const detail::CylinderAxis& axis) {
+                              return detail::farthestFromAxis(*image, axis, interrupter);
+                            }};
+  return detail::chosenPart(path, options, extent, interrupter);
+}
+
+void noteLeftOut(const std::string& path, int64_t voxels, const VolumeOptions& options) {
+  if (voxels > 0 && options.note)
+    options.note(path + ": outside of the region, " + counted(voxels, "object voxel") + " left out",
+                 NoteAbout::file);
+}
+
+MaskGrid::Ptr objectOfGrid(const std::string& path, const VolumeOptions& options,
+                           Interrupter* interrupter) {
+  if (readsGray(options.gray))
+    throw InvalidInput(path +
+                       ": smoothing, hysteresis and automatic thresholds are for images, and this "
+                       "is a VDB file: leave them out");
+  const auto grid = readGrid(path, GridUse::object, options, interrupter);
+  if (options.domain) setDomain(*grid, *options.domain);  // an inversion needs it
+  const auto part = partOf(*grid, path, options, interrupter);
+  const MaskGrid::Ptr object = objectMask(*grid, options.selection);
+  if (part) noteLeftOut(path, detail::cutTo(*part, *object), options);
+  noteVoxelSize(path, storedVoxelSize(*object), options);
+  despeckleObject(*object, options.gray.despeckle, interrupter);
+  return object;
+}
+
+MaskGrid::Ptr objectOfImage(const std::string& path, const VolumeOptions& options,
+                            Interrupter* interrupter) {
+  const auto part = partOfImage(path, options, interrupter);
+  const ImageObject found = imageObject([&] { return openVolumeImage(path, options); },
+                                        options.selection, options.gray, part, interrupter);
+  if (found.fromLabels && options.note)
+    options.note(path + ": it has several values besides 0, and all of them become one mask",
+                 NoteAbout::labels);
+  noteLeftOut(path, found.leftOut, options);
+  if (options.domain && !part) setDomain(*found.mask, *options.domain);
+  return found.mask;
+}
+
 void override(openvdb::GridBase& grid, const VolumeOptions& options) {
   if (options.domain) setDomain(grid, *options.domain);
   if (options.voxelSize) setVoxelSize(grid, options.voxelSize);
@@ -151,7 +229,7 @@ openvdb::GridBase::Ptr chooseGrid(const std::vector<openvdb::GridBase::Ptr>& gri
   std::vector<openvdb::GridBase::Ptr> usable;
   for (const auto& grid : grids) {
     list += (list.empty() ? "" : ", ") + grid->getName() + " (" + grid->valueType() + ")";
-    if (isUsable(*grid, use)) usable.push_back(grid);
+    if (isUsable(*grid, use) && !isRegion(*grid, grids)) usable.push_back(grid);
   }
   if (list.empty()) throw InvalidInput(path + ": the file holds no grid");
   if (!name.empty()) {
@@ -188,9 +266,11 @@ std::unique_ptr<ImageReader> openVolumeImage(const std::string& path,
       if (isSameFile(file, output))
         throw InvalidInput(output + ": holds samples of " + path +
                            ", which the output would overwrite; choose another name");
+  CoordBBox box = imageBox(image->info().size);
+  if (options.region.crop) box.intersect(*options.region.crop);
   for (int axis = 0; axis < 3; ++axis)
-    if (options.longestSide > 0 && image->info().size[axis] > options.longestSide)
-      throw InvalidInput(path + ": is " + std::to_string(image->info().size[axis]) +
+    if (options.longestSide > 0 && box.dim()[axis] > options.longestSide)
+      throw InvalidInput(path + ": is " + std::to_string(box.dim()[axis]) +
                          " voxels long, and at most " + std::to_string(options.longestSide) +
                          " can be worked with here: crop or coarsen it");
   if (options.note)
@@ -201,27 +281,11 @@ std::unique_ptr<ImageReader> openVolumeImage(const std::string& path,
 
 MaskGrid::Ptr loadObject(const std::string& path, const VolumeOptions& options,
                          Interrupter* interrupter) {
-  MaskGrid::Ptr object;
-  if (isReadAsVdb(path, options)) {
-    if (readsGray(options.gray))
-      throw InvalidInput(
-          path +
-          ": smoothing, hysteresis and automatic thresholds are for images, and this is "
-          "a VDB file: leave them out");
-    const auto grid = readGrid(path, GridUse::object, options, interrupter);
-    if (options.domain) setDomain(*grid, *options.domain);  // an inversion needs it
-    object = objectOf(*grid, path, options);
-    noteVoxelSize(path, storedVoxelSize(*object), options);
-    despeckleObject(*object, options.gray.despeckle, interrupter);
-  } else {
-    const ImageObject found = imageObject([&] { return openVolumeImage(path, options); },
-                                          options.selection, options.gray, interrupter);
-    object = found.mask;
-    if (found.fromLabels && options.note)
-      options.note(path + ": it has several values besides 0, and all of them become one mask",
-                   NoteAbout::labels);
-  }
-  override(*object, options);
+  const MaskGrid::Ptr object = naming(path, options.region.mask, [&] {
+    return isReadAsVdb(path, options) ? objectOfGrid(path, options, interrupter)
+                                      : objectOfImage(path, options, interrupter);
+  });
+  if (options.voxelSize) setVoxelSize(*object, options.voxelSize);
   object->setName("object");
   return object;
 }

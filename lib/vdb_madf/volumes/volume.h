@@ -16,6 +16,7 @@
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/images/open_image.h"
 #include "vdb_madf/volumes/image_object.h"
+#include "vdb_madf/volumes/scan_region.h"
 
 namespace vdb_madf {
 
@@ -32,6 +33,7 @@ struct VolumeOptions {
   GrayOptions gray;                    ///< object only: filters and thresholds of a gray image
   std::optional<VoxelSize> voxelSize;  ///< instead of the file's
   std::optional<CoordBBox> domain;     ///< of the scan, in voxels, instead of the file's
+  RegionOptions region;                ///< object only: the part of that to work on
   /// Files that the caller will write: an image that has samples in one of them is refused.
   std::vector<std::string> outputs;
   /// An image of more voxels along an axis is refused before its samples are read. 0: any.
@@ -41,7 +43,8 @@ struct VolumeOptions {
 };
 
 /// What a grid is wanted for. Where none is named, it is the first that is there of the names in
-/// parentheses, else the only one of a type that can be used.
+/// parentheses, else the only one of a type that can be used. The region of another grid is taken
+/// only by its name.
 enum class GridUse {
   object,  ///< a mask, bool, int32, int64, float or double ("object")
   labels,  ///< int32 ("grain", "truth")
@@ -81,7 +84,9 @@ std::unique_ptr<ImageReader> openVolumeImage(const std::string& path,
                                              const VolumeOptions& options = {});
 
 /// The object in a volume, as a grid "object" with domain and voxel size, as far as the file or the
-/// options tell them: of a grid as objectMask(), of an image as imageObject().
+/// options tell them: of a grid as objectMask(), of an image as imageObject(). With a region the
+/// domain is what of it lies in the region, object outside is left out, and a note says how much,
+/// and what was fitted. (An inverted selection is one of that domain.)
 /// Peak memory: see readVdb() and imageObject().
 /// @throw InvalidInput, one line that names the file, for a volume that does not fit the options
 ///   (also AmbiguousGrid); IoError; Interrupted.

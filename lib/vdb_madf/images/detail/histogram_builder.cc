@@ -186,7 +186,8 @@ Histogram HistogramBuilder::result(SampleType type) const {
   return histogram;
 }
 
-CountedImage::CountedImage(ImageReader& image) : image_(image) {
+CountedImage::CountedImage(ImageReader& image, RowParts parts)
+    : image_(image), parts_(std::move(parts)) {
   info_ = image.info();
   path_ = image.path();
   files_ = image.files();
@@ -197,7 +198,7 @@ void CountedImage::read(int first, int count, void* samples) {
   const auto nx = size_t(info_.size.x), ny = size_t(info_.size.y);
   withSampleType(info_.type, [&](auto sample) {
     const auto* rows = static_cast<const decltype(sample)*>(samples);
-    for (size_t z = 0; z < size_t(count); ++z) {
+    for (size_t z = 0; z < size_t(count) && !parts_; ++z) {
       const auto *firstRow = rows + z * nx * ny, *lastRow = firstRow + (ny - 1) * nx;
       lookAtCorners({double(firstRow[0]), double(firstRow[nx - 1]), double(lastRow[0]),
                      double(lastRow[nx - 1])});
@@ -205,7 +206,14 @@ void CountedImage::read(int first, int count, void* samples) {
     parallelFor(size_t(info_.size.y) * size_t(count), kRowsPerChunk, nullptr,
                 [&](size_t begin, size_t end) {
                   HistogramBuilder& builder = builders_.local();
-                  for (size_t row = begin; row < end; ++row) builder.addRow(rows + row * nx, nx);
+                  for (size_t row = begin; row < end; ++row) {
+                    if (!parts_) {
+                      builder.addRow(rows + row * nx, nx);
+                      continue;
+                    }
+                    for (const auto& [from, to] : parts_(int(row % ny), first + int(row / ny)))
+                      builder.addRow(rows + row * nx + from, size_t(to - from));
+                  }
                 });
   });
 }

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
@@ -51,10 +53,14 @@ class HistogramBuilder {
   std::vector<double> few_;  // ascending; one more than kFewValues if there are more
 };
 
+/// The parts of a row of an image that count, [begin, end) along x.
+using RowParts = std::function<std::vector<std::pair<int, int>>(int y, int z)>;
+
 /// Reads another image and counts what it reads.
 class CountedImage : public ImageReader {
  public:
-  explicit CountedImage(ImageReader& image);
+  /// @param parts absent: whole rows; else no corners are looked at
+  explicit CountedImage(ImageReader& image, RowParts parts = nullptr);
   void read(int first, int count, void* samples) override;
   Histogram histogram() const;  ///< of the slices read so far
 
@@ -62,6 +68,7 @@ class CountedImage : public ImageReader {
   void lookAtCorners(const double (&corners)[4]);
 
   ImageReader& image_;
+  const RowParts parts_;
   std::optional<double> corner_;
   bool cornersDiffer_ = false;
   mutable PerThread<HistogramBuilder> builders_;

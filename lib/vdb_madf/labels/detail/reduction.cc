@@ -29,6 +29,64 @@ Coord floorDiv(const Coord& a, int b) {
   return {floorDiv(a.x(), b), floorDiv(a.y(), b), floorDiv(a.z(), b)};
 }
 
+namespace {
+
+/// A coarse voxel is inside if at least half of its fine ones are.
+class RegionReduction {
+ public:
+  explicit RegionReduction(int factor) : factor_(factor) {}
+
+  Domain reduce(const MaskTree& region) {
+    auto tile = region.cbeginValueOn();
+    tile.setMaxDepth(tile.getLeafDepth() - 1);
+    for (; tile; ++tile) addBox(tile.getBoundingBox());
+    for (auto leaf = region.cbeginLeaf(); leaf; ++leaf)
+      for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel)
+        add(detail::floorDiv(voxel.getCoord(), factor_), 1);
+    const int64_t all = int64_t(factor_) * factor_ * factor_;
+    for (auto voxel = inPart_.cbeginValueOn(); voxel; ++voxel)
+      if (2 * int64_t(*voxel) >= all) inside_.setValueOn(voxel.getCoord());
+    return Domain(inside_);
+  }
+
+ private:
+  CoordBBox fineBox(const Coord& coarse) const {
+    const Coord low(coarse.x() * factor_, coarse.y() * factor_, coarse.z() * factor_);
+    return {low, low.offsetBy(factor_ - 1)};
+  }
+
+  void addBox(const CoordBBox& box) {
+    const CoordBBox touched(detail::floorDiv(box.min(), factor_),
+                            detail::floorDiv(box.max(), factor_));
+    const CoordBBox whole(detail::floorDiv(box.min().offsetBy(factor_ - 1), factor_),
+                          detail::floorDiv(box.max().offsetBy(1), factor_).offsetBy(-1));
+    if (!whole.empty()) inside_.sparseFill(whole, true, true);
+    if (whole == touched) return;
+    for (auto coarse = touched.begin(); coarse != touched.end(); ++coarse) {
+      if (whole.isInside(*coarse)) continue;
+      CoordBBox part = fineBox(*coarse);
+      part.intersect(box);
+      add(*coarse, int32_t(part.volume()));
+    }
+  }
+
+  void add(const Coord& coarse, int32_t fine) {
+    accessor_.setValueOn(coarse, accessor_.getValue(coarse) + fine);
+  }
+
+  const int factor_;
+  MaskTree inside_;
+  Int32Tree inPart_;  // fine voxels of coarse ones that no box covers alone
+  openvdb::tree::ValueAccessor<Int32Tree> accessor_{inPart_};
+};
+
+}  // namespace
+
+Domain reducedDomain(const Domain& domain, int factor) {
+  if (!domain.isBox()) return RegionReduction(factor).reduce(*domain.region());
+  return CoordBBox(floorDiv(domain.box().min(), factor), floorDiv(domain.box().max(), factor));
+}
+
 Reduction::Reduction(const Int32Grid& labels, int factor)
     : tree_(withoutTiles(labels)), factor_(factor) {
   if (factor < 1 || factor > kMaxReduction)
@@ -104,9 +162,7 @@ void placeReduced(openvdb::GridBase& grid, const Int32Grid& labels, int factor,
   transform->preTranslate(openvdb::Vec3d((factor - 1) / 2.0));
   transform->preScale(factor);
   grid.setTransform(transform);
-  if (const auto box = storedDomain(labels))
-    setDomain(grid,
-              CoordBBox(floorDiv(box->box().min(), factor), floorDiv(box->box().max(), factor)));
+  if (const auto domain = storedDomain(labels)) setDomain(grid, reducedDomain(*domain, factor));
   if (const auto size = storedVoxelSize(labels))  // the unit stays that of the transform
     setStoredVoxelSize(grid, VoxelSize({size->edges()[0] * factor, size->edges()[1] * factor,
                                         size->edges()[2] * factor}));

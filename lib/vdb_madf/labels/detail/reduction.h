@@ -10,12 +10,17 @@
 #include <string>
 #include <vector>
 
+#include "vdb_madf/grids/domain.h"
 #include "vdb_madf/grids/grid_types.h"
 
 namespace vdb_madf::detail {
 
 /// Rounds towards minus infinity.
 Coord floorDiv(const Coord& a, int b);
+
+/// Of a box the coarse voxels that it meets; of a region those of which it holds half or more.
+/// @throw InvalidInput if there are none.
+Domain reducedDomain(const Domain& domain, int factor);
 
 /// What the fine voxels of a coarse one are.
 struct Cell {

@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/volumes/detail/chosen_part.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/grids/grid_metadata.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+constexpr char kAxes[] = "xyz";
+
+std::string sizeText(const CoordBBox& box) {
+  const Coord size = box.dim();
+  return std::to_string(size.x()) + "x" + std::to_string(size.y()) + "x" + std::to_string(size.z());
+}
+
+/// The region in a mask, which has to cover the scan as far as both say how large they are.
+Domain maskRegion(const std::string& path, const VolumeOptions& options,
+                  const std::optional<Domain>& scan, Interrupter* interrupter) {
+  const std::string& file = options.region.mask;
+  VolumeOptions reading;
+  reading.outputs = options.outputs;
+  reading.note = options.note;
+  if (!isVdbFile(file)) {  // so that the mask may have several values
+    reading.selection = Selection::phase(0);
+    reading.selection->invert = true;
+  }
+  MaskGrid::Ptr mask;
+  try {
+    mask = loadObject(file, reading, interrupter);
+  } catch (const AmbiguousGrid& error) {
+    throw InvalidInput(file + ": holds several grids, of which none is called object: " +
+                       error.grids() + ": give a file with one mask");
+  }
+  if (mask->activeVoxelCount() == 0)
+    throw InvalidInput(file + ": all is 0, and a region is what is not: give one with voxels");
+  const auto known = storedDomain(*mask);
+  if (known && scan && !known->box().isInside(scan->box()))
+    throw InvalidInput(file + ": is " + sizeText(known->box()) +
+                       " voxels large and does not cover " + path + ", of " +
+                       sizeText(scan->box()) + ": give a region of the same voxels");
+  if (known && scan && known->box() != scan->box() && !options.region.crop && options.note)
+    options.note(file + ": is larger than " + path + "; voxels of equal index belong together",
+                 NoteAbout::file);
+  return Domain(mask->tree());
+}
+
+double fittedRadius(const std::string& path, const CoordBBox& box, const CylinderAxis& axis,
+                    const ScanExtent& extent) {
+  constexpr double kDigits = 100;  // so that it can be typed
+  const double most = largestRadius(box, axis.axis, axis.center);
+  if (most <= 0)
+    throw InvalidInput(path +
+                       ": the axis of the cylinder lies outside of the scan, so that no "
+                       "radius can be fitted: give one");
+  const double squared = extent.farthestFromAxis(axis);
+  if (squared < 0)
+    throw InvalidInput(path +
+                       ": all voxels are outside of a field of view, so that no radius can "
+                       "be fitted: give one");
+  return std::min(std::ceil(std::sqrt(squared) * kDigits) / kDigits, most);
+}
+
+Cylinder wholeCylinder(const std::string& path, const VolumeOptions& options, const CoordBBox& box,
+                       const ScanExtent& extent) {
+  const CylinderOptions& given = *options.region.cylinder;
+  CylinderAxis axis{given.axis, {}};
+  const openvdb::Vec3d middle = box.getCenter();
+  axis.center = given.center.value_or(std::array<double, 2>{middle[axis.u()], middle[axis.v()]});
+  if (given.radius) return {axis.axis, axis.center, *given.radius};
+  const double radius = fittedRadius(path, box, axis, extent);
+  if (options.note)
+    options.note(path + ": the region is a cylinder along " + kAxes[axis.axis] + " around " +
+                     kAxes[axis.u()] + " " + shortestDecimal(axis.center[0]) + ", " +
+                     kAxes[axis.v()] + " " + shortestDecimal(axis.center[1]) +
+                     ", to which a radius of " + shortestDecimal(radius) + " voxels was fitted",
+                 NoteAbout::file);
+  return {axis.axis, axis.center, radius};
+}
+
+}  // namespace
+
+ScanPart chosenPart(const std::string& path, const VolumeOptions& options, const ScanExtent& extent,
+                    Interrupter* interrupter) {
+  ScanPart part;
+  std::optional<Domain> domain = extent.domain;
+  const auto narrow = [&](const Domain& to) { domain = domain ? domain->within(to) : to; };
+  if (const auto& crop = options.region.crop) {
+    part.box = *crop;
+    narrow(*crop);
+  }
+  if (!options.region.mask.empty()) narrow(maskRegion(path, options, domain, interrupter));
+  if (options.region.cylinder) {
+    const CoordBBox whole = extent.domain ? extent.domain->box() : extent.box;
+    if (whole.empty()) throw InvalidInput(path + ": holds no voxel to put a cylinder around");
+    const Cylinder cylinder = wholeCylinder(path, options, whole, extent);
+    narrow(cylinderIn(domain ? domain->box() : whole, cylinder));
+  }
+  part.domain = *domain;
+  return part;
+}
+
+}  // namespace vdb_madf::detail

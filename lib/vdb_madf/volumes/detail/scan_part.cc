@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/volumes/detail/scan_part.h"
+
+#include <openvdb/tools/Prune.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/images/detail/header_checks.h"
+#include "vdb_madf/images/detail/slabs.h"
+#include "vdb_madf/volumes/image_box.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+Domain domainOf(const ScanPart& part, const ImageSize& size) {
+  return part.domain.within(boxOf(part, size));
+}
+
+}  // namespace
+
+CoordBBox boxOf(const ScanPart& part, const ImageSize& size) {
+  return Domain(imageBox(size)).within(part.box).box();
+}
+
+int64_t cutTo(const ScanPart& part, MaskGrid& mask) {
+  MaskTree& tree = mask.tree();
+  if (part.box != CoordBBox::inf()) tree.clip(part.box);
+  const auto before = tree.activeVoxelCount();
+  CoordBBox object;
+  if (tree.evalActiveVoxelBoundingBox(object) && !part.domain.box().isInside(object))
+    tree.clip(part.domain.box());
+  if (!part.domain.isBox()) {
+    tree.topologyIntersection(*part.domain.region());
+    openvdb::tools::pruneInactive(tree);
+  }
+  setDomain(mask, part.domain);
+  return int64_t(before - tree.activeVoxelCount());
+}
+
+RowParts rowsOf(const ScanPart& part, const ImageSize& size) {
+  using Parts = std::vector<std::pair<int, int>>;
+  const Domain domain = domainOf(part, size);
+  const CoordBBox box = domain.box();
+  if (domain.isBox())
+    return [box](int y, int z) {
+      return box.isInside(Coord(box.min().x(), y, z)) ? Parts{{box.min().x(), box.max().x() + 1}}
+                                                      : Parts{};
+    };
+  return [box, region = domain.region()](int y, int z) {
+    Parts parts;
+    if (!box.isInside(Coord(box.min().x(), y, z))) return parts;
+    const openvdb::tree::ValueAccessor<const MaskTree, false> accessor(*region);
+    for (Coord p(box.min().x() & ~7, y, z); p.x() <= box.max().x(); p.x() += 8) {
+      const auto* const leaf = accessor.probeConstLeaf(p);
+      const bool tile = !leaf && accessor.isValueOn(p);
+      for (int x = p.x(); x < p.x() + 8; ++x) {
+        if (!(leaf ? leaf->isValueOn(Coord(x, y, z)) : tile)) continue;
+        if (parts.empty() || parts.back().second != x) parts.emplace_back(x, x);
+        ++parts.back().second;
+      }
+    }
+    return parts;
+  };
+}
+
+Histogram histogramIn(const ScanPart& part, ImageReader& image, Interrupter* interrupter) {
+  const ImageInfo& info = image.info();
+  const CoordBBox box = domainOf(part, info.size).box();
+  std::vector<char> samples(size_t(sliceBytes(info)) * size_t(std::min(kSlab, info.size.z)));
+  CountedImage counted(image, rowsOf(part, info.size));
+  forEachSlab(box.min().z(), box.max().z() + 1, interrupter,
+              [&](int z, int count) { counted.read(z, count, samples.data()); });
+  return counted.histogram();
+}
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Regions of a scan, round cores above all, run as a user runs them.
+
+#include <catch2/catch.hpp>
+#include <cstdint>
+
+#include "support/command_runs.h"
+#include "support/refusals.h"
+
+using namespace vdb_madf::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+constexpr int kSide = 48;
+constexpr double kMiddle = 23.5, kRadius = 20;
+
+bool isInCore(int x, int y) {
+  return (x - kMiddle) * (x - kMiddle) + (y - kMiddle) * (y - kMiddle) <= kRadius * kRadius;
+}
+
+/// A snow sample of 48^3 voxels, `full.npy`, and the core that a round scan would have of it,
+/// `core.npy`, beside the mask of its field of view, `view.npy`, and one without end, `box.npy`.
+struct Core {
+  int64_t object = 0, inside = 0,
+          outside = 0;  ///< voxels of ice in the core, voxels of it, ice beyond
+
+  explicit Core(const Bench& bench) {
+    bench.mustRun("generate snow full.npy --size 48 --length 14");
+    bench.mustRun("convert full.npy full.raw");
+    const std::string full = bench.bytes("full.raw");
+    std::string core = full, view = full, box(full.size(), '\1');
+    for (size_t i = 0; i < full.size(); ++i) {
+      const bool in = isInCore(int(i % kSide), int(i / kSide % kSide));
+      view[i] = in;
+      if (!in) core[i] = 0;
+      inside += in;
+      object += in && full[i] != 0;
+      outside += !in && full[i] != 0;
+    }
+    for (const auto& [name, bytes] : {std::pair("core", &core), {"view", &view}, {"box", &box}}) {
+      bench.write("x.raw", *bytes);
+      bench.mustRun("convert x.raw " + std::string(name) + ".npy --dims 48x48x48 --type uint8");
+    }
+  }
+};
+
+std::string note(const std::string& text) {
+  return "vdb_madf: note: " + text + "\n";
+}
+
+/// Runs it; what it prints on stderr must be these notes.
+Json segmented(const Bench& bench, const std::string& arguments, const std::string& notes) {
+  const Outcome outcome = bench.run("segment " + arguments + " --json s.json");
+  INFO(arguments);
+  CHECK(outcome.err == notes);
+  REQUIRE(outcome.exitCode == 0);
+  return Json::parse(bench.bytes("s.json"));
+}
+
+const std::string kFitted = note(
+    "core.npy: the region is a cylinder along z around x 23.5, y 23.5, to which a radius of 19.97 "
+    "voxels was fitted");
+
+}  // namespace
+
+TEST_CASE("region: a round core has the porosity of its cylinder", "[region]") {
+  const Bench bench;
+  const Core core(bench);
+  const double porosity = 1 - double(core.object) / double(core.inside);
+  const Json plain = segmented(bench, "core.npy p.vdb", "");
+  CHECK(plain.at("porosity").get<double>() > porosity + 0.1);
+  CHECK(plain.count("region_voxels") == 0);
+  const std::string leftOut = note("full.npy: outside of the region, " +
+                                   std::to_string(core.outside) + " object voxels left out");
+  const std::pair<std::string, std::string> cases[] = {
+      {"core.npy g.vdb --roi cylinder", kFitted},
+      {"full.npy g.vdb --roi view.npy", leftOut},
+      {"full.npy g.vdb --roi cylinder:z:23.5,23.5:20", leftOut},
+      {"full.npy g.vdb --roi cylinder:Z::20", leftOut}};
+  std::string labels;
+  for (const auto& [arguments, notes] : cases) {
+    const Json json = segmented(bench, arguments, notes);
+    CHECK(json.at("object_voxels") == core.object);
+    CHECK(json.at("region_voxels") == core.inside);
+    CHECK(json.at("porosity").get<double>() == Approx(porosity));
+    CHECK(json.at("boundary") == "open");
+    bench.mustRun("convert g.vdb g.raw --grid grain");
+    if (labels.empty()) labels = bench.bytes("g.raw");
+    CHECK(bench.bytes("g.raw") == labels);
+  }
+  const std::string printed = bench.run("segment core.npy g.vdb --roi cylinder").out;
+  CHECK_THAT(printed, Contains("region           " + std::to_string(core.inside) + " of 76800 "));
+}
+
+TEST_CASE("region: one that is the whole scan changes no byte", "[region]") {
+  const Bench bench;
+  const Core core(bench);
+  bench.mustRun("segment full.npy a.vdb --keep manifold");
+  for (const std::string region : {"--roi box.npy", "--roi cylinder:y::99", "--crop 0,0,0:47,47,47",
+                                   "--crop -5,-5,-5:99,99,99 --roi box.npy"}) {
+    CAPTURE(region);
+    bench.mustRun("segment full.npy b.vdb --keep manifold " + region);
+    CHECK(bench.bytes("a.vdb") == bench.bytes("b.vdb"));
+  }
+}
+
+TEST_CASE("region: a crop is the cropped volume at its old coordinates", "[region]") {
+  const Bench bench;
+  const Core core(bench);
+  bench.mustRun("segment full.npy g.vdb --crop 8,3,10:40,40,33");
+  bench.mustRun("convert g.vdb g.raw");
+  const std::string full = bench.bytes("full.raw");
+  std::string part;
+  for (int z = 10; z <= 33; ++z)
+    for (int y = 3; y <= 40; ++y) part += full.substr(size_t((z * kSide + y) * kSide + 8), 33);
+  bench.write("part.raw", part);
+  bench.mustRun("segment part.raw wanted.raw --dims 33x38x24 --type uint8");
+  CHECK(bench.bytes("g.raw") == bench.bytes("wanted.raw"));
+  const Json metadata = gridOf(infoOf(bench, "g.vdb"), "grain").at("metadata");
+  CHECK(metadata.at("madf_domain_min") == Json({8, 3, 10}));
+  CHECK(metadata.at("madf_domain_max") == Json({40, 40, 33}));
+  // The same of a VDB, and by way of a mask.
+  bench.mustRun("convert full.npy full.vdb");
+  bench.mustRun("convert full.vdb part.vdb --crop 8,3,10:40,40,33");
+  bench.mustRun("segment part.vdb h.raw");
+  CHECK(bench.bytes("h.raw") == bench.bytes("wanted.raw"));
+}
+
+TEST_CASE("region: all verbs keep it", "[region]") {
+  const Bench bench;
+  const Core core(bench);
+  const std::string voxels = std::to_string(core.inside);
+  segmented(bench, "core.npy g.vdb --keep manifold --roi cylinder", kFitted);
+  const auto regionOf = [&](const std::string& file) {
+    const Json info = infoOf(bench, file);
+    CHECK(gridOf(info, "region").at("value_type") == "bool");
+    Json inside = nullptr;
+    for (const Json& grid : info.at("grids"))
+      if (grid.at("name") != "region") inside = grid.at("region_voxels");
+    return inside;
+  };
+  CHECK(regionOf("g.vdb") == core.inside);
+  CHECK_THAT(bench.mustRun("info g.vdb"),
+             Contains("domain: region, " + voxels + " of 76800 voxels of the box\n"));
+  // remerge, to and fro.
+  bench.mustRun("remerge g.vdb r.vdb --theta -0.5");
+  CHECK(regionOf("r.vdb") == core.inside);
+  bench.mustRun("remerge r.vdb s.vdb");
+  CHECK(bench.bytes("s.vdb") == bench.bytes("g.vdb"));
+  // convert: copies have it, images its box; a mask has it, too.
+  bench.mustRun("convert g.vdb c.vdb");
+  CHECK(bench.bytes("c.vdb") == bench.bytes("g.vdb"));
+  bench.mustRun("convert g.vdb c.vdb --grid grain");
+  CHECK(gridsOf(infoOf(bench, "c.vdb")) == std::set<std::string>{"grain", "region"});
+  CHECK_THAT(bench.mustRun("convert g.vdb c.npy"), Contains("grid 'grain', 40x40x48 voxels"));
+  CHECK_THAT(bench.mustRun("convert g.vdb v.npy --grid region"), Contains("40x40x48 voxels"));
+  bench.run("convert core.npy mask.vdb --roi cylinder -q");
+  CHECK(regionOf("mask.vdb") == core.inside);
+  bench.mustRun("segment mask.vdb m.vdb --keep manifold");
+  CHECK(regionOf("m.vdb") == core.inside);
+  bench.mustRun("convert m.vdb a.raw --grid grain");
+  bench.mustRun("convert g.vdb b.raw --grid grain");
+  CHECK(bench.bytes("a.raw") == bench.bytes("b.raw"));
+  // Inverted, it is the pores of the region.
+  bench.mustRun("segment mask.vdb pores.vdb --invert --json s.json");
+  CHECK(Json::parse(bench.bytes("s.json")).at("object_voxels") == core.inside - core.object);
+  // Another domain takes its place.
+  bench.mustRun("convert g.vdb box.vdb --domain 0,0,0:47,47,47");
+  CHECK(gridsOf(infoOf(bench, "box.vdb")) == std::set<std::string>{"grain", "manifold"});
+  CHECK_THAT(bench.mustRun("compare g.vdb box.vdb"),
+             Contains("domains differ: [4, 4, 0] to [43, 43, 47] (region, " + voxels));
+  CHECK_THAT(bench.mustRun("compare g.vdb r.vdb"), !Contains("domains differ"));
+  bench.mustRun("render g.vdb g.png --size 64");
+  bench.mustRun("export g.vdb g.ply");
+  // Reduced, the region is so, too.
+  bench.mustRun("export g.vdb small.vdb --as lod --reduce 2");
+  CHECK(regionOf("small.vdb").get<double>() == Approx(double(core.inside) / 8).epsilon(0.05));
+  CHECK_THAT(bench.run("sweep core.npy s.csv --gamma 0 --theta -0.9 --roi cylinder").out,
+             Contains("3 rows"));
+}
+
+TEST_CASE("region: Otsu's threshold is that of the core", "[region]") {
+  const Bench bench;
+  const Core core(bench);
+  const std::string ice = bench.bytes("full.raw");
+  std::string gray(ice.size(), '\0');
+  uint32_t state = 1;
+  for (size_t i = 0; i < ice.size(); ++i) {
+    state = state * 1664525 + 1013904223;
+    if (isInCore(int(i % kSide), int(i / kSide % kSide)))
+      gray[i] = char((ice[i] ? 140 : 90) + int(state >> 28));
+  }
+  bench.write("gray.raw", gray);
+  bench.mustRun("convert gray.raw gray.npy --dims 48x48x48 --type uint8");
+  CHECK_THAT(bench.run("segment gray.npy g.vdb --threshold otsu").err, Contains("field of view"));
+  const Outcome outcome =
+      bench.run("segment gray.npy g.vdb --threshold otsu --roi cylinder --json s.json");
+  CHECK(outcome.exitCode == 0);
+  CHECK(Json::parse(bench.bytes("s.json")).at("object_voxels") == core.object);
+}
+
+TEST_CASE("region: what cannot be one is refused in a line", "[region]") {
+  const Bench bench;
+  const Core core(bench);
+  const std::string segment = "segment full.npy o.vdb ";
+  for (const std::string roi : {"cylinder:q", "cylinder:", "cylinder:z:1", "cylinder:z:1,2,3",
+                                "cylinder:z:a,b", "cylinder:z:1,2:0", "cylinder:z:1,2:-3",
+                                "cylinder:z:1,2:nan", "cylinder:z:1,2:3:4", "-", "mask.raw"})
+    refuses(bench, kWrongUsage, segment + "--roi " + roi, {"--roi "});
+  for (const std::string crop : {"1,2,3", "0,0,0:-1,5,5", "a,b,c:1,2,3", "0,0,0:99999999,1,1"})
+    refuses(bench, kWrongUsage, segment + "--crop " + crop, {"--crop " + crop});
+  refuses(bench, kWrongUsage, "segment full.npy view.npy --roi view.npy", {"view.npy"});
+  refuses(bench, kWrongUsage, "convert full.npy o.vdb --labels --roi cylinder", {"--roi"});
+  refuses(bench, kFailed, segment + "--roi missing.tif", {"missing.tif", "No such file"});
+  refuses(bench, kFailed, segment + "--crop 90,0,0:99,9,9", {"full.npy", "no voxel"});
+  refuses(bench, kFailed, segment + "--roi cylinder:z:99,99:3", {"full.npy", "no voxel"});
+  refuses(bench, kFailed, segment + "--roi cylinder:z:99,99", {"full.npy", "give one"});
+  refuses(bench, kFailed, "segment full.npy o.vdb --roi view.npy --crop 0,0,0:1,1,1",
+          {"full.npy", "no voxel"});
+  bench.mustRun("generate snow other.npy --size 40 --length 14");
+  refuses(bench, kFailed, segment + "--roi other.npy", {"other.npy", "40x40x40", "48x48x48"});
+}

@@ -1,0 +1,291 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/volumes/scan_region.h"
+
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "support/files.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/vdb/write_vdb.h"
+#include "vdb_madf/volumes/dense_volume.h"
+#include "vdb_madf/volumes/volume.h"
+#include "vdb_madf/volumes/write_image.h"
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+const CoordBBox kBox(Coord(0), Coord(40, 36, 20));
+
+/// Values of a gray scan with a round field of view: outside 9, inside 100 to 119, or 200 to 219.
+std::vector<uint8_t> roundScan(double radius, uint8_t outside = 9) {
+  std::mt19937 random(1);
+  std::vector<uint8_t> samples;
+  for (int z = 0; z <= kBox.max().z(); ++z)
+    for (int y = 0; y <= kBox.max().y(); ++y)
+      for (int x = 0; x <= kBox.max().x(); ++x) {
+        const double dx = x - 20, dy = y - 18;
+        const auto value = uint8_t(100 + random() % 20 + 100 * (random() % 3 == 0));
+        samples.push_back(dx * dx + dy * dy <= radius * radius ? value : outside);
+      }
+  return samples;
+}
+
+void writeScan(const std::string& path, const std::vector<uint8_t>& samples) {
+  const CoordBBox box = kBox;
+  const auto grid = Int32Grid::create();
+  size_t i = 0;
+  for (int z = 0; z <= box.max().z(); ++z)
+    for (int y = 0; y <= box.max().y(); ++y)
+      for (int x = 0; x <= box.max().x(); ++x) grid->tree().setValue({x, y, z}, samples[i++]);
+  writeImage(path, *grid, box, SampleType::uint8);
+}
+
+/// The note about what was fitted, and the error.
+struct Loaded {
+  MaskGrid::Ptr object;
+  std::string notes, error;
+};
+
+Loaded load(const std::string& path, VolumeOptions options) {
+  Loaded loaded;
+  options.note = [&](const std::string& text, NoteAbout) { loaded.notes += text + "\n"; };
+  try {
+    loaded.object = loadObject(path, options);
+  } catch (const InvalidInput& error) {
+    loaded.error = error.what();
+    CHECK_THAT(loaded.error, Catch::StartsWith(path) || Contains(options.region.mask));
+  }
+  return loaded;
+}
+
+VolumeOptions above(double threshold) {
+  VolumeOptions options;
+  options.selection = Selection::threshold(threshold);
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("scan_region: a cylinder holds the voxels whose centers are within the radius",
+          "[scan_region]") {
+  const CoordBBox boxes[] = {kBox, {Coord(-130, -9, -3), Coord(150, 140, 139)}};
+  for (const CoordBBox& box : boxes)
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double radius : {3.0, 14.5, 90.0}) {
+        CAPTURE(box, axis, radius);
+        const Cylinder cylinder{axis, {12.5, 7}, radius};
+        const Domain domain = cylinderIn(box, cylinder);
+        const int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+        int64_t inside = 0, wrong = 0;
+        for (auto p = box.begin(); p != box.end(); ++p) {
+          const double du = (*p)[u] - 12.5, dv = (*p)[v] - 7;
+          const bool isIn = du * du + dv * dv <= radius * radius;
+          inside += isIn;
+          wrong += isIn != domain.isInside(*p);
+        }
+        CHECK(wrong == 0);
+        CHECK(domain.voxelCount() == inside);
+        CHECK(box.isInside(domain.box()));
+      }
+  CHECK(cylinderIn(kBox, {2, {20, 18}, 100}) == Domain(kBox));
+  CHECK_THROWS_AS(cylinderIn(kBox, {2, {90, 18}, 10}), InvalidInput);
+  CHECK(largestRadius(kBox, 2, {20, 18}) == 18.5);
+  CHECK(largestRadius(kBox, 0, {18, 8}) == 8.5);
+}
+
+TEST_CASE("scan_region: a large cylinder takes little memory", "[scan_region]") {
+  const CoordBBox box(Coord(0), Coord(1999));
+  const Domain domain = cylinderIn(box, {2, {999.5, 999.5}, 1000});
+  CHECK(double(domain.voxelCount()) == Approx(M_PI * 1e6 * 2000).epsilon(1e-4));
+  CHECK(domain.region()->memUsage() < (size_t(64) << 20));
+}
+
+TEST_CASE("scan_region: the cylinder is fitted to what is not 0 or a value around it",
+          "[scan_region]") {
+  const ScratchFolder folder;
+  for (const uint8_t outside : {uint8_t(0), uint8_t(9)}) {
+    CAPTURE(int(outside));
+    writeScan(folder / "a.npy", roundScan(15, outside));
+    VolumeOptions options = above(200);
+    options.region.cylinder = CylinderOptions{};
+    const Loaded loaded = load(folder / "a.npy", options);
+    REQUIRE(loaded.object);
+    CHECK(storedDomain(*loaded.object) == cylinderIn(kBox, {2, {20, 18}, 15}));
+    CHECK_THAT(loaded.notes, Contains("along z around x 20, y 18, to which a radius of 15 voxels"));
+    // Of a VDB, the object.
+    const MaskGrid::Ptr all = loadObject(folder / "a.npy", above(100));
+    writeVdb(folder / "a.vdb", {toBoolGrid(*all)});
+    VolumeOptions ofGrid;
+    ofGrid.region = options.region;
+    const Loaded second = load(folder / "a.vdb", ofGrid);
+    REQUIRE(second.object);
+    CHECK(storedDomain(*second.object) == storedDomain(*loaded.object));
+  }
+  // Where all is scanned, the largest that lies in the box.
+  writeScan(folder / "b.npy", roundScan(100));
+  VolumeOptions options = above(200);
+  options.region.cylinder = CylinderOptions{};
+  CHECK(storedDomain(*load(folder / "b.npy", options).object) ==
+        cylinderIn(kBox, {2, {20, 18}, 18.5}));
+  options.region.cylinder->axis = 0;
+  CHECK(storedDomain(*load(folder / "b.npy", options).object) ==
+        cylinderIn(kBox, {0, {18, 10}, 10.5}));
+  options.region.cylinder->center = {{90, 0}};
+  CHECK_THAT(load(folder / "b.npy", options).error, Contains("give one"));
+  writeScan(folder / "b.npy", std::vector<uint8_t>(kBox.volume(), 7));
+  options.region.cylinder = CylinderOptions{};
+  CHECK_THAT(load(folder / "b.npy", options).error, Contains("field of view"));
+}
+
+TEST_CASE("scan_region: thresholds see the region alone", "[scan_region]") {
+  const ScratchFolder folder;
+  writeScan(folder / "a.npy", roundScan(15));
+  VolumeOptions options;
+  options.gray.automatic = AutomaticThreshold::otsu;
+  CHECK_THROWS_AS(loadObject(folder / "a.npy", options), SelectionNeeded);  // 9 is at all corners
+  options.region.cylinder = CylinderOptions{};
+  const Loaded loaded = load(folder / "a.npy", options);
+  REQUIRE(loaded.object);
+  VolumeOptions plain = above(200);
+  plain.region = options.region;
+  CHECK(loaded.object->tree().hasSameTopology(load(folder / "a.npy", plain).object->tree()));
+  CHECK_THAT(loaded.notes, !Contains("left out"));
+}
+
+TEST_CASE("scan_region: object outside is left out, which is said, and nothing else changes",
+          "[scan_region]") {
+  const ScratchFolder folder;
+  writeScan(folder / "a.npy", roundScan(100));
+  const MaskGrid::Ptr whole = loadObject(folder / "a.npy", above(200));
+  writeVdb(folder / "a.vdb", {toBoolGrid(*whole)});
+  const Domain core = cylinderIn(kBox, {2, {20, 18}, 12.5});
+  for (const bool invert : {false, true})
+    for (const char* name : {"a.npy", "a.vdb"}) {
+      CAPTURE(name, invert);
+      VolumeOptions options = above(std::string(name) == "a.npy" ? 200 : 1);
+      options.selection->invert = invert;
+      options.region.cylinder = CylinderOptions{2, {}, 12.5};
+      const Loaded loaded = load(folder / name, options);
+      REQUIRE(loaded.object);
+      int64_t wrong = 0, outside = 0;
+      for (auto p = kBox.begin(); p != kBox.end(); ++p) {
+        const bool selected = whole->tree().isValueOn(*p) != invert;
+        wrong += (selected && core.isInside(*p)) != loaded.object->tree().isValueOn(*p);
+        outside += selected && !core.isInside(*p);
+      }
+      CHECK(wrong == 0);
+      CHECK(storedDomain(*loaded.object) == core);
+      const std::string text = std::to_string(outside) + " object voxels left out";
+      CHECK((loaded.notes.find(text) != std::string::npos) == !invert);
+    }
+}
+
+TEST_CASE("scan_region: a crop is the cropped array at its old place", "[scan_region]") {
+  const ScratchFolder folder;
+  const std::vector<uint8_t> samples = roundScan(100);
+  writeScan(folder / "a.npy", samples);
+  const CoordBBox crop(Coord(3, 5, 6), Coord(30, 28, 19));
+  std::vector<uint8_t> part;
+  for (int z = crop.min().z(); z <= crop.max().z(); ++z)
+    for (int y = crop.min().y(); y <= crop.max().y(); ++y)
+      for (int x = crop.min().x(); x <= crop.max().x(); ++x)
+        part.push_back(samples[size_t((z * kBox.dim().y() + y) * kBox.dim().x() + x)]);
+  DenseLayout layout;
+  layout.box = crop;
+  const auto wanted = maskFromDense(part.data(), layout, Selection::threshold(200));
+  VolumeOptions options = above(200);
+  options.region.crop = crop;
+  for (const int automatic : {0, 1}) {
+    if (automatic) options.gray.automatic = AutomaticThreshold::otsu;
+    const Loaded loaded = load(folder / "a.npy", options);
+    REQUIRE(loaded.object);
+    CHECK(loaded.object->tree().hasSameTopology(wanted->tree()));
+    CHECK(storedDomain(*loaded.object) == Domain(crop));
+    CHECK(loaded.notes == "");
+  }
+  // Beyond the scan there is nothing.
+  options.region.crop = CoordBBox(Coord(30), Coord(99));
+  CHECK_THAT(load(folder / "a.npy", options).error, Contains("no voxel"));
+  options.region.crop = CoordBBox(Coord(30, 30, -5), Coord(99, 99, 5));
+  CHECK(storedDomain(*load(folder / "a.npy", options).object) ==
+        Domain(CoordBBox(Coord(30, 30, 0), Coord(40, 36, 5))));
+  // With a region both hold.
+  options.region.crop = crop;
+  options.region.cylinder = CylinderOptions{2, {}, 12.5};
+  CHECK(storedDomain(*load(folder / "a.npy", options).object) ==
+        cylinderIn(kBox, {2, {20, 18}, 12.5}).within(crop));
+}
+
+TEST_CASE("scan_region: the region in a file is no object of it", "[scan_region]") {
+  const ScratchFolder folder;
+  const auto phases = Int32Grid::create();
+  phases->setName("phases");
+  phases->tree().setValue(Coord(20, 18, 3), 2);
+  setDomain(*phases, cylinderIn(kBox, {2, {20, 18}, 12.5}));
+  writeVdb(folder / "a.vdb", {phases});
+  CHECK(loadObject(folder / "a.vdb")->activeVoxelCount() == 1);
+  CHECK(loadLabels(folder / "a.vdb")->getName() == "phases");
+  VolumeOptions options;
+  options.grid = "region";
+  CHECK(loadObject(folder / "a.vdb", options)->activeVoxelCount() ==
+        uint64_t(storedDomain(*phases)->voxelCount()));
+  // It is inverted within it.
+  options = above(1);
+  options.selection->invert = true;
+  CHECK(loadObject(folder / "a.vdb", options)->activeVoxelCount() ==
+        uint64_t(storedDomain(*phases)->voxelCount()) - 1);
+}
+
+TEST_CASE("scan_region: a mask of any kind is a region", "[scan_region]") {
+  const ScratchFolder folder;
+  writeScan(folder / "a.npy", roundScan(100));
+  writeScan(folder / "labels.npy", roundScan(12.5, 0));  // many values: what is not 0
+  const Domain core = cylinderIn(kBox, {2, {20, 18}, 12.5});
+  const auto mask = MaskGrid::create(std::make_shared<MaskTree>(*core.region()));
+  mask->setName("object");
+  writeVdb(folder / "mask.vdb", {toBoolGrid(*mask)});
+  setDomain(*mask, kBox);
+  writeVdb(folder / "known.vdb", {toBoolGrid(*mask)});
+  VolumeOptions options = above(200);
+  for (const char* name : {"labels.npy", "mask.vdb", "known.vdb"}) {
+    CAPTURE(name);
+    options.region.mask = folder / name;
+    const Loaded loaded = load(folder / "a.npy", options);
+    REQUIRE(loaded.object);
+    CHECK(storedDomain(*loaded.object) == core);
+  }
+  const auto second = toBoolGrid(*mask);
+  mask->setName("other");
+  second->setName("second");
+  writeVdb(folder / "two.vdb", {toBoolGrid(*mask), second});
+  options.region.mask = folder / "two.vdb";
+  CHECK_THAT(load(folder / "a.npy", options).error,
+             Catch::StartsWith(folder / "two.vdb") && Contains("several grids"));
+  // The whole box is no region.
+  writeScan(folder / "full.npy", std::vector<uint8_t>(kBox.volume(), 1));
+  options.region.mask = folder / "full.npy";
+  CHECK(storedDomain(*load(folder / "a.npy", options).object) == Domain(kBox));
+  writeScan(folder / "zero.npy", std::vector<uint8_t>(kBox.volume(), 0));
+  options.region.mask = folder / "zero.npy";
+  CHECK_THAT(load(folder / "a.npy", options).error, Contains("all is 0"));
+  // One of another scan, too small or too large.
+  writeImage(folder / "small.npy", *mask, CoordBBox(Coord(0), Coord(39, 36, 20)),
+             SampleType::uint8);
+  options.region.mask = folder / "small.npy";
+  CHECK_THAT(load(folder / "a.npy", options).error,
+             Contains("40x37x21") && Contains("41x37x21") && Contains("does not cover"));
+  writeImage(folder / "large.npy", *mask, CoordBBox(Coord(0), Coord(60, 36, 20)),
+             SampleType::uint8);
+  options.region.mask = folder / "large.npy";
+  const Loaded loaded = load(folder / "a.npy", options);
+  REQUIRE(loaded.object);
+  CHECK(storedDomain(*loaded.object) == core);
+  CHECK_THAT(loaded.notes, Contains("is larger than"));
+}
