@@ -31,8 +31,9 @@ struct VdbReadOptions {
 
 /// The volumes of a .vdb file in its order, read eagerly (no delayed loading) from a file that may
 /// be damaged; point grids are left out. Formats 222 to 224. A grid whose domain is a region, which
-/// the file holds in a Bool grid, has it again: storedDomain(). The structure of each grid is checked before OpenVDB reads it; linked against OpenVDB before 11, a program also
-/// needs the checked decompression of tools/ for files that may change while they are read.
+/// the file holds in a Bool grid, has it again: storedDomain(). The structure of each grid is checked
+/// before OpenVDB reads it; linked against OpenVDB before 11, a program also needs the checked
+/// decompression of tools/ for files that may change while they are read.
 /// @throw IoError, one line that names the file, if it is missing, truncated, corrupt or not VDB, has
 ///   voxels that are no cubes, or names a region that it does not hold; Interrupted.
 std::vector<openvdb::GridBase::Ptr> readVdb(const std::string& path,

@@ -14,7 +14,8 @@ namespace vdb_madf {
 /// synced to disk, then renamed. The file's bytes depend on its grids alone (OpenVDB's random UUID
 /// is replaced by one derived from the content). If the domain of grids is a region, the file gets
 /// one more, the Bool grid "region", unless it is given.
-/// @throw InvalidInput if they have different regions, or another grid has that name; IoError, one line that names the file (disk full, no permission, ...); Interrupted.
+/// @throw InvalidInput if they have different regions, or another grid has that name; IoError, one
+///   line that names the file (disk full, no permission, ...); Interrupted.
 void writeVdb(const std::string& path, const std::vector<openvdb::GridBase::ConstPtr>& grids,
               Interrupter* interrupter = nullptr);
 

@@ -31,8 +31,7 @@ struct CylinderOptions {
   std::optional<double> radius;
 };
 
-/// The part of a scan to work on. What is outside of it is taken for unknown. All that are given
-/// hold together.
+/// The part of a scan to work on: what lies in all that are given. Outside of it nothing is known.
 struct RegionOptions {
   /// A volume, any readable file that describes itself: voxels that are not 0 are inside (of a VDB
   /// those of its object), at the same coordinates as in the scan. Empty: none.
