@@ -32,7 +32,8 @@ inline uint64_t hash(const Sample& sample) {
 }
 
 inline double solidFraction(const Sample& sample) {
-  return double(sample.object->activeVoxelCount()) / double(storedDomain(*sample.object)->voxelCount());
+  return double(sample.object->activeVoxelCount()) /
+         double(storedDomain(*sample.object)->voxelCount());
 }
 
 inline std::set<int32_t> labelsOf(const Int32Grid& grid) {
