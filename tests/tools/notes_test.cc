@@ -162,7 +162,7 @@ TEST_CASE("cli: unequal voxels keep their shape, and what needs cubes says so", 
   CHECK_THAT(bench.mustRun("info known.vdb"),
              Catch::Contains("voxel_size_mm: [0.001,0.001,0.003]"));
   notes(bench, "convert flat.nrrd o.tif", {"does not say that its voxels are no cubes"});
-  notes(bench, "convert unknown.vdb o.mhd", {"does not say that its voxels are no cubes"});
+  notes(bench, "convert unknown.vdb u.mhd", {"does not say that its voxels are no cubes"});
   const Outcome other = bench.run("compare flat.vdb cubes.vdb");
   CHECK(other.exitCode == 1);
   CHECK_THAT(other.err, Catch::Contains("1, 0.7143, 0.4167 times as long"));
