@@ -24,6 +24,7 @@ Measurements fewMeasurements() {
   GrainMeasures grain;
   grain.id = 7;
   grain.voxels = 12345678901;  // more than nine digits
+  grain.volume = double(grain.voxels);
   grain.equivalentDiameter = 2.0 / 3;
   grain.freeArea = 6;
   grain.ellipsoid.values = {4, 2, 1};
@@ -35,6 +36,7 @@ Measurements fewMeasurements() {
   bond.curvature = InterfaceCurvature{1, 3, 0, 1, 0, 2};
   m.bonds = {bond, BondMeasures()};
   m.sample.objectVoxels = 8;
+  m.sample.objectVolume = 8;
   m.sample.objectFraction = 0.5;
   m.sample.specificSurface = 3;
   m.sample.correlationLengths = {1.5, std::nullopt, 2.0};
