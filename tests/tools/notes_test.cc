@@ -161,6 +161,7 @@ TEST_CASE("cli: unequal voxels keep their shape, and what needs cubes says so", 
   bench.mustRun("convert flat.nrrd known.vdb --voxel-size 1x1x3um");
   CHECK_THAT(bench.mustRun("info known.vdb"),
              Catch::Contains("voxel_size_mm: [0.001,0.001,0.003]"));
+  CHECK_THAT(bench.mustRun("measure flat.nrrd t"), Catch::Contains("in shortest edges"));
   notes(bench, "convert flat.nrrd o.tif", {"does not say that its voxels are no cubes"});
   notes(bench, "convert unknown.vdb u.mhd", {"does not say that its voxels are no cubes"});
   const Outcome other = bench.run("compare flat.vdb cubes.vdb");

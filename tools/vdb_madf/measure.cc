@@ -47,7 +47,8 @@ void print(const Options& o, const Measurements& m) {
               counted(int64_t(m.bonds.size()), "bond").c_str(),
               m.grains.size() == 1 ? ": is this a mask? segment it first" : "");
   if (!m.voxelSize)
-    std::printf("  voxel size          unknown, so lengths are in voxels (give --voxel-size)\n");
+    std::printf("  voxel size          unknown, so lengths are in %s (give --voxel-size)\n",
+                m.edges == openvdb::Vec3d(1) ? "voxels" : "shortest edges of a voxel");
   const std::optional<double>& density = o.tables.density;
   std::printf("  solid fraction      %.4f of the %s", m.sample.objectFraction,
               m.sample.domainKnown ? "domain" : "box of the grains (the domain is unknown)");

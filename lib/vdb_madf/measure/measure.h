@@ -55,7 +55,8 @@ struct Measurements {
 /// exact. Depends on nothing but labels, domain and boundary: not on tiles or threads, bit for bit.
 /// Memory: per grain, per face of a bond, and for the representatives per voxel.
 /// @throw InvalidInput if labels leave the domain, the boundary is open without one, minFaces is
-///   negative, no weights fit the voxels (voxel_weights.h), or a limit of leaf_index.h is exceeded; Interrupted.
+///   negative, no weights fit the voxels (voxel_weights.h), or a limit of leaf_index.h is exceeded;
+///   Interrupted.
 Measurements measure(const Int32Grid& labels, const MeasureOptions& options = {},
                      Interrupter* interrupter = nullptr);
 

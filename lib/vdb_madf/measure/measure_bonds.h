@@ -21,8 +21,8 @@ struct BondMeasures {
   double area = 0;
   double equivalentRadius = 0;  ///< of the disc of this area
   openvdb::Vec3d centroid;      ///< mean of the centres of the faces, index coordinates
-  /// Unit vector from the first to the second grain: direction of the sum of the faces' area vectors. If
-  /// they cancel (one grain encloses the other), the direction of least extent.
+  /// Unit vector from the first to the second grain: direction of the sum of the faces' area vectors.
+  /// If they cancel (one grain encloses the other), the direction of least extent.
   openvdb::Vec3d normal;
   double flatness = 0;  ///< smallest eigenvalue of the covariance of the faces' centres
   int patches = 0;      ///< parts of the interface, faces with a common corner being one

@@ -21,7 +21,7 @@ struct WindowRows {
   uint32_t* line(int x) { return rows.data() + size_t((x - kBegin) * kLine); }
   uint32_t row(int x, int y) const { return line(x)[y - kBegin]; }
 
-  alignas(64) std::array<uint32_t, size_t(kLine* kLine)> rows;
+  alignas(64) std::array<uint32_t, size_t{kLine} * kLine> rows;
 };
 
 /// The x of a window that are wanted: to leave out the others saves time. By default those that
