@@ -24,6 +24,7 @@ Measurements fewMeasurements() {
   GrainMeasures grain;
   grain.id = 7;
   grain.voxels = 12345678901;  // more than nine digits
+  grain.volume = double(grain.voxels);
   grain.equivalentDiameter = 2.0 / 3;
   grain.freeArea = 6;
   grain.ellipsoid.values = {4, 2, 1};
@@ -35,6 +36,7 @@ Measurements fewMeasurements() {
   bond.curvature = InterfaceCurvature{1, 3, 0, 1, 0, 2};
   m.bonds = {bond, BondMeasures()};
   m.sample.objectVoxels = 8;
+  m.sample.objectVolume = 8;
   m.sample.objectFraction = 0.5;
   m.sample.specificSurface = 3;
   m.sample.correlationLengths = {1.5, std::nullopt, 2.0};
@@ -186,4 +188,32 @@ TEST_CASE("measurement_files: whole or not at all", "[measurement_files]") {
   CHECK_THROWS_AS(MeasurementTables(scratch / "t"), IoError);
   CHECK(std::filesystem::is_directory(scratch / "t/bonds.csv"));
   CHECK_FALSE(std::filesystem::exists(scratch / "t/grains.csv"));
+}
+
+TEST_CASE("measurement_files: unequal voxels have three edges, and their shortest is the unit",
+          "[measurement_files]") {
+  const ScratchFolder scratch;
+  Measurements m = fewMeasurements();
+  m.edges = openvdb::Vec3d(2, 1, 3);
+  m.grains[0].centroid = openvdb::Vec3d(10, 20, 30);
+  const auto places = [&](const std::string& unit) {
+    const std::string text = readFile(scratch / "t/grains.csv");
+    std::vector<std::string> cells;
+    for (const std::string name : {"centroid_x", "centroid_y", "centroid_z", "free_area"})
+      cells.push_back(cell(text, 0, name + "_" + unit + (name == "free_area" ? "2" : "")));
+    return cells;
+  };
+  MeasurementTables(scratch / "t").write(m);
+  CHECK(places("voxel") == std::vector<std::string>{"20", "20", "90", "6"});
+  m.voxelSize = VoxelSize(std::array<double, 3>{0.5e-3, 0.25e-3, 0.75e-3});
+  TableOptions options;
+  options.density = 1000;
+  MeasurementTables(scratch / "t").write(m, options);
+  CHECK(places("mm") == std::vector<std::string>{"5", "5", "22.5", "0.375"});
+  const auto sample = nlohmann::json::parse(readFile(scratch / "t/sample.json"));
+  CHECK(sample.at("voxel_size_mm") == std::vector<double>{0.5, 0.25, 0.75});
+  CHECK(sample.at("specific_surface_per_mm") == 12);
+  CHECK(sample.at("specific_surface_m2_per_kg").get<double>() == Approx(12));
+  CHECK(sample.at("correlation_length_mm").at(0) == 0.375);
+  CHECK(sample.at("object_volume_mm3") == 0.125);
 }

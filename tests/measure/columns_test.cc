@@ -48,6 +48,7 @@ TEST_CASE("columns: each holds the measure of its name", "[columns]") {
   GrainMeasures grain;
   grain.id = 7;
   grain.voxels = 9007199254740991;  // the largest count that is exact
+  grain.volume = double(grain.voxels);
   grain.equivalentDiameter = 1.5;
   grain.centroid = {2, 3, 4};
   grain.representative = Coord(-5, 6, 8);

@@ -152,6 +152,9 @@ TEST_CASE("cli: collect puts lengths into one unit", "[cli]") {
   CHECK(row.at("grains") == "3");
   CHECK(row.at("box_min_y") == "2");
   CHECK(rows[1].at("voxel_size_mm") == "0.5");
+  writeSample(bench, "flat", R"({"length_unit": "um", "voxel_size_um": [0.5, 0.5, 1.5]})");
+  bench.mustRun("collect flat large flat.csv");
+  CHECK(std::stod(rowsOf(bench.bytes("flat.csv")).at(0).at("voxel_size_z_mm")) == Approx(1.5e-3));
   // Voxels have no length that would be known.
   const Outcome mixed = bench.run("collect large bare mixed.csv");
   CHECK(mixed.exitCode == 1);

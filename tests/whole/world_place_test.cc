@@ -347,8 +347,6 @@ TEST_CASE("world_place: what needs cubes refuses other voxels", "[world_place]")
     CHECK_THROWS_WITH(
         work(), Catch::Contains("needs cubic voxels") && Catch::Contains("0.25 x 0.5 x 0.0625"));
   };
-  refuses([&] { measure(*flat); });
-  refuses([&] { grainNetwork(*flat); });
   refuses([&] { clumps(*flat, *flat); });
   refuses([&] { grainLevelSets(*flat); });
   refuses([&] { surfaceLevelSet(*flat); });

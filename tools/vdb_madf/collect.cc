@@ -170,7 +170,8 @@ class Row {
           addThree(stem + "_eigenvalue_", "123", power, inner);
         else
           addValue(stem + "_" + part, power, inner);
-    } else if (stem == "box_min" || stem == "box_max" || stem == "correlation_length") {
+    } else if (stem == "box_min" || stem == "box_max" || stem == "correlation_length" ||
+               (stem == "voxel_size" && value.is_array())) {
       addThree(stem + "_", "xyz", power, value);
     } else {
       addValue(stem, power, value);

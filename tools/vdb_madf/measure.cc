@@ -3,6 +3,8 @@
 
 #include "vdb_madf/measure/measure.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <memory>
 
@@ -38,20 +40,22 @@ void parse(Options& o) {
 
 void print(const Options& o, const Measurements& m) {
   const std::string unit = m.voxelSize ? m.voxelSize->unit() : "voxel";
-  const double length = m.voxelSize ? m.voxelSize->inUnit() : 1;
+  const auto edges = m.voxelSize ? m.voxelSize->edgesInUnit() : std::array<double, 3>{1, 1, 1};
+  const double length = *std::min_element(edges.begin(), edges.end());
   std::printf("%s: %s, %s%s\n", o.folder.c_str(),
               counted(int64_t(m.grains.size()), "grain").c_str(),
               counted(int64_t(m.bonds.size()), "bond").c_str(),
               m.grains.size() == 1 ? ": is this a mask? segment it first" : "");
   if (!m.voxelSize)
-    std::printf("  voxel size          unknown, so lengths are in voxels (give --voxel-size)\n");
+    std::printf("  voxel size          unknown, so lengths are in %s (give --voxel-size)\n",
+                m.edges == openvdb::Vec3d(1) ? "voxels" : "shortest edges of a voxel");
   const std::optional<double>& density = o.tables.density;
   std::printf("  solid fraction      %.4f of the %s", m.sample.objectFraction,
               m.sample.domainKnown ? "domain" : "box of the grains (the domain is unknown)");
   if (density) std::printf(", %.1f kg/m3", *density * m.sample.objectFraction);
   std::printf("\n  specific surface    %.5g /%s", m.sample.specificSurface / length, unit.c_str());
   if (m.voxelSize && density)
-    std::printf(" = %.4g m2/kg", m.sample.specificSurface / m.voxelSize->edge() / *density);
+    std::printf(" = %.4g m2/kg", m.sample.specificSurface / m.voxelSize->shortestEdge() / *density);
   std::printf("\n  grain diameter      d50 %.5g %s by number, %.5g by volume\n",
               length * diameterPercentile(m.grains, 0.5, false), unit.c_str(),
               length * diameterPercentile(m.grains, 0.5, true));

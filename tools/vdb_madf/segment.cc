@@ -122,8 +122,6 @@ void run(const SegmentArguments& o, const Common& common) {
   MaskGrid::Ptr object = loadObject(o.input, common.progress);
   SegmentOptions options = o.segment;
   options.boundary = boundaryOf(o.boundary, o.input, *object);
-  if (tables)
-    withFileName(o.input.path, [&] { requireCubicVoxels(*object, "measuring (--tables)"); });
   timing.read = secondsSince(start);
 
   // What is free now, or what was allowed for the whole process, less the mask.

@@ -60,6 +60,8 @@ SegmentSummary summarize(const SegmentArguments& o, const Common& common, const 
   summary.flaws = s.flaws;
   summary.fillHoles = s.fillHoles;
   summary.domain = s.domain;
+  summary.weights = s.weights;
+  summary.weightsError = s.weightsError;
   summary.voxelSize = storedVoxelSize(*s.grain);
   summary.objectSteps = objectSteps(*s.grain);
   if (const auto threshold = s.grain->getMetadata<openvdb::DoubleMetadata>(kThresholdKey))
@@ -102,6 +104,10 @@ Json toJson(const SegmentArguments& o, const SegmentSummary& summary) {
     json["porosity"] = *summary.porosity();
   }
   if (summary.voxelSize) json["voxel_size_mm"] = inMillimetres(*summary.voxelSize);
+  if (summary.weights != VoxelWeights{}) {
+    json["weights"] = {summary.weights.x, summary.weights.y, summary.weights.z};
+    json["weights_error"] = summary.weightsError;
+  }
   json["grains_under_100_voxels"] = summary.sizes.dustGrains;
   json["voxels_in_grains_under_100_voxels"] = summary.sizes.dustVoxels;
   json["crumbs"] = summary.flaws.crumbs;
@@ -157,6 +163,9 @@ void print(const SegmentArguments& o, const Common& common, const SegmentSummary
     std::printf("  voxel size       %g um\n", um);
   else
     std::printf("  voxel size       unknown, so no physical sizes (give --voxel-size)\n");
+  if (summary.weights != VoxelWeights{})
+    std::printf("  squared edges    taken as %s, to %.1g %%\n", summary.weights.toString().c_str(),
+                100 * summary.weightsError);
   std::printf("  grain diameter   d10 %.1f, d50 %.1f, d90 %.1f voxels", sizes.d10, sizes.d50,
               sizes.d90);
   if (summary.voxelSize)

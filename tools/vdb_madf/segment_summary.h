@@ -38,6 +38,8 @@ struct SegmentSummary {
   LabelFlaws flaws;
   int64_t fillHoles = 0;
   std::optional<Domain> domain;
+  VoxelWeights weights;     ///< of squared lengths along x, y, z
+  double weightsError = 0;  ///< relative
   std::optional<VoxelSize> voxelSize;
   std::string objectSteps;  ///< from a gray image
   std::optional<double> threshold;

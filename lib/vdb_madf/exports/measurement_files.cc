@@ -5,6 +5,8 @@
 
 #include <openvdb/Metadata.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -26,23 +28,27 @@ using Json = nlohmann::ordered_json;
 /// Factors and names of the unit of length.
 struct Unit {
   std::string name = "voxel";
-  double length = 1;  ///< of a voxel edge
+  double length = 1;     ///< of the shortest edge of a voxel
+  openvdb::Vec3d edges;  ///< of a voxel
 
-  explicit Unit(const std::optional<VoxelSize>& size) {
-    if (!size) return;
-    name = size->unit();
-    length = size->inUnit();
+  explicit Unit(const Measurements& measured) {
+    if (const auto& size = measured.voxelSize) {
+      name = size->unit();
+      const std::array<double, 3> own = size->edgesInUnit();
+      length = *std::min_element(own.begin(), own.end());
+    }
+    edges = length * measured.edges;
   }
   double area() const { return length * length; }
   double volume() const { return length * length * length; }
 };
 
 /// Nine digits; whole numbers whole; empty where there is no value.
-std::string cell(const MeasureColumn& column, size_t row, double edge) {
+std::string cell(const MeasureColumn& column, size_t row, const openvdb::Vec3d& edges) {
   const double value = column.values[row];
   if (std::isnan(value)) return "";
   if (column.kind == MeasureColumn::Kind::count) return std::to_string(int64_t(value));
-  const double number = scaled(value, column.power, edge);
+  const double number = scaled(column, value, edges);
   char text[32];
   const auto end = std::to_chars(text, text + sizeof text, number == 0 ? 0.0 : number,
                                  std::chars_format::general, 9);
@@ -62,7 +68,7 @@ std::string table(const std::vector<MeasureColumn>& columns, const Unit& unit,
     text += first;
     for (const MeasureColumn& column : columns) {
       if (&column != &columns.front()) text += ',';
-      text += cell(column, row, unit.length);
+      text += cell(column, row, unit.edges);
     }
     text += '\n';
   }
@@ -111,7 +117,9 @@ Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& opt
   json["segmentation"] = segmentationJson(m.metadata);
   json["boundary"] = m.open ? "open" : "closed";
   json["length_unit"] = u;
-  if (m.voxelSize) json["voxel_size_" + u] = unit.length;
+  if (m.voxelSize)
+    json["voxel_size_" + u] =
+        m.voxelSize->isCube() ? Json(unit.length) : Json(m.voxelSize->edgesInUnit());
   json["box"] = s.regionVoxels ? "region" : s.domainKnown ? "domain" : "grains";
   json["box_min"] = {s.box.min().x(), s.box.min().y(), s.box.min().z()};
   json["box_max"] = {s.box.max().x(), s.box.max().y(), s.box.max().z()};
@@ -123,7 +131,7 @@ Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& opt
   json["contacts_left_out"] = s.contactsLeftOut;
   json["contacts_left_out_area_" + u + "2"] = s.areaLeftOut * unit.area();
   json["object_voxels"] = s.objectVoxels;
-  json["object_volume_" + u + "3"] = double(s.objectVoxels) * unit.volume();
+  json["object_volume_" + u + "3"] = s.objectVolume * unit.volume();
   json["solid_fraction"] = s.objectFraction;
   if (options.density) {
     json["solid_density_kg_per_m3"] = *options.density;
@@ -134,7 +142,8 @@ Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& opt
   json["area_estimator"] = "voxel faces weighted by local normals";
   json["specific_surface_per_" + u] = s.specificSurface / unit.length;
   if (m.voxelSize && options.density)
-    json["specific_surface_m2_per_kg"] = s.specificSurface / m.voxelSize->edge() / *options.density;
+    json["specific_surface_m2_per_kg"] =
+        s.specificSurface / m.voxelSize->shortestEdge() / *options.density;
   Json lengths = Json::array();
   for (const auto& length : s.correlationLengths)
     lengths.push_back(length ? Json(*length * unit.length) : Json());
@@ -177,7 +186,7 @@ MeasurementTables::MeasurementTables(const std::string& folder) : folder_(folder
 MeasurementTables::~MeasurementTables() = default;
 
 void MeasurementTables::write(const Measurements& measurements, const TableOptions& options) {
-  const Unit unit(measurements.voxelSize);
+  const Unit unit(measurements);
   files_.at(0)->text(table(grainColumns(measurements.grains), unit, options.sample));
   files_.at(1)->text(table(bondColumns(measurements.bonds), unit, options.sample));
   // A file name need not be UTF-8: what is not is replaced.

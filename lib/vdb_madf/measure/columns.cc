@@ -3,6 +3,7 @@
 
 #include "vdb_madf/measure/columns.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <limits>
 #include <utility>
@@ -56,7 +57,7 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
   ColumnMaker<G> make(grains);
   make.addCount("id", [](const G& g) { return g.id; });
   make.addCount("voxels", [](const G& g) { return g.voxels; });
-  make.add("volume", 3, [](const G& g) { return g.voxels; });
+  make.add("volume", 3, [](const G& g) { return g.volume; });
   make.add("equivalent_diameter", 1, [](const G& g) { return g.equivalentDiameter; });
   make.addVector(
       "centroid", [](const G& g) { return g.centroid; }, Kind::place);
@@ -128,6 +129,12 @@ double scaled(double value, int power, double edge) {
   double factor = 1;
   for (int i = 0; i < std::abs(power); ++i) factor *= edge;
   return power < 0 ? value / factor : value * factor;
+}
+
+double scaled(const MeasureColumn& column, double value, const Vec3d& edges) {
+  const double edge =
+      column.kind == Kind::place ? edges[column.axis] : std::min({edges[0], edges[1], edges[2]});
+  return scaled(value, column.power, edge);
 }
 
 }  // namespace vdb_madf

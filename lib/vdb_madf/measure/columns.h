@@ -23,7 +23,7 @@ struct MeasureColumn {
   Kind kind = Kind::number;
   int power = 0;               ///< of the length that it is measured in: 2 is an area; -2 to 3
   int axis = 0;                ///< 0, 1, 2: x, y, z; of places
-  std::vector<double> values;  ///< a row each, in voxels; NaN: not known
+  std::vector<double> values;  ///< a row each, in voxels (Measurements); NaN: not known
 };
 
 /// `id`, `voxels`, `volume`, `equivalent_diameter`, `centroid_x`, `_y`, `_z`, `representative_x`,
@@ -43,7 +43,12 @@ std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds);
 /// What a power of a length appends to a name: "" (0), "_mm", "_mm2", "_per_mm", "_per_mm2" ...
 std::string unitSuffix(int power, const std::string& unit);
 
-/// A number in voxels, of that power of a length, where voxels have this edge.
+/// A number in voxels, of that power of a length, where voxels have this edge; the shortest, if they
+/// are no cubes.
 double scaled(double value, int power, double edge);
+
+/// A number of a column where voxels have these edges: places are index coordinates, all else is in
+/// the shortest edge.
+double scaled(const MeasureColumn& column, double value, const openvdb::Vec3d& edges);
 
 }  // namespace vdb_madf

@@ -16,19 +16,19 @@ namespace vdb_madf {
 
 namespace {
 
-using detail::CubicTransform;
+using detail::WorldTransform;
 
 /// In world units, without the columns that `leftOut` holds.
 std::vector<GrainNetwork::Column> inWorld(std::vector<MeasureColumn> columns,
                                           const std::set<std::string>& leftOut,
-                                          const CubicTransform& world) {
+                                          const WorldTransform& world) {
   std::vector<GrainNetwork::Column> result;
   for (MeasureColumn& column : columns) {
     if (leftOut.count(column.name)) continue;
     const bool isBox = column.name.compare(0, 4, "box_") == 0;  // voxels, in the tables
     const bool isPlace = isBox || column.kind == MeasureColumn::Kind::place;
     for (double& value : column.values) {
-      value = scaled(value, isBox ? 1 : column.power, world.edge);
+      value = isBox ? value * world.edges[column.axis] : scaled(column, value, world.edges);
       if (isPlace) value += world.origin[column.axis];
     }
     result.push_back({std::move(column.name), std::move(column.values)});
@@ -44,22 +44,22 @@ uint32_t position(const std::vector<int32_t>& labels, int32_t label) {
 
 GrainNetwork grainNetwork(const Int32Grid& labels, const MeasureOptions& options,
                           Interrupter* interrupter) {
-  requireCubicVoxels(labels, "measuring");
-  const CubicTransform world = detail::cubicTransform(labels.transform());
+  const WorldTransform world = detail::worldTransform(labels.transform());
+  const double shortest = std::min({world.edges[0], world.edges[1], world.edges[2]});
   const Measurements measured = measure(labels, options, interrupter);
 
   GrainNetwork network;
   network.contactsLeftOut = measured.sample.contactsLeftOut;
   for (const GrainMeasures& grain : measured.grains) {
     network.grains.push_back(grain.id);
-    network.centers.push_back(world.origin + world.edge * grain.centroid);
+    network.centers.push_back(world.origin + world.edges * grain.centroid);
   }
   GrainNetwork::Column faceArea{"face_area", {}}, length{"length", {}};
   for (const BondMeasures& bond : measured.bonds) {
     const uint32_t first = position(network.grains, bond.first),
                    second = position(network.grains, bond.second);
     network.bonds.push_back({first, second});
-    faceArea.values.push_back(scaled(double(bond.faces), 2, world.edge));
+    faceArea.values.push_back(scaled(bond.faceArea, 2, shortest));
     length.values.push_back((network.centers[second] - network.centers[first]).length());
   }
   const GrainColors colors = grainColors(labels, interrupter);

@@ -36,7 +36,7 @@ struct GrainNetwork {
 /// Columns are those of columns.h in their order, but for the labels, which `grains` and `bonds`
 /// hold. `box_min` and `box_max` are the places of the outermost voxels (their centers). Bonds have two more: `face_area` (of the voxel faces: overestimates oblique bonds) and `length`
 /// (between the centroids).
-/// @throw InvalidInput if the transform is not linear with cubic voxels, or as measure();
+/// @throw InvalidInput if voxels are not along the axes of the world, or mirrored, or as measure();
 ///   Interrupted.
 GrainNetwork grainNetwork(const Int32Grid& labels, const MeasureOptions& options = {},
                           Interrupter* interrupter = nullptr);

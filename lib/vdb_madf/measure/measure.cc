@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/labels/detail/label_digest.h"
 #include "vdb_madf/leaves/detail/connected_components.h"
 #include "vdb_madf/measure/correlation_length.h"
@@ -15,6 +16,7 @@
 #include "vdb_madf/measure/detail/grain_representatives.h"
 #include "vdb_madf/measure/detail/label_sums.h"
 #include "vdb_madf/measure/detail/sample_measures.h"
+#include "vdb_madf/measure/detail/voxel_shape.h"
 #include "vdb_madf/measure/euler_characteristic.h"
 #include "vdb_madf/method/boundary.h"
 #include "vdb_madf/method/detail/metric.h"
@@ -24,18 +26,27 @@ namespace vdb_madf {
 
 namespace {
 
-void setRepresentatives(const detail::GrainRepresentatives& representatives, Measurements& result) {
+/// The metric of an object of that extent.
+VoxelWeights weightsOf(const detail::VoxelShape& voxel, const Int32Grid& labels,
+                       const LeafIndex& index) {
+  if (voxel.isCube() || index.voxelCount() == 0) return {};
+  return weightsOfEdges(voxelEdges(labels.transform()), index.boundingBox().dim()).weights;
+}
+
+void setRepresentatives(const detail::GrainRepresentatives& representatives,
+                        const VoxelWeights& weights, Measurements& result) {
   if (representatives.empty()) return;
+  const double unit = weights.least();  // the weight of the shortest edge, which is 1
   for (GrainMeasures& grain : result.grains) {
     const detail::GrainRepresentative& deepest = representatives.at(grain.id);
     grain.representative = deepest.voxel;
-    grain.inscribedRadius = std::sqrt(double(deepest.squaredRadius));
+    grain.inscribedRadius = std::sqrt(double(deepest.squaredRadius) / unit);
   }
   for (BondMeasures& bond : result.bonds) {
     const detail::GrainRepresentative &a = representatives.at(bond.first),
                                       &b = representatives.at(bond.second);
-    const int64_t squaredDistance = detail::squaredBetween(a.voxel, b.voxel, VoxelWeights{});
-    bond.distance = std::sqrt(double(squaredDistance));
+    const int64_t squaredDistance = detail::squaredBetween(a.voxel, b.voxel, weights);
+    bond.distance = std::sqrt(double(squaredDistance) / unit);
     bond.cosAlpha = detail::cosAlpha(squaredDistance, a.squaredRadius, b.squaredRadius);
   }
 }
@@ -56,21 +67,22 @@ std::vector<BondMeasures> takeSmallBonds(Measurements& result) {
   return small;
 }
 
-/// \p graph: of the segmentation, if it tells the representatives; else null.
+/// \p graph: of the segmentation, if it tells the representatives under its weights; else null.
 Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& options,
                            const ManifoldGraph* graph, Interrupter* interrupter) {
   if (options.minFaces < 0)
     throw InvalidInput("the least number of faces of a bond must not be negative");
-  requireCubicVoxels(labels, "measuring");
+  const detail::VoxelShape voxel{detail::proportions(labels.transform())};
   const detail::LabelLeaves leaves(labels, interrupter);
   const LeafIndex& index = leaves.index();
   const std::optional<Domain> domain = options.domain ? options.domain : storedDomain(labels);
   const Boundary boundary =
       options.boundary == Boundary::automatic ? storedBoundary(labels) : options.boundary;
   const Obstacles obstacles = resolveBoundary(index, boundary, domain);
-
+  const VoxelWeights weights = weightsOf(voxel, labels, index);
   Measurements result;
   result.voxelSize = storedVoxelSize(labels);
+  result.edges = voxel.edges;
   result.minFaces = options.minFaces;
   result.open = obstacles.open;
   result.gridName = labels.getName();
@@ -78,13 +90,15 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
   result.labelDigest = detail::labelDigest(leaves);
   const Domain whole = domain.value_or(index.boundingBox());
   {
-    const detail::LabelSums sums = detail::labelSums(leaves, whole, obstacles.open, interrupter);
-    result.bonds = detail::bondMeasures(sums, interrupter);
-    result.grains = detail::grainMeasures(sums, result.bonds, whole);
+    const detail::LabelSums sums =
+        detail::labelSums(leaves, whole, obstacles.open, voxel, interrupter);
+    result.bonds = detail::bondMeasures(sums, voxel, interrupter);
+    result.grains = detail::grainMeasures(sums, result.bonds, whole, voxel);
   }
-  setRepresentatives(graph ? detail::grainRepresentatives(labels, *graph)
-                           : detail::grainRepresentatives(leaves, obstacles, interrupter),
-                     result);
+  setRepresentatives(graph && graph->weights == weights
+                         ? detail::grainRepresentatives(labels, *graph)
+                         : detail::grainRepresentatives(leaves, obstacles, weights, interrupter),
+                     weights, result);
   const std::vector<BondMeasures> leftOut = takeSmallBonds(result);
   SampleMeasures& sample = result.sample;
   sample = detail::sampleMeasures(result.grains, result.bonds, whole);
@@ -93,6 +107,8 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
   sample.sharedArea += sample.areaLeftOut;
   sample.domainKnown = domain.has_value();
   sample.correlationLengths = correlationLengths(index, whole, interrupter);
+  for (int axis = 0; axis < 3; ++axis)
+    if (auto& length = sample.correlationLengths[size_t(axis)]) *length *= voxel.edges[axis];
   sample.eulerCharacteristic = eulerCharacteristic(index, interrupter);
   sample.components = detail::ConnectedComponents(index).count();
   return result;
@@ -108,8 +124,8 @@ Measurements measure(const Int32Grid& labels, const MeasureOptions& options,
 Measurements measure(const Segmentation& segmentation, Interrupter* interrupter) {
   // The labels' own: of unfiltered balls, no cavity filled, each voxel where the flow led it.
   const SegmentCounts& counts = segmentation.counts;
-  const bool graphTells = counts.keptBalls == counts.medialBalls && counts.cavities == 0 &&
-                          segmentation.tidy == 0 && segmentation.weights == VoxelWeights{};
+  const bool graphTells =
+      counts.keptBalls == counts.medialBalls && counts.cavities == 0 && segmentation.tidy == 0;
   return measureLabels(*segmentation.grain, {}, graphTells ? &segmentation.graph : nullptr,
                        interrupter);
 }

@@ -32,7 +32,8 @@ struct MeasureOptions {
   int64_t minFaces = 1;
 };
 
-/// Grains, bonds and the sample; lengths in voxels.
+/// Grains, bonds and the sample. Lengths are in voxels, of unequal ones in their shortest edge;
+/// areas and volumes likewise. Boxes, representatives and centroids are index coordinates.
 struct Measurements {
   std::vector<GrainMeasures> grains;  ///< by id
   std::vector<BondMeasures> bonds;    ///< by first, then second
@@ -40,6 +41,7 @@ struct Measurements {
   int64_t minFaces = 1;                ///< that a bond had to have
   bool open = false;                   ///< the boundary
   std::optional<VoxelSize> voxelSize;  ///< of the grid
+  openvdb::Vec3d edges{1, 1, 1};       ///< of a voxel, in units of the shortest
   std::string gridName;
   openvdb::MetaMap metadata;  ///< of the grid: how the labels were made
   /// Of the places and labels of the voxels, 32 hexadecimal digits: a checksum that equal labels
@@ -48,11 +50,13 @@ struct Measurements {
 };
 
 /// Measures labels: each value of the active voxels (tiles included) above 0 is a grain, in one
-/// piece or not. Areas are estimated (surface area: detail/leaf_surface.h says how), all else is
+/// piece or not. Voxels may be boxes along the axes, which the transform tells; others count as
+/// cubes. Areas are estimated (surface area: detail/leaf_surface.h says how), all else is
 /// exact. Depends on nothing but labels, domain and boundary: not on tiles or threads, bit for bit.
 /// Memory: per grain, per face of a bond, and for the representatives per voxel.
 /// @throw InvalidInput if labels leave the domain, the boundary is open without one, minFaces is
-///   negative, voxels are no cubes, or a limit of leaf_index.h is exceeded; Interrupted.
+///   negative, no weights fit the voxels (voxel_weights.h), or a limit of leaf_index.h is exceeded;
+///   Interrupted.
 Measurements measure(const Int32Grid& labels, const MeasureOptions& options = {},
                      Interrupter* interrupter = nullptr);
 

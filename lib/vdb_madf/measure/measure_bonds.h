@@ -11,18 +11,20 @@
 
 namespace vdb_madf {
 
-/// Two grains that share at least one voxel face; lengths in voxels.
+/// Two grains that share at least one voxel face; lengths in voxels, of unequal ones in their
+/// shortest edge (Measurements::edges).
 struct BondMeasures {
   int32_t first = 0, second = 0;  ///< labels, first < second
-  int64_t faces = 0;              ///< voxel faces between them: overestimates the area
-  /// Of the interface, estimated, in voxels^2; README.md beside this says how.
+  int64_t faces = 0;              ///< voxel faces between them
+  double faceArea = 0;            ///< of these, = faces, of cubes: overestimates the area
+  /// Of the interface, estimated; README.md beside this says how.
   double area = 0;
   double equivalentRadius = 0;  ///< of the disc of this area
-  openvdb::Vec3d centroid;      ///< mean of the centres of the faces
-  /// Unit vector from the first to the second grain: direction of the sum of the faces' normals. If
-  /// they cancel (one grain encloses the other), the direction of least extent.
+  openvdb::Vec3d centroid;      ///< mean of the centres of the faces, index coordinates
+  /// Unit vector from the first to the second grain: direction of the sum of the faces' area vectors.
+  /// If they cancel (one grain encloses the other), the direction of least extent.
   openvdb::Vec3d normal;
-  double flatness = 0;  ///< smallest eigenvalue of the covariance of the faces' centres, voxels^2
+  double flatness = 0;  ///< smallest eigenvalue of the covariance of the faces' centres
   int patches = 0;      ///< parts of the interface, faces with a common corner being one
   /// None of an interface of fewer than 10 faces, or of faces in a row.
   std::optional<InterfaceCurvature> curvature;

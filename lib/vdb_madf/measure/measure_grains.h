@@ -19,11 +19,12 @@ struct Principal {
   std::array<double, 3> values{};
 };
 
-/// A grain; lengths in voxels.
+/// A grain; lengths in voxels, of unequal ones in their shortest edge (Measurements::edges).
 struct GrainMeasures {
-  int32_t id = 0;           ///< its label
-  int64_t voxels = 0;       ///< = volume
-  openvdb::Vec3d centroid;  ///< of the voxels' centers
+  int32_t id = 0;  ///< its label
+  int64_t voxels = 0;
+  double volume = 0;        ///< = voxels, of cubes
+  openvdb::Vec3d centroid;  ///< of the voxels' centers, index coordinates
   CoordBBox box;            ///< inclusive
   /// A voxel has a face neighbor outside the domain or, if that is unknown, the box of all grains.
   bool atDomainFace = false;
@@ -37,7 +38,7 @@ struct GrainMeasures {
   double cutArea = 0;             ///< voxel faces at the wall of an open domain; in no other area
   double sphericity = 0;          ///< area of the ball of this volume / area, the cut one included
   /// Axes of inertia and the lengths (not half lengths) of the axes of the ellipsoid that has the
-  /// grain's second moments, voxels being cubes.
+  /// grain's second moments, voxels being boxes.
   Principal ellipsoid;
   int coordination = 0;  ///< number of bonds
 

@@ -20,13 +20,14 @@ struct FabricTensor {
   Principal principal;
 };
 
-/// A sample; lengths in voxels.
+/// A sample; lengths in voxels, of unequal ones in their shortest edge (Measurements::edges).
 struct SampleMeasures {
   CoordBBox box;             ///< what fractions and correlations refer to, or bounds it
   bool domainKnown = false;  ///< that is the domain; else the box of the grains
   /// The domain is a region of so many voxels: fractions and correlations refer to them.
   std::optional<int64_t> regionVoxels;
   int64_t objectVoxels = 0;
+  double objectVolume = 0;  ///< = objectVoxels, of cubes
   double objectFraction = 0;
   double freeArea = 0;         ///< of all grains
   double sharedArea = 0;       ///< of all bonds and of the contacts that were left out

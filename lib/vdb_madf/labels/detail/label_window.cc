@@ -10,10 +10,10 @@
 
 namespace vdb_madf::detail {
 
-VDB_MADF_SIMD void addLeaf(const LeafIndex::Mask& mask, int side, WindowRows& rows) {
+VDB_MADF_SIMD void addLeaf(const LeafIndex::Mask& mask, int side, const WindowRange& range,
+                           WindowRows& rows) {
   const int dx = side / 9 - 1, dy = side / 3 % 3 - 1, dz = side % 3 - 1;
-  const int begin = std::max(8 * dx, WindowRows::kBeginX),
-            end = std::min(8 * dx + 8, WindowRows::kEndX);
+  const int begin = std::max(8 * dx, range.begin), end = std::min(8 * dx + 8, range.end);
   for (int x = begin; x < end; ++x) {
     uint8_t bytes[8];
     std::memcpy(bytes, &mask[size_t(x & 7)], sizeof bytes);
@@ -26,7 +26,7 @@ void LabelWindow::labelled(WindowRows& rows) const {
   rows.rows.fill(0);
   for (int side = 0; side < 27; ++side)
     if (const uint32_t leaf = around_[size_t(side)]; leaf != LeafIndex::kNone)
-      addLeaf(labels_->index().mask(leaf), side, rows);
+      addLeaf(labels_->index().mask(leaf), side, range_, rows);
 }
 
 void LabelWindow::labelled(int32_t label, WindowRows& rows) const {
@@ -35,7 +35,7 @@ void LabelWindow::labelled(int32_t label, WindowRows& rows) const {
     const uint32_t leaf = around_[size_t(side)];
     if (leaf == LeafIndex::kNone) continue;
     for (const LabelPart& part : labels_->parts(leaf))
-      if (part.label == label) addLeaf(part.mask, side, rows);
+      if (part.label == label) addLeaf(part.mask, side, range_, rows);
   }
 }
 

@@ -11,29 +11,35 @@
 
 namespace vdb_madf::detail {
 
-/// A set of voxels in and around a leaf: x from -4 to 13 from its origin, y and z from -8 to 15,
-/// the 27 leaves. measure/detail/leaf_surface.h draws where the numbers come from.
+/// A set of voxels in and around a leaf: -8 to 15 from its origin, the 27 leaves.
 struct WindowRows {
-  static constexpr int kBeginX = -4, kEndX = 14;
-  static constexpr int kBegin = -8, kEnd = 16;  ///< of y and z
-  static constexpr int kLine = kEnd - kBegin;   ///< rows of a line
+  static constexpr int kBegin = -8, kEnd = 16;
+  static constexpr int kLine = kEnd - kBegin;  ///< rows of a line
 
   /// The rows of all y, from kBegin on; bit z + 8 of a row is voxel z.
-  const uint32_t* line(int x) const { return rows.data() + size_t((x - kBeginX) * kLine); }
-  uint32_t* line(int x) { return rows.data() + size_t((x - kBeginX) * kLine); }
+  const uint32_t* line(int x) const { return rows.data() + size_t((x - kBegin) * kLine); }
+  uint32_t* line(int x) { return rows.data() + size_t((x - kBegin) * kLine); }
   uint32_t row(int x, int y) const { return line(x)[y - kBegin]; }
 
-  alignas(64) std::array<uint32_t, size_t((kEndX - kBeginX) * kLine)> rows;
+  alignas(64) std::array<uint32_t, size_t{kLine} * kLine> rows;
+};
+
+/// The x of a window that are wanted: to leave out the others saves time. By default those that
+/// measure/detail/leaf_surface.h draws.
+struct WindowRange {
+  int begin = -4, end = 14;
 };
 
 /// Adds voxels of one of the 27 leaves, `side` as in LeafNeighborhood.
-void addLeaf(const LeafIndex::Mask& mask, int side, WindowRows& rows);
+void addLeaf(const LeafIndex::Mask& mask, int side, const WindowRange& range, WindowRows& rows);
 
 /// Which voxels in and around a leaf have a label. One per thread.
 class LabelWindow {
  public:
-  explicit LabelWindow(const LabelLeaves& labels)
-      : labels_(&labels), neighborhood_(labels.index()) {}
+  explicit LabelWindow(const LabelLeaves& labels, const WindowRange& range = {})
+      : labels_(&labels), neighborhood_(labels.index()), range_(range) {}
+
+  const WindowRange& range() const { return range_; }
 
   void moveTo(size_t leaf) { around_ = neighborhood_.around(leaf); }
 
@@ -46,6 +52,7 @@ class LabelWindow {
  private:
   const LabelLeaves* labels_;
   LeafNeighborhood neighborhood_;
+  WindowRange range_;
   std::array<uint32_t, 27> around_{};
 };
 

@@ -70,12 +70,13 @@ int countPatches(const std::vector<InterfaceFace>& faces, const Coord& origin) {
   return patches;
 }
 
-BondMeasures measureBond(const BondSums& from) {
+BondMeasures measureBond(const BondSums& from, const VoxelShape& voxel) {
   BondMeasures bond;
   bond.first = from.first;
   bond.second = from.second;
   bond.faces = int64_t(from.faces.size());
-  bond.area = bondArea(from.areas);
+  bond.area = bondArea(from.areas, voxel);
+  for (const InterfaceFace& face : from.faces) bond.faceArea += voxel.faceArea(face.axis);
   bond.equivalentRadius = std::sqrt(bond.area / M_PI);
 
   const Coord origin = from.faces.front().lower;
@@ -84,21 +85,23 @@ BondMeasures measureBond(const BondSums& from) {
   for (int i = 0; i < 3; ++i) bond.centroid[i] = origin[i] + double(sums.sum[size_t(i)]) / (2 * n);
   std::array<double, 6> spread = covariance(bond.faces, sums.sum, sums.products);
   for (double& value : spread) value /= 4;  // coordinates were doubled
+  inSpace(voxel, spread);
   const Principal principal = principalAxes(spread);
   bond.flatness = std::max(0.0, principal.values[2]);
-  bond.normal = {double(sums.normal[0]), double(sums.normal[1]), double(sums.normal[2])};
+  for (int i = 0; i < 3; ++i) bond.normal[i] = double(sums.normal[size_t(i)]) * voxel.faceArea(i);
   if (!bond.normal.normalize(0)) bond.normal = principal.axes[2];
   bond.patches = countPatches(from.faces, origin);
-  bond.curvature = fitCurvature(from.faces);
+  bond.curvature = fitCurvature(from.faces, voxel);
   return bond;
 }
 
 }  // namespace
 
-std::vector<BondMeasures> bondMeasures(const LabelSums& sums, Interrupter* interrupter) {
+std::vector<BondMeasures> bondMeasures(const LabelSums& sums, const VoxelShape& voxel,
+                                       Interrupter* interrupter) {
   std::vector<BondMeasures> bonds(sums.bonds.size());
   parallelFor(bonds.size(), kBondGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) bonds[i] = measureBond(sums.bonds[i]);
+    for (size_t i = begin; i < end; ++i) bonds[i] = measureBond(sums.bonds[i], voxel);
   });
   return bonds;
 }

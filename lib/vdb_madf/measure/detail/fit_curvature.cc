@@ -12,12 +12,12 @@ namespace vdb_madf::detail {
 
 namespace {
 
-constexpr double kReach = 5;          // voxels along the tangent plane
+constexpr double kReach = 5;          // mean edges of a voxel along the tangent plane
 constexpr double kWithin = 1 + 1e-9;  // its square: ties, of which there are many, are in reach
-constexpr double kRange = 5.5;        // voxels in space: of a ball of radius 7 all that is in reach
-constexpr int kMaxPoints = 32;        // of one interface: time, not memory
-constexpr int kMinFaces = 10;         // for the six coefficients
-constexpr double kSingular = 1e-5;    // least pivot of the scaled normal equations, of the largest
+constexpr double kRange = 5.5;      // likewise in space: of a ball of radius 7 all that is in reach
+constexpr int kMaxPoints = 32;      // of one interface: time, not memory
+constexpr int kMinFaces = 10;       // for the six coefficients
+constexpr double kSingular = 1e-5;  // least pivot of the scaled normal equations, of the largest
 constexpr int kMaxRounds = 10;
 constexpr double kSettled = 1e-3;     // change of the curvatures, 1 / kReach
 constexpr double kSteepest = 3. / 4;  // squared sine of the slope that a round surface may have
@@ -26,6 +26,10 @@ Eigen::Vector3d center(const InterfaceFace& face) {
   Eigen::Vector3d point(face.lower.x(), face.lower.y(), face.lower.z());
   point[face.axis] += 0.5;
   return point;
+}
+
+Eigen::Vector3d toEigen(const openvdb::Vec3d& v) {
+  return {v[0], v[1], v[2]};
 }
 
 struct Jet {
@@ -46,6 +50,12 @@ double roundness(const Shape& shape, double a, double b) {
 /// Faces in reach of one, relative to it and in units of the reach.
 class Fit {
  public:
+  explicit Fit(const VoxelShape& voxel)
+      : edges_(toEigen(voxel.edges)),
+        faceAreas_(voxel.faceArea(0), voxel.faceArea(1), voxel.faceArea(2)),
+        reach_(kReach * voxel.meanEdge()),
+        range_(kRange * voxel.meanEdge()) {}
+
   std::optional<Jet> operator()(const std::vector<InterfaceFace>& faces, size_t at) {
     gather(faces, at);
     if (!(normals_.norm() > 0)) return std::nullopt;
@@ -80,7 +90,7 @@ class Fit {
     for (const Point& point : points_) {
       Row row;
       // By area, and none of a sheet that folds back.
-      row.weight = normal[point.axis] * point.sign;
+      row.weight = normal[point.axis] * point.sign * faceAreas_[point.axis];
       row.a = point.position.dot(u);
       row.b = point.position.dot(v);
       // By distance along the plane: to leave out the deeper ones at the rim would flatten the fit.
@@ -112,11 +122,11 @@ class Fit {
     const double metric = 1 + hu * hu + hv * hv;
     Jet jet;
     jet.mean = -((1 + hv * hv) * huu - 2 * hu * hv * huv + (1 + hu * hu) * hvv) /
-               (2 * metric * std::sqrt(metric) * kReach);
-    jet.gaussian = (huu * hvv - huv * huv) / (metric * metric * kReach * kReach);
+               (2 * metric * std::sqrt(metric) * reach_);
+    jet.gaussian = (huu * hvv - huv * huv) / (metric * metric * reach_ * reach_);
     jet.squares = jet.weights = 0;
     for (const Row& row : rows_) {
-      const double miss = kReach * (row.height - solution_.dot(row.terms));
+      const double miss = reach_ * (row.height - solution_.dot(row.terms));
       jet.squares += row.weight * miss * miss;
       jet.weights += row.weight;
     }
@@ -127,17 +137,20 @@ class Fit {
     points_.clear();
     normals_.setZero();
     const Eigen::Vector3d here = center(faces[at]);
+    const double alongX = range_ / edges_.x();
     const auto first =
-        std::lower_bound(faces.begin(), faces.end(), int(std::floor(here.x() - kRange)) - 1,
+        std::lower_bound(faces.begin(), faces.end(), int(std::floor(here.x() - alongX)) - 1,
                          [](const InterfaceFace& face, int x) { return face.lower.x() < x; });
-    for (auto face = first; face != faces.end() && face->lower.x() <= here.x() + kRange; ++face) {
-      const Eigen::Vector3d offset = center(*face) - here;
-      if (offset.squaredNorm() > kRange * kRange) continue;
-      points_.push_back({offset / kReach, face->axis, face->sign});
-      normals_[face->axis] += face->sign;
+    for (auto face = first; face != faces.end() && face->lower.x() <= here.x() + alongX; ++face) {
+      const Eigen::Vector3d offset = (center(*face) - here).cwiseProduct(edges_);
+      if (offset.squaredNorm() > range_ * range_) continue;
+      points_.push_back({offset / reach_, face->axis, face->sign});
+      normals_[face->axis] += face->sign * faceAreas_[face->axis];
     }
   }
 
+  Eigen::Vector3d edges_, faceAreas_;  // of a voxel, and of its faces across each axis
+  double reach_, range_;
   std::vector<Point> points_;
   std::vector<Row> rows_;
   Eigen::Vector3d normals_;
@@ -151,11 +164,12 @@ double deviation(double sum, double squares, double count) {
 
 }  // namespace
 
-std::optional<InterfaceCurvature> fitCurvature(const std::vector<InterfaceFace>& faces) {
+std::optional<InterfaceCurvature> fitCurvature(const std::vector<InterfaceFace>& faces,
+                                               const VoxelShape& voxel) {
   const size_t count = std::min(faces.size(), size_t(kMaxPoints));
   InterfaceCurvature result;
   double mean = 0, meanSquares = 0, gaussian = 0, gaussianSquares = 0, squares = 0, weights = 0;
-  Fit fit;
+  Fit fit(voxel);
   for (size_t i = 0; i < count; ++i) {
     const auto jet = fit(faces, (2 * i + 1) * faces.size() / (2 * count));
     if (!jet) continue;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/measure/detail/voxel_shape.h"
 #include "vdb_madf/measure/interface_curvature.h"
 
 namespace vdb_madf::detail {
@@ -20,7 +21,8 @@ struct InterfaceFace {
 };
 
 /// Fits a surface, height over the local tangent plane, to the faces within 5 voxels of a point along
-/// that plane (and 5.5 in space), and takes its curvatures at the point. Of a large interface 32
+/// that plane (and 5.5 in space; of unequal voxels the edges of a cube of equal volume), weighted by their areas, and
+/// takes its curvatures at the point. Of a large interface 32
 /// points are taken, evenly in the order of the faces. The mean curvature is positive where the
 /// first grain is convex: 1/r if it is a ball of radius r within the second.
 ///
@@ -32,6 +34,7 @@ struct InterfaceFace {
 /// with the paraboloid. |S p|^2 comes from the fit before, beginning with 0, and is 3/4 at most.
 /// \p faces ascending in x of `lower`. None if no point can be fitted: fewer than 10 faces, or all
 /// in a row.
-std::optional<InterfaceCurvature> fitCurvature(const std::vector<InterfaceFace>& faces);
+std::optional<InterfaceCurvature> fitCurvature(const std::vector<InterfaceFace>& faces,
+                                               const VoxelShape& voxel = {});
 
 }  // namespace vdb_madf::detail

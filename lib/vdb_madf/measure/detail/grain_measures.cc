@@ -17,9 +17,10 @@ namespace {
 constexpr double kVoxelMoment = 1.0 / 12;
 
 /// A solid ellipsoid of half axis a has the moment a^2 / 5 along it.
-Principal ellipsoidOf(const GrainSums& grain) {
+Principal ellipsoidOf(const GrainSums& grain, const VoxelShape& voxel) {
   std::array<double, 6> moments = covariance(grain.voxels, grain.sum, grain.products);
   for (size_t i = 0; i < 3; ++i) moments[i] += kVoxelMoment;
+  inSpace(voxel, moments);
   Principal principal = principalAxes(moments);
   for (double& value : principal.values) value = 2 * std::sqrt(5 * std::max(0.0, value));
   return principal;
@@ -35,7 +36,7 @@ bool touchesFace(const CoordBBox& box, const CoordBBox& domain) {
 
 std::vector<GrainMeasures> grainMeasures(const LabelSums& sums,
                                          const std::vector<BondMeasures>& bonds,
-                                         const Domain& domain) {
+                                         const Domain& domain, const VoxelShape& voxel) {
   std::vector<GrainMeasures> grains;
   std::unordered_map<int32_t, size_t> row;
   for (const GrainSums& from : sums.grains) {
@@ -47,10 +48,12 @@ std::vector<GrainMeasures> grainMeasures(const LabelSums& sums,
       grain.centroid[i] = sums.origin[i] + double(from.sum[size_t(i)]) / n;
     grain.box = from.box;
     grain.atDomainFace = domain.isBox() ? touchesFace(from.box, domain.box()) : from.atRegionWall;
-    grain.equivalentDiameter = std::cbrt(6 * n / M_PI);
+    grain.volume = n * voxel.volume();
+    grain.equivalentDiameter = std::cbrt(6 * grain.volume / M_PI);
     grain.freeArea = double(from.freeArea) / kAreaUnit;
-    grain.cutArea = double(from.cutFaces);
-    grain.ellipsoid = ellipsoidOf(from);
+    for (int axis = 0; axis < 3; ++axis)
+      grain.cutArea += double(from.cutFaces[size_t(axis)]) * voxel.faceArea(axis);
+    grain.ellipsoid = ellipsoidOf(from, voxel);
     row[grain.id] = grains.size();
     grains.push_back(grain);
   }

@@ -14,6 +14,6 @@ namespace vdb_madf::detail {
 /// From the sums and the bonds; the representatives are left to be filled in.
 std::vector<GrainMeasures> grainMeasures(const LabelSums& sums,
                                          const std::vector<BondMeasures>& bonds,
-                                         const Domain& domain);
+                                         const Domain& domain, const VoxelShape& voxel);
 
 }  // namespace vdb_madf::detail

@@ -45,13 +45,13 @@ GrainRepresentative deepestOf(const LabelPart& part, const LeafIndex& index, siz
 }  // namespace
 
 GrainRepresentatives grainRepresentatives(const LabelLeaves& labels, const Obstacles& obstacles,
-                                          Interrupter* interrupter) {
+                                          const VoxelWeights& weights, Interrupter* interrupter) {
   GrainRepresentatives result;
   const LeafIndex& index = labels.index();
   if (index.leafCount() == 0) return result;
   if (obstacles.open && index.voxelCount() == obstacles.domain.voxelCount()) return result;
   const VoxelArray<int32_t> distances =
-      squaredDistance(index, obstacles, VoxelWeights{}, interrupter).values;
+      squaredDistance(index, obstacles, weights, interrupter).values;
   using Best = std::unordered_map<int32_t, GrainRepresentative>;
   PerThread<Best> bests;
   parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {

@@ -16,7 +16,7 @@ namespace vdb_madf::detail {
 /// background, of several the first (x, then y, then z).
 struct GrainRepresentative {
   Coord voxel;
-  int32_t squaredRadius = 0;  ///< voxels squared
+  int32_t squaredRadius = 0;  ///< in the unit of the weights
 };
 
 /// By label.
@@ -25,7 +25,7 @@ using GrainRepresentatives = std::map<int32_t, GrainRepresentative>;
 /// Empty if there is no background. Computed from the labels alone.
 /// Memory while it runs: four bytes per voxel.
 GrainRepresentatives grainRepresentatives(const LabelLeaves& labels, const Obstacles& obstacles,
-                                          Interrupter* interrupter);
+                                          const VoxelWeights& weights, Interrupter* interrupter);
 
 /// The same of labels that were segmented without a filter, from the critical points. The deepest
 /// voxel p of a grain is one of them: were p in the cell of a ball s != p, then by

@@ -91,7 +91,7 @@ void add(const GrainSums& from, GrainSums& to) {
   for (size_t i = 0; i < 6; ++i) to.products[i] += from.products[i];
   to.box.expand(from.box);
   to.freeArea += from.freeArea;
-  to.cutFaces += from.cutFaces;
+  for (size_t i = 0; i < 3; ++i) to.cutFaces[i] += from.cutFaces[i];
   to.atRegionWall = to.atRegionWall || from.atRegionWall;
 }
 
@@ -107,10 +107,10 @@ class LeafCounter {
   std::unordered_map<int32_t, GrainSums> grains;
   std::unordered_map<std::pair<int32_t, int32_t>, BondSums, PairHash> bonds;
 
-  LeafCounter(const LabelLeaves& labels, const Domain& domain, bool open)
+  LeafCounter(const LabelLeaves& labels, const Domain& domain, bool open, const VoxelShape& voxel)
       : labels_(&labels),
         domain_(domain),
-        surface_(labels, open ? std::optional(domain) : std::nullopt),
+        surface_(labels, open ? std::optional(domain) : std::nullopt, voxel),
         origin_(labels.index().boundingBox().min()) {}
 
   void count(size_t leaf) {
@@ -125,7 +125,7 @@ class LeafCounter {
     for (const LeafSurface::Free& free : surface_.free()) {
       GrainSums& grain = grains[free.label];
       grain.freeArea += free.area;
-      grain.cutFaces += free.cutFaces;
+      for (size_t i = 0; i < 3; ++i) grain.cutFaces[i] += free.cutFaces[i];
     }
     for (const LeafSurface::Shared& shared : surface_.shared()) {
       BondSums& bond = bonds[{shared.first, shared.second}];
@@ -153,12 +153,12 @@ bool faceOrder(const InterfaceFace& a, const InterfaceFace& b) {
 }  // namespace
 
 LabelSums labelSums(const LabelLeaves& labels, const Domain& domain, bool open,
-                    Interrupter* interrupter) {
+                    const VoxelShape& voxel, Interrupter* interrupter) {
   LabelSums result;
   const LeafIndex& index = labels.index();
   if (index.leafCount() == 0) return result;
   result.origin = index.boundingBox().min();
-  PerThread<LeafCounter> counters([&] { return LeafCounter(labels, domain, open); });
+  PerThread<LeafCounter> counters([&] { return LeafCounter(labels, domain, open, voxel); });
   parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
     LeafCounter& counter = counters.local();
     for (size_t leaf = begin; leaf < end; ++leaf) counter.count(leaf);

@@ -20,8 +20,8 @@ struct GrainSums {
   std::array<int64_t, 3> sum{};       ///< of coordinates relative to LabelSums::origin
   std::array<int64_t, 6> products{};  ///< likewise: xx, yy, zz, xy, xz, yz
   CoordBBox box;
-  int64_t freeArea = 0;  ///< in kAreaUnit
-  int64_t cutFaces = 0;
+  int64_t freeArea = 0;               ///< in kAreaUnit
+  std::array<int64_t, 3> cutFaces{};  ///< across each axis
   bool atRegionWall = false;  ///< the domain is a region, and a face neighbor lies outside of it
 };
 
@@ -42,6 +42,6 @@ struct LabelSums {
 /// per bond and per face of a bond, for each thread. `open`: what lies outside the domain is no
 /// background but unknown.
 LabelSums labelSums(const LabelLeaves& labels, const Domain& domain, bool open,
-                    Interrupter* interrupter);
+                    const VoxelShape& voxel, Interrupter* interrupter);
 
 }  // namespace vdb_madf::detail

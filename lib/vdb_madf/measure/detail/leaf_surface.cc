@@ -4,6 +4,7 @@
 #include "vdb_madf/measure/detail/leaf_surface.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 
@@ -15,6 +16,11 @@ namespace {
 // is curved, and 2.5 voxels are enough; interfaces are flat but for their rims.
 constexpr int kFreeReach = 5;    // 2.5 voxels
 constexpr int kSharedReach = 8;  // 4 voxels
+// What the window allows (drawn in leaf_surface.h).
+constexpr int kMostFreeReach = 15, kMostSharedReach = 12;
+
+/// All x of the window.
+constexpr WindowRange kAll{WindowRows::kBegin, WindowRows::kEnd};
 
 /// How far apart two voxels of two grains are that make a pair.
 constexpr std::array<int, 3> kSteps = {1, 2, 4};
@@ -23,8 +29,18 @@ constexpr std::array<int, 3> kSteps = {1, 2, 4};
 /// Chosen on discs.
 constexpr double kGroove = 0.4;
 
-// Lower voxels of the faces in reach of what is measured, along an axis (drawn in leaf_surface.h).
-constexpr int kFreeBegin = -3, kFreeLast = 9, kSharedBegin = -4, kSharedLast = 12;
+/// The lower voxels of all faces in reach of something centered from `first` / 2 to `last` / 2.
+FaceRange rangeOf(const NormalReach& reach, int first, int last) {
+  FaceRange range;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const int radius = reach.radius(int(axis));
+    // Centers, doubled, are those of lower voxels along the face, and 1 more across it.
+    const int least = first - radius + 1, most = last + radius - 1;
+    range.begin[axis] = (least - 1) >> 1;
+    range.last[axis] = most >> 1;
+  }
+  return range;
+}
 
 /// The voxels that lie 1, 2 or 4 above one of a set in the leaf.
 void reachUpwards(const WindowRows& set, WindowRows& reached) {
@@ -43,10 +59,21 @@ void reachUpwards(const WindowRows& set, WindowRows& reached) {
 
 }  // namespace
 
+LeafSurface::LeafSurface(const LabelLeaves& labels, const std::optional<Domain>& domain,
+                         const VoxelShape& voxel)
+    : labels_(&labels),
+      window_(labels, voxel.isCube() ? WindowRange() : kAll),
+      domain_(domain),
+      freeReach_(kFreeReach, kMostFreeReach, voxel),
+      sharedReach_(kSharedReach, kMostSharedReach, voxel),
+      freeRange_(rangeOf(freeReach_, -1, 15)),
+      sharedRange_(rangeOf(sharedReach_, 0, 18)),
+      faces_(voxel) {}
+
 /// Whether any of the voxels around the leaf lie outside the domain.
 bool LeafSurface::findOutside() {
-  const CoordBBox window(origin_.offsetBy(WindowRows::kBeginX),
-                         origin_.offsetBy(WindowRows::kEndX - 1));
+  const CoordBBox window(origin_.offsetBy(window_.range().begin),
+                         origin_.offsetBy(window_.range().end - 1));
   if (domain_->isBox() && domain_->box().isInside(window)) return false;
   outside_.rows.fill(0);
   bool any = false;
@@ -55,7 +82,7 @@ bool LeafSurface::findOutside() {
         origin_.offsetBy(8 * (side / 9 - 1), 8 * (side / 3 % 3 - 1), 8 * (side % 3 - 1));
     const LeafIndex::Mask beyond = without(kFullMask, insideMask(*domain_, leaf));
     if (!anyVoxel(beyond)) continue;
-    addLeaf(beyond, side, outside_);
+    addLeaf(beyond, side, window_.range(), outside_);
     any = true;
   }
   return any;
@@ -74,15 +101,16 @@ void LeafSurface::measureFree(int32_t label) {
   for (int side = 0; side < 6; ++side)
     addTargets(own_, background_, side >> 1, side & 1 ? -1 : 1, side, targets_);
   if (!targets_.empty()) {
-    faces_.collect(own_, background_, kFreeBegin, kFreeLast);
+    faces_.collect(own_, background_, freeRange_);
     free_.back().area =
-        faces_.area(targets_.data(), targets_.data() + targets_.size(), kFreeReach, true);
+        faces_.area(targets_.data(), targets_.data() + targets_.size(), freeReach_, true);
   }
   if (!atBorder_) return;
-  targets_.clear();
-  for (int side = 0; side < 6; ++side)
+  for (int side = 0; side < 6; ++side) {
+    targets_.clear();
     addTargets(own_, outside_, side >> 1, side & 1 ? -1 : 1, side, targets_);
-  free_.back().cutFaces = int64_t(targets_.size());
+    free_.back().cutFaces[size_t(side >> 1)] += int64_t(targets_.size());
+  }
 }
 
 /// All bonds with a voxel of a label below one of another, near enough for a pair.
@@ -108,7 +136,7 @@ void LeafSurface::measureBond(int32_t label, int32_t other) {
   bonds_.emplace_back(bond);
   const WindowRows& first = label < other ? own_ : other_;
   const WindowRows& second = label < other ? other_ : own_;
-  faces_.collect(first, second, kSharedBegin, kSharedLast);
+  faces_.collect(first, second, sharedRange_);
   Shared shared;
   shared.first = bond.first;
   shared.second = bond.second;
@@ -119,7 +147,7 @@ void LeafSurface::measureBond(int32_t label, int32_t other) {
       addTargets(second, first, axis, kSteps[i], 2 * axis + 1, targets_);
     }
     shared.areas[i] =
-        faces_.area(targets_.data(), targets_.data() + targets_.size(), kSharedReach, false);
+        faces_.area(targets_.data(), targets_.data() + targets_.size(), sharedReach_, false);
     if (kSteps[i] > 1) continue;
     for (const SurfaceTarget& target : targets_) {
       InterfaceFace face;
@@ -149,14 +177,16 @@ void LeafSurface::measure(size_t leaf) {
   }
 }
 
-double bondArea(const std::array<int64_t, 3>& areas) {
-  const double one = double(areas[0]) / kAreaUnit, two = double(areas[1]) / (2 * kAreaUnit),
-               four = double(areas[2]) / (4 * kAreaUnit);
+double bondArea(const std::array<int64_t, 3>& areas, const VoxelShape& voxel) {
+  const double meanFace = voxel.meanEdge() * voxel.meanEdge();
+  const double unit = kAreaUnit * meanFace;
+  const double one = double(areas[0]) / unit, two = double(areas[1]) / (2 * unit),
+               four = double(areas[2]) / (4 * unit);
   // Two more voxels between the pairs widen the rim of a disc by so much.
   const double widening = (four - two) / (2 * std::sqrt(M_PI * std::max(two, 1.0)));
   const double groove = std::clamp(widening / kGroove, 0.0, 1.0);
   const double atZero = (1 - groove) * (2 * one - two) + groove * (2 * two - four);
-  return std::clamp(atZero, 0.25 * one, 1.1 * one);
+  return meanFace * std::clamp(atZero, 0.25 * one, 1.1 * one);
 }
 
 }  // namespace vdb_madf::detail

@@ -13,6 +13,7 @@
 #include "vdb_madf/labels/detail/label_window.h"
 #include "vdb_madf/measure/detail/fit_curvature.h"
 #include "vdb_madf/measure/detail/surface_faces.h"
+#include "vdb_madf/measure/detail/voxel_shape.h"
 
 namespace vdb_madf::detail {
 
@@ -35,19 +36,23 @@ namespace vdb_madf::detail {
 ///                     [-------------]                   0 .. 7: the leaf
 ///               [-----------------------]               -3 .. 9: free faces
 ///             [-------------------------------]         -4 .. 12: shared faces
-///             [---------------------------------]       -4 .. 13: WindowRows, x
-///     [---------------------------------------------]   -8 .. 15: WindowRows, y and z
+///             [---------------------------------]       -4 .. 13: of x (WindowRange)
+///     [---------------------------------------------]   -8 .. 15: WindowRows
 ///
 /// Faces and pairs start at a voxel of the leaf. Free faces are centered at -1/2 .. 7 1/2 and reach
 /// 2 1/2 voxels; pairs, up to 4 apart, are centered at 0 .. 9 and reach 4. The bars "free" and
-/// "shared" hold the lower voxels of the faces within that reach (kFreeBegin ... of
-/// leaf_surface.cc), the window along x also the upper ones. Along y and z it holds the 27 leaves.
+/// "shared" hold the lower voxels of the faces within that reach, the window along x also the upper ones. Along y and z it holds the 27 leaves.
+///
+/// That is for cubes. Where voxels are longer along one axis, surfaces are only known by their steps
+/// along it, so the reaches are in longest edges of a voxel, and span more voxels along the other
+/// axes: up to 7 1/2 for free faces, 6 for shared ones, which is all that the 27 leaves allow.
 class LeafSurface {
  public:
   struct Free {
     int32_t label = 0;
-    int64_t area = 0;      ///< between grain and background, in kAreaUnit
-    int64_t cutFaces = 0;  ///< voxel faces on the border of the domain
+    int64_t area = 0;  ///< between grain and background, in kAreaUnit
+    /// Voxel faces on the border of the domain, across each axis.
+    std::array<int64_t, 3> cutFaces{};
   };
   struct Shared {
     int32_t first = 0, second = 0;  ///< labels, first < second
@@ -58,8 +63,8 @@ class LeafSurface {
   };
 
   /// Faces on the border of `domain` are no surface but counted apart; none: there are no such.
-  LeafSurface(const LabelLeaves& labels, const std::optional<Domain>& domain)
-      : labels_(&labels), window_(labels), domain_(domain) {}
+  LeafSurface(const LabelLeaves& labels, const std::optional<Domain>& domain,
+              const VoxelShape& voxel);
 
   /// Free faces belong to the leaf of their labelled voxel, shared ones and pairs to that of their
   /// lower voxel.
@@ -78,6 +83,8 @@ class LeafSurface {
   const LabelLeaves* labels_;
   LabelWindow window_;
   std::optional<Domain> domain_;
+  NormalReach freeReach_, sharedReach_;
+  FaceRange freeRange_, sharedRange_;  // of the faces in reach of what is measured
 
   Coord origin_;
   bool atBorder_ = false;                       // of the domain
@@ -90,7 +97,8 @@ class LeafSurface {
   std::vector<Shared> shared_;
 };
 
-/// The area of a bond, in voxel faces, from the sums of Shared::areas:
+/// The area of a bond from the sums of Shared::areas, in units of the mean face of a voxel (that of
+/// a cube of equal volume):
 ///   As = area of the pairs of voxels s apart, per crossing,
 ///   w = (A4 - A2) / (2 sqrt(pi max(A2, 1))),  g = clamp(w / 0.4, 0, 1),
 ///   A0 = (1 - g) (2 A1 - A2) + g (2 A2 - A4),  the result = clamp(A0, A1 / 4, 1.1 A1).
@@ -100,6 +108,6 @@ class LeafSurface {
 /// not depend on where between two layers of voxels an interface lies that runs along them (both
 /// grains widening alike). The bounds matter for bonds of a few faces and grains thinner than four
 /// voxels.
-double bondArea(const std::array<int64_t, 3>& areas);
+double bondArea(const std::array<int64_t, 3>& areas, const VoxelShape& voxel);
 
 }  // namespace vdb_madf::detail

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "vdb_madf/measure/detail/voxel_shape.h"
 #include "vdb_madf/measure/measure_grains.h"
 
 namespace vdb_madf::detail {
@@ -40,6 +41,14 @@ inline std::array<double, 6> covariance(int64_t n, const std::array<int64_t, 3>&
   return {of(products[0], sum[0], sum[0]), of(products[1], sum[1], sum[1]),
           of(products[2], sum[2], sum[2]), of(products[3], sum[0], sum[1]),
           of(products[4], sum[0], sum[2]), of(products[5], sum[1], sum[2])};
+}
+
+/// Makes a covariance of places in voxels one of places in space.
+inline void inSpace(const VoxelShape& voxel, std::array<double, 6>& tensor) {
+  const openvdb::Vec3d& e = voxel.edges;
+  const double factors[6] = {e[0] * e[0], e[1] * e[1], e[2] * e[2],
+                             e[0] * e[1], e[0] * e[2], e[1] * e[2]};
+  for (size_t i = 0; i < 6; ++i) tensor[i] *= factors[i];
 }
 
 }  // namespace vdb_madf::detail

@@ -45,6 +45,7 @@ SampleMeasures sampleMeasures(const std::vector<GrainMeasures>& grains,
   std::map<int32_t, double> diameters;
   for (const GrainMeasures& grain : grains) {
     sample.objectVoxels += grain.voxels;
+    sample.objectVolume += grain.volume;
     sample.freeArea += grain.freeArea;
     diameters[grain.id] = grain.equivalentDiameter;
     grainFabric.add(grain.ellipsoid.axes[0], double(grain.voxels));
@@ -63,7 +64,7 @@ SampleMeasures sampleMeasures(const std::vector<GrainMeasures>& grains,
   if (!grains.empty()) sample.meanCoordination = 2.0 * double(bonds.size()) / double(grains.size());
   if (sample.objectVoxels > 0) {
     sample.objectFraction = double(sample.objectVoxels) / double(domain.voxelCount());
-    sample.specificSurface = sample.freeArea / double(sample.objectVoxels);
+    sample.specificSurface = sample.freeArea / sample.objectVolume;
   }
   sample.grainFabric = grainFabric.mean();
   sample.bondFabric = bondFabric.mean();
