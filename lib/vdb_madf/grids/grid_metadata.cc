@@ -39,13 +39,13 @@ std::optional<Domain> storedDomain(const openvdb::MetaMap& metadata) {
     if (box.min()[axis] < -kMaxCoordinate || box.max()[axis] > kMaxCoordinate)
       throw InvalidInput("metadata madf_domain_min or madf_domain_max lies beyond +-" +
                          std::to_string(kMaxCoordinate));
-  const openvdb::Metadata::ConstPtr named = metadata[detail::kRegionKey];
-  if (!named) return box;
-  const auto* region = dynamic_cast<const detail::RegionMetadata*>(named.get());
+  const std::string name = regionName(metadata);
+  if (name.empty()) return box;
+  const auto region = detail::regionOf(metadata);
   if (!region)
-    throw InvalidInput("the domain is the region in grid '" + named->str() +
+    throw InvalidInput("the domain is the region in grid '" + name +
                        "', which was not read with it: keep them in one file");
-  return Domain(region->region(), box);
+  return Domain(region, box);
 }
 
 void setDomain(openvdb::MetaMap& metadata, const Domain& domain) {

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <openvdb/MetaMap.h>
 #include <openvdb/Metadata.h>
 
 #include <memory>
@@ -28,5 +29,12 @@ class RegionMetadata : public openvdb::StringMetadata {
  private:
   std::shared_ptr<const MaskTree> region_;
 };
+
+/// The region among the metadata; null if there is none, or its voxels were not read with it.
+inline std::shared_ptr<const MaskTree> regionOf(const openvdb::MetaMap& metadata) {
+  const openvdb::Metadata::ConstPtr named = metadata[kRegionKey];
+  const auto* region = dynamic_cast<const RegionMetadata*>(named.get());
+  return region ? region->region() : nullptr;
+}
 
 }  // namespace vdb_madf::detail

@@ -17,12 +17,6 @@ namespace {
 
 using openvdb::GridBase;
 
-std::shared_ptr<const MaskTree> regionOf(const GridBase& grid) {
-  const openvdb::Metadata::ConstPtr named = grid[kRegionKey];
-  const auto* region = dynamic_cast<const RegionMetadata*>(named.get());
-  return region ? region->region() : nullptr;
-}
-
 bool sameVoxels(const MaskTree& a, const MaskTree& b) {
   return &a == &b || Domain(a) == Domain(b);
 }
