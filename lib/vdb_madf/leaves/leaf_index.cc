@@ -110,10 +110,7 @@ LeafIndex::LeafIndex(const MaskGrid& object) {
   masks_.resize(leaves.size());
   for (size_t i = 0; i < leaves.size(); ++i) {
     origins_[i] = leaves[i].origin;
-    masks_[i] = detail::kFullMask;
-    if (leaves[i].leaf)
-      for (int x = 0; x < 8; ++x)
-        masks_[i][x] = leaves[i].leaf->getValueMask().template getWord<uint64_t>(x);
+    masks_[i] = leaves[i].leaf ? detail::maskOf(*leaves[i].leaf) : detail::kFullMask;
   }
   finish();
 }

@@ -24,8 +24,7 @@ std::string toString(const CoordBBox& box) {
 bool leavesRegion(const LeafIndex& index, const Domain& domain) {
   for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
     const LeafIndex::Mask inside = detail::insideMask(domain, index.origin(leaf));
-    for (size_t x = 0; x < 8; ++x)
-      if (index.mask(leaf)[x] & ~inside[x]) return true;
+    if (detail::anyVoxel(detail::without(index.mask(leaf), inside))) return true;
   }
   return false;
 }

@@ -91,8 +91,7 @@ void keepSeeded(MaskGrid& mask, const MaskGrid& seeds, Interrupter* interrupter)
   for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
     const MaskLeaf* const node = accessor.probeConstLeaf(index.origin(leaf));
     if (!node) continue;
-    LeafIndex::Mask voxels;
-    for (openvdb::Index x = 0; x < 8; ++x) voxels[x] = node->getValueMask().getWord<Word>(x);
+    const LeafIndex::Mask voxels = detail::maskOf(*node);
     for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece)
       if (detail::meet(piece->mask, voxels)) kept[piece->component] = true;
   }

@@ -82,10 +82,8 @@ LeafIndex::Mask insideMask(const Domain& domain, const Coord& origin) {
   }
   const MaskTree& tree = *domain.region();
   const MaskTree::LeafNodeType* const leaf = tree.probeConstLeaf(origin);
-  if (!leaf) return tree.isValueOn(origin) ? kFullMask : LeafIndex::Mask{};
-  LeafIndex::Mask mask;
-  for (openvdb::Index x = 0; x < 8; ++x) mask[x] = leaf->getValueMask().getWord<uint64_t>(x);
-  return mask;
+  if (leaf) return maskOf(*leaf);
+  return tree.isValueOn(origin) ? kFullMask : LeafIndex::Mask{};
 }
 
 LeafIndex::Mask innerMask(const Domain& domain, const Coord& origin) {

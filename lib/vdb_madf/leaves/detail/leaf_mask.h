@@ -18,6 +18,13 @@ constexpr uint64_t kFirstY = 0xffull, kLastY = kFirstY << 56;
 /// All voxels of a leaf.
 constexpr LeafIndex::Mask kFullMask{~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull, ~0ull};
 
+/// The active voxels of a leaf node.
+inline LeafIndex::Mask maskOf(const MaskTree::LeafNodeType& leaf) {
+  LeafIndex::Mask mask;
+  for (openvdb::Index x = 0; x < 8; ++x) mask[x] = leaf.getValueMask().getWord<uint64_t>(x);
+  return mask;
+}
+
 inline bool anyVoxel(const LeafIndex::Mask& mask) {
   uint64_t any = 0;
   for (const uint64_t word : mask) any |= word;

@@ -10,6 +10,7 @@
 
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/leaf_index.h"
 
 namespace vdb_madf::detail {
@@ -52,9 +53,10 @@ std::vector<Piece> piecesOf(const MaskTree& region, int axis) {
 
 /// The eight slices of a leaf across an axis, a bit for each of its 64 rows along it.
 std::array<uint64_t, 8> slicesOf(const Leaf& leaf, int axis) {
+  const LeafIndex::Mask mask = maskOf(leaf);
   std::array<uint64_t, 8> slices{};
   for (uint32_t x = 0; x < 8; ++x) {
-    const auto word = leaf.getValueMask().getWord<uint64_t>(x);
+    const uint64_t word = mask[x];
     if (axis == 0) slices[x] = word;
     for (uint32_t i = 0; axis == 1 && i < 8; ++i) slices[i] |= (word >> 8 * i & 0xff) << 8 * x;
     for (uint32_t i = 0; axis == 2 && i < 8; ++i)
