@@ -7,6 +7,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/detail/active_tiles.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 
 namespace vdb_madf {
@@ -17,18 +18,6 @@ struct SourceLeaf {
   Coord origin;
   const MaskTree::LeafNodeType* leaf;  // null: part of an active tile
 };
-
-/// Calls f(box) for every active tile.
-template <typename F>
-void forEachActiveTile(const MaskTree& tree, const F& f) {
-  auto tile = tree.cbeginValueOn();
-  tile.setMaxDepth(MaskTree::ValueOnCIter::LEAF_DEPTH - 1);
-  for (; tile; ++tile) {
-    CoordBBox box;
-    tile.getBoundingBox(box);
-    f(box);
-  }
-}
 
 void checkLeafCount(size_t leaves) {
   if (leaves > kMaxLeaves)
@@ -52,7 +41,7 @@ void checkExtent(const CoordBBox& box) {
 /// The active bounding box; checks the limits before a tile is cut into leaves.
 CoordBBox checkedBoundingBox(const MaskTree& tree) {
   size_t leaves = tree.leafCount();
-  forEachActiveTile(tree, [&](const CoordBBox& box) { leaves += box.volume() / 512; });
+  detail::forEachActiveTile(tree, [&](const CoordBBox& box) { leaves += box.volume() / 512; });
   checkLeafCount(leaves);
   CoordBBox box;
   if (!tree.evalActiveVoxelBoundingBox(box)) return {};
@@ -73,7 +62,7 @@ std::vector<SourceLeaf> sortedLeaves(const MaskTree& tree) {
   std::vector<SourceLeaf> leaves;
   for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf)
     if (!leaf->isEmpty()) leaves.push_back({leaf->origin(), &*leaf});
-  forEachActiveTile(tree, [&](const CoordBBox& box) {
+  detail::forEachActiveTile(tree, [&](const CoordBBox& box) {
     for (int x = box.min().x(); x <= box.max().x(); x += 8)
       for (int y = box.min().y(); y <= box.max().y(); y += 8)
         for (int z = box.min().z(); z <= box.max().z(); z += 8)

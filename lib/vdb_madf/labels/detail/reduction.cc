@@ -9,6 +9,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/detail/active_tiles.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/reduced_labels.h"
@@ -37,9 +38,7 @@ class RegionReduction {
   explicit RegionReduction(int factor) : factor_(factor) {}
 
   Domain reduce(const MaskTree& region) {
-    auto tile = region.cbeginValueOn();
-    tile.setMaxDepth(tile.getLeafDepth() - 1);
-    for (; tile; ++tile) addBox(tile.getBoundingBox());
+    forEachActiveTile(region, [&](const CoordBBox& box) { addBox(box); });
     for (auto leaf = region.cbeginLeaf(); leaf; ++leaf)
       for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel)
         add(detail::floorDiv(voxel.getCoord(), factor_), 1);

@@ -10,6 +10,7 @@
 
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/grids/detail/active_tiles.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/leaf_index.h"
 
@@ -36,15 +37,11 @@ std::vector<Piece> piecesOf(const MaskTree& region, int axis) {
     const Coord& origin = leaf->origin();
     pieces.push_back({{origin[a], origin[b]}, origin[axis], origin[axis] + 8, &*leaf});
   }
-  auto tile = region.cbeginValueOn();
-  tile.setMaxDepth(tile.getLeafDepth() - 1);
-  for (; tile; ++tile) {
-    CoordBBox box;
-    tile.getBoundingBox(box);
+  forEachActiveTile(region, [&](const CoordBBox& box) {
     for (int i = box.min()[a]; i <= box.max()[a]; i += 8)
       for (int j = box.min()[b]; j <= box.max()[b]; j += 8)
         pieces.push_back({{i, j}, box.min()[axis], box.max()[axis] + 1, nullptr});
-  }
+  });
   parallelSort(pieces.begin(), pieces.end(), [](const Piece& p, const Piece& q) {
     return std::tie(p.pencil, p.begin) < std::tie(q.pencil, q.begin);
   });

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/grids/detail/active_tiles.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
 #include "vdb_madf/images/detail/slabs.h"
 
@@ -83,9 +84,8 @@ double farthestFromAxis(ImageReader& image, const CylinderAxis& axis, Interrupte
 
 double farthestFromAxis(const MaskTree& tree, const CylinderAxis& axis) {
   double result = -1;
-  auto tile = tree.cbeginValueOn();
-  tile.setMaxDepth(tile.getLeafDepth() - 1);
-  for (; tile; ++tile) result = std::max(result, axis.farthest(tile.getBoundingBox()));
+  forEachActiveTile(tree,
+                    [&](const CoordBBox& box) { result = std::max(result, axis.farthest(box)); });
   for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
     if (axis.farthest(leaf->getNodeBoundingBox()) <= result) continue;
     for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel)

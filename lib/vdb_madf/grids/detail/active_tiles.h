@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include "vdb_madf/grids/grid_types.h"
+
+namespace vdb_madf::detail {
+
+/// f(box) for every active tile of a mask.
+template <typename F>
+void forEachActiveTile(const MaskTree& tree, const F& f) {
+  auto tile = tree.cbeginValueOn();
+  tile.setMaxDepth(tile.getLeafDepth() - 1);
+  for (; tile; ++tile) f(tile.getBoundingBox());
+}
+
+}  // namespace vdb_madf::detail
