@@ -145,7 +145,8 @@ std::optional<ScanPart> partOf(openvdb::GridBase& grid, const std::string& path,
   if (!options.region.any()) return std::nullopt;
   detail::ScanExtent extent;
   extent.domain = storedDomain(grid);
-  if (options.region.cylinder) {
+  const auto& cylinder = options.region.cylinder;
+  if (cylinder && !(cylinder->radius && extent.domain)) {  // else nothing depends on its voxels
     const MaskGrid::Ptr voxels = objectMask(grid);
     extent.box = voxels->evalActiveVoxelBoundingBox();
     extent.farthestFromAxis = [voxels](const detail::CylinderAxis& axis) {
