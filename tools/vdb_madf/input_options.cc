@@ -7,6 +7,7 @@
 
 #include "outputs.h"
 #include "parse.h"
+#include "vdb_madf/base/lower_case.h"
 #include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_keys.h"

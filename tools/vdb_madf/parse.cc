@@ -12,6 +12,7 @@
 
 #include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/base/lower_case.h"
 #include "wrong_usage.h"
 
 namespace vdb_madf::tools {
@@ -154,11 +155,6 @@ int64_t parseCount(const std::string& text, const std::string& option) {
   if (error != std::errc() || end != text.data() + text.size() || count < 0)
     throw WrongUsage(option + " " + text + ": must be a whole number, 0 or more");
   return count;
-}
-
-std::string lowerCase(std::string text) {
-  for (char& c : text) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return text;
 }
 
 Boundary parseBoundary(const std::string& boundary) {

@@ -36,8 +36,6 @@ int64_t parseMemory(const std::string& text);
 
 /// "auto", "open" or "closed"; does not throw.
 Boundary parseBoundary(const std::string& text);
-/// A to Z as a to z.
-std::string lowerCase(std::string text);
 /// The parts between separators, also empty ones; at least one.
 std::vector<std::string> split(const std::string& text, char separator);
 

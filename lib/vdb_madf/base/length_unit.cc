@@ -8,6 +8,7 @@
 #include <map>
 
 #include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/lower_case.h"
 
 namespace vdb_madf {
 
@@ -55,7 +56,7 @@ std::optional<double> unitsPerMetre(const std::string& unit) {
                                                        {"m", 1},
                                                        {"meter", 1},
                                                        {"metre", 1}};
-  std::string name = detail::lowerCase(detail::trimmed(unit));
+  std::string name = lowerCase(detail::trimmed(unit));
   auto found = kUnits.find(name);
   if (found == kUnits.end() && name.size() > 2 && name.back() == 's') {
     name.pop_back();

@@ -39,12 +39,6 @@ std::string trimmed(const std::string& text) {
   return text.substr(begin, text.find_last_not_of(kWhite) - begin + 1);
 }
 
-std::string lowerCase(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
-  return text;
-}
-
 double decimalOf(float value) {
   return reals(shortestDecimal(value)).value_or(std::vector<double>{double(value)}).front();
 }

@@ -13,8 +13,6 @@ namespace vdb_madf::detail {
 
 /// Without the white space at both ends.
 std::string trimmed(const std::string& text);
-/// ASCII letters only.
-std::string lowerCase(std::string text);
 /// Text of a file in quotes for a message: printable, one line, clipped to 60 characters.
 std::string quoted(const std::string& text);
 /// All of the text as numbers between white space, independent of the locale.

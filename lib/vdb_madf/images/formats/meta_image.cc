@@ -9,6 +9,7 @@
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/length_unit.h"
+#include "vdb_madf/base/lower_case.h"
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/same_file.h"

@@ -11,6 +11,7 @@
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/length_unit.h"
+#include "vdb_madf/base/lower_case.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/key_value_header.h"
 #include "vdb_madf/images/detail/stored_samples.h"
