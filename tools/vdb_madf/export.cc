@@ -73,11 +73,6 @@ void say(const Options& o, const Common& common, const std::string& text) {
   if (!common.quiet) std::cout << o.out << ": " << text << "\n";
 }
 
-CoordBBox boxOf(const Int32Grid& labels) {
-  const auto domain = storedDomain(labels);
-  return domain ? domain->box() : labels.evalActiveVoxelBoundingBox();
-}
-
 /// 1 unless the options ask for a smaller volume.
 int reductionOf(const Options& o, const Int32Grid& labels) {
   if (o.reduce > 0) return o.reduce;

@@ -40,23 +40,25 @@ void checkVolumeEnding(const std::string& path) {
 void writeGridAsImage(const std::string& path, const openvdb::GridBase& grid,
                       const std::optional<SampleType>& type, const std::string& source,
                       const Common& common) {
-  std::optional<CoordBBox> box;
-  if (const auto domain = storedDomain(grid)) {
-    box = domain->box();
-  } else {
-    box = grid.evalActiveVoxelBoundingBox();
+  const CoordBBox box = boxOf(grid);
+  if (!storedDomain(grid)) {
     if (grid.activeVoxelCount() == 0)
       throw InvalidInput(source + ": grid '" + grid.getName() +
                          "' is empty and has no domain: there is nothing to write; give --domain");
     if (!common.quiet)
       std::cout << path
                 << ": no known domain, so the active bounding box is written; its origin is "
-                << box->min() << "\n";
+                << box.min() << "\n";
   }
   const SampleType chosen = type.value_or(naturalType(grid, path));
-  writeImage(path, grid, *box, chosen, common.progress);
+  writeImage(path, grid, box, chosen, common.progress);
   noteLostEdges(path, hasCubicVoxels(grid), storedVoxelSize(grid), common);
-  reportImage(path, "grid '" + grid.getName() + "'", box->dim(), chosen, common);
+  reportImage(path, "grid '" + grid.getName() + "'", box.dim(), chosen, common);
+}
+
+CoordBBox boxOf(const openvdb::GridBase& grid) {
+  const auto domain = storedDomain(grid);
+  return domain ? domain->box() : grid.evalActiveVoxelBoundingBox();
 }
 
 void noteLostEdges(const std::string& path, bool areCubes, const std::optional<VoxelSize>& size,

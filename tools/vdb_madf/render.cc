@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "command.h"
+#include "grid_image.h"
 #include "input_options.h"
 #include "outputs.h"
 #include "vdb_madf/base/errors.h"
@@ -57,8 +58,7 @@ std::vector<PicturePanel> drawPanels(const Options& o, const Int32Grid& labels,
 void run(const Options& o, const Common& common) {
   checkWritable(o.out);
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
-  const auto domain = storedDomain(*labels);
-  const CoordBBox box = domain ? domain->box() : labels->evalActiveVoxelBoundingBox();
+  const CoordBBox box = boxOf(*labels);
   if (box.empty())
     throw InvalidInput(o.input.path + ": has no labels and no domain: nothing to show");
 
