@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <utility>
 
 #include "support/by_rank.h"
 #include "support/oracle.h"
@@ -21,6 +22,16 @@ using namespace vdb_madf::test;
 DenseVolume<int64_t> closedDistance(const ObjectVolume& object) {
   const LeafIndex index(*toMask(object));
   return dense(index, squaredDistance(index, {}).values, object.box());
+}
+
+/// A row of voxels along an axis, and an open domain with background before its first voxel alone.
+std::pair<ObjectVolume, CoordBBox> openRow(int axis, int length) {
+  Coord dim(1);
+  dim[axis] = length;
+  const ObjectVolume object(boxAt(Coord(0), dim), 1);
+  CoordBBox domain = object.box();
+  --domain.min()[axis];
+  return {object, domain};
 }
 
 }  // namespace
@@ -62,11 +73,7 @@ TEST_CASE("squared_distance: a long row keeps its 32 bits", "[squared_distance][
   // Open, with background at one end only: D = n^2 at the other end, at the longest extent.
   constexpr int kLength = kMaxExtent;
   for (int axis = 0; axis < 3; ++axis) {
-    Coord dim(1);
-    dim[axis] = kLength;
-    const ObjectVolume object(boxAt(Coord(0), dim), 1);
-    CoordBBox domain = object.box();
-    --domain.min()[axis];
+    const auto [object, domain] = openRow(axis, kLength);
     const LeafIndex index(*toMask(object));
     const SquaredDistance distance = squaredDistance(index, {true, domain});
     CHECK(distance.largest == int64_t(kLength) * kLength);
@@ -80,11 +87,7 @@ TEST_CASE("squared_distance: weights are used up to 32 bits and refused beyond",
   // Open, with background at one end only, along each axis: D = w n^2 at the other end.
   constexpr int kLength = 1000;
   for (int axis = 0; axis < 3; ++axis) {
-    Coord dim(1);
-    dim[axis] = kLength;
-    const ObjectVolume object(boxAt(Coord(0), dim), 1);
-    CoordBBox domain = object.box();
-    --domain.min()[axis];
+    const auto [object, domain] = openRow(axis, kLength);
     const LeafIndex index(*toMask(object));
     // w (1000 + 14)^2 + 2 (1 + 14)^2 < 2^31, just so.
     constexpr int kLargest = 2088;

@@ -3,7 +3,11 @@
 
 #include "vdb_madf/pictures/label_slices.h"
 
+#include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <utility>
 
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
@@ -20,68 +24,58 @@ Rgb expected(const LabelMap& voxels, const GrainColors& colors, const Coord& p, 
   return found == voxels.end() ? empty : colors.colorOf(found->second);
 }
 
+const CoordBBox kBox(Coord(-3, 2, -9), Coord(9, 12, 4));  // 13, 11, 14 voxels
+
+/// Pictures of the three planes through the middle of kBox, of voxels with these edges.
+void requireMiddlePlanes(const LabelSlices& slices, const LabelMap& voxels,
+                         const GrainColors& colors, const std::array<double, 3>& edges,
+                         double scale) {
+  const Coord middle(3, 7, -3);
+  CHECK(slices.voxelsPerPixel == scale);
+  const int axes[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+  for (size_t i = 0; i < 3; ++i) {
+    const int right = axes[i][0], down = axes[i][1];
+    const Picture& picture = slices.pictures[i];
+    const auto pixels = [&](int axis) {
+      return int(std::ceil(kBox.extents()[axis] * edges[size_t(axis)] / scale));
+    };
+    REQUIRE(picture.width == pixels(right));
+    REQUIRE(picture.height == pixels(down));
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = 0; x < picture.width; ++x) {
+        const int column = int(x * scale / edges[size_t(right)]),
+                  row = int(y * scale / edges[size_t(down)]);
+        Coord p = middle;
+        p[right] = kBox.min()[right] + column;
+        p[down] = down == 2 ? kBox.max().z() - row : kBox.min()[down] + row;
+        REQUIRE(picture.at(x, y) == expected(voxels, colors, p, Rgb{18, 20, 26}));
+      }
+  }
+}
+
 }  // namespace
 
 TEST_CASE("label_slices: pixels are the voxels of the middle planes", "[label_slices]") {
-  const CoordBBox box(Coord(-3, 2, -9), Coord(9, 12, 4));  // 13, 11, 14 voxels
-  const LabelMap voxels = randomLabels(3, box.min(), 14, 6, 50);
+  const LabelMap voxels = randomLabels(3, kBox.min(), 14, 6, 50);
   const Int32Grid::Ptr labels = labelGrid(voxels);
-  const GrainColors colors = grainColors(*labels);
-  const Coord middle(3, 7, -3);
-  for (const auto& [edge, scale] :
+  for (const auto& [longest, scale] :
        {std::pair<int, double>{14, 1}, {13, 2}, {43, 1 / 3.0}, {4, 4}}) {
-    CAPTURE(edge);
-    const LabelSlices slices = middleSlices(*labels, box, colors, edge);
-    CHECK(slices.voxelsPerPixel == scale);
-    const int axes[3][2] = {{0, 1}, {0, 2}, {1, 2}};
-    for (size_t i = 0; i < 3; ++i) {
-      const auto [right, down] = axes[i];
-      const Picture& picture = slices.pictures[i];
-      const auto pixels = [&](int axis) { return int(std::ceil(box.extents()[axis] / scale)); };
-      REQUIRE(picture.width == pixels(right));
-      REQUIRE(picture.height == pixels(down));
-      CHECK(std::max(picture.width, picture.height) <= edge);
-      for (int y = 0; y < picture.height; ++y)
-        for (int x = 0; x < picture.width; ++x) {
-          Coord p = middle;
-          p[right] = box.min()[right] + int(x * scale);
-          p[down] = down == 2 ? box.max().z() - int(y * scale) : box.min()[down] + int(y * scale);
-          REQUIRE(picture.at(x, y) == expected(voxels, colors, p, Rgb{18, 20, 26}));
-        }
-    }
+    CAPTURE(longest);
+    const LabelSlices slices = middleSlices(*labels, kBox, grainColors(*labels), longest);
+    requireMiddlePlanes(slices, voxels, grainColors(*labels), {1, 1, 1}, scale);
+    for (const Picture& picture : slices.pictures)
+      CHECK(std::max(picture.width, picture.height) <= longest);
   }
 }
 
 TEST_CASE("label_slices: unequal voxels are shown in true proportions", "[label_slices]") {
-  const CoordBBox box(Coord(-3, 2, -9), Coord(9, 12, 4));  // 13, 11, 14 voxels
-  const LabelMap voxels = randomLabels(4, box.min(), 14, 6, 50);
+  const LabelMap voxels = randomLabels(4, kBox.min(), 14, 6, 50);
   const Int32Grid::Ptr labels = labelGrid(voxels);
-  setVoxelSize(*labels, VoxelSize({2e-6, 1e-6, 2.5e-6}));
-  const double edges[3] = {2, 1, 2.5};  // 26 x 11 x 35
-  const GrainColors colors = grainColors(*labels);
-  const Coord middle(3, 7, -3);
-  for (const auto& [edge, scale] : {std::pair<int, double>{35, 1}, {80, 0.5}, {12, 3}}) {
-    CAPTURE(edge);
-    const LabelSlices slices = middleSlices(*labels, box, colors, edge);
-    CHECK(slices.voxelsPerPixel == scale);
-    const int axes[3][2] = {{0, 1}, {0, 2}, {1, 2}};
-    for (size_t i = 0; i < 3; ++i) {
-      const auto [right, down] = axes[i];
-      const Picture& picture = slices.pictures[i];
-      const auto pixels = [&](int axis) {
-        return int(std::ceil(box.extents()[axis] * edges[axis] / scale));
-      };
-      REQUIRE(picture.width == pixels(right));
-      REQUIRE(picture.height == pixels(down));
-      for (int y = 0; y < picture.height; ++y)
-        for (int x = 0; x < picture.width; ++x) {
-          const int column = int(x * scale / edges[right]), row = int(y * scale / edges[down]);
-          Coord p = middle;
-          p[right] = box.min()[right] + column;
-          p[down] = down == 2 ? box.max().z() - row : box.min()[down] + row;
-          REQUIRE(picture.at(x, y) == expected(voxels, colors, p, Rgb{18, 20, 26}));
-        }
-    }
+  setVoxelSize(*labels, VoxelSize({2e-6, 1e-6, 2.5e-6}));  // 26 x 11 x 35 of the shortest edge
+  for (const auto& [longest, scale] : {std::pair<int, double>{35, 1}, {80, 0.5}, {12, 3}}) {
+    CAPTURE(longest);
+    const LabelSlices slices = middleSlices(*labels, kBox, grainColors(*labels), longest);
+    requireMiddlePlanes(slices, voxels, grainColors(*labels), {2, 1, 2.5}, scale);
   }
 }
 
