@@ -71,7 +71,7 @@ TEST_CASE("distance_rows: the other passes by their definition", "[distance_rows
         if (random() % unsigned(2 + 5 * i) == 0) value = random() % unsigned(500 * weight);
       const int reach = i % 3 ? int(random() % 30) : length + 1;
       const auto known = uint32_t(weight * reach * reach);
-      widenWindows(in.data() + 64, length, weight, reach, out.data());
+      widenWindows(in.data() + 64, length, 0, length, weight, reach, out.data());
       int wrong = 0;
       for (int t = 0; t < length; ++t) {
         for (int row = 0; row < 64; ++row) {

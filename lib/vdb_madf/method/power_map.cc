@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "vdb_madf/base/detail/simd.h"
-#include "vdb_madf/leaves/detail/leaf_values.h"
 #include "vdb_madf/leaves/detail/pencil.h"
 #include "vdb_madf/method/detail/metric.h"
 #include "vdb_madf/method/detail/passage.h"
 #include "vdb_madf/method/detail/power_passes.h"
+#include "vdb_madf/method/detail/swept_leaves.h"
 #include "vdb_madf/method/kernels/lower_envelope.h"
 
 namespace vdb_madf {
@@ -28,41 +28,56 @@ struct Scratch {
   detail::EnvelopeRows<Key> rows;
 };
 
+/// Power and site, of what sweeps go through. Unknown voxels are uncovered.
+struct Map {
+  detail::SweptValues<int32_t> power;
+  detail::SweptValues<VoxelId> site;
+};
+
+constexpr int pass(int axis) {
+  return 2 - axis;
+}
+
 template <int Axis, typename Key>
-VDB_MADF_SIMD void gather(const LeafIndex& index, const PowerMap& map, Scratch<Key>& s) {
+VDB_MADF_SIMD void gather(const detail::SweptLeaves& leaves, const Map& map, Scratch<Key>& s) {
   int32_t power[512];
   VoxelId site[512];
   for (size_t i = 0; i < s.leaves.size(); ++i) {
     const uint32_t leaf = s.leaves[i];
-    detail::expandLeaf(index.mask(leaf), map.power.data() + index.firstRank(leaf), power);
-    detail::copyToSlabs<Axis>(power, kSlab, s.rows.power.data() + (i * 8 + 1) * kSlab);
-    if (Axis == 2)  // before the first pass every voxel is its own site
-      for (uint32_t k = 0; k < 512; ++k) site[k] = leaf * 512 + k;
+    const bool fresh = Axis == 2 || !leaves.carries(pass(Axis) - 1, leaf);
+    if (fresh)
+      leaves.expand(leaf, map.power.object, kUncovered, power);
     else
-      detail::expandLeaf(index.mask(leaf), map.site.data() + index.firstRank(leaf), site);
+      leaves.expand(leaf, map.power, power);
+    detail::copyToSlabs<Axis>(power, kSlab, s.rows.power.data() + (i * 8 + 1) * kSlab);
+    if (fresh)  // before the first pass every voxel is its own site
+      for (uint32_t k = 0; k < 512; ++k) site[k] = leaves.objectLeaf(leaf) * 512 + k;
+    else
+      leaves.expand(leaf, map.site, site);
     detail::copyToSlabs<Axis>(site, kSlab, s.rows.site.data() + i * 8 * kSlab);
   }
 }
 
 template <int Axis, typename Key>
-VDB_MADF_SIMD void scatter(const LeafIndex& index, const Scratch<Key>& s, PowerMap& map) {
+VDB_MADF_SIMD void scatter(const detail::SweptLeaves& leaves, const Scratch<Key>& s, Map& map) {
   int32_t power[512];
   VoxelId site[512];
   for (size_t i = 0; i < s.leaves.size(); ++i) {
     const uint32_t leaf = s.leaves[i];
+    if (!leaves.carries(pass(Axis), leaf)) continue;
     detail::copyFromSlabs<Axis>(s.rows.power.data() + (i * 8 + 1) * kSlab, kSlab, power);
     detail::copyFromSlabs<Axis>(s.rows.site.data() + i * 8 * kSlab, kSlab, site);
-    detail::packLeaf(index.mask(leaf), power, map.power.data() + index.firstRank(leaf));
-    detail::packLeaf(index.mask(leaf), site, map.site.data() + index.firstRank(leaf));
+    leaves.pack(leaf, power, Axis == 0, map.power);
+    leaves.pack(leaf, site, Axis == 0, map.site);
   }
 }
 
 /// D of all sites, from their partial power: the passes before this one have moved away from the
 /// site along z, then y. `origin` is that of the pencil's first leaf.
 template <int Axis, typename Key>
-VDB_MADF_SIMD void computeRadii(const LeafIndex& index, const Coord& origin,
+VDB_MADF_SIMD void computeRadii(const LeafIndex& object, const Coord& origin,
                                 const VoxelWeights& weights, Scratch<Key>& s) {
-  const Coord* origins = &index.origin(0);
+  const Coord* origins = &object.origin(0);
   for (size_t t = 0; t < s.leaves.size() * 8; ++t) {
     const int32_t* power = s.rows.power.data() + (t + 1) * kSlab;
     const VoxelId* site = s.rows.site.data() + t * kSlab;
@@ -82,7 +97,9 @@ VDB_MADF_SIMD void computeRadii(const LeafIndex& index, const Coord& origin,
 }
 
 template <int Axis, typename Key>
-void sweep(const LeafIndex& index, Key multiplier, PowerMap& map, Interrupter* interrupter) {
+void sweep(const detail::SweptLeaves& leaves, Key multiplier, const VoxelWeights& weights, Map& map,
+           Interrupter* interrupter) {
+  const LeafIndex& index = leaves.index();
   const std::vector<uint32_t> starts = detail::pencilStarts(index, Axis);
   detail::PerThread<Scratch<Key>> scratches;
   detail::parallelFor(starts.size(), detail::kPencilGrain, interrupter,
@@ -90,23 +107,26 @@ void sweep(const LeafIndex& index, Key multiplier, PowerMap& map, Interrupter* i
                         Scratch<Key>& s = scratches.local();
                         for (size_t p = begin; p < end; ++p) {
                           detail::collectPencil(index, Axis, starts[p], s.leaves);
+                          if (!leaves.anyCarries(pass(Axis), s.leaves)) continue;
                           const int length = int(s.leaves.size()) * 8;
                           s.rows.resize(size_t(length));
-                          gather<Axis, Key>(index, map, s);
-                          computeRadii<Axis, Key>(index, index.origin(starts[p]), map.weights, s);
-                          detail::lowerEnvelopes<Axis + 1>(length, multiplier, map.weights, s.rows);
-                          scatter<Axis, Key>(index, s, map);
+                          gather<Axis, Key>(leaves, map, s);
+                          const Coord& origin = index.origin(starts[p]);
+                          computeRadii<Axis, Key>(leaves.object(), origin, weights, s);
+                          detail::lowerEnvelopes<Axis + 1>(length, multiplier, weights, s.rows);
+                          scatter<Axis, Key>(leaves, s, map);
                         }
                       });
 }
 
 template <typename Key>
-void sweepAll(const LeafIndex& index, Key multiplier, PowerMap& map, Interrupter* interrupter) {
+void sweepAll(const detail::SweptLeaves& leaves, Key multiplier, const VoxelWeights& weights,
+              Map& map, Interrupter* interrupter) {
   detail::WorkPart first(interrupter, 0, 33), second(interrupter, 33, 66),
       third(interrupter, 66, 100);
-  sweep<2, Key>(index, multiplier, map, &first);
-  sweep<1, Key>(index, multiplier, map, &second);
-  sweep<0, Key>(index, multiplier, map, &third);
+  sweep<2, Key>(leaves, multiplier, weights, map, &first);
+  sweep<1, Key>(leaves, multiplier, weights, map, &second);
+  sweep<0, Key>(leaves, multiplier, weights, map, &third);
 }
 
 /// Do products of a difference of keys and one of positions fit in 64 bits?
@@ -119,27 +139,17 @@ bool fits64Bits(const LeafIndex& index, const VoxelWeights& weights, int32_t lar
   return true;
 }
 
-void sweepWithin(const LeafIndex& index, int32_t maxSquaredRadius, PowerMap& map,
-                 Interrupter* interrupter) {
-  if (fits64Bits(index, map.weights, maxSquaredRadius))
-    sweepAll<int64_t>(index, int64_t(maxSquaredRadius) + 1, map, interrupter);
-  else
-    sweepAll<__int128>(index, __int128(maxSquaredRadius) + 1, map, interrupter);
-}
-
 }  // namespace
 
 void detail::sweepPower(const LeafIndex& index, int32_t maxSquaredRadius, PowerMap& map,
                         Interrupter* interrupter) {
-  if (!map.passage) return sweepWithin(index, maxSquaredRadius, map, interrupter);
-  const Passage& passage = *map.passage;
-  PowerMap passed;
-  passed.weights = map.weights;
-  passed.power = passage.spread(index, map.power, kUncovered);
-  passed.site = VoxelArray<VoxelId>(passed.power.size());
-  sweepWithin(passage.index(), maxSquaredRadius, passed, interrupter);
-  passage.collect(index, passed.power, map.power);
-  passage.collectIds(index, passed.site, map.site);
+  const SweptLeaves leaves(index, map.passage.get());
+  Map swept{{map.power, VoxelArray<int32_t>(leaves.unknownVoxels())},
+            {map.site, VoxelArray<VoxelId>(leaves.unknownVoxels())}};
+  if (fits64Bits(leaves.index(), map.weights, maxSquaredRadius))
+    sweepAll(leaves, int64_t(maxSquaredRadius) + 1, map.weights, swept, interrupter);
+  else
+    sweepAll(leaves, __int128(maxSquaredRadius) + 1, map.weights, swept, interrupter);
 }
 
 PowerMap powerMap(const LeafIndex& index, SquaredDistance distance, Interrupter* interrupter) {

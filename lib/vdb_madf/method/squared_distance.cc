@@ -11,14 +11,17 @@
 #include "vdb_madf/base/detail/simd.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
-#include "vdb_madf/leaves/detail/leaf_values.h"
 #include "vdb_madf/leaves/detail/pencil.h"
 #include "vdb_madf/method/detail/passage.h"
+#include "vdb_madf/method/detail/swept_leaves.h"
 #include "vdb_madf/method/kernels/distance_rows.h"
 
 namespace vdb_madf {
 
 namespace {
+
+using Leaves = detail::SweptLeaves;
+using Values = detail::SweptValues<int32_t>;
 
 /// A pencil laid out with the swept axis slow and its 64 rows side by side: values[(t + 1) * 64 +
 /// row], one slab of padding at either end.
@@ -70,30 +73,50 @@ detail::RowDomain rowDomain(const Obstacles& obstacles, const Coord& origin, int
 }
 
 template <int Axis>
-VDB_MADF_SIMD void gather(const LeafIndex& index, const VoxelArray<int32_t>& values, Scratch& s) {
+VDB_MADF_SIMD void gather(const Leaves& leaves, const Values& values, Scratch& s) {
   int32_t dense[512];
   for (size_t i = 0; i < s.leaves.size(); ++i) {
-    const uint32_t leaf = s.leaves[i];
-    detail::expandLeaf(index.mask(leaf), values.data() + index.firstRank(leaf), dense);
+    leaves.expand(s.leaves[i], values, dense);
     detail::copyToSlabs<Axis>(dense, 64, s.in.data() + (i * 8 + 1) * 64);
   }
 }
 
 template <int Axis>
-VDB_MADF_SIMD void scatter(const LeafIndex& index, const Scratch& s, VoxelArray<int32_t>& values) {
+VDB_MADF_SIMD void scatter(const Leaves& leaves, const Scratch& s, Values& values) {
   int32_t dense[512];
   for (size_t i = 0; i < s.leaves.size(); ++i) {
-    const uint32_t leaf = s.leaves[i];
+    if (!leaves.carries(Axis, s.leaves[i])) continue;
     detail::copyFromSlabs<Axis>(s.out.data() + (i * 8 + 1) * 64, 64, dense);
-    detail::packLeaf(index.mask(leaf), dense, values.data() + index.firstRank(leaf));
+    leaves.pack(s.leaves[i], dense, Axis == 2, values);
+  }
+}
+
+/// Of the pencil in s.in. All that a leaf looks at carried values before.
+template <int Axis>
+void widen(const Leaves& leaves, const detail::RowDomain& d, int32_t weight, int reach,
+           Scratch& s) {
+  const int length = int(s.leaves.size()) * 8;
+  // Outside the domain nothing is known: not background.
+  std::copy(d.before.begin(), d.before.end(), s.in.data());
+  std::fill_n(s.in.data() + 64, size_t(d.begin) * 64, detail::kInfinite);
+  std::fill(s.in.data() + (d.end + 1) * 64, s.in.data() + (length + 1) * 64, detail::kInfinite);
+  std::copy(d.after.begin(), d.after.end(), s.in.data() + (length + 1) * 64);
+  for (size_t i = 0, next; i < s.leaves.size(); i = next) {
+    const bool carries = leaves.carries(Axis, s.leaves[i]);
+    for (next = i + 1; next < s.leaves.size(); ++next)
+      if (leaves.carries(Axis, s.leaves[next]) != carries) break;
+    if (carries)
+      detail::widenWindows(s.in.data() + 64, length, int(i) * 8, int(next) * 8, weight, reach,
+                           s.out.data() + 64);
   }
 }
 
 /// One sweep along an axis over all pencils. The array holds int32 values; infinite ones have the
 /// sign bit set between passes.
 template <int Axis>
-void sweep(const LeafIndex& index, const Obstacles& obstacles, int32_t weight, int reach,
-           VoxelArray<int32_t>& values, Interrupter* interrupter) {
+void sweep(const Leaves& leaves, const Obstacles& obstacles, int32_t weight, int reach,
+           Values& values, Interrupter* interrupter) {
+  const LeafIndex& index = leaves.index();
   const std::vector<uint32_t> starts = detail::pencilStarts(index, Axis);
   detail::PerThread<Scratch> scratches;
   detail::parallelFor(
@@ -101,6 +124,7 @@ void sweep(const LeafIndex& index, const Obstacles& obstacles, int32_t weight, i
         Scratch& s = scratches.local();
         for (size_t p = begin; p < end; ++p) {
           detail::collectPencil(index, Axis, starts[p], s.leaves);
+          if (!leaves.anyCarries(Axis, s.leaves)) continue;
           const int length = int(s.leaves.size()) * 8;
           s.resize(length);
           const detail::RowDomain d = rowDomain<Axis>(obstacles, index.origin(starts[p]), length);
@@ -111,16 +135,10 @@ void sweep(const LeafIndex& index, const Obstacles& obstacles, int32_t weight, i
               s.masks.insert(s.masks.end(), index.mask(leaf).begin(), index.mask(leaf).end());
             detail::scanRows(s.masks.data(), length, d, weight, s.out.data() + 64);
           } else {
-            gather<Axis>(index, values, s);
-            // Outside the domain nothing is known: not background.
-            std::copy(d.before.begin(), d.before.end(), s.in.data());
-            std::fill_n(s.in.data() + 64, size_t(d.begin) * 64, detail::kInfinite);
-            std::fill(s.in.data() + (d.end + 1) * 64, s.in.data() + (length + 1) * 64,
-                      detail::kInfinite);
-            std::copy(d.after.begin(), d.after.end(), s.in.data() + (length + 1) * 64);
-            detail::widenWindows(s.in.data() + 64, length, weight, reach, s.out.data() + 64);
+            gather<Axis>(leaves, values, s);
+            widen<Axis>(leaves, d, weight, reach, s);
           }
-          scatter<Axis>(index, s, values);
+          scatter<Axis>(leaves, s, values);
         }
       });
 }
@@ -131,17 +149,15 @@ int reachAlong(uint32_t exactUpTo, int32_t weight) {
   return int(std::sqrt(double(exactUpTo) / weight)) + 1;
 }
 
-VoxelArray<int32_t> sweepAll(const LeafIndex& index, const Obstacles& obstacles,
-                             const VoxelWeights& weights, uint32_t exactUpTo,
-                             Interrupter* interrupter) {
-  VoxelArray<int32_t> values(size_t(index.voxelCount()));
+void sweepAll(const Leaves& leaves, const Obstacles& obstacles, const VoxelWeights& weights,
+              uint32_t exactUpTo, VoxelArray<int32_t>& ofObject, Interrupter* interrupter) {
+  Values values{ofObject, VoxelArray<int32_t>(leaves.unknownVoxels())};
   detail::WorkPart first(interrupter, 0, 20), second(interrupter, 20, 60),
       third(interrupter, 60, 100);
   const auto reach = [&](int32_t weight) { return reachAlong(exactUpTo, weight); };
-  sweep<0>(index, obstacles, weights.x, reach(weights.x), values, &first);
-  sweep<1>(index, obstacles, weights.y, reach(weights.y), values, &second);
-  sweep<2>(index, obstacles, weights.z, reach(weights.z), values, &third);
-  return values;
+  sweep<0>(leaves, obstacles, weights.x, reach(weights.x), values, &first);
+  sweep<1>(leaves, obstacles, weights.y, reach(weights.y), values, &second);
+  sweep<2>(leaves, obstacles, weights.z, reach(weights.z), values, &third);
 }
 
 /// Infinite values are the largest.
@@ -163,12 +179,10 @@ void measureInRegion(const LeafIndex& index, const Obstacles& obstacles, Interru
                      SquaredDistance& result) {
   constexpr int kFirstReach = 32;
   const VoxelWeights& weights = result.weights;
-  result.values = VoxelArray<int32_t>(size_t(index.voxelCount()));
   for (int reach = kFirstReach;;) {
     const detail::Passage passage(index, obstacles.domain, reach, weights);
     const uint32_t exact = passage.exactUpTo();
-    passage.collect(index, sweepAll(passage.index(), obstacles, weights, exact, interrupter),
-                    result.values);
+    sweepAll({index, &passage}, obstacles, weights, exact, result.values, interrupter);
     const uint32_t largest = largestValue(result.values);
     result.largest = int32_t(largest);
     if (largest <= exact) break;
@@ -193,11 +207,12 @@ SquaredDistance squaredDistance(const LeafIndex& index, const Obstacles& obstacl
   checkWeights(weights, region ? obstacles.domain.box().dim() : index.boundingBox().dim());
   SquaredDistance result;
   result.weights = weights;
+  result.values = VoxelArray<int32_t>(size_t(index.voxelCount()));
   if (region) {
     measureInRegion(index, obstacles, interrupter, result);
     return result;
   }
-  result.values = sweepAll(index, obstacles, weights, detail::kInfinite, interrupter);
+  sweepAll({index, nullptr}, obstacles, weights, detail::kInfinite, result.values, interrupter);
   result.largest = int32_t(largestValue(result.values));
   return result;
 }

@@ -10,7 +10,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
-#include "vdb_madf/leaves/detail/leaf_values.h"
+#include "vdb_madf/leaves/detail/pencil.h"
 #include "vdb_madf/method/detail/metric.h"
 #include "vdb_madf/method/kernels/distance_rows.h"
 
@@ -59,13 +59,19 @@ int longestSide(const CoordBBox& box) {
   return box.dim()[int(box.maxExtent())];
 }
 
-/// What of a leaf here belongs to the object, packed.
-template <typename T>
-void packObject(const LeafIndex::Mask& here, const LeafIndex::Mask& object, const T* values,
-                T* packed) {
-  T dense[512];
-  expandLeaf(here, values, dense);
-  packLeaf(object, dense, packed);
+using Marks = std::vector<uint8_t>;  // of leaves: 0 or 1
+
+/// Marks all leaves of the pencils along an axis that hold a marked one.
+Marks alongPencils(const LeafIndex& index, int axis, const Marks& marked) {
+  Marks result(index.leafCount(), 0);
+  std::vector<uint32_t> pencil;
+  for (const uint32_t start : pencilStarts(index, axis)) {
+    collectPencil(index, axis, start, pencil);
+    const auto isMarked = [&](uint32_t leaf) { return marked[leaf] != 0; };
+    if (std::none_of(pencil.begin(), pencil.end(), isMarked)) continue;
+    for (const uint32_t leaf : pencil) result[leaf] = 1;
+  }
+  return result;
 }
 
 }  // namespace
@@ -78,7 +84,8 @@ Passage::Passage(const LeafIndex& object, const Domain& region, int reach,
                                   : squaredAlong(uint32_t(leaves * 8), uint32_t(weights.least()));
   index_ = LeafIndex(object,
                      unknownVoxels(leavesAround(object, [&](uint32_t) { return leaves; }), region));
-  linkLeaves(object);
+  linkObject(object);
+  chooseCarriers({0, 1, 2}, false);
 }
 
 Passage::Passage(const LeafIndex& object, const Domain& region,
@@ -89,62 +96,35 @@ Passage::Passage(const LeafIndex& object, const Domain& region,
     return (int(std::sqrt(double(largest) / weights.least())) + 7) / 8;
   };
   index_ = LeafIndex(object, unknownVoxels(leavesAround(object, reach), region));
-  linkLeaves(object);
+  linkObject(object);
+  chooseCarriers({2, 1, 0}, true);
 }
 
-void Passage::linkLeaves(const LeafIndex& object) {
-  leafOfObject_.assign(index_.leafCount(), LeafIndex::kNone);
-  leafHere_.reserve(object.leafCount());
-  for (uint32_t here = 0; leafHere_.size() < object.leafCount(); ++here) {
-    if (index_.origin(here) != object.origin(leafHere_.size())) continue;
-    leafOfObject_[here] = uint32_t(leafHere_.size());
-    leafHere_.push_back(here);
+void Passage::linkObject(const LeafIndex& object) {
+  objectLeavesBefore_.reserve(index_.leafCount() + 1);
+  uint32_t before = 0;
+  for (size_t leaf = 0; leaf < index_.leafCount(); ++leaf) {
+    objectLeavesBefore_.push_back(before);
+    before += before < object.leafCount() && object.origin(before) == index_.origin(leaf);
   }
+  objectLeavesBefore_.push_back(before);
 }
 
-VoxelArray<int32_t> Passage::spread(const LeafIndex& object, const VoxelArray<int32_t>& values,
-                                    int32_t unknown) const {
-  VoxelArray<int32_t> result(size_t(index_.voxelCount()));
-  parallelFor(index_.leafCount(), kLeafGrain, nullptr, [&](size_t begin, size_t end) {
-    int32_t dense[512];
-    for (size_t here = begin; here < end; ++here) {
-      const uint32_t leaf = leafOfObject_[here];
-      if (leaf == LeafIndex::kNone) {
-        std::fill_n(dense, 512, unknown);
-      } else {
-        expandLeaf(object.mask(leaf), values.data() + object.firstRank(leaf), dense);
-        const LeafIndex::Mask added = without(index_.mask(here), object.mask(leaf));
-        for (size_t x = 0; x < 8; ++x)
-          forEachBit(added[x], [&](int bit) { dense[x * 64 + size_t(bit)] = unknown; });
-      }
-      packLeaf(index_.mask(here), dense, result.data() + index_.firstRank(here));
-    }
-  });
-  return result;
-}
-
-void Passage::collect(const LeafIndex& object, const VoxelArray<int32_t>& values,
-                      VoxelArray<int32_t>& ofObject) const {
-  parallelFor(object.leafCount(), kLeafGrain, nullptr, [&](size_t begin, size_t end) {
-    for (size_t leaf = begin; leaf < end; ++leaf) {
-      const uint32_t here = leafHere_[leaf];
-      packObject(index_.mask(here), object.mask(leaf), values.data() + index_.firstRank(here),
-                 ofObject.data() + object.firstRank(leaf));
-    }
-  });
-}
-
-void Passage::collectIds(const LeafIndex& object, const VoxelArray<VoxelId>& ids,
-                         VoxelArray<VoxelId>& ofObject) const {
-  parallelFor(object.leafCount(), kLeafGrain, nullptr, [&](size_t begin, size_t end) {
-    for (size_t leaf = begin; leaf < end; ++leaf) {
-      const uint32_t here = leafHere_[leaf];
-      VoxelId* const packed = ofObject.data() + object.firstRank(leaf);
-      packObject(index_.mask(here), object.mask(leaf), ids.data() + index_.firstRank(here), packed);
-      for (size_t i = 0; i < object.leafVoxels(leaf); ++i)
-        packed[i] = leafOfObject_[leafOf(packed[i])] * 512 + offsetOf(packed[i]);
-    }
-  });
+void Passage::chooseCarriers(const std::array<int, 3>& axes, bool fromObject) {
+  Marks object(index_.leafCount());
+  for (size_t leaf = 0; leaf < object.size(); ++leaf) object[leaf] = hasObject(leaf);
+  const auto along = [&](int pass, const Marks& marked) {
+    return alongPencils(index_, axes[size_t(pass)], marked);
+  };
+  // Where later passes lead to the object, and where earlier ones come from it.
+  const Marks toAfter1 = along(2, object), toAfter0 = along(1, toAfter1);
+  const Marks everywhere(fromObject ? 0 : object.size(), 1);
+  const Marks fromBy0 = fromObject ? along(0, object) : everywhere;
+  const Marks fromBy1 = fromObject ? along(1, fromBy0) : everywhere;
+  carries_.resize(object.size());
+  for (size_t leaf = 0; leaf < object.size(); ++leaf)
+    carries_[leaf] = uint8_t((toAfter0[leaf] & fromBy0[leaf]) |
+                             (toAfter1[leaf] & fromBy1[leaf]) << 1 | object[leaf] << 2);
 }
 
 }  // namespace vdb_madf::detail

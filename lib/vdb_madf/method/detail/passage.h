@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -22,13 +23,13 @@ namespace vdb_madf::detail {
 /// in the sweeps: they carry values on, and have none of their own.
 ///
 /// They do so within the box of the region, at least as far away from the object, along each axis, as
-/// is needed.
+/// is needed; and in those passes only after which a line can turn to the object, or come from it.
 class Passage {
  public:
-  /// For distances: `reach` voxels. So a squared distance D is exact if D <= w reach^2, w the least
-  /// weight; a larger one may be too large.
+  /// For distances (passes along x, y, z): `reach` voxels. So a squared distance D is exact if
+  /// D <= w reach^2, w the least weight; a larger one may be too large.
   Passage(const LeafIndex& object, const Domain& region, int reach, const VoxelWeights& weights);
-  /// For powers: around each voxel the radius of its ball.
+  /// For powers (passes along z, y, x): around each voxel the radius of its ball.
   Passage(const LeafIndex& object, const Domain& region, const VoxelArray<int32_t>& squaredRadii,
           const VoxelWeights& weights);
 
@@ -38,23 +39,24 @@ class Passage {
   /// The largest D that is exact, of distances; kInfinite (distance_rows.h) if all are.
   uint32_t exactUpTo() const { return exactUpTo_; }
 
-  /// Values of the object's voxels as an array of this index, `unknown` for the other voxels.
-  VoxelArray<int32_t> spread(const LeafIndex& object, const VoxelArray<int32_t>& values,
-                             int32_t unknown) const;
-  /// The way back.
-  void collect(const LeafIndex& object, const VoxelArray<int32_t>& values,
-               VoxelArray<int32_t>& ofObject) const;
-  /// The same of ids of voxels of the object in this index; they become ids of the object's.
-  void collectIds(const LeafIndex& object, const VoxelArray<VoxelId>& ids,
-                  VoxelArray<VoxelId>& ofObject) const;
+  /// Leaves of the object before a leaf of index(); that leaf is the next one if it hasObject().
+  uint32_t objectLeavesBefore(size_t leaf) const { return objectLeavesBefore_[leaf]; }
+  bool hasObject(size_t leaf) const {
+    return objectLeavesBefore_[leaf] != objectLeavesBefore_[leaf + 1];
+  }
+  /// Does anything depend on what the voxels of a leaf have after a pass (0, 1 or 2)? All leaves of
+  /// the object carry values in all passes, and they alone after the last one.
+  bool carries(int pass, size_t leaf) const { return carries_[leaf] >> pass & 1; }
 
  private:
-  void linkLeaves(const LeafIndex& object);
+  void linkObject(const LeafIndex& object);
+  /// For passes along these axes; do all values come from the object?
+  void chooseCarriers(const std::array<int, 3>& axes, bool fromObject);
 
   LeafIndex index_;
   uint32_t exactUpTo_ = 0;
-  std::vector<uint32_t> leafHere_;      // of a leaf of the object
-  std::vector<uint32_t> leafOfObject_;  // of a leaf here; kNone
+  std::vector<uint32_t> objectLeavesBefore_;  // one more at the end
+  std::vector<uint8_t> carries_;              // a bit for each pass
 };
 
 }  // namespace vdb_madf::detail

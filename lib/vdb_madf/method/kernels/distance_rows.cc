@@ -61,9 +61,9 @@ void scanRows(const uint64_t* masks, int length, const RowDomain& domain, int32_
 // in all lanes, nor anything of w reach^2 or less after k = reach. Beyond an end of the row the
 // padding there is looked at again, from further away than before, which changes nothing: so the
 // nearer end needs no loop of its own.
-VDB_MADF_SIMD void widenWindows(const uint32_t* in, int length, int32_t weight, int reach,
-                                uint32_t* out) {
-  for (int t = 0; t < length; ++t) {
+VDB_MADF_SIMD void widenWindows(const uint32_t* in, int length, int begin, int end, int32_t weight,
+                                int reach, uint32_t* out) {
+  for (int t = begin; t < end; ++t) {
     const int toBegin = t + 1, toEnd = length - t;  // distances of the padding
     const int last = std::min(reach, std::max(toBegin, toEnd));
     for (int lane = 0; lane < 64; lane += kLanes) {
