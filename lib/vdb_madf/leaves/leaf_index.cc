@@ -51,10 +51,17 @@ CoordBBox checkedBoundingBox(const MaskTree& tree) {
 
 /// The voxels of a leaf's mask.
 CoordBBox maskBox(const Coord& origin, const LeafIndex::Mask& mask) {
+  uint64_t anyX = 0;
+  for (const uint64_t word : mask) anyX |= word;
   CoordBBox box;
-  for (size_t x = 0; x < 8; ++x)
-    detail::forEachBit(mask[x],
-                       [&](int bit) { box.expand(origin.offsetBy(int(x), bit >> 3, bit & 7)); });
+  for (int x = 0; x < 8; ++x)
+    if (mask[size_t(x)] != 0) box.expand(origin.offsetBy(x, 0, 0));
+  const int first = box.min().x(), last = box.max().x();
+  box.reset();
+  detail::forEachBit(anyX, [&](int bit) {
+    box.expand(Coord(first, origin.y() + (bit >> 3), origin.z() + (bit & 7)));
+  });
+  box.max().x() = last;
   return box;
 }
 
