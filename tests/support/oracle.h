@@ -66,6 +66,8 @@ class OracleDomain {
   std::optional<ObjectVolume> region_;
 };
 
+int64_t squaredLength(const Coord& d, const VoxelWeights& weights);
+
 /// Before all steps: is the boundary open (boundary.h)? @throw Undefined
 bool oracleBoundary(const ObjectVolume& object, Boundary boundary,
                     const std::optional<OracleDomain>& domain);
