@@ -49,26 +49,26 @@ STYLES = {"fine": {"windows": (1, 1.5, 2, 3), "tolerance": 20, "widen": 0},
 THRESHOLDS = (-0.05, -0.03, -0.02, -0.01, 0, 0.01, 0.02, 0.03, 0.04)
 
 
-def grains(solid, **parameters):
+def grains(solid, normals=None, **parameters):
     """Labels 1..N (int32, 0: background) of a boolean volume [z, y, x], at least 2 voxels along each edge.
 
-    Parameters other than DEFAULT's are given by name.
+    normals: its Normals, if they are there already. Parameters other than DEFAULT's are given by name.
     """
     chosen = {**DEFAULT, **parameters}
     solid = numpy.asarray(solid, bool)
-    curvature = mean_curvature(Normals(solid), chosen.pop("windows"), chosen.pop("tolerance"))
+    curvature = mean_curvature(normals or Normals(solid), chosen.pop("windows"), chosen.pop("tolerance"))
     return spread(solid, regions(curvature, **chosen))
 
 
-def tuned(truth, solid=None):
+def tuned(truth, solid=None, normals=None):
     """The grains with the parameters whose regions match the true grains best; and these in words.
 
-    solid: what is cut, if not just the true grains.
+    solid: what is cut, if not just the true grains; normals: its Normals, if they are there already.
 
     Least is the number of true grains without a region of their own and of regions beyond these; first, of equals.
     """
     best, solid = None, truth > 0 if solid is None else solid
-    normals = Normals(solid)
+    normals = normals or Normals(solid)
     for style, its in STYLES.items():
         curvature = mean_curvature(normals, its["windows"], its["tolerance"])
         for threshold in THRESHOLDS:
@@ -82,12 +82,15 @@ def tuned(truth, solid=None):
 def mismatches(truth, found):
     """True grains and regions that do not have more than half of each other's voxels in regions."""
     at = (found > 0) & (truth > 0)
-    pairs, shared = numpy.unique(truth[at].astype(numpy.int64) << 32 | found[at], return_counts=True)
-    pairs = pairs >> 32, pairs & 0xffffffff
+    width = int(found.max(initial=0)) + 1
+    shared = numpy.bincount(truth[at].astype(numpy.int64) * width + found[at])
+    pairs = numpy.flatnonzero(shared)
+    shared = shared[pairs]
+    pairs = pairs // width, pairs % width
     of_grain, of_region = (numpy.bincount(ids, shared) for ids in pairs)
     matched = numpy.sum((2 * shared > of_grain[pairs[0]]) & (2 * shared > of_region[pairs[1]]))
-    true = numpy.unique(truth[truth > 0]).size
-    return int(true + found.max(initial=0) - 2 * matched)
+    true = numpy.count_nonzero(numpy.bincount(truth.ravel())[1:])
+    return int(true + width - 1 - 2 * matched)
 
 
 def unit(vectors):
@@ -136,7 +139,7 @@ def regions(curvature, threshold, widen, least):
     """Steps 3 and 4: the regions' labels 1..N on surface voxels, else 0."""
     groove = curvature < threshold
     if widen > 0:
-        groove = ndimage.binary_dilation(groove, FULL, widen)
+        groove = ndimage.maximum_filter(groove, 2 * widen + 1, mode="constant")
     labels, count = ndimage.label(~numpy.isnan(curvature) & ~groove)
     large = numpy.bincount(labels.ravel(), minlength=count + 1) >= least
     large[0] = False

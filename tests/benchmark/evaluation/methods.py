@@ -80,12 +80,13 @@ def cut(volume, work, methods, tune=False):
             numpy.save(files[name], result[kind][0])
     if not NO_CDGS:
         solid = dense(volume, work) > 0
+        normals = cdgs.Normals(solid)
         files[CDGS] = work / "cdgs.npy"
-        numpy.save(files[CDGS], cdgs.grains(solid))
+        numpy.save(files[CDGS], cdgs.grains(solid, normals))
         if tune:
             files[CDGS_TUNED] = work / "cdgs_tuned.npy"
             grid = () if volume.suffix == ".npy" else ("--grid", "truth")
-            labels, taken = cdgs.tuned(dense(volume, work, *grid, "--type", "int32"))
+            labels, taken = cdgs.tuned(dense(volume, work, *grid, "--type", "int32"), solid, normals)
             numpy.save(files[CDGS_TUNED], labels)
             (work / "tuned.txt").write_text(taken)
     return files
