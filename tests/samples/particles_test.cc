@@ -18,7 +18,6 @@ namespace {
 using namespace vdb_madf;
 using namespace vdb_madf::test;
 using detail::Particle;
-using detail::toVector;
 using detail::Vector;
 
 constexpr ParticleShape kShapes[] = {ParticleShape::balls, ParticleShape::ellipsoids,
@@ -39,7 +38,7 @@ ParticleOptions smallParticles(ParticleShape shape) {
 int64_t voxelsInside(const Particle& particle) {
   int64_t count = 0;
   const CoordBBox box = particle.box();
-  for (auto p = box.begin(); p; ++p) count += particle.value(toVector(*p)) < 1;
+  for (auto p = box.begin(); p; ++p) count += particle.value((*p).asVec3d()) < 1;
   return count;
 }
 
@@ -158,8 +157,8 @@ TEST_CASE("particles: the object is their union, the truth the one of least valu
     for (auto p = CoordBBox(Coord(0), options.size.offsetBy(-1)).begin(); p; ++p) {
       size_t best = 0;
       for (size_t i = 1; i < particles.size(); ++i)
-        if (particles[i].value(toVector(*p)) < particles[best].value(toVector(*p))) best = i;
-      const int32_t label = particles[best].value(toVector(*p)) < 1 ? int32_t(best) + 1 : 0;
+        if (particles[i].value((*p).asVec3d()) < particles[best].value((*p).asVec3d())) best = i;
+      const int32_t label = particles[best].value((*p).asVec3d()) < 1 ? int32_t(best) + 1 : 0;
       wrong += sample.truth->tree().getValue(*p) != label;
       wrong += sample.object->tree().isValueOn(*p) != (label > 0);
     }
@@ -183,7 +182,7 @@ TEST_CASE("particles: keep their distance", "[particles]") {
       }
     for (auto p = CoordBBox(Coord(0), options.size.offsetBy(-1)).begin(); p; ++p) {
       const auto inCore = std::count_if(particles.begin(), particles.end(), [&](const auto& q) {
-        return q.value(toVector(*p)) < options.neck;
+        return q.value((*p).asVec3d()) < options.neck;
       });
       if (inCore > 1) FAIL("two shrunken particles share a voxel");
     }

@@ -84,6 +84,31 @@ TEST_CASE("cli: generate writes the truth beside an image", "[cli]") {
   CHECK(bench.names().count("p.truth.tif") == 0);
 }
 
+TEST_CASE("cli: generate samples the same bodies by unequal voxels", "[cli]") {
+  const Bench bench;
+  const std::string size = " --dims 40x39x42 ";
+  for (const std::string kind : {"spheres", "sintered", "particles"}) {
+    CAPTURE(kind);
+    const std::string command = "generate " + kind + size + "--count 4 --radius 6:9 --voxel-size ";
+    bench.mustRun(command + "1um cubes.npy");
+    bench.mustRun(command + "1x3x1um third.npy");
+    const std::string cubes = bench.bytes("cubes.truth.npy"),
+                      third = bench.bytes("third.truth.npy");
+    const size_t row = 40 * sizeof(int32_t);
+    REQUIRE(cubes.size() == 128 + 42 * 39 * row);
+    REQUIRE(third.size() == 128 + 42 * 13 * row);
+    for (size_t z = 0; z < 42; ++z)
+      for (size_t y = 0; y < 13; ++y)
+        REQUIRE(third.substr(128 + (z * 13 + y) * row, row) ==
+                cubes.substr(128 + (z * 39 + 3 * y + 1) * row, row));
+  }
+  bench.mustRun("generate pack --size 40 --radius 4:6 --voxel-size 2x1x1um pack.mhd");
+  const Json pack = infoOf(bench, "pack.mhd");
+  CHECK(pack.at("size") == Json({20, 40, 40}));
+  CHECK(pack.at("voxel_size_mm").at(0) == Approx(0.002));
+  CHECK(pack.at("voxel_size_mm").at(2) == Approx(0.001));
+}
+
 TEST_CASE("cli: convert keeps every sample through every format", "[cli]") {
   const Bench bench;
   bench.mustRun("generate snow s.raw --dims 30x20x10 --length 8");

@@ -53,6 +53,7 @@ struct Kind {
   void (*parse)(Options& options);
   Sample (*make)(const Options& options, Interrupter* interrupter);
   bool hasTruth = true;
+  bool cubesOnly = false;
 };
 
 template <typename KindOptions>
@@ -116,6 +117,7 @@ constexpr Kind kKinds[] = {
      },
      [](Options& options) {
        parseSizeAndSeed(options, options.spheres);
+       options.spheres.voxelSize = options.voxelSize;
        parseRadius(options, options.spheres);
      },
      [](const Options& options, Interrupter* interrupter) {
@@ -129,6 +131,7 @@ constexpr Kind kKinds[] = {
      },
      [](Options& options) {
        parseSizeAndSeed(options, options.pack);
+       options.pack.voxelSize = options.voxelSize;
        parseRadius(options, options.pack);
        checkFraction(options.pack.fraction);
      },
@@ -149,7 +152,7 @@ constexpr Kind kKinds[] = {
      [](const Options& options, Interrupter* interrupter) {
        return generateSnow(options.snow, interrupter);
      },
-     false},
+     false, true},
     {"sintered", "sintered balls with known grains",
      "vdb_madf generate sintered grains.vdb --count 90 --roughness 0.15",
      [](Verb verb, Options& options) {
@@ -161,6 +164,7 @@ constexpr Kind kKinds[] = {
      },
      [](Options& options) {
        parseSizeAndSeed(options, options.sintered);
+       options.sintered.voxelSize = options.voxelSize;
        parseRadius(options, options.sintered);
      },
      [](const Options& options, Interrupter* interrupter) {
@@ -183,6 +187,7 @@ constexpr Kind kKinds[] = {
      },
      [](Options& options) {
        parseSizeAndSeed(options, options.particles);
+       options.particles.voxelSize = options.voxelSize;
        parseRadius(options, options.particles);
        parseShape(options.shape, options.particles.shape);
      },
@@ -201,7 +206,8 @@ constexpr Kind kKinds[] = {
      },
      [](const Options& options, Interrupter* interrupter) {
        return generateBed(options.bed, interrupter);
-     }},
+     },
+     true, true},
 };
 
 /// OUT.tif -> OUT.truth.tif
@@ -234,18 +240,25 @@ Sample makeSample(const Kind& kind, const Options& options, Interrupter* interru
   }
 }
 
+void checkVoxels(const Kind& kind, const Options& options) {
+  if (!options.voxelSize || options.voxelSize->isCube()) return;
+  const std::string given = "--voxel-size " + options.voxelSizeText;
+  if (kind.cubesOnly)
+    throw WrongUsage(given + ": samples of " + kind.name + " are made of cubes; give one edge");
+  if (!options.surface.empty() || !options.scanNoise.empty())
+    throw WrongUsage(given + ": --surface and --scan-noise need cubes; give one edge");
+}
+
 void parse(const Kind& kind, Options& options) {
   if (isOnStandardOutput(options.out))
     throw WrongUsage(options.out + ": samples are written to files only; give the path of one");
   if (!hasVdbEnding(options.out) && !isImageEnding(options.out))
     throw WrongUsage(options.out +
                      ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd or .npy");
+  if (!options.voxelSizeText.empty()) options.voxelSize = parseVoxelSize(options.voxelSizeText);
+  checkVoxels(kind, options);
   kind.parse(options);
   parseScan(options, options.scan);
-  if (!options.voxelSizeText.empty()) options.voxelSize = parseVoxelSize(options.voxelSizeText);
-  if (options.voxelSize && !options.voxelSize->isCube())
-    throw WrongUsage("--voxel-size " + options.voxelSizeText +
-                     ": samples are made of cubes; give one edge");
 }
 
 void run(const Kind& kind, const Options& options, const Common& common) {
@@ -280,7 +293,9 @@ void addKind(Verb generate, Common& common, Action& action, const Kind& kind) {
       .notNegative()  // would wrap around
       .showDefault();
   verb.option("--voxel-size", options->voxelSizeText,
-              "edge of a voxel with unit, for example 8.5um");
+              kind.cubesOnly ? "edge of a voxel with unit, for example 8.5um"
+                             : "edge of a voxel with unit, for example 8.5um; or three, 1x1x3um: "
+                               "sizes and lengths are then in shortest edges, not voxels");
   kind.add(verb, *options);
   verb.option("--surface", options->surface,
               "A:L moves the surface by a smooth random field of standard deviation A and "

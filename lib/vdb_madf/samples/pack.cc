@@ -8,6 +8,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/samples/detail/ball_union.h"
+#include "vdb_madf/samples/detail/lattice.h"
 #include "vdb_madf/samples/detail/random.h"
 #include "vdb_madf/samples/detail/sample_options.h"
 
@@ -37,8 +38,10 @@ class PackBuilder {
       : options_(options),
         interrupter_(interrupter),
         random_(options.seed, 0),
-        balls_(options.size, true),
-        boxVoxels_(double(options.size.x()) * options.size.y() * options.size.z()),
+        lattice_(options.voxelSize),
+        voxels_(lattice_.voxels(options.size)),
+        balls_(voxels_, true, lattice_),
+        boxVoxels_(double(voxels_.x()) * voxels_.y() * voxels_.z()),
         goal_(options.fraction * boxVoxels_) {
     // Centres lie in the box grown by the largest radius, so that the faces see as many balls as
     // the middle.
@@ -46,6 +49,8 @@ class PackBuilder {
     centerVolume_ =
         (options.size.x() + grow) * (options.size.y() + grow) * (options.size.z() + grow);
   }
+
+  const Coord& voxels() const { return voxels_; }
 
   MaskTree::Ptr build() {
     while (addBatch()) {
@@ -66,8 +71,8 @@ class PackBuilder {
   }
 
   bool meetsBox(const Ball& ball) const {
-    CoordBBox box = detail::ballBox(ball);
-    box.intersect({Coord(0), options_.size.offsetBy(-1)});
+    CoordBBox box = detail::ballBox(ball, lattice_);
+    box.intersect({Coord(0), voxels_.offsetBy(-1)});
     return !box.empty();
   }
 
@@ -115,6 +120,8 @@ class PackBuilder {
   PackOptions options_;
   Interrupter* interrupter_;
   detail::RandomSequence random_;
+  detail::Lattice lattice_;
+  Coord voxels_;
   detail::BallUnion balls_;
   double boxVoxels_, goal_, centerVolume_ = 0;
 };
@@ -126,14 +133,16 @@ Sample generatePack(const PackOptions& options, Interrupter* interrupter) {
   detail::checkRadii(options.minRadius, options.maxRadius);
   detail::checkFraction(options.fraction);
 
+  PackBuilder builder(options, interrupter);
   Sample sample;
-  sample.object = MaskGrid::create(PackBuilder(options, interrupter).build());
+  sample.object = MaskGrid::create(builder.build());
   detail::SourceText source("pack");
   source.size(options.size)
       .add("fraction", options.fraction)
       .range("radius", options.minRadius, options.maxRadius)
-      .add("seed", std::to_string(options.seed));
-  detail::describe(*sample.object, "object", options.size, source);
+      .add("seed", std::to_string(options.seed))
+      .edges(options.voxelSize);
+  detail::describe(*sample.object, "object", builder.voxels(), source, options.voxelSize);
   return sample;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/samples/detail/lattice.h"
 #include "vdb_madf/samples/detail/least_cells.h"
 #include "vdb_madf/samples/detail/mask_blocks.h"
 #include "vdb_madf/samples/detail/particle_placement.h"
@@ -16,27 +17,29 @@ namespace vdb_madf {
 
 namespace {
 
+using detail::Lattice;
 using detail::MaskBlocks;
 using detail::Particle;
 using detail::Vector;
 
-/// Marks the voxels of the box that lie in the particle.
-void addParticle(MaskBlocks& blocks, size_t block, const Particle& particle) {
-  CoordBBox box = particle.box();
+/// Marks the voxels of the box whose centers lie in the particle.
+void addParticle(MaskBlocks& blocks, size_t block, const Particle& particle,
+                 const Lattice& lattice) {
+  CoordBBox box = lattice.voxelsIn(particle.box());
   box.intersect(blocks.box(block));
   for (int x = box.min().x(); x <= box.max().x(); ++x)
     for (int y = box.min().y(); y <= box.max().y(); ++y)
       for (int z = box.min().z(); z <= box.max().z(); ++z)
-        if (particle.value(Vector(x, y, z)) < 1)
+        if (particle.value(lattice.place({x, y, z})) < 1)
           blocks.node(block).touchLeaf({x, y, z})->setValueOn({x, y, z});
 }
 
-MaskTree::Ptr uniteParticles(const Coord& size, const std::vector<Particle>& particles,
-                             Interrupter* interrupter) {
-  MaskBlocks blocks(size);
+MaskTree::Ptr uniteParticles(const Coord& voxels, const Lattice& lattice,
+                             const std::vector<Particle>& particles, Interrupter* interrupter) {
+  MaskBlocks blocks(voxels);
   detail::parallelFor(blocks.count(), 1, interrupter, [&](size_t begin, size_t end) {
     for (size_t block = begin; block < end; ++block)
-      for (const Particle& particle : particles) addParticle(blocks, block, particle);
+      for (const Particle& particle : particles) addParticle(blocks, block, particle, lattice);
   });
   return blocks.takeTree();
 }
@@ -45,23 +48,25 @@ class ParticleSites {
  public:
   static constexpr double kSlack = 1e-6;
 
-  explicit ParticleSites(const std::vector<Particle>& particles) : particles_(particles) {
+  ParticleSites(const std::vector<Particle>& particles, const Lattice& lattice)
+      : particles_(particles), lattice_(lattice) {
     for (const Particle& particle : particles) slopes_.push_back(particle.slope());
   }
 
   size_t size() const { return particles_.size(); }
 
-  double value(size_t i, const Coord& p) const { return particles_[i].value(detail::toVector(p)); }
+  double value(size_t i, const Coord& p) const { return particles_[i].value(lattice_.place(p)); }
 
   detail::ValueRange range(size_t i, const Coord& lower, int edge) const {
-    const double half = (edge - 1) / 2.0;
-    const double middle = particles_[i].value(detail::toVector(lower) + Vector(half));
-    const double change = slopes_[i] * half * std::sqrt(3.0);
+    const Vector half = lattice_.edges() * ((edge - 1) / 2.0);
+    const double middle = particles_[i].value(lattice_.place(lower) + half);
+    const double change = slopes_[i] * half.length();
     return {middle - change, middle + change};
   }
 
  private:
   const std::vector<Particle>& particles_;
+  const Lattice& lattice_;
   std::vector<double> slopes_;
 };
 
@@ -80,11 +85,13 @@ Sample generateParticles(const ParticleOptions& options, Interrupter* interrupte
   detail::checkRange("lognormal", options.lognormal, 0, 1);
   detail::checkRange("neck", options.neck, 0, 2);
 
+  const Lattice lattice(options.voxelSize);
+  const Coord voxels = lattice.voxels(options.size);
   const std::vector<Particle> particles = detail::placeParticles(options, interrupter);
   Sample sample;
-  sample.object = MaskGrid::create(uniteParticles(options.size, particles, interrupter));
-  sample.truth = Int32Grid::create(
-      detail::LeastCells(ParticleSites(particles)).label(sample.object->tree(), interrupter));
+  sample.object = MaskGrid::create(uniteParticles(voxels, lattice, particles, interrupter));
+  sample.truth = Int32Grid::create(detail::LeastCells(ParticleSites(particles, lattice))
+                                       .label(sample.object->tree(), interrupter));
   detail::SourceText source("particles");
   source.size(options.size)
       .add("shape", particleShapeNames()[size_t(options.shape)])
@@ -92,9 +99,10 @@ Sample generateParticles(const ParticleOptions& options, Interrupter* interrupte
       .range("radius", options.minRadius, options.maxRadius)
       .add("lognormal", options.lognormal)
       .add("neck", options.neck)
-      .add("seed", std::to_string(options.seed));
-  detail::describe(*sample.object, "object", options.size, source);
-  detail::describe(*sample.truth, "truth", options.size, source);
+      .add("seed", std::to_string(options.seed))
+      .edges(options.voxelSize);
+  detail::describe(*sample.object, "object", voxels, source, options.voxelSize);
+  detail::describe(*sample.truth, "truth", voxels, source, options.voxelSize);
   return sample;
 }
 

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "vdb_madf/base/voxel_size.h"
 #include "vdb_madf/samples/sample.h"
 
 namespace vdb_madf {
@@ -46,6 +48,8 @@ struct ParticleOptions {
   /// geometric mean of the two, and a radius beyond them is drawn again. 0..1
   double lognormal = 0;
   double neck = 0.82;  ///< 0..2
+  /// Of voxels that need not be cubes: see sample.h.
+  std::optional<VoxelSize> voxelSize;
 };
 Sample generateParticles(const ParticleOptions& options, Interrupter* interrupter = nullptr);
 

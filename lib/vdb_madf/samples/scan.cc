@@ -102,9 +102,12 @@ class GrayChange : public detail::ObjectChange {
   SmoothNoise noise_;
 };
 
-void describe(Sample& sample, const Coord& size, const detail::SourceText& source) {
-  detail::describe(*sample.object, "object", size, source);
-  if (sample.truth) detail::describe(*sample.truth, "truth", size, source);
+/// As the sample that this one comes from, but for the source.
+void describe(Sample& result, const Sample& sample, const detail::SourceText& source) {
+  const Coord size = storedDomain(*sample.object)->box().dim();
+  const auto voxelSize = storedVoxelSize(*sample.object);
+  detail::describe(*result.object, "object", size, source, voxelSize);
+  if (result.truth) detail::describe(*result.truth, "truth", size, source, voxelSize);
 }
 
 }  // namespace
@@ -119,20 +122,21 @@ void checkScan(const ScanOptions& options) {
 
 Sample scanned(const Sample& sample, const ScanOptions& options, Interrupter* interrupter) {
   checkScan(options);
-  const Coord size = storedDomain(*sample.object)->box().dim();
+  if (options.surface > 0 || options.blur > 0 || options.noise > 0)
+    requireCubicVoxels(*sample.object, "making a scan of a sample");
   auto source = detail::SourceText::of(*sample.object);
   Sample result = sample;
   if (options.surface > 0) {
     const SurfaceChange change(result, options);
     result = detail::changed(result, change, change.reach(), interrupter);
-    describe(result, size, source.range("surface", options.surface, options.surfaceLength));
+    describe(result, sample, source.range("surface", options.surface, options.surfaceLength));
   }
   if (options.blur > 0 || options.noise > 0) {
     result = detail::changed(result, GrayChange(result, options), kNoiseReach, interrupter);
     source.add("scan-noise", detail::shortestDecimal(options.blur) + ":" +
                                  detail::shortestDecimal(options.noise) + ":" +
                                  detail::shortestDecimal(options.noiseLength));
-    describe(result, size, source);
+    describe(result, sample, source);
   }
   return result;
 }

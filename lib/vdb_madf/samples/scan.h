@@ -9,8 +9,8 @@
 
 namespace vdb_madf {
 
-/// What makes a sample look like a scan of real particles, in this order; lengths in voxels. Beyond
-/// a face the object goes on as its voxels at the face.
+/// What makes a sample of cubes look like a scan of real particles, in this order; lengths in voxels.
+/// Beyond a face the object goes on as its voxels at the face.
 struct ScanOptions {
   uint64_t seed = 1;
 
@@ -36,7 +36,7 @@ void checkScan(const ScanOptions& options);
 /// grain of the nearest true voxel (tie: the smaller number); if noise made it and no true voxel
 /// lies within 2 voxels, it is object without a true grain: inactive in the truth. Grains that have
 /// lost all voxels leave no gap in the numbers.
-/// @throw InvalidInput for options out of range; Interrupted.
+/// @throw InvalidInput for options out of range, or voxels that are no cubes; Interrupted.
 Sample scanned(const Sample& sample, const ScanOptions& options,
                Interrupter* interrupter = nullptr);
 

@@ -9,6 +9,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/samples/detail/ball_union.h"
 #include "vdb_madf/samples/detail/gaussian_blur.h"
+#include "vdb_madf/samples/detail/lattice.h"
 #include "vdb_madf/samples/detail/mask_blocks.h"
 #include "vdb_madf/samples/detail/power_cells.h"
 #include "vdb_madf/samples/detail/sample_options.h"
@@ -21,6 +22,7 @@ namespace {
 
 using detail::Ball;
 using detail::FloatBox;
+using detail::Lattice;
 using detail::MaskBlocks;
 
 // The surface: rounded by the blur, roughened by the noise, cut a little outside the balls, where
@@ -33,8 +35,8 @@ constexpr float kCut = 0.45f;
 /// Stream 0 places the balls.
 constexpr uint64_t kNoiseStream = 1;
 
-/// 1 inside the balls, 0 outside; also beyond the faces of the sample, so that the blur sees no
-/// surface there.
+/// 1 inside the balls, 0 outside, at points of Z^3; also beyond the faces of the sample, so that the
+/// blur sees no surface there.
 FloatBox indicator(const CoordBBox& box, const std::vector<Ball>& balls) {
   FloatBox field(box);
   for (const Ball& ball : balls) {
@@ -51,15 +53,15 @@ FloatBox indicator(const CoordBBox& box, const std::vector<Ball>& balls) {
   return field;
 }
 
-/// Fills the object block by block; only the blocks at work are held as dense arrays.
+/// Fills the object block by block; only the pieces at work are held as dense arrays.
 class SurfaceBuilder {
  public:
-  SurfaceBuilder(const SinteredOptions& options, const std::vector<Ball>& balls)
-      : options_(options),
-        balls_(balls),
-        blurKernel_(detail::gaussianKernel(kBlurSigma)),
-        noiseKernel_(detail::gaussianKernel(kNoiseSigma)),
-        blocks_(options.size) {}
+  SurfaceBuilder(const SinteredOptions& options, const std::vector<Ball>& balls,
+                 const Lattice& lattice, const Coord& voxels)
+      : options_(options), balls_(balls), lattice_(lattice), blocks_(voxels) {
+    for (int axis = 0; axis < 3; ++axis)
+      piece_[axis] = std::max(1, int(MaskBlocks::kEdge / lattice.edge(axis)));
+  }
 
   MaskTree::Ptr build(Interrupter* interrupter) {
     detail::parallelFor(blocks_.count(), 1, interrupter, [&](size_t begin, size_t end) {
@@ -70,39 +72,50 @@ class SurfaceBuilder {
 
  private:
   FloatBox surfaceField(const CoordBBox& box) const {
-    CoordBBox seen = box;
-    seen.expand(detail::kernelRadius(blurKernel_));
-    FloatBox field = detail::blurred(indicator(seen, balls_), blurKernel_, nullptr);
+    CoordBBox seen = detail::pointsSeen(box, lattice_, kBlurSigma);
+    FloatBox field = detail::blurredAt(box, lattice_, indicator(seen, balls_), kBlurSigma);
     if (options_.roughness == 0) return field;
-    seen = box;
-    seen.expand(detail::kernelRadius(noiseKernel_));
-    const FloatBox noise = detail::blurred(
-        detail::whiteNoise(seen, options_.seed, kNoiseStream, nullptr), noiseKernel_, nullptr);
+    seen = detail::pointsSeen(box, lattice_, kNoiseSigma);
+    const FloatBox noise = detail::blurredAt(
+        box, lattice_, detail::whiteNoise(seen, options_.seed, kNoiseStream, nullptr), kNoiseSigma);
     const float amplitude = float(options_.roughness * kNoiseAmplitude);
     for (size_t i = 0; i < field.values.size(); ++i) field.values[i] += amplitude * noise.values[i];
     return field;
   }
 
+  /// In pieces that see about as many points as a block of cubes.
   void fillBlock(size_t block) {
     const CoordBBox box = blocks_.box(block);
+    for (int x = box.min().x(); x <= box.max().x(); x += piece_.x())
+      for (int y = box.min().y(); y <= box.max().y(); y += piece_.y())
+        for (int z = box.min().z(); z <= box.max().z(); z += piece_.z()) {
+          CoordBBox piece(Coord(x, y, z), piece_.offsetBy(-1) + Coord(x, y, z));
+          piece.intersect(box);
+          fillPiece(block, piece);
+        }
+  }
+
+  void fillPiece(size_t block, const CoordBBox& box) {
     const FloatBox field = surfaceField(box);
     for (int x = box.min().x(); x <= box.max().x(); ++x)
       for (int y = box.min().y(); y <= box.max().y(); ++y)
-        for (int z = box.min().z(); z <= box.max().z(); z += 8) {
+        for (int z = box.min().z(), next; z <= box.max().z(); z = next) {
+          next = (z | 7) + 1;  // the next leaf
           const float* values = field.values.data() + field.offset(x, y, z);
-          const int count = std::min(8, box.max().z() + 1 - z);
+          const int count = std::min(next, box.max().z() + 1) - z;
           uint64_t row = 0;
           for (int i = 0; i < count; ++i) row |= uint64_t(values[i] >= kCut) << i;
           if (row == 0) continue;
           auto& mask = blocks_.node(block).touchLeaf({x, y, z})->getValueMask();
-          mask.getWord<uint64_t>(x & 7) |= row << (8 * (y & 7));
+          mask.getWord<uint64_t>(x & 7) |= row << (8 * (y & 7) + (z & 7));
         }
   }
 
   SinteredOptions options_;
   const std::vector<Ball>& balls_;
-  std::vector<float> blurKernel_, noiseKernel_;
+  const Lattice& lattice_;
   MaskBlocks blocks_;
+  Coord piece_;
 };
 
 }  // namespace
@@ -114,19 +127,24 @@ Sample generateSintered(const SinteredOptions& options, Interrupter* interrupter
   detail::checkRange("neck", options.neck, 0, 10);
   detail::checkRange("roughness", options.roughness, 0, 10);
 
+  const Lattice lattice(options.voxelSize);
+  const Coord voxels = lattice.voxels(options.size);
   const std::vector<Ball> balls = detail::placeSintered(options, interrupter);
   Sample sample;
-  sample.object = MaskGrid::create(SurfaceBuilder(options, balls).build(interrupter));
-  sample.truth = Int32Grid::create(detail::powerCells(sample.object->tree(), balls, interrupter));
+  sample.object =
+      MaskGrid::create(SurfaceBuilder(options, balls, lattice, voxels).build(interrupter));
+  sample.truth =
+      Int32Grid::create(detail::powerCells(sample.object->tree(), balls, interrupter, lattice));
   detail::SourceText source("sintered");
   source.size(options.size)
       .add("count", std::to_string(options.count))
       .range("radius", options.minRadius, options.maxRadius)
       .add("neck", options.neck)
       .add("roughness", options.roughness)
-      .add("seed", std::to_string(options.seed));
-  detail::describe(*sample.object, "object", options.size, source);
-  detail::describe(*sample.truth, "truth", options.size, source);
+      .add("seed", std::to_string(options.seed))
+      .edges(options.voxelSize);
+  detail::describe(*sample.object, "object", voxels, source, options.voxelSize);
+  detail::describe(*sample.truth, "truth", voxels, source, options.voxelSize);
   return sample;
 }
 

@@ -4,14 +4,17 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
+#include "vdb_madf/base/voxel_size.h"
 #include "vdb_madf/samples/sample.h"
 
 namespace vdb_madf {
 
 /// Sintered balls with known grains: centres uniform in the box, at least neck * (ri + rj) apart,
 /// real radii uniform in [minRadius, maxRadius]; the indicator of the union, Gaussian-blurred
-/// (sigma 2), plus roughness * 1.5 * (unit white noise blurred with sigma 1), cut at 0.45.
+/// (sigma 2), plus roughness * 1.5 * (unit white noise blurred with sigma 1), cut at 0.45. Indicator
+/// and noise live on cubes; the Gaussians give their values at the centers of other voxels.
 /// truth = power cell of the input balls. Each ball keeps its radius and tries up to 50000 centres;
 /// balls continue beyond the faces, so that the blur rounds nothing off there. A ball that owns no
 /// object voxel is no grain. Works in blocks of 128^3: no dense array over the box.
@@ -22,6 +25,8 @@ struct SinteredOptions {
   double minRadius = 12, maxRadius = 22;
   double neck = 0.82;    ///< 0..10
   double roughness = 0;  ///< 0..10; 1: the noise has 0.22 standard deviation
+  /// Of voxels that need not be cubes: see sample.h.
+  std::optional<VoxelSize> voxelSize;
 };
 Sample generateSintered(const SinteredOptions& options, Interrupter* interrupter = nullptr);
 

@@ -36,22 +36,26 @@ void checkOptions(const SphereOptions& options) {
 
 Sample generateSpheres(const SphereOptions& options, Interrupter* interrupter) {
   checkOptions(options);
+  const detail::Lattice lattice(options.voxelSize);
+  const Coord voxels = lattice.voxels(options.size);
   const std::vector<detail::Ball> balls = detail::placeSpheres(options, interrupter);
-  detail::BallUnion object(options.size, false);
+  detail::BallUnion object(voxels, false, lattice);
   object.add(balls, interrupter);
 
   Sample sample;
   sample.object = MaskGrid::create(object.takeTree());
-  sample.truth = Int32Grid::create(detail::powerCells(sample.object->tree(), balls, interrupter));
+  sample.truth =
+      Int32Grid::create(detail::powerCells(sample.object->tree(), balls, interrupter, lattice));
   detail::SourceText source("spheres");
   source.size(options.size)
       .add("count", std::to_string(options.count))
       .range("radius", options.minRadius, options.maxRadius)
       .add("overlap", options.overlap)
       .add("max-cover", std::to_string(options.maxCover))
-      .add("seed", std::to_string(options.seed));
-  detail::describe(*sample.object, "object", options.size, source);
-  detail::describe(*sample.truth, "truth", options.size, source);
+      .add("seed", std::to_string(options.seed))
+      .edges(options.voxelSize);
+  detail::describe(*sample.object, "object", voxels, source, options.voxelSize);
+  detail::describe(*sample.truth, "truth", voxels, source, options.voxelSize);
   return sample;
 }
 

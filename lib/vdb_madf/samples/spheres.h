@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
+#include "vdb_madf/base/voxel_size.h"
 #include "vdb_madf/samples/sample.h"
 
 namespace vdb_madf {
@@ -22,7 +24,8 @@ namespace vdb_madf {
 ///   may be widest between their centres: it then has more grains than balls, by any measure of
 ///   width. By default balls meet in pairs only; 0 asks for nothing.
 /// (A Markov chain finds a placement: moves of single balls, first towards the overlap, then 100
-/// for each ball at that overlap.)
+/// for each ball at that overlap.) Of voxels that are no cubes all this, the overlap
+/// included, holds on the cubes of their shortest edge.
 struct SphereOptions {
   Coord size{300, 300, 300};
   uint64_t seed = 1;
@@ -30,6 +33,8 @@ struct SphereOptions {
   double minRadius = 20, maxRadius = 30;
   double overlap = 0.084;  ///< 0..100
   int maxCover = 2;        ///< 0: any; else 1 or more
+  /// Of voxels that need not be cubes: see sample.h.
+  std::optional<VoxelSize> voxelSize;
 };
 Sample generateSpheres(const SphereOptions& options, Interrupter* interrupter = nullptr);
 

@@ -26,13 +26,13 @@ struct LeafColumn {
   RowRange rows[64];  // at x*8 + y
   int zMin, zMax;
 
-  LeafColumn(const Ball& ball, const CoordBBox& box, int leafX, int leafY)
+  LeafColumn(const Ball& ball, const Lattice& lattice, const CoordBBox& box, int leafX, int leafY)
       : zMin(box.max().z() + 1), zMax(box.min().z() - 1) {
     const int x0 = std::max(leafX, box.min().x()), x1 = std::min(leafX + 7, box.max().x());
     const int y0 = std::max(leafY, box.min().y()), y1 = std::min(leafY + 7, box.max().y());
     for (int x = x0; x <= x1; ++x)
       for (int y = y0; y <= y1; ++y) {
-        const RowRange row = ballRow(ball, x, y, box.min().z(), box.max().z());
+        const RowRange row = ballRow(ball, x, y, box.min().z(), box.max().z(), lattice);
         rows[(x - leafX) * 8 + (y - leafY)] = row;
         if (row.last < row.first) continue;
         zMin = std::min(zMin, row.first);
@@ -55,14 +55,15 @@ struct LeafColumn {
 
 /// Calls visit(leafOrigin, bits) for each leaf of the box that the ball may meet.
 template <typename Visit>
-void visitLeaves(const Ball& ball, const CoordBBox& within, const Visit& visit) {
-  CoordBBox box = ballBox(ball);
+void visitLeaves(const Ball& ball, const Lattice& lattice, const CoordBBox& within,
+                 const Visit& visit) {
+  CoordBBox box = ballBox(ball, lattice);
   box.intersect(within);
   if (box.empty()) return;
   LeafBits words;
   for (int x = box.min().x() & ~7; x <= box.max().x(); x += 8)
     for (int y = box.min().y() & ~7; y <= box.max().y(); y += 8) {
-      const LeafColumn column(ball, box, x, y);
+      const LeafColumn column(ball, lattice, box, x, y);
       for (int z = column.zMin & ~7; z <= column.zMax; z += 8) {
         column.bits(z, words);
         visit(Coord(x, y, z), words);
@@ -76,9 +77,10 @@ int64_t countAll(const LeafBits& words) {
   return count;
 }
 
-int64_t countNewIn(const Node* node, const CoordBBox& box, const Ball& ball) {
+int64_t countNewIn(const Node* node, const CoordBBox& box, const Ball& ball,
+                   const Lattice& lattice) {
   int64_t added = 0;
-  visitLeaves(ball, box, [&](const Coord& origin, LeafBits& words) {
+  visitLeaves(ball, lattice, box, [&](const Coord& origin, LeafBits& words) {
     if (node) {
       if (const Leaf* leaf = node->probeConstLeaf(origin)) {
         for (int x = 0; x < 8; ++x) words[x] &= ~leaf->getValueMask().getWord<uint64_t>(x);
@@ -91,9 +93,10 @@ int64_t countNewIn(const Node* node, const CoordBBox& box, const Ball& ball) {
   return added;
 }
 
-int64_t addTo(Node& node, const CoordBBox& box, const Ball& ball, bool fullLeavesAsTiles) {
+int64_t addTo(Node& node, const CoordBBox& box, const Ball& ball, const Lattice& lattice,
+              bool fullLeavesAsTiles) {
   int64_t added = 0;
-  visitLeaves(ball, box, [&](const Coord& origin, const LeafBits& words) {
+  visitLeaves(ball, lattice, box, [&](const Coord& origin, const LeafBits& words) {
     Leaf* leaf = node.probeLeaf(origin);
     if (!leaf) {
       if (node.isValueOn(origin)) return;
@@ -129,47 +132,51 @@ void sortByCenter(std::vector<Ball>& balls) {
   });
 }
 
-RowRange ballRow(const Ball& ball, int x, int y, int zMin, int zMax) {
-  const double dx = x - ball.x, dy = y - ball.y;
+RowRange ballRow(const Ball& ball, int x, int y, int zMin, int zMax, const Lattice& lattice) {
+  const double dx = lattice.place(0, x) - ball.x, dy = lattice.place(1, y) - ball.y;
   const double inPlane = dx * dx + dy * dy, square = ball.radius * ball.radius;
   if (!(inPlane < square)) return {zMin, zMin - 1};
   const auto inside = [&](int z) {
-    const double dz = z - ball.z;
+    const double dz = lattice.place(2, z) - ball.z;
     return inPlane + dz * dz < square;
   };
   // The root gives the ends to within a voxel, the comparison decides.
   const double half = std::sqrt(square - inPlane);
-  int first = std::max(zMin, int(ball.z - half) - 1);
-  int last = std::min(zMax, int(ball.z + half) + 1);
+  int first = std::max(zMin, int(lattice.index(2, ball.z - half)) - 1);
+  int last = std::min(zMax, int(lattice.index(2, ball.z + half)) + 1);
   while (first <= last && !inside(first)) ++first;
   while (first <= last && !inside(last)) --last;
   return {first, last};
 }
 
-CoordBBox ballBox(const Ball& ball) {
-  const double r = ball.radius;
-  return {Coord(int(ball.x - r) - 1, int(ball.y - r) - 1, int(ball.z - r) - 1),
-          Coord(int(ball.x + r) + 1, int(ball.y + r) + 1, int(ball.z + r) + 1)};
+CoordBBox ballBox(const Ball& ball, const Lattice& lattice) {
+  const double center[] = {ball.x, ball.y, ball.z};
+  CoordBBox box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min()[axis] = int(lattice.index(axis, center[axis] - ball.radius)) - 1;
+    box.max()[axis] = int(lattice.index(axis, center[axis] + ball.radius)) + 1;
+  }
+  return box;
 }
 
 int64_t BallUnion::countNew(const Ball& ball) const {
   int64_t added = 0;
-  visitBlocks(blocks_, ballBox(ball), [&](size_t block) {
-    added += countNewIn(blocks_.probe(block), blocks_.box(block), ball);
+  visitBlocks(blocks_, ballBox(ball, lattice_), [&](size_t block) {
+    added += countNewIn(blocks_.probe(block), blocks_.box(block), ball, lattice_);
   });
   return added;
 }
 
 void BallUnion::add(const Ball& ball) {
-  visitBlocks(blocks_, ballBox(ball), [&](size_t block) {
-    voxelCount_ += addTo(blocks_.node(block), blocks_.box(block), ball, tiles_);
+  visitBlocks(blocks_, ballBox(ball, lattice_), [&](size_t block) {
+    voxelCount_ += addTo(blocks_.node(block), blocks_.box(block), ball, lattice_, tiles_);
   });
 }
 
 void BallUnion::add(const std::vector<Ball>& balls, Interrupter* interrupter) {
   std::vector<std::vector<uint32_t>> ballsOf(blocks_.count());
   for (size_t i = 0; i < balls.size(); ++i)
-    visitBlocks(blocks_, ballBox(balls[i]),
+    visitBlocks(blocks_, ballBox(balls[i], lattice_),
                 [&](size_t block) { ballsOf[block].push_back(uint32_t(i)); });
 
   // A union and its count do not depend on the order of the balls.
@@ -179,7 +186,7 @@ void BallUnion::add(const std::vector<Ball>& balls, Interrupter* interrupter) {
       if (ballsOf[block].empty()) continue;
       int64_t here = 0;
       for (const uint32_t i : ballsOf[block])
-        here += addTo(blocks_.node(block), blocks_.box(block), balls[i], tiles_);
+        here += addTo(blocks_.node(block), blocks_.box(block), balls[i], lattice_, tiles_);
       added += here;
     }
   });

@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/samples/detail/lattice.h"
 #include "vdb_madf/samples/detail/mask_blocks.h"
 
 namespace vdb_madf::detail {
 
-/// The open ball |p - c| < r: voxel p is inside if (dx*dx + dy*dy) + dz*dz < r*r in doubles.
+/// The open ball |p - c| < r, in the unit of length of a lattice: the voxel at p is inside if
+/// (dx*dx + dy*dy) + dz*dz < r*r in doubles.
 struct Ball {
   double x = 0, y = 0, z = 0, radius = 0;
 };
@@ -25,16 +27,17 @@ struct RowRange {
 };
 
 /// The voxels of row (x, y) inside the ball, cut to [zMin, zMax].
-RowRange ballRow(const Ball& ball, int x, int y, int zMin, int zMax);
+RowRange ballRow(const Ball& ball, int x, int y, int zMin, int zMax, const Lattice& lattice = {});
 
 /// A box that contains the ball's voxels.
-CoordBBox ballBox(const Ball& ball);
+CoordBBox ballBox(const Ball& ball, const Lattice& lattice = {});
 
-/// The union of balls in [0, size - 1], grown ball by ball, with an exact count of its voxels.
-/// Memory: the mask leaves on the balls' surfaces; full leaves become tiles if asked for.
+/// The union of balls in the voxels [0, size - 1], grown ball by ball, with an exact count of its
+/// voxels. Memory: the mask leaves on the balls' surfaces; full leaves become tiles if asked for.
 class BallUnion {
  public:
-  BallUnion(const Coord& size, bool fullLeavesAsTiles) : blocks_(size), tiles_(fullLeavesAsTiles) {}
+  BallUnion(const Coord& size, bool fullLeavesAsTiles, const Lattice& lattice = {})
+      : lattice_(lattice), blocks_(size), tiles_(fullLeavesAsTiles) {}
 
   /// The number of voxels that the ball would add.
   int64_t countNew(const Ball& ball) const;
@@ -46,6 +49,7 @@ class BallUnion {
   MaskTree::Ptr takeTree() { return blocks_.takeTree(); }
 
  private:
+  Lattice lattice_;
   MaskBlocks blocks_;
   bool tiles_;
   int64_t voxelCount_ = 0;

@@ -4,6 +4,7 @@
 #include "vdb_madf/samples/detail/gaussian_blur.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/detail/portable_math.h"
@@ -43,10 +44,57 @@ FloatBox convolved(const FloatBox& in, const std::vector<float>& kernel, int axi
   return out;
 }
 
+int radiusOf(double sigma) {
+  return int(4 * sigma + 0.5);
+}
+
+/// The points that a Gaussian around a place sees along an axis, and their weights.
+struct Window {
+  int first;
+  std::vector<float> weights;
+
+  Window(double place, double sigma) : first(int(std::ceil(place - radiusOf(sigma)))) {
+    const int last = int(std::floor(place + radiusOf(sigma)));
+    std::vector<double> values;
+    double sum = 0;
+    for (int i = first; i <= last; ++i) {
+      values.push_back(exponential(-((i - place) * (i - place) / (2 * sigma * sigma))));
+      sum += values.back();
+    }
+    for (const double value : values) weights.push_back(float(value / sum));
+  }
+};
+
+/// The box of points with the voxels of the lattice along one axis.
+FloatBox convolvedAt(const CoordBBox& voxels, const Lattice& lattice, const FloatBox& in,
+                     double sigma, int axis) {
+  CoordBBox box = in.box;
+  box.min()[axis] = voxels.min()[axis];
+  box.max()[axis] = voxels.max()[axis];
+  FloatBox out(box);
+  const Coord dim = in.box.dim();
+  const ptrdiff_t stride = axis == 0 ? ptrdiff_t(dim.y()) * dim.z() : axis == 1 ? dim.z() : 1;
+  for (int i = box.min()[axis]; i <= box.max()[axis]; ++i) {
+    const Window window(lattice.place(axis, i), sigma);
+    CoordBBox layer = box;
+    layer.min()[axis] = layer.max()[axis] = i;
+    for (auto p = layer.begin(); p; ++p) {
+      Coord from = *p;
+      from[axis] = window.first;
+      const float* value = in.values.data() + in.offset(from.x(), from.y(), from.z());
+      float sum = 0;
+      for (size_t k = 0; k < window.weights.size(); ++k)
+        sum += window.weights[k] * value[ptrdiff_t(k) * stride];
+      out.values[out.offset((*p).x(), (*p).y(), (*p).z())] = sum;
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<float> gaussianKernel(double sigma) {
-  const int radius = int(4 * sigma + 0.5);
+  const int radius = radiusOf(sigma);
   std::vector<double> weights;
   double sum = 0;
   for (int k = 0; k <= radius; ++k) {
@@ -60,6 +108,23 @@ std::vector<float> gaussianKernel(double sigma) {
 
 FloatBox blurred(FloatBox field, const std::vector<float>& kernel, Interrupter* interrupter) {
   for (int axis = 2; axis >= 0; --axis) field = convolved(field, kernel, axis, interrupter);
+  return field;
+}
+
+CoordBBox pointsSeen(const CoordBBox& voxels, const Lattice& lattice, double sigma) {
+  CoordBBox points;
+  for (int axis = 0; axis < 3; ++axis) {
+    points.min()[axis] = int(std::ceil(lattice.place(axis, voxels.min()[axis]) - radiusOf(sigma)));
+    points.max()[axis] = int(std::floor(lattice.place(axis, voxels.max()[axis]) + radiusOf(sigma)));
+  }
+  return points;
+}
+
+FloatBox blurredAt(const CoordBBox& voxels, const Lattice& lattice, FloatBox field, double sigma) {
+  const std::vector<float> kernel = gaussianKernel(sigma);
+  for (int axis = 2; axis >= 0; --axis)
+    field = lattice.edge(axis) == 1 ? convolved(field, kernel, axis, nullptr)
+                                    : convolvedAt(voxels, lattice, field, sigma, axis);
   return field;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/samples/detail/lattice.h"
 
 namespace vdb_madf::detail {
 
@@ -37,5 +38,12 @@ inline int kernelRadius(const std::vector<float>& kernel) {
 /// The separable convolution where the kernel fits: each face moves in by the kernel's radius.
 /// Parallel if the box is large. @throw Interrupted
 FloatBox blurred(FloatBox field, const std::vector<float>& kernel, Interrupter* interrupter);
+
+/// The points of Z^3 that a Gaussian, cut at 4 sigma, sees from voxels of a lattice.
+CoordBBox pointsSeen(const CoordBBox& voxels, const Lattice& lattice, double sigma);
+
+/// What a field on these points is at the voxels when it is blurred: of cubes as above, along longer
+/// edges by a Gaussian around the place of each voxel, which need not be one of the points.
+FloatBox blurredAt(const CoordBBox& voxels, const Lattice& lattice, FloatBox field, double sigma);
 
 }  // namespace vdb_madf::detail

@@ -32,10 +32,6 @@ struct Particle {
   CoordBBox box(double scale = 1) const;
 };
 
-inline Vector toVector(const Coord& p) {
-  return {double(p.x()), double(p.y()), double(p.z())};
-}
-
 /// A particle at the origin, turned at random, with the volume of a ball of this radius.
 Particle drawParticle(ParticleShape shape, double radius, RandomSequence& random);
 

@@ -14,13 +14,15 @@ class PowerSites {
   /// Far above the rounding of squared distances (2e9 * 2^-52) and far below a voxel.
   static constexpr double kSlack = 1e-3;
 
-  explicit PowerSites(const std::vector<Ball>& balls) : balls_(balls) {}
+  PowerSites(const std::vector<Ball>& balls, const Lattice& lattice)
+      : balls_(balls), lattice_(lattice) {}
 
   size_t size() const { return balls_.size(); }
 
   double value(size_t i, const Coord& p) const {
     const Ball& ball = balls_[i];
-    const double dx = p.x() - ball.x, dy = p.y() - ball.y, dz = p.z() - ball.z;
+    const double dx = lattice_.place(0, p.x()) - ball.x, dy = lattice_.place(1, p.y()) - ball.y,
+                 dz = lattice_.place(2, p.z()) - ball.z;
     return dx * dx + dy * dy + dz * dz - ball.radius * ball.radius;
   }
 
@@ -29,8 +31,8 @@ class PowerSites {
     const double center[3] = {ball.x, ball.y, ball.z};
     double nearest = 0, farthest = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const double below = center[axis] - lower[axis];
-      const double above = lower[axis] + edge - 1 - center[axis];
+      const double below = center[axis] - lattice_.place(axis, lower[axis]);
+      const double above = lattice_.place(axis, lower[axis] + edge - 1) - center[axis];
       const double outside = std::max({0.0, -below, above < 0 ? -above : 0.0});
       const double reach = std::max(below, above);
       nearest += outside * outside;
@@ -42,13 +44,14 @@ class PowerSites {
 
  private:
   const std::vector<Ball>& balls_;
+  const Lattice& lattice_;
 };
 
 }  // namespace
 
 Int32Tree::Ptr powerCells(const MaskTree& object, const std::vector<Ball>& balls,
-                          Interrupter* interrupter) {
-  return LeastCells(PowerSites(balls)).label(object, interrupter);
+                          Interrupter* interrupter, const Lattice& lattice) {
+  return LeastCells(PowerSites(balls, lattice)).label(object, interrupter);
 }
 
 }  // namespace vdb_madf::detail

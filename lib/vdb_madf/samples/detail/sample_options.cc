@@ -71,15 +71,22 @@ SourceText& SourceText::range(const char* option, double lower, double upper) {
   return add(option, number(lower) + ":" + number(upper));
 }
 
+SourceText& SourceText::edges(const std::optional<VoxelSize>& voxelSize) {
+  if (!voxelSize || voxelSize->isCube()) return *this;
+  const auto edges = voxelSize->edgesInUnit();
+  return add("voxel-size", number(edges[0]) + "x" + number(edges[1]) + "x" + number(edges[2]) +
+                               voxelSize->unit());
+}
+
 std::string SourceText::number(double value) {
   return shortestDecimal(value);
 }
 
 void describe(openvdb::GridBase& grid, const std::string& name, const Coord& size,
-              const SourceText& source) {
+              const SourceText& source, const std::optional<VoxelSize>& voxelSize) {
   grid.setName(name);
   setDomain(grid, CoordBBox(Coord(0), size.offsetBy(-1)));
-  setVoxelSize(grid, std::nullopt);
+  setVoxelSize(grid, voxelSize);
   grid.insertMeta(kSourceKey, openvdb::StringMetadata(source.str()));
 }
 

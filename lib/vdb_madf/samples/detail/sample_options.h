@@ -3,8 +3,10 @@
 
 #pragma once
 
+#include <optional>
 #include <string>
 
+#include "vdb_madf/base/voxel_size.h"
 #include "vdb_madf/grids/grid_types.h"
 
 namespace vdb_madf::detail {
@@ -27,6 +29,8 @@ class SourceText {
   SourceText& add(const char* option, const std::string& value);
   SourceText& add(const char* option, double value) { return add(option, number(value)); }
   SourceText& range(const char* option, double lower, double upper);
+  /// Of voxels that are no cubes.
+  SourceText& edges(const std::optional<VoxelSize>& voxelSize);
   const std::string& str() const { return text_; }
 
  private:
@@ -37,8 +41,9 @@ class SourceText {
   std::string text_;
 };
 
-/// Gives a sample's grid its name, the domain [0, size - 1] and its source.
+/// Gives a sample's grid its name, the domain [0, size - 1] in voxels, its source and the size of its
+/// voxels.
 void describe(openvdb::GridBase& grid, const std::string& name, const Coord& size,
-              const SourceText& source);
+              const SourceText& source, const std::optional<VoxelSize>& voxelSize = {});
 
 }  // namespace vdb_madf::detail

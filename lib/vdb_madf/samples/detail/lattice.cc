@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/samples/detail/lattice.h"
+
+#include <cmath>
+#include <string>
+
+#include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/errors.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+constexpr double kDecimals = 1e9;
+/// A box is covered if this part of a voxel is missing.
+constexpr double kTolerance = 1e-6;
+
+}  // namespace
+
+Lattice::Lattice(const std::optional<VoxelSize>& voxelSize) {
+  if (!voxelSize || voxelSize->isCube()) return;
+  for (int axis = 0; axis < 3; ++axis)
+    edges_[axis] =
+        std::round(voxelSize->edges()[size_t(axis)] / voxelSize->shortestEdge() * kDecimals) /
+        kDecimals;
+}
+
+Coord Lattice::voxels(const Coord& size) const {
+  Coord result;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (edges_[axis] > size[axis] + kTolerance)
+      throw InvalidInput(std::string("a voxel is longer than the sample along ") + "xyz"[axis] +
+                         ", where it measures " + shortestDecimal(edges_[axis]) +
+                         " of its shortest edges, the sample " + std::to_string(size[axis]) +
+                         ": use a larger size");
+    result[axis] = int(std::ceil(size[axis] / edges_[axis] - kTolerance));
+  }
+  return result;
+}
+
+CoordBBox Lattice::voxelsIn(const CoordBBox& places) const {
+  CoordBBox result;
+  for (int axis = 0; axis < 3; ++axis) {
+    result.min()[axis] = int(std::floor(index(axis, places.min()[axis])));
+    result.max()[axis] = int(std::ceil(index(axis, places.max()[axis])));
+  }
+  return result;
+}
+
+}  // namespace vdb_madf::detail
