@@ -73,6 +73,10 @@ void convertLabels(const Options& o, const Common& common) {
         o.input.path + ": has the label " + std::to_string(range.min()) +
         "; grains have numbers above 0, and 0 is background: set negative ones to 0");
   labels->setName("grain");
+  if (!hasVdbEnding(o.out)) {
+    writeGridAsImage(o.out, *labels, outputType(o), o.input.path, common);
+    return;
+  }
   if (o.boundary != "auto") setBoundary(*labels, parseBoundary(o.boundary));
   writeVdb(o.out, {labels}, common.progress);
   common.progress->end();
@@ -159,13 +163,11 @@ void addConvert(Verb command, Common& common, Action& action) {
     o->input.outputs = {o->out};
     o->input.typeIsOfInput = hasVdbEnding(o->out);
     o->input.parse();
-    if (o->labels && !hasVdbEnding(o->out))
+    if (o->labels && !hasVdbEnding(o->out) && !o->input.region.any())
       throw WrongUsage("--labels makes a .vdb; images keep their values in any case: leave it out");
     if (o->labels && o->input.selection)
       throw WrongUsage(
           "--labels takes all values: leave out --phase, --threshold, --range, --invert");
-    if (o->labels && o->input.region.any())
-      throw WrongUsage("--labels takes all of IN: leave out --roi and --crop");
     if (o->labels && (readsGray(o->input.gray) || o->input.gray.despeckle > 0))
       throw WrongUsage(
           "--labels takes values as they are: leave out --median, --smooth, --despeckle");
