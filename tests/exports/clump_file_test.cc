@@ -6,6 +6,7 @@
 
 #include <tbb/global_control.h>
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -16,6 +17,7 @@
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/method/voxel_weights.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
@@ -235,6 +237,96 @@ TEST_CASE("clumps: kept apart, a grain that touches none is as it was", "[clumps
   CHECK(clumps(*labelGrid({}), *labelGrid({}), {20, 0, true}).empty());
 }
 
+namespace {
+
+/// |p - q|^2 of voxels, in the unit of the weights.
+int64_t square(const Coord& p, const Coord& q, const VoxelWeights& weights) {
+  int64_t sum = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    sum += int64_t(weights[axis]) * (p[axis] - q[axis]) * (p[axis] - q[axis]);
+  return sum;
+}
+
+/// Every voxel with its squared distance to the nearest one around that has no label.
+LabelMap distances(const LabelMap& voxels, const VoxelWeights& weights) {
+  std::vector<Coord> background;
+  CoordBBox box;
+  for (const auto& [p, label] : voxels) box.expand(p);
+  box.expand(1);
+  for (auto p = box.begin(); p; ++p)
+    if (!voxels.count(*p)) background.push_back(*p);
+  LabelMap result;
+  for (const auto& [p, label] : voxels) {
+    int64_t nearest = std::numeric_limits<int32_t>::max();
+    for (const Coord& q : background) nearest = std::min(nearest, square(p, q, weights));
+    result[p] = int32_t(nearest);
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("clumps: of unequal voxels, balls are round in space", "[clumps]") {
+  struct Shape {
+    std::array<double, 3> edges;
+    VoxelWeights weights;
+  };
+  const LabelMap voxels = twoBalls({-5, 60, 3}, 5);
+  for (const Shape& shape : {Shape{{1, 1, 2}, {1, 1, 4}}, Shape{{0.3, 0.2, 0.2}, {9, 4, 4}},
+                             Shape{{5, 7, 6}, {25, 49, 36}}}) {
+    const VoxelWeights& weights = shape.weights;
+    const double unit = weights.least();
+    const auto labels = labelGrid(voxels), balls = labelGrid(distances(voxels, weights));
+    setProportions(*labels, shape.edges);
+    CHECK_FALSE(areBallsOfVoxels(*labels, *balls));
+    CHECK_THROWS_WITH(clumps(*labels, *balls), Catch::Contains("other voxels"));
+    setWeights(*balls, weights);
+    CHECK(areBallsOfVoxels(*labels, *balls));
+    const auto apartFrom = [&](const Coord& p, const Coord& q) {
+      return std::sqrt(double(square(p, q, weights)) / unit);
+    };
+    for (const bool apart : {false, true})
+      for (const int most : {100000, 4}) {
+        CAPTURE(weights.toString(), apart, most);
+        const auto made = clumps(*labels, *balls, {most, 0, apart});
+        REQUIRE(made.size() == 2);
+        for (const Clump& clump : made) {
+          std::set<Coord> covered;
+          for (const Clump::Ball& ball : clump.balls) {
+            CoordBBox box(ball.center, ball.center);
+            box.expand(int(std::sqrt(ball.squaredRadius)) + 1);
+            for (auto p = box.begin(); p; ++p)
+              if (double(square(*p, ball.center, weights)) < ball.squaredRadius * unit)
+                covered.insert(*p);
+          }
+          int64_t uncovered = 0, outside = 0;
+          double farthest = 0;
+          for (const auto& [p, label] : voxels) {
+            if (label != clump.label || covered.count(p)) continue;
+            ++uncovered;
+            double nearest = 1e9;
+            for (const Clump::Ball& ball : clump.balls)
+              nearest =
+                  std::min(nearest, apartFrom(p, ball.center) - std::sqrt(ball.squaredRadius));
+            farthest = std::max(farthest, nearest);
+          }
+          for (const Coord& p : covered) outside += !voxels.count(p) || voxels.at(p) != clump.label;
+          CHECK(clump.uncovered == uncovered);
+          CHECK(clump.outside == outside);
+          CHECK((apart ? outside == 0 : most < 5 || outside > 0));
+          CHECK(clump.farthest == Approx(farthest));
+          CHECK((most < 5 || apart || uncovered == 0));
+        }
+        bool overlap = false;
+        for (const Clump::Ball& a : made[0].balls)
+          for (const Clump::Ball& b : made[1].balls)
+            overlap = overlap || std::sqrt(a.squaredRadius) + std::sqrt(b.squaredRadius) >
+                                     apartFrom(a.center, b.center) + 1e-9;
+        CHECK((!apart || !overlap));
+      }
+  }
+}
+
 TEST_CASE("clumps: bonds join the nearest balls, and stand in both files", "[clumps]") {
   const ScratchFolder folder;
   const std::vector<Clump> made = {
@@ -249,9 +341,9 @@ TEST_CASE("clumps: bonds join the nearest balls, and stand in both files", "[clu
   measures.equivalentRadius = 2;
   measures.centroid = openvdb::Vec3d(6, 1, 0);
   measures.normal = openvdb::Vec3d(1, 0, 0);
-  const auto bonds = clumpBonds(made, {lost, measures});
-  REQUIRE(bonds.size() == 1);  // balls 1 and 3 are 1 voxel apart, and so are 0 and 4: the first
   const auto transform = openvdb::math::Transform::createLinearTransform(0.5);
+  const auto bonds = clumpBonds(made, {lost, measures}, *transform);
+  REQUIRE(bonds.size() == 1);  // balls 1 and 3 are 1 voxel apart, and so are 0 and 4: the first
   writeClumpBonds(folder / "b.csv", bonds, *transform);
   CHECK(readFile(folder / "b.csv") ==
         "bond,first,second,first_clump,second_clump,first_ball,second_ball,distance,"
@@ -299,4 +391,16 @@ TEST_CASE("clumps: files hold every ball at its place in the world", "[clumps]")
     CHECK(found == Approx(wanted));
   }
   CHECK_THROWS_AS(writeClumps(folder / "c.xyz", made, *transform), InvalidInput);
+  // Of unequal voxels: lengths in shortest edges, places along three.
+  const auto flat = labelGrid({});
+  setProportions(*flat, {0.5, 1, 2});
+  writeClumps(folder / "f.csv", made, flat->transform());
+  CHECK(readFile(folder / "f.csv") ==
+        "grain_id,x,y,z,radius\n5,0.5,2,6,1\n5,2,2,6,0.5\n9,-4,0,0,1.5\n");
+  writeClumps(folder / "f.data", made, flat->transform());
+  const std::string flatData = readFile(folder / "f.data");
+  std::istringstream line(flatData.substr(flatData.find("molecular\n\n") + 11));
+  double density = -1;  // the seventh number: a voxel holds 1 * 2 * 4 cubes of the shortest edge
+  for (int i = 0; i < 7; ++i) line >> density;
+  CHECK(density == Approx(8 * first));
 }

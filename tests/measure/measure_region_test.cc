@@ -16,9 +16,11 @@
 #include "support/oracle.h"
 #include "support/random_case.h"
 #include "support/runs.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/measure.h"
 #include "vdb_madf/method/segment.h"
+#include "vdb_madf/method/voxel_weights.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
@@ -342,5 +344,103 @@ TEST_CASE("measure_region: a bond that the wall cuts ends there", "[measure_regi
     const Measurements m = measureIn(*labels, core);
     REQUIRE(m.bonds.size() == 1);
     CHECK(m.bonds[0].area == Approx(2 * radius * 25).epsilon(0.05));
+  }
+}
+
+namespace {
+
+/// Edges whose weights are small whole numbers.
+struct UnequalVoxels {
+  Vec3d edges;  ///< the shortest is 1
+  VoxelWeights weights;
+};
+const std::vector<UnequalVoxels> kUnequal = {
+    {{1, 1, 3}, {1, 1, 9}}, {{1.5, 1, 2}, {9, 4, 16}}, {{2, 5, 1}, {4, 25, 1}}};
+
+Measurements measureVoxels(const Int32Grid& labels, const Vec3d& edges, const Domain& domain) {
+  const auto grid = labels.deepCopy();
+  setProportions(*grid, {edges[0], edges[1], edges[2]});
+  return measureIn(*grid, domain);
+}
+
+}  // namespace
+
+TEST_CASE("measure_region: of unequal voxels, by the definitions on random labels",
+          "[measure_region]") {
+  int cutGrains = 0, innerGrains = 0;
+  for (uint64_t seed = 1; seed <= 150; ++seed) {
+    Rng rng(seed);
+    RandomCase c =
+        randomCase(seed, Coord(rng.between(3, 12), rng.between(3, 12), rng.between(3, 12)));
+    if (!c.domain) c.domain = c.object.box();
+    drawRegion(c);
+    if (!c.region || objectBox(c.object).empty()) continue;
+    const auto& [edges, weights] = kUnequal[seed % kUnequal.size()];
+    INFO("edges " << edges << ", " << describe(c));
+    const DenseVolume<int64_t> labels = randomCells(c.object, rng);
+    const OracleDomain domain = *oracleDomainOf(c);
+    const Int32Grid::Ptr grid = toGrid(c.object, labels);
+    const Measurements m =
+        withThreads(c.threads, [&] { return measureVoxels(*grid, edges, *domainOf(c)); });
+    std::map<int32_t, double> cutAreas;
+    for (int i = 0; i < labels.size(); ++i)
+      for (int side = 0; labels[i] && side < 6; ++side)
+        if (!domain.isInside(labels.coord(i) + kSixNeighbors[size_t(side)]))
+          cutAreas[int32_t(labels[i])] += edges[0] * edges[1] * edges[2] / edges[side / 2];
+    for (const GrainMeasures& grain : m.grains) {
+      CAPTURE(grain.id);
+      const double cutArea = cutAreas.count(grain.id) ? cutAreas.at(grain.id) : 0;
+      REQUIRE(grain.cutArea == Approx(cutArea));
+      REQUIRE(grain.atDomainFace == (cutArea > 0));
+      REQUIRE(grain.volume == Approx(double(grain.voxels) * edges[0] * edges[1] * edges[2]));
+      cutGrains += cutArea > 0;
+      innerGrains += cutArea == 0;
+    }
+    REQUIRE(m.sample.objectFraction ==
+            double(countObject(c.object)) / double(countObject(*c.region)));
+    if (countObject(c.object) == countObject(*c.region)) continue;
+    const auto distance = oracleDistance(c.object, true, domain, weights);
+    for (const GrainMeasures& grain : m.grains) {
+      int64_t deepest = 0;
+      for (int i = 0; i < labels.size(); ++i)
+        if (labels[i] == grain.id) deepest = std::max(deepest, distance[i]);
+      REQUIRE(grain.inscribedRadius ==
+              Approx(std::sqrt(double(deepest) / double(weights.least()))));
+    }
+  }
+  CHECK(cutGrains > 100);
+  CHECK(innerGrains > 10);
+}
+
+TEST_CASE("measure_region: of unequal voxels, a plane across a round core is an ellipse",
+          "[measure_region]") {
+  const double radius = 24.3, halfLength = 36;
+  for (const Vec3d& edges : {Vec3d(1, 1, 3), Vec3d(3, 1, 1), Vec3d(1.5, 1, 2)}) {
+    Coord corner;
+    for (int axis = 0; axis < 3; ++axis)
+      corner[axis] = int((axis == 2 ? halfLength : radius + 1) / edges[axis]);
+    const Domain core = regionIn({Coord(0) - corner, corner}, [&](const Vec3d& voxel) {
+      const Vec3d p = voxel * edges;
+      return p[0] * p[0] + p[1] * p[1] < radius * radius;
+    });
+    const double length = (2 * corner.z() + 1) * edges[2];
+    for (const Vec3d& slope : {Vec3d(0, 0, 1), Vec3d(0.2, 0.1, 1), Vec3d(-0.5, 0.6, 1)}) {
+      Vec3d n = slope;
+      n.normalize();
+      CAPTURE(edges, n);
+      const auto labels = cut(*drawLabels(core.box(),
+                                          [&](const Vec3d& voxel) {
+                                            return n.dot(Vec3d(voxel * edges)) < 0.3 ? 1 : 0;
+                                          }),
+                              core);
+      const Measurements m = measureVoxels(*labels, edges, core);
+      const GrainMeasures& grain = m.grains.at(0);
+      CHECK(grain.freeArea == Approx(M_PI * radius * radius / n[2]).epsilon(0.07));
+      CHECK(grain.volume == Approx(M_PI * radius * radius * length / 2).epsilon(0.05));
+      CHECK(m.sample.objectFraction == Approx(0.5).epsilon(0.05));
+      CHECK(m.sample.specificSurface == Approx(grain.freeArea / grain.volume));
+      // The wall in steps, 4 / pi of it, and the lower end.
+      CHECK(grain.cutArea == Approx(4 * radius * length + M_PI * radius * radius).epsilon(0.06));
+    }
   }
 }

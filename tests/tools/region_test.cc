@@ -182,6 +182,26 @@ TEST_CASE("region: all verbs keep it", "[region]") {
              Contains("3 rows"));
 }
 
+TEST_CASE("region: labels of another program are cut to it", "[region]") {
+  const Bench bench;
+  const Core core(bench);
+  bench.mustRun("segment full.npy g.npy");
+  const Outcome outcome = bench.run("convert g.npy l.vdb --labels --roi view.npy");
+  CHECK(outcome.exitCode == 0);
+  CHECK(outcome.err == note("g.npy: outside of the region, " + std::to_string(core.outside) +
+                            " labelled voxels left out"));
+  CHECK_THAT(outcome.out, Contains(std::to_string(core.object) + " labelled voxels"));
+  CHECK(gridOf(infoOf(bench, "l.vdb"), "grain").at("region_voxels") == core.inside);
+  bench.mustRun("measure l.vdb tables");
+  // To an image, too.
+  bench.mustRun("convert g.npy part.npy --labels --crop 5,6,7:20,30,40");
+  bench.mustRun("convert g.npy part.vdb --labels --crop 5,6,7:20,30,40");
+  bench.mustRun("convert part.vdb same.npy");
+  CHECK(bench.bytes("part.npy") == bench.bytes("same.npy"));
+  CHECK(gridOf(infoOf(bench, "part.vdb"), "grain").at("metadata").at("madf_domain_min") ==
+        Json({5, 6, 7}));
+}
+
 TEST_CASE("region: Otsu's threshold is that of the core", "[region]") {
   const Bench bench;
   const Core core(bench);
@@ -213,7 +233,7 @@ TEST_CASE("region: what cannot be one is refused in a line", "[region]") {
   for (const std::string crop : {"1,2,3", "0,0,0:-1,5,5", "a,b,c:1,2,3", "0,0,0:99999999,1,1"})
     refuses(bench, kWrongUsage, segment + "--crop " + crop, {"--crop " + crop});
   refuses(bench, kWrongUsage, "segment full.npy view.npy --roi view.npy", {"view.npy"});
-  refuses(bench, kWrongUsage, "convert full.npy o.vdb --labels --roi cylinder", {"--roi"});
+  refuses(bench, kWrongUsage, "convert full.npy o.vdb --labels --roi cylinder:q", {"--roi"});
   refuses(bench, kFailed, segment + "--roi missing.tif", {"missing.tif", "No such file"});
   refuses(bench, kFailed, segment + "--crop 90,0,0:99,9,9", {"full.npy", "no voxel"});
   refuses(bench, kFailed, segment + "--roi cylinder:z:99,99:3", {"full.npy", "no voxel"});

@@ -289,3 +289,46 @@ TEST_CASE("scan_region: a mask of any kind is a region", "[scan_region]") {
   CHECK(storedDomain(*loaded.object) == core);
   CHECK_THAT(loaded.notes, Contains("is larger than"));
 }
+
+TEST_CASE("scan_region: labels are cut to it, be they an image or a grid", "[scan_region]") {
+  const ScratchFolder folder;
+  writeScan(folder / "view.npy", roundScan(15, 0));
+  const auto all = Int32Grid::create(0);
+  all->setName("grain");
+  for (auto p = kBox.begin(); p; ++p)
+    if ((*p).x() % 5 > 0) all->tree().setValue(*p, 1 + (*p).x() / 5 + (*p).z() / 12);
+  all->tree().addTile(1, Coord(16, 16, 8), 77, true);
+  setDomain(*all, kBox);
+  writeVdb(folder / "l.vdb", {all});
+  writeImage(folder / "l.npy", *all, kBox, SampleType::int32);
+  VolumeOptions options;
+  options.region.mask = folder / "view.npy";
+  options.region.crop = CoordBBox(Coord(3, 0, 2), Coord(30, 99, 17));
+  const Domain domain = cylinderIn({Coord(3, 0, 2), Coord(30, 36, 17)}, {2, {20, 18}, 15});
+  for (const std::string file : {"l.vdb", "l.npy"}) {
+    CAPTURE(file);
+    std::string notes;
+    options.note = [&](const std::string& text, NoteAbout) { notes += text; };
+    const Int32Grid::Ptr labels = loadLabels(folder / file, options);
+    CHECK(storedDomain(*labels) == domain);
+    int64_t wrong = 0, inside = 0, leftOut = 0;
+    for (auto p = kBox.begin(); p; ++p) {
+      const int32_t label = domain.isInside(*p) ? all->tree().getValue(*p) : 0;
+      wrong += labels->tree().getValue(*p) != label || labels->tree().isValueOn(*p) != (label > 0);
+      inside += label > 0;
+      leftOut += label == 0 && options.region.crop->isInside(*p) && all->tree().isValueOn(*p);
+    }
+    CHECK(wrong == 0);
+    CHECK(int64_t(labels->activeVoxelCount()) == inside);
+    CHECK_THAT(notes, Contains(file + ": outside of the region, " + std::to_string(leftOut) +
+                               " labelled voxels left out"));
+  }
+  options.region.mask = folder / "missing.npy";
+  CHECK_THROWS_WITH(loadLabels(folder / "l.npy", options), Contains("missing.npy"));
+  options.region = {};
+  options.region.crop = CoordBBox(Coord(90), Coord(99));
+  CHECK_THROWS_WITH(loadLabels(folder / "l.npy", options),
+                    Contains("l.npy") && Contains("no voxel"));
+  CHECK_THROWS_WITH(loadLabels(folder / "l.vdb", options),
+                    Contains("l.vdb") && Contains("no voxel"));
+}

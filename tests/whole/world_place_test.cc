@@ -19,6 +19,7 @@
 #include "vdb_madf/labels/grain_name.h"
 #include "vdb_madf/labels/reduced_labels.h"
 #include "vdb_madf/measure/grain_network.h"
+#include "vdb_madf/method/voxel_weights.h"
 #include "vdb_madf/pictures/preview_volume.h"
 #include "vdb_madf/shapes/clumps.h"
 #include "vdb_madf/shapes/level_sets.h"
@@ -282,19 +283,21 @@ TEST_CASE("world_place: networks", "[world_place]") {
 
 TEST_CASE("world_place: clumps", "[world_place]") {
   const ScratchFolder folder;
-  const auto grid = markedGrid(), balls = grid->deepCopy();
+  const Vec3d edges = GENERATE(kCube, kFlat);
+  const auto grid = markedGrid(edges), balls = grid->deepCopy();
+  if (edges == kFlat) setWeights(*balls, {16, 64, 1});
   for (auto ball = balls->beginValueOn(); ball; ++ball) ball.setValue(1);
   const auto made = clumps(*grid, *balls, {100, 0});
   for (const std::string ending : {"csv", "txt", "data"})
     writeClumps(folder / ("c." + ending), made, grid->transform());
   // A ball in every voxel; grain or number of the clump, place.
-  const auto check = [](const std::vector<std::pair<int, Vec3d>>& rows, bool hasLabels) {
+  const auto check = [&](const std::vector<std::pair<int, Vec3d>>& rows, bool hasLabels) {
     CHECK(rows.size() == marker().size());
     std::vector<int32_t> labels;
     for (const auto& [label, count] : volumes(marker())) labels.push_back(label);
     for (const auto& [number, place] : rows) {
-      const Coord p = Coord::round((place - kShift) / kEdge);
-      CHECK(near(place, placeOf(p)));
+      const Coord p = voxelAt(place, edges);
+      CHECK(near(place, placeOf(p, edges)));
       CHECK(marker().at(p) == (hasLabels ? number : labels.at(size_t(number))));
     }
   };
@@ -308,7 +311,8 @@ TEST_CASE("world_place: clumps", "[world_place]") {
   for (const auto& row : rowsOf("first line\n" + atoms.substr(atoms.find("\n\n") + 2), ' '))
     lammps.push_back({int(row[7]) - 1, {row[2], row[3], row[4]}});
   REQUIRE(lammps.size() == marker().size() + 1);  // grain 1 has one ball, and so a second in it
-  CHECK(near(lammps.back().second, placeOf(Vec3d(2 + 1.0 / 16, 3, 5))));
+  const double shortest = std::min({edges[0], edges[1], edges[2]});
+  CHECK(near(lammps.back().second, placeOf(Vec3d(2, 3, 5), edges) + Vec3d(shortest / 16, 0, 0)));
   lammps.pop_back();
   check(csv, true);
   check(yade, false);
@@ -347,7 +351,6 @@ TEST_CASE("world_place: what needs cubes refuses other voxels", "[world_place]")
     CHECK_THROWS_WITH(
         work(), Catch::Contains("needs cubic voxels") && Catch::Contains("0.25 x 0.5 x 0.0625"));
   };
-  refuses([&] { clumps(*flat, *flat); });
   refuses([&] { grainLevelSets(*flat); });
   refuses([&] { surfaceLevelSet(*flat); });
 }

@@ -4,6 +4,7 @@
 #include <openvdb/tools/Count.h>
 
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <memory>
 
@@ -15,9 +16,12 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/grids/resampled_grid.h"
 #include "vdb_madf/images/copy_image.h"
+#include "vdb_madf/images/histogram.h"
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/images/open_image.h"
+#include "vdb_madf/images/resampled_image.h"
 #include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/write_vdb.h"
@@ -29,9 +33,10 @@ namespace {
 
 struct Options {
   InputOptions input;
-  std::string out, outType, boundary = "auto";
+  std::string out, outType, boundary = "auto", resample;
   bool labels = false;
   std::optional<SampleType> parsedOutType;
+  std::optional<double> cube;  ///< edge to resample to, metres
 };
 
 std::optional<SampleType> outputType(const Options& o) {
@@ -48,7 +53,10 @@ InputOptions withGridOfValues(InputOptions input) {
 }
 
 void convertMask(const Options& o, const Common& common) {
-  const MaskGrid::Ptr object = loadObject(withGridOfValues(o.input), common.progress);
+  MaskGrid::Ptr object = loadObject(withGridOfValues(o.input), common.progress);
+  if (o.cube)
+    object =
+        withFileName(o.input.path, [&] { return resampleMask(*object, *o.cube, common.progress); });
   if (!hasVdbEnding(o.out)) {
     writeGridAsImage(o.out, *object, outputType(o), o.input.path, common);
     return;
@@ -66,13 +74,22 @@ void convertMask(const Options& o, const Common& common) {
 
 /// Labels of another program become what `segment` writes, but for the method's own metadata.
 void convertLabels(const Options& o, const Common& common) {
-  const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
-  const auto range = openvdb::tools::minMax(labels->tree());
+  Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
+  auto range = openvdb::tools::minMax(labels->tree());
   if (range.min() < 0)
     throw InvalidInput(
         o.input.path + ": has the label " + std::to_string(range.min()) +
         "; grains have numbers above 0, and 0 is background: set negative ones to 0");
+  if (o.cube) {
+    labels = withFileName(o.input.path,
+                          [&] { return resampleLabels(*labels, *o.cube, common.progress); });
+    range = openvdb::tools::minMax(labels->tree());
+  }
   labels->setName("grain");
+  if (!hasVdbEnding(o.out)) {
+    writeGridAsImage(o.out, *labels, outputType(o), o.input.path, common);
+    return;
+  }
   if (o.boundary != "auto") setBoundary(*labels, parseBoundary(o.boundary));
   writeVdb(o.out, {labels}, common.progress);
   common.progress->end();
@@ -83,6 +100,20 @@ void convertLabels(const Options& o, const Common& common) {
   if (voxels > 0 && range.min() == range.max())
     std::cout << ", which all of them have: is this a mask? segment it";
   std::cout << "\n";
+}
+
+/// Cubes take the place of one grid's voxels, as labels or as a mask.
+void resampleVdb(Options o, const Common& common) {
+  const auto grid = chooseGrid(o.input, readVdbHeaders(o.input.path));
+  o.input.gridName = grid->getName();
+  if (grid->isType<Int32Grid>()) return convertLabels(o, common);
+  if (!grid->isType<MaskGrid>() && !grid->isType<BoolGrid>() &&
+      grid->getGridClass() != openvdb::GRID_LEVEL_SET)
+    throw InvalidInput(o.input.path + ": grid '" + o.input.gridName + "' holds " +
+                       grid->valueType() +
+                       " values, and --resample takes masks and labels: say which values are "
+                       "object (--threshold, --range)");
+  convertMask(o, common);
 }
 
 void copyVdb(const Options& o, const Common& common) {
@@ -105,6 +136,46 @@ void copyVdb(const Options& o, const Common& common) {
   writeVdb(o.out, {grids.begin(), grids.end()}, common.progress);
 }
 
+std::unique_ptr<ImageReader> openFiltered(const Options& o, const Common& common) {
+  return filteredImage(openVolumeImage(o.input.path, o.input.volume(common.progress)),
+                       o.input.gray);
+}
+
+/// Labels can look like a gray image, and the other way round.
+void checkGray(const Options& o, const Common& common) {
+  const ImageKind kind = kindOf(histogramOf(*openFiltered(o, common), common.progress));
+  if (kind == ImageKind::mask || kind == ImageKind::phases)
+    throw InvalidInput(o.input.path +
+                       ": has a few values alone, which --resample must not mix: add --phase for a "
+                       "mask, or --labels to keep them");
+  if (kind == ImageKind::labels)
+    common.progress->note(o.input.path +
+                          ": seems to hold labels, whose values are mixed now as those of a gray "
+                          "image (--labels keeps them)");
+}
+
+void copyAsImage(const Options& o, const Common& common) {
+  if (o.cube) checkGray(o, common);
+  auto image = openFiltered(o, common);
+  auto size = o.input.voxelSize ? o.input.voxelSize : image->info().voxelSize;
+  bool areCubes = size ? size->isCube() : !image->info().proportions;
+  std::array<double, 3> origin{};
+  if (o.cube) {
+    if (!size)
+      throw InvalidInput(o.input.path + ": the size of its voxels is unknown: give it",
+                         Hint::voxelSize);
+    origin = resampledOrigin(*size, *o.cube);
+    image = withFileName(o.input.path,
+                         [&] { return resampledImage(std::move(image), *size, *o.cube); });
+    size = VoxelSize(*o.cube);
+    areCubes = true;
+  }
+  const SampleType type = outputType(o).value_or(image->info().type);
+  copyImage(o.out, *image, type, size, common.progress, origin);
+  noteLostEdges(o.out, areCubes, size, common);
+  reportImage(o.out, "all values", toCoord(image->info().size), type, common);
+}
+
 void run(const Options& o, const Common& common) {
   checkWritable(o.out);
   const bool fromVdb = isVdb(o.input);
@@ -115,6 +186,8 @@ void run(const Options& o, const Common& common) {
   else if (o.input.selection || o.input.gray.despeckle > 0 || o.input.region.any() ||
            (!fromVdb && hasVdbEnding(o.out)))
     convertMask(o, common);
+  else if (fromVdb && o.cube)
+    resampleVdb(o, common);
   else if (fromVdb)
     copyVdb(o, common);
   else {
@@ -123,13 +196,7 @@ void run(const Options& o, const Common& common) {
       throw InvalidInput(o.input.path +
                          ": --domain and --boundary are for VDB files and masks, and this is "
                          "copied from image to image; leave them out");
-    const auto image =
-        filteredImage(openVolumeImage(o.input.path, o.input.volume(common.progress)), o.input.gray);
-    const SampleType type = outputType(o).value_or(image->info().type);
-    copyImage(o.out, *image, type, o.input.voxelSize, common.progress);
-    const auto size = o.input.voxelSize ? o.input.voxelSize : image->info().voxelSize;
-    noteLostEdges(o.out, size ? size->isCube() : !image->info().proportions, size, common);
-    reportImage(o.out, "all values", toCoord(image->info().size), type, common);
+    copyAsImage(o, common);
   }
 }
 
@@ -152,6 +219,9 @@ void addConvert(Verb command, Common& common, Action& action) {
   o->input.addVoxelSize(verb);
   o->input.addDomain(verb);
   o->input.addRegion(verb);
+  verb.option("--resample", o->resample,
+              "last: cubes of that edge (10um); gray: linear; labels: nearest; mask: by volume")
+      .typeName("SIZE");
   verb.option("--boundary", o->boundary, "what 'segment --boundary auto' shall take the mask for")
       .oneOf({"auto", "open", "closed"})
       .showDefault();
@@ -159,13 +229,17 @@ void addConvert(Verb command, Common& common, Action& action) {
     o->input.outputs = {o->out};
     o->input.typeIsOfInput = hasVdbEnding(o->out);
     o->input.parse();
-    if (o->labels && !hasVdbEnding(o->out))
+    if (!o->resample.empty()) {
+      const VoxelSize cube = parseVoxelSize(o->resample, "--resample");
+      if (!cube.isCube())
+        throw WrongUsage("--resample " + o->resample + ": a cube has one edge, for example 10um");
+      o->cube = cube.edge();
+    }
+    if (o->labels && !hasVdbEnding(o->out) && !o->cube && !o->input.region.any())
       throw WrongUsage("--labels makes a .vdb; images keep their values in any case: leave it out");
     if (o->labels && o->input.selection)
       throw WrongUsage(
           "--labels takes all values: leave out --phase, --threshold, --range, --invert");
-    if (o->labels && o->input.region.any())
-      throw WrongUsage("--labels takes all of IN: leave out --roi and --crop");
     if (o->labels && (readsGray(o->input.gray) || o->input.gray.despeckle > 0))
       throw WrongUsage(
           "--labels takes values as they are: leave out --median, --smooth, --despeckle");

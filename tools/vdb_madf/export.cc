@@ -142,6 +142,15 @@ void exportNetwork(const Options& o, const Common& common, const Int32Grid& labe
                : ""));
 }
 
+/// @throw InvalidInput for voxels that level sets do not take
+void requireCubes(const Int32Grid& labels) {
+  try {
+    requireCubicVoxels(labels, "a level set");
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(error.what() + std::string(" (convert --resample)"));
+  }
+}
+
 void exportGrainGrids(const Options& o, const Common& common, const Int32Grid& labels) {
   if (o.asBool) {
     const auto grids = grainMasks(labels, common.progress);
@@ -149,6 +158,7 @@ void exportGrainGrids(const Options& o, const Common& common, const Int32Grid& l
     say(o, common, counted(grids.size(), "Bool grid"));
     return;
   }
+  requireCubes(labels);
   LevelSetOptions options;
   options.smoothing = o.smoothing;
   const auto grids = grainLevelSets(labels, options, common.progress);
@@ -157,6 +167,7 @@ void exportGrainGrids(const Options& o, const Common& common, const Int32Grid& l
 }
 
 void exportSurface(const Options& o, const Common& common, const Int32Grid& labels) {
+  requireCubes(labels);
   LevelSetOptions options;
   options.smoothing = o.smoothing;
   const auto grid = surfaceLevelSet(labels, options, common.progress);
@@ -176,11 +187,13 @@ bool isMeshOutput(const std::string& out) {
   return isMeshEnding(out) || fileEnding(out).empty();
 }
 
-/// The medial balls that were kept with the labels, else those of the labels' voxels. These are
-/// computed with air beyond the faces, so that none reaches beyond the scan.
+/// The medial balls that were kept with the labels, unless those had other voxels; else the balls of
+/// the labels' voxels. These are computed with air beyond the faces, so that none reaches beyond the
+/// scan.
 Int32Grid::Ptr ballsOf(const Options& o, const Common& common, const Int32Grid& labels) {
   if (!o.input.size && isVdb(o.input))
-    if (const auto kept = storedBalls(readVdb(o.input.path, {}, common.progress))) return kept;
+    if (const auto kept = storedBalls(readVdb(o.input.path, {}, common.progress)))
+      if (areBallsOfVoxels(labels, *kept)) return kept;
   SegmentOptions options;
   options.boundary = Boundary::closed;
   options.keepBalls = true;
@@ -195,7 +208,8 @@ std::vector<ClumpBond> exportClumpTables(const Options& o, const Common& common,
                                          const std::vector<Clump>& clumps) {
   if (!o.cover.empty()) writeClumpCover(o.cover, clumps, labels.transform(), common.progress);
   if (o.bonds.empty()) return {};
-  const auto bonds = clumpBonds(clumps, measure(labels, o.measure, common.progress).bonds);
+  const auto bonds =
+      clumpBonds(clumps, measure(labels, o.measure, common.progress).bonds, labels.transform());
   writeClumpBonds(o.bonds, bonds, labels.transform(), common.progress);
   return bonds;
 }
@@ -226,7 +240,8 @@ void exportClumps(const Options& o, const Common& common, const Int32Grid& label
   say(o, common,
       counted(made.size(), "grain") + ", " + counted(ballCount, "ball") + "; uncovered " +
           percent(uncovered) + ", outside the own grain " + percent(outside) + ", volume error " +
-          percent(outside - uncovered) + ", farthest voxel " + distance + " voxels from its balls" +
+          percent(outside - uncovered) + ", farthest voxel " + distance +
+          (hasCubicVoxels(labels) ? " voxels" : " shortest edges") + " from its balls" +
           (without ? "; " + counted(without, "grain") + " without a ball" : "") +
           (o.bonds.empty() ? "" : "; " + counted(bonds.size(), "bond") + " in " + o.bonds) +
           // Distances ignore what may be beyond the faces of an open scan.

@@ -122,8 +122,8 @@ RegionOptions parseRoi(const std::string& text) {
   return region;
 }
 
-VoxelSize parseVoxelSize(const std::string& text) {
-  const std::string given = "--voxel-size " + text;
+VoxelSize parseVoxelSize(const std::string& text, const std::string& option) {
+  const std::string given = option + " " + text;
   const std::vector<std::string> parts = split(text, 'x');
   if (parts.size() != 1 && parts.size() != 3)
     throw WrongUsage(given + ": write one edge or three, for example 8.5um or 0.5x0.5x1.2um");

@@ -27,7 +27,7 @@ CoordBBox parseBox(const std::string& text, const std::string& option);
 RegionOptions parseRoi(const std::string& text);
 /// --voxel-size: "8.5um", "0.5x0.5x1.2um" (or a unit for each), with or without a space; units as
 /// unitsPerMetre() knows them.
-VoxelSize parseVoxelSize(const std::string& text);
+VoxelSize parseVoxelSize(const std::string& text, const std::string& option = "--voxel-size");
 /// A whole number >= 0.
 int64_t parseCount(const std::string& text, const std::string& option);
 /// --max-memory: "500M", "12 GiB", "1e6B" in bytes; K, M, G, T with or without iB are powers of 1024,

@@ -26,12 +26,13 @@ size_t find(const std::vector<Clump>& clumps, int32_t label) {
 }
 
 /// Chooses the balls of a bond: places within their clumps.
-void chooseBalls(const Clump& first, const Clump& second, ClumpBond& bond) {
+void chooseBalls(const Clump& first, const Clump& second, const openvdb::Vec3d& edges,
+                 ClumpBond& bond) {
   double nearest = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < first.balls.size(); ++i)
     for (size_t j = 0; j < second.balls.size(); ++j) {
       const Clump::Ball &a = first.balls[i], &b = second.balls[j];
-      const double distance = (b.center - a.center).asVec3d().length(),
+      const double distance = ((b.center - a.center).asVec3d() * edges).length(),
                    gap = distance - std::sqrt(a.squaredRadius) - std::sqrt(b.squaredRadius);
       if (gap >= nearest) continue;
       nearest = gap;
@@ -44,7 +45,9 @@ void chooseBalls(const Clump& first, const Clump& second, ClumpBond& bond) {
 }  // namespace
 
 std::vector<ClumpBond> clumpBonds(const std::vector<Clump>& clumps,
-                                  const std::vector<BondMeasures>& bonds) {
+                                  const std::vector<BondMeasures>& bonds,
+                                  const openvdb::math::Transform& transform) {
+  const openvdb::Vec3d edges = detail::proportions(transform);
   std::vector<size_t> firstBalls;  // of each clump, among all balls
   size_t count = 0;
   for (const Clump& clump : clumps) {
@@ -57,7 +60,7 @@ std::vector<ClumpBond> clumpBonds(const std::vector<Clump>& clumps,
     if (first == clumps.size() || second == clumps.size()) continue;
     if (clumps[first].balls.empty() || clumps[second].balls.empty()) continue;
     ClumpBond bond;
-    chooseBalls(clumps[first], clumps[second], bond);
+    chooseBalls(clumps[first], clumps[second], edges, bond);
     bond.firstClump = first;
     bond.secondClump = second;
     bond.firstBall += firstBalls[first];
@@ -70,7 +73,8 @@ std::vector<ClumpBond> clumpBonds(const std::vector<Clump>& clumps,
 
 void writeClumpBonds(const std::string& path, const std::vector<ClumpBond>& bonds,
                      const openvdb::math::Transform& transform, Interrupter* interrupter) {
-  const detail::CubicTransform world = detail::cubicTransform(transform);
+  const detail::WorldTransform world = detail::worldTransform(transform);
+  const double edge = world.shortestEdge();
   if (fileEnding(path) != ".csv")
     throw InvalidInput(path + ": bonds of clumps are written as .csv");
   detail::OutputStream out(path, interrupter);
@@ -84,12 +88,11 @@ void writeClumpBonds(const std::string& path, const std::vector<ClumpBond>& bond
       out.text("," + std::to_string(grain));
     for (const size_t place : {bond.firstClump, bond.secondClump, bond.firstBall, bond.secondBall})
       out.text("," + std::to_string(place));
-    const openvdb::Vec3d center = world.origin + world.edge * bond.measures.centroid,
+    const openvdb::Vec3d center = world.origin + world.edges * bond.measures.centroid,
                          normal = bond.measures.normal;
-    for (const double number :
-         {world.edge * bond.distance, world.edge * world.edge * bond.measures.area,
-          world.edge * bond.measures.equivalentRadius, center.x(), center.y(), center.z(),
-          normal.x(), normal.y(), normal.z()})
+    for (const double number : {edge * bond.distance, edge * edge * bond.measures.area,
+                                edge * bond.measures.equivalentRadius, center.x(), center.y(),
+                                center.z(), normal.x(), normal.y(), normal.z()})
       out.text("," + detail::shortestDecimal(number));
     out.text("\n");
   }

@@ -20,12 +20,12 @@ using openvdb::Vec3d;
 
 /// f(clump number, centre, radius) for all balls, world.
 template <typename F>
-void forEachBall(const std::vector<Clump>& clumps, const detail::CubicTransform& world,
+void forEachBall(const std::vector<Clump>& clumps, const detail::WorldTransform& world,
                  const F& f) {
   for (size_t n = 0; n < clumps.size(); ++n)
     for (const Clump::Ball& ball : clumps[n].balls)
-      f(n, world.origin + world.edge * ball.center.asVec3d(),
-        world.edge * std::sqrt(ball.squaredRadius));
+      f(n, world.origin + world.edges * ball.center.asVec3d(),
+        world.shortestEdge() * std::sqrt(ball.squaredRadius));
 }
 
 void numbers(OutputStream& out, const Vec3d& center, char separator) {
@@ -45,12 +45,13 @@ bool needsCore(const Clump& clump) {
 }
 
 /// At which all atoms of a clump weigh as much as its grain of density 1, however they overlap.
-double densityOfAtoms(const Clump& clump) {
+double densityOfAtoms(const Clump& clump, const detail::WorldTransform& world) {
   double volume = 0;
   for (const Clump::Ball& ball : clump.balls)
     volume += 4.0 / 3.0 * openvdb::math::pi<double>() * std::pow(ball.squaredRadius, 1.5);
   if (needsCore(clump)) volume *= 1 + std::pow(kCoreRadius, 3);
-  return volume > 0 ? double(clump.voxels) / volume : 1;
+  const openvdb::Vec3d edges = world.edges / world.shortestEdge();
+  return volume > 0 ? double(clump.voxels) * edges[0] * edges[1] * edges[2] / volume : 1;
 }
 
 void writeBonds(OutputStream& out, const std::vector<ClumpBond>& bonds) {
@@ -63,7 +64,7 @@ void writeBonds(OutputStream& out, const std::vector<ClumpBond>& bonds) {
 }
 
 void writeLammps(OutputStream& out, const std::vector<Clump>& clumps,
-                 const std::vector<ClumpBond>& bonds, const detail::CubicTransform& world) {
+                 const std::vector<ClumpBond>& bonds, const detail::WorldTransform& world) {
   size_t atoms = size_t(std::count_if(clumps.begin(), clumps.end(), needsCore));
   openvdb::BBoxd box;
   forEachBall(clumps, world, [&](size_t, const Vec3d& center, double radius) {
@@ -85,7 +86,7 @@ void writeLammps(OutputStream& out, const std::vector<Clump>& clumps,
   out.text("\nAtoms # hybrid sphere molecular\n\n");
   std::vector<std::string> densities;
   for (const Clump& clump : clumps)
-    densities.push_back(detail::shortestDecimal(densityOfAtoms(clump)));
+    densities.push_back(detail::shortestDecimal(densityOfAtoms(clump, world)));
   size_t atom = 0;
   const auto writeAtom = [&](size_t n, const Vec3d& center, double radius) {
     out.number(++atom);
@@ -112,7 +113,7 @@ bool isClumpEnding(const std::string& path) {
 void writeClumps(const std::string& path, const std::vector<Clump>& clumps,
                  const openvdb::math::Transform& transform, const std::vector<ClumpBond>& bonds,
                  Interrupter* interrupter) {
-  const detail::CubicTransform world = detail::cubicTransform(transform);
+  const detail::WorldTransform world = detail::worldTransform(transform);
   if (!isClumpEnding(path))
     throw InvalidInput(path + ": no clump format has this ending; use .csv, .txt or .data");
   OutputStream out(path, interrupter);
@@ -133,7 +134,7 @@ void writeClumps(const std::string& path, const std::vector<Clump>& clumps,
 
 void writeClumpCover(const std::string& path, const std::vector<Clump>& clumps,
                      const openvdb::math::Transform& transform, Interrupter* interrupter) {
-  const detail::CubicTransform world = detail::cubicTransform(transform);
+  const detail::WorldTransform world = detail::worldTransform(transform);
   if (fileEnding(path) != ".csv")
     throw InvalidInput(path + ": the cover of the grains is written as .csv");
   OutputStream out(path, interrupter);
@@ -143,7 +144,9 @@ void writeClumpCover(const std::string& path, const std::vector<Clump>& clumps,
         std::to_string(clump.label) + "," + std::to_string(clump.voxels) + "," +
         std::to_string(clump.balls.size()) + "," + std::to_string(clump.uncovered) + "," +
         std::to_string(clump.outside) + "," + detail::shortestDecimal(clump.volumeError()) + "," +
-        (clump.balls.empty() ? "" : detail::shortestDecimal(world.edge * clump.farthest)) + "\n");
+        (clump.balls.empty() ? ""
+                             : detail::shortestDecimal(world.shortestEdge() * clump.farthest)) +
+        "\n");
   }
   out.commit();
 }

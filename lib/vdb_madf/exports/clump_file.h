@@ -21,14 +21,14 @@ namespace vdb_madf {
 ///   Balls overlap: their density is such that those of a grain together weigh what the grain does
 ///   at density 1. With \p bonds (the other endings leave them out) also a section Bonds, in which
 ///   each has a type of its own: its number in the file of writeClumpBonds()
-/// @throw InvalidInput for another ending, or voxels that are not cubes; IoError.
+/// @throw InvalidInput for another ending, or voxels that are mirrored; IoError.
 void writeClumps(const std::string& path, const std::vector<Clump>& clumps,
                  const openvdb::math::Transform& transform,
                  const std::vector<ClumpBond>& bonds = {}, Interrupter* interrupter = nullptr);
 /// Writes a line per grain, whole or not at all: `grain_id`, `voxels`, `balls`, `uncovered` (voxels of
 /// the grain in no ball), `outside` (voxels of the balls that are not the grain's), `volume_error`
 /// ((outside - uncovered) / voxels), `farthest` (largest distance of a voxel from the balls, world).
-/// @throw InvalidInput for an ending other than .csv, or voxels that are not cubes; IoError.
+/// @throw InvalidInput for an ending other than .csv, or voxels that are mirrored; IoError.
 void writeClumpCover(const std::string& path, const std::vector<Clump>& clumps,
                      const openvdb::math::Transform& transform, Interrupter* interrupter = nullptr);
 /// True if writeClumps knows the ending.

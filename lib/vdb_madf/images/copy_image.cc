@@ -13,7 +13,8 @@
 namespace vdb_madf {
 
 void copyImage(const std::string& path, ImageReader& image, SampleType type,
-               const std::optional<VoxelSize>& voxelSize, Interrupter* interrupter) {
+               const std::optional<VoxelSize>& voxelSize, Interrupter* interrupter,
+               const std::array<double, 3>& origin) {
   ImageInfo info = image.info();
   const SampleType from = info.type;
   info.type = type;
@@ -21,7 +22,7 @@ void copyImage(const std::string& path, ImageReader& image, SampleType type,
   const size_t slice = size_t(info.size.x) * info.size.y;
   const int depth = std::min(detail::kSlab, info.size.z);
   std::vector<char> in(slice * depth * sampleSize(from)), out(slice * depth * sampleSize(type));
-  const auto writer = createImage(path, info);
+  const auto writer = createImage(path, info, origin);
   detail::forEachSlab(0, info.size.z, interrupter, [&](int z, int count) {
     image.read(z, count, in.data());
     detail::withSampleType(from, [&](auto value) {

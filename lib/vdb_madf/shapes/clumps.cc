@@ -12,7 +12,7 @@
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/method/detail/metric.h"
@@ -75,33 +75,36 @@ void chooseBalls(const std::vector<Clump::Ball>& balls, const ClumpOptions& opti
   }
 }
 
-double distanceTo(const std::vector<Clump::Ball>& balls, const Coord& p) {
+double distanceTo(const std::vector<Clump::Ball>& balls, const Coord& p,
+                  const VoxelWeights& weights) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Clump::Ball& ball : balls)
-    nearest =
-        std::min(nearest, (p - ball.center).asVec3d().length() - std::sqrt(ball.squaredRadius));
+    nearest = std::min(nearest, std::sqrt(double(detail::squaredBetween(p, ball.center, weights))) -
+                                    std::sqrt(ball.squaredRadius));
   return std::max(nearest, 0.0);
 }
 
-CoordBBox boxOf(const std::vector<Clump::Ball>& balls) {
+CoordBBox boxOf(const std::vector<Clump::Ball>& balls, const VoxelWeights& weights) {
   CoordBBox box;
   for (const Clump::Ball& ball : balls) {
-    const int reach = int(std::sqrt(ball.squaredRadius));
-    box.expand(CoordBBox(ball.center.offsetBy(-reach), ball.center.offsetBy(reach)));
+    Coord reach;
+    for (int axis = 0; axis < 3; ++axis)
+      reach[axis] = int(std::sqrt(ball.squaredRadius / weights[axis]));
+    box.expand(CoordBBox(ball.center - reach, ball.center + reach));
   }
   return box;
 }
 
 /// The figures of a clump, from its balls and the voxels that they leave.
-void measure(const BitBox& uncovered, Clump& clump) {
+void measure(const BitBox& uncovered, const VoxelWeights& weights, Clump& clump) {
   clump.uncovered = uncovered.count();
   if (clump.balls.empty()) return;
-  BitBox all(boxOf(clump.balls));
+  BitBox all(boxOf(clump.balls, weights), weights);
   for (const Clump::Ball& ball : clump.balls)
     all.forEachWord(ball, [](uint64_t& word, uint64_t mask, const Coord&) { word |= mask; });
   clump.outside = all.count() - (clump.voxels - clump.uncovered);
   uncovered.forEachSet([&](const Coord& p) {
-    clump.farthest = std::max(clump.farthest, distanceTo(clump.balls, p));
+    clump.farthest = std::max(clump.farthest, distanceTo(clump.balls, p, weights));
   });
 }
 
@@ -114,17 +117,19 @@ struct Grains {
 /// The label nearest to a ball's center, within the ball and kMaxReach (tie: the smaller coordinate);
 /// 0: none. In cubes of growing size.
 int32_t nearestLabel(const openvdb::tree::ValueAccessor<const Int32Tree>& labels,
-                     const Clump::Ball& ball) {
+                     const Clump::Ball& ball, const VoxelWeights& weights) {
   constexpr int kMaxReach = 16;  // a cavity is small
   int32_t label = 0;
   int64_t nearest = int64_t(ball.squaredRadius);
-  for (int reach = 1; reach <= kMaxReach && int64_t(reach) * reach < nearest; ++reach) {
+  for (int reach = 1;
+       reach <= kMaxReach && detail::squaredAlong(int64_t(reach), weights.least()) < nearest;
+       ++reach) {
     CoordBBox cube(ball.center, ball.center);
     cube.expand(reach);
     for (auto p = cube.begin(); p; ++p) {
       const Coord away = *p - ball.center;
       if (std::max({std::abs(away.x()), std::abs(away.y()), std::abs(away.z())}) != reach) continue;
-      const int64_t square = detail::squaredBetween(*p, ball.center, VoxelWeights{});
+      const int64_t square = detail::squaredBetween(*p, ball.center, weights);
       int32_t value = 0;
       if (square >= nearest || !labels.probeValue(*p, value) || value <= 0) continue;
       nearest = square;
@@ -136,18 +141,20 @@ int32_t nearestLabel(const openvdb::tree::ValueAccessor<const Int32Tree>& labels
 
 /// Gives the balls whose center has no label, in filled cavities, to the grain around it.
 void collectCavityBalls(const Int32Tree& labels, const Int32Tree& balls,
-                        const detail::LabelBlocks& blocks, Grains& grains) {
+                        const VoxelWeights& weights, const detail::LabelBlocks& blocks,
+                        Grains& grains) {
   const openvdb::tree::ValueAccessor<const Int32Tree> labelAt(labels);
   for (auto ball = balls.cbeginValueOn(); ball; ++ball) {
     int32_t here = 0;
     if (*ball <= 0 || (labelAt.probeValue(ball.getCoord(), here) && here > 0)) continue;
     const Clump::Ball own{ball.getCoord(), double(*ball)};
-    if (const int32_t label = nearestLabel(labelAt, own))
+    if (const int32_t label = nearestLabel(labelAt, own, weights))
       grains.balls[blocks.number(label)].push_back(own);
   }
 }
 
-Grains collect(const Int32Tree& labels, const Int32Tree& balls, const detail::LabelBlocks& blocks) {
+Grains collect(const Int32Tree& labels, const Int32Tree& balls, const VoxelWeights& weights,
+               const detail::LabelBlocks& blocks) {
   Grains grains{std::vector<CoordBBox>(blocks.labels().size()),
                 std::vector<std::vector<Clump::Ball>>(blocks.labels().size())};
   for (auto leaf = labels.cbeginLeaf(); leaf; ++leaf) {
@@ -165,14 +172,15 @@ Grains collect(const Int32Tree& labels, const Int32Tree& balls, const detail::La
         grains.balls[grain].push_back({p, double(ballLeaf->getValue(i))});
     }
   }
-  collectCavityBalls(labels, balls, blocks, grains);
+  collectCavityBalls(labels, balls, weights, blocks, grains);
   return grains;
 }
 
 /// The voxels of a box whose label (0: none) is wanted.
 template <typename Wanted>
-BitBox voxelsOf(const Int32Tree& labels, const CoordBBox& box, const Wanted& wanted) {
-  BitBox bits(box);
+BitBox voxelsOf(const Int32Tree& labels, const CoordBBox& box, const VoxelWeights& weights,
+                const Wanted& wanted) {
+  BitBox bits(box, weights);
   const Coord low = box.min() & ~7, high = box.max();
   for (int x = low.x(); x <= high.x(); x += 8)
     for (int y = low.y(); y <= high.y(); y += 8)
@@ -189,41 +197,47 @@ BitBox voxelsOf(const Int32Tree& labels, const CoordBBox& box, const Wanted& wan
   return bits;
 }
 
-BitBox voxelsOfGrain(const Int32Tree& labels, int32_t label, const CoordBBox& box) {
-  return voxelsOf(labels, box, [label](int32_t here) { return here == label; });
+BitBox voxelsOfGrain(const Int32Tree& labels, int32_t label, const CoordBBox& box,
+                     const VoxelWeights& weights) {
+  return voxelsOf(labels, box, weights, [label](int32_t here) { return here == label; });
 }
 
 /// Makes balls end at the nearest voxel of another grain.
 void endAtOtherGrains(const Int32Tree& labels, const CoordBBox& bounds, int32_t label,
-                      std::vector<Clump::Ball>& balls) {
-  CoordBBox box = boxOf(balls);
+                      const VoxelWeights& weights, std::vector<Clump::Ball>& balls) {
+  CoordBBox box = boxOf(balls, weights);
   box.intersect(bounds);
   if (box.empty()) return;
   BitBox others =
-      voxelsOf(labels, box, [label](int32_t here) { return here > 0 && here != label; });
+      voxelsOf(labels, box, weights, [label](int32_t here) { return here > 0 && here != label; });
   for (Clump::Ball& ball : balls) {
     int64_t nearest = int64_t(ball.squaredRadius);
     others.forEachWord(ball, [&](uint64_t word, uint64_t mask, const Coord& first) {
       BitBox::forEachBit(word & mask, first, [&](const Coord& p) {
-        nearest = std::min(nearest, detail::squaredBetween(p, ball.center, VoxelWeights{}));
+        nearest = std::min(nearest, detail::squaredBetween(p, ball.center, weights));
       });
     });
     ball.squaredRadius = double(nearest);
   }
 }
 
-}  // namespace
+/// From the unit of the weights to the shortest edge.
+void toShortestEdges(const VoxelWeights& weights, std::vector<Clump>& clumps) {
+  const double unit = weights.least();
+  for (Clump& clump : clumps) {
+    clump.farthest /= std::sqrt(unit);
+    for (Clump::Ball& ball : clump.balls) ball.squaredRadius /= unit;
+  }
+}
 
-std::vector<Clump> clumps(const Int32Grid& labels, const Int32Grid& balls,
-                          const ClumpOptions& options, Interrupter* interrupter) {
-  if (options.mostBalls < 1) throw InvalidInput("a clump needs at least one ball");
-  if (!(options.coverageError >= 0 && options.coverageError <= 1))
-    throw InvalidInput("the part of a grain that may stay uncovered must lie between 0 and 1");
-  requireCubicVoxels(labels, "a clump of balls");
+/// Lengths are in the unit of the weights.
+std::vector<Clump> weightedClumps(const Int32Grid& labels, const Int32Grid& balls,
+                                  const VoxelWeights& weights, const ClumpOptions& options,
+                                  Interrupter* interrupter) {
   const detail::LabelBlocks blocks(labels);
   const Int32Tree::ConstPtr tree = detail::withoutTiles(labels),
                             ballTree = detail::withoutTiles(balls);
-  Grains grains = collect(*tree, *ballTree, blocks);
+  Grains grains = collect(*tree, *ballTree, weights, blocks);
   CoordBBox bounds;
   for (const CoordBBox& box : grains.boxes) bounds.expand(box);
   std::vector<Clump> result(blocks.labels().size());
@@ -233,22 +247,49 @@ std::vector<Clump> clumps(const Int32Grid& labels, const Int32Grid& balls,
       Clump& clump = result[g];
       clump.label = blocks.labels()[g];
       clump.voxels = blocks.voxelCounts()[g];
-      if (options.apart) endAtOtherGrains(*tree, bounds, clump.label, grains.balls[g]);
-      BitBox uncovered = voxelsOfGrain(*tree, clump.label, grains.boxes[g]);
+      if (options.apart) endAtOtherGrains(*tree, bounds, clump.label, weights, grains.balls[g]);
+      BitBox uncovered = voxelsOfGrain(*tree, clump.label, grains.boxes[g], weights);
       chooseBalls(grains.balls[g], options, uncovered, clump);
-      if (!options.apart) measure(uncovered, clump);
+      if (!options.apart) measure(uncovered, weights, clump);
     }
   });
   if (!options.apart) return result;
   detail::WorkPart shortening(interrupter, 80, 90), measuring(interrupter, 90, 100);
-  detail::keepBallsApart(result, &shortening);
+  detail::keepBallsApart(result, weights, &shortening);
   detail::parallelFor(result.size(), 1, &measuring, [&](size_t begin, size_t end) {
     for (size_t g = begin; g < end; ++g) {
-      BitBox uncovered = voxelsOfGrain(*tree, result[g].label, grains.boxes[g]);
+      BitBox uncovered = voxelsOfGrain(*tree, result[g].label, grains.boxes[g], weights);
       for (const Clump::Ball& ball : result[g].balls) cover(uncovered, ball);
-      measure(uncovered, result[g]);
+      measure(uncovered, weights, result[g]);
     }
   });
+  return result;
+}
+
+}  // namespace
+
+bool areBallsOfVoxels(const Int32Grid& labels, const Int32Grid& balls) {
+  constexpr double kTolerance = 0.011;  // weights are right to 1 %
+  const VoxelWeights weights = storedWeights(balls);
+  const openvdb::Vec3d edges = detail::proportions(labels.transform());
+  for (int axis = 0; axis < 3; ++axis) {
+    const double wanted = edges[axis] * edges[axis] * weights.least();
+    if (!(std::abs(weights[axis] - wanted) <= kTolerance * wanted)) return false;
+  }
+  return true;
+}
+
+std::vector<Clump> clumps(const Int32Grid& labels, const Int32Grid& balls,
+                          const ClumpOptions& options, Interrupter* interrupter) {
+  if (options.mostBalls < 1) throw InvalidInput("a clump needs at least one ball");
+  if (!(options.coverageError >= 0 && options.coverageError <= 1))
+    throw InvalidInput("the part of a grain that may stay uncovered must lie between 0 and 1");
+  const VoxelWeights weights = storedWeights(balls);
+  if (!areBallsOfVoxels(labels, balls))
+    throw InvalidInput("the balls are those of voxels with the weights " + weights.toString() +
+                       ", and the grains have other voxels: give balls of these voxels");
+  std::vector<Clump> result = weightedClumps(labels, balls, weights, options, interrupter);
+  toShortestEdges(weights, result);
   return result;
 }
 

@@ -11,12 +11,13 @@
 
 namespace vdb_madf {
 
-/// A grain as some of its medial balls, for discrete-element programs; index coordinates, voxels.
+/// A grain as some of its medial balls, for discrete-element programs; centers in index coordinates,
+/// lengths in shortest edges of a voxel, which are voxels where these are cubes.
 struct Clump {
-  /// Holds the voxels p with |p - center|^2 < squaredRadius.
+  /// Holds the voxels p with |p - center|^2 < squaredRadius, in space.
   struct Ball {
     Coord center;
-    double squaredRadius;  ///< a whole number, unless it ends at a ball of another grain
+    double squaredRadius;  ///< of cubes a whole number, unless it ends at a ball of another grain
   };
   int32_t label = 0;
   std::vector<Ball> balls;  ///< in the order in which they were chosen
@@ -37,8 +38,11 @@ struct ClumpOptions {
   bool apart = false;           ///< no two balls of different grains overlap; see clumps()
 };
 
+/// True if the weights of the balls are those of the labels' voxels, as clumps() wants them.
+bool areBallsOfVoxels(const Int32Grid& labels, const Int32Grid& balls);
+
 /// A clump per label (active, > 0), ascending. \p balls: active at the centres of the medial balls,
-/// value = squared radius (grid `balls` of a segmentation); a ball belongs to the grain of its
+/// value = squared radius in the unit of its weights (grid `balls` of a segmentation); a ball belongs to the grain of its
 /// center, or, if that lies in a filled cavity, to the nearest within the ball and 16 voxels (tie: at
 /// the smaller coordinate). Balls are chosen greedily, each the one that covers most voxels of the grain not covered
 /// yet (tie: larger, then smaller centre), until enough is covered or there are `mostBalls`.
@@ -52,7 +56,8 @@ struct ClumpOptions {
 ///
 /// Memory: one bit per voxel of the box of each grain that a thread works on, and with `apart` of the
 /// box of its balls, cut to that of all labels. The same for any number of threads.
-/// @throw InvalidInput for options out of range, or voxels that are no cubes; Interrupted.
+/// @throw InvalidInput for options out of range, or balls whose weights are not those of the labels'
+///   voxels; Interrupted.
 std::vector<Clump> clumps(const Int32Grid& labels, const Int32Grid& balls,
                           const ClumpOptions& options = {}, Interrupter* interrupter = nullptr);
 

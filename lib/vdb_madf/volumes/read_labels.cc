@@ -14,12 +14,14 @@
 
 namespace vdb_madf {
 
-Int32Grid::Ptr readLabels(ImageReader& image, Interrupter* interrupter) {
+Int32Grid::Ptr readLabels(ImageReader& image, Interrupter* interrupter,
+                          const std::optional<CoordBBox>& box) {
   const ImageInfo& info = image.info();
   std::vector<char> samples(size_t(detail::sliceBytes(info)) *
                             size_t(std::min(detail::kSlab, info.size.z)));
   const auto grid = Int32Grid::create(0);
-  detail::forEachSlab(0, info.size.z, interrupter, [&](int z, int count) {
+  const CoordBBox part = box.value_or(imageBox(info.size));
+  detail::forEachSlab(part.min().z(), part.max().z() + 1, interrupter, [&](int z, int count) {
     image.read(z, count, samples.data());
     detail::packLabels(image.path(), samples.data(), info.type,
                        detail::slicesOf(imageBox(info.size), z, count), grid->tree());

@@ -170,9 +170,10 @@ std::optional<ScanPart> partOfImage(const std::string& path, const VolumeOptions
   return detail::chosenPart(path, options, extent, interrupter);
 }
 
-void noteLeftOut(const std::string& path, int64_t voxels, const VolumeOptions& options) {
+void noteLeftOut(const std::string& path, int64_t voxels, const char* kind,
+                 const VolumeOptions& options) {
   if (voxels > 0 && options.note)
-    options.note(path + ": outside of the region, " + counted(voxels, "object voxel") + " left out",
+    options.note(path + ": outside of the region, " + counted(voxels, kind) + " left out",
                  NoteAbout::file);
 }
 
@@ -186,7 +187,7 @@ MaskGrid::Ptr objectOfGrid(const std::string& path, const VolumeOptions& options
   if (options.domain) setDomain(*grid, *options.domain);  // an inversion needs it
   const auto part = partOf(*grid, path, options, interrupter);
   const MaskGrid::Ptr object = objectMask(*grid, options.selection);
-  if (part) noteLeftOut(path, detail::cutTo(*part, *object), options);
+  if (part) noteLeftOut(path, detail::cutTo(*part, *object), "object voxel", options);
   noteVoxelSize(path, storedVoxelSize(*object), options);
   despeckleObject(*object, options.gray.despeckle, interrupter);
   return object;
@@ -200,9 +201,36 @@ MaskGrid::Ptr objectOfImage(const std::string& path, const VolumeOptions& option
   if (found.fromLabels && options.note)
     options.note(path + ": it has several values besides 0, and all of them become one mask",
                  NoteAbout::labels);
-  noteLeftOut(path, found.leftOut, options);
+  noteLeftOut(path, found.leftOut, "object voxel", options);
   if (options.domain && !part) setDomain(*found.mask, *options.domain);
   return found.mask;
+}
+
+Int32Grid::Ptr labelsOfGrid(const std::string& path, const VolumeOptions& options,
+                            Interrupter* interrupter) {
+  const auto labels =
+      openvdb::gridPtrCast<Int32Grid>(readGrid(path, GridUse::labels, options, interrupter));
+  if (options.domain) setDomain(*labels, *options.domain);
+  if (const auto part = partOf(*labels, path, options, interrupter))
+    noteLeftOut(path, detail::cutTo(*part, *labels), "labelled voxel", options);
+  noteVoxelSize(path, storedVoxelSize(*labels), options);
+  return labels;
+}
+
+Int32Grid::Ptr labelsOfImage(const std::string& path, const VolumeOptions& options,
+                             Interrupter* interrupter) {
+  checkLabels(path, options, interrupter);
+  const auto part = partOfImage(path, options, interrupter);
+  const auto image = openVolumeImage(path, options);
+  if (!part) {
+    const Int32Grid::Ptr labels = readLabels(*image, interrupter);
+    if (options.domain) setDomain(*labels, *options.domain);
+    return labels;
+  }
+  const Int32Grid::Ptr labels =
+      readLabels(*image, interrupter, detail::boxOf(*part, image->info().size));
+  noteLeftOut(path, detail::cutTo(*part, *labels), "labelled voxel", options);
+  return labels;
 }
 
 void override(openvdb::GridBase& grid, const VolumeOptions& options) {
@@ -293,16 +321,11 @@ MaskGrid::Ptr loadObject(const std::string& path, const VolumeOptions& options,
 
 Int32Grid::Ptr loadLabels(const std::string& path, const VolumeOptions& options,
                           Interrupter* interrupter) {
-  Int32Grid::Ptr labels;
-  if (isReadAsVdb(path, options)) {
-    labels = openvdb::gridPtrCast<Int32Grid>(readGrid(path, GridUse::labels, options, interrupter));
-    noteVoxelSize(path, storedVoxelSize(*labels), options);
-  } else {
-    checkLabels(path, options, interrupter);
-    const auto image = openVolumeImage(path, options);
-    labels = readLabels(*image, interrupter);
-  }
-  override(*labels, options);
+  const Int32Grid::Ptr labels = naming(path, options.region.mask, [&] {
+    return isReadAsVdb(path, options) ? labelsOfGrid(path, options, interrupter)
+                                      : labelsOfImage(path, options, interrupter);
+  });
+  if (options.voxelSize) setVoxelSize(*labels, options.voxelSize);
   return labels;
 }
 

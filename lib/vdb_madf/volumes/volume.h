@@ -33,7 +33,7 @@ struct VolumeOptions {
   GrayOptions gray;                    ///< object only: filters and thresholds of a gray image
   std::optional<VoxelSize> voxelSize;  ///< instead of the file's
   std::optional<CoordBBox> domain;     ///< of the scan, in voxels, instead of the file's
-  RegionOptions region;                ///< object only: the part of that to work on
+  RegionOptions region;                ///< the part of that to work on
   /// Files that the caller will write: an image that has samples in one of them is refused.
   std::vector<std::string> outputs;
   /// An image of more voxels along an axis is refused before its samples are read. 0: any.
@@ -94,7 +94,7 @@ MaskGrid::Ptr loadObject(const std::string& path, const VolumeOptions& options =
                          Interrupter* interrupter = nullptr);
 
 /// The labels in a volume, an int32 grid or an image of integers: active where they are not 0.
-/// (Of a VDB file: the grid as it is.)
+/// (Of a VDB file: the grid as it is.) With a region as loadObject().
 /// @throw as loadObject(); InvalidInput if a value is no integer or beyond int32.
 Int32Grid::Ptr loadLabels(const std::string& path, const VolumeOptions& options = {},
                           Interrupter* interrupter = nullptr);

@@ -61,6 +61,7 @@ inline openvdb::Vec3d proportions(const openvdb::math::Transform& transform) {
 struct WorldTransform {
   openvdb::Vec3d origin;  ///< of the centre of voxel (0,0,0)
   openvdb::Vec3d edges{1, 1, 1};
+  double shortestEdge() const { return std::min({edges[0], edges[1], edges[2]}); }
 };
 
 /// @throw InvalidInput if voxels are not along the axes of the world, or mirrored.
@@ -71,20 +72,6 @@ inline WorldTransform worldTransform(const openvdb::math::Transform& transform) 
   WorldTransform world{transform.indexToWorld(openvdb::Vec3d(0)), *edges};
   if (areEdgesOfCube(*edges)) world.edges = openvdb::Vec3d((*edges)[0]);
   return world;
-}
-
-/// World = origin + index * edge.
-struct CubicTransform {
-  openvdb::Vec3d origin;  ///< of the centre of voxel (0,0,0)
-  double edge = 1;
-};
-
-/// @throw InvalidInput if voxels are not cubes along the axes of the world, or mirrored.
-inline CubicTransform cubicTransform(const openvdb::math::Transform& transform) {
-  const auto edges = edgesAlongAxes(transform);
-  if (!edges || !areEdgesOfCube(*edges) || !((*edges)[0] > 0 && (*edges)[1] > 0 && (*edges)[2] > 0))
-    throw InvalidInput("the grid's voxels are not cubes along the axes: resample the grid first");
-  return {transform.indexToWorld(openvdb::Vec3d(0)), (*edges)[0]};
 }
 
 }  // namespace vdb_madf::detail

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/method/detail/metric.h"
 
 namespace vdb_madf::detail {
 
@@ -17,10 +18,13 @@ namespace {
 using openvdb::BBoxd;
 using openvdb::Vec3d;
 
-BBoxd boxOf(const Clump& clump) {
+BBoxd boxOf(const Clump& clump, const VoxelWeights& weights) {
   BBoxd box;
   for (const Clump::Ball& ball : clump.balls) {
-    const Vec3d center = ball.center.asVec3d(), reach(std::sqrt(ball.squaredRadius));
+    const Vec3d center = ball.center.asVec3d();
+    Vec3d reach;
+    for (int axis = 0; axis < 3; ++axis)
+      reach[axis] = std::sqrt(ball.squaredRadius / weights[axis]);
     box.expand(center - reach);
     box.expand(center + reach);
   }
@@ -48,11 +52,12 @@ std::vector<std::vector<size_t>> neighborsOf(const std::vector<BBoxd>& boxes) {
 }
 
 /// Shortens `radius`, that of a ball, to the planes between it and the balls of another clump.
-void shorten(double& radius, const Clump::Ball& ball, const Clump& other) {
+void shorten(double& radius, const Clump::Ball& ball, const Clump& other,
+             const VoxelWeights& weights) {
   const double r = std::sqrt(ball.squaredRadius);
   for (const Clump::Ball& there : other.balls) {
-    const Vec3d between = (there.center - ball.center).asVec3d();
-    const double reach = r + std::sqrt(there.squaredRadius), square = between.lengthSqr();
+    const double reach = r + std::sqrt(there.squaredRadius),
+                 square = double(squaredBetween(there.center, ball.center, weights));
     if (square >= reach * reach) continue;
     const double d = std::sqrt(square);
     radius = std::min(radius, (square + ball.squaredRadius - there.squaredRadius) / (2 * d));
@@ -61,9 +66,10 @@ void shorten(double& radius, const Clump::Ball& ball, const Clump& other) {
 
 }  // namespace
 
-void keepBallsApart(std::vector<Clump>& clumps, Interrupter* interrupter) {
+void keepBallsApart(std::vector<Clump>& clumps, const VoxelWeights& weights,
+                    Interrupter* interrupter) {
   std::vector<BBoxd> boxes;
-  for (const Clump& clump : clumps) boxes.push_back(boxOf(clump));
+  for (const Clump& clump : clumps) boxes.push_back(boxOf(clump, weights));
   const auto neighbors = neighborsOf(boxes);
   std::vector<std::vector<Clump::Ball>> kept(clumps.size());
   parallelFor(clumps.size(), 1, interrupter, [&](size_t begin, size_t end) {
@@ -71,7 +77,7 @@ void keepBallsApart(std::vector<Clump>& clumps, Interrupter* interrupter) {
       for (const Clump::Ball& ball : clumps[g].balls) {
         const double whole = std::sqrt(ball.squaredRadius);
         double radius = whole;
-        for (const size_t other : neighbors[g]) shorten(radius, ball, clumps[other]);
+        for (const size_t other : neighbors[g]) shorten(radius, ball, clumps[other], weights);
         if (radius == whole)
           kept[g].push_back(ball);
         else if (radius > 0)

@@ -9,15 +9,18 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/bits.h"
+#include "vdb_madf/method/detail/metric.h"
 #include "vdb_madf/shapes/clumps.h"
 
 namespace vdb_madf::detail {
 
-/// A bit per voxel of a box, in rows along z.
+/// A bit per voxel of a box, in rows along z. Balls are those of a metric: their squared radii are in
+/// units of its weights.
 class BitBox {
  public:
-  explicit BitBox(const CoordBBox& box)
+  BitBox(const CoordBBox& box, const VoxelWeights& weights)
       : box_(box),
+        weights_(weights),
         wordsPerRow_((size_t(box.dim().z()) + 63) / 64),
         words_(size_t(box.dim().x()) * size_t(box.dim().y()) * wordsPerRow_) {}
 
@@ -32,15 +35,16 @@ class BitBox {
     // Whole numbers below the squared radius are those up to this one.
     const int64_t last = int64_t(std::ceil(ball.squaredRadius)) - 1;
     if (last < 0) return;
-    const int reach = int(std::sqrt(double(last)));
+    const int reachX = reach(last, 0), reachY = reach(last, 1);
     const Coord& c = ball.center;
-    for (int x = std::max(c.x() - reach, box_.min().x());
-         x <= std::min(c.x() + reach, box_.max().x()); ++x)
-      for (int y = std::max(c.y() - reach, box_.min().y());
-           y <= std::min(c.y() + reach, box_.max().y()); ++y) {
-        const int64_t dx = x - c.x(), dy = y - c.y(), rest = last - dx * dx - dy * dy;
+    for (int x = std::max(c.x() - reachX, box_.min().x());
+         x <= std::min(c.x() + reachX, box_.max().x()); ++x)
+      for (int y = std::max(c.y() - reachY, box_.min().y());
+           y <= std::min(c.y() + reachY, box_.max().y()); ++y) {
+        const int64_t rest = last - squaredAlong(int64_t(x) - c.x(), weights_.x) -
+                             squaredAlong(int64_t(y) - c.y(), weights_.y);
         if (rest < 0) continue;
-        const int half = int(std::sqrt(double(rest)));  // exact: rest is below 2^31
+        const int half = reach(rest, 2);
         const int low = std::max(c.z() - half, box_.min().z()) - box_.min().z(),
                   high = std::min(c.z() + half, box_.max().z()) - box_.min().z();
         uint64_t* words = row(x, y);
@@ -72,6 +76,10 @@ class BitBox {
   }
 
  private:
+  /// The largest whole number of voxels along an axis whose square is at most that.
+  int reach(int64_t square, int axis) const {
+    return int(std::sqrt(double(square / weights_[axis])));  // exact: squares are below 2^31
+  }
   uint64_t* row(int x, int y) {
     return &words_[(size_t(x - box_.min().x()) * size_t(box_.dim().y()) +
                     size_t(y - box_.min().y())) *
@@ -79,6 +87,7 @@ class BitBox {
   }
 
   CoordBBox box_;
+  VoxelWeights weights_;
   size_t wordsPerRow_;
   std::vector<uint64_t> words_;
 };

@@ -28,19 +28,34 @@ CoordBBox boxOf(const ScanPart& part, const ImageSize& size) {
   return Domain(imageBox(size)).within(part.box).box();
 }
 
-int64_t cutTo(const ScanPart& part, MaskGrid& mask) {
-  MaskTree& tree = mask.tree();
+namespace {
+
+template <typename Grid>
+int64_t cut(const ScanPart& part, Grid& grid) {
+  auto& tree = grid.tree();
   if (part.box != CoordBBox::inf()) tree.clip(part.box);
   const auto before = tree.activeVoxelCount();
-  CoordBBox object;
-  if (tree.evalActiveVoxelBoundingBox(object) && !part.domain.box().isInside(object))
+  CoordBBox active;
+  if (tree.evalActiveVoxelBoundingBox(active) && !part.domain.box().isInside(active))
     tree.clip(part.domain.box());
   if (!part.domain.isBox()) {
     tree.topologyIntersection(*part.domain.region());
     openvdb::tools::pruneInactive(tree);
   }
-  setDomain(mask, part.domain);
+  setDomain(grid, part.domain);
   return int64_t(before - tree.activeVoxelCount());
+}
+
+}  // namespace
+
+int64_t cutTo(const ScanPart& part, MaskGrid& mask) {
+  return cut(part, mask);
+}
+
+int64_t cutTo(const ScanPart& part, Int32Grid& labels) {
+  const int64_t leftOut = cut(part, labels);
+  for (auto value = labels.beginValueOff(); value; ++value) value.setValue(0);
+  return leftOut;
 }
 
 RowParts rowsOf(const ScanPart& part, const ImageSize& size) {

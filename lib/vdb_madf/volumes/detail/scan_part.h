@@ -11,9 +11,10 @@ namespace vdb_madf::detail {
 /// What is read of an image of this size. @throw InvalidInput if that is nothing.
 CoordBBox boxOf(const ScanPart& part, const ImageSize& size);
 
-/// Leaves the mask the voxels of the part, and tells it its domain.
+/// Leaves a grid the active voxels of the part, and tells it its domain.
 /// @return how many of the box were left out
 int64_t cutTo(const ScanPart& part, MaskGrid& mask);
+int64_t cutTo(const ScanPart& part, Int32Grid& labels);
 
 /// The parts of the rows of such an image that lie in the domain.
 RowParts rowsOf(const ScanPart& part, const ImageSize& size);
