@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Labels of arrays of every kind are those of the command, byte for byte."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -58,6 +61,23 @@ def test_memmap_and_its_file(array, expected, command, tmp_path):
     of_command = (tmp_path / "command.vdb").read_bytes()
     assert (tmp_path / "array.vdb").read_bytes() == of_command
     assert (tmp_path / "file.vdb").read_bytes() == of_command
+
+
+def test_a_memmap_does_not_become_memory(tmp_path):
+    """Of 64 MiB, a slab at a time is there; changes that are nowhere else stay."""
+    shape, slab = (64, 1024, 1024), 8 * 2**20
+    np.lib.format.open_memmap(tmp_path / "scan.npy", "w+", np.uint8, shape).flush()
+    script = (
+        "import resource, numpy as np, vdb_madf as madf\n"
+        "madf.Mask(np.ones((8, 8, 8), bool))\n"
+        "before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
+        "madf.Mask(np.load('scan.npy', mmap_mode='r'), phase=1)\n"
+        "print(1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before))\n")
+    run = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, stdout=subprocess.PIPE, check=True)
+    assert int(run.stdout) < 4 * slab
+    changed = np.load(tmp_path / "scan.npy", mmap_mode="c")
+    changed[40, 5, 6] = 1
+    assert madf.Mask(changed[30:], phase=1).voxels == 1 and changed[40, 5, 6] == 1
 
 
 def test_h5py(array, expected, tmp_path):

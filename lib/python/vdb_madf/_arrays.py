@@ -4,8 +4,9 @@
 
 from __future__ import annotations
 
+import mmap
 import os
-from typing import Any, Protocol, Tuple, Union
+from typing import Any, Optional, Protocol, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -72,14 +73,28 @@ def _array_source(array: Any) -> _core.ArraySource:
     if 0 in shape:
         raise _core.InvalidInput(f"the array, of {shape}, has no voxels")
     target = _target(dtype)
+    pages = _mapped(array)
 
     def read(first: int, stop: int) -> npt.NDArray[Any]:
+        if pages is not None:
+            pages.madvise(mmap.MADV_DONTNEED)
         slab = np.asarray(array[first:stop])
         if slab.dtype.kind in "iu" and slab.dtype.itemsize == 8:
             slab = _narrowed(slab, first)
         return np.ascontiguousarray(slab, dtype=target)
 
     return _core.ArraySource(_name(array), (shape[0], shape[1], shape[2]), target.name, read)
+
+
+def _mapped(array: Any) -> Optional[mmap.mmap]:
+    """The memory map behind a read-only numpy.memmap: what was read of it is forgotten slab by slab, or
+    the whole file would count as memory of the process."""
+    owner = array
+    while isinstance(owner, np.ndarray):
+        if isinstance(owner, np.memmap) and owner.mode != "r":
+            return None  # changes may be there alone
+        owner = owner.base
+    return owner if isinstance(owner, mmap.mmap) and hasattr(mmap, "MADV_DONTNEED") else None
 
 
 def _name(array: Any) -> str:
