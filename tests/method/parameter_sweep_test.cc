@@ -12,6 +12,7 @@
 #include "support/random_volume.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/method/initialize.h"
 #include "vdb_madf/method/segment.h"
 
 using namespace vdb_madf;
@@ -175,4 +176,21 @@ TEST_CASE("parameter_sweep: threads do not matter", "[parameter_sweep]") {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const std::vector<SweepRow> sequential = parameterSweep(*object, wide());
   CHECK(std::equal(parallel.begin(), parallel.end(), sequential.begin(), sequential.end(), equal));
+}
+
+TEST_CASE("parameter_sweep: stored manifolds give the same rows", "[parameter_sweep]") {
+  initialize();  // the graph is metadata
+  const MaskGrid::Ptr object = rough();
+  SweepOptions options = wide();
+  options.gammas = {12};
+  SegmentOptions one;
+  one.gamma = 12;
+  one.keepManifold = true;
+  const Segmentation segmentation = segment(*object, one);
+  const std::vector<SweepRow> rows = mergingSweep(*segmentation.manifold, options),
+                              fresh = parameterSweep(*object, options);
+  REQUIRE(rows.size() == fresh.size());
+  for (size_t i = 0; i < rows.size(); ++i) CHECK(equal(rows[i], fresh[i]));
+  CHECK_THROWS_WITH(mergingSweep(*segmentation.grain, options),
+                    Catch::Contains("carries no graph of manifolds"));
 }

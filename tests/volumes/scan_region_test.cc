@@ -332,3 +332,29 @@ TEST_CASE("scan_region: labels are cut to it, be they an image or a grid", "[sca
   CHECK_THROWS_WITH(loadLabels(folder / "l.vdb", options),
                     Contains("l.vdb") && Contains("no voxel"));
 }
+
+TEST_CASE("scan_region: a mask in memory is the region that it is in a file", "[scan_region]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "scan.tif", file = folder / "region.vdb";
+  writeScan(path, roundScan(16));
+  const auto region = MaskGrid::create();
+  region->fill(CoordBBox(Coord(5, 4, 2), Coord(30, 33, 18)), true);
+  region->tree().setValueOff(Coord(20, 20, 9));
+  region->setName("object");
+  setDomain(*region, kBox);
+  writeVdb(file, {toBoolGrid(*region)});
+  VolumeOptions options = above(150), other = options;
+  options.region.mask = file;
+  other.region.grid = region;
+  const Loaded read = load(path, options), given = load(path, other);
+  REQUIRE(given.object);
+  CHECK(storedDomain(*given.object) == storedDomain(*read.object));
+  CHECK(given.object->tree().hasSameTopology(read.object->tree()));
+  CHECK_THAT(given.notes, Contains("left out"));
+
+  other.region.grid = MaskGrid::create();
+  CHECK_THAT(load(path, other).error, Contains("the region: all is 0"));
+  setDomain(*region, CoordBBox(Coord(0), Coord(40, 36, 18)));
+  other.region.grid = region;
+  CHECK_THAT(load(path, other).error, Contains("the region: is 41x37x19 voxels large"));
+}

@@ -148,3 +148,31 @@ TEST_CASE("volume: options that do not fit the file are refused", "[volume]") {
   CHECK_THROWS_AS(loadLabels(folder / "none.vdb"), IoError);
   CHECK_THROWS_AS(loadLabels(folder / "none.tif"), IoError);
 }
+
+TEST_CASE("volume: an image that is no file is read as its file is", "[volume]") {
+  const ScratchFolder folder;
+  const Int32Grid::Ptr labels = labelsOfSample();
+  const std::string path = folder / "a.mha";
+  writeImage(path, *labels, kBox, SampleType::int32);
+  const ImageOpener open = [&] { return openImage(path); };
+  VolumeOptions options;
+  options.voxelSize = VoxelSize{2e-5};
+  std::vector<std::string> notes;
+  options.note = [&](const std::string& text, NoteAbout) { notes.push_back(text); };
+  const Int32Grid::Ptr same = loadLabels(open, options);
+  CHECK(sameValues(*labels, *same));
+  CHECK(storedVoxelSize(*same)->edge() == 2e-5);
+  REQUIRE(!notes.empty());
+  CHECK_THAT(notes[0], StartsWith(path + ": the file says that a voxel is 10 um long"));
+
+  options.selection = Selection::range(2, 4);
+  options.region.crop = CoordBBox(Coord(1, 2, 0), Coord(6, 6, 20));
+  const MaskGrid::Ptr ofFile = loadObject(path, options), found = loadObject(open, options);
+  CHECK(found->tree().hasSameTopology(ofFile->tree()));
+  CHECK(storedDomain(*found) == storedDomain(*ofFile));
+  CHECK(found->getName() == "object");
+
+  options.region = {};
+  options.longestSide = 11;
+  CHECK_THROWS_WITH(loadObject(open, options), StartsWith(path + ": is 12 voxels long"));
+}

@@ -3,16 +3,15 @@
 
 #include "parse.h"
 
-#include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
 
-#include "vdb_madf/base/length_unit.h"
+#include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/base/lower_case.h"
+#include "vdb_madf/base/size_text.h"
 #include "wrong_usage.h"
 
 namespace vdb_madf::tools {
@@ -38,9 +37,14 @@ std::optional<Coord> parseCoord(const std::string& text, char separator) {
   return coord;
 }
 
-/// For a decimal comma, as much of the world writes it.
-std::string commaHint(const std::string& text) {
-  return text.find(',') == std::string::npos ? "" : ": write a point, not a comma, before decimals";
+/// Runs `parse` of the library, whose messages begin with the text.
+template <typename Parse>
+auto withOption(const std::string& option, const Parse& parse) -> decltype(parse()) {
+  try {
+    return parse();
+  } catch (const InvalidInput& error) {
+    throw WrongUsage(option + " " + error.what());
+  }
 }
 
 }  // namespace
@@ -123,30 +127,7 @@ RegionOptions parseRoi(const std::string& text) {
 }
 
 VoxelSize parseVoxelSize(const std::string& text, const std::string& option) {
-  const std::string given = option + " " + text;
-  const std::vector<std::string> parts = split(text, 'x');
-  if (parts.size() != 1 && parts.size() != 3)
-    throw WrongUsage(given + ": write one edge or three, for example 8.5um or 0.5x0.5x1.2um");
-  std::vector<double> edges;
-  std::string unit;
-  for (auto part = parts.rbegin(); part != parts.rend(); ++part) {  // the last has the unit of all
-    char* end = nullptr;
-    const double value = std::strtod(part->c_str(), &end);
-    if (end == part->c_str() || !std::isfinite(value))
-      throw WrongUsage(given + ": not a finite number");
-    const std::string rest = end;
-    if (rest.find_first_not_of(' ') != std::string::npos) unit = rest;
-    const auto perMetre = unitsPerMetre(unit);
-    if (!perMetre)
-      throw WrongUsage(given + (rest[0] == ','
-                                    ? commaHint(text)
-                                    : ": give a unit (nm, um, mm or m), for example 8.5um"));
-    // Dividing by a power of ten keeps decimal inputs exact to the last bit.
-    edges.push_back(value / *perMetre);
-    if (!(edges.back() >= 1e-10 && edges.back() <= 1))
-      throw WrongUsage(given + ": must lie between 0.1nm and 1m");
-  }
-  return edges.size() == 1 ? VoxelSize(edges[0]) : VoxelSize({edges[2], edges[1], edges[0]});
+  return withOption(option, [&] { return voxelSizeFromText(text); });
 }
 
 int64_t parseCount(const std::string& text, const std::string& option) {
@@ -164,21 +145,7 @@ Boundary parseBoundary(const std::string& boundary) {
 }
 
 int64_t parseMemory(const std::string& text) {
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  std::string unit = lowerCase(end);
-  unit.erase(std::remove(unit.begin(), unit.end(), ' '), unit.end());
-  double factor = unit == "b" ? 1 : 0;
-  const size_t power = unit.empty() ? 0 : std::string("kmgt").find(unit[0]) + 1;
-  if (power > 0 && (unit.size() == 1 || unit.substr(1) == "ib"))
-    factor = std::pow(1024.0, double(power));
-  else if (power > 0 && unit.substr(1) == "b")
-    factor = std::pow(1000.0, double(power));
-  const double bytes = number * factor;
-  if (end == text.c_str() || !(bytes >= 1) || !(bytes < 9e18))
-    throw WrongUsage("--max-memory " + text + ": give a size with its unit, such as 12GiB or 500M" +
-                     commaHint(text));
-  return int64_t(bytes);
+  return withOption("--max-memory", [&] { return bytesFromText(text); });
 }
 
 }  // namespace vdb_madf::tools

@@ -25,13 +25,11 @@ Coord parseDims(const std::string& text, const std::string& option);
 CoordBBox parseBox(const std::string& text, const std::string& option);
 /// --roi: "cylinder", "cylinder:z:CX,CY:RADIUS" with as many parts as one likes, or a file.
 RegionOptions parseRoi(const std::string& text);
-/// --voxel-size: "8.5um", "0.5x0.5x1.2um" (or a unit for each), with or without a space; units as
-/// unitsPerMetre() knows them.
+/// --voxel-size and others: as voxelSizeFromText().
 VoxelSize parseVoxelSize(const std::string& text, const std::string& option = "--voxel-size");
 /// A whole number >= 0.
 int64_t parseCount(const std::string& text, const std::string& option);
-/// --max-memory: "500M", "12 GiB", "1e6B" in bytes; K, M, G, T with or without iB are powers of 1024,
-/// with B of 1000; upper and lower case are the same. A number alone is refused: of what?
+/// --max-memory: as bytesFromText().
 int64_t parseMemory(const std::string& text);
 
 /// "auto", "open" or "closed"; does not throw.

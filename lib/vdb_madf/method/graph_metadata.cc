@@ -236,6 +236,14 @@ std::optional<ManifoldGraph> storedGraph(const openvdb::GridBase& grid) {
   return graph;
 }
 
+ManifoldGraph requiredGraph(const openvdb::GridBase& grid) {
+  std::optional<ManifoldGraph> graph = storedGraph(grid);
+  if (!graph)
+    throw InvalidInput("grid '" + grid.getName() + "' carries no graph of manifolds: segment again",
+                       Hint::manifolds);
+  return std::move(*graph);
+}
+
 void removeGraph(openvdb::GridBase& grid) {
   grid.removeMeta(kName);
 }

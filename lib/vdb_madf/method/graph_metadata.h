@@ -24,6 +24,9 @@ void setGraph(openvdb::GridBase& grid, ManifoldGraph graph);
 /// Absent: the grid has no graph. @throw InvalidInput if `madf_weights` cannot be those of the graph.
 std::optional<ManifoldGraph> storedGraph(const openvdb::GridBase& grid);
 
+/// The same of a grid that has to have one. @throw InvalidInput also if it has none
+ManifoldGraph requiredGraph(const openvdb::GridBase& grid);
+
 void removeGraph(openvdb::GridBase& grid);
 
 }  // namespace vdb_madf

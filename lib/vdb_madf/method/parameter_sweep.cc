@@ -6,7 +6,9 @@
 #include <algorithm>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/method/detail/manifold_labels.h"
+#include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/method/segment.h"
 
 namespace vdb_madf {
@@ -52,6 +54,41 @@ void count(std::vector<int64_t> sizes, int64_t smallVoxels, SweepRow& row) {
   }
 }
 
+/// A manifold grid with its graph.
+struct Manifolds {
+  const Int32Grid& grid;
+  const ManifoldGraph& graph;
+  std::optional<Domain> domain;
+  int64_t gamma = 0;
+};
+
+/// Adds a row for each mode, delta and theta.
+void addRows(const Manifolds& manifolds, const SweepOptions& options, std::vector<SweepRow>& rows,
+             Interrupter* interrupter) {
+  const LeafIndex index = detail::topologyOf(manifolds.grid);
+  for (const MergeMode mode : options.modes)
+    for (const int delta : options.deltas)
+      for (const double theta : options.thetas) {
+        if (mode == MergeMode::angle && delta != options.deltas.front()) {  // it has no delta
+          rows.push_back(rows[rows.size() - options.thetas.size()]);
+          rows.back().delta = delta;
+          continue;
+        }
+        SweepRow row;
+        row.gamma = manifolds.gamma;
+        row.mode = mode;
+        row.theta = theta;
+        row.delta = delta;
+        const Merging merging = merge(manifolds.graph, {theta, mode, options.adjacency, delta});
+        GrainLabels grains =
+            detail::labelGrains(manifolds.grid, index, manifolds.graph, merging, interrupter);
+        tidy(index, options.tidy, grains, interrupter);
+        row.flaws = labelFlaws(index, grains.label, grains.voxels, manifolds.domain, interrupter);
+        count(std::move(grains.voxels), options.smallVoxels, row);
+        rows.push_back(row);
+      }
+}
+
 }  // namespace
 
 std::vector<SweepRow> parameterSweep(const MaskGrid& object, const SweepOptions& options,
@@ -70,31 +107,20 @@ std::vector<SweepRow> parameterSweep(const MaskGrid& object, const SweepOptions&
     segmentOptions.keepManifold = true;
     Segmentation segmentation = segment(object, segmentOptions, interrupter);
     segmentation.grain.reset();
-    const ManifoldGraph& graph = segmentation.graph;
-    const LeafIndex index = detail::topologyOf(*segmentation.manifold);
-    for (const MergeMode mode : options.modes)
-      for (const int delta : options.deltas)
-        for (const double theta : options.thetas) {
-          if (mode == MergeMode::angle && delta != options.deltas.front()) {  // it has no delta
-            rows.push_back(rows[rows.size() - options.thetas.size()]);
-            rows.back().delta = delta;
-            continue;
-          }
-          SweepRow row;
-          row.gamma = gamma;
-          row.mode = mode;
-          row.theta = theta;
-          row.delta = delta;
-          const Merging merging = merge(graph, {theta, mode, options.adjacency, delta});
-          GrainLabels grains =
-              detail::labelGrains(*segmentation.manifold, index, graph, merging, interrupter);
-          tidy(index, options.tidy, grains, interrupter);
-          row.flaws =
-              labelFlaws(index, grains.label, grains.voxels, segmentation.domain, interrupter);
-          count(std::move(grains.voxels), options.smallVoxels, row);
-          rows.push_back(row);
-        }
+    addRows({*segmentation.manifold, segmentation.graph, segmentation.domain, gamma}, options, rows,
+            interrupter);
   }
+  return rows;
+}
+
+std::vector<SweepRow> mergingSweep(const Int32Grid& manifold, const SweepOptions& options,
+                                   Interrupter* interrupter) {
+  check(options);
+  checkTidy(options.tidy);
+  const ManifoldGraph graph = requiredGraph(manifold);
+  std::vector<SweepRow> rows;
+  addRows({manifold, graph, storedDomain(manifold), options.gammas.front()}, options, rows,
+          interrupter);
   return rows;
 }
 

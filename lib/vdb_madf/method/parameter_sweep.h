@@ -53,4 +53,11 @@ struct SweepRow {
 std::vector<SweepRow> parameterSweep(const MaskGrid& object, const SweepOptions& options,
                                      Interrupter* interrupter = nullptr);
 
+/// The same rows for stored manifolds (segment() with keepManifold), without distances and power
+/// map. Of the options it takes modes, thetas, deltas, adjacency, smallVoxels and tidy; the rows
+/// repeat the first gamma.
+/// @throw InvalidInput also if the grid carries no graph or does not fit it; Interrupted.
+std::vector<SweepRow> mergingSweep(const Int32Grid& manifold, const SweepOptions& options,
+                                   Interrupter* interrupter = nullptr);
+
 }  // namespace vdb_madf

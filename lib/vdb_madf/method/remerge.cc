@@ -16,15 +16,6 @@ namespace vdb_madf {
 
 namespace {
 
-ManifoldGraph graphOf(const Int32Grid& manifold) {
-  std::optional<ManifoldGraph> graph = storedGraph(manifold);
-  if (!graph)
-    throw InvalidInput(
-        "grid '" + manifold.getName() + "' carries no graph of manifolds: segment again",
-        Hint::manifolds);
-  return std::move(*graph);
-}
-
 void checkMerging(const ManifoldGraph& graph, const Merging& merging) {
   const auto& grainOfNode = merging.grainOfNode;
   const auto& representative = merging.representative;
@@ -70,7 +61,7 @@ Int32Grid::Ptr remerge(const Int32Grid& manifold, const MergeOptions& options, i
                        Interrupter* interrupter) {
   checkMergeOptions(options);
   checkTidy(tidyRounds);
-  const ManifoldGraph graph = graphOf(manifold);
+  const ManifoldGraph graph = requiredGraph(manifold);
   const Merging merging = merge(graph, options);
   const auto grain = mergedGrains(manifold, graph, merging, tidyRounds, interrupter);
   describeMerging(*grain, options, tidyRounds, int64_t(merging.representative.size()));
@@ -80,7 +71,7 @@ Int32Grid::Ptr remerge(const Int32Grid& manifold, const MergeOptions& options, i
 Int32Grid::Ptr applyMerging(const Int32Grid& manifold, const Merging& merging, int tidyRounds,
                             Interrupter* interrupter) {
   checkTidy(tidyRounds);
-  const ManifoldGraph graph = graphOf(manifold);
+  const ManifoldGraph graph = requiredGraph(manifold);
   checkMerging(graph, merging);
   const auto grain = mergedGrains(manifold, graph, merging, tidyRounds, interrupter);
   describeOwnMerging(*grain, tidyRounds, int64_t(merging.representative.size()));

@@ -36,9 +36,10 @@ struct RegionOptions {
   /// A volume, any readable file that describes itself: voxels that are not 0 are inside (of a VDB
   /// those of its object), at the same coordinates as in the scan. Empty: none.
   std::string mask;
+  MaskGrid::ConstPtr grid;  ///< instead of a file: its active voxels are inside
   std::optional<CylinderOptions> cylinder;
   std::optional<CoordBBox> crop;
-  bool any() const { return !mask.empty() || cylinder || crop; }
+  bool any() const { return !mask.empty() || grid || cylinder || crop; }
 };
 
 /// The voxels of the box that lie in the cylinder.

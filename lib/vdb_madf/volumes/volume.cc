@@ -128,13 +128,13 @@ void noteVoxelSize(const std::string& path, const std::optional<VoxelSize>& ofFi
 
 /// A gray scan would have millions of grains: it has many values, and hardly two voxels side by side
 /// have the same.
-void checkLabels(const std::string& path, const VolumeOptions& options, Interrupter* interrupter) {
+void checkLabels(ImageReader& image, Interrupter* interrupter) {
   constexpr double kNoise = 1.5;
   constexpr size_t kFewValues = 100;
-  const Histogram values = histogramOf(*openVolumeImage(path, options), interrupter);
+  const Histogram values = histogramOf(image, interrupter);
   if (values.counts.size() > kFewValues && kindOf(values) == ImageKind::gray &&
       meanRun(values) < kNoise)
-    throw InvalidInput(path + ": is a gray image, with values from " +
+    throw InvalidInput(image.path() + ": is a gray image, with values from " +
                        detail::shortestDecimal(values.min) + " to " +
                        detail::shortestDecimal(values.max) + ", not labels: segment it first");
 }
@@ -158,16 +158,16 @@ std::optional<ScanPart> partOf(openvdb::GridBase& grid, const std::string& path,
   return part;
 }
 
-std::optional<ScanPart> partOfImage(const std::string& path, const VolumeOptions& options,
+std::optional<ScanPart> partOfImage(const ImageOpener& open, const VolumeOptions& options,
                                     Interrupter* interrupter) {
   if (!options.region.any()) return std::nullopt;
-  const auto image = openVolumeImage(path, options);
+  const auto image = open();
   const CoordBBox box = imageBox(image->info().size);
   detail::ScanExtent extent{Domain(options.domain.value_or(box)), box,
                             [&](const detail::CylinderAxis& axis) {
                               return detail::farthestFromAxis(*image, axis, interrupter);
                             }};
-  return detail::chosenPart(path, options, extent, interrupter);
+  return detail::chosenPart(image->path(), options, extent, interrupter);
 }
 
 void noteLeftOut(const std::string& path, int64_t voxels, const char* kind,
@@ -193,11 +193,10 @@ MaskGrid::Ptr objectOfGrid(const std::string& path, const VolumeOptions& options
   return object;
 }
 
-MaskGrid::Ptr objectOfImage(const std::string& path, const VolumeOptions& options,
-                            Interrupter* interrupter) {
-  const auto part = partOfImage(path, options, interrupter);
-  const ImageObject found = imageObject([&] { return openVolumeImage(path, options); },
-                                        options.selection, options.gray, part, interrupter);
+MaskGrid::Ptr objectOfImage(const std::string& path, const ImageOpener& open,
+                            const VolumeOptions& options, Interrupter* interrupter) {
+  const auto part = partOfImage(open, options, interrupter);
+  const ImageObject found = imageObject(open, options.selection, options.gray, part, interrupter);
   if (found.fromLabels && options.note)
     options.note(path + ": it has several values besides 0, and all of them become one mask",
                  NoteAbout::labels);
@@ -217,11 +216,11 @@ Int32Grid::Ptr labelsOfGrid(const std::string& path, const VolumeOptions& option
   return labels;
 }
 
-Int32Grid::Ptr labelsOfImage(const std::string& path, const VolumeOptions& options,
-                             Interrupter* interrupter) {
-  checkLabels(path, options, interrupter);
-  const auto part = partOfImage(path, options, interrupter);
-  const auto image = openVolumeImage(path, options);
+Int32Grid::Ptr labelsOfImage(const std::string& path, const ImageOpener& open,
+                             const VolumeOptions& options, Interrupter* interrupter) {
+  checkLabels(*open(), interrupter);
+  const auto part = partOfImage(open, options, interrupter);
+  const auto image = open();
   if (!part) {
     const Int32Grid::Ptr labels = readLabels(*image, interrupter);
     if (options.domain) setDomain(*labels, *options.domain);
@@ -233,9 +232,27 @@ Int32Grid::Ptr labelsOfImage(const std::string& path, const VolumeOptions& optio
   return labels;
 }
 
-void override(openvdb::GridBase& grid, const VolumeOptions& options) {
-  if (options.domain) setDomain(grid, *options.domain);
-  if (options.voxelSize) setVoxelSize(grid, options.voxelSize);
+/// Checks an image against the options, and says what a user should know of it.
+std::unique_ptr<ImageReader> checkedImage(std::unique_ptr<ImageReader> image,
+                                          const VolumeOptions& options) {
+  const std::string& path = image->path();
+  CoordBBox box = imageBox(image->info().size);
+  if (options.region.crop) box.intersect(*options.region.crop);
+  for (int axis = 0; axis < 3; ++axis)
+    if (options.longestSide > 0 && box.dim()[axis] > options.longestSide)
+      throw InvalidInput(path + ": is " + std::to_string(box.dim()[axis]) +
+                         " voxels long, and at most " + std::to_string(options.longestSide) +
+                         " can be worked with here: crop or coarsen it");
+  if (options.note)
+    for (const std::string& note : image->notes()) options.note(note, NoteAbout::file);
+  noteVoxelSize(path, image->info().voxelSize, options);
+  return image;
+}
+
+MaskGrid::Ptr finishedObject(MaskGrid::Ptr object, const VolumeOptions& options) {
+  if (options.voxelSize) setVoxelSize(*object, options.voxelSize);
+  object->setName("object");
+  return object;
 }
 
 }  // namespace
@@ -284,7 +301,8 @@ openvdb::GridBase::Ptr chooseGrid(const std::vector<openvdb::GridBase::Ptr>& gri
 
 void overrideFile(openvdb::GridBase& grid, const std::string& path, const VolumeOptions& options) {
   noteVoxelSize(path, storedVoxelSize(grid), options);
-  override(grid, options);
+  if (options.domain) setDomain(grid, *options.domain);
+  if (options.voxelSize) setVoxelSize(grid, options.voxelSize);
 }
 
 std::unique_ptr<ImageReader> openVolumeImage(const std::string& path,
@@ -295,35 +313,48 @@ std::unique_ptr<ImageReader> openVolumeImage(const std::string& path,
       if (isSameFile(file, output))
         throw InvalidInput(output + ": holds samples of " + path +
                            ", which the output would overwrite; choose another name");
-  CoordBBox box = imageBox(image->info().size);
-  if (options.region.crop) box.intersect(*options.region.crop);
-  for (int axis = 0; axis < 3; ++axis)
-    if (options.longestSide > 0 && box.dim()[axis] > options.longestSide)
-      throw InvalidInput(path + ": is " + std::to_string(box.dim()[axis]) +
-                         " voxels long, and at most " + std::to_string(options.longestSide) +
-                         " can be worked with here: crop or coarsen it");
-  if (options.note)
-    for (const std::string& note : image->notes()) options.note(note, NoteAbout::file);
-  noteVoxelSize(path, image->info().voxelSize, options);
-  return image;
+  return checkedImage(std::move(image), options);
 }
 
 MaskGrid::Ptr loadObject(const std::string& path, const VolumeOptions& options,
                          Interrupter* interrupter) {
   const MaskGrid::Ptr object = naming(path, options.region.mask, [&] {
-    return isReadAsVdb(path, options) ? objectOfGrid(path, options, interrupter)
-                                      : objectOfImage(path, options, interrupter);
+    return isReadAsVdb(path, options)
+               ? objectOfGrid(path, options, interrupter)
+               : objectOfImage(
+                     path, [&] { return openVolumeImage(path, options); }, options, interrupter);
   });
-  if (options.voxelSize) setVoxelSize(*object, options.voxelSize);
-  object->setName("object");
-  return object;
+  return finishedObject(object, options);
+}
+
+MaskGrid::Ptr loadObject(const ImageOpener& open, const VolumeOptions& options,
+                         Interrupter* interrupter) {
+  const ImageOpener checked = [&] { return checkedImage(open(), options); };
+  const std::string path = open()->path();
+  const MaskGrid::Ptr object = naming(path, options.region.mask, [&] {
+    return objectOfImage(path, checked, options, interrupter);
+  });
+  return finishedObject(object, options);
 }
 
 Int32Grid::Ptr loadLabels(const std::string& path, const VolumeOptions& options,
                           Interrupter* interrupter) {
   const Int32Grid::Ptr labels = naming(path, options.region.mask, [&] {
-    return isReadAsVdb(path, options) ? labelsOfGrid(path, options, interrupter)
-                                      : labelsOfImage(path, options, interrupter);
+    return isReadAsVdb(path, options)
+               ? labelsOfGrid(path, options, interrupter)
+               : labelsOfImage(
+                     path, [&] { return openVolumeImage(path, options); }, options, interrupter);
+  });
+  if (options.voxelSize) setVoxelSize(*labels, options.voxelSize);
+  return labels;
+}
+
+Int32Grid::Ptr loadLabels(const ImageOpener& open, const VolumeOptions& options,
+                          Interrupter* interrupter) {
+  const ImageOpener checked = [&] { return checkedImage(open(), options); };
+  const std::string path = open()->path();
+  const Int32Grid::Ptr labels = naming(path, options.region.mask, [&] {
+    return labelsOfImage(path, checked, options, interrupter);
   });
   if (options.voxelSize) setVoxelSize(*labels, options.voxelSize);
   return labels;

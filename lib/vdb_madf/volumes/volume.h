@@ -99,4 +99,15 @@ MaskGrid::Ptr loadObject(const std::string& path, const VolumeOptions& options =
 Int32Grid::Ptr loadLabels(const std::string& path, const VolumeOptions& options = {},
                           Interrupter* interrupter = nullptr);
 
+/// Opens an image, for each pass over it anew.
+using ImageOpener = std::function<std::unique_ptr<ImageReader>()>;
+
+/// The same of an image that is no file, such as an array that is read slab by slab. Its path is what
+/// messages and the metadata `madf_source` name. Of the options, what concerns files has no meaning:
+/// grid, dataset, raw and outputs.
+MaskGrid::Ptr loadObject(const ImageOpener& open, const VolumeOptions& options = {},
+                         Interrupter* interrupter = nullptr);
+Int32Grid::Ptr loadLabels(const ImageOpener& open, const VolumeOptions& options = {},
+                          Interrupter* interrupter = nullptr);
+
 }  // namespace vdb_madf

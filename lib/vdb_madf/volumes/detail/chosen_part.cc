@@ -20,9 +20,7 @@ std::string sizeText(const CoordBBox& box) {
   return std::to_string(size.x()) + "x" + std::to_string(size.y()) + "x" + std::to_string(size.z());
 }
 
-/// The region in a mask, which has to cover the scan as far as both say how large they are.
-Domain maskRegion(const std::string& path, const VolumeOptions& options,
-                  const std::optional<Domain>& scan, Interrupter* interrupter) {
+MaskGrid::ConstPtr readRegion(const VolumeOptions& options, Interrupter* interrupter) {
   const std::string& file = options.region.mask;
   VolumeOptions reading;
   reading.outputs = options.outputs;
@@ -31,22 +29,29 @@ Domain maskRegion(const std::string& path, const VolumeOptions& options,
     reading.selection = Selection::phase(0);
     reading.selection->invert = true;
   }
-  MaskGrid::Ptr mask;
   try {
-    mask = loadObject(file, reading, interrupter);
+    return loadObject(file, reading, interrupter);
   } catch (const AmbiguousGrid& error) {
     throw InvalidInput(file + ": holds several grids, of which none is called object: " +
                        error.grids() + ": give a file with one mask");
   }
+}
+
+/// The region in a mask, which has to cover the scan as far as both say how large they are.
+Domain maskRegion(const std::string& path, const VolumeOptions& options,
+                  const std::optional<Domain>& scan, Interrupter* interrupter) {
+  const RegionOptions& region = options.region;
+  const MaskGrid::ConstPtr mask = region.grid ? region.grid : readRegion(options, interrupter);
+  const std::string name = region.grid ? "the region" : region.mask;
   if (mask->activeVoxelCount() == 0)
-    throw InvalidInput(file + ": all is 0, and a region is what is not: give one with voxels");
+    throw InvalidInput(name + ": all is 0, and a region is what is not: give one with voxels");
   const auto known = storedDomain(*mask);
   if (known && scan && !known->box().isInside(scan->box()))
-    throw InvalidInput(file + ": is " + sizeText(known->box()) +
+    throw InvalidInput(name + ": is " + sizeText(known->box()) +
                        " voxels large and does not cover " + path + ", of " +
                        sizeText(scan->box()) + ": give a region of the same voxels");
-  if (known && scan && known->box() != scan->box() && !options.region.crop && options.note)
-    options.note(file + ": is larger than " + path + "; voxels of equal index belong together",
+  if (known && scan && known->box() != scan->box() && !region.crop && options.note)
+    options.note(name + ": is larger than " + path + "; voxels of equal index belong together",
                  NoteAbout::file);
   return Domain(mask->tree());
 }
@@ -95,7 +100,8 @@ ScanPart chosenPart(const std::string& path, const VolumeOptions& options, const
     part.box = *crop;
     narrow(*crop);
   }
-  if (!options.region.mask.empty()) narrow(maskRegion(path, options, domain, interrupter));
+  if (!options.region.mask.empty() || options.region.grid)
+    narrow(maskRegion(path, options, domain, interrupter));
   if (options.region.cylinder) {
     const CoordBBox whole = extent.domain ? extent.domain->box() : extent.box;
     if (whole.empty()) throw InvalidInput(path + ": holds no voxel to put a cylinder around");

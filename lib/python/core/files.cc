@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+
+#include "bindings.h"
+#include "vdb_madf/exports/clump_file.h"
+#include "vdb_madf/exports/hexahedra_file.h"
+#include "vdb_madf/exports/mesh_file.h"
+#include "vdb_madf/exports/network_file.h"
+#include "vdb_madf/exports/vti_file.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/pictures/grain_view.h"
+#include "vdb_madf/pictures/label_slices.h"
+#include "vdb_madf/pictures/picture_sheet.h"
+#include "vdb_madf/pictures/png_file.h"
+#include "vdb_madf/pictures/preview_volume.h"
+#include "vdb_madf/shapes/level_sets.h"
+#include "vdb_madf/vdb/write_vdb.h"
+#include "vdb_madf/volumes/label_type.h"
+#include "vdb_madf/volumes/write_image.h"
+
+namespace vdb_madf::python {
+
+namespace {
+
+/// work(interrupter) that returns nothing.
+template <typename Work>
+void write(const Call& call, const Work& work) {
+  withoutLock(call, [&](Interrupter* interrupter) {
+    work(interrupter);
+    return true;
+  });
+}
+
+/// Masks as Bool grids, which other programs read.
+void saveVdb(const std::string& path, const std::vector<GridPtr>& grids, const Call& call) {
+  write(call, [&](Interrupter* interrupter) {
+    std::vector<openvdb::GridBase::ConstPtr> written;
+    for (const GridPtr& grid : grids) {
+      if (grid->isType<MaskGrid>())
+        written.push_back(toBoolGrid(asMask(*grid)));
+      else
+        written.push_back(grid);
+    }
+    writeVdb(path, written, interrupter);
+  });
+}
+
+SampleType typeFor(const openvdb::GridBase& grid, const std::string& name, bool asTiff) {
+  if (!name.empty()) {
+    const auto type = sampleTypeFromName(name);
+    if (!type) throw InvalidInput("there is no sample type " + name);
+    return *type;
+  }
+  if (grid.isType<MaskGrid>()) return SampleType::uint8;
+  return asTiff ? labelType(asLabels(grid)) : SampleType::int32;
+}
+
+void saveImage(const std::string& path, const GridPtr& grid, const std::string& type, bool asTiff,
+               const Call& call) {
+  write(call, [&](Interrupter* interrupter) {
+    writeImage(path, *grid, shownBox(*grid), typeFor(*grid, type, asTiff), interrupter);
+  });
+}
+
+void saveMesh(const std::string& path, const GridPtr& whole, const GridPtr& meshed, int smoothing,
+              const Call& call) {
+  write(call, [&](Interrupter* interrupter) {
+    const GrainMesh mesh = grainMesh(asLabels(*meshed), {smoothing}, interrupter);
+    MeshFileOptions options;
+    options.transform = meshed->constTransformPtr();
+    const auto size = storedVoxelSize(*whole);
+    options.lengthUnit = size ? size->unit() : "";
+    options.colors = grainColors(asLabels(*whole), interrupter);
+    if (isMeshEnding(path))
+      writeMesh(path, mesh, options, interrupter);
+    else
+      writeStlFolder(path, mesh, options, interrupter);
+  });
+}
+
+void saveVti(const std::string& path, const GridPtr& labels, bool compressed, const Call& call) {
+  write(call, [&](Interrupter* interrupter) {
+    writeVti(path, asLabels(*labels), shownBox(*labels), compressed, interrupter);
+  });
+}
+
+void saveNetwork(const std::string& path, const GridPtr& labels, int64_t minFaces,
+                 const Call& call) {
+  write(call, [&](Interrupter* interrupter) {
+    MeasureOptions options;
+    options.minFaces = minFaces;
+    writeNetwork(path, grainNetwork(asLabels(*labels), options, interrupter), interrupter);
+  });
+}
+
+void saveClumps(const std::string& path, const GridPtr& labels, const GridPtr& balls, int mostBalls,
+                double uncovered, bool apart, const Call& call) {
+  write(call, [&](Interrupter* interrupter) {
+    const auto made =
+        clumps(asLabels(*labels), asLabels(*balls), {mostBalls, uncovered, apart}, interrupter);
+    writeClumps(path, made, labels->transform(), {}, interrupter);
+  });
+}
+
+void saveHexahedra(const std::string& path, const GridPtr& labels, const Call& call) {
+  write(call,
+        [&](Interrupter* interrupter) { writeHexahedra(path, asLabels(*labels), interrupter); });
+}
+
+void savePreview(const std::string& path, const GridPtr& labels, int factor, const Call& call) {
+  write(call, [&](Interrupter* interrupter) {
+    const LabelPreview preview = previewLabels(asLabels(*labels), factor, interrupter);
+    writeVdb(path, {preview.color, preview.density}, interrupter);
+  });
+}
+
+void saveLevelSets(const std::string& path, const GridPtr& labels, int smoothing, bool asOne,
+                   const Call& call) {
+  write(call, [&](Interrupter* interrupter) {
+    LevelSetOptions options;
+    options.smoothing = smoothing;
+    if (asOne) {
+      writeVdb(path, {surfaceLevelSet(asLabels(*labels), options, interrupter)}, interrupter);
+    } else {
+      const auto grids = grainLevelSets(asLabels(*labels), options, interrupter);
+      writeVdb(path, {grids.begin(), grids.end()}, interrupter);
+    }
+  });
+}
+
+/// The sheet of `vdb_madf render`: x-y, view, x-z, y-z.
+void savePicture(const std::string& path, const GridPtr& grid, int size, double azimuth,
+                 double elevation, const Call& call) {
+  constexpr int kFinest = 2;  // rays along each edge of a pixel
+  write(call, [&](Interrupter* interrupter) {
+    const Int32Grid& labels = asLabels(*grid);
+    const CoordBBox box = shownBox(labels);
+    if (box.empty()) throw InvalidInput("there are no labels and no domain: nothing to show");
+    const GrainColors colors = grainColors(labels, interrupter);
+    LabelSlices slices = middleSlices(labels, box, colors, size);
+    ViewOptions options;
+    options.azimuth = azimuth;
+    options.elevation = elevation;
+    options.edge = size * kFinest;
+    const GrainView view = viewGrains(labels, box, colors, options, interrupter);
+    auto& [xy, xz, yz] = slices.pictures;
+    const std::vector<PicturePanel> panels{
+        {std::move(xy), "x-y", slices.voxelsPerPixel},
+        {coarsened(view.picture, kFinest), "", view.voxelsPerPixel * kFinest},
+        {std::move(xz), "x-z", slices.voxelsPerPixel},
+        {std::move(yz), "y-z", slices.voxelsPerPixel}};
+    writePng(path, pictureSheet(panels, storedVoxelSize(labels)));
+  });
+}
+
+}  // namespace
+
+void bindFiles(py::module_& m) {
+  const auto path = py::arg("path"), labels = py::arg("labels"), call = py::arg("call");
+  m.def("save_vdb", saveVdb, path, py::arg("grids"), call);
+  m.def("save_image", saveImage, path, py::arg("grid"), py::arg("type"), py::arg("as_tiff"), call);
+  m.def("save_mesh", saveMesh, path, py::arg("whole"), py::arg("meshed"), py::arg("smoothing"),
+        call);
+  m.def("save_vti", saveVti, path, labels, py::arg("compressed"), call);
+  m.def("save_network", saveNetwork, path, labels, py::arg("min_faces"), call);
+  m.def("save_clumps", saveClumps, path, labels, py::arg("balls"), py::arg("max_balls"),
+        py::arg("uncovered"), py::arg("apart"), call);
+  m.def("save_hexahedra", saveHexahedra, path, labels, call);
+  m.def("save_preview", savePreview, path, labels, py::arg("factor"), call);
+  m.def("save_level_sets", saveLevelSets, path, labels, py::arg("smoothing"), py::arg("as_one"),
+        call);
+  m.def("save_picture", savePicture, path, labels, py::arg("size"), py::arg("azimuth"),
+        py::arg("elevation"), call);
+  m.def(
+      "reduction_for_triangles",
+      [](const GridPtr& grid, int64_t triangles, int first, const Call& how) {
+        if (triangles < 1) throw InvalidInput("triangles: must be 1 or more");
+        return withoutLock(how, [&](Interrupter* interrupter) {
+          return reductionForTriangles(asLabels(*grid), uint64_t(triangles), first, interrupter);
+        });
+      },
+      labels, py::arg("triangles"), py::arg("first"), call);
+}
+
+}  // namespace vdb_madf::python

@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+#include <limits>
+
+#include "bindings.h"
+#include "vdb_madf/labels/compare.h"
+#include "vdb_madf/measure/columns.h"
+#include "vdb_madf/measure/measure.h"
+
+namespace vdb_madf::python {
+
+namespace {
+
+/// The unit of length, and the edges of a voxel in it.
+struct Unit {
+  std::string name = "voxel";
+  double length = 1;  ///< of the shortest edge
+  openvdb::Vec3d edges;
+
+  explicit Unit(const Measurements& measured) {
+    if (const auto& size = measured.voxelSize) {
+      name = size->unit();
+      const auto own = size->edgesInUnit();
+      length = *std::min_element(own.begin(), own.end());
+    }
+    edges = length * measured.edges;
+  }
+  std::string power(int exponent) const {
+    if (exponent == 0) return "";
+    const std::string positive =
+        name + (std::abs(exponent) == 1 ? "" : "^" + std::to_string(std::abs(exponent)));
+    return (exponent < 0 ? "1/" : "") + positive;
+  }
+};
+
+bool isFlag(const std::string& name) {
+  return name == "at_domain_face";
+}
+bool isLabel(const std::string& name) {
+  return name == "id" || name == "first" || name == "second";
+}
+
+py::object toArray(const MeasureColumn& c, const Unit& unit) {
+  if (isFlag(c.name)) return column<bool>(c.values, [](double v) { return v != 0; });
+  if (isLabel(c.name)) return column<int32_t>(c.values, [](double v) { return v; });
+  if (c.kind == MeasureColumn::Kind::count)
+    return column<int64_t>(c.values, [](double v) { return v; });
+  return column<double>(c.values, [&](double v) { return scaled(c, v, unit.edges) + 0.0; });
+}
+
+py::dict table(const std::vector<MeasureColumn>& columns, const Unit& unit, py::dict& units) {
+  py::dict dict;
+  for (const MeasureColumn& c : columns) {
+    dict[py::str(c.name)] = toArray(c, unit);
+    units[py::str(c.name)] = unit.power(c.power);
+  }
+  return dict;
+}
+
+/// A symmetric tensor, [z, y, x].
+py::array_t<double> tensor(const FabricTensor& fabric) {
+  constexpr int kPlace[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};  // of x, y, z
+  py::array_t<double> array({py::ssize_t(3), py::ssize_t(3)});
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      array.mutable_at(2 - i, 2 - j) = fabric.components[size_t(kPlace[i][j])];
+  return array;
+}
+
+double orNan(const std::optional<double>& value) {
+  return value.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+py::dict percentiles(const std::vector<GrainMeasures>& grains, bool byVolume, double length) {
+  py::dict dict;
+  for (const int percent : {5, 10, 25, 50, 75, 90, 95})
+    dict[py::int_(percent)] = diameterPercentile(grains, percent / 100.0, byVolume) * length;
+  return dict;
+}
+
+py::dict sampleOf(const Measurements& m, const Unit& unit, py::dict& units) {
+  const SampleMeasures& s = m.sample;
+  py::dict dict;
+  const auto add = [&](const char* name, double value, int power) {
+    dict[name] = scaled(value, power, unit.length);
+    units[name] = unit.power(power);
+  };
+  dict["grains"] = m.grains.size();
+  dict["bonds"] = m.bonds.size();
+  dict["box"] = s.regionVoxels ? "region" : s.domainKnown ? "domain" : "grains";
+  dict["box_min"] = triple(toIndex(s.box.min()));
+  dict["box_max"] = triple(toIndex(s.box.max()));
+  dict["boundary"] = m.open ? "open" : "closed";
+  dict["object_voxels"] = s.objectVoxels;
+  add("object_volume", s.objectVolume, 3);
+  dict["solid_fraction"] = s.objectFraction;
+  add("free_area", s.freeArea, 2);
+  add("shared_area", s.sharedArea, 2);
+  add("specific_surface", s.specificSurface, -1);
+  py::list lengths;
+  for (int axis : {2, 1, 0})
+    lengths.append(orNan(s.correlationLengths[size_t(axis)]) * unit.length);
+  dict["correlation_length"] = py::tuple(lengths);
+  units["correlation_length"] = unit.power(1);
+  dict["euler_characteristic"] = s.eulerCharacteristic;
+  dict["components"] = s.components;
+  dict["mean_coordination"] = s.meanCoordination;
+  dict["coordinations"] = column<int64_t>(s.coordinations, [](int64_t n) { return n; });
+  dict["min_faces"] = m.minFaces;
+  dict["contacts_left_out"] = s.contactsLeftOut;
+  add("area_left_out", s.areaLeftOut, 2);
+  dict["bonds_without_curvature"] = s.bondsWithoutCurvature;
+  dict["bond_to_grain_ratio"] = orNan(s.bondToGrainRatio);
+  dict["grain_fabric"] = tensor(s.grainFabric);
+  dict["bond_fabric"] = tensor(s.bondFabric);
+  dict["diameter_by_number"] = percentiles(m.grains, false, unit.length);
+  dict["diameter_by_volume"] = percentiles(m.grains, true, unit.length);
+  units["diameter_by_number"] = unit.power(1);
+  units["diameter_by_volume"] = unit.power(1);
+  dict["labels_digest"] = m.labelDigest;
+  return dict;
+}
+
+py::dict measureLabels(const GridPtr& labels, const Call& call, const std::string& boundary,
+                       int64_t minFaces) {
+  const Int32Grid& grid = asLabels(*labels);
+  MeasureOptions options;
+  options.minFaces = minFaces;
+  if (boundary != "auto" && boundary != "open" && boundary != "closed")
+    throw InvalidInput("boundary='" + boundary + "': must be one of auto, open, closed");
+  if (boundary != "auto") options.boundary = boundary == "open" ? Boundary::open : Boundary::closed;
+  const Measurements measured = withoutLock(
+      call, [&](Interrupter* interrupter) { return measure(grid, options, interrupter); });
+  const Unit unit(measured);
+  py::dict dict, units;
+  dict["grains"] = table(grainColumns(measured.grains), unit, units);
+  dict["bonds"] = table(bondColumns(measured.bonds), unit, units);
+  dict["sample"] = sampleOf(measured, unit, units);
+  dict["unit"] = unit.name;
+  dict["units"] = units;
+  return dict;
+}
+
+py::dict matches(const std::vector<GrainMatch>& list) {
+  py::dict dict;
+  dict["id"] = column<int32_t>(list, [](const GrainMatch& g) { return g.grain; });
+  dict["voxels"] = column<int64_t>(list, [](const GrainMatch& g) { return g.voxels; });
+  dict["partner"] = column<int32_t>(list, [](const GrainMatch& g) { return g.partner; });
+  dict["overlap_voxels"] =
+      column<int64_t>(list, [](const GrainMatch& g) { return g.overlapVoxels; });
+  dict["intersection_over_union"] =
+      column<double>(list, [](const GrainMatch& g) { return g.intersectionOverUnion; });
+  dict["pieces"] = column<int64_t>(list, [](const GrainMatch& g) { return g.pieces; });
+  return dict;
+}
+
+py::dict compareLabels(const GridPtr& truth, const GridPtr& test, const Call& call) {
+  const Comparison c = withoutLock(call, [&](Interrupter* interrupter) {
+    return compare(asLabels(*truth), asLabels(*test), interrupter);
+  });
+  py::dict dict, overlaps;
+  dict["truth_grains"] = c.truthGrains;
+  dict["test_grains"] = c.testGrains;
+  dict["common_voxels"] = c.commonVoxels;
+  dict["truth_only_voxels"] = c.truthOnlyVoxels;
+  dict["test_only_voxels"] = c.testOnlyVoxels;
+  dict["misclassified_percent"] = c.misclassifiedPercent;
+  dict["mirror_misclassified_percent"] = c.mirrorMisclassifiedPercent;
+  dict["adjusted_rand_index"] = c.adjustedRandIndex;
+  dict["variation_of_information"] = c.variationOfInformation;
+  dict["variation_split"] = c.variationSplit;
+  dict["variation_merge"] = c.variationMerge;
+  dict["found_grains"] = c.foundGrains;
+  dict["mean_intersection_over_union"] = c.meanIntersectionOverUnion;
+  dict["splits"] = c.splits;
+  dict["merges"] = c.merges;
+  dict["truth_matches"] = matches(c.truthMatches);
+  dict["test_matches"] = matches(c.testMatches);
+  overlaps["truth"] = column<int32_t>(c.overlaps, [](const Overlap& o) { return o.truth; });
+  overlaps["test"] = column<int32_t>(c.overlaps, [](const Overlap& o) { return o.test; });
+  overlaps["voxels"] = column<int64_t>(c.overlaps, [](const Overlap& o) { return o.voxels; });
+  dict["overlaps"] = overlaps;
+  return dict;
+}
+
+}  // namespace
+
+void bindMeasures(py::module_& m) {
+  m.def("measure", measureLabels, py::arg("labels"), py::arg("call"), py::kw_only(),
+        py::arg("boundary"), py::arg("min_faces"));
+  m.def("compare", compareLabels, py::arg("truth"), py::arg("test"), py::arg("call"));
+}
+
+}  // namespace vdb_madf::python

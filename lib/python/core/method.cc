@@ -1,0 +1,256 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+
+#include "bindings.h"
+#include "vdb_madf/base/memory.h"
+#include "vdb_madf/method/ball_grids.h"
+#include "vdb_madf/method/parameter_sweep.h"
+#include "vdb_madf/method/remerge.h"
+#include "vdb_madf/method/segment.h"
+#include "vdb_madf/method/segment_memory.h"
+#include "vdb_madf/method/segmentation_metadata.h"
+
+namespace vdb_madf::python {
+
+namespace {
+
+template <typename Enum>
+Enum named(const char* argument, const std::string& text,
+           std::initializer_list<std::pair<const char*, Enum>> names) {
+  std::string all;
+  for (const auto& [name, value] : names) {
+    if (text == name) return value;
+    all += (all.empty() ? "" : ", ") + std::string(name);
+  }
+  throw InvalidInput(std::string(argument) + "='" + text + "': must be one of " + all);
+}
+
+MergeMode mergeMode(const std::string& name) {
+  return named<MergeMode>(
+      "merge", name,
+      {{"both", MergeMode::both}, {"angle", MergeMode::angle}, {"neck", MergeMode::neck}});
+}
+
+Adjacency adjacencyOf(const std::string& name) {
+  return named<Adjacency>("adjacency", name,
+                          {{"manifold", Adjacency::manifold}, {"cell", Adjacency::cell}});
+}
+
+Boundary boundaryOf(const std::string& name) {
+  return named<Boundary>(
+      "boundary", name,
+      {{"auto", Boundary::automatic}, {"open", Boundary::open}, {"closed", Boundary::closed}});
+}
+
+MergeOptions mergeOptions(double theta, const std::string& merge, const std::string& adjacency,
+                          int delta) {
+  return {theta, mergeMode(merge), adjacencyOf(adjacency), delta};
+}
+
+template <typename Items, typename Place>
+py::array_t<int32_t> places(const Items& items, const Place& place) {
+  py::array_t<int32_t> array({py::ssize_t(items.size()), py::ssize_t(3)});
+  int32_t* to = array.mutable_data();
+  for (const auto& item : items)
+    for (const int coordinate : toIndex(place(item))) *to++ = coordinate;
+  return array;
+}
+
+py::dict toDict(const ManifoldGraph& graph) {
+  using Node = ManifoldGraph::Node;
+  using Edge = ManifoldGraph::Edge;
+  py::dict dict;
+  dict["position"] = places(graph.nodes, [](const Node& n) { return n.position; });
+  dict["squared_radius"] =
+      column<int64_t>(graph.nodes, [](const Node& n) { return n.squaredRadius; });
+  dict["voxels"] = column<int64_t>(graph.nodes, [](const Node& n) { return n.voxels; });
+  dict["first"] = column<int32_t>(graph.edges, [](const Edge& e) { return e.first; });
+  dict["second"] = column<int32_t>(graph.edges, [](const Edge& e) { return e.second; });
+  dict["contact_faces"] =
+      column<int64_t>(graph.edges, [](const Edge& e) { return e.contactFaces; });
+  dict["saddle_height"] =
+      column<int64_t>(graph.edges, [](const Edge& e) { return e.saddleHeight; });
+  dict["cells_touch"] = column<bool>(graph.edges, [](const Edge& e) { return e.cellsTouch; });
+  return dict;
+}
+
+py::dict toDict(const std::vector<MedialBall>& balls) {
+  py::dict dict;
+  dict["position"] = places(balls, [](const MedialBall& b) { return b.center; });
+  dict["squared_radius"] =
+      column<int64_t>(balls, [](const MedialBall& b) { return b.squaredRadius; });
+  dict["cell_size"] = column<int64_t>(balls, [](const MedialBall& b) { return b.cellSize; });
+  return dict;
+}
+
+py::dict toDict(const SegmentCounts& c, const LabelFlaws& flaws) {
+  py::dict dict;
+  dict["object_voxels"] = c.objectVoxels;
+  dict["cavities"] = c.cavities;
+  dict["cavity_voxels"] = c.cavityVoxels;
+  dict["medial_balls"] = c.medialBalls;
+  dict["kept_balls"] = c.keptBalls;
+  dict["critical_points"] = c.criticalPoints;
+  dict["grains"] = c.grains;
+  dict["largest_squared_distance"] = c.largestSquaredDistance;
+  dict["leaves"] = c.leaves;
+  dict["crumbs"] = flaws.crumbs;
+  dict["specks"] = flaws.specks;
+  dict["slivers"] = flaws.slivers;
+  dict["in_pieces"] = flaws.inPieces;
+  return dict;
+}
+
+py::dict toDict(const Segmentation& s, const SegmentOptions& options) {
+  py::dict dict, seconds, used;
+  for (const StageTime& stage : s.times) seconds[py::str(stage.stage)] = stage.seconds;
+  used["theta"] = options.merge.theta;
+  used["gamma"] = options.gamma;
+  used["merge"] = toString(options.merge.mode);
+  used["adjacency"] = toString(options.merge.adjacency);
+  used["delta"] = options.merge.delta;
+  used["fill_holes"] = s.fillHoles;
+  used["tidy"] = s.tidy;
+  used["boundary"] = s.open ? "open" : "closed";
+  dict["labels"] = GridPtr(s.grain);
+  dict["distance_squared"] = GridPtr(s.distanceSquared);
+  dict["power"] = GridPtr(s.power);
+  dict["manifold"] = GridPtr(s.manifold);
+  dict["balls"] = options.keepBalls ? py::object(toDict(s.balls)) : py::none();
+  dict["graph"] = toDict(s.graph);
+  dict["counts"] = toDict(s.counts, s.flaws);
+  dict["seconds"] = seconds;
+  dict["options"] = used;
+  return dict;
+}
+
+/// What is free, or the rest of what the caller allows for the process, less the mask that is there.
+int64_t memoryFor(const MaskGrid& mask, int64_t allowed) {
+  if (allowed <= 0) return availableMemory();
+  return std::max<int64_t>(1, allowed - int64_t(mask.memUsage()));
+}
+
+SegmentOptions segmentOptions(const MaskGrid& mask, int64_t gamma, const std::string& boundary,
+                              const MergeOptions& merge, const std::optional<int64_t>& fillHoles,
+                              int tidy, const std::vector<std::string>& keep, int64_t maxMemory) {
+  SegmentOptions options;
+  options.gamma = gamma;
+  options.boundary = boundaryOf(boundary);
+  if (options.boundary == Boundary::automatic) options.boundary = storedBoundary(mask);
+  options.merge = merge;
+  options.fillHoles = fillHoles;
+  options.tidy = tidy;
+  for (const std::string& what : keep) {
+    bool SegmentOptions::*const kept =
+        named<bool SegmentOptions::*>("keep", what,
+                                      {{"distance", &SegmentOptions::keepDistance},
+                                       {"power", &SegmentOptions::keepPower},
+                                       {"manifold", &SegmentOptions::keepManifold},
+                                       {"balls", &SegmentOptions::keepBalls}});
+    options.*kept = true;
+  }
+  options.maxMemory = memoryFor(mask, maxMemory);
+  return options;
+}
+
+py::dict segmentMask(const GridPtr& object, const Call& call, double theta, int64_t gamma,
+                     const std::string& merge, const std::string& adjacency, int delta,
+                     const std::optional<int64_t>& fillHoles, int tidy, const std::string& boundary,
+                     const std::vector<std::string>& keep, int64_t maxMemory) {
+  const MaskGrid& mask = asMask(*object);
+  const SegmentOptions options =
+      segmentOptions(mask, gamma, boundary, mergeOptions(theta, merge, adjacency, delta), fillHoles,
+                     tidy, keep, maxMemory);
+  return toDict(
+      withoutLock(call,
+                  [&](Interrupter* interrupter) { return segment(mask, options, interrupter); }),
+      options);
+}
+
+GridPtr remergeManifolds(const GridPtr& manifold, const Call& call, double theta,
+                         const std::string& merge, const std::string& adjacency, int delta,
+                         int tidy) {
+  const Int32Grid& grid = asLabels(*manifold);
+  const MergeOptions options = mergeOptions(theta, merge, adjacency, delta);
+  return withoutLock(call, [&](Interrupter* interrupter) -> GridPtr {
+    return remerge(grid, options, tidy, interrupter);
+  });
+}
+
+py::dict toDict(const std::vector<SweepRow>& rows) {
+  py::dict dict;
+  py::list modes;
+  for (const SweepRow& row : rows) modes.append(toString(row.mode));
+  dict["merge"] = modes;
+  dict["delta"] = column<int64_t>(rows, [](const SweepRow& r) { return r.delta; });
+  dict["theta"] = column<double>(rows, [](const SweepRow& r) { return r.theta; });
+  dict["grains"] = column<int64_t>(rows, [](const SweepRow& r) { return r.grains; });
+  dict["median_voxels"] = column<double>(rows, [](const SweepRow& r) { return r.medianVoxels; });
+  dict["small_grains"] = column<int64_t>(rows, [](const SweepRow& r) { return r.smallGrains; });
+  dict["small_voxels"] = column<int64_t>(rows, [](const SweepRow& r) { return r.smallVoxels; });
+  dict["largest_voxels"] = column<int64_t>(rows, [](const SweepRow& r) { return r.largestVoxels; });
+  dict["crumbs"] = column<int64_t>(rows, [](const SweepRow& r) { return r.flaws.crumbs; });
+  dict["specks"] = column<int64_t>(rows, [](const SweepRow& r) { return r.flaws.specks; });
+  dict["slivers"] = column<int64_t>(rows, [](const SweepRow& r) { return r.flaws.slivers; });
+  dict["in_pieces"] = column<int64_t>(rows, [](const SweepRow& r) { return r.flaws.inPieces; });
+  return dict;
+}
+
+py::dict sweepManifolds(const GridPtr& manifold, const Call& call,
+                        const std::vector<double>& thetas, const std::vector<std::string>& modes,
+                        const std::vector<int>& deltas, const std::string& adjacency, int tidy,
+                        int64_t small) {
+  const Int32Grid& grid = asLabels(*manifold);
+  SweepOptions options;
+  options.thetas = thetas;
+  options.modes.clear();
+  for (const std::string& mode : modes) options.modes.push_back(mergeMode(mode));
+  options.deltas = deltas;
+  options.adjacency = adjacencyOf(adjacency);
+  options.tidy = tidy;
+  options.smallVoxels = small;
+  return toDict(withoutLock(
+      call, [&](Interrupter* interrupter) { return mergingSweep(grid, options, interrupter); }));
+}
+
+int64_t memoryOfSegment(const GridPtr& object, int64_t gamma,
+                        const std::vector<std::string>& keep) {
+  const MaskGrid& mask = asMask(*object);
+  const SegmentOptions options =
+      segmentOptions(mask, gamma, "auto", {}, std::nullopt, kTidy, keep, 0);
+  const py::gil_scoped_release release;
+  return segmentMemory(objectSize(mask), options) + int64_t(mask.memUsage());
+}
+
+}  // namespace
+
+void bindMethod(py::module_& m) {
+  m.def("segment", segmentMask, py::arg("mask"), py::arg("call"), py::kw_only(), py::arg("theta"),
+        py::arg("gamma"), py::arg("merge"), py::arg("adjacency"), py::arg("delta"),
+        py::arg("fill_holes"), py::arg("tidy"), py::arg("boundary"), py::arg("keep"),
+        py::arg("max_memory"));
+  m.def("remerge", remergeManifolds, py::arg("manifold"), py::arg("call"), py::kw_only(),
+        py::arg("theta"), py::arg("merge"), py::arg("adjacency"), py::arg("delta"),
+        py::arg("tidy"));
+  m.def("sweep", sweepManifolds, py::arg("manifold"), py::arg("call"), py::kw_only(),
+        py::arg("thetas"), py::arg("modes"), py::arg("deltas"), py::arg("adjacency"),
+        py::arg("tidy"), py::arg("small"));
+  m.def("segment_memory", memoryOfSegment, py::arg("mask"), py::kw_only(), py::arg("gamma"),
+        py::arg("keep"));
+  m.def(
+      "ball_grids",
+      [](const GridPtr& mask, const Call& call) {  // as `export --as clumps` makes them
+        SegmentOptions options;
+        options.boundary = Boundary::closed;
+        options.keepBalls = true;
+        options.maxMemory = availableMemory();
+        return withoutLock(call, [&](Interrupter* interrupter) -> GridPtr {
+          return ballGrids(segment(asMask(*mask), options, interrupter)).front();
+        });
+      },
+      py::arg("mask"), py::arg("call"));
+}
+
+}  // namespace vdb_madf::python

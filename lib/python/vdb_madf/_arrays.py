@@ -1,0 +1,106 @@
+# SPDX-FileCopyrightText: The vdb_madf authors
+# SPDX-License-Identifier: Apache-2.0
+"""Arrays of any kind as volumes that are read slab by slab."""
+
+from __future__ import annotations
+
+import mmap
+import os
+from typing import Any, Optional, Protocol, Tuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+
+
+class ArrayLike3D(Protocol):
+    """What can be read: numpy arrays in any order of bytes and strides, numpy.memmap, h5py, zarr, dask.
+
+    It has three axes, [z, y, x], and `array[first:stop]` are slices."""
+
+    @property
+    def shape(self) -> Tuple[int, ...]: ...
+
+    @property
+    def dtype(self) -> Any: ...
+
+    def __getitem__(self, key: Any, /) -> Any: ...
+
+
+#: A file or an array.
+Source = Union[str, "os.PathLike[str]", ArrayLike3D]
+
+
+def readable(source: Any) -> Union[str, _core.ArraySource]:
+    """A path, or the array as a source of slabs, of which nothing is read yet."""
+    return os.fspath(source) if isinstance(source, (str, os.PathLike)) else _array_source(source)
+
+
+def _target(dtype: np.dtype[Any]) -> np.dtype[Any]:
+    """The type, in native order of bytes, that the samples are handed over in."""
+    if dtype.kind == "b":
+        return np.dtype(np.uint8)
+    if dtype.kind in "iu":
+        return np.dtype(np.int32) if dtype.itemsize == 8 else np.dtype(f"{dtype.kind}{dtype.itemsize}")
+    if dtype.kind == "f" and dtype.itemsize <= 8:
+        return np.dtype(f"f{max(4, dtype.itemsize)}")
+    raise TypeError(f"an array of type {dtype} holds no samples: give integers, float32, float64 or bool")
+
+
+def _narrowed(slab: npt.NDArray[Any], first: int) -> npt.NDArray[Any]:
+    """Of 64-bit integers, which have to fit in 32 bits."""
+    limits = np.iinfo(np.int32)
+    for value in (slab.min(), slab.max()):
+        if not limits.min <= value <= limits.max:
+            raise _core.InvalidInput(
+                f"the array has the value {value} in the slices from {first} on, beyond 32 bits: give "
+                "labels smaller numbers first, for example by skimage.segmentation.relabel_sequential")
+    return slab
+
+
+def _array_source(array: Any) -> _core.ArraySource:
+    if isinstance(array, np.ma.MaskedArray):
+        raise TypeError("a masked array does not say what is behind its mask: give array.filled(0)")
+    try:
+        dtype = np.dtype(array.dtype)
+    except (AttributeError, TypeError):  # a list, or a type of another library
+        array = np.asarray(array)
+        dtype = array.dtype
+    shape = tuple(int(n) for n in array.shape)
+    if len(shape) != 3:
+        raise _core.InvalidInput(f"the array has {len(shape)} axes, of {shape}: give three, [z, y, x]")
+    if 0 in shape:
+        raise _core.InvalidInput(f"the array, of {shape}, has no voxels")
+    target = _target(dtype)
+    pages = _mapped(array)
+
+    def read(first: int, stop: int) -> npt.NDArray[Any]:
+        if pages is not None:
+            pages.madvise(mmap.MADV_DONTNEED)
+        slab = np.asarray(array[first:stop])
+        if slab.dtype.kind in "iu" and slab.dtype.itemsize == 8:
+            slab = _narrowed(slab, first)
+        return np.ascontiguousarray(slab, dtype=target)
+
+    return _core.ArraySource(_name(array), (shape[0], shape[1], shape[2]), target.name, read)
+
+
+def _mapped(array: Any) -> Optional[mmap.mmap]:
+    """The memory map behind a read-only numpy.memmap: what was read of it is forgotten slab by slab, or
+    the whole file would count as memory of the process."""
+    owner = array
+    while isinstance(owner, np.ndarray):
+        if isinstance(owner, np.memmap) and owner.mode != "r":
+            return None  # changes may be there alone
+        owner = owner.base
+    return owner if isinstance(owner, mmap.mmap) and hasattr(mmap, "MADV_DONTNEED") else None
+
+
+def _name(array: Any) -> str:
+    """What messages call it, and labels say they come from."""
+    for owner in (array, getattr(array, "file", None)):
+        filename = getattr(owner, "filename", None)  # numpy.memmap; h5py's file
+        if isinstance(filename, (str, os.PathLike)):
+            return os.fspath(filename)
+    return "the array"

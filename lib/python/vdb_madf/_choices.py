@@ -1,0 +1,111 @@
+# SPDX-FileCopyrightText: The vdb_madf authors
+# SPDX-License-Identifier: Apache-2.0
+"""Which part of a volume is taken: values, regions, boxes."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any, Optional, Sequence, Tuple, Union
+
+from . import _core
+from ._arrays import readable
+
+#: numpy.s_[10:90, :, 5:50]: along z, y and x.
+Box = Tuple[slice, slice, slice]
+
+_FAR = 2**20  # beyond the coordinates that are read
+
+
+@dataclass(frozen=True)
+class Cylinder:
+    """The round field of view of a core: voxels whose centers are at most `radius` from the axis.
+
+    axis: "z", "y" or "x"; center: where the axis passes, along the two other axes in the order of the
+    array, voxels (default: the middle of the scan); radius: voxels (default: fitted to the values)."""
+
+    axis: str = "z"
+    center: Optional[Tuple[float, float]] = None
+    radius: Optional[float] = None
+
+
+def _bounds(box: Box, name: str, open_ended: bool) -> Tuple[_core.Index, _core.Index]:
+    if not (isinstance(box, tuple) and len(box) == 3 and all(isinstance(s, slice) for s in box)):
+        raise TypeError(f"{name}={box!r}: give three slices, such as numpy.s_[10:90, :, 5:50]")
+    first, last = [], []
+    for part in box:
+        if part.step not in (None, 1):
+            raise ValueError(f"{name}: {part} has a step")
+        if not open_ended and (part.start is None or part.stop is None):
+            raise ValueError(f"{name}: {part} has no start or stop")
+        start = -_FAR if part.start is None else int(part.start)
+        stop = _FAR if part.stop is None else int(part.stop)
+        if stop <= start:
+            raise ValueError(f"{name}: {part} is empty; places are counted from the first voxel")
+        first.append(start)
+        last.append(stop - 1)
+    return (first[0], first[1], first[2]), (last[0], last[1], last[2])
+
+
+def _set_region(options: _core.VolumeOptions, roi: Any, mask_type: type) -> None:
+    if isinstance(roi, str) and roi == "cylinder":
+        roi = Cylinder()
+    if isinstance(roi, Cylinder):
+        if roi.axis not in ("z", "y", "x"):
+            raise ValueError(f"axis={roi.axis!r}: must be 'z', 'y' or 'x'")
+        if roi.radius is not None and not roi.radius > 0:
+            raise ValueError(f"radius={roi.radius}: must be above 0")
+        options.set_cylinder("zyx".index(roi.axis), roi.center, roi.radius)
+    elif isinstance(roi, mask_type):
+        options.set_region(roi._grid)  # type: ignore[attr-defined]
+    elif isinstance(roi, (str, os.PathLike)):
+        options.set_region_file(os.fspath(roi))
+    else:
+        inside = _core.VolumeOptions()
+        inside.select_phases([0.0])
+        inside.invert()
+        grid, _ = _core.load_mask(readable(roi), inside, _core.Call(None, 0))
+        options.set_region(grid)
+
+
+def volume_options(
+    *, mask_type: type, phase: Union[float, Sequence[float], None],
+    threshold: Union[float, str, Tuple[float, float], None],
+    range: Optional[Tuple[float, float]], invert: bool, median: int, smooth: float, despeckle: int,
+    voxel_size: Optional[_core.Edges], roi: Any, crop: Optional[Box], domain: Optional[Box],
+    dataset: Optional[str], grid: Optional[str],
+) -> _core.VolumeOptions:
+    """The options as the library wants them."""
+    if sum(choice is not None for choice in (phase, threshold, range)) > 1:
+        raise ValueError("give only one of phase, threshold and range")
+    options = _core.VolumeOptions()
+    if phase is not None:
+        options.select_phases([float(v) for v in phase] if isinstance(phase, Sequence) else [float(phase)])
+    if isinstance(threshold, str):
+        options.select_automatically(threshold)
+    elif isinstance(threshold, tuple):
+        low, high = (float(v) for v in threshold)
+        if low > high:
+            raise ValueError(f"threshold={threshold}: the first value exceeds the second")
+        options.select_hysteresis(low, high)
+    elif threshold is not None:
+        options.select_from(float(threshold))
+    if range is not None:
+        low, high = (float(v) for v in range)
+        if low > high:
+            raise ValueError(f"range={range}: the first value exceeds the second")
+        options.select_range(low, high)
+    if invert:
+        options.invert()
+    options.filter(median, smooth, despeckle)
+    if voxel_size is not None:
+        options.set_voxel_size(voxel_size)
+    if roi is not None:
+        _set_region(options, roi, mask_type)
+    if crop is not None:
+        options.set_crop(_bounds(crop, "crop", True))
+    if domain is not None:
+        options.set_domain(_bounds(domain, "domain", False))
+    options.dataset = dataset or ""
+    options.grid = grid or ""
+    return options

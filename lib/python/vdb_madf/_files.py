@@ -1,0 +1,63 @@
+# SPDX-FileCopyrightText: The vdb_madf authors
+# SPDX-License-Identifier: Apache-2.0
+"""Volumes in files: what is written for which ending."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from typing import Any, Callable, Optional
+
+from . import _core
+
+#: kind of file -> endings
+KINDS = {
+    "labels": (".vdb", ".tif", ".tiff", ".raw", ".mhd", ".mha", ".nrrd", ".npy"),
+    "mask": (".tif", ".tiff", ".raw", ".mhd", ".mha", ".nrrd", ".npy", ".vdb"),
+    "mesh": (".ply", ".obj", ".stl", ".vtp", ""),
+    "vti": (".vti",),
+    "network": (".graphml", ".vtp", ".csv"),
+    "clumps": (".txt", ".data", ".csv"),
+    "hexahedra": (".vtu", ".inp"),
+    "preview": (".vdb",),
+    "level sets": (".vdb",),
+    "surface": (".vdb",),
+    "picture": (".png",),
+}
+
+
+def kind_of(path: str, kind: Optional[str]) -> str:
+    """The kind that is asked for, or the one that the ending leaves no doubt about."""
+    ending = os.path.splitext(path)[1].lower()
+    if kind is None:
+        if ending in KINDS["labels"]:
+            return "labels"
+        kinds = [name for name, endings in KINDS.items() if ending in endings]
+        if len(kinds) == 1:
+            return kinds[0]
+        every = sorted({e for endings in KINDS.values() for e in endings if e})
+        raise _core.InvalidInput(
+            f"{path}: say what to write, kind='{kinds[0]}' or '{kinds[1]}'" if kinds else
+            f"{path}: no format has the ending '{ending}'; there are {', '.join(every)}")
+    if kind not in KINDS:
+        raise _core.InvalidInput(f"kind={kind!r}: must be one of {', '.join(KINDS)}")
+    if ending not in KINDS[kind]:
+        raise _core.InvalidInput(f"{path}: the ending for kind='{kind}' must be one of "
+                                 f"{', '.join(e or 'none (a folder)' for e in KINDS[kind])}")
+    return kind
+
+
+def is_tiff(path: str) -> bool:
+    return path.lower().endswith((".tif", ".tiff"))
+
+
+def loaded(data: bytes, load: Callable[..., Any], grid: str) -> _core.Grid:
+    """The grid in the bytes of a .vdb file."""
+    options = _core.VolumeOptions()
+    options.grid = grid
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "volume.vdb")
+        with open(path, "wb") as file:
+            file.write(data)
+        result: _core.Grid = load(path, options, _core.Call(None, 0))[0]
+    return result

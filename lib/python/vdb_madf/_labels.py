@@ -1,0 +1,210 @@
+# SPDX-FileCopyrightText: The vdb_madf authors
+# SPDX-License-Identifier: Apache-2.0
+"""Grains as labels."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from typing import Any, Callable, Optional, Sequence, Tuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._arrays import Source, readable
+from ._calls import Progress, calling, warn
+from ._files import is_tiff, kind_of, loaded
+from ._mesh import Mesh
+from ._volume import Volume, edges_of
+
+_Ids = Union[Sequence[int], npt.NDArray[Any]]
+
+
+class Labels(Volume):
+    """A label for each voxel, int32; 0 is background. Read like an array [z, y, x], and read-only.
+
+    source: a file in any format that `vdb_madf` reads, or an array of integers, of any program.
+    voxel_size: the edge of a voxel with its unit, "8.5um", or three along x, y, z: "1x1x3um".
+    dataset: of a Zarr group or an HDF5 file; grid: of a .vdb ("grain" if there is such a one).
+    progress: a function of percent and stage, or True for a bar (tqdm); threads: 0 for all."""
+
+    _sizes: Optional[Tuple[npt.NDArray[np.int32], npt.NDArray[np.int64]]] = None
+
+    def __init__(self, source: Source, *, voxel_size: Optional[str] = None,
+                 dataset: Optional[str] = None, grid: Optional[str] = None, progress: Progress = None,
+                 threads: int = 0) -> None:
+        options = _core.VolumeOptions()
+        edges = edges_of(source, voxel_size)
+        if edges is not None:
+            options.set_voxel_size(edges)
+        options.dataset = dataset or ""
+        options.grid = grid or ""
+        with calling(progress, threads) as call:
+            self._grid, notes = _core.load_labels(readable(source), options, call)
+        warn(notes)
+
+    @classmethod
+    def _of(cls, grid: _core.Grid) -> "Labels":
+        labels = cls.__new__(cls)
+        labels._grid = grid
+        return labels
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """Of the values of slices: int32."""
+        return np.dtype(np.int32)
+
+    def _read(self, first: _core.Index, out: npt.NDArray[Any]) -> None:
+        self._grid.read_labels(first, out)
+
+    def _counted(self) -> Tuple[npt.NDArray[np.int32], npt.NDArray[np.int64]]:
+        if self._sizes is None:
+            self._sizes = _core.label_sizes(self._grid, _core.Call(None, 0))
+        return self._sizes
+
+    @property
+    def ids(self) -> npt.NDArray[np.int32]:
+        """The labels above 0, ascending."""
+        return self._counted()[0]
+
+    @property
+    def voxels(self) -> npt.NDArray[np.int64]:
+        """Voxels of each label, in the order of `ids`."""
+        return self._counted()[1]
+
+    def to_array(self, dtype: npt.DTypeLike = None,
+                 out: Optional[npt.NDArray[Any]] = None) -> npt.NDArray[Any]:
+        """All voxels as an array of that type, or into `out`, of the shape of the labels.
+
+        dtype="auto": the smallest unsigned type that holds all labels."""
+        if isinstance(dtype, str) and dtype == "auto":
+            dtype = np.min_scalar_type(int(self.ids[-1]) if len(self.ids) else 0)
+        return super().to_array(dtype, out)
+
+    def paint(self, ids: _Ids, values: npt.ArrayLike, background: float = np.nan,
+              dtype: npt.DTypeLike = np.float32) -> npt.NDArray[Any]:
+        """An array [z, y, x] with a value for each grain: `values[i]` where the label is `ids[i]`, and
+        `background` where it is none of them."""
+        known, painted = np.asarray(ids, np.int64), np.asarray(values)
+        if known.ndim != 1 or known.shape != painted.shape:
+            raise ValueError(f"{known.shape} ids and {painted.shape} values: give one for each")
+        largest = int(known.max()) if len(known) else 0
+        if len(known) and known.min() < 1:
+            raise ValueError(f"{known.min()} is no id of a grain: they are above 0")
+        out = np.empty(self.shape, dtype)
+        table = np.full(largest + 2, background, dtype)  # the last is for all other labels
+        table[known] = painted
+        for first, slab in self._slabs():
+            out[first:first + len(slab)] = table[np.clip(slab, -1, largest + 1)]
+        return out
+
+    def crop(self, id: int, pad: int = 0) -> Tuple[npt.NDArray[np.bool_], Tuple[int, int, int]]:
+        """One grain: True in an array of its box and `pad` voxels around it, as far as the volume goes,
+        and the place of that array's first voxel in the volume."""
+        if pad < 0:
+            raise ValueError(f"pad={pad}: must be 0 or more")
+        first, last = _core.box_of_label(self._grid, id)
+        low = [max(0, place - pad) for place in first]
+        high = [min(n, place + pad + 1) for n, place in zip(self.shape, last)]
+        part = self[low[0]:high[0], low[1]:high[1], low[2]:high[2]]
+        return np.asarray(part == id), (low[0], low[1], low[2])
+
+    def keep(self, ids: _Ids) -> "Labels":
+        """These grains alone; their labels stay."""
+        return Labels._of(_core.select(self._grid, [int(i) for i in ids], _core.Call(None, 0)))
+
+    def drop(self, ids: _Ids) -> "Labels":
+        """All other grains; their labels stay."""
+        return self.keep(np.setdiff1d(self.ids, np.asarray(ids)))
+
+    def reduce(self, factor: int) -> "Labels":
+        """The volume smaller by a whole factor: each voxel has the most frequent label of its own."""
+        return Labels._of(_core.reduce(self._grid, factor, _core.Call(None, 0)))
+
+    def colors(self) -> Tuple[npt.NDArray[np.int32], npt.NDArray[np.uint8]]:
+        """(N,) labels and (N, 3) sRGB, such that grains that touch never look alike."""
+        return _core.colors(self._grid, _core.Call(None, 0))
+
+    def mesh(self, *, smoothing: int = 10, triangles: Optional[int] = None, ids: Optional[_Ids] = None,
+             progress: Progress = None, threads: int = 0) -> Mesh:
+        """Surfaces of all grains, or of those with these ids.
+
+        smoothing: rounds; 0: the faces of the voxels, whose volume is exactly theirs. triangles: at
+        most so many, of labels that are reduced until they suffice."""
+        with calling(progress, threads) as call:
+            arrays = _core.mesh(self._grid, call, smoothing=smoothing, triangles=triangles,
+                                ids=[] if ids is None else [int(i) for i in ids])
+        return Mesh(**arrays, unit=self.unit)
+
+    def save(self, path: Union[str, "os.PathLike[str]"], *, kind: Optional[str] = None,
+             type: Optional[str] = None, smoothing: int = 10, reduce: int = 1,
+             triangles: Optional[int] = None, compress: bool = False, min_faces: int = 1,
+             max_balls: int = 100, uncovered: float = 0.02, apart: bool = False, size: int = 512,
+             azimuth: float = 35, elevation: float = 25, progress: Progress = None,
+             threads: int = 0) -> None:
+        """Writes a file, whole or not at all; what it is the ending says, or `kind` where it does not:
+
+        - "labels": .vdb (Int32 grid `grain`), .tif, .raw, .mhd, .mha, .nrrd, .npy; `type` of the samples;
+          "mask": the same with 1 where there is a label
+        - "mesh": .ply, .obj, .stl, .vtp or a folder of .stl files; `smoothing`, `reduce`, `triangles`
+        - "vti": VTK's image, `compress`; "hexahedra": .vtu, .inp (Abaqus), an element a voxel
+        - "network": .graphml, .vtp, .csv: grains and bonds with their measures, `min_faces` of a bond
+        - "clumps": .txt (YADE), .data (LAMMPS), .csv: grains as balls, `max_balls` each, `uncovered`
+          part of them, `apart` if balls of different grains shall not overlap
+        - "preview" (fog and color, `reduce`), "level sets", "surface" (`smoothing`): .vdb for renderers
+        - "picture": .png as of `vdb_madf render`; `size` of each part in pixels, `azimuth`, `elevation`
+        """
+        name = os.fspath(path)
+        kind = kind_of(name, kind)
+        grid = self._grid
+        with calling(progress, threads) as call:
+            if kind == "labels" and name.lower().endswith(".vdb"):
+                _core.save_vdb(name, [grid], call)
+            elif kind == "labels":
+                _core.save_image(name, grid, type or "", is_tiff(name), call)
+            elif kind == "mask" and name.lower().endswith(".vdb"):
+                _core.save_vdb(name, [_core.mask_of_labels(grid)], call)
+            elif kind == "mask":
+                _core.save_image(name, _core.mask_of_labels(grid), type or "", False, call)
+            elif kind == "mesh":
+                factor = reduce
+                if triangles is not None:
+                    factor = _core.reduction_for_triangles(grid, triangles, factor, call)
+                meshed = grid if factor == 1 else _core.reduce(grid, factor, call)
+                _core.save_mesh(name, grid, meshed, smoothing, call)
+            elif kind == "vti":
+                _core.save_vti(name, grid, compress, call)
+            elif kind == "network":
+                _core.save_network(name, grid, min_faces, call)
+            elif kind == "clumps":
+                balls = _core.ball_grids(_core.mask_of_labels(grid), call)
+                _core.save_clumps(name, grid, balls, max_balls, uncovered, apart, call)
+            elif kind == "hexahedra":
+                _core.save_hexahedra(name, grid, call)
+            elif kind == "preview":
+                _core.save_preview(name, grid, reduce, call)
+            elif kind == "picture":
+                _core.save_picture(name, grid, size, azimuth, elevation, call)
+            else:
+                _core.save_level_sets(name, grid, smoothing, kind == "surface", call)
+
+    def _repr_png_(self) -> Optional[bytes]:
+        """The picture that notebooks show."""
+        if not self.size:
+            return None
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "labels.png")
+            self.save(path, size=256)
+            with open(path, "rb") as file:
+                return file.read()
+
+    def __reduce__(self) -> Tuple[Callable[[bytes, str], "Labels"], Tuple[bytes, str]]:
+        return _labels_from_vdb, (self._vdb(), self._grid.name)
+
+    def __repr__(self) -> str:
+        return f"Labels(shape={self.shape}, spacing={self.spacing}, unit={self.unit!r})"
+
+
+def _labels_from_vdb(data: bytes, name: str) -> Labels:
+    return Labels._of(loaded(data, _core.load_labels, name))

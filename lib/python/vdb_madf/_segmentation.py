@@ -1,0 +1,151 @@
+# SPDX-FileCopyrightText: The vdb_madf authors
+# SPDX-License-Identifier: Apache-2.0
+"""Cutting an object into grains."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from typing import Any, Dict, Optional, Sequence, Union
+
+import numpy.typing as npt
+
+from . import _core
+from ._arrays import Source
+from ._calls import Progress, bytes_of, calling
+from ._labels import Labels
+from ._mask import Mask
+
+#: The method to the letter of the paper: segment(mask, **PAPER).
+PAPER: Dict[str, Any] = dict(theta=-0.8, merge="angle", adjacency="cell", delta=0, fill_holes=0, tidy=0)
+
+_FLAWS = ("crumbs", "specks", "slivers", "in_pieces")
+
+
+@dataclass(frozen=True)
+class Segmentation:
+    """Grains and how they came about."""
+
+    labels: Labels
+    """1 to N on the object."""
+    counts: Dict[str, int]
+    """`grains`, `object_voxels`, `critical_points`, `medial_balls` ... and flaws of the labels."""
+    seconds: Dict[str, float]
+    """Of each stage, in the order of work."""
+    options: Dict[str, Any]
+    """What was used: theta, gamma, merge, adjacency, delta, fill_holes, tidy, boundary."""
+    graph: Dict[str, npt.NDArray[Any]] = field(repr=False)
+    """Critical points: `position` (K, 3) z, y, x in voxels of the scan, `squared_radius` (K,),
+    `voxels` (K,) of their manifolds; pairs of manifolds that touch: `first`, `second` (E,), numbers of
+    critical points from 0, `contact_faces`, `saddle_height`, `cells_touch` (E,)."""
+    manifold: Optional[Labels] = field(default=None, repr=False)
+    """Critical points 1 to K, if kept: what remerge() and sweep() work on."""
+    distance_squared: Optional[Labels] = field(default=None, repr=False)
+    """Squared distance to the background, voxels squared, if kept."""
+    power: Optional[Labels] = field(default=None, repr=False)
+    """Least power, voxels squared, if kept."""
+    balls: Optional[Dict[str, npt.NDArray[Any]]] = field(default=None, repr=False)
+    """Medial balls, if kept: `position` (B, 3) z, y, x, `squared_radius`, `cell_size` (B,)."""
+
+    def _manifolds(self) -> _core.Grid:
+        if self.manifold is None:
+            raise _core.InvalidInput("the manifolds were not kept: segment with keep=('manifold',)")
+        return self.manifold._grid
+
+    def remerge(self, *, theta: Optional[float] = None, merge: Optional[str] = None,
+                adjacency: Optional[str] = None, delta: Optional[int] = None,
+                tidy: Optional[int] = None, progress: Progress = None,
+                threads: int = 0) -> "Segmentation":
+        """The grains of other options of merging, without distances again: the same labels, bit for
+        bit, as a fresh segment(). What is not given stays as it was."""
+        given = dict(theta=theta, merge=merge, adjacency=adjacency, delta=delta, tidy=tidy)
+        options = {name: self.options[name] if value is None else value for name, value in given.items()}
+        with calling(progress, threads) as call:
+            grid = _core.remerge(self._manifolds(), call, **options)
+        labels = Labels._of(grid)
+        counts = {name: count for name, count in self.counts.items() if name not in _FLAWS}
+        counts["grains"] = labels.metadata["madf_grains"]
+        return Segmentation(labels, counts, {}, {**self.options, **options}, self.graph, self.manifold,
+                            self.distance_squared, self.power, self.balls)
+
+    def sweep(self, theta: Union[Sequence[float], npt.NDArray[Any]],
+              merge: Union[str, Sequence[str], None] = None, delta: Union[int, Sequence[int], None] = None,
+              small: int = 100, *, progress: Progress = None, threads: int = 0) -> Dict[str, Any]:
+        """The grains for every combination of merge modes, deltas and thetas, a row each: `merge`,
+        `delta`, `theta`, `grains`, `median_voxels`, `small_grains` and `small_voxels` (grains of fewer
+        than `small` voxels), `largest_voxels` and flaws. pandas.DataFrame() makes a table of it."""
+        modes = ([self.options["merge"]] if merge is None else
+                 [merge] if isinstance(merge, str) else list(merge))
+        deltas = ([self.options["delta"]] if delta is None else
+                  [delta] if isinstance(delta, int) else [int(d) for d in delta])
+        with calling(progress, threads) as call:
+            return _core.sweep(self._manifolds(), call, thetas=[float(t) for t in theta], modes=modes,
+                               deltas=deltas, adjacency=self.options["adjacency"],
+                               tidy=self.options["tidy"], small=small)
+
+    def save(self, path: Union[str, "os.PathLike[str]"], *, progress: Progress = None,
+             threads: int = 0) -> None:
+        """Writes the labels and all grids that were kept into a .vdb, as `vdb_madf segment --keep` does
+        (but for balls); `vdb_madf remerge` and `measure` go on from it."""
+        name = os.fspath(path)
+        if not name.lower().endswith(".vdb"):
+            raise _core.InvalidInput(f"{name}: several grids go into a .vdb; labels.save() knows more "
+                                     "endings")
+        kept = (self.labels, self.distance_squared, self.power, self.manifold)
+        with calling(progress, threads) as call:
+            _core.save_vdb(name, [volume._grid for volume in kept if volume is not None], call)
+
+    def _repr_png_(self) -> Optional[bytes]:
+        return self.labels._repr_png_()
+
+
+def labels_of(source: Union[Labels, Segmentation, Source], call: _core.Call, threads: int,
+              **arguments: Optional[str]) -> Labels:
+    """The labels, or those of a segmentation, a file or an array with arguments of Labels()."""
+    labels = source.labels if isinstance(source, Segmentation) else source
+    if not isinstance(labels, Labels):
+        return Labels(labels, progress=call.progress, threads=threads, **arguments)
+    given = [name for name, value in arguments.items() if value is not None]
+    if given:
+        raise TypeError(f"{', '.join(given)}: for files and arrays; Labels have them already")
+    return labels
+
+
+def segment(source: Union[Mask, Source], *, theta: float = -0.9, gamma: int = 0, merge: str = "both",
+            adjacency: str = "manifold", delta: int = 2, fill_holes: Optional[int] = None, tidy: int = 2,
+            boundary: str = "auto", keep: Sequence[str] = ("manifold",),
+            max_memory: Union[int, str, None] = None, progress: Progress = None, threads: int = 0,
+            **selection: Any) -> Segmentation:
+    """Cuts the object into grains.
+
+    source: a Mask, or what makes one, with its arguments besides: segment("scan.tif", phase=1,
+    voxel_size="10um"), segment(array, threshold="otsu", roi="cylinder").
+
+    theta: cosine, -1 merges least; gamma: least cell of a medial ball, voxels; merge: "both", "angle"
+    or "neck"; adjacency: "manifold" or "cell"; delta: in eighths of a voxel, how much narrower a neck
+    has to be than its grain; fill_holes: cavities of fewer voxels are filled meanwhile (None: 27);
+    tidy: rounds of smoothing the interfaces; boundary: beyond the faces "open" (unknown), "closed"
+    (background) or "auto" (open). **PAPER: the method without our additions.
+
+    keep: which of "manifold" (for remerge() and sweep()), "distance", "power", "balls" are returned.
+    max_memory: bytes, or a text such as "12GiB", that the work may take; default: what is free.
+    progress: a function of percent and stage, or True for a bar (tqdm); threads: 0 for all. Labels do
+    not depend on threads.
+
+    Raises InvalidInput (a ValueError), NotEnoughMemory (a MemoryError), IoError (an OSError)."""
+    allowed = bytes_of(max_memory)
+    with calling(progress, threads) as call:
+        if isinstance(source, Mask):
+            if selection:
+                raise TypeError(f"{', '.join(selection)}: a Mask is chosen already")
+            mask = source
+        else:
+            mask = Mask(source, progress=call.progress, threads=threads, **selection)
+        made = _core.segment(
+            mask._grid, call, theta=theta, gamma=gamma, merge=merge, adjacency=adjacency, delta=delta,
+            fill_holes=fill_holes, tidy=tidy, boundary=boundary, keep=list(keep), max_memory=allowed)
+    volumes = {name: None if made[name] is None else Labels._of(made[name])
+               for name in ("manifold", "distance_squared", "power")}
+    return Segmentation(labels=Labels._of(made["labels"]), counts=made["counts"],
+                        seconds=made["seconds"], options=made["options"], graph=made["graph"],
+                        balls=made["balls"], **volumes)

@@ -1,0 +1,180 @@
+# SPDX-FileCopyrightText: The vdb_madf authors
+# SPDX-License-Identifier: Apache-2.0
+"""Sparse volumes that are read like arrays."""
+
+from __future__ import annotations
+
+import operator
+import os
+import tempfile
+from typing import Any, Dict, List, Optional, Tuple
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._calls import metres
+
+
+class Volume:
+    """A volume on a sparse grid, read like an array [z, y, x]: what is asked for costs what it covers.
+
+    `volume[100]` is a slice; whole numbers, slices and `...` are taken. `numpy.asarray(volume)` is all
+    of it."""
+
+    ndim = 3
+    _grid: _core.Grid
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """Of the values of slices."""
+        raise NotImplementedError
+
+    def _read(self, first: _core.Index, out: npt.NDArray[Any]) -> None:
+        raise NotImplementedError
+
+    @property
+    def shape(self) -> Tuple[int, int, int]:
+        """Voxels along z, y, x: of the scan, or if that is unknown of the box of the voxels."""
+        return self._grid.shape
+
+    @property
+    def size(self) -> int:
+        """All voxels of the box."""
+        depth, height, width = self.shape
+        return depth * height * width
+
+    @property
+    def first(self) -> Tuple[int, int, int]:
+        """Place of element [0, 0, 0] in the scan: z, y, x in voxels. Not (0, 0, 0) of a crop."""
+        return self._grid.first
+
+    @property
+    def unit(self) -> str:
+        """The unit of lengths: "mm", "um" (voxels under 20 nm) or "voxel"."""
+        return self._grid.unit
+
+    @property
+    def spacing(self) -> Tuple[float, float, float]:
+        """Edges of a voxel along z, y, x, in `unit`."""
+        return self._grid.spacing
+
+    @property
+    def origin(self) -> Tuple[float, float, float]:
+        """Center of the voxel [0, 0, 0]: z, y, x in `unit`."""
+        return self._grid.origin
+
+    @property
+    def voxel_size(self) -> Optional[Tuple[float, float, float]]:
+        """Edges of a voxel along z, y, x in metres; None if unknown."""
+        return self._grid.voxel_size
+
+    @property
+    def metadata(self) -> Dict[str, Any]:
+        """What the volume says of itself: madf_version, madf_theta, madf_source ..."""
+        return self._grid.metadata
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __getitem__(self, key: Any) -> Any:
+        ranges, kept = _ranges(key, self.shape)
+        result = np.zeros([len(r) for r in ranges], self.dtype)
+        if result.size:
+            if all(r.step == 1 for r in ranges):
+                self._read((ranges[0][0], ranges[1][0], ranges[2][0]), result)
+            else:
+                self._read_steps(ranges, result)
+        places: Any = tuple(slice(None) if keep else 0 for keep in kept)
+        return result[places]
+
+    def _read_steps(self, ranges: List[range], result: npt.NDArray[Any]) -> None:
+        low = [min(r) for r in ranges]
+        plane = np.empty([1] + [max(r) - min(r) + 1 for r in ranges[1:]], self.dtype)
+        for slice_of_result, z in zip(result, ranges[0]):
+            self._read((z, low[1], low[2]), plane)
+            slice_of_result[...] = plane[0, ::ranges[1].step, ::ranges[2].step]
+
+    def to_array(self, dtype: npt.DTypeLike = None,
+                 out: Optional[npt.NDArray[Any]] = None) -> npt.NDArray[Any]:
+        """All voxels as an array of that type, or into `out`, of the shape of the volume."""
+        if out is None:
+            out = np.empty(self.shape, self.dtype if dtype is None else dtype)
+        elif out.shape != self.shape:
+            raise ValueError(f"out is of {out.shape}, and the volume of {self.shape}")
+        elif dtype is not None and out.dtype != np.dtype(dtype):
+            raise ValueError(f"out is of type {out.dtype}, not {np.dtype(dtype)}")
+        if out.dtype == self.dtype and out.flags.c_contiguous and out.size:
+            self._read((0, 0, 0), out)
+        else:
+            for first, slab in self._slabs():
+                out[first:first + len(slab)] = _fitted(slab, out.dtype)
+        return out
+
+    def __array__(self, dtype: npt.DTypeLike = None, copy: Optional[bool] = None) -> npt.NDArray[Any]:
+        return self.to_array(dtype)
+
+    def _slabs(self) -> Any:
+        """(first slice, slab) through the volume; the slab's memory is used again."""
+        depth, height, width = self.shape
+        if not self.size:
+            return
+        buffer = np.empty((min(8, depth), height, width), self.dtype)
+        for first in range(0, depth, 8):
+            slab = buffer[:min(8, depth - first)]
+            self._read((first, 0, 0), slab)
+            yield first, slab
+
+    def _vdb(self) -> bytes:
+        """The volume as a .vdb file."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "volume.vdb")
+            _core.save_vdb(path, [self._grid], _core.Call(None, 0))
+            with open(path, "rb") as file:
+                return file.read()
+
+
+def edges_of(source: object, voxel_size: Optional[str]) -> Optional[_core.Edges]:
+    """Edges of a voxel that were given, or are those of another volume, metres."""
+    if voxel_size is None and isinstance(source, Volume):
+        return source.voxel_size
+    return metres(voxel_size)
+
+
+def _fitted(slab: npt.NDArray[Any], dtype: np.dtype[Any]) -> npt.NDArray[Any]:
+    if dtype.kind in "iu" and slab.dtype != bool:
+        limits = np.iinfo(dtype)
+        if int(slab.max()) > limits.max or int(slab.min()) < limits.min:
+            raise ValueError(f"{slab.max()} does not fit {dtype}")
+    return slab
+
+
+def _ranges(key: Any, shape: Tuple[int, int, int]) -> Tuple[List[range], List[bool]]:
+    """The places along each axis, and whether the axis stays."""
+    parts = list(key) if isinstance(key, tuple) else [key]
+    if sum(part is Ellipsis for part in parts) > 1:
+        raise IndexError("only one ... can stand in an index")
+    if not any(part is Ellipsis for part in parts):
+        parts.append(Ellipsis)
+    dots = next(i for i, part in enumerate(parts) if part is Ellipsis)
+    if len(parts) > 4:
+        raise IndexError(f"{len(parts) - 1} indices for three axes")
+    parts[dots:dots + 1] = [slice(None)] * (4 - len(parts))
+    ranges, kept = [], []
+    for axis, (part, length) in enumerate(zip(parts, shape)):
+        if isinstance(part, slice):
+            ranges.append(range(length)[part])
+            kept.append(True)
+            continue
+        try:
+            place = operator.index(part)
+        except TypeError:
+            place = None
+        if place is None or isinstance(part, (bool, np.bool_)):
+            raise IndexError(f"{part!r} is no whole number, slice or ...: read an array first, "
+                             "numpy.asarray(volume), to index it by anything else")
+        if not -length <= place < length:
+            raise IndexError(f"{place} is out of the {length} voxels of axis {axis}")
+        ranges.append(range(place % length, place % length + 1))
+        kept.append(False)
+    return ranges, kept

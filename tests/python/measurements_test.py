@@ -1,0 +1,189 @@
+# SPDX-FileCopyrightText: The vdb_madf authors
+# SPDX-License-Identifier: Apache-2.0
+"""Measures, comparisons, meshes and files are those of the command."""
+
+import csv
+import gc
+import json
+import pickle
+
+import numpy as np
+import pytest
+
+import vdb_madf as madf
+
+
+@pytest.fixture(scope="module")
+def labels(sample):
+    return madf.segment(sample[0]).labels
+
+
+@pytest.fixture(scope="module")
+def measured(labels):
+    return madf.measure(labels)
+
+
+@pytest.fixture(scope="module")
+def tables(labels, command, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("tables")
+    labels.save(folder / "labels.vdb")
+    command("measure", folder / "labels.vdb", folder)
+    return folder
+
+
+def columns(path):
+    with open(path, newline="") as file:
+        rows = list(csv.reader(file))
+    return {name: np.array([float(row[i]) if row[i] else np.nan for row in rows[1:]])
+            for i, name in enumerate(rows[0])}
+
+
+SUFFIX = {"": "", "mm": "_mm", "mm^2": "_mm2", "mm^3": "_mm3", "1/mm": "_per_mm", "1/mm^2": "_per_mm2"}
+
+
+@pytest.mark.parametrize("table", ["grains", "bonds"])
+def test_tables_are_those_of_the_command(table, measured, tables):
+    here, there = getattr(measured, table), columns(tables / f"{table}.csv")
+    assert [name + SUFFIX[measured.units[name]] for name in here] == list(there)
+    for name, values in here.items():
+        assert np.allclose(values, there[name + SUFFIX[measured.units[name]]], rtol=1e-8, atol=0,
+                           equal_nan=True), name
+
+
+def test_types_of_columns(measured):
+    assert measured.unit == "mm"
+    kinds = {name: column.dtype for name, column in {**measured.grains, **measured.bonds}.items()}
+    assert kinds["id"] == kinds["first"] == np.int32 and kinds["voxels"] == np.int64
+    assert kinds["at_domain_face"] == bool and kinds["box_min_x"] == np.int64
+    assert kinds["volume"] == kinds["centroid_z"] == kinds["mean_curvature"] == np.float64
+
+
+def test_the_sample(measured, tables):
+    there = json.loads((tables / "sample.json").read_text())
+    here = measured.sample
+    for name in ("grains", "bonds", "object_voxels", "solid_fraction", "euler_characteristic", "components",
+                 "mean_coordination", "labels_digest", "boundary", "box"):
+        assert here[name] == there[name], name
+    assert here["specific_surface"] == pytest.approx(there["specific_surface_per_mm"], rel=1e-12)
+    assert here["correlation_length"][::-1] == pytest.approx(there["correlation_length_mm"])
+    assert np.allclose(here["bond_fabric"][::-1, ::-1], there["bond_normal_fabric"]["tensor"])
+    assert np.allclose(here["grain_fabric"][::-1, ::-1], there["grain_axis_fabric"]["tensor"])
+    assert here["diameter_by_volume"][50] == pytest.approx(there["grain_diameter_by_volume_mm"]["d50"])
+    assert list(here["coordinations"]) == there["coordination_distribution"]
+    assert measured.provenance["madf_theta"] == -0.9
+
+
+def test_pandas(measured):
+    pd = pytest.importorskip("pandas", reason="tables of pandas: not installed")
+    grains, bonds = measured.to_pandas()
+    assert isinstance(grains, pd.DataFrame) and list(grains.index) == list(measured.grains["id"])
+    assert grains.attrs["unit"] == "mm" and grains.attrs["units"]["volume"] == "mm^3"
+    assert grains.attrs["provenance"] == measured.provenance
+    assert (bonds["area"] == measured.bonds["area"]).all()
+
+
+def test_points(measured):
+    centers = measured.points()
+    assert (centers[:, 0] == measured.grains["centroid_z"]).all() and centers.shape[1] == 3
+    normals = measured.points("normal", of="bonds")
+    assert np.allclose((normals**2).sum(1), 1)
+
+
+def test_measures_of_foreign_labels(labels, measured):
+    again = madf.measure(np.asarray(labels).astype(np.uint16), voxel_size="10um")
+    for name, column in measured.grains.items():
+        assert np.array_equal(column, again.grains[name], equal_nan=column.dtype == float), name
+    assert again.sample["labels_digest"] == measured.sample["labels_digest"]
+    with pytest.raises(TypeError, match="voxel_size: for files and arrays"):
+        madf.measure(labels, voxel_size="10um")
+    with pytest.raises(ValueError, match="gray image"):
+        madf.measure(np.random.default_rng(5).integers(0, 60000, (20, 20, 20)))
+    pickle.loads(pickle.dumps(measured))
+
+
+def test_comparison(sample, labels):
+    truth = sample[1]
+    found = madf.compare(truth, np.asarray(labels))
+    again = madf.compare(truth, madf.segment(sample[0]))
+    assert again.adjusted_rand_index == found.adjusted_rand_index
+    a, b = np.asarray(truth), np.asarray(labels)
+    assert found.truth_grains == len(truth.ids) and found.common_voxels == ((a > 0) & (b > 0)).sum()
+    pairs, counts = np.unique(np.stack([a[a > 0], b[a > 0]]), axis=1, return_counts=True)
+    assert (found.overlaps["truth"] == pairs[0]).all() and (found.overlaps["voxels"] == counts).all()
+    same = madf.compare(labels, labels)
+    assert same.adjusted_rand_index == 1 and same.misclassified_percent == 0
+
+
+def test_mesh(labels, measured):
+    mesh = labels.mesh(smoothing=0)
+    assert (mesh.ids == labels.ids).all() and mesh.unit == "mm"
+    assert np.allclose(mesh.volumes(), measured.grains["volume"], rtol=1e-5)
+    smooth = labels.mesh()
+    assert np.allclose(smooth.volumes(), measured.grains["volume"], rtol=5e-3)
+    points, triangles = mesh.grain(int(mesh.ids[1]))
+    assert triangles.max() == len(points) - 1 and triangles.min() == 0
+    low = measured.grains["box_min_x"][1] * 0.01 - 0.005
+    assert points[:, 0].min() == pytest.approx(low, abs=1e-6)
+    one = labels.mesh(smoothing=0, ids=[int(mesh.ids[1])])
+    assert (one.points == points).all() and (one.triangles == triangles).all()
+    assert len(labels.mesh(smoothing=0, triangles=2000).triangles) <= 2000
+    with pytest.raises(KeyError):
+        mesh.grain(99999)
+
+
+def test_arrays_of_a_mesh_are_its_memory(labels):
+    mesh = labels.mesh(smoothing=0)
+    assert not mesh.points.flags.owndata and mesh.points.base is mesh.triangles.base
+    points, total = mesh.points, mesh.points.sum()
+    del mesh
+    gc.collect()
+    [np.empty(10**6) for _ in range(5)]
+    assert points.sum() == total
+
+
+# What is written here, and how the command writes it.
+FILES = [
+    ("a.npy", {}, ["convert"]), ("a.tif", {}, ["convert"]), ("a.nrrd", {}, ["convert"]),
+    ("a.mha", dict(type="uint16"), ["convert", "--out-type", "uint16"]),
+    ("a.vdb", {}, ["convert", "--grid", "grain"]),
+    ("a.ply", {}, ["export"]), ("a.vti", dict(compress=True), ["export", "--compress"]),
+    ("a.obj", dict(reduce=2, smoothing=0), ["export", "--reduce", "2", "--smooth", "0"]),
+    ("a.vtp", dict(kind="mesh", triangles=3000), ["export", "--as", "mesh", "--triangles", "3000"]),
+    ("a.graphml", {}, ["export"]), ("a.csv", dict(kind="network", min_faces=9),
+                                    ["export", "--as", "network", "--min-faces", "9"]),
+    ("a.txt", dict(max_balls=20, apart=True), ["export", "--as", "clumps", "--balls", "20", "--apart"]),
+    ("a.inp", {}, ["export"]), ("a.vtu", {}, ["export"]),
+    ("p.vdb", dict(kind="preview", reduce=2), ["export", "--as", "viz", "--reduce", "2"]),
+    ("s.vdb", dict(kind="surface"), ["export", "--as", "surface"]),
+    ("g.vdb", dict(kind="level sets"), ["export", "--as", "grids"]),
+    ("m.raw", dict(kind="mask"), ["export", "--as", "mask"]),
+    ("a.png", dict(size=128, azimuth=60), ["render", "--size", "128", "--azimuth", "60"]),
+]
+
+
+@pytest.mark.parametrize("name, arguments, verb", FILES)
+def test_files_are_those_of_the_command(name, arguments, verb, labels, tables, command, tmp_path):
+    (tmp_path / "here").mkdir()
+    (tmp_path / "there").mkdir()
+    labels.save(tmp_path / "here" / name, **arguments)
+    command(verb[0], tables / "labels.vdb", tmp_path / "there" / name, *verb[1:])
+    assert (tmp_path / "here" / name).read_bytes() == (tmp_path / "there" / name).read_bytes()
+
+
+def test_a_folder_of_meshes(labels, tmp_path):
+    labels.save(tmp_path / "grains", kind="mesh")
+    assert len(list((tmp_path / "grains").glob("grain_*.stl"))) == len(labels.ids)
+
+
+@pytest.mark.parametrize("name, arguments, text", [
+    ("a.docx", {}, "no format has the ending '.docx'"),
+    ("a.csv", {}, "kind='network' or 'clumps'"),
+    ("a.png", dict(kind="mesh"), "must be one of .ply"),
+    ("a.vdb", dict(kind="fog"), "must be one of labels"),
+    ("a.tif", dict(type="uint1"), "no sample type"),
+    ("nowhere/a.vdb", {}, "nowhere/a.vdb"),
+])
+def test_files_that_cannot_be_written(name, arguments, text, labels, tmp_path):
+    with pytest.raises((madf.InvalidInput, madf.IoError), match=text):
+        labels.save(tmp_path / name, **arguments)
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,56 @@
+# SPDX-FileCopyrightText: The vdb_madf authors
+# SPDX-License-Identifier: Apache-2.0
+"""The package is typed, and the types of its library are those that it has."""
+
+import inspect
+import os
+import pathlib
+import subprocess
+import sys
+
+import pytest
+
+import vdb_madf as madf
+
+PACKAGE = pathlib.Path(madf.__file__).parent
+
+
+def checked(*command, tmp_path):
+    pytest.importorskip("mypy", reason="types of the Python package: mypy is not installed")
+    run = subprocess.run([sys.executable, "-m", *map(str, command)], cwd=tmp_path, text=True,
+                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                         env={**os.environ, "MYPYPATH": str(PACKAGE.parent)})
+    assert run.returncode == 0, run.stdout
+
+
+def test_types_are_strict(tmp_path):
+    use = tmp_path / "use.py"
+    use.write_text("""\
+import numpy as np
+import vdb_madf as madf
+seg: madf.Segmentation = madf.segment(np.zeros((2, 3, 4), np.uint8), phase=1, progress=print)
+measured = madf.measure(seg.labels)
+volume: float = float(measured.grains["volume"].sum()) + madf.compare(seg.labels, seg.labels).splits
+""")
+    checked("mypy", "--strict", use, tmp_path=tmp_path)  # and the package that it imports
+
+
+def test_stubs_are_those_of_the_library(tmp_path):
+    # pybind11's own; names of types that the stub alone knows.
+    allowed = tmp_path / "allowed"
+    allowed.write_text(r"""
+vdb_madf._core.(ArraySource|Call|Grid|VolumeOptions)
+vdb_madf._core.Grid.__(init|pybind11).*
+vdb_madf._core.(Edges|Index)
+""")
+    checked("mypy.stubtest", "vdb_madf._core", "--concise", "--allowlist", allowed, tmp_path=tmp_path)
+
+
+@pytest.mark.parametrize("name", [name for name in madf.__all__ if callable(getattr(madf, name))
+                                  and name not in ("ArrayLike3D", "Progress", "Source")])
+def test_what_is_public_is_documented(name):
+    thing = getattr(madf, name)
+    assert inspect.getdoc(thing), name
+    for attribute, value in vars(thing).items() if inspect.isclass(thing) else ():
+        if not attribute.startswith("_") and callable(value) or isinstance(value, property):
+            assert inspect.getdoc(value), f"{name}.{attribute}"

@@ -1,0 +1,181 @@
+# SPDX-FileCopyrightText: The vdb_madf authors
+# SPDX-License-Identifier: Apache-2.0
+"""Volumes are read like arrays; what they cost, how they are copied and kept."""
+
+import multiprocessing
+import pickle
+import random
+
+import numpy as np
+import pytest
+
+import vdb_madf as madf
+
+
+@pytest.fixture(scope="module")
+def labels(sample):
+    return madf.segment(sample[0], keep=()).labels
+
+
+@pytest.fixture(scope="module")
+def dense(labels):
+    return np.asarray(labels)
+
+
+def random_part(draw, length):
+    kind = draw.random()
+    if kind < 0.3:
+        return draw.randrange(-length, length)
+    ends = [draw.choice([None, draw.randrange(-length - 5, length + 5)]) for _ in range(2)]
+    return slice(*ends, draw.choice([None, 1, 1, 2, 3, 7, -1, -2, 50]))
+
+
+def test_random_keys(labels, sample, dense):
+    draw = random.Random(7)
+    for volume, whole in ((labels, dense), (sample[0], np.asarray(sample[0]))):
+        for _ in range(250):
+            key = tuple(random_part(draw, n) for n in dense.shape[:draw.randrange(1, 4)])
+            if draw.random() < 0.3:
+                key = draw.choice([(..., *key[1:]), (*key[:2], ...), (key[0],)])
+            got, want = volume[key if len(key) > 1 else key[0]], whole[key]
+            assert np.shape(got) == want.shape and got.dtype == whole.dtype, key
+            assert np.array_equal(got, want), key
+
+
+def test_iteration_and_numpy(labels, dense):
+    assert len(labels) == len(dense) and labels.size == dense.size and labels.ndim == 3
+    assert all((a == b).all() for a, b in zip(labels, dense))
+    assert np.asarray(labels, np.float32).dtype == np.float32
+    assert np.max(labels) == dense.max()
+
+
+@pytest.mark.parametrize("key", [True, "a", 1.5, [1, 2], (1, 2, 3, 4), (..., ...), 64, -65,
+                                 np.zeros(3, bool), None])
+def test_other_keys_are_refused(labels, key):
+    with pytest.raises(IndexError):
+        labels[key]
+
+
+def test_a_slice_of_a_large_volume_costs_a_slice():
+    labels = madf.generate("spheres", size=1024, count=4, radius=(20, 30), overlap=0)[1]
+    assert labels.shape == (1024, 1024, 1024) and labels._grid.memory < 2**25
+    for id, voxels in zip(labels.ids, labels.voxels):
+        grain, (z, y, x) = labels.crop(int(id), pad=2)
+        assert grain.sum() == voxels and not grain[:2].any() and grain[2].any()
+        middle = z + len(grain) // 2
+        assert ((labels[middle] == id)[y:y + grain.shape[1], x:x + grain.shape[2]] ==
+                grain[len(grain) // 2]).all()
+
+
+def test_to_array(labels, dense):
+    assert labels.to_array("auto").dtype == np.uint8
+    out = np.empty(dense.shape, np.int64, order="F")
+    assert labels.to_array(out=out) is out and (out == dense).all()
+    view = np.zeros(dense.shape + (2,), np.int32)[..., 1]
+    labels.to_array(out=view)
+    assert (view == dense).all()
+    with pytest.raises(ValueError, match="does not fit"):
+        madf.Labels(dense * 100).to_array(np.uint8)
+    with pytest.raises(ValueError, match="volume of"):
+        labels.to_array(out=np.empty((1, 2, 3), np.int32))
+
+
+def test_ids_and_sizes(labels, dense):
+    ids, counts = np.unique(dense[dense > 0], return_counts=True)
+    assert (labels.ids == ids).all() and (labels.voxels == counts).all()
+
+
+def test_paint(labels, dense):
+    values = np.arange(len(labels.ids)) * 0.5
+    table = np.full(dense.max() + 1, np.nan, np.float32)
+    table[labels.ids] = values
+    assert np.array_equal(labels.paint(labels.ids, values), table[dense], equal_nan=True)
+    some = labels.paint(labels.ids[[3, 1]], [30, 10], background=-1, dtype=np.int16)
+    want = np.full(dense.shape, -1, np.int16)
+    want[dense == labels.ids[3]], want[dense == labels.ids[1]] = 30, 10
+    assert some.dtype == np.int16 and (some == want).all()
+    assert (labels.paint([], [], background=0) == 0).all()
+    with pytest.raises(ValueError, match="one for each"):
+        labels.paint([1, 2], [1])
+    with pytest.raises(ValueError, match="0 is no id"):
+        labels.paint([0, 2], [1, 1])
+
+
+def test_colors(labels, dense):
+    ids, rgb = labels.colors()
+    assert (ids == labels.ids).all() and rgb.shape == (len(ids), 3) and rgb.dtype == np.uint8
+    look = {i: tuple(c) for i, c in zip(ids, rgb)}
+    a, b = dense[1:], dense[:-1]
+    touching = set(zip(a[(a != b) & (a > 0) & (b > 0)], b[(a != b) & (a > 0) & (b > 0)]))
+    assert touching and all(look[i] != look[j] for i, j in touching)
+
+
+def test_grains_are_chosen(labels, dense):
+    some = labels.keep(labels.ids[:2])
+    assert (np.asarray(some) == np.where(dense <= labels.ids[1], dense, 0)).all()
+    assert list(labels.drop(labels.ids[:2]).ids) == list(labels.ids[2:])
+    assert (np.asarray(labels.keep([])) == 0).all()
+    with pytest.raises(madf.InvalidInput):
+        labels.keep([999])
+    half = labels.reduce(2)
+    assert half.shape == tuple(n // 2 for n in labels.shape)
+    assert half.spacing == tuple(2 * s for s in labels.spacing)
+
+
+def test_places(sample, labels, array):
+    assert labels.unit == "mm" and labels.spacing == (0.01,) * 3 and labels.origin == (0, 0, 0)
+    assert labels.voxel_size == (1e-5,) * 3 and labels.first == (0, 0, 0)
+    unknown = madf.Mask(array, phase=1)
+    assert unknown.unit == "voxel" and unknown.spacing == (1, 1, 1) and unknown.voxel_size is None
+    flat = madf.Mask(array, phase=1, voxel_size="1x2x3um")
+    assert flat.voxel_size == (3e-6, 2e-6, 1e-6)
+    assert flat.spacing == pytest.approx((3e-3, 2e-3, 1e-3))
+    crop = madf.Mask(array, phase=1, crop=np.s_[8:40, :, 5:70])
+    assert crop.first == (8, 0, 5) and crop.shape == (32, 72, 65) and crop.origin == (8, 0, 5)
+    assert (np.asarray(crop) == array[8:40, :, 5:70]).all()
+
+
+def test_pickling(sample, labels, dense):
+    again = pickle.loads(pickle.dumps(labels))
+    assert (np.asarray(again) == dense).all() and again.metadata == labels.metadata
+    mask = pickle.loads(pickle.dumps(sample[0]))
+    assert (np.asarray(mask) == np.asarray(sample[0])).all() and mask.spacing == sample[0].spacing
+    core = pickle.loads(pickle.dumps(madf.Mask(np.asarray(sample[0]), roi="cylinder")))
+    assert core.fraction == madf.Mask(np.asarray(sample[0]), roi="cylinder").fraction
+
+
+def grains_of(mask):
+    return madf.segment(mask).labels
+
+
+def test_pickling_to_another_process(sample, dense):
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        (labels,) = pool.map(grains_of, [sample[0]])
+    assert (np.asarray(labels) == dense).all()
+
+
+def test_pictures(labels):
+    png = labels._repr_png_()
+    assert png.startswith(b"\x89PNG") and len(png) > 1000
+
+
+def test_an_empty_volume():
+    empty = madf.Labels(np.zeros((3, 4, 5), int))
+    assert empty.shape == (3, 4, 5) and len(empty.ids) == 0 and (np.asarray(empty) == 0).all()
+    assert len(empty.mesh().points) == 0
+    seg = madf.segment(np.zeros((3, 4, 5), bool))
+    assert seg.counts["grains"] == 0
+
+def test_labels_of_labels(labels, dense):
+    object_ = madf.Mask(labels, phase=[int(labels.ids[0]), int(labels.ids[2])])
+    assert (np.asarray(object_) == np.isin(dense, labels.ids[[0, 2]])).all()
+    assert object_.spacing == labels.spacing
+    assert madf.Labels(dense, voxel_size="3um").spacing == (0.003,) * 3
+
+
+def test_warnings_point_to_the_caller(array):
+    for work in (lambda: madf.Mask(array, phase=1, roi="cylinder"),
+                 lambda: madf.segment(array, phase=1, roi="cylinder")):
+        with pytest.warns(UserWarning, match="fitted") as heard:
+            work()
+        assert {warning.filename for warning in heard} == {__file__}
