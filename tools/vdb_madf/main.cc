@@ -105,6 +105,7 @@ int run(int argc, char** argv) {
   addRender(command, common, action);
   addExport(command, common, action);
   addInfo(command, common, action);
+  addCompletion(command, line, action);
   if (const std::optional<std::string> text = line.parse(argc, argv)) {
     std::cout << *text;
     flushStandardOutput();
