@@ -27,6 +27,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/vdb_madfConfigVersion.cma
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/vdb_madfConfig.cmake
   ${PROJECT_BINARY_DIR}/vdb_madfConfigVersion.cmake cmake/FindSerialHDF5.cmake
+  cmake/OpenVDBModule.cmake
   DESTINATION ${package_dir})
 
 # For pkg-config: all rooms, each before those that it uses, as static libraries want it. OpenVDB has
