@@ -1,6 +1,5 @@
-# The libraries of the rooms. Debian ships OpenVDB as a find module outside CMake's own search path.
-list(APPEND CMAKE_MODULE_PATH /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB)
-
+# The libraries of the rooms.
+include(OpenVDBModule)
 find_package(OpenVDB 10.0 REQUIRED)
 unset(BUILD_SHARED_LIBS)  # set by FindOpenVDB in this scope; our library says STATIC itself
 find_package(TBB REQUIRED)

@@ -8,18 +8,20 @@ set(room_table "")
 get_property(rooms GLOBAL PROPERTY vdb_madf_rooms)
 foreach(room IN LISTS rooms)
   install(TARGETS vdb_madf_${room} EXPORT vdb_madf_${room}
-    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library
+    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library
     INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-  install(EXPORT vdb_madf_${room} NAMESPACE vdb_madf:: DESTINATION ${package_dir})
+  install(EXPORT vdb_madf_${room} NAMESPACE vdb_madf:: DESTINATION ${package_dir}
+    COMPONENT library)
   get_property(uses GLOBAL PROPERTY vdb_madf_${room}_uses)
   get_property(packages GLOBAL PROPERTY vdb_madf_${room}_packages)
   string(APPEND room_table
     "set(_vdb_madf_${room}_uses ${uses})\nset(_vdb_madf_${room}_packages ${packages})\n")
 endforeach()
 install(TARGETS vdb_madf_checked_decompression EXPORT vdb_madf_checked_decompression
-  OBJECTS DESTINATION ${CMAKE_INSTALL_LIBDIR}/vdb_madf)
-install(EXPORT vdb_madf_checked_decompression NAMESPACE vdb_madf:: DESTINATION ${package_dir})
+  OBJECTS DESTINATION ${CMAKE_INSTALL_LIBDIR}/vdb_madf COMPONENT library)
+install(EXPORT vdb_madf_checked_decompression NAMESPACE vdb_madf:: DESTINATION ${package_dir}
+  COMPONENT library)
 
 configure_package_config_file(cmake/vdb_madfConfig.cmake.in
   ${PROJECT_BINARY_DIR}/vdb_madfConfig.cmake INSTALL_DESTINATION ${package_dir})
@@ -27,7 +29,8 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/vdb_madfConfigVersion.cma
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/vdb_madfConfig.cmake
   ${PROJECT_BINARY_DIR}/vdb_madfConfigVersion.cmake cmake/FindSerialHDF5.cmake
-  DESTINATION ${package_dir})
+  cmake/OpenVDBModule.cmake
+  DESTINATION ${package_dir} COMPONENT library)
 
 # For pkg-config: all rooms, each before those that it uses, as static libraries want it. OpenVDB has
 # no such file of its own.
@@ -49,9 +52,25 @@ get_target_property(pkgconfig_definitions OpenVDB::openvdb INTERFACE_COMPILE_DEF
 list(TRANSFORM pkgconfig_definitions PREPEND -D)
 list(JOIN pkgconfig_definitions " " pkgconfig_definitions)
 configure_file(cmake/vdb_madf.pc.in ${PROJECT_BINARY_DIR}/vdb_madf.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/vdb_madf.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES ${PROJECT_BINARY_DIR}/vdb_madf.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+  COMPONENT library)
 
-install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR}
+  COMPONENT documents)
 if(VDB_MADF_BUILD_TOOLS)
-  install(TARGETS vdb_madf_tool DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS vdb_madf_tool DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT command)
+  # (OPTIONAL: made with everything, not with the command alone.)
+  set(made ${PROJECT_BINARY_DIR}/tools)
+  if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+    set(zsh_functions zsh/vendor-completions)  # Debian's place for what is no part of zsh
+  else()
+    set(zsh_functions zsh/site-functions)
+  endif()
+  install(FILES ${made}/completion.bash RENAME vdb_madf COMPONENT command OPTIONAL
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${made}/completion.zsh RENAME _vdb_madf COMPONENT command OPTIONAL
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/${zsh_functions})
+  install(FILES ${made}/completion.fish RENAME vdb_madf.fish COMPONENT command OPTIONAL
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+  install(DIRECTORY ${made}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT command OPTIONAL)
 endif()

@@ -42,5 +42,6 @@ void addCompare(Verb command, Common& common, Action& action);
 void addRender(Verb command, Common& common, Action& action);
 void addExport(Verb command, Common& common, Action& action);
 void addInfo(Verb command, Common& common, Action& action);
+void addCompletion(Verb command, const CommandLine& line, Action& action);
 
 }  // namespace vdb_madf::tools

@@ -70,6 +70,40 @@ std::vector<std::string> argumentsOf(int argc, char** argv) {
   return {arguments.rbegin(), arguments.rend()};
 }
 
+/// What a value is, by the name that the help shows for it. Arguments are files.
+ValueWords valueWords(const CLI::Option& option, const Choices& choices) {
+  ValueWords words;
+  if (const auto known = choices.find(&option); known != choices.end())
+    words.choices = known->second;
+  const std::string type = option.get_type_name();
+  if (type == "DIR")
+    words.path = ValueWords::Path::folder;
+  else if (type.compare(0, 4, "FILE") == 0 || type == "REGION" ||
+           (option.get_positional() && words.choices.empty()))
+    words.path = ValueWords::Path::file;
+  return words;
+}
+
+VerbWords verbWords(const CLI::App& app, const Choices& choices) {
+  VerbWords words;
+  words.name = app.get_name();
+  words.help = app.get_description();
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_positional()) {
+      words.argument = valueWords(*option, choices);
+      continue;
+    }
+    OptionWords& added = words.options.emplace_back();
+    for (const std::string& name : option->get_snames()) added.names.push_back("-" + name);
+    for (const std::string& name : option->get_lnames()) added.names.push_back("--" + name);
+    added.help = option->get_description();
+    if (option->get_items_expected_max() > 0) added.value = valueWords(*option, choices);
+  }
+  for (const CLI::App* verb : app.get_subcommands(nullptr))
+    words.verbs.push_back(verbWords(*verb, choices));
+  return words;
+}
+
 }  // namespace
 
 Option& Option::required() {
@@ -89,6 +123,11 @@ Option& Option::showDefault() {
 
 Option& Option::oneOf(const std::vector<std::string>& values) {
   option_->check(CLI::IsMember(values));
+  return offer(values);
+}
+
+Option& Option::offer(const std::vector<std::string>& values) {
+  (*choices_)[option_] = values;
   return *this;
 }
 
@@ -119,32 +158,32 @@ Option& Option::excludes(const Option& other) {
 
 Verb Verb::verb(const std::string& name, const std::string& description) {
   app_->require_subcommand(0, 1);  // without any, main.cc says what is missing
-  return Verb(app_->add_subcommand(name, description));
+  return Verb(app_->add_subcommand(name, description), choices_);
 }
 
 Option Verb::option(const std::string& name, std::string& value, const std::string& help) {
-  return Option(app_->add_option(name, value, help));
+  return Option(app_->add_option(name, value, help), choices_);
 }
 
 Option Verb::option(const std::string& name, int& value, const std::string& help) {
-  return Option(app_->add_option(name, value, help));
+  return Option(app_->add_option(name, value, help), choices_);
 }
 
 Option Verb::option(const std::string& name, uint64_t& value, const std::string& help) {
-  return Option(app_->add_option(name, value, help));
+  return Option(app_->add_option(name, value, help), choices_);
 }
 
 Option Verb::option(const std::string& name, int64_t& value, const std::string& help) {
-  return Option(app_->add_option(name, value, help));
+  return Option(app_->add_option(name, value, help), choices_);
 }
 
 Option Verb::option(const std::string& name, double& value, const std::string& help) {
-  return Option(app_->add_option(name, value, help));
+  return Option(app_->add_option(name, value, help), choices_);
 }
 
 Option Verb::option(const std::string& name, std::vector<std::string>& values,
                     const std::string& help) {
-  return Option(app_->add_option(name, values, help));
+  return Option(app_->add_option(name, values, help), choices_);
 }
 
 void Verb::flag(const std::string& name, bool& value, const std::string& help) {
@@ -171,7 +210,7 @@ CommandLine::CommandLine(const std::string& name, const std::string& description
 CommandLine::~CommandLine() = default;
 
 Verb CommandLine::command() {
-  return Verb(app_.get());
+  return Verb(app_.get(), &choices_);
 }
 
 std::optional<std::string> CommandLine::parse(int argc, char** argv) {
@@ -192,6 +231,16 @@ std::optional<std::string> CommandLine::parse(int argc, char** argv) {
 
 std::string CommandLine::given() const {
   return givenBelow(*app_);
+}
+
+VerbWords CommandLine::words() const {
+  VerbWords command = verbWords(*app_, choices_);
+  VerbWords help;
+  help.name = "help";
+  help.help = "explain a verb";
+  for (const VerbWords& verb : command.verbs) help.argument.choices.push_back(verb.name);
+  command.verbs.push_back(help);
+  return command;
 }
 
 }  // namespace vdb_madf::tools

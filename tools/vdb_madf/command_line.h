@@ -5,11 +5,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "command_words.h"
 #include "wrong_usage.h"
 
 namespace CLI {
@@ -19,10 +21,13 @@ class Option;
 
 namespace vdb_madf::tools {
 
+/// Values that are offered where words are completed.
+using Choices = std::map<const CLI::Option*, std::vector<std::string>>;
+
 /// What more there is to say of an option, after Verb::option(). Its calls can be chained.
 class Option {
  public:
-  explicit Option(CLI::Option* option) : option_(option) {}
+  Option(CLI::Option* option, Choices* choices) : option_(option), choices_(choices) {}
 
   Option& required();
   /// What the help shows in the place of the value.
@@ -30,6 +35,8 @@ class Option {
   /// The help shows the value that the variable has now.
   Option& showDefault();
   Option& oneOf(const std::vector<std::string>& values);
+  /// Offers these values where words are completed; others are not refused here.
+  Option& offer(const std::vector<std::string>& values);
   /// From `low` to `high`, both included. NaN passes.
   Option& range(int low, int high);
   Option& range(int64_t low, int64_t high);
@@ -39,13 +46,14 @@ class Option {
 
  private:
   CLI::Option* option_;
+  Choices* choices_;
 };
 
 /// A verb, or the command itself: what its options and arguments are. The variables live until the
 /// command line is parsed.
 class Verb {
  public:
-  explicit Verb(CLI::App* app) : app_(app) {}
+  Verb(CLI::App* app, Choices* choices) : app_(app), choices_(choices) {}
 
   /// A verb below this one; at most one of them is given.
   Verb verb(const std::string& name, const std::string& description);
@@ -65,6 +73,7 @@ class Verb {
 
  private:
   CLI::App* app_;
+  Choices* choices_;
 };
 
 /// The command line as a whole. This is the one file that knows the library which parses it: its
@@ -80,8 +89,11 @@ class CommandLine {
   std::optional<std::string> parse(int argc, char** argv);
   /// "vdb_madf segment": the command and the verbs that were given, after parse().
   std::string given() const;
+  /// All words that it knows.
+  VerbWords words() const;
 
  private:
+  Choices choices_;
   std::unique_ptr<CLI::App> app_;
 };
 

@@ -215,7 +215,9 @@ void addConvert(Verb command, Common& common, Action& action) {
   o->input.addRaw(verb);
   verb.flag("--labels", o->labels,
             "IN holds grains of another program: write them as labels, the Int32 grid 'grain'");
-  verb.option("--out-type", o->outType, "sample type of the output").typeName("TYPE");
+  verb.option("--out-type", o->outType, "sample type of the output")
+      .typeName("TYPE")
+      .offer(sampleTypeNames());
   o->input.addVoxelSize(verb);
   o->input.addDomain(verb);
   o->input.addRegion(verb);

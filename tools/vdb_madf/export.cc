@@ -285,9 +285,15 @@ constexpr Kind kKinds[] = {
     {"network", exportNetwork, ".vtp, .graphml or .csv", isNetworkEnding},
 };
 
+std::vector<std::string> kindList() {
+  std::vector<std::string> names;
+  for (const Kind& kind : kKinds) names.push_back(kind.name);
+  return names;
+}
+
 std::string kindNames() {
   std::string names;
-  for (const Kind& kind : kKinds) names += (names.empty() ? "" : ", ") + std::string(kind.name);
+  for (const std::string& name : kindList()) names += (names.empty() ? "" : ", ") + name;
   return names;
 }
 
@@ -335,7 +341,8 @@ void addExport(Verb command, Common& common, Action& action) {
   verb.option("LABELS", o->input.path, "labels: VDB or integer image").required();
   verb.option("OUT", o->out, "what is written").required();
   verb.option("--as", o->kind, kindNames() + "; default: by the ending, where that is clear")
-      .typeName("KIND");
+      .typeName("KIND")
+      .offer(kindList());
   verb.option("--grid", o->input.gridName, "VDB input: the grid to take").typeName("NAME");
   verb.option("--smooth", o->smoothing,
               "mesh, grids, surface: rounds of smoothing; 0: the exact "

@@ -21,7 +21,11 @@ namespace vdb_madf::tools {
 namespace {
 
 std::string typeNames() {
-  return "uint8, int8, uint16, int16, uint32, int32, float32 or float64";
+  const std::vector<std::string> names = sampleTypeNames();
+  std::string text = names.front();
+  for (size_t i = 1; i < names.size(); ++i)
+    text += (i + 1 < names.size() ? ", " : " or ") + names[i];
+  return text;
 }
 
 /// Runs `load`; if it has to be said what is object, the message says by which options.
@@ -52,10 +56,15 @@ auto withGridOption(const InputOptions& input, const std::string& gridOption,
 
 }  // namespace
 
+std::vector<std::string> sampleTypeNames() {
+  return {"uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"};
+}
+
 void InputOptions::addRaw(Verb verb) {
   verb.option("--dims", dims, "RAW input: size NXxNYxNZ, x fastest");
   verb.option("--type", type,
-              "RAW input: its sample type (" + typeNames() + "); otherwise the output's");
+              "RAW input: its sample type (" + typeNames() + "); otherwise the output's")
+      .offer(sampleTypeNames());
   verb.flag("--big-endian", bigEndian, "RAW input: most significant byte first");
   verb.option("--skip", skip, "RAW input: bytes before the first sample, a header")
       .typeName("BYTES");
@@ -66,7 +75,8 @@ void InputOptions::addSelection(Verb verb) {
   verb.option("--phase", phase, "object: value equals V, or one of V,W,...").typeName("V");
   verb.option("--threshold", threshold,
               "object: value >= T; otsu, valley: found in the histogram; LOW:HIGH: hysteresis")
-      .typeName("T");
+      .typeName("T")
+      .offer({"otsu", "valley"});
   verb.option("--range", range, "object: A <= value <= B").typeName("A:B");
   verb.flag("--invert", invert, "object: all other voxels");
   verb.option("--median", median, "image: first a median, of cubes of 2 R + 1 voxels (R: 1 to 3)")
@@ -91,7 +101,8 @@ void InputOptions::addDomain(Verb verb) {
 void InputOptions::addRegion(Verb verb) {
   verb.option("--roi", roi,
               "work within a region: cylinder[:x|y|z[:CX,CY[:RADIUS]]], or a mask, not 0 inside")
-      .typeName("REGION");
+      .typeName("REGION")
+      .offer({"cylinder"});
   verb.option("--crop", cropText, "work within x0,y0,z0:x1,y1,z1 (inclusive); coordinates stay")
       .typeName("BOX");
 }

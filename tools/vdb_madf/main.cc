@@ -14,9 +14,8 @@
 #include "message.h"
 #include "outputs.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/base/version.h"
-#include "vdb_madf/images/open_image.h"
 #include "vdb_madf/method/initialize.h"
+#include "version_text.h"
 
 namespace vdb_madf::tools {
 
@@ -77,12 +76,6 @@ void rejectEmptyArguments(int argc, char** argv) {
   }
 }
 
-/// What the version says of formats that not every build reads.
-std::string optionalFormats() {
-  return readsHdf5() ? "\nHDF5 is read"
-                     : "\nHDF5 is not read: install libhdf5-dev, then configure and build again";
-}
-
 void flushStandardOutput() {
   std::fflush(stdout);
   std::cout.flush();
@@ -93,7 +86,7 @@ int run(int argc, char** argv) {
   rejectEmptyArguments(argc, argv);
   CommandLine line("vdb_madf",
                    "Separates the grains of granular microstructures in micro-CT volumes.",
-                   kVersion + optionalFormats());
+                   versionText());
   Verb command = line.command();
   command.footer(
       "vdb_madf help VERB explains a verb.\nExample:\n"
@@ -112,6 +105,7 @@ int run(int argc, char** argv) {
   addRender(command, common, action);
   addExport(command, common, action);
   addInfo(command, common, action);
+  addCompletion(command, line, action);
   if (const std::optional<std::string> text = line.parse(argc, argv)) {
     std::cout << *text;
     flushStandardOutput();

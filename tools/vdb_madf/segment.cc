@@ -192,7 +192,9 @@ void addSegment(Verb command, Common& common, Action& action) {
   addTidy(verb, o->tidy);
   verb.flag("--paper", o->paper,
             "to the letter: angle, cell, theta -0.8 unless given, delta, fill-holes, tidy 0");
-  verb.option("--keep", o->keep, "more grids: distance,power,manifold,balls").typeName("LIST");
+  verb.option("--keep", o->keep, "more grids: distance,power,manifold,balls")
+      .typeName("LIST")
+      .offer({"distance", "power", "manifold", "balls"});
   verb.option("--tables", o->tables, "also measure: grains.csv, bonds.csv, sample.json in here")
       .typeName("DIR");
   verb.option("--json", o->json, "machine-readable summary (-: standard output)").typeName("FILE");

@@ -174,6 +174,7 @@ void addSweep(Verb command, Common& common, Action& action) {
       .showDefault();
   verb.option("--merge", o->merge, "list of the tests: both, angle, neck")
       .typeName("LIST")
+      .offer({"both", "angle", "neck"})
       .showDefault();
   verb.option("--delta", o->delta, "list of tolerances, eighths of a voxel")
       .typeName("LIST")
