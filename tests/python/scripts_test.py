@@ -17,10 +17,25 @@ PACKAGE = pathlib.Path(__file__).resolve().parents[2] / "lib/python"
 SCRIPTS = re.findall(r"^```python\n(.*?)^```", (PACKAGE / "README.md").read_text(), re.M | re.S)
 
 
+# Takes every call, where matplotlib is not installed: it is large.
+STAND_IN = """
+class Anything:
+    def __getattr__(self, name): return self
+    def __call__(self, *arguments, **named): return self
+    def __getitem__(self, key): return self
+    def __setitem__(self, key, value): pass
+    def __iter__(self): return iter([self] * 3)
+def subplots(rows, columns, **named): return Anything(), [Anything() for _ in range(columns)]
+"""
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """With the files that the scripts read."""
     folder = tmp_path_factory.mktemp("scripts")
+    if not importlib.util.find_spec("matplotlib"):
+        (folder / "matplotlib").mkdir()
+        (folder / "matplotlib/pyplot.py").write_text(STAND_IN)
     mask, truth = madf.generate("sintered", size=80, count=14, radius=(9, 14), neck=0.75)
     mask.save(folder / "scan.tif")
     np.save(folder / "watershed.npy", truth)
@@ -36,7 +51,7 @@ def folder(tmp_path_factory):
 def needs(script):
     """Skips what needs a module that is not there."""
     for module in re.findall(r"^(?:import|from) (\w+)", script, re.M):
-        if importlib.util.find_spec(module) is None:
+        if importlib.util.find_spec(module) is None and module != "matplotlib":
             pytest.skip(f"a script of lib/python: {module} is not installed")
 
 
@@ -67,6 +82,8 @@ def test_there_are_five_and_a_first():
 def test_the_tutorial(folder):
     printed = run((PACKAGE / "tutorial.py").read_text(), folder, "tutorial.py")
     assert "otsu" in printed and "are whole" in printed
-    assert (folder / "tutorial.png").stat().st_size > 10000
     wrong = float(re.search(r"([0-9.]+) % of the voxels", printed)[1])
     assert wrong < 10
+    if not importlib.util.find_spec("matplotlib"):
+        pytest.skip("the figures of lib/python: matplotlib is not installed")
+    assert (folder / "tutorial.png").stat().st_size > 10000
