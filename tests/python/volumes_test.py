@@ -5,6 +5,7 @@
 import multiprocessing
 import pickle
 import random
+from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
 import pytest
@@ -149,8 +150,8 @@ def grains_of(mask):
 
 
 def test_pickling_to_another_process(sample, dense):
-    with multiprocessing.get_context("spawn").Pool(1) as pool:
-        (labels,) = pool.map(grains_of, [sample[0]])
+    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
+        labels = pool.submit(grains_of, sample[0]).result(timeout=300)
     assert (np.asarray(labels) == dense).all()
 
 
