@@ -1,6 +1,5 @@
-# Debian packages by CPack, one for each component of the installation: the command, and the library. A
-# component that another folder installs becomes a package, too, when CPACK_DEBIAN_<NAME>_* call it by
-# name. tools/release makes them.
+# Debian packages by CPack, one for each component of the installation: the command, the library and, if
+# it is built, the Python package. tools/release makes them.
 get_cmake_property(CPACK_COMPONENTS_ALL COMPONENTS)
 list(REMOVE_ITEM CPACK_COMPONENTS_ALL documents Unspecified)
 
@@ -37,9 +36,25 @@ What the command vdb_madf does, for C++ programs: the medial-axis digital flow
 on sparse OpenVDB grids, measures, meshes and files. With CMake:
 find_package(vdb_madf).")
 
+set(package_components command library)
+if(TARGET vdb_madf_python)
+  list(APPEND package_components python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-vdb-madf)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  get_property(minor GLOBAL PROPERTY vdb_madf_interpreter_minor)  # a module is made for one version
+  math(EXPR next_minor "${minor} + 1")
+  string(JOIN ", " CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${minor})"
+    "python3 (<< 3.${next_minor})" python3-numpy)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-pandas, python3-tqdm")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "separate grains: Python package
+What the command vdb_madf does, for numpy arrays and for files: sparse masks and
+labels that are read like arrays, grains, bonds, meshes.")
+endif()
+
 # What each package has to say of its origin. (EXCLUDE_FROM_ALL: other installations have LICENSE.)
 string(TIMESTAMP release_date "%a, %d %b %Y %H:%M:%S +0000" UTC)  # or SOURCE_DATE_EPOCH
-foreach(component command library)
+foreach(component IN LISTS package_components)
   string(TOUPPER ${component} name)
   set(package ${CPACK_DEBIAN_${name}_PACKAGE_NAME})
   set(folder ${PROJECT_BINARY_DIR}/packages/${package})
