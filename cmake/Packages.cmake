@@ -48,8 +48,8 @@ if(TARGET vdb_madf_python)
     "python3 (<< 3.${next_minor})" python3-numpy)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-pandas, python3-tqdm")
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION "separate grains: Python package
-What the command vdb_madf does, for numpy arrays and for files: sparse masks and
-labels that are read like arrays, grains, bonds, meshes.")
+What the command vdb_madf does, for numpy arrays and for files: sparse masks
+and labels that are read like arrays, grains, bonds, meshes.")
 endif()
 
 # What each package has to say of its origin. (EXCLUDE_FROM_ALL: other installations have LICENSE.)
