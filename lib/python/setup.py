@@ -4,6 +4,7 @@
 
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
@@ -26,6 +27,8 @@ class CMakeBuild(build_ext):
         build = pathlib.Path(self.build_temp).resolve()
         options = [f"-DPython_EXECUTABLE={sys.executable}", "-DCMAKE_BUILD_TYPE=Release",
                    f"-DCMAKE_LIBRARY_OUTPUT_DIRECTORY={target.parent}"]
+        if shutil.which("ninja"):  # Debian's CMake comes without make
+            options += ["-G", "Ninja"]
         try:
             import pybind11
             options.append(f"-Dpybind11_DIR={pybind11.get_cmake_dir()}")
