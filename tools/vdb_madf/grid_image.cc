@@ -56,11 +56,6 @@ void writeGridAsImage(const std::string& path, const openvdb::GridBase& grid,
   reportImage(path, "grid '" + grid.getName() + "'", box.dim(), chosen, common);
 }
 
-CoordBBox boxOf(const openvdb::GridBase& grid) {
-  const auto domain = storedDomain(grid);
-  return domain ? domain->box() : grid.evalActiveVoxelBoundingBox();
-}
-
 void noteLostEdges(const std::string& path, bool areCubes, const std::optional<VoxelSize>& size,
                    const Common& common) {
   const std::string ending = fileEnding(path);

@@ -23,9 +23,6 @@ void writeGridAsImage(const std::string& path, const openvdb::GridBase& grid,
                       const std::optional<SampleType>& type, const std::string& source,
                       const Common& common);
 
-/// Of the domain; where it is unknown, of the active voxels.
-CoordBBox boxOf(const openvdb::GridBase& grid);
-
 /// A note if the image will not say that its voxels are no cubes.
 /// @param areCubes the voxels
 /// @param size unknown: there is nothing to write

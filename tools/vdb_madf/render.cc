@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "command.h"
-#include "grid_image.h"
 #include "input_options.h"
 #include "outputs.h"
 #include "vdb_madf/base/errors.h"

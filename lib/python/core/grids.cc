@@ -71,8 +71,7 @@ const Int32Grid& asLabels(const openvdb::GridBase& grid) {
 }
 
 CoordBBox shownBox(const openvdb::GridBase& grid) {
-  const auto domain = storedDomain(grid);
-  const CoordBBox box = domain ? domain->box() : grid.evalActiveVoxelBoundingBox();
+  const CoordBBox box = boxOf(grid);
   return box.empty() ? CoordBBox(Coord(0), Coord(-1)) : box;
 }
 

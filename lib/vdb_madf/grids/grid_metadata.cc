@@ -56,6 +56,11 @@ void setDomain(openvdb::MetaMap& metadata, const Domain& domain) {
     metadata.insertMeta(detail::kRegionKey, detail::RegionMetadata(domain.region()));
 }
 
+CoordBBox boxOf(const openvdb::GridBase& grid) {
+  const auto domain = storedDomain(grid);
+  return domain ? domain->box() : grid.evalActiveVoxelBoundingBox();
+}
+
 std::string regionName(const openvdb::MetaMap& metadata) {
   const openvdb::Metadata::ConstPtr named = metadata[detail::kRegionKey];
   return named ? named->str() : std::string();

@@ -29,6 +29,8 @@ inline constexpr char kBoundaryKey[] = "madf_boundary";  ///< "open" or "closed"
 ///   names is not there.
 std::optional<Domain> storedDomain(const openvdb::MetaMap& metadata);
 void setDomain(openvdb::MetaMap& metadata, const Domain& domain);
+/// The box of the domain; where that is unknown, of the active voxels.
+CoordBBox boxOf(const openvdb::GridBase& grid);
 /// The name of the grid that holds the region in a file; empty if the domain is none.
 std::string regionName(const openvdb::MetaMap& metadata);
 /// True if `grid` is the one that holds, in their file, the region of another of the grids.
