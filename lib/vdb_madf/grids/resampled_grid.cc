@@ -13,6 +13,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/active_tiles.h"
+#include "vdb_madf/grids/detail/leaf_origins.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/grids/grid_metadata.h"
 
@@ -110,16 +111,6 @@ class Cubes {
   Coord count_;
 };
 
-/// f(origin) for the leaf nodes that a box meets.
-template <typename F>
-void forEachLeaf(const CoordBBox& box, const F& f) {
-  if (box.empty()) return;
-  const Coord low = box.min() & ~7;
-  for (int x = low.x(); x <= box.max().x(); x += 8)
-    for (int y = low.y(); y <= box.max().y(); y += 8)
-      for (int z = low.z(); z <= box.max().z(); z += 8) f(Coord(x, y, z));
-}
-
 /// The voxels of a tree by the share of cubes that they fill.
 class AreaResampling {
  public:
@@ -171,7 +162,7 @@ class AreaResampling {
     pieces_.push_back(piece);
     CoordBBox voxels = piece.box;
     voxels.intersect(cubes_.box());
-    forEachLeaf(cubes_.touched(voxels), [&](const Coord& origin) {
+    detail::forEachLeafOrigin(cubes_.touched(voxels), [&](const Coord& origin) {
       if (!done.isInside(origin)) pairs_.emplace_back(origin, number);
     });
   }
@@ -239,9 +230,7 @@ class NearestLabels {
  public:
   NearestLabels(const Int32Tree& tree, const Cubes& cubes, const std::optional<Domain>& domain)
       : tree_(tree), cubes_(cubes), domain_(domain) {
-    auto value = tree.cbeginValueOn();
-    value.setMaxDepth(value.getLeafDepth() - 1);
-    for (; value; ++value) add(value.getBoundingBox());
+    detail::forEachActiveTile(tree, [&](const CoordBBox& box) { add(box); });
     for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf)
       if (!leaf->isEmpty()) add(leaf->getNodeBoundingBox());
     std::sort(origins_.begin(), origins_.end());
@@ -261,7 +250,8 @@ class NearestLabels {
  private:
   void add(CoordBBox voxels) {
     voxels.intersect(cubes_.box());
-    forEachLeaf(cubes_.touched(voxels), [&](const Coord& origin) { origins_.push_back(origin); });
+    detail::forEachLeafOrigin(cubes_.touched(voxels),
+                              [&](const Coord& origin) { origins_.push_back(origin); });
   }
 
   template <typename Accessor>

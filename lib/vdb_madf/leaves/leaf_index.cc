@@ -8,6 +8,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/active_tiles.h"
+#include "vdb_madf/grids/detail/leaf_origins.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 
 namespace vdb_madf {
@@ -70,10 +71,9 @@ std::vector<SourceLeaf> sortedLeaves(const MaskTree& tree) {
   for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf)
     if (!leaf->isEmpty()) leaves.push_back({leaf->origin(), &*leaf});
   detail::forEachActiveTile(tree, [&](const CoordBBox& box) {
-    for (int x = box.min().x(); x <= box.max().x(); x += 8)
-      for (int y = box.min().y(); y <= box.max().y(); y += 8)
-        for (int z = box.min().z(); z <= box.max().z(); z += 8)
-          leaves.push_back({Coord(x, y, z), nullptr});
+    detail::forEachLeafOrigin(box, [&](const Coord& origin) {
+      leaves.push_back({origin, nullptr});
+    });
   });
   detail::parallelSort(leaves.begin(), leaves.end(),
                        [](const auto& a, const auto& b) { return a.origin < b.origin; });

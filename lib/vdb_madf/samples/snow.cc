@@ -11,6 +11,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/grids/detail/leaf_origins.h"
 #include "vdb_madf/samples/detail/gaussian_blur.h"
 #include "vdb_madf/samples/detail/mask_blocks.h"
 #include "vdb_madf/samples/detail/sample_options.h"
@@ -142,13 +143,6 @@ uint32_t orderedBits(float value) {
   return (bits & 0x80000000u ? ~bits : bits | 0x80000000u) >> 16;
 }
 
-template <typename Visit>
-void visitLeaves(const CoordBBox& box, const Visit& visit) {
-  for (int x = box.min().x(); x <= box.max().x(); x += 8)
-    for (int y = box.min().y(); y <= box.max().y(); y += 8)
-      for (int z = box.min().z(); z <= box.max().z(); z += 8) visit(Coord(x, y, z));
-}
-
 /// Clips [0, 8) from a leaf's corner to the box.
 Coord leafExtent(const Coord& leaf, const CoordBBox& box) {
   return Coord::minComponent(box.max() - leaf, Coord(7)).offsetBy(1);
@@ -180,7 +174,7 @@ class SnowBuilder {
       float values[512];
       for (size_t block = begin; block < end; ++block) {
         const CoordBBox box = blocks_.box(block);
-        visitLeaves(box, [&](const Coord& leaf) {
+        detail::forEachLeafOrigin(box, [&](const Coord& leaf) {
           field_.evaluate(leaf, values);
           const Coord extent = leafExtent(leaf, box);
           for (int x = 0; x < extent.x(); ++x)
@@ -207,7 +201,7 @@ class SnowBuilder {
   void fillBlock(size_t block, uint32_t cut) {
     const CoordBBox box = blocks_.box(block);
     float values[512];
-    visitLeaves(box, [&](const Coord& leaf) {
+    detail::forEachLeafOrigin(box, [&](const Coord& leaf) {
       field_.evaluate(leaf, values);
       const Coord extent = leafExtent(leaf, box);
       uint64_t words[8] = {};

@@ -12,6 +12,7 @@
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/detail/leaf_origins.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/leaves/leaf_index.h"
@@ -181,19 +182,16 @@ template <typename Wanted>
 BitBox voxelsOf(const Int32Tree& labels, const CoordBBox& box, const VoxelWeights& weights,
                 const Wanted& wanted) {
   BitBox bits(box, weights);
-  const Coord low = box.min() & ~7, high = box.max();
-  for (int x = low.x(); x <= high.x(); x += 8)
-    for (int y = low.y(); y <= high.y(); y += 8)
-      for (int z = low.z(); z <= high.z(); z += 8) {
-        const Leaf* leaf = labels.probeConstLeaf(Coord(x, y, z));
-        if (!leaf) continue;
-        const int32_t* values = leaf->buffer().data();
-        for (Index i = 0; i < Leaf::SIZE; ++i)
-          if (wanted(detail::labelAt(*leaf, values, i))) {
-            const Coord p = leaf->offsetToGlobalCoord(i);
-            if (box.isInside(p)) bits.set(p);
-          }
+  detail::forEachLeafOrigin(box, [&](const Coord& origin) {
+    const Leaf* leaf = labels.probeConstLeaf(origin);
+    if (!leaf) return;
+    const int32_t* values = leaf->buffer().data();
+    for (Index i = 0; i < Leaf::SIZE; ++i)
+      if (wanted(detail::labelAt(*leaf, values, i))) {
+        const Coord p = leaf->offsetToGlobalCoord(i);
+        if (box.isInside(p)) bits.set(p);
       }
+  });
   return bits;
 }
 

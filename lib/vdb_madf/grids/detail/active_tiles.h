@@ -7,9 +7,9 @@
 
 namespace vdb_madf::detail {
 
-/// f(box) for every active tile of a mask.
-template <typename F>
-void forEachActiveTile(const MaskTree& tree, const F& f) {
+/// f(box) for every active tile of a tree, whatever its value.
+template <typename Tree, typename F>
+void forEachActiveTile(const Tree& tree, const F& f) {
   auto tile = tree.cbeginValueOn();
   tile.setMaxDepth(tile.getLeafDepth() - 1);
   for (; tile; ++tile) f(tile.getBoundingBox());

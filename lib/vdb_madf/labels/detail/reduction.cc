@@ -10,6 +10,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/active_tiles.h"
+#include "vdb_madf/grids/detail/leaf_origins.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/reduced_labels.h"
@@ -93,11 +94,9 @@ Reduction::Reduction(const Int32Grid& labels, int factor)
   std::vector<const Leaf*> leaves;
   tree_->getNodes(leaves);
   for (const Leaf* leaf : leaves) {
-    const Coord low = floorDiv(leaf->origin(), factor) & ~7,
-                high = floorDiv(leaf->origin().offsetBy(7), factor) & ~7;
-    for (int x = low.x(); x <= high.x(); x += 8)
-      for (int y = low.y(); y <= high.y(); y += 8)
-        for (int z = low.z(); z <= high.z(); z += 8) pairs_.push_back({Coord(x, y, z), leaf});
+    const CoordBBox reduced(floorDiv(leaf->origin(), factor),
+                            floorDiv(leaf->origin().offsetBy(7), factor));
+    forEachLeafOrigin(reduced, [&](const Coord& origin) { pairs_.push_back({origin, leaf}); });
   }
   std::sort(pairs_.begin(), pairs_.end());
   for (size_t i = 0; i < pairs_.size(); ++i)
