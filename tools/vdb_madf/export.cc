@@ -188,17 +188,12 @@ bool isMeshOutput(const std::string& out) {
 }
 
 /// The medial balls that were kept with the labels, unless those had other voxels; else the balls of
-/// the labels' voxels. These are computed with air beyond the faces, so that none reaches beyond the
-/// scan.
+/// the labels' voxels, with air beyond the faces.
 Int32Grid::Ptr ballsOf(const Options& o, const Common& common, const Int32Grid& labels) {
   if (!o.input.size && isVdb(o.input))
     if (const auto kept = storedBalls(readVdb(o.input.path, {}, common.progress)))
       if (areBallsOfVoxels(labels, *kept)) return kept;
-  SegmentOptions options;
-  options.boundary = Boundary::closed;
-  options.keepBalls = true;
-  options.maxMemory = availableMemory();
-  return ballGrids(segment(*objectMask(labels), options, common.progress)).front();
+  return closedBalls(*objectMask(labels), availableMemory(), common.progress);
 }
 
 /// Writes the tables of the bonds and of the cover, if they are asked for.

@@ -241,13 +241,9 @@ void bindMethod(py::module_& m) {
         py::arg("keep"));
   m.def(
       "ball_grids",
-      [](const GridPtr& mask, const Call& call) {  // as `export --as clumps` makes them
-        SegmentOptions options;
-        options.boundary = Boundary::closed;
-        options.keepBalls = true;
-        options.maxMemory = availableMemory();
+      [](const GridPtr& mask, const Call& call) {
         return withoutLock(call, [&](Interrupter* interrupter) -> GridPtr {
-          return ballGrids(segment(asMask(*mask), options, interrupter)).front();
+          return closedBalls(asMask(*mask), availableMemory(), interrupter);
         });
       },
       py::arg("mask"), py::arg("call"));

@@ -31,6 +31,14 @@ std::vector<Int32Grid::Ptr> ballGrids(const Segmentation& segmentation) {
   return {radius, cellSize};
 }
 
+Int32Grid::Ptr closedBalls(const MaskGrid& object, int64_t maxMemory, Interrupter* interrupter) {
+  SegmentOptions options;
+  options.boundary = Boundary::closed;
+  options.keepBalls = true;
+  options.maxMemory = maxMemory;
+  return ballGrids(segment(object, options, interrupter)).front();
+}
+
 Int32Grid::Ptr storedBalls(const std::vector<openvdb::GridBase::Ptr>& grids) {
   for (const auto& grid : grids)
     if (grid->getName() == kSquaredRadius && grid->isType<Int32Grid>())

@@ -15,6 +15,13 @@ namespace vdb_madf {
 /// radius (D); "balls_cell_size" how many voxels map to the ball.
 std::vector<Int32Grid::Ptr> ballGrids(const Segmentation& segmentation);
 
+/// The squared radii of the medial balls of an object with air around it, so that none reaches
+/// beyond the scan.
+/// @param maxMemory bytes, as in SegmentOptions
+/// @throw as segment()
+Int32Grid::Ptr closedBalls(const MaskGrid& object, int64_t maxMemory,
+                           Interrupter* interrupter = nullptr);
+
 /// The squared radii among the grids of a file, "balls"; null if they were not kept.
 Int32Grid::Ptr storedBalls(const std::vector<openvdb::GridBase::Ptr>& grids);
 
