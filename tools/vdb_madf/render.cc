@@ -1,22 +1,17 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <utility>
 
 #include "command.h"
 #include "input_options.h"
 #include "outputs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/labels/grain_colors.h"
-#include "vdb_madf/pictures/grain_view.h"
-#include "vdb_madf/pictures/label_slices.h"
-#include "vdb_madf/pictures/picture_sheet.h"
+#include "vdb_madf/pictures/label_panels.h"
 #include "vdb_madf/pictures/png_file.h"
 
 namespace vdb_madf::tools {
@@ -30,30 +25,6 @@ struct Options {
   ViewOptions view;
 };
 
-/// The view is drawn with so many rays along each edge of a pixel.
-constexpr int kFinest = 2;
-
-/// x-y, view, x-z, y-z: where all are shown, slices that share an axis stand over one another.
-std::vector<PicturePanel> drawPanels(const Options& o, const Int32Grid& labels,
-                                     const CoordBBox& box, Interrupter* interrupter) {
-  const GrainColors colors = grainColors(labels, interrupter);
-  std::vector<PicturePanel> panels;
-  if (o.only != "view") {
-    LabelSlices slices = middleSlices(labels, box, colors, o.size);
-    const char* const names[] = {"x-y", "x-z", "y-z"};
-    for (size_t i = 0; i < slices.pictures.size(); ++i)
-      panels.push_back({std::move(slices.pictures[i]), names[i], slices.voxelsPerPixel});
-  }
-  if (o.only != "slices") {
-    ViewOptions options = o.view;
-    options.edge = o.size * kFinest;
-    const GrainView view = viewGrains(labels, box, colors, options, interrupter);
-    panels.insert(panels.begin() + std::min<std::ptrdiff_t>(1, std::ptrdiff_t(panels.size())),
-                  {coarsened(view.picture, kFinest), "", view.voxelsPerPixel * kFinest});
-  }
-  return panels;
-}
-
 void run(const Options& o, const Common& common) {
   checkWritable(o.out);
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
@@ -61,7 +32,8 @@ void run(const Options& o, const Common& common) {
   if (box.empty())
     throw InvalidInput(o.input.path + ": has no labels and no domain: nothing to show");
 
-  const std::vector<PicturePanel> panels = drawPanels(o, *labels, box, common.progress);
+  const PanelOptions options{o.only != "view", o.only != "slices", o.size, o.view};
+  const std::vector<PicturePanel> panels = labelPanels(*labels, box, options, common.progress);
   writePng(o.out, pictureSheet(panels, storedVoxelSize(*labels)));
   common.progress->end();
   if (common.quiet) return;

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include <algorithm>
-
 #include "bindings.h"
 #include "vdb_madf/exports/clump_file.h"
 #include "vdb_madf/exports/hexahedra_file.h"
@@ -11,9 +9,8 @@
 #include "vdb_madf/exports/vti_file.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
-#include "vdb_madf/pictures/grain_view.h"
-#include "vdb_madf/pictures/label_slices.h"
-#include "vdb_madf/pictures/picture_sheet.h"
+#include "vdb_madf/labels/grain_colors.h"
+#include "vdb_madf/pictures/label_panels.h"
 #include "vdb_madf/pictures/png_file.h"
 #include "vdb_madf/pictures/preview_volume.h"
 #include "vdb_madf/shapes/level_sets.h"
@@ -131,28 +128,19 @@ void saveLevelSets(const std::string& path, const GridPtr& labels, int smoothing
   });
 }
 
-/// The sheet of `vdb_madf render`: x-y, view, x-z, y-z.
+/// The sheet of `vdb_madf render`.
 void savePicture(const std::string& path, const GridPtr& grid, int size, double azimuth,
                  double elevation, const Call& call) {
-  constexpr int kFinest = 2;  // rays along each edge of a pixel
   write(call, [&](Interrupter* interrupter) {
     const Int32Grid& labels = asLabels(*grid);
     const CoordBBox box = shownBox(labels);
     if (box.empty()) throw InvalidInput("there are no labels and no domain: nothing to show");
-    const GrainColors colors = grainColors(labels, interrupter);
-    LabelSlices slices = middleSlices(labels, box, colors, size);
-    ViewOptions options;
-    options.azimuth = azimuth;
-    options.elevation = elevation;
-    options.edge = size * kFinest;
-    const GrainView view = viewGrains(labels, box, colors, options, interrupter);
-    auto& [xy, xz, yz] = slices.pictures;
-    const std::vector<PicturePanel> panels{
-        {std::move(xy), "x-y", slices.voxelsPerPixel},
-        {coarsened(view.picture, kFinest), "", view.voxelsPerPixel * kFinest},
-        {std::move(xz), "x-z", slices.voxelsPerPixel},
-        {std::move(yz), "y-z", slices.voxelsPerPixel}};
-    writePng(path, pictureSheet(panels, storedVoxelSize(labels)));
+    PanelOptions options;
+    options.edge = size;
+    options.direction.azimuth = azimuth;
+    options.direction.elevation = elevation;
+    writePng(path,
+             pictureSheet(labelPanels(labels, box, options, interrupter), storedVoxelSize(labels)));
   });
 }
 
