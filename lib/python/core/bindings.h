@@ -15,6 +15,8 @@
 
 #include "call.h"
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/images/image.h"
+#include "vdb_madf/method/boundary.h"
 
 // Python counts [z, y, x], the library (x, y, z): what is turned is turned here.
 
@@ -44,6 +46,10 @@ const Int32Grid& asLabels(const openvdb::GridBase& grid);
 
 /// The voxels that an array of the grid shows: its domain, or the box of its active voxels.
 CoordBBox shownBox(const openvdb::GridBase& grid);
+
+/// What texts name. @throw InvalidInput that says what there is
+Boundary boundaryOf(const std::string& name);  ///< "auto", "open", "closed"
+SampleType sampleTypeOf(const std::string& name);
 
 /// An array that owns the vector.
 template <typename T>

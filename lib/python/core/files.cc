@@ -46,11 +46,7 @@ void saveVdb(const std::string& path, const std::vector<GridPtr>& grids, const C
 }
 
 SampleType typeFor(const openvdb::GridBase& grid, const std::string& name, bool asTiff) {
-  if (!name.empty()) {
-    const auto type = sampleTypeFromName(name);
-    if (!type) throw InvalidInput("there is no sample type " + name);
-    return *type;
-  }
+  if (!name.empty()) return sampleTypeOf(name);
   if (grid.isType<MaskGrid>()) return SampleType::uint8;
   return asTiff ? labelType(asLabels(grid)) : SampleType::int32;
 }
@@ -162,15 +158,6 @@ void bindFiles(py::module_& m) {
         call);
   m.def("save_picture", savePicture, path, labels, py::arg("size"), py::arg("azimuth"),
         py::arg("elevation"), call);
-  m.def(
-      "reduction_for_triangles",
-      [](const GridPtr& grid, int64_t triangles, int first, const Call& how) {
-        if (triangles < 1) throw InvalidInput("triangles: must be 1 or more");
-        return withoutLock(how, [&](Interrupter* interrupter) {
-          return reductionForTriangles(asLabels(*grid), uint64_t(triangles), first, interrupter);
-        });
-      },
-      labels, py::arg("triangles"), py::arg("first"), call);
 }
 
 }  // namespace vdb_madf::python

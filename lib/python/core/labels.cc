@@ -107,6 +107,12 @@ py::dict toDict(GrainMesh mesh) {
   return dict;
 }
 
+/// The least reduction, from `first` on, that leaves at most so many triangles.
+int reductionFor(const Int32Grid& labels, int64_t triangles, int first, Interrupter* interrupter) {
+  if (triangles < 1) throw InvalidInput("triangles: must be 1 or more");
+  return reductionForTriangles(labels, uint64_t(triangles), first, interrupter);
+}
+
 py::dict mesh(const GridPtr& labels, const Call& call, int smoothing,
               const std::optional<int64_t>& triangles, const std::vector<int32_t>& ids) {
   return toDict(withoutLock(call, [&](Interrupter* interrupter) {
@@ -114,8 +120,7 @@ py::dict mesh(const GridPtr& labels, const Call& call, int smoothing,
     asLabels(*labels);
     if (!ids.empty()) grid = selectGrains(*grid, ids, interrupter);
     if (triangles) {
-      if (*triangles < 1) throw InvalidInput("triangles: must be 1 or more");
-      const int factor = reductionForTriangles(*grid, uint64_t(*triangles), 1, interrupter);
+      const int factor = reductionFor(*grid, *triangles, 1, interrupter);
       if (factor > 1) grid = reduceLabels(*grid, factor, interrupter);
     }
     GrainMesh made = grainMesh(*grid, {smoothing}, interrupter);
@@ -132,6 +137,14 @@ void bindLabels(py::module_& m) {
   m.def("select", select, py::arg("labels"), py::arg("ids"), py::arg("call"));
   m.def("reduce", reduce, py::arg("labels"), py::arg("factor"), py::arg("call"));
   m.def("colors", colors, py::arg("labels"), py::arg("call"));
+  m.def(
+      "reduction_for_triangles",
+      [](const GridPtr& grid, int64_t triangles, int first, const Call& call) {
+        return withoutLock(call, [&](Interrupter* interrupter) {
+          return reductionFor(asLabels(*grid), triangles, first, interrupter);
+        });
+      },
+      py::arg("labels"), py::arg("triangles"), py::arg("first"), py::arg("call"));
   m.def("mesh", mesh, py::arg("labels"), py::arg("call"), py::kw_only(), py::arg("smoothing"),
         py::arg("triangles"), py::arg("ids"));
 }

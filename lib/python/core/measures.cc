@@ -128,9 +128,8 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
   const Int32Grid& grid = asLabels(*labels);
   MeasureOptions options;
   options.minFaces = minFaces;
-  if (boundary != "auto" && boundary != "open" && boundary != "closed")
-    throw InvalidInput("boundary='" + boundary + "': must be one of auto, open, closed");
-  if (boundary != "auto") options.boundary = boundary == "open" ? Boundary::open : Boundary::closed;
+  if (const Boundary given = boundaryOf(boundary); given != Boundary::automatic)
+    options.boundary = given;
   const Measurements measured = withoutLock(
       call, [&](Interrupter* interrupter) { return measure(grid, options, interrupter); });
   const Unit unit(measured);

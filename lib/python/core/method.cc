@@ -38,12 +38,6 @@ Adjacency adjacencyOf(const std::string& name) {
                           {{"manifold", Adjacency::manifold}, {"cell", Adjacency::cell}});
 }
 
-Boundary boundaryOf(const std::string& name) {
-  return named<Boundary>(
-      "boundary", name,
-      {{"auto", Boundary::automatic}, {"open", Boundary::open}, {"closed", Boundary::closed}});
-}
-
 MergeOptions mergeOptions(double theta, const std::string& merge, const std::string& adjacency,
                           int delta) {
   return {theta, mergeMode(merge), adjacencyOf(adjacency), delta};
@@ -225,6 +219,12 @@ int64_t memoryOfSegment(const GridPtr& object, int64_t gamma,
 }
 
 }  // namespace
+
+Boundary boundaryOf(const std::string& name) {
+  return named<Boundary>(
+      "boundary", name,
+      {{"auto", Boundary::automatic}, {"open", Boundary::open}, {"closed", Boundary::closed}});
+}
 
 void bindMethod(py::module_& m) {
   m.def("segment", segmentMask, py::arg("mask"), py::arg("call"), py::kw_only(), py::arg("theta"),

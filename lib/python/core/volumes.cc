@@ -12,12 +12,6 @@ namespace vdb_madf::python {
 
 namespace {
 
-SampleType sampleType(const std::string& name) {
-  const auto type = sampleTypeFromName(name);
-  if (!type) throw InvalidInput("there is no sample type " + name);
-  return *type;
-}
-
 void select(VolumeOptions& options, const Selection& selection) {
   const bool invert = options.selection && options.selection->invert;
   options.selection = selection;
@@ -141,12 +135,18 @@ Loaded loadLabelArray(const ArraySource& source, const VolumeOptions& options, c
 
 }  // namespace
 
+SampleType sampleTypeOf(const std::string& name) {
+  const auto type = sampleTypeFromName(name);
+  if (!type) throw InvalidInput("there is no sample type " + name);
+  return *type;
+}
+
 void bindVolumes(py::module_& m) {
   bindOptions(m);
   py::class_<ArraySource>(m, "ArraySource", "An array that is read in slabs of slices.")
       .def(py::init([](const std::string& name, const Index& shape, const std::string& type,
                        const py::object& read) {
-             return ArraySource{name, {shape[2], shape[1], shape[0]}, sampleType(type), read};
+             return ArraySource{name, {shape[2], shape[1], shape[0]}, sampleTypeOf(type), read};
            }),
            py::arg("name"), py::arg("shape"), py::arg("type"), py::arg("read"));
   m.def("load_mask", loadMaskFile, py::arg("source"), py::arg("options"), py::arg("call"));

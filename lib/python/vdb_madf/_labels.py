@@ -44,12 +44,6 @@ class Labels(Volume):
             self._grid, notes = _core.load_labels(readable(source), options, call)
         warn(notes)
 
-    @classmethod
-    def _of(cls, grid: _core.Grid) -> "Labels":
-        labels = cls.__new__(cls)
-        labels._grid = grid
-        return labels
-
     @property
     def dtype(self) -> np.dtype[Any]:
         """Of the values of slices: int32."""

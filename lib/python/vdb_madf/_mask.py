@@ -56,12 +56,6 @@ class Mask(Volume):
             self._grid, notes = _core.load_mask(readable(source), options, call)
         warn(notes)
 
-    @classmethod
-    def _of(cls, grid: _core.Grid) -> "Mask":
-        mask = cls.__new__(cls)
-        mask._grid = grid
-        return mask
-
     @property
     def dtype(self) -> np.dtype[Any]:
         """Of the values of slices: bool."""

@@ -7,13 +7,16 @@ from __future__ import annotations
 import operator
 import os
 import tempfile
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Any, Dict, List, Optional, Tuple, Type, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
 from ._calls import metres
+
+
+_AnyVolume = TypeVar("_AnyVolume", bound="Volume")
 
 
 class Volume:
@@ -24,6 +27,12 @@ class Volume:
 
     ndim = 3
     _grid: _core.Grid
+
+    @classmethod
+    def _of(cls: Type[_AnyVolume], grid: _core.Grid) -> _AnyVolume:
+        volume = cls.__new__(cls)
+        volume._grid = grid
+        return volume
 
     @property
     def dtype(self) -> np.dtype[Any]:
