@@ -56,10 +56,6 @@ auto withGridOption(const InputOptions& input, const std::string& gridOption,
 
 }  // namespace
 
-std::vector<std::string> sampleTypeNames() {
-  return {"uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"};
-}
-
 void InputOptions::addRaw(Verb verb) {
   verb.option("--dims", dims, "RAW input: size NXxNYxNZ, x fastest");
   verb.option("--type", type,

@@ -19,9 +19,6 @@
 
 namespace vdb_madf::tools {
 
-/// As --type and --out-type take them.
-std::vector<std::string> sampleTypeNames();
-
 /// What the command line says of a volume to read. The text of each option is checked by parse().
 struct InputOptions {
   std::string path;

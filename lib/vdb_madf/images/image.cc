@@ -34,4 +34,10 @@ std::optional<SampleType> sampleTypeFromName(const std::string& name) {
   return std::nullopt;
 }
 
+std::vector<std::string> sampleTypeNames() {
+  std::vector<std::string> names;
+  for (const TypeName& known : kTypes) names.emplace_back(known.name);
+  return names;
+}
+
 }  // namespace vdb_madf

@@ -17,6 +17,7 @@ enum class SampleType { uint8, int8, uint16, int16, uint32, int32, float32, floa
 size_t sampleSize(SampleType type);
 std::string sampleTypeName(SampleType type);  ///< "uint8" ...
 std::optional<SampleType> sampleTypeFromName(const std::string& name);
+std::vector<std::string> sampleTypeNames();  ///< in the order of SampleType
 
 /// Voxels along each axis.
 struct ImageSize {
