@@ -42,10 +42,11 @@ struct ClumpOptions {
 bool areBallsOfVoxels(const Int32Grid& labels, const Int32Grid& balls);
 
 /// A clump per label (active, > 0), ascending. \p balls: active at the centres of the medial balls,
-/// value = squared radius in the unit of its weights (grid `balls` of a segmentation); a ball belongs to the grain of its
-/// center, or, if that lies in a filled cavity, to the nearest within the ball and 16 voxels (tie: at
-/// the smaller coordinate). Balls are chosen greedily, each the one that covers most voxels of the grain not covered
-/// yet (tie: larger, then smaller centre), until enough is covered or there are `mostBalls`.
+/// value = squared radius in the unit of its weights (grid `balls` of a segmentation); a ball belongs
+/// to the grain of its center, or, if that lies in a filled cavity, to the nearest within the ball and
+/// 16 voxels (tie: at the smaller coordinate). Balls are chosen greedily, each the one that covers most
+/// voxels of the grain not covered yet (tie: larger, then smaller centre), until enough is covered or
+/// there are `mostBalls`.
 ///
 /// Medial balls of touching grains overlap near the neck. With `apart` they do not. First, each ends
 /// at the nearest voxel of another grain: its squared radius becomes the squared distance to that

@@ -11,7 +11,8 @@
 namespace vdb_madf::detail {
 
 /// Makes balls of different clumps end at the plane of their equal power where they overlap, as
-/// clumps() says, with squared radii in units of the weights. All planes are those of the radii as they come. The figures of the clumps stay.
+/// clumps() says, with squared radii in units of the weights. All planes are those of the radii as
+/// they come. The figures of the clumps stay.
 /// @throw Interrupted.
 void keepBallsApart(std::vector<Clump>& clumps, const VoxelWeights& weights,
                     Interrupter* interrupter);
