@@ -136,9 +136,15 @@ LeafIndex::LeafIndex(const LeafIndex& object, const std::vector<LeafVoxels>& mor
   finish();
 }
 
+void LeafIndex::nameForeignLeaves(const std::vector<Coord>& origins) {
+  checkLeafCount(leafCount() + origins.size());
+  origins_.insert(origins_.end(), origins.begin(), origins.end());
+}
+
 std::optional<uint32_t> LeafIndex::findLeaf(const Coord& origin) const {
-  const auto found = std::lower_bound(origins_.begin(), origins_.end(), origin);
-  if (found == origins_.end() || *found != origin) return std::nullopt;
+  const auto end = origins_.begin() + std::ptrdiff_t(leafCount());
+  const auto found = std::lower_bound(origins_.begin(), end, origin);
+  if (found == end || *found != origin) return std::nullopt;
   return uint32_t(found - origins_.begin());
 }
 

@@ -59,7 +59,13 @@ class LeafIndex {
   /// @throw InvalidInput as above.
   LeafIndex(const LeafIndex& object, const std::vector<LeafVoxels>& more);
 
-  size_t leafCount() const { return origins_.size(); }
+  /// Names voxels elsewhere, too: those of the leaf at origins[i] get the ids of the leaf number
+  /// leafCount() + i. Nothing but coord(), origin() and isForeign() takes them. Once.
+  void nameForeignLeaves(const std::vector<Coord>& origins);
+  bool isForeign(VoxelId id) const { return leafOf(id) >= leafCount(); }
+  size_t namedLeafCount() const { return origins_.size(); }  ///< with the foreign ones
+
+  size_t leafCount() const { return masks_.size(); }
   int64_t voxelCount() const { return firstRank_.back(); }  ///< |X|, size of a VoxelArray
   /// Of the active voxels; empty if there are none.
   const CoordBBox& boundingBox() const { return boundingBox_; }
@@ -92,7 +98,7 @@ class LeafIndex {
   /// Counts the voxels of origins_ and masks_, and links the leaves.
   void finish();
 
-  std::vector<Coord> origins_;
+  std::vector<Coord> origins_;  // of the leaves, then of foreign ones
   std::vector<Mask> masks_;
   std::vector<Neighbors> neighbors_;
   std::vector<uint32_t> firstRank_{0};             // one more at the end

@@ -11,6 +11,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
+#include "vdb_madf/method/detail/small_holes.h"
 
 namespace vdb_madf {
 
@@ -241,17 +242,20 @@ int64_t defaultFillHoles(const std::optional<Domain>& domain) {
   return kFillHoles;
 }
 
+Cavities detail::smallHoles(const LeafIndex& object, const std::optional<Domain>& domain, bool open,
+                            int64_t fillHoles, Interrupter* interrupter) {
+  if (domain && !domain->isBox())
+    return CavityFinder(withPartialLeaves(object, *domain->region()), domain, open, fillHoles)
+        .run(interrupter);
+  return CavityFinder(object, domain, open, fillHoles).run(interrupter);
+}
+
 Cavities findCavities(const LeafIndex& object, const std::optional<Domain>& domain, bool open,
                       int64_t fillHoles, Interrupter* interrupter) {
   if (fillHoles <= 1 || object.voxelCount() == 0) return {};
   const __int128 background = open && domain ? domain->voxelCount() - object.voxelCount() : 0;
   if (open && background < fillHoles) return {};  // all of it would be filled
-  Cavities found;
-  if (domain && !domain->isBox())
-    found = CavityFinder(withPartialLeaves(object, *domain->region()), domain, open, fillHoles)
-                .run(interrupter);
-  else
-    found = CavityFinder(object, domain, open, fillHoles).run(interrupter);
+  Cavities found = detail::smallHoles(object, domain, open, fillHoles, interrupter);
   if (open && background == found.voxels) return {};
   return found;
 }

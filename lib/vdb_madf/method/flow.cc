@@ -21,7 +21,8 @@ std::vector<uint32_t> rootBalls(const LeafIndex& index, const VoxelArray<VoxelId
   constexpr size_t kBallGrain = 4096;
   std::vector<uint32_t> next(ids.size());
   detail::parallelFor(ids.size(), kBallGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) next[i] = balls.rank(site[index.rank(ids[i])]);
+    for (size_t i = begin; i < end; ++i)
+      next[i] = index.isForeign(ids[i]) ? uint32_t(i) : balls.rank(site[index.rank(ids[i])]);
   });
   detail::parallelFor(ids.size(), kBallGrain, interrupter, [&](size_t begin, size_t end) {
     const auto load = [&](size_t i) { return __atomic_load_n(&next[i], __ATOMIC_RELAXED); };
@@ -98,7 +99,8 @@ Flow flow(const LeafIndex& index, VoxelArray<VoxelId> site, const VoxelArray<int
   Flow result;
   result.criticalPoints.reserve(fixed.size());
   for (const uint32_t i : fixed)  // at a fixed point the power is -D
-    result.criticalPoints.push_back({index.coord(ids[i]), -power[index.rank(ids[i])], 0});
+    result.criticalPoints.push_back(
+        {index.coord(ids[i]), index.isForeign(ids[i]) ? 0 : -power[index.rank(ids[i])], 0});
   replaceSites(index, balls, manifoldOfBall(root, fixed), site, result.criticalPoints, interrupter);
   result.manifold = std::move(site);
   return result;

@@ -25,7 +25,7 @@ struct Flow {
 
 /// Follows p -> Pi(p) -> Pi(Pi(p)) ... to the fixed points, by pointer jumping on the balls: a set
 /// that holds all sites. The site array becomes that of the manifolds. The flow climbs in D, so
-/// there are no cycles.
+/// there are no cycles. Sites in foreign leaves (leaf_index.h) count as fixed points, with D = 0.
 /// @throw Interrupted
 Flow flow(const LeafIndex& index, VoxelArray<VoxelId> site, const VoxelArray<int32_t>& power,
           const VoxelSet& balls, Interrupter* interrupter = nullptr);

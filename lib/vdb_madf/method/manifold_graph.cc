@@ -10,6 +10,7 @@
 #include "vdb_madf/base/detail/simd.h"
 #include "vdb_madf/leaves/detail/leaf_values.h"
 #include "vdb_madf/leaves/detail/voxels.h"
+#include "vdb_madf/method/detail/reduce_edges.h"
 #include "vdb_madf/method/flow.h"
 
 namespace vdb_madf {
@@ -30,18 +31,6 @@ void accumulate(Edge& edge, const Edge& part) {
   edge.contactFaces += part.contactFaces;
   edge.saddleHeight = std::max(edge.saddleHeight, part.saddleHeight);
   edge.cellsTouch |= part.cellsTouch;
-}
-
-void sortAndReduce(std::vector<Edge>& edges) {
-  detail::parallelSort(edges.begin(), edges.end(), pairLess);
-  size_t count = 0;
-  for (const Edge& edge : edges) {
-    if (count > 0 && samePair(edges[count - 1], edge))
-      accumulate(edges[count - 1], edge);
-    else
-      edges[count++] = edge;
-  }
-  edges.resize(count);
 }
 
 /// Edges met by one thread in a few leaves: a small open-addressing table, one entry per pair.
@@ -181,6 +170,18 @@ class EdgeCollector {
 
 }  // namespace
 
+void detail::reduceEdges(std::vector<Edge>& edges) {
+  parallelSort(edges.begin(), edges.end(), pairLess);
+  size_t count = 0;
+  for (const Edge& edge : edges) {
+    if (count > 0 && samePair(edges[count - 1], edge))
+      accumulate(edges[count - 1], edge);
+    else
+      edges[count++] = edge;
+  }
+  edges.resize(count);
+}
+
 ManifoldGraph manifoldGraph(const LeafIndex& index, const Flow& flow,
                             const VoxelArray<int32_t>& power, Interrupter* interrupter) {
   constexpr size_t kLeavesPerTable = 1024;
@@ -196,7 +197,7 @@ ManifoldGraph manifoldGraph(const LeafIndex& index, const Flow& flow,
                         const std::lock_guard<std::mutex> lock(edgesMutex);
                         edges.insert(edges.end(), table.edges().begin(), table.edges().end());
                       });
-  sortAndReduce(edges);
+  detail::reduceEdges(edges);
   return {flow.criticalPoints, std::move(edges)};
 }
 

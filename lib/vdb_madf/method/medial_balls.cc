@@ -20,7 +20,7 @@ int32_t siteSquaredRadius(const LeafIndex& index, const VoxelWeights& weights, V
 }  // namespace
 
 VoxelSet medialBalls(const LeafIndex& index, const PowerMap& map, Interrupter* interrupter) {
-  VoxelSet balls(index.leafCount());
+  VoxelSet balls(index.namedLeafCount());
   detail::parallelFor(index.leafCount(), detail::kLeafGrain, interrupter,
                       [&](size_t begin, size_t end) {
                         VoxelId last = ~VoxelId(0);

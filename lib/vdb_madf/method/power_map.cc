@@ -4,10 +4,13 @@
 #include "vdb_madf/method/power_map.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "vdb_madf/base/detail/simd.h"
+#include "vdb_madf/base/errors.h"
 #include "vdb_madf/leaves/detail/pencil.h"
+#include "vdb_madf/method/detail/foreign_sites.h"
 #include "vdb_madf/method/detail/metric.h"
 #include "vdb_madf/method/detail/passage.h"
 #include "vdb_madf/method/detail/power_passes.h"
@@ -97,8 +100,8 @@ VDB_MADF_SIMD void computeRadii(const LeafIndex& object, const Coord& origin,
 }
 
 template <int Axis, typename Key>
-void sweep(const detail::SweptLeaves& leaves, Key multiplier, const VoxelWeights& weights, Map& map,
-           Interrupter* interrupter) {
+void sweep(const detail::SweptLeaves& leaves, const detail::ForeignSites* foreign, Key multiplier,
+           const VoxelWeights& weights, Map& map, Interrupter* interrupter) {
   const LeafIndex& index = leaves.index();
   const std::vector<uint32_t> starts = detail::pencilStarts(index, Axis);
   detail::PerThread<Scratch<Key>> scratches;
@@ -113,6 +116,7 @@ void sweep(const detail::SweptLeaves& leaves, Key multiplier, const VoxelWeights
                           gather<Axis, Key>(leaves, map, s);
                           const Coord& origin = index.origin(starts[p]);
                           computeRadii<Axis, Key>(leaves.object(), origin, weights, s);
+                          if (Axis == 2 && foreign) foreign->addTo(origin, length, s.rows);
                           detail::lowerEnvelopes<Axis + 1>(length, multiplier, weights, s.rows);
                           scatter<Axis, Key>(leaves, s, map);
                         }
@@ -120,19 +124,22 @@ void sweep(const detail::SweptLeaves& leaves, Key multiplier, const VoxelWeights
 }
 
 template <typename Key>
-void sweepAll(const detail::SweptLeaves& leaves, Key multiplier, const VoxelWeights& weights,
-              Map& map, Interrupter* interrupter) {
+void sweepAll(const detail::SweptLeaves& leaves, const detail::ForeignSites* foreign,
+              Key multiplier, const VoxelWeights& weights, Map& map, Interrupter* interrupter) {
   detail::WorkPart first(interrupter, 0, 33), second(interrupter, 33, 66),
       third(interrupter, 66, 100);
-  sweep<2, Key>(leaves, multiplier, weights, map, &first);
-  sweep<1, Key>(leaves, multiplier, weights, map, &second);
-  sweep<0, Key>(leaves, multiplier, weights, map, &third);
+  sweep<2, Key>(leaves, foreign, multiplier, weights, map, &first);
+  sweep<1, Key>(leaves, nullptr, multiplier, weights, map, &second);
+  sweep<0, Key>(leaves, nullptr, multiplier, weights, map, &third);
 }
 
-/// Do products of a difference of keys and one of positions fit in 64 bits?
-bool fits64Bits(const LeafIndex& index, const VoxelWeights& weights, int32_t largestSquaredRadius) {
+/// Do products of a difference of keys and one of positions fit in 64 bits? `beyond`: how far rows
+/// along z go on at either end.
+bool fits64Bits(const LeafIndex& index, int beyond, const VoxelWeights& weights,
+                int32_t largestSquaredRadius) {
   for (int axis = 0; axis < 3; ++axis) {
-    const double length = 8 + index.boundingBox().dim()[axis];
+    const double length =
+        8 + index.boundingBox().dim()[axis] + (axis == 2 ? 2 * double(beyond) : 0);
     const double height = std::max<double>(weights[axis] * length * length, largestSquaredRadius);
     if (2 * height * (double(largestSquaredRadius) + 2) * length >= 9e18) return false;
   }
@@ -146,14 +153,22 @@ void detail::sweepPower(const LeafIndex& index, int32_t maxSquaredRadius, PowerM
   const SweptLeaves leaves(index, map.passage.get());
   Map swept{{map.power, VoxelArray<int32_t>(leaves.unknownVoxels())},
             {map.site, VoxelArray<VoxelId>(leaves.unknownVoxels())}};
-  if (fits64Bits(leaves.index(), map.weights, maxSquaredRadius))
-    sweepAll(leaves, int64_t(maxSquaredRadius) + 1, map.weights, swept, interrupter);
+  const ForeignSites* const foreign = map.foreign.get();
+  if (foreign) {
+    const double longest = index.boundingBox().dim().z() + 8 + double(foreign->reach());
+    if (map.weights.z * longest * longest >= std::ldexp(1, 31))
+      throw InvalidInput("balls reach too far from slab to slab: take lower slabs");
+    maxSquaredRadius = std::max(maxSquaredRadius, foreign->largestSquaredRadius());
+  }
+  if (fits64Bits(leaves.index(), foreign ? foreign->reach() : 0, map.weights, maxSquaredRadius))
+    sweepAll(leaves, foreign, int64_t(maxSquaredRadius) + 1, map.weights, swept, interrupter);
   else
-    sweepAll(leaves, __int128(maxSquaredRadius) + 1, map.weights, swept, interrupter);
+    sweepAll(leaves, foreign, __int128(maxSquaredRadius) + 1, map.weights, swept, interrupter);
 }
 
 PowerMap powerMap(const LeafIndex& index, SquaredDistance distance, Interrupter* interrupter) {
   PowerMap map;
+  map.foreign = std::move(distance.foreign);
   map.power = std::move(distance.values);
   map.weights = distance.weights;
   map.site = VoxelArray<VoxelId>(size_t(index.voxelCount()));

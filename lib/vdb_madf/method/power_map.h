@@ -18,6 +18,7 @@ struct PowerMap {
   VoxelArray<VoxelId> site;                          ///< Pi(p); only meaningful where power < 0
   VoxelWeights weights{};                            ///< of |p - x|^2
   std::shared_ptr<const detail::Passage> passage{};  ///< that of the distances
+  std::shared_ptr<const detail::ForeignSites> foreign{};  ///< likewise
 };
 
 /// In a filtered map: an object voxel that no ball covers (least power >= 0), still without a site.

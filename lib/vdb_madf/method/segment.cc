@@ -15,6 +15,7 @@
 #include "vdb_madf/method/boundary.h"
 #include "vdb_madf/method/cavities.h"
 #include "vdb_madf/method/detail/manifold_labels.h"
+#include "vdb_madf/method/detail/segment_options.h"
 #include "vdb_madf/method/detail/stages.h"
 #include "vdb_madf/method/flow.h"
 #include "vdb_madf/method/gamma_filter.h"
@@ -48,22 +49,6 @@ std::vector<MedialBall> listBalls(const LeafIndex& index, const VoxelSet& balls,
   std::sort(list.begin(), list.end(),
             [](const MedialBall& a, const MedialBall& b) { return a.center < b.center; });
   return list;
-}
-
-void checkSegmentOptions(const SegmentOptions& options) {
-  if (options.gamma < 0) throw InvalidInput("gamma is a number of voxels: it must not be negative");
-  if (options.fillHoles.value_or(0) < 0)
-    throw InvalidInput("cavities are filled below a number of voxels: it must not be negative");
-  checkTidy(options.tidy);
-  checkMergeOptions(options.merge);
-}
-
-/// The weights that are asked for, or those of the edges.
-WeightsOfEdges resolveWeights(const std::optional<VoxelWeights>& weights,
-                              const std::array<double, 3>& edges, const Coord& extent) {
-  if (!weights) return weightsOfEdges(edges, extent);
-  checkWeights(*weights, extent);
-  return {*weights, 0};
 }
 
 /// What the method runs on: the object with its cavities filled.
@@ -119,9 +104,24 @@ std::vector<std::string> omittedStages(const SegmentOptions& options, int64_t fi
 
 }  // namespace
 
+void detail::checkSegmentOptions(const SegmentOptions& options) {
+  if (options.gamma < 0) throw InvalidInput("gamma is a number of voxels: it must not be negative");
+  if (options.fillHoles.value_or(0) < 0)
+    throw InvalidInput("cavities are filled below a number of voxels: it must not be negative");
+  checkTidy(options.tidy);
+  checkMergeOptions(options.merge);
+}
+
+WeightsOfEdges detail::resolveWeights(const std::optional<VoxelWeights>& weights,
+                                      const std::array<double, 3>& edges, const Coord& extent) {
+  if (!weights) return weightsOfEdges(edges, extent);
+  checkWeights(*weights, extent);
+  return {*weights, 0};
+}
+
 Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
                      Interrupter* interrupter) {
-  checkSegmentOptions(options);
+  detail::checkSegmentOptions(options);
   Segmentation result;
   SegmentCounts& counts = result.counts;
   const bool filter = options.gamma > 1;
@@ -153,7 +153,7 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
   // Across a region the nearest background may lie anywhere.
   const bool inRegion = obstacles.open && !obstacles.domain.isBox();
   const CoordBBox& extent = inRegion ? obstacles.domain.box() : index.boundingBox();
-  const WeightsOfEdges weights = resolveWeights(options.weights, edges, extent.dim());
+  const WeightsOfEdges weights = detail::resolveWeights(options.weights, edges, extent.dim());
   result.weights = weights.weights;
   result.weightsError = weights.error;
 

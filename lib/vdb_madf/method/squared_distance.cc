@@ -13,6 +13,7 @@
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/pencil.h"
 #include "vdb_madf/method/detail/passage.h"
+#include "vdb_madf/method/detail/slab_faces.h"
 #include "vdb_madf/method/detail/swept_leaves.h"
 #include "vdb_madf/method/kernels/distance_rows.h"
 
@@ -111,36 +112,60 @@ void widen(const Leaves& leaves, const detail::RowDomain& d, int32_t weight, int
   }
 }
 
-/// One sweep along an axis over all pencils. The array holds int32 values; infinite ones have the
-/// sign bit set between passes.
+/// The masks of a pencil as slabs: bit `row` of a word tells whether a voxel is in the object.
 template <int Axis>
-void sweep(const Leaves& leaves, const Obstacles& obstacles, int32_t weight, int reach,
-           Values& values, Interrupter* interrupter) {
+void collectMasks(const LeafIndex& index, Scratch& s) {
+  static_assert(sizeof(LeafIndex::Mask) == 64 && (Axis == 0 || Axis == 2));
+  s.masks.clear();
+  for (const uint32_t leaf : s.leaves) {
+    const LeafIndex::Mask slabs =
+        Axis == 0 ? index.mask(leaf) : detail::layersAlongZ(index.mask(leaf));
+    s.masks.insert(s.masks.end(), slabs.begin(), slabs.end());
+  }
+}
+
+/// What a pass along z finds at the cuts of a slab, unless the domain ends there.
+void continueBeyond(const detail::SlabFaces& faces, const Obstacles& obstacles, const Coord& origin,
+                    int length, detail::RowDomain& d) {
+  const auto isKnown = [&](int z) {
+    const CoordBBox& box = obstacles.domain.box();
+    return !obstacles.open || (z >= box.min().z() && z <= box.max().z());
+  };
+  if (faces.hasBelow && origin.z() == faces.begin && isKnown(faces.begin - 1))
+    d.before = faces.below.of(origin);
+  if (faces.hasAbove && origin.z() + length == faces.end && isKnown(faces.end))
+    d.after = faces.above.of(origin);
+}
+
+/// One sweep along an axis over all pencils; the first one starts from masks. The array holds int32
+/// values; infinite ones have the sign bit set between passes.
+template <int Axis, bool First>
+void sweep(const Leaves& leaves, const Obstacles& obstacles, const detail::SlabFaces* faces,
+           int32_t weight, int reach, Values& values, Interrupter* interrupter) {
   const LeafIndex& index = leaves.index();
   const std::vector<uint32_t> starts = detail::pencilStarts(index, Axis);
   detail::PerThread<Scratch> scratches;
-  detail::parallelFor(
-      starts.size(), detail::kPencilGrain, interrupter, [&](size_t begin, size_t end) {
-        Scratch& s = scratches.local();
-        for (size_t p = begin; p < end; ++p) {
-          detail::collectPencil(index, Axis, starts[p], s.leaves);
-          if (!leaves.anyCarries(Axis, s.leaves)) continue;
-          const int length = int(s.leaves.size()) * 8;
-          s.resize(length);
-          const detail::RowDomain d = rowDomain<Axis>(obstacles, index.origin(starts[p]), length);
-          if (Axis == 0) {
-            static_assert(sizeof(LeafIndex::Mask) == 64);
-            s.masks.clear();
-            for (const uint32_t leaf : s.leaves)
-              s.masks.insert(s.masks.end(), index.mask(leaf).begin(), index.mask(leaf).end());
-            detail::scanRows(s.masks.data(), length, d, weight, s.out.data() + 64);
-          } else {
-            gather<Axis>(leaves, values, s);
-            widen<Axis>(leaves, d, weight, reach, s);
-          }
-          scatter<Axis>(leaves, s, values);
-        }
-      });
+  detail::parallelFor(starts.size(), detail::kPencilGrain, interrupter,
+                      [&](size_t begin, size_t end) {
+                        Scratch& s = scratches.local();
+                        for (size_t p = begin; p < end; ++p) {
+                          detail::collectPencil(index, Axis, starts[p], s.leaves);
+                          if (!leaves.anyCarries(Axis, s.leaves)) continue;
+                          const int length = int(s.leaves.size()) * 8;
+                          s.resize(length);
+                          const Coord& origin = index.origin(starts[p]);
+                          detail::RowDomain d = rowDomain<Axis>(obstacles, origin, length);
+                          if constexpr (First) {
+                            if (faces) continueBeyond(*faces, obstacles, origin, length, d);
+                            collectMasks<Axis>(index, s);
+                            detail::scanRows(s.masks.data(), length, d, weight, s.out.data() + 64);
+                          } else {
+                            gather<Axis>(leaves, values, s);
+                            widen<Axis>(leaves, d, weight, reach, s);
+                          }
+                          scatter<Axis>(leaves, s, values);
+                        }
+                      });
 }
 
 /// How far a sweep has to look along an axis of that weight for all distances up to `exactUpTo`.
@@ -155,9 +180,9 @@ void sweepAll(const Leaves& leaves, const Obstacles& obstacles, const VoxelWeigh
   detail::WorkPart first(interrupter, 0, 20), second(interrupter, 20, 60),
       third(interrupter, 60, 100);
   const auto reach = [&](int32_t weight) { return reachAlong(exactUpTo, weight); };
-  sweep<0>(leaves, obstacles, weights.x, reach(weights.x), values, &first);
-  sweep<1>(leaves, obstacles, weights.y, reach(weights.y), values, &second);
-  sweep<2>(leaves, obstacles, weights.z, reach(weights.z), values, &third);
+  sweep<0, true>(leaves, obstacles, nullptr, weights.x, reach(weights.x), values, &first);
+  sweep<1, false>(leaves, obstacles, nullptr, weights.y, reach(weights.y), values, &second);
+  sweep<2, false>(leaves, obstacles, nullptr, weights.z, reach(weights.z), values, &third);
 }
 
 /// Infinite values are the largest.
@@ -214,6 +239,27 @@ SquaredDistance squaredDistance(const LeafIndex& index, const Obstacles& obstacl
   }
   sweepAll({index, nullptr}, obstacles, weights, detail::kInfinite, result.values, interrupter);
   result.largest = int32_t(largestValue(result.values));
+  return result;
+}
+
+SquaredDistance detail::squaredDistanceInSlab(const LeafIndex& index, const Obstacles& obstacles,
+                                              const VoxelWeights& weights, const SlabFaces& faces,
+                                              Interrupter* interrupter) {
+  SquaredDistance result;
+  result.weights = weights;
+  result.values = VoxelArray<int32_t>(size_t(index.voxelCount()));
+  const Leaves leaves(index, nullptr);
+  Values values{result.values, {}};
+  constexpr int kFarthest = std::numeric_limits<int>::max();
+  WorkPart first(interrupter, 0, 20), second(interrupter, 20, 60), third(interrupter, 60, 100);
+  sweep<2, true>(leaves, obstacles, &faces, weights.z, kFarthest, values, &first);
+  sweep<0, false>(leaves, obstacles, nullptr, weights.x, kFarthest, values, &second);
+  sweep<1, false>(leaves, obstacles, nullptr, weights.y, kFarthest, values, &third);
+  const uint32_t largest = largestValue(result.values);
+  if (largest >= kInfinite)
+    throw InvalidInput(
+        "the object is so thick that squared distances overflow: coarsen the volume");
+  result.largest = int32_t(largest);
   return result;
 }
 

@@ -14,7 +14,8 @@ namespace vdb_madf {
 
 namespace detail {
 class Passage;
-}
+class ForeignSites;
+}  // namespace detail
 
 struct SquaredDistance {
   VoxelArray<int32_t> values;  ///< D >= 1
@@ -23,6 +24,8 @@ struct SquaredDistance {
   /// What the sweeps of the power map have to pass; null where the object is all of it, as it is
   /// unless an open domain is a region.
   std::shared_ptr<const detail::Passage> passage{};
+  /// The balls beyond the cuts of a slab that take part in its power map; null if there are none.
+  std::shared_ptr<const detail::ForeignSites> foreign{};
 };
 
 /// Exact squared Euclidean distance D(p) = min |p - q|^2 over background voxels q, for p in X.

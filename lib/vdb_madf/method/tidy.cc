@@ -16,53 +16,19 @@
 #include "vdb_madf/leaves/detail/voxels.h"
 #include "vdb_madf/method/detail/label_block.h"
 #include "vdb_madf/method/detail/metric.h"
+#include "vdb_madf/method/detail/tidy_steps.h"
 
 namespace vdb_madf {
 
 namespace {
 
-constexpr VoxelId kNoVoxel = ~VoxelId(0);
-
-/// A grain's voxel that may become its anchor.
-struct Candidate {
-  int64_t away = -1;  // squared distance from the representative; -1: none
-  Coord position;
-  VoxelId voxel = kNoVoxel;
-
-  void improve(const Candidate& other) {
-    if (other.away < 0) return;
-    if (away < 0 || std::tie(other.away, other.position) < std::tie(away, position)) *this = other;
-  }
-};
-
-/// Of each grain the voxel nearest to its representative. `lost`: those that have to be looked for.
-void findLostAnchors(const LeafIndex& index, const GrainLabels& grains,
-                     const std::vector<uint32_t>& lost, std::vector<VoxelId>& anchor,
-                     Interrupter* interrupter) {
-  std::vector<uint32_t> placeOf(anchor.size() + 1, 0);  // of a label in `lost`, plus 1
-  for (uint32_t i = 0; i < lost.size(); ++i) placeOf[lost[i] + 1] = i + 1;
-  detail::PerThread<std::vector<Candidate>> found{std::vector<Candidate>(lost.size())};
-  detail::parallelFor(
-      index.leafCount(), detail::kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-        std::vector<Candidate>& best = found.local();
-        detail::forEachVoxel(index, begin, end, [&](VoxelId id, size_t rank) {
-          const uint32_t label = grains.label[rank], place = placeOf[label];
-          if (place == 0) return;
-          const Coord p = index.coord(id);
-          best[place - 1].improve(
-              {detail::squaredBetween(p, grains.representative[label - 1], grains.weights), p, id});
-        });
-      });
-  std::vector<Candidate> best(lost.size());
-  for (const std::vector<Candidate>& part : found)
-    for (size_t i = 0; i < lost.size(); ++i) best[i].improve(part[i]);
-  for (size_t i = 0; i < lost.size(); ++i) anchor[lost[i]] = best[i].voxel;
-}
+using detail::AnchorCandidate;
+using detail::kNoAnchor;
 
 /// The anchor of grain g at g - 1.
 std::vector<VoxelId> findAnchors(const LeafIndex& index, const GrainLabels& grains,
                                  Interrupter* interrupter) {
-  std::vector<VoxelId> anchor(grains.representative.size(), kNoVoxel);
+  std::vector<VoxelId> anchor(grains.representative.size(), kNoAnchor);
   std::vector<uint32_t> lost;
   for (uint32_t g = 0; g < anchor.size(); ++g) {
     const auto voxel = index.findVoxel(grains.representative[g]);
@@ -71,7 +37,10 @@ std::vector<VoxelId> findAnchors(const LeafIndex& index, const GrainLabels& grai
     else
       lost.push_back(g);
   }
-  if (!lost.empty()) findLostAnchors(index, grains, lost, anchor, interrupter);
+  if (lost.empty()) return anchor;
+  const auto best = detail::anchorCandidates(index, grains, lost, interrupter);
+  for (size_t i = 0; i < lost.size(); ++i)
+    if (best[i].away >= 0) anchor[lost[i]] = *index.findVoxel(best[i].position);
   return anchor;
 }
 
@@ -191,7 +160,7 @@ std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const VoxelArray<uin
   const detail::ConnectedComponents components(index, labels, interrupter);
   std::vector<char> held(components.count(), 0);
   for (const VoxelId id : anchor)
-    if (id != kNoVoxel) held[components.componentOf(id)] = 1;
+    if (id != kNoAnchor) held[components.componentOf(id)] = 1;
   std::vector<LooseVoxel> loose;
   for (uint32_t leaf = 0; leaf < index.leafCount(); ++leaf)
     for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece) {
@@ -204,25 +173,13 @@ std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const VoxelArray<uin
   return loose;
 }
 
-/// The most frequent label among the neighbors of a voxel, of equally frequent ones the smallest; 0
-/// if none has one.
 uint32_t mostFrequentAround(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
                             VoxelId id) {
-  uint32_t around[6], count = 0;
+  uint32_t around[6] = {}, count = 0;
   detail::forEachNeighbor(index, id, [&](VoxelId q, int, int) {
-    if (!detail::isObject(index, q)) return;
-    if (const uint32_t label = labels[index.rank(q)]) around[count++] = label;
+    if (detail::isObject(index, q)) around[count++] = labels[index.rank(q)];
   });
-  uint32_t best = 0;
-  int64_t most = 0;
-  for (uint32_t i = 0; i < count; ++i) {
-    const int64_t same = std::count(around, around + count, around[i]);
-    if (same > most || (same == most && around[i] < best)) {
-      best = around[i];
-      most = same;
-    }
-  }
-  return best;
+  return detail::mostFrequent(around);
 }
 
 /// Gives every voxel that is not connected with its grain's anchor to a neighbor.
@@ -256,6 +213,54 @@ void connect(const LeafIndex& index, const std::vector<VoxelId>& anchor, GrainLa
 
 }  // namespace
 
+void detail::AnchorCandidate::improve(const AnchorCandidate& other) {
+  if (other.away < 0) return;
+  if (away < 0 || std::tie(other.away, other.position) < std::tie(away, position)) *this = other;
+}
+
+std::vector<AnchorCandidate> detail::anchorCandidates(const LeafIndex& index,
+                                                      const GrainLabels& grains,
+                                                      const std::vector<uint32_t>& wanted,
+                                                      Interrupter* interrupter) {
+  std::vector<uint32_t> placeOf(grains.representative.size() + 1, 0);  // of a label, plus 1
+  for (uint32_t i = 0; i < wanted.size(); ++i) placeOf[wanted[i] + 1] = i + 1;
+  PerThread<std::vector<AnchorCandidate>> found{std::vector<AnchorCandidate>(wanted.size())};
+  parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+    std::vector<AnchorCandidate>& best = found.local();
+    forEachVoxel(index, begin, end, [&](VoxelId id, size_t rank) {
+      const uint32_t label = grains.label[rank], place = placeOf[label];
+      if (place == 0) return;
+      const Coord p = index.coord(id);
+      best[place - 1].improve(
+          {squaredBetween(p, grains.representative[label - 1], grains.weights), p});
+    });
+  });
+  std::vector<AnchorCandidate> best(wanted.size());
+  for (const std::vector<AnchorCandidate>& part : found)
+    for (size_t i = 0; i < wanted.size(); ++i) best[i].improve(part[i]);
+  return best;
+}
+
+void detail::smoothInterfaces(const LeafIndex& index, int rounds,
+                              const std::vector<VoxelId>& anchor, GrainLabels& grains,
+                              Interrupter* interrupter) {
+  Smoothing(index, grains, anchor).run(rounds, interrupter);
+}
+
+uint32_t detail::mostFrequent(const uint32_t (&around)[6]) {
+  uint32_t best = 0;
+  int64_t most = 0;
+  for (const uint32_t label : around) {
+    if (label == 0) continue;
+    const int64_t same = std::count(around, around + 6, label);
+    if (same > most || (same == most && label < best)) {
+      best = label;
+      most = same;
+    }
+  }
+  return best;
+}
+
 void checkTidy(int rounds) {
   if (rounds < 0 || rounds > kMaxTidy)
     throw InvalidInput("tidy is a number of rounds: it must lie between 0 and " +
@@ -266,7 +271,7 @@ void tidy(const LeafIndex& index, int rounds, GrainLabels& grains, Interrupter* 
   checkTidy(rounds);
   if (rounds == 0) return;
   const std::vector<VoxelId> anchor = findAnchors(index, grains, interrupter);
-  Smoothing(index, grains, anchor).run(rounds, interrupter);
+  detail::smoothInterfaces(index, rounds, anchor, grains, interrupter);
   connect(index, anchor, grains, interrupter);
 }
 

@@ -47,6 +47,14 @@ inline bool holds(const LeafIndex::Mask& mask, uint32_t offset) {
   return mask[offset >> 6] >> (offset & 63) & 1;
 }
 
+/// The eight layers of a leaf along z: bit x*8 + y of word z is voxel (x, y, z).
+inline std::array<uint64_t, 8> layersAlongZ(const LeafIndex::Mask& mask) {
+  std::array<uint64_t, 8> layers{};
+  for (size_t z = 0; z < 8; ++z)
+    for (size_t x = 0; x < 8; ++x) layers[z] |= uint64_t(packBits(mask[x] >> z & kFirstZ)) << 8 * x;
+  return layers;
+}
+
 /// Grows `seed` to the 6-connected component of `mask` that holds it.
 LeafIndex::Mask flood(LeafIndex::Mask seed, const LeafIndex::Mask& mask);
 

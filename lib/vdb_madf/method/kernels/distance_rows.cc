@@ -13,9 +13,10 @@ namespace vdb_madf::detail {
 
 namespace {
 
-/// kInfinite for the linear distances of the first pass: more than any row is long.
-constexpr uint32_t kFar = 40000;
-static_assert(kFar > kMaxExtent + 8);
+/// kInfinite for the linear distances of the first pass: more than any row is long, and the least
+/// whose square does not fit.
+constexpr uint32_t kFar = 46341;
+static_assert(kFar > kMaxExtent + 8 && uint64_t(kFar) * kFar > kInfinite);
 
 /// Lanes that stop their search for a nearer background voxel together.
 constexpr int kLanes = 16;
@@ -33,9 +34,9 @@ VDB_MADF_SIMD void scan(const uint64_t* masks, int length, const RowDomain& doma
       slab[row] = forward ? state[row] : std::min(slab[row], state[row]);
     }
   };
-  for (size_t row = 0; row < 64; ++row) state[row] = domain.before[row] ? kFar : 0;
+  for (size_t row = 0; row < 64; ++row) state[row] = std::min(domain.before[row], kFar);
   for (int t = 0; t < length; ++t) advance(t, out + t * 64, true);
-  for (size_t row = 0; row < 64; ++row) state[row] = domain.after[row] ? kFar : 0;
+  for (size_t row = 0; row < 64; ++row) state[row] = std::min(domain.after[row], kFar);
   for (int t = length - 1; t >= 0; --t) {
     uint32_t* slab = out + t * 64;
     advance(t, slab, false);

@@ -20,8 +20,10 @@ constexpr uint32_t kInfinite = 1u << 31;
 /// The positions of rows that lie in the domain (all, where the boundary is closed), and what the
 /// positions of each row just before the first and just after the last count as.
 struct RowDomain {
-  int begin, end;                            ///< positions [begin, end) lie in the domain
-  std::array<uint32_t, 64> before, after{};  ///< 0 (background) or kInfinite (unknown)
+  int begin, end;  ///< positions [begin, end) lie in the domain
+  /// 0: background; kInfinite: unknown; in the first pass also n: the nearest background is n more
+  /// steps away.
+  std::array<uint32_t, 64> before, after{};
 };
 
 /// First pass: out(t) = the squared distance along the row to the nearest background voxel, or

@@ -27,13 +27,13 @@ namespace vdb_madf::detail {
 
 template <typename Key>
 void EnvelopeRows<Key>::resize(size_t length) {
-  if (envelope.size() < length) {
+  if (starting.size() <= length) {
     power.resize((length + 2) * kEnvelopeSlab);
     site.resize(length * kEnvelopeSlab);
     radius2.resize((length + 2) * kEnvelopeSlab);
     object.resize((length + 63) / 64 * 64);
     candidate.resize((length + 63) / 64 * 64);
-    envelope.resize(length);
+    envelope.resize(std::max(envelope.size(), length));
     starting.resize(length + 1);
   }
   std::fill_n(power.data() + (length + 1) * kEnvelopeSlab, kEnvelopeSlab, 0);
@@ -167,7 +167,8 @@ inline uint64_t bitsBetween(int first, int begin, int end) {
   return from & to;
 }
 
-/// The envelope of the candidates in [begin, end) of a row, in s.envelope. Returns their number.
+/// The envelope of the candidates in [begin, end) of a row, and of what is `before` and `after` that, in
+/// s.envelope. Returns their number.
 ///
 /// In the order of keys, c less than b means, with x = position,
 ///   key_c(u) < key_b(u)  <=>  k_c - 2 M w x_c u < k_b - 2 M w x_b u
@@ -176,11 +177,28 @@ inline uint64_t bitsBetween(int first, int begin, int end) {
 ///   u_ab < u_bc  <=>  (k_b - k_a) / (x_b - x_a) < (k_c - k_b) / (x_c - x_b)
 ///                <=>  (k_b - k_a) (x_c - x_b) < (k_c - k_b) (x_b - x_a).
 /// Else it goes when c comes: the points (x, k) of what stays are a lower convex hull.
-template <typename Key, typename Weight>
+template <bool Beyond, typename Key, typename Weight>
 [[gnu::always_inline]] inline int buildEnvelope(EnvelopeRows<Key>& s, size_t row, int begin,
-                                                int end, Key multiplier, Weight weight) {
+                                                int end, bool isLast, Key multiplier,
+                                                Weight weight) {
   Parabola<Key>* const first = s.envelope.data();
   Parabola<Key>* next = first;
+  const auto push = [&](int position, int32_t power, int32_t radius2, uint32_t site) {
+    const int32_t height = power + squaredAlong(position, weight);
+    const Key key = height * multiplier - radius2;
+    for (; next - first > 1; --next) {
+      const Parabola<Key>&a = next[-2], &b = next[-1];
+      if ((b.key - a.key) * (position - b.position) < (key - b.key) * (b.position - a.position))
+        break;
+    }
+    *next++ = {key, height, radius2, position, site};
+  };
+  const auto pushBeyond = [&](const BeyondRows& rows) {
+    for (uint32_t i = rows.first[row]; i < rows.first[row + 1]; ++i)
+      push(rows.sites[i].position - begin, -rows.sites[i].radius2, rows.sites[i].radius2,
+           rows.sites[i].site);
+  };
+  if (Beyond && begin == 0) pushBeyond(s.before);
   const int32_t* powers = s.power.data() + kEnvelopeSlab + row;
   const int32_t* radii = s.radius2.data() + kEnvelopeSlab + row;
   const uint32_t* sites = s.site.data() + row;
@@ -189,16 +207,10 @@ template <typename Key, typename Weight>
     for (; bits; bits &= bits - 1) {
       const int t = base + __builtin_ctzll(bits);
       const size_t at = size_t(t) * kEnvelopeSlab;
-      const int32_t height = powers[at] + squaredAlong(t - begin, weight);
-      const Key key = height * multiplier - radii[at];
-      for (; next - first > 1; --next) {
-        const Parabola<Key>&a = next[-2], &b = next[-1];
-        if ((b.key - a.key) * (t - begin - b.position) < (key - b.key) * (b.position - a.position))
-          break;
-      }
-      *next++ = {key, height, radii[at], t - begin, sites[at]};
+      push(t - begin, powers[at], radii[at], sites[at]);
     }
   }
+  if (Beyond && isLast) pushBeyond(s.after);
   return int(next - first);
 }
 
@@ -213,11 +225,11 @@ template <typename Key, typename Weight>
 ///           floor(rise / twice) + 1 else.
 /// The quotient of integers this small is exact enough in double precision for its floor to be that
 /// of the integer division.
-template <typename Key, typename Weight>
+template <bool Beyond, typename Key, typename Weight>
 [[gnu::always_inline]] inline void sweepRun(EnvelopeRows<Key>& s, size_t row, int begin, int end,
-                                            Key multiplier, Weight weight) {
+                                            bool isLast, Key multiplier, Weight weight) {
   const int length = end - begin;
-  const int count = buildEnvelope(s, row, begin, end, multiplier, weight);
+  const int count = buildEnvelope<Beyond>(s, row, begin, end, isLast, multiplier, weight);
   int32_t* power = s.power.data() + size_t(begin + 1) * kEnvelopeSlab + row;
   uint32_t* site = s.site.data() + size_t(begin) * kEnvelopeSlab + row;
   if (count == 0) {
@@ -260,14 +272,14 @@ template <typename Key>
 }
 
 /// All runs of all rows.
-template <typename Key, typename Weight>
+template <bool Beyond, typename Key, typename Weight>
 VDB_MADF_SIMD void sweepRows(int length, Key multiplier, Weight weight, EnvelopeRows<Key>& s) {
   for (size_t row = 0; row < 64; ++row) {
     for (int end = 0; end < length;) {
       const int begin = findObject(s, row, end, length, 0);
       if (begin == length) break;
       end = findObject(s, row, begin, length, ~uint64_t(0));
-      sweepRun(s, row, begin, end, multiplier, weight);
+      sweepRun<Beyond>(s, row, begin, end, end == length, multiplier, weight);
     }
   }
 }
@@ -277,16 +289,23 @@ VDB_MADF_SIMD void sweepRows(int length, Key multiplier, Weight weight, Envelope
 template <int AxesLeft, typename Key>
 void lowerEnvelopes(int length, Key multiplier, const VoxelWeights& weights,
                     EnvelopeRows<Key>& rows) {
+  const auto sweep = [&](auto weight) {
+    markCandidates<AxesLeft>(size_t(length), weight, rows);
+    const size_t beyond = rows.before.sites.size() + rows.after.sites.size();
+    if (beyond == 0) {
+      sweepRows<false>(length, multiplier, weight, rows);
+      return;
+    }
+    if (rows.envelope.size() < size_t(length) + beyond)
+      rows.envelope.resize(size_t(length) + beyond);
+    sweepRows<true>(length, multiplier, weight, rows);
+  };
   bool unit = true;
   for (int axis = 0; axis < AxesLeft; ++axis) unit = unit && weights[axis] == 1;
-  if (unit) {
-    markCandidates<AxesLeft>(size_t(length), UnitWeight(), rows);
-    sweepRows(length, multiplier, UnitWeight(), rows);
-  } else {
-    const int32_t weight = weights[AxesLeft - 1];
-    markCandidates<AxesLeft>(size_t(length), weight, rows);
-    sweepRows(length, multiplier, weight, rows);
-  }
+  if (unit)
+    sweep(UnitWeight());
+  else
+    sweep(weights[AxesLeft - 1]);
 }
 
 template void lowerEnvelopes<3>(int, int64_t, const VoxelWeights&, EnvelopeRows<int64_t>&);

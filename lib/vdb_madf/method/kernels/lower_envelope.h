@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -30,6 +31,23 @@ struct Parabola {
   uint32_t site;
 };
 
+/// A site in line with the rows, before their first position (< 0) or after their last.
+struct BeyondRow {
+  int32_t position;
+  int32_t radius2;  // D; its power is -D
+  uint32_t site;
+};
+
+/// Those of all 64 rows, row after row, ascending by position.
+struct BeyondRows {
+  std::vector<BeyondRow> sites;
+  std::array<uint32_t, 65> first{};  ///< of a row; one more at the end
+  void clear() {
+    sites.clear();
+    first.fill(0);
+  }
+};
+
 /// What lowerEnvelopes() works on, slab after slab, and its memory.
 template <typename Key>
 struct EnvelopeRows {
@@ -43,6 +61,8 @@ struct EnvelopeRows {
   size_t words = 0;  ///< per row
   std::vector<Parabola<Key>> envelope;
   std::vector<uint32_t> starting;  ///< parabolas that become the least one at a position
+  /// Sites that take part in the run at the first position of their row, or the last.
+  BeyondRows before, after;
 
   /// For rows of `length` positions, a multiple of 8. Never shrinks: growing again would clear what
   /// is overwritten anyway.
@@ -58,7 +78,7 @@ struct EnvelopeRows {
 /// a - 1, a + 1 (if 2 or 3) and b - 1, b + 1 (if 3). A site of which nothing will be left after the
 /// passes along these, for a neighbor is better, may be left out of this one.
 /// multiplier: larger than any D. w length^2 must be less than 2^31, and with 64-bit keys
-/// 2 max(w length^2, D) (multiplier + 1) length less than 2^63.
+/// 2 max(w length^2, D) (multiplier + 1) length less than 2^63; length with what is beyond.
 template <int AxesLeft, typename Key>
 void lowerEnvelopes(int length, Key multiplier, const VoxelWeights& weights,
                     EnvelopeRows<Key>& rows);

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/method/detail/foreign_sites.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace vdb_madf::detail {
+
+namespace {
+
+/// Leaf column, column within it, z.
+std::tuple<int, int, int, int> placeOf(const Coord& p) {
+  return {p.x() & ~7, p.y() & ~7, (p.x() & 7) * 8 + (p.y() & 7), p.z()};
+}
+
+/// The sites of a pencil among all, in either case in the order of placeOf().
+template <typename Named>
+void addRows(const std::vector<Named>& sites, const Coord& origin, BeyondRows& rows) {
+  const auto leafBefore = [](const Named& named, const Coord& leaf) {
+    const Coord& p = named.site.position;
+    return std::make_tuple(p.x() & ~7, p.y() & ~7) < std::make_tuple(leaf.x(), leaf.y());
+  };
+  auto next = std::lower_bound(sites.begin(), sites.end(), origin, leafBefore);
+  for (uint32_t row = 0; row < 64; ++row) {
+    const int x = origin.x() + int(row >> 3), y = origin.y() + int(row & 7);
+    for (; next != sites.end() && next->site.position.x() == x && next->site.position.y() == y;
+         ++next)
+      rows.sites.push_back(
+          {next->site.position.z() - origin.z(), next->site.squaredRadius, next->id});
+    rows.first[row + 1] = uint32_t(rows.sites.size());
+  }
+}
+
+}  // namespace
+
+ForeignSites::ForeignSites(const std::vector<ForeignSite>& below,
+                           const std::vector<ForeignSite>& above, int begin, int end,
+                           LeafIndex& index)
+    : begin_(begin), end_(end) {
+  for (const ForeignSite& site : below) below_.push_back({site, 0});
+  for (const ForeignSite& site : above) above_.push_back({site, 0});
+  const auto less = [](const Named& a, const Named& b) {
+    return placeOf(a.site.position) < placeOf(b.site.position);
+  };
+  std::sort(below_.begin(), below_.end(), less);
+  std::sort(above_.begin(), above_.end(), less);
+  name(index);
+}
+
+void ForeignSites::name(LeafIndex& index) {
+  std::vector<Coord> leaves;
+  for (const auto* side : {&below_, &above_})
+    for (const Named& named : *side) {
+      const int z = named.site.position.z();
+      largest_ = std::max(largest_, named.site.squaredRadius);
+      reach_ = std::max({reach_, begin_ - z, z - end_ + 1});
+      leaves.push_back(named.site.position & ~7);
+    }
+  std::sort(leaves.begin(), leaves.end());
+  leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());
+  for (auto* side : {&below_, &above_})
+    for (Named& named : *side) {
+      const Coord& p = named.site.position;
+      const auto leaf = std::lower_bound(leaves.begin(), leaves.end(), p & ~7);
+      named.id = VoxelId(index.leafCount() + size_t(leaf - leaves.begin())) * 512 +
+                 VoxelId((p.x() & 7) * 64 + (p.y() & 7) * 8 + (p.z() & 7));
+    }
+  index.nameForeignLeaves(leaves);
+}
+
+template <typename Key>
+void ForeignSites::addTo(const Coord& origin, int length, EnvelopeRows<Key>& rows) const {
+  rows.before.clear();
+  rows.after.clear();
+  if (origin.z() == begin_) addRows(below_, origin, rows.before);
+  if (origin.z() + length == end_) addRows(above_, origin, rows.after);
+}
+
+template void ForeignSites::addTo(const Coord&, int, EnvelopeRows<int64_t>&) const;
+template void ForeignSites::addTo(const Coord&, int, EnvelopeRows<__int128>&) const;
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vdb_madf/leaves/leaf_index.h"
+#include "vdb_madf/method/kernels/lower_envelope.h"
+
+namespace vdb_madf::detail {
+
+/// A medial ball of another slab.
+struct ForeignSite {
+  Coord position;
+  int32_t squaredRadius = 0;
+};
+
+/// The sites beyond the cuts of a slab that may win in it: all those in line along z with an object
+/// voxel at a cut, joined to it by the object.
+class ForeignSites {
+ public:
+  /// Each at most once. Names their leaves in the index of the slab begin <= z < end.
+  ForeignSites(const std::vector<ForeignSite>& below, const std::vector<ForeignSite>& above,
+               int begin, int end, LeafIndex& index);
+
+  /// Those in line with the pencil of `length` voxels along z that starts at `origin`.
+  template <typename Key>
+  void addTo(const Coord& origin, int length, EnvelopeRows<Key>& rows) const;
+
+  int32_t largestSquaredRadius() const { return largest_; }
+  /// Voxels along z from a cut to the farthest of them.
+  int reach() const { return reach_; }
+
+ private:
+  struct Named {
+    ForeignSite site;
+    VoxelId id;
+  };
+  void name(LeafIndex& index);
+
+  int begin_, end_;
+  int32_t largest_ = 0;
+  int reach_ = 0;
+  std::vector<Named> below_, above_;  // by leaf column, then column, then z
+};
+
+}  // namespace vdb_madf::detail

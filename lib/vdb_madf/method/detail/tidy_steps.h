@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vdb_madf/leaves/leaf_index.h"
+#include "vdb_madf/method/tidy.h"
+
+namespace vdb_madf::detail {
+
+/// No voxel of the index: of the anchor of a grain that has none in it.
+constexpr VoxelId kNoAnchor = ~VoxelId(0);
+
+/// The first part of tidy(): rounds of smoothing. \p anchor: of grain g at g - 1.
+void smoothInterfaces(const LeafIndex& index, int rounds, const std::vector<VoxelId>& anchor,
+                      GrainLabels& grains, Interrupter* interrupter);
+
+/// A voxel that may become the anchor of its grain: the nearest to the representative does, then
+/// that of the smaller position.
+struct AnchorCandidate {
+  int64_t away = -1;  ///< squared distance from the representative; -1: none
+  Coord position;
+
+  void improve(const AnchorCandidate& other);
+};
+
+/// The best voxels for the grains `wanted` (g at g - 1), in their order.
+std::vector<AnchorCandidate> anchorCandidates(const LeafIndex& index, const GrainLabels& grains,
+                                              const std::vector<uint32_t>& wanted,
+                                              Interrupter* interrupter);
+
+/// The label that most of a voxel's neighbors have, of equally frequent ones the smallest; 0 if none
+/// has one. \p around: their labels, 0 where there is none.
+uint32_t mostFrequent(const uint32_t (&around)[6]);
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstring>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/leaves/voxel_array.h"
+
+// Plain data as bytes, for this machine to read again.
+
+namespace vdb_madf::detail {
+
+class ByteWriter {
+ public:
+  template <typename T>
+  void add(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    append(&value, sizeof(T));
+  }
+  template <typename T>
+  void add(const std::vector<T>& values) {
+    addArray(values.data(), values.size());
+  }
+  template <typename T>
+  void add(const VoxelArray<T>& values) {
+    addArray(values.data(), values.size());
+  }
+  const std::vector<char>& bytes() const { return bytes_; }
+
+ private:
+  template <typename T>
+  void addArray(const T* values, size_t count) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    add(uint64_t(count));
+    append(values, count * sizeof(T));
+  }
+  void append(const void* data, size_t size) {
+    if (size == 0) return;
+    const auto* first = static_cast<const char*>(data);
+    bytes_.insert(bytes_.end(), first, first + size);
+  }
+
+  std::vector<char> bytes_;
+};
+
+/// Reads what a ByteWriter wrote, in the same order. @throw IoError if there is less.
+class ByteReader {
+ public:
+  explicit ByteReader(std::vector<char> bytes) : bytes_(std::move(bytes)) {}
+  template <typename T>
+  T value() {
+    T result;
+    std::memcpy(&result, take(1, sizeof(T)), sizeof(T));
+    return result;
+  }
+  template <typename T>
+  std::vector<T> vector() {
+    const auto count = value<uint64_t>();
+    const char* data = take(count, sizeof(T));
+    std::vector<T> values(count);
+    if (count > 0) std::memcpy(static_cast<void*>(values.data()), data, count * sizeof(T));
+    return values;
+  }
+  template <typename T>
+  VoxelArray<T> voxelArray() {
+    const auto count = value<uint64_t>();
+    const char* data = take(count, sizeof(T));
+    VoxelArray<T> values(count);
+    std::memcpy(values.data(), data, count * sizeof(T));
+    return values;
+  }
+
+ private:
+  const char* take(uint64_t count, size_t size) {
+    if (count > (bytes_.size() - at_) / size) throw IoError("the scratch data is damaged");
+    const char* data = bytes_.data() + at_;
+    at_ += count * size;
+    return data;
+  }
+
+  std::vector<char> bytes_;
+  size_t at_ = 0;
+};
+
+}  // namespace vdb_madf::detail

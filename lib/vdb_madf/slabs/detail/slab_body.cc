@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/slabs/detail/slab_body.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "vdb_madf/method/cavities.h"
+#include "vdb_madf/method/detail/small_holes.h"
+
+namespace vdb_madf::detail {
+
+SlabBody::SlabBody(const std::vector<LeafIndex::LeafVoxels>& object,
+                   const std::vector<LeafIndex::LeafVoxels>& holes)
+    : index(LeafIndex(LeafIndex(), object), holes) {
+  Cavities filled;
+  filled.leaves = holes;
+  cavities = cavityVoxels(index, filled);
+}
+
+std::vector<LeafIndex::LeafVoxels> slabHoles(const SlabObject& object, size_t slab, bool open,
+                                             int64_t fillHoles, Interrupter* interrupter) {
+  const std::vector<int>& cuts = object.cuts;
+  const auto inWindow = [&](int64_t begin, int64_t end) {
+    return end + fillHoles > cuts[slab] && begin - fillHoles < cuts[slab + 1];
+  };
+  std::vector<LeafIndex::LeafVoxels> window;
+  for (size_t s = 0; s < object.slabCount(); ++s) {
+    if (!inWindow(cuts[s], cuts[s + 1])) continue;
+    for (const LeafIndex::LeafVoxels& leaf : object.leaves(s))
+      if (inWindow(leaf.origin.z(), leaf.origin.z() + 8)) window.push_back(leaf);
+  }
+  if (window.empty()) return {};
+  std::sort(window.begin(), window.end(),
+            [](const auto& a, const auto& b) { return a.origin < b.origin; });
+  std::optional<Domain> domain = object.domain;
+  if (domain) {
+    // Of leaves: as far as `window` knows the object.
+    CoordBBox box = domain->box();
+    int first = cuts[slab], last = cuts[slab + 1];
+    while (first > box.min().z() && inWindow(first - 8, first)) first -= 8;
+    while (last <= box.max().z() && inWindow(last, last + 8)) last += 8;
+    box.min().z() = std::max(box.min().z(), first);
+    box.max().z() = std::min(box.max().z(), last - 1);
+    domain = box;
+  }
+  const Cavities found =
+      smallHoles(LeafIndex(LeafIndex(), window), domain, open, fillHoles, interrupter);
+  std::vector<LeafIndex::LeafVoxels> holes;
+  for (const LeafIndex::LeafVoxels& leaf : found.leaves)
+    if (leaf.origin.z() >= cuts[slab] && leaf.origin.z() < cuts[slab + 1]) holes.push_back(leaf);
+  return holes;
+}
+
+void HoleCount::add(const std::vector<LeafIndex::LeafVoxels>& holes, int begin, int end) {
+  const LeafIndex index(LeafIndex(), holes);
+  SlabPieces pieces(index, {}, ConnectedComponents(index), {}, begin, end);
+  pieces_.add(pieces, any_ ? &before_ : nullptr);
+  voxels_ += index.voxelCount();
+  before_ = std::move(pieces);
+  any_ = true;
+}
+
+}  // namespace vdb_madf::detail

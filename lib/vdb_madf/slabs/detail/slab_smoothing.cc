@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/slabs/detail/slab_smoothing.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "vdb_madf/leaves/detail/leaf_mask.h"
+#include "vdb_madf/method/detail/tidy_steps.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+/// Where the labels of a leaf of the window are.
+struct Source {
+  LeafIndex::LeafVoxels leaf;
+  const uint32_t* labels;
+};
+
+void addSources(const LeafLabels& rim, std::vector<Source>& sources) {
+  const uint32_t* next = rim.labels.data();
+  for (const LeafIndex::LeafVoxels& leaf : rim.leaves) {
+    sources.push_back({leaf, next});
+    next += countVoxels(leaf.mask);
+  }
+}
+
+}  // namespace
+
+LeafLabels labelsBetween(const LeafIndex& index, const VoxelArray<uint32_t>& labels, int begin,
+                         int end) {
+  LeafLabels result;
+  for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
+    const Coord& origin = index.origin(leaf);
+    if (origin.z() < begin || origin.z() >= end) continue;
+    result.leaves.push_back({origin, index.mask(leaf)});
+    const uint32_t* first = labels.data() + index.firstRank(leaf);
+    result.labels.insert(result.labels.end(), first, first + index.leafVoxels(leaf));
+  }
+  return result;
+}
+
+void smoothSlab(const LeafIndex& index, const LeafLabels& below, const LeafLabels& above,
+                const Anchors& anchors, int rounds, VoxelArray<uint32_t>& labels,
+                Interrupter* interrupter) {
+  std::vector<Source> sources;
+  addSources(below, sources);
+  addSources(above, sources);
+  for (size_t leaf = 0; leaf < index.leafCount(); ++leaf)
+    sources.push_back(
+        {{index.origin(leaf), index.mask(leaf)}, labels.data() + index.firstRank(leaf)});
+  std::sort(sources.begin(), sources.end(),
+            [](const Source& a, const Source& b) { return a.leaf.origin < b.leaf.origin; });
+  std::vector<LeafIndex::LeafVoxels> leaves;
+  for (const Source& source : sources) leaves.push_back(source.leaf);
+  const LeafIndex window(LeafIndex(), leaves);
+
+  GrainLabels grains;
+  grains.label = VoxelArray<uint32_t>(size_t(window.voxelCount()));
+  grains.voxels.assign(anchors.size(), 0);
+  for (size_t leaf = 0; leaf < window.leafCount(); ++leaf)
+    std::copy_n(sources[leaf].labels, window.leafVoxels(leaf),
+                grains.label.data() + window.firstRank(leaf));
+  std::vector<VoxelId> anchorIds(anchors.size(), kNoAnchor);
+  for (size_t g = 0; g < anchors.size(); ++g)
+    if (const auto id = window.findVoxel(anchors[g])) anchorIds[g] = *id;
+  smoothInterfaces(window, rounds, anchorIds, grains, interrupter);
+
+  for (size_t leaf = 0; leaf < window.leafCount(); ++leaf)
+    if (const auto own = index.findLeaf(window.origin(leaf)))
+      std::copy_n(grains.label.data() + window.firstRank(leaf), window.leafVoxels(leaf),
+                  labels.data() + index.firstRank(*own));
+}
+
+}  // namespace vdb_madf::detail

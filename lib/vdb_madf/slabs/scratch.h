@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace vdb_madf {
+
+/// Where the slabs are that are not being worked on: named pieces of bytes.
+class Scratch {
+ public:
+  Scratch() = default;
+  virtual ~Scratch() = default;
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+
+  /// Replaces what has that name.
+  virtual void write(const std::string& name, const std::vector<char>& bytes) = 0;
+  virtual std::vector<char> read(const std::string& name) const = 0;
+  virtual bool has(const std::string& name) const = 0;
+  virtual void remove(const std::string& name) = 0;
+};
+
+/// In memory: for volumes that fit.
+class MemoryScratch : public Scratch {
+ public:
+  void write(const std::string& name, const std::vector<char>& bytes) override {
+    pieces_[name] = bytes;
+  }
+  std::vector<char> read(const std::string& name) const override { return pieces_.at(name); }
+  bool has(const std::string& name) const override { return pieces_.count(name) > 0; }
+  void remove(const std::string& name) override { pieces_.erase(name); }
+
+ private:
+  std::map<std::string, std::vector<char>> pieces_;
+};
+
+}  // namespace vdb_madf

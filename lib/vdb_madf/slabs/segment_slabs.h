@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "vdb_madf/leaves/leaf_index.h"
+#include "vdb_madf/method/segment.h"
+#include "vdb_madf/slabs/scratch.h"
+
+namespace vdb_madf {
+
+/// An object cut into slabs along z.
+struct SlabObject {
+  /// Slab s is cuts[s] <= z < cuts[s + 1]: multiples of 8, ascending, around the domain (an open one) or
+  /// else the object.
+  std::vector<int> cuts;
+  /// The leaves of a slab that hold object, ascending by origin. Called more than once.
+  std::function<std::vector<LeafIndex::LeafVoxels>(size_t slab)> leaves;
+  std::optional<Domain> domain;
+  std::array<double, 3> edges{1, 1, 1};  ///< of a voxel, in any unit
+
+  size_t slabCount() const { return cuts.empty() ? 0 : cuts.size() - 1; }
+};
+
+/// What segmentSlabs() finds beside the labels.
+struct SlabSegmentation {
+  SegmentCounts counts;
+  ManifoldGraph graph;
+  std::vector<int64_t> grainVoxels;  ///< voxels of grain g at g - 1
+  int64_t fillHoles = 0;
+  int tidy = 0;
+  bool open = false;
+  VoxelWeights weights;
+  double weightsError = 0;
+};
+
+/// segment() for an object that need not fit in memory: the same labels, bit for bit. One slab is
+/// worked on at a time; what is known of the others is in `scratch`. Memory: some 20 bytes for each
+/// object voxel of the largest slab, 8 bytes for each in the plane of a cut, and the graph of the whole.
+///
+/// What crosses a cut: how far the nearest background of each column is; the balls of a column that
+/// still win beyond the cut; where the voxels in the planes beside it flow; labels as far away as
+/// `tidy` has rounds, and pieces of grains.
+///
+/// `put` gets the labels of each slab, in the order of VoxelIds of an index of its leaves, 0 for
+/// none, from the lowest slab on.
+/// Options that keep grids, maxMemory and gamma have to be 0: they are not known here.
+/// @throw as segment(); InvalidInput for these options, cuts that are none, a region as domain,
+///   slabs lower than `tidy` has rounds, or balls that reach too far.
+SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
+                              Scratch& scratch,
+                              const std::function<void(size_t slab, const LeafIndex& index,
+                                                       const VoxelArray<uint32_t>& labels)>& put,
+                              Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

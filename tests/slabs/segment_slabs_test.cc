@@ -1,0 +1,250 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// segmentSlabs() against segment(), which is compared with the oracle, and what it refuses.
+//
+// The random comparison reads from the environment VDB_MADF_CASES (how many) and VDB_MADF_SEED (the
+// first).
+
+#include "vdb_madf/slabs/segment_slabs.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "support/random_case.h"
+#include "support/runs.h"
+#include "vdb_madf/base/errors.h"
+
+namespace {
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+
+uint64_t fromEnvironment(const char* variable, uint64_t otherwise) {
+  const char* value = std::getenv(variable);
+  return value ? std::strtoull(value, nullptr, 10) : otherwise;
+}
+
+/// The leaves of a mask in slabs with these cuts.
+SlabObject cutObject(const MaskGrid& mask, std::vector<int> cuts,
+                     const std::optional<Domain>& domain) {
+  std::vector<std::vector<LeafIndex::LeafVoxels>> leaves(cuts.size() - 1);
+  const LeafIndex index(mask);
+  for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
+    const auto above = std::upper_bound(cuts.begin(), cuts.end(), index.origin(leaf).z());
+    if (above == cuts.begin() || above == cuts.end())
+      throw std::logic_error("cuts leave the object");
+    leaves[size_t(above - cuts.begin()) - 1].push_back({index.origin(leaf), index.mask(leaf)});
+  }
+  SlabObject object;
+  object.cuts = std::move(cuts);
+  object.leaves = [leaves](size_t slab) { return leaves[slab]; };
+  object.domain = domain;
+  return object;
+}
+
+/// At every layer of leaves or some of them; now and then there are empty slabs at the ends.
+std::vector<int> randomCuts(const CoordBBox& box, Rng& rng) {
+  const int first = (box.min().z() & ~7) - 8 * rng.below(2);
+  const int last = (box.max().z() | 7) + 1 + 8 * rng.below(2);
+  std::vector<int> cuts{first};
+  const double share = rng.chance(0.5) ? 1 : rng.unit();
+  for (int z = first + 8; z < last; z += 8)
+    if (rng.chance(share)) cuts.push_back(z);
+  cuts.push_back(last);
+  return cuts;
+}
+
+struct Cut {
+  SlabSegmentation result;
+  Int32Grid::Ptr labels = Int32Grid::create();
+};
+
+Cut segmentCut(const SlabObject& object, const SegmentOptions& options) {
+  Cut cut;
+  MemoryScratch scratch;
+  auto tree = cut.labels->getAccessor();
+  size_t next = 0;
+  cut.result =
+      segmentSlabs(object, options, scratch,
+                   [&](size_t slab, const LeafIndex& index, const VoxelArray<uint32_t>& labels) {
+                     if (slab != next++) throw std::logic_error("slabs are put in another order");
+                     for (size_t leaf = 0; leaf < index.leafCount(); ++leaf)
+                       for (uint32_t i = 0; i < 512; ++i) {
+                         const auto id = VoxelId(leaf * 512 + i);
+                         if (!(index.mask(leaf)[wordOf(id)] >> bitOf(id) & 1)) continue;
+                         if (const uint32_t label = labels[index.rank(id)])
+                           tree.setValue(index.coord(id), int32_t(label));
+                       }
+                   });
+  return cut;
+}
+
+std::string difference(const Segmentation& whole, const Cut& cut) {
+  const SegmentCounts &a = whole.counts, &b = cut.result.counts;
+  std::string text;
+  const auto compare = [&](const char* name, int64_t x, int64_t y) {
+    if (x != y) text += name + (" " + std::to_string(y)) + ", not " + std::to_string(x) + "\n";
+  };
+  compare("object voxels", a.objectVoxels, b.objectVoxels);
+  compare("leaves", a.leaves, b.leaves);
+  compare("cavities", a.cavities, b.cavities);
+  compare("voxels of cavities", a.cavityVoxels, b.cavityVoxels);
+  compare("largest D", a.largestSquaredDistance, b.largestSquaredDistance);
+  compare("medial balls", a.medialBalls, b.medialBalls);
+  compare("kept balls", a.keptBalls, b.keptBalls);
+  compare("critical points", a.criticalPoints, b.criticalPoints);
+  compare("grains", a.grains, b.grains);
+  compare("fill-holes", whole.fillHoles, cut.result.fillHoles);
+  compare("open", whole.open, cut.result.open);
+  if (!(whole.weights == cut.result.weights)) text += "other weights\n";
+  if (!(whole.graph.nodes == cut.result.graph.nodes)) text += "other nodes\n";
+  if (!(whole.graph.edges == cut.result.graph.edges)) text += "other edges\n";
+  if (whole.grainVoxels != cut.result.grainVoxels) text += "other voxels of grains\n";
+  compare("labelled voxels", int64_t(whole.grain->activeVoxelCount()),
+          int64_t(cut.labels->activeVoxelCount()));
+  const auto tree = cut.labels->getConstAccessor();
+  for (auto voxel = whole.grain->cbeginValueOn(); voxel; ++voxel)
+    if (tree.getValue(voxel.getCoord()) != *voxel) return text + "other labels\n";
+  return text;
+}
+
+struct Comparison {
+  std::string difference;  ///< empty if there is none
+  size_t slabs = 0;        ///< with object
+  bool refused = false;
+};
+
+Comparison compareSlabs(const RandomCase& c) {
+  const MaskGrid::Ptr mask = maskOf(c);
+  SegmentOptions options = optionsOf(c);
+  options.domain = domainOf(c);
+  options.keepDistance = options.keepPower = options.keepManifold = options.keepBalls = false;
+  options.gamma = 0;
+  if (!options.weights) options.weights = VoxelWeights{};
+  Rng rng(c.seed);
+  CoordBBox box = c.domain ? *c.domain : mask->evalActiveVoxelBoundingBox();
+  if (box.empty()) box = CoordBBox(Coord(0), Coord(7));
+  Comparison result;
+  std::string refused, refusedCut;
+  Segmentation whole;
+  Cut cut;
+  try {
+    whole = segment(*mask, options);
+  } catch (const InvalidInput& e) {
+    refused = e.what();
+  }
+  try {
+    const SlabObject object = cutObject(*mask, randomCuts(box, rng), options.domain);
+    for (size_t s = 0; s < object.slabCount(); ++s) result.slabs += !object.leaves(s).empty();
+    cut = withThreads(c.threads, [&] { return segmentCut(object, options); });
+  } catch (const std::logic_error&) {
+    result.refused = true;  // the object leaves the domain
+    return result;
+  } catch (const InvalidInput& e) {
+    refusedCut = e.what();
+  }
+  result.refused = !refused.empty();
+  if (refused.empty() != refusedCut.empty())
+    result.difference = "whole: '" + refused + "', in slabs: '" + refusedCut + "'";
+  else if (refused.empty())
+    result.difference = difference(whole, cut);
+  return result;
+}
+
+/// Compares that many volumes, tall ones if `height` is given.
+void requireSame(uint64_t first, uint64_t cases, int height) {
+  uint64_t compared = 0, several = 0;
+  for (uint64_t seed = first; seed < first + cases; ++seed) {
+    Rng rng(seed + 9000);
+    std::optional<Coord> size;
+    if (height > 0) size = Coord(rng.between(1, 12), rng.between(1, 12), rng.between(16, height));
+    const RandomCase c = randomCase(seed, size);
+    const Comparison comparison = compareSlabs(c);
+    compared += !comparison.refused;
+    several += comparison.slabs > 1;
+    if (comparison.difference.empty()) continue;
+    const RandomCase small =
+        shrink(c, [](const RandomCase& d) { return !compareSlabs(d).difference.empty(); });
+    FAIL(describe(c) << comparison.difference << "shrunk to " << describe(small)
+                     << compareSlabs(small).difference);
+  }
+  if (cases < 3 * uint64_t(kCombinations)) return;
+  CHECK(compared > cases * 3 / 4);
+  CHECK(several > (height > 0 ? cases / 2 : cases / 4));
+}
+
+/// A row of voxels along z.
+SlabObject row(int length, std::vector<int> cuts) {
+  MaskGrid mask;
+  mask.tree().fill(CoordBBox(Coord(0), Coord(0, 0, length - 1)), true);
+  return cutObject(mask, std::move(cuts), std::nullopt);
+}
+
+}  // namespace
+
+TEST_CASE("slabs: labels, graph and counts are those of the whole", "[slabs]") {
+  requireSame(fromEnvironment("VDB_MADF_SEED", 1),
+              fromEnvironment("VDB_MADF_CASES", 37 * kCombinations), 0);
+}
+
+TEST_CASE("slabs: labels, graph and counts of tall objects are those of the whole", "[slabs]") {
+  requireSame(fromEnvironment("VDB_MADF_SEED", 1) + 100000,
+              fromEnvironment("VDB_MADF_CASES", 28 * kCombinations), 90);
+}
+
+TEST_CASE("slabs: an empty object has no grains, whatever the cuts", "[slabs]") {
+  MaskGrid mask;
+  const SlabSegmentation result =
+      segmentCut(cutObject(mask, {0, 8, 24}, Domain(CoordBBox(Coord(0), Coord(20)))), {}).result;
+  CHECK(result.counts.objectVoxels == 0);
+  CHECK(result.counts.grains == 0);
+  CHECK(result.graph.nodes.empty());
+  CHECK(result.open);
+}
+
+TEST_CASE("slabs: weights follow from the edges and the whole object", "[slabs]") {
+  SlabObject object = row(40, {0, 16, 40});
+  object.edges = {0.5, 0.5, 1.2};
+  CHECK(segmentCut(object, {}).result.weights == VoxelWeights{25, 25, 144});
+  object.edges = {1, -1, 1};
+  CHECK_THROWS_AS(segmentCut(object, {}), InvalidInput);
+}
+
+TEST_CASE("slabs: what they do not know is refused", "[slabs]") {
+  const SlabObject object = row(40, {0, 16, 40});
+  SegmentOptions options;
+  options.gamma = 20;
+  CHECK_THROWS_AS(segmentCut(object, options), InvalidInput);
+  options = {};
+  options.keepBalls = true;
+  CHECK_THROWS_AS(segmentCut(object, options), InvalidInput);
+  options = {};
+  options.tidy = 17;  // more rounds than the lower slab has layers
+  CHECK_THROWS_AS(segmentCut(object, options), InvalidInput);
+  options.tidy = 16;
+  CHECK(segmentCut(object, options).result.counts.grains == 1);
+
+  SlabObject cut = row(40, {0, 16, 40});
+  cut.cuts = {0, 12, 40};
+  CHECK_THROWS_AS(segmentCut(cut, {}), InvalidInput);
+  cut.cuts = {0, 40, 16};
+  CHECK_THROWS_AS(segmentCut(cut, {}), InvalidInput);
+
+  MaskTree shell;
+  shell.fill(CoordBBox(Coord(0), Coord(0, 0, 39)), true);
+  shell.setValueOff(Coord(0, 0, 20));
+  SlabObject region = row(40, {0, 16, 40});
+  region.domain = Domain(shell);
+  CHECK_THROWS_AS(segmentCut(region, {}), InvalidInput);
+}
+
+TEST_CASE("slabs: an interrupter stops them", "[slabs]") {
+  MemoryScratch scratch;
+  StopAtOnce stop;
+  const auto ignore = [](size_t, const LeafIndex&, const VoxelArray<uint32_t>&) {};
+  CHECK_THROWS_AS(segmentSlabs(row(40, {0, 16, 40}), {}, scratch, ignore, &stop), Interrupted);
+}
