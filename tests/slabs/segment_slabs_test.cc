@@ -61,6 +61,7 @@ std::vector<int> randomCuts(const CoordBBox& box, Rng& rng) {
 struct Cut {
   SlabSegmentation result;
   Int32Grid::Ptr labels = Int32Grid::create();
+  std::vector<std::vector<uint32_t>> labelsOfSlab;
 };
 
 Cut segmentCut(const SlabObject& object, const SegmentOptions& options) {
@@ -72,6 +73,7 @@ Cut segmentCut(const SlabObject& object, const SegmentOptions& options) {
       segmentSlabs(object, options, scratch,
                    [&](size_t slab, const LeafIndex& index, const VoxelArray<uint32_t>& labels) {
                      if (slab != next++) throw std::logic_error("slabs are put in another order");
+                     cut.labelsOfSlab.emplace_back(labels.data(), labels.data() + labels.size());
                      for (size_t leaf = 0; leaf < index.leafCount(); ++leaf)
                        for (uint32_t i = 0; i < 512; ++i) {
                          const auto id = VoxelId(leaf * 512 + i);
@@ -240,6 +242,67 @@ TEST_CASE("slabs: what they do not know is refused", "[slabs]") {
   SlabObject region = row(40, {0, 16, 40});
   region.domain = Domain(shell);
   CHECK_THROWS_AS(segmentCut(region, {}), InvalidInput);
+}
+
+namespace {
+
+struct Killed {};
+
+/// Stops after so many changes, and goes on from there when it is used again.
+class MortalScratch : public MemoryScratch {
+ public:
+  int left = 0;
+  void write(const std::string& name, const std::vector<char>& bytes) override {
+    if (left-- <= 0) throw Killed();
+    MemoryScratch::write(name, bytes);
+  }
+  void remove(const std::string& name) override {
+    if (!has(name)) return;
+    if (left-- <= 0) throw Killed();
+    MemoryScratch::remove(name);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("slabs: what was stopped goes on to the same labels", "[slabs]") {
+  for (const uint64_t seed : {104003u, 104011u, 104026u, 104031u}) {
+    RandomCase c = randomCase(seed, Coord(7, 9, 44));
+    c.kind = VolumeKind::ballUnion;
+    Rng rng(seed);
+    c.object = randomVolume(c.kind, boxAt({-3, 2, -20}, {7, 9, 44}), rng);
+    c.domain = c.object.box();
+    SegmentOptions options = c.options;
+    options.boundary = Boundary::open;
+    options.gamma = 0;
+    options.tidy = 2;
+    const SlabObject object = cutObject(*maskOf(c), {-24, -8, 0, 16, 24}, domainOf(c));
+    const Cut expected = segmentCut(object, options);
+    // Stopped again and again. (A step that is done makes four changes at most.)
+    for (int every = 4; every < 60; every += every < 16 ? 1 : 7) {
+      MortalScratch scratch;
+      std::vector<std::vector<uint32_t>> labels(object.slabCount());
+      SlabSegmentation result;
+      int runs = 0;
+      for (bool done = false; !done && runs < 200; ++runs) {
+        scratch.left = every;
+        try {
+          result =
+              segmentSlabs(object, options, scratch,
+                           [&](size_t slab, const LeafIndex&, const VoxelArray<uint32_t>& values) {
+                             labels[slab].assign(values.data(), values.data() + values.size());
+                           });
+          done = true;
+        } catch (const Killed&) {
+        }
+      }
+      REQUIRE(runs < 200);
+      REQUIRE(result.grainVoxels == expected.result.grainVoxels);
+      REQUIRE(result.graph.edges == expected.result.graph.edges);
+      REQUIRE(result.counts.medialBalls == expected.result.counts.medialBalls);
+      REQUIRE(labels == expected.labelsOfSlab);
+    }
+  }
 }
 
 TEST_CASE("slabs: an interrupter stops them", "[slabs]") {

@@ -39,23 +39,23 @@ struct SlabSegmentation {
   double weightsError = 0;
 };
 
+/// Gets the labels of a slab by rank (leaf_index.h), 0 for none. The index has the leaves of the slab, and
+/// in them cavities, too.
+using PutSlabLabels =
+    std::function<void(size_t slab, const LeafIndex& index, const VoxelArray<uint32_t>& labels)>;
+
 /// segment() for an object that need not fit in memory: the same labels, bit for bit. One slab is
-/// worked on at a time; what is known of the others is in `scratch`. Memory: some 20 bytes for each
-/// object voxel of the largest slab, 8 bytes for each in the plane of a cut, and the graph of the whole.
+/// worked on at a time; what is known of the others is in `scratch`. Memory and proofs: README.md.
 ///
-/// What crosses a cut: how far the nearest background of each column is; the balls of a column that
-/// still win beyond the cut; where the voxels in the planes beside it flow; labels as far away as
-/// `tidy` has rounds, and pieces of grains.
-///
-/// `put` gets the labels of each slab, in the order of VoxelIds of an index of its leaves, 0 for
-/// none, from the lowest slab on.
+/// If the pieces of a run that did not end are in `scratch`, of the same object and options, it goes on
+/// where that stopped.
+/// @param put is called for each slab once, from the lowest on (not again for those that a run before
+///   had put); an object without voxels has none
 /// Options that keep grids, maxMemory and gamma have to be 0: they are not known here.
 /// @throw as segment(); InvalidInput for these options, cuts that are none, a region as domain,
-///   slabs lower than `tidy` has rounds, or balls that reach too far.
+///   slabs lower than `tidy` has rounds, or balls that reach too far; what scratch and put throw.
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
-                              Scratch& scratch,
-                              const std::function<void(size_t slab, const LeafIndex& index,
-                                                       const VoxelArray<uint32_t>& labels)>& put,
+                              Scratch& scratch, const PutSlabLabels& put,
                               Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

@@ -41,8 +41,8 @@ class ByteWriter {
   }
   void append(const void* data, size_t size) {
     if (size == 0) return;
-    const auto* first = static_cast<const char*>(data);
-    bytes_.insert(bytes_.end(), first, first + size);
+    bytes_.resize(bytes_.size() + size);
+    std::memcpy(bytes_.data() + bytes_.size() - size, data, size);
   }
 
   std::vector<char> bytes_;

@@ -78,6 +78,7 @@ void SlabTerminals::writeTo(ByteWriter& bytes) const {
   bytes.add(lowest);
   bytes.add(highest);
   bytes.add(balls);
+  bytes.add(largestSquaredDistance);
 }
 
 SlabTerminals SlabTerminals::readFrom(ByteReader& bytes) {
@@ -87,6 +88,7 @@ SlabTerminals SlabTerminals::readFrom(ByteReader& bytes) {
   result.lowest = bytes.vector<FaceVoxel>();
   result.highest = bytes.vector<FaceVoxel>();
   result.balls = bytes.value<int64_t>();
+  result.largestSquaredDistance = bytes.value<int32_t>();
   return result;
 }
 

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include "vdb_madf/method/merge.h"
+#include "vdb_madf/slabs/detail/slab_graph.h"
+#include "vdb_madf/slabs/detail/slab_work.h"
+
+namespace vdb_madf::detail {
+
+/// The labels of all slabs, from where their voxels flow to and which nodes of the graph are merged:
+/// tidied, counted in result.grainVoxels, and put.
+void labelSlabs(SlabWork& work, const SlabGraph& graph, const Merging& merging,
+                SlabSegmentation& result, const PutSlabLabels& put);
+
+}  // namespace vdb_madf::detail
