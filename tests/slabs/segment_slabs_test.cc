@@ -29,8 +29,7 @@ uint64_t fromEnvironment(const char* variable, uint64_t otherwise) {
 }
 
 /// The leaves of a mask in slabs with these cuts.
-SlabObject cutObject(const MaskGrid& mask, std::vector<int> cuts,
-                     const std::optional<Domain>& domain) {
+SlabObject cutObject(const MaskGrid& mask, std::vector<int> cuts) {
   std::vector<std::vector<LeafIndex::LeafVoxels>> leaves(cuts.size() - 1);
   const LeafIndex index(mask);
   for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
@@ -42,7 +41,7 @@ SlabObject cutObject(const MaskGrid& mask, std::vector<int> cuts,
   SlabObject object;
   object.cuts = std::move(cuts);
   object.leaves = [leaves](size_t slab) { return leaves[slab]; };
-  object.domain = domain;
+  object.about = openvdb::gridConstPtrCast<MaskGrid>(mask.copyGridWithNewTree());
   return object;
 }
 
@@ -60,29 +59,42 @@ std::vector<int> randomCuts(const CoordBBox& box, Rng& rng) {
 
 struct Cut {
   SlabSegmentation result;
-  Int32Grid::Ptr labels = Int32Grid::create();
-  std::vector<std::vector<uint32_t>> labelsOfSlab;
+  Int32Grid::Ptr labels;  ///< of all slabs; null without any
 };
+
+/// Adds the labels of a slab to those below it.
+void addSlab(Int32Grid::Ptr& labels, const Int32Grid::Ptr& slab) {
+  if (labels)
+    labels->tree().merge(slab->tree());
+  else
+    labels = slab;
+}
 
 Cut segmentCut(const SlabObject& object, const SegmentOptions& options) {
   Cut cut;
   MemoryScratch scratch;
-  auto tree = cut.labels->getAccessor();
   size_t next = 0;
   cut.result =
-      segmentSlabs(object, options, scratch,
-                   [&](size_t slab, const LeafIndex& index, const VoxelArray<uint32_t>& labels) {
-                     if (slab != next++) throw std::logic_error("slabs are put in another order");
-                     cut.labelsOfSlab.emplace_back(labels.data(), labels.data() + labels.size());
-                     for (size_t leaf = 0; leaf < index.leafCount(); ++leaf)
-                       for (uint32_t i = 0; i < 512; ++i) {
-                         const auto id = VoxelId(leaf * 512 + i);
-                         if (!(index.mask(leaf)[wordOf(id)] >> bitOf(id) & 1)) continue;
-                         if (const uint32_t label = labels[index.rank(id)])
-                           tree.setValue(index.coord(id), int32_t(label));
-                       }
-                   });
+      segmentSlabs(object, options, scratch, [&](size_t slab, const Int32Grid::Ptr& grain) {
+        if (slab != next++) throw std::logic_error("slabs are put in another order");
+        for (auto leaf = grain->tree().cbeginLeaf(); leaf; ++leaf)
+          if (leaf->origin().z() < object.cuts[slab] || leaf->origin().z() >= object.cuts[slab + 1])
+            throw std::logic_error("labels outside of their slab");
+        addSlab(cut.labels, grain);
+      });
   return cut;
+}
+
+/// Are they the same voxels, values and metadata?
+bool areSame(const Int32Grid& a, const Int32Grid& b) {
+  if (a.activeVoxelCount() != b.activeVoxelCount() || a.transform() != b.transform()) return false;
+  const auto tree = b.getConstAccessor();
+  for (auto voxel = a.cbeginValueOn(); voxel; ++voxel)
+    if (tree.getValue(voxel.getCoord()) != *voxel) return false;
+  if (a.metaCount() != b.metaCount()) return false;
+  for (auto meta = a.beginMeta(); meta != a.endMeta(); ++meta)
+    if (!b[meta->first] || *b[meta->first] != *meta->second) return false;
+  return true;
 }
 
 std::string difference(const Segmentation& whole, const Cut& cut) {
@@ -106,11 +118,8 @@ std::string difference(const Segmentation& whole, const Cut& cut) {
   if (!(whole.graph.nodes == cut.result.graph.nodes)) text += "other nodes\n";
   if (!(whole.graph.edges == cut.result.graph.edges)) text += "other edges\n";
   if (whole.grainVoxels != cut.result.grainVoxels) text += "other voxels of grains\n";
-  compare("labelled voxels", int64_t(whole.grain->activeVoxelCount()),
-          int64_t(cut.labels->activeVoxelCount()));
-  const auto tree = cut.labels->getConstAccessor();
-  for (auto voxel = whole.grain->cbeginValueOn(); voxel; ++voxel)
-    if (tree.getValue(voxel.getCoord()) != *voxel) return text + "other labels\n";
+  if (cut.labels && !areSame(*whole.grain, *cut.labels)) text += "other labels or metadata\n";
+  if (!cut.labels && whole.counts.objectVoxels > 0) text += "no labels\n";
   return text;
 }
 
@@ -140,7 +149,7 @@ Comparison compareSlabs(const RandomCase& c) {
     refused = e.what();
   }
   try {
-    const SlabObject object = cutObject(*mask, randomCuts(box, rng), options.domain);
+    const SlabObject object = cutObject(*mask, randomCuts(box, rng));
     for (size_t s = 0; s < object.slabCount(); ++s) result.slabs += !object.leaves(s).empty();
     cut = withThreads(c.threads, [&] { return segmentCut(object, options); });
   } catch (const std::logic_error&) {
@@ -183,7 +192,7 @@ void requireSame(uint64_t first, uint64_t cases, int height) {
 SlabObject row(int length, std::vector<int> cuts) {
   MaskGrid mask;
   mask.tree().fill(CoordBBox(Coord(0), Coord(0, 0, length - 1)), true);
-  return cutObject(mask, std::move(cuts), std::nullopt);
+  return cutObject(mask, std::move(cuts));
 }
 
 }  // namespace
@@ -199,21 +208,23 @@ TEST_CASE("slabs: labels, graph and counts of tall objects are those of the whol
 }
 
 TEST_CASE("slabs: an empty object has no grains, whatever the cuts", "[slabs]") {
-  MaskGrid mask;
-  const SlabSegmentation result =
-      segmentCut(cutObject(mask, {0, 8, 24}, Domain(CoordBBox(Coord(0), Coord(20)))), {}).result;
+  SegmentOptions options;
+  options.domain = CoordBBox(Coord(0), Coord(20));
+  const SlabSegmentation result = segmentCut(cutObject(MaskGrid(), {0, 8, 24}), options).result;
   CHECK(result.counts.objectVoxels == 0);
   CHECK(result.counts.grains == 0);
   CHECK(result.graph.nodes.empty());
   CHECK(result.open);
+  CHECK(segmentCut(cutObject(MaskGrid(), {0, 8, 24}), options).labels->activeVoxelCount() == 0);
 }
 
 TEST_CASE("slabs: weights follow from the edges and the whole object", "[slabs]") {
   SlabObject object = row(40, {0, 16, 40});
-  object.edges = {0.5, 0.5, 1.2};
+  const auto about = MaskGrid::create();
+  about->setTransform(openvdb::math::Transform::Ptr(new openvdb::math::Transform(
+      openvdb::math::MapBase::Ptr(new openvdb::math::ScaleMap(openvdb::Vec3d(0.5, 0.5, 1.2))))));
+  object.about = about;
   CHECK(segmentCut(object, {}).result.weights == VoxelWeights{25, 25, 144});
-  object.edges = {1, -1, 1};
-  CHECK_THROWS_AS(segmentCut(object, {}), InvalidInput);
 }
 
 TEST_CASE("slabs: what they do not know is refused", "[slabs]") {
@@ -239,9 +250,9 @@ TEST_CASE("slabs: what they do not know is refused", "[slabs]") {
   MaskTree shell;
   shell.fill(CoordBBox(Coord(0), Coord(0, 0, 39)), true);
   shell.setValueOff(Coord(0, 0, 20));
-  SlabObject region = row(40, {0, 16, 40});
-  region.domain = Domain(shell);
-  CHECK_THROWS_AS(segmentCut(region, {}), InvalidInput);
+  options = {};
+  options.domain = Domain(shell);
+  CHECK_THROWS_AS(segmentCut(object, options), InvalidInput);
 }
 
 namespace {
@@ -276,12 +287,13 @@ TEST_CASE("slabs: what was stopped goes on to the same labels", "[slabs]") {
     options.boundary = Boundary::open;
     options.gamma = 0;
     options.tidy = 2;
-    const SlabObject object = cutObject(*maskOf(c), {-24, -8, 0, 16, 24}, domainOf(c));
+    options.domain = domainOf(c);
+    const SlabObject object = cutObject(*maskOf(c), {-24, -8, 0, 16, 24});
     const Cut expected = segmentCut(object, options);
     // Stopped again and again. (A step that is done makes four changes at most.)
     for (int every = 4; every < 60; every += every < 16 ? 1 : 7) {
       MortalScratch scratch;
-      std::vector<std::vector<uint32_t>> labels(object.slabCount());
+      std::vector<Int32Grid::Ptr> slabs(object.slabCount());
       SlabSegmentation result;
       int runs = 0;
       for (bool done = false; !done && runs < 200; ++runs) {
@@ -289,18 +301,18 @@ TEST_CASE("slabs: what was stopped goes on to the same labels", "[slabs]") {
         try {
           result =
               segmentSlabs(object, options, scratch,
-                           [&](size_t slab, const LeafIndex&, const VoxelArray<uint32_t>& values) {
-                             labels[slab].assign(values.data(), values.data() + values.size());
-                           });
+                           [&](size_t slab, const Int32Grid::Ptr& grain) { slabs[slab] = grain; });
           done = true;
         } catch (const Killed&) {
         }
       }
+      Int32Grid::Ptr labels;
+      for (const Int32Grid::Ptr& slab : slabs) addSlab(labels, slab);
       REQUIRE(runs < 200);
       REQUIRE(result.grainVoxels == expected.result.grainVoxels);
       REQUIRE(result.graph.edges == expected.result.graph.edges);
       REQUIRE(result.counts.medialBalls == expected.result.counts.medialBalls);
-      REQUIRE(labels == expected.labelsOfSlab);
+      REQUIRE(areSame(*labels, *expected.labels));
     }
   }
 }
@@ -308,6 +320,6 @@ TEST_CASE("slabs: what was stopped goes on to the same labels", "[slabs]") {
 TEST_CASE("slabs: an interrupter stops them", "[slabs]") {
   MemoryScratch scratch;
   StopAtOnce stop;
-  const auto ignore = [](size_t, const LeafIndex&, const VoxelArray<uint32_t>&) {};
+  const auto ignore = [](size_t, const Int32Grid::Ptr&) {};
   CHECK_THROWS_AS(segmentSlabs(row(40, {0, 16, 40}), {}, scratch, ignore, &stop), Interrupted);
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/method/detail/segment_options.h"
 #include "vdb_madf/slabs/detail/slab_flow.h"
 #include "vdb_madf/slabs/detail/slab_labels.h"
@@ -21,8 +22,6 @@ void checkSlabOptions(const SlabObject& object, const SegmentOptions& options) {
     throw InvalidInput("the filter by cells (gamma) does not work in slabs yet: leave it out");
   if (options.keepDistance || options.keepPower || options.keepManifold || options.keepBalls)
     throw InvalidInput("slabs give labels alone: keep no other grids");
-  if (object.domain && !object.domain->isBox())
-    throw InvalidInput("a region cannot be cut into slabs yet: take a box as domain");
   const std::vector<int>& cuts = object.cuts;
   for (size_t i = 0; i < cuts.size(); ++i)
     if ((cuts[i] & 7) != 0 || (i > 0 && cuts[i] <= cuts[i - 1]))
@@ -39,11 +38,12 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
                               Scratch& scratch, const PutSlabLabels& put,
                               Interrupter* interrupter) {
   checkSlabOptions(object, options);
-  detail::SlabWork work{object, options, scratch, interrupter};
   SlabSegmentation result;
+  result.domain = options.domain ? options.domain : storedDomain(*object.about);
+  if (result.domain && !result.domain->isBox())
+    throw InvalidInput("a region cannot be cut into slabs yet: take a box as domain");
+  detail::SlabWork work{object, result.domain, options, scratch, interrupter};
   detail::SlabGraph graph = detail::flowInSlabs(work, result);
-  if (result.counts.objectVoxels == 0) return result;
-
   result.graph = graph.finish();
   result.graph.weights = result.weights;
   const Merging merging = merge(result.graph, options.merge);

@@ -3,7 +3,6 @@
 
 #pragma once
 
-#include <array>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -21,8 +20,8 @@ struct SlabObject {
   std::vector<int> cuts;
   /// The leaves of a slab that hold object, ascending by origin. Called more than once.
   std::function<std::vector<LeafIndex::LeafVoxels>(size_t slab)> leaves;
-  std::optional<Domain> domain;
-  std::array<double, 3> edges{1, 1, 1};  ///< of a voxel, in any unit
+  /// Its transform and metadata are those of the object, as segment() reads them; it has no voxels.
+  MaskGrid::ConstPtr about;
 
   size_t slabCount() const { return cuts.empty() ? 0 : cuts.size() - 1; }
 };
@@ -35,14 +34,13 @@ struct SlabSegmentation {
   int64_t fillHoles = 0;
   int tidy = 0;
   bool open = false;
+  std::optional<Domain> domain;
   VoxelWeights weights;
   double weightsError = 0;
 };
 
-/// Gets the labels of a slab by rank (leaf_index.h), 0 for none. The index has the leaves of the slab, and
-/// in them cavities, too.
-using PutSlabLabels =
-    std::function<void(size_t slab, const LeafIndex& index, const VoxelArray<uint32_t>& labels)>;
+/// Gets the labels of a slab: the part of Segmentation::grain that lies in it, with its metadata.
+using PutSlabLabels = std::function<void(size_t slab, Int32Grid::Ptr grain)>;
 
 /// segment() for an object that need not fit in memory: the same labels, bit for bit. One slab is
 /// worked on at a time; what is known of the others is in `scratch`. Memory and proofs: README.md.
@@ -50,7 +48,7 @@ using PutSlabLabels =
 /// If the pieces of a run that did not end are in `scratch`, of the same object and options, it goes on
 /// where that stopped.
 /// @param put is called for each slab once, from the lowest on (not again for those that a run before
-///   had put); an object without voxels has none
+///   had put)
 /// Options that keep grids, maxMemory and gamma have to be 0: they are not known here.
 /// @throw as segment(); InvalidInput for these options, cuts that are none, a region as domain,
 ///   slabs lower than `tidy` has rounds, or balls that reach too far; what scratch and put throw.

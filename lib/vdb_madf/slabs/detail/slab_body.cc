@@ -19,8 +19,9 @@ SlabBody::SlabBody(const std::vector<LeafIndex::LeafVoxels>& object,
   cavities = cavityVoxels(index, filled);
 }
 
-std::vector<LeafIndex::LeafVoxels> slabHoles(const SlabObject& object, size_t slab, bool open,
-                                             int64_t fillHoles, Interrupter* interrupter) {
+std::vector<LeafIndex::LeafVoxels> slabHoles(const SlabObject& object, std::optional<Domain> domain,
+                                             size_t slab, bool open, int64_t fillHoles,
+                                             Interrupter* interrupter) {
   const std::vector<int>& cuts = object.cuts;
   const auto inWindow = [&](int64_t begin, int64_t end) {
     return end + fillHoles > cuts[slab] && begin - fillHoles < cuts[slab + 1];
@@ -34,7 +35,6 @@ std::vector<LeafIndex::LeafVoxels> slabHoles(const SlabObject& object, size_t sl
   if (window.empty()) return {};
   std::sort(window.begin(), window.end(),
             [](const auto& a, const auto& b) { return a.origin < b.origin; });
-  std::optional<Domain> domain = object.domain;
   if (domain) {
     // Of leaves: as far as `window` knows the object.
     CoordBBox box = domain->box();

@@ -24,8 +24,9 @@ struct SlabBody {
 /// The voxels in a slab of the cavities of fewer than `fillHoles` voxels. These reach less than that
 /// beyond its cuts, so it is enough to look that far: what lies in the slab and reaches further is no
 /// cavity.
-std::vector<LeafIndex::LeafVoxels> slabHoles(const SlabObject& object, size_t slab, bool open,
-                                             int64_t fillHoles, Interrupter* interrupter);
+std::vector<LeafIndex::LeafVoxels> slabHoles(const SlabObject& object, std::optional<Domain> domain,
+                                             size_t slab, bool open, int64_t fillHoles,
+                                             Interrupter* interrupter);
 
 /// Counts cavities, which may lie in several slabs.
 class HoleCount {

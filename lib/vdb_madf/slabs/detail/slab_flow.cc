@@ -42,12 +42,12 @@ class SlabFlow {
  private:
   /// Counts, boundary, cavities, weights.
   void prepare() {
-    result_.fillHoles = work_.options.fillHoles.value_or(defaultFillHoles(work_.object.domain));
+    result_.fillHoles = work_.options.fillHoles.value_or(defaultFillHoles(work_.domain));
     result_.tidy = work_.options.tidy;
     SegmentCounts& counts = result_.counts;
     for (size_t s = 0; s < work_.slabCount(); ++s) {
       const LeafIndex index(LeafIndex(), work_.object.leaves(s));
-      work_.obstacles = resolveBoundary(index, work_.options.boundary, work_.object.domain);
+      work_.obstacles = resolveBoundary(index, work_.options.boundary, work_.domain);
       counts.objectVoxels += index.voxelCount();
       counts.leaves += int64_t(index.leafCount());
     }
@@ -55,8 +55,10 @@ class SlabFlow {
     fillHoles();
     CoordBBox extent;
     for (size_t s = 0; s < work_.slabCount(); ++s) extent.expand(work_.body(s).index.boundingBox());
-    const WeightsOfEdges weights =
-        resolveWeights(work_.options.weights, work_.object.edges, extent.dim());
+    const std::array<double, 3> edges = work_.options.weights
+                                            ? std::array<double, 3>{1, 1, 1}
+                                            : voxelEdges(work_.object.about->transform());
+    const WeightsOfEdges weights = resolveWeights(work_.options.weights, edges, extent.dim());
     result_.weights = weights.weights;
     result_.weightsError = weights.error;
     if (work_.obstacles.open && counts.objectVoxels > 0 &&
@@ -77,7 +79,8 @@ class SlabFlow {
       if (!work_.has("cavities", s)) {
         std::vector<LeafIndex::LeafVoxels> found;
         if (any)
-          found = slabHoles(work_.object, s, result_.open, result_.fillHoles, work_.interrupter);
+          found = slabHoles(work_.object, work_.domain, s, result_.open, result_.fillHoles,
+                            work_.interrupter);
         work_.writeVector("cavities", s, found);
       }
       holes.add(work_.readVector<LeafIndex::LeafVoxels>("cavities", s), work_.begin(s),

@@ -7,8 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/leaves/leaf_grid.h"
 #include "vdb_madf/method/detail/manifold_labels.h"
 #include "vdb_madf/method/detail/tidy_steps.h"
+#include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/slabs/detail/slab_pieces.h"
 #include "vdb_madf/slabs/detail/slab_smoothing.h"
 
@@ -23,6 +26,10 @@ class SlabLabels {
       : work_(work), graph_(graph), merging_(merging), result_(result) {}
 
   void run(const PutSlabLabels& put) {
+    if (result_.counts.objectVoxels == 0) {
+      for (size_t s = 0; s < work_.slabCount(); ++s) put(s, toGrid(SlabBody(), {}));
+      return;
+    }
     const bool isTidied = work_.options.tidy > 0;
     if (isTidied && !work_.scratch.has("loose")) tidyLabels();
     std::vector<LooseVoxel> loose;  // ascending by slab
@@ -37,8 +44,9 @@ class SlabLabels {
             isTidied ? work_.read("labels", s).voxelArray<uint32_t>() : mergedLabels(s, slab);
         for (auto voxel = first; voxel != next; ++voxel)
           labels[slab.index.rank(*slab.index.findVoxel(voxel->position))] = voxel->label;
-        put(s, slab.index, labels);
-        work_.writeVector("counts", s, countLabels(labels));
+        const auto counts = countLabels(labels);
+        put(s, toGrid(slab, std::move(labels)));
+        work_.writeVector("counts", s, counts);
       }
       for (const auto& [label, voxels] : work_.readVector<LabelCount>("counts", s))
         result_.grainVoxels[label - 1] += voxels;
@@ -57,6 +65,22 @@ class SlabLabels {
       labels[i] = uint32_t(merging_.grainOfNode[nodes[(labels[i] & ~Flow::kOwnCell) - 1]]);
     for (const VoxelId id : slab.cavities) labels[slab.index.rank(id)] = 0;
     return labels;
+  }
+
+  Int32Grid::Ptr toGrid(const SlabBody& slab, VoxelArray<uint32_t> labels) const {
+    const Int32Grid::Ptr grain =
+        vdb_madf::toGrid(slab.index, std::move(labels), "grain", work_.interrupter);
+    removeVoxels(*grain, slab.index, slab.cavities);
+    copyProvenance(*work_.object.about, *grain);
+    if (work_.domain) setDomain(*grain, *work_.domain);
+    Segmentation about;
+    about.counts = result_.counts;
+    about.fillHoles = result_.fillHoles;
+    about.tidy = result_.tidy;
+    about.open = result_.open;
+    about.weights = result_.weights;
+    describeSegmentation(*grain, work_.options, about);
+    return grain;
   }
 
   struct LabelCount {

@@ -17,6 +17,7 @@ namespace vdb_madf::detail {
 /// and the number of the slab; a step whose last piece is there is done, be it by a run before.
 struct SlabWork {
   const SlabObject& object;
+  std::optional<Domain> domain;
   const SegmentOptions& options;
   Scratch& scratch;
   Interrupter* interrupter;
