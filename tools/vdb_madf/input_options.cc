@@ -232,12 +232,17 @@ openvdb::GridBase::Ptr chooseGrid(const InputOptions& input,
 }
 
 MaskGrid::Ptr loadObject(const InputOptions& input, Progress* progress) {
+  return loadObject(input, input.volume(progress), progress);
+}
+
+MaskGrid::Ptr loadObject(const InputOptions& input, const VolumeOptions& options,
+                         Progress* progress) {
   if (!isVdb(input)) checkNoGrid(input, "--grid");
   const MaskGrid::Ptr object = withGridOption(input, "--grid", [&] {
     return withSelectionOptions(
-        input, [&] { return vdb_madf::loadObject(input.path, input.volume(progress), progress); });
+        input, [&] { return vdb_madf::loadObject(input.path, options, progress); });
   });
-  if (input.selection && object->empty())
+  if (input.selection && object->empty() && !options.takeLayer)
     progress->note(input.path +
                    (input.gray.despeckle > 0
                         ? ": nothing is left after --despeckle, or was selected"

@@ -71,6 +71,8 @@ void checkNoGrid(const InputOptions& input, const std::string& gridOption);
 openvdb::GridBase::Ptr chooseGrid(const InputOptions& input,
                                   const std::vector<openvdb::GridBase::Ptr>& grids);
 MaskGrid::Ptr loadObject(const InputOptions& input, Progress* progress);
+MaskGrid::Ptr loadObject(const InputOptions& input, const VolumeOptions& options,
+                         Progress* progress);
 Int32Grid::Ptr loadLabels(const InputOptions& input, const std::string& gridOption,
                           Progress* progress);
 

@@ -20,6 +20,7 @@
 #include "merge_options.h"
 #include "outputs.h"
 #include "parse.h"
+#include "segment_slabs.h"
 #include "segment_summary.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
@@ -46,12 +47,14 @@ void parse(SegmentArguments& o) {
   if (!o.tables.empty())
     for (const std::string& path : MeasurementTables::paths(o.tables))
       o.input.outputs.push_back(path);
-  o.input.longestSide = kMaxExtent;
+  o.input.longestSide = hasSlabsEnding(o.out) ? kMaxImageSide : kMaxExtent;
   o.input.parse();
   if (!o.maxMemory.empty()) o.segment.maxMemory = parseMemory(o.maxMemory);
   if (o.out.empty() && !o.dryRun) throw WrongUsage("OUT is required (or --dry-run)");
-  if (!o.out.empty()) checkVolumeEnding(o.out);
-  if (!o.out.empty() && !hasVdbEnding(o.out) && !o.keep.empty())
+  checkSlabArguments(o);
+  const bool inSlabs = hasSlabsEnding(o.out);
+  if (!o.out.empty() && !inSlabs) checkVolumeEnding(o.out);
+  if (!o.out.empty() && !inSlabs && !hasVdbEnding(o.out) && !o.keep.empty())
     throw WrongUsage("--keep is for .vdb files, and " + o.out +
                      " takes the labels alone: leave it out, or write a .vdb and convert it");
   if (o.paper) {
@@ -112,6 +115,7 @@ void printEstimate(const SegmentArguments& o, const Common& common, const MaskGr
 }
 
 void run(const SegmentArguments& o, const Common& common) {
+  if (hasSlabsEnding(o.out)) return runInSlabs(o, common);
   const Clock::time_point start = Clock::now();
   SegmentTiming timing;
   if (!o.dryRun) checkWritable(o.out);
@@ -179,7 +183,7 @@ void addSegment(Verb command, Common& common, Action& action) {
                       "vdb_madf segment scan.tif grains.vdb --phase 1 --voxel-size 8.5um");
   verb.option("IN", o->input.path, "any readable volume").required();
   verb.option("OUT", o->out,
-              "gets the labels: .vdb (Int32 grid 'grain'), or an image: .tif, .npy ...");
+              "gets the labels: .vdb (Int32 grid 'grain'), an image: .tif, .npy ..., or .slabs");
   o->input.addSelection(verb);
   o->input.addRaw(verb);
   o->input.addVoxelSize(verb);
@@ -201,6 +205,13 @@ void addSegment(Verb command, Common& common, Action& action) {
   verb.option("--max-memory", o->maxMemory,
               "refuse what needs more, such as 12GiB (default: what the machine has free)")
       .typeName("SIZE");
+  verb.option("--slab-height", o->slabHeight,
+              "OUT.slabs: height of a slab, voxels (default: what --max-memory allows)")
+      .range(0, kMaxImageSide);
+  verb.option("--scratch", o->scratch,
+              "OUT.slabs: folder for what is done so far (default: beside it)")
+      .typeName("DIR");
+  verb.flag("--resume", o->resume, "OUT.slabs: go on with what a run left that did not end");
   verb.flag("--dry-run", o->dryRun, "only say how much memory it would take");
   verb.onParsed([o, &common, &action] {
     parse(*o);

@@ -21,7 +21,7 @@ namespace {
 /// What to turn if the grains are hardly true ones.
 std::vector<std::string> hints(const SegmentOptions& options, const SegmentSummary& summary) {
   const int64_t grains = summary.counts.grains;
-  const LabelFlaws& flaws = summary.flaws;
+  const LabelFlaws& flaws = *summary.flaws;
   std::vector<std::string> all;
   const auto share = [&](int64_t part) {
     return std::to_string(part) + " of " + std::to_string(grains) + " grains";
@@ -52,24 +52,31 @@ std::optional<double> SegmentSummary::porosity() const {
   return 1 - double(counts.objectVoxels) / double(domain->voxelCount());
 }
 
-SegmentSummary summarize(const SegmentArguments& o, const Common& common, const Segmentation& s,
-                         const SegmentTiming& timing) {
+namespace {
+
+/// What a segmentation says itself; \p grid has the metadata of its object.
+template <typename S>
+SegmentSummary summaryOf(const S& s, const openvdb::GridBase& grid, const Common& common) {
   SegmentSummary summary;
   summary.counts = s.counts;
   summary.sizes = grainSizes(s.grainVoxels);
-  summary.flaws = s.flaws;
   summary.fillHoles = s.fillHoles;
   summary.domain = s.domain;
   summary.weights = s.weights;
   summary.weightsError = s.weightsError;
-  summary.voxelSize = storedVoxelSize(*s.grain);
-  summary.objectSteps = objectSteps(*s.grain);
-  if (const auto threshold = s.grain->getMetadata<openvdb::DoubleMetadata>(kThresholdKey))
+  summary.voxelSize = storedVoxelSize(grid);
+  summary.objectSteps = objectSteps(grid);
+  if (const auto threshold = grid.getMetadata<openvdb::DoubleMetadata>(kThresholdKey))
     summary.threshold = threshold->value();
   summary.open = s.open;
   summary.threads = usedThreads(common.threads);
+  return summary;
+}
+
+void addTiming(const SegmentArguments& o, const SegmentTiming& timing,
+               const std::vector<StageTime>& stages, SegmentSummary& summary) {
   summary.seconds.emplace_back("read", timing.read);
-  for (const StageTime& stage : s.times) {
+  for (const StageTime& stage : stages) {
     summary.seconds.emplace_back(stage.stage, stage.seconds);
     summary.peakBytesUntil.emplace_back(stage.stage, stage.peakBytes);
   }
@@ -77,7 +84,23 @@ SegmentSummary summarize(const SegmentArguments& o, const Common& common, const 
   summary.seconds.emplace_back("write", timing.write);
   summary.seconds.emplace_back("total", timing.total);
   summary.peakBytes = peakMemory();
+}
+
+}  // namespace
+
+SegmentSummary summarize(const SegmentArguments& o, const Common& common, const Segmentation& s,
+                         const SegmentTiming& timing) {
+  SegmentSummary summary = summaryOf(s, *s.grain, common);
+  summary.flaws = s.flaws;
+  addTiming(o, timing, s.times, summary);
   summary.hints = hints(o.segment, summary);
+  return summary;
+}
+
+SegmentSummary summarize(const SegmentArguments& o, const Common& common, const SlabSegmentation& s,
+                         const openvdb::GridBase& object, const SegmentTiming& timing) {
+  SegmentSummary summary = summaryOf(s, object, common);
+  addTiming(o, timing, {}, summary);
   return summary;
 }
 
@@ -110,10 +133,12 @@ Json toJson(const SegmentArguments& o, const SegmentSummary& summary) {
   }
   json["grains_under_100_voxels"] = summary.sizes.dustGrains;
   json["voxels_in_grains_under_100_voxels"] = summary.sizes.dustVoxels;
-  json["crumbs"] = summary.flaws.crumbs;
-  json["specks"] = summary.flaws.specks;
-  json["slivers"] = summary.flaws.slivers;
-  json["grains_in_pieces"] = summary.flaws.inPieces;
+  if (summary.flaws) {
+    json["crumbs"] = summary.flaws->crumbs;
+    json["specks"] = summary.flaws->specks;
+    json["slivers"] = summary.flaws->slivers;
+    json["grains_in_pieces"] = summary.flaws->inPieces;
+  }
   json["grain_diameter_d10_voxels"] = summary.sizes.d10;
   json["grain_diameter_d50_voxels"] = summary.sizes.d50;
   json["grain_diameter_d90_voxels"] = summary.sizes.d90;
@@ -174,11 +199,12 @@ void print(const SegmentArguments& o, const Common& common, const SegmentSummary
   std::printf("  dust             %s under 100 voxels, %.3f %% of the object\n",
               counted(sizes.dustGrains, "grain").c_str(),
               100 * double(sizes.dustVoxels) / std::max(1.0, double(counts.objectVoxels)));
-  std::printf("  flaws            %s, %s, %s, %s in pieces\n",
-              counted(summary.flaws.crumbs, "crumb").c_str(),
-              counted(summary.flaws.specks, "speck").c_str(),
-              counted(summary.flaws.slivers, "sliver").c_str(),
-              counted(summary.flaws.inPieces, "grain").c_str());
+  if (summary.flaws)
+    std::printf("  flaws            %s, %s, %s, %s in pieces\n",
+                counted(summary.flaws->crumbs, "crumb").c_str(),
+                counted(summary.flaws->specks, "speck").c_str(),
+                counted(summary.flaws->slivers, "sliver").c_str(),
+                counted(summary.flaws->inPieces, "grain").c_str());
   if (summary.fillHoles > 1)
     std::printf("  cavities         %lld under %lld voxels filled for the distance, %lld voxels\n",
                 count(counts.cavities), count(summary.fillHoles), count(counts.cavityVoxels));

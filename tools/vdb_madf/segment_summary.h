@@ -14,6 +14,7 @@
 #include "merge_options.h"
 #include "vdb_madf/measure/grain_sizes.h"
 #include "vdb_madf/method/segment.h"
+#include "vdb_madf/slabs/segment_slabs.h"
 
 namespace vdb_madf::tools {
 
@@ -24,6 +25,9 @@ struct SegmentArguments {
   std::string fillHoles, tidy;
   MergeArguments merge;
   bool paper = false, dryRun = false;
+  int slabHeight = 0;  ///< 0: as memory allows
+  std::string scratch;
+  bool resume = false;
   SegmentOptions segment;
 };
 
@@ -35,7 +39,7 @@ struct SegmentTiming {
 struct SegmentSummary {
   SegmentCounts counts;
   GrainSizes sizes;
-  LabelFlaws flaws;
+  std::optional<LabelFlaws> flaws;  ///< not counted in slabs
   int64_t fillHoles = 0;
   std::optional<Domain> domain;
   VoxelWeights weights;     ///< of squared lengths along x, y, z
@@ -55,6 +59,9 @@ struct SegmentSummary {
 
 SegmentSummary summarize(const SegmentArguments& o, const Common& common, const Segmentation& s,
                          const SegmentTiming& timing);
+/// \p object: its metadata
+SegmentSummary summarize(const SegmentArguments& o, const Common& common, const SlabSegmentation& s,
+                         const openvdb::GridBase& object, const SegmentTiming& timing);
 Json toJson(const SegmentArguments& o, const SegmentSummary& summary);
 void print(const SegmentArguments& o, const Common& common, const SegmentSummary& summary);
 

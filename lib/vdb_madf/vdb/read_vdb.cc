@@ -32,6 +32,7 @@
 #include "vdb_madf/vdb/detail/region_grid.h"
 #include "vdb_madf/vdb/detail/uuid_place.h"
 #include "vdb_madf/vdb/detail/vdb_tree_check.h"
+#include "vdb_madf/vdb/slab_folder.h"
 
 namespace vdb_madf {
 
@@ -373,11 +374,29 @@ std::vector<GridBase::Ptr> readWith(const std::string& path, const VdbReadOption
 
 std::vector<GridBase::Ptr> readVdb(const std::string& path, const VdbReadOptions& options,
                                    Interrupter* interrupter) {
-  return readWith(path, options, interrupter, [](Reader& reader) { return reader.read(); });
+  const auto readFile = [&](const std::string& file) {
+    return readWith(file, options, interrupter, [](Reader& reader) { return reader.read(); });
+  };
+  if (!isSlabFolder(path)) return readFile(path);
+  const std::vector<std::string> files = slabFiles(path);
+  std::vector<GridBase::Ptr> grids;
+  for (size_t slab = 0; slab < files.size(); ++slab) {
+    const std::vector<GridBase::Ptr> next = readFile(files[slab]);
+    unmarkSlab(next, slab, files.size(), files[slab]);
+    addSlab(grids, next, files[slab]);
+  }
+  return grids;
 }
 
 std::vector<GridBase::Ptr> readVdbHeaders(const std::string& path, Interrupter* interrupter) {
-  return readWith(path, {}, interrupter, [](Reader& reader) { return reader.readHeaders(); });
+  const auto readFile = [&](const std::string& file) {
+    return readWith(file, {}, interrupter, [](Reader& reader) { return reader.readHeaders(); });
+  };
+  if (!isSlabFolder(path)) return readFile(path);
+  const std::vector<std::string> files = slabFiles(path);
+  const std::vector<GridBase::Ptr> grids = readFile(files[0]);
+  unmarkSlab(grids, 0, files.size(), files[0]);
+  return grids;
 }
 
 }  // namespace vdb_madf

@@ -34,6 +34,7 @@ struct VdbReadOptions {
 /// the file holds in a Bool grid, has it again: storedDomain(). The structure of each grid is checked
 /// before OpenVDB reads it; linked against OpenVDB before 11, a program also needs the checked
 /// decompression of tools/ for files that may change while they are read.
+/// A folder of slabs (slab_folder.h) is one such volume; its grids have to fit in memory together.
 /// @throw IoError, one line that names the file, if it is missing, truncated, corrupt or not VDB, has
 ///   voxels that are no cubes, or names a region that it does not hold; Interrupted.
 std::vector<openvdb::GridBase::Ptr> readVdb(const std::string& path,

@@ -5,6 +5,7 @@
 
 #include <openvdb/Metadata.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -84,24 +85,34 @@ struct PartMasks {
   int64_t leftOut = 0;  ///< of the first
 };
 
-/// One mask a selection, of the part of the image.
+/// One mask a selection, of the part of the image. `take` gets the layers of the first.
 PartMasks readPart(ImageReader& image, const std::vector<Selection>& selections, const Part& part,
-                   Interrupter* interrupter) {
-  if (!part) return {readMasks(image, selections, interrupter), 0};
+                   Interrupter* interrupter, const TakeLayer& take = nullptr) {
+  int64_t leftOutOfLayers = 0;
+  LayerRead layerRead;
+  if (take)
+    layerRead = [&](const std::vector<MaskGrid::Ptr>& masks) {
+      if (part) leftOutOfLayers += detail::cutTo(*part, *masks[0]);
+      take(masks[0]->tree());
+      masks[0]->clear();
+    };
+  if (!part) return {readMasks(image, selections, interrupter, std::nullopt, layerRead), 0};
   PartMasks result{
-      readMasks(image, selections, interrupter, detail::boxOf(*part, image.info().size)), 0};
+      readMasks(image, selections, interrupter, detail::boxOf(*part, image.info().size), layerRead),
+      leftOutOfLayers};
   for (const MaskGrid::Ptr& mask : result.masks) {
     const int64_t leftOut = detail::cutTo(*part, *mask);
-    if (mask == result.masks[0] && !selections[0].invert) result.leftOut = leftOut;
+    if (mask == result.masks[0]) result.leftOut += leftOut;
   }
+  if (selections[0].invert) result.leftOut = 0;
   return result;
 }
 
 /// What is not 0 (or, inverted, what is), unless that would be a guess.
 ImageObject plainMask(ImageReader& image, const Selection& nonZero, const Part& part,
-                      Interrupter* interrupter) {
+                      Interrupter* interrupter, const TakeLayer& take) {
   detail::CountedImage counted(image, part ? detail::rowsOf(*part, image.info().size) : nullptr);
-  const PartMasks read = readPart(counted, {nonZero}, part, interrupter);
+  const PartMasks read = readPart(counted, {nonZero}, part, interrupter, take);
   const Histogram histogram = counted.histogram();
   const ImageKind kind = kindOf(histogram);
   if (kind == ImageKind::gray) throw SelectionNeeded(image.path() + ": " + grayRefusal(histogram));
@@ -207,7 +218,8 @@ std::unique_ptr<ImageReader> filteredImage(std::unique_ptr<ImageReader> image,
 
 ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& open,
                         const std::optional<Selection>& selection, const GrayOptions& gray,
-                        const std::optional<ScanPart>& part, Interrupter* interrupter) {
+                        const std::optional<ScanPart>& part, Interrupter* interrupter,
+                        const TakeLayer& take) {
   const auto image = [&] { return filteredImage(open(), gray); };
   const bool automatic = gray.automatic != AutomaticThreshold::none;
   Selection chosen = selection.value_or(Selection{});
@@ -218,18 +230,37 @@ ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& ope
     chosen.invert = invert;
   }
   detail::WorkPart reading(interrupter, automatic ? 50 : 0, 100);
+  const bool needsWhole = gray.low || gray.despeckle > 1;
+  const TakeLayer takeRead = needsWhole ? nullptr : take;
   ImageObject object;
   if (gray.low)
     object = hysteresisMask(*image(), *gray.low, chosen, part, &reading);
   else if (chosen.kind == Selection::Kind::nonZero)
-    object = plainMask(*image(), chosen, part, &reading);
+    object = plainMask(*image(), chosen, part, &reading, takeRead);
   else {
-    const PartMasks read = readPart(*image(), {chosen}, part, &reading);
+    const PartMasks read = readPart(*image(), {chosen}, part, &reading, takeRead);
     object = {read.masks[0], read.leftOut};
   }
   if (readsGray(gray)) describeObject(chosen, gray, *object.mask);
   despeckleObject(*object.mask, gray.despeckle, interrupter);
+  if (take && needsWhole) takeLayers(object.mask->tree(), take);
   return object;
+}
+
+void takeLayers(MaskTree& object, const TakeLayer& take) {
+  object.voxelizeActiveTiles();
+  std::vector<const MaskTree::LeafNodeType*> leaves;
+  for (auto leaf = object.cbeginLeaf(); leaf; ++leaf) leaves.push_back(&*leaf);
+  std::stable_sort(leaves.begin(), leaves.end(),
+                   [](const auto* a, const auto* b) { return a->origin().z() < b->origin().z(); });
+  for (auto next = leaves.begin(); next != leaves.end();) {
+    MaskTree layer;
+    const int z = (*next)->origin().z();
+    for (; next != leaves.end() && (*next)->origin().z() == z; ++next)
+      layer.addLeaf(new MaskTree::LeafNodeType(**next));
+    take(layer);
+  }
+  object.clear();
 }
 
 void despeckleObject(MaskGrid& object, int64_t voxels, Interrupter* interrupter) {

@@ -52,6 +52,13 @@ struct ImageObject {
   bool fromLabels = false;
 };
 
+/// Gets an object in layers of leaf nodes, ascending in z; those without voxels may be left out. What is
+/// taken is not kept, so the object need not fit in memory.
+using TakeLayer = std::function<void(MaskTree& layer)>;
+
+/// The layers of an object that is in memory. The tree is empty then.
+void takeLayers(MaskTree& object, const TakeLayer& take);
+
 /// True if anything but despeckling is asked for: of images alone.
 bool readsGray(const GrayOptions& gray);
 
@@ -66,6 +73,8 @@ std::unique_ptr<ImageReader> filteredImage(std::unique_ptr<ImageReader> image,
 /// @param open called for each pass over the image
 /// @param part absent: all of the image. Thresholds are found, and voxels connected, within its
 ///   domain alone; filters look beyond it.
+/// @param take gets the voxels, and the mask has none. With hysteresis and despeckle the whole of the
+///   mask is made first.
 /// @param selection absent: what is not 0. That, inverted or not, is taken of masks and label images
 ///   alone (see kindOf()): other images need a selection by value.
 /// @throw SelectionNeeded, one line that names the file, for a gray image or one of phases without
@@ -73,7 +82,7 @@ std::unique_ptr<ImageReader> filteredImage(std::unique_ptr<ImageReader> image,
 ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& open,
                         const std::optional<Selection>& selection, const GrayOptions& gray = {},
                         const std::optional<ScanPart>& part = std::nullopt,
-                        Interrupter* interrupter = nullptr);
+                        Interrupter* interrupter = nullptr, const TakeLayer& take = nullptr);
 
 /// Despeckles the object and adds that to what it says of itself.
 void despeckleObject(MaskGrid& object, int64_t voxels, Interrupter* interrupter);

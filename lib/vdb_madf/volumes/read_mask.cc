@@ -18,8 +18,8 @@
 namespace vdb_madf {
 
 std::vector<MaskGrid::Ptr> readMasks(ImageReader& image, const std::vector<Selection>& selections,
-                                     Interrupter* interrupter,
-                                     const std::optional<CoordBBox>& box) {
+                                     Interrupter* interrupter, const std::optional<CoordBBox>& box,
+                                     const LayerRead& layerRead) {
   const ImageInfo& info = image.info();
   std::vector<MaskGrid::Ptr> grids;
   for (size_t i = 0; i < selections.size(); ++i) grids.push_back(MaskGrid::create());
@@ -35,6 +35,7 @@ std::vector<MaskGrid::Ptr> readMasks(ImageReader& image, const std::vector<Selec
     for (size_t i = 0; i < selections.size(); ++i)
       detail::packMask(samples.get(), info.type, detail::slicesOf(imageBox(info.size), z, count),
                        selections[i], grids[i]->tree());
+    if (layerRead) layerRead(grids);
   });
   for (const MaskGrid::Ptr& grid : grids) {
     if (part != imageBox(info.size)) grid->tree().clip(part);

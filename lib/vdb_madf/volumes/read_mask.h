@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -18,10 +19,15 @@ namespace vdb_madf {
 MaskGrid::Ptr readMask(ImageReader& image, const Selection& selection = {},
                        Interrupter* interrupter = nullptr);
 
+/// Is given the masks with what was read last besides what it left in them: a layer of leaf nodes,
+/// from the lowest on, not yet cut to the box. What it takes out need not fit in memory.
+using LayerRead = std::function<void(const std::vector<MaskGrid::Ptr>& masks)>;
+
 /// Several such masks in one pass.
 /// @param box a part of the image's: what lies outside is not read, or left out
 std::vector<MaskGrid::Ptr> readMasks(ImageReader& image, const std::vector<Selection>& selections,
                                      Interrupter* interrupter = nullptr,
-                                     const std::optional<CoordBBox>& box = std::nullopt);
+                                     const std::optional<CoordBBox>& box = std::nullopt,
+                                     const LayerRead& layerRead = nullptr);
 
 }  // namespace vdb_madf

@@ -15,6 +15,7 @@
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/images/histogram.h"
 #include "vdb_madf/vdb/read_vdb.h"
+#include "vdb_madf/vdb/slab_folder.h"
 #include "vdb_madf/volumes/detail/chosen_part.h"
 #include "vdb_madf/volumes/detail/field_of_view.h"
 #include "vdb_madf/volumes/detail/scan_part.h"
@@ -190,13 +191,15 @@ MaskGrid::Ptr objectOfGrid(const std::string& path, const VolumeOptions& options
   if (part) noteLeftOut(path, detail::cutTo(*part, *object), "object voxel", options);
   noteVoxelSize(path, storedVoxelSize(*object), options);
   despeckleObject(*object, options.gray.despeckle, interrupter);
+  if (options.takeLayer) takeLayers(object->tree(), options.takeLayer);
   return object;
 }
 
 MaskGrid::Ptr objectOfImage(const std::string& path, const ImageOpener& open,
                             const VolumeOptions& options, Interrupter* interrupter) {
   const auto part = partOfImage(open, options, interrupter);
-  const ImageObject found = imageObject(open, options.selection, options.gray, part, interrupter);
+  const ImageObject found =
+      imageObject(open, options.selection, options.gray, part, interrupter, options.takeLayer);
   if (found.fromLabels && options.note)
     options.note(path + ": it has several values besides 0, and all of them become one mask",
                  NoteAbout::labels);
@@ -261,6 +264,7 @@ AmbiguousGrid::AmbiguousGrid(const std::string& path, const std::string& grids)
     : InvalidInput(path + ": choose a grid by its name; the file holds " + grids), grids_(grids) {}
 
 bool isVdbFile(const std::string& path) {
+  if (isSlabFolder(path)) return true;
   try {
     // OpenVDB's magic number: ' BDV' as a little-endian 64-bit integer.
     if (detail::InputFile(path).head(8) == std::string(" BDV\0\0\0\0", 8)) return true;

@@ -38,6 +38,7 @@ struct VolumeOptions {
   std::vector<std::string> outputs;
   /// An image of more voxels along an axis is refused before its samples are read. 0: any.
   int longestSide = 0;
+  TakeLayer takeLayer;  ///< object only: gets the voxels, and the grid has none; see imageObject()
   /// Is told what a user should know of the volume though it is no error: one line that names it.
   std::function<void(const std::string& text, NoteAbout about)> note;
 };
@@ -62,7 +63,8 @@ class AmbiguousGrid : public InvalidInput {
   std::string grids_;
 };
 
-/// True if the file is OpenVDB by its first bytes; where they do not tell, by the ending .vdb.
+/// True if the file is OpenVDB by its first bytes; where they do not tell, by the ending .vdb. So is a
+/// folder of slabs (slab_folder.h).
 /// A file that is missing is judged by its ending.
 bool isVdbFile(const std::string& path);
 

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/slabs/slab_builder.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/leaves/detail/leaf_mask.h"
+#include "vdb_madf/slabs/detail/bytes.h"
+
+namespace vdb_madf {
+
+namespace {
+
+constexpr char kCuts[] = "cuts";
+
+std::string objectName(size_t slab) {
+  return "object-" + std::to_string(slab);
+}
+
+}  // namespace
+
+void SlabBuilder::add(const MaskTree& layer) {
+  const size_t before = leaves_.size();
+  int64_t voxels = 0;
+  for (auto leaf = layer.cbeginLeaf(); leaf; ++leaf) {
+    if (leaf->isEmpty()) continue;
+    leaves_.push_back({leaf->origin(), detail::maskOf(*leaf)});
+    voxels += int64_t(leaf->onVoxelCount());
+  }
+  for (auto tile = layer.cbeginValueOn(); tile; ++tile) {
+    if (tile.isVoxelValue()) continue;
+    throw InvalidInput("a layer of leaf nodes has an active tile: voxelize it");
+  }
+  if (leaves_.size() == before) return;
+  const int z = leaves_[before].origin.z();
+  for (size_t i = before; i < leaves_.size(); ++i)
+    if (leaves_[i].origin.z() != z) throw InvalidInput("a layer of leaf nodes has several heights");
+  if (lastLayer_ && z <= *lastLayer_)
+    throw InvalidInput("layers of leaf nodes have to come in the order of z");
+  lastLayer_ = z;
+  if (cuts_.empty()) cuts_.push_back(z);
+  const int height = z - cuts_.back();
+  const bool isHigh = limits_.height > 0 && height + 8 > (limits_.height + 7) / 8 * 8;
+  const bool isFull = limits_.voxels > 0 && voxels_ + voxels > limits_.voxels;
+  if (height >= std::max(limits_.leastHeight, 8) && (isHigh || isFull)) {
+    std::vector<LeafIndex::LeafVoxels> next(leaves_.begin() + std::ptrdiff_t(before),
+                                            leaves_.end());
+    leaves_.resize(before);
+    endSlab(z);
+    leaves_ = std::move(next);
+  }
+  voxels_ += voxels;
+}
+
+void SlabBuilder::endSlab(int z) {
+  std::sort(leaves_.begin(), leaves_.end(),
+            [](const auto& a, const auto& b) { return a.origin < b.origin; });
+  detail::ByteWriter bytes;
+  bytes.add(leaves_);
+  scratch_.write(objectName(cuts_.size() - 1), bytes.bytes());
+  leaves_.clear();
+  voxels_ = 0;
+  cuts_.push_back(z);
+}
+
+void SlabBuilder::finish(const std::optional<Domain>& domain) {
+  int top = lastLayer_ ? *lastLayer_ + 8 : 8;
+  if (domain && !domain->box().empty()) top = std::max(top, (domain->box().max().z() | 7) + 1);
+  if (cuts_.empty()) cuts_.push_back(domain ? domain->box().min().z() & ~7 : 0);
+  endSlab(std::max(top, cuts_.back() + 8));
+  if (domain) cuts_[0] = std::min(cuts_[0], domain->box().min().z() & ~7);
+  detail::ByteWriter bytes;
+  bytes.add(cuts_);
+  scratch_.write(kCuts, bytes.bytes());
+}
+
+bool hasSlabs(const Scratch& scratch) {
+  return scratch.has(kCuts);
+}
+
+SlabObject storedSlabs(const Scratch& scratch, MaskGrid::ConstPtr about) {
+  SlabObject object;
+  object.about = std::move(about);
+  object.cuts = detail::ByteReader(scratch.read(kCuts)).vector<int>();
+  object.leaves = [&scratch](size_t slab) {
+    return detail::ByteReader(scratch.read(objectName(slab))).vector<LeafIndex::LeafVoxels>();
+  };
+  return object;
+}
+
+}  // namespace vdb_madf

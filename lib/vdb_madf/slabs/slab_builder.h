@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "vdb_madf/slabs/segment_slabs.h"
+
+namespace vdb_madf {
+
+/// Where an object is cut.
+struct SlabLimits {
+  int64_t voxels = 0;  ///< of the object in a slab, unless one layer of leaf nodes has more; 0: any
+  int height = 0;      ///< of a slab, voxels, rounded up to a multiple of 8; 0: any
+  int leastHeight = 8;  ///< unless less is left
+};
+
+/// Bytes that segmentSlabs() takes for each object voxel of a slab at its peak, and apart from that, of
+/// which most is the program itself. For limits; the graph of the whole is not counted.
+constexpr int64_t kSlabBytesPerVoxel = 32;
+constexpr int64_t kSlabOtherBytes = int64_t(160) << 20;
+
+/// Cuts an object that comes in layers of leaf nodes into slabs, and keeps these in scratch.
+class SlabBuilder {
+ public:
+  SlabBuilder(const SlabLimits& limits, Scratch& scratch) : limits_(limits), scratch_(scratch) {}
+
+  /// The next layer, which lies above those before. @throw InvalidInput if it does not
+  void add(const MaskTree& layer);
+  /// After the last. The slabs cover the domain, if there is one, and the object.
+  void finish(const std::optional<Domain>& domain);
+
+ private:
+  void endSlab(int z);
+
+  SlabLimits limits_;
+  Scratch& scratch_;
+  std::vector<int> cuts_;
+  std::vector<LeafIndex::LeafVoxels> leaves_;  // of the slab that is not ended
+  int64_t voxels_ = 0;
+  std::optional<int> lastLayer_;
+};
+
+/// Have the slabs of an object been finished in this scratch?
+bool hasSlabs(const Scratch& scratch);
+
+/// The object that was cut there. @param about see SlabObject; scratch must outlive the result
+SlabObject storedSlabs(const Scratch& scratch, MaskGrid::ConstPtr about);
+
+}  // namespace vdb_madf

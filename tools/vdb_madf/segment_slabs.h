@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <string>
+
+#include "segment_summary.h"
+
+namespace vdb_madf::tools {
+
+/// What `segment` does for an output like OUT.slabs: a folder of parts, from slabs that need not fit in
+/// memory together.
+bool hasSlabsEnding(const std::string& path);
+
+/// @throw WrongUsage for options that slabs do not know
+void checkSlabArguments(const SegmentArguments& o);
+
+/// Works in OUT.slabs.part, and in the scratch folder, which stay for --resume if the work is cut off
+/// after the object was read; at the end OUT.slabs appears whole.
+void runInSlabs(const SegmentArguments& o, const Common& common);
+
+}  // namespace vdb_madf::tools
