@@ -51,7 +51,6 @@ void parse(SegmentArguments& o) {
   o.input.parse();
   if (!o.maxMemory.empty()) o.segment.maxMemory = parseMemory(o.maxMemory);
   if (o.out.empty() && !o.dryRun) throw WrongUsage("OUT is required (or --dry-run)");
-  checkSlabArguments(o);
   const bool inSlabs = hasSlabsEnding(o.out);
   if (!o.out.empty() && !inSlabs) checkVolumeEnding(o.out);
   if (!o.out.empty() && !inSlabs && !hasVdbEnding(o.out) && !o.keep.empty())
@@ -74,6 +73,7 @@ void parse(SegmentArguments& o) {
   o.segment.gamma = parseCount(o.gamma, "--gamma");
   o.segment.fillHoles = parseFillHoles(o.fillHoles);
   o.segment.tidy = parseTidy(o.tidy);
+  checkSlabArguments(o);
   std::stringstream keep(o.keep);
   for (std::string what; std::getline(keep, what, ',');) {
     if (what == "distance")

@@ -158,6 +158,10 @@ void checkSlabArguments(const SegmentArguments& o) {
   if (!isSlabs) return;
   if (!o.keep.empty() || !o.tables.empty() || o.dryRun)
     throw WrongUsage(o.out + ": slabs get labels alone: leave --keep, --tables and --dry-run out");
+  if (o.segment.gamma > 1)
+    throw WrongUsage(o.out + ": --gamma does not work in slabs yet: leave it out");
+  if (!o.input.roi.empty())
+    throw WrongUsage(o.out + ": --roi does not work in slabs yet: take a box with --crop");
 }
 
 void runInSlabs(const SegmentArguments& o, const Common& common) {
@@ -199,11 +203,15 @@ void runInSlabs(const SegmentArguments& o, const Common& common) {
     print(o, common, summary);
     std::printf("  slabs            %zu, each a .vdb; convert makes one of them\n",
                 object.slabCount());
+  } catch (const InvalidInput&) {  // it would be the same again
+    common.progress->end();
+    place.discard();
+    throw;
   } catch (...) {
     common.progress->end();
     if (!hasSlabs(place.scratch()))
       place.discard();
-    else if (!common.quiet)
+    else
       common.progress->note(o.out +
                             ".part: what was done so far is kept: give --resume to go on, or "
                             "remove the folder");

@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr char kWork[] = "work";
 constexpr char kEnding[] = ".piece";
+constexpr char kRemoved[] = ".madf_removed";  // a folder that is going
 
 /// What a file of a piece begins with; its blocks follow, each with its size.
 struct Header {
@@ -61,6 +62,19 @@ std::vector<std::vector<char>> compress(const std::vector<char>& bytes) {
   return blocks;
 }
 
+/// What killed programs were writing: see OutputFile.
+void removeHalfWritten(const std::string& folder) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name[0] == '.' && name.find(std::string(kEnding) + ".") != std::string::npos &&
+        entry.path().extension() == ".tmp")
+      files.push_back(entry.path());
+  }
+  for (const fs::path& file : files) fs::remove(file, error);
+}
+
 [[noreturn]] void failDamaged(const std::string& path) {
   throw IoError(path + ": the scratch data is damaged: remove its folder and begin anew");
 }
@@ -70,10 +84,11 @@ std::vector<std::vector<char>> compress(const std::vector<char>& bytes) {
 FolderScratch::FolderScratch(std::string path, const std::string& work, bool resume)
     : path_(std::move(path)) {
   std::error_code error;
+  fs::remove_all(path_ + kRemoved, error);
   fs::create_directory(path_, error);
   if (error) throw IoError("cannot make " + path_ + ": " + error.message());
-  const bool isEmpty = fs::is_empty(path_, error);
-  if (isEmpty) {
+  if (resume) removeHalfWritten(path_);
+  if (fs::is_empty(path_, error)) {
     write(kWork, {work.begin(), work.end()});
     return;
   }
@@ -88,8 +103,6 @@ FolderScratch::FolderScratch(std::string path, const std::string& work, bool res
         path_ +
         ": the scratch data was made of another input or with other options: remove the "
         "folder, or give the same ones");
-  for (const auto& entry : fs::directory_iterator(path_, error))
-    if (entry.path().extension() == ".tmp") fs::remove(entry.path(), error);
 }
 
 std::string FolderScratch::file(const std::string& name) const {
@@ -149,8 +162,10 @@ void FolderScratch::remove(const std::string& name) {
 }
 
 void FolderScratch::removeAll() {
+  // At once, so that a kill does not leave a part of it.
   std::error_code ignored;
-  fs::remove_all(path_, ignored);
+  fs::rename(path_, path_ + kRemoved, ignored);
+  fs::remove_all(path_ + kRemoved, ignored);
 }
 
 }  // namespace vdb_madf

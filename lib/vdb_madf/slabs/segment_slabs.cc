@@ -26,8 +26,8 @@ void checkSlabOptions(const SlabObject& object, const SegmentOptions& options) {
   for (size_t i = 0; i < cuts.size(); ++i)
     if ((cuts[i] & 7) != 0 || (i > 0 && cuts[i] <= cuts[i - 1]))
       throw InvalidInput("slabs are cut at ascending multiples of 8 along z");
-  for (size_t s = 0; s < object.slabCount(); ++s)
-    if (object.slabCount() > 1 && cuts[s + 1] - cuts[s] < options.tidy)
+  for (size_t s = 1; s + 1 < object.slabCount(); ++s)
+    if (cuts[s + 1] - cuts[s] < options.tidy)
       throw InvalidInput("interfaces are smoothed in " + std::to_string(options.tidy) +
                          " rounds: take slabs at least as many voxels high");
 }

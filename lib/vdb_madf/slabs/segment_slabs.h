@@ -51,7 +51,7 @@ using PutSlabLabels = std::function<void(size_t slab, Int32Grid::Ptr grain)>;
 ///   had put)
 /// Options that keep grids, maxMemory and gamma have to be 0: they are not known here.
 /// @throw as segment(); InvalidInput for these options, cuts that are none, a region as domain,
-///   slabs lower than `tidy` has rounds, or balls that reach too far; what scratch and put throw.
+///   slabs, but for the first and the last, lower than `tidy` has rounds, or balls that reach too far; what scratch and put throw.
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
                               Scratch& scratch, const PutSlabLabels& put,
                               Interrupter* interrupter = nullptr);

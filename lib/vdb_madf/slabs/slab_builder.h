@@ -15,7 +15,7 @@ namespace vdb_madf {
 struct SlabLimits {
   int64_t voxels = 0;  ///< of the object in a slab, unless one layer of leaf nodes has more; 0: any
   int height = 0;      ///< of a slab, voxels, rounded up to a multiple of 8; 0: any
-  int leastHeight = 8;  ///< unless less is left
+  int leastHeight = 8;  ///< of a slab, but for the last
 };
 
 /// Bytes that segmentSlabs() takes for each object voxel of a slab at its peak, and apart from that, of

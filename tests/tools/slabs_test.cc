@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// `segment IN OUT.slabs`: a folder of slabs, with the labels of one file.
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "support/command_runs.h"
+
+namespace {
+
+using namespace vdb_madf::test;
+using Catch::Contains;
+
+/// 12 leaf nodes high.
+const std::string kTall = "generate sintered --dims 40x33x93 --count 40 --radius 4:9 ";
+
+/// Requires that the folder out.slabs holds what one.vdb does.
+void requireSame(const Bench& bench) {
+  bench.mustRun("convert out.slabs back.vdb -q");
+  REQUIRE(bench.bytes("back.vdb") == bench.bytes("one.vdb"));
+}
+
+}  // namespace
+
+TEST_CASE("slabs: one file of them is the one that segment writes", "[slabs]") {
+  const Bench bench;
+  bench.mustRun(kTall + "in.vdb --voxel-size 8um -q");
+  for (const std::string options :
+       {"", "--boundary closed --tidy 0", "--paper", "--fill-holes 1000 --merge neck --tidy 9",
+        "--theta -1 --delta 0 --crop 3,3,5:35,30,71"}) {
+    INFO(options);
+    const std::string choice = " --grid object -q " + options;
+    bench.mustRun("segment in.vdb one.vdb" + choice);
+    for (const std::string cut :
+         {"--slab-height 16", "--slab-height 39", "--max-memory 300MiB --threads 1"}) {
+      bench.mustRun("segment in.vdb out.slabs " + cut + choice);
+      requireSame(bench);
+    }
+  }
+  CHECK_FALSE(bench.names().count("out.slabs.part"));
+}
+
+TEST_CASE("slabs: images are read layer by layer", "[slabs]") {
+  const Bench bench;
+  bench.mustRun(kTall + "in.vdb --voxel-size 8x8x20um -q");
+  bench.mustRun("convert in.vdb --grid object in.tif -q");
+  bench.mustRun("convert in.vdb --grid object gray.npy --type uint8 -q");
+  for (const std::string input :
+       {"in.tif", "in.tif --invert", "gray.npy --smooth 1 --threshold 0.4 --voxel-size 3um",
+        "gray.npy --smooth 1 --threshold 0.3:0.6", "in.tif --despeckle 30"}) {
+    INFO(input);
+    bench.mustRun("segment " + input + " one.vdb -q");
+    bench.mustRun("segment " + input + " out.slabs --slab-height 24 -q");
+    requireSame(bench);
+  }
+}
+
+TEST_CASE("slabs: every verb that takes labels reads the folder", "[slabs]") {
+  const Bench bench;
+  bench.mustRun(kTall + "in.vdb -q");
+  bench.mustRun("segment in.vdb one.vdb --grid object -q");
+  bench.mustRun("segment in.vdb out.slabs --grid object --slab-height 16 -q");
+  const Json index = Json::parse(bench.bytes("out.slabs/index.json"));
+  CHECK(index.at("format") == "vdb_madf slabs");
+  CHECK(index.at("slabs").size() == 6);
+  CHECK(index.at("slabs")[1] == Json({{"file", "slab-0001.vdb"}, {"z_first", 16}, {"z_last", 31}}));
+  CHECK(index.at("grains") > 10);
+  CHECK_THAT(bench.mustRun("compare out.slabs one.vdb"), Contains("0.0000 % (mirror 0.0000 %)"));
+  CHECK(gridOf(infoOf(bench, "out.slabs"), "grain").at("active_voxels") ==
+        gridOf(infoOf(bench, "one.vdb"), "grain").at("active_voxels"));
+  CHECK(gridOf(infoOf(bench, "out.slabs/slab-0002.vdb"), "grain").at("active_min")[2] >= 32);
+  bench.mustRun("measure one.vdb one -q");
+  bench.mustRun("measure out.slabs cut -q");
+  CHECK(bench.bytes("one/grains.csv") == bench.bytes("cut/grains.csv"));
+  bench.mustRun("render out.slabs out.png -q");
+
+  SECTION("but not a folder that lacks one") {
+    std::filesystem::remove(bench.path("out.slabs/slab-0003.vdb"));
+    const Outcome run = bench.run("compare out.slabs one.vdb");
+    CHECK(run.exitCode == 1);
+    CHECK_THAT(run.err, Contains("slab-0003.vdb: is missing"));
+  }
+  SECTION("nor one with a slab of another") {
+    std::filesystem::remove(bench.path("out.slabs/slab-0005.vdb"));
+    CHECK_THAT(bench.run("compare out.slabs one.vdb").err, Contains("is not slab 1 of 5"));
+    bench.mustRun("segment in.vdb other.slabs --grid object --slab-height 8 -q");
+    std::filesystem::copy(bench.path("other.slabs/slab-0005.vdb"),
+                          bench.path("out.slabs/slab-0005.vdb"));
+    CHECK_THAT(bench.run("compare out.slabs one.vdb").err, Contains("is not slab 6 of 6"));
+  }
+}
+
+TEST_CASE("slabs: what was killed goes on", "[slabs]") {
+  const Bench bench;
+  bench.mustRun(kTall + "in.vdb -q");
+  bench.mustRun("segment in.vdb one.vdb --grid object -q");
+  std::mt19937 random(7);
+  int kills = 0;
+  for (int round = 0; round < 12; ++round) {
+    const std::string segment = "segment in.vdb out.slabs --grid object --slab-height 8 -q";
+    RunOptions killing;
+    killing.interruptOn = "out.slabs.part";
+    killing.signal = round % 3 == 0 ? SIGTERM : SIGKILL;
+    Outcome run;
+    for (int i = 0; i < 200; ++i) {
+      killing.delay = 1e-3 * double(random() % 150);
+      run = bench.run(segment + (i > 0 ? " --resume" : ""), killing);
+      if (run.exitCode == 0) break;
+      ++kills;
+      INFO(run.err);
+      REQUIRE(run.exitCode > 1);
+    }
+    REQUIRE(run.exitCode == 0);
+    requireSame(bench);
+    REQUIRE_FALSE(bench.names().count("out.slabs.part"));
+    std::filesystem::remove_all(bench.path("out.slabs"));
+  }
+  CHECK(kills > 5);
+}
+
+TEST_CASE("slabs: what cannot be is said in one line", "[slabs]") {
+  const Bench bench;
+  bench.mustRun(kTall + "in.vdb -q");
+  const auto refused = [&](const std::string& arguments, const std::string& why) {
+    INFO(arguments);
+    const Outcome run = bench.run(arguments);
+    CHECK(run.exitCode != 0);
+    CHECK_THAT(run.err, Contains(why));
+    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+    CHECK_FALSE(bench.names().count("out.slabs.part"));
+  };
+  const std::string segment = "segment in.vdb out.slabs --grid object ";
+  refused(segment + "--gamma 20", "gamma");
+  refused(segment + "--keep power", "labels alone");
+  refused(segment + "--roi cylinder", "--crop");
+  refused(segment + "--max-memory 100MiB", "allow more");
+  refused("segment none.tif out.slabs", "none.tif");
+  refused("segment in.vdb one.vdb --grid object --resume", "OUT.slabs");
+  bench.write("out.slabs", "a file");
+  refused(segment, "is there");
+  CHECK(bench.bytes("out.slabs") == "a file");
+  std::filesystem::remove(bench.path("out.slabs"));
+
+  // Scratch of other work, and damaged.
+  RunOptions killing;
+  killing.interruptOn = "out.slabs.part";
+  killing.signal = SIGKILL;
+  for (killing.delay = 0.05; killing.delay < 10; killing.delay *= 1.3) {
+    std::filesystem::remove_all(bench.path("out.slabs.part"));
+    REQUIRE(bench.run(segment + "-q --slab-height 8", killing).exitCode != 0);
+    if (std::filesystem::exists(bench.path("out.slabs.part/scratch/cuts.piece"))) break;
+  }
+  REQUIRE(std::filesystem::exists(bench.path("out.slabs.part/scratch/cuts.piece")));
+  CHECK_THAT(bench.run(segment + "--slab-height 8").err, Contains("--resume"));
+  CHECK_THAT(bench.run(segment + "--slab-height 16 --resume").err, Contains("other options"));
+  bench.write("out.slabs.part/scratch/object-0.piece", "damaged");
+  CHECK_THAT(bench.run(segment + "--slab-height 8 --resume").err, Contains("damaged"));
+}
