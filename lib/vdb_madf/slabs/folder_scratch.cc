@@ -27,39 +27,43 @@ constexpr char kWork[] = "work";
 constexpr char kEnding[] = ".piece";
 constexpr char kRemoved[] = ".madf_removed";  // a folder that is going
 
-/// What a file of a piece begins with; its blocks follow, each with its size.
+/// What a file of a piece begins with; the table of its blocks follows, then these.
 struct Header {
   std::array<char, 8> magic{'m', 'a', 'd', 'f', 'p', 'c', '0', '1'};
-  uint64_t size = 0;  ///< of the bytes, before they were compressed
-  std::array<uint64_t, 2> checksum{};
+  uint64_t size = 0;                   ///< of the bytes, before they were compressed
+  std::array<uint64_t, 2> checksum{};  ///< of the table
 };
 
 /// Compressed by itself: 32-bit numbers that are mostly like the one before.
 constexpr size_t kBlock = size_t(1) << 22;
 
-std::array<uint64_t, 2> checksumOf(const std::vector<char>& bytes) {
+/// A block as it is stored: compressed, with the checksum of what it was.
+struct Block {
+  uint64_t size = 0;
+  std::array<uint64_t, 2> checksum{};
+};
+
+std::array<uint64_t, 2> checksumOf(const char* bytes, size_t size) {
   detail::Checksum sum;
-  sum.add(bytes.size());
-  for (size_t i = 0; i < bytes.size(); i += 8) {
+  sum.add(size);
+  for (size_t i = 0; i < size; i += 8) {
     uint64_t word = 0;
-    std::memcpy(&word, bytes.data() + i, std::min<size_t>(8, bytes.size() - i));
+    std::memcpy(&word, bytes + i, std::min<size_t>(8, size - i));
     sum.add(word);
   }
   return sum.value();
 }
 
-std::vector<std::vector<char>> compress(const std::vector<char>& bytes) {
-  std::vector<std::vector<char>> blocks((bytes.size() + kBlock - 1) / kBlock);
-  detail::parallelFor(blocks.size(), 1, nullptr, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const size_t size = std::min(kBlock, bytes.size() - i * kBlock);
-      blocks[i].resize(size + BLOSC_MAX_OVERHEAD);
-      const int written = blosc_compress_ctx(1, BLOSC_SHUFFLE, 4, size, bytes.data() + i * kBlock,
-                                             blocks[i].data(), blocks[i].size(), "lz4", 0, 1);
-      blocks[i].resize(size_t(std::max(written, 0)));
-    }
+size_t blockCount(size_t size) {
+  return (size + kBlock - 1) / kBlock;
+}
+
+/// f(block) in parallel.
+template <typename F>
+void forEachBlock(size_t size, const F& f) {
+  detail::parallelFor(blockCount(size), 1, nullptr, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) f(i);
   });
-  return blocks;
 }
 
 /// What killed programs were writing: see OutputFile.
@@ -112,13 +116,23 @@ std::string FolderScratch::file(const std::string& name) const {
 void FolderScratch::write(const std::string& name, const std::vector<char>& bytes) {
   Header header;
   header.size = bytes.size();
-  header.checksum = checksumOf(bytes);
+  std::vector<Block> table(blockCount(bytes.size()));
+  std::vector<std::vector<char>> blocks(table.size());
+  forEachBlock(bytes.size(), [&](size_t i) {
+    const char* first = bytes.data() + i * kBlock;
+    const size_t size = std::min(kBlock, bytes.size() - i * kBlock);
+    blocks[i].resize(size + BLOSC_MAX_OVERHEAD);
+    const int written = blosc_compress_ctx(1, BLOSC_SHUFFLE, 4, size, first, blocks[i].data(),
+                                           blocks[i].size(), "lz4", 0, 1);
+    blocks[i].resize(size_t(std::max(written, 0)));
+    table[i] = {blocks[i].size(), checksumOf(first, size)};
+  });
+  const auto* tableBytes = reinterpret_cast<const char*>(table.data());
+  header.checksum = checksumOf(tableBytes, table.size() * sizeof(Block));
   detail::OutputStream out(file(name + kEnding));
   out.bytes(&header, sizeof header);
-  for (const std::vector<char>& block : compress(bytes)) {
-    out.value(uint64_t(block.size()));
-    out.bytes(block.data(), block.size());
-  }
+  out.bytes(tableBytes, table.size() * sizeof(Block));
+  for (const std::vector<char>& block : blocks) out.bytes(block.data(), block.size());
   out.commit();
 }
 
@@ -130,24 +144,28 @@ std::vector<char> FolderScratch::read(const std::string& name) const {
     failDamaged(path);
   // LZ4 cannot make less than a 255th of what it gets.
   if (header.size / 256 > in.size()) failDamaged(path);
-  std::vector<char> bytes(header.size), block;
-  uint64_t at = sizeof header;
-  for (size_t done = 0; done < bytes.size(); done += kBlock) {
-    const size_t size = std::min(kBlock, bytes.size() - done);
-    uint64_t stored = 0;
-    if (in.readSome(at, &stored, sizeof stored) != sizeof stored ||
-        stored > size + BLOSC_MAX_OVERHEAD)
-      failDamaged(path);
-    block.resize(stored);
-    at += sizeof stored;
-    size_t held = 0;
-    if (in.readSome(at, block.data(), stored) != stored ||
-        blosc_cbuffer_validate(block.data(), stored, &held) != 0 || held != size ||
-        blosc_decompress_ctx(block.data(), bytes.data() + done, size, 1) != int(size))
-      failDamaged(path);
-    at += stored;
+  std::vector<Block> table(blockCount(header.size));
+  const size_t tableBytes = table.size() * sizeof(Block);
+  if (in.readSome(sizeof header, table.data(), tableBytes) != tableBytes ||
+      checksumOf(reinterpret_cast<const char*>(table.data()), tableBytes) != header.checksum)
+    failDamaged(path);
+  std::vector<uint64_t> place{sizeof header + tableBytes};
+  for (const Block& block : table) {
+    if (block.size > kBlock + BLOSC_MAX_OVERHEAD) failDamaged(path);
+    place.push_back(place.back() + block.size);
   }
-  if (checksumOf(bytes) != header.checksum) failDamaged(path);
+  if (place.back() != in.size()) failDamaged(path);
+  std::vector<char> bytes(header.size);
+  forEachBlock(bytes.size(), [&](size_t i) {
+    std::vector<char> stored(table[i].size);
+    in.read(place[i], stored.data(), stored.size());
+    const size_t size = std::min(kBlock, bytes.size() - i * kBlock);
+    size_t held = 0;
+    if (blosc_cbuffer_validate(stored.data(), stored.size(), &held) != 0 || held != size ||
+        blosc_decompress_ctx(stored.data(), bytes.data() + i * kBlock, size, 1) != int(size) ||
+        checksumOf(bytes.data() + i * kBlock, size) != table[i].checksum)
+      failDamaged(path);
+  });
   return bytes;
 }
 

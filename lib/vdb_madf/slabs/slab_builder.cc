@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/detail/active_tiles.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/slabs/detail/bytes.h"
 
@@ -31,10 +32,9 @@ void SlabBuilder::add(const MaskTree& layer) {
     leaves_.push_back({leaf->origin(), detail::maskOf(*leaf)});
     voxels += int64_t(leaf->onVoxelCount());
   }
-  for (auto tile = layer.cbeginValueOn(); tile; ++tile) {
-    if (tile.isVoxelValue()) continue;
+  detail::forEachActiveTile(layer, [](const CoordBBox&) {
     throw InvalidInput("a layer of leaf nodes has an active tile: voxelize it");
-  }
+  });
   if (leaves_.size() == before) return;
   const int z = leaves_[before].origin.z();
   for (size_t i = before; i < leaves_.size(); ++i)

@@ -11,9 +11,33 @@
 
 namespace vdb_madf::detail {
 
-SlabBody::SlabBody(const std::vector<LeafIndex::LeafVoxels>& object,
+namespace {
+
+/// Both are ascending by origin.
+std::vector<LeafIndex::LeafVoxels> joined(std::vector<LeafIndex::LeafVoxels> object,
+                                          const std::vector<LeafIndex::LeafVoxels>& holes) {
+  std::vector<LeafIndex::LeafVoxels> more;
+  auto leaf = object.begin();
+  for (const LeafIndex::LeafVoxels& hole : holes) {
+    const auto before = [](const auto& a, const Coord& origin) { return a.origin < origin; };
+    leaf = std::lower_bound(leaf, object.end(), hole.origin, before);
+    if (leaf == object.end() || leaf->origin != hole.origin)
+      more.push_back(hole);
+    else
+      for (size_t x = 0; x < 8; ++x) leaf->mask[x] |= hole.mask[x];
+  }
+  if (more.empty()) return object;
+  std::vector<LeafIndex::LeafVoxels> all(object.size() + more.size());
+  std::merge(object.begin(), object.end(), more.begin(), more.end(), all.begin(),
+             [](const auto& a, const auto& b) { return a.origin < b.origin; });
+  return all;
+}
+
+}  // namespace
+
+SlabBody::SlabBody(std::vector<LeafIndex::LeafVoxels> object,
                    const std::vector<LeafIndex::LeafVoxels>& holes)
-    : index(LeafIndex(LeafIndex(), object), holes) {
+    : index(LeafIndex(), joined(std::move(object), holes)) {
   Cavities filled;
   filled.leaves = holes;
   cavities = cavityVoxels(index, filled);

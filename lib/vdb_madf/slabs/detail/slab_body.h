@@ -17,7 +17,7 @@ struct SlabBody {
   std::vector<VoxelId> cavities;  ///< voxels that are none of the object, ascending
 
   SlabBody() = default;
-  SlabBody(const std::vector<LeafIndex::LeafVoxels>& object,
+  SlabBody(std::vector<LeafIndex::LeafVoxels> object,
            const std::vector<LeafIndex::LeafVoxels>& holes);
 };
 
