@@ -14,6 +14,7 @@
 #include "vdb_madf/measure/detail/bond_measures.h"
 #include "vdb_madf/measure/detail/grain_measures.h"
 #include "vdb_madf/measure/detail/grain_representatives.h"
+#include "vdb_madf/measure/detail/grain_shapes.h"
 #include "vdb_madf/measure/detail/label_sums.h"
 #include "vdb_madf/measure/detail/sample_measures.h"
 #include "vdb_madf/measure/detail/voxel_shape.h"
@@ -84,6 +85,7 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
   result.voxelSize = storedVoxelSize(labels);
   result.edges = voxel.edges;
   result.minFaces = options.minFaces;
+  result.extra.shape = options.shape;
   result.open = obstacles.open;
   result.gridName = labels.getName();
   result.metadata = labels;
@@ -95,6 +97,7 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
     result.bonds = detail::bondMeasures(sums, voxel, interrupter);
     result.grains = detail::grainMeasures(sums, result.bonds, whole, voxel);
   }
+  if (options.shape) detail::measureShapes(leaves, voxel, result.grains, interrupter);
   setRepresentatives(graph && graph->weights == weights
                          ? detail::grainRepresentatives(labels, *graph)
                          : detail::grainRepresentatives(leaves, obstacles, weights, interrupter),
