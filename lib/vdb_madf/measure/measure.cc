@@ -18,6 +18,7 @@
 #include "vdb_madf/measure/detail/label_sums.h"
 #include "vdb_madf/measure/detail/sample_measures.h"
 #include "vdb_madf/measure/detail/voxel_shape.h"
+#include "vdb_madf/measure/edge_weights.h"
 #include "vdb_madf/measure/euler_characteristic.h"
 #include "vdb_madf/method/boundary.h"
 #include "vdb_madf/method/detail/metric.h"
@@ -68,6 +69,15 @@ std::vector<BondMeasures> takeSmallBonds(Measurements& result) {
   return small;
 }
 
+void checkEdgeWeights(const std::optional<Domain>& domain, bool open) {
+  const std::string what = "weights for grains cut by the faces of the scan";
+  if (!domain) throw InvalidInput(what + ": its domain is unknown: give it");
+  if (!domain->isBox())
+    throw InvalidInput(what + " are known for boxes alone, and the domain is a region: crop a box");
+  if (!open)
+    throw InvalidInput(what + ": none is cut where the boundary is closed; measure with it open");
+}
+
 /// \p graph: of the segmentation, if it tells the representatives under its weights; else null.
 Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& options,
                            const ManifoldGraph* graph, Interrupter* interrupter) {
@@ -80,12 +90,14 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
   const Boundary boundary =
       options.boundary == Boundary::automatic ? storedBoundary(labels) : options.boundary;
   const Obstacles obstacles = resolveBoundary(index, boundary, domain);
+  if (options.edgeWeights) checkEdgeWeights(domain, obstacles.open);
   const VoxelWeights weights = weightsOf(voxel, labels, index);
   Measurements result;
   result.voxelSize = storedVoxelSize(labels);
   result.edges = voxel.edges;
   result.minFaces = options.minFaces;
   result.extra.shape = options.shape;
+  result.extra.edgeWeights = options.edgeWeights;
   result.open = obstacles.open;
   result.gridName = labels.getName();
   result.metadata = labels;
@@ -96,6 +108,10 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
         detail::labelSums(leaves, whole, obstacles.open, voxel, interrupter);
     result.bonds = detail::bondMeasures(sums, voxel, interrupter);
     result.grains = detail::grainMeasures(sums, result.bonds, whole, voxel);
+  }
+  if (options.edgeWeights) {
+    for (GrainMeasures& grain : result.grains)
+      grain.edgeWeight = edgeWeight(grain.box, whole.box());
   }
   if (options.shape) detail::measureShapes(leaves, voxel, result.grains, interrupter);
   setRepresentatives(graph && graph->weights == weights

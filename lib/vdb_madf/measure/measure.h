@@ -32,6 +32,8 @@ struct MeasureOptions {
   /// 0 and 1: all that touch have one.
   int64_t minFaces = 1;
   bool shape = false;  ///< also GrainMeasures::shape
+  /// Also GrainMeasures::edgeWeight. The boundary has to be open, and the domain a box.
+  bool edgeWeights = false;
 };
 
 /// Grains, bonds and the sample. Lengths are in voxels, of unequal ones in their shortest edge;
@@ -58,7 +60,7 @@ struct Measurements {
 /// exact. Depends on nothing but labels, domain and boundary: not on tiles or threads, bit for bit.
 /// Memory: per grain, per face of a bond, and for the representatives per voxel.
 /// @throw InvalidInput if labels leave the domain, the boundary is open without one, minFaces is
-///   negative, no weights fit the
+///   negative, edge weights are asked for that cannot be had, no weights fit the
 ///   voxels (voxel_weights.h), or a limit of leaf_index.h is exceeded; Interrupted.
 Measurements measure(const Int32Grid& labels, const MeasureOptions& options = {},
                      Interrupter* interrupter = nullptr);
