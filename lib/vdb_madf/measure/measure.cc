@@ -91,6 +91,7 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
       options.boundary == Boundary::automatic ? storedBoundary(labels) : options.boundary;
   const Obstacles obstacles = resolveBoundary(index, boundary, domain);
   if (options.edgeWeights) checkEdgeWeights(domain, obstacles.open);
+  if (options.bootstrap != 0) requireReplicates(options.bootstrap);
   const VoxelWeights weights = weightsOf(voxel, labels, index);
   Measurements result;
   result.voxelSize = storedVoxelSize(labels);
@@ -98,6 +99,7 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
   result.minFaces = options.minFaces;
   result.extra.shape = options.shape;
   result.extra.edgeWeights = options.edgeWeights;
+  result.replicates = options.bootstrap;
   result.open = obstacles.open;
   result.gridName = labels.getName();
   result.metadata = labels;
@@ -130,6 +132,9 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
     if (auto& length = sample.correlationLengths[size_t(axis)]) *length *= voxel.edges[axis];
   sample.eulerCharacteristic = eulerCharacteristic(index, interrupter);
   sample.components = detail::ConnectedComponents(index).count();
+  if (options.bootstrap != 0)
+    result.intervals =
+        bootstrapMeans(result.grains, result.bonds, result.extra, options.bootstrap, interrupter);
   return result;
 }
 
