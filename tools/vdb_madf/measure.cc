@@ -174,7 +174,7 @@ void addMeasure(Verb command, Common& common, Action& action) {
             "adds weights for what the faces of a box cut, and sizes corrected by them");
   verb.option("--intensity", o->scan,
               "adds the gray values of grains and bonds in the scan that they were made of")
-      .typeName("SCAN");
+      .typeName("FILE");
   verb.option("--intensity-grid", o->scanGrid,
               "of the scan: the grid of a VDB, the array of a Zarr or HDF5 file")
       .typeName("NAME");
