@@ -528,6 +528,7 @@ TEST_CASE(
   const std::string said = bench.mustRun(
       "measure balls.vdb all --shape --edge-weights --bootstrap 100 --intensity scan.tif");
   CHECK(said.find("corrected diameter") != std::string::npos);
+  CHECK(said.find("  mean_coordination  ") != std::string::npos);
   const Table plain(bench.bytes("plain/grains.csv")), all(bench.bytes("all/grains.csv")),
       bonds(bench.bytes("all/bonds.csv"));
   REQUIRE(all.rows.size() == plain.rows.size());

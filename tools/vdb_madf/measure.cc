@@ -15,6 +15,7 @@
 #include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/gray/measure_gray.h"
+#include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
 
 namespace vdb_madf::tools {
@@ -72,6 +73,15 @@ void printCorrected(const Measurements& m, double length, const std::string& uni
     std::printf("  corrected diameter  unknown: no grain is whole\n");
 }
 
+void printIntervals(const Measurements& m, double length, const std::string& unit) {
+  for (const MeanInterval& mean : m.intervals)
+    if (mean.low && mean.high)
+      std::printf("  %-33s %.4g, 95 %% from %.4g to %.4g\n",
+                  (mean.name + unitSuffix(mean.power, unit)).c_str(),
+                  scaled(*mean.mean, mean.power, length), scaled(*mean.low, mean.power, length),
+                  scaled(*mean.high, mean.power, length));
+}
+
 void print(const Options& o, const Measurements& m) {
   const std::string unit = m.voxelSize ? m.voxelSize->unit() : "voxel";
   const auto edges = m.voxelSize ? m.voxelSize->edgesInUnit() : std::array<double, 3>{1, 1, 1};
@@ -101,6 +111,7 @@ void print(const Options& o, const Measurements& m) {
   if (m.sample.bondsWithoutCurvature > 0)
     std::printf("  too small to curve  %s (under 10 faces, or all in a row)\n",
                 counted(m.sample.bondsWithoutCurvature, "bond").c_str());
+  printIntervals(m, length, unit);
 }
 
 /// What to do about a scan; the options that other hints name describe the labels.
