@@ -4,6 +4,7 @@ find_package(OpenVDB 10.0 REQUIRED)
 unset(BUILD_SHARED_LIBS)  # set by FindOpenVDB in this scope; our library says STATIC itself
 find_package(TBB REQUIRED)
 find_package(Eigen3 3.3 REQUIRED)
+find_package(Qhull 8.0 REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(TIFF REQUIRED)
 find_package(PNG REQUIRED)

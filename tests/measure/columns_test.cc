@@ -44,6 +44,38 @@ TEST_CASE("columns: names, units and order of the table of bonds", "[columns]") 
         "gaussian_curvature_sd_per_u2 curvature_residual_u");
 }
 
+TEST_CASE("columns: what is there on demand comes last", "[columns]") {
+  const auto added = [](const std::vector<MeasureColumn>& all, size_t before) {
+    return names({all.begin() + std::ptrdiff_t(before), all.end()});
+  };
+  const size_t grains = grainColumns({}).size(), bonds = bondColumns({}).size();
+  const std::string gray = "gray_voxels gray_mean gray_sd gray_min gray_max gray_median";
+  CHECK(added(grainColumns({}, {true, true, true}), grains) ==
+        "feret_max_u feret_min_u convex_volume_u3 solidity zingg_class " + gray + " edge_weight");
+  CHECK(added(bondColumns({}, {true, true, true}), bonds) == gray);
+
+  GrainMeasures grain;
+  grain.volume = 6;
+  grain.ellipsoid.values = {9, 4, 3};
+  grain.shape = GrainShape{1, 2, 8};
+  grain.gray = GrayValues{3, 4, 5, 6, 7, 7.5};
+  grain.edgeWeight = 9;
+  BondMeasures bond;
+  bond.gray = grain.gray;
+  const auto values = [](const std::vector<MeasureColumn>& columns, size_t before, size_t row) {
+    std::vector<double> found;
+    for (size_t i = before; i < columns.size(); ++i) found.push_back(columns[i].values.at(row));
+    return found;
+  };
+  const auto ofGrains = grainColumns({grain, GrainMeasures()}, {true, true, true});
+  CHECK(values(ofGrains, grains, 0) ==
+        std::vector<double>{1, 2, 8, 0.75, 4, 3, 4, 5, 6, 7, 7.5, 9});
+  CHECK(std::isnan(column(ofGrains, "feret_max").values[1]));
+  CHECK(std::isnan(column(ofGrains, "gray_mean").values[1]));
+  CHECK(values(bondColumns({bond}, {false, true, false}), bonds, 0) ==
+        std::vector<double>{3, 4, 5, 6, 7, 7.5});
+}
+
 TEST_CASE("columns: each holds the measure of its name", "[columns]") {
   GrainMeasures grain;
   grain.id = 7;

@@ -73,6 +73,69 @@ def test_the_sample(measured, tables):
     assert measured.provenance["madf_theta"] == -0.9
 
 
+@pytest.fixture(scope="module")
+def scan(labels):
+    return np.random.default_rng(3).integers(0, 60000, labels.shape).astype(np.uint16)
+
+
+def test_what_is_there_on_demand(labels, scan, command, tmp_path):
+    everything = dict(shape=True, edge_weights=True, bootstrap=200)
+    np.save(tmp_path / "scan.npy", scan)
+    labels.save(tmp_path / "labels.vdb")
+    command("measure", tmp_path / "labels.vdb", tmp_path / "out", "--shape", "--edge-weights",
+            "--bootstrap", "200", "--intensity", tmp_path / "scan.npy")
+    there = json.loads((tmp_path / "out" / "sample.json").read_text())
+    for source in (scan, str(tmp_path / "scan.npy")):
+        here = madf.measure(labels, intensity=source, **everything)
+        for table in ("grains", "bonds"):
+            columns_there = columns(tmp_path / "out" / f"{table}.csv")
+            for (name, values), expected in zip(getattr(here, table).items(), columns_there.values()):
+                assert np.allclose(values, expected, rtol=1e-8, atol=0, equal_nan=True), name
+            assert len(getattr(here, table)) == len(columns_there)
+    assert here.grains["zingg_class"].dtype == here.grains["gray_voxels"].dtype == np.int64
+    assert here.units["convex_volume"] == "mm^3" and here.units["gray_mean"] == ""
+    for name, key in (("corrected_grain_diameter_mean", "corrected_grain_diameter_mean_mm"),
+                      ("grain_volume_mean", "grain_volume_mean_mm3"),
+                      ("grains_at_faces", "grains_at_faces"), ("corrected_grains", "corrected_grains"),
+                      ("corrected_mean_coordination", "corrected_mean_coordination")):
+        assert here.sample[name] == pytest.approx(there[key], rel=1e-12), name
+    assert list(here.sample["corrected_diameter_by_volume"].values()) == pytest.approx(
+        list(there["corrected_grain_diameter_by_volume_mm"].values()))
+    for name, interval in here.sample["intervals"].items():
+        key = next(key for key in there if key.startswith(f"{name}_interval"))
+        assert interval == pytest.approx(there[key], rel=1e-12), name
+    assert here.units["specific_surface"] == "1/mm" and len(here.sample["intervals"]) == 8
+    inside = np.asarray(labels) == here.grains["id"][0]
+    assert here.grains["gray_mean"][0] == pytest.approx(scan[inside].mean())
+    assert here.grains["gray_median"][0] == np.median(scan[inside])
+    here.to_pandas()
+
+
+def test_what_cannot_be_had_on_demand(labels, measured, scan):
+    assert "feret_max" not in measured.grains and "gray_mean" not in measured.bonds
+    assert "intervals" not in measured.sample and "edge_weight" not in measured.grains
+    with pytest.raises(ValueError, match="has 79x72x64 voxels, and the labels are those of a scan of 80x"):
+        madf.measure(labels, intensity=scan[:, :, 1:])
+    with pytest.raises(ValueError, match="from 100 to 100000"):
+        madf.measure(labels, bootstrap=7)
+    with pytest.raises(ValueError, match="boundary is closed"):
+        madf.measure(labels, boundary="closed", edge_weights=True)
+    with pytest.raises(OSError, match="nowhere.tif"):
+        madf.measure(labels, intensity="nowhere.tif")
+    lazy = [False]
+
+    class Slabs:
+        shape, dtype = scan.shape, scan.dtype
+
+        def __getitem__(self, key):
+            assert key.stop - key.start <= 8
+            lazy[0] = True
+            return scan[key]
+
+    again = madf.measure(labels, intensity=Slabs())
+    assert lazy[0] and again.grains["gray_voxels"].sum() == measured.grains["voxels"].sum()
+
+
 def test_pandas(measured):
     pd = pytest.importorskip("pandas", reason="tables of pandas: not installed")
     grains, bonds = measured.to_pandas()

@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "support/program.h"
+#include "support/refusals.h"
 
 using namespace vdb_madf::test;
 using Json = nlohmann::json;
@@ -514,4 +515,70 @@ TEST_CASE("cli: measure refuses, and leaves nothing behind", "[cli]") {
   CHECK(outside.exitCode == 1);
   CHECK(outside.err.find("leaves the domain") != std::string::npos);
   CHECK(bench.names() == names);
+}
+
+TEST_CASE(
+    "cli: measure adds shapes, weights, gray values and intervals on demand, and changes nothing "
+    "else",
+    "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate spheres --size 48 --count 9 --radius 6:8 --voxel-size 20um balls.vdb");
+  bench.mustRun("convert balls.vdb scan.tif --grid truth --type uint8");
+  bench.mustRun("measure balls.vdb plain");
+  const std::string said = bench.mustRun(
+      "measure balls.vdb all --shape --edge-weights --bootstrap 100 --intensity scan.tif");
+  CHECK(said.find("corrected diameter") != std::string::npos);
+  CHECK(said.find("  mean_coordination  ") != std::string::npos);
+  const Table plain(bench.bytes("plain/grains.csv")), all(bench.bytes("all/grains.csv")),
+      bonds(bench.bytes("all/bonds.csv"));
+  REQUIRE(all.rows.size() == plain.rows.size());
+  for (size_t i = 0; i < plain.rows.size(); ++i) {
+    CHECK(std::equal(plain.rows[i].begin(), plain.rows[i].end(), all.rows[i].begin()));
+    CHECK(all.at(i, "gray_min") == all.at(i, "id"));  // the scan is that of the labels
+    CHECK(all.at(i, "gray_max") == all.at(i, "id"));
+    CHECK(all.at(i, "feret_max_mm") > all.at(i, "feret_min_mm"));
+    CHECK((all.at(i, "edge_weight") == 0) == (all.at(i, "at_domain_face") == 1));
+  }
+  for (size_t i = 0; i < bonds.rows.size(); ++i) {
+    CHECK(bonds.at(i, "gray_min") == bonds.at(i, "first"));
+    CHECK(bonds.at(i, "gray_max") == bonds.at(i, "second"));
+  }
+  const Json before = Json::parse(bench.bytes("plain/sample.json")),
+             after = Json::parse(bench.bytes("all/sample.json"));
+  for (const auto& [key, value] : before.items()) CHECK(after.at(key) == value);
+  CHECK(after.at("grain_diameter_mean_interval_mm").at("mean") ==
+        after.at("grain_diameter_mean_mm"));
+  CHECK_FALSE(before.contains("corrected_grains"));
+  CHECK_FALSE(before.contains("bootstrap_replicates"));
+  bench.mustRun("measure balls.vdb again --intensity balls.vdb --intensity-grid truth --threads 1");
+  CHECK(Table(bench.bytes("again/grains.csv")).sum("gray_mean") == all.sum("gray_mean"));
+  bench.mustRun("collect all all.csv -q");
+  const Table collected(bench.bytes("all.csv"));
+  CHECK(collected.at(0, "grain_diameter_mean_interval_low_mm") ==
+        Approx(after.at("grain_diameter_mean_interval_mm").at("low").get<double>()));
+}
+
+TEST_CASE("cli: measure refuses scans and options that do not fit its labels", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate spheres --size 30 --count 4 --radius 5:6 balls.vdb");
+  bench.mustRun("generate spheres --size 31 --count 4 --radius 5:6 other.vdb");
+  bench.mustRun("convert other.vdb other.tif --grid truth --type uint8");
+  bench.mustRun("convert balls.vdb scan.npy --grid truth --type uint8");
+  bench.mustRun("convert balls.vdb scan.raw --grid truth --type uint8");
+  const std::string bytes = bench.bytes("scan.npy");
+  bench.write("cut.npy", bytes.substr(0, bytes.size() / 2));
+  const std::string measure = "measure balls.vdb out ";
+  refuses(bench, kFailed, measure + "--intensity other.tif",
+          {"other.tif: has 31x31x31 voxels", "of a scan of 30x30x30 voxels: give the one that"});
+  refuses(bench, kFailed, measure + "--intensity cut.npy", {"cut.npy"});
+  refuses(bench, kFailed, measure + "--intensity nothing.tif", {"nothing.tif"});
+  refuses(bench, kFailed, measure + "--intensity other.vdb --intensity-grid fog",
+          {"no grid 'fog'"});
+  refuses(bench, kFailed, measure + "--intensity scan.npy --intensity-grid fog", {"scan.npy"});
+  refuses(bench, kWrongUsage, measure + "--intensity scan.raw", {"convert it to .tif or .npy"});
+  refuses(bench, kWrongUsage, measure + "--intensity -", {"is read from a file"});
+  refuses(bench, kWrongUsage, measure + "--intensity-grid fog", {"give --intensity, too"});
+  refuses(bench, kWrongUsage, measure + "--bootstrap 99", {"--bootstrap 99", "100 to 100000"});
+  refuses(bench, kFailed, measure + "--edge-weights --boundary closed",
+          {"balls.vdb", "boundary is closed"});
 }

@@ -10,8 +10,13 @@
 
 #include "command.h"
 #include "input_options.h"
+#include "outputs.h"
 #include "parse.h"
 #include "vdb_madf/exports/measurement_files.h"
+#include "vdb_madf/files/standard_streams.h"
+#include "vdb_madf/gray/measure_gray.h"
+#include "vdb_madf/measure/columns.h"
+#include "vdb_madf/measure/edge_weights.h"
 
 namespace vdb_madf::tools {
 
@@ -19,7 +24,7 @@ namespace {
 
 struct Options {
   InputOptions input;
-  std::string folder, boundary = "auto", density, minFaces = "1";
+  std::string folder, boundary = "auto", density, minFaces = "1", bootstrap, scan, scanGrid;
   bool ice = false;
   MeasureOptions measure;
   TableOptions tables;
@@ -34,8 +39,47 @@ void parse(Options& o) {
     o.tables.density = parseNumber(o.density, "--density");
     if (!(*o.tables.density > 0)) throw WrongUsage("--density " + o.density + ": must be above 0");
   }
+  if (o.scan.empty() && !o.scanGrid.empty())
+    throw WrongUsage("--intensity-grid names a part of the scan: give --intensity, too");
+  if (!o.scan.empty()) {
+    if (isStandardInput(o.scan))
+      throw WrongUsage("--intensity " + o.scan + ": the scan is read from a file");
+    if (hasRawEnding(o.scan))
+      throw WrongUsage(
+          "--intensity " + o.scan +
+          ": a RAW file does not say how large it is: convert it to .tif or .npy first");
+    checkOutputs(o.input.outputs, o.scan);
+  }
   o.measure.boundary = parseBoundary(o.boundary);
   o.measure.minFaces = parseCount(o.minFaces, "--min-faces");
+  if (!o.bootstrap.empty()) {
+    const int64_t replicates = parseCount(o.bootstrap, "--bootstrap");
+    if (replicates < kMinReplicates || replicates > kMaxReplicates)
+      throw WrongUsage("--bootstrap " + o.bootstrap + ": must be from " +
+                       std::to_string(kMinReplicates) + " to " + std::to_string(kMaxReplicates));
+    o.measure.bootstrap = int(replicates);
+  }
+}
+
+void printCorrected(const Measurements& m, double length, const std::string& unit) {
+  const EdgeCorrected corrected = edgeCorrected(m.grains);
+  std::printf("  at the faces        %s, left out of the corrected sizes\n",
+              counted(corrected.leftOut, "grain").c_str());
+  if (corrected.grains > 0)
+    std::printf("  corrected diameter  d50 %.5g %s by number, %.5g by volume\n",
+                length * correctedDiameterPercentile(m.grains, 0.5, false), unit.c_str(),
+                length * correctedDiameterPercentile(m.grains, 0.5, true));
+  else
+    std::printf("  corrected diameter  unknown: no grain is whole\n");
+}
+
+void printIntervals(const Measurements& m, double length, const std::string& unit) {
+  for (const MeanInterval& mean : m.intervals)
+    if (mean.low && mean.high)
+      std::printf("  %-33s %.4g, 95 %% from %.4g to %.4g\n",
+                  (mean.name + unitSuffix(mean.power, unit)).c_str(),
+                  scaled(*mean.mean, mean.power, length), scaled(*mean.low, mean.power, length),
+                  scaled(*mean.high, mean.power, length));
 }
 
 void print(const Options& o, const Measurements& m) {
@@ -59,6 +103,7 @@ void print(const Options& o, const Measurements& m) {
   std::printf("\n  grain diameter      d50 %.5g %s by number, %.5g by volume\n",
               length * diameterPercentile(m.grains, 0.5, false), unit.c_str(),
               length * diameterPercentile(m.grains, 0.5, true));
+  if (m.extra.edgeWeights) printCorrected(m, length, unit);
   std::printf("  bonds a grain       %.2f\n", m.sample.meanCoordination);
   if (m.minFaces > 1)
     std::printf("  left out            %s of fewer than %lld faces\n",
@@ -66,15 +111,44 @@ void print(const Options& o, const Measurements& m) {
   if (m.sample.bondsWithoutCurvature > 0)
     std::printf("  too small to curve  %s (under 10 faces, or all in a row)\n",
                 counted(m.sample.bondsWithoutCurvature, "bond").c_str());
+  printIntervals(m, length, unit);
+}
+
+/// What to do about a scan; the options that other hints name describe the labels.
+std::string hintForScan(Hint hint) {
+  if (hint == Hint::dataset) return " (--intensity-grid)";
+  return hint == Hint::rawLayout ? " by converting it to .tif or .npy first" : "";
+}
+
+GrayScan openScan(const Options& o, const Common& common) {
+  InputOptions input;
+  input.path = o.scan;
+  (isVdb(input) ? input.gridName : input.dataset) = o.scanGrid;
+  input.outputs = o.input.outputs;
+  try {
+    return openGrayScan(o.scan, input.volume(common.progress), common.progress);
+  } catch (const AmbiguousGrid& error) {
+    throw InvalidInput(std::string(error.what()) + " (--intensity-grid)");
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(error.what() + hintForScan(error.hint()));
+  } catch (const IoError& error) {
+    throw IoError(error.what() + hintForScan(error.hint()));
+  }
 }
 
 void run(const Options& o, const Common& common) {
   MeasurementTables tables(o.folder);
   common.progress->start("read");
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
+  std::optional<GrayScan> scan;  // opened before the work: what is wrong with it is said at once
+  if (!o.scan.empty()) scan = openScan(o, common);
   common.progress->start("measure");
-  const Measurements measurements =
+  Measurements measurements =
       withFileName(o.input.path, [&] { return measure(*labels, o.measure, common.progress); });
+  if (scan) {
+    common.progress->start("gray values");
+    measureGray(*labels, *scan, measurements, common.progress);
+  }
   TableOptions options = o.tables;
   options.labels = o.input.path;
   tables.write(measurements, options);
@@ -105,6 +179,19 @@ void addMeasure(Verb command, Common& common, Action& action) {
   verb.option("--density", o->density, "of the grains' material, kg/m3: adds what is per mass")
       .typeName("D");
   verb.flag("--ice", o->ice, "the density of ice: --density 917");
+  verb.flag("--shape", o->measure.shape,
+            "adds Feret diameters, convex volume, solidity and Zingg's class");
+  verb.flag("--edge-weights", o->measure.edgeWeights,
+            "adds weights for what the faces of a box cut, and sizes corrected by them");
+  verb.option("--intensity", o->scan,
+              "adds the gray values of grains and bonds in the scan that they were made of")
+      .typeName("FILE");
+  verb.option("--intensity-grid", o->scanGrid,
+              "of the scan: the grid of a VDB, the array of a Zarr or HDF5 file")
+      .typeName("NAME");
+  verb.option("--bootstrap", o->bootstrap,
+              "adds 95 % intervals of the means, from N samples drawn of the grains")
+      .typeName("N");
   verb.onParsed([o, &common, &action] {
     parse(*o);
     action = [o, &common] { run(*o, common); };

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "array_source.h"
 #include "bindings.h"
+#include "vdb_madf/gray/measure_gray.h"
 #include "vdb_madf/labels/compare.h"
 #include "vdb_madf/measure/columns.h"
+#include "vdb_madf/measure/edge_weights.h"
 #include "vdb_madf/measure/measure.h"
 
 namespace vdb_madf::python {
@@ -73,11 +76,48 @@ double orNan(const std::optional<double>& value) {
   return value.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
-py::dict percentiles(const std::vector<GrainMeasures>& grains, bool byVolume, double length) {
+/// diameterOf(share), in voxels
+template <typename DiameterOf>
+py::dict percentiles(double length, const DiameterOf& diameterOf) {
   py::dict dict;
   for (const int percent : {5, 10, 25, 50, 75, 90, 95})
-    dict[py::int_(percent)] = diameterPercentile(grains, percent / 100.0, byVolume) * length;
+    dict[py::int_(percent)] = diameterOf(percent / 100.0) * length;
   return dict;
+}
+
+void addEdgeCorrected(const Measurements& m, const Unit& unit, py::dict& dict, py::dict& units) {
+  const EdgeCorrected corrected = edgeCorrected(m.grains);
+  const auto add = [&](const char* name, const std::optional<double>& value, int power) {
+    dict[name] = scaled(orNan(value), power, unit.length);
+    units[name] = unit.power(power);
+  };
+  dict["grains_at_faces"] = corrected.leftOut;
+  dict["corrected_grains"] = corrected.grains;
+  add("grain_diameter_mean", meanDiameter(m.grains), 1);
+  add("corrected_grain_diameter_mean", corrected.meanDiameter, 1);
+  add("grain_volume_mean", meanVolume(m.grains), 3);
+  add("corrected_grain_volume_mean", corrected.meanVolume, 3);
+  add("corrected_mean_coordination", corrected.meanCoordination, 0);
+  for (const bool byVolume : {false, true}) {
+    const char* name = byVolume ? "corrected_diameter_by_volume" : "corrected_diameter_by_number";
+    dict[name] = percentiles(unit.length, [&](double share) {
+      return correctedDiameterPercentile(m.grains, share, byVolume);
+    });
+    units[name] = unit.power(1);
+  }
+}
+
+void addIntervals(const Measurements& m, const Unit& unit, py::dict& dict, py::dict& units) {
+  py::dict intervals;
+  for (const MeanInterval& mean : m.intervals) {
+    py::dict interval;
+    interval["mean"] = scaled(orNan(mean.mean), mean.power, unit.length);
+    interval["low"] = scaled(orNan(mean.low), mean.power, unit.length);
+    interval["high"] = scaled(orNan(mean.high), mean.power, unit.length);
+    intervals[py::str(mean.name)] = interval;
+    units[py::str(mean.name)] = unit.power(mean.power);
+  }
+  dict["intervals"] = intervals;
 }
 
 py::dict sampleOf(const Measurements& m, const Unit& unit, py::dict& units) {
@@ -115,27 +155,50 @@ py::dict sampleOf(const Measurements& m, const Unit& unit, py::dict& units) {
   dict["bond_to_grain_ratio"] = orNan(s.bondToGrainRatio);
   dict["grain_fabric"] = tensor(s.grainFabric);
   dict["bond_fabric"] = tensor(s.bondFabric);
-  dict["diameter_by_number"] = percentiles(m.grains, false, unit.length);
-  dict["diameter_by_volume"] = percentiles(m.grains, true, unit.length);
+  for (const bool byVolume : {false, true})
+    dict[byVolume ? "diameter_by_volume" : "diameter_by_number"] = percentiles(
+        unit.length, [&](double share) { return diameterPercentile(m.grains, share, byVolume); });
   units["diameter_by_number"] = unit.power(1);
   units["diameter_by_volume"] = unit.power(1);
   dict["labels_digest"] = m.labelDigest;
+  if (m.extra.edgeWeights) addEdgeCorrected(m, unit, dict, units);
+  if (m.replicates > 0) addIntervals(m, unit, dict, units);
   return dict;
 }
 
+/// A path or an array; none: no scan.
+std::optional<GrayScan> openScan(const py::object& source, const std::string& part) {
+  if (source.is_none()) return std::nullopt;
+  if (!py::isinstance<py::str>(source))
+    return GrayScan{std::make_unique<ArrayReader>(source.cast<const ArraySource&>()), Coord(0)};
+  const auto path = source.cast<std::string>();
+  VolumeOptions options;
+  (isVdbFile(path) ? options.grid : options.dataset) = part;
+  const py::gil_scoped_release release;
+  return openGrayScan(path, options);
+}
+
 py::dict measureLabels(const GridPtr& labels, const Call& call, const std::string& boundary,
-                       int64_t minFaces) {
+                       int64_t minFaces, bool shape, const py::object& intensity,
+                       const std::string& intensityGrid, bool edgeWeights, int bootstrap) {
   const Int32Grid& grid = asLabels(*labels);
   MeasureOptions options;
   options.minFaces = minFaces;
+  options.shape = shape;
+  options.edgeWeights = edgeWeights;
+  options.bootstrap = bootstrap;
   if (const Boundary given = boundaryOf(boundary); given != Boundary::automatic)
     options.boundary = given;
-  const Measurements measured = withoutLock(
-      call, [&](Interrupter* interrupter) { return measure(grid, options, interrupter); });
+  std::optional<GrayScan> scan = openScan(intensity, intensityGrid);
+  const Measurements measured = withoutLock(call, [&](Interrupter* interrupter) {
+    Measurements result = measure(grid, options, interrupter);
+    if (scan) measureGray(grid, *scan, result, interrupter);
+    return result;
+  });
   const Unit unit(measured);
   py::dict dict, units;
-  dict["grains"] = table(grainColumns(measured.grains), unit, units);
-  dict["bonds"] = table(bondColumns(measured.bonds), unit, units);
+  dict["grains"] = table(grainColumns(measured.grains, measured.extra), unit, units);
+  dict["bonds"] = table(bondColumns(measured.bonds, measured.extra), unit, units);
   dict["sample"] = sampleOf(measured, unit, units);
   dict["unit"] = unit.name;
   dict["units"] = units;
@@ -188,7 +251,8 @@ py::dict compareLabels(const GridPtr& truth, const GridPtr& test, const Call& ca
 
 void bindMeasures(py::module_& m) {
   m.def("measure", measureLabels, py::arg("labels"), py::arg("call"), py::kw_only(),
-        py::arg("boundary"), py::arg("min_faces"));
+        py::arg("boundary"), py::arg("min_faces"), py::arg("shape"), py::arg("intensity"),
+        py::arg("intensity_grid"), py::arg("edge_weights"), py::arg("bootstrap"));
   m.def("compare", compareLabels, py::arg("truth"), py::arg("test"), py::arg("call"));
 }
 

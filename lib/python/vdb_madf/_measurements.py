@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Source
+from ._arrays import Source, readable
 from ._calls import Progress, calling
 from ._labels import Labels
 from ._segmentation import Segmentation, labels_of
@@ -63,14 +63,29 @@ class Measurements:
 
 
 def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional[str] = None, boundary: str = "auto",
-            min_faces: int = 1, dataset: Optional[str] = None, grid: Optional[str] = None,
-            progress: Progress = None, threads: int = 0) -> Measurements:
+            min_faces: int = 1, shape: bool = False, intensity: Optional[Source] = None,
+            intensity_grid: Optional[str] = None, edge_weights: bool = False, bootstrap: int = 0,
+            dataset: Optional[str] = None, grid: Optional[str] = None, progress: Progress = None,
+            threads: int = 0) -> Measurements:
     """Measures the grains of labels, of any program.
 
     boundary: what lies beyond the faces, "open" (unknown, so that they are no surface), "closed" or
     "auto": as the labels were made, else open. min_faces: of a bond. voxel_size, dataset, grid: as
-    of Labels, of files and arrays. Columns: lib/vdb_madf/measure/README.md says what they mean."""
+    of Labels, of files and arrays. Columns: lib/vdb_madf/measure/README.md says what they mean.
+
+    What is there on demand:
+    shape: columns `feret_max`, `feret_min`, `convex_volume`, `solidity`, `zingg_class` of the grains.
+    intensity: the scan that the labels were made of, a file or an array [z, y, x] of the same shape,
+    read slab by slab: columns `gray_mean`, `gray_sd`, `gray_min`, `gray_max`, `gray_median`,
+    `gray_voxels` of grains and bonds. intensity_grid: of a VDB, or the array of a Zarr or HDF5 file.
+    edge_weights: column `edge_weight` of the grains (0 at the faces), and in the sample
+    `corrected_grain_diameter_mean`, `corrected_diameter_by_number` ... The domain has to be a box.
+    bootstrap: replicates, 100 to 100000: in the sample `intervals`, by name of a mean its `mean` and
+    the ends `low` and `high` of its 95 % interval."""
     with calling(progress, threads) as call:
         measured = labels_of(labels, call, threads, voxel_size=voxel_size, dataset=dataset, grid=grid)
-        made = _core.measure(measured._grid, call, boundary=boundary, min_faces=min_faces)
+        made = _core.measure(measured._grid, call, boundary=boundary, min_faces=min_faces, shape=shape,
+                             intensity=None if intensity is None else readable(intensity),
+                             intensity_grid=intensity_grid or "", edge_weights=edge_weights,
+                             bootstrap=bootstrap)
     return Measurements(**made, provenance=measured.metadata)

@@ -18,6 +18,7 @@
 #include "vdb_madf/files/output_file.h"
 #include "vdb_madf/files/written_together.h"
 #include "vdb_madf/measure/columns.h"
+#include "vdb_madf/measure/edge_weights.h"
 
 namespace vdb_madf {
 
@@ -105,6 +106,53 @@ Json segmentationJson(const openvdb::MetaMap& metadata) {
   return json;
 }
 
+Json orNull(const std::optional<double>& value, int power, double length) {
+  return value ? Json(scaled(*value, power, length)) : Json();
+}
+
+/// Percentiles by diameterOf(share, byVolume), in voxels.
+template <typename DiameterOf>
+void addDiameters(const std::string& stem, const Unit& unit, const DiameterOf& diameterOf,
+                  Json& json) {
+  for (const bool byVolume : {false, true}) {
+    Json sizes;
+    for (const int percent : {5, 10, 25, 50, 75, 90, 95})
+      sizes["d" + std::to_string(percent)] = diameterOf(percent / 100.0, byVolume) * unit.length;
+    json[stem + (byVolume ? "volume_" : "number_") + unit.name] = sizes;
+  }
+}
+
+void addEdgeCorrected(const Measurements& m, const Unit& unit, Json& json) {
+  const EdgeCorrected corrected = edgeCorrected(m.grains);
+  const auto add = [&](const char* name, const std::optional<double>& value, int power) {
+    json[name + unitSuffix(power, unit.name)] = orNull(value, power, unit.length);
+  };
+  json["grains_at_faces"] = corrected.leftOut;
+  json["corrected_grains"] = corrected.grains;
+  add("grain_diameter_mean", meanDiameter(m.grains), 1);
+  add("corrected_grain_diameter_mean", corrected.meanDiameter, 1);
+  add("grain_volume_mean", meanVolume(m.grains), 3);
+  add("corrected_grain_volume_mean", corrected.meanVolume, 3);
+  add("corrected_mean_coordination", corrected.meanCoordination, 0);
+  addDiameters(
+      "corrected_grain_diameter_by_", unit,
+      [&](double share, bool byVolume) {
+        return correctedDiameterPercentile(m.grains, share, byVolume);
+      },
+      json);
+}
+
+void addIntervals(const Measurements& m, const Unit& unit, Json& json) {
+  json["bootstrap_replicates"] = m.replicates;
+  for (const MeanInterval& mean : m.intervals) {
+    Json interval;
+    interval["mean"] = orNull(mean.mean, mean.power, unit.length);
+    interval["low"] = orNull(mean.low, mean.power, unit.length);
+    interval["high"] = orNull(mean.high, mean.power, unit.length);
+    json[mean.name + "_interval" + unitSuffix(mean.power, unit.name)] = interval;
+  }
+}
+
 Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& options) {
   const SampleMeasures& s = m.sample;
   const std::string& u = unit.name;
@@ -153,15 +201,14 @@ Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& opt
   json["mean_coordination"] = s.meanCoordination;
   json["coordination_distribution"] = s.coordinations;
   json["bond_to_grain_ratio"] = s.bondToGrainRatio ? Json(*s.bondToGrainRatio) : Json();
-  for (const bool byVolume : {false, true}) {
-    Json sizes;
-    for (const int percent : {5, 10, 25, 50, 75, 90, 95})
-      sizes["d" + std::to_string(percent)] =
-          diameterPercentile(m.grains, percent / 100.0, byVolume) * unit.length;
-    json[std::string("grain_diameter_by_") + (byVolume ? "volume_" : "number_") + u] = sizes;
-  }
+  addDiameters(
+      "grain_diameter_by_", unit,
+      [&](double share, bool byVolume) { return diameterPercentile(m.grains, share, byVolume); },
+      json);
   json["grain_axis_fabric"] = toJson(s.grainFabric);
   json["bond_normal_fabric"] = toJson(s.bondFabric);
+  if (m.extra.edgeWeights) addEdgeCorrected(m, unit, json);
+  if (m.replicates > 0) addIntervals(m, unit, json);
   return json;
 }
 
@@ -187,8 +234,10 @@ MeasurementTables::~MeasurementTables() = default;
 
 void MeasurementTables::write(const Measurements& measurements, const TableOptions& options) {
   const Unit unit(measurements);
-  files_.at(0)->text(table(grainColumns(measurements.grains), unit, options.sample));
-  files_.at(1)->text(table(bondColumns(measurements.bonds), unit, options.sample));
+  files_.at(0)->text(
+      table(grainColumns(measurements.grains, measurements.extra), unit, options.sample));
+  files_.at(1)->text(
+      table(bondColumns(measurements.bonds, measurements.extra), unit, options.sample));
   // A file name need not be UTF-8: what is not is replaced.
   files_.at(2)->text(
       sampleJson(measurements, unit, options).dump(2, ' ', false, Json::error_handler_t::replace) +

@@ -50,9 +50,36 @@ class ColumnMaker {
   std::vector<MeasureColumn> columns_;
 };
 
+void addShape(ColumnMaker<GrainMeasures>& make) {
+  using G = GrainMeasures;
+  const auto ofShape = [](double GrainShape::*member) {
+    return [member](const G& g) { return g.shape ? (*g.shape).*member : kNone; };
+  };
+  make.add("feret_max", 1, ofShape(&GrainShape::maxFeret));
+  make.add("feret_min", 1, ofShape(&GrainShape::minFeret));
+  make.add("convex_volume", 3, ofShape(&GrainShape::convexVolume));
+  make.add("solidity", 0, [](const G& g) { return g.shape ? g.solidity() : kNone; });
+  make.addCount("zingg_class", [](const G& g) { return zinggClass(g.ellipsoid.values); });
+}
+
+/// Of grains or bonds.
+template <typename Item>
+void addGray(ColumnMaker<Item>& make) {
+  make.addCount("gray_voxels", [](const Item& item) { return item.gray ? item.gray->voxels : 0; });
+  const auto ofGray = [](double GrayValues::*member) {
+    return [member](const Item& item) { return item.gray ? (*item.gray).*member : kNone; };
+  };
+  make.add("gray_mean", 0, ofGray(&GrayValues::mean));
+  make.add("gray_sd", 0, ofGray(&GrayValues::deviation));
+  make.add("gray_min", 0, ofGray(&GrayValues::minimum));
+  make.add("gray_max", 0, ofGray(&GrayValues::maximum));
+  make.add("gray_median", 0, ofGray(&GrayValues::median));
+}
+
 }  // namespace
 
-std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains) {
+std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains,
+                                        const ExtraMeasures& extra) {
   using G = GrainMeasures;
   ColumnMaker<G> make(grains);
   make.addCount("id", [](const G& g) { return g.id; });
@@ -87,10 +114,14 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
       "box_max", [](const G& g) { return g.box.max(); }, Kind::count);
   make.addCount("coordination", [](const G& g) { return g.coordination; });
   make.addCount("at_domain_face", [](const G& g) { return g.atDomainFace; });
+  if (extra.shape) addShape(make);
+  if (extra.gray) addGray(make);
+  if (extra.edgeWeights) make.add("edge_weight", 0, [](const G& g) { return g.edgeWeight; });
   return make.columns();
 }
 
-std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds) {
+std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
+                                       const ExtraMeasures& extra) {
   using B = BondMeasures;
   ColumnMaker<B> make(bonds);
   make.addCount("first", [](const B& b) { return b.first; });
@@ -116,6 +147,7 @@ std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds) {
   addCurvature("gaussian_curvature", -2, &InterfaceCurvature::gaussian);
   addCurvature("gaussian_curvature_sd", -2, &InterfaceCurvature::gaussianDeviation);
   addCurvature("curvature_residual", 1, &InterfaceCurvature::residual);
+  if (extra.gray) addGray(make);
   return make.columns();
 }
 

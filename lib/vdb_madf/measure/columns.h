@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "vdb_madf/measure/extra_measures.h"
 #include "vdb_madf/measure/measure_bonds.h"
 #include "vdb_madf/measure/measure_grains.h"
 
@@ -30,15 +31,19 @@ struct MeasureColumn {
 /// `_y`, `_z`, `inscribed_radius`, `area`, `free_area`, `shared_area`, `cut_area`, `sphericity`,
 /// `axis1_length` to `axis3_length`, `aspect_2_to_1`, `aspect_3_to_2`, `axis1_x`, `_y`, `_z` to
 /// `axis3...`, `box_min_x` ..., `box_max_x` ... (index coordinates), `coordination`,
-/// `at_domain_face` (0 or 1).
-std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains);
+/// `at_domain_face` (0 or 1). With the shape also `feret_max`, `feret_min`, `convex_volume`,
+/// `solidity`, `zingg_class` (1 to 4: zinggClass()); with gray values `gray_voxels`, `gray_mean`,
+/// `gray_sd`, `gray_min`, `gray_max`, `gray_median`; with edge weights `edge_weight`.
+std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains,
+                                        const ExtraMeasures& extra = {});
 
 /// `first`, `second`, `faces` (shared voxel faces), `area`, `radius`, `centroid_x`, `_y`, `_z`
 /// (mean of the centres of the faces), `normal_x`, `_y`, `_z`, `distance`, `cos_alpha`, `flatness`,
 /// `patches`, `curvature_points`, `mean_curvature`, `mean_curvature_sd`, `gaussian_curvature`,
 /// `gaussian_curvature_sd`, `curvature_residual`. A bond without a curvature has 0
-/// `curvature_points` and none of the four.
-std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds);
+/// `curvature_points` and none of the four. With gray values the columns that grains have.
+std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
+                                       const ExtraMeasures& extra = {});
 
 /// What a power of a length appends to a name: "" (0), "_mm", "_mm2", "_per_mm", "_per_mm2" ...
 std::string unitSuffix(int power, const std::string& unit);

@@ -64,8 +64,9 @@ GrainNetwork grainNetwork(const Int32Grid& labels, const MeasureOptions& options
   }
   const GrainColors colors = grainColors(labels, interrupter);
   for (const int32_t label : network.grains) network.colors.push_back(colors.colorOf(label));
-  network.grainColumns = inWorld(grainColumns(measured.grains), {"id"}, world);
-  network.bondColumns = inWorld(bondColumns(measured.bonds), {"first", "second"}, world);
+  network.grainColumns = inWorld(grainColumns(measured.grains, measured.extra), {"id"}, world);
+  network.bondColumns =
+      inWorld(bondColumns(measured.bonds, measured.extra), {"first", "second"}, world);
   network.bondColumns.push_back(std::move(faceArea));
   network.bondColumns.push_back(std::move(length));
   return network;

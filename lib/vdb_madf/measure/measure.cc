@@ -14,9 +14,11 @@
 #include "vdb_madf/measure/detail/bond_measures.h"
 #include "vdb_madf/measure/detail/grain_measures.h"
 #include "vdb_madf/measure/detail/grain_representatives.h"
+#include "vdb_madf/measure/detail/grain_shapes.h"
 #include "vdb_madf/measure/detail/label_sums.h"
 #include "vdb_madf/measure/detail/sample_measures.h"
 #include "vdb_madf/measure/detail/voxel_shape.h"
+#include "vdb_madf/measure/edge_weights.h"
 #include "vdb_madf/measure/euler_characteristic.h"
 #include "vdb_madf/method/boundary.h"
 #include "vdb_madf/method/detail/metric.h"
@@ -67,6 +69,15 @@ std::vector<BondMeasures> takeSmallBonds(Measurements& result) {
   return small;
 }
 
+void checkEdgeWeights(const std::optional<Domain>& domain, bool open) {
+  const std::string what = "weights for grains cut by the faces of the scan";
+  if (!domain) throw InvalidInput(what + ": its domain is unknown: give it");
+  if (!domain->isBox())
+    throw InvalidInput(what + " are known for boxes alone, and the domain is a region: crop a box");
+  if (!open)
+    throw InvalidInput(what + ": none is cut where the boundary is closed; measure with it open");
+}
+
 /// \p graph: of the segmentation, if it tells the representatives under its weights; else null.
 Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& options,
                            const ManifoldGraph* graph, Interrupter* interrupter) {
@@ -79,11 +90,16 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
   const Boundary boundary =
       options.boundary == Boundary::automatic ? storedBoundary(labels) : options.boundary;
   const Obstacles obstacles = resolveBoundary(index, boundary, domain);
+  if (options.edgeWeights) checkEdgeWeights(domain, obstacles.open);
+  if (options.bootstrap != 0) requireReplicates(options.bootstrap);
   const VoxelWeights weights = weightsOf(voxel, labels, index);
   Measurements result;
   result.voxelSize = storedVoxelSize(labels);
   result.edges = voxel.edges;
   result.minFaces = options.minFaces;
+  result.extra.shape = options.shape;
+  result.extra.edgeWeights = options.edgeWeights;
+  result.replicates = options.bootstrap;
   result.open = obstacles.open;
   result.gridName = labels.getName();
   result.metadata = labels;
@@ -95,6 +111,11 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
     result.bonds = detail::bondMeasures(sums, voxel, interrupter);
     result.grains = detail::grainMeasures(sums, result.bonds, whole, voxel);
   }
+  if (options.edgeWeights) {
+    for (GrainMeasures& grain : result.grains)
+      grain.edgeWeight = edgeWeight(grain.box, whole.box());
+  }
+  if (options.shape) detail::measureShapes(leaves, voxel, result.grains, interrupter);
   setRepresentatives(graph && graph->weights == weights
                          ? detail::grainRepresentatives(labels, *graph)
                          : detail::grainRepresentatives(leaves, obstacles, weights, interrupter),
@@ -111,6 +132,9 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
     if (auto& length = sample.correlationLengths[size_t(axis)]) *length *= voxel.edges[axis];
   sample.eulerCharacteristic = eulerCharacteristic(index, interrupter);
   sample.components = detail::ConnectedComponents(index).count();
+  if (options.bootstrap != 0)
+    result.intervals =
+        bootstrapMeans(result.grains, result.bonds, result.extra, options.bootstrap, interrupter);
   return result;
 }
 

@@ -11,6 +11,8 @@
 
 #include "vdb_madf/base/voxel_size.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/measure/bootstrap.h"
+#include "vdb_madf/measure/extra_measures.h"
 #include "vdb_madf/measure/measure_bonds.h"
 #include "vdb_madf/measure/measure_grains.h"
 #include "vdb_madf/measure/measure_sample.h"
@@ -30,6 +32,11 @@ struct MeasureOptions {
   /// Grains that share fewer voxel faces have no bond; what they share stays part of their areas.
   /// 0 and 1: all that touch have one.
   int64_t minFaces = 1;
+  bool shape = false;  ///< also GrainMeasures::shape
+  /// Also GrainMeasures::edgeWeight. The boundary has to be open, and the domain a box.
+  bool edgeWeights = false;
+  /// Replicates of a bootstrap of the means (bootstrap.h); 0: none.
+  int bootstrap = 0;
 };
 
 /// Grains, bonds and the sample. Lengths are in voxels, of unequal ones in their shortest edge;
@@ -38,10 +45,13 @@ struct Measurements {
   std::vector<GrainMeasures> grains;  ///< by id
   std::vector<BondMeasures> bonds;    ///< by first, then second
   SampleMeasures sample;
-  int64_t minFaces = 1;                ///< that a bond had to have
-  bool open = false;                   ///< the boundary
-  std::optional<VoxelSize> voxelSize;  ///< of the grid
-  openvdb::Vec3d edges{1, 1, 1};       ///< of a voxel, in units of the shortest
+  int64_t minFaces = 1;                 ///< that a bond had to have
+  ExtraMeasures extra;                  ///< what there is besides
+  std::vector<MeanInterval> intervals;  ///< of bootstrapMeans(), if it was asked for
+  int replicates = 0;                   ///< of these
+  bool open = false;                    ///< the boundary
+  std::optional<VoxelSize> voxelSize;   ///< of the grid
+  openvdb::Vec3d edges{1, 1, 1};        ///< of a voxel, in units of the shortest
   std::string gridName;
   openvdb::MetaMap metadata;  ///< of the grid: how the labels were made
   /// Of the places and labels of the voxels, 32 hexadecimal digits: a checksum that equal labels
@@ -55,8 +65,8 @@ struct Measurements {
 /// exact. Depends on nothing but labels, domain and boundary: not on tiles or threads, bit for bit.
 /// Memory: per grain, per face of a bond, and for the representatives per voxel.
 /// @throw InvalidInput if labels leave the domain, the boundary is open without one, minFaces is
-///   negative, no weights fit the voxels (voxel_weights.h), or a limit of leaf_index.h is exceeded;
-///   Interrupted.
+///   negative, edge weights or a bootstrap are asked for that cannot be had, no weights fit the
+///   voxels (voxel_weights.h), or a limit of leaf_index.h is exceeded; Interrupted.
 Measurements measure(const Int32Grid& labels, const MeasureOptions& options = {},
                      Interrupter* interrupter = nullptr);
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/measure/gray_values.h"
 #include "vdb_madf/measure/interface_curvature.h"
 
 namespace vdb_madf {
@@ -31,6 +32,9 @@ struct BondMeasures {
   /// Between the representatives c of the grains, with squared inscribed radii D: their distance
   /// and cos alpha = (|c1 - c2|^2 - D1 - D2) / (2 sqrt(D1 D2)). None without background.
   std::optional<double> distance, cosAlpha;
+  /// At the voxels on both sides: those of either grain with a face towards the other, each once.
+  /// None unless it was asked for.
+  std::optional<GrayValues> gray;
 };
 
 }  // namespace vdb_madf

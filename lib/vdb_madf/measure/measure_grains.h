@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/measure/grain_shape.h"
+#include "vdb_madf/measure/gray_values.h"
 
 namespace vdb_madf {
 
@@ -41,8 +43,13 @@ struct GrainMeasures {
   /// grain's second moments, voxels being boxes.
   Principal ellipsoid;
   int coordination = 0;  ///< number of bonds
+  // What was not asked for is none, or 0.
+  std::optional<GrainShape> shape;
+  std::optional<GrayValues> gray;  ///< at its voxels
+  double edgeWeight = 0;           ///< see edge_weights.h
 
   double totalArea() const { return freeArea + sharedArea; }
+  double solidity() const { return volume / shape.value().convexVolume; }
 };
 
 }  // namespace vdb_madf

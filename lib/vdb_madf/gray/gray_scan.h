@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "vdb_madf/base/interrupter.h"
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/images/image.h"
+#include "vdb_madf/volumes/volume.h"
+
+namespace vdb_madf {
+
+/// The values of a scan, slab by slab.
+struct GrayScan {
+  std::unique_ptr<ImageReader> image;
+  Coord first;  ///< the voxel that the image begins with: 0, but of some grids
+
+  CoordBBox box() const;
+};
+
+/// Any readable file: an image, as openVolumeImage(), or a grid of numbers of a VDB file (the one
+/// that the options name, or GridUse::object), with its background outside of its voxels; its box is
+/// its domain, or the box of its active voxels. Of the options `grid`, `dataset`, `raw`, `outputs`
+/// and `note` count.
+/// @throw InvalidInput, one line that names the file; IoError; Interrupted.
+GrayScan openGrayScan(const std::string& path, const VolumeOptions& options = {},
+                      Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/measure/detail/grain_shapes.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/measure/detail/convex_hull.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+using openvdb::Vec3d;
+
+constexpr size_t kTogether = 4;  // grains
+
+/// A row of voxels along z, from the first to the last; what lies between has no part in the hull.
+struct Row {
+  int x, y, first, last;
+};
+
+void addRows(const LabelPart& part, const Coord& origin, std::vector<Row>& rows) {
+  for (int x = 0; x < 8; ++x)
+    for (int y = 0; y < 8; ++y)
+      if (const auto bits = unsigned(part.mask[size_t(x)] >> 8 * y & 0xff))
+        rows.push_back({origin.x() + x, origin.y() + y, origin.z() + __builtin_ctz(bits),
+                        origin.z() + 31 - __builtin_clz(bits)});
+}
+
+/// One of each place, sorted by x, then y.
+void joinRows(std::vector<Row>& rows) {
+  std::sort(rows.begin(), rows.end(),
+            [](const Row& a, const Row& b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
+  size_t joined = 0;
+  for (const Row& row : rows) {
+    Row* last = joined > 0 ? &rows[joined - 1] : nullptr;
+    if (last && last->x == row.x && last->y == row.y) {
+      last->first = std::min(last->first, row.first);
+      last->last = std::max(last->last, row.last);
+    } else {
+      rows[joined++] = row;
+    }
+  }
+  rows.resize(joined);
+}
+
+/// The lower side of the polygon around points that come by ascending y.
+class LowerChain {
+ public:
+  void add(int64_t y, int64_t z) {
+    while (points_.size() > 1 && !turnsUp(points_.end()[-2], points_.back(), {y, z}))
+      points_.pop_back();
+    points_.push_back({y, z});
+  }
+  const std::vector<std::pair<int64_t, int64_t>>& points() const { return points_; }
+
+ private:
+  using Point = std::pair<int64_t, int64_t>;
+  static bool turnsUp(const Point& a, const Point& b, const Point& c) {
+    return (b.first - a.first) * (c.second - a.second) >
+           (b.second - a.second) * (c.first - a.first);
+  }
+  std::vector<Point> points_;
+};
+
+/// The corners of the voxels of one x, as far as they may be corners of a hull. Corner p is the
+/// point p - 1/2.
+void addCorners(const Row* begin, const Row* end, std::vector<Coord>& corners) {
+  LowerChain lower, upper;  // upside down
+  for (const Row* row = begin; row != end; ++row)
+    for (const int y : {row->y, row->y + 1}) {
+      lower.add(y, row->first);
+      upper.add(y, -int64_t(row->last) - 1);
+    }
+  for (const int x : {begin->x, begin->x + 1}) {
+    for (const auto& [y, z] : lower.points()) corners.emplace_back(x, int(y), int(z));
+    for (const auto& [y, z] : upper.points()) corners.emplace_back(x, int(y), int(-z));
+  }
+}
+
+/// \p rows as joinRows() leaves them, not empty.
+GrainShape shapeOf(const std::vector<Row>& rows, const VoxelShape& voxel) {
+  std::vector<Coord> corners;
+  for (auto row = rows.begin(); row != rows.end();) {
+    const auto next =
+        std::find_if(row, rows.end(), [&](const Row& other) { return other.x != row->x; });
+    addCorners(&*row, &*row + (next - row), corners);
+    row = next;
+  }
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  std::vector<Vec3d> points;
+  points.reserve(corners.size());
+  for (const Coord& corner : corners)
+    points.push_back((corner - corners.front()).asVec3d() * voxel.edges);
+  const ConvexHull hull = convexHull(points);
+  return {diameter(hull), leastWidth(hull), hull.volume};
+}
+
+/// The parts of the leaves by grain.
+class PartsOfGrains {
+ public:
+  struct Part {
+    size_t leaf;
+    const LabelPart* voxels;
+  };
+
+  PartsOfGrains(const LabelLeaves& labels, const std::vector<GrainMeasures>& grains)
+      : first_(grains.size() + 1) {
+    const size_t leaves = labels.index().leafCount();
+    for (size_t leaf = 0; leaf < leaves; ++leaf)
+      for (const LabelPart& part : labels.parts(leaf)) ++first_[row(part, grains) + 1];
+    for (size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+    parts_.resize(first_.back());
+    std::vector<size_t> next(first_.begin(), first_.end() - 1);
+    for (size_t leaf = 0; leaf < leaves; ++leaf)
+      for (const LabelPart& part : labels.parts(leaf))
+        parts_[next[row(part, grains)]++] = {leaf, &part};
+  }
+  const Part* begin(size_t grain) const { return parts_.data() + first_[grain]; }
+  const Part* end(size_t grain) const { return parts_.data() + first_[grain + 1]; }
+
+ private:
+  static size_t row(const LabelPart& part, const std::vector<GrainMeasures>& grains) {
+    const auto found = std::lower_bound(
+        grains.begin(), grains.end(), part.label,
+        [](const GrainMeasures& grain, int32_t label) { return grain.id < label; });
+    return size_t(found - grains.begin());
+  }
+
+  std::vector<size_t> first_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace
+
+void measureShapes(const LabelLeaves& labels, const VoxelShape& voxel,
+                   std::vector<GrainMeasures>& grains, Interrupter* interrupter) {
+  const PartsOfGrains parts(labels, grains);
+  parallelFor(grains.size(), kTogether, interrupter, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      std::vector<Row> rows;
+      for (const auto* part = parts.begin(i); part != parts.end(i); ++part)
+        addRows(*part->voxels, labels.index().origin(part->leaf), rows);
+      joinRows(rows);
+      grains[i].shape = shapeOf(rows, voxel);
+    }
+  });
+}
+
+}  // namespace vdb_madf::detail

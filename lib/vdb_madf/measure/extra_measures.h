@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+namespace vdb_madf {
+
+/// Which measures are there besides those that always are.
+struct ExtraMeasures {
+  bool shape = false;        ///< GrainMeasures::shape
+  bool gray = false;         ///< GrainMeasures::gray, BondMeasures::gray
+  bool edgeWeights = false;  ///< GrainMeasures::edgeWeight
+};
+
+}  // namespace vdb_madf
