@@ -281,7 +281,7 @@ constexpr Kind kKinds[] = {
     {"vti", exportVti, ".vti", isVtiOutput},
     {"clumps", exportClumps, ".csv, .txt (YADE) or .data (LAMMPS)", isClumpEnding},
     {"hexa", exportHexahedra, ".vtu or .inp (Abaqus)", isHexahedraEnding},
-    {"mask", exportMask, ".tif, .raw, .mhd, .mha, .nrrd or .npy", isImageEnding},
+    {"mask", exportMask, ".tif, .raw, .mhd, .mha, .nrrd, .npy or .h5", isImageEnding},
     {"network", exportNetwork, ".vtp, .graphml or .csv", isNetworkEnding},
 };
 
