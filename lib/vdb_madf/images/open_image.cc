@@ -24,6 +24,7 @@
 #include "vdb_madf/images/formats/raw.h"
 #include "vdb_madf/images/formats/slice_folder.h"
 #include "vdb_madf/images/formats/tiff.h"
+#include "vdb_madf/images/formats/txm.h"
 #include "vdb_madf/images/formats/zarr.h"
 
 namespace vdb_madf {
@@ -139,6 +140,7 @@ const std::vector<FileFormat>& fileFormats() {
       {hasHeader<isHdf5>, {".h5", ".hdf5"}, openHdf5File, createPlaceless<createHdf5File>, 2},
       {hasHeader<isVdb>, {".vdb"}, nullptr},
       {hasHeader<isIsqHeader>, {".isq"}, openOnly<openIsq>},
+      {hasHeader<isCompoundHeader>, {".txm", ".txrm"}, openOnly<openTxm>},
       {hasHeader<isMetaHeader>, {".mhd", ".mha"}, openOnly<openMeta>, createMeta, 2},
       {hasHeader<isDgtalHeader>, {".longvol"}, openOnly<openDgtal>},
       {hasHeader<isPyhstHeader>, {".vol", ".info"}, openOnly<openPyhst>},

@@ -21,7 +21,7 @@ struct RawLayout {
   uint64_t skip = 0;  ///< bytes before the first sample: a header
 };
 
-/// Opens TIFF (multi-page, BigTIFF), MHD/MHA, NRRD, npy, ISQ, NIfTI-1, vol/longvol, PyHST's vol,
+/// Opens TIFF (multi-page, BigTIFF), MHD/MHA, NRRD, npy, ISQ, TXM, NIfTI-1, vol/longvol, PyHST's vol,
 /// PNG, BMP, a folder of TIFF, PNG or BMP slices, Zarr, HDF5 (if it was there when this was built),
 /// recognized by content, then by ending (the table in open_image.cc, where a new format gets its
 /// line); RAW if `raw` is given. Sizes in a header are checked against the file before anything is
