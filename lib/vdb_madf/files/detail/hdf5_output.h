@@ -3,12 +3,14 @@
 
 #pragma once
 
+#include <exception>
 #include <mutex>
 #include <string>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/detail/hdf5_driver.h"
 #include "vdb_madf/files/detail/hdf5_handle.h"
-#include "vdb_madf/files/output_file.h"
+#include "vdb_madf/files/detail/output_stream.h"
 
 // For rooms that link libhdf5: this one does without.
 
@@ -34,11 +36,11 @@ class Hdf5Turn {
 class Hdf5Output {
  public:
   /// @throw IoError
-  explicit Hdf5Output(const std::string& path) : output_(path), file_(-1, H5Fclose) {
+  explicit Hdf5Output(const std::string& path) : out_(path), target_{out_}, file_(-1, H5Fclose) {
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);  // with all that is open in it
-    file_ = Hdf5Handle(
-        H5Fcreate(output_.temporaryPath().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
+    Hdf5Driver::choose(access, target_);
+    file_ = Hdf5Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
     check(bool(file_));
   }
 
@@ -46,16 +48,15 @@ class Hdf5Output {
 
   /// @throw IoError
   void commit() {
-    check(H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0);
     check(file_.close() >= 0);
-    output_.commit();
+    out_.commit();
   }
 
-  /// @throw IoError unless the library has done what it was asked for.
+  /// @throw IoError unless the library has done what it was asked for, and all could be written.
   void check(bool done) const {
+    if (target_.error) std::rethrow_exception(target_.error);
     if (!done)
-      throw IoError("cannot write " + output_.path() +
-                    ": libhdf5 fails to, as on a full disk; write it elsewhere");
+      throw IoError("cannot write " + out_.path() + ": libhdf5 fails to; write another format");
   }
   Hdf5Handle checked(Hdf5Handle object) const {
     check(bool(object));
@@ -63,8 +64,9 @@ class Hdf5Output {
   }
 
  private:
-  OutputFile output_;
-  Hdf5Handle file_;  // goes before the file
+  OutputStream out_;
+  Hdf5Driver::Target target_;
+  Hdf5Handle file_;  // goes before what it is written to
 };
 
 /// For objects that do not keep the time.
