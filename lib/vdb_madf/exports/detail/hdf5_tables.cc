@@ -168,7 +168,9 @@ class TableWriter {
     } else if (json.is_boolean()) {
       addIntegers(parent, name, {}, {json.get<bool>() ? 1 : 0});
     } else {
-      const std::string text = json.is_string() ? json.get<std::string>() : json.dump();
+      const std::string text = json.is_string()
+                                   ? json.get<std::string>()
+                                   : json.dump(-1, ' ', false, Json::error_handler_t::replace);
       const Hdf5Handle type = textType(text);
       addValues(parent, name, type, type, {}, text.data());
     }

@@ -21,8 +21,8 @@ namespace vdb_madf::detail {
 
 /// What libhdf5 writes goes to an OutputStream. Errors, as of a full disk, are kept from the library,
 /// which crashes at the end of the program if a file could not be closed: what cannot be written any
-/// more (at most the library's buffers) stays in memory, until the file is closed and its writer
-/// asks for the error.
+/// more (at most what is being written, and the library's buffers) stays in memory, until the file is
+/// closed and its writer asks for the error.
 class Hdf5Driver {
  public:
   /// Where the bytes go; outlives the file.
