@@ -218,7 +218,6 @@ def measure():
     for name in ("tiles", "plain", "solid_labels", "none", "one_labels", "large_tile", "theta1"):
         yield f"measure {name}.vdb measured_{name}_dir"
     yield "measure i8_little.npy measured_noise_dir"
-    yield "measure tiles.vdb measured_tiles.h5"
 
 
 def collect():

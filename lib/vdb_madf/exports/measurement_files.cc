@@ -195,18 +195,14 @@ MeasurementTables::~MeasurementTables() = default;
 
 void MeasurementTables::write(const Measurements& measurements, const TableOptions& options) {
   const Unit unit(measurements);
-  if (!file_.empty()) {
-    detail::writeHdf5Tables(
-        file_, {unit.name, unit.edges, grainColumns(measurements.grains),
-                bondColumns(measurements.bonds), sampleJson(measurements, unit, options)});
-    return;
-  }
-  files_.at(0)->text(table(grainColumns(measurements.grains), unit, options.sample));
-  files_.at(1)->text(table(bondColumns(measurements.bonds), unit, options.sample));
+  const auto grains = grainColumns(measurements.grains), bonds = bondColumns(measurements.bonds);
+  const Json sample = sampleJson(measurements, unit, options);
+  if (!file_.empty())
+    return detail::writeHdf5Tables(file_, {unit.name, unit.edges, grains, bonds, sample});
+  files_.at(0)->text(table(grains, unit, options.sample));
+  files_.at(1)->text(table(bonds, unit, options.sample));
   // A file name need not be UTF-8: what is not is replaced.
-  files_.at(2)->text(
-      sampleJson(measurements, unit, options).dump(2, ' ', false, Json::error_handler_t::replace) +
-      "\n");
+  files_.at(2)->text(sample.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   for (const auto& file : files_) file->close();
   for (const auto& file : files_) {
     file->commit();

@@ -41,8 +41,8 @@ struct TableOptions {
 ///
 /// A name that ends with .h5 or .hdf5 is that of one HDF5 file instead, with the same bytes whenever
 /// it is written: groups `grains` and `bonds` with a dataset per column, named without the unit, which
-/// is its attribute `units` ("mm", "mm^2", "1/mm"; none of plain numbers); counts are int64, other
-/// numbers float64 with all their digits, NaN if unknown. The members of the group `sample` are those
+/// is its attribute `units` ("mm", "mm^2", "1/mm"; none of plain numbers); counts are int64 (if
+/// all are known), other numbers float64 with all their digits, NaN if unknown. The members of the group `sample` are those
 /// of sample.json, lists as arrays, true and false as 1 and 0; it has the name of the sample.
 class MeasurementTables {
  public:

@@ -123,7 +123,9 @@ class TableWriter {
     const Hdf5Handle table = group(file_.id(), name);
     for (const MeasureColumn& column : columns) {
       std::vector<double> values = column.values;
-      if (column.kind == MeasureColumn::Kind::count) {
+      const bool areKnown = std::none_of(values.begin(), values.end(),
+                                         [](double value) { return std::isnan(value); });
+      if (column.kind == MeasureColumn::Kind::count && areKnown) {
         addIntegers(table, column.name, {values.size()}, {values.begin(), values.end()});
         continue;
       }
