@@ -11,10 +11,10 @@ find_package(PNG REQUIRED)
 find_package(Blosc REQUIRED)  # with OpenVDB's own find module
 find_package(nlohmann_json REQUIRED)
 
-option(VDB_MADF_HDF5 "Read HDF5 if libhdf5 is found" ON)
+option(VDB_MADF_HDF5 "Read and write HDF5 if libhdf5 is found" ON)
 if(VDB_MADF_HDF5)
   find_package(SerialHDF5 QUIET)
 endif()
 if(NOT TARGET SerialHDF5::hdf5)
-  message(STATUS "HDF5 volumes will not be read: no libhdf5, or VDB_MADF_HDF5 is off")
+  message(STATUS "HDF5 will not be read or written: no libhdf5, or VDB_MADF_HDF5 is off")
 endif()

@@ -9,9 +9,17 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#ifdef VDB_MADF_HDF5
+#include "support/hdf5_files.h"
+#endif
+
 #include "support/files.h"
+#include "support/full_disk.h"
+#include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/version.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/measure/columns.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
@@ -217,3 +225,140 @@ TEST_CASE("measurement_files: unequal voxels have three edges, and their shortes
   CHECK(sample.at("correlation_length_mm").at(0) == 0.375);
   CHECK(sample.at("object_volume_mm3") == 0.125);
 }
+
+#ifndef VDB_MADF_HDF5
+
+TEST_CASE("measurement_files: a build without HDF5 says so before the work",
+          "[measurement_files]") {
+  WARN("SKIPPED: tables in HDF5: built without libhdf5-dev");
+  const ScratchFolder scratch;
+  CHECK_THROWS_WITH(MeasurementTables(scratch / "t.h5"), Catch::Contains("libhdf5"));
+  CHECK(scratch.fileCount() == 0);
+}
+
+#else
+
+namespace {
+
+/// All numbers of a dataset, which are of the kind of T.
+template <typename T>
+std::vector<T> hdf5Values(hid_t file, const std::string& name) {
+  const hid_t dataset = H5Dopen2(file, name.c_str(), H5P_DEFAULT);
+  REQUIRE(dataset >= 0);
+  const hid_t space = H5Dget_space(dataset), type = H5Dget_type(dataset);
+  CHECK(H5Tget_class(type) == (std::is_integral_v<T> ? H5T_INTEGER : H5T_FLOAT));
+  std::vector<T> values(size_t(H5Sget_simple_extent_npoints(space)));
+  H5Dread(dataset, std::is_integral_v<T> ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL,
+          H5P_DEFAULT, values.data());
+  H5Tclose(type);
+  H5Sclose(space);
+  H5Dclose(dataset);
+  return values;
+}
+
+/// Of a dataset; "" if there is none.
+std::string unitsOf(hid_t file, const std::string& name) {
+  if (H5Aexists_by_name(file, name.c_str(), "units", H5P_DEFAULT) <= 0) return "";
+  const hid_t attribute = H5Aopen_by_name(file, name.c_str(), "units", H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t type = H5Aget_type(attribute);
+  std::string text(H5Tget_size(type), ' ');
+  H5Aread(attribute, type, text.data());
+  H5Tclose(type);
+  H5Aclose(attribute);
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("measurement_files: HDF5 has every column with all its digits and its unit",
+          "[measurement_files]") {
+  const ScratchFolder scratch;
+  const auto grid = labelGrid(randomLabels(3, {5, 6, 7}, 14, 20, 70));
+  const auto edges = GENERATE(std::array<double, 3>{8.5e-6, 8.5e-6, 8.5e-6},
+                              std::array<double, 3>{9e-6, 8e-6, 7e-6});
+  setVoxelSize(*grid, VoxelSize(edges));
+  const Measurements m = measure(*grid);
+  REQUIRE(m.bonds.size() > 10);
+  MeasurementTables(scratch / "t.h5").write(m);
+  CHECK(scratch.fileCount() == 1);
+  const openvdb::Vec3d lengths(edges[0] * 1e3, edges[1] * 1e3, edges[2] * 1e3);
+  const hid_t file = H5Fopen((scratch / "t.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  const std::map<int, std::string> units = {{-2, "1/mm^2"}, {-1, "1/mm"}, {0, ""},
+                                            {1, "mm"},      {2, "mm^2"},  {3, "mm^3"}};
+  for (const std::string table : {"grains", "bonds"})
+    for (const MeasureColumn& column :
+         table == "grains" ? grainColumns(m.grains) : bondColumns(m.bonds)) {
+      const std::string name = table + "/" + column.name;
+      CAPTURE(name);
+      CHECK(unitsOf(file, name) == units.at(column.power));
+      if (column.kind == MeasureColumn::Kind::count) {
+        CHECK(hdf5Values<int64_t>(file, name) ==
+              std::vector<int64_t>(column.values.begin(), column.values.end()));
+        continue;
+      }
+      const auto values = hdf5Values<double>(file, name);
+      REQUIRE(values.size() == column.values.size());
+      for (size_t i = 0; i < values.size(); ++i) {
+        if (std::isnan(column.values[i]))
+          CHECK(std::isnan(values[i]));
+        else
+          CHECK(values[i] == Approx(scaled(column, column.values[i], lengths)).epsilon(1e-14));
+      }
+    }
+  CHECK(hdf5Values<int64_t>(file, "sample/grains") ==
+        std::vector<int64_t>{int64_t(m.grains.size())});
+  CHECK(hdf5Values<double>(file, "sample/solid_fraction") ==
+        std::vector<double>{m.sample.objectFraction});
+  CHECK(hdf5Values<double>(file, "sample/grain_axis_fabric/tensor").size() == 9);
+  H5Fclose(file);
+}
+
+TEST_CASE("measurement_files: HDF5 has lists, unknown numbers and any name of the metadata",
+          "[measurement_files]") {
+  const ScratchFolder scratch;
+  Measurements m = fewMeasurements();
+  constexpr int64_t kLarge = (int64_t(1) << 62) + 1;  // no double
+  m.metadata.insertMeta("madf_a/b", openvdb::Int64Metadata(kLarge));
+  m.metadata.insertMeta("madf_", openvdb::StringMetadata(""));
+  m.metadata.insertMeta("madf_yes", openvdb::BoolMetadata(true));
+  MeasurementTables(scratch / "t.hdf5").write(m, {"", "core \xff", std::nullopt});
+  const hid_t file = H5Fopen((scratch / "t.hdf5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  CHECK(hdf5Values<int64_t>(file, "grains/voxels") == std::vector<int64_t>{12345678901});
+  const auto lengths = hdf5Values<double>(file, "sample/correlation_length_voxel");
+  REQUIRE(lengths.size() == 3);
+  CHECK((lengths[0] == 1.5 && std::isnan(lengths[1]) && lengths[2] == 2));
+  CHECK(hdf5Values<int64_t>(file, "sample/segmentation/a_b") == std::vector<int64_t>{kLarge});
+  CHECK(H5Lexists(file, "sample/segmentation/_", H5P_DEFAULT) > 0);
+  CHECK(hdf5Values<int64_t>(file, "sample/segmentation/yes") == std::vector<int64_t>{1});
+  CHECK(unitsOf(file, "grains/volume") == "voxel^3");
+  H5Fclose(file);
+
+  MeasurementTables(scratch / "none.h5").write(Measurements());
+  const hid_t none = H5Fopen((scratch / "none.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  CHECK(hdf5Values<int64_t>(none, "grains/id").empty());
+  CHECK(hdf5Values<double>(none, "bonds/area").empty());
+  H5Fclose(none);
+}
+
+TEST_CASE("measurement_files: HDF5 is written whole or not at all, and the same again",
+          "[measurement_files]") {
+  const ScratchFolder scratch;
+  const Measurements m = fewMeasurements();
+  { const MeasurementTables notWritten(scratch / "t.h5"); }
+  CHECK(scratch.fileCount() == 0);
+  CHECK(MeasurementTables::paths("a/t.H5") == std::vector<std::string>{"a/t.H5"});
+  CHECK_THROWS_AS(MeasurementTables(scratch / "none/t.h5"), IoError);
+  MeasurementTables(scratch / "t.h5").write(m);
+  const std::string bytes = readFile(scratch / "t.h5");
+  {
+    MeasurementTables tables(scratch / "t.h5");
+    const FullDisk disk(bytes.size() / 2);
+    CHECK_THROWS_AS(tables.write(m), IoError);
+  }
+  CHECK(scratch.fileCount() == 1);
+  CHECK(readFile(scratch / "t.h5") == bytes);
+  MeasurementTables(scratch / "t.h5").write(m);
+  CHECK(readFile(scratch / "t.h5") == bytes);
+}
+
+#endif

@@ -53,7 +53,7 @@ TEST_CASE("mesh_file: every format has every triangle at its place in the world"
   setVoxelSize(*grid, VoxelSize{kEdge * 1e-3});
   const GrainMesh mesh = grainMesh(*grid);
   const auto volume = volumes(voxels);
-  for (const std::string end : {"ply", "obj", "stl", "vtp"}) {
+  for (const std::string end : {"ply", "obj", "stl", "vtp", "glb"}) {
     CAPTURE(end);
     const std::string path = folder / ("mesh." + end);
     writeMesh(path, mesh, optionsOf(*grid));
@@ -128,19 +128,129 @@ TEST_CASE("mesh_file: a mirrored world keeps the outside outside", "[mesh_file]"
   grid->setTransform(transform);
   writeMesh(folder / "m.stl", grainMesh(*grid), optionsOf(*grid));
   CHECK(fileVolumes(readStl(readFile(folder / "m.stl"))).at(0) == Approx(8));
+  writeMesh(folder / "m.glb", grainMesh(*grid), optionsOf(*grid));
+  CHECK(fileVolumes(readGlb(readFile(folder / "m.glb"))).at(1) == Approx(8));
+}
+
+TEST_CASE("mesh_file: of a smoothed mesh the GLB has the triangles of the PLY", "[mesh_file]") {
+  const ScratchFolder folder;
+  const auto grid = labelGrid(randomLabels(5, {-3, 7, -11}, 12, 30, 60));
+  setVoxelSize(*grid, VoxelSize{8.5e-6});
+  const GrainMesh mesh = grainMesh(*grid, {3});
+  MeshFileOptions options = optionsOf(*grid);
+  options.shadeSmooth = GENERATE(false, true);
+  for (const std::string end : {"ply", "glb"}) writeMesh(folder / ("m." + end), mesh, options);
+  const auto ply = readPly(readFile(folder / "m.ply")), glb = readGlb(readFile(folder / "m.glb"));
+  REQUIRE(glb.size() == ply.size());
+  for (size_t i = 0; i < ply.size(); ++i) {
+    REQUIRE(glb[i].grain == ply[i].grain);
+    REQUIRE(glb[i].corners == ply[i].corners);
+  }
+}
+
+TEST_CASE("mesh_file: a grain's node in a GLB has its color and its measures", "[mesh_file]") {
+  const ScratchFolder folder;
+  const auto grid = labelGrid(twoBalls({40, -7, 3}, 5));
+  setVoxelSize(*grid, VoxelSize{8.5e-6});
+  const GrainNetwork measured = grainNetwork(*grid);
+  MeshFileOptions options = optionsOf(*grid);
+  options.measured = &measured;
+  writeMesh(folder / "m.glb", grainMesh(*grid), options);
+  const Glb file(readFile(folder / "m.glb"));
+  CHECK(file.json()["scenes"][0]["extras"]["length_unit"] == "mm");
+  const auto grains = file.primitives();
+  REQUIRE(grains.size() == measured.grains.size());
+  for (size_t i = 0; i < grains.size(); ++i) {
+    const GlbPrimitive& grain = grains.at(grainName(measured.grains[i]));
+    for (size_t c = 0; c < 3; ++c)
+      CHECK(grain.color[c] == Approx(linearChannel(measured.colors[i][c])));
+    CHECK(grain.color[3] == 1);
+    size_t known = 0;
+    for (const GrainNetwork::Column& column : measured.grainColumns) {
+      CAPTURE(column.name);
+      const double value = column.values[i];
+      CHECK(grain.extras.count(column.name) == !std::isnan(value));
+      if (std::isnan(value)) continue;
+      ++known;
+      CHECK(grain.extras[column.name].get<double>() == value);
+      CHECK(grain.extras[column.name].is_number_integer() == column.isCount);
+    }
+    CHECK(grain.extras.size() == known + 1);
+    CHECK(grain.extras["voxels"] == measured.grainColumns[0].values[i]);
+    CHECK(grain.extras["equivalent_diameter"].get<double>() > 0.05);
+  }
+}
+
+TEST_CASE("mesh_file: normals of a GLB point outwards, and have the length 1", "[mesh_file]") {
+  const ScratchFolder folder;
+  LabelMap ball;
+  for (const auto& [p, label] : twoBalls({0, 0, 0}, 9))
+    if (p.asVec3d().lengthSqr() < 81) ball[p] = 1;
+  const auto grid = labelGrid(ball);
+  MeshFileOptions options = optionsOf(*grid);
+  options.shadeSmooth = true;
+  writeMesh(folder / "m.glb", grainMesh(*grid, {10}), options);
+  const auto grains = Glb(readFile(folder / "m.glb")).primitives();
+  const GlbPrimitive& grain = grains.at("grain_000001");
+  REQUIRE(grain.normals.size() == grain.points.size());
+  for (size_t i = 0; i < grain.points.size(); ++i) {
+    const Vec3f normal(grain.normals[i].data()), point(grain.points[i].data());
+    REQUIRE(normal.length() == Approx(1));
+    REQUIRE(normal.dot(point.unit()) > 0.9);
+  }
+}
+
+TEST_CASE("mesh_file: a grain of more than 16 bits of points", "[mesh_file]") {
+  const ScratchFolder folder;
+  GrainMesh mesh;  // fans, one for each side of the largest index of 16 bits
+  mesh.labels = {1, 2};
+  for (const uint32_t count : {65535u, 65536u}) {
+    const uint32_t first = mesh.firstPoint.back();
+    for (uint32_t i = 0; i < count; ++i) mesh.points.push_back(Vec3f(float(i), float(i % 7), 0));
+    for (uint32_t i = first; i + 2 < first + count; i += 2)
+      mesh.triangles.push_back({first, i + 1, i + 2});
+    mesh.firstPoint.push_back(uint32_t(mesh.points.size()));
+    mesh.firstTriangle.push_back(uint32_t(mesh.triangles.size()));
+  }
+  writeMesh(folder / "m.glb", mesh, {});
+  const Glb file(readFile(folder / "m.glb"));
+  CHECK(file.json()["accessors"][1]["componentType"] == 5123);
+  CHECK(file.json()["accessors"][3]["componentType"] == 5125);
+  size_t triangle = 0;
+  for (const auto& [name, grain] : file.primitives())
+    for (size_t i = 0; i < grain.indices.size(); i += 3, ++triangle)
+      for (size_t n = 0; n < 3; ++n) {
+        const auto& point = grain.points[grain.indices[i + n]];
+        REQUIRE(Vec3f(point[0], -point[2], point[1]) == mesh.points[mesh.triangles[triangle][n]]);
+      }
+  CHECK(triangle == mesh.triangles.size());
+}
+
+TEST_CASE("mesh_file: a GLB of more than 4 GiB is refused before it is meshed", "[mesh_file]") {
+  MeshFileOptions options;
+  // 12 bytes a triangle, 18 with normals
+  CHECK_NOTHROW(checkMeshRoom("m.glb", 357900000, options));
+  CHECK_THROWS_WITH(checkMeshRoom("m.glb", 358000000, options),
+                    "m.glb: a .glb holds 4 GiB, and the mesh takes 5: ask for fewer triangles, or "
+                    "write .ply");
+  CHECK_NOTHROW(checkMeshRoom("m.ply", 358000000, options));
+  options.shadeSmooth = true;
+  CHECK_NOTHROW(checkMeshRoom("m.glb", 238600000, options));
+  CHECK_THROWS_AS(checkMeshRoom("m.GLB", 238700000, options), InvalidInput);
 }
 
 TEST_CASE("mesh_file: nothing to write, and endings nobody knows", "[mesh_file]") {
   const ScratchFolder folder;
   const auto grid = labelGrid({});
   const GrainMesh mesh = grainMesh(*grid);
-  for (const std::string end : {"ply", "obj", "stl", "vtp"})
+  for (const std::string end : {"ply", "obj", "stl", "vtp", "glb"})
     writeMesh(folder / ("m." + end), mesh, optionsOf(*grid));
   CHECK(readPly(readFile(folder / "m.ply")).empty());
   CHECK(readStl(readFile(folder / "m.stl")).empty());
+  CHECK(readGlb(readFile(folder / "m.glb")).empty());
   CHECK_THROWS_AS(writeMesh(folder / "m.abc", mesh, optionsOf(*grid)), InvalidInput);
   CHECK_THROWS_AS(writeMesh(folder / "no/m.ply", mesh, optionsOf(*grid)), IoError);
-  CHECK(folder.fileCount() == 4);
+  CHECK(folder.fileCount() == 5);
   CHECK(isMeshEnding("a.PLY"));
   CHECK(!isMeshEnding("a.vdb"));
 }

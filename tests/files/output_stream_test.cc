@@ -53,8 +53,12 @@ TEST_CASE("output_stream: writes and reads back at any place", "[output_stream]"
   REQUIRE(text == "cdef");
   REQUIRE(out.readAt(6, text.data(), 4) == 2);
   REQUIRE(text == "ghef");
+  out.resize(6);
+  REQUIRE(out.size() == 6);
+  out.resize(7);
+  REQUIRE(out.size() == 7);
   out.commit();
-  REQUIRE(bytesOf(path) == "abcdefgh");
+  REQUIRE(bytesOf(path) == std::string("abcdef\0", 7));
 }
 
 TEST_CASE("output_stream: a full disk is noticed and leaves nothing behind", "[output_stream]") {

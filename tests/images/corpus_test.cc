@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 
+#include "support/compound_files.h"
 #include "support/files.h"
 #include "support/header_files.h"
 #include "support/image_damage.h"
@@ -74,6 +75,10 @@ void addHeaderFiles(std::vector<Sample>& all) {
   isq.micrometres = ImageSize{190, 170, 40};
   isq.blocks = 1;
   all.push_back(oneFile("isq", "a.isq", isqFile(isq, bytes), 80));
+  for (const int version : {3, 4}) {
+    const CompoundFileBytes txm = CompoundWriter(version, 0).write(txmStreams(kSize, 4, bytes));
+    all.push_back(oneFile("txm", "a.txm", txm.bytes, txm.bytes.size()));
+  }
   NiftiLayout nifti;
   nifti.dim = {3, 19, 17, 4};
   nifti.type = 4;

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include "support/files.h"
+#include "support/full_disk.h"
 #include "support/image_damage.h"
 #include "support/images.h"
 #include "vdb_madf/base/errors.h"
@@ -22,6 +23,11 @@ TEST_CASE("image_hdf5: a build without the library says so", "[image_hdf5]") {
   const ScratchFolder folder;
   writeFile(folder / "a.dat", "\x89HDF\r\n\x1a\n" + std::string(100, 'a'));
   CHECK_THROWS_WITH(openImage(folder / "a.dat"), Contains("a.dat") && Contains("libhdf5"));
+  ImageInfo info;
+  info.size = ImageSize{2, 2, 2};
+  CHECK_THROWS_WITH(createImage(folder / "b.h5", info), Contains("b.h5") && Contains("libhdf5"));
+  CHECK_THROWS_AS(checkImagePlace(folder / "b.h5"), IoError);
+  CHECK(folder.fileCount() == 1);
 }
 
 #else
@@ -258,6 +264,81 @@ TEST_CASE("image_hdf5: samples in other files are read, or said to be missing", 
   addHdf5External(file, "d", kShape, "samples.bin");
   H5Fclose(file);
   CHECK_THROWS_WITH(openImage(path), Contains("raw files") && Contains("h5repack"));
+}
+
+TEST_CASE("image_hdf5: a file is written in compressed chunks, however slices come",
+          "[image_hdf5]") {
+  const ScratchFolder folder;
+  ImageInfo info;
+  info.size = ImageSize{150, 131, 21};
+  info.type = SampleType::int32;
+  info.voxelSize = VoxelSize({0.5e-6, 0.7e-6, 1.2e-6});
+  std::string bytes(voxels(info.size) * 4, '\0');
+  for (size_t i = 0; i < bytes.size(); i += 4) bytes[i] = char(i / 4096);
+  const size_t slice = bytes.size() / 21;
+  const auto write = [&](const std::string& name, int step) {
+    const auto writer = createImage(folder / name, info);
+    for (int z = 0; z < 21; z += step)
+      writer->write(std::min(step, 21 - z), bytes.data() + slice * size_t(z));
+    writer->finish();
+    return readFile(folder / name);
+  };
+  const std::string whole = write("a.h5", 8);
+  CHECK(whole.size() < bytes.size() / 20);
+  for (const int step : {1, 5, 8, 21}) CHECK(write("b.h5", step) == whole);
+  const auto image = openImage(folder / "a.h5", {}, "data");
+  CHECK(readAll(*image, 4) == bytes);
+  CHECK(image->info().voxelSize->edges() == info.voxelSize->edges());
+
+  const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT),
+              dataset = H5Dopen2(file, "data", H5P_DEFAULT),
+              attribute = H5Aopen(dataset, "element_size_um", H5P_DEFAULT),
+              creation = H5Dget_create_plist(dataset);
+  double edges[3];
+  H5Aread(attribute, H5T_NATIVE_DOUBLE, edges);
+  CHECK((edges[0] == 1.2 && edges[1] == 0.7 && edges[2] == 0.5));
+  hsize_t chunk[3];
+#if H5_VERSION_GE(1, 12, 0)
+  H5O_info2_t times;
+  H5Oget_info3(dataset, &times, H5O_INFO_TIME);
+#else
+  H5O_info_t times;
+  H5Oget_info2(dataset, &times, H5O_INFO_TIME);
+#endif
+  CHECK(times.ctime == 0);  // or the same samples had other bytes a second later
+  CHECK(H5Pget_chunk(creation, 3, chunk) == 3);
+  CHECK((chunk[0] == 8 && chunk[1] == 128 && chunk[2] == 128));
+  H5Pclose(creation);
+  H5Aclose(attribute);
+  H5Dclose(dataset);
+  H5Fclose(file);
+}
+
+TEST_CASE("image_hdf5: on a full disk nothing is left, and later files are whole", "[image_hdf5]") {
+  const ScratchFolder folder, other;
+  ImageInfo info;
+  info.size = ImageSize{100, 100, 40};
+  const std::string bytes = randomSamples(info.type, voxels(info.size), 1);
+  const auto write = [&] {
+    const auto writer = createImage(folder / "a.h5", info);
+    writer->write(40, bytes.data());
+    writer->finish();
+  };
+  write();
+  const size_t size = readFile(folder / "a.h5").size();
+  std::filesystem::remove(folder / "a.h5");
+  for (const size_t room : {size_t(0), size_t(100), size_t(5000), size / 2, size - 1}) {
+    CAPTURE(room);
+    {
+      const FullDisk disk(room);
+      CapturedStderr output(other / "stderr");
+      CHECK_THROWS_WITH(write(), Contains("cannot write") && Contains("a.h5"));
+      CHECK(output.text() == "");
+    }
+    CHECK(folder.fileCount() == 0);
+  }
+  write();
+  CHECK(readAll(*openImage(folder / "a.h5")) == bytes);
 }
 
 TEST_CASE("image_hdf5: damaged files read or are refused with one line", "[image_hdf5]") {

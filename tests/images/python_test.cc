@@ -87,7 +87,9 @@ TEST_CASE("image_python: other programs read what we write", "[image_python]") {
     WARN("SKIPPED: the cross-check of our files: Python's numpy is not installed");
     return;
   }
-  for (const std::string ending : {"npy", "tif", "nrrd"}) {
+  std::vector<std::string> endings = {"npy", "tif", "nrrd"};
+  if (readsHdf5()) endings.push_back("h5");
+  for (const std::string& ending : endings) {
     ImageInfo info;
     info.size = ImageSize{11, 7, 6};
     info.type = ending == "tif" ? SampleType::uint16 : SampleType::int32;

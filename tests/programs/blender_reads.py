@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The vdb_madf authors
 # SPDX-License-Identifier: Apache-2.0
-"""Blender, without a display, reads our preview VDB and our PLY, meshes the fog and renders both.
+"""Blender, without a display, reads our preview VDB and our PLY, meshes the fog and renders both; and
+finds each grain of our GLB at its place, with its colour and its measures.
 
 Runs itself again inside Blender. With a second argument the pictures are kept in that folder.
 """
@@ -10,7 +11,7 @@ import shutil
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from proof import EDGE, LABELS, Bench, check, near, run_in_blender  # noqa: E402
+from proof import EDGE, LABELS, VOXELS, Bench, box_of, check, near, run_in_blender  # noqa: E402
 
 try:
     import bpy
@@ -27,6 +28,7 @@ def start():
     with Bench() as bench:
         bench.run("export", "view.vdb", "--as", "viz")
         bench.run("export", "grains.ply", "--smooth", "0")
+        bench.run("export", "grains.glb", "--smooth", "0")
         print(run_in_blender(__file__, bench.folder, "what Blender reads"))
         if len(sys.argv) > 2:
             for name in ("volume.png", "mesh.png"):
@@ -70,9 +72,40 @@ def check_mesh(mesh):
     check(len(colors) == len(set(LABELS.values())), f"{len(colors)} colours")
 
 
+def volume_of(mesh):
+    mesh.calc_loop_triangles()
+    corners = [[mesh.vertices[i].co for i in triangle.vertices] for triangle in mesh.loop_triangles]
+    return sum(a.dot(b.cross(c)) / 6 for a, b, c in corners)
+
+
+def check_grains(path):
+    """In the places of the PLY, which are those of the volume."""
+    import numpy
+    if not hasattr(numpy, "bool"):
+        numpy.bool = bool  # the importer of Blender 3.4 asks for it; newer numpy has it no more
+    before = set(bpy.data.objects)
+    bpy.ops.import_scene.gltf(filepath=path)
+    grains = {thing.name: thing for thing in set(bpy.data.objects) - before}
+    check(set(grains) == {f"grain_{label:06d}" for label in VOXELS}, f"the GLB has {sorted(grains)}")
+    for label, count in VOXELS.items():
+        grain = grains[f"grain_{label:06d}"]
+        places = [grain.matrix_world @ vertex.co for vertex in grain.data.vertices]
+        bounds = [which(place[axis] for place in places) for axis in range(3) for which in (min, max)]
+        check(near(bounds, box_of(label)), f"{grain.name} lies at {bounds}, not {box_of(label)}")
+        voxels = volume_of(grain.data) / EDGE**3
+        check(abs(voxels - count) < 1e-3, f"{grain.name} has the volume of {voxels} voxels")
+        check(grain["grain_id"] == label and grain["voxels"] == count and
+              abs(grain["volume"] - count * EDGE**3) < 1e-12, f"{grain.name} has {dict(grain)}")
+    colors = {tuple(grain.data.materials[0].diffuse_color) for grain in grains.values()}
+    check(len(colors) == len(VOXELS), f"the GLB has {len(colors)} colours")
+    for grain in grains.values():
+        bpy.data.objects.remove(grain)
+
+
 def inside(folder):
     mesh = blender_picture.opened(os.path.join(folder, "grains.ply"))
     check_mesh(mesh.data)
+    check_grains(os.path.join(folder, "grains.glb"))
     corners = blender_picture.box_of(mesh)
     pictures = [os.path.join(folder, name) for name in ("mesh.png", "volume.png")]
     blender_picture.render_export(mesh, pictures[0], 160, 8)
@@ -83,7 +116,7 @@ def inside(folder):
         hues = [hue for hue in blender_picture.hues(picture, 12) if hue is not None]
         many = {hue for hue in hues if hues.count(hue) >= 10}
         check(len(many) >= least, f"{os.path.basename(picture)} shows the hues {many}")
-    print("DONE: Blender reads the preview and the PLY, meshes the fog and renders both")
+    print("DONE: Blender reads the preview, the PLY and the GLB, meshes the fog and renders")
 
 
 if __name__ == "__main__":

@@ -72,10 +72,12 @@ def run_in_blender(script, folder, what):
     """Runs a script with a folder as its argument inside Blender; returns what it says is done."""
     if not shutil.which("blender"):
         skip(f"{what}: blender is not installed (tools/setup --blender)")
+    # Blender takes the modules of the first Python of its version in the PATH: Debian's own has numpy.
+    places = os.pathsep.join(["/usr/bin", os.environ.get("PATH", "")])
     result = subprocess.run(
         ["blender", "--background", "--factory-startup", "-noaudio", "--python-exit-code", "1",
          "--python", os.path.abspath(script), "--", folder],
-        capture_output=True, text=True, timeout=900)
+        capture_output=True, text=True, timeout=900, env=dict(os.environ, PATH=places))
     lines = [line for line in (result.stdout + result.stderr).splitlines()
              if line.strip() and not line.startswith("Fra:")]
     done = [line for line in lines if line.startswith("DONE: ")]

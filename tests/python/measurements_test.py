@@ -204,6 +204,8 @@ def test_arrays_of_a_mesh_are_its_memory(labels):
     assert points.sum() == total
 
 
+HDF5 = pytest.mark.skipif(not madf.reads_hdf5(), reason="HDF5: built without libhdf5-dev")
+
 # What is written here, and how the command writes it.
 FILES = [
     ("a.npy", {}, ["convert"]), ("a.tif", {}, ["convert"]), ("a.nrrd", {}, ["convert"]),
@@ -212,6 +214,10 @@ FILES = [
     ("a.ply", {}, ["export"]), ("a.vti", dict(compress=True), ["export", "--compress"]),
     ("a.obj", dict(reduce=2, smoothing=0), ["export", "--reduce", "2", "--smooth", "0"]),
     ("a.vtp", dict(kind="mesh", triangles=3000), ["export", "--as", "mesh", "--triangles", "3000"]),
+    ("a.glb", {}, ["export"]),
+    ("b.glb", dict(triangles=3000, smoothing=0), ["export", "--triangles", "3000", "--smooth", "0"]),
+    pytest.param("a.h5", {}, ["convert"], marks=HDF5),
+    pytest.param("m.hdf5", dict(kind="mask"), ["export", "--as", "mask"], marks=HDF5),
     ("a.graphml", {}, ["export"]), ("a.csv", dict(kind="network", min_faces=9),
                                     ["export", "--as", "network", "--min-faces", "9"]),
     ("a.txt", dict(max_balls=20, apart=True), ["export", "--as", "clumps", "--balls", "20", "--apart"]),
@@ -231,6 +237,23 @@ def test_files_are_those_of_the_command(name, arguments, verb, labels, tables, c
     labels.save(tmp_path / "here" / name, **arguments)
     command(verb[0], tables / "labels.vdb", tmp_path / "there" / name, *verb[1:])
     assert (tmp_path / "here" / name).read_bytes() == (tmp_path / "there" / name).read_bytes()
+
+
+@HDF5
+def test_h5py_reads_labels_and_masks_while_others_are_written(labels, tmp_path):
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "theirs.h5", "w") as theirs:
+        theirs["labels"] = np.asarray(labels)
+        labels.save(tmp_path / "ours.h5")
+        assert (np.asarray(madf.Labels(tmp_path / "ours.h5")) == np.asarray(labels)).all()
+        theirs["again"] = np.asarray(labels)
+    with h5py.File(tmp_path / "ours.h5") as ours:
+        assert (ours["data"][...] == np.asarray(labels)).all()
+        edges = np.array(labels.spacing) * {"mm": 1e3, "um": 1}[labels.unit]
+        assert np.allclose(ours["data"].attrs["element_size_um"], edges, rtol=1e-12)
+    madf.Mask(np.asarray(labels) > 0).save(tmp_path / "mask.h5")
+    with h5py.File(tmp_path / "mask.h5") as mask:
+        assert (mask["data"][...] == (np.asarray(labels) > 0)).all()
 
 
 def test_a_folder_of_meshes(labels, tmp_path):

@@ -5,7 +5,7 @@
     image_formats.py write FOLDER   volume.raw (int16, x fastest) and labels.raw (int64), and the same
                                     as other files; prints a line each: "file TRUTH NAME METRES [DATASET]",
                                     METRES 0 where the format knows none; or "skipped MODULE"
-    image_formats.py check FOLDER   compares ours.npy, ours.tif, ours.nrrd with labels.raw; prints "same NAME"
+    image_formats.py check FOLDER   compares ours.npy, ours.tif, ours.nrrd, ours.h5 with labels.raw; prints "same NAME"
 
 The axes of the arrays are [z, y, x], all of other length; no two voxels of the volume are equal.
 """
@@ -110,6 +110,14 @@ def check(folder):
         ours["ours.tif"] = tifffile.imread(f"{folder}/ours.tif")
     if nrrd:
         ours["ours.nrrd"] = nrrd.read(f"{folder}/ours.nrrd", index_order="C")[0]
+    h5py = module("h5py") if os.path.exists(f"{folder}/ours.h5") else None
+    if h5py:
+        with h5py.File(f"{folder}/ours.h5") as file:
+            data = file["data"]
+            if list(data.attrs["element_size_um"]) == [UM] * 3 and data.compression == "gzip":
+                ours["ours.h5"] = data[...]
+            else:
+                print("differs ours.h5", dict(data.attrs), data.compression)
     for name, array in ours.items():
         if array.shape == labels.shape and (array == labels).all():
             print("same", name, array.dtype)

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "support/glb_files.h"
 #include "support/vtk_arrays.h"
 #include "vdb_madf/exports/mesh_file.h"
 
@@ -135,11 +136,31 @@ inline std::vector<Face> readVtpMesh(const std::string& bytes) {
   return faces;
 }
 
+/// In the axes of the grid: y of the file is upwards, z is towards the viewer.
+inline std::vector<Face> readGlb(const std::string& bytes) {
+  std::vector<Face> faces;
+  for (const auto& [name, primitive] : Glb(bytes).primitives()) {
+    REQUIRE(name.substr(0, 6) == "grain_");
+    CHECK(primitive.extras.at("grain_id") == std::stoi(name.substr(6)));
+    for (size_t i = 0; i < primitive.indices.size(); i += 3) {
+      Face face;
+      face.grain = std::stoi(name.substr(6));
+      for (size_t n = 0; n < 3; ++n) {
+        const auto& p = primitive.points[primitive.indices[i + n]];
+        face.corners[n] = Vec3f(p[0], -p[2], p[1]);
+      }
+      faces.push_back(face);
+    }
+  }
+  return faces;
+}
+
 /// By the ending.
 inline std::vector<Face> readMesh(const std::string& ending, const std::string& bytes) {
   return ending == "ply"   ? readPly(bytes)
          : ending == "obj" ? readObj(bytes)
          : ending == "stl" ? readStl(bytes)
+         : ending == "glb" ? readGlb(bytes)
                            : readVtpMesh(bytes);
 }
 

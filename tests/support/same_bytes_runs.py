@@ -267,7 +267,7 @@ def render():
 
 def export():
     labels = "export all_snow_0.vdb"
-    for ending in ("ply", "obj", "stl", "vtp"):
+    for ending in ("ply", "obj", "stl", "vtp", "glb"):
         for number, options in enumerate(("", "--smooth 0", "--smooth 3 --reduce 2", "--max-dim 20",
                                           "--triangles 4000", "--voxel-size 3um --threads 1")):
             yield f"{labels} mesh{number}.{ending} --as mesh {options}"
@@ -306,7 +306,7 @@ def export():
         yield f"{labels} hexa.{ending}"
         yield f"{labels} hexa_named.{ending} --as hexa --voxel-size 1um"
         yield f"export tiles.vdb hexa_tiles.{ending} --grid grain"
-    for ending in ("raw", "mhd", "mha", "tif", "nrrd", "npy"):
+    for ending in ("raw", "mhd", "mha", "tif", "nrrd", "npy", "h5"):
         yield f"{labels} mask_{ending}.{ending} --as mask"
         yield f"export tiles.vdb mask_tiles_{ending}.{ending} --as mask"
     for ending in IMAGES:

@@ -235,7 +235,9 @@ TEST_CASE("image_write: interrupted or out of space, nothing remains", "[image_w
   const ScratchFolder folder;
   const auto grid = randomGrid<int32_t>(14, 0);
   const CoordBBox box(Coord(-30, -10, -20), Coord(70, 80, 79));
-  for (const std::string name : {"a.raw", "a.mhd", "a.mha", "a.tif", "a.nrrd", "a.npy"}) {
+  std::vector<std::string> names = {"a.raw", "a.mhd", "a.mha", "a.tif", "a.nrrd", "a.npy"};
+  if (readsHdf5()) names.push_back("a.h5");
+  for (const std::string& name : names) {
     CAPTURE(name);
     StopAfter three(3);
     CHECK_THROWS_AS(writeImage(folder / name, *grid, box, SampleType::int32, &three), Interrupted);

@@ -178,8 +178,13 @@ TEST_CASE("world_place: VTI, compressed or not", "[world_place]") {
 
 TEST_CASE("world_place: meshes", "[world_place]") {
   const ScratchFolder folder;
-  for (const auto& [ending, edges] : std::vector<std::pair<std::string, Vec3d>>{
-           {"ply", kCube}, {"obj", kCube}, {"stl", kCube}, {"vtp", kCube}, {"obj", kFlat}}) {
+  for (const auto& [ending, edges] : std::vector<std::pair<std::string, Vec3d>>{{"ply", kCube},
+                                                                                {"obj", kCube},
+                                                                                {"stl", kCube},
+                                                                                {"vtp", kCube},
+                                                                                {"glb", kCube},
+                                                                                {"obj", kFlat},
+                                                                                {"glb", kFlat}}) {
     CAPTURE(ending, edges);
     const auto grid = markedGrid(edges);
     MeshFileOptions options;

@@ -208,8 +208,9 @@ void addConvert(Verb command, Common& common, Action& action) {
       addVerb(command, common, "convert", "any readable volume to any writable volume",
               "vdb_madf convert scan.raw ice.vdb --dims 301x301x251 --type uint8 --threshold 128");
   verb.option("IN", o->input.path, "any readable volume").required();
-  verb.option("OUT", o->out,
-              ".vdb (of an image a mask, or see --labels), .tif, .raw, .mhd, .mha, .nrrd, .npy")
+  verb.option(
+          "OUT", o->out,
+          ".vdb (of an image a mask, or see --labels), .tif, .raw, .mhd, .mha, .nrrd, .npy, .h5")
       .required();
   o->input.addSelection(verb);
   o->input.addRaw(verb);

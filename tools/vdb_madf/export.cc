@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "command.h"
 #include "grid_image.h"
@@ -88,11 +89,15 @@ void exportMesh(const Options& o, const Common& common, const Int32Grid& labels)
     factor = reductionForTriangles(labels, uint64_t(o.mostTriangles), factor, common.progress);
   const Int32Grid::ConstPtr meshed =
       factor == 1 ? labels.copy() : reduceLabels(labels, factor, common.progress);
-  const GrainMesh mesh = grainMesh(*meshed, options, common.progress);
   MeshFileOptions file;
   file.transform = meshed->constTransformPtr();
   file.lengthUnit = unitOf(labels);
+  file.shadeSmooth = o.smoothing > 0;
+  if (isGlb(o.out)) checkMeshRoom(o.out, countTriangles(*meshed, common.progress), file);
+  const GrainMesh mesh = grainMesh(*meshed, options, common.progress);
   file.colors = grainColors(labels, common.progress);
+  std::optional<GrainNetwork> measured;
+  if (isGlb(o.out)) file.measured = &measured.emplace(grainNetwork(labels, {}, common.progress));
   if (isMeshEnding(o.out))
     writeMesh(o.out, mesh, file, common.progress);
   else
@@ -267,7 +272,7 @@ bool isVtiOutput(const std::string& out) {
 }
 
 constexpr Kind kKinds[] = {
-    {"mesh", exportMesh, ".ply, .obj, .stl or .vtp, or a folder name without an ending (STL)",
+    {"mesh", exportMesh, ".ply, .obj, .stl, .glb or .vtp, or a folder name without an ending (STL)",
      isMeshOutput},
     {"viz", exportPreview, ".vdb", hasVdbEnding},
     {"lod", exportReduced, ".vdb", hasVdbEnding},
@@ -276,7 +281,7 @@ constexpr Kind kKinds[] = {
     {"vti", exportVti, ".vti", isVtiOutput},
     {"clumps", exportClumps, ".csv, .txt (YADE) or .data (LAMMPS)", isClumpEnding},
     {"hexa", exportHexahedra, ".vtu or .inp (Abaqus)", isHexahedraEnding},
-    {"mask", exportMask, ".tif, .raw, .mhd, .mha, .nrrd or .npy", isImageEnding},
+    {"mask", exportMask, ".tif, .raw, .mhd, .mha, .nrrd, .npy or .h5", isImageEnding},
     {"network", exportNetwork, ".vtp, .graphml or .csv", isNetworkEnding},
 };
 

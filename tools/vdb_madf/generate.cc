@@ -254,7 +254,7 @@ void parse(const Kind& kind, Options& options) {
     throw WrongUsage(options.out + ": samples are written to files only; give the path of one");
   if (!hasVdbEnding(options.out) && !isImageEnding(options.out))
     throw WrongUsage(options.out +
-                     ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd or .npy");
+                     ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd, .npy or .h5");
   if (!options.voxelSizeText.empty()) options.voxelSize = parseVoxelSize(options.voxelSizeText);
   checkVoxels(kind, options);
   kind.parse(options);
@@ -284,7 +284,7 @@ void run(const Kind& kind, const Options& options, const Common& common) {
 void addKind(Verb generate, Common& common, Action& action, const Kind& kind) {
   auto options = std::make_shared<Options>();
   Verb verb = addVerb(generate, common, kind.name, kind.description, kind.example);
-  verb.option("OUT", options->out, "file to write: .vdb, .tif, .raw, .mhd, .mha, .nrrd, .npy")
+  verb.option("OUT", options->out, "file to write: .vdb, .tif, .raw, .mhd, .mha, .nrrd, .npy, .h5")
       .required();
   const Option size =
       verb.option("--size", options->size, "edge of a cube, voxels").range(1, kMaxExtent);

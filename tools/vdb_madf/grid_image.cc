@@ -34,7 +34,8 @@ SampleType naturalType(const openvdb::GridBase& grid, const std::string& path) {
 void checkVolumeEnding(const std::string& path) {
   if (path == "-") throw WrongUsage("-: say in which format: raw:-, npy:- or nrrd:-");
   if (!hasVdbEnding(path) && !isImageEnding(path))
-    throw WrongUsage(path + ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd or .npy");
+    throw WrongUsage(path +
+                     ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd, .npy or .h5");
 }
 
 void writeGridAsImage(const std::string& path, const openvdb::GridBase& grid,

@@ -163,7 +163,9 @@ void addMeasure(Verb command, Common& common, Action& action) {
   Verb verb = addVerb(command, common, "measure", "tables of grains, bonds and the sample",
                       "vdb_madf measure grains.vdb tables --voxel-size 8.5um --ice");
   verb.option("LABELS", o->input.path, "labels: VDB or integer image").required();
-  verb.option("OUT_DIR", o->folder, "gets grains.csv, bonds.csv and sample.json").required();
+  verb.option("OUT_DIR", o->folder,
+              "gets grains.csv, bonds.csv and sample.json; or OUT.h5: one HDF5 file with these")
+      .required();
   verb.option("--grid", o->input.gridName, "VDB input: the grid to take").typeName("NAME");
   o->input.addRaw(verb);
   o->input.addVoxelSize(verb);

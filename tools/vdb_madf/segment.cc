@@ -199,7 +199,8 @@ void addSegment(Verb command, Common& common, Action& action) {
   verb.option("--keep", o->keep, "more grids: distance,power,manifold,balls")
       .typeName("LIST")
       .offer({"distance", "power", "manifold", "balls"});
-  verb.option("--tables", o->tables, "also measure: grains.csv, bonds.csv, sample.json in here")
+  verb.option("--tables", o->tables,
+              "also measure: grains.csv, bonds.csv, sample.json in here (a folder, or FILE.h5)")
       .typeName("DIR");
   verb.option("--json", o->json, "machine-readable summary (-: standard output)").typeName("FILE");
   verb.option("--max-memory", o->maxMemory,

@@ -14,8 +14,9 @@ namespace vdb_madf::tools {
 std::string versionText() {
   return std::string(kVersion) + "\nOpenVDB " + openvdb::getLibraryVersionString() +
          "\nSIMD level " + simdLevel() +
-         (readsHdf5() ? "\nHDF5 is read"
-                      : "\nHDF5 is not read: install libhdf5-dev, then configure and build again");
+         (readsHdf5() ? "\nHDF5 is read and written"
+                      : "\nHDF5 is not read or written: install libhdf5-dev, then configure and "
+                        "build again");
 }
 
 }  // namespace vdb_madf::tools

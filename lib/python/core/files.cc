@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include <optional>
+
 #include "bindings.h"
 #include "vdb_madf/exports/clump_file.h"
 #include "vdb_madf/exports/hexahedra_file.h"
@@ -61,11 +63,16 @@ void saveImage(const std::string& path, const GridPtr& grid, const std::string& 
 void saveMesh(const std::string& path, const GridPtr& whole, const GridPtr& meshed, int smoothing,
               const Call& call) {
   write(call, [&](Interrupter* interrupter) {
-    const GrainMesh mesh = grainMesh(asLabels(*meshed), {smoothing}, interrupter);
     MeshFileOptions options;
     options.transform = meshed->constTransformPtr();
     const auto size = storedVoxelSize(*whole);
     options.lengthUnit = size ? size->unit() : "";
+    options.shadeSmooth = smoothing > 0;
+    if (isGlb(path)) checkMeshRoom(path, countTriangles(asLabels(*meshed), interrupter), options);
+    const GrainMesh mesh = grainMesh(asLabels(*meshed), {smoothing}, interrupter);
+    std::optional<GrainNetwork> measured;
+    if (isGlb(path))
+      options.measured = &measured.emplace(grainNetwork(asLabels(*whole), {}, interrupter));
     options.colors = grainColors(asLabels(*whole), interrupter);
     if (isMeshEnding(path))
       writeMesh(path, mesh, options, interrupter);

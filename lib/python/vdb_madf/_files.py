@@ -12,9 +12,10 @@ from . import _core
 
 #: kind of file -> endings
 KINDS = {
-    "labels": (".vdb", ".tif", ".tiff", ".raw", ".mhd", ".mha", ".nrrd", ".npy"),
-    "mask": (".tif", ".tiff", ".raw", ".mhd", ".mha", ".nrrd", ".npy", ".vdb"),
-    "mesh": (".ply", ".obj", ".stl", ".vtp", ""),
+    "labels": (".vdb", ".tif", ".tiff", ".raw", ".mhd", ".mha", ".nrrd", ".npy", ".h5",
+               ".hdf5"),
+    "mask": (".tif", ".tiff", ".raw", ".mhd", ".mha", ".nrrd", ".npy", ".h5", ".hdf5", ".vdb"),
+    "mesh": (".ply", ".obj", ".stl", ".glb", ".vtp", ""),
     "vti": (".vti",),
     "network": (".graphml", ".vtp", ".csv"),
     "clumps": (".txt", ".data", ".csv"),

@@ -139,9 +139,10 @@ class Labels(Volume):
              threads: int = 0) -> None:
         """Writes a file, whole or not at all; what it is the ending says, or `kind` where it does not:
 
-        - "labels": .vdb (Int32 grid `grain`), .tif, .raw, .mhd, .mha, .nrrd, .npy; `type` of the samples;
-          "mask": the same with 1 where there is a label
-        - "mesh": .ply, .obj, .stl, .vtp or a folder of .stl files; `smoothing`, `reduce`, `triangles`
+        - "labels": .vdb (Int32 grid `grain`), .tif, .raw, .mhd, .mha, .nrrd, .npy, .h5; `type` of the
+          samples; "mask": the same with 1 where there is a label
+        - "mesh": .ply, .obj, .stl, .glb (a node a grain, with its measures), .vtp or a folder of .stl
+          files; `smoothing`, `reduce`, `triangles`
         - "vti": VTK's image, `compress`; "hexahedra": .vtu, .inp (Abaqus), an element a voxel
         - "network": .graphml, .vtp, .csv: grains and bonds with their measures, `min_faces` of a bond
         - "clumps": .txt (YADE), .data (LAMMPS), .csv: grains as balls, `max_balls` each, `uncovered`

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "vdb_madf/base/version.h"
+#include "vdb_madf/exports/detail/hdf5_tables.h"
 #include "vdb_madf/files/csv_cell.h"
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/files/output_file.h"
@@ -215,13 +216,20 @@ Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& opt
 }  // namespace
 
 std::vector<std::string> MeasurementTables::paths(const std::string& folder) {
+  if (detail::isHdf5Tables(folder)) return {folder};
   std::vector<std::string> result;
   for (const char* name : {"grains.csv", "bonds.csv", "sample.json"})
     result.push_back((std::filesystem::path(folder) / name).string());
   return result;
 }
 
-MeasurementTables::MeasurementTables(const std::string& folder) : folder_(folder) {
+MeasurementTables::MeasurementTables(const std::string& folder) {
+  if (detail::isHdf5Tables(folder)) {
+    detail::checkHdf5Tables(folder);
+    file_ = folder;
+    return;
+  }
+  folder_.emplace(folder);
   const std::vector<std::string> files = paths(folder);
   removeLeftovers(files);
   checkWrittenTogether(files[2], {files[0], files[1]});
@@ -234,18 +242,19 @@ MeasurementTables::~MeasurementTables() = default;
 
 void MeasurementTables::write(const Measurements& measurements, const TableOptions& options) {
   const Unit unit(measurements);
-  files_.at(0)->text(
-      table(grainColumns(measurements.grains, measurements.extra), unit, options.sample));
-  files_.at(1)->text(
-      table(bondColumns(measurements.bonds, measurements.extra), unit, options.sample));
+  const auto grains = grainColumns(measurements.grains, measurements.extra),
+             bonds = bondColumns(measurements.bonds, measurements.extra);
+  const Json sample = sampleJson(measurements, unit, options);
+  if (!file_.empty())
+    return detail::writeHdf5Tables(file_, {unit.name, unit.edges, grains, bonds, sample});
+  files_.at(0)->text(table(grains, unit, options.sample));
+  files_.at(1)->text(table(bonds, unit, options.sample));
   // A file name need not be UTF-8: what is not is replaced.
-  files_.at(2)->text(
-      sampleJson(measurements, unit, options).dump(2, ' ', false, Json::error_handler_t::replace) +
-      "\n");
+  files_.at(2)->text(sample.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   for (const auto& file : files_) file->close();
   for (const auto& file : files_) {
     file->commit();
-    folder_.keep();
+    folder_->keep();
   }
 }
 

@@ -38,9 +38,15 @@ struct TableOptions {
 /// end with, else in voxels. An unknown number is an empty cell, or null. sample.json also says
 /// where the numbers come from: our version, the labels and their digest, and of the metadata of
 /// their grid the numbers and texts whose names begin with `madf_`.
+///
+/// A name that ends with .h5 or .hdf5 is that of one HDF5 file instead, with the same bytes whenever
+/// it is written: groups `grains` and `bonds` with a dataset per column, named without the unit, which
+/// is its attribute `units` ("mm", "mm^2", "1/mm"; none of plain numbers); counts are int64 (if
+/// all are known), other numbers float64 with all their digits, NaN if unknown. The members of the group `sample` are those
+/// of sample.json, lists as arrays, true and false as 1 and 0; it has the name of the sample.
 class MeasurementTables {
  public:
-  /// @throw IoError
+  /// @throw IoError, also for HDF5 if it was not there when this was built
   explicit MeasurementTables(const std::string& folder);
   ~MeasurementTables();
   MeasurementTables(const MeasurementTables&) = delete;
@@ -49,12 +55,13 @@ class MeasurementTables {
   /// @throw IoError
   void write(const Measurements& measurements, const TableOptions& options = {});
 
-  /// The paths of the three files.
+  /// The paths of the three files, or of the one.
   static std::vector<std::string> paths(const std::string& folder);
 
  private:
-  OutputFolder folder_;  // goes after the files
+  std::optional<OutputFolder> folder_;  // goes after the files
   std::vector<std::unique_ptr<detail::OutputStream>> files_;
+  std::string file_;  ///< the one of HDF5; empty: those above
 };
 
 }  // namespace vdb_madf

@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/exports/detail/glb_file.h"
 #include "vdb_madf/exports/detail/vtk_file.h"
+#include "vdb_madf/exports/detail/world_mesh.h"
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/output_folder.h"
@@ -23,60 +25,9 @@ namespace vdb_madf {
 namespace {
 
 using detail::OutputStream;
+using detail::WorldMesh;
 using openvdb::Vec3d;
 using openvdb::Vec3f;
-
-/// The mesh in world coordinates.
-class WorldMesh {
- public:
-  WorldMesh(const GrainMesh& mesh, const MeshFileOptions& options, const std::string& path)
-      : mesh_(mesh), options_(options) {
-    if (!options.transform) return;
-    if (!options.transform->isLinear())
-      throw InvalidInput(path + ": the grid's transform is not linear: resample the grid first");
-    isMirrored_ = options.transform->baseMap()->determinant() < 0;
-  }
-
-  const GrainMesh& mesh() const { return mesh_; }
-  size_t grainCount() const { return mesh_.labels.size(); }
-  int32_t label(size_t grain) const { return mesh_.labels[grain]; }
-  Rgb color(size_t grain) const { return options_.colors.colorOf(mesh_.labels[grain]); }
-
-  Vec3f point(uint32_t index) const {
-    const Vec3f& p = mesh_.points[index];
-    return options_.transform ? Vec3f(options_.transform->indexToWorld(Vec3d(p))) : p;
-  }
-  /// A mirrored world turns triangles inside out.
-  std::array<uint32_t, 3> triangle(uint32_t index) const {
-    std::array<uint32_t, 3> result = mesh_.triangles[index];
-    if (isMirrored_) std::swap(result[1], result[2]);
-    return result;
-  }
-  std::string unit() const {
-    return options_.lengthUnit.empty() ? "voxels (no physical size known)" : options_.lengthUnit;
-  }
-
-  /// f(grain, index) for all points or triangles, in order.
-  template <typename F>
-  void forEachPoint(const F& f) const {
-    forEach(mesh_.firstPoint, f);
-  }
-  template <typename F>
-  void forEachTriangle(const F& f) const {
-    forEach(mesh_.firstTriangle, f);
-  }
-
- private:
-  template <typename F>
-  void forEach(const std::vector<uint32_t>& first, const F& f) const {
-    for (size_t grain = 0; grain < grainCount(); ++grain)
-      for (uint32_t i = first[grain]; i < first[grain + 1]; ++i) f(grain, i);
-  }
-
-  const GrainMesh& mesh_;
-  const MeshFileOptions& options_;
-  bool isMirrored_ = false;
-};
 
 void writePly(const std::string& path, const WorldMesh& world, Interrupter* interrupter) {
   if (world.mesh().points.size() > size_t(std::numeric_limits<int32_t>::max()))
@@ -219,7 +170,16 @@ void checkNoOtherGrains(const std::string& folder, const std::vector<std::string
 
 bool isMeshEnding(const std::string& path) {
   const std::string end = fileEnding(path);
-  return end == ".ply" || end == ".obj" || end == ".stl" || end == ".vtp";
+  return end == ".ply" || end == ".obj" || end == ".stl" || end == ".vtp" || isGlb(path);
+}
+
+bool isGlb(const std::string& path) {
+  return fileEnding(path) == ".glb";
+}
+
+void checkMeshRoom(const std::string& path, uint64_t triangles, const MeshFileOptions& options) {
+  // A closed mesh has half as many points as triangles, and two more (a grain with tunnels fewer).
+  if (isGlb(path)) detail::checkGlbRoom(path, triangles / 2, triangles, options.shadeSmooth);
 }
 
 void writeMesh(const std::string& path, const GrainMesh& mesh, const MeshFileOptions& options,
@@ -232,12 +192,15 @@ void writeMesh(const std::string& path, const GrainMesh& mesh, const MeshFileOpt
     writeObj(path, world, interrupter);
   else if (end == ".vtp")
     writeVtp(path, world, interrupter);
+  else if (end == ".glb")
+    detail::writeGlb(path, world, options, interrupter);
   else if (end == ".stl") {
     OutputStream out(path, interrupter);
     writeStl(out, world, 0, world.grainCount());
     out.commit();
   } else {
-    throw InvalidInput(path + ": no mesh format has this ending; use .ply, .obj, .stl or .vtp");
+    throw InvalidInput(path +
+                       ": no mesh format has this ending; use .ply, .obj, .stl, .glb or .vtp");
   }
 }
 

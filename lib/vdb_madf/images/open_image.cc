@@ -24,6 +24,7 @@
 #include "vdb_madf/images/formats/raw.h"
 #include "vdb_madf/images/formats/slice_folder.h"
 #include "vdb_madf/images/formats/tiff.h"
+#include "vdb_madf/images/formats/txm.h"
 #include "vdb_madf/images/formats/zarr.h"
 
 namespace vdb_madf {
@@ -92,6 +93,10 @@ bool isVdb(const std::string& head) {
   return begins(head, std::string(" BDV\0\0\0\0", 8));
 }
 
+#ifndef VDB_MADF_HDF5
+const std::string kGetHdf5 = "install libhdf5-dev, then configure and build it again";
+#endif
+
 std::unique_ptr<ImageReader> openHdf5File(std::unique_ptr<detail::InputFile> file,
                                           [[maybe_unused]] const std::string& dataset) {
 #ifdef VDB_MADF_HDF5
@@ -99,9 +104,16 @@ std::unique_ptr<ImageReader> openHdf5File(std::unique_ptr<detail::InputFile> fil
     throw IoError("-: HDF5 cannot be read from standard input: give the path of a file");
   return detail::openHdf5(file->path(), dataset);
 #else
-  throw IoError(file->path() +
-                ": HDF5 cannot be read by this program: install libhdf5-dev, then configure and "
-                "build it again");
+  throw IoError(file->path() + ": HDF5 cannot be read by this program: " + kGetHdf5);
+#endif
+}
+
+std::unique_ptr<ImageWriter> createHdf5File(const std::string& path,
+                                            [[maybe_unused]] const ImageInfo& info) {
+#ifdef VDB_MADF_HDF5
+  return detail::createHdf5(path, info);
+#else
+  throw IoError(path + ": HDF5 cannot be written by this program: " + kGetHdf5);
 #endif
 }
 
@@ -125,9 +137,10 @@ const std::vector<FileFormat>& fileFormats() {
       {hasHeader<isPicture>, {".png", ".bmp"}, openOnly<openPicture>},
       {hasHeader<isNrrd>, {".nrrd", ".nhdr"}, openOnly<openNrrd>, createNrrd, 1, true},
       {hasHeader<isNpyHeader>, {".npy"}, openOnly<openNpy>, createPlaceless<createNpy>, 1, true},
-      {hasHeader<isHdf5>, {".h5", ".hdf5"}, openHdf5File},
+      {hasHeader<isHdf5>, {".h5", ".hdf5"}, openHdf5File, createPlaceless<createHdf5File>, 2},
       {hasHeader<isVdb>, {".vdb"}, nullptr},
       {hasHeader<isIsqHeader>, {".isq"}, openOnly<openIsq>},
+      {hasHeader<isCompoundHeader>, {".txm", ".txrm"}, openOnly<openTxm>},
       {hasHeader<isMetaHeader>, {".mhd", ".mha"}, openOnly<openMeta>, createMeta, 2},
       {hasHeader<isDgtalHeader>, {".longvol"}, openOnly<openDgtal>},
       {hasHeader<isPyhstHeader>, {".vol", ".info"}, openOnly<openPyhst>},
@@ -222,12 +235,14 @@ std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInf
   if (const FileFormat* format = writtenFormat(path)) return format->create(path, info, origin);
   throw InvalidInput(path + (isStandardOutput(path)
                                  ? ": images on standard output are raw:-, nrrd:- or npy:-"
-                                 : ": images are written as .tif, .tiff, .raw, .mhd, .mha, .nrrd "
-                                   "or .npy"));
+                                 : ": images are written as .tif, .tiff, .raw, .mhd, .mha, .nrrd, "
+                                   ".npy, .h5 or .hdf5"));
 }
 
 void checkImagePlace(const std::string& path) {
-  if (fileEnding(path) == ".mhd") detail::checkMetaPlace(path);
+  const std::string ending = fileEnding(path);
+  if (ending == ".mhd") detail::checkMetaPlace(path);
+  if (!readsHdf5() && (ending == ".h5" || ending == ".hdf5")) createHdf5File(path, {});
 }
 
 bool isImageEnding(const std::string& path) {

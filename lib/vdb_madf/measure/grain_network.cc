@@ -31,7 +31,8 @@ std::vector<GrainNetwork::Column> inWorld(std::vector<MeasureColumn> columns,
       value = isBox ? value * world.edges[column.axis] : scaled(column, value, world.edges);
       if (isPlace) value += world.origin[column.axis];
     }
-    result.push_back({std::move(column.name), std::move(column.values)});
+    const bool isCount = !isPlace && column.kind == MeasureColumn::Kind::count;
+    result.push_back({std::move(column.name), std::move(column.values), isCount});
   }
   return result;
 }
@@ -54,7 +55,7 @@ GrainNetwork grainNetwork(const Int32Grid& labels, const MeasureOptions& options
     network.grains.push_back(grain.id);
     network.centers.push_back(world.origin + world.edges * grain.centroid);
   }
-  GrainNetwork::Column faceArea{"face_area", {}}, length{"length", {}};
+  GrainNetwork::Column faceArea{"face_area", {}, false}, length{"length", {}, false};
   for (const BondMeasures& bond : measured.bonds) {
     const uint32_t first = position(network.grains, bond.first),
                    second = position(network.grains, bond.second);

@@ -19,6 +19,7 @@ struct GrainNetwork {
   struct Column {
     std::string name;  ///< letters, digits, underscores
     std::vector<double> values;
+    bool isCount = false;  ///< whole numbers
   };
   std::vector<int32_t> grains;                 ///< labels, ascending
   std::vector<openvdb::Vec3d> centers;         ///< centroids of the grains, world

@@ -3,7 +3,6 @@
 
 #include "vdb_madf/pictures/preview_volume.h"
 
-#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -12,17 +11,7 @@
 
 namespace vdb_madf {
 
-namespace {
-
 using openvdb::Vec3f;
-
-/// The inverse of the sRGB transfer function (IEC 61966-2-1).
-float linear(uint8_t channel) {
-  const double c = channel / 255.0;
-  return float(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
-}
-
-}  // namespace
 
 LabelPreview previewLabels(const Int32Grid& labels, int factor, Interrupter* interrupter) {
   const detail::Reduction reduction(labels, factor);
@@ -38,7 +27,8 @@ LabelPreview previewLabels(const Int32Grid& labels, int factor, Interrupter* int
           if (!cells[i].labelled) continue;
           const Rgb rgb = colors.colorOf(cells[i].label);
           densities[n]->setValueOn(i, float(cells[i].labelled) / whole);
-          shades[n]->setValueOn(i, Vec3f(linear(rgb[0]), linear(rgb[1]), linear(rgb[2])));
+          shades[n]->setValueOn(
+              i, Vec3f(linearChannel(rgb[0]), linearChannel(rgb[1]), linearChannel(rgb[2])));
         }
       },
       interrupter);

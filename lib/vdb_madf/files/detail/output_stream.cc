@@ -84,6 +84,11 @@ size_t OutputStream::readAt(uint64_t position, void* to, size_t count) const {
   return done;
 }
 
+void OutputStream::resize(uint64_t size) {
+  if (::ftruncate(descriptor_, off_t(size)) != 0) fail(errno);
+  size_ = size;
+}
+
 void OutputStream::close() {
   flush();
   std::string().swap(buffer_);

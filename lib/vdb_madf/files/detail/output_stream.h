@@ -45,6 +45,8 @@ class OutputStream {
   void writeAt(uint64_t position, const void* data, size_t count);
   /// Reads back what was written; returns how many bytes there were.
   size_t readAt(uint64_t position, void* to, size_t count) const;
+  /// Cuts the file, or adds zeros to it.
+  void resize(uint64_t size);
   /// The bytes that are in the file.
   uint64_t size() const { return size_; }
 

@@ -10,11 +10,12 @@
 
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/detail/hdf5_handle.h"
+#include "vdb_madf/files/detail/hdf5_output.h"
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/isolated_reader.h"
 #include "vdb_madf/images/detail/stored_type.h"
-#include "vdb_madf/images/formats/hdf5_handle.h"
 #include "vdb_madf/images/formats/hdf5_sources.h"
 #include "vdb_madf/images/formats/hdf5_voxel_size.h"
 
@@ -30,22 +31,6 @@ constexpr size_t kCacheSlots = 12421;
 /// written and hold the fill value.
 constexpr uint64_t kMaxExpansion = uint64_t(1) << 16;
 constexpr size_t kMaxListed = 8;
-
-/// While it lives, the library does not print its errors.
-class Quiet {
- public:
-  Quiet() {
-    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
-
- private:
-  H5E_auto2_t function_ = nullptr;
-  void* data_ = nullptr;
-};
 
 /// The type that the samples have in memory.
 Hdf5Handle nativeType(hid_t dataset) {
@@ -205,7 +190,7 @@ class Hdf5Reader : public ImageReader {
   }
 
   void read(int first, int count, void* samples) override {
-    const Quiet quiet;
+    const Hdf5Quiet quiet;
     checkSlices(path_, info_, first, count);
     char* to = static_cast<char*>(samples);
     if (!stored_.is64Bit) return readStored(first, count, to);
@@ -275,7 +260,7 @@ class Hdf5Reader : public ImageReader {
 };
 
 std::unique_ptr<ImageReader> openHere(const std::string& path, const std::string& dataset) {
-  const Quiet quiet;
+  const Hdf5Quiet quiet;
   Hdf5Handle file = openHdf5File(path);
   if (!file) throw IoError(path + ": is damaged or no HDF5 file");
   const std::vector<std::string> names = namesOf(path, file, dataset);
@@ -286,7 +271,9 @@ std::unique_ptr<ImageReader> openHere(const std::string& path, const std::string
 
 std::unique_ptr<ImageReader> openHdf5(const std::string& path, const std::string& dataset) {
   const InputFile exists(path);  // says better what is wrong with a path
-  // The library (1.10 at least) crashes on many a damaged file.
+  // The library (1.10 at least) crashes on many a damaged file. No writer of ours is within it, and
+  // holds its lock for ever, while the process is copied.
+  const Hdf5Turn turn;
   return openIsolated(path, [&] { return openHere(path, dataset); });
 }
 

@@ -20,4 +20,8 @@ namespace vdb_madf::detail {
 /// found.
 std::unique_ptr<ImageReader> openHdf5(const std::string& path, const std::string& dataset);
 
+/// A dataset `data` [z, y, x] in chunks, deflated, with `element_size_um` (z, y, x) where the voxel
+/// size is known. The same bytes whenever it is written.
+std::unique_ptr<ImageWriter> createHdf5(const std::string& path, const ImageInfo& info);
+
 }  // namespace vdb_madf::detail

@@ -9,8 +9,8 @@
 
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/detail/hdf5_handle.h"
 #include "vdb_madf/files/detail/input_file.h"
-#include "vdb_madf/images/formats/hdf5_handle.h"
 
 namespace vdb_madf::detail {
 

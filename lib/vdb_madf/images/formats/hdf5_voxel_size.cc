@@ -8,8 +8,8 @@
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/length_unit.h"
+#include "vdb_madf/files/detail/hdf5_handle.h"
 #include "vdb_madf/images/detail/header_checks.h"
-#include "vdb_madf/images/formats/hdf5_handle.h"
 
 namespace vdb_madf::detail {
 

@@ -14,7 +14,7 @@ namespace vdb_madf::detail {
 /// An open object of libhdf5.
 class Hdf5Handle {
  public:
-  Hdf5Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  Hdf5Handle(hid_t id, herr_t (*closeObject)(hid_t)) : id_(id), close_(closeObject) {}
   Hdf5Handle(Hdf5Handle&& other) noexcept : id_(other.id_), close_(other.close_) { other.id_ = -1; }
   ~Hdf5Handle() {
     if (id_ >= 0) close_(id_);
@@ -26,10 +26,31 @@ class Hdf5Handle {
   }
   explicit operator bool() const { return id_ >= 0; }
   operator hid_t() const { return id_; }
+  /// What the library says of it, negative if it fails; 0 if nothing is open.
+  herr_t close() {
+    const hid_t id = std::exchange(id_, -1);
+    return id >= 0 ? close_(id) : 0;
+  }
 
  private:
   hid_t id_;
   herr_t (*close_)(hid_t);
+};
+
+/// While it lives, the library does not print its errors.
+class Hdf5Quiet {
+ public:
+  Hdf5Quiet() {
+    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~Hdf5Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+  Hdf5Quiet(const Hdf5Quiet&) = delete;
+  Hdf5Quiet& operator=(const Hdf5Quiet&) = delete;
+
+ private:
+  H5E_auto2_t function_ = nullptr;
+  void* data_ = nullptr;
 };
 
 inline Hdf5Handle openHdf5File(const std::string& path) {

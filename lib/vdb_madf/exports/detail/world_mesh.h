@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/exports/mesh_file.h"
+
+namespace vdb_madf::detail {
+
+/// The mesh in world coordinates.
+class WorldMesh {
+ public:
+  WorldMesh(const GrainMesh& mesh, const MeshFileOptions& options, const std::string& path)
+      : mesh_(mesh), options_(options) {
+    if (!options.transform) return;
+    if (!options.transform->isLinear())
+      throw InvalidInput(path + ": the grid's transform is not linear: resample the grid first");
+    isMirrored_ = options.transform->baseMap()->determinant() < 0;
+  }
+
+  const GrainMesh& mesh() const { return mesh_; }
+  size_t grainCount() const { return mesh_.labels.size(); }
+  int32_t label(size_t grain) const { return mesh_.labels[grain]; }
+  Rgb color(size_t grain) const { return options_.colors.colorOf(mesh_.labels[grain]); }
+
+  openvdb::Vec3f point(uint32_t index) const {
+    const openvdb::Vec3f& p = mesh_.points[index];
+    return options_.transform ? openvdb::Vec3f(options_.transform->indexToWorld(openvdb::Vec3d(p)))
+                              : p;
+  }
+  /// A mirrored world turns triangles inside out.
+  std::array<uint32_t, 3> triangle(uint32_t index) const {
+    std::array<uint32_t, 3> result = mesh_.triangles[index];
+    if (isMirrored_) std::swap(result[1], result[2]);
+    return result;
+  }
+  std::string unit() const {
+    return options_.lengthUnit.empty() ? "voxels (no physical size known)" : options_.lengthUnit;
+  }
+
+  /// f(grain, index) for all points or triangles, in order.
+  template <typename F>
+  void forEachPoint(const F& f) const {
+    forEach(mesh_.firstPoint, f);
+  }
+  template <typename F>
+  void forEachTriangle(const F& f) const {
+    forEach(mesh_.firstTriangle, f);
+  }
+
+ private:
+  template <typename F>
+  void forEach(const std::vector<uint32_t>& first, const F& f) const {
+    for (size_t grain = 0; grain < grainCount(); ++grain)
+      for (uint32_t i = first[grain]; i < first[grain + 1]; ++i) f(grain, i);
+  }
+
+  const GrainMesh& mesh_;
+  const MeshFileOptions& options_;
+  bool isMirrored_ = false;
+};
+
+}  // namespace vdb_madf::detail
