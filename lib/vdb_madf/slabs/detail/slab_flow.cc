@@ -77,10 +77,10 @@ class SlabFlow {
     HoleCount holes;
     for (size_t s = 0; s < work_.slabCount(); ++s) {
       if (!work_.has("cavities", s)) {
+        WorkPart part = work_.part(0, 5, s);
         std::vector<LeafIndex::LeafVoxels> found;
         if (any)
-          found = slabHoles(work_.object, work_.domain, s, result_.open, result_.fillHoles,
-                            work_.interrupter);
+          found = slabHoles(work_.object, work_.domain, s, result_.open, result_.fillHoles, &part);
         work_.writeVector("cavities", s, found);
       }
       holes.add(work_.readVector<LeafIndex::LeafVoxels>("cavities", s), work_.begin(s),
@@ -128,13 +128,14 @@ class SlabFlow {
   void sendOffersDown() {
     for (size_t s = work_.slabCount(); s-- > 1;) {
       if (work_.has("offered-down", s - 1) || work_.has("terminals", s - 1)) continue;
+      WorkPart part = work_.part(5, 30, work_.slabCount() - 1 - s);
       const SlabBody slab = work_.body(s);
       SlabFaces at = faces(s);
       at.below = stepsOf("below", s);
       at.above = stepsOf("above", s);
       writeSteps("above", s - 1, columnSteps(slab.index, work_.obstacles, at, true));
-      const SquaredDistance distance = squaredDistanceInSlab(
-          slab.index, work_.obstacles, result_.weights, at, work_.interrupter);
+      const SquaredDistance distance =
+          squaredDistanceInSlab(slab.index, work_.obstacles, result_.weights, at, &part);
       work_.writeVector(
           "offered-down", s - 1,
           siteOffers(slab.index, distance, offers("offered-down", s), at.begin, at.end, false));
@@ -169,12 +170,14 @@ class SlabFlow {
   }
 
   void flowIn(size_t s) {
+    WorkPart part = work_.part(30, 75, s);
+    WorkPart measuring(&part, 0, 25), mapping(&part, 25, 70), flowing(&part, 70, 100);
     SlabBody slab = work_.body(s);
     SlabFaces at = faces(s);
     at.below = stepsOf("below", s);
     at.above = stepsOf("above", s);
     SquaredDistance distance =
-        squaredDistanceInSlab(slab.index, work_.obstacles, result_.weights, at, work_.interrupter);
+        squaredDistanceInSlab(slab.index, work_.obstacles, result_.weights, at, &measuring);
     const int32_t largest = distance.largest;
     const std::vector<ForeignSite> fromBelow = offers("offered-up", s);
     if (at.hasAbove)
@@ -183,11 +186,11 @@ class SlabFlow {
     distance.foreign = std::make_shared<ForeignSites>(fromBelow, offers("offered-down", s),
                                                       at.begin, at.end, slab.index);
 
-    PowerMap map = powerMap(slab.index, std::move(distance), work_.interrupter);
-    const VoxelSet balls = medialBalls(slab.index, map, work_.interrupter);
-    const Flow flowMap = flow(slab.index, std::move(map.site), map.power, balls, work_.interrupter);
+    PowerMap map = powerMap(slab.index, std::move(distance), &mapping);
+    const VoxelSet balls = medialBalls(slab.index, map, &flowing);
+    const Flow flowMap = flow(slab.index, std::move(map.site), map.power, balls, &flowing);
     SlabTerminals terminals = slabTerminals(slab.index, flowMap, map.power, balls, slab.cavities,
-                                            at.begin, at.end, work_.interrupter);
+                                            at.begin, at.end, &flowing);
     terminals.largestSquaredDistance = largest;
     map.power.clear();
     ByteWriter flowBytes, terminalBytes;

@@ -156,6 +156,7 @@ class SlabLabels {
     LeafLabels below;
     for (size_t s = 0; s < work_.slabCount(); ++s) {
       if (work_.has("pieces", s)) continue;
+      WorkPart part = work_.part(75, 90, s);
       if (!here) {
         if (s > 0) below = rim(merged(s - 1), work_.begin(s) - reach, work_.begin(s));
         here = merged(s);
@@ -163,7 +164,7 @@ class SlabLabels {
       std::optional<Merged> next = merged(s + 1);
       LeafLabels highest = rim(here, work_.end(s) - reach, work_.end(s));
       smoothSlab(here->slab.index, below, rim(next, work_.end(s), work_.end(s) + reach), anchors,
-                 work_.options.tidy, here->labels, work_.interrupter);
+                 work_.options.tidy, here->labels, &part);
       writeLabels(s, *here, anchors);
       if (s > 0) work_.remove("flow", s - 1);
       below = std::move(highest);

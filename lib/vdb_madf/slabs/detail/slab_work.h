@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/method/boundary.h"
 #include "vdb_madf/slabs/detail/bytes.h"
 #include "vdb_madf/slabs/detail/slab_body.h"
@@ -23,6 +24,13 @@ struct SlabWork {
   Interrupter* interrupter;
   Obstacles obstacles{};
   bool fillsNone = false;  ///< would the cavities be all background?
+
+  /// What is told of the work on the slabs, of which this is the i-th: it goes from `begin` to `end` per
+  /// cent of the whole.
+  WorkPart part(int begin, int end, size_t i) const {
+    const double step = double(end - begin) / double(slabCount());
+    return {interrupter, int(begin + step * double(i)), int(begin + step * double(i + 1))};
+  }
 
   size_t slabCount() const { return object.slabCount(); }
   int begin(size_t slab) const { return object.cuts[slab]; }

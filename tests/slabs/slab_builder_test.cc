@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/slabs/slab_builder.h"
+
+#include <catch2/catch.hpp>
+#include <vector>
+
+#include "vdb_madf/base/errors.h"
+
+namespace {
+
+using namespace vdb_madf;
+
+/// A layer of leaf nodes at z, with that many voxels in each of two leaves.
+MaskTree layerAt(int z, int voxels) {
+  MaskTree layer;
+  for (int i = 0; i < voxels; ++i) {
+    layer.setValueOn(Coord(-16 + i % 8, i / 8, z + 7));
+    layer.setValueOn(Coord(40 + i % 8, i / 8, z));
+  }
+  return layer;
+}
+
+SlabObject built(const SlabLimits& limits, const std::vector<int>& layers, Scratch& scratch,
+                 const std::optional<Domain>& domain = std::nullopt) {
+  SlabBuilder builder(limits, scratch);
+  for (const int z : layers) builder.add(layerAt(z, 10));
+  CHECK_FALSE(hasSlabs(scratch));
+  builder.finish(domain);
+  CHECK(hasSlabs(scratch));
+  return storedSlabs(scratch, MaskGrid::create());
+}
+
+}  // namespace
+
+TEST_CASE("slab builder: cuts where a slab would be too high or too full", "[slabs]") {
+  using Cuts = std::vector<int>;
+  const auto cuts = [](int64_t voxels, int height, int leastHeight) {
+    MemoryScratch scratch;
+    return built({voxels, height, leastHeight}, {-16, -8, 0, 8, 24, 32}, scratch).cuts;
+  };
+  CHECK(cuts(0, 0, 8) == Cuts{-16, 40});
+  CHECK(cuts(0, 8, 8) == Cuts{-16, -8, 0, 8, 24, 32, 40});
+  CHECK(cuts(0, 9, 8) == Cuts{-16, 0, 24, 40});
+  CHECK(cuts(40, 0, 8) == Cuts{-16, 0, 24, 40});
+  CHECK(cuts(1, 0, 8) == Cuts{-16, -8, 0, 8, 24, 32, 40});  // a layer is not divided
+  CHECK(cuts(1, 0, 20) == Cuts{-16, 8, 32, 40});
+}
+
+TEST_CASE("slab builder: slabs hold the layers, and cover the domain", "[slabs]") {
+  MemoryScratch scratch;
+  const Domain domain(CoordBBox(Coord(-20, 0, -30), Coord(60, 9, 50)));
+  const SlabObject object = built({0, 16, 8}, {-16, -8, 0, 8}, scratch, domain);
+  CHECK(object.cuts == std::vector<int>{-32, 0, 56});
+  REQUIRE(object.slabCount() == 2);
+  const auto leaves = object.leaves(0);
+  REQUIRE(leaves.size() == 4);
+  CHECK(leaves[0].origin == Coord(-16, 0, -16));
+  CHECK(leaves[1].origin == Coord(-16, 0, -8));
+  CHECK(leaves[2].origin == Coord(40, 0, -16));
+  CHECK(leaves[0].mask[0] == (uint64_t(1) << 7 | uint64_t(1) << 15));
+  CHECK(leaves[0].mask[2] == uint64_t(1) << 7);
+  MemoryScratch empty;
+  CHECK(built({}, {}, empty, domain).cuts == std::vector<int>{-32, 56});
+  MemoryScratch unbounded;
+  CHECK(built({}, {}, unbounded).slabCount() == 1);
+}
+
+TEST_CASE("slab builder: layers are single, and ascend", "[slabs]") {
+  MemoryScratch scratch;
+  SlabBuilder builder({}, scratch);
+  builder.add(layerAt(8, 3));
+  builder.add(MaskTree());
+  CHECK_THROWS_AS(builder.add(layerAt(8, 3)), InvalidInput);
+  MaskTree two = layerAt(16, 1);
+  two.setValueOn(Coord(0, 0, 24));
+  CHECK_THROWS_AS(SlabBuilder({}, scratch).add(two), InvalidInput);
+  MaskTree tile;
+  tile.fill(CoordBBox(Coord(0), Coord(7)), true);
+  if (tile.activeTileCount() > 0) CHECK_THROWS_AS(SlabBuilder({}, scratch).add(tile), InvalidInput);
+}
