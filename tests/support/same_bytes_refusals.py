@@ -41,6 +41,8 @@ def wrong_command_lines():
                     "in.tif o.raw --out-type text", "in.tif o.vdb --out-type int32", "in.tif o.vdb --boundary wide",
                     "in.tif o.vdb --type uint8", "in.tif", "snow.vdb ./snow.vdb"),
         "remerge": ("in.vdb o.tif", "in.vdb in.vdb", "in.vdb o.vdb --theta 2", "in.vdb o.vdb --gamma 2", "in.vdb"),
+        "edit": ("in.vdb o.vdb", "in.vdb in.vdb --renumber", "in.vdb o.vdb --merge 12", "in.vdb o.vdb --drop 1,1",
+                 "in.vdb o.jpg --renumber"),
         "sweep": ("in.vdb o.txt", "in.vdb o.csv --plot o.csv", "in.vdb o.csv --theta -1:0",
                   "in.vdb o.csv --theta -1:-0.5:0", "in.vdb o.csv --theta -0.5:-1:0.1", "in.vdb o.csv --theta -2",
                   "in.vdb o.csv --theta -0.5,-0.5", "in.vdb o.csv --gamma 0,x", "in.vdb o.csv --gamma 3,3",

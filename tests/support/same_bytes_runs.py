@@ -13,7 +13,7 @@ from same_bytes_refusals import DAMAGED, Edit
 
 IMAGES = ("tif", "mhd", "raw", "mha", "nrrd", "npy")  # an .mhd would not replace the .raw of another
 TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
-VERBS = ("generate", "convert", "segment", "remerge", "sweep", "measure", "collect", "compare", "render", "export", "info")
+VERBS = ("generate", "convert", "segment", "remerge", "edit", "sweep", "measure", "collect", "compare", "render", "export", "info")
 KINDS = {"spheres": "--count 6 --radius 6:9", "pack": "--radius 4:8", "snow": "--length 12",
          "sintered": "--count 6 --radius 7:9", "particles": "--count 6 --radius 7:9",
          "bed": "--radius 7:9 --rounds 2"}
@@ -189,6 +189,12 @@ def remerge():
     yield "remerge keep_manifold.vdb remerged_quiet.vdb --quiet"
     yield "remerge solid_labels.vdb remerged_solid.vdb"
     yield "remerge none.vdb remerged_none.vdb"
+
+
+def edit():
+    yield "edit keep_manifold.vdb edited.vdb --merge 1,2 --split 3 --min-voxels 20 --drop-at-faces --json edited.json"
+    yield "edit edited.vdb renumbered.tif --renumber --max-diameter 1mm"
+    yield "edit sintered32.truth.tif edited_image.vdb --drop 2 --keep 1,3 --quiet"
 
 
 def sweep():
@@ -382,6 +388,7 @@ def all_runs(images, grids, with_scan):
     yield from convert(images, grids)
     yield from segment()
     yield from remerge()
+    yield from edit()
     yield from sweep()
     yield from measure()
     yield from collect()

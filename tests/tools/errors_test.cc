@@ -137,6 +137,18 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"remerge in.vdb out.vdb --gamma 2", "--gamma"},
       {"remerge in.vdb out.vdb --delta -1", "--delta"},
       {"remerge in.vdb out.vdb --tidy x", "--tidy"},
+      {"edit in.vdb out.vdb", "--merge"},
+      {"edit in.vdb out.jpg --renumber", "out.jpg"},
+      {"edit in.vdb in.vdb --renumber", "in.vdb"},
+      {"edit in.vdb out.vdb --merge 12", "--merge 12: merge takes 2 or more"},
+      {"edit in.vdb out.vdb --merge 12,17,12", "grain 12 is named twice"},
+      {"edit in.vdb out.vdb --split 1,2", "--split 1,2: split takes one grain"},
+      {"edit in.vdb out.vdb --drop 0", "grain 0 cannot be"},
+      {"edit in.vdb out.vdb --keep x", "'x'"},
+      {"edit in.vdb out.vdb --min-voxels 0.5", "--min-voxels"},
+      {"edit in.vdb out.vdb --max-diameter 100", "--max-diameter"},
+      {"edit in.vdb out.vdb --edits out.vdb", "out.vdb"},
+      {"edit - out.vdb --edits -", "--edits -"},
       {"sweep in.vdb out.txt", "out.txt"},
       {"sweep in.vdb out.csv --plot out.csv", "out.csv"},
       {"sweep in.vdb out.csv --theta -1:0", "--theta"},
@@ -243,6 +255,7 @@ TEST_CASE("cli: a file that is missing or none of ours is named", "[cli]") {
     refuses(bench, kFailed, "info " + file, {file});
     refuses(bench, kFailed, "render " + file + " out.png", {file});
     refuses(bench, kFailed, "remerge " + file + " out.vdb", {file});
+    refuses(bench, kFailed, "edit " + file + " out.vdb --renumber", {file});
   }
   for (const std::string file : {"missing.vdb", "folder.vdb"})
     refuses(bench, kFailed, "remerge " + file + " out.vdb", {file});
@@ -283,6 +296,8 @@ TEST_CASE("cli: a grid has to be there, usable and the only one", "[cli]") {
   refuses(bench, kFailed, "segment g.vdb o.vdb", {"g.vdb", "--grid", "grain", "power", "manifold"});
   refuses(bench, kFailed, "compare s.vdb g.vdb --truth-grid snow", {"s.vdb", "'snow'"});
   refuses(bench, kFailed, "remerge s.vdb o.vdb", {"s.vdb", "segment again with --keep manifold"});
+  refuses(bench, kFailed, "edit mask.vdb o.vdb --renumber", {"mask.vdb", "labels (int32)"});
+  refuses(bench, kFailed, "edit s.vdb o.vdb --split 1", {"s.vdb", "with --keep manifold"});
   bench.mustRun("convert s.vdb s.tif --grid truth");
   refuses(bench, kFailed, "segment s.tif o.vdb --grid truth", {"s.tif", "--grid"});
   refuses(bench, kFailed, "segment s.tif o.vdb --dataset truth", {"s.tif", "--dataset"});

@@ -35,6 +35,7 @@ void addGenerate(Verb command, Common& common, Action& action);
 void addConvert(Verb command, Common& common, Action& action);
 void addSegment(Verb command, Common& common, Action& action);
 void addRemerge(Verb command, Common& common, Action& action);
+void addEdit(Verb command, Common& common, Action& action);
 void addSweep(Verb command, Common& common, Action& action);
 void addMeasure(Verb command, Common& common, Action& action);
 void addCollect(Verb command, Common& common, Action& action);

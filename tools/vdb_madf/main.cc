@@ -98,6 +98,7 @@ int run(int argc, char** argv) {
   addConvert(command, common, action);
   addSegment(command, common, action);
   addRemerge(command, common, action);
+  addEdit(command, common, action);
   addSweep(command, common, action);
   addMeasure(command, common, action);
   addCollect(command, common, action);
