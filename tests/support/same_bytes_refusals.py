@@ -53,6 +53,7 @@ def wrong_command_lines():
         "collect": ("o_dir", "o_dir o.txt", "o.csv"),
         "compare": ("in.vdb", "in.vdb other.vdb --json other.vdb", "in.vdb other.vdb --grains in.vdb",
                     "in.vdb other.vdb --json a.x --confusion a.x"),
+        "track": ("in.vdb", "in.vdb other.vdb other.vdb", "in.vdb other.vdb --shift 1,2", "in.vdb other.vdb --share 0"),
         "render": ("in.vdb o.jpg", "in.vdb o.png --only all", "in.vdb o.png --size 0", "in.vdb o.png --elevation 100",
                    "in.vdb o.png --azimuth nan", "in.vdb o.png --elevation nan", "in.vdb"),
         "export": ("in.vdb o.vdb", "in.vdb o.xyz", "in.vdb o.ply --as cubes", "in.vdb o.ply --as viz",

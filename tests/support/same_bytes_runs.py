@@ -13,7 +13,7 @@ from same_bytes_refusals import DAMAGED, Edit
 
 IMAGES = ("tif", "mhd", "raw", "mha", "nrrd", "npy")  # an .mhd would not replace the .raw of another
 TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
-VERBS = ("generate", "convert", "segment", "remerge", "edit", "sweep", "measure", "collect", "compare", "render", "export", "info")
+VERBS = ("generate", "convert", "segment", "remerge", "edit", "sweep", "measure", "collect", "compare", "track", "render", "export", "info")
 KINDS = {"spheres": "--count 6 --radius 6:9", "pack": "--radius 4:8", "snow": "--length 12",
          "sintered": "--count 6 --radius 7:9", "particles": "--count 6 --radius 7:9",
          "bed": "--radius 7:9 --rounds 2"}
@@ -253,6 +253,11 @@ def compare():
     yield "compare open_0_both_manifold.vdb domain.vdb"
 
 
+def track():
+    yield "track all_snow_0.vdb all_snow_20.vdb tracked.vdb --grains tracked.csv --links links.csv --bonds linked.csv --json tracked.json"
+    yield "track keep_manifold.vdb edited.vdb tracked.tif --shift 1,0,-1 --share 0.3 --min-faces 4"
+
+
 def render():
     for sample in ("snow", "sintered", "spheres", "pack"):
         yield f"render all_{sample}_0.vdb {sample}.png"
@@ -393,6 +398,7 @@ def all_runs(images, grids, with_scan):
     yield from measure()
     yield from collect()
     yield from compare()
+    yield from track()
     yield from render()
     yield from export()
     yield from info(images, grids)

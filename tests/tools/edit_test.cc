@@ -94,6 +94,7 @@ TEST_CASE("cli: edits of labels of another program", "[cli]") {
   bench.mustRun(kSpheres + "s.vdb --voxel-size 10um");
   bench.mustRun("convert s.vdb s.tif --grid truth");
   bench.mustRun("edit s.tif e.tif --drop 2,4 --renumber");
+  CHECK(Json::parse(bench.mustRun("edit s.tif f.tif --drop 2 --json -")).at("output") == "f.tif");
   bench.mustRun("edit s.vdb e.vdb --grid truth --drop 4,2 --renumber --drop-at-faces");
   CHECK(metadataOf(bench, "e.vdb", "truth").at("madf_edits") ==
         "drop 4 2; renumber; drop-at-faces");

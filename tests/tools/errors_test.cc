@@ -173,6 +173,17 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"compare in.vdb other.vdb --json other.vdb", "other.vdb"},
       {"compare in.vdb other.vdb --grains in.vdb", "in.vdb"},
       {"compare in.vdb other.vdb --json a --confusion a", "a"},
+      {"track in.vdb", "AFTER"},
+      {"track in.vdb other.vdb out.jpg", "out.jpg"},
+      {"track in.vdb other.vdb other.vdb", "other.vdb"},
+      {"track in.vdb other.vdb --grains a.csv --bonds a.csv", "a.csv"},
+      {"track in.vdb other.vdb --shift 1,2", "X,Y,Z"},
+      {"track in.vdb other.vdb --shift 1,2,99999", "--shift"},
+      {"track in.vdb other.vdb --shift 1,2,3 --max-shift 5", "--max-shift"},
+      {"track in.vdb other.vdb --max-shift 257", "--max-shift"},
+      {"track in.vdb other.vdb --share 0", "--share"},
+      {"track in.vdb other.vdb --share 1.1", "--share"},
+      {"track in.vdb other.vdb --min-faces -1", "--min-faces"},
       {"export in.vdb out.ply --bonds b.csv", "--bonds"},
       {"export in.vdb out.txt --as clumps --cover c.txt", "c.txt"},
       {"export in.vdb out.csv --as clumps --cover c.csv --bonds c.csv", "c.csv"},
@@ -261,6 +272,7 @@ TEST_CASE("cli: a file that is missing or none of ours is named", "[cli]") {
     refuses(bench, kFailed, "remerge " + file + " out.vdb", {file});
   refuses(bench, kFailed, "info garbage.vdb", {"not a VDB file"});
   refuses(bench, kFailed, "compare missing.vdb empty.vdb", {"missing.vdb"});
+  refuses(bench, kFailed, "track missing.vdb empty.vdb", {"missing.vdb"});
   bench.write("s.raw", std::string(64, '\1'));
   refuses(bench, kFailed, "segment s.raw out.vdb", {"s.raw", "--dims"});
   for (const std::string layout :

@@ -173,7 +173,7 @@ void run(const Options& o, const Common& common) {
   Json json = summary(o, edited);
   addNotes(json, *common.progress);
   jsonFile.write(json);
-  if (!common.quiet && !jsonFile.isStandardOutput()) print(o, edited, common.verbose);
+  if (!common.quiet) print(o, edited, common.verbose);
 }
 
 }  // namespace
@@ -205,7 +205,7 @@ void addEdit(Verb command, Common& common, Action& action) {
   o->input.addVoxelSize(verb);
   verb.onParsed([o, &common, &action] {
     parse(*o);
-    action = [o, &common] { run(*o, besideOutput(common, o->out)); };
+    action = [o, &common] { run(*o, besideOutput(besideOutput(common, o->out), o->json)); };
   });
 }
 

@@ -103,6 +103,7 @@ int run(int argc, char** argv) {
   addMeasure(command, common, action);
   addCollect(command, common, action);
   addCompare(command, common, action);
+  addTrack(command, common, action);
   addRender(command, common, action);
   addExport(command, common, action);
   addInfo(command, common, action);
