@@ -154,12 +154,18 @@ std::vector<GrainPart> GrainParts::divide(const Int32Grid& labels, int32_t grain
   for (const LeafVoxels& leaf : wanted) {
     const auto known = index_.findLeaf(leaf.origin);
     if (!known || anyVoxel(without(leaf.mask, index_.mask(*known)))) failNotParts(grain);
+    uint32_t last = 0;  // neighbors mostly share their grain
+    Mask* mask = nullptr;
     forEachVoxel(index_, *known, *known + 1, [&](VoxelId id, size_t rank) {
       if (!holds(leaf.mask, offsetOf(id))) return;
-      std::vector<LeafVoxels>& voxels = byGrain[int32_t(grains_.label[rank])];
-      if (voxels.empty() || voxels.back().origin != leaf.origin)
-        voxels.push_back({leaf.origin, Mask{}});
-      voxels.back().mask[wordOf(id)] |= uint64_t(1) << bitOf(id);
+      if (!mask || grains_.label[rank] != last) {
+        last = grains_.label[rank];
+        std::vector<LeafVoxels>& voxels = byGrain[int32_t(last)];
+        if (voxels.empty() || voxels.back().origin != leaf.origin)
+          voxels.push_back({leaf.origin, Mask{}});
+        mask = &voxels.back().mask;
+      }
+      (*mask)[wordOf(id)] |= uint64_t(1) << bitOf(id);
     });
   }
   std::vector<GrainPart> parts;
@@ -242,7 +248,7 @@ bool GrainParts::addParts(GrainPart whole, const std::vector<LeafVoxels>& wanted
 std::optional<std::array<GrainPart, 2>> GrainParts::halves(const GrainPart& part,
                                                            Interrupter* interrupter) const {
   const LeafIndex index(LeafIndex(), part.voxels);
-  const VoxelArray<uint32_t> places = placesIn(part, index);
+  const VoxelArray<uint32_t> places = placesIn(part, index, interrupter);
   std::vector<int64_t> voxels(part.nodes.size(), 0);
   for (size_t rank = 0; rank < places.size(); ++rank)
     if (places[rank] != kForeign) ++voxels[places[rank]];
@@ -273,27 +279,30 @@ std::optional<std::array<GrainPart, 2>> GrainParts::halves(const GrainPart& part
 }
 
 /// Of each voxel the place of its manifold in the part's list; kForeign: it is not there.
-VoxelArray<uint32_t> GrainParts::placesIn(const GrainPart& part, const LeafIndex& index) const {
+VoxelArray<uint32_t> GrainParts::placesIn(const GrainPart& part, const LeafIndex& index,
+                                          Interrupter* interrupter) const {
   VoxelArray<uint32_t> places(size_t(index.voxelCount()));
-  const auto tree = manifold_.getConstAccessor();
-  int32_t last = 0;  // neighbors mostly share their manifold
-  uint32_t place = kForeign;
-  for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
-    const Leaf* node = tree.probeConstLeaf(index.origin(leaf));
-    const int32_t tile = node ? 0 : tree.getValue(index.origin(leaf));
-    forEachVoxel(index, leaf, leaf + 1, [&](VoxelId id, size_t rank) {
-      const int32_t number = node ? node->getValue(offsetOf(id)) : tile;
-      if (number != last) {
-        last = number;
-        const auto found =
-            std::lower_bound(part.nodes.begin(), part.nodes.end(), uint32_t(number - 1));
-        place = found != part.nodes.end() && *found == uint32_t(number - 1)
-                    ? uint32_t(found - part.nodes.begin())
-                    : kForeign;
-      }
-      places[rank] = place;
-    });
-  }
+  parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+    const auto tree = manifold_.getConstAccessor();
+    int32_t last = 0;  // neighbors mostly share their manifold
+    uint32_t place = kForeign;
+    for (size_t leaf = begin; leaf < end; ++leaf) {
+      const Leaf* node = tree.probeConstLeaf(index.origin(leaf));
+      const int32_t tile = node ? 0 : tree.getValue(index.origin(leaf));
+      forEachVoxel(index, leaf, leaf + 1, [&](VoxelId id, size_t rank) {
+        const int32_t number = node ? node->getValue(offsetOf(id)) : tile;
+        if (number != last) {
+          last = number;
+          const auto found =
+              std::lower_bound(part.nodes.begin(), part.nodes.end(), uint32_t(number - 1));
+          place = found != part.nodes.end() && *found == uint32_t(number - 1)
+                      ? uint32_t(found - part.nodes.begin())
+                      : kForeign;
+        }
+        places[rank] = place;
+      });
+    }
+  });
   return places;
 }
 

@@ -59,7 +59,8 @@ class GrainParts {
   /// Absent: the voxels are all of one manifold.
   std::optional<std::array<GrainPart, 2>> halves(const GrainPart& part,
                                                  Interrupter* interrupter) const;
-  VoxelArray<uint32_t> placesIn(const GrainPart& part, const LeafIndex& index) const;
+  VoxelArray<uint32_t> placesIn(const GrainPart& part, const LeafIndex& index,
+                                Interrupter* interrupter) const;
   int32_t numberOf(int32_t grain, const std::vector<uint32_t>& nodes) const;
 
   const Int32Grid& manifold_;

@@ -21,6 +21,7 @@ using Faces = std::map<std::pair<int32_t, int32_t>, int64_t>;
 
 /// Each face is counted with the lower of its two voxels.
 void addFaces(const LabelHalo& halo, Faces& faces) {
+  auto last = faces.end();  // the next face is mostly of the same pair
   for (int x = 0; x < 8; ++x)
     for (int y = 0; y < 8; ++y)
       for (int z = 0; z < 8; ++z) {
@@ -28,8 +29,11 @@ void addFaces(const LabelHalo& halo, Faces& faces) {
         const int32_t a = halo[at];
         if (!a) continue;
         for (const int step : kHaloStride)
-          if (const int32_t b = halo[at + size_t(step)]; b && b != a)
-            ++faces[{std::min(a, b), std::max(a, b)}];
+          if (const int32_t b = halo[at + size_t(step)]; b && b != a) {
+            const std::pair<int32_t, int32_t> pair = std::minmax(a, b);
+            if (last == faces.end() || last->first != pair) last = faces.try_emplace(pair, 0).first;
+            ++last->second;
+          }
       }
 }
 

@@ -89,6 +89,16 @@ std::pair<VoxelSetByLeaves, VoxelSetByLeaves> halved(const VoxelSetByLeaves& fir
   return {halved(first, 1), halved(second, 1)};
 }
 
+/// Many counts are one work, whose end is not known: their percentages would tell nothing.
+class WithoutPercent : public Interrupter {
+ public:
+  explicit WithoutPercent(Interrupter* whole) : whole_(whole) {}
+  bool wasInterrupted(int) override { return whole_ && whole_->wasInterrupted(-1); }
+
+ private:
+  Interrupter* whole_;
+};
+
 /// The shifts that were tried between two sets, and how good they are.
 class Trials {
  public:
@@ -100,7 +110,7 @@ class Trials {
     for (int axis = 0; axis < 3; ++axis)
       if (shift[axis] < -most_ || shift[axis] > most_) return;
     if (tried_.count(shift) == 0)
-      tried_[shift] = commonVoxels(first_, second_, shift, interrupter_);
+      tried_[shift] = commonVoxels(first_, second_, shift, &interrupter_);
   }
   void addAround(const Coord& shift) {
     for (int x = -1; x <= 1; ++x)
@@ -124,7 +134,7 @@ class Trials {
  private:
   const VoxelSetByLeaves &first_, &second_;
   int most_;
-  Interrupter* interrupter_;
+  WithoutPercent interrupter_;
   std::map<Coord, int64_t> tried_;
 };
 
