@@ -180,9 +180,11 @@ void requireAsDefined(const Tracks& tracks, const LabelMap& before, const LabelM
       pair = pair->second < options.minFaces ? faces.erase(pair) : std::next(pair);
     return faces;
   };
-  const auto bondsA = contacts(before), bondsB = contacts(after);
+  const auto bondsA = contacts(before), bondsB = contacts(after), sharedA = contacts(a),
+             sharedB = contacts(b);
   const auto checkBonds = [&](const std::vector<TrackedBond>& bonds, const auto& own,
-                              const auto& there, const Linked& links, const std::string& lost) {
+                              const auto& shared, const auto& there, const Linked& links,
+                              const std::string& lost) {
     REQUIRE(bonds.size() == own.size());
     size_t n = 0;
     for (const auto& [pair, faces] : own) {
@@ -200,11 +202,14 @@ void requireAsDefined(const Tracks& tracks, const LabelMap& before, const LabelM
           for (const int32_t y : second)
             if (x != y && there.count(std::minmax(x, y))) fate = "kept";
       }
+      if (!shared.count(pair)) fate = "outside";
+      CHECK(bond.sharedFaces <= faces);
+      if (shared.count(pair)) CHECK(bond.sharedFaces == shared.at(pair));
       CHECK(toString(bond.fate) == fate);
     }
   };
-  checkBonds(tracks.bondsBefore, bondsA, bondsB, fromA, "broken");
-  checkBonds(tracks.bondsAfter, bondsB, bondsA, fromB, "new");
+  checkBonds(tracks.bondsBefore, bondsA, sharedA, sharedB, fromA, "broken");
+  checkBonds(tracks.bondsAfter, bondsB, sharedB, sharedA, fromB, "new");
 }
 
 /// Some of the grains are merged, dropped, halved, renumbered, and loose voxels are added.
@@ -317,7 +322,7 @@ TEST_CASE("track: as defined, on samples that were moved and edited", "[track]")
     CAPTURE(fate);
     CHECK(fates[fate] > 3);
   }
-  for (const char* fate : {"kept", "broken", "new", "inside", "unmatched"}) {
+  for (const char* fate : {"kept", "broken", "new", "inside", "unmatched", "outside"}) {
     CAPTURE(fate);
     CHECK(bonds[fate] > 0);
   }

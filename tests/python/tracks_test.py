@@ -37,7 +37,7 @@ def test_tracks_are_those_of_the_command(labels, command, tmp_path):
         for name in ("fate", "track", "voxels", "shared_voxels", "links", "partner", "overlap_voxels"):
             assert [row[name] for row in there] == [str(value) for value in grains[name]]
         there = rows(tmp_path / "bonds.csv", side)
-        for name in ("first", "second", "faces", "fate"):
+        for name in ("first", "second", "faces", "shared_faces", "fate"):
             assert [row[name] for row in there] == [str(value) for value in bonds[name]]
     there = rows(tmp_path / "links.csv")
     for name in ("before", "after", "voxels"):

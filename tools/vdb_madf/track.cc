@@ -41,8 +41,8 @@ void parse(Options& o) {
 
 constexpr GrainFate kGrainFates[] = {GrainFate::kept,     GrainFate::split,    GrainFate::merged,
                                      GrainFate::vanished, GrainFate::appeared, GrainFate::outside};
-constexpr BondFate kBondFates[] = {BondFate::kept, BondFate::broken, BondFate::created,
-                                   BondFate::inside, BondFate::unmatched};
+constexpr BondFate kBondFates[] = {BondFate::kept,   BondFate::broken,    BondFate::created,
+                                   BondFate::inside, BondFate::unmatched, BondFate::outside};
 
 template <typename Items, typename Fate>
 int64_t countOf(const Items& items, Fate fate) {
@@ -152,13 +152,13 @@ std::string linkTable(const Tracks& t) {
 
 std::string bondTable(const Tracks& t) {
   std::ostringstream csv;
-  csv << "side,first,second,faces,fate\n";
+  csv << "side,first,second,faces,shared_faces,fate\n";
   for (const auto& [side, bonds] :
        {std::pair<const char*, const std::vector<TrackedBond>&>{"before", t.bondsBefore},
         {"after", t.bondsAfter}})
     for (const TrackedBond& bond : bonds)
       csv << side << ',' << bond.first << ',' << bond.second << ',' << bond.faces << ','
-          << toString(bond.fate) << '\n';
+          << bond.sharedFaces << ',' << toString(bond.fate) << '\n';
   return csv.str();
 }
 

@@ -46,6 +46,7 @@ py::dict toDict(const std::vector<TrackedBond>& bonds) {
   dict["first"] = column<int32_t>(bonds, [](const B& b) { return b.first; });
   dict["second"] = column<int32_t>(bonds, [](const B& b) { return b.second; });
   dict["faces"] = column<int64_t>(bonds, [](const B& b) { return b.faces; });
+  dict["shared_faces"] = column<int64_t>(bonds, [](const B& b) { return b.sharedFaces; });
   dict["fate"] = texts(bonds, [](const B& b) { return toString(b.fate); });
   return dict;
 }

@@ -36,7 +36,8 @@ class Tracks:
     overlaps: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """Pairs that have voxels in common: `before`, `after`, `voxels`, `link`."""
     bonds_before: Dict[str, npt.NDArray[Any]] = field(repr=False)
-    """A row a bond: `first`, `second`, `faces`, `fate` ("kept", "broken", "inside", "unmatched")."""
+    """A row a bond: `first`, `second`, `faces`, `shared_faces` (in what both volumes show), `fate` ("kept",
+    "broken", "inside", "unmatched", "outside")."""
     bonds_after: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """The same after; "new" in the place of "broken"."""
 

@@ -144,7 +144,7 @@ void judge(std::vector<TrackedBond>& bonds, const Links& links, const std::set<P
            BondFate lost) {
   for (TrackedBond& bond : bonds) {
     const auto first = links.find(bond.first), second = links.find(bond.second);
-    if (first == links.end() || second == links.end()) continue;
+    if (bond.fate == BondFate::outside || first == links.end() || second == links.end()) continue;
     bond.fate = lost;
     for (const int32_t a : first->second) {
       if (bond.fate == lost && second->second.count(a)) bond.fate = BondFate::inside;
@@ -154,18 +154,29 @@ void judge(std::vector<TrackedBond>& bonds, const Links& links, const std::set<P
   }
 }
 
-std::vector<TrackedBond> bondsOf(const Int32Grid& labels, int64_t minFaces,
+/// \p shared: the same labels, as far as both volumes show them.
+std::vector<TrackedBond> bondsOf(const Int32Grid& labels, const Int32Grid& shared, int64_t minFaces,
                                  Interrupter* interrupter) {
+  std::map<Pair, int64_t> sharedFaces;
+  for (const detail::LabelContact& contact : detail::labelContacts(shared, interrupter))
+    sharedFaces[{contact.first, contact.second}] = contact.faces;
   std::vector<TrackedBond> bonds;
-  for (const detail::LabelContact& contact : detail::labelContacts(labels, interrupter))
-    if (contact.faces >= minFaces)
-      bonds.push_back({contact.first, contact.second, contact.faces, BondFate::unmatched});
+  for (const detail::LabelContact& contact : detail::labelContacts(labels, interrupter)) {
+    if (contact.faces < minFaces) continue;
+    const auto here = sharedFaces.find({contact.first, contact.second});
+    const int64_t faces = here == sharedFaces.end() ? 0 : here->second;
+    bonds.push_back(
+        {contact.first, contact.second, contact.faces, faces,
+         faces < std::max<int64_t>(minFaces, 1) ? BondFate::outside : BondFate::unmatched});
+  }
   return bonds;
 }
 
+/// Of those in what both volumes show.
 std::set<Pair> pairsOf(const std::vector<TrackedBond>& bonds) {
   std::set<Pair> pairs;
-  for (const TrackedBond& bond : bonds) pairs.emplace(bond.first, bond.second);
+  for (const TrackedBond& bond : bonds)
+    if (bond.fate != BondFate::outside) pairs.emplace(bond.first, bond.second);
   return pairs;
 }
 
@@ -206,9 +217,11 @@ const char* toString(BondFate fate) {
     case BondFate::inside:
       return "inside";
     case BondFate::unmatched:
+      return "unmatched";
+    case BondFate::outside:
       break;
   }
-  return "unmatched";
+  return "outside";
 }
 
 Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions& options,
@@ -220,14 +233,11 @@ Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions
                                                    detail::labelledVoxels(after), options.maxShift,
                                                    interrupter);
   Sides sides{grainsOf(before, interrupter), grainsOf(after, interrupter), {}, {}};
-  std::vector<Overlap> overlaps;
-  {
-    const auto first =
-        detail::movedLabels(before, tracks.shift, shownBox(after, Coord(0)), interrupter);
-    const auto second =
-        detail::movedLabels(after, Coord(0), shownBox(before, tracks.shift), interrupter);
-    overlaps = compare(*first, *second, interrupter).overlaps;
-  }
+  const auto first =
+      detail::movedLabels(before, tracks.shift, shownBox(after, Coord(0)), interrupter);
+  const auto second =
+      detail::movedLabels(after, Coord(0), shownBox(before, tracks.shift), interrupter);
+  const std::vector<Overlap> overlaps = compare(*first, *second, interrupter).overlaps;
   for (const Overlap& overlap : overlaps) {
     addOverlap(sides.before, overlap.truth, overlap.test, overlap.voxels);
     addOverlap(sides.after, overlap.test, overlap.truth, overlap.voxels);
@@ -245,10 +255,12 @@ Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions
   tracks.lastTrack = number(sides, tracks.overlaps, lastTrackOf(before));
   tracks.before = listed(sides.before);
   tracks.after = listed(sides.after);
-  tracks.bondsBefore = bondsOf(before, options.minFaces, interrupter);
-  tracks.bondsAfter = bondsOf(after, options.minFaces, interrupter);
-  judge(tracks.bondsBefore, sides.fromBefore, pairsOf(tracks.bondsAfter), BondFate::broken);
-  judge(tracks.bondsAfter, sides.fromAfter, pairsOf(tracks.bondsBefore), BondFate::created);
+  tracks.bondsBefore = bondsOf(before, *first, options.minFaces, interrupter);
+  tracks.bondsAfter = bondsOf(after, *second, options.minFaces, interrupter);
+  const std::set<Pair> pairsBefore = pairsOf(tracks.bondsBefore),
+                       pairsAfter = pairsOf(tracks.bondsAfter);
+  judge(tracks.bondsBefore, sides.fromBefore, pairsAfter, BondFate::broken);
+  judge(tracks.bondsAfter, sides.fromAfter, pairsBefore, BondFate::created);
   return tracks;
 }
 

@@ -35,13 +35,14 @@ enum class GrainFate {
   outside    ///< no voxel lies in what both volumes show
 };
 
-/// What becomes of a bond, or where it comes from.
+/// What becomes of a bond, or where it comes from; by the faces in what both volumes show.
 enum class BondFate {
-  kept,      ///< a grain linked with the one end is bonded to another that is linked with the other
-  broken,    ///< before: both ends are linked, but not so
-  created,   ///< after: both ends are linked, but not so
-  inside,    ///< ... and a grain is linked with both ends
-  unmatched  ///< an end is linked with none
+  kept,     ///< a grain linked with the one end is bonded to another that is linked with the other
+  broken,   ///< before: both ends are linked, but not so
+  created,  ///< after: both ends are linked, but not so
+  inside,   ///< ... and a grain is linked with both ends
+  unmatched,  ///< an end is linked with none
+  outside     ///< fewer than minFaces (or none) of its faces lie in what both volumes show
 };
 
 const char* toString(GrainFate fate);  ///< "kept", ..., "new" for appeared
@@ -67,7 +68,8 @@ struct GrainOverlap {
 
 struct TrackedBond {
   int32_t first = 0, second = 0;
-  int64_t faces = 0;
+  int64_t faces = 0;        ///< all
+  int64_t sharedFaces = 0;  ///< in what both volumes show
   BondFate fate = BondFate::unmatched;
 };
 
