@@ -192,9 +192,9 @@ def remerge():
 
 
 def edit():
-    yield "edit keep_manifold.vdb edited.vdb --merge 1,2 --split 3 --min-voxels 20 --drop-at-faces --json edited.json"
-    yield "edit edited.vdb renumbered.tif --renumber --max-diameter 1mm"
-    yield "edit sintered32.truth.tif edited_image.vdb --drop 2 --keep 1,3 --quiet"
+    yield "edit keep_manifold.vdb edited.vdb --merge 1,2 --split 1 --min-voxels 20 --drop-at-faces --json edited.json"
+    yield "edit edited.vdb renumbered.tif --renumber --max-voxels 5000"
+    yield "edit sintered32.truth.tif edited_image.vdb --renumber --drop 1 --quiet"
 
 
 def sweep():

@@ -23,7 +23,7 @@ namespace vdb_madf::tools {
 namespace {
 
 constexpr char kEditsFile[] = "--edits";
-constexpr uint64_t kMostBytes = uint64_t(1) << 28;  // of a file of edits
+constexpr uint64_t kMostBytes = uint64_t(1) << 24;  // of a file of edits
 
 struct Options {
   InputOptions input;

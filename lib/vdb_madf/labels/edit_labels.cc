@@ -220,7 +220,6 @@ class Editor {
       if (parts[i].voxelCount > parts[keeper].voxelCount) keeper = i;
     for (size_t i = 0; i < parts.size(); ++i)
       if (parts[i].number == number) keeper = i;
-    std::set<int32_t> taken;
     std::vector<int32_t> numbers(parts.size(), 0);
     numbers[keeper] = number;
     int32_t last = std::max(parts_->largestNumber(), grains_.rbegin()->first);

@@ -95,7 +95,7 @@ struct Tracks {
 /// give the number of the grain before to the grain after, unless either has been used; what is left
 /// gets numbers above all of before, in ascending order; if before are tracked labels, above all that
 /// their series has had.
-/// Deterministic. Memory: a copy of either grid at most, and per pair of grains that meet.
+/// Deterministic. Memory: a copy of each grid, and per pair of grains that meet.
 /// @throw InvalidInput if an option is out of range, or a limit of leaf_index.h is exceeded;
 ///   Interrupted.
 Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions& options = {},

@@ -4,7 +4,6 @@
 #include "vdb_madf/labels/detail/rigid_shift.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <map>
 #include <tuple>
@@ -12,7 +11,6 @@
 
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
-#include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 
