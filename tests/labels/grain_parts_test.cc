@@ -444,6 +444,15 @@ TEST_CASE("grain_parts: what no manifolds explain is refused", "[grain_parts]") 
   }
 }
 
+TEST_CASE("grain_parts: manifolds that were edited have no graph", "[grain_parts]") {
+  const Sample s = largeSample();
+  const Int32Grid& manifold = *s.segmentation.manifold;
+  REQUIRE(storedGraph(manifold));
+  CHECK(storedGraph(*editLabels(manifold, {}).labels));
+  CHECK_FALSE(storedGraph(*editLabels(manifold, edits({"merge 1 2"})).labels));
+  CHECK(storedGraph(manifold));
+}
+
 TEST_CASE("grain_parts: tiles and threads do not matter", "[grain_parts]") {
   const Sample s = largeSample();
   const auto run = [&](const Int32Grid& labels, int threads) {

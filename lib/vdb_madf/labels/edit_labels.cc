@@ -24,6 +24,7 @@
 #include "vdb_madf/labels/detail/relabelled.h"
 #include "vdb_madf/labels/label_sizes.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
+#include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/method/segmentation_metadata.h"
 
 namespace vdb_madf {
@@ -265,12 +266,14 @@ class Editor {
 
 void describe(EditedLabels& edited) {
   openvdb::GridBase& grid = *edited.labels;
+  if (edited.results.empty()) return;
+  removeGraph(grid);  // of manifolds, should these have been edited themselves
   updateCounts(grid, edited.grains, edited.voxels != edited.voxelsBefore);
   const auto stored = grid.getMetadata<openvdb::StringMetadata>(kEditsKey);
   std::string text = stored ? stored->value() : "";
   for (const EditResult& result : edited.results)
     text += (text.empty() ? "" : "; ") + toString(result.edit);
-  if (!text.empty()) grid.insertMeta(kEditsKey, openvdb::StringMetadata(text));
+  grid.insertMeta(kEditsKey, openvdb::StringMetadata(text));
 }
 
 }  // namespace

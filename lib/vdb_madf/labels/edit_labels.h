@@ -44,7 +44,8 @@ struct EditedLabels {
 /// outside the box of the grains that are left.
 ///
 /// Metadata are those of the labels; kEditsKey tells the edits after those that were there, counts of
-/// a segmentation are brought up to date (method/segmentation_metadata.h: updateCounts()).
+/// a segmentation are brought up to date (method/segmentation_metadata.h: updateCounts()), and a graph
+/// of manifolds goes, for it is not that of edited ones.
 /// @param manifold with the graph of the segmentation that the labels come from (`segment` with
 ///   keepManifold); for split alone
 /// @throw InvalidInput that names the edit: a grain that is not there, a diameter where the size of

@@ -22,6 +22,7 @@
 #include "vdb_madf/labels/detail/relabelled.h"
 #include "vdb_madf/labels/detail/rigid_shift.h"
 #include "vdb_madf/labels/label_sizes.h"
+#include "vdb_madf/method/graph_metadata.h"
 
 namespace vdb_madf {
 
@@ -272,6 +273,7 @@ Int32Grid::Ptr trackedLabels(const Int32Grid& after, const Tracks& tracks,
   const Coord& s = tracks.shift;
   const std::string shift =
       std::to_string(s.x()) + "," + std::to_string(s.y()) + "," + std::to_string(s.z());
+  removeGraph(*labels);  // of manifolds, should these have been tracked themselves
   labels->insertMeta(kTrackKey, openvdb::StringMetadata("shift " + shift));
   labels->insertMeta(kLastTrackKey, openvdb::Int64Metadata(tracks.lastTrack));
   return labels;
