@@ -11,6 +11,7 @@
 
 #include "support/temporary_folder.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/read_text.h"
 
 using namespace vdb_madf;
 using Catch::Contains;
@@ -36,6 +37,18 @@ TEST_CASE("input_file: reads at any place, and no further than the end", "[input
   REQUIRE_THROWS_AS(file.read(uint64_t(-1), text.data(), 3), IoError);
   std::filesystem::resize_file(path, 5);
   REQUIRE_THROWS_WITH(file.read(4, text.data(), 3), Contains("became shorter"));
+}
+
+TEST_CASE("input_file: a text is read whole, unless it is too long", "[input_file]") {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("in");
+  writeBytes(path, "0123456789");
+  CHECK(readText(path, 10) == "0123456789");
+  CHECK_THROWS_WITH(readText(path, 9),
+                    path + ": has 10 bytes, and a text of at most 9 is expected");
+  writeBytes(path, "");
+  CHECK(readText(path, 0).empty());
+  CHECK_THROWS_AS(readText(folder.file("missing"), 9), IoError);
 }
 
 TEST_CASE("input_file: opens nothing but regular files, and does not wait for a pipe",

@@ -100,6 +100,27 @@ TEST_CASE("segmentation_metadata: every option and count has its key", "[segment
         }
 }
 
+TEST_CASE("segmentation_metadata: how manifolds were merged is read again",
+          "[segmentation_metadata]") {
+  const auto grid = Int32Grid::create();
+  CHECK_FALSE(storedMerging(*grid));
+  for (const MergeMode mode : {MergeMode::both, MergeMode::angle, MergeMode::neck})
+    for (const Adjacency adjacency : {Adjacency::manifold, Adjacency::cell}) {
+      describeMerging(*grid, {-0.1234567890123, mode, adjacency, 12}, 6, 77);
+      const auto merging = storedMerging(*grid);
+      REQUIRE(merging);
+      CHECK(merging->options.theta == -0.1234567890123);
+      CHECK(merging->options.mode == mode);
+      CHECK(merging->options.adjacency == adjacency);
+      CHECK(merging->options.delta == 12);
+      CHECK(merging->tidy == 6);
+    }
+  grid->insertMeta("madf_adjacency", StringMetadata("face"));
+  CHECK_FALSE(storedMerging(*grid));
+  describeOwnMerging(*grid, 2, 5);
+  CHECK_FALSE(storedMerging(*grid));
+}
+
 TEST_CASE("segmentation_metadata: another merging changes six values", "[segmentation_metadata]") {
   const auto grid = Int32Grid::create();
   grid->insertMeta("madf_source", StringMetadata("scan.tif"));

@@ -75,8 +75,8 @@ def test_scripts_of_the_readme(number, folder):
     assert printed or number == 0
 
 
-def test_there_are_five_and_a_first():
-    assert len(SCRIPTS) == 6
+def test_there_are_six_and_a_first():
+    assert len(SCRIPTS) == 7
 
 
 def test_the_tutorial(folder):

@@ -13,7 +13,7 @@ from same_bytes_refusals import DAMAGED, Edit
 
 IMAGES = ("tif", "mhd", "raw", "mha", "nrrd", "npy")  # an .mhd would not replace the .raw of another
 TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
-VERBS = ("generate", "convert", "segment", "remerge", "sweep", "measure", "collect", "compare", "render", "export", "info")
+VERBS = ("generate", "convert", "segment", "remerge", "edit", "sweep", "measure", "collect", "compare", "track", "render", "export", "info")
 KINDS = {"spheres": "--count 6 --radius 6:9", "pack": "--radius 4:8", "snow": "--length 12",
          "sintered": "--count 6 --radius 7:9", "particles": "--count 6 --radius 7:9",
          "bed": "--radius 7:9 --rounds 2"}
@@ -191,6 +191,12 @@ def remerge():
     yield "remerge none.vdb remerged_none.vdb"
 
 
+def edit():
+    yield "edit keep_manifold.vdb edited.vdb --merge 1,2 --split 1 --min-voxels 20 --drop-at-faces --json edited.json"
+    yield "edit edited.vdb renumbered.tif --renumber --max-voxels 5000"
+    yield "edit sintered32.truth.tif edited_image.vdb --renumber --drop 1 --quiet"
+
+
 def sweep():
     yield "sweep snow.vdb sweep.csv --plot sweep.svg"
     yield "sweep snow.vdb sweep_gamma.csv --gamma 0,5 --theta -1:-0.5:0.25,-0.1 --merge angle --plot sweep_gamma.svg"
@@ -245,6 +251,11 @@ def compare():
     yield "compare large_labels.vdb threads1.vdb --json large_compared.json --verbose"
     yield "compare labels.vdb tiles.vdb --confusion tiles.csv"
     yield "compare open_0_both_manifold.vdb domain.vdb"
+
+
+def track():
+    yield "track all_snow_0.vdb all_snow_20.vdb tracked.vdb --grains tracked.csv --links links.csv --bonds linked.csv --json tracked.json"
+    yield "track keep_manifold.vdb edited.vdb tracked.tif --shift 1,0,-1 --share 0.3 --min-faces 4"
 
 
 def render():
@@ -382,10 +393,12 @@ def all_runs(images, grids, with_scan):
     yield from convert(images, grids)
     yield from segment()
     yield from remerge()
+    yield from edit()
     yield from sweep()
     yield from measure()
     yield from collect()
     yield from compare()
+    yield from track()
     yield from render()
     yield from export()
     yield from info(images, grids)

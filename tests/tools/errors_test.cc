@@ -137,6 +137,18 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"remerge in.vdb out.vdb --gamma 2", "--gamma"},
       {"remerge in.vdb out.vdb --delta -1", "--delta"},
       {"remerge in.vdb out.vdb --tidy x", "--tidy"},
+      {"edit in.vdb out.vdb", "--merge"},
+      {"edit in.vdb out.jpg --renumber", "out.jpg"},
+      {"edit in.vdb in.vdb --renumber", "in.vdb"},
+      {"edit in.vdb out.vdb --merge 12", "--merge 12: merge takes 2 or more"},
+      {"edit in.vdb out.vdb --merge 12,17,12", "grain 12 is named twice"},
+      {"edit in.vdb out.vdb --split 1,2", "--split 1,2: split takes one grain"},
+      {"edit in.vdb out.vdb --drop 0", "grain 0 cannot be"},
+      {"edit in.vdb out.vdb --keep x", "'x'"},
+      {"edit in.vdb out.vdb --min-voxels 0.5", "--min-voxels"},
+      {"edit in.vdb out.vdb --max-diameter 100", "--max-diameter"},
+      {"edit in.vdb out.vdb --edits out.vdb", "out.vdb"},
+      {"edit - out.vdb --edits -", "--edits -"},
       {"sweep in.vdb out.txt", "out.txt"},
       {"sweep in.vdb out.csv --plot out.csv", "out.csv"},
       {"sweep in.vdb out.csv --theta -1:0", "--theta"},
@@ -161,6 +173,17 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"compare in.vdb other.vdb --json other.vdb", "other.vdb"},
       {"compare in.vdb other.vdb --grains in.vdb", "in.vdb"},
       {"compare in.vdb other.vdb --json a --confusion a", "a"},
+      {"track in.vdb", "AFTER"},
+      {"track in.vdb other.vdb out.jpg", "out.jpg"},
+      {"track in.vdb other.vdb other.vdb", "other.vdb"},
+      {"track in.vdb other.vdb --grains a.csv --bonds a.csv", "a.csv"},
+      {"track in.vdb other.vdb --shift 1,2", "X,Y,Z"},
+      {"track in.vdb other.vdb --shift 1,2,99999", "--shift"},
+      {"track in.vdb other.vdb --shift 1,2,3 --max-shift 5", "--max-shift"},
+      {"track in.vdb other.vdb --max-shift 257", "--max-shift"},
+      {"track in.vdb other.vdb --share 0", "--share"},
+      {"track in.vdb other.vdb --share 1.1", "--share"},
+      {"track in.vdb other.vdb --min-faces -1", "--min-faces"},
       {"export in.vdb out.ply --bonds b.csv", "--bonds"},
       {"export in.vdb out.txt --as clumps --cover c.txt", "c.txt"},
       {"export in.vdb out.csv --as clumps --cover c.csv --bonds c.csv", "c.csv"},
@@ -243,11 +266,13 @@ TEST_CASE("cli: a file that is missing or none of ours is named", "[cli]") {
     refuses(bench, kFailed, "info " + file, {file});
     refuses(bench, kFailed, "render " + file + " out.png", {file});
     refuses(bench, kFailed, "remerge " + file + " out.vdb", {file});
+    refuses(bench, kFailed, "edit " + file + " out.vdb --renumber", {file});
   }
   for (const std::string file : {"missing.vdb", "folder.vdb"})
     refuses(bench, kFailed, "remerge " + file + " out.vdb", {file});
   refuses(bench, kFailed, "info garbage.vdb", {"not a VDB file"});
   refuses(bench, kFailed, "compare missing.vdb empty.vdb", {"missing.vdb"});
+  refuses(bench, kFailed, "track missing.vdb empty.vdb", {"missing.vdb"});
   bench.write("s.raw", std::string(64, '\1'));
   refuses(bench, kFailed, "segment s.raw out.vdb", {"s.raw", "--dims"});
   for (const std::string layout :
@@ -283,6 +308,8 @@ TEST_CASE("cli: a grid has to be there, usable and the only one", "[cli]") {
   refuses(bench, kFailed, "segment g.vdb o.vdb", {"g.vdb", "--grid", "grain", "power", "manifold"});
   refuses(bench, kFailed, "compare s.vdb g.vdb --truth-grid snow", {"s.vdb", "'snow'"});
   refuses(bench, kFailed, "remerge s.vdb o.vdb", {"s.vdb", "segment again with --keep manifold"});
+  refuses(bench, kFailed, "edit mask.vdb o.vdb --renumber", {"mask.vdb", "labels (int32)"});
+  refuses(bench, kFailed, "edit s.vdb o.vdb --split 1", {"s.vdb", "with --keep manifold"});
   bench.mustRun("convert s.vdb s.tif --grid truth");
   refuses(bench, kFailed, "segment s.tif o.vdb --grid truth", {"s.tif", "--grid"});
   refuses(bench, kFailed, "segment s.tif o.vdb --dataset truth", {"s.tif", "--dataset"});

@@ -190,6 +190,21 @@ void Verb::flag(const std::string& name, bool& value, const std::string& help) {
   app_->add_flag(name, value, help);
 }
 
+Option Verb::repeatedOption(const std::string& name, GivenOptions& given, const std::string& help) {
+  return Option(
+      app_->add_option_function<std::string>(
+              name, [&given, name](const std::string& value) { given.emplace_back(name, value); },
+              help)
+          ->trigger_on_parse(),
+      choices_);
+}
+
+void Verb::repeatedFlag(const std::string& name, GivenOptions& given, const std::string& help) {
+  app_->add_flag_function(
+          name, [&given, name](int64_t) { given.emplace_back(name, ""); }, help)
+      ->trigger_on_parse();
+}
+
 void Verb::footer(const std::string& text) {
   app_->footer(text);
 }

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command_words.h"
@@ -23,6 +24,9 @@ namespace vdb_madf::tools {
 
 /// Values that are offered where words are completed.
 using Choices = std::map<const CLI::Option*, std::vector<std::string>>;
+
+/// Names and values of options.
+using GivenOptions = std::vector<std::pair<std::string, std::string>>;
 
 /// What more there is to say of an option, after Verb::option(). Its calls can be chained.
 class Option {
@@ -66,6 +70,10 @@ class Verb {
   /// One or more values.
   Option option(const std::string& name, std::vector<std::string>& values, const std::string& help);
   void flag(const std::string& name, bool& value, const std::string& help);
+  /// An option or a flag that may be given again and again: adds its name, as it stands here, and its
+  /// value to a list that several share, in the order in which they are given.
+  Option repeatedOption(const std::string& name, GivenOptions& given, const std::string& help);
+  void repeatedFlag(const std::string& name, GivenOptions& given, const std::string& help);
   /// Text below the help.
   void footer(const std::string& text);
   /// Called when the verb was given and its options have their values; may throw WrongUsage.

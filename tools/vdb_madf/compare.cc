@@ -3,9 +3,6 @@
 
 #include "vdb_madf/labels/compare.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <sstream>
@@ -13,10 +10,9 @@
 #include "command.h"
 #include "input_options.h"
 #include "json_file.h"
-#include "outputs.h"
+#include "label_pair.h"
 #include "text_file.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/grids/grid_metadata.h"
 
 namespace vdb_madf::tools {
@@ -110,30 +106,12 @@ std::string text(const Domain& domain) {
   return text.str();
 }
 
-/// Voxels of equal index are compared, so they must be of equal size, where both are known.
-void checkSameVoxels(const Options& o, const Int32Grid& truth, const Int32Grid& test) {
-  constexpr double kTolerance = 1e-3;  // as for the spacings of an image
-  const auto a = storedVoxelSize(truth), b = storedVoxelSize(test);
-  if (!a || !b) return;
-  std::array<double, 3> ratios;
-  for (size_t axis = 0; axis < 3; ++axis) ratios[axis] = b->edges()[axis] / a->edges()[axis];
-  if (std::all_of(ratios.begin(), ratios.end(),
-                  [](double ratio) { return std::abs(ratio - 1) <= kTolerance; }))
-    return;
-  std::ostringstream text;
-  text.precision(4);
-  text << o.test.path << ": its voxels are " << ratios[0];
-  if (!a->isCube() || !b->isCube()) text << ", " << ratios[1] << ", " << ratios[2];
-  text << " times as long as those of " << o.truth.path << ": give labels of the same voxels";
-  throw InvalidInput(text.str());
-}
-
 void run(const Options& o, const Common& common) {
   JsonFile jsonFile(o.json);
   TextFile grainFile(o.grains), confusionFile(o.confusion);
   const Int32Grid::Ptr truth = loadLabels(o.truth, "--truth-grid", common.progress);
   const Int32Grid::Ptr test = loadLabels(o.test, "--test-grid", common.progress);
-  checkSameVoxels(o, *truth, *test);
+  checkSameVoxels(o.truth, *truth, o.test, *test);
   const Comparison comparison = compare(*truth, *test, common.progress);
   if (comparison.commonVoxels == 0 && comparison.truthGrains + comparison.testGrains > 0)
     throw InvalidInput(o.test.path + ": no voxel is labelled both here and in " + o.truth.path +
@@ -170,19 +148,7 @@ void addCompare(Verb command, Common& common, Action& action) {
       .typeName("FILE");
   o->truth.addRaw(verb);
   verb.onParsed([o, &common, &action] {
-    for (InputOptions* input : {&o->truth, &o->test})
-      input->outputs = {o->json, o->grains, o->confusion};
-    o->truth.parse();
-    o->test.parse();
-    // --dims describes whichever of the two is RAW.
-    for (InputOptions* input : {&o->truth, &o->test}) {
-      input->sampleType = o->truth.sampleType;
-      input->bigEndian = o->truth.bigEndian;
-      input->bytesToSkip = o->truth.bytesToSkip;
-    }
-    o->test.size = o->truth.size;
-    for (InputOptions* input : {&o->truth, &o->test})
-      if (!hasRawEnding(input->path) && !isStandardInput(input->path)) input->size.reset();
+    parsePair(o->truth, o->test, {o->json, o->grains, o->confusion});
     action = [o, &common] { run(*o, common); };
   });
 }

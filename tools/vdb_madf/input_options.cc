@@ -225,9 +225,9 @@ void checkNoGrid(const InputOptions& input, const std::string& gridOption) {
 }
 
 openvdb::GridBase::Ptr chooseGrid(const InputOptions& input,
-                                  const std::vector<openvdb::GridBase::Ptr>& grids) {
+                                  const std::vector<openvdb::GridBase::Ptr>& grids, GridUse use) {
   return withGridOption(input, "--grid", [&] {
-    return vdb_madf::chooseGrid(grids, input.path, GridUse::values, input.gridName);
+    return vdb_madf::chooseGrid(grids, input.path, use, input.gridName);
   });
 }
 

@@ -69,7 +69,8 @@ void checkNoGrid(const InputOptions& input, const std::string& gridOption);
 
 // The functions of volumes/volume.h; messages name the options.
 openvdb::GridBase::Ptr chooseGrid(const InputOptions& input,
-                                  const std::vector<openvdb::GridBase::Ptr>& grids);
+                                  const std::vector<openvdb::GridBase::Ptr>& grids,
+                                  GridUse use = GridUse::values);
 MaskGrid::Ptr loadObject(const InputOptions& input, Progress* progress);
 MaskGrid::Ptr loadObject(const InputOptions& input, const VolumeOptions& options,
                          Progress* progress);

@@ -98,10 +98,12 @@ int run(int argc, char** argv) {
   addConvert(command, common, action);
   addSegment(command, common, action);
   addRemerge(command, common, action);
+  addEdit(command, common, action);
   addSweep(command, common, action);
   addMeasure(command, common, action);
   addCollect(command, common, action);
   addCompare(command, common, action);
+  addTrack(command, common, action);
   addRender(command, common, action);
   addExport(command, common, action);
   addInfo(command, common, action);

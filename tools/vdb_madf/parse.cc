@@ -93,6 +93,14 @@ CoordBBox parseBox(const std::string& text, const std::string& option) {
                    std::to_string(kMaxImageSide) + ")");
 }
 
+Coord parseShift(const std::string& text, const std::string& option) {
+  const std::optional<Coord> shift = parseCoord(text, ',');
+  if (!shift || !CoordBBox(Coord(-kMaxExtent), Coord(kMaxExtent)).isInside(*shift))
+    throw WrongUsage(option + " " + text + ": write X,Y,Z, whole voxels within +-" +
+                     std::to_string(kMaxExtent) + ", for example 3,-2,0");
+  return *shift;
+}
+
 RegionOptions parseRoi(const std::string& text) {
   RegionOptions region;
   const std::vector<std::string> parts = split(text, ':');

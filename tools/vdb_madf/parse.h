@@ -23,6 +23,8 @@ double parseNumber(const std::string& text, const std::string& option);
 Coord parseDims(const std::string& text, const std::string& option);
 /// "x0,y0,z0:x1,y1,z1", both corners inclusive.
 CoordBBox parseBox(const std::string& text, const std::string& option);
+/// "x,y,z" in whole voxels, within +-kMaxExtent.
+Coord parseShift(const std::string& text, const std::string& option);
 /// --roi: "cylinder", "cylinder:z:CX,CY:RADIUS" with as many parts as one likes, or a file.
 RegionOptions parseRoi(const std::string& text);
 /// --voxel-size and others: as voxelSizeFromText().

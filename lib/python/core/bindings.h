@@ -75,6 +75,7 @@ void bindVolumes(py::module_& m);
 void bindMethod(py::module_& m);
 void bindMeasures(py::module_& m);
 void bindLabels(py::module_& m);
+void bindTracks(py::module_& m);
 void bindFiles(py::module_& m);
 void bindSamples(py::module_& m);
 

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include <map>
-
 #include "bindings.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/labels/edit_labels.h"
 #include "vdb_madf/labels/grain_colors.h"
+#include "vdb_madf/labels/label_digest.h"
+#include "vdb_madf/labels/label_sizes.h"
 #include "vdb_madf/labels/reduced_labels.h"
 #include "vdb_madf/labels/select_grains.h"
 #include "vdb_madf/shapes/grain_mesh.h"
@@ -15,27 +16,9 @@ namespace vdb_madf::python {
 namespace {
 
 /// Labels above 0, ascending, with their numbers of voxels.
-std::map<int32_t, int64_t> voxelsOfLabels(const Int32Grid& labels, Interrupter* interrupter) {
-  std::map<int32_t, int64_t> voxels;
-  auto last = voxels.end();  // mostly that of the voxel before
-  const auto add = [&](int32_t label, int64_t count) {
-    if (label <= 0) return;
-    if (last == voxels.end() || last->first != label) last = voxels.try_emplace(label, 0).first;
-    last->second += count;
-  };
-  for (auto leaf = labels.tree().cbeginLeaf(); leaf; ++leaf) {
-    if (interrupter->wasInterrupted(-1)) throw Interrupted();
-    for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) add(*voxel, 1);
-  }
-  auto tile = labels.tree().cbeginValueOn();
-  tile.setMaxDepth(tile.getLeafDepth() - 1);
-  for (; tile; ++tile) add(*tile, int64_t(tile.getVoxelCount()));
-  return voxels;
-}
-
 py::tuple labelSizes(const GridPtr& labels, const Call& call) {
   const auto voxels = withoutLock(call, [&](Interrupter* interrupter) {
-    return voxelsOfLabels(asLabels(*labels), interrupter);
+    return vdb_madf::labelSizes(asLabels(*labels), interrupter);
   });
   return py::make_tuple(column<int32_t>(voxels, [](const auto& item) { return item.first; }),
                         column<int64_t>(voxels, [](const auto& item) { return item.second; }));
@@ -65,6 +48,20 @@ GridPtr reduce(const GridPtr& labels, int factor, const Call& call) {
   return withoutLock(call, [&](Interrupter* interrupter) -> GridPtr {
     return reduceLabels(asLabels(*labels), factor, interrupter);
   });
+}
+
+/// @param edits a line an edit
+GridPtr edit(const GridPtr& labels, const std::string& edits,
+             const std::optional<GridPtr>& manifold, const Call& call) {
+  const Int32Grid* manifolds = manifold ? &asLabels(**manifold) : nullptr;
+  return withoutLock(call, [&](Interrupter* interrupter) -> GridPtr {
+    return editLabels(asLabels(*labels), parseEdits(edits), manifolds, interrupter).labels;
+  });
+}
+
+std::string digest(const GridPtr& labels, const Call& call) {
+  return withoutLock(
+      call, [&](Interrupter* interrupter) { return labelDigest(asLabels(*labels), interrupter); });
 }
 
 py::tuple colors(const GridPtr& labels, const Call& call) {
@@ -136,6 +133,8 @@ void bindLabels(py::module_& m) {
   m.def("box_of_label", boxOfLabel, py::arg("labels"), py::arg("label"));
   m.def("select", select, py::arg("labels"), py::arg("ids"), py::arg("call"));
   m.def("reduce", reduce, py::arg("labels"), py::arg("factor"), py::arg("call"));
+  m.def("edit", edit, py::arg("labels"), py::arg("edits"), py::arg("manifold"), py::arg("call"));
+  m.def("digest", digest, py::arg("labels"), py::arg("call"));
   m.def("colors", colors, py::arg("labels"), py::arg("call"));
   m.def(
       "reduction_for_triangles",

@@ -98,6 +98,7 @@ PYBIND11_MODULE(_core, m) {
   bindMethod(m);
   bindMeasures(m);
   bindLabels(m);
+  bindTracks(m);
   bindFiles(m);
   bindSamples(m);
 }

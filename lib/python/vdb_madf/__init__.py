@@ -20,7 +20,8 @@ from ._measurements import Measurements, measure
 from ._mesh import Mesh
 from ._samples import generate
 from ._segmentation import PAPER, Segmentation, segment
+from ._tracks import Tracks, track
 
 __all__ = ["ArrayLike3D", "Comparison", "Cylinder", "InvalidInput", "IoError", "Labels", "Mask",
            "Measurements", "Mesh", "NotEnoughMemory", "PAPER", "Progress", "Segmentation", "Source",
-           "__version__", "compare", "generate", "measure", "reads_hdf5", "segment"]
+           "Tracks", "__version__", "compare", "generate", "measure", "reads_hdf5", "segment", "track"]

@@ -112,6 +112,36 @@ class Labels(Volume):
         """All other grains; their labels stay."""
         return self.keep(np.setdiff1d(self.ids, np.asarray(ids)))
 
+    def edit(self, edits: Union[str, Sequence[str]], *, manifold: Optional["Labels"] = None,
+             progress: Progress = None, threads: int = 0) -> "Labels":
+        """Other grains, as `vdb_madf edit` makes them: "merge 12 17" or a list of such edits, done one after
+        the other. All grains that none of them concerns keep their voxels and labels.
+
+        - "merge A B ...": one grain, of the first label; "split A": undoes it
+        - "drop A B ...", "keep A B ...", "drop-at-faces" (of the volume or its region)
+        - "min-voxels N", "max-voxels N", "min-diameter 100um", "max-diameter 1mm" (of equal volume)
+        - "renumber": 1, 2, 3 ... in the order of the labels
+
+        manifold: what the grains are made of, for "split": `Segmentation.manifold`, or
+        Labels(path, grid="manifold") of a file."""
+        text = edits if isinstance(edits, str) else "\n".join(edits)
+        with calling(progress, threads) as call:
+            grid = _core.edit(self._grid, text, None if manifold is None else manifold._grid, call)
+        return Labels._of(grid)
+
+    def merge(self, groups: Sequence[_Ids]) -> "Labels":
+        """Each group of grains, such as a pair, becomes one, with the label that comes first."""
+        return self.edit(["merge " + " ".join(str(int(i)) for i in group) for group in groups])
+
+    def relabel(self) -> "Labels":
+        """The same grains as 1, 2, 3 ... in the order of their labels."""
+        return self.edit("renumber")
+
+    def digest(self) -> str:
+        """A checksum of the places and labels of the grains, `labels_digest` of the command's sample.json:
+        equal labels have the same one, whatever file or array they come from."""
+        return _core.digest(self._grid, _core.Call(None, 0))
+
     def reduce(self, factor: int) -> "Labels":
         """The volume smaller by a whole factor: each voxel has the most frequent label of its own."""
         return Labels._of(_core.reduce(self._grid, factor, _core.Call(None, 0)))

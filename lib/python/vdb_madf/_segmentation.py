@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Dict, Optional, Sequence, Union
 
 import numpy.typing as npt
@@ -67,6 +67,14 @@ class Segmentation:
         counts["grains"] = labels.metadata["madf_grains"]
         return Segmentation(labels, counts, {}, {**self.options, **options}, self.graph, self.manifold,
                             self.distance_squared, self.power, self.balls)
+
+    def edit(self, edits: Union[str, Sequence[str]], *, progress: Progress = None,
+             threads: int = 0) -> "Segmentation":
+        """Edited labels, as of Labels.edit(), with the kept manifolds to split grains by."""
+        labels = self.labels.edit(edits, manifold=self.manifold, progress=progress, threads=threads)
+        counts = {name: count for name, count in self.counts.items() if name not in _FLAWS}
+        counts["grains"] = labels.metadata["madf_grains"]
+        return replace(self, labels=labels, counts=counts, seconds={})
 
     def sweep(self, theta: Union[Sequence[float], npt.NDArray[Any]],
               merge: Union[str, Sequence[str], None] = None, delta: Union[int, Sequence[int], None] = None,

@@ -25,6 +25,19 @@ void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int t
 /// The same for a merging of one's own: `madf_merge` is "own"; theta, adjacency and delta go.
 void describeOwnMerging(openvdb::GridBase& grid, int tidy, int64_t grains);
 
+/// How manifolds were merged.
+struct StoredMerging {
+  MergeOptions options;
+  int tidy = 0;  ///< rounds
+};
+/// What describeMerging() wrote; absent: a grid does not say it, or its merging was one's own.
+std::optional<StoredMerging> storedMerging(const openvdb::MetaMap& metadata);
+
+/// Brings the counts up to date of a grid some of whose grains were joined, divided or dropped: the
+/// grains, and if voxels went the voxels and leaves; counts of balls, critical points and cavities
+/// then go, for they are those of the whole object. A grid without counts gets none.
+void updateCounts(openvdb::GridBase& grid, int64_t grains, bool voxelsWent);
+
 /// The number of grains that a grid says it has.
 std::optional<int64_t> grainCount(const openvdb::GridBase& grid);
 

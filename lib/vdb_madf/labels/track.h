@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "vdb_madf/grids/grid_types.h"
+
+namespace vdb_madf {
+
+/// Metadata of tracked labels: the shift (string), and the largest number that a grain has had so far
+/// (int64).
+inline constexpr char kTrackKey[] = "madf_track", kLastTrackKey[] = "madf_track_last";
+
+struct TrackOptions {
+  std::optional<Coord> shift;  ///< of the sample, in voxels, from before to after; absent: is found
+  int maxShift = 10;           ///< that is looked for, along each axis; 0 to kMaxShift
+  /// Of the voxels of the smaller of two grains, how many they have to share to be linked; (0, 1].
+  double share = 0.5;
+  int64_t minFaces = 1;  ///< grains that share fewer voxel faces have no bond
+};
+
+constexpr int kMaxShift = 256;
+
+/// What becomes of a grain, or where it comes from.
+enum class GrainFate {
+  kept,      ///< linked with one grain, which is linked with it alone
+  split,     ///< before: linked with several; after: with one that is
+  merged,    ///< before: linked with one that is with several; after: with several
+  vanished,  ///< before: linked with none
+  appeared,  ///< after: linked with none
+  outside    ///< no voxel lies in what both volumes show
+};
+
+/// What becomes of a bond, or where it comes from; by the faces in what both volumes show.
+enum class BondFate {
+  kept,     ///< a grain linked with the one end is bonded to another that is linked with the other
+  broken,   ///< before: both ends are linked, but not so
+  created,  ///< after: both ends are linked, but not so
+  inside,   ///< ... and a grain is linked with both ends
+  unmatched,  ///< an end is linked with none
+  outside     ///< fewer than minFaces (or none) of its faces lie in what both volumes show
+};
+
+const char* toString(GrainFate fate);  ///< "kept", ..., "new" for appeared
+const char* toString(BondFate fate);   ///< "kept", ..., "new" for created
+
+struct TrackedGrain {
+  int32_t grain = 0;
+  GrainFate fate = GrainFate::outside;
+  int64_t voxels = 0;        ///< all
+  int64_t sharedVoxels = 0;  ///< in what both volumes show
+  int64_t links = 0;         ///< grains that it is linked with
+  int32_t partner = 0;  ///< most voxels in common, linked or not (tie: smaller number); 0: none
+  int64_t overlapVoxels = 0;  ///< in common with the partner
+  int32_t track = 0;          ///< its number through time: before, its own; after, see track()
+};
+
+/// Two grains that have voxels in common.
+struct GrainOverlap {
+  int32_t before = 0, after = 0;
+  int64_t voxels = 0;
+  bool isLink = false;
+};
+
+struct TrackedBond {
+  int32_t first = 0, second = 0;
+  int64_t faces = 0;        ///< all
+  int64_t sharedFaces = 0;  ///< in what both volumes show
+  BondFate fate = BondFate::unmatched;
+};
+
+struct Tracks {
+  Coord shift;               ///< voxel p before is p + shift after
+  int64_t voxelsBefore = 0;  ///< labelled, in what both volumes show
+  int64_t voxelsAfter = 0;
+  int64_t commonVoxels = 0;                          ///< labelled in both
+  std::vector<TrackedGrain> before, after;           ///< ascending
+  std::vector<GrainOverlap> overlaps;                ///< by before, then after
+  std::vector<TrackedBond> bondsBefore, bondsAfter;  ///< by first, then second
+  int32_t lastTrack = 0;  ///< the largest number of a grain so far; 0: there is none
+};
+
+/// Follows grains from one label grid to a later one of the same voxels, between which the sample may
+/// have moved by whole voxels. Labels are the active voxels, tiles included, of positive value.
+///
+/// The shift, if it is not given, is the one that most labelled voxels share
+/// (detail/rigid_shift.h: findShift()). What both volumes show is the box of the one's domain in that
+/// of the other's; where a domain is unknown, all. Two grains are linked if their common voxels are at
+/// least `share` of those that the smaller of them has there.
+/// The track of a grain after: links in descending order of their voxels (then by ascending numbers)
+/// give the number of the grain before to the grain after, unless either has been used; what is left
+/// gets numbers above all of before, in ascending order; if before are tracked labels, above all that
+/// their series has had.
+/// Deterministic. Memory: a copy of each grid, and per pair of grains that meet.
+/// @throw InvalidInput if an option is out of range, or a limit of leaf_index.h is exceeded;
+///   Interrupted.
+Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions& options = {},
+             Interrupter* interrupter = nullptr);
+
+/// The labels after with the numbers of their tracks, and kTrackKey and kLastTrackKey.
+Int32Grid::Ptr trackedLabels(const Int32Grid& after, const Tracks& tracks,
+                             Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The verb track, run as a user runs it; what it finds: labels/track_test.cc.
+
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "support/command_runs.h"
+#include "support/refusals.h"
+
+using namespace vdb_madf::test;
+
+namespace {
+
+/// The cells of a table, without its header.
+std::vector<std::vector<std::string>> rows(const std::string& csv) {
+  std::vector<std::vector<std::string>> table;
+  std::istringstream lines(csv);
+  std::string line;
+  for (std::getline(lines, line); std::getline(lines, line);) {
+    table.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) table.back().push_back(cell);
+  }
+  return table;
+}
+
+/// Grains of snow, and the same a little later: two are one, one has come apart, one is gone.
+void makeSeries(const Bench& bench) {
+  bench.mustRun(kSnow + "s.vdb");
+  bench.mustRun("segment s.vdb a.vdb --keep manifold --theta -0.3");
+  bench.mustRun("edit a.vdb b.vdb --merge 1,2 --split 3 --drop 4 --renumber");
+}
+
+}  // namespace
+
+TEST_CASE("cli: what was edited between two scans is told", "[cli]") {
+  const Bench bench;
+  makeSeries(bench);
+  const Json json = Json::parse(
+      bench.mustRun("track a.vdb b.vdb t.vdb --grains g.csv --links l.csv --bonds o.csv --json -"));
+  CHECK(json.at("shift") == Json{0, 0, 0});
+  const Json before = json.at("grains_before"), after = json.at("grains_after");
+  CHECK(before.at("merged") == 2);
+  CHECK(before.at("split") == 1);
+  CHECK(before.at("vanished") == 1);
+  CHECK(before.at("kept") == before.at("all").get<int>() - 4);
+  CHECK(after.at("merged") == 1);
+  CHECK(after.at("split") == 2);
+  CHECK(after.count("new") == 0);
+  CHECK(after.at("kept") == before.at("kept"));
+  CHECK(json.at("common_voxels") == json.at("voxels_after"));
+  int kept = 0, inside = 0, afterRows = 0;
+  for (const auto& row : rows(bench.bytes("g.csv"))) {
+    REQUIRE(row.size() == 10);
+    kept += row[2] == "kept";
+    afterRows += row[0] == "after";
+    if (row[0] == "before" && row[1] == "4") CHECK(row[2] == "vanished");
+    if (row[2] == "kept") CHECK(row[9] == "1");
+  }
+  CHECK(kept == 2 * before.at("kept").get<int>());
+  CHECK(afterRows == after.at("all"));
+  for (const auto& row : rows(bench.bytes("o.csv"))) inside += row.back() == "inside";
+  const Json bonds = json.at("bonds_before"), later = json.at("bonds_after");
+  CHECK(inside == bonds.value("inside", 0) + later.value("inside", 0));
+  CHECK(rows(bench.bytes("l.csv")).size() == size_t(after.at("all")) + 1);
+
+  // The labels have the numbers of before: tracked again, every grain has its own.
+  bench.mustRun("track a.vdb t.vdb --grains h.csv -q");
+  for (const auto& row : rows(bench.bytes("h.csv")))
+    if (row[0] == "after") CHECK(row[3] == row[1]);
+  CHECK(gridOf(infoOf(bench, "t.vdb"), "grain").at("metadata").at("madf_track") == "shift 0,0,0");
+  CHECK(bench.mustRun("track a.vdb b.vdb").find("1 split, 2 merged, 1 vanished") !=
+        std::string::npos);
+  bench.mustRun("track a.vdb b.vdb one.vdb --threads 1 -q");
+  CHECK(bench.bytes("one.vdb") == bench.bytes("t.vdb"));
+}
+
+TEST_CASE("cli: a sample that moved is found, in images too", "[cli]") {
+  const Bench bench;
+  makeSeries(bench);
+  bench.mustRun("convert a.vdb a.npy --grid grain");
+  bench.mustRun("convert b.vdb part.vdb --grid grain --labels --crop 5,0,9:47,47,47");
+  bench.mustRun("convert part.vdb b.npy");  // begins at its own corner
+  const Json json = Json::parse(bench.mustRun("track a.npy b.npy t.tif --json -"));
+  CHECK(json.at("shift") == Json{-5, 0, -9});
+  CHECK(json.at("common_voxels") == json.at("voxels_after"));
+  CHECK(json.at("grains_before").at("outside").get<int>() > 0);
+  CHECK(json.at("grains_after").count("new") == 0);
+  bench.mustRun("track a.npy b.npy u.tif --shift -5,0,-9 -q");
+  CHECK(bench.bytes("t.tif") == bench.bytes("u.tif"));
+  // Said where what is found may not be the best.
+  const Outcome near = bench.run("track a.npy b.npy --max-shift 9 -q");
+  CHECK(near.exitCode == 0);
+  const Outcome told = bench.run("track a.npy b.npy --max-shift 9");
+  CHECK_THAT(told.err, Catch::Contains("b.npy: the shift is the largest that is looked for"));
+}
+
+TEST_CASE("cli: what cannot be tracked is told in a line", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSpheres + "s.vdb --voxel-size 10um");
+  bench.mustRun("segment s.vdb g.vdb");
+  bench.mustRun(kSpheres + "other.vdb --voxel-size 20um");
+  bench.mustRun("convert s.vdb mask.vdb --grid object --phase 1");
+  refuses(bench, kFailed, "track g.vdb other.vdb", {"other.vdb", "2 times as long", "g.vdb"});
+  refuses(bench, kFailed, "track mask.vdb g.vdb", {"mask.vdb", "labels (int32)"});
+  refuses(bench, kFailed, "track g.vdb s.vdb --after-grid snow", {"s.vdb", "'snow'"});
+  refuses(bench, kFailed, "track g.vdb s.vdb --shift 900,0,0", {"s.vdb", "g.vdb", "--shift"});
+  bench.mustRun("track g.vdb s.vdb --after-grid truth --shift 0,0,0 -q");
+}

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "input_options.h"
+
+namespace vdb_madf::tools {
+
+// Two label volumes that belong together.
+
+/// Parses what the command line says of both; what describes RAW files (`first` has those options)
+/// is for whichever of the two is RAW. @throw WrongUsage
+void parsePair(InputOptions& first, InputOptions& second, const std::vector<std::string>& outputs);
+
+/// Voxels are compared by their index, so they must be of equal size, where both are known.
+/// @throw InvalidInput
+void checkSameVoxels(const InputOptions& first, const Int32Grid& firstLabels,
+                     const InputOptions& second, const Int32Grid& secondLabels);
+
+}  // namespace vdb_madf::tools

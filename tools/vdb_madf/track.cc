@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/labels/track.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <sstream>
+
+#include "command.h"
+#include "grid_image.h"
+#include "input_options.h"
+#include "json_file.h"
+#include "label_pair.h"
+#include "outputs.h"
+#include "parse.h"
+#include "text_file.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/vdb/write_vdb.h"
+
+namespace vdb_madf::tools {
+
+namespace {
+
+struct Options {
+  InputOptions before, after;
+  std::string out, shift, json, grains, links, bonds, minFaces = "1";
+  TrackOptions track;
+};
+
+void parse(Options& o) {
+  parsePair(o.before, o.after, {o.out, o.json, o.grains, o.links, o.bonds});
+  if (!o.out.empty()) checkVolumeEnding(o.out);
+  if (!o.shift.empty()) o.track.shift = parseShift(o.shift, "--shift");
+  o.track.minFaces = parseCount(o.minFaces, "--min-faces");
+  if (!(o.track.share > 0 && o.track.share <= 1))
+    throw WrongUsage("--share: is the part of a grain, above 0 and at most 1");
+}
+
+constexpr GrainFate kGrainFates[] = {GrainFate::kept,     GrainFate::split,    GrainFate::merged,
+                                     GrainFate::vanished, GrainFate::appeared, GrainFate::outside};
+constexpr BondFate kBondFates[] = {BondFate::kept,   BondFate::broken,    BondFate::created,
+                                   BondFate::inside, BondFate::unmatched, BondFate::outside};
+
+template <typename Items, typename Fate>
+int64_t countOf(const Items& items, Fate fate) {
+  return std::count_if(items.begin(), items.end(),
+                       [&](const auto& item) { return item.fate == fate; });
+}
+
+/// How many have each fate, as far as there are any.
+template <typename Items, typename Fates>
+Json fatesOf(const Items& items, const Fates& fates) {
+  Json json = Json::object();
+  json["all"] = items.size();
+  for (const auto fate : fates)
+    if (const int64_t count = countOf(items, fate)) json[toString(fate)] = count;
+  return json;
+}
+
+double percent(int64_t part, int64_t whole) {
+  return whole > 0 ? 100.0 * double(part) / double(whole) : 0.0;
+}
+
+Json corner(const Coord& c) {
+  return {c.x(), c.y(), c.z()};
+}
+
+Json summary(const Options& o, const Tracks& t) {
+  Json json;
+  json["before"] = o.before.path;
+  json["after"] = o.after.path;
+  if (!o.out.empty()) json["output"] = o.out;
+  json["shift"] = corner(t.shift);
+  json["share"] = o.track.share;
+  json["min_faces"] = o.track.minFaces;
+  json["voxels_before"] = t.voxelsBefore;
+  json["voxels_after"] = t.voxelsAfter;
+  json["common_voxels"] = t.commonVoxels;
+  json["grains_before"] = fatesOf(t.before, kGrainFates);
+  json["grains_after"] = fatesOf(t.after, kGrainFates);
+  json["bonds_before"] = fatesOf(t.bondsBefore, kBondFates);
+  json["bonds_after"] = fatesOf(t.bondsAfter, kBondFates);
+  return json;
+}
+
+void printFates(const char* what, const Json& fates) {
+  std::printf("%s  %s", what, fates["all"].dump().c_str());
+  const char* before = ": ";
+  for (const auto& [fate, count] : fates.items()) {
+    if (fate == "all") continue;
+    std::printf("%s%s %s", before, count.dump().c_str(), fate.c_str());
+    before = ", ";
+  }
+  std::printf("\n");
+}
+
+void print(const Options& o, const Tracks& t, const Json& json) {
+  std::printf("shift          %d,%d,%d voxels%s\n", t.shift.x(), t.shift.y(), t.shift.z(),
+              o.track.shift ? "" : ", found");
+  std::printf("in common      %.2f %% of the labelled voxels before, %.2f %% of those after\n",
+              percent(t.commonVoxels, t.voxelsBefore), percent(t.commonVoxels, t.voxelsAfter));
+  printFates("grains before", json["grains_before"]);
+  printFates("grains after ", json["grains_after"]);
+  printFates("bonds before ", json["bonds_before"]);
+  printFates("bonds after  ", json["bonds_after"]);
+}
+
+/// A share with nine digits; empty where there is nothing to have a share of.
+void addShare(std::ostream& csv, int64_t part, int64_t whole) {
+  csv << ',';
+  if (whole > 0) csv << double(part) / double(whole);
+}
+
+std::string grainTable(const Tracks& t) {
+  std::ostringstream csv;
+  csv.precision(9);
+  csv << "side,grain,fate,track,voxels,shared_voxels,links,partner,overlap_voxels,overlap_share\n";
+  for (const auto& [side, grains] :
+       {std::pair<const char*, const std::vector<TrackedGrain>&>{"before", t.before},
+        {"after", t.after}})
+    for (const TrackedGrain& g : grains) {
+      csv << side << ',' << g.grain << ',' << toString(g.fate) << ',' << g.track << ',' << g.voxels
+          << ',' << g.sharedVoxels << ',' << g.links << ',' << g.partner << ',' << g.overlapVoxels;
+      addShare(csv, g.overlapVoxels, g.sharedVoxels);
+      csv << '\n';
+    }
+  return csv.str();
+}
+
+/// Of one of the grains of a side.
+int64_t sharedVoxels(const std::vector<TrackedGrain>& grains, int32_t grain) {
+  return std::lower_bound(grains.begin(), grains.end(), grain,
+                          [](const TrackedGrain& g, int32_t number) { return g.grain < number; })
+      ->sharedVoxels;
+}
+
+std::string linkTable(const Tracks& t) {
+  std::ostringstream csv;
+  csv.precision(9);
+  csv << "before,after,voxels,share_before,share_after,link\n";
+  for (const GrainOverlap& overlap : t.overlaps) {
+    csv << overlap.before << ',' << overlap.after << ',' << overlap.voxels;
+    addShare(csv, overlap.voxels, sharedVoxels(t.before, overlap.before));
+    addShare(csv, overlap.voxels, sharedVoxels(t.after, overlap.after));
+    csv << ',' << int(overlap.isLink) << '\n';
+  }
+  return csv.str();
+}
+
+std::string bondTable(const Tracks& t) {
+  std::ostringstream csv;
+  csv << "side,first,second,faces,shared_faces,fate\n";
+  for (const auto& [side, bonds] :
+       {std::pair<const char*, const std::vector<TrackedBond>&>{"before", t.bondsBefore},
+        {"after", t.bondsAfter}})
+    for (const TrackedBond& bond : bonds)
+      csv << side << ',' << bond.first << ',' << bond.second << ',' << bond.faces << ','
+          << bond.sharedFaces << ',' << toString(bond.fate) << '\n';
+  return csv.str();
+}
+
+void noteShift(const Options& o, const Tracks& t, const Common& common) {
+  const int most = o.track.maxShift;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!o.track.shift && most > 0 && std::abs(t.shift[axis]) == most) {
+      common.progress->note(o.after.path + ": the shift is the largest that is looked for: try " +
+                            std::to_string(std::min(2 * most, kMaxShift)) + " (--max-shift)");
+      return;
+    }
+}
+
+void run(const Options& o, const Common& common) {
+  if (!o.out.empty()) checkWritable(o.out);
+  JsonFile jsonFile(o.json);
+  TextFile grainFile(o.grains), linkFile(o.links), bondFile(o.bonds);
+  const Int32Grid::Ptr before = loadLabels(o.before, "--before-grid", common.progress);
+  const Int32Grid::Ptr after = loadLabels(o.after, "--after-grid", common.progress);
+  checkSameVoxels(o.before, *before, o.after, *after);
+  common.progress->start("track");
+  const Tracks tracks = track(*before, *after, o.track, common.progress);
+  if (tracks.commonVoxels == 0 && !tracks.before.empty() && !tracks.after.empty())
+    throw InvalidInput(o.after.path + ": no labelled voxel comes to lie on one of " +
+                       o.before.path +
+                       ": give labels of the same sample, or how far it moved (--shift, "
+                       "--max-shift)");
+  if (!o.out.empty()) {
+    const Int32Grid::Ptr labels = trackedLabels(*after, tracks, common.progress);
+    if (hasVdbEnding(o.out))
+      writeVdb(o.out, {labels}, common.progress);
+    else
+      writeGridAsImage(o.out, *labels, std::nullopt, o.after.path, common);
+  }
+  common.progress->end();
+  noteShift(o, tracks, common);
+  grainFile.write(grainTable(tracks));
+  linkFile.write(linkTable(tracks));
+  bondFile.write(bondTable(tracks));
+  Json json = summary(o, tracks);
+  addNotes(json, *common.progress);
+  jsonFile.write(json);
+  if (!common.quiet) print(o, tracks, json);
+}
+
+}  // namespace
+
+void addTrack(Verb command, Common& common, Action& action) {
+  auto o = std::make_shared<Options>();
+  Verb verb = addVerb(command, common, "track",
+                      "what became of grains and bonds from one scan of a sample to the next",
+                      "vdb_madf track grains.vdb later.vdb tracked.vdb --max-shift 20");
+  verb.option("BEFORE", o->before.path, "labels: VDB or integer image").required();
+  verb.option("AFTER", o->after.path, "labels of a later scan, of the same voxels").required();
+  verb.option("OUT", o->out, "gets the labels of AFTER with the numbers of BEFORE");
+  verb.option("--before-grid", o->before.gridName, "grid of BEFORE").typeName("NAME");
+  verb.option("--after-grid", o->after.gridName, "grid of AFTER").typeName("NAME");
+  const Option given =
+      verb.option("--shift", o->shift, "how far the sample moved, in voxels (default: is found)")
+          .typeName("X,Y,Z");
+  verb.option("--max-shift", o->track.maxShift, "the largest shift that is looked for, voxels")
+      .range(0, kMaxShift)
+      .typeName("N")
+      .showDefault()
+      .excludes(given);
+  verb.option("--share", o->track.share,
+              "part of the smaller of two grains that they have to share to be linked")
+      .typeName("F")
+      .showDefault();
+  verb.option("--min-faces", o->minFaces, "fewest voxel faces of a bond")
+      .typeName("N")
+      .showDefault();
+  verb.option("--grains", o->grains, "CSV: a line per grain of either side").typeName("FILE");
+  verb.option("--links", o->links, "CSV: a line per pair of grains that share voxels")
+      .typeName("FILE");
+  verb.option("--bonds", o->bonds, "CSV: a line per bond of either side").typeName("FILE");
+  verb.option("--json", o->json, "machine-readable result (-: standard output)").typeName("FILE");
+  o->before.addRaw(verb);
+  verb.onParsed([o, &common, &action] {
+    parse(*o);
+    action = [o, &common] {
+      Common beside = common;
+      for (const std::string& output : {o->out, o->json, o->grains, o->links, o->bonds})
+        beside = besideOutput(beside, output);
+      run(*o, beside);
+    };
+  });
+}
+
+}  // namespace vdb_madf::tools
