@@ -19,9 +19,11 @@
 #include "vdb_madf/exports/hexahedra_file.h"
 #include "vdb_madf/exports/mesh_file.h"
 #include "vdb_madf/exports/network_file.h"
+#include "vdb_madf/exports/ome_zarr.h"
 #include "vdb_madf/exports/vti_file.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/output_folder.h"
+#include "vdb_madf/files/output_tree.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/images/open_image.h"
@@ -47,6 +49,7 @@ struct Options {
   InputOptions input;
   std::string out, kind, minFaces = "1";
   std::string bonds, cover;  ///< of clumps; empty: not written
+  std::string ome = "0.4";
   int smoothing = 10, maxDim = 0, reduce = 0;
   int64_t mostTriangles = 0;  ///< 0: any number
   bool compress = false, asBool = false;
@@ -59,6 +62,7 @@ std::string kindOf(const std::string& out) {
   const std::string ending = fileEnding(out);
   if (ending == ".vti") return "vti";
   if (ending == ".graphml") return "network";
+  if (isZarrEnding(out)) return "zarr";
   if (isHexahedraEnding(out)) return "hexa";
   return isMeshEnding(out) && ending != ".vtp" ? "mesh" : "";
 }
@@ -252,6 +256,18 @@ void exportHexahedra(const Options& o, const Common& common, const Int32Grid& la
           counted(counts.nodes, "node"));
 }
 
+void exportZarr(const Options& o, const Common& common, const Int32Grid& labels) {
+  const CoordBBox box = boxOf(labels);
+  OmeZarrOptions options;
+  options.version = o.ome == "0.5" ? OmeVersion::v05 : OmeVersion::v04;
+  options.measure = o.measure;
+  writeOmeZarr(o.out, labels, box, options, common.progress);
+  const Coord size = box.dim();
+  say(o, common,
+      "OME-Zarr " + o.ome + ", the object and labels/grain, " + std::to_string(size.x()) + "x" +
+          std::to_string(size.y()) + "x" + std::to_string(size.z()) + " voxels");
+}
+
 void exportMask(const Options& o, const Common& common, const Int32Grid& labels) {
   const CoordBBox box = boxOf(labels);
   writeImage(o.out, *objectMask(labels), box, SampleType::uint8, common.progress);
@@ -278,6 +294,7 @@ constexpr Kind kKinds[] = {
     {"hexa", exportHexahedra, ".vtu or .inp (Abaqus)", isHexahedraEnding},
     {"mask", exportMask, ".tif, .raw, .mhd, .mha, .nrrd or .npy", isImageEnding},
     {"network", exportNetwork, ".vtp, .graphml or .csv", isNetworkEnding},
+    {"zarr", exportZarr, ".zarr, a folder (.ome.zarr)", isZarrEnding},
 };
 
 std::vector<std::string> kindList() {
@@ -318,6 +335,8 @@ void checkTables(const Options& o, const Kind& kind) {
 void run(const Options& o, const Common& common, const Kind& kind) {
   if (fileEnding(o.out).empty())
     checkOutputFolder(o.out);
+  else if (kind.run == exportZarr)
+    checkOutputTree(o.out);
   else
     checkWritable(o.out);
   for (const std::string& file : {o.bonds, o.cover})
@@ -361,7 +380,7 @@ void addExport(Verb command, Common& common, Action& action) {
   verb.option("--uncovered", o->clumps.coverageError,
               "clumps: part of a grain that may stay uncovered, 0 to 1")
       .showDefault();
-  verb.option("--min-faces", o->minFaces, "network: fewest voxel faces of a bond")
+  verb.option("--min-faces", o->minFaces, "network, zarr: fewest voxel faces of a bond")
       .typeName("N")
       .showDefault();
   verb.flag(
@@ -371,6 +390,10 @@ void addExport(Verb command, Common& common, Action& action) {
       .typeName("FILE.csv");
   verb.option("--cover", o->cover, "clumps: also a table of how well each grain is covered")
       .typeName("FILE.csv");
+  verb.option("--ome", o->ome, "zarr: version of OME-Zarr, 0.4 (Zarr 2) or 0.5 (Zarr 3)")
+      .typeName("VERSION")
+      .oneOf({"0.4", "0.5"})
+      .showDefault();
   o->input.addRaw(verb);
   o->input.addVoxelSize(verb);
   verb.onParsed([o, &common, &action] {

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <string>
+
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/measure/measure.h"
+
+namespace vdb_madf {
+
+/// Which OME-Zarr: 0.4 lies on Zarr version 2, which more programs read, 0.5 on version 3.
+enum class OmeVersion { v04, v05 };
+
+struct OmeZarrOptions {
+  OmeVersion version = OmeVersion::v04;
+  MeasureOptions measure;  ///< for the properties of the grains
+};
+
+/// Writes labels over `box` as an OME-Zarr folder, whole or not at all; nothing is replaced.
+///
+/// The folder is an image group, the object (uint8: 255, background 0), and holds the label image
+/// `labels/grain` (uint32) with a color for each grain (grainColors()) and the measures of the
+/// columns of columns.h, named and in units as in the table of grains; what is not known of a grain
+/// is left out. Axes are z, y, x, in micrometers if the voxel size is known.
+///
+/// Arrays `0`, `1`, `2` ... are the volume at 1/1, 1/2, 1/4 ... until its longest side is that of
+/// a chunk, 64 (at most 1/256). Coarse voxel i stands for the voxels factor * i ... of the index
+/// space, as in reduced_labels.h: a label is the most frequent one, of equally frequent ones the
+/// smallest, with what lies outside the box as background; the object's value is 255 times its part
+/// of the voxels, rounded half up. The translation of each level says where the centre of its first
+/// voxel lies, so that a voxel has the place in the world that its grid gives it.
+///
+/// Chunks are compressed by gzip; those of background alone are left out. The bytes depend on labels
+/// and options alone. Memory: that of measure(), one coarse level (a quarter of the labels' leaf
+/// nodes or less) and a chunk per thread.
+/// @throw InvalidInput if the box is empty, voxels are not along the axes, or as measure(); IoError;
+///   Interrupted.
+void writeOmeZarr(const std::string& path, const Int32Grid& labels, const CoordBBox& box,
+                  const OmeZarrOptions& options = {}, Interrupter* interrupter = nullptr);
+
+/// True for .zarr, so also for .ome.zarr.
+bool isZarrEnding(const std::string& path);
+
+}  // namespace vdb_madf
