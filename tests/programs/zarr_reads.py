@@ -3,7 +3,8 @@
 """Programs that know Zarr read our OME-Zarr: every level, voxel by voxel, against NumPy.
 
     zarr_reads.py COMMAND zarr       Python's zarr module, OME-Zarr 0.4
-    zarr_reads.py COMMAND zarrita    zarrita, for browsers, by node: 0.4 and 0.5
+    zarr_reads.py COMMAND zarrita    zarrita, for browsers, by node: 0.4 and 0.5; and the command
+                                     reads Zarr 3 that zarrita writes by each codec that it can
 
 zarrita is looked for in the folder that VDB_MADF_ZARRITA names (`npm install zarrita` there).
 """
@@ -116,6 +117,36 @@ console.log(JSON.stringify(found));
 """
 
 
+WRITE = """
+import * as zarr from "zarrita";
+import { FileSystemStore } from "@zarrita/storage";
+import { readFileSync } from "node:fs";
+const [folder, samples, ...shape] = process.argv.slice(2);
+// (zarrita itself only reads gzip.)
+zarr.registry.set("gzip", () => import("numcodecs/gzip").then((module) => module.default));
+const bytes = (endian) => ({ name: "bytes", configuration: { endian } });
+const named = {
+  little: [bytes("little")],
+  big: [bytes("big")],
+  transposed: [{ name: "transpose", configuration: { order: [1, 2, 0] } }, bytes("little")],
+  gzip: [bytes("little"), { name: "gzip", configuration: { level: 5 } }],
+  zstd: [bytes("little"), { name: "zstd", configuration: { level: 3, checksum: true } }],
+  blosc: [bytes("little"), { name: "blosc", configuration: {
+    cname: "lz4", clevel: 5, shuffle: 1, blocksize: 0 } }],  // 1: numcodecs' number for it
+};
+const file = readFileSync(samples);
+const data = new Uint32Array(file.buffer.slice(file.byteOffset, file.byteOffset + file.byteLength));
+for (const [name, codecs] of Object.entries(named)) {
+  const array = await zarr.create(new FileSystemStore(`${folder}/${name}.zarr`), {
+    shape: shape.map(Number), chunkShape: [32, 50, 17], dtype: "uint32", codecs, fillValue: 0,
+    chunkSeparator: name == "big" ? "." : "/" });
+  const stride = [array.shape[1] * array.shape[2], array.shape[2], 1];
+  await zarr.set(array, null, { data, shape: array.shape, stride });
+}
+console.log(JSON.stringify(Object.keys(named)));
+"""
+
+
 def run_zarrita(script, *arguments):
     """What a script prints that uses zarrita, as JSON."""
     folder = os.environ.get("VDB_MADF_ZARRITA", "")
@@ -139,7 +170,12 @@ def proof_zarrita(bench):
             digest = hashlib.sha256(array.tobytes()).hexdigest()
             check(found["arrays"][name] == [str(array.dtype), list(array.shape), digest],
                   f"{version}: {name}: {found['arrays'][name]}")
-    print("zarrita reads OME-Zarr 0.4 and 0.5")
+    labels().tofile(bench.path("labels.raw"))
+    for name in run_zarrita(WRITE, bench.folder, bench.path("labels.raw"), *map(str, SHAPE)):
+        subprocess.run([bench.tool, "convert", bench.path(f"{name}.zarr"), bench.path("read.npy"),
+                        "--type", "uint32", "-q"], check=True)
+        check((np.load(bench.path("read.npy")) == labels()).all(), f"what zarrita wrote: {name}")
+    print("zarrita reads OME-Zarr 0.4 and 0.5; we read what it writes")
 
 
 with Bench() as bench:
