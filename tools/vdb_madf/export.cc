@@ -259,7 +259,7 @@ void exportHexahedra(const Options& o, const Common& common, const Int32Grid& la
 void exportZarr(const Options& o, const Common& common, const Int32Grid& labels) {
   const CoordBBox box = boxOf(labels);
   OmeZarrOptions options;
-  options.version = o.ome == "0.5" ? OmeVersion::v05 : OmeVersion::v04;
+  options.version = omeVersionOf(o.ome);
   options.measure = o.measure;
   writeOmeZarr(o.out, labels, box, options, common.progress);
   const Coord size = box.dim();

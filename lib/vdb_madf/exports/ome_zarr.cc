@@ -135,6 +135,12 @@ void writeOmeZarr(const std::string& path, const Int32Grid& labels, const CoordB
   folder.commit();
 }
 
+OmeVersion omeVersionOf(const std::string& text) {
+  if (text == "0.4") return OmeVersion::v04;
+  if (text == "0.5") return OmeVersion::v05;
+  throw InvalidInput("there is no OME-Zarr " + text + " to write: 0.4 or 0.5");
+}
+
 bool isZarrEnding(const std::string& path) {
   return fileEnding(path) == ".zarr";
 }

@@ -12,6 +12,9 @@ namespace vdb_madf {
 
 /// Which OME-Zarr: 0.4 lies on Zarr version 2, which more programs read, 0.5 on version 3.
 enum class OmeVersion { v04, v05 };
+/// \param text: "0.4" or "0.5"
+/// @throw InvalidInput
+OmeVersion omeVersionOf(const std::string& text);
 
 struct OmeZarrOptions {
   OmeVersion version = OmeVersion::v04;
