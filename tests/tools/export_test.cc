@@ -233,6 +233,7 @@ TEST_CASE("cli: export refuses what it cannot know or do", "[cli]") {
   refusal("g.vdb x.vtk --as hexa", 2, ".inp");
   refusal("g.vdb x --as zarr", 2, ".zarr");
   refusal("g.vdb x.zarr --ome 0.3", 2, "ome");
+  refusal("s.vdb x.zarr --grid truth --meshes --smooth 2000", 2, "smooth");
   refusal("g.vdb none/x.zarr", 1, "none/x.zarr");
   refusal("g.vdb x.ply --smooth -1", 2, "smooth");
   refusal("g.vdb x.vdb --as viz --reduce 2 --max-dim 9", 2, "max-dim");

@@ -52,7 +52,7 @@ struct Options {
   std::string ome = "0.4";
   int smoothing = 10, maxDim = 0, reduce = 0;
   int64_t mostTriangles = 0;  ///< 0: any number
-  bool compress = false, asBool = false;
+  bool compress = false, asBool = false, meshes = false;
   ClumpOptions clumps;
   MeasureOptions measure;
 };
@@ -261,11 +261,15 @@ void exportZarr(const Options& o, const Common& common, const Int32Grid& labels)
   OmeZarrOptions options;
   options.version = omeVersionOf(o.ome);
   options.measure = o.measure;
+  options.meshes = o.meshes;
+  options.meshSmoothing = o.smoothing;
+  options.meshReduction = reductionOf(o, labels);
   writeOmeZarr(o.out, labels, box, options, common.progress);
   const Coord size = box.dim();
   say(o, common,
       "OME-Zarr " + o.ome + ", the object and labels/grain, " + std::to_string(size.x()) + "x" +
-          std::to_string(size.y()) + "x" + std::to_string(size.z()) + " voxels");
+          std::to_string(size.y()) + "x" + std::to_string(size.z()) + " voxels" +
+          (o.meshes ? "; meshes and measures for neuroglancer" : ""));
 }
 
 void exportMask(const Options& o, const Common& common, const Int32Grid& labels) {
@@ -359,14 +363,16 @@ void addExport(Verb command, Common& common, Action& action) {
       .offer(kindList());
   verb.option("--grid", o->input.gridName, "VDB input: the grid to take").typeName("NAME");
   verb.option("--smooth", o->smoothing,
-              "mesh, grids, surface: rounds of smoothing; 0: the exact "
+              "mesh, grids, surface, zarr: rounds of smoothing; 0: the exact "
               "faces of the voxels")
       .range(0, 1000)
       .showDefault();
   Option maxDim =
-      verb.option("--max-dim", o->maxDim, "mesh, viz, lod: reduce until no axis has more voxels");
+      verb.option("--max-dim", o->maxDim,
+                  "mesh, viz, lod, zarr (its meshes): reduce until no axis has more voxels");
   maxDim.range(1, kMaxImageSide);
-  verb.option("--reduce", o->reduce, "mesh, viz, lod: voxels per coarse voxel along an axis")
+  verb.option("--reduce", o->reduce,
+              "mesh, viz, lod, zarr (its meshes): voxels per coarse voxel along an axis")
       .range(1, kMaxReduction)
       .excludes(maxDim);
   verb.option("--triangles", o->mostTriangles,
@@ -394,6 +400,7 @@ void addExport(Verb command, Common& common, Action& action) {
       .typeName("VERSION")
       .oneOf({"0.4", "0.5"})
       .showDefault();
+  verb.flag("--meshes", o->meshes, "zarr: also meshes and measures for neuroglancer");
   o->input.addRaw(verb);
   o->input.addVoxelSize(verb);
   verb.onParsed([o, &common, &action] {

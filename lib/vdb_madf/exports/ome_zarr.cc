@@ -4,11 +4,14 @@
 #include "vdb_madf/exports/ome_zarr.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/exports/detail/grain_table.h"
+#include "vdb_madf/exports/detail/neuroglancer_files.h"
 #include "vdb_madf/exports/detail/ome_attributes.h"
 #include "vdb_madf/exports/detail/zarr_array_file.h"
 #include "vdb_madf/files/file_ending.h"
@@ -108,6 +111,12 @@ void writeGroups(const OutputTree& folder, const OmePlace& place, const std::vec
                       {"image-label", imageLabel}});
 }
 
+/// The last part of a path, with or without a slash behind it.
+std::string nameOf(const std::string& path) {
+  const std::filesystem::path name(path);
+  return (name.has_filename() ? name : name.parent_path()).filename().string();
+}
+
 }  // namespace
 
 void writeOmeZarr(const std::string& path, const Int32Grid& labels, const CoordBBox& box,
@@ -117,13 +126,17 @@ void writeOmeZarr(const std::string& path, const Int32Grid& labels, const CoordB
   const ZarrVersion zarr =
       options.version == OmeVersion::v05 ? ZarrVersion::three : ZarrVersion::two;
   const std::vector<Level> levels = levelsOf(box);
+  detail::checkNeuroglancer(labels, options);
   OutputTree folder(path);
   {
     WorkPart part(interrupter, 0, kMeasured);
-    const Measurements measured = measure(labels, options.measure, &part);
-    writeGroups(folder, place, levels,
-                detail::imageLabel(measured, grainColors(labels, interrupter), options.version),
+    const detail::GrainTable table(measure(labels, options.measure, &part));
+    const GrainColors colors = grainColors(labels, interrupter);
+    writeGroups(folder, place, levels, detail::imageLabel(table, colors, options.version),
                 options.version, zarr);
+    if (options.meshes)
+      detail::writeNeuroglancer(folder, nameOf(path), labels, box, place, table, colors, options,
+                                interrupter);
   }
   for (size_t i = 0; i < levels.size(); ++i) {
     const auto percent = [&](size_t done) {

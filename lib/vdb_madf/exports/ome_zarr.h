@@ -19,6 +19,11 @@ OmeVersion omeVersionOf(const std::string& text);
 struct OmeZarrOptions {
   OmeVersion version = OmeVersion::v04;
   MeasureOptions measure;  ///< for the properties of the grains
+  /// Also `neuroglancer/`, for the viewer of this name: a mesh for each grain, the measures that are
+  /// known of all, and a state that shows both with the labels. Wants a voxel size.
+  bool meshes = false;
+  int meshSmoothing = 10;  ///< see GrainMeshOptions
+  int meshReduction = 1;   ///< meshes of labels at 1/n, 1 to kMaxReduction
 };
 
 /// Writes labels over `box` as an OME-Zarr folder, whole or not at all; nothing is replaced.
@@ -38,8 +43,8 @@ struct OmeZarrOptions {
 /// Chunks are compressed by gzip; those of background alone are left out. The bytes depend on labels
 /// and options alone. Memory: that of measure(), one coarse level (a quarter of the labels' leaf
 /// nodes or less) and a chunk per thread.
-/// @throw InvalidInput if the box is empty, voxels are not along the axes, or as measure(); IoError;
-///   Interrupted.
+/// @throw InvalidInput if the box is empty, voxels are not along the axes, or as measure(); with meshes
+///   also without a voxel size, and as reduceLabels() and grainMesh(); IoError; Interrupted.
 void writeOmeZarr(const std::string& path, const Int32Grid& labels, const CoordBBox& box,
                   const OmeZarrOptions& options = {}, Interrupter* interrupter = nullptr);
 

@@ -3,9 +3,6 @@
 
 #include "vdb_madf/exports/detail/ome_attributes.h"
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "vdb_madf/base/detail/text.h"
@@ -13,7 +10,6 @@
 #include "vdb_madf/base/version.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/measure/columns.h"
 
 namespace vdb_madf::detail {
 
@@ -36,16 +32,6 @@ Json transformationsOf(const OmePlace& place, const OmeScale& level) {
                       {{"type", "translation"}, {"translation", translation}}});
 }
 
-/// A number of a column with nine digits, whole ones whole.
-std::string numberOf(const MeasureColumn& column, double value, const openvdb::Vec3d& edges) {
-  if (column.kind == MeasureColumn::Kind::count) return std::to_string(int64_t(value));
-  const double number = scaled(column, value, edges);
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, number == 0 ? 0.0 : number,
-                                 std::chars_format::general, 9);
-  return {text, end.ptr};
-}
-
 std::string colorsText(const GrainColors& colors) {
   std::string text = "[";
   for (size_t i = 0; i < colors.labels.size(); ++i) {
@@ -57,25 +43,12 @@ std::string colorsText(const GrainColors& colors) {
   return text + "]";
 }
 
-std::string propertiesText(const Measurements& measured) {
-  std::string unit = "voxel";
-  openvdb::Vec3d edges = measured.edges;
-  if (const auto& size = measured.voxelSize) {
-    unit = size->unit();
-    const std::array<double, 3> own = size->edgesInUnit();
-    edges *= *std::min_element(own.begin(), own.end());
-  }
-  const std::vector<MeasureColumn> columns = grainColumns(measured.grains);  // the first: the label
-  std::vector<std::string> keys;
-  for (const MeasureColumn& column : columns)
-    keys.push_back(", \"" + column.name + unitSuffix(column.power, unit) + "\": ");
+std::string propertiesText(const GrainTable& table) {
   std::string text = "[";
-  for (size_t row = 0; row < measured.grains.size(); ++row) {
-    text += (row ? ",\n" : "\n") + std::string("{\"label-value\": ") +
-            numberOf(columns[0], columns[0].values[row], edges);
-    for (size_t i = 1; i < columns.size(); ++i)
-      if (const double value = columns[i].values[row]; !std::isnan(value))
-        text += keys[i] + numberOf(columns[i], value, edges);
+  for (size_t row = 0; row < table.rows(); ++row) {
+    text += (row ? ",\n" : "\n") + std::string("{\"label-value\": ") + table.number(row, 0);
+    for (size_t i = 1; i < table.columns(); ++i)
+      if (table.isKnown(row, i)) text += ", \"" + table.name(i) + "\": " + table.number(row, i);
     text += "}";
   }
   return text + "]";
@@ -122,10 +95,9 @@ std::string multiscales(const std::string& name, const OmePlace& place,
   return Json::array({image}).dump();
 }
 
-std::string imageLabel(const Measurements& measured, const GrainColors& colors,
-                       OmeVersion version) {
+std::string imageLabel(const GrainTable& table, const GrainColors& colors, OmeVersion version) {
   return std::string("{") + (version == OmeVersion::v04 ? "\"version\": \"0.4\", " : "") +
-         "\"colors\": " + colorsText(colors) + ", \"properties\": " + propertiesText(measured) +
+         "\"colors\": " + colorsText(colors) + ", \"properties\": " + propertiesText(table) +
          ", \"source\": {\"image\": \"../../\"}}";
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_madf/exports/detail/grain_table.h"
 #include "vdb_madf/exports/ome_zarr.h"
 #include "vdb_madf/labels/grain_colors.h"
 
@@ -34,7 +35,7 @@ std::string multiscales(const std::string& name, const OmePlace& place,
 
 /// Colors and measures of the grains. (Written as text: as objects, they would be many times as
 /// large.)
-std::string imageLabel(const Measurements& measured, const GrainColors& colors, OmeVersion version);
+std::string imageLabel(const GrainTable& table, const GrainColors& colors, OmeVersion version);
 
 /// A name and JSON.
 using OmeMember = std::pair<std::string, std::string>;
