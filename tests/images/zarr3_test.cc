@@ -72,6 +72,22 @@ TEST_CASE("image_zarr3: every type, byte order and order of axes", "[image_zarr3
       }
 }
 
+TEST_CASE("image_zarr3: one transposition after the other", "[image_zarr3]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.zarr";
+  const std::string bytes = randomSamples(SampleType::uint8, voxels(kSize), 8);
+  Zarr3Layout layout = layoutOf(SampleType::uint8);
+  layout.order = "yxz";
+  auto files = zarr3Files(layout, bytes);
+  const auto transposition = [](const std::string& order) {
+    return R"({"name": "transpose", "configuration": {"order": )" + order + "}}";
+  };
+  files["zarr.json"] = replaced(files["zarr.json"], transposition("[1, 2, 0]"),
+                                transposition("[1, 0, 2]") + ", " + transposition("[0, 2, 1]"));
+  write(path, files);
+  checkReads(path, bytes);
+}
+
 TEST_CASE("image_zarr3: every codec, in shards or not, and every key", "[image_zarr3]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.zarr";
