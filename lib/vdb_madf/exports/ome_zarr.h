@@ -36,15 +36,15 @@ struct OmeZarrOptions {
 /// Arrays `0`, `1`, `2` ... are the volume at 1/1, 1/2, 1/4 ... until its longest side is that of
 /// a chunk, 64 (at most 1/256). Coarse voxel i stands for the voxels factor * i ... of the index
 /// space, as in reduced_labels.h: a label is the most frequent one, of equally frequent ones the
-/// smallest, with what lies outside the box as background; the object's value is 255 times its part
+/// smallest; background counts, also that beyond the box; the object's value is 255 times its part
 /// of the voxels, rounded half up. The translation of each level says where the centre of its first
 /// voxel lies, so that a voxel has the place in the world that its grid gives it.
 ///
 /// Chunks are compressed by gzip; those of background alone are left out. The bytes depend on labels
-/// and options alone. Memory: that of measure(), one coarse level (a quarter of the labels' leaf
-/// nodes or less) and a chunk per thread.
-/// @throw InvalidInput if the box is empty, voxels are not along the axes, or as measure(); with meshes
-///   also without a voxel size, and as reduceLabels() and grainMesh(); IoError; Interrupted.
+/// and options alone, those of meshes on the name of the folder, too. Memory: that of measure(), or
+/// the two grids of a coarse level and a chunk per thread; with meshes those of all grains.
+/// @throw InvalidInput if the box is empty, voxels are not along the axes, or as measure(); with
+///   meshes also without a voxel size, and as reduceLabels() and grainMesh(); IoError; Interrupted.
 void writeOmeZarr(const std::string& path, const Int32Grid& labels, const CoordBBox& box,
                   const OmeZarrOptions& options = {}, Interrupter* interrupter = nullptr);
 

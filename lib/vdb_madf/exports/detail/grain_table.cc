@@ -22,7 +22,7 @@ GrainTable::GrainTable(const Measurements& measured)
 }
 
 bool GrainTable::isKnown(size_t row, size_t column) const {
-  return !std::isnan(columns_[column].values[row]);
+  return std::isfinite(columns_[column].values[row]);
 }
 
 std::string GrainTable::number(size_t row, size_t column) const {

@@ -19,7 +19,7 @@ namespace vdb_madf::detail {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::json;  // of many colors: ordered_json would look for each among all
 
 const std::string kFolder = "neuroglancer/";
 constexpr char kFaceColumn[] = "at_domain_face";
