@@ -23,8 +23,8 @@ using Json = nlohmann::json;  // of many colors: ordered_json would look for eac
 
 const std::string kFolder = "neuroglancer/";
 constexpr char kFaceColumn[] = "at_domain_face";
-/// Whose meshes are shown at once: a browser takes long to load many more.
-constexpr size_t kMostShown = 2000;
+/// Of more grains no mesh is shown until it is chosen: a browser takes long to load them all.
+constexpr size_t kMostShown = 5000;
 /// As large as a section is on most screens.
 constexpr double kViewPixels = 400;
 
@@ -139,7 +139,8 @@ Json stateOf(const std::string& name, const CoordBBox& box, const OmePlace& plac
     std::snprintf(text, sizeof text, "#%02x%02x%02x", unsigned(c[0]), unsigned(c[1]),
                   unsigned(c[2]));
     palette[std::to_string(colors.labels[i])] = text;
-    if (i < kMostShown) shown.push_back(std::to_string(colors.labels[i]));
+    // (Where some are chosen, sections show no others; where none is, they show all.)
+    if (colors.labels.size() <= kMostShown) shown.push_back(std::to_string(colors.labels[i]));
   }
   Json grain, object, state;
   grain["type"] = "segmentation";
