@@ -9,6 +9,7 @@ find_package(ZLIB REQUIRED)
 find_package(TIFF REQUIRED)
 find_package(PNG REQUIRED)
 find_package(Blosc REQUIRED)  # with OpenVDB's own find module
+find_package(zstd REQUIRED)
 find_package(nlohmann_json REQUIRED)
 
 option(VDB_MADF_HDF5 "Read and write HDF5 if libhdf5 is found" ON)

@@ -261,7 +261,26 @@ def test_a_folder_of_meshes(labels, tmp_path):
     assert len(list((tmp_path / "grains").glob("grain_*.stl"))) == len(labels.ids)
 
 
+def test_ome_zarr_is_that_of_the_command_and_is_read_back(labels, tables, command, tmp_path):
+    for ome in ("0.4", "0.5"):
+        ours, theirs = (tmp_path / f"{place}{ome}.ome.zarr" for place in ("here", "there"))
+        with_meshes = ome == "0.5"
+        labels.save(ours, ome=ome, meshes=with_meshes, reduce=2)
+        command("export", tables / "labels.vdb", theirs, "--ome", ome, *["--meshes", "--reduce", "2"] * with_meshes)
+        files = sorted(path.relative_to(ours) for path in ours.rglob("*"))
+        assert len(files) > 8 and files == sorted(path.relative_to(theirs) for path in theirs.rglob("*"))
+        for file in files:
+            if file.name == "state.json":  # it has the name of the folder
+                continue
+            assert (ours / file).is_dir() or (ours / file).read_bytes() == (theirs / file).read_bytes()
+        read = madf.Labels(ours, dataset="labels/grain")
+        assert np.array_equal(read, labels) and read.spacing == labels.spacing
+        with pytest.raises(madf.IoError, match="already"):
+            labels.save(ours)
+
+
 @pytest.mark.parametrize("name, arguments, text", [
+    ("a.zarr", dict(ome="0.3"), "0.4 or 0.5"),
     ("a.docx", {}, "no format has the ending '.docx'"),
     ("a.csv", {}, "kind='network' or 'clumps'"),
     ("a.png", dict(kind="mesh"), "must be one of .ply"),

@@ -302,6 +302,8 @@ def export():
     yield f"{labels} cells.vti"
     yield f"{labels} compressed.vti --compress --threads 1"
     yield f"{labels} named.vti --as vti"
+    yield f"{labels} cells.ome.zarr"
+    yield f"{labels} cells5.zarr --ome 0.5 --threads 1"
     yield f"{labels} network.graphml"
     for ending in ("vtp", "graphml", "csv"):
         yield f"{labels} network.{ending} --as network --voxel-size 2mm"

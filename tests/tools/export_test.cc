@@ -6,6 +6,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
 
 #include "support/program.h"
 
@@ -16,6 +20,18 @@ namespace {
 void makeLabels(const Bench& bench) {
   bench.mustRun("generate spheres s.vdb --size 40 --count 5 --radius 6:9 --voxel-size 10um");
   bench.mustRun("segment s.vdb g.vdb --keep balls");
+}
+
+/// The bytes of the files of a folder, by their names within.
+std::map<std::string, std::string> treeOf(const std::string& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) {
+      std::ifstream file(entry.path(), std::ios::binary);
+      files[entry.path().lexically_relative(folder).string()] =
+          std::string(std::istreambuf_iterator<char>(file), {});
+    }
+  return files;
 }
 
 }  // namespace
@@ -69,6 +85,28 @@ TEST_CASE("cli: export writes every kind, the same for any number of threads", "
   CHECK(bench.bytes("folder/grain_000001.stl").size() > 84);
 }
 
+TEST_CASE("cli: OME-Zarr is the same for any number of threads, and read back", "[cli]") {
+  const Bench bench;
+  makeLabels(bench);
+  for (const std::string version : {"0.4", "0.5"}) {
+    CAPTURE(version);
+    const std::string options = " --ome " + version;
+    CHECK(bench.mustRun("export g.vdb a.ome.zarr" + options).find("OME-Zarr " + version) !=
+          std::string::npos);
+    bench.mustRun("export g.vdb b.zarr --as zarr -q --threads 1" + options);
+    CHECK(treeOf(bench.path("a.ome.zarr")) == treeOf(bench.path("b.zarr")));
+    CHECK(treeOf(bench.path("a.ome.zarr")).size() > 5);
+    bench.mustRun("convert g.vdb g.npy --grid grain -q");
+    bench.mustRun("convert b.zarr/labels/grain z.npy --type int32 -q");
+    CHECK(bench.bytes("z.npy") == bench.bytes("g.npy"));
+    const Outcome again = bench.run("export g.vdb a.ome.zarr");
+    CHECK(again.exitCode == 1);
+    CHECK(again.err.find("already") != std::string::npos);
+    std::filesystem::remove_all(bench.path("a.ome.zarr"));
+    std::filesystem::remove_all(bench.path("b.zarr"));
+  }
+}
+
 TEST_CASE("cli: endings in upper case are the same", "[cli]") {
   const Bench bench;
   makeLabels(bench);
@@ -100,7 +138,7 @@ TEST_CASE("cli: labels without a voxel are exported, but for their surface", "[c
   for (const std::string out :
        {"m.ply", "m.obj", "m.stl", "folder --as mesh", "m.vtp --as mesh", "v.vdb --as viz",
         "l.vdb --as lod", "g.vdb --as grids", "i.vti", "n.vtp --as network", "n.graphml", "h.vtu",
-        "h.inp", "k.raw --as mask"})
+        "h.inp", "k.raw --as mask", "z.zarr"})
     bench.mustRun("export zero.raw " + out + layout);
   const Outcome surface = bench.run("export zero.raw s.vdb --as surface" + layout);
   CHECK(surface.exitCode == 1);
@@ -132,6 +170,7 @@ TEST_CASE("cli: an export onto a full disk leaves nothing", "[cli]") {
                                 "h.vtu",
                                 "h.inp",
                                 "k.raw --as mask",
+                                "z.ome.zarr",
                                 "k.tif --as mask",
                                 "k.mhd --as mask"}) {
     CAPTURE(out);
@@ -146,7 +185,7 @@ TEST_CASE("cli: an export onto a full disk leaves nothing", "[cli]") {
 TEST_CASE("cli: a signal ends an export and leaves nothing", "[cli]") {
   const Bench bench;
   bench.mustRun("generate spheres s.vdb --size 200 --count 40 --radius 18:24");
-  for (const std::string out : {"m.obj", "h.inp"}) {
+  for (const std::string out : {"m.obj", "h.inp", "z.zarr"}) {
     RunOptions interrupted;
     interrupted.signal = SIGINT;
     interrupted.interruptOn = "." + out;  // the temporary file: the work has begun
@@ -195,6 +234,10 @@ TEST_CASE("cli: export refuses what it cannot know or do", "[cli]") {
   refusal("g.vdb x.ply --as viz", 2, ".vdb");
   refusal("g.vdb x.vdb --as picture", 2, "mesh");
   refusal("g.vdb x.vtk --as hexa", 2, ".inp");
+  refusal("g.vdb x --as zarr", 2, ".zarr");
+  refusal("g.vdb x.zarr --ome 0.3", 2, "ome");
+  refusal("s.vdb x.zarr --grid truth --meshes --smooth 2000", 2, "smooth");
+  refusal("g.vdb none/x.zarr", 1, "none/x.zarr");
   refusal("g.vdb x.ply --smooth -1", 2, "smooth");
   refusal("g.vdb x.vdb --as viz --reduce 2 --max-dim 9", 2, "max-dim");
   refusal("g.vdb g.vdb --as viz", 2, "overwrite");

@@ -12,6 +12,7 @@
 #include "vdb_madf/exports/clump_file.h"
 #include "vdb_madf/exports/hexahedra_file.h"
 #include "vdb_madf/exports/network_file.h"
+#include "vdb_madf/exports/ome_zarr.h"
 #include "vdb_madf/exports/vti_file.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/open_image.h"
@@ -144,6 +145,20 @@ TEST_CASE("world_place: images that have an origin", "[world_place]") {
   writeImage(folder / "c.nrrd", *grid, box, SampleType::int32);
   CHECK(numbersAfter(readFile(folder / "c.nrrd"), "\nspace origin:") == box.min().asVec3d());
   CHECK_FALSE(openImage(folder / "c.nrrd")->info().voxelSize);
+}
+
+TEST_CASE("world_place: OME-Zarr", "[world_place]") {
+  const ScratchFolder folder;
+  const CoordBBox box(Coord(-9, -8, 1), Coord(4, 6, 8));
+  for (const Vec3d& edges : {kCube, kFlat}) {
+    const std::string path = folder / ("a" + std::to_string(edges[2]) + ".ome.zarr");
+    const auto grid = markedGrid(edges);
+    writeOmeZarr(path, *grid, box);
+    const std::string labels = path + "/labels/grain";
+    const Vec3d zyx = numbersAfter(readFile(labels + "/.zattrs"), "\"translation\":[");
+    checkImage(labels, Vec3d(zyx[2], zyx[1], zyx[0]) * 1e-3, edges);  // micrometers
+    CHECK(openImage(labels)->info().voxelSize->edges() == storedVoxelSize(*grid)->edges());
+  }
 }
 
 TEST_CASE("world_place: VTI, compressed or not", "[world_place]") {

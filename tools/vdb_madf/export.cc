@@ -20,9 +20,11 @@
 #include "vdb_madf/exports/hexahedra_file.h"
 #include "vdb_madf/exports/mesh_file.h"
 #include "vdb_madf/exports/network_file.h"
+#include "vdb_madf/exports/ome_zarr.h"
 #include "vdb_madf/exports/vti_file.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/output_folder.h"
+#include "vdb_madf/files/output_tree.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/images/open_image.h"
@@ -48,9 +50,10 @@ struct Options {
   InputOptions input;
   std::string out, kind, minFaces = "1";
   std::string bonds, cover;  ///< of clumps; empty: not written
+  std::string ome = "0.4";
   int smoothing = 10, maxDim = 0, reduce = 0;
   int64_t mostTriangles = 0;  ///< 0: any number
-  bool compress = false, asBool = false;
+  bool compress = false, asBool = false, meshes = false;
   ClumpOptions clumps;
   MeasureOptions measure;
 };
@@ -60,6 +63,7 @@ std::string kindOf(const std::string& out) {
   const std::string ending = fileEnding(out);
   if (ending == ".vti") return "vti";
   if (ending == ".graphml") return "network";
+  if (isZarrEnding(out)) return "zarr";
   if (isHexahedraEnding(out)) return "hexa";
   return isMeshEnding(out) && ending != ".vtp" ? "mesh" : "";
 }
@@ -257,6 +261,22 @@ void exportHexahedra(const Options& o, const Common& common, const Int32Grid& la
           counted(counts.nodes, "node"));
 }
 
+void exportZarr(const Options& o, const Common& common, const Int32Grid& labels) {
+  const CoordBBox box = boxOf(labels);
+  OmeZarrOptions options;
+  options.version = omeVersionOf(o.ome);
+  options.measure = o.measure;
+  options.meshes = o.meshes;
+  options.meshSmoothing = o.smoothing;
+  options.meshReduction = reductionOf(o, labels);
+  writeOmeZarr(o.out, labels, box, options, common.progress);
+  const Coord size = box.dim();
+  say(o, common,
+      "OME-Zarr " + o.ome + ", the object and labels/grain, " + std::to_string(size.x()) + "x" +
+          std::to_string(size.y()) + "x" + std::to_string(size.z()) + " voxels" +
+          (o.meshes ? "; meshes and measures for neuroglancer" : ""));
+}
+
 void exportMask(const Options& o, const Common& common, const Int32Grid& labels) {
   const CoordBBox box = boxOf(labels);
   writeImage(o.out, *objectMask(labels), box, SampleType::uint8, common.progress);
@@ -283,6 +303,7 @@ constexpr Kind kKinds[] = {
     {"hexa", exportHexahedra, ".vtu or .inp (Abaqus)", isHexahedraEnding},
     {"mask", exportMask, ".tif, .raw, .mhd, .mha, .nrrd, .npy or .h5", isImageEnding},
     {"network", exportNetwork, ".vtp, .graphml or .csv", isNetworkEnding},
+    {"zarr", exportZarr, ".zarr, a folder (.ome.zarr)", isZarrEnding},
 };
 
 std::vector<std::string> kindList() {
@@ -323,6 +344,8 @@ void checkTables(const Options& o, const Kind& kind) {
 void run(const Options& o, const Common& common, const Kind& kind) {
   if (fileEnding(o.out).empty())
     checkOutputFolder(o.out);
+  else if (kind.run == exportZarr)
+    checkOutputTree(o.out);
   else
     checkWritable(o.out);
   for (const std::string& file : {o.bonds, o.cover})
@@ -345,14 +368,16 @@ void addExport(Verb command, Common& common, Action& action) {
       .offer(kindList());
   verb.option("--grid", o->input.gridName, "VDB input: the grid to take").typeName("NAME");
   verb.option("--smooth", o->smoothing,
-              "mesh, grids, surface: rounds of smoothing; 0: the exact "
+              "mesh, grids, surface, zarr: rounds of smoothing; 0: the exact "
               "faces of the voxels")
       .range(0, 1000)
       .showDefault();
   Option maxDim =
-      verb.option("--max-dim", o->maxDim, "mesh, viz, lod: reduce until no axis has more voxels");
+      verb.option("--max-dim", o->maxDim,
+                  "mesh, viz, lod, zarr (its meshes): reduce until no axis has more voxels");
   maxDim.range(1, kMaxImageSide);
-  verb.option("--reduce", o->reduce, "mesh, viz, lod: voxels per coarse voxel along an axis")
+  verb.option("--reduce", o->reduce,
+              "mesh, viz, lod, zarr (its meshes): voxels per coarse voxel along an axis")
       .range(1, kMaxReduction)
       .excludes(maxDim);
   verb.option("--triangles", o->mostTriangles,
@@ -366,7 +391,7 @@ void addExport(Verb command, Common& common, Action& action) {
   verb.option("--uncovered", o->clumps.coverageError,
               "clumps: part of a grain that may stay uncovered, 0 to 1")
       .showDefault();
-  verb.option("--min-faces", o->minFaces, "network: fewest voxel faces of a bond")
+  verb.option("--min-faces", o->minFaces, "network, zarr: fewest voxel faces of a bond")
       .typeName("N")
       .showDefault();
   verb.flag(
@@ -376,6 +401,11 @@ void addExport(Verb command, Common& common, Action& action) {
       .typeName("FILE.csv");
   verb.option("--cover", o->cover, "clumps: also a table of how well each grain is covered")
       .typeName("FILE.csv");
+  verb.option("--ome", o->ome, "zarr: version of OME-Zarr, 0.4 (Zarr 2) or 0.5 (Zarr 3)")
+      .typeName("VERSION")
+      .oneOf({"0.4", "0.5"})
+      .showDefault();
+  verb.flag("--meshes", o->meshes, "zarr: also meshes and measures for neuroglancer");
   o->input.addRaw(verb);
   o->input.addVoxelSize(verb);
   verb.onParsed([o, &common, &action] {

@@ -8,6 +8,7 @@
 #include "vdb_madf/exports/hexahedra_file.h"
 #include "vdb_madf/exports/mesh_file.h"
 #include "vdb_madf/exports/network_file.h"
+#include "vdb_madf/exports/ome_zarr.h"
 #include "vdb_madf/exports/vti_file.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
@@ -96,6 +97,19 @@ void saveNetwork(const std::string& path, const GridPtr& labels, int64_t minFace
   });
 }
 
+void saveZarr(const std::string& path, const GridPtr& labels, const std::string& ome,
+              int64_t minFaces, bool meshes, int smoothing, int reduction, const Call& call) {
+  write(call, [&](Interrupter* interrupter) {
+    OmeZarrOptions options;
+    options.version = omeVersionOf(ome);
+    options.measure.minFaces = minFaces;
+    options.meshes = meshes;
+    options.meshSmoothing = smoothing;
+    options.meshReduction = reduction;
+    writeOmeZarr(path, asLabels(*labels), shownBox(*labels), options, interrupter);
+  });
+}
+
 void saveClumps(const std::string& path, const GridPtr& labels, const GridPtr& balls, int mostBalls,
                 double uncovered, bool apart, const Call& call) {
   write(call, [&](Interrupter* interrupter) {
@@ -157,6 +171,8 @@ void bindFiles(py::module_& m) {
         call);
   m.def("save_vti", saveVti, path, labels, py::arg("compressed"), call);
   m.def("save_network", saveNetwork, path, labels, py::arg("min_faces"), call);
+  m.def("save_zarr", saveZarr, path, labels, py::arg("ome"), py::arg("min_faces"),
+        py::arg("meshes"), py::arg("smoothing"), py::arg("reduction"), call);
   m.def("save_clumps", saveClumps, path, labels, py::arg("balls"), py::arg("max_balls"),
         py::arg("uncovered"), py::arg("apart"), call);
   m.def("save_hexahedra", saveHexahedra, path, labels, call);

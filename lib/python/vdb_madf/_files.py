@@ -20,6 +20,7 @@ KINDS = {
     "network": (".graphml", ".vtp", ".csv"),
     "clumps": (".txt", ".data", ".csv"),
     "hexahedra": (".vtu", ".inp"),
+    "zarr": (".zarr",),
     "preview": (".vdb",),
     "level sets": (".vdb",),
     "surface": (".vdb",),

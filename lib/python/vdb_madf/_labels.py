@@ -164,7 +164,7 @@ class Labels(Volume):
     def save(self, path: Union[str, "os.PathLike[str]"], *, kind: Optional[str] = None,
              type: Optional[str] = None, smoothing: int = 10, reduce: int = 1,
              triangles: Optional[int] = None, compress: bool = False, min_faces: int = 1,
-             max_balls: int = 100, uncovered: float = 0.02, apart: bool = False, size: int = 512,
+             ome: str = "0.4", meshes: bool = False, max_balls: int = 100, uncovered: float = 0.02, apart: bool = False, size: int = 512,
              azimuth: float = 35, elevation: float = 25, progress: Progress = None,
              threads: int = 0) -> None:
         """Writes a file, whole or not at all; what it is the ending says, or `kind` where it does not:
@@ -175,6 +175,9 @@ class Labels(Volume):
           files; `smoothing`, `reduce`, `triangles`
         - "vti": VTK's image, `compress`; "hexahedra": .vtu, .inp (Abaqus), an element a voxel
         - "network": .graphml, .vtp, .csv: grains and bonds with their measures, `min_faces` of a bond
+        - "zarr": .zarr, a folder that is not there yet: OME-Zarr `ome` "0.4" or "0.5" for napari,
+          neuroglancer and others: pyramids of the object and of `labels/grain`, colors and measures;
+          `meshes` (`smoothing`, `reduce`): also meshes and measures for neuroglancer
         - "clumps": .txt (YADE), .data (LAMMPS), .csv: grains as balls, `max_balls` each, `uncovered`
           part of them, `apart` if balls of different grains shall not overlap
         - "preview" (fog and color, `reduce`), "level sets", "surface" (`smoothing`): .vdb for renderers
@@ -202,6 +205,8 @@ class Labels(Volume):
                 _core.save_vti(name, grid, compress, call)
             elif kind == "network":
                 _core.save_network(name, grid, min_faces, call)
+            elif kind == "zarr":
+                _core.save_zarr(name, grid, ome, min_faces, meshes, smoothing, reduce, call)
             elif kind == "clumps":
                 balls = _core.ball_grids(_core.mask_of_labels(grid), call)
                 _core.save_clumps(name, grid, balls, max_balls, uncovered, apart, call)

@@ -20,8 +20,8 @@ constexpr int kWindowBits = 15 + 32;
 
 }  // namespace
 
-InflateStream::InflateStream(const InputFile& file, uint64_t offset)
-    : file_(file), next_(offset), input_(kInputBytes) {
+InflateStream::InflateStream(const InputFile& file, uint64_t offset, uint64_t end)
+    : file_(file), next_(offset), end_(std::min(end, file.size())), input_(kInputBytes) {
   if (inflateInit2(&stream_, kWindowBits) != Z_OK) throw std::bad_alloc();
 }
 
@@ -31,8 +31,8 @@ InflateStream::~InflateStream() {
 
 size_t InflateStream::inflateSome(unsigned char* to, size_t count) {
   while (count > 0) {
-    if (stream_.avail_in == 0 && next_ < file_.size()) {
-      const size_t bytes = size_t(std::min<uint64_t>(kInputBytes, file_.size() - next_));
+    if (stream_.avail_in == 0 && next_ < end_) {
+      const size_t bytes = size_t(std::min<uint64_t>(kInputBytes, end_ - next_));
       file_.read(next_, input_.data(), bytes);
       next_ += bytes;
       stream_.next_in = input_.data();

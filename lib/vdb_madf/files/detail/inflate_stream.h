@@ -19,7 +19,8 @@ class InflateStream {
   /// what a header may claim.
   static constexpr uint64_t kMaxExpansion = 1032;
 
-  InflateStream(const InputFile& file, uint64_t offset);
+  /// \param end: of the stream in the file, at the latest
+  InflateStream(const InputFile& file, uint64_t offset, uint64_t end = ~uint64_t(0));
   ~InflateStream();
   InflateStream(const InflateStream&) = delete;
   InflateStream& operator=(const InflateStream&) = delete;
@@ -35,6 +36,7 @@ class InflateStream {
 
   const InputFile& file_;
   uint64_t next_;
+  const uint64_t end_;
   std::vector<unsigned char> input_;
   z_stream stream_{};
   bool ended_ = false;

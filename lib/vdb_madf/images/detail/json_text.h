@@ -14,13 +14,36 @@ namespace vdb_madf::detail {
 
 using Json = nlohmann::json;
 
-/// The object in a JSON file. @throw IoError
-inline Json jsonObject(const std::string& name, const std::string& path) {
-  constexpr uint64_t kMaxBytes = uint64_t(1) << 22;
+/// The object in a JSON file, of at most so many bytes. @throw IoError
+inline Json jsonObject(const std::string& name, const std::string& path,
+                       const Json::parser_callback_t& keep = nullptr,
+                       uint64_t mostBytes = uint64_t(1) << 22) {
   const InputFile file(name, path);
-  if (file.size() > kMaxBytes) throw IoError(file.name() + ": is too long for a description");
-  Json json = Json::parse(file.head(kMaxBytes), nullptr, false);
+  if (file.size() > mostBytes) throw IoError(file.name() + ": is too long for a description");
+  Json json = Json::parse(file.head(mostBytes), keep, false);
   if (!json.is_object()) throw IoError(file.name() + ": is no JSON object");
+  return json;
+}
+
+/// The same without the members `image-label`, which have a part for each of maybe a million labels;
+/// what is left may still not be long. @throw IoError
+inline Json jsonObjectWithoutLabels(const std::string& name, const std::string& path) {
+  constexpr uint64_t kMaxBytes = uint64_t(1) << 31;
+  constexpr size_t kMaxParts = size_t(1) << 18;
+  using Event = Json::parse_event_t;
+  int leftOut = -1;  // the depth of such a member's key, while within it
+  size_t parts = 0;
+  Json json = jsonObject(
+      name, path,
+      [&](int depth, Event event, Json& value) {
+        const bool isKey = event == Event::key;
+        if (leftOut >= 0 && (depth < leftOut || (isKey && depth == leftOut))) leftOut = -1;
+        if (leftOut < 0 && isKey && value == "image-label") leftOut = depth;
+        if (leftOut >= 0) return false;
+        return event == Event::object_end || event == Event::array_end || ++parts <= kMaxParts;
+      },
+      kMaxBytes);
+  if (parts > kMaxParts) throw IoError(name + ": has too long a description");
   return json;
 }
 

@@ -32,9 +32,12 @@ bool isThere(const fs::path& path) {
 
 /// The first image of the group's OME-Zarr metadata; null if there is none.
 Json multiscale(const std::string& name, const fs::path& group) {
-  const fs::path path = group / ".zattrs";
-  if (!isThere(path)) return {};
-  const Json attributes = jsonObject(name, path.string());
+  Json attributes;
+  if (isThere(group / ".zattrs"))
+    attributes = jsonObjectWithoutLabels(name, (group / ".zattrs").string());
+  else if (isThere(group / "zarr.json"))
+    attributes = member(
+        member(jsonObjectWithoutLabels(name, (group / "zarr.json").string()), "attributes"), "ome");
   const Json& images = member(attributes, "multiscales");
   return images.is_array() && !images.empty() && images[0].is_object() ? images[0] : Json();
 }
@@ -69,8 +72,9 @@ std::optional<VoxelSize> voxelSizeOf(const std::string& name, const Json& image,
   std::vector<double> scale(axesCount, 1.0);
   if (!applyScales(transformations, scale) ||
       !applyScales(member(image, "coordinateTransformations"), scale))
-    throw IoError(name + ": its scales cannot be read: correct .zattrs, or give the voxel size",
-                  Hint::voxelSize);
+    throw IoError(
+        name + ": its scales cannot be read: correct its metadata, or give the voxel size",
+        Hint::voxelSize);
   std::array<double, 3> edges;
   std::array<std::optional<double>, 3> units;
   for (size_t i = 0; i < 3; ++i) {  // x, y, z
@@ -91,7 +95,8 @@ std::string chooseArray(const std::string& path, const Json& image) {
   std::error_code error;
   for (fs::directory_iterator entry(path, error), end; !error && entry != end;
        entry.increment(error))
-    if (isThere(entry->path() / ".zarray")) arrays.push_back(entry->path().filename().string());
+    if (ZarrArray::isThere(path, entry->path().string()))
+      arrays.push_back(entry->path().filename().string());
   std::sort(arrays.begin(), arrays.end());
   if (arrays.size() == 1) return arrays[0];
   std::string list;
@@ -102,6 +107,20 @@ std::string chooseArray(const std::string& path, const Json& image) {
                   Hint::dataset);
   throw IoError(path + ": choose one of its arrays: " + list + (arrays.size() > 8 ? " ..." : ""),
                 Hint::dataset);
+}
+
+/// What the groups around an array say of it, the nearest first: it may be called "a/b".
+std::optional<VoxelSize> voxelSizeOf(const std::string& name, const fs::path& array,
+                                     size_t axesCount) {
+  for (fs::path group = array.parent_path(); isZarrFolder(group.string());
+       group = group.parent_path()) {
+    const Json image = multiscale(name, group);
+    if (const auto size =
+            voxelSizeOf(name, image, array.lexically_relative(group).string(), axesCount))
+      return size;
+    if (!group.has_filename() || group == group.parent_path()) break;
+  }
+  return std::nullopt;
 }
 
 class ZarrReader : public ImageReader {
@@ -164,26 +183,19 @@ bool isZarrFolder(const std::string& path) {
 }
 
 std::unique_ptr<ImageReader> openZarr(const std::string& path, const std::string& dataset) {
-  fs::path group(path), array(path);
-  if (!group.has_filename()) group = array = group.parent_path();  // ends with a slash
-  std::string name = dataset;
-  Json image;
-  if (dataset.empty() && isThere(array / ".zarray")) {
-    name = array.filename().string();
-    group = array.parent_path();
-    image = multiscale(path, group);
-  } else {
-    if (isThere(group / "zarr.json") && !isThere(group / ".zgroup"))
-      throw IoError(path + ": is Zarr of version 3; only version 2 can be read");
-    image = multiscale(path, group);
-    if (name.empty()) name = chooseArray(path, image);
-    array = group / name;
-  }
-  if (!isThere(array / ".zarray"))
-    throw IoError(path + ": there is no Zarr array " + detail::quoted(name) +
-                  " of version 2 in it");
+  fs::path array(path);
+  if (!array.has_filename()) array = array.parent_path();  // ends with a slash
+  std::string within = dataset;
+  within.erase(0, std::min(within.find_first_not_of('/'), within.size()));
+  if (!within.empty()) array = (array / within).lexically_normal();
+  if (!array.has_filename()) array = array.parent_path();
+  if (!ZarrArray::isThere(path, array.string()) && isZarrFolder(array.string()))
+    array /= chooseArray(array.string(), multiscale(path, array));
+  if (!ZarrArray::isThere(path, array.string()))
+    throw IoError(path + ": there is no Zarr array " +
+                  detail::quoted(dataset.empty() ? array.filename().string() : dataset) + " in it");
   auto reader = std::make_unique<ZarrReader>(path, array.string());
-  if (!image.is_null()) reader->setVoxelSize(voxelSizeOf(path, image, name, reader->axes()));
+  reader->setVoxelSize(voxelSizeOf(path, array, reader->axes()));
   return reader;
 }
 

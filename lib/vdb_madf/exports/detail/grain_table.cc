@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/exports/detail/grain_table.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace vdb_madf::detail {
+
+GrainTable::GrainTable(const Measurements& measured)
+    : columns_(grainColumns(measured.grains)), edges_(measured.edges) {
+  std::string unit = "voxel";
+  if (const auto& size = measured.voxelSize) {
+    unit = size->unit();
+    const std::array<double, 3> own = size->edgesInUnit();
+    edges_ *= *std::min_element(own.begin(), own.end());
+  }
+  for (const MeasureColumn& column : columns_)
+    names_.push_back(column.name + unitSuffix(column.power, unit));
+}
+
+bool GrainTable::isKnown(size_t row, size_t column) const {
+  return std::isfinite(columns_[column].values[row]);
+}
+
+std::string GrainTable::number(size_t row, size_t column) const {
+  const MeasureColumn& own = columns_[column];
+  if (own.kind == MeasureColumn::Kind::count) return std::to_string(int64_t(own.values[row]));
+  const double value = scaled(own, own.values[row], edges_);
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value == 0 ? 0.0 : value,
+                                 std::chars_format::general, 9);
+  return {text, end.ptr};
+}
+
+}  // namespace vdb_madf::detail

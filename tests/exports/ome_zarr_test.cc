@@ -1,0 +1,352 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/exports/ome_zarr.h"
+
+#include <zlib.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "support/files.h"
+#include "support/label_shapes.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/labels/grain_colors.h"
+#include "vdb_madf/measure/columns.h"
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr OmeVersion kVersions[] = {OmeVersion::v04, OmeVersion::v05};
+
+std::string gunzipped(const std::string& coded, size_t size) {
+  std::string bytes(size + 1, '\0');
+  z_stream stream{};
+  inflateInit2(&stream, 15 + 16);
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(coded.data()));
+  stream.avail_in = uInt(coded.size());
+  stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
+  stream.avail_out = uInt(bytes.size());
+  const int result = inflate(&stream, Z_FINISH);
+  const size_t made = stream.total_out;
+  inflateEnd(&stream);
+  if (result != Z_STREAM_END || made != size) throw std::runtime_error("not a chunk");
+  bytes.resize(size);
+  return bytes;
+}
+
+Coord fromZyx(const Json& json) {
+  REQUIRE(json.size() == 3);
+  return {json[2].get<int>(), json[1].get<int>(), json[0].get<int>()};
+}
+
+/// An array as a reader of Zarr sees it, by the definition.
+struct Array {
+  Coord size, chunk;
+  size_t sampleBytes = 0, chunkFiles = 0;
+  std::map<Coord, uint32_t> values;  ///< that are not 0
+  size_t emptyChunkFiles = 0;
+};
+
+Array readArray(const std::string& path, OmeVersion version) {
+  const bool isThree = version == OmeVersion::v05;
+  const Json json = Json::parse(readFile(path + (isThree ? "/zarr.json" : "/.zarray")));
+  Array array;
+  array.size = fromZyx(json.at("shape"));
+  const std::string type = json.at(isThree ? "data_type" : "dtype");
+  array.sampleBytes = type == "uint32" || type == "<u4" ? 4 : 1;
+  CHECK(json.at("zarr_format") == (isThree ? 3 : 2));
+  CHECK(json.at("fill_value") == 0);
+  if (isThree) {
+    CHECK(json.at("node_type") == "array");
+    CHECK(type == (array.sampleBytes == 4 ? "uint32" : "uint8"));
+    array.chunk = fromZyx(json.at("chunk_grid").at("configuration").at("chunk_shape"));
+    CHECK(json.at("codecs").at(0) ==
+          Json::parse(R"({"name": "bytes", "configuration": {"endian": "little"}})"));
+    CHECK(json.at("codecs").at(1).at("name") == "gzip");
+    CHECK(json.at("codecs").size() == 2);
+    CHECK(json.at("chunk_key_encoding") ==
+          Json::parse(R"({"name": "default", "configuration": {"separator": "/"}})"));
+  } else {
+    CHECK(type == (array.sampleBytes == 4 ? "<u4" : "|u1"));
+    array.chunk = fromZyx(json.at("chunks"));
+    CHECK(json.at("compressor").at("id") == "gzip");
+    CHECK(json.at("dimension_separator") == "/");
+    CHECK(json.at("order") == "C");
+    CHECK(json.at("filters").is_null());
+  }
+  for (int axis = 0; axis < 3; ++axis) CHECK(array.chunk[axis] == std::min(64, array.size[axis]));
+  const Coord c = array.chunk;
+  const size_t voxels = size_t(c.x()) * size_t(c.y()) * size_t(c.z());
+  for (const auto& entry : fs::recursive_directory_iterator(path)) {
+    const std::string name = entry.path().lexically_relative(path).string();
+    if (entry.is_directory() || name[0] == '.' || name == "zarr.json") continue;
+    int z = 0, y = 0, x = 0;
+    REQUIRE(std::sscanf(name.c_str(), isThree ? "c/%d/%d/%d" : "%d/%d/%d", &z, &y, &x) == 3);
+    ++array.chunkFiles;
+    const std::string bytes =
+        gunzipped(readFile(entry.path().string()), voxels * array.sampleBytes);
+    size_t place = 0, found = 0;
+    for (int k = 0; k < c.z(); ++k)
+      for (int j = 0; j < c.y(); ++j)
+        for (int i = 0; i < c.x(); ++i, ++place) {
+          uint32_t value = 0;
+          std::memcpy(&value, &bytes[place * array.sampleBytes], array.sampleBytes);
+          if (value == 0) continue;
+          ++found;
+          array.values[Coord(x * c.x() + i, y * c.y() + j, z * c.z() + k)] = value;
+        }
+    array.emptyChunkFiles += found == 0;
+  }
+  return array;
+}
+
+Json attributesOf(const std::string& path, OmeVersion version) {
+  if (version == OmeVersion::v04) {
+    CHECK(Json::parse(readFile(path + "/.zgroup")) == Json::parse(R"({"zarr_format": 2})"));
+    return Json::parse(readFile(path + "/.zattrs"));
+  }
+  const Json json = Json::parse(readFile(path + "/zarr.json"));
+  CHECK(json.at("zarr_format") == 3);
+  CHECK(json.at("node_type") == "group");
+  CHECK(json.at("attributes").at("ome").at("version") == "0.5");
+  return json.at("attributes").at("ome");
+}
+
+int floorDiv(int a, int b) {
+  return int(std::floor(double(a) / b));
+}
+Coord floorDiv(const Coord& p, int factor) {
+  return {floorDiv(p.x(), factor), floorDiv(p.y(), factor), floorDiv(p.z(), factor)};
+}
+
+/// What the arrays at 1/factor should hold, counted voxel by voxel.
+struct Wanted {
+  std::map<Coord, uint32_t> labels, gray;
+};
+Wanted reduced(const LabelMap& voxels, const Coord& first, int factor) {
+  std::map<Coord, std::map<int32_t, int64_t>> counts;
+  for (const auto& [p, label] : voxels)
+    ++counts[floorDiv(p, factor) - floorDiv(first, factor)][label];
+  Wanted wanted;
+  const int64_t all = int64_t(factor) * factor * factor;
+  for (const auto& [p, labels] : counts) {
+    int64_t background = all, most = 0;
+    uint32_t label = 0;
+    for (const auto& [candidate, count] : labels) {
+      background -= count;
+      if (count <= most) continue;
+      most = count;
+      label = uint32_t(candidate);
+    }
+    if (most > background) wanted.labels[p] = label;
+    const auto gray = uint32_t(std::floor(255.0 * double(all - background) / double(all) + 0.5));
+    if (gray) wanted.gray[p] = gray;
+  }
+  return wanted;
+}
+
+const CoordBBox kBox(Coord(-9, -40, 3), Coord(190, 30, 24));
+
+/// Two heaps far from each other, a tile, single voxels in the corners of kBox.
+LabelMap heaps() {
+  LabelMap voxels = randomLabels(1, Coord(-9, -40, 3), 12, 5, 75);
+  for (const auto& one : randomLabels(2, Coord(50, -5, 4), 21, 3, 60)) voxels.insert(one);
+  for (int x = 0; x < 8; ++x)
+    for (int y = 0; y < 8; ++y)
+      for (int z = 0; z < 8; ++z) voxels[{x, y, z + 8}] = 9;
+  voxels[kBox.min()] = 123456;
+  voxels[kBox.max()] = 2147483647;
+  return voxels;
+}
+
+Int32Grid::Ptr heapGrid() {
+  LabelMap voxels = heaps();
+  for (auto voxel = voxels.begin(); voxel != voxels.end();)
+    voxel = voxel->second == 9 ? voxels.erase(voxel) : std::next(voxel);
+  const auto grid = labelGrid(voxels);
+  grid->tree().addTile(1, Coord(0, 0, 8), 9, true);
+  grid->tree().setValueOn(Coord(30, 0, 5), -4);  // neither is a label
+  grid->tree().setValueOff(Coord(31, 0, 5), 44);
+  setDomain(*grid, kBox);
+  return grid;
+}
+
+}  // namespace
+
+TEST_CASE("ome_zarr: each level holds the most frequent labels, and the object's part",
+          "[ome_zarr]") {
+  const LabelMap voxels = heaps();
+  for (const OmeVersion version : kVersions) {
+    const ScratchFolder folder;
+    const std::string path = folder / "a.ome.zarr";
+    OmeZarrOptions options;
+    options.version = version;
+    writeOmeZarr(path, *heapGrid(), kBox, options);
+    CHECK(folder.fileCount() == 1);
+    for (int level = 0; level < 3; ++level) {
+      CAPTURE(int(version), level);
+      const int factor = 1 << level;
+      const std::string name = "/" + std::to_string(level);
+      const Array labels = readArray(path + "/labels/grain" + name, version),
+                  object = readArray(path + name, version);
+      const Wanted wanted = reduced(voxels, kBox.min(), factor);
+      const Coord size = floorDiv(kBox.max(), factor) - floorDiv(kBox.min(), factor) + Coord(1);
+      CHECK(labels.size == size);
+      CHECK(object.size == size);
+      CHECK(labels.sampleBytes == 4);
+      CHECK(object.sampleBytes == 1);
+      CHECK(labels.values == wanted.labels);
+      CHECK(object.values == wanted.gray);
+      CHECK(labels.emptyChunkFiles + object.emptyChunkFiles == 0);
+    }
+    CHECK(readArray(path + "/0", version).chunkFiles < 8);  // background is left out
+    CHECK_FALSE(fs::exists(path + "/3"));
+    CHECK(attributesOf(path + "/labels", version).at("labels") == Json::array({"grain"}));
+    CHECK(attributesOf(path + "/labels/grain", version).at("image-label").at("source") ==
+          Json::parse(R"({"image": "../../"})"));
+  }
+}
+
+TEST_CASE("ome_zarr: scale and translation put each voxel where its grid has it", "[ome_zarr]") {
+  const ScratchFolder folder;
+  const openvdb::Vec3d shift(0.5, -20, 3);  // mm
+  for (const OmeVersion version : kVersions)
+    for (const std::array<double, 3> edges :
+         {std::array<double, 3>{8.5e-6, 8.5e-6, 8.5e-6}, {1e-6, 2e-6, 4.3e-6}, {0, 0, 0}}) {
+      const bool hasSize = edges[0] > 0;
+      const auto grid = heapGrid();
+      if (hasSize) setVoxelSize(*grid, VoxelSize(edges));
+      grid->transform().postTranslate(shift);
+      const std::string path =
+          folder / (std::to_string(int(version)) + std::to_string(edges[2]) + ".zarr");
+      fs::remove_all(path);
+      OmeZarrOptions options;
+      options.version = version;
+      writeOmeZarr(path, *grid, kBox, options);
+      for (const std::string& group : {path, path + "/labels/grain"}) {
+        const Json images = attributesOf(group, version).at("multiscales");
+        REQUIRE(images.size() == 1);
+        const Json& image = images[0];
+        CHECK(image.value("version", "") == (version == OmeVersion::v04 ? "0.4" : ""));
+        REQUIRE(image.at("axes").size() == 3);
+        for (size_t i = 0; i < 3; ++i) {
+          const Json& axis = image["axes"][i];
+          CHECK(axis.at("name") == std::string(1, "zyx"[i]));
+          CHECK(axis.at("type") == "space");
+          CHECK(axis.value("unit", "") == (hasSize ? "micrometer" : ""));
+        }
+        REQUIRE(image.at("datasets").size() == 3);
+        for (int level = 0; level < 3; ++level) {
+          const Json& dataset = image["datasets"][size_t(level)];
+          CHECK(dataset.at("path") == std::to_string(level));
+          const Json& steps = dataset.at("coordinateTransformations");
+          REQUIRE(steps.size() == 2);
+          CHECK(steps[0].at("type") == "scale");
+          CHECK(steps[1].at("type") == "translation");
+          const int factor = 1 << level;
+          const double unit = hasSize ? 1e-3 : 1;  // mm, or voxels
+          for (size_t i = 0; i < 3; ++i) {
+            const int axis = 2 - int(i), first = floorDiv(kBox.min()[axis], factor);
+            const double edge = hasSize ? edges[size_t(axis)] * 1e6 : 1;
+            CHECK(steps[0]["scale"][i].get<double>() == Approx(factor * edge).epsilon(1e-15));
+            // The mean place of the fine voxels that the first coarse one stands for.
+            const double low = grid->indexToWorld(Coord(factor * first))[axis],
+                         high = grid->indexToWorld(Coord(factor * first + factor - 1))[axis];
+            CHECK(unit * steps[1]["translation"][i].get<double>() ==
+                  Approx((low + high) / 2).margin(1e-12));
+          }
+        }
+      }
+    }
+}
+
+TEST_CASE("ome_zarr: colors and measures are those of the tables", "[ome_zarr]") {
+  const ScratchFolder folder;
+  LabelMap voxels = twoBalls(Coord(20), 9);
+  for (const auto& one : marker()) voxels.insert(one);
+  const auto grid = labelGrid(voxels);
+  setVoxelSize(*grid, VoxelSize{8.5e-6});
+  const Measurements measured = measure(*grid);
+  const GrainColors colors = grainColors(*grid);
+  const auto columns = grainColumns(measured.grains);
+  for (const OmeVersion version : kVersions) {
+    const std::string path = folder / (std::to_string(int(version)) + ".zarr");
+    OmeZarrOptions options;
+    options.version = version;
+    writeOmeZarr(path, *grid, boxOf(*grid), options);
+    const Json label = attributesOf(path + "/labels/grain", version).at("image-label");
+    CHECK(label.value("version", "") == (version == OmeVersion::v04 ? "0.4" : ""));
+    REQUIRE(label.at("colors").size() == colors.labels.size());
+    for (size_t i = 0; i < colors.labels.size(); ++i) {
+      const Rgb& c = colors.colors[i];
+      CHECK(label["colors"][i].at("label-value") == colors.labels[i]);
+      CHECK(label["colors"][i].at("rgba") == Json::array({c[0], c[1], c[2], 255}));
+    }
+    REQUIRE(label.at("properties").size() == measured.grains.size());
+    for (size_t i = 0; i < measured.grains.size(); ++i) {
+      const Json& one = label["properties"][i];
+      CHECK(one.at("label-value") == measured.grains[i].id);
+      size_t known = 1;
+      for (size_t n = 1; n < columns.size(); ++n) {
+        const std::string name = columns[n].name + unitSuffix(columns[n].power, "mm");
+        const double value = columns[n].values[i];
+        if (std::isnan(value)) {
+          CHECK_FALSE(one.contains(name));
+          continue;
+        }
+        ++known;
+        CHECK(one.at(name).get<double>() ==
+              Approx(scaled(columns[n], value, openvdb::Vec3d(8.5e-3))).epsilon(1e-8));
+      }
+      CHECK(one.size() == known);
+    }
+  }
+}
+
+TEST_CASE("ome_zarr: labels without a voxel have one chunk, so that none seems lost",
+          "[ome_zarr]") {
+  const ScratchFolder folder;
+  const auto grid = Int32Grid::create(0);
+  for (const OmeVersion version : kVersions) {
+    const std::string path = folder / (std::to_string(int(version)) + ".zarr");
+    OmeZarrOptions options;
+    options.version = version;
+    writeOmeZarr(path, *grid, CoordBBox(Coord(0), Coord(99, 0, 3)), options);
+    for (const std::string name : {"/0", "/1", "/labels/grain/0", "/labels/grain/1"}) {
+      const Array array = readArray(path + name, version);
+      CHECK(array.chunkFiles == 1);
+      CHECK(array.values.empty());
+    }
+  }
+}
+
+TEST_CASE("ome_zarr: what cannot be written leaves nothing", "[ome_zarr]") {
+  struct Stop : Interrupter {
+    bool wasInterrupted(int) override { return true; }
+  } stop;
+  const ScratchFolder folder;
+  const std::string path = folder / "a.zarr";
+  const auto grid = heapGrid();
+  CHECK_THROWS_AS(writeOmeZarr(path, *grid, CoordBBox()), InvalidInput);
+  CHECK_THROWS_AS(writeOmeZarr(path, *grid, kBox, {}, &stop), Interrupted);
+  CHECK_THROWS_AS(writeOmeZarr(folder / "none/a.zarr", *grid, kBox), IoError);
+  OmeZarrOptions meshes;
+  meshes.meshes = true;
+  CHECK_THROWS_WITH(writeOmeZarr(path, *grid, kBox, meshes), Catch::Contains("voxel size"));
+  grid->transform().postRotate(0.1);
+  CHECK_THROWS_WITH(writeOmeZarr(path, *grid, kBox), Catch::Contains("resample"));
+  CHECK(folder.fileCount() == 0);
+  fs::create_directories(path + "/mine");
+  CHECK_THROWS_WITH(writeOmeZarr(path, *heapGrid(), kBox), Catch::Contains("already"));
+  CHECK(fs::exists(path + "/mine"));
+}
