@@ -74,7 +74,7 @@ void commitSlabFolder(const std::string& made, const std::string& path) {
   checkSlabFolder(path);
   const std::string old = path + ".old";
   std::error_code error;
-  if (fs::exists(path)) {
+  if (fs::exists(path, error)) {
     fs::remove_all(old, error);
     fs::rename(path, old, error);
     if (error) throw IoError("cannot replace " + path + ": " + error.message());
