@@ -63,6 +63,13 @@ TEST_CASE("folder scratch: goes on with the same work alone", "[scratch]") {
   CHECK_THROWS_WITH(FolderScratch(folder / "photos", "this work", true),
                     Catch::Contains("no folder of scratch data"));
   CHECK(readFile((folder / "photos") + "/me.jpg") == "x");
+  {
+    const FolderScratch first(folder / "two", "work", false);
+    CHECK_THROWS_WITH(FolderScratch(folder / "two/", "work", true), Catch::Contains("another run"));
+  }
+  FolderScratch again((folder / "two") + "/", "work", true);
+  again.removeAll();
+  CHECK_FALSE(std::filesystem::exists(folder / "two"));
   CHECK_THROWS_AS(FolderScratch((folder / "none") + "/scratch", "work", false), IoError);
 }
 

@@ -53,7 +53,8 @@ TEST_CASE("slabs: images are read layer by layer", "[slabs]") {
   bench.mustRun("convert in.vdb --grid object gray.npy --type uint8 -q");
   for (const std::string input :
        {"in.tif", "in.tif --invert", "gray.npy --smooth 1 --threshold 0.4 --voxel-size 3um",
-        "gray.npy --smooth 1 --threshold 0.3:0.6", "in.tif --despeckle 30"}) {
+        "gray.npy --smooth 1 --range 0.3:0.6 --crop 0,2,8:39,30,71", "in.tif --crop 0,0,8:39,32,80",
+        "in.tif --despeckle 30"}) {
     INFO(input);
     bench.mustRun("segment " + input + " one.vdb -q");
     bench.mustRun("segment " + input + " out.slabs --slab-height 24 -q");
@@ -102,14 +103,14 @@ TEST_CASE("slabs: what was killed goes on", "[slabs]") {
   bench.mustRun("segment in.vdb one.vdb --grid object -q");
   std::mt19937 random(7);
   int kills = 0;
-  for (int round = 0; round < 12; ++round) {
+  for (int round = 0; round < 4; ++round) {
     const std::string segment = "segment in.vdb out.slabs --grid object --slab-height 8 -q";
     RunOptions killing;
     killing.interruptOn = "out.slabs.part";
     killing.signal = round % 3 == 0 ? SIGTERM : SIGKILL;
     Outcome run;
     for (int i = 0; i < 200; ++i) {
-      killing.delay = 1e-3 * double(random() % 150);
+      killing.delay = 1e-3 * double(random() % 400);
       run = bench.run(segment + (i > 0 ? " --resume" : ""), killing);
       if (run.exitCode == 0) break;
       ++kills;
@@ -119,9 +120,63 @@ TEST_CASE("slabs: what was killed goes on", "[slabs]") {
     REQUIRE(run.exitCode == 0);
     requireSame(bench);
     REQUIRE_FALSE(bench.names().count("out.slabs.part"));
+    REQUIRE_FALSE(bench.names().count("out.slabs.scratch"));
     std::filesystem::remove_all(bench.path("out.slabs"));
   }
-  CHECK(kills > 5);
+  CHECK(kills > 3);
+}
+
+TEST_CASE("slabs: nothing is made of a half of what a run left", "[slabs]") {
+  const Bench bench;
+  bench.mustRun(kTall + "in.vdb -q");
+  bench.mustRun("segment in.vdb one.vdb --grid object -q");
+  const std::string segment =
+      "segment in.vdb out.slabs --grid object -q --scratch kept --slab-height ";
+  RunOptions killing;
+  killing.signal = SIGKILL;
+  killing.interruptOn = "out.slabs.part";
+  // Between the first slab that is written and the end.
+  double early = 0, late = 4;
+  for (int i = 0; i < 60; ++i) {
+    for (const char* name : {"out.slabs", "out.slabs.part", "kept"})
+      std::filesystem::remove_all(bench.path(name));
+    killing.delay = (early + late) / 2;
+    const Outcome run = bench.run(segment + "8", killing);
+    if (run.exitCode == 0 || std::filesystem::exists(bench.path("kept/done.piece")))
+      late = killing.delay;
+    else if (std::filesystem::exists(bench.path("kept/counts-1.piece")))
+      break;
+    else
+      early = killing.delay;
+    if (late - early < 1e-4) late = early + 0.2;  // runs take unlike long
+  }
+  REQUIRE(std::filesystem::exists(bench.path("kept/counts-1.piece")));
+  constexpr auto kAll = std::filesystem::copy_options::recursive;
+  const auto restore = [&] {
+    for (const std::string name : {"out.slabs.part", "kept"}) {
+      std::filesystem::remove_all(bench.path(name));
+      std::filesystem::copy(bench.path(name + ".copy"), bench.path(name), kAll);
+    }
+  };
+  for (const std::string name : {"out.slabs.part", "kept"})
+    std::filesystem::copy(bench.path(name), bench.path(name + ".copy"), kAll);
+  const auto refused = [&](const std::string& arguments, const std::string& why) {
+    const Outcome run = bench.run(arguments);
+    CHECK(run.exitCode != 0);
+    CHECK_THAT(run.err, Contains(why));
+    CHECK_FALSE(bench.names().count("out.slabs"));
+    CHECK_FALSE(bench.names().count("other.slabs"));
+    restore();
+  };
+  std::filesystem::remove_all(bench.path("out.slabs.part"));  // scratch without slabs
+  refused(segment + "8 --resume", "slab-0000.vdb: is missing");
+  std::filesystem::remove(bench.path("kept/terminals-3.piece"));
+  refused(segment + "8 --resume", "cannot be opened");
+  refused("segment in.vdb other.slabs --grid object -q --scratch kept --slab-height 8 --resume",
+          "another input");
+  std::filesystem::remove_all(bench.path("kept"));  // slabs without scratch
+  bench.mustRun(segment + "32 --resume");
+  requireSame(bench);
 }
 
 TEST_CASE("slabs: what cannot be is said in one line", "[slabs]") {
@@ -134,6 +189,7 @@ TEST_CASE("slabs: what cannot be is said in one line", "[slabs]") {
     CHECK_THAT(run.err, Contains(why));
     CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
     CHECK_FALSE(bench.names().count("out.slabs.part"));
+    CHECK_FALSE(bench.names().count("out.slabs.scratch"));
   };
   const std::string segment = "segment in.vdb out.slabs --grid object ";
   refused(segment + "--gamma 20", "gamma");
@@ -153,12 +209,16 @@ TEST_CASE("slabs: what cannot be is said in one line", "[slabs]") {
   killing.signal = SIGKILL;
   for (killing.delay = 0.05; killing.delay < 10; killing.delay *= 1.3) {
     std::filesystem::remove_all(bench.path("out.slabs.part"));
+    std::filesystem::remove_all(bench.path("out.slabs.scratch"));
     REQUIRE(bench.run(segment + "-q --slab-height 8", killing).exitCode != 0);
-    if (std::filesystem::exists(bench.path("out.slabs.part/scratch/cuts.piece"))) break;
+    if (std::filesystem::exists(bench.path("out.slabs.scratch/cuts.piece"))) break;
   }
-  REQUIRE(std::filesystem::exists(bench.path("out.slabs.part/scratch/cuts.piece")));
-  CHECK_THAT(bench.run(segment + "--slab-height 8").err, Contains("--resume"));
+  REQUIRE(std::filesystem::exists(bench.path("out.slabs.scratch/cuts.piece")));
+  CHECK_THAT(bench.run(segment + "--slab-height 8").err, Contains("resume"));
   CHECK_THAT(bench.run(segment + "--slab-height 16 --resume").err, Contains("other options"));
-  bench.write("out.slabs.part/scratch/object-0.piece", "damaged");
+  CHECK_THAT(bench.run(segment + "--slab-height 8 --scratch out.slabs.part").err,
+             Contains("another folder"));
+  CHECK_THAT(bench.run(segment + "--slab-height 8 --scratch .").err, Contains("another folder"));
+  bench.write("out.slabs.scratch/object-0.piece", "damaged");
   CHECK_THAT(bench.run(segment + "--slab-height 8 --resume").err, Contains("damaged"));
 }

@@ -40,7 +40,8 @@ std::string workOf(const SegmentArguments& o) {
   const InputOptions& in = o.input;
   std::error_code ignored;
   std::string work =
-      std::string(kVersion) + "\n" + fs::absolute(in.path, ignored).string() + " " +
+      std::string(kVersion) + "\n" + fs::absolute(o.out, ignored).string() + "\n" +
+      fs::absolute(in.path, ignored).string() + " " +
       std::to_string(fs::file_size(in.path, ignored)) + " " +
       std::to_string(fs::last_write_time(in.path, ignored).time_since_epoch().count());
   for (const std::string& text :
@@ -70,43 +71,84 @@ SlabLimits limitsOf(const SegmentArguments& o) {
   return limits;
 }
 
-/// Folders of work that is not done yet.
+/// Is a path that of a folder, or of something in it?
+bool isWithin(const std::string& path, const std::string& folder) {
+  std::error_code ignored;
+  const std::string a = (fs::weakly_canonical(fs::absolute(path, ignored), ignored) / "").string(),
+                    b = (fs::weakly_canonical(fs::absolute(folder, ignored), ignored) / "")
+                            .string();
+  return a.compare(0, b.size(), b) == 0;
+}
+
+constexpr char kDone[] = "done";  // the piece that says that OUT.slabs.part is whole
+
+/// Folders of work that is not done yet: the slabs that are, and scratch.
 class WorkPlace {
  public:
-  explicit WorkPlace(const SegmentArguments& o) : part_(o.out + ".part") {
-    checkSlabFolder(o.out);
+  explicit WorkPlace(const SegmentArguments& o) : out_(o.out), part_(o.out + ".part") {
+    checkSlabFolder(out_);
+    const std::string scratch = o.scratch.empty() ? o.out + ".scratch" : o.scratch;
+    if (isWithin(out_, scratch) || isWithin(scratch, out_) || isWithin(scratch, part_))
+      throw IoError("scratch data cannot be in " + scratch + ", for " + out_ +
+                    ": choose another folder");
     std::error_code error;
     const bool isNew = fs::create_directory(part_, error);
-    if (error) throw IoError("cannot make " + part_ + ": " + error.message());
+    if (error)
+      throw IoError("cannot make " + part_ + ": " + error.message() +
+                    "; make its folder first, or remove what is there");
     if (!isNew && !o.resume && !fs::is_empty(part_, error))
       throw IoError(part_ +
                     ": is what a run left that did not end: give --resume to go on, or remove it");
-    const std::string scratch =
-        o.scratch.empty() ? (fs::path(part_) / "scratch").string() : o.scratch;
     try {
       scratch_.emplace(scratch, workOf(o), o.resume);
     } catch (...) {
-      if (isNew) fs::remove_all(part_, error);
+      if (isNew) fs::remove(part_, error);
       throw;
     }
+    if (!hasSlabs(*scratch_)) clear();
   }
 
   FolderScratch& scratch() { return *scratch_; }
   std::string file(const std::string& name) const { return (fs::path(part_) / name).string(); }
 
-  /// Puts the folder in the place of OUT.
-  void finish(const std::string& out) {
+  /// @throw IoError if slabs are missing that a run before wrote
+  void checkSlabs(size_t count) const {
+    std::error_code ignored;
+    for (size_t s = 0; s < count; ++s)
+      if (isSlabPut(*scratch_, s) && !fs::exists(file(slabFileName(s)), ignored))
+        throw IoError(file(slabFileName(s)) + ": is missing; remove " + part_ + " and " +
+                      scratch_->path() + ", and begin anew");
+  }
+
+  bool isDone() const { return scratch_->has(kDone); }
+  /// Puts the folder in the place of OUT, and removes scratch.
+  void finish() {
+    std::error_code ignored;
+    scratch_->write(kDone, {});
+    if (fs::exists(file(kSlabIndex), ignored)) commitSlabFolder(part_, out_);
+    fs::remove(part_, ignored);  // of a run that was killed in what follows
     scratch_->removeAll();
-    commitSlabFolder(part_, out);
   }
   void discard() {
     std::error_code ignored;
+    clear();
+    fs::remove(part_, ignored);
     scratch_->removeAll();
-    fs::remove_all(part_, ignored);
+  }
+  std::string whatIsKept() const {
+    return "what was done so far is kept in " + part_ + " and " + scratch_->path() +
+           ": give --resume to go on, or remove both";
   }
 
  private:
-  std::string part_;
+  void clear() {
+    std::error_code error;
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(part_, error)) files.push_back(entry.path());
+    for (const fs::path& path : files) fs::remove(path, error);
+  }
+
+  std::string out_, part_;
   std::optional<FolderScratch> scratch_;
 };
 
@@ -169,6 +211,11 @@ void runInSlabs(const SegmentArguments& o, const Common& common) {
   SegmentTiming timing;
   JsonFile jsonFile(o.json);
   WorkPlace place(o);
+  if (place.isDone()) {
+    place.finish();
+    common.progress->note(o.out + ": was whole already");
+    return;
+  }
   try {
     common.progress->start("read");
     const MaskGrid::Ptr about = readSlabs(o, common, place);
@@ -177,6 +224,7 @@ void runInSlabs(const SegmentArguments& o, const Common& common) {
     options.boundary = boundaryOf(o.boundary, o.input, *about);
     options.maxMemory = 0;
     const SlabObject object = storedSlabs(place.scratch(), about);
+    place.checkSlabs(object.slabCount());
 
     common.progress->start("segment");
     const SlabSegmentation s = withFileName(o.input.path, [&] {
@@ -197,7 +245,7 @@ void runInSlabs(const SegmentArguments& o, const Common& common) {
     json["slab_count"] = object.slabCount();
     addNotes(json, *common.progress);
     JsonFile(place.file(kSlabIndex)).write(indexOf(o, object, json));
-    place.finish(o.out);
+    place.finish();
     jsonFile.write(json);
     if (common.quiet || jsonFile.isStandardOutput()) return;
     print(o, common, summary);
@@ -212,9 +260,7 @@ void runInSlabs(const SegmentArguments& o, const Common& common) {
     if (!hasSlabs(place.scratch()))
       place.discard();
     else
-      common.progress->note(o.out +
-                            ".part: what was done so far is kept: give --resume to go on, or "
-                            "remove the folder");
+      common.progress->note(place.whatIsKept());
     throw;
   }
 }

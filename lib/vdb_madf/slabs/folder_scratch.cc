@@ -9,11 +9,14 @@
 #include <array>
 #include <cstring>
 #include <filesystem>
+#include <memory>
+#include <tuple>
 #include <utility>
 
 #include "vdb_madf/base/detail/checksum.h"
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/detail/folder_lock.h"
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/files/detail/output_stream.h"
 
@@ -25,7 +28,7 @@ namespace fs = std::filesystem;
 
 constexpr char kWork[] = "work";
 constexpr char kEnding[] = ".piece";
-constexpr char kRemoved[] = ".madf_removed";  // a folder that is going
+constexpr const char* kLock = detail::FolderLock::kName;
 
 /// What a file of a piece begins with; the table of its blocks follows, then these.
 struct Header {
@@ -85,14 +88,26 @@ void removeHalfWritten(const std::string& folder) {
 
 }  // namespace
 
-FolderScratch::FolderScratch(std::string path, const std::string& work, bool resume)
-    : path_(std::move(path)) {
+FolderScratch::FolderScratch(const std::string& path, const std::string& work, bool resume)
+    : path_((fs::path(path).lexically_normal() / "").parent_path().string()) {
   std::error_code error;
-  fs::remove_all(path_ + kRemoved, error);
   fs::create_directory(path_, error);
-  if (error) throw IoError("cannot make " + path_ + ": " + error.message());
-  if (resume) removeHalfWritten(path_);
-  if (fs::is_empty(path_, error)) {
+  if (error)
+    throw IoError("cannot make " + path_ + ": " + error.message() +
+                  "; give the path of a folder, in one that is there");
+  bool isEmpty = true;
+  for (const auto& entry : fs::directory_iterator(path_, error))
+    isEmpty = isEmpty && entry.path().filename() == kLock;
+  if (!isEmpty && !has(kWork))
+    throw IoError(path_ + ": is no folder of scratch data: choose another one");
+  lock_ = std::make_unique<detail::FolderLock>(path_);
+  take(work, resume, isEmpty);
+}
+
+FolderScratch::~FolderScratch() = default;
+
+void FolderScratch::take(const std::string& work, bool resume, bool isEmpty) {
+  if (isEmpty) {
     write(kWork, {work.begin(), work.end()});
     return;
   }
@@ -100,13 +115,13 @@ FolderScratch::FolderScratch(std::string path, const std::string& work, bool res
     throw IoError(
         path_ +
         ": there is scratch data of a run that did not end: resume it, or remove the folder");
-  if (!has(kWork)) throw IoError(path_ + ": is no folder of scratch data: choose another one");
   const std::vector<char> before = read(kWork);
   if (std::string(before.begin(), before.end()) != work)
     throw InvalidInput(
         path_ +
-        ": the scratch data was made of another input or with other options: remove the "
-        "folder, or give the same ones");
+        ": the scratch data was made of another input or with other options: remove the folder, or "
+        "give the same ones");
+  removeHalfWritten(path_);
 }
 
 std::string FolderScratch::file(const std::string& name) const {
@@ -124,7 +139,8 @@ void FolderScratch::write(const std::string& name, const std::vector<char>& byte
     blocks[i].resize(size + BLOSC_MAX_OVERHEAD);
     const int written = blosc_compress_ctx(1, BLOSC_SHUFFLE, 4, size, first, blocks[i].data(),
                                            blocks[i].size(), "lz4", 0, 1);
-    blocks[i].resize(size_t(std::max(written, 0)));
+    if (written <= 0) throw IoError(file(name + kEnding) + ": cannot be compressed");
+    blocks[i].resize(size_t(written));
     table[i] = {blocks[i].size(), checksumOf(first, size)};
   });
   const auto* tableBytes = reinterpret_cast<const char*>(table.data());
@@ -170,8 +186,10 @@ std::vector<char> FolderScratch::read(const std::string& name) const {
 }
 
 bool FolderScratch::has(const std::string& name) const {
-  std::error_code ignored;
-  return fs::exists(file(name + kEnding), ignored);
+  std::error_code error;
+  const bool isThere = fs::exists(file(name + kEnding), error);
+  if (error) throw IoError(file(name + kEnding) + ": " + error.message());
+  return isThere;
 }
 
 void FolderScratch::remove(const std::string& name) {
@@ -180,10 +198,18 @@ void FolderScratch::remove(const std::string& name) {
 }
 
 void FolderScratch::removeAll() {
-  // At once, so that a kill does not leave a part of it.
-  std::error_code ignored;
-  fs::rename(path_, path_ + kRemoved, ignored);
-  fs::remove_all(path_ + kRemoved, ignored);
+  // The oldest first, and last what says whose data it is: what a kill leaves can be taken up, and
+  // removed, again.
+  std::error_code error;
+  std::vector<std::tuple<bool, fs::file_time_type, fs::path>> files;
+  for (const auto& entry : fs::directory_iterator(path_, error)) {
+    const fs::path name = entry.path().filename();
+    const bool isLast = name == std::string(kWork) + kEnding || name == kLock;
+    files.emplace_back(isLast, fs::last_write_time(entry.path(), error), entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  for (const auto& file : files) fs::remove(std::get<fs::path>(file), error);
+  fs::remove(path_, error);
 }
 
 }  // namespace vdb_madf

@@ -3,12 +3,17 @@
 
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "vdb_madf/slabs/scratch.h"
 
 namespace vdb_madf {
+
+namespace detail {
+class FolderLock;
+}
 
 /// A folder with a file for each piece, compressed, with a checksum. Each file is there whole or not at
 /// all, so that what a killed program left can be taken up again.
@@ -17,8 +22,10 @@ class FolderScratch : public Scratch {
   /// Makes the folder, or takes what is there, if that was made for the same work.
   /// @param work what the pieces depend on, as text
   /// @param resume take up what is there; otherwise the folder must be new or empty
-  /// @throw IoError if it cannot be made or is not empty; InvalidInput if it was made for other work
-  FolderScratch(std::string path, const std::string& work, bool resume);
+  /// @throw IoError if it cannot be made, is not empty, or another run works in it; InvalidInput if it
+  ///   was made for other work
+  FolderScratch(const std::string& path, const std::string& work, bool resume);
+  ~FolderScratch() override;
 
   const std::string& path() const { return path_; }
   /// Where a file that is no piece goes.
@@ -30,11 +37,14 @@ class FolderScratch : public Scratch {
   bool has(const std::string& name) const override;
   void remove(const std::string& name) override;
 
-  /// The folder and all that is in it.
+  /// All that is in it, and the folder.
   void removeAll();
 
  private:
+  void take(const std::string& work, bool resume, bool isEmpty);
+
   std::string path_;
+  std::unique_ptr<detail::FolderLock> lock_;
 };
 
 }  // namespace vdb_madf

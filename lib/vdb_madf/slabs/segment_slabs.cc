@@ -56,4 +56,8 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
   return result;
 }
 
+bool isSlabPut(const Scratch& scratch, size_t slab) {
+  return scratch.has(detail::SlabWork::name("counts", slab));
+}
+
 }  // namespace vdb_madf

@@ -47,13 +47,16 @@ using PutSlabLabels = std::function<void(size_t slab, Int32Grid::Ptr grain)>;
 ///
 /// If the pieces of a run that did not end are in `scratch`, of the same object and options, it goes on
 /// where that stopped.
-/// @param put is called for each slab once, from the lowest on (not again for those that a run before
-///   had put)
+/// @param put is called for each slab, from the lowest on (not again for those that a run before had
+///   put: isSlabPut())
 /// Options that keep grids, maxMemory and gamma have to be 0: they are not known here.
 /// @throw as segment(); InvalidInput for these options, cuts that are none, a region as domain,
 ///   slabs, but for the first and the last, lower than `tidy` has rounds, or balls that reach too far; what scratch and put throw.
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
                               Scratch& scratch, const PutSlabLabels& put,
                               Interrupter* interrupter = nullptr);
+
+/// Were the labels of a slab put by a run before, so that they are not put again?
+bool isSlabPut(const Scratch& scratch, size_t slab);
 
 }  // namespace vdb_madf

@@ -4,11 +4,13 @@
 #include "vdb_madf/vdb/slab_folder.h"
 
 #include <openvdb/Metadata.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/detail/input_file.h"
 
 namespace vdb_madf {
 
@@ -41,8 +43,9 @@ void markSlab(openvdb::GridBase& grid, size_t slab, size_t count) {
 
 bool isSlabFolder(const std::string& path) {
   std::error_code ignored;
-  return fs::is_directory(path, ignored) && fs::exists(fs::path(path) / kSlabIndex, ignored) &&
-         fs::exists(fs::path(path) / slabFileName(0), ignored);
+  const std::string index = (fs::path(path) / kSlabIndex).string();
+  return fs::is_regular_file(index, ignored) &&
+         detail::InputFile(index).head(100).find("\"vdb_madf slabs\"") != std::string::npos;
 }
 
 std::vector<std::string> slabFiles(const std::string& path) {
@@ -53,6 +56,7 @@ std::vector<std::string> slabFiles(const std::string& path) {
     count += name.rfind("slab-", 0) == 0 && entry.path().extension() == ".vdb";
   }
   if (error) throw IoError(path + ": " + error.message());
+  if (count == 0) throw IoError(path + ": its slabs, " + slabFileName(0) + " and on, are missing");
   std::vector<std::string> files;
   for (size_t slab = 0; slab < count; ++slab) {
     files.push_back((fs::path(path) / slabFileName(slab)).string());
@@ -72,16 +76,22 @@ void checkSlabFolder(const std::string& path) {
 
 void commitSlabFolder(const std::string& made, const std::string& path) {
   checkSlabFolder(path);
-  const std::string old = path + ".old";
-  std::error_code error;
-  if (fs::exists(path, error)) {
-    fs::remove_all(old, error);
-    fs::rename(path, old, error);
-    if (error) throw IoError("cannot replace " + path + ": " + error.message());
+  const auto rename = [](const std::string& from, const std::string& to) {
+    std::error_code error;
+    fs::rename(from, to, error);
+    return error;
+  };
+  std::error_code ignored;
+  const std::string old = path + ".replaced-" + std::to_string(::getpid());
+  const bool replaces = fs::exists(path, ignored);
+  if (replaces)
+    if (const auto error = rename(path, old))
+      throw IoError("cannot replace " + path + ": " + error.message() + "; the new one is " + made);
+  if (const auto error = rename(made, path)) {
+    if (replaces) rename(old, path);
+    throw IoError("cannot write " + path + ": " + error.message() + "; it is complete in " + made);
   }
-  fs::rename(made, path, error);
-  if (error) throw IoError("cannot write " + path + ": " + error.message());
-  fs::remove_all(old, error);
+  if (replaces) fs::remove_all(old, ignored);
 }
 
 void unmarkSlab(const std::vector<openvdb::GridBase::Ptr>& grids, size_t slab, size_t count,

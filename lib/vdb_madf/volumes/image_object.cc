@@ -93,6 +93,7 @@ PartMasks readPart(ImageReader& image, const std::vector<Selection>& selections,
   if (take)
     layerRead = [&](const std::vector<MaskGrid::Ptr>& masks) {
       if (part) leftOutOfLayers += detail::cutTo(*part, *masks[0]);
+      masks[0]->tree().voxelizeActiveTiles();
       take(masks[0]->tree());
       masks[0]->clear();
     };

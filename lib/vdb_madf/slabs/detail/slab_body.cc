@@ -47,8 +47,9 @@ std::vector<LeafIndex::LeafVoxels> slabHoles(const SlabObject& object, std::opti
                                              size_t slab, bool open, int64_t fillHoles,
                                              Interrupter* interrupter) {
   const std::vector<int>& cuts = object.cuts;
+  const int64_t reach = std::min<int64_t>(fillHoles, int64_t(cuts.back()) - cuts.front());
   const auto inWindow = [&](int64_t begin, int64_t end) {
-    return end + fillHoles > cuts[slab] && begin - fillHoles < cuts[slab + 1];
+    return end + reach > cuts[slab] && begin - reach < cuts[slab + 1];
   };
   std::vector<LeafIndex::LeafVoxels> window;
   for (size_t s = 0; s < object.slabCount(); ++s) {

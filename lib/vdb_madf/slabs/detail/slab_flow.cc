@@ -119,7 +119,7 @@ class SlabFlow {
     for (size_t s = 0; s + 1 < work_.slabCount(); ++s) {
       if (work_.has("below", s + 1) || work_.has("terminals", s + 1)) continue;
       SlabFaces at = faces(s);
-      at.below = stepsOf("below", s);
+      at.below = stepsBelow(s);
       writeSteps("below", s + 1, columnSteps(work_.body(s).index, work_.obstacles, at, false));
     }
   }
@@ -131,24 +131,28 @@ class SlabFlow {
       WorkPart part = work_.part(5, 30, work_.slabCount() - 1 - s);
       const SlabBody slab = work_.body(s);
       SlabFaces at = faces(s);
-      at.below = stepsOf("below", s);
-      at.above = stepsOf("above", s);
+      at.below = stepsBelow(s);
+      at.above = stepsAbove(s);
       writeSteps("above", s - 1, columnSteps(slab.index, work_.obstacles, at, true));
       const SquaredDistance distance =
           squaredDistanceInSlab(slab.index, work_.obstacles, result_.weights, at, &part);
-      work_.writeVector(
-          "offered-down", s - 1,
-          siteOffers(slab.index, distance, offers("offered-down", s), at.begin, at.end, false));
+      work_.writeVector("offered-down", s - 1,
+                        siteOffers(slab.index, distance, offersDown(s), at.begin, at.end, false));
     }
   }
 
-  /// None has reached the slab at either end of the object.
-  ColumnSteps stepsOf(const char* what, size_t slab) const {
-    return work_.has(what, slab) ? readSteps(what, slab) : ColumnSteps();
+  /// What came from the slab below, and from that above; nothing at the ends of the object.
+  ColumnSteps stepsBelow(size_t s) const { return s == 0 ? ColumnSteps() : readSteps("below", s); }
+  ColumnSteps stepsAbove(size_t s) const {
+    return s + 1 == work_.slabCount() ? ColumnSteps() : readSteps("above", s);
   }
-  std::vector<ForeignSite> offers(const char* what, size_t slab) const {
-    return work_.has(what, slab) ? work_.readVector<ForeignSite>(what, slab)
-                                 : std::vector<ForeignSite>();
+  std::vector<ForeignSite> offersUp(size_t s) const {
+    if (s == 0) return {};
+    return work_.readVector<ForeignSite>("offered-up", s);
+  }
+  std::vector<ForeignSite> offersDown(size_t s) const {
+    if (s + 1 == work_.slabCount()) return {};
+    return work_.readVector<ForeignSite>("offered-down", s);
   }
 
   /// From the lowest slab on: distance, power map, flow, contacts.
@@ -174,17 +178,17 @@ class SlabFlow {
     WorkPart measuring(&part, 0, 25), mapping(&part, 25, 70), flowing(&part, 70, 100);
     SlabBody slab = work_.body(s);
     SlabFaces at = faces(s);
-    at.below = stepsOf("below", s);
-    at.above = stepsOf("above", s);
+    at.below = stepsBelow(s);
+    at.above = stepsAbove(s);
     SquaredDistance distance =
         squaredDistanceInSlab(slab.index, work_.obstacles, result_.weights, at, &measuring);
     const int32_t largest = distance.largest;
-    const std::vector<ForeignSite> fromBelow = offers("offered-up", s);
+    const std::vector<ForeignSite> fromBelow = offersUp(s);
     if (at.hasAbove)
       work_.writeVector("offered-up", s + 1,
                         siteOffers(slab.index, distance, fromBelow, at.begin, at.end, true));
-    distance.foreign = std::make_shared<ForeignSites>(fromBelow, offers("offered-down", s),
-                                                      at.begin, at.end, slab.index);
+    distance.foreign =
+        std::make_shared<ForeignSites>(fromBelow, offersDown(s), at.begin, at.end, slab.index);
 
     PowerMap map = powerMap(slab.index, std::move(distance), &mapping);
     const VoxelSet balls = medialBalls(slab.index, map, &flowing);

@@ -118,7 +118,8 @@ class SlabLabels {
       const LeafIndex holes(LeafIndex(), work_.cavities(s));
       if (holes.voxelCount() == 0) continue;
       for (uint32_t g = 0; g < anchors.size(); ++g)
-        if (holes.findVoxel(anchors[g])) lost.push_back(g);
+        if (holes.boundingBox().isInside(anchors[g]) && holes.findVoxel(anchors[g]))
+          lost.push_back(g);
     }
     if (lost.empty()) return anchors;
     std::vector<AnchorCandidate> best(lost.size());

@@ -65,7 +65,8 @@ void smoothSlab(const LeafIndex& index, const LeafLabels& below, const LeafLabel
                 grains.label.data() + window.firstRank(leaf));
   std::vector<VoxelId> anchorIds(anchors.size(), kNoAnchor);
   for (size_t g = 0; g < anchors.size(); ++g)
-    if (const auto id = window.findVoxel(anchors[g])) anchorIds[g] = *id;
+    if (window.boundingBox().isInside(anchors[g]))
+      if (const auto id = window.findVoxel(anchors[g])) anchorIds[g] = *id;
   smoothInterfaces(window, rounds, anchorIds, grains, interrupter);
 
   for (size_t leaf = 0; leaf < window.leafCount(); ++leaf)

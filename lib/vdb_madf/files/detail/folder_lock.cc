@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/files/detail/folder_lock.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "vdb_madf/base/errors.h"
+
+namespace vdb_madf::detail {
+
+FolderLock::FolderLock(const std::string& folder)
+    : descriptor_(::open((folder + "/" + kName).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) throw IoError(folder + ": cannot be written to; choose another folder");
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+  ::close(descriptor_);
+  throw IoError(folder + ": another run works in it: wait for its end");
+}
+
+FolderLock::~FolderLock() {
+  ::close(descriptor_);
+}
+
+}  // namespace vdb_madf::detail
