@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <tuple>
 
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 #include "vdb_madf/method/detail/tidy_steps.h"
+#include "vdb_madf/slabs/detail/face_voxels.h"
 
 namespace vdb_madf::detail {
 
@@ -35,19 +35,6 @@ std::vector<FaceVoxel> facePieces(const LeafIndex& index, const ConnectedCompone
     });
   }
   return face;
-}
-
-/// The order of facePieces().
-bool faceLess(const FaceVoxel& a, const FaceVoxel& b) {
-  return std::make_tuple(a.x & ~7, a.y & ~7, a.x, a.y) <
-         std::make_tuple(b.x & ~7, b.y & ~7, b.x, b.y);
-}
-
-/// The piece at (x, y) of a face; null if there is none.
-const FaceVoxel* findPiece(const std::vector<FaceVoxel>& face, const Coord& p) {
-  const FaceVoxel wanted{p.x(), p.y(), 0};
-  const auto found = std::lower_bound(face.begin(), face.end(), wanted, faceLess);
-  return found != face.end() && found->x == p.x() && found->y == p.y() ? &*found : nullptr;
 }
 
 }  // namespace
@@ -92,13 +79,12 @@ void PieceUnion::add(const SlabPieces& pieces, const SlabPieces* before) {
   first_.push_back(first + uint32_t(pieces.label.size()));
   if (!before) return;
   const uint32_t firstBefore = first_[first_.size() - 3];
-  for (const FaceVoxel& voxel : pieces.lowest) {
-    const FaceVoxel* const below = findPiece(before->highest, Coord(voxel.x, voxel.y, 0));
-    if (!below || before->label[below->piece] != pieces.label[voxel.piece]) continue;
-    const uint32_t a = sets_.find(firstBefore + below->piece), b = sets_.find(first + voxel.piece);
+  forEachFacing(before->highest, pieces.lowest, [&](const FaceVoxel& p, const FaceVoxel& q) {
+    if (before->label[p.piece] != pieces.label[q.piece]) return;
+    const uint32_t a = sets_.find(firstBefore + p.piece), b = sets_.find(first + q.piece);
     joins_ += a != b;
     sets_.unite(a, b);
-  }
+  });
 }
 
 bool PieceUnion::isHeld(size_t slab, uint32_t piece) {
@@ -118,7 +104,7 @@ std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const VoxelArray<uin
     isLoose[piece] = !pieces.isHeld(slab, piece);
   const auto beyond = [&](const SlabPieces* other, size_t number, bool highest, const Coord& p) {
     if (!other) return uint32_t(0);
-    const FaceVoxel* const voxel = findPiece(highest ? other->highest : other->lowest, p);
+    const FaceVoxel* const voxel = findOnFace(highest ? other->highest : other->lowest, p);
     return voxel && pieces.isHeld(number, voxel->piece) ? other->label[voxel->piece] : 0;
   };
   std::vector<LooseVoxel> loose;

@@ -4,10 +4,10 @@
 #include "vdb_madf/slabs/detail/slab_terminals.h"
 
 #include <algorithm>
-#include <tuple>
 
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/method/detail/reduce_edges.h"
+#include "vdb_madf/slabs/detail/face_voxels.h"
 
 namespace vdb_madf::detail {
 
@@ -31,26 +31,15 @@ std::vector<FaceVoxel> faceVoxels(const LeafIndex& index, const Flow& flow,
   return face;
 }
 
-/// The order of faceVoxels().
-bool faceLess(const FaceVoxel& a, const FaceVoxel& b) {
-  return std::make_tuple(a.x & ~7, a.y & ~7, a.x, a.y) <
-         std::make_tuple(b.x & ~7, b.y & ~7, b.x, b.y);
-}
-
 }  // namespace
 
 std::vector<Edge> SlabTerminals::contacts(const std::vector<FaceVoxel>& below,
                                           const std::vector<FaceVoxel>& above) {
   std::vector<Edge> edges;
-  auto b = above.begin();
-  for (const FaceVoxel& a : below) {
-    while (b != above.end() && faceLess(*b, a)) ++b;
-    if (b == above.end()) break;
-    if (b->x != a.x || b->y != a.y) continue;
-    edges.push_back({(a.terminal & ~Flow::kOwnCell) - 1, (b->terminal & ~Flow::kOwnCell) - 1, 1,
-                     -std::max(a.power, b->power),
-                     (a.terminal & b->terminal & Flow::kOwnCell) != 0});
-  }
+  forEachFacing(below, above, [&](const FaceVoxel& a, const FaceVoxel& b) {
+    edges.push_back({(a.terminal & ~Flow::kOwnCell) - 1, (b.terminal & ~Flow::kOwnCell) - 1, 1,
+                     -std::max(a.power, b.power), (a.terminal & b.terminal & Flow::kOwnCell) != 0});
+  });
   reduceEdges(edges);
   return edges;
 }
