@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <map>
 #include <sstream>
@@ -24,6 +23,7 @@
 #include "support/invariants.h"
 #include "support/oracle.h"
 #include "support/random_case.h"
+#include "support/runs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 
@@ -31,11 +31,6 @@ namespace {
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-
-uint64_t fromEnvironment(const char* variable, uint64_t otherwise) {
-  const char* value = std::getenv(variable);
-  return value ? std::strtoull(value, nullptr, 10) : otherwise;
-}
 
 Segmentation segmentWithThreads(const MaskGrid& mask, const SegmentOptions& options, int threads) {
   // The arena allows more threads than the machine has cores, the control fewer.

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -22,11 +21,6 @@ namespace {
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-
-uint64_t fromEnvironment(const char* variable, uint64_t otherwise) {
-  const char* value = std::getenv(variable);
-  return value ? std::strtoull(value, nullptr, 10) : otherwise;
-}
 
 /// The leaves of a mask in slabs with these cuts.
 SlabObject cutObject(const MaskGrid& mask, std::vector<int> cuts) {
@@ -225,6 +219,15 @@ TEST_CASE("slabs: weights follow from the edges and the whole object", "[slabs]"
       openvdb::math::MapBase::Ptr(new openvdb::math::ScaleMap(openvdb::Vec3d(0.5, 0.5, 1.2))))));
   object.about = about;
   CHECK(segmentCut(object, {}).result.weights == VoxelWeights{25, 25, 144});
+  // Of a longer object there are others: 144 * 4000^2 does not fit.
+  SlabObject tall = row(4000, {0, 1600, 4000});
+  tall.about = about;
+  MaskGrid whole;
+  whole.tree().fill(CoordBBox(Coord(0), Coord(0, 0, 3999)), true);
+  whole.setTransform(about->transformPtr());
+  const Segmentation expected = segment(whole);
+  CHECK(expected.weights != VoxelWeights{25, 25, 144});
+  CHECK(segmentCut(tall, {}).result.weights == expected.weights);
 }
 
 TEST_CASE("slabs: what they do not know is refused", "[slabs]") {

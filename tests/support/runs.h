@@ -6,10 +6,18 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <cstdint>
+#include <cstdlib>
+
 #include "vdb_madf/grids/grid_types.h"
 
-/// Ways to run a stage: with a number of threads, and stopped at once.
+/// Ways to run a stage: with a number of threads, and stopped at once; how often.
 namespace vdb_madf::test {
+
+inline uint64_t fromEnvironment(const char* variable, uint64_t otherwise) {
+  const char* value = std::getenv(variable);
+  return value ? std::strtoull(value, nullptr, 10) : otherwise;
+}
 
 /// What f() returns with that many threads, whatever the machine has.
 template <typename F>

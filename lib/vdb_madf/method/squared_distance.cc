@@ -12,6 +12,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/pencil.h"
+#include "vdb_madf/method/detail/check_background.h"
 #include "vdb_madf/method/detail/passage.h"
 #include "vdb_madf/method/detail/slab_faces.h"
 #include "vdb_madf/method/detail/swept_leaves.h"
@@ -127,13 +128,10 @@ void collectMasks(const LeafIndex& index, Scratch& s) {
 /// What a pass along z finds at the cuts of a slab, unless the domain ends there.
 void continueBeyond(const detail::SlabFaces& faces, const Obstacles& obstacles, const Coord& origin,
                     int length, detail::RowDomain& d) {
-  const auto isKnown = [&](int z) {
-    const CoordBBox& box = obstacles.domain.box();
-    return !obstacles.open || (z >= box.min().z() && z <= box.max().z());
-  };
-  if (faces.hasBelow && origin.z() == faces.begin && isKnown(faces.begin - 1))
+  if (faces.hasBelow && origin.z() == faces.begin && !detail::isUnknown(obstacles, faces.begin - 1))
     d.before = faces.below.of(origin);
-  if (faces.hasAbove && origin.z() + length == faces.end && isKnown(faces.end))
+  if (faces.hasAbove && origin.z() + length == faces.end &&
+      !detail::isUnknown(obstacles, faces.end))
     d.after = faces.above.of(origin);
 }
 
@@ -221,13 +219,16 @@ void measureInRegion(const LeafIndex& index, const Obstacles& obstacles, Interru
 
 }  // namespace
 
-SquaredDistance squaredDistance(const LeafIndex& index, const Obstacles& obstacles,
-                                const VoxelWeights& weights, Interrupter* interrupter) {
-  if (obstacles.open && index.voxelCount() > 0 &&
-      index.voxelCount() == obstacles.domain.voxelCount())
+void detail::checkBackground(const Obstacles& obstacles, int64_t objectVoxels) {
+  if (obstacles.open && objectVoxels > 0 && objectVoxels == obstacles.domain.voxelCount())
     throw InvalidInput(
         "the object fills the whole domain, so there is no background to measure distances from; "
         "choose by value what is object, with a threshold or a phase");
+}
+
+SquaredDistance squaredDistance(const LeafIndex& index, const Obstacles& obstacles,
+                                const VoxelWeights& weights, Interrupter* interrupter) {
+  detail::checkBackground(obstacles, index.voxelCount());
   const bool region = obstacles.open && !obstacles.domain.isBox() && index.voxelCount() > 0;
   checkWeights(weights, region ? obstacles.domain.box().dim() : index.boundingBox().dim());
   SquaredDistance result;

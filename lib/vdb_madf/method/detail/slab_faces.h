@@ -47,6 +47,12 @@ class ColumnSteps {
   std::vector<Rows> rows_;
 };
 
+/// Does a layer lie outside of an open domain, which is a box?
+inline bool isUnknown(const Obstacles& obstacles, int z) {
+  const CoordBBox& box = obstacles.domain.box();
+  return obstacles.open && (z < box.min().z() || z > box.max().z());
+}
+
 /// A slab among others: begin <= z < end, both multiples of 8.
 struct SlabFaces {
   int begin = 0, end = 0;

@@ -39,11 +39,8 @@ class Walk {
   /// In these rows z is the first that is no object.
   void stop(uint64_t rows, int z) {
     going_ &= ~rows;
-    if (isUnknown(z)) forEachBit(rows, [&](int row) { steps_[size_t(row)] = kInfinite; });
-  }
-  bool isUnknown(int z) const {
-    const CoordBBox& box = obstacles_.domain.box();
-    return obstacles_.open && (z < box.min().z() || z > box.max().z());
+    if (isUnknown(obstacles_, z))
+      forEachBit(rows, [&](int row) { steps_[size_t(row)] = kInfinite; });
   }
 
   /// Beyond the last leaf of the walk.
@@ -51,7 +48,7 @@ class Walk {
     const int z = step_ > 0 ? origin.z() + 8 : origin.z() - 1;
     const bool atCut =
         step_ > 0 ? faces_.hasAbove && z == faces_.end : faces_.hasBelow && z == faces_.begin - 1;
-    if (!atCut || isUnknown(z)) {
+    if (!atCut || isUnknown(obstacles_, z)) {
       stop(going_, z);
       return;
     }

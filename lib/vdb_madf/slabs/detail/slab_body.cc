@@ -83,6 +83,7 @@ void HoleCount::add(const std::vector<LeafIndex::LeafVoxels>& holes, int begin, 
   SlabPieces pieces(index, {}, ConnectedComponents(index), {}, begin, end);
   pieces_.add(pieces, any_ ? &before_ : nullptr);
   voxels_ += index.voxelCount();
+  boundingBox_.expand(index.boundingBox());
   before_ = std::move(pieces);
   any_ = true;
 }

@@ -35,9 +35,11 @@ class HoleCount {
   void add(const std::vector<LeafIndex::LeafVoxels>& holes, int begin, int end);
   int64_t voxels() const { return voxels_; }
   int64_t count() const { return pieces_.count(); }
+  const CoordBBox& boundingBox() const { return boundingBox_; }
 
  private:
   int64_t voxels_ = 0;
+  CoordBBox boundingBox_;
   PieceUnion pieces_;
   SlabPieces before_;
   bool any_ = false;

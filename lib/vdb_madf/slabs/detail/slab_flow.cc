@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "vdb_madf/base/errors.h"
 #include "vdb_madf/method/cavities.h"
+#include "vdb_madf/method/detail/check_background.h"
 #include "vdb_madf/method/detail/foreign_sites.h"
 #include "vdb_madf/method/detail/segment_options.h"
 #include "vdb_madf/method/detail/slab_faces.h"
@@ -45,30 +45,27 @@ class SlabFlow {
     result_.fillHoles = work_.options.fillHoles.value_or(defaultFillHoles(work_.domain));
     result_.tidy = work_.options.tidy;
     SegmentCounts& counts = result_.counts;
+    CoordBBox extent;
     for (size_t s = 0; s < work_.slabCount(); ++s) {
       const LeafIndex index(LeafIndex(), work_.object.leaves(s));
       work_.obstacles = resolveBoundary(index, work_.options.boundary, work_.domain);
       counts.objectVoxels += index.voxelCount();
       counts.leaves += int64_t(index.leafCount());
+      extent.expand(index.boundingBox());
     }
     result_.open = work_.obstacles.open;
-    fillHoles();
-    CoordBBox extent;
-    for (size_t s = 0; s < work_.slabCount(); ++s) extent.expand(work_.body(s).index.boundingBox());
+    extent.expand(fillHoles());
     const std::array<double, 3> edges = work_.options.weights
                                             ? std::array<double, 3>{1, 1, 1}
                                             : voxelEdges(work_.object.about->transform());
     const WeightsOfEdges weights = resolveWeights(work_.options.weights, edges, extent.dim());
     result_.weights = weights.weights;
     result_.weightsError = weights.error;
-    if (work_.obstacles.open && counts.objectVoxels > 0 &&
-        counts.objectVoxels == work_.obstacles.domain.voxelCount())
-      throw InvalidInput(
-          "the object fills the whole domain, so there is no background to measure distances from; "
-          "choose by value what is object, with a threshold or a phase");
+    checkBackground(work_.obstacles, counts.objectVoxels);
   }
 
-  void fillHoles() {
+  /// Returns the box of what is filled.
+  CoordBBox fillHoles() {
     SegmentCounts& counts = result_.counts;
     const __int128 background =
         work_.obstacles.open ? work_.obstacles.domain.voxelCount() - counts.objectVoxels : 0;
@@ -88,9 +85,10 @@ class SlabFlow {
     }
     // Not all background may be filled.
     work_.fillsNone = work_.obstacles.open && background == holes.voxels();
-    if (work_.fillsNone) return;
+    if (work_.fillsNone) return {};
     counts.cavities = holes.count();
     counts.cavityVoxels = holes.voxels();
+    return holes.boundingBox();
   }
 
   SlabFaces faces(size_t slab) const {
