@@ -8,39 +8,22 @@
 
 #include "vdb_madf/base/detail/disjoint_sets.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/method/detail/metric.h"
+#include "vdb_madf/method/detail/merge_rule.h"
 
 namespace vdb_madf {
 
 namespace {
 
-using Node = ManifoldGraph::Node;
 using Edge = ManifoldGraph::Edge;
 
-double cosAlpha(const Node& a, const Node& b, const VoxelWeights& weights) {
-  return detail::cosAlpha(detail::squaredBetween(a.position, b.position, weights), a.squaredRadius,
-                          b.squaredRadius);
-}
-
-void mergeByAngle(const ManifoldGraph& graph, const MergeOptions& options,
+void mergeByAngle(const ManifoldGraph& graph, const detail::MergeRule& rule,
                   detail::DisjointSets& grains) {
-  for (const Edge& edge : graph.edges) {
-    if (options.adjacency == Adjacency::cell && !edge.cellsTouch) continue;
-    if (cosAlpha(graph.nodes[edge.first], graph.nodes[edge.second], graph.weights) < options.theta)
+  for (const Edge& edge : graph.edges)
+    if (rule.mergesByAngle(graph.nodes[edge.first], graph.nodes[edge.second], edge.cellsTouch))
       grains.unite(edge.first, edge.second);
-  }
 }
 
-/// Is the neck of squared radius h, 0 < h, less than k / 8 of the shortest edge narrower than a ball
-/// of squared radius m? That edge is sqrt(w), w its weight:
-///   sqrt(m) < sqrt(h) + k sqrt(w) / 8  <=>  L := 64 (m - h) - k^2 w < 16 k sqrt(w h)
-///                                      <=>  L < 0  or  L^2 < 256 k^2 w h   (where k > 0).
-bool isWithin(int k, int64_t m, int64_t h, int64_t w) {
-  const __int128 l = 64 * (m - h) - k * k * w;
-  return k > 0 && (l < 0 || l * l < __int128(256 * k * k) * w * h);
-}
-
-void mergeByNeck(const ManifoldGraph& graph, const MergeOptions& options,
+void mergeByNeck(const ManifoldGraph& graph, const detail::MergeRule& rule,
                  detail::DisjointSets& grains) {
   std::vector<int32_t> top(graph.nodes.size(), 0);  // largest D of a class, at its root
   for (uint32_t i = 0; i < graph.nodes.size(); ++i) {
@@ -49,20 +32,15 @@ void mergeByNeck(const ManifoldGraph& graph, const MergeOptions& options,
   }
   std::vector<uint32_t> order;
   for (uint32_t i = 0; i < graph.edges.size(); ++i)
-    if (graph.edges[i].saddleHeight > 0) order.push_back(i);
+    if (rule.seesNeck(graph.edges[i].saddleHeight)) order.push_back(i);
   // Edges are sorted by their pair, and nodes lexicographically: a stable sort settles ties.
   std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
     return graph.edges[a].saddleHeight > graph.edges[b].saddleHeight;
   });
-  const double factor = (1 - options.theta) / 2;
   for (const uint32_t i : order) {
     const Edge& edge = graph.edges[i];
     const uint32_t a = grains.find(edge.first), b = grains.find(edge.second);
-    if (a == b) continue;
-    const int32_t smaller = std::min(top[a], top[b]);
-    if (!(edge.saddleHeight >= factor * smaller) &&
-        !isWithin(options.delta, smaller, edge.saddleHeight, graph.weights.least()))
-      continue;
+    if (a == b || !rule.mergesByNeck(edge.saddleHeight, std::min(top[a], top[b]))) continue;
     const int32_t merged = std::max(top[a], top[b]);
     grains.unite(a, b);
     top[grains.find(a)] = merged;
@@ -82,8 +60,9 @@ void checkMergeOptions(const MergeOptions& options) {
 Merging merge(const ManifoldGraph& graph, const MergeOptions& options) {
   checkMergeOptions(options);
   detail::DisjointSets grains(graph.nodes.size());
-  if (options.mode != MergeMode::neck) mergeByAngle(graph, options, grains);
-  if (options.mode != MergeMode::angle) mergeByNeck(graph, options, grains);
+  const detail::MergeRule rule(options, graph.weights);
+  mergeByAngle(graph, rule, grains);
+  mergeByNeck(graph, rule, grains);
 
   std::vector<uint32_t> classOfNode(graph.nodes.size());
   for (uint32_t i = 0; i < classOfNode.size(); ++i) classOfNode[i] = grains.find(i);
