@@ -44,15 +44,13 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
     throw InvalidInput("a region cannot be cut into slabs yet: take a box as domain");
   detail::SlabWork work{object, result.domain, options, scratch, interrupter};
   detail::SlabGraph graph = detail::flowInSlabs(work, result);
-  result.graph = graph.finish();
-  result.graph.weights = result.weights;
-  const Merging merging = merge(result.graph, options.merge);
   SegmentCounts& counts = result.counts;
   counts.keptBalls = counts.medialBalls;
-  counts.criticalPoints = int64_t(result.graph.nodes.size());
-  counts.grains = int64_t(merging.representative.size());
+  counts.criticalPoints = graph.criticalPoints();
+  const detail::SlabGrains grains(work, std::move(graph), result.weights);
+  counts.grains = int64_t(grains.representatives().size());
   result.grainVoxels.assign(size_t(counts.grains), 0);
-  labelSlabs(work, graph, merging, result, put);
+  detail::labelSlabs(work, grains, result, put);
   return result;
 }
 

@@ -29,7 +29,6 @@ struct SlabObject {
 /// What segmentSlabs() finds beside the labels.
 struct SlabSegmentation {
   SegmentCounts counts;
-  ManifoldGraph graph;
   std::vector<int64_t> grainVoxels;  ///< voxels of grain g at g - 1
   int64_t fillHoles = 0;
   int tidy = 0;

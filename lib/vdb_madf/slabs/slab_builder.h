@@ -19,7 +19,7 @@ struct SlabLimits {
 };
 
 /// Bytes that segmentSlabs() takes for each object voxel of a slab at its peak, and apart from that, of
-/// which most is the program itself. For limits; the graph of the whole is not counted.
+/// which most is the program itself. For limits; what is kept of the whole is not counted (README.md).
 constexpr int64_t kSlabBytesPerVoxel = 32;
 constexpr int64_t kSlabOtherBytes = int64_t(160) << 20;
 

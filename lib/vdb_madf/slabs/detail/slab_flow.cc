@@ -153,16 +153,13 @@ class SlabFlow {
     return work_.readVector<ForeignSite>("offered-down", s);
   }
 
-  /// From the lowest slab on: distance, power map, flow, contacts.
+  /// From the lowest slab on: distance, power map, flow.
   void flowUp() {
-    std::vector<SlabTerminals::FaceVoxel> below;
     for (size_t s = 0; s < work_.slabCount(); ++s) {
       if (!work_.has("terminals", s)) flowIn(s);
       ByteReader bytes = work_.read("terminals", s);
-      SlabTerminals terminals = SlabTerminals::readFrom(bytes);
+      const SlabTerminals terminals = SlabTerminals::readFrom(bytes);
       graph_.add(terminals);
-      if (s > 0) graph_.addContacts(SlabTerminals::contacts(below, terminals.lowest));
-      below = std::move(terminals.highest);
       result_.counts.medialBalls += terminals.balls;
       result_.counts.largestSquaredDistance = std::max<int64_t>(
           result_.counts.largestSquaredDistance, terminals.largestSquaredDistance);

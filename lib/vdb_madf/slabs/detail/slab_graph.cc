@@ -4,9 +4,8 @@
 #include "vdb_madf/slabs/detail/slab_graph.h"
 
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
-#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/method/detail/reduce_edges.h"
 
@@ -16,40 +15,65 @@ namespace {
 
 using Edge = ManifoldGraph::Edge;
 
+uint32_t withoutFlag(uint32_t terminal) {
+  return (terminal & ~Flow::kOwnCell) - 1;
+}
+
+std::vector<uint32_t> terminalsIn(const std::vector<SlabTerminals::FaceVoxel>& face) {
+  std::vector<uint32_t> terminals;
+  for (const auto& voxel : face) terminals.push_back(withoutFlag(voxel.terminal));
+  std::sort(terminals.begin(), terminals.end());
+  terminals.erase(std::unique(terminals.begin(), terminals.end()), terminals.end());
+  return terminals;
+}
+
+/// The node at a position, which there is.
+uint32_t nodeAt(const ManifoldGraph& graph, const Coord& position) {
+  const auto found =
+      std::lower_bound(graph.nodes.begin(), graph.nodes.end(), position,
+                       [](const CriticalPoint& a, const Coord& p) { return a.position < p; });
+  return uint32_t(found - graph.nodes.begin());
+}
+
+/// Ascending, each once, without voxels.
+std::vector<CriticalPoint> sortedNodes(std::vector<CriticalPoint> nodes) {
+  std::sort(nodes.begin(), nodes.end(),
+            [](const CriticalPoint& a, const CriticalPoint& b) { return a.position < b.position; });
+  const auto end = std::unique(
+      nodes.begin(), nodes.end(),
+      [](const CriticalPoint& a, const CriticalPoint& b) { return a.position == b.position; });
+  nodes.erase(end, nodes.end());
+  for (CriticalPoint& node : nodes) node.voxels = 0;
+  return nodes;
+}
+
 }  // namespace
 
 size_t SlabGraph::slabOf(int z) const {
   return size_t(std::upper_bound(cuts_.begin(), cuts_.end(), z) - cuts_.begin()) - 1;
 }
 
-void SlabGraph::add(const SlabTerminals& terminals) {
-  const size_t slab = first_.size() - 1;
-  const uint32_t first = first_.back();
-  if (points_.size() + terminals.points.size() >= Flow::kOwnCell)
-    throw InvalidInput("there are more than 2^31 critical points: coarsen the volume");
-  questions_.resize(cuts_.size() - 1);
-  for (const CriticalPoint& point : terminals.points) {
-    const auto number = uint32_t(points_.size());
-    const size_t owner = slabOf(point.position.z());
-    if (owner != slab) questions_[owner].push_back({point.position, number});
-    points_.push_back(point);
-    next_.push_back(number);
-  }
-  for (Edge edge : terminals.edges) {
-    edge.first += first;
-    edge.second += first;
-    edges_.push_back(edge);
-  }
-  first_.push_back(uint32_t(points_.size()));
+size_t SlabGraph::slabOfTerminal(uint32_t terminal) const {
+  return size_t(std::upper_bound(first_.begin(), first_.end(), terminal) - first_.begin()) - 1;
 }
 
-void SlabGraph::addContacts(const std::vector<Edge>& contacts) {
-  const size_t above = first_.size() - 2;
-  for (Edge edge : contacts) {
-    edge.first += first_[above - 1];
-    edge.second += first_[above];
-    edges_.push_back(edge);
+void SlabGraph::add(const SlabTerminals& terminals) {
+  const size_t slab = slabCount();
+  const uint32_t first = first_.back();
+  if (first + terminals.points.size() >= Flow::kOwnCell)
+    throw InvalidInput("there are more than 2^31 critical points: coarsen the volume");
+  questions_.resize(cuts_.size() - 1);
+  for (uint32_t i = 0; i < terminals.points.size(); ++i) {
+    const Coord& position = terminals.points[i].position;
+    const size_t owner = slabOf(position.z());
+    if (owner == slab) {
+      ++criticalPoints_;
+      continue;
+    }
+    questions_[owner].push_back({position, uint32_t(foreign_.size())});
+    foreign_.push_back({first + i, first + i});
   }
+  first_.push_back(first + uint32_t(terminals.points.size()));
 }
 
 const std::vector<SlabGraph::Question>& SlabGraph::questions(size_t slab) {
@@ -59,51 +83,116 @@ const std::vector<SlabGraph::Question>& SlabGraph::questions(size_t slab) {
 }
 
 void SlabGraph::answer(size_t slab, const Question& question, uint32_t terminal) {
-  next_[question.terminal] = first_[slab] + (terminal & ~Flow::kOwnCell) - 1;
+  foreign_[question.terminal].next = first_[slab] + withoutFlag(terminal);
 }
 
-ManifoldGraph SlabGraph::finish() {
-  // A ball that is critical is the terminal of its own voxel: it is one, whoever asks.
-  std::vector<char> isCritical(points_.size());
-  for (uint32_t i = 0; i < points_.size(); ++i)
-    isCritical[i] = points_[next_[i]].position == points_[i].position;
-  std::vector<uint32_t> order;
-  for (uint32_t i = 0; i < next_.size(); ++i) {
-    if (next_[i] == i) order.push_back(i);
-    uint32_t root = i;  // D rises on the way: there is an end
-    while (next_[root] != root) root = next_[root];
-    next_[i] = root;
-  }
-  parallelSort(order.begin(), order.end(),
-               [&](uint32_t a, uint32_t b) { return points_[a].position < points_[b].position; });
+const SlabGraph::Foreign* SlabGraph::findForeign(uint32_t terminal) const {
+  const auto found =
+      std::lower_bound(foreign_.begin(), foreign_.end(), terminal,
+                       [](const Foreign& a, uint32_t number) { return a.terminal < number; });
+  return found != foreign_.end() && found->terminal == terminal ? &*found : nullptr;
+}
 
-  ManifoldGraph graph;
-  std::vector<uint32_t> nodeOf(points_.size());
-  for (const uint32_t i : order) {
-    nodeOf[i] = uint32_t(graph.nodes.size());
-    graph.nodes.push_back(points_[i]);
-    graph.nodes.back().voxels = 0;
+std::vector<SlabGraph::Shared>::const_iterator SlabGraph::sharedFrom(uint32_t terminal) const {
+  return std::lower_bound(shared_.begin(), shared_.end(), terminal,
+                          [](const Shared& a, uint32_t number) { return a.terminal < number; });
+}
+
+void SlabGraph::finish() {
+  questions_ = {};
+  for (Foreign& foreign : foreign_) {
+    // D rises on the way: there is an end.
+    while (const Foreign* next = findForeign(foreign.next)) foreign.next = next->next;
+    const auto last = std::max(slabOfTerminal(foreign.terminal), slabOfTerminal(foreign.next));
+    shared_.push_back({foreign.next, uint32_t(last)});
   }
-  for (uint32_t i = 0; i < next_.size(); ++i) {
-    next_[i] = nodeOf[next_[i]];
-    graph.nodes[next_[i]].voxels += points_[i].voxels;
+  std::sort(shared_.begin(), shared_.end(), [](const Shared& a, const Shared& b) {
+    return a.terminal != b.terminal ? a.terminal < b.terminal : a.last > b.last;
+  });
+  const auto end =
+      std::unique(shared_.begin(), shared_.end(),
+                  [](const Shared& a, const Shared& b) { return a.terminal == b.terminal; });
+  shared_.erase(end, shared_.end());
+  shared_.shrink_to_fit();
+}
+
+bool SlabGraph::isShared(size_t slab) const {
+  return sharedFrom(first_[slab]) != sharedFrom(first_[slab + 1]);
+}
+
+void SlabGraph::tellShared(size_t slab, const std::vector<CriticalPoint>& points) {
+  const auto begin = size_t(sharedFrom(first_[slab]) - shared_.cbegin());
+  const auto end = size_t(sharedFrom(first_[slab + 1]) - shared_.cbegin());
+  for (size_t i = begin; i < end; ++i)
+    shared_[i].point = points[shared_[i].terminal - first_[slab]];
+}
+
+std::vector<SlabGraph::Root> SlabGraph::rootsOf(size_t slab,
+                                                const std::vector<CriticalPoint>& points) const {
+  std::vector<Root> roots;
+  roots.reserve(points.size());
+  for (const CriticalPoint& point : points) roots.push_back({point, uint32_t(slab), true});
+  const auto set = [&](uint32_t terminal, const Shared& shared) {
+    Root& root = roots[terminal - first_[slab]];
+    // A ball that is critical is the terminal of its own voxel: it is one, whoever asks.
+    root = {shared.point, shared.last, root.point.position == shared.point.position};
+  };
+  for (auto shared = sharedFrom(first_[slab]); shared != sharedFrom(first_[slab + 1]); ++shared)
+    set(shared->terminal, *shared);
+  const auto from =
+      std::lower_bound(foreign_.begin(), foreign_.end(), first_[slab],
+                       [](const Foreign& a, uint32_t number) { return a.terminal < number; });
+  for (auto foreign = from; foreign != foreign_.end() && foreign->terminal < first_[slab + 1];
+       ++foreign)
+    set(foreign->terminal, *sharedFrom(foreign->next));
+  return roots;
+}
+
+SlabGraph::Part SlabGraph::nextPart(const SlabTerminals& terminals) {
+  const size_t slab = parts_++;
+  std::vector<Root> roots = rootsOf(slab, terminals.points);
+  const std::vector<Edge> contacts = SlabTerminals::contacts(faceBelow_, terminals.lowest);
+
+  Part part;
+  ManifoldGraph& graph = part.graph;
+  std::vector<CriticalPoint> nodes;
+  for (const Root& root : roots) nodes.push_back(root.point);
+  for (const uint32_t terminal : terminalsIn(faceBelow_))
+    nodes.push_back(rootsBelow_[terminal].point);
+  graph.nodes = sortedNodes(std::move(nodes));
+
+  part.goesOn.assign(graph.nodes.size(), 0);
+  const auto nodeOf = [&](const Root& root) {
+    const uint32_t node = nodeAt(graph, root.point.position);
+    if (root.last > slab) part.goesOn[node] = 1;
+    return node;
+  };
+  for (size_t i = 0; i < roots.size(); ++i) {
+    part.nodeOf.push_back(nodeOf(roots[i]));
+    graph.nodes[part.nodeOf[i]].voxels += terminals.points[i].voxels;
   }
-  for (Edge edge : edges_) {
-    edge.cellsTouch = edge.cellsTouch && isCritical[edge.first] && isCritical[edge.second];
-    const uint32_t a = next_[edge.first], b = next_[edge.second];
-    if (a == b) continue;
+  for (const uint32_t terminal : terminalsIn(faceBelow_)) nodeOf(rootsBelow_[terminal]);
+  const auto addEdge = [&](Edge edge, uint32_t a, uint32_t b, bool areTerminals) {
+    if (a == b) return;
     edge.first = std::min(a, b);
     edge.second = std::max(a, b);
+    edge.cellsTouch = edge.cellsTouch && areTerminals;
     graph.edges.push_back(edge);
-  }
-  points_ = {};
-  edges_ = {};
+  };
+  for (const Edge& edge : terminals.edges)
+    addEdge(edge, part.nodeOf[edge.first], part.nodeOf[edge.second],
+            roots[edge.first].isTerminal && roots[edge.second].isTerminal);
+  for (const Edge& edge : contacts)
+    addEdge(edge, nodeOf(rootsBelow_[edge.first]), part.nodeOf[edge.second],
+            rootsBelow_[edge.first].isTerminal && roots[edge.second].isTerminal);
   reduceEdges(graph.edges);
-  return graph;
-}
-
-std::vector<uint32_t> SlabGraph::nodesOf(size_t slab) const {
-  return {next_.begin() + first_[slab], next_.begin() + first_[slab + 1]};
+  // What lies beside the next cut is in the next part, too.
+  if (slab + 1 < slabCount())
+    for (const uint32_t terminal : terminalsIn(terminals.highest))
+      part.goesOn[part.nodeOf[terminal]] = 1;
+  rootsBelow_ = std::move(roots);
+  faceBelow_ = terminals.highest;
+  return part;
 }
 
 }  // namespace vdb_madf::detail

@@ -6,12 +6,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "vdb_madf/method/manifold_graph.h"
+#include "vdb_madf/slabs/detail/merge_parts.h"
 #include "vdb_madf/slabs/detail/slab_terminals.h"
 
 namespace vdb_madf::detail {
 
-/// Joins the terminals of all slabs to the graph of the whole.
+/// Joins the terminals of all slabs to the graph of the whole: knows where those that are balls of
+/// other slabs flow to, and makes the part of each slab from that.
 class SlabGraph {
  public:
   /// @param cuts slab s is cuts[s] <= z < cuts[s + 1]
@@ -19,8 +20,8 @@ class SlabGraph {
 
   /// Of the next slab, from the lowest on.
   void add(const SlabTerminals& terminals);
-  /// Between the slab that was added last and the one before it.
-  void addContacts(const std::vector<ManifoldGraph::Edge>& contacts);
+  size_t slabCount() const { return first_.size() - 1; }  ///< of those that were added
+  int64_t criticalPoints() const { return criticalPoints_; }
 
   /// A ball of a slab that others have as their terminal: where does its voxel flow to?
   struct Question {
@@ -31,21 +32,56 @@ class SlabGraph {
   const std::vector<Question>& questions(size_t slab);
   /// The answer: a terminal of the slab, as in Flow::manifold.
   void answer(size_t slab, const Question& question, uint32_t terminal);
+  /// When all is answered.
+  void finish();
 
-  /// When all is answered. Releases all but what nodeOf() needs. All but the weights is set.
-  ManifoldGraph finish();
-  /// The node of each terminal of a slab.
-  std::vector<uint32_t> nodesOf(size_t slab) const;
+  /// Has a slab critical points that others lead to? Their D is to be told then, for all slabs, before
+  /// the first part is made.
+  bool isShared(size_t slab) const;
+  void tellShared(size_t slab, const std::vector<CriticalPoint>& points);
+
+  /// The part of a slab, with its contacts to the slab below.
+  struct Part : GraphPart {
+    std::vector<uint32_t> nodeOf;  ///< of each terminal of the slab
+  };
+  /// Of the next slab, from the lowest on.
+  Part nextPart(const SlabTerminals& terminals);
 
  private:
+  /// A ball of another slab.
+  struct Foreign {
+    uint32_t terminal;
+    uint32_t next;  ///< where it flows to: another terminal; its critical point, if finished
+  };
+  /// A critical point that terminals of several slabs lead to.
+  struct Shared {
+    uint32_t terminal;
+    uint32_t last;  ///< the highest slab with such a terminal
+    CriticalPoint point{};
+  };
+  /// Where a terminal leads to.
+  struct Root {
+    CriticalPoint point;
+    uint32_t last;    ///< the highest slab with a terminal that leads there
+    bool isTerminal;  ///< is the terminal itself critical?
+  };
+
   size_t slabOf(int z) const;
+  size_t slabOfTerminal(uint32_t terminal) const;
+  const Foreign* findForeign(uint32_t terminal) const;
+  std::vector<Shared>::const_iterator sharedFrom(uint32_t terminal) const;
+  std::vector<Root> rootsOf(size_t slab, const std::vector<CriticalPoint>& points) const;
 
   std::vector<int> cuts_;
   std::vector<uint32_t> first_{0};  // terminal of each slab; one more at the end
-  std::vector<CriticalPoint> points_;
-  std::vector<uint32_t> next_;  // of a terminal; itself, if it is critical; then its node
-  std::vector<ManifoldGraph::Edge> edges_;
+  int64_t criticalPoints_ = 0;
+  std::vector<Foreign> foreign_;  // ascending by terminal
   std::vector<std::vector<Question>> questions_;
+  std::vector<Shared> shared_;  // ascending by terminal
+
+  size_t parts_ = 0;              // that were made
+  std::vector<Root> rootsBelow_;  // of the slab of the last one
+  std::vector<SlabTerminals::FaceVoxel> faceBelow_;
 };
 
 }  // namespace vdb_madf::detail

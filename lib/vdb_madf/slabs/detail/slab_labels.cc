@@ -9,7 +9,6 @@
 
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/leaves/leaf_grid.h"
-#include "vdb_madf/method/detail/manifold_labels.h"
 #include "vdb_madf/method/detail/tidy_steps.h"
 #include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/slabs/detail/slab_pieces.h"
@@ -21,9 +20,8 @@ namespace {
 
 class SlabLabels {
  public:
-  SlabLabels(SlabWork& work, const SlabGraph& graph, const Merging& merging,
-             SlabSegmentation& result)
-      : work_(work), graph_(graph), merging_(merging), result_(result) {}
+  SlabLabels(SlabWork& work, const SlabGrains& grains, SlabSegmentation& result)
+      : work_(work), grains_(grains), result_(result) {}
 
   void run(const PutSlabLabels& put) {
     if (result_.counts.objectVoxels == 0) {
@@ -60,9 +58,9 @@ class SlabLabels {
   /// Labels as merged.
   VoxelArray<uint32_t> mergedLabels(size_t s, const SlabBody& slab) const {
     auto labels = work_.read("flow", s).voxelArray<uint32_t>();
-    const std::vector<uint32_t> nodes = graph_.nodesOf(s);
+    const std::vector<uint32_t> grains = grains_.grainsOf(s);
     for (size_t i = 0; i < labels.size(); ++i)
-      labels[i] = uint32_t(merging_.grainOfNode[nodes[(labels[i] & ~Flow::kOwnCell) - 1]]);
+      labels[i] = grains[(labels[i] & ~Flow::kOwnCell) - 1];
     for (const VoxelId id : slab.cavities) labels[slab.index.rank(id)] = 0;
     return labels;
   }
@@ -111,7 +109,9 @@ class SlabLabels {
   /// The voxel of each grain that never changes: its representative, or the nearest to it if that lies
   /// in a cavity.
   Anchors findAnchors() const {
-    GrainLabels grains = grainsOf(result_.graph, merging_);
+    GrainLabels grains;
+    grains.representative = grains_.representatives();
+    grains.weights = result_.weights;
     Anchors anchors = grains.representative;
     std::vector<uint32_t> lost;
     for (size_t s = 0; s < work_.slabCount(); ++s) {
@@ -221,16 +221,15 @@ class SlabLabels {
   }
 
   SlabWork& work_;
-  const SlabGraph& graph_;
-  const Merging& merging_;
+  const SlabGrains& grains_;
   SlabSegmentation& result_;
 };
 
 }  // namespace
 
-void labelSlabs(SlabWork& work, const SlabGraph& graph, const Merging& merging,
-                SlabSegmentation& result, const PutSlabLabels& put) {
-  SlabLabels(work, graph, merging, result).run(put);
+void labelSlabs(SlabWork& work, const SlabGrains& grains, SlabSegmentation& result,
+                const PutSlabLabels& put) {
+  SlabLabels(work, grains, result).run(put);
 }
 
 }  // namespace vdb_madf::detail

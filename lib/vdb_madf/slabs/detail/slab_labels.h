@@ -3,15 +3,14 @@
 
 #pragma once
 
-#include "vdb_madf/method/merge.h"
-#include "vdb_madf/slabs/detail/slab_graph.h"
+#include "vdb_madf/slabs/detail/slab_grains.h"
 #include "vdb_madf/slabs/detail/slab_work.h"
 
 namespace vdb_madf::detail {
 
-/// The labels of all slabs, from where their voxels flow to and which nodes of the graph are merged:
-/// tidied, counted in result.grainVoxels, and put.
-void labelSlabs(SlabWork& work, const SlabGraph& graph, const Merging& merging,
-                SlabSegmentation& result, const PutSlabLabels& put);
+/// The labels of all slabs, from where their voxels flow to and the grains of that: tidied,
+/// counted in result.grainVoxels, and put.
+void labelSlabs(SlabWork& work, const SlabGrains& grains, SlabSegmentation& result,
+                const PutSlabLabels& put);
 
 }  // namespace vdb_madf::detail

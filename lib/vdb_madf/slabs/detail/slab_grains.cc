@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/slabs/detail/slab_grains.h"
+
+namespace vdb_madf::detail {
+
+SlabGrains::SlabGrains(SlabWork& work, SlabGraph graph, const VoxelWeights& weights)
+    : work_(work) {
+  graph.finish();
+  for (size_t s = 0; s < graph.slabCount(); ++s)
+    if (graph.isShared(s)) graph.tellShared(s, terminals(s).points);
+  MergeParts merging(MergeRule(work.options.merge, weights));
+  for (size_t s = 0; s < graph.slabCount(); ++s) {
+    const SlabGraph::Part part = graph.nextPart(terminals(s));
+    const std::vector<uint32_t> classOfNode = merging.add(part);
+    if (work.has("classes", s)) continue;
+    std::vector<uint32_t> classes;
+    for (const uint32_t node : part.nodeOf) classes.push_back(classOfNode[node]);
+    work.writeVector("classes", s, classes);
+  }
+  grains_ = merging.finish();
+}
+
+SlabTerminals SlabGrains::terminals(size_t slab) const {
+  ByteReader bytes = work_.read("terminals", slab);
+  return SlabTerminals::readFrom(bytes);
+}
+
+std::vector<uint32_t> SlabGrains::grainsOf(size_t slab) const {
+  auto grains = work_.readVector<uint32_t>("classes", slab);
+  for (uint32_t& grain : grains) grain = grains_.grainOfClass[grain];
+  return grains;
+}
+
+}  // namespace vdb_madf::detail
