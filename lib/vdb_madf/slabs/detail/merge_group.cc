@@ -28,6 +28,8 @@ class Contraction {
 
   std::vector<uint32_t> run() {
     parallelSort(edges_.begin(), edges_.end(), comesBefore);
+    // What is not alive at its first edge never joins another class, and makes that with which it is
+    // joined like it; so those that go on at least halve in each round.
     do dropEdges();
     while (joinClasses());
     return renumber();

@@ -3,15 +3,17 @@
 
 #include "vdb_madf/slabs/detail/slab_grains.h"
 
+#include "vdb_madf/base/errors.h"
+
 namespace vdb_madf::detail {
 
-SlabGrains::SlabGrains(SlabWork& work, SlabGraph graph, const VoxelWeights& weights)
-    : work_(work) {
+SlabGrains::SlabGrains(SlabWork& work, SlabGraph graph, const VoxelWeights& weights) : work_(work) {
   graph.finish();
   for (size_t s = 0; s < graph.slabCount(); ++s)
     if (graph.isShared(s)) graph.tellShared(s, terminals(s).points);
   MergeParts merging(MergeRule(work.options.merge, weights));
   for (size_t s = 0; s < graph.slabCount(); ++s) {
+    if (work.interrupter && work.interrupter->wasInterrupted(75)) throw Interrupted();
     const SlabGraph::Part part = graph.nextPart(terminals(s));
     const std::vector<uint32_t> classOfNode = merging.add(part);
     if (work.has("classes", s)) continue;
