@@ -243,7 +243,14 @@ TEST_CASE("slab_graph: parts are those of the whole, and so are the grains", "[s
     for (size_t s = 0; s < slabs.size(); ++s)
       if (graph.isShared(s)) graph.tellShared(s, slabs[s].points);
     std::vector<SlabGraph::Part> parts;
-    for (const SlabTerminals& slab : slabs) parts.push_back(graph.nextPart(slab));
+    std::vector<Edge> below, above;
+    for (size_t s = 0; s < slabs.size(); ++s) {
+      below = std::move(above);
+      above.clear();
+      if (s + 1 < slabs.size())
+        above = SlabTerminals::contacts(slabs[s].highest, slabs[s + 1].lowest);
+      parts.push_back(graph.nextPart(slabs[s], below, above));
+    }
     const ManifoldGraph added = sum(parts);
     REQUIRE(added.nodes == whole.nodes);
     REQUIRE(added.edges == whole.edges);

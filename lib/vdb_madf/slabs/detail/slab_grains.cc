@@ -3,6 +3,8 @@
 
 #include "vdb_madf/slabs/detail/slab_grains.h"
 
+#include <utility>
+
 #include "vdb_madf/base/errors.h"
 
 namespace vdb_madf::detail {
@@ -12,9 +14,15 @@ SlabGrains::SlabGrains(SlabWork& work, SlabGraph graph, const VoxelWeights& weig
   for (size_t s = 0; s < graph.slabCount(); ++s)
     if (graph.isShared(s)) graph.tellShared(s, terminals(s).points);
   MergeParts merging(MergeRule(work.options.merge, weights));
+  SlabTerminals here, next;
+  std::vector<ManifoldGraph::Edge> below, above;
   for (size_t s = 0; s < graph.slabCount(); ++s) {
     if (work.interrupter && work.interrupter->wasInterrupted(75)) throw Interrupted();
-    const SlabGraph::Part part = graph.nextPart(terminals(s));
+    here = s == 0 ? terminals(s) : std::move(next);
+    next = s + 1 < graph.slabCount() ? terminals(s + 1) : SlabTerminals();
+    below = std::move(above);
+    above = SlabTerminals::contacts(here.highest, next.lowest);
+    const SlabGraph::Part part = graph.nextPart(here, below, above);
     const std::vector<uint32_t> classOfNode = merging.add(part);
     if (work.has("classes", s)) continue;
     std::vector<uint32_t> classes;

@@ -19,14 +19,6 @@ uint32_t withoutFlag(uint32_t terminal) {
   return (terminal & ~Flow::kOwnCell) - 1;
 }
 
-std::vector<uint32_t> terminalsIn(const std::vector<SlabTerminals::FaceVoxel>& face) {
-  std::vector<uint32_t> terminals;
-  for (const auto& voxel : face) terminals.push_back(withoutFlag(voxel.terminal));
-  std::sort(terminals.begin(), terminals.end());
-  terminals.erase(std::unique(terminals.begin(), terminals.end()), terminals.end());
-  return terminals;
-}
-
 /// The node at a position, which there is.
 uint32_t nodeAt(const ManifoldGraph& graph, const Coord& position) {
   const auto found =
@@ -148,17 +140,16 @@ std::vector<SlabGraph::Root> SlabGraph::rootsOf(size_t slab,
   return roots;
 }
 
-SlabGraph::Part SlabGraph::nextPart(const SlabTerminals& terminals) {
+SlabGraph::Part SlabGraph::nextPart(const SlabTerminals& terminals, const std::vector<Edge>& below,
+                                    const std::vector<Edge>& above) {
   const size_t slab = parts_++;
   std::vector<Root> roots = rootsOf(slab, terminals.points);
-  const std::vector<Edge> contacts = SlabTerminals::contacts(faceBelow_, terminals.lowest);
 
   Part part;
   ManifoldGraph& graph = part.graph;
   std::vector<CriticalPoint> nodes;
   for (const Root& root : roots) nodes.push_back(root.point);
-  for (const uint32_t terminal : terminalsIn(faceBelow_))
-    nodes.push_back(rootsBelow_[terminal].point);
+  for (const Edge& edge : below) nodes.push_back(rootsBelow_[edge.first].point);
   graph.nodes = sortedNodes(std::move(nodes));
 
   part.goesOn.assign(graph.nodes.size(), 0);
@@ -171,7 +162,6 @@ SlabGraph::Part SlabGraph::nextPart(const SlabTerminals& terminals) {
     part.nodeOf.push_back(nodeOf(roots[i]));
     graph.nodes[part.nodeOf[i]].voxels += terminals.points[i].voxels;
   }
-  for (const uint32_t terminal : terminalsIn(faceBelow_)) nodeOf(rootsBelow_[terminal]);
   const auto addEdge = [&](Edge edge, uint32_t a, uint32_t b, bool areTerminals) {
     if (a == b) return;
     edge.first = std::min(a, b);
@@ -182,16 +172,13 @@ SlabGraph::Part SlabGraph::nextPart(const SlabTerminals& terminals) {
   for (const Edge& edge : terminals.edges)
     addEdge(edge, part.nodeOf[edge.first], part.nodeOf[edge.second],
             roots[edge.first].isTerminal && roots[edge.second].isTerminal);
-  for (const Edge& edge : contacts)
+  for (const Edge& edge : below)
     addEdge(edge, nodeOf(rootsBelow_[edge.first]), part.nodeOf[edge.second],
             rootsBelow_[edge.first].isTerminal && roots[edge.second].isTerminal);
   reduceEdges(graph.edges);
-  // What lies beside the next cut is in the next part, too.
-  if (slab + 1 < slabCount())
-    for (const uint32_t terminal : terminalsIn(terminals.highest))
-      part.goesOn[part.nodeOf[terminal]] = 1;
+  // The next part has these contacts.
+  for (const Edge& edge : above) part.goesOn[part.nodeOf[edge.first]] = 1;
   rootsBelow_ = std::move(roots);
-  faceBelow_ = terminals.highest;
   return part;
 }
 

@@ -44,8 +44,9 @@ class SlabGraph {
   struct Part : GraphPart {
     std::vector<uint32_t> nodeOf;  ///< of each terminal of the slab
   };
-  /// Of the next slab, from the lowest on.
-  Part nextPart(const SlabTerminals& terminals);
+  /// Of the next slab, from the lowest on. @param below, above its contacts (SlabTerminals::contacts())
+  Part nextPart(const SlabTerminals& terminals, const std::vector<ManifoldGraph::Edge>& below,
+                const std::vector<ManifoldGraph::Edge>& above);
 
  private:
   /// A ball of another slab.
@@ -81,7 +82,6 @@ class SlabGraph {
 
   size_t parts_ = 0;              // that were made
   std::vector<Root> rootsBelow_;  // of the slab of the last one
-  std::vector<SlabTerminals::FaceVoxel> faceBelow_;
 };
 
 }  // namespace vdb_madf::detail
