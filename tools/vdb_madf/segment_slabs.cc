@@ -200,8 +200,6 @@ void checkSlabArguments(const SegmentArguments& o) {
   if (!isSlabs) return;
   if (!o.keep.empty() || !o.tables.empty() || o.dryRun)
     throw WrongUsage(o.out + ": slabs get labels alone: leave --keep, --tables and --dry-run out");
-  if (o.segment.gamma > 1)
-    throw WrongUsage(o.out + ": --gamma does not work in slabs yet: leave it out");
   if (!o.input.roi.empty())
     throw WrongUsage(o.out + ": --roi does not work in slabs yet: take a box with --crop");
 }

@@ -18,8 +18,6 @@ namespace {
 
 void checkSlabOptions(const SlabObject& object, const SegmentOptions& options) {
   detail::checkSegmentOptions(options);
-  if (options.gamma > 1)
-    throw InvalidInput("the filter by cells (gamma) does not work in slabs yet: leave it out");
   if (options.keepDistance || options.keepPower || options.keepManifold || options.keepBalls)
     throw InvalidInput("slabs give labels alone: keep no other grids");
   const std::vector<int>& cuts = object.cuts;
@@ -32,32 +30,56 @@ void checkSlabOptions(const SlabObject& object, const SegmentOptions& options) {
                          " rounds: take slabs at least as many voxels high");
 }
 
+/// Tells each slab which grains its terminals are in.
+void sendGrains(detail::SlabWork& work, const detail::SlabGraph& graph, const Merging& merging) {
+  for (size_t s = 0; s < work.slabCount(); ++s) {
+    std::vector<int32_t> grains;
+    for (const uint32_t node : graph.nodesOf(s)) grains.push_back(merging.grainOfNode[node]);
+    work.sendVector(detail::kGrainsOfTerminals, detail::SlabWork::kRoot, s, grains);
+  }
+}
+
 }  // namespace
+
+SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
+                              Scratch& scratch, Ranks& ranks, const PutSlabLabels& put,
+                              Interrupter* interrupter) {
+  checkSlabOptions(object, options);
+  SlabSegmentation result;
+  if (object.slabCount() == 0) return result;
+  result.domain = options.domain ? options.domain : storedDomain(*object.about);
+  if (result.domain && !result.domain->isBox())
+    throw InvalidInput("a region cannot be cut into slabs yet: take a box as domain");
+  detail::SlabWork work(object, options, scratch, ranks, interrupter);
+  work.domain = result.domain;
+  detail::SlabGraph graph = detail::flowInSlabs(work, result);
+  Merging merging;
+  if (work.isRoot()) {
+    result.graph = graph.finish();
+    result.graph.weights = result.weights;
+    merging = merge(result.graph, options.merge);
+    result.counts.criticalPoints = int64_t(result.graph.nodes.size());
+    result.counts.grains = int64_t(merging.representative.size());
+    result.grainVoxels.assign(size_t(result.counts.grains), 0);
+    if (result.counts.objectVoxels > 0) sendGrains(work, graph, merging);
+  }
+  ranks.exchange(scratch);
+  detail::ByteWriter counts;
+  counts.add(result.counts);
+  result.counts = detail::ByteReader(work.broadcast(counts)).value<SegmentCounts>();
+  labelSlabs(work, merging, result, put);
+  return result;
+}
 
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
                               Scratch& scratch, const PutSlabLabels& put,
                               Interrupter* interrupter) {
-  checkSlabOptions(object, options);
-  SlabSegmentation result;
-  result.domain = options.domain ? options.domain : storedDomain(*object.about);
-  if (result.domain && !result.domain->isBox())
-    throw InvalidInput("a region cannot be cut into slabs yet: take a box as domain");
-  detail::SlabWork work{object, result.domain, options, scratch, interrupter};
-  detail::SlabGraph graph = detail::flowInSlabs(work, result);
-  result.graph = graph.finish();
-  result.graph.weights = result.weights;
-  const Merging merging = merge(result.graph, options.merge);
-  SegmentCounts& counts = result.counts;
-  counts.keptBalls = counts.medialBalls;
-  counts.criticalPoints = int64_t(result.graph.nodes.size());
-  counts.grains = int64_t(merging.representative.size());
-  result.grainVoxels.assign(size_t(counts.grains), 0);
-  labelSlabs(work, graph, merging, result, put);
-  return result;
+  Ranks alone;
+  return segmentSlabs(object, options, scratch, alone, put, interrupter);
 }
 
 bool isSlabPut(const Scratch& scratch, size_t slab) {
-  return scratch.has(detail::SlabWork::name("counts", slab));
+  return scratch.has(detail::SlabWork::name("put", slab));
 }
 
 }  // namespace vdb_madf

@@ -4,14 +4,16 @@
 #pragma once
 
 #include "vdb_madf/method/merge.h"
-#include "vdb_madf/slabs/detail/slab_graph.h"
 #include "vdb_madf/slabs/detail/slab_work.h"
 
 namespace vdb_madf::detail {
 
-/// The labels of all slabs, from where their voxels flow to and which nodes of the graph are merged:
-/// tidied, counted in result.grainVoxels, and put.
-void labelSlabs(SlabWork& work, const SlabGraph& graph, const Merging& merging,
-                SlabSegmentation& result, const PutSlabLabels& put);
+/// Message from the root: the grain of each terminal of a slab.
+constexpr char kGrainsOfTerminals[] = "grains";
+
+/// The labels of all slabs, from where their voxels flow to and the grains of those terminals: tidied,
+/// counted in result.grainVoxels (at the root), and put. \p merging: of result.graph, at the root.
+void labelSlabs(SlabWork& work, const Merging& merging, SlabSegmentation& result,
+                const PutSlabLabels& put);
 
 }  // namespace vdb_madf::detail
