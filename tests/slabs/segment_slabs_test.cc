@@ -15,6 +15,7 @@
 
 #include "support/random_case.h"
 #include "support/runs.h"
+#include "support/slab_objects.h"
 #include "support/thread_ranks.h"
 #include "vdb_madf/base/errors.h"
 
@@ -22,35 +23,6 @@ namespace {
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-
-/// The leaves of a mask in slabs with these cuts.
-SlabObject cutObject(const MaskGrid& mask, std::vector<int> cuts) {
-  std::vector<std::vector<LeafIndex::LeafVoxels>> leaves(cuts.size() - 1);
-  const LeafIndex index(mask);
-  for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
-    const auto above = std::upper_bound(cuts.begin(), cuts.end(), index.origin(leaf).z());
-    if (above == cuts.begin() || above == cuts.end())
-      throw std::logic_error("cuts leave the object");
-    leaves[size_t(above - cuts.begin()) - 1].push_back({index.origin(leaf), index.mask(leaf)});
-  }
-  SlabObject object;
-  object.cuts = std::move(cuts);
-  object.leaves = [leaves](size_t slab) { return leaves[slab]; };
-  object.about = openvdb::gridConstPtrCast<MaskGrid>(mask.copyGridWithNewTree());
-  return object;
-}
-
-/// At every layer of leaves or some of them; now and then there are empty slabs at the ends.
-std::vector<int> randomCuts(const CoordBBox& box, Rng& rng) {
-  const int first = (box.min().z() & ~7) - 8 * rng.below(2);
-  const int last = (box.max().z() | 7) + 1 + 8 * rng.below(2);
-  std::vector<int> cuts{first};
-  const double share = rng.chance(0.5) ? 1 : rng.unit();
-  for (int z = first + 8; z < last; z += 8)
-    if (rng.chance(share)) cuts.push_back(z);
-  cuts.push_back(last);
-  return cuts;
-}
 
 struct Cut {
   SlabSegmentation result;
@@ -97,18 +69,6 @@ Cut segmentByRanks(const SlabObject& object, const SegmentOptions& options, int 
     throw std::logic_error("ranks sent nothing");
   for (const Int32Grid::Ptr& grain : labels) addSlab(cut.labels, grain);
   return cut;
-}
-
-/// Are they the same voxels, values and metadata?
-bool areSame(const Int32Grid& a, const Int32Grid& b) {
-  if (a.activeVoxelCount() != b.activeVoxelCount() || a.transform() != b.transform()) return false;
-  const auto tree = b.getConstAccessor();
-  for (auto voxel = a.cbeginValueOn(); voxel; ++voxel)
-    if (tree.getValue(voxel.getCoord()) != *voxel) return false;
-  if (a.metaCount() != b.metaCount()) return false;
-  for (auto meta = a.beginMeta(); meta != a.endMeta(); ++meta)
-    if (!b[meta->first] || *b[meta->first] != *meta->second) return false;
-  return true;
 }
 
 std::string difference(const Segmentation& whole, const Cut& cut) {

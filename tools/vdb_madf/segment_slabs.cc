@@ -169,7 +169,13 @@ MaskGrid::Ptr readSlabs(const SegmentArguments& o, const Common& common, WorkPla
   return object;
 }
 
-Json indexOf(const SegmentArguments& o, const SlabObject& object, const Json& summary) {
+}  // namespace
+
+bool hasSlabsEnding(const std::string& path) {
+  return fileEnding(path) == ".slabs";
+}
+
+Json slabIndex(const SegmentArguments& o, const SlabObject& object, const Json& summary) {
   Json index;
   index["format"] = "vdb_madf slabs";
   index["format_version"] = 1;
@@ -185,12 +191,6 @@ Json indexOf(const SegmentArguments& o, const SlabObject& object, const Json& su
       index[key] = value;
   index["input"] = fs::path(o.input.path).filename().string();
   return index;
-}
-
-}  // namespace
-
-bool hasSlabsEnding(const std::string& path) {
-  return fileEnding(path) == ".slabs";
 }
 
 void checkSlabArguments(const SegmentArguments& o) {
@@ -242,7 +242,7 @@ void runInSlabs(const SegmentArguments& o, const Common& common) {
     Json json = toJson(o, summary);
     json["slab_count"] = object.slabCount();
     addNotes(json, *common.progress);
-    JsonFile(place.file(kSlabIndex)).write(indexOf(o, object, json));
+    JsonFile(place.file(kSlabIndex)).write(slabIndex(o, object, json));
     place.finish();
     jsonFile.write(json);
     if (common.quiet || jsonFile.isStandardOutput()) return;

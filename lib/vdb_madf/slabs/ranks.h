@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,6 +24,14 @@ class Ranks {
 
   virtual int count() const { return 1; }
   virtual int rank() const { return 0; }
+
+  /// Slabs are dealt evenly: rank r has those from firstSlab(r, slabs) to before firstSlab(r + 1, slabs);
+  /// rank 0 has some if there are any.
+  size_t firstSlab(int rank, size_t slabs) const {
+    const auto ranks = size_t(count());
+    return (slabs * size_t(rank) + ranks - 1) / ranks;
+  }
+  int ownerOf(size_t slab, size_t slabs) const { return int(slab * size_t(count()) / slabs); }
 
   /// A piece for the scratch of another rank, which has it after the next exchange(). `own` is that of
   /// this rank.

@@ -24,12 +24,8 @@ size_t SlabWork::slabOf(int z) const {
   return size_t(std::upper_bound(cuts.begin(), cuts.end(), z) - cuts.begin()) - 1;
 }
 
-int SlabWork::ownerOf(size_t slab) const {
-  return int(slab * size_t(ranks.count()) / slabCount());
-}
-
 void SlabWork::send(const char* what, size_t from, size_t to, const ByteWriter& bytes) {
-  const int owner = ownerOf(to);
+  const int owner = ranks.ownerOf(to, slabCount());
   if (owner == ranks.rank())
     scratch.write(name(what, from, to), bytes.bytes());
   else

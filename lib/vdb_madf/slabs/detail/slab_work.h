@@ -39,9 +39,8 @@ class SlabWork {
   size_t slabOf(int z) const;
 
   /// Slabs of this rank: firstOwn() <= s < endOwn().
-  size_t firstOwn() const { return firstOf(ranks.rank()); }
-  size_t endOwn() const { return firstOf(ranks.rank() + 1); }
-  int ownerOf(size_t slab) const;
+  size_t firstOwn() const { return ranks.firstSlab(ranks.rank(), slabCount()); }
+  size_t endOwn() const { return ranks.firstSlab(ranks.rank() + 1, slabCount()); }
   /// What concerns the whole is done by one rank, the owner of slab kRoot.
   static constexpr size_t kRoot = 0;
   bool isRoot() const { return ranks.rank() == 0; }
@@ -154,11 +153,6 @@ class SlabWork {
  private:
   static std::string name(const char* what, size_t from, size_t to) {
     return name(what, from) + "-" + std::to_string(to);
-  }
-  /// Rounded up, so that rank 0 has a slab if anyone has.
-  size_t firstOf(int rank) const {
-    const auto count = size_t(ranks.count());
-    return (slabCount() * size_t(rank) + count - 1) / count;
   }
   template <typename F>
   void run(size_t slab, const F& f) {
