@@ -125,7 +125,7 @@ void runInRanks(const SegmentArguments& o, const Common& common) {
     timing.total = secondsSince(start);
     const SegmentSummary summary = summarize(o, common, s, *object.about, timing);
     Json json = toJson(o, summary);
-    json["slab_count"] = object.slabCount();
+    addSlabCosts(object, s, json);
     json["ranks"] = ranks.count();
     addNotes(json, *common.progress);
     JsonFile(part.file(kSlabIndex)).write(slabIndex(o, object, json));

@@ -175,6 +175,14 @@ bool hasSlabsEnding(const std::string& path) {
   return fileEnding(path) == ".slabs";
 }
 
+void addSlabCosts(const SlabObject& object, const SlabSegmentation& s, Json& json) {
+  json["slab_count"] = object.slabCount();
+  json["exchanges"] = s.exchanges;
+  for (const SlabStage& stage : s.stages)
+    json["stages"].push_back(
+        {{"name", stage.name}, {"seconds", stage.seconds}, {"message_bytes", stage.messageBytes}});
+}
+
 Json slabIndex(const SegmentArguments& o, const SlabObject& object, const Json& summary) {
   Json index;
   index["format"] = "vdb_madf slabs";
@@ -187,7 +195,8 @@ Json slabIndex(const SegmentArguments& o, const SlabObject& object, const Json& 
                               {"z_last", object.cuts[s + 1] - 1}});
   for (const auto& [key, value] : summary.items())
     if (key.rfind("seconds_", 0) != 0 && key.find("memory") == std::string::npos &&
-        key != "threads" && key != "output" && key != "hints" && key != "input")
+        key != "threads" && key != "stages" && key != "exchanges" && key != "ranks" &&
+        key != "output" && key != "hints" && key != "input")
       index[key] = value;
   index["input"] = fs::path(o.input.path).filename().string();
   return index;
@@ -240,7 +249,7 @@ void runInSlabs(const SegmentArguments& o, const Common& common) {
     common.progress->end();
     const SegmentSummary summary = summarize(o, common, s, *about, timing);
     Json json = toJson(o, summary);
-    json["slab_count"] = object.slabCount();
+    addSlabCosts(object, s, json);
     addNotes(json, *common.progress);
     JsonFile(place.file(kSlabIndex)).write(slabIndex(o, object, json));
     place.finish();

@@ -16,6 +16,10 @@ bool hasSlabsEnding(const std::string& path);
 /// @throw WrongUsage for options that slabs do not know
 void checkSlabArguments(const SegmentArguments& o);
 
+/// Adds to the summary of a segmentation what slabs took: `slab_count`, `exchanges`, and of each stage
+/// `seconds` and `message_bytes`.
+void addSlabCosts(const SlabObject& object, const SlabSegmentation& s, Json& json);
+
 /// What index.json says of slabs, from what is said of the segmentation.
 Json slabIndex(const SegmentArguments& o, const SlabObject& object, const Json& summary);
 

@@ -53,6 +53,7 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
   detail::SlabWork work(object, options, scratch, ranks, interrupter);
   work.domain = result.domain;
   detail::SlabGraph graph = detail::flowInSlabs(work, result);
+  work.beginStage("merge");
   Merging merging;
   if (work.isRoot()) {
     result.graph = graph.finish();
@@ -63,11 +64,12 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
     result.grainVoxels.assign(size_t(result.counts.grains), 0);
     if (result.counts.objectVoxels > 0) sendGrains(work, graph, merging);
   }
-  ranks.exchange(scratch);
+  work.exchange();
   detail::ByteWriter counts;
   counts.add(result.counts);
   result.counts = detail::ByteReader(work.broadcast(counts)).value<SegmentCounts>();
   labelSlabs(work, merging, result, put);
+  work.endStages(result);
   return result;
 }
 

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "vdb_madf/leaves/leaf_index.h"
@@ -27,6 +28,13 @@ struct SlabObject {
   size_t slabCount() const { return cuts.empty() ? 0 : cuts.size() - 1; }
 };
 
+/// What a part of the work took. Of a run that goes on: of that run alone.
+struct SlabStage {
+  std::string name;
+  double seconds = 0;        ///< of the rank that took longest
+  int64_t messageBytes = 0;  ///< sent from slab to slab, by all ranks
+};
+
 /// What segmentSlabs() finds beside the labels.
 struct SlabSegmentation {
   SegmentCounts counts;
@@ -38,6 +46,8 @@ struct SlabSegmentation {
   std::optional<Domain> domain;
   VoxelWeights weights;
   double weightsError = 0;
+  std::vector<SlabStage> stages;  ///< in their order
+  int64_t exchanges = 0;          ///< how often messages were exchanged
 };
 
 /// Gets the labels of a slab: the part of Segmentation::grain that lies in it, with its metadata.

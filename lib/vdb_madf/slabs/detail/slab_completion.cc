@@ -281,7 +281,7 @@ void SlabCompletion::run() {
     int64_t played = 0;
     do {
       played = sum([&](size_t s) { return play(s); });
-      work_.ranks.exchange(work_.scratch);
+      work_.exchange();
     } while (played > 0);
     for (size_t s = work_.firstOwn(); s < work_.endOwn(); ++s) forgetWindow(s);
     ++window_;

@@ -68,7 +68,7 @@ class SlabFilter {
     work_.forEachSlab([&](size_t s) { gatherCells(s); });
     work_.forEachSlab([&](size_t s) { joinComponents(s); });
     if (work_.isRoot()) rescue();
-    work_.ranks.exchange(work_.scratch);
+    work_.exchange();
     work_.forEachSlab([&](size_t s) { keep(s); });
     keptOffers_.passOn();
     work_.forEachSlab([&](size_t s) { mapKept(s); }, [&](size_t s) { forget(s); });

@@ -26,19 +26,25 @@ class SlabFlow {
         graph_(work.object.cuts) {}
 
   SlabGraph run() {
+    work_.beginStage("cavities");
     setUpSlabs(work_, result_);
     if (result_.counts.objectVoxels == 0) return std::move(graph_);
+    work_.beginStage("offers");
     exchangeColumns(work_);
     work_.forEachSlab([&](size_t s) { offerBalls(s); });
     offers_.passOn();
     if (isFiltered()) {
+      work_.beginStage("gamma_filter");
       filterInSlabs(work_, offers_, completion_, result_.counts);
+      work_.beginStage("completion");
       completion_.run();
     }
+    work_.beginStage("flow");
     work_.forEachSlab([&](size_t s) { flowIn(s); }, [&](size_t s) { forgetMaps(s); });
     work_.forEachSlab([&](size_t s) { sendContacts(s); }, [&](size_t s) { forgetFaces(s); });
+    work_.beginStage("graph");
     if (work_.isRoot()) gather();
-    work_.ranks.exchange(work_.scratch);
+    work_.exchange();
     work_.forEachSlab([&](size_t s) { answer(s); }, [&](size_t s) { work_.remove("balls", s); });
     if (work_.isRoot()) takeAnswers();
     return std::move(graph_);

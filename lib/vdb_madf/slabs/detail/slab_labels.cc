@@ -25,7 +25,11 @@ class SlabLabels {
 
   void run(const ManifoldGraph& graph, const Merging& merging, const PutSlabLabels& put) {
     const bool isTidied = work_.options.tidy > 0 && result_.counts.objectVoxels > 0;
-    if (isTidied) tidyLabels(graph, merging);
+    if (isTidied) {
+      work_.beginStage("tidy");
+      tidyLabels(graph, merging);
+    }
+    work_.beginStage("labels");
     work_.forEachSlab([&](size_t s) { putLabels(s, isTidied, put); },
                       [&](size_t s) {
                         work_.remove("labels", s);
@@ -105,10 +109,10 @@ class SlabLabels {
                       });
     work_.forEachSlab([&](size_t s) { joinPieces(s); });
     if (work_.isRoot()) findHeld();
-    work_.ranks.exchange(work_.scratch);
+    work_.exchange();
     work_.forEachSlab([&](size_t s) { findLoose(s); });
     if (work_.isRoot()) refillLoose();
-    work_.ranks.exchange(work_.scratch);
+    work_.exchange();
   }
 
   /// The voxel of each grain that never changes: its representative, or the nearest to it if that lies

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -54,7 +55,7 @@ class SlabWork {
       run(s, f);
       forget(s);
     }
-    ranks.exchange(scratch);
+    exchange();
   }
   template <typename F>
   void forEachSlab(const F& f) {
@@ -70,7 +71,7 @@ class SlabWork {
     for (int rank = 0; rank < ranks.count(); ++rank) {
       if (rank == ranks.rank())
         for (size_t s = firstOwn(); s < endOwn(); ++s) run(s, f);
-      ranks.exchange(scratch);
+      exchange();
     }
   }
   template <typename F>
@@ -79,9 +80,20 @@ class SlabWork {
     for (int rank = ranks.count(); rank-- > 0;) {
       if (rank == ranks.rank())
         for (size_t s = endOwn(); s-- > firstOwn();) run(s, f);
-      ranks.exchange(scratch);
+      exchange();
     }
   }
+
+  /// Messages so far get to their slabs.
+  void exchange() {
+    ++exchanges_;
+    ranks.exchange(scratch);
+  }
+
+  /// The next part of the work begins.
+  void beginStage(const char* name);
+  /// What all parts took, by all ranks; after the last.
+  void endStages(SlabSegmentation& result);
 
   /// What is told of a step on a slab: all own slabs go from `begin` to `end` per cent of the whole.
   WorkPart part(int begin, int end, size_t slab) const {
@@ -162,7 +174,13 @@ class SlabWork {
     done_[slab] = step_;
   }
 
+  using Clock = std::chrono::steady_clock;
+  void endStage();
+
   int step_ = 0;
+  int64_t exchanges_ = 0;
+  std::vector<SlabStage> stages_;
+  Clock::time_point stageStart_;
   std::vector<int> done_;  // the last step of each own slab
 };
 
