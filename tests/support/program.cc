@@ -46,7 +46,8 @@ struct Pipe {
 
 /// Between fork and exec: nothing but system calls.
 [[noreturn]] void become(char* const* arguments, const char* folder, const RunOptions& options,
-                         const Pipe& in, const Pipe& out, const Pipe& err) {
+                         const sigset_t& signals, const Pipe& in, const Pipe& out,
+                         const Pipe& err) {
   const int from =
       options.in.empty() ? in.ends[0] : ::open(options.in.c_str(), O_RDONLY | O_CLOEXEC);
   ::dup2(from, STDIN_FILENO);
@@ -63,6 +64,7 @@ struct Pipe {
   ::setrlimit(RLIMIT_CPU, &seconds);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXFSZ}) ::signal(signal, SIG_DFL);
+  ::sigprocmask(SIG_SETMASK, &signals, nullptr);
   if (::chdir(folder) == 0) ::execv(VDB_MADF_TOOL, arguments);
   ::_exit(127);
 }
@@ -90,9 +92,14 @@ Outcome Bench::run(const std::vector<std::string>& arguments, const RunOptions& 
   in.closeWriting();
   const auto start = Clock::now();
   Clock::time_point signalled;
+  // Until the child has become the program, a signal to it must not find the handlers of the tests.
+  sigset_t all, signals;
+  ::sigfillset(&all);
+  ::sigprocmask(SIG_SETMASK, &all, &signals);
   const pid_t child = ::fork();
+  if (child == 0) become(argv.data(), folder_.path().c_str(), options, signals, in, out, err);
+  ::sigprocmask(SIG_SETMASK, &signals, nullptr);
   if (child < 0) throw std::runtime_error("no process");
-  if (child == 0) become(argv.data(), folder_.path().c_str(), options, in, out, err);
   out.closeWriting();
   err.closeWriting();
 

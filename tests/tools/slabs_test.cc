@@ -192,7 +192,6 @@ TEST_CASE("slabs: what cannot be is said in one line", "[slabs]") {
     CHECK_FALSE(bench.names().count("out.slabs.scratch"));
   };
   const std::string segment = "segment in.vdb out.slabs --grid object ";
-  refused(segment + "--gamma 20", "gamma");
   refused(segment + "--keep power", "labels alone");
   refused(segment + "--roi cylinder", "--crop");
   refused(segment + "--max-memory 100MiB", "allow more");

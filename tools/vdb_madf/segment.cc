@@ -20,6 +20,7 @@
 #include "merge_options.h"
 #include "outputs.h"
 #include "parse.h"
+#include "segment_ranks.h"
 #include "segment_slabs.h"
 #include "segment_summary.h"
 #include "vdb_madf/base/errors.h"
@@ -116,6 +117,7 @@ void printEstimate(const SegmentArguments& o, const Common& common, const MaskGr
 }
 
 void run(const SegmentArguments& o, const Common& common) {
+  if (common.ranks) return runInRanks(o, common);
   if (hasSlabsEnding(o.out)) return runInSlabs(o, common);
   const Clock::time_point start = Clock::now();
   SegmentTiming timing;
@@ -217,6 +219,7 @@ void addSegment(Verb command, Common& common, Action& action) {
   verb.flag("--dry-run", o->dryRun, "only say how much memory it would take");
   verb.onParsed([o, &common, &action] {
     parse(*o);
+    if (common.ranks) checkRankArguments(*o);
     action = [o, &common] { run(*o, besideOutput(common, o->out)); };
   });
 }

@@ -169,7 +169,21 @@ MaskGrid::Ptr readSlabs(const SegmentArguments& o, const Common& common, WorkPla
   return object;
 }
 
-Json indexOf(const SegmentArguments& o, const SlabObject& object, const Json& summary) {
+}  // namespace
+
+bool hasSlabsEnding(const std::string& path) {
+  return fileEnding(path) == ".slabs";
+}
+
+void addSlabCosts(const SlabObject& object, const SlabSegmentation& s, Json& json) {
+  json["slab_count"] = object.slabCount();
+  json["exchanges"] = s.exchanges;
+  for (const SlabStage& stage : s.stages)
+    json["stages"].push_back(
+        {{"name", stage.name}, {"seconds", stage.seconds}, {"message_bytes", stage.messageBytes}});
+}
+
+Json slabIndex(const SegmentArguments& o, const SlabObject& object, const Json& summary) {
   Json index;
   index["format"] = "vdb_madf slabs";
   index["format_version"] = 1;
@@ -181,16 +195,11 @@ Json indexOf(const SegmentArguments& o, const SlabObject& object, const Json& su
                               {"z_last", object.cuts[s + 1] - 1}});
   for (const auto& [key, value] : summary.items())
     if (key.rfind("seconds_", 0) != 0 && key.find("memory") == std::string::npos &&
-        key != "threads" && key != "output" && key != "hints" && key != "input")
+        key != "threads" && key != "stages" && key != "exchanges" && key != "ranks" &&
+        key != "output" && key != "hints" && key != "input")
       index[key] = value;
   index["input"] = fs::path(o.input.path).filename().string();
   return index;
-}
-
-}  // namespace
-
-bool hasSlabsEnding(const std::string& path) {
-  return fileEnding(path) == ".slabs";
 }
 
 void checkSlabArguments(const SegmentArguments& o) {
@@ -200,8 +209,6 @@ void checkSlabArguments(const SegmentArguments& o) {
   if (!isSlabs) return;
   if (!o.keep.empty() || !o.tables.empty() || o.dryRun)
     throw WrongUsage(o.out + ": slabs get labels alone: leave --keep, --tables and --dry-run out");
-  if (o.segment.gamma > 1)
-    throw WrongUsage(o.out + ": --gamma does not work in slabs yet: leave it out");
   if (!o.input.roi.empty())
     throw WrongUsage(o.out + ": --roi does not work in slabs yet: take a box with --crop");
 }
@@ -242,9 +249,9 @@ void runInSlabs(const SegmentArguments& o, const Common& common) {
     common.progress->end();
     const SegmentSummary summary = summarize(o, common, s, *about, timing);
     Json json = toJson(o, summary);
-    json["slab_count"] = object.slabCount();
+    addSlabCosts(object, s, json);
     addNotes(json, *common.progress);
-    JsonFile(place.file(kSlabIndex)).write(indexOf(o, object, json));
+    JsonFile(place.file(kSlabIndex)).write(slabIndex(o, object, json));
     place.finish();
     jsonFile.write(json);
     if (common.quiet || jsonFile.isStandardOutput()) return;

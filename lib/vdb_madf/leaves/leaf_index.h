@@ -60,7 +60,7 @@ class LeafIndex {
   LeafIndex(const LeafIndex& object, const std::vector<LeafVoxels>& more);
 
   /// Names voxels elsewhere, too: those of the leaf at origins[i] get the ids of the leaf number
-  /// leafCount() + i. Nothing but coord(), origin() and isForeign() takes them. Once.
+  /// namedLeafCount() + i of before. Nothing but coord(), origin() and isForeign() takes them.
   void nameForeignLeaves(const std::vector<Coord>& origins);
   bool isForeign(VoxelId id) const { return leafOf(id) >= leafCount(); }
   size_t namedLeafCount() const { return origins_.size(); }  ///< with the foreign ones

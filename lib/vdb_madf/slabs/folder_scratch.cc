@@ -32,7 +32,7 @@ constexpr const char* kLock = detail::FolderLock::kName;
 
 /// What a file of a piece begins with; the table of its blocks follows, then these.
 struct Header {
-  std::array<char, 8> magic{'m', 'a', 'd', 'f', 'p', 'c', '0', '1'};
+  std::array<char, 8> magic{'m', 'a', 'd', 'f', 'p', 'c', '0', '2'};
   uint64_t size = 0;                   ///< of the bytes, before they were compressed
   std::array<uint64_t, 2> checksum{};  ///< of the table
 };
@@ -40,7 +40,7 @@ struct Header {
 /// Compressed by itself: 32-bit numbers that are mostly like the one before.
 constexpr size_t kBlock = size_t(1) << 22;
 
-/// A block as it is stored: compressed, with the checksum of what it was.
+/// A block as it is stored: compressed, with the checksum of that.
 struct Block {
   uint64_t size = 0;
   std::array<uint64_t, 2> checksum{};
@@ -141,7 +141,7 @@ void FolderScratch::write(const std::string& name, const std::vector<char>& byte
                                            blocks[i].size(), "lz4", 0, 1);
     if (written <= 0) throw IoError(file(name + kEnding) + ": cannot be compressed");
     blocks[i].resize(size_t(written));
-    table[i] = {blocks[i].size(), checksumOf(first, size)};
+    table[i] = {blocks[i].size(), checksumOf(blocks[i].data(), blocks[i].size())};
   });
   const auto* tableBytes = reinterpret_cast<const char*>(table.data());
   header.checksum = checksumOf(tableBytes, table.size() * sizeof(Block));
@@ -177,9 +177,9 @@ std::vector<char> FolderScratch::read(const std::string& name) const {
     in.read(place[i], stored.data(), stored.size());
     const size_t size = std::min(kBlock, bytes.size() - i * kBlock);
     size_t held = 0;
-    if (blosc_cbuffer_validate(stored.data(), stored.size(), &held) != 0 || held != size ||
-        blosc_decompress_ctx(stored.data(), bytes.data() + i * kBlock, size, 1) != int(size) ||
-        checksumOf(bytes.data() + i * kBlock, size) != table[i].checksum)
+    if (checksumOf(stored.data(), stored.size()) != table[i].checksum ||
+        blosc_cbuffer_validate(stored.data(), stored.size(), &held) != 0 || held != size ||
+        blosc_decompress_ctx(stored.data(), bytes.data() + i * kBlock, size, 1) != int(size))
       failDamaged(path);
   });
   return bytes;

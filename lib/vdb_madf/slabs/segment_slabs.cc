@@ -18,8 +18,6 @@ namespace {
 
 void checkSlabOptions(const SlabObject& object, const SegmentOptions& options) {
   detail::checkSegmentOptions(options);
-  if (options.gamma > 1)
-    throw InvalidInput("the filter by cells (gamma) does not work in slabs yet: leave it out");
   if (options.keepDistance || options.keepPower || options.keepManifold || options.keepBalls)
     throw InvalidInput("slabs give labels alone: keep no other grids");
   const std::vector<int>& cuts = object.cuts;
@@ -35,27 +33,43 @@ void checkSlabOptions(const SlabObject& object, const SegmentOptions& options) {
 }  // namespace
 
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
-                              Scratch& scratch, const PutSlabLabels& put,
+                              Scratch& scratch, Ranks& ranks, const PutSlabLabels& put,
                               Interrupter* interrupter) {
   checkSlabOptions(object, options);
   SlabSegmentation result;
+  if (object.slabCount() == 0) return result;
   result.domain = options.domain ? options.domain : storedDomain(*object.about);
   if (result.domain && !result.domain->isBox())
     throw InvalidInput("a region cannot be cut into slabs yet: take a box as domain");
-  detail::SlabWork work{object, result.domain, options, scratch, interrupter};
+  detail::SlabWork work(object, options, scratch, ranks, interrupter);
+  work.domain = result.domain;
   detail::SlabGraph graph = detail::flowInSlabs(work, result);
-  SegmentCounts& counts = result.counts;
-  counts.keptBalls = counts.medialBalls;
-  counts.criticalPoints = graph.criticalPoints();
-  const detail::SlabGrains grains(work, std::move(graph), result.weights);
-  counts.grains = int64_t(grains.representatives().size());
-  result.grainVoxels.assign(size_t(counts.grains), 0);
-  detail::labelSlabs(work, grains, result, put);
+  work.beginStage("merge");
+  std::vector<Coord> representatives;
+  if (work.isRoot()) {
+    result.counts.criticalPoints = graph.criticalPoints();
+    representatives = detail::mergeSlabs(work, std::move(graph));
+    result.counts.grains = int64_t(representatives.size());
+    result.grainVoxels.assign(size_t(result.counts.grains), 0);
+  }
+  work.exchange();
+  detail::ByteWriter counts;
+  counts.add(result.counts);
+  result.counts = detail::ByteReader(work.broadcast(counts)).value<SegmentCounts>();
+  detail::labelSlabs(work, std::move(representatives), result, put);
+  work.endStages(result);
   return result;
 }
 
+SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
+                              Scratch& scratch, const PutSlabLabels& put,
+                              Interrupter* interrupter) {
+  Ranks alone;
+  return segmentSlabs(object, options, scratch, alone, put, interrupter);
+}
+
 bool isSlabPut(const Scratch& scratch, size_t slab) {
-  return scratch.has(detail::SlabWork::name("counts", slab));
+  return scratch.has(detail::SlabWork::name("put", slab));
 }
 
 }  // namespace vdb_madf

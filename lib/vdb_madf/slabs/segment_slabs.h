@@ -5,10 +5,12 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/method/segment.h"
+#include "vdb_madf/slabs/ranks.h"
 #include "vdb_madf/slabs/scratch.h"
 
 namespace vdb_madf {
@@ -26,6 +28,13 @@ struct SlabObject {
   size_t slabCount() const { return cuts.empty() ? 0 : cuts.size() - 1; }
 };
 
+/// What a part of the work took. Of a run that goes on: of that run alone.
+struct SlabStage {
+  std::string name;
+  double seconds = 0;        ///< of the rank that took longest
+  int64_t messageBytes = 0;  ///< sent from slab to slab, by all ranks
+};
+
 /// What segmentSlabs() finds beside the labels.
 struct SlabSegmentation {
   SegmentCounts counts;
@@ -36,6 +45,8 @@ struct SlabSegmentation {
   std::optional<Domain> domain;
   VoxelWeights weights;
   double weightsError = 0;
+  std::vector<SlabStage> stages;  ///< in their order
+  int64_t exchanges = 0;          ///< how often messages were exchanged
 };
 
 /// Gets the labels of a slab: the part of Segmentation::grain that lies in it, with its metadata.
@@ -48,11 +59,19 @@ using PutSlabLabels = std::function<void(size_t slab, Int32Grid::Ptr grain)>;
 /// where that stopped.
 /// @param put is called for each slab, from the lowest on (not again for those that a run before had
 ///   put: isSlabPut())
-/// Options that keep grids, maxMemory and gamma have to be 0: they are not known here.
+/// Options that keep grids and maxMemory have to be 0: they are not known here.
 /// @throw as segment(); InvalidInput for these options, cuts that are none, a region as domain,
 ///   slabs, but for the first and the last, lower than `tidy` has rounds, or balls that reach too far; what scratch and put throw.
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
                               Scratch& scratch, const PutSlabLabels& put,
+                              Interrupter* interrupter = nullptr);
+
+/// The same by several processes, which all call it, with equal arguments but for their scratch (it may be
+/// one folder that all share). Each works on slabs of its own, which alone it asks for and puts (with
+/// cavities to fill it also asks for those that are less than `fillHoles` voxels away). Counts and
+/// boundary are known to all, the voxels of grains to rank 0.
+SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
+                              Scratch& scratch, Ranks& ranks, const PutSlabLabels& put,
                               Interrupter* interrupter = nullptr);
 
 /// Were the labels of a slab put by a run before, so that they are not put again?

@@ -24,17 +24,22 @@ std::string objectName(size_t slab) {
 
 }  // namespace
 
-void SlabBuilder::add(const MaskTree& layer) {
-  const size_t before = leaves_.size();
+int64_t addLeaves(const MaskTree& layer, std::vector<LeafIndex::LeafVoxels>& leaves) {
   int64_t voxels = 0;
   for (auto leaf = layer.cbeginLeaf(); leaf; ++leaf) {
     if (leaf->isEmpty()) continue;
-    leaves_.push_back({leaf->origin(), detail::maskOf(*leaf)});
+    leaves.push_back({leaf->origin(), detail::maskOf(*leaf)});
     voxels += int64_t(leaf->onVoxelCount());
   }
   detail::forEachActiveTile(layer, [](const CoordBBox&) {
     throw InvalidInput("a layer of leaf nodes has an active tile: voxelize it");
   });
+  return voxels;
+}
+
+void SlabBuilder::add(const MaskTree& layer) {
+  const size_t before = leaves_.size();
+  const int64_t voxels = addLeaves(layer, leaves_);
   if (leaves_.size() == before) return;
   const int z = leaves_[before].origin.z();
   for (size_t i = before; i < leaves_.size(); ++i)

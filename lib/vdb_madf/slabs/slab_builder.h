@@ -23,6 +23,10 @@ struct SlabLimits {
 constexpr int64_t kSlabBytesPerVoxel = 32;
 constexpr int64_t kSlabOtherBytes = int64_t(160) << 20;
 
+/// Adds the leaves of a layer that hold object voxels; returns how many voxels that are.
+/// @throw InvalidInput if the layer has active tiles
+int64_t addLeaves(const MaskTree& layer, std::vector<LeafIndex::LeafVoxels>& leaves);
+
 /// Cuts an object that comes in layers of leaf nodes into slabs, and keeps these in scratch.
 class SlabBuilder {
  public:

@@ -191,12 +191,47 @@ MaskGrid::Ptr objectOfGrid(const std::string& path, const VolumeOptions& options
   if (part) noteLeftOut(path, detail::cutTo(*part, *object), "object voxel", options);
   noteVoxelSize(path, storedVoxelSize(*object), options);
   despeckleObject(*object, options.gray.despeckle, interrupter);
-  if (options.takeLayer) takeLayers(object->tree(), options.takeLayer);
+  if (options.takeLayer)
+    takeLayers(object->tree(), [&](MaskTree& layer) {
+      const auto leaf = layer.cbeginLeaf();
+      const int parts = options.share.parts;
+      if (leaf && ((leaf->origin().z() >> 3) % parts + parts) % parts == options.share.part)
+        options.takeLayer(layer);
+    });
+  return object;
+}
+
+/// The share of the slices of an image, and its whole domain.
+ScanPart shareOf(const ImageSize& size, const VolumeOptions::Share& share) {
+  const int64_t layers = (int64_t(size.z) + 7) / 8;
+  const auto first = [&](int part) { return int(layers * part / share.parts * 8); };
+  CoordBBox box = imageBox(size);
+  box.min().z() = first(share.part);
+  box.max().z() = std::min(box.max().z(), first(share.part + 1) - 1);
+  return {box, Domain(imageBox(size))};
+}
+
+MaskGrid::Ptr shareOfImage(const std::string& path, const ImageOpener& open,
+                           const VolumeOptions& options, Interrupter* interrupter) {
+  const GrayOptions& gray = options.gray;
+  if (!options.selection || gray.automatic != AutomaticThreshold::none || gray.low ||
+      gray.despeckle > 1 || options.region.any())
+    throw InvalidInput(path +
+                       ": several read a part of it each: say by value which voxels are object, "
+                       "without hysteresis, despeckling and regions (convert makes a mask of it)");
+  ScanPart part = shareOf(open()->info().size, options.share);
+  const bool isEmpty = part.box.empty();
+  if (isEmpty) part.box.max().z() = part.box.min().z() = 0;  // for what is said of the object
+  const MaskGrid::Ptr object = imageObject(open, options.selection, gray, part, interrupter,
+                                           isEmpty ? [](MaskTree&) {} : options.takeLayer)
+                                   .mask;
+  if (options.domain) setDomain(*object, *options.domain);
   return object;
 }
 
 MaskGrid::Ptr objectOfImage(const std::string& path, const ImageOpener& open,
                             const VolumeOptions& options, Interrupter* interrupter) {
+  if (options.share.parts > 1) return shareOfImage(path, open, options, interrupter);
   const auto part = partOfImage(open, options, interrupter);
   const ImageObject found =
       imageObject(open, options.selection, options.gray, part, interrupter, options.takeLayer);

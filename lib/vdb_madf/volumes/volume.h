@@ -39,6 +39,11 @@ struct VolumeOptions {
   /// An image of more voxels along an axis is refused before its samples are read. 0: any.
   int longestSide = 0;
   TakeLayer takeLayer;  ///< object only: gets the voxels, and the grid has none; see imageObject()
+  /// With takeLayer: reads one of so many parts of the layers of leaf nodes, of about the same height
+  /// each. An image has to be read by value then, with no more than filters, and with no region.
+  struct Share {
+    int part = 0, parts = 1;
+  } share;
   /// Is told what a user should know of the volume though it is no error: one line that names it.
   std::function<void(const std::string& text, NoteAbout about)> note;
 };

@@ -52,11 +52,7 @@ class Walk {
       stop(going_, z);
       return;
     }
-    const ColumnSteps::Rows beyond = (step_ > 0 ? faces_.above : faces_.below).of(origin);
-    forEachBit(going_, [&](int row) {
-      uint32_t& steps = steps_[size_t(row)];
-      steps = beyond[size_t(row)] == kInfinite ? kInfinite : steps + beyond[size_t(row)];
-    });
+    forEachBit(going_, [&](int row) { steps_[size_t(row)] = kThrough; });
   }
 
   const LeafIndex& index_;
@@ -76,6 +72,20 @@ ColumnSteps columnSteps(const LeafIndex& index, const Obstacles& obstacles, cons
   const int z = above ? faces.begin : faces.end - 8;
   for (uint32_t leaf = 0; leaf < index.leafCount(); ++leaf)
     if (index.origin(leaf).z() == z) result.add(index.origin(leaf), walk.from(leaf));
+  return result;
+}
+
+ColumnSteps passOn(const ColumnSteps& own, const ColumnSteps& beyond, int height) {
+  ColumnSteps result;
+  for (size_t i = 0; i < own.leaves().size(); ++i) {
+    const Coord origin(own.leaves()[i][0], own.leaves()[i][1], 0);
+    ColumnSteps::Rows rows = own.rows()[i];
+    const ColumnSteps::Rows further = beyond.of(origin);
+    for (size_t row = 0; row < 64; ++row)
+      if (rows[row] == kThrough)
+        rows[row] = further[row] == kInfinite ? kInfinite : uint32_t(height) + further[row];
+    result.add(origin, rows);
+  }
   return result;
 }
 

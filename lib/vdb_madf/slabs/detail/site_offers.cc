@@ -8,6 +8,7 @@
 
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/method/detail/metric.h"
+#include "vdb_madf/slabs/detail/column_steps.h"
 
 namespace vdb_madf::detail {
 
@@ -63,60 +64,80 @@ class BeyondCut {
   std::vector<int64_t> k_;
 };
 
-/// Sites of a column, by (x, y), then z.
-bool columnLess(const ForeignSite& a, const ForeignSite& b) {
-  return a.position < b.position;
+/// The walk from a cut into the slab, along a row of its leaves.
+template <typename F>
+void forEachInColumn(const LeafIndex& index, uint32_t leaf, int row, bool isUpper, const F& f) {
+  const size_t onward = isUpper ? 4 : 5;  // from leaf to leaf, away from the cut
+  for (; leaf != LeafIndex::kNone; leaf = index.neighbors(leaf)[onward])
+    for (int i = 0; i < 8; ++i) {
+      const auto offset = uint32_t(row * 8 + (isUpper ? 7 - i : i));
+      if (!holds(index.mask(leaf), offset)) return;
+      f(leaf * 512 + offset);
+    }
+}
+
+/// By column; in a column those nearest to the cut first.
+class CutOrder {
+ public:
+  explicit CutOrder(const Cut& cut) : cut_(cut) {}
+  bool operator()(const ForeignSite& a, const ForeignSite& b) const {
+    const Coord &p = a.position, &q = b.position;
+    return std::make_tuple(p.x(), p.y(), cut_.away(p.z())) <
+           std::make_tuple(q.x(), q.y(), cut_.away(q.z()));
+  }
+
+ private:
+  Cut cut_;
+};
+
+bool isSameColumn(const ForeignSite& a, const ForeignSite& b) {
+  return a.position.x() == b.position.x() && a.position.y() == b.position.y();
+}
+
+bool goesThrough(const ColumnSteps& columns, const Coord& p) {
+  const auto row = size_t((p.x() & 7) * 8 + (p.y() & 7));
+  return columns.of(p & ~7)[row] == kThrough;
 }
 
 }  // namespace
 
-std::vector<ForeignSite> siteOffers(const LeafIndex& index, const SquaredDistance& distance,
-                                    const std::vector<ForeignSite>& offered, int begin, int end,
-                                    bool above) {
-  const int64_t weight = distance.weights.z;
-  std::vector<ForeignSite> passing = offered;
-  std::sort(passing.begin(), passing.end(), columnLess);
-  const auto columnOf = [&](const Coord& p) {
-    const auto less = [](const ForeignSite& site, const Coord& q) { return site.position < q; };
-    return std::make_pair(std::lower_bound(passing.begin(), passing.end(),
-                                           Coord(p.x(), p.y(), Coord::min().z()), less),
-                          std::lower_bound(passing.begin(), passing.end(),
-                                           Coord(p.x(), p.y(), Coord::max().z()), less));
-  };
-
+std::vector<ForeignSite> siteOffers(const LeafIndex& index,
+                                    const VoxelArray<int32_t>& squaredRadius, int32_t weight,
+                                    const Cut& cut) {
   std::vector<ForeignSite> offers;
   BeyondCut best(weight);
-  const size_t onward = above ? 4 : 5;  // from leaf to leaf, away from the cut
-  for (uint32_t start = 0; start < index.leafCount(); ++start) {
-    if (index.origin(start).z() != (above ? end - 8 : begin)) continue;
-    forEachBit(layersAlongZ(index.mask(start))[above ? 7 : 0], [&](int row) {
+  for (uint32_t leaf = 0; leaf < index.leafCount(); ++leaf) {
+    if (index.origin(leaf).z() != (cut.layer() & ~7)) continue;
+    forEachBit(layersAlongZ(index.mask(leaf))[cut.isUpper ? 7 : 0], [&](int row) {
       best.clear();
-      bool goesOn = true;
-      uint32_t leaf = start;
-      for (int64_t k = 1; goesOn; leaf = index.neighbors(leaf)[onward]) {
-        for (int i = 0; i < 8 && goesOn; ++i, ++k) {
-          const auto offset = uint32_t(row * 8 + (above ? 7 - i : i));
-          goesOn = holds(index.mask(leaf), offset);
-          if (!goesOn) break;
-          const VoxelId id = leaf * 512 + offset;
-          best.add(k, {index.coord(id), distance.values[index.rank(id)]});
-        }
-        if (index.neighbors(leaf)[onward] == LeafIndex::kNone) break;
-      }
-      const int farEnd = above ? begin : end - 8;
-      if (goesOn && index.origin(leaf).z() == farEnd) {
-        const Coord column = index.coord(start * 512 + uint32_t(row * 8));
-        const auto [first, last] = columnOf(column);
-        if (above)
-          for (auto site = last; site != first; --site)
-            best.add(end - (site - 1)->position.z(), *(site - 1));
-        else
-          for (auto site = first; site != last; ++site)
-            best.add(site->position.z() - begin + 1, *site);
-      }
+      forEachInColumn(index, leaf, row, cut.isUpper, [&](VoxelId id) {
+        const Coord position = index.coord(id);
+        best.add(cut.away(position.z()), {position, squaredRadius[index.rank(id)]});
+      });
       offers.insert(offers.end(), best.sites().begin(), best.sites().end());
     });
   }
+  std::sort(offers.begin(), offers.end(), CutOrder(cut));
+  return offers;
+}
+
+std::vector<ForeignSite> passOn(const std::vector<ForeignSite>& own,
+                                const std::vector<ForeignSite>& offered, const ColumnSteps& columns,
+                                int32_t weight, const Cut& cut) {
+  std::vector<ForeignSite> all = own;
+  for (const ForeignSite& site : offered)
+    if (goesThrough(columns, site.position)) all.push_back(site);
+  std::sort(all.begin(), all.end(), CutOrder(cut));
+  std::vector<ForeignSite> offers;
+  BeyondCut best(weight);
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (i > 0 && !isSameColumn(all[i - 1], all[i])) {
+      offers.insert(offers.end(), best.sites().begin(), best.sites().end());
+      best.clear();
+    }
+    best.add(cut.away(all[i].position.z()), all[i]);
+  }
+  offers.insert(offers.end(), best.sites().begin(), best.sites().end());
   return offers;
 }
 

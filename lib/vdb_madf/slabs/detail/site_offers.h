@@ -6,19 +6,34 @@
 #include <vector>
 
 #include "vdb_madf/method/detail/foreign_sites.h"
-#include "vdb_madf/method/squared_distance.h"
+#include "vdb_madf/method/detail/slab_faces.h"
 
 namespace vdb_madf::detail {
 
-/// The balls that may win beyond a cut, the upper one of the slab begin <= z < end (`above`: to the
-/// slab above) or the lower one: of each column those that have the least power, below 0, somewhere
-/// in line beyond it, joined to the cut by object voxels. Among them are balls that were offered to
-/// this slab at its other cut, where a column is object from cut to cut.
+/// A cut of the slab begin <= z < end, seen from that slab: the upper one or the lower one.
+struct Cut {
+  int begin, end;
+  bool isUpper;
+
+  int layer() const { return isUpper ? end - 1 : begin; }  ///< of the slab's voxels beside it
+  /// Voxels along z from a voxel to the first one beyond the cut.
+  int away(int z) const { return isUpper ? end - z : z - begin + 1; }
+};
+
+/// The balls of a slab that may win beyond a cut: of each column those that have the least power,
+/// below 0, somewhere in line beyond it, joined to the cut by object voxels. By columns, those nearest
+/// to the cut first. \p squaredRadius: of voxels, 0 for one that is no site.
 ///
 /// At a voxel the order of sites is total (power, then D, then position), so a site that loses in
 /// line to others of its column loses for good: the passes along x and y see the best of a column.
-std::vector<ForeignSite> siteOffers(const LeafIndex& index, const SquaredDistance& distance,
-                                    const std::vector<ForeignSite>& offered, int begin, int end,
-                                    bool above);
+std::vector<ForeignSite> siteOffers(const LeafIndex& index,
+                                    const VoxelArray<int32_t>& squaredRadius, int32_t weight,
+                                    const Cut& cut);
+
+/// The same with the balls that were offered to the slab at its other cut: they go on where a column
+/// is object from cut to cut. \p columns: those beside the cut.
+std::vector<ForeignSite> passOn(const std::vector<ForeignSite>& own,
+                                const std::vector<ForeignSite>& offered, const ColumnSteps& columns,
+                                int32_t weight, const Cut& cut);
 
 }  // namespace vdb_madf::detail

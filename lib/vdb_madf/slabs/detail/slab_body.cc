@@ -80,12 +80,12 @@ std::vector<LeafIndex::LeafVoxels> slabHoles(const SlabObject& object, std::opti
 
 void HoleCount::add(const std::vector<LeafIndex::LeafVoxels>& holes, int begin, int end) {
   const LeafIndex index(LeafIndex(), holes);
-  SlabPieces pieces(index, {}, ConnectedComponents(index), {}, begin, end);
-  pieces_.add(pieces, any_ ? &before_ : nullptr);
+  const ConnectedComponents components(index);
+  pieces_.add(components.count(),
+              pieceJoins(highest_, facePieces(index, components, {begin, end, false})));
+  highest_ = facePieces(index, components, {begin, end, true});
   voxels_ += index.voxelCount();
   boundingBox_.expand(index.boundingBox());
-  before_ = std::move(pieces);
-  any_ = true;
 }
 
 }  // namespace vdb_madf::detail

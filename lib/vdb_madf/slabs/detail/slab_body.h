@@ -41,8 +41,7 @@ class HoleCount {
   int64_t voxels_ = 0;
   CoordBBox boundingBox_;
   PieceUnion pieces_;
-  SlabPieces before_;
-  bool any_ = false;
+  std::vector<FacePiece> highest_;  // of the slab before
 };
 
 }  // namespace vdb_madf::detail

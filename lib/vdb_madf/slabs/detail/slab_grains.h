@@ -3,7 +3,6 @@
 
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "vdb_madf/slabs/detail/slab_graph.h"
@@ -11,24 +10,13 @@
 
 namespace vdb_madf::detail {
 
-/// The grains of an object in slabs.
-class SlabGrains {
- public:
-  /// Merges where the terminals of all slabs lead to, one slab after the other. Reads the pieces
-  /// "terminals", leaves the pieces "classes".
-  /// @param graph all is answered
-  SlabGrains(SlabWork& work, SlabGraph graph, const VoxelWeights& weights);
+/// Message from the root: the grain of each terminal of a slab; 0: none of the object.
+constexpr char kGrainsOfTerminals[] = "grains";
 
-  /// Of grain g at g - 1.
-  const std::vector<Coord>& representatives() const { return grains_.representative; }
-  /// The grain of each terminal of a slab; 0: none of the object.
-  std::vector<uint32_t> grainsOf(size_t slab) const;
-
- private:
-  SlabTerminals terminals(size_t slab) const;
-
-  SlabWork& work_;
-  PartGrains grains_;
-};
+/// At the root: merges where the terminals of all slabs lead to, one slab after the other, and tells
+/// the slabs. Takes the messages "terminals" and "contacts".
+/// @param graph all is answered
+/// @return the representative of grain g at g - 1
+std::vector<Coord> mergeSlabs(SlabWork& work, SlabGraph graph);
 
 }  // namespace vdb_madf::detail

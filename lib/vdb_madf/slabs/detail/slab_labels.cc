@@ -20,49 +20,54 @@ namespace {
 
 class SlabLabels {
  public:
-  SlabLabels(SlabWork& work, const SlabGrains& grains, SlabSegmentation& result)
-      : work_(work), grains_(grains), result_(result) {}
+  SlabLabels(SlabWork& work, SlabSegmentation& result) : work_(work), result_(result) {}
 
-  void run(const PutSlabLabels& put) {
-    if (result_.counts.objectVoxels == 0) {
-      for (size_t s = 0; s < work_.slabCount(); ++s) put(s, toGrid(SlabBody(), {}));
-      return;
+  void run(std::vector<Coord> representatives, const PutSlabLabels& put) {
+    grains_.representative = std::move(representatives);
+    const bool isTidied = work_.options.tidy > 0 && result_.counts.objectVoxels > 0;
+    if (isTidied) {
+      work_.beginStage("tidy");
+      tidyLabels();
     }
-    const bool isTidied = work_.options.tidy > 0;
-    if (isTidied && !work_.scratch.has("loose")) tidyLabels();
-    std::vector<LooseVoxel> loose;  // ascending by slab
-    if (isTidied) loose = ByteReader(work_.scratch.read("loose")).vector<LooseVoxel>();
-    auto next = loose.begin();
-    for (size_t s = 0; s < work_.slabCount(); ++s) {
-      const auto first = next;
-      while (next != loose.end() && next->position.z() < work_.end(s)) ++next;
-      if (!work_.has("counts", s)) {
-        const SlabBody slab = work_.body(s);
-        VoxelArray<uint32_t> labels =
-            isTidied ? work_.read("labels", s).voxelArray<uint32_t>() : mergedLabels(s, slab);
-        for (auto voxel = first; voxel != next; ++voxel)
-          labels[slab.index.rank(*slab.index.findVoxel(voxel->position))] = voxel->label;
-        const auto counts = countLabels(labels);
-        put(s, toGrid(slab, std::move(labels)));
-        work_.writeVector("counts", s, counts);
-      }
-      for (const auto& [label, voxels] : work_.readVector<LabelCount>("counts", s))
+    work_.beginStage("labels");
+    work_.forEachSlab([&](size_t s) { putLabels(s, isTidied, put); },
+                      [&](size_t s) {
+                        work_.remove("labels", s);
+                        work_.remove("flow", s);
+                      });
+    if (!work_.isRoot()) return;
+    for (size_t s = 0; s < work_.slabCount(); ++s)
+      for (const auto& [label, voxels] :
+           work_.receiveVector<LabelCount>("counts", s, SlabWork::kRoot))
         result_.grainVoxels[label - 1] += voxels;
-      work_.remove("pieces", s);
-      work_.remove("labels", s);
-      work_.remove("flow", s);
-    }
   }
 
  private:
   /// Labels as merged.
   VoxelArray<uint32_t> mergedLabels(size_t s, const SlabBody& slab) const {
     auto labels = work_.read("flow", s).voxelArray<uint32_t>();
-    const std::vector<uint32_t> grains = grains_.grainsOf(s);
+    const auto grains = work_.receiveVector<uint32_t>(kGrainsOfTerminals, SlabWork::kRoot, s);
     for (size_t i = 0; i < labels.size(); ++i)
       labels[i] = grains[(labels[i] & ~Flow::kOwnCell) - 1];
     for (const VoxelId id : slab.cavities) labels[slab.index.rank(id)] = 0;
     return labels;
+  }
+
+  void putLabels(size_t s, bool isTidied, const PutSlabLabels& put) {
+    if (result_.counts.objectVoxels == 0) {
+      put(s, toGrid(SlabBody(), {}));
+      work_.write("put", s, {});
+      return;
+    }
+    const SlabBody slab = work_.body(s);
+    VoxelArray<uint32_t> labels =
+        isTidied ? work_.read("labels", s).voxelArray<uint32_t>() : mergedLabels(s, slab);
+    for (const LooseVoxel& voxel : work_.receiveVector<LooseVoxel>("refilled", SlabWork::kRoot, s))
+      labels[slab.index.rank(*slab.index.findVoxel(voxel.position))] = voxel.label;
+    const auto counts = countLabels(labels);
+    put(s, toGrid(slab, std::move(labels)));
+    work_.sendVector("counts", s, SlabWork::kRoot, counts);
+    work_.write("put", s, {});
   }
 
   Int32Grid::Ptr toGrid(const SlabBody& slab, VoxelArray<uint32_t> labels) const {
@@ -86,7 +91,7 @@ class SlabLabels {
     int64_t voxels;
   };
   std::vector<LabelCount> countLabels(const VoxelArray<uint32_t>& labels) const {
-    std::vector<int64_t> voxels(result_.grainVoxels.size() + 1, 0);
+    std::vector<int64_t> voxels(size_t(result_.counts.grains) + 1, 0);
     for (size_t i = 0; i < labels.size(); ++i) ++voxels[labels[i]];
     std::vector<LabelCount> counts;
     for (size_t label = 1; label < voxels.size(); ++label)
@@ -95,141 +100,191 @@ class SlabLabels {
   }
 
   void tidyLabels() {
-    if (!work_.scratch.has("anchors")) {
-      ByteWriter bytes;
-      bytes.add(findAnchors());
-      work_.scratch.write("anchors", bytes.bytes());
-    }
-    smooth(ByteReader(work_.scratch.read("anchors")).vector<Coord>());
-    ByteWriter bytes;
-    bytes.add(findLoose());
-    work_.scratch.write("loose", bytes.bytes());
+    shareAnchors();
+    work_.forEachSlab([&](size_t s) { sendRims(s); });
+    work_.forEachSlab([&](size_t s) { smooth(s); },
+                      [&](size_t s) {
+                        work_.removeMessage("rim", s - 1, s);
+                        work_.removeMessage("rim", s + 1, s);
+                      });
+    work_.forEachSlab([&](size_t s) { joinPieces(s); });
+    if (work_.isRoot()) findHeld();
+    work_.exchange();
+    work_.forEachSlab([&](size_t s) { findLoose(s); });
+    if (work_.isRoot()) refillLoose();
+    work_.exchange();
   }
 
   /// The voxel of each grain that never changes: its representative, or the nearest to it if that lies
-  /// in a cavity.
-  Anchors findAnchors() const {
-    GrainLabels grains;
-    grains.representative = grains_.representatives();
-    grains.weights = result_.weights;
-    Anchors anchors = grains.representative;
-    std::vector<uint32_t> lost;
+  /// in a cavity. Known at all ranks.
+  void shareAnchors() {
+    Lost lost;
+    if (work_.isRoot()) lost = findLost();
+    ByteWriter bytes;
+    bytes.add(grains_.representative);
+    bytes.add(lost);
+    ByteReader all(work_.broadcast(bytes));
+    grains_.representative = all.vector<Coord>();
+    lost = all.vector<uint32_t>();
+    grains_.weights = work_.weights;
+    anchors_ = grains_.representative;
+    work_.forEachSlab([&](size_t s) {
+      if (lost.empty()) return;
+      const SlabBody slab = work_.body(s);
+      grains_.label = mergedLabels(s, slab);
+      work_.sendVector("anchors", s, SlabWork::kRoot,
+                       anchorCandidates(slab.index, grains_, lost, work_.interrupter));
+    });
+    if (lost.empty()) return;
+    if (work_.isRoot()) replaceLost(lost);
+    ByteWriter replaced;
+    replaced.add(anchors_);
+    anchors_ = ByteReader(work_.broadcast(replaced)).vector<Coord>();
+  }
+
+  using Lost = std::vector<uint32_t>;  // grains whose representative is in a cavity
+
+  Lost findLost() const {
+    Lost lost;
+    if (work_.fillsNone) return lost;
     for (size_t s = 0; s < work_.slabCount(); ++s) {
-      const LeafIndex holes(LeafIndex(), work_.cavities(s));
+      const LeafIndex holes(
+          LeafIndex(), work_.receiveVector<LeafIndex::LeafVoxels>("holes", s, SlabWork::kRoot));
       if (holes.voxelCount() == 0) continue;
-      for (uint32_t g = 0; g < anchors.size(); ++g)
-        if (holes.boundingBox().isInside(anchors[g]) && holes.findVoxel(anchors[g]))
-          lost.push_back(g);
+      for (uint32_t g = 0; g < grains_.representative.size(); ++g) {
+        const Coord& p = grains_.representative[g];
+        if (holes.boundingBox().isInside(p) && holes.findVoxel(p)) lost.push_back(g);
+      }
     }
-    if (lost.empty()) return anchors;
+    return lost;
+  }
+
+  void replaceLost(const Lost& lost) {
     std::vector<AnchorCandidate> best(lost.size());
     for (size_t s = 0; s < work_.slabCount(); ++s) {
-      const SlabBody slab = work_.body(s);
-      grains.label = mergedLabels(s, slab);
-      const auto found = anchorCandidates(slab.index, grains, lost, work_.interrupter);
+      const auto found = work_.receiveVector<AnchorCandidate>("anchors", s, SlabWork::kRoot);
       for (size_t i = 0; i < lost.size(); ++i) best[i].improve(found[i]);
     }
-    for (size_t i = 0; i < lost.size(); ++i) anchors[lost[i]] = best[i].position;
-    return anchors;
+    for (size_t i = 0; i < lost.size(); ++i) anchors_[lost[i]] = best[i].position;
   }
 
-  /// A slab with its labels as merged.
-  struct Merged {
-    SlabBody slab;
-    VoxelArray<uint32_t> labels;
-  };
-  std::optional<Merged> merged(size_t s) const {
-    if (s >= work_.slabCount()) return std::nullopt;
-    Merged result{work_.body(s), {}};
-    result.labels = mergedLabels(s, result.slab);
-    return result;
-  }
-  LeafLabels rim(const std::optional<Merged>& slab, int begin, int end) const {
-    if (!slab) return {};
-    return labelsBetween(slab->slab.index, slab->labels, begin, end);
-  }
-
-  /// What smoothing sees beyond the cuts is labels as merged: where a slab flows to stays until the one
-  /// above it is smooth.
-  void smooth(const Anchors& anchors) {
+  /// Labels as merged, as far from the cuts as the slabs beyond them have to see.
+  void sendRims(size_t s) {
     const int reach = (work_.options.tidy + 7) / 8 * 8;
-    std::optional<Merged> here;
-    LeafLabels below;
-    for (size_t s = 0; s < work_.slabCount(); ++s) {
-      if (work_.has("pieces", s)) continue;
-      WorkPart part = work_.part(75, 90, s);
-      if (!here) {
-        if (s > 0) below = rim(merged(s - 1), work_.begin(s) - reach, work_.begin(s));
-        here = merged(s);
-      }
-      std::optional<Merged> next = merged(s + 1);
-      LeafLabels highest = rim(here, work_.end(s) - reach, work_.end(s));
-      smoothSlab(here->slab.index, below, rim(next, work_.end(s), work_.end(s) + reach), anchors,
-                 work_.options.tidy, here->labels, &part);
-      writeLabels(s, *here, anchors);
-      if (s > 0) work_.remove("flow", s - 1);
-      below = std::move(highest);
-      here = std::move(next);
+    const SlabBody slab = work_.body(s);
+    const VoxelArray<uint32_t> labels = mergedLabels(s, slab);
+    const auto send = [&](size_t to, int begin, int end) {
+      const LeafLabels rim = labelsBetween(slab.index, labels, begin, end);
+      ByteWriter bytes;
+      bytes.add(rim.leaves);
+      bytes.add(rim.labels);
+      work_.send("rim", s, to, bytes);
+    };
+    if (s > 0) send(s - 1, work_.begin(s), work_.begin(s) + reach);
+    if (s + 1 < work_.slabCount()) send(s + 1, work_.end(s) - reach, work_.end(s));
+  }
+  LeafLabels rim(size_t from, size_t s) const {
+    if (!work_.hasMessage("rim", from, s)) return {};
+    ByteReader bytes = work_.receive("rim", from, s);
+    LeafLabels rim;
+    rim.leaves = bytes.vector<LeafIndex::LeafVoxels>();
+    rim.labels = bytes.vector<uint32_t>();
+    return rim;
+  }
+
+  void smooth(size_t s) {
+    WorkPart part = work_.part(75, 90, s);
+    const SlabBody slab = work_.body(s);
+    VoxelArray<uint32_t> labels = mergedLabels(s, slab);
+    smoothSlab(slab.index, rim(s - 1, s), rim(s + 1, s), anchors_, work_.options.tidy, labels,
+               &part);
+    const ConnectedComponents components(slab.index, labels, work_.interrupter);
+    ByteWriter bytes;
+    bytes.add(labels);
+    work_.write("labels", s, bytes);
+    work_.sendVector("pieces", s, SlabWork::kRoot,
+                     piecesWithAnchor(slab.index, labels, components, anchors_));
+    const auto face = [&](bool isUpper) {
+      return facePieces(slab.index, components, {work_.begin(s), work_.end(s), isUpper});
+    };
+    work_.writeVector("lowest-pieces", s, face(false));
+    if (s > 0) work_.sendVector("face-pieces", s, s - 1, face(false));
+    if (s + 1 < work_.slabCount()) work_.sendVector("face-pieces", s, s + 1, face(true));
+  }
+
+  void joinPieces(size_t s) {
+    if (s == 0) return;
+    work_.sendVector("joined-pieces", s, SlabWork::kRoot,
+                     pieceJoins(work_.receiveVector<FacePiece>("face-pieces", s - 1, s),
+                                work_.readVector<FacePiece>("lowest-pieces", s)));
+  }
+
+  /// At the root: which pieces are part of one that holds an anchor.
+  void findHeld() {
+    PieceUnion pieces;
+    const size_t slabs = work_.slabCount();
+    std::vector<std::vector<char>> held(slabs);
+    for (size_t s = 0; s < slabs; ++s) {
+      held[s] = work_.receiveVector<char>("pieces", s, SlabWork::kRoot);
+      pieces.add(held[s].size(),
+                 work_.receiveVector<PieceJoin>("joined-pieces", s, SlabWork::kRoot));
+    }
+    std::vector<char> isHeld(pieces.size(), 0);
+    for (size_t s = 0; s < slabs; ++s)
+      for (uint32_t i = 0; i < held[s].size(); ++i)
+        if (held[s][i]) isHeld[pieces.find(s, i)] = 1;
+    for (size_t s = 0; s < slabs; ++s)
+      for (uint32_t i = 0; i < held[s].size(); ++i) held[s][i] = isHeld[pieces.find(s, i)];
+    for (size_t s = 0; s < slabs; ++s) {
+      ByteWriter bytes;
+      bytes.add(s > 0 ? held[s - 1] : std::vector<char>());
+      bytes.add(held[s]);
+      bytes.add(s + 1 < slabs ? held[s + 1] : std::vector<char>());
+      work_.send("held", SlabWork::kRoot, s, bytes);
     }
   }
 
-  void writeLabels(size_t s, const Merged& slab, const Anchors& anchors) {
-    const ConnectedComponents components(slab.slab.index, slab.labels, work_.interrupter);
-    ByteWriter labelBytes, pieceBytes;
-    labelBytes.add(slab.labels);
-    work_.write("labels", s, labelBytes);
-    SlabPieces(slab.slab.index, slab.labels, components, anchors, work_.begin(s), work_.end(s))
-        .writeTo(pieceBytes);
-    work_.write("pieces", s, pieceBytes);  // the last: the slab is done
+  void findLoose(size_t s) {
+    const SlabBody slab = work_.body(s);
+    const auto labels = work_.read("labels", s).voxelArray<uint32_t>();
+    const ConnectedComponents components(slab.index, labels, work_.interrupter);
+    ByteReader held = work_.receive("held", SlabWork::kRoot, s);
+    BeyondPieces below, above;
+    below.face = work_.receiveVector<FacePiece>("face-pieces", s - 1, s);
+    below.isHeld = held.vector<char>();
+    const auto isHeld = held.vector<char>();
+    above.face = work_.receiveVector<FacePiece>("face-pieces", s + 1, s);
+    above.isHeld = held.vector<char>();
+    work_.sendVector("loose", s, SlabWork::kRoot,
+                     looseVoxels(slab.index, labels, components, isHeld, work_.begin(s),
+                                 work_.end(s), below, above));
   }
 
-  std::optional<SlabPieces> pieces(size_t slab) const {
-    if (slab >= work_.slabCount()) return std::nullopt;
-    ByteReader bytes = work_.read("pieces", slab);
-    return SlabPieces::readFrom(bytes);
-  }
-
-  /// The voxels that no path of their label joins with its anchor, with the labels they get instead;
-  /// ascending by z.
-  std::vector<LooseVoxel> findLoose() const {
-    PieceUnion all;
-    std::optional<SlabPieces> below;
-    for (size_t s = 0; s < work_.slabCount(); ++s) {
-      std::optional<SlabPieces> here = pieces(s);
-      all.add(*here, below ? &*below : nullptr);
-      below = std::move(here);
-    }
-    below.reset();
+  /// At the root: the voxels that no path of their label joins with its anchor get other labels.
+  void refillLoose() {
     std::vector<LooseVoxel> loose;
-    std::optional<SlabPieces> here = pieces(0);
     for (size_t s = 0; s < work_.slabCount(); ++s) {
-      std::optional<SlabPieces> above = pieces(s + 1);
-      const SlabBody slab = work_.body(s);
-      const auto labels = work_.read("labels", s).voxelArray<uint32_t>();
-      const ConnectedComponents components(slab.index, labels, work_.interrupter);
-      const auto found =
-          looseVoxels(slab.index, labels, components, s, work_.begin(s), work_.end(s),
-                      below ? &*below : nullptr, above ? &*above : nullptr, all);
+      const auto found = work_.receiveVector<LooseVoxel>("loose", s, SlabWork::kRoot);
       loose.insert(loose.end(), found.begin(), found.end());
-      below = std::move(here);
-      here = std::move(above);
     }
     refill(loose);
-    std::stable_sort(loose.begin(), loose.end(),
-                     [](const auto& a, const auto& b) { return a.position.z() < b.position.z(); });
-    return loose;
+    std::vector<std::vector<LooseVoxel>> of(work_.slabCount());
+    for (const LooseVoxel& voxel : loose) of[work_.slabOf(voxel.position.z())].push_back(voxel);
+    for (size_t s = 0; s < work_.slabCount(); ++s)
+      work_.sendVector("refilled", SlabWork::kRoot, s, of[s]);
   }
 
   SlabWork& work_;
-  const SlabGrains& grains_;
   SlabSegmentation& result_;
+  GrainLabels grains_;
+  Anchors anchors_;
 };
 
 }  // namespace
 
-void labelSlabs(SlabWork& work, const SlabGrains& grains, SlabSegmentation& result,
+void labelSlabs(SlabWork& work, std::vector<Coord> representatives, SlabSegmentation& result,
                 const PutSlabLabels& put) {
-  SlabLabels(work, grains, result).run(put);
+  SlabLabels(work, result).run(std::move(representatives), put);
 }
 
 }  // namespace vdb_madf::detail

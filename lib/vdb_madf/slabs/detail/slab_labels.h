@@ -4,13 +4,12 @@
 #pragma once
 
 #include "vdb_madf/slabs/detail/slab_grains.h"
-#include "vdb_madf/slabs/detail/slab_work.h"
 
 namespace vdb_madf::detail {
 
-/// The labels of all slabs, from where their voxels flow to and the grains of that: tidied,
-/// counted in result.grainVoxels, and put.
-void labelSlabs(SlabWork& work, const SlabGrains& grains, SlabSegmentation& result,
+/// The labels of all slabs, from where their voxels flow to and the grains of those terminals: tidied,
+/// counted in result.grainVoxels (at the root), and put. \p representatives: at the root.
+void labelSlabs(SlabWork& work, std::vector<Coord> representatives, SlabSegmentation& result,
                 const PutSlabLabels& put);
 
 }  // namespace vdb_madf::detail

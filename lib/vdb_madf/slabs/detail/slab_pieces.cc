@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/voxels.h"
@@ -13,116 +14,87 @@
 
 namespace vdb_madf::detail {
 
-namespace {
-
-using FaceVoxel = SlabPieces::FaceVoxel;
-
-std::vector<FaceVoxel> facePieces(const LeafIndex& index, const ConnectedComponents& components,
-                                  int leafZ, uint32_t layer) {
-  std::vector<FaceVoxel> face;
+std::vector<FacePiece> facePieces(const LeafIndex& index, const ConnectedComponents& components,
+                                  const Cut& cut) {
+  std::vector<FacePiece> face;
   for (uint32_t leaf = 0; leaf < index.leafCount(); ++leaf) {
-    if (index.origin(leaf).z() != leafZ) continue;
-    std::array<uint32_t, 64> pieceOf;
+    if (index.origin(leaf).z() != (cut.layer() & ~7)) continue;
+    std::array<const ConnectedComponents::Piece*, 64> pieceOf;
     uint64_t any = 0;
     for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece) {
-      const uint64_t rows = layersAlongZ(piece->mask)[layer];
+      const uint64_t rows = layersAlongZ(piece->mask)[cut.isUpper ? 7 : 0];
       any |= rows;
-      forEachBit(rows, [&](int row) { pieceOf[size_t(row)] = piece->component; });
+      forEachBit(rows, [&](int row) { pieceOf[size_t(row)] = piece; });
     }
     const Coord& origin = index.origin(leaf);
     forEachBit(any, [&](int row) {
-      face.push_back({origin.x() + (row >> 3), origin.y() + (row & 7), pieceOf[size_t(row)]});
+      const ConnectedComponents::Piece& piece = *pieceOf[size_t(row)];
+      face.push_back(
+          {origin.x() + (row >> 3), origin.y() + (row & 7), piece.component, piece.label});
     });
   }
   return face;
 }
 
-}  // namespace
+std::vector<PieceJoin> pieceJoins(const std::vector<FacePiece>& below,
+                                  const std::vector<FacePiece>& above) {
+  std::vector<std::pair<uint32_t, uint32_t>> pairs;
+  forEachFacing(below, above, [&](const FacePiece& p, const FacePiece& q) {
+    if (p.label == q.label) pairs.emplace_back(p.piece, q.piece);
+  });
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  std::vector<PieceJoin> joins;
+  for (const auto& [p, q] : pairs) joins.push_back({p, q});
+  return joins;
+}
 
-SlabPieces::SlabPieces(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
-                       const ConnectedComponents& components, const Anchors& anchors, int begin,
-                       int end)
-    : label(components.count()),
-      held(components.count(), 0),
-      lowest(facePieces(index, components, begin, 0)),
-      highest(facePieces(index, components, end - 8, 7)) {
-  for (uint32_t leaf = 0; leaf < index.leafCount(); ++leaf)
-    for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece)
-      label[piece->component] = piece->label;
-  for (uint32_t g = 0; g < anchors.size(); ++g) {
-    if (anchors[g].z() < begin || anchors[g].z() >= end) continue;
-    const auto id = index.findVoxel(anchors[g]);
-    if (id && labels[index.rank(*id)] == g + 1) held[components.componentOf(*id)] = 1;
+void PieceUnion::add(size_t pieces, const std::vector<PieceJoin>& joins) {
+  const uint32_t first = first_.back(), firstBelow = first_.size() > 1 ? first_.end()[-2] : 0;
+  for (size_t i = 0; i < pieces; ++i) sets_.add();
+  first_.push_back(first + uint32_t(pieces));
+  for (const PieceJoin& join : joins) {
+    const uint32_t a = sets_.find(firstBelow + join.below), b = sets_.find(first + join.above);
+    joins_ += a != b;
+    sets_.unite(a, b);
   }
 }
 
-void SlabPieces::writeTo(ByteWriter& bytes) const {
-  bytes.add(label);
-  bytes.add(held);
-  bytes.add(lowest);
-  bytes.add(highest);
-}
-
-SlabPieces SlabPieces::readFrom(ByteReader& bytes) {
-  SlabPieces result;
-  result.label = bytes.vector<uint32_t>();
-  result.held = bytes.vector<char>();
-  result.lowest = bytes.vector<FaceVoxel>();
-  result.highest = bytes.vector<FaceVoxel>();
-  return result;
-}
-
-void PieceUnion::add(const SlabPieces& pieces, const SlabPieces* before) {
-  const uint32_t first = first_.back();
-  for (size_t i = 0; i < pieces.label.size(); ++i) sets_.add();
-  held_.insert(held_.end(), pieces.held.begin(), pieces.held.end());
-  first_.push_back(first + uint32_t(pieces.label.size()));
-  if (!before) return;
-  const uint32_t firstBefore = first_[first_.size() - 3];
-  forEachFacing(before->highest, pieces.lowest, [&](const FaceVoxel& p, const FaceVoxel& q) {
-    if (before->label[p.piece] != pieces.label[q.piece]) return;
-    const uint32_t a = sets_.find(firstBefore + p.piece), b = sets_.find(first + q.piece);
-    joins_ += a != b;
-    sets_.unite(a, b);
-  });
-}
-
-bool PieceUnion::isHeld(size_t slab, uint32_t piece) {
-  if (!joined_)
-    for (uint32_t i = 0; i < held_.size(); ++i)
-      if (held_[i]) held_[sets_.find(i)] = 1;
-  joined_ = true;
-  return held_[sets_.find(first_[slab] + piece)] != 0;
+std::vector<char> piecesWithAnchor(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+                                   const ConnectedComponents& components, const Anchors& anchors) {
+  std::vector<char> held(components.count(), 0);
+  for (uint32_t g = 0; g < anchors.size(); ++g) {
+    if (!index.boundingBox().isInside(anchors[g])) continue;
+    const auto id = index.findVoxel(anchors[g]);
+    if (id && labels[index.rank(*id)] == g + 1) held[components.componentOf(*id)] = 1;
+  }
+  return held;
 }
 
 std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
-                                    const ConnectedComponents& components, size_t slab, int begin,
-                                    int end, const SlabPieces* below, const SlabPieces* above,
-                                    PieceUnion& pieces) {
-  std::vector<char> isLoose(components.count());
-  for (uint32_t piece = 0; piece < components.count(); ++piece)
-    isLoose[piece] = !pieces.isHeld(slab, piece);
-  const auto beyond = [&](const SlabPieces* other, size_t number, bool highest, const Coord& p) {
-    if (!other) return uint32_t(0);
-    const FaceVoxel* const voxel = findOnFace(highest ? other->highest : other->lowest, p);
-    return voxel && pieces.isHeld(number, voxel->piece) ? other->label[voxel->piece] : 0;
+                                    const ConnectedComponents& components,
+                                    const std::vector<char>& isHeld, int begin, int end,
+                                    const BeyondPieces& below, const BeyondPieces& above) {
+  const auto beyond = [](const BeyondPieces& pieces, const Coord& p) {
+    const FacePiece* const voxel = findOnFace(pieces.face, p);
+    return voxel && pieces.isHeld[voxel->piece] ? voxel->label : 0;
   };
   std::vector<LooseVoxel> loose;
   const auto add = [&](VoxelId id, uint32_t label) {
     LooseVoxel voxel{index.coord(id), label, {}};
     forEachNeighbor(index, id, [&](VoxelId q, int axis, int step) {
       if (!isObject(index, q) || labels[index.rank(q)] == 0) return;
-      if (!isLoose[components.componentOf(q)])
+      if (isHeld[components.componentOf(q)])
         voxel.around[2 * axis + (step > 0)] = labels[index.rank(q)];
     });
     const Coord& p = voxel.position;
-    if (p.z() == begin) voxel.around[4] = beyond(below, slab - 1, true, p);
-    if (p.z() == end - 1) voxel.around[5] = beyond(above, slab + 1, false, p);
+    if (p.z() == begin) voxel.around[4] = beyond(below, p);
+    if (p.z() == end - 1) voxel.around[5] = beyond(above, p);
     loose.push_back(voxel);
   };
   for (uint32_t leaf = 0; leaf < index.leafCount(); ++leaf)
     for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece) {
-      if (!isLoose[piece->component]) continue;
+      if (isHeld[piece->component]) continue;
       for (uint32_t x = 0; x < 8; ++x)
         forEachBit(piece->mask[x],
                    [&](int bit) { add(leaf * 512 + x * 64 + uint32_t(bit), piece->label); });

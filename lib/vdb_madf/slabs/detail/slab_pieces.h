@@ -8,49 +8,52 @@
 
 #include "vdb_madf/base/detail/disjoint_sets.h"
 #include "vdb_madf/leaves/detail/connected_components.h"
-#include "vdb_madf/slabs/detail/bytes.h"
+#include "vdb_madf/slabs/detail/site_offers.h"
 #include "vdb_madf/slabs/detail/slab_smoothing.h"
 
-// The second part of tidy() in slabs: what is not connected with the anchor of its grain goes to a
-// neighbor. The few voxels of such pieces, of all slabs, are gathered.
+// Connected pieces that go on beyond the cuts of a slab; and the second part of tidy() in slabs: what is
+// not connected with the anchor of its grain goes to a neighbor. The few voxels of such pieces, of all
+// slabs, are gathered.
 
 namespace vdb_madf::detail {
 
-/// The connected pieces of the labels of a slab.
-struct SlabPieces {
-  struct FaceVoxel {
-    int32_t x, y;
-    uint32_t piece;
-  };
-  std::vector<uint32_t> label;  ///< of each piece
-  std::vector<char> held;       ///< does it hold the anchor of its label?
-  /// The voxels of pieces in the lowest and highest layer, by leaf column, then x, y.
-  std::vector<FaceVoxel> lowest, highest;
-
-  SlabPieces() = default;
-  SlabPieces(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
-             const ConnectedComponents& components, const Anchors& anchors, int begin, int end);
-
-  void writeTo(ByteWriter& bytes) const;
-  static SlabPieces readFrom(ByteReader& bytes);
+/// A voxel beside a cut: which piece of its slab it is in.
+struct FacePiece {
+  int32_t x, y;
+  uint32_t piece, label;
 };
+
+/// Those beside a cut, by leaf column, then x, y.
+std::vector<FacePiece> facePieces(const LeafIndex& index, const ConnectedComponents& components,
+                                  const Cut& cut);
+
+/// Pieces of two slabs, one upon the other, that are one.
+struct PieceJoin {
+  uint32_t below, above;
+};
+/// Each once.
+std::vector<PieceJoin> pieceJoins(const std::vector<FacePiece>& below,
+                                  const std::vector<FacePiece>& above);
 
 /// Joins the pieces of all slabs.
 class PieceUnion {
  public:
-  /// Of the next slab, from the lowest on; \p before: those that were added last, if any.
-  void add(const SlabPieces& pieces, const SlabPieces* before);
-  /// Is a piece of a slab part of one that holds an anchor? After the last slab.
-  bool isHeld(size_t slab, uint32_t piece);
+  /// The pieces of the next slab, from the lowest on, and how they are joined to those of the one below.
+  void add(size_t pieces, const std::vector<PieceJoin>& joins);
+  /// A number of what a piece is part of, below size().
+  uint32_t find(size_t slab, uint32_t piece) { return sets_.find(first_[slab] + piece); }
+  uint32_t size() const { return first_.back(); }
   int64_t count() const { return int64_t(first_.back()) - joins_; }  ///< of joined pieces
 
  private:
   std::vector<uint32_t> first_{0};
   DisjointSets sets_{0};
-  std::vector<char> held_;
   int64_t joins_ = 0;
-  bool joined_ = false;
 };
+
+/// Which pieces of a slab hold the anchor of their label?
+std::vector<char> piecesWithAnchor(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+                                   const ConnectedComponents& components, const Anchors& anchors);
 
 /// A voxel that has lost its label.
 struct LooseVoxel {
@@ -59,11 +62,18 @@ struct LooseVoxel {
   uint32_t around[6];  ///< labels of its neighbors; 0: none, or loose itself
 };
 
-/// The loose voxels of a slab; \p below and \p above: the slabs beside it, null if there are none.
+/// What lies beyond a cut: the pieces beside it, and which of the pieces of their slab hold an anchor, be
+/// it in another slab.
+struct BeyondPieces {
+  std::vector<FacePiece> face;
+  std::vector<char> isHeld;
+};
+
+/// The loose voxels of a slab: those of pieces that are not held.
 std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
-                                    const ConnectedComponents& components, size_t slab, int begin,
-                                    int end, const SlabPieces* below, const SlabPieces* above,
-                                    PieceUnion& pieces);
+                                    const ConnectedComponents& components,
+                                    const std::vector<char>& isHeld, int begin, int end,
+                                    const BeyondPieces& below, const BeyondPieces& above);
 
 /// Gives all of them a label, in synchronous rounds; those that no round reaches keep what they lost.
 /// Sorts them by position.

@@ -64,20 +64,14 @@ SlabTerminals slabTerminals(const LeafIndex& index, const Flow& flow,
 void SlabTerminals::writeTo(ByteWriter& bytes) const {
   bytes.add(points);
   bytes.add(edges);
-  bytes.add(lowest);
-  bytes.add(highest);
   bytes.add(balls);
-  bytes.add(largestSquaredDistance);
 }
 
 SlabTerminals SlabTerminals::readFrom(ByteReader& bytes) {
   SlabTerminals result;
   result.points = bytes.vector<CriticalPoint>();
   result.edges = bytes.vector<Edge>();
-  result.lowest = bytes.vector<FaceVoxel>();
-  result.highest = bytes.vector<FaceVoxel>();
   result.balls = bytes.value<int64_t>();
-  result.largestSquaredDistance = bytes.value<int32_t>();
   return result;
 }
 

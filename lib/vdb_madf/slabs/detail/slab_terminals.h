@@ -29,9 +29,9 @@ struct SlabTerminals {
   /// Lexicographic; those outside of the slab are balls of others, D = 0. `voxels`: of the object.
   std::vector<CriticalPoint> points;
   std::vector<ManifoldGraph::Edge> edges;  ///< between points; adjacent voxels of the slab
-  std::vector<FaceVoxel> lowest, highest;  ///< by leaf column, then x, y
   int64_t balls = 0;  ///< medial balls that are voxels of the slab, as it knows
-  int32_t largestSquaredDistance = 0;
+  /// By leaf column, then x, y; not written.
+  std::vector<FaceVoxel> lowest, highest;
 
   /// The pairs of adjacent voxels on either side of a cut, as edges from a point of the slab below to
   /// one of that above (first and second are numbers of different lists).

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/mpi/mpi_ranks.h"
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+
+namespace vdb_madf {
+
+namespace {
+
+constexpr size_t kChunk = size_t(1) << 30;  // MPI counts in int
+
+void append(std::vector<char>& bytes, const void* data, size_t size) {
+  const auto first = static_cast<const char*>(data);
+  bytes.insert(bytes.end(), first, first + size);
+}
+
+/// f(offset, count) for the parts of an array.
+template <typename F>
+void forEachChunk(size_t size, const F& f) {
+  for (size_t at = 0; at < size; at += kChunk) f(at, int(std::min(kChunk, size - at)));
+}
+
+/// Puts the pieces of a message, as send() makes it, into scratch.
+void unpack(const std::vector<char>& message, Scratch& scratch) {
+  size_t at = 0;
+  const auto size = [&] {
+    uint64_t value;
+    std::memcpy(&value, message.data() + at, sizeof value);
+    at += sizeof value;
+    return size_t(value);
+  };
+  while (at < message.size()) {
+    const size_t nameSize = size();
+    const std::string name(message.data() + at, nameSize);
+    at += nameSize;
+    const size_t pieceSize = size();
+    scratch.write(name, {message.begin() + std::ptrdiff_t(at),
+                         message.begin() + std::ptrdiff_t(at + pieceSize)});
+    at += pieceSize;
+  }
+}
+
+}  // namespace
+
+MpiRanks::MpiRanks(int* argc, char*** argv) {
+  int provided = 0;
+  MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
+  MPI_Comm_size(MPI_COMM_WORLD, &count_);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+  outbox_.resize(size_t(count_));
+}
+
+MpiRanks::~MpiRanks() {
+  MPI_Finalize();
+}
+
+void MpiRanks::send(int rank, const std::string& name, const std::vector<char>& bytes,
+                    Scratch& /*own*/) {
+  std::vector<char>& message = outbox_[size_t(rank)];
+  for (const auto& [data, size] : {std::make_pair(name.data(), uint64_t(name.size())),
+                                   std::make_pair(bytes.data(), uint64_t(bytes.size()))}) {
+    append(message, &size, sizeof size);
+    append(message, data, size);
+  }
+}
+
+void MpiRanks::exchange(Scratch& own) {
+  const auto ranks = size_t(count_);
+  std::vector<uint64_t> sent(ranks), coming(ranks);
+  for (size_t r = 0; r < ranks; ++r) sent[r] = outbox_[r].size();
+  MPI_Alltoall(sent.data(), 1, MPI_UINT64_T, coming.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
+  std::vector<std::vector<char>> inbox(ranks);
+  std::vector<MPI_Request> requests;
+  // Messages between two ranks do not overtake each other, so chunks need no number.
+  for (size_t r = 0; r < ranks; ++r) {
+    inbox[r].resize(coming[r]);
+    forEachChunk(coming[r], [&](size_t at, int count) {
+      requests.emplace_back();
+      MPI_Irecv(inbox[r].data() + at, count, MPI_BYTE, int(r), 0, MPI_COMM_WORLD, &requests.back());
+    });
+    forEachChunk(sent[r], [&](size_t at, int count) {
+      requests.emplace_back();
+      MPI_Isend(outbox_[r].data() + at, count, MPI_BYTE, int(r), 0, MPI_COMM_WORLD,
+                &requests.back());
+    });
+  }
+  MPI_Waitall(int(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  outbox_.assign(ranks, {});
+  for (std::vector<char>& message : inbox) {
+    unpack(message, own);
+    message = {};
+  }
+}
+
+void MpiRanks::sum(std::vector<int64_t>& values) {
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), int(values.size()), MPI_INT64_T, MPI_SUM,
+                MPI_COMM_WORLD);
+}
+
+void MpiRanks::max(std::vector<int64_t>& values) {
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), int(values.size()), MPI_INT64_T, MPI_MAX,
+                MPI_COMM_WORLD);
+}
+
+void MpiRanks::broadcast(std::vector<char>& bytes) {
+  uint64_t size = bytes.size();
+  MPI_Bcast(&size, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
+  bytes.resize(size);
+  forEachChunk(size, [&](size_t at, int count) {
+    MPI_Bcast(bytes.data() + at, count, MPI_BYTE, 0, MPI_COMM_WORLD);
+  });
+}
+
+void MpiRanks::abort(int code) {
+  MPI_Abort(MPI_COMM_WORLD, code);
+  std::_Exit(code);
+}
+
+}  // namespace vdb_madf

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "vdb_madf/slabs/ranks.h"
+
+namespace vdb_madf {
+
+/// The processes of an MPI job (MPI_COMM_WORLD), each a rank. All calls are made by the thread that made
+/// it. Messages of any size; they are in memory until exchange().
+class MpiRanks : public Ranks {
+ public:
+  /// Begins MPI (MPI_THREAD_FUNNELED); one for a process.
+  MpiRanks(int* argc, char*** argv);
+  /// Ends MPI, with the others.
+  ~MpiRanks() override;
+
+  int count() const override { return count_; }
+  int rank() const override { return rank_; }
+  void send(int rank, const std::string& name, const std::vector<char>& bytes,
+            Scratch& own) override;
+  void exchange(Scratch& own) override;
+  void sum(std::vector<int64_t>& values) override;
+  void max(std::vector<int64_t>& values) override;
+  void broadcast(std::vector<char>& bytes) override;
+
+  /// Ends the whole job, with this exit code.
+  [[noreturn]] static void abort(int code);
+
+ private:
+  int count_ = 1, rank_ = 0;
+  std::vector<std::vector<char>> outbox_;  // to each rank: names and bytes
+};
+
+}  // namespace vdb_madf

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/slabs/detail/slab_map.h"
+
+#include <utility>
+#include <vector>
+
+namespace vdb_madf::detail {
+
+namespace {
+
+constexpr char kMap[] = "map";
+
+}  // namespace
+
+SquaredDistance slabDistance(const SlabWork& work, size_t slab, const LeafIndex& index,
+                             Interrupter* interrupter) {
+  return squaredDistanceInSlab(index, work.obstacles, work.weights, facesOf(work, slab),
+                               interrupter);
+}
+
+PowerMap slabPowerMap(const SlabWork& work, const SlabOffers& offers, size_t slab, LeafIndex& index,
+                      Interrupter* interrupter) {
+  WorkPart measuring(interrupter, 0, 35), mapping(interrupter, 35, 100);
+  SquaredDistance distance = slabDistance(work, slab, index, &measuring);
+  distance.foreign = offers.received(slab, index);
+  return powerMap(index, std::move(distance), &mapping);
+}
+
+void writeMap(SlabWork& work, size_t slab, const LeafIndex& index, const PowerMap& map) {
+  std::vector<Coord> foreign;
+  for (size_t leaf = index.leafCount(); leaf < index.namedLeafCount(); ++leaf)
+    foreign.push_back(index.origin(leaf));
+  ByteWriter bytes;
+  bytes.add(foreign);
+  bytes.add(map.site);
+  bytes.add(map.power);
+  work.write(kMap, slab, bytes);
+}
+
+PowerMap readMap(const SlabWork& work, size_t slab, LeafIndex& index) {
+  ByteReader bytes = work.read(kMap, slab);
+  index.nameForeignLeaves(bytes.vector<Coord>());
+  PowerMap map;
+  map.weights = work.weights;
+  map.site = bytes.voxelArray<VoxelId>();
+  map.power = bytes.voxelArray<int32_t>();
+  return map;
+}
+
+void forgetMap(SlabWork& work, size_t slab) {
+  work.remove(kMap, slab);
+}
+
+}  // namespace vdb_madf::detail

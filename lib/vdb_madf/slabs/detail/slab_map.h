@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include "vdb_madf/method/power_map.h"
+#include "vdb_madf/slabs/detail/slab_reach.h"
+#include "vdb_madf/slabs/detail/slab_work.h"
+
+namespace vdb_madf::detail {
+
+/// The squared distances of a slab. @throw as squaredDistanceInSlab()
+SquaredDistance slabDistance(const SlabWork& work, size_t slab, const LeafIndex& index,
+                             Interrupter* interrupter);
+
+/// The power map of all balls in a slab. Names the leaves of foreign balls in its index.
+PowerMap slabPowerMap(const SlabWork& work, const SlabOffers& offers, size_t slab, LeafIndex& index,
+                      Interrupter* interrupter);
+
+/// A map in scratch: sites, powers, and the names of foreign leaves.
+void writeMap(SlabWork& work, size_t slab, const LeafIndex& index, const PowerMap& map);
+PowerMap readMap(const SlabWork& work, size_t slab, LeafIndex& index);
+void forgetMap(SlabWork& work, size_t slab);
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "vdb_madf/slabs/scratch.h"
+
+namespace vdb_madf {
+
+/// The processes that share the slabs of an object. All run segmentSlabs() at a time, each with its own
+/// slabs, which follow each other; what one slab has to tell another goes through here. All call
+/// exchange(), sum(), max() and broadcast() in the same order. This one works alone.
+class Ranks {
+ public:
+  Ranks() = default;
+  virtual ~Ranks() = default;
+  Ranks(const Ranks&) = delete;
+  Ranks& operator=(const Ranks&) = delete;
+
+  virtual int count() const { return 1; }
+  virtual int rank() const { return 0; }
+
+  /// Slabs are dealt evenly: rank r has those from firstSlab(r, slabs) to before firstSlab(r + 1, slabs);
+  /// rank 0 has some if there are any.
+  size_t firstSlab(int rank, size_t slabs) const {
+    const auto ranks = size_t(count());
+    return (slabs * size_t(rank) + ranks - 1) / ranks;
+  }
+  int ownerOf(size_t slab, size_t slabs) const { return int(slab * size_t(count()) / slabs); }
+
+  /// A piece for the scratch of another rank, which has it after the next exchange(). `own` is that of
+  /// this rank.
+  virtual void send(int /*rank*/, const std::string& name, const std::vector<char>& bytes,
+                    Scratch& own) {
+    own.write(name, bytes);
+  }
+  /// Waits for all; puts the pieces that came into `own`.
+  virtual void exchange(Scratch& /*own*/) {}
+
+  /// Sums and maxima over the ranks, value by value.
+  virtual void sum(std::vector<int64_t>& /*values*/) {}
+  virtual void max(std::vector<int64_t>& /*values*/) {}
+  /// Gives all what rank 0 has.
+  virtual void broadcast(std::vector<char>& /*bytes*/) {}
+};
+
+}  // namespace vdb_madf

@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The ranks of an MPI job: this program is run by mpiexec. All ranks make the same cases.
+//
+// The random comparison reads from the environment VDB_MADF_CASES (how many) and VDB_MADF_SEED (the
+// first).
+
+#include "vdb_madf/mpi/mpi_ranks.h"
+
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+#include "support/random_case.h"
+#include "support/runs.h"
+#include "support/slab_objects.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/slabs/deal_slabs.h"
+
+namespace {
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+
+MpiRanks& world() {
+  static MpiRanks ranks(nullptr, nullptr);
+  return ranks;
+}
+
+/// Bytes that tell from whom to whom they go.
+std::vector<char> letter(int from, int to, size_t size) {
+  std::vector<char> bytes(size);
+  for (size_t i = 0; i < size; ++i) bytes[i] = char(i * 7 + size_t(from) * 31 + size_t(to) * 5);
+  return bytes;
+}
+
+int64_t sumOf(int64_t value) {
+  std::vector<int64_t> values{value};
+  world().sum(values);
+  return values[0];
+}
+
+}  // namespace
+
+TEST_CASE("mpi: there are several ranks", "[mpi]") {
+  CHECK(world().count() > 1);
+  CHECK(sumOf(1) == world().count());
+}
+
+TEST_CASE("mpi: messages arrive whole, at the next exchange", "[mpi]") {
+  Ranks& ranks = world();
+  for (const size_t size : {0u, 1u, 1000u, 3000000u}) {
+    MemoryScratch scratch;
+    for (int to = 0; to < ranks.count(); ++to)
+      for (const char* name : {"a", "another piece"})
+        ranks.send(to, name + std::to_string(ranks.rank()),
+                   letter(ranks.rank(), to, size + size_t(to)), scratch);
+    ranks.exchange(scratch);
+    for (int from = 0; from < ranks.count(); ++from)
+      for (const char* name : {"a", "another piece"}) {
+        REQUIRE(scratch.has(name + std::to_string(from)));
+        REQUIRE(scratch.read(name + std::to_string(from)) ==
+                letter(from, ranks.rank(), size + size_t(ranks.rank())));
+      }
+    MemoryScratch empty;
+    ranks.exchange(empty);
+    CHECK_FALSE(empty.has("a0"));
+  }
+}
+
+TEST_CASE("mpi: votes and words are those of all", "[mpi]") {
+  Ranks& ranks = world();
+  const int n = ranks.count(), r = ranks.rank();
+  std::vector<int64_t> sums{r, 1, int64_t(r) << 40}, maxima{r, -r, int64_t(r) << 40};
+  ranks.sum(sums);
+  ranks.max(maxima);
+  CHECK(sums == std::vector<int64_t>{n * (n - 1) / 2, n, int64_t(n * (n - 1) / 2) << 40});
+  CHECK(maxima == std::vector<int64_t>{n - 1, 0, int64_t(n - 1) << 40});
+  std::vector<char> word = r == 0 ? letter(0, 0, 100000) : std::vector<char>(3, 'x');
+  ranks.broadcast(word);
+  CHECK(word == letter(0, 0, 100000));
+}
+
+TEST_CASE("mpi: each rank puts the labels of the whole in its slabs", "[mpi]") {
+  Ranks& ranks = world();
+  const uint64_t first = fromEnvironment("VDB_MADF_SEED", 1) + 200000;
+  const uint64_t cases = fromEnvironment("VDB_MADF_CASES", 1000);
+  int64_t put = 0;
+  for (uint64_t seed = first; seed < first + cases; ++seed) {
+    Rng rng(seed);
+    const RandomCase c =
+        randomCase(seed, Coord(rng.between(1, 12), rng.between(1, 12), rng.between(16, 60)));
+    const MaskGrid::Ptr mask = maskOf(c);
+    SegmentOptions options = optionsOf(c);
+    options.domain = domainOf(c);
+    options.keepDistance = options.keepPower = options.keepManifold = options.keepBalls = false;
+    if (!options.weights) options.weights = VoxelWeights{};
+    Segmentation whole;
+    try {
+      whole = segment(*mask, options);
+    } catch (const InvalidInput&) {
+      continue;  // all ranks alike
+    }
+    // Each has read some of the leaves.
+    std::vector<LeafIndex::LeafVoxels> leaves;
+    const LeafIndex index(*mask);
+    for (size_t leaf = 0; leaf < index.leafCount(); ++leaf)
+      if (int(leaf) % ranks.count() == ranks.rank())
+        leaves.push_back({index.origin(leaf), index.mask(leaf)});
+    SlabLimits limits;
+    limits.height = rng.chance(0.5) ? 8 : 0;
+    limits.leastHeight = options.tidy;
+    MemoryScratch scratch;
+    const SlabObject object =
+        dealSlabs(leaves, limits, whole.fillHoles, whole.domain,
+                  openvdb::gridConstPtrCast<MaskGrid>(mask->copyGridWithNewTree()), ranks, scratch);
+    int64_t different = 0;
+    const SlabSegmentation result = segmentSlabs(
+        object, options, scratch, ranks, [&](size_t slab, const Int32Grid::Ptr& grain) {
+          ++put;
+          const Int32Grid::Ptr part = whole.grain->deepCopy();
+          const CoordBBox inside(Coord(INT32_MIN, INT32_MIN, object.cuts[slab]),
+                                 Coord(INT32_MAX, INT32_MAX, object.cuts[slab + 1] - 1));
+          for (auto voxel = part->beginValueOn(); voxel; ++voxel)
+            if (!inside.isInside(voxel.getCoord())) {
+              voxel.setValue(0);
+              voxel.setValueOff();
+            }
+          different += !areSame(*part, *grain);
+        });
+    different += result.counts.grains != whole.counts.grains;
+    if (ranks.rank() == 0) different += result.grainVoxels != whole.grainVoxels;
+    INFO(describe(c));
+    REQUIRE(sumOf(different) == 0);
+  }
+  CHECK((cases < 100 || put > 0));
+}

@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "run_command.h"
+
+#include <tbb/global_control.h>
+
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <new>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "command.h"
+#include "command_line.h"
+#include "message.h"
+#include "outputs.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/method/initialize.h"
+#include "version_text.h"
+
+namespace vdb_madf::tools {
+
+Verb addVerb(Verb parent, Common& common, const std::string& name, const std::string& description,
+             const std::string& example) {
+  Verb verb = parent.verb(name, description);
+  verb.option("--threads", common.threads, "number of threads (default: all)").range(1, 4096);
+  verb.flag("-q,--quiet", common.quiet, "print nothing but errors");
+  verb.flag("-v,--verbose", common.verbose, "print more");
+  verb.footer("Example:\n  " + example);
+  return verb;
+}
+
+Common besideOutput(Common common, const std::string& output) {
+  common.quiet |= isOnStandardOutput(output);
+  return common;
+}
+
+namespace {
+
+constexpr int kDone = 0, kFailed = 1, kWrongUsage = 2, kInterrupted = 130;
+
+int fail(const Ranks* ranks, int code, const std::string& what) {
+  // What all find wrong is said once: rank 0 ends the others while these wait.
+  if (ranks && ranks->rank() > 0) std::this_thread::sleep_for(std::chrono::seconds(3));
+  printMessage("error", what);
+  return code;
+}
+
+/// How the user of the command does what an error of the library hints at.
+const char* optionFor(Hint hint) {
+  switch (hint) {
+    case Hint::none:
+      break;
+    case Hint::rawLayout:
+      return " (--dims, --type, --skip)";
+    case Hint::dataset:
+      return " (--dataset)";
+    case Hint::voxelSize:
+      return " (--voxel-size)";
+    case Hint::memoryLimit:
+      return " (--max-memory)";
+    case Hint::manifolds:
+      return " with --keep manifold";
+    case Hint::smallerLabels:
+      return " (export --as lod)";
+  }
+  return "";
+}
+
+/// An unset variable of a script must not turn `--phase "$PHASE"` into the default.
+void rejectEmptyArguments(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument.empty())
+      throw WrongUsage(i > 1 ? "the argument after '" + std::string(argv[i - 1]) + "' is empty"
+                             : "the first argument is empty");
+    if (argument.compare(0, 2, "--") == 0 && argument.back() == '=')
+      throw WrongUsage("'" + argument + "' lacks its value");
+  }
+}
+
+void flushStandardOutput() {
+  std::fflush(stdout);
+  std::cout.flush();
+  if (!std::cout || std::ferror(stdout)) throw IoError("standard output cannot be written");
+}
+
+void addVerbs(Verb command, const CommandLine& line, Common& common, Action& action) {
+  addGenerate(command, common, action);
+  addConvert(command, common, action);
+  addSegment(command, common, action);
+  addRemerge(command, common, action);
+  addEdit(command, common, action);
+  addSweep(command, common, action);
+  addMeasure(command, common, action);
+  addCollect(command, common, action);
+  addCompare(command, common, action);
+  addTrack(command, common, action);
+  addRender(command, common, action);
+  addExport(command, common, action);
+  addInfo(command, common, action);
+  addCompletion(command, line, action);
+}
+
+int run(const char* program, int argc, char** argv, Ranks* ranks) {
+  rejectEmptyArguments(argc, argv);
+  CommandLine line(program, "Separates the grains of granular microstructures in micro-CT volumes.",
+                   versionText());
+  Verb command = line.command();
+  command.footer(
+      "vdb_madf help VERB explains a verb.\nExample:\n"
+      "  vdb_madf segment scan.tif grains.vdb --phase 1 --voxel-size 8.5um");
+
+  Common common;
+  common.ranks = ranks;
+  Action action;
+  if (ranks)
+    addSegment(command, common, action);
+  else
+    addVerbs(command, line, common, action);
+  if (const std::optional<std::string> text = line.parse(argc, argv)) {
+    if (!ranks || ranks->rank() == 0) std::cout << *text;
+    flushStandardOutput();
+    return kDone;
+  }
+  const std::string given = line.given();
+  if (!action) throw WrongUsage("say what to do: see " + given + " --help");
+
+  common.quiet |= ranks && ranks->rank() > 0;
+  catchInterrupts();
+  Progress progress(common.quiet, given.substr(given.find(' ') + 1));
+  common.progress = &progress;
+  std::optional<tbb::global_control> threads;
+  if (common.threads > 0)
+    threads.emplace(tbb::global_control::max_allowed_parallelism, size_t(common.threads));
+  initialize();
+  action();
+  flushStandardOutput();
+  return kDone;
+}
+
+}  // namespace
+
+int runCommand(const char* program, int argc, char** argv, Ranks* ranks) {
+  try {
+    return run(program, argc, argv, ranks);
+  } catch (const WrongUsage& error) {
+    return fail(ranks, kWrongUsage, error.what());
+  } catch (const Interrupted&) {
+    return fail(ranks, kInterrupted, "interrupted");
+  } catch (const InvalidInput& error) {
+    return fail(ranks, kFailed, std::string(error.what()) + optionFor(error.hint()));
+  } catch (const IoError& error) {
+    return fail(ranks, kFailed, std::string(error.what()) + optionFor(error.hint()));
+  } catch (const std::bad_alloc&) {
+    return fail(ranks, kFailed,
+                "out of memory: crop or coarsen the volume, or use a machine with more memory");
+  } catch (const std::exception& error) {
+    return fail(ranks, kFailed, error.what());
+  }
+}
+
+}  // namespace vdb_madf::tools

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// vdb_madf segment by the processes of an MPI job.
+
+#include "../vdb_madf/run_command.h"
+#include "vdb_madf/mpi/mpi_ranks.h"
+
+int main(int argc, char** argv) {
+  vdb_madf::MpiRanks ranks(&argc, &argv);
+  const int code = vdb_madf::tools::runCommand("vdb_madf_mpi", argc, argv, &ranks);
+  if (code != 0) vdb_madf::MpiRanks::abort(code);
+  return 0;
+}
