@@ -9,6 +9,7 @@
 
 #include "vdb_madf/method/medial_balls.h"
 #include "vdb_madf/slabs/detail/slab_filter.h"
+#include "vdb_madf/slabs/detail/slab_labels.h"
 #include "vdb_madf/slabs/detail/slab_setup.h"
 #include "vdb_madf/slabs/detail/slab_terminals.h"
 
@@ -69,7 +70,7 @@ class SlabFlow {
     PowerMap map = isFiltered() ? completion_.completed(s, slab.index)
                                 : slabPowerMap(work_, offers_, s, slab.index, &mapping);
     const VoxelSet balls = medialBalls(slab.index, map, &flowing);
-    const Flow flowMap = flow(slab.index, std::move(map.site), map.power, balls, &flowing);
+    Flow flowMap = flow(slab.index, std::move(map.site), map.power, balls, &flowing);
     const SlabTerminals terminals =
         slabTerminals(slab.index, flowMap, map.power, balls, slab.cavities, work_.begin(s),
                       work_.end(s), &flowing);
@@ -77,6 +78,7 @@ class SlabFlow {
     ByteWriter flowBytes, terminalBytes;
     flowBytes.add(flowMap.manifold);
     work_.write("flow", s, flowBytes);
+    writeRims(work_, s, slab, std::move(flowMap.manifold));
     std::vector<uint64_t> ballWords;
     for (size_t i = 0; i < slab.index.leafCount() * 8; ++i) ballWords.push_back(balls.word(i));
     work_.writeVector("balls", s, ballWords);

@@ -18,6 +18,21 @@ namespace vdb_madf::detail {
 
 namespace {
 
+constexpr char kLowestRim[] = "lowest-rim", kHighestRim[] = "highest-rim";
+
+ByteWriter toBytes(const LeafLabels& rim) {
+  ByteWriter bytes;
+  bytes.add(rim.leaves);
+  bytes.add(rim.labels);
+  return bytes;
+}
+LeafLabels toRim(ByteReader bytes) {
+  LeafLabels rim;
+  rim.leaves = bytes.vector<LeafIndex::LeafVoxels>();
+  rim.labels = bytes.vector<uint32_t>();
+  return rim;
+}
+
 class SlabLabels {
  public:
   SlabLabels(SlabWork& work, SlabSegmentation& result) : work_(work), result_(result) {}
@@ -101,7 +116,11 @@ class SlabLabels {
 
   void tidyLabels() {
     shareAnchors();
-    work_.forEachSlab([&](size_t s) { sendRims(s); });
+    work_.forEachSlab([&](size_t s) { sendRims(s); },
+                      [&](size_t s) {
+                        work_.remove(kLowestRim, s);
+                        work_.remove(kHighestRim, s);
+                      });
     work_.forEachSlab([&](size_t s) { smooth(s); },
                       [&](size_t s) {
                         work_.removeMessage("rim", s - 1, s);
@@ -170,26 +189,19 @@ class SlabLabels {
 
   /// Labels as merged, as far from the cuts as the slabs beyond them have to see.
   void sendRims(size_t s) {
-    const int reach = (work_.options.tidy + 7) / 8 * 8;
-    const SlabBody slab = work_.body(s);
-    const VoxelArray<uint32_t> labels = mergedLabels(s, slab);
-    const auto send = [&](size_t to, int begin, int end) {
-      const LeafLabels rim = labelsBetween(slab.index, labels, begin, end);
-      ByteWriter bytes;
-      bytes.add(rim.leaves);
-      bytes.add(rim.labels);
-      work_.send("rim", s, to, bytes);
+    const auto grains = work_.receiveVector<uint32_t>(kGrainsOfTerminals, SlabWork::kRoot, s);
+    const auto send = [&](const char* side, size_t to) {
+      LeafLabels rim = toRim(work_.read(side, s));
+      for (uint32_t& label : rim.labels)
+        if (label != 0) label = grains[(label & ~Flow::kOwnCell) - 1];
+      work_.send("rim", s, to, toBytes(rim));
     };
-    if (s > 0) send(s - 1, work_.begin(s), work_.begin(s) + reach);
-    if (s + 1 < work_.slabCount()) send(s + 1, work_.end(s) - reach, work_.end(s));
+    if (s > 0) send(kLowestRim, s - 1);
+    if (s + 1 < work_.slabCount()) send(kHighestRim, s + 1);
   }
   LeafLabels rim(size_t from, size_t s) const {
     if (!work_.hasMessage("rim", from, s)) return {};
-    ByteReader bytes = work_.receive("rim", from, s);
-    LeafLabels rim;
-    rim.leaves = bytes.vector<LeafIndex::LeafVoxels>();
-    rim.labels = bytes.vector<uint32_t>();
-    return rim;
+    return toRim(work_.receive("rim", from, s));
   }
 
   void smooth(size_t s) {
@@ -281,6 +293,15 @@ class SlabLabels {
 };
 
 }  // namespace
+
+void writeRims(SlabWork& work, size_t slab, const SlabBody& body, VoxelArray<uint32_t> manifold) {
+  const int rounds = work.options.tidy, reach = (rounds + 7) / 8 * 8;
+  if (rounds == 0) return;
+  for (const VoxelId id : body.cavities) manifold[body.index.rank(id)] = 0;
+  const int begin = work.begin(slab), end = work.end(slab);
+  work.write(kLowestRim, slab, toBytes(labelsBetween(body.index, manifold, begin, begin + reach)));
+  work.write(kHighestRim, slab, toBytes(labelsBetween(body.index, manifold, end - reach, end)));
+}
 
 void labelSlabs(SlabWork& work, std::vector<Coord> representatives, SlabSegmentation& result,
                 const PutSlabLabels& put) {

@@ -7,6 +7,9 @@
 
 namespace vdb_madf::detail {
 
+/// Keeps of the flow of a slab (Flow::manifold) what tidying will see beyond its cuts.
+void writeRims(SlabWork& work, size_t slab, const SlabBody& body, VoxelArray<uint32_t> manifold);
+
 /// The labels of all slabs, from where their voxels flow to and the grains of those terminals: tidied,
 /// counted in result.grainVoxels (at the root), and put. \p representatives: at the root.
 void labelSlabs(SlabWork& work, std::vector<Coord> representatives, SlabSegmentation& result,
