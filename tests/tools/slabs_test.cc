@@ -88,12 +88,101 @@ TEST_CASE("slabs: every verb that takes labels reads the folder", "[slabs]") {
     CHECK_THAT(run.err, Contains("slab-0003.vdb: is missing"));
   }
   SECTION("nor one with a slab of another") {
-    std::filesystem::remove(bench.path("out.slabs/slab-0005.vdb"));
-    CHECK_THAT(bench.run("compare out.slabs one.vdb").err, Contains("is not slab 1 of 5"));
+    const auto replace = [&](const std::string& from) {
+      std::filesystem::copy(bench.path(from), bench.path("out.slabs/slab-0005.vdb"),
+                            std::filesystem::copy_options::overwrite_existing);
+    };
+    const auto requireRefused = [&](const std::string& why, const std::vector<std::string>& verbs) {
+      for (const std::string& verb : verbs) {
+        INFO(verb);
+        const Outcome run = bench.run(verb);
+        CHECK(run.exitCode == 1);
+        CHECK_THAT(run.err, Contains("slab-0005.vdb: " + why));
+        CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+      }
+      for (const char* name : {"tables", "back.vdb", "out.raw"})
+        CHECK_FALSE(bench.names().count(name));
+    };
     bench.mustRun("segment in.vdb other.slabs --grid object --slab-height 8 -q");
-    std::filesystem::copy(bench.path("other.slabs/slab-0005.vdb"),
-                          bench.path("out.slabs/slab-0005.vdb"));
-    CHECK_THAT(bench.run("compare out.slabs one.vdb").err, Contains("is not slab 6 of 6"));
+    replace("other.slabs/slab-0005.vdb");
+    requireRefused("is not slab 6 of 6",
+                   {"compare one.vdb out.slabs", "measure out.slabs tables", "info out.slabs",
+                    "convert out.slabs back.vdb", "convert out.slabs out.raw"});
+    bench.mustRun("segment in.vdb other.slabs --grid object --slab-height 16 --theta -1 -q");
+    replace("other.slabs/slab-0005.vdb");
+    requireRefused("does not fit slab-0000.vdb", {"measure out.slabs tables"});
+  }
+  SECTION("nor one whose index is damaged") {
+    const std::string text = bench.bytes("out.slabs/index.json");
+    const auto requireRefused = [&] {
+      for (const std::string verb : {"measure out.slabs tables", "info out.slabs"}) {
+        const Outcome run = bench.run(verb);
+        CHECK(run.exitCode == 1);
+        CHECK_THAT(run.err, Contains("index.json"));
+        CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+      }
+    };
+    for (const size_t length : {size_t(0), size_t(20), size_t(120), text.size() - 3}) {
+      bench.write("out.slabs/index.json", text.substr(0, length));
+      requireRefused();
+    }
+    const auto changed = [&](const std::string& from, const std::string& to) {
+      std::string other = text;
+      REQUIRE(other.find(from) != std::string::npos);
+      bench.write("out.slabs/index.json", other.replace(other.find(from), from.size(), to));
+      requireRefused();
+    };
+    changed("\"z_last\": 31", "\"z_last\": 30");
+    changed("\"z_last\": 31", "\"z_last\": 1e99");
+    changed("\"z_first\": 16", "\"z_first\": \"16\"");
+    changed("slab-0002.vdb", "../../etc/passwd");
+    changed("\"slabs\": [", "\"slabs\": [[]],\"others\": [");
+    std::filesystem::remove(bench.path("out.slabs/index.json"));
+    requireRefused();
+  }
+}
+
+TEST_CASE("slabs: tables, comparisons and images are those of one file", "[slabs]") {
+  const Bench bench;
+  struct Sample {
+    std::string made, height, options, measures;
+  };
+  for (const Sample& sample :
+       {Sample{"--voxel-size 8um", "8", "", "--shape --edge-weights --bootstrap 100 --min-faces 5"},
+        Sample{"--voxel-size 8x8x20um", "16", "--boundary closed --tidy 0", "--shape"},
+        Sample{"", "40", "--fill-holes 1000 --merge neck", "--boundary closed --sample a"}}) {
+    INFO(sample.made);
+    bench.mustRun(kTall + "in.vdb -q " + sample.made);
+    const std::string choice = " --grid object -q " + sample.options;
+    bench.mustRun("segment in.vdb one.vdb" + choice);
+    bench.mustRun("segment in.vdb out.slabs --slab-height " + sample.height + choice);
+    bench.mustRun("measure one.vdb one -q " + sample.measures);
+    bench.mustRun("measure out.slabs cut -q " + sample.measures);
+    for (const std::string name : {"grains.csv", "bonds.csv"})
+      REQUIRE(bench.bytes("one/" + name) == bench.bytes("cut/" + name));
+    Json one = Json::parse(bench.bytes("one/sample.json")),
+         cut = Json::parse(bench.bytes("cut/sample.json"));
+    CHECK(one.at("labels_digest").get<std::string>().size() == 32);
+    one.erase("labels");
+    cut.erase("labels");
+    CHECK(one == cut);
+
+    bench.mustRun("segment in.vdb other.slabs --slab-height 24 --theta -0.7" + choice);
+    bench.mustRun("convert other.slabs other.vdb -q");
+    const std::string truth = bench.mustRun("compare one.vdb other.vdb");
+    for (const std::string pair : {"one.vdb other.slabs", "out.slabs other.slabs"})
+      CHECK(bench.mustRun("compare " + pair) == truth);
+    for (const std::string image :
+         {"raw", "tif", "raw --out-type uint8 --domain 0,-2,-5:45,40,110"}) {
+      const std::string name = "." + image.substr(0, 3);
+      bench.mustRun("convert one.vdb a." + image + " -q");
+      bench.mustRun("convert out.slabs b." + image + " -q");
+      CHECK(bench.bytes("a" + name) == bench.bytes("b" + name));
+    }
+    const Json whole = gridOf(infoOf(bench, "one.vdb"), "grain"),
+               slabs = gridOf(infoOf(bench, "out.slabs"), "grain");
+    for (const char* key : {"active_voxels", "active_min", "active_max", "voxel_size_units"})
+      CHECK(slabs.at(key) == whole.at(key));
   }
 }
 

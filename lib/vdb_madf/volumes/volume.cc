@@ -55,15 +55,20 @@ bool isReadAsVdb(const std::string& path, const VolumeOptions& options) {
   return isVdb;
 }
 
+/// Not the other grids of the file.
+VdbReadOptions readingAlone(const openvdb::GridBase& chosen) {
+  VdbReadOptions reading;
+  reading.wanted = [name = chosen.getName(), type = chosen.type()](const auto& grid) {
+    return grid.getName() == name && grid.type() == type;
+  };
+  return reading;
+}
+
 /// Chooses by name and type first: the other grids of the file are not loaded.
 openvdb::GridBase::Ptr readGrid(const std::string& path, GridUse use, const VolumeOptions& options,
                                 Interrupter* interrupter) {
   const auto chosen = chooseGrid(readVdbHeaders(path, interrupter), path, use, options.grid);
-  VdbReadOptions reading;
-  reading.wanted = [&chosen](const openvdb::GridBase& grid) {
-    return grid.getName() == chosen->getName() && grid.type() == chosen->type();
-  };
-  return readVdb(path, reading, interrupter).at(0);
+  return readVdb(path, readingAlone(*chosen), interrupter).at(0);
 }
 
 /// Runs `work`; what is wrong with the data then names the file, too, unless it names a mask.
@@ -351,6 +356,21 @@ Int32Grid::Ptr loadLabels(const std::string& path, const VolumeOptions& options,
   });
   if (options.voxelSize) setVoxelSize(*labels, options.voxelSize);
   return labels;
+}
+
+LabelSlabs openLabelSlabs(const std::string& path, const VolumeOptions& options,
+                          Interrupter* interrupter) {
+  const SlabFolder folder = openSlabFolder(path);
+  const auto chosen =
+      chooseGrid(readVdbHeaders(path, interrupter), path, GridUse::labels, options.grid);
+  LabelSlabs slabs;
+  slabs.cuts = folder.cuts;
+  slabs.read = [folder, reading = readingAlone(*chosen)](size_t slab, Interrupter* of) {
+    return openvdb::gridPtrCast<Int32Grid>(readVdbSlab(folder, slab, reading, of).at(0));
+  };
+  overrideFile(*chosen, path, options);
+  slabs.about = openvdb::gridPtrCast<Int32Grid>(chosen);
+  return slabs;
 }
 
 Int32Grid::Ptr loadLabels(const ImageOpener& open, const VolumeOptions& options,
