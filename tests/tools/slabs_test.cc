@@ -186,6 +186,43 @@ TEST_CASE("slabs: tables, comparisons and images are those of one file", "[slabs
   }
 }
 
+TEST_CASE("slabs: samples are made in slabs, and segmented slab by slab", "[slabs]") {
+  const Bench bench;
+  const std::string pack = "generate pack ", what = " --dims 50x40x300 --radius 4:9 -q";
+  bench.mustRun(pack + "in.vdb" + what);
+  bench.mustRun(pack + "in.slabs" + what);
+  const Json whole = gridOf(infoOf(bench, "in.vdb"), "object"),
+             slabs = gridOf(infoOf(bench, "in.slabs"), "object");
+  for (const char* key : {"active_voxels", "active_min", "active_max"})
+    CHECK(slabs.at(key) == whole.at(key));
+  for (const std::string options : {"", "--crop 3,0,9:45,39,260", "--phase 1 --boundary closed"}) {
+    INFO(options);
+    bench.mustRun("segment in.vdb one.vdb -q " + options);
+    bench.mustRun("segment in.slabs out.slabs --slab-height 80 -q " + options);
+    requireSame(bench);
+    bench.mustRun("segment in.slabs joined.vdb -q " + options);
+    CHECK(bench.bytes("joined.vdb") == bench.bytes("one.vdb"));
+  }
+  bench.mustRun("segment out.slabs other.slabs --range 3:9 -q");
+  bench.mustRun("segment one.vdb few.vdb --range 3:9 -q");
+  bench.mustRun("convert other.slabs back.vdb -q");
+  CHECK(bench.bytes("back.vdb") == bench.bytes("few.vdb"));
+
+  bench.mustRun(pack + "in.slabs --dims 20x20x200 --radius 3:4 -q");  // replaces slabs alone
+  bench.write("none.slabs", "a file");
+  for (const std::string& refused :
+       {pack + "none.slabs" + what, std::string("generate snow s.slabs --size 40"),
+        pack + "s.slabs --surface 1:4", pack + "s.slabs --size 20 --radius 0.1:0.2",
+        pack + "nowhere/s.slabs --size 20"}) {
+    INFO(refused);
+    const Outcome run = bench.run(refused);
+    CHECK(run.exitCode != 0);
+    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+  }
+  CHECK(bench.bytes("none.slabs") == "a file");
+  for (const std::string& name : bench.names()) CHECK(name.find(".part") == std::string::npos);
+}
+
 TEST_CASE("slabs: what was killed goes on", "[slabs]") {
   const Bench bench;
   bench.mustRun(kTall + "in.vdb -q");

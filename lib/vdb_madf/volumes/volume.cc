@@ -200,6 +200,34 @@ MaskGrid::Ptr objectOfGrid(const std::string& path, const VolumeOptions& options
   return object;
 }
 
+/// Of a folder of slabs, whose voxels are taken slab by slab.
+MaskGrid::Ptr objectOfSlabs(const std::string& path, const VolumeOptions& options,
+                            Interrupter* interrupter) {
+  const SlabFolder folder = openSlabFolder(path);
+  const auto chosen =
+      chooseGrid(readVdbHeaders(path, interrupter), path, GridUse::object, options.grid);
+  if (options.domain) setDomain(*chosen, *options.domain);
+  const auto part = partOf(*chosen, path, options, interrupter);
+  const MaskGrid::Ptr object = objectMask(*chosen);
+  int64_t leftOut = 0;
+  for (size_t s = 0; s < folder.slabCount(); ++s) {
+    const auto grid = readVdbSlab(folder, s, readingAlone(*chosen), interrupter).at(0);
+    const MaskGrid::Ptr slab = objectMask(*grid, options.selection);
+    if (part) leftOut += detail::cutTo(*part, *slab);
+    takeLayers(slab->tree(), options.takeLayer);
+  }
+  noteLeftOut(path, leftOut, "object voxel", options);
+  noteVoxelSize(path, storedVoxelSize(*object), options);
+  return object;
+}
+
+/// Can the slabs of a folder become an object one by one?
+bool isSlabwise(const std::string& path, const VolumeOptions& options) {
+  return options.takeLayer && isSlabFolder(path) && !readsGray(options.gray) &&
+         options.gray.despeckle <= 1 && !options.region.cylinder && options.region.mask.empty() &&
+         !(options.selection && options.selection->invert);
+}
+
 MaskGrid::Ptr objectOfImage(const std::string& path, const ImageOpener& open,
                             const VolumeOptions& options, Interrupter* interrupter) {
   const auto part = partOfImage(open, options, interrupter);
@@ -328,10 +356,11 @@ std::unique_ptr<ImageReader> openVolumeImage(const std::string& path,
 MaskGrid::Ptr loadObject(const std::string& path, const VolumeOptions& options,
                          Interrupter* interrupter) {
   const MaskGrid::Ptr object = naming(path, options.region.mask, [&] {
-    return isReadAsVdb(path, options)
-               ? objectOfGrid(path, options, interrupter)
-               : objectOfImage(
-                     path, [&] { return openVolumeImage(path, options); }, options, interrupter);
+    const bool isVdb = isReadAsVdb(path, options);
+    if (isVdb && isSlabwise(path, options)) return objectOfSlabs(path, options, interrupter);
+    return isVdb ? objectOfGrid(path, options, interrupter)
+                 : objectOfImage(
+                       path, [&] { return openVolumeImage(path, options); }, options, interrupter);
   });
   return finishedObject(object, options);
 }
