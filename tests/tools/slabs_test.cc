@@ -186,6 +186,46 @@ TEST_CASE("slabs: tables, comparisons and images are those of one file", "[slabs
   }
 }
 
+TEST_CASE("slabs: what does not fit becomes one file all the same, if that is asked for",
+          "[slabs]") {
+  const Bench bench;
+  // A voxel in each of some 83,000 leaf nodes: they take 210 MiB as a whole.
+  constexpr int kSide = 8 * 34, kHeight = 8 * 72;
+  std::string voxels(size_t(kSide) * kSide * kHeight, '\0');
+  for (size_t z = 3; z < kHeight; z += 8)
+    for (size_t y = 4; y < kSide; y += 8)
+      for (size_t x = z / 100; x < kSide; x += 8) voxels[(z * kSide + y) * kSide + x] = 1;
+  bench.write("in.raw", voxels);
+  const std::string in = "segment in.raw ", how = " --dims 272x272x576 --type uint8 --phase 1 -q";
+  bench.mustRun(in + "one.vdb" + how);
+  const Outcome refused = bench.run(in + "out.vdb --max-memory 200MiB" + how);
+  CHECK(refused.exitCode == 1);
+  CHECK_THAT(refused.err,
+             Contains("(--max-memory), or work in slabs") && Contains("out.vdb.slabs"));
+  CHECK_FALSE(bench.names().count("out.vdb"));
+  const std::string automatic = " --auto-slabs --max-memory 200MiB --json out.json" + how;
+  bench.mustRun(in + "out.vdb" + automatic);
+  CHECK(bench.bytes("out.vdb") == bench.bytes("one.vdb"));
+  const Json json = Json::parse(bench.bytes("out.json"));
+  CHECK(json.at("output") == "out.vdb");
+  CHECK(json.at("slab_count") > 0);
+  CHECK_THAT(json.at("notes").dump(), Contains("works in slabs"));
+  bench.mustRun(in + "out.raw" + automatic);
+  bench.mustRun("convert one.vdb one.raw -q");
+  CHECK(bench.bytes("out.raw") == bench.bytes("one.raw"));
+  for (const std::string& name : bench.names()) CHECK(name.find(".slabs") == std::string::npos);
+
+  std::filesystem::create_directory(bench.path("out.vdb.slabs"));
+  CHECK_THAT(bench.run(in + "out.vdb" + automatic).err, Contains("is there"));
+  for (const std::string other : {"out.slabs", "out.vdb --keep power", "out.vdb --gamma 20"})
+    CHECK(bench.run(in + other + automatic).exitCode == 2);
+
+  bench.mustRun(kTall + "in.vdb -q");  // fits
+  bench.mustRun("segment in.vdb one.vdb --grid object -q");
+  bench.mustRun("segment in.vdb all.vdb --grid object --auto-slabs -q");
+  CHECK(bench.bytes("all.vdb") == bench.bytes("one.vdb"));
+}
+
 TEST_CASE("slabs: samples are made in slabs, and segmented slab by slab", "[slabs]") {
   const Bench bench;
   const std::string pack = "generate pack ", what = " --dims 50x40x300 --radius 4:9 -q";
