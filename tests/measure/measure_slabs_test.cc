@@ -130,6 +130,18 @@ TEST_CASE("measure_slabs: what is deeper than the layers around a slab", "[measu
   requireSame(labels, cuts);  // nothing is known beyond x = 0
 }
 
+TEST_CASE("measure_slabs: the nearest background lies beyond what is around a slab",
+          "[measure_slabs]") {
+  // Walls all around but below and above. From z = 40 the background above is seen 40 voxels beyond
+  // the slab, at 118, and the nearer one below, at -1, is not.
+  const auto labels = Int32Grid::create(0);
+  labels->denseFill(CoordBBox(Coord(0), Coord(9, 9, 117)), 4);
+  setDomain(*labels, CoordBBox(Coord(0, 0, -8), Coord(9, 9, 127)));
+  REQUIRE(measure(*labels).grains[0].inscribedRadius == 59);
+  requireSame(labels, {-8, 40, 80, 128});
+  requireSame(labels, {-8, 0, 8, 32, 56, 64, 128});
+}
+
 TEST_CASE("measure_slabs: correlations over long distances", "[measure_slabs]") {
   // Layers of 300 voxels along z, in slabs of 8 and 16, and along x.
   for (const int axis : {0, 2}) {

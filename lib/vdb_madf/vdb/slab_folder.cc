@@ -49,6 +49,9 @@ bool hasIndex(const std::string& folder) {
 /// The list of slabs.
 Json slabsOf(const std::string& index) {
   constexpr uint64_t kMostBytes = uint64_t(1) << 28;
+  std::error_code ignored;
+  if (!fs::exists(index, ignored))
+    throw IoError(index + ": is missing, so this folder of slabs is not whole: make it again");
   const Json json = Json::parse(readText(index, kMostBytes), nullptr, false);
   if (!json.is_object() || !json.contains("slabs")) refuseIndex(index);
   const Json& slabs = json["slabs"];
