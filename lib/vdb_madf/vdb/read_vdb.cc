@@ -395,10 +395,10 @@ std::vector<GridBase::Ptr> readVdb(const std::string& path, const VdbReadOptions
   for (size_t slab = 1; slab < folder.slabCount(); ++slab) {
     const std::vector<GridBase::Ptr> next = readVdbSlab(folder, slab, options, interrupter);
     bytes += memoryOf(next);
-    if (bytes > memoryLimit())
+    if (bytes > memoryLimit() / 4 * 3)  // something has to be done with them, too
       throw IoError("cannot read " + path + ": its slabs take " + readableBytes(bytes) +
-                    " of memory and more together, and there is less; use what takes them one by "
-                    "one, or a larger computer");
+                    " of memory and more together, of " + readableBytes(memoryLimit()) +
+                    "; use what takes them one by one, or a larger computer");
     addSlab(grids, next, folder.files[slab]);
   }
   return grids;
