@@ -14,6 +14,7 @@
 #include <set>
 #include <vector>
 
+#include "support/label_slabs.h"
 #include "vdb_madf/base/errors.h"
 
 using namespace vdb_madf;
@@ -439,6 +440,34 @@ TEST_CASE("compare: threads do not matter", "[compare]") {
   CHECK(parallel.variationSplit == sequential.variationSplit);
   CHECK(parallel.variationMerge == sequential.variationMerge);
   CHECK(parallel.misclassifiedPercent == sequential.misclassifiedPercent);
+}
+
+TEST_CASE("compare: labels in slabs, wherever they are cut", "[compare]") {
+  std::mt19937 random(6);
+  for (int i = 0; i < 8; ++i) {
+    const CoordBBox box = cube(10 + int(random() % 20), Coord(-3, 7, -13));
+    const auto truth = randomLabels(random, box, 9);
+    const auto test = i == 0 ? Int32Grid::create(0) : randomLabels(random, box, 5);
+    if (i > 4) test->tree().voxelizeActiveTiles();
+    for (int k = 0; k < 40; ++k)
+      test->tree().setValueOff(Coord(-3 + int(random() % 9), 9, -13 + int(random() % 9)));
+    const Comparison whole = compare(*truth, *test);
+    const auto requireSame = [&](const LabelSlabs& a, const LabelSlabs& b) {
+      const Comparison c = compare(a, b);
+      REQUIRE(c.overlaps.size() == whole.overlaps.size());
+      for (size_t k = 0; k < c.overlaps.size(); ++k) {
+        REQUIRE(c.overlaps[k].truth == whole.overlaps[k].truth);
+        REQUIRE(c.overlaps[k].test == whole.overlaps[k].test);
+        REQUIRE(c.overlaps[k].voxels == whole.overlaps[k].voxels);
+      }
+      CHECK(c.variationOfInformation == whole.variationOfInformation);
+      CHECK(c.adjustedRandIndex == whole.adjustedRandIndex);
+    };
+    requireSame(test::inSlabs(truth, {-16, -8, 0, 16, 24}), test::inSlabs(test, {-24, 0, 8, 24}));
+    requireSame(singleSlab(truth), test::inSlabs(test, {-16, 0, 8, 16, 24}));
+    requireSame(test::inSlabs(truth, {-16, 0, 24}), singleSlab(test));
+    requireSame(singleSlab(truth), singleSlab(test));
+  }
 }
 
 TEST_CASE("compare: stops when asked to", "[compare]") {

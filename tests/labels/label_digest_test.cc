@@ -65,3 +65,13 @@ TEST_CASE("label_digest: every change of a voxel changes it", "[label_digest]") 
   }
   CHECK(number > 400);
 }
+
+TEST_CASE("label_digest: it is that of its parts", "[label_digest]") {
+  const LabelMap voxels = randomLabels(3, Coord(-11), 24, 4, 60);
+  LabelMap below, above;
+  for (const auto& [p, label] : voxels) (p.z() < 0 ? below : above)[p] = label;
+  detail::LabelDigest sum;
+  for (const LabelMap& part : {above, below})
+    sum.add(detail::LabelLeaves(*labelGrid(part), nullptr));
+  CHECK(sum.text() == digest(voxels));
+}

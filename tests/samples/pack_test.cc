@@ -81,6 +81,52 @@ TEST_CASE("pack: one voxel and thin boxes", "[pack]") {
   CHECK_THROWS_AS(generatePack(pack), InvalidInput);
 }
 
+TEST_CASE("pack: in slabs it is the same", "[pack]") {
+  for (const bool unequal : {false, true}) {
+    PackOptions options;
+    options.size = {60, 50, 300};
+    options.minRadius = 3;
+    options.maxRadius = 9;
+    options.fraction = 0.4;
+    if (unequal) options.voxelSize = VoxelSize({1e-6, 1e-6, 2e-6});
+    const Sample whole = generatePack(options);
+    const PackSlabs slabs(options);
+    CHECK(slabs.objectVoxels() == int64_t(whole.object->activeVoxelCount()));
+    REQUIRE(slabs.cuts() ==
+            (unequal ? std::vector<int>{0, 128, 152} : std::vector<int>{0, 128, 256, 304}));
+    Sample joined;
+    for (size_t s = 0; s < slabs.slabCount(); ++s) {
+      const MaskGrid::Ptr slab = slabs.object(s);
+      const CoordBBox box = slab->evalActiveVoxelBoundingBox();
+      CHECK(box.min().z() >= slabs.cuts()[s]);
+      CHECK(box.max().z() < slabs.cuts()[s + 1]);
+      CHECK(storedDomain(*slab) == storedDomain(*whole.object));
+      if (s == 0)
+        joined.object = slab;
+      else
+        joined.object->tree().merge(slab->tree());
+    }
+    CHECK(hash(joined) == hash(whole));
+  }
+  PackOptions tall;
+  tall.size = {3, 2, 30000};
+  tall.minRadius = tall.maxRadius = 40;
+  CHECK(PackSlabs(tall).cuts().back() == 30000);
+  tall.size.z() = (1 << 20) + 1;
+  CHECK_THROWS_AS(PackSlabs(tall), InvalidInput);
+}
+
+TEST_CASE("pack: batches of balls in slabs", "[pack]") {
+  PackOptions options;  // so many balls that they come in batches first
+  options.size = {90, 80, 260};
+  options.minRadius = 1;
+  options.maxRadius = 2.5;
+  Sample joined;
+  joined.object = PackSlabs(options).object(0);
+  for (size_t s = 1; s < 3; ++s) joined.object->tree().merge(PackSlabs(options).object(s)->tree());
+  CHECK(hash(joined) == hash(generatePack(options)));
+}
+
 TEST_CASE("pack: bad options are refused", "[pack]") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto refuses = [](auto change) {

@@ -88,13 +88,179 @@ TEST_CASE("slabs: every verb that takes labels reads the folder", "[slabs]") {
     CHECK_THAT(run.err, Contains("slab-0003.vdb: is missing"));
   }
   SECTION("nor one with a slab of another") {
-    std::filesystem::remove(bench.path("out.slabs/slab-0005.vdb"));
-    CHECK_THAT(bench.run("compare out.slabs one.vdb").err, Contains("is not slab 1 of 5"));
+    const auto replace = [&](const std::string& from) {
+      std::filesystem::copy(bench.path(from), bench.path("out.slabs/slab-0005.vdb"),
+                            std::filesystem::copy_options::overwrite_existing);
+    };
+    const auto requireRefused = [&](const std::string& why, const std::vector<std::string>& verbs) {
+      for (const std::string& verb : verbs) {
+        INFO(verb);
+        const Outcome run = bench.run(verb);
+        CHECK(run.exitCode == 1);
+        CHECK_THAT(run.err, Contains("slab-0005.vdb: " + why));
+        CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+      }
+      for (const char* name : {"tables", "back.vdb", "out.raw"})
+        CHECK_FALSE(bench.names().count(name));
+    };
     bench.mustRun("segment in.vdb other.slabs --grid object --slab-height 8 -q");
-    std::filesystem::copy(bench.path("other.slabs/slab-0005.vdb"),
-                          bench.path("out.slabs/slab-0005.vdb"));
-    CHECK_THAT(bench.run("compare out.slabs one.vdb").err, Contains("is not slab 6 of 6"));
+    replace("other.slabs/slab-0005.vdb");
+    requireRefused("is not slab 6 of 6",
+                   {"compare one.vdb out.slabs", "measure out.slabs tables", "info out.slabs",
+                    "convert out.slabs back.vdb", "convert out.slabs out.raw"});
+    bench.mustRun("segment in.vdb other.slabs --grid object --slab-height 16 --theta -1 -q");
+    replace("other.slabs/slab-0005.vdb");
+    requireRefused("does not fit slab-0000.vdb", {"measure out.slabs tables"});
   }
+  SECTION("nor one whose index is damaged") {
+    const std::string text = bench.bytes("out.slabs/index.json");
+    const auto requireRefused = [&] {
+      for (const std::string verb : {"measure out.slabs tables", "info out.slabs"}) {
+        const Outcome run = bench.run(verb);
+        CHECK(run.exitCode == 1);
+        CHECK_THAT(run.err, Contains("index.json"));
+        CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+      }
+    };
+    for (const size_t length : {size_t(0), size_t(20), size_t(120), text.size() - 3}) {
+      bench.write("out.slabs/index.json", text.substr(0, length));
+      requireRefused();
+    }
+    const auto changed = [&](const std::string& from, const std::string& to) {
+      std::string other = text;
+      REQUIRE(other.find(from) != std::string::npos);
+      bench.write("out.slabs/index.json", other.replace(other.find(from), from.size(), to));
+      requireRefused();
+    };
+    changed("\"z_last\": 31", "\"z_last\": 30");
+    changed("\"z_last\": 31", "\"z_last\": 1e99");
+    changed("\"z_first\": 16", "\"z_first\": \"16\"");
+    changed("slab-0002.vdb", "../../etc/passwd");
+    changed("\"slabs\": [", "\"slabs\": [[]],\"others\": [");
+    std::filesystem::remove(bench.path("out.slabs/index.json"));
+    requireRefused();
+  }
+}
+
+TEST_CASE("slabs: tables, comparisons and images are those of one file", "[slabs]") {
+  const Bench bench;
+  struct Sample {
+    std::string made, height, options, measures;
+  };
+  for (const Sample& sample :
+       {Sample{"--voxel-size 8um", "8", "", "--shape --edge-weights --bootstrap 100 --min-faces 5"},
+        Sample{"--voxel-size 8x8x20um", "16", "--boundary closed --tidy 0", "--shape"},
+        Sample{"", "40", "--fill-holes 1000 --merge neck", "--boundary closed --sample a"}}) {
+    INFO(sample.made);
+    bench.mustRun(kTall + "in.vdb -q " + sample.made);
+    const std::string choice = " --grid object -q " + sample.options;
+    bench.mustRun("segment in.vdb one.vdb" + choice);
+    bench.mustRun("segment in.vdb out.slabs --slab-height " + sample.height + choice);
+    bench.mustRun("measure one.vdb one -q " + sample.measures);
+    bench.mustRun("measure out.slabs cut -q " + sample.measures);
+    for (const std::string name : {"grains.csv", "bonds.csv"})
+      REQUIRE(bench.bytes("one/" + name) == bench.bytes("cut/" + name));
+    Json one = Json::parse(bench.bytes("one/sample.json")),
+         cut = Json::parse(bench.bytes("cut/sample.json"));
+    CHECK(one.at("labels_digest").get<std::string>().size() == 32);
+    one.erase("labels");
+    cut.erase("labels");
+    CHECK(one == cut);
+
+    bench.mustRun("segment in.vdb other.slabs --slab-height 24 --theta -0.7" + choice);
+    bench.mustRun("convert other.slabs other.vdb -q");
+    const std::string truth = bench.mustRun("compare one.vdb other.vdb");
+    for (const std::string pair : {"one.vdb other.slabs", "out.slabs other.slabs"})
+      CHECK(bench.mustRun("compare " + pair) == truth);
+    for (const std::string image :
+         {"raw", "tif", "raw --out-type uint8 --domain 0,-2,-5:45,40,110"}) {
+      const std::string name = "." + image.substr(0, 3);
+      bench.mustRun("convert one.vdb a." + image + " -q");
+      bench.mustRun("convert out.slabs b." + image + " -q");
+      CHECK(bench.bytes("a" + name) == bench.bytes("b" + name));
+    }
+    const Json whole = gridOf(infoOf(bench, "one.vdb"), "grain"),
+               slabs = gridOf(infoOf(bench, "out.slabs"), "grain");
+    for (const char* key : {"active_voxels", "active_min", "active_max", "voxel_size_units"})
+      CHECK(slabs.at(key) == whole.at(key));
+  }
+}
+
+TEST_CASE("slabs: what does not fit becomes one file all the same, if that is asked for",
+          "[slabs]") {
+  const Bench bench;
+  // A voxel in each of some 83,000 leaf nodes: they take 210 MiB as a whole.
+  constexpr int kSide = 8 * 34, kHeight = 8 * 72;
+  std::string voxels(size_t(kSide) * kSide * kHeight, '\0');
+  for (size_t z = 3; z < kHeight; z += 8)
+    for (size_t y = 4; y < kSide; y += 8)
+      for (size_t x = z / 100; x < kSide; x += 8) voxels[(z * kSide + y) * kSide + x] = 1;
+  bench.write("in.raw", voxels);
+  const std::string in = "segment in.raw ", how = " --dims 272x272x576 --type uint8 --phase 1 -q";
+  bench.mustRun(in + "one.vdb" + how);
+  const Outcome refused = bench.run(in + "out.vdb --max-memory 200MiB" + how);
+  CHECK(refused.exitCode == 1);
+  CHECK_THAT(refused.err,
+             Contains("(--max-memory), or work in slabs") && Contains("out.vdb.slabs"));
+  CHECK_FALSE(bench.names().count("out.vdb"));
+  const std::string automatic = " --auto-slabs --max-memory 200MiB --json out.json" + how;
+  bench.mustRun(in + "out.vdb" + automatic);
+  CHECK(bench.bytes("out.vdb") == bench.bytes("one.vdb"));
+  const Json json = Json::parse(bench.bytes("out.json"));
+  CHECK(json.at("output") == "out.vdb");
+  CHECK(json.at("slab_count") > 0);
+  CHECK_THAT(json.at("notes").dump(), Contains("works in slabs"));
+  bench.mustRun(in + "out.raw" + automatic);
+  bench.mustRun("convert one.vdb one.raw -q");
+  CHECK(bench.bytes("out.raw") == bench.bytes("one.raw"));
+  for (const std::string& name : bench.names()) CHECK(name.find(".slabs") == std::string::npos);
+
+  std::filesystem::create_directory(bench.path("out.vdb.slabs"));
+  CHECK_THAT(bench.run(in + "out.vdb" + automatic).err, Contains("is there"));
+  for (const std::string other : {"out.slabs", "out.vdb --keep power", "out.vdb --gamma 20"})
+    CHECK(bench.run(in + other + automatic).exitCode == 2);
+
+  bench.mustRun(kTall + "in.vdb -q");  // fits
+  bench.mustRun("segment in.vdb one.vdb --grid object -q");
+  bench.mustRun("segment in.vdb all.vdb --grid object --auto-slabs -q");
+  CHECK(bench.bytes("all.vdb") == bench.bytes("one.vdb"));
+}
+
+TEST_CASE("slabs: samples are made in slabs, and segmented slab by slab", "[slabs]") {
+  const Bench bench;
+  const std::string pack = "generate pack ", what = " --dims 50x40x300 --radius 4:9 -q";
+  bench.mustRun(pack + "in.vdb" + what);
+  bench.mustRun(pack + "in.slabs" + what);
+  const Json whole = gridOf(infoOf(bench, "in.vdb"), "object"),
+             slabs = gridOf(infoOf(bench, "in.slabs"), "object");
+  for (const char* key : {"active_voxels", "active_min", "active_max"})
+    CHECK(slabs.at(key) == whole.at(key));
+  for (const std::string options : {"", "--crop 3,0,9:45,39,260", "--phase 1 --boundary closed"}) {
+    INFO(options);
+    bench.mustRun("segment in.vdb one.vdb -q " + options);
+    bench.mustRun("segment in.slabs out.slabs --slab-height 80 -q " + options);
+    requireSame(bench);
+    bench.mustRun("segment in.slabs joined.vdb -q " + options);
+    CHECK(bench.bytes("joined.vdb") == bench.bytes("one.vdb"));
+  }
+  bench.mustRun("segment out.slabs other.slabs --range 3:9 -q");
+  bench.mustRun("segment one.vdb few.vdb --range 3:9 -q");
+  bench.mustRun("convert other.slabs back.vdb -q");
+  CHECK(bench.bytes("back.vdb") == bench.bytes("few.vdb"));
+
+  bench.mustRun(pack + "in.slabs --dims 20x20x200 --radius 3:4 -q");  // replaces slabs alone
+  bench.write("none.slabs", "a file");
+  for (const std::string& refused :
+       {pack + "none.slabs" + what, std::string("generate snow s.slabs --size 40"),
+        pack + "s.slabs --surface 1:4", pack + "s.slabs --size 20 --radius 0.1:0.2",
+        pack + "nowhere/s.slabs --size 20"}) {
+    INFO(refused);
+    const Outcome run = bench.run(refused);
+    CHECK(run.exitCode != 0);
+    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+  }
+  CHECK(bench.bytes("none.slabs") == "a file");
+  for (const std::string& name : bench.names()) CHECK(name.find(".part") == std::string::npos);
 }
 
 TEST_CASE("slabs: what was killed goes on", "[slabs]") {

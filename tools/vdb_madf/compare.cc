@@ -109,10 +109,23 @@ std::string text(const Domain& domain) {
 void run(const Options& o, const Common& common) {
   JsonFile jsonFile(o.json);
   TextFile grainFile(o.grains), confusionFile(o.confusion);
-  const Int32Grid::Ptr truth = loadLabels(o.truth, "--truth-grid", common.progress);
-  const Int32Grid::Ptr test = loadLabels(o.test, "--test-grid", common.progress);
-  checkSameVoxels(o.truth, *truth, o.test, *test);
-  const Comparison comparison = compare(*truth, *test, common.progress);
+  Int32Grid::ConstPtr truth, test;  // their voxels are not there if they come in slabs
+  Comparison comparison;
+  if (isInSlabs(o.truth) || isInSlabs(o.test)) {
+    const LabelSlabs truths = loadSlabs(o.truth, "--truth-grid", common.progress),
+                     tests = loadSlabs(o.test, "--test-grid", common.progress);
+    truth = truths.about;
+    test = tests.about;
+    checkSameVoxels(o.truth, *truth, o.test, *test);
+    comparison = compare(truths, tests, common.progress);
+  } else {
+    const Int32Grid::Ptr truths = loadLabels(o.truth, "--truth-grid", common.progress),
+                         tests = loadLabels(o.test, "--test-grid", common.progress);
+    truth = truths;
+    test = tests;
+    checkSameVoxels(o.truth, *truth, o.test, *test);
+    comparison = compare(*truths, *tests, common.progress);
+  }
   if (comparison.commonVoxels == 0 && comparison.truthGrains + comparison.testGrains > 0)
     throw InvalidInput(o.test.path + ": no voxel is labelled both here and in " + o.truth.path +
                        ", so there is nothing to compare: give labels of the same sample");

@@ -136,6 +136,12 @@ void copyVdb(const Options& o, const Common& common) {
   writeVdb(o.out, {grids.begin(), grids.end()}, common.progress);
 }
 
+/// Of a folder of slabs that becomes an image.
+void copySlabs(const Options& o, const Common& common) {
+  const LabelSlabs labels = openLabelSlabs(o.input, "--grid", common.progress);
+  writeSlabsAsImage(o.out, labels, outputType(o), o.input.path, common);
+}
+
 std::unique_ptr<ImageReader> openFiltered(const Options& o, const Common& common) {
   return filteredImage(openVolumeImage(o.input.path, o.input.volume(common.progress)),
                        o.input.gray);
@@ -188,6 +194,8 @@ void run(const Options& o, const Common& common) {
     convertMask(o, common);
   else if (fromVdb && o.cube)
     resampleVdb(o, common);
+  else if (isInSlabs(o.input) && !hasVdbEnding(o.out))
+    copySlabs(o, common);
   else if (fromVdb)
     copyVdb(o, common);
   else {

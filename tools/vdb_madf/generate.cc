@@ -9,9 +9,11 @@
 
 #include "command.h"
 #include "outputs.h"
+#include "pack_slabs.h"
 #include "parse.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/written_together.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
@@ -249,10 +251,21 @@ void checkVoxels(const Kind& kind, const Options& options) {
     throw WrongUsage(given + ": --surface and --scan-noise need cubes; give one edge");
 }
 
+/// Is the sample to be written in slabs, so that it may be larger than memory?
+bool isInSlabs(const Options& options) {
+  return fileEnding(options.out) == ".slabs";
+}
+
 void parse(const Kind& kind, Options& options) {
   if (isOnStandardOutput(options.out))
     throw WrongUsage(options.out + ": samples are written to files only; give the path of one");
-  if (!hasVdbEnding(options.out) && !isImageEnding(options.out))
+  if (isInSlabs(options)) {
+    if (kind.name != std::string("pack"))
+      throw WrongUsage(options.out + ": only packs are made in slabs; give a .vdb or an image");
+    if (!options.surface.empty() || !options.scanNoise.empty())
+      throw WrongUsage(options.out +
+                       ": --surface and --scan-noise change the whole: leave them out in slabs");
+  } else if (!hasVdbEnding(options.out) && !isImageEnding(options.out))
     throw WrongUsage(options.out +
                      ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd, .npy or .h5");
   if (!options.voxelSizeText.empty()) options.voxelSize = parseVoxelSize(options.voxelSizeText);
@@ -261,7 +274,29 @@ void parse(const Kind& kind, Options& options) {
   parseScan(options, options.scan);
 }
 
+void printVoxels(const Options& options, double voxels, double ofAll) {
+  std::cout << options.out << ": " << int64_t(voxels) << " object voxels, " << 100 * voxels / ofAll
+            << " % of the volume\n";
+}
+
+void runInSlabs(const Options& options, const Common& common) {
+  common.progress->start("generate");
+  std::optional<PackSlabs> slabs;
+  try {
+    slabs.emplace(options.pack, common.progress);
+  } catch (const InvalidInput& error) {
+    throw WrongUsage(std::string("cannot generate this: ") + error.what());
+  }
+  common.progress->start("write");
+  writePackSlabs(options.out, *slabs, common);
+  common.progress->end();
+  if (!common.quiet)
+    printVoxels(options, double(slabs->objectVoxels()),
+                double(storedDomain(*slabs->object(0))->voxelCount()));
+}
+
 void run(const Kind& kind, const Options& options, const Common& common) {
+  if (isInSlabs(options)) return runInSlabs(options, common);
   checkWritable(options.out);
   if (kind.hasTruth && !hasVdbEnding(options.out)) {
     checkWrittenTogether(options.out, {truthPath(options.out)});
@@ -275,10 +310,8 @@ void run(const Kind& kind, const Options& options, const Common& common) {
   writeSample(options.out, sample, common.progress);
   common.progress->end();
   if (common.quiet) return;
-  const auto voxels = sample.object->activeVoxelCount();
-  std::cout << options.out << ": " << voxels << " object voxels, "
-            << 100.0 * double(voxels) / double(storedDomain(*sample.object)->voxelCount())
-            << " % of the volume\n";
+  printVoxels(options, double(sample.object->activeVoxelCount()),
+              double(storedDomain(*sample.object)->voxelCount()));
 }
 
 void addKind(Verb generate, Common& common, Action& action, const Kind& kind) {

@@ -29,6 +29,24 @@ SampleType naturalType(const openvdb::GridBase& grid, const std::string& path) {
   return SampleType::int32;
 }
 
+[[noreturn]] void refuseEmpty(const openvdb::GridBase& grid, const std::string& source) {
+  throw InvalidInput(source + ": grid '" + grid.getName() +
+                     "' is empty and has no domain: there is nothing to write; give --domain");
+}
+
+/// That no domain tells which box is written.
+void tellBox(const std::string& path, const CoordBBox& box, const Common& common) {
+  if (!common.quiet)
+    std::cout << path << ": no known domain, so the active bounding box is written; its origin is "
+              << box.min() << "\n";
+}
+
+void report(const std::string& path, const openvdb::GridBase& grid, const CoordBBox& box,
+            SampleType type, const Common& common) {
+  noteLostEdges(path, hasCubicVoxels(grid), storedVoxelSize(grid), common);
+  reportImage(path, "grid '" + grid.getName() + "'", box.dim(), type, common);
+}
+
 }  // namespace
 
 void checkVolumeEnding(const std::string& path) {
@@ -43,18 +61,33 @@ void writeGridAsImage(const std::string& path, const openvdb::GridBase& grid,
                       const Common& common) {
   const CoordBBox box = boxOf(grid);
   if (!storedDomain(grid)) {
-    if (grid.activeVoxelCount() == 0)
-      throw InvalidInput(source + ": grid '" + grid.getName() +
-                         "' is empty and has no domain: there is nothing to write; give --domain");
-    if (!common.quiet)
-      std::cout << path
-                << ": no known domain, so the active bounding box is written; its origin is "
-                << box.min() << "\n";
+    if (grid.activeVoxelCount() == 0) refuseEmpty(grid, source);
+    tellBox(path, box, common);
   }
   const SampleType chosen = type.value_or(naturalType(grid, path));
   writeImage(path, grid, box, chosen, common.progress);
-  noteLostEdges(path, hasCubicVoxels(grid), storedVoxelSize(grid), common);
-  reportImage(path, "grid '" + grid.getName() + "'", box.dim(), chosen, common);
+  report(path, grid, box, chosen, common);
+}
+
+void writeSlabsAsImage(const std::string& path, const LabelSlabs& labels,
+                       const std::optional<SampleType>& type, const std::string& source,
+                       const Common& common) {
+  const auto domain = storedDomain(*labels.about);
+  CoordBBox box = domain ? domain->box() : CoordBBox();
+  SampleType chosen = type.value_or(naturalType(*labels.about, path));
+  if (!domain || (!type && hasTiffEnding(path))) {
+    for (size_t s = 0; s < labels.slabCount(); ++s) {
+      const Int32Grid::Ptr slab = labels.read(s, common.progress);
+      if (!domain && slab->activeVoxelCount() > 0) box.expand(slab->evalActiveVoxelBoundingBox());
+      // From uint16, what labels have if need be, to uint32 and int32.
+      const SampleType own = naturalType(*slab, path);
+      if (!type && chosen != SampleType::int32 && own != SampleType::uint16) chosen = own;
+    }
+    if (box.empty()) refuseEmpty(*labels.about, source);
+    if (!domain) tellBox(path, box, common);
+  }
+  writeImage(path, labels, box, chosen, common.progress);
+  report(path, *labels.about, box, chosen, common);
 }
 
 void noteLostEdges(const std::string& path, bool areCubes, const std::optional<VoxelSize>& size,

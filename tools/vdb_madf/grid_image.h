@@ -8,6 +8,7 @@
 
 #include "command.h"
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/label_slabs.h"
 #include "vdb_madf/images/image.h"
 
 namespace vdb_madf::tools {
@@ -22,6 +23,11 @@ void checkVolumeEnding(const std::string& path);
 void writeGridAsImage(const std::string& path, const openvdb::GridBase& grid,
                       const std::optional<SampleType>& type, const std::string& source,
                       const Common& common);
+
+/// The same of labels in slabs, one by one; twice, where the box or the type follows from them.
+void writeSlabsAsImage(const std::string& path, const LabelSlabs& labels,
+                       const std::optional<SampleType>& type, const std::string& source,
+                       const Common& common);
 
 /// A note if the image will not say that its voxels are no cubes.
 /// @param areCubes the voxels

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -93,6 +94,53 @@ Json describeGrid(const openvdb::GridBase& grid) {
   return json;
 }
 
+Json describeFile(const std::string& path, const VdbReadOptions& reading, Progress* progress) {
+  Json grids = Json::array();
+  for (const auto& grid : readVdb(path, reading, progress)) {
+    grids.push_back(describeGrid(*grid));
+    if (!hasVoxelsAlongAxes(*grid))
+      progress->note(path + ": the voxels of grid '" + grid->getName() +
+                     "' are not along the axes; only info reads it");
+  }
+  return grids;
+}
+
+/// Adds what another slab of the grid holds.
+void addSlab(const Json& slab, Json& grid) {
+  for (const char* key : {"active_voxels", "memory_bytes"})
+    grid[key] = grid[key].get<int64_t>() + slab[key].get<int64_t>();
+  if (!slab.contains("active_min")) return;
+  const bool isFirst = !grid.contains("active_min");
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const auto join = [&](const char* key, const auto& choose) {
+      const int own = slab[key][axis].get<int>();
+      grid[key][axis] = isFirst ? own : choose(own, grid[key][axis].get<int>());
+    };
+    join("active_min", [](int a, int b) { return std::min(a, b); });
+    join("active_max", [](int a, int b) { return std::max(a, b); });
+  }
+}
+
+/// The grids of a folder of slabs, which are read one by one.
+Json describeSlabs(const SlabFolder& folder, const VdbReadOptions& reading, Progress* progress) {
+  Json grids = Json::array();
+  for (size_t s = 0; s < folder.slabCount(); ++s) {
+    const auto slab = readVdbSlab(folder, s, reading, progress);
+    for (size_t i = 0; i < slab.size(); ++i) {
+      // OpenVDB writes these of a file.
+      for (const char* key :
+           {openvdb::GridBase::META_FILE_BBOX_MIN, openvdb::GridBase::META_FILE_BBOX_MAX,
+            openvdb::GridBase::META_FILE_MEM_BYTES, openvdb::GridBase::META_FILE_VOXEL_COUNT})
+        slab[i]->removeMeta(key);
+      if (s == 0)
+        grids.push_back(describeGrid(*slab[i]));
+      else
+        addSlab(describeGrid(*slab[i]), grids[i]);
+    }
+  }
+  return grids;
+}
+
 Json describeImage(const ImageReader& image) {
   const ImageInfo& info = image.info();
   Json json;
@@ -141,14 +189,14 @@ void run(const Options& o, const Common& common) {
     if (!plot.isNowhere())
       throw InvalidInput(o.input.path + ": --histogram is for images, and this is a VDB file");
     json["format"] = "vdb";
-    json["grids"] = Json::array();
     VdbReadOptions reading;
     reading.anyVoxelShape = true;
-    for (const auto& grid : readVdb(o.input.path, reading, common.progress)) {
-      json["grids"].push_back(describeGrid(*grid));
-      if (!hasVoxelsAlongAxes(*grid))
-        common.progress->note(o.input.path + ": the voxels of grid '" + grid->getName() +
-                              "' are not along the axes; only info reads it");
+    if (isInSlabs(o.input)) {
+      const SlabFolder folder = openSlabFolder(o.input.path);
+      json["slabs"] = folder.slabCount();
+      json["grids"] = describeSlabs(folder, reading, common.progress);
+    } else {
+      json["grids"] = describeFile(o.input.path, reading, common.progress);
     }
   } else {
     const auto image = openVolumeImage(o.input.path, o.input.volume(common.progress));

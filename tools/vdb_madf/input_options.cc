@@ -13,6 +13,7 @@
 #include "vdb_madf/grids/object_keys.h"
 #include "vdb_madf/images/filtered_image.h"
 #include "vdb_madf/method/segmentation_metadata.h"
+#include "vdb_madf/vdb/slab_folder.h"
 #include "vdb_madf/volumes/image_box.h"
 #include "wrong_usage.h"
 
@@ -256,6 +257,17 @@ Int32Grid::Ptr loadLabels(const InputOptions& input, const std::string& gridOpti
   if (!isVdb(input)) checkNoGrid(input, gridOption);
   return withGridOption(input, gridOption, [&] {
     return vdb_madf::loadLabels(input.path, input.volume(progress), progress);
+  });
+}
+
+bool isInSlabs(const InputOptions& input) {
+  return isVdb(input) && isSlabFolder(input.path);
+}
+
+LabelSlabs openLabelSlabs(const InputOptions& input, const std::string& gridOption,
+                          Progress* progress) {
+  return withGridOption(input, gridOption, [&] {
+    return vdb_madf::openLabelSlabs(input.path, input.volume(progress), progress);
   });
 }
 

@@ -76,6 +76,10 @@ MaskGrid::Ptr loadObject(const InputOptions& input, const VolumeOptions& options
                          Progress* progress);
 Int32Grid::Ptr loadLabels(const InputOptions& input, const std::string& gridOption,
                           Progress* progress);
+LabelSlabs openLabelSlabs(const InputOptions& input, const std::string& gridOption,
+                          Progress* progress);
+/// Is it a folder of slabs, so that these can be taken one by one?
+bool isInSlabs(const InputOptions& input);
 
 /// Runs `work`; what the library has to say against the data then names the file, too.
 template <typename Work>

@@ -12,6 +12,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/labels/compare.h"
 
 namespace vdb_madf::tools {
 
@@ -43,6 +44,11 @@ void checkSameVoxels(const InputOptions& first, const Int32Grid& firstLabels,
   if (!a->isCube() || !b->isCube()) text << ", " << ratios[1] << ", " << ratios[2];
   text << " times as long as those of " << first.path << ": give labels of the same voxels";
   throw InvalidInput(text.str());
+}
+
+LabelSlabs loadSlabs(const InputOptions& input, const std::string& gridOption, Progress* progress) {
+  return isInSlabs(input) ? openLabelSlabs(input, gridOption, progress)
+                          : singleSlab(loadLabels(input, gridOption, progress));
 }
 
 }  // namespace vdb_madf::tools

@@ -21,4 +21,7 @@ void parsePair(InputOptions& first, InputOptions& second, const std::vector<std:
 void checkSameVoxels(const InputOptions& first, const Int32Grid& firstLabels,
                      const InputOptions& second, const Int32Grid& secondLabels);
 
+/// The labels of a file as one slab, or those of a folder of slabs.
+LabelSlabs loadSlabs(const InputOptions& input, const std::string& gridOption, Progress* progress);
+
 }  // namespace vdb_madf::tools

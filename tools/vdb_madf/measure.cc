@@ -136,8 +136,13 @@ GrayScan openScan(const Options& o, const Common& common) {
   }
 }
 
-void run(const Options& o, const Common& common) {
-  MeasurementTables tables(o.folder);
+Measurements measureSlabs(const Options& o, const Common& common) {
+  const LabelSlabs labels = openLabelSlabs(o.input, "--grid", common.progress);
+  common.progress->start("measure");
+  return withFileName(o.input.path, [&] { return measure(labels, o.measure, common.progress); });
+}
+
+Measurements measureWhole(const Options& o, const Common& common) {
   common.progress->start("read");
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
   std::optional<GrayScan> scan;  // opened before the work: what is wrong with it is said at once
@@ -149,6 +154,14 @@ void run(const Options& o, const Common& common) {
     common.progress->start("gray values");
     measureGray(*labels, *scan, measurements, common.progress);
   }
+  return measurements;
+}
+
+void run(const Options& o, const Common& common) {
+  MeasurementTables tables(o.folder);
+  // Gray values have to be there for all voxels together.
+  const Measurements measurements =
+      isInSlabs(o.input) && o.scan.empty() ? measureSlabs(o, common) : measureWhole(o, common);
   TableOptions options = o.tables;
   options.labels = o.input.path;
   tables.write(measurements, options);

@@ -20,6 +20,7 @@
 #include "merge_options.h"
 #include "outputs.h"
 #include "parse.h"
+#include "segment_by_slabs.h"
 #include "segment_ranks.h"
 #include "segment_slabs.h"
 #include "segment_summary.h"
@@ -49,7 +50,7 @@ void parse(SegmentArguments& o) {
   if (!o.tables.empty())
     for (const std::string& path : MeasurementTables::paths(o.tables))
       o.input.outputs.push_back(path);
-  o.input.longestSide = hasSlabsEnding(o.out) ? kMaxImageSide : kMaxExtent;
+  o.input.longestSide = hasSlabsEnding(o.out) || o.autoSlabs ? kMaxImageSide : kMaxExtent;
   o.input.parse();
   if (!o.maxMemory.empty()) o.segment.maxMemory = parseMemory(o.maxMemory);
   if (o.out.empty() && !o.dryRun) throw WrongUsage("OUT is required (or --dry-run)");
@@ -75,7 +76,13 @@ void parse(SegmentArguments& o) {
   o.segment.gamma = parseCount(o.gamma, "--gamma");
   o.segment.fillHoles = parseFillHoles(o.fillHoles);
   o.segment.tidy = parseTidy(o.tidy);
-  checkSlabArguments(o);
+  if (!o.autoSlabs) checkSlabArguments(o);
+  if (o.autoSlabs && inSlabs)
+    throw WrongUsage(o.out + " is in slabs anyway: leave --auto-slabs out");
+  if (o.autoSlabs && !couldBeInSlabs(o))
+    throw WrongUsage(
+        "--auto-slabs gives one file of labels: leave --keep, --tables, --gamma, --roi and "
+        "--dry-run out");
   std::stringstream keep(o.keep);
   for (std::string what; std::getline(keep, what, ',');) {
     if (what == "distance")
@@ -119,6 +126,7 @@ void printEstimate(const SegmentArguments& o, const Common& common, const MaskGr
 void run(const SegmentArguments& o, const Common& common) {
   if (common.ranks) return runInRanks(o, common);
   if (hasSlabsEnding(o.out)) return runInSlabs(o, common);
+  if (o.autoSlabs && isSurelyForSlabs(o)) return runBySlabs(o, common);
   const Clock::time_point start = Clock::now();
   SegmentTiming timing;
   if (!o.dryRun) checkWritable(o.out);
@@ -141,8 +149,19 @@ void run(const SegmentArguments& o, const Common& common) {
     return printEstimate(o, common, *object, options, timing.read, jsonFile);
   }
 
-  Segmentation s =
-      withFileName(o.input.path, [&] { return segment(*object, options, common.progress); });
+  const bool fits =
+      options.maxMemory == 0 || segmentMemory(objectSize(*object), options) <= options.maxMemory;
+  if (!fits && o.autoSlabs) {
+    object.reset();
+    return runBySlabs(o, common);
+  }
+  Segmentation s;
+  try {
+    s = withFileName(o.input.path, [&] { return segment(*object, options, common.progress); });
+  } catch (const InvalidInput& error) {
+    if (error.hint() == Hint::memoryLimit && couldBeInSlabs(o)) throw withSlabsAdvice(o, error);
+    throw;
+  }
   object.reset();
 
   if (tables) {
@@ -215,6 +234,8 @@ void addSegment(Verb command, Common& common, Action& action) {
   verb.option("--scratch", o->scratch,
               "OUT.slabs: folder for what is done so far (default: beside it)")
       .typeName("DIR");
+  verb.flag("--auto-slabs", o->autoSlabs,
+            "what does not fit is cut into slabs, and one file made of these");
   verb.flag("--resume", o->resume, "OUT.slabs: go on with what a run left that did not end");
   verb.flag("--dry-run", o->dryRun, "only say how much memory it would take");
   verb.onParsed([o, &common, &action] {

@@ -256,8 +256,8 @@ void runInSlabs(const SegmentArguments& o, const Common& common) {
     jsonFile.write(json);
     if (common.quiet || jsonFile.isStandardOutput()) return;
     print(o, common, summary);
-    std::printf("  slabs            %zu, each a .vdb; convert makes one of them\n",
-                object.slabCount());
+    std::printf("  slabs            %zu%s\n", object.slabCount(),
+                o.fileOfSlabs.empty() ? ", each a .vdb; convert makes one of them" : "");
   } catch (const InvalidInput&) {  // it would be the same again
     common.progress->end();
     place.discard();

@@ -108,7 +108,7 @@ Json toJson(const SegmentArguments& o, const SegmentSummary& summary) {
   const SegmentCounts& counts = summary.counts;
   Json json;
   json["input"] = o.input.path;
-  json["output"] = o.out;
+  json["output"] = o.result();
   json["object_voxels"] = counts.objectVoxels;
   json["cavities"] = counts.cavities;
   json["cavity_voxels"] = counts.cavityVoxels;
@@ -172,7 +172,7 @@ void print(const SegmentArguments& o, const Common& common, const SegmentSummary
   const SegmentCounts& counts = summary.counts;
   const GrainSizes& sizes = summary.sizes;
   const auto count = [](int64_t number) { return (long long)number; };
-  std::printf("%s: %s\n", o.out.c_str(), counted(counts.grains, "grain").c_str());
+  std::printf("%s: %s\n", o.result().c_str(), counted(counts.grains, "grain").c_str());
   std::printf("  object           %lld voxels in %lld leaf nodes%s\n", count(counts.objectVoxels),
               count(counts.leaves), hintIfEmpty(counts.objectVoxels));
   if (!summary.objectSteps.empty())

@@ -28,7 +28,11 @@ struct SegmentArguments {
   int slabHeight = 0;  ///< 0: as memory allows
   std::string scratch;
   bool resume = false;
+  bool autoSlabs = false;   ///< work in slabs if need be, and make one file of them
+  std::string fileOfSlabs;  ///< that file, where `out` are the slabs
   SegmentOptions segment;
+
+  const std::string& result() const { return fileOfSlabs.empty() ? out : fileOfSlabs; }
 };
 
 struct SegmentTiming {

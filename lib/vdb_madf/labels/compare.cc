@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/labels/detail/slab_window.h"
+#include "vdb_madf/leaves/detail/leaf_mask.h"
 
 namespace vdb_madf {
 
@@ -148,6 +150,39 @@ class OverlapCounter {
   Counts counts_;
 };
 
+/// Counts the voxels of two windows of slabs with the same layers.
+Counts countWindow(const detail::LabelLeaves& truth, const detail::LabelLeaves& test,
+                   Interrupter* interrupter) {
+  Counts counts;
+  std::mutex mutex;
+  const LeafIndex &truths = truth.index(), &tests = test.index();
+  const auto only = [](const detail::LabelPart& part, const LeafIndex& others, const auto& leaf) {
+    return int64_t(
+        detail::countVoxels(leaf ? detail::without(part.mask, others.mask(*leaf)) : part.mask));
+  };
+  detail::parallelFor(truths.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+    Counts local;
+    for (size_t i = begin; i < end; ++i) {
+      const auto other = tests.findLeaf(truths.origin(i));
+      for (const detail::LabelPart& part : truth.parts(i)) {
+        if (const int64_t voxels = only(part, tests, other)) local.add(part.label, 0, voxels);
+        if (!other) continue;
+        for (const detail::LabelPart& met : test.parts(*other))
+          if (const int64_t voxels = detail::countVoxels(detail::both(part.mask, met.mask)))
+            local.add(part.label, met.label, voxels);
+      }
+    }
+    const std::lock_guard<std::mutex> lock(mutex);
+    counts.add(local);
+  });
+  for (size_t i = 0; i < tests.leafCount(); ++i) {
+    const auto other = truths.findLeaf(tests.origin(i));
+    for (const detail::LabelPart& part : test.parts(i))
+      if (const int64_t voxels = only(part, truths, other)) counts.add(0, part.label, voxels);
+  }
+  return counts;
+}
+
 /// The grains of one grid, gathered from the overlaps.
 struct Grains {
   std::map<int32_t, GrainMatch> matches;
@@ -251,21 +286,9 @@ void addMatches(Grains& truths, Grains& tests, Comparison& result) {
   if (result.truthGrains) result.meanIntersectionOverUnion = sum / double(result.truthGrains);
 }
 
-}  // namespace
-
-std::vector<GrainGroup> splits(const Comparison& comparison) {
-  return groups(comparison.truthMatches, comparison.testMatches);
-}
-
-std::vector<GrainGroup> merges(const Comparison& comparison) {
-  return groups(comparison.testMatches, comparison.truthMatches);
-}
-
-Comparison compare(const Int32Grid& truth, const Int32Grid& test, Interrupter* interrupter) {
+Comparison comparisonOf(std::vector<Overlap> overlaps) {
   Comparison result;
-  result.overlaps =
-      OverlapCounter().count(truth.tree().root(), test.tree().root(), interrupter).sorted();
-
+  result.overlaps = std::move(overlaps);
   Grains truths, tests;
   for (const Overlap& overlap : result.overlaps) {
     truths.add(overlap.truth, overlap.test, overlap.voxels);
@@ -282,6 +305,47 @@ Comparison compare(const Int32Grid& truth, const Int32Grid& test, Interrupter* i
   addVariation(truths, tests, result);
   addMatches(truths, tests, result);
   return result;
+}
+
+}  // namespace
+
+std::vector<GrainGroup> splits(const Comparison& comparison) {
+  return groups(comparison.truthMatches, comparison.testMatches);
+}
+
+std::vector<GrainGroup> merges(const Comparison& comparison) {
+  return groups(comparison.testMatches, comparison.truthMatches);
+}
+
+Comparison compare(const Int32Grid& truth, const Int32Grid& test, Interrupter* interrupter) {
+  return comparisonOf(
+      OverlapCounter().count(truth.tree().root(), test.tree().root(), interrupter).sorted());
+}
+
+Comparison compare(const LabelSlabs& truth, const LabelSlabs& test, Interrupter* interrupter) {
+  std::vector<int> cuts = truth.cuts;
+  cuts.insert(cuts.end(), test.cuts.begin(), test.cuts.end());
+  std::sort(cuts.begin(), cuts.end());
+  detail::SlabWindow truths(truth), tests(test);
+  Counts counts;
+  for (size_t i = 0; i + 1 < cuts.size(); ++i) {
+    if (cuts[i] == cuts[i + 1]) continue;
+    const int done = int(100 * i / cuts.size());
+    detail::WorkPart part(interrupter, done, done);
+    const detail::LeafLayers layers{cuts[i], cuts[i + 1]};
+    counts.add(countWindow(truths.leaves(layers, &part), tests.leaves(layers, &part), &part));
+  }
+  return comparisonOf(counts.sorted());
+}
+
+LabelSlabs singleSlab(const Int32Grid::Ptr& labels) {
+  LabelSlabs slabs;
+  const CoordBBox box = labels->evalActiveVoxelBoundingBox();
+  slabs.cuts = {0, 8};
+  if (!labels->empty() && !box.empty()) slabs.cuts = {box.min().z() & ~7, (box.max().z() | 7) + 1};
+  slabs.read = [labels](size_t, Interrupter*) { return labels; };
+  slabs.about = labels;
+  return slabs;
 }
 
 }  // namespace vdb_madf

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/label_slabs.h"
 
 namespace vdb_madf {
 
@@ -69,5 +70,14 @@ std::vector<GrainGroup> merges(const Comparison& comparison);
 /// the number of (truth, test) label pairs that meet. Deterministic.
 Comparison compare(const Int32Grid& truth, const Int32Grid& test,
                    Interrupter* interrupter = nullptr);
+
+/// The same of labels in slabs, which need not fit in memory together; they may be cut elsewhere. One
+/// slab of each is held at a time, or the layers that lie in one of the other.
+/// @throw as above; what reading throws.
+Comparison compare(const LabelSlabs& truth, const LabelSlabs& test,
+                   Interrupter* interrupter = nullptr);
+
+/// Labels that are in memory as a single slab, for functions that take slabs.
+LabelSlabs singleSlab(const Int32Grid::Ptr& labels);
 
 }  // namespace vdb_madf

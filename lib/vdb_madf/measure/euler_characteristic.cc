@@ -10,6 +10,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/detail/leaf_neighborhood.h"
 #include "vdb_madf/leaves/detail/voxels.h"
+#include "vdb_madf/measure/detail/euler_in_layers.h"
 
 namespace vdb_madf {
 
@@ -36,11 +37,17 @@ uint64_t nextZ(uint64_t word, uint64_t beyond) {
 }  // namespace
 
 int64_t eulerCharacteristic(const LeafIndex& index, Interrupter* interrupter) {
+  return detail::eulerCharacteristic(index, {}, interrupter);
+}
+
+int64_t detail::eulerCharacteristic(const LeafIndex& index, const LeafLayers& layers,
+                                    Interrupter* interrupter) {
   std::atomic<int64_t> sum{0};
   detail::parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
     detail::LeafNeighborhood neighborhood(index);
     int64_t part = 0;
     for (size_t leaf = begin; leaf < end; ++leaf) {
+      if (!layers.hold(index.origin(leaf))) continue;
       const auto& around = neighborhood.around(leaf);
       const auto word = [&](int x, int dy, int dz) -> uint64_t {
         const uint32_t from = around[size_t((1 + (x >> 3)) * 9 + (1 + dy) * 3 + 1 + dz)];

@@ -4,145 +4,173 @@
 #include "vdb_madf/measure/measure.h"
 
 #include <algorithm>
-#include <cmath>
+#include <unordered_map>
 
+#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/grids/detail/world_transform.h"
-#include "vdb_madf/labels/detail/label_digest.h"
-#include "vdb_madf/leaves/detail/connected_components.h"
+#include "vdb_madf/labels/detail/slab_window.h"
 #include "vdb_madf/measure/correlation_length.h"
-#include "vdb_madf/measure/detail/bond_measures.h"
-#include "vdb_madf/measure/detail/grain_measures.h"
-#include "vdb_madf/measure/detail/grain_representatives.h"
-#include "vdb_madf/measure/detail/grain_shapes.h"
-#include "vdb_madf/measure/detail/label_sums.h"
-#include "vdb_madf/measure/detail/sample_measures.h"
-#include "vdb_madf/measure/detail/voxel_shape.h"
-#include "vdb_madf/measure/edge_weights.h"
-#include "vdb_madf/measure/euler_characteristic.h"
-#include "vdb_madf/method/boundary.h"
-#include "vdb_madf/method/detail/metric.h"
+#include "vdb_madf/measure/detail/correlation_decay.h"
+#include "vdb_madf/measure/detail/measuring.h"
+#include "vdb_madf/measure/detail/voxel_pairs.h"
 #include "vdb_madf/method/segment.h"
 
 namespace vdb_madf {
 
 namespace {
 
-/// The metric of an object of that extent.
-VoxelWeights weightsOf(const detail::VoxelShape& voxel, const Int32Grid& labels,
-                       const LeafIndex& index) {
-  if (voxel.isCube() || index.voxelCount() == 0) return {};
-  return weightsOfEdges(voxelEdges(labels.transform()), index.boundingBox().dim()).weights;
-}
-
-void setRepresentatives(const detail::GrainRepresentatives& representatives,
-                        const VoxelWeights& weights, Measurements& result) {
-  if (representatives.empty()) return;
-  const double unit = weights.least();  // the weight of the shortest edge, which is 1
-  for (GrainMeasures& grain : result.grains) {
-    const detail::GrainRepresentative& deepest = representatives.at(grain.id);
-    grain.representative = deepest.voxel;
-    grain.inscribedRadius = std::sqrt(double(deepest.squaredRadius) / unit);
-  }
-  for (BondMeasures& bond : result.bonds) {
-    const detail::GrainRepresentative &a = representatives.at(bond.first),
-                                      &b = representatives.at(bond.second);
-    const int64_t squaredDistance = detail::squaredBetween(a.voxel, b.voxel, weights);
-    bond.distance = std::sqrt(double(squaredDistance) / unit);
-    bond.cosAlpha = detail::cosAlpha(squaredDistance, a.squaredRadius, b.squaredRadius);
-  }
-}
-
-/// Takes away the bonds of fewer faces, also from the coordination numbers, and returns them.
-std::vector<BondMeasures> takeSmallBonds(Measurements& result) {
-  std::vector<BondMeasures>& bonds = result.bonds;
-  const auto firstSmall = std::stable_partition(
-      bonds.begin(), bonds.end(),
-      [&](const BondMeasures& bond) { return bond.faces >= result.minFaces; });
-  std::vector<BondMeasures> small(firstSmall, bonds.end());
-  bonds.erase(firstSmall, bonds.end());
-  for (const BondMeasures& bond : small)
-    for (const int32_t id : {bond.first, bond.second})
-      --std::lower_bound(result.grains.begin(), result.grains.end(), id,
-                         [](const GrainMeasures& grain, int32_t label) { return grain.id < label; })
-            ->coordination;
-  return small;
-}
-
-void checkEdgeWeights(const std::optional<Domain>& domain, bool open) {
-  const std::string what = "weights for grains cut by the faces of the scan";
-  if (!domain) throw InvalidInput(what + ": its domain is unknown: give it");
-  if (!domain->isBox())
-    throw InvalidInput(what + " are known for boxes alone, and the domain is a region: crop a box");
-  if (!open)
-    throw InvalidInput(what + ": none is cut where the boundary is closed; measure with it open");
-}
-
 /// \p graph: of the segmentation, if it tells the representatives under its weights; else null.
 Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& options,
                            const ManifoldGraph* graph, Interrupter* interrupter) {
-  if (options.minFaces < 0)
-    throw InvalidInput("the least number of faces of a bond must not be negative");
-  const detail::VoxelShape voxel{detail::proportions(labels.transform())};
+  detail::Measuring measuring(labels, options);
   const detail::LabelLeaves leaves(labels, interrupter);
-  const LeafIndex& index = leaves.index();
-  const std::optional<Domain> domain = options.domain ? options.domain : storedDomain(labels);
-  const Boundary boundary =
-      options.boundary == Boundary::automatic ? storedBoundary(labels) : options.boundary;
-  const Obstacles obstacles = resolveBoundary(index, boundary, domain);
-  if (options.edgeWeights) checkEdgeWeights(domain, obstacles.open);
-  if (options.bootstrap != 0) requireReplicates(options.bootstrap);
-  const VoxelWeights weights = weightsOf(voxel, labels, index);
-  Measurements result;
-  result.voxelSize = storedVoxelSize(labels);
-  result.edges = voxel.edges;
-  result.minFaces = options.minFaces;
-  result.extra.shape = options.shape;
-  result.extra.edgeWeights = options.edgeWeights;
-  result.replicates = options.bootstrap;
-  result.open = obstacles.open;
-  result.gridName = labels.getName();
-  result.metadata = labels;
-  result.labelDigest = detail::labelDigest(leaves);
-  const Domain whole = domain.value_or(index.boundingBox());
-  {
-    const detail::LabelSums sums =
-        detail::labelSums(leaves, whole, obstacles.open, voxel, interrupter);
-    result.bonds = detail::bondMeasures(sums, voxel, interrupter);
-    result.grains = detail::grainMeasures(sums, result.bonds, whole, voxel);
-  }
-  if (options.edgeWeights) {
-    for (GrainMeasures& grain : result.grains)
-      grain.edgeWeight = edgeWeight(grain.box, whole.box());
-  }
-  if (options.shape) detail::measureShapes(leaves, voxel, result.grains, interrupter);
-  setRepresentatives(graph && graph->weights == weights
-                         ? detail::grainRepresentatives(labels, *graph)
-                         : detail::grainRepresentatives(leaves, obstacles, weights, interrupter),
-                     weights, result);
-  const std::vector<BondMeasures> leftOut = takeSmallBonds(result);
-  SampleMeasures& sample = result.sample;
-  sample = detail::sampleMeasures(result.grains, result.bonds, whole);
-  sample.contactsLeftOut = int64_t(leftOut.size());
-  for (const BondMeasures& contact : leftOut) sample.areaLeftOut += contact.area;
-  sample.sharedArea += sample.areaLeftOut;
-  sample.domainKnown = domain.has_value();
-  sample.correlationLengths = correlationLengths(index, whole, interrupter);
-  for (int axis = 0; axis < 3; ++axis)
-    if (auto& length = sample.correlationLengths[size_t(axis)]) *length *= voxel.edges[axis];
-  sample.eulerCharacteristic = eulerCharacteristic(index, interrupter);
-  sample.components = detail::ConnectedComponents(index).count();
-  if (options.bootstrap != 0)
-    result.intervals =
-        bootstrapMeans(result.grains, result.bonds, result.extra, options.bootstrap, interrupter);
-  return result;
+  measuring.survey(leaves);
+  const VoxelWeights& weights = measuring.weights();
+  measuring.add(
+      leaves, leaves, {}, [](int32_t) { return true; }, interrupter);
+  const auto representatives =
+      graph && graph->weights == weights
+          ? detail::grainRepresentatives(labels, *graph)
+          : detail::grainRepresentatives(leaves, measuring.obstacles(), weights, interrupter);
+  const auto lengths = correlationLengths(leaves.index(), measuring.whole(), interrupter);
+  return measuring.finish(representatives, lengths, interrupter);
 }
+
+/// Labels slab by slab. What is around a slab is read, too, as far as it matters.
+class SlabMeasuring {
+ public:
+  SlabMeasuring(const LabelSlabs& slabs, const MeasureOptions& options, Interrupter* interrupter)
+      : slabs_(slabs), measuring_(*slabs.about, options), interrupter_(interrupter) {
+    if (!measuring_.obstacles().domain.isBox())
+      throw InvalidInput("labels in slabs cannot be measured in a region: take a box as domain");
+  }
+
+  Measurements run() {
+    survey();
+    measure();
+    std::array<std::optional<double>, 3> lengths;
+    for (size_t axis = 0; axis < decays_.size(); ++axis) lengths[axis] = decays_[axis].length();
+    return measuring_.finish(representatives_, lengths, nullptr);
+  }
+
+ private:
+  /// So far does the correlation fall in most samples.
+  static constexpr int kLags = detail::SlabRepresentatives::kFirstReach - 8;
+  static constexpr int kMostLags = 512;  // that are looked at together
+
+  detail::LeafLayers layersOf(size_t slab) const {
+    return {slabs_.cuts[slab], slabs_.cuts[slab + 1]};
+  }
+  /// Of a slab, in a part of the work that goes over all slabs.
+  detail::WorkPart workPart(int begin, int end, size_t slab) const {
+    const auto at = [&](size_t s) {
+      return begin + int(s) * (end - begin) / int(slabs_.slabCount());
+    };
+    return {interrupter_, at(slab), at(slab + 1)};
+  }
+
+  void survey() {
+    detail::SlabWindow window(slabs_);
+    for (size_t s = 0; s < slabs_.slabCount(); ++s) {
+      detail::WorkPart part = workPart(0, 20, s);
+      const detail::LabelLeaves slab = window.leaves(layersOf(s), &part);
+      measuring_.survey(slab);
+      for (size_t leaf = 0; leaf < slab.index().leafCount(); ++leaf)
+        for (const detail::LabelPart& labelled : slab.parts(leaf)) lastSlab_[labelled.label] = s;
+    }
+  }
+
+  void measure() {
+    if (measuring_.voxels() == 0) return;
+    for (int axis = 0; axis < 3; ++axis)
+      decays_.emplace_back(measuring_.voxels(), measuring_.whole(), axis);
+    detail::SlabRepresentatives representatives(measuring_.object(), measuring_.obstacles(),
+                                                measuring_.weights());
+    Pairs pairs = noPairs(kLags);
+    detail::SlabWindow window(slabs_);
+    for (size_t s = 0; s < slabs_.slabCount(); ++s) {
+      detail::WorkPart part = workPart(20, 90, s);
+      const detail::LeafLayers own = layersOf(s);
+      detail::LabelLeaves around = window.leaves(representatives.around(own), &part);
+      while (measuring_.hasBackground() && !representatives.add(around, own, &part))
+        around = window.leaves(representatives.around(own), &part);
+      measuring_.add(
+          window.leaves(own, &part), around, own,
+          [&](int32_t label) { return lastSlab_.at(label) <= s; }, &part);
+      addPairs(around.index(), own, pairs, &part);
+    }
+    representatives_ = std::move(representatives.best);
+    follow(pairs);
+    for (int lags = 2 * kLags; !allDone(); lags = std::min(2 * lags, kMostLags)) correlate(lags);
+  }
+
+  /// Pairs of object voxels along each axis, for lags from that of its decay on.
+  using Pairs = std::array<std::vector<int64_t>, 3>;
+  Pairs noPairs(int lags) const {
+    Pairs pairs;
+    for (size_t axis = 0; axis < 3; ++axis)
+      if (!decays_[axis].isDone()) pairs[axis].assign(size_t(lags), 0);
+    return pairs;
+  }
+  void addPairs(const LeafIndex& index, const detail::LeafLayers& own, Pairs& pairs,
+                Interrupter* interrupter) const {
+    for (size_t axis = 0; axis < 3; ++axis) {
+      if (pairs[axis].empty()) continue;
+      detail::VoxelPairs counter(index, int(axis), own);
+      for (size_t i = 0; i < pairs[axis].size(); ++i)
+        pairs[axis][i] += counter.count(decays_[axis].lag() + int(i), interrupter);
+    }
+  }
+  void follow(const Pairs& pairs) {
+    for (size_t axis = 0; axis < 3; ++axis)
+      for (size_t i = 0; i < pairs[axis].size() && !decays_[axis].isDone(); ++i)
+        decays_[axis].add(pairs[axis][i], interrupter_);
+  }
+  bool allDone() const {
+    return std::all_of(decays_.begin(), decays_.end(),
+                       [](const auto& decay) { return decay.isDone(); });
+  }
+
+  /// Goes over all slabs again, for that many lags more.
+  void correlate(int lags) {
+    Pairs pairs = noPairs(lags);
+    detail::SlabWindow window(slabs_), further(slabs_);
+    for (size_t s = 0; s < slabs_.slabCount(); ++s) {
+      detail::WorkPart part = workPart(90, 100, s);
+      const detail::LeafLayers own = layersOf(s);
+      // Where the second voxels of pairs along z lie, as far as that is beyond the slab.
+      const int lag = decays_[2].lag() & ~7;
+      const detail::LeafLayers beyond{std::max(own.end, own.begin + lag),
+                                      own.end + lag + lags + 16};
+      const detail::LabelLeaves slab = window.leaves(own, &part);
+      if (decays_[2].isDone()) {
+        addPairs(slab.index(), own, pairs, &part);
+        continue;
+      }
+      const detail::LabelLeaves second = further.leaves(beyond, &part);
+      addPairs(detail::LabelLeaves({&slab, &second}, {}).index(), own, pairs, &part);
+    }
+    follow(pairs);
+  }
+
+  const LabelSlabs& slabs_;
+  detail::Measuring measuring_;
+  Interrupter* interrupter_;
+  std::unordered_map<int32_t, size_t> lastSlab_;  // of each label
+  detail::GrainRepresentatives representatives_;
+  std::vector<detail::CorrelationDecay> decays_;  // along each axis
+};
 
 }  // namespace
 
 Measurements measure(const Int32Grid& labels, const MeasureOptions& options,
                      Interrupter* interrupter) {
   return measureLabels(labels, options, nullptr, interrupter);
+}
+
+Measurements measure(const LabelSlabs& labels, const MeasureOptions& options,
+                     Interrupter* interrupter) {
+  return SlabMeasuring(labels, options, interrupter).run();
 }
 
 Measurements measure(const Segmentation& segmentation, Interrupter* interrupter) {

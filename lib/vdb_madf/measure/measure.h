@@ -11,6 +11,7 @@
 
 #include "vdb_madf/base/voxel_size.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/grids/label_slabs.h"
 #include "vdb_madf/measure/bootstrap.h"
 #include "vdb_madf/measure/extra_measures.h"
 #include "vdb_madf/measure/measure_bonds.h"
@@ -68,6 +69,14 @@ struct Measurements {
 ///   negative, edge weights or a bootstrap are asked for that cannot be had, no weights fit the
 ///   voxels (voxel_weights.h), or a limit of leaf_index.h is exceeded; Interrupted.
 Measurements measure(const Int32Grid& labels, const MeasureOptions& options = {},
+                     Interrupter* interrupter = nullptr);
+
+/// The same of labels in slabs, which need not fit in memory together: the same numbers, bit for bit.
+/// They are read twice, and more often if they correlate over long distances. Memory: a slab with what
+/// lies around it, as far as its deepest voxel is from the background, 40 voxels at least; per grain and
+/// bond; and per face of a bond, or row of a grain with `shape`, of which more is to come.
+/// @throw as above; InvalidInput if the domain is a region; what reading throws.
+Measurements measure(const LabelSlabs& labels, const MeasureOptions& options = {},
                      Interrupter* interrupter = nullptr);
 
 /// The same of a segmentation's labels, with their own domain and boundary. Faster: unless balls

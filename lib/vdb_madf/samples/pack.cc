@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/limits.h"
+#include "vdb_madf/samples/detail/ball_slabs.h"
 #include "vdb_madf/samples/detail/ball_union.h"
 #include "vdb_madf/samples/detail/lattice.h"
 #include "vdb_madf/samples/detail/random.h"
@@ -32,15 +34,18 @@ constexpr double kBatchPart = 0.8;
 constexpr int kMaxFailures = 100000;
 constexpr int kPollInterval = 64;
 
+/// \p Balls: BallUnion or BallSlabs.
+template <typename Balls>
 class PackBuilder {
  public:
-  PackBuilder(const PackOptions& options, Interrupter* interrupter)
+  /// \p balls: empty, gets them
+  PackBuilder(const PackOptions& options, Balls& balls, Interrupter* interrupter)
       : options_(options),
         interrupter_(interrupter),
         random_(options.seed, 0),
         lattice_(options.voxelSize),
         voxels_(lattice_.voxels(options.size)),
-        balls_(voxels_, true, lattice_),
+        balls_(balls),
         boxVoxels_(double(voxels_.x()) * voxels_.y() * voxels_.z()),
         goal_(options.fraction * boxVoxels_) {
     // Centres lie in the box grown by the largest radius, so that the faces see as many balls as
@@ -50,13 +55,10 @@ class PackBuilder {
         (options.size.x() + grow) * (options.size.y() + grow) * (options.size.z() + grow);
   }
 
-  const Coord& voxels() const { return voxels_; }
-
-  MaskTree::Ptr build() {
+  void build() {
     while (addBatch()) {
     }
     addSingly();
-    return balls_.takeTree();
   }
 
  private:
@@ -122,28 +124,62 @@ class PackBuilder {
   detail::RandomSequence random_;
   detail::Lattice lattice_;
   Coord voxels_;
-  detail::BallUnion balls_;
+  Balls& balls_;
   double boxVoxels_, goal_, centerVolume_ = 0;
 };
 
-}  // namespace
-
-Sample generatePack(const PackOptions& options, Interrupter* interrupter) {
-  detail::checkSize(options.size);
+void checkBalls(const PackOptions& options) {
   detail::checkRadii(options.minRadius, options.maxRadius);
   detail::checkFraction(options.fraction);
+}
 
-  PackBuilder builder(options, interrupter);
-  Sample sample;
-  sample.object = MaskGrid::create(builder.build());
+void describePack(MaskGrid& object, const PackOptions& options, const Coord& voxels) {
   detail::SourceText source("pack");
   source.size(options.size)
       .add("fraction", options.fraction)
       .range("radius", options.minRadius, options.maxRadius)
       .add("seed", std::to_string(options.seed))
       .edges(options.voxelSize);
-  detail::describe(*sample.object, "object", builder.voxels(), source, options.voxelSize);
+  detail::describe(object, "object", voxels, source, options.voxelSize);
+}
+
+}  // namespace
+
+Sample generatePack(const PackOptions& options, Interrupter* interrupter) {
+  detail::checkSize(options.size);
+  checkBalls(options);
+  const detail::Lattice lattice(options.voxelSize);
+  const Coord voxels = lattice.voxels(options.size);
+  detail::BallUnion balls(voxels, true, lattice);
+  PackBuilder(options, balls, interrupter).build();
+  Sample sample;
+  sample.object = MaskGrid::create(balls.takeTree());
+  describePack(*sample.object, options, voxels);
   return sample;
+}
+
+PackSlabs::PackSlabs(const PackOptions& options, Interrupter* interrupter) : options_(options) {
+  detail::checkSize({options.size.x(), options.size.y(), 1});
+  detail::checkRange("size along z", options.size.z(), 1, kMaxImageSide);
+  checkBalls(options);
+  const detail::Lattice lattice(options.voxelSize);
+  voxels_ = lattice.voxels(options.size);
+  const auto balls = std::make_shared<detail::BallSlabs>(voxels_, lattice);
+  PackBuilder(options, *balls, interrupter).build();
+  balls_ = balls;
+  for (size_t s = 0; s < balls->slabCount(); ++s)
+    cuts_.push_back(int(s) * detail::BallSlabs::kHeight);
+  cuts_.push_back((voxels_.z() + 7) / 8 * 8);
+}
+
+int64_t PackSlabs::objectVoxels() const {
+  return balls_->voxelCount();
+}
+
+MaskGrid::Ptr PackSlabs::object(size_t slab, Interrupter* interrupter) const {
+  const MaskGrid::Ptr object = MaskGrid::create(balls_->slab(slab, interrupter));
+  describePack(*object, options_, voxels_);
+  return object;
 }
 
 }  // namespace vdb_madf

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "vdb_madf/base/voxel_size.h"
 #include "vdb_madf/samples/sample.h"
@@ -26,5 +28,31 @@ struct PackOptions {
   std::optional<VoxelSize> voxelSize;
 };
 Sample generatePack(const PackOptions& options, Interrupter* interrupter = nullptr);
+
+namespace detail {
+class BallSlabs;
+}
+
+/// The same object in slabs along z, bit for bit, which need not fit in memory together: its balls are
+/// kept, and drawn where they are asked for. The size may be 1,048,576 along z. Finding the balls
+/// takes some ten times as long as drawing all slabs once.
+class PackSlabs {
+ public:
+  /// @throw as generatePack()
+  explicit PackSlabs(const PackOptions& options, Interrupter* interrupter = nullptr);
+
+  /// Slab s is cuts()[s] <= z < cuts()[s + 1]: 128 voxels high, but for the last.
+  const std::vector<int>& cuts() const { return cuts_; }
+  size_t slabCount() const { return cuts_.size() - 1; }
+  int64_t objectVoxels() const;
+  /// Sample::object within a slab. @throw Interrupted
+  MaskGrid::Ptr object(size_t slab, Interrupter* interrupter = nullptr) const;
+
+ private:
+  PackOptions options_;
+  Coord voxels_;
+  std::vector<int> cuts_;
+  std::shared_ptr<const detail::BallSlabs> balls_;
+};
 
 }  // namespace vdb_madf

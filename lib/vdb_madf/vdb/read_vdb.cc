@@ -32,7 +32,6 @@
 #include "vdb_madf/vdb/detail/region_grid.h"
 #include "vdb_madf/vdb/detail/uuid_place.h"
 #include "vdb_madf/vdb/detail/vdb_tree_check.h"
-#include "vdb_madf/vdb/slab_folder.h"
 
 namespace vdb_madf {
 
@@ -370,32 +369,58 @@ std::vector<GridBase::Ptr> readWith(const std::string& path, const VdbReadOption
   return {};
 }
 
+std::vector<GridBase::Ptr> readFile(const std::string& path, const VdbReadOptions& options,
+                                    Interrupter* interrupter) {
+  return readWith(path, options, interrupter, [](Reader& reader) { return reader.read(); });
+}
+
+std::vector<GridBase::Ptr> readHeaders(const std::string& path, Interrupter* interrupter) {
+  return readWith(path, {}, interrupter, [](Reader& reader) { return reader.readHeaders(); });
+}
+
+int64_t memoryOf(const std::vector<GridBase::Ptr>& grids) {
+  int64_t bytes = 0;
+  for (const auto& grid : grids) bytes += int64_t(grid->memUsage());
+  return bytes;
+}
+
 }  // namespace
 
 std::vector<GridBase::Ptr> readVdb(const std::string& path, const VdbReadOptions& options,
                                    Interrupter* interrupter) {
-  const auto readFile = [&](const std::string& file) {
-    return readWith(file, options, interrupter, [](Reader& reader) { return reader.read(); });
-  };
-  if (!isSlabFolder(path)) return readFile(path);
-  const std::vector<std::string> files = slabFiles(path);
-  std::vector<GridBase::Ptr> grids;
-  for (size_t slab = 0; slab < files.size(); ++slab) {
-    const std::vector<GridBase::Ptr> next = readFile(files[slab]);
-    unmarkSlab(next, slab, files.size(), files[slab]);
-    addSlab(grids, next, files[slab]);
+  if (!isSlabFolder(path)) return readFile(path, options, interrupter);
+  const SlabFolder folder = openSlabFolder(path);
+  std::vector<GridBase::Ptr> grids = readVdbSlab(folder, 0, options, interrupter);
+  int64_t bytes = memoryOf(grids);
+  for (size_t slab = 1; slab < folder.slabCount(); ++slab) {
+    const std::vector<GridBase::Ptr> next = readVdbSlab(folder, slab, options, interrupter);
+    bytes += memoryOf(next);
+    if (bytes > memoryLimit() / 4 * 3)  // something has to be done with them, too
+      throw IoError("cannot read " + path + ": its slabs take " + readableBytes(bytes) +
+                    " of memory and more together, of " + readableBytes(memoryLimit()) +
+                    "; use what takes them one by one, or a larger computer");
+    addSlab(grids, next, folder.files[slab]);
   }
   return grids;
 }
 
+std::vector<GridBase::Ptr> readVdbSlab(const SlabFolder& folder, size_t slab,
+                                       const VdbReadOptions& options, Interrupter* interrupter) {
+  std::vector<GridBase::Ptr> grids = readFile(folder.files[slab], options, interrupter);
+  std::vector<GridBase::Ptr> lowest = slab > 0 ? readHeaders(folder.files[0], interrupter) : grids;
+  if (options.wanted && slab > 0)
+    lowest.erase(std::remove_if(lowest.begin(), lowest.end(),
+                                [&](const auto& grid) { return !options.wanted(*grid); }),
+                 lowest.end());
+  checkSlab(grids, folder, slab, lowest);
+  return grids;
+}
+
 std::vector<GridBase::Ptr> readVdbHeaders(const std::string& path, Interrupter* interrupter) {
-  const auto readFile = [&](const std::string& file) {
-    return readWith(file, {}, interrupter, [](Reader& reader) { return reader.readHeaders(); });
-  };
-  if (!isSlabFolder(path)) return readFile(path);
-  const std::vector<std::string> files = slabFiles(path);
-  const std::vector<GridBase::Ptr> grids = readFile(files[0]);
-  unmarkSlab(grids, 0, files.size(), files[0]);
+  if (!isSlabFolder(path)) return readHeaders(path, interrupter);
+  const SlabFolder folder = openSlabFolder(path);
+  const std::vector<GridBase::Ptr> grids = readHeaders(folder.files[0], interrupter);
+  checkSlab(grids, folder, 0, grids);
   return grids;
 }
 

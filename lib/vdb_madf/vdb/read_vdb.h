@@ -9,6 +9,7 @@
 
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/vdb/slab_folder.h"
 
 namespace vdb_madf {
 
@@ -40,6 +41,12 @@ struct VdbReadOptions {
 std::vector<openvdb::GridBase::Ptr> readVdb(const std::string& path,
                                             const VdbReadOptions& options = {},
                                             Interrupter* interrupter = nullptr);
+
+/// The volumes of one slab of a folder (slab_folder.h).
+/// @throw as readVdb; IoError if the slab is not of this folder.
+std::vector<openvdb::GridBase::Ptr> readVdbSlab(const SlabFolder& folder, size_t slab,
+                                                const VdbReadOptions& options = {},
+                                                Interrupter* interrupter = nullptr);
 
 /// The volumes of a .vdb file, in its order, with empty trees: names, types, metadata, transforms
 /// (no regions).

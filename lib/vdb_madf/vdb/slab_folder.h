@@ -23,10 +23,19 @@ std::string slabFileName(size_t slab);
 /// Tells a grid which slab it is, of how many: metadata `madf_slab` (from 0) and `madf_slabs` (int64).
 void markSlab(openvdb::GridBase& grid, size_t slab, size_t count);
 
+/// Is this a folder of slabs, be it a damaged one?
 bool isSlabFolder(const std::string& path);
 
-/// Its files, from the lowest on. @throw IoError, one line, if one is missing
-std::vector<std::string> slabFiles(const std::string& path);
+/// What the index of a folder says.
+struct SlabFolder {
+  std::vector<std::string> files;  ///< paths of its slabs, from the lowest on
+  std::vector<int> cuts;           ///< slab s is cuts[s] <= z < cuts[s + 1]: multiples of 8
+
+  size_t slabCount() const { return files.size(); }
+};
+
+/// @throw IoError, one line, if the index is missing or damaged, or a slab is missing
+SlabFolder openSlabFolder(const std::string& path);
 
 /// Before the work. @throw IoError if something else is at the path of a folder that is to be written
 void checkSlabFolder(const std::string& path);
@@ -35,14 +44,15 @@ void checkSlabFolder(const std::string& path);
 /// @throw IoError
 void commitSlabFolder(const std::string& made, const std::string& path);
 
-/// Checks and takes away the marks of slab number `slab` of `count`, whose file is `path`.
-/// @throw IoError, one line, if they are others
-void unmarkSlab(const std::vector<openvdb::GridBase::Ptr>& grids, size_t slab, size_t count,
-                const std::string& path);
+/// Checks the grids of the file of a slab, which are all that it holds, against those of slab 0, whose
+/// voxels do not matter, and takes away their marks.
+/// @throw IoError, one line, if they are of another slab or of other labels, or reach beyond the cuts
+void checkSlab(const std::vector<openvdb::GridBase::Ptr>& grids, const SlabFolder& folder,
+               size_t slab, const std::vector<openvdb::GridBase::Ptr>& lowest);
 
-/// Adds to the grids of the slabs below, or none, those of the next one, which it empties.
-/// @throw IoError, one line, if they do not fit together
-void addSlab(std::vector<openvdb::GridBase::Ptr>& grids,
+/// Adds to the grids of the slabs below those of the next one, which it empties. Both were checked.
+/// @throw IoError, one line, if they are of types that cannot be put together
+void addSlab(const std::vector<openvdb::GridBase::Ptr>& grids,
              const std::vector<openvdb::GridBase::Ptr>& next, const std::string& path);
 
 }  // namespace vdb_madf

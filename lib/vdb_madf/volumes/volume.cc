@@ -55,15 +55,20 @@ bool isReadAsVdb(const std::string& path, const VolumeOptions& options) {
   return isVdb;
 }
 
+/// Not the other grids of the file.
+VdbReadOptions readingAlone(const openvdb::GridBase& chosen) {
+  VdbReadOptions reading;
+  reading.wanted = [name = chosen.getName(), type = chosen.type()](const auto& grid) {
+    return grid.getName() == name && grid.type() == type;
+  };
+  return reading;
+}
+
 /// Chooses by name and type first: the other grids of the file are not loaded.
 openvdb::GridBase::Ptr readGrid(const std::string& path, GridUse use, const VolumeOptions& options,
                                 Interrupter* interrupter) {
   const auto chosen = chooseGrid(readVdbHeaders(path, interrupter), path, use, options.grid);
-  VdbReadOptions reading;
-  reading.wanted = [&chosen](const openvdb::GridBase& grid) {
-    return grid.getName() == chosen->getName() && grid.type() == chosen->type();
-  };
-  return readVdb(path, reading, interrupter).at(0);
+  return readVdb(path, readingAlone(*chosen), interrupter).at(0);
 }
 
 /// Runs `work`; what is wrong with the data then names the file, too, unless it names a mask.
@@ -229,6 +234,34 @@ MaskGrid::Ptr shareOfImage(const std::string& path, const ImageOpener& open,
   return object;
 }
 
+/// Of a folder of slabs, whose voxels are taken slab by slab.
+MaskGrid::Ptr objectOfSlabs(const std::string& path, const VolumeOptions& options,
+                            Interrupter* interrupter) {
+  const SlabFolder folder = openSlabFolder(path);
+  const auto chosen =
+      chooseGrid(readVdbHeaders(path, interrupter), path, GridUse::object, options.grid);
+  if (options.domain) setDomain(*chosen, *options.domain);
+  const auto part = partOf(*chosen, path, options, interrupter);
+  const MaskGrid::Ptr object = objectMask(*chosen);
+  int64_t leftOut = 0;
+  for (size_t s = 0; s < folder.slabCount(); ++s) {
+    const auto grid = readVdbSlab(folder, s, readingAlone(*chosen), interrupter).at(0);
+    const MaskGrid::Ptr slab = objectMask(*grid, options.selection);
+    if (part) leftOut += detail::cutTo(*part, *slab);
+    takeLayers(slab->tree(), options.takeLayer);
+  }
+  noteLeftOut(path, leftOut, "object voxel", options);
+  noteVoxelSize(path, storedVoxelSize(*object), options);
+  return object;
+}
+
+/// Can the slabs of a folder become an object one by one?
+bool isSlabwise(const std::string& path, const VolumeOptions& options) {
+  return options.takeLayer && isSlabFolder(path) && !readsGray(options.gray) &&
+         options.gray.despeckle <= 1 && !options.region.cylinder && options.region.mask.empty() &&
+         !(options.selection && options.selection->invert);
+}
+
 MaskGrid::Ptr objectOfImage(const std::string& path, const ImageOpener& open,
                             const VolumeOptions& options, Interrupter* interrupter) {
   if (options.share.parts > 1) return shareOfImage(path, open, options, interrupter);
@@ -358,10 +391,11 @@ std::unique_ptr<ImageReader> openVolumeImage(const std::string& path,
 MaskGrid::Ptr loadObject(const std::string& path, const VolumeOptions& options,
                          Interrupter* interrupter) {
   const MaskGrid::Ptr object = naming(path, options.region.mask, [&] {
-    return isReadAsVdb(path, options)
-               ? objectOfGrid(path, options, interrupter)
-               : objectOfImage(
-                     path, [&] { return openVolumeImage(path, options); }, options, interrupter);
+    const bool isVdb = isReadAsVdb(path, options);
+    if (isVdb && isSlabwise(path, options)) return objectOfSlabs(path, options, interrupter);
+    return isVdb ? objectOfGrid(path, options, interrupter)
+                 : objectOfImage(
+                       path, [&] { return openVolumeImage(path, options); }, options, interrupter);
   });
   return finishedObject(object, options);
 }
@@ -386,6 +420,21 @@ Int32Grid::Ptr loadLabels(const std::string& path, const VolumeOptions& options,
   });
   if (options.voxelSize) setVoxelSize(*labels, options.voxelSize);
   return labels;
+}
+
+LabelSlabs openLabelSlabs(const std::string& path, const VolumeOptions& options,
+                          Interrupter* interrupter) {
+  const SlabFolder folder = openSlabFolder(path);
+  const auto chosen =
+      chooseGrid(readVdbHeaders(path, interrupter), path, GridUse::labels, options.grid);
+  LabelSlabs slabs;
+  slabs.cuts = folder.cuts;
+  slabs.read = [folder, reading = readingAlone(*chosen)](size_t slab, Interrupter* of) {
+    return openvdb::gridPtrCast<Int32Grid>(readVdbSlab(folder, slab, reading, of).at(0));
+  };
+  overrideFile(*chosen, path, options);
+  slabs.about = openvdb::gridPtrCast<Int32Grid>(chosen);
+  return slabs;
 }
 
 Int32Grid::Ptr loadLabels(const ImageOpener& open, const VolumeOptions& options,

@@ -12,6 +12,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/voxel_size.h"
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/label_slabs.h"
 #include "vdb_madf/grids/selection.h"
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/images/open_image.h"
@@ -104,6 +105,11 @@ MaskGrid::Ptr loadObject(const std::string& path, const VolumeOptions& options =
 /// (Of a VDB file: the grid as it is.) With a region as loadObject().
 /// @throw as loadObject(); InvalidInput if a value is no integer or beyond int32.
 Int32Grid::Ptr loadLabels(const std::string& path, const VolumeOptions& options = {},
+                          Interrupter* interrupter = nullptr);
+
+/// The same of a folder of slabs (slab_folder.h), one by one; without a region.
+/// @throw as loadLabels()
+LabelSlabs openLabelSlabs(const std::string& path, const VolumeOptions& options = {},
                           Interrupter* interrupter = nullptr);
 
 /// Opens an image, for each pass over it anew.

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/label_slabs.h"
 #include "vdb_madf/images/image.h"
 
 namespace vdb_madf {
@@ -15,6 +16,10 @@ namespace vdb_madf {
 /// Bool, Mask, Int32, Int64, Float and Double grids; values must be representable in info.type.
 /// @throw InvalidInput if a value does not fit the sample type, naming the value; IoError.
 void writeImage(const std::string& path, const openvdb::GridBase& grid, const CoordBBox& box,
+                SampleType type, Interrupter* interrupter = nullptr);
+
+/// The same of labels in slabs, each of which is read once.
+void writeImage(const std::string& path, const LabelSlabs& labels, const CoordBBox& box,
                 SampleType type, Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

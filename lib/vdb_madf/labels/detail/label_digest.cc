@@ -10,10 +10,10 @@
 
 namespace vdb_madf::detail {
 
-std::string labelDigest(const LabelLeaves& labels) {
-  Checksum sum;
+void LabelDigest::add(const LabelLeaves& labels) {
   const LeafIndex& index = labels.index();
   for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
+    Checksum sum;
     const LabelLeaves::Parts parts = labels.parts(leaf);
     for (int axis = 0; axis < 3; ++axis) sum.add(uint64_t(int64_t(index.origin(leaf)[axis])));
     sum.add(parts.size());
@@ -21,10 +21,20 @@ std::string labelDigest(const LabelLeaves& labels) {
       sum.add(uint64_t(part.label));
       for (const uint64_t word : part.mask) sum.add(word);
     }
+    for (size_t i = 0; i < sums_.size(); ++i) sums_[i] += sum.value()[i];
   }
+}
+
+std::string LabelDigest::text() const {
   char text[33];
-  std::snprintf(text, sizeof text, "%016" PRIx64 "%016" PRIx64, sum.value()[0], sum.value()[1]);
+  std::snprintf(text, sizeof text, "%016" PRIx64 "%016" PRIx64, sums_[0], sums_[1]);
   return text;
+}
+
+std::string labelDigest(const LabelLeaves& labels) {
+  LabelDigest digest;
+  digest.add(labels);
+  return digest.text();
 }
 
 }  // namespace vdb_madf::detail

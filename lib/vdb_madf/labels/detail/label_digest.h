@@ -3,14 +3,26 @@
 
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 
 #include "vdb_madf/labels/detail/label_leaves.h"
 
 namespace vdb_madf::detail {
 
-/// A checksum of the places and labels of the labelled voxels: 32 hexadecimal digits. Equal labels
-/// have equal digests, however they are stored.
+/// A checksum of the places and labels of the labelled voxels. Equal labels have equal digests,
+/// however they are stored, and in whatever parts they come: it is a sum over their leaves.
+class LabelDigest {
+ public:
+  void add(const LabelLeaves& labels);
+  std::string text() const;  ///< 32 hexadecimal digits
+
+ private:
+  std::array<uint64_t, 2> sums_{};
+};
+
+/// Of all at once.
 std::string labelDigest(const LabelLeaves& labels);
 
 }  // namespace vdb_madf::detail

@@ -63,6 +63,32 @@ LabelLeaves::LabelLeaves(const Int32Grid& labels, Interrupter* interrupter)
   });
 }
 
+LabelLeaves::LabelLeaves(const std::vector<const LabelLeaves*>& parts, const LeafLayers& layers) {
+  struct Source {
+    const LabelLeaves* from;
+    size_t leaf;
+    const Coord& origin() const { return from->index().origin(leaf); }
+  };
+  std::vector<Source> sources;
+  for (const LabelLeaves* from : parts)
+    for (size_t leaf = 0; leaf < from->index().leafCount(); ++leaf)
+      if (layers.hold(from->index().origin(leaf))) sources.push_back({from, leaf});
+  parallelSort(sources.begin(), sources.end(),
+               [](const Source& a, const Source& b) { return a.origin() < b.origin(); });
+  std::vector<LeafIndex::LeafVoxels> voxels;
+  voxels.reserve(sources.size());
+  for (const Source& source : sources)
+    voxels.push_back({source.origin(), source.from->index().mask(source.leaf)});
+  index_ = LeafIndex(LeafIndex(), voxels);
+  chunks_.resize((sources.size() + kChunk - 1) / kChunk);
+  for (size_t i = 0; i < sources.size(); ++i) {
+    auto& [own, first] = chunks_[i / kChunk];
+    const Parts more = sources[i].from->parts(sources[i].leaf);
+    own.insert(own.end(), more.begin(), more.end());
+    first.push_back(uint32_t(own.size()));
+  }
+}
+
 int32_t LabelLeaves::label(size_t leaf, int offset) const {
   for (const LabelPart& part : parts(leaf))
     if (part.mask[size_t(offset) >> 6] >> (offset & 63) & 1) return part.label;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "vdb_madf/leaves/detail/leaf_layers.h"
 #include "vdb_madf/leaves/leaf_index.h"
 
 namespace vdb_madf::detail {
@@ -20,6 +21,8 @@ struct LabelPart {
 class LabelLeaves {
  public:
   LabelLeaves(const Int32Grid& labels, Interrupter* interrupter);
+  /// The leaves of several, which have none in common, that lie in some layers.
+  LabelLeaves(const std::vector<const LabelLeaves*>& parts, const LeafLayers& layers);
 
   const LeafIndex& index() const { return index_; }
 

@@ -11,7 +11,7 @@
 namespace vdb_madf::detail {
 
 /// Without distance and angle. @throw Interrupted
-std::vector<BondMeasures> bondMeasures(const LabelSums& sums, const VoxelShape& voxel,
+std::vector<BondMeasures> bondMeasures(const std::vector<BondSums>& sums, const VoxelShape& voxel,
                                        Interrupter* interrupter);
 
 }  // namespace vdb_madf::detail

@@ -39,13 +39,13 @@ std::vector<GrainMeasures> grainMeasures(const LabelSums& sums,
                                          const Domain& domain, const VoxelShape& voxel) {
   std::vector<GrainMeasures> grains;
   std::unordered_map<int32_t, size_t> row;
-  for (const GrainSums& from : sums.grains) {
+  for (const GrainSums& from : sums.grains()) {
     GrainMeasures grain;
     grain.id = from.label;
     grain.voxels = from.voxels;
     const auto n = double(from.voxels);
     for (int i = 0; i < 3; ++i)
-      grain.centroid[i] = sums.origin[i] + double(from.sum[size_t(i)]) / n;
+      grain.centroid[i] = sums.origin()[i] + double(from.sum[size_t(i)]) / n;
     grain.box = from.box;
     grain.atDomainFace = domain.isBox() ? touchesFace(from.box, domain.box()) : from.atRegionWall;
     grain.volume = n * voxel.volume();

@@ -4,6 +4,8 @@
 #include "vdb_madf/measure/detail/grain_representatives.h"
 
 #include <algorithm>
+#include <atomic>
+#include <limits>
 #include <unordered_map>
 
 #include "vdb_madf/base/detail/bits.h"
@@ -42,21 +44,17 @@ GrainRepresentative deepestOf(const LabelPart& part, const LeafIndex& index, siz
   return deepest;
 }
 
-}  // namespace
-
-GrainRepresentatives grainRepresentatives(const LabelLeaves& labels, const Obstacles& obstacles,
-                                          const VoxelWeights& weights, Interrupter* interrupter) {
+/// Of the leaves in some layers.
+GrainRepresentatives deepest(const LabelLeaves& labels, const LeafLayers& layers,
+                             const VoxelArray<int32_t>& distances, Interrupter* interrupter) {
   GrainRepresentatives result;
   const LeafIndex& index = labels.index();
-  if (index.leafCount() == 0) return result;
-  if (obstacles.open && index.voxelCount() == obstacles.domain.voxelCount()) return result;
-  const VoxelArray<int32_t> distances =
-      squaredDistance(index, obstacles, weights, interrupter).values;
   using Best = std::unordered_map<int32_t, GrainRepresentative>;
   PerThread<Best> bests;
   parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
     Best& best = bests.local();
     for (size_t leaf = begin; leaf < end; ++leaf) {
+      if (!layers.hold(index.origin(leaf))) continue;
       const LabelLeaves::Parts parts = labels.parts(leaf);
       const int32_t* d = distances.data() + index.firstRank(leaf);
       for (const LabelPart& part : parts) {
@@ -70,6 +68,75 @@ GrainRepresentatives grainRepresentatives(const LabelLeaves& labels, const Obsta
   for (const Best& best : bests)
     for (const auto& [label, representative] : best) improve(representative, result[label]);
   return result;
+}
+
+}  // namespace
+
+GrainRepresentatives grainRepresentatives(const LabelLeaves& labels, const Obstacles& obstacles,
+                                          const VoxelWeights& weights, Interrupter* interrupter) {
+  const LeafIndex& index = labels.index();
+  if (index.leafCount() == 0) return {};
+  if (obstacles.open && index.voxelCount() == obstacles.domain.voxelCount()) return {};
+  return deepest(labels, {}, squaredDistance(index, obstacles, weights, interrupter).values,
+                 interrupter);
+}
+
+void improve(const GrainRepresentatives& candidates, GrainRepresentatives& best) {
+  for (const auto& [label, candidate] : candidates) improve(candidate, best[label]);
+}
+
+SlabRepresentatives::SlabRepresentatives(const CoordBBox& object, const Obstacles& obstacles,
+                                         const VoxelWeights& weights)
+    : domain_(object), weights_(weights) {
+  // Of all background outside of the object's box, one beside it is nearest.
+  domain_.expand(1);
+  if (obstacles.open) domain_ = obstacles.domain.box();
+}
+
+LeafLayers SlabRepresentatives::around(const LeafLayers& own) const {
+  return {own.begin - reach_, own.end + reach_};
+}
+
+bool SlabRepresentatives::add(const LabelLeaves& labels, const LeafLayers& own,
+                              Interrupter* interrupter) {
+  const LeafIndex& index = labels.index();
+  const LeafLayers known = around(own);
+  CoordBBox box = domain_;
+  box.min().z() = std::max(box.min().z(), known.begin);
+  box.max().z() = std::min(box.max().z(), known.end - 1);
+  const Obstacles obstacles{true, box};
+  const bool goesOnBelow = box.min().z() > domain_.min().z(),
+             goesOnAbove = box.max().z() < domain_.max().z();
+  const auto refuse = [&] {
+    reach_ *= 2;
+    return false;
+  };
+  if (index.voxelCount() == obstacles.domain.voxelCount()) return refuse();
+  const VoxelArray<int32_t> distances =
+      squaredDistance(index, obstacles, weights_, interrupter).values;
+  // No background that is not known lies nearer than that.
+  const auto nearestUnknown = [&](int z) {
+    int64_t nearest = std::numeric_limits<int64_t>::max();
+    const auto takeSteps = [&](int64_t steps) {
+      nearest = std::min(nearest, steps * steps * weights_.z);
+    };
+    if (goesOnBelow) takeSteps(int64_t(z) - box.min().z() + 1);
+    if (goesOnAbove) takeSteps(int64_t(box.max().z()) - z + 1);
+    return nearest;
+  };
+  std::atomic<bool> areExact{true};
+  parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+    for (size_t leaf = begin; leaf < end && areExact; ++leaf) {
+      const int z = index.origin(leaf).z();
+      if (!own.hold(index.origin(leaf))) continue;
+      const int32_t most =
+          largest(distances.data() + index.firstRank(leaf), index.leafVoxels(leaf));
+      if (most > std::min(nearestUnknown(z), nearestUnknown(z + 7))) areExact = false;
+    }
+  });
+  if (!areExact) return refuse();
+  improve(deepest(labels, own, distances, interrupter), best);
+  return true;
 }
 
 GrainRepresentatives grainRepresentatives(const Int32Grid& labels, const ManifoldGraph& graph) {

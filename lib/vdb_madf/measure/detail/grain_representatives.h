@@ -27,6 +27,32 @@ using GrainRepresentatives = std::map<int32_t, GrainRepresentative>;
 GrainRepresentatives grainRepresentatives(const LabelLeaves& labels, const Obstacles& obstacles,
                                           const VoxelWeights& weights, Interrupter* interrupter);
 
+/// Takes over those of other voxels of the same labels, where they lie deeper.
+void improve(const GrainRepresentatives& candidates, GrainRepresentatives& best);
+
+/// The same of labels that come in slabs. Distances that may end beyond what is known of the labels
+/// around a slab are not taken: more is asked for.
+class SlabRepresentatives {
+ public:
+  static constexpr int kFirstReach = 40;  ///< above and below a slab, a multiple of 8
+  /// \p object bounds all labels, which are not all of an open domain.
+  SlabRepresentatives(const CoordBBox& object, const Obstacles& obstacles,
+                      const VoxelWeights& weights);
+
+  /// The layers that have to be known to add some. More than at first may turn out to be needed.
+  LeafLayers around(const LeafLayers& own) const;
+  /// Adds those of the layers `own`. \p labels: of around(own)
+  /// @return false if nothing was added, because more has to be known. @throw Interrupted
+  bool add(const LabelLeaves& labels, const LeafLayers& own, Interrupter* interrupter);
+
+  GrainRepresentatives best;
+
+ private:
+  CoordBBox domain_;  // background is what it holds besides
+  VoxelWeights weights_;
+  int reach_ = kFirstReach;
+};
+
 /// The same of labels that were segmented without a filter, from the critical points. The deepest
 /// voxel p of a grain is one of them: were p in the cell of a ball s != p, then by
 /// |p - s|^2 - D(s) <= -D(p) that s, of the same grain, would lie deeper.

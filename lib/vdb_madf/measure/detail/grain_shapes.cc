@@ -17,10 +17,7 @@ using openvdb::Vec3d;
 
 constexpr size_t kTogether = 4;  // grains
 
-/// A row of voxels along z, from the first to the last; what lies between has no part in the hull.
-struct Row {
-  int x, y, first, last;
-};
+using Row = GrainShapes::Row;
 
 void addRows(const LabelPart& part, const Coord& origin, std::vector<Row>& rows) {
   for (int x = 0; x < 8; ++x)
@@ -108,47 +105,56 @@ class PartsOfGrains {
     const LabelPart* voxels;
   };
 
-  PartsOfGrains(const LabelLeaves& labels, const std::vector<GrainMeasures>& grains)
-      : first_(grains.size() + 1) {
+  explicit PartsOfGrains(const LabelLeaves& labels) {
     const size_t leaves = labels.index().leafCount();
     for (size_t leaf = 0; leaf < leaves; ++leaf)
-      for (const LabelPart& part : labels.parts(leaf)) ++first_[row(part, grains) + 1];
-    for (size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-    parts_.resize(first_.back());
-    std::vector<size_t> next(first_.begin(), first_.end() - 1);
-    for (size_t leaf = 0; leaf < leaves; ++leaf)
-      for (const LabelPart& part : labels.parts(leaf))
-        parts_[next[row(part, grains)]++] = {leaf, &part};
+      for (const LabelPart& part : labels.parts(leaf)) parts_.push_back({leaf, &part});
+    parallelSort(parts_.begin(), parts_.end(), [](const Part& a, const Part& b) {
+      return std::tie(a.voxels->label, a.leaf) < std::tie(b.voxels->label, b.leaf);
+    });
+    for (size_t i = 0; i < parts_.size(); ++i)
+      if (i == 0 || parts_[i].voxels->label != parts_[i - 1].voxels->label) first_.push_back(i);
+    first_.push_back(parts_.size());
   }
+  size_t grains() const { return first_.size() - 1; }
+  int32_t label(size_t grain) const { return begin(grain)->voxels->label; }
   const Part* begin(size_t grain) const { return parts_.data() + first_[grain]; }
   const Part* end(size_t grain) const { return parts_.data() + first_[grain + 1]; }
 
  private:
-  static size_t row(const LabelPart& part, const std::vector<GrainMeasures>& grains) {
-    const auto found = std::lower_bound(
-        grains.begin(), grains.end(), part.label,
-        [](const GrainMeasures& grain, int32_t label) { return grain.id < label; });
-    return size_t(found - grains.begin());
-  }
-
   std::vector<size_t> first_;
   std::vector<Part> parts_;
 };
 
 }  // namespace
 
-void measureShapes(const LabelLeaves& labels, const VoxelShape& voxel,
-                   std::vector<GrainMeasures>& grains, Interrupter* interrupter) {
-  const PartsOfGrains parts(labels, grains);
-  parallelFor(grains.size(), kTogether, interrupter, [&](size_t begin, size_t end) {
+void GrainShapes::add(const LabelLeaves& slab, const std::function<bool(int32_t label)>& isComplete,
+                      Interrupter* interrupter) {
+  const PartsOfGrains parts(slab);
+  std::vector<std::vector<Row>> rowsOfOpen(parts.grains());
+  std::vector<GrainShape> shapes(parts.grains());
+  parallelFor(parts.grains(), kTogether, interrupter, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       std::vector<Row> rows;
+      if (const auto open = open_.find(parts.label(i)); open != open_.end()) rows = open->second;
       for (const auto* part = parts.begin(i); part != parts.end(i); ++part)
-        addRows(*part->voxels, labels.index().origin(part->leaf), rows);
+        addRows(*part->voxels, slab.index().origin(part->leaf), rows);
       joinRows(rows);
-      grains[i].shape = shapeOf(rows, voxel);
+      if (isComplete(parts.label(i)))
+        shapes[i] = shapeOf(rows, voxel_);
+      else
+        rowsOfOpen[i] = std::move(rows);
     }
   });
+  for (size_t i = 0; i < parts.grains(); ++i) {
+    const int32_t label = parts.label(i);
+    if (rowsOfOpen[i].empty()) {
+      shapes_[label] = shapes[i];
+      open_.erase(label);
+    } else {
+      open_[label] = std::move(rowsOfOpen[i]);
+    }
+  }
 }
 
 }  // namespace vdb_madf::detail

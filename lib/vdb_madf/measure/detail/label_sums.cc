@@ -4,7 +4,6 @@
 #include "vdb_madf/measure/detail/label_sums.h"
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <tuple>
 #include <unordered_map>
@@ -107,11 +106,12 @@ class LeafCounter {
   std::unordered_map<int32_t, GrainSums> grains;
   std::unordered_map<std::pair<int32_t, int32_t>, BondSums, PairHash> bonds;
 
-  LeafCounter(const LabelLeaves& labels, const Domain& domain, bool open, const VoxelShape& voxel)
+  LeafCounter(const LabelLeaves& labels, const Coord& origin, const Domain& domain, bool open,
+              const VoxelShape& voxel)
       : labels_(&labels),
         domain_(domain),
         surface_(labels, open ? std::optional(domain) : std::nullopt, voxel),
-        origin_(labels.index().boundingBox().min()) {}
+        origin_(origin) {}
 
   void count(size_t leaf) {
     const Coord& at = labels_->index().origin(leaf);
@@ -152,45 +152,62 @@ bool faceOrder(const InterfaceFace& a, const InterfaceFace& b) {
 
 }  // namespace
 
-LabelSums labelSums(const LabelLeaves& labels, const Domain& domain, bool open,
-                    const VoxelShape& voxel, Interrupter* interrupter) {
-  LabelSums result;
+LabelSums::LabelSums(const Coord& origin, const Domain& domain, bool open, const VoxelShape& voxel)
+    : origin_(origin), domain_(domain), open_(open), voxel_(voxel) {}
+
+void LabelSums::add(const LabelLeaves& labels, const LeafLayers& layers, Interrupter* interrupter) {
   const LeafIndex& index = labels.index();
-  if (index.leafCount() == 0) return result;
-  result.origin = index.boundingBox().min();
-  PerThread<LeafCounter> counters([&] { return LeafCounter(labels, domain, open, voxel); });
+  PerThread<LeafCounter> counters(
+      [&] { return LeafCounter(labels, origin_, domain_, open_, voxel_); });
   parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
     LeafCounter& counter = counters.local();
-    for (size_t leaf = begin; leaf < end; ++leaf) counter.count(leaf);
+    for (size_t leaf = begin; leaf < end; ++leaf)
+      if (layers.hold(index.origin(leaf))) counter.count(leaf);
   });
-
-  std::map<int32_t, GrainSums> grains;
-  std::map<std::pair<int32_t, int32_t>, BondSums> bonds;
   for (LeafCounter& counter : counters) {
-    for (const auto& [label, sums] : counter.grains) add(sums, grains[label]);
+    for (const auto& [label, sums] : counter.grains) detail::add(sums, grains_[label]);
     for (auto& [pair, sums] : counter.bonds) {
-      BondSums& bond = bonds[pair];
+      BondSums& bond = bonds_[pair];
       for (size_t i = 0; i < 3; ++i) bond.areas[i] += sums.areas[i];
       bond.faces.insert(bond.faces.end(), sums.faces.begin(), sums.faces.end());
     }
     counter.grains.clear();
     counter.bonds.clear();
   }
-  for (auto& [label, sums] : grains) {
-    result.grains.push_back(sums);
-    result.grains.back().label = label;
+}
+
+std::vector<GrainSums> LabelSums::grains() const {
+  std::vector<GrainSums> result;
+  result.reserve(grains_.size());
+  for (const auto& [label, sums] : grains_) {
+    result.push_back(sums);
+    result.back().label = label;
   }
-  for (auto& [pair, sums] : bonds) {
-    if (sums.faces.empty()) continue;  // pairs of voxels apart, beside the rim
-    result.bonds.push_back(std::move(sums));
-    result.bonds.back().first = pair.first;
-    result.bonds.back().second = pair.second;
-  }
-  parallelFor(result.bonds.size(), kBondGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      std::sort(result.bonds[i].faces.begin(), result.bonds[i].faces.end(), faceOrder);
-  });
   return result;
+}
+
+std::vector<BondSums> LabelSums::takeBonds(
+    const std::function<bool(int32_t first, int32_t second)>& isComplete,
+    Interrupter* interrupter) {
+  std::vector<BondSums> taken;
+  for (auto bond = bonds_.begin(); bond != bonds_.end();) {
+    const auto [first, second] = bond->first;
+    if (!isComplete(first, second)) {
+      ++bond;
+      continue;
+    }
+    if (!bond->second.faces.empty()) {  // else pairs of voxels apart, beside the rim
+      taken.push_back(std::move(bond->second));
+      taken.back().first = first;
+      taken.back().second = second;
+    }
+    bond = bonds_.erase(bond);
+  }
+  parallelFor(taken.size(), kBondGrain, interrupter, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      std::sort(taken[i].faces.begin(), taken[i].faces.end(), faceOrder);
+  });
+  return taken;
 }
 
 }  // namespace vdb_madf::detail

@@ -5,6 +5,9 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "vdb_madf/grids/domain.h"
@@ -17,7 +20,7 @@ namespace vdb_madf::detail {
 struct GrainSums {
   int32_t label = 0;
   int64_t voxels = 0;
-  std::array<int64_t, 3> sum{};       ///< of coordinates relative to LabelSums::origin
+  std::array<int64_t, 3> sum{};       ///< of coordinates relative to LabelSums::origin()
   std::array<int64_t, 6> products{};  ///< likewise: xx, yy, zz, xy, xz, yz
   CoordBBox box;
   int64_t freeArea = 0;               ///< in kAreaUnit
@@ -32,16 +35,31 @@ struct BondSums {
   std::vector<InterfaceFace> faces;  ///< by lower voxel, then axis
 };
 
-struct LabelSums {
-  Coord origin;
-  std::vector<GrainSums> grains;  ///< by label
-  std::vector<BondSums> bonds;    ///< by first, then second label
-};
+/// All that grains and bonds are measured from, in one pass over the leaves. These may come slab by
+/// slab: the sums are those of the whole. Memory: per grain, per bond and per face of a bond that was
+/// not taken, for each thread.
+class LabelSums {
+ public:
+  /// Grains are summed from `origin`. `open`: what lies outside the domain is no background but unknown.
+  LabelSums(const Coord& origin, const Domain& domain, bool open, const VoxelShape& voxel);
 
-/// All that grains and bonds are measured from, in one pass over the leaves. Memory: per grain,
-/// per bond and per face of a bond, for each thread. `open`: what lies outside the domain is no
-/// background but unknown.
-LabelSums labelSums(const LabelLeaves& labels, const Domain& domain, bool open,
-                    const VoxelShape& voxel, Interrupter* interrupter);
+  /// The leaves in some layers. Those around them have to be there, too. @throw Interrupted
+  void add(const LabelLeaves& labels, const LeafLayers& layers, Interrupter* interrupter);
+
+  const Coord& origin() const { return origin_; }
+  std::vector<GrainSums> grains() const;  ///< by label
+  /// Takes away the bonds of which nothing more comes; by first, then second label. @throw Interrupted
+  std::vector<BondSums> takeBonds(
+      const std::function<bool(int32_t first, int32_t second)>& isComplete,
+      Interrupter* interrupter);
+
+ private:
+  Coord origin_;
+  Domain domain_;
+  bool open_;
+  VoxelShape voxel_;
+  std::map<int32_t, GrainSums> grains_;
+  std::map<std::pair<int32_t, int32_t>, BondSums> bonds_;
+};
 
 }  // namespace vdb_madf::detail

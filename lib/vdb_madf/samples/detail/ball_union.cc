@@ -115,15 +115,6 @@ int64_t addTo(Node& node, const CoordBBox& box, const Ball& ball, const Lattice&
   return added;
 }
 
-/// Calls visit(block) for each block that the ball's box meets.
-template <typename Visit>
-void visitBlocks(const MaskBlocks& blocks, const CoordBBox& ball, const Visit& visit) {
-  const CoordBBox range = blocks.blocksOf(ball);
-  for (int x = range.min().x(); x <= range.max().x(); ++x)
-    for (int y = range.min().y(); y <= range.max().y(); ++y)
-      for (int z = range.min().z(); z <= range.max().z(); ++z) visit(blocks.indexOf({x, y, z}));
-}
-
 }  // namespace
 
 void sortByCenter(std::vector<Ball>& balls) {
@@ -159,16 +150,27 @@ CoordBBox ballBox(const Ball& ball, const Lattice& lattice) {
   return box;
 }
 
+template <typename Visit>
+void BallUnion::visitBlocks(const Ball& ball, const Visit& visit) const {
+  CoordBBox box = ballBox(ball, lattice_);
+  box.intersect(part_);
+  if (box.empty()) return;
+  const CoordBBox range = blocks_.blocksOf(box);
+  for (int x = range.min().x(); x <= range.max().x(); ++x)
+    for (int y = range.min().y(); y <= range.max().y(); ++y)
+      for (int z = range.min().z(); z <= range.max().z(); ++z) visit(blocks_.indexOf({x, y, z}));
+}
+
 int64_t BallUnion::countNew(const Ball& ball) const {
   int64_t added = 0;
-  visitBlocks(blocks_, ballBox(ball, lattice_), [&](size_t block) {
+  visitBlocks(ball, [&](size_t block) {
     added += countNewIn(blocks_.probe(block), blocks_.box(block), ball, lattice_);
   });
   return added;
 }
 
 void BallUnion::add(const Ball& ball) {
-  visitBlocks(blocks_, ballBox(ball, lattice_), [&](size_t block) {
+  visitBlocks(ball, [&](size_t block) {
     voxelCount_ += addTo(blocks_.node(block), blocks_.box(block), ball, lattice_, tiles_);
   });
 }
@@ -176,8 +178,7 @@ void BallUnion::add(const Ball& ball) {
 void BallUnion::add(const std::vector<Ball>& balls, Interrupter* interrupter) {
   std::vector<std::vector<uint32_t>> ballsOf(blocks_.count());
   for (size_t i = 0; i < balls.size(); ++i)
-    visitBlocks(blocks_, ballBox(balls[i], lattice_),
-                [&](size_t block) { ballsOf[block].push_back(uint32_t(i)); });
+    visitBlocks(balls[i], [&](size_t block) { ballsOf[block].push_back(uint32_t(i)); });
 
   // A union and its count do not depend on the order of the balls.
   std::atomic<int64_t> added{0};

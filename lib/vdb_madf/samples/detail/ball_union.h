@@ -37,7 +37,11 @@ CoordBBox ballBox(const Ball& ball, const Lattice& lattice = {});
 class BallUnion {
  public:
   BallUnion(const Coord& size, bool fullLeavesAsTiles, const Lattice& lattice = {})
-      : lattice_(lattice), blocks_(size), tiles_(fullLeavesAsTiles) {}
+      : BallUnion(size, fullLeavesAsTiles, lattice, CoordBBox::inf()) {}
+  /// Only of the blocks that meet `part`.
+  BallUnion(const Coord& size, bool fullLeavesAsTiles, const Lattice& lattice,
+            const CoordBBox& part)
+      : lattice_(lattice), blocks_(size), part_(part), tiles_(fullLeavesAsTiles) {}
 
   /// The number of voxels that the ball would add.
   int64_t countNew(const Ball& ball) const;
@@ -49,8 +53,13 @@ class BallUnion {
   MaskTree::Ptr takeTree() { return blocks_.takeTree(); }
 
  private:
+  /// Calls visit(block) for each block that the ball's box meets.
+  template <typename Visit>
+  void visitBlocks(const Ball& ball, const Visit& visit) const;
+
   Lattice lattice_;
   MaskBlocks blocks_;
+  CoordBBox part_;
   bool tiles_;
   int64_t voxelCount_ = 0;
 };
