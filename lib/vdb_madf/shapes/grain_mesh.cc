@@ -4,13 +4,11 @@
 #include "vdb_madf/shapes/grain_mesh.h"
 
 #include <numeric>
-#include <string>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
-#include "vdb_madf/labels/reduced_labels.h"
 #include "vdb_madf/labels/select_grains.h"
 #include "vdb_madf/shapes/detail/net_builder.h"
 #include "vdb_madf/shapes/detail/simplify.h"
@@ -122,19 +120,6 @@ uint64_t countTriangles(const Int32Grid& labels, Interrupter* interrupter) {
     }
   });
   return 2 * std::accumulate(quads.begin(), quads.end(), uint64_t(0));
-}
-
-int reductionForTriangles(const Int32Grid& labels, uint64_t maxTriangles, int first,
-                          Interrupter* interrupter) {
-  for (int factor = first; factor <= kMaxReduction; ++factor) {
-    const uint64_t triangles =
-        factor == 1 ? countTriangles(labels, interrupter)
-                    : countTriangles(*reduceLabels(labels, factor, interrupter), interrupter);
-    if (triangles == 0 && !labels.empty()) break;
-    if (triangles <= maxTriangles) return factor;
-  }
-  throw InvalidInput("no reduction of the labels has a mesh of " + std::to_string(maxTriangles) +
-                     " triangles or fewer: allow more");
 }
 
 std::vector<double> meshVolumes(const GrainMesh& mesh) {

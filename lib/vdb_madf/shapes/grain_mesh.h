@@ -81,12 +81,6 @@ GrainMesh meshOfGrains(const Int32Grid& labels, const std::vector<int32_t>& grai
 /// add some. @throw Interrupted
 uint64_t countTriangles(const Int32Grid& labels, Interrupter* interrupter = nullptr);
 
-/// The smallest factor, from \p first on, by which reduced labels (reduced_labels.h) have a mesh of
-/// at most so many triangles. Smoothing moves points only, so it does not matter.
-/// @throw InvalidInput if that exceeds kMaxReduction, or no voxel would be left; Interrupted.
-int reductionForTriangles(const Int32Grid& labels, uint64_t maxTriangles, int first = 1,
-                          Interrupter* interrupter = nullptr);
-
 /// Signed volume of each grain, in voxels.
 std::vector<double> meshVolumes(const GrainMesh& mesh);
 

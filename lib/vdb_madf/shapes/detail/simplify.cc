@@ -269,21 +269,28 @@ class Simplifier {
     return true;
   }
 
+  /// True if a point of the ring is linked to the center and to another point by rims.
+  bool joinsRims(uint32_t to, Ring& ring, Ring& other) const {
+    readRing(to, other);
+    return std::any_of(other.begin(), other.end(), [&](const Spoke& spoke) {
+      if (!spoke.isRim) return false;
+      const auto also = find(ring, spoke.point);
+      return also != ring.end() && also->isRim;
+    });
+  }
+
   /// Of one grain: the surface stays one of discs around points (the link condition of closed
   /// surfaces), no rim meets another one, and no triangle turns over.
   bool isAllowed(uint32_t from, const Spoke& edge, Ring& ring, bool isOnRim, Ring& other) const {
     const uint32_t to = edge.point;
-    readRing(to, other);
-    if (ring.size() + other.size() > kMaxValence + 4) return false;
-    if (ring.size() == 3 && other.size() == 3) return false;  // a tetrahedron
-    size_t common = 0;
-    for (const Spoke& spoke : ring) {
-      const auto also = find(other, spoke.point);
-      if (also == other.end()) continue;
-      ++common;
-      if (isOnRim && spoke.isRim && also->isRim) return false;
-    }
-    if (common != 2) return false;
+    size_t valence = 0, common = 0;
+    forEachTriangle(to, [&](uint32_t t) {
+      ++valence;
+      common += find(ring, after(t, to)[0]) != ring.end();
+    });
+    if (ring.size() + valence > kMaxValence + 4) return false;
+    if (ring.size() == 3 && valence == 3) return false;  // a tetrahedron
+    if (common != 2 || (isOnRim && joinsRims(to, ring, other))) return false;
     const Vec3d here = at(from), there = at(to);
     for (const Spoke& spoke : ring) {
       if (spoke.out == edge.out || spoke.out == edge.in) continue;
