@@ -79,20 +79,24 @@ GrainMesh grainMesh(const Int32Grid& labels, const GrainMeshOptions& options,
   const LabelBlocks blocks(labels);
   const CoordBBox box = domainBox(labels);
   const DomainFaces domain = facesOf(box);
-  SurfaceNet net = detail::buildNet(blocks, box, options.smoothing > 0, interrupter);
+  // Of the work as a whole, in per cent.
+  const int meshed = options.triangles > 0 ? 25 : 100, built = meshed / 3, smoothed = meshed / 2;
+  detail::WorkPart building(interrupter, 0, built), smoothing(interrupter, built, smoothed),
+      correcting(interrupter, smoothed, meshed), simplifying(interrupter, meshed, 95),
+      ending(interrupter, 95, 100);
+  SurfaceNet net = detail::buildNet(blocks, box, options.smoothing > 0, &building);
   std::vector<Vec3f> homes = detail::latticePositions(net);
   SharedMesh mesh = detail::cutQuads(
       net,
-      options.smoothing > 0 ? detail::relax(net, options.smoothing, domain, interrupter) : homes);
+      options.smoothing > 0 ? detail::relax(net, options.smoothing, domain, &smoothing) : homes);
   net = {};
   if (options.smoothing > 0)
     detail::correctVolumes(mesh, blocks.voxelCounts(), homes, detail::kCornerReach, domain,
-                           interrupter);
+                           &correcting);
   if (options.triangles > 0 &&
-      detail::simplify(mesh, options.triangles, options.error, interrupter)) {
+      detail::simplify(mesh, options.triangles, options.error, &simplifying)) {
     homes = mesh.positions;
-    detail::correctVolumes(mesh, blocks.voxelCounts(), homes, kSimplifiedReach, domain,
-                           interrupter);
+    detail::correctVolumes(mesh, blocks.voxelCounts(), homes, kSimplifiedReach, domain, &ending);
   }
   return assemble(mesh, blocks.labels());
 }

@@ -58,10 +58,11 @@ class Simplifier {
     separateSites();
     pointsOfSite_.emplace(mesh_.pointSite, mesh_.positions.size());
     listTriangles();
-    beginSites();
     const size_t before = mesh_.triangles.size();
+    beginSites();
     while (mesh_.triangles.size() > triangles) {
-      propose();
+      WorkPart part(interrupter_, percentDone(before, triangles), percentDone(before, triangles));
+      propose(&part);
       select(triangles);
       if (chosen_.empty()) break;
       apply();
@@ -74,6 +75,12 @@ class Simplifier {
   }
 
  private:
+  /// Each pass takes about the same part of what is left.
+  int percentDone(size_t before, uint64_t triangles) const {
+    const double all = std::log(double(before) / double(triangles));
+    return int(100 * std::log(double(before) / double(mesh_.triangles.size())) / all);
+  }
+
   /// Where a grain meets itself and no other grain is, each of its points may go its own way.
   void separateSites() {
     const Lists points(mesh_.pointSite, mesh_.positions.size());
@@ -93,7 +100,7 @@ class Simplifier {
 
   template <typename F>
   void forEachGrain(const F& f) const {
-    parallelFor(mesh_.grainCount(), kGrainGrain, interrupter_, [&](size_t begin, size_t end) {
+    parallelFor(mesh_.grainCount(), kGrainGrain, nullptr, [&](size_t begin, size_t end) {
       for (size_t g = begin; g < end; ++g) f(g, mesh_.firstTriangle[g], mesh_.firstTriangle[g + 1]);
     });
   }
@@ -165,7 +172,8 @@ class Simplifier {
     quadrics_.resize(count);
     stamps_.assign(count, 0);
     std::vector<uint8_t> isFree(count);
-    parallelFor(count, kSiteGrain, interrupter_, [&](size_t begin, size_t end) {
+    WorkPart part(interrupter_, 0, 0);
+    parallelFor(count, kSiteGrain, &part, [&](size_t begin, size_t end) {
       Ring ring;
       for (size_t site = begin; site < end; ++site) {
         forEachPoint(uint32_t(site), [&](uint32_t p) { addPlanes(p, ring, quadrics_[site]); });
@@ -211,9 +219,9 @@ class Simplifier {
     Ring other;
   };
 
-  void propose() {
+  void propose(Interrupter* interrupter) {
     costs_.resize(sites_.size());
-    parallelFor(sites_.size(), kSiteGrain, interrupter_, [&](size_t begin, size_t end) {
+    parallelFor(sites_.size(), kSiteGrain, interrupter, [&](size_t begin, size_t end) {
       Work work;
       for (size_t i = begin; i < end; ++i) costs_[i] = proposeFor(sites_[i], work);
     });
@@ -326,7 +334,7 @@ class Simplifier {
   }
 
   void apply() {
-    parallelFor(chosen_.size(), kSiteGrain, interrupter_, [&](size_t begin, size_t end) {
+    parallelFor(chosen_.size(), kSiteGrain, nullptr, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         const auto& [cost, from, to] = chosen_[i];
         forEachPoint(from, [&, to = to](uint32_t point) { move(point, to); });
