@@ -60,7 +60,7 @@ struct GrainMeshOptions {
 /// planes of the triangles that a point stands for (Garland and Heckbert 1997), not a bound on the
 /// distance. At last points move, at most a voxel along each axis, until the volumes are the voxels'
 /// again; with too few triangles they cannot. Memory: some 200 bytes a triangle of the mesh that is
-/// simplified; time: some 5 times that of meshing.
+/// simplified, which may have 1,431,655,765; time: some 4 times that of meshing.
 ///
 /// Points and triangles are ordered by label, then by place: the same for any number of threads.
 /// An empty grid has an empty mesh.

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/errors.h"
 #include "vdb_madf/shapes/detail/quadric.h"
 
 namespace vdb_madf::detail {
@@ -55,6 +56,10 @@ class Simplifier {
 
   bool run(uint64_t triangles) {
     if (mesh_.triangles.size() <= triangles) return false;
+    if (mesh_.triangles.size() > kNone / 3)
+      throw InvalidInput(
+          "a mesh of more than 1,431,655,765 triangles cannot be simplified: coarsen or crop the "
+          "volume");
     separateSites();
     pointsOfSite_.emplace(mesh_.pointSite, mesh_.positions.size());
     listTriangles();
