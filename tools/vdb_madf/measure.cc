@@ -10,10 +10,9 @@
 
 #include "command.h"
 #include "input_options.h"
-#include "outputs.h"
 #include "parse.h"
+#include "scan_option.h"
 #include "vdb_madf/exports/measurement_files.h"
-#include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/gray/measure_gray.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
@@ -39,17 +38,7 @@ void parse(Options& o) {
     o.tables.density = parseNumber(o.density, "--density");
     if (!(*o.tables.density > 0)) throw WrongUsage("--density " + o.density + ": must be above 0");
   }
-  if (o.scan.empty() && !o.scanGrid.empty())
-    throw WrongUsage("--intensity-grid names a part of the scan: give --intensity, too");
-  if (!o.scan.empty()) {
-    if (isStandardInput(o.scan))
-      throw WrongUsage("--intensity " + o.scan + ": the scan is read from a file");
-    if (hasRawEnding(o.scan))
-      throw WrongUsage(
-          "--intensity " + o.scan +
-          ": a RAW file does not say how large it is: convert it to .tif or .npy first");
-    checkOutputs(o.input.outputs, o.scan);
-  }
+  checkScan({o.scan, o.scanGrid, "--intensity"}, o.input);
   o.measure.boundary = parseBoundary(o.boundary);
   o.measure.minFaces = parseCount(o.minFaces, "--min-faces");
   if (!o.bootstrap.empty()) {
@@ -114,34 +103,13 @@ void print(const Options& o, const Measurements& m) {
   printIntervals(m, length, unit);
 }
 
-/// What to do about a scan; the options that other hints name describe the labels.
-std::string hintForScan(Hint hint) {
-  if (hint == Hint::dataset) return " (--intensity-grid)";
-  return hint == Hint::rawLayout ? " by converting it to .tif or .npy first" : "";
-}
-
-GrayScan openScan(const Options& o, const Common& common) {
-  InputOptions input;
-  input.path = o.scan;
-  (isVdb(input) ? input.gridName : input.dataset) = o.scanGrid;
-  input.outputs = o.input.outputs;
-  try {
-    return openGrayScan(o.scan, input.volume(common.progress), common.progress);
-  } catch (const AmbiguousGrid& error) {
-    throw InvalidInput(std::string(error.what()) + " (--intensity-grid)");
-  } catch (const InvalidInput& error) {
-    throw InvalidInput(error.what() + hintForScan(error.hint()));
-  } catch (const IoError& error) {
-    throw IoError(error.what() + hintForScan(error.hint()));
-  }
-}
-
 void run(const Options& o, const Common& common) {
   MeasurementTables tables(o.folder);
   common.progress->start("read");
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
   std::optional<GrayScan> scan;  // opened before the work: what is wrong with it is said at once
-  if (!o.scan.empty()) scan = openScan(o, common);
+  if (!o.scan.empty())
+    scan = openScan({o.scan, o.scanGrid, "--intensity"}, o.input, common.progress);
   common.progress->start("measure");
   Measurements measurements =
       withFileName(o.input.path, [&] { return measure(*labels, o.measure, common.progress); });
