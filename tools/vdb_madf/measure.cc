@@ -12,10 +12,12 @@
 #include "input_options.h"
 #include "parse.h"
 #include "scan_option.h"
+#include "text_file.h"
 #include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/gray/measure_gray.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
+#include "vdb_madf/pictures/measures_plot.h"
 
 namespace vdb_madf::tools {
 
@@ -23,7 +25,7 @@ namespace {
 
 struct Options {
   InputOptions input;
-  std::string folder, boundary = "auto", density, minFaces = "1", bootstrap, scan, scanGrid;
+  std::string folder, boundary = "auto", density, minFaces = "1", bootstrap, scan, scanGrid, plot;
   bool ice = false;
   MeasureOptions measure;
   TableOptions tables;
@@ -31,6 +33,9 @@ struct Options {
 
 void parse(Options& o) {
   o.input.outputs = MeasurementTables::paths(o.folder);
+  o.input.outputs.push_back(o.plot);
+  if (!o.plot.empty() && !plotTypeOf(o.plot))
+    throw WrongUsage(o.plot + ": the plot's ending must be .svg, .pdf or .png");
   o.input.parse();
   if (o.ice) o.tables.density = kIceDensity;
   if (!o.density.empty()) {
@@ -103,8 +108,15 @@ void print(const Options& o, const Measurements& m) {
   printIntervals(m, length, unit);
 }
 
+/// The sample's name, else that of the file without folders.
+std::string titleOf(const Options& o) {
+  return o.tables.sample.empty() ? o.input.path.substr(o.input.path.find_last_of('/') + 1)
+                                 : o.tables.sample;
+}
+
 void run(const Options& o, const Common& common) {
   MeasurementTables tables(o.folder);
+  TextFile plot(o.plot);
   common.progress->start("read");
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
   std::optional<GrayScan> scan;  // opened before the work: what is wrong with it is said at once
@@ -120,6 +132,7 @@ void run(const Options& o, const Common& common) {
   TableOptions options = o.tables;
   options.labels = o.input.path;
   tables.write(measurements, options);
+  if (!plot.isNowhere()) plot.write(measuresPlot(measurements, titleOf(o), *plotTypeOf(o.plot)));
   common.progress->end();
   if (!common.quiet) print(o, measurements);
 }
@@ -162,6 +175,9 @@ void addMeasure(Verb command, Common& common, Action& action) {
   verb.option("--bootstrap", o->bootstrap,
               "adds 95 % intervals of the means, from N samples drawn of the grains")
       .typeName("N");
+  verb.option("--plot", o->plot,
+              "draws histograms and roses of grains and bonds: .svg, .pdf or .png")
+      .typeName("FILE");
   verb.onParsed([o, &common, &action] {
     parse(*o);
     action = [o, &common] { run(*o, common); };

@@ -31,9 +31,10 @@ constexpr double kStep = 3;  ///< shortest edges of a voxel: more of depth is an
 
 // Light, as shares of the grain's color. Found by eye.
 constexpr double kAmbient = 0.5, kDiffuse = 0.65;
-constexpr double kFarthest = 0.65;  ///< the back of the box against its front
-constexpr double kOutside = 1;      ///< voxels off the surface, where the light is found
-constexpr double kPlane = 0.2625;   ///< what is filled there around a plane
+constexpr double kFarthest = 0.65;     ///< the back of the box against its front
+constexpr double kOutside = 1;         ///< voxels off the surface, where the light is found
+constexpr double kMostInwards = 0.75;  ///< less than kOutside: never through a thin plate
+constexpr double kPlane = 0.2625;      ///< what is filled there around a plane
 
 /// A walk through the cells of a lattice along a ray: Amanatides & Woo 1987. Cell (i, j, k) is the
 /// box from (i, j, k) * size to (i + 1, j + 1, k + 1) * size, along each axis.
@@ -231,11 +232,10 @@ class Renderer {
     // and how much is near do not depend on the steps of the voxels.
     const auto first = surface_.at(object, hit);
     const double steepness = std::max(first.gradient.length(), 0.05);
-    const double inwards = std::clamp((0.5 - first.fill) / steepness, -1.5, 1.5) - kOutside;
+    const double inwards =
+        std::clamp((0.5 - first.fill) / steepness, -1.5, kMostInwards) - kOutside;
     const auto near = surface_.at(object, hit + inwards / steepness * first.gradient);
     Vec normal = -near.gradient / edges_;
-    // Through a thin plate that point may lie: then the light is found where the ray hits it.
-    if (near.gradient.dot(first.gradient) <= 0) normal = -first.gradient / edges_;
     if (normal.length() > 1e-6) normal.normalize();
     if (normal.dot(camera_.direction) > 0) normal = -normal;
     const double openness = std::clamp(1 + 2 * (kPlane - near.fill), 0.5, 1.25);
