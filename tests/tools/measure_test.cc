@@ -585,7 +585,7 @@ TEST_CASE("cli: measure refuses scans and options that do not fit its labels", "
 
 TEST_CASE("cli: measure plots what it measures", "[cli]") {
   const Bench bench;
-  bench.mustRun("generate sintered s.vdb --size 40 --count 8 --voxel-size 8.5um");
+  bench.mustRun("generate sintered s.vdb --size 40 --count 4 --voxel-size 8.5um");
   for (const auto& [name, begin] : {std::pair<std::string, std::string>{"p.png", "\x89PNG"},
                                     {"p.svg", "<?xml"},
                                     {"p.pdf", "%PDF"}}) {
