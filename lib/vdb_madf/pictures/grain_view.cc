@@ -230,11 +230,11 @@ class Renderer {
             double t) const {
     // The smooth surface lies where half of the surroundings are filled: on its outside, the light
     // and how much is near do not depend on the steps of the voxels.
-    const auto first = surface_.at(object, hit);
+    const auto first = detail::smoothValue(object, hit);
     const double steepness = std::max(first.gradient.length(), 0.05);
     const double inwards =
         std::clamp((0.5 - first.fill) / steepness, -1.5, kMostInwards) - kOutside;
-    const auto near = surface_.at(object, hit + inwards / steepness * first.gradient);
+    const auto near = detail::smoothValue(object, hit + inwards / steepness * first.gradient);
     Vec normal = -near.gradient / edges_;
     if (normal.length() > 1e-6) normal.normalize();
     if (normal.dot(camera_.direction) > 0) normal = -normal;
@@ -255,7 +255,6 @@ class Renderer {
   const GrainColors& colors_;
   const detail::Camera& camera_;
   const MaskGrid::Ptr object_;  ///< no tiles, nothing beyond the box
-  const detail::SmoothSurface surface_;
   Vec low_, high_, light_;
   Coord leafLow_, leafHigh_;
   double depth_ = 0;  ///< of the box along the rays

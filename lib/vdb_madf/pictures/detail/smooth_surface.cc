@@ -3,6 +3,7 @@
 
 #include "vdb_madf/pictures/detail/smooth_surface.h"
 
+#include <array>
 #include <cmath>
 
 namespace vdb_madf::detail {
@@ -10,14 +11,36 @@ namespace vdb_madf::detail {
 namespace {
 
 using MaskLeaf = MaskTree::LeafNodeType;
+constexpr int kWindow = 8;  // voxels along each axis that count
 
-double weight(double distance) {
-  return (1 + std::cos(M_PI / 4 * distance)) / 8;
-}
+/// What the voxels of the window count along an axis, and how that changes as the point moves.
+struct Weights {
+  std::array<double, kWindow> value{}, slope{};
 
-/// Of the weight, as the point moves.
-double slope(double distance) {
-  return M_PI / 32 * std::sin(M_PI / 4 * distance);
+  /// @param part of a voxel that the point is beyond the center of voxel 3 of the window
+  explicit Weights(double part) {
+    const double c = std::cos(M_PI / 4 * part), s = std::sin(M_PI / 4 * part);
+    const double r = std::sqrt(0.5);
+    // Cosine and sine of pi/4 (k - 3).
+    const double cosines[kWindow] = {-r, 0, r, 1, r, 0, -r, -1};
+    const double sines[kWindow] = {-r, -1, -r, 0, r, 1, r, 0};
+    for (size_t k = 0; k < kWindow; ++k) {
+      value[k] = (1 + cosines[k] * c + sines[k] * s) / 8;
+      slope[k] = M_PI / 32 * (sines[k] * c - cosines[k] * s);
+    }
+  }
+};
+
+/// Sums over the voxels that four bits name.
+using Sums = std::array<double, 16>;
+
+Sums sumsOf(const std::array<double, kWindow>& weights, size_t first) {
+  Sums sums{};
+  for (size_t bits = 1; bits < sums.size(); ++bits) {
+    const auto lowest = size_t(__builtin_ctz(unsigned(bits)));
+    sums[bits] = sums[bits & (bits - 1)] + weights[first + lowest];
+  }
+  return sums;
 }
 
 /// Eight voxels of a leaf along z.
@@ -29,20 +52,8 @@ unsigned zRow(const MaskLeaf* leaf, int x, int y) {
 
 }  // namespace
 
-SmoothSurface::SmoothSurface() {
-  for (int step = 0; step <= kSteps; ++step)
-    for (unsigned bits = 0; bits < 256; ++bits)
-      for (int k = 0; k < kWindow; ++k) {
-        if (!(bits >> k & 1)) continue;
-        const double distance = k - 3 - double(step) / kSteps;
-        rows_[size_t(step)][bits].sum += float(weight(distance));
-        rows_[size_t(step)][bits].slope += float(slope(distance));
-      }
-}
-
-SmoothSurface::Value SmoothSurface::at(const MaskGrid::ConstAccessor& object,
-                                       const Vec& point) const {
-  Coord low;  // of the eight voxels along each axis
+SmoothValue smoothValue(const MaskGrid::ConstAccessor& object, const openvdb::Vec3d& point) {
+  Coord low;  // of the window
   double part[3];
   for (int axis = 0; axis < 3; ++axis) {
     const double below = std::floor(point[axis] - 0.5);
@@ -55,31 +66,30 @@ SmoothSurface::Value SmoothSurface::at(const MaskGrid::ConstAccessor& object,
     leaves[i >> 2][i >> 1 & 1][i & 1] =
         object.probeConstLeaf(firstLeaf + Coord(8 * (i >> 2), 8 * (i >> 1 & 1), 8 * (i & 1)));
 
-  double weightY[kWindow], slopeY[kWindow];
-  for (int k = 0; k < kWindow; ++k) {
-    weightY[k] = weight(k - 3 - part[1]);
-    slopeY[k] = slope(k - 3 - part[1]);
-  }
-  const auto& rows = rows_[size_t(std::lround(part[2] * kSteps))];
+  const Weights alongX(part[0]), alongY(part[1]), alongZ(part[2]);
+  const Sums values[2] = {sumsOf(alongZ.value, 0), sumsOf(alongZ.value, 4)};
+  const Sums slopes[2] = {sumsOf(alongZ.slope, 0), sumsOf(alongZ.slope, 4)};
   const int shift = low.z() - firstLeaf.z();
-  Value value;
-  for (int i = 0; i < kWindow; ++i) {
-    const int x = low.x() + i - firstLeaf.x();
-    double sum = 0, alongY = 0, alongZ = 0;
-    for (int j = 0; j < kWindow; ++j) {
-      const int y = low.y() + j - firstLeaf.y();
-      const auto& along = leaves[x >> 3][y >> 3];
-      const unsigned bits = zRow(along[0], x & 7, y & 7) | zRow(along[1], x & 7, y & 7) << 8;
-      const Row& row = rows[bits >> shift & 255];
-      sum += weightY[j] * double(row.sum);
-      alongY += slopeY[j] * double(row.sum);
-      alongZ += weightY[j] * double(row.slope);
+  SmoothValue result;
+  for (size_t i = 0; i < kWindow; ++i) {
+    const int x = low.x() + int(i) - firstLeaf.x();
+    double sum = 0, dy = 0, dz = 0;
+    for (size_t j = 0; j < kWindow; ++j) {
+      const int y = low.y() + int(j) - firstLeaf.y();
+      const auto& leafRow = leaves[x >> 3][y >> 3];
+      const unsigned bits =
+          (zRow(leafRow[0], x & 7, y & 7) | zRow(leafRow[1], x & 7, y & 7) << 8) >> shift & 255;
+      if (bits == 0) continue;
+      const double value = values[0][bits & 15] + values[1][bits >> 4];
+      sum += alongY.value[j] * value;
+      dy += alongY.slope[j] * value;
+      dz += alongY.value[j] * (slopes[0][bits & 15] + slopes[1][bits >> 4]);
     }
-    const double weightX = weight(i - 3 - part[0]);
-    value.fill += weightX * sum;
-    value.gradient += Vec(slope(i - 3 - part[0]) * sum, weightX * alongY, weightX * alongZ);
+    result.fill += alongX.value[i] * sum;
+    result.gradient +=
+        openvdb::Vec3d(alongX.slope[i] * sum, alongX.value[i] * dy, alongX.value[i] * dz);
   }
-  return value;
+  return result;
 }
 
 }  // namespace vdb_madf::detail
