@@ -144,9 +144,10 @@ TEST_CASE("cli: render shows the slices and grains that are asked for", "[cli]")
   bench.mustRun("render s.vdb bare.png --size 64 --no-axes");
   const std::string all = bench.bytes("all.png");
   for (const char* name : {"some.png", "faces.png", "bare.png"}) CHECK(bench.bytes(name) != all);
-  for (const char* wrong : {"--slice 10", "--slice z=1.5", "--slice w=3", "--slice z=,x=3",
-                            "--select 0", "--select a", "--select 1,,2", "--only view --slice z=3",
-                            "--only view --overlay s.vdb", "--overlay-grid truth"})
+  for (const char* wrong :
+       {"--slice 10", "--slice z=1.5", "--slice w=3", "--slice z=,x=3", "--select 0", "--select a",
+        "--select 1,,2", "--only view --slice z=3", "--size 8192 --slice x=1,x=2,x=3,x=4",
+        "--only view --overlay s.vdb", "--overlay-grid truth"})
     CHECK(bench.run(std::string("render s.vdb w.png ") + wrong).exitCode == 2);
   for (const char* wrong : {"--slice z=64", "--slice x=-1", "--select 4000"})
     CHECK(bench.run(std::string("render s.vdb w.png ") + wrong).exitCode == 1);

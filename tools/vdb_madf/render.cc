@@ -36,9 +36,11 @@ struct Options {
   std::vector<int32_t> selected;
 };
 
+constexpr int kLargest = 8192;                                     // pixels along a part
+constexpr int64_t kMostPixels = 4 * int64_t(kLargest) * kLargest;  // of all parts
+
 /// "z=100" with as many more, between commas, as one likes.
 std::vector<SlicePlane> parseSlices(const std::string& text) {
-  constexpr size_t kMost = 64;
   std::vector<SlicePlane> planes;
   if (text.empty()) return planes;
   for (const std::string& part : split(text, ',')) {
@@ -50,8 +52,6 @@ std::vector<SlicePlane> parseSlices(const std::string& text) {
       throw WrongUsage("--slice " + part + ": must be a whole number of a voxel");
     planes.push_back({int(axis), int(index)});
   }
-  if (planes.size() > kMost)
-    throw WrongUsage("--slice: at most " + std::to_string(kMost) + " slices go on a sheet");
   return planes;
 }
 
@@ -75,6 +75,9 @@ void parse(Options& o) {
   if (o.only == "view" && !o.slice.empty()) throw WrongUsage("--slice: --only view has no slices");
   if (o.only == "view" && !o.scan.empty()) throw WrongUsage("--overlay: --only view has no slices");
   o.planes = parseSlices(o.slice);
+  if (int64_t(o.planes.size() + 1) * o.size * o.size > kMostPixels)
+    throw WrongUsage("--slice: " + counted(int64_t(o.planes.size()), "slice") + " of " +
+                     std::to_string(o.size) + " pixels are too large a picture: lower --size");
   o.selected = parseGrains(o.select);
   o.input.outputs = {o.out};
   o.input.parse();
@@ -147,7 +150,7 @@ void addRender(Verb command, Common& common, Action& action) {
   verb.option("--grid", o->input.gridName, "VDB input: the grid to take").typeName("NAME");
   verb.option("--only", o->only, "slices or view").oneOf({"slices", "view"});
   verb.option("--size", o->size, "edge of each part, about, in pixels")
-      .range(16, 8192)
+      .range(16, kLargest)
       .showDefault();
   verb.option("--azimuth", o->view.azimuth, "of the view, degrees: 0 along y, 90 against x")
       .range(-360.0, 360.0)
