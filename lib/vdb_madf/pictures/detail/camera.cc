@@ -34,7 +34,8 @@ Camera::Camera(const CoordBBox& box, const Vec& edges, const ViewOptions& option
     across += std::abs(right[axis]) * size[axis];
     high += std::abs(up[axis]) * size[axis];
   }
-  const int margin = options.box ? int(options.edge * kMargin) : 0;
+  const int least = std::min(13, options.edge / 6);  // for letters that can be read
+  const int margin = options.box ? std::max(int(options.edge * kMargin), least) : 0;
   const int edge = options.edge - 2 * margin;
   voxelsPerPixel = std::max(across, high) / edge;
   width = std::clamp(int(std::ceil(across / voxelsPerPixel)), 1, edge) + 2 * margin;
@@ -44,7 +45,7 @@ Camera::Camera(const CoordBBox& box, const Vec& edges, const ViewOptions& option
 void drawBox(const Camera& camera, Picture& picture) {
   const double edge = std::sqrt(double(camera.width) * camera.height);
   const Pen pen{kEdges, std::max(1.0, edge / 700)};
-  const double textSize = edge / 30;
+  const double textSize = std::max(10.0, edge / 30);
   paint(picture, 0, 0, picture.width, picture.height, [&](Canvas& canvas) {
     for (int axis = 0; axis < 3; ++axis) {
       const int u = (axis + 1) % 3, v = (axis + 2) % 3;
