@@ -14,7 +14,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "vdb_madf/pictures/detail/png_bytes.h"
+#include "vdb_madf/pictures/png_file.h"
 
 namespace vdb_madf::detail {
 
