@@ -8,6 +8,12 @@ find_package(Qhull 8.0 REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(TIFF REQUIRED)
 find_package(PNG REQUIRED)
+find_package(Cairo REQUIRED)
+find_file(VDB_MADF_FONT OpenSans-Regular.ttf DOC "Font of the pictures: Open Sans (Apache-2.0)"
+  PATHS /usr/share/fonts PATH_SUFFIXES truetype/open-sans open-sans TTF)
+if(NOT VDB_MADF_FONT)
+  message(FATAL_ERROR "The font of the pictures is missing: apt-get install fonts-open-sans")
+endif()
 find_package(Blosc REQUIRED)  # with OpenVDB's own find module
 find_package(zstd REQUIRED)
 find_package(nlohmann_json REQUIRED)

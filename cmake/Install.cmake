@@ -28,7 +28,7 @@ configure_package_config_file(cmake/vdb_madfConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/vdb_madfConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/vdb_madfConfig.cmake
-  ${PROJECT_BINARY_DIR}/vdb_madfConfigVersion.cmake cmake/FindSerialHDF5.cmake
+  ${PROJECT_BINARY_DIR}/vdb_madfConfigVersion.cmake cmake/FindSerialHDF5.cmake cmake/FindCairo.cmake
   cmake/OpenVDBModule.cmake
   DESTINATION ${package_dir} COMPONENT library)
 
@@ -38,7 +38,7 @@ set(pkgconfig_rooms "")
 foreach(room IN LISTS rooms)
   string(PREPEND pkgconfig_rooms " -lvdb_madf_${room}")
 endforeach()
-set(pkgconfig_requires "tbb zlib libtiff-4 libpng blosc libzstd qhull_r")
+set(pkgconfig_requires "tbb zlib libtiff-4 libpng cairo freetype2 blosc libzstd qhull_r")
 if(TARGET Imath::Imath)  # OpenVDB's headers call it
   string(APPEND pkgconfig_requires " Imath")
 endif()

@@ -271,12 +271,62 @@ TEST_CASE("grain_view: nothing to see, and options out of range", "[grain_view]"
   CHECK_THROWS_AS(viewGrains(*empty, cube(5), GrainColors(), options), InvalidInput);
 }
 
+TEST_CASE("grain_view: what ends within a pixel is smooth", "[grain_view]") {
+  // A wall in the light, whose upper edge is slanted.
+  const auto grid = Int32Grid::create(0);
+  for (auto p = CoordBBox(Coord(0), Coord(63, 3, 63)).begin(); p; ++p)
+    if (4 * (*p).z() < 80 + (*p).x()) grid->tree().setValue(*p, 1);
+  ViewOptions options;
+  options.azimuth = options.elevation = 0;
+  options.edge = 40;  // 1.6 voxels a pixel
+  const GrainView view = viewGrains(*grid, cube(64), grainColors(*grid), options);
+  int between = 0, inside = 0;
+  const int wall = brightness(view.picture.at(20, 30));
+  for (const Rgb& pixel : view.picture.pixels) {
+    between += brightness(pixel) > wall + 60 && brightness(pixel) < 3 * 255 - 60;
+    inside += brightness(pixel) < wall + 40;
+  }
+  CHECK(between > 15);
+  CHECK(between < 100);
+  CHECK(inside > 600);
+}
+
+TEST_CASE("grain_view: the box is drawn behind the grains and its axes are named", "[grain_view]") {
+  const auto grid = ball(Coord(20, 20, 20), 12, 1);
+  ViewOptions options;
+  options.edge = 400;
+  const GrainColors colors = grainColors(*grid);
+  const GrainView plain = viewGrains(*grid, cube(41), colors, options);
+  options.box = true;
+  const GrainView boxed = viewGrains(*grid, cube(41), colors, options);
+  CHECK(std::max(boxed.picture.width, boxed.picture.height) <= 400);
+  CHECK(boxed.voxelsPerPixel > plain.voxelsPerPixel);  // the names want room
+  int lines = 0, onGrains = 0;
+  for (size_t i = 0; i < boxed.labels.size(); ++i) {
+    const Rgb& c = boxed.picture.pixels[i];
+    const bool ink = c[2] > c[0] + 3 && c[2] < c[0] + 16 && brightness(c) < 700;
+    lines += ink && boxed.labels[i] == 0;
+    onGrains += ink && boxed.labels[i] == 1;
+  }
+  CHECK(lines > 1500);
+  CHECK(onGrains == 0);
+  // Nine edges: the three before the grains are left out, so their corner is empty.
+  options.azimuth = options.elevation = 45;
+  const auto air = Int32Grid::create(0);
+  const GrainView edges = viewGrains(*air, cube(41), GrainColors(), options);
+  const int x = edges.picture.width / 2;
+  CHECK(edges.picture.at(x, int(edges.picture.height * 0.6)) == options.background);
+}
+
 TEST_CASE("grain_view: threads do not matter", "[grain_view]") {
   const auto grid = randomVoxels(9, cube(40), 9);
   const GrainColors colors = grainColors(*grid);
-  const GrainView parallel = viewGrains(*grid, cube(40), colors);
+  ViewOptions options;
+  options.edge = 120;
+  options.box = true;
+  const GrainView parallel = viewGrains(*grid, cube(40), colors, options);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const GrainView sequential = viewGrains(*grid, cube(40), colors);
+  const GrainView sequential = viewGrains(*grid, cube(40), colors, options);
   CHECK(parallel.picture.pixels == sequential.picture.pixels);
   CHECK(parallel.labels == sequential.labels);
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "support/label_shapes.h"
@@ -18,39 +19,69 @@ using namespace vdb_madf::test;
 
 namespace {
 
-/// What a pixel must show, by the definition: voxel (right, down) of the slice.
-Rgb expected(const LabelMap& voxels, const GrainColors& colors, const Coord& p, const Rgb& empty) {
-  const auto found = voxels.find(p);
-  return found == voxels.end() ? empty : colors.colorOf(found->second);
-}
-
 const CoordBBox kBox(Coord(-3, 2, -9), Coord(9, 12, 4));  // 13, 11, 14 voxels
+constexpr Rgb kEmpty{243, 244, 246}, kPale{206, 209, 214};
 
-/// Pictures of the three planes through the middle of kBox, of voxels with these edges.
-void requireMiddlePlanes(const LabelSlices& slices, const LabelMap& voxels,
-                         const GrainColors& colors, const std::array<double, 3>& edges,
-                         double scale) {
-  const Coord middle(3, 7, -3);
-  CHECK(slices.voxelsPerPixel == scale);
-  const int axes[3][2] = {{0, 1}, {0, 2}, {1, 2}};
-  for (size_t i = 0; i < 3; ++i) {
-    const int right = axes[i][0], down = axes[i][1];
+using ColorAt = std::function<Rgb(const Coord&)>;
+
+/// Pixels of the planes x = 3, y = 7, z = -3 of kBox that lie within one voxel show its color; the
+/// others colors between those of the voxels that they meet.
+/// @param edges of a voxel
+void requirePlanes(const LabelSlices& slices, const std::array<double, 3>& edges, double scale,
+                   const ColorAt& colorAt) {
+  CHECK(slices.voxelsPerPixel == Approx(scale));
+  REQUIRE(slices.pictures.size() == slices.planes.size());
+  for (size_t i = 0; i < slices.planes.size(); ++i) {
+    const SlicePlane plane = slices.planes[i];
+    const int right = plane.right(), down = plane.down();
     const Picture& picture = slices.pictures[i];
     const auto pixels = [&](int axis) {
-      return int(std::ceil(kBox.extents()[axis] * edges[size_t(axis)] / scale));
+      return int(std::ceil(kBox.extents()[axis] * edges[size_t(axis)] / scale - 1e-6));
     };
     REQUIRE(picture.width == pixels(right));
     REQUIRE(picture.height == pixels(down));
+    const auto voxels = [&](int pixel, int axis) {
+      const double size = edges[size_t(axis)];
+      const int last = kBox.extents()[axis] - 1;
+      return std::pair<int, int>(std::min(last, int(pixel * scale / size + 1e-9)),
+                                 std::min(last, int((pixel + 1) * scale / size - 1e-9)));
+    };
     for (int y = 0; y < picture.height; ++y)
       for (int x = 0; x < picture.width; ++x) {
-        const int column = int(x * scale / edges[size_t(right)]),
-                  row = int(y * scale / edges[size_t(down)]);
-        Coord p = middle;
-        p[right] = kBox.min()[right] + column;
-        p[down] = down == 2 ? kBox.max().z() - row : kBox.min()[down] + row;
-        REQUIRE(picture.at(x, y) == expected(voxels, colors, p, Rgb{18, 20, 26}));
+        const auto [left, rightmost] = voxels(x, right);
+        const auto [top, bottom] = voxels(y, down);
+        Rgb low{255, 255, 255}, high{0, 0, 0};
+        for (int row = top; row <= bottom; ++row)
+          for (int column = left; column <= rightmost; ++column) {
+            Coord p;
+            p[plane.axis] = plane.index;
+            p[right] = kBox.min()[right] + column;
+            p[down] = down == 2 ? kBox.max().z() - row : kBox.min()[down] + row;
+            const Rgb color = colorAt(p);
+            for (size_t c = 0; c < 3; ++c) {
+              low[c] = std::min(low[c], color[c]);
+              high[c] = std::max(high[c], color[c]);
+            }
+          }
+        for (size_t c = 0; c < 3; ++c) {
+          REQUIRE(picture.at(x, y)[c] >= low[c]);
+          REQUIRE(picture.at(x, y)[c] <= high[c]);
+        }
       }
   }
+}
+
+ColorAt filled(const LabelMap& voxels, const GrainColors& colors) {
+  return [&voxels, &colors](const Coord& p) {
+    const auto found = voxels.find(p);
+    return found == voxels.end() ? kEmpty : colors.colorOf(found->second);
+  };
+}
+
+LabelSlices slicesOf(const Int32Grid& labels, int edge) {
+  SliceOptions options;
+  options.edge = edge;
+  return labelSlices(labels, kBox, grainColors(labels), options);
 }
 
 }  // namespace
@@ -58,24 +89,103 @@ void requireMiddlePlanes(const LabelSlices& slices, const LabelMap& voxels,
 TEST_CASE("label_slices: pixels are the voxels of the middle planes", "[label_slices]") {
   const LabelMap voxels = randomLabels(3, kBox.min(), 14, 6, 50);
   const Int32Grid::Ptr labels = labelGrid(voxels);
-  for (const auto& [longest, scale] :
-       {std::pair<int, double>{14, 1}, {13, 2}, {43, 1 / 3.0}, {4, 4}}) {
-    CAPTURE(longest);
-    const LabelSlices slices = middleSlices(*labels, kBox, grainColors(*labels), longest);
-    requireMiddlePlanes(slices, voxels, grainColors(*labels), {1, 1, 1}, scale);
+  const GrainColors colors = grainColors(*labels);
+  for (const int edge : {14, 13, 42, 43, 4}) {
+    CAPTURE(edge);
+    const LabelSlices slices = slicesOf(*labels, edge);
+    REQUIRE(slices.planes.size() == 3);
+    CHECK(slices.planes[0].axis == 2);
+    CHECK(slices.planes[0].index == -3);
+    CHECK(slices.planes[1].index == 7);
+    CHECK(slices.planes[2].index == 3);
+    requirePlanes(slices, {1, 1, 1}, 14.0 / edge, filled(voxels, colors));
     for (const Picture& picture : slices.pictures)
-      CHECK(std::max(picture.width, picture.height) <= longest);
+      CHECK(std::max(picture.width, picture.height) <= edge);
   }
+}
+
+TEST_CASE("label_slices: a pixel across borders is the mean of what it meets", "[label_slices]") {
+  const auto labels = Int32Grid::create(0);
+  labels->fill(CoordBBox(Coord(0), Coord(0, 3, 3)), 1);
+  labels->fill(CoordBBox(Coord(1, 0, 0), Coord(3, 3, 3)), 2);
+  const GrainColors colors = grainColors(*labels);
+  SliceOptions options;
+  options.edge = 2;  // two voxels a pixel
+  const LabelSlices slices = labelSlices(*labels, CoordBBox(Coord(0), Coord(3)), colors, options);
+  const Rgb a = colors.colorOf(1), b = colors.colorOf(2), seen = slices.pictures[0].at(0, 0);
+  // Of three columns of places the middle one lies on the border, which is the second voxel's.
+  for (size_t c = 0; c < 3; ++c) CHECK(std::abs(seen[c] - (a[c] + 2 * b[c]) / 3.0) <= 1);
+  CHECK(slices.pictures[0].at(1, 0) == b);
+}
+
+TEST_CASE("label_slices: planes that are asked for, and those outside", "[label_slices]") {
+  const LabelMap voxels = randomLabels(3, kBox.min(), 14, 6, 50);
+  const Int32Grid::Ptr labels = labelGrid(voxels);
+  const GrainColors colors = grainColors(*labels);
+  SliceOptions options;
+  options.edge = 28;
+  options.planes = {{0, -3}, {2, 4}, {2, -9}, {1, 5}};
+  const LabelSlices slices = labelSlices(*labels, kBox, colors, options);
+  REQUIRE(slices.planes.size() == 4);
+  requirePlanes(slices, {1, 1, 1}, 0.5, filled(voxels, colors));
+  for (const SlicePlane& outside : {SlicePlane{2, 5}, {2, -10}, {0, 10}}) {
+    options.planes = {outside};
+    CHECK_THROWS_WITH(labelSlices(*labels, kBox, colors, options),
+                      Catch::Matchers::Contains("there is no slice"));
+  }
+}
+
+TEST_CASE("label_slices: grains that are not shown are pale", "[label_slices]") {
+  const LabelMap voxels = randomLabels(5, kBox.min(), 14, 6, 50);
+  const Int32Grid::Ptr labels = labelGrid(voxels);
+  const GrainColors colors = grainColors(*labels);
+  LabelMap some;
+  for (const auto& [p, label] : voxels)
+    if (label % 2) some.emplace(p, label);
+  const Int32Grid::Ptr shown = labelGrid(some);
+  SliceOptions options;
+  options.edge = 14;
+  options.shown = shown.get();
+  requirePlanes(labelSlices(*labels, kBox, colors, options), {1, 1, 1}, 1, [&](const Coord& p) {
+    return some.count(p) ? colors.colorOf(some.at(p)) : voxels.count(p) ? kPale : kEmpty;
+  });
+}
+
+TEST_CASE("label_slices: gray values show between the outlines of grains", "[label_slices]") {
+  const auto labels = Int32Grid::create(0);
+  const CoordBBox box(Coord(0), Coord(19, 9, 9));
+  labels->fill(CoordBBox(Coord(2, 0, 0), Coord(9, 9, 9)), 1);
+  labels->fill(CoordBBox(Coord(10, 0, 0), Coord(17, 9, 9)), 2);
+  const GrainColors colors = grainColors(*labels);
+  SliceOptions options;
+  options.edge = 200;
+  options.planes = {{1, 4}};  // x-z: z is up
+  GrayPlane gray{20, 10, {}};
+  for (int z = 0; z < 10; ++z)
+    for (int x = 0; x < 20; ++x) gray.values.push_back(uint8_t(10 * z + x));
+  options.gray = {gray};
+  const Picture picture = labelSlices(*labels, box, colors, options).pictures[0];
+  const auto grayOf = [](int value) { return Rgb{uint8_t(value), uint8_t(value), uint8_t(value)}; };
+  CHECK(picture.at(5, 95) == grayOf(0));     // voxel (0, 0)
+  CHECK(picture.at(195, 95) == grayOf(19));  // (19, 0)
+  CHECK(picture.at(5, 5) == grayOf(90));     // (0, 9)
+  CHECK(picture.at(55, 45) == grayOf(55));   // (5, 5), within a grain
+  CHECK(picture.at(20, 45) == colors.colorOf(1));
+  CHECK(picture.at(99, 45) == colors.colorOf(1));
+  CHECK(picture.at(100, 45) == colors.colorOf(2));
+  CHECK(picture.at(179, 45) == colors.colorOf(2));
+  options.gray.front().width = 19;
+  CHECK_THROWS_AS(labelSlices(*labels, box, colors, options), InvalidInput);
 }
 
 TEST_CASE("label_slices: unequal voxels are shown in true proportions", "[label_slices]") {
   const LabelMap voxels = randomLabels(4, kBox.min(), 14, 6, 50);
   const Int32Grid::Ptr labels = labelGrid(voxels);
   setVoxelSize(*labels, VoxelSize({2e-6, 1e-6, 2.5e-6}));  // 26 x 11 x 35 of the shortest edge
-  for (const auto& [longest, scale] : {std::pair<int, double>{35, 1}, {80, 0.5}, {12, 3}}) {
-    CAPTURE(longest);
-    const LabelSlices slices = middleSlices(*labels, kBox, grainColors(*labels), longest);
-    requireMiddlePlanes(slices, voxels, grainColors(*labels), {2, 1, 2.5}, scale);
+  const GrainColors colors = grainColors(*labels);
+  for (const int edge : {35, 70, 80, 12}) {
+    CAPTURE(edge);
+    requirePlanes(slicesOf(*labels, edge), {2, 1, 2.5}, 35.0 / edge, filled(voxels, colors));
   }
 }
 
@@ -84,14 +194,18 @@ TEST_CASE("label_slices: tiles are shown, inactive values are not", "[label_slic
   labels->tree().addTile(1, Coord(0), 5, true);
   labels->tree().addTile(1, Coord(8, 0, 0), 6, false);
   const GrainColors colors = grainColors(*labels);
+  SliceOptions options;
+  options.edge = 16;
   const LabelSlices slices =
-      middleSlices(*labels, CoordBBox(Coord(0), Coord(15, 7, 7)), colors, 16);
+      labelSlices(*labels, CoordBBox(Coord(0), Coord(15, 7, 7)), colors, options);
   CHECK(slices.pictures[0].at(7, 7) == colors.colorOf(5));
-  CHECK(slices.pictures[0].at(8, 7) == Rgb{18, 20, 26});
+  CHECK(slices.pictures[0].at(8, 7) == kEmpty);
 }
 
 TEST_CASE("label_slices: an empty box or picture is refused", "[label_slices]") {
   const auto labels = Int32Grid::create(0);
-  CHECK_THROWS_AS(middleSlices(*labels, CoordBBox(), {}), InvalidInput);
-  CHECK_THROWS_AS(middleSlices(*labels, CoordBBox(Coord(0), Coord(3)), {}, 0), InvalidInput);
+  SliceOptions none;
+  none.edge = 0;
+  CHECK_THROWS_AS(labelSlices(*labels, CoordBBox(), {}), InvalidInput);
+  CHECK_THROWS_AS(labelSlices(*labels, CoordBBox(Coord(0), Coord(3)), {}, none), InvalidInput);
 }

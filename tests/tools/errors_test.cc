@@ -164,7 +164,7 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"sweep in.vdb out.csv --small 0.5", "--small"},
       {"render in.vdb o.png --azimuth nan", "--azimuth"},
       {"render in.vdb o.png --elevation nan", "--elevation"},
-      {"sweep in.vdb o.csv --plot o.png", "o.png"},
+      {"sweep in.vdb o.csv --plot o.jpg", "o.jpg"},
       {"collect", "DIR"},
       {"collect folder", ".csv"},
       {"collect folder other", ".csv"},

@@ -582,3 +582,21 @@ TEST_CASE("cli: measure refuses scans and options that do not fit its labels", "
   refuses(bench, kFailed, measure + "--edge-weights --boundary closed",
           {"balls.vdb", "boundary is closed"});
 }
+
+TEST_CASE("cli: measure plots what it measures", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate sintered s.vdb --size 40 --count 4 --voxel-size 8.5um");
+  for (const auto& [name, begin] : {std::pair<std::string, std::string>{"p.png", "\x89PNG"},
+                                    {"p.svg", "<?xml"},
+                                    {"p.pdf", "%PDF"}}) {
+    bench.mustRun("measure s.vdb tables --plot " + name);
+    CHECK(bench.bytes(name).substr(0, begin.size()) == begin);
+  }
+  const std::string svg = bench.bytes("p.svg");
+  bench.mustRun("measure s.vdb tables --plot p.svg --threads 1");
+  CHECK((bench.bytes("p.svg") == svg));
+  bench.mustRun("measure s.vdb tables --plot p.svg --sample other");
+  CHECK((bench.bytes("p.svg") != svg));
+  CHECK(bench.run("measure s.vdb tables --plot p.jpg").exitCode == 2);
+  CHECK(bench.run("measure s.vdb tables --plot s.vdb").exitCode == 2);
+}

@@ -74,7 +74,7 @@ void describeValues(const InputOptions& input, const Histogram& histogram, Json&
   if (const auto valley = valleyThreshold(histogram)) json["valley_threshold"] = number(*valley);
 }
 
-std::string plotValues(const InputOptions& input, const Histogram& histogram) {
+std::string plotValues(const InputOptions& input, const Histogram& histogram, PlotType type) {
   if (!(histogram.max > histogram.min))
     throw InvalidInput(input.path + ": has one value at most, so there is no histogram to draw");
   std::vector<PlotMark> marks;
@@ -83,7 +83,7 @@ std::string plotValues(const InputOptions& input, const Histogram& histogram) {
     if (const auto valley = valleyThreshold(histogram)) marks.push_back({*valley, "valley"});
   }
   return histogramPlot(gathered(histogram, histogram.min, histogram.max, kBins), histogram.min,
-                       histogram.max, marks);
+                       histogram.max, marks, type);
 }
 
 }  // namespace vdb_madf::tools

@@ -8,6 +8,7 @@
 #include "input_options.h"
 #include "json_file.h"
 #include "vdb_madf/images/histogram.h"
+#include "vdb_madf/pictures/plot_type.h"
 
 namespace vdb_madf::tools {
 
@@ -15,7 +16,7 @@ namespace vdb_madf::tools {
 Histogram countValues(const InputOptions& input, Progress* progress);
 void describeValues(const InputOptions& input, const Histogram& histogram, Json& json,
                     Progress* progress);
-/// An SVG of the histogram. @throw InvalidInput if it has one value at most
-std::string plotValues(const InputOptions& input, const Histogram& histogram);
+/// The bytes of a plot of the histogram. @throw InvalidInput if it has one value at most
+std::string plotValues(const InputOptions& input, const Histogram& histogram, PlotType type);
 
 }  // namespace vdb_madf::tools

@@ -12,7 +12,6 @@
 #include "input_options.h"
 #include "json_file.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/vdb/read_vdb.h"
@@ -204,7 +203,7 @@ void run(const Options& o, const Common& common) {
     if (!o.header) {
       const Histogram histogram = countValues(o.input, common.progress);
       describeValues(o.input, histogram, json, common.progress);
-      if (!plot.isNowhere()) plot.write(plotValues(o.input, histogram));
+      if (!plot.isNowhere()) plot.write(plotValues(o.input, histogram, *plotTypeOf(o.histogram)));
     }
   }
   common.progress->end();
@@ -221,12 +220,13 @@ void addInfo(Verb command, Common& common, Action& action) {
   verb.option("FILE", o->input.path, "any readable volume").required();
   o->input.addRaw(verb);
   verb.flag("--header", o->header, "only what headers say: does not read the voxels of an image");
-  verb.option("--histogram", o->histogram, "SVG: the histogram of an image").typeName("FILE.svg");
+  verb.option("--histogram", o->histogram, "draws the histogram of an image: .svg, .pdf or .png")
+      .typeName("FILE");
   verb.option("--json", o->json, "machine-readable result (-: standard output)").typeName("FILE");
   verb.onParsed([o, &common, &action] {
     o->input.outputs = {o->json, o->histogram};
-    if (!o->histogram.empty() && fileEnding(o->histogram) != ".svg")
-      throw WrongUsage(o->histogram + ": the histogram's ending must be .svg");
+    if (!o->histogram.empty() && !plotTypeOf(o->histogram))
+      throw WrongUsage(o->histogram + ": the histogram's ending must be .svg, .pdf or .png");
     if (!o->histogram.empty() && o->header)
       throw WrongUsage(
           "--header reads no voxels, so there is no --histogram: leave one of them out");

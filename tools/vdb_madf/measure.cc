@@ -10,13 +10,14 @@
 
 #include "command.h"
 #include "input_options.h"
-#include "outputs.h"
 #include "parse.h"
+#include "scan_option.h"
+#include "text_file.h"
 #include "vdb_madf/exports/measurement_files.h"
-#include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/gray/measure_gray.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
+#include "vdb_madf/pictures/measures_plot.h"
 
 namespace vdb_madf::tools {
 
@@ -24,7 +25,7 @@ namespace {
 
 struct Options {
   InputOptions input;
-  std::string folder, boundary = "auto", density, minFaces = "1", bootstrap, scan, scanGrid;
+  std::string folder, boundary = "auto", density, minFaces = "1", bootstrap, scan, scanGrid, plot;
   bool ice = false;
   MeasureOptions measure;
   TableOptions tables;
@@ -32,6 +33,9 @@ struct Options {
 
 void parse(Options& o) {
   o.input.outputs = MeasurementTables::paths(o.folder);
+  o.input.outputs.push_back(o.plot);
+  if (!o.plot.empty() && !plotTypeOf(o.plot))
+    throw WrongUsage(o.plot + ": the plot's ending must be .svg, .pdf or .png");
   o.input.parse();
   if (o.ice) o.tables.density = kIceDensity;
   if (!o.density.empty()) {
@@ -39,17 +43,7 @@ void parse(Options& o) {
     o.tables.density = parseNumber(o.density, "--density");
     if (!(*o.tables.density > 0)) throw WrongUsage("--density " + o.density + ": must be above 0");
   }
-  if (o.scan.empty() && !o.scanGrid.empty())
-    throw WrongUsage("--intensity-grid names a part of the scan: give --intensity, too");
-  if (!o.scan.empty()) {
-    if (isStandardInput(o.scan))
-      throw WrongUsage("--intensity " + o.scan + ": the scan is read from a file");
-    if (hasRawEnding(o.scan))
-      throw WrongUsage(
-          "--intensity " + o.scan +
-          ": a RAW file does not say how large it is: convert it to .tif or .npy first");
-    checkOutputs(o.input.outputs, o.scan);
-  }
+  checkScan({o.scan, o.scanGrid, "--intensity"}, o.input);
   o.measure.boundary = parseBoundary(o.boundary);
   o.measure.minFaces = parseCount(o.minFaces, "--min-faces");
   if (!o.bootstrap.empty()) {
@@ -114,26 +108,10 @@ void print(const Options& o, const Measurements& m) {
   printIntervals(m, length, unit);
 }
 
-/// What to do about a scan; the options that other hints name describe the labels.
-std::string hintForScan(Hint hint) {
-  if (hint == Hint::dataset) return " (--intensity-grid)";
-  return hint == Hint::rawLayout ? " by converting it to .tif or .npy first" : "";
-}
-
-GrayScan openScan(const Options& o, const Common& common) {
-  InputOptions input;
-  input.path = o.scan;
-  (isVdb(input) ? input.gridName : input.dataset) = o.scanGrid;
-  input.outputs = o.input.outputs;
-  try {
-    return openGrayScan(o.scan, input.volume(common.progress), common.progress);
-  } catch (const AmbiguousGrid& error) {
-    throw InvalidInput(std::string(error.what()) + " (--intensity-grid)");
-  } catch (const InvalidInput& error) {
-    throw InvalidInput(error.what() + hintForScan(error.hint()));
-  } catch (const IoError& error) {
-    throw IoError(error.what() + hintForScan(error.hint()));
-  }
+/// The sample's name, else that of the file without folders.
+std::string titleOf(const Options& o) {
+  return o.tables.sample.empty() ? o.input.path.substr(o.input.path.find_last_of('/') + 1)
+                                 : o.tables.sample;
 }
 
 Measurements measureSlabs(const Options& o, const Common& common) {
@@ -146,7 +124,8 @@ Measurements measureWhole(const Options& o, const Common& common) {
   common.progress->start("read");
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
   std::optional<GrayScan> scan;  // opened before the work: what is wrong with it is said at once
-  if (!o.scan.empty()) scan = openScan(o, common);
+  if (!o.scan.empty())
+    scan = openScan({o.scan, o.scanGrid, "--intensity"}, o.input, common.progress);
   common.progress->start("measure");
   Measurements measurements =
       withFileName(o.input.path, [&] { return measure(*labels, o.measure, common.progress); });
@@ -159,12 +138,14 @@ Measurements measureWhole(const Options& o, const Common& common) {
 
 void run(const Options& o, const Common& common) {
   MeasurementTables tables(o.folder);
+  TextFile plot(o.plot);
   // Gray values have to be there for all voxels together.
   const Measurements measurements =
       isInSlabs(o.input) && o.scan.empty() ? measureSlabs(o, common) : measureWhole(o, common);
   TableOptions options = o.tables;
   options.labels = o.input.path;
   tables.write(measurements, options);
+  if (!plot.isNowhere()) plot.write(measuresPlot(measurements, titleOf(o), *plotTypeOf(o.plot)));
   common.progress->end();
   if (!common.quiet) print(o, measurements);
 }
@@ -207,6 +188,9 @@ void addMeasure(Verb command, Common& common, Action& action) {
   verb.option("--bootstrap", o->bootstrap,
               "adds 95 % intervals of the means, from N samples drawn of the grains")
       .typeName("N");
+  verb.option("--plot", o->plot,
+              "draws histograms and roses of grains and bonds: .svg, .pdf or .png")
+      .typeName("FILE");
   verb.onParsed([o, &common, &action] {
     parse(*o);
     action = [o, &common] { run(*o, common); };

@@ -3,13 +3,20 @@
 
 #include <cmath>
 #include <iostream>
+#include <limits>
 #include <memory>
-#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "command.h"
 #include "input_options.h"
 #include "outputs.h"
+#include "parse.h"
+#include "scan_option.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/limits.h"
+#include "vdb_madf/gray/gray_planes.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/pictures/label_panels.h"
 #include "vdb_madf/pictures/png_file.h"
@@ -20,10 +27,81 @@ namespace {
 
 struct Options {
   InputOptions input;
-  std::string out, only;
+  std::string out, only, slice, select, scan, scanGrid;
   int size = 512;
+  bool interfaces = false, noAxes = false;
   ViewOptions view;
+  // Filled by parse().
+  std::vector<SlicePlane> planes;
+  std::vector<int32_t> selected;
 };
+
+constexpr int kLargest = 8192;                                     // pixels along a part
+constexpr int64_t kMostPixels = 4 * int64_t(kLargest) * kLargest;  // of all parts
+
+/// "z=100" with as many more, between commas, as one likes.
+std::vector<SlicePlane> parseSlices(const std::string& text) {
+  std::vector<SlicePlane> planes;
+  if (text.empty()) return planes;
+  for (const std::string& part : split(text, ',')) {
+    const size_t axis = part.empty() ? std::string::npos : std::string("xyz").find(part[0]);
+    if (axis == std::string::npos || part.size() < 3 || part[1] != '=')
+      throw WrongUsage("--slice " + text + ": must be like z=100 or x=20,y=30,z=40, in voxels");
+    const double index = parseNumber(part.substr(2), "--slice");
+    if (index != std::floor(index) || std::abs(index) > kMaxCoordinate)
+      throw WrongUsage("--slice " + part + ": must be a whole number of a voxel");
+    planes.push_back({int(axis), int(index)});
+  }
+  return planes;
+}
+
+std::vector<int32_t> parseGrains(const std::string& text) {
+  std::vector<int32_t> grains;
+  if (text.empty()) return grains;
+  for (const std::string& part : split(text, ',')) {
+    const int64_t grain = parseCount(part, "--select");
+    if (grain < 1 || grain > std::numeric_limits<int32_t>::max())
+      throw WrongUsage("--select " + part + ": grains have the numbers 1 and more");
+    grains.push_back(int32_t(grain));
+  }
+  return grains;
+}
+
+void parse(Options& o) {
+  if (!hasPngEnding(o.out)) throw WrongUsage(o.out + ": the output's ending must be .png");
+  // Option::range() lets NaN pass.
+  if (!std::isfinite(o.view.azimuth)) throw WrongUsage("--azimuth: not a finite number");
+  if (!std::isfinite(o.view.elevation)) throw WrongUsage("--elevation: not a finite number");
+  if (o.only == "view" && !o.slice.empty()) throw WrongUsage("--slice: --only view has no slices");
+  if (o.only == "view" && !o.scan.empty()) throw WrongUsage("--overlay: --only view has no slices");
+  o.planes = parseSlices(o.slice);
+  if (int64_t(o.planes.size() + 1) * o.size * o.size > kMostPixels)
+    throw WrongUsage("--slice: " + counted(int64_t(o.planes.size()), "slice") + " of " +
+                     std::to_string(o.size) + " pixels are too large a picture: lower --size");
+  o.selected = parseGrains(o.select);
+  o.input.outputs = {o.out};
+  o.input.parse();
+  checkScan({o.scan, o.scanGrid, "--overlay"}, o.input);
+}
+
+std::vector<GrayPlane> grayPlanes(const Options& o, const CoordBBox& box, const Common& common) {
+  if (o.scan.empty()) return {};
+  GrayScan scan = openScan({o.scan, o.scanGrid, "--overlay"}, o.input, common.progress);
+  const std::vector<SlicePlane> planes = o.planes.empty() ? middlePlanes(box) : o.planes;
+  for (const SlicePlane& plane : planes)
+    if (plane.index < box.min()[plane.axis] || plane.index > box.max()[plane.axis])
+      return {};  // labelPanels() says it better
+  return readGrayPlanes(scan, box, planes, common.progress);
+}
+
+std::string scaleText(double voxelsPerPixel) {
+  const bool large = voxelsPerPixel < 1;
+  std::ostringstream number;
+  number.precision(3);
+  number << (large ? 1 / voxelsPerPixel : voxelsPerPixel);
+  if (number.str() == "1") return "1 pixel a voxel";
+  return number.str() + (large ? " pixels a voxel" : " voxels a pixel");
+}
 
 void run(const Options& o, const Common& common) {
   checkWritable(o.out);
@@ -32,20 +110,30 @@ void run(const Options& o, const Common& common) {
   if (box.empty())
     throw InvalidInput(o.input.path + ": has no labels and no domain: nothing to show");
 
-  const PanelOptions options{o.only != "view", o.only != "slices", o.size, o.view};
-  const std::vector<PicturePanel> panels = labelPanels(*labels, box, options, common.progress);
-  writePng(o.out, pictureSheet(panels, storedVoxelSize(*labels)));
+  PanelOptions options;
+  options.slices = o.only != "view";
+  options.view = o.only != "slices";
+  options.edge = o.size;
+  options.direction = o.view;
+  options.axes = !o.noAxes;
+  options.planes = o.planes;
+  options.gray = grayPlanes(o, box, common);
+  options.select = o.selected;
+  options.interfaces = o.interfaces;
+  const std::vector<PicturePanel> panels = withFileName(
+      o.input.path, [&] { return labelPanels(*labels, box, options, common.progress); });
+  const Picture sheet = pictureSheet(panels, storedVoxelSize(*labels));
+  writePng(o.out, sheet);
   common.progress->end();
   if (common.quiet) return;
-  std::cout << o.out << ": ";
-  if (o.only != "view")
-    std::cout << "middle slices x-y, x-z, y-z (z up), "
-              << (panels[0].voxelsPerPixel <= 1
-                      ? counted(std::lround(1 / panels[0].voxelsPerPixel), "pixel") + " a voxel"
-                      : counted(std::lround(panels[0].voxelsPerPixel), "voxel") + " a pixel")
+  std::cout << o.out << ": " << sheet.width << " x " << sheet.height << " pixels; ";
+  if (options.slices)
+    std::cout << (o.planes.empty() ? "middle slices x-y, x-z, y-z"
+                                   : counted(int64_t(o.planes.size()), "slice"))
+              << " (z up), " << scaleText(panels[0].voxelsPerPixel)
               << (hasCubicVoxels(*labels) ? "" : " along its shortest edge");
   if (o.only.empty()) std::cout << "; ";
-  if (o.only != "slices")
+  if (options.view)
     std::cout << "view from azimuth " << o.view.azimuth << ", elevation " << o.view.elevation
               << " degrees";
   std::cout << "\n";
@@ -62,7 +150,7 @@ void addRender(Verb command, Common& common, Action& action) {
   verb.option("--grid", o->input.gridName, "VDB input: the grid to take").typeName("NAME");
   verb.option("--only", o->only, "slices or view").oneOf({"slices", "view"});
   verb.option("--size", o->size, "edge of each part, about, in pixels")
-      .range(16, 8192)
+      .range(16, kLargest)
       .showDefault();
   verb.option("--azimuth", o->view.azimuth, "of the view, degrees: 0 along y, 90 against x")
       .range(-360.0, 360.0)
@@ -70,15 +158,21 @@ void addRender(Verb command, Common& common, Action& action) {
   verb.option("--elevation", o->view.elevation, "of the view, degrees: 90 from above (z)")
       .range(-90.0, 90.0)
       .showDefault();
+  verb.option("--slice", o->slice, "slices to show instead of the middle ones, by voxel: x=20,z=40")
+      .typeName("AXIS=N,...");
+  verb.option("--select", o->select, "shows these grains; in slices the others are pale")
+      .typeName("A,B,...");
+  verb.flag("--interfaces", o->interfaces, "shows of grains the voxels alone that touch another");
+  verb.option("--overlay", o->scan, "the gray scan: slices show it with the outlines of grains")
+      .typeName("FILE");
+  verb.option("--overlay-grid", o->scanGrid,
+              "of that scan: the grid of a VDB, the array of a Zarr or HDF5 file")
+      .typeName("NAME");
+  verb.flag("--no-axes", o->noAxes, "the view without a box and names of axes");
   o->input.addRaw(verb);
   o->input.addVoxelSize(verb);
   verb.onParsed([o, &common, &action] {
-    if (!hasPngEnding(o->out)) throw WrongUsage(o->out + ": the output's ending must be .png");
-    // Option::range() lets NaN pass.
-    if (!std::isfinite(o->view.azimuth)) throw WrongUsage("--azimuth: not a finite number");
-    if (!std::isfinite(o->view.elevation)) throw WrongUsage("--elevation: not a finite number");
-    o->input.outputs = {o->out};
-    o->input.parse();
+    parse(*o);
     action = [o, &common] { run(*o, common); };
   });
 }

@@ -17,7 +17,6 @@
 #include "text_file.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
-#include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/pictures/sweep_plot.h"
 
@@ -87,8 +86,8 @@ void parse(Options& o) {
   o.input.parse();
   if (o.out != "-" && (o.out.size() < 4 || o.out.compare(o.out.size() - 4, 4, ".csv") != 0))
     throw WrongUsage(o.out + ": the output's ending must be .csv");
-  if (!o.plot.empty() && o.plot != "-" && fileEnding(o.plot) != ".svg")
-    throw WrongUsage(o.plot + ": the plot's ending must be .svg");
+  if (!o.plot.empty() && o.plot != "-" && !plotTypeOf(o.plot))
+    throw WrongUsage(o.plot + ": the plot's ending must be .svg, .pdf or .png");
   SweepOptions& sweep = o.sweep;
   sweep.gammas.clear();
   for (const std::string& gamma : listed(o.gamma, ','))
@@ -146,7 +145,7 @@ void run(const Options& o, const Common& common) {
   const std::vector<SweepRow> rows =
       withFileName(o.input.path, [&] { return parameterSweep(*object, options, common.progress); });
   csv.write(table(rows));
-  plot.write(sweepPlot(rows, options.smallVoxels));
+  plot.write(sweepPlot(rows, options.smallVoxels, plotTypeOf(o.plot).value_or(PlotType::svg)));
   common.progress->end();
   if (!common.quiet)
     std::printf("%s: %s, of %s\n", o.out.c_str(), counted(int64_t(rows.size()), "row").c_str(),
@@ -188,8 +187,9 @@ void addSweep(Verb command, Common& common, Action& action) {
   verb.option("--small", o->small, "a grain of fewer voxels counts as small")
       .typeName("N")
       .showDefault();
-  verb.option("--plot", o->plot, "SVG: grains, median size and share of small ones")
-      .typeName("FILE.svg");
+  verb.option("--plot", o->plot,
+              "draws grains, median size and share of small ones: .svg, .pdf or .png")
+      .typeName("FILE");
   verb.onParsed([o, &common, &action] {
     parse(*o);
     action = [o, &common] { run(*o, besideOutput(common, o->out)); };

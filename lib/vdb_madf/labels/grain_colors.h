@@ -29,9 +29,11 @@ struct GrainColors {
 ///
 /// Labels in the order of smallest-last (Matula & Beck 1983; tie: smaller label) take, of a palette
 /// of 64 colours, the first that no touching label has yet, from a place on that depends on the
-/// label. The first 24 colours are at least 35 apart in CIELAB (Euclidean distance, CIE 1976) and
-/// suffice unless there is a group of labels of which each touches 24 others of the group; only
-/// then the other 40 serve: all 64 are at least 19 apart. The colours depend on the grid alone.
+/// label. The first 16 colors are at least 26 apart in CIELAB (Euclidean distance, CIE 1976), and at
+/// least 15 as those see them who are blind to red, green or blue (protanopia, deuteranopia,
+/// tritanopia). They suffice unless there is a group of labels of which each touches 16 others of the
+/// group; only then the other 48 serve: all 64 are at least 12 apart, and 5 for these eyes. The colors
+/// depend on the grid alone.
 /// @throw InvalidInput as LeafIndex does; Interrupted.
 GrainColors grainColors(const Int32Grid& labels, Interrupter* interrupter = nullptr);
 

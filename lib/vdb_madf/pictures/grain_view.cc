@@ -7,11 +7,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/pictures/detail/camera.h"
+#include "vdb_madf/pictures/detail/smooth_surface.h"
 
 namespace vdb_madf {
 
@@ -23,9 +26,15 @@ using MaskLeaf = MaskTree::LeafNodeType;
 constexpr int kMaxEdge = 16384;
 constexpr size_t kRowGrain = 4;
 
-// Light, as shares of the grain's colour. Found by eye.
-constexpr double kAmbient = 0.45, kDiffuse = 0.65;
-constexpr double kFarthest = 0.6;  ///< the back of the box against its front
+constexpr int kRays = 3;     ///< along each edge of a pixel at which something ends
+constexpr double kStep = 3;  ///< shortest edges of a voxel: more of depth is an end of the surface
+
+// Light, as shares of the grain's color. Found by eye.
+constexpr double kAmbient = 0.5, kDiffuse = 0.65;
+constexpr double kFarthest = 0.65;     ///< the back of the box against its front
+constexpr double kOutside = 1;         ///< voxels off the surface, where the light is found
+constexpr double kMostInwards = 0.75;  ///< less than kOutside: never through a thin plate
+constexpr double kPlane = 0.2625;      ///< what is filled there around a plane
 
 /// A walk through the cells of a lattice along a ray: Amanatides & Woo 1987. Cell (i, j, k) is the
 /// box from (i, j, k) * size to (i + 1, j + 1, k + 1) * size, along each axis.
@@ -88,108 +97,10 @@ struct Span {
   bool empty() const { return !(begin < end); }
 };
 
-/// Smoothed indicator and its gradient at a voxel, from the 7^3 voxels around it.
-class Smoothing {
- public:
-  Smoothing() {
-    for (int d = -kReach; d <= kReach; ++d)
-      weight_[size_t(d + kReach)] = std::exp(-0.5 * d * d / (kSigma * kSigma));
-    for (size_t bits = 0; bits < row_.size(); ++bits)
-      for (int d = -kReach; d <= kReach; ++d)
-        if (bits >> (d + kReach) & 1) {
-          row_[bits].sum += weight_[size_t(d + kReach)];
-          row_[bits].moment += d * weight_[size_t(d + kReach)];
-        }
-    total_ = std::pow(row_.back().sum, 3);
-  }
-
-  struct Surface {
-    Vec normal;       ///< unit, out of the object; zero if there is none to be told
-    double fill = 0;  ///< smoothed indicator, 0..1
-  };
-
-  /// @param edges of a voxel
-  Surface at(const MaskGrid::ConstAccessor& object, const Coord& voxel, const Vec& edges) const {
-    const Coord low = voxel - Coord(kReach);
-    const Coord firstLeaf(low.x() & ~7, low.y() & ~7, low.z() & ~7);
-    const MaskLeaf* leaves[2][2]
-                          [2];  // the window is narrower than a leaf: it meets two along an axis
-    for (int i = 0; i < 8; ++i)
-      leaves[i >> 2][i >> 1 & 1][i & 1] =
-          object.probeConstLeaf(firstLeaf + Coord(8 * (i >> 2), 8 * (i >> 1 & 1), 8 * (i & 1)));
-    Vec gradient(0);
-    double sum = 0;
-    const int shift = low.z() - firstLeaf.z();
-    for (int dx = 0; dx <= 2 * kReach; ++dx) {
-      for (int dy = 0; dy <= 2 * kReach; ++dy) {
-        const int x = low.x() + dx - firstLeaf.x(), y = low.y() + dy - firstLeaf.y();
-        const auto& along = leaves[x >> 3][y >> 3];
-        const unsigned bits = zRow(along[0], x & 7, y & 7) | zRow(along[1], x & 7, y & 7) << 8;
-        const Row& row = row_[bits >> shift & 127];
-        const double weight = weight_[size_t(dx)] * weight_[size_t(dy)];
-        sum += weight * row.sum;
-        gradient += weight * Vec((dx - kReach) * row.sum, (dy - kReach) * row.sum, row.moment);
-      }
-    }
-    gradient = gradient / edges;
-    const double length = gradient.length();
-    return {length > 1e-9 ? gradient / -length : Vec(0), sum / total_};
-  }
-
- private:
-  static constexpr int kReach = 3;
-  static constexpr double kSigma = 1.5;
-  struct Row {
-    double sum = 0, moment = 0;
-  };
-
-  static unsigned zRow(const MaskLeaf* leaf, int x, int y) {
-    return leaf ? unsigned(leaf->getValueMask().getWord<uint64_t>(openvdb::Index(x)) >> (8 * y)) &
-                      255u
-                : 0u;
-  }
-
-  std::array<double, 2 * kReach + 1> weight_{};
-  std::array<Row, 128> row_{};  ///< by the bits of seven voxels along z
-  double total_ = 0;
-};
-
-/// The camera: where each pixel's ray starts, and how all rays run. Voxel (i, j, k) is here the
-/// box from (i, j, k) to (i + 1, j + 1, k + 1), times its edges.
-struct Camera {
-  Vec right, up, direction;
-  Vec center;  ///< of the box
-  double voxelsPerPixel = 0;
-  int width = 0, height = 0;
-
-  Camera(const CoordBBox& box, const Vec& edges, const ViewOptions& options) {
-    const double a = options.azimuth * M_PI / 180, e = options.elevation * M_PI / 180;
-    const Vec towards(std::cos(e) * std::sin(a), -std::cos(e) * std::cos(a), std::sin(e));
-    right = Vec(std::cos(a), std::sin(a), 0);
-    up = towards.cross(right);
-    direction = -towards;
-    const Vec size = edges * box.extents().asVec3d();
-    center = edges * box.min().asVec3d() + 0.5 * size;
-    double across = 0, high = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      across += std::abs(right[axis]) * size[axis];
-      high += std::abs(up[axis]) * size[axis];
-    }
-    voxelsPerPixel = std::max(across, high) / options.edge;
-    width = std::clamp(int(std::ceil(across / voxelsPerPixel)), 1, options.edge);
-    height = std::clamp(int(std::ceil(high / voxelsPerPixel)), 1, options.edge);
-  }
-  Vec origin(int x, int y) const {
-    return center + (x + 0.5 - 0.5 * width) * voxelsPerPixel * right -
-           (y + 0.5 - 0.5 * height) * voxelsPerPixel * up;
-  }
-};
-
 class Renderer {
  public:
-  /// @param edges of a voxel; the shortest is 1
   Renderer(const Int32Grid& labels, const CoordBBox& box, const Vec& edges,
-           const GrainColors& colors, const Camera& camera)
+           const GrainColors& colors, const detail::Camera& camera)
       : labels_(labels),
         box_(box),
         edges_(edges),
@@ -209,21 +120,89 @@ class Renderer {
     light_ = (camera.up - 0.55 * camera.right - 1.1 * camera.direction).unit();
   }
 
-  void drawRow(int y, GrainView& view) const {
-    const MaskGrid::ConstAccessor object = object_->getConstAccessor();
-    const Int32Grid::ConstAccessor labels = labels_.getConstAccessor();
+  /// A ray through the center of each pixel.
+  void drawRow(int y, GrainView& view, std::vector<float>& depths) const {
+    const Eye eye(*this);
     for (int x = 0; x < camera_.width; ++x) {
-      Coord voxel;
-      double t = 0;
-      if (!firstVoxel(object, camera_.origin(x, y), voxel, t)) continue;
-      const int32_t label = labels.getValue(voxel);
-      view.labels[size_t(y) * size_t(camera_.width) + size_t(x)] = label;
-      view.picture.at(x, y) =
-          shade(colors_.colorOf(label), smoothing_.at(object, voxel, edges_), t);
+      const Sample sample = eye.look(x + 0.5, y + 0.5);
+      if (!sample.label) continue;
+      const size_t pixel = at(x, y);
+      view.labels[pixel] = sample.label;
+      view.picture.pixels[pixel] = sample.color;
+      depths[pixel] = float(sample.t);
+    }
+  }
+
+  /// Rays all over those pixels at which a grain or a surface ends. `view` has its first rays in all
+  /// rows, `smooth` gets the result.
+  void smoothRow(int y, const Picture& backdrop, const GrainView& view,
+                 const std::vector<float>& depths, Picture& smooth) const {
+    const Eye eye(*this);
+    for (int x = 0; x < camera_.width; ++x) {
+      if (!isEdge(x, y, view, depths)) continue;
+      std::array<int, 3> sum{};
+      for (int i = 0; i < kRays * kRays; ++i) {
+        Rgb color = view.picture.at(x, y);
+        if (i != kRays * kRays / 2) {
+          const Sample sample =
+              eye.look(x + (i % kRays + 0.5) / kRays, y + double(i / kRays + 0.5) / kRays);
+          color = sample.label ? sample.color : backdrop.at(x, y);
+        }
+        for (size_t channel = 0; channel < 3; ++channel) sum[channel] += color[channel];
+      }
+      for (size_t channel = 0; channel < 3; ++channel)
+        smooth.at(x, y)[channel] = uint8_t((sum[channel] + kRays * kRays / 2) / (kRays * kRays));
     }
   }
 
  private:
+  struct Sample {
+    int32_t label = 0;  ///< 0: background
+    Rgb color{};
+    double t = 0;
+  };
+
+  /// Looks along rays; one a thread.
+  class Eye {
+   public:
+    explicit Eye(const Renderer& renderer)
+        : renderer_(renderer),
+          object_(renderer.object_->getConstAccessor()),
+          labels_(renderer.labels_.getConstAccessor()) {}
+    Sample look(double x, double y) const {
+      const Vec origin = renderer_.camera_.origin(x, y);
+      Sample sample;
+      Coord voxel;
+      if (!renderer_.firstVoxel(object_, origin, voxel, sample.t)) return sample;
+      sample.label = labels_.getValue(voxel);
+      const Vec hit = (origin + sample.t * renderer_.camera_.direction) / renderer_.edges_;
+      sample.color =
+          renderer_.shade(renderer_.colors_.colorOf(sample.label), object_, hit, sample.t);
+      return sample;
+    }
+
+   private:
+    const Renderer& renderer_;
+    const MaskGrid::ConstAccessor object_;
+    const Int32Grid::ConstAccessor labels_;
+  };
+
+  size_t at(int x, int y) const { return size_t(y) * size_t(camera_.width) + size_t(x); }
+
+  bool isEdge(int x, int y, const GrainView& view, const std::vector<float>& depths) const {
+    const size_t pixel = at(x, y);
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (x + dx < 0 || y + dy < 0 || x + dx >= camera_.width || y + dy >= camera_.height)
+          continue;
+        const size_t other = at(x + dx, y + dy);
+        if (view.labels[other] != view.labels[pixel] ||
+            std::abs(depths[other] - depths[pixel]) > kStep + 3 * camera_.voxelsPerPixel)
+          return true;
+      }
+    return false;
+  }
+
   /// The first object voxel that the ray meets, and where.
   bool firstVoxel(const MaskGrid::ConstAccessor& object, const Vec& origin, Coord& voxel,
                   double& t) const {
@@ -246,11 +225,22 @@ class Renderer {
     return false;
   }
 
-  Rgb shade(const Rgb& color, const Smoothing::Surface& surface, double t) const {
-    // On a plane half of the surroundings are filled; in a neck more, on a tip less.
-    const double openness = std::clamp(1.5 - surface.fill, 0.5, 1.2);
-    const double light = kAmbient * openness + kDiffuse * std::max(0.0, surface.normal.dot(light_));
-    // t is 0 on the plane through the box's centre.
+  /// The light on the surface near the point (in voxels) that a ray hits.
+  Rgb shade(const Rgb& color, const MaskGrid::ConstAccessor& object, const Vec& hit,
+            double t) const {
+    // The smooth surface lies where half of the surroundings are filled: on its outside, the light
+    // and how much is near do not depend on the steps of the voxels.
+    const auto first = detail::smoothValue(object, hit);
+    const double steepness = std::max(first.gradient.length(), 0.05);
+    const double inwards =
+        std::clamp((0.5 - first.fill) / steepness, -1.5, kMostInwards) - kOutside;
+    const auto near = detail::smoothValue(object, hit + inwards / steepness * first.gradient);
+    Vec normal = -near.gradient / edges_;
+    if (normal.length() > 1e-6) normal.normalize();
+    if (normal.dot(camera_.direction) > 0) normal = -normal;
+    const double openness = std::clamp(1 + 2 * (kPlane - near.fill), 0.5, 1.25);
+    const double light = kAmbient * openness + kDiffuse * std::max(0.0, normal.dot(light_));
+    // t is 0 on the plane through the box's center.
     const double depth = std::clamp(t / depth_ + 0.5, 0.0, 1.0);
     const double factor = light * (1 + (kFarthest - 1) * depth);
     Rgb shaded{};
@@ -263,9 +253,8 @@ class Renderer {
   const CoordBBox box_;
   const Vec edges_, leafEdges_;
   const GrainColors& colors_;
-  const Camera& camera_;
+  const detail::Camera& camera_;
   const MaskGrid::Ptr object_;  ///< no tiles, nothing beyond the box
-  const Smoothing smoothing_;
   Vec low_, high_, light_;
   Coord leafLow_, leafHigh_;
   double depth_ = 0;  ///< of the box along the rays
@@ -287,14 +276,22 @@ GrainView viewGrains(const Int32Grid& labels, const CoordBBox& box, const GrainC
   check(options);
   if (box.empty()) return {Picture(1, 1, options.background), {0}, 1};
   const Vec edges = detail::proportions(labels.transform());
-  const Camera camera(box, edges, options);
-  GrainView view{Picture(camera.width, camera.height, options.background), {}, 0};
-  view.labels.assign(view.picture.pixels.size(), 0);
-  view.voxelsPerPixel = camera.voxelsPerPixel;
+  const detail::Camera camera(box, edges, options);
+  Picture backdrop(camera.width, camera.height, options.background);
+  if (options.box) detail::drawBox(camera, backdrop);
+  GrainView view{backdrop, std::vector<int32_t>(backdrop.pixels.size(), 0), camera.voxelsPerPixel};
+  std::vector<float> depths(view.labels.size(), 0);
   const Renderer renderer(labels, box, edges, colors, camera);
-  detail::parallelFor(size_t(camera.height), kRowGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t y = begin; y < end; ++y) renderer.drawRow(int(y), view);
-  });
+  const auto forEachRow = [&](const auto& work) {
+    detail::parallelFor(size_t(camera.height), kRowGrain, interrupter,
+                        [&](size_t begin, size_t end) {
+                          for (size_t y = begin; y < end; ++y) work(int(y));
+                        });
+  };
+  forEachRow([&](int y) { renderer.drawRow(y, view, depths); });
+  Picture smooth = view.picture;
+  forEachRow([&](int y) { renderer.smoothRow(y, backdrop, view, depths, smooth); });
+  view.picture = std::move(smooth);
   return view;
 }
 

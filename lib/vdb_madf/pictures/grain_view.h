@@ -17,6 +17,7 @@ struct ViewOptions {
   double elevation = 25;  ///< degrees above the x-y plane, -90..90; z is up
   int edge = 512;         ///< pixels along the longer side, 1..16384
   Rgb background{255, 255, 255};
+  bool box = false;  ///< also the edges of the box behind the grains and, around it, names of axes
 };
 
 struct GrainView {
@@ -25,15 +26,15 @@ struct GrainView {
   double voxelsPerPixel = 0;    ///< shortest edges of a voxel, in the plane of the picture
 };
 
-/// A shaded view of coloured grains from outside, in parallel projection: what lies in the box, cut
+/// A shaded view of colored grains from outside, in parallel projection: what lies in the box, cut
 /// off at its faces.
 ///
-/// A ray through the centre of each pixel walks through the leaves, then through the voxels of a
+/// A ray through the center of each pixel walks through the leaves, then through the voxels of a
 /// leaf (Amanatides & Woo 1987), to the first voxel (a box in true proportions) that has a label.
-/// Normal: the gradient of the object's indicator, smoothed by a Gaussian of sigma 1.5 voxels. Light:
-/// ambient, less in concave places, and diffuse from above on the left; what is farther is a little
-/// darker. The result does not depend on threads. An empty box gives a picture of one background
-/// pixel.
+/// Where a grain or a surface ends, a pixel is the mean of 3 x 3 rays. Normal: the gradient of the
+/// object's indicator, smoothed over 4 voxels, near the surface where that is 1/2. Light: ambient,
+/// less in concave places, and diffuse from above on the left; what is farther is a little darker.
+/// The result does not depend on threads. An empty box gives a picture of one background pixel.
 /// @throw InvalidInput for an option out of range; Interrupted.
 GrainView viewGrains(const Int32Grid& labels, const CoordBBox& box, const GrainColors& colors,
                      const ViewOptions& options = {}, Interrupter* interrupter = nullptr);

@@ -4,55 +4,48 @@
 #include "vdb_madf/pictures/histogram_plot.h"
 
 #include <algorithm>
-#include <sstream>
 
-#include "vdb_madf/pictures/detail/plot_axis.h"
+#include "vdb_madf/pictures/detail/diagram.h"
 
 namespace vdb_madf {
 
 namespace {
 
-using detail::plotNumber;
+using detail::Anchor;
+using detail::Canvas;
+using detail::Point;
 
-// Pixels of the drawing.
-constexpr double kWidth = 640, kHeight = 300, kLeft = 84, kTop = 40, kRight = 24, kBelow = 46;
+constexpr detail::DiagramFrame kFrame{84, 54, 640, 300};
+constexpr double kRight = 24, kBelow = 46;
 
 }  // namespace
 
 std::string histogramPlot(const std::vector<double>& counts, double low, double high,
-                          const std::vector<PlotMark>& marks) {
+                          const std::vector<PlotMark>& marks, PlotType type) {
   const double most = *std::max_element(counts.begin(), counts.end());
-  const detail::PlotAxis x({low, high}, false, kLeft, kLeft + kWidth);
-  const detail::PlotAxis y({0, most}, false, kTop + kHeight, kTop);
-  const double width = kLeft + kWidth + kRight, height = kTop + kHeight + kBelow;
-  std::ostringstream svg;
-  svg << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << width << "\" height=\"" << height
-      << "\" viewBox=\"0 0 " << width << ' ' << height
-      << "\" font-family=\"sans-serif\" font-size=\"12\">\n"
-      << "<rect width=\"" << width << "\" height=\"" << height << "\" fill=\"white\"/>\n";
-  for (const double tick : x.ticks())
-    svg << "<path d=\"M" << plotNumber(x(tick)) << ' ' << kTop << "v" << kHeight
-        << "\" stroke=\"#ddd\"/><text x=\"" << plotNumber(x(tick)) << "\" y=\""
-        << kTop + kHeight + 16 << "\" text-anchor=\"middle\">" << plotNumber(tick) << "</text>\n";
-  for (const double tick : y.ticks())
-    svg << "<path d=\"M" << kLeft << ' ' << plotNumber(y(tick)) << "h" << kWidth
-        << "\" stroke=\"#ddd\"/><text x=\"" << kLeft - 6 << "\" y=\"" << plotNumber(y(tick) + 4)
-        << "\" text-anchor=\"end\">" << plotNumber(tick) << "</text>\n";
-  svg << "<text x=\"" << kLeft + kWidth / 2 << "\" y=\"" << kTop + kHeight + 34
-      << "\" text-anchor=\"middle\">value</text>\n<text x=\"" << kLeft << "\" y=\"" << kTop - 22
-      << "\" font-weight=\"bold\">voxels</text>\n";
-  const double bin = (high - low) / double(counts.size());
-  svg << "<path fill=\"#56B4E9\" d=\"M" << plotNumber(x(low)) << ' ' << plotNumber(y(0));
-  for (size_t i = 0; i < counts.size(); ++i)
-    svg << 'V' << plotNumber(y(counts[i])) << 'H' << plotNumber(x(low + double(i + 1) * bin));
-  svg << 'V' << plotNumber(y(0)) << "z\"/>\n";
-  for (size_t i = 0; i < marks.size(); ++i)
-    svg << "<path d=\"M" << plotNumber(x(marks[i].value)) << ' ' << kTop << "v" << kHeight
-        << "\" stroke=\"#D55E00\" stroke-width=\"2\"/><text x=\"" << plotNumber(x(marks[i].value))
-        << "\" y=\"" << kTop - 6 - 14 * double(i) << "\" text-anchor=\"middle\">" << marks[i].name
-        << ' ' << plotNumber(marks[i].value) << "</text>\n";
-  svg << "</svg>\n";
-  return svg.str();
+  const detail::PlotAxis x({low, high}, false, kFrame.left, kFrame.left + kFrame.width);
+  const detail::PlotAxis y({0, most}, false, kFrame.top + kFrame.height, kFrame.top);
+  const auto draw = [&](Canvas& canvas) {
+    detail::drawDiagramFrame(canvas, kFrame, x, y, "value", "voxels");
+    const double bin = (high - low) / double(counts.size());
+    std::vector<Point> outline{{x(low), y(0)}};
+    for (size_t i = 0; i < counts.size(); ++i) {
+      outline.push_back({x(low + double(i) * bin), y(counts[i])});
+      outline.push_back({x(low + double(i + 1) * bin), y(counts[i])});
+    }
+    outline.push_back({x(high), y(0)});
+    canvas.area(outline, detail::kPlotColors[5]);
+    for (size_t i = 0; i < marks.size(); ++i) {
+      const double at = x(marks[i].value);
+      canvas.line({{at, kFrame.top}, {at, kFrame.top + kFrame.height}},
+                  {detail::kPlotColors[1], 2});
+      canvas.text({at, kFrame.top - 8 - 15 * double(i)},
+                  marks[i].name + " " + detail::plotNumber(marks[i].value), detail::kPlotText,
+                  detail::kPlotInk, Anchor::middle);
+    }
+  };
+  return detail::plotFile(type, kFrame.left + kFrame.width + kRight,
+                          kFrame.top + kFrame.height + kBelow, draw);
 }
 
 }  // namespace vdb_madf

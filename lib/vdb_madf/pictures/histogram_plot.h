@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "vdb_madf/pictures/plot_type.h"
+
 namespace vdb_madf {
 
 /// A value that is marked in a histogram.
@@ -14,9 +16,9 @@ struct PlotMark {
   std::string name;  ///< plain letters
 };
 
-/// An SVG of a histogram: `counts` of voxels in equal bins from `low` to `high`, on a linear scale.
+/// The bytes of a file with a histogram: `counts` of voxels in equal bins from `low` to `high`, on a linear scale.
 /// low < high, at least one bin.
 std::string histogramPlot(const std::vector<double>& counts, double low, double high,
-                          const std::vector<PlotMark>& marks);
+                          const std::vector<PlotMark>& marks, PlotType type = PlotType::svg);
 
 }  // namespace vdb_madf

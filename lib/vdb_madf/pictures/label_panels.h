@@ -7,20 +7,28 @@
 
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/pictures/grain_view.h"
+#include "vdb_madf/pictures/label_slices.h"
 #include "vdb_madf/pictures/picture_sheet.h"
 
 namespace vdb_madf {
 
 struct PanelOptions {
   bool slices = true, view = true;
-  int edge = 512;         ///< of each panel, about, in pixels
-  ViewOptions direction;  ///< of the view; its edge is not used
+  int edge = 512;                       ///< of each panel, about, in pixels
+  ViewOptions direction;                ///< of the view; its edge and box are not used
+  bool axes = true;                     ///< around the view: box and names of axes
+  std::vector<SlicePlane> planes = {};  ///< none: the middle ones
+  std::vector<GrayPlane> gray = {};     ///< under each of the planes: as in SliceOptions
+  /// Grains that are shown: in slices the others are pale, in the view they are left out. None: all.
+  std::vector<int32_t> select = {};
+  /// Of grains, the voxels alone that share a face with another grain.
+  bool interfaces = false;
 };
 
-/// Labels for pictureSheet(): x-y, view, x-z, y-z. Where all are shown, slices that share an axis
-/// stand over one another.
+/// Labels for pictureSheet(): the slices, with where they are, and the view, with the size of the
+/// box; the view is the second of four. Colors are those of all labels, whatever is shown.
 /// @param box not empty
-/// @throw as middleSlices() and viewGrains()
+/// @throw as selectGrains(), labelSlices() and viewGrains()
 std::vector<PicturePanel> labelPanels(const Int32Grid& labels, const CoordBBox& box,
                                       const PanelOptions& options,
                                       Interrupter* interrupter = nullptr);

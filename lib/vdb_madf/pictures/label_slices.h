@@ -3,28 +3,42 @@
 
 #pragma once
 
-#include <array>
+#include <vector>
 
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/slice_plane.h"
 #include "vdb_madf/labels/grain_colors.h"
 #include "vdb_madf/pictures/picture.h"
 
 namespace vdb_madf {
 
-/// The slices through the middle of a box, in one scale and in true proportions.
-struct LabelSlices {
-  /// x-y (x to the right, y down, as image viewers show it), x-z and y-z (z up).
-  std::array<Picture, 3> pictures;
-  /// Shortest edges of a voxel in a pixel: 1 / (a whole number of pixels), or a whole number: of
-  /// cubes, every so manieth is shown.
-  double voxelsPerPixel = 1;
+struct SliceOptions {
+  int edge = 512;                  ///< pixels of the longest axis of the box, 1 or more
+  std::vector<SlicePlane> planes;  ///< none: middlePlanes()
+  /// The grains, or parts of them, that have their color, under their labels; the others are pale.
+  /// Null: all.
+  const Int32Grid* shown = nullptr;
+  /// Of each plane, what lies under it: then the grains are outlines. None: grains are filled.
+  std::vector<GrayPlane> gray;
 };
 
-/// The grains that the middle slices of `box` cut, each in its colour on a dark background. The
-/// scale is such that the longest axis of the box has about `edge` pixels, never more.
+/// Slices of a box, in one scale and in true proportions.
+struct LabelSlices {
+  std::vector<SlicePlane> planes;
+  /// x-y (x to the right, y down, as image viewers show it), x-z and y-z (z up).
+  std::vector<Picture> pictures;
+  double voxelsPerPixel = 1;  ///< shortest edges of a voxel
+};
+
+/// Where z, y and x are in the middle, in this order.
+std::vector<SlicePlane> middlePlanes(const CoordBBox& box);
+
+/// The grains that planes cut, each in its color on a pale background. Pixels are means of 3 x 3
+/// places (of 2 x 2 in outlines), so that nothing has steps.
 /// @param box not empty
-/// @throw InvalidInput if the box is empty or `edge` is less than 1.
-LabelSlices middleSlices(const Int32Grid& labels, const CoordBBox& box, const GrainColors& colors,
-                         int edge = 512);
+/// @throw InvalidInput if the box is empty, `edge` is less than 1, a plane misses the box or gray
+///   values do not fit it; Interrupted.
+LabelSlices labelSlices(const Int32Grid& labels, const CoordBBox& box, const GrainColors& colors,
+                        const SliceOptions& options = {}, Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

@@ -4,82 +4,156 @@
 #include "vdb_madf/pictures/picture_sheet.h"
 
 #include <algorithm>
+#include <cmath>
 
-#include "vdb_madf/pictures/detail/bitmap_font.h"
+#include "vdb_madf/pictures/detail/canvas.h"
 #include "vdb_madf/pictures/detail/scale_bar.h"
 
 namespace vdb_madf {
 
 namespace {
 
-constexpr Rgb kMargin{255, 255, 255}, kInk{40, 40, 40};
-constexpr int kGap = 12;          // pixels between panels, and around them
-constexpr int kCaptionScale = 2;  // pixels of the picture per pixel of a letter
-constexpr int kCaptionHeight = 32;
+using detail::Canvas;
+using detail::ScaleBar;
+
+constexpr Rgb kMargin{255, 255, 255}, kInk{40, 40, 40}, kFrame{190, 194, 200};
+constexpr double kWideness = 1.5;  ///< width over height of a sheet that is just right
+
+/// A panel with what stands below it: its caption and, beside that or in a second line, its bar.
+struct Cell {
+  const PicturePanel& panel;
+  std::optional<ScaleBar> bar;
+  double captionWidth = 0, barWidth = 0;  ///< the bar's with its text
+};
+
+/// The sheet, in pixels, but for where its cells stand.
+struct Layout {
+  double text = 0;  ///< size of the font
+  int gap = 0, line = 0;
+  int lines = 1;  ///< below a panel
+  std::vector<int> widths, heights;
+
+  int width() const {
+    int sum = gap;
+    for (const int width : widths) sum += width + gap;
+    return sum;
+  }
+  int height() const {
+    int sum = gap;
+    for (const int height : heights) sum += height + lines * line + gap;
+    return sum;
+  }
+};
+
+std::vector<Cell> cellsOf(const std::vector<PicturePanel>& panels,
+                          const std::optional<VoxelSize>& voxelSize, const Layout& layout) {
+  std::vector<Cell> cells;
+  for (const PicturePanel& panel : panels) {
+    Cell cell{panel, std::nullopt, detail::textWidth(panel.caption, layout.text), 0};
+    if (voxelSize) {
+      cell.bar = detail::fitScaleBar(panel.voxelsPerPixel * voxelSize->shortestEdge(),
+                                     panel.picture.width / 3.0);
+      if (cell.bar)
+        cell.barWidth =
+            cell.bar->pixels + layout.text / 2 + detail::textWidth(cell.bar->text, layout.text);
+    }
+    cells.push_back(cell);
+  }
+  return cells;
+}
+
+Layout arranged(const std::vector<Cell>& cells, Layout layout, size_t columns) {
+  layout.widths.assign(columns, 0);
+  layout.heights.assign((cells.size() + columns - 1) / columns, 0);
+  for (size_t i = 0; i < cells.size(); ++i) {
+    const Cell& cell = cells[i];
+    int& width = layout.widths[i % columns];
+    int& height = layout.heights[i / columns];
+    width = std::max({width, cell.panel.picture.width,
+                      int(std::ceil(std::max(cell.captionWidth, cell.barWidth)))});
+    height = std::max(height, cell.panel.picture.height);
+  }
+  return layout;
+}
+
+/// Of all numbers of columns the one whose sheet is smallest, if it is wide enough.
+Layout bestLayout(const std::vector<Cell>& cells, const Layout& layout) {
+  Layout best = layout;
+  double least = -1;
+  for (size_t columns = 1; columns <= cells.size(); ++columns) {
+    const Layout next = arranged(cells, layout, columns);
+    const double width = next.width(), height = next.height();
+    const double cost =
+        std::log(width * height) + 0.4 * std::abs(std::log(width / height / kWideness));
+    if (least < 0 || cost < least) {
+      least = cost;
+      best = next;
+    }
+  }
+  return best;
+}
 
 void copy(const Picture& from, int left, int top, Picture& to) {
   for (int y = 0; y < from.height; ++y)
     std::copy_n(&from.at(0, y), from.width, &to.at(left, top + y));
 }
 
-}  // namespace
-
-Picture coarsened(const Picture& fine, int factor) {
-  Picture coarse(std::max(1, fine.width / factor), std::max(1, fine.height / factor), kMargin);
-  for (int y = 0; y < coarse.height; ++y)
-    for (int x = 0; x < coarse.width; ++x)
-      for (size_t channel = 0; channel < 3; ++channel) {
-        int sum = 0;
-        for (int j = 0; j < factor; ++j)
-          for (int i = 0; i < factor; ++i)
-            sum += fine.at(std::min(x * factor + i, fine.width - 1),
-                           std::min(y * factor + j, fine.height - 1))[channel];
-        coarse.at(x, y)[channel] = uint8_t((sum + factor * factor / 2) / (factor * factor));
-      }
-  return coarse;
+void frame(const Picture& around, int left, int top, int thickness, Picture& whole) {
+  for (int y = -thickness; y < around.height + thickness; ++y)
+    for (int x = -thickness; x < around.width + thickness; ++x)
+      if (x < 0 || y < 0 || x >= around.width || y >= around.height)
+        whole.at(left + x, top + y) = kFrame;
 }
+
+/// The caption and the bar; the canvas begins at the panel's lower left corner.
+void drawBelow(const Cell& cell, const Layout& layout, Canvas& canvas) {
+  const double base = 0.75 * layout.line;
+  canvas.text({0, base}, cell.panel.caption, layout.text, kInk);
+  if (!cell.bar) return;
+  const double left = layout.lines > 1 ? 0 : cell.panel.picture.width - cell.barWidth;
+  const double bottom = base + (layout.lines - 1) * layout.line;
+  const double thickness = std::max(2.0, std::round(layout.text / 5));
+  const double middle = std::round(bottom - 0.36 * layout.text);
+  canvas.rectangle({std::round(left), middle - std::floor(thickness / 2)},
+                   std::round(cell.bar->pixels), thickness, kInk);
+  canvas.text({left + cell.bar->pixels + layout.text / 2, bottom}, cell.bar->text, layout.text,
+              kInk);
+}
+
+}  // namespace
 
 Picture pictureSheet(const std::vector<PicturePanel>& panels,
                      const std::optional<VoxelSize>& voxelSize) {
-  const size_t columns = std::min<size_t>(2, panels.size());
-  const size_t rows = (panels.size() + columns - 1) / columns;
-  std::vector<int> widths(columns, 0), heights(rows, 0);
-  for (size_t i = 0; i < panels.size(); ++i) {
-    int& width = widths[i % columns];
-    int& height = heights[i / columns];
-    width = std::max(width, panels[i].picture.width);
-    height = std::max(height, panels[i].picture.height);
-  }
-  Picture whole(kGap, kGap, kMargin);
-  for (const int width : widths) whole.width += width + kGap;
-  for (const int height : heights) whole.height += height + kCaptionHeight + kGap;
-  whole.pixels.assign(size_t(whole.width) * size_t(whole.height), kMargin);
+  double area = 0;
+  for (const PicturePanel& panel : panels)
+    area = std::max(area, double(panel.picture.width) * panel.picture.height);
+  Layout layout;
+  layout.text = std::max(10.0, std::sqrt(area) / 36);
+  layout.gap = int(std::lround(1.2 * layout.text));
+  layout.line = int(std::lround(1.5 * layout.text));
+  const std::vector<Cell> cells = cellsOf(panels, voxelSize, layout);
+  for (const Cell& cell : cells)
+    if (cell.bar && cell.captionWidth + 2 * layout.text + cell.barWidth > cell.panel.picture.width)
+      layout.lines = cell.captionWidth > 0 ? 2 : layout.lines;
+  layout = bestLayout(cells, layout);
 
-  int top = kGap;
-  for (size_t row = 0; row < rows; ++row) {
-    int left = kGap;
-    for (size_t i = row * columns; i < std::min(panels.size(), (row + 1) * columns); ++i) {
-      const PicturePanel& panel = panels[i];
-      const int below = top + heights[row];
-      // Slices end above their names; the view stands in the middle.
-      const int room = heights[row] - panel.picture.height;
-      copy(panel.picture, left, top + (panel.caption.empty() ? room / 2 : room), whole);
-      detail::drawText(whole, left, below + kCaptionHeight - detail::kGlyphHeight * kCaptionScale,
-                       panel.caption, kInk, kCaptionScale);
-      if (voxelSize) {
-        const int nameWidth = detail::textWidth(panel.caption, kCaptionScale) + kGap;
-        const int right = panel.picture.width;
-        const int widest = std::min(right - nameWidth, right / 2);
-        // A bar that is narrower than its text ends further left.
-        if (const auto bar =
-                detail::fitScaleBar(panel.voxelsPerPixel * voxelSize->shortestEdge(), widest);
-            bar && detail::width(*bar) <= right - nameWidth)
-          detail::draw(*bar, left + right - detail::width(*bar), below + kCaptionHeight - 1, kInk,
-                       whole);
-      }
-      left += widths[i % columns] + kGap;
+  Picture whole(layout.width(), layout.height(), kMargin);
+  const int thickness = std::max(1, int(std::lround(layout.text / 16)));
+  const size_t columns = layout.widths.size();
+  int top = layout.gap;
+  for (size_t row = 0; row < layout.heights.size(); ++row) {
+    int left = layout.gap;
+    for (size_t i = row * columns; i < std::min(cells.size(), (row + 1) * columns); ++i) {
+      const Picture& picture = cells[i].panel.picture;
+      const int below = top + layout.heights[row];
+      copy(picture, left, below - picture.height, whole);
+      if (cells[i].panel.framed) frame(picture, left, below - picture.height, thickness, whole);
+      detail::paint(whole, left, below + thickness, layout.widths[i % columns],
+                    layout.lines * layout.line,
+                    [&](Canvas& canvas) { drawBelow(cells[i], layout, canvas); });
+      left += layout.widths[i % columns] + layout.gap;
     }
-    top += heights[row] + kCaptionHeight + kGap;
+    top += layout.heights[row] + layout.lines * layout.line + layout.gap;
   }
   return whole;
 }

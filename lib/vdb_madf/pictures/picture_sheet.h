@@ -15,17 +15,16 @@ namespace vdb_madf {
 /// A picture of a sample with its name and its scale.
 struct PicturePanel {
   Picture picture;
-  std::string caption;        ///< digits, ".", "-" and the letters m n u x y z are drawn
+  std::string caption;        ///< UTF-8
   double voxelsPerPixel = 1;  ///< of their shortest edge
+  bool framed = true;         ///< a thin line around it
 };
 
-/// The panels, in reading order in two columns on white, each with its name below and, where the
-/// voxel size is known, a scale bar of a round length.
+/// The panels in reading order on white, each with its name below and, where the voxel size is
+/// known, a scale bar of a round length. There are as many columns as make the sheet small, and
+/// rather wide than tall. Letters and gaps grow with the largest panel: a line is 1/24 of the
+/// side of a square of its area, and 15 pixels at least.
 Picture pictureSheet(const std::vector<PicturePanel>& panels,
                      const std::optional<VoxelSize>& voxelSize = std::nullopt);
-
-/// The mean of each block of factor x factor pixels; what is left over at the right and below is
-/// cut off. At least one pixel.
-Picture coarsened(const Picture& fine, int factor);
 
 }  // namespace vdb_madf

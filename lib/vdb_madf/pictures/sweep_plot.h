@@ -8,13 +8,15 @@
 #include <vector>
 
 #include "vdb_madf/method/parameter_sweep.h"
+#include "vdb_madf/pictures/plot_type.h"
 
 namespace vdb_madf {
 
-/// The text of an SVG file, of three diagrams against theta: number of grains and median size (logarithmic axes), and
+/// The bytes of a file with three diagrams against theta: number of grains and median size (logarithmic axes), and
 /// share of grains below `smallVoxels`. A line for each gamma (color), merge mode (dashes)
 /// and delta (width);
 /// rows in the order of parameterSweep(). Values of 0 have no place on a logarithmic axis and are left out.
-std::string sweepPlot(const std::vector<SweepRow>& rows, int64_t smallVoxels);
+std::string sweepPlot(const std::vector<SweepRow>& rows, int64_t smallVoxels,
+                      PlotType type = PlotType::svg);
 
 }  // namespace vdb_madf

@@ -16,7 +16,8 @@ std::string plotNumber(double value) {
   return text.str();
 }
 
-PlotAxis::PlotAxis(std::vector<double> values, bool logarithmic, double begin, double end)
+PlotAxis::PlotAxis(std::vector<double> values, bool logarithmic, double begin, double end,
+                   bool tight)
     : logarithmic_(logarithmic), begin_(begin), end_(end) {
   values.erase(std::remove_if(values.begin(), values.end(), [&](double v) { return !shows(v); }),
                values.end());
@@ -26,8 +27,18 @@ PlotAxis::PlotAxis(std::vector<double> values, bool logarithmic, double begin, d
   if (logarithmic_) {
     placeDecades();
   } else {
+    const double low = low_, high = high_;
     placeEvenly();
+    if (tight && low < high) tighten(low, high);
   }
+}
+
+void PlotAxis::tighten(double low, double high) {
+  low_ = low;
+  high_ = high;
+  ticks_.erase(std::remove_if(ticks_.begin(), ticks_.end(),
+                              [&](double tick) { return tick < low || tick > high; }),
+               ticks_.end());
 }
 
 double PlotAxis::scaled(double value) const {

@@ -14,8 +14,10 @@ std::string plotNumber(double value);
 /// From values to pixels, and where its ticks are.
 class PlotAxis {
  public:
-  /// Holds the values; from pixel `begin` to pixel `end`.
-  PlotAxis(std::vector<double> values, bool logarithmic, double begin, double end);
+  /// Holds the values; from pixel `begin` to pixel `end`. It ends at ticks or, if it is tight and not
+  /// logarithmic, at the least and largest value.
+  PlotAxis(std::vector<double> values, bool logarithmic, double begin, double end,
+           bool tight = false);
   bool shows(double value) const { return !logarithmic_ || value > 0; }
   double operator()(double value) const {
     return begin_ + (scaled(value) - low_) / (high_ - low_) * (end_ - begin_);
@@ -26,6 +28,7 @@ class PlotAxis {
   double scaled(double value) const;
   void placeDecades();
   void placeEvenly();
+  void tighten(double low, double high);
 
   bool logarithmic_;
   double begin_, end_, low_ = 0, high_ = 1;

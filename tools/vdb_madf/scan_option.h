@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <string>
+
+#include "input_options.h"
+#include "vdb_madf/gray/gray_scan.h"
+
+namespace vdb_madf::tools {
+
+/// A scan beside the labels that are the input.
+struct ScanOption {
+  std::string path;    ///< empty: none
+  std::string grid;    ///< of a VDB, or the array of a Zarr or HDF5 file
+  std::string option;  ///< "--name" of the path; that of the grid is "--name-grid"
+};
+
+/// What can be said of the option before the work. @throw WrongUsage
+void checkScan(const ScanOption& scan, const InputOptions& labels);
+
+/// @param labels the scan must not be one of its outputs
+/// @throw InvalidInput, IoError: one line that names the file and what to do.
+GrayScan openScan(const ScanOption& scan, const InputOptions& labels, Progress* progress);
+
+}  // namespace vdb_madf::tools
