@@ -10,6 +10,7 @@
 #include <set>
 
 #include "support/label_shapes.h"
+#include "support/mesh_checks.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/labels/reduced_labels.h"
 
@@ -18,56 +19,6 @@ using namespace vdb_madf::test;
 using openvdb::Vec3f;
 
 namespace {
-
-/// Empty if every grain of the mesh is closed and oriented by itself: each edge is used as often
-/// one way as the other, every triangle has three points, all points are used and those of its
-/// grain.
-std::string whyNotClosed(const GrainMesh& mesh) {
-  if (mesh.firstPoint.size() != mesh.labels.size() + 1 || mesh.firstPoint.front() != 0 ||
-      mesh.firstPoint.back() != mesh.points.size() ||
-      mesh.firstTriangle.size() != mesh.labels.size() + 1 || mesh.firstTriangle.front() != 0 ||
-      mesh.firstTriangle.back() != mesh.triangles.size())
-    return "ranges";
-  for (size_t g = 0; g < mesh.labels.size(); ++g) {
-    std::map<std::pair<uint32_t, uint32_t>, int> edges;
-    std::set<uint32_t> used;
-    for (uint32_t t = mesh.firstTriangle[g]; t < mesh.firstTriangle[g + 1]; ++t) {
-      const auto& triangle = mesh.triangles[t];
-      for (size_t n = 0; n < 3; ++n) {
-        const uint32_t from = triangle[n], to = triangle[(n + 1) % 3];
-        if (from < mesh.firstPoint[g] || from >= mesh.firstPoint[g + 1]) return "foreign point";
-        if (from == to) return "degenerate triangle";
-        used.insert(from);
-        ++edges[{std::min(from, to), std::max(from, to)}];
-        edges[{std::min(from, to), std::max(from, to)}] += from < to ? 1000 : -1000;
-      }
-    }
-    if (used.size() != mesh.firstPoint[g + 1] - mesh.firstPoint[g]) return "unused point";
-    for (const auto& [edge, uses] : edges)
-      if (uses != 2 && uses != 4) return "open edge, " + std::to_string(uses);
-  }
-  return "";
-}
-
-/// Empty if the triangles around every point make one disc: each of its edges in one fan.
-std::string whyNoDisc(const GrainMesh& mesh) {
-  std::vector<std::map<uint32_t, std::vector<uint32_t>>> next(mesh.points.size());
-  for (const auto& t : mesh.triangles)
-    for (size_t n = 0; n < 3; ++n) next[t[n]][t[(n + 1) % 3]].push_back(t[(n + 2) % 3]);
-  for (const auto& ring : next) {
-    size_t length = 0;
-    for (const auto& [from, to] : ring) length += to.size();
-    if (length != ring.size()) continue;  // an edge shared by four triangles: told by whyNotClosed
-    uint32_t at = ring.begin()->first;
-    size_t steps = 0;
-    do {
-      at = ring.at(at)[0];
-      ++steps;
-    } while (at != ring.begin()->first && steps <= length);
-    if (steps != length) return "several fans";
-  }
-  return "";
-}
 
 void checkExact(const LabelMap& voxels) {
   const GrainMesh mesh = grainMesh(*labelGrid(voxels));

@@ -88,16 +88,16 @@ int reductionOf(const Options& o, const Int32Grid& labels) {
 void exportMesh(const Options& o, const Common& common, const Int32Grid& labels) {
   GrainMeshOptions options;
   options.smoothing = o.smoothing;
-  int factor = reductionOf(o, labels);
-  if (o.mostTriangles > 0)
-    factor = reductionForTriangles(labels, uint64_t(o.mostTriangles), factor, common.progress);
+  options.triangles = uint64_t(o.mostTriangles);
+  const int factor = reductionOf(o, labels);
   const Int32Grid::ConstPtr meshed =
       factor == 1 ? labels.copy() : reduceLabels(labels, factor, common.progress);
   MeshFileOptions file;
   file.transform = meshed->constTransformPtr();
   file.lengthUnit = unitOf(labels);
   file.shadeSmooth = o.smoothing > 0;
-  if (isGlb(o.out)) checkMeshRoom(o.out, countTriangles(*meshed, common.progress), file);
+  if (isGlb(o.out) && o.mostTriangles == 0)
+    checkMeshRoom(o.out, countTriangles(*meshed, common.progress), file);
   const GrainMesh mesh = grainMesh(*meshed, options, common.progress);
   file.colors = grainColors(labels, common.progress);
   std::optional<GrainNetwork> measured;
@@ -106,9 +106,11 @@ void exportMesh(const Options& o, const Common& common, const Int32Grid& labels)
     writeMesh(o.out, mesh, file, common.progress);
   else
     writeStlFolder(o.out, mesh, file, common.progress);
+  const bool isOver = o.mostTriangles > 0 && mesh.triangles.size() > options.triangles;
   say(o, common,
       counted(mesh.labels.size(), "grain") + ", " + counted(mesh.points.size(), "point") + ", " +
           counted(mesh.triangles.size(), "triangle") +
+          (isOver ? " (fewer would not keep all grains and contacts)" : "") +
           (factor == 1 ? "" : " (labels at 1/" + std::to_string(factor) + ")") + "; lengths in " +
           (file.lengthUnit.empty() ? "voxels" : file.lengthUnit));
 }

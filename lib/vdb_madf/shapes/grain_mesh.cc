@@ -8,72 +8,95 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/reduced_labels.h"
 #include "vdb_madf/labels/select_grains.h"
 #include "vdb_madf/shapes/detail/net_builder.h"
+#include "vdb_madf/shapes/detail/simplify.h"
+#include "vdb_madf/shapes/detail/volume_correction.h"
 
 namespace vdb_madf {
 
 namespace {
 
+using detail::DomainFaces;
 using detail::LabelBlocks;
+using detail::SharedMesh;
 using detail::SurfaceNet;
 using openvdb::Vec3d;
+using openvdb::Vec3f;
 
 constexpr size_t kBlockGrain = 16;
 constexpr size_t kItemGrain = 1 << 16;
 constexpr int kMaxRounds = 1000;
+/// Along an axis, in voxels: so far points of a simplified mesh go to give the grains their volumes.
+constexpr float kSimplifiedReach = 1;
 
-/// Points by grain, quads as triangles.
-GrainMesh assemble(const SurfaceNet& net, const std::vector<openvdb::Vec3f>& positions,
-                   const std::vector<int32_t>& labels) {
+/// Points by grain.
+GrainMesh assemble(const SharedMesh& shared, const std::vector<int32_t>& labels) {
   GrainMesh mesh;
   mesh.labels = labels;
-  mesh.firstPoint.assign(labels.size() + 1, 0);
-  for (const uint32_t grain : net.pointGrain) ++mesh.firstPoint[grain + 1];
-  for (size_t g = 1; g <= labels.size(); ++g) mesh.firstPoint[g] += mesh.firstPoint[g - 1];
-  std::vector<uint32_t> next(mesh.firstPoint.begin(), mesh.firstPoint.end() - 1);
-  std::vector<uint32_t> place(net.pointGrain.size());
-  mesh.points.resize(place.size());
-  for (size_t p = 0; p < place.size(); ++p) {
-    place[p] = next[net.pointGrain[p]]++;
-    mesh.points[place[p]] = positions[net.pointCorner[p]];
+  const detail::Lists points(shared.pointGrain, labels.size());
+  mesh.firstPoint = points.first;
+  mesh.firstTriangle = shared.firstTriangle;
+  mesh.points.resize(points.items.size());
+  std::vector<uint32_t> place(points.items.size());
+  for (uint32_t i = 0; i < place.size(); ++i) {
+    place[points.items[i]] = i;
+    mesh.points[i] = shared.positions[shared.pointSite[points.items[i]]];
   }
-  mesh.firstTriangle.clear();
-  for (const uint32_t first : net.firstQuad) mesh.firstTriangle.push_back(2 * first);
-  mesh.triangles.resize(2 * net.quads.size());
-  detail::parallelFor(net.quads.size(), kItemGrain, nullptr, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const auto& quad = net.quads[i];
-      mesh.triangles[2 * i] = {place[quad[0]], place[quad[1]], place[quad[2]]};
-      mesh.triangles[2 * i + 1] = {place[quad[0]], place[quad[2]], place[quad[3]]};
-    }
+  mesh.triangles.resize(shared.triangles.size());
+  detail::parallelFor(mesh.triangles.size(), kItemGrain, nullptr, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      for (size_t n = 0; n < 3; ++n) mesh.triangles[i][n] = place[shared.triangles[i][n]];
   });
   return mesh;
 }
 
-std::vector<openvdb::Vec3f> latticePositions(const SurfaceNet& net) {
-  std::vector<openvdb::Vec3f> positions(net.corners.size());
-  for (size_t i = 0; i < positions.size(); ++i) {
-    const Coord& c = net.corners[i];
-    positions[i] = {float(c.x()) - 0.5f, float(c.y()) - 0.5f, float(c.z()) - 0.5f};
-  }
-  return positions;
+/// Empty if it is not known, or labels lie outside.
+CoordBBox domainBox(const Int32Grid& labels) {
+  const auto domain = storedDomain(labels);
+  CoordBBox used;
+  if (!domain || !labels.tree().evalActiveVoxelBoundingBox(used)) return {};
+  return domain->box().isInside(used) ? domain->box() : CoordBBox();
+}
+
+DomainFaces facesOf(const CoordBBox& box) {
+  if (box.empty()) return {};
+  return {true, box.min().asVec3s() - Vec3f(0.5f), box.max().asVec3s() + Vec3f(0.5f)};
+}
+
+void check(const GrainMeshOptions& options) {
+  if (options.smoothing < 0 || options.smoothing > kMaxRounds)
+    throw InvalidInput("smoothing must lie between 0 and 1000");
+  if (!(options.error >= 0)) throw InvalidInput("the error of meshes must be 0 or more");
 }
 
 }  // namespace
 
 GrainMesh grainMesh(const Int32Grid& labels, const GrainMeshOptions& options,
                     Interrupter* interrupter) {
-  if (options.smoothing < 0 || options.smoothing > kMaxRounds)
-    throw InvalidInput("smoothing must lie between 0 and 1000");
+  check(options);
   const LabelBlocks blocks(labels);
-  SurfaceNet net = detail::buildNet(blocks, options.smoothing > 0, interrupter);
-  const auto positions = options.smoothing > 0 ? detail::relax(net, options.smoothing,
-                                                               blocks.voxelCounts(), interrupter)
-                                               : latticePositions(net);
-  return assemble(net, positions, blocks.labels());
+  const CoordBBox box = domainBox(labels);
+  const DomainFaces domain = facesOf(box);
+  SurfaceNet net = detail::buildNet(blocks, box, options.smoothing > 0, interrupter);
+  std::vector<Vec3f> homes = detail::latticePositions(net);
+  SharedMesh mesh = detail::cutQuads(
+      net,
+      options.smoothing > 0 ? detail::relax(net, options.smoothing, domain, interrupter) : homes);
+  net = {};
+  if (options.smoothing > 0)
+    detail::correctVolumes(mesh, blocks.voxelCounts(), homes, detail::kCornerReach, domain,
+                           interrupter);
+  if (options.triangles > 0 &&
+      detail::simplify(mesh, options.triangles, options.error, interrupter)) {
+    homes = mesh.positions;
+    detail::correctVolumes(mesh, blocks.voxelCounts(), homes, kSimplifiedReach, domain,
+                           interrupter);
+  }
+  return assemble(mesh, blocks.labels());
 }
 
 GrainMesh meshOfGrains(const Int32Grid& labels, const std::vector<int32_t>& grains,

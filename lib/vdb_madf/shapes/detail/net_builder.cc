@@ -19,8 +19,9 @@ constexpr size_t kBlockGrain = 16;
 
 class NetBuilder {
  public:
-  NetBuilder(const LabelBlocks& blocks, bool withLinks, Interrupter* interrupter)
-      : blocks_(blocks), withLinks_(withLinks), interrupter_(interrupter) {}
+  NetBuilder(const LabelBlocks& blocks, const CoordBBox& domain, bool withLinks,
+             Interrupter* interrupter)
+      : blocks_(blocks), domain_(domain), withLinks_(withLinks), interrupter_(interrupter) {}
 
   SurfaceNet build() {
     count();
@@ -38,9 +39,14 @@ class NetBuilder {
     }
     quads_.resize(firstQuad_.back());
     quadGrain_.resize(firstQuad_.back());
+    quadBeyond_.resize(firstQuad_.back());
+    pinches_.resize(blocks_.size());
     forEachBlock([&](size_t block, const LabelHalo& halo) { placeCorners(block, halo); });
     forEachBlock([&](size_t block, const LabelHalo& halo) { makeQuads(block, halo); });
     if (withLinks_) packJunctions();
+    for (const auto& pinches : pinches_)
+      net_.pinches.insert(net_.pinches.end(), pinches.begin(), pinches.end());
+    std::sort(net_.pinches.begin(), net_.pinches.end());
     sortQuads();
     return std::move(net_);
   }
@@ -135,15 +141,27 @@ class NetBuilder {
     CornerTable table;
     readCorners(block, table);
     uint32_t next = firstQuad_[block];
+    const Coord origin = blocks_.origin(block);
     forEachPlace([&](int x, int y, int z) {
       const int32_t* at = &halo[haloAt(x, y, z)];
+      const Coord p = origin.offsetBy(x, y, z);
       for (int axis = 0; axis < 3; ++axis) {
         const int32_t above = at[0], below = at[-kHaloStride[axis]];
         if (above != below) {
-          if (below > 0) addQuad(halo, table, Coord(x, y, z), axis, below, false, next++);
-          if (above > 0) addQuad(halo, table, Coord(x, y, z), axis, above, true, next++);
+          if (below > 0) {
+            quadBeyond_[next] = beyond(above, p, axis, 1);
+            addQuad(halo, table, Coord(x, y, z), axis, below, false, next++);
+          }
+          if (above > 0) {
+            quadBeyond_[next] = beyond(below, p, axis, 0);
+            addQuad(halo, table, Coord(x, y, z), axis, above, true, next++);
+          }
         }
-        if (withLinks_) addLink(at, table, Coord(x, y, z), axis);
+        if (isPinched(at, axis))
+          pinches_[block].push_back(
+              {table[tableAt(x, y, z)],
+               table[tableAt(x + (axis == 0), y + (axis == 1), z + (axis == 2))]});
+        if (withLinks_) addLink(at, table, origin, Coord(x, y, z), axis);
       }
     });
   }
@@ -169,13 +187,56 @@ class NetBuilder {
     quadGrain_[number] = blocks_.number(grain);
   }
 
+  /// What a grain has across the face below voxel p along `axis`, of which \p label is the other
+  /// side: below (0) or above (1).
+  int32_t beyond(int32_t label, const Coord& p, int axis, int side) const {
+    const bool isFace = !domain_.empty() && (side ? p[axis] == domain_.max()[axis] + 1
+                                                  : p[axis] == domain_.min()[axis]);
+    return label > 0 ? label : isFace ? -1 - 2 * axis - side : 0;
+  }
+
+  /// True if along the edge from a corner upwards two voxels of a grain touch in nothing else, and
+  /// yet have the same points at both ends.
+  bool isPinched(const int32_t* at, int axis) const {
+    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+    const int u = kHaloStride[a], v = kHaloStride[b];
+    for (const auto& [one, other, left, right] :
+         {std::array{at[0], at[-u - v], at[-u], at[-v]}, {at[-u], at[-v], at[0], at[-u - v]}}) {
+      if (one <= 0 || one != other || one == left || one == right) continue;
+      // The faces across u lie on either side of v, one of either voxel; see corner_fans.h.
+      const auto isOne = [&, grain = one](const int32_t* corner, int end) {
+        const Corner around(corner);
+        return around.point(grain, a * 4 + 2 + end) == around.point(grain, a * 4 + end);
+      };
+      if (isOne(at, 1) && isOne(at + kHaloStride[axis], 0)) return true;
+    }
+    return false;
+  }
+
+  /// Labels around the edge of the lattice from corner p upwards along `axis`, with what is outside of
+  /// the domain as another one.
+  std::array<int32_t, 4> labelsAround(const int32_t* at, const Coord& p, int axis) const {
+    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+    std::array<int32_t, 4> around;
+    for (int n = 0; n < 4; ++n) {
+      Coord voxel = p;
+      voxel[a] -= n >> 1;
+      voxel[b] -= n & 1;
+      const int32_t label = at[-(n >> 1) * kHaloStride[a] - (n & 1) * kHaloStride[b]];
+      const bool isInside = domain_.empty() || domain_.isInside(voxel);
+      around[size_t(n)] = isInside || label > 0 ? label : -1;
+    }
+    return around;
+  }
+
   /// The edge of the lattice from corner p upwards along `axis`.
-  void addLink(const int32_t* at, const CornerTable& table, const Coord& p, int axis) {
+  void addLink(const int32_t* at, const CornerTable& table, const Coord& origin, const Coord& p,
+               int axis) {
     const int u = kHaloStride[(axis + 1) % 3], v = kHaloStride[(axis + 2) % 3];
-    std::array<int32_t, 4> around{at[0], at[-u], at[-v], at[-u - v]};
+    if (at[0] == at[-u] && at[0] == at[-v] && at[0] == at[-u - v]) return;
+    std::array<int32_t, 4> around = labelsAround(at, origin + p, axis);
     std::sort(around.begin(), around.end());
     const auto labels = std::unique(around.begin(), around.end()) - around.begin();
-    if (labels == 1) return;
     Coord q = p;
     ++q[axis];
     const uint32_t low = table[tableAt(p.x(), p.y(), p.z())],
@@ -202,23 +263,32 @@ class NetBuilder {
     for (size_t g = 1; g < net_.firstQuad.size(); ++g) net_.firstQuad[g] += net_.firstQuad[g - 1];
     std::vector<uint32_t> next(net_.firstQuad.begin(), net_.firstQuad.end() - 1);
     net_.quads.resize(quads_.size());
-    for (size_t i = 0; i < quads_.size(); ++i) net_.quads[next[quadGrain_[i]]++] = quads_[i];
+    net_.quadBeyond.resize(quads_.size());
+    for (size_t i = 0; i < quads_.size(); ++i) {
+      const uint32_t place = next[quadGrain_[i]]++;
+      net_.quads[place] = quads_[i];
+      net_.quadBeyond[place] = quadBeyond_[i];
+    }
   }
 
   const LabelBlocks& blocks_;
+  const CoordBBox domain_;
   const bool withLinks_;
   Interrupter* interrupter_;
   std::vector<uint32_t> firstCorner_, firstPoint_, firstQuad_;  // per block, one more at the end
   std::vector<std::array<uint8_t, 6>> junctionBytes_;
   std::vector<std::array<uint32_t, 4>> quads_;
   std::vector<uint32_t> quadGrain_;
+  std::vector<int32_t> quadBeyond_;
+  std::vector<std::vector<std::array<uint32_t, 2>>> pinches_;  // per block
   SurfaceNet net_;
 };
 
 }  // namespace
 
-SurfaceNet buildNet(const LabelBlocks& blocks, bool withLinks, Interrupter* interrupter) {
-  return NetBuilder(blocks, withLinks, interrupter).build();
+SurfaceNet buildNet(const LabelBlocks& blocks, const CoordBBox& domain, bool withLinks,
+                    Interrupter* interrupter) {
+  return NetBuilder(blocks, domain, withLinks, interrupter).build();
 }
 
 }  // namespace vdb_madf::detail
