@@ -105,6 +105,7 @@ int run(int argc, char** argv) {
   addCompare(command, common, action);
   addTrack(command, common, action);
   addRender(command, common, action);
+  addReport(command, common, action);
   addExport(command, common, action);
   addInfo(command, common, action);
   addCompletion(command, line, action);

@@ -6,16 +6,13 @@
 #include <png.h>
 
 #include <cstring>
-#include <vector>
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/detail/output_stream.h"
 
 namespace vdb_madf {
 
-namespace {
-
-std::vector<char> encoded(const std::string& path, const Picture& picture) {
+std::string pngBytes(const Picture& picture) {
   png_image image;
   std::memset(&image, 0, sizeof(image));
   image.version = PNG_IMAGE_VERSION;
@@ -23,19 +20,16 @@ std::vector<char> encoded(const std::string& path, const Picture& picture) {
   image.height = png_uint_32(picture.height);
   image.format = PNG_FORMAT_RGB;
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
-  std::vector<char> bytes(size);
+  std::string bytes(size, '\0');
   if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, picture.pixels.data(), 0, nullptr))
-    throw IoError(path + ": cannot be written: " + image.message);
+    throw IoError(std::string("the picture cannot be made: ") + image.message);
   bytes.resize(size);
   return bytes;
 }
 
-}  // namespace
-
 void writePng(const std::string& path, const Picture& picture) {
   detail::OutputStream file(path);
-  const std::vector<char> bytes = encoded(path, picture);
-  file.bytes(bytes.data(), bytes.size());
+  file.text(pngBytes(picture));
   file.close();
   file.commit();
 }
