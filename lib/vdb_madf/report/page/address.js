@@ -64,6 +64,7 @@ export function readState(text, selection, camera) {
   for (const id of (parts.get('grains') || '').split(','))
     if (sample.rowOf.has(Number(id))) selection.selected.add(sample.rowOf.get(Number(id)));
   const slices = numbers('slices', 3);
+  for (const row of selection.selected) selection.goTo(sample.placeOf('grains', row));
   if (slices)
     selection.slices = slices.map((at, i) =>
       Math.max(0, Math.min(sample.about.slices.size[i] - 1, Math.round(at))));

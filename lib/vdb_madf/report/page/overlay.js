@@ -41,7 +41,7 @@ function drawScale(svg, sample, scale, width, height) {
   const length = roundLength(Math.min(150, width / 4) / perUnit);
   const pixels = length * perUnit, x = width - 16 - pixels, y = height - 16;
   svg.append(makeSvg('rect', { x, y, width: pixels, height: 4, fill: '#222' }),
-    text(x + pixels / 2, y - 5, `${written(length)} ${sample.unit(1)}`, 'middle'));
+    text(x + pixels / 2, y - 5, sample.length(length), 'middle'));
 }
 
 function drawColorBar(svg, sample, name, width, height) {

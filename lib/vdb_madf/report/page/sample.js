@@ -60,6 +60,12 @@ export class Sample {
     return power ? powers[power].replace('u', name) : '';
   }
 
+  /// A length with its unit, micrometers where that is easier to read.
+  length(value, digits = 4) {
+    return this.about.unit === 'mm' && value > 0 && value < 0.1
+      ? `${written(1000 * value, digits)} \u00b5m` : `${written(value, digits)} ${this.unit(1)}`;
+  }
+
   columnOf(kind, name) {
     return this[kind].columns.find((column) => column.name === name);
   }

@@ -12,9 +12,14 @@ const kPaleOpacity = 0.22;
 const kFar = 1e9;  // beyond every box
 const bondColor = new three.Vector3(0.78, 0.13, 0.11);
 
-/// WebGL 2, or null.
+/// WebGL 2, or null. Smooth edges cost too much where software draws.
 export function contextOf(canvas) {
-  return canvas.getContext('webgl2', { antialias: true, alpha: false });
+  const probe = document.createElement('canvas').getContext('webgl2');
+  if (!probe) return null;
+  const info = probe.getExtension('WEBGL_debug_renderer_info');
+  const name = info ? probe.getParameter(info.UNMASKED_RENDERER_WEBGL) : '';
+  const isSoftware = /swiftshader|llvmpipe|software|basic render/i.test(name);
+  return canvas.getContext('webgl2', { antialias: !isSoftware, alpha: false });
 }
 
 export class Scene {
@@ -214,8 +219,14 @@ export class Scene {
     this.renderer.render(this.frame, this.eye);
     if (this.hasPale) this.drawPale();
     this.drawGrains(kPlain, kSelected);
-    if (this.selection.bondsAs !== 'none') this.renderer.render(this.bonds, this.eye);
+    if (this.selection.bondsAs !== 'none') this.drawBonds();
     if (this.onDrawn) this.onDrawn();
+  }
+
+  /// In front of the grains, within which they lie.
+  drawBonds() {
+    this.renderer.clearDepth();
+    this.renderer.render(this.bonds, this.eye);
   }
 
   drawGrains(lowState, highState) {

@@ -16,7 +16,7 @@ ivec2 cellOf(int grain) { return ivec2(grain % tableWidth, grain / tableWidth); 
 const light = `
 vec3 lit(vec3 color, vec3 normal) {
   float facing = max(dot(normalize(normal), normalize(vec3(-0.35, 0.55, 0.75))), 0.0);
-  return color * (0.42 + 0.66 * facing);
+  return color * (0.5 + 0.6 * facing);
 }
 vec4 idColor(int grain) {
   int number = grain + 1;

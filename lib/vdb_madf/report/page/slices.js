@@ -3,7 +3,7 @@
 // Three slices through the labels, with what is selected and filtered as in the view.
 import { element } from './decode.js';
 import { selectedColor } from './looks.js';
-import { make, makeSvg, written } from './sample.js';
+import { make, makeSvg } from './sample.js';
 import { kHidden, kPale, kSelected } from './selection.js';
 
 const names = ['x', 'y', 'z'];
@@ -115,7 +115,7 @@ class Panel {
     this.slider.value = layer;
     const { factor, min } = sample.about.slices;
     const index = (layer + min[this.fixed]) * factor + (factor - 1) / 2;
-    this.place.textContent = `${written(index * sample.about.edges[this.fixed])} ${sample.unit(1)}`;
+    this.place.textContent = sample.length(index * sample.about.edges[this.fixed]);
   }
 
   drawCross() {

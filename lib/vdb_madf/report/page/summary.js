@@ -13,10 +13,10 @@ function percent(share) {
 function originOf(sample) {
   const { numbers } = sample;
   const size = numbers.box_max.map((high, i) => high - numbers.box_min[i] + 1);
-  const edges = sample.about.edges.map((edge) => written(edge));
+  const edges = sample.about.edges.map((edge) => sample.length(edge));
   const cubes = new Set(edges).size === 1;
   const voxel = sample.about.voxelSizeKnown
-    ? `voxels of ${cubes ? edges[0] : edges.join(' \u00d7 ')} ${sample.unit(1)}`
+    ? `voxels of ${cubes ? edges[0] : edges.join(' \u00d7 ')}`
     : 'voxels of unknown size: lengths are in voxels';
   const made = ['merge_mode', 'gamma', 'theta', 'delta'].filter((key) => key in numbers.segmentation)
     .map((key) => `${key.replace('_', ' ')} ${numbers.segmentation[key]}`).join(', ');
@@ -25,7 +25,7 @@ function originOf(sample) {
 
 function tiles(sample) {
   const { numbers, about } = sample;
-  const unit = sample.unit(1), u = about.unit;
+  const u = about.unit;
   const number = (name) => numbers[name];
   const d50 = (by) => number(`grain_diameter_by_${by}_${u}`).d50;
   const result = [
@@ -33,8 +33,8 @@ function tiles(sample) {
     ['Bonds', counted(number('bonds'))],
     ['Bonds a grain', written(number('mean_coordination'), 3)],
     ['Solid fraction', percent(number('solid_fraction'))],
-    ['Median diameter, by volume', `${written(d50('volume'), 3)} ${unit}`],
-    ['Median diameter, by number', `${written(d50('number'), 3)} ${unit}`],
+    ['Median diameter, by volume', sample.length(d50('volume'), 3)],
+    ['Median diameter, by number', sample.length(d50('number'), 3)],
     ['Specific surface', `${written(number(`specific_surface_per_${u}`), 3)} ${sample.unit(-1)}`],
     ['Bond radius / grain radius', written(number('bond_to_grain_ratio'), 3)],
   ];

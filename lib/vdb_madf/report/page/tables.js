@@ -79,7 +79,7 @@ class SampleTable {
     this.panel = make('div', { className: 'panel', role: 'tabpanel' },
       make('div', { className: 'bar' }, make('label', {}, all, ' all columns'),
         this.button('Copy numbers', () => this.copy()), this.button('Save as CSV', () => this.save())),
-      make('div', { className: 'scroll' }, this.node));
+      this.node);
   }
 
   button(title, act) {
@@ -110,7 +110,7 @@ class SampleTable {
     jQuery.fn.dataTable.ext.search.push((settings, data, row) =>
       settings.nTable !== this.node || this.flags()[row] === 1);
     this.data = jQuery(this.node).DataTable({
-      data: rows, deferRender: true, autoWidth: false, orderCellsTop: true, pageLength: 12, dom: 'tip',
+      data: rows, deferRender: true, autoWidth: false, orderCellsTop: true, pageLength: 12, dom: '<"scroll"t>ip',
       order: this.kind === 'grains' ? [[this.columns.indexOf('equivalent_diameter'), 'desc']]
         : [[this.columns.indexOf('area'), 'desc']],
       columns: this.columns.map((name) => {
