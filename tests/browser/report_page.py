@@ -195,12 +195,27 @@ def check_odd_samples(page, folder):
             demand(page.selected() == [70000], "numbers beyond 16 bits")
 
 
+def check_comparison(page, folder, labels, grains):
+    """Two samples side by side, the second one larger grains alone."""
+    command("edit", labels, "large.vdb", "--min-voxels", "800", "-q")
+    out = os.path.join(folder, "both.html")
+    command("report", labels, "large.vdb", out, "-q")
+    complaints = page.open(out)
+    demand(not complaints, f"the page of two samples: {complaints}")
+    cells = [cell.text for cell in page.find("#numbers tbody tr").find_elements("css selector", "td")]
+    large = sum(int(row["voxels"]) >= 800 for row in grains)
+    demand(cells == [str(len(grains)), str(large)], f"two samples have {cells} grains")
+    lines = page.find("#charts").find_elements("css selector", ".steps")
+    demand(len(lines) == 12, f"there are {len(lines)} lines in the distributions of two samples")
+
+
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     command("generate", "sintered", "s.vdb", "--size", "64", "--count", "30", "--radius", "7:11",
             "--voxel-size", "10um", "-q")
     command("segment", "s.vdb", "l.vdb", "-q")
-    refusal = command("report", "l.vdb", "r.html", refused=True)
+    command("sweep", "s.vdb", "sweep.csv", "--theta", "-0.9,-0.7", "-q")
+    refusal = command("report", "l.vdb", "r.html", "--sweep", "sweep.csv", refused=True)
     if "cannot be written by this program" in refusal:
         skip("reports in a browser: built without esbuild, libjs-three and libjs-jquery-datatables")
     command("measure", "l.vdb", "tables", "-q")
@@ -210,10 +225,12 @@ with tempfile.TemporaryDirectory() as folder:
     with Page() as page:
         complaints = page.open(path)
         demand(not complaints, f"the page complains: {complaints}")
+        demand(len(page.find("#charts").find_elements("css selector", ".steps")) >= 3, "the sweep is not plotted")
         check_clicks(page, labels)
         check_filters(page, grains)
         check_links(page, grains, bonds)
         check_state(page, path, "l.vdb", folder)
+        check_comparison(page, folder, "l.vdb", grains)
         check_odd_samples(page, folder)
     with Page("--disable-3d-apis") as page:
         complaints = [text for text in page.open(path) if "WebGL" not in text]

@@ -335,6 +335,15 @@ TEST_CASE("report: no grains, one, none that touch", "[report]") {
   CHECK(std::count(bonds.begin(), bonds.end(), '\n') == 1);
 }
 
+TEST_CASE("report: the table of a sweep goes along", "[report]") {
+  NEEDS_PAGE();
+  ReportOptions options;
+  options.sweep =
+      "gamma,merge,delta,theta,grains,median_voxels,small_grains,more\n0,both,2,-1,9,8,7,6\n";
+  const Page page = write(*balls(), options);
+  CHECK(page.bytes("sweep") == options.sweep);
+}
+
 TEST_CASE("report: without a view in three dimensions there is no mesh", "[report]") {
   NEEDS_PAGE();
   ReportOptions options;
@@ -345,6 +354,38 @@ TEST_CASE("report: without a view in three dimensions there is no mesh", "[repor
   CHECK(page.text.find("src=\"data:image/png;base64,iVBOR") != std::string::npos);
 }
 
+TEST_CASE("report: samples side by side have their tables and pictures", "[report]") {
+  NEEDS_PAGE();
+  const ScratchFolder folder;
+  const auto first = balls(), second = labelGrid(marker());
+  const auto sample = [](const std::string& name, const Int32Grid::Ptr& labels) {
+    return ReportSample{name, name + ".vdb", [labels]() -> Int32Grid::ConstPtr { return labels; }};
+  };
+  ReportOptions options;
+  options.title = "a & b";
+  const Report report =
+      writeComparison(folder / "c.html", {sample("<one>", first), sample("two", second)}, options);
+  CHECK(report.grains == 6);
+  const Page page{readFile(folder / "c.html")};
+  CHECK(page.text.find("<title>a &amp; b</title>") != std::string::npos);
+  CHECK(page.json("samples") == 2);
+  CHECK(page.json("about-0").at("title") == "<one>");
+  CHECK(page.bytes("grains-0") == measurementTexts(measure(*first)).grains);
+  CHECK(page.bytes("bonds-1") == measurementTexts(measure(*second)).bonds);
+  CHECK(page.json("sample-1").at("labels") == "two.vdb");
+  CHECK(page.text.find("<img id=\"picture-1\"") != std::string::npos);
+  CHECK(!page.has("mesh-0"));
+
+  setVoxelSize(*first, VoxelSize(1e-5));
+  CHECK_THROWS_WITH(
+      writeComparison(folder / "d.html", {sample("one", first), sample("two", second)}),
+      "lengths of one.vdb are in mm, those of two.vdb in voxel: give all samples a voxel size");
+  CHECK_THROWS_WITH(writeComparison(folder / "d.html",
+                                    {sample("one", first), sample("two", Int32Grid::create(0))}),
+                    "two.vdb: has no labels and no domain: nothing to show");
+  CHECK(folder.fileCount() == 1);
+}
+
 TEST_CASE("report: what is refused leaves no file", "[report]") {
   const ScratchFolder folder;
   ReportOptions options;
@@ -352,6 +393,9 @@ TEST_CASE("report: what is refused leaves no file", "[report]") {
   CHECK_THROWS_AS(writeReport(folder / "p.html", *balls(), options), InvalidInput);
   options = {};
   options.pictureEdge = 8;
+  CHECK_THROWS_AS(writeReport(folder / "p.html", *balls(), options), InvalidInput);
+  options = {};
+  options.sweep = "a,b\n1,2\n";
   CHECK_THROWS_AS(writeReport(folder / "p.html", *balls(), options), InvalidInput);
   CHECK_THROWS_AS(writeReport(folder / "none/p.html", *balls()), IoError);
   CHECK(folder.fileCount() == 0);

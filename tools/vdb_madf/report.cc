@@ -5,6 +5,8 @@
 
 #include <cstdio>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "command.h"
 #include "input_options.h"
@@ -13,25 +15,38 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/read_text.h"
 
 namespace vdb_madf::tools {
 
 namespace {
 
+constexpr uint64_t kMaxSweepBytes = 10000000;
+
 struct Options {
   InputOptions input;
-  std::string out, boundary = "auto", minFaces = "1", density, triangles = "1000000";
+  std::vector<std::string> files;  ///< of labels, and of the page
+  std::vector<InputOptions> samples;
+  std::string out, boundary = "auto", minFaces = "1", density, sweep, triangles = "1000000";
   bool ice = false, noView = false;
   ReportOptions report;
 };
 
 void parse(Options& o) {
+  o.out = o.files.back();
   const std::string ending = fileEnding(o.out);
   if (ending != ".html" && ending != ".htm")
-    throw WrongUsage(o.out + ": the output's ending must be .html");
+    throw WrongUsage(o.out + ": the output comes last, and its ending must be .html");
+  if (o.files.size() == 1) throw WrongUsage("give the labels, and last the page to write");
   o.input.outputs = {o.out};
-  o.input.parse();
+  for (size_t i = 0; i + 1 < o.files.size(); ++i) {
+    o.input.path = o.files[i];
+    o.input.parse();
+    o.samples.push_back(o.input);
+  }
   o.report.labels = o.input.path;
+  if (!o.sweep.empty() && o.samples.size() > 1)
+    throw WrongUsage("--sweep is of one sample: give the labels of one");
   o.report.measure.boundary = parseBoundary(o.boundary);
   o.report.measure.minFaces = parseCount(o.minFaces, "--min-faces");
   o.report.maxTriangles = o.noView ? 0 : uint64_t(parseCount(o.triangles, "--triangles"));
@@ -45,16 +60,36 @@ void parse(Options& o) {
   }
 }
 
-void run(const Options& o, const Common& common) {
-  checkWritable(o.out);
+Report writeOne(const Options& o, const Common& common) {
+  ReportOptions options = o.report;
+  if (!o.sweep.empty()) options.sweep = readText(o.sweep, kMaxSweepBytes);
+  if (!o.sweep.empty() && !isSweepTable(options.sweep))
+    throw InvalidInput(o.sweep + ": is no table of the verb sweep");
   common.progress->start("read");
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
-  const Report report = withFileName(
-      o.input.path, [&] { return writeReport(o.out, *labels, o.report, common.progress); });
+  return withFileName(o.input.path,
+                      [&] { return writeReport(o.out, *labels, options, common.progress); });
+}
+
+Report writeAll(const Options& o, const Common& common) {
+  std::vector<ReportSample> samples;
+  for (const InputOptions& input : o.samples)
+    samples.push_back({input.path, input.path, [&input, &common]() -> Int32Grid::ConstPtr {
+                         common.progress->start("read");
+                         return loadLabels(input, "--grid", common.progress);
+                       }});
+  return writeComparison(o.out, samples, o.report, common.progress);
+}
+
+void run(const Options& o, const Common& common) {
+  checkWritable(o.out);
+  const bool isOne = o.samples.size() == 1;
+  const Report report = isOne ? writeOne(o, common) : writeAll(o, common);
   common.progress->end();
   if (common.quiet) return;
-  std::printf("%s: %.1f MB, open it in a browser: %s, %s", o.out.c_str(),
-              double(report.bytes) / 1e6, counted(report.grains, "grain").c_str(),
+  std::printf("%s: %.1f MB, open it in a browser: ", o.out.c_str(), double(report.bytes) / 1e6);
+  if (!isOne) std::printf("%s, ", counted(int64_t(o.samples.size()), "sample").c_str());
+  std::printf("%s, %s", counted(report.grains, "grain").c_str(),
               counted(report.bonds, "bond").c_str());
   if (report.triangles > 0)
     std::printf(", %s", counted(int64_t(report.triangles), "triangle").c_str());
@@ -70,8 +105,11 @@ void addReport(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<Options>();
   Verb verb = addVerb(command, common, "report", "a page for the browser: look, click, filter",
                       "vdb_madf report grains.vdb report.html");
-  verb.option("LABELS", o->input.path, "labels: VDB or integer image").required();
-  verb.option("OUT.html", o->out, "one file that opens in a browser, without a network").required();
+  verb.option(
+          "LABELS", o->files,
+          "labels, VDB or integer image, of one sample or of several to compare; last, the page "
+          "to write, OUT.html: one file that opens in a browser, without a network")
+      .required();
   verb.option("--grid", o->input.gridName, "VDB input: the grid to take").typeName("NAME");
   verb.option("--title", o->report.title, "of the page (default: the name of the file)")
       .typeName("TEXT");
@@ -79,6 +117,8 @@ void addReport(Verb command, Common& common, Action& action) {
       .typeName("N")
       .showDefault();
   verb.flag("--no-3d", o->noView, "a picture in the place of the view to turn");
+  verb.option("--sweep", o->sweep, "a table of the verb sweep, of the same object: adds its plots")
+      .typeName("FILE.csv");
   verb.option("--max-dim", o->report.maxSlice, "longest side of the slices, in voxels")
       .range(16, 2048)
       .showDefault();

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "vdb_madf/base/interrupter.h"
 #include "vdb_madf/grids/grid_types.h"
@@ -21,6 +23,7 @@ struct ReportOptions {
   /// Of all grains together, about: 150 a grain, or 40000 if that is more, but no more than this. 0:
   /// no view in three dimensions.
   uint64_t maxTriangles = 1000000;
+  std::string sweep;  ///< the text of a table of the verb sweep, to be shown as plots; empty: none
   /// Slices are those of labels that are reduced to at most so many voxels a side, 1 or more.
   int maxSlice = 256;
   int pictureEdge = 640;  ///< pixels of the picture for where there is no WebGL, about; 16 .. 8192
@@ -37,6 +40,9 @@ struct Report {
 /// False if this was built without what the page's script is made with.
 bool canWriteReport();
 
+/// True for the text of a table of the verb sweep, by its first columns.
+bool isSweepTable(const std::string& text);
+
 /// Writes a sample as a web page in one file, whole or not at all: its numbers, its grains to look
 /// at from all sides, slices, tables and charts, which a reader can click, sort and filter. The file
 /// holds all that it needs and asks for nothing else: it opens without a network. Same labels and
@@ -50,5 +56,17 @@ bool canWriteReport();
 ///   measure() does; IoError, also if !canWriteReport(); Interrupted.
 Report writeReport(const std::string& path, const Int32Grid& labels,
                    const ReportOptions& options = {}, Interrupter* interrupter = nullptr);
+
+/// One of several.
+struct ReportSample {
+  std::string name, path;                       ///< of the labels
+  std::function<Int32Grid::ConstPtr()> labels;  ///< called once: one sample is in memory at a time
+};
+
+/// Writes samples side by side: their numbers, pictures, distributions and roses. Of the options
+/// those of view and slices are not used, nor is `labels`.
+/// @throw InvalidInput also if lengths are not in one unit; else as writeReport()
+Report writeComparison(const std::string& path, const std::vector<ReportSample>& samples,
+                       const ReportOptions& options = {}, Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 // Charts of what passes the filters, over all; dragging in one sets a filter.
+import { binEdges, inPercent, sumsOf } from './bins.js';
 import { element } from './decode.js';
 import { Plot } from './plot.js';
 import { quarterRose, fullRose } from './roses.js';
 import { make } from './sample.js';
-
-const kMostBins = 40;
 
 /// Bars of the values of a column, each counted as one or by its weight.
 class Histogram {
@@ -15,7 +14,8 @@ class Histogram {
     this.values = sample[kind].column(name);
     this.weights = weight && sample[kind].column(weight);
     this.flags = () => (kind === 'grains' ? selection.visible : selection.visibleBonds);
-    this.setBins();
+    this.edges = binEdges(this.values, discrete);
+    this.total = sumsOf(this.values, this.weights, this.edges).reduce((a, b) => a + b, 0);
     this.plot = new Plot(title || sample.titleOf(name), sample.titleWithUnit(kind, name), what,
       { x: [this.edges[0], this.edges[this.edges.length - 1]] });
     this.plot.onDrag(([low, high]) => selection.setFilter(kind, name, this.rounded(low, high)),
@@ -23,36 +23,9 @@ class Histogram {
     this.figure = this.plot.figure;
   }
 
-  /// Rice's rule; of whole numbers one for each, or for as many as it takes.
-  setBins() {
-    const known = this.values.filter((value) => !Number.isNaN(value));
-    let low = Math.min(...known), high = Math.max(...known);
-    if (known.length === 0) [low, high] = [0, 1];
-    let count = Math.max(5, Math.min(kMostBins, Math.round(2 * Math.cbrt(known.length))));
-    if (this.discrete) {
-      const width = Math.ceil((high - low + 1) / kMostBins);
-      [low, high] = [low - 0.5, high + 0.5];
-      count = Math.ceil((high - low) / width);
-      high = low + count * width;
-    } else if (high === low) {
-      [low, high] = [low - (Math.abs(low) / 2 || 0.5), high + (Math.abs(high) / 2 || 0.5)];
-    }
-    this.edges = Array.from({ length: count + 1 }, (_, i) => low + (high - low) * i / count);
-  }
-
   sums(flags) {
-    const { values, weights, edges } = this;
-    const low = edges[0], count = edges.length - 1, high = edges[count];
-    const sums = new Array(count).fill(0);
-    let total = 0;
-    for (let row = 0; row < values.length; ++row) {
-      const weight = weights ? weights[row] : 1;
-      if (Number.isNaN(values[row])) continue;
-      total += weight;
-      if (!flags || flags[row])
-        sums[Math.min(count - 1, Math.floor((values[row] - low) / (high - low) * count))] += weight;
-    }
-    return weights ? sums.map((sum) => (total ? 100 * sum / total : 0)) : sums;
+    const sums = sumsOf(this.values, this.weights, this.edges, flags);
+    return this.weights ? inPercent(sums, this.total) : sums;
   }
 
   /// A range with few digits, for the field of the table.

@@ -2,18 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 import { followState, readState } from './address.js';
 import { startCharts } from './charts.js';
-import { element } from './decode.js';
+import { startComparison } from './comparison.js';
+import { element, json } from './decode.js';
 import { startEdits } from './edits.js';
 import { startGrain } from './grain.js';
 import { make, Sample } from './sample.js';
 import { Selection } from './selection.js';
 import { startSlices } from './slices.js';
 import { startSummary } from './summary.js';
+import { startSweep } from './sweep.js';
 import { startTables } from './tables.js';
 import { newCamera, startView } from './view.js';
 
 async function start() {
+  if (element('samples')) await startComparison(json('samples')); else await startSample();
+  document.documentElement.dataset.ready = 'yes';
+}
+
+async function startSample() {
   const sample = await Sample.load();
+  await sample.loadVoxels();
   const selection = new Selection(sample);
   const camera = newCamera(sample);
   readState(location.hash.slice(1), selection, camera);
@@ -23,6 +31,7 @@ async function start() {
   startGrain(sample, selection);
   startSlices(sample, selection);
   startCharts(sample, selection);
+  await startSweep(sample);
   startTables(sample, selection);
   startEdits(sample, selection);
   const scene = await startView(sample, selection, camera);
@@ -33,7 +42,6 @@ async function start() {
   });
   // For tests, and for a reader's console.
   window.report = { sample, selection, camera, scene };
-  document.documentElement.dataset.ready = 'yes';
 }
 
 start().catch((error) => {

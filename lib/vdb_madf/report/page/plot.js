@@ -18,8 +18,9 @@ export function ticks(low, high, most) {
 }
 
 export class Plot {
-  constructor(title, xTitle, yTitle, { x, y }) {
-    Object.assign(this, { title, xTitle, yTitle, x, y });
+  /// `isLog`: y has logarithms to the base 10.
+  constructor(title, xTitle, yTitle, { x, y, isLog = false }) {
+    Object.assign(this, { title, xTitle, yTitle, x, y, isLog });
     this.svg = makeSvg('svg', { viewBox: `0 0 ${size.width} ${size.height}`, role: 'img' });
     this.svg.setAttribute('aria-label', title);
     this.figure = make('figure', {}, make('figcaption', {}, title), this.svg);
@@ -46,7 +47,7 @@ export class Plot {
     for (const value of ticks(...(this.y || [0, this.most]), 4)) {
       const y = this.toY(value);
       this.add('line', { class: 'grid', x1: frame.left, x2: frame.right, y1: y, y2: y });
-      this.text(frame.left - 5, y + 4, written(value), 'end');
+      this.text(frame.left - 5, y + 4, this.isLog ? written(10 ** value, 2) : written(value), 'end');
     }
     this.text((frame.left + frame.right) / 2, size.height - 6, this.xTitle, 'middle');
     this.text(11, (frame.top + frame.bottom) / 2, this.yTitle, 'middle',
@@ -67,6 +68,25 @@ export class Plot {
         this.add('rect', { class: look, x: x + 0.5, y, width: Math.max(0.5, this.toX(edges[i + 1]) - x - 1),
           height: frame.bottom - y });
     });
+  }
+
+  /// The outline of bars.
+  steps(edges, heights, color) {
+    const tops = heights.map((height, i) =>
+      `V${this.toY(height).toFixed(1)}H${this.toX(edges[i + 1]).toFixed(1)}`);
+    this.add('path', { class: 'steps', stroke: color,
+      d: `M${this.toX(edges[0]).toFixed(1)} ${frame.bottom}${tops.join('')}V${frame.bottom}` });
+  }
+
+  line(places, color, isDashed) {
+    const path = places.map(([x, y], i) => `${i ? 'L' : 'M'}${this.toX(x).toFixed(1)} ${this.toY(y).toFixed(1)}`);
+    this.add('path', { class: 'steps', stroke: color, d: path.join(''), 'stroke-dasharray': isDashed ? '2 3' : 'none' });
+  }
+
+  /// A dashed line at x, if it is one of the plot's.
+  upright(x) {
+    if (x >= this.x[0] && x <= this.x[1])
+      this.add('line', { class: 'class', x1: this.toX(x), x2: this.toX(x), y1: frame.top, y2: frame.bottom });
   }
 
   points(places, look) {

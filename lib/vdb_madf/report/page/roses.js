@@ -13,7 +13,7 @@ class Rose {
     this.directions = ['x', 'y', 'z'].map((axis) => sample[kind].column(`${name}_${axis}`));
     this.weights = sample[kind].column(weight);
     this.flags = () => (kind === 'grains' ? selection.visible : selection.visibleBonds);
-    this.svg = makeSvg('svg', { viewBox: '0 0 210 210', role: 'img', 'aria-label': title, class: 'rose' });
+    this.svg = makeSvg('svg', { viewBox: '-6 4 222 202', role: 'img', 'aria-label': title, class: 'rose' });
     this.figure = make('figure', {}, make('figcaption', {}, title), this.svg);
   }
 

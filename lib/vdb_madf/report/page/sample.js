@@ -12,22 +12,29 @@ const titles = {
   aspect_3_to_2: 'axis 3 / axis 2', cos_alpha: 'cos alpha',
 };
 
+/// Of lines, told apart by those who are blind to a color, too (Okabe and Ito).
+export const lineColors = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#000000', '#999999'];
+
 export class Sample {
-  static async load() {
+  /// Its tables. `suffix`: of the ids of its elements.
+  static async load(suffix = '') {
     const sample = new Sample();
-    sample.about = json('about');
-    sample.numbers = json('sample');
+    sample.about = json(`about${suffix}`);
+    sample.numbers = json(`sample${suffix}`);
     const text = new TextDecoder();
     const { columns } = sample.about;
-    sample.grains = table(text.decode(await bytes('grains')), columns.grains);
-    sample.bonds = table(text.decode(await bytes('bonds')), columns.bonds);
+    sample.grains = table(text.decode(await bytes(`grains${suffix}`)), columns.grains);
+    sample.bonds = table(text.decode(await bytes(`bonds${suffix}`)), columns.bonds);
     sample.count = sample.grains.rows;
     sample.ids = sample.grains.column('id');
     sample.rowOf = new Map(Array.from(sample.ids, (id, row) => [id, row]));
     sample.linkBonds();
-    sample.colors = await bytes('colors');
-    sample.volume = labelVolume(await bytes('labels'), sample.about.slices.size, sample.count);
     return sample;
+  }
+
+  async loadVoxels() {
+    this.colors = await bytes('colors');
+    this.volume = labelVolume(await bytes('labels'), this.about.slices.size, this.count);
   }
 
   async loadMesh() {

@@ -10,7 +10,7 @@ function percent(share) {
   return `${written(100 * share, 3)} %`;
 }
 
-function originOf(sample) {
+export function originOf(sample) {
   const { numbers } = sample;
   const size = numbers.box_max.map((high, i) => high - numbers.box_min[i] + 1);
   const edges = sample.about.edges.map((edge) => sample.length(edge));
@@ -23,7 +23,8 @@ function originOf(sample) {
   return [numbers.labels, `${size.join(' \u00d7 ')} voxels`, voxel, made].filter(Boolean).join('; ');
 }
 
-function tiles(sample) {
+/// Titles and values of the numbers of a sample.
+export function tiles(sample) {
   const { numbers, about } = sample;
   const u = about.unit;
   const number = (name) => numbers[name];
@@ -45,7 +46,7 @@ function tiles(sample) {
   return result;
 }
 
-function warnings(sample) {
+export function warnings(sample) {
   const { grains, numbers, about } = sample;
   const voxels = grains.column('voxels'), atFace = grains.column('at_domain_face');
   const sum = (test) => voxels.reduce((total, value, row) => total + (test(row) ? value : 0), 0);
@@ -76,7 +77,10 @@ export function startSummary(sample) {
   const list = warnings(sample);
   if (list.length > 0)
     element('warnings').append(make('ul', {}, ...list.map((text) => make('li', {}, text))));
-  element('made').textContent =
-    `Written by vdb_madf ${sample.about.version}. Labels: ${sample.numbers.labels_digest}. ` +
+  tellMaker(sample.about.version, [sample.numbers.labels_digest]);
+}
+
+export function tellMaker(version, digests) {
+  element('made').textContent = `Written by vdb_madf ${version}. Labels: ${digests.join(', ')}. ` +
     'This file asks for nothing from the network.';
 }
