@@ -72,6 +72,12 @@ TEST_CASE("cli: the version says what the command was built with and runs with",
   const bool isBuiltIn = bench.run("info a.h5").err.find("libhdf5-dev") == std::string::npos;
   CHECK((line == "HDF5 is read and written") == isBuiltIn);
   CHECK((line.find("HDF5 is not read: ") == 0) != isBuiltIn);
+  std::getline(version, line);
+  bench.mustRun("generate spheres s.vdb --size 20 --count 1 --radius 5:6");
+  const bool areWritten =
+      bench.run("report s.vdb r.html --grid truth").err.find("esbuild") == std::string::npos;
+  CHECK((line == "Reports are written") == areWritten);
+  CHECK((line.find("Reports are not written: ") == 0) != areWritten);
   CHECK_FALSE(std::getline(version, line));
 }
 

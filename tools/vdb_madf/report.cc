@@ -120,7 +120,7 @@ void addReport(Verb command, Common& common, Action& action) {
   verb.option("--sweep", o->sweep, "a table of the verb sweep, of the same object: adds its plots")
       .typeName("FILE.csv");
   verb.option("--max-dim", o->report.maxSlice, "longest side of the slices, in voxels")
-      .range(16, 2048)
+      .range(16, 1024)
       .showDefault();
   o->input.addRaw(verb);
   o->input.addVoxelSize(verb);

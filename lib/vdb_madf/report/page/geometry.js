@@ -18,7 +18,7 @@ export function grainGeometry(mesh, space) {
   geometry.setAttribute('position', attribute(positions, 3));
   geometry.setAttribute('normal', attribute(normalsOf(positions, corners), 3));
   geometry.setAttribute('grain', attribute(mesh.grainOf, 1));
-  geometry.setIndex(attribute(corners, 1));
+  geometry.setIndex(attribute(corners.slice(), 1));  // the scene sorts it
   return geometry;
 }
 

@@ -8,7 +8,7 @@ import { kHidden, kPale, kPlain, kSelected } from './selection.js';
 import * as shaders from './shaders.js';
 
 const kTableWidth = 256;
-const kPaleOpacity = 0.22;
+const kPaleStrength = 0.24;
 const kFar = 1e9;  // beyond every box
 const bondColor = new three.Vector3(0.78, 0.13, 0.11);
 
@@ -61,7 +61,7 @@ export class Scene {
     this.shared = {
       looks: { value: this.looks }, places: { value: places }, tableWidth: { value: kTableWidth },
       low: { value: new three.Vector3() }, high: { value: new three.Vector3() },
-      explode: { value: 0 }, lowState: { value: 0 }, highState: { value: 0 }, opacity: { value: 1 },
+      explode: { value: 0 }, lowState: { value: 0 }, highState: { value: 0 }, strength: { value: 1 },
       picking: { value: false },
     };
   }
@@ -69,7 +69,9 @@ export class Scene {
   makeGrains(mesh) {
     this.grainMaterial = raw(shaders.grainVertex, shaders.grainFragment, this.shared);
     this.grains = new three.Scene();
-    this.grains.add(drawn(three.Mesh, grainGeometry(mesh, this.space), this.grainMaterial));
+    this.mesh = mesh;
+    this.bodies = grainGeometry(mesh, this.space);
+    this.grains.add(drawn(three.Mesh, this.bodies, this.grainMaterial));
   }
 
   makeCuts() {
@@ -113,10 +115,31 @@ export class Scene {
       data[4 * row + 3] = state === kPlain ? plain : state;
     }
     this.looks.needsUpdate = true;
-    this.hasPale = data.some((value, i) => i % 4 === 3 && value === kPale);
+    this.sortBodies();
     this.shared.explode.value = this.selection.explode;
     this.updateBonds();
     this.showCuts();
+  }
+
+  /// Triangles of the grains that are plain or selected come first, then those of pale ones.
+  sortBodies() {
+    const { corners, firstTriangle } = this.mesh;
+    const { data } = this.looks.image;
+    const { index } = this.bodies;
+    let to = 0;
+    const add = (isWanted) => {
+      const start = to;
+      for (let row = 0; row < this.sample.count; ++row) {
+        if (!isWanted(data[4 * row + 3])) continue;
+        const body = corners.subarray(3 * firstTriangle[row], 3 * firstTriangle[row + 1]);
+        index.array.set(body, to);
+        to += body.length;
+      }
+      return { start, count: to - start };
+    };
+    this.solid = { ...add((state) => state > kPale), low: kPlain, high: kSelected };
+    this.pale = { ...add((state) => state === kPale), low: kPale, high: kPale };
+    index.needsUpdate = true;
   }
 
   updateBonds() {
@@ -217,8 +240,8 @@ export class Scene {
     this.aim();
     this.renderer.clear();
     this.renderer.render(this.frame, this.eye);
-    if (this.hasPale) this.drawPale();
-    this.drawGrains(kPlain, kSelected);
+    if (this.pale.count > 0) this.drawPale();
+    this.drawGrains(this.solid);
     if (this.selection.bondsAs !== 'none') this.drawBonds();
     if (this.onDrawn) this.onDrawn();
   }
@@ -229,23 +252,18 @@ export class Scene {
     this.renderer.render(this.bonds, this.eye);
   }
 
-  drawGrains(lowState, highState) {
-    this.shared.lowState.value = lowState - 1;
-    this.shared.highState.value = highState + 1;
+  drawGrains({ start, count, low, high }) {
+    this.bodies.setDrawRange(start, count);
+    this.shared.lowState.value = low - 1;
+    this.shared.highState.value = high + 1;
     this.renderer.render(this.grains, this.eye);
   }
 
-  /// The outermost of them alone, like a veil: first their depth, then their color. It hides nothing of
-  /// what is drawn later.
+  /// Hides nothing of what is drawn later.
   drawPale() {
-    const materials = [this.grainMaterial, ...this.cuts.map(({ face }) => face.material)];
-    for (const material of materials) material.colorWrite = false;
-    this.drawGrains(kPale, kPale);
-    for (const material of materials) Object.assign(material, { colorWrite: true, transparent: true });
-    this.shared.opacity.value = kPaleOpacity;
-    this.drawGrains(kPale, kPale);
-    this.shared.opacity.value = 1;
-    for (const material of materials) material.transparent = false;
+    this.shared.strength.value = kPaleStrength;
+    this.drawGrains(this.pale);
+    this.shared.strength.value = 1;
     this.renderer.clearDepth();
   }
 
@@ -257,9 +275,9 @@ export class Scene {
     this.renderer.setClearColor(0, 0);
     const bytes = new Uint8Array(4);
     let row = -1;
-    for (const [low, high] of [[kPlain, kSelected], [kPale, kPale]]) {
+    for (const part of [this.solid, this.pale]) {
       this.renderer.clear();
-      this.drawGrains(low, high);
+      this.drawGrains(part);
       this.renderer.readRenderTargetPixels(this.pixel, 0, 0, 1, 1, bytes);
       row = bytes[0] + 256 * bytes[1] + 65536 * bytes[2] - 1;
       if (row >= 0) break;

@@ -24,32 +24,27 @@ vec4 idColor(int grain) {
 }
 `;
 
-/// Of a pass only the grains in its states are drawn: from lowState to highState.
 export const grainVertex = `${head}${grainTables}
 uniform mat4 modelViewMatrix, projectionMatrix;
 uniform mat3 normalMatrix;
-uniform float explode, lowState, highState;
-in vec3 position;
-in vec3 normal;
+uniform float explode;
+in vec3 position, normal;
 in float grain;
 out vec3 place, viewNormal;
 flat out vec3 color;
 flat out int number;
 void main() {
   number = int(grain);
-  vec4 look = texelFetch(looks, cellOf(number), 0);
-  color = look.rgb;
+  color = texelFetch(looks, cellOf(number), 0).rgb;
   place = position;
   viewNormal = normalMatrix * normal;
   vec3 center = texelFetch(places, cellOf(number), 0).xyz;
-  float state = look.a * 255.0;
-  gl_Position = state < lowState || state > highState ? vec4(2.0, 2.0, 2.0, 1.0)
-    : projectionMatrix * modelViewMatrix * vec4(position + explode * center, 1.0);
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position + explode * center, 1.0);
 }`;
 
 export const grainFragment = `${head}${light}
 uniform vec3 low, high;
-uniform float opacity;
+uniform float strength;
 uniform bool picking;
 in vec3 place, viewNormal;
 flat in vec3 color;
@@ -59,7 +54,7 @@ void main() {
   if (any(lessThan(place, low)) || any(greaterThan(place, high))) discard;
   // Where a cut shows the inside of a surface, the cut face is drawn over it (but for a rim).
   result = picking ? idColor(number)
-    : vec4(gl_FrontFacing ? lit(color, viewNormal) : 0.9 * color, opacity);
+    : vec4(mix(vec3(1.0), gl_FrontFacing ? lit(color, viewNormal) : 0.9 * color, strength), 1.0);
 }`;
 
 /// The face of a cut: slice has the numbers of the grains there, from 1 on.
@@ -76,7 +71,7 @@ export const cutFragment = `${head}${grainTables}${light}
 uniform sampler2D slice;
 uniform vec3 low, high, perCell, firstCell;
 uniform int axis;
-uniform float lowState, highState, opacity;
+uniform float lowState, highState, strength;
 uniform bool picking;
 in vec3 place;
 out vec4 result;
@@ -92,7 +87,7 @@ void main() {
   vec4 look = texelFetch(looks, cellOf(grain), 0);
   float state = look.a * 255.0;
   if (state < lowState || state > highState) discard;
-  result = picking ? idColor(grain) : vec4(0.97 * look.rgb, opacity);
+  result = picking ? idColor(grain) : vec4(mix(vec3(1.0), 0.97 * look.rgb, strength), 1.0);
 }`;
 
 /// Bonds: discs, or lines between the grains' centroids.
