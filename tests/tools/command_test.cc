@@ -73,7 +73,7 @@ TEST_CASE("cli: the version says what the command was built with and runs with",
   CHECK((line == "HDF5 is read and written") == isBuiltIn);
   CHECK((line.find("HDF5 is not read: ") == 0) != isBuiltIn);
   std::getline(version, line);
-  bench.mustRun("generate spheres s.vdb --size 20 --count 1 --radius 5:6");
+  bench.mustRun("generate spheres s.vdb --size 40 --count 5 --radius 6:9");
   const bool areWritten =
       bench.run("report s.vdb r.html --grid truth").err.find("esbuild") == std::string::npos;
   CHECK((line == "Reports are written") == areWritten);
