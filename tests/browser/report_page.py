@@ -73,8 +73,8 @@ class View:
         return int(seen[seen > 0][0]) if (seen > 0).any() else 0
 
     def clear_label(self, x, y):
-        """The same, where all rays two voxels around see it; none otherwise."""
-        reach = 2 * self.scale
+        """The same, where all rays a voxel or so around see it; none otherwise."""
+        reach = 1.3 * self.scale
         around = {self.label(x + dx * reach, y + dy * reach) for dx, dy in
                   ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (0.7, 0.7), (0.7, -0.7), (-0.7, 0.7), (-0.7, -0.7))}
         return around.pop() if len(around) == 1 else None

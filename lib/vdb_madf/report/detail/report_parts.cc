@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -54,6 +55,13 @@ Json columnsJson(const std::vector<MeasureColumn>& columns) {
   for (const MeasureColumn& column : columns)
     json.push_back({{"name", column.name}, {"power", column.power}});
   return json;
+}
+
+/// How far to reduce labels for about so many triangles: the surface of a sample has a factor squared
+/// less.
+int reductionTo(uint64_t most, const Int32Grid& labels, Interrupter* interrupter) {
+  const double times = double(countTriangles(labels, interrupter)) / double(most);
+  return std::clamp(int(std::ceil(std::sqrt(times))), 1, kMaxReduction);
 }
 
 /// Index coordinates of reduced labels to those of the labels themselves.
@@ -133,7 +141,7 @@ std::string ReportParts::mesh() {
       std::min(options_.maxTriangles, std::max(kFewestTriangles, kTrianglesOfGrain * ids_.size()))};
   const uint64_t most =
       std::min(kMostMeshed, kMostSimplified * std::max(options.triangles, kFewestTriangles));
-  const int factor = reductionForTriangles(labels_, most, 1, interrupter_);
+  const int factor = reductionTo(most, labels_, interrupter_);
   GrainMesh mesh =
       factor > 1 ? grainMesh(*reduceLabels(labels_, factor, interrupter_), options, interrupter_)
                  : grainMesh(labels_, options, interrupter_);
