@@ -33,7 +33,7 @@ TEST_CASE("neuroglancer: meshes, properties and state are those of the labels", 
   const CoordBBox box = boxOf(*grid);
   OmeZarrOptions options;
   options.meshes = true;
-  options.meshSmoothing = 0;
+  options.mesh.smoothing = 0;
   options.version = GENERATE(OmeVersion::v04, OmeVersion::v05);
   options.meshReduction = GENERATE(1, 2);
   writeOmeZarr(folder / "a.ome.zarr/", *grid, box, options);
@@ -138,7 +138,7 @@ TEST_CASE("neuroglancer: of very many grains no mesh is shown until it is chosen
   setVoxelSize(*grid, VoxelSize{1e-6});
   OmeZarrOptions options;
   options.meshes = true;
-  options.meshSmoothing = 0;
+  options.mesh.smoothing = 0;
   writeOmeZarr(folder / "a.zarr", *grid, boxOf(*grid), options);
   const Json state = Json::parse(readFile(folder / "a.zarr/neuroglancer/state.json"));
   CHECK(state.at("layers").at(1).at("segments").empty());

@@ -12,7 +12,6 @@
 #include "support/label_shapes.h"
 #include "support/mesh_checks.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/labels/reduced_labels.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
@@ -133,6 +132,41 @@ TEST_CASE("grain_mesh: interfaces are shared, smoothed or not", "[grain_mesh]") 
   }
 }
 
+namespace {
+
+/// A ring of grain 1 that passes an edge of the lattice twice: on either side of it in two voxels, which
+/// are joined below and above. What lies in the other two: \p one and \p other; 0: nothing.
+LabelMap pinched(int32_t one, int32_t other) {
+  LabelMap voxels;
+  for (const int z : {-1, 1})
+    for (const Coord& p : {Coord(0, 0, z), Coord(1, 0, z), Coord(1, 1, z)}) voxels[p] = 1;
+  voxels[{0, 0, 0}] = voxels[{1, 1, 0}] = 1;
+  if (one) voxels[{1, 0, 0}] = one;
+  if (other) voxels[{0, 1, 0}] = other;
+  return voxels;
+}
+
+}  // namespace
+
+TEST_CASE("grain_mesh: an edge that a grain passes twice has two triangles each time",
+          "[grain_mesh]") {
+  for (const auto& [one, other] : {std::pair(0, 0), {2, 0}, {0, 2}, {2, 2}, {2, 3}})
+    for (const Coord& shift : {Coord(0), Coord(7, 7, 7), Coord(-1, -1, -8)}) {
+      LabelMap voxels;
+      for (const auto& [p, label] : pinched(one, other)) voxels[p + shift] = label;
+      checkExact(voxels);
+      const GrainMesh mesh = grainMesh(*labelGrid(voxels));
+      REQUIRE(mesh.triangles.size() ==
+              countTriangles(*labelGrid(voxels)) + 4 + 2 * size_t(one > 0) + 2 * size_t(other > 0));
+      for (size_t g = 1; g < mesh.labels.size(); ++g)
+        CHECK(sharedTriangles(mesh, 0, g) ==
+              2 * contactFaces(voxels, 1, mesh.labels[g]) + (one == other ? 4 : 2));
+      const GrainMesh smooth = grainMesh(*labelGrid(voxels), {3});
+      CHECK(whyNotClosed(smooth) == "");
+      CHECK(whyNoDisc(smooth) == "");
+    }
+}
+
 TEST_CASE("grain_mesh: smoothed grains stay closed and keep their volume", "[grain_mesh]") {
   std::vector<LabelMap> samples{twoBalls({0, 0, 0}, 9), awkwardLabels()};
   for (unsigned seed = 1; seed <= 6; ++seed)
@@ -216,23 +250,6 @@ TEST_CASE("grain_mesh: triangles are counted without meshing", "[grain_mesh]") {
   tiled->fill(CoordBBox(Coord(0), Coord(15, 7, 7)), 5);
   REQUIRE(tiled->tree().hasActiveTiles());
   CHECK(countTriangles(*tiled) == 2 * (2 * 64 + 4 * 128));
-}
-
-TEST_CASE("grain_mesh: the least reduction for so many triangles", "[grain_mesh]") {
-  const auto grid = labelGrid(twoBalls({-3, 8, 5}, 9));
-  std::vector<uint64_t> counts{0, countTriangles(*grid)};
-  for (int factor = 2; factor <= 4; ++factor)
-    counts.push_back(grainMesh(*reduceLabels(*grid, factor)).triangles.size());
-  REQUIRE(counts[1] > counts[2]);
-  REQUIRE(counts[2] > counts[3]);
-  REQUIRE(counts[3] > counts[4]);
-  CHECK(reductionForTriangles(*grid, counts[1]) == 1);
-  CHECK(reductionForTriangles(*grid, counts[1], 2) == 2);
-  CHECK(reductionForTriangles(*grid, counts[1] - 1) == 2);
-  CHECK(reductionForTriangles(*grid, counts[2] - 1) == 3);
-  CHECK(reductionForTriangles(*grid, counts[4]) == 4);
-  CHECK_THROWS_AS(reductionForTriangles(*grid, 1), InvalidInput);
-  CHECK(reductionForTriangles(*labelGrid({}), 1, 3) == 3);
 }
 
 TEST_CASE("grain_mesh: one grain is its part of the mesh of all", "[grain_mesh]") {

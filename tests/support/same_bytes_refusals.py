@@ -60,6 +60,7 @@ def wrong_command_lines():
                    "in.vdb o.vdb --as mesh", "in.vdb o.vdb --as clumps", "in.vdb o.vdb --as hexa", "in.vdb o.vdb --as vti",
                    "in.vdb o.vdb --as mask", "in.vdb o.vdb --as network", "in.vdb o.ply --smooth -1",
                    "in.vdb o.ply --reduce 0", "in.vdb o.ply --reduce 2 --max-dim 9", "in.vdb o.ply --triangles 0",
+                   "in.vdb o.ply --select 0",
                    "in.vdb o.csv --as clumps --balls 0", "in.vdb o.csv --as clumps --uncovered 1.5", "in.vdb in.ply --as",
                    "in.vdb o.ply --bonds b.csv",
                    "in.ply in.ply"),
@@ -111,7 +112,7 @@ def wrong_content():
                  "convert snow32.tif never.raw --domain 0,0,0:9,9,9", "convert snow32.tif never.raw --boundary open",
                  "convert solid_none.vdb none.npy --domain 0,0,0:-1,0,0", "segment snow.vdb never.vdb --max-memory 500K",
                  "compare all_snow_0.vdb all_pack_0.vdb",
-                 "export all_snow_0.vdb never.ply --triangles 1", "convert beside.mhd beside.dat.raw/o.raw",
+                 "export all_snow_0.vdb never.ply --select 1000000", "convert beside.mhd beside.dat.raw/o.raw",
                  "convert float.raw never.tif --dims 11x7x6 --type float32 --out-type int32",
                  "convert i4_little.npy never.tif --out-type uint8", "convert f8_little.npy never.mha --out-type float32"):
         yield f"{'?' if 'out-type' in line else '!'} {line}"

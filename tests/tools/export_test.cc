@@ -4,8 +4,10 @@
 // The verb 'export', run as a user runs it; what is in the files: the tests of their writers.
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -196,27 +198,45 @@ TEST_CASE("cli: a signal ends an export and leaves nothing", "[cli]") {
   }
 }
 
-TEST_CASE("cli: a mesh keeps to its triangles by the least reduction", "[cli]") {
+TEST_CASE("cli: a mesh keeps to its triangles and keeps all grains", "[cli]") {
   const Bench bench;
   makeLabels(bench);
-  const auto triangles = [&](const std::string& options) {
+  const auto counts = [&](const std::string& options) {
     const std::string printed = bench.mustRun("export g.vdb m.ply " + options);
-    const size_t end = printed.find(" triangle");
-    REQUIRE(end != std::string::npos);
-    const std::string bytes = bench.bytes("m.ply");
-    const std::string number = printed.substr(printed.rfind(' ', end - 1) + 1);
-    CHECK(bytes.find("element face " + number.substr(0, number.find(' ')) + "\n") !=
+    std::array<int, 2> result{};
+    REQUIRE(std::sscanf(printed.c_str(), "m.ply: %d grain%*[s], %*d points, %d", &result[0],
+                        &result[1]) == 2);
+    CHECK(bench.bytes("m.ply").find("element face " + std::to_string(result[1]) + "\n") !=
           std::string::npos);
-    return std::stoi(number);
+    return result;
   };
-  const int atHalf = triangles("--reduce 2"), atThird = triangles("--reduce 3");
-  REQUIRE(atThird < atHalf);
-  REQUIRE(atHalf < triangles(""));
-  for (const char* smooth : {" --smooth 0", " --smooth 5"}) {
-    CHECK(triangles("--triangles " + std::to_string(atHalf) + smooth) == atHalf);
-    CHECK(triangles("--triangles " + std::to_string(atHalf - 1) + smooth) == atThird);
+  const auto [grains, all] = counts("");
+  REQUIRE(grains > 3);
+  for (const std::string smooth : {"--smooth 0", "--smooth 5"})
+    for (const int budget : {all / 2, all / 5}) {
+      const auto [kept, triangles] = counts(smooth + " --triangles " + std::to_string(budget));
+      CHECK(kept == grains);
+      CHECK(triangles <= budget);
+      CHECK(triangles > budget - 20);
+    }
+  CHECK(counts("--triangles " + std::to_string(all)) == std::array{grains, all});
+  const std::string least = bench.mustRun("export g.vdb m.ply --triangles 1");
+  CHECK(least.find("m.ply: " + std::to_string(grains) + " grains") == 0);
+  CHECK(least.find("(fewer would not keep all grains and contacts)") != std::string::npos);
+}
+
+TEST_CASE("cli: a mesh of some grains has these alone", "[cli]") {
+  const Bench bench;
+  makeLabels(bench);
+  bench.mustRun("export g.vdb all --as mesh --smooth 0");
+  for (const std::string options : {"", " --triangles 500"}) {
+    bench.mustRun("export g.vdb some" + options + " --as mesh --smooth 0 --select 2,1");
+    CHECK(bench.bytes("some/grain_000001.stl") != "");
+    CHECK(bench.bytes("some/grain_000002.stl") != "");
+    if (options.empty())
+      CHECK(bench.bytes("some/grain_000002.stl") == bench.bytes("all/grain_000002.stl"));
   }
-  CHECK(triangles("--reduce 3 --triangles " + std::to_string(atHalf)) == atThird);
+  CHECK(bench.mustRun("export g.vdb some.ply --select 2").find("some.ply: 1 grain,") == 0);
 }
 
 TEST_CASE("cli: export refuses what it cannot know or do", "[cli]") {
@@ -241,7 +261,11 @@ TEST_CASE("cli: export refuses what it cannot know or do", "[cli]") {
   refusal("g.vdb x.ply --smooth -1", 2, "smooth");
   refusal("g.vdb x.vdb --as viz --reduce 2 --max-dim 9", 2, "max-dim");
   refusal("g.vdb g.vdb --as viz", 2, "overwrite");
-  refusal("g.vdb x.ply --triangles 3", 1, "allow more");
+  refusal("g.vdb x.ply --triangles 0", 2, "triangles");
+  refusal("g.vdb x.ply --select 0", 2, "grains have the numbers 1 and more");
+  refusal("g.vdb x.ply --select 3,,4", 2, "select");
+  refusal("g.vdb x.ply --select 123456", 1, "123456");
+  refusal("g.vdb x.vdb --as viz --select 1", 2, "--as mesh");
   refusal("g.vdb c.csv --as clumps --uncovered nan", 2, "uncovered");
   refusal("g.vdb c.csv --as clumps --uncovered 1.1", 2, "uncovered");
   refusal("g.vdb x.ply --smooth nan", 2, "smooth");

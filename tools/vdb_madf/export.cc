@@ -30,6 +30,7 @@
 #include "vdb_madf/images/open_image.h"
 #include "vdb_madf/labels/grain_masks.h"
 #include "vdb_madf/labels/reduced_labels.h"
+#include "vdb_madf/labels/select_grains.h"
 #include "vdb_madf/measure/grain_network.h"
 #include "vdb_madf/measure/measure.h"
 #include "vdb_madf/method/ball_grids.h"
@@ -53,6 +54,8 @@ struct Options {
   std::string ome = "0.4";
   int smoothing = 10, maxDim = 0, reduce = 0;
   int64_t mostTriangles = 0;  ///< 0: any number
+  std::string select;
+  std::vector<int32_t> grains;  ///< of meshes; empty: all
   bool compress = false, asBool = false, meshes = false;
   ClumpOptions clumps;
   MeasureOptions measure;
@@ -85,18 +88,30 @@ int reductionOf(const Options& o, const Int32Grid& labels) {
   return reductionFor(boxOf(labels), o.maxDim);
 }
 
-void exportMesh(const Options& o, const Common& common, const Int32Grid& labels) {
+GrainMeshOptions meshOptions(const Options& o) {
   GrainMeshOptions options;
   options.smoothing = o.smoothing;
   options.triangles = uint64_t(o.mostTriangles);
-  const int factor = reductionOf(o, labels);
-  const Int32Grid::ConstPtr meshed =
+  return options;
+}
+
+/// Labels as they are meshed: those of the chosen grains, reduced.
+Int32Grid::ConstPtr meshedLabels(const Options& o, const Common& common, const Int32Grid& labels,
+                                 int factor) {
+  const Int32Grid::ConstPtr all =
       factor == 1 ? labels.copy() : reduceLabels(labels, factor, common.progress);
+  return o.grains.empty() ? all : selectGrains(*all, o.grains, common.progress);
+}
+
+void exportMesh(const Options& o, const Common& common, const Int32Grid& labels) {
+  const GrainMeshOptions options = meshOptions(o);
+  const int factor = reductionOf(o, labels);
+  const Int32Grid::ConstPtr meshed = meshedLabels(o, common, labels, factor);
   MeshFileOptions file;
   file.transform = meshed->constTransformPtr();
   file.lengthUnit = unitOf(labels);
   file.shadeSmooth = o.smoothing > 0;
-  if (isGlb(o.out) && o.mostTriangles == 0)
+  if (isGlb(o.out) && options.triangles == 0)
     checkMeshRoom(o.out, countTriangles(*meshed, common.progress), file);
   const GrainMesh mesh = grainMesh(*meshed, options, common.progress);
   file.colors = grainColors(labels, common.progress);
@@ -106,7 +121,7 @@ void exportMesh(const Options& o, const Common& common, const Int32Grid& labels)
     writeMesh(o.out, mesh, file, common.progress);
   else
     writeStlFolder(o.out, mesh, file, common.progress);
-  const bool isOver = o.mostTriangles > 0 && mesh.triangles.size() > options.triangles;
+  const bool isOver = options.triangles > 0 && mesh.triangles.size() > options.triangles;
   say(o, common,
       counted(mesh.labels.size(), "grain") + ", " + counted(mesh.points.size(), "point") + ", " +
           counted(mesh.triangles.size(), "triangle") +
@@ -269,7 +284,7 @@ void exportZarr(const Options& o, const Common& common, const Int32Grid& labels)
   options.version = omeVersionOf(o.ome);
   options.measure = o.measure;
   options.meshes = o.meshes;
-  options.meshSmoothing = o.smoothing;
+  options.mesh = meshOptions(o);
   options.meshReduction = reductionOf(o, labels);
   writeOmeZarr(o.out, labels, box, options, common.progress);
   const Coord size = box.dim();
@@ -383,8 +398,9 @@ void addExport(Verb command, Common& common, Action& action) {
       .range(1, kMaxReduction)
       .excludes(maxDim);
   verb.option("--triangles", o->mostTriangles,
-              "mesh: most triangles; the labels are reduced until they suffice")
+              "mesh, zarr (its meshes): simplify to so many triangles of all grains together")
       .range(int64_t(1), int64_t(0xffffffff));
+  verb.option("--select", o->select, "mesh: these grains alone").typeName("A,B,...");
   verb.flag("--compress", o->compress, "vti: with zlib");
   verb.flag("--bool", o->asBool, "grids: the voxels as Bool grids, not level sets");
   verb.option("--balls", o->clumps.mostBalls, "clumps: most balls per grain")
@@ -415,6 +431,9 @@ void addExport(Verb command, Common& common, Action& action) {
       throw WrongUsage("--uncovered: must lie between 0 and 1");
     o->measure.minFaces = parseCount(o->minFaces, "--min-faces");
     const Kind& kind = findKind(*o);
+    o->grains = parseGrains(o->select, "--select");
+    if (!o->grains.empty() && kind.run != exportMesh)
+      throw WrongUsage("--select chooses the grains of --as mesh");
     checkTables(*o, kind);
     o->input.outputs = {o->out, o->bonds, o->cover};
     o->input.parse();

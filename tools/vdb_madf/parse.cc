@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <optional>
 
 #include "vdb_madf/base/errors.h"
@@ -144,6 +145,18 @@ int64_t parseCount(const std::string& text, const std::string& option) {
   if (error != std::errc() || end != text.data() + text.size() || count < 0)
     throw WrongUsage(option + " " + text + ": must be a whole number, 0 or more");
   return count;
+}
+
+std::vector<int32_t> parseGrains(const std::string& text, const std::string& option) {
+  std::vector<int32_t> grains;
+  if (text.empty()) return grains;
+  for (const std::string& part : split(text, ',')) {
+    const int64_t grain = parseCount(part, option);
+    if (grain < 1 || grain > std::numeric_limits<int32_t>::max())
+      throw WrongUsage(option + " " + part + ": grains have the numbers 1 and more");
+    grains.push_back(int32_t(grain));
+  }
+  return grains;
 }
 
 Boundary parseBoundary(const std::string& boundary) {

@@ -31,6 +31,8 @@ RegionOptions parseRoi(const std::string& text);
 VoxelSize parseVoxelSize(const std::string& text, const std::string& option = "--voxel-size");
 /// A whole number >= 0.
 int64_t parseCount(const std::string& text, const std::string& option);
+/// "3,17,25": numbers of grains; none for an empty text.
+std::vector<int32_t> parseGrains(const std::string& text, const std::string& option);
 /// --max-memory: as bytesFromText().
 int64_t parseMemory(const std::string& text);
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "bindings.h"
+#include "mesh_options.h"
 #include "vdb_madf/exports/clump_file.h"
 #include "vdb_madf/exports/hexahedra_file.h"
 #include "vdb_madf/exports/mesh_file.h"
@@ -62,15 +63,17 @@ void saveImage(const std::string& path, const GridPtr& grid, const std::string& 
 }
 
 void saveMesh(const std::string& path, const GridPtr& whole, const GridPtr& meshed, int smoothing,
-              const Call& call) {
+              const std::optional<int64_t>& triangles, const Call& call) {
   write(call, [&](Interrupter* interrupter) {
+    const GrainMeshOptions shape = meshOptions(smoothing, triangles);
     MeshFileOptions options;
     options.transform = meshed->constTransformPtr();
     const auto size = storedVoxelSize(*whole);
     options.lengthUnit = size ? size->unit() : "";
     options.shadeSmooth = smoothing > 0;
-    if (isGlb(path)) checkMeshRoom(path, countTriangles(asLabels(*meshed), interrupter), options);
-    const GrainMesh mesh = grainMesh(asLabels(*meshed), {smoothing}, interrupter);
+    if (isGlb(path) && !triangles)
+      checkMeshRoom(path, countTriangles(asLabels(*meshed), interrupter), options);
+    const GrainMesh mesh = grainMesh(asLabels(*meshed), shape, interrupter);
     std::optional<GrainNetwork> measured;
     if (isGlb(path))
       options.measured = &measured.emplace(grainNetwork(asLabels(*whole), {}, interrupter));
@@ -98,13 +101,14 @@ void saveNetwork(const std::string& path, const GridPtr& labels, int64_t minFace
 }
 
 void saveZarr(const std::string& path, const GridPtr& labels, const std::string& ome,
-              int64_t minFaces, bool meshes, int smoothing, int reduction, const Call& call) {
+              int64_t minFaces, bool meshes, int smoothing, int reduction,
+              const std::optional<int64_t>& triangles, const Call& call) {
   write(call, [&](Interrupter* interrupter) {
     OmeZarrOptions options;
     options.version = omeVersionOf(ome);
     options.measure.minFaces = minFaces;
     options.meshes = meshes;
-    options.meshSmoothing = smoothing;
+    options.mesh = meshOptions(smoothing, triangles);
     options.meshReduction = reduction;
     writeOmeZarr(path, asLabels(*labels), shownBox(*labels), options, interrupter);
   });
@@ -168,11 +172,11 @@ void bindFiles(py::module_& m) {
   m.def("save_vdb", saveVdb, path, py::arg("grids"), call);
   m.def("save_image", saveImage, path, py::arg("grid"), py::arg("type"), py::arg("as_tiff"), call);
   m.def("save_mesh", saveMesh, path, py::arg("whole"), py::arg("meshed"), py::arg("smoothing"),
-        call);
+        py::arg("triangles"), call);
   m.def("save_vti", saveVti, path, labels, py::arg("compressed"), call);
   m.def("save_network", saveNetwork, path, labels, py::arg("min_faces"), call);
   m.def("save_zarr", saveZarr, path, labels, py::arg("ome"), py::arg("min_faces"),
-        py::arg("meshes"), py::arg("smoothing"), py::arg("reduction"), call);
+        py::arg("meshes"), py::arg("smoothing"), py::arg("reduction"), py::arg("triangles"), call);
   m.def("save_clumps", saveClumps, path, labels, py::arg("balls"), py::arg("max_balls"),
         py::arg("uncovered"), py::arg("apart"), call);
   m.def("save_hexahedra", saveHexahedra, path, labels, call);

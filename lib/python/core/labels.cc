@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "bindings.h"
+#include "mesh_options.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/edit_labels.h"
 #include "vdb_madf/labels/grain_colors.h"
@@ -104,23 +105,14 @@ py::dict toDict(GrainMesh mesh) {
   return dict;
 }
 
-/// The least reduction, from `first` on, that leaves at most so many triangles.
-int reductionFor(const Int32Grid& labels, int64_t triangles, int first, Interrupter* interrupter) {
-  if (triangles < 1) throw InvalidInput("triangles: must be 1 or more");
-  return reductionForTriangles(labels, uint64_t(triangles), first, interrupter);
-}
-
 py::dict mesh(const GridPtr& labels, const Call& call, int smoothing,
               const std::optional<int64_t>& triangles, const std::vector<int32_t>& ids) {
   return toDict(withoutLock(call, [&](Interrupter* interrupter) {
+    const GrainMeshOptions options = meshOptions(smoothing, triangles);
     Int32Grid::ConstPtr grid = openvdb::gridConstPtrCast<Int32Grid>(labels);
     asLabels(*labels);
     if (!ids.empty()) grid = selectGrains(*grid, ids, interrupter);
-    if (triangles) {
-      const int factor = reductionFor(*grid, *triangles, 1, interrupter);
-      if (factor > 1) grid = reduceLabels(*grid, factor, interrupter);
-    }
-    GrainMesh made = grainMesh(*grid, {smoothing}, interrupter);
+    GrainMesh made = grainMesh(*grid, options, interrupter);
     toWorld(grid->transform(), made);
     return made;
   }));
@@ -136,14 +128,6 @@ void bindLabels(py::module_& m) {
   m.def("edit", edit, py::arg("labels"), py::arg("edits"), py::arg("manifold"), py::arg("call"));
   m.def("digest", digest, py::arg("labels"), py::arg("call"));
   m.def("colors", colors, py::arg("labels"), py::arg("call"));
-  m.def(
-      "reduction_for_triangles",
-      [](const GridPtr& grid, int64_t triangles, int first, const Call& call) {
-        return withoutLock(call, [&](Interrupter* interrupter) {
-          return reductionFor(asLabels(*grid), triangles, first, interrupter);
-        });
-      },
-      py::arg("labels"), py::arg("triangles"), py::arg("first"), py::arg("call"));
   m.def("mesh", mesh, py::arg("labels"), py::arg("call"), py::kw_only(), py::arg("smoothing"),
         py::arg("triangles"), py::arg("ids"));
 }

@@ -154,8 +154,8 @@ class Labels(Volume):
              progress: Progress = None, threads: int = 0) -> Mesh:
         """Surfaces of all grains, or of those with these ids.
 
-        smoothing: rounds; 0: the faces of the voxels, whose volume is exactly theirs. triangles: at
-        most so many, of labels that are reduced until they suffice."""
+        smoothing: rounds; 0: the faces of the voxels, whose volume is exactly theirs. triangles: simplify
+        to so many of all grains together, or fewer; no grain and no contact is given up for it."""
         with calling(progress, threads) as call:
             arrays = _core.mesh(self._grid, call, smoothing=smoothing, triangles=triangles,
                                 ids=[] if ids is None else [int(i) for i in ids])
@@ -177,7 +177,7 @@ class Labels(Volume):
         - "network": .graphml, .vtp, .csv: grains and bonds with their measures, `min_faces` of a bond
         - "zarr": .zarr, a folder that is not there yet: OME-Zarr `ome` "0.4" or "0.5" for napari,
           neuroglancer and others: pyramids of the object and of `labels/grain`, colors and measures;
-          `meshes` (`smoothing`, `reduce`): also meshes and measures for neuroglancer
+          `meshes` (`smoothing`, `reduce`, `triangles`): also meshes and measures for neuroglancer
         - "clumps": .txt (YADE), .data (LAMMPS), .csv: grains as balls, `max_balls` each, `uncovered`
           part of them, `apart` if balls of different grains shall not overlap
         - "preview" (fog and color, `reduce`), "level sets", "surface" (`smoothing`): .vdb for renderers
@@ -196,17 +196,14 @@ class Labels(Volume):
             elif kind == "mask":
                 _core.save_image(name, _core.mask_of_labels(grid), type or "", False, call)
             elif kind == "mesh":
-                factor = reduce
-                if triangles is not None:
-                    factor = _core.reduction_for_triangles(grid, triangles, factor, call)
-                meshed = grid if factor == 1 else _core.reduce(grid, factor, call)
-                _core.save_mesh(name, grid, meshed, smoothing, call)
+                meshed = grid if reduce == 1 else _core.reduce(grid, reduce, call)
+                _core.save_mesh(name, grid, meshed, smoothing, triangles, call)
             elif kind == "vti":
                 _core.save_vti(name, grid, compress, call)
             elif kind == "network":
                 _core.save_network(name, grid, min_faces, call)
             elif kind == "zarr":
-                _core.save_zarr(name, grid, ome, min_faces, meshes, smoothing, reduce, call)
+                _core.save_zarr(name, grid, ome, min_faces, meshes, smoothing, reduce, triangles, call)
             elif kind == "clumps":
                 balls = _core.ball_grids(_core.mask_of_labels(grid), call)
                 _core.save_clumps(name, grid, balls, max_balls, uncovered, apart, call)

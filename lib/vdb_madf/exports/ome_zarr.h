@@ -7,6 +7,7 @@
 
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/measure/measure.h"
+#include "vdb_madf/shapes/grain_mesh.h"
 
 namespace vdb_madf {
 
@@ -22,8 +23,8 @@ struct OmeZarrOptions {
   /// Also `neuroglancer/`, for the viewer of this name: a mesh for each grain, the measures that are
   /// known of all, and a state that shows both with the labels. Wants a voxel size.
   bool meshes = false;
-  int meshSmoothing = 10;  ///< see GrainMeshOptions
-  int meshReduction = 1;   ///< meshes of labels at 1/n, 1 to kMaxReduction
+  GrainMeshOptions mesh{10};
+  int meshReduction = 1;  ///< meshes of labels at 1/n, 1 to kMaxReduction
 };
 
 /// Writes labels over `box` as an OME-Zarr folder, whole or not at all; nothing is replaced.

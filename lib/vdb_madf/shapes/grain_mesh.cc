@@ -4,13 +4,11 @@
 #include "vdb_madf/shapes/grain_mesh.h"
 
 #include <numeric>
-#include <string>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
-#include "vdb_madf/labels/reduced_labels.h"
 #include "vdb_madf/labels/select_grains.h"
 #include "vdb_madf/shapes/detail/net_builder.h"
 #include "vdb_madf/shapes/detail/simplify.h"
@@ -81,20 +79,24 @@ GrainMesh grainMesh(const Int32Grid& labels, const GrainMeshOptions& options,
   const LabelBlocks blocks(labels);
   const CoordBBox box = domainBox(labels);
   const DomainFaces domain = facesOf(box);
-  SurfaceNet net = detail::buildNet(blocks, box, options.smoothing > 0, interrupter);
+  // Of the work as a whole, in per cent.
+  const int meshed = options.triangles > 0 ? 25 : 100, built = meshed / 3, smoothed = meshed / 2;
+  detail::WorkPart building(interrupter, 0, built), smoothing(interrupter, built, smoothed),
+      correcting(interrupter, smoothed, meshed), simplifying(interrupter, meshed, 95),
+      ending(interrupter, 95, 100);
+  SurfaceNet net = detail::buildNet(blocks, box, options.smoothing > 0, &building);
   std::vector<Vec3f> homes = detail::latticePositions(net);
   SharedMesh mesh = detail::cutQuads(
       net,
-      options.smoothing > 0 ? detail::relax(net, options.smoothing, domain, interrupter) : homes);
+      options.smoothing > 0 ? detail::relax(net, options.smoothing, domain, &smoothing) : homes);
   net = {};
   if (options.smoothing > 0)
     detail::correctVolumes(mesh, blocks.voxelCounts(), homes, detail::kCornerReach, domain,
-                           interrupter);
+                           &correcting);
   if (options.triangles > 0 &&
-      detail::simplify(mesh, options.triangles, options.error, interrupter)) {
+      detail::simplify(mesh, options.triangles, options.error, &simplifying)) {
     homes = mesh.positions;
-    detail::correctVolumes(mesh, blocks.voxelCounts(), homes, kSimplifiedReach, domain,
-                           interrupter);
+    detail::correctVolumes(mesh, blocks.voxelCounts(), homes, kSimplifiedReach, domain, &ending);
   }
   return assemble(mesh, blocks.labels());
 }
@@ -122,19 +124,6 @@ uint64_t countTriangles(const Int32Grid& labels, Interrupter* interrupter) {
     }
   });
   return 2 * std::accumulate(quads.begin(), quads.end(), uint64_t(0));
-}
-
-int reductionForTriangles(const Int32Grid& labels, uint64_t maxTriangles, int first,
-                          Interrupter* interrupter) {
-  for (int factor = first; factor <= kMaxReduction; ++factor) {
-    const uint64_t triangles =
-        factor == 1 ? countTriangles(labels, interrupter)
-                    : countTriangles(*reduceLabels(labels, factor, interrupter), interrupter);
-    if (triangles == 0 && !labels.empty()) break;
-    if (triangles <= maxTriangles) return factor;
-  }
-  throw InvalidInput("no reduction of the labels has a mesh of " + std::to_string(maxTriangles) +
-                     " triangles or fewer: allow more");
 }
 
 std::vector<double> meshVolumes(const GrainMesh& mesh) {

@@ -52,7 +52,7 @@ void writeMeshes(const OutputTree& folder, const Int32Grid& labels, const OmeZar
   const Int32Grid::ConstPtr meshed = options.meshReduction == 1
                                          ? labels.copy()
                                          : reduceLabels(labels, options.meshReduction, interrupter);
-  const GrainMesh mesh = grainMesh(*meshed, {options.meshSmoothing}, interrupter);
+  const GrainMesh mesh = grainMesh(*meshed, options.mesh, interrupter);
   const double nanometers =
       unitsPerMetre("nm").value() / unitsPerMetre(storedVoxelSize(labels)->unit()).value();
   folder.write(kFolder + "mesh/info", "{\"@type\": \"neuroglancer_legacy_mesh\"}\n");

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "vdb_madf/base/errors.h"
 #include "vdb_madf/shapes/detail/surface_net.h"
 
 namespace vdb_madf::detail {
@@ -37,6 +38,10 @@ class QuadCutter {
         addTriangle(quad, {a, b, c});
         addTriangle(quad, {a, c, d});
       }
+      if (mesh_.triangles.size() >= SharedMesh::kNone)
+        throw InvalidInput(
+            "the meshes have more than 4,294,967,294 points or triangles: coarsen or crop the "
+            "volume");
       mesh_.firstTriangle.push_back(uint32_t(mesh_.triangles.size()));
     }
     return std::move(mesh_);

@@ -41,8 +41,8 @@ class NetBuilder {
     quadGrain_.resize(firstQuad_.back());
     quadBeyond_.resize(firstQuad_.back());
     pinches_.resize(blocks_.size());
-    forEachBlock([&](size_t block, const LabelHalo& halo) { placeCorners(block, halo); });
-    forEachBlock([&](size_t block, const LabelHalo& halo) { makeQuads(block, halo); });
+    forEachBlock(30, 50, [&](size_t block, const LabelHalo& halo) { placeCorners(block, halo); });
+    forEachBlock(50, 100, [&](size_t block, const LabelHalo& halo) { makeQuads(block, halo); });
     if (withLinks_) packJunctions();
     for (const auto& pinches : pinches_)
       net_.pinches.insert(net_.pinches.end(), pinches.begin(), pinches.end());
@@ -52,9 +52,11 @@ class NetBuilder {
   }
 
  private:
+  /// From one to the other per cent of the work.
   template <typename F>
-  void forEachBlock(const F& f) const {
-    parallelFor(blocks_.size(), kBlockGrain, interrupter_, [&](size_t begin, size_t end) {
+  void forEachBlock(int beginPercent, int endPercent, const F& f) const {
+    WorkPart part(interrupter_, beginPercent, endPercent);
+    parallelFor(blocks_.size(), kBlockGrain, &part, [&](size_t begin, size_t end) {
       LabelHalo halo;
       for (size_t block = begin; block < end; ++block) {
         blocks_.readHalo(block, halo);
@@ -72,7 +74,7 @@ class NetBuilder {
 
   void count() {
     std::vector<std::array<uint32_t, 3>> counts(blocks_.size());
-    forEachBlock([&](size_t block, const LabelHalo& halo) {
+    forEachBlock(0, 30, [&](size_t block, const LabelHalo& halo) {
       uint32_t corners = 0, points = 0, quads = 0;
       forEachPlace([&](int x, int y, int z) {
         const int32_t* at = &halo[haloAt(x, y, z)];

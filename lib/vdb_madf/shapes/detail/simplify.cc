@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/errors.h"
 #include "vdb_madf/shapes/detail/quadric.h"
 
 namespace vdb_madf::detail {
@@ -55,13 +56,18 @@ class Simplifier {
 
   bool run(uint64_t triangles) {
     if (mesh_.triangles.size() <= triangles) return false;
+    if (mesh_.triangles.size() > kNone / 3)
+      throw InvalidInput(
+          "a mesh of more than 1,431,655,765 triangles cannot be simplified: coarsen or crop the "
+          "volume");
     separateSites();
     pointsOfSite_.emplace(mesh_.pointSite, mesh_.positions.size());
     listTriangles();
-    beginSites();
     const size_t before = mesh_.triangles.size();
+    beginSites();
     while (mesh_.triangles.size() > triangles) {
-      propose();
+      WorkPart part(interrupter_, percentDone(before, triangles), percentDone(before, triangles));
+      propose(&part);
       select(triangles);
       if (chosen_.empty()) break;
       apply();
@@ -74,6 +80,12 @@ class Simplifier {
   }
 
  private:
+  /// Each pass takes about the same part of what is left.
+  int percentDone(size_t before, uint64_t triangles) const {
+    const double all = std::log(double(before) / double(triangles));
+    return int(100 * std::log(double(before) / double(mesh_.triangles.size())) / all);
+  }
+
   /// Where a grain meets itself and no other grain is, each of its points may go its own way.
   void separateSites() {
     const Lists points(mesh_.pointSite, mesh_.positions.size());
@@ -93,7 +105,7 @@ class Simplifier {
 
   template <typename F>
   void forEachGrain(const F& f) const {
-    parallelFor(mesh_.grainCount(), kGrainGrain, interrupter_, [&](size_t begin, size_t end) {
+    parallelFor(mesh_.grainCount(), kGrainGrain, nullptr, [&](size_t begin, size_t end) {
       for (size_t g = begin; g < end; ++g) f(g, mesh_.firstTriangle[g], mesh_.firstTriangle[g + 1]);
     });
   }
@@ -165,7 +177,8 @@ class Simplifier {
     quadrics_.resize(count);
     stamps_.assign(count, 0);
     std::vector<uint8_t> isFree(count);
-    parallelFor(count, kSiteGrain, interrupter_, [&](size_t begin, size_t end) {
+    WorkPart part(interrupter_, 0, 0);
+    parallelFor(count, kSiteGrain, &part, [&](size_t begin, size_t end) {
       Ring ring;
       for (size_t site = begin; site < end; ++site) {
         forEachPoint(uint32_t(site), [&](uint32_t p) { addPlanes(p, ring, quadrics_[site]); });
@@ -211,9 +224,9 @@ class Simplifier {
     Ring other;
   };
 
-  void propose() {
+  void propose(Interrupter* interrupter) {
     costs_.resize(sites_.size());
-    parallelFor(sites_.size(), kSiteGrain, interrupter_, [&](size_t begin, size_t end) {
+    parallelFor(sites_.size(), kSiteGrain, interrupter, [&](size_t begin, size_t end) {
       Work work;
       for (size_t i = begin; i < end; ++i) costs_[i] = proposeFor(sites_[i], work);
     });
@@ -269,21 +282,28 @@ class Simplifier {
     return true;
   }
 
+  /// True if a point of the ring is linked to the center and to another point by rims.
+  bool joinsRims(uint32_t to, Ring& ring, Ring& other) const {
+    readRing(to, other);
+    return std::any_of(other.begin(), other.end(), [&](const Spoke& spoke) {
+      if (!spoke.isRim) return false;
+      const auto also = find(ring, spoke.point);
+      return also != ring.end() && also->isRim;
+    });
+  }
+
   /// Of one grain: the surface stays one of discs around points (the link condition of closed
   /// surfaces), no rim meets another one, and no triangle turns over.
   bool isAllowed(uint32_t from, const Spoke& edge, Ring& ring, bool isOnRim, Ring& other) const {
     const uint32_t to = edge.point;
-    readRing(to, other);
-    if (ring.size() + other.size() > kMaxValence + 4) return false;
-    if (ring.size() == 3 && other.size() == 3) return false;  // a tetrahedron
-    size_t common = 0;
-    for (const Spoke& spoke : ring) {
-      const auto also = find(other, spoke.point);
-      if (also == other.end()) continue;
-      ++common;
-      if (isOnRim && spoke.isRim && also->isRim) return false;
-    }
-    if (common != 2) return false;
+    size_t valence = 0, common = 0;
+    forEachTriangle(to, [&](uint32_t t) {
+      ++valence;
+      common += find(ring, after(t, to)[0]) != ring.end();
+    });
+    if (ring.size() + valence > kMaxValence + 4) return false;
+    if (ring.size() == 3 && valence == 3) return false;  // a tetrahedron
+    if (common != 2 || (isOnRim && joinsRims(to, ring, other))) return false;
     const Vec3d here = at(from), there = at(to);
     for (const Spoke& spoke : ring) {
       if (spoke.out == edge.out || spoke.out == edge.in) continue;
@@ -319,7 +339,7 @@ class Simplifier {
   }
 
   void apply() {
-    parallelFor(chosen_.size(), kSiteGrain, interrupter_, [&](size_t begin, size_t end) {
+    parallelFor(chosen_.size(), kSiteGrain, nullptr, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         const auto& [cost, from, to] = chosen_[i];
         forEachPoint(from, [&, to = to](uint32_t point) { move(point, to); });

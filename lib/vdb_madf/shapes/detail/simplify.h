@@ -14,7 +14,7 @@ namespace vdb_madf::detail {
 /// points in all grains at once; sites that stay keep their places. Each grain stays a closed surface
 /// of the same Euler number in which every edge has two triangles; contacts do not vanish. What is no
 /// longer used is dropped. \return false if nothing changed.
-/// @throw Interrupted
+/// @throw InvalidInput for a mesh of more than 1,431,655,765 triangles; Interrupted
 bool simplify(SharedMesh& mesh, uint64_t triangles, double error, Interrupter* interrupter);
 
 }  // namespace vdb_madf::detail

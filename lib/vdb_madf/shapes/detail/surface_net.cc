@@ -31,15 +31,18 @@ class Relaxation {
   }
 
   std::vector<Vec3f> run(int rounds) {
-    for (int round = 0; round < rounds; ++round) smoothOnce();
+    for (int round = 0; round < rounds; ++round) {
+      WorkPart part(interrupter_, 100 * round / rounds, 100 * (round + 1) / rounds);
+      smoothOnce(&part);
+    }
     turnQuads();
     return std::move(positions_);
   }
 
  private:
-  void smoothOnce() {
+  void smoothOnce(Interrupter* interrupter) {
     std::vector<Vec3f> next(positions_.size());
-    parallelFor(positions_.size(), kCornerGrain, interrupter_, [&](size_t begin, size_t end) {
+    parallelFor(positions_.size(), kCornerGrain, interrupter, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         const auto& links = net_.links[i];
         // A point on a line between three labels follows the line; where lines meet, all of them.
@@ -63,7 +66,7 @@ class Relaxation {
   /// A quad is cut from its first to its third corner: the shorter way is flatter. The two sides
   /// of an interface see the same lengths, so they are cut alike; of equal ones neither is turned.
   void turnQuads() {
-    parallelFor(net_.quads.size(), kCornerGrain, interrupter_, [&](size_t begin, size_t end) {
+    parallelFor(net_.quads.size(), kCornerGrain, nullptr, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         auto& quad = net_.quads[i];
         if ((at(quad[1]) - at(quad[3])).lengthSqr() < (at(quad[0]) - at(quad[2])).lengthSqr())

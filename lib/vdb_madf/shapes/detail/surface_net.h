@@ -46,6 +46,7 @@ std::vector<openvdb::Vec3f> relax(SurfaceNet& net, int rounds, const DomainFaces
 
 /// Cuts the quads into triangles, and the pinches in their middles: each edge then has two triangles
 /// of a grain. Sites are the corners, then those middles. \param positions: of the corners
+/// @throw InvalidInput for more than 2^32 - 1 triangles
 SharedMesh cutQuads(const SurfaceNet& net, std::vector<openvdb::Vec3f> positions);
 
 }  // namespace vdb_madf::detail

@@ -40,17 +40,21 @@ class VolumeCorrection {
         pressures_(mesh.grainCount()) {}
 
   void run() {
-    for (int round = 0; round < kMaxCorrections && largestError() > kVolumeTolerance; ++round)
+    for (int round = 0; round < kMaxCorrections; ++round) {
+      WorkPart part(interrupter_, 100 * round / kMaxCorrections,
+                    100 * (round + 1) / kMaxCorrections);
+      if (largestError(&part) <= kVolumeTolerance) break;
       correct();
+    }
   }
 
  private:
   Vec3d at(uint32_t point) const { return Vec3d(mesh_.positions[mesh_.pointSite[point]]); }
 
   /// Measures the volumes and their gradients; the largest error relative to the true volume.
-  double largestError() {
+  double largestError(Interrupter* interrupter) {
     std::vector<double> errors(volumes_.size());
-    parallelFor(volumes_.size(), kGrainGrain, interrupter_, [&](size_t begin, size_t end) {
+    parallelFor(volumes_.size(), kGrainGrain, interrupter, [&](size_t begin, size_t end) {
       for (size_t g = begin; g < end; ++g) errors[g] = measure(g);
     });
     return errors.empty() ? 0 : *std::max_element(errors.begin(), errors.end());
@@ -85,7 +89,7 @@ class VolumeCorrection {
 
   /// One step towards displacements along the gradients that give every grain its volume.
   void correct() {
-    parallelFor(homes_.size(), kSiteGrain, interrupter_, [&](size_t begin, size_t end) {
+    parallelFor(homes_.size(), kSiteGrain, nullptr, [&](size_t begin, size_t end) {
       for (size_t site = begin; site < end; ++site) {
         Vec3d wanted(mesh_.positions[site]);
         for (uint32_t i = pointsOfSite_.first[site]; i < pointsOfSite_.first[site + 1]; ++i) {
