@@ -3,33 +3,29 @@
 
 #include "vdb_madf/pictures/png_file.h"
 
-#include <png.h>
-
-#include <cstring>
+#include <stdexcept>
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/detail/output_stream.h"
+#include "vdb_madf/pictures/detail/png_bytes.h"
 
 namespace vdb_madf {
 
-std::string pngBytes(const Picture& picture) {
-  png_image image;
-  std::memset(&image, 0, sizeof(image));
-  image.version = PNG_IMAGE_VERSION;
-  image.width = png_uint_32(picture.width);
-  image.height = png_uint_32(picture.height);
-  image.format = PNG_FORMAT_RGB;
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
-  std::string bytes(size, '\0');
-  if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, picture.pixels.data(), 0, nullptr))
-    throw IoError(std::string("the picture cannot be made: ") + image.message);
-  bytes.resize(size);
-  return bytes;
+namespace {
+
+std::string encoded(const std::string& path, const Picture& picture) {
+  try {
+    return detail::pngBytes(picture);
+  } catch (const std::runtime_error& error) {
+    throw IoError(path + ": cannot be written: " + error.what());
+  }
 }
+
+}  // namespace
 
 void writePng(const std::string& path, const Picture& picture) {
   detail::OutputStream file(path);
-  file.text(pngBytes(picture));
+  file.text(encoded(path, picture));
   file.close();
   file.commit();
 }

@@ -9,10 +9,7 @@
 
 namespace vdb_madf {
 
-/// The bytes of an RGB PNG of 8 bits a channel. The picture has at least one pixel.
-std::string pngBytes(const Picture& picture);
-
-/// Writes an RGB PNG of 8 bits a channel, whole or not at all. It is made in memory first: about
+/// Writes an RGB PNG of 8 bits a channel at 300 dpi, whole or not at all. It is made in memory first: about
 /// three bytes a pixel. The picture has at least one pixel.
 /// @throw IoError, one line that names the file.
 void writePng(const std::string& path, const Picture& picture);

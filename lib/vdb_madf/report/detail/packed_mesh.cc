@@ -16,6 +16,7 @@ namespace {
 
 using openvdb::Vec3f;
 
+constexpr double kMostSteps = 32000;  // folded(), they take 16 bits
 constexpr uint32_t kUnnamed = std::numeric_limits<uint32_t>::max();
 
 /// A body of its own.
@@ -146,8 +147,7 @@ class Packer {
 
 PackedMesh packMesh(const GrainMesh& mesh, const std::vector<GrainMeasures>& grains, double step) {
   const std::vector<Body> bodies = bodiesOf(mesh, grains);
-  // Differences are folded to twice their size.
-  Packer packer(std::max(step, longestEdge(bodies) / 32000));
+  Packer packer(std::max(step, longestEdge(bodies) / kMostSteps));
   for (const Body& body : bodies) packer.add(body);
   return packer.result();
 }

@@ -41,7 +41,7 @@ class Panel {
     this.frame = make('div', { className: 'slice' }, this.canvas, this.cross);
     this.frame.style.aspectRatio = `${this.width * edges[right]} / ${this.height * edges[down]}`;
     this.slider = make('input', { type: 'range', min: 0, max: size[fixed] - 1, step: 1,
-      ariaLabel: `Place of the slice along ${names[fixed]}` });
+      'aria-label': `Place of the slice along ${names[fixed]}` });
     this.place = make('output');
     this.figure = make('figure', {},
       make('figcaption', {}, `${names[right]}-${names[down]} at ${names[fixed]} = `, this.place), this.frame, this.slider);

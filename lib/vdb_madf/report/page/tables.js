@@ -91,7 +91,7 @@ class SampleTable {
     const titles = make('tr'), fields = make('tr', { className: 'ranges' });
     for (const name of this.columns) {
       const title = this.sample.titleWithUnit(this.kind, name);
-      const input = make('input', { type: 'text', placeholder: 'a:b', size: 6, ariaLabel: `Range of ${title}`,
+      const input = make('input', { type: 'text', placeholder: 'a:b', size: 6, 'aria-label': `Range of ${title}`,
         title: 'A range: 0.2:0.5, 4: or :3' });
       input.addEventListener('change', () => {
         const range = parseRange(input.value);
