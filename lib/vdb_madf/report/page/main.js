@@ -48,6 +48,6 @@ start().catch((error) => {
   document.documentElement.dataset.ready = 'no';
   element('warnings').append(make('p', {},
     'DecompressionStream' in window ? `This page cannot be shown: ${error}`
-      : 'This browser is too old for this page: Chrome or Edge 80, Firefox 113 or Safari 16.4 show it.'));
+      : 'This browser is too old for this page: Chrome or Edge 88, Firefox 113 or Safari 16.4 show it.'));
   throw error;
 });
