@@ -56,6 +56,7 @@ def wrong_command_lines():
         "track": ("in.vdb", "in.vdb other.vdb other.vdb", "in.vdb other.vdb --shift 1,2", "in.vdb other.vdb --share 0"),
         "render": ("in.vdb o.jpg", "in.vdb o.png --only all", "in.vdb o.png --size 0", "in.vdb o.png --elevation 100",
                    "in.vdb o.png --azimuth nan", "in.vdb o.png --elevation nan", "in.vdb"),
+        "report": ("in.vdb", "o.html", "in.vdb o.htm --triangles 0", "in.vdb o.html --max-dim 8"),
         "export": ("in.vdb o.vdb", "in.vdb o.xyz", "in.vdb o.ply --as cubes", "in.vdb o.ply --as viz",
                    "in.vdb o.vdb --as mesh", "in.vdb o.vdb --as clumps", "in.vdb o.vdb --as hexa", "in.vdb o.vdb --as vti",
                    "in.vdb o.vdb --as mask", "in.vdb o.vdb --as network", "in.vdb o.ply --smooth -1",

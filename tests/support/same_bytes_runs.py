@@ -13,7 +13,7 @@ from same_bytes_refusals import DAMAGED, Edit
 
 IMAGES = ("tif", "mhd", "raw", "mha", "nrrd", "npy")  # an .mhd would not replace the .raw of another
 TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
-VERBS = ("generate", "convert", "segment", "remerge", "edit", "sweep", "measure", "collect", "compare", "track", "render", "export", "info")
+VERBS = ("generate", "convert", "segment", "remerge", "edit", "sweep", "measure", "collect", "compare", "track", "render", "report", "export", "info")
 KINDS = {"spheres": "--count 6 --radius 6:9", "pack": "--radius 4:8", "snow": "--length 12",
          "sintered": "--count 6 --radius 7:9", "particles": "--count 6 --radius 7:9",
          "bed": "--radius 7:9 --rounds 2"}
@@ -258,6 +258,13 @@ def track():
     yield "track keep_manifold.vdb edited.vdb tracked.tif --shift 1,0,-1 --share 0.3 --min-faces 4"
 
 
+def report():
+    for sample in ("snow", "sintered", "spheres", "pack"):
+        yield f"report all_{sample}_0.vdb {sample}.html"
+    yield "report all_snow_0.vdb flat.html --no-3d --max-dim 16 --ice --title '<Snow>'"
+    yield "report all_snow_0.vdb all_pack_0.vdb both.html --threads 2"
+
+
 def render():
     for sample in ("snow", "sintered", "spheres", "pack"):
         yield f"render all_{sample}_0.vdb {sample}.png"
@@ -402,6 +409,7 @@ def all_runs(images, grids, with_scan):
     yield from compare()
     yield from track()
     yield from render()
+    yield from report()
     yield from export()
     yield from info(images, grids)
     yield from same_bytes_refusals.all_runs()

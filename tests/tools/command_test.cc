@@ -36,8 +36,9 @@ std::string digits(const std::string& bytes) {
 TEST_CASE("cli: help names every verb and gives an example", "[cli]") {
   const Bench bench;
   const std::string help = bench.mustRun("--help");
-  for (const std::string verb : {"generate", "convert", "segment", "remerge", "edit", "sweep",
-                                 "measure", "compare", "track", "render", "export", "info"}) {
+  for (const std::string verb :
+       {"generate", "convert", "segment", "remerge", "edit", "sweep", "measure", "compare", "track",
+        "render", "report", "export", "info"}) {
     CHECK(help.find("  " + verb + " ") != std::string::npos);
     CHECK(bench.mustRun(verb + " --help").find("Example:\n  vdb_madf " + verb) !=
           std::string::npos);
@@ -72,6 +73,12 @@ TEST_CASE("cli: the version says what the command was built with and runs with",
   const bool isBuiltIn = bench.run("info a.h5").err.find("libhdf5-dev") == std::string::npos;
   CHECK((line == "HDF5 is read and written") == isBuiltIn);
   CHECK((line.find("HDF5 is not read: ") == 0) != isBuiltIn);
+  std::getline(version, line);
+  bench.mustRun("generate spheres s.vdb --size 40 --count 5 --radius 6:9");
+  const bool areWritten =
+      bench.run("report s.vdb r.html --grid truth").err.find("esbuild") == std::string::npos;
+  CHECK((line == "Reports are written") == areWritten);
+  CHECK((line.find("Reports are not written: ") == 0) != areWritten);
   CHECK_FALSE(std::getline(version, line));
 }
 

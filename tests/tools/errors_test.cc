@@ -191,6 +191,11 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"render in.vdb out.png --only all", "--only"},
       {"render in.vdb out.png --size 0", "--size"},
       {"render in.vdb out.png --elevation 100", "--elevation"},
+      {"report in.vdb", "in.vdb"},
+      {"report out.html", "labels"},
+      {"report in.vdb out.html --triangles 0", "--triangles"},
+      {"report in.vdb out.html --ice --density 900", "--ice"},
+      {"report in.vdb other.vdb out.html --sweep s.csv", "--sweep"},
       {"info", "FILE"},
       {"generate snow out.jpg", "out.jpg"},
       {"generate snow out.vdb --size 0", "--size"},
@@ -265,6 +270,7 @@ TEST_CASE("cli: a file that is missing or none of ours is named", "[cli]") {
     refuses(bench, kFailed, "convert " + file + " out.raw", {file});
     refuses(bench, kFailed, "info " + file, {file});
     refuses(bench, kFailed, "render " + file + " out.png", {file});
+    refuses(bench, kFailed, "report " + file + " out.html", {file});
     refuses(bench, kFailed, "remerge " + file + " out.vdb", {file});
     refuses(bench, kFailed, "edit " + file + " out.vdb --renumber", {file});
   }

@@ -45,6 +45,7 @@ void addCompare(Verb command, Common& common, Action& action);
 void addTrack(Verb command, Common& common, Action& action);
 void addRender(Verb command, Common& common, Action& action);
 void addExport(Verb command, Common& common, Action& action);
+void addReport(Verb command, Common& common, Action& action);
 void addInfo(Verb command, Common& common, Action& action);
 void addCompletion(Verb command, const CommandLine& line, Action& action);
 

@@ -100,6 +100,7 @@ void addVerbs(Verb command, const CommandLine& line, Common& common, Action& act
   addCompare(command, common, action);
   addTrack(command, common, action);
   addRender(command, common, action);
+  addReport(command, common, action);
   addExport(command, common, action);
   addInfo(command, common, action);
   addCompletion(command, line, action);

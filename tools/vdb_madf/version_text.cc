@@ -8,6 +8,7 @@
 #include "vdb_madf/base/simd_level.h"
 #include "vdb_madf/base/version.h"
 #include "vdb_madf/images/open_image.h"
+#include "vdb_madf/report/report.h"
 
 namespace vdb_madf::tools {
 
@@ -16,7 +17,10 @@ std::string versionText() {
          "\nSIMD level " + simdLevel() +
          (readsHdf5() ? "\nHDF5 is read and written"
                       : "\nHDF5 is not read or written: install libhdf5-dev, then configure and "
-                        "build again");
+                        "build again") +
+         (canWriteReport() ? "\nReports are written"
+                           : "\nReports are not written: install esbuild, libjs-three and "
+                             "libjs-jquery-datatables, then configure and build again");
 }
 
 }  // namespace vdb_madf::tools

@@ -213,7 +213,19 @@ Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& opt
   return json;
 }
 
+/// A file name need not be UTF-8: what is not is replaced.
+std::string jsonText(const Json& sample) {
+  return sample.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 }  // namespace
+
+MeasurementTexts measurementTexts(const Measurements& m, const TableOptions& options) {
+  const Unit unit(m);
+  return {table(grainColumns(m.grains, m.extra), unit, options.sample),
+          table(bondColumns(m.bonds, m.extra), unit, options.sample),
+          jsonText(sampleJson(m, unit, options))};
+}
 
 std::vector<std::string> MeasurementTables::paths(const std::string& folder) {
   if (detail::isHdf5Tables(folder)) return {folder};
@@ -241,16 +253,17 @@ MeasurementTables::MeasurementTables(const std::string& folder) {
 MeasurementTables::~MeasurementTables() = default;
 
 void MeasurementTables::write(const Measurements& measurements, const TableOptions& options) {
-  const Unit unit(measurements);
-  const auto grains = grainColumns(measurements.grains, measurements.extra),
-             bonds = bondColumns(measurements.bonds, measurements.extra);
-  const Json sample = sampleJson(measurements, unit, options);
-  if (!file_.empty())
-    return detail::writeHdf5Tables(file_, {unit.name, unit.edges, grains, bonds, sample});
-  files_.at(0)->text(table(grains, unit, options.sample));
-  files_.at(1)->text(table(bonds, unit, options.sample));
-  // A file name need not be UTF-8: what is not is replaced.
-  files_.at(2)->text(sample.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  if (!file_.empty()) {
+    const Unit unit(measurements);
+    return detail::writeHdf5Tables(
+        file_, {unit.name, unit.edges, grainColumns(measurements.grains, measurements.extra),
+                bondColumns(measurements.bonds, measurements.extra),
+                sampleJson(measurements, unit, options)});
+  }
+  const MeasurementTexts texts = measurementTexts(measurements, options);
+  files_.at(0)->text(texts.grains);
+  files_.at(1)->text(texts.bonds);
+  files_.at(2)->text(texts.sample);
   for (const auto& file : files_) file->close();
   for (const auto& file : files_) {
     file->commit();

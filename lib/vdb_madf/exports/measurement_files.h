@@ -29,6 +29,14 @@ struct TableOptions {
   std::optional<double> density;
 };
 
+/// The texts of the three files below.
+struct MeasurementTexts {
+  std::string grains, bonds;  ///< comma-separated values
+  std::string sample;         ///< JSON in ASCII or UTF-8
+};
+MeasurementTexts measurementTexts(const Measurements& measurements,
+                                  const TableOptions& options = {});
+
 /// grains.csv, bonds.csv and sample.json in a folder, which is made if it is not there. Made before
 /// the work, so that a folder that cannot be written to is reported before it. The files appear
 /// whole or not at all. A run replaces the files of an earlier one; if one of them is there without

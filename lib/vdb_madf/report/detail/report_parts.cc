@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/report/detail/report_parts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/version.h"
+#include "vdb_madf/exports/measurement_files.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/labels/reduced_labels.h"
+#include "vdb_madf/measure/columns.h"
+#include "vdb_madf/pictures/png_file.h"
+#include "vdb_madf/pictures/label_panels.h"
+#include "vdb_madf/report/detail/packed_bytes.h"
+#include "vdb_madf/report/detail/packed_labels.h"
+#include "vdb_madf/report/detail/packed_mesh.h"
+#include "vdb_madf/report/detail/page_text.h"
+#include "vdb_madf/shapes/grain_mesh.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kSmoothing = 10;
+/// Enough to look at, and for software that draws without a graphics card.
+constexpr uint64_t kTrianglesOfGrain = 150, kFewestTriangles = 40000;
+/// Labels with more than so many times the triangles that are wanted, or this number, are reduced
+/// before they are meshed: simplifying takes some 10 microseconds and 200 bytes a triangle.
+constexpr uint64_t kMostSimplified = 8, kMostMeshed = 3000000;
+/// Of a point in the page, voxels (reduced ones, if the mesh is made of such).
+constexpr double kMeshStep = 1.0 / 32;
+
+std::string packed(const std::string& text) {
+  PackedBytes bytes;
+  bytes.bytes(text.data(), text.size());
+  return bytes.text();
+}
+
+Json toJson(const Coord& coord) {
+  return {coord.x(), coord.y(), coord.z()};
+}
+
+/// Names of columns, and their powers of the length.
+Json columnsJson(const std::vector<MeasureColumn>& columns) {
+  Json json = Json::array();
+  for (const MeasureColumn& column : columns)
+    json.push_back({{"name", column.name}, {"power", column.power}});
+  return json;
+}
+
+/// How far to reduce labels for about so many triangles: the surface of a sample has a factor squared
+/// less.
+int reductionTo(uint64_t most, const Int32Grid& labels, Interrupter* interrupter) {
+  const double times = double(countTriangles(labels, interrupter)) / double(most);
+  return std::clamp(int(std::ceil(std::sqrt(times))), 1, kMaxReduction);
+}
+
+/// Index coordinates of reduced labels to those of the labels themselves.
+void enlarge(GrainMesh& mesh, int factor) {
+  for (openvdb::Vec3f& point : mesh.points)
+    point = point * float(factor) + openvdb::Vec3f(float(factor - 1) / 2);
+}
+
+}  // namespace
+
+ReportParts::ReportParts(const Int32Grid& labels, const ReportOptions& options, std::string suffix,
+                         Interrupter* interrupter)
+    : labels_(labels), options_(options), suffix_(std::move(suffix)), interrupter_(interrupter) {
+  begin("measure");
+  measured_ = measure(labels, options.measure, interrupter);
+  box_ = sliceBox_ = measured_.sample.box;
+  if (box_.empty()) throw InvalidInput("has no labels and no domain: nothing to show");
+  colors_ = grainColors(labels, interrupter);
+  for (const GrainMeasures& grain : measured_.grains) ids_.push_back(grain.id);
+}
+
+void ReportParts::begin(const char* stage) const {
+  if (!interrupter_) return;
+  interrupter_->start(stage);
+  if (interrupter_->wasInterrupted()) throw Interrupted();
+}
+
+std::string ReportParts::title() const {
+  if (!options_.title.empty()) return options_.title;
+  const std::string name = std::filesystem::path(options_.labels).filename().string();
+  return name.empty() ? "Grains" : name;
+}
+
+std::string ReportParts::unit() const {
+  return measured_.voxelSize ? measured_.voxelSize->unit() : "voxel";
+}
+
+Report ReportParts::report() const {
+  return {int64_t(measured_.grains.size()), int64_t(measured_.bonds.size()), triangles_, reduction_,
+          0};
+}
+
+std::string ReportParts::tables() const {
+  const MeasurementTexts texts =
+      measurementTexts(measured_, {options_.labels, "", options_.density});
+  return jsonElement("sample" + suffix_, texts.sample) +
+         dataElement("grains" + suffix_, packed(texts.grains)) +
+         dataElement("bonds" + suffix_, packed(texts.bonds));
+}
+
+std::string ReportParts::colors() const {
+  std::string bytes;
+  for (const int32_t id : ids_)
+    for (const uint8_t channel : colors_.colorOf(id)) bytes += char(channel);
+  return dataElement("colors" + suffix_, packed(bytes));
+}
+
+std::string ReportParts::sweep() const {
+  return options_.sweep.empty() ? "" : dataElement("sweep", packed(options_.sweep));
+}
+
+std::string ReportParts::slices() {
+  begin("slices");
+  reduction_ = reductionFor(box_, options_.maxSlice);
+  const Int32Grid::ConstPtr reduced =
+      reduction_ > 1 ? reduceLabels(labels_, reduction_, interrupter_) : nullptr;
+  if (reduced) sliceBox_ = boxOf(*reduced);
+  return dataElement("labels" + suffix_,
+                     packLabels(reduced ? *reduced : labels_, sliceBox_, ids_, interrupter_));
+}
+
+std::string ReportParts::mesh() {
+  if (options_.maxTriangles == 0 || ids_.empty()) return "";
+  begin("mesh");
+  const GrainMeshOptions options{
+      kSmoothing,
+      std::min(options_.maxTriangles, std::max(kFewestTriangles, kTrianglesOfGrain * ids_.size()))};
+  const uint64_t most =
+      std::min(kMostMeshed, kMostSimplified * std::max(options.triangles, kFewestTriangles));
+  const int factor = reductionTo(most, labels_, interrupter_);
+  GrainMesh mesh =
+      factor > 1 ? grainMesh(*reduceLabels(labels_, factor, interrupter_), options, interrupter_)
+                 : grainMesh(labels_, options, interrupter_);
+  if (factor > 1) enlarge(mesh, factor);
+  const PackedMesh packed = packMesh(mesh, measured_.grains, kMeshStep * double(factor));
+  points_ = packed.points;
+  triangles_ = packed.triangles;
+  step_ = packed.step;
+  return dataElement("mesh" + suffix_, packed.text);
+}
+
+std::string ReportParts::about() const {
+  Json json;
+  json["title"] = title();
+  json["version"] = kVersion;
+  json["unit"] = unit();
+  json["voxelSizeKnown"] = measured_.voxelSize.has_value();
+  std::array<double, 3> edges{measured_.edges[0], measured_.edges[1], measured_.edges[2]};
+  if (measured_.voxelSize) edges = measured_.voxelSize->edgesInUnit();
+  json["edges"] = edges;
+  json["box"] = {{"min", toJson(box_.min())}, {"max", toJson(box_.max())}};
+  json["slices"] = {
+      {"factor", reduction_}, {"min", toJson(sliceBox_.min())}, {"size", toJson(sliceBox_.dim())}};
+  json["mesh"] = nullptr;
+  if (triangles_ > 0)
+    json["mesh"] = {{"step", step_}, {"points", points_}, {"triangles", triangles_}};
+  json["view"] = {{"azimuth", view_.azimuth}, {"elevation", view_.elevation}};
+  json["columns"] = {{"grains", columnsJson(grainColumns({}, measured_.extra))},
+                     {"bonds", columnsJson(bondColumns({}, measured_.extra))}};
+  // A file name need not be UTF-8: what is not is replaced.
+  return jsonElement("about" + suffix_, json.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+std::string ReportParts::picture() const {
+  begin("picture");
+  const PanelOptions panel{false, true, options_.pictureEdge, view_};
+  const std::vector<PicturePanel> panels = labelPanels(labels_, box_, panel, interrupter_);
+  const Picture sheet = pictureSheet(panels, storedVoxelSize(labels_));
+  return "<img id=\"picture" + suffix_ + "\" alt=\"The grains from outside\" width=\"" +
+         std::to_string(sheet.width) + "\" height=\"" + std::to_string(sheet.height) +
+         "\" src=\"data:image/png;base64," + base64(pngBytes(sheet)) + "\">\n";
+}
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "vdb_madf/labels/grain_colors.h"
+#include "vdb_madf/measure/measure.h"
+#include "vdb_madf/pictures/grain_view.h"
+#include "vdb_madf/report/report.h"
+
+namespace vdb_madf::detail {
+
+/// What a page has of a sample: elements of data, each with an id that ends with a suffix of the
+/// sample's own.
+class ReportParts {
+ public:
+  /// Measures. Labels and options must live as long. @throw as writeReport()
+  ReportParts(const Int32Grid& labels, const ReportOptions& options, std::string suffix,
+              Interrupter* interrupter);
+
+  const Measurements& measured() const { return measured_; }
+  std::string title() const;
+  std::string unit() const;
+  Report report() const;
+
+  std::string tables() const;
+  std::string colors() const;
+  std::string sweep() const;
+  std::string slices();
+  std::string mesh();
+  /// After slices() and mesh(), if there are these: it tells how to read them.
+  std::string about() const;
+  /// An image element for where there is no WebGL, and for paper.
+  std::string picture() const;
+
+ private:
+  void begin(const char* stage) const;
+
+  const Int32Grid& labels_;
+  const ReportOptions& options_;
+  const std::string suffix_;
+  Interrupter* interrupter_;
+  const ViewOptions view_;
+  Measurements measured_;
+  CoordBBox box_, sliceBox_;
+  GrainColors colors_;
+  std::vector<int32_t> ids_;
+  int reduction_ = 1;
+  uint64_t points_ = 0, triangles_ = 0;  ///< of the mesh
+  double step_ = 0;
+};
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+// Colors: of the labels, or by a number from dark blue over green to yellow.
+
+const stops = [[68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141],
+  [39, 173, 129], [92, 200, 99], [170, 220, 50], [253, 231, 37]];
+const unknown = [150, 150, 150];
+export const selectedColor = [255, 196, 0];
+
+/// Of a share from 0 to 1.
+export function ramp(share) {
+  const place = Math.max(0, Math.min(1, share)) * (stops.length - 1);
+  const below = Math.min(stops.length - 2, Math.floor(place));
+  return stops[below].map((value, i) =>
+    Math.round(value + (place - below) * (stops[below + 1][i] - value)));
+}
+
+/// What the ramp spans: the values without the outermost 1 % at either end.
+export function rangeOf(values) {
+  const sorted = values.filter((value) => !Number.isNaN(value)).sort();
+  if (sorted.length === 0) return [0, 1];
+  const at = (share) => sorted[Math.round(share * (sorted.length - 1))];
+  const low = at(0.01), high = at(0.99);
+  return high > low ? [low, high] : [low, low + (Math.abs(low) || 1)];
+}
+
+/// Three bytes a grain.
+export function colorsOf(sample, name) {
+  if (!name) return sample.colors;
+  const values = sample.grains.column(name);
+  const [low, high] = rangeOf(values);
+  const colors = new Uint8Array(3 * sample.count);
+  for (let row = 0; row < sample.count; ++row)
+    colors.set(Number.isNaN(values[row]) ? unknown : ramp((values[row] - low) / (high - low)), 3 * row);
+  return colors;
+}

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+import { followState, readState } from './address.js';
+import { startCharts } from './charts.js';
+import { startComparison } from './comparison.js';
+import { element, json } from './decode.js';
+import { startEdits } from './edits.js';
+import { startGrain } from './grain.js';
+import { make, Sample } from './sample.js';
+import { Selection } from './selection.js';
+import { startSlices } from './slices.js';
+import { startSummary } from './summary.js';
+import { startSweep } from './sweep.js';
+import { startTables } from './tables.js';
+import { newCamera, startView } from './view.js';
+
+async function start() {
+  if (element('samples')) await startComparison(json('samples')); else await startSample();
+  document.documentElement.dataset.ready = 'yes';
+}
+
+async function startSample() {
+  const sample = await Sample.load();
+  await sample.loadVoxels();
+  const selection = new Selection(sample);
+  const camera = newCamera(sample);
+  readState(location.hash.slice(1), selection, camera);
+  selection.applyFilters();
+  selection.changed('looks');
+  startSummary(sample);
+  startGrain(sample, selection);
+  startSlices(sample, selection);
+  startCharts(sample, selection);
+  await startSweep(sample);
+  startTables(sample, selection);
+  startEdits(sample, selection);
+  const scene = await startView(sample, selection, camera);
+  selection.changed('filter', 'selection', 'looks', 'cuts');
+  followState(selection, camera);
+  document.addEventListener('keydown', (event) => {
+    if (event.key === 'Escape' && selection.selected.size > 0) selection.select([]);
+  });
+  // For tests, and for a reader's console.
+  window.report = { sample, selection, camera, scene };
+}
+
+start().catch((error) => {
+  document.documentElement.dataset.ready = 'no';
+  element('warnings').append(make('p', {},
+    'DecompressionStream' in window ? `This page cannot be shown: ${error}`
+      : 'This browser is too old for this page: Chrome or Edge 88, Firefox 113 or Safari 16.4 show it.'));
+  throw error;
+});

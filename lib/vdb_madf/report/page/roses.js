@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+// Directions: how much of the weight each sector has, over what it had if no direction were preferred.
+import { make, makeSvg } from './sample.js';
+
+const kFullSectors = 18;  // of half a turn
+const kQuarterSectors = 9;  // of a quarter turn
+const middle = 105, unit = 45, most = 84;
+
+class Rose {
+  constructor(sample, selection, title, kind, name, weight, sectors, corners) {
+    Object.assign(this, { sectors, corners });
+    this.directions = ['x', 'y', 'z'].map((axis) => sample[kind].column(`${name}_${axis}`));
+    this.weights = sample[kind].column(weight);
+    this.flags = () => (kind === 'grains' ? selection.visible : selection.visibleBonds);
+    this.svg = makeSvg('svg', { viewBox: '-6 4 222 202', role: 'img', 'aria-label': title, class: 'rose' });
+    this.figure = make('figure', {}, make('figcaption', {}, title), this.svg);
+  }
+
+  draw() {
+    const { shares, starts, step } = this.sectors(this.directions, this.weights, this.flags());
+    const highest = Math.max(1, ...shares);
+    const scale = Math.min(unit, most / highest);
+    const at = (radius, angle) => `${(middle + radius * Math.cos(angle)).toFixed(2)} ${(middle - radius * Math.sin(angle)).toFixed(2)}`;
+    this.svg.replaceChildren();
+    shares.forEach((share, i) => {
+      const radius = share * scale, begin = starts[i];
+      if (radius > 0)
+        this.svg.append(makeSvg('path', { class: 'shown',
+          d: `M${middle} ${middle}L${at(radius, begin)}A${radius} ${radius} 0 0 0 ${at(radius, begin + step)}Z` }));
+    });
+    this.svg.append(makeSvg('circle', { cx: middle, cy: middle, r: scale, class: 'class' }));
+    for (const [name, angle] of this.corners)
+      this.svg.append(makeSvg('text', { x: middle + 97 * Math.cos(angle), y: middle - 97 * Math.sin(angle) + 4,
+        'text-anchor': 'middle' }, name));
+  }
+}
+
+/// Azimuths of axial directions in the x-y plane, each with its weight times its shadow's length there.
+function azimuths([x, y], weights, flags) {
+  const step = Math.PI / kFullSectors, sums = new Array(kFullSectors).fill(0);
+  let total = 0;
+  for (let row = 0; row < weights.length; ++row) {
+    const share = flags[row] ? weights[row] * Math.hypot(x[row], y[row]) : 0;
+    if (!(share > 0)) continue;
+    const angle = (Math.atan2(y[row], x[row]) + 2 * Math.PI) % Math.PI;
+    sums[Math.floor(angle / step + 0.5) % kFullSectors] += share;
+    total += share;
+  }
+  const shares = sums.map((sum) => (total ? sum * kFullSectors / total : 0));
+  return { shares: [...shares, ...shares], step,
+    starts: Array.from({ length: 2 * kFullSectors }, (_, i) => step * (i - 0.5)) };
+}
+
+/// Angles to z, upward in the picture; four times the same.
+function rises([x, y, z], weights, flags) {
+  const step = Math.PI / 2 / kQuarterSectors, sums = new Array(kQuarterSectors).fill(0);
+  let total = 0;
+  for (let row = 0; row < weights.length; ++row) {
+    if (!flags[row] || Number.isNaN(x[row])) continue;
+    const angle = Math.atan2(Math.hypot(x[row], y[row]), Math.abs(z[row]));
+    sums[Math.min(kQuarterSectors - 1, Math.floor(angle / step))] += weights[row];
+    total += weights[row];
+  }
+  const quarter = sums.map((sum, i) =>
+    (total ? sum / total / (Math.cos(i * step) - Math.cos((i + 1) * step)) : 0));
+  const half = [...quarter, ...[...quarter].reverse()];
+  return { shares: [...half, ...half], step,
+    starts: Array.from({ length: 4 * kQuarterSectors }, (_, i) => Math.PI / 2 - step * (i + 1)) };
+}
+
+export function fullRose(sample, selection, title, kind, name, weight) {
+  return new Rose(sample, selection, title, kind, name, weight, azimuths,
+    [['x', 0], ['y', Math.PI / 2]]);
+}
+
+export function quarterRose(sample, selection, title, kind, name, weight) {
+  return new Rose(sample, selection, title, kind, name, weight, rises,
+    [['z', Math.PI / 2], ['90\u00b0', 0]]);
+}

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+// What is selected, filtered and how it is shown: the one state that all parts of the page follow.
+import { colorsOf } from './looks.js';
+
+export const kHidden = 0, kPale = 85, kPlain = 170, kSelected = 255;
+
+export class Selection {
+  constructor(sample) {
+    this.sample = sample;
+    this.listeners = [];
+    this.selected = new Set();  // rows of grains
+    this.filters = { grains: new Map(), bonds: new Map() };  // column name: [low, high]
+    this.insideOnly = false;
+    this.colorBy = '';  // a column of grains; '': the labels' colors
+    this.others = 'pale';  // grains beside the selected: pale, plain or hidden
+    this.bondsAs = 'none';  // none, discs or lines
+    this.explode = 0;
+    // An axis each: where it is cut, as a share of the box; what lies beyond is not shown.
+    this.cuts = [1, 1, 1];
+    this.flips = [false, false, false];
+    const { size } = sample.about.slices;
+    this.slices = size.map((count) => Math.floor(count / 2));
+    this.edits = [];
+    this.visible = new Uint8Array(sample.count).fill(1);
+    this.visibleBonds = new Uint8Array(sample.bonds.rows).fill(1);
+    this.states = new Uint8Array(sample.count).fill(kPlain);
+    this.colors = colorsOf(sample, '');
+  }
+
+  /// call(what): 'selection', 'filter', 'looks', 'cuts', 'slices', 'edits', 'camera'
+  listen(call) {
+    this.listeners.push(call);
+  }
+
+  changed(...what) {
+    if (what.includes('filter')) this.applyFilters();
+    if (what.includes('looks')) this.colors = colorsOf(this.sample, this.colorBy);
+    this.updateStates();
+    for (const one of what) for (const call of this.listeners) call(one);
+  }
+
+  select(rows, more = false) {
+    if (!more) this.selected.clear();
+    for (const row of rows)
+      if (more && this.selected.has(row)) this.selected.delete(row); else this.selected.add(row);
+    const last = rows[rows.length - 1];
+    if (last !== undefined && this.selected.has(last)) {
+      this.goTo(this.sample.placeOf('grains', last));
+      this.changed('selection', 'slices');
+    } else {
+      this.changed('selection');
+    }
+  }
+
+  /// Slices through a place, index coordinates.
+  goTo(place) {
+    const { factor, min, size } = this.sample.about.slices;
+    this.slices = place.map((value, axis) =>
+      Math.max(0, Math.min(size[axis] - 1, Math.floor((value + 0.5) / factor) - min[axis])));
+  }
+
+  setFilter(kind, name, range) {
+    if (range) this.filters[kind].set(name, range); else this.filters[kind].delete(name);
+    this.changed('filter');
+  }
+
+  clearFilters() {
+    this.filters.grains.clear();
+    this.filters.bonds.clear();
+    this.insideOnly = false;
+    this.changed('filter');
+  }
+
+  get filterCount() {
+    return this.filters.grains.size + this.filters.bonds.size + (this.insideOnly ? 1 : 0);
+  }
+
+  applyFilters() {
+    const { grains, bonds, bondEnds } = this.sample;
+    this.visible.fill(1);
+    restrict(this.visible, grains, this.filters.grains);
+    if (this.insideOnly) {
+      const atFace = grains.column('at_domain_face');
+      for (let row = 0; row < grains.rows; ++row) if (atFace[row]) this.visible[row] = 0;
+    }
+    for (let bond = 0; bond < bonds.rows; ++bond)
+      this.visibleBonds[bond] = this.visible[bondEnds.first[bond]] & this.visible[bondEnds.second[bond]];
+    restrict(this.visibleBonds, bonds, this.filters.bonds);
+  }
+
+  /// Hidden, pale, plain or selected, for each grain.
+  updateStates() {
+    const others = this.selected.size === 0 ? kPlain
+      : { pale: kPale, plain: kPlain, hidden: kHidden }[this.others];
+    for (let row = 0; row < this.sample.count; ++row)
+      this.states[row] = this.visible[row] ? others : kHidden;
+    for (const row of this.selected)
+      for (const neighbor of this.neighbors(row))
+        if (this.visible[neighbor]) this.states[neighbor] = kPlain;
+    for (const row of this.selected) this.states[row] = kSelected;
+  }
+
+  neighbors(row) {
+    const { first, second } = this.sample.bondEnds;
+    return this.sample.bondsOf[row].map((bond) => (first[bond] === row ? second[bond] : first[bond]));
+  }
+
+  /// Bonds to draw: those of the selected grains, or all.
+  shownBonds() {
+    const { first, second } = this.sample.bondEnds;
+    const shown = [];
+    for (let bond = 0; bond < this.visibleBonds.length; ++bond)
+      if (this.visibleBonds[bond] && (this.selected.size === 0 ||
+          this.selected.has(first[bond]) || this.selected.has(second[bond]))) shown.push(bond);
+    return shown;
+  }
+}
+
+function restrict(flags, table, filters) {
+  for (const [name, [low, high]] of filters) {
+    const values = table.column(name);
+    for (let row = 0; row < flags.length; ++row)
+      if (!(values[row] >= low && values[row] <= high)) flags[row] = 0;
+  }
+}

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+// Three slices through the labels, with what is selected and filtered as in the view.
+import { element } from './decode.js';
+import { selectedColor } from './looks.js';
+import { make, makeSvg } from './sample.js';
+import { kHidden, kPale, kSelected } from './selection.js';
+
+const names = ['x', 'y', 'z'];
+const hiddenColor = [224, 226, 229];
+const white = [255, 255, 255];
+
+/// The planes x-y, x-z and y-z: what goes to the right and what goes down; z goes up.
+const planes = [[0, 1], [0, 2], [1, 2]];
+
+export function startSlices(sample, selection) {
+  const section = element('slices');
+  section.append(make('h2', {}, 'Slices'));
+  const panels = planes.map(([right, down]) => new Panel(sample, selection, right, down));
+  section.append(make('div', { className: 'panels' }, ...panels.map((panel) => panel.figure)));
+  const { factor } = sample.about.slices;
+  if (factor > 1)
+    section.append(make('p', { className: 'hint' },
+      `A pixel stands for ${factor} \u00d7 ${factor} \u00d7 ${factor} voxels: the label that most of them have.`));
+  const drawAll = () => panels.forEach((panel) => panel.draw());
+  selection.listen((what) => {
+    if (what !== 'camera' && what !== 'cuts' && what !== 'edits') drawAll();
+  });
+  drawAll();
+}
+
+class Panel {
+  constructor(sample, selection, right, down) {
+    const fixed = 3 - right - down;
+    const { size } = sample.about.slices;
+    Object.assign(this, { sample, selection, right, down, fixed, width: size[right], height: size[down] });
+    const { edges } = sample.about;
+    this.canvas = make('canvas', { width: this.width, height: this.height });
+    this.image = this.canvas.getContext('2d').createImageData(this.width, this.height);
+    this.cross = makeSvg('svg', { viewBox: `0 0 ${this.width} ${this.height}`, preserveAspectRatio: 'none' });
+    this.frame = make('div', { className: 'slice' }, this.canvas, this.cross);
+    this.frame.style.aspectRatio = `${this.width * edges[right]} / ${this.height * edges[down]}`;
+    this.slider = make('input', { type: 'range', min: 0, max: size[fixed] - 1, step: 1,
+      'aria-label': `Place of the slice along ${names[fixed]}` });
+    this.place = make('output');
+    this.figure = make('figure', {},
+      make('figcaption', {}, `${names[right]}-${names[down]} at ${names[fixed]} = `, this.place), this.frame, this.slider);
+    this.slider.addEventListener('input', () => this.moveTo(Number(this.slider.value)));
+    this.frame.addEventListener('wheel', (event) => {
+      event.preventDefault();
+      this.moveTo(selection.slices[fixed] + (event.deltaY < 0 ? 1 : -1));
+    }, { passive: false });
+    this.frame.addEventListener('click', (event) => this.click(event));
+    this.frame.addEventListener('pointermove', (event) => this.hover(event));
+  }
+
+  moveTo(layer) {
+    const { size } = this.sample.about.slices;
+    this.selection.slices[this.fixed] = Math.max(0, Math.min(size[this.fixed] - 1, layer));
+    this.selection.changed('slices');
+  }
+
+  /// The voxel of the slices at a column and a line from above.
+  voxel(column, line) {
+    const p = [...this.selection.slices];
+    p[this.right] = column;
+    p[this.down] = this.down === 2 ? this.height - 1 - line : line;
+    return p;
+  }
+
+  voxelAt(event) {
+    const box = this.frame.getBoundingClientRect();
+    const share = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
+    const within = (value, count) => Math.max(0, Math.min(count - 1, Math.floor(value * count)));
+    return this.voxel(within(share[0], this.width), within(share[1], this.height));
+  }
+
+  click(event) {
+    const voxel = this.voxelAt(event);
+    const more = event.shiftKey || event.ctrlKey;
+    const row = this.sample.labelAt(...voxel) - 1;
+    if (row >= 0) {
+      this.selection.select([row], more);
+    } else if (!more) {
+      this.selection.select([]);
+    }
+    this.selection.slices = voxel;
+    this.selection.changed('slices');
+  }
+
+  hover(event) {
+    const row = this.sample.labelAt(...this.voxelAt(event)) - 1;
+    this.frame.title = row < 0 ? '' : `grain ${this.sample.ids[row]}`;
+  }
+
+  draw() {
+    const { selection, sample } = this;
+    const { colors, states } = selection;
+    const { data } = this.image;
+    let to = 0;
+    for (let line = 0; line < this.height; ++line)
+      for (let column = 0; column < this.width; ++column, to += 4) {
+        const row = sample.labelAt(...this.voxel(column, line)) - 1;
+        const state = row < 0 ? -1 : states[row];
+        const color = state < 0 ? white : state === kHidden ? hiddenColor
+          : state === kSelected ? selectedColor : null;
+        const pale = state === kPale ? 0.65 : 0;
+        for (let k = 0; k < 3; ++k)
+          data[to + k] = color ? color[k] : colors[3 * row + k] + pale * (255 - colors[3 * row + k]);
+        data[to + 3] = 255;
+      }
+    this.canvas.getContext('2d').putImageData(this.image, 0, 0);
+    this.drawCross();
+    const layer = selection.slices[this.fixed];
+    this.slider.value = layer;
+    const { factor, min } = sample.about.slices;
+    const index = (layer + min[this.fixed]) * factor + (factor - 1) / 2;
+    this.place.textContent = sample.length(index * sample.about.edges[this.fixed]);
+  }
+
+  drawCross() {
+    const { slices } = this.selection;
+    const x = slices[this.right] + 0.5;
+    const y = (this.down === 2 ? this.height - 1 - slices[2] : slices[this.down]) + 0.5;
+    this.cross.replaceChildren(
+      makeSvg('line', { x1: x, x2: x, y1: 0, y2: this.height }),
+      makeSvg('line', { x1: 0, x2: this.width, y1: y, y2: y }));
+  }
+}

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+// What stands at the top: where the sample comes from, its numbers, and what to be wary of.
+import { element } from './decode.js';
+import { counted, make, written } from './sample.js';
+
+const kDustVoxels = 100;  // as in the summaries of the command
+
+function percent(share) {
+  return `${written(100 * share, 3)} %`;
+}
+
+export function originOf(sample) {
+  const { numbers } = sample;
+  const size = numbers.box_max.map((high, i) => high - numbers.box_min[i] + 1);
+  const edges = sample.about.edges.map((edge) => sample.length(edge));
+  const cubes = new Set(edges).size === 1;
+  const voxel = sample.about.voxelSizeKnown
+    ? `voxels of ${cubes ? edges[0] : edges.join(' \u00d7 ')}`
+    : 'voxels of unknown size: lengths are in voxels';
+  const made = ['merge_mode', 'gamma', 'theta', 'delta'].filter((key) => key in numbers.segmentation)
+    .map((key) => `${key.replace('_', ' ')} ${numbers.segmentation[key]}`).join(', ');
+  return [numbers.labels, `${size.join(' \u00d7 ')} voxels`, voxel, made].filter(Boolean).join('; ');
+}
+
+/// Titles and values of the numbers of a sample.
+export function tiles(sample) {
+  const { numbers, about } = sample;
+  const u = about.unit;
+  const number = (name) => numbers[name];
+  const d50 = (by) => number(`grain_diameter_by_${by}_${u}`).d50;
+  const result = [
+    ['Grains', counted(number('grains'))],
+    ['Bonds', counted(number('bonds'))],
+    ['Bonds a grain', written(number('mean_coordination'), 3)],
+    ['Solid fraction', percent(number('solid_fraction'))],
+    ['Median diameter, by volume', sample.length(d50('volume'), 3)],
+    ['Median diameter, by number', sample.length(d50('number'), 3)],
+    ['Specific surface', `${written(number(`specific_surface_per_${u}`), 3)} ${sample.unit(-1)}`],
+    ['Bond radius / grain radius', written(number('bond_to_grain_ratio'), 3)],
+  ];
+  if ('specific_surface_m2_per_kg' in numbers)
+    result.push(['Specific surface', `${written(number('specific_surface_m2_per_kg'), 3)} m\u00b2/kg`]);
+  if ('bulk_density_kg_per_m3' in numbers)
+    result.push(['Density', `${written(number('bulk_density_kg_per_m3'), 3)} kg/m\u00b3`]);
+  return result;
+}
+
+export function warnings(sample) {
+  const { grains, numbers, about } = sample;
+  const voxels = grains.column('voxels'), atFace = grains.column('at_domain_face');
+  const sum = (test) => voxels.reduce((total, value, row) => total + (test(row) ? value : 0), 0);
+  const count = (test) => voxels.reduce((total, _, row) => total + (test(row) ? 1 : 0), 0);
+  const all = sum(() => true);
+  const found = [];
+  const say = (test, text) => {
+    const rows = count(test);
+    if (rows > 0)
+      found.push(`${counted(rows)} of ${counted(grains.rows)} grains (${percent(sum(test) / all)} of their volume) ${text}`);
+  };
+  if (grains.rows === 0) found.push('There are no grains.');
+  if (grains.rows === 1) found.push('There is one grain alone: if this is a mask, segment it first.');
+  if (!about.voxelSizeKnown) found.push('The voxel size is not known: all lengths are in voxels.');
+  if (numbers.box === 'grains') found.push('The domain is not known: fractions refer to the box of the grains.');
+  if (numbers.boundary === 'open')
+    say((row) => atFace[row], 'are cut by the faces of the scan: their sizes and shapes are those of what is left.');
+  say((row) => voxels[row] < kDustVoxels, `are dust, of fewer than ${kDustVoxels} voxels.`);
+  if (numbers.bonds_without_curvature > 0)
+    found.push(`${counted(numbers.bonds_without_curvature)} of ${counted(numbers.bonds)} bonds have so few voxel faces that no curvature can be fitted.`);
+  return found;
+}
+
+export function startSummary(sample) {
+  element('origin').textContent = originOf(sample);
+  element('numbers').append(...tiles(sample).map(([title, value]) =>
+    make('div', { className: 'tile' }, make('b', {}, value), make('span', {}, title))));
+  const list = warnings(sample);
+  if (list.length > 0)
+    element('warnings').append(make('ul', {}, ...list.map((text) => make('li', {}, text))));
+  tellMaker(sample.about.version, [sample.numbers.labels_digest]);
+}
+
+export function tellMaker(version, digests) {
+  element('made').textContent = `Written by vdb_madf ${version}. Labels: ${digests.join(', ')}. ` +
+    'This file asks for nothing from the network.';
+}

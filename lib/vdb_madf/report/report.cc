@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/report/report.h"
+
+#include <memory>
+#include <stdexcept>
+
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/detail/output_stream.h"
+#include "vdb_madf/report/detail/page_sources.h"
+#include "vdb_madf/report/detail/page_text.h"
+#include "vdb_madf/report/detail/report_parts.h"
+
+namespace vdb_madf {
+
+namespace {
+
+/// What is the page's own.
+struct PageText {
+  std::string title, picture, data;
+};
+
+void checkOptions(const ReportOptions& options) {
+  if (options.maxSlice < 1) throw InvalidInput("slices must have at least one voxel a side");
+  if (options.pictureEdge < 16 || options.pictureEdge > 8192)
+    throw InvalidInput("the picture must have from 16 to 8192 pixels a side");
+  if (!options.sweep.empty() && !isSweepTable(options.sweep))
+    throw InvalidInput("the table of a sweep has other columns than the verb sweep writes");
+}
+
+const detail::PageSources& sourcesFor(const std::string& path) {
+  if (const detail::PageSources* sources = detail::pageSources()) return *sources;
+  throw IoError(path +
+                ": reports cannot be written by this program: install esbuild, libjs-three and "
+                "libjs-jquery-datatables, then configure and build it again");
+}
+
+/// What is wrong with a sample names it.
+std::unique_ptr<detail::ReportParts> partsOf(const Int32Grid& labels, const ReportOptions& options,
+                                             const std::string& suffix, Interrupter* interrupter) {
+  try {
+    return std::make_unique<detail::ReportParts>(labels, options, suffix, interrupter);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(options.labels + ": " + error.what(), error.hint());
+  }
+}
+
+/// @return bytes
+uint64_t write(detail::OutputStream& file, const detail::PageSources& sources,
+               const PageText& page) {
+  uint64_t bytes = 0;
+  detail::fillIn(
+      sources.html,
+      [&](const std::string& name) -> std::string {
+        if (name == "TITLE") return detail::htmlEscaped(page.title);
+        if (name == "STYLE") return sources.style;
+        if (name == "PICTURE") return page.picture;
+        if (name == "DATA") return page.data;
+        if (name == "SCRIPT") return sources.script;
+        throw std::logic_error("the page has an unknown part: " + name);
+      },
+      [&](const std::string& text) {
+        file.text(text);
+        bytes += text.size();
+      });
+  file.commit();
+  return bytes;
+}
+
+}  // namespace
+
+bool canWriteReport() {
+  return detail::pageSources() != nullptr;
+}
+
+bool isSweepTable(const std::string& text) {
+  const std::string head = "gamma,merge,delta,theta,grains,median_voxels,small_grains,";
+  return text.compare(0, head.size(), head) == 0;
+}
+
+Report writeReport(const std::string& path, const Int32Grid& labels, const ReportOptions& options,
+                   Interrupter* interrupter) {
+  checkOptions(options);
+  const detail::PageSources& sources = sourcesFor(path);
+  detail::OutputStream file(path, interrupter);
+  detail::ReportParts parts(labels, options, "", interrupter);
+  PageText page{parts.title(), parts.picture(), ""};
+  page.data = parts.tables() + parts.colors() + parts.sweep() + parts.slices();
+  page.data += parts.mesh();
+  page.data += parts.about();
+  Report report = parts.report();
+  report.bytes = write(file, sources, page);
+  return report;
+}
+
+Report writeComparison(const std::string& path, const std::vector<ReportSample>& samples,
+                       const ReportOptions& options, Interrupter* interrupter) {
+  checkOptions(options);
+  const detail::PageSources& sources = sourcesFor(path);
+  detail::OutputStream file(path, interrupter);
+  PageText page{options.title.empty() ? "Samples side by side" : options.title, "", ""};
+  Report whole;
+  std::string unit;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const Int32Grid::ConstPtr labels = samples[i].labels();
+    ReportOptions own = options;
+    own.title = samples[i].name;
+    own.labels = samples[i].path;
+    const auto made = partsOf(*labels, own, "-" + std::to_string(i), interrupter);
+    const detail::ReportParts& parts = *made;
+    if (i > 0 && parts.unit() != unit)
+      throw InvalidInput("lengths of " + samples[0].path + " are in " + unit + ", those of " +
+                             samples[i].path + " in " + parts.unit() +
+                             ": give all samples a voxel size",
+                         Hint::voxelSize);
+    unit = parts.unit();
+    page.data += parts.tables() + parts.picture() + parts.about();
+    const Report report = parts.report();
+    whole.grains += report.grains;
+    whole.bonds += report.bonds;
+  }
+  page.data += detail::jsonElement("samples", std::to_string(samples.size()));
+  whole.bytes = write(file, sources, page);
+  return whole;
+}
+
+}  // namespace vdb_madf

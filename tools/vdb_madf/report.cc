@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/report/report.h"
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "input_options.h"
+#include "outputs.h"
+#include "parse.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/exports/measurement_files.h"
+#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/read_text.h"
+
+namespace vdb_madf::tools {
+
+namespace {
+
+constexpr uint64_t kMaxSweepBytes = 10000000;
+
+struct Options {
+  InputOptions input;
+  std::vector<std::string> files;  ///< of labels, and of the page
+  std::vector<InputOptions> samples;
+  std::string out, boundary = "auto", minFaces = "1", density, sweep, triangles = "1000000";
+  bool ice = false, noView = false;
+  ReportOptions report;
+};
+
+void parse(Options& o) {
+  o.out = o.files.back();
+  const std::string ending = fileEnding(o.out);
+  if (ending != ".html" && ending != ".htm")
+    throw WrongUsage(o.out + ": the output comes last, and its ending must be .html");
+  if (o.files.size() == 1) throw WrongUsage("give the labels, and last the page to write");
+  o.input.outputs = {o.out};
+  for (size_t i = 0; i + 1 < o.files.size(); ++i) {
+    o.input.path = o.files[i];
+    o.input.parse();
+    o.samples.push_back(o.input);
+  }
+  o.report.labels = o.input.path;
+  if (!o.sweep.empty() && o.samples.size() > 1)
+    throw WrongUsage("--sweep is of one sample: give the labels of one");
+  o.report.measure.boundary = parseBoundary(o.boundary);
+  o.report.measure.minFaces = parseCount(o.minFaces, "--min-faces");
+  o.report.maxTriangles = o.noView ? 0 : uint64_t(parseCount(o.triangles, "--triangles"));
+  if (!o.noView && o.report.maxTriangles == 0)
+    throw WrongUsage("--triangles 0: give --no-3d for a page without them");
+  if (o.ice && !o.density.empty()) throw WrongUsage("--ice is --density 917: give one of the two");
+  if (o.ice) o.report.density = kIceDensity;
+  if (!o.density.empty()) {
+    o.report.density = parseNumber(o.density, "--density");
+    if (!(*o.report.density > 0)) throw WrongUsage("--density " + o.density + ": must be above 0");
+  }
+}
+
+Report writeOne(const Options& o, const Common& common) {
+  ReportOptions options = o.report;
+  if (!o.sweep.empty()) options.sweep = readText(o.sweep, kMaxSweepBytes);
+  if (!o.sweep.empty() && !isSweepTable(options.sweep))
+    throw InvalidInput(o.sweep + ": is no table of the verb sweep");
+  common.progress->start("read");
+  const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
+  return withFileName(o.input.path,
+                      [&] { return writeReport(o.out, *labels, options, common.progress); });
+}
+
+Report writeAll(const Options& o, const Common& common) {
+  std::vector<ReportSample> samples;
+  for (const InputOptions& input : o.samples)
+    samples.push_back({input.path, input.path, [&input, &common]() -> Int32Grid::ConstPtr {
+                         common.progress->start("read");
+                         return loadLabels(input, "--grid", common.progress);
+                       }});
+  return writeComparison(o.out, samples, o.report, common.progress);
+}
+
+void run(const Options& o, const Common& common) {
+  checkWritable(o.out);
+  const bool isOne = o.samples.size() == 1;
+  const Report report = isOne ? writeOne(o, common) : writeAll(o, common);
+  common.progress->end();
+  if (common.quiet) return;
+  std::printf("%s: %.1f MB, open it in a browser: ", o.out.c_str(), double(report.bytes) / 1e6);
+  if (!isOne) std::printf("%s, ", counted(int64_t(o.samples.size()), "sample").c_str());
+  std::printf("%s, %s", counted(report.grains, "grain").c_str(),
+              counted(report.bonds, "bond").c_str());
+  if (report.triangles > 0)
+    std::printf(", %s", counted(int64_t(report.triangles), "triangle").c_str());
+  std::printf("\n");
+  if (report.sliceReduction > 1)
+    std::printf("  slices              reduced %d times: a voxel of them is %d^3 of the labels\n",
+                report.sliceReduction, report.sliceReduction);
+}
+
+}  // namespace
+
+void addReport(Verb command, Common& common, Action& action) {
+  auto o = std::make_shared<Options>();
+  Verb verb = addVerb(command, common, "report", "a page for the browser: look, click, filter",
+                      "vdb_madf report grains.vdb report.html");
+  verb.option(
+          "LABELS", o->files,
+          "labels, VDB or integer image, of one sample or of several to compare; last, the page "
+          "to write, OUT.html: one file that opens in a browser, without a network")
+      .required();
+  verb.option("--grid", o->input.gridName, "VDB input: the grid to take").typeName("NAME");
+  verb.option("--title", o->report.title, "of the page (default: the name of the file)")
+      .typeName("TEXT");
+  verb.option("--triangles", o->triangles, "of all grains together, at most, about; 150 a grain do")
+      .typeName("N")
+      .showDefault();
+  verb.flag("--no-3d", o->noView, "a picture in the place of the view to turn");
+  verb.option("--sweep", o->sweep, "a table of the verb sweep, of the same object: adds its plots")
+      .typeName("FILE.csv");
+  verb.option("--max-dim", o->report.maxSlice, "longest side of the slices, in voxels")
+      .range(16, 1024)
+      .showDefault();
+  o->input.addRaw(verb);
+  o->input.addVoxelSize(verb);
+  o->input.addDomain(verb);
+  addBoundary(verb, o->boundary);
+  verb.option("--min-faces", o->minFaces, "fewest voxel faces of a bond")
+      .typeName("N")
+      .showDefault();
+  verb.option("--density", o->density, "of the grains' material, kg/m3: adds what is per mass")
+      .typeName("D");
+  verb.flag("--ice", o->ice, "the density of ice: --density 917");
+  verb.onParsed([o, &common, &action] {
+    parse(*o);
+    action = [o, &common] { run(*o, common); };
+  });
+}
+
+}  // namespace vdb_madf::tools
