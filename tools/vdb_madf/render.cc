@@ -55,18 +55,6 @@ std::vector<SlicePlane> parseSlices(const std::string& text) {
   return planes;
 }
 
-std::vector<int32_t> parseGrains(const std::string& text) {
-  std::vector<int32_t> grains;
-  if (text.empty()) return grains;
-  for (const std::string& part : split(text, ',')) {
-    const int64_t grain = parseCount(part, "--select");
-    if (grain < 1 || grain > std::numeric_limits<int32_t>::max())
-      throw WrongUsage("--select " + part + ": grains have the numbers 1 and more");
-    grains.push_back(int32_t(grain));
-  }
-  return grains;
-}
-
 void parse(Options& o) {
   if (!hasPngEnding(o.out)) throw WrongUsage(o.out + ": the output's ending must be .png");
   // Option::range() lets NaN pass.
@@ -78,7 +66,7 @@ void parse(Options& o) {
   if (int64_t(o.planes.size() + 1) * o.size * o.size > kMostPixels)
     throw WrongUsage("--slice: " + counted(int64_t(o.planes.size()), "slice") + " of " +
                      std::to_string(o.size) + " pixels are too large a picture: lower --size");
-  o.selected = parseGrains(o.select);
+  o.selected = parseGrains(o.select, "--select");
   o.input.outputs = {o.out};
   o.input.parse();
   checkScan({o.scan, o.scanGrid, "--overlay"}, o.input);
