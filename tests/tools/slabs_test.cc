@@ -33,7 +33,7 @@ TEST_CASE("slabs: one file of them is the one that segment writes", "[slabs]") {
   bench.mustRun(kTall + "in.vdb --voxel-size 8um -q");
   for (const std::string options :
        {"", "--boundary closed --tidy 0", "--paper", "--fill-holes 1000 --merge neck --tidy 9",
-        "--theta -1 --delta 0 --crop 3,3,5:35,30,71"}) {
+        "--theta -1 --delta 0 --crop 3,3,5:35,30,71", "--roi cylinder:z:20,16:14 --gamma 9"}) {
     INFO(options);
     const std::string choice = " --grid object -q " + options;
     bench.mustRun("segment in.vdb one.vdb" + choice);
@@ -310,13 +310,13 @@ TEST_CASE("slabs: nothing is made of a half of what a run left", "[slabs]") {
     const Outcome run = bench.run(segment + "8", killing);
     if (run.exitCode == 0 || std::filesystem::exists(bench.path("kept/done.piece")))
       late = killing.delay;
-    else if (std::filesystem::exists(bench.path("kept/counts-1.piece")))
+    else if (std::filesystem::exists(bench.path("kept/put-1.piece")))
       break;
     else
       early = killing.delay;
     if (late - early < 1e-4) late = early + 0.2;  // runs take unlike long
   }
-  REQUIRE(std::filesystem::exists(bench.path("kept/counts-1.piece")));
+  REQUIRE(std::filesystem::exists(bench.path("kept/put-1.piece")));
   constexpr auto kAll = std::filesystem::copy_options::recursive;
   const auto restore = [&] {
     for (const std::string name : {"out.slabs.part", "kept"}) {
@@ -336,7 +336,7 @@ TEST_CASE("slabs: nothing is made of a half of what a run left", "[slabs]") {
   };
   std::filesystem::remove_all(bench.path("out.slabs.part"));  // scratch without slabs
   refused(segment + "8 --resume", "slab-0000.vdb: is missing");
-  std::filesystem::remove(bench.path("kept/terminals-3.piece"));
+  std::filesystem::remove(bench.path("kept/terminals-3-0.piece"));
   refused(segment + "8 --resume", "cannot be opened");
   refused("segment in.vdb other.slabs --grid object -q --scratch kept --slab-height 8 --resume",
           "another input");
@@ -359,7 +359,6 @@ TEST_CASE("slabs: what cannot be is said in one line", "[slabs]") {
   };
   const std::string segment = "segment in.vdb out.slabs --grid object ";
   refused(segment + "--keep power", "labels alone");
-  refused(segment + "--roi cylinder", "--crop");
   refused(segment + "--max-memory 100MiB", "allow more");
   refused("segment none.tif out.slabs", "none.tif");
   refused("segment in.vdb one.vdb --grid object --resume", "OUT.slabs");

@@ -209,8 +209,6 @@ void checkSlabArguments(const SegmentArguments& o) {
   if (!isSlabs) return;
   if (!o.keep.empty() || !o.tables.empty() || o.dryRun)
     throw WrongUsage(o.out + ": slabs get labels alone: leave --keep, --tables and --dry-run out");
-  if (!o.input.roi.empty())
-    throw WrongUsage(o.out + ": --roi does not work in slabs yet: take a box with --crop");
 }
 
 void runInSlabs(const SegmentArguments& o, const Common& common) {

@@ -60,7 +60,7 @@ using PutSlabLabels = std::function<void(size_t slab, Int32Grid::Ptr grain)>;
 /// @param put is called for each slab, from the lowest on (not again for those that a run before had
 ///   put: isSlabPut())
 /// Options that keep grids and maxMemory have to be 0: they are not known here.
-/// @throw as segment(); InvalidInput for these options, cuts that are none, a region as domain,
+/// @throw as segment(); InvalidInput for these options, cuts that are none, a region as domain of several ranks,
 ///   slabs, but for the first and the last, lower than `tidy` has rounds, or balls that reach too far; what scratch and put throw.
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
                               Scratch& scratch, const PutSlabLabels& put,

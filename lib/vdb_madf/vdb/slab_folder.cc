@@ -16,6 +16,7 @@
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/files/read_text.h"
+#include "vdb_madf/grids/detail/region_metadata.h"
 
 namespace vdb_madf {
 
@@ -76,6 +77,11 @@ std::map<std::string, std::string> ownMetadata(const openvdb::GridBase& grid) {
     if (meta->first.rfind("madf_", 0) == 0 && meta->first != kSlab && meta->first != kSlabs)
       texts[meta->first] = meta->second->typeName() + " " + meta->second->str();
   return texts;
+}
+
+/// All slabs have the whole region of their domain beside them.
+bool holdsRegion(const openvdb::GridBase& grid) {
+  return grid.getName() == detail::kRegionGrid && grid.isType<BoolGrid>();
 }
 
 }  // namespace
@@ -152,6 +158,7 @@ void checkSlab(const std::vector<openvdb::GridBase::Ptr>& grids, const SlabFolde
   bool fits = grids.size() == lowest.size();
   for (size_t i = 0; fits && i < grids.size(); ++i) {
     openvdb::GridBase& grid = *grids[i];
+    if (holdsRegion(grid)) continue;
     const auto number = grid.getMetadata<openvdb::Int64Metadata>(kSlab),
                all = grid.getMetadata<openvdb::Int64Metadata>(kSlabs);
     if (!number || !all || number->value() != int64_t(slab) ||
@@ -177,8 +184,8 @@ void checkSlab(const std::vector<openvdb::GridBase::Ptr>& grids, const SlabFolde
 void addSlab(const std::vector<openvdb::GridBase::Ptr>& grids,
              const std::vector<openvdb::GridBase::Ptr>& next, const std::string& path) {
   for (size_t i = 0; i < grids.size(); ++i)
-    if (!mergeAs<Int32Grid>(*grids[i], *next[i]) && !mergeAs<BoolGrid>(*grids[i], *next[i]) &&
-        !mergeAs<MaskGrid>(*grids[i], *next[i]))
+    if (!holdsRegion(*grids[i]) && !mergeAs<Int32Grid>(*grids[i], *next[i]) &&
+        !mergeAs<BoolGrid>(*grids[i], *next[i]) && !mergeAs<MaskGrid>(*grids[i], *next[i]))
       throw IoError(path + ": slabs of grids of type " + next[i]->valueType() +
                     " cannot be put together");
 }

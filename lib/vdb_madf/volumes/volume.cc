@@ -11,6 +11,7 @@
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/same_file.h"
+#include "vdb_madf/grids/detail/region_metadata.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/images/histogram.h"
@@ -425,8 +426,10 @@ Int32Grid::Ptr loadLabels(const std::string& path, const VolumeOptions& options,
 LabelSlabs openLabelSlabs(const std::string& path, const VolumeOptions& options,
                           Interrupter* interrupter) {
   const SlabFolder folder = openSlabFolder(path);
-  const auto chosen =
-      chooseGrid(readVdbHeaders(path, interrupter), path, GridUse::labels, options.grid);
+  auto chosen = chooseGrid(readVdbHeaders(path, interrupter), path, GridUse::labels, options.grid);
+  if ((*chosen)[detail::kRegionKey])  // headers do not hold a region's voxels
+    chosen =
+        readVdbSlab(folder, 0, readingAlone(*chosen), interrupter).at(0)->copyGridWithNewTree();
   LabelSlabs slabs;
   slabs.cuts = folder.cuts;
   slabs.read = [folder, reading = readingAlone(*chosen)](size_t slab, Interrupter* of) {

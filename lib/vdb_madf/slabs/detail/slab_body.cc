@@ -57,7 +57,8 @@ std::vector<LeafIndex::LeafVoxels> slabHoles(const SlabObject& object, std::opti
     for (const LeafIndex::LeafVoxels& leaf : object.leaves(s))
       if (inWindow(leaf.origin.z(), leaf.origin.z() + 8)) window.push_back(leaf);
   }
-  if (window.empty()) return {};
+  const bool isRegion = domain && !domain->isBox();
+  if (window.empty() && !(isRegion && open)) return {};  // an open region has small pieces anywhere
   std::sort(window.begin(), window.end(),
             [](const auto& a, const auto& b) { return a.origin < b.origin; });
   if (domain) {
@@ -68,7 +69,14 @@ std::vector<LeafIndex::LeafVoxels> slabHoles(const SlabObject& object, std::opti
     while (last <= box.max().z() && inWindow(last, last + 8)) last += 8;
     box.min().z() = std::max(box.min().z(), first);
     box.max().z() = std::min(box.max().z(), last - 1);
-    domain = box;
+    if (isRegion) {
+      MaskTree part(*domain->region());
+      part.clip(box);
+      if (part.empty()) return {};
+      domain = Domain(part);
+    } else {
+      domain = box;
+    }
   }
   const Cavities found =
       smallHoles(LeafIndex(LeafIndex(), window), domain, open, fillHoles, interrupter);

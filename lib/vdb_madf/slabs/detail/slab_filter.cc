@@ -11,6 +11,7 @@
 #include "vdb_madf/method/detail/power_passes.h"
 #include "vdb_madf/method/medial_balls.h"
 #include "vdb_madf/slabs/detail/slab_pieces.h"
+#include "vdb_madf/slabs/detail/slab_region.h"
 
 namespace vdb_madf::detail {
 
@@ -45,11 +46,22 @@ void joinBalls(std::vector<SizedBall>& balls) {
 /// Of a connected component of a slab: its best ball, of those that are too small.
 struct Component {
   SizedBall best;
-  int32_t hasBest, hasKept;
+  /// In a region, of a component without balls: the best that its voxels map to, across the unknown.
+  SizedBall elsewhere;
+  int32_t hasBest, hasElsewhere, hasKept;
 
   void offer(const SizedBall& ball) {
     if (!hasBest || isBetter(ball, best)) best = ball;
     hasBest = 1;
+  }
+  void offerElsewhere(const SizedBall& ball) {
+    if (!hasElsewhere || isBetter(ball, elsewhere)) elsewhere = ball;
+    hasElsewhere = 1;
+  }
+  void join(const Component& other) {
+    hasKept |= other.hasKept;
+    if (other.hasBest) offer(other.best);
+    if (other.hasElsewhere) offerElsewhere(other.elsewhere);
   }
 };
 
@@ -70,8 +82,13 @@ class SlabFilter {
     if (work_.isRoot()) rescue();
     work_.exchange();
     work_.forEachSlab([&](size_t s) { keep(s); });
-    keptOffers_.passOn();
-    work_.forEachSlab([&](size_t s) { mapKept(s); }, [&](size_t s) { forget(s); });
+    if (work_.inRegion()) {
+      work_.forEachSlab([&](size_t s) { mapKeptInRegion(s); });
+    } else {
+      keptOffers_.passOn();
+      work_.forEachSlab([&](size_t s) { mapKept(s); });
+    }
+    for (size_t s = work_.firstOwn(); s < work_.endOwn(); ++s) forget(s);
     if (work_.isRoot()) count();
   }
 
@@ -93,6 +110,24 @@ class SlabFilter {
     }
     for (size_t t = 0; t < of.size(); ++t)
       if (!of[t].empty()) work_.sendVector("cells", s, t, of[t]);
+    if (work_.inRegion())
+      work_.writeVector("elsewhere", s, elsewhere(slab.index, map, balls, table));
+  }
+
+  /// The best ball that the voxels of each component map to.
+  std::vector<Component> elsewhere(const LeafIndex& index, const PowerMap& map,
+                                   const VoxelSet& balls, const MedialBallTable& table) const {
+    const ConnectedComponents components(index, work_.interrupter);
+    std::vector<Component> found(components.count(), Component{});
+    for (uint32_t leaf = 0; leaf < index.leafCount(); ++leaf)
+      for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece)
+        for (uint32_t x = 0; x < 8; ++x)
+          forEachBit(piece->mask[x], [&](int bit) {
+            const VoxelId site = map.site[index.rank(leaf * 512 + x * 64 + uint32_t(bit))];
+            found[piece->component].offerElsewhere(
+                {index.coord(site), table.squaredRadius[balls.rank(site)], 0});
+          });
+    return found;
   }
 
   /// All cells of a slab's balls; which of its components have a ball that is large enough.
@@ -106,6 +141,7 @@ class SlabFilter {
     const SlabBody slab = work_.body(s);
     const ConnectedComponents components(slab.index, work_.interrupter);
     std::vector<Component> found(components.count(), Component{});
+    if (work_.inRegion()) found = work_.readVector<Component>("elsewhere", s);
     for (const SizedBall& ball : balls) {
       Component& component = found[components.componentOf(*slab.index.findVoxel(ball.center))];
       if (ball.cellSize >= work_.options.gamma)
@@ -145,14 +181,15 @@ class SlabFilter {
       const std::vector<Component> found = foundIn(s);
       for (uint32_t i = 0; i < found.size(); ++i) {
         Component& whole = all[components.find(s, i)];
-        whole.hasKept |= found[i].hasKept;
-        if (found[i].hasBest) whole.offer(found[i].best);
+        whole.join(found[i]);
       }
     }
     std::vector<std::vector<Coord>> rescued(slabs);
-    for (const Component& component : all)
-      if (component.hasBest && !component.hasKept)
-        rescued[work_.slabOf(component.best.center.z())].push_back(component.best.center);
+    for (const Component& component : all) {
+      if (component.hasKept || !(component.hasBest || component.hasElsewhere)) continue;
+      const Coord& center = component.hasBest ? component.best.center : component.elsewhere.center;
+      rescued[work_.slabOf(center.z())].push_back(center);
+    }
     for (size_t s = 0; s < slabs; ++s) work_.sendVector("rescued", SlabWork::kRoot, s, rescued[s]);
   }
 
@@ -171,7 +208,7 @@ class SlabFilter {
       kept.push_back({ball.center, ball.squaredRadius});
       squaredRadius[slab.index.rank(*slab.index.findVoxel(ball.center))] = ball.squaredRadius;
     }
-    keptOffers_.offer(s, slab.index, squaredRadius);
+    if (!work_.inRegion()) keptOffers_.offer(s, slab.index, squaredRadius);
     work_.writeVector("kept-balls", s, kept);
     work_.sendVector("ball-counts", s, SlabWork::kRoot,
                      std::vector<int64_t>{int64_t(balls.size()), int64_t(kept.size())});
@@ -196,8 +233,21 @@ class SlabFilter {
     completion_.begin(s, slab.index, map, &part);
   }
 
+  void mapKeptInRegion(size_t s) {
+    WorkPart part = work_.part(30, 45, s);
+    SlabBody slab = work_.body(s);
+    std::vector<ForeignSite> sites;
+    for (size_t t = 0; t < work_.slabCount(); ++t) {
+      if (!isInReach(work_, s, t)) continue;
+      const auto kept = work_.readVector<ForeignSite>("kept-balls", t);
+      sites.insert(sites.end(), kept.begin(), kept.end());
+    }
+    PowerMap map = filteredInRegion(work_, s, sites, slab.index, &part);
+    completion_.begin(s, slab.index, map, &part);
+  }
+
   void forget(size_t s) {
-    for (const char* what : {"sized-balls", "lowest-components", "kept-balls"})
+    for (const char* what : {"sized-balls", "lowest-components", "kept-balls", "elsewhere"})
       work_.remove(what, s);
     for (size_t t = 0; t < work_.slabCount(); ++t) work_.removeMessage("cells", t, s);
     work_.removeMessage("highest-components", s - 1, s);

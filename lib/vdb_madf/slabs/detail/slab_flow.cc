@@ -10,6 +10,7 @@
 #include "vdb_madf/method/medial_balls.h"
 #include "vdb_madf/slabs/detail/slab_filter.h"
 #include "vdb_madf/slabs/detail/slab_labels.h"
+#include "vdb_madf/slabs/detail/slab_region.h"
 #include "vdb_madf/slabs/detail/slab_setup.h"
 #include "vdb_madf/slabs/detail/slab_terminals.h"
 
@@ -31,9 +32,14 @@ class SlabFlow {
     setUpSlabs(work_, result_);
     if (result_.counts.objectVoxels == 0) return std::move(graph_);
     work_.beginStage("offers");
-    exchangeColumns(work_);
-    work_.forEachSlab([&](size_t s) { offerBalls(s); });
-    offers_.passOn();
+    if (work_.inRegion()) {
+      work_.forEachSlab([&](size_t s) { measureInRegion(s); });
+    } else {
+      exchangeColumns(work_);
+      work_.forEachSlab([&](size_t s) { offerBalls(s); });
+      offers_.passOn();
+    }
+    shareLargest();
     if (isFiltered()) {
       work_.beginStage("gamma_filter");
       filterInSlabs(work_, offers_, completion_, result_.counts);
@@ -59,7 +65,19 @@ class SlabFlow {
     const LeafIndex index = work_.body(s).index;
     const SquaredDistance distance = slabDistance(work_, s, index, &part);
     offers_.offer(s, index, distance.values);
-    work_.sendVector("largest", s, SlabWork::kRoot, std::vector<int32_t>{distance.largest});
+    work_.writeVector("largest", s, std::vector<int32_t>{distance.largest});
+  }
+  void measureInRegion(size_t s) {
+    WorkPart part = work_.part(5, isFiltered() ? 15 : 30, s);
+    work_.writeVector("largest", s, std::vector<int32_t>{largestInRegion(work_, s, &part)});
+  }
+  void shareLargest() {
+    std::vector<int64_t> largest{0};
+    for (size_t s = work_.firstOwn(); s < work_.endOwn(); ++s)
+      largest[0] = std::max<int64_t>(largest[0], work_.readVector<int32_t>("largest", s).at(0));
+    work_.ranks.max(largest);
+    work_.largestSquaredDistance = int32_t(largest[0]);
+    result_.counts.largestSquaredDistance = largest[0];
   }
 
   /// Power map, flow, contacts within the slab.
@@ -114,9 +132,6 @@ class SlabFlow {
       const SlabTerminals terminals = SlabTerminals::readFrom(bytes);
       graph_.add(terminals);
       if (!isFiltered()) counts.medialBalls += terminals.balls;
-      const auto largest = work_.receiveVector<int32_t>("largest", s, SlabWork::kRoot);
-      counts.largestSquaredDistance =
-          std::max<int64_t>(counts.largestSquaredDistance, largest.at(0));
     }
     for (size_t s = 0; s < work_.slabCount(); ++s) {
       std::vector<Coord> places;

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_madf/slabs/detail/slab_region.h"
+
 namespace vdb_madf::detail {
 
 namespace {
@@ -22,6 +24,7 @@ SquaredDistance slabDistance(const SlabWork& work, size_t slab, const LeafIndex&
 
 PowerMap slabPowerMap(const SlabWork& work, const SlabOffers& offers, size_t slab, LeafIndex& index,
                       Interrupter* interrupter) {
+  if (work.inRegion()) return powerMapInRegion(work, slab, index, interrupter);
   WorkPart measuring(interrupter, 0, 35), mapping(interrupter, 35, 100);
   SquaredDistance distance = slabDistance(work, slab, index, &measuring);
   distance.foreign = offers.received(slab, index);

@@ -27,6 +27,8 @@ class Setup {
     const std::array<double, 3> edges = work_.options.weights
                                             ? std::array<double, 3>{1, 1, 1}
                                             : voxelEdges(work_.object.about->transform());
+    // Across a region the nearest background may lie anywhere.
+    if (work_.inRegion()) extent = work_.obstacles.domain.box();
     const WeightsOfEdges weights = resolveWeights(work_.options.weights, edges, extent.dim());
     work_.weights = result_.weights = weights.weights;
     result_.weightsError = weights.error;

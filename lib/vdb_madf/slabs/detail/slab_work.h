@@ -33,6 +33,10 @@ class SlabWork {
   Obstacles obstacles{};
   VoxelWeights weights;
   bool fillsNone = false;  ///< would the cavities be all background?
+  int32_t largestSquaredDistance = 0;
+
+  /// Are there unknown voxels that sweeps pass?
+  bool inRegion() const { return obstacles.open && !obstacles.domain.isBox(); }
 
   size_t slabCount() const { return object.slabCount(); }
   int begin(size_t slab) const { return object.cuts[slab]; }
