@@ -85,7 +85,7 @@ TEST_CASE("mpi: votes and words are those of all", "[mpi]") {
 TEST_CASE("mpi: each rank puts the labels of the whole in its slabs", "[mpi]") {
   Ranks& ranks = world();
   const uint64_t first = fromEnvironment("VDB_MADF_SEED", 1) + 200000;
-  const uint64_t cases = fromEnvironment("VDB_MADF_CASES", 1000);
+  const uint64_t cases = fromEnvironment("VDB_MADF_CASES", 500);
   int64_t put = 0;
   for (uint64_t seed = first; seed < first + cases; ++seed) {
     Rng rng(seed);

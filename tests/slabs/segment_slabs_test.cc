@@ -215,7 +215,7 @@ TEST_CASE("slabs: what gamma leaves is completed through many slabs, as in the w
 
 TEST_CASE("slabs: labels in regions are those of the whole", "[slabs]") {
   requireSame(fromEnvironment("VDB_MADF_SEED", 1) + 300000,
-              fromEnvironment("VDB_MADF_CASES", 10 * kCombinations), 70, true);
+              fromEnvironment("VDB_MADF_CASES", 4 * kCombinations), 70, true);
 }
 
 TEST_CASE("slabs: an empty object has no grains, whatever the cuts", "[slabs]") {

@@ -69,8 +69,12 @@ struct Pipe {
   ::_exit(127);
 }
 
-bool appears(const std::string& folder, const std::string& beginning) {
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
+/// `path` may lie in a folder that is not there yet.
+bool appears(const std::string& folder, const std::string& path) {
+  const std::filesystem::path whole = std::filesystem::path(folder) / path;
+  const std::string beginning = whole.filename().string();
+  std::error_code missing;
+  for (const auto& entry : std::filesystem::directory_iterator(whole.parent_path(), missing))
     if (entry.path().filename().string().compare(0, beginning.size(), beginning) == 0) return true;
   return false;
 }
