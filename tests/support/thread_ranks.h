@@ -74,9 +74,6 @@ class ThreadRank : public Ranks {
 
   int count() const override { return team_.count; }
   int rank() const override { return rank_; }
-  void send(int rank, const std::string& name, const std::vector<char>& bytes, Scratch&) override {
-    team_.post(rank, name, bytes);
-  }
   void exchange(Scratch& own) override {
     team_.meet();
     for (const auto& [name, bytes] : std::exchange(team_.mail[size_t(rank_)], {}))
@@ -97,6 +94,9 @@ class ThreadRank : public Ranks {
   }
 
  private:
+  void post(int to, const std::string& name, const std::vector<char>& bytes) override {
+    team_.post(to, name, bytes);
+  }
   template <typename F>
   void vote(std::vector<int64_t>& values, const F& join) {
     team_.votes[size_t(rank_)] = values;

@@ -5,7 +5,6 @@
 #include "vdb_madf/base/memory.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -37,12 +36,6 @@
 namespace vdb_madf::tools {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 void parse(SegmentArguments& o) {
   while (o.out.size() > 7 && o.out.compare(o.out.size() - 7, 7, ".slabs/") == 0) o.out.pop_back();

@@ -3,16 +3,13 @@
 
 #include "segment_ranks.h"
 
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <utility>
 
-#include "parse.h"
 #include "segment_slabs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/leaves/leaf_grid.h"
 #include "vdb_madf/method/cavities.h"
 #include "vdb_madf/slabs/deal_slabs.h"
 #include "vdb_madf/vdb/slab_folder.h"
@@ -23,11 +20,6 @@ namespace vdb_madf::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// OUT.slabs.part, which all ranks see. It is made by rank 0, and removed by whoever fails.
 class SharedPart {

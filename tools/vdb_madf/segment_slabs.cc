@@ -6,7 +6,6 @@
 #include <openvdb/Metadata.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -29,11 +28,6 @@ namespace vdb_madf::tools {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// What the slabs in scratch depend on.
 std::string workOf(const SegmentArguments& o) {

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <utility>
@@ -34,6 +35,11 @@ struct SegmentArguments {
 
   const std::string& result() const { return fileOfSlabs.empty() ? out : fileOfSlabs; }
 };
+
+using Clock = std::chrono::steady_clock;
+inline double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 struct SegmentTiming {
   double read = 0, measure = 0, write = 0, total = 0;

@@ -26,7 +26,7 @@ void forEachChunk(size_t size, const F& f) {
   for (size_t at = 0; at < size; at += kChunk) f(at, int(std::min(kChunk, size - at)));
 }
 
-/// Puts the pieces of a message, as send() makes it, into scratch.
+/// Puts the pieces of a message, as post() makes it, into scratch.
 void unpack(const std::vector<char>& message, Scratch& scratch) {
   size_t at = 0;
   const auto size = [&] {
@@ -60,9 +60,8 @@ MpiRanks::~MpiRanks() {
   MPI_Finalize();
 }
 
-void MpiRanks::send(int rank, const std::string& name, const std::vector<char>& bytes,
-                    Scratch& /*own*/) {
-  std::vector<char>& message = outbox_[size_t(rank)];
+void MpiRanks::post(int to, const std::string& name, const std::vector<char>& bytes) {
+  std::vector<char>& message = outbox_[size_t(to)];
   for (const auto& [data, size] : {std::make_pair(name.data(), uint64_t(name.size())),
                                    std::make_pair(bytes.data(), uint64_t(bytes.size()))}) {
     append(message, &size, sizeof size);

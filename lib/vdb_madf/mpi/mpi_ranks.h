@@ -22,8 +22,6 @@ class MpiRanks : public Ranks {
 
   int count() const override { return count_; }
   int rank() const override { return rank_; }
-  void send(int rank, const std::string& name, const std::vector<char>& bytes,
-            Scratch& own) override;
   void exchange(Scratch& own) override;
   void sum(std::vector<int64_t>& values) override;
   void max(std::vector<int64_t>& values) override;
@@ -33,6 +31,8 @@ class MpiRanks : public Ranks {
   [[noreturn]] static void abort(int code);
 
  private:
+  void post(int to, const std::string& name, const std::vector<char>& bytes) override;
+
   int count_ = 1, rank_ = 0;
   std::vector<std::vector<char>> outbox_;  // to each rank: names and bytes
 };

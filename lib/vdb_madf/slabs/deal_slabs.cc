@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "vdb_madf/leaves/detail/leaf_mask.h"
-#include "vdb_madf/slabs/detail/bytes.h"
+#include "vdb_madf/slabs/detail/object_pieces.h"
 
 namespace vdb_madf {
 
@@ -19,18 +19,10 @@ using Leaves = std::vector<LeafIndex::LeafVoxels>;
 std::string dealtName(int from) {
   return "dealt-" + std::to_string(from);
 }
-std::string objectName(size_t slab) {
-  return "object-" + std::to_string(slab);
-}
 
-void write(Scratch& scratch, const std::string& name, const Leaves& leaves) {
-  detail::ByteWriter bytes;
-  bytes.add(leaves);
-  scratch.write(name, bytes.bytes());
-}
-Leaves read(const Scratch& scratch, const std::string& name) {
-  if (!scratch.has(name)) return {};
-  return detail::ByteReader(scratch.read(name)).vector<LeafIndex::LeafVoxels>();
+/// None, if there is no such piece.
+Leaves readIfAny(const Scratch& scratch, const std::string& name) {
+  return scratch.has(name) ? detail::readLeaves(scratch, name) : Leaves();
 }
 
 /// Object voxels of each layer, of all ranks.
@@ -98,17 +90,14 @@ SlabObject dealSlabs(Leaves leaves, const SlabLimits& limits, int64_t reach,
     if (wanted.empty()) continue;
     detail::ByteWriter bytes;
     bytes.add(wanted);
-    if (rank == ranks.rank())
-      scratch.write(dealtName(ranks.rank()), bytes.bytes());
-    else
-      ranks.send(rank, dealtName(ranks.rank()), bytes.bytes(), scratch);
+    ranks.send(rank, dealtName(ranks.rank()), bytes.bytes(), scratch);
   }
   leaves = {};
   ranks.exchange(scratch);
 
   std::vector<Leaves> ofSlab(slabs);
   for (int rank = 0; rank < ranks.count(); ++rank) {
-    for (const LeafIndex::LeafVoxels& leaf : read(scratch, dealtName(rank))) {
+    for (const LeafIndex::LeafVoxels& leaf : readIfAny(scratch, dealtName(rank))) {
       const auto above = std::upper_bound(cuts.begin(), cuts.end(), leaf.origin.z());
       ofSlab[size_t(above - cuts.begin()) - 1].push_back(leaf);
     }
@@ -118,9 +107,9 @@ SlabObject dealSlabs(Leaves leaves, const SlabLimits& limits, int64_t reach,
     if (ofSlab[s].empty()) continue;
     std::sort(ofSlab[s].begin(), ofSlab[s].end(),
               [](const auto& a, const auto& b) { return a.origin < b.origin; });
-    write(scratch, objectName(s), ofSlab[s]);
+    detail::writeLeaves(scratch, detail::objectName(s), ofSlab[s]);
   }
-  object.leaves = [&scratch](size_t slab) { return read(scratch, objectName(slab)); };
+  object.leaves = [&scratch](size_t slab) { return readIfAny(scratch, detail::objectName(slab)); };
   return object;
 }
 

@@ -33,11 +33,13 @@ class Ranks {
   }
   int ownerOf(size_t slab, size_t slabs) const { return int(slab * size_t(count()) / slabs); }
 
-  /// A piece for the scratch of another rank, which has it after the next exchange(). `own` is that of
-  /// this rank.
-  virtual void send(int /*rank*/, const std::string& name, const std::vector<char>& bytes,
-                    Scratch& own) {
-    own.write(name, bytes);
+  /// A piece for the scratch of a rank: of this one, `own`, at once; of another one, which has it after
+  /// the next exchange().
+  void send(int to, const std::string& name, const std::vector<char>& bytes, Scratch& own) {
+    if (to == rank())
+      own.write(name, bytes);
+    else
+      post(to, name, bytes);
   }
   /// Waits for all; puts the pieces that came into `own`.
   virtual void exchange(Scratch& /*own*/) {}
@@ -47,6 +49,10 @@ class Ranks {
   virtual void max(std::vector<int64_t>& /*values*/) {}
   /// Gives all what rank 0 has.
   virtual void broadcast(std::vector<char>& /*bytes*/) {}
+
+ private:
+  /// send() to another rank.
+  virtual void post(int /*to*/, const std::string& /*name*/, const std::vector<char>& /*bytes*/) {}
 };
 
 }  // namespace vdb_madf

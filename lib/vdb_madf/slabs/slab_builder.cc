@@ -10,17 +10,13 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/active_tiles.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
-#include "vdb_madf/slabs/detail/bytes.h"
+#include "vdb_madf/slabs/detail/object_pieces.h"
 
 namespace vdb_madf {
 
 namespace {
 
 constexpr char kCuts[] = "cuts";
-
-std::string objectName(size_t slab) {
-  return "object-" + std::to_string(slab);
-}
 
 }  // namespace
 
@@ -64,9 +60,7 @@ void SlabBuilder::add(const MaskTree& layer) {
 void SlabBuilder::endSlab(int z) {
   std::sort(leaves_.begin(), leaves_.end(),
             [](const auto& a, const auto& b) { return a.origin < b.origin; });
-  detail::ByteWriter bytes;
-  bytes.add(leaves_);
-  scratch_.write(objectName(cuts_.size() - 1), bytes.bytes());
+  detail::writeLeaves(scratch_, detail::objectName(cuts_.size() - 1), leaves_);
   leaves_.clear();
   voxels_ = 0;
   cuts_.push_back(z);
@@ -92,7 +86,7 @@ SlabObject storedSlabs(const Scratch& scratch, MaskGrid::ConstPtr about) {
   object.about = std::move(about);
   object.cuts = detail::ByteReader(scratch.read(kCuts)).vector<int>();
   object.leaves = [&scratch](size_t slab) {
-    return detail::ByteReader(scratch.read(objectName(slab))).vector<LeafIndex::LeafVoxels>();
+    return detail::readLeaves(scratch, detail::objectName(slab));
   };
   return object;
 }

@@ -152,7 +152,7 @@ class SlabFilter {
     work_.writeVector("sized-balls", s, balls);
     work_.sendVector("components", s, SlabWork::kRoot, found);
     const auto face = [&](bool isUpper) {
-      return facePieces(slab.index, components, {work_.begin(s), work_.end(s), isUpper});
+      return facePieces(slab.index, components, work_.cut(s, isUpper));
     };
     work_.writeVector("lowest-components", s, face(false));
     if (s + 1 < work_.slabCount()) work_.sendVector("highest-components", s, s + 1, face(true));

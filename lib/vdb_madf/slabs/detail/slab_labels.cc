@@ -217,7 +217,7 @@ class SlabLabels {
     work_.sendVector("pieces", s, SlabWork::kRoot,
                      piecesWithAnchor(slab.index, labels, components, anchors_));
     const auto face = [&](bool isUpper) {
-      return facePieces(slab.index, components, {work_.begin(s), work_.end(s), isUpper});
+      return facePieces(slab.index, components, work_.cut(s, isUpper));
     };
     work_.writeVector("lowest-pieces", s, face(false));
     if (s > 0) work_.sendVector("face-pieces", s, s - 1, face(false));

@@ -86,7 +86,7 @@ void SlabOffers::offer(size_t slab, const LeafIndex& index,
   for (const bool isUpper : {true, false}) {
     if (isUpper ? slab + 1 == work_.slabCount() : slab == 0) continue;
     work_.writeVector((isUpper ? up_ : down_).c_str(), slab,
-                      siteOffers(index, squaredRadius, work_.weights.z, cut(slab, isUpper)));
+                      siteOffers(index, squaredRadius, work_.weights.z, work_.cut(slab, isUpper)));
   }
 }
 
@@ -97,7 +97,7 @@ void SlabOffers::passOn() {
     work_.sendVector(
         name.c_str(), s, isUpper ? s + 1 : s - 1,
         detail::passOn(work_.readVector<ForeignSite>(name.c_str(), s), from(name, s, isUpper),
-                       columns, work_.weights.z, cut(s, isUpper)));
+                       columns, work_.weights.z, work_.cut(s, isUpper)));
   };
   work_.upward([&](size_t s) {
     if (s + 1 < work_.slabCount()) pass(s, true);

@@ -38,7 +38,6 @@ class SlabOffers {
   void forget(size_t slab);
 
  private:
-  Cut cut(size_t slab, bool isUpper) const { return {work_.begin(slab), work_.end(slab), isUpper}; }
   std::vector<ForeignSite> from(const std::string& name, size_t slab, bool below) const;
 
   SlabWork& work_;

@@ -26,11 +26,7 @@ size_t SlabWork::slabOf(int z) const {
 
 void SlabWork::send(const char* what, size_t from, size_t to, const ByteWriter& bytes) {
   if (from != to && !stages_.empty()) stages_.back().messageBytes += int64_t(bytes.bytes().size());
-  const int owner = ranks.ownerOf(to, slabCount());
-  if (owner == ranks.rank())
-    scratch.write(name(what, from, to), bytes.bytes());
-  else
-    ranks.send(owner, name(what, from, to), bytes.bytes(), scratch);
+  ranks.send(ranks.ownerOf(to, slabCount()), name(what, from, to), bytes.bytes(), scratch);
 }
 
 void SlabWork::beginStage(const char* name) {

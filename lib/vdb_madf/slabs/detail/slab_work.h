@@ -42,6 +42,7 @@ class SlabWork {
   int begin(size_t slab) const { return object.cuts[slab]; }
   int end(size_t slab) const { return object.cuts[slab + 1]; }
   size_t slabOf(int z) const;
+  Cut cut(size_t slab, bool isUpper) const { return {begin(slab), end(slab), isUpper}; }
 
   /// Slabs of this rank: firstOwn() <= s < endOwn().
   size_t firstOwn() const { return ranks.firstSlab(ranks.rank(), slabCount()); }
