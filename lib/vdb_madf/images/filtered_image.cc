@@ -144,19 +144,13 @@ std::vector<double> gaussianWeights(double sigma) {
 }
 
 // Each lane by itself, so that vectors of any width give the same bits.
-VDB_MADF_SIMD void scale(const float* in, double weight, double* sums, size_t count) {
+template <typename T>
+VDB_MADF_KERNEL void scale(const T* in, double weight, double* sums, size_t count) {
   for (size_t i = 0; i < count; ++i) sums[i] = weight * double(in[i]);
 }
-VDB_MADF_SIMD void scale(const double* in, double weight, double* sums, size_t count) {
-  for (size_t i = 0; i < count; ++i) sums[i] = weight * in[i];
-}
-VDB_MADF_SIMD void addPair(const float* a, const float* b, double weight, double* sums,
-                           size_t count) {
+template <typename T>
+VDB_MADF_KERNEL void addPair(const T* a, const T* b, double weight, double* sums, size_t count) {
   for (size_t i = 0; i < count; ++i) sums[i] += weight * (double(a[i]) + double(b[i]));
-}
-VDB_MADF_SIMD void addPair(const double* a, const double* b, double weight, double* sums,
-                           size_t count) {
-  for (size_t i = 0; i < count; ++i) sums[i] += weight * (a[i] + b[i]);
 }
 
 /// T: float or double.
@@ -211,9 +205,11 @@ class SmoothedImage : public FilteredImage {
     const size_t count = rowLength();
     scratch.sums.resize(count);
     double* sums = scratch.sums.data();
-    scale(rowAt(0), weights_[0], sums, count);
+    detail::atBestLevel([&]() VDB_MADF_INLINE { scale(rowAt(0), weights_[0], sums, count); });
     for (int k = radius(); k > 0; --k)
-      addPair(rowAt(-k), rowAt(k), weights_[size_t(k)], sums, count);
+      detail::atBestLevel([&]() VDB_MADF_INLINE {
+        addPair(rowAt(-k), rowAt(k), weights_[size_t(k)], sums, count);
+      });
     for (size_t i = 0; i < count; ++i) to[i] = T(sums[i]);
   }
 

@@ -90,11 +90,13 @@ class EdgeCollector {
                 EdgeTable& table)
       : index_(index), flow_(flow), power_(power), table_(table) {}
 
-  VDB_MADF_SIMD void collect(size_t leaf) {
+  void collect(size_t leaf) {
     load(leaf);
-    for (int x = 0; x < 8; ++x)
-      for (int y = 0; y < 8; ++y)
-        if (differs(x, y)) collectRow(leaf, x, y);
+    uint64_t rows = detail::atBestLevel([&]() VDB_MADF_INLINE { return differingRows(); });
+    for (; rows; rows &= rows - 1) {
+      const int row = __builtin_ctzll(rows);
+      collectRow(leaf, row >> 3, row & 7);
+    }
   }
 
  private:
@@ -106,7 +108,7 @@ class EdgeCollector {
   }
 
   /// Spreads the leaf's manifolds over block_, with the faces of the next leaves.
-  [[gnu::always_inline]] void load(size_t leaf) {
+  void load(size_t leaf) {
     uint32_t dense[512];
     detail::expandLeaf(index_.mask(leaf), flow_.manifold.data() + index_.firstRank(leaf), dense);
     for (size_t x = 0; x < 8; ++x)
@@ -120,21 +122,26 @@ class EdgeCollector {
       }
     }
   }
-  [[gnu::always_inline]] uint32_t value(uint32_t leaf, uint32_t offset) const {
+  uint32_t value(uint32_t leaf, uint32_t offset) const {
     if (leaf == LeafIndex::kNone) return 0;
     const VoxelId id = leaf * 512 + offset;
     return detail::isObject(index_, id) ? flow_.manifold[index_.rank(id)] : 0;
   }
 
-  /// Is there any pair of different manifolds from the row (x, y) on? Mostly not.
-  [[gnu::always_inline]] bool differs(int x, int y) const {
-    uint32_t any = 0;
-    for (int z = 0; z < 8; ++z) {
-      const uint32_t a = block_[x][y][z];
-      any |= differ(a, block_[x][y][z + 1]) | differ(a, block_[x][y + 1][z]) |
-             differ(a, block_[x + 1][y][z]);
-    }
-    return any != 0;
+  /// Is there any pair of different manifolds from the row (x, y) on? Mostly not. Bit x*8 + y.
+  VDB_MADF_KERNEL uint64_t differingRows() const {
+    uint64_t rows = 0;
+    for (int x = 0; x < 8; ++x)
+      for (int y = 0; y < 8; ++y) {
+        uint32_t any = 0;
+        for (int z = 0; z < 8; ++z) {
+          const uint32_t a = block_[x][y][z];
+          any |= differ(a, block_[x][y][z + 1]) | differ(a, block_[x][y + 1][z]) |
+                 differ(a, block_[x + 1][y][z]);
+        }
+        rows |= uint64_t(any != 0) << (x * 8 + y);
+      }
+    return rows;
   }
 
   void collectRow(size_t leaf, int x, int y) {

@@ -42,7 +42,7 @@ constexpr int pass(int axis) {
 }
 
 template <int Axis, typename Key>
-VDB_MADF_SIMD void gather(const detail::SweptLeaves& leaves, const Map& map, Scratch<Key>& s) {
+VDB_MADF_KERNEL void gather(const detail::SweptLeaves& leaves, const Map& map, Scratch<Key>& s) {
   int32_t power[512];
   VoxelId site[512];
   for (size_t i = 0; i < s.leaves.size(); ++i) {
@@ -62,7 +62,7 @@ VDB_MADF_SIMD void gather(const detail::SweptLeaves& leaves, const Map& map, Scr
 }
 
 template <int Axis, typename Key>
-VDB_MADF_SIMD void scatter(const detail::SweptLeaves& leaves, const Scratch<Key>& s, Map& map) {
+VDB_MADF_KERNEL void scatter(const detail::SweptLeaves& leaves, const Scratch<Key>& s, Map& map) {
   int32_t power[512];
   VoxelId site[512];
   for (size_t i = 0; i < s.leaves.size(); ++i) {
@@ -78,8 +78,8 @@ VDB_MADF_SIMD void scatter(const detail::SweptLeaves& leaves, const Scratch<Key>
 /// D of all sites, from their partial power: the passes before this one have moved away from the
 /// site along z, then y. `origin` is that of the pencil's first leaf.
 template <int Axis, typename Key>
-VDB_MADF_SIMD void computeRadii(const LeafIndex& object, const Coord& origin,
-                                const VoxelWeights& weights, Scratch<Key>& s) {
+VDB_MADF_KERNEL void computeRadii(const LeafIndex& object, const Coord& origin,
+                                  const VoxelWeights& weights, Scratch<Key>& s) {
   const Coord* origins = &object.origin(0);
   for (size_t t = 0; t < s.leaves.size() * 8; ++t) {
     const int32_t* power = s.rows.power.data() + (t + 1) * kSlab;
@@ -105,22 +105,24 @@ void sweep(const detail::SweptLeaves& leaves, const detail::ForeignSites* foreig
   const LeafIndex& index = leaves.index();
   const std::vector<uint32_t> starts = detail::pencilStarts(index, Axis);
   detail::PerThread<Scratch<Key>> scratches;
-  detail::parallelFor(starts.size(), detail::kPencilGrain, interrupter,
-                      [&](size_t begin, size_t end) {
-                        Scratch<Key>& s = scratches.local();
-                        for (size_t p = begin; p < end; ++p) {
-                          detail::collectPencil(index, Axis, starts[p], s.leaves);
-                          if (!leaves.anyCarries(pass(Axis), s.leaves)) continue;
-                          const int length = int(s.leaves.size()) * 8;
-                          s.rows.resize(size_t(length));
-                          gather<Axis, Key>(leaves, map, s);
-                          const Coord& origin = index.origin(starts[p]);
-                          computeRadii<Axis, Key>(leaves.object(), origin, weights, s);
-                          if (Axis == 2 && foreign) foreign->addTo(origin, length, s.rows);
-                          detail::lowerEnvelopes<Axis + 1>(length, multiplier, weights, s.rows);
-                          scatter<Axis, Key>(leaves, s, map);
-                        }
-                      });
+  detail::parallelFor(
+      starts.size(), detail::kPencilGrain, interrupter, [&](size_t begin, size_t end) {
+        Scratch<Key>& s = scratches.local();
+        for (size_t p = begin; p < end; ++p) {
+          detail::collectPencil(index, Axis, starts[p], s.leaves);
+          if (!leaves.anyCarries(pass(Axis), s.leaves)) continue;
+          const int length = int(s.leaves.size()) * 8;
+          s.rows.resize(size_t(length));
+          const Coord& origin = index.origin(starts[p]);
+          detail::atBestLevel([&]() VDB_MADF_INLINE {
+            gather<Axis, Key>(leaves, map, s);
+            computeRadii<Axis, Key>(leaves.object(), origin, weights, s);
+          });
+          if (Axis == 2 && foreign) foreign->addTo(origin, length, s.rows);
+          detail::lowerEnvelopes<Axis + 1>(length, multiplier, weights, s.rows);
+          detail::atBestLevel([&]() VDB_MADF_INLINE { scatter<Axis, Key>(leaves, s, map); });
+        }
+      });
 }
 
 template <typename Key>

@@ -75,7 +75,7 @@ detail::RowDomain rowDomain(const Obstacles& obstacles, const Coord& origin, int
 }
 
 template <int Axis>
-VDB_MADF_SIMD void gather(const Leaves& leaves, const Values& values, Scratch& s) {
+VDB_MADF_KERNEL void gather(const Leaves& leaves, const Values& values, Scratch& s) {
   int32_t dense[512];
   for (size_t i = 0; i < s.leaves.size(); ++i) {
     leaves.expand(s.leaves[i], values, dense);
@@ -84,7 +84,7 @@ VDB_MADF_SIMD void gather(const Leaves& leaves, const Values& values, Scratch& s
 }
 
 template <int Axis>
-VDB_MADF_SIMD void scatter(const Leaves& leaves, const Scratch& s, Values& values) {
+VDB_MADF_KERNEL void scatter(const Leaves& leaves, const Scratch& s, Values& values) {
   int32_t dense[512];
   for (size_t i = 0; i < s.leaves.size(); ++i) {
     if (!leaves.carries(Axis, s.leaves[i])) continue;
@@ -143,27 +143,27 @@ void sweep(const Leaves& leaves, const Obstacles& obstacles, const detail::SlabF
   const LeafIndex& index = leaves.index();
   const std::vector<uint32_t> starts = detail::pencilStarts(index, Axis);
   detail::PerThread<Scratch> scratches;
-  detail::parallelFor(starts.size(), detail::kPencilGrain, interrupter,
-                      [&](size_t begin, size_t end) {
-                        Scratch& s = scratches.local();
-                        for (size_t p = begin; p < end; ++p) {
-                          detail::collectPencil(index, Axis, starts[p], s.leaves);
-                          if (!leaves.anyCarries(Axis, s.leaves)) continue;
-                          const int length = int(s.leaves.size()) * 8;
-                          s.resize(length);
-                          const Coord& origin = index.origin(starts[p]);
-                          detail::RowDomain d = rowDomain<Axis>(obstacles, origin, length);
-                          if constexpr (First) {
-                            if (faces) continueBeyond(*faces, obstacles, origin, length, d);
-                            collectMasks<Axis>(index, s);
-                            detail::scanRows(s.masks.data(), length, d, weight, s.out.data() + 64);
-                          } else {
-                            gather<Axis>(leaves, values, s);
-                            widen<Axis>(leaves, d, weight, reach, s);
-                          }
-                          scatter<Axis>(leaves, s, values);
-                        }
-                      });
+  detail::parallelFor(
+      starts.size(), detail::kPencilGrain, interrupter, [&](size_t begin, size_t end) {
+        Scratch& s = scratches.local();
+        for (size_t p = begin; p < end; ++p) {
+          detail::collectPencil(index, Axis, starts[p], s.leaves);
+          if (!leaves.anyCarries(Axis, s.leaves)) continue;
+          const int length = int(s.leaves.size()) * 8;
+          s.resize(length);
+          const Coord& origin = index.origin(starts[p]);
+          detail::RowDomain d = rowDomain<Axis>(obstacles, origin, length);
+          if constexpr (First) {
+            if (faces) continueBeyond(*faces, obstacles, origin, length, d);
+            collectMasks<Axis>(index, s);
+            detail::scanRows(s.masks.data(), length, d, weight, s.out.data() + 64);
+          } else {
+            detail::atBestLevel([&]() VDB_MADF_INLINE { gather<Axis>(leaves, values, s); });
+            widen<Axis>(leaves, d, weight, reach, s);
+          }
+          detail::atBestLevel([&]() VDB_MADF_INLINE { scatter<Axis>(leaves, s, values); });
+        }
+      });
 }
 
 /// How far a sweep has to look along an axis of that weight for all distances up to `exactUpTo`.

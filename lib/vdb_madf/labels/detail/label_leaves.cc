@@ -16,8 +16,8 @@ namespace vdb_madf::detail {
 namespace {
 
 /// The voxels of a leaf with a value, of those in `within`.
-VDB_MADF_SIMD LeafIndex::Mask voxelsOf(const int32_t* values, int32_t value,
-                                       const LeafIndex::Mask& within) {
+VDB_MADF_KERNEL LeafIndex::Mask voxelsOf(const int32_t* values, int32_t value,
+                                         const LeafIndex::Mask& within) {
   LeafIndex::Mask mask;
   for (size_t x = 0; x < 8; ++x) {
     uint8_t equal[64];
@@ -37,7 +37,8 @@ void addParts(const int32_t* values, LeafIndex::Mask rest, std::vector<LabelPart
   for (size_t x = 0; x < 8; ++x) {
     while (rest[x]) {
       const int32_t label = values[x * 64 + size_t(__builtin_ctzll(rest[x]))];
-      parts.push_back({label, voxelsOf(values, label, rest)});
+      parts.push_back(
+          {label, atBestLevel([&]() VDB_MADF_INLINE { return voxelsOf(values, label, rest); })});
       for (size_t i = x; i < 8; ++i) rest[i] &= ~parts.back().mask[i];
     }
   }

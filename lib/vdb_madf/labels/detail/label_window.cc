@@ -6,12 +6,9 @@
 #include <algorithm>
 #include <cstring>
 
-#include "vdb_madf/base/detail/simd.h"
-
 namespace vdb_madf::detail {
 
-VDB_MADF_SIMD void addLeaf(const LeafIndex::Mask& mask, int side, const WindowRange& range,
-                           WindowRows& rows) {
+void addLeaf(const LeafIndex::Mask& mask, int side, const WindowRange& range, WindowRows& rows) {
   const int dx = side / 9 - 1, dy = side / 3 % 3 - 1, dz = side % 3 - 1;
   const int begin = std::max(8 * dx, range.begin), end = std::min(8 * dx + 8, range.end);
   for (int x = begin; x < end; ++x) {

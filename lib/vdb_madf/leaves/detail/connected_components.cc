@@ -19,7 +19,7 @@ namespace {
 using Pieces = std::vector<ConnectedComponents::Piece>;
 
 /// The voxels of a leaf that have a label.
-VDB_MADF_SIMD LeafIndex::Mask equalTo(uint32_t label, const uint32_t* dense) {
+VDB_MADF_KERNEL LeafIndex::Mask equalTo(uint32_t label, const uint32_t* dense) {
   uint8_t equal[512];
   for (size_t i = 0; i < 512; ++i) equal[i] = dense[i] == label;
   LeafIndex::Mask mask{};
@@ -52,7 +52,7 @@ void addLabelPieces(const LeafIndex::Mask& mask, size_t count, const uint32_t* v
   for (size_t x = 0; x < 8; ++x)
     while (rest[x]) {
       const uint32_t label = dense[x * 64 + size_t(__builtin_ctzll(rest[x]))];
-      LeafIndex::Mask same = equalTo(label, dense);
+      LeafIndex::Mask same = atBestLevel([&]() VDB_MADF_INLINE { return equalTo(label, dense); });
       for (size_t i = 0; i < 8; ++i) {
         same[i] &= mask[i];
         rest[i] &= ~same[i];

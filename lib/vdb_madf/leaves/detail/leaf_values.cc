@@ -8,7 +8,7 @@
 
 #include "vdb_madf/base/detail/simd.h"
 
-#ifdef VDB_MADF_SIMD_V3
+#ifdef VDB_MADF_SIMD_LEVELS
 #include <immintrin.h>
 #endif
 
@@ -50,7 +50,7 @@ uint32_t* packPortable(const LeafIndex::Mask& mask, const uint32_t* dense, uint3
   return values;
 }
 
-#ifdef VDB_MADF_SIMD_V3
+#ifdef VDB_MADF_SIMD_LEVELS
 /// Lanes for a permutation of 8, a byte each, by the mask of the lanes that are object voxels.
 using Lanes = std::array<uint64_t, 256>;
 
@@ -125,9 +125,7 @@ __attribute__((target("arch=x86-64-v3"))) uint32_t* packV3(const LeafIndex::Mask
   }
   return values;
 }
-#endif
 
-#ifdef VDB_MADF_SIMD_V4
 __attribute__((target("arch=x86-64-v4"))) void expandV4(const LeafIndex::Mask& mask,
                                                         const uint32_t* values, uint32_t* dense) {
   for (size_t x = 0; x < 8; ++x) {
@@ -156,29 +154,29 @@ __attribute__((target("arch=x86-64-v4"))) uint32_t* packV4(const LeafIndex::Mask
 
 /// As the processor can.
 uint32_t* packWith(const LeafIndex::Mask& mask, const uint32_t* dense, uint32_t* values) {
-#ifdef VDB_MADF_SIMD_V4
-  if (__builtin_cpu_supports("x86-64-v4")) return packV4(mask, dense, values);
-#endif
-#ifdef VDB_MADF_SIMD_V3
-  if (__builtin_cpu_supports("x86-64-v3")) return packV3(mask, dense, values);
+#ifdef VDB_MADF_SIMD_LEVELS
+  if (bestSimdLevel() == SimdLevel::v4) return packV4(mask, dense, values);
+  if (bestSimdLevel() == SimdLevel::v3) return packV3(mask, dense, values);
 #endif
   return packPortable(mask, dense, values);
 }
 
-}  // namespace
-
-VDB_MADF_SIMD bool allEqual(const uint32_t* values, size_t count) {
+VDB_MADF_KERNEL bool allEqualKernel(const uint32_t* values, size_t count) {
   uint32_t differ = 0;
   for (size_t i = 0; i < count; ++i) differ |= values[i] ^ values[0];
   return differ == 0;
 }
 
+}  // namespace
+
+bool allEqual(const uint32_t* values, size_t count) {
+  return atBestLevel([&]() VDB_MADF_INLINE { return allEqualKernel(values, count); });
+}
+
 void expandLeaf(const LeafIndex::Mask& mask, const uint32_t* values, uint32_t* dense) {
-#ifdef VDB_MADF_SIMD_V4
-  if (__builtin_cpu_supports("x86-64-v4")) return expandV4(mask, values, dense);
-#endif
-#ifdef VDB_MADF_SIMD_V3
-  if (__builtin_cpu_supports("x86-64-v3")) return expandV3(mask, values, dense);
+#ifdef VDB_MADF_SIMD_LEVELS
+  if (bestSimdLevel() == SimdLevel::v4) return expandV4(mask, values, dense);
+  if (bestSimdLevel() == SimdLevel::v3) return expandV3(mask, values, dense);
 #endif
   expandPortable(mask, values, dense);
 }

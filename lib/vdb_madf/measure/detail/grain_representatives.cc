@@ -25,10 +25,14 @@ void improve(const GrainRepresentative& candidate, GrainRepresentative& best) {
     best = candidate;
 }
 
-VDB_MADF_SIMD int32_t largest(const int32_t* values, size_t count) {
+VDB_MADF_KERNEL int32_t largestKernel(const int32_t* values, size_t count) {
   int32_t most = 0;
   for (size_t i = 0; i < count; ++i) most = std::max(most, values[i]);
   return most;
+}
+
+int32_t largest(const int32_t* values, size_t count) {
+  return atBestLevel([&]() VDB_MADF_INLINE { return largestKernel(values, count); });
 }
 
 GrainRepresentative deepestOf(const LabelPart& part, const LeafIndex& index, size_t leaf,

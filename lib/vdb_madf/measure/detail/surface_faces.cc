@@ -40,8 +40,8 @@ NormalReach::NormalReach(int doubled, int most, const VoxelShape& voxel) : isBal
   }
 }
 
-VDB_MADF_SIMD void addTargets(const WindowRows& own, const WindowRows& other, int axis, int step,
-                              int side, std::vector<SurfaceTarget>& targets) {
+void addTargets(const WindowRows& own, const WindowRows& other, int axis, int step, int side,
+                std::vector<SurfaceTarget>& targets) {
   constexpr uint32_t kLeaf = bitsOf(0, 7);
   const int dx = axis == 0 ? step : 0, dy = axis == 1 ? step : 0, dz = axis == 2 ? step : 0;
   for (int x = 0; x < 8; ++x) {
@@ -60,8 +60,8 @@ VDB_MADF_SIMD void addTargets(const WindowRows& own, const WindowRows& other, in
 }
 
 /// Those of a side whose lower voxel has an x.
-VDB_MADF_SIMD void SurfaceFaces::collect(const WindowRows& first, const WindowRows& second,
-                                         const FaceRange& range, int side, int x) {
+VDB_MADF_KERNEL void SurfaceFaces::collect(const WindowRows& first, const WindowRows& second,
+                                           const FaceRange& range, int side, int x) {
   const int axis = side >> 1;
   if (axis != 0 && x == range.begin[0]) return;
   const WindowRows& lower = side & 1 ? second : first;
@@ -91,7 +91,8 @@ void SurfaceFaces::collect(const WindowRows& first, const WindowRows& second,
     list.count = 0;
     for (int x = WindowRows::kBegin; x <= WindowRows::kEnd; ++x) {
       list.from[size_t(x - WindowRows::kBegin)] = uint32_t(list.count);
-      if (x >= range.begin[0] && x <= range.last[0]) collect(first, second, range, int(side), x);
+      if (x >= range.begin[0] && x <= range.last[0])
+        atBestLevel([&]() VDB_MADF_INLINE { collect(first, second, range, int(side), x); });
     }
     std::fill_n(list.x.begin() + std::ptrdiff_t(list.count), kTogether, kFarAway);
   }
@@ -112,10 +113,10 @@ void SurfaceFaces::collect(const WindowRows& first, const WindowRows& second,
 /// Adds up the weights of a list's faces for each target, but for those of a side. In 16 bits:
 /// coordinates differ by 32 at most but for kFarAway; a sum is over the faces of one axis in reach,
 /// fewer than 300, of weight 64 at most.
-VDB_MADF_SIMD void SurfaceFaces::addWeightsInBall(const List& list, bool alongX,
-                                                  const SurfaceTarget* begin,
-                                                  const SurfaceTarget* end, int reach,
-                                                  int skippedSide, int32_t* sums) {
+VDB_MADF_KERNEL void SurfaceFaces::addWeightsInBall(const List& list, bool alongX,
+                                                    const SurfaceTarget* begin,
+                                                    const SurfaceTarget* end, int reach,
+                                                    int skippedSide, int32_t* sums) {
   const auto squaredReach = int16_t(reach * reach);
   for (const SurfaceTarget* target = begin; target != end; ++target, ++sums) {
     *sums = 0;
@@ -140,10 +141,10 @@ VDB_MADF_SIMD void SurfaceFaces::addWeightsInBall(const List& list, bool alongX,
 
 /// The same in any reach. In 32 bits: distances are below 2^8, factors 2^18 / 25 at most, and
 /// fewer than 2^13 faces of one side fit into the window.
-VDB_MADF_SIMD void SurfaceFaces::addWeights(const List& list, bool alongX,
-                                            const SurfaceTarget* begin, const SurfaceTarget* end,
-                                            const NormalReach& reach, int skippedSide,
-                                            int32_t* sums) {
+VDB_MADF_KERNEL void SurfaceFaces::addWeights(const List& list, bool alongX,
+                                              const SurfaceTarget* begin, const SurfaceTarget* end,
+                                              const NormalReach& reach, int skippedSide,
+                                              int32_t* sums) {
   const int32_t fx = reach.factor(0), fy = reach.factor(1), fz = reach.factor(2);
   for (const SurfaceTarget* target = begin; target != end; ++target, ++sums) {
     *sums = 0;
@@ -171,11 +172,13 @@ int64_t SurfaceFaces::area(const SurfaceTarget* begin, const SurfaceTarget* end,
   for (size_t side = 0; side < 6; ++side) {
     sums_[side].resize(std::max(count, sums_[side].size()));
     const int opposite = oneSheet ? int(side ^ 1) : -1;
-    if (reach.isBall())
-      addWeightsInBall(lists_[side], side < 2, begin, end, reach.radius(0), opposite,
-                       sums_[side].data());
-    else
-      addWeights(lists_[side], side < 2, begin, end, reach, opposite, sums_[side].data());
+    atBestLevel([&]() VDB_MADF_INLINE {
+      if (reach.isBall())
+        addWeightsInBall(lists_[side], side < 2, begin, end, reach.radius(0), opposite,
+                         sums_[side].data());
+      else
+        addWeights(lists_[side], side < 2, begin, end, reach, opposite, sums_[side].data());
+    });
   }
   int64_t area = 0;
   for (size_t i = 0; i < count; ++i) {

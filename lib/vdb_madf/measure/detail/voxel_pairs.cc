@@ -19,8 +19,8 @@ namespace {
 constexpr size_t kPairGrain = 1024;
 
 /// Voxels of the leaves that have another `shift` further along the axis, 0 to 7.
-VDB_MADF_SIMD int64_t countPairs(const VoxelPairs::Across* leaves, size_t count, int axis,
-                                 int shift) {
+VDB_MADF_KERNEL int64_t countPairs(const VoxelPairs::Across* leaves, size_t count, int axis,
+                                   int shift) {
   static constexpr uint64_t kEmpty[8] = {};
   const uint64_t low = kFirstZ * ((1u << (8 - shift)) - 1);  // z from 0 to 7 - shift
   int64_t sum = 0;
@@ -71,7 +71,9 @@ int64_t VoxelPairs::count(int lag, Interrupter* interrupter) {
   parallelFor(order_.size(), kPairGrain, interrupter, [&](size_t begin, size_t end) {
     if (lag >> 3 != leavesApart_)
       for (size_t i = begin; i < end; ++i) across_[i] = across(i, lag & ~7);
-    sum += countPairs(&across_[begin], end - begin, axis_, lag & 7);  // integers: any order
+    sum += atBestLevel([&]() VDB_MADF_INLINE {  // integers: any order
+      return countPairs(&across_[begin], end - begin, axis_, lag & 7);
+    });
   });
   leavesApart_ = lag >> 3;
   return sum;

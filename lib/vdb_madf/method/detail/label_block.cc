@@ -32,8 +32,8 @@ namespace {
 
 }  // namespace
 
-VDB_MADF_SIMD void LabelBlock::load(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
-                                    const std::array<uint32_t, 27>& around) {
+void LabelBlock::load(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+                      const std::array<uint32_t, 27>& around) {
   std::fill_n(&label[0][0][0], 1000, 0u);
   uint32_t dense[512];
   const uint32_t center = around[13];
@@ -61,7 +61,9 @@ VDB_MADF_SIMD void LabelBlock::load(const LeafIndex& index, const VoxelArray<uin
   }
 }
 
-VDB_MADF_SIMD LeafIndex::Mask LabelBlock::interfaces() const {
+namespace {
+
+VDB_MADF_KERNEL LeafIndex::Mask interfacesOf(const uint32_t label[10][10][10]) {
   LeafIndex::Mask mask{};
   for (size_t x = 1; x < 9; ++x)
     for (size_t y = 1; y < 9; ++y) {
@@ -81,7 +83,7 @@ VDB_MADF_SIMD LeafIndex::Mask LabelBlock::interfaces() const {
   return mask;
 }
 
-VDB_MADF_SIMD uint32_t LabelBlock::majority(uint32_t offset) const {
+VDB_MADF_KERNEL uint32_t majorityAt(const uint32_t label[10][10][10], uint32_t offset) {
   const size_t x = (offset >> 6) + 1, y = (offset >> 3 & 7) + 1, z = (offset & 7) + 1;
   uint32_t cube[32] = {};
   for (size_t i = 0; i < 9; ++i)
@@ -104,6 +106,16 @@ VDB_MADF_SIMD uint32_t LabelBlock::majority(uint32_t offset) const {
     }
   }
   return best;
+}
+
+}  // namespace
+
+LeafIndex::Mask LabelBlock::interfaces() const {
+  return atBestLevel([&]() VDB_MADF_INLINE { return interfacesOf(label); });
+}
+
+uint32_t LabelBlock::majority(uint32_t offset) const {
+  return atBestLevel([&]() VDB_MADF_INLINE { return majorityAt(label, offset); });
 }
 
 }  // namespace vdb_madf::detail

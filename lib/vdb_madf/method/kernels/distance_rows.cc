@@ -22,8 +22,8 @@ static_assert(kFar > kMaxExtent + 8 && uint64_t(kFar) * kFar > kInfinite);
 constexpr int kLanes = 16;
 
 template <typename Weight>
-VDB_MADF_SIMD void scan(const uint64_t* masks, int length, const RowDomain& domain, Weight weight,
-                        uint32_t* out) {
+VDB_MADF_KERNEL void scan(const uint64_t* masks, int length, const RowDomain& domain, Weight weight,
+                          uint32_t* out) {
   uint32_t state[64];
   const auto advance = [&](int t, uint32_t* slab, bool forward) {
     const uint64_t word = masks[t];
@@ -45,16 +45,6 @@ VDB_MADF_SIMD void scan(const uint64_t* masks, int length, const RowDomain& doma
   }
 }
 
-}  // namespace
-
-void scanRows(const uint64_t* masks, int length, const RowDomain& domain, int32_t weight,
-              uint32_t* out) {
-  if (weight == 1)
-    scan(masks, length, domain, UnitWeight(), out);
-  else
-    scan(masks, length, domain, weight, out);
-}
-
 // The window around t grows by one position at either end, k = 1, 2, ...: after step k
 //   best = min over |s - t| <= k of in(s) + w (s - t)^2,  w = weight.
 // What is further away than k - 1 adds at least w k^2 to in >= 0, so nothing can gain once
@@ -62,8 +52,8 @@ void scanRows(const uint64_t* masks, int length, const RowDomain& domain, int32_
 // in all lanes, nor anything of w reach^2 or less after k = reach. Beyond an end of the row the
 // padding there is looked at again, from further away than before, which changes nothing: so the
 // nearer end needs no loop of its own.
-VDB_MADF_SIMD void widenWindows(const uint32_t* in, int length, int begin, int end, int32_t weight,
-                                int reach, uint32_t* out) {
+VDB_MADF_KERNEL void widen(const uint32_t* in, int length, int begin, int end, int32_t weight,
+                           int reach, uint32_t* out) {
   for (int t = begin; t < end; ++t) {
     const int toBegin = t + 1, toEnd = length - t;  // distances of the padding
     const int last = std::min(reach, std::max(toBegin, toEnd));
@@ -88,6 +78,23 @@ VDB_MADF_SIMD void widenWindows(const uint32_t* in, int length, int begin, int e
       for (int i = 0; i < kLanes; ++i) out[t * 64 + lane + i] = std::min(best[i], kInfinite);
     }
   }
+}
+
+}  // namespace
+
+void scanRows(const uint64_t* masks, int length, const RowDomain& domain, int32_t weight,
+              uint32_t* out) {
+  atBestLevel([&]() VDB_MADF_INLINE {
+    if (weight == 1)
+      scan(masks, length, domain, UnitWeight(), out);
+    else
+      scan(masks, length, domain, weight, out);
+  });
+}
+
+void widenWindows(const uint32_t* in, int length, int begin, int end, int32_t weight, int reach,
+                  uint32_t* out) {
+  atBestLevel([&]() VDB_MADF_INLINE { widen(in, length, begin, end, weight, reach, out); });
 }
 
 }  // namespace vdb_madf::detail

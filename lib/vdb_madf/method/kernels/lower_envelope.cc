@@ -124,7 +124,7 @@ template <int AxesLeft, typename Key>
 /// Whatever is left out has a better one wherever it is below 0, so the best one of a voxel is never
 /// left out, nor are its parabolas in the passes before.
 template <int AxesLeft, typename Key, typename Weight>
-VDB_MADF_SIMD void markCandidates(size_t length, Weight weight, EnvelopeRows<Key>& s) {
+VDB_MADF_KERNEL void markCandidates(size_t length, Weight weight, EnvelopeRows<Key>& s) {
   constexpr bool kUnit = std::is_same_v<Weight, UnitWeight>;
   constexpr bool kFilter = sizeof(Key) == 8;  // wide keys: what follows could overflow
   for (size_t i = 0; i < length / 8; ++i) {
@@ -273,7 +273,7 @@ template <typename Key>
 
 /// All runs of all rows.
 template <bool Beyond, typename Key, typename Weight>
-VDB_MADF_SIMD void sweepRows(int length, Key multiplier, Weight weight, EnvelopeRows<Key>& s) {
+VDB_MADF_KERNEL void sweepRows(int length, Key multiplier, Weight weight, EnvelopeRows<Key>& s) {
   for (size_t row = 0; row < 64; ++row) {
     for (int end = 0; end < length;) {
       const int begin = findObject(s, row, end, length, 0);
@@ -290,15 +290,15 @@ template <int AxesLeft, typename Key>
 void lowerEnvelopes(int length, Key multiplier, const VoxelWeights& weights,
                     EnvelopeRows<Key>& rows) {
   const auto sweep = [&](auto weight) {
-    markCandidates<AxesLeft>(size_t(length), weight, rows);
+    atBestLevel([&]() VDB_MADF_INLINE { markCandidates<AxesLeft>(size_t(length), weight, rows); });
     const size_t beyond = rows.before.sites.size() + rows.after.sites.size();
     if (beyond == 0) {
-      sweepRows<false>(length, multiplier, weight, rows);
+      atBestLevel([&]() VDB_MADF_INLINE { sweepRows<false>(length, multiplier, weight, rows); });
       return;
     }
     if (rows.envelope.size() < size_t(length) + beyond)
       rows.envelope.resize(size_t(length) + beyond);
-    sweepRows<true>(length, multiplier, weight, rows);
+    atBestLevel([&]() VDB_MADF_INLINE { sweepRows<true>(length, multiplier, weight, rows); });
   };
   bool unit = true;
   for (int axis = 0; axis < AxesLeft; ++axis) unit = unit && weights[axis] == 1;
