@@ -3,6 +3,7 @@
 
 #include "vdb_madf/method/power_map.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
 
@@ -10,6 +11,7 @@
 #include "support/oracle.h"
 #include "support/random_case.h"
 #include "vdb_madf/method/detail/power_passes.h"
+#include "vdb_madf/method/kernels/power_windows.h"
 
 namespace {
 
@@ -33,12 +35,13 @@ int differences(const LeafIndex& index, const PowerMap& map, const ObjectVolume&
   return count;
 }
 
-// A bound on D this large needs 128-bit keys.
+// Bounds on D for which rows take lower envelopes, with keys of 64 and of 128 bits.
+constexpr int32_t kLargeBound = detail::kLargestKeyedSquaredRadius + 1;
 constexpr int32_t kHugeBound = std::numeric_limits<int32_t>::max();
 
 }  // namespace
 
-TEST_CASE("power_map: agrees with the oracle, with keys of either width", "[power_map]") {
+TEST_CASE("power_map: agrees with the oracle, by windows and by envelopes", "[power_map]") {
   int voxels = 0;
   for (uint64_t seed = 1; seed <= 150; ++seed) {
     Rng rng(seed + 20000);
@@ -52,7 +55,7 @@ TEST_CASE("power_map: agrees with the oracle, with keys of either width", "[powe
     int32_t largest = 0;
     for (int i = 0; i < c.object.size(); ++i)
       if (c.object[i]) largest = std::max(largest, int32_t(distance[i]));
-    for (const int32_t bound : {largest, kHugeBound}) {
+    for (const int32_t bound : {largest, std::max(largest, kLargeBound), kHugeBound}) {
       const PowerMap map = powerMap(index, {byRank<int32_t>(index, distance), bound, weights});
       REQUIRE(differences(index, map, c.object, expected) == 0);
     }
@@ -61,7 +64,7 @@ TEST_CASE("power_map: agrees with the oracle, with keys of either width", "[powe
   CHECK(voxels > 10000);
 }
 
-TEST_CASE("power_map: of some balls only, with keys of either width", "[power_map]") {
+TEST_CASE("power_map: of some balls only, by windows and by envelopes", "[power_map]") {
   for (uint64_t seed = 1; seed <= 150; ++seed) {
     Rng rng(seed + 30000);
     const RandomCase c =
@@ -80,7 +83,7 @@ TEST_CASE("power_map: of some balls only, with keys of either width", "[power_ma
       if (sites[i]) largest = std::max(largest, int32_t(distance[i]));
     }
     const OraclePower expected = oraclePower(c.object, distance, sites, weights);
-    for (const int32_t bound : {largest, kHugeBound}) {
+    for (const int32_t bound : {largest, std::max(largest, kLargeBound), kHugeBound}) {
       PowerMap map{byRank<int32_t>(index, start), VoxelArray<VoxelId>(size_t(index.voxelCount())),
                    weights};
       detail::sweepPower(index, bound, map);

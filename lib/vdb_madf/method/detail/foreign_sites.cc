@@ -78,6 +78,24 @@ void ForeignSites::addTo(const Coord& origin, int length, EnvelopeRows<Key>& row
   if (origin.z() + length == end_) addRows(above_, origin, rows.after);
 }
 
+void ForeignSites::addTo(const Coord& origin, int shift, KeyLines& lines) const {
+  const auto add = [&](const std::vector<Named>& sites) {
+    BeyondRows rows;
+    addRows(sites, origin, rows);
+    for (uint32_t row = 0; row < 64; ++row)
+      for (uint32_t i = rows.first[row]; i < rows.first[row + 1]; ++i) {
+        const BeyondRow& beyond = rows.sites[i];
+        if (beyond.position < -lines.reach() || beyond.position >= lines.length() + lines.reach())
+          continue;
+        const size_t at = lines.at(int(row), beyond.position);
+        lines.key[at] = keyOfBall(beyond.radius2, shift);
+        lines.site[at] = beyond.site;
+      }
+  };
+  if (origin.z() == begin_) add(below_);
+  if (origin.z() + lines.length() == end_) add(above_);
+}
+
 template void ForeignSites::addTo(const Coord&, int, EnvelopeRows<int64_t>&) const;
 template void ForeignSites::addTo(const Coord&, int, EnvelopeRows<__int128>&) const;
 

@@ -8,6 +8,7 @@
 
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/method/kernels/lower_envelope.h"
+#include "vdb_madf/method/kernels/power_windows.h"
 
 namespace vdb_madf::detail {
 
@@ -28,6 +29,9 @@ class ForeignSites {
   /// Those in line with the pencil of `length` voxels along z that starts at `origin`.
   template <typename Key>
   void addTo(const Coord& origin, int length, EnvelopeRows<Key>& rows) const;
+
+  /// The same for lines along z, as far as these reach.
+  void addTo(const Coord& origin, int shift, KeyLines& lines) const;
 
   int32_t largestSquaredRadius() const { return largest_; }
   /// Voxels along z from a cut to the farthest of them.
