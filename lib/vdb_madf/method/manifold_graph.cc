@@ -4,12 +4,14 @@
 #include "vdb_madf/method/manifold_graph.h"
 
 #include <algorithm>
+#include <cstring>
 #include <mutex>
 
+#include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/detail/simd.h"
+#include "vdb_madf/leaves/detail/leaf_faces.h"
 #include "vdb_madf/leaves/detail/leaf_values.h"
-#include "vdb_madf/leaves/detail/voxels.h"
 #include "vdb_madf/method/detail/reduce_edges.h"
 #include "vdb_madf/method/flow.h"
 
@@ -83,6 +85,57 @@ class EdgeTable {
   uint32_t last_ = ~0u;
 };
 
+/// The values of a leaf and of the faces of the next leaves beside it; 0 where there is no object
+/// voxel.
+struct Block {
+  uint32_t own[8][64];  ///< of (x, y, z) at [x][y * 8 + z]
+  uint32_t next[3][64];
+
+  template <typename T>
+  void load(const LeafIndex& index, const VoxelArray<T>& values, uint32_t leaf) {
+    const auto* const first = reinterpret_cast<const uint32_t*>(values.data());
+    detail::expandLeaf(index.mask(leaf), first + index.firstRank(leaf), own[0]);
+    for (int axis = 0; axis < 3; ++axis)
+      detail::copyFace(index, first, index.neighbors(leaf)[size_t(2 * axis + 1)], axis, 0,
+                       next[axis]);
+  }
+  /// The value one step along an axis from a voxel, of x and y * 8 + z.
+  uint32_t after(int axis, uint32_t x, uint32_t yz) const {
+    const uint32_t y = yz >> 3, z = yz & 7;
+    if (axis == 0) return x < 7 ? own[x + 1][yz] : next[0][yz];
+    if (axis == 1) return y < 7 ? own[x][yz + 8] : next[1][x * 8 + z];
+    return z < 7 ? own[x][yz + 1] : next[2][x * 8 + y];
+  }
+};
+
+constexpr uint32_t kNumber = ~Flow::kOwnCell;
+
+/// Bit i: are own[i] and other[i] of different manifolds? (Some one, where one is no object voxel.)
+VDB_MADF_KERNEL uint64_t differing(const uint32_t* own, const uint32_t* other) {
+  uint8_t differ[64];
+  for (size_t i = 0; i < 64; ++i) differ[i] = ((own[i] ^ other[i]) & kNumber) != 0;
+  uint64_t bits = 0;
+  for (size_t i = 0; i < 8; ++i) {
+    uint64_t bytes;
+    std::memcpy(&bytes, differ + i * 8, 8);
+    bits |= uint64_t(detail::packBits(bytes)) << (i * 8);
+  }
+  return bits;
+}
+
+/// differing() of a plane of the block and what follows it along each axis.
+VDB_MADF_KERNEL void differingAfter(const Block& block, uint32_t x, uint64_t* bits) {
+  const uint32_t* const own = block.own[x];
+  uint32_t other[64];
+  bits[0] = differing(own, x < 7 ? block.own[x + 1] : block.next[0]);
+  std::copy_n(own + 8, 56, other);
+  std::copy_n(&block.next[1][x * 8], 8, other + 56);
+  bits[1] = differing(own, other);
+  std::copy_n(own + 1, 63, other);
+  for (uint32_t y = 0; y < 8; ++y) other[y * 8 + 7] = block.next[2][x * 8 + y];
+  bits[2] = differing(own, other);
+}
+
 /// Collects the adjacent voxel pairs of different manifolds whose first voxel lies in a leaf.
 class EdgeCollector {
  public:
@@ -90,89 +143,54 @@ class EdgeCollector {
                 EdgeTable& table)
       : index_(index), flow_(flow), power_(power), table_(table) {}
 
-  void collect(size_t leaf) {
-    load(leaf);
-    uint64_t rows = detail::atBestLevel([&]() VDB_MADF_INLINE { return differingRows(); });
-    for (; rows; rows &= rows - 1) {
-      const int row = __builtin_ctzll(rows);
-      collectRow(leaf, row >> 3, row & 7);
+  void collect(uint32_t leaf) {
+    manifold_.load(index_, flow_.manifold, leaf);
+    uint64_t pairs[8][3];
+    detail::atBestLevel([&]() VDB_MADF_INLINE {
+      for (uint32_t x = 0; x < 8; ++x) differingAfter(manifold_, x, pairs[x]);
+    });
+    const LeafIndex::Mask& mask = index_.mask(leaf);
+    const uint64_t next[3] = {faceOfNext(leaf, 0), faceOfNext(leaf, 1), faceOfNext(leaf, 2)};
+    uint64_t any = 0;
+    for (uint32_t x = 0; x < 8; ++x) {
+      constexpr uint64_t kLastZ = 0x8080808080808080u;
+      pairs[x][0] &= mask[x] & (x < 7 ? mask[x + 1] : next[0]);
+      pairs[x][1] &= mask[x] & (mask[x] >> 8 | next[1] >> (8 * x) << 56);
+      pairs[x][2] &= mask[x] & ((mask[x] >> 1 & ~kLastZ) | spreadToLastZ(next[2] >> (8 * x)));
+      any |= pairs[x][0] | pairs[x][1] | pairs[x][2];
     }
+    if (!any) return;
+    powers_.load(index_, power_, leaf);
+    for (uint32_t x = 0; x < 8; ++x)
+      for (int axis = 0; axis < 3; ++axis)
+        detail::forEachBit(pairs[x][axis], [&](int bit) { add(axis, x, uint32_t(bit)); });
   }
 
  private:
-  static constexpr uint32_t kNumber = ~Flow::kOwnCell;
-
-  /// Do two voxels (0: no object voxel) belong to different manifolds?
-  static uint32_t differ(uint32_t a, uint32_t b) {
-    return a != 0 && b != 0 ? (a ^ b) & kNumber : 0;
+  uint64_t faceOfNext(uint32_t leaf, int axis) const {
+    return detail::faceMask(index_, index_.neighbors(leaf)[size_t(2 * axis + 1)], axis, 0);
+  }
+  /// Bit y of a byte to bit y * 8 + 7.
+  static uint64_t spreadToLastZ(uint64_t byte) {
+    uint64_t bits = 0;
+    for (int y = 0; y < 8; ++y) bits |= (byte >> y & 1) << (y * 8 + 7);
+    return bits;
   }
 
-  /// Spreads the leaf's manifolds over block_, with the faces of the next leaves.
-  void load(size_t leaf) {
-    uint32_t dense[512];
-    detail::expandLeaf(index_.mask(leaf), flow_.manifold.data() + index_.firstRank(leaf), dense);
-    for (size_t x = 0; x < 8; ++x)
-      for (size_t y = 0; y < 8; ++y) std::copy_n(dense + x * 64 + y * 8, 8, block_[x][y]);
-    const LeafIndex::Neighbors& next = index_.neighbors(leaf);
-    for (uint32_t i = 0; i < 8; ++i) {
-      for (uint32_t j = 0; j < 8; ++j) {
-        block_[8][i][j] = value(next[1], i * 8 + j);
-        block_[i][8][j] = value(next[3], i * 64 + j);
-        block_[i][j][8] = value(next[5], i * 64 + j * 8);
-      }
-    }
-  }
-  uint32_t value(uint32_t leaf, uint32_t offset) const {
-    if (leaf == LeafIndex::kNone) return 0;
-    const VoxelId id = leaf * 512 + offset;
-    return detail::isObject(index_, id) ? flow_.manifold[index_.rank(id)] : 0;
-  }
-
-  /// Is there any pair of different manifolds from the row (x, y) on? Mostly not. Bit x*8 + y.
-  VDB_MADF_KERNEL uint64_t differingRows() const {
-    uint64_t rows = 0;
-    for (int x = 0; x < 8; ++x)
-      for (int y = 0; y < 8; ++y) {
-        uint32_t any = 0;
-        for (int z = 0; z < 8; ++z) {
-          const uint32_t a = block_[x][y][z];
-          any |= differ(a, block_[x][y][z + 1]) | differ(a, block_[x][y + 1][z]) |
-                 differ(a, block_[x + 1][y][z]);
-        }
-        rows |= uint64_t(any != 0) << (x * 8 + y);
-      }
-    return rows;
-  }
-
-  void collectRow(size_t leaf, int x, int y) {
-    for (int z = 0; z < 8; ++z) {
-      collectPair(leaf, {x, y, z}, {x, y, z + 1});
-      collectPair(leaf, {x, y, z}, {x, y + 1, z});
-      collectPair(leaf, {x, y, z}, {x + 1, y, z});
-    }
-  }
-
-  void collectPair(size_t leaf, const Coord& p, const Coord& q) {
-    const uint32_t a = block_[p.x()][p.y()][p.z()], b = block_[q.x()][q.y()][q.z()];
-    if (!differ(a, b)) return;
+  void add(int axis, uint32_t x, uint32_t yz) {
+    const uint32_t a = manifold_.own[x][yz], b = manifold_.after(axis, x, yz);
     const uint32_t first = (a & kNumber) - 1, second = (b & kNumber) - 1;
-    table_.add({std::min(first, second), std::max(first, second), 1,
-                -std::max(powerAt(leaf, p), powerAt(leaf, q)), (a & b & Flow::kOwnCell) != 0});
-  }
-
-  /// Power at a place of the block; 8 is the first voxel of the next leaf.
-  int32_t powerAt(size_t leaf, const Coord& p) const {
-    for (size_t axis = 0; axis < 3; ++axis)
-      if (p[axis] == 8) leaf = index_.neighbors(leaf)[2 * axis + 1];
-    return power_[index_.rank(VoxelId(leaf * 512) +
-                              VoxelId((p.x() & 7) * 64 + (p.y() & 7) * 8 + (p.z() & 7)))];
+    const int32_t height =
+        -std::max(int32_t(powers_.own[x][yz]), int32_t(powers_.after(axis, x, yz)));
+    table_.add({std::min(first, second), std::max(first, second), 1, height,
+                (a & b & Flow::kOwnCell) != 0});
   }
 
   const LeafIndex& index_;
   const Flow& flow_;
   const VoxelArray<int32_t>& power_;
   EdgeTable& table_;
-  uint32_t block_[9][9][9] = {};
+  Block manifold_, powers_;
 };
 
 }  // namespace
@@ -200,7 +218,8 @@ ManifoldGraph manifoldGraph(const LeafIndex& index, const Flow& flow,
                         EdgeTable& table = tables.local();
                         table.clear();
                         EdgeCollector collector(index, flow, power, table);
-                        for (size_t leaf = begin; leaf < end; ++leaf) collector.collect(leaf);
+                        for (size_t leaf = begin; leaf < end; ++leaf)
+                          collector.collect(uint32_t(leaf));
                         const std::lock_guard<std::mutex> lock(edgesMutex);
                         edges.insert(edges.end(), table.edges().begin(), table.edges().end());
                       });

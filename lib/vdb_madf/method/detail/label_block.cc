@@ -6,59 +6,65 @@
 #include <algorithm>
 
 #include "vdb_madf/base/detail/simd.h"
+#include "vdb_madf/leaves/detail/leaf_faces.h"
 #include "vdb_madf/leaves/detail/leaf_values.h"
 
 namespace vdb_madf::detail {
 
 namespace {
 
-/// The labels of the row of 8 voxels along z that begins at `offset`.
-[[gnu::always_inline]] inline void copyRow(const LeafIndex& index,
-                                           const VoxelArray<uint32_t>& labels, uint32_t leaf,
-                                           uint32_t offset, uint32_t* row) {
-  const uint32_t bits = uint32_t(index.mask(leaf)[offset >> 6] >> (offset & 63) & 0xff);
-  if (bits == 0) return;
-  const uint32_t* from = labels.data() + index.rank(VoxelId(leaf * 512 + offset));
-  for (uint32_t z = 0; z < 8; ++z)
-    if (bits >> z & 1) row[z] = *from++;
-}
-
-[[gnu::always_inline]] inline uint32_t labelAt(const LeafIndex& index,
-                                               const VoxelArray<uint32_t>& labels, uint32_t leaf,
-                                               uint32_t offset) {
+VDB_MADF_KERNEL uint32_t labelAt(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+                                 uint32_t leaf, uint32_t offset) {
   if (!(index.mask(leaf)[offset >> 6] >> (offset & 63) & 1)) return 0;
   return labels[index.rank(VoxelId(leaf * 512 + offset))];
+}
+
+/// The layer of voxels around the leaf, but for that of its faces: where two or three coordinates lie
+/// beyond it.
+VDB_MADF_KERNEL void loadEdges(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+                               const std::array<uint32_t, 27>& around,
+                               uint32_t (&block)[10][10][10]) {
+  for (uint32_t i = 0; i < 27; ++i) {
+    const uint32_t leaf = around[i];
+    const uint32_t side[3] = {i / 9, i / 3 % 3, i % 3};
+    if ((side[0] == 1) + (side[1] == 1) + (side[2] == 1) > 1) continue;
+    // Along an axis the block takes the last voxel of the leaf before, all of this one, the first of
+    // the next.
+    const auto first = [&](int axis) { return side[axis] == 0 ? 7u : 0u; };
+    const auto last = [&](int axis) { return side[axis] == 2 ? 0u : 7u; };
+    const auto place = [&](int axis, uint32_t t) {
+      return side[axis] == 1 ? t + 1 : side[axis] / 2 * 9;
+    };
+    for (uint32_t x = first(0); x <= last(0); ++x)
+      for (uint32_t y = first(1); y <= last(1); ++y)
+        for (uint32_t z = first(2); z <= last(2); ++z)
+          block[place(0, x)][place(1, y)][place(2, z)] =
+              leaf == LeafIndex::kNone ? 0 : labelAt(index, labels, leaf, x * 64 + y * 8 + z);
+  }
 }
 
 }  // namespace
 
 void LabelBlock::load(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
                       const std::array<uint32_t, 27>& around) {
-  std::fill_n(&label[0][0][0], 1000, 0u);
   uint32_t dense[512];
   const uint32_t center = around[13];
   expandLeaf(index.mask(center), labels.data() + index.firstRank(center), dense);
   for (size_t x = 0; x < 8; ++x)
     for (size_t y = 0; y < 8; ++y) std::copy_n(dense + x * 64 + y * 8, 8, &label[x + 1][y + 1][1]);
-  // Along an axis the block takes the last voxel of the leaf before, all of this one, the first of
-  // the next.
-  for (uint32_t i = 0; i < 27; ++i) {
-    const uint32_t leaf = around[i];
-    if (i == 13 || leaf == LeafIndex::kNone) continue;
-    const uint32_t side[3] = {i / 9, i / 3 % 3, i % 3};
-    const auto first = [&](int axis) { return side[axis] == 0 ? 7u : 0u; };
-    const auto last = [&](int axis) { return side[axis] == 2 ? 0u : 7u; };
-    for (uint32_t x = first(0); x <= last(0); ++x)
-      for (uint32_t y = first(1); y <= last(1); ++y) {
-        const uint32_t offset = x * 64 + y * 8;
-        uint32_t* row =
-            label[side[0] == 1 ? x + 1 : side[0] / 2 * 9][side[1] == 1 ? y + 1 : side[1] / 2 * 9];
-        if (side[2] == 1)
-          copyRow(index, labels, leaf, offset, row + 1);
-        else
-          row[side[2] / 2 * 9] = labelAt(index, labels, leaf, offset + first(2));
-      }
+  for (size_t end : {0, 1}) {
+    const int position = end == 0 ? 7 : 0;  // in the leaf beside
+    const size_t at = end * 9;
+    uint32_t face[8][8];
+    copyFace(index, labels.data(), around[13 - 9 + end * 18], 0, position, face[0]);
+    for (size_t y = 0; y < 8; ++y) std::copy_n(face[y], 8, &label[at][y + 1][1]);
+    copyFace(index, labels.data(), around[13 - 3 + end * 6], 1, position, face[0]);
+    for (size_t x = 0; x < 8; ++x) std::copy_n(face[x], 8, &label[x + 1][at][1]);
+    copyFace(index, labels.data(), around[13 - 1 + end * 2], 2, position, face[0]);
+    for (size_t x = 0; x < 8; ++x)
+      for (size_t y = 0; y < 8; ++y) label[x + 1][y + 1][at] = face[x][y];
   }
+  atBestLevel([&]() VDB_MADF_INLINE { loadEdges(index, labels, around, label); });
 }
 
 namespace {
