@@ -8,6 +8,7 @@
 #include "vdb_madf/base/detail/simd.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/method/detail/metric.h"
+#include "vdb_madf/method/kernels/lanes.h"
 
 namespace vdb_madf::detail {
 
@@ -18,30 +19,39 @@ namespace {
 constexpr uint32_t kFar = 46341;
 static_assert(kFar > kMaxExtent + 8 && uint64_t(kFar) * kFar > kInfinite);
 
-/// Lanes that stop their search for a nearer background voxel together.
-constexpr int kLanes = 16;
-
-template <typename Weight>
-VDB_MADF_KERNEL void scan(const uint64_t* masks, int length, const RowDomain& domain, Weight weight,
-                          uint32_t* out) {
-  uint32_t state[64];
-  const auto advance = [&](int t, uint32_t* slab, bool forward) {
-    const uint64_t word = masks[t];
+/// Of 16 of the 64 rows, from row `first` on.
+template <int Bytes, typename Weight>
+VDB_MADF_KERNEL void scan(const uint64_t* masks, int length, const RowDomain& domain, int first,
+                          Weight weight, uint32_t* out) {
+  using Numbers = Lanes<Bytes, uint32_t>;
+  Numbers state, inside;
+  // One more than the state before, but at voxels outside the object: 0, or kFar if not in the domain.
+  const auto advance = [&](int t) VDB_MADF_INLINE {
+    inside.fillFromBits(uint32_t(masks[t] >> first & 0xffff));
     const uint32_t outside = t >= domain.begin && t < domain.end ? 0 : kFar;
-    for (int row = 0; row < 64; ++row) {
-      const uint32_t inside = 0u - uint32_t(word >> row & 1);
-      state[row] = ((state[row] + 1) & inside) | (outside & ~inside);
-      slab[row] = forward ? state[row] : std::min(slab[row], state[row]);
-    }
+    for (int i = 0; i < state.kCount; ++i)
+      state.v[i] = ((state.v[i] + 1) & inside.v[i]) | (outside & ~inside.v[i]);
   };
-  for (size_t row = 0; row < 64; ++row) state[row] = std::min(domain.before[row], kFar);
-  for (int t = 0; t < length; ++t) advance(t, out + t * 64, true);
-  for (size_t row = 0; row < 64; ++row) state[row] = std::min(domain.after[row], kFar);
+  const auto begin = [&](const std::array<uint32_t, 64>& beyond) VDB_MADF_INLINE {
+    state.load(beyond.data() + first);
+    for (auto& v : state.v) v = v < kFar ? v : kFar;
+  };
+  begin(domain.before);
+  for (int t = 0; t < length; ++t) {
+    advance(t);
+    state.store(out + t * 64 + first);
+  }
+  begin(domain.after);
   for (int t = length - 1; t >= 0; --t) {
-    uint32_t* slab = out + t * 64;
-    advance(t, slab, false);
-    for (int row = 0; row < 64; ++row)
-      slab[row] = slab[row] >= kFar ? kInfinite : squaredAlong(slab[row], weight);
+    advance(t);
+    Numbers nearest;
+    nearest.load(out + t * 64 + first);
+    for (int i = 0; i < state.kCount; ++i) {
+      auto& v = nearest.v[i];
+      v = v < state.v[i] ? v : state.v[i];
+      v = v < kFar ? v * v * uint32_t(weight) : kInfinite;
+    }
+    nearest.store(out + t * 64 + first);
   }
 }
 
@@ -52,30 +62,30 @@ VDB_MADF_KERNEL void scan(const uint64_t* masks, int length, const RowDomain& do
 // in all lanes, nor anything of w reach^2 or less after k = reach. Beyond an end of the row the
 // padding there is looked at again, from further away than before, which changes nothing: so the
 // nearer end needs no loop of its own.
-VDB_MADF_KERNEL void widen(const uint32_t* in, int length, int begin, int end, int32_t weight,
+template <int Bytes, typename Weight>
+VDB_MADF_KERNEL void widen(const uint32_t* in, int length, int begin, int end, Weight weight,
                            int reach, uint32_t* out) {
+  constexpr int kTogether = 2;  // steps until the largest is looked for again
   for (int t = begin; t < end; ++t) {
     const int toBegin = t + 1, toEnd = length - t;  // distances of the padding
     const int last = std::min(reach, std::max(toBegin, toEnd));
     for (int lane = 0; lane < 64; lane += kLanes) {
       const uint32_t* center = in + t * 64 + lane;
-      uint32_t best[kLanes];
-      uint32_t worst = 0;
-      for (int i = 0; i < kLanes; ++i) {
-        best[i] = center[i];
-        worst = std::max(worst, best[i]);
-      }
-      for (int k = 1; k <= last && squaredAlong(uint32_t(k), weight) < worst; ++k) {
-        const uint32_t k2 = squaredAlong(uint32_t(k), weight);
-        const uint32_t* below = center - std::min(k, toBegin) * 64;
-        const uint32_t* above = center + std::min(k, toEnd) * 64;
-        worst = 0;
-        for (int i = 0; i < kLanes; ++i) {
-          best[i] = std::min(best[i], std::min(below[i], above[i]) + k2);
-          worst = std::max(worst, best[i]);
+      Lanes<Bytes, uint32_t> best, below, above;
+      best.load(center);
+      for (int k = 1; k <= last && squaredAlong(uint32_t(k), weight) < best.largest();) {
+        for (const int stop = std::min(k + kTogether, last + 1); k < stop; ++k) {
+          const uint32_t k2 = squaredAlong(uint32_t(k), weight);
+          below.load(center - std::min(k, toBegin) * 64);
+          above.load(center + std::min(k, toEnd) * 64);
+          for (int i = 0; i < best.kCount; ++i) {
+            const auto nearer = (below.v[i] < above.v[i] ? below.v[i] : above.v[i]) + k2;
+            best.v[i] = nearer < best.v[i] ? nearer : best.v[i];
+          }
         }
       }
-      for (int i = 0; i < kLanes; ++i) out[t * 64 + lane + i] = std::min(best[i], kInfinite);
+      for (auto& v : best.v) v = v < kInfinite ? v : kInfinite;
+      best.store(out + t * 64 + lane);
     }
   }
 }
@@ -84,17 +94,24 @@ VDB_MADF_KERNEL void widen(const uint32_t* in, int length, int begin, int end, i
 
 void scanRows(const uint64_t* masks, int length, const RowDomain& domain, int32_t weight,
               uint32_t* out) {
-  atBestLevel([&]() VDB_MADF_INLINE {
-    if (weight == 1)
-      scan(masks, length, domain, UnitWeight(), out);
-    else
-      scan(masks, length, domain, weight, out);
+  atBestLevel([&](auto bytes) VDB_MADF_INLINE {
+    for (int first = 0; first < 64; first += kLanes) {
+      if (weight == 1)
+        scan<bytes>(masks, length, domain, first, UnitWeight(), out);
+      else
+        scan<bytes>(masks, length, domain, first, weight, out);
+    }
   });
 }
 
 void widenWindows(const uint32_t* in, int length, int begin, int end, int32_t weight, int reach,
                   uint32_t* out) {
-  atBestLevel([&]() VDB_MADF_INLINE { widen(in, length, begin, end, weight, reach, out); });
+  atBestLevel([&](auto bytes) VDB_MADF_INLINE {
+    if (weight == 1)
+      widen<bytes>(in, length, begin, end, UnitWeight(), reach, out);
+    else
+      widen<bytes>(in, length, begin, end, weight, reach, out);
+  });
 }
 
 }  // namespace vdb_madf::detail
