@@ -3,7 +3,11 @@
 
 #include "vdb_madf/method/medial_balls.h"
 
+#include <algorithm>
+
+#include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/leaves/detail/value_runs.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 #include "vdb_madf/method/detail/metric.h"
 
@@ -23,12 +27,14 @@ VoxelSet medialBalls(const LeafIndex& index, const PowerMap& map, Interrupter* i
   VoxelSet balls(index.namedLeafCount());
   detail::parallelFor(index.leafCount(), detail::kLeafGrain, interrupter,
                       [&](size_t begin, size_t end) {
-                        VoxelId last = ~VoxelId(0);
+                        VoxelId last = ~map.site[index.firstRank(begin)];
                         const size_t stop = index.firstRank(end);
-                        for (size_t rank = index.firstRank(begin); rank < stop; ++rank) {
-                          if (map.site[rank] == last) continue;
-                          last = map.site[rank];
-                          balls.insertAtomic(last);
+                        for (size_t rank = index.firstRank(begin); rank < stop; rank += 64) {
+                          const VoxelId* const sites = map.site.data() + rank;
+                          const size_t count = std::min<size_t>(64, stop - rank);
+                          detail::forEachBit(detail::runStarts(sites, count, last),
+                                             [&](int i) { balls.insertAtomic(sites[i]); });
+                          last = sites[count - 1];
                         }
                       });
   balls.rankMembers();
