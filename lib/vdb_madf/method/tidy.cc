@@ -94,16 +94,18 @@ class Smoothing {
       detail::LabelBlock block;
       const size_t stop = std::min(leaves.size(), end * kChunk);
       for (size_t i = begin * kChunk; i < stop; ++i) {
-        block.load(index_, grains_.label, neighborhood.around(leaves[i]));
-        const LeafIndex::Mask candidates = block.interfaces();
-        for (uint32_t x = 0; x < 8; ++x)
-          detail::forEachBit(candidates[x], [&](int bit) {
-            const uint32_t offset = x * 64 + uint32_t(bit);
-            const uint32_t label = block.majority(offset), own = block.at(offset);
-            const VoxelId voxel = leaves[i] * 512 + offset;
-            if (label != own && anchor_[own - 1] != voxel)
-              changes[i / kChunk].push_back({voxel, label});
-          });
+        const std::array<uint32_t, 27>& around = neighborhood.around(leaves[i]);
+        block.loadFaces(index_, grains_.label, around);
+        const LeafIndex::Mask interfaces = block.interfaces();
+        if (!detail::anyVoxel(interfaces)) continue;
+        block.loadEdges(index_, grains_.label, around);
+        detail::LabelBlock::Change found[512];
+        const size_t count = block.smooth(interfaces, found);
+        for (size_t k = 0; k < count; ++k) {
+          const VoxelId voxel = leaves[i] * 512 + found[k].offset;
+          if (anchor_[block.at(found[k].offset) - 1] != voxel)
+            changes[i / kChunk].push_back({voxel, found[k].label});
+        }
       }
     });
     return changes;

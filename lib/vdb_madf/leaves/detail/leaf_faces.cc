@@ -7,6 +7,7 @@
 
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/simd.h"
+#include "vdb_madf/leaves/detail/leaf_values.h"
 
 namespace vdb_madf::detail {
 
@@ -14,9 +15,9 @@ namespace {
 
 // No branches on single voxels, as in leaf_values.cc.
 
-/// Spreads the values of the `count` lowest bits of a mask.
-VDB_MADF_KERNEL void spread(uint64_t bits, int count, const uint32_t* values, uint32_t* dense) {
-  for (int i = 0; i < count; ++i, bits >>= 1) {
+/// Spreads the values of the 8 lowest bits of a mask.
+VDB_MADF_KERNEL void spread(uint64_t bits, const uint32_t* values, uint32_t* dense) {
+  for (int i = 0; i < 8; ++i, bits >>= 1) {
     dense[i] = *values & (0u - uint32_t(bits & 1));
     values += bits & 1;
   }
@@ -26,20 +27,14 @@ VDB_MADF_KERNEL uint32_t countBelow(uint64_t word, int bit) {
   return countBits(word & ((uint64_t(1) << bit) - 1));
 }
 
-VDB_MADF_KERNEL void copyFaceKernel(const LeafIndex& index, const uint32_t* values, uint32_t leaf,
-                                    int axis, int position, uint32_t* face) {
-  const LeafIndex::Mask& mask = index.mask(leaf);
-  if (axis == 0) {
-    spread(mask[size_t(position)], 64,
-           values + index.rank(VoxelId(leaf * 512 + uint32_t(position) * 64)), face);
-    return;
-  }
-  const uint32_t* ofWord = values + index.firstRank(leaf);
+/// Along y or z. `ofWord`: the leaf's values.
+VDB_MADF_KERNEL void copyRows(const LeafIndex::Mask& mask, const uint32_t* ofWord, int axis,
+                              int position, uint32_t* face) {
   for (size_t x = 0; x < 8; ++x, face += 8) {
     const uint64_t word = mask[x];
     if (axis == 1) {
       const int bit = position * 8;
-      spread(word >> bit, 8, ofWord + countBelow(word, bit), face);
+      spread(word >> bit, ofWord + countBelow(word, bit), face);
     } else {
       for (int y = 0; y < 8; ++y) {
         const int bit = y * 8 + position;
@@ -58,7 +53,14 @@ void copyFace(const LeafIndex& index, const uint32_t* values, uint32_t leaf, int
     std::fill_n(face, 64, 0u);
     return;
   }
-  atBestLevel([&]() VDB_MADF_INLINE { copyFaceKernel(index, values, leaf, axis, position, face); });
+  const LeafIndex::Mask& mask = index.mask(leaf);
+  if (axis == 0) {
+    const VoxelId first = leaf * 512 + uint32_t(position) * 64;
+    expandWord(mask[size_t(position)], values + index.rank(first), face);
+    return;
+  }
+  const uint32_t* const ofLeaf = values + index.firstRank(leaf);
+  atBestLevel([&]() VDB_MADF_INLINE { copyRows(mask, ofLeaf, axis, position, face); });
 }
 
 uint64_t faceMask(const LeafIndex& index, uint32_t leaf, int axis, int position) {

@@ -18,9 +18,9 @@ namespace {
 
 // No branches on single voxels: a mispredicted one costs more than ten of these steps.
 
-void expandPortable(const LeafIndex::Mask& mask, const uint32_t* values, uint32_t* dense) {
-  for (size_t x = 0; x < 8; ++x, dense += 64) {
-    uint64_t word = mask[x];
+void expandPortable(const uint64_t* words, size_t count, const uint32_t* values, uint32_t* dense) {
+  for (size_t x = 0; x < count; ++x, dense += 64) {
+    uint64_t word = words[x];
     if (word == ~uint64_t(0)) {
       std::memcpy(dense, values, 64 * sizeof(uint32_t));
       values += 64;
@@ -85,17 +85,17 @@ __attribute__((target("arch=x86-64-v3"))) inline __m256i permuted(__m256i values
                                      _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(int64_t(lanes))));
 }
 
-__attribute__((target("arch=x86-64-v3"))) void expandV3(const LeafIndex::Mask& mask,
+__attribute__((target("arch=x86-64-v3"))) void expandV3(const uint64_t* words, size_t count,
                                                         const uint32_t* values, uint32_t* dense) {
   const __m256i bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-  for (size_t x = 0; x < 8; ++x, dense += 64) {
-    if (mask[x] == ~uint64_t(0)) {
+  for (size_t x = 0; x < count; ++x, dense += 64) {
+    if (words[x] == ~uint64_t(0)) {
       std::memcpy(dense, values, 64 * sizeof(uint32_t));
       values += 64;
       continue;
     }
     for (size_t lane = 0; lane < 64; lane += 8) {
-      const uint32_t inside = uint32_t(mask[x] >> lane & 0xff);
+      const uint32_t inside = uint32_t(words[x] >> lane & 0xff);
       const __m256i object =
           _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(int(inside)), bits), bits);
       const __m256i packed = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(values));
@@ -126,11 +126,11 @@ __attribute__((target("arch=x86-64-v3"))) uint32_t* packV3(const LeafIndex::Mask
   return values;
 }
 
-__attribute__((target("arch=x86-64-v4"))) void expandV4(const LeafIndex::Mask& mask,
+__attribute__((target("arch=x86-64-v4"))) void expandV4(const uint64_t* words, size_t count,
                                                         const uint32_t* values, uint32_t* dense) {
-  for (size_t x = 0; x < 8; ++x) {
+  for (size_t x = 0; x < count; ++x) {
     for (size_t lane = 0; lane < 64; lane += 16, dense += 16) {
-      const __mmask16 inside = __mmask16(mask[x] >> lane);
+      const __mmask16 inside = __mmask16(words[x] >> lane);
       _mm512_storeu_si512(dense, _mm512_maskz_expand_epi32(inside, _mm512_loadu_si512(values)));
       values += __builtin_popcount(inside);
     }
@@ -153,6 +153,14 @@ __attribute__((target("arch=x86-64-v4"))) uint32_t* packV4(const LeafIndex::Mask
 #endif
 
 /// As the processor can.
+void expandWith(const uint64_t* words, size_t count, const uint32_t* values, uint32_t* dense) {
+#ifdef VDB_MADF_SIMD_LEVELS
+  if (bestSimdLevel() == SimdLevel::v4) return expandV4(words, count, values, dense);
+  if (bestSimdLevel() == SimdLevel::v3) return expandV3(words, count, values, dense);
+#endif
+  expandPortable(words, count, values, dense);
+}
+
 uint32_t* packWith(const LeafIndex::Mask& mask, const uint32_t* dense, uint32_t* values) {
 #ifdef VDB_MADF_SIMD_LEVELS
   if (bestSimdLevel() == SimdLevel::v4) return packV4(mask, dense, values);
@@ -174,11 +182,11 @@ bool allEqual(const uint32_t* values, size_t count) {
 }
 
 void expandLeaf(const LeafIndex::Mask& mask, const uint32_t* values, uint32_t* dense) {
-#ifdef VDB_MADF_SIMD_LEVELS
-  if (bestSimdLevel() == SimdLevel::v4) return expandV4(mask, values, dense);
-  if (bestSimdLevel() == SimdLevel::v3) return expandV3(mask, values, dense);
-#endif
-  expandPortable(mask, values, dense);
+  expandWith(mask.data(), mask.size(), values, dense);
+}
+
+void expandWord(uint64_t word, const uint32_t* values, uint32_t* dense) {
+  expandWith(&word, 1, values, dense);
 }
 
 void packLeaf(const LeafIndex::Mask& mask, const uint32_t* dense, uint32_t* values) {

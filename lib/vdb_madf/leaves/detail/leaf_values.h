@@ -14,6 +14,9 @@ namespace vdb_madf::detail {
 /// VoxelArray::kSlack values past the last.
 void expandLeaf(const LeafIndex::Mask& mask, const uint32_t* values, uint32_t* dense);
 
+/// The same with the 64 voxels of one x, a word of the mask.
+void expandWord(uint64_t word, const uint32_t* values, uint32_t* dense);
+
 /// The way back: the dense values of the object voxels, one after the other.
 void packLeaf(const LeafIndex::Mask& mask, const uint32_t* dense, uint32_t* values);
 

@@ -21,7 +21,7 @@ VDB_MADF_KERNEL uint32_t labelAt(const LeafIndex& index, const VoxelArray<uint32
 
 /// The layer of voxels around the leaf, but for that of its faces: where two or three coordinates lie
 /// beyond it.
-VDB_MADF_KERNEL void loadEdges(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+VDB_MADF_KERNEL void copyEdges(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
                                const std::array<uint32_t, 27>& around,
                                uint32_t (&block)[10][10][10]) {
   for (uint32_t i = 0; i < 27; ++i) {
@@ -45,8 +45,8 @@ VDB_MADF_KERNEL void loadEdges(const LeafIndex& index, const VoxelArray<uint32_t
 
 }  // namespace
 
-void LabelBlock::load(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
-                      const std::array<uint32_t, 27>& around) {
+void LabelBlock::loadFaces(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+                           const std::array<uint32_t, 27>& around) {
   uint32_t dense[512];
   const uint32_t center = around[13];
   expandLeaf(index.mask(center), labels.data() + index.firstRank(center), dense);
@@ -64,7 +64,11 @@ void LabelBlock::load(const LeafIndex& index, const VoxelArray<uint32_t>& labels
     for (size_t x = 0; x < 8; ++x)
       for (size_t y = 0; y < 8; ++y) label[x + 1][y + 1][at] = face[x][y];
   }
-  atBestLevel([&]() VDB_MADF_INLINE { loadEdges(index, labels, around, label); });
+}
+
+void LabelBlock::loadEdges(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+                           const std::array<uint32_t, 27>& around) {
+  atBestLevel([&]() VDB_MADF_INLINE { copyEdges(index, labels, around, label); });
 }
 
 namespace {
@@ -89,6 +93,7 @@ VDB_MADF_KERNEL LeafIndex::Mask interfacesOf(const uint32_t label[10][10][10]) {
   return mask;
 }
 
+/// The label of most voxels around one and itself: its own or one across a face, see tidy.h.
 VDB_MADF_KERNEL uint32_t majorityAt(const uint32_t label[10][10][10], uint32_t offset) {
   const size_t x = (offset >> 6) + 1, y = (offset >> 3 & 7) + 1, z = (offset & 7) + 1;
   uint32_t cube[32] = {};
@@ -120,8 +125,17 @@ LeafIndex::Mask LabelBlock::interfaces() const {
   return atBestLevel([&]() VDB_MADF_INLINE { return interfacesOf(label); });
 }
 
-uint32_t LabelBlock::majority(uint32_t offset) const {
-  return atBestLevel([&]() VDB_MADF_INLINE { return majorityAt(label, offset); });
+size_t LabelBlock::smooth(const LeafIndex::Mask& voxels, Change* changes) const {
+  return atBestLevel([&]() VDB_MADF_INLINE {
+    size_t count = 0;
+    for (uint32_t x = 0; x < 8; ++x)
+      for (uint64_t bits = voxels[x]; bits; bits &= bits - 1) {
+        const uint32_t offset = x * 64 + uint32_t(__builtin_ctzll(bits));
+        changes[count] = {offset, majorityAt(label, offset)};
+        count += changes[count].label != at(offset);
+      }
+    return count;
+  });
 }
 
 }  // namespace vdb_madf::detail
