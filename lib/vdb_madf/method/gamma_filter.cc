@@ -68,9 +68,13 @@ PowerMap filteredPowerMap(const LeafIndex& index, PowerMap map, const VoxelSet& 
                           Interrupter* interrupter) {
   detail::parallelFor(
       index.leafCount(), detail::kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-        detail::forEachVoxel(index, begin, end, [&](VoxelId p, size_t rank) {
-          map.power[rank] = kept.contains(p) ? -table.squaredRadius[balls.rank(p)] : kUncovered;
-        });
+        const size_t first = index.firstRank(begin);
+        std::fill_n(map.power.data() + first, index.firstRank(end) - first, kUncovered);
+        for (size_t word = begin * 8; word < end * 8; ++word)
+          detail::forEachBit(kept.word(word), [&](int bit) {
+            const VoxelId id = VoxelId(word * 64) + VoxelId(bit);
+            map.power[index.rank(id)] = -table.squaredRadius[balls.rank(id)];
+          });
       });
   int32_t largest = 0;
   for (const int32_t radius2 : table.squaredRadius) largest = std::max(largest, radius2);

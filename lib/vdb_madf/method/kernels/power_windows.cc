@@ -97,6 +97,11 @@ VDB_MADF_KERNEL void sweepLine(int line, int shift, int32_t unit, KeyLines& line
   const int32_t* const first = lines.key.data() + lines.at(line, -reach);
   const int32_t* const end = lines.key.data() + lines.at(line, lines.length() + reach);
   for (const int32_t* key = first; key != end; ++key) least = std::min(least, *key);
+  if (least == 0) {  // no site, as in many lines after a filter
+    std::fill_n(lines.leastKey.data() + lines.at(line, 0), size_t(lines.length() * Stride),
+                kNotNegative);
+    return;
+  }
   for (int t = 0; t < lines.length(); t += kLanes / Stride) {
     const size_t at = lines.at(line, t);
     auto found = leastInWindow<Stride, Bytes>(lines.key.data() + at, lines.site.data() + at, shift,
