@@ -46,6 +46,29 @@ TEST_CASE("slabs: one file of them is the one that segment writes", "[slabs]") {
   CHECK_FALSE(bench.names().count("out.slabs.part"));
 }
 
+TEST_CASE("slabs: manifolds and their graph are those of one file", "[slabs]") {
+  const Bench bench;
+  bench.mustRun(kTall + "in.vdb --voxel-size 8um -q");
+  for (const std::string options :
+       {"", "--gamma 9 --tidy 0 --boundary closed", "--fill-holes 1000 --merge neck",
+        "--roi cylinder:z:20,16:14"}) {
+    INFO(options);
+    const std::string choice = " --grid object --keep manifold -q " + options;
+    bench.mustRun("segment in.vdb one.vdb" + choice);
+    bench.mustRun("segment in.vdb out.slabs --slab-height 16" + choice);
+    requireSame(bench);
+    bench.mustRun("remerge one.vdb merged.vdb --theta -0.5 -q");
+    bench.mustRun("remerge out.slabs joined.vdb --theta -0.5 -q");
+    REQUIRE(bench.bytes("joined.vdb") == bench.bytes("merged.vdb"));
+  }
+  bench.mustRun("segment in.vdb auto.vdb --auto-slabs --grid object --keep manifold -q");
+  CHECK(gridsOf(infoOf(bench, "auto.vdb")) == std::set<std::string>{"grain", "manifold"});
+
+  const Outcome one = bench.run("remerge out.slabs/slab-0002.vdb one.vdb");
+  CHECK(one.exitCode == 1);
+  CHECK_THAT(one.err, Contains("slab-0002.vdb: ") && Contains("give the whole folder"));
+}
+
 TEST_CASE("slabs: images are read layer by layer", "[slabs]") {
   const Bench bench;
   bench.mustRun(kTall + "in.vdb --voxel-size 8x8x20um -q");
@@ -349,7 +372,7 @@ TEST_CASE("slabs: what cannot be is said in one line", "[slabs]") {
     CHECK_FALSE(bench.names().count("out.slabs.scratch"));
   };
   const std::string segment = "segment in.vdb out.slabs --grid object ";
-  refused(segment + "--keep power", "labels alone");
+  refused(segment + "--keep power", "--keep manifold alone");
   refused(segment + "--max-memory 100MiB", "allow more");
   refused("segment none.tif out.slabs", "none.tif");
   refused("segment in.vdb one.vdb --grid object --resume", "OUT.slabs");

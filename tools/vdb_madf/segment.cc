@@ -69,13 +69,6 @@ void parse(SegmentArguments& o) {
   o.segment.gamma = parseCount(o.gamma, "--gamma");
   o.segment.fillHoles = parseFillHoles(o.fillHoles);
   o.segment.tidy = parseTidy(o.tidy);
-  if (!o.autoSlabs) checkSlabArguments(o);
-  if (o.autoSlabs && inSlabs)
-    throw WrongUsage(o.out + " is in slabs anyway: leave --auto-slabs out");
-  if (o.autoSlabs && !couldBeInSlabs(o))
-    throw WrongUsage(
-        "--auto-slabs gives one file of labels: leave --keep, --tables, --gamma, --roi and "
-        "--dry-run out");
   std::stringstream keep(o.keep);
   for (std::string what; std::getline(keep, what, ',');) {
     if (what == "distance")
@@ -89,6 +82,14 @@ void parse(SegmentArguments& o) {
     else
       throw WrongUsage("--keep " + what + ": can keep distance, power, manifold and balls");
   }
+  if (!o.autoSlabs) checkSlabArguments(o);
+  if (o.autoSlabs && inSlabs)
+    throw WrongUsage(o.out + " is in slabs anyway: leave --auto-slabs out");
+  if (o.autoSlabs && !couldBeInSlabs(o))
+    throw WrongUsage(
+        "--auto-slabs gives one file of labels and manifolds: leave other grids of --keep, "
+        "--tables, "
+        "--gamma, --roi and --dry-run out");
 }
 
 /// What segmenting would take, without doing it.

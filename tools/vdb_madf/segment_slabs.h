@@ -20,6 +20,10 @@ void checkSlabArguments(const SegmentArguments& o);
 /// `seconds` and `message_bytes`.
 void addSlabCosts(const SlabObject& object, const SlabSegmentation& s, Json& json);
 
+/// The file of a slab, of so many.
+void writeSlab(const std::string& path, const SlabGrids& grids, size_t slab, size_t count,
+               Progress* progress);
+
 /// What index.json says of slabs, from what is said of the segmentation.
 Json slabIndex(const SegmentArguments& o, const SlabObject& object, const Json& summary);
 
