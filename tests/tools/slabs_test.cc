@@ -69,6 +69,61 @@ TEST_CASE("slabs: manifolds and their graph are those of one file", "[slabs]") {
   CHECK_THAT(one.err, Contains("slab-0002.vdb: ") && Contains("give the whole folder"));
 }
 
+TEST_CASE("slabs: remerge makes others of them, as of one file", "[slabs]") {
+  const Bench bench;
+  bench.mustRun(kTall + "in.vdb --voxel-size 8um -q");
+  for (const std::string options :
+       {"", "--gamma 9 --boundary closed", "--roi cylinder:z:20,16:14"}) {
+    const std::string choice = " --grid object --keep manifold -q " + options;
+    bench.mustRun("segment in.vdb one.vdb" + choice);
+    bench.mustRun("segment in.vdb in.slabs --slab-height 16" + choice);
+    for (const std::string merge : {"--theta -0.5", "--merge angle --delta 0 --tidy 0",
+                                    "--adjacency cell --tidy 9 --threads 1"}) {
+      INFO(options << " " << merge);
+      bench.mustRun("remerge one.vdb merged.vdb -q " + merge);
+      bench.mustRun("remerge in.slabs out.slabs/ -q " + merge);
+      bench.mustRun("convert out.slabs back.vdb -q");
+      REQUIRE(bench.bytes("back.vdb") == bench.bytes("merged.vdb"));
+      bench.mustRun("segment in.vdb fresh.slabs --slab-height 16" + choice + " " + merge);
+      REQUIRE(bench.bytes("out.slabs/index.json") == bench.bytes("fresh.slabs/index.json"));
+      REQUIRE(bench.bytes("out.slabs/slab-0002.vdb") == bench.bytes("fresh.slabs/slab-0002.vdb"));
+    }
+  }
+  bench.mustRun("remerge in.slabs out.tif -q");
+  bench.mustRun("remerge one.vdb one.tif -q");
+  CHECK(bench.bytes("out.tif") == bench.bytes("one.tif"));
+
+  const auto refused = [&](const std::string& arguments, const std::string& why) {
+    INFO(arguments);
+    const Outcome run = bench.run(arguments);
+    CHECK(run.exitCode != 0);
+    CHECK_THAT(run.err, Contains(why));
+    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+    CHECK_FALSE(bench.names().count("other.slabs"));
+    CHECK_FALSE(bench.names().count("other.slabs.part"));
+  };
+  refused("remerge one.vdb other.slabs", "no folder of slabs");
+  refused("remerge in.slabs in.slabs", "in.slabs");
+  refused("remerge in.slabs other.slabs --tidy 17", "at least as many voxels high");
+  refused("remerge in.slabs/slab-0001.vdb other.vdb", "give the whole folder");
+  bench.mustRun("segment in.vdb bare.slabs --slab-height 16 --grid object -q");
+  refused("remerge bare.slabs other.slabs", "--keep manifold");
+  std::filesystem::remove(bench.path("in.slabs/slab-0003.vdb"));
+  refused("remerge in.slabs other.slabs", "slab-0003.vdb: is missing");
+  // A slab of other manifolds.
+  bench.mustRun("segment in.vdb in.slabs --slab-height 16 --grid object --keep manifold -q");
+  std::string bytes = bench.bytes("in.slabs/slab-0003.vdb");
+  const size_t graph = bytes.find("madf_manifold_graph", bytes.find("madf_manifold_graph") + 1);
+  REQUIRE(graph != std::string::npos);
+  ++bytes[graph + 19 + 4 + 12 + 12];  // the squared radius of the first node
+  bench.write("in.slabs/slab-0003.vdb", bytes);
+  refused("remerge in.slabs other.slabs", "in another slab");
+  refused("remerge in.slabs other.vdb", "another one in another part");
+  bytes[graph + 19 + 4] = 9;  // the version
+  bench.write("in.slabs/slab-0003.vdb", bytes);
+  refused("remerge in.slabs other.slabs", "slab-0003.vdb: it is damaged");
+}
+
 TEST_CASE("slabs: images are read layer by layer", "[slabs]") {
   const Bench bench;
   bench.mustRun(kTall + "in.vdb --voxel-size 8x8x20um -q");

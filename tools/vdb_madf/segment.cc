@@ -38,7 +38,7 @@ namespace vdb_madf::tools {
 namespace {
 
 void parse(SegmentArguments& o) {
-  while (o.out.size() > 7 && o.out.compare(o.out.size() - 7, 7, ".slabs/") == 0) o.out.pop_back();
+  o.out = withoutSlash(o.out);
   o.input.outputs = {o.out, o.json};
   if (!o.tables.empty())
     for (const std::string& path : MeasurementTables::paths(o.tables))

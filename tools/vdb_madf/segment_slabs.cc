@@ -176,6 +176,14 @@ bool hasSlabsEnding(const std::string& path) {
   return fileEnding(path) == ".slabs";
 }
 
+std::string withoutSlash(std::string path) {
+  const std::string ending = ".slabs/";
+  while (path.size() > ending.size() &&
+         path.compare(path.size() - ending.size(), ending.size(), ending) == 0)
+    path.pop_back();
+  return path;
+}
+
 void addSlabCosts(const SlabObject& object, const SlabSegmentation& s, Json& json) {
   json["slab_count"] = object.slabCount();
   json["exchanges"] = s.exchanges;

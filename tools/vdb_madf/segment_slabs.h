@@ -12,6 +12,8 @@ namespace vdb_madf::tools {
 /// What `segment` does for an output like OUT.slabs: a folder of parts, from slabs that need not fit in
 /// memory together.
 bool hasSlabsEnding(const std::string& path);
+/// "OUT.slabs" of "OUT.slabs/", as shells complete it; other paths as they are.
+std::string withoutSlash(std::string path);
 
 /// @throw WrongUsage for options that slabs do not know
 void checkSlabArguments(const SegmentArguments& o);

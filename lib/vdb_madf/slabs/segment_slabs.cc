@@ -13,24 +13,11 @@
 #include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/slabs/detail/slab_flow.h"
 #include "vdb_madf/slabs/detail/slab_labels.h"
+#include "vdb_madf/slabs/detail/slab_options.h"
 
 namespace vdb_madf {
 
 namespace {
-
-void checkSlabOptions(const SlabObject& object, const SegmentOptions& options) {
-  detail::checkSegmentOptions(options);
-  if (options.keepDistance || options.keepPower || options.keepBalls)
-    throw InvalidInput("slabs give labels and manifolds alone: keep no other grids");
-  const std::vector<int>& cuts = object.cuts;
-  for (size_t i = 0; i < cuts.size(); ++i)
-    if ((cuts[i] & 7) != 0 || (i > 0 && cuts[i] <= cuts[i - 1]))
-      throw InvalidInput("slabs are cut at ascending multiples of 8 along z");
-  for (size_t s = 1; s + 1 < object.slabCount(); ++s)
-    if (cuts[s + 1] - cuts[s] < options.tidy)
-      throw InvalidInput("interfaces are smoothed in " + std::to_string(options.tidy) +
-                         " rounds: take slabs at least as many voxels high");
-}
 
 /// The manifolds of a slab, with its part of the graph.
 Int32Grid::Ptr manifoldGrid(const detail::SlabWork& work, size_t slab,
@@ -66,7 +53,7 @@ void describe(const detail::SlabWork& work, const SlabSegmentation& result, Int3
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
                               Scratch& scratch, Ranks& ranks, const PutSlab& put,
                               Interrupter* interrupter) {
-  checkSlabOptions(object, options);
+  detail::checkSlabOptions(object, options);
   SlabSegmentation result;
   if (object.slabCount() == 0) return result;
   result.domain = options.domain ? options.domain : storedDomain(*object.about);
@@ -103,6 +90,20 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
                               Scratch& scratch, const PutSlab& put, Interrupter* interrupter) {
   Ranks alone;
   return segmentSlabs(object, options, scratch, alone, put, interrupter);
+}
+
+void detail::checkSlabOptions(const SlabObject& object, const SegmentOptions& options) {
+  checkSegmentOptions(options);
+  if (options.keepDistance || options.keepPower || options.keepBalls)
+    throw InvalidInput("slabs give labels and manifolds alone: keep no other grids");
+  const std::vector<int>& cuts = object.cuts;
+  for (size_t i = 0; i < cuts.size(); ++i)
+    if ((cuts[i] & 7) != 0 || (i > 0 && cuts[i] <= cuts[i - 1]))
+      throw InvalidInput("slabs are cut at ascending multiples of 8 along z");
+  for (size_t s = 1; s + 1 < object.slabCount(); ++s)
+    if (cuts[s + 1] - cuts[s] < options.tidy)
+      throw InvalidInput("interfaces are smoothed in " + std::to_string(options.tidy) +
+                         " rounds: take slabs at least as many voxels high");
 }
 
 bool isSlabPut(const Scratch& scratch, size_t slab) {
