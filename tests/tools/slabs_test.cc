@@ -124,6 +124,48 @@ TEST_CASE("slabs: remerge makes others of them, as of one file", "[slabs]") {
   refused("remerge in.slabs other.slabs", "slab-0003.vdb: it is damaged");
 }
 
+TEST_CASE("slabs: sweep merges their manifolds, as of one file", "[slabs]") {
+  const Bench bench;
+  bench.mustRun(kTall + "in.vdb --voxel-size 8um -q");
+  for (const std::string gamma : {"0", "9"}) {
+    bench.mustRun(
+        "segment in.vdb in.slabs --slab-height 16 --grid object --keep manifold -q --gamma " +
+        gamma);
+    const std::string how = " -q --theta -1:-0.4:0.3 --delta 0,2 --small 300 --tidy 1 --plot ";
+    bench.mustRun("sweep in.vdb one.csv --grid object --gamma " + gamma + how + "one.svg");
+    bench.mustRun("sweep in.slabs cut.csv" + how + "cut.svg");
+    CHECK(bench.bytes("one.csv") == bench.bytes("cut.csv"));
+    CHECK(bench.bytes("one.svg") == bench.bytes("cut.svg"));
+    CHECK(bench.mustRun("sweep in.slabs - --scratch data" + how + "cut.svg") ==
+          bench.bytes("one.csv"));
+  }
+  CHECK_FALSE(bench.names().count("data"));
+  CHECK_FALSE(bench.names().count("cut.csv.scratch"));
+  bench.mustRun("sweep in.slabs grain.csv --grid grain --gamma 0 --theta -1 -q");  // segments it
+  bench.mustRun("sweep in.vdb object.csv --grid object --gamma 0 --theta -1 -q");
+  CHECK(bench.bytes("grain.csv") == bench.bytes("object.csv"));
+
+  const auto refused = [&](const std::string& arguments, const std::string& why) {
+    INFO(arguments);
+    const Outcome run = bench.run("sweep in.slabs out.csv " + arguments);
+    CHECK(run.exitCode != 0);
+    CHECK_THAT(run.err, Contains(why));
+    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+    CHECK_FALSE(bench.names().count("out.csv"));
+    CHECK_FALSE(bench.names().count("out.csv.scratch"));
+  };
+  refused("--gamma 20", "those of gamma 9");
+  refused("--boundary closed", "--boundary");
+  refused("--phase 1", "leave --phase out");
+  refused("--fill-holes 3", "leave --fill-holes out");
+  refused("--crop 0,0,0:9,9,9", "leave --crop out");
+  refused("--tidy 17", "at least as many voxels high");
+  refused("--scratch .", "no folder of scratch data");
+  const Outcome piped = bench.run("sweep in.slabs -");
+  CHECK(piped.exitCode == 2);
+  CHECK_THAT(piped.err, Contains("--scratch DIR"));
+}
+
 TEST_CASE("slabs: images are read layer by layer", "[slabs]") {
   const Bench bench;
   bench.mustRun(kTall + "in.vdb --voxel-size 8x8x20um -q");

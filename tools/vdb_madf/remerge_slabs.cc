@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <utility>
 
 #include "json_file.h"
@@ -16,7 +17,6 @@
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/measure/grain_sizes.h"
 #include "vdb_madf/method/segmentation_metadata.h"
-#include "vdb_madf/slabs/folder_scratch.h"
 #include "vdb_madf/slabs/remerge_slabs.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/slab_folder.h"
@@ -24,8 +24,6 @@
 namespace vdb_madf::tools {
 
 namespace {
-
-constexpr char kManifold[] = "manifold";
 
 /// What index.json of a folder says, brought up to date. openSlabFolder() has read it before.
 Json newIndex(const std::string& folder, const MergeOptions& merge, int tidy,
@@ -51,14 +49,21 @@ Json newIndex(const std::string& folder, const MergeOptions& merge, int tidy,
 
 }  // namespace
 
+bool hasManifolds(const std::vector<openvdb::GridBase::Ptr>& grids) {
+  return std::any_of(grids.begin(), grids.end(), [](const auto& grid) {
+    return grid->getName() == kManifoldGrid && grid->template isType<Int32Grid>();
+  });
+}
+
+ScratchFolder::~ScratchFolder() {
+  scratch_.removeAll();
+}
+
 LabelSlabs openManifoldSlabs(const InputOptions& input, Progress* progress) {
-  const auto grids = readVdbHeaders(input.path, progress);
-  if (std::none_of(grids.begin(), grids.end(), [](const auto& grid) {
-        return grid->getName() == kManifold && grid->template isType<Int32Grid>();
-      }))
+  if (!hasManifolds(readVdbHeaders(input.path, progress)))
     throw InvalidInput(input.path + ": holds no manifolds: segment again with --keep manifold");
   InputOptions manifolds = input;
-  manifolds.gridName = kManifold;
+  manifolds.gridName = kManifoldGrid;
   return openLabelSlabs(manifolds, "--grid", progress);
 }
 
@@ -67,10 +72,10 @@ void remergeInSlabs(const InputOptions& input, const std::string& out, const Mer
   common.progress->start("read");
   const LabelSlabs manifolds = openManifoldSlabs(input, common.progress);
   const PartFolder folder(out);
-  FolderScratch scratch(folder.file("scratch"), "", false);
+  std::optional<ScratchFolder> scratch(std::in_place, folder.file("scratch"));
   const std::vector<int64_t> voxels = withFileName(input.path, [&] {
     return remergeSlabs(
-        manifolds, merge, tidy, scratch,
+        manifolds, merge, tidy, scratch->scratch(),
         [&](size_t slab, const Int32Grid::Ptr& grain) {
           const Int32Grid::Ptr manifold = manifolds.read(slab, common.progress);
           describeMerging(*manifold, merge, tidy, *grainCount(*grain));
@@ -79,7 +84,7 @@ void remergeInSlabs(const InputOptions& input, const std::string& out, const Mer
         },
         common.progress);
   });
-  scratch.removeAll();
+  scratch.reset();
   JsonFile(folder.file(kSlabIndex)).write(newIndex(input.path, merge, tidy, voxels));
   folder.commit();
   common.progress->end();

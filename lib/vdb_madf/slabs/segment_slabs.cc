@@ -75,8 +75,9 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
   counts.add(result.counts);
   result.counts = detail::ByteReader(work.broadcast(counts)).value<SegmentCounts>();
   detail::labelSlabs(work, std::move(representatives), result,
-                     [&](size_t slab, const detail::SlabBody& body, const Int32Grid::Ptr& grain) {
-                       SlabGrids grids{grain, nullptr};
+                     [&](size_t slab, const detail::SlabBody& body, VoxelArray<uint32_t> labels) {
+                       SlabGrids grids;
+                       grids.grain = detail::slabGrid(work, body, std::move(labels), "grain");
                        if (options.keepManifold) grids.manifold = manifoldGrid(work, slab, body);
                        for (const Int32Grid::Ptr& grid : {grids.grain, grids.manifold})
                          if (grid) describe(work, result, *grid);

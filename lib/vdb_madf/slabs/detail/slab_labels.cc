@@ -69,7 +69,7 @@ class SlabLabels {
 
   void putLabels(size_t s, bool isTidied, const PutLabels& put) {
     if (result_.counts.objectVoxels == 0) {
-      put(s, SlabBody(), slabGrid(work_, SlabBody(), {}, "grain"));
+      put(s, SlabBody(), {});
       work_.write("put", s, {});
       return;
     }
@@ -79,7 +79,7 @@ class SlabLabels {
     for (const LooseVoxel& voxel : work_.receiveVector<LooseVoxel>("refilled", SlabWork::kRoot, s))
       labels[slab.index.rank(*slab.index.findVoxel(voxel.position))] = voxel.label;
     const auto counts = countLabels(labels);
-    put(s, slab, slabGrid(work_, slab, std::move(labels), "grain"));
+    put(s, slab, std::move(labels));
     work_.sendVector("counts", s, SlabWork::kRoot, counts);
     work_.write("put", s, {});
   }

@@ -12,8 +12,9 @@ namespace vdb_madf::detail {
 /// Keeps of the flow of a slab (Flow::manifold) what tidying will see beyond its cuts.
 void writeRims(SlabWork& work, size_t slab, const SlabBody& body, VoxelArray<uint32_t> manifold);
 
-/// Gets the labels of a slab: a grid "grain" that does not say yet how it was made.
-using PutLabels = std::function<void(size_t slab, const SlabBody& body, Int32Grid::Ptr grain)>;
+/// Gets the labels of a slab, by rank in its body; 0: a cavity.
+using PutLabels =
+    std::function<void(size_t slab, const SlabBody& body, VoxelArray<uint32_t> labels)>;
 
 /// The labels of all slabs, from where their voxels flow to and the grains of those terminals: tidied,
 /// counted in result.grainVoxels (at the root), and put. The messages kGrainsOfTerminals are there, and
