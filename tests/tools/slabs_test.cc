@@ -166,6 +166,39 @@ TEST_CASE("slabs: sweep merges their manifolds, as of one file", "[slabs]") {
   CHECK_THAT(piped.err, Contains("--scratch DIR"));
 }
 
+TEST_CASE("slabs: pictures are those of one file", "[slabs]") {
+  const Bench bench;
+  bench.mustRun(kTall + "in.vdb --voxel-size 8x8x12um -q");
+  bench.mustRun("convert in.vdb scan.tif --grid object -q");
+  for (const std::string options : {"", "--roi cylinder:z:20,16:14 --tidy 0"}) {
+    const std::string choice = " --grid object --slab-height 16 -q " + options;
+    bench.mustRun("segment in.vdb out.slabs --keep manifold" + choice);
+    bench.mustRun("convert out.slabs one.vdb -q");
+    for (const std::string shown :
+         {"", "--only slices --slice z=0,z=17,y=30,x=33", "--only view --azimuth 200",
+          "--select 3,7", "--interfaces --select 3,5,2,1 --no-axes", "--overlay scan.tif",
+          "--grid manifold --elevation -40"}) {
+      INFO(options << " " << shown);
+      bench.mustRun("render one.vdb one.png --size 150 -q " + shown);
+      bench.mustRun("render out.slabs cut.png --size 150 -q " + shown);
+      CHECK(bench.bytes("one.png") == bench.bytes("cut.png"));
+    }
+  }
+  const auto refused = [&](const std::string& arguments, const std::string& why) {
+    INFO(arguments);
+    const Outcome run = bench.run("render out.slabs no.png " + arguments);
+    CHECK(run.exitCode != 0);
+    CHECK_THAT(run.err, Contains("out.slabs") && Contains(why));
+    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+    CHECK_FALSE(bench.names().count("no.png"));
+  };
+  refused("--select 1,9999", "there is no grain 9999");
+  refused("--slice z=93", "there is no slice z = 93");
+  refused("--grid power", "power");
+  std::filesystem::remove(bench.path("out.slabs/slab-0002.vdb"));
+  refused("", "slab-0002.vdb: is missing");
+}
+
 TEST_CASE("slabs: images are read layer by layer", "[slabs]") {
   const Bench bench;
   bench.mustRun(kTall + "in.vdb --voxel-size 8x8x20um -q");
