@@ -83,6 +83,39 @@ ManifoldGraph restored(const std::string& bytes, bool exceptions) {
   return storedGraph(*grid).value();
 }
 
+GraphPart randomPart(uint32_t seed, int nodes) {
+  std::mt19937 random(seed + 77);
+  GraphPart part{randomGraph(seed, nodes), {}, {}};
+  uint32_t number = 0;
+  for (int i = 0; i < nodes; ++i) {
+    number += 1 + random() % 5;
+    part.number.push_back(number);
+    part.goesOn.push_back(char(random() % 2));
+  }
+  return part;
+}
+
+bool equal(const GraphPart& a, const GraphPart& b) {
+  return equal(a.graph, b.graph) && a.number == b.number && a.goesOn == b.goesOn;
+}
+
+/// As stored() and restored().
+std::string stored(const GraphPart& part) {
+  const auto grid = Int32Grid::create();
+  setGraphPart(*grid, part);
+  std::ostringstream stream;
+  (*grid)[kName]->write(stream);
+  return stream.str();
+}
+GraphPart restoredPart(const std::string& bytes) {
+  std::istringstream stream(bytes);
+  const auto metadata = openvdb::Metadata::createMetadata(kName);
+  metadata->read(stream);
+  const auto grid = Int32Grid::create();
+  grid->insertMeta(kName, *metadata);
+  return storedGraphPart(*grid).value();
+}
+
 std::string withSize(std::string bytes) {
   const uint32_t size = uint32_t(bytes.size() - 4);
   std::memcpy(bytes.data(), &size, 4);
@@ -232,4 +265,96 @@ TEST_CASE("graph_metadata: damaged bytes are read or refused", "[graph_metadata]
     }
   }
   REQUIRE(refused > 300);
+}
+
+TEST_CASE("graph_metadata: a grid gives back its part of a graph, and no graph",
+          "[graph_metadata]") {
+  initialize();
+  for (const GraphPart& original : {randomPart(1, 0), randomPart(2, 3), randomPart(3, 7000)}) {
+    const auto grid = Int32Grid::create();
+    setGraph(*grid, extremeGraph());
+    REQUIRE_FALSE(storedGraphPart(*grid));
+    setGraphPart(*grid, original);
+    REQUIRE(equal(storedGraphPart(*grid).value(), original));
+    REQUIRE(equal(restoredPart(stored(original)), original));
+    REQUIRE(equal(storedGraphPart(*grid->deepCopy()).value(), original));
+    REQUIRE_THROWS_AS(storedGraph(*grid), InvalidInput);
+    REQUIRE_THROWS_AS(requiredGraph(*grid), InvalidInput);
+    removeGraph(*grid);
+    REQUIRE_FALSE(storedGraphPart(*grid));
+    REQUIRE_FALSE(storedGraph(*grid));
+  }
+}
+
+TEST_CASE("graph_metadata: the numbers of a part follow its edges", "[graph_metadata]") {
+  initialize();
+  GraphPart part;
+  part.graph.nodes = {{Coord(1, -2, 3), 4, 5}};
+  part.number = {0x01020304};
+  part.goesOn = {1};
+  const std::string expected(
+      "\x29\0\0\0"                        // 12 + 24 + 5 bytes
+      "\2\0\0\0\1\0\0\0\0\0\0\0"          // version, nodes, edges
+      "\1\0\0\0\xfe\xff\xff\xff\3\0\0\0"  // position
+      "\4\0\0\0\5\0\0\0\0\0\0\0"          // squared radius, voxels
+      "\4\3\2\1\1",                       // number, goes on
+      45);
+  REQUIRE(stored(part) == expected);
+}
+
+TEST_CASE("graph_metadata: a part that breaks the rules, or is damaged, is refused",
+          "[graph_metadata]") {
+  initialize();
+  const auto refused = [](auto change) {
+    GraphPart part = randomPart(4, 5);
+    change(part);
+    const auto grid = Int32Grid::create();
+    REQUIRE_THROWS_AS(setGraphPart(*grid, part), InvalidInput);
+    REQUIRE(grid->metaCount() == 0);
+  };
+  refused([](GraphPart& p) { p.number[0] = 0; });
+  refused([](GraphPart& p) { p.number[2] = p.number[1]; });
+  refused([](GraphPart& p) { std::swap(p.number[2], p.number[1]); });
+  refused([](GraphPart& p) { p.number[4] = 0x80000000u; });
+  refused([](GraphPart& p) { p.number.pop_back(); });
+  refused([](GraphPart& p) { p.goesOn.pop_back(); });
+  refused([](GraphPart& p) { std::swap(p.graph.nodes[1], p.graph.nodes[2]); });
+
+  const std::string bytes = stored(randomPart(5, 4));
+  for (size_t length = 4; length < bytes.size(); ++length)
+    REQUIRE_THROWS_AS(restoredPart(withSize(bytes.substr(0, length))), std::exception);
+  std::string changed = bytes;
+  changed.back() = 2;  // neither true nor false
+  REQUIRE_THROWS_AS(restoredPart(changed), std::exception);
+  changed = bytes;
+  changed[4] = 3;  // version
+  REQUIRE_THROWS_AS(restoredPart(changed), std::exception);
+}
+
+TEST_CASE("graph_metadata: parts that are not of one graph are not joined", "[graph_metadata]") {
+  // Two manifolds that touch, one of them in both parts.
+  const std::vector<GraphPart> parts{
+      {{{{Coord(0, 0, 7), 9, 40}}, {}, {}}, {1}, {1}},
+      {{{{Coord(0, 0, 7), 9, 2}, {Coord(5, 0, 9), 4, 3}}, {{0, 1, 7, 3, false}}, {}},
+       {1, 2},
+       {0, 0}}};
+  const ManifoldGraph joined = joinedGraph(parts);
+  REQUIRE(joined.nodes ==
+          std::vector<CriticalPoint>{{Coord(0, 0, 7), 9, 42}, {Coord(5, 0, 9), 4, 3}});
+  REQUIRE(joined.edges == parts[1].graph.edges);
+  REQUIRE(joinedGraph({}).nodes.empty());
+  const auto refused = [&](auto change) {
+    std::vector<GraphPart> changed = parts;
+    change(changed);
+    REQUIRE_THROWS_AS(joinedGraph(changed), InvalidInput);
+  };
+  refused([](auto& p) { ++p[1].graph.nodes[0].squaredRadius; });
+  refused([](auto& p) { ++p[0].graph.nodes[0].position.z(); });
+  refused([](auto& p) { p[1].number[1] = 3; });
+  refused([](auto& p) { p[1].number[1] = 0x7fffffff; });
+  refused([](auto& p) {
+    p[0].number[0] = 2;
+    p[0].graph.nodes[0] = p[1].graph.nodes[1];
+    p[1] = p[0];
+  });
 }

@@ -116,8 +116,8 @@ TEST_CASE("mpi: each rank puts the labels of the whole in its slabs", "[mpi]") {
         dealSlabs(leaves, limits, whole.fillHoles, whole.domain,
                   openvdb::gridConstPtrCast<MaskGrid>(mask->copyGridWithNewTree()), ranks, scratch);
     int64_t different = 0;
-    const SlabSegmentation result = segmentSlabs(
-        object, options, scratch, ranks, [&](size_t slab, const Int32Grid::Ptr& grain) {
+    const SlabSegmentation result =
+        segmentSlabs(object, options, scratch, ranks, [&](size_t slab, const SlabGrids& grids) {
           ++put;
           const Int32Grid::Ptr part = whole.grain->deepCopy();
           const CoordBBox inside(Coord(INT32_MIN, INT32_MIN, object.cuts[slab]),
@@ -127,7 +127,7 @@ TEST_CASE("mpi: each rank puts the labels of the whole in its slabs", "[mpi]") {
               voxel.setValue(0);
               voxel.setValueOff();
             }
-          different += !areSame(*part, *grain);
+          different += !areSame(*part, *grids.grain);
         });
     different += result.counts.grains != whole.counts.grains;
     if (ranks.rank() == 0) different += result.grainVoxels != whole.grainVoxels;

@@ -18,6 +18,8 @@
 #include "support/slab_objects.h"
 #include "support/thread_ranks.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/method/graph_metadata.h"
+#include "vdb_madf/method/initialize.h"
 
 namespace {
 
@@ -26,29 +28,43 @@ using namespace vdb_madf::test;
 
 struct Cut {
   SlabSegmentation result;
-  Int32Grid::Ptr labels;  ///< of all slabs; null without any
+  Int32Grid::Ptr labels;     ///< of all slabs; null without any
+  Int32Grid::Ptr manifolds;  ///< the same, with the graph, if they are kept
 };
 
-/// Adds the labels of a slab to those below it.
-void addSlab(Int32Grid::Ptr& labels, const Int32Grid::Ptr& slab) {
-  if (labels)
-    labels->tree().merge(slab->tree());
+/// Adds the grid of a slab to those below it.
+void addSlab(Int32Grid::Ptr& all, const Int32Grid::Ptr& slab) {
+  if (all)
+    all->tree().merge(slab->tree());
   else
-    labels = slab;
+    all = slab;
+}
+
+/// Those of all slabs, if there are any.
+void joinSlabs(const std::vector<SlabGrids>& slabs, Cut& cut) {
+  std::vector<GraphPart> parts;
+  for (const SlabGrids& grids : slabs) {
+    addSlab(cut.labels, grids.grain);
+    if (!grids.manifold) continue;
+    parts.push_back(storedGraphPart(*grids.manifold).value());
+    addSlab(cut.manifolds, grids.manifold);
+  }
+  if (cut.manifolds) setGraph(*cut.manifolds, joinedGraph(parts));
 }
 
 Cut segmentCut(const SlabObject& object, const SegmentOptions& options) {
   Cut cut;
   MemoryScratch scratch;
-  size_t next = 0;
-  cut.result =
-      segmentSlabs(object, options, scratch, [&](size_t slab, const Int32Grid::Ptr& grain) {
-        if (slab != next++) throw std::logic_error("slabs are put in another order");
-        for (auto leaf = grain->tree().cbeginLeaf(); leaf; ++leaf)
-          if (leaf->origin().z() < object.cuts[slab] || leaf->origin().z() >= object.cuts[slab + 1])
-            throw std::logic_error("labels outside of their slab");
-        addSlab(cut.labels, grain);
-      });
+  std::vector<SlabGrids> slabs;
+  cut.result = segmentSlabs(object, options, scratch, [&](size_t slab, const SlabGrids& grids) {
+    if (slab != slabs.size()) throw std::logic_error("slabs are put in another order");
+    for (const Int32Grid::Ptr& grid : {grids.grain, grids.manifold})
+      for (auto leaf = grid ? grid->tree().cbeginLeaf() : Int32Tree::LeafCIter(); leaf; ++leaf)
+        if (leaf->origin().z() < object.cuts[slab] || leaf->origin().z() >= object.cuts[slab + 1])
+          throw std::logic_error("labels outside of their slab");
+    slabs.push_back(grids);
+  });
+  joinSlabs(slabs, cut);
   return cut;
 }
 
@@ -56,18 +72,18 @@ Cut segmentCut(const SlabObject& object, const SegmentOptions& options) {
 Cut segmentByRanks(const SlabObject& object, const SegmentOptions& options, int ranks) {
   Cut cut;
   Team team(ranks);
-  std::vector<Int32Grid::Ptr> labels(object.slabCount());
+  std::vector<SlabGrids> slabs(object.slabCount());
   asRanks(team, [&](Ranks& rank) {
     MemoryScratch scratch;
     SlabSegmentation result =
         segmentSlabs(object, options, scratch, rank,
-                     [&](size_t slab, const Int32Grid::Ptr& grain) { labels[slab] = grain; });
+                     [&](size_t slab, const SlabGrids& grids) { slabs[slab] = grids; });
     if (rank.rank() == 0) cut.result = std::move(result);
   });
   if (ranks > 1 && object.slabCount() > 1 && cut.result.counts.objectVoxels > 0 &&
       team.messages == 0)
     throw std::logic_error("ranks sent nothing");
-  for (const Int32Grid::Ptr& grain : labels) addSlab(cut.labels, grain);
+  joinSlabs(slabs, cut);
   return cut;
 }
 
@@ -92,6 +108,9 @@ std::string difference(const Segmentation& whole, const Cut& cut) {
   if (whole.grainVoxels != cut.result.grainVoxels) text += "other voxels of grains\n";
   if (cut.labels && !areSame(*whole.grain, *cut.labels)) text += "other labels or metadata\n";
   if (!cut.labels && whole.counts.objectVoxels > 0) text += "no labels\n";
+  if (bool(whole.manifold) != bool(cut.manifolds) ||
+      (whole.manifold && !areSame(*whole.manifold, *cut.manifolds)))
+    text += "other manifolds, or another graph\n";
   return text;
 }
 
@@ -105,7 +124,8 @@ Comparison compareSlabs(const RandomCase& c) {
   const MaskGrid::Ptr mask = maskOf(c);
   SegmentOptions options = optionsOf(c);
   options.domain = domainOf(c);
-  options.keepDistance = options.keepPower = options.keepManifold = options.keepBalls = false;
+  options.keepDistance = options.keepPower = options.keepBalls = false;
+  options.keepManifold = c.seed % 2 == 0;
   if (!options.weights) options.weights = VoxelWeights{};
   Rng rng(c.seed);
   CoordBBox box = c.domain ? *c.domain : mask->evalActiveVoxelBoundingBox();
@@ -295,6 +315,7 @@ TEST_CASE("slabs: what was stopped goes on to the same labels", "[slabs]") {
     SegmentOptions options = c.options;
     options.boundary = Boundary::open;
     options.gamma = seed % 2 ? 20 : 0;
+    options.keepManifold = true;
     options.tidy = 2;
     options.domain = domainOf(c);
     const SlabObject object = cutObject(*maskOf(c), {-24, -8, 0, 16, 24});
@@ -302,25 +323,25 @@ TEST_CASE("slabs: what was stopped goes on to the same labels", "[slabs]") {
     // Stopped again and again. (What is done anew each time makes some 30 changes.)
     for (int every = 40; every < 200; every += every < 60 ? 1 : 13) {
       MortalScratch scratch;
-      std::vector<Int32Grid::Ptr> slabs(object.slabCount());
-      SlabSegmentation result;
+      std::vector<SlabGrids> slabs(object.slabCount());
+      Cut cut;
       int runs = 0;
       for (bool done = false; !done && runs < 200; ++runs) {
         scratch.left = every;
         try {
-          result =
+          cut.result =
               segmentSlabs(object, options, scratch,
-                           [&](size_t slab, const Int32Grid::Ptr& grain) { slabs[slab] = grain; });
+                           [&](size_t slab, const SlabGrids& grids) { slabs[slab] = grids; });
           done = true;
         } catch (const Killed&) {
         }
       }
-      Int32Grid::Ptr labels;
-      for (const Int32Grid::Ptr& slab : slabs) addSlab(labels, slab);
       REQUIRE(runs < 200);
-      REQUIRE(result.grainVoxels == expected.result.grainVoxels);
-      REQUIRE(result.counts.medialBalls == expected.result.counts.medialBalls);
-      REQUIRE(areSame(*labels, *expected.labels));
+      joinSlabs(slabs, cut);
+      REQUIRE(cut.result.grainVoxels == expected.result.grainVoxels);
+      REQUIRE(cut.result.counts.medialBalls == expected.result.counts.medialBalls);
+      REQUIRE(areSame(*cut.labels, *expected.labels));
+      REQUIRE(areSame(*cut.manifolds, *expected.manifolds));
     }
   }
 }
@@ -328,6 +349,6 @@ TEST_CASE("slabs: what was stopped goes on to the same labels", "[slabs]") {
 TEST_CASE("slabs: an interrupter stops them", "[slabs]") {
   MemoryScratch scratch;
   StopAtOnce stop;
-  const auto ignore = [](size_t, const Int32Grid::Ptr&) {};
+  const auto ignore = [](size_t, const SlabGrids&) {};
   CHECK_THROWS_AS(segmentSlabs(row(40, {0, 16, 40}), {}, scratch, ignore, &stop), Interrupted);
 }

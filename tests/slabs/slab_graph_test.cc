@@ -162,6 +162,19 @@ ManifoldGraph wholeGraph(const Balls& balls, const std::vector<std::vector<size_
   return graph;
 }
 
+/// Of terminals that are critical, their places in the whole from 1 on; of others 0.
+std::vector<uint32_t> numbersOf(const std::vector<CriticalPoint>& points,
+                                const ManifoldGraph& whole) {
+  std::vector<uint32_t> numbers;
+  for (const CriticalPoint& point : points) {
+    const auto found =
+        std::find_if(whole.nodes.begin(), whole.nodes.end(),
+                     [&](const CriticalPoint& node) { return node.position == point.position; });
+    numbers.push_back(found == whole.nodes.end() ? 0 : uint32_t(found - whole.nodes.begin()) + 1);
+  }
+  return numbers;
+}
+
 void askAndAnswer(SlabGraph& graph, const Balls& balls,
                   const std::vector<std::vector<size_t>>& terminals) {
   for (size_t s = 0; s < terminals.size(); ++s)
@@ -212,6 +225,15 @@ ManifoldGraph sum(const std::vector<SlabGraph::Part>& parts) {
   return graph;
 }
 
+/// Has each node the number of its place in the whole?
+bool areNumbered(const std::vector<SlabGraph::Part>& parts, const ManifoldGraph& whole) {
+  for (const SlabGraph::Part& part : parts)
+    for (size_t i = 0; i < part.number.size(); ++i)
+      if (!(whole.nodes.at(part.number[i] - 1).position == part.graph.nodes[i].position))
+        return false;
+  return true;
+}
+
 /// Is each node said to be in a later part if it is?
 bool goOnWell(const std::vector<SlabGraph::Part>& parts) {
   std::set<Coord> later;
@@ -240,8 +262,11 @@ TEST_CASE("slab_graph: parts are those of the whole, and so are the grains", "[s
     for (const SlabTerminals& slab : slabs) graph.add(slab);
     REQUIRE(graph.criticalPoints() == int64_t(whole.nodes.size()));
     askAndAnswer(graph, balls, terminals);
-    for (size_t s = 0; s < slabs.size(); ++s)
-      if (graph.isShared(s)) graph.tellShared(s, slabs[s].points);
+    std::vector<std::vector<uint32_t>> numbers;
+    for (size_t s = 0; s < slabs.size(); ++s) {
+      numbers.push_back(numbersOf(slabs[s].points, whole));
+      if (graph.isShared(s)) graph.tellShared(s, slabs[s].points, numbers[s]);
+    }
     std::vector<SlabGraph::Part> parts;
     std::vector<Edge> below, above;
     for (size_t s = 0; s < slabs.size(); ++s) {
@@ -249,12 +274,16 @@ TEST_CASE("slab_graph: parts are those of the whole, and so are the grains", "[s
       above.clear();
       if (s + 1 < slabs.size())
         above = SlabTerminals::contacts(slabs[s].highest, slabs[s + 1].lowest);
-      parts.push_back(graph.nextPart(slabs[s], below, above));
+      parts.push_back(graph.nextPart(slabs[s], numbers[s], below, above));
     }
     const ManifoldGraph added = sum(parts);
     REQUIRE(added.nodes == whole.nodes);
     REQUIRE(added.edges == whole.edges);
     REQUIRE(goOnWell(parts));
+    REQUIRE(areNumbered(parts, whole));
+    const ManifoldGraph joined = joinedGraph({parts.begin(), parts.end()});
+    REQUIRE(joined.nodes == whole.nodes);
+    REQUIRE(joined.edges == whole.edges);
 
     const double thetas[] = {-1, -0.9, -0.8, -0.5, 0, 0.5};
     const MergeOptions options{thetas[rng.below(6)], MergeMode(rng.below(3)),

@@ -14,6 +14,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/image.h"
+#include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/volumes/image_box.h"
 
@@ -131,6 +132,7 @@ Json describeSlabs(const SlabFolder& folder, const VdbReadOptions& reading, Prog
            {openvdb::GridBase::META_FILE_BBOX_MIN, openvdb::GridBase::META_FILE_BBOX_MAX,
             openvdb::GridBase::META_FILE_MEM_BYTES, openvdb::GridBase::META_FILE_VOXEL_COUNT})
         slab[i]->removeMeta(key);
+      removeGraph(*slab[i]);  // it has a part alone
       if (s == 0)
         grids.push_back(describeGrid(*slab[i]));
       else

@@ -11,6 +11,8 @@
 #include "input_options.h"
 #include "merge_options.h"
 #include "outputs.h"
+#include "remerge_slabs.h"
+#include "segment_slabs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/method/segmentation_metadata.h"
@@ -29,6 +31,14 @@ struct Options {
 };
 
 void run(const Options& o, const Common& common) {
+  const MergeOptions merge = o.merge.parse();
+  const int tidy = parseTidy(o.tidy);
+  if (hasSlabsEnding(o.out)) {
+    if (!isInSlabs(o.input))
+      throw InvalidInput(o.input.path + ": is no folder of slabs, so none is made of it: choose " +
+                         "an output like OUT.vdb, or segment into slabs");
+    return remergeInSlabs(o.input, o.out, merge, tidy, common);
+  }
   checkWritable(o.out);
   const auto grids = readVdb(o.input.path, {}, common.progress);
   Int32Grid::Ptr manifold;
@@ -37,8 +47,6 @@ void run(const Options& o, const Common& common) {
   if (!manifold)
     throw InvalidInput(o.input.path + ": holds no manifolds: segment again with --keep manifold");
 
-  const MergeOptions merge = o.merge.parse();
-  const int tidy = parseTidy(o.tidy);
   const Int32Grid::Ptr grain =
       withFileName(o.input.path, [&] { return remerge(*manifold, merge, tidy, common.progress); });
   const int64_t grains = *grainCount(*grain);
@@ -67,15 +75,18 @@ void addRemerge(Verb command, Common& common, Action& action) {
                       "merge stored manifolds anew, without distances and power map",
                       "vdb_madf remerge grains.vdb coarser.vdb --theta -0.7");
   verb.option("SEG.vdb", o->input.path, "made by segment with --keep manifold").required();
-  verb.option("OUT", o->out, "gets the new labels; a .vdb all other grids too").required();
+  verb.option("OUT", o->out,
+              "gets the new labels; a .vdb all other grids too; of slabs .slabs, slab by slab")
+      .required();
   o->merge.add(verb);
   addTidy(verb, o->tidy);
   verb.onParsed([o, &common, &action] {
     o->merge.parse();
     parseTidy(o->tidy);
+    o->out = withoutSlash(o->out);
     o->input.outputs = {o->out};
     o->input.parse();
-    checkVolumeEnding(o->out);
+    if (!hasSlabsEnding(o->out)) checkVolumeEnding(o->out);
     action = [o, &common] { run(*o, besideOutput(common, o->out)); };
   });
 }

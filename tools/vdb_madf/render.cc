@@ -91,10 +91,29 @@ std::string scaleText(double voxelsPerPixel) {
   return number.str() + (large ? " pixels a voxel" : " voxels a pixel");
 }
 
+/// As boxOf().
+CoordBBox boxOfSlabs(const LabelSlabs& labels, const Common& common) {
+  if (const auto domain = storedDomain(*labels.about)) return domain->box();
+  CoordBBox box;
+  for (size_t s = 0; s < labels.slabCount(); ++s) {
+    const CoordBBox slab = labels.read(s, common.progress)->evalActiveVoxelBoundingBox();
+    if (!slab.empty()) box.expand(slab);
+  }
+  return box;
+}
+
 void run(const Options& o, const Common& common) {
   checkWritable(o.out);
-  const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
-  const CoordBBox box = boxOf(*labels);
+  const bool areInSlabs = isInSlabs(o.input);
+  LabelSlabs slabs;
+  Int32Grid::ConstPtr labels;  // of slabs, without voxels
+  if (areInSlabs) {
+    slabs = openLabelSlabs(o.input, "--grid", common.progress);
+    labels = slabs.about;
+  } else {
+    labels = loadLabels(o.input, "--grid", common.progress);
+  }
+  const CoordBBox box = areInSlabs ? boxOfSlabs(slabs, common) : boxOf(*labels);
   if (box.empty())
     throw InvalidInput(o.input.path + ": has no labels and no domain: nothing to show");
 
@@ -108,8 +127,10 @@ void run(const Options& o, const Common& common) {
   options.gray = grayPlanes(o, box, common);
   options.select = o.selected;
   options.interfaces = o.interfaces;
-  const std::vector<PicturePanel> panels = withFileName(
-      o.input.path, [&] { return labelPanels(*labels, box, options, common.progress); });
+  const std::vector<PicturePanel> panels = withFileName(o.input.path, [&] {
+    return areInSlabs ? labelPanels(slabs, box, options, common.progress)
+                      : labelPanels(*labels, box, options, common.progress);
+  });
   const Picture sheet = pictureSheet(panels, storedVoxelSize(*labels));
   writePng(o.out, sheet);
   common.progress->end();

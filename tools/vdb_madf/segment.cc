@@ -38,7 +38,7 @@ namespace vdb_madf::tools {
 namespace {
 
 void parse(SegmentArguments& o) {
-  while (o.out.size() > 7 && o.out.compare(o.out.size() - 7, 7, ".slabs/") == 0) o.out.pop_back();
+  o.out = withoutSlash(o.out);
   o.input.outputs = {o.out, o.json};
   if (!o.tables.empty())
     for (const std::string& path : MeasurementTables::paths(o.tables))
@@ -69,13 +69,6 @@ void parse(SegmentArguments& o) {
   o.segment.gamma = parseCount(o.gamma, "--gamma");
   o.segment.fillHoles = parseFillHoles(o.fillHoles);
   o.segment.tidy = parseTidy(o.tidy);
-  if (!o.autoSlabs) checkSlabArguments(o);
-  if (o.autoSlabs && inSlabs)
-    throw WrongUsage(o.out + " is in slabs anyway: leave --auto-slabs out");
-  if (o.autoSlabs && !couldBeInSlabs(o))
-    throw WrongUsage(
-        "--auto-slabs gives one file of labels: leave --keep, --tables, --gamma, --roi and "
-        "--dry-run out");
   std::stringstream keep(o.keep);
   for (std::string what; std::getline(keep, what, ',');) {
     if (what == "distance")
@@ -89,6 +82,14 @@ void parse(SegmentArguments& o) {
     else
       throw WrongUsage("--keep " + what + ": can keep distance, power, manifold and balls");
   }
+  if (!o.autoSlabs) checkSlabArguments(o);
+  if (o.autoSlabs && inSlabs)
+    throw WrongUsage(o.out + " is in slabs anyway: leave --auto-slabs out");
+  if (o.autoSlabs && !couldBeInSlabs(o))
+    throw WrongUsage(
+        "--auto-slabs gives one file of labels and manifolds: leave other grids of --keep, "
+        "--tables, "
+        "--gamma, --roi and --dry-run out");
 }
 
 /// What segmenting would take, without doing it.

@@ -41,8 +41,9 @@ void joinSlabs(const SegmentArguments& o, const Common& common) {
 }  // namespace
 
 bool couldBeInSlabs(const SegmentArguments& o) {
-  return o.keep.empty() && o.tables.empty() && !o.dryRun && o.segment.gamma <= 1 &&
-         o.input.roi.empty() && !isOnStandardOutput(o.out);
+  return !o.segment.keepDistance && !o.segment.keepPower && !o.segment.keepBalls &&
+         o.tables.empty() && !o.dryRun && o.segment.gamma <= 1 && o.input.roi.empty() &&
+         !isOnStandardOutput(o.out);
 }
 
 bool isSurelyForSlabs(const SegmentArguments& o) {

@@ -13,7 +13,6 @@
 #include "vdb_madf/method/cavities.h"
 #include "vdb_madf/slabs/deal_slabs.h"
 #include "vdb_madf/vdb/slab_folder.h"
-#include "vdb_madf/vdb/write_vdb.h"
 
 namespace vdb_madf::tools {
 
@@ -106,9 +105,9 @@ void runInRanks(const SegmentArguments& o, const Common& common) {
   const SlabSegmentation s = withFileName(o.input.path, [&] {
     return segmentSlabs(
         object, options, scratch, ranks,
-        [&](size_t slab, const Int32Grid::Ptr& grain) {
-          markSlab(*grain, slab, object.slabCount());
-          writeVdb(part.file(slabFileName(slab)), {grain}, common.progress);
+        [&](size_t slab, const SlabGrids& grids) {
+          writeSlab(part.file(slabFileName(slab)), grids, slab, object.slabCount(),
+                    common.progress);
         },
         common.progress);
   });

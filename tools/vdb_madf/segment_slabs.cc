@@ -38,12 +38,19 @@ std::string workOf(const SegmentArguments& o) {
       fs::absolute(in.path, ignored).string() + " " +
       std::to_string(fs::file_size(in.path, ignored)) + " " +
       std::to_string(fs::last_write_time(in.path, ignored).time_since_epoch().count());
-  for (const std::string& text :
-       {in.gridName,  in.dataset,        in.dims,       in.type,     in.skip,
-        in.phase,     in.threshold,      in.range,      in.median,   in.smooth,
-        in.despeckle, in.voxelSizeText,  in.domainText, in.roi,      in.cropText,
-        o.boundary,   o.gamma,           o.fillHoles,   o.tidy,      o.merge.theta,
-        o.merge.mode, o.merge.adjacency, o.merge.delta, o.maxMemory, std::to_string(o.slabHeight)})
+  for (const std::string& text : {in.gridName,   in.dataset,
+                                  in.dims,       in.type,
+                                  in.skip,       in.phase,
+                                  in.threshold,  in.range,
+                                  in.median,     in.smooth,
+                                  in.despeckle,  in.voxelSizeText,
+                                  in.domainText, in.roi,
+                                  in.cropText,   o.boundary,
+                                  o.gamma,       o.fillHoles,
+                                  o.tidy,        o.merge.theta,
+                                  o.merge.mode,  o.merge.adjacency,
+                                  o.merge.delta, o.keep,
+                                  o.maxMemory,   std::to_string(o.slabHeight)})
     work += "\n" + text;
   for (const bool flag : {in.bigEndian, in.invert, o.paper}) work += flag ? "\nyes" : "\nno";
   return work;
@@ -169,12 +176,31 @@ bool hasSlabsEnding(const std::string& path) {
   return fileEnding(path) == ".slabs";
 }
 
+std::string withoutSlash(std::string path) {
+  const std::string ending = ".slabs/";
+  while (path.size() > ending.size() &&
+         path.compare(path.size() - ending.size(), ending.size(), ending) == 0)
+    path.pop_back();
+  return path;
+}
+
 void addSlabCosts(const SlabObject& object, const SlabSegmentation& s, Json& json) {
   json["slab_count"] = object.slabCount();
   json["exchanges"] = s.exchanges;
   for (const SlabStage& stage : s.stages)
     json["stages"].push_back(
         {{"name", stage.name}, {"seconds", stage.seconds}, {"message_bytes", stage.messageBytes}});
+}
+
+void writeSlab(const std::string& path, const SlabGrids& grids, size_t slab, size_t count,
+               Progress* progress) {
+  std::vector<openvdb::GridBase::ConstPtr> written;
+  for (const Int32Grid::Ptr& grid : {grids.grain, grids.manifold}) {
+    if (!grid) continue;
+    markSlab(*grid, slab, count);
+    written.push_back(grid);
+  }
+  writeVdb(path, written, progress);
 }
 
 Json slabIndex(const SegmentArguments& o, const SlabObject& object, const Json& summary) {
@@ -201,8 +227,11 @@ void checkSlabArguments(const SegmentArguments& o) {
   if (!isSlabs && (o.slabHeight > 0 || !o.scratch.empty() || o.resume))
     throw WrongUsage("--slab-height, --scratch and --resume are for an output like OUT.slabs");
   if (!isSlabs) return;
-  if (!o.keep.empty() || !o.tables.empty() || o.dryRun)
-    throw WrongUsage(o.out + ": slabs get labels alone: leave --keep, --tables and --dry-run out");
+  const SegmentOptions& keep = o.segment;
+  if (keep.keepDistance || keep.keepPower || keep.keepBalls || !o.tables.empty() || o.dryRun)
+    throw WrongUsage(o.out +
+                     ": slabs get labels and --keep manifold alone: leave other grids, --tables "
+                     "and --dry-run out");
 }
 
 void runInSlabs(const SegmentArguments& o, const Common& common) {
@@ -229,10 +258,10 @@ void runInSlabs(const SegmentArguments& o, const Common& common) {
     const SlabSegmentation s = withFileName(o.input.path, [&] {
       return segmentSlabs(
           object, options, place.scratch(),
-          [&](size_t slab, const Int32Grid::Ptr& grain) {
+          [&](size_t slab, const SlabGrids& grids) {
             const Clock::time_point startWrite = Clock::now();
-            markSlab(*grain, slab, object.slabCount());
-            writeVdb(place.file(slabFileName(slab)), {grain}, common.progress);
+            writeSlab(place.file(slabFileName(slab)), grids, slab, object.slabCount(),
+                      common.progress);
             timing.write += secondsSince(startWrite);
           },
           common.progress);

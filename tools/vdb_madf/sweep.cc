@@ -4,6 +4,8 @@
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/method/parameter_sweep.h"
 
+#include <openvdb/Metadata.h>
+
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -14,21 +16,26 @@
 #include "input_options.h"
 #include "merge_options.h"
 #include "parse.h"
+#include "remerge_slabs.h"
 #include "text_file.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/pictures/sweep_plot.h"
+#include "vdb_madf/slabs/sweep_slabs.h"
+#include "vdb_madf/vdb/read_vdb.h"
 
 namespace vdb_madf::tools {
 
 namespace {
 
+constexpr char kGammas[] = "0,20,160";
+
 struct Options {
   InputOptions input;
-  std::string out, plot, gamma = "0,20,160", theta = "-1:-0.5:0.05", merge = "both,angle,neck";
+  std::string out, plot, gamma = kGammas, theta = "-1:-0.5:0.05", merge = "both,angle,neck";
   std::string adjacency = "manifold", boundary = "auto", small = "100", delta = "2";
-  std::string fillHoles, tidy;
+  std::string fillHoles, tidy, scratch;
   SweepOptions sweep;
 };
 
@@ -135,21 +142,75 @@ std::string table(const std::vector<SweepRow>& rows) {
   return csv.str();
 }
 
-void run(const Options& o, const Common& common) {
-  TextFile csv(o.out), plot(o.plot);
-  common.progress->start("read");
+/// Is it a folder of slabs with manifolds, which are to be merged?
+bool isOfManifolds(const Options& o, const Common& common) {
+  if (!isInSlabs(o.input) || !(o.input.gridName.empty() || o.input.gridName == kManifoldGrid))
+    return false;
+  return hasManifolds(readVdbHeaders(o.input.path, common.progress));
+}
+
+/// What of the options does not concern manifolds. @throw WrongUsage
+void checkManifoldOptions(const Options& o, const LabelSlabs& manifolds) {
+  const InputOptions& in = o.input;
+  for (const auto& [text, name] : {std::pair<const std::string*, const char*>{&in.phase, "--phase"},
+                                   {&in.threshold, "--threshold"},
+                                   {&in.range, "--range"},
+                                   {&in.median, "--median"},
+                                   {&in.smooth, "--smooth"},
+                                   {&in.despeckle, "--despeckle"},
+                                   {&in.domainText, "--domain"},
+                                   {&in.roi, "--roi"},
+                                   {&in.cropText, "--crop"},
+                                   {&o.fillHoles, "--fill-holes"}})
+    if (!text->empty())
+      throw WrongUsage(in.path + ": the manifolds in it are merged as they are: leave " + name +
+                       " out, or name a grid to segment: --grid grain");
+  const auto gamma = manifolds.about->getMetadata<openvdb::Int64Metadata>("madf_gamma");
+  const std::string stored = std::to_string(gamma ? gamma->value() : 0);
+  if (in.invert || o.boundary != "auto" || (o.gamma != kGammas && o.gamma != stored))
+    throw WrongUsage(in.path + ": the manifolds in it are those of gamma " + stored +
+                     ": leave --gamma, --boundary and --invert out, or name a grid to segment: "
+                     "--grid grain");
+}
+
+/// The rows of the manifolds in a folder of slabs.
+std::vector<SweepRow> sweepManifolds(const Options& o, const Common& common) {
+  const LabelSlabs manifolds = openManifoldSlabs(o.input, common.progress);
+  checkManifoldOptions(o, manifolds);
+  if (o.scratch.empty() && o.out == "-")
+    throw WrongUsage("-: say where scratch data may be: --scratch DIR");
+  SweepOptions options = o.sweep;
+  if (const auto gamma = manifolds.about->getMetadata<openvdb::Int64Metadata>("madf_gamma"))
+    options.gammas = {gamma->value()};
+  ScratchFolder folder(o.scratch.empty() ? o.out + ".scratch" : o.scratch);
+  return withFileName(o.input.path, [&] {
+    return mergingSweep(manifolds, options, folder.scratch(), common.progress);
+  });
+}
+
+std::vector<SweepRow> sweepObject(const Options& o, const Common& common) {
+  if (!o.scratch.empty()) throw WrongUsage("--scratch is for manifolds in a folder of slabs");
   const MaskGrid::Ptr object = loadObject(o.input, common.progress);
   SweepOptions options = o.sweep;
   options.boundary = boundaryOf(o.boundary, o.input, *object);
   options.maxMemory = availableMemory();
+  return withFileName(o.input.path,
+                      [&] { return parameterSweep(*object, options, common.progress); });
+}
+
+void run(const Options& o, const Common& common) {
+  TextFile csv(o.out), plot(o.plot);
+  common.progress->start("read");
+  const bool isOfStored = isOfManifolds(o, common);
   const std::vector<SweepRow> rows =
-      withFileName(o.input.path, [&] { return parameterSweep(*object, options, common.progress); });
+      isOfStored ? sweepManifolds(o, common) : sweepObject(o, common);
   csv.write(table(rows));
-  plot.write(sweepPlot(rows, options.smallVoxels, plotTypeOf(o.plot).value_or(PlotType::svg)));
+  plot.write(sweepPlot(rows, o.sweep.smallVoxels, plotTypeOf(o.plot).value_or(PlotType::svg)));
   common.progress->end();
   if (!common.quiet)
     std::printf("%s: %s, of %s\n", o.out.c_str(), counted(int64_t(rows.size()), "row").c_str(),
-                counted(int64_t(options.gammas.size()), "segmentation").c_str());
+                isOfStored ? "the manifolds in slabs"
+                           : counted(int64_t(o.sweep.gammas.size()), "segmentation").c_str());
 }
 
 }  // namespace
@@ -190,6 +251,9 @@ void addSweep(Verb command, Common& common, Action& action) {
   verb.option("--plot", o->plot,
               "draws grains, median size and share of small ones: .svg, .pdf or .png")
       .typeName("FILE");
+  verb.option("--scratch", o->scratch,
+              "manifolds in slabs: folder for what is read of them (default: OUT.csv.scratch)")
+      .typeName("DIR");
   verb.onParsed([o, &common, &action] {
     parse(*o);
     action = [o, &common] { run(*o, besideOutput(common, o->out)); };

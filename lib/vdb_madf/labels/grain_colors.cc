@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <mutex>
 #include <set>
 #include <utility>
@@ -124,15 +125,23 @@ Contacts findContacts(const Int32Grid& grid, Interrupter* interrupter) {
   return {{labels.begin(), labels.end()}, std::move(pairs)};
 }
 
+/// Of two sorted lists.
+template <typename T>
+std::vector<T> united(const std::vector<T>& a, const std::vector<T>& b) {
+  std::vector<T> all;
+  all.reserve(std::max(a.size(), b.size()));
+  std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(all));
+  return all;
+}
+
 using Graph = std::vector<std::vector<uint32_t>>;  ///< the neighbours of each label's index
 
-Graph asGraph(const Contacts& contacts) {
+Graph asGraph(const std::vector<int32_t>& labels, const std::vector<Pair>& pairs) {
   const auto indexOf = [&](int32_t label) {
-    return uint32_t(std::lower_bound(contacts.labels.begin(), contacts.labels.end(), label) -
-                    contacts.labels.begin());
+    return uint32_t(std::lower_bound(labels.begin(), labels.end(), label) - labels.begin());
   };
-  Graph graph(contacts.labels.size());
-  for (const auto& [a, b] : contacts.pairs) {
+  Graph graph(labels.size());
+  for (const auto& [a, b] : pairs) {
     const uint32_t i = indexOf(a), j = indexOf(b);
     graph[i].push_back(j);
     graph[j].push_back(i);
@@ -189,24 +198,35 @@ Rgb GrainColors::colorOf(int32_t label) const {
                                                   : colors[size_t(found - labels.begin())];
 }
 
-GrainColors grainColors(const Int32Grid& labels, Interrupter* interrupter) {
-  const Contacts contacts = findContacts(labels, interrupter);
-  const Graph graph = asGraph(contacts);
+void GrainColoring::add(const Int32Grid& part, Interrupter* interrupter) {
+  const Contacts contacts = findContacts(part, interrupter);
+  labels_ = united(labels_, contacts.labels);
+  pairs_ = united(pairs_, contacts.pairs);
+}
+
+GrainColors GrainColoring::colors() const {
+  const Graph graph = asGraph(labels_, pairs_);
   std::vector<size_t> color(graph.size(), kPaletteSize);  // none yet
   for (const uint32_t node : smallestLast(graph)) {
     std::array<bool, kPaletteSize> used{};
     for (const uint32_t other : graph[node])
       if (color[other] < kPaletteSize) used[color[other]] = true;
-    color[node] = pick(contacts.labels[node], used);
+    color[node] = pick(labels_[node], used);
   }
 
   GrainColors result;
-  result.labels = contacts.labels;
-  result.touchingPairs = int64_t(contacts.pairs.size());
+  result.labels = labels_;
+  result.touchingPairs = int64_t(pairs_.size());
   for (const size_t c : color) result.colors.push_back(kPalette[c]);
   for (uint32_t i = 0; i < graph.size(); ++i)
     for (const uint32_t j : graph[i]) result.alikePairs += i < j && color[i] == color[j];
   return result;
+}
+
+GrainColors grainColors(const Int32Grid& labels, Interrupter* interrupter) {
+  GrainColoring coloring;
+  coloring.add(labels, interrupter);
+  return coloring.colors();
 }
 
 }  // namespace vdb_madf

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "vdb_madf/base/color.h"
@@ -36,5 +37,18 @@ struct GrainColors {
 /// depend on the grid alone.
 /// @throw InvalidInput as LeafIndex does; Interrupted.
 GrainColors grainColors(const Int32Grid& labels, Interrupter* interrupter = nullptr);
+
+/// grainColors() of labels that come in parts, in any order. The neighbors of each voxel of the whole
+/// have to be with it in one of the parts.
+class GrainColoring {
+ public:
+  /// @throw as grainColors()
+  void add(const Int32Grid& part, Interrupter* interrupter = nullptr);
+  GrainColors colors() const;
+
+ private:
+  std::vector<int32_t> labels_;                     // ascending
+  std::vector<std::pair<int32_t, int32_t>> pairs_;  // that touch, ascending
+};
 
 }  // namespace vdb_madf

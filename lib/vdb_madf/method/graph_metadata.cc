@@ -26,15 +26,17 @@ namespace vdb_madf {
 
 namespace {
 
-constexpr char kName[] = "madf_manifold_graph";  // of the metadata and of its type
-constexpr uint32_t kVersion = 1;
-constexpr size_t kHeaderBytes = 12, kNodeBytes = 24, kEdgeBytes = 21;
+constexpr const char* kName = kGraphMetadata;  // of the metadata and of its type
+constexpr uint32_t kWhole = 1, kPart = 2;      // versions
+constexpr size_t kHeaderBytes = 12, kNodeBytes = 24, kEdgeBytes = 21, kNumberBytes = 4,
+                 kFlagBytes = 1;
 /// Read and written in pieces of about this size: a corrupt count then ends at the end of the file,
 /// not in an allocation of its size.
 constexpr size_t kBlockBytes = 1 << 16;
 
-uint64_t byteCount(uint64_t nodes, uint64_t edges) {
-  return kHeaderBytes + nodes * kNodeBytes + edges * kEdgeBytes;
+uint64_t byteCount(uint64_t nodes, uint64_t edges, bool isPart) {
+  const size_t ofPart = isPart ? kNumberBytes + kFlagBytes : 0;
+  return kHeaderBytes + nodes * (kNodeBytes + ofPart) + edges * kEdgeBytes;
 }
 
 /// The rule that the graph breaks; empty if none.
@@ -59,6 +61,17 @@ std::string brokenRule(const ManifoldGraph& graph) {
       return "its edges are out of order";
   }
   return {};
+}
+
+std::string brokenRule(const GraphPart& part) {
+  const auto& number = part.number;
+  if (number.size() != part.graph.nodes.size() || part.goesOn.size() != number.size())
+    return "not all nodes have a number";
+  for (size_t i = 0; i < number.size(); ++i)
+    if (number[i] < 1 || number[i] > uint32_t(std::numeric_limits<int32_t>::max()) ||
+        (i > 0 && number[i] <= number[i - 1]))
+      return "its numbers are out of order";
+  return brokenRule(part.graph);
 }
 
 /// Of the nodes, whose squared distances have to fit.
@@ -118,6 +131,24 @@ ManifoldGraph::Edge getEdge(const char* from) {
   return edge;
 }
 
+void putNumber(char* to, const uint32_t& number) {
+  put(to, number);
+}
+uint32_t getNumber(const char* from) {
+  uint32_t number = 0;
+  get(from, number);
+  return number;
+}
+
+void putFlag(char* to, const char& flag) {
+  *to = flag;
+}
+char getFlag(const char* from) {
+  if (*from != 0 && *from != 1)
+    throw std::runtime_error("the graph has a flag that is neither 0 nor 1");
+  return *from;
+}
+
 /// A stream without exceptions only sets a flag.
 void readBytes(std::istream& stream, char* to, size_t count) {
   if (!stream.read(to, std::streamsize(count))) throw std::runtime_error("the graph ends early");
@@ -150,34 +181,40 @@ void writeItems(std::ostream& stream, const std::vector<Item>& items, size_t ite
   }
 }
 
-/// Copies share the graph: OpenVDB copies metadata whenever it copies or writes a grid.
+/// A graph, or a part of one. Copies share it: OpenVDB copies metadata whenever it copies or writes a
+/// grid.
 class GraphMetadata final : public openvdb::Metadata {
  public:
   GraphMetadata() = default;
-  explicit GraphMetadata(ManifoldGraph graph)
-      : graph_(std::make_shared<const ManifoldGraph>(std::move(graph))) {}
+  GraphMetadata(GraphPart part, bool isPart)
+      : part_(std::make_shared<const GraphPart>(std::move(part))), isPart_(isPart) {}
 
   static openvdb::Metadata::Ptr create() { return std::make_shared<GraphMetadata>(); }
 
-  const ManifoldGraph& value() const { return *graph_; }
+  const GraphPart& value() const { return *part_; }  ///< of a whole graph, without numbers
+  bool isPart() const { return isPart_; }
   openvdb::Name typeName() const override { return kName; }
   openvdb::Metadata::Ptr copy() const override {
     auto result = std::make_shared<GraphMetadata>();
-    result->graph_ = graph_;
+    result->part_ = part_;
+    result->isPart_ = isPart_;
     return result;
   }
   void copy(const openvdb::Metadata& other) override {
     const auto* graph = dynamic_cast<const GraphMetadata*>(&other);
     if (!graph) OPENVDB_THROW(openvdb::TypeError, "not a manifold graph");
-    graph_ = graph->graph_;
+    part_ = graph->part_;
+    isPart_ = graph->isPart_;
   }
   std::string str() const override {
-    return std::to_string(graph_->nodes.size()) + " critical points, " +
-           std::to_string(graph_->edges.size()) + " edges";
+    const ManifoldGraph& graph = part_->graph;
+    return std::to_string(graph.nodes.size()) + " critical points, " +
+           std::to_string(graph.edges.size()) + " edges" + (isPart_ ? " in a slab" : "");
   }
-  bool asBool() const override { return !graph_->nodes.empty(); }
+  bool asBool() const override { return !part_->graph.nodes.empty(); }
   openvdb::Index32 size() const override {
-    return openvdb::Index32(byteCount(graph_->nodes.size(), graph_->edges.size()));
+    const ManifoldGraph& graph = part_->graph;
+    return openvdb::Index32(byteCount(graph.nodes.size(), graph.edges.size(), isPart_));
   }
 
  protected:
@@ -187,52 +224,78 @@ class GraphMetadata final : public openvdb::Metadata {
     if (bytes < header.size()) throw std::runtime_error("the graph ends early");
     readBytes(stream, header.data(), header.size());
     get(get(get(header.data(), version), nodes), edges);
-    if (version != kVersion)
+    if (version != kWhole && version != kPart)
       throw std::runtime_error("the graph has the unknown version " + std::to_string(version));
-    if (byteCount(nodes, edges) != bytes)
+    const bool isPart = version == kPart;
+    if (byteCount(nodes, edges, isPart) != bytes)
       throw std::runtime_error("the graph is not as long as its counts say");
-    auto graph = std::make_shared<ManifoldGraph>();
-    graph->nodes = readItems(stream, nodes, kNodeBytes, getNode);
-    graph->edges = readItems(stream, edges, kEdgeBytes, getEdge);
-    const std::string rule = brokenRule(*graph);
+    auto part = std::make_shared<GraphPart>();
+    part->graph.nodes = readItems(stream, nodes, kNodeBytes, getNode);
+    part->graph.edges = readItems(stream, edges, kEdgeBytes, getEdge);
+    if (isPart) {
+      part->number = readItems(stream, nodes, kNumberBytes, getNumber);
+      part->goesOn = readItems(stream, nodes, kFlagBytes, getFlag);
+    }
+    const std::string rule = isPart ? brokenRule(*part) : brokenRule(part->graph);
     if (!rule.empty()) throw std::runtime_error("the graph is wrong: " + rule);
-    graph_ = std::move(graph);
+    part_ = std::move(part);
+    isPart_ = isPart;
   }
 
   void writeValue(std::ostream& stream) const override {
     std::array<char, kHeaderBytes> header{};
-    put(put(put(header.data(), kVersion), uint32_t(graph_->nodes.size())),
-        uint32_t(graph_->edges.size()));
+    put(put(put(header.data(), isPart_ ? kPart : kWhole), uint32_t(part_->graph.nodes.size())),
+        uint32_t(part_->graph.edges.size()));
     stream.write(header.data(), header.size());
-    writeItems(stream, graph_->nodes, kNodeBytes, putNode);
-    writeItems(stream, graph_->edges, kEdgeBytes, putEdge);
+    writeItems(stream, part_->graph.nodes, kNodeBytes, putNode);
+    writeItems(stream, part_->graph.edges, kEdgeBytes, putEdge);
+    writeItems(stream, part_->number, kNumberBytes, putNumber);
+    writeItems(stream, part_->goesOn, kFlagBytes, putFlag);
   }
 
  private:
-  std::shared_ptr<const ManifoldGraph> graph_ = std::make_shared<const ManifoldGraph>();
+  std::shared_ptr<const GraphPart> part_ = std::make_shared<const GraphPart>();
+  bool isPart_ = false;
 };
 
-}  // namespace
-
-void setGraph(openvdb::GridBase& grid, ManifoldGraph graph) {
-  const std::string rule = brokenRule(graph);
+void store(openvdb::GridBase& grid, GraphPart part, bool isPart) {
+  const std::string rule = isPart ? brokenRule(part) : brokenRule(part.graph);
   if (!rule.empty()) throw InvalidInput("the manifold graph cannot be stored: " + rule);
   // OpenVDB keeps the size of a metadata value in 32 bits.
-  if (byteCount(graph.nodes.size(), graph.edges.size()) > std::numeric_limits<uint32_t>::max())
+  if (byteCount(part.graph.nodes.size(), part.graph.edges.size(), isPart) >
+      std::numeric_limits<uint32_t>::max())
     throw InvalidInput(
         "the manifold graph takes 4 GiB or more and cannot be stored: cut the "
         "volume, or do not keep the manifolds");
   grid.removeMeta(kName);
-  setWeights(grid, graph.weights);
-  grid.insertMeta(kName, GraphMetadata(std::move(graph)));
+  setWeights(grid, part.graph.weights);
+  grid.insertMeta(kName, GraphMetadata(std::move(part), isPart));
+}
+
+std::shared_ptr<const GraphMetadata> metadataOf(const openvdb::GridBase& grid) {
+  return std::dynamic_pointer_cast<const GraphMetadata>(grid[kName]);
+}
+
+/// Gives a graph that was stored on a grid its weights.
+void takeWeights(const openvdb::GridBase& grid, ManifoldGraph& graph) {
+  graph.weights = storedWeights(grid);
+  checkWeights(graph.weights, extentOf(graph));
+}
+
+}  // namespace
+
+void setGraph(openvdb::GridBase& grid, ManifoldGraph graph) {
+  store(grid, {std::move(graph), {}, {}}, false);
 }
 
 std::optional<ManifoldGraph> storedGraph(const openvdb::GridBase& grid) {
-  const auto metadata = std::dynamic_pointer_cast<const GraphMetadata>(grid[kName]);
+  const auto metadata = metadataOf(grid);
   if (!metadata) return std::nullopt;
-  ManifoldGraph graph = metadata->value();
-  graph.weights = storedWeights(grid);
-  checkWeights(graph.weights, extentOf(graph));
+  if (metadata->isPart())
+    throw InvalidInput("grid '" + grid.getName() +
+                       "' carries the graph of one slab: give the whole folder of slabs");
+  ManifoldGraph graph = metadata->value().graph;
+  takeWeights(grid, graph);
   return graph;
 }
 
@@ -246,6 +309,18 @@ ManifoldGraph requiredGraph(const openvdb::GridBase& grid) {
 
 void removeGraph(openvdb::GridBase& grid) {
   grid.removeMeta(kName);
+}
+
+void setGraphPart(openvdb::GridBase& grid, GraphPart part) {
+  store(grid, std::move(part), true);
+}
+
+std::optional<GraphPart> storedGraphPart(const openvdb::GridBase& grid) {
+  const auto metadata = metadataOf(grid);
+  if (!metadata || !metadata->isPart()) return std::nullopt;
+  GraphPart part = metadata->value();
+  takeWeights(grid, part.graph);
+  return part;
 }
 
 void detail::registerGraphMetadata() {

@@ -4,10 +4,10 @@
 #include "vdb_madf/method/label_flaws.h"
 
 #include "vdb_madf/base/detail/parallel.h"
-#include "vdb_madf/leaves/detail/connected_components.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/leaf_neighborhood.h"
 #include "vdb_madf/leaves/detail/voxels.h"
+#include "vdb_madf/method/detail/grain_flags.h"
 #include "vdb_madf/method/detail/label_block.h"
 
 namespace vdb_madf {
@@ -18,17 +18,12 @@ using Mask = LeafIndex::Mask;
 using Piece = detail::ConnectedComponents::Piece;
 
 /// One flag a grain, set by any thread.
-class Flags {
- public:
-  explicit Flags(size_t count) : flags_(count, 0) {}
-  bool get(uint32_t label) const {
-    return __atomic_load_n(&flags_[label - 1], __ATOMIC_RELAXED) != 0;
-  }
-  void set(uint32_t label) { __atomic_store_n(&flags_[label - 1], char(1), __ATOMIC_RELAXED); }
-
- private:
-  std::vector<char> flags_;
-};
+bool isSet(const std::vector<char>& flags, uint32_t label) {
+  return __atomic_load_n(&flags[label - 1], __ATOMIC_RELAXED) != 0;
+}
+void setFlag(std::vector<char>& flags, uint32_t label) {
+  __atomic_store_n(&flags[label - 1], char(1), __ATOMIC_RELAXED);
+}
 
 /// The voxels of a mask with the 26 around them in it too, as far as the leaf tells.
 Mask erode(const Mask& mask) {
@@ -98,8 +93,8 @@ class FlawFinder {
 
 /// f(leaf, piece) for all pieces, in parallel.
 template <typename F>
-void forEachPiece(const LeafIndex& index, const detail::ConnectedComponents& components,
-                  Interrupter* interrupter, const F& f) {
+void forEachLeafPiece(const LeafIndex& index, const detail::ConnectedComponents& components,
+                      Interrupter* interrupter, const F& f) {
   detail::parallelFor(
       index.leafCount(), detail::kLeafGrain, interrupter, [&](size_t begin, size_t end) {
         for (uint32_t leaf = uint32_t(begin); leaf < end; ++leaf)
@@ -122,43 +117,59 @@ std::vector<uint32_t> countPieces(const LeafIndex& index,
   return pieces;
 }
 
+constexpr int64_t kCrumbVoxels = 100, kSliverVoxels = 20;
+
 }  // namespace
+
+void detail::findFlags(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+                       const ConnectedComponents& components, const std::optional<Domain>& domain,
+                       const std::vector<char>& small, GrainFlags& flags,
+                       Interrupter* interrupter) {
+  const FlawFinder finder(index, labels, components, domain);
+  std::vector<char>&deep = flags.deep, &touching = flags.touching;
+  // Nearly all grains show within a leaf that they are deep.
+  forEachLeafPiece(index, components, interrupter, [&](uint32_t, const Piece& piece) {
+    if (!isSet(deep, piece.label) && anyVoxel(erode(piece.mask))) setFlag(deep, piece.label);
+  });
+  struct Scratch {
+    explicit Scratch(const LeafIndex& i) : neighborhood(i) {}
+    LeafNeighborhood neighborhood;
+    LabelBlock block;
+  };
+  PerThread<Scratch> scratches{Scratch(index)};
+  forEachLeafPiece(index, components, interrupter, [&](uint32_t leaf, const Piece& piece) {
+    const uint32_t label = piece.label;
+    if (!isSet(deep, label)) {
+      Scratch& s = scratches.local();
+      if (finder.isDeep(leaf, piece, s.neighborhood, s.block)) setFlag(deep, label);
+    }
+    const bool matters = small[label - 1] || !isSet(deep, label);
+    if (matters && !isSet(touching, label) && finder.touchesAnother(leaf, piece))
+      setFlag(touching, label);
+  });
+}
+
+LabelFlaws detail::countFlaws(const GrainFlags& flags, const std::vector<int64_t>& grainVoxels,
+                              const std::vector<uint32_t>& pieces) {
+  LabelFlaws flaws;
+  for (uint32_t g = 0; g < grainVoxels.size(); ++g) {
+    const bool touches = flags.touching[g];
+    if (grainVoxels[g] < kCrumbVoxels) ++(touches ? flaws.crumbs : flaws.specks);
+    if (grainVoxels[g] >= kSliverVoxels && touches && !flags.deep[g]) ++flaws.slivers;
+    if (pieces[g] > 1) ++flaws.inPieces;
+  }
+  return flaws;
+}
 
 LabelFlaws labelFlaws(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
                       const std::vector<int64_t>& grainVoxels, const std::optional<Domain>& domain,
                       Interrupter* interrupter) {
-  constexpr int64_t kCrumbVoxels = 100, kSliverVoxels = 20;
   const detail::ConnectedComponents components(index, labels, interrupter);
-  const FlawFinder finder(index, labels, components, domain);
-  Flags deep(grainVoxels.size()), touching(grainVoxels.size());
-  // Nearly all grains show within a leaf that they are deep.
-  forEachPiece(index, components, interrupter, [&](uint32_t, const Piece& piece) {
-    if (!deep.get(piece.label) && detail::anyVoxel(erode(piece.mask))) deep.set(piece.label);
-  });
-  struct Scratch {
-    explicit Scratch(const LeafIndex& i) : neighborhood(i) {}
-    detail::LeafNeighborhood neighborhood;
-    detail::LabelBlock block;
-  };
-  detail::PerThread<Scratch> scratches{Scratch(index)};
-  forEachPiece(index, components, interrupter, [&](uint32_t leaf, const Piece& piece) {
-    const uint32_t label = piece.label;
-    if (!deep.get(label)) {
-      Scratch& s = scratches.local();
-      if (finder.isDeep(leaf, piece, s.neighborhood, s.block)) deep.set(label);
-    }
-    const bool matters = grainVoxels[label - 1] < kCrumbVoxels || !deep.get(label);
-    if (matters && !touching.get(label) && finder.touchesAnother(leaf, piece)) touching.set(label);
-  });
-  const std::vector<uint32_t> pieces = countPieces(index, components, grainVoxels.size());
-  LabelFlaws flaws;
-  for (uint32_t g = 0; g < grainVoxels.size(); ++g) {
-    const bool touches = touching.get(g + 1);
-    if (grainVoxels[g] < kCrumbVoxels) ++(touches ? flaws.crumbs : flaws.specks);
-    if (grainVoxels[g] >= kSliverVoxels && touches && !deep.get(g + 1)) ++flaws.slivers;
-    if (pieces[g] > 1) ++flaws.inPieces;
-  }
-  return flaws;
+  std::vector<char> small;
+  for (const int64_t voxels : grainVoxels) small.push_back(voxels < kCrumbVoxels);
+  detail::GrainFlags flags(grainVoxels.size());
+  detail::findFlags(index, labels, components, domain, small, flags, interrupter);
+  return detail::countFlaws(flags, grainVoxels, countPieces(index, components, grainVoxels.size()));
 }
 
 }  // namespace vdb_madf

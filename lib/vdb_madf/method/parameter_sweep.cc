@@ -4,34 +4,18 @@
 #include "vdb_madf/method/parameter_sweep.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/method/detail/manifold_labels.h"
+#include "vdb_madf/method/detail/sweep_rows.h"
 #include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/method/segment.h"
 
 namespace vdb_madf {
 
 namespace {
-
-void check(const SweepOptions& options) {
-  if (options.gammas.empty() || options.modes.empty() || options.thetas.empty() ||
-      options.deltas.empty())
-    throw InvalidInput(
-        "nothing to sweep: give at least one gamma, one merge mode, one theta and one delta");
-  for (const int64_t gamma : options.gammas)
-    if (gamma < 0) throw InvalidInput("gamma is a number of voxels: it must not be negative");
-  MergeOptions merge;
-  for (const double theta : options.thetas) {
-    merge.theta = theta;
-    checkMergeOptions(merge);
-  }
-  for (const int delta : options.deltas) {
-    merge.delta = delta;
-    checkMergeOptions(merge);
-  }
-}
 
 /// \p sizes ascending.
 double median(const std::vector<int64_t>& sizes) {
@@ -54,18 +38,45 @@ void count(std::vector<int64_t> sizes, int64_t smallVoxels, SweepRow& row) {
   }
 }
 
-/// A manifold grid with its graph.
-struct Manifolds {
-  const Int32Grid& grid;
-  const ManifoldGraph& graph;
-  std::optional<Domain> domain;
-  int64_t gamma = 0;
-};
+/// Of a manifold grid with its graph.
+void addRows(const Int32Grid& manifold, const ManifoldGraph& graph,
+             const std::optional<Domain>& domain, int64_t gamma, const SweepOptions& options,
+             std::vector<SweepRow>& rows, Interrupter* interrupter) {
+  const LeafIndex index = detail::topologyOf(manifold);
+  const auto merged = [&](const MergeOptions& how) {
+    GrainLabels grains =
+        detail::labelGrains(manifold, index, graph, merge(graph, how), interrupter);
+    tidy(index, options.tidy, grains, interrupter);
+    const LabelFlaws flaws = labelFlaws(index, grains.label, grains.voxels, domain, interrupter);
+    return detail::SweptGrains{std::move(grains.voxels), flaws};
+  };
+  detail::addSweepRows(options, gamma, merged, rows);
+}
 
-/// Adds a row for each mode, delta and theta.
-void addRows(const Manifolds& manifolds, const SweepOptions& options, std::vector<SweepRow>& rows,
-             Interrupter* interrupter) {
-  const LeafIndex index = detail::topologyOf(manifolds.grid);
+}  // namespace
+
+void detail::checkSweep(const SweepOptions& options) {
+  if (options.gammas.empty() || options.modes.empty() || options.thetas.empty() ||
+      options.deltas.empty())
+    throw InvalidInput(
+        "nothing to sweep: give at least one gamma, one merge mode, one theta and one delta");
+  for (const int64_t gamma : options.gammas)
+    if (gamma < 0) throw InvalidInput("gamma is a number of voxels: it must not be negative");
+  MergeOptions merge;
+  for (const double theta : options.thetas) {
+    merge.theta = theta;
+    checkMergeOptions(merge);
+  }
+  for (const int delta : options.deltas) {
+    merge.delta = delta;
+    checkMergeOptions(merge);
+  }
+  checkTidy(options.tidy);
+}
+
+void detail::addSweepRows(const SweepOptions& options, int64_t gamma,
+                          const std::function<SweptGrains(const MergeOptions& merge)>& merged,
+                          std::vector<SweepRow>& rows) {
   for (const MergeMode mode : options.modes)
     for (const int delta : options.deltas)
       for (const double theta : options.thetas) {
@@ -75,26 +86,20 @@ void addRows(const Manifolds& manifolds, const SweepOptions& options, std::vecto
           continue;
         }
         SweepRow row;
-        row.gamma = manifolds.gamma;
+        row.gamma = gamma;
         row.mode = mode;
         row.theta = theta;
         row.delta = delta;
-        const Merging merging = merge(manifolds.graph, {theta, mode, options.adjacency, delta});
-        GrainLabels grains =
-            detail::labelGrains(manifolds.grid, index, manifolds.graph, merging, interrupter);
-        tidy(index, options.tidy, grains, interrupter);
-        row.flaws = labelFlaws(index, grains.label, grains.voxels, manifolds.domain, interrupter);
+        SweptGrains grains = merged({theta, mode, options.adjacency, delta});
+        row.flaws = grains.flaws;
         count(std::move(grains.voxels), options.smallVoxels, row);
         rows.push_back(row);
       }
 }
 
-}  // namespace
-
 std::vector<SweepRow> parameterSweep(const MaskGrid& object, const SweepOptions& options,
                                      Interrupter* interrupter) {
-  check(options);
-  checkTidy(options.tidy);
+  detail::checkSweep(options);
   std::vector<SweepRow> rows;
   for (const int64_t gamma : options.gammas) {
     SegmentOptions segmentOptions;
@@ -107,7 +112,7 @@ std::vector<SweepRow> parameterSweep(const MaskGrid& object, const SweepOptions&
     segmentOptions.keepManifold = true;
     Segmentation segmentation = segment(object, segmentOptions, interrupter);
     segmentation.grain.reset();
-    addRows({*segmentation.manifold, segmentation.graph, segmentation.domain, gamma}, options, rows,
+    addRows(*segmentation.manifold, segmentation.graph, segmentation.domain, gamma, options, rows,
             interrupter);
   }
   return rows;
@@ -115,11 +120,10 @@ std::vector<SweepRow> parameterSweep(const MaskGrid& object, const SweepOptions&
 
 std::vector<SweepRow> mergingSweep(const Int32Grid& manifold, const SweepOptions& options,
                                    Interrupter* interrupter) {
-  check(options);
-  checkTidy(options.tidy);
+  detail::checkSweep(options);
   const ManifoldGraph graph = requiredGraph(manifold);
   std::vector<SweepRow> rows;
-  addRows({manifold, graph, storedDomain(manifold), options.gammas.front()}, options, rows,
+  addRows(manifold, graph, storedDomain(manifold), options.gammas.front(), options, rows,
           interrupter);
   return rows;
 }

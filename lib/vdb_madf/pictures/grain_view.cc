@@ -26,7 +26,8 @@ using MaskLeaf = MaskTree::LeafNodeType;
 constexpr int kMaxEdge = 16384;
 constexpr size_t kRowGrain = 4;
 
-constexpr int kRays = 3;     ///< along each edge of a pixel at which something ends
+constexpr int kRays = 3;  ///< along each edge of a pixel at which something ends
+constexpr int kMiddleRay = kRays * kRays / 2;
 constexpr double kStep = 3;  ///< shortest edges of a voxel: more of depth is an end of the surface
 
 // Light, as shares of the grain's color. Found by eye.
@@ -97,18 +98,18 @@ struct Span {
   bool empty() const { return !(begin < end); }
 };
 
-class Renderer {
+/// Where a ray of a pixel begins, of kRays * kRays; that in the middle goes through its center.
+Vec rayOrigin(const detail::Camera& camera, int x, int y, int ray) {
+  return camera.origin(x + (ray % kRays + 0.5) / kRays, y + double(ray / kRays + 0.5) / kRays);
+}
+
+/// The object in a box, as rays meet it.
+class SeenObject {
  public:
-  Renderer(const Int32Grid& labels, const CoordBBox& box, const Vec& edges,
-           const GrainColors& colors, const detail::Camera& camera)
-      : labels_(labels),
-        box_(box),
-        edges_(edges),
-        leafEdges_(8 * edges),
-        colors_(colors),
-        camera_(camera),
-        object_(objectMask(labels)) {
-    object_->clip(box_);  // makes tiles of full leaves
+  SeenObject(const MaskGrid::Ptr& object, const CoordBBox& box, const Vec& edges,
+             const detail::Camera& camera)
+      : edges_(edges), leafEdges_(8 * edges), camera_(camera), object_(object) {
+    object_->clip(box);  // makes tiles of full leaves
     object_->tree().voxelizeActiveTiles();
     for (int axis = 0; axis < 3; ++axis) {
       low_[axis] = edges[axis] * box.min()[axis];
@@ -117,14 +118,61 @@ class Renderer {
       leafHigh_[axis] = box.max()[axis] >> 3;
       depth_ += std::abs(camera.direction[axis]) * (high_[axis] - low_[axis]);
     }
-    light_ = (camera.up - 0.55 * camera.right - 1.1 * camera.direction).unit();
+  }
+
+  const detail::Camera& camera() const { return camera_; }
+  const MaskGrid& object() const { return *object_; }  ///< no tiles, nothing beyond the box
+  const Vec& edges() const { return edges_; }
+  double depth() const { return depth_; }  ///< of the box along the rays
+
+  /// The first object voxel that the ray meets, and where.
+  bool firstVoxel(const MaskGrid::ConstAccessor& object, const Vec& origin, Coord& voxel,
+                  double& t) const {
+    const Span span(origin, camera_.direction, low_, high_);
+    if (span.empty()) return false;
+    CellWalk leaves(origin, camera_.direction, span.begin, leafEdges_, leafLow_, leafHigh_);
+    for (; leaves.t() < span.end; leaves.advance()) {
+      const Coord cell = leaves.cell();  // times 8: negative numbers must not be shifted left
+      const Coord corner(cell.x() * 8, cell.y() * 8, cell.z() * 8);
+      const MaskLeaf* leaf = object.probeConstLeaf(corner);
+      if (!leaf) continue;
+      CellWalk voxels(origin, camera_.direction, leaves.t(), edges_, corner, corner + Coord(7));
+      for (; (voxels.cell() >> 3) == leaves.cell(); voxels.advance()) {
+        if (!leaf->isValueOn(voxels.cell())) continue;
+        voxel = voxels.cell();
+        t = voxels.t();
+        return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  const Vec edges_, leafEdges_;
+  const detail::Camera& camera_;
+  const MaskGrid::Ptr object_;
+  Vec low_, high_;
+  Coord leafLow_, leafHigh_;
+  double depth_ = 0;
+};
+
+class Renderer {
+ public:
+  Renderer(const SeenObject& seen, const Int32Grid& labels, const GrainColors& colors)
+      : seen_(seen),
+        labels_(labels),
+        colors_(colors),
+        camera_(seen.camera()),
+        edges_(seen.edges()),
+        depth_(seen.depth()) {
+    light_ = (camera_.up - 0.55 * camera_.right - 1.1 * camera_.direction).unit();
   }
 
   /// A ray through the center of each pixel.
   void drawRow(int y, GrainView& view, std::vector<float>& depths) const {
     const Eye eye(*this);
     for (int x = 0; x < camera_.width; ++x) {
-      const Sample sample = eye.look(x + 0.5, y + 0.5);
+      const Sample sample = eye.look(x, y, kMiddleRay);
       if (!sample.label) continue;
       const size_t pixel = at(x, y);
       view.labels[pixel] = sample.label;
@@ -143,9 +191,8 @@ class Renderer {
       std::array<int, 3> sum{};
       for (int i = 0; i < kRays * kRays; ++i) {
         Rgb color = view.picture.at(x, y);
-        if (i != kRays * kRays / 2) {
-          const Sample sample =
-              eye.look(x + (i % kRays + 0.5) / kRays, y + double(i / kRays + 0.5) / kRays);
+        if (i != kMiddleRay) {
+          const Sample sample = eye.look(x, y, i);
           color = sample.label ? sample.color : backdrop.at(x, y);
         }
         for (size_t channel = 0; channel < 3; ++channel) sum[channel] += color[channel];
@@ -167,13 +214,13 @@ class Renderer {
    public:
     explicit Eye(const Renderer& renderer)
         : renderer_(renderer),
-          object_(renderer.object_->getConstAccessor()),
+          object_(renderer.seen_.object().getConstAccessor()),
           labels_(renderer.labels_.getConstAccessor()) {}
-    Sample look(double x, double y) const {
-      const Vec origin = renderer_.camera_.origin(x, y);
+    Sample look(int x, int y, int ray) const {
+      const Vec origin = rayOrigin(renderer_.camera_, x, y, ray);
       Sample sample;
       Coord voxel;
-      if (!renderer_.firstVoxel(object_, origin, voxel, sample.t)) return sample;
+      if (!renderer_.seen_.firstVoxel(object_, origin, voxel, sample.t)) return sample;
       sample.label = labels_.getValue(voxel);
       const Vec hit = (origin + sample.t * renderer_.camera_.direction) / renderer_.edges_;
       sample.color =
@@ -203,28 +250,6 @@ class Renderer {
     return false;
   }
 
-  /// The first object voxel that the ray meets, and where.
-  bool firstVoxel(const MaskGrid::ConstAccessor& object, const Vec& origin, Coord& voxel,
-                  double& t) const {
-    const Span span(origin, camera_.direction, low_, high_);
-    if (span.empty()) return false;
-    CellWalk leaves(origin, camera_.direction, span.begin, leafEdges_, leafLow_, leafHigh_);
-    for (; leaves.t() < span.end; leaves.advance()) {
-      const Coord cell = leaves.cell();  // times 8: negative numbers must not be shifted left
-      const Coord corner(cell.x() * 8, cell.y() * 8, cell.z() * 8);
-      const MaskLeaf* leaf = object.probeConstLeaf(corner);
-      if (!leaf) continue;
-      CellWalk voxels(origin, camera_.direction, leaves.t(), edges_, corner, corner + Coord(7));
-      for (; (voxels.cell() >> 3) == leaves.cell(); voxels.advance()) {
-        if (!leaf->isValueOn(voxels.cell())) continue;
-        voxel = voxels.cell();
-        t = voxels.t();
-        return true;
-      }
-    }
-    return false;
-  }
-
   /// The light on the surface near the point (in voxels) that a ray hits.
   Rgb shade(const Rgb& color, const MaskGrid::ConstAccessor& object, const Vec& hit,
             double t) const {
@@ -249,16 +274,27 @@ class Renderer {
     return shaded;
   }
 
+  const SeenObject& seen_;
   const Int32Grid& labels_;
-  const CoordBBox box_;
-  const Vec edges_, leafEdges_;
   const GrainColors& colors_;
   const detail::Camera& camera_;
-  const MaskGrid::Ptr object_;  ///< no tiles, nothing beyond the box
-  Vec low_, high_, light_;
-  Coord leafLow_, leafHigh_;
-  double depth_ = 0;  ///< of the box along the rays
+  const Vec& edges_;
+  const double depth_;
+  Vec light_;
 };
+
+template <typename F>
+void forEachRow(const detail::Camera& camera, Interrupter* interrupter, const F& work) {
+  detail::parallelFor(size_t(camera.height), kRowGrain, interrupter, [&](size_t begin, size_t end) {
+    for (size_t y = begin; y < end; ++y) work(int(y));
+  });
+}
+
+/// Of those from `first` on.
+void sortUnique(std::vector<Coord>& leaves, size_t first) {
+  std::sort(leaves.begin() + std::ptrdiff_t(first), leaves.end());
+  leaves.erase(std::unique(leaves.begin() + std::ptrdiff_t(first), leaves.end()), leaves.end());
+}
 
 void check(const ViewOptions& options) {
   if (!std::isfinite(options.azimuth))
@@ -271,8 +307,37 @@ void check(const ViewOptions& options) {
 
 }  // namespace
 
-GrainView viewGrains(const Int32Grid& labels, const CoordBBox& box, const GrainColors& colors,
-                     const ViewOptions& options, Interrupter* interrupter) {
+std::vector<Coord> seenLeaves(const MaskGrid::Ptr& object, const CoordBBox& box,
+                              const ViewOptions& options, Interrupter* interrupter) {
+  check(options);
+  if (box.empty()) return {};
+  const Vec edges = detail::proportions(object->transform());
+  const detail::Camera camera(box, edges, options);
+  const SeenObject seen(object, box, edges, camera);
+  detail::PerThread<std::vector<Coord>> found{std::vector<Coord>()};
+  forEachRow(camera, interrupter, [&](int y) {
+    const auto tree = object->getConstAccessor();
+    std::vector<Coord>& leaves = found.local();
+    const size_t before = leaves.size();
+    for (int ray = 0; ray < camera.width * kRays * kRays; ++ray) {
+      const int i = ray % (kRays * kRays), x = ray / (kRays * kRays);
+      Coord voxel;
+      double t = 0;
+      if (!seen.firstVoxel(tree, rayOrigin(camera, x, y, i), voxel, t)) continue;
+      const Coord leaf = voxel & ~7;
+      if (leaves.empty() || leaves.back() != leaf) leaves.push_back(leaf);
+    }
+    sortUnique(leaves, before);
+  });
+  std::vector<Coord> all;
+  for (const std::vector<Coord>& part : found) all.insert(all.end(), part.begin(), part.end());
+  sortUnique(all, 0);
+  return all;
+}
+
+GrainView viewGrains(const MaskGrid::Ptr& object, const Int32Grid& labels, const CoordBBox& box,
+                     const GrainColors& colors, const ViewOptions& options,
+                     Interrupter* interrupter) {
   check(options);
   if (box.empty()) return {Picture(1, 1, options.background), {0}, 1};
   const Vec edges = detail::proportions(labels.transform());
@@ -281,18 +346,21 @@ GrainView viewGrains(const Int32Grid& labels, const CoordBBox& box, const GrainC
   if (options.box) detail::drawBox(camera, backdrop);
   GrainView view{backdrop, std::vector<int32_t>(backdrop.pixels.size(), 0), camera.voxelsPerPixel};
   std::vector<float> depths(view.labels.size(), 0);
-  const Renderer renderer(labels, box, edges, colors, camera);
-  const auto forEachRow = [&](const auto& work) {
-    detail::parallelFor(size_t(camera.height), kRowGrain, interrupter,
-                        [&](size_t begin, size_t end) {
-                          for (size_t y = begin; y < end; ++y) work(int(y));
-                        });
-  };
-  forEachRow([&](int y) { renderer.drawRow(y, view, depths); });
+  const SeenObject seen(object, box, edges, camera);
+  const Renderer renderer(seen, labels, colors);
+  forEachRow(camera, interrupter, [&](int y) { renderer.drawRow(y, view, depths); });
   Picture smooth = view.picture;
-  forEachRow([&](int y) { renderer.smoothRow(y, backdrop, view, depths, smooth); });
+  forEachRow(camera, interrupter,
+             [&](int y) { renderer.smoothRow(y, backdrop, view, depths, smooth); });
   view.picture = std::move(smooth);
   return view;
+}
+
+GrainView viewGrains(const Int32Grid& labels, const CoordBBox& box, const GrainColors& colors,
+                     const ViewOptions& options, Interrupter* interrupter) {
+  check(options);
+  if (box.empty()) return {Picture(1, 1, options.background), {0}, 1};
+  return viewGrains(objectMask(labels), labels, box, colors, options, interrupter);
 }
 
 }  // namespace vdb_madf

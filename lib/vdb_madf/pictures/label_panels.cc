@@ -8,9 +8,12 @@
 #include <iomanip>
 #include <optional>
 #include <sstream>
+#include <string>
 #include <utility>
 
+#include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/labels/detail/rimmed_slabs.h"
 #include "vdb_madf/labels/grain_colors.h"
 #include "vdb_madf/labels/interface_voxels.h"
 #include "vdb_madf/labels/select_grains.h"
@@ -91,16 +94,16 @@ Int32Grid::Ptr shownPart(const Int32Grid& labels, const PanelOptions& options,
   return shown;
 }
 
-}  // namespace
-
-std::vector<PicturePanel> labelPanels(const Int32Grid& labels, const CoordBBox& box,
-                                      const PanelOptions& options, Interrupter* interrupter) {
-  const GrainColors colors = grainColors(labels, interrupter);
-  const Int32Grid::Ptr shown = shownPart(labels, options, interrupter);
+/// The panels of labels of which some are shown (null: all). view(how): as viewGrains().
+template <typename View>
+std::vector<PicturePanel> panelsOf(const Int32Grid& labels, const Int32Grid* shown,
+                                   const CoordBBox& box, const GrainColors& colors,
+                                   const PanelOptions& options, const View& view,
+                                   Interrupter* interrupter) {
   const Captions captions(labels, box);
   std::vector<PicturePanel> panels;
   if (options.slices) {
-    const SliceOptions how{options.edge, options.planes, shown.get(), options.gray};
+    const SliceOptions how{options.edge, options.planes, shown, options.gray};
     LabelSlices slices = labelSlices(labels, box, colors, how, interrupter);
     for (size_t i = 0; i < slices.pictures.size(); ++i)
       panels.push_back({std::move(slices.pictures[i]), captions.of(slices.planes[i]),
@@ -110,13 +113,139 @@ std::vector<PicturePanel> labelPanels(const Int32Grid& labels, const CoordBBox& 
     ViewOptions direction = options.direction;
     direction.edge = options.edge;
     direction.box = options.axes;
-    const Int32Grid& seen = shown ? *shown : labels;
-    GrainView view = viewGrains(seen, box, colors, direction, interrupter);
+    GrainView seen = view(direction);
     const bool isSecond = panels.size() == 3;
     panels.insert(isSecond ? panels.begin() + 1 : panels.end(),
-                  {std::move(view.picture), captions.ofBox(), view.voxelsPerPixel, false});
+                  {std::move(seen.picture), captions.ofBox(), seen.voxelsPerPixel, false});
   }
   return panels;
+}
+
+/// What pictures need of labels in slabs.
+class SlabParts {
+ public:
+  SlabParts(const LabelSlabs& labels, const CoordBBox& box, const PanelOptions& options)
+      : labels_(labels),
+        options_(options),
+        planes_(options.planes.empty() ? middlePlanes(box) : options.planes),
+        selected_(options.select),
+        inPlanes_(Int32Grid::create(*labels.about)),
+        shownInPlanes_(Int32Grid::create(*labels.about)),
+        object_(MaskGrid::create()) {
+    std::sort(selected_.begin(), selected_.end());
+    object_->setTransform(labels.about->transform().copy());
+  }
+
+  /// Goes through all slabs. @throw InvalidInput if a label that is selected has no voxel
+  void gather(Interrupter* interrupter) {
+    GrainColoring coloring;
+    detail::RimmedSlabs slabs(labels_);
+    while (slabs.next(interrupter)) {
+      coloring.add(slabs.labels(), interrupter);
+      const Int32Grid::ConstPtr shown = shownPart(slabs.labels(), interrupter);
+      for (auto leaf = slabs.labels().tree().cbeginLeaf(); leaf; ++leaf)
+        if (slabs.isOwn(leaf->origin())) addToPlanes(*leaf, *inPlanes_);
+      for (auto leaf = (shown ? *shown : slabs.labels()).tree().cbeginLeaf(); leaf; ++leaf) {
+        if (!slabs.isOwn(leaf->origin())) continue;
+        if (shown) addToPlanes(*leaf, *shownInPlanes_);
+        if (options_.view) addToObject(*leaf);
+      }
+    }
+    colors_ = coloring.colors();
+    for (const int32_t label : selected_)
+      if (!std::binary_search(colors_.labels.begin(), colors_.labels.end(), label))
+        throw InvalidInput("there is no grain " + std::to_string(label));
+  }
+
+  const GrainColors& colors() const { return colors_; }
+  const Int32Grid& inPlanes() const { return *inPlanes_; }
+  const Int32Grid* shownInPlanes() const { return isPart() ? shownInPlanes_.get() : nullptr; }
+  const MaskGrid::Ptr& object() const { return object_; }
+
+  /// The labels of some leaf nodes, ascending.
+  Int32Grid::Ptr labelsOf(const std::vector<Coord>& leaves, Interrupter* interrupter) const {
+    const Int32Grid::Ptr found = Int32Grid::create(*labels_.about);
+    for (size_t s = 0; s < labels_.slabCount(); ++s) {
+      Int32Grid::Ptr slab;
+      for (const Coord& origin : leaves) {
+        if (origin.z() < labels_.cuts[s] || origin.z() >= labels_.cuts[s + 1]) continue;
+        if (!slab) {
+          slab = labels_.read(s, interrupter);
+          slab->tree().voxelizeActiveTiles();
+        }
+        if (const Leaf* const leaf = slab->tree().probeConstLeaf(origin))
+          found->tree().addLeaf(new Leaf(*leaf));
+      }
+    }
+    return found;
+  }
+
+ private:
+  using Leaf = Int32Tree::LeafNodeType;
+  using MaskLeaf = MaskTree::LeafNodeType;
+
+  bool isPart() const { return options_.interfaces || !selected_.empty(); }
+
+  /// As that of the whole, but in the leaves beside a slab. Null: all.
+  Int32Grid::Ptr shownPart(const Int32Grid& labels, Interrupter* interrupter) const {
+    if (!isPart()) return nullptr;
+    Int32Grid::Ptr shown =
+        options_.interfaces ? interfaceVoxels(labels, interrupter) : labels.deepCopy();
+    if (selected_.empty()) return shown;
+    for (auto leaf = shown->tree().beginLeaf(); leaf; ++leaf)
+      for (auto voxel = leaf->beginValueOn(); voxel; ++voxel)
+        if (!std::binary_search(selected_.begin(), selected_.end(), *voxel)) voxel.setValueOff();
+    return shown;
+  }
+
+  void addToPlanes(const Leaf& leaf, Int32Grid& grid) const {
+    if (!options_.slices) return;
+    for (const SlicePlane& plane : planes_) {
+      const int at = plane.index - leaf.origin()[plane.axis];
+      if (at < 0 || at >= 8) continue;
+      grid.tree().addLeaf(new Leaf(leaf));
+      return;
+    }
+  }
+
+  void addToObject(const Leaf& leaf) {
+    MaskLeaf* const mask = object_->tree().touchLeaf(leaf.origin());
+    for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel)
+      if (*voxel > 0) mask->setValueOn(voxel.pos());
+  }
+
+  const LabelSlabs& labels_;
+  const PanelOptions& options_;
+  const std::vector<SlicePlane> planes_;
+  std::vector<int32_t> selected_;
+  GrainColors colors_;
+  Int32Grid::Ptr inPlanes_, shownInPlanes_;
+  MaskGrid::Ptr object_;
+};
+
+}  // namespace
+
+std::vector<PicturePanel> labelPanels(const Int32Grid& labels, const CoordBBox& box,
+                                      const PanelOptions& options, Interrupter* interrupter) {
+  const GrainColors colors = grainColors(labels, interrupter);
+  const Int32Grid::Ptr shown = shownPart(labels, options, interrupter);
+  const auto view = [&](const ViewOptions& how) {
+    return viewGrains(shown ? *shown : labels, box, colors, how, interrupter);
+  };
+  return panelsOf(labels, shown.get(), box, colors, options, view, interrupter);
+}
+
+std::vector<PicturePanel> labelPanels(const LabelSlabs& labels, const CoordBBox& box,
+                                      const PanelOptions& options, Interrupter* interrupter) {
+  SlabParts parts(labels, box, options);
+  parts.gather(interrupter);
+  const auto view = [&](const ViewOptions& how) {
+    const std::vector<Coord> leaves = seenLeaves(parts.object(), box, how, interrupter);
+    return viewGrains(parts.object(), *parts.labelsOf(leaves, interrupter), box, parts.colors(),
+                      how, interrupter);
+  };
+  return panelsOf(parts.inPlanes(), parts.shownInPlanes(), box, parts.colors(), options, view,
+                  interrupter);
 }
 
 }  // namespace vdb_madf

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/label_slabs.h"
 #include "vdb_madf/pictures/grain_view.h"
 #include "vdb_madf/pictures/label_slices.h"
 #include "vdb_madf/pictures/picture_sheet.h"
@@ -30,6 +31,13 @@ struct PanelOptions {
 /// @param box not empty
 /// @throw as selectGrains(), labelSlices() and viewGrains()
 std::vector<PicturePanel> labelPanels(const Int32Grid& labels, const CoordBBox& box,
+                                      const PanelOptions& options,
+                                      Interrupter* interrupter = nullptr);
+
+/// The same pictures of labels in slabs, which need not fit in memory together. All slabs are read once, for
+/// the colors, and those again that are seen in the view. In memory are two slabs, the leaf nodes that
+/// the planes cut, those that are seen, and for the view a bit for each voxel of the other leaf nodes.
+std::vector<PicturePanel> labelPanels(const LabelSlabs& labels, const CoordBBox& box,
                                       const PanelOptions& options,
                                       Interrupter* interrupter = nullptr);
 

@@ -9,33 +9,51 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/method/detail/segment_options.h"
+#include "vdb_madf/method/graph_metadata.h"
+#include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/slabs/detail/slab_flow.h"
 #include "vdb_madf/slabs/detail/slab_labels.h"
+#include "vdb_madf/slabs/detail/slab_options.h"
 
 namespace vdb_madf {
 
 namespace {
 
-void checkSlabOptions(const SlabObject& object, const SegmentOptions& options) {
-  detail::checkSegmentOptions(options);
-  if (options.keepDistance || options.keepPower || options.keepManifold || options.keepBalls)
-    throw InvalidInput("slabs give labels alone: keep no other grids");
-  const std::vector<int>& cuts = object.cuts;
-  for (size_t i = 0; i < cuts.size(); ++i)
-    if ((cuts[i] & 7) != 0 || (i > 0 && cuts[i] <= cuts[i - 1]))
-      throw InvalidInput("slabs are cut at ascending multiples of 8 along z");
-  for (size_t s = 1; s + 1 < object.slabCount(); ++s)
-    if (cuts[s + 1] - cuts[s] < options.tidy)
-      throw InvalidInput("interfaces are smoothed in " + std::to_string(options.tidy) +
-                         " rounds: take slabs at least as many voxels high");
+/// The manifolds of a slab, with its part of the graph.
+Int32Grid::Ptr manifoldGrid(const detail::SlabWork& work, size_t slab,
+                            const detail::SlabBody& body) {
+  detail::SlabGraph::Part part;
+  VoxelArray<uint32_t> manifold;
+  if (body.index.voxelCount() > 0) manifold = work.read("flow", slab).voxelArray<uint32_t>();
+  if (work.hasMessage(detail::kGraphPart, detail::SlabWork::kRoot, slab))
+    part = detail::readPart(work.receive(detail::kGraphPart, detail::SlabWork::kRoot, slab));
+  for (size_t i = 0; i < manifold.size(); ++i)
+    manifold[i] = part.number[part.nodeOf[(manifold[i] & ~Flow::kOwnCell) - 1]];
+  const Int32Grid::Ptr grid = detail::slabGrid(work, body, std::move(manifold), "manifold");
+  part.graph.weights = work.weights;
+  setGraphPart(*grid, std::move(part));
+  return grid;
+}
+
+/// Says of a grid how it was made.
+void describe(const detail::SlabWork& work, const SlabSegmentation& result, Int32Grid& grid) {
+  copyProvenance(*work.object.about, grid);
+  if (work.domain) setDomain(grid, *work.domain);
+  Segmentation about;
+  about.counts = result.counts;
+  about.fillHoles = result.fillHoles;
+  about.tidy = result.tidy;
+  about.open = result.open;
+  about.weights = result.weights;
+  describeSegmentation(grid, work.options, about);
 }
 
 }  // namespace
 
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
-                              Scratch& scratch, Ranks& ranks, const PutSlabLabels& put,
+                              Scratch& scratch, Ranks& ranks, const PutSlab& put,
                               Interrupter* interrupter) {
-  checkSlabOptions(object, options);
+  detail::checkSlabOptions(object, options);
   SlabSegmentation result;
   if (object.slabCount() == 0) return result;
   result.domain = options.domain ? options.domain : storedDomain(*object.about);
@@ -56,16 +74,37 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
   detail::ByteWriter counts;
   counts.add(result.counts);
   result.counts = detail::ByteReader(work.broadcast(counts)).value<SegmentCounts>();
-  detail::labelSlabs(work, std::move(representatives), result, put);
+  detail::labelSlabs(work, std::move(representatives), result,
+                     [&](size_t slab, const detail::SlabBody& body, VoxelArray<uint32_t> labels) {
+                       SlabGrids grids;
+                       grids.grain = detail::slabGrid(work, body, std::move(labels), "grain");
+                       if (options.keepManifold) grids.manifold = manifoldGrid(work, slab, body);
+                       for (const Int32Grid::Ptr& grid : {grids.grain, grids.manifold})
+                         if (grid) describe(work, result, *grid);
+                       put(slab, grids);
+                     });
   work.endStages(result);
   return result;
 }
 
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
-                              Scratch& scratch, const PutSlabLabels& put,
-                              Interrupter* interrupter) {
+                              Scratch& scratch, const PutSlab& put, Interrupter* interrupter) {
   Ranks alone;
   return segmentSlabs(object, options, scratch, alone, put, interrupter);
+}
+
+void detail::checkSlabOptions(const SlabObject& object, const SegmentOptions& options) {
+  checkSegmentOptions(options);
+  if (options.keepDistance || options.keepPower || options.keepBalls)
+    throw InvalidInput("slabs give labels and manifolds alone: keep no other grids");
+  const std::vector<int>& cuts = object.cuts;
+  for (size_t i = 0; i < cuts.size(); ++i)
+    if ((cuts[i] & 7) != 0 || (i > 0 && cuts[i] <= cuts[i - 1]))
+      throw InvalidInput("slabs are cut at ascending multiples of 8 along z");
+  for (size_t s = 1; s + 1 < object.slabCount(); ++s)
+    if (cuts[s + 1] - cuts[s] < options.tidy)
+      throw InvalidInput("interfaces are smoothed in " + std::to_string(options.tidy) +
+                         " rounds: take slabs at least as many voxels high");
 }
 
 bool isSlabPut(const Scratch& scratch, size_t slab) {

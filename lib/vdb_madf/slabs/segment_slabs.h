@@ -49,8 +49,15 @@ struct SlabSegmentation {
   int64_t exchanges = 0;          ///< how often messages were exchanged
 };
 
-/// Gets the labels of a slab: the part of Segmentation::grain that lies in it, with its metadata.
-using PutSlabLabels = std::function<void(size_t slab, Int32Grid::Ptr grain)>;
+/// The parts that lie in a slab of grids of a Segmentation, with their metadata.
+struct SlabGrids {
+  Int32Grid::Ptr grain;
+  /// If kept: with its part of the graph (graph_metadata.h), in place of the graph.
+  Int32Grid::Ptr manifold;
+};
+
+/// Gets the grids of a slab.
+using PutSlab = std::function<void(size_t slab, const SlabGrids& grids)>;
 
 /// segment() for an object that need not fit in memory: the same labels, bit for bit. One slab is
 /// worked on at a time; what is known of the others is in `scratch`. Memory and proofs: README.md.
@@ -59,11 +66,11 @@ using PutSlabLabels = std::function<void(size_t slab, Int32Grid::Ptr grain)>;
 /// where that stopped.
 /// @param put is called for each slab, from the lowest on (not again for those that a run before had
 ///   put: isSlabPut())
-/// Options that keep grids and maxMemory have to be 0: they are not known here.
+/// Of the options that keep grids keepManifold alone is known here; maxMemory has to be 0.
 /// @throw as segment(); InvalidInput for these options, cuts that are none, a region as domain of several ranks,
 ///   slabs, but for the first and the last, lower than `tidy` has rounds, or balls that reach too far; what scratch and put throw.
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
-                              Scratch& scratch, const PutSlabLabels& put,
+                              Scratch& scratch, const PutSlab& put,
                               Interrupter* interrupter = nullptr);
 
 /// The same by several processes, which all call it, with equal arguments but for their scratch (it may be
@@ -71,7 +78,7 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
 /// cavities to fill it also asks for those that are less than `fillHoles` voxels away). Counts and
 /// boundary are known to all, the voxels of grains to rank 0.
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
-                              Scratch& scratch, Ranks& ranks, const PutSlabLabels& put,
+                              Scratch& scratch, Ranks& ranks, const PutSlab& put,
                               Interrupter* interrupter = nullptr);
 
 /// Were the labels of a slab put by a run before, so that they are not put again?

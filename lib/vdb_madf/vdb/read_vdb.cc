@@ -28,6 +28,7 @@
 #include "vdb_madf/grids/domain.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/method/initialize.h"
 #include "vdb_madf/vdb/detail/region_grid.h"
 #include "vdb_madf/vdb/detail/uuid_place.h"
@@ -384,6 +385,29 @@ int64_t memoryOf(const std::vector<GridBase::Ptr>& grids) {
   return bytes;
 }
 
+/// Of each grid of a folder of slabs, the parts of its graph.
+class GraphParts {
+ public:
+  void add(const std::vector<GridBase::Ptr>& grids) {
+    parts_.resize(grids.size());
+    for (size_t i = 0; i < grids.size(); ++i)
+      if (auto part = storedGraphPart(*grids[i])) parts_[i].push_back(std::move(*part));
+  }
+  /// Gives the grids of all slabs the graph of the whole.
+  void join(const std::vector<GridBase::Ptr>& grids, size_t slabs) {
+    for (size_t i = 0; i < grids.size(); ++i) {
+      if (parts_[i].empty()) continue;
+      if (parts_[i].size() != slabs)
+        throw InvalidInput("a slab has no part of the graph of grid '" + grids[i]->getName() +
+                           "': segment again");
+      setGraph(*grids[i], joinedGraph(parts_[i]));
+    }
+  }
+
+ private:
+  std::vector<std::vector<GraphPart>> parts_;
+};
+
 }  // namespace
 
 std::vector<GridBase::Ptr> readVdb(const std::string& path, const VdbReadOptions& options,
@@ -392,6 +416,8 @@ std::vector<GridBase::Ptr> readVdb(const std::string& path, const VdbReadOptions
   const SlabFolder folder = openSlabFolder(path);
   std::vector<GridBase::Ptr> grids = readVdbSlab(folder, 0, options, interrupter);
   int64_t bytes = memoryOf(grids);
+  GraphParts parts;
+  parts.add(grids);
   for (size_t slab = 1; slab < folder.slabCount(); ++slab) {
     const std::vector<GridBase::Ptr> next = readVdbSlab(folder, slab, options, interrupter);
     bytes += memoryOf(next);
@@ -399,7 +425,13 @@ std::vector<GridBase::Ptr> readVdb(const std::string& path, const VdbReadOptions
       throw IoError("cannot read " + path + ": its slabs take " + readableBytes(bytes) +
                     " of memory and more together, of " + readableBytes(memoryLimit()) +
                     "; use what takes them one by one, or a larger computer");
+    parts.add(next);
     addSlab(grids, next, folder.files[slab]);
+  }
+  try {
+    parts.join(grids, folder.slabCount());
+  } catch (const InvalidInput& error) {
+    throw IoError(path + ": " + error.what());
   }
   return grids;
 }

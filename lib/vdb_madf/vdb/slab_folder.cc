@@ -17,6 +17,7 @@
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/grids/detail/region_metadata.h"
+#include "vdb_madf/method/graph_metadata.h"
 
 namespace vdb_madf {
 
@@ -70,11 +71,12 @@ std::optional<int> numberOf(const Json& json, const char* key) {
   return int(number);
 }
 
-/// What is the same in all slabs.
+/// What is the same in all slabs: not the parts of a graph.
 std::map<std::string, std::string> ownMetadata(const openvdb::GridBase& grid) {
   std::map<std::string, std::string> texts;
   for (auto meta = grid.beginMeta(); meta != grid.endMeta(); ++meta)
-    if (meta->first.rfind("madf_", 0) == 0 && meta->first != kSlab && meta->first != kSlabs)
+    if (meta->first.rfind("madf_", 0) == 0 && meta->first != kSlab && meta->first != kSlabs &&
+        meta->first != kGraphMetadata)
       texts[meta->first] = meta->second->typeName() + " " + meta->second->str();
   return texts;
 }

@@ -3,6 +3,8 @@
 
 #include "vdb_madf/method/detail/manifold_labels.h"
 
+#include <algorithm>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -28,34 +30,39 @@ GrainLabels grainsOf(const ManifoldGraph& graph, const Merging& merging) {
   return grains;
 }
 
-GrainLabels labelGrains(const Int32Grid& manifold, const LeafIndex& index,
-                        const ManifoldGraph& graph, const Merging& merging,
-                        Interrupter* interrupter) {
-  GrainLabels grains = grainsOf(graph, merging);
-  grains.label = VoxelArray<uint32_t>(size_t(index.voxelCount()));
-  std::vector<int64_t> voxels(graph.nodes.size(), 0);  // by manifold
+VoxelArray<uint32_t> nodesOf(const Int32Grid& manifold, const LeafIndex& index,
+                             const ManifoldGraph& graph, const std::vector<uint32_t>& numbers,
+                             Interrupter* interrupter) {
+  VoxelArray<uint32_t> nodes(size_t(index.voxelCount()));
+  std::vector<int64_t> voxels(graph.nodes.size(), 0);
+  const auto nodeOf = [&](int32_t number) {
+    const auto found = std::lower_bound(numbers.begin(), numbers.end(), int64_t(number));
+    if (found == numbers.end() || int64_t(*found) != number)
+      throw InvalidInput("grid '" + manifold.getName() + "' has a manifold number " +
+                         std::to_string(number) + " that its graph does not know");
+    return uint32_t(found - numbers.begin());
+  };
   parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
     const auto tree = manifold.getConstAccessor();
-    int32_t last = 1;  // neighbors mostly share their manifold: count by runs
+    int32_t last = 0;  // neighbors mostly share their manifold: count by runs
+    uint32_t node = 0;
     int64_t run = 0;
     const auto flush = [&] {
-      if (run > 0) __atomic_fetch_add(&voxels[size_t(last - 1)], run, __ATOMIC_RELAXED);
+      if (run > 0) __atomic_fetch_add(&voxels[node], run, __ATOMIC_RELAXED);
     };
     for (size_t i = begin; i < end; ++i) {
       const Int32Tree::LeafNodeType* leaf = tree.probeConstLeaf(index.origin(i));
       const int32_t tile = leaf ? 0 : tree.getValue(index.origin(i));
       forEachVoxel(index, i, i + 1, [&](VoxelId id, size_t rank) {
         const int32_t number = leaf ? leaf->getValue(offsetOf(id)) : tile;
-        if (number < 1 || size_t(number) > merging.grainOfNode.size())
-          throw InvalidInput("grid '" + manifold.getName() + "' has a manifold number " +
-                             std::to_string(number) + " that its graph does not know");
-        if (number != last) {
+        if (number != last || run == 0) {
           flush();
+          node = nodeOf(number);
           last = number;
           run = 0;
         }
         ++run;
-        grains.label[rank] = uint32_t(merging.grainOfNode[size_t(number - 1)]);
+        nodes[rank] = node;
       });
     }
     flush();
@@ -63,8 +70,24 @@ GrainLabels labelGrains(const Int32Grid& manifold, const LeafIndex& index,
   for (size_t i = 0; i < voxels.size(); ++i)
     if (voxels[i] != graph.nodes[i].voxels)
       throw InvalidInput("grid '" + manifold.getName() + "' has " + std::to_string(voxels[i]) +
-                         " voxels of manifold " + std::to_string(i + 1) + ", and its graph says " +
-                         std::to_string(graph.nodes[i].voxels) + ": segment again");
+                         " voxels of manifold " + std::to_string(numbers[i]) +
+                         ", and its graph says " + std::to_string(graph.nodes[i].voxels) +
+                         ": segment again");
+  return nodes;
+}
+
+GrainLabels labelGrains(const Int32Grid& manifold, const LeafIndex& index,
+                        const ManifoldGraph& graph, const Merging& merging,
+                        Interrupter* interrupter) {
+  std::vector<uint32_t> numbers(graph.nodes.size());
+  std::iota(numbers.begin(), numbers.end(), 1);
+  GrainLabels grains = grainsOf(graph, merging);
+  grains.label = nodesOf(manifold, index, graph, numbers, interrupter);
+  constexpr size_t kVoxelGrain = size_t(1) << 16;
+  parallelFor(grains.label.size(), kVoxelGrain, interrupter, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      grains.label[i] = uint32_t(merging.grainOfNode[grains.label[i]]);
+  });
   return grains;
 }
 

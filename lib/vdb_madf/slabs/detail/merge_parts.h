@@ -8,17 +8,10 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/disjoint_sets.h"
-#include "vdb_madf/method/manifold_graph.h"
+#include "vdb_madf/method/graph_part.h"
 #include "vdb_madf/slabs/detail/merge_group.h"
 
 namespace vdb_madf::detail {
-
-/// Part of a graph: a critical point is the same node wherever it has the same position, and has the
-/// same D in all parts; voxels and faces are those of this part.
-struct GraphPart {
-  ManifoldGraph graph;
-  std::vector<char> goesOn;  ///< of each node: is it in a later part, too?
-};
 
 /// The grains of a graph, as merge() makes and numbers them.
 struct PartGrains {

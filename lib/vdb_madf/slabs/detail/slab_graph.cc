@@ -112,22 +112,28 @@ bool SlabGraph::isShared(size_t slab) const {
   return sharedFrom(first_[slab]) != sharedFrom(first_[slab + 1]);
 }
 
-void SlabGraph::tellShared(size_t slab, const std::vector<CriticalPoint>& points) {
+void SlabGraph::tellShared(size_t slab, const std::vector<CriticalPoint>& points,
+                           const std::vector<uint32_t>& numbers) {
   const auto begin = size_t(sharedFrom(first_[slab]) - shared_.cbegin());
   const auto end = size_t(sharedFrom(first_[slab + 1]) - shared_.cbegin());
-  for (size_t i = begin; i < end; ++i)
-    shared_[i].point = points[shared_[i].terminal - first_[slab]];
+  for (size_t i = begin; i < end; ++i) {
+    const uint32_t terminal = shared_[i].terminal - first_[slab];
+    shared_[i].point = points[terminal];
+    if (!numbers.empty()) shared_[i].number = numbers[terminal];
+  }
 }
 
 std::vector<SlabGraph::Root> SlabGraph::rootsOf(size_t slab,
-                                                const std::vector<CriticalPoint>& points) const {
+                                                const std::vector<CriticalPoint>& points,
+                                                const std::vector<uint32_t>& numbers) const {
   std::vector<Root> roots;
   roots.reserve(points.size());
-  for (const CriticalPoint& point : points) roots.push_back({point, uint32_t(slab), true});
+  for (size_t i = 0; i < points.size(); ++i)
+    roots.push_back({points[i], numbers.empty() ? 0 : numbers[i], uint32_t(slab), true});
   const auto set = [&](uint32_t terminal, const Shared& shared) {
     Root& root = roots[terminal - first_[slab]];
     // A ball that is critical is the terminal of its own voxel: it is one, whoever asks.
-    root = {shared.point, shared.last, root.point.position == shared.point.position};
+    root = {shared.point, shared.number, shared.last, root.point.position == shared.point.position};
   };
   for (auto shared = sharedFrom(first_[slab]); shared != sharedFrom(first_[slab + 1]); ++shared)
     set(shared->terminal, *shared);
@@ -140,10 +146,12 @@ std::vector<SlabGraph::Root> SlabGraph::rootsOf(size_t slab,
   return roots;
 }
 
-SlabGraph::Part SlabGraph::nextPart(const SlabTerminals& terminals, const std::vector<Edge>& below,
+SlabGraph::Part SlabGraph::nextPart(const SlabTerminals& terminals,
+                                    const std::vector<uint32_t>& numbers,
+                                    const std::vector<Edge>& below,
                                     const std::vector<Edge>& above) {
   const size_t slab = parts_++;
-  std::vector<Root> roots = rootsOf(slab, terminals.points);
+  std::vector<Root> roots = rootsOf(slab, terminals.points, numbers);
 
   Part part;
   ManifoldGraph& graph = part.graph;
@@ -152,9 +160,11 @@ SlabGraph::Part SlabGraph::nextPart(const SlabTerminals& terminals, const std::v
   for (const Edge& edge : below) nodes.push_back(rootsBelow_[edge.first].point);
   graph.nodes = sortedNodes(std::move(nodes));
 
+  part.number.assign(graph.nodes.size(), 0);
   part.goesOn.assign(graph.nodes.size(), 0);
   const auto nodeOf = [&](const Root& root) {
     const uint32_t node = nodeAt(graph, root.point.position);
+    part.number[node] = root.number;
     if (root.last > slab) part.goesOn[node] = 1;
     return node;
   };

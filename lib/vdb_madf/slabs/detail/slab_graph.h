@@ -35,17 +35,20 @@ class SlabGraph {
   /// When all is answered.
   void finish();
 
-  /// Has a slab critical points that others lead to? Their D is to be told then, for all slabs, before
-  /// the first part is made.
+  /// Has a slab critical points that others lead to? Their D and numbers are to be told then, for all
+  /// slabs, before the first part is made.
+  /// @param numbers of the terminals that are critical, as in GraphPart; empty: not wanted
   bool isShared(size_t slab) const;
-  void tellShared(size_t slab, const std::vector<CriticalPoint>& points);
+  void tellShared(size_t slab, const std::vector<CriticalPoint>& points,
+                  const std::vector<uint32_t>& numbers);
 
   /// The part of a slab, with its contacts to the slab below.
   struct Part : GraphPart {
     std::vector<uint32_t> nodeOf;  ///< of each terminal of the slab
   };
   /// Of the next slab, from the lowest on. @param below, above its contacts (SlabTerminals::contacts())
-  Part nextPart(const SlabTerminals& terminals, const std::vector<ManifoldGraph::Edge>& below,
+  Part nextPart(const SlabTerminals& terminals, const std::vector<uint32_t>& numbers,
+                const std::vector<ManifoldGraph::Edge>& below,
                 const std::vector<ManifoldGraph::Edge>& above);
 
  private:
@@ -59,10 +62,12 @@ class SlabGraph {
     uint32_t terminal;
     uint32_t last;  ///< the highest slab with such a terminal
     CriticalPoint point{};
+    uint32_t number = 0;
   };
   /// Where a terminal leads to.
   struct Root {
     CriticalPoint point;
+    uint32_t number;
     uint32_t last;    ///< the highest slab with a terminal that leads there
     bool isTerminal;  ///< is the terminal itself critical?
   };
@@ -71,7 +76,8 @@ class SlabGraph {
   size_t slabOfTerminal(uint32_t terminal) const;
   const Foreign* findForeign(uint32_t terminal) const;
   std::vector<Shared>::const_iterator sharedFrom(uint32_t terminal) const;
-  std::vector<Root> rootsOf(size_t slab, const std::vector<CriticalPoint>& points) const;
+  std::vector<Root> rootsOf(size_t slab, const std::vector<CriticalPoint>& points,
+                            const std::vector<uint32_t>& numbers) const;
 
   std::vector<int> cuts_;
   std::vector<uint32_t> first_{0};  // terminal of each slab; one more at the end

@@ -7,10 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/leaves/leaf_grid.h"
 #include "vdb_madf/method/detail/tidy_steps.h"
-#include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/slabs/detail/slab_pieces.h"
 #include "vdb_madf/slabs/detail/slab_smoothing.h"
 
@@ -37,7 +35,7 @@ class SlabLabels {
  public:
   SlabLabels(SlabWork& work, SlabSegmentation& result) : work_(work), result_(result) {}
 
-  void run(std::vector<Coord> representatives, const PutSlabLabels& put) {
+  void run(std::vector<Coord> representatives, const PutLabels& put) {
     grains_.representative = std::move(representatives);
     const bool isTidied = work_.options.tidy > 0 && result_.counts.objectVoxels > 0;
     if (isTidied) {
@@ -49,6 +47,7 @@ class SlabLabels {
                       [&](size_t s) {
                         work_.remove("labels", s);
                         work_.remove("flow", s);
+                        work_.removeMessage(kGraphPart, SlabWork::kRoot, s);
                       });
     if (!work_.isRoot()) return;
     for (size_t s = 0; s < work_.slabCount(); ++s)
@@ -68,9 +67,9 @@ class SlabLabels {
     return labels;
   }
 
-  void putLabels(size_t s, bool isTidied, const PutSlabLabels& put) {
+  void putLabels(size_t s, bool isTidied, const PutLabels& put) {
     if (result_.counts.objectVoxels == 0) {
-      put(s, toGrid(SlabBody(), {}));
+      put(s, SlabBody(), {});
       work_.write("put", s, {});
       return;
     }
@@ -80,25 +79,9 @@ class SlabLabels {
     for (const LooseVoxel& voxel : work_.receiveVector<LooseVoxel>("refilled", SlabWork::kRoot, s))
       labels[slab.index.rank(*slab.index.findVoxel(voxel.position))] = voxel.label;
     const auto counts = countLabels(labels);
-    put(s, toGrid(slab, std::move(labels)));
+    put(s, slab, std::move(labels));
     work_.sendVector("counts", s, SlabWork::kRoot, counts);
     work_.write("put", s, {});
-  }
-
-  Int32Grid::Ptr toGrid(const SlabBody& slab, VoxelArray<uint32_t> labels) const {
-    const Int32Grid::Ptr grain =
-        vdb_madf::toGrid(slab.index, std::move(labels), "grain", work_.interrupter);
-    removeVoxels(*grain, slab.index, slab.cavities);
-    copyProvenance(*work_.object.about, *grain);
-    if (work_.domain) setDomain(*grain, *work_.domain);
-    Segmentation about;
-    about.counts = result_.counts;
-    about.fillHoles = result_.fillHoles;
-    about.tidy = result_.tidy;
-    about.open = result_.open;
-    about.weights = result_.weights;
-    describeSegmentation(*grain, work_.options, about);
-    return grain;
   }
 
   struct LabelCount {
@@ -294,6 +277,13 @@ class SlabLabels {
 
 }  // namespace
 
+Int32Grid::Ptr slabGrid(const SlabWork& work, const SlabBody& body, VoxelArray<uint32_t> values,
+                        const char* name) {
+  const Int32Grid::Ptr grid = toGrid(body.index, std::move(values), name, work.interrupter);
+  removeVoxels(*grid, body.index, body.cavities);
+  return grid;
+}
+
 void writeRims(SlabWork& work, size_t slab, const SlabBody& body, VoxelArray<uint32_t> manifold) {
   const int rounds = work.options.tidy, reach = (rounds + 7) / 8 * 8;
   if (rounds == 0) return;
@@ -304,7 +294,7 @@ void writeRims(SlabWork& work, size_t slab, const SlabBody& body, VoxelArray<uin
 }
 
 void labelSlabs(SlabWork& work, std::vector<Coord> representatives, SlabSegmentation& result,
-                const PutSlabLabels& put) {
+                const PutLabels& put) {
   SlabLabels(work, result).run(std::move(representatives), put);
 }
 

@@ -42,9 +42,8 @@ LeafLabels labelsBetween(const LeafIndex& index, const VoxelArray<uint32_t>& lab
   return result;
 }
 
-void smoothSlab(const LeafIndex& index, const LeafLabels& below, const LeafLabels& above,
-                const Anchors& anchors, int rounds, VoxelArray<uint32_t>& labels,
-                Interrupter* interrupter) {
+LabelWindow labelWindow(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+                        const LeafLabels& below, const LeafLabels& above) {
   std::vector<Source> sources;
   addSources(below, sources);
   addSources(above, sources);
@@ -55,14 +54,23 @@ void smoothSlab(const LeafIndex& index, const LeafLabels& below, const LeafLabel
             [](const Source& a, const Source& b) { return a.leaf.origin < b.leaf.origin; });
   std::vector<LeafIndex::LeafVoxels> leaves;
   for (const Source& source : sources) leaves.push_back(source.leaf);
-  const LeafIndex window(LeafIndex(), leaves);
+  LabelWindow window;
+  window.index = LeafIndex(LeafIndex(), leaves);
+  window.labels = VoxelArray<uint32_t>(size_t(window.index.voxelCount()));
+  for (size_t leaf = 0; leaf < window.index.leafCount(); ++leaf)
+    std::copy_n(sources[leaf].labels, window.index.leafVoxels(leaf),
+                window.labels.data() + window.index.firstRank(leaf));
+  return window;
+}
 
+void smoothSlab(const LeafIndex& index, const LeafLabels& below, const LeafLabels& above,
+                const Anchors& anchors, int rounds, VoxelArray<uint32_t>& labels,
+                Interrupter* interrupter) {
+  LabelWindow all = labelWindow(index, labels, below, above);
+  const LeafIndex& window = all.index;
   GrainLabels grains;
-  grains.label = VoxelArray<uint32_t>(size_t(window.voxelCount()));
+  grains.label = std::move(all.labels);
   grains.voxels.assign(anchors.size(), 0);
-  for (size_t leaf = 0; leaf < window.leafCount(); ++leaf)
-    std::copy_n(sources[leaf].labels, window.leafVoxels(leaf),
-                grains.label.data() + window.firstRank(leaf));
   std::vector<VoxelId> anchorIds(anchors.size(), kNoAnchor);
   for (size_t g = 0; g < anchors.size(); ++g)
     if (window.boundingBox().isInside(anchors[g]))

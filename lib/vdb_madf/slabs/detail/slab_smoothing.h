@@ -23,6 +23,14 @@ struct LeafLabels {
 LeafLabels labelsBetween(const LeafIndex& index, const VoxelArray<uint32_t>& labels, int begin,
                          int end);
 
+/// A slab with what lies beyond its cuts.
+struct LabelWindow {
+  LeafIndex index;
+  VoxelArray<uint32_t> labels;
+};
+LabelWindow labelWindow(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+                        const LeafLabels& below, const LeafLabels& above);
+
 /// The voxels that must not change, of grain g at g - 1.
 using Anchors = std::vector<Coord>;
 

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "vdb_madf/leaves/detail/connected_components.h"
+#include "vdb_madf/method/label_flaws.h"
+
+// The parts of labelFlaws(), for labels that come in several windows.
+
+namespace vdb_madf::detail {
+
+/// What is known of grain g, at g - 1, by the voxels that were looked at.
+struct GrainFlags {
+  explicit GrainFlags(size_t grains) : deep(grains, 0), touching(grains, 0) {}
+  std::vector<char> deep;      ///< has a voxel that is two layers deep
+  std::vector<char> touching;  ///< has a voxel beside another grain
+};
+
+/// Sets the flags that the voxels of an index show. Whether a grain touches another is looked up if it is
+/// not deep, or one of \p small.
+void findFlags(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+               const ConnectedComponents& components, const std::optional<Domain>& domain,
+               const std::vector<char>& small, GrainFlags& flags, Interrupter* interrupter);
+
+/// @param pieces how many each grain is in
+LabelFlaws countFlaws(const GrainFlags& flags, const std::vector<int64_t>& grainVoxels,
+                      const std::vector<uint32_t>& pieces);
+
+}  // namespace vdb_madf::detail

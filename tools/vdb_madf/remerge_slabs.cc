@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "remerge_slabs.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <utility>
+
+#include "json_file.h"
+#include "part_folder.h"
+#include "segment_slabs.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/version.h"
+#include "vdb_madf/files/read_text.h"
+#include "vdb_madf/measure/grain_sizes.h"
+#include "vdb_madf/method/segmentation_metadata.h"
+#include "vdb_madf/slabs/remerge_slabs.h"
+#include "vdb_madf/vdb/read_vdb.h"
+#include "vdb_madf/vdb/slab_folder.h"
+
+namespace vdb_madf::tools {
+
+namespace {
+
+/// What index.json of a folder says, brought up to date. openSlabFolder() has read it before.
+Json newIndex(const std::string& folder, const MergeOptions& merge, int tidy,
+              const std::vector<int64_t>& grainVoxels) {
+  constexpr uint64_t kMostBytes = uint64_t(1) << 28;
+  Json index =
+      Json::parse(readText((std::filesystem::path(folder) / kSlabIndex).string(), kMostBytes));
+  const GrainSizes sizes = grainSizes(grainVoxels);
+  index["version"] = kVersion;
+  index["grains"] = grainVoxels.size();
+  index["grains_under_100_voxels"] = sizes.dustGrains;
+  index["voxels_in_grains_under_100_voxels"] = sizes.dustVoxels;
+  index["grain_diameter_d10_voxels"] = sizes.d10;
+  index["grain_diameter_d50_voxels"] = sizes.d50;
+  index["grain_diameter_d90_voxels"] = sizes.d90;
+  index["theta"] = merge.theta;
+  index["merge"] = toString(merge.mode);
+  index["adjacency"] = toString(merge.adjacency);
+  index["delta"] = merge.delta;
+  index["tidy"] = tidy;
+  return index;
+}
+
+}  // namespace
+
+bool hasManifolds(const std::vector<openvdb::GridBase::Ptr>& grids) {
+  return std::any_of(grids.begin(), grids.end(), [](const auto& grid) {
+    return grid->getName() == kManifoldGrid && grid->template isType<Int32Grid>();
+  });
+}
+
+ScratchFolder::~ScratchFolder() {
+  scratch_.removeAll();
+}
+
+LabelSlabs openManifoldSlabs(const InputOptions& input, Progress* progress) {
+  if (!hasManifolds(readVdbHeaders(input.path, progress)))
+    throw InvalidInput(input.path + ": holds no manifolds: segment again with --keep manifold");
+  InputOptions manifolds = input;
+  manifolds.gridName = kManifoldGrid;
+  return openLabelSlabs(manifolds, "--grid", progress);
+}
+
+void remergeInSlabs(const InputOptions& input, const std::string& out, const MergeOptions& merge,
+                    int tidy, const Common& common) {
+  common.progress->start("read");
+  const LabelSlabs manifolds = openManifoldSlabs(input, common.progress);
+  const PartFolder folder(out);
+  std::optional<ScratchFolder> scratch(std::in_place, folder.file("scratch"));
+  const std::vector<int64_t> voxels = withFileName(input.path, [&] {
+    return remergeSlabs(
+        manifolds, merge, tidy, scratch->scratch(),
+        [&](size_t slab, const Int32Grid::Ptr& grain) {
+          const Int32Grid::Ptr manifold = manifolds.read(slab, common.progress);
+          describeMerging(*manifold, merge, tidy, *grainCount(*grain));
+          writeSlab(folder.file(slabFileName(slab)), {grain, manifold}, slab, manifolds.slabCount(),
+                    common.progress);
+        },
+        common.progress);
+  });
+  scratch.reset();
+  JsonFile(folder.file(kSlabIndex)).write(newIndex(input.path, merge, tidy, voxels));
+  folder.commit();
+  common.progress->end();
+  if (!common.quiet)
+    std::cout << out << ": " << counted(int64_t(voxels.size()), "grain") << " in "
+              << counted(int64_t(manifolds.slabCount()), "slab") << "\n";
+}
+
+}  // namespace vdb_madf::tools

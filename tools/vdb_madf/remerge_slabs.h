@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "command.h"
+#include "input_options.h"
+#include "vdb_madf/method/merge.h"
+#include "vdb_madf/slabs/folder_scratch.h"
+
+namespace vdb_madf::tools {
+
+constexpr char kManifoldGrid[] = "manifold";
+
+/// Are there manifolds among the grids of a file?
+bool hasManifolds(const std::vector<openvdb::GridBase::Ptr>& grids);
+/// The manifolds in a folder of slabs. @throw InvalidInput if it has none
+LabelSlabs openManifoldSlabs(const InputOptions& input, Progress* progress);
+
+/// What `remerge` does from a folder of slabs to another one, slab by slab; OUT.slabs appears whole.
+void remergeInSlabs(const InputOptions& input, const std::string& out, const MergeOptions& merge,
+                    int tidy, const Common& common);
+
+/// Scratch data in a folder, which goes again.
+class ScratchFolder {
+ public:
+  /// @throw as FolderScratch
+  explicit ScratchFolder(const std::string& path) : scratch_(path, "", false) {}
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  Scratch& scratch() { return scratch_; }
+
+ private:
+  FolderScratch scratch_;
+};
+
+}  // namespace vdb_madf::tools
