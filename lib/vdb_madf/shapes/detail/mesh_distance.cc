@@ -7,6 +7,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 namespace vdb_madf::detail {
@@ -41,15 +42,11 @@ int ceilOf(double value) {
 struct Range {
   double low, high;
 
-  void include(const Range& o) {
-    low = std::min(low, o.low);
-    high = std::max(high, o.high);
+  void include(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
   }
 };
-
-Range rangeOf(double a, double b) {
-  return {std::min(a, b), std::max(a, b)};
-}
 
 /// The squared distances of a block, with voxels more on both sides along z, which nobody reads.
 class BlockDistances {
@@ -61,6 +58,7 @@ class BlockDistances {
         width_((2 * steps_ + 2 + 7) / 8 * 8),
         beside_(width_),
         rowLength_(box.dim().z() + 2 * beside_),
+        layerLength_(box.dim().y() * rowLength_),
         squares_(size_t(box.dim().x()) * size_t(box.dim().y()) * size_t(rowLength_),
                  reach * reach) {}
 
@@ -98,78 +96,83 @@ class BlockDistances {
     const Vec3d ab = b - a, ac = c - a, normal = ab.cross(ac);
     const double area = normal.lengthSqr();  // of the parallelogram, squared
     if (area == 0) return;
-    const int axis = longest(normal), u = (axis + 1) % 3, v = (axis + 2) % 3;
-    const double slopeU = normal[u] / normal[axis], slopeV = normal[v] / normal[axis],
-                 height = reach_ * std::abs(normal[axis]) / std::sqrt(area);
-    Range alongU{kFar, -kFar}, alongV = alongU, heights = alongU;  // at height 0 along the normal
-    for (const Vec3d* corner : {&a, &b, &c}) {
-      const Vec3d& p = *corner;
-      alongU.include({p[u] - p[axis] * slopeU, p[u] - p[axis] * slopeU});
-      alongV.include({p[v] - p[axis] * slopeV, p[v] - p[axis] * slopeV});
-      heights.include({p[axis] - height, p[axis] + height});
-    }
-    const double bb = ab.lengthSqr(), cc = ac.lengthSqr(), bc = ab.dot(ac), least = -kBeside * area,
-                 most = area - 2 * least;
-    forEachIn(
-        axis, heights,
-        [&](double k) {
-          return std::pair(Range{alongU.low + k * slopeU, alongU.high + k * slopeU},
-                           Range{alongV.low + k * slopeV, alongV.high + k * slopeV});
-        },
-        [&](const Vec3d& p, float& square) {
-          const Vec3d away = p - a;
-          const double alongB = away.dot(ab), alongC = away.dot(ac),
-                       toB = cc * alongB - bc * alongC, toC = bb * alongC - bc * alongB;
-          if (toB < least || toC < least || toB + toC > most) return;
-          const double up = away.dot(normal);
-          square = std::min(square, float(up * up / area));
-        });
+    withAxis(longest(normal), [&](auto axis) {
+      constexpr int kW = axis, kU = (kW + 1) % 3, kV = (kW + 2) % 3;
+      const double down = 1 / normal[kW], slopeU = normal[kU] * down, slopeV = normal[kV] * down,
+                   height = reach_ * std::abs(normal[kW]) / std::sqrt(area);
+      Range alongU{kFar, -kFar}, alongV = alongU, heights = alongU;  // where w is 0
+      for (const Vec3d* corner : {&a, &b, &c}) {
+        const Vec3d& p = *corner;
+        alongU.include(p[kU] - p[kW] * slopeU);
+        alongV.include(p[kV] - p[kW] * slopeV);
+        heights.include(p[kW]);
+      }
+      // Products with these are the area times the weights of b and c.
+      const double bb = ab.lengthSqr(), cc = ac.lengthSqr(), bc = ab.dot(ac);
+      const Vec3d toB = cc * ab - bc * ac, toC = bb * ac - bc * ab;
+      const double least = -kBeside * area, most = area - 2 * least, scale = 1 / area;
+      forEachIn<kW>(
+          {heights.low - height, heights.high + height},
+          [&](double w) {
+            return std::pair(Range{alongU.low + w * slopeU, alongU.high + w * slopeU},
+                             Range{alongV.low + w * slopeV, alongV.high + w * slopeV});
+          },
+          [&](double w, double u, double v, float& square) {
+            const double dw = w - a[kW], du = u - a[kU], dv = v - a[kV],
+                         weightB = toB[kW] * dw + toB[kU] * du + toB[kV] * dv,
+                         weightC = toC[kW] * dw + toC[kU] * du + toC[kV] * dv;
+            if (weightB < least || weightC < least || weightB + weightC > most) return;
+            const double up = normal[kW] * dw + normal[kU] * du + normal[kV] * dv;
+            square = std::min(square, float(up * up * scale));
+          });
+    });
   }
 
   /// The edge from a to b of two triangles with these unit normals (0: they have no area); `isConvex`
   /// if the second one bends away from the normal of the first.
   void addEdge(const Vec3d& a, const Vec3d& b, Vec3d one, Vec3d other, bool isConvex) {
     const double cosine = one.dot(other);
-    if (cosine > 1 - kFlat) return;
+    const Vec3d edge = b - a;
+    if (cosine > 1 - kFlat || edge == Vec3d(0)) return;
     if (!isConvex) {
       one = -one;
       other = -other;
     }
-    const Vec3d middle = one + other, edge = b - a;
-    const double length = edge.lengthSqr();
-    if (length == 0) return;
-    // What is within reach between the normals is a sum of them whose weights are at most this one.
     const bool isWide = cosine < kWide || one == Vec3d(0) || other == Vec3d(0);
-    const double weight = isWide ? 0 : reach_ * std::sqrt(2 / (1 + cosine));
-    std::array<Range, 3> box;
-    for (int i = 0; i < 3; ++i) {
-      const Range normals =
-          isWide ? Range{-kFar, kFar} : rangeOf(weight * one[i], weight * other[i]);
-      box[size_t(i)] = {std::min(a[i], b[i]) + std::clamp(normals.low, -reach_, 0.0),
-                        std::max(a[i], b[i]) + std::clamp(normals.high, 0.0, reach_)};
-    }
-    const int axis = longest(middle), u = (axis + 1) % 3, v = (axis + 2) % 3;
-    const auto measure = [&](const Vec3d& p, float& square) {
-      const Vec3d away = p - a;
-      const double along = away.dot(edge);
-      if (along < 0 || along > length) return;  // nearer to an end
-      square = std::min(square, float((away - along / length * edge).lengthSqr()));
-    };
-    // In a slice across the axis the wedge is what lies between the normals from both ends.
-    const double sign = middle[axis] < 0 ? -1 : 1;
-    const bool isBox = isWide || std::min(sign * one[axis], sign * other[axis]) < kLeastSlope;
-    const auto across = [&](double k, int side) {
-      const Range& range = box[size_t(side)];
-      if (isBox) return range;
-      const double slope = one[side] / one[axis], slope2 = other[side] / other[axis],
-                   up = k - a[axis], up2 = k - b[axis];
-      Range lines = rangeOf(a[side] + up * slope, a[side] + up * slope2);
-      lines.include(rangeOf(b[side] + up2 * slope, b[side] + up2 * slope2));
-      return Range{std::max(range.low, lines.low), std::min(range.high, lines.high)};
-    };
-    forEachIn(
-        axis, box[size_t(axis)], [&](double k) { return std::pair(across(k, u), across(k, v)); },
-        measure);
+    const std::array<Range, 3> box =
+        isWide ? boxOfWedge(a, b, Vec3d(-reach_), Vec3d(reach_))
+               // What is within reach is a sum of the normals whose weights are at most this one.
+               : boxOfWedge(a, b, one * (reach_ * std::sqrt(2 / (1 + cosine))),
+                            other * (reach_ * std::sqrt(2 / (1 + cosine))));
+    const double scale = 1 / edge.lengthSqr();
+    withAxis(longest(one + other), [&](auto axis) {
+      constexpr int kW = axis, kU = (kW + 1) % 3, kV = (kW + 2) % 3;
+      const double sign = one[kW] + other[kW] < 0 ? -1 : 1;
+      const bool isBox = isWide || std::min(sign * one[kW], sign * other[kW]) < kLeastSlope;
+      const double down = isBox ? 0 : 1 / one[kW], otherDown = isBox ? 0 : 1 / other[kW];
+      // In a slice across the axis the wedge is what lies between the normals from both ends.
+      const auto across = [&](double w, int side) {
+        const Range& range = box[size_t(side)];
+        if (isBox) return range;
+        const double slope = one[side] * down, otherSlope = other[side] * otherDown, up = w - a[kW],
+                     upB = w - b[kW];
+        Range lines{a[side] + up * slope, a[side] + up * slope};
+        lines.include(a[side] + up * otherSlope);
+        lines.include(b[side] + upB * slope);
+        lines.include(b[side] + upB * otherSlope);
+        return Range{std::max(range.low, lines.low), std::min(range.high, lines.high)};
+      };
+      forEachIn<kW>(
+          box[size_t(kW)], [&](double w) { return std::pair(across(w, kU), across(w, kV)); },
+          [&](double w, double u, double v, float& square) {
+            const double dw = w - a[kW], du = u - a[kU], dv = v - a[kV],
+                         along = (edge[kW] * dw + edge[kU] * du + edge[kV] * dv) * scale;
+            if (along < 0 || along > 1) return;  // nearer to an end
+            const double x = dw - along * edge[kW], y = du - along * edge[kU],
+                         z = dv - along * edge[kV];
+            square = std::min(square, float(x * x + y * y + z * z));
+          });
+    });
   }
 
   std::vector<float> squares() const {
@@ -193,33 +196,59 @@ class BlockDistances {
   }
 
   size_t place(int x, int y, int z) const {
-    return (size_t(x - box_.min().x()) * size_t(box_.dim().y()) + size_t(y - box_.min().y())) *
-               size_t(rowLength_) +
-           size_t(z - box_.min().z() + beside_);
+    return size_t((x - box_.min().x()) * layerLength_ + (y - box_.min().y()) * rowLength_ + z -
+                  box_.min().z() + beside_);
   }
 
-  /// f(place, square) for the voxels of the block in ranges across an axis: those of the slice k
-  /// along it are rectangleOf(k), along the two axes after it.
-  template <typename RectangleOf, typename F>
-  void forEachIn(int axis, const Range& heights, const RectangleOf& rectangleOf, const F& f) {
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    Coord p;
-    const int first = std::max(ceilOf(heights.low - kSlack), box_.min()[axis]),
-              last = std::min(floorOf(heights.high + kSlack), box_.max()[axis]);
-    for (p[axis] = first; p[axis] <= last; ++p[axis]) {
-      const auto [alongU, alongV] = rectangleOf(double(p[axis]));
-      const int lastU = std::min(floorOf(alongU.high + kSlack), box_.max()[u]),
-                firstV = std::max(ceilOf(alongV.low - kSlack), box_.min()[v]),
-                lastV = std::min(floorOf(alongV.high + kSlack), box_.max()[v]);
-      for (p[u] = std::max(ceilOf(alongU.low - kSlack), box_.min()[u]); p[u] <= lastU; ++p[u])
-        for (p[v] = firstV; p[v] <= lastV; ++p[v])
-          f(p.asVec3d(), squares_[place(p.x(), p.y(), p.z())]);
+  /// f(axis), a constant when compiling.
+  template <typename F>
+  static void withAxis(int axis, const F& f) {
+    if (axis == 0)
+      f(std::integral_constant<int, 0>());
+    else if (axis == 1)
+      f(std::integral_constant<int, 1>());
+    else
+      f(std::integral_constant<int, 2>());
+  }
+
+  /// The voxels of an edge's wedge, whose ends of the reach have normals to them between two steps;
+  /// within reach along each axis.
+  std::array<Range, 3> boxOfWedge(const Vec3d& a, const Vec3d& b, const Vec3d& step,
+                                  const Vec3d& otherStep) const {
+    std::array<Range, 3> box;
+    for (int i = 0; i < 3; ++i)
+      box[size_t(i)] = {
+          std::min(a[i], b[i]) + std::clamp(std::min(step[i], otherStep[i]), -reach_, 0.0),
+          std::max(a[i], b[i]) + std::clamp(std::max(step[i], otherStep[i]), 0.0, reach_)};
+    return box;
+  }
+
+  /// f(w, u, v, square) for voxels of the block, by their places along the axis W and the two after it:
+  /// in each slice w of a range those of rectangleOf(w).
+  template <int kW, typename RectangleOf, typename F>
+  void forEachIn(const Range& heights, const RectangleOf& rectangleOf, const F& f) {
+    constexpr int kU = (kW + 1) % 3, kV = (kW + 2) % 3;
+    const Coord low = box_.min(), high = box_.max();
+    const int lastW = std::min(floorOf(heights.high + kSlack), high[kW]);
+    for (int w = std::max(ceilOf(heights.low - kSlack), low[kW]); w <= lastW; ++w) {
+      const auto [alongU, alongV] = rectangleOf(double(w));
+      const int lastU = std::min(floorOf(alongU.high + kSlack), high[kU]),
+                firstV = std::max(ceilOf(alongV.low - kSlack), low[kV]),
+                lastV = std::min(floorOf(alongV.high + kSlack), high[kV]);
+      for (int u = std::max(ceilOf(alongU.low - kSlack), low[kU]); u <= lastU; ++u)
+        for (int v = firstV; v <= lastV; ++v) {
+          Coord p;
+          p[kW] = w;
+          p[kU] = u;
+          p[kV] = v;
+          f(double(w), double(u), double(v), squares_[place(p.x(), p.y(), p.z())]);
+        }
     }
   }
 
   CoordBBox box_;
   double reach_;
-  int steps_, width_, beside_, rowLength_;
+  int steps_, width_, beside_, rowLength_, layerLength_;
   std::vector<float> squares_;
 };
 

@@ -143,19 +143,22 @@ class NetBuilder {
   /// The corners of a block as they are met: each is one of many quads.
   class CornerCache {
    public:
-    explicit CornerCache(const LabelHalo& halo) : halo_(halo) {}
-
+    /// Another block.
+    void begin(const LabelHalo& halo) {
+      halo_ = &halo;
+      isKnown_.reset();
+    }
     const Corner& at(const Coord& p) {
       const size_t place = tableAt(p.x(), p.y(), p.z());
       if (!isKnown_[place]) {
-        corners_[place] = Corner(&halo_[haloAt(p.x(), p.y(), p.z())]);
+        corners_[place] = Corner(&(*halo_)[haloAt(p.x(), p.y(), p.z())]);
         isKnown_[place] = true;
       }
       return corners_[place];
     }
 
    private:
-    const LabelHalo& halo_;
+    const LabelHalo* halo_ = nullptr;
     std::array<Corner, kSide * kSide * kSide> corners_;
     std::bitset<kSide * kSide * kSide> isKnown_;
   };
@@ -163,10 +166,12 @@ class NetBuilder {
   void makeQuads(size_t block, const LabelHalo& halo) {
     CornerTable table;
     readCorners(block, table);
-    CornerCache corners(halo);
+    CornerCache& corners = caches_.local();
+    corners.begin(halo);
     uint32_t next = firstQuad_[block];
     const Coord origin = blocks_.origin(block);
     forEachPlace([&](int x, int y, int z) {
+      if (table[tableAt(x, y, z)] == SurfaceNet::kNone) return;  // all is alike around it
       const int32_t* at = &halo[haloAt(x, y, z)];
       const Coord p = origin.offsetBy(x, y, z);
       for (int axis = 0; axis < 3; ++axis) {
@@ -304,6 +309,7 @@ class NetBuilder {
   std::vector<uint32_t> quadGrain_;
   std::vector<int32_t> quadBeyond_;
   std::vector<std::vector<std::array<uint32_t, 2>>> pinches_;  // per block
+  PerThread<CornerCache> caches_;
   SurfaceNet net_;
 };
 

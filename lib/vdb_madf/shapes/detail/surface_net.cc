@@ -57,7 +57,7 @@ class Relaxation {
         }
         const Vec3d here(positions_[i]);
         next_[i] = withinReach(home(net_.corners[i]), here + kStep * (sum / count - here),
-                              kCornerReach, domain_);
+                               kCornerReach, domain_);
       }
     });
     positions_.swap(next_);
