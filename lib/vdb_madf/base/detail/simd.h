@@ -4,8 +4,9 @@
 #pragma once
 
 // Functions marked VDB_MADF_SIMD are compiled for several instruction sets; the best one is chosen
-// when the program starts. All give the same bits: integer arithmetic only (and divisions that are
-// exact). VDB_MADF_SIMD_LEVEL (CMake) leaves out the wider ones: 4 by default, 3, or 0 for none.
+// when the program starts. All give the same bits: integer arithmetic, or single operations of
+// floating point, which are rounded alike (-ffp-contract=off). VDB_MADF_SIMD_LEVEL (CMake) leaves out
+// the wider ones: 4 by default, 3, or 0 for none.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #if VDB_MADF_SIMD_LEVEL >= 4
