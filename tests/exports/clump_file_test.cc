@@ -9,9 +9,12 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <random>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "support/files.h"
 #include "support/label_shapes.h"
@@ -73,6 +76,32 @@ Truth measured(const LabelMap& voxels, const Clump& clump) {
   return truth;
 }
 
+/// Each ball in turn the one that covers most, found by asking all of them.
+std::vector<Coord> greedyCenters(const LabelMap& voxels, const LabelMap& balls, size_t most) {
+  std::set<Coord> uncovered;
+  for (const auto& [p, label] : voxels) uncovered.insert(p);
+  std::vector<Coord> chosen;
+  while (chosen.size() < most) {
+    const auto covers = [](const auto& ball, const Coord& p) {
+      const Coord away = p - ball.first;
+      return away.x() * away.x() + away.y() * away.y() + away.z() * away.z() < ball.second;
+    };
+    std::pair<int64_t, int32_t> best{0, 0};
+    auto winner = balls.end();
+    for (auto ball = balls.begin(); ball != balls.end(); ++ball) {
+      int64_t gain = 0;
+      for (const Coord& p : uncovered) gain += covers(*ball, p);
+      // Centers ascend: of equal balls the first stays.
+      if (std::pair(gain, ball->second) > best) best = {gain, (winner = ball)->second};
+    }
+    if (best.first == 0) break;
+    chosen.push_back(winner->first);
+    for (auto p = uncovered.begin(); p != uncovered.end();)
+      p = covers(*winner, *p) ? uncovered.erase(p) : std::next(p);
+  }
+  return chosen;
+}
+
 }  // namespace
 
 TEST_CASE("clumps: cover, excess and distance are those of the voxels", "[clumps]") {
@@ -111,6 +140,28 @@ TEST_CASE("clumps: the ball that covers most comes first", "[clumps]") {
   CHECK(made[0].balls[1].center == Coord(11, 0, 0));
   CHECK(made[0].farthest < 2);
   CHECK(std::abs(made[0].volumeError()) < 0.02);
+}
+
+TEST_CASE("clumps: the balls that a search of all of them finds", "[clumps]") {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    INFO("seed " << seed);
+    std::mt19937 random(seed);
+    // Longer than two words of bits along z, across the origin.
+    LabelMap voxels, balls;
+    for (int x = -3; x < 4; ++x)
+      for (int y = 5; y < 10; ++y)
+        for (int z = -71; z < 95; ++z) {
+          if (random() % 3 == 0) continue;
+          voxels[{x, y, z}] = 4;
+          // Small ones, some that are cut off, and some too large for one word.
+          if (random() % 40 == 0) balls[{x, y, z}] = 1 + int32_t(random() % 30);
+          if (random() % 400 == 0) balls[{x, y, z}] = 300 + int32_t(random() % 1000);
+        }
+    const auto made = clumps(*labelGrid(voxels), *labelGrid(balls), {60, 0});
+    std::vector<Coord> centers;
+    for (const Clump::Ball& ball : made[0].balls) centers.push_back(ball.center);
+    CHECK(centers == greedyCenters(voxels, balls, 60));
+  }
 }
 
 TEST_CASE("clumps: a ball whose center lies in a cavity is that of the grain around it",

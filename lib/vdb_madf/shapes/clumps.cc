@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <limits>
 #include <queue>
+#include <utility>
 
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
@@ -25,10 +27,12 @@ namespace vdb_madf {
 namespace {
 
 using Leaf = Int32Tree::LeafNodeType;
+using detail::BallRows;
 using detail::BitBox;
 using openvdb::Index;
 
-int64_t gain(BitBox& uncovered, const Clump::Ball& ball) {
+int64_t gain(BitBox& uncovered, const Clump::Ball& ball, const BallRows& rows) {
+  if (!rows.masks.empty()) return uncovered.count(ball, rows);
   int64_t sum = 0;
   uncovered.forEachWord(ball, [&](uint64_t word, uint64_t mask, const Coord&) {
     sum += detail::countBits(word & mask);
@@ -52,18 +56,32 @@ struct Candidate {
   }
 };
 
-/// Lazy greedy cover (Minoux 1978).
+CoordBBox boxOf(const std::vector<Clump::Ball>& balls, const VoxelWeights& weights) {
+  CoordBBox box;
+  for (const Clump::Ball& ball : balls) {
+    Coord reach;
+    for (int axis = 0; axis < 3; ++axis)
+      reach[axis] = int(std::sqrt(ball.squaredRadius / weights[axis]));
+    box.expand(CoordBBox(ball.center - reach, ball.center + reach));
+  }
+  return box;
+}
+
+/// Lazy greedy cover (Minoux 1978). At first a ball is thought to cover all its voxels: the smallest
+/// ones are never asked.
 void chooseBalls(const std::vector<Clump::Ball>& balls, const ClumpOptions& options,
-                 BitBox& uncovered, Clump& clump) {
+                 detail::BallRowsCache& rows, BitBox& uncovered, Clump& clump) {
   clump.uncovered = clump.voxels;
-  std::priority_queue<Candidate> queue;
-  for (const Clump::Ball& ball : balls) queue.push({gain(uncovered, ball), ball});
+  std::vector<Candidate> candidates;
+  for (const Clump::Ball& ball : balls)
+    candidates.push_back({rows.of(ball.squaredRadius).voxels, ball});
+  std::priority_queue<Candidate> queue(std::less<Candidate>(), std::move(candidates));
   const double enough = options.coverageError * double(clump.voxels);
   while (!queue.empty() && int(clump.balls.size()) < options.mostBalls &&
          double(clump.uncovered) > enough) {
     Candidate best = queue.top();
     queue.pop();
-    const int64_t now = gain(uncovered, best.ball);
+    const int64_t now = gain(uncovered, best.ball, rows.of(best.ball.squaredRadius));
     if (now == 0) continue;
     if (now < best.gain) {
       best.gain = now;
@@ -83,17 +101,6 @@ double distanceTo(const std::vector<Clump::Ball>& balls, const Coord& p,
     nearest = std::min(nearest, std::sqrt(double(detail::squaredBetween(p, ball.center, weights))) -
                                     std::sqrt(ball.squaredRadius));
   return std::max(nearest, 0.0);
-}
-
-CoordBBox boxOf(const std::vector<Clump::Ball>& balls, const VoxelWeights& weights) {
-  CoordBBox box;
-  for (const Clump::Ball& ball : balls) {
-    Coord reach;
-    for (int axis = 0; axis < 3; ++axis)
-      reach[axis] = int(std::sqrt(ball.squaredRadius / weights[axis]));
-    box.expand(CoordBBox(ball.center - reach, ball.center + reach));
-  }
-  return box;
 }
 
 /// The figures of a clump, from its balls and the voxels that they leave.
@@ -239,6 +246,7 @@ std::vector<Clump> weightedClumps(const Int32Grid& labels, const Int32Grid& ball
   CoordBBox bounds;
   for (const CoordBBox& box : grains.boxes) bounds.expand(box);
   std::vector<Clump> result(blocks.labels().size());
+  detail::PerThread<detail::BallRowsCache> rows(weights);
   detail::WorkPart choosing(interrupter, 0, options.apart ? 80 : 100);
   detail::parallelFor(result.size(), 1, &choosing, [&](size_t begin, size_t end) {
     for (size_t g = begin; g < end; ++g) {
@@ -247,7 +255,7 @@ std::vector<Clump> weightedClumps(const Int32Grid& labels, const Int32Grid& ball
       clump.voxels = blocks.voxelCounts()[g];
       if (options.apart) endAtOtherGrains(*tree, bounds, clump.label, weights, grains.balls[g]);
       BitBox uncovered = voxelsOfGrain(*tree, clump.label, grains.boxes[g], weights);
-      chooseBalls(grains.balls[g], options, uncovered, clump);
+      chooseBalls(grains.balls[g], options, rows.local(), uncovered, clump);
       if (!options.apart) measure(uncovered, weights, clump);
     }
   });

@@ -56,7 +56,7 @@ bool areBallsOfVoxels(const Int32Grid& labels, const Int32Grid& balls);
 /// center; of several such planes the nearest counts. A ball of which nothing is left is left out.
 ///
 /// Memory: one bit per voxel of the box of each grain that a thread works on, and with `apart` of the
-/// box of its balls, cut to that of all labels. The same for any number of threads.
+/// box of its balls, cut to that of all labels; up to 32 MiB a thread for the shapes of balls. The same for any number of threads.
 /// @throw InvalidInput for options out of range, or balls whose weights are not those of the labels'
 ///   voxels; Interrupted.
 std::vector<Clump> clumps(const Int32Grid& labels, const Int32Grid& balls,

@@ -4,6 +4,7 @@
 #include "vdb_madf/shapes/grain_mesh.h"
 
 #include <numeric>
+#include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
@@ -26,29 +27,18 @@ using openvdb::Vec3d;
 using openvdb::Vec3f;
 
 constexpr size_t kBlockGrain = 16;
-constexpr size_t kItemGrain = 1 << 16;
 constexpr int kMaxRounds = 1000;
 /// Along an axis, in voxels: so far points of a simplified mesh go to give the grains their volumes.
 constexpr float kSimplifiedReach = 1;
 
-/// Points by grain.
-GrainMesh assemble(const SharedMesh& shared, const std::vector<int32_t>& labels) {
+GrainMesh assemble(SharedMesh&& shared, const std::vector<int32_t>& labels) {
   GrainMesh mesh;
   mesh.labels = labels;
-  const detail::Lists points(shared.pointGrain, labels.size());
-  mesh.firstPoint = points.first;
-  mesh.firstTriangle = shared.firstTriangle;
-  mesh.points.resize(points.items.size());
-  std::vector<uint32_t> place(points.items.size());
-  for (uint32_t i = 0; i < place.size(); ++i) {
-    place[points.items[i]] = i;
-    mesh.points[i] = shared.positions[shared.pointSite[points.items[i]]];
-  }
-  mesh.triangles.resize(shared.triangles.size());
-  detail::parallelFor(mesh.triangles.size(), kItemGrain, nullptr, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      for (size_t n = 0; n < 3; ++n) mesh.triangles[i][n] = place[shared.triangles[i][n]];
-  });
+  mesh.firstPoint = shared.firstPoints();
+  mesh.firstTriangle = std::move(shared.firstTriangle);
+  mesh.triangles = std::move(shared.triangles);
+  mesh.points.reserve(shared.pointSite.size());
+  for (const uint32_t site : shared.pointSite) mesh.points.push_back(shared.positions[site]);
   return mesh;
 }
 
@@ -98,7 +88,7 @@ GrainMesh grainMesh(const Int32Grid& labels, const GrainMeshOptions& options,
     homes = mesh.positions;
     detail::correctVolumes(mesh, blocks.voxelCounts(), homes, kSimplifiedReach, domain, &ending);
   }
-  return assemble(mesh, blocks.labels());
+  return assemble(std::move(mesh), blocks.labels());
 }
 
 GrainMesh meshOfGrains(const Int32Grid& labels, const std::vector<int32_t>& grains,

@@ -3,21 +3,24 @@
 
 #include "vdb_madf/shapes/level_sets.h"
 
-#include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/SignedFloodFill.h>
+
+#include <cmath>
+#include <memory>
+#include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/detail/leaf_origins.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/grain_name.h"
+#include "vdb_madf/shapes/detail/mesh_distance.h"
 #include "vdb_madf/shapes/grain_mesh.h"
 
 namespace vdb_madf {
 
 namespace {
-
-using openvdb::Vec3s;
 
 constexpr float kMaxHalfWidth = 16;
 constexpr size_t kLeafGrain = 256;
@@ -25,48 +28,60 @@ constexpr size_t kLeafGrain = 256;
 void check(const Int32Grid& labels, const LevelSetOptions& options) {
   if (!(options.halfWidth >= 1) || options.halfWidth > kMaxHalfWidth)
     throw InvalidInput("the half width of the narrow band must lie between 1 and 16 voxels");
-  requireCubicVoxels(labels, "a level set");  // OpenVDB measures distances in voxels
+  requireCubicVoxels(labels, "a level set");  // OpenVDB's level sets have one edge
 }
 
-/// Makes the distances of the voxels of a label negative. \p labels: without tiles.
-void negateInside(FloatGrid& grid, const Int32Tree& labels, int32_t label) {
-  std::vector<FloatGrid::TreeType::LeafNodeType*> leaves;
-  grid.tree().getNodes(leaves);
-  detail::parallelFor(leaves.size(), kLeafGrain, nullptr, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) {
-      const auto* inside = labels.probeConstLeaf(leaves[n]->origin());
-      if (!inside) continue;
-      const int32_t* values = inside->buffer().data();
-      float* distances = leaves[n]->buffer().data();
-      for (auto voxel = leaves[n]->cbeginValueOn(); voxel; ++voxel)
-        if (detail::labelAt(*inside, values, voxel.pos()) == label)
-          distances[voxel.pos()] = -distances[voxel.pos()];
-    }
-  });
+using Leaf = FloatGrid::TreeType::LeafNodeType;
+
+/// The part of a level set in a box of voxels with these squared distances, if it has any voxel of
+/// the band; `inside`: the leaf of the labels, if there is one.
+std::unique_ptr<Leaf> makeLeaf(const Coord& origin, const CoordBBox& box,
+                               const std::vector<float>& squares,
+                               const Int32Tree::LeafNodeType* inside, int32_t label,
+                               float halfWidth, float edge) {
+  const Coord size = box.dim(), from = origin - box.min();
+  const float outside = halfWidth * edge;
+  std::unique_ptr<Leaf> leaf;
+  const auto squareAt = [&](openvdb::Index i) {
+    const Coord p = from + Leaf::offsetToLocalCoord(i);
+    return squares[(size_t(p.x()) * size_t(size.y()) + size_t(p.y())) * size_t(size.z()) +
+                   size_t(p.z())];
+  };
+  for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
+    const float square = squareAt(i);
+    if (square >= halfWidth * halfWidth) continue;
+    if (!leaf) leaf = std::make_unique<Leaf>(origin, outside);
+    leaf->setValueOn(i, std::sqrt(square) * edge);
+  }
+  if (!leaf || !inside) return leaf;
+  float* distances = leaf->buffer().data();
+  const int32_t* labels = inside->buffer().data();
+  for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
+    if (detail::labelAt(*inside, labels, i) == label) distances[i] = -distances[i];
+  return leaf;
 }
 
 /// \p leaves: the tree of the labels without tiles.
 FloatGrid::Ptr levelSet(const GrainMesh& mesh, size_t grain, const Int32Grid& labels,
                         const Int32Tree& leaves, const LevelSetOptions& options,
                         Interrupter* interrupter) {
-  const int32_t label = mesh.labels[grain];
-  const uint32_t first = mesh.firstPoint[grain];
-  const std::vector<Vec3s> points(mesh.points.begin() + first,
-                                  mesh.points.begin() + mesh.firstPoint[grain + 1]);
-  std::vector<openvdb::Vec3I> triangles;
-  for (uint32_t i = mesh.firstTriangle[grain]; i < mesh.firstTriangle[grain + 1]; ++i) {
-    const auto& t = mesh.triangles[i];
-    triangles.emplace_back(t[0] - first, t[1] - first, t[2] - first);
-  }
-  const openvdb::tools::QuadAndTriangleDataAdapter<Vec3s, openvdb::Vec3I> surface(points,
-                                                                                  triangles);
-  Interrupter none;
-  // The signs are known: OpenVDB's search for them does not enter gaps of one voxel.
-  const auto grid = openvdb::tools::meshToVolume<FloatGrid>(
-      interrupter ? *interrupter : none, surface, labels.transform(), options.halfWidth,
-      options.halfWidth, openvdb::tools::UNSIGNED_DISTANCE_FIELD);
-  if (interrupter && interrupter->wasInterrupted()) throw Interrupted();
-  negateInside(*grid, leaves, label);
+  const float edge = float(labels.voxelSize()[0]);
+  const detail::MeshDistance distance(mesh, grain, options.halfWidth);
+  const std::vector<CoordBBox>& blocks = distance.blocks();
+  std::vector<std::vector<std::unique_ptr<Leaf>>> made(blocks.size());
+  detail::parallelFor(blocks.size(), 1, interrupter, [&](size_t begin, size_t end) {
+    for (size_t block = begin; block < end; ++block) {
+      const std::vector<float> squares = distance.squaredDistances(block);
+      detail::forEachLeafOrigin(blocks[block], [&](const Coord& origin) {
+        auto leaf = makeLeaf(origin, blocks[block], squares, leaves.probeConstLeaf(origin),
+                             mesh.labels[grain], options.halfWidth, edge);
+        if (leaf) made[block].push_back(std::move(leaf));
+      });
+    }
+  });
+  const auto grid = FloatGrid::create(options.halfWidth * edge);
+  for (auto& block : made)
+    for (auto& leaf : block) grid->tree().addLeaf(leaf.release());
   openvdb::tools::signedFloodFill(grid->tree());
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
   copyProvenance(labels, *grid);

@@ -15,7 +15,9 @@ struct LevelSetOptions {
 };
 
 /// A narrow-band level set of every label, named `grain_000123`, ascending: signed distance in
-/// world units to the grain's mesh, negative inside. An empty grid has none.
+/// world units to the nearest of all triangles of the grain's mesh, negative in the grain's voxels.
+/// It is right to 1e-6 voxels and the rounding to float; the voxels nearer than the half width are
+/// active. Time goes with the voxels of the bands. An empty grid has no level sets.
 /// @throw InvalidInput if there are more than kMaxGrainGrids labels, for voxels that are no cubes, or
 /// as grainMesh(); Interrupted.
 std::vector<FloatGrid::Ptr> grainLevelSets(const Int32Grid& labels,

@@ -11,7 +11,8 @@
 //
 // All that is to be compiled so has to be inlined into the lambda. Pass numbers and pointers on as
 // arguments: what a lambda captures by reference is read again after each store. All levels give the
-// same bits: integer arithmetic, and such of floating point that does not depend on the order.
+// same bits: integer arithmetic, or single operations of floating point, which are rounded alike
+// (-ffp-contract=off).
 
 #include <type_traits>
 

@@ -18,11 +18,17 @@ std::string quoted(const std::string& text);
 /// All of the text as numbers between white space, independent of the locale.
 std::optional<std::vector<int64_t>> integers(const std::string& text);
 std::optional<std::vector<double>> reals(const std::string& text);
-/// The shortest decimal that reads back as the same number.
+/// The shortest decimal that reads back as the same number. Returns its end; it has at most
+/// kDecimalBytes.
+constexpr size_t kDecimalBytes = 64;
+template <typename T>
+char* writeDecimal(T value, char* text) {
+  return std::to_chars(text, text + kDecimalBytes, value).ptr;
+}
 template <typename T>
 std::string shortestDecimal(T value) {
-  char text[64];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+  char text[kDecimalBytes];
+  return {text, writeDecimal(value, text)};
 }
 /// As a double that prints like the float: 0.0085 rather than 0.008500000461935997.
 double decimalOf(float value);

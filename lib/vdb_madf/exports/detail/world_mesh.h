@@ -18,6 +18,7 @@ class WorldMesh {
  public:
   WorldMesh(const GrainMesh& mesh, const MeshFileOptions& options, const std::string& path)
       : mesh_(mesh), options_(options) {
+    for (const int32_t label : mesh.labels) colors_.push_back(options.colors.colorOf(label));
     if (!options.transform) return;
     if (!options.transform->isLinear())
       throw InvalidInput(path + ": the grid's transform is not linear: resample the grid first");
@@ -27,7 +28,7 @@ class WorldMesh {
   const GrainMesh& mesh() const { return mesh_; }
   size_t grainCount() const { return mesh_.labels.size(); }
   int32_t label(size_t grain) const { return mesh_.labels[grain]; }
-  Rgb color(size_t grain) const { return options_.colors.colorOf(mesh_.labels[grain]); }
+  Rgb color(size_t grain) const { return colors_[grain]; }
 
   openvdb::Vec3f point(uint32_t index) const {
     const openvdb::Vec3f& p = mesh_.points[index];
@@ -63,6 +64,7 @@ class WorldMesh {
 
   const GrainMesh& mesh_;
   const MeshFileOptions& options_;
+  std::vector<Rgb> colors_;  ///< of the grains
   bool isMirrored_ = false;
 };
 

@@ -39,20 +39,17 @@ OutputStream::~OutputStream() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-void OutputStream::bytes(const void* data, size_t count) {
-  if (buffer_.size() + count > kBufferBytes) flush();
-  if (count > kBufferBytes) {
-    writeAt(size_, data, count);
-  } else {
-    buffer_.reserve(kBufferBytes);
-    buffer_.append(static_cast<const char*>(data), count);
-  }
+void OutputStream::bytesBeyondBuffer(const void* data, size_t count) {
+  if (used_ > 0 || count > kBufferBytes) flush();
+  if (count > kBufferBytes) return writeAt(size_, data, count);
+  if (!buffer_) buffer_.reset(new char[room_ = kBufferBytes]);  // not cleared: there may be many
+  bytes(data, count);
 }
 
 void OutputStream::flush() {
   if (interrupter_ && interrupter_->wasInterrupted()) throw Interrupted();
-  writeAt(size_, buffer_.data(), buffer_.size());
-  buffer_.clear();
+  writeAt(size_, buffer_.get(), used_);
+  used_ = 0;
 }
 
 void OutputStream::writeAt(uint64_t position, const void* data, size_t count) {
@@ -91,7 +88,8 @@ void OutputStream::resize(uint64_t size) {
 
 void OutputStream::close() {
   flush();
-  std::string().swap(buffer_);
+  buffer_.reset();
+  room_ = 0;
   const int descriptor = descriptor_;
   descriptor_ = -1;
   if (::close(descriptor) != 0 && errno != EINTR) fail(errno);

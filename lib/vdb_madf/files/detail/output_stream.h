@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
+#include <memory>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -29,7 +31,11 @@ class OutputStream {
 
   const std::string& path() const { return path_; }
 
-  void bytes(const void* data, size_t count);
+  void bytes(const void* data, size_t count) {
+    if (count > room_ - used_) return bytesBeyondBuffer(data, count);
+    std::memcpy(buffer_.get() + used_, data, count);
+    used_ += count;
+  }
   template <typename T>
   void value(const T& value) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -38,7 +44,8 @@ class OutputStream {
   void text(const std::string& text) { bytes(text.data(), text.size()); }
   template <typename T>
   void number(T value) {
-    text(shortestDecimal(value));
+    char decimal[kDecimalBytes];
+    bytes(decimal, size_t(writeDecimal(value, decimal) - decimal));
   }
 
   // At any place, without the buffer: not together with the functions above.
@@ -56,6 +63,7 @@ class OutputStream {
   void commit();
 
  private:
+  void bytesBeyondBuffer(const void* data, size_t count);
   void flush();
   [[noreturn]] void fail(int error) const;
 
@@ -64,7 +72,8 @@ class OutputStream {
   Interrupter* interrupter_;
   int descriptor_ = -1;
   uint64_t size_ = 0;
-  std::string buffer_;
+  std::unique_ptr<char[]> buffer_;  ///< made by the first write
+  size_t room_ = 0, used_ = 0;      ///< its bytes
 };
 
 }  // namespace vdb_madf::detail

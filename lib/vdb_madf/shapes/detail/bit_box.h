@@ -11,6 +11,7 @@
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/method/detail/metric.h"
 #include "vdb_madf/shapes/clumps.h"
+#include "vdb_madf/shapes/detail/ball_rows.h"
 
 namespace vdb_madf::detail {
 
@@ -56,6 +57,32 @@ class BitBox {
         }
       }
   }
+  /// The set bits of a ball with these rows, as forEachWord() has them.
+  int64_t count(const Clump::Ball& ball, const BallRows& rows) const {
+    const Coord from(ball.center.x() - rows.reachX, ball.center.y() - rows.reachY,
+                     ball.center.z() - 32 - box_.min().z());
+    const Coord low = Coord::maxComponent(from, box_.min()),
+                high = Coord::minComponent(ball.center.offsetBy(rows.reachX, rows.reachY, 0),
+                                           box_.max());
+    if (rows.masks.empty() || low.x() > high.x() || low.y() > high.y()) return 0;
+    MaskedRows masked;
+    masked.masksPerX = size_t(2 * rows.reachY + 1);
+    masked.masks = rows.masks.data() + size_t(low.x() - from.x()) * masked.masksPerX +
+                   size_t(low.y() - from.y());
+    masked.wordsPerX = size_t(box_.dim().y()) * wordsPerRow_;
+    masked.wordsPerY = wordsPerRow_;
+    masked.countX = high.x() - low.x() + 1;
+    masked.countY = high.y() - low.y() + 1;
+    int64_t sum = 0;
+    // The mask of a row lies across two words, or in one.
+    for (int word = from.z() >> 6; word <= (from.z() >> 6) + 1; ++word) {
+      masked.shift = from.z() - 64 * word;
+      if (word < 0 || word >= int(wordsPerRow_) || masked.shift == -64) continue;
+      masked.words = row(low.x(), low.y()) + word;
+      sum += countMasked(masked);
+    }
+    return sum;
+  }
   int64_t count() const {
     int64_t sum = 0;
     for (const uint64_t word : words_) sum += countBits(word);
@@ -80,6 +107,7 @@ class BitBox {
   int reach(int64_t square, int axis) const {
     return int(std::sqrt(double(square / weights_[axis])));  // exact: squares are below 2^31
   }
+  const uint64_t* row(int x, int y) const { return const_cast<BitBox*>(this)->row(x, y); }
   uint64_t* row(int x, int y) {
     return &words_[(size_t(x - box_.min().x()) * size_t(box_.dim().y()) +
                     size_t(y - box_.min().y())) *

@@ -70,14 +70,16 @@ const Fans& fans() {
 }
 
 void Corner::setVoxels(const std::array<int32_t, 8>& voxel) {
-  label = voxel;
-  std::sort(label.begin(), label.end());
-  labels = int(std::unique(label.begin(), label.end()) - label.begin());
-  grains = labels;
-  if (label[0] == 0) {
-    std::copy(label.begin() + 1, label.begin() + labels, label.begin());
-    --grains;
+  bool hasBackground = false;
+  for (const int32_t here : voxel) {
+    hasBackground = hasBackground || here == 0;
+    int place = 0;
+    while (place < grains && label[size_t(place)] < here) ++place;
+    if (here == 0 || (place < grains && label[size_t(place)] == here)) continue;
+    for (int g = grains++; g > place; --g) label[size_t(g)] = label[size_t(g - 1)];
+    label[size_t(place)] = here;
   }
+  labels = grains + hasBackground;
   for (int g = 0; g < grains; ++g) {
     int bits = 0;
     for (int n = 0; n < 8; ++n) bits |= int(voxel[size_t(n)] == label[size_t(g)]) << n;

@@ -30,6 +30,7 @@ struct Corner {
   std::array<uint8_t, 8> set{};
   int pointCount = 0;
 
+  Corner() = default;
   /// \p at: the halo's value at the voxel above the corner.
   explicit Corner(const int32_t* at) {
     std::array<int32_t, 8> voxel;

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/shapes/detail/surface_net.h"
 
@@ -14,6 +15,8 @@ namespace vdb_madf::detail {
 namespace {
 
 using openvdb::Vec3f;
+
+constexpr size_t kTriangleGrain = 1 << 16;
 
 class QuadCutter {
  public:
@@ -44,11 +47,30 @@ class QuadCutter {
             "volume");
       mesh_.firstTriangle.push_back(uint32_t(mesh_.triangles.size()));
     }
+    sortPoints();
     return std::move(mesh_);
   }
 
  private:
   using Triangle = std::array<uint32_t, 3>;
+
+  /// By grain.
+  void sortPoints() {
+    const Lists points(mesh_.pointGrain, mesh_.grainCount());
+    std::vector<uint32_t> place(points.items.size()), sites(points.items.size());
+    for (uint32_t i = 0; i < place.size(); ++i) {
+      place[points.items[i]] = i;
+      sites[i] = mesh_.pointSite[points.items[i]];
+    }
+    mesh_.pointSite = std::move(sites);
+    for (size_t g = 0; g < mesh_.grainCount(); ++g)
+      std::fill(mesh_.pointGrain.begin() + points.first[g],
+                mesh_.pointGrain.begin() + points.first[g + 1], uint32_t(g));
+    parallelFor(mesh_.triangles.size(), kTriangleGrain, nullptr, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i)
+        for (uint32_t& point : mesh_.triangles[i]) point = place[point];
+    });
+  }
 
   /// Cuts edges in the order of pinches, which is the same on both sides of an interface.
   void addTriangle(uint32_t quad, const Triangle& triangle) {

@@ -4,6 +4,7 @@
 #include "vdb_madf/shapes/detail/net_builder.h"
 
 #include <algorithm>
+#include <bitset>
 #include <limits>
 #include <utility>
 
@@ -139,12 +140,38 @@ class NetBuilder {
     }
   }
 
+  /// The corners of a block as they are met: each is one of many quads.
+  class CornerCache {
+   public:
+    /// Another block.
+    void begin(const LabelHalo& halo) {
+      halo_ = &halo;
+      isKnown_.reset();
+    }
+    const Corner& at(const Coord& p) {
+      const size_t place = tableAt(p.x(), p.y(), p.z());
+      if (!isKnown_[place]) {
+        corners_[place] = Corner(&(*halo_)[haloAt(p.x(), p.y(), p.z())]);
+        isKnown_[place] = true;
+      }
+      return corners_[place];
+    }
+
+   private:
+    const LabelHalo* halo_ = nullptr;
+    std::array<Corner, kSide * kSide * kSide> corners_;
+    std::bitset<kSide * kSide * kSide> isKnown_;
+  };
+
   void makeQuads(size_t block, const LabelHalo& halo) {
     CornerTable table;
     readCorners(block, table);
+    CornerCache& corners = caches_.local();
+    corners.begin(halo);
     uint32_t next = firstQuad_[block];
     const Coord origin = blocks_.origin(block);
     forEachPlace([&](int x, int y, int z) {
+      if (table[tableAt(x, y, z)] == SurfaceNet::kNone) return;  // all is alike around it
       const int32_t* at = &halo[haloAt(x, y, z)];
       const Coord p = origin.offsetBy(x, y, z);
       for (int axis = 0; axis < 3; ++axis) {
@@ -152,11 +179,11 @@ class NetBuilder {
         if (above != below) {
           if (below > 0) {
             quadBeyond_[next] = beyond(above, p, axis, 1);
-            addQuad(halo, table, Coord(x, y, z), axis, below, false, next++);
+            addQuad(corners, table, Coord(x, y, z), axis, below, false, next++);
           }
           if (above > 0) {
             quadBeyond_[next] = beyond(below, p, axis, 0);
-            addQuad(halo, table, Coord(x, y, z), axis, above, true, next++);
+            addQuad(corners, table, Coord(x, y, z), axis, above, true, next++);
           }
         }
         if (isPinched(at, axis))
@@ -169,7 +196,7 @@ class NetBuilder {
   }
 
   /// The face across `axis` below voxel p, as a grain below it (normal +axis) or above it sees it.
-  void addQuad(const LabelHalo& halo, const CornerTable& table, const Coord& p, int axis,
+  void addQuad(CornerCache& corners, const CornerTable& table, const Coord& p, int axis,
                int32_t grain, bool isAbove, uint32_t number) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     static constexpr int kAround[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
@@ -181,8 +208,7 @@ class NetBuilder {
       const uint32_t corner = table[tableAt(q.x(), q.y(), q.z())];
       // Seen from this corner, the face lies on the other side of it along u and v.
       const int face = axis * 4 + (1 - kAround[n][0]) * 2 + (1 - kAround[n][1]);
-      const Corner around(&halo[haloAt(q.x(), q.y(), q.z())]);
-      quad[n] = net_.firstPoint[corner] + around.point(grain, face);
+      quad[n] = net_.firstPoint[corner] + corners.at(q).point(grain, face);
     }
     if (isAbove) std::swap(quad[1], quad[3]);
     quads_[number] = quad;
@@ -283,6 +309,7 @@ class NetBuilder {
   std::vector<uint32_t> quadGrain_;
   std::vector<int32_t> quadBeyond_;
   std::vector<std::vector<std::array<uint32_t, 2>>> pinches_;  // per block
+  PerThread<CornerCache> caches_;
   SurfaceNet net_;
 };
 

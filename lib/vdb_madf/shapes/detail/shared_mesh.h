@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -16,8 +17,8 @@ namespace vdb_madf::detail {
 struct SharedMesh {
   static constexpr uint32_t kNone = 0xffffffffu;
 
-  std::vector<openvdb::Vec3f> positions;  ///< of the sites
-  std::vector<uint32_t> pointSite, pointGrain;
+  std::vector<openvdb::Vec3f> positions;           ///< of the sites
+  std::vector<uint32_t> pointSite, pointGrain;     ///< grains ascend
   std::vector<uint32_t> firstTriangle{0};          ///< per grain, one more at the end
   std::vector<std::array<uint32_t, 3>> triangles;  ///< of points, counterclockwise from outside
   /// Per triangle, what is beyond it: another label, 0 for background, or less than 0 for one of the
@@ -25,6 +26,13 @@ struct SharedMesh {
   std::vector<int32_t> beyond;
 
   size_t grainCount() const { return firstTriangle.size() - 1; }
+  /// Per grain, one more at the end.
+  std::vector<uint32_t> firstPoints() const {
+    std::vector<uint32_t> first(grainCount() + 1);
+    for (const uint32_t grain : pointGrain) ++first[grain + 1];
+    for (size_t g = 1; g < first.size(); ++g) first[g] += first[g - 1];
+    return first;
+  }
 };
 
 /// Sites on the faces of the domain stay on them.
@@ -43,8 +51,20 @@ constexpr float kCornerReach = 0.5f;
 
 /// The wanted place, but at most `reach` along an axis from `home`, in the domain, and on those of its
 /// faces that `home` is on.
-openvdb::Vec3f withinReach(const openvdb::Vec3f& home, const openvdb::Vec3d& wanted, float reach,
-                           const DomainFaces& domain);
+inline openvdb::Vec3f withinReach(const openvdb::Vec3f& home, const openvdb::Vec3d& wanted,
+                                  float reach, const DomainFaces& domain) {
+  openvdb::Vec3f result;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (domain.isOn(home, axis)) {
+      result[axis] = home[axis];
+      continue;
+    }
+    result[axis] = std::clamp(float(wanted[axis]), home[axis] - reach, home[axis] + reach);
+    if (domain.areKnown)
+      result[axis] = std::clamp(result[axis], domain.low[axis], domain.high[axis]);
+  }
+  return result;
+}
 
 /// Lists of numbers for each of `size()` keys: those of key k are [first[k], first[k + 1]).
 struct Lists {

@@ -41,7 +41,7 @@ class Relaxation {
 
  private:
   void smoothOnce(Interrupter* interrupter) {
-    std::vector<Vec3f> next(positions_.size());
+    next_.resize(positions_.size());
     parallelFor(positions_.size(), kCornerGrain, interrupter, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         const auto& links = net_.links[i];
@@ -56,11 +56,11 @@ class Relaxation {
           ++count;
         }
         const Vec3d here(positions_[i]);
-        next[i] = withinReach(home(net_.corners[i]), here + kStep * (sum / count - here),
-                              kCornerReach, domain_);
+        next_[i] = withinReach(home(net_.corners[i]), here + kStep * (sum / count - here),
+                               kCornerReach, domain_);
       }
     });
-    positions_.swap(next);
+    positions_.swap(next_);
   }
 
   /// A quad is cut from its first to its third corner: the shorter way is flatter. The two sides
@@ -80,7 +80,7 @@ class Relaxation {
   SurfaceNet& net_;
   const DomainFaces& domain_;
   Interrupter* interrupter_;
-  std::vector<Vec3f> positions_;
+  std::vector<Vec3f> positions_, next_;
 };
 
 }  // namespace
