@@ -8,6 +8,7 @@
 #include <openvdb/io/Stream.h>
 #include <tbb/global_control.h>
 
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <random>
 #include <set>
@@ -84,10 +85,10 @@ class StopAt : public openvdb::util::NullInterrupter {
     ++asked;
     return left_-- <= 0;
   }
-  int asked = 0;
+  std::atomic<int> asked{0};
 
  private:
-  int left_;
+  std::atomic<int> left_;
 };
 
 }  // namespace

@@ -6,11 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <limits>
 #include <mutex>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/simd.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/leaves/leaf_index.h"
@@ -19,7 +22,6 @@ namespace vdb_madf {
 
 namespace {
 
-using Leaf = Int32Tree::LeafNodeType;
 using Pair = std::pair<int32_t, int32_t>;
 
 constexpr size_t kLeafGrain = 64;
@@ -52,31 +54,77 @@ constexpr std::array<int, 13> kForward{kZ,           kY - kZ, kY, kY + kZ, kX - 
                                        kX - kY + kZ, kX - kZ, kX, kX + kZ, kX + kY - kZ, kX + kY,
                                        kX + kY + kZ};
 
-bool isUniform(const detail::LabelHalo& halo) {
-  int32_t label = 0;
-  for (const int32_t value : halo) {
-    if (!value || value == label) continue;
-    if (label) return false;
-    label = value;
+constexpr int32_t kNoLabel = std::numeric_limits<int32_t>::max();
+
+// By value: std::max() and std::min() keep loops from becoming SIMD.
+inline int32_t larger(int32_t a, int32_t b) {
+  return a > b ? a : b;
+}
+inline int32_t smaller(int32_t a, int32_t b) {
+  return a < b ? a : b;
+}
+
+/// The largest and the smallest label (0 and kNoLabel: there is none) of a halo and, in `largest` and
+/// `smallest`, of what lies within one voxel of each voxel of the leaf; of others nothing is known.
+VDB_MADF_KERNEL std::pair<int32_t, int32_t> extremesOf(const int32_t* halo, int32_t* largest,
+                                                       int32_t* smallest) {
+  constexpr size_t kSize = std::tuple_size_v<detail::LabelHalo>;
+  int32_t high[kSize], low[kSize], highest = 0, lowest = kNoLabel;
+  for (size_t i = 0; i < kSize; ++i) {
+    high[i] = halo[i];
+    low[i] = halo[i] ? halo[i] : kNoLabel;
+    highest = larger(highest, high[i]);
+    lowest = smaller(lowest, low[i]);
   }
-  return true;
+  if (highest <= lowest) return {highest, lowest};
+  // Along one axis after the other.
+  constexpr size_t x = detail::kHaloStride[0], y = detail::kHaloStride[1];
+  int32_t highZ[kSize], lowZ[kSize];
+  for (size_t i = 1; i < kSize - 1; ++i) {
+    highZ[i] = larger(high[i], larger(high[i - 1], high[i + 1]));
+    lowZ[i] = smaller(low[i], smaller(low[i - 1], low[i + 1]));
+  }
+  for (size_t i = 1 + y; i < kSize - 1 - y; ++i) {
+    high[i] = larger(highZ[i], larger(highZ[i - y], highZ[i + y]));
+    low[i] = smaller(lowZ[i], smaller(lowZ[i - y], lowZ[i + y]));
+  }
+  for (size_t i = 1 + y + x; i < kSize - 1 - y - x; ++i) {
+    largest[i] = larger(high[i], larger(high[i - x], high[i + x]));
+    smallest[i] = smaller(low[i], smaller(low[i - x], low[i + x]));
+  }
+  return {highest, lowest};
+}
+
+/// f(label) for each labelled voxel of the leaf.
+template <typename F>
+void forEachLabel(const detail::LabelHalo& halo, const F& f) {
+  for (int x = 0; x < 8; ++x)
+    for (int y = 0; y < 8; ++y)
+      for (int z = 0; z < 8; ++z)
+        if (const int32_t label = halo[detail::haloAt(x, y, z)]) f(label);
 }
 
 /// f(a, b) for all different labels at 26-adjacent voxels of which one lies in the leaf; pairs
 /// may come more than once.
 template <typename F>
 void forEachContact(const detail::LabelHalo& halo, const F& f) {
-  if (isUniform(halo)) return;
+  detail::LabelHalo largest, smallest;
+  const auto [highest, lowest] = detail::atBestLevel(
+      [&]() VDB_MADF_INLINE { return extremesOf(halo.data(), largest.data(), smallest.data()); });
+  if (highest <= lowest) return;
   for (int x = 0; x < 8; ++x)
     for (int y = 0; y < 8; ++y)
       for (int z = 0; z < 8; ++z) {
         const auto at = int(detail::haloAt(x, y, z));
         const int32_t a = halo[size_t(at)];
-        if (!a) continue;
+        if (!a || largest[size_t(at)] == smallest[size_t(at)]) continue;
         // All 26: a neighbour in another leaf may be the only one to see it, or not be a leaf.
+        const auto contact = [&](int32_t b) {
+          if (b && b != a) f(smaller(a, b), larger(a, b));
+        };
         for (const int step : kForward) {
-          for (const int32_t b : {halo[size_t(at + step)], halo[size_t(at - step)]})
-            if (b && b != a) f(std::min(a, b), std::max(a, b));
+          contact(halo[size_t(at + step)]);
+          contact(halo[size_t(at - step)]);
         }
       }
 }
@@ -97,20 +145,14 @@ Contacts findContacts(const Int32Grid& grid, Interrupter* interrupter) {
   std::vector<Pair> pairs;
   std::mutex mutex;
   detail::parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    const Int32Grid::ConstAccessor accessor = grid.getConstAccessor();
     std::vector<int32_t> someLabels;
     std::vector<Pair> somePairs;
     detail::LabelHalo halo;
     for (size_t i = begin; i < end; ++i) {
-      const Coord origin = index.origin(i);
-      if (const Leaf* leaf = accessor.probeConstLeaf(origin)) {
-        for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel)
-          if (*voxel > 0 && (someLabels.empty() || someLabels.back() != *voxel))
-            someLabels.push_back(*voxel);
-      } else {
-        someLabels.push_back(accessor.getValue(origin));
-      }
-      detail::readLabelHalo(grid.tree(), origin, halo);
+      detail::readLabelHalo(grid.tree(), index.origin(i), halo);
+      forEachLabel(halo, [&](int32_t label) {
+        if (someLabels.empty() || someLabels.back() != label) someLabels.push_back(label);
+      });
       forEachContact(halo, [&](int32_t a, int32_t b) {
         if (somePairs.empty() || somePairs.back() != Pair(a, b)) somePairs.emplace_back(a, b);
       });

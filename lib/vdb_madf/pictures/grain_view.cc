@@ -15,13 +15,13 @@
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/pictures/detail/camera.h"
 #include "vdb_madf/pictures/detail/smooth_surface.h"
+#include "vdb_madf/pictures/detail/voxel_rays.h"
 
 namespace vdb_madf {
 
 namespace {
 
 using Vec = openvdb::Vec3d;
-using MaskLeaf = MaskTree::LeafNodeType;
 
 constexpr int kMaxEdge = 16384;
 constexpr size_t kRowGrain = 4;
@@ -37,140 +37,32 @@ constexpr double kOutside = 1;         ///< voxels off the surface, where the li
 constexpr double kMostInwards = 0.75;  ///< less than kOutside: never through a thin plate
 constexpr double kPlane = 0.2625;      ///< what is filled there around a plane
 
-/// A walk through the cells of a lattice along a ray: Amanatides & Woo 1987. Cell (i, j, k) is the
-/// box from (i, j, k) * size to (i + 1, j + 1, k + 1) * size, along each axis.
-class CellWalk {
- public:
-  /// From the ray's point at `t` on, which lies in (or, for rounding, next to) the cells from `low`
-  /// to `high`.
-  CellWalk(const Vec& origin, const Vec& direction, double t, const Vec& size, const Coord& low,
-           const Coord& high)
-      : origin_(origin), direction_(direction), size_(size), t_(t) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const double p = (origin[axis] + t * direction[axis]) / size[axis];
-      cell_[axis] = std::clamp(int(std::floor(p)), low[axis], high[axis]);
-      setNext(axis);
-    }
-  }
-  const Coord& cell() const { return cell_; }
-  double t() const { return t_; }  ///< where the ray enters the cell
-  void advance() {
-    int axis = next_[0] <= next_[1] ? 0 : 1;
-    if (next_[2] < next_[axis]) axis = 2;
-    t_ = std::max(t_, next_[axis]);
-    cell_[axis] += direction_[axis] > 0 ? 1 : -1;
-    setNext(axis);
-  }
-
- private:
-  void setNext(int axis) {
-    next_[axis] = direction_[axis] == 0
-                      ? std::numeric_limits<double>::infinity()
-                      : ((cell_[axis] + (direction_[axis] > 0)) * size_[axis] - origin_[axis]) /
-                            direction_[axis];
-  }
-  const Vec& origin_;
-  const Vec& direction_;
-  const Vec& size_;
-  Coord cell_;
-  double t_;
-  double next_[3];
-};
-
-/// The part of a ray within [low, high].
-struct Span {
-  double begin = -std::numeric_limits<double>::infinity();
-  double end = std::numeric_limits<double>::infinity();
-
-  Span(const Vec& origin, const Vec& direction, const Vec& low, const Vec& high) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (direction[axis] == 0) {
-        if (origin[axis] < low[axis] || origin[axis] > high[axis]) end = begin;
-        continue;
-      }
-      double a = (low[axis] - origin[axis]) / direction[axis];
-      double b = (high[axis] - origin[axis]) / direction[axis];
-      if (a > b) std::swap(a, b);
-      begin = std::max(begin, a);
-      end = std::min(end, b);
-    }
-  }
-  bool empty() const { return !(begin < end); }
-};
-
 /// Where a ray of a pixel begins, of kRays * kRays; that in the middle goes through its center.
 Vec rayOrigin(const detail::Camera& camera, int x, int y, int ray) {
   return camera.origin(x + (ray % kRays + 0.5) / kRays, y + double(ray / kRays + 0.5) / kRays);
 }
 
-/// The object in a box, as rays meet it.
-class SeenObject {
- public:
-  SeenObject(const MaskGrid::Ptr& object, const CoordBBox& box, const Vec& edges,
-             const detail::Camera& camera)
-      : edges_(edges), leafEdges_(8 * edges), camera_(camera), object_(object) {
-    object_->clip(box);  // makes tiles of full leaves
-    object_->tree().voxelizeActiveTiles();
-    for (int axis = 0; axis < 3; ++axis) {
-      low_[axis] = edges[axis] * box.min()[axis];
-      high_[axis] = edges[axis] * (box.max()[axis] + 1);
-      leafLow_[axis] = box.min()[axis] >> 3;
-      leafHigh_[axis] = box.max()[axis] >> 3;
-      depth_ += std::abs(camera.direction[axis]) * (high_[axis] - low_[axis]);
-    }
-  }
-
-  const detail::Camera& camera() const { return camera_; }
-  const MaskGrid& object() const { return *object_; }  ///< no tiles, nothing beyond the box
-  const Vec& edges() const { return edges_; }
-  double depth() const { return depth_; }  ///< of the box along the rays
-
-  /// The first object voxel that the ray meets, and where.
-  bool firstVoxel(const MaskGrid::ConstAccessor& object, const Vec& origin, Coord& voxel,
-                  double& t) const {
-    const Span span(origin, camera_.direction, low_, high_);
-    if (span.empty()) return false;
-    CellWalk leaves(origin, camera_.direction, span.begin, leafEdges_, leafLow_, leafHigh_);
-    for (; leaves.t() < span.end; leaves.advance()) {
-      const Coord cell = leaves.cell();  // times 8: negative numbers must not be shifted left
-      const Coord corner(cell.x() * 8, cell.y() * 8, cell.z() * 8);
-      const MaskLeaf* leaf = object.probeConstLeaf(corner);
-      if (!leaf) continue;
-      CellWalk voxels(origin, camera_.direction, leaves.t(), edges_, corner, corner + Coord(7));
-      for (; (voxels.cell() >> 3) == leaves.cell(); voxels.advance()) {
-        if (!leaf->isValueOn(voxels.cell())) continue;
-        voxel = voxels.cell();
-        t = voxels.t();
-        return true;
-      }
-    }
-    return false;
-  }
-
- private:
-  const Vec edges_, leafEdges_;
-  const detail::Camera& camera_;
-  const MaskGrid::Ptr object_;
-  Vec low_, high_;
-  Coord leafLow_, leafHigh_;
-  double depth_ = 0;
-};
+/// As leaves without tiles, nothing beyond the box.
+MaskGrid::Ptr clipped(const MaskGrid::Ptr& object, const CoordBBox& box) {
+  object->clip(box);  // makes tiles of full leaves
+  object->tree().voxelizeActiveTiles();
+  return object;
+}
 
 class Renderer {
  public:
-  Renderer(const SeenObject& seen, const Int32Grid& labels, const GrainColors& colors)
-      : seen_(seen),
-        labels_(labels),
-        colors_(colors),
-        camera_(seen.camera()),
-        edges_(seen.edges()),
-        depth_(seen.depth()) {
-    light_ = (camera_.up - 0.55 * camera_.right - 1.1 * camera_.direction).unit();
+  Renderer(const detail::VoxelRays& rays, const Int32Grid& labels, const CoordBBox& box,
+           const Vec& edges, const GrainColors& colors, const detail::Camera& camera)
+      : rays_(rays), labels_(labels), edges_(edges), colors_(colors), camera_(camera) {
+    for (int axis = 0; axis < 3; ++axis)
+      depth_ += std::abs(camera.direction[axis]) *
+                (edges[axis] * (box.max()[axis] + 1) - edges[axis] * box.min()[axis]);
+    light_ = (camera.up - 0.55 * camera.right - 1.1 * camera.direction).unit();
   }
 
   /// A ray through the center of each pixel.
   void drawRow(int y, GrainView& view, std::vector<float>& depths) const {
-    const Eye eye(*this);
+    Eye eye(*this);
     for (int x = 0; x < camera_.width; ++x) {
       const Sample sample = eye.look(x, y, kMiddleRay);
       if (!sample.label) continue;
@@ -185,7 +77,7 @@ class Renderer {
   /// rows, `smooth` gets the result.
   void smoothRow(int y, const Picture& backdrop, const GrainView& view,
                  const std::vector<float>& depths, Picture& smooth) const {
-    const Eye eye(*this);
+    Eye eye(*this);
     for (int x = 0; x < camera_.width; ++x) {
       if (!isEdge(x, y, view, depths)) continue;
       std::array<int, 3> sum{};
@@ -214,24 +106,28 @@ class Renderer {
    public:
     explicit Eye(const Renderer& renderer)
         : renderer_(renderer),
-          object_(renderer.seen_.object().getConstAccessor()),
-          labels_(renderer.labels_.getConstAccessor()) {}
-    Sample look(int x, int y, int ray) const {
+          object_(renderer.rays_.object().getConstAccessor()),
+          labels_(renderer.labels_.getConstAccessor()),
+          surface_(renderer.rays_.object()),
+          outside_(renderer.rays_.object()) {}
+    Sample look(int x, int y, int ray) {
       const Vec origin = rayOrigin(renderer_.camera_, x, y, ray);
       Sample sample;
       Coord voxel;
-      if (!renderer_.seen_.firstVoxel(object_, origin, voxel, sample.t)) return sample;
+      if (!renderer_.rays_.first(object_, origin, voxel, sample.t)) return sample;
       sample.label = labels_.getValue(voxel);
       const Vec hit = (origin + sample.t * renderer_.camera_.direction) / renderer_.edges_;
-      sample.color =
-          renderer_.shade(renderer_.colors_.colorOf(sample.label), object_, hit, sample.t);
+      sample.color = renderer_.shade(renderer_.colors_.colorOf(sample.label), *this, hit, sample.t);
       return sample;
     }
+    detail::SmoothSurface& surface() { return surface_; }
+    detail::SmoothSurface& outside() { return outside_; }
 
    private:
     const Renderer& renderer_;
     const MaskGrid::ConstAccessor object_;
     const Int32Grid::ConstAccessor labels_;
+    detail::SmoothSurface surface_, outside_;  ///< where a ray hits; in front of that
   };
 
   size_t at(int x, int y) const { return size_t(y) * size_t(camera_.width) + size_t(x); }
@@ -251,15 +147,14 @@ class Renderer {
   }
 
   /// The light on the surface near the point (in voxels) that a ray hits.
-  Rgb shade(const Rgb& color, const MaskGrid::ConstAccessor& object, const Vec& hit,
-            double t) const {
+  Rgb shade(const Rgb& color, Eye& eye, const Vec& hit, double t) const {
     // The smooth surface lies where half of the surroundings are filled: on its outside, the light
     // and how much is near do not depend on the steps of the voxels.
-    const auto first = detail::smoothValue(object, hit);
+    const auto first = eye.surface().at(hit);
     const double steepness = std::max(first.gradient.length(), 0.05);
     const double inwards =
         std::clamp((0.5 - first.fill) / steepness, -1.5, kMostInwards) - kOutside;
-    const auto near = detail::smoothValue(object, hit + inwards / steepness * first.gradient);
+    const auto near = eye.outside().at(hit + inwards / steepness * first.gradient);
     Vec normal = -near.gradient / edges_;
     if (normal.length() > 1e-6) normal.normalize();
     if (normal.dot(camera_.direction) > 0) normal = -normal;
@@ -274,13 +169,13 @@ class Renderer {
     return shaded;
   }
 
-  const SeenObject& seen_;
+  const detail::VoxelRays& rays_;
   const Int32Grid& labels_;
+  const Vec edges_;
   const GrainColors& colors_;
   const detail::Camera& camera_;
-  const Vec& edges_;
-  const double depth_;
   Vec light_;
+  double depth_ = 0;  ///< of the box along the rays
 };
 
 template <typename F>
@@ -313,7 +208,7 @@ std::vector<Coord> seenLeaves(const MaskGrid::Ptr& object, const CoordBBox& box,
   if (box.empty()) return {};
   const Vec edges = detail::proportions(object->transform());
   const detail::Camera camera(box, edges, options);
-  const SeenObject seen(object, box, edges, camera);
+  const detail::VoxelRays rays(clipped(object, box), box, edges, camera.direction);
   detail::PerThread<std::vector<Coord>> found{std::vector<Coord>()};
   forEachRow(camera, interrupter, [&](int y) {
     const auto tree = object->getConstAccessor();
@@ -323,7 +218,7 @@ std::vector<Coord> seenLeaves(const MaskGrid::Ptr& object, const CoordBBox& box,
       const int i = ray % (kRays * kRays), x = ray / (kRays * kRays);
       Coord voxel;
       double t = 0;
-      if (!seen.firstVoxel(tree, rayOrigin(camera, x, y, i), voxel, t)) continue;
+      if (!rays.first(tree, rayOrigin(camera, x, y, i), voxel, t)) continue;
       const Coord leaf = voxel & ~7;
       if (leaves.empty() || leaves.back() != leaf) leaves.push_back(leaf);
     }
@@ -346,8 +241,8 @@ GrainView viewGrains(const MaskGrid::Ptr& object, const Int32Grid& labels, const
   if (options.box) detail::drawBox(camera, backdrop);
   GrainView view{backdrop, std::vector<int32_t>(backdrop.pixels.size(), 0), camera.voxelsPerPixel};
   std::vector<float> depths(view.labels.size(), 0);
-  const SeenObject seen(object, box, edges, camera);
-  const Renderer renderer(seen, labels, colors);
+  const detail::VoxelRays rays(clipped(object, box), box, edges, camera.direction);
+  const Renderer renderer(rays, labels, box, edges, colors, camera);
   forEachRow(camera, interrupter, [&](int y) { renderer.drawRow(y, view, depths); });
   Picture smooth = view.picture;
   forEachRow(camera, interrupter,

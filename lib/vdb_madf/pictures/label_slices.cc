@@ -63,6 +63,8 @@ class PlanePainter {
                  scale.pixels(box.extents()[down_], down_), kBackground) {
     for (int x = 0; x < picture_.width * fine_; ++x)
       columns_.push_back(scale.voxel((x + 0.5) / fine_, box.extents()[right_], right_));
+    for (int y = 0; y < picture_.height * fine_; ++y)
+      rows_.push_back(scale.voxel((y + 0.5) / fine_, box.extents()[down_], down_));
   }
 
   Picture paint(Interrupter* interrupter) {
@@ -76,9 +78,7 @@ class PlanePainter {
   using Row = std::vector<int32_t>;
 
   /// Counted from the upper edge of the picture.
-  int voxelRow(int fineRow) const {
-    return scale_.voxel((fineRow + 0.5) / fine_, box_.extents()[down_], down_);
-  }
+  int voxelRow(int fineRow) const { return rows_[size_t(fineRow)]; }
 
   Row readRow(int voxelRow) const {
     const auto labels = labels_.getConstAccessor();
@@ -174,7 +174,7 @@ class PlanePainter {
   const GrayPlane* gray_;
   const int right_, down_, fine_, outline_;
   Picture picture_;
-  std::vector<int> columns_;  ///< the voxel of each fine column
+  std::vector<int> columns_, rows_;  ///< the voxel of each fine column, fine row
 };
 
 void check(const CoordBBox& box, const std::vector<SlicePlane>& planes,

@@ -30,6 +30,7 @@
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/method/initialize.h"
+#include "vdb_madf/vdb/detail/read_leaves.h"
 #include "vdb_madf/vdb/detail/region_grid.h"
 #include "vdb_madf/vdb/detail/uuid_place.h"
 #include "vdb_madf/vdb/detail/vdb_tree_check.h"
@@ -299,8 +300,7 @@ class Reader {
     file_.moveTo(entry.treeStart);
     entry.grid->readTopology(stream_);
     if (file_.position() != extent.topologyEnd) damaged("its nodes have the wrong size");
-    entry.grid->readBuffers(stream_);
-    if (file_.position() != extent.end) damaged("its voxels have the wrong size");
+    detail::readLeaves(file_, stream_, extent, *entry.grid);
     entry.hasTree = true;
   }
 

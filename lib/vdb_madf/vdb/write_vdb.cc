@@ -3,8 +3,6 @@
 
 #include "vdb_madf/vdb/write_vdb.h"
 
-#include <openvdb/io/Archive.h>
-
 #include <array>
 #include <cstdio>
 #include <ios>
@@ -13,20 +11,13 @@
 #include "vdb_madf/files/detail/file_buffer.h"
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/method/initialize.h"
+#include "vdb_madf/vdb/detail/parallel_archive.h"
 #include "vdb_madf/vdb/detail/region_grid.h"
 #include "vdb_madf/vdb/detail/uuid_place.h"
 
 namespace vdb_madf {
 
 namespace {
-
-class Writer : public openvdb::io::Archive {
- public:
-  /// With offsets: other programs then need not read all grids to read one.
-  void writeAll(std::ostream& stream, const openvdb::GridCPtrVec& grids) const {
-    Archive::write(stream, grids, /*seekable=*/true);
-  }
-};
 
 /// In the form of a UUID of version 8 (RFC 9562: contents defined by the application).
 std::string uuidFrom(const std::array<uint64_t, 2>& hash) {
@@ -49,7 +40,7 @@ void writeVdb(const std::string& path, const std::vector<openvdb::GridBase::Cons
   detail::OutputBuffer buffer(output, interrupter, detail::kUuidStart, detail::kUuidLength);
   std::ostream stream(&buffer);
   stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
-  Writer().writeAll(stream, all);
+  detail::ParallelArchive().writeAll(stream, all, interrupter);
   buffer.flush();
   buffer.replace(detail::kUuidStart, uuidFrom(buffer.hash()));
   output.commit();

@@ -40,6 +40,18 @@ void addOrigins(const Leaf& leaf, std::vector<Coord>& origins) {
                         Coord(8 * (side >> 2), 8 * (side >> 1 & 1), 8 * (side & 1)));
 }
 
+/// The labels of `count` voxels of a leaf along z.
+template <int count>
+void readRow(const Leaf& leaf, openvdb::Index offset, int32_t* to) {
+  const int32_t* values = leaf.buffer().data() + offset;
+  const auto active =
+      uint32_t(leaf.getValueMask().getWord<uint64_t>(offset >> 6) >> (offset & 63) & 0xff);
+  for (int k = 0; k < count; ++k) {
+    const int32_t value = values[k] & -int32_t(active >> k & 1);
+    to[k] = value > 0 ? value : 0;
+  }
+}
+
 }  // namespace
 
 Int32Tree::ConstPtr withoutTiles(const Int32Grid& labels) {
@@ -55,16 +67,20 @@ void readLabelHalo(const Int32Tree& tree, const Coord& origin, LabelHalo& halo) 
     const int dx = side / 9, dy = side / 3 % 3, dz = side % 3;
     const Coord from = origin.offsetBy(8 * dx - 8, 8 * dy - 8, 8 * dz - 8);
     const Leaf* leaf = accessor.probeConstLeaf(from);
-    const int32_t* values = leaf ? leaf->buffer().data() : nullptr;
     int32_t tile = 0;
     if (!leaf && (!accessor.probeValue(from, tile) || tile < 0)) tile = 0;
     const Span x = kSpans[dx], y = kSpans[dy], z = kSpans[dz];
     for (int i = 0; i < x.count; ++i)
-      for (int j = 0; j < y.count; ++j)
-        for (int k = 0; k < z.count; ++k) {
-          const auto offset = openvdb::Index((x.from + i) * 64 + (y.from + j) * 8 + z.from + k);
-          halo[haloAt(x.to + i, y.to + j, z.to + k)] = leaf ? labelAt(*leaf, values, offset) : tile;
-        }
+      for (int j = 0; j < y.count; ++j) {
+        int32_t* to = &halo[haloAt(x.to + i, y.to + j, z.to)];
+        const auto offset = openvdb::Index((x.from + i) * 64 + (y.from + j) * 8 + z.from);
+        if (!leaf)
+          std::fill(to, to + z.count, tile);
+        else if (z.count == 8)
+          readRow<8>(*leaf, offset, to);
+        else
+          readRow<1>(*leaf, offset, to);
+      }
   }
 }
 

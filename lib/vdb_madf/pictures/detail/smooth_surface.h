@@ -3,6 +3,9 @@
 
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "vdb_madf/grids/grid_types.h"
 
 namespace vdb_madf::detail {
@@ -15,8 +18,24 @@ struct SmoothValue {
   openvdb::Vec3d gradient{0};  ///< per voxel, into the object
 };
 
-/// @param object without tiles
-/// @param point in voxels; voxel (i, j, k) is the box from there to (i + 1, j + 1, k + 1)
-SmoothValue smoothValue(const MaskGrid::ConstAccessor& object, const openvdb::Vec3d& point);
+/// Reads it off an object, and remembers the last 8 x 8 x 8 voxels: for one thread, and points that
+/// lie close to each other.
+class SmoothSurface {
+ public:
+  /// @param object without tiles; is kept by reference
+  explicit SmoothSurface(const MaskGrid& object) : object_(object.getConstAccessor()) {}
+
+  /// @param point in voxels; voxel (i, j, k) is the box from there to (i + 1, j + 1, k + 1)
+  SmoothValue at(const openvdb::Vec3d& point);
+
+ private:
+  void moveTo(const Coord& low);
+
+  const MaskGrid::ConstAccessor object_;
+  Coord low_{0};           ///< of the voxels that are remembered
+  bool isFilled_ = false;  ///< are there any?
+  /// The rows of them along z, by x, then y: the lower four voxels and the upper ones as bits, times 16.
+  std::array<uint8_t, 64> nearer_{}, farther_{};
+};
 
 }  // namespace vdb_madf::detail

@@ -139,6 +139,7 @@ class TreeCheck {
   void checkBuffers() {
     Mask mask;
     for (int64_t leaf = 0; leaf < leaves_; ++leaf) {
+      if (size_t(leaf) % TreeExtent::kLeavesAtOnce == 0) extent_.blocks.push_back(file_.position());
       if (!boolean()) {
         readMask(kLeafValues, mask);
         checkValues(mask, kLeafValues, /*read=*/false);

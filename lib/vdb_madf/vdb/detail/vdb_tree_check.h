@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "vdb_madf/files/detail/file_buffer.h"
 
@@ -34,7 +35,9 @@ struct TreeSettings {
 
 /// Where the parts of a stored tree end, and what it will take to load it.
 struct TreeExtent {
+  static constexpr size_t kLeavesAtOnce = 256;
   int64_t topologyEnd = 0, end = 0;  ///< positions in the file
+  std::vector<int64_t> blocks;  ///< likewise, of the buffers of leaf nodes 0, kLeavesAtOnce, ...
   int64_t memoryBytes = 0;
 };
 
