@@ -415,6 +415,21 @@ TEST_CASE("slabs: what was stopped with some ranks goes on with any number of th
   CHECK((cases < 100 || stops > int64_t(cases)));
 }
 
+TEST_CASE("slabs: a scratch that the ranks do not share, though it says so, is noticed",
+          "[slabs]") {
+  struct OwnScratch : MemoryScratch {
+    bool isShared() const override { return true; }
+  };
+  Team team(2);
+  CHECK_THROWS_AS(asRanks(team,
+                          [](Ranks& rank) {
+                            OwnScratch scratch;
+                            segmentSlabs(row(40, {0, 16, 40}), {}, scratch, rank,
+                                         [](size_t, const Int32Grid::Ptr&) {});
+                          }),
+                  IoError);
+}
+
 TEST_CASE("slabs: an interrupter stops them", "[slabs]") {
   MemoryScratch scratch;
   StopAtOnce stop;

@@ -45,10 +45,10 @@ namespace {
 constexpr int kDone = 0, kFailed = 1, kWrongUsage = 2, kInterrupted = 130;
 
 int fail(const Ranks* ranks, int code, const std::string& what) {
-  // What several find wrong is said once: the first of them ends the others while these wait.
+  // What several find wrong is said once: the first of them ends the others while these wait. That takes a
+  // moment.
   if (ranks && ranks->rank() > 0)
-    std::this_thread::sleep_for(
-        std::chrono::milliseconds(3000 + std::min(ranks->rank(), 40) * 100));
+    std::this_thread::sleep_for(std::chrono::seconds(2 + std::min(ranks->rank(), 20)));
   printMessage("error", what);
   return code;
 }
