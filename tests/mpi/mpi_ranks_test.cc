@@ -89,8 +89,9 @@ TEST_CASE("mpi: each rank puts the labels of the whole in its slabs", "[mpi]") {
   int64_t put = 0;
   for (uint64_t seed = first; seed < first + cases; ++seed) {
     Rng rng(seed);
-    const RandomCase c =
+    RandomCase c =
         randomCase(seed, Coord(rng.between(1, 12), rng.between(1, 12), rng.between(16, 60)));
+    if (rng.chance(0.3)) drawRegion(c);
     const MaskGrid::Ptr mask = maskOf(c);
     SegmentOptions options = optionsOf(c);
     options.domain = domainOf(c);
@@ -102,19 +103,16 @@ TEST_CASE("mpi: each rank puts the labels of the whole in its slabs", "[mpi]") {
     } catch (const InvalidInput&) {
       continue;  // all ranks alike
     }
-    // Each has read some of the leaves.
-    std::vector<LeafIndex::LeafVoxels> leaves;
-    const LeafIndex index(*mask);
-    for (size_t leaf = 0; leaf < index.leafCount(); ++leaf)
-      if (int(leaf) % ranks.count() == ranks.rank())
-        leaves.push_back({index.origin(leaf), index.mask(leaf)});
     SlabLimits limits;
     limits.height = rng.chance(0.5) ? 8 : 0;
     limits.leastHeight = options.tidy;
     MemoryScratch scratch;
+    SlabDealer dealer(ranks, scratch);
+    for (const auto& [z, layer] : layersOf(*mask))  // each has read some
+      if ((z >> 3 & 0xff) % ranks.count() == ranks.rank()) dealer.add(layer);
+    dealer.finish(limits, whole.fillHoles, whole.domain);
     const SlabObject object =
-        dealSlabs(leaves, limits, whole.fillHoles, whole.domain,
-                  openvdb::gridConstPtrCast<MaskGrid>(mask->copyGridWithNewTree()), ranks, scratch);
+        storedSlabs(scratch, openvdb::gridConstPtrCast<MaskGrid>(mask->copyGridWithNewTree()));
     int64_t different = 0;
     const SlabSegmentation result =
         segmentSlabs(object, options, scratch, ranks, [&](size_t slab, const SlabGrids& grids) {

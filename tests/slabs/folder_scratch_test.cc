@@ -56,6 +56,11 @@ TEST_CASE("folder scratch: goes on with the same work alone", "[scratch]") {
   CHECK_THROWS_WITH(FolderScratch(path, "other work", true), Catch::Contains("other options"));
   CHECK(FolderScratch(path, "this work", true).read("a") == someBytes(100));
   CHECK_FALSE(std::filesystem::exists(path + "/.a.piece.999999-0.tmp"));
+  // Killed before it was known whose it is.
+  std::filesystem::create_directory(folder / "early");
+  writeFile(folder / "early" + "/.work.piece.999999-0.tmp", "half");
+  CHECK_FALSE(FolderScratch(folder / "early", "work", false).has("a"));
+  CHECK_FALSE(std::filesystem::exists(folder / "early" + "/.work.piece.999999-0.tmp"));
   // A folder of something else.
   std::filesystem::create_directory(folder / "photos");
   writeFile((folder / "photos") + "/me.jpg", "x");
@@ -90,4 +95,25 @@ TEST_CASE("folder scratch: damage is noticed wherever it is", "[scratch]") {
   }
   writeFile(path, good);
   CHECK(scratch.read("piece") == someBytes(30000));
+}
+
+TEST_CASE("folder scratch: is shared by those who take part, and by no others", "[scratch]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "scratch";
+  CHECK_THROWS_WITH((FolderScratch(path)), Catch::Contains("is not there for all"));
+  FolderScratch first(path, "work", false);
+  CHECK_FALSE(first.isShared());
+  CHECK_THROWS_WITH((FolderScratch(path)), Catch::Contains("another run"));
+  first.share();
+  {
+    FolderScratch second(path);
+    CHECK(first.isShared());
+    CHECK(second.isShared());
+    second.write("a", someBytes(100));
+    CHECK(first.read("a") == someBytes(100));
+    first.remove("a");
+    CHECK_FALSE(second.has("a"));
+    CHECK_THROWS_WITH(FolderScratch(path, "work", true), Catch::Contains("another run"));
+  }
+  CHECK_THROWS_WITH(FolderScratch(path, "work", true), Catch::Contains("another run"));
 }

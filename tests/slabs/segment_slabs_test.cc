@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/random_case.h"
@@ -142,7 +144,7 @@ Comparison compareSlabs(const RandomCase& c) {
   try {
     const SlabObject object = cutObject(*mask, randomCuts(box, rng));
     for (size_t s = 0; s < object.slabCount(); ++s) result.slabs += !object.leaves(s).empty();
-    const int ranks = !c.region && rng.chance(0.4) ? rng.between(2, 4) : 1;
+    const int ranks = rng.chance(0.4) ? rng.between(2, 4) : 1;
     cut = withThreads(c.threads, [&] {
       return ranks > 1 ? segmentByRanks(object, options, ranks) : segmentCut(object, options);
     });
@@ -344,6 +346,109 @@ TEST_CASE("slabs: what was stopped goes on to the same labels", "[slabs]") {
       REQUIRE(areSame(*cut.manifolds, *expected.manifolds));
     }
   }
+}
+
+namespace {
+
+/// What ranks share; all of them stop after so many changes.
+struct SharedPieces {
+  std::mutex mutex;
+  MortalScratch pieces;
+};
+
+class SharedScratch : public Scratch {
+ public:
+  explicit SharedScratch(SharedPieces& all) : all_(all) {}
+  void write(const std::string& name, const std::vector<char>& bytes) override {
+    const std::lock_guard<std::mutex> lock(all_.mutex);
+    all_.pieces.write(name, bytes);
+  }
+  std::vector<char> read(const std::string& name) const override {
+    const std::lock_guard<std::mutex> lock(all_.mutex);
+    return all_.pieces.read(name);
+  }
+  bool has(const std::string& name) const override {
+    const std::lock_guard<std::mutex> lock(all_.mutex);
+    return all_.pieces.has(name);
+  }
+  void remove(const std::string& name) override {
+    const std::lock_guard<std::mutex> lock(all_.mutex);
+    all_.pieces.remove(name);
+  }
+  bool isShared() const override { return true; }
+
+ private:
+  SharedPieces& all_;
+};
+
+}  // namespace
+
+TEST_CASE("slabs: what was stopped with some ranks goes on with any number of them", "[slabs]") {
+  const uint64_t first = fromEnvironment("VDB_MADF_SEED", 1) + 400000;
+  const uint64_t cases = fromEnvironment("VDB_MADF_CASES", 300);
+  int64_t stops = 0;
+  for (uint64_t seed = first; seed < first + cases; ++seed) {
+    Rng rng(seed);
+    RandomCase c =
+        randomCase(seed, Coord(rng.between(1, 12), rng.between(1, 12), rng.between(16, 60)));
+    if (rng.chance(0.3)) drawRegion(c);
+    const MaskGrid::Ptr mask = maskOf(c);
+    SegmentOptions options = optionsOf(c);
+    options.domain = domainOf(c);
+    options.keepDistance = options.keepPower = options.keepManifold = options.keepBalls = false;
+    if (!options.weights) options.weights = VoxelWeights{};
+    CoordBBox box = c.domain ? *c.domain : mask->evalActiveVoxelBoundingBox();
+    if (box.empty()) box = CoordBBox(Coord(0), Coord(7));
+    SlabObject object;
+    Segmentation whole;
+    try {
+      whole = segment(*mask, options);
+      object = cutObject(*mask, randomCuts(box, rng));
+      segmentCut(object, options);
+    } catch (const std::exception&) {
+      continue;  // the object leaves the domain, slabs are lower than `tidy` has rounds ...
+    }
+    SharedPieces all;
+    Cut cut;
+    std::vector<Int32Grid::Ptr> labels(object.slabCount());
+    int runs = 0;
+    // Each time with more changes, so that it ends.
+    for (bool done = false; !done; ++runs) {
+      Team team(rng.between(1, 4));
+      all.pieces.left = 20 + 4 * runs + rng.below(60);
+      try {
+        asRanks(team, [&](Ranks& rank) {
+          SharedScratch scratch(all);
+          SlabSegmentation result =
+              segmentSlabs(object, options, scratch, rank,
+                           [&](size_t slab, const Int32Grid::Ptr& grain) { labels[slab] = grain; });
+          if (rank.rank() == 0) cut.result = std::move(result);
+        });
+        done = true;
+      } catch (const Killed&) {
+      }
+    }
+    stops += runs - 1;
+    for (const Int32Grid::Ptr& grain : labels) addSlab(cut.labels, grain);
+    INFO(describe(c) << runs << " runs");
+    REQUIRE(difference(whole, cut) == "");
+  }
+  CHECK((cases < 100 || stops > int64_t(cases)));
+}
+
+TEST_CASE("slabs: a scratch that the ranks do not share, though it says so, is noticed",
+          "[slabs]") {
+  struct OwnScratch : MemoryScratch {
+    bool isShared() const override { return true; }
+  };
+  Team team(2);
+  CHECK_THROWS_AS(asRanks(team,
+                          [](Ranks& rank) {
+                            OwnScratch scratch;
+                            segmentSlabs(row(40, {0, 16, 40}), {}, scratch, rank,
+                                         [](size_t, const Int32Grid::Ptr&) {});
+                          }),
+                  IoError);
 }
 
 TEST_CASE("slabs: an interrupter stops them", "[slabs]") {

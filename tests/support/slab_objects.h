@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -30,6 +31,17 @@ inline SlabObject cutObject(const MaskGrid& mask, std::vector<int> cuts) {
   object.leaves = [leaves](size_t slab) { return leaves[slab]; };
   object.about = openvdb::gridConstPtrCast<MaskGrid>(mask.copyGridWithNewTree());
   return object;
+}
+
+/// The layers of leaf nodes, by their z.
+inline std::map<int, MaskTree> layersOf(const MaskGrid& mask) {
+  std::map<int, MaskTree> layers;
+  for (auto voxel = mask.cbeginValueOn(); voxel; ++voxel) {
+    CoordBBox box;
+    voxel.getBoundingBox(box);  // of a tile
+    for (auto p = box.begin(); p; ++p) layers[(*p).z() & ~7].setValueOn(*p);
+  }
+  return layers;
 }
 
 /// At every layer of leaves or some of them; now and then there are empty slabs at the ends.

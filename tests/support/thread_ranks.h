@@ -77,7 +77,7 @@ class ThreadRank : public Ranks {
   void exchange(Scratch& own) override {
     team_.meet();
     for (const auto& [name, bytes] : std::exchange(team_.mail[size_t(rank_)], {}))
-      own.write(name, bytes);
+      receive(name, bytes, own);
     team_.meet();
   }
   void sum(std::vector<int64_t>& values) override {

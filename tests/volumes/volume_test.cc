@@ -4,6 +4,10 @@
 #include "vdb_madf/volumes/volume.h"
 
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <random>
+#include <set>
+#include <string>
 
 #include "support/files.h"
 #include "support/label_shapes.h"
@@ -12,6 +16,7 @@
 #include "vdb_madf/files/same_file.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/vdb/slab_folder.h"
 #include "vdb_madf/vdb/write_vdb.h"
 #include "vdb_madf/volumes/write_image.h"
 
@@ -175,4 +180,68 @@ TEST_CASE("volume: an image that is no file is read as its file is", "[volume]")
   options.region = {};
   options.longestSide = 11;
   CHECK_THROWS_WITH(loadObject(open, options), StartsWith(path + ": is 12 voxels long"));
+}
+
+namespace {
+
+/// Writes the voxels of `labels` as a folder of slabs 16 voxels high, up to z = 47.
+void writeSlabs(const std::string& path, const Int32Grid& labels) {
+  std::filesystem::create_directory(path);
+  std::string slabs;
+  for (int s = 0; s < 3; ++s) {
+    const CoordBBox box(Coord(0, 0, 16 * s), Coord(100, 100, 16 * s + 15));
+    const Int32Grid::Ptr slab = labels.deepCopy();
+    slab->tree().clip(box);
+    markSlab(*slab, size_t(s), 3);
+    writeVdb(path + "/" + slabFileName(size_t(s)), {slab});
+    slabs += std::string(s > 0 ? "," : "") + "{\"file\": \"" + slabFileName(size_t(s)) +
+             "\", \"z_first\": " + std::to_string(16 * s) +
+             ", \"z_last\": " + std::to_string(16 * s + 15) + "}";
+  }
+  writeFile(path + "/index.json", "{\"format\": \"vdb_madf slabs\", \"slabs\": [" + slabs + "]}");
+}
+
+}  // namespace
+
+TEST_CASE("volume: shares are the layers of the whole, each once", "[volume]") {
+  const ScratchFolder folder;
+  const CoordBBox box(Coord(0), Coord(11, 9, 44));
+  const auto labels = Int32Grid::create();
+  std::mt19937 random(3);
+  for (auto p = box.begin(); p; ++p)
+    if (random() % 3 == 0) labels->tree().setValue(*p, 1 + int32_t(random() % 3));
+  setDomain(*labels, box);
+  writeVdb(folder / "a.vdb", {labels});
+  writeSlabs(folder / "a.slabs", *labels);
+  for (const char* image : {"a.npy", "a.tif"})
+    writeImage(folder / image, *labels, box, SampleType::int32);
+  VolumeOptions all, cropped, round, hardlyAny;
+  cropped.region.crop = CoordBBox(Coord(2, 0, 5), Coord(11, 8, 33));
+  round.region.cylinder = CylinderOptions{2, {}, 4.5};
+  hardlyAny.region.crop = CoordBBox(Coord(2, 0, 41), Coord(11, 8, 42));
+  for (VolumeOptions options : {all, cropped, round, hardlyAny})
+    for (const char* name : {"a.vdb", "a.slabs", "a.npy", "a.tif"}) {
+      options.selection = Selection::threshold(2);
+      const MaskGrid::Ptr whole = loadObject(folder / name, options);
+      for (int parts = 1; parts < 9; ++parts) {
+        CAPTURE(name, parts);
+        MaskTree joined;
+        std::set<int> layers;
+        VolumeOptions sharing = options;
+        sharing.takeLayer = [&](MaskTree& layer) {
+          if (layer.empty()) return;
+          CHECK(layers.insert(layer.cbeginLeaf()->origin().z()).second);
+          joined.topologyUnion(layer);
+        };
+        for (int part = 0; part < parts; ++part) {
+          sharing.share = {part, parts};
+          const MaskGrid::Ptr about = loadObject(folder / name, sharing);
+          REQUIRE(storedDomain(*about)->box() == storedDomain(*whole)->box());
+          REQUIRE(about->empty());
+        }
+        REQUIRE(joined.activeVoxelCount() == whole->activeVoxelCount());
+        joined.topologyDifference(whole->tree());
+        REQUIRE(joined.activeVoxelCount() == 0);
+      }
+    }
 }

@@ -10,7 +10,8 @@ namespace vdb_madf::tools {
 void printMessage(const std::string& kind, std::string what) {
   for (char& c : what)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  std::cerr << "vdb_madf: " << kind << ": " << what << std::endl;
+  // In one piece: mpiexec joins what several processes write as it comes.
+  std::cerr << "vdb_madf: " + kind + ": " + what + "\n" << std::flush;
 }
 
 }  // namespace vdb_madf::tools

@@ -5,6 +5,7 @@
 
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <iostream>
@@ -17,6 +18,7 @@
 #include "command_line.h"
 #include "message.h"
 #include "outputs.h"
+#include "rank_failure.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/method/initialize.h"
 #include "version_text.h"
@@ -43,8 +45,10 @@ namespace {
 constexpr int kDone = 0, kFailed = 1, kWrongUsage = 2, kInterrupted = 130;
 
 int fail(const Ranks* ranks, int code, const std::string& what) {
-  // What all find wrong is said once: rank 0 ends the others while these wait.
-  if (ranks && ranks->rank() > 0) std::this_thread::sleep_for(std::chrono::seconds(3));
+  // What several find wrong is said once: the first of them ends the others while these wait. That takes a
+  // moment.
+  if (ranks && ranks->rank() > 0)
+    std::this_thread::sleep_for(std::chrono::seconds(2 + std::min(ranks->rank(), 20)));
   printMessage("error", what);
   return code;
 }
@@ -148,6 +152,9 @@ int run(const char* program, int argc, char** argv, Ranks* ranks) {
 int runCommand(const char* program, int argc, char** argv, Ranks* ranks) {
   try {
     return run(program, argc, argv, ranks);
+  } catch (const OtherRankFailed&) {
+    std::this_thread::sleep_for(std::chrono::minutes(1));  // that one ends this one
+    return kFailed;
   } catch (const WrongUsage& error) {
     return fail(ranks, kWrongUsage, error.what());
   } catch (const Interrupted&) {

@@ -20,7 +20,6 @@
 #include "outputs.h"
 #include "parse.h"
 #include "segment_by_slabs.h"
-#include "segment_ranks.h"
 #include "segment_slabs.h"
 #include "segment_summary.h"
 #include "vdb_madf/base/errors.h"
@@ -118,7 +117,6 @@ void printEstimate(const SegmentArguments& o, const Common& common, const MaskGr
 }
 
 void run(const SegmentArguments& o, const Common& common) {
-  if (common.ranks) return runInRanks(o, common);
   if (hasSlabsEnding(o.out)) return runInSlabs(o, common);
   if (o.autoSlabs && isSurelyForSlabs(o)) return runBySlabs(o, common);
   const Clock::time_point start = Clock::now();
@@ -234,7 +232,8 @@ void addSegment(Verb command, Common& common, Action& action) {
   verb.flag("--dry-run", o->dryRun, "only say how much memory it would take");
   verb.onParsed([o, &common, &action] {
     parse(*o);
-    if (common.ranks) checkRankArguments(*o);
+    if (common.ranks && !hasSlabsEnding(o->out))
+      throw WrongUsage("vdb_madf_mpi writes a folder of slabs: choose an output like OUT.slabs");
     action = [o, &common] { run(*o, besideOutput(common, o->out)); };
   });
 }

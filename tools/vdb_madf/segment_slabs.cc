@@ -12,49 +12,24 @@
 #include <utility>
 
 #include "parse.h"
+#include "rank_failure.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/base/version.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/slabs/folder_scratch.h"
-#include "vdb_madf/slabs/slab_builder.h"
+#include "vdb_madf/method/cavities.h"
+#include "vdb_madf/slabs/deal_slabs.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/slab_folder.h"
 #include "vdb_madf/vdb/write_vdb.h"
+#include "work_place.h"
 
 namespace vdb_madf::tools {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// What the slabs in scratch depend on.
-std::string workOf(const SegmentArguments& o) {
-  const InputOptions& in = o.input;
-  std::error_code ignored;
-  std::string work =
-      std::string(kVersion) + "\n" + fs::absolute(o.out, ignored).string() + "\n" +
-      fs::absolute(in.path, ignored).string() + " " +
-      std::to_string(fs::file_size(in.path, ignored)) + " " +
-      std::to_string(fs::last_write_time(in.path, ignored).time_since_epoch().count());
-  for (const std::string& text : {in.gridName,   in.dataset,
-                                  in.dims,       in.type,
-                                  in.skip,       in.phase,
-                                  in.threshold,  in.range,
-                                  in.median,     in.smooth,
-                                  in.despeckle,  in.voxelSizeText,
-                                  in.domainText, in.roi,
-                                  in.cropText,   o.boundary,
-                                  o.gamma,       o.fillHoles,
-                                  o.tidy,        o.merge.theta,
-                                  o.merge.mode,  o.merge.adjacency,
-                                  o.merge.delta, o.keep,
-                                  o.maxMemory,   std::to_string(o.slabHeight)})
-    work += "\n" + text;
-  for (const bool flag : {in.bigEndian, in.invert, o.paper}) work += flag ? "\nyes" : "\nno";
-  return work;
-}
 
 SlabLimits limitsOf(const SegmentArguments& o) {
   SlabLimits limits;
@@ -72,102 +47,47 @@ SlabLimits limitsOf(const SegmentArguments& o) {
   return limits;
 }
 
-/// Is a path that of a folder, or of something in it?
-bool isWithin(const std::string& path, const std::string& folder) {
-  std::error_code ignored;
-  const std::string a = (fs::weakly_canonical(fs::absolute(path, ignored), ignored) / "").string(),
-                    b = (fs::weakly_canonical(fs::absolute(folder, ignored), ignored) / "")
-                            .string();
-  return a.compare(0, b.size(), b) == 0;
-}
-
-constexpr char kDone[] = "done";  // the piece that says that OUT.slabs.part is whole
-
-/// Folders of work that is not done yet: the slabs that are, and scratch.
-class WorkPlace {
- public:
-  explicit WorkPlace(const SegmentArguments& o) : out_(o.out), part_(o.out + ".part") {
-    checkSlabFolder(out_);
-    const std::string scratch = o.scratch.empty() ? o.out + ".scratch" : o.scratch;
-    if (isWithin(out_, scratch) || isWithin(scratch, out_) || isWithin(scratch, part_))
-      throw IoError("scratch data cannot be in " + scratch + ", for " + out_ +
-                    ": choose another folder");
-    std::error_code error;
-    const bool isNew = fs::create_directory(part_, error);
-    if (error)
-      throw IoError("cannot make " + part_ + ": " + error.message() +
-                    "; make its folder first, or remove what is there");
-    if (!isNew && !o.resume && !fs::is_empty(part_, error))
-      throw IoError(part_ +
-                    ": is what a run left that did not end: give --resume to go on, or remove it");
-    try {
-      scratch_.emplace(scratch, workOf(o), o.resume);
-    } catch (...) {
-      if (isNew) fs::remove(part_, error);
-      throw;
-    }
-    if (!hasSlabs(*scratch_)) clear();
-  }
-
-  FolderScratch& scratch() { return *scratch_; }
-  std::string file(const std::string& name) const { return (fs::path(part_) / name).string(); }
-
-  /// @throw IoError if slabs are missing that a run before wrote
-  void checkSlabs(size_t count) const {
-    std::error_code ignored;
-    for (size_t s = 0; s < count; ++s)
-      if (isSlabPut(*scratch_, s) && !fs::exists(file(slabFileName(s)), ignored))
-        throw IoError(file(slabFileName(s)) + ": is missing; remove " + part_ + " and " +
-                      scratch_->path() + ", and begin anew");
-  }
-
-  bool isDone() const { return scratch_->has(kDone); }
-  /// Puts the folder in the place of OUT, and removes scratch.
-  void finish() {
-    std::error_code ignored;
-    scratch_->write(kDone, {});
-    if (fs::exists(file(kSlabIndex), ignored)) commitSlabFolder(part_, out_);
-    fs::remove(part_, ignored);  // of a run that was killed in what follows
-    scratch_->removeAll();
-  }
-  void discard() {
-    std::error_code ignored;
-    clear();
-    fs::remove(part_, ignored);
-    scratch_->removeAll();
-  }
-  std::string whatIsKept() const {
-    return "what was done so far is kept in " + part_ + " and " + scratch_->path() +
-           ": give --resume to go on, or remove both";
-  }
-
- private:
-  void clear() {
-    std::error_code error;
-    std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(part_, error)) files.push_back(entry.path());
-    for (const fs::path& path : files) fs::remove(path, error);
-  }
-
-  std::string out_, part_;
-  std::optional<FolderScratch> scratch_;
-};
+/// Object voxels in a slab of one of several ranks, where no other limit is given.
+constexpr int64_t kSlabVoxels = int64_t(1) << 28;
 
 /// Reads the object into slabs; returns it without voxels.
 MaskGrid::Ptr readSlabs(const SegmentArguments& o, const Common& common, WorkPlace& place) {
-  const std::string about = place.scratch().file("about.vdb");
-  if (hasSlabs(place.scratch())) {
-    VdbReadOptions any;
-    any.anyVoxelShape = true;
-    return openvdb::gridPtrCast<MaskGrid>(readVdb(about, any).at(0));
-  }
   SlabBuilder builder(limitsOf(o), place.scratch());
   VolumeOptions volume = o.input.volume(common.progress);
   volume.takeLayer = [&](const MaskTree& layer) { builder.add(layer); };
   const MaskGrid::Ptr object = loadObject(o.input, volume, common.progress);
-  writeVdb(about, {object}, common.progress);
+  writeVdb(place.aboutFile(), {object}, common.progress);
   builder.finish(storedDomain(*object));
   return object;
+}
+
+/// The same by several ranks, each of which reads a part.
+MaskGrid::Ptr readShare(const SegmentArguments& o, const Common& common, WorkPlace& place) {
+  Ranks& ranks = *common.ranks;
+  SlabLimits limits;
+  if (!o.maxMemory.empty()) limits = limitsOf(o);
+  limits.voxels = limits.voxels > 0 ? std::min(limits.voxels, kSlabVoxels) : kSlabVoxels;
+  limits.height = o.slabHeight;
+  limits.leastHeight = o.segment.tidy;
+  SlabDealer dealer(ranks, place.scratch());
+  MaskGrid::Ptr object;
+  inAllRanks(ranks, [&] {
+    VolumeOptions volume = o.input.volume(common.progress);
+    volume.share = {ranks.rank(), ranks.count()};
+    volume.takeLayer = [&](const MaskTree& layer) { dealer.add(layer); };
+    object = loadObject(o.input, volume, common.progress);
+    if (ranks.rank() == 0 && !place.isInMemory())
+      writeVdb(place.aboutFile(), {object}, common.progress);
+  });
+  const auto domain = storedDomain(*object);
+  dealer.finish(limits, o.segment.fillHoles.value_or(defaultFillHoles(domain)), domain);
+  return object;
+}
+
+MaskGrid::Ptr storedAbout(const WorkPlace& place) {
+  VdbReadOptions any;
+  any.anyVoxelShape = true;
+  return openvdb::gridPtrCast<MaskGrid>(readVdb(place.aboutFile(), any).at(0));
 }
 
 }  // namespace
@@ -184,12 +104,16 @@ std::string withoutSlash(std::string path) {
   return path;
 }
 
-void addSlabCosts(const SlabObject& object, const SlabSegmentation& s, Json& json) {
-  json["slab_count"] = object.slabCount();
-  json["exchanges"] = s.exchanges;
-  for (const SlabStage& stage : s.stages)
-    json["stages"].push_back(
-        {{"name", stage.name}, {"seconds", stage.seconds}, {"message_bytes", stage.messageBytes}});
+void checkSlabArguments(const SegmentArguments& o) {
+  const bool isSlabs = hasSlabsEnding(o.out);
+  if (!isSlabs && (o.slabHeight > 0 || !o.scratch.empty() || o.resume))
+    throw WrongUsage("--slab-height, --scratch and --resume are for an output like OUT.slabs");
+  if (!isSlabs) return;
+  const SegmentOptions& keep = o.segment;
+  if (keep.keepDistance || keep.keepPower || keep.keepBalls || !o.tables.empty() || o.dryRun)
+    throw WrongUsage(o.out +
+                     ": slabs get labels and --keep manifold alone: leave other grids, --tables "
+                     "and --dry-run out");
 }
 
 void writeSlab(const std::string& path, const SlabGrids& grids, size_t slab, size_t count,
@@ -203,6 +127,19 @@ void writeSlab(const std::string& path, const SlabGrids& grids, size_t slab, siz
   writeVdb(path, written, progress);
 }
 
+namespace {
+
+/// Adds to the summary of a segmentation what slabs took: `slab_count`, `exchanges`, and of each stage
+/// `seconds` and `message_bytes`.
+void addSlabCosts(const SlabObject& object, const SlabSegmentation& s, Json& json) {
+  json["slab_count"] = object.slabCount();
+  json["exchanges"] = s.exchanges;
+  for (const SlabStage& stage : s.stages)
+    json["stages"].push_back(
+        {{"name", stage.name}, {"seconds", stage.seconds}, {"message_bytes", stage.messageBytes}});
+}
+
+/// What index.json says of slabs, from what is said of the segmentation.
 Json slabIndex(const SegmentArguments& o, const SlabObject& object, const Json& summary) {
   Json index;
   index["format"] = "vdb_madf slabs";
@@ -216,79 +153,80 @@ Json slabIndex(const SegmentArguments& o, const SlabObject& object, const Json& 
   for (const auto& [key, value] : summary.items())
     if (key.rfind("seconds_", 0) != 0 && key.find("memory") == std::string::npos &&
         key != "threads" && key != "stages" && key != "exchanges" && key != "ranks" &&
-        key != "output" && key != "hints" && key != "input")
+        key != "output" && key != "hints" && key != "input" && key != "notes")
       index[key] = value;
   index["input"] = fs::path(o.input.path).filename().string();
   return index;
 }
 
-void checkSlabArguments(const SegmentArguments& o) {
-  const bool isSlabs = hasSlabsEnding(o.out);
-  if (!isSlabs && (o.slabHeight > 0 || !o.scratch.empty() || o.resume))
-    throw WrongUsage("--slab-height, --scratch and --resume are for an output like OUT.slabs");
-  if (!isSlabs) return;
-  const SegmentOptions& keep = o.segment;
-  if (keep.keepDistance || keep.keepPower || keep.keepBalls || !o.tables.empty() || o.dryRun)
-    throw WrongUsage(o.out +
-                     ": slabs get labels and --keep manifold alone: leave other grids, --tables "
-                     "and --dry-run out");
-}
-
-void runInSlabs(const SegmentArguments& o, const Common& common) {
+/// Reads, segments and puts slabs in their place. @param jsonFile of rank 0; null for the others
+void workInSlabs(const SegmentArguments& o, const Common& common, Ranks& ranks, WorkPlace& place,
+                 JsonFile* jsonFile) {
   const Clock::time_point start = Clock::now();
   SegmentTiming timing;
-  JsonFile jsonFile(o.json);
-  WorkPlace place(o);
+  common.progress->start("read");
+  const MaskGrid::Ptr about = place.holdsSlabs() ? storedAbout(place)
+                              : common.ranks     ? readShare(o, common, place)
+                                                 : readSlabs(o, common, place);
+  timing.read = secondsSince(start);
+  SegmentOptions options = o.segment;
+  options.boundary = boundaryOf(o.boundary, o.input, *about);
+  options.maxMemory = 0;
+  const SlabObject object = storedSlabs(place.scratch(), about);
+  place.checkSlabs(object.slabCount());
+
+  common.progress->start("segment");
+  const SlabSegmentation s = withFileName(o.input.path, [&] {
+    return segmentSlabs(
+        object, options, place.scratch(), ranks,
+        [&](size_t slab, const SlabGrids& grids) {
+          const Clock::time_point startWrite = Clock::now();
+          writeSlab(place.file(slabFileName(slab)), grids, slab, object.slabCount(),
+                    common.progress);
+          timing.write += secondsSince(startWrite);
+        },
+        common.progress);
+  });
+  common.progress->end();
+  if (!jsonFile) return;
+  timing.total = secondsSince(start);
+  const SegmentSummary summary = summarize(o, common, s, *about, timing);
+  Json json = toJson(o, summary);
+  addSlabCosts(object, s, json);
+  if (common.ranks) json["ranks"] = ranks.count();
+  addNotes(json, *common.progress);
+  JsonFile(place.file(kSlabIndex)).write(slabIndex(o, object, json));
+  place.finish();
+  jsonFile->write(json);
+  if (common.quiet || jsonFile->isStandardOutput()) return;
+  print(o, common, summary);
+  const std::string by = ", by " + std::to_string(ranks.count()) + " processes";
+  std::printf("  slabs            %zu%s%s\n", object.slabCount(), common.ranks ? by.c_str() : "",
+              o.fileOfSlabs.empty() ? ", each a .vdb; convert makes one of them" : "");
+}
+
+}  // namespace
+
+void runInSlabs(const SegmentArguments& o, const Common& common) {
+  Ranks alone;
+  Ranks& ranks = common.ranks ? *common.ranks : alone;
+  std::optional<JsonFile> jsonFile;
+  if (ranks.rank() == 0) jsonFile.emplace(o.json);
+  WorkPlace place(o, common, ranks);
   if (place.isDone()) {
     place.finish();
     common.progress->note(o.out + ": was whole already");
     return;
   }
   try {
-    common.progress->start("read");
-    const MaskGrid::Ptr about = readSlabs(o, common, place);
-    timing.read = secondsSince(start);
-    SegmentOptions options = o.segment;
-    options.boundary = boundaryOf(o.boundary, o.input, *about);
-    options.maxMemory = 0;
-    const SlabObject object = storedSlabs(place.scratch(), about);
-    place.checkSlabs(object.slabCount());
-
-    common.progress->start("segment");
-    const SlabSegmentation s = withFileName(o.input.path, [&] {
-      return segmentSlabs(
-          object, options, place.scratch(),
-          [&](size_t slab, const SlabGrids& grids) {
-            const Clock::time_point startWrite = Clock::now();
-            writeSlab(place.file(slabFileName(slab)), grids, slab, object.slabCount(),
-                      common.progress);
-            timing.write += secondsSince(startWrite);
-          },
-          common.progress);
-    });
-    timing.total = secondsSince(start);
+    workInSlabs(o, common, ranks, place, jsonFile ? &*jsonFile : nullptr);
+  } catch (const InvalidInput&) {
     common.progress->end();
-    const SegmentSummary summary = summarize(o, common, s, *about, timing);
-    Json json = toJson(o, summary);
-    addSlabCosts(object, s, json);
-    addNotes(json, *common.progress);
-    JsonFile(place.file(kSlabIndex)).write(slabIndex(o, object, json));
-    place.finish();
-    jsonFile.write(json);
-    if (common.quiet || jsonFile.isStandardOutput()) return;
-    print(o, common, summary);
-    std::printf("  slabs            %zu%s\n", object.slabCount(),
-                o.fileOfSlabs.empty() ? ", each a .vdb; convert makes one of them" : "");
-  } catch (const InvalidInput&) {  // it would be the same again
-    common.progress->end();
-    place.discard();
+    place.abandon(true);
     throw;
   } catch (...) {
     common.progress->end();
-    if (!hasSlabs(place.scratch()))
-      place.discard();
-    else
-      common.progress->note(place.whatIsKept());
+    place.abandon(false);
     throw;
   }
 }

@@ -18,19 +18,13 @@ std::string withoutSlash(std::string path);
 /// @throw WrongUsage for options that slabs do not know
 void checkSlabArguments(const SegmentArguments& o);
 
-/// Adds to the summary of a segmentation what slabs took: `slab_count`, `exchanges`, and of each stage
-/// `seconds` and `message_bytes`.
-void addSlabCosts(const SlabObject& object, const SlabSegmentation& s, Json& json);
-
 /// The file of a slab, of so many.
 void writeSlab(const std::string& path, const SlabGrids& grids, size_t slab, size_t count,
                Progress* progress);
 
-/// What index.json says of slabs, from what is said of the segmentation.
-Json slabIndex(const SegmentArguments& o, const SlabObject& object, const Json& summary);
-
-/// Works in OUT.slabs.part, and in the scratch folder, which stay for --resume if the work is cut off
-/// after the object was read; at the end OUT.slabs appears whole.
+/// Works in OUT.slabs.part, and in scratch. Both stay for --resume, by any number of ranks, if the work is
+/// cut off after the object was read; at the end OUT.slabs appears whole.
+/// Where there are common.ranks, these share the work: see WorkPlace.
 void runInSlabs(const SegmentArguments& o, const Common& common);
 
 }  // namespace vdb_madf::tools

@@ -26,8 +26,9 @@ void forEachChunk(size_t size, const F& f) {
   for (size_t at = 0; at < size; at += kChunk) f(at, int(std::min(kChunk, size - at)));
 }
 
-/// Puts the pieces of a message, as post() makes it, into scratch.
-void unpack(const std::vector<char>& message, Scratch& scratch) {
+/// f(name, bytes) for the pieces of a message, as post() makes it.
+template <typename F>
+void forEachPiece(const std::vector<char>& message, const F& f) {
   size_t at = 0;
   const auto size = [&] {
     uint64_t value;
@@ -40,8 +41,8 @@ void unpack(const std::vector<char>& message, Scratch& scratch) {
     const std::string name(message.data() + at, nameSize);
     at += nameSize;
     const size_t pieceSize = size();
-    scratch.write(name, {message.begin() + std::ptrdiff_t(at),
-                         message.begin() + std::ptrdiff_t(at + pieceSize)});
+    f(name,
+      {message.begin() + std::ptrdiff_t(at), message.begin() + std::ptrdiff_t(at + pieceSize)});
     at += pieceSize;
   }
 }
@@ -92,7 +93,9 @@ void MpiRanks::exchange(Scratch& own) {
   MPI_Waitall(int(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
   outbox_.assign(ranks, {});
   for (std::vector<char>& message : inbox) {
-    unpack(message, own);
+    forEachPiece(message, [&](const std::string& name, const std::vector<char>& bytes) {
+      receive(name, bytes, own);
+    });
     message = {};
   }
 }

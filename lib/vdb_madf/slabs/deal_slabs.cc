@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <string>
 #include <utility>
+#include <vector>
 
-#include "vdb_madf/leaves/detail/leaf_mask.h"
+#include "vdb_madf/base/errors.h"
 #include "vdb_madf/slabs/detail/object_pieces.h"
 
 namespace vdb_madf {
@@ -16,101 +17,127 @@ namespace {
 
 using Leaves = std::vector<LeafIndex::LeafVoxels>;
 
-std::string dealtName(int from) {
-  return "dealt-" + std::to_string(from);
+std::string layerName(int z) {
+  return "layer-" + std::to_string(z);
 }
 
-/// None, if there is no such piece.
-Leaves readIfAny(const Scratch& scratch, const std::string& name) {
-  return scratch.has(name) ? detail::readLeaves(scratch, name) : Leaves();
+/// Does a layer or slab lie within reach of the slabs of a rank? Not if it has none.
+bool isWanted(const Ranks& ranks, int rank, const std::vector<int>& cuts, int64_t reach, int begin,
+              int end) {
+  const size_t slabs = cuts.size() - 1, first = ranks.firstSlab(rank, slabs),
+               last = ranks.firstSlab(rank + 1, slabs);
+  return first < last && end + reach > cuts[first] && begin - reach < cuts[last];
 }
+
+}  // namespace
 
 /// Object voxels of each layer, of all ranks.
-struct Layers {
+struct SlabDealer::Layers {
   int first = 0;  ///< z of the lowest
   std::vector<int64_t> voxels;
+
+  std::vector<int> chooseCuts(const SlabLimits& limits, int ranks) const;
 };
 
-Layers countLayers(const Leaves& leaves, const std::optional<Domain>& domain, Ranks& ranks) {
-  CoordBBox box;
-  for (const LeafIndex::LeafVoxels& leaf : leaves) box.expand(leaf.origin);
-  if (domain && !domain->box().empty()) box.expand(domain->box());
-  std::vector<int64_t> ends{-int64_t(box.min().z()), box.max().z()};
-  ranks.max(ends);
-  if (-ends[0] > ends[1]) return {0, {0}};  // nothing at all
+void SlabDealer::add(const MaskTree& layer) {
+  Leaves leaves;
+  const int64_t voxels = addLeaves(layer, leaves);
+  if (leaves.empty()) return;
+  const int z = leaves[0].origin.z();
+  for (const LeafIndex::LeafVoxels& leaf : leaves)
+    if (leaf.origin.z() != z) throw InvalidInput("a layer of leaf nodes has several heights");
+  if (!read_.emplace(z, voxels).second) throw InvalidInput("a layer of leaf nodes comes twice");
+  detail::writeLeaves(scratch_, layerName(z), leaves);
+}
+
+void SlabDealer::finish(const SlabLimits& limits, int64_t reach,
+                        const std::optional<Domain>& domain) {
+  const Layers layers = countLayers(domain);
+  const std::vector<int> cuts = layers.chooseCuts(limits, ranks_.count());
+  if (scratch_.isShared()) reach = 0;  // what lies beyond its slabs a rank reads where it is
+  send(cuts, reach);
+  ranks_.exchange(scratch_);
+  receive(cuts, reach, layers);
+  ranks_.exchange(scratch_);
+  if (!scratch_.isShared() || ranks_.rank() == 0) writeCuts(scratch_, cuts);
+  ranks_.exchange(scratch_);
+}
+
+SlabDealer::Layers SlabDealer::countLayers(const std::optional<Domain>& domain) const {
+  constexpr int64_t kNothing = INT32_MIN;
+  std::vector<int64_t> ends{kNothing, kNothing};
+  const auto include = [&](int first, int last) {
+    ends = {std::max<int64_t>(ends[0], -int64_t(first)), std::max<int64_t>(ends[1], last)};
+  };
+  if (!read_.empty()) include(read_.begin()->first, read_.rbegin()->first);
+  if (domain && !domain->box().empty()) include(domain->box().min().z(), domain->box().max().z());
+  ranks_.max(ends);
+  if (ends[0] == kNothing) return {0, {0}};
   Layers layers;
   layers.first = int(-ends[0]) & ~7;
   layers.voxels.assign(size_t((ends[1] - layers.first) / 8 + 1), 0);
-  for (const LeafIndex::LeafVoxels& leaf : leaves)
-    layers.voxels[size_t(leaf.origin.z() - layers.first) / 8] += detail::countVoxels(leaf.mask);
-  ranks.sum(layers.voxels);
+  for (const auto& [z, voxels] : read_) layers.voxels[size_t(z - layers.first) / 8] = voxels;
+  ranks_.sum(layers.voxels);
   return layers;
 }
 
-std::vector<int> chooseCuts(const Layers& layers, const SlabLimits& limits, int ranks) {
+std::vector<int> SlabDealer::Layers::chooseCuts(const SlabLimits& limits, int ranks) const {
   int64_t total = 0;
-  for (const int64_t voxels : layers.voxels) total += voxels;
+  for (const int64_t ofLayer : voxels) total += ofLayer;
   int64_t most = total / ranks + 1;
   if (limits.voxels > 0) most = std::min(most, limits.voxels);
-  std::vector<int> cuts{layers.first};
+  std::vector<int> cuts{first};
   int64_t inSlab = 0;
-  for (size_t layer = 0; layer < layers.voxels.size(); ++layer) {
-    const int z = layers.first + int(layer) * 8, height = z - cuts.back();
-    // A cut where the slab's share is nearer than after this layer.
-    const bool isFull = inSlab > 0 && inSlab + layers.voxels[layer] / 2 >= most;
+  for (size_t layer = 0; layer < voxels.size(); ++layer) {
+    const int z = first + int(layer) * 8, height = z - cuts.back();
+    // A cut where the slab's share is nearer than after this layer; a limit is not passed.
+    const bool isFull =
+        inSlab > 0 && (inSlab + voxels[layer] / 2 >= most ||
+                       (limits.voxels > 0 && inSlab + voxels[layer] > limits.voxels));
     const bool isHigh = limits.height > 0 && height + 8 > (limits.height + 7) / 8 * 8;
     if (height >= std::max(limits.leastHeight, 8) && (isFull || isHigh)) {
       cuts.push_back(z);
       inSlab = 0;
     }
-    inSlab += layers.voxels[layer];
+    inSlab += voxels[layer];
   }
-  cuts.push_back(layers.first + int(layers.voxels.size()) * 8);
+  cuts.push_back(first + int(voxels.size()) * 8);
   return cuts;
 }
 
-}  // namespace
-
-SlabObject dealSlabs(Leaves leaves, const SlabLimits& limits, int64_t reach,
-                     const std::optional<Domain>& domain, MaskGrid::ConstPtr about, Ranks& ranks,
-                     Scratch& scratch) {
-  SlabObject object;
-  object.about = std::move(about);
-  object.cuts = chooseCuts(countLayers(leaves, domain, ranks), limits, ranks.count());
-  const std::vector<int>& cuts = object.cuts;
-  const size_t slabs = object.slabCount();
-
-  for (int rank = 0; rank < ranks.count(); ++rank) {
-    const size_t first = ranks.firstSlab(rank, slabs), last = ranks.firstSlab(rank + 1, slabs);
-    if (first == last) continue;
-    Leaves wanted;
-    for (const LeafIndex::LeafVoxels& leaf : leaves)
-      if (leaf.origin.z() + 8 + reach > cuts[first] && leaf.origin.z() - reach < cuts[last])
-        wanted.push_back(leaf);
-    if (wanted.empty()) continue;
-    detail::ByteWriter bytes;
-    bytes.add(wanted);
-    ranks.send(rank, dealtName(ranks.rank()), bytes.bytes(), scratch);
+/// The layers that others want. (Those of a scratch that is shared are there.)
+void SlabDealer::send(const std::vector<int>& cuts, int64_t reach) {
+  if (scratch_.isShared()) return;
+  for (const auto& layer : read_) {
+    const int z = layer.first;
+    const std::vector<char> bytes = scratch_.read(layerName(z));
+    for (int rank = 0; rank < ranks_.count(); ++rank)
+      if (rank != ranks_.rank() && isWanted(ranks_, rank, cuts, reach, z, z + 8))
+        ranks_.send(rank, layerName(z), bytes, scratch_);
+    if (!isWanted(ranks_, ranks_.rank(), cuts, reach, z, z + 8)) scratch_.remove(layerName(z));
   }
-  leaves = {};
-  ranks.exchange(scratch);
+}
 
-  std::vector<Leaves> ofSlab(slabs);
-  for (int rank = 0; rank < ranks.count(); ++rank) {
-    for (const LeafIndex::LeafVoxels& leaf : readIfAny(scratch, dealtName(rank))) {
-      const auto above = std::upper_bound(cuts.begin(), cuts.end(), leaf.origin.z());
-      ofSlab[size_t(above - cuts.begin()) - 1].push_back(leaf);
+/// Makes slabs of layers.
+void SlabDealer::receive(const std::vector<int>& cuts, int64_t reach, const Layers& layers) {
+  const auto isWantedHere = [&](int begin, int end) {
+    return isWanted(ranks_, ranks_.rank(), cuts, reach, begin, end);
+  };
+  for (size_t s = 0; s + 1 < cuts.size(); ++s) {
+    if (!isWantedHere(cuts[s], cuts[s + 1])) continue;
+    Leaves slab;
+    std::vector<std::string> done;
+    for (int z = cuts[s]; z < cuts[s + 1]; z += 8) {
+      if (layers.voxels[size_t(z - layers.first) / 8] == 0 || !isWantedHere(z, z + 8)) continue;
+      done.push_back(layerName(z));
+      const Leaves layer = detail::readLeaves(scratch_, done.back());
+      slab.insert(slab.end(), layer.begin(), layer.end());
     }
-    scratch.remove(dealtName(rank));
-  }
-  for (size_t s = 0; s < slabs; ++s) {
-    if (ofSlab[s].empty()) continue;
-    std::sort(ofSlab[s].begin(), ofSlab[s].end(),
+    std::sort(slab.begin(), slab.end(),
               [](const auto& a, const auto& b) { return a.origin < b.origin; });
-    detail::writeLeaves(scratch, detail::objectName(s), ofSlab[s]);
+    detail::writeLeaves(scratch_, detail::objectName(s), slab);
+    for (const std::string& name : done) scratch_.remove(name);
   }
-  object.leaves = [&scratch](size_t slab) { return readIfAny(scratch, detail::objectName(slab)); };
-  return object;
 }
 
 }  // namespace vdb_madf

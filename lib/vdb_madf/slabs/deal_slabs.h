@@ -3,22 +3,40 @@
 
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <optional>
-#include <vector>
 
 #include "vdb_madf/slabs/slab_builder.h"
 
 namespace vdb_madf {
 
-/// An object that several ranks have read, each a part of its layers of leaf nodes, cut into slabs of
-/// about as many voxels each, as many as there are ranks or more, and dealt to these. All call it.
-/// Nothing of it is in the memory of a rank but what was sent to it, which is in its scratch.
-/// @param leaves those that this rank has read; a leaf is read by one rank
-/// @param limits of a slab; voxels as in SlabLimits
-/// @param reach how far beyond its slabs a rank has to know the object, voxels
-/// @return what segmentSlabs() takes; the cuts cover the domain, if there is one, and the object
-SlabObject dealSlabs(std::vector<LeafIndex::LeafVoxels> leaves, const SlabLimits& limits,
-                     int64_t reach, const std::optional<Domain>& domain, MaskGrid::ConstPtr about,
-                     Ranks& ranks, Scratch& scratch);
+/// Cuts an object that several ranks read, each some of its layers of leaf nodes, into slabs of about as
+/// many voxels each, as many as there are ranks or more, and deals these to the ranks. All make one. Of
+/// the object nothing is in the memory of a rank but a layer or a slab; the rest is in scratch.
+class SlabDealer {
+ public:
+  SlabDealer(Ranks& ranks, Scratch& scratch) : ranks_(ranks), scratch_(scratch) {}
+
+  /// A layer, which no other rank reads, in any order. @throw InvalidInput if it is not one, or comes twice
+  void add(const MaskTree& layer);
+
+  /// After the last of all ranks, which call it together.
+  /// @param limits of a slab; voxels as in SlabLimits
+  /// @param reach how far beyond its slabs a rank has to know the object, voxels
+  /// The cuts cover the domain, if there is one, and the object; they do not depend on who read what.
+  /// Those in a scratch that is shared count as finished (hasSlabs()) when all is in it.
+  void finish(const SlabLimits& limits, int64_t reach, const std::optional<Domain>& domain);
+
+ private:
+  struct Layers;
+  Layers countLayers(const std::optional<Domain>& domain) const;
+  void send(const std::vector<int>& cuts, int64_t reach);
+  void receive(const std::vector<int>& cuts, int64_t reach, const Layers& layers);
+
+  Ranks& ranks_;
+  Scratch& scratch_;
+  std::map<int, int64_t> read_;  // voxels of the layers of this rank, by their z
+};
 
 }  // namespace vdb_madf

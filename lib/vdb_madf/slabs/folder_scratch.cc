@@ -70,16 +70,22 @@ void forEachBlock(size_t size, const F& f) {
 }
 
 /// What killed programs were writing: see OutputFile.
+bool isHalfWritten(const fs::path& path) {
+  const std::string name = path.filename().string();
+  return name[0] == '.' && name.find(std::string(kEnding) + ".") != std::string::npos &&
+         path.extension() == ".tmp";
+}
+
 void removeHalfWritten(const std::string& folder) {
   std::error_code error;
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (name[0] == '.' && name.find(std::string(kEnding) + ".") != std::string::npos &&
-        entry.path().extension() == ".tmp")
-      files.push_back(entry.path());
-  }
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (isHalfWritten(entry.path())) files.push_back(entry.path());
   for (const fs::path& file : files) fs::remove(file, error);
+}
+
+std::string pathOf(const std::string& path) {
+  return (fs::path(path).lexically_normal() / "").parent_path().string();
 }
 
 [[noreturn]] void failDamaged(const std::string& path) {
@@ -88,8 +94,14 @@ void removeHalfWritten(const std::string& folder) {
 
 }  // namespace
 
+FolderScratch::FolderScratch(const std::string& path) : path_(pathOf(path)), isShared_(true) {
+  if (!has(kWork))
+    throw IoError(path_ + ": is not there for all processes: choose a folder that all see");
+  lock_ = std::make_unique<detail::FolderLock>(path_, detail::FolderLock::Kind::shared);
+}
+
 FolderScratch::FolderScratch(const std::string& path, const std::string& work, bool resume)
-    : path_((fs::path(path).lexically_normal() / "").parent_path().string()) {
+    : path_(pathOf(path)) {
   std::error_code error;
   fs::create_directory(path_, error);
   if (error)
@@ -97,7 +109,7 @@ FolderScratch::FolderScratch(const std::string& path, const std::string& work, b
                   "; give the path of a folder, in one that is there");
   bool isEmpty = true;
   for (const auto& entry : fs::directory_iterator(path_, error))
-    isEmpty = isEmpty && entry.path().filename() == kLock;
+    isEmpty = isEmpty && (entry.path().filename() == kLock || isHalfWritten(entry.path()));
   if (!isEmpty && !has(kWork))
     throw IoError(path_ + ": is no folder of scratch data: choose another one");
   lock_ = std::make_unique<detail::FolderLock>(path_);
@@ -106,22 +118,24 @@ FolderScratch::FolderScratch(const std::string& path, const std::string& work, b
 
 FolderScratch::~FolderScratch() = default;
 
+void FolderScratch::share() {
+  lock_->share();
+  isShared_ = true;
+}
+
 void FolderScratch::take(const std::string& work, bool resume, bool isEmpty) {
-  if (isEmpty) {
-    write(kWork, {work.begin(), work.end()});
-    return;
-  }
-  if (!resume)
+  if (!isEmpty && !resume)
     throw IoError(
         path_ +
         ": there is scratch data of a run that did not end: resume it, or remove the folder");
-  const std::vector<char> before = read(kWork);
-  if (std::string(before.begin(), before.end()) != work)
+  const std::vector<char> before = isEmpty ? std::vector<char>() : read(kWork);
+  if (!isEmpty && std::string(before.begin(), before.end()) != work)
     throw InvalidInput(
         path_ +
         ": the scratch data was made of another input or with other options: remove the folder, or "
         "give the same ones");
   removeHalfWritten(path_);
+  if (isEmpty) write(kWork, {work.begin(), work.end()});
 }
 
 std::string FolderScratch::file(const std::string& name) const {

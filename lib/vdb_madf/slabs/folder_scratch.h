@@ -25,7 +25,14 @@ class FolderScratch : public Scratch {
   /// @throw IoError if it cannot be made, is not empty, or another run works in it; InvalidInput if it
   ///   was made for other work
   FolderScratch(const std::string& path, const std::string& work, bool resume);
+  /// Takes part in the folder of another process, which has called share().
+  /// @throw IoError if this process does not see it, or a run works in it that does not share it
+  explicit FolderScratch(const std::string& path);
   ~FolderScratch() override;
+
+  /// From now on other processes may take part, and all have what one writes.
+  void share();
+  bool isShared() const override { return isShared_; }
 
   const std::string& path() const { return path_; }
   /// Where a file that is no piece goes.
@@ -44,6 +51,7 @@ class FolderScratch : public Scratch {
   void take(const std::string& work, bool resume, bool isEmpty);
 
   std::string path_;
+  bool isShared_ = false;
   std::unique_ptr<detail::FolderLock> lock_;
 };
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "vdb_madf/base/errors.h"
 #include "vdb_madf/slabs/scratch.h"
 
 namespace vdb_madf {
@@ -34,14 +35,13 @@ class Ranks {
   int ownerOf(size_t slab, size_t slabs) const { return int(slab * size_t(count()) / slabs); }
 
   /// A piece for the scratch of a rank: of this one, `own`, at once; of another one, which has it after
-  /// the next exchange().
+  /// the next exchange(). (To a scratch that is shared this one writes it, and tells its name.)
   void send(int to, const std::string& name, const std::vector<char>& bytes, Scratch& own) {
-    if (to == rank())
-      own.write(name, bytes);
-    else
-      post(to, name, bytes);
+    if (to == rank() || own.isShared()) own.write(name, bytes);
+    if (to != rank()) post(to, name, own.isShared() ? std::vector<char>() : bytes);
   }
   /// Waits for all; puts the pieces that came into `own`.
+  /// @throw IoError if `own` is shared and lacks one: its file system does not show it to all
   virtual void exchange(Scratch& /*own*/) {}
 
   /// Sums and maxima over the ranks, value by value.
@@ -49,6 +49,17 @@ class Ranks {
   virtual void max(std::vector<int64_t>& /*values*/) {}
   /// Gives all what rank 0 has.
   virtual void broadcast(std::vector<char>& /*bytes*/) {}
+
+ protected:
+  /// What has come with an exchange().
+  static void receive(const std::string& name, const std::vector<char>& bytes, Scratch& own) {
+    if (!own.isShared())
+      own.write(name, bytes);
+    else if (!own.has(name))
+      throw IoError(name +
+                    ": another process has written this piece of scratch data, and it is not "
+                    "seen here: choose a folder whose file system shows all processes the same");
+  }
 
  private:
   /// send() to another rank.

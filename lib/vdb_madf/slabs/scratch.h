@@ -22,6 +22,9 @@ class Scratch {
   virtual std::vector<char> read(const std::string& name) const = 0;
   virtual bool has(const std::string& name) const = 0;
   virtual void remove(const std::string& name) = 0;
+
+  /// Is it one and the same for all ranks, so that each has what another one writes?
+  virtual bool isShared() const { return false; }
 };
 
 /// In memory: for volumes that fit.

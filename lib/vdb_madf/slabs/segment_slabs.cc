@@ -57,8 +57,6 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
   SlabSegmentation result;
   if (object.slabCount() == 0) return result;
   result.domain = options.domain ? options.domain : storedDomain(*object.about);
-  if (result.domain && !result.domain->isBox() && ranks.count() > 1)
-    throw InvalidInput("a region cannot be shared between processes yet: take a box as domain");
   detail::SlabWork work(object, options, scratch, ranks, interrupter);
   work.domain = result.domain;
   detail::SlabGraph graph = detail::flowInSlabs(work, result);

@@ -67,16 +67,17 @@ using PutSlab = std::function<void(size_t slab, const SlabGrids& grids)>;
 /// @param put is called for each slab, from the lowest on (not again for those that a run before had
 ///   put: isSlabPut())
 /// Of the options that keep grids keepManifold alone is known here; maxMemory has to be 0.
-/// @throw as segment(); InvalidInput for these options, cuts that are none, a region as domain of several ranks,
-///   slabs, but for the first and the last, lower than `tidy` has rounds, or balls that reach too far; what scratch and put throw.
+/// @throw as segment(); InvalidInput for these options, cuts that are none, slabs, but for the first and the
+///   last, lower than `tidy` has rounds, or balls that reach too far; what scratch and put throw.
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
                               Scratch& scratch, const PutSlab& put,
                               Interrupter* interrupter = nullptr);
 
 /// The same by several processes, which all call it, with equal arguments but for their scratch (it may be
-/// one folder that all share). Each works on slabs of its own, which alone it asks for and puts (with
-/// cavities to fill it also asks for those that are less than `fillHoles` voxels away). Counts and
-/// boundary are known to all, the voxels of grains to rank 0.
+/// one that all share). Each works on slabs of its own, which alone it asks for and puts (with cavities to
+/// fill it also asks for those that are less than `fillHoles` voxels away, and in a region, where scratch
+/// is shared, for any). Counts and boundary are known to all, the voxels of grains to rank 0. What is in a
+/// scratch that was shared does not depend on the number of ranks: any number may go on with it.
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
                               Scratch& scratch, Ranks& ranks, const PutSlab& put,
                               Interrupter* interrupter = nullptr);

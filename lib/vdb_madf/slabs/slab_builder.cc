@@ -72,9 +72,13 @@ void SlabBuilder::finish(const std::optional<Domain>& domain) {
   if (cuts_.empty()) cuts_.push_back(domain ? domain->box().min().z() & ~7 : 0);
   endSlab(std::max(top, cuts_.back() + 8));
   if (domain) cuts_[0] = std::min(cuts_[0], domain->box().min().z() & ~7);
+  writeCuts(scratch_, cuts_);
+}
+
+void writeCuts(Scratch& scratch, const std::vector<int>& cuts) {
   detail::ByteWriter bytes;
-  bytes.add(cuts_);
-  scratch_.write(kCuts, bytes.bytes());
+  bytes.add(cuts);
+  scratch.write(kCuts, bytes.bytes());
 }
 
 bool hasSlabs(const Scratch& scratch) {

@@ -48,6 +48,9 @@ class SlabBuilder {
   std::optional<int> lastLayer_;
 };
 
+/// Says that the slabs of an object are whole in this scratch, and where it is cut.
+void writeCuts(Scratch& scratch, const std::vector<int>& cuts);
+
 /// Have the slabs of an object been finished in this scratch?
 bool hasSlabs(const Scratch& scratch);
 

@@ -207,31 +207,39 @@ MaskGrid::Ptr objectOfGrid(const std::string& path, const VolumeOptions& options
   return object;
 }
 
-/// The share of the slices of an image, and its whole domain.
-ScanPart shareOf(const ImageSize& size, const VolumeOptions::Share& share) {
-  const int64_t layers = (int64_t(size.z) + 7) / 8;
-  const auto first = [&](int part) { return int(layers * part / share.parts * 8); };
-  CoordBBox box = imageBox(size);
-  box.min().z() = first(share.part);
+/// The slices of a share of a box, by layers of leaf nodes; there may be none.
+CoordBBox shareOf(CoordBBox box, const VolumeOptions::Share& share) {
+  if (box.empty()) return box;
+  const int lowest = box.min().z() >> 3;
+  const int64_t layers = (box.max().z() >> 3) - lowest + 1;
+  const auto first = [&](int part) { return (lowest + int(layers * part / share.parts)) * 8; };
+  box.min().z() = std::max(box.min().z(), first(share.part));
   box.max().z() = std::min(box.max().z(), first(share.part + 1) - 1);
-  return {box, Domain(imageBox(size))};
+  return box;
 }
 
 MaskGrid::Ptr shareOfImage(const std::string& path, const ImageOpener& open,
                            const VolumeOptions& options, Interrupter* interrupter) {
   const GrayOptions& gray = options.gray;
   if (!options.selection || gray.automatic != AutomaticThreshold::none || gray.low ||
-      gray.despeckle > 1 || options.region.any())
+      gray.despeckle > 1)
     throw InvalidInput(path +
                        ": several read a part of it each: say by value which voxels are object, "
-                       "without hysteresis, despeckling and regions (convert makes a mask of it)");
-  ScanPart part = shareOf(open()->info().size, options.share);
-  const bool isEmpty = part.box.empty();
-  if (isEmpty) part.box.max().z() = part.box.min().z() = 0;  // for what is said of the object
-  const MaskGrid::Ptr object = imageObject(open, options.selection, gray, part, interrupter,
-                                           isEmpty ? [](MaskTree&) {} : options.takeLayer)
+                       "without hysteresis and despeckling (convert makes a mask of it)");
+  const auto chosen = partOfImage(open, options, interrupter);
+  // Opened once, for some formats look at all slices then.
+  std::unique_ptr<ImageReader> image = open();
+  const CoordBBox whole = imageBox(image->info().size);
+  const ImageOpener opened = [&] { return image ? std::move(image) : open(); };
+  ScanPart part = chosen.value_or(ScanPart{whole, Domain(whole)});
+  part.box.intersect(whole);
+  const CoordBBox share = shareOf(part.box, options.share);
+  if (!part.box.empty())  // a share of nothing: one voxel, for what is said of the object
+    part.box = share.empty() ? CoordBBox(part.box.min(), part.box.min()) : share;
+  const MaskGrid::Ptr object = imageObject(opened, options.selection, gray, part, interrupter,
+                                           share.empty() ? [](MaskTree&) {} : options.takeLayer)
                                    .mask;
-  if (options.domain) setDomain(*object, *options.domain);
+  if (options.domain && !chosen) setDomain(*object, *options.domain);
   return object;
 }
 
@@ -245,13 +253,15 @@ MaskGrid::Ptr objectOfSlabs(const std::string& path, const VolumeOptions& option
   const auto part = partOf(*chosen, path, options, interrupter);
   const MaskGrid::Ptr object = objectMask(*chosen);
   int64_t leftOut = 0;
+  const auto parts = size_t(options.share.parts);
   for (size_t s = 0; s < folder.slabCount(); ++s) {
+    if (s * parts / folder.slabCount() != size_t(options.share.part)) continue;
     const auto grid = readVdbSlab(folder, s, readingAlone(*chosen), interrupter).at(0);
     const MaskGrid::Ptr slab = objectMask(*grid, options.selection);
     if (part) leftOut += detail::cutTo(*part, *slab);
     takeLayers(slab->tree(), options.takeLayer);
   }
-  noteLeftOut(path, leftOut, "object voxel", options);
+  if (parts == 1) noteLeftOut(path, leftOut, "object voxel", options);
   noteVoxelSize(path, storedVoxelSize(*object), options);
   return object;
 }

@@ -40,8 +40,9 @@ struct VolumeOptions {
   /// An image of more voxels along an axis is refused before its samples are read. 0: any.
   int longestSide = 0;
   TakeLayer takeLayer;  ///< object only: gets the voxels, and the grid has none; see imageObject()
-  /// With takeLayer: reads one of so many parts of the layers of leaf nodes, of about the same height
-  /// each. An image has to be read by value then, with no more than filters, and with no region.
+  /// With takeLayer: gives one of so many parts of the layers of leaf nodes. Of an image that is an equal
+  /// part of the slices, which alone are read; it has to be read by value then, with no more than filters.
+  /// What a region leaves out is not counted then. Slabs of a folder are dealt. A .vdb is read by all.
   struct Share {
     int part = 0, parts = 1;
   } share;

@@ -234,6 +234,7 @@ class Hdf5Reader : public ImageReader {
     const Hdf5Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
     H5Pset_chunk_cache(access, kCacheSlots,
                        size_t(std::min(kMaxCacheBytes, layer * 2 + chunkBytes)), 1.0);
+    dataset_.close();  // one that is open keeps its cache, whoever opens it again
     dataset_ = openHdf5Dataset(file_, name_, access);
     if (!dataset_) fail("cannot be opened again");
   }

@@ -208,8 +208,13 @@ class SlabFilter {
       kept.push_back({ball.center, ball.squaredRadius});
       squaredRadius[slab.index.rank(*slab.index.findVoxel(ball.center))] = ball.squaredRadius;
     }
-    if (!work_.inRegion()) keptOffers_.offer(s, slab.index, squaredRadius);
-    work_.writeVector("kept-balls", s, kept);
+    if (work_.inRegion()) {
+      for (size_t t = 0; t < work_.slabCount(); ++t)
+        if (isInReach(work_, s, t)) work_.sendVector("kept-balls", s, t, kept);
+    } else {
+      keptOffers_.offer(s, slab.index, squaredRadius);
+      work_.writeVector("kept-balls", s, kept);
+    }
     work_.sendVector("ball-counts", s, SlabWork::kRoot,
                      std::vector<int64_t>{int64_t(balls.size()), int64_t(kept.size())});
   }
@@ -238,8 +243,7 @@ class SlabFilter {
     SlabBody slab = work_.body(s);
     std::vector<ForeignSite> sites;
     for (size_t t = 0; t < work_.slabCount(); ++t) {
-      if (!isInReach(work_, s, t)) continue;
-      const auto kept = work_.readVector<ForeignSite>("kept-balls", t);
+      const auto kept = work_.receiveVector<ForeignSite>("kept-balls", t, s);
       sites.insert(sites.end(), kept.begin(), kept.end());
     }
     PowerMap map = filteredInRegion(work_, s, sites, slab.index, &part);
@@ -249,7 +253,8 @@ class SlabFilter {
   void forget(size_t s) {
     for (const char* what : {"sized-balls", "lowest-components", "kept-balls", "elsewhere"})
       work_.remove(what, s);
-    for (size_t t = 0; t < work_.slabCount(); ++t) work_.removeMessage("cells", t, s);
+    for (size_t t = 0; t < work_.slabCount(); ++t)
+      for (const char* what : {"cells", "kept-balls"}) work_.removeMessage(what, t, s);
     work_.removeMessage("highest-components", s - 1, s);
     keptOffers_.forget(s);
   }

@@ -33,13 +33,14 @@ class SlabFlow {
     if (result_.counts.objectVoxels == 0) return std::move(graph_);
     work_.beginStage("offers");
     if (work_.inRegion()) {
-      work_.forEachSlab([&](size_t s) { measureInRegion(s); });
+      measureInRegion();
     } else {
       exchangeColumns(work_);
       work_.forEachSlab([&](size_t s) { offerBalls(s); });
       offers_.passOn();
     }
     shareLargest();
+    if (work_.inRegion()) shareBodies(work_, mappedReach(work_));
     if (isFiltered()) {
       work_.beginStage("gamma_filter");
       filterInSlabs(work_, offers_, completion_, result_.counts);
@@ -48,6 +49,7 @@ class SlabFlow {
     }
     work_.beginStage("flow");
     work_.forEachSlab([&](size_t s) { flowIn(s); }, [&](size_t s) { forgetMaps(s); });
+    if (work_.inRegion()) forgetBodies(work_);
     work_.forEachSlab([&](size_t s) { sendContacts(s); }, [&](size_t s) { forgetFaces(s); });
     work_.beginStage("graph");
     if (work_.isRoot()) gather();
@@ -67,9 +69,26 @@ class SlabFlow {
     offers_.offer(s, index, distance.values);
     work_.writeVector("largest", s, std::vector<int32_t>{distance.largest});
   }
-  void measureInRegion(size_t s) {
-    WorkPart part = work_.part(5, isFiltered() ? 15 : 30, s);
-    work_.writeVector("largest", s, std::vector<int32_t>{largestInRegion(work_, s, &part)});
+  /// In windows that grow until they tell the distances of all slabs. What a slab leaves: the largest
+  /// squared distance, and the reach that told it (0: none has yet).
+  void measureInRegion() {
+    std::vector<int64_t> unknown{1};
+    for (int reach = 32; unknown[0] > 0; reach *= 2) {
+      shareBodies(work_, reach);
+      work_.forEachSlab([&](size_t s) {
+        if (work_.has("largest", s) && work_.readVector<int32_t>("largest", s).at(1) > 0) return;
+        WorkPart part = work_.part(5, isFiltered() ? 15 : 30, s);
+        const auto largest = largestInRegion(work_, s, reach, &part);
+        work_.writeVector("largest", s,
+                          std::vector<int32_t>{largest.value_or(0), largest ? reach : 0});
+      });
+      unknown[0] = 0;
+      for (size_t s = work_.firstOwn(); s < work_.endOwn(); ++s) {
+        const int told = work_.readVector<int32_t>("largest", s).at(1);
+        unknown[0] += told == 0 || told > reach;  // in a run before, perhaps
+      }
+      work_.ranks.sum(unknown);
+    }
   }
   void shareLargest() {
     std::vector<int64_t> largest{0};

@@ -14,13 +14,33 @@ namespace vdb_madf::detail {
 
 namespace {
 
+/// The piece with a slab of another rank.
+constexpr char kAround[] = "around";
+
+bool isHere(const SlabWork& work, size_t slab) {
+  return work.scratch.isShared() || (slab >= work.firstOwn() && slab < work.endOwn());
+}
+
+LeafIndex bodyOf(const SlabWork& work, size_t slab) {
+  if (isHere(work, slab)) return work.body(slab).index;
+  return {LeafIndex(), work.readVector<LeafIndex::LeafVoxels>(kAround, slab)};
+}
+
+/// Does one of the slabs of a rank lie within reach of a slab?
+bool isNear(const SlabWork& work, int rank, size_t slab, int64_t reach) {
+  const size_t first = work.ranks.firstSlab(rank, work.slabCount()),
+               last = work.ranks.firstSlab(rank + 1, work.slabCount());
+  return first < last && work.end(slab) + reach > work.begin(first) &&
+         work.begin(slab) - reach < work.end(last - 1);
+}
+
 /// The object as far as `reach` voxels beyond the cuts of a slab, in whole leaves.
 LeafIndex window(const SlabWork& work, size_t slab, int reach) {
   const int64_t begin = int64_t(work.begin(slab)) - reach, end = int64_t(work.end(slab)) + reach;
   std::vector<LeafIndex::LeafVoxels> leaves;
   for (size_t s = 0; s < work.slabCount(); ++s) {
     if (work.end(s) <= begin || work.begin(s) >= end) continue;
-    const LeafIndex index = work.body(s).index;
+    const LeafIndex index = bodyOf(work, s);
     for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
       const int z = index.origin(leaf).z();
       if (z + 8 > begin && z < end) leaves.push_back({index.origin(leaf), index.mask(leaf)});
@@ -74,34 +94,58 @@ SquaredDistance distanceIn(const SlabWork& work, const LeafIndex& window,
 
 }  // namespace
 
-int32_t largestInRegion(const SlabWork& work, size_t slab, Interrupter* interrupter) {
+void shareBodies(SlabWork& work, int reach) {
+  if (work.ranks.count() == 1 || work.scratch.isShared()) return;
+  for (size_t s = work.firstOwn(); s < work.endOwn(); ++s) {
+    const LeafIndex index = work.body(s).index;
+    std::vector<LeafIndex::LeafVoxels> leaves;
+    for (size_t leaf = 0; leaf < index.leafCount(); ++leaf)
+      leaves.push_back({index.origin(leaf), index.mask(leaf)});
+    ByteWriter bytes;
+    bytes.add(leaves);
+    for (int rank = 0; rank < work.ranks.count(); ++rank)
+      if (rank != work.ranks.rank() && isNear(work, rank, s, reach))
+        work.sendTo(rank, kAround, s, bytes);
+  }
+  work.exchange();
+}
+
+void forgetBodies(SlabWork& work) {
+  for (size_t s = 0; s < work.slabCount(); ++s) work.remove(kAround, s);
+}
+
+std::optional<int32_t> largestInRegion(const SlabWork& work, size_t slab, int reach,
+                                       Interrupter* interrupter) {
   const LeafIndex own = work.body(slab).index;
   if (own.voxelCount() == 0) return 0;
-  for (int reach = 32;; reach *= 2) {
-    const LeafIndex seen = window(work, slab, reach);
-    const SquaredDistance distance = distanceIn(work, seen, interrupter);
-    int32_t largest = 0;
-    for (size_t leaf = 0; leaf < own.leafCount(); ++leaf) {
-      const uint32_t there = *seen.findLeaf(own.origin(leaf));
-      const int32_t* const first = distance.values.data() + seen.firstRank(there);
-      largest = std::max(largest, *std::max_element(first, first + seen.leafVoxels(there)));
-    }
-    if (holdsAll(work, slab, reach) || reachOf(work, largest) <= reach) return largest;
+  const LeafIndex seen = window(work, slab, reach);
+  const SquaredDistance distance = distanceIn(work, seen, interrupter);
+  int32_t largest = 0;
+  for (size_t leaf = 0; leaf < own.leafCount(); ++leaf) {
+    const uint32_t there = *seen.findLeaf(own.origin(leaf));
+    const int32_t* const first = distance.values.data() + seen.firstRank(there);
+    largest = std::max(largest, *std::max_element(first, first + seen.leafVoxels(there)));
   }
+  if (!holdsAll(work, slab, reach) && reachOf(work, largest) > reach) return std::nullopt;
+  return largest;
+}
+
+int mappedReach(const SlabWork& work) {
+  // Balls that reach the slab are as far away as their radius, and measured rightly if the window goes on
+  // as far again. Others are at most too small, and reach it even less.
+  return 2 * reachOf(work, work.largestSquaredDistance);
 }
 
 PowerMap powerMapInRegion(const SlabWork& work, size_t slab, LeafIndex& index,
                           Interrupter* interrupter) {
-  // Balls that reach the slab are as far away as their radius, and measured rightly if the window goes on
-  // as far again. Others are at most too small, and reach it even less.
-  const LeafIndex seen = window(work, slab, 2 * reachOf(work, work.largestSquaredDistance));
+  const LeafIndex seen = window(work, slab, mappedReach(work));
   WorkPart measuring(interrupter, 0, 35), mapping(interrupter, 35, 100);
   return partOf(powerMap(seen, distanceIn(work, seen, &measuring), &mapping), seen, index);
 }
 
 PowerMap filteredInRegion(const SlabWork& work, size_t slab, const std::vector<ForeignSite>& sites,
                           LeafIndex& index, Interrupter* interrupter) {
-  const LeafIndex seen = window(work, slab, 2 * reachOf(work, work.largestSquaredDistance));
+  const LeafIndex seen = window(work, slab, mappedReach(work));
   WorkPart measuring(interrupter, 0, 35), mapping(interrupter, 35, 100);
   PowerMap map;
   map.weights = work.weights;

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "vdb_madf/method/detail/foreign_sites.h"
@@ -15,9 +16,20 @@
 
 namespace vdb_madf::detail {
 
-/// The largest squared distance in a slab. It is exact: what is measured in a window is right if the
-/// window goes on as far, and the window grows until it does.
-int32_t largestInRegion(const SlabWork& work, size_t slab, Interrupter* interrupter);
+/// All ranks call it: each tells the others of its slabs that lie as near to theirs as `reach` voxels. (Where
+/// the scratch is shared, there is nothing to tell.)
+void shareBodies(SlabWork& work, int reach);
+
+/// What others told is not needed any more.
+void forgetBodies(SlabWork& work);
+
+/// The largest squared distance in a slab, if it can be told from what lies within `reach` of it: what is
+/// measured in a window is right if the window goes on as far.
+std::optional<int32_t> largestInRegion(const SlabWork& work, size_t slab, int reach,
+                                       Interrupter* interrupter);
+
+/// How far around a slab the functions below look.
+int mappedReach(const SlabWork& work);
 
 /// The power map of all balls in a slab. Names the leaves of foreign balls in
 /// its index.

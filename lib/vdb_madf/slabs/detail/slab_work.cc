@@ -29,6 +29,11 @@ void SlabWork::send(const char* what, size_t from, size_t to, const ByteWriter& 
   ranks.send(ranks.ownerOf(to, slabCount()), name(what, from, to), bytes.bytes(), scratch);
 }
 
+void SlabWork::sendTo(int rank, const char* what, size_t slab, const ByteWriter& bytes) {
+  if (!stages_.empty()) stages_.back().messageBytes += int64_t(bytes.bytes().size());
+  ranks.send(rank, name(what, slab), bytes.bytes(), scratch);
+}
+
 void SlabWork::beginStage(const char* name) {
   endStage();
   stages_.push_back({name, 0, 0});

@@ -129,6 +129,8 @@ class SlabWork {
 
   // Messages from slab to slab. Vectors that were not sent are empty.
   void send(const char* what, size_t from, size_t to, const ByteWriter& bytes);
+  /// A piece of a slab, for another rank.
+  void sendTo(int rank, const char* what, size_t slab, const ByteWriter& bytes);
   bool hasMessage(const char* what, size_t from, size_t to) const {
     return scratch.has(name(what, from, to));
   }

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <vector>
+
+#include "vdb_madf/slabs/ranks.h"
+
+namespace vdb_madf::tools {
+
+/// Another process of the job failed, and says why.
+struct OtherRankFailed {};
+
+/// f() in all ranks, which does not wait for others. If it throws in one, it fails in all.
+/// @throw what f() throws; OtherRankFailed where it does not
+template <typename F>
+void inAllRanks(Ranks& ranks, const F& f) {
+  std::exception_ptr failure;
+  try {
+    f();
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  std::vector<int64_t> failures{failure ? 1 : 0};
+  ranks.sum(failures);
+  if (failure) std::rethrow_exception(failure);
+  if (failures[0] > 0) throw OtherRankFailed();
+}
+
+}  // namespace vdb_madf::tools

@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "work_place.h"
+
+#include <filesystem>
+#include <vector>
+
+#include "rank_failure.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/version.h"
+#include "vdb_madf/slabs/slab_builder.h"
+#include "vdb_madf/vdb/slab_folder.h"
+
+namespace vdb_madf::tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the slabs in scratch depend on.
+std::string workOf(const SegmentArguments& o) {
+  const InputOptions& in = o.input;
+  std::error_code ignored;
+  std::string work =
+      std::string(kVersion) + "\n" + fs::absolute(o.out, ignored).string() + "\n" +
+      fs::absolute(in.path, ignored).string() + " " +
+      std::to_string(fs::file_size(in.path, ignored)) + " " +
+      std::to_string(fs::last_write_time(in.path, ignored).time_since_epoch().count());
+  for (const std::string& text : {in.gridName,   in.dataset,
+                                  in.dims,       in.type,
+                                  in.skip,       in.phase,
+                                  in.threshold,  in.range,
+                                  in.median,     in.smooth,
+                                  in.despeckle,  in.voxelSizeText,
+                                  in.domainText, in.roi,
+                                  in.cropText,   o.boundary,
+                                  o.gamma,       o.fillHoles,
+                                  o.tidy,        o.merge.theta,
+                                  o.merge.mode,  o.merge.adjacency,
+                                  o.merge.delta, o.keep,
+                                  o.maxMemory,   std::to_string(o.slabHeight)})
+    work += "\n" + text;
+  for (const bool flag : {in.bigEndian, in.invert, o.paper}) work += flag ? "\nyes" : "\nno";
+  return work;
+}
+
+/// Is a path that of a folder, or of something in it?
+bool isWithin(const std::string& path, const std::string& folder) {
+  std::error_code ignored;
+  const std::string a = (fs::weakly_canonical(fs::absolute(path, ignored), ignored) / "").string(),
+                    b = (fs::weakly_canonical(fs::absolute(folder, ignored), ignored) / "")
+                            .string();
+  return a.compare(0, b.size(), b) == 0;
+}
+
+std::string scratchOf(const SegmentArguments& o) {
+  return o.scratch.empty() ? o.out + ".scratch" : o.scratch;
+}
+
+constexpr char kDone[] = "done";  // the piece that says that OUT.slabs.part is whole
+
+}  // namespace
+
+WorkPlace::WorkPlace(const SegmentArguments& o, const Common& common, Ranks& ranks)
+    : ranks_(ranks), progress_(common.progress), out_(o.out), part_(o.out + ".part") {
+  const bool inMemory = common.ranks && o.scratch.empty() && !o.resume && o.maxMemory.empty();
+  const bool isRoot = ranks.rank() == 0;
+  inAllRanks(ranks, [&] {
+    if (!isRoot) return;
+    checkSlabFolder(out_);
+    if (inMemory)
+      makePart(o);
+    else
+      makeFolders(o);
+  });
+  if (inMemory) return;
+  try {
+    inAllRanks(ranks, [&] {
+      if (!isRoot) folder_ = std::make_unique<FolderScratch>(scratchOf(o));
+      isDone_ = folder_->has(kDone);
+    });
+  } catch (...) {
+    if (isRoot) abandon(false);
+    throw;
+  }
+}
+
+void WorkPlace::makePart(const SegmentArguments& o) {
+  std::error_code error;
+  const bool isNew = fs::create_directory(part_, error);
+  if (error)
+    throw IoError("cannot make " + part_ + ": " + error.message() +
+                  "; make its folder first, or remove what is there");
+  if (!isNew && !o.resume && !fs::is_empty(part_, error))
+    throw IoError(part_ +
+                  ": is what a run left that did not end: give --resume to go on, or remove it");
+}
+
+void WorkPlace::makeFolders(const SegmentArguments& o) {
+  const std::string scratch = scratchOf(o);
+  if (isWithin(out_, scratch) || isWithin(scratch, out_) || isWithin(scratch, part_))
+    throw IoError("scratch data cannot be in " + scratch + ", for " + out_ +
+                  ": choose another folder");
+  std::error_code ignored;
+  const bool isNew = !fs::exists(part_, ignored);
+  makePart(o);
+  try {
+    folder_ = std::make_unique<FolderScratch>(scratch, workOf(o), o.resume);
+    if (ranks_.count() > 1) folder_->share();
+  } catch (...) {
+    if (isNew) fs::remove(part_, ignored);
+    throw;
+  }
+  clearPart(holdsSlabs());
+}
+
+bool WorkPlace::holdsSlabs() const {
+  return folder_ && hasSlabs(*folder_);
+}
+
+std::string WorkPlace::file(const std::string& name) const {
+  return (fs::path(part_) / name).string();
+}
+
+void WorkPlace::checkSlabs(size_t count) const {
+  std::error_code ignored;
+  for (size_t s = 0; folder_ && s < count; ++s)
+    if (isSlabPut(*folder_, s) && !fs::exists(file(slabFileName(s)), ignored))
+      throw IoError(file(slabFileName(s)) + ": is missing; remove " + part_ + " and " +
+                    folder_->path() + ", and begin anew");
+}
+
+void WorkPlace::finish() {
+  if (ranks_.rank() != 0) return;
+  std::error_code ignored;
+  if (folder_) folder_->write(kDone, {});
+  if (fs::exists(file(kSlabIndex), ignored)) commitSlabFolder(part_, out_);
+  fs::remove(part_, ignored);  // of a run that was killed in what follows
+  if (folder_) folder_->removeAll();
+}
+
+void WorkPlace::abandon(bool isHopeless) {
+  // The others may still be at work, and need the folders until rank 0 ends them.
+  if (!folder_ || (ranks_.rank() == 0 && (isHopeless || !holdsSlabs())))
+    discard();
+  else
+    progress_->note("what was done so far is kept in " + part_ + " and " + folder_->path() +
+                    ": give --resume to go on, or remove both");
+}
+
+void WorkPlace::discard() {
+  std::error_code ignored;
+  clearPart(false);
+  fs::remove(part_, ignored);
+  if (folder_) folder_->removeAll();
+}
+
+/// @param butSlabs leave those that are whole
+void WorkPlace::clearPart(bool butSlabs) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(part_, error))
+    if (!butSlabs || entry.path().filename().string()[0] == '.') files.push_back(entry.path());
+  for (const fs::path& path : files) fs::remove(path, error);
+}
+
+}  // namespace vdb_madf::tools

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "segment_summary.h"
+#include "vdb_madf/slabs/folder_scratch.h"
+
+namespace vdb_madf::tools {
+
+/// Where `segment IN OUT.slabs` works: OUT.slabs.part has the labels that are done, scratch all the rest.
+/// Of several ranks each makes one, together; they share the folders, which rank 0 makes and removes.
+/// Without --scratch, --resume and --max-memory the scratch of several ranks is in their memory.
+class WorkPlace {
+ public:
+  /// @throw IoError, InvalidInput, one line, if the folders are in use or of other work; OtherRankFailed
+  WorkPlace(const SegmentArguments& o, const Common& common, Ranks& ranks);
+
+  Scratch& scratch() { return folder_ ? static_cast<Scratch&>(*folder_) : memory_; }
+  bool isInMemory() const { return !folder_; }
+  /// Is the object there, in slabs, from a run before?
+  bool holdsSlabs() const;
+  /// A file of OUT.slabs.
+  std::string file(const std::string& name) const;
+  /// What is known of the object beside its voxels; not in memory.
+  std::string aboutFile() const { return folder_->file("about.vdb"); }
+
+  /// @throw IoError if slabs are missing that a run before wrote
+  void checkSlabs(size_t count) const;
+
+  /// Was the work all done by a run before, but for finish()?
+  bool isDone() const { return isDone_; }
+  /// By all ranks: puts the folder in the place of OUT, and removes scratch.
+  void finish();
+  /// After an error: removes what nobody can go on with, or says what is kept.
+  /// @param isHopeless it would be the same error again
+  void abandon(bool isHopeless);
+
+ private:
+  void makeFolders(const SegmentArguments& o);
+  void makePart(const SegmentArguments& o);
+  void clearPart(bool butSlabs);
+  void discard();
+
+  Ranks& ranks_;
+  Progress* progress_;
+  std::string out_, part_;
+  MemoryScratch memory_;
+  std::unique_ptr<FolderScratch> folder_;
+  bool isDone_ = false;
+};
+
+}  // namespace vdb_madf::tools
