@@ -395,7 +395,7 @@ TEST_CASE("slabs: what was stopped with some ranks goes on with any number of th
     const MaskGrid::Ptr mask = maskOf(c);
     SegmentOptions options = optionsOf(c);
     options.domain = domainOf(c);
-    options.keepDistance = options.keepPower = options.keepManifold = options.keepBalls = false;
+    options.keepDistance = options.keepPower = options.keepBalls = false;
     if (!options.weights) options.weights = VoxelWeights{};
     CoordBBox box = c.domain ? *c.domain : mask->evalActiveVoxelBoundingBox();
     if (box.empty()) box = CoordBBox(Coord(0), Coord(7));
@@ -410,7 +410,7 @@ TEST_CASE("slabs: what was stopped with some ranks goes on with any number of th
     }
     SharedPieces all;
     Cut cut;
-    std::vector<Int32Grid::Ptr> labels(object.slabCount());
+    std::vector<SlabGrids> slabs(object.slabCount());
     int runs = 0;
     // Each time with more changes, so that it ends.
     for (bool done = false; !done; ++runs) {
@@ -421,7 +421,7 @@ TEST_CASE("slabs: what was stopped with some ranks goes on with any number of th
           SharedScratch scratch(all);
           SlabSegmentation result =
               segmentSlabs(object, options, scratch, rank,
-                           [&](size_t slab, const Int32Grid::Ptr& grain) { labels[slab] = grain; });
+                           [&](size_t slab, const SlabGrids& grids) { slabs[slab] = grids; });
           if (rank.rank() == 0) cut.result = std::move(result);
         });
         done = true;
@@ -429,7 +429,7 @@ TEST_CASE("slabs: what was stopped with some ranks goes on with any number of th
       }
     }
     stops += runs - 1;
-    for (const Int32Grid::Ptr& grain : labels) addSlab(cut.labels, grain);
+    joinSlabs(slabs, cut);
     INFO(describe(c) << runs << " runs");
     REQUIRE(difference(whole, cut) == "");
   }
@@ -442,13 +442,14 @@ TEST_CASE("slabs: a scratch that the ranks do not share, though it says so, is n
     bool isShared() const override { return true; }
   };
   Team team(2);
-  CHECK_THROWS_AS(asRanks(team,
-                          [](Ranks& rank) {
-                            OwnScratch scratch;
-                            segmentSlabs(row(40, {0, 16, 40}), {}, scratch, rank,
-                                         [](size_t, const Int32Grid::Ptr&) {});
-                          }),
-                  IoError);
+  CHECK_THROWS_AS(
+      asRanks(
+          team,
+          [](Ranks& rank) {
+            OwnScratch scratch;
+            segmentSlabs(row(40, {0, 16, 40}), {}, scratch, rank, [](size_t, const SlabGrids&) {});
+          }),
+      IoError);
 }
 
 TEST_CASE("slabs: an interrupter stops them", "[slabs]") {
