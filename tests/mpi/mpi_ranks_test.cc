@@ -29,8 +29,8 @@ MpiRanks& world() {
 }
 
 /// Bytes that tell from whom to whom they go.
-std::vector<char> letter(int from, int to, size_t size) {
-  std::vector<char> bytes(size);
+Bytes letter(int from, int to, size_t size) {
+  Bytes bytes(size);
   for (size_t i = 0; i < size; ++i) bytes[i] = char(i * 7 + size_t(from) * 31 + size_t(to) * 5);
   return bytes;
 }
@@ -77,7 +77,7 @@ TEST_CASE("mpi: votes and words are those of all", "[mpi]") {
   ranks.max(maxima);
   CHECK(sums == std::vector<int64_t>{n * (n - 1) / 2, n, int64_t(n * (n - 1) / 2) << 40});
   CHECK(maxima == std::vector<int64_t>{n - 1, 0, int64_t(n - 1) << 40});
-  std::vector<char> word = r == 0 ? letter(0, 0, 100000) : std::vector<char>(3, 'x');
+  Bytes word = r == 0 ? letter(0, 0, 100000) : Bytes(3, 'x');
   ranks.broadcast(word);
   CHECK(word == letter(0, 0, 100000));
 }

@@ -17,8 +17,8 @@ using namespace vdb_madf;
 using namespace vdb_madf::test;
 
 /// Numbers as they are in scratch: runs, with noise between; not a whole number of words.
-std::vector<char> someBytes(size_t size) {
-  std::vector<char> bytes(size);
+Bytes someBytes(size_t size) {
+  Bytes bytes(size);
   uint32_t state = 1;
   for (size_t i = 0; i < size; ++i) {
     state = state * 1664525 + 1013904223;
@@ -33,13 +33,13 @@ TEST_CASE("folder scratch: gives back what it got", "[scratch]") {
   const ScratchFolder folder;
   FolderScratch scratch(folder / "scratch", "work", false);
   for (const size_t size : {size_t(0), size_t(1), size_t(13), size_t(100000), size_t(9000001)}) {
-    const std::vector<char> bytes = someBytes(size);
+    const Bytes bytes = someBytes(size);
     scratch.write("piece", bytes);
     CHECK(scratch.has("piece"));
     CHECK(scratch.read("piece") == bytes);
   }
-  scratch.write("zeros", std::vector<char>(size_t(64) << 20));
-  CHECK(scratch.read("zeros") == std::vector<char>(size_t(64) << 20));
+  scratch.write("zeros", Bytes(size_t(64) << 20, '\0'));
+  CHECK(scratch.read("zeros") == Bytes(size_t(64) << 20, '\0'));
   scratch.remove("piece");
   CHECK_FALSE(scratch.has("piece"));
   CHECK_THROWS_AS(scratch.read("piece"), IoError);

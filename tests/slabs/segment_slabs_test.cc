@@ -294,7 +294,7 @@ struct Killed {};
 class MortalScratch : public MemoryScratch {
  public:
   int left = 0;
-  void write(const std::string& name, const std::vector<char>& bytes) override {
+  void write(const std::string& name, const Bytes& bytes) override {
     if (left-- <= 0) throw Killed();
     MemoryScratch::write(name, bytes);
   }
@@ -359,11 +359,11 @@ struct SharedPieces {
 class SharedScratch : public Scratch {
  public:
   explicit SharedScratch(SharedPieces& all) : all_(all) {}
-  void write(const std::string& name, const std::vector<char>& bytes) override {
+  void write(const std::string& name, const Bytes& bytes) override {
     const std::lock_guard<std::mutex> lock(all_.mutex);
     all_.pieces.write(name, bytes);
   }
-  std::vector<char> read(const std::string& name) const override {
+  Bytes read(const std::string& name) const override {
     const std::lock_guard<std::mutex> lock(all_.mutex);
     return all_.pieces.read(name);
   }

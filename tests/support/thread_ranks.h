@@ -48,16 +48,16 @@ class Team {
     failed_ = true;
     all_.notify_all();
   }
-  void post(int rank, const std::string& name, const std::vector<char>& bytes) {
+  void post(int rank, const std::string& name, const Bytes& bytes) {
     const std::lock_guard<std::mutex> lock(mutex_);
     mail[size_t(rank)].emplace_back(name, bytes);
     ++messages;
   }
 
   const int count;
-  std::vector<std::vector<std::pair<std::string, std::vector<char>>>> mail;  ///< to each rank
+  std::vector<std::vector<std::pair<std::string, Bytes>>> mail;  ///< to each rank
   std::vector<std::vector<int64_t>> votes;
-  std::vector<char> word;
+  Bytes word;
   int64_t messages = 0;
 
  private:
@@ -86,7 +86,7 @@ class ThreadRank : public Ranks {
   void max(std::vector<int64_t>& values) override {
     vote(values, [](int64_t a, int64_t b) { return std::max(a, b); });
   }
-  void broadcast(std::vector<char>& bytes) override {
+  void broadcast(Bytes& bytes) override {
     if (rank_ == 0) team_.word = bytes;
     team_.meet();
     bytes = team_.word;
@@ -94,7 +94,7 @@ class ThreadRank : public Ranks {
   }
 
  private:
-  void post(int to, const std::string& name, const std::vector<char>& bytes) override {
+  void post(int to, const std::string& name, const Bytes& bytes) override {
     team_.post(to, name, bytes);
   }
   template <typename F>

@@ -193,6 +193,7 @@ void workInSlabs(const SegmentArguments& o, const Common& common, Ranks& ranks, 
   const SegmentSummary summary = summarize(o, common, s, *about, timing);
   Json json = toJson(o, summary);
   addSlabCosts(object, s, json);
+  json["seconds_scratch"] = place.scratchSeconds();
   if (common.ranks) json["ranks"] = ranks.count();
   addNotes(json, *common.progress);
   JsonFile(place.file(kSlabIndex)).write(slabIndex(o, object, json));

@@ -21,6 +21,8 @@ class WorkPlace {
 
   Scratch& scratch() { return folder_ ? static_cast<Scratch&>(*folder_) : memory_; }
   bool isInMemory() const { return !folder_; }
+  /// What reading and writing scratch took this process, seconds; 0 in memory.
+  double scratchSeconds() const { return folder_ ? folder_->seconds() : 0; }
   /// Is the object there, in slabs, from a run before?
   bool holdsSlabs() const;
   /// A file of OUT.slabs.

@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kChunk = size_t(1) << 30;  // MPI counts in int
 
-void append(std::vector<char>& bytes, const void* data, size_t size) {
+void append(Bytes& bytes, const void* data, size_t size) {
   const auto first = static_cast<const char*>(data);
   bytes.insert(bytes.end(), first, first + size);
 }
@@ -28,7 +28,7 @@ void forEachChunk(size_t size, const F& f) {
 
 /// f(name, bytes) for the pieces of a message, as post() makes it.
 template <typename F>
-void forEachPiece(const std::vector<char>& message, const F& f) {
+void forEachPiece(const Bytes& message, const F& f) {
   size_t at = 0;
   const auto size = [&] {
     uint64_t value;
@@ -61,8 +61,8 @@ MpiRanks::~MpiRanks() {
   MPI_Finalize();
 }
 
-void MpiRanks::post(int to, const std::string& name, const std::vector<char>& bytes) {
-  std::vector<char>& message = outbox_[size_t(to)];
+void MpiRanks::post(int to, const std::string& name, const Bytes& bytes) {
+  Bytes& message = outbox_[size_t(to)];
   for (const auto& [data, size] : {std::make_pair(name.data(), uint64_t(name.size())),
                                    std::make_pair(bytes.data(), uint64_t(bytes.size()))}) {
     append(message, &size, sizeof size);
@@ -75,7 +75,7 @@ void MpiRanks::exchange(Scratch& own) {
   std::vector<uint64_t> sent(ranks), coming(ranks);
   for (size_t r = 0; r < ranks; ++r) sent[r] = outbox_[r].size();
   MPI_Alltoall(sent.data(), 1, MPI_UINT64_T, coming.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
-  std::vector<std::vector<char>> inbox(ranks);
+  std::vector<Bytes> inbox(ranks);
   std::vector<MPI_Request> requests;
   // Messages between two ranks do not overtake each other, so chunks need no number.
   for (size_t r = 0; r < ranks; ++r) {
@@ -92,10 +92,9 @@ void MpiRanks::exchange(Scratch& own) {
   }
   MPI_Waitall(int(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
   outbox_.assign(ranks, {});
-  for (std::vector<char>& message : inbox) {
-    forEachPiece(message, [&](const std::string& name, const std::vector<char>& bytes) {
-      receive(name, bytes, own);
-    });
+  for (Bytes& message : inbox) {
+    forEachPiece(message,
+                 [&](const std::string& name, const Bytes& bytes) { receive(name, bytes, own); });
     message = {};
   }
 }
@@ -110,7 +109,7 @@ void MpiRanks::max(std::vector<int64_t>& values) {
                 MPI_COMM_WORLD);
 }
 
-void MpiRanks::broadcast(std::vector<char>& bytes) {
+void MpiRanks::broadcast(Bytes& bytes) {
   uint64_t size = bytes.size();
   MPI_Bcast(&size, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
   bytes.resize(size);

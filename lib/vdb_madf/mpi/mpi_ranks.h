@@ -25,16 +25,16 @@ class MpiRanks : public Ranks {
   void exchange(Scratch& own) override;
   void sum(std::vector<int64_t>& values) override;
   void max(std::vector<int64_t>& values) override;
-  void broadcast(std::vector<char>& bytes) override;
+  void broadcast(Bytes& bytes) override;
 
   /// Ends the whole job, with this exit code.
   [[noreturn]] static void abort(int code);
 
  private:
-  void post(int to, const std::string& name, const std::vector<char>& bytes) override;
+  void post(int to, const std::string& name, const Bytes& bytes) override;
 
   int count_ = 1, rank_ = 0;
-  std::vector<std::vector<char>> outbox_;  // to each rank: names and bytes
+  std::vector<Bytes> outbox_;  // to each rank: names and bytes
 };
 
 }  // namespace vdb_madf

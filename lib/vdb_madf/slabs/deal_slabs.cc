@@ -110,7 +110,7 @@ void SlabDealer::send(const std::vector<int>& cuts, int64_t reach) {
   if (scratch_.isShared()) return;
   for (const auto& layer : read_) {
     const int z = layer.first;
-    const std::vector<char> bytes = scratch_.read(layerName(z));
+    const Bytes bytes = scratch_.read(layerName(z));
     for (int rank = 0; rank < ranks_.count(); ++rank)
       if (rank != ranks_.rank() && isWanted(ranks_, rank, cuts, reach, z, z + 8))
         ranks_.send(rank, layerName(z), bytes, scratch_);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -88,6 +89,18 @@ std::string pathOf(const std::string& path) {
   return (fs::path(path).lexically_normal() / "").parent_path().string();
 }
 
+/// Adds the time that it lives.
+class Timer {
+ public:
+  explicit Timer(double& seconds) : seconds_(seconds) {}
+  ~Timer() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double& seconds_;
+  Clock::time_point start_ = Clock::now();
+};
+
 [[noreturn]] void failDamaged(const std::string& path) {
   throw IoError(path + ": the scratch data is damaged: remove its folder and begin anew");
 }
@@ -128,7 +141,7 @@ void FolderScratch::take(const std::string& work, bool resume, bool isEmpty) {
     throw IoError(
         path_ +
         ": there is scratch data of a run that did not end: resume it, or remove the folder");
-  const std::vector<char> before = isEmpty ? std::vector<char>() : read(kWork);
+  const Bytes before = isEmpty ? Bytes() : read(kWork);
   if (!isEmpty && std::string(before.begin(), before.end()) != work)
     throw InvalidInput(
         path_ +
@@ -142,11 +155,12 @@ std::string FolderScratch::file(const std::string& name) const {
   return (fs::path(path_) / name).string();
 }
 
-void FolderScratch::write(const std::string& name, const std::vector<char>& bytes) {
+void FolderScratch::write(const std::string& name, const Bytes& bytes) {
+  const Timer timer(seconds_);
   Header header;
   header.size = bytes.size();
   std::vector<Block> table(blockCount(bytes.size()));
-  std::vector<std::vector<char>> blocks(table.size());
+  std::vector<Bytes> blocks(table.size());
   forEachBlock(bytes.size(), [&](size_t i) {
     const char* first = bytes.data() + i * kBlock;
     const size_t size = std::min(kBlock, bytes.size() - i * kBlock);
@@ -162,11 +176,12 @@ void FolderScratch::write(const std::string& name, const std::vector<char>& byte
   detail::OutputStream out(file(name + kEnding));
   out.bytes(&header, sizeof header);
   out.bytes(tableBytes, table.size() * sizeof(Block));
-  for (const std::vector<char>& block : blocks) out.bytes(block.data(), block.size());
+  for (const Bytes& block : blocks) out.bytes(block.data(), block.size());
   out.commit();
 }
 
-std::vector<char> FolderScratch::read(const std::string& name) const {
+Bytes FolderScratch::read(const std::string& name) const {
+  const Timer timer(seconds_);
   const std::string path = file(name + kEnding);
   const detail::InputFile in(path);
   Header header;
@@ -185,9 +200,9 @@ std::vector<char> FolderScratch::read(const std::string& name) const {
     place.push_back(place.back() + block.size);
   }
   if (place.back() != in.size()) failDamaged(path);
-  std::vector<char> bytes(header.size);
+  Bytes bytes(header.size);
   forEachBlock(bytes.size(), [&](size_t i) {
-    std::vector<char> stored(table[i].size);
+    Bytes stored(table[i].size);
     in.read(place[i], stored.data(), stored.size());
     const size_t size = std::min(kBlock, bytes.size() - i * kBlock);
     size_t held = 0;

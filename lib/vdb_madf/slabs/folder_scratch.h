@@ -39,19 +39,23 @@ class FolderScratch : public Scratch {
   std::string file(const std::string& name) const;
 
   /// @throw IoError, one line: disk full, a piece missing or damaged ...
-  void write(const std::string& name, const std::vector<char>& bytes) override;
-  std::vector<char> read(const std::string& name) const override;
+  void write(const std::string& name, const Bytes& bytes) override;
+  Bytes read(const std::string& name) const override;
   bool has(const std::string& name) const override;
   void remove(const std::string& name) override;
 
   /// All that is in it, and the folder.
   void removeAll();
 
+  /// What reading and writing took so far, in this process.
+  double seconds() const { return seconds_; }
+
  private:
   void take(const std::string& work, bool resume, bool isEmpty);
 
   std::string path_;
   bool isShared_ = false;
+  mutable double seconds_ = 0;
   std::unique_ptr<detail::FolderLock> lock_;
 };
 

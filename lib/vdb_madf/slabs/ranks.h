@@ -36,9 +36,9 @@ class Ranks {
 
   /// A piece for the scratch of a rank: of this one, `own`, at once; of another one, which has it after
   /// the next exchange(). (To a scratch that is shared this one writes it, and tells its name.)
-  void send(int to, const std::string& name, const std::vector<char>& bytes, Scratch& own) {
+  void send(int to, const std::string& name, const Bytes& bytes, Scratch& own) {
     if (to == rank() || own.isShared()) own.write(name, bytes);
-    if (to != rank()) post(to, name, own.isShared() ? std::vector<char>() : bytes);
+    if (to != rank()) post(to, name, own.isShared() ? Bytes() : bytes);
   }
   /// Waits for all; puts the pieces that came into `own`.
   /// @throw IoError if `own` is shared and lacks one: its file system does not show it to all
@@ -48,11 +48,11 @@ class Ranks {
   virtual void sum(std::vector<int64_t>& /*values*/) {}
   virtual void max(std::vector<int64_t>& /*values*/) {}
   /// Gives all what rank 0 has.
-  virtual void broadcast(std::vector<char>& /*bytes*/) {}
+  virtual void broadcast(Bytes& /*bytes*/) {}
 
  protected:
   /// What has come with an exchange().
-  static void receive(const std::string& name, const std::vector<char>& bytes, Scratch& own) {
+  static void receive(const std::string& name, const Bytes& bytes, Scratch& own) {
     if (!own.isShared())
       own.write(name, bytes);
     else if (!own.has(name))
@@ -63,7 +63,7 @@ class Ranks {
 
  private:
   /// send() to another rank.
-  virtual void post(int /*to*/, const std::string& /*name*/, const std::vector<char>& /*bytes*/) {}
+  virtual void post(int /*to*/, const std::string& /*name*/, const Bytes& /*bytes*/) {}
 };
 
 }  // namespace vdb_madf

@@ -7,7 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "vdb_madf/base/detail/pages.h"
+
 namespace vdb_madf {
+
+/// Plain data. What is added to it has to be written: it is not cleared.
+using Bytes = std::vector<char, detail::PageAllocator<char>>;
 
 /// Where the slabs are that are not being worked on: named pieces of bytes.
 class Scratch {
@@ -18,8 +23,8 @@ class Scratch {
   Scratch& operator=(const Scratch&) = delete;
 
   /// Replaces what has that name.
-  virtual void write(const std::string& name, const std::vector<char>& bytes) = 0;
-  virtual std::vector<char> read(const std::string& name) const = 0;
+  virtual void write(const std::string& name, const Bytes& bytes) = 0;
+  virtual Bytes read(const std::string& name) const = 0;
   virtual bool has(const std::string& name) const = 0;
   virtual void remove(const std::string& name) = 0;
 
@@ -30,15 +35,13 @@ class Scratch {
 /// In memory: for volumes that fit.
 class MemoryScratch : public Scratch {
  public:
-  void write(const std::string& name, const std::vector<char>& bytes) override {
-    pieces_[name] = bytes;
-  }
-  std::vector<char> read(const std::string& name) const override { return pieces_.at(name); }
+  void write(const std::string& name, const Bytes& bytes) override { pieces_[name] = bytes; }
+  Bytes read(const std::string& name) const override { return pieces_.at(name); }
   bool has(const std::string& name) const override { return pieces_.count(name) > 0; }
   void remove(const std::string& name) override { pieces_.erase(name); }
 
  private:
-  std::map<std::string, std::vector<char>> pieces_;
+  std::map<std::string, Bytes> pieces_;
 };
 
 }  // namespace vdb_madf

@@ -25,11 +25,11 @@ class RowScratch : public Scratch {
     for (const std::string& name : own_) all_.remove(prefixed(name));
   }
 
-  void write(const std::string& name, const std::vector<char>& bytes) override {
+  void write(const std::string& name, const Bytes& bytes) override {
     own_.insert(name);
     all_.write(prefixed(name), bytes);
   }
-  std::vector<char> read(const std::string& name) const override {
+  Bytes read(const std::string& name) const override {
     return all_.read(own_.count(name) ? prefixed(name) : name);
   }
   bool has(const std::string& name) const override {

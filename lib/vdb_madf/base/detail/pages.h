@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstddef>
+#include <new>
+#include <utility>
 
 namespace vdb_madf::detail {
 
@@ -11,6 +13,32 @@ namespace vdb_madf::detail {
 /// @throw std::bad_alloc
 void* allocatePages(size_t bytes);
 void freePages(void* block) noexcept;
+
+/// Of a vector whose numbers come from allocatePages(), and are not cleared when it grows.
+template <typename T>
+struct PageAllocator {
+  using value_type = T;
+  PageAllocator() = default;
+  template <typename U>
+  PageAllocator(const PageAllocator<U>&) {}
+  T* allocate(size_t count) { return static_cast<T*>(allocatePages(count * sizeof(T))); }
+  void deallocate(T* values, size_t) noexcept { freePages(values); }
+  template <typename U>
+  void construct(U*) noexcept {}
+  template <typename U, typename... Arguments>
+  void construct(U* value, Arguments&&... arguments) {
+    new (value) U(std::forward<Arguments>(arguments)...);
+  }
+  template <typename U>
+  bool operator==(const PageAllocator<U>&) const {
+    return true;
+  }
+  template <typename U>
+  bool operator!=(const PageAllocator<U>&) const {
+    return false;
+  }
+};
+
 /// Gives the whole pages within bytes [begin, end) of a block back to the system; their values are
 /// lost. A hint: does nothing where the system cannot.
 void discardPages(void* block, size_t begin, size_t end) noexcept;

@@ -10,6 +10,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/leaves/voxel_array.h"
+#include "vdb_madf/slabs/scratch.h"
 
 // Plain data as bytes, for this machine to read again.
 
@@ -30,7 +31,7 @@ class ByteWriter {
   void add(const VoxelArray<T>& values) {
     addArray(values.data(), values.size());
   }
-  const std::vector<char>& bytes() const { return bytes_; }
+  const Bytes& bytes() const { return bytes_; }
 
  private:
   template <typename T>
@@ -45,13 +46,13 @@ class ByteWriter {
     std::memcpy(bytes_.data() + bytes_.size() - size, data, size);
   }
 
-  std::vector<char> bytes_;
+  Bytes bytes_;
 };
 
 /// Reads what a ByteWriter wrote, in the same order. @throw IoError if there is less.
 class ByteReader {
  public:
-  explicit ByteReader(std::vector<char> bytes) : bytes_(std::move(bytes)) {}
+  explicit ByteReader(Bytes bytes) : bytes_(std::move(bytes)) {}
   template <typename T>
   T value() {
     T result;
@@ -83,7 +84,7 @@ class ByteReader {
     return data;
   }
 
-  std::vector<char> bytes_;
+  Bytes bytes_;
   size_t at_ = 0;
 };
 

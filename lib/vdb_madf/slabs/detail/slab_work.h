@@ -153,8 +153,8 @@ class SlabWork {
   }
 
   /// What the root has.
-  std::vector<char> broadcast(const ByteWriter& bytes) {
-    std::vector<char> result = bytes.bytes();
+  Bytes broadcast(const ByteWriter& bytes) {
+    Bytes result = bytes.bytes();
     ranks.broadcast(result);
     return result;
   }
