@@ -17,7 +17,7 @@ import vdb_madf as madf
 @pytest.fixture(scope="module")
 def long_work():
     """A mask whose segmentation takes a second or so."""
-    return madf.generate("pack", size=160, fraction=0.4)[0]
+    return madf.generate("pack", size=400, fraction=0.4)[0]
 
 
 @pytest.fixture(autouse=True)
