@@ -11,7 +11,6 @@
 namespace {
 
 using namespace vdb_madf::detail;
-using vdb_madf::VoxelWeights;
 
 size_t at(int t, int row) {
   return size_t(t) * kEnvelopeSlab + size_t(row);
@@ -41,7 +40,7 @@ template <typename Key>
 int differences(int length, int maxRadius2, int weight, uint32_t seed) {
   const EnvelopeRows<Key> in = randomRows<Key>(length, maxRadius2, seed);
   EnvelopeRows<Key> out = in;
-  lowerEnvelopes<1>(length, Key(maxRadius2) + 1, VoxelWeights{weight, 3, 5}, out);
+  lowerEnvelopes(length, Key(maxRadius2) + 1, weight, out);
   const auto power = [&](int t, int row) { return in.power[at(t + 1, row)]; };
   int wrong = 0;
   for (int row = 0; row < 64; ++row) {

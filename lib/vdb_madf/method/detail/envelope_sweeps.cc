@@ -102,7 +102,7 @@ void sweep(const SweptLeaves& leaves, const ForeignSites* foreign, Key multiplie
         computeRadii<Axis, Key>(leaves.object(), origin, weights, s);
       });
       if (Axis == 2 && foreign) foreign->addTo(origin, length, s.rows);
-      lowerEnvelopes<Axis + 1>(length, multiplier, weights, s.rows);
+      lowerEnvelopes(length, multiplier, weights[Axis], s.rows);
       atBestLevel([&]() VDB_MADF_INLINE { scatter<Axis, Key>(leaves, s, values); });
     }
   });

@@ -20,8 +20,7 @@
 //   key(u) = M w u^2 - 2 M w x u + k,  k = M height - D,  height = power + w x^2:
 // M w u^2 is common to all, so only the lines k - 2 M w x u are compared. k is Parabola::key.
 //
-// The weight is a type here: UnitWeight where all axes that are left have the weight 1, else a
-// number.
+// The weight is a type here: UnitWeight where it is 1, else a number.
 
 namespace vdb_madf::detail {
 
@@ -47,71 +46,6 @@ template struct EnvelopeRows<__int128>;
 
 namespace {
 
-/// Of each row of a slab the least power one step aside within the slab, and two steps: row
-/// a * 8 + b is beside a - 1, a + 1 and, if three axes are left, b - 1, b + 1. 0 where there is none.
-template <int AxesLeft>
-[[gnu::always_inline]] inline void leastAside(const int32_t* power, int32_t* one, int32_t* two) {
-  // What is between two slabs is 0.
-  for (int row = 0; row < 64; ++row) one[row] = std::min(power[row - 8], power[row + 8]);
-  if (AxesLeft < 3) return;
-  int32_t along[8 + 64 + 8] = {};
-  for (int row = 0; row < 64; ++row)
-    along[8 + row] =
-        std::min((row & 7) > 0 ? power[row - 1] : 0, (row & 7) < 7 ? power[row + 1] : 0);
-  for (int row = 0; row < 64; ++row) {
-    one[row] = std::min(one[row], along[8 + row]);
-    two[row] = std::min(along[row], along[16 + row]);
-  }
-}
-
-/// Is a site of this power good for nothing, next to a neighbor of power `other` at the squared
-/// distance `away`? With D = -power, E = -other, v the step to it: at p, |p|^2 < D, the site has the
-/// power |p|^2 - D and its neighbor |p - v|^2 - E, which is no more if E - D - |v|^2 >= -2 p.v.
-/// Everywhere -p.v <= floor(|v| sqrt(D - 1)), so for an integer gain
-///   gain := E - D - |v|^2 >= 2 floor(sqrt(|v|^2 (D - 1)))
-///   <=>  gain >= 0  and  (floor(gain / 2) + 1)^2 > |v|^2 (D - 1).
-/// `ties`: 0 if the larger E also wins ties, 1 if they have to be excluded. Balls whose products
-/// could overflow are not looked at.
-[[gnu::always_inline]] inline bool isDominated(int32_t power, int32_t other, int32_t away,
-                                               int32_t ties) {
-  constexpr int32_t kLargest = 1 << 28, kLargestRoot = 1 << 15;
-  const int32_t gain = power - other - away - ties;
-  const int32_t root = std::min(gain / 2 + 1, kLargestRoot);
-  return (gain >= 0) & (power > -kLargest) & (root * root > away * (-power - 1));
-}
-
-/// Marks the sites of the 8 slabs from `first` on that are dominated by one of their neighbors along
-/// the axes that are left: 26, 8 or 2, as far as they are in the pencil.
-template <int AxesLeft, typename Key>
-[[gnu::always_inline]] inline void markDominated(const EnvelopeRows<Key>& s, size_t first,
-                                                 size_t length, uint8_t (*dominated)[64]) {
-  constexpr int32_t kTies = AxesLeft == 3 ? 0 : 1;
-  int32_t one[10][64], two[10][64];
-  for (size_t t = 0; AxesLeft > 1 && t < 10; ++t) {  // the slab first + t - 1
-    if (first + t > 0 && first + t <= length) {
-      leastAside<AxesLeft>(s.power.data() + (first + t) * kEnvelopeSlab, one[t], two[t]);
-    } else {
-      std::fill_n(one[t], 64, 0);
-      std::fill_n(two[t], 64, 0);
-    }
-  }
-  for (size_t t = 0; t < 8; ++t) {
-    const int32_t* p = s.power.data() + (first + t + 1) * kEnvelopeSlab;
-    for (size_t row = 0; row < 64; ++row) {
-      int32_t face = std::min(p[row - kEnvelopeSlab], p[row + kEnvelopeSlab]);
-      if (AxesLeft > 1) face = std::min(face, one[t + 1][row]);
-      bool is = isDominated(p[row], face, 1, kTies);
-      if (AxesLeft > 1) {
-        int32_t edge = std::min(one[t][row], one[t + 2][row]);
-        if (AxesLeft > 2) edge = std::min(edge, two[t + 1][row]);
-        is |= isDominated(p[row], edge, 2, kTies);
-      }
-      if (AxesLeft > 2) is |= isDominated(p[row], std::min(two[t][row], two[t + 2][row]), 3, kTies);
-      dominated[t][row] = is;
-    }
-  }
-}
-
 /// Marks object voxels and candidates. Let a, b, c be the parabolas of the positions t - 1, t, t + 1.
 /// At every u
 ///   f_a(u) + f_c(u) - 2 f_b(u) = p_a + p_c - 2 p_b + 2 w =: bend,
@@ -120,16 +54,13 @@ template <int AxesLeft, typename Key>
 ///   bend = 0:  least only where all three are equal, and it wins that tie only if D_b > D_a and
 ///              D_b >= D_c, which needs 2 D_b - D_a - D_c =: radiusBend > 0;
 ///   bend > 0:  a candidate. So it is where a or c is no site.
-/// Sites that are dominated are none; they are only looked for where all axes left have the weight 1.
 /// Whatever is left out has a better one wherever it is below 0, so the best one of a voxel is never
 /// left out, nor are its parabolas in the passes before.
-template <int AxesLeft, typename Key, typename Weight>
+template <typename Key, typename Weight>
 VDB_MADF_KERNEL void markCandidates(size_t length, Weight weight, EnvelopeRows<Key>& s) {
-  constexpr bool kUnit = std::is_same_v<Weight, UnitWeight>;
   constexpr bool kFilter = sizeof(Key) == 8;  // wide keys: what follows could overflow
   for (size_t i = 0; i < length / 8; ++i) {
-    uint8_t object[8][64], candidate[8][64], dominated[8][64] = {};
-    if (kFilter && kUnit) markDominated<AxesLeft>(s, i * 8, length, dominated);
+    uint8_t object[8][64], candidate[8][64];
     for (size_t t = 0; t < 8; ++t) {
       const int32_t* p = s.power.data() + (i * 8 + t + 1) * kEnvelopeSlab;
       const int32_t* d = s.radius2.data() + (i * 8 + t + 1) * kEnvelopeSlab;
@@ -144,7 +75,7 @@ VDB_MADF_KERNEL void markCandidates(size_t length, Weight weight, EnvelopeRows<K
         const bool below =
             !kFilter | (bend > 0) | ((bend == 0) & (radiusBend > 0)) | (before >= 0) | (after >= 0);
         object[t][row] = power != 0;
-        candidate[t][row] = (power < 0) & below & !dominated[t][row];
+        candidate[t][row] = (power < 0) & below;
       }
     }
     for (size_t row = 0; row < 64; ++row) {
@@ -286,11 +217,10 @@ VDB_MADF_KERNEL void sweepRows(int length, Key multiplier, Weight weight, Envelo
 
 }  // namespace
 
-template <int AxesLeft, typename Key>
-void lowerEnvelopes(int length, Key multiplier, const VoxelWeights& weights,
-                    EnvelopeRows<Key>& rows) {
+template <typename Key>
+void lowerEnvelopes(int length, Key multiplier, int32_t axisWeight, EnvelopeRows<Key>& rows) {
   const auto sweep = [&](auto weight) {
-    atBestLevel([&]() VDB_MADF_INLINE { markCandidates<AxesLeft>(size_t(length), weight, rows); });
+    atBestLevel([&]() VDB_MADF_INLINE { markCandidates(size_t(length), weight, rows); });
     const size_t beyond = rows.before.sites.size() + rows.after.sites.size();
     if (beyond == 0) {
       atBestLevel([&]() VDB_MADF_INLINE { sweepRows<false>(length, multiplier, weight, rows); });
@@ -300,19 +230,13 @@ void lowerEnvelopes(int length, Key multiplier, const VoxelWeights& weights,
       rows.envelope.resize(size_t(length) + beyond);
     atBestLevel([&]() VDB_MADF_INLINE { sweepRows<true>(length, multiplier, weight, rows); });
   };
-  bool unit = true;
-  for (int axis = 0; axis < AxesLeft; ++axis) unit = unit && weights[axis] == 1;
-  if (unit)
+  if (axisWeight == 1)
     sweep(UnitWeight());
   else
-    sweep(weights[AxesLeft - 1]);
+    sweep(axisWeight);
 }
 
-template void lowerEnvelopes<3>(int, int64_t, const VoxelWeights&, EnvelopeRows<int64_t>&);
-template void lowerEnvelopes<2>(int, int64_t, const VoxelWeights&, EnvelopeRows<int64_t>&);
-template void lowerEnvelopes<1>(int, int64_t, const VoxelWeights&, EnvelopeRows<int64_t>&);
-template void lowerEnvelopes<3>(int, __int128, const VoxelWeights&, EnvelopeRows<__int128>&);
-template void lowerEnvelopes<2>(int, __int128, const VoxelWeights&, EnvelopeRows<__int128>&);
-template void lowerEnvelopes<1>(int, __int128, const VoxelWeights&, EnvelopeRows<__int128>&);
+template void lowerEnvelopes(int, int64_t, int32_t, EnvelopeRows<int64_t>&);
+template void lowerEnvelopes(int, __int128, int32_t, EnvelopeRows<__int128>&);
 
 }  // namespace vdb_madf::detail

@@ -8,9 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "vdb_madf/method/voxel_weights.h"
-
-// A pass of the power map along 64 rows at a time, on plain arrays.
+// A pass of the power map along 64 rows at a time, on plain arrays, for balls of any size.
 
 namespace vdb_madf::detail {
 
@@ -18,7 +16,7 @@ namespace vdb_madf::detail {
 constexpr int32_t kNotNegative = 1;
 
 /// A slab holds the values of the 64 rows at one position; the padding keeps the positions of a row
-/// off the same cache sets, and is 0.
+/// off the same cache sets.
 constexpr size_t kEnvelopeSlab = 64 + 16;
 
 /// The parabola f(u) = power + w (u - position)^2 of a site; w is the weight of the axis.
@@ -73,14 +71,9 @@ struct EnvelopeRows {
 ///   power(t) = min over s in the run, power(s) < 0, of power(s) + w (t - s)^2,  site(t) = site(s);
 /// of several such s the one of larger D, then the smaller s. kNotNegative, and any site, where
 /// that is 0 or more, or there is no such s.
-/// AxesLeft counts the axes still to be swept, this one included: axis AxesLeft - 1, whose weight is
-/// w, then those before it, with rows a * 8 + b beside rows of
-/// a - 1, a + 1 (if 2 or 3) and b - 1, b + 1 (if 3). A site of which nothing will be left after the
-/// passes along these, for a neighbor is better, may be left out of this one.
-/// multiplier: larger than any D. w length^2 must be less than 2^31, and with 64-bit keys
+/// multiplier: larger than any D; weight: w, of the axis. w length^2 must be less than 2^31, and with 64-bit keys
 /// 2 max(w length^2, D) (multiplier + 1) length less than 2^63; length with what is beyond.
-template <int AxesLeft, typename Key>
-void lowerEnvelopes(int length, Key multiplier, const VoxelWeights& weights,
-                    EnvelopeRows<Key>& rows);
+template <typename Key>
+void lowerEnvelopes(int length, Key multiplier, int32_t weight, EnvelopeRows<Key>& rows);
 
 }  // namespace vdb_madf::detail
