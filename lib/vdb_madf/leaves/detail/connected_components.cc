@@ -93,7 +93,7 @@ void ConnectedComponents::find(const LeafIndex& index, const VoxelArray<uint32_t
                                Interrupter* interrupter) {
   findPieces(index, labels, interrupter);
   DisjointSets sets(pieces_.size());
-  joinPieces(index, sets);
+  joinPieces(index, sets, interrupter);
   numberComponents(sets);
 }
 
@@ -132,14 +132,24 @@ void ConnectedComponents::findPieces(const LeafIndex& index, const VoxelArray<ui
   }
 }
 
-/// Pieces that meet in a face between leaves belong together, if their labels agree.
-void ConnectedComponents::joinPieces(const LeafIndex& index, DisjointSets& sets) const {
-  for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
-    for (size_t axis = 0; axis < 3; ++axis) {
-      const uint32_t next = index.neighbors(leaf)[2 * axis + 1];
-      if (next != LeafIndex::kNone) joinFaces(uint32_t(leaf), next, axis, sets);
-    }
-  }
+/// Pieces that meet in a face between leaves belong together, if their labels agree. First those within
+/// parts of the leaves, which share no sets, in parallel; then those between parts.
+void ConnectedComponents::joinPieces(const LeafIndex& index, DisjointSets& sets,
+                                     Interrupter* interrupter) const {
+  constexpr size_t kParts = 32;
+  const size_t leaves = index.leafCount(), part = leaves / kParts + 1;
+  const auto join = [&](size_t begin, size_t end, bool within) {
+    for (size_t leaf = begin; leaf < end; ++leaf)
+      for (size_t axis = 0; axis < 3; ++axis) {
+        const uint32_t next = index.neighbors(leaf)[2 * axis + 1];
+        if (next != LeafIndex::kNone && (next / part == leaf / part) == within)
+          joinFaces(uint32_t(leaf), next, axis, sets);
+      }
+  };
+  parallelFor(kParts, 1, interrupter, [&](size_t begin, size_t end) {
+    join(std::min(begin * part, leaves), std::min(end * part, leaves), true);
+  });
+  join(0, leaves, false);
 }
 
 /// The pieces on both sides of the face between a leaf and the next one along an axis.

@@ -40,7 +40,7 @@ class ConnectedComponents {
   void find(const LeafIndex& index, const VoxelArray<uint32_t>* labels, Interrupter* interrupter);
   void findPieces(const LeafIndex& index, const VoxelArray<uint32_t>* labels,
                   Interrupter* interrupter);
-  void joinPieces(const LeafIndex& index, DisjointSets& sets) const;
+  void joinPieces(const LeafIndex& index, DisjointSets& sets, Interrupter* interrupter) const;
   void joinFaces(uint32_t leaf, uint32_t next, size_t axis, DisjointSets& sets) const;
   void numberComponents(DisjointSets& sets);
 
