@@ -33,6 +33,7 @@ class OutputStream {
 
   void bytes(const void* data, size_t count) {
     if (count > room_ - used_) return bytesBeyondBuffer(data, count);
+    if (count == 0) return;  // `data` may be null
     std::memcpy(buffer_.get() + used_, data, count);
     used_ += count;
   }
