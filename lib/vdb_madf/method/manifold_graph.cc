@@ -4,13 +4,13 @@
 #include "vdb_madf/method/manifold_graph.h"
 
 #include <algorithm>
-#include <cstring>
 #include <mutex>
 
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/detail/simd.h"
 #include "vdb_madf/leaves/detail/leaf_faces.h"
+#include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/leaf_values.h"
 #include "vdb_madf/method/detail/reduce_edges.h"
 #include "vdb_madf/method/flow.h"
@@ -114,13 +114,7 @@ constexpr uint32_t kNumber = ~Flow::kOwnCell;
 VDB_MADF_KERNEL uint64_t differing(const uint32_t* own, const uint32_t* other) {
   uint8_t differ[64];
   for (size_t i = 0; i < 64; ++i) differ[i] = ((own[i] ^ other[i]) & kNumber) != 0;
-  uint64_t bits = 0;
-  for (size_t i = 0; i < 8; ++i) {
-    uint64_t bytes;
-    std::memcpy(&bytes, differ + i * 8, 8);
-    bits |= uint64_t(detail::packBits(bytes)) << (i * 8);
-  }
-  return bits;
+  return detail::wordOfBytes(differ);
 }
 
 /// differing() of a plane of the block and what follows it along each axis.

@@ -4,7 +4,6 @@
 #include "vdb_madf/leaves/detail/connected_components.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
@@ -22,12 +21,8 @@ using Pieces = std::vector<ConnectedComponents::Piece>;
 VDB_MADF_KERNEL LeafIndex::Mask equalTo(uint32_t label, const uint32_t* dense) {
   uint8_t equal[512];
   for (size_t i = 0; i < 512; ++i) equal[i] = dense[i] == label;
-  LeafIndex::Mask mask{};
-  for (size_t i = 0; i < 64; ++i) {
-    uint64_t bytes;
-    std::memcpy(&bytes, equal + i * 8, 8);
-    mask[i / 8] |= uint64_t(packBits(bytes)) << (i % 8 * 8);
-  }
+  LeafIndex::Mask mask;
+  for (size_t x = 0; x < 8; ++x) mask[x] = wordOfBytes(equal + x * 64);
   return mask;
 }
 

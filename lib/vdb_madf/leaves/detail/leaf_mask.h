@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <cstring>
+
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/grids/domain.h"
 #include "vdb_madf/leaves/detail/voxels.h"
@@ -53,6 +55,17 @@ inline std::array<uint64_t, 8> layersAlongZ(const LeafIndex::Mask& mask) {
   for (size_t z = 0; z < 8; ++z)
     for (size_t x = 0; x < 8; ++x) layers[z] |= uint64_t(packBits(mask[x] >> z & kFirstZ)) << 8 * x;
   return layers;
+}
+
+/// 64 bytes of 0 or 1, those of the voxels of one x, to a word of a mask. For kernels (simd.h), too.
+[[gnu::always_inline]] inline uint64_t wordOfBytes(const uint8_t* bytes) {
+  uint64_t word = 0;
+  for (size_t y = 0; y < 8; ++y) {
+    uint64_t row;
+    std::memcpy(&row, bytes + 8 * y, sizeof row);
+    word |= uint64_t(packBits(row)) << 8 * y;
+  }
+  return word;
 }
 
 /// Grows `seed` to the 6-connected component of `mask` that holds it.

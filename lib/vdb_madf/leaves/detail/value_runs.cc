@@ -4,10 +4,9 @@
 #include "vdb_madf/leaves/detail/value_runs.h"
 
 #include <algorithm>
-#include <cstring>
 
-#include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/simd.h"
+#include "vdb_madf/leaves/detail/leaf_mask.h"
 
 namespace vdb_madf::detail {
 
@@ -16,13 +15,7 @@ namespace {
 VDB_MADF_KERNEL uint64_t differing(const uint32_t* values, const uint32_t* others) {
   uint8_t differ[64];
   for (size_t i = 0; i < 64; ++i) differ[i] = values[i] != others[i];
-  uint64_t bits = 0;
-  for (size_t i = 0; i < 8; ++i) {
-    uint64_t bytes;
-    std::memcpy(&bytes, differ + i * 8, 8);
-    bits |= uint64_t(packBits(bytes)) << (i * 8);
-  }
-  return bits;
+  return wordOfBytes(differ);
 }
 
 }  // namespace
