@@ -4,18 +4,19 @@
 #include "vdb_madf/method/label_flaws.h"
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/leaves/detail/connected_components.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/leaf_neighborhood.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 #include "vdb_madf/method/detail/grain_flags.h"
-#include "vdb_madf/method/detail/label_block.h"
+#include "vdb_madf/method/detail/voxels_around.h"
 
 namespace vdb_madf {
 
 namespace {
 
 using Mask = LeafIndex::Mask;
-using Piece = detail::ConnectedComponents::Piece;
+using Entry = detail::LabelMasks::Entry;
 
 /// One flag a grain, set by any thread.
 bool isSet(const std::vector<char>& flags, uint32_t label) {
@@ -40,111 +41,87 @@ Mask erode(const Mask& mask) {
 
 class FlawFinder {
  public:
-  FlawFinder(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
-             const detail::ConnectedComponents& components, const std::optional<Domain>& domain)
-      : index_(index), labels_(labels), components_(components), domain_(domain) {}
+  FlawFinder(const LeafIndex& index, const detail::LabelMasks& labels,
+             const std::optional<Domain>& domain)
+      : index_(index), labels_(labels), domain_(domain) {}
 
-  /// Has a piece a voxel that is two layers deep?
-  bool isDeep(uint32_t leaf, const Piece& piece, detail::LeafNeighborhood& neighborhood,
-              detail::LabelBlock& block) const {
-    block.load(index_, labels_, neighborhood.around(leaf));
-    for (uint32_t x = 0; x < 8; ++x)
-      for (uint64_t rest = piece.mask[x]; rest; rest &= rest - 1)
-        if (isDeep(index_.origin(leaf), x * 64 + uint32_t(__builtin_ctzll(rest)), block))
-          return true;
-    return false;
+  /// Has a label a voxel in a leaf that is two layers deep? What lies outside the domain does not count.
+  bool isDeep(uint32_t leaf, const Entry& own, detail::LeafNeighborhood& neighborhood) const {
+    std::array<Mask, 27> masks{};
+    std::array<const Mask*, 27> set;
+    const std::array<uint32_t, 27>& around = neighborhood.around(leaf);
+    for (size_t i = 0; i < 27; ++i) {
+      set[i] = &masks[i];
+      if (around[i] != LeafIndex::kNone) masks[i] = maskOf(around[i], own.label);
+      if (!domain_) continue;
+      const Coord origin = index_.origin(leaf).offsetBy(
+          8 * (int(i) / 9 - 1), 8 * (int(i) / 3 % 3 - 1), 8 * (int(i) % 3 - 1));
+      const Mask inside = detail::insideMask(*domain_, origin);
+      for (size_t x = 0; x < 8; ++x) masks[i][x] |= ~inside[x];
+    }
+    return detail::meet(own.mask, detail::areSurrounded(detail::voxelsAround(set)));
   }
 
-  /// Has a voxel of a piece a neighbor of another label?
-  bool touchesAnother(uint32_t leaf, const Piece& piece) const {
-    if (meetsAnother(leaf, detail::dilate(piece.mask), piece.label)) return true;
+  /// Has such a voxel a neighbor of another label?
+  bool touchesAnother(uint32_t leaf, const Entry& own) const {
+    if (meetsAnother(leaf, detail::dilate(own.mask), own.label)) return true;
     for (size_t side = 0; side < 6; ++side) {
       const uint32_t next = index_.neighbors(leaf)[side];
-      if (next != LeafIndex::kNone &&
-          meetsAnother(next, detail::across(piece.mask, side), piece.label))
+      if (next != LeafIndex::kNone && meetsAnother(next, detail::across(own.mask, side), own.label))
         return true;
     }
     return false;
   }
 
  private:
-  bool isDeep(const Coord& origin, uint32_t offset, const detail::LabelBlock& block) const {
-    const int p[3] = {int(offset >> 6), int(offset >> 3 & 7), int(offset & 7)};
-    const uint32_t own = block.at(offset);
-    for (int x = p[0]; x < p[0] + 3; ++x)
-      for (int y = p[1]; y < p[1] + 3; ++y)
-        for (int z = p[2]; z < p[2] + 3; ++z)
-          if (block.label[x][y][z] != own &&
-              (!domain_ || domain_->isInside(origin.offsetBy(x - 1, y - 1, z - 1))))
-            return false;
-    return true;
+  Mask maskOf(uint32_t leaf, uint32_t label) const {
+    for (auto entry = labels_.begin(leaf); entry != labels_.end(leaf); ++entry)
+      if (entry->label == label) return entry->mask;
+    return {};
   }
   bool meetsAnother(uint32_t leaf, const Mask& voxels, uint32_t label) const {
-    for (auto piece = components_.begin(leaf); piece != components_.end(leaf); ++piece)
-      if (piece->label != label && detail::meet(piece->mask, voxels)) return true;
+    for (auto entry = labels_.begin(leaf); entry != labels_.end(leaf); ++entry)
+      if (entry->label != label && detail::meet(entry->mask, voxels)) return true;
     return false;
   }
 
   const LeafIndex& index_;
-  const VoxelArray<uint32_t>& labels_;
-  const detail::ConnectedComponents& components_;
+  const detail::LabelMasks& labels_;
   std::optional<Domain> domain_;
 };
 
-/// f(leaf, piece) for all pieces, in parallel.
+/// f(leaf, entry) for all entries, in parallel.
 template <typename F>
-void forEachLeafPiece(const LeafIndex& index, const detail::ConnectedComponents& components,
-                      Interrupter* interrupter, const F& f) {
-  detail::parallelFor(
-      index.leafCount(), detail::kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-        for (uint32_t leaf = uint32_t(begin); leaf < end; ++leaf)
-          for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece)
-            f(leaf, *piece);
-      });
-}
-
-/// How many pieces each grain g is in, at g - 1.
-std::vector<uint32_t> countPieces(const LeafIndex& index,
-                                  const detail::ConnectedComponents& components, size_t grains) {
-  std::vector<uint32_t> pieces(grains, 0);
-  uint32_t seen = 0;  // components are numbered by their first pieces
-  for (size_t leaf = 0; leaf < index.leafCount(); ++leaf)
-    for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece)
-      if (piece->component == seen) {
-        ++seen;
-        ++pieces[piece->label - 1];
-      }
-  return pieces;
+void forEachEntry(const LeafIndex& index, const detail::LabelMasks& labels,
+                  Interrupter* interrupter, const F& f) {
+  detail::parallelFor(index.leafCount(), detail::kLeafGrain, interrupter,
+                      [&](size_t begin, size_t end) {
+                        for (uint32_t leaf = uint32_t(begin); leaf < end; ++leaf)
+                          for (auto entry = labels.begin(leaf); entry != labels.end(leaf); ++entry)
+                            f(leaf, *entry);
+                      });
 }
 
 constexpr int64_t kCrumbVoxels = 100, kSliverVoxels = 20;
 
 }  // namespace
 
-void detail::findFlags(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
-                       const ConnectedComponents& components, const std::optional<Domain>& domain,
-                       const std::vector<char>& small, GrainFlags& flags,
-                       Interrupter* interrupter) {
-  const FlawFinder finder(index, labels, components, domain);
+void detail::findFlags(const LeafIndex& index, const LabelMasks& labels,
+                       const std::optional<Domain>& domain, const std::vector<char>& small,
+                       GrainFlags& flags, Interrupter* interrupter) {
+  const FlawFinder finder(index, labels, domain);
   std::vector<char>&deep = flags.deep, &touching = flags.touching;
   // Nearly all grains show within a leaf that they are deep.
-  forEachLeafPiece(index, components, interrupter, [&](uint32_t, const Piece& piece) {
-    if (!isSet(deep, piece.label) && anyVoxel(erode(piece.mask))) setFlag(deep, piece.label);
+  forEachEntry(index, labels, interrupter, [&](uint32_t, const Entry& own) {
+    if (!isSet(deep, own.label) && anyVoxel(erode(own.mask))) setFlag(deep, own.label);
   });
-  struct Scratch {
-    explicit Scratch(const LeafIndex& i) : neighborhood(i) {}
-    LeafNeighborhood neighborhood;
-    LabelBlock block;
-  };
-  PerThread<Scratch> scratches{Scratch(index)};
-  forEachLeafPiece(index, components, interrupter, [&](uint32_t leaf, const Piece& piece) {
-    const uint32_t label = piece.label;
-    if (!isSet(deep, label)) {
-      Scratch& s = scratches.local();
-      if (finder.isDeep(leaf, piece, s.neighborhood, s.block)) setFlag(deep, label);
-    }
+  PerThread<LeafNeighborhood> neighborhoods{LeafNeighborhood(index)};
+  forEachEntry(index, labels, interrupter, [&](uint32_t leaf, const Entry& own) {
+    const uint32_t label = own.label;
+    if (!isSet(deep, label) && finder.isDeep(leaf, own, neighborhoods.local()))
+      setFlag(deep, label);
     const bool matters = small[label - 1] || !isSet(deep, label);
-    if (matters && !isSet(touching, label) && finder.touchesAnother(leaf, piece))
+    if (matters && !isSet(touching, label) && finder.touchesAnother(leaf, own))
       setFlag(touching, label);
   });
 }
@@ -161,15 +138,38 @@ LabelFlaws detail::countFlaws(const GrainFlags& flags, const std::vector<int64_t
   return flaws;
 }
 
+std::vector<uint32_t> detail::countPieces(const LeafIndex& index, const LabelMasks& labels,
+                                          size_t grains, Interrupter* interrupter) {
+  const ConnectedComponents components(index, labels, interrupter);
+  std::vector<uint32_t> pieces(grains, 0);
+  uint32_t seen = 0;  // components are numbered by their first pieces
+  for (size_t leaf = 0; leaf < index.leafCount(); ++leaf)
+    for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece)
+      if (piece->component == seen) {
+        ++seen;
+        ++pieces[piece->label - 1];
+      }
+  return pieces;
+}
+
 LabelFlaws labelFlaws(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
                       const std::vector<int64_t>& grainVoxels, const std::optional<Domain>& domain,
                       Interrupter* interrupter) {
-  const detail::ConnectedComponents components(index, labels, interrupter);
+  const detail::LabelMasks masks(index, labels, interrupter);
+  return detail::labelFlaws(index, masks, grainVoxels,
+                            detail::countPieces(index, masks, grainVoxels.size(), interrupter),
+                            domain, interrupter);
+}
+
+LabelFlaws detail::labelFlaws(const LeafIndex& index, const LabelMasks& labels,
+                              const std::vector<int64_t>& grainVoxels,
+                              const std::vector<uint32_t>& pieces,
+                              const std::optional<Domain>& domain, Interrupter* interrupter) {
   std::vector<char> small;
   for (const int64_t voxels : grainVoxels) small.push_back(voxels < kCrumbVoxels);
-  detail::GrainFlags flags(grainVoxels.size());
-  detail::findFlags(index, labels, components, domain, small, flags, interrupter);
-  return detail::countFlaws(flags, grainVoxels, countPieces(index, components, grainVoxels.size()));
+  GrainFlags flags(grainVoxels.size());
+  findFlags(index, labels, domain, small, flags, interrupter);
+  return countFlaws(flags, grainVoxels, pieces);
 }
 
 }  // namespace vdb_madf

@@ -10,6 +10,7 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/method/detail/manifold_labels.h"
 #include "vdb_madf/method/detail/sweep_rows.h"
+#include "vdb_madf/method/detail/tidy_steps.h"
 #include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/method/segment.h"
 
@@ -46,8 +47,8 @@ void addRows(const Int32Grid& manifold, const ManifoldGraph& graph,
   const auto merged = [&](const MergeOptions& how) {
     GrainLabels grains =
         detail::labelGrains(manifold, index, graph, merge(graph, how), interrupter);
-    tidy(index, options.tidy, grains, interrupter);
-    const LabelFlaws flaws = labelFlaws(index, grains.label, grains.voxels, domain, interrupter);
+    const LabelFlaws flaws =
+        detail::tidyAndCountFlaws(index, options.tidy, domain, grains, interrupter);
     return detail::SweptGrains{std::move(grains.voxels), flaws};
   };
   detail::addSweepRows(options, gamma, merged, rows);

@@ -17,6 +17,7 @@
 #include "vdb_madf/method/detail/manifold_labels.h"
 #include "vdb_madf/method/detail/segment_options.h"
 #include "vdb_madf/method/detail/stages.h"
+#include "vdb_madf/method/detail/tidy_steps.h"
 #include "vdb_madf/method/flow.h"
 #include "vdb_madf/method/gamma_filter.h"
 #include "vdb_madf/method/graph_metadata.h"
@@ -202,8 +203,7 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
   stages.begin("tidy");
   GrainLabels grains =
       labelGrains(body, std::move(flowMap.manifold), result.graph, merging, &stages);
-  tidy(index, options.tidy, grains, &stages);
-  result.flaws = labelFlaws(index, grains.label, grains.voxels, result.domain, &stages);
+  result.flaws = detail::tidyAndCountFlaws(index, options.tidy, result.domain, grains, &stages);
   result.grainVoxels = std::move(grains.voxels);
 
   stages.begin("labels");

@@ -61,7 +61,8 @@ int64_t segmentMemory(const ObjectSize& size, const SegmentOptions& options) {
     peak = std::max(peak, kept + (kPower + kManifold) * voxels + sets);
   }
   if (options.keepManifold) kept += perGrid;
-  peak = std::max(peak, kept + sets + kManifold * voxels + kPieces * leaves);  // tidy
+  // tidy: masks of labels, and pieces of them
+  peak = std::max(peak, kept + sets + kManifold * voxels + 2 * kPieces * leaves);
   // The labels' grid grows while the manifolds shrink.
   peak = std::max(peak, kept + sets + std::max(kManifold * voxels, perGrid));
   if (options.keepManifold) peak = std::max(peak, kept + sets + kManifold * voxels);

@@ -10,11 +10,10 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/leaves/detail/connected_components.h"
+#include "vdb_madf/leaves/detail/label_masks.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
-#include "vdb_madf/leaves/detail/leaf_neighborhood.h"
-#include "vdb_madf/leaves/detail/leaf_values.h"
 #include "vdb_madf/leaves/detail/voxels.h"
-#include "vdb_madf/method/detail/label_block.h"
+#include "vdb_madf/method/detail/grain_flags.h"
 #include "vdb_madf/method/detail/metric.h"
 #include "vdb_madf/method/detail/tidy_steps.h"
 
@@ -44,122 +43,15 @@ std::vector<VoxelId> findAnchors(const LeafIndex& index, const GrainLabels& grai
   return anchor;
 }
 
-/// The synchronous rounds of smoothing. A round only looks at leaves where something may change:
-/// first those with an interface, then those that see a change of the round before.
-class Smoothing {
- public:
-  Smoothing(const LeafIndex& index, GrainLabels& grains, const std::vector<VoxelId>& anchor)
-      : index_(index), grains_(grains), anchor_(anchor) {}
-
-  void run(int rounds, Interrupter* interrupter) {
-    std::vector<uint32_t> leaves = leavesWithInterfaces(interrupter);
-    for (int round = 0; round < rounds && !leaves.empty(); ++round) {
-      const std::vector<std::vector<Change>> changes = decide(leaves, interrupter);
-      leaves = apply(changes);
-    }
-  }
-
- private:
-  struct Change {
-    VoxelId voxel;
-    uint32_t label;
-  };
-
-  /// The leaves with more than one label, or beside a leaf with another one.
-  std::vector<uint32_t> leavesWithInterfaces(Interrupter* interrupter) const {
-    std::vector<uint32_t> only(index_.leafCount());  // label of all voxels of a leaf; 0: several
-    detail::parallelFor(
-        only.size(), detail::kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-          for (size_t leaf = begin; leaf < end; ++leaf) {
-            const uint32_t* labels = grains_.label.data() + index_.firstRank(leaf);
-            only[leaf] = detail::allEqual(labels, index_.leafVoxels(leaf)) ? labels[0] : 0;
-          }
-        });
-    std::vector<uint32_t> leaves;
-    for (uint32_t leaf = 0; leaf < only.size(); ++leaf) {
-      bool alone = only[leaf] != 0;
-      for (const uint32_t next : index_.neighbors(leaf))
-        alone = alone && (next == LeafIndex::kNone || only[next] == only[leaf]);
-      if (!alone) leaves.push_back(leaf);
-    }
-    return leaves;
-  }
-
-  /// What a round changes, by chunks of leaves in rising order.
-  std::vector<std::vector<Change>> decide(const std::vector<uint32_t>& leaves,
-                                          Interrupter* interrupter) const {
-    std::vector<std::vector<Change>> changes((leaves.size() + kChunk - 1) / kChunk);
-    detail::parallelFor(changes.size(), 1, interrupter, [&](size_t begin, size_t end) {
-      detail::LeafNeighborhood neighborhood(index_);
-      detail::LabelBlock block;
-      const size_t stop = std::min(leaves.size(), end * kChunk);
-      for (size_t i = begin * kChunk; i < stop; ++i) {
-        const std::array<uint32_t, 27>& around = neighborhood.around(leaves[i]);
-        block.loadFaces(index_, grains_.label, around);
-        const LeafIndex::Mask interfaces = block.interfaces();
-        if (!detail::anyVoxel(interfaces)) continue;
-        block.loadEdges(index_, grains_.label, around);
-        detail::LabelBlock::Change found[512];
-        const size_t count = block.smooth(interfaces, found);
-        for (size_t k = 0; k < count; ++k) {
-          const VoxelId voxel = leaves[i] * 512 + found[k].offset;
-          if (anchor_[block.at(found[k].offset) - 1] != voxel)
-            changes[i / kChunk].push_back({voxel, found[k].label});
-        }
-      }
-    });
-    return changes;
-  }
-
-  /// The leaves that see one of the changes, ascending.
-  std::vector<uint32_t> apply(const std::vector<std::vector<Change>>& changes) {
-    std::vector<char> sees(index_.leafCount(), 0);
-    detail::LeafNeighborhood neighborhood(index_);
-    for (const std::vector<Change>& chunk : changes)
-      for (const Change& change : chunk) {
-        uint32_t& label = grains_.label[index_.rank(change.voxel)];
-        --grains_.voxels[label - 1];
-        label = change.label;
-        ++grains_.voxels[label - 1];
-        markLeaves(neighborhood.around(leafOf(change.voxel)), offsetOf(change.voxel), sees);
-      }
-    std::vector<uint32_t> leaves;
-    for (uint32_t leaf = 0; leaf < sees.size(); ++leaf)
-      if (sees[leaf]) leaves.push_back(leaf);
-    return leaves;
-  }
-
-  /// The leaf of a voxel, and those whose layer of neighbors holds it.
-  static void markLeaves(const std::array<uint32_t, 27>& around, uint32_t offset,
-                         std::vector<char>& sees) {
-    const uint32_t t[3] = {offset >> 6, offset >> 3 & 7, offset & 7};
-    uint32_t first[3], last[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      first[axis] = t[axis] == 0 ? 0 : 1;
-      last[axis] = t[axis] == 7 ? 2 : 1;
-    }
-    for (uint32_t x = first[0]; x <= last[0]; ++x)
-      for (uint32_t y = first[1]; y <= last[1]; ++y)
-        for (uint32_t z = first[2]; z <= last[2]; ++z)
-          if (const uint32_t leaf = around[x * 9 + y * 3 + z]; leaf != LeafIndex::kNone)
-            sees[leaf] = 1;
-  }
-
-  static constexpr size_t kChunk = 64;
-  const LeafIndex& index_;
-  GrainLabels& grains_;
-  const std::vector<VoxelId>& anchor_;
-};
-
 /// A voxel that is not connected with the anchor of its grain, and the label it lost.
 struct LooseVoxel {
   VoxelId id;
   uint32_t lost;
 };
 
-std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const detail::LabelMasks& masks,
                                     const std::vector<VoxelId>& anchor, Interrupter* interrupter) {
-  const detail::ConnectedComponents components(index, labels, interrupter);
+  const detail::ConnectedComponents components(index, masks, interrupter);
   std::vector<char> held(components.count(), 0);
   for (const VoxelId id : anchor)
     if (id != kNoAnchor) held[components.componentOf(id)] = 1;
@@ -184,11 +76,19 @@ uint32_t mostFrequentAround(const LeafIndex& index, const VoxelArray<uint32_t>& 
   return detail::mostFrequent(around);
 }
 
-/// Gives every voxel that is not connected with its grain's anchor to a neighbor.
-void connect(const LeafIndex& index, const std::vector<VoxelId>& anchor, GrainLabels& grains,
-             Interrupter* interrupter) {
+void moveVoxel(VoxelId id, uint32_t label, detail::LabelMasks& masks) {
+  LeafIndex::Mask voxel{};
+  voxel[wordOf(id)] = uint64_t(1) << bitOf(id);
+  masks.take(leafOf(id), voxel);
+  masks.give(leafOf(id), label, voxel);
+}
+
+/// Gives every voxel that is not connected with its grain's anchor to a neighbor. Returns whether each
+/// found one: then each grain is connected.
+bool connect(const LeafIndex& index, const std::vector<VoxelId>& anchor, detail::LabelMasks& masks,
+             GrainLabels& grains, Interrupter* interrupter) {
   constexpr size_t kVoxelGrain = 1024;
-  std::vector<LooseVoxel> loose = looseVoxels(index, grains.label, anchor, interrupter);
+  std::vector<LooseVoxel> loose = looseVoxels(index, masks, anchor, interrupter);
   for (const LooseVoxel& voxel : loose) grains.label[index.rank(voxel.id)] = 0;
   std::vector<uint32_t> found;
   for (bool changed = true; changed && !loose.empty();) {
@@ -204,6 +104,7 @@ void connect(const LeafIndex& index, const std::vector<VoxelId>& anchor, GrainLa
         continue;
       }
       grains.label[index.rank(loose[i].id)] = found[i];
+      moveVoxel(loose[i].id, found[i], masks);
       --grains.voxels[loose[i].lost - 1];
       ++grains.voxels[found[i] - 1];
     }
@@ -211,6 +112,15 @@ void connect(const LeafIndex& index, const std::vector<VoxelId>& anchor, GrainLa
     loose.resize(left);
   }
   for (const LooseVoxel& voxel : loose) grains.label[index.rank(voxel.id)] = voxel.lost;
+  return loose.empty();
+}
+
+/// Returns as connect().
+bool tidyMasks(const LeafIndex& index, int rounds, detail::LabelMasks& masks, GrainLabels& grains,
+               Interrupter* interrupter) {
+  const std::vector<VoxelId> anchor = findAnchors(index, grains, interrupter);
+  detail::smoothInterfaces(index, rounds, anchor, masks, grains, interrupter);
+  return connect(index, anchor, masks, grains, interrupter);
 }
 
 }  // namespace
@@ -243,12 +153,6 @@ std::vector<AnchorCandidate> detail::anchorCandidates(const LeafIndex& index,
   return best;
 }
 
-void detail::smoothInterfaces(const LeafIndex& index, int rounds,
-                              const std::vector<VoxelId>& anchor, GrainLabels& grains,
-                              Interrupter* interrupter) {
-  Smoothing(index, grains, anchor).run(rounds, interrupter);
-}
-
 uint32_t detail::mostFrequent(const uint32_t (&around)[6]) {
   uint32_t best = 0;
   int64_t most = 0;
@@ -272,9 +176,20 @@ void checkTidy(int rounds) {
 void tidy(const LeafIndex& index, int rounds, GrainLabels& grains, Interrupter* interrupter) {
   checkTidy(rounds);
   if (rounds == 0) return;
-  const std::vector<VoxelId> anchor = findAnchors(index, grains, interrupter);
-  detail::smoothInterfaces(index, rounds, anchor, grains, interrupter);
-  connect(index, anchor, grains, interrupter);
+  detail::LabelMasks masks(index, grains.label, interrupter);
+  tidyMasks(index, rounds, masks, grains, interrupter);
+}
+
+LabelFlaws detail::tidyAndCountFlaws(const LeafIndex& index, int rounds,
+                                     const std::optional<Domain>& domain, GrainLabels& grains,
+                                     Interrupter* interrupter) {
+  checkTidy(rounds);
+  LabelMasks masks(index, grains.label, interrupter);
+  const bool areConnected = rounds > 0 && tidyMasks(index, rounds, masks, grains, interrupter);
+  const size_t count = grains.voxels.size();
+  const std::vector<uint32_t> pieces = areConnected ? std::vector<uint32_t>(count, 1)
+                                                    : countPieces(index, masks, count, interrupter);
+  return labelFlaws(index, masks, grains.voxels, pieces, domain, interrupter);
 }
 
 }  // namespace vdb_madf

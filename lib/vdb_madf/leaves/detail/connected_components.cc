@@ -5,26 +5,14 @@
 
 #include <algorithm>
 
-#include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
-#include "vdb_madf/base/detail/simd.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
-#include "vdb_madf/leaves/detail/leaf_values.h"
 
 namespace vdb_madf::detail {
 
 namespace {
 
 using Pieces = std::vector<ConnectedComponents::Piece>;
-
-/// The voxels of a leaf that have a label.
-VDB_MADF_KERNEL LeafIndex::Mask equalTo(uint32_t label, const uint32_t* dense) {
-  uint8_t equal[512];
-  for (size_t i = 0; i < 512; ++i) equal[i] = dense[i] == label;
-  LeafIndex::Mask mask;
-  for (size_t x = 0; x < 8; ++x) mask[x] = wordOfBytes(equal + x * 64);
-  return mask;
-}
 
 void addPieces(const LeafIndex::Mask& mask, uint32_t label, Pieces& pieces) {
   if (mask == kFullMask) {
@@ -34,43 +22,15 @@ void addPieces(const LeafIndex::Mask& mask, uint32_t label, Pieces& pieces) {
   forEachPiece(mask, [&](const LeafIndex::Mask& piece) { pieces.push_back({piece, label, 0}); });
 }
 
-/// The pieces of a leaf, by label in the order of its first voxel. `values`: of the leaf's voxels.
-void addLabelPieces(const LeafIndex::Mask& mask, size_t count, const uint32_t* values,
-                    Pieces& pieces) {
-  if (allEqual(values, count)) {
-    if (values[0] != 0) addPieces(mask, values[0], pieces);
-    return;
-  }
-  uint32_t dense[512];
-  expandLeaf(mask, values, dense);
-  LeafIndex::Mask rest = mask;
-  for (size_t x = 0; x < 8; ++x)
-    while (rest[x]) {
-      const uint32_t label = dense[x * 64 + size_t(__builtin_ctzll(rest[x]))];
-      LeafIndex::Mask same = atBestLevel([&]() VDB_MADF_INLINE { return equalTo(label, dense); });
-      for (size_t i = 0; i < 8; ++i) {
-        same[i] &= mask[i];
-        rest[i] &= ~same[i];
-      }
-      if (label != 0) addPieces(same, label, pieces);
-    }
-}
-
-constexpr uint32_t kNoPiece = ~0u;
-
-/// Writes `piece` to the places (64, by the other two coordinates) of a face that its voxels touch:
-/// the last face along an axis, or the first.
-void markFace(const LeafIndex::Mask& mask, size_t axis, bool last, uint32_t piece, uint32_t* face) {
-  if (axis == 0) {
-    forEachBit(mask[last ? 7 : 0], [&](int bit) { face[bit] = piece; });
-    return;
-  }
+/// The voxels of a face of a leaf, the last one along an axis or the first: a bit for each place.
+uint64_t faceOf(const LeafIndex::Mask& mask, size_t axis, bool last) {
+  if (axis == 0) return mask[last ? 7 : 0];
+  uint64_t face = 0;
   for (size_t x = 0; x < 8; ++x) {
-    const uint64_t bits =
-        axis == 1 ? mask[x] & (last ? kLastY : kFirstY) : mask[x] & (last ? kLastZ : kFirstZ);
-    forEachBit(bits,
-               [&](int bit) { face[x * 8 + size_t(axis == 1 ? bit & 7 : bit >> 3)] = piece; });
+    if (axis == 1) face |= (last ? mask[x] >> 56 : mask[x] & kFirstY) << 8 * x;
+    if (axis == 2) face |= (last ? mask[x] >> 7 & kFirstZ : mask[x] & kFirstZ) << x;
   }
+  return face;
 }
 
 }  // namespace
@@ -79,12 +39,12 @@ ConnectedComponents::ConnectedComponents(const LeafIndex& index, Interrupter* in
   find(index, nullptr, interrupter);
 }
 
-ConnectedComponents::ConnectedComponents(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+ConnectedComponents::ConnectedComponents(const LeafIndex& index, const LabelMasks& labels,
                                          Interrupter* interrupter) {
   find(index, &labels, interrupter);
 }
 
-void ConnectedComponents::find(const LeafIndex& index, const VoxelArray<uint32_t>* labels,
+void ConnectedComponents::find(const LeafIndex& index, const LabelMasks* labels,
                                Interrupter* interrupter) {
   findPieces(index, labels, interrupter);
   DisjointSets sets(pieces_.size());
@@ -92,7 +52,7 @@ void ConnectedComponents::find(const LeafIndex& index, const VoxelArray<uint32_t
   numberComponents(sets);
 }
 
-void ConnectedComponents::findPieces(const LeafIndex& index, const VoxelArray<uint32_t>* labels,
+void ConnectedComponents::findPieces(const LeafIndex& index, const LabelMasks* labels,
                                      Interrupter* interrupter) {
   constexpr size_t kChunk = 1024;
   struct Chunk {
@@ -107,8 +67,8 @@ void ConnectedComponents::findPieces(const LeafIndex& index, const VoxelArray<ui
       for (size_t leaf = i * kChunk; leaf < stop; ++leaf) {
         const size_t before = pieces.size();
         if (labels)
-          addLabelPieces(index.mask(leaf), index.leafVoxels(leaf),
-                         labels->data() + index.firstRank(leaf), pieces);
+          for (auto entry = labels->begin(leaf); entry != labels->end(leaf); ++entry)
+            addPieces(entry->mask, entry->label, pieces);
         else
           addPieces(index.mask(leaf), 1, pieces);
         chunks[i].counts.push_back(uint32_t(pieces.size() - before));
@@ -147,29 +107,28 @@ void ConnectedComponents::joinPieces(const LeafIndex& index, DisjointSets& sets,
   join(0, leaves, false);
 }
 
-/// The pieces on both sides of the face between a leaf and the next one along an axis.
+/// The pieces on both sides of the face between a leaf and the next one along an axis. Pieces of a leaf
+/// ascend by label.
 void ConnectedComponents::joinFaces(uint32_t leaf, uint32_t next, size_t axis,
                                     DisjointSets& sets) const {
-  if (end(leaf) - begin(leaf) == 1 && end(next) - begin(next) == 1) {  // mostly
-    const Piece &a = *begin(leaf), &b = *begin(next);
-    if (a.label == b.label && touchNext(a.mask, b.mask, axis))
-      sets.unite(firstPiece_[leaf], firstPiece_[next]);
-    return;
-  }
-  uint32_t here[64], there[64];
-  std::fill(here, here + 64, kNoPiece);
-  std::fill(there, there + 64, kNoPiece);
-  for (uint32_t i = firstPiece_[leaf]; i < firstPiece_[leaf + 1]; ++i)
-    markFace(pieces_[i].mask, axis, true, i, here);
+  struct Face {
+    uint64_t places;
+    uint32_t label, piece;
+  };
+  Face there[512];
+  size_t count = 0;
   for (uint32_t i = firstPiece_[next]; i < firstPiece_[next + 1]; ++i)
-    markFace(pieces_[i].mask, axis, false, i, there);
-  uint32_t lastHere = kNoPiece, lastThere = kNoPiece;
-  for (int i = 0; i < 64; ++i) {
-    if (here[i] == kNoPiece || there[i] == kNoPiece) continue;
-    if (here[i] == lastHere && there[i] == lastThere) continue;
-    lastHere = here[i];
-    lastThere = there[i];
-    if (pieces_[lastHere].label == pieces_[lastThere].label) sets.unite(lastHere, lastThere);
+    if (const uint64_t places = faceOf(pieces_[i].mask, axis, false))
+      there[count++] = {places, pieces_[i].label, i};
+  size_t first = 0;
+  for (uint32_t i = firstPiece_[leaf]; i < firstPiece_[leaf + 1]; ++i) {
+    uint64_t places = faceOf(pieces_[i].mask, axis, true);
+    const uint32_t label = pieces_[i].label;
+    while (first < count && there[first].label < label) ++first;
+    for (size_t k = first; places && k < count && there[k].label == label; ++k) {
+      if (places & there[k].places) sets.unite(i, there[k].piece);
+      places &= ~there[k].places;
+    }
   }
 }
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/disjoint_sets.h"
+#include "vdb_madf/leaves/detail/label_masks.h"
 #include "vdb_madf/leaves/leaf_index.h"
-#include "vdb_madf/leaves/voxel_array.h"
 
 namespace vdb_madf::detail {
 
@@ -24,8 +24,8 @@ class ConnectedComponents {
 
   /// @throw Interrupted
   explicit ConnectedComponents(const LeafIndex& index, Interrupter* interrupter = nullptr);
-  /// Voxels of label 0 belong to no component. @throw Interrupted
-  ConnectedComponents(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+  /// Voxels without label belong to no component. @throw Interrupted
+  ConnectedComponents(const LeafIndex& index, const LabelMasks& labels,
                       Interrupter* interrupter = nullptr);
 
   uint32_t count() const { return count_; }
@@ -37,9 +37,8 @@ class ConnectedComponents {
   const Piece* end(size_t leaf) const { return pieces_.data() + firstPiece_[leaf + 1]; }
 
  private:
-  void find(const LeafIndex& index, const VoxelArray<uint32_t>* labels, Interrupter* interrupter);
-  void findPieces(const LeafIndex& index, const VoxelArray<uint32_t>* labels,
-                  Interrupter* interrupter);
+  void find(const LeafIndex& index, const LabelMasks* labels, Interrupter* interrupter);
+  void findPieces(const LeafIndex& index, const LabelMasks* labels, Interrupter* interrupter);
   void joinPieces(const LeafIndex& index, DisjointSets& sets, Interrupter* interrupter) const;
   void joinFaces(uint32_t leaf, uint32_t next, size_t axis, DisjointSets& sets) const;
   void numberComponents(DisjointSets& sets);

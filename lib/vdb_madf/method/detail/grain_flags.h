@@ -7,12 +7,21 @@
 #include <optional>
 #include <vector>
 
-#include "vdb_madf/leaves/detail/connected_components.h"
+#include "vdb_madf/leaves/detail/label_masks.h"
 #include "vdb_madf/method/label_flaws.h"
 
 // The parts of labelFlaws(), for labels that come in several windows.
 
 namespace vdb_madf::detail {
+
+/// How many pieces, 6-connected, each grain is in: of grain g at g - 1.
+std::vector<uint32_t> countPieces(const LeafIndex& index, const LabelMasks& labels, size_t grains,
+                                  Interrupter* interrupter);
+
+/// labelFlaws(), where the masks of the labels and countPieces() are known.
+LabelFlaws labelFlaws(const LeafIndex& index, const LabelMasks& labels,
+                      const std::vector<int64_t>& grainVoxels, const std::vector<uint32_t>& pieces,
+                      const std::optional<Domain>& domain, Interrupter* interrupter);
 
 /// What is known of grain g, at g - 1, by the voxels that were looked at.
 struct GrainFlags {
@@ -23,9 +32,9 @@ struct GrainFlags {
 
 /// Sets the flags that the voxels of an index show. Whether a grain touches another is looked up if it is
 /// not deep, or one of \p small.
-void findFlags(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
-               const ConnectedComponents& components, const std::optional<Domain>& domain,
-               const std::vector<char>& small, GrainFlags& flags, Interrupter* interrupter);
+void findFlags(const LeafIndex& index, const LabelMasks& labels,
+               const std::optional<Domain>& domain, const std::vector<char>& small,
+               GrainFlags& flags, Interrupter* interrupter);
 
 /// @param pieces how many each grain is in
 LabelFlaws countFlaws(const GrainFlags& flags, const std::vector<int64_t>& grainVoxels,

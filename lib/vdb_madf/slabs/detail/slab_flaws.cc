@@ -21,7 +21,8 @@ void SlabFlaws::add(const LeafIndex& index, VoxelArray<uint32_t> labels, Interru
 
 /// Of the last slab; a piece goes on beyond a cut under its label.
 void SlabFlaws::addPieces(Interrupter* interrupter) {
-  const ConnectedComponents components(last_.index, last_.labels, interrupter);
+  const ConnectedComponents components(
+      last_.index, LabelMasks(last_.index, last_.labels, interrupter), interrupter);
   const auto face = [&](bool isUpper) {
     return facePieces(last_.index, components, {cuts_[slabs_], cuts_[slabs_ + 1], isUpper});
   };
@@ -37,8 +38,8 @@ void SlabFlaws::addPieces(Interrupter* interrupter) {
 /// Flags need to see one voxel beyond the cuts. What the leaves there show of themselves is true, too.
 void SlabFlaws::lookAtLast(const LeafLabels& above, Interrupter* interrupter) {
   const LabelWindow window = labelWindow(last_.index, last_.labels, below_, above);
-  const ConnectedComponents components(window.index, window.labels, interrupter);
-  findFlags(window.index, window.labels, components, domain_, all_, flags_, interrupter);
+  const LabelMasks masks(window.index, window.labels, interrupter);
+  findFlags(window.index, masks, domain_, all_, flags_, interrupter);
 }
 
 LabelFlaws SlabFlaws::finish(const std::vector<int64_t>& grainVoxels, Interrupter* interrupter) {

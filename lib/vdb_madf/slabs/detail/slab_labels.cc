@@ -193,7 +193,8 @@ class SlabLabels {
     VoxelArray<uint32_t> labels = mergedLabels(s, slab);
     smoothSlab(slab.index, rim(s - 1, s), rim(s + 1, s), anchors_, work_.options.tidy, labels,
                &part);
-    const ConnectedComponents components(slab.index, labels, work_.interrupter);
+    const LabelMasks masks(slab.index, labels, work_.interrupter);
+    const ConnectedComponents components(slab.index, masks, work_.interrupter);
     ByteWriter bytes;
     bytes.add(labels);
     work_.write("labels", s, bytes);
@@ -242,7 +243,8 @@ class SlabLabels {
   void findLoose(size_t s) {
     const SlabBody slab = work_.body(s);
     const auto labels = work_.read("labels", s).voxelArray<uint32_t>();
-    const ConnectedComponents components(slab.index, labels, work_.interrupter);
+    const LabelMasks masks(slab.index, labels, work_.interrupter);
+    const ConnectedComponents components(slab.index, masks, work_.interrupter);
     ByteReader held = work_.receive("held", SlabWork::kRoot, s);
     BeyondPieces below, above;
     below.face = work_.receiveVector<FacePiece>("face-pieces", s - 1, s);

@@ -75,7 +75,8 @@ void smoothSlab(const LeafIndex& index, const LeafLabels& below, const LeafLabel
   for (size_t g = 0; g < anchors.size(); ++g)
     if (window.boundingBox().isInside(anchors[g]))
       if (const auto id = window.findVoxel(anchors[g])) anchorIds[g] = *id;
-  smoothInterfaces(window, rounds, anchorIds, grains, interrupter);
+  LabelMasks masks(window, grains.label, interrupter);
+  smoothInterfaces(window, rounds, anchorIds, masks, grains, interrupter);
 
   for (size_t leaf = 0; leaf < window.leafCount(); ++leaf)
     if (const auto own = index.findLeaf(window.origin(leaf)))

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/leaves/detail/label_masks.h"
+
+#include <algorithm>
+
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/simd.h"
+#include "vdb_madf/leaves/detail/leaf_mask.h"
+#include "vdb_madf/leaves/detail/leaf_values.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+using Entry = LabelMasks::Entry;
+
+/// Where 512 values are a label.
+VDB_MADF_KERNEL LeafIndex::Mask equalTo(uint32_t label, const uint32_t* dense) {
+  uint8_t equal[512];
+  for (size_t i = 0; i < 512; ++i) equal[i] = dense[i] == label;
+  LeafIndex::Mask mask;
+  for (size_t x = 0; x < 8; ++x) mask[x] = wordOfBytes(equal + x * 64);
+  return mask;
+}
+
+bool hasLessLabel(const Entry& a, const Entry& b) {
+  return a.label < b.label;
+}
+
+/// The entries of a leaf; `values`: of its voxels.
+void addEntries(const LeafIndex::Mask& mask, size_t count, const uint32_t* values,
+                std::vector<Entry>& entries) {
+  if (allEqual(values, count)) {
+    if (values[0] != 0) entries.push_back({mask, values[0]});
+    return;
+  }
+  uint32_t dense[512];
+  expandLeaf(mask, values, dense);
+  const size_t before = entries.size();
+  LeafIndex::Mask rest = mask;
+  for (size_t x = 0; x < 8; ++x)
+    while (rest[x]) {
+      const uint32_t label = dense[x * 64 + size_t(__builtin_ctzll(rest[x]))];
+      const LeafIndex::Mask same =
+          both(mask, atBestLevel([&]() VDB_MADF_INLINE { return equalTo(label, dense); }));
+      rest = without(rest, same);
+      if (label != 0) entries.push_back({same, label});
+    }
+  std::sort(entries.begin() + std::ptrdiff_t(before), entries.end(), hasLessLabel);
+}
+
+}  // namespace
+
+LabelMasks::LabelMasks(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
+                       Interrupter* interrupter)
+    : lists_(index.leafCount()) {
+  constexpr size_t kChunk = 1024;
+  std::vector<std::vector<Entry>> chunks((index.leafCount() + kChunk - 1) / kChunk);
+  parallelFor(chunks.size(), 1, interrupter, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const size_t stop = std::min(index.leafCount(), (i + 1) * kChunk);
+      for (size_t leaf = i * kChunk; leaf < stop; ++leaf) {
+        const size_t first = chunks[i].size();
+        addEntries(index.mask(leaf), index.leafVoxels(leaf), labels.data() + index.firstRank(leaf),
+                   chunks[i]);
+        const uint32_t count = uint32_t(chunks[i].size() - first);
+        lists_[leaf] = {first, count, count};
+      }
+    }
+  });
+  size_t count = 0;
+  for (const std::vector<Entry>& chunk : chunks) count += chunk.size();
+  entries_.reserve(count);
+  for (size_t i = 0; i < chunks.size(); ++i) {
+    const size_t stop = std::min(index.leafCount(), (i + 1) * kChunk);
+    for (size_t leaf = i * kChunk; leaf < stop; ++leaf) lists_[leaf].first += entries_.size();
+    entries_.insert(entries_.end(), chunks[i].begin(), chunks[i].end());
+    chunks[i] = {};
+  }
+}
+
+void LabelMasks::take(size_t leaf, const LeafIndex::Mask& voxels) {
+  for (size_t i = 0; i < lists_[leaf].count; ++i) {
+    Entry& entry = entries_[lists_[leaf].first + i];
+    entry.mask = without(entry.mask, voxels);
+  }
+}
+
+void LabelMasks::give(size_t leaf, uint32_t label, const LeafIndex::Mask& voxels) {
+  List& list = lists_[leaf];
+  const Entry* const place =
+      std::lower_bound(begin(leaf), end(leaf), Entry{{}, label}, hasLessLabel);
+  const size_t at = size_t(place - begin(leaf));
+  if (place == end(leaf) || place->label != label) {
+    if (list.count == list.capacity) {  // to the end of all
+      const std::vector<Entry> moved(begin(leaf), end(leaf));
+      list.first = entries_.size();
+      list.capacity = 2 * list.count + 2;
+      entries_.insert(entries_.end(), moved.begin(), moved.end());
+      entries_.resize(list.first + list.capacity);
+    }
+    const auto first = entries_.begin() + std::ptrdiff_t(list.first);
+    std::move_backward(first + std::ptrdiff_t(at), first + list.count, first + list.count + 1);
+    entries_[list.first + at] = {{}, label};
+    ++list.count;
+  }
+  LeafIndex::Mask& mask = entries_[list.first + at].mask;
+  for (size_t x = 0; x < 8; ++x) mask[x] |= voxels[x];
+}
+
+}  // namespace vdb_madf::detail
