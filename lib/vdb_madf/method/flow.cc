@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/simd.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 
 namespace vdb_madf {
@@ -21,8 +22,10 @@ std::vector<uint32_t> rootBalls(const LeafIndex& index, const VoxelArray<VoxelId
   constexpr size_t kBallGrain = 4096;
   std::vector<uint32_t> next(ids.size());
   detail::parallelFor(ids.size(), kBallGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      next[i] = index.isForeign(ids[i]) ? uint32_t(i) : balls.rank(site[index.rank(ids[i])]);
+    detail::atBestLevel([&]() VDB_MADF_INLINE {
+      for (size_t i = begin; i < end; ++i)
+        next[i] = index.isForeign(ids[i]) ? uint32_t(i) : balls.rank(site[index.rank(ids[i])]);
+    });
   });
   detail::parallelFor(ids.size(), kBallGrain, interrupter, [&](size_t begin, size_t end) {
     const auto load = [&](size_t i) { return __atomic_load_n(&next[i], __ATOMIC_RELAXED); };
@@ -41,8 +44,9 @@ std::vector<uint32_t> fixedPoints(const LeafIndex& index, const std::vector<Voxe
   std::vector<uint32_t> fixed;
   for (uint32_t i = 0; i < ids.size(); ++i)
     if (root[i] == i) fixed.push_back(i);
-  std::sort(fixed.begin(), fixed.end(),
-            [&](uint32_t a, uint32_t b) { return index.coord(ids[a]) < index.coord(ids[b]); });
+  detail::parallelSort(fixed.begin(), fixed.end(), [&](uint32_t a, uint32_t b) {
+    return index.coord(ids[a]) < index.coord(ids[b]);
+  });
   return fixed;
 }
 
@@ -56,37 +60,82 @@ std::vector<uint32_t> manifoldOfBall(const std::vector<uint32_t>& root,
   return manifold;
 }
 
+/// Counts the voxels of manifolds for one thread: a few at a time, since neighbors share theirs.
+class VoxelCounts {
+ public:
+  explicit VoxelCounts(std::vector<CriticalPoint>& points) : points_(points) {}
+
+  void add(uint32_t point, int64_t voxels) {
+    Slot& slot = slots_[point % kSlots];
+    if (slot.point != point) {
+      flush(slot);
+      slot = {point, 0};
+    }
+    slot.voxels += voxels;
+  }
+  void flushAll() {
+    for (Slot& slot : slots_) flush(slot);
+  }
+
+ private:
+  static constexpr uint32_t kSlots = 256;
+  struct Slot {
+    uint32_t point = 0;
+    int64_t voxels = 0;
+  };
+  void flush(Slot& slot) {
+    if (slot.voxels > 0)
+      __atomic_fetch_add(&points_[slot.point].voxels, slot.voxels, __ATOMIC_RELAXED);
+    slot.voxels = 0;
+  }
+
+  std::vector<CriticalPoint>& points_;
+  Slot slots_[kSlots];
+};
+
+/// Replaces the sites of a leaf's voxels by their manifolds. Neighbors along z mostly share their ball:
+/// it is looked up once a run. No branch waits for what is looked up, so that many look-ups overlap.
+VDB_MADF_KERNEL size_t replaceRuns(const VoxelSet& balls, const uint32_t* manifold, size_t count,
+                                   uint32_t* values, uint32_t* last, uint32_t* number) {
+  uint16_t runOf[512];
+  size_t runs = 0;
+  for (size_t i = 0; i < count; ++i) {  // the next voxel overwrites what is no end of a run
+    runOf[i] = uint16_t(runs);
+    last[runs] = uint32_t(i);
+    number[runs] = values[i];
+    runs += i + 1 == count || values[i + 1] != values[i];
+  }
+  for (size_t r = 0; r < runs; ++r) number[r] = balls.rank(number[r]);
+  for (size_t r = 0; r < runs; ++r) number[r] = manifold[number[r]];
+  for (size_t i = 0; i < count; ++i) values[i] = number[runOf[i]];
+  return runs;
+}
+
+void replaceInLeaf(const VoxelSet& balls, const std::vector<uint32_t>& manifold, uint32_t* values,
+                   size_t count, VoxelCounts& voxels) {
+  uint32_t last[513], number[513];  // of each run
+  const size_t runs = detail::atBestLevel([&]() VDB_MADF_INLINE {
+    return replaceRuns(balls, manifold.data(), count, values, last, number);
+  });
+  uint32_t begin = 0;
+  for (size_t r = 0; r < runs; ++r) {
+    voxels.add((number[r] & ~Flow::kOwnCell) - 1, last[r] + 1 - begin);
+    begin = last[r] + 1;
+  }
+}
+
 /// Replaces each voxel's site by its manifold, and counts the voxels of each manifold.
 void replaceSites(const LeafIndex& index, const VoxelSet& balls,
                   const std::vector<uint32_t>& manifold, VoxelArray<VoxelId>& site,
                   std::vector<CriticalPoint>& criticalPoints, Interrupter* interrupter) {
-  detail::parallelFor(
-      index.leafCount(), detail::kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-        // Neighbors along z mostly share their ball: look up and count by runs.
-        VoxelId ball = 0;
-        uint32_t number = 0;
-        int64_t run = 0;
-        const auto flush = [&] {
-          if (run > 0)
-            __atomic_fetch_add(&criticalPoints[(number & ~Flow::kOwnCell) - 1].voxels, run,
-                               __ATOMIC_RELAXED);
-        };
-        const size_t stop = index.firstRank(end);
-        for (size_t rank = index.firstRank(begin); rank < stop; ++rank) {
-          if (number == 0 || site[rank] != ball) {
-            ball = site[rank];
-            const uint32_t found = manifold[balls.rank(ball)];
-            if (found != number) {
-              flush();
-              number = found;
-              run = 0;
-            }
-          }
-          ++run;
-          site[rank] = number;
-        }
-        flush();
-      });
+  detail::parallelFor(index.leafCount(), detail::kLeafGrain, interrupter,
+                      [&](size_t begin, size_t end) {
+                        VoxelCounts voxels(criticalPoints);
+                        for (size_t leaf = begin; leaf < end; ++leaf)
+                          replaceInLeaf(balls, manifold, site.data() + index.firstRank(leaf),
+                                        index.leafVoxels(leaf), voxels);
+                        voxels.flushAll();
+                      });
 }
 
 }  // namespace

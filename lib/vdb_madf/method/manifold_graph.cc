@@ -4,6 +4,7 @@
 #include "vdb_madf/method/manifold_graph.h"
 
 #include <algorithm>
+#include <limits>
 #include <mutex>
 
 #include "vdb_madf/base/detail/bits.h"
@@ -40,49 +41,67 @@ class EdgeTable {
  public:
   void clear() {
     edges_.clear();
-    slots_.assign(slots_.empty() ? 256 : slots_.size(), kEmpty);
+    last_ = kEmpty;
+    slots_.assign(slots_.empty() ? 256 : slots_.size(), {0, kEmpty});
   }
 
-  void add(const Edge& part) {
-    if (last_ < edges_.size() && samePair(edges_[last_], part)) {
-      accumulate(edges_[last_], part);
-      return;
+  /// One more face between two manifolds.
+  void add(uint32_t first, uint32_t second, int32_t height, bool cellsTouch) {
+    const uint64_t pair = uint64_t(first) << 32 | second;
+    if (pair != lastPair_ || last_ == kEmpty) {
+      lastPair_ = pair;
+      last_ = find(pair);
     }
-    size_t slot = hash(part) & (slots_.size() - 1);
-    while (slots_[slot] != kEmpty && !samePair(edges_[slots_[slot]], part))
-      slot = (slot + 1) & (slots_.size() - 1);
-    if (slots_[slot] == kEmpty) {
-      slots_[slot] = last_ = uint32_t(edges_.size());
-      edges_.push_back(part);
-      if (edges_.size() * 2 > slots_.size()) grow();
-    } else {
-      last_ = slots_[slot];
-      accumulate(edges_[last_], part);
-    }
+    Edge& edge = edges_[last_];
+    ++edge.contactFaces;
+    edge.saddleHeight = std::max(edge.saddleHeight, height);
+    edge.cellsTouch |= cellsTouch;
   }
 
   const std::vector<Edge>& edges() const { return edges_; }
 
  private:
   static constexpr uint32_t kEmpty = ~0u;
+  struct Slot {
+    uint64_t pair;
+    uint32_t edge;
+  };
 
-  static size_t hash(const Edge& edge) {
-    const uint64_t key = uint64_t(edge.first) << 32 | edge.second;
-    return size_t(key * 0x9e3779b97f4a7c15ull >> 32);  // Fibonacci hashing
+  size_t home(uint64_t pair) const {
+    return size_t(pair * 0x9e3779b97f4a7c15ull >> 32) & (slots_.size() - 1);  // Fibonacci hashing
+  }
+
+  /// The slot of a pair, or the empty one that it is to get.
+  size_t slotOf(uint64_t pair) const {
+    size_t slot = home(pair);
+    while (slots_[slot].edge != kEmpty && slots_[slot].pair != pair)
+      slot = (slot + 1) & (slots_.size() - 1);
+    return slot;
+  }
+
+  /// The place of a pair's edge, which is a new one if need be.
+  uint32_t find(uint64_t pair) {
+    Slot& slot = slots_[slotOf(pair)];
+    if (slot.edge != kEmpty) return slot.edge;
+    const uint32_t edge = uint32_t(edges_.size());
+    slot = {pair, edge};
+    edges_.push_back({uint32_t(pair >> 32), uint32_t(pair), 0, kNoHeight, false});
+    if (edges_.size() * 2 > slots_.size()) grow();
+    return edge;
   }
 
   void grow() {
-    slots_.assign(slots_.size() * 2, kEmpty);
-    for (uint32_t i = 0; i < edges_.size(); ++i) {
-      size_t slot = hash(edges_[i]) & (slots_.size() - 1);
-      while (slots_[slot] != kEmpty) slot = (slot + 1) & (slots_.size() - 1);
-      slots_[slot] = i;
-    }
+    std::vector<Slot> old(slots_.size() * 2, {0, kEmpty});
+    old.swap(slots_);
+    for (const Slot& slot : old)
+      if (slot.edge != kEmpty) slots_[slotOf(slot.pair)] = slot;
   }
 
+  static constexpr int32_t kNoHeight = std::numeric_limits<int32_t>::min();
   std::vector<Edge> edges_;
-  std::vector<uint32_t> slots_;
-  uint32_t last_ = ~0u;
+  std::vector<Slot> slots_;
+  uint64_t lastPair_ = 0;
+  uint32_t last_ = kEmpty;
 };
 
 /// The values of a leaf and of the faces of the next leaves beside it; 0 where there is no object
@@ -176,8 +195,8 @@ class EdgeCollector {
     const uint32_t first = (a & kNumber) - 1, second = (b & kNumber) - 1;
     const int32_t height =
         -std::max(int32_t(powers_.own[x][yz]), int32_t(powers_.after(axis, x, yz)));
-    table_.add({std::min(first, second), std::max(first, second), 1, height,
-                (a & b & Flow::kOwnCell) != 0});
+    table_.add(std::min(first, second), std::max(first, second), height,
+               (a & b & Flow::kOwnCell) != 0);
   }
 
   const LeafIndex& index_;
