@@ -17,7 +17,6 @@ uint64_t dilateWord(uint64_t w) {
 }  // namespace
 
 LeafIndex::Mask flood(LeafIndex::Mask seed, const LeafIndex::Mask& mask) {
-  if (seed == mask) return seed;
   bool grown = true;
   const auto grow = [&](size_t x) {
     uint64_t next = dilateWord(seed[x]);
@@ -27,7 +26,7 @@ LeafIndex::Mask flood(LeafIndex::Mask seed, const LeafIndex::Mask& mask) {
     grown = grown || next != seed[x];
     seed[x] = next;
   };
-  while (grown) {  // to and fro, so that it grows far in either direction
+  while (grown && seed != mask) {  // to and fro, so that it grows far in either direction
     grown = false;
     for (size_t x = 0; x < 8; ++x) grow(x);
     for (size_t x = 8; x-- > 0;) grow(x);
