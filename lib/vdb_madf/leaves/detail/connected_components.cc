@@ -75,36 +75,43 @@ void ConnectedComponents::findPieces(const LeafIndex& index, const LabelMasks* l
       }
     }
   });
-  size_t count = 0;
-  for (const Chunk& chunk : chunks) count += chunk.pieces.size();
-  pieces_.reserve(count);
   firstPiece_.reserve(index.leafCount() + 1);
   firstPiece_.push_back(0);
-  for (Chunk& chunk : chunks) {
+  for (const Chunk& chunk : chunks)
     for (const uint32_t pieces : chunk.counts) firstPiece_.push_back(firstPiece_.back() + pieces);
-    pieces_.insert(pieces_.end(), chunk.pieces.begin(), chunk.pieces.end());
-    chunk = {};
-  }
+  pieces_.resize(firstPiece_.back());
+  parallelFor(chunks.size(), 1, interrupter, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      std::copy(chunks[i].pieces.begin(), chunks[i].pieces.end(),
+                pieces_.begin() + firstPiece_[i * kChunk]);
+      chunks[i] = {};
+    }
+  });
 }
 
 /// Pieces that meet in a face between leaves belong together, if their labels agree. First those within
-/// parts of the leaves, which share no sets, in parallel; then those between parts.
+/// parts of the leaves, which share no sets, in parallel; then those between two parts, between two pairs
+/// of parts, and so on.
 void ConnectedComponents::joinPieces(const LeafIndex& index, DisjointSets& sets,
                                      Interrupter* interrupter) const {
   constexpr size_t kParts = 32;
   const size_t leaves = index.leafCount(), part = leaves / kParts + 1;
-  const auto join = [&](size_t begin, size_t end, bool within) {
-    for (size_t leaf = begin; leaf < end; ++leaf)
-      for (size_t axis = 0; axis < 3; ++axis) {
-        const uint32_t next = index.neighbors(leaf)[2 * axis + 1];
-        if (next != LeafIndex::kNone && (next / part == leaf / part) == within)
-          joinFaces(uint32_t(leaf), next, axis, sets);
-      }
-  };
-  parallelFor(kParts, 1, interrupter, [&](size_t begin, size_t end) {
-    join(std::min(begin * part, leaves), std::min(end * part, leaves), true);
-  });
-  join(0, leaves, false);
+  for (size_t width = part; width < 2 * kParts * part; width *= 2) {  // leaves of a group of parts
+    const size_t before = width / 2;                                  // joined within already
+    const auto join = [&](size_t group) {
+      const size_t stop = std::min((group + 1) * width, leaves);
+      for (size_t leaf = group * width; leaf < stop; ++leaf)
+        for (size_t axis = 0; axis < 3; ++axis) {
+          const uint32_t next = index.neighbors(leaf)[2 * axis + 1];
+          if (next == LeafIndex::kNone || next / width != group) continue;
+          if (width == part || next / before != leaf / before)
+            joinFaces(uint32_t(leaf), next, axis, sets);
+        }
+    };
+    parallelFor((leaves + width - 1) / width, 1, interrupter, [&](size_t begin, size_t end) {
+      for (size_t group = begin; group < end; ++group) join(group);
+    });
+  }
 }
 
 /// The pieces on both sides of the face between a leaf and the next one along an axis. Pieces of a leaf

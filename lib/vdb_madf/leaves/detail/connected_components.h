@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/disjoint_sets.h"
+#include "vdb_madf/base/detail/pages.h"
 #include "vdb_madf/leaves/detail/label_masks.h"
 #include "vdb_madf/leaves/leaf_index.h"
 
@@ -43,7 +44,7 @@ class ConnectedComponents {
   void joinFaces(uint32_t leaf, uint32_t next, size_t axis, DisjointSets& sets) const;
   void numberComponents(DisjointSets& sets);
 
-  std::vector<Piece> pieces_;
+  std::vector<Piece, PageAllocator<Piece>> pieces_;
   std::vector<uint32_t> firstPiece_;  // per leaf; one more at the end
   uint32_t count_ = 0;
 };

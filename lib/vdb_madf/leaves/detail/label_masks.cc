@@ -55,58 +55,47 @@ void addEntries(const LeafIndex::Mask& mask, size_t count, const uint32_t* value
 
 LabelMasks::LabelMasks(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
                        Interrupter* interrupter)
-    : lists_(index.leafCount()) {
-  constexpr size_t kChunk = 1024;
-  std::vector<std::vector<Entry>> chunks((index.leafCount() + kChunk - 1) / kChunk);
-  parallelFor(chunks.size(), 1, interrupter, [&](size_t begin, size_t end) {
+    : chunks_((index.leafCount() + kChunk - 1) / kChunk), lists_(index.leafCount()) {
+  parallelFor(chunks_.size(), 1, interrupter, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const size_t stop = std::min(index.leafCount(), (i + 1) * kChunk);
       for (size_t leaf = i * kChunk; leaf < stop; ++leaf) {
-        const size_t first = chunks[i].size();
+        const uint32_t first = uint32_t(chunks_[i].size());
         addEntries(index.mask(leaf), index.leafVoxels(leaf), labels.data() + index.firstRank(leaf),
-                   chunks[i]);
-        const uint32_t count = uint32_t(chunks[i].size() - first);
+                   chunks_[i]);
+        const uint32_t count = uint32_t(chunks_[i].size()) - first;
         lists_[leaf] = {first, count, count};
       }
     }
   });
-  size_t count = 0;
-  for (const std::vector<Entry>& chunk : chunks) count += chunk.size();
-  entries_.reserve(count);
-  for (size_t i = 0; i < chunks.size(); ++i) {
-    const size_t stop = std::min(index.leafCount(), (i + 1) * kChunk);
-    for (size_t leaf = i * kChunk; leaf < stop; ++leaf) lists_[leaf].first += entries_.size();
-    entries_.insert(entries_.end(), chunks[i].begin(), chunks[i].end());
-    chunks[i] = {};
-  }
 }
 
 void LabelMasks::take(size_t leaf, const LeafIndex::Mask& voxels) {
-  for (size_t i = 0; i < lists_[leaf].count; ++i) {
-    Entry& entry = entries_[lists_[leaf].first + i];
-    entry.mask = without(entry.mask, voxels);
-  }
+  Entry* const entries = chunks_[leaf / kChunk].data() + lists_[leaf].first;
+  for (size_t i = 0; i < lists_[leaf].count; ++i)
+    entries[i].mask = without(entries[i].mask, voxels);
 }
 
 void LabelMasks::give(size_t leaf, uint32_t label, const LeafIndex::Mask& voxels) {
+  std::vector<Entry>& chunk = chunks_[leaf / kChunk];
   List& list = lists_[leaf];
   const Entry* const place =
       std::lower_bound(begin(leaf), end(leaf), Entry{{}, label}, hasLessLabel);
   const size_t at = size_t(place - begin(leaf));
   if (place == end(leaf) || place->label != label) {
-    if (list.count == list.capacity) {  // to the end of all
+    if (list.count == list.capacity) {  // to the end of the chunk
       const std::vector<Entry> moved(begin(leaf), end(leaf));
-      list.first = entries_.size();
+      list.first = uint32_t(chunk.size());
       list.capacity = 2 * list.count + 2;
-      entries_.insert(entries_.end(), moved.begin(), moved.end());
-      entries_.resize(list.first + list.capacity);
+      chunk.insert(chunk.end(), moved.begin(), moved.end());
+      chunk.resize(list.first + list.capacity);
     }
-    const auto first = entries_.begin() + std::ptrdiff_t(list.first);
-    std::move_backward(first + std::ptrdiff_t(at), first + list.count, first + list.count + 1);
-    entries_[list.first + at] = {{}, label};
+    Entry* const first = chunk.data() + list.first;
+    std::move_backward(first + at, first + list.count, first + list.count + 1);
+    first[at] = {{}, label};
     ++list.count;
   }
-  LeafIndex::Mask& mask = entries_[list.first + at].mask;
+  LeafIndex::Mask& mask = chunk[list.first + at].mask;
   for (size_t x = 0; x < 8; ++x) mask[x] |= voxels[x];
 }
 

@@ -25,8 +25,14 @@ class LabelMasks {
              Interrupter* interrupter = nullptr);
 
   /// The entries of a leaf, by rising label. A label that lost its voxels may still have one.
-  const Entry* begin(size_t leaf) const { return entries_.data() + lists_[leaf].first; }
+  const Entry* begin(size_t leaf) const {
+    return chunks_[leaf / kChunk].data() + lists_[leaf].first;
+  }
   const Entry* end(size_t leaf) const { return begin(leaf) + lists_[leaf].count; }
+
+  /// Leaves of one chunk, k kChunk .. (k + 1) kChunk - 1, are kept together: changes to different
+  /// chunks may be made at a time.
+  static constexpr size_t kChunk = 128;
 
   /// Takes voxels of a leaf away from the labels that they have.
   void take(size_t leaf, const LeafIndex::Mask& voxels);
@@ -35,10 +41,9 @@ class LabelMasks {
 
  private:
   struct List {
-    size_t first;
-    uint32_t count, capacity;
+    uint32_t first, count, capacity;
   };
-  std::vector<Entry> entries_;
+  std::vector<std::vector<Entry>> chunks_;
   std::vector<List> lists_;  // per leaf
 };
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <algorithm>
-#include <numeric>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/detail/label_masks.h"
@@ -117,20 +116,28 @@ class LeafSmoothing {
   std::vector<Candidate> candidates_;  // of labels_
 };
 
-constexpr size_t kChunk = 64;
-
-/// By chunks of leaves, which ascend.
+/// Some leaves, ascending, by the chunks of LabelMasks.
+using LeafChunks = std::vector<std::vector<uint32_t>>;
+/// What they take, by the same.
 using Takings = std::vector<std::vector<Taking>>;
 
+/// The leaves that are marked.
+LeafChunks chunksOf(const std::vector<char>& marks) {
+  LeafChunks chunks;
+  for (uint32_t leaf = 0; leaf < marks.size(); ++leaf) {
+    if (leaf % LabelMasks::kChunk == 0) chunks.emplace_back();
+    if (marks[leaf]) chunks.back().push_back(leaf);
+  }
+  return chunks;
+}
+
 Takings decide(const LeafIndex& index, const LabelMasks& masks, const std::vector<VoxelId>& anchor,
-               const std::vector<uint32_t>& leaves, Interrupter* interrupter) {
-  Takings takings((leaves.size() + kChunk - 1) / kChunk);
+               const LeafChunks& leaves, Interrupter* interrupter) {
+  Takings takings(leaves.size());
   parallelFor(takings.size(), 1, interrupter, [&](size_t begin, size_t end) {
     LeafSmoothing smoothing(index, masks, anchor);
-    for (size_t i = begin; i < end; ++i) {
-      const size_t stop = std::min(leaves.size(), (i + 1) * kChunk);
-      for (size_t k = i * kChunk; k < stop; ++k) smoothing.addTakings(leaves[k], takings[i]);
-    }
+    for (size_t i = begin; i < end; ++i)
+      for (const uint32_t leaf : leaves[i]) smoothing.addTakings(leaf, takings[i]);
   });
   return takings;
 }
@@ -145,46 +152,46 @@ void markLeaves(const std::array<uint32_t, 27>& around, const Mask& voxels,
   constexpr uint64_t kZ[3] = {kFirstZ, ~uint64_t(0), kLastZ};
   for (size_t i = 0; i < 27; ++i)
     if (around[i] != LeafIndex::kNone && (words[i / 9] & kY[i / 3 % 3] & kZ[i % 3]))
-      marks[around[i]] = 1;
+      __atomic_store_n(&marks[around[i]], char(1), __ATOMIC_RELAXED);
 }
 
-/// Returns the leaves that see a change, ascending.
-std::vector<uint32_t> apply(const LeafIndex& index, const Takings& takings, LabelMasks& masks,
-                            GrainLabels& grains, Interrupter* interrupter) {
+void add(std::vector<int64_t>& voxels, uint32_t label, int64_t more) {
+  if (more != 0) __atomic_fetch_add(&voxels[label - 1], more, __ATOMIC_RELAXED);
+}
+
+/// Returns marks of the leaves that see a change.
+std::vector<char> apply(const LeafIndex& index, const Takings& takings, LabelMasks& masks,
+                        GrainLabels& grains, Interrupter* interrupter) {
+  std::vector<char> marks(index.leafCount(), 0);
   parallelFor(takings.size(), 1, interrupter, [&](size_t begin, size_t end) {
+    LeafNeighborhood neighborhood(index);
     for (size_t i = begin; i < end; ++i)
-      for (const Taking& taking : takings[i])
+      for (const Taking& taking : takings[i]) {
+        for (auto entry = masks.begin(taking.leaf); entry != masks.end(taking.leaf); ++entry)
+          add(grains.voxels, entry->label, -int64_t(countVoxels(both(entry->mask, taking.voxels))));
+        add(grains.voxels, taking.label, countVoxels(taking.voxels));
+        masks.take(taking.leaf, taking.voxels);
+        masks.give(taking.leaf, taking.label, taking.voxels);
+        markLeaves(neighborhood.around(taking.leaf), taking.voxels, marks);
         for (uint32_t x = 0; x < 8; ++x)
           forEachBit(taking.voxels[x], [&](int bit) {
             grains.label[index.rank(taking.leaf * 512 + x * 64 + uint32_t(bit))] = taking.label;
           });
+      }
   });
-  std::vector<char> marks(index.leafCount(), 0);
-  LeafNeighborhood neighborhood(index);
-  for (const std::vector<Taking>& chunk : takings)
-    for (const Taking& taking : chunk) {
-      for (auto entry = masks.begin(taking.leaf); entry != masks.end(taking.leaf); ++entry)
-        grains.voxels[entry->label - 1] -= countVoxels(both(entry->mask, taking.voxels));
-      grains.voxels[taking.label - 1] += countVoxels(taking.voxels);
-      masks.take(taking.leaf, taking.voxels);
-      masks.give(taking.leaf, taking.label, taking.voxels);
-      markLeaves(neighborhood.around(taking.leaf), taking.voxels, marks);
-    }
-  std::vector<uint32_t> leaves;
-  for (uint32_t leaf = 0; leaf < marks.size(); ++leaf)
-    if (marks[leaf]) leaves.push_back(leaf);
-  return leaves;
+  return marks;
 }
 
 }  // namespace
 
 void smoothInterfaces(const LeafIndex& index, int rounds, const std::vector<VoxelId>& anchor,
                       LabelMasks& masks, GrainLabels& grains, Interrupter* interrupter) {
-  std::vector<uint32_t> leaves(index.leafCount());
-  std::iota(leaves.begin(), leaves.end(), 0);
-  for (int round = 0; round < rounds && !leaves.empty(); ++round)
-    leaves =
+  std::vector<char> marks(index.leafCount(), 1);
+  for (int round = 0; round < rounds; ++round) {
+    const LeafChunks leaves = chunksOf(marks);
+    marks =
         apply(index, decide(index, masks, anchor, leaves, interrupter), masks, grains, interrupter);
+  }
 }
 
 }  // namespace vdb_madf::detail
