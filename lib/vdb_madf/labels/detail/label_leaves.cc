@@ -4,42 +4,23 @@
 #include "vdb_madf/labels/detail/label_leaves.h"
 
 #include <algorithm>
-#include <cstring>
 
-#include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
-#include "vdb_madf/base/detail/simd.h"
 #include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/leaves/detail/leaf_mask.h"
+#include "vdb_madf/leaves/detail/leaf_values.h"
 
 namespace vdb_madf::detail {
 
 namespace {
 
-/// The voxels of a leaf with a value, of those in `within`.
-VDB_MADF_KERNEL LeafIndex::Mask voxelsOf(const int32_t* values, int32_t value,
-                                         const LeafIndex::Mask& within) {
-  LeafIndex::Mask mask;
-  for (size_t x = 0; x < 8; ++x) {
-    uint8_t equal[64];
-    for (size_t i = 0; i < 64; ++i) equal[i] = values[x * 64 + i] == value;
-    uint64_t bits = 0;
-    for (size_t y = 0; y < 8; ++y) {
-      uint64_t bytes;
-      std::memcpy(&bytes, equal + 8 * y, sizeof bytes);
-      bits |= uint64_t(packBits(bytes)) << 8 * y;
-    }
-    mask[x] = bits & within[x];
-  }
-  return mask;
-}
-
 void addParts(const int32_t* values, LeafIndex::Mask rest, std::vector<LabelPart>& parts) {
   for (size_t x = 0; x < 8; ++x) {
     while (rest[x]) {
       const int32_t label = values[x * 64 + size_t(__builtin_ctzll(rest[x]))];
-      parts.push_back(
-          {label, atBestLevel([&]() VDB_MADF_INLINE { return voxelsOf(values, label, rest); })});
-      for (size_t i = x; i < 8; ++i) rest[i] &= ~parts.back().mask[i];
+      const auto* const dense = reinterpret_cast<const uint32_t*>(values);
+      parts.push_back({label, both(rest, voxelsOf(dense, uint32_t(label)))});
+      rest = without(rest, parts.back().mask);
     }
   }
 }

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "vdb_madf/base/detail/parallel.h"
-#include "vdb_madf/base/detail/simd.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/leaf_values.h"
 
@@ -15,15 +14,6 @@ namespace vdb_madf::detail {
 namespace {
 
 using Entry = LabelMasks::Entry;
-
-/// Where 512 values are a label.
-VDB_MADF_KERNEL LeafIndex::Mask equalTo(uint32_t label, const uint32_t* dense) {
-  uint8_t equal[512];
-  for (size_t i = 0; i < 512; ++i) equal[i] = dense[i] == label;
-  LeafIndex::Mask mask;
-  for (size_t x = 0; x < 8; ++x) mask[x] = wordOfBytes(equal + x * 64);
-  return mask;
-}
 
 bool hasLessLabel(const Entry& a, const Entry& b) {
   return a.label < b.label;
@@ -43,8 +33,7 @@ void addEntries(const LeafIndex::Mask& mask, size_t count, const uint32_t* value
   for (size_t x = 0; x < 8; ++x)
     while (rest[x]) {
       const uint32_t label = dense[x * 64 + size_t(__builtin_ctzll(rest[x]))];
-      const LeafIndex::Mask same =
-          both(mask, atBestLevel([&]() VDB_MADF_INLINE { return equalTo(label, dense); }));
+      const LeafIndex::Mask same = both(mask, voxelsOf(dense, label));
       rest = without(rest, same);
       if (label != 0) entries.push_back({same, label});
     }

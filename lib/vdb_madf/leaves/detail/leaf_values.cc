@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "vdb_madf/base/detail/simd.h"
+#include "vdb_madf/leaves/detail/leaf_mask.h"
 
 #ifdef VDB_MADF_SIMD_LEVELS
 #include <immintrin.h>
@@ -175,7 +176,19 @@ VDB_MADF_KERNEL bool allEqualKernel(const uint32_t* values, size_t count) {
   return differ == 0;
 }
 
+VDB_MADF_KERNEL LeafIndex::Mask equalTo(const uint32_t* dense, uint32_t value) {
+  uint8_t equal[512];
+  for (size_t i = 0; i < 512; ++i) equal[i] = dense[i] == value;
+  LeafIndex::Mask mask;
+  for (size_t x = 0; x < 8; ++x) mask[x] = wordOfBytes(equal + x * 64);
+  return mask;
+}
+
 }  // namespace
+
+LeafIndex::Mask voxelsOf(const uint32_t* dense, uint32_t value) {
+  return atBestLevel([&]() VDB_MADF_INLINE { return equalTo(dense, value); });
+}
 
 bool allEqual(const uint32_t* values, size_t count) {
   return atBestLevel([&]() VDB_MADF_INLINE { return allEqualKernel(values, count); });

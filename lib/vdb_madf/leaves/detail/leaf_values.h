@@ -20,6 +20,9 @@ void expandWord(uint64_t word, const uint32_t* values, uint32_t* dense);
 /// The way back: the dense values of the object voxels, one after the other.
 void packLeaf(const LeafIndex::Mask& mask, const uint32_t* dense, uint32_t* values);
 
+/// The voxels of a leaf, dense as above, that have a value.
+LeafIndex::Mask voxelsOf(const uint32_t* dense, uint32_t value);
+
 /// Are all values the first one?
 bool allEqual(const uint32_t* values, size_t count);
 
