@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// contract() on random graphs that are cut into groups, against the definition of merging, edge after
-// edge, written here again.
+// contract() on random graphs that are cut into groups, and MergeParts on such that are cut into parts,
+// against the definition of merging, edge after edge, written here again.
 //
-// The random comparison reads from the environment VDB_MADF_GRAPHS (how many) and VDB_MADF_SEED (the
+// The random comparisons read from the environment VDB_MADF_GRAPHS (how many) and VDB_MADF_SEED (the
 // first).
 
 #include "vdb_madf/slabs/detail/merge_group.h"
@@ -13,11 +13,13 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <sstream>
 #include <tuple>
 #include <vector>
 
+#include "support/merge_tree.h"
 #include "support/random_volume.h"
 #include "support/runs.h"
 
@@ -27,6 +29,7 @@ using namespace vdb_madf;
 using namespace vdb_madf::test;
 using detail::MergeGroup;
 using detail::MergeRule;
+using detail::SlabPart;
 
 /// What one group knows of an edge.
 struct Part {
@@ -236,6 +239,76 @@ class Contractor {
   bool hasNeedless_ = false;
 };
 
+/// The groups as parts of slabs, the first the lowest.
+std::vector<SlabPart> partsOf(const Case& c) {
+  std::vector<SlabPart> parts;
+  std::vector<std::vector<char>> knows(size_t(c.groups), std::vector<char>(c.nodes.size(), 0));
+  for (size_t i = 0; i < c.nodes.size(); ++i) knows[size_t(c.owner[i])][i] = 1;
+  for (const Part& part : c.parts)
+    for (const uint32_t node : {part.first, part.second}) knows[size_t(part.group)][node] = 1;
+  for (int g = 0; g < c.groups; ++g) {
+    SlabPart part;
+    std::vector<uint32_t> place(c.nodes.size());
+    for (size_t i = 0; i < c.nodes.size(); ++i) {
+      if (!knows[size_t(g)][i]) continue;
+      place[i] = uint32_t(part.graph.nodes.size());
+      part.graph.nodes.push_back(c.nodes[i]);
+      if (c.owner[i] != g) part.graph.nodes.back().voxels = 0;
+      const auto isKnown = [&](int first, int last) {
+        return std::any_of(knows.begin() + first, knows.begin() + last,
+                           [&](const std::vector<char>& known) { return known[i] != 0; });
+      };
+      part.startsBelow.push_back(isKnown(0, g));
+      part.goesOn.push_back(isKnown(g + 1, c.groups));
+    }
+    std::map<std::pair<uint32_t, uint32_t>, ManifoldGraph::Edge> edges;
+    for (const Part& of : c.parts) {
+      if (of.group != g) continue;
+      const auto edge = edges
+                            .emplace(std::make_pair(of.first, of.second),
+                                     ManifoldGraph::Edge{place[of.first], place[of.second], 1,
+                                                         of.height, of.cellsTouch})
+                            .first;
+      edge->second.saddleHeight = std::max(edge->second.saddleHeight, of.height);
+      edge->second.cellsTouch |= of.cellsTouch;
+    }
+    for (const auto& [pair, edge] : edges) part.graph.edges.push_back(edge);
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+/// What is wrong with grains of these classes; empty: nothing.
+std::string wrongGrains(const Case& c, const std::vector<uint32_t>& classOf,
+                        const std::vector<SlabPart>& parts, const TreeGrains& grains) {
+  // Those with voxels, by the node of largest D, the first of several.
+  std::map<uint32_t, uint32_t> best;
+  std::map<uint32_t, bool> hasVoxels;
+  for (uint32_t i = 0; i < classOf.size(); ++i) {
+    const auto [node, isNew] = best.emplace(classOf[i], i);
+    if (!isNew && c.nodes[i].squaredRadius > c.nodes[node->second].squaredRadius) node->second = i;
+    hasVoxels[classOf[i]] = hasVoxels[classOf[i]] || c.nodes[i].voxels > 0;
+  }
+  std::vector<Coord> expected;
+  for (const auto& [name, node] : best)
+    if (hasVoxels[name]) expected.push_back(c.nodes[node].position);
+  std::sort(expected.begin(), expected.end());
+  if (grains.representative != expected) return "other representatives";
+  for (size_t p = 0; p < parts.size(); ++p)
+    for (size_t i = 0; i < parts[p].graph.nodes.size(); ++i) {
+      const auto node =
+          size_t(std::find_if(c.nodes.begin(), c.nodes.end(),
+                              [&](const CriticalPoint& point) {
+                                return point.position == parts[p].graph.nodes[i].position;
+                              }) -
+                 c.nodes.begin());
+      const uint32_t name = classOf[node], grain = grains.ofNode[p][i];
+      if (grain > 0 ? expected.at(grain - 1) != c.nodes[best[name]].position : hasVoxels[name])
+        return "other grain of node " + std::to_string(node);
+    }
+  return "";
+}
+
 std::string describe(const Case& c) {
   std::ostringstream text;
   text << "theta " << c.options.theta << " mode " << int(c.options.mode) << " adjacency "
@@ -266,6 +339,28 @@ TEST_CASE("merge_group: groups in any order give the classes of the whole", "[me
   if (graphs < 1000) return;
   CHECK(merged > 3 * graphs);
   CHECK(divided > 3 * graphs);
+}
+
+TEST_CASE("merge_parts: ranges joined in any order give the grains of the whole", "[merge_group]") {
+  const uint64_t first = fromEnvironment("VDB_MADF_SEED", 1) + 10000000;
+  const uint64_t graphs = fromEnvironment("VDB_MADF_GRAPHS", 120000);
+  uint64_t joins = 0, handedOver = 0;
+  for (uint64_t seed = first; seed < first + graphs; ++seed) {
+    Case c = randomGraph(seed);
+    Rng rng(seed + 1);
+    if (rng.chance(0.3))
+      for (CriticalPoint& node : c.nodes) node.voxels = rng.below(2);
+    const std::vector<SlabPart> parts = partsOf(c);
+    const MergeRule rule(c.options, c.weights);
+    const TreeGrains found = RandomMergeTree(parts, rule, rng).run();
+    const std::string wrong = wrongGrains(c, mergedByDefinition(c), parts, found);
+    if (!wrong.empty()) FAIL("seed " << seed << ": " << wrong << "\n" << describe(c));
+    joins += found.joins;
+    handedOver += found.handedOver;
+  }
+  if (graphs < 1000) return;
+  CHECK(joins > graphs);
+  CHECK(handedOver > joins);
 }
 
 TEST_CASE("merge_group: nothing is decided that depends on other groups", "[merge_group]") {

@@ -235,6 +235,28 @@ TEST_CASE("slabs: what gamma leaves is completed through many slabs, as in the w
   CHECK(difference(whole, segmentCut(cutObject(mask, {0, 40, 240, 344}), options)).empty());
 }
 
+TEST_CASE("slabs: what comes to a cut with the last round of a window goes on in the next",
+          "[slabs]") {
+  // A window of completion has 64 rounds. One ball and a fiber along z, so that each round covers one
+  // voxel: in one of eight places round 64 covers the last one before a cut.
+  SegmentOptions options;
+  options.gamma = 300;
+  options.weights = VoxelWeights{};
+  for (const int direction : {-1, 1})
+    for (int shift = 0; shift < 8; ++shift) {
+      MaskGrid mask;
+      const Coord center(8, 8, shift);
+      for (auto p = CoordBBox::createCube(center.offsetBy(-6), 13).begin(); p; ++p)
+        if ((*p - center).asVec3i().lengthSqr() <= 36) mask.tree().setValueOn(*p);
+      for (int i = 0; i < 150; ++i) mask.tree().setValueOn(center.offsetBy(0, 0, direction * i));
+      std::vector<int> cuts;
+      for (int z = -160; z <= 168; z += 8) cuts.push_back(z);
+      const Segmentation whole = segment(mask, options);
+      REQUIRE(whole.counts.keptBalls == 1);
+      CHECK(difference(whole, segmentCut(cutObject(mask, cuts), options)) == "");
+    }
+}
+
 TEST_CASE("slabs: labels in regions are those of the whole", "[slabs]") {
   requireSame(fromEnvironment("VDB_MADF_SEED", 1) + 300000,
               fromEnvironment("VDB_MADF_CASES", 4 * kCombinations), 70, true);

@@ -4,8 +4,6 @@
 // The graph of the whole, and its grains, from the terminals of slabs: random flows of balls, which
 // lead through more slabs, and more often, than those of an object do.
 
-#include "vdb_madf/slabs/detail/slab_graph.h"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
@@ -13,16 +11,20 @@
 #include <utility>
 #include <vector>
 
+#include "support/merge_tree.h"
 #include "support/random_volume.h"
 #include "vdb_madf/method/merge.h"
+#include "vdb_madf/slabs/detail/slab_exits.h"
+#include "vdb_madf/slabs/detail/slab_part.h"
 
 namespace {
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-using detail::MergeParts;
 using detail::MergeRule;
-using detail::SlabGraph;
+using detail::SlabExits;
+using detail::SlabPart;
+using detail::SlabRoot;
 using detail::SlabTerminals;
 using Edge = ManifoldGraph::Edge;
 using FaceVoxel = SlabTerminals::FaceVoxel;
@@ -175,25 +177,27 @@ std::vector<uint32_t> numbersOf(const std::vector<CriticalPoint>& points,
   return numbers;
 }
 
-void askAndAnswer(SlabGraph& graph, const Balls& balls,
-                  const std::vector<std::vector<size_t>>& terminals) {
+void askAndAnswer(SlabExits& exits, const Balls& balls,
+                  const std::vector<std::vector<size_t>>& terminals,
+                  const std::vector<SlabTerminals>& slabs) {
   for (size_t s = 0; s < terminals.size(); ++s)
-    for (const SlabGraph::Question& question : graph.questions(s)) {
+    for (const SlabExits::Question& question : exits.questions(s)) {
       const auto b =
           size_t(std::lower_bound(balls.position.begin(), balls.position.end(), question.position) -
                  balls.position.begin());
-      const auto terminal =
+      const auto found =
           std::lower_bound(terminals[s].begin(), terminals[s].end(), balls.terminal(s, b));
-      graph.answer(s, question, uint32_t(terminal - terminals[s].begin()) + 1);
+      const auto terminal = size_t(found - terminals[s].begin());
+      exits.answer(s, question, uint32_t(terminal) + 1, slabs[s].points[terminal]);
     }
-  graph.finish();
+  exits.finish();
 }
 
 /// The parts of one graph, added up.
-ManifoldGraph sum(const std::vector<SlabGraph::Part>& parts) {
+ManifoldGraph sum(const std::vector<SlabPart>& parts) {
   std::map<Coord, CriticalPoint> nodes;
   std::map<std::pair<Coord, Coord>, Edge> edges;
-  for (const SlabGraph::Part& part : parts) {
+  for (const SlabPart& part : parts) {
     for (const CriticalPoint& node : part.graph.nodes) {
       CriticalPoint& all =
           nodes.emplace(node.position, CriticalPoint{node.position, node.squaredRadius, 0})
@@ -226,24 +230,59 @@ ManifoldGraph sum(const std::vector<SlabGraph::Part>& parts) {
 }
 
 /// Has each node the number of its place in the whole?
-bool areNumbered(const std::vector<SlabGraph::Part>& parts, const ManifoldGraph& whole) {
-  for (const SlabGraph::Part& part : parts)
+bool areNumbered(const std::vector<SlabPart>& parts, const ManifoldGraph& whole) {
+  for (const SlabPart& part : parts)
     for (size_t i = 0; i < part.number.size(); ++i)
       if (!(whole.nodes.at(part.number[i] - 1).position == part.graph.nodes[i].position))
         return false;
   return true;
 }
 
-/// Is each node said to be in a later part if it is?
-bool goOnWell(const std::vector<SlabGraph::Part>& parts) {
-  std::set<Coord> later;
+/// Is each node said to be in a later part if it is, and in an earlier one if it is?
+bool goOnWell(const std::vector<SlabPart>& parts) {
+  std::set<Coord> later, earlier;
+  const auto areSaid = [](const SlabPart& part, const std::vector<char>& said,
+                          const std::set<Coord>& known) {
+    for (size_t i = 0; i < part.graph.nodes.size(); ++i)
+      if ((said.at(i) != 0) != (known.count(part.graph.nodes[i].position) > 0)) return false;
+    return true;
+  };
+  const auto include = [](const SlabPart& part, std::set<Coord>& known) {
+    for (const CriticalPoint& node : part.graph.nodes) known.insert(node.position);
+  };
+  for (const SlabPart& part : parts) {
+    if (!areSaid(part, part.startsBelow, earlier)) return false;
+    include(part, earlier);
+  }
   for (size_t s = parts.size(); s-- > 0;) {
-    for (size_t i = 0; i < parts[s].goesOn.size(); ++i)
-      if ((parts[s].goesOn[i] != 0) != (later.count(parts[s].graph.nodes[i].position) > 0))
-        return false;
-    for (const CriticalPoint& node : parts[s].graph.nodes) later.insert(node.position);
+    if (!areSaid(parts[s], parts[s].goesOn, later)) return false;
+    include(parts[s], later);
   }
   return true;
+}
+
+/// The part of each slab.
+std::vector<SlabPart> partsOf(const SlabExits& exits, const std::vector<SlabTerminals>& slabs,
+                              const std::vector<std::vector<uint32_t>>& numbers) {
+  std::vector<std::vector<Edge>> contacts(slabs.size());
+  std::vector<std::vector<uint32_t>> touched(slabs.size() + 1);  // terminals of the slab below
+  for (size_t s = 1; s < slabs.size(); ++s) {
+    contacts[s] = SlabTerminals::contacts(slabs[s - 1].highest, slabs[s].lowest);
+    std::set<uint32_t> all;
+    for (const Edge& edge : contacts[s]) all.insert(edge.first);
+    touched[s].assign(all.begin(), all.end());
+    for (Edge& edge : contacts[s])
+      edge.first = uint32_t(std::distance(all.begin(), all.find(edge.first)));
+  }
+  std::vector<SlabPart> parts;
+  std::vector<SlabRoot> roots, below;
+  for (size_t s = 0; s < slabs.size(); ++s) {
+    below.clear();
+    for (const uint32_t terminal : touched[s]) below.push_back(roots.at(terminal));
+    roots = slabRoots(s, slabs[s].points, numbers[s], exits.leads(s));
+    parts.push_back(slabPart(s, slabs[s], roots, contacts[s], below, touched[s + 1]));
+  }
+  return parts;
 }
 
 }  // namespace
@@ -258,24 +297,21 @@ TEST_CASE("slab_graph: parts are those of the whole, and so are the grains", "[s
     const auto slabs = randomSlabs(balls, terminals, rng);
     ManifoldGraph whole = wholeGraph(balls, terminals, slabs);
 
-    SlabGraph graph(balls.cuts);
-    for (const SlabTerminals& slab : slabs) graph.add(slab);
-    REQUIRE(graph.criticalPoints() == int64_t(whole.nodes.size()));
-    askAndAnswer(graph, balls, terminals);
+    SlabExits exits(balls.cuts);
+    for (size_t s = 0; s < slabs.size(); ++s) {
+      std::vector<SlabExits::Exit> of;
+      for (uint32_t i = 0; i < terminals[s].size(); ++i)
+        if (balls.slabOf(terminals[s][i]) != s) of.push_back({i, slabs[s].points[i].position});
+      exits.add(terminals[s].size(), of);
+    }
+    REQUIRE(exits.criticalPoints() == int64_t(whole.nodes.size()));
+    askAndAnswer(exits, balls, terminals, slabs);
     std::vector<std::vector<uint32_t>> numbers;
     for (size_t s = 0; s < slabs.size(); ++s) {
       numbers.push_back(numbersOf(slabs[s].points, whole));
-      if (graph.isShared(s)) graph.tellShared(s, slabs[s].points, numbers[s]);
+      exits.tellNumbers(s, numbers[s]);
     }
-    std::vector<SlabGraph::Part> parts;
-    std::vector<Edge> below, above;
-    for (size_t s = 0; s < slabs.size(); ++s) {
-      below = std::move(above);
-      above.clear();
-      if (s + 1 < slabs.size())
-        above = SlabTerminals::contacts(slabs[s].highest, slabs[s + 1].lowest);
-      parts.push_back(graph.nextPart(slabs[s], numbers[s], below, above));
-    }
+    const std::vector<SlabPart> parts = partsOf(exits, slabs, numbers);
     const ManifoldGraph added = sum(parts);
     REQUIRE(added.nodes == whole.nodes);
     REQUIRE(added.edges == whole.edges);
@@ -290,10 +326,8 @@ TEST_CASE("slab_graph: parts are those of the whole, and so are the grains", "[s
                                Adjacency(rng.below(2)), rng.chance(0.5) ? 0 : rng.below(9)};
     if (rng.chance(0.3)) whole.weights = {rng.between(1, 9), rng.between(1, 9), 1};
     const Merging expected = merge(whole, options);
-    MergeParts merging(MergeRule(options, whole.weights));
-    std::vector<std::vector<uint32_t>> classes;
-    for (const SlabGraph::Part& part : parts) classes.push_back(merging.add(part));
-    const detail::PartGrains found = merging.finish();
+    const MergeRule rule(options, whole.weights);
+    const TreeGrains found = RandomMergeTree(parts, rule, rng).run();
     REQUIRE(found.representative.size() == expected.representative.size());
     for (size_t g = 0; g < expected.representative.size(); ++g)
       REQUIRE(found.representative[g] == whole.nodes[expected.representative[g]].position);
@@ -303,7 +337,7 @@ TEST_CASE("slab_graph: parts are those of the whole, and so are the grains", "[s
     for (size_t s = 0; s < parts.size(); ++s)
       for (size_t i = 0; i < terminals[s].size(); ++i) {
         const Coord root = balls.position[balls.root(terminals[s][i])];
-        REQUIRE(int32_t(found.grainOfClass[classes[s][parts[s].nodeOf[i]]]) == grainAt.at(root));
+        REQUIRE(int32_t(found.ofNode[s][parts[s].nodeOf[i]]) == grainAt.at(root));
       }
     grains += expected.representative.size();
     nodes += whole.nodes.size();

@@ -12,6 +12,8 @@
 #include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/slabs/detail/slab_flow.h"
+#include "vdb_madf/slabs/detail/slab_grains.h"
+#include "vdb_madf/slabs/detail/slab_graph.h"
 #include "vdb_madf/slabs/detail/slab_labels.h"
 #include "vdb_madf/slabs/detail/slab_options.h"
 
@@ -22,11 +24,11 @@ namespace {
 /// The manifolds of a slab, with its part of the graph.
 Int32Grid::Ptr manifoldGrid(const detail::SlabWork& work, size_t slab,
                             const detail::SlabBody& body) {
-  detail::SlabGraph::Part part;
+  detail::SlabPart part;
   VoxelArray<uint32_t> manifold;
   if (body.index.voxelCount() > 0) manifold = work.read("flow", slab).voxelArray<uint32_t>();
-  if (work.hasMessage(detail::kGraphPart, detail::SlabWork::kRoot, slab))
-    part = detail::readPart(work.receive(detail::kGraphPart, detail::SlabWork::kRoot, slab));
+  if (work.has(detail::kGraphPart, slab))
+    part = detail::SlabPart::readFrom(work.read(detail::kGraphPart, slab));
   for (size_t i = 0; i < manifold.size(); ++i)
     manifold[i] = part.number[part.nodeOf[(manifold[i] & ~Flow::kOwnCell) - 1]];
   const Int32Grid::Ptr grid = detail::slabGrid(work, body, std::move(manifold), "manifold");
@@ -59,16 +61,15 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
   result.domain = options.domain ? options.domain : storedDomain(*object.about);
   detail::SlabWork work(object, options, scratch, ranks, interrupter);
   work.domain = result.domain;
-  detail::SlabGraph graph = detail::flowInSlabs(work, result);
+  detail::flowInSlabs(work, result);
   work.beginStage("merge");
   std::vector<Coord> representatives;
-  if (work.isRoot()) {
-    result.counts.criticalPoints = graph.criticalPoints();
-    representatives = detail::mergeSlabs(work, std::move(graph));
-    result.counts.grains = int64_t(representatives.size());
-    result.grainVoxels.assign(size_t(result.counts.grains), 0);
-  }
-  work.exchange();
+  if (result.counts.objectVoxels > 0)
+    representatives = detail::mergeParts(work, [&](size_t s) {
+      return detail::SlabPart::readFrom(work.read(detail::kGraphPart, s));
+    });
+  result.counts.grains = int64_t(representatives.size());
+  if (work.isRoot()) result.grainVoxels.assign(representatives.size(), 0);
   detail::ByteWriter counts;
   counts.add(result.counts);
   result.counts = detail::ByteReader(work.broadcast(counts)).value<SegmentCounts>();

@@ -9,7 +9,7 @@
 
 namespace vdb_madf::detail {
 
-void MergeParts::About::add(const About& other) {
+void OpenGraph::About::add(const About& other) {
   if (other.top > top || (other.top == top && other.representative < representative)) {
     top = other.top;
     representative = other.representative;
@@ -17,30 +17,102 @@ void MergeParts::About::add(const About& other) {
   hasVoxels = hasVoxels || other.hasVoxels;
 }
 
-std::vector<uint32_t> MergeParts::add(const GraphPart& part) {
-  std::vector<uint32_t> place = placesOf(part);
-  addEdges(part.graph, place);
-  for (size_t i = 0; i < place.size(); ++i)
-    if (part.goesOn[i])
-      open_[part.graph.nodes[i].position] = place[i];
-    else
-      open_.erase(part.graph.nodes[i].position);
-  for (auto& c : group_.classes) c.isOpen = false;
-  for (const auto& [position, c] : open_) group_.classes[c].isOpen = true;
+void OpenGraph::writeTo(ByteWriter& bytes) const {
+  bytes.add(group.classes);
+  bytes.add(group.edges);
+  bytes.add(about);
+  bytes.add(nodes);
+}
 
-  const std::vector<uint32_t> after = contract(group_, rule_);
+OpenGraph OpenGraph::readFrom(ByteReader bytes) {
+  OpenGraph graph;
+  graph.group.classes = bytes.vector<MergeGroup::Class>();
+  graph.group.edges = bytes.vector<MergeGroup::Edge>();
+  graph.about = bytes.vector<About>();
+  graph.nodes = bytes.vector<Node>();
+  return graph;
+}
+
+std::vector<uint32_t> MergeParts::add(const SlabPart& part) {
+  return add(openGraph(part));
+}
+
+std::vector<uint32_t> MergeParts::add(OpenGraph above) {
+  const auto shift = uint32_t(open_.group.classes.size());
+  const auto append = [](auto& all, const auto& some) {
+    all.insert(all.end(), some.begin(), some.end());
+  };
+  for (MergeGroup::Edge& edge : above.group.edges) {
+    edge.first += shift;
+    edge.second += shift;
+  }
+  for (OpenGraph::Node& node : above.nodes) node.classIndex += shift;
+  append(open_.group.classes, above.group.classes);
+  append(open_.group.edges, above.group.edges);
+  append(open_.about, above.about);
+  number_.resize(open_.about.size(), kNone);
+  joinNodes(above.nodes);
+
+  const std::vector<uint32_t> after = contract(open_.group, rule_);
   follow(after);
-  for (uint32_t& p : place) p = number_[after[p]];
+  std::vector<uint32_t> numbers(after.begin() + shift, after.end());
+  for (uint32_t& n : numbers) n = number_[n];
   dropDecided();
-  return place;
+  return numbers;
+}
+
+/// A part as it is: each node a class, and any of them perhaps known already.
+OpenGraph MergeParts::openGraph(const SlabPart& part) const {
+  OpenGraph open;
+  const std::vector<CriticalPoint>& nodes = part.graph.nodes;
+  for (uint32_t i = 0; i < nodes.size(); ++i) {
+    open.group.classes.push_back({nodes[i].squaredRadius, false});
+    open.about.push_back({nodes[i].position, nodes[i].squaredRadius, nodes[i].voxels > 0});
+    open.nodes.push_back({nodes[i].position, i, part.startsBelow[i] != 0, part.goesOn[i] != 0});
+  }
+  for (const ManifoldGraph::Edge& edge : part.graph.edges) {
+    const CriticalPoint &a = nodes[edge.first], &b = nodes[edge.second];
+    const bool isCertain = rule_.mergesByAngle(a, b, edge.cellsTouch);
+    if (!isCertain && !rule_.seesNeck(edge.saddleHeight)) continue;
+    open.group.edges.push_back({edge.first, edge.second,
+                                isCertain ? MergeGroup::kCertain : edge.saddleHeight, a.position,
+                                b.position});
+  }
+  return open;
+}
+
+/// Those that both ranges know are one: the range below tells whether lower slabs know it, the one above
+/// whether higher ones do. Keeps those that are still known beyond.
+void MergeParts::joinNodes(const std::vector<OpenGraph::Node>& above) {
+  using Node = OpenGraph::Node;
+  std::vector<Node> joined;
+  const auto keep = [&](const Node& node) {
+    if (node.startsBelow || node.goesOn) joined.push_back(node);
+  };
+  auto known = open_.nodes.cbegin();
+  for (const Node& node : above) {
+    while (known != open_.nodes.cend() && known->position < node.position) keep(*known++);
+    if (known == open_.nodes.cend() || known->position != node.position) {
+      keep(node);
+      continue;
+    }
+    open_.group.edges.push_back(
+        {known->classIndex, node.classIndex, MergeGroup::kCertain, node.position, node.position});
+    keep({node.position, known->classIndex, known->startsBelow, node.goesOn});
+    ++known;
+  }
+  while (known != open_.nodes.cend()) keep(*known++);
+  open_.nodes = std::move(joined);
+  for (auto& c : open_.group.classes) c.isOpen = false;
+  for (const Node& node : open_.nodes) open_.group.classes[node.classIndex].isOpen = true;
 }
 
 /// What is known of the classes, after they were contracted; gives numbers to all.
 void MergeParts::follow(const std::vector<uint32_t>& after) {
-  std::vector<About> about(group_.classes.size());
-  std::vector<uint32_t> number(group_.classes.size(), kNone);
+  std::vector<About> about(open_.group.classes.size());
+  std::vector<uint32_t> number(open_.group.classes.size(), kNone);
   for (size_t i = 0; i < after.size(); ++i) {
-    about[after[i]].add(about_[i]);
+    about[after[i]].add(open_.about[i]);
     if (number_[i] == kNone) continue;
     uint32_t& n = number[after[i]];
     if (n != kNone) numbers_.unite(n, number_[i]);
@@ -53,81 +125,60 @@ void MergeParts::follow(const std::vector<uint32_t>& after) {
     }
     aboutNumber_[number[c]] = about[c];
   }
-  about_ = std::move(about);
+  open_.about = std::move(about);
   number_ = std::move(number);
-  for (auto& [position, c] : open_) c = after[c];
-}
-
-/// The classes of nodes, in the group; new ones for those that are new.
-std::vector<uint32_t> MergeParts::placesOf(const GraphPart& part) {
-  std::vector<uint32_t> place;
-  place.reserve(part.graph.nodes.size());
-  for (const CriticalPoint& node : part.graph.nodes) {
-    const auto open = open_.find(node.position);
-    if (open != open_.end()) {
-      place.push_back(open->second);
-    } else {
-      place.push_back(uint32_t(group_.classes.size()));
-      group_.classes.push_back({node.squaredRadius, false});
-      about_.push_back({node.position, node.squaredRadius, false});
-      number_.push_back(kNone);
-    }
-    if (node.voxels > 0) about_[place.back()].hasVoxels = true;
-  }
-  return place;
-}
-
-void MergeParts::addEdges(const ManifoldGraph& graph, const std::vector<uint32_t>& place) {
-  for (const ManifoldGraph::Edge& edge : graph.edges) {
-    const CriticalPoint &a = graph.nodes[edge.first], &b = graph.nodes[edge.second];
-    const bool isCertain = rule_.mergesByAngle(a, b, edge.cellsTouch);
-    if (!isCertain && !rule_.seesNeck(edge.saddleHeight)) continue;
-    group_.edges.push_back({place[edge.first], place[edge.second],
-                            isCertain ? MergeGroup::kCertain : edge.saddleHeight, a.position,
-                            b.position});
-  }
+  for (OpenGraph::Node& node : open_.nodes) node.classIndex = after[node.classIndex];
 }
 
 /// Takes the classes out of the group that are neither open nor have an edge.
 void MergeParts::dropDecided() {
-  std::vector<char> stays(group_.classes.size(), 0);
-  for (size_t c = 0; c < stays.size(); ++c) stays[c] = group_.classes[c].isOpen;
-  for (const MergeGroup::Edge& edge : group_.edges) stays[edge.first] = stays[edge.second] = 1;
+  MergeGroup& group = open_.group;
+  std::vector<char> stays(group.classes.size(), 0);
+  for (size_t c = 0; c < stays.size(); ++c) stays[c] = group.classes[c].isOpen;
+  for (const MergeGroup::Edge& edge : group.edges) stays[edge.first] = stays[edge.second] = 1;
   std::vector<uint32_t> place(stays.size(), kNone);
   uint32_t count = 0;
   for (size_t c = 0; c < stays.size(); ++c) {
     if (!stays[c]) continue;
     place[c] = count;
-    group_.classes[count] = group_.classes[c];
-    about_[count] = about_[c];
+    group.classes[count] = group.classes[c];
+    open_.about[count] = open_.about[c];
     number_[count++] = number_[c];
   }
-  group_.classes.resize(count);
-  about_.resize(count);
+  group.classes.resize(count);
+  open_.about.resize(count);
   number_.resize(count);
-  for (MergeGroup::Edge& edge : group_.edges) {
+  for (MergeGroup::Edge& edge : group.edges) {
     edge.first = place[edge.first];
     edge.second = place[edge.second];
   }
-  for (auto& [position, c] : open_) c = place[c];
+  for (OpenGraph::Node& node : open_.nodes) node.classIndex = place[node.classIndex];
 }
 
-PartGrains MergeParts::finish() {
-  std::vector<uint32_t> grains;
+OpenGraph MergeParts::handOver() {
+  return std::exchange(open_, {});
+}
+
+std::vector<Coord> MergeParts::decided() {
+  std::vector<char> isOpen(aboutNumber_.size(), 0);
+  for (const uint32_t n : number_) isOpen[n] = 1;
   for (uint32_t n = 0; n < aboutNumber_.size(); ++n)
-    if (numbers_.find(n) == n && aboutNumber_[n].hasVoxels) grains.push_back(n);
-  parallelSort(grains.begin(), grains.end(), [&](uint32_t a, uint32_t b) {
+    if (numbers_.find(n) == n && !isOpen[n] && aboutNumber_[n].hasVoxels) decided_.push_back(n);
+  parallelSort(decided_.begin(), decided_.end(), [&](uint32_t a, uint32_t b) {
     return aboutNumber_[a].representative < aboutNumber_[b].representative;
   });
-  PartGrains result;
-  result.grainOfClass.assign(aboutNumber_.size(), 0);
-  for (const uint32_t n : grains) {
-    result.representative.push_back(aboutNumber_[n].representative);
-    result.grainOfClass[n] = uint32_t(result.representative.size());
-  }
-  for (uint32_t n = 0; n < aboutNumber_.size(); ++n)
-    result.grainOfClass[n] = result.grainOfClass[numbers_.find(n)];
-  return result;
+  std::vector<Coord> representatives;
+  for (const uint32_t n : decided_) representatives.push_back(aboutNumber_[n].representative);
+  return representatives;
+}
+
+std::vector<uint32_t> MergeParts::grains(const std::vector<uint32_t>& ofDecided,
+                                         const std::vector<uint32_t>& ofOpen) {
+  std::vector<uint32_t> grain(aboutNumber_.size(), 0);
+  for (size_t i = 0; i < decided_.size(); ++i) grain[decided_[i]] = ofDecided[i];
+  for (size_t c = 0; c < ofOpen.size(); ++c) grain[number_[c]] = ofOpen[c];
+  for (uint32_t n = 0; n < grain.size(); ++n) grain[n] = grain[numbers_.find(n)];
+  return grain;
 }
 
 }  // namespace vdb_madf::detail

@@ -3,114 +3,144 @@
 
 #include "vdb_madf/slabs/detail/slab_grains.h"
 
+#include <map>
+#include <string>
 #include <utility>
 
+#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/slabs/detail/point_numbers.h"
+#include "vdb_madf/slabs/detail/merge_parts.h"
 
 namespace vdb_madf::detail {
 
 namespace {
 
-SlabTerminals terminals(const SlabWork& work, size_t slab) {
-  ByteReader bytes = work.receive("terminals", slab, SlabWork::kRoot);
-  return SlabTerminals::readFrom(bytes);
-}
+/// A binary tree over the ranks: after the join of a distance d, rank r has merged the slabs of ranks r
+/// to r + 2 d - 1, for each r that is a multiple of 2 d. What has left a rank comes back as the grains of
+/// the classes that it handed over.
+class MergeTree {
+ public:
+  explicit MergeTree(SlabWork& work)
+      : work_(work),
+        rank_(work.ranks.rank()),
+        count_(work.ranks.count()),
+        merging_(MergeRule(work.options.merge, work.weights)) {}
 
-/// Of a slab to the one below it; none above the highest.
-std::vector<ManifoldGraph::Edge> contacts(const SlabWork& work, size_t slab) {
-  return work.receiveVector<ManifoldGraph::Edge>("contacts", slab, SlabWork::kRoot);
-}
-
-/// Those of the terminals of a slab that are critical points, which lie in it.
-std::vector<Coord> criticalPoints(const SlabWork& work, size_t slab,
-                                  const std::vector<CriticalPoint>& points) {
-  std::vector<Coord> critical;
-  for (const CriticalPoint& point : points)
-    if (work.slabOf(point.position.z()) == slab) critical.push_back(point.position);
-  return critical;
-}
-
-/// Numbers the critical points of all slabs, if manifolds are kept: the pieces "numbers".
-void numberPoints(SlabWork& work, size_t slabs) {
-  if (!work.options.keepManifold) return;
-  PointNumbers numbers;
-  for (size_t s = 0; s < slabs; ++s)
-    numbers.count(criticalPoints(work, s, terminals(work, s).points));
-  numbers.finish();
-  for (size_t s = 0; s < slabs; ++s) {
-    const std::vector<CriticalPoint> points = terminals(work, s).points;
-    const std::vector<uint32_t> own = numbers.next(criticalPoints(work, s, points));
-    auto next = own.begin();
-    std::vector<uint32_t> of;
-    for (const CriticalPoint& point : points)
-      of.push_back(work.slabOf(point.position.z()) == s ? *next++ : 0);
-    work.writeVector("numbers", s, of);
+  std::vector<Coord> run(const std::function<SlabPart(size_t slab)>& part) {
+    for (size_t s = work_.firstOwn(); s < work_.endOwn(); ++s) mergeSlab(s, part(s));
+    int distance = 1;
+    for (; distance < count_; distance *= 2) {
+      if (isUpper(distance)) handOver(rank_ - distance);
+      work_.exchange();
+      if (isLower(distance)) join(rank_ + distance);
+    }
+    if (work_.isRoot()) numberGrains();
+    while ((distance /= 2) > 0) {
+      if (isLower(distance)) tellGrains(rank_ + distance);
+      work_.exchange();
+      if (isUpper(distance)) takeGrains();
+    }
+    for (size_t s = work_.firstOwn(); s < work_.endOwn(); ++s) {
+      auto grains = work_.readVector<uint32_t>("classes", s);
+      for (uint32_t& grain : grains) grain = grainOfClass_[grain];
+      work_.writeVector(kGrainsOfTerminals, s, grains);
+    }
+    return std::move(representatives_);
   }
-}
 
-/// Of the terminals of a slab; 0: none of its critical points. Empty: manifolds are not kept.
-std::vector<uint32_t> numbersOf(const SlabWork& work, size_t slab) {
-  if (!work.options.keepManifold) return {};
-  return work.readVector<uint32_t>("numbers", slab);
-}
+ private:
+  // A join of a distance is one of a lower and an upper rank.
+  bool isLower(int distance) const {
+    return rank_ % (2 * distance) == 0 && rank_ + distance < count_;
+  }
+  bool isUpper(int distance) const { return rank_ % (2 * distance) == distance; }
+
+  void mergeSlab(size_t s, const SlabPart& part) {
+    if (work_.interrupter && work_.interrupter->wasInterrupted(75)) throw Interrupted();
+    const std::vector<uint32_t> classOfNode = merging_.add(part);
+    std::vector<uint32_t> classes;
+    for (const uint32_t node : part.nodeOf) classes.push_back(classOfNode[node]);
+    work_.writeVector("classes", s, classes);
+  }
+
+  // Messages between ranks are those of a run by so many: a run that goes on may have others.
+  std::string nameOf(const char* what) const {
+    return "merge-" + (what + ("-" + std::to_string(count_)));
+  }
+  void send(int to, const char* what, int about, const ByteWriter& bytes) {
+    work_.sendTo(to, nameOf(what).c_str(), size_t(about), bytes);
+  }
+  ByteReader receive(const char* what, int about) {
+    ByteReader bytes = work_.read(nameOf(what).c_str(), size_t(about));
+    work_.remove(nameOf(what).c_str(), size_t(about));
+    return bytes;
+  }
+
+  void handOver(int lower) {
+    ByteWriter open, decided;
+    decided.add(merging_.decided());
+    merging_.handOver().writeTo(open);
+    send(lower, "open", rank_, open);
+    send(0, "decided", rank_, decided);
+  }
+  void join(int upper) {
+    classesOf_[upper] = merging_.add(OpenGraph::readFrom(receive("open", upper)));
+  }
+
+  /// At the root: by their representatives.
+  void numberGrains() {
+    struct Grain {
+      Coord representative;
+      int rank;
+    };
+    std::vector<Grain> all;
+    const auto add = [&](const std::vector<Coord>& decided, int rank) {
+      for (const Coord& representative : decided) all.push_back({representative, rank});
+    };
+    add(merging_.decided(), rank_);
+    for (int rank = 1; rank < count_; ++rank) add(receive("decided", rank).vector<Coord>(), rank);
+    parallelSort(all.begin(), all.end(), [](const Grain& a, const Grain& b) {
+      return a.representative < b.representative;
+    });
+    std::vector<std::vector<uint32_t>> numbers;
+    numbers.resize(size_t(count_));
+    for (const Grain& grain : all) {
+      representatives_.push_back(grain.representative);
+      numbers[size_t(grain.rank)].push_back(uint32_t(representatives_.size()));
+    }
+    for (int rank = 1; rank < count_; ++rank) {
+      ByteWriter bytes;
+      bytes.add(numbers[size_t(rank)]);
+      send(rank, "numbers", rank, bytes);
+    }
+    // Nothing is open any more.
+    grainOfClass_ = merging_.grains(numbers[0], {});
+  }
+
+  void tellGrains(int upper) {
+    std::vector<uint32_t> grains;
+    for (const uint32_t c : classesOf_.at(upper)) grains.push_back(grainOfClass_[c]);
+    ByteWriter bytes;
+    bytes.add(grains);
+    send(upper, "grains", upper, bytes);
+  }
+  void takeGrains() {
+    const auto ofDecided = receive("numbers", rank_).vector<uint32_t>();
+    grainOfClass_ = merging_.grains(ofDecided, receive("grains", rank_).vector<uint32_t>());
+  }
+
+  SlabWork& work_;
+  const int rank_, count_;
+  MergeParts merging_;
+  std::map<int, std::vector<uint32_t>> classesOf_;  // by upper rank: of the classes it handed over
+  std::vector<uint32_t> grainOfClass_;
+  std::vector<Coord> representatives_;
+};
 
 }  // namespace
 
-std::vector<Coord> mergeParts(SlabWork& work, size_t slabs,
-                              const std::function<SlabGraph::Part(size_t slab)>& nextPart) {
-  MergeParts merging(MergeRule(work.options.merge, work.weights));
-  for (size_t s = 0; s < slabs; ++s) {
-    if (work.interrupter && work.interrupter->wasInterrupted(75)) throw Interrupted();
-    const SlabGraph::Part part = nextPart(s);
-    const std::vector<uint32_t> classOfNode = merging.add(part);
-    if (work.has("classes", s)) continue;
-    std::vector<uint32_t> classes;
-    for (const uint32_t node : part.nodeOf) classes.push_back(classOfNode[node]);
-    work.writeVector("classes", s, classes);
-  }
-  PartGrains grains = merging.finish();
-  for (size_t s = 0; s < slabs; ++s) {
-    auto grainOf = work.readVector<uint32_t>("classes", s);
-    for (uint32_t& grain : grainOf) grain = grains.grainOfClass[grain];
-    work.sendVector(kGrainsOfTerminals, SlabWork::kRoot, s, grainOf);
-  }
-  return std::move(grains.representative);
-}
-
-std::vector<Coord> mergeSlabs(SlabWork& work, SlabGraph graph) {
-  graph.finish();
-  numberPoints(work, graph.slabCount());
-  for (size_t s = 0; s < graph.slabCount(); ++s)
-    if (graph.isShared(s)) graph.tellShared(s, terminals(work, s).points, numbersOf(work, s));
-  return mergeParts(work, graph.slabCount(), [&](size_t s) {
-    SlabGraph::Part part = graph.nextPart(terminals(work, s), numbersOf(work, s), contacts(work, s),
-                                          contacts(work, s + 1));
-    if (work.options.keepManifold) {
-      ByteWriter bytes;
-      addPart(part, bytes);
-      work.send(kGraphPart, SlabWork::kRoot, s, bytes);
-    }
-    return part;
-  });
-}
-
-void addPart(const SlabGraph::Part& part, ByteWriter& bytes) {
-  bytes.add(part.graph.nodes);
-  bytes.add(part.graph.edges);
-  bytes.add(part.number);
-  bytes.add(part.goesOn);
-  bytes.add(part.nodeOf);
-}
-
-SlabGraph::Part readPart(ByteReader bytes) {
-  SlabGraph::Part part;
-  part.graph.nodes = bytes.vector<CriticalPoint>();
-  part.graph.edges = bytes.vector<ManifoldGraph::Edge>();
-  part.number = bytes.vector<uint32_t>();
-  part.goesOn = bytes.vector<char>();
-  part.nodeOf = bytes.vector<uint32_t>();
-  return part;
+std::vector<Coord> mergeParts(SlabWork& work, const std::function<SlabPart(size_t slab)>& part) {
+  return MergeTree(work).run(part);
 }
 
 }  // namespace vdb_madf::detail

@@ -5,191 +5,222 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
-#include "vdb_madf/base/errors.h"
-#include "vdb_madf/method/detail/reduce_edges.h"
+#include "vdb_madf/slabs/detail/point_numbers.h"
+#include "vdb_madf/slabs/detail/slab_exits.h"
+#include "vdb_madf/slabs/detail/slab_part.h"
 
 namespace vdb_madf::detail {
 
 namespace {
 
 using Edge = ManifoldGraph::Edge;
+using FaceVoxel = SlabTerminals::FaceVoxel;
 
-uint32_t withoutFlag(uint32_t terminal) {
-  return (terminal & ~Flow::kOwnCell) - 1;
-}
+/// To the root: what it has to know of the terminals of a slab.
+struct Summary {
+  uint64_t terminals;
+  int64_t balls;
+};
 
-/// The node at a position, which there is.
-uint32_t nodeAt(const ManifoldGraph& graph, const Coord& position) {
-  const auto found =
-      std::lower_bound(graph.nodes.begin(), graph.nodes.end(), position,
-                       [](const CriticalPoint& a, const Coord& p) { return a.position < p; });
-  return uint32_t(found - graph.nodes.begin());
-}
+/// Where a ball flows to that another slab asks for.
+struct Answer {
+  uint32_t terminal;
+  uint32_t isOwnBall;  ///< does the slab itself count the ball?
+  CriticalPoint point;
+};
 
-/// Ascending, each once, without voxels.
-std::vector<CriticalPoint> sortedNodes(std::vector<CriticalPoint> nodes) {
-  std::sort(nodes.begin(), nodes.end(),
-            [](const CriticalPoint& a, const CriticalPoint& b) { return a.position < b.position; });
-  const auto end = std::unique(
-      nodes.begin(), nodes.end(),
-      [](const CriticalPoint& a, const CriticalPoint& b) { return a.position == b.position; });
-  nodes.erase(end, nodes.end());
-  for (CriticalPoint& node : nodes) node.voxels = 0;
-  return nodes;
-}
+class PartSteps {
+ public:
+  PartSteps(SlabWork& work, SegmentCounts& counts)
+      : work_(work), counts_(counts), exits_(work.object.cuts) {}
+
+  void run() {
+    work_.forEachSlab([&](size_t s) { findContacts(s); }, [&](size_t s) { forgetFaces(s); });
+    work_.beginStage("graph");
+    if (work_.isRoot()) ask();
+    work_.exchange();
+    work_.forEachSlab([&](size_t s) { answer(s); }, [&](size_t s) { work_.remove("balls", s); });
+    if (work_.isRoot()) takeAnswers();
+    work_.exchange();
+    work_.forEachSlab([&](size_t s) { sendRoots(s); });
+    work_.forEachSlab([&](size_t s) { makePart(s); }, [&](size_t s) { forgetTerminals(s); });
+  }
+
+ private:
+  bool isFiltered() const { return work_.options.gamma > 1; }
+
+  /// The contacts to the slab below, between the terminals there that have any and those of the slab.
+  void findContacts(size_t s) {
+    std::vector<Edge> contacts;
+    std::vector<uint32_t> touched;
+    if (s > 0) {
+      contacts = SlabTerminals::contacts(work_.receiveVector<FaceVoxel>("highest", s - 1, s),
+                                         work_.readVector<FaceVoxel>("lowest", s));
+      for (const Edge& edge : contacts) touched.push_back(edge.first);
+      std::sort(touched.begin(), touched.end());
+      touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+      for (Edge& edge : contacts)
+        edge.first = uint32_t(std::lower_bound(touched.begin(), touched.end(), edge.first) -
+                              touched.begin());
+      work_.sendVector("touched", s, s - 1, touched);
+    }
+    work_.writeVector("contacts", s, contacts);
+  }
+  void forgetFaces(size_t s) {
+    work_.removeMessage("highest", s - 1, s);
+    work_.remove("lowest", s);
+  }
+
+  /// At the root: where do the balls flow to at which paths leave a slab?
+  void ask() {
+    for (size_t s = 0; s < work_.slabCount(); ++s) {
+      ByteReader bytes = work_.receive("exits", s, SlabWork::kRoot);
+      const auto summary = bytes.value<Summary>();
+      exits_.add(summary.terminals, bytes.vector<SlabExits::Exit>());
+      if (!isFiltered()) counts_.medialBalls += summary.balls;
+    }
+    counts_.criticalPoints = exits_.criticalPoints();
+    for (size_t s = 0; s < work_.slabCount(); ++s) {
+      std::vector<Coord> places;
+      for (const SlabExits::Question& question : exits_.questions(s))
+        places.push_back(question.position);
+      work_.sendVector("questions", SlabWork::kRoot, s, places);
+    }
+  }
+
+  void answer(size_t s) {
+    const auto places = work_.receiveVector<Coord>("questions", SlabWork::kRoot, s);
+    std::vector<Answer> answers;
+    if (!places.empty()) {
+      const SlabBody slab = work_.body(s);
+      const auto flowMap = work_.read("flow", s).voxelArray<uint32_t>();
+      const auto ballWords = work_.readVector<uint64_t>("balls", s);
+      const std::vector<CriticalPoint> points = terminals(s).points;
+      for (const Coord& place : places) {
+        const VoxelId id = *slab.index.findVoxel(place);
+        const uint32_t terminal = flowMap[slab.index.rank(id)];
+        answers.push_back({terminal, uint32_t(ballWords[id >> 6] >> bitOf(id) & 1),
+                           points[(terminal & ~Flow::kOwnCell) - 1]});
+      }
+    }
+    work_.sendVector("answers", s, SlabWork::kRoot, answers);
+  }
+
+  /// At the root: tells the slabs where these balls lead to.
+  void takeAnswers() {
+    for (size_t s = 0; s < work_.slabCount(); ++s) {
+      const auto& questions = exits_.questions(s);
+      const auto answers = work_.receiveVector<Answer>("answers", s, SlabWork::kRoot);
+      for (size_t i = 0; i < questions.size(); ++i) {
+        exits_.answer(s, questions[i], answers[i].terminal, answers[i].point);
+        const bool isRepeated = i > 0 && questions[i - 1].position == questions[i].position;
+        if (!isFiltered() && !answers[i].isOwnBall && !isRepeated) ++counts_.medialBalls;
+      }
+    }
+    if (!isFiltered()) counts_.keptBalls = counts_.medialBalls;
+    exits_.finish();
+    if (work_.options.keepManifold) numberPoints();
+    for (size_t s = 0; s < work_.slabCount(); ++s)
+      work_.sendVector("leads", SlabWork::kRoot, s, exits_.leads(s));
+  }
+
+  /// At the root: the numbers of the critical points of all slabs, by terminal; 0: lies in another slab.
+  void numberPoints() {
+    PointNumbers numbers;
+    const auto points = [&](size_t s) {
+      return work_.receiveVector<Coord>("points", s, SlabWork::kRoot);
+    };
+    const auto criticalPoints = [&](size_t s) {
+      std::vector<Coord> critical = points(s);
+      critical.erase(std::remove_if(critical.begin(), critical.end(),
+                                    [&](const Coord& p) { return work_.slabOf(p.z()) != s; }),
+                     critical.end());
+      return critical;
+    };
+    for (size_t s = 0; s < work_.slabCount(); ++s) numbers.count(criticalPoints(s));
+    numbers.finish();
+    for (size_t s = 0; s < work_.slabCount(); ++s) {
+      const std::vector<uint32_t> own = numbers.next(criticalPoints(s));
+      auto next = own.begin();
+      std::vector<uint32_t> ofTerminal;
+      for (const Coord& p : points(s)) ofTerminal.push_back(work_.slabOf(p.z()) == s ? *next++ : 0);
+      exits_.tellNumbers(s, ofTerminal);
+      work_.sendVector("numbers", SlabWork::kRoot, s, ofTerminal);
+    }
+  }
+
+  std::vector<SlabRoot> roots(size_t s, const SlabTerminals& terminals) const {
+    return slabRoots(s, terminals.points,
+                     work_.receiveVector<uint32_t>("numbers", SlabWork::kRoot, s),
+                     work_.receiveVector<SlabLead>("leads", SlabWork::kRoot, s));
+  }
+
+  /// To the slab above: where the terminals lead to that it has contacts to.
+  void sendRoots(size_t s) {
+    if (s + 1 == work_.slabCount()) return;
+    const std::vector<SlabRoot> all = roots(s, terminals(s));
+    std::vector<SlabRoot> touched;
+    for (const uint32_t terminal : work_.receiveVector<uint32_t>("touched", s + 1, s))
+      touched.push_back(all[terminal]);
+    work_.sendVector("roots", s, s + 1, touched);
+  }
+
+  void makePart(size_t s) {
+    const SlabTerminals own = terminals(s);
+    ByteWriter bytes;
+    slabPart(s, own, roots(s, own), work_.readVector<Edge>("contacts", s),
+             work_.receiveVector<SlabRoot>("roots", s - 1, s),
+             work_.receiveVector<uint32_t>("touched", s + 1, s))
+        .writeTo(bytes);
+    work_.write(kGraphPart, s, bytes);
+  }
+  void forgetTerminals(size_t s) {
+    work_.remove("terminals", s);
+    work_.remove("contacts", s);
+    work_.removeMessage("roots", s - 1, s);
+    work_.removeMessage("touched", s + 1, s);
+  }
+
+  SlabTerminals terminals(size_t s) const {
+    ByteReader bytes = work_.read("terminals", s);
+    return SlabTerminals::readFrom(bytes);
+  }
+
+  SlabWork& work_;
+  SegmentCounts& counts_;
+  SlabExits exits_;
+};
 
 }  // namespace
 
-size_t SlabGraph::slabOf(int z) const {
-  return size_t(std::upper_bound(cuts_.begin(), cuts_.end(), z) - cuts_.begin()) - 1;
-}
+void giveTerminals(SlabWork& work, size_t slab, const SlabTerminals& terminals,
+                   const LeafIndex& index, const VoxelSet& balls) {
+  ByteWriter all, summary;
+  terminals.writeTo(all);
+  work.write("terminals", slab, all);
+  work.writeVector("lowest", slab, terminals.lowest);
+  if (slab + 1 < work.slabCount()) work.sendVector("highest", slab, slab + 1, terminals.highest);
 
-size_t SlabGraph::slabOfTerminal(uint32_t terminal) const {
-  return size_t(std::upper_bound(first_.begin(), first_.end(), terminal) - first_.begin()) - 1;
-}
+  std::vector<uint64_t> ballWords;
+  for (size_t i = 0; i < index.leafCount() * 8; ++i) ballWords.push_back(balls.word(i));
+  work.writeVector("balls", slab, ballWords);
 
-void SlabGraph::add(const SlabTerminals& terminals) {
-  const size_t slab = slabCount();
-  const uint32_t first = first_.back();
-  if (first + terminals.points.size() >= Flow::kOwnCell)
-    throw InvalidInput("there are more than 2^31 critical points: coarsen the volume");
-  questions_.resize(cuts_.size() - 1);
+  std::vector<Coord> points;
+  std::vector<SlabExits::Exit> exits;
   for (uint32_t i = 0; i < terminals.points.size(); ++i) {
-    const Coord& position = terminals.points[i].position;
-    const size_t owner = slabOf(position.z());
-    if (owner == slab) {
-      ++criticalPoints_;
-      continue;
-    }
-    questions_[owner].push_back({position, uint32_t(foreign_.size())});
-    foreign_.push_back({first + i, first + i});
+    points.push_back(terminals.points[i].position);
+    if (work.slabOf(points.back().z()) != slab) exits.push_back({i, points.back()});
   }
-  first_.push_back(first + uint32_t(terminals.points.size()));
+  summary.add(Summary{terminals.points.size(), terminals.balls});
+  summary.add(exits);
+  work.send("exits", slab, SlabWork::kRoot, summary);
+  if (work.options.keepManifold) work.sendVector("points", slab, SlabWork::kRoot, points);
 }
 
-const std::vector<SlabGraph::Question>& SlabGraph::questions(size_t slab) {
-  std::sort(questions_[slab].begin(), questions_[slab].end(),
-            [](const Question& a, const Question& b) { return a.position < b.position; });
-  return questions_[slab];
-}
-
-void SlabGraph::answer(size_t slab, const Question& question, uint32_t terminal) {
-  foreign_[question.terminal].next = first_[slab] + withoutFlag(terminal);
-}
-
-const SlabGraph::Foreign* SlabGraph::findForeign(uint32_t terminal) const {
-  const auto found =
-      std::lower_bound(foreign_.begin(), foreign_.end(), terminal,
-                       [](const Foreign& a, uint32_t number) { return a.terminal < number; });
-  return found != foreign_.end() && found->terminal == terminal ? &*found : nullptr;
-}
-
-std::vector<SlabGraph::Shared>::const_iterator SlabGraph::sharedFrom(uint32_t terminal) const {
-  return std::lower_bound(shared_.begin(), shared_.end(), terminal,
-                          [](const Shared& a, uint32_t number) { return a.terminal < number; });
-}
-
-void SlabGraph::finish() {
-  questions_ = {};
-  for (Foreign& foreign : foreign_) {
-    // D rises on the way: there is an end.
-    while (const Foreign* next = findForeign(foreign.next)) foreign.next = next->next;
-    const auto last = std::max(slabOfTerminal(foreign.terminal), slabOfTerminal(foreign.next));
-    shared_.push_back({foreign.next, uint32_t(last)});
-  }
-  std::sort(shared_.begin(), shared_.end(), [](const Shared& a, const Shared& b) {
-    return a.terminal != b.terminal ? a.terminal < b.terminal : a.last > b.last;
-  });
-  const auto end =
-      std::unique(shared_.begin(), shared_.end(),
-                  [](const Shared& a, const Shared& b) { return a.terminal == b.terminal; });
-  shared_.erase(end, shared_.end());
-  shared_.shrink_to_fit();
-}
-
-bool SlabGraph::isShared(size_t slab) const {
-  return sharedFrom(first_[slab]) != sharedFrom(first_[slab + 1]);
-}
-
-void SlabGraph::tellShared(size_t slab, const std::vector<CriticalPoint>& points,
-                           const std::vector<uint32_t>& numbers) {
-  const auto begin = size_t(sharedFrom(first_[slab]) - shared_.cbegin());
-  const auto end = size_t(sharedFrom(first_[slab + 1]) - shared_.cbegin());
-  for (size_t i = begin; i < end; ++i) {
-    const uint32_t terminal = shared_[i].terminal - first_[slab];
-    shared_[i].point = points[terminal];
-    if (!numbers.empty()) shared_[i].number = numbers[terminal];
-  }
-}
-
-std::vector<SlabGraph::Root> SlabGraph::rootsOf(size_t slab,
-                                                const std::vector<CriticalPoint>& points,
-                                                const std::vector<uint32_t>& numbers) const {
-  std::vector<Root> roots;
-  roots.reserve(points.size());
-  for (size_t i = 0; i < points.size(); ++i)
-    roots.push_back({points[i], numbers.empty() ? 0 : numbers[i], uint32_t(slab), true});
-  const auto set = [&](uint32_t terminal, const Shared& shared) {
-    Root& root = roots[terminal - first_[slab]];
-    // A ball that is critical is the terminal of its own voxel: it is one, whoever asks.
-    root = {shared.point, shared.number, shared.last, root.point.position == shared.point.position};
-  };
-  for (auto shared = sharedFrom(first_[slab]); shared != sharedFrom(first_[slab + 1]); ++shared)
-    set(shared->terminal, *shared);
-  const auto from =
-      std::lower_bound(foreign_.begin(), foreign_.end(), first_[slab],
-                       [](const Foreign& a, uint32_t number) { return a.terminal < number; });
-  for (auto foreign = from; foreign != foreign_.end() && foreign->terminal < first_[slab + 1];
-       ++foreign)
-    set(foreign->terminal, *sharedFrom(foreign->next));
-  return roots;
-}
-
-SlabGraph::Part SlabGraph::nextPart(const SlabTerminals& terminals,
-                                    const std::vector<uint32_t>& numbers,
-                                    const std::vector<Edge>& below,
-                                    const std::vector<Edge>& above) {
-  const size_t slab = parts_++;
-  std::vector<Root> roots = rootsOf(slab, terminals.points, numbers);
-
-  Part part;
-  ManifoldGraph& graph = part.graph;
-  std::vector<CriticalPoint> nodes;
-  for (const Root& root : roots) nodes.push_back(root.point);
-  for (const Edge& edge : below) nodes.push_back(rootsBelow_[edge.first].point);
-  graph.nodes = sortedNodes(std::move(nodes));
-
-  part.number.assign(graph.nodes.size(), 0);
-  part.goesOn.assign(graph.nodes.size(), 0);
-  const auto nodeOf = [&](const Root& root) {
-    const uint32_t node = nodeAt(graph, root.point.position);
-    part.number[node] = root.number;
-    if (root.last > slab) part.goesOn[node] = 1;
-    return node;
-  };
-  for (size_t i = 0; i < roots.size(); ++i) {
-    part.nodeOf.push_back(nodeOf(roots[i]));
-    graph.nodes[part.nodeOf[i]].voxels += terminals.points[i].voxels;
-  }
-  const auto addEdge = [&](Edge edge, uint32_t a, uint32_t b, bool areTerminals) {
-    if (a == b) return;
-    edge.first = std::min(a, b);
-    edge.second = std::max(a, b);
-    edge.cellsTouch = edge.cellsTouch && areTerminals;
-    graph.edges.push_back(edge);
-  };
-  for (const Edge& edge : terminals.edges)
-    addEdge(edge, part.nodeOf[edge.first], part.nodeOf[edge.second],
-            roots[edge.first].isTerminal && roots[edge.second].isTerminal);
-  for (const Edge& edge : below)
-    addEdge(edge, nodeOf(rootsBelow_[edge.first]), part.nodeOf[edge.second],
-            rootsBelow_[edge.first].isTerminal && roots[edge.second].isTerminal);
-  reduceEdges(graph.edges);
-  // The next part has these contacts.
-  for (const Edge& edge : above) part.goesOn[part.nodeOf[edge.first]] = 1;
-  rootsBelow_ = std::move(roots);
-  return part;
+void makeParts(SlabWork& work, SegmentCounts& counts) {
+  PartSteps(work, counts).run();
 }
 
 }  // namespace vdb_madf::detail

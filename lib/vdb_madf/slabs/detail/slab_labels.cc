@@ -9,6 +9,7 @@
 
 #include "vdb_madf/leaves/leaf_grid.h"
 #include "vdb_madf/method/detail/tidy_steps.h"
+#include "vdb_madf/slabs/detail/slab_grains.h"
 #include "vdb_madf/slabs/detail/slab_pieces.h"
 #include "vdb_madf/slabs/detail/slab_smoothing.h"
 
@@ -47,7 +48,6 @@ class SlabLabels {
                       [&](size_t s) {
                         work_.remove("labels", s);
                         work_.remove("flow", s);
-                        work_.removeMessage(kGraphPart, SlabWork::kRoot, s);
                       });
     if (!work_.isRoot()) return;
     for (size_t s = 0; s < work_.slabCount(); ++s)
@@ -60,7 +60,7 @@ class SlabLabels {
   /// Labels as merged.
   VoxelArray<uint32_t> mergedLabels(size_t s, const SlabBody& slab) const {
     auto labels = work_.read("flow", s).voxelArray<uint32_t>();
-    const auto grains = work_.receiveVector<uint32_t>(kGrainsOfTerminals, SlabWork::kRoot, s);
+    const auto grains = work_.readVector<uint32_t>(kGrainsOfTerminals, s);
     for (size_t i = 0; i < labels.size(); ++i)
       labels[i] = grains[(labels[i] & ~Flow::kOwnCell) - 1];
     for (const VoxelId id : slab.cavities) labels[slab.index.rank(id)] = 0;
@@ -172,7 +172,7 @@ class SlabLabels {
 
   /// Labels as merged, as far from the cuts as the slabs beyond them have to see.
   void sendRims(size_t s) {
-    const auto grains = work_.receiveVector<uint32_t>(kGrainsOfTerminals, SlabWork::kRoot, s);
+    const auto grains = work_.readVector<uint32_t>(kGrainsOfTerminals, s);
     const auto send = [&](const char* side, size_t to) {
       LeafLabels rim = toRim(work_.read(side, s));
       for (uint32_t& label : rim.labels)

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "vdb_madf/slabs/detail/slab_grains.h"
+#include "vdb_madf/slabs/detail/slab_work.h"
 
 namespace vdb_madf::detail {
 
@@ -17,7 +17,7 @@ using PutLabels =
     std::function<void(size_t slab, const SlabBody& body, VoxelArray<uint32_t> labels)>;
 
 /// The labels of all slabs, from where their voxels flow to and the grains of those terminals: tidied,
-/// counted in result.grainVoxels (at the root), and put. The messages kGrainsOfTerminals are there, and
+/// counted in result.grainVoxels (at the root), and put. The pieces kGrainsOfTerminals are there, and
 /// in result the voxels of the object and the number of grains. \p representatives: at the root.
 void labelSlabs(SlabWork& work, std::vector<Coord> representatives, SlabSegmentation& result,
                 const PutLabels& put);

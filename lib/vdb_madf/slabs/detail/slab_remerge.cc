@@ -12,6 +12,8 @@
 #include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/slabs/detail/object_pieces.h"
 #include "vdb_madf/slabs/detail/part_check.h"
+#include "vdb_madf/slabs/detail/slab_grains.h"
+#include "vdb_madf/slabs/detail/slab_graph.h"
 
 namespace vdb_madf::detail {
 
@@ -20,16 +22,17 @@ namespace {
 using Leaves = std::vector<LeafIndex::LeafVoxels>;
 
 /// The part of a slab as it was stored, with each node its own terminal.
-SlabGraph::Part requiredPart(const Int32Grid& manifold) {
+SlabPart requiredPart(const Int32Grid& manifold) {
   auto stored = storedGraphPart(manifold);
   if (!stored)
     throw InvalidInput(
         "grid '" + manifold.getName() + "' carries no part of a graph of manifolds: segment again",
         Hint::manifolds);
-  SlabGraph::Part part;
+  SlabPart part;
   static_cast<GraphPart&>(part) = std::move(*stored);
   part.nodeOf.resize(part.number.size());
   std::iota(part.nodeOf.begin(), part.nodeOf.end(), 0);
+  part.startsBelow.assign(part.number.size(), 0);  // slabs are merged from the lowest on
   return part;
 }
 
@@ -67,8 +70,8 @@ void SlabRemerge::merge(SlabSegmentation& result, const PutLabels& put) {
     criticalPoints += known.criticalPoints;
   }
   PartCheck check(criticalPoints);
-  std::vector<Coord> representatives = mergeParts(work_, work_.slabCount(), [&](size_t s) {
-    SlabGraph::Part part = readPart(work_.read("part", s));
+  std::vector<Coord> representatives = mergeParts(work_, [&](size_t s) {
+    SlabPart part = SlabPart::readFrom(work_.read(kGraphPart, s));
     check.add(part);
     return part;
   });
@@ -82,7 +85,7 @@ void SlabRemerge::merge(SlabSegmentation& result, const PutLabels& put) {
 /// of its part as terminals.
 void SlabRemerge::take(size_t s) {
   const Int32Grid::Ptr manifold = manifolds_.read(s, work_.interrupter);
-  const SlabGraph::Part part = requiredPart(*manifold);
+  const SlabPart part = requiredPart(*manifold);
   SlabBody body;
   body.index = topologyOf(*manifold);
   const LeafIndex& index = body.index;
@@ -100,8 +103,8 @@ void SlabRemerge::take(size_t s) {
   flow.add(terminal);
   work_.write("flow", s, flow);
   writeRims(work_, s, body, std::move(terminal));
-  addPart(part, graph);
-  work_.write("part", s, graph);
+  part.writeTo(graph);
+  work_.write(kGraphPart, s, graph);
 }
 
 /// The critical points in a slab that are no voxels of the object: they lie in cavities.
