@@ -165,6 +165,19 @@ TEST_CASE("slabs: sweep merges their manifolds, as of one file", "[slabs]") {
   const Outcome piped = bench.run("sweep in.slabs -");
   CHECK(piped.exitCode == 2);
   CHECK_THAT(piped.err, Contains("--scratch DIR"));
+
+  // What a killed one left is no use to the next, and in nobody's way.
+  const std::string sweep = "sweep in.slabs again.csv --theta -1:-0.4:0.02 -q";
+  const std::string rows = bench.mustRun("sweep in.slabs - --scratch data --theta -1:-0.4:0.02");
+  RunOptions killing;
+  killing.interruptOn = "again.csv.scratch";
+  killing.signal = SIGKILL;
+  killing.delay = 0.02;
+  bench.run(sweep, killing);
+  REQUIRE(bench.names().count("again.csv.scratch"));
+  bench.mustRun(sweep);
+  CHECK(bench.bytes("again.csv") == rows);
+  CHECK_FALSE(bench.names().count("again.csv.scratch"));
 }
 
 TEST_CASE("slabs: pictures are those of one file", "[slabs]") {
