@@ -5,6 +5,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -14,6 +15,8 @@
 
 #include "support/files.h"
 #include "support/label_shapes.h"
+#include "support/label_slabs.h"
+#include "support/slab_objects.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/grain_colors.h"
@@ -153,6 +156,15 @@ Wanted reduced(const LabelMap& voxels, const Coord& first, int factor) {
     if (gray) wanted.gray[p] = gray;
   }
   return wanted;
+}
+
+/// The paths of all files in a folder, ascending.
+std::vector<std::string> filesBelow(const std::string& folder) {
+  std::vector<std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) files.push_back(fs::relative(entry.path(), folder).string());
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 const CoordBBox kBox(Coord(-9, -40, 3), Coord(190, 30, 24));
@@ -328,6 +340,82 @@ TEST_CASE("ome_zarr: labels without a voxel have one chunk, so that none seems l
       CHECK(array.values.empty());
     }
   }
+}
+
+TEST_CASE("ome_zarr: labels in slabs give the files of the whole", "[ome_zarr]") {
+  const auto requireSame = [](const Int32Grid::Ptr& labels, const CoordBBox& box,
+                              const std::vector<int>& cuts, OmeVersion version) {
+    const ScratchFolder folder;
+    OmeZarrOptions options;
+    options.version = version;
+    writeOmeZarr(folder / "whole.zarr", *labels, box, options);
+    writeOmeZarr(folder / "slabs.zarr", inSlabs(labels, cuts), box, options);
+    CHECK(folder.fileCount() == 2);
+    const auto files = filesBelow(folder / "whole.zarr");
+    REQUIRE(filesBelow(folder / "slabs.zarr") == files);
+    for (const std::string& file : files) {
+      INFO(file);
+      REQUIRE(readFile(folder / ("slabs.zarr/" + file)) ==
+              readFile(folder / ("whole.zarr/" + file)));
+    }
+    return files.size();
+  };
+  SECTION("wherever they are cut, from thinner than a coarse voxel to one slab") {
+    for (int seed = 1; seed <= 8; ++seed) {
+      INFO("seed " << seed);
+      Rng rng{uint64_t(seed)};
+      const Coord low(rng.between(-70, 70), rng.between(-70, 70), rng.between(-300, 300));
+      // Levels up to 1/2, 1/4 ... 1/32 of it.
+      const Coord size(rng.between(1, 20), rng.between(1, 20), rng.between(65, 1500));
+      const CoordBBox box(low, low + size.offsetBy(-1));
+      const auto labels = Int32Grid::create(0);
+      const int grains = rng.between(1, 60), height = rng.between(1, 40);
+      for (auto p = box.begin(); p; ++p)
+        if (!rng.chance(0.3) && ((*p).z() / 100) % 3 != 1)  // with empty slabs
+          labels->tree().setValueOn(
+              *p,
+              1 + std::abs((*p).x() / 5 + 3 * ((*p).y() / 4) + 7 * ((*p).z() / height)) % grains);
+      setDomain(*labels, box);
+      requireSame(labels, box, randomCuts(box, rng), kVersions[seed % 2]);
+      requireSame(labels, box, {low.z() & ~7, ((box.max().z() | 7) + 1)}, kVersions[seed % 2]);
+    }
+  }
+  SECTION("with the largest factor, 256") {
+    const CoordBBox box(Coord(0, 0, -50), Coord(3, 2, 17000));
+    const auto labels = Int32Grid::create(0);
+    for (auto p = box.begin(); p; ++p)
+      if (((*p).z() / 700) % 4) labels->tree().setValueOn(*p, 2 + (*p).z() / 90 + (*p).x() % 2);
+    setDomain(*labels, box);
+    std::vector<int> cuts{-56};
+    while (cuts.back() < 17000) cuts.push_back(cuts.back() + (cuts.size() % 2 ? 8 : 1400));
+    CHECK(requireSame(labels, box, cuts, OmeVersion::v05) > 500);
+  }
+  SECTION("labels that leave the box, or have no voxel") {
+    const auto labels = heapGrid();
+    for (int z = -30; z < 90; ++z) labels->tree().setValueOn(Coord(3, 3, z), 77);
+    labels->removeMeta("madf_domain_min");
+    labels->removeMeta("madf_domain_max");
+    requireSame(labels, kBox, {-32, -8, 8, 16, 24, 96}, OmeVersion::v04);
+    requireSame(Int32Grid::create(0), kBox, {-8, 8, 16}, OmeVersion::v04);
+  }
+}
+
+TEST_CASE("ome_zarr: slabs that cannot be read leave nothing", "[ome_zarr]") {
+  const ScratchFolder folder;
+  LabelSlabs labels = inSlabs(heapGrid(), {0, 8, 16, 32});
+  OmeZarrOptions meshes;
+  meshes.meshes = true;
+  CHECK_THROWS_WITH(writeOmeZarr(folder / "a.zarr", labels, kBox, meshes),
+                    Catch::Contains("in one piece"));
+  for (int failing : {0, 5, 10, 11}) {  // read by measures, colors and levels
+    LabelSlabs broken = labels;
+    broken.read = [&](size_t slab, Interrupter* interrupter) {
+      if (failing-- == 0) throw IoError("a disk has failed");
+      return labels.read(slab, interrupter);
+    };
+    CHECK_THROWS_WITH(writeOmeZarr(folder / "a.zarr", broken, kBox), "a disk has failed");
+  }
+  CHECK(folder.fileCount() == 0);
 }
 
 TEST_CASE("ome_zarr: what cannot be written leaves nothing", "[ome_zarr]") {

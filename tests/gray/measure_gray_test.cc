@@ -14,7 +14,9 @@
 #include <set>
 
 #include "support/known_bodies.h"
+#include "support/label_slabs.h"
 #include "support/memory_image.h"
+#include "support/slab_objects.h"
 #include "support/temporary_folder.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -123,6 +125,16 @@ std::vector<T> wideNumbers(size_t count) {
   return numbers;
 }
 
+std::vector<double> grayNumbers(const Measurements& measured) {
+  std::vector<double> numbers;
+  for (const auto& columns :
+       {grainColumns(measured.grains, measured.extra), bondColumns(measured.bonds, measured.extra)})
+    for (const MeasureColumn& column : columns)
+      if (column.name.compare(0, 5, "gray_") == 0)
+        numbers.insert(numbers.end(), column.values.begin(), column.values.end());
+  return numbers;
+}
+
 }  // namespace
 
 TEMPLATE_TEST_CASE("measure_gray: by the definitions, of each type of samples", "[measure_gray]",
@@ -189,13 +201,7 @@ TEST_CASE("measure_gray: the same bits with one thread and with four", "[measure
     GrayScan scan{imageOf(ImageSize{30, 31, 32}, samples), Coord(0)};
     Measurements measured = measure(*labels);
     measureGray(*labels, scan, measured);
-    std::vector<double> numbers;
-    for (const auto& columns : {grainColumns(measured.grains, measured.extra),
-                                bondColumns(measured.bonds, measured.extra)})
-      for (const MeasureColumn& column : columns)
-        if (column.name.compare(0, 5, "gray_") == 0)
-          numbers.insert(numbers.end(), column.values.begin(), column.values.end());
-    return numbers;
+    return grayNumbers(measured);
   };
   const auto one = bits(1), four = bits(4);
   REQUIRE(one.size() == four.size());
@@ -232,6 +238,52 @@ TEST_CASE("measure_gray: the box of the scan has to be that of the labels", "[me
   CHECK(measureWith({20, 22, 24}).grains.at(0).gray->mean == 7);
   labels = drawLabels(box, [](const Vec3d&) { return 1; });  // without a domain
   CHECK_THROWS_WITH(measureWith({10, 11, 12}), Catch::Contains("domain of the labels is unknown"));
+}
+
+TEMPLATE_TEST_CASE("measure_gray: labels in slabs have the bits of the whole", "[measure_gray]",
+                   uint8_t, int32_t, float) {
+  const Coord first(-3, 5, -13);
+  for (uint64_t seed = 1; seed <= 40; ++seed) {
+    INFO("seed " << seed);
+    Rng rng(seed);
+    const ImageSize size{rng.between(1, 25), rng.between(1, 25), rng.between(1, 60)};
+    const CoordBBox box(first, first.offsetBy(size.x - 1, size.y - 1, size.z - 1));
+    const auto labels = randomLabels(box, seed);
+    auto samples = wideNumbers<TestType>(size_t(size.x) * size_t(size.y) * size_t(size.z));
+    if constexpr (std::is_floating_point_v<TestType>)
+      for (size_t i = 0; i < samples.size(); i += 7)
+        samples[i] = std::numeric_limits<TestType>::quiet_NaN();
+    const Measurements measured = measure(*labels);
+    const auto bits = [&](const auto& cutOrNot) {
+      GrayScan scan{imageOf(size, samples), first};
+      Measurements result = measured;
+      for (BondMeasures& bond : result.bonds) bond.gray.emplace();  // of another scan
+      measureGray(cutOrNot, scan, result);
+      return grayNumbers(result);
+    };
+    const std::vector<double> whole = bits(*labels);
+    for (const auto& cuts : {randomCuts(box, rng), std::vector<int>{-16, 56}}) {
+      const std::vector<double> cut = bits(inSlabs(labels, cuts));
+      REQUIRE(cut.size() == whole.size());
+      REQUIRE(std::memcmp(cut.data(), whole.data(), cut.size() * sizeof(double)) == 0);
+    }
+  }
+}
+
+TEST_CASE("measure_gray: measures of other labels are refused", "[measure_gray]") {
+  const CoordBBox box(Coord(0), Coord(9, 10, 11));
+  const auto labels = randomLabels(box, 4);
+  const Measurements measured = measure(*labels);
+  const auto refuses = [&](const Int32Grid::Ptr& others) {
+    GrayScan scan{imageOf(ImageSize{10, 11, 12}, std::vector<uint8_t>(10 * 11 * 12)), Coord(0)};
+    Measurements result = measured;
+    CHECK_THROWS_WITH(measureGray(inSlabs(others, {0, 8, 16}), scan, result),
+                      Catch::Contains("not the labels that were measured"));
+    CHECK_FALSE(result.extra.gray);
+  };
+  refuses(drawLabels(box, [](const Vec3d&) { return 1; }));
+  refuses(drawLabels(box, [](const Vec3d&) { return 2; }));
+  refuses(drawLabels(box, [](const Vec3d&) { return 1000; }));
 }
 
 TEST_CASE("measure_gray: labels without a voxel", "[measure_gray]") {

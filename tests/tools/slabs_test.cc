@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
+#include <map>
 #include <random>
 #include <string>
 #include <vector>
@@ -164,6 +165,19 @@ TEST_CASE("slabs: sweep merges their manifolds, as of one file", "[slabs]") {
   const Outcome piped = bench.run("sweep in.slabs -");
   CHECK(piped.exitCode == 2);
   CHECK_THAT(piped.err, Contains("--scratch DIR"));
+
+  // What a killed one left is no use to the next, and in nobody's way.
+  const std::string sweep = "sweep in.slabs again.csv --theta -1:-0.4:0.02 -q";
+  const std::string rows = bench.mustRun("sweep in.slabs - --scratch data --theta -1:-0.4:0.02");
+  RunOptions killing;
+  killing.interruptOn = "again.csv.scratch";
+  killing.signal = SIGKILL;
+  killing.delay = 0.02;
+  bench.run(sweep, killing);
+  REQUIRE(bench.names().count("again.csv.scratch"));
+  bench.mustRun(sweep);
+  CHECK(bench.bytes("again.csv") == rows);
+  CHECK_FALSE(bench.names().count("again.csv.scratch"));
 }
 
 TEST_CASE("slabs: pictures are those of one file", "[slabs]") {
@@ -311,8 +325,10 @@ TEST_CASE("slabs: tables, comparisons and images are those of one file", "[slabs
     const std::string choice = " --grid object -q " + sample.options;
     bench.mustRun("segment in.vdb one.vdb" + choice);
     bench.mustRun("segment in.vdb out.slabs --slab-height " + sample.height + choice);
-    bench.mustRun("measure one.vdb one -q " + sample.measures);
-    bench.mustRun("measure out.slabs cut -q " + sample.measures);
+    bench.mustRun("segment in.vdb kept.vdb --grid object --keep distance -q");
+    bench.mustRun("convert kept.vdb scan.npy --grid distance_squared -q");
+    bench.mustRun("measure one.vdb one --intensity scan.npy -q " + sample.measures);
+    bench.mustRun("measure out.slabs cut --intensity scan.npy -q " + sample.measures);
     for (const std::string name : {"grains.csv", "bonds.csv"})
       REQUIRE(bench.bytes("one/" + name) == bench.bytes("cut/" + name));
     Json one = Json::parse(bench.bytes("one/sample.json")),
@@ -338,6 +354,53 @@ TEST_CASE("slabs: tables, comparisons and images are those of one file", "[slabs
                slabs = gridOf(infoOf(bench, "out.slabs"), "grain");
     for (const char* key : {"active_voxels", "active_min", "active_max", "voxel_size_units"})
       CHECK(slabs.at(key) == whole.at(key));
+  }
+}
+
+TEST_CASE("slabs: exports are those of one file", "[slabs]") {
+  const Bench bench;
+  bench.mustRun(kTall + "in.vdb -q --voxel-size 8x8x20um");
+  const auto filesOf = [&](const std::string& name) {
+    std::map<std::string, std::string> files;
+    const std::filesystem::path path = bench.path(name);
+    if (std::filesystem::is_regular_file(path))
+      return std::map<std::string, std::string>{{"", bench.bytes(name)}};
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(path)) {
+      const std::string file = std::filesystem::relative(entry.path(), path).string();
+      if (entry.is_regular_file()) files[file] = bench.bytes(name + "/" + file);
+    }
+    return files;
+  };
+  for (const std::string options :
+       {"", "--boundary closed --crop 3,3,5:35,30,71", "--roi cylinder:z:20,16:14"}) {
+    INFO(options);
+    bench.mustRun("segment in.vdb one.vdb --grid object -q " + options);
+    bench.mustRun("segment in.vdb in.slabs --slab-height 16 --grid object -q " + options);
+    for (const std::string kind :
+         {"ome.zarr", "zarr --ome 0.5 --min-faces 5", "graphml --min-faces 5", "csv --as network",
+          "vtp --as network", "mha --as mask", "tif --as mask", "zarr --meshes", "ply"}) {
+      INFO(kind);
+      const std::string ending = kind.substr(0, kind.find(' ')),
+                        as = kind.substr(std::min(kind.size(), ending.size()));
+      std::filesystem::remove_all(bench.path("kept"));
+      std::filesystem::remove_all(bench.path("out." + ending));
+      bench.mustRun("export one.vdb out." + ending + as + " -q");
+      std::filesystem::rename(bench.path("out." + ending), bench.path("kept"));
+      bench.mustRun("export in.slabs out." + ending + as + " -q");
+      const auto files = filesOf("out." + ending), wanted = filesOf("kept");
+      CHECK(!files.empty());
+      CHECK((files == wanted));
+    }
+    bench.mustRun("measure one.vdb one -q");
+    bench.mustRun("measure in.slabs cut -q");
+    CHECK(bench.bytes("one/grains.csv") == bench.bytes("cut/grains.csv"));
+  }
+  std::filesystem::remove(bench.path("in.slabs/slab-0001.vdb"));
+  for (const std::string name : {"none.zarr", "none.graphml", "none.npy --as mask"}) {
+    const Outcome run = bench.run("export in.slabs " + name);
+    CHECK(run.exitCode == 1);
+    CHECK_THAT(run.err, Contains("slab-0001.vdb: is missing"));
+    CHECK_FALSE(bench.names().count(name.substr(0, name.find(' '))));
   }
 }
 

@@ -13,6 +13,7 @@
 #include "input_options.h"
 #include "outputs.h"
 #include "parse.h"
+#include "rank_failure.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
@@ -182,7 +183,23 @@ void copyAsImage(const Options& o, const Common& common) {
   reportImage(o.out, "all values", toCoord(image->info().size), type, common);
 }
 
+/// @throw WrongUsage for what is not done slab by slab
+void runByRanks(const Options& o, const Common& common) {
+  if (!isInSlabs(o.input) || hasVdbEnding(o.out) || o.labels || o.cube || o.input.selection ||
+      readsGray(o.input.gray) || o.input.gray.despeckle > 0 || o.input.region.any() ||
+      o.boundary != "auto")
+    throw WrongUsage(
+        "several processes copy the labels of a folder of slabs to an image; for all else there is "
+        "vdb_madf convert");
+  // The others would take the temporary of a process of another node for one that a killed run left.
+  inAllRanks(*common.ranks, [&] {
+    if (common.ranks->rank() == 0) checkWritable(o.out);
+  });
+  copySlabs(o, common);
+}
+
 void run(const Options& o, const Common& common) {
+  if (common.ranks) return runByRanks(o, common);
   checkWritable(o.out);
   const bool fromVdb = isVdb(o.input);
   if (fromVdb && readsGray(o.input.gray) && !o.input.selection)

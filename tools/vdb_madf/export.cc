@@ -157,7 +157,16 @@ void exportVti(const Options& o, const Common& common, const Int32Grid& labels) 
           std::to_string(size.z()) + " voxels");
 }
 
-void exportNetwork(const Options& o, const Common& common, const Int32Grid& labels) {
+/// Has the transform and the metadata of labels.
+const Int32Grid& aboutOf(const Int32Grid& labels) {
+  return labels;
+}
+const Int32Grid& aboutOf(const LabelSlabs& labels) {
+  return *labels.about;
+}
+
+template <typename Labels>
+void exportNetwork(const Options& o, const Common& common, const Labels& labels) {
   const GrainNetwork network = grainNetwork(labels, o.measure, common.progress);
   writeNetwork(o.out, network, common.progress);
   say(o, common,
@@ -207,6 +216,8 @@ struct Kind {
   void (*run)(const Options&, const Common&, const Int32Grid&);
   const char* endings;  ///< in words
   bool (*accepts)(const std::string& out);
+  /// Of labels that need not fit in memory together; null: not known.
+  void (*runSlabs)(const Options&, const Common&, const LabelSlabs&) = nullptr;
 };
 
 bool isMeshOutput(const std::string& out) {
@@ -278,14 +289,15 @@ void exportHexahedra(const Options& o, const Common& common, const Int32Grid& la
           counted(counts.nodes, "node"));
 }
 
-void exportZarr(const Options& o, const Common& common, const Int32Grid& labels) {
-  const CoordBBox box = boxOf(labels);
+template <typename Labels>
+void exportZarr(const Options& o, const Common& common, const Labels& labels) {
+  const CoordBBox box = boxOf(aboutOf(labels));
   OmeZarrOptions options;
   options.version = omeVersionOf(o.ome);
   options.measure = o.measure;
   options.meshes = o.meshes;
   options.mesh = meshOptions(o);
-  options.meshReduction = reductionOf(o, labels);
+  options.meshReduction = reductionOf(o, aboutOf(labels));
   writeOmeZarr(o.out, labels, box, options, common.progress);
   const Coord size = box.dim();
   say(o, common,
@@ -294,10 +306,28 @@ void exportZarr(const Options& o, const Common& common, const Int32Grid& labels)
           (o.meshes ? "; meshes and measures for neuroglancer" : ""));
 }
 
-void exportMask(const Options& o, const Common& common, const Int32Grid& labels) {
-  const CoordBBox box = boxOf(labels);
-  writeImage(o.out, *objectMask(labels), box, SampleType::uint8, common.progress);
-  noteLostEdges(o.out, hasCubicVoxels(labels), storedVoxelSize(labels), common);
+void writeMask(const Options& o, const CoordBBox& box, const Int32Grid& labels,
+               Progress* progress) {
+  writeImage(o.out, *objectMask(labels), box, SampleType::uint8, progress);
+}
+
+void writeMask(const Options& o, const CoordBBox& box, const LabelSlabs& labels,
+               Progress* progress) {
+  LabelSlabs ones = labels;
+  ones.read = [&labels](size_t slab, Interrupter* interrupter) {
+    const MaskGrid::Ptr object = objectMask(*labels.read(slab, interrupter));
+    return Int32Grid::create(
+        std::make_shared<Int32Tree>(object->tree(), 0, 1, openvdb::TopologyCopy()));
+  };
+  writeImage(o.out, ones, box, SampleType::uint8, progress);
+}
+
+template <typename Labels>
+void exportMask(const Options& o, const Common& common, const Labels& labels) {
+  const Int32Grid& about = aboutOf(labels);
+  const CoordBBox box = boxOf(about);
+  writeMask(o, box, labels, common.progress);
+  noteLostEdges(o.out, hasCubicVoxels(about), storedVoxelSize(about), common);
   const Coord size = box.dim();
   say(o, common,
       "1 = grain, 0 = background, " + std::to_string(size.x()) + "x" + std::to_string(size.y()) +
@@ -318,9 +348,9 @@ constexpr Kind kKinds[] = {
     {"vti", exportVti, ".vti", isVtiOutput},
     {"clumps", exportClumps, ".csv, .txt (YADE) or .data (LAMMPS)", isClumpEnding},
     {"hexa", exportHexahedra, ".vtu or .inp (Abaqus)", isHexahedraEnding},
-    {"mask", exportMask, ".tif, .raw, .mhd, .mha, .nrrd, .npy or .h5", isImageEnding},
-    {"network", exportNetwork, ".vtp, .graphml or .csv", isNetworkEnding},
-    {"zarr", exportZarr, ".zarr, a folder (.ome.zarr)", isZarrEnding},
+    {"mask", exportMask, ".tif, .raw, .mhd, .mha, .nrrd, .npy or .h5", isImageEnding, exportMask},
+    {"network", exportNetwork, ".vtp, .graphml or .csv", isNetworkEnding, exportNetwork},
+    {"zarr", exportZarr, ".zarr, a folder (.ome.zarr)", isZarrEnding, exportZarr},
 };
 
 std::vector<std::string> kindList() {
@@ -361,12 +391,18 @@ void checkTables(const Options& o, const Kind& kind) {
 void run(const Options& o, const Common& common, const Kind& kind) {
   if (fileEnding(o.out).empty())
     checkOutputFolder(o.out);
-  else if (kind.run == exportZarr)
+  else if (kind.run == exportZarr<Int32Grid>)
     checkOutputTree(o.out);
   else
     checkWritable(o.out);
   for (const std::string& file : {o.bonds, o.cover})
     if (!file.empty()) checkWritable(file);
+  if (kind.runSlabs && isInSlabs(o.input) && !o.meshes) {
+    const LabelSlabs labels = openLabelSlabs(o.input, "--grid", common.progress);
+    const auto domain = storedDomain(*labels.about);
+    if (domain && domain->isBox())
+      return withFileName(o.input.path, [&] { kind.runSlabs(o, common, labels); });
+  }
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
   withFileName(o.input.path, [&] { kind.run(o, common, *labels); });
 }

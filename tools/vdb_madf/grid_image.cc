@@ -4,12 +4,16 @@
 #include "grid_image.h"
 
 #include <iostream>
+#include <memory>
+#include <vector>
 
 #include "outputs.h"
+#include "rank_failure.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/open_image.h"
+#include "vdb_madf/images/shared_image.h"
 #include "vdb_madf/volumes/label_type.h"
 #include "vdb_madf/volumes/write_image.h"
 
@@ -47,6 +51,51 @@ void report(const std::string& path, const openvdb::GridBase& grid, const CoordB
   reportImage(path, "grid '" + grid.getName() + "'", box.dim(), type, common);
 }
 
+/// Around the boxes of all ranks.
+CoordBBox unitedBox(Ranks& ranks, const CoordBBox& box) {
+  std::vector<int64_t> ends;  // maxima: the lower ones negative
+  for (int axis = 0; axis < 3; ++axis) {
+    ends.push_back(-int64_t(box.min()[axis]));
+    ends.push_back(box.max()[axis]);
+  }
+  ranks.max(ends);
+  CoordBBox all;
+  for (int axis = 0; axis < 3; ++axis) {
+    all.min()[axis] = int(-ends[size_t(2 * axis)]);
+    all.max()[axis] = int(ends[size_t(2 * axis + 1)]);
+  }
+  return all;
+}
+
+/// Rank 0 makes the file and puts it in its place; all write their slabs.
+void writeByRanks(const std::string& path, const LabelSlabs& labels, size_t begin, size_t end,
+                  const CoordBBox& box, SampleType type, const Common& common) {
+  Ranks& ranks = *common.ranks;
+  std::unique_ptr<ImageWriter> image;
+  SharedImage shared;
+  inAllRanks(ranks, [&] {
+    if (ranks.rank() != 0) return;
+    image = createSharedImage(path, labels, box, type);
+    const auto made = image->share();
+    if (!made)
+      throw InvalidInput(path +
+                         ": several processes write .raw, .npy, .nrrd, .mha or .mhd; vdb_madf "
+                         "convert writes other images");
+    shared = *made;
+  });
+  Bytes name(shared.temporary.begin(), shared.temporary.end());
+  ranks.broadcast(name);
+  shared.temporary.assign(name.begin(), name.end());
+  std::vector<int64_t> offset{int64_t(shared.offset)};
+  ranks.max(offset);
+  shared.offset = uint64_t(offset[0]);
+  inAllRanks(ranks,
+             [&] { writeImagePart(path, shared, labels, begin, end, box, type, common.progress); });
+  inAllRanks(ranks, [&] {
+    if (image) image->finish();
+  });
+}
+
 }  // namespace
 
 void checkVolumeEnding(const std::string& path) {
@@ -72,21 +121,31 @@ void writeGridAsImage(const std::string& path, const openvdb::GridBase& grid,
 void writeSlabsAsImage(const std::string& path, const LabelSlabs& labels,
                        const std::optional<SampleType>& type, const std::string& source,
                        const Common& common) {
+  Ranks alone;
+  Ranks& ranks = common.ranks ? *common.ranks : alone;
+  const size_t begin = ranks.firstSlab(ranks.rank(), labels.slabCount()),
+               end = ranks.firstSlab(ranks.rank() + 1, labels.slabCount());
   const auto domain = storedDomain(*labels.about);
   CoordBBox box = domain ? domain->box() : CoordBBox();
   SampleType chosen = type.value_or(naturalType(*labels.about, path));
   if (!domain || (!type && hasTiffEnding(path))) {
-    for (size_t s = 0; s < labels.slabCount(); ++s) {
-      const Int32Grid::Ptr slab = labels.read(s, common.progress);
-      if (!domain && slab->activeVoxelCount() > 0) box.expand(slab->evalActiveVoxelBoundingBox());
-      // From uint16, what labels have if need be, to uint32 and int32.
-      const SampleType own = naturalType(*slab, path);
-      if (!type && chosen != SampleType::int32 && own != SampleType::uint16) chosen = own;
-    }
+    inAllRanks(ranks, [&] {
+      for (size_t s = begin; s < end; ++s) {
+        const Int32Grid::Ptr slab = labels.read(s, common.progress);
+        if (!domain && slab->activeVoxelCount() > 0) box.expand(slab->evalActiveVoxelBoundingBox());
+        // From uint16, what labels have if need be, to uint32 and int32.
+        const SampleType own = naturalType(*slab, path);
+        if (!type && chosen != SampleType::int32 && own != SampleType::uint16) chosen = own;
+      }
+    });
+    box = unitedBox(ranks, box);
     if (box.empty()) refuseEmpty(*labels.about, source);
     if (!domain) tellBox(path, box, common);
   }
-  writeImage(path, labels, box, chosen, common.progress);
+  if (common.ranks)
+    writeByRanks(path, labels, begin, end, box, chosen, common);
+  else
+    writeImage(path, labels, box, chosen, common.progress);
   report(path, *labels.about, box, chosen, common);
 }
 

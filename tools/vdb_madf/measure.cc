@@ -114,34 +114,36 @@ std::string titleOf(const Options& o) {
                                  : o.tables.sample;
 }
 
-Measurements measureSlabs(const Options& o, const Common& common) {
-  const LabelSlabs labels = openLabelSlabs(o.input, "--grid", common.progress);
-  common.progress->start("measure");
-  return withFileName(o.input.path, [&] { return measure(labels, o.measure, common.progress); });
-}
-
-Measurements measureWhole(const Options& o, const Common& common) {
-  common.progress->start("read");
-  const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
+/// Of labels, a grid or slabs.
+template <typename Labels>
+Measurements measureLabels(const Options& o, const Common& common, const Labels& labels) {
   std::optional<GrayScan> scan;  // opened before the work: what is wrong with it is said at once
   if (!o.scan.empty())
     scan = openScan({o.scan, o.scanGrid, "--intensity"}, o.input, common.progress);
   common.progress->start("measure");
   Measurements measurements =
-      withFileName(o.input.path, [&] { return measure(*labels, o.measure, common.progress); });
+      withFileName(o.input.path, [&] { return measure(labels, o.measure, common.progress); });
   if (scan) {
     common.progress->start("gray values");
-    measureGray(*labels, *scan, measurements, common.progress);
+    measureGray(labels, *scan, measurements, common.progress);
   }
   return measurements;
+}
+
+Measurements measureInput(const Options& o, const Common& common) {
+  if (isInSlabs(o.input)) {
+    const LabelSlabs labels = openLabelSlabs(o.input, "--grid", common.progress);
+    const auto domain = storedDomain(*labels.about);
+    if (!domain || domain->isBox()) return measureLabels(o, common, labels);
+  }  // in a region they have to be there together
+  common.progress->start("read");
+  return measureLabels(o, common, *loadLabels(o.input, "--grid", common.progress));
 }
 
 void run(const Options& o, const Common& common) {
   MeasurementTables tables(o.folder);
   TextFile plot(o.plot);
-  // Gray values have to be there for all voxels together.
-  const Measurements measurements =
-      isInSlabs(o.input) && o.scan.empty() ? measureSlabs(o, common) : measureWhole(o, common);
+  const Measurements measurements = measureInput(o, common);
   TableOptions options = o.tables;
   options.labels = o.input.path;
   tables.write(measurements, options);

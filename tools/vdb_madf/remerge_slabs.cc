@@ -55,6 +55,20 @@ bool hasManifolds(const std::vector<openvdb::GridBase::Ptr>& grids) {
   });
 }
 
+namespace {
+
+constexpr char kWork[] = "merging of manifolds";  // in scratch
+
+const std::string& withoutLeftovers(const std::string& path) {
+  FolderScratch(path, kWork, true).removeAll();
+  return path;
+}
+
+}  // namespace
+
+ScratchFolder::ScratchFolder(const std::string& path)
+    : scratch_(withoutLeftovers(path), kWork, false) {}
+
 ScratchFolder::~ScratchFolder() {
   scratch_.removeAll();
 }

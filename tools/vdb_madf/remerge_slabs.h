@@ -24,11 +24,11 @@ LabelSlabs openManifoldSlabs(const InputOptions& input, Progress* progress);
 void remergeInSlabs(const InputOptions& input, const std::string& out, const MergeOptions& merge,
                     int tidy, const Common& common);
 
-/// Scratch data in a folder, which goes again.
+/// Scratch data in a folder, which goes again. What a killed run left in it is no use, and goes first.
 class ScratchFolder {
  public:
   /// @throw as FolderScratch
-  explicit ScratchFolder(const std::string& path) : scratch_(path, "", false) {}
+  explicit ScratchFolder(const std::string& path);
   ~ScratchFolder();
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;

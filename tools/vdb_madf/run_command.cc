@@ -122,10 +122,12 @@ int run(const char* program, int argc, char** argv, Ranks* ranks) {
   Common common;
   common.ranks = ranks;
   Action action;
-  if (ranks)
+  if (ranks) {
+    addConvert(command, common, action);
     addSegment(command, common, action);
-  else
+  } else {
     addVerbs(command, line, common, action);
+  }
   if (const std::optional<std::string> text = line.parse(argc, argv)) {
     if (!ranks || ranks->rank() == 0) std::cout << *text;
     flushStandardOutput();

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// vdb_madf segment by the processes of an MPI job.
+// vdb_madf segment and convert by the processes of an MPI job.
 
 #include "../vdb_madf/run_command.h"
 #include "vdb_madf/mpi/mpi_ranks.h"

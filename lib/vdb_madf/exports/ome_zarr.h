@@ -6,6 +6,7 @@
 #include <string>
 
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/label_slabs.h"
 #include "vdb_madf/measure/measure.h"
 #include "vdb_madf/shapes/grain_mesh.h"
 
@@ -47,6 +48,13 @@ struct OmeZarrOptions {
 /// @throw InvalidInput if the box is empty, voxels are not along the axes, or as measure(); with
 ///   meshes also without a voxel size, and as reduceLabels() and grainMesh(); IoError; Interrupted.
 void writeOmeZarr(const std::string& path, const Int32Grid& labels, const CoordBBox& box,
+                  const OmeZarrOptions& options = {}, Interrupter* interrupter = nullptr);
+
+/// The same of labels in slabs, which need not fit in memory together: the same files. Each slab is read
+/// four times, or more often as by measure(). Memory: that of measure(), or two slabs and of each level
+/// what there is of a layer of chunks.
+/// @throw as above; InvalidInput if the domain is a region, or for meshes; what reading throws.
+void writeOmeZarr(const std::string& path, const LabelSlabs& labels, const CoordBBox& box,
                   const OmeZarrOptions& options = {}, Interrupter* interrupter = nullptr);
 
 /// True for .zarr, so also for .ome.zarr.

@@ -13,6 +13,7 @@
 #include <filesystem>
 
 #include "vdb_madf/files/detail/output_place.h"
+#include "vdb_madf/files/detail/write_whole.h"
 #include "vdb_madf/files/output_file.h"
 
 namespace vdb_madf {
@@ -21,9 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using detail::failToWrite;
-
-/// Linux moves at most 2 GiB in one call.
-constexpr size_t kMaxBytesPerCall = size_t(1) << 30;
 
 std::string withoutSlashes(std::string path) {
   while (path.size() > 1 && path.back() == '/') path.pop_back();
@@ -40,20 +38,10 @@ void checkNothingThere(const std::string& path) {
 }
 
 /// Writes a new file. Returns an errno, or 0.
-int writeNew(const std::string& path, const char* bytes, size_t count) {
+int writeNew(const std::string& path, const void* bytes, size_t count) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file < 0) return errno;
-  int error = 0;
-  while (count > 0 && error == 0) {
-    const ssize_t put = ::write(file, bytes, std::min(count, kMaxBytesPerCall));
-    if (put < 0 && errno == EINTR) continue;
-    if (put < 0) {
-      error = errno;
-    } else {
-      bytes += put;
-      count -= size_t(put);
-    }
-  }
+  int error = detail::writeWhole(file, bytes, count);
   if (::close(file) != 0 && errno != EINTR && error == 0) error = errno;
   return error;
 }
@@ -88,8 +76,7 @@ void OutputTree::write(const std::string& name, const void* bytes, size_t count)
   const fs::path file = fs::path(temporary_) / name;
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
-  const int number =
-      error ? error.value() : writeNew(file.string(), static_cast<const char*>(bytes), count);
+  const int number = error ? error.value() : writeNew(file.string(), bytes, count);
   if (number != 0) failToWrite((fs::path(path_) / name).string(), number);
 }
 

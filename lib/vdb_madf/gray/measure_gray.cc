@@ -15,6 +15,7 @@
 #include "vdb_madf/images/detail/sample_conversion.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/detail/label_leaves.h"
+#include "vdb_madf/labels/detail/rimmed_slabs.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 
 namespace vdb_madf {
@@ -58,57 +59,43 @@ struct Slab {
   }
 };
 
-/// Gathers the samples of each grain and bond, in an order that depends on the labels alone.
+/// Gathers the samples of each grain and bond, in an order that depends on the labels alone, until all of
+/// them are there.
 template <typename T>
 class SampleLists {
  public:
-  SampleLists(const Int32Grid& labels, const Measurements& measured, Interrupter* interrupter)
-      : leaves_(labels, interrupter),
-        tree_(detail::withoutTiles(labels)),
-        measured_(measured),
-        ofGrains_(size_t(leaves_.index().voxelCount())),
+  explicit SampleLists(Measurements& measured)
+      : measured_(measured),
+        ofGrains_(measured.grains.size()),
+        counts_(measured.grains.size()),
         ofBonds_(measured.bonds.size()) {
-    first_.push_back(0);
-    for (const GrainMeasures& grain : measured.grains)
-      first_.push_back(first_.back() + size_t(grain.voxels));
-    next_.assign(first_.begin(), first_.end() - 1);
-    for (size_t leaf = 0; leaf < leaves_.index().leafCount(); ++leaf)
-      layers_[leaves_.index().origin(leaf).z()].push_back(leaf);
+    for (BondMeasures& bond : measured.bonds) bond.gray.reset();
   }
 
-  /// By the z of their origins; ascending.
-  const std::map<int, std::vector<size_t>>& layers() const { return layers_; }
-
-  /// The leaves of a layer, which the slab holds.
-  void add(const std::vector<size_t>& layer, const Slab<T>& slab) {
-    std::vector<std::vector<size_t>> places(layer.size());  // of the samples of each part
-    for (size_t i = 0; i < layer.size(); ++i)
-      for (const detail::LabelPart& part : leaves_.parts(layer[i])) {
-        size_t& next = next_[rowOf(part.label)];
-        places[i].push_back(next);
-        next += detail::countVoxels(part.mask);
-      }
-    std::vector<std::vector<std::pair<size_t, T>>> besideBonds(layer.size());
-    detail::parallelFor(layer.size(), kLeavesTogether, nullptr, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) {
-        addParts(layer[i], places[i], slab);
-        besideBonds[i] = samplesBesideBonds(leaves_.index().origin(layer[i]), slab);
-      }
-    });
-    for (const auto& samples : besideBonds)
-      for (const auto& [bond, sample] : samples) ofBonds_[bond].push_back(sample);
-  }
-
-  void finish(Measurements& result, Interrupter* interrupter) {
-    detail::parallelFor(
-        result.grains.size(), kGrainsTogether, interrupter, [&](size_t begin, size_t end) {
-          for (size_t i = begin; i < end; ++i)
-            result.grains[i].gray =
-                detail::grayValues(ofGrains_.data() + first_[i], ofGrains_.data() + first_[i + 1]);
-        });
-    for (size_t i = 0; i < result.bonds.size(); ++i)
-      result.bonds[i].gray =
-          detail::grayValues(ofBonds_[i].data(), ofBonds_[i].data() + ofBonds_[i].size());
+  /// Labels whose leaves in some layers come next; those beside them are known, too.
+  void add(const Int32Grid& labels, const detail::LeafLayers& own, GrayScan& scan,
+           Interrupter* interrupter) {
+    const detail::LabelLeaves leaves(labels, interrupter);
+    const Int32Tree::ConstPtr tree = detail::withoutTiles(labels);
+    std::map<int, std::vector<size_t>> layers;  // by the z of their origins
+    for (size_t leaf = 0; leaf < leaves.index().leafCount(); ++leaf)
+      if (own.hold(leaves.index().origin(leaf)))
+        layers[leaves.index().origin(leaf).z()].push_back(leaf);
+    const CoordBBox box = scan.box();
+    std::vector<char> bytes(size_t(detail::sliceBytes(scan.image->info())) *
+                            size_t(std::min(kLeaf, box.dim().z())));
+    const auto* samples = reinterpret_cast<const T*>(bytes.data());
+    int percent = 0, done = 0;
+    for (const auto& [z, layer] : layers) {
+      if (interrupter && interrupter->wasInterrupted(percent)) throw Interrupted();
+      CoordBBox part = box;
+      part.min().z() = std::max(z, box.min().z());
+      part.max().z() = std::min(z + kLeaf - 1, box.max().z());
+      scan.image->read(part.min().z() - box.min().z(), part.dim().z(), bytes.data());
+      addLayer(leaves, *tree, layer, {samples, part});
+      percent = ++done * 100 / int(layers.size());
+    }
+    finishComplete(interrupter);
   }
 
  private:
@@ -119,12 +106,42 @@ class SampleLists {
                          [](const GrainMeasures& grain, int32_t id) { return grain.id < id; }) -
         grains.begin());
   }
+  bool isComplete(size_t grain) const {
+    return counts_[grain] == size_t(measured_.grains[grain].voxels);
+  }
 
-  void addParts(size_t leaf, const std::vector<size_t>& places, const Slab<T>& slab) {
-    const Coord& origin = leaves_.index().origin(leaf);
+  /// The leaves of a layer, which the slab holds.
+  void addLayer(const detail::LabelLeaves& leaves, const Int32Tree& tree,
+                const std::vector<size_t>& layer, const Slab<T>& slab) {
+    std::vector<std::vector<T*>> places(layer.size());  // of the samples of each part
+    for (size_t i = 0; i < layer.size(); ++i)
+      for (const detail::LabelPart& part : leaves.parts(layer[i])) {
+        const size_t grain = rowOf(part.label), count = detail::countVoxels(part.mask);
+        if (grain == counts_.size() || measured_.grains[grain].id != part.label ||
+            counts_[grain] + count > size_t(measured_.grains[grain].voxels))
+          throw InvalidInput("these are not the labels that were measured");
+        if (counts_[grain] == 0) ofGrains_[grain].resize(size_t(measured_.grains[grain].voxels));
+        places[i].push_back(ofGrains_[grain].data() + counts_[grain]);
+        counts_[grain] += count;
+        if (isComplete(grain)) complete_.push_back(grain);
+      }
+    std::vector<std::vector<std::pair<size_t, T>>> besideBonds(layer.size());
+    detail::parallelFor(layer.size(), kLeavesTogether, nullptr, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        copyParts(leaves, layer[i], places[i], slab);
+        besideBonds[i] = samplesBesideBonds(tree, leaves.index().origin(layer[i]), slab);
+      }
+    });
+    for (const auto& samples : besideBonds)
+      for (const auto& [bond, sample] : samples) ofBonds_[bond].push_back(sample);
+  }
+
+  static void copyParts(const detail::LabelLeaves& leaves, size_t leaf,
+                        const std::vector<T*>& places, const Slab<T>& slab) {
+    const Coord& origin = leaves.index().origin(leaf);
     auto place = places.begin();
-    for (const detail::LabelPart& part : leaves_.parts(leaf)) {
-      T* to = ofGrains_.data() + *place++;
+    for (const detail::LabelPart& part : leaves.parts(leaf)) {
+      T* to = *place++;
       for (int x = 0; x < kLeaf; ++x)
         for (uint64_t bits = part.mask[size_t(x)]; bits; bits &= bits - 1) {
           const int bit = __builtin_ctzll(bits);
@@ -134,11 +151,11 @@ class SampleLists {
   }
 
   /// With the row of the bond; a voxel comes once for each bond of which it has a face.
-  std::vector<std::pair<size_t, T>> samplesBesideBonds(const Coord& origin,
+  std::vector<std::pair<size_t, T>> samplesBesideBonds(const Int32Tree& tree, const Coord& origin,
                                                        const Slab<T>& slab) const {
     std::vector<std::pair<size_t, T>> found;
     detail::LabelHalo halo;
-    detail::readLabelHalo(*tree_, origin, halo);
+    detail::readLabelHalo(tree, origin, halo);
     for (int x = 0; x < kLeaf; ++x)
       for (int y = 0; y < kLeaf; ++y)
         for (int z = 0; z < kLeaf; ++z) {
@@ -173,45 +190,67 @@ class SampleLists {
     return size_t(found - bonds.begin());
   }
 
-  detail::LabelLeaves leaves_;
-  Int32Tree::ConstPtr tree_;
-  const Measurements& measured_;
-  std::map<int, std::vector<size_t>> layers_;
-  std::vector<size_t> first_, next_;  // of each grain in ofGrains_
-  std::vector<T> ofGrains_;
+  /// What grains and bonds have no samples to come is known now, and their samples go.
+  void finishComplete(Interrupter* interrupter) {
+    detail::parallelFor(complete_.size(), kGrainsTogether, interrupter,
+                        [&](size_t begin, size_t end) {
+                          for (size_t i = begin; i < end; ++i)
+                            measured_.grains[complete_[i]].gray = taken(ofGrains_[complete_[i]]);
+                        });
+    complete_.clear();
+    for (size_t i = 0; i < ofBonds_.size(); ++i) {
+      BondMeasures& bond = measured_.bonds[i];
+      if (!bond.gray && isComplete(rowOf(bond.first)) && isComplete(rowOf(bond.second)))
+        bond.gray = taken(ofBonds_[i]);
+    }
+  }
+  static GrayValues taken(std::vector<T>& samples) {
+    const GrayValues values = detail::grayValues(samples.data(), samples.data() + samples.size());
+    samples = {};
+    return values;
+  }
+
+  Measurements& measured_;
+  std::vector<std::vector<T>> ofGrains_;  // of all their voxels, once there is one
+  std::vector<size_t> counts_;            // of those that are there
+  std::vector<size_t> complete_;          // grains whose values are still to be found
   std::vector<std::vector<T>> ofBonds_;
 };
 
+/// Slab by slab. Samples of a grain wait until all of them are there.
 template <typename T>
-void measureSamples(const Int32Grid& labels, GrayScan& scan, Measurements& measured,
-                    Interrupter* interrupter) {
-  SampleLists<T> lists(labels, measured, interrupter);
-  const CoordBBox box = scan.box();
-  std::vector<char> bytes(size_t(detail::sliceBytes(scan.image->info())) *
-                          size_t(std::min(kLeaf, box.dim().z())));
-  const auto* samples = reinterpret_cast<const T*>(bytes.data());
-  int percent = 0, done = 0;
-  for (const auto& [z, layer] : lists.layers()) {
-    if (interrupter && interrupter->wasInterrupted(percent)) throw Interrupted();
-    CoordBBox part = box;
-    part.min().z() = std::max(z, box.min().z());
-    part.max().z() = std::min(z + kLeaf - 1, box.max().z());
-    scan.image->read(part.min().z() - box.min().z(), part.dim().z(), bytes.data());
-    lists.add(layer, {samples, part});
-    percent = ++done * 100 / int(lists.layers().size());
+void addSlabs(const LabelSlabs& slabs, GrayScan& scan, SampleLists<T>& lists,
+              Interrupter* interrupter) {
+  detail::RimmedSlabs rimmed(slabs);
+  for (size_t s = 0; s < slabs.slabCount(); ++s) {
+    const auto percent = [&](size_t done) { return int(done * 100 / slabs.slabCount()); };
+    detail::WorkPart part(interrupter, percent(s), percent(s + 1));
+    rimmed.next(&part);
+    lists.add(rimmed.labels(), {slabs.cuts[s], slabs.cuts[s + 1]}, scan, &part);
   }
-  lists.finish(measured, interrupter);
+}
+
+/// addAll(lists) adds all labels.
+template <typename AddAll>
+void measureSamples(GrayScan& scan, Measurements& measured, const AddAll& addAll) {
+  checkBox(scan.image->path(), scan.box(), measured.sample);
+  detail::withSampleType(scan.image->info().type, [&](auto sample) {
+    SampleLists<decltype(sample)> lists(measured);
+    addAll(lists);
+  });
+  measured.extra.gray = true;
 }
 
 }  // namespace
 
 void measureGray(const Int32Grid& labels, GrayScan& scan, Measurements& measured,
                  Interrupter* interrupter) {
-  checkBox(scan.image->path(), scan.box(), measured.sample);
-  detail::withSampleType(scan.image->info().type, [&](auto sample) {
-    measureSamples<decltype(sample)>(labels, scan, measured, interrupter);
-  });
-  measured.extra.gray = true;
+  measureSamples(scan, measured, [&](auto& lists) { lists.add(labels, {}, scan, interrupter); });
+}
+
+void measureGray(const LabelSlabs& labels, GrayScan& scan, Measurements& measured,
+                 Interrupter* interrupter) {
+  measureSamples(scan, measured, [&](auto& lists) { addSlabs(labels, scan, lists, interrupter); });
 }
 
 }  // namespace vdb_madf

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "vdb_madf/gray/gray_scan.h"
+#include "vdb_madf/grids/label_slabs.h"
 #include "vdb_madf/measure/measure.h"
 
 namespace vdb_madf {
@@ -19,8 +20,14 @@ namespace vdb_madf {
 /// Memory: a slab, and a sample for each labelled voxel and for each voxel beside a bond.
 /// @param measured what measure() says of these labels
 /// @throw InvalidInput, one line that names the scan, if the domain is unknown, or the scan's box
-///   does not fit; IoError; Interrupted.
+///   does not fit; InvalidInput if `measured` is of other labels; IoError; Interrupted.
 void measureGray(const Int32Grid& labels, GrayScan& scan, Measurements& measured,
+                 Interrupter* interrupter = nullptr);
+
+/// The same of labels in slabs, which are read once: the same bits. Memory: two slabs of labels, and a
+/// sample for each voxel of the grains that have voxels in slabs read and in slabs to come.
+/// @throw as above; what reading throws
+void measureGray(const LabelSlabs& labels, GrayScan& scan, Measurements& measured,
                  Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -60,12 +61,23 @@ class ImageReader {
   std::vector<std::string> files_, notes_;
 };
 
+/// The temporary file of an image that several processes write.
+struct SharedImage {
+  std::string temporary;
+  uint64_t offset = 0;  ///< of the first sample
+};
+
 /// Writes slices in ascending order; whole or not at all (finish() renames the temporary file).
 class ImageWriter {
  public:
   virtual ~ImageWriter() = default;
   virtual void write(int count, const void* samples) = 0;  ///< the next count slices, x fastest
   virtual void finish() = 0;
+
+  /// Lets several processes write the samples at the same time (shared_image.h). The header is written and
+  /// the file has its full length then; write() is not called, and finish() waits until they are done.
+  /// None if slices of this format come in order.
+  virtual std::optional<SharedImage> share() { return std::nullopt; }
 };
 
 }  // namespace vdb_madf

@@ -16,6 +16,7 @@
 #include "vdb_madf/base/detail/simd.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
+#include "vdb_madf/labels/detail/rimmed_slabs.h"
 #include "vdb_madf/leaves/leaf_index.h"
 
 namespace vdb_madf {
@@ -268,6 +269,13 @@ GrainColors GrainColoring::colors() const {
 GrainColors grainColors(const Int32Grid& labels, Interrupter* interrupter) {
   GrainColoring coloring;
   coloring.add(labels, interrupter);
+  return coloring.colors();
+}
+
+GrainColors grainColors(const LabelSlabs& labels, Interrupter* interrupter) {
+  GrainColoring coloring;
+  detail::RimmedSlabs slabs(labels);
+  while (slabs.next(interrupter)) coloring.add(slabs.labels(), interrupter);
   return coloring.colors();
 }
 

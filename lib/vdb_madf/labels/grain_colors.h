@@ -9,6 +9,7 @@
 
 #include "vdb_madf/base/color.h"
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/label_slabs.h"
 
 namespace vdb_madf {
 
@@ -37,6 +38,9 @@ struct GrainColors {
 /// depend on the grid alone.
 /// @throw InvalidInput as LeafIndex does; Interrupted.
 GrainColors grainColors(const Int32Grid& labels, Interrupter* interrupter = nullptr);
+
+/// The same of labels in slabs, which are read once. @throw as above; what reading throws
+GrainColors grainColors(const LabelSlabs& labels, Interrupter* interrupter = nullptr);
 
 /// grainColors() of labels that come in parts, in any order. The neighbors of each voxel of the whole
 /// have to be with it in one of the parts.

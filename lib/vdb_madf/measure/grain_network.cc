@@ -41,11 +41,11 @@ uint32_t position(const std::vector<int32_t>& labels, int32_t label) {
   return uint32_t(std::lower_bound(labels.begin(), labels.end(), label) - labels.begin());
 }
 
-}  // namespace
-
-GrainNetwork grainNetwork(const Int32Grid& labels, const MeasureOptions& options,
-                          Interrupter* interrupter) {
-  const WorldTransform world = detail::worldTransform(labels.transform());
+/// Of labels, a grid or slabs. @param about has their transform
+template <typename Labels>
+GrainNetwork networkOf(const Labels& labels, const Int32Grid& about, const MeasureOptions& options,
+                       Interrupter* interrupter) {
+  const WorldTransform world = detail::worldTransform(about.transform());
   const double shortest = std::min({world.edges[0], world.edges[1], world.edges[2]});
   const Measurements measured = measure(labels, options, interrupter);
 
@@ -71,6 +71,18 @@ GrainNetwork grainNetwork(const Int32Grid& labels, const MeasureOptions& options
   network.bondColumns.push_back(std::move(faceArea));
   network.bondColumns.push_back(std::move(length));
   return network;
+}
+
+}  // namespace
+
+GrainNetwork grainNetwork(const Int32Grid& labels, const MeasureOptions& options,
+                          Interrupter* interrupter) {
+  return networkOf(labels, labels, options, interrupter);
+}
+
+GrainNetwork grainNetwork(const LabelSlabs& labels, const MeasureOptions& options,
+                          Interrupter* interrupter) {
+  return networkOf(labels, *labels.about, options, interrupter);
 }
 
 }  // namespace vdb_madf

@@ -10,6 +10,7 @@
 
 #include "vdb_madf/base/color.h"
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/label_slabs.h"
 #include "vdb_madf/measure/measure.h"
 
 namespace vdb_madf {
@@ -40,6 +41,11 @@ struct GrainNetwork {
 /// @throw InvalidInput if voxels are not along the axes of the world, or mirrored, or as measure();
 ///   Interrupted.
 GrainNetwork grainNetwork(const Int32Grid& labels, const MeasureOptions& options = {},
+                          Interrupter* interrupter = nullptr);
+
+/// The same of labels in slabs, which are read once more than by measure().
+/// @throw as above; InvalidInput if the domain is a region; what reading throws.
+GrainNetwork grainNetwork(const LabelSlabs& labels, const MeasureOptions& options = {},
                           Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

@@ -6,6 +6,7 @@
 #include <openvdb/Metadata.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -15,6 +16,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/files/detail/input_file.h"
+#include "vdb_madf/files/detail/output_place.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/grids/detail/region_metadata.h"
 #include "vdb_madf/method/graph_metadata.h"
@@ -81,6 +83,31 @@ std::map<std::string, std::string> ownMetadata(const openvdb::GridBase& grid) {
   return texts;
 }
 
+/// The number of the process that put a folder out of its place follows.
+constexpr char kReplaced[] = ".replaced-";
+
+/// What a run that was killed has put out of the place of its output goes back there if that is empty, else
+/// away.
+void settleReplaced(const std::string& path) {
+  const detail::OutputPlace place = detail::outputPlaceOf(path);
+  const std::string stem = place.name + kReplaced;
+  std::error_code error;
+  std::vector<fs::path> left;
+  for (const auto& entry : fs::directory_iterator(place.folder, error)) {
+    const std::string name = entry.path().filename().string();
+    const std::string number = name.substr(std::min(stem.size(), name.size()));
+    if (name.compare(0, stem.size(), stem) == 0 && !number.empty() && number.size() < 10 &&
+        number.find_first_not_of("0123456789") == std::string::npos &&
+        detail::isGone(std::stoi(number)) && hasIndex(entry.path().string()))
+      left.push_back(entry.path());
+  }
+  for (const fs::path& old : left)
+    if (fs::exists(path, error))
+      fs::remove_all(old, error);
+    else
+      fs::rename(old, path, error);
+}
+
 /// All slabs have the whole region of their domain beside them.
 bool holdsRegion(const openvdb::GridBase& grid) {
   return grid.getName() == detail::kRegionGrid && grid.isType<BoolGrid>();
@@ -128,6 +155,7 @@ SlabFolder openSlabFolder(const std::string& path) {
 }
 
 void checkSlabFolder(const std::string& path) {
+  settleReplaced(path);
   std::error_code ignored;
   if (fs::exists(path, ignored) && !hasIndex(path))
     throw IoError("cannot write " + path +
@@ -142,7 +170,7 @@ void commitSlabFolder(const std::string& made, const std::string& path) {
     return error;
   };
   std::error_code ignored;
-  const std::string old = path + ".replaced-" + std::to_string(::getpid());
+  const std::string old = path + kReplaced + std::to_string(::getpid());
   const bool replaces = fs::exists(path, ignored);
   if (replaces)
     if (const auto error = rename(path, old))

@@ -37,7 +37,9 @@ struct SlabFolder {
 /// @throw IoError, one line, if the index is missing or damaged, or a slab is missing
 SlabFolder openSlabFolder(const std::string& path);
 
-/// Before the work. @throw IoError if something else is at the path of a folder that is to be written
+/// Before the work. A folder that commitSlabFolder() of a killed run has put aside goes back to its path
+/// if none is there, else away. @throw IoError if something else is at the path of a folder that is to be
+/// written
 void checkSlabFolder(const std::string& path);
 
 /// Puts the folder `made` in the place of `path`, and of the folder of slabs that is there.

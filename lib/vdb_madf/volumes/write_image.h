@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <cstddef>
+#include <memory>
 #include <string>
 
 #include "vdb_madf/grids/grid_types.h"
@@ -21,5 +23,19 @@ void writeImage(const std::string& path, const openvdb::GridBase& grid, const Co
 /// The same of labels in slabs, each of which is read once.
 void writeImage(const std::string& path, const LabelSlabs& labels, const CoordBBox& box,
                 SampleType type, Interrupter* interrupter = nullptr);
+
+// The same by several processes: one creates the image, which share() of it shares; each writes the part of
+// some slabs; and when all are done the first one finishes it.
+
+/// @throw as writeImage()
+std::unique_ptr<ImageWriter> createSharedImage(const std::string& path, const LabelSlabs& labels,
+                                               const CoordBBox& box, SampleType type);
+
+/// The slabs from `begin` to before `end`: the lowest one of all with what of the box lies below it, the
+/// highest one with what lies above. Synced to disk.
+/// @throw as writeImage(); IoError if this process does not see the shared file
+void writeImagePart(const std::string& path, const SharedImage& shared, const LabelSlabs& labels,
+                    size_t begin, size_t end, const CoordBBox& box, SampleType type,
+                    Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

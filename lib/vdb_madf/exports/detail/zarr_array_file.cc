@@ -7,11 +7,11 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
@@ -54,15 +54,18 @@ std::string gzipped(const std::vector<unsigned char>& bytes) {
   return coded;
 }
 
-/// The chunks of a box that leaves reach into, each with these leaves.
+size_t voxelsOf(const Coord& edges) {
+  return size_t(edges.x()) * size_t(edges.y()) * size_t(edges.z());
+}
+
+/// The chunks of a box that leaves reach into, within some slices, each with these leaves.
 class Chunks {
  public:
-  Chunks(const Int32Tree& tree, const CoordBBox& box) : box_(box) {
-    const Coord size = box.dim();
-    for (int axis = 0; axis < 3; ++axis) edges_[axis] = std::min(kZarrChunk, size[axis]);
+  Chunks(const Int32Tree& tree, const CoordBBox& box, const Coord& edges, const CoordBBox& slices)
+      : box_(box), edges_(edges) {
     for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
       CoordBBox part = leaf->getNodeBoundingBox();
-      part.intersect(box);
+      part.intersect(slices);
       if (part.empty()) continue;
       const Coord first = chunkOf(part.min()), last = chunkOf(part.max());
       for (int x = first.x(); x <= last.x(); ++x)
@@ -77,8 +80,7 @@ class Chunks {
 
   size_t count() const { return first_.size() - 1; }
   const Coord& number(size_t i) const { return pieces_[first_[i]].chunk; }
-  const Coord& edges() const { return edges_; }
-  size_t voxels() const { return size_t(edges_.x()) * size_t(edges_.y()) * size_t(edges_.z()); }
+  size_t voxels() const { return voxelsOf(edges_); }
 
   /// f(place in the chunk, x fastest; label) for the labelled voxels of a chunk within the box.
   template <typename F>
@@ -142,58 +144,69 @@ std::vector<unsigned char> samplesOf(const Chunks& chunks, size_t i, ZarrSamples
   return bytes;
 }
 
-std::string chunkName(const std::string& array, const Coord& number, ZarrVersion version) {
-  return within(array, (version == ZarrVersion::three ? "c/" : "") + std::to_string(number.z()) +
+}  // namespace
+
+ZarrArray::ZarrArray(const OutputTree& folder, std::string name, const CoordBBox& box,
+                     ZarrSamples samples, ZarrVersion version)
+    : folder_(folder), name_(std::move(name)), box_(box), samples_(samples), version_(version) {
+  for (int axis = 0; axis < 3; ++axis) edges_[axis] = std::min(kZarrChunk, box.dim()[axis]);
+  writeDescription();
+}
+
+int ZarrArray::layerCount() const {
+  return (box_.dim().z() + edges_.z() - 1) / edges_.z();
+}
+
+void ZarrArray::write(const Int32Tree& values, int begin, int end, Interrupter* interrupter) {
+  CoordBBox slices = box_;
+  slices.min().z() = firstSlice(begin);
+  slices.max().z() = std::min(firstSlice(end) - 1, box_.max().z());
+  const Chunks chunks(values, box_, edges_, slices);
+  parallelFor(chunks.count(), 1, interrupter, [&](size_t first, size_t last) {
+    for (size_t i = first; i < last; ++i) {
+      const auto bytes = samplesOf(chunks, i, samples_);
+      if (bytes.empty()) continue;
+      isEmpty_ = false;
+      folder_.write(chunkName(chunks.number(i)), gzipped(bytes));
+    }
+  });
+}
+
+void ZarrArray::finish() const {
+  const size_t bytes = voxelsOf(edges_) * (samples_ == ZarrSamples::label ? 4 : 1);
+  if (isEmpty_) folder_.write(chunkName(Coord(0)), gzipped(std::vector<unsigned char>(bytes)));
+}
+
+std::string ZarrArray::chunkName(const Coord& number) const {
+  return within(name_, (version_ == ZarrVersion::three ? "c/" : "") + std::to_string(number.z()) +
                            "/" + std::to_string(number.y()) + "/" + std::to_string(number.x()));
 }
 
-void writeDescription(const OutputTree& folder, const std::string& name, const Coord& size,
-                      const Coord& chunk, bool isWide, ZarrVersion version) {
+void ZarrArray::writeDescription() const {
+  const bool isWide = samples_ == ZarrSamples::label;
   Json json;
-  json["zarr_format"] = int(version);
-  if (version == ZarrVersion::two) {
-    json["shape"] = zyx(size);
-    json["chunks"] = zyx(chunk);
+  json["zarr_format"] = int(version_);
+  if (version_ == ZarrVersion::two) {
+    json["shape"] = zyx(box_.dim());
+    json["chunks"] = zyx(edges_);
     json["dtype"] = isWide ? "<u4" : "|u1";
     json["compressor"] = {{"id", "gzip"}, {"level", kGzipLevel}};
     json["filters"] = nullptr;
     json["fill_value"] = 0;
     json["order"] = "C";
     json["dimension_separator"] = "/";
-    return folder.write(within(name, ".zarray"), json.dump(2) + "\n");
+    return folder_.write(within(name_, ".zarray"), json.dump(2) + "\n");
   }
   json["node_type"] = "array";
-  json["shape"] = zyx(size);
+  json["shape"] = zyx(box_.dim());
   json["data_type"] = isWide ? "uint32" : "uint8";
-  json["chunk_grid"] = {{"name", "regular"}, {"configuration", {{"chunk_shape", zyx(chunk)}}}};
+  json["chunk_grid"] = {{"name", "regular"}, {"configuration", {{"chunk_shape", zyx(edges_)}}}};
   json["chunk_key_encoding"] = {{"name", "default"}, {"configuration", {{"separator", "/"}}}};
   json["fill_value"] = 0;
   json["codecs"] = Json::array({{{"name", "bytes"}, {"configuration", {{"endian", "little"}}}},
                                 {{"name", "gzip"}, {"configuration", {{"level", kGzipLevel}}}}});
   json["dimension_names"] = {"z", "y", "x"};
-  folder.write(within(name, "zarr.json"), json.dump(2) + "\n");
-}
-
-}  // namespace
-
-void writeZarrArray(const OutputTree& folder, const std::string& name, const Int32Tree& values,
-                    const CoordBBox& box, ZarrSamples samples, ZarrVersion version,
-                    Interrupter* interrupter) {
-  const Chunks chunks(values, box);
-  writeDescription(folder, name, box.dim(), chunks.edges(), samples == ZarrSamples::label, version);
-  std::atomic<bool> isEmpty{true};
-  parallelFor(chunks.count(), 1, interrupter, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const auto bytes = samplesOf(chunks, i, samples);
-      if (bytes.empty()) continue;
-      isEmpty = false;
-      folder.write(chunkName(name, chunks.number(i), version), gzipped(bytes));
-    }
-  });
-  if (isEmpty)
-    folder.write(chunkName(name, Coord(0), version),
-                 gzipped(std::vector<unsigned char>(chunks.voxels() *
-                                                    (samples == ZarrSamples::label ? 4 : 1))));
+  folder_.write(within(name_, "zarr.json"), json.dump(2) + "\n");
 }
 
 void writeZarrGroup(const OutputTree& folder, const std::string& name,

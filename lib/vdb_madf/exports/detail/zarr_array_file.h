@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <atomic>
 #include <string>
 
 #include "vdb_madf/base/interrupter.h"
@@ -23,14 +24,38 @@ enum class ZarrSamples {
 /// Voxels along each edge of a chunk, or as many as the array has.
 constexpr int kZarrChunk = 64;
 
-/// Writes an array [z, y, x] of a box, at `name` within the folder: its description, and chunks by
-/// gzip. Chunks of background alone are left out, but for the first where there would be none: an
-/// array without any looks like one whose chunks were lost. Memory: a chunk per thread.
-/// @param values without active tiles
-/// @throw IoError; Interrupted
-void writeZarrArray(const OutputTree& folder, const std::string& name, const Int32Tree& values,
-                    const CoordBBox& box, ZarrSamples samples, ZarrVersion version,
-                    Interrupter* interrupter);
+/// An array [z, y, x] of a box, at `name` within a folder: its description, and chunks by gzip, layer by
+/// layer. Chunks of background alone are left out, but for the first where there would be none: an array
+/// without any looks like one whose chunks were lost.
+class ZarrArray {
+ public:
+  /// Writes the description. The folder must live as long. @throw IoError
+  ZarrArray(const OutputTree& folder, std::string name, const CoordBBox& box, ZarrSamples samples,
+            ZarrVersion version);
+
+  /// Layers of chunks along z, from the lowest slices of the box on.
+  int layerCount() const;
+  int firstSlice(int layer) const { return box_.min().z() + layer * edges_.z(); }
+
+  /// Writes the chunks in the layers [begin, end), all of whose values are there. Memory: a chunk per
+  /// thread. @param values without active tiles
+  /// @throw IoError; Interrupted
+  void write(const Int32Tree& values, int begin, int end, Interrupter* interrupter);
+  /// After all layers. @throw IoError
+  void finish() const;
+
+ private:
+  std::string chunkName(const Coord& number) const;
+  void writeDescription() const;
+
+  const OutputTree& folder_;
+  std::string name_;
+  CoordBBox box_;
+  Coord edges_;  // of a chunk
+  ZarrSamples samples_;
+  ZarrVersion version_;
+  std::atomic<bool> isEmpty_{true};
+};
 
 /// Writes a group's description. @param attributes a JSON object
 void writeZarrGroup(const OutputTree& folder, const std::string& name,

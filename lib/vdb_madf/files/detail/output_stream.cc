@@ -12,6 +12,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/detail/standard_descriptors.h"
+#include "vdb_madf/files/detail/write_whole.h"
 #include "vdb_madf/files/standard_streams.h"
 
 namespace vdb_madf::detail {
@@ -19,8 +20,6 @@ namespace vdb_madf::detail {
 namespace {
 
 constexpr size_t kBufferBytes = size_t(1) << 20;
-/// Linux moves at most 2 GiB in one call.
-constexpr size_t kMaxBytesPerCall = size_t(1) << 30;
 
 }  // namespace
 
@@ -54,18 +53,9 @@ void OutputStream::flush() {
 
 void OutputStream::writeAt(uint64_t position, const void* data, size_t count) {
   if (!file_ && position != size_) fail(ESPIPE);
-  const char* next = static_cast<const char*>(data);
-  while (count > 0) {
-    const size_t some = std::min(count, kMaxBytesPerCall);
-    const ssize_t put = file_ ? ::pwrite(descriptor_, next, some, off_t(position))
-                              : ::write(descriptor_, next, some);
-    if (put < 0 && errno == EINTR) continue;
-    if (put <= 0) fail(errno);
-    next += put;
-    position += uint64_t(put);
-    count -= size_t(put);
-  }
-  size_ = std::max(size_, position);
+  const auto place = file_ ? std::optional<uint64_t>(position) : std::nullopt;
+  if (const int error = writeWhole(descriptor_, data, count, place)) fail(error);
+  size_ = std::max(size_, position + count);
 }
 
 size_t OutputStream::readAt(uint64_t position, void* to, size_t count) const {
@@ -84,6 +74,13 @@ size_t OutputStream::readAt(uint64_t position, void* to, size_t count) const {
 void OutputStream::resize(uint64_t size) {
   if (::ftruncate(descriptor_, off_t(size)) != 0) fail(errno);
   size_ = size;
+}
+
+std::optional<std::string> OutputStream::share(uint64_t size) {
+  if (!file_) return std::nullopt;
+  flush();
+  resize(size);
+  return file_->temporaryPath();
 }
 
 void OutputStream::close() {

@@ -58,6 +58,10 @@ class OutputStream {
   /// The bytes that are in the file.
   uint64_t size() const { return size_; }
 
+  /// Lets other processes write the rest of so many bytes (SharedFile): writes what is buffered, and
+  /// returns the temporary. None on standard output.
+  std::optional<std::string> share(uint64_t size);
+
   /// Writes what is buffered and frees buffer and descriptor: only commit() is left.
   void close();
   /// Closes the file if it is open.

@@ -91,7 +91,7 @@ class SampleReader : public ImageReader {
 class SampleWriter : public ImageWriter {
  public:
   SampleWriter(const std::string& path, const ImageInfo& info, const std::string& header)
-      : counter_(path, info), out_(path) {
+      : counter_(path, info), out_(path), header_(header.size()) {
     out_.text(header);
   }
   void write(int count, const void* samples) override { out_.bytes(samples, counter_.add(count)); }
@@ -99,10 +99,14 @@ class SampleWriter : public ImageWriter {
     counter_.finish();
     out_.commit();
   }
+  std::optional<SharedImage> share() override {
+    return detail::shareSamples(counter_, out_, header_);
+  }
 
  private:
   SliceCounter counter_;
   OutputStream out_;
+  uint64_t header_;  // bytes
 };
 
 }  // namespace
@@ -134,6 +138,13 @@ std::unique_ptr<ImageReader> openSamples(const std::string& path, const ImageInf
                   ": check the size, the sample type and whether there is a header to skip");
   }
   return std::make_unique<SampleReader>(path, info, std::move(data), exact, otherFiles);
+}
+
+std::optional<SharedImage> shareSamples(SliceCounter& counter, OutputStream& out, uint64_t header) {
+  const auto temporary = out.share(header + imageBytes(counter.info()));
+  if (!temporary) return std::nullopt;
+  counter.add(counter.info().size.z);
+  return SharedImage{*temporary, header};
 }
 
 std::unique_ptr<ImageWriter> createSamples(const std::string& path, const ImageInfo& info,

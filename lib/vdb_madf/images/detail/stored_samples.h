@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "vdb_madf/files/detail/input_file.h"
+#include "vdb_madf/files/detail/output_stream.h"
+#include "vdb_madf/images/detail/slice_counter.h"
 #include "vdb_madf/images/image.h"
 
 namespace vdb_madf::detail {
@@ -35,6 +37,9 @@ std::unique_ptr<ImageReader> openSamples(const std::string& path, const ImageInf
 /// One file: a header, then the samples, little-endian.
 std::unique_ptr<ImageWriter> createSamples(const std::string& path, const ImageInfo& info,
                                            const std::string& header);
+
+/// ImageWriter::share() of a file that has so many bytes of header, and samples behind them.
+std::optional<SharedImage> shareSamples(SliceCounter& counter, OutputStream& out, uint64_t header);
 
 /// "5 x 6 x 7 uint8", for messages.
 std::string describe(const ImageInfo& info);

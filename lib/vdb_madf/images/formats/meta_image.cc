@@ -113,8 +113,10 @@ class MetaWriter : public ImageWriter {
     const std::string dataFile = dataFileOf(path);
     checkMetaPlace(path);
     if (!local) data_.emplace(dataFile);
-    out_.text(headerText(info, origin,
-                         local ? "LOCAL" : std::filesystem::path(dataFile).filename().string()));
+    const std::string header = headerText(
+        info, origin, local ? "LOCAL" : std::filesystem::path(dataFile).filename().string());
+    out_.text(header);
+    if (local) before_ = header.size();
   }
   void write(int count, const void* samples) override {
     (data_ ? *data_ : out_).bytes(samples, counter_.add(count));
@@ -126,11 +128,15 @@ class MetaWriter : public ImageWriter {
     if (data_) data_->commit();
     out_.commit();
   }
+  std::optional<SharedImage> share() override {
+    return shareSamples(counter_, data_ ? *data_ : out_, before_);
+  }
 
  private:
   SliceCounter counter_;
   OutputStream out_;
   std::optional<OutputStream> data_;
+  uint64_t before_ = 0;  // bytes before the samples in their file
 };
 
 }  // namespace
