@@ -129,6 +129,8 @@ size_t LabelBlocks::find(const Coord& origin) const {
 }
 
 uint32_t LabelBlocks::number(int32_t label) const {
+  const auto dense = size_t(int64_t(label) - labels_.front());  // mostly there are no gaps
+  if (dense < labels_.size() && labels_[dense] == label) return uint32_t(dense);
   return uint32_t(std::lower_bound(labels_.begin(), labels_.end(), label) - labels_.begin());
 }
 

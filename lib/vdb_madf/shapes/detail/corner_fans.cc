@@ -70,6 +70,16 @@ const Fans& fans() {
 }
 
 void Corner::setVoxels(const std::array<int32_t, 8>& voxel) {
+  const int32_t largest = *std::max_element(voxel.begin(), voxel.end());
+  if (std::all_of(voxel.begin(), voxel.end(),
+                  [&](int32_t here) { return here == 0 || here == largest; })) {
+    grains = 1;  // mostly
+    labels = 2;
+    label[0] = largest;
+    for (int n = 0; n < 8; ++n) set[0] = uint8_t(set[0] | int(voxel[size_t(n)] == largest) << n);
+    pointCount = fans().count[set[0]];
+    return;
+  }
   bool hasBackground = false;
   for (const int32_t here : voxel) {
     hasBackground = hasBackground || here == 0;

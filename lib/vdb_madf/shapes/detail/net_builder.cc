@@ -73,14 +73,29 @@ class NetBuilder {
         for (int z = 0; z < 8; ++z) f(x, y, z);
   }
 
+  /// Those places of a block around whose corners the labels are not all alike.
+  template <typename F>
+  static void forEachMixedPlace(const LabelHalo& halo, const F& f) {
+    for (int x = 0; x < 8; ++x)
+      for (int y = 0; y < 8; ++y) {
+        const int32_t* row = &halo[haloAt(x, y, 0)];
+        std::array<int32_t, 8> isMixed{};  // along z
+        for (const int step : {0, kHaloStride[0], kHaloStride[1], kHaloStride[0] + kHaloStride[1]})
+          for (int z = 0; z < 8; ++z)
+            isMixed[size_t(z)] |= (row[z] ^ row[z - step]) | (row[z] ^ row[z - step - 1]);
+        for (int z = 0; z < 8; ++z)
+          if (isMixed[size_t(z)]) f(x, y, z);
+      }
+  }
+
   void count() {
     std::vector<std::array<uint32_t, 3>> counts(blocks_.size());
     forEachBlock(0, 30, [&](size_t block, const LabelHalo& halo) {
       uint32_t corners = 0, points = 0, quads = 0;
-      forEachPlace([&](int x, int y, int z) {
+      forEachMixedPlace(halo, [&](int x, int y, int z) {
         const int32_t* at = &halo[haloAt(x, y, z)];
         const Corner corner(at);
-        corners += corner.labels > 0;
+        ++corners;
         points += uint32_t(corner.pointCount);
         for (const int step : kHaloStride)
           if (at[0] != at[-step]) quads += uint32_t(at[0] > 0) + uint32_t(at[-step] > 0);
@@ -107,9 +122,8 @@ class NetBuilder {
 
   void placeCorners(size_t block, const LabelHalo& halo) {
     uint32_t number = firstCorner_[block], point = firstPoint_[block];
-    forEachPlace([&](int x, int y, int z) {
+    forEachMixedPlace(halo, [&](int x, int y, int z) {
       const Corner corner(&halo[haloAt(x, y, z)]);
-      if (corner.labels == 0) return;
       net_.corners[number] = blocks_.origin(block).offsetBy(x, y, z);
       net_.firstPoint[number] = point;
       for (int g = 0; g < corner.grains; ++g)
@@ -170,6 +184,8 @@ class NetBuilder {
     corners.begin(halo);
     uint32_t next = firstQuad_[block];
     const Coord origin = blocks_.origin(block);
+    const bool isInner =
+        domain_.empty() || domain_.isInside(CoordBBox(origin.offsetBy(-1), origin.offsetBy(7)));
     forEachPlace([&](int x, int y, int z) {
       if (table[tableAt(x, y, z)] == SurfaceNet::kNone) return;  // all is alike around it
       const int32_t* at = &halo[haloAt(x, y, z)];
@@ -190,7 +206,7 @@ class NetBuilder {
           pinches_[block].push_back(
               {table[tableAt(x, y, z)],
                table[tableAt(x + (axis == 0), y + (axis == 1), z + (axis == 2))]});
-        if (withLinks_) addLink(at, table, origin, Coord(x, y, z), axis);
+        if (withLinks_) addLink(at, table, origin, Coord(x, y, z), axis, isInner);
       }
     });
   }
@@ -208,7 +224,8 @@ class NetBuilder {
       const uint32_t corner = table[tableAt(q.x(), q.y(), q.z())];
       // Seen from this corner, the face lies on the other side of it along u and v.
       const int face = axis * 4 + (1 - kAround[n][0]) * 2 + (1 - kAround[n][1]);
-      quad[n] = net_.firstPoint[corner] + corners.at(q).point(grain, face);
+      quad[n] = net_.firstPoint[corner];
+      if (net_.firstPoint[corner + 1] > quad[n] + 1) quad[n] += corners.at(q).point(grain, face);
     }
     if (isAbove) std::swap(quad[1], quad[3]);
     quads_[number] = quad;
@@ -257,14 +274,15 @@ class NetBuilder {
     return around;
   }
 
-  /// The edge of the lattice from corner p upwards along `axis`.
+  /// The edge of the lattice from corner p upwards along `axis`; `isInner`: all voxels around it are
+  /// known to be in the domain.
   void addLink(const int32_t* at, const CornerTable& table, const Coord& origin, const Coord& p,
-               int axis) {
+               int axis, bool isInner) {
     const int u = kHaloStride[(axis + 1) % 3], v = kHaloStride[(axis + 2) % 3];
     if (at[0] == at[-u] && at[0] == at[-v] && at[0] == at[-u - v]) return;
-    std::array<int32_t, 4> around = labelsAround(at, origin + p, axis);
-    std::sort(around.begin(), around.end());
-    const auto labels = std::unique(around.begin(), around.end()) - around.begin();
+    const auto [a, b, c, d] = isInner ? std::array{at[0], at[-u], at[-v], at[-u - v]}
+                                      : labelsAround(at, origin + p, axis);
+    const int labels = 1 + (b != a) + (c != a && c != b) + (d != a && d != b && d != c);
     Coord q = p;
     ++q[axis];
     const uint32_t low = table[tableAt(p.x(), p.y(), p.z())],

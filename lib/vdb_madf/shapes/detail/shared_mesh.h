@@ -51,7 +51,7 @@ constexpr float kCornerReach = 0.5f;
 
 /// The wanted place, but at most `reach` along an axis from `home`, in the domain, and on those of its
 /// faces that `home` is on.
-inline openvdb::Vec3f withinReach(const openvdb::Vec3f& home, const openvdb::Vec3d& wanted,
+inline openvdb::Vec3f withinReach(const openvdb::Vec3f& home, const openvdb::Vec3f& wanted,
                                   float reach, const DomainFaces& domain) {
   openvdb::Vec3f result;
   for (int axis = 0; axis < 3; ++axis) {
@@ -59,7 +59,7 @@ inline openvdb::Vec3f withinReach(const openvdb::Vec3f& home, const openvdb::Vec
       result[axis] = home[axis];
       continue;
     }
-    result[axis] = std::clamp(float(wanted[axis]), home[axis] - reach, home[axis] + reach);
+    result[axis] = std::clamp(wanted[axis], home[axis] - reach, home[axis] + reach);
     if (domain.areKnown)
       result[axis] = std::clamp(result[axis], domain.low[axis], domain.high[axis]);
   }

@@ -40,7 +40,7 @@ struct SurfaceNet {
 std::vector<openvdb::Vec3f> latticePositions(const SurfaceNet& net);
 
 /// Positions of the corners after `rounds` of smoothing; see grainMesh(). Turns the quads so that
-/// the first and the third corner are the nearer ones. @throw Interrupted
+/// the first and the third corner are the nearer ones, and uses the links up. @throw Interrupted
 std::vector<openvdb::Vec3f> relax(SurfaceNet& net, int rounds, const DomainFaces& domain,
                                   Interrupter* interrupter);
 

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/shapes/detail/grain_pressures.h"
+
+#include <cmath>
+#include <numeric>
+
+#include "vdb_madf/base/detail/parallel.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+constexpr size_t kRowGrain = 1024;
+constexpr int kMaxSteps = 200;
+
+void multiply(const PressureEquations& equations, const std::vector<double>& x,
+              std::vector<double>& product) {
+  parallelFor(x.size(), kRowGrain, nullptr, [&](size_t begin, size_t end) {
+    for (size_t g = begin; g < end; ++g) {
+      double sum = equations.own[g] * x[g];
+      for (uint32_t i = equations.first[g]; i < equations.first[g + 1]; ++i)
+        sum += equations.byNeighbor[i] * x[equations.neighbors[i]];
+      product[g] = sum;
+    }
+  });
+}
+
+/// In order: the same for any number of threads.
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+}  // namespace
+
+std::vector<double> pressuresFor(const PressureEquations& equations,
+                                 const std::vector<double>& missing,
+                                 const std::vector<double>& tolerance) {
+  const size_t count = missing.size();
+  std::vector<double> pressures(count), rest(missing), scaled(count), direction(count),
+      growth(count);
+  for (size_t g = 0; g < count; ++g)
+    if (!(equations.own[g] > 0)) rest[g] = 0;
+  double before = 0;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    bool isDone = true;
+    for (size_t g = 0; g < count; ++g) {
+      scaled[g] = equations.own[g] > 0 ? rest[g] / equations.own[g] : 0;
+      isDone = isDone && std::abs(rest[g]) <= tolerance[g];
+    }
+    if (isDone) break;
+    const double now = dot(rest, scaled), turn = step > 0 ? now / before : 0;
+    for (size_t g = 0; g < count; ++g) direction[g] = scaled[g] + turn * direction[g];
+    multiply(equations, direction, growth);
+    const double curvature = dot(direction, growth);
+    if (!(curvature > 0)) break;  // grains that fill all there is: nothing is left to be gained
+    for (size_t g = 0; g < count; ++g) {
+      pressures[g] += now / curvature * direction[g];
+      rest[g] -= now / curvature * growth[g];
+    }
+    before = now;
+  }
+  return pressures;
+}
+
+}  // namespace vdb_madf::detail
