@@ -390,6 +390,14 @@ TEST_CASE("ome_zarr: labels in slabs give the files of the whole", "[ome_zarr]")
     while (cuts.back() < 17000) cuts.push_back(cuts.back() + (cuts.size() % 2 ? 8 : 1400));
     CHECK(requireSame(labels, box, cuts, OmeVersion::v05) > 500);
   }
+  SECTION("where two labels are equally frequent") {
+    const CoordBBox box(Coord(0), Coord(31, 31, 1100));
+    const auto labels = Int32Grid::create(0);
+    for (auto p = box.begin(); p; ++p)
+      labels->tree().setValueOn(*p, ((*p).x() + (*p).z() / 64) % 2 ? 5 : 3 + (*p).z() / 300 * 4);
+    setDomain(*labels, box);
+    requireSame(labels, box, {0, 8, 40, 264, 800, 808, 1104}, OmeVersion::v04);
+  }
   SECTION("labels that leave the box, or have no voxel") {
     const auto labels = heapGrid();
     for (int z = -30; z < 90; ++z) labels->tree().setValueOn(Coord(3, 3, z), 77);

@@ -568,6 +568,7 @@ TEST_CASE("slabs: what cannot be is said in one line", "[slabs]") {
   };
   const std::string segment = "segment in.vdb out.slabs --grid object ";
   refused(segment + "--keep power", "--keep manifold alone");
+  refused(segment + "--tables tables", "by vdb_madf measure");
   refused(segment + "--max-memory 100MiB", "allow more");
   refused("segment none.tif out.slabs", "none.tif");
   refused("segment in.vdb one.vdb --grid object --resume", "OUT.slabs");

@@ -110,10 +110,12 @@ void checkSlabArguments(const SegmentArguments& o) {
     throw WrongUsage("--slab-height, --scratch and --resume are for an output like OUT.slabs");
   if (!isSlabs) return;
   const SegmentOptions& keep = o.segment;
-  if (keep.keepDistance || keep.keepPower || keep.keepBalls || !o.tables.empty() || o.dryRun)
+  if (!o.tables.empty())
+    throw WrongUsage(o.out + ": tables are made of slabs by vdb_madf measure: leave --tables out");
+  if (keep.keepDistance || keep.keepPower || keep.keepBalls || o.dryRun)
     throw WrongUsage(o.out +
-                     ": slabs get labels and --keep manifold alone: leave other grids, --tables "
-                     "and --dry-run out");
+                     ": slabs get labels and --keep manifold alone: leave other grids and "
+                     "--dry-run out");
 }
 
 void writeSlab(const std::string& path, const SlabGrids& grids, size_t slab, size_t count,
