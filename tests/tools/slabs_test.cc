@@ -545,7 +545,7 @@ TEST_CASE("slabs: nothing is made of a half of what a run left", "[slabs]") {
   };
   std::filesystem::remove_all(bench.path("out.slabs.part"));  // scratch without slabs
   refused(segment + "8 --resume", "slab-0000.vdb: is missing");
-  std::filesystem::remove(bench.path("kept/terminals-3-0.piece"));
+  std::filesystem::remove(bench.path("kept/part-3.piece"));
   refused(segment + "8 --resume", "cannot be opened");
   refused("segment in.vdb other.slabs --grid object -q --scratch kept --slab-height 8 --resume",
           "another input");
