@@ -128,13 +128,13 @@ class BlockDistances {
     });
   }
 
-  /// The edge from a to b of two triangles with these unit normals (0: they have no area); `isConvex`
-  /// if the second one bends away from the normal of the first.
-  void addEdge(const Vec3d& a, const Vec3d& b, Vec3d one, Vec3d other, bool isConvex) {
+  /// The edge from a to b of two triangles with these unit normals (0: they have no area), of which the
+  /// first one has it in this direction.
+  void addEdge(const Vec3d& a, const Vec3d& b, Vec3d one, Vec3d other) {
     const double cosine = one.dot(other);
     const Vec3d edge = b - a;
     if (cosine > 1 - kFlat || edge == Vec3d(0)) return;
-    if (!isConvex) {
+    if (one.cross(other).dot(edge) < 0) {  // the second bends towards the normal of the first
       one = -one;
       other = -other;
     }
@@ -166,8 +166,8 @@ class BlockDistances {
           box[size_t(kW)], [&](double w) { return std::pair(across(w, kU), across(w, kV)); },
           [&](double w, double u, double v, float& square) {
             const double dw = w - a[kW], du = u - a[kU], dv = v - a[kV],
-                         along = (edge[kW] * dw + edge[kU] * du + edge[kV] * dv) * scale;
-            if (along < 0 || along > 1) return;  // nearer to an end
+                         atLine = (edge[kW] * dw + edge[kU] * du + edge[kV] * dv) * scale,
+                         along = std::min(std::max(atLine, 0.0), 1.0);
             const double x = dw - along * edge[kW], y = du - along * edge[kU],
                          z = dv - along * edge[kV];
             square = std::min(square, float(x * x + y * y + z * z));
@@ -230,12 +230,21 @@ class BlockDistances {
     constexpr int kU = (kW + 1) % 3, kV = (kW + 2) % 3;
     const Coord low = box_.min(), high = box_.max();
     const int lastW = std::min(floorOf(heights.high + kSlack), high[kW]);
+    std::array<std::array<int, 5>, kBlockSide + 1> slices;
+    size_t count = 0;
     for (int w = std::max(ceilOf(heights.low - kSlack), low[kW]); w <= lastW; ++w) {
       const auto [alongU, alongV] = rectangleOf(double(w));
-      const int lastU = std::min(floorOf(alongU.high + kSlack), high[kU]),
+      const int firstU = std::max(ceilOf(alongU.low - kSlack), low[kU]),
+                lastU = std::min(floorOf(alongU.high + kSlack), high[kU]),
                 firstV = std::max(ceilOf(alongV.low - kSlack), low[kV]),
                 lastV = std::min(floorOf(alongV.high + kSlack), high[kV]);
-      for (int u = std::max(ceilOf(alongU.low - kSlack), low[kU]); u <= lastU; ++u)
+      slices[count] = {w, firstU, lastU, firstV, lastV};
+      // Most are empty, which no branch could foresee.
+      count += size_t(firstU <= lastU) & size_t(firstV <= lastV);
+    }
+    for (size_t i = 0; i < count; ++i) {
+      const auto& [w, firstU, lastU, firstV, lastV] = slices[i];
+      for (int u = firstU; u <= lastU; ++u)
         for (int v = firstV; v <= lastV; ++v) {
           Coord p;
           p[kW] = w;
@@ -283,6 +292,9 @@ MeshDistance::MeshDistance(const GrainMesh& mesh, size_t grain, float reach)
       triangles_(trianglesOf(mesh, grain)),
       reach_(reach),
       cornersOfPoint_(cornersOf(triangles_), pointCount_) {
+  normals_.reserve(triangles_.size());
+  for (const auto& [a, b, c] : triangles_)
+    normals_.push_back(normalOf(Vec3d(points_[a]), Vec3d(points_[b]), Vec3d(points_[c])));
   listBlocks();
 }
 
@@ -329,11 +341,10 @@ void MeshDistance::listBlocks() {
   }
 }
 
-uint32_t MeshDistance::apexBeyond(uint32_t a, uint32_t b) const {
+uint32_t MeshDistance::triangleBeyond(uint32_t a, uint32_t b) const {
   for (uint32_t i = cornersOfPoint_.first[a]; i < cornersOfPoint_.first[a + 1]; ++i) {
     const uint32_t corner = cornersOfPoint_.items[i];
-    const Triangle& triangle = triangles_[corner / 3];
-    if (triangle[(corner % 3 + 2) % 3] == b) return triangle[(corner % 3 + 1) % 3];
+    if (triangles_[corner / 3][(corner % 3 + 2) % 3] == b) return corner / 3;
   }
   return SharedMesh::kNone;
 }
@@ -345,15 +356,12 @@ std::vector<float> MeshDistance::squaredDistances(size_t block) const {
     const Triangle& triangle = triangles_[number];
     const std::array<Vec3d, 3> at{points_[triangle[0]], points_[triangle[1]], points_[triangle[2]]};
     distances.addTriangle(at[0], at[1], at[2]);
-    const Vec3d normal = normalOf(at[0], at[1], at[2]);
     for (size_t n = 0; n < 3; ++n) {
       const uint32_t a = triangle[n], b = triangle[(n + 1) % 3];
       if (a > b) continue;  // the other triangle's
-      const uint32_t apex = apexBeyond(a, b);
-      assert(apex != SharedMesh::kNone);
-      const Vec3d &from = at[n], &to = at[(n + 1) % 3], beyond(points_[apex]);
-      distances.addEdge(from, to, normal, normalOf(to, from, beyond),
-                        (beyond - from).dot(normal) < 0);
+      const uint32_t beyond = triangleBeyond(a, b);
+      assert(beyond != SharedMesh::kNone);
+      distances.addEdge(at[n], at[(n + 1) % 3], normals_[number], normals_[beyond]);
     }
   }
   return distances.squares();
