@@ -235,10 +235,10 @@ class VolumeCorrection {
         byNeighbor[last - begin] += product;
       });
     }
-    // Held back: what would move points farther than they may go. But not much where a grain has a
-    // surface, for others would grow at its expense where the volumes cannot all be met.
+    // Held back: what would move points farther than they may go. But only so much of a grain that is
+    // more than a crumb, for others would grow at its expense where the volumes cannot all be met.
     const double volume = double(volumes_[grain]),
-                 most = kHeldBack * std::max(squares_[grain], std::cbrt(volume * volume));
+                 most = std::max(kHeldBack * squares_[grain], std::cbrt(volume * volume));
     equations_.own[grain] =
         own + std::min(std::abs(missing_[grain]) * meanGradient(grain) / reach_, most);
   }
