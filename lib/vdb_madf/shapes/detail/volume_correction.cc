@@ -26,7 +26,8 @@ constexpr double kVolumeTolerance = 1e-3;
 constexpr int kMaxCorrections = 20;
 /// Of the tolerance: what the pressures leave to the next correction.
 constexpr double kSolved = 0.1;
-/// Of a grain's growth with its pressure: what this may be understated by.
+/// Of the squared gradients of a grain: its growth with its pressure is overstated by no more, or by the
+/// area of a cube of its volume (a face of it, voxels squared) if that is more.
 constexpr double kHeldBack = 0.1;
 /// Voxels: grains whose points would move by less on the average stay as they are.
 constexpr double kLeastMove = 1e-4;
