@@ -37,12 +37,13 @@ class MeshDistance {
   void listBlocks();
   /// The voxels within reach of a box along each axis.
   CoordBBox reached(const openvdb::Vec3f& low, const openvdb::Vec3f& high) const;
-  /// The third point of the triangle that has the edge from b to a.
-  uint32_t apexBeyond(uint32_t a, uint32_t b) const;
+  /// The triangle that has the edge from b to a.
+  uint32_t triangleBeyond(uint32_t a, uint32_t b) const;
 
   const openvdb::Vec3f* points_;  ///< of the grain
   uint32_t pointCount_;
-  std::vector<Triangle> triangles_;  ///< of these
+  std::vector<Triangle> triangles_;      ///< of these
+  std::vector<openvdb::Vec3d> normals_;  ///< of the triangles, of length 1; 0: it has no area
   float reach_;
   Lists cornersOfPoint_;  ///< triangle * 3 + corner
   std::vector<CoordBBox> blocks_;

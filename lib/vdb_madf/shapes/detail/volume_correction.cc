@@ -26,7 +26,8 @@ constexpr double kVolumeTolerance = 1e-3;
 constexpr int kMaxCorrections = 20;
 /// Of the tolerance: what the pressures leave to the next correction.
 constexpr double kSolved = 0.1;
-/// Of a grain's growth with its pressure: what this may be understated by.
+/// Of the squared gradients of a grain: its growth with its pressure is overstated by no more, or by the
+/// area of a cube of its volume (a face of it, voxels squared) if that is more.
 constexpr double kHeldBack = 0.1;
 /// Voxels: grains whose points would move by less on the average stay as they are.
 constexpr double kLeastMove = 1e-4;
@@ -235,10 +236,10 @@ class VolumeCorrection {
         byNeighbor[last - begin] += product;
       });
     }
-    // Held back: what would move points farther than they may go. But not much where a grain has a
-    // surface, for others would grow at its expense where the volumes cannot all be met.
+    // Held back: what would move points farther than they may go. But only so much of a grain that is
+    // more than a crumb, for others would grow at its expense where the volumes cannot all be met.
     const double volume = double(volumes_[grain]),
-                 most = kHeldBack * std::max(squares_[grain], std::cbrt(volume * volume));
+                 most = std::max(kHeldBack * squares_[grain], std::cbrt(volume * volume));
     equations_.own[grain] =
         own + std::min(std::abs(missing_[grain]) * meanGradient(grain) / reach_, most);
   }

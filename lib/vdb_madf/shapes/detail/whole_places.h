@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+namespace vdb_madf::detail {
+
+/// Of values that fit; without SSE 4.1 those of the standard are calls.
+inline int floorOf(double value) {
+  const int whole = int(value);
+  return whole - (double(whole) > value);
+}
+inline int ceilOf(double value) {
+  const int whole = int(value);
+  return whole + (double(whole) < value);
+}
+
+}  // namespace vdb_madf::detail
