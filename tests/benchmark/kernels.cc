@@ -45,7 +45,7 @@ struct Bed {
     options.size = Coord(fromEnvironment("VDB_MADF_BENCHMARK_SIZE", 256));
     mask = generatePack(options).object;
     index = LeafIndex(*mask);
-    obstacles = {true, {Coord(0), options.size - Coord(1)}};
+    obstacles = {true, CoordBBox(Coord(0), options.size - Coord(1))};
   }
 };
 const Bed& bed() {
