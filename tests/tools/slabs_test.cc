@@ -172,8 +172,8 @@ TEST_CASE("slabs: sweep merges their manifolds, as of one file", "[slabs]") {
   RunOptions killing;
   killing.interruptOn = "again.csv.scratch";
   killing.signal = SIGKILL;
-  killing.delay = 0.02;
-  bench.run(sweep, killing);
+  for (int i = 0; i < 50 && !bench.names().count("again.csv.scratch"); ++i)
+    bench.run(sweep, killing);  // on a busy machine it may end before
   REQUIRE(bench.names().count("again.csv.scratch"));
   bench.mustRun(sweep);
   CHECK(bench.bytes("again.csv") == rows);
