@@ -60,7 +60,6 @@ TEST_CASE("label_masks: each voxel under its label, also after changes", "[label
         const uint32_t label = uint32_t(1 + random() % (count + 10));
         LeafIndex::Mask voxels;
         for (size_t x = 0; x < 8; ++x) voxels[x] = index.mask(leaf)[x] & random() & random();
-        masks.take(leaf, voxels);
         masks.give(leaf, label, voxels);
         for (uint32_t offset = 0; offset < 512; ++offset)
           if (detail::holds(voxels, offset)) {

@@ -166,10 +166,10 @@ class EdgeCollector {
     const uint64_t next[3] = {faceOfNext(leaf, 0), faceOfNext(leaf, 1), faceOfNext(leaf, 2)};
     uint64_t any = 0;
     for (uint32_t x = 0; x < 8; ++x) {
-      constexpr uint64_t kLastZ = 0x8080808080808080u;
       pairs[x][0] &= mask[x] & (x < 7 ? mask[x + 1] : next[0]);
       pairs[x][1] &= mask[x] & (mask[x] >> 8 | next[1] >> (8 * x) << 56);
-      pairs[x][2] &= mask[x] & ((mask[x] >> 1 & ~kLastZ) | spreadToLastZ(next[2] >> (8 * x)));
+      pairs[x][2] &=
+          mask[x] & ((mask[x] >> 1 & ~detail::kLastZ) | spreadToLastZ(next[2] >> (8 * x)));
       any |= pairs[x][0] | pairs[x][1] | pairs[x][2];
     }
     if (!any) return;

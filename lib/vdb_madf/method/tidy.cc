@@ -79,7 +79,6 @@ uint32_t mostFrequentAround(const LeafIndex& index, const VoxelArray<uint32_t>& 
 void moveVoxel(VoxelId id, uint32_t label, detail::LabelMasks& masks) {
   LeafIndex::Mask voxel{};
   voxel[wordOf(id)] = uint64_t(1) << bitOf(id);
-  masks.take(leafOf(id), voxel);
   masks.give(leafOf(id), label, voxel);
 }
 

@@ -7,22 +7,17 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/grids/object_mask.h"
-#include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/leaf_values.h"
 
 namespace vdb_madf::detail {
 
 namespace {
 
-void addParts(const int32_t* values, LeafIndex::Mask rest, std::vector<LabelPart>& parts) {
-  for (size_t x = 0; x < 8; ++x) {
-    while (rest[x]) {
-      const int32_t label = values[x * 64 + size_t(__builtin_ctzll(rest[x]))];
-      const auto* const dense = reinterpret_cast<const uint32_t*>(values);
-      parts.push_back({label, both(rest, voxelsOf(dense, uint32_t(label)))});
-      rest = without(rest, parts.back().mask);
-    }
-  }
+void addParts(const int32_t* values, const LeafIndex::Mask& mask, std::vector<LabelPart>& parts) {
+  forEachValue(mask, reinterpret_cast<const uint32_t*>(values),
+               [&](uint32_t label, const LeafIndex::Mask& voxels) {
+                 parts.push_back({int32_t(label), voxels});
+               });
 }
 
 }  // namespace

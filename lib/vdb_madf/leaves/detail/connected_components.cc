@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/leaves/detail/leaf_faces.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 
 namespace vdb_madf::detail {
@@ -20,17 +21,6 @@ void addPieces(const LeafIndex::Mask& mask, uint32_t label, Pieces& pieces) {
     return;
   }
   forEachPiece(mask, [&](const LeafIndex::Mask& piece) { pieces.push_back({piece, label, 0}); });
-}
-
-/// The voxels of a face of a leaf, the last one along an axis or the first: a bit for each place.
-uint64_t faceOf(const LeafIndex::Mask& mask, size_t axis, bool last) {
-  if (axis == 0) return mask[last ? 7 : 0];
-  uint64_t face = 0;
-  for (size_t x = 0; x < 8; ++x) {
-    if (axis == 1) face |= (last ? mask[x] >> 56 : mask[x] & kFirstY) << 8 * x;
-    if (axis == 2) face |= (last ? mask[x] >> 7 & kFirstZ : mask[x] & kFirstZ) << x;
-  }
-  return face;
 }
 
 }  // namespace
@@ -125,11 +115,11 @@ void ConnectedComponents::joinFaces(uint32_t leaf, uint32_t next, size_t axis,
   Face there[512];
   size_t count = 0;
   for (uint32_t i = firstPiece_[next]; i < firstPiece_[next + 1]; ++i)
-    if (const uint64_t places = faceOf(pieces_[i].mask, axis, false))
+    if (const uint64_t places = faceMask(pieces_[i].mask, int(axis), 0))
       there[count++] = {places, pieces_[i].label, i};
   size_t first = 0;
   for (uint32_t i = firstPiece_[leaf]; i < firstPiece_[leaf + 1]; ++i) {
-    uint64_t places = faceOf(pieces_[i].mask, axis, true);
+    uint64_t places = faceMask(pieces_[i].mask, int(axis), 7);
     const uint32_t label = pieces_[i].label;
     while (first < count && there[first].label < label) ++first;
     for (size_t k = first; places && k < count && there[k].label == label; ++k) {

@@ -29,14 +29,9 @@ void addEntries(const LeafIndex::Mask& mask, size_t count, const uint32_t* value
   uint32_t dense[512];
   expandLeaf(mask, values, dense);
   const size_t before = entries.size();
-  LeafIndex::Mask rest = mask;
-  for (size_t x = 0; x < 8; ++x)
-    while (rest[x]) {
-      const uint32_t label = dense[x * 64 + size_t(__builtin_ctzll(rest[x]))];
-      const LeafIndex::Mask same = both(mask, voxelsOf(dense, label));
-      rest = without(rest, same);
-      if (label != 0) entries.push_back({same, label});
-    }
+  forEachValue(mask, dense, [&](uint32_t label, const LeafIndex::Mask& voxels) {
+    if (label != 0) entries.push_back({voxels, label});
+  });
   std::sort(entries.begin() + std::ptrdiff_t(before), entries.end(), hasLessLabel);
 }
 
@@ -59,15 +54,11 @@ LabelMasks::LabelMasks(const LeafIndex& index, const VoxelArray<uint32_t>& label
   });
 }
 
-void LabelMasks::take(size_t leaf, const LeafIndex::Mask& voxels) {
-  Entry* const entries = chunks_[leaf / kChunk].data() + lists_[leaf].first;
-  for (size_t i = 0; i < lists_[leaf].count; ++i)
-    entries[i].mask = without(entries[i].mask, voxels);
-}
-
 void LabelMasks::give(size_t leaf, uint32_t label, const LeafIndex::Mask& voxels) {
   std::vector<Entry>& chunk = chunks_[leaf / kChunk];
   List& list = lists_[leaf];
+  for (size_t i = list.first; i < list.first + list.count; ++i)
+    chunk[i].mask = without(chunk[i].mask, voxels);
   const Entry* const place =
       std::lower_bound(begin(leaf), end(leaf), Entry{{}, label}, hasLessLabel);
   const size_t at = size_t(place - begin(leaf));

@@ -34,9 +34,7 @@ class LabelMasks {
   /// chunks may be made at a time.
   static constexpr size_t kChunk = 128;
 
-  /// Takes voxels of a leaf away from the labels that they have.
-  void take(size_t leaf, const LeafIndex::Mask& voxels);
-  /// Gives voxels of a leaf, which have no label, to one.
+  /// Gives voxels of a leaf to a label, instead of those that they have.
   void give(size_t leaf, uint32_t label, const LeafIndex::Mask& voxels);
 
  private:

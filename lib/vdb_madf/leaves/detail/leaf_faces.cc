@@ -64,8 +64,10 @@ void copyFace(const LeafIndex& index, const uint32_t* values, uint32_t leaf, int
 }
 
 uint64_t faceMask(const LeafIndex& index, uint32_t leaf, int axis, int position) {
-  if (leaf == LeafIndex::kNone) return 0;
-  const LeafIndex::Mask& mask = index.mask(leaf);
+  return leaf == LeafIndex::kNone ? 0 : faceMask(index.mask(leaf), axis, position);
+}
+
+uint64_t faceMask(const LeafIndex::Mask& mask, int axis, int position) {
   if (axis == 0) return mask[size_t(position)];
   uint64_t face = 0;
   for (size_t x = 0; x < 8; ++x) {

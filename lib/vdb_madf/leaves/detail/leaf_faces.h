@@ -17,5 +17,7 @@ void copyFace(const LeafIndex& index, const uint32_t* values, uint32_t leaf, int
 
 /// Bit i: is there an object voxel at face[i] of the above?
 uint64_t faceMask(const LeafIndex& index, uint32_t leaf, int axis, int position);
+/// The same of some voxels of a leaf.
+uint64_t faceMask(const LeafIndex::Mask& mask, int axis, int position);
 
 }  // namespace vdb_madf::detail

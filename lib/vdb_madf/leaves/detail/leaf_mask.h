@@ -75,15 +75,6 @@ LeafIndex::Mask flood(LeafIndex::Mask seed, const LeafIndex::Mask& mask);
 /// voxels of `mask`.
 LeafIndex::Mask across(const LeafIndex::Mask& mask, size_t side);
 
-/// Has a voxel of `mask` a neighbor in `next`, a mask of the next leaf along an axis?
-inline bool touchNext(const LeafIndex::Mask& mask, const LeafIndex::Mask& next, size_t axis) {
-  if (axis == 0) return (mask[7] & next[0]) != 0;
-  uint64_t touch = 0;
-  for (size_t x = 0; x < 8; ++x)
-    touch |= axis == 1 ? mask[x] >> 56 & next[x] : (mask[x] & kLastZ) >> 7 & next[x];
-  return touch != 0;
-}
-
 /// The side that faces a side.
 constexpr size_t opposite(size_t side) {
   return side ^ 1;

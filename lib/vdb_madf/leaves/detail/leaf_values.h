@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/leaf_index.h"
 
 namespace vdb_madf::detail {
@@ -22,6 +23,18 @@ void packLeaf(const LeafIndex::Mask& mask, const uint32_t* dense, uint32_t* valu
 
 /// The voxels of a leaf, dense as above, that have a value.
 LeafIndex::Mask voxelsOf(const uint32_t* dense, uint32_t value);
+
+/// f(value, voxels) for each value that some voxels of a leaf have, by its first one. `dense`: as above.
+template <typename F>
+void forEachValue(LeafIndex::Mask voxels, const uint32_t* dense, const F& f) {
+  for (size_t x = 0; x < 8; ++x)
+    while (voxels[x]) {
+      const uint32_t value = dense[x * 64 + size_t(__builtin_ctzll(voxels[x]))];
+      const LeafIndex::Mask same = both(voxels, voxelsOf(dense, value));
+      voxels = without(voxels, same);
+      f(value, same);
+    }
+}
 
 /// Are all values the first one?
 bool allEqual(const uint32_t* values, size_t count);

@@ -170,7 +170,6 @@ std::vector<char> apply(const LeafIndex& index, const Takings& takings, LabelMas
         for (auto entry = masks.begin(taking.leaf); entry != masks.end(taking.leaf); ++entry)
           add(grains.voxels, entry->label, -int64_t(countVoxels(both(entry->mask, taking.voxels))));
         add(grains.voxels, taking.label, countVoxels(taking.voxels));
-        masks.take(taking.leaf, taking.voxels);
         masks.give(taking.leaf, taking.label, taking.voxels);
         markLeaves(neighborhood.around(taking.leaf), taking.voxels, marks);
         for (uint32_t x = 0; x < 8; ++x)
