@@ -212,7 +212,9 @@ class SlabFilter {
       for (size_t t = 0; t < work_.slabCount(); ++t)
         if (isInReach(work_, s, t)) work_.sendVector("kept-balls", s, t, kept);
     } else {
-      keptOffers_.offer(s, slab.index, squaredRadius);
+      keptOffers_.offer(s, [&](bool isUpper) {
+        return siteOffers(slab.index, squaredRadius, work_.weights.z, work_.cut(s, isUpper));
+      });
       work_.writeVector("kept-balls", s, kept);
     }
     work_.sendVector("ball-counts", s, SlabWork::kRoot,

@@ -16,17 +16,13 @@ constexpr char kMap[] = "map";
 
 }  // namespace
 
-SquaredDistance slabDistance(const SlabWork& work, size_t slab, const LeafIndex& index,
-                             Interrupter* interrupter) {
-  return squaredDistanceInSlab(index, work.obstacles, work.weights, facesOf(work, slab),
-                               interrupter);
-}
-
-PowerMap slabPowerMap(const SlabWork& work, const SlabOffers& offers, size_t slab, LeafIndex& index,
+PowerMap slabPowerMap(SlabWork& work, const SlabOffers& offers, size_t slab, LeafIndex& index,
                       Interrupter* interrupter) {
   if (work.inRegion()) return powerMapInRegion(work, slab, index, interrupter);
   WorkPart measuring(interrupter, 0, 35), mapping(interrupter, 35, 100);
-  SquaredDistance distance = slabDistance(work, slab, index, &measuring);
+  SquaredDistance distance = squaredDistanceInSlab(index, work.obstacles, work.weights,
+                                                   facesOf(work, slab), &measuring);
+  work.writeVector(kLargest, slab, std::vector<int32_t>{distance.largest});
   distance.foreign = offers.received(slab, index);
   return powerMap(index, std::move(distance), &mapping);
 }
