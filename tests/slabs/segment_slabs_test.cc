@@ -316,9 +316,9 @@ struct Killed {};
 class MortalScratch : public MemoryScratch {
  public:
   int left = 0;
-  void write(const std::string& name, const Bytes& bytes) override {
+  void writeBytes(const std::string& name, const char* bytes, size_t size) override {
     if (left-- <= 0) throw Killed();
-    MemoryScratch::write(name, bytes);
+    MemoryScratch::writeBytes(name, bytes, size);
   }
   void remove(const std::string& name) override {
     if (!has(name)) return;
@@ -381,13 +381,13 @@ struct SharedPieces {
 class SharedScratch : public Scratch {
  public:
   explicit SharedScratch(SharedPieces& all) : all_(all) {}
-  void write(const std::string& name, const Bytes& bytes) override {
+  void writeBytes(const std::string& name, const char* bytes, size_t size) override {
     const std::lock_guard<std::mutex> lock(all_.mutex);
-    all_.pieces.write(name, bytes);
+    all_.pieces.writeBytes(name, bytes, size);
   }
-  Bytes read(const std::string& name) const override {
+  void readBytes(const std::string& name, const Room& room) const override {
     const std::lock_guard<std::mutex> lock(all_.mutex);
-    return all_.pieces.read(name);
+    all_.pieces.readBytes(name, room);
   }
   bool has(const std::string& name) const override {
     const std::lock_guard<std::mutex> lock(all_.mutex);

@@ -26,7 +26,7 @@ Int32Grid::Ptr manifoldGrid(const detail::SlabWork& work, size_t slab,
                             const detail::SlabBody& body) {
   detail::SlabPart part;
   VoxelArray<uint32_t> manifold;
-  if (body.index.voxelCount() > 0) manifold = work.read("flow", slab).voxelArray<uint32_t>();
+  if (body.index.voxelCount() > 0) manifold = work.readVoxels("flow", slab);
   if (work.has(detail::kGraphPart, slab))
     part = detail::SlabPart::readFrom(work.read(detail::kGraphPart, slab));
   for (size_t i = 0; i < manifold.size(); ++i)

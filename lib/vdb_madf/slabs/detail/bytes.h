@@ -40,7 +40,8 @@ class ByteWriter {
     add(uint64_t(count));
     append(values, count * sizeof(T));
   }
-  void append(const void* data, size_t size) {
+  /// Not inlined: GCC 12 takes the difference of a vector's pointers for one that may be negative.
+  [[gnu::noinline]] void append(const void* data, size_t size) {
     if (size == 0) return;
     bytes_.resize(bytes_.size() + size);
     std::memcpy(bytes_.data() + bytes_.size() - size, data, size);

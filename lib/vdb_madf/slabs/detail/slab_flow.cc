@@ -107,9 +107,7 @@ class SlabFlow {
         slabTerminals(slab.index, flowMap, map.power, balls, slab.cavities, work_.begin(s),
                       work_.end(s), &flowing);
     map.power.clear();
-    ByteWriter flowBytes;
-    flowBytes.add(flowMap.manifold);
-    work_.write("flow", s, flowBytes);
+    work_.writeVoxels("flow", s, flowMap.manifold);
     writeRims(work_, s, slab, std::move(flowMap.manifold));
     giveTerminals(work_, s, terminals, slab.index, balls);
   }

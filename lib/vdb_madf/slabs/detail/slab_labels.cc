@@ -59,7 +59,7 @@ class SlabLabels {
  private:
   /// Labels as merged.
   VoxelArray<uint32_t> mergedLabels(size_t s, const SlabBody& slab) const {
-    auto labels = work_.read("flow", s).voxelArray<uint32_t>();
+    auto labels = work_.readVoxels("flow", s);
     const auto grains = work_.readVector<uint32_t>(kGrainsOfTerminals, s);
     for (size_t i = 0; i < labels.size(); ++i)
       labels[i] = grains[(labels[i] & ~Flow::kOwnCell) - 1];
@@ -75,7 +75,7 @@ class SlabLabels {
     }
     const SlabBody slab = work_.body(s);
     VoxelArray<uint32_t> labels =
-        isTidied ? work_.read("labels", s).voxelArray<uint32_t>() : mergedLabels(s, slab);
+        isTidied ? work_.readVoxels("labels", s) : mergedLabels(s, slab);
     for (const LooseVoxel& voxel : work_.receiveVector<LooseVoxel>("refilled", SlabWork::kRoot, s))
       labels[slab.index.rank(*slab.index.findVoxel(voxel.position))] = voxel.label;
     const auto counts = countLabels(labels);
@@ -195,9 +195,7 @@ class SlabLabels {
                &part);
     const LabelMasks masks(slab.index, labels, work_.interrupter);
     const ConnectedComponents components(slab.index, masks, work_.interrupter);
-    ByteWriter bytes;
-    bytes.add(labels);
-    work_.write("labels", s, bytes);
+    work_.writeVoxels("labels", s, labels);
     work_.sendVector("pieces", s, SlabWork::kRoot,
                      piecesWithAnchor(slab.index, labels, components, anchors_));
     const auto face = [&](bool isUpper) {
@@ -242,7 +240,7 @@ class SlabLabels {
 
   void findLoose(size_t s) {
     const SlabBody slab = work_.body(s);
-    const auto labels = work_.read("labels", s).voxelArray<uint32_t>();
+    const auto labels = work_.readVoxels("labels", s);
     const LabelMasks masks(slab.index, labels, work_.interrupter);
     const ConnectedComponents components(slab.index, masks, work_.interrupter);
     ByteReader held = work_.receive("held", SlabWork::kRoot, s);

@@ -127,6 +127,13 @@ class SlabWork {
     return read(what, slab).vector<T>();
   }
 
+  /// Values of the voxels of a slab, without a copy of them.
+  void writeVoxels(const char* what, size_t slab, const VoxelArray<uint32_t>& values) {
+    scratch.writeBytes(name(what, slab), reinterpret_cast<const char*>(values.data()),
+                       values.size() * sizeof(uint32_t));
+  }
+  VoxelArray<uint32_t> readVoxels(const char* what, size_t slab) const;
+
   // Messages from slab to slab. Vectors that were not sent are empty.
   void send(const char* what, size_t from, size_t to, const ByteWriter& bytes);
   /// A piece of a slab, for another rank.
