@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/leaf_grid.h"
 #include "vdb_madf/method/detail/tidy_steps.h"
 #include "vdb_madf/slabs/detail/slab_grains.h"
@@ -16,6 +17,8 @@
 namespace vdb_madf::detail {
 
 namespace {
+
+constexpr size_t kVoxelGrain = size_t(1) << 16;
 
 constexpr char kLowestRim[] = "lowest-rim", kHighestRim[] = "highest-rim";
 
@@ -61,8 +64,9 @@ class SlabLabels {
   VoxelArray<uint32_t> mergedLabels(size_t s, const SlabBody& slab) const {
     auto labels = work_.readVoxels("flow", s);
     const auto grains = work_.readVector<uint32_t>(kGrainsOfTerminals, s);
-    for (size_t i = 0; i < labels.size(); ++i)
-      labels[i] = grains[(labels[i] & ~Flow::kOwnCell) - 1];
+    parallelFor(labels.size(), kVoxelGrain, work_.interrupter, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) labels[i] = grains[(labels[i] & ~Flow::kOwnCell) - 1];
+    });
     for (const VoxelId id : slab.cavities) labels[slab.index.rank(id)] = 0;
     return labels;
   }
@@ -90,7 +94,12 @@ class SlabLabels {
   };
   std::vector<LabelCount> countLabels(const VoxelArray<uint32_t>& labels) const {
     std::vector<int64_t> voxels(size_t(result_.counts.grains) + 1, 0);
-    for (size_t i = 0; i < labels.size(); ++i) ++voxels[labels[i]];
+    parallelFor(labels.size(), kVoxelGrain, work_.interrupter, [&](size_t begin, size_t end) {
+      for (size_t i = begin, next; i < end; i = next) {  // voxels of one label follow each other
+        for (next = i + 1; next < end && labels[next] == labels[i];) ++next;
+        __atomic_fetch_add(&voxels[labels[i]], int64_t(next - i), __ATOMIC_RELAXED);
+      }
+    });
     std::vector<LabelCount> counts;
     for (size_t label = 1; label < voxels.size(); ++label)
       if (voxels[label] > 0) counts.push_back({label, voxels[label]});
@@ -112,7 +121,7 @@ class SlabLabels {
     work_.forEachSlab([&](size_t s) { joinPieces(s); });
     if (work_.isRoot()) findHeld();
     work_.exchange();
-    work_.forEachSlab([&](size_t s) { findLoose(s); });
+    work_.forEachSlab([&](size_t s) { findLoose(s); }, [&](size_t s) { work_.remove("unsure", s); });
     if (work_.isRoot()) refillLoose();
     work_.exchange();
   }
@@ -196,8 +205,9 @@ class SlabLabels {
     const LabelMasks masks(slab.index, labels, work_.interrupter);
     const ConnectedComponents components(slab.index, masks, work_.interrupter);
     work_.writeVoxels("labels", s, labels);
-    work_.sendVector("pieces", s, SlabWork::kRoot,
-                     piecesWithAnchor(slab.index, labels, components, anchors_));
+    const std::vector<char> isHeld = piecesWithAnchor(slab.index, labels, components, anchors_);
+    work_.sendVector("pieces", s, SlabWork::kRoot, isHeld);
+    work_.writeVector("unsure", s, piecesWithoutAnchor(slab.index, components, isHeld));
     const auto face = [&](bool isUpper) {
       return facePieces(slab.index, components, work_.cut(s, isUpper));
     };
@@ -239,20 +249,23 @@ class SlabLabels {
   }
 
   void findLoose(size_t s) {
-    const SlabBody slab = work_.body(s);
-    const auto labels = work_.readVoxels("labels", s);
-    const LabelMasks masks(slab.index, labels, work_.interrupter);
-    const ConnectedComponents components(slab.index, masks, work_.interrupter);
     ByteReader held = work_.receive("held", SlabWork::kRoot, s);
     BeyondPieces below, above;
-    below.face = work_.receiveVector<FacePiece>("face-pieces", s - 1, s);
     below.isHeld = held.vector<char>();
     const auto isHeld = held.vector<char>();
-    above.face = work_.receiveVector<FacePiece>("face-pieces", s + 1, s);
     above.isHeld = held.vector<char>();
-    work_.sendVector("loose", s, SlabWork::kRoot,
-                     looseVoxels(slab.index, labels, components, isHeld, work_.begin(s),
-                                 work_.end(s), below, above));
+    std::vector<LeafPiece> loose = work_.readVector<LeafPiece>("unsure", s);
+    loose.erase(std::remove_if(loose.begin(), loose.end(),
+                               [&](const LeafPiece& piece) { return isHeld[piece.piece] != 0; }),
+                loose.end());
+    std::vector<LooseVoxel> voxels;
+    if (!loose.empty()) {
+      below.face = work_.receiveVector<FacePiece>("face-pieces", s - 1, s);
+      above.face = work_.receiveVector<FacePiece>("face-pieces", s + 1, s);
+      voxels = looseVoxels(work_.body(s).index, work_.readVoxels("labels", s), loose,
+                           work_.begin(s), work_.end(s), below, above);
+    }
+    work_.sendVector("loose", s, SlabWork::kRoot, voxels);
   }
 
   /// At the root: the voxels that no path of their label joins with its anchor get other labels.
