@@ -33,10 +33,10 @@ struct TallObject {
 
 /// Wide and thick enough for balls that reach further than the first layers at a cut, now and then.
 TallObject randomObject(Rng& rng) {
-  static constexpr VolumeKind kKinds[] = {
-      VolumeKind::ballUnion,  VolumeKind::fullBlock,   VolumeKind::roughBalls,
-      VolumeKind::boxUnion,   VolumeKind::thinRods,    VolumeKind::pinholes,
-      VolumeKind::denseNoise, VolumeKind::blurredNoise};
+  static constexpr VolumeKind kKinds[] = {VolumeKind::ballUnion,  VolumeKind::fullBlock,
+                                          VolumeKind::roughBalls, VolumeKind::boxUnion,
+                                          VolumeKind::thinRods,   VolumeKind::pinholes,
+                                          VolumeKind::denseNoise, VolumeKind::blurredNoise};
   const bool isWide = rng.chance(0.4);
   const int side = isWide ? rng.between(60, 100) : rng.between(1, 24);
   const VolumeKind kind = isWide && rng.chance(0.5) ? VolumeKind::fullBlock : kKinds[rng.below(8)];
@@ -59,7 +59,8 @@ LeafIndex leavesBetween(const LeafIndex& index, int begin, int end) {
 }
 
 /// How many object voxels follow each other in the columns of the leaves at `leafZ`, from z on by step.
-ColumnSteps countSteps(const TallObject& object, const LeafIndex& index, int leafZ, int z, int step) {
+ColumnSteps countSteps(const TallObject& object, const LeafIndex& index, int leafZ, int z,
+                       int step) {
   const auto countFrom = [&](Coord p) {
     uint32_t count = 0;
     for (; object.voxels.get(p, 0); p.z() += step) ++count;
@@ -108,7 +109,7 @@ std::vector<std::array<int, 4>> toNumbers(const std::vector<ForeignSite>& sites)
 
 }  // namespace
 
-TEST_CASE("Distances near a cut tell all balls that reach beyond it", "[near_cuts]") {
+TEST_CASE("near cuts: distances there tell all balls that reach beyond a cut", "[near_cuts]") {
   size_t sites = 0, deep = 0;
   for (uint64_t seed = 0; seed < 60; ++seed) {
     CAPTURE(seed);
@@ -118,8 +119,9 @@ TEST_CASE("Distances near a cut tell all balls that reach beyond it", "[near_cut
     if (index.voxelCount() == 0) continue;
     const SquaredDistance whole = squaredDistance(index, object.obstacles, object.weights);
     const CoordBBox& box = object.voxels.box();
-    const int begin = ((box.min().z() + rng.below(40)) & ~7) + 8;
-    const int end = std::max(((box.max().z() - rng.below(40)) & ~7) - 8, begin + 8);
+    // The slab may begin, or end, beyond the domain.
+    const int begin = (box.min().z() + rng.between(-10, 40)) & ~7;
+    const int end = std::max((box.max().z() + rng.between(-40, 10)) & ~7, begin + 8);
     const LeafIndex slab = leavesBetween(index, begin, end);
     const SlabFaces faces = facesOf(object, index, begin, end);
     const auto distance = restricted(whole.values, index, slab);
@@ -130,7 +132,8 @@ TEST_CASE("Distances near a cut tell all balls that reach beyond it", "[near_cut
           toNumbers(siteOffers(slab, distance, object.weights.z, Cut{begin, end, isUpper}));
       const bool areSame = toNumbers(cuts.offers(isUpper)) == expected;
       REQUIRE(areSame);
-      for (const auto& site : expected) deep += (isUpper ? end - site[2] : site[2] - begin + 1) > 32;
+      for (const auto& site : expected)
+        deep += (isUpper ? end - site[2] : site[2] - begin + 1) > 32;
       sites += expected.size();
     }
   }

@@ -52,7 +52,7 @@ CoordBBox checkedBoundingBox(const MaskTree& tree) {
 
 /// The voxels of a leaf's mask.
 CoordBBox maskBox(const Coord& origin, const LeafIndex::Mask& mask) {
-  uint64_t anyX = 0;
+  uint64_t anyX = 0;  // for each y and z: any x
   int first = 8, last = 0;
   for (int x = 0; x < 8; ++x) {
     if (mask[size_t(x)] == 0) continue;
@@ -61,13 +61,13 @@ CoordBBox maskBox(const Coord& origin, const LeafIndex::Mask& mask) {
     last = x;
   }
   if (anyX == 0) return {};
-  uint64_t anyY = anyX | anyX >> 32;
-  anyY |= anyY >> 16;
-  anyY = (anyY | anyY >> 8) & 0xff;
+  uint64_t anyXY = anyX | anyX >> 32;  // the eight bytes, one for each y, are put together
+  anyXY |= anyXY >> 16;
+  anyXY = (anyXY | anyXY >> 8) & 0xff;
   const auto lowest = [](uint64_t word) { return __builtin_ctzll(word); };
   const auto highest = [](uint64_t word) { return 63 - __builtin_clzll(word); };
-  return {origin.offsetBy(first, lowest(anyX) / 8, lowest(anyY)),
-          origin.offsetBy(last, highest(anyX) / 8, highest(anyY))};
+  return {origin.offsetBy(first, lowest(anyX) / 8, lowest(anyXY)),
+          origin.offsetBy(last, highest(anyX) / 8, highest(anyXY))};
 }
 
 std::vector<SourceLeaf> sortedLeaves(const MaskTree& tree) {
@@ -163,7 +163,7 @@ void LeafIndex::finish() {
   neighbors_.assign(leafCount(), {kNone, kNone, kNone, kNone, kNone, kNone});
   firstRank_.resize(leafCount() + 1);
   wordRank_.resize(leafCount());
-  constexpr size_t kGrain = 4096;
+  constexpr size_t kGrain = 4096;  // leaves per task: some hundred microseconds
   detail::parallelFor(leafCount(), kGrain, nullptr, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       uint32_t count = 0;

@@ -164,9 +164,8 @@ void FolderScratch::writeBytes(const std::string& name, const char* bytes, size_
   forEachBlock(size, [&](size_t i) {
     const size_t part = std::min(kBlock, size - i * kBlock);
     blocks[i].resize(part + BLOSC_MAX_OVERHEAD);
-    const int written =
-        blosc_compress_ctx(1, BLOSC_SHUFFLE, 4, part, bytes + i * kBlock, blocks[i].data(),
-                           blocks[i].size(), "lz4", 0, 1);
+    const int written = blosc_compress_ctx(1, BLOSC_SHUFFLE, 4, part, bytes + i * kBlock,
+                                           blocks[i].data(), blocks[i].size(), "lz4", 0, 1);
     if (written <= 0) throw IoError(file(name + kEnding) + ": cannot be compressed");
     blocks[i].resize(size_t(written));
     table[i] = {blocks[i].size(), checksumOf(blocks[i].data(), blocks[i].size())};
@@ -180,7 +179,7 @@ void FolderScratch::writeBytes(const std::string& name, const char* bytes, size_
   out.commit();
 }
 
-void FolderScratch::readBytes(const std::string& name, const Room& room) const {
+void FolderScratch::readBytes(const std::string& name, const Allocate& allocate) const {
   const Timer timer(seconds_);
   const std::string path = file(name + kEnding);
   const detail::InputFile in(path);
@@ -200,7 +199,7 @@ void FolderScratch::readBytes(const std::string& name, const Room& room) const {
     place.push_back(place.back() + block.size);
   }
   if (place.back() != in.size()) failDamaged(path);
-  char* const bytes = room(header.size);
+  char* const bytes = allocate(header.size);
   forEachBlock(header.size, [&](size_t i) {
     Bytes stored(table[i].size);
     in.read(place[i], stored.data(), stored.size());

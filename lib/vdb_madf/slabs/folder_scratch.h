@@ -40,7 +40,7 @@ class FolderScratch : public Scratch {
 
   /// @throw IoError, one line: disk full, a piece missing or damaged ...
   void writeBytes(const std::string& name, const char* bytes, size_t size) override;
-  void readBytes(const std::string& name, const Room& room) const override;
+  void readBytes(const std::string& name, const Allocate& allocate) const override;
   bool has(const std::string& name) const override;
   void remove(const std::string& name) override;
 

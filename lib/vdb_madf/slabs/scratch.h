@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <string>
@@ -26,9 +27,9 @@ class Scratch {
 
   /// Replaces what has that name.
   virtual void writeBytes(const std::string& name, const char* bytes, size_t size) = 0;
-  /// room(size) gives the memory that the bytes go to.
-  using Room = std::function<char*(size_t size)>;
-  virtual void readBytes(const std::string& name, const Room& room) const = 0;
+  /// Called once, tells where the bytes go to; some are there even if reading fails.
+  using Allocate = std::function<char*(size_t size)>;
+  virtual void readBytes(const std::string& name, const Allocate& allocate) const = 0;
   virtual bool has(const std::string& name) const = 0;
   virtual void remove(const std::string& name) = 0;
 
@@ -54,9 +55,9 @@ class MemoryScratch : public Scratch {
   void writeBytes(const std::string& name, const char* bytes, size_t size) override {
     pieces_[name].assign(bytes, bytes + size);
   }
-  void readBytes(const std::string& name, const Room& room) const override {
+  void readBytes(const std::string& name, const Allocate& allocate) const override {
     const Bytes& bytes = pieces_.at(name);
-    std::copy(bytes.begin(), bytes.end(), room(bytes.size()));
+    std::copy(bytes.begin(), bytes.end(), allocate(bytes.size()));
   }
   bool has(const std::string& name) const override { return pieces_.count(name) > 0; }
   void remove(const std::string& name) override { pieces_.erase(name); }

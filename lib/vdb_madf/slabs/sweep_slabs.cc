@@ -29,8 +29,8 @@ class RowScratch : public Scratch {
     own_.insert(name);
     all_.writeBytes(prefixed(name), bytes, size);
   }
-  void readBytes(const std::string& name, const Room& room) const override {
-    all_.readBytes(own_.count(name) ? prefixed(name) : name, room);
+  void readBytes(const std::string& name, const Allocate& allocate) const override {
+    all_.readBytes(own_.count(name) ? prefixed(name) : name, allocate);
   }
   bool has(const std::string& name) const override {
     return own_.count(name) > 0 || all_.has(name);

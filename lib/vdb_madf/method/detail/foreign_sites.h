@@ -24,6 +24,8 @@ struct ColumnOrder {
   bool operator()(const ForeignSite& a, const ForeignSite& b) const {
     return placeOf(a.position) < placeOf(b.position);
   }
+
+ private:
   static std::tuple<int, int, int, int> placeOf(const Coord& p) {
     return {p.x() & ~7, p.y() & ~7, (p.x() & 7) * 8 + (p.y() & 7), p.z()};
   }

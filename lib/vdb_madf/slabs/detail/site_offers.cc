@@ -4,6 +4,7 @@
 #include "vdb_madf/slabs/detail/site_offers.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
@@ -123,16 +124,17 @@ std::vector<ForeignSite> siteOffers(const LeafIndex& index,
 std::vector<ForeignSite> passOn(const std::vector<ForeignSite>& own,
                                 const std::vector<ForeignSite>& offered, const ColumnSteps& columns,
                                 int32_t weight, const Cut& cut) {
-  std::vector<ForeignSite> through;
+  std::vector<ForeignSite> all = own;
   for (const ForeignSite& site : offered)
-    if (goesThrough(columns, site.position)) through.push_back(site);
-  std::vector<ForeignSite> all(own.size() + through.size());
-  std::merge(own.begin(), own.end(), through.begin(), through.end(), all.begin(), ColumnOrder());
+    if (goesThrough(columns, site.position)) all.push_back(site);
+  std::inplace_merge(all.begin(), all.begin() + std::ptrdiff_t(own.size()), all.end(),
+                     ColumnOrder());
   std::vector<ForeignSite> offers;
   BeyondCut best(weight);
   for (size_t first = 0, last; first < all.size(); first = last) {
     for (last = first + 1; last < all.size() && isSameColumn(all[first], all[last]);) ++last;
-    if (cut.isUpper) std::reverse(all.begin() + ptrdiff_t(first), all.begin() + ptrdiff_t(last));
+    if (cut.isUpper)
+      std::reverse(all.begin() + std::ptrdiff_t(first), all.begin() + std::ptrdiff_t(last));
     best.clear();
     for (size_t i = first; i < last; ++i) best.add(cut.away(all[i].position.z()), all[i]);
     addByZ(best, cut, offers);

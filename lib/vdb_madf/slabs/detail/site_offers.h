@@ -30,7 +30,7 @@ std::vector<ForeignSite> siteOffers(const LeafIndex& index,
                                     const VoxelArray<int32_t>& squaredRadius, int32_t weight,
                                     const Cut& cut);
 
-/// The same with the balls that were offered to the slab at its other cut: they go on where a column
+/// The same, with the balls (in ColumnOrder, too) that were offered to the slab at its other cut: they go on where a column
 /// is object from cut to cut. \p columns: those beside the cut.
 std::vector<ForeignSite> passOn(const std::vector<ForeignSite>& own,
                                 const std::vector<ForeignSite>& offered, const ColumnSteps& columns,

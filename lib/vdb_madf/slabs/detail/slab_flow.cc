@@ -32,14 +32,12 @@ class SlabFlow {
     work_.beginStage("offers");
     if (work_.inRegion()) {
       measureInRegion();
+      shareLargest();
+      shareBodies(work_, mappedReach(work_));
     } else {
       exchangeColumns(work_);
       work_.forEachSlab([&](size_t s) { offerBalls(s); });
       offers_.passOn();
-    }
-    if (work_.inRegion()) {
-      shareLargest();
-      shareBodies(work_, mappedReach(work_));
     }
     if (isFiltered()) {
       work_.beginStage("gamma_filter");
@@ -49,8 +47,10 @@ class SlabFlow {
     }
     work_.beginStage("flow");
     work_.forEachSlab([&](size_t s) { flowIn(s); }, [&](size_t s) { forgetMaps(s); });
-    if (!work_.inRegion()) shareLargest();
-    if (work_.inRegion()) forgetBodies(work_);
+    if (work_.inRegion())
+      forgetBodies(work_);
+    else
+      shareLargest();
     makeParts(work_, result_.counts);
   }
 
@@ -58,7 +58,7 @@ class SlabFlow {
   bool isFiltered() const { return work_.options.gamma > 1; }
 
   void offerBalls(size_t s) {
-    WorkPart part = work_.part(5, isFiltered() ? 15 : 30, s);
+    WorkPart part = work_.part(5, 10, s);
     const SlabBody slab = work_.body(s);
     const SlabFaces faces = facesOf(work_, s);
     NearCuts cuts(slab.index, work_.obstacles, work_.weights, faces, &part);
@@ -72,7 +72,7 @@ class SlabFlow {
       shareBodies(work_, reach);
       work_.forEachSlab([&](size_t s) {
         if (work_.has(kLargest, s) && work_.readVector<int32_t>(kLargest, s).at(1) > 0) return;
-        WorkPart part = work_.part(5, isFiltered() ? 15 : 30, s);
+        WorkPart part = work_.part(5, 10, s);
         const auto largest = largestInRegion(work_, s, reach, &part);
         work_.writeVector(kLargest, s,
                           std::vector<int32_t>{largest.value_or(0), largest ? reach : 0});
@@ -96,7 +96,7 @@ class SlabFlow {
 
   /// Power map, flow, contacts within the slab.
   void flowIn(size_t s) {
-    WorkPart part = work_.part(isFiltered() ? 50 : 30, 75, s);
+    WorkPart part = work_.part(isFiltered() ? 65 : 10, 75, s);
     WorkPart mapping(&part, 0, 70), flowing(&part, 70, 100);
     SlabBody slab = work_.body(s);
     PowerMap map = isFiltered() ? completion_.completed(s, slab.index)

@@ -73,12 +73,11 @@ std::vector<char> piecesWithAnchor(const LeafIndex& index, const VoxelArray<uint
 
 std::vector<LeafPiece> piecesWithoutAnchor(const LeafIndex& index,
                                            const ConnectedComponents& components,
-                                           const std::vector<char>& isHeld) {
+                                           const std::vector<char>& hasAnchor) {
   std::vector<LeafPiece> pieces;
   for (uint32_t leaf = 0; leaf < index.leafCount(); ++leaf)
     for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece)
-      if (!isHeld[piece->component])
-        pieces.push_back({leaf, piece->component, piece->label, piece->mask});
+      if (!hasAnchor[piece->component]) pieces.push_back({leaf, *piece});
   return pieces;
 }
 
@@ -93,7 +92,7 @@ std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const VoxelArray<uin
     const auto before = [](const LeafPiece& piece, uint32_t leaf) { return piece.leaf < leaf; };
     auto piece = std::lower_bound(loose.begin(), loose.end(), leafOf(id), before);
     for (; piece != loose.end() && piece->leaf == leafOf(id); ++piece)
-      if (holds(piece->mask, offsetOf(id))) return true;
+      if (holds(piece->piece.mask, offsetOf(id))) return true;
     return false;
   };
   std::vector<LooseVoxel> voxels;
@@ -108,10 +107,12 @@ std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const VoxelArray<uin
     if (p.z() == end - 1) voxel.around[5] = beyond(above, p);
     voxels.push_back(voxel);
   };
-  for (const LeafPiece& piece : loose)
-    for (uint32_t x = 0; x < 8; ++x)
-      forEachBit(piece.mask[x],
-                 [&](int bit) { add(piece.leaf * 512 + x * 64 + uint32_t(bit), piece.label); });
+  for (const auto& [leaf, piece] : loose)
+    for (uint32_t x = 0; x < 8; ++x) {
+      const VoxelId first = leaf * 512 + x * 64;
+      const uint32_t label = piece.label;
+      forEachBit(piece.mask[x], [&](int bit) { add(first + uint32_t(bit), label); });
+    }
   return voxels;
 }
 

@@ -71,15 +71,16 @@ struct BeyondPieces {
 
 /// What a leaf has of a piece.
 struct LeafPiece {
-  uint32_t leaf, piece, label;
-  LeafIndex::Mask mask;
+  uint32_t leaf;
+  ConnectedComponents::Piece piece;
 };
-/// Of the pieces that are not held. By leaf.
+/// Of the pieces of a slab that hold no anchor in it, by leaf.
 std::vector<LeafPiece> piecesWithoutAnchor(const LeafIndex& index,
                                            const ConnectedComponents& components,
-                                           const std::vector<char>& isHeld);
+                                           const std::vector<char>& hasAnchor);
 
-/// The loose voxels of a slab: those of the pieces in `loose`, by leaf, which are all that are not held.
+/// The loose voxels of a slab: those of the pieces in `loose`, by leaf, which are all that hold no anchor in
+/// any slab.
 std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
                                     const std::vector<LeafPiece>& loose, int begin, int end,
                                     const BeyondPieces& below, const BeyondPieces& above);

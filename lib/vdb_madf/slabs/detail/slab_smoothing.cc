@@ -4,6 +4,7 @@
 #include "vdb_madf/slabs/detail/slab_smoothing.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"
@@ -16,12 +17,12 @@ namespace vdb_madf::detail {
 namespace {
 
 /// A leaf beyond a cut, and where its labels are.
-struct Source {
+struct BeyondLeaf {
   LeafIndex::LeafVoxels leaf;
   const uint32_t* labels;
 };
 
-void addSources(const LeafLabels& rim, std::vector<Source>& sources) {
+void addLeaves(const LeafLabels& rim, std::vector<BeyondLeaf>& sources) {
   const uint32_t* next = rim.labels.data();
   for (const LeafIndex::LeafVoxels& leaf : rim.leaves) {
     sources.push_back({leaf, next});
@@ -46,15 +47,15 @@ LeafLabels labelsBetween(const LeafIndex& index, const VoxelArray<uint32_t>& lab
 
 LabelWindow labelWindow(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
                         const LeafLabels& below, const LeafLabels& above) {
-  std::vector<Source> beyond;
-  addSources(below, beyond);
-  const auto middle = ptrdiff_t(beyond.size());
-  addSources(above, beyond);
+  std::vector<BeyondLeaf> beyond;
+  addLeaves(below, beyond);
+  const auto middle = std::ptrdiff_t(beyond.size());
+  addLeaves(above, beyond);
   std::inplace_merge(
       beyond.begin(), beyond.begin() + middle, beyond.end(),
-      [](const Source& a, const Source& b) { return a.leaf.origin < b.leaf.origin; });
+      [](const BeyondLeaf& a, const BeyondLeaf& b) { return a.leaf.origin < b.leaf.origin; });
   std::vector<LeafIndex::LeafVoxels> leaves;
-  for (const Source& source : beyond) leaves.push_back(source.leaf);
+  for (const BeyondLeaf& source : beyond) leaves.push_back(source.leaf);
   LabelWindow window;
   window.index = LeafIndex(index, leaves);
   window.labels = VoxelArray<uint32_t>(size_t(window.index.voxelCount()));

@@ -24,16 +24,6 @@ size_t SlabWork::slabOf(int z) const {
   return size_t(std::upper_bound(cuts.begin(), cuts.end(), z) - cuts.begin()) - 1;
 }
 
-VoxelArray<uint32_t> SlabWork::readVoxels(const char* what, size_t slab) const {
-  VoxelArray<uint32_t> values;
-  scratch.readBytes(name(what, slab), [&](size_t size) {
-    if (size % sizeof(uint32_t) != 0) throw IoError("the scratch data is damaged");
-    values = VoxelArray<uint32_t>(size / sizeof(uint32_t));
-    return reinterpret_cast<char*>(values.data());
-  });
-  return values;
-}
-
 void SlabWork::send(const char* what, size_t from, size_t to, const ByteWriter& bytes) {
   if (from != to && !stages_.empty()) stages_.back().messageBytes += int64_t(bytes.bytes().size());
   ranks.send(ranks.ownerOf(to, slabCount()), name(what, from, to), bytes.bytes(), scratch);
