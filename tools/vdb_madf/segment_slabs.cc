@@ -37,18 +37,17 @@ SlabLimits limitsOf(const SegmentArguments& o) {
   limits.leastHeight = o.segment.tidy;
   const int64_t memory = o.maxMemory.empty() ? availableMemory() : o.segment.maxMemory;
   if (memory == 0) return limits;
-  const int64_t voxels = (memory - kSlabOtherBytes) / kSlabBytesPerVoxel;
-  if (voxels < 1 << 20)
-    throw InvalidInput("slabs need at least " +
-                           readableBytes(kSlabOtherBytes + (kSlabBytesPerVoxel << 20)) +
+  constexpr int64_t kLeast = int64_t(32) << 20;
+  limits.bytes = memory - kSlabOtherBytes;
+  if (limits.bytes < kLeast)
+    throw InvalidInput("slabs need at least " + readableBytes(kSlabOtherBytes + kLeast) +
                            " of memory, and " + readableBytes(memory) + " may be used: allow more",
                        Hint::memoryLimit);
-  limits.voxels = voxels;
   return limits;
 }
 
-/// Object voxels in a slab of one of several ranks, where no other limit is given.
-constexpr int64_t kSlabVoxels = int64_t(1) << 28;
+/// Of a slab of one of several ranks, where no other limit is given.
+constexpr int64_t kRankBytes = int64_t(8) << 30;
 
 /// Reads the object into slabs; returns it without voxels.
 MaskGrid::Ptr readSlabs(const SegmentArguments& o, const Common& common, WorkPlace& place) {
@@ -66,7 +65,7 @@ MaskGrid::Ptr readShare(const SegmentArguments& o, const Common& common, WorkPla
   Ranks& ranks = *common.ranks;
   SlabLimits limits;
   if (!o.maxMemory.empty()) limits = limitsOf(o);
-  limits.voxels = limits.voxels > 0 ? std::min(limits.voxels, kSlabVoxels) : kSlabVoxels;
+  limits.bytes = limits.bytes > 0 ? std::min(limits.bytes, kRankBytes) : kRankBytes;
   limits.height = o.slabHeight;
   limits.leastHeight = o.segment.tidy;
   SlabDealer dealer(ranks, place.scratch());
