@@ -63,7 +63,7 @@ using Places = std::vector<Coord>;
 
 TEST_CASE("dealt slabs: about as much for each rank, within the limits", "[slabs]") {
   const Layers layers{{-8, 6}, {0, 6}, {8, 6}, {16, 6}, {24, 6}, {40, 6}};
-  const int64_t two = 2 * slabBytes(1, 6, 6);
+  const int64_t two = 2 * slabBytes(1, 6, 5 * 512 / 216);
   CHECK(deal(layers, 1, {}, 0).cuts == Cuts{-8, 48});
   CHECK(deal(layers, 3, {}, 0).cuts == Cuts{-8, 8, 24, 48});
   CHECK(deal(layers, 2, {0, 8, 8}, 0).cuts == Cuts{-8, 0, 8, 16, 24, 32, 40, 48});

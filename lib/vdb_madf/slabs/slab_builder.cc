@@ -18,14 +18,6 @@ namespace {
 
 constexpr char kCuts[] = "cuts";
 
-/// Those that are thin (slabBytes()), as far as the leaf alone tells.
-LeafIndex::Mask thinVoxels(const LeafIndex::Mask& mask) {
-  using detail::kFullMask;
-  const LeafIndex::Mask inside =
-      detail::without(kFullMask, detail::dilate(detail::without(kFullMask, mask)));
-  return detail::without(mask, detail::dilate(inside));
-}
-
 }  // namespace
 
 int64_t addLeaves(const MaskTree& layer, std::vector<LeafIndex::LeafVoxels>& leaves) {
@@ -34,7 +26,7 @@ int64_t addLeaves(const MaskTree& layer, std::vector<LeafIndex::LeafVoxels>& lea
     if (leaf->isEmpty()) continue;
     leaves.push_back({leaf->origin(), detail::maskOf(*leaf)});
     const LeafIndex::Mask& mask = leaves.back().mask;
-    bytes += slabBytes(1, detail::countVoxels(mask), detail::countVoxels(thinVoxels(mask)));
+    bytes += slabBytes(1, detail::countVoxels(mask), detail::countThin(mask));
   }
   detail::forEachActiveTile(layer, [](const CoordBBox&) {
     throw InvalidInput("a layer of leaf nodes has an active tile: voxelize it");

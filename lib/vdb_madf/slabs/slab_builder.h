@@ -19,12 +19,12 @@ struct SlabLimits {
 };
 
 /// The memory that segmentSlabs() takes at its peak for a slab, about. For limits; what is kept of the
-/// whole is not counted (README.md). \p thin: voxels of structures one or two voxels thick, that is those
-/// that have no face in common with one inside of the object: each may become a critical point.
+/// whole is not counted (README.md). \p thin: how many voxels are in structures one or two voxels
+/// thick (about), each of which may become a critical point.
 constexpr int64_t slabBytes(int64_t leaves, int64_t voxels, int64_t thin) {
   constexpr int64_t kLeaf = 2560;  // mostly that of the grid of labels
   constexpr int64_t kVoxel = 24;   // maps, and what of them goes to scratch
-  constexpr int64_t kThin = 640;   // the graph
+  constexpr int64_t kThin = 640;   // the graph, or what the filter leaves without a ball
   return kLeaf * leaves + kVoxel * voxels + kThin * thin;
 }
 /// Apart from that; most of it is the program itself.
