@@ -22,6 +22,23 @@ TEST_CASE("segment_memory: tiles count as the leaves they stand for", "[segment_
   CHECK(objectSize(*MaskGrid::create()).leaves == 0);
 }
 
+TEST_CASE("segment_memory: voxels of thin structures are counted apart", "[segment_memory]") {
+  const auto thin = [](const CoordBBox& box) {
+    return objectSize(*toMask(ObjectVolume(box, 1))).thin;
+  };
+  CHECK(thin(boxAt({-9, 3, 5}, {40, 40, 40})) < 40 * 40 * 40 / 100);
+  // Of sheets and wires of all places, on average, about all.
+  int64_t sheets = 0, wires = 0;
+  for (int x = 0; x < 8; ++x) {
+    sheets += thin(boxAt({x, 0, 0}, {2, 64, 64}));
+    for (int y = 0; y < 8; ++y) wires += thin(boxAt({x, y, 0}, {1, 1, 64}));
+  }
+  CHECK(double(sheets) == Approx(8 * 2 * 64 * 64).epsilon(0.2));
+  CHECK(double(wires) == Approx(64 * 64).epsilon(0.02));
+  const ObjectSize thick{1000, 100000, 0}, wire{1000, 100000, 100000};
+  CHECK(segmentMemory(wire) > segmentMemory(thick) + 9000000);
+}
+
 TEST_CASE("segment_memory: holds what is known exactly, and nothing of the bounding box",
           "[segment_memory]") {
   const ObjectSize size{1000000, 300000000};

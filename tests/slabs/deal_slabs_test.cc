@@ -61,32 +61,33 @@ using Places = std::vector<Coord>;
 
 }  // namespace
 
-TEST_CASE("dealt slabs: about as many voxels for each rank, within the limits", "[slabs]") {
+TEST_CASE("dealt slabs: about as much for each rank, within the limits", "[slabs]") {
   const Layers layers{{-8, 6}, {0, 6}, {8, 6}, {16, 6}, {24, 6}, {40, 6}};
+  const int64_t two = 2 * slabBytes(1, 6, 5 * 512 / 216);
   CHECK(deal(layers, 1, {}, 0).cuts == Cuts{-8, 48});
   CHECK(deal(layers, 3, {}, 0).cuts == Cuts{-8, 8, 24, 48});
   CHECK(deal(layers, 2, {0, 8, 8}, 0).cuts == Cuts{-8, 0, 8, 16, 24, 32, 40, 48});
-  CHECK(deal(layers, 1, {12, 0, 8}, 0).cuts == Cuts{-8, 8, 24, 48});
-  CHECK(deal(layers, 1, {11, 0, 8}, 0).cuts == Cuts{-8, 0, 8, 16, 24, 40, 48});
-  CHECK(deal(layers, 1, {12, 0, 24}, 0).cuts == Cuts{-8, 16, 40, 48});
+  CHECK(deal(layers, 1, {two, 0, 8}, 0).cuts == Cuts{-8, 8, 24, 48});
+  CHECK(deal(layers, 1, {two - 1, 0, 8}, 0).cuts == Cuts{-8, 0, 8, 16, 24, 40, 48});
+  CHECK(deal(layers, 1, {two, 0, 24}, 0).cuts == Cuts{-8, 16, 40, 48});
   CHECK(deal({}, 2, {}, 0).cuts == Cuts{0, 8});
   const Domain domain(CoordBBox(Coord(0, 0, -20), Coord(9, 9, 60)));
   CHECK(deal(layers, 1, {}, 0, domain).cuts == Cuts{-24, 64});
 }
 
 TEST_CASE("dealt slabs: a rank has its own, and what lies within reach", "[slabs]") {
-  const Layers layers{{0, 1}, {8, 9}, {16, 1}, {24, 1}, {32, 1}, {40, 1}};
+  const Layers layers{{0, 1}, {8, 30}, {16, 1}, {24, 1}, {32, 1}, {40, 1}};
   const Dealt own = deal(layers, 3, {0, 16, 8}, 0);
   REQUIRE(own.cuts == Cuts{0, 8, 16, 32, 48});
   REQUIRE(own.leaves[0].size() == 2);
   CHECK(own.leaves[0].at(0) == Places{{0, 0, 0}});
-  CHECK(own.leaves[0].at(1) == Places{{0, 0, 8}, {8, 0, 8}});
+  CHECK(own.leaves[0].at(1) == Places{{0, 0, 8}, {8, 0, 8}, {16, 0, 8}, {24, 0, 8}});
   CHECK(own.leaves[1].size() == 1);
   CHECK(own.leaves[1].at(2) == Places{{0, 0, 16}, {0, 0, 24}});
   CHECK(own.leaves[2].size() == 1);
   const Dealt wide = deal(layers, 3, {0, 16, 8}, 1);
   REQUIRE(wide.leaves[1].size() == 3);
-  CHECK(wide.leaves[1].at(1) == Places{{0, 0, 8}, {8, 0, 8}});
+  CHECK(wide.leaves[1].at(1) == Places{{0, 0, 8}, {8, 0, 8}, {16, 0, 8}, {24, 0, 8}});
   CHECK(wide.leaves[1].at(2) == Places{{0, 0, 16}, {0, 0, 24}});
   CHECK(wide.leaves[1].at(3) == Places{{0, 0, 32}});
   CHECK(deal(layers, 3, {0, 16, 8}, 9).leaves[1].size() == 4);

@@ -36,14 +36,15 @@ SlabObject built(const SlabLimits& limits, const std::vector<int>& layers, Scrat
 
 TEST_CASE("slab builder: cuts where a slab would be too high or too full", "[slabs]") {
   using Cuts = std::vector<int>;
-  const auto cuts = [](int64_t voxels, int height, int leastHeight) {
+  const auto cuts = [](int64_t bytes, int height, int leastHeight) {
     MemoryScratch scratch;
-    return built({voxels, height, leastHeight}, {-16, -8, 0, 8, 24, 32}, scratch).cuts;
+    return built({bytes, height, leastHeight}, {-16, -8, 0, 8, 24, 32}, scratch).cuts;
   };
+  const int64_t layer = slabBytes(2, 20, 0);
   CHECK(cuts(0, 0, 8) == Cuts{-16, 40});
   CHECK(cuts(0, 8, 8) == Cuts{-16, -8, 0, 8, 24, 32, 40});
   CHECK(cuts(0, 9, 8) == Cuts{-16, 0, 24, 40});
-  CHECK(cuts(40, 0, 8) == Cuts{-16, 0, 24, 40});
+  CHECK(cuts(2 * layer, 0, 8) == Cuts{-16, 0, 24, 40});
   CHECK(cuts(1, 0, 8) == Cuts{-16, -8, 0, 8, 24, 32, 40});  // a layer is not divided
   CHECK(cuts(1, 0, 20) == Cuts{-16, 8, 32, 40});
 }
@@ -79,4 +80,19 @@ TEST_CASE("slab builder: layers are single, and ascend", "[slabs]") {
   MaskTree tile;
   tile.fill(CoordBBox(Coord(0), Coord(7)), true);
   if (tile.activeTileCount() > 0) CHECK_THROWS_AS(SlabBuilder({}, scratch).add(tile), InvalidInput);
+}
+
+TEST_CASE("slab builder: counts voxels of thin structures apart", "[slabs]") {
+  const auto bytes = [](const CoordBBox& box) {
+    MaskTree layer;
+    for (auto p = box.begin(); p; ++p) layer.setValueOn(*p);
+    std::vector<LeafIndex::LeafVoxels> leaves;
+    return addLeaves(layer, leaves);
+  };
+  CHECK(bytes({Coord(0), Coord(7)}) == slabBytes(1, 512, 0));
+  // 6 and 24 of 216 that are not at faces of the leaf.
+  CHECK(bytes({Coord(2, 2, 0), Coord(2, 2, 7)}) == slabBytes(1, 8, 6 * 512 / 216));
+  CHECK(bytes({Coord(2, 2, 0), Coord(3, 3, 7)}) == slabBytes(1, 32, 24 * 512 / 216));
+  // Of 3 x 3 those at the edges have none inside beside them.
+  CHECK(bytes({Coord(2, 2, 0), Coord(4, 4, 7)}) == slabBytes(1, 72, 24 * 512 / 216));
 }

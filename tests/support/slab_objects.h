@@ -44,12 +44,13 @@ inline std::map<int, MaskTree> layersOf(const MaskGrid& mask) {
   return layers;
 }
 
-/// At every layer of leaves or some of them; now and then there are empty slabs at the ends.
+/// At every layer of leaves, or at some or few of them, so that slabs are high; now and then there are
+/// empty slabs at the ends.
 inline std::vector<int> randomCuts(const CoordBBox& box, Rng& rng) {
   const int first = (box.min().z() & ~7) - 8 * rng.below(2);
   const int last = (box.max().z() | 7) + 1 + 8 * rng.below(2);
   std::vector<int> cuts{first};
-  const double share = rng.chance(0.5) ? 1 : rng.unit();
+  const double share = rng.chance(0.4) ? 1 : rng.unit() * rng.unit();
   for (int z = first + 8; z < last; z += 8)
     if (rng.chance(share)) cuts.push_back(z);
   cuts.push_back(last);

@@ -31,28 +31,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SlabLimits limitsOf(const SegmentArguments& o) {
-  SlabLimits limits;
-  limits.height = o.slabHeight;
-  limits.leastHeight = o.segment.tidy;
-  const int64_t memory = o.maxMemory.empty() ? availableMemory() : o.segment.maxMemory;
+/// Of any slab: far fewer leaf nodes than can be numbered.
+constexpr int64_t kMostBytes = int64_t(8) << 30;
+
+/// \p memory: of this process; 0: not known.
+SlabLimits limitsOf(const SegmentArguments& o, int64_t memory) {
+  SlabLimits limits{kMostBytes, o.slabHeight, o.segment.tidy};
   if (memory == 0) return limits;
-  const int64_t voxels = (memory - kSlabOtherBytes) / kSlabBytesPerVoxel;
-  if (voxels < 1 << 20)
-    throw InvalidInput("slabs need at least " +
-                           readableBytes(kSlabOtherBytes + (kSlabBytesPerVoxel << 20)) +
+  constexpr int64_t kLeast = int64_t(32) << 20;
+  limits.bytes = std::min(memory - kSlabOtherBytes, kMostBytes);
+  if (limits.bytes < kLeast)
+    throw InvalidInput("slabs need at least " + readableBytes(kSlabOtherBytes + kLeast) +
                            " of memory, and " + readableBytes(memory) + " may be used: allow more",
                        Hint::memoryLimit);
-  limits.voxels = voxels;
   return limits;
 }
 
-/// Object voxels in a slab of one of several ranks, where no other limit is given.
-constexpr int64_t kSlabVoxels = int64_t(1) << 28;
-
 /// Reads the object into slabs; returns it without voxels.
 MaskGrid::Ptr readSlabs(const SegmentArguments& o, const Common& common, WorkPlace& place) {
-  SlabBuilder builder(limitsOf(o), place.scratch());
+  const int64_t memory = o.maxMemory.empty() ? availableMemory() : o.segment.maxMemory;
+  SlabBuilder builder(limitsOf(o, memory), place.scratch());
   VolumeOptions volume = o.input.volume(common.progress);
   volume.takeLayer = [&](const MaskTree& layer) { builder.add(layer); };
   const MaskGrid::Ptr object = loadObject(o.input, volume, common.progress);
@@ -64,11 +62,7 @@ MaskGrid::Ptr readSlabs(const SegmentArguments& o, const Common& common, WorkPla
 /// The same by several ranks, each of which reads a part.
 MaskGrid::Ptr readShare(const SegmentArguments& o, const Common& common, WorkPlace& place) {
   Ranks& ranks = *common.ranks;
-  SlabLimits limits;
-  if (!o.maxMemory.empty()) limits = limitsOf(o);
-  limits.voxels = limits.voxels > 0 ? std::min(limits.voxels, kSlabVoxels) : kSlabVoxels;
-  limits.height = o.slabHeight;
-  limits.leastHeight = o.segment.tidy;
+  const SlabLimits limits = limitsOf(o, o.segment.maxMemory);  // others share what is free
   SlabDealer dealer(ranks, place.scratch());
   MaskGrid::Ptr object;
   inAllRanks(ranks, [&] {

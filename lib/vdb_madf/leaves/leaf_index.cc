@@ -52,18 +52,22 @@ CoordBBox checkedBoundingBox(const MaskTree& tree) {
 
 /// The voxels of a leaf's mask.
 CoordBBox maskBox(const Coord& origin, const LeafIndex::Mask& mask) {
-  uint64_t anyX = 0;
-  for (const uint64_t word : mask) anyX |= word;
-  CoordBBox box;
-  for (int x = 0; x < 8; ++x)
-    if (mask[size_t(x)] != 0) box.expand(origin.offsetBy(x, 0, 0));
-  const int first = box.min().x(), last = box.max().x();
-  box.reset();
-  detail::forEachBit(anyX, [&](int bit) {
-    box.expand(Coord(first, origin.y() + (bit >> 3), origin.z() + (bit & 7)));
-  });
-  box.max().x() = last;
-  return box;
+  uint64_t anyX = 0;  // for each y and z: any x
+  int first = 8, last = 0;
+  for (int x = 0; x < 8; ++x) {
+    if (mask[size_t(x)] == 0) continue;
+    anyX |= mask[size_t(x)];
+    first = std::min(first, x);
+    last = x;
+  }
+  if (anyX == 0) return {};
+  uint64_t anyXY = anyX | anyX >> 32;  // the eight bytes, one for each y, are put together
+  anyXY |= anyXY >> 16;
+  anyXY = (anyXY | anyXY >> 8) & 0xff;
+  const auto lowest = [](uint64_t word) { return __builtin_ctzll(word); };
+  const auto highest = [](uint64_t word) { return 63 - __builtin_clzll(word); };
+  return {origin.offsetBy(first, lowest(anyX) / 8, lowest(anyXY)),
+          origin.offsetBy(last, highest(anyX) / 8, highest(anyXY))};
 }
 
 std::vector<SourceLeaf> sortedLeaves(const MaskTree& tree) {
@@ -113,8 +117,8 @@ LeafIndex::LeafIndex(const MaskGrid& object) {
 
 LeafIndex::LeafIndex(const LeafIndex& object, const std::vector<LeafVoxels>& more)
     : boundingBox_(object.boundingBox_) {
-  origins_.reserve(object.leafCount());
-  masks_.reserve(object.leafCount());
+  origins_.reserve(object.leafCount() + more.size());
+  masks_.reserve(object.leafCount() + more.size());
   size_t i = 0;
   for (const LeafVoxels& leaf : more) {
     for (; i < object.leafCount() && object.origin(i) < leaf.origin; ++i) {
@@ -159,15 +163,21 @@ void LeafIndex::finish() {
   neighbors_.assign(leafCount(), {kNone, kNone, kNone, kNone, kNone, kNone});
   firstRank_.resize(leafCount() + 1);
   wordRank_.resize(leafCount());
-  for (size_t i = 0; i < leafCount(); ++i) {
-    uint32_t count = 0;
-    for (size_t x = 0; x < 8; ++x) {
-      wordRank_[i][x] = uint16_t(count);
-      count += detail::countBits(masks_[i][x]);
+  constexpr size_t kGrain = 4096;  // leaves per task: some hundred microseconds
+  detail::parallelFor(leafCount(), kGrain, nullptr, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      uint32_t count = 0;
+      for (size_t x = 0; x < 8; ++x) {
+        wordRank_[i][x] = uint16_t(count);
+        count += detail::countBits(masks_[i][x]);
+      }
+      firstRank_[i + 1] = count;
     }
-    firstRank_[i + 1] = firstRank_[i] + count;
-  }
-  for (int axis = 0; axis < 3; ++axis) linkNeighbors(origins_, axis, neighbors_);
+  });
+  for (size_t i = 0; i < leafCount(); ++i) firstRank_[i + 1] += firstRank_[i];
+  detail::parallelFor(3, 1, nullptr, [&](size_t begin, size_t end) {
+    for (size_t axis = begin; axis < end; ++axis) linkNeighbors(origins_, int(axis), neighbors_);
+  });
 }
 
 }  // namespace vdb_madf

@@ -128,7 +128,9 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
   const bool filter = options.gamma > 1;
   const std::array<double, 3> edges =
       options.weights ? std::array<double, 3>{1, 1, 1} : voxelEdges(object.transform());
-  if (options.maxMemory > 0) checkMemory(objectSize(object), options);
+  ObjectSize size;
+  if (options.maxMemory > 0) size = objectSize(object);
+  checkMemory(size, options);
   result.domain = options.domain ? options.domain : storedDomain(object);
   result.fillHoles = options.fillHoles.value_or(defaultFillHoles(result.domain));
   result.tidy = options.tidy;
@@ -150,7 +152,7 @@ Segmentation segment(const MaskGrid& object, const SegmentOptions& options,
   }
   const Body body = fillCavities(std::move(objectIndex), cavities);
   const LeafIndex& index = body.index;
-  checkMemory({int64_t(index.leafCount()), index.voxelCount()}, options);
+  checkMemory({int64_t(index.leafCount()), index.voxelCount(), size.thin}, options);
   // Across a region the nearest background may lie anywhere.
   const bool inRegion = obstacles.open && !obstacles.domain.isBox();
   const CoordBBox& extent = inRegion ? obstacles.domain.box() : index.boundingBox();

@@ -3,7 +3,14 @@
 
 #include "vdb_madf/method/segment_memory.h"
 
+#include <openvdb/tree/LeafManager.h>
+
 #include <algorithm>
+#include <atomic>
+
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/leaves/detail/leaf_mask.h"
+#include "vdb_madf/leaves/detail/voxels.h"
 
 namespace vdb_madf {
 
@@ -17,11 +24,15 @@ constexpr double kPieces = 160;   // connected pieces within leaves, of the obje
 
 // Bytes per object voxel.
 constexpr double kPower = 4, kSite = 4, kManifold = 4;
-// Medial balls are 1 to 8 % of the voxels: their ids and roots, or cells and radii, of 4 bytes
-// each.
-constexpr double kBalls = 0.08 * 12, kBallTable = 0.08 * 16, kBallList = 0.08 * 48;
+// Medial balls are 1 to 8 % of the voxels, and all of thin structures: their ids and roots, or cells and
+// radii, of 4 bytes each.
+constexpr double kBallShare = 0.08, kBalls = 12, kBallTable = 16, kBallList = 48;
 // Voxels that change in one round of the geodesic completion, 12 bytes each in growing lists.
 constexpr double kCompletion = 0.12 * 24;
+
+// Critical points, in the graph and what makes it: of thin structures nearly each voxel is one, but for
+// those that the filter drops; of others next to none.
+constexpr double kGraph = 100, kFilteredShare = 0.25;
 
 // Threads' scratch space and stacks, the graph, code.
 constexpr double kBase = 48 << 20;
@@ -34,6 +45,14 @@ ObjectSize objectSize(const MaskGrid& object) {
   size.leaves = int64_t(tree.leafCount());
   size.voxels = int64_t(tree.activeVoxelCount());
   size.leaves += (size.voxels - int64_t(tree.activeLeafVoxelCount())) / 512;
+  const openvdb::tree::LeafManager<const MaskTree> leaves(tree);
+  std::atomic<int64_t> thin{0};
+  detail::parallelFor(leaves.leafCount(), detail::kLeafGrain, nullptr,
+                      [&](size_t begin, size_t end) {
+                        for (size_t i = begin; i < end; ++i)
+                          thin += detail::countThin(detail::maskOf(leaves.leaf(i)));
+                      });
+  size.thin = thin;
   return size;
 }
 
@@ -41,21 +60,23 @@ int64_t segmentMemory(const ObjectSize& size, const SegmentOptions& options) {
   const bool filter = options.gamma > 1;
   const double leaves = double(size.leaves), voxels = double(size.voxels);
   const double perGrid = kGrid * leaves;
+  const double ballCount = kBallShare * voxels + double(size.thin);
   // What lives until the end.
   double kept = kBase + kIndex * leaves;
   if (options.keepDistance) kept += perGrid;
 
   double peak = kept + (kPower + kSite) * voxels;  // power map
-  if (options.keepBalls) kept += kBallList * voxels;
+  if (options.keepBalls) kept += kBallList * ballCount;
   double sets = kVoxelSet * leaves;
-  double balls = kBalls * voxels;
+  double balls = kBalls * ballCount;
   if (filter) {
     sets += (kVoxelSet + kPieces) * leaves;
-    balls += kBallTable * voxels;
+    balls += kBallTable * ballCount;
     peak = std::max(peak, kept + (kPower + kSite + kCompletion) * voxels + balls + sets +
                               2 * kVoxelSet * leaves);
   }
   peak = std::max(peak, kept + (kPower + kSite) * voxels + balls + sets);  // flow
+  kept += kGraph * double(size.thin) * (filter ? kFilteredShare : 1);
   if (options.keepPower) {
     kept += perGrid;
     peak = std::max(peak, kept + (kPower + kManifold) * voxels + sets);

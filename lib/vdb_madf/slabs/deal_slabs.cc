@@ -31,22 +31,22 @@ bool isWanted(const Ranks& ranks, int rank, const std::vector<int>& cuts, int64_
 
 }  // namespace
 
-/// Object voxels of each layer, of all ranks.
+/// What each layer takes, of all ranks.
 struct SlabDealer::Layers {
-  int first = 0;  ///< z of the lowest
-  std::vector<int64_t> voxels;
+  int first = 0;               ///< z of the lowest
+  std::vector<int64_t> bytes;  ///< slabBytes()
 
   std::vector<int> chooseCuts(const SlabLimits& limits, int ranks) const;
 };
 
 void SlabDealer::add(const MaskTree& layer) {
   Leaves leaves;
-  const int64_t voxels = addLeaves(layer, leaves);
+  const int64_t bytes = addLeaves(layer, leaves);
   if (leaves.empty()) return;
   const int z = leaves[0].origin.z();
   for (const LeafIndex::LeafVoxels& leaf : leaves)
     if (leaf.origin.z() != z) throw InvalidInput("a layer of leaf nodes has several heights");
-  if (!read_.emplace(z, voxels).second) throw InvalidInput("a layer of leaf nodes comes twice");
+  if (!read_.emplace(z, bytes).second) throw InvalidInput("a layer of leaf nodes comes twice");
   detail::writeLeaves(scratch_, layerName(z), leaves);
 }
 
@@ -75,33 +75,32 @@ SlabDealer::Layers SlabDealer::countLayers(const std::optional<Domain>& domain) 
   if (ends[0] == kNothing) return {0, {0}};
   Layers layers;
   layers.first = int(-ends[0]) & ~7;
-  layers.voxels.assign(size_t((ends[1] - layers.first) / 8 + 1), 0);
-  for (const auto& [z, voxels] : read_) layers.voxels[size_t(z - layers.first) / 8] = voxels;
-  ranks_.sum(layers.voxels);
+  layers.bytes.assign(size_t((ends[1] - layers.first) / 8 + 1), 0);
+  for (const auto& [z, ofLayer] : read_) layers.bytes[size_t(z - layers.first) / 8] = ofLayer;
+  ranks_.sum(layers.bytes);
   return layers;
 }
 
 std::vector<int> SlabDealer::Layers::chooseCuts(const SlabLimits& limits, int ranks) const {
   int64_t total = 0;
-  for (const int64_t ofLayer : voxels) total += ofLayer;
+  for (const int64_t ofLayer : bytes) total += ofLayer;
   int64_t most = total / ranks + 1;
-  if (limits.voxels > 0) most = std::min(most, limits.voxels);
+  if (limits.bytes > 0) most = std::min(most, limits.bytes);
   std::vector<int> cuts{first};
   int64_t inSlab = 0;
-  for (size_t layer = 0; layer < voxels.size(); ++layer) {
+  for (size_t layer = 0; layer < bytes.size(); ++layer) {
     const int z = first + int(layer) * 8, height = z - cuts.back();
     // A cut where the slab's share is nearer than after this layer; a limit is not passed.
-    const bool isFull =
-        inSlab > 0 && (inSlab + voxels[layer] / 2 >= most ||
-                       (limits.voxels > 0 && inSlab + voxels[layer] > limits.voxels));
+    const bool isFull = inSlab > 0 && (inSlab + bytes[layer] / 2 >= most ||
+                                       (limits.bytes > 0 && inSlab + bytes[layer] > limits.bytes));
     const bool isHigh = limits.height > 0 && height + 8 > (limits.height + 7) / 8 * 8;
     if (height >= std::max(limits.leastHeight, 8) && (isFull || isHigh)) {
       cuts.push_back(z);
       inSlab = 0;
     }
-    inSlab += voxels[layer];
+    inSlab += bytes[layer];
   }
-  cuts.push_back(first + int(voxels.size()) * 8);
+  cuts.push_back(first + int(bytes.size()) * 8);
   return cuts;
 }
 
@@ -128,7 +127,7 @@ void SlabDealer::receive(const std::vector<int>& cuts, int64_t reach, const Laye
     Leaves slab;
     std::vector<std::string> done;
     for (int z = cuts[s]; z < cuts[s + 1]; z += 8) {
-      if (layers.voxels[size_t(z - layers.first) / 8] == 0 || !isWantedHere(z, z + 8)) continue;
+      if (layers.bytes[size_t(z - layers.first) / 8] == 0 || !isWantedHere(z, z + 8)) continue;
       done.push_back(layerName(z));
       const Leaves layer = detail::readLeaves(scratch_, done.back());
       slab.insert(slab.end(), layer.begin(), layer.end());

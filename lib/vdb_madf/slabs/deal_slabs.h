@@ -22,7 +22,7 @@ class SlabDealer {
   void add(const MaskTree& layer);
 
   /// After the last of all ranks, which call it together.
-  /// @param limits of a slab; voxels as in SlabLimits
+  /// @param limits of a slab
   /// @param reach how far beyond its slabs a rank has to know the object, voxels
   /// The cuts cover the domain, if there is one, and the object; they do not depend on who read what.
   /// Those in a scratch that is shared count as finished (hasSlabs()) when all is in it.
@@ -36,7 +36,7 @@ class SlabDealer {
 
   Ranks& ranks_;
   Scratch& scratch_;
-  std::map<int, int64_t> read_;  // voxels of the layers of this rank, by their z
+  std::map<int, int64_t> read_;  // slabBytes() of the layers of this rank, by their z
 };
 
 }  // namespace vdb_madf

@@ -33,7 +33,7 @@ constexpr const char* kLock = detail::FolderLock::kName;
 
 /// What a file of a piece begins with; the table of its blocks follows, then these.
 struct Header {
-  std::array<char, 8> magic{'m', 'a', 'd', 'f', 'p', 'c', '0', '2'};
+  std::array<char, 8> magic{'m', 'a', 'd', 'f', 'p', 'c', '0', '3'};
   uint64_t size = 0;                   ///< of the bytes, before they were compressed
   std::array<uint64_t, 2> checksum{};  ///< of the table
 };
@@ -155,18 +155,17 @@ std::string FolderScratch::file(const std::string& name) const {
   return (fs::path(path_) / name).string();
 }
 
-void FolderScratch::write(const std::string& name, const Bytes& bytes) {
+void FolderScratch::writeBytes(const std::string& name, const char* bytes, size_t size) {
   const Timer timer(seconds_);
   Header header;
-  header.size = bytes.size();
-  std::vector<Block> table(blockCount(bytes.size()));
+  header.size = size;
+  std::vector<Block> table(blockCount(size));
   std::vector<Bytes> blocks(table.size());
-  forEachBlock(bytes.size(), [&](size_t i) {
-    const char* first = bytes.data() + i * kBlock;
-    const size_t size = std::min(kBlock, bytes.size() - i * kBlock);
-    blocks[i].resize(size + BLOSC_MAX_OVERHEAD);
-    const int written = blosc_compress_ctx(1, BLOSC_SHUFFLE, 4, size, first, blocks[i].data(),
-                                           blocks[i].size(), "lz4", 0, 1);
+  forEachBlock(size, [&](size_t i) {
+    const size_t part = std::min(kBlock, size - i * kBlock);
+    blocks[i].resize(part + BLOSC_MAX_OVERHEAD);
+    const int written = blosc_compress_ctx(1, BLOSC_SHUFFLE, 4, part, bytes + i * kBlock,
+                                           blocks[i].data(), blocks[i].size(), "lz4", 0, 1);
     if (written <= 0) throw IoError(file(name + kEnding) + ": cannot be compressed");
     blocks[i].resize(size_t(written));
     table[i] = {blocks[i].size(), checksumOf(blocks[i].data(), blocks[i].size())};
@@ -180,7 +179,7 @@ void FolderScratch::write(const std::string& name, const Bytes& bytes) {
   out.commit();
 }
 
-Bytes FolderScratch::read(const std::string& name) const {
+void FolderScratch::readBytes(const std::string& name, const Allocate& allocate) const {
   const Timer timer(seconds_);
   const std::string path = file(name + kEnding);
   const detail::InputFile in(path);
@@ -200,18 +199,17 @@ Bytes FolderScratch::read(const std::string& name) const {
     place.push_back(place.back() + block.size);
   }
   if (place.back() != in.size()) failDamaged(path);
-  Bytes bytes(header.size);
-  forEachBlock(bytes.size(), [&](size_t i) {
+  char* const bytes = allocate(header.size);
+  forEachBlock(header.size, [&](size_t i) {
     Bytes stored(table[i].size);
     in.read(place[i], stored.data(), stored.size());
-    const size_t size = std::min(kBlock, bytes.size() - i * kBlock);
+    const size_t size = std::min<size_t>(kBlock, header.size - i * kBlock);
     size_t held = 0;
     if (checksumOf(stored.data(), stored.size()) != table[i].checksum ||
         blosc_cbuffer_validate(stored.data(), stored.size(), &held) != 0 || held != size ||
-        blosc_decompress_ctx(stored.data(), bytes.data() + i * kBlock, size, 1) != int(size))
+        blosc_decompress_ctx(stored.data(), bytes + i * kBlock, size, 1) != int(size))
       failDamaged(path);
   });
-  return bytes;
 }
 
 bool FolderScratch::has(const std::string& name) const {

@@ -39,8 +39,8 @@ class FolderScratch : public Scratch {
   std::string file(const std::string& name) const;
 
   /// @throw IoError, one line: disk full, a piece missing or damaged ...
-  void write(const std::string& name, const Bytes& bytes) override;
-  Bytes read(const std::string& name) const override;
+  void writeBytes(const std::string& name, const char* bytes, size_t size) override;
+  void readBytes(const std::string& name, const Allocate& allocate) const override;
   bool has(const std::string& name) const override;
   void remove(const std::string& name) override;
 

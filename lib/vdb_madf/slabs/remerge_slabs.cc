@@ -43,7 +43,7 @@ std::vector<int64_t> remergeSlabs(const LabelSlabs& manifolds, const MergeOption
   SlabSegmentation result;
   remerge.merge(
       result, [&](size_t slab, const detail::SlabBody& body, VoxelArray<uint32_t> labels) {
-        const Int32Grid::Ptr grain = detail::slabGrid(work, body, std::move(labels), "grain");
+        const Int32Grid::Ptr grain = detail::slabGrid(work, slab, body, std::move(labels), "grain");
         describe(*manifolds.about, how, result.counts.grains, *grain);
         put(slab, grain);
       });

@@ -3,6 +3,9 @@
 
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -23,10 +26,24 @@ class Scratch {
   Scratch& operator=(const Scratch&) = delete;
 
   /// Replaces what has that name.
-  virtual void write(const std::string& name, const Bytes& bytes) = 0;
-  virtual Bytes read(const std::string& name) const = 0;
+  virtual void writeBytes(const std::string& name, const char* bytes, size_t size) = 0;
+  /// Called once, tells where the bytes go to; some are there even if reading fails.
+  using Allocate = std::function<char*(size_t size)>;
+  virtual void readBytes(const std::string& name, const Allocate& allocate) const = 0;
   virtual bool has(const std::string& name) const = 0;
   virtual void remove(const std::string& name) = 0;
+
+  void write(const std::string& name, const Bytes& bytes) {
+    writeBytes(name, bytes.data(), bytes.size());
+  }
+  Bytes read(const std::string& name) const {
+    Bytes bytes;
+    readBytes(name, [&](size_t size) {
+      bytes.resize(size);
+      return bytes.data();
+    });
+    return bytes;
+  }
 
   /// Is it one and the same for all ranks, so that each has what another one writes?
   virtual bool isShared() const { return false; }
@@ -35,8 +52,13 @@ class Scratch {
 /// In memory: for volumes that fit.
 class MemoryScratch : public Scratch {
  public:
-  void write(const std::string& name, const Bytes& bytes) override { pieces_[name] = bytes; }
-  Bytes read(const std::string& name) const override { return pieces_.at(name); }
+  void writeBytes(const std::string& name, const char* bytes, size_t size) override {
+    pieces_[name].assign(bytes, bytes + size);
+  }
+  void readBytes(const std::string& name, const Allocate& allocate) const override {
+    const Bytes& bytes = pieces_.at(name);
+    std::copy(bytes.begin(), bytes.end(), allocate(bytes.size()));
+  }
   bool has(const std::string& name) const override { return pieces_.count(name) > 0; }
   void remove(const std::string& name) override { pieces_.erase(name); }
 

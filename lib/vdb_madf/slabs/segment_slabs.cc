@@ -26,12 +26,12 @@ Int32Grid::Ptr manifoldGrid(const detail::SlabWork& work, size_t slab,
                             const detail::SlabBody& body) {
   detail::SlabPart part;
   VoxelArray<uint32_t> manifold;
-  if (body.index.voxelCount() > 0) manifold = work.read("flow", slab).voxelArray<uint32_t>();
+  if (body.index.voxelCount() > 0) manifold = work.readVoxels<uint32_t>("flow", slab);
   if (work.has(detail::kGraphPart, slab))
     part = detail::SlabPart::readFrom(work.read(detail::kGraphPart, slab));
   for (size_t i = 0; i < manifold.size(); ++i)
     manifold[i] = part.number[part.nodeOf[(manifold[i] & ~Flow::kOwnCell) - 1]];
-  const Int32Grid::Ptr grid = detail::slabGrid(work, body, std::move(manifold), "manifold");
+  const Int32Grid::Ptr grid = detail::slabGrid(work, slab, body, std::move(manifold), "manifold");
   part.graph.weights = work.weights;
   setGraphPart(*grid, std::move(part));
   return grid;
@@ -76,7 +76,7 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
   detail::labelSlabs(work, std::move(representatives), result,
                      [&](size_t slab, const detail::SlabBody& body, VoxelArray<uint32_t> labels) {
                        SlabGrids grids;
-                       grids.grain = detail::slabGrid(work, body, std::move(labels), "grain");
+                       grids.grain = detail::slabGrid(work, slab, body, std::move(labels), "grain");
                        if (options.keepManifold) grids.manifold = manifoldGrid(work, slab, body);
                        for (const Int32Grid::Ptr& grid : {grids.grain, grids.manifold})
                          if (grid) describe(work, result, *grid);

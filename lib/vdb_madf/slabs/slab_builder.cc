@@ -21,21 +21,22 @@ constexpr char kCuts[] = "cuts";
 }  // namespace
 
 int64_t addLeaves(const MaskTree& layer, std::vector<LeafIndex::LeafVoxels>& leaves) {
-  int64_t voxels = 0;
+  int64_t bytes = 0;
   for (auto leaf = layer.cbeginLeaf(); leaf; ++leaf) {
     if (leaf->isEmpty()) continue;
     leaves.push_back({leaf->origin(), detail::maskOf(*leaf)});
-    voxels += int64_t(leaf->onVoxelCount());
+    const LeafIndex::Mask& mask = leaves.back().mask;
+    bytes += slabBytes(1, detail::countVoxels(mask), detail::countThin(mask));
   }
   detail::forEachActiveTile(layer, [](const CoordBBox&) {
     throw InvalidInput("a layer of leaf nodes has an active tile: voxelize it");
   });
-  return voxels;
+  return bytes;
 }
 
 void SlabBuilder::add(const MaskTree& layer) {
   const size_t before = leaves_.size();
-  const int64_t voxels = addLeaves(layer, leaves_);
+  const int64_t bytes = addLeaves(layer, leaves_);
   if (leaves_.size() == before) return;
   const int z = leaves_[before].origin.z();
   for (size_t i = before; i < leaves_.size(); ++i)
@@ -46,7 +47,7 @@ void SlabBuilder::add(const MaskTree& layer) {
   if (cuts_.empty()) cuts_.push_back(z);
   const int height = z - cuts_.back();
   const bool isHigh = limits_.height > 0 && height + 8 > (limits_.height + 7) / 8 * 8;
-  const bool isFull = limits_.voxels > 0 && voxels_ + voxels > limits_.voxels;
+  const bool isFull = limits_.bytes > 0 && bytes_ + bytes > limits_.bytes;
   if (height >= std::max(limits_.leastHeight, 8) && (isHigh || isFull)) {
     std::vector<LeafIndex::LeafVoxels> next(leaves_.begin() + std::ptrdiff_t(before),
                                             leaves_.end());
@@ -54,7 +55,7 @@ void SlabBuilder::add(const MaskTree& layer) {
     endSlab(z);
     leaves_ = std::move(next);
   }
-  voxels_ += voxels;
+  bytes_ += bytes;
 }
 
 void SlabBuilder::endSlab(int z) {
@@ -62,7 +63,7 @@ void SlabBuilder::endSlab(int z) {
             [](const auto& a, const auto& b) { return a.origin < b.origin; });
   detail::writeLeaves(scratch_, detail::objectName(cuts_.size() - 1), leaves_);
   leaves_.clear();
-  voxels_ = 0;
+  bytes_ = 0;
   cuts_.push_back(z);
 }
 

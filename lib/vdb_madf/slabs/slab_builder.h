@@ -13,17 +13,24 @@ namespace vdb_madf {
 
 /// Where an object is cut.
 struct SlabLimits {
-  int64_t voxels = 0;  ///< of the object in a slab, unless one layer of leaf nodes has more; 0: any
-  int height = 0;      ///< of a slab, voxels, rounded up to a multiple of 8; 0: any
+  int64_t bytes = 0;    ///< slabBytes() of a slab, unless one layer of leaf nodes has more; 0: any
+  int height = 0;       ///< of a slab, voxels, rounded up to a multiple of 8; 0: any
   int leastHeight = 8;  ///< of a slab, but for the last
 };
 
-/// Bytes that segmentSlabs() takes for each object voxel of a slab at its peak, and apart from that, of
-/// which most is the program itself. For limits; what is kept of the whole is not counted (README.md).
-constexpr int64_t kSlabBytesPerVoxel = 32;
+/// The memory that segmentSlabs() takes at its peak for a slab, about. For limits; what is kept of the
+/// whole is not counted (README.md). \p thin: how many voxels are in structures one or two voxels
+/// thick (about), each of which may become a critical point.
+constexpr int64_t slabBytes(int64_t leaves, int64_t voxels, int64_t thin) {
+  constexpr int64_t kLeaf = 2560;  // mostly that of the grid of labels
+  constexpr int64_t kVoxel = 24;   // maps, and what of them goes to scratch
+  constexpr int64_t kThin = 640;   // the graph, or what the filter leaves without a ball
+  return kLeaf * leaves + kVoxel * voxels + kThin * thin;
+}
+/// Apart from that; most of it is the program itself.
 constexpr int64_t kSlabOtherBytes = int64_t(160) << 20;
 
-/// Adds the leaves of a layer that hold object voxels; returns how many voxels that are.
+/// Adds the leaves of a layer that hold object voxels; returns their slabBytes().
 /// @throw InvalidInput if the layer has active tiles
 int64_t addLeaves(const MaskTree& layer, std::vector<LeafIndex::LeafVoxels>& leaves);
 
@@ -44,7 +51,7 @@ class SlabBuilder {
   Scratch& scratch_;
   std::vector<int> cuts_;
   std::vector<LeafIndex::LeafVoxels> leaves_;  // of the slab that is not ended
-  int64_t voxels_ = 0;
+  int64_t bytes_ = 0;                          // of the same
   std::optional<int> lastLayer_;
 };
 

@@ -25,12 +25,12 @@ class RowScratch : public Scratch {
     for (const std::string& name : own_) all_.remove(prefixed(name));
   }
 
-  void write(const std::string& name, const Bytes& bytes) override {
+  void writeBytes(const std::string& name, const char* bytes, size_t size) override {
     own_.insert(name);
-    all_.write(prefixed(name), bytes);
+    all_.writeBytes(prefixed(name), bytes, size);
   }
-  Bytes read(const std::string& name) const override {
-    return all_.read(own_.count(name) ? prefixed(name) : name);
+  void readBytes(const std::string& name, const Allocate& allocate) const override {
+    all_.readBytes(own_.count(name) ? prefixed(name) : name, allocate);
   }
   bool has(const std::string& name) const override {
     return own_.count(name) > 0 || all_.has(name);

@@ -44,6 +44,13 @@ LeafIndex::Mask dilate(const LeafIndex::Mask& mask) {
   return result;
 }
 
+int64_t countThin(const LeafIndex::Mask& mask) {
+  constexpr uint64_t kInner = ~(kFirstY | kLastY | kFirstZ | kLastZ);
+  constexpr LeafIndex::Mask kNotAtFaces{0, kInner, kInner, kInner, kInner, kInner, kInner, 0};
+  const LeafIndex::Mask inside = without(kFullMask, dilate(without(kFullMask, mask)));
+  return int64_t(countVoxels(both(without(mask, dilate(inside)), kNotAtFaces))) * 512 / 216;
+}
+
 LeafIndex::Mask across(const LeafIndex::Mask& mask, size_t side) {
   LeafIndex::Mask result{};
   if (side == 0) result[7] = mask[0];

@@ -83,6 +83,11 @@ constexpr size_t opposite(size_t side) {
 /// The voxels of `mask` and their neighbours within the leaf.
 LeafIndex::Mask dilate(const LeafIndex::Mask& mask);
 
+/// About how many voxels are in structures one or two voxels thick: those that have no face in common with
+/// a voxel all of whose neighbours are in `mask`. Told by the voxels that are not at faces of the leaf, for
+/// all in proportion.
+int64_t countThin(const LeafIndex::Mask& mask);
+
 /// The voxels of the leaf at `origin` that lie in a box.
 LeafIndex::Mask inBox(const Coord& origin, const CoordBBox& box);
 

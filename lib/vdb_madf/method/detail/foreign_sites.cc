@@ -10,12 +10,7 @@ namespace vdb_madf::detail {
 
 namespace {
 
-/// Leaf column, column within it, z.
-std::tuple<int, int, int, int> placeOf(const Coord& p) {
-  return {p.x() & ~7, p.y() & ~7, (p.x() & 7) * 8 + (p.y() & 7), p.z()};
-}
-
-/// The sites of a pencil among all, in either case in the order of placeOf().
+/// The sites of a pencil among all, in either case in ColumnOrder.
 template <typename Named>
 void addRows(const std::vector<Named>& sites, const Coord& origin, BeyondRows& rows) {
   const auto leafBefore = [](const Named& named, const Coord& leaf) {
@@ -41,11 +36,6 @@ ForeignSites::ForeignSites(const std::vector<ForeignSite>& below,
     : begin_(begin), end_(end) {
   for (const ForeignSite& site : below) below_.push_back({site, 0});
   for (const ForeignSite& site : above) above_.push_back({site, 0});
-  const auto less = [](const Named& a, const Named& b) {
-    return placeOf(a.site.position) < placeOf(b.site.position);
-  };
-  std::sort(below_.begin(), below_.end(), less);
-  std::sort(above_.begin(), above_.end(), less);
   name(index);
 }
 
@@ -56,7 +46,8 @@ void ForeignSites::name(LeafIndex& index) {
       const int z = named.site.position.z();
       largest_ = std::max(largest_, named.site.squaredRadius);
       reach_ = std::max({reach_, begin_ - z, z - end_ + 1});
-      leaves.push_back(named.site.position & ~7);
+      const Coord leaf = named.site.position & ~7;
+      if (leaves.empty() || leaves.back() != leaf) leaves.push_back(leaf);
     }
   std::sort(leaves.begin(), leaves.end());
   leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());

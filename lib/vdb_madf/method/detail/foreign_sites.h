@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "vdb_madf/leaves/leaf_index.h"
@@ -18,11 +19,23 @@ struct ForeignSite {
   int32_t squaredRadius = 0;
 };
 
+/// By leaf column, then column, then z.
+struct ColumnOrder {
+  bool operator()(const ForeignSite& a, const ForeignSite& b) const {
+    return placeOf(a.position) < placeOf(b.position);
+  }
+
+ private:
+  static std::tuple<int, int, int, int> placeOf(const Coord& p) {
+    return {p.x() & ~7, p.y() & ~7, (p.x() & 7) * 8 + (p.y() & 7), p.z()};
+  }
+};
+
 /// The sites beyond the cuts of a slab that may win in it: all those in line along z with an object
 /// voxel at a cut, joined to it by the object.
 class ForeignSites {
  public:
-  /// Each at most once. Names their leaves in the index of the slab begin <= z < end.
+  /// Each at most once, in ColumnOrder. Names their leaves in the index of the slab begin <= z < end.
   ForeignSites(const std::vector<ForeignSite>& below, const std::vector<ForeignSite>& above,
                int begin, int end, LeafIndex& index);
 
@@ -47,7 +60,7 @@ class ForeignSites {
   int begin_, end_;
   int32_t largest_ = 0;
   int reach_ = 0;
-  std::vector<Named> below_, above_;  // by leaf column, then column, then z
+  std::vector<Named> below_, above_;  // in ColumnOrder
 };
 
 }  // namespace vdb_madf::detail

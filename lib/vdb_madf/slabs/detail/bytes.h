@@ -3,13 +3,14 @@
 
 #pragma once
 
+#include <cstdint>
 #include <cstring>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/leaves/voxel_array.h"
 #include "vdb_madf/slabs/scratch.h"
 
 // Plain data as bytes, for this machine to read again.
@@ -25,22 +26,15 @@ class ByteWriter {
   }
   template <typename T>
   void add(const std::vector<T>& values) {
-    addArray(values.data(), values.size());
-  }
-  template <typename T>
-  void add(const VoxelArray<T>& values) {
-    addArray(values.data(), values.size());
+    static_assert(std::is_trivially_copyable_v<T>);
+    add(uint64_t(values.size()));
+    append(values.data(), values.size() * sizeof(T));
   }
   const Bytes& bytes() const { return bytes_; }
 
  private:
-  template <typename T>
-  void addArray(const T* values, size_t count) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    add(uint64_t(count));
-    append(values, count * sizeof(T));
-  }
-  void append(const void* data, size_t size) {
+  /// Not inlined: there GCC 12 warns of sizes below 0, for vectors that end before they begin.
+  [[gnu::noinline]] void append(const void* data, size_t size) {
     if (size == 0) return;
     bytes_.resize(bytes_.size() + size);
     std::memcpy(bytes_.data() + bytes_.size() - size, data, size);
@@ -65,14 +59,6 @@ class ByteReader {
     const char* data = take(count, sizeof(T));
     std::vector<T> values(count);
     if (count > 0) std::memcpy(static_cast<void*>(values.data()), data, count * sizeof(T));
-    return values;
-  }
-  template <typename T>
-  VoxelArray<T> voxelArray() {
-    const auto count = value<uint64_t>();
-    const char* data = take(count, sizeof(T));
-    VoxelArray<T> values(count);
-    std::memcpy(values.data(), data, count * sizeof(T));
     return values;
   }
 

@@ -4,8 +4,9 @@
 #include "vdb_madf/slabs/detail/site_offers.h"
 
 #include <algorithm>
-#include <tuple>
+#include <cstddef>
 
+#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/method/detail/metric.h"
 #include "vdb_madf/slabs/detail/column_steps.h"
@@ -76,22 +77,17 @@ void forEachInColumn(const LeafIndex& index, uint32_t leaf, int row, bool isUppe
     }
 }
 
-/// By column; in a column those nearest to the cut first.
-class CutOrder {
- public:
-  explicit CutOrder(const Cut& cut) : cut_(cut) {}
-  bool operator()(const ForeignSite& a, const ForeignSite& b) const {
-    const Coord &p = a.position, &q = b.position;
-    return std::make_tuple(p.x(), p.y(), cut_.away(p.z())) <
-           std::make_tuple(q.x(), q.y(), cut_.away(q.z()));
-  }
-
- private:
-  Cut cut_;
-};
-
 bool isSameColumn(const ForeignSite& a, const ForeignSite& b) {
   return a.position.x() == b.position.x() && a.position.y() == b.position.y();
+}
+
+/// What is left of a column, by rising z.
+void addByZ(const BeyondCut& best, const Cut& cut, std::vector<ForeignSite>& offers) {
+  const std::vector<ForeignSite>& sites = best.sites();
+  if (cut.isUpper)
+    offers.insert(offers.end(), sites.rbegin(), sites.rend());
+  else
+    offers.insert(offers.end(), sites.begin(), sites.end());
 }
 
 bool goesThrough(const ColumnSteps& columns, const Coord& p) {
@@ -104,20 +100,24 @@ bool goesThrough(const ColumnSteps& columns, const Coord& p) {
 std::vector<ForeignSite> siteOffers(const LeafIndex& index,
                                     const VoxelArray<int32_t>& squaredRadius, int32_t weight,
                                     const Cut& cut) {
-  std::vector<ForeignSite> offers;
-  BeyondCut best(weight);
-  for (uint32_t leaf = 0; leaf < index.leafCount(); ++leaf) {
-    if (index.origin(leaf).z() != (cut.layer() & ~7)) continue;
-    forEachBit(layersAlongZ(index.mask(leaf))[cut.isUpper ? 7 : 0], [&](int row) {
-      best.clear();
-      forEachInColumn(index, leaf, row, cut.isUpper, [&](VoxelId id) {
-        const Coord position = index.coord(id);
-        best.add(cut.away(position.z()), {position, squaredRadius[index.rank(id)]});
+  std::vector<uint32_t> leaves;
+  for (uint32_t leaf = 0; leaf < index.leafCount(); ++leaf)
+    if (index.origin(leaf).z() == (cut.layer() & ~7)) leaves.push_back(leaf);
+  std::vector<std::vector<ForeignSite>> ofLeaf(leaves.size());
+  parallelFor(leaves.size(), kLeafGrain, nullptr, [&](size_t begin, size_t end) {
+    BeyondCut best(weight);
+    for (size_t i = begin; i < end; ++i)
+      forEachBit(layersAlongZ(index.mask(leaves[i]))[cut.isUpper ? 7 : 0], [&](int row) {
+        best.clear();
+        forEachInColumn(index, leaves[i], row, cut.isUpper, [&](VoxelId id) {
+          const Coord position = index.coord(id);
+          best.add(cut.away(position.z()), {position, squaredRadius[index.rank(id)]});
+        });
+        addByZ(best, cut, ofLeaf[i]);
       });
-      offers.insert(offers.end(), best.sites().begin(), best.sites().end());
-    });
-  }
-  std::sort(offers.begin(), offers.end(), CutOrder(cut));
+  });
+  std::vector<ForeignSite> offers;
+  for (const auto& some : ofLeaf) offers.insert(offers.end(), some.begin(), some.end());
   return offers;
 }
 
@@ -127,17 +127,18 @@ std::vector<ForeignSite> passOn(const std::vector<ForeignSite>& own,
   std::vector<ForeignSite> all = own;
   for (const ForeignSite& site : offered)
     if (goesThrough(columns, site.position)) all.push_back(site);
-  std::sort(all.begin(), all.end(), CutOrder(cut));
+  std::inplace_merge(all.begin(), all.begin() + std::ptrdiff_t(own.size()), all.end(),
+                     ColumnOrder());
   std::vector<ForeignSite> offers;
   BeyondCut best(weight);
-  for (size_t i = 0; i < all.size(); ++i) {
-    if (i > 0 && !isSameColumn(all[i - 1], all[i])) {
-      offers.insert(offers.end(), best.sites().begin(), best.sites().end());
-      best.clear();
-    }
-    best.add(cut.away(all[i].position.z()), all[i]);
+  for (size_t first = 0, last; first < all.size(); first = last) {
+    for (last = first + 1; last < all.size() && isSameColumn(all[first], all[last]);) ++last;
+    if (cut.isUpper)
+      std::reverse(all.begin() + std::ptrdiff_t(first), all.begin() + std::ptrdiff_t(last));
+    best.clear();
+    for (size_t i = first; i < last; ++i) best.add(cut.away(all[i].position.z()), all[i]);
+    addByZ(best, cut, offers);
   }
-  offers.insert(offers.end(), best.sites().begin(), best.sites().end());
   return offers;
 }
 

@@ -21,8 +21,8 @@ struct Cut {
 };
 
 /// The balls of a slab that may win beyond a cut: of each column those that have the least power,
-/// below 0, somewhere in line beyond it, joined to the cut by object voxels. By columns, those nearest
-/// to the cut first. \p squaredRadius: of voxels, 0 for one that is no site.
+/// below 0, somewhere in line beyond it, joined to the cut by object voxels. In ColumnOrder.
+/// \p squaredRadius: of voxels, 0 for one that is no site.
 ///
 /// At a voxel the order of sites is total (power, then D, then position), so a site that loses in
 /// line to others of its column loses for good: the passes along x and y see the best of a column.
@@ -30,7 +30,7 @@ std::vector<ForeignSite> siteOffers(const LeafIndex& index,
                                     const VoxelArray<int32_t>& squaredRadius, int32_t weight,
                                     const Cut& cut);
 
-/// The same with the balls that were offered to the slab at its other cut: they go on where a column
+/// The same, with the balls (in ColumnOrder, too) that were offered to the slab at its other cut: they go on where a column
 /// is object from cut to cut. \p columns: those beside the cut.
 std::vector<ForeignSite> passOn(const std::vector<ForeignSite>& own,
                                 const std::vector<ForeignSite>& offered, const ColumnSteps& columns,

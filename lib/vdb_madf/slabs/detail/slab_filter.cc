@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/detail/connected_components.h"
 #include "vdb_madf/method/detail/power_passes.h"
 #include "vdb_madf/method/medial_balls.h"
@@ -65,6 +66,16 @@ struct Component {
   }
 };
 
+/// The same for all voxels.
+VoxelArray<int32_t> uniform(const LeafIndex& index, int32_t value) {
+  constexpr size_t kVoxelGrain = size_t(1) << 16;
+  VoxelArray<int32_t> values(size_t(index.voxelCount()));
+  parallelFor(values.size(), kVoxelGrain, nullptr, [&](size_t begin, size_t end) {
+    std::fill(values.data() + begin, values.data() + end, value);
+  });
+  return values;
+}
+
 class SlabFilter {
  public:
   SlabFilter(SlabWork& work, const SlabOffers& offers, SlabCompletion& completion,
@@ -95,7 +106,7 @@ class SlabFilter {
  private:
   /// The balls of a slab's cells, told to the slabs that they belong to.
   void measureCells(size_t s) {
-    WorkPart part = work_.part(15, 30, s);
+    WorkPart part = work_.part(10, 35, s);
     SlabBody slab = work_.body(s);
     const PowerMap map = slabPowerMap(work_, offers_, s, slab.index, &part);
     const VoxelSet balls = medialBalls(slab.index, map, &part);
@@ -199,8 +210,7 @@ class SlabFilter {
     const auto balls = work_.readVector<SizedBall>("sized-balls", s);
     std::vector<ForeignSite> kept;
     const SlabBody slab = work_.body(s);
-    VoxelArray<int32_t> squaredRadius(size_t(slab.index.voxelCount()));
-    for (size_t i = 0; i < squaredRadius.size(); ++i) squaredRadius[i] = 0;
+    VoxelArray<int32_t> squaredRadius = uniform(slab.index, 0);
     for (const SizedBall& ball : balls) {
       if (ball.cellSize < work_.options.gamma &&
           !std::binary_search(rescued.begin(), rescued.end(), ball.center))
@@ -212,7 +222,9 @@ class SlabFilter {
       for (size_t t = 0; t < work_.slabCount(); ++t)
         if (isInReach(work_, s, t)) work_.sendVector("kept-balls", s, t, kept);
     } else {
-      keptOffers_.offer(s, slab.index, squaredRadius);
+      keptOffers_.offer(s, [&](bool isUpper) {
+        return siteOffers(slab.index, squaredRadius, work_.weights.z, work_.cut(s, isUpper));
+      });
       work_.writeVector("kept-balls", s, kept);
     }
     work_.sendVector("ball-counts", s, SlabWork::kRoot,
@@ -221,14 +233,13 @@ class SlabFilter {
 
   /// The map of the kept balls.
   void mapKept(size_t s) {
-    WorkPart part = work_.part(30, 45, s);
+    WorkPart part = work_.part(35, 55, s);
     SlabBody slab = work_.body(s);
     PowerMap map;
     map.weights = work_.weights;
     map.foreign = keptOffers_.received(s, slab.index);
     map.site = VoxelArray<VoxelId>(size_t(slab.index.voxelCount()));
-    map.power = VoxelArray<int32_t>(size_t(slab.index.voxelCount()));
-    for (size_t i = 0; i < map.power.size(); ++i) map.power[i] = kUncovered;
+    map.power = uniform(slab.index, kUncovered);
     int32_t largest = 0;
     for (const ForeignSite& ball : work_.readVector<ForeignSite>("kept-balls", s)) {
       map.power[slab.index.rank(*slab.index.findVoxel(ball.position))] = -ball.squaredRadius;
@@ -239,7 +250,7 @@ class SlabFilter {
   }
 
   void mapKeptInRegion(size_t s) {
-    WorkPart part = work_.part(30, 45, s);
+    WorkPart part = work_.part(35, 55, s);
     SlabBody slab = work_.body(s);
     std::vector<ForeignSite> sites;
     for (size_t t = 0; t < work_.slabCount(); ++t) {

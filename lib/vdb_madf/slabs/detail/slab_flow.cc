@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vdb_madf/method/medial_balls.h"
+#include "vdb_madf/slabs/detail/near_cuts.h"
 #include "vdb_madf/slabs/detail/slab_filter.h"
 #include "vdb_madf/slabs/detail/slab_graph.h"
 #include "vdb_madf/slabs/detail/slab_labels.h"
@@ -31,13 +32,13 @@ class SlabFlow {
     work_.beginStage("offers");
     if (work_.inRegion()) {
       measureInRegion();
+      shareLargest();
+      shareBodies(work_, mappedReach(work_));
     } else {
       exchangeColumns(work_);
       work_.forEachSlab([&](size_t s) { offerBalls(s); });
       offers_.passOn();
     }
-    shareLargest();
-    if (work_.inRegion()) shareBodies(work_, mappedReach(work_));
     if (isFiltered()) {
       work_.beginStage("gamma_filter");
       filterInSlabs(work_, offers_, completion_, result_.counts);
@@ -46,7 +47,10 @@ class SlabFlow {
     }
     work_.beginStage("flow");
     work_.forEachSlab([&](size_t s) { flowIn(s); }, [&](size_t s) { forgetMaps(s); });
-    if (work_.inRegion()) forgetBodies(work_);
+    if (work_.inRegion())
+      forgetBodies(work_);
+    else
+      shareLargest();
     makeParts(work_, result_.counts);
   }
 
@@ -54,11 +58,11 @@ class SlabFlow {
   bool isFiltered() const { return work_.options.gamma > 1; }
 
   void offerBalls(size_t s) {
-    WorkPart part = work_.part(5, isFiltered() ? 15 : 30, s);
-    const LeafIndex index = work_.body(s).index;
-    const SquaredDistance distance = slabDistance(work_, s, index, &part);
-    offers_.offer(s, index, distance.values);
-    work_.writeVector("largest", s, std::vector<int32_t>{distance.largest});
+    WorkPart part = work_.part(5, 10, s);
+    const SlabBody slab = work_.body(s);
+    const SlabFaces faces = facesOf(work_, s);
+    NearCuts cuts(slab.index, work_.obstacles, work_.weights, faces, &part);
+    offers_.offer(s, [&](bool isUpper) { return cuts.offers(isUpper); });
   }
   /// In windows that grow until they tell the distances of all slabs. What a slab leaves: the largest
   /// squared distance, and the reach that told it (0: none has yet).
@@ -67,15 +71,15 @@ class SlabFlow {
     for (int reach = 32; unknown[0] > 0; reach *= 2) {
       shareBodies(work_, reach);
       work_.forEachSlab([&](size_t s) {
-        if (work_.has("largest", s) && work_.readVector<int32_t>("largest", s).at(1) > 0) return;
-        WorkPart part = work_.part(5, isFiltered() ? 15 : 30, s);
+        if (work_.has(kLargest, s) && work_.readVector<int32_t>(kLargest, s).at(1) > 0) return;
+        WorkPart part = work_.part(5, 10, s);
         const auto largest = largestInRegion(work_, s, reach, &part);
-        work_.writeVector("largest", s,
+        work_.writeVector(kLargest, s,
                           std::vector<int32_t>{largest.value_or(0), largest ? reach : 0});
       });
       unknown[0] = 0;
       for (size_t s = work_.firstOwn(); s < work_.endOwn(); ++s) {
-        const int told = work_.readVector<int32_t>("largest", s).at(1);
+        const int told = work_.readVector<int32_t>(kLargest, s).at(1);
         unknown[0] += told == 0 || told > reach;  // in a run before, perhaps
       }
       work_.ranks.sum(unknown);
@@ -84,7 +88,7 @@ class SlabFlow {
   void shareLargest() {
     std::vector<int64_t> largest{0};
     for (size_t s = work_.firstOwn(); s < work_.endOwn(); ++s)
-      largest[0] = std::max<int64_t>(largest[0], work_.readVector<int32_t>("largest", s).at(0));
+      largest[0] = std::max<int64_t>(largest[0], work_.readVector<int32_t>(kLargest, s).at(0));
     work_.ranks.max(largest);
     work_.largestSquaredDistance = int32_t(largest[0]);
     result_.counts.largestSquaredDistance = largest[0];
@@ -92,7 +96,7 @@ class SlabFlow {
 
   /// Power map, flow, contacts within the slab.
   void flowIn(size_t s) {
-    WorkPart part = work_.part(isFiltered() ? 50 : 30, 75, s);
+    WorkPart part = work_.part(isFiltered() ? 65 : 10, 75, s);
     WorkPart mapping(&part, 0, 70), flowing(&part, 70, 100);
     SlabBody slab = work_.body(s);
     PowerMap map = isFiltered() ? completion_.completed(s, slab.index)
@@ -103,9 +107,7 @@ class SlabFlow {
         slabTerminals(slab.index, flowMap, map.power, balls, slab.cavities, work_.begin(s),
                       work_.end(s), &flowing);
     map.power.clear();
-    ByteWriter flowBytes;
-    flowBytes.add(flowMap.manifold);
-    work_.write("flow", s, flowBytes);
+    work_.writeVoxels("flow", s, flowMap.manifold);
     writeRims(work_, s, slab, std::move(flowMap.manifold));
     giveTerminals(work_, s, terminals, slab.index, balls);
   }

@@ -95,7 +95,7 @@ class PartSteps {
     std::vector<Answer> answers;
     if (!places.empty()) {
       const SlabBody slab = work_.body(s);
-      const auto flowMap = work_.read("flow", s).voxelArray<uint32_t>();
+      const auto flowMap = work_.readVoxels<uint32_t>("flow", s);
       const auto ballWords = work_.readVector<uint64_t>("balls", s);
       const std::vector<CriticalPoint> points = terminals(s).points;
       for (const Coord& place : places) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/leaf_grid.h"
 #include "vdb_madf/method/detail/tidy_steps.h"
 #include "vdb_madf/slabs/detail/slab_grains.h"
@@ -17,7 +18,11 @@ namespace vdb_madf::detail {
 
 namespace {
 
+/// Voxels per task of a loop over them.
+constexpr size_t kVoxelGrain = size_t(1) << 16;
+
 constexpr char kLowestRim[] = "lowest-rim", kHighestRim[] = "highest-rim";
+constexpr char kWithoutAnchor[] = "pieces-without-anchor";
 
 ByteWriter toBytes(const LeafLabels& rim) {
   ByteWriter bytes;
@@ -59,10 +64,11 @@ class SlabLabels {
  private:
   /// Labels as merged.
   VoxelArray<uint32_t> mergedLabels(size_t s, const SlabBody& slab) const {
-    auto labels = work_.read("flow", s).voxelArray<uint32_t>();
+    auto labels = work_.readVoxels<uint32_t>("flow", s);
     const auto grains = work_.readVector<uint32_t>(kGrainsOfTerminals, s);
-    for (size_t i = 0; i < labels.size(); ++i)
-      labels[i] = grains[(labels[i] & ~Flow::kOwnCell) - 1];
+    parallelFor(labels.size(), kVoxelGrain, nullptr, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) labels[i] = grains[(labels[i] & ~Flow::kOwnCell) - 1];
+    });
     for (const VoxelId id : slab.cavities) labels[slab.index.rank(id)] = 0;
     return labels;
   }
@@ -75,7 +81,7 @@ class SlabLabels {
     }
     const SlabBody slab = work_.body(s);
     VoxelArray<uint32_t> labels =
-        isTidied ? work_.read("labels", s).voxelArray<uint32_t>() : mergedLabels(s, slab);
+        isTidied ? work_.readVoxels<uint32_t>("labels", s) : mergedLabels(s, slab);
     for (const LooseVoxel& voxel : work_.receiveVector<LooseVoxel>("refilled", SlabWork::kRoot, s))
       labels[slab.index.rank(*slab.index.findVoxel(voxel.position))] = voxel.label;
     const auto counts = countLabels(labels);
@@ -90,7 +96,12 @@ class SlabLabels {
   };
   std::vector<LabelCount> countLabels(const VoxelArray<uint32_t>& labels) const {
     std::vector<int64_t> voxels(size_t(result_.counts.grains) + 1, 0);
-    for (size_t i = 0; i < labels.size(); ++i) ++voxels[labels[i]];
+    parallelFor(labels.size(), kVoxelGrain, nullptr, [&](size_t begin, size_t end) {
+      for (size_t i = begin, next; i < end; i = next) {  // voxels of one label follow each other
+        for (next = i + 1; next < end && labels[next] == labels[i];) ++next;
+        __atomic_fetch_add(&voxels[labels[i]], int64_t(next - i), __ATOMIC_RELAXED);
+      }
+    });
     std::vector<LabelCount> counts;
     for (size_t label = 1; label < voxels.size(); ++label)
       if (voxels[label] > 0) counts.push_back({label, voxels[label]});
@@ -112,7 +123,8 @@ class SlabLabels {
     work_.forEachSlab([&](size_t s) { joinPieces(s); });
     if (work_.isRoot()) findHeld();
     work_.exchange();
-    work_.forEachSlab([&](size_t s) { findLoose(s); });
+    work_.forEachSlab([&](size_t s) { findLoose(s); },
+                      [&](size_t s) { work_.remove(kWithoutAnchor, s); });
     if (work_.isRoot()) refillLoose();
     work_.exchange();
   }
@@ -188,18 +200,18 @@ class SlabLabels {
   }
 
   void smooth(size_t s) {
-    WorkPart part = work_.part(75, 90, s);
+    WorkPart part = work_.part(75, 85, s);
+    WorkPart smoothing(&part, 0, 70), finding(&part, 70, 85), joining(&part, 85, 100);
     const SlabBody slab = work_.body(s);
     VoxelArray<uint32_t> labels = mergedLabels(s, slab);
     smoothSlab(slab.index, rim(s - 1, s), rim(s + 1, s), anchors_, work_.options.tidy, labels,
-               &part);
-    const LabelMasks masks(slab.index, labels, work_.interrupter);
-    const ConnectedComponents components(slab.index, masks, work_.interrupter);
-    ByteWriter bytes;
-    bytes.add(labels);
-    work_.write("labels", s, bytes);
-    work_.sendVector("pieces", s, SlabWork::kRoot,
-                     piecesWithAnchor(slab.index, labels, components, anchors_));
+               &smoothing);
+    const LabelMasks masks(slab.index, labels, &finding);
+    const ConnectedComponents components(slab.index, masks, &joining);
+    work_.writeVoxels("labels", s, labels);
+    const std::vector<char> hasAnchor = piecesWithAnchor(slab.index, labels, components, anchors_);
+    work_.sendVector("pieces", s, SlabWork::kRoot, hasAnchor);
+    work_.writeVector(kWithoutAnchor, s, piecesWithoutAnchor(slab.index, components, hasAnchor));
     const auto face = [&](bool isUpper) {
       return facePieces(slab.index, components, work_.cut(s, isUpper));
     };
@@ -241,20 +253,24 @@ class SlabLabels {
   }
 
   void findLoose(size_t s) {
-    const SlabBody slab = work_.body(s);
-    const auto labels = work_.read("labels", s).voxelArray<uint32_t>();
-    const LabelMasks masks(slab.index, labels, work_.interrupter);
-    const ConnectedComponents components(slab.index, masks, work_.interrupter);
     ByteReader held = work_.receive("held", SlabWork::kRoot, s);
     BeyondPieces below, above;
-    below.face = work_.receiveVector<FacePiece>("face-pieces", s - 1, s);
     below.isHeld = held.vector<char>();
     const auto isHeld = held.vector<char>();
-    above.face = work_.receiveVector<FacePiece>("face-pieces", s + 1, s);
     above.isHeld = held.vector<char>();
-    work_.sendVector("loose", s, SlabWork::kRoot,
-                     looseVoxels(slab.index, labels, components, isHeld, work_.begin(s),
-                                 work_.end(s), below, above));
+    std::vector<LeafPiece> loose = work_.readVector<LeafPiece>(kWithoutAnchor, s);
+    loose.erase(
+        std::remove_if(loose.begin(), loose.end(),
+                       [&](const LeafPiece& piece) { return isHeld[piece.piece.component] != 0; }),
+        loose.end());
+    std::vector<LooseVoxel> voxels;
+    if (!loose.empty()) {
+      below.face = work_.receiveVector<FacePiece>("face-pieces", s - 1, s);
+      above.face = work_.receiveVector<FacePiece>("face-pieces", s + 1, s);
+      voxels = looseVoxels(work_.body(s).index, work_.readVoxels<uint32_t>("labels", s), loose,
+                           work_.begin(s), work_.end(s), below, above);
+    }
+    work_.sendVector("loose", s, SlabWork::kRoot, voxels);
   }
 
   /// At the root: the voxels that no path of their label joins with its anchor get other labels.
@@ -279,9 +295,10 @@ class SlabLabels {
 
 }  // namespace
 
-Int32Grid::Ptr slabGrid(const SlabWork& work, const SlabBody& body, VoxelArray<uint32_t> values,
-                        const char* name) {
-  const Int32Grid::Ptr grid = toGrid(body.index, std::move(values), name, work.interrupter);
+Int32Grid::Ptr slabGrid(const SlabWork& work, size_t slab, const SlabBody& body,
+                        VoxelArray<uint32_t> values, const char* name) {
+  WorkPart part = work.part(85, 100, slab);
+  const Int32Grid::Ptr grid = toGrid(body.index, std::move(values), name, &part);
   removeVoxels(*grid, body.index, body.cavities);
   return grid;
 }

@@ -23,7 +23,7 @@ void labelSlabs(SlabWork& work, std::vector<Coord> representatives, SlabSegmenta
                 const PutLabels& put);
 
 /// A grid on the object in a slab.
-Int32Grid::Ptr slabGrid(const SlabWork& work, const SlabBody& body, VoxelArray<uint32_t> values,
-                        const char* name);
+Int32Grid::Ptr slabGrid(const SlabWork& work, size_t slab, const SlabBody& body,
+                        VoxelArray<uint32_t> values, const char* name);
 
 }  // namespace vdb_madf::detail

@@ -12,21 +12,18 @@ namespace vdb_madf::detail {
 
 namespace {
 
-constexpr char kMap[] = "map";
+// The pieces of a map.
+constexpr char kForeignLeaves[] = "map-leaves", kSites[] = "map-sites", kPowers[] = "map-powers";
 
 }  // namespace
 
-SquaredDistance slabDistance(const SlabWork& work, size_t slab, const LeafIndex& index,
-                             Interrupter* interrupter) {
-  return squaredDistanceInSlab(index, work.obstacles, work.weights, facesOf(work, slab),
-                               interrupter);
-}
-
-PowerMap slabPowerMap(const SlabWork& work, const SlabOffers& offers, size_t slab, LeafIndex& index,
+PowerMap slabPowerMap(SlabWork& work, const SlabOffers& offers, size_t slab, LeafIndex& index,
                       Interrupter* interrupter) {
   if (work.inRegion()) return powerMapInRegion(work, slab, index, interrupter);
   WorkPart measuring(interrupter, 0, 35), mapping(interrupter, 35, 100);
-  SquaredDistance distance = slabDistance(work, slab, index, &measuring);
+  SquaredDistance distance =
+      squaredDistanceInSlab(index, work.obstacles, work.weights, facesOf(work, slab), &measuring);
+  work.writeVector(kLargest, slab, std::vector<int32_t>{distance.largest});
   distance.foreign = offers.received(slab, index);
   return powerMap(index, std::move(distance), &mapping);
 }
@@ -35,25 +32,22 @@ void writeMap(SlabWork& work, size_t slab, const LeafIndex& index, const PowerMa
   std::vector<Coord> foreign;
   for (size_t leaf = index.leafCount(); leaf < index.namedLeafCount(); ++leaf)
     foreign.push_back(index.origin(leaf));
-  ByteWriter bytes;
-  bytes.add(foreign);
-  bytes.add(map.site);
-  bytes.add(map.power);
-  work.write(kMap, slab, bytes);
+  work.writeVector(kForeignLeaves, slab, foreign);
+  work.writeVoxels(kSites, slab, map.site);
+  work.writeVoxels(kPowers, slab, map.power);
 }
 
 PowerMap readMap(const SlabWork& work, size_t slab, LeafIndex& index) {
-  ByteReader bytes = work.read(kMap, slab);
-  index.nameForeignLeaves(bytes.vector<Coord>());
+  index.nameForeignLeaves(work.readVector<Coord>(kForeignLeaves, slab));
   PowerMap map;
   map.weights = work.weights;
-  map.site = bytes.voxelArray<VoxelId>();
-  map.power = bytes.voxelArray<int32_t>();
+  map.site = work.readVoxels<VoxelId>(kSites, slab);
+  map.power = work.readVoxels<int32_t>(kPowers, slab);
   return map;
 }
 
 void forgetMap(SlabWork& work, size_t slab) {
-  work.remove(kMap, slab);
+  for (const char* what : {kForeignLeaves, kSites, kPowers}) work.remove(what, slab);
 }
 
 }  // namespace vdb_madf::detail

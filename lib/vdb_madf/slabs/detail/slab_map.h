@@ -9,12 +9,12 @@
 
 namespace vdb_madf::detail {
 
-/// The squared distances of a slab. @throw as squaredDistanceInSlab()
-SquaredDistance slabDistance(const SlabWork& work, size_t slab, const LeafIndex& index,
-                             Interrupter* interrupter);
+/// The piece with the largest squared distance of a slab.
+constexpr char kLargest[] = "largest";
 
-/// The power map of all balls in a slab. Names the leaves of foreign balls in its index.
-PowerMap slabPowerMap(const SlabWork& work, const SlabOffers& offers, size_t slab, LeafIndex& index,
+/// The power map of all balls in a slab. Names the leaves of foreign balls in its index. Leaves the piece
+/// kLargest, but in a region. @throw as squaredDistanceInSlab()
+PowerMap slabPowerMap(SlabWork& work, const SlabOffers& offers, size_t slab, LeafIndex& index,
                       Interrupter* interrupter);
 
 /// A map in scratch: sites, powers, and the names of foreign leaves.

@@ -71,35 +71,49 @@ std::vector<char> piecesWithAnchor(const LeafIndex& index, const VoxelArray<uint
   return held;
 }
 
+std::vector<LeafPiece> piecesWithoutAnchor(const LeafIndex& index,
+                                           const ConnectedComponents& components,
+                                           const std::vector<char>& hasAnchor) {
+  std::vector<LeafPiece> pieces;
+  for (uint32_t leaf = 0; leaf < index.leafCount(); ++leaf)
+    for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece)
+      if (!hasAnchor[piece->component]) pieces.push_back({leaf, *piece});
+  return pieces;
+}
+
 std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
-                                    const ConnectedComponents& components,
-                                    const std::vector<char>& isHeld, int begin, int end,
+                                    const std::vector<LeafPiece>& loose, int begin, int end,
                                     const BeyondPieces& below, const BeyondPieces& above) {
   const auto beyond = [](const BeyondPieces& pieces, const Coord& p) {
     const FacePiece* const voxel = findOnFace(pieces.face, p);
     return voxel && pieces.isHeld[voxel->piece] ? voxel->label : 0;
   };
-  std::vector<LooseVoxel> loose;
+  const auto isLoose = [&](VoxelId id) {
+    const auto before = [](const LeafPiece& piece, uint32_t leaf) { return piece.leaf < leaf; };
+    auto piece = std::lower_bound(loose.begin(), loose.end(), leafOf(id), before);
+    for (; piece != loose.end() && piece->leaf == leafOf(id); ++piece)
+      if (holds(piece->piece.mask, offsetOf(id))) return true;
+    return false;
+  };
+  std::vector<LooseVoxel> voxels;
   const auto add = [&](VoxelId id, uint32_t label) {
     LooseVoxel voxel{index.coord(id), label, {}};
     forEachNeighbor(index, id, [&](VoxelId q, int axis, int step) {
-      if (!isObject(index, q) || labels[index.rank(q)] == 0) return;
-      if (isHeld[components.componentOf(q)])
+      if (isObject(index, q) && !isLoose(q))
         voxel.around[2 * axis + (step > 0)] = labels[index.rank(q)];
     });
     const Coord& p = voxel.position;
     if (p.z() == begin) voxel.around[4] = beyond(below, p);
     if (p.z() == end - 1) voxel.around[5] = beyond(above, p);
-    loose.push_back(voxel);
+    voxels.push_back(voxel);
   };
-  for (uint32_t leaf = 0; leaf < index.leafCount(); ++leaf)
-    for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece) {
-      if (isHeld[piece->component]) continue;
-      for (uint32_t x = 0; x < 8; ++x)
-        forEachBit(piece->mask[x],
-                   [&](int bit) { add(leaf * 512 + x * 64 + uint32_t(bit), piece->label); });
+  for (const auto& [leaf, piece] : loose)
+    for (uint32_t x = 0; x < 8; ++x) {
+      const VoxelId first = leaf * 512 + x * 64;
+      const uint32_t label = piece.label;
+      forEachBit(piece.mask[x], [&](int bit) { add(first + uint32_t(bit), label); });
     }
-  return loose;
+  return voxels;
 }
 
 void refill(std::vector<LooseVoxel>& loose) {

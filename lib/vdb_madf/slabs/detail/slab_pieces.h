@@ -69,10 +69,20 @@ struct BeyondPieces {
   std::vector<char> isHeld;
 };
 
-/// The loose voxels of a slab: those of pieces that are not held.
+/// What a leaf has of a piece.
+struct LeafPiece {
+  uint32_t leaf;
+  ConnectedComponents::Piece piece;
+};
+/// Of the pieces of a slab that hold no anchor in it, by leaf.
+std::vector<LeafPiece> piecesWithoutAnchor(const LeafIndex& index,
+                                           const ConnectedComponents& components,
+                                           const std::vector<char>& hasAnchor);
+
+/// The loose voxels of a slab: those of the pieces in `loose`, by leaf, which are all that hold no anchor in
+/// any slab.
 std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
-                                    const ConnectedComponents& components,
-                                    const std::vector<char>& isHeld, int begin, int end,
+                                    const std::vector<LeafPiece>& loose, int begin, int end,
                                     const BeyondPieces& below, const BeyondPieces& above);
 
 /// Gives all of them a label, in synchronous rounds; those that no round reaches keep what they lost.

@@ -81,13 +81,10 @@ void forgetColumns(SlabWork& work, size_t slab) {
   work.removeMessage(kSteps, slab + 1, slab);
 }
 
-void SlabOffers::offer(size_t slab, const LeafIndex& index,
-                       const VoxelArray<int32_t>& squaredRadius) {
-  for (const bool isUpper : {true, false}) {
-    if (isUpper ? slab + 1 == work_.slabCount() : slab == 0) continue;
-    work_.writeVector((isUpper ? up_ : down_).c_str(), slab,
-                      siteOffers(index, squaredRadius, work_.weights.z, work_.cut(slab, isUpper)));
-  }
+void SlabOffers::offer(size_t slab,
+                       const std::function<std::vector<ForeignSite>(bool isUpper)>& sites) {
+  if (slab + 1 < work_.slabCount()) work_.writeVector(up_.c_str(), slab, sites(true));
+  if (slab > 0) work_.writeVector(down_.c_str(), slab, sites(false));
 }
 
 void SlabOffers::passOn() {

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,8 +30,8 @@ class SlabOffers {
   SlabOffers(SlabWork& work, const std::string& name)
       : work_(work), up_(name + "-up"), down_(name + "-down") {}
 
-  /// Of an own slab; \p squaredRadius: of its voxels, 0 for those that are no site.
-  void offer(size_t slab, const LeafIndex& index, const VoxelArray<int32_t>& squaredRadius);
+  /// Of an own slab; sites(isUpper): what it offers at a cut, in ColumnOrder.
+  void offer(size_t slab, const std::function<std::vector<ForeignSite>(bool isUpper)>& sites);
   /// Two steps: passes all on, from slab to slab, tables alone.
   void passOn();
   /// The balls beyond that may win in a slab. Names their leaves in its index.

@@ -99,9 +99,8 @@ void SlabRemerge::take(size_t s) {
   writeLeaves(work_.scratch, objectName(s), leaves);
   work_.writeVector("cavities", s, Leaves());
   sendHoles(s, index, part.graph);
-  ByteWriter flow, graph;
-  flow.add(terminal);
-  work_.write("flow", s, flow);
+  ByteWriter graph;
+  work_.writeVoxels("flow", s, terminal);
   writeRims(work_, s, body, std::move(terminal));
   part.writeTo(graph);
   work_.write(kGraphPart, s, graph);

@@ -4,22 +4,25 @@
 #include "vdb_madf/slabs/detail/slab_smoothing.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
 
+#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
+#include "vdb_madf/leaves/detail/voxels.h"
 #include "vdb_madf/method/detail/tidy_steps.h"
 
 namespace vdb_madf::detail {
 
 namespace {
 
-/// Where the labels of a leaf of the window are.
-struct Source {
+/// A leaf beyond a cut, and where its labels are.
+struct BeyondLeaf {
   LeafIndex::LeafVoxels leaf;
   const uint32_t* labels;
 };
 
-void addSources(const LeafLabels& rim, std::vector<Source>& sources) {
+void addLeaves(const LeafLabels& rim, std::vector<BeyondLeaf>& sources) {
   const uint32_t* next = rim.labels.data();
   for (const LeafIndex::LeafVoxels& leaf : rim.leaves) {
     sources.push_back({leaf, next});
@@ -44,22 +47,34 @@ LeafLabels labelsBetween(const LeafIndex& index, const VoxelArray<uint32_t>& lab
 
 LabelWindow labelWindow(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
                         const LeafLabels& below, const LeafLabels& above) {
-  std::vector<Source> sources;
-  addSources(below, sources);
-  addSources(above, sources);
-  for (size_t leaf = 0; leaf < index.leafCount(); ++leaf)
-    sources.push_back(
-        {{index.origin(leaf), index.mask(leaf)}, labels.data() + index.firstRank(leaf)});
-  std::sort(sources.begin(), sources.end(),
-            [](const Source& a, const Source& b) { return a.leaf.origin < b.leaf.origin; });
+  std::vector<BeyondLeaf> beyond;
+  addLeaves(below, beyond);
+  const auto middle = std::ptrdiff_t(beyond.size());
+  addLeaves(above, beyond);
+  std::inplace_merge(
+      beyond.begin(), beyond.begin() + middle, beyond.end(),
+      [](const BeyondLeaf& a, const BeyondLeaf& b) { return a.leaf.origin < b.leaf.origin; });
   std::vector<LeafIndex::LeafVoxels> leaves;
-  for (const Source& source : sources) leaves.push_back(source.leaf);
+  for (const BeyondLeaf& source : beyond) leaves.push_back(source.leaf);
   LabelWindow window;
-  window.index = LeafIndex(LeafIndex(), leaves);
+  window.index = LeafIndex(index, leaves);
   window.labels = VoxelArray<uint32_t>(size_t(window.index.voxelCount()));
-  for (size_t leaf = 0; leaf < window.index.leafCount(); ++leaf)
-    std::copy_n(sources[leaf].labels, window.index.leafVoxels(leaf),
-                window.labels.data() + window.index.firstRank(leaf));
+
+  std::vector<const uint32_t*> sources;
+  auto next = beyond.begin();
+  for (uint32_t leaf = 0; leaf < window.index.leafCount(); ++leaf) {
+    if (next != beyond.end() && next->leaf.origin == window.index.origin(leaf)) {
+      sources.push_back((next++)->labels);
+    } else {
+      sources.push_back(labels.data() + index.firstRank(window.ownLeaves.size()));
+      window.ownLeaves.push_back(leaf);
+    }
+  }
+  parallelFor(sources.size(), kLeafGrain, nullptr, [&](size_t begin, size_t end) {
+    for (size_t leaf = begin; leaf < end; ++leaf)
+      std::copy_n(sources[leaf], window.index.leafVoxels(leaf),
+                  window.labels.data() + window.index.firstRank(leaf));
+  });
   return window;
 }
 
@@ -78,10 +93,11 @@ void smoothSlab(const LeafIndex& index, const LeafLabels& below, const LeafLabel
   LabelMasks masks(window, grains.label, interrupter);
   smoothInterfaces(window, rounds, anchorIds, masks, grains, interrupter);
 
-  for (size_t leaf = 0; leaf < window.leafCount(); ++leaf)
-    if (const auto own = index.findLeaf(window.origin(leaf)))
-      std::copy_n(grains.label.data() + window.firstRank(leaf), window.leafVoxels(leaf),
-                  labels.data() + index.firstRank(*own));
+  parallelFor(index.leafCount(), kLeafGrain, nullptr, [&](size_t begin, size_t end) {
+    for (size_t leaf = begin; leaf < end; ++leaf)
+      std::copy_n(grains.label.data() + window.firstRank(all.ownLeaves[leaf]),
+                  index.leafVoxels(leaf), labels.data() + index.firstRank(leaf));
+  });
 }
 
 }  // namespace vdb_madf::detail

@@ -27,6 +27,7 @@ LeafLabels labelsBetween(const LeafIndex& index, const VoxelArray<uint32_t>& lab
 struct LabelWindow {
   LeafIndex index;
   VoxelArray<uint32_t> labels;
+  std::vector<uint32_t> ownLeaves;  ///< those of the slab
 };
 LabelWindow labelWindow(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
                         const LeafLabels& below, const LeafLabels& above);

@@ -4,10 +4,13 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/leaves/voxel_array.h"
 #include "vdb_madf/method/boundary.h"
 #include "vdb_madf/slabs/detail/bytes.h"
 #include "vdb_madf/slabs/detail/slab_body.h"
@@ -32,8 +35,8 @@ class SlabWork {
   std::optional<Domain> domain;
   Obstacles obstacles{};
   VoxelWeights weights;
-  bool fillsNone = false;  ///< would the cavities be all background?
-  int32_t largestSquaredDistance = 0;
+  bool fillsNone = false;              ///< would the cavities be all background?
+  int32_t largestSquaredDistance = 0;  ///< known in regions
 
   /// Are there unknown voxels that sweeps pass?
   bool inRegion() const { return obstacles.open && !obstacles.domain.isBox(); }
@@ -125,6 +128,23 @@ class SlabWork {
   template <typename T>
   std::vector<T> readVector(const char* what, size_t slab) const {
     return read(what, slab).vector<T>();
+  }
+
+  /// Values of the voxels of a slab, without a copy of them.
+  template <typename T>
+  void writeVoxels(const char* what, size_t slab, const VoxelArray<T>& values) {
+    scratch.writeBytes(name(what, slab), reinterpret_cast<const char*>(values.data()),
+                       values.size() * sizeof(T));
+  }
+  template <typename T>
+  VoxelArray<T> readVoxels(const char* what, size_t slab) const {
+    VoxelArray<T> values;
+    scratch.readBytes(name(what, slab), [&](size_t size) {
+      if (size % sizeof(T) != 0) throw IoError("the scratch data is damaged");
+      values = VoxelArray<T>(size / sizeof(T));
+      return reinterpret_cast<char*>(values.data());
+    });
+    return values;
   }
 
   // Messages from slab to slab. Vectors that were not sent are empty.
