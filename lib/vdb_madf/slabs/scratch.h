@@ -27,8 +27,9 @@ class Scratch {
 
   /// Replaces what has that name.
   virtual void writeBytes(const std::string& name, const char* bytes, size_t size) = 0;
-  /// Called once, tells where the bytes go to; some are there even if reading fails.
+  /// Gives the memory for that many bytes.
   using Allocate = std::function<char*(size_t size)>;
+  /// Calls allocate() once. If reading fails, some of the bytes may be there.
   virtual void readBytes(const std::string& name, const Allocate& allocate) const = 0;
   virtual bool has(const std::string& name) const = 0;
   virtual void remove(const std::string& name) = 0;
