@@ -20,13 +20,13 @@ using Row = std::map<std::string, std::string>;
 /// The rows of a table by the names of its columns; cells may be in quotation marks.
 std::vector<Row> rowsOf(const std::string& text) {
   std::vector<std::vector<std::string>> lines(1, std::vector<std::string>(1));
-  bool quoted = false;
+  bool inQuotes = false;
   for (const char c : text)
     if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
+      inQuotes = !inQuotes;
+    else if (c == ',' && !inQuotes)
       lines.back().emplace_back();
-    else if (c == '\n' && !quoted)
+    else if (c == '\n' && !inQuotes)
       lines.push_back({""});
     else
       lines.back().back() += c;

@@ -31,12 +31,12 @@ namespace fs = std::filesystem;
 constexpr std::string_view kFirstColumns = "sample,folder,";
 constexpr uintmax_t kLargestSample = 64 << 20;  // bytes; a true one has some thousand
 
-struct Options {
+struct CollectArguments {
   std::vector<std::string> folders;
   std::string out;
 };
 
-struct Sample {
+struct MeasuredSample {
   std::string folder;
   std::string unit;  ///< of its lengths
   Json json;
@@ -55,7 +55,7 @@ void checkReplaces(const std::string& out) {
                      ": is there, and not made by collect: choose another name for the table");
 }
 
-void parse(Options& o) {
+void parse(CollectArguments& o) {
   o.out = o.folders.back();
   o.folders.pop_back();
   if (!isOnStandardOutput(o.out) && fileEnding(o.out) != ".csv")
@@ -64,7 +64,7 @@ void parse(Options& o) {
   if (o.folders.empty()) throw WrongUsage("give folders that measure has filled, then OUT.csv");
 }
 
-Sample readSample(const std::string& folder) {
+MeasuredSample readSample(const std::string& folder) {
   const fs::path path = fs::path(folder) / "sample.json";
   const auto refuse = [&](const std::string& what) {
     throw IoError(path.string() + ": " + what + ": make it again with vdb_madf measure");
@@ -73,7 +73,7 @@ Sample readSample(const std::string& folder) {
   if (!fs::is_regular_file(path, ignored)) refuse("is no file");
   if (fs::file_size(path, ignored) > kLargestSample) refuse("is too large");
   std::ifstream file(path, std::ios::binary);
-  Sample sample{folder, "", Json::parse(file, nullptr, false)};
+  MeasuredSample sample{folder, "", Json::parse(file, nullptr, false)};
   const auto text = [&](const char* key) {
     const auto found = sample.json.is_object() ? sample.json.find(key) : sample.json.end();
     return found != sample.json.end() && found->is_string() ? found->get<std::string>() : "";
@@ -85,8 +85,8 @@ Sample readSample(const std::string& folder) {
 }
 
 /// The folders' samples. A folder without one is named and left out.
-std::vector<Sample> readSamples(const Options& o, const Common& common) {
-  std::vector<Sample> samples;
+std::vector<MeasuredSample> readSamples(const CollectArguments& o, const Common& common) {
+  std::vector<MeasuredSample> samples;
   std::set<fs::path> known;
   const auto leaveOut = [&](const std::string& folder, const char* why) {
     common.progress->note(folder + ": left out: " + why);
@@ -109,11 +109,11 @@ std::vector<Sample> readSamples(const Options& o, const Common& common) {
 }
 
 /// The unit of the table. Lengths in voxels stand beside no others.
-std::string commonUnit(const std::vector<Sample>& samples) {
+std::string commonUnit(const std::vector<MeasuredSample>& samples) {
   std::string unit = samples.front().unit;
-  for (const Sample& sample : samples) {
+  for (const MeasuredSample& sample : samples) {
     if ((sample.unit == "voxel") != (unit == "voxel")) {
-      const Sample& other = samples.front();
+      const MeasuredSample& other = samples.front();
       throw InvalidInput("the lengths of " + other.folder + " are in " + other.unit +
                          ", those of " + sample.folder + " in " + sample.unit +
                          ": measure again with --voxel-size what lacks a voxel size");
@@ -126,7 +126,7 @@ std::string commonUnit(const std::vector<Sample>& samples) {
 /// The cells of a sample by the names of their columns, which are added to `names` in their order.
 class Row {
  public:
-  Row(const Sample& sample, const std::string& unit, std::vector<std::string>& names)
+  Row(const MeasuredSample& sample, const std::string& unit, std::vector<std::string>& names)
       : unit_(unit), factor_(sample.unit == "um" && unit == "mm" ? 1e-3 : 1), names_(names) {
     setText("sample", sample.folder);
     setText("folder", sample.folder);
@@ -203,13 +203,13 @@ class Row {
   std::map<std::string, std::string> cells_;
 };
 
-void run(const Options& o, const Common& common) {
+void runCollect(const CollectArguments& o, const Common& common) {
   TextFile file(o.out);
-  const std::vector<Sample> samples = readSamples(o, common);
+  const std::vector<MeasuredSample> samples = readSamples(o, common);
   const std::string unit = commonUnit(samples);
   std::vector<std::string> names;
   std::vector<Row> rows;
-  for (const Sample& sample : samples) rows.emplace_back(sample, unit, names);
+  for (const MeasuredSample& sample : samples) rows.emplace_back(sample, unit, names);
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ",") + csvCell(name);
   text += '\n';
@@ -223,14 +223,14 @@ void run(const Options& o, const Common& common) {
 }  // namespace
 
 void addCollect(Verb command, Common& common, Action& action) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<CollectArguments>();
   Verb verb = addVerb(command, common, "collect", "one table of many samples, a row each",
                       "vdb_madf collect results/*/ samples.csv");
   verb.option("DIR", o->folders, "folders that measure has filled; last, the table to write")
       .required();
   verb.onParsed([o, &common, &action] {
     parse(*o);
-    action = [o, &common] { run(*o, common); };
+    action = [o, &common] { runCollect(*o, common); };
   });
 }
 

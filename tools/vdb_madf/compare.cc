@@ -19,7 +19,7 @@ namespace vdb_madf::tools {
 
 namespace {
 
-struct Options {
+struct CompareArguments {
   InputOptions truth, test;
   std::string json, grains, confusion;
 };
@@ -35,7 +35,7 @@ bool sameTopology(const Comparison& c) {
   return c.truthOnlyVoxels == 0 && c.testOnlyVoxels == 0;
 }
 
-Json summary(const Options& o, const Comparison& c) {
+Json summary(const CompareArguments& o, const Comparison& c) {
   Json json;
   json["truth"] = o.truth.path;
   json["test"] = o.test.path;
@@ -106,7 +106,7 @@ std::string text(const Domain& domain) {
   return text.str();
 }
 
-void run(const Options& o, const Common& common) {
+void runCompare(const CompareArguments& o, const Common& common) {
   JsonFile jsonFile(o.json);
   TextFile grainFile(o.grains), confusionFile(o.confusion);
   Int32Grid::ConstPtr truth, test;  // their voxels are not there if they come in slabs
@@ -148,7 +148,7 @@ void run(const Options& o, const Common& common) {
 }  // namespace
 
 void addCompare(Verb command, Common& common, Action& action) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<CompareArguments>();
   Verb verb = addVerb(command, common, "compare", "how well labels agree with the truth",
                       "vdb_madf compare balls.vdb grains.vdb");
   verb.option("TRUTH", o->truth.path, "labels: VDB or integer image").required();
@@ -162,7 +162,7 @@ void addCompare(Verb command, Common& common, Action& action) {
   o->truth.addRaw(verb);
   verb.onParsed([o, &common, &action] {
     parsePair(o->truth, o->test, {o->json, o->grains, o->confusion});
-    action = [o, &common] { run(*o, common); };
+    action = [o, &common] { runCompare(*o, common); };
   });
 }
 

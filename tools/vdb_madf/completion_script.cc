@@ -18,15 +18,15 @@ std::string joined(const std::vector<std::string>& words, const std::string& bet
 }
 
 /// The text in single quotes, as each of the shells reads it.
-std::string quoted(const std::string& text, const std::string& quote) {
+std::string shellQuoted(const std::string& text, const std::string& quote) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? quote : std::string(1, c);
   return result + "'";
 }
 
 /// In bash and zsh a quote within quotes ends them, stands by itself and begins new ones.
-std::string quoted(const std::string& text) {
-  return quoted(text, "'\\''");
+std::string shellQuoted(const std::string& text) {
+  return shellQuoted(text, "'\\''");
 }
 
 /// Calls `visit` for the command and all verbs; `path` is " generate snow" for a verb below a verb,
@@ -85,7 +85,7 @@ std::string namesOf(const std::vector<OptionWords>& options) {
 
 /// 'name:what it is', as zsh's _describe takes it.
 std::string described(const std::string& name, const std::string& help) {
-  return " " + quoted(name + ":" + help);
+  return " " + shellQuoted(name + ":" + help);
 }
 
 std::string fishCondition(const std::string& path) {
@@ -99,7 +99,7 @@ std::string fishCondition(const std::string& path) {
 }
 
 std::string fishQuoted(const std::string& text) {
-  return quoted(text, "\\'");
+  return shellQuoted(text, "\\'");
 }
 
 /// What follows the name of an option that has a value, or the condition of a verb with arguments.

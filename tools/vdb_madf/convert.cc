@@ -32,7 +32,7 @@ namespace vdb_madf::tools {
 
 namespace {
 
-struct Options {
+struct ConvertArguments {
   InputOptions input;
   std::string out, outType, boundary = "auto", resample;
   bool labels = false;
@@ -40,7 +40,7 @@ struct Options {
   std::optional<double> cube;  ///< edge to resample to, metres
 };
 
-std::optional<SampleType> outputType(const Options& o) {
+std::optional<SampleType> outputType(const ConvertArguments& o) {
   if (o.parsedOutType) return o.parsedOutType;
   return o.input.size ? std::nullopt : o.input.sampleType;
 }
@@ -53,7 +53,7 @@ InputOptions withGridOfValues(InputOptions input) {
   return input;
 }
 
-void convertMask(const Options& o, const Common& common) {
+void convertMask(const ConvertArguments& o, const Common& common) {
   MaskGrid::Ptr object = loadObject(withGridOfValues(o.input), common.progress);
   if (o.cube)
     object =
@@ -74,7 +74,7 @@ void convertMask(const Options& o, const Common& common) {
 }
 
 /// Labels of another program become what `segment` writes, but for the method's own metadata.
-void convertLabels(const Options& o, const Common& common) {
+void convertLabels(const ConvertArguments& o, const Common& common) {
   Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
   auto range = openvdb::tools::minMax(labels->tree());
   if (range.min() < 0)
@@ -104,7 +104,7 @@ void convertLabels(const Options& o, const Common& common) {
 }
 
 /// Cubes take the place of one grid's voxels, as labels or as a mask.
-void resampleVdb(Options o, const Common& common) {
+void resampleVdb(ConvertArguments o, const Common& common) {
   const auto grid = chooseGrid(o.input, readVdbHeaders(o.input.path));
   o.input.gridName = grid->getName();
   if (grid->isType<Int32Grid>()) return convertLabels(o, common);
@@ -117,7 +117,7 @@ void resampleVdb(Options o, const Common& common) {
   convertMask(o, common);
 }
 
-void copyVdb(const Options& o, const Common& common) {
+void copyVdb(const ConvertArguments& o, const Common& common) {
   auto grids = readVdb(o.input.path, {}, common.progress);
   if (o.input.domain) {  // the region that was is none any more
     const auto all = grids;
@@ -138,18 +138,18 @@ void copyVdb(const Options& o, const Common& common) {
 }
 
 /// Of a folder of slabs that becomes an image.
-void copySlabs(const Options& o, const Common& common) {
+void copySlabs(const ConvertArguments& o, const Common& common) {
   const LabelSlabs labels = openLabelSlabs(o.input, "--grid", common.progress);
   writeSlabsAsImage(o.out, labels, outputType(o), o.input.path, common);
 }
 
-std::unique_ptr<ImageReader> openFiltered(const Options& o, const Common& common) {
+std::unique_ptr<ImageReader> openFiltered(const ConvertArguments& o, const Common& common) {
   return filteredImage(openVolumeImage(o.input.path, o.input.volume(common.progress)),
                        o.input.gray);
 }
 
 /// Labels can look like a gray image, and the other way round.
-void checkGray(const Options& o, const Common& common) {
+void checkGray(const ConvertArguments& o, const Common& common) {
   const ImageKind kind = kindOf(histogramOf(*openFiltered(o, common), common.progress));
   if (kind == ImageKind::mask || kind == ImageKind::phases)
     throw InvalidInput(o.input.path +
@@ -161,7 +161,7 @@ void checkGray(const Options& o, const Common& common) {
                           "image (--labels keeps them)");
 }
 
-void copyAsImage(const Options& o, const Common& common) {
+void copyAsImage(const ConvertArguments& o, const Common& common) {
   if (o.cube) checkGray(o, common);
   auto image = openFiltered(o, common);
   auto size = o.input.voxelSize ? o.input.voxelSize : image->info().voxelSize;
@@ -184,7 +184,7 @@ void copyAsImage(const Options& o, const Common& common) {
 }
 
 /// @throw WrongUsage for what is not done slab by slab
-void runByRanks(const Options& o, const Common& common) {
+void runByRanks(const ConvertArguments& o, const Common& common) {
   if (!isInSlabs(o.input) || hasVdbEnding(o.out) || o.labels || o.cube || o.input.selection ||
       readsGray(o.input.gray) || o.input.gray.despeckle > 0 || o.input.region.any() ||
       o.boundary != "auto")
@@ -198,7 +198,7 @@ void runByRanks(const Options& o, const Common& common) {
   copySlabs(o, common);
 }
 
-void run(const Options& o, const Common& common) {
+void runConvert(const ConvertArguments& o, const Common& common) {
   if (common.ranks) return runByRanks(o, common);
   checkWritable(o.out);
   const bool fromVdb = isVdb(o.input);
@@ -228,7 +228,7 @@ void run(const Options& o, const Common& common) {
 }  // namespace
 
 void addConvert(Verb command, Common& common, Action& action) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<ConvertArguments>();
   Verb verb =
       addVerb(command, common, "convert", "any readable volume to any writable volume",
               "vdb_madf convert scan.raw ice.vdb --dims 301x301x251 --type uint8 --threshold 128");
@@ -278,7 +278,7 @@ void addConvert(Verb command, Common& common, Action& action) {
       if (!o->parsedOutType) throw WrongUsage("--out-type " + o->outType + ": no such sample type");
     }
     checkVolumeEnding(o->out);
-    action = [o, &common] { run(*o, besideOutput(common, o->out)); };
+    action = [o, &common] { runConvert(*o, besideOutput(common, o->out)); };
   });
 }
 

@@ -23,9 +23,9 @@ namespace vdb_madf::tools {
 namespace {
 
 constexpr char kEditsFile[] = "--edits";
-constexpr uint64_t kMostBytes = uint64_t(1) << 24;  // of a file of edits
+constexpr uint64_t kMostEditBytes = uint64_t(1) << 24;  // of a file of edits
 
-struct Options {
+struct EditArguments {
   InputOptions input;
   std::string out, json;
   GivenOptions given;  ///< edits, and files of them, in their order
@@ -40,7 +40,7 @@ Edit editOf(const std::string& option, const std::string& value) {
   }
 }
 
-void parse(Options& o) {
+void parse(EditArguments& o) {
   if (o.given.empty())
     throw WrongUsage("say what to edit (--merge, --split, --drop ...), or give a file of edits");
   o.input.outputs = {o.out, o.json};
@@ -57,7 +57,7 @@ void parse(Options& o) {
   }
 }
 
-std::vector<Edit> readEdits(const Options& o) {
+std::vector<Edit> readEdits(const EditArguments& o) {
   std::vector<Edit> edits;
   for (const auto& [option, value] : o.given) {
     if (option != kEditsFile) {
@@ -65,7 +65,8 @@ std::vector<Edit> readEdits(const Options& o) {
       continue;
     }
     const std::string& path = value;
-    const auto more = withFileName(path, [&] { return parseEdits(readText(path, kMostBytes)); });
+    const auto more =
+        withFileName(path, [&] { return parseEdits(readText(path, kMostEditBytes)); });
     edits.insert(edits.end(), more.begin(), more.end());
   }
   return edits;
@@ -77,7 +78,7 @@ struct Input {
   Int32Grid::Ptr labels, manifold;
 };
 
-Input read(const Options& o, const Common& common) {
+Input read(const EditArguments& o, const Common& common) {
   Input input;
   if (!isVdb(o.input)) {
     input.labels = loadLabels(o.input, "--grid", common.progress);
@@ -93,7 +94,7 @@ Input read(const Options& o, const Common& common) {
   return input;
 }
 
-Json summary(const Options& o, const EditedLabels& edited) {
+Json summary(const EditArguments& o, const EditedLabels& edited) {
   Json json;
   json["input"] = o.input.path;
   json["output"] = o.out;
@@ -126,7 +127,7 @@ std::string didWhat(const EditResult& result) {
   }
 }
 
-void print(const Options& o, const EditedLabels& edited, bool all) {
+void print(const EditArguments& o, const EditedLabels& edited, bool all) {
   constexpr size_t kMostLines = 20, kMostText = 60;
   std::printf("%s: %s, %lld before\n", o.out.c_str(), counted(edited.grains, "grain").c_str(),
               (long long)edited.grainsBefore);
@@ -142,7 +143,7 @@ void print(const Options& o, const EditedLabels& edited, bool all) {
                 counted(int64_t(results.size() - lines), "edit").c_str());
 }
 
-void run(const Options& o, const Common& common) {
+void runEdit(const EditArguments& o, const Common& common) {
   checkWritable(o.out);
   JsonFile jsonFile(o.json);
   const std::vector<Edit> edits = readEdits(o);
@@ -179,7 +180,7 @@ void run(const Options& o, const Common& common) {
 }  // namespace
 
 void addEdit(Verb command, Common& common, Action& action) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<EditArguments>();
   Verb verb = addVerb(command, common, "edit", "merge, split, drop and renumber grains",
                       "vdb_madf edit grains.vdb better.vdb --merge 1,2 --min-voxels 27");
   verb.option("LABELS", o->input.path, "labels: VDB or integer image").required();
@@ -205,7 +206,7 @@ void addEdit(Verb command, Common& common, Action& action) {
   o->input.addVoxelSize(verb);
   verb.onParsed([o, &common, &action] {
     parse(*o);
-    action = [o, &common] { run(*o, besideOutput(besideOutput(common, o->out), o->json)); };
+    action = [o, &common] { runEdit(*o, besideOutput(besideOutput(common, o->out), o->json)); };
   });
 }
 

@@ -47,7 +47,7 @@ namespace vdb_madf::tools {
 
 namespace {
 
-struct Options {
+struct ExportArguments {
   InputOptions input;
   std::string out, kind, minFaces = "1";
   std::string bonds, cover;  ///< of clumps; empty: not written
@@ -76,19 +76,19 @@ std::string unitOf(const openvdb::GridBase& grid) {
   return size ? size->unit() : std::string();
 }
 
-void say(const Options& o, const Common& common, const std::string& text) {
+void say(const ExportArguments& o, const Common& common, const std::string& text) {
   common.progress->end();
   if (!common.quiet) std::cout << o.out << ": " << text << "\n";
 }
 
 /// 1 unless the options ask for a smaller volume.
-int reductionOf(const Options& o, const Int32Grid& labels) {
+int reductionOf(const ExportArguments& o, const Int32Grid& labels) {
   if (o.reduce > 0) return o.reduce;
   if (o.maxDim == 0) return 1;
   return reductionFor(boxOf(labels), o.maxDim);
 }
 
-GrainMeshOptions meshOptions(const Options& o) {
+GrainMeshOptions meshOptions(const ExportArguments& o) {
   GrainMeshOptions options;
   options.smoothing = o.smoothing;
   options.triangles = uint64_t(o.mostTriangles);
@@ -96,14 +96,14 @@ GrainMeshOptions meshOptions(const Options& o) {
 }
 
 /// Labels as they are meshed: those of the chosen grains, reduced.
-Int32Grid::ConstPtr meshedLabels(const Options& o, const Common& common, const Int32Grid& labels,
-                                 int factor) {
+Int32Grid::ConstPtr meshedLabels(const ExportArguments& o, const Common& common,
+                                 const Int32Grid& labels, int factor) {
   const Int32Grid::ConstPtr all =
       factor == 1 ? labels.copy() : reduceLabels(labels, factor, common.progress);
   return o.grains.empty() ? all : selectGrains(*all, o.grains, common.progress);
 }
 
-void exportMesh(const Options& o, const Common& common, const Int32Grid& labels) {
+void exportMesh(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
   const GrainMeshOptions options = meshOptions(o);
   const int factor = reductionOf(o, labels);
   const Int32Grid::ConstPtr meshed = meshedLabels(o, common, labels, factor);
@@ -130,7 +130,7 @@ void exportMesh(const Options& o, const Common& common, const Int32Grid& labels)
           (file.lengthUnit.empty() ? "voxels" : file.lengthUnit));
 }
 
-void exportPreview(const Options& o, const Common& common, const Int32Grid& labels) {
+void exportPreview(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
   const int factor = reductionOf(o, labels);
   const LabelPreview preview = previewLabels(labels, factor, common.progress);
   writeVdb(o.out, {preview.color, preview.density}, common.progress);
@@ -139,7 +139,7 @@ void exportPreview(const Options& o, const Common& common, const Int32Grid& labe
           counted(preview.density->activeVoxelCount(), "voxel"));
 }
 
-void exportReduced(const Options& o, const Common& common, const Int32Grid& labels) {
+void exportReduced(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
   const int factor = o.reduce == 0 && o.maxDim == 0 ? 2 : reductionOf(o, labels);
   const Int32Grid::Ptr reduced = reduceLabels(labels, factor, common.progress);
   writeVdb(o.out, {reduced}, common.progress);
@@ -148,7 +148,7 @@ void exportReduced(const Options& o, const Common& common, const Int32Grid& labe
           counted(reduced->activeVoxelCount(), "voxel"));
 }
 
-void exportVti(const Options& o, const Common& common, const Int32Grid& labels) {
+void exportVti(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
   const CoordBBox box = boxOf(labels);
   writeVti(o.out, labels, box, o.compress, common.progress);
   const Coord size = box.dim();
@@ -166,7 +166,7 @@ const Int32Grid& aboutOf(const LabelSlabs& labels) {
 }
 
 template <typename Labels>
-void exportNetwork(const Options& o, const Common& common, const Labels& labels) {
+void exportNetwork(const ExportArguments& o, const Common& common, const Labels& labels) {
   const GrainNetwork network = grainNetwork(labels, o.measure, common.progress);
   writeNetwork(o.out, network, common.progress);
   say(o, common,
@@ -186,7 +186,7 @@ void requireCubes(const Int32Grid& labels) {
   }
 }
 
-void exportGrainGrids(const Options& o, const Common& common, const Int32Grid& labels) {
+void exportGrainGrids(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
   if (o.asBool) {
     const auto grids = grainMasks(labels, common.progress);
     writeVdb(o.out, {grids.begin(), grids.end()}, common.progress);
@@ -201,7 +201,7 @@ void exportGrainGrids(const Options& o, const Common& common, const Int32Grid& l
   say(o, common, counted(grids.size(), "level set"));
 }
 
-void exportSurface(const Options& o, const Common& common, const Int32Grid& labels) {
+void exportSurface(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
   requireCubes(labels);
   LevelSetOptions options;
   options.smoothing = o.smoothing;
@@ -211,13 +211,13 @@ void exportSurface(const Options& o, const Common& common, const Int32Grid& labe
       "level set of the object, " + counted(grid->activeVoxelCount(), "voxel") + " in its band");
 }
 
-struct Kind {
+struct ExportKind {
   const char* name;
-  void (*run)(const Options&, const Common&, const Int32Grid&);
+  void (*run)(const ExportArguments&, const Common&, const Int32Grid&);
   const char* endings;  ///< in words
   bool (*accepts)(const std::string& out);
   /// Of labels that need not fit in memory together; null: not known.
-  void (*runSlabs)(const Options&, const Common&, const LabelSlabs&) = nullptr;
+  void (*runSlabs)(const ExportArguments&, const Common&, const LabelSlabs&) = nullptr;
 };
 
 bool isMeshOutput(const std::string& out) {
@@ -226,7 +226,7 @@ bool isMeshOutput(const std::string& out) {
 
 /// The medial balls that were kept with the labels, unless those had other voxels; else the balls of
 /// the labels' voxels, with air beyond the faces.
-Int32Grid::Ptr ballsOf(const Options& o, const Common& common, const Int32Grid& labels) {
+Int32Grid::Ptr ballsOf(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
   if (!o.input.size && isVdb(o.input))
     if (const auto kept = storedBalls(readVdb(o.input.path, {}, common.progress)))
       if (areBallsOfVoxels(labels, *kept)) return kept;
@@ -235,7 +235,7 @@ Int32Grid::Ptr ballsOf(const Options& o, const Common& common, const Int32Grid& 
 
 /// Writes the tables of the bonds and of the cover, if they are asked for.
 /// @return the bonds
-std::vector<ClumpBond> exportClumpTables(const Options& o, const Common& common,
+std::vector<ClumpBond> exportClumpTables(const ExportArguments& o, const Common& common,
                                          const Int32Grid& labels,
                                          const std::vector<Clump>& clumps) {
   if (!o.cover.empty()) writeClumpCover(o.cover, clumps, labels.transform(), common.progress);
@@ -246,7 +246,7 @@ std::vector<ClumpBond> exportClumpTables(const Options& o, const Common& common,
   return bonds;
 }
 
-void exportClumps(const Options& o, const Common& common, const Int32Grid& labels) {
+void exportClumps(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
   const Int32Grid::Ptr balls = ballsOf(o, common, labels);
   const auto made = clumps(labels, *balls, o.clumps, common.progress);
   const auto bonds = exportClumpTables(o, common, labels, made);
@@ -282,7 +282,7 @@ void exportClumps(const Options& o, const Common& common, const Int32Grid& label
                : ""));
 }
 
-void exportHexahedra(const Options& o, const Common& common, const Int32Grid& labels) {
+void exportHexahedra(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
   const HexahedraCounts counts = writeHexahedra(o.out, labels, common.progress);
   say(o, common,
       counted(counts.grains, "grain") + ", " + counted(counts.elements, "element") + ", " +
@@ -290,7 +290,7 @@ void exportHexahedra(const Options& o, const Common& common, const Int32Grid& la
 }
 
 template <typename Labels>
-void exportZarr(const Options& o, const Common& common, const Labels& labels) {
+void exportZarr(const ExportArguments& o, const Common& common, const Labels& labels) {
   const CoordBBox box = boxOf(aboutOf(labels));
   OmeZarrOptions options;
   options.version = omeVersionOf(o.ome);
@@ -306,12 +306,12 @@ void exportZarr(const Options& o, const Common& common, const Labels& labels) {
           (o.meshes ? "; meshes and measures for neuroglancer" : ""));
 }
 
-void writeMask(const Options& o, const CoordBBox& box, const Int32Grid& labels,
+void writeMask(const ExportArguments& o, const CoordBBox& box, const Int32Grid& labels,
                Progress* progress) {
   writeImage(o.out, *objectMask(labels), box, SampleType::uint8, progress);
 }
 
-void writeMask(const Options& o, const CoordBBox& box, const LabelSlabs& labels,
+void writeMask(const ExportArguments& o, const CoordBBox& box, const LabelSlabs& labels,
                Progress* progress) {
   LabelSlabs ones = labels;
   ones.read = [&labels](size_t slab, Interrupter* interrupter) {
@@ -323,7 +323,7 @@ void writeMask(const Options& o, const CoordBBox& box, const LabelSlabs& labels,
 }
 
 template <typename Labels>
-void exportMask(const Options& o, const Common& common, const Labels& labels) {
+void exportMask(const ExportArguments& o, const Common& common, const Labels& labels) {
   const Int32Grid& about = aboutOf(labels);
   const CoordBBox box = boxOf(about);
   writeMask(o, box, labels, common.progress);
@@ -338,7 +338,7 @@ bool isVtiOutput(const std::string& out) {
   return fileEnding(out) == ".vti";
 }
 
-constexpr Kind kKinds[] = {
+constexpr ExportKind kExportKinds[] = {
     {"mesh", exportMesh, ".ply, .obj, .stl, .glb or .vtp, or a folder name without an ending (STL)",
      isMeshOutput},
     {"viz", exportPreview, ".vdb", hasVdbEnding},
@@ -355,7 +355,7 @@ constexpr Kind kKinds[] = {
 
 std::vector<std::string> kindList() {
   std::vector<std::string> names;
-  for (const Kind& kind : kKinds) names.push_back(kind.name);
+  for (const ExportKind& kind : kExportKinds) names.push_back(kind.name);
   return names;
 }
 
@@ -365,10 +365,10 @@ std::string kindNames() {
   return names;
 }
 
-const Kind& findKind(const Options& o) {
+const ExportKind& findKind(const ExportArguments& o) {
   const std::string wanted = o.kind.empty() ? kindOf(o.out) : o.kind;
   if (wanted.empty()) throw WrongUsage(o.out + ": say what to write with --as: " + kindNames());
-  for (const Kind& kind : kKinds) {
+  for (const ExportKind& kind : kExportKinds) {
     if (wanted != kind.name) continue;
     if (!kind.accepts(o.out))
       throw WrongUsage(o.out + ": the ending for --as " + wanted + " must be " + kind.endings);
@@ -378,7 +378,7 @@ const Kind& findKind(const Options& o) {
 }
 
 /// @throw WrongUsage for tables that would not be written
-void checkTables(const Options& o, const Kind& kind) {
+void checkTables(const ExportArguments& o, const ExportKind& kind) {
   for (const auto& [option, file] : {std::pair("--bonds", &o.bonds), {"--cover", &o.cover}}) {
     if (file->empty()) continue;
     if (kind.run != exportClumps)
@@ -388,7 +388,7 @@ void checkTables(const Options& o, const Kind& kind) {
   }
 }
 
-void run(const Options& o, const Common& common, const Kind& kind) {
+void runExport(const ExportArguments& o, const Common& common, const ExportKind& kind) {
   if (fileEnding(o.out).empty())
     checkOutputFolder(o.out);
   else if (kind.run == exportZarr<Int32Grid>)
@@ -410,7 +410,7 @@ void run(const Options& o, const Common& common, const Kind& kind) {
 }  // namespace
 
 void addExport(Verb command, Common& common, Action& action) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<ExportArguments>();
   Verb verb = addVerb(command, common, "export", "labels for other programs",
                       "vdb_madf export grains.vdb grains.ply\n"
                       "  vdb_madf export grains.vdb view.vdb --as viz --max-dim 512");
@@ -466,7 +466,7 @@ void addExport(Verb command, Common& common, Action& action) {
     if (!(o->clumps.coverageError >= 0 && o->clumps.coverageError <= 1))
       throw WrongUsage("--uncovered: must lie between 0 and 1");
     o->measure.minFaces = parseCount(o->minFaces, "--min-faces");
-    const Kind& kind = findKind(*o);
+    const ExportKind& kind = findKind(*o);
     o->grains = parseGrains(o->select, "--select");
     if (!o->grains.empty() && kind.run != exportMesh)
       throw WrongUsage("--select chooses the grains of --as mesh");
@@ -478,7 +478,7 @@ void addExport(Verb command, Common& common, Action& action) {
     action = [o, &common, &kind] {
       Common quiet = common;
       for (const std::string& output : o->input.outputs) quiet = besideOutput(quiet, output);
-      run(*o, quiet, kind);
+      runExport(*o, quiet, kind);
     };
   });
 }

@@ -33,7 +33,7 @@ namespace vdb_madf::tools {
 namespace {
 
 /// What is typed for any kind of sample, and the options of each kind.
-struct Options {
+struct GenerateArguments {
   std::string out, dims, radius, shape, surface, scanNoise, voxelSizeText;
   int size = 0;
   uint64_t seed = 1;
@@ -48,25 +48,25 @@ struct Options {
 };
 
 /// A kind of sample: its own options, and the call that makes it.
-struct Kind {
+struct SampleKind {
   const char *name, *description, *example;
-  void (*add)(Verb verb, Options& options);
+  void (*add)(Verb verb, GenerateArguments& options);
   /// Turns what was typed into the options of the kind. @throw WrongUsage
-  void (*parse)(Options& options);
-  Sample (*make)(const Options& options, Interrupter* interrupter);
+  void (*parse)(GenerateArguments& options);
+  Sample (*make)(const GenerateArguments& options, Interrupter* interrupter);
   bool hasTruth = true;
   bool cubesOnly = false;
 };
 
 template <typename KindOptions>
-void parseSizeAndSeed(const Options& typed, KindOptions& kind) {
+void parseSizeAndSeed(const GenerateArguments& typed, KindOptions& kind) {
   if (!typed.dims.empty()) kind.size = parseDims(typed.dims, "--dims");
   if (typed.size > 0) kind.size = Coord(typed.size);
   kind.seed = typed.seed;
 }
 
 template <typename KindOptions>
-void parseRadius(const Options& typed, KindOptions& kind) {
+void parseRadius(const GenerateArguments& typed, KindOptions& kind) {
   const std::string& text = typed.radius;
   if (text.empty()) return;
   const size_t colon = text.find(':');
@@ -87,7 +87,7 @@ void parseNumbers(const std::string& text, const std::string& option, const std:
   for (size_t i = 0; i < parts.size(); ++i) *values[i] = parseNumber(parts[i], option);
 }
 
-void parseScan(const Options& typed, ScanOptions& scan) {
+void parseScan(const GenerateArguments& typed, ScanOptions& scan) {
   scan.seed = typed.seed;
   parseNumbers(typed.surface, "--surface", "A:L", {&scan.surface, &scan.surfaceLength});
   parseNumbers(typed.scanNoise, "--scan-noise", "B:S or B:S:L",
@@ -104,10 +104,10 @@ void checkFraction(double fraction) {
   if (!(fraction > 0 && fraction < 1)) throw WrongUsage("--fraction must lie between 0 and 1");
 }
 
-constexpr Kind kKinds[] = {
+constexpr SampleKind kSampleKinds[] = {
     {"spheres", "overlapping balls with known grains (paper, Table 1)",
      "vdb_madf generate spheres balls.vdb --count 100 --radius 20:30 --overlap 0.084",
-     [](Verb verb, Options& options) {
+     [](Verb verb, GenerateArguments& options) {
        SphereOptions& spheres = options.spheres;
        verb.option("--count", spheres.count, "number of balls").showDefault();
        verb.option("--radius", options.radius, "radii A:B, voxels (default 20:30)");
@@ -117,64 +117,64 @@ constexpr Kind kKinds[] = {
            .notNegative()
            .showDefault();
      },
-     [](Options& options) {
+     [](GenerateArguments& options) {
        parseSizeAndSeed(options, options.spheres);
        options.spheres.voxelSize = options.voxelSize;
        parseRadius(options, options.spheres);
      },
-     [](const Options& options, Interrupter* interrupter) {
+     [](const GenerateArguments& options, Interrupter* interrupter) {
        return generateSpheres(options.spheres, interrupter);
      }},
     {"pack", "many balls at a given solid fraction",
      "vdb_madf generate pack pack.vdb --size 512 --fraction 0.25",
-     [](Verb verb, Options& options) {
+     [](Verb verb, GenerateArguments& options) {
        verb.option("--fraction", options.pack.fraction, "solid fraction").showDefault();
        verb.option("--radius", options.radius, "radii A:B, voxels (default 8:28)");
      },
-     [](Options& options) {
+     [](GenerateArguments& options) {
        parseSizeAndSeed(options, options.pack);
        options.pack.voxelSize = options.voxelSize;
        parseRadius(options, options.pack);
        checkFraction(options.pack.fraction);
      },
-     [](const Options& options, Interrupter* interrupter) {
+     [](const GenerateArguments& options, Interrupter* interrupter) {
        return generatePack(options.pack, interrupter);
      },
      false},
     {"snow", "a snow-like random structure",
      "vdb_madf generate snow snow.vdb --size 256 --fraction 0.3 --voxel-size 10um",
-     [](Verb verb, Options& options) {
+     [](Verb verb, GenerateArguments& options) {
        verb.option("--fraction", options.snow.fraction, "solid fraction").showDefault();
        verb.option("--length", options.snow.length, "peak wavelength, voxels").showDefault();
      },
-     [](Options& options) {
+     [](GenerateArguments& options) {
        parseSizeAndSeed(options, options.snow);
        checkFraction(options.snow.fraction);
      },
-     [](const Options& options, Interrupter* interrupter) {
+     [](const GenerateArguments& options, Interrupter* interrupter) {
        return generateSnow(options.snow, interrupter);
      },
      false, true},
     {"sintered", "sintered balls with known grains",
      "vdb_madf generate sintered grains.vdb --count 90 --roughness 0.15",
-     [](Verb verb, Options& options) {
+     [](Verb verb, GenerateArguments& options) {
        SinteredOptions& sintered = options.sintered;
        verb.option("--count", sintered.count, "number of balls").showDefault();
        verb.option("--radius", options.radius, "radii A:B, voxels (default 12:22)");
        verb.option("--neck", sintered.neck, "least distance of centres / (ri + rj)").showDefault();
        verb.option("--roughness", sintered.roughness, "amplitude of surface noise").showDefault();
      },
-     [](Options& options) {
+     [](GenerateArguments& options) {
        parseSizeAndSeed(options, options.sintered);
        options.sintered.voxelSize = options.voxelSize;
        parseRadius(options, options.sintered);
      },
-     [](const Options& options, Interrupter* interrupter) {
+     [](const GenerateArguments& options, Interrupter* interrupter) {
        return generateSintered(options.sintered, interrupter);
      }},
     {"particles", "convex particles of one shape with known grains",
      "vdb_madf generate particles plates.vdb --shape plates --count 90 --radius 12:22",
-     [](Verb verb, Options& options) {
+     [](Verb verb, GenerateArguments& options) {
        ParticleOptions& particles = options.particles;
        verb.option("--shape", options.shape, "what they are (default ellipsoids)")
            .oneOf(particleShapeNames());
@@ -187,26 +187,26 @@ constexpr Kind kKinds[] = {
        verb.option("--neck", particles.neck, "size to which they shrink until none share a voxel")
            .showDefault();
      },
-     [](Options& options) {
+     [](GenerateArguments& options) {
        parseSizeAndSeed(options, options.particles);
        options.particles.voxelSize = options.voxelSize;
        parseRadius(options, options.particles);
        parseShape(options.shape, options.particles.shape);
      },
-     [](const Options& options, Interrupter* interrupter) {
+     [](const GenerateArguments& options, Interrupter* interrupter) {
        return generateParticles(options.particles, interrupter);
      }},
     {"bed", "a bed of balls, sintered by curvature flow, with known grains",
      "vdb_madf generate bed bed.vdb --size 200 --radius 16:25 --rounds 10",
-     [](Verb verb, Options& options) {
+     [](Verb verb, GenerateArguments& options) {
        verb.option("--radius", options.radius, "radii A:B, voxels (default 12:22)");
        verb.option("--rounds", options.bed.rounds, "rounds of sintering").showDefault();
      },
-     [](Options& options) {
+     [](GenerateArguments& options) {
        parseSizeAndSeed(options, options.bed);
        parseRadius(options, options.bed);
      },
-     [](const Options& options, Interrupter* interrupter) {
+     [](const GenerateArguments& options, Interrupter* interrupter) {
        return generateBed(options.bed, interrupter);
      },
      true, true},
@@ -232,7 +232,8 @@ void writeSample(const std::string& out, Sample& sample, Interrupter* interrupte
 }
 
 /// Nothing is read, so whatever cannot be made is the fault of the options.
-Sample makeSample(const Kind& kind, const Options& options, Interrupter* interrupter) {
+Sample makeSample(const SampleKind& kind, const GenerateArguments& options,
+                  Interrupter* interrupter) {
   try {
     checkScan(options.scan);
     const Sample sample = kind.make(options, interrupter);
@@ -242,7 +243,7 @@ Sample makeSample(const Kind& kind, const Options& options, Interrupter* interru
   }
 }
 
-void checkVoxels(const Kind& kind, const Options& options) {
+void checkVoxels(const SampleKind& kind, const GenerateArguments& options) {
   if (!options.voxelSize || options.voxelSize->isCube()) return;
   const std::string given = "--voxel-size " + options.voxelSizeText;
   if (kind.cubesOnly)
@@ -252,11 +253,11 @@ void checkVoxels(const Kind& kind, const Options& options) {
 }
 
 /// Is the sample to be written in slabs, so that it may be larger than memory?
-bool isInSlabs(const Options& options) {
+bool isInSlabs(const GenerateArguments& options) {
   return fileEnding(options.out) == ".slabs";
 }
 
-void parse(const Kind& kind, Options& options) {
+void parse(const SampleKind& kind, GenerateArguments& options) {
   if (isOnStandardOutput(options.out))
     throw WrongUsage(options.out + ": samples are written to files only; give the path of one");
   if (isInSlabs(options)) {
@@ -274,12 +275,12 @@ void parse(const Kind& kind, Options& options) {
   parseScan(options, options.scan);
 }
 
-void printVoxels(const Options& options, double voxels, double ofAll) {
+void printVoxels(const GenerateArguments& options, double voxels, double ofAll) {
   std::cout << options.out << ": " << int64_t(voxels) << " object voxels, " << 100 * voxels / ofAll
             << " % of the volume\n";
 }
 
-void runInSlabs(const Options& options, const Common& common) {
+void runInSlabs(const GenerateArguments& options, const Common& common) {
   common.progress->start("generate");
   std::optional<PackSlabs> slabs;
   try {
@@ -295,7 +296,7 @@ void runInSlabs(const Options& options, const Common& common) {
                 double(storedDomain(*slabs->object(0))->voxelCount()));
 }
 
-void run(const Kind& kind, const Options& options, const Common& common) {
+void runGenerate(const SampleKind& kind, const GenerateArguments& options, const Common& common) {
   if (isInSlabs(options)) return runInSlabs(options, common);
   checkWritable(options.out);
   if (kind.hasTruth && !hasVdbEnding(options.out)) {
@@ -314,8 +315,8 @@ void run(const Kind& kind, const Options& options, const Common& common) {
               double(storedDomain(*sample.object)->voxelCount()));
 }
 
-void addKind(Verb generate, Common& common, Action& action, const Kind& kind) {
-  auto options = std::make_shared<Options>();
+void addKind(Verb generate, Common& common, Action& action, const SampleKind& kind) {
+  auto options = std::make_shared<GenerateArguments>();
   Verb verb = addVerb(generate, common, kind.name, kind.description, kind.example);
   verb.option("OUT", options->out, "file to write: .vdb, .tif, .raw, .mhd, .mha, .nrrd, .npy, .h5")
       .required();
@@ -338,7 +339,7 @@ void addKind(Verb generate, Common& common, Action& action, const Kind& kind) {
               "B:S:L for noise of correlation length L, voxels");
   verb.onParsed([options, &common, &action, &kind] {
     parse(kind, *options);
-    action = [options, &common, &kind] { run(kind, *options, common); };
+    action = [options, &common, &kind] { runGenerate(kind, *options, common); };
   });
 }
 
@@ -349,7 +350,7 @@ void addGenerate(Verb command, Common& common, Action& action) {
   generate.footer(
       "vdb_madf generate KIND --help explains a kind.\nExample:\n"
       "  vdb_madf generate snow snow.vdb --size 256");
-  for (const Kind& kind : kKinds) addKind(generate, common, action, kind);
+  for (const SampleKind& kind : kSampleKinds) addKind(generate, common, action, kind);
 }
 
 }  // namespace vdb_madf::tools

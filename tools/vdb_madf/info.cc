@@ -22,15 +22,11 @@ namespace vdb_madf::tools {
 
 namespace {
 
-struct Options {
+struct InfoArguments {
   InputOptions input;
   std::string json, histogram;
   bool header = false;
 };
-
-Json corner(const Coord& c) {
-  return {c.x(), c.y(), c.z()};
-}
 
 /// Its value as a list of numbers, if it is a vector of this type.
 template <typename Vector>
@@ -75,8 +71,8 @@ Json describeGrid(const openvdb::GridBase& grid) {
   json["active_voxels"] = grid.activeVoxelCount();
   const CoordBBox box = grid.evalActiveVoxelBoundingBox();
   if (grid.activeVoxelCount() > 0) {
-    json["active_min"] = corner(box.min());
-    json["active_max"] = corner(box.max());
+    json["active_min"] = coordJson(box.min());
+    json["active_max"] = coordJson(box.max());
   }
   const openvdb::Vec3d edge = grid.voxelSize();
   json["voxel_size_units"] = {edge.x(), edge.y(), edge.z()};
@@ -146,7 +142,7 @@ Json describeImage(const ImageReader& image) {
   const ImageInfo& info = image.info();
   Json json;
   json["format"] = info.format;
-  json["size"] = corner(toCoord(info.size));
+  json["size"] = coordJson(toCoord(info.size));
   json["type"] = sampleTypeName(info.type);
   if (info.voxelSize) json["voxel_size_mm"] = inMillimetres(*info.voxelSize);
   if (const auto& edges = info.proportions) json["voxel_size_units"] = *edges;
@@ -181,7 +177,7 @@ void print(const Json& json) {
   }
 }
 
-void run(const Options& o, const Common& common) {
+void runInfo(const InfoArguments& o, const Common& common) {
   JsonFile jsonFile(o.json);
   TextFile plot(o.histogram);
   Json json;
@@ -217,7 +213,7 @@ void run(const Options& o, const Common& common) {
 }  // namespace
 
 void addInfo(Verb command, Common& common, Action& action) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<InfoArguments>();
   Verb verb = addVerb(command, common, "info", "what is in a file", "vdb_madf info grains.vdb");
   verb.option("FILE", o->input.path, "any readable volume").required();
   o->input.addRaw(verb);
@@ -233,7 +229,7 @@ void addInfo(Verb command, Common& common, Action& action) {
       throw WrongUsage(
           "--header reads no voxels, so there is no --histogram: leave one of them out");
     o->input.parse();
-    action = [o, &common] { run(*o, common); };
+    action = [o, &common] { runInfo(*o, common); };
   });
 }
 

@@ -11,6 +11,10 @@ Json inMillimetres(const VoxelSize& size) {
   return {x * 1e3, y * 1e3, z * 1e3};
 }
 
+Json coordJson(const Coord& c) {
+  return {c.x(), c.y(), c.z()};
+}
+
 void addNotes(Json& json, const Progress& progress) {
   if (!progress.notes().empty()) json["notes"] = progress.notes();
 }

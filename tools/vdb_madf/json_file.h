@@ -9,6 +9,7 @@
 #include "progress.h"
 #include "text_file.h"
 #include "vdb_madf/base/voxel_size.h"
+#include "vdb_madf/grids/grid_types.h"
 
 namespace vdb_madf::tools {
 
@@ -16,6 +17,9 @@ using Json = nlohmann::ordered_json;
 
 /// The edge of a cube, or the three of another voxel.
 Json inMillimetres(const VoxelSize& size);
+
+/// The three coordinates.
+Json coordJson(const Coord& c);
 
 /// "notes", if there are any.
 void addNotes(Json& json, const Progress& progress);

@@ -23,7 +23,7 @@ namespace vdb_madf::tools {
 
 namespace {
 
-struct Options {
+struct MeasureArguments {
   InputOptions input;
   std::string folder, boundary = "auto", density, minFaces = "1", bootstrap, scan, scanGrid, plot;
   bool ice = false;
@@ -31,7 +31,7 @@ struct Options {
   TableOptions tables;
 };
 
-void parse(Options& o) {
+void parse(MeasureArguments& o) {
   o.input.outputs = MeasurementTables::paths(o.folder);
   o.input.outputs.push_back(o.plot);
   if (!o.plot.empty() && !plotTypeOf(o.plot))
@@ -76,7 +76,7 @@ void printIntervals(const Measurements& m, double length, const std::string& uni
                   scaled(*mean.high, mean.power, length));
 }
 
-void print(const Options& o, const Measurements& m) {
+void print(const MeasureArguments& o, const Measurements& m) {
   const std::string unit = m.voxelSize ? m.voxelSize->unit() : "voxel";
   const auto edges = m.voxelSize ? m.voxelSize->edgesInUnit() : std::array<double, 3>{1, 1, 1};
   const double length = *std::min_element(edges.begin(), edges.end());
@@ -109,14 +109,14 @@ void print(const Options& o, const Measurements& m) {
 }
 
 /// The sample's name, else that of the file without folders.
-std::string titleOf(const Options& o) {
+std::string titleOf(const MeasureArguments& o) {
   return o.tables.sample.empty() ? o.input.path.substr(o.input.path.find_last_of('/') + 1)
                                  : o.tables.sample;
 }
 
 /// Of labels, a grid or slabs.
 template <typename Labels>
-Measurements measureLabels(const Options& o, const Common& common, const Labels& labels) {
+Measurements measureLabels(const MeasureArguments& o, const Common& common, const Labels& labels) {
   std::optional<GrayScan> scan;  // opened before the work: what is wrong with it is said at once
   if (!o.scan.empty())
     scan = openScan({o.scan, o.scanGrid, "--intensity"}, o.input, common.progress);
@@ -130,7 +130,7 @@ Measurements measureLabels(const Options& o, const Common& common, const Labels&
   return measurements;
 }
 
-Measurements measureInput(const Options& o, const Common& common) {
+Measurements measureInput(const MeasureArguments& o, const Common& common) {
   if (isInSlabs(o.input)) {
     const LabelSlabs labels = openLabelSlabs(o.input, "--grid", common.progress);
     const auto domain = storedDomain(*labels.about);
@@ -140,7 +140,7 @@ Measurements measureInput(const Options& o, const Common& common) {
   return measureLabels(o, common, *loadLabels(o.input, "--grid", common.progress));
 }
 
-void run(const Options& o, const Common& common) {
+void runMeasure(const MeasureArguments& o, const Common& common) {
   MeasurementTables tables(o.folder);
   TextFile plot(o.plot);
   const Measurements measurements = measureInput(o, common);
@@ -155,7 +155,7 @@ void run(const Options& o, const Common& common) {
 }  // namespace
 
 void addMeasure(Verb command, Common& common, Action& action) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<MeasureArguments>();
   Verb verb = addVerb(command, common, "measure", "tables of grains, bonds and the sample",
                       "vdb_madf measure grains.vdb tables --voxel-size 8.5um --ice");
   verb.option("LABELS", o->input.path, "labels: VDB or integer image").required();
@@ -195,7 +195,7 @@ void addMeasure(Verb command, Common& common, Action& action) {
       .typeName("FILE");
   verb.onParsed([o, &common, &action] {
     parse(*o);
-    action = [o, &common] { run(*o, common); };
+    action = [o, &common] { runMeasure(*o, common); };
   });
 }
 

@@ -23,14 +23,14 @@ namespace vdb_madf::tools {
 
 namespace {
 
-struct Options {
+struct RemergeArguments {
   InputOptions input;
   std::string out;
   MergeArguments merge;
   std::string tidy;
 };
 
-void run(const Options& o, const Common& common) {
+void runRemerge(const RemergeArguments& o, const Common& common) {
   const MergeOptions merge = o.merge.parse();
   const int tidy = parseTidy(o.tidy);
   if (hasSlabsEnding(o.out)) {
@@ -70,7 +70,7 @@ void run(const Options& o, const Common& common) {
 }  // namespace
 
 void addRemerge(Verb command, Common& common, Action& action) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<RemergeArguments>();
   Verb verb = addVerb(command, common, "remerge",
                       "merge stored manifolds anew, without distances and power map",
                       "vdb_madf remerge grains.vdb coarser.vdb --theta -0.7");
@@ -87,7 +87,7 @@ void addRemerge(Verb command, Common& common, Action& action) {
     o->input.outputs = {o->out};
     o->input.parse();
     if (!hasSlabsEnding(o->out)) checkVolumeEnding(o->out);
-    action = [o, &common] { run(*o, besideOutput(common, o->out)); };
+    action = [o, &common] { runRemerge(*o, besideOutput(common, o->out)); };
   });
 }
 

@@ -25,7 +25,7 @@ namespace vdb_madf::tools {
 
 namespace {
 
-struct Options {
+struct RenderArguments {
   InputOptions input;
   std::string out, only, slice, select, scan, scanGrid;
   int size = 512;
@@ -55,7 +55,7 @@ std::vector<SlicePlane> parseSlices(const std::string& text) {
   return planes;
 }
 
-void parse(Options& o) {
+void parse(RenderArguments& o) {
   if (!hasPngEnding(o.out)) throw WrongUsage(o.out + ": the output's ending must be .png");
   // Option::range() lets NaN pass.
   if (!std::isfinite(o.view.azimuth)) throw WrongUsage("--azimuth: not a finite number");
@@ -72,7 +72,8 @@ void parse(Options& o) {
   checkScan({o.scan, o.scanGrid, "--overlay"}, o.input);
 }
 
-std::vector<GrayPlane> grayPlanes(const Options& o, const CoordBBox& box, const Common& common) {
+std::vector<GrayPlane> grayPlanes(const RenderArguments& o, const CoordBBox& box,
+                                  const Common& common) {
   if (o.scan.empty()) return {};
   GrayScan scan = openScan({o.scan, o.scanGrid, "--overlay"}, o.input, common.progress);
   const std::vector<SlicePlane> planes = o.planes.empty() ? middlePlanes(box) : o.planes;
@@ -102,7 +103,7 @@ CoordBBox boxOfSlabs(const LabelSlabs& labels, const Common& common) {
   return box;
 }
 
-void run(const Options& o, const Common& common) {
+void runRender(const RenderArguments& o, const Common& common) {
   checkWritable(o.out);
   const bool areInSlabs = isInSlabs(o.input);
   LabelSlabs slabs;
@@ -151,7 +152,7 @@ void run(const Options& o, const Common& common) {
 }  // namespace
 
 void addRender(Verb command, Common& common, Action& action) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<RenderArguments>();
   Verb verb = addVerb(command, common, "render", "colored slices of labels and a shaded view",
                       "vdb_madf render grains.vdb grains.png --azimuth 60");
   verb.option("LABELS", o->input.path, "labels: VDB or integer image").required();
@@ -182,7 +183,7 @@ void addRender(Verb command, Common& common, Action& action) {
   o->input.addVoxelSize(verb);
   verb.onParsed([o, &common, &action] {
     parse(*o);
-    action = [o, &common] { run(*o, common); };
+    action = [o, &common] { runRender(*o, common); };
   });
 }
 

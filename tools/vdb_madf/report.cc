@@ -23,7 +23,7 @@ namespace {
 
 constexpr uint64_t kMaxSweepBytes = 10000000;
 
-struct Options {
+struct ReportArguments {
   InputOptions input;
   std::vector<std::string> files;  ///< of labels, and of the page
   std::vector<InputOptions> samples;
@@ -32,7 +32,7 @@ struct Options {
   ReportOptions report;
 };
 
-void parse(Options& o) {
+void parse(ReportArguments& o) {
   o.out = o.files.back();
   const std::string ending = fileEnding(o.out);
   if (ending != ".html" && ending != ".htm")
@@ -60,7 +60,7 @@ void parse(Options& o) {
   }
 }
 
-Report writeOne(const Options& o, const Common& common) {
+Report writeOne(const ReportArguments& o, const Common& common) {
   ReportOptions options = o.report;
   if (!o.sweep.empty()) options.sweep = readText(o.sweep, kMaxSweepBytes);
   if (!o.sweep.empty() && !isSweepTable(options.sweep))
@@ -71,7 +71,7 @@ Report writeOne(const Options& o, const Common& common) {
                       [&] { return writeReport(o.out, *labels, options, common.progress); });
 }
 
-Report writeAll(const Options& o, const Common& common) {
+Report writeAll(const ReportArguments& o, const Common& common) {
   std::vector<ReportSample> samples;
   for (const InputOptions& input : o.samples)
     samples.push_back({input.path, input.path, [&input, &common]() -> Int32Grid::ConstPtr {
@@ -81,7 +81,7 @@ Report writeAll(const Options& o, const Common& common) {
   return writeComparison(o.out, samples, o.report, common.progress);
 }
 
-void run(const Options& o, const Common& common) {
+void runReport(const ReportArguments& o, const Common& common) {
   checkWritable(o.out);
   const bool isOne = o.samples.size() == 1;
   const Report report = isOne ? writeOne(o, common) : writeAll(o, common);
@@ -102,7 +102,7 @@ void run(const Options& o, const Common& common) {
 }  // namespace
 
 void addReport(Verb command, Common& common, Action& action) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<ReportArguments>();
   Verb verb = addVerb(command, common, "report", "a page for the browser: look, click, filter",
                       "vdb_madf report grains.vdb report.html");
   verb.option(
@@ -134,7 +134,7 @@ void addReport(Verb command, Common& common, Action& action) {
   verb.flag("--ice", o->ice, "the density of ice: --density 917");
   verb.onParsed([o, &common, &action] {
     parse(*o);
-    action = [o, &common] { run(*o, common); };
+    action = [o, &common] { runReport(*o, common); };
   });
 }
 

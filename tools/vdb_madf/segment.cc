@@ -116,7 +116,7 @@ void printEstimate(const SegmentArguments& o, const Common& common, const MaskGr
               fits ? "it fits" : "it does not fit");
 }
 
-void run(const SegmentArguments& o, const Common& common) {
+void runSegment(const SegmentArguments& o, const Common& common) {
   if (hasSlabsEnding(o.out)) return runInSlabs(o, common);
   if (o.autoSlabs && isSurelyForSlabs(o)) return runBySlabs(o, common);
   const Clock::time_point start = Clock::now();
@@ -234,7 +234,7 @@ void addSegment(Verb command, Common& common, Action& action) {
     parse(*o);
     if (common.ranks && !hasSlabsEnding(o->out))
       throw WrongUsage("vdb_madf_mpi writes a folder of slabs: choose an output like OUT.slabs");
-    action = [o, &common] { run(*o, besideOutput(common, o->out)); };
+    action = [o, &common] { runSegment(*o, besideOutput(common, o->out)); };
   });
 }
 

@@ -32,14 +32,14 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Of any slab: far fewer leaf nodes than can be numbered.
-constexpr int64_t kMostBytes = int64_t(8) << 30;
+constexpr int64_t kMostSlabBytes = int64_t(8) << 30;
 
 /// \p memory: of this process; 0: not known.
 SlabLimits limitsOf(const SegmentArguments& o, int64_t memory) {
-  SlabLimits limits{kMostBytes, o.slabHeight, o.segment.tidy};
+  SlabLimits limits{kMostSlabBytes, o.slabHeight, o.segment.tidy};
   if (memory == 0) return limits;
   constexpr int64_t kLeast = int64_t(32) << 20;
-  limits.bytes = std::min(memory - kSlabOtherBytes, kMostBytes);
+  limits.bytes = std::min(memory - kSlabOtherBytes, kMostSlabBytes);
   if (limits.bytes < kLeast)
     throw InvalidInput("slabs need at least " + readableBytes(kSlabOtherBytes + kLeast) +
                            " of memory, and " + readableBytes(memory) + " may be used: allow more",

@@ -31,7 +31,7 @@ namespace {
 
 constexpr char kGammas[] = "0,20,160";
 
-struct Options {
+struct SweepArguments {
   InputOptions input;
   std::string out, plot, gamma = kGammas, theta = "-1:-0.5:0.05", merge = "both,angle,neck";
   std::string adjacency = "manifold", boundary = "auto", small = "100", delta = "2";
@@ -87,7 +87,7 @@ void requireDifferent(const std::vector<T>& values, const std::string& option) {
     throw WrongUsage(option + ": a value is there twice");
 }
 
-void parse(Options& o) {
+void parse(SweepArguments& o) {
   o.input.outputs = {o.out, o.plot};
   o.input.longestSide = kMaxExtent;
   o.input.parse();
@@ -143,14 +143,14 @@ std::string table(const std::vector<SweepRow>& rows) {
 }
 
 /// Is it a folder of slabs with manifolds, which are to be merged?
-bool isOfManifolds(const Options& o, const Common& common) {
+bool isOfManifolds(const SweepArguments& o, const Common& common) {
   if (!isInSlabs(o.input) || !(o.input.gridName.empty() || o.input.gridName == kManifoldGrid))
     return false;
   return hasManifolds(readVdbHeaders(o.input.path, common.progress));
 }
 
 /// What of the options does not concern manifolds. @throw WrongUsage
-void checkManifoldOptions(const Options& o, const LabelSlabs& manifolds) {
+void checkManifoldOptions(const SweepArguments& o, const LabelSlabs& manifolds) {
   const InputOptions& in = o.input;
   for (const auto& [text, name] : {std::pair<const std::string*, const char*>{&in.phase, "--phase"},
                                    {&in.threshold, "--threshold"},
@@ -174,7 +174,7 @@ void checkManifoldOptions(const Options& o, const LabelSlabs& manifolds) {
 }
 
 /// The rows of the manifolds in a folder of slabs.
-std::vector<SweepRow> sweepManifolds(const Options& o, const Common& common) {
+std::vector<SweepRow> sweepManifolds(const SweepArguments& o, const Common& common) {
   const LabelSlabs manifolds = openManifoldSlabs(o.input, common.progress);
   checkManifoldOptions(o, manifolds);
   if (o.scratch.empty() && o.out == "-")
@@ -188,7 +188,7 @@ std::vector<SweepRow> sweepManifolds(const Options& o, const Common& common) {
   });
 }
 
-std::vector<SweepRow> sweepObject(const Options& o, const Common& common) {
+std::vector<SweepRow> sweepObject(const SweepArguments& o, const Common& common) {
   if (!o.scratch.empty()) throw WrongUsage("--scratch is for manifolds in a folder of slabs");
   const MaskGrid::Ptr object = loadObject(o.input, common.progress);
   SweepOptions options = o.sweep;
@@ -198,7 +198,7 @@ std::vector<SweepRow> sweepObject(const Options& o, const Common& common) {
                       [&] { return parameterSweep(*object, options, common.progress); });
 }
 
-void run(const Options& o, const Common& common) {
+void runSweep(const SweepArguments& o, const Common& common) {
   TextFile csv(o.out), plot(o.plot);
   common.progress->start("read");
   const bool isOfStored = isOfManifolds(o, common);
@@ -216,7 +216,7 @@ void run(const Options& o, const Common& common) {
 }  // namespace
 
 void addSweep(Verb command, Common& common, Action& action) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<SweepArguments>();
   Verb verb =
       addVerb(command, common, "sweep", "grains for many gamma, theta, delta and merge modes",
               "vdb_madf sweep scan.tif sweep.csv --phase 1 --plot sweep.svg --gamma 0,20");
@@ -256,7 +256,7 @@ void addSweep(Verb command, Common& common, Action& action) {
       .typeName("DIR");
   verb.onParsed([o, &common, &action] {
     parse(*o);
-    action = [o, &common] { run(*o, besideOutput(common, o->out)); };
+    action = [o, &common] { runSweep(*o, besideOutput(common, o->out)); };
   });
 }
 

@@ -24,13 +24,13 @@ namespace vdb_madf::tools {
 
 namespace {
 
-struct Options {
+struct TrackArguments {
   InputOptions before, after;
   std::string out, shift, json, grains, links, bonds, minFaces = "1";
   TrackOptions track;
 };
 
-void parse(Options& o) {
+void parse(TrackArguments& o) {
   parsePair(o.before, o.after, {o.out, o.json, o.grains, o.links, o.bonds});
   if (!o.out.empty()) checkVolumeEnding(o.out);
   if (!o.shift.empty()) o.track.shift = parseShift(o.shift, "--shift");
@@ -64,16 +64,12 @@ double percent(int64_t part, int64_t whole) {
   return whole > 0 ? 100.0 * double(part) / double(whole) : 0.0;
 }
 
-Json corner(const Coord& c) {
-  return {c.x(), c.y(), c.z()};
-}
-
-Json summary(const Options& o, const Tracks& t) {
+Json summary(const TrackArguments& o, const Tracks& t) {
   Json json;
   json["before"] = o.before.path;
   json["after"] = o.after.path;
   if (!o.out.empty()) json["output"] = o.out;
-  json["shift"] = corner(t.shift);
+  json["shift"] = coordJson(t.shift);
   json["share"] = o.track.share;
   json["min_faces"] = o.track.minFaces;
   json["voxels_before"] = t.voxelsBefore;
@@ -97,7 +93,7 @@ void printFates(const char* what, const Json& fates) {
   std::printf("\n");
 }
 
-void print(const Options& o, const Tracks& t, const Json& json) {
+void print(const TrackArguments& o, const Tracks& t, const Json& json) {
   std::printf("shift          %d,%d,%d voxels%s\n", t.shift.x(), t.shift.y(), t.shift.z(),
               o.track.shift ? "" : ", found");
   std::printf("in common      %.2f %% of the labelled voxels before, %.2f %% of those after\n",
@@ -162,7 +158,7 @@ std::string bondTable(const Tracks& t) {
   return csv.str();
 }
 
-void noteShift(const Options& o, const Tracks& t, const Common& common) {
+void noteShift(const TrackArguments& o, const Tracks& t, const Common& common) {
   const int most = o.track.maxShift;
   for (int axis = 0; axis < 3; ++axis)
     if (!o.track.shift && most > 0 && std::abs(t.shift[axis]) == most) {
@@ -172,7 +168,7 @@ void noteShift(const Options& o, const Tracks& t, const Common& common) {
     }
 }
 
-void run(const Options& o, const Common& common) {
+void runTrack(const TrackArguments& o, const Common& common) {
   if (!o.out.empty()) checkWritable(o.out);
   JsonFile jsonFile(o.json);
   TextFile grainFile(o.grains), linkFile(o.links), bondFile(o.bonds);
@@ -207,7 +203,7 @@ void run(const Options& o, const Common& common) {
 }  // namespace
 
 void addTrack(Verb command, Common& common, Action& action) {
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<TrackArguments>();
   Verb verb = addVerb(command, common, "track",
                       "what became of grains and bonds from one scan of a sample to the next",
                       "vdb_madf track grains.vdb later.vdb tracked.vdb --max-shift 20");
@@ -243,7 +239,7 @@ void addTrack(Verb command, Common& common, Action& action) {
       Common beside = common;
       for (const std::string& output : {o->out, o->json, o->grains, o->links, o->bonds})
         beside = besideOutput(beside, output);
-      run(*o, beside);
+      runTrack(*o, beside);
     };
   });
 }

@@ -58,7 +58,7 @@ std::string scratchOf(const SegmentArguments& o) {
   return o.scratch.empty() ? o.out + ".scratch" : o.scratch;
 }
 
-constexpr char kDone[] = "done";  // the piece that says that OUT.slabs.part is whole
+constexpr char kWhole[] = "done";  // the piece that says that OUT.slabs.part is whole
 
 }  // namespace
 
@@ -78,7 +78,7 @@ WorkPlace::WorkPlace(const SegmentArguments& o, const Common& common, Ranks& ran
   try {
     inAllRanks(ranks, [&] {
       if (!isRoot) folder_ = std::make_unique<FolderScratch>(scratchOf(o));
-      isDone_ = folder_->has(kDone);
+      isDone_ = folder_->has(kWhole);
     });
   } catch (...) {
     if (isRoot) abandon(false);
@@ -134,7 +134,7 @@ void WorkPlace::checkSlabs(size_t count) const {
 void WorkPlace::finish() {
   if (ranks_.rank() != 0) return;
   std::error_code ignored;
-  if (folder_) folder_->write(kDone, {});
+  if (folder_) folder_->write(kWhole, {});
   if (fs::exists(file(kSlabIndex), ignored)) commitSlabFolder(part_, out_);
   fs::remove(part_, ignored);  // of a run that was killed in what follows
   if (folder_) folder_->removeAll();

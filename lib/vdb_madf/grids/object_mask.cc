@@ -24,7 +24,7 @@ constexpr size_t kLeavesPerChunk = 256;
 
 /// Bit i of word n says whether voxel 64 n + i of the leaf passes. `test(value, active)`.
 template <typename Leaf, typename Test>
-Word wordOf(const Leaf& leaf, openvdb::Index n, const Test& test) {
+Word objectWord(const Leaf& leaf, openvdb::Index n, const Test& test) {
   using Value = typename Leaf::ValueType;
   const Word active = leaf.getValueMask().template getWord<Word>(n);
   if constexpr (std::is_same_v<Value, bool>) {
@@ -64,7 +64,7 @@ MaskTree::Ptr listedVoxels(const Tree& tree, const Test& test) {
     for (size_t i = begin; i < end; ++i) {
       openvdb::util::NodeMask<3> bits;
       for (openvdb::Index n = 0; n < kWords; ++n)
-        bits.template getWord<Word>(n) = wordOf(*leaves[i], n, test);
+        bits.template getWord<Word>(n) = objectWord(*leaves[i], n, test);
       if (bits.isOff()) continue;
       packed[i] = std::make_unique<MaskLeaf>(leaves[i]->origin(), false);
       packed[i]->setValueMask(bits);

@@ -26,7 +26,7 @@ using openvdb::Vec3d;
 using MaskLeaf = MaskTree::LeafNodeType;
 using LabelLeaf = Int32Tree::LeafNodeType;
 
-constexpr size_t kLeafGrain = 4;
+constexpr size_t kResampledLeafGrain = 4;
 
 /// The cubes in the place of a grid's voxels.
 class Cubes {
@@ -126,9 +126,10 @@ class AreaResampling {
 
   MaskTree run(Interrupter* interrupter) {
     std::vector<std::unique_ptr<MaskLeaf>> leaves(first_.size() - 1);
-    detail::parallelFor(leaves.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-      for (size_t n = begin; n < end; ++n) leaves[n] = leafOf(n);
-    });
+    detail::parallelFor(leaves.size(), kResampledLeafGrain, interrupter,
+                        [&](size_t begin, size_t end) {
+                          for (size_t n = begin; n < end; ++n) leaves[n] = leafOf(n);
+                        });
     for (auto& leaf : leaves)
       if (leaf) result_.addLeaf(leaf.release());
     return std::move(result_);
@@ -239,10 +240,12 @@ class NearestLabels {
 
   void run(Int32Tree& result, Interrupter* interrupter) const {
     std::vector<std::unique_ptr<LabelLeaf>> leaves(origins_.size());
-    detail::parallelFor(leaves.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-      const openvdb::tree::ValueAccessor<const Int32Tree, false> voxels(tree_);
-      for (size_t n = begin; n < end; ++n) leaves[n] = leafOf(origins_[n], voxels);
-    });
+    detail::parallelFor(leaves.size(), kResampledLeafGrain, interrupter,
+                        [&](size_t begin, size_t end) {
+                          const openvdb::tree::ValueAccessor<const Int32Tree, false> voxels(tree_);
+                          for (size_t n = begin; n < end; ++n)
+                            leaves[n] = leafOf(origins_[n], voxels);
+                        });
     for (auto& leaf : leaves)
       if (leaf) result.addLeaf(leaf.release());
   }

@@ -18,7 +18,7 @@ namespace vdb_madf {
 
 namespace {
 
-constexpr size_t kRowsPerChunk = 16;
+constexpr size_t kResampledRowsPerChunk = 16;
 
 /// Between which voxels the center of a cube lies.
 struct Place {
@@ -84,7 +84,7 @@ class ResampledImage : public ImageReader {
   void readSlice(const Place& z, T* to) {
     window_.moveTo(z.lower, z.beyond > 0 ? 2 : 1);
     detail::parallelFor(
-        size_t(info_.size.y), kRowsPerChunk, nullptr, [&](size_t begin, size_t end) {
+        size_t(info_.size.y), kResampledRowsPerChunk, nullptr, [&](size_t begin, size_t end) {
           std::vector<double> row(size_t(image_->info().size.x));
           for (size_t y = begin; y < end; ++y) {
             fillRow(places_[1][y], z, row);

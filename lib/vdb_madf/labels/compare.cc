@@ -13,6 +13,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/labels/detail/slab_window.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
+#include "vdb_madf/leaves/detail/voxels.h"
 
 namespace vdb_madf {
 
@@ -22,8 +23,6 @@ using Root = Int32Tree::RootNodeType;
 using Leaf = Int32Tree::LeafNodeType;
 /// Exact sums of pairs of voxels: 10^11 voxels have 5 * 10^21 pairs.
 using PairCount = unsigned __int128;
-
-constexpr size_t kLeafGrain = 256;
 
 /// 0: no label.
 int32_t label(int32_t value, bool active) {
@@ -69,13 +68,15 @@ class OverlapCounter {
  public:
   Counts count(const Root& truth, const Root& test, Interrupter* interrupter) {
     visitRoots(truth, test);
-    detail::parallelFor(leaves_.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-      Counts local;
-      for (size_t i = begin; i < end; ++i) countLeaves(leaves_[i].truth, leaves_[i].test, local);
-      // Integer sums: the order in which the parts arrive does not matter.
-      const std::lock_guard<std::mutex> lock(mutex_);
-      counts_.add(local);
-    });
+    detail::parallelFor(leaves_.size(), detail::kLightLeafGrain, interrupter,
+                        [&](size_t begin, size_t end) {
+                          Counts local;
+                          for (size_t i = begin; i < end; ++i)
+                            countLeaves(leaves_[i].truth, leaves_[i].test, local);
+                          // Integer sums: the order in which the parts arrive does not matter.
+                          const std::lock_guard<std::mutex> lock(mutex_);
+                          counts_.add(local);
+                        });
     return std::move(counts_);
   }
 
@@ -160,21 +161,22 @@ Counts countWindow(const detail::LabelLeaves& truth, const detail::LabelLeaves& 
     return int64_t(
         detail::countVoxels(leaf ? detail::without(part.mask, others.mask(*leaf)) : part.mask));
   };
-  detail::parallelFor(truths.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    Counts local;
-    for (size_t i = begin; i < end; ++i) {
-      const auto other = tests.findLeaf(truths.origin(i));
-      for (const detail::LabelPart& part : truth.parts(i)) {
-        if (const int64_t voxels = only(part, tests, other)) local.add(part.label, 0, voxels);
-        if (!other) continue;
-        for (const detail::LabelPart& met : test.parts(*other))
-          if (const int64_t voxels = detail::countVoxels(detail::both(part.mask, met.mask)))
-            local.add(part.label, met.label, voxels);
-      }
-    }
-    const std::lock_guard<std::mutex> lock(mutex);
-    counts.add(local);
-  });
+  detail::parallelFor(
+      truths.leafCount(), detail::kLightLeafGrain, interrupter, [&](size_t begin, size_t end) {
+        Counts local;
+        for (size_t i = begin; i < end; ++i) {
+          const auto other = tests.findLeaf(truths.origin(i));
+          for (const detail::LabelPart& part : truth.parts(i)) {
+            if (const int64_t voxels = only(part, tests, other)) local.add(part.label, 0, voxels);
+            if (!other) continue;
+            for (const detail::LabelPart& met : test.parts(*other))
+              if (const int64_t voxels = detail::countVoxels(detail::both(part.mask, met.mask)))
+                local.add(part.label, met.label, voxels);
+          }
+        }
+        const std::lock_guard<std::mutex> lock(mutex);
+        counts.add(local);
+      });
   for (size_t i = 0; i < tests.leafCount(); ++i) {
     const auto other = truths.findLeaf(tests.origin(i));
     for (const detail::LabelPart& part : test.parts(i))

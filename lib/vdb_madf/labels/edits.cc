@@ -51,13 +51,13 @@ const Word& wordOf(const std::string& name) {
   if (word != kWords.end()) return *word;
   std::string all;
   for (const Word& known : kWords) all += (all.empty() ? "" : ", ") + std::string(known.name);
-  throw InvalidInput(detail::quoted(name) + " is no edit: there are " + all);
+  throw InvalidInput(detail::inQuotes(name) + " is no edit: there are " + all);
 }
 
 int32_t grainFrom(const std::string& text) {
   const auto number = detail::integers(text);
   if (!number || number->size() != 1)
-    throw InvalidInput(detail::quoted(text) + " is no number of a grain");
+    throw InvalidInput(detail::inQuotes(text) + " is no number of a grain");
   const int64_t grain = number->front();
   if (grain < 1 || grain > std::numeric_limits<int32_t>::max())
     throw InvalidInput("grain " + std::to_string(grain) +
@@ -83,7 +83,7 @@ std::vector<int32_t> grainsFrom(const std::vector<std::string>& texts, const Wor
 int64_t voxelsFrom(const std::string& text) {
   const auto number = detail::integers(text);
   if (!number || number->size() != 1 || number->front() < 0)
-    throw InvalidInput(detail::quoted(text) + " is no number of voxels");
+    throw InvalidInput(detail::inQuotes(text) + " is no number of voxels");
   return number->front();
 }
 

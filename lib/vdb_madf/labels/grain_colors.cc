@@ -17,6 +17,7 @@
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/detail/rimmed_slabs.h"
+#include "vdb_madf/leaves/detail/voxels.h"
 #include "vdb_madf/leaves/leaf_index.h"
 
 namespace vdb_madf {
@@ -24,8 +25,6 @@ namespace vdb_madf {
 namespace {
 
 using Pair = std::pair<int32_t, int32_t>;
-
-constexpr size_t kLeafGrain = 64;
 
 /// Calm colors of middle lightness (L* 45 to 90, chroma 18 to 62), which stay apart from white and from
 /// a dark background. The first 16 have the largest least distance for normal eyes and for those
@@ -145,25 +144,28 @@ Contacts findContacts(const Int32Grid& grid, Interrupter* interrupter) {
   std::set<int32_t> labels;
   std::vector<Pair> pairs;
   std::mutex mutex;
-  detail::parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    std::vector<int32_t> someLabels;
-    std::vector<Pair> somePairs;
-    detail::LabelHalo halo;
-    for (size_t i = begin; i < end; ++i) {
-      detail::readLabelHalo(grid.tree(), index.origin(i), halo);
-      forEachLabel(halo, [&](int32_t label) {
-        if (someLabels.empty() || someLabels.back() != label) someLabels.push_back(label);
-      });
-      forEachContact(halo, [&](int32_t a, int32_t b) {
-        if (somePairs.empty() || somePairs.back() != Pair(a, b)) somePairs.emplace_back(a, b);
-      });
-    }
-    sortUnique(somePairs);
-    // Sets: the order in which the parts arrive does not matter.
-    const std::lock_guard<std::mutex> lock(mutex);
-    labels.insert(someLabels.begin(), someLabels.end());
-    pairs.insert(pairs.end(), somePairs.begin(), somePairs.end());
-  });
+  detail::parallelFor(index.leafCount(), detail::kLeafGrain, interrupter,
+                      [&](size_t begin, size_t end) {
+                        std::vector<int32_t> someLabels;
+                        std::vector<Pair> somePairs;
+                        detail::LabelHalo halo;
+                        for (size_t i = begin; i < end; ++i) {
+                          detail::readLabelHalo(grid.tree(), index.origin(i), halo);
+                          forEachLabel(halo, [&](int32_t label) {
+                            if (someLabels.empty() || someLabels.back() != label)
+                              someLabels.push_back(label);
+                          });
+                          forEachContact(halo, [&](int32_t a, int32_t b) {
+                            if (somePairs.empty() || somePairs.back() != Pair(a, b))
+                              somePairs.emplace_back(a, b);
+                          });
+                        }
+                        sortUnique(somePairs);
+                        // Sets: the order in which the parts arrive does not matter.
+                        const std::lock_guard<std::mutex> lock(mutex);
+                        labels.insert(someLabels.begin(), someLabels.end());
+                        pairs.insert(pairs.end(), somePairs.begin(), somePairs.end());
+                      });
   sortUnique(pairs);
   return {{labels.begin(), labels.end()}, std::move(pairs)};
 }

@@ -16,13 +16,13 @@ namespace vdb_madf {
 
 namespace {
 
-using Leaf = BoolGrid::TreeType::LeafNodeType;
+using BoolLeaf = BoolGrid::TreeType::LeafNodeType;
 
 class GrainMasks {
  public:
   explicit GrainMasks(const Int32Grid& labels) : labels_(labels) {}
 
-  Leaf& leaf(int32_t label, const Coord& origin) {
+  BoolLeaf& leaf(int32_t label, const Coord& origin) {
     BoolGrid::Ptr& grid = grids_[label];
     if (!grid) {
       if (grids_.size() > kMaxGrainGrids)
@@ -56,7 +56,7 @@ std::vector<BoolGrid::Ptr> grainMasks(const Int32Grid& labels, Interrupter* inte
     if (interrupter && interrupter->wasInterrupted(int(100 * n / index.leafCount())))
       throw Interrupted();
     for (const detail::LabelPart& part : leaves.parts(n)) {
-      Leaf& leaf = masks.leaf(part.label, index.origin(n));
+      BoolLeaf& leaf = masks.leaf(part.label, index.origin(n));
       for (size_t x = 0; x < 8; ++x)
         detail::forEachBit(part.mask[x], [&](int bit) {
           leaf.setValueOn(openvdb::Index(x * 64 + size_t(bit)), true);

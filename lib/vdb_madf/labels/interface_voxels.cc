@@ -9,14 +9,13 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
+#include "vdb_madf/leaves/detail/voxels.h"
 
 namespace vdb_madf {
 
 namespace {
 
 using Leaf = Int32Tree::LeafNodeType;
-constexpr size_t kLeafGrain = 64;
-
 bool isAtInterface(const detail::LabelHalo& halo, size_t at) {
   const int32_t own = halo[at];
   if (own == 0) return false;
@@ -51,9 +50,11 @@ Int32Grid::Ptr interfaceVoxels(const Int32Grid& labels, Interrupter* interrupter
   std::vector<const Leaf*> leaves;
   tree->getNodes(leaves);
   std::vector<std::unique_ptr<Leaf>> parts(leaves.size());
-  detail::parallelFor(leaves.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) parts[n] = interfacesIn(*tree, leaves[n]->origin());
-  });
+  detail::parallelFor(leaves.size(), detail::kLeafGrain, interrupter,
+                      [&](size_t begin, size_t end) {
+                        for (size_t n = begin; n < end; ++n)
+                          parts[n] = interfacesIn(*tree, leaves[n]->origin());
+                      });
   for (std::unique_ptr<Leaf>& part : parts)
     if (part) result->tree().addLeaf(part.release());
   return result;

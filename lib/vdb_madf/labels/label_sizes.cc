@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/leaves/detail/voxels.h"
 
 namespace vdb_madf {
 
@@ -14,8 +15,6 @@ namespace {
 
 using Leaf = Int32Tree::LeafNodeType;
 using Sizes = std::map<int32_t, int64_t>;
-constexpr size_t kLeafGrain = 256;
-
 void addVoxels(const Leaf& leaf, Sizes& sizes) {
   auto last = sizes.end();  // neighbors mostly share their label
   for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {
@@ -32,13 +31,14 @@ std::map<int32_t, int64_t> labelSizes(const Int32Grid& labels, Interrupter* inte
   std::mutex mutex;
   std::vector<const Leaf*> leaves;
   labels.tree().getNodes(leaves);
-  detail::parallelFor(leaves.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    Sizes local;
-    for (size_t n = begin; n < end; ++n) addVoxels(*leaves[n], local);
-    // Integer sums: the order in which the parts arrive does not matter.
-    const std::lock_guard<std::mutex> lock(mutex);
-    for (const auto& [label, voxels] : local) sizes[label] += voxels;
-  });
+  detail::parallelFor(leaves.size(), detail::kLightLeafGrain, interrupter,
+                      [&](size_t begin, size_t end) {
+                        Sizes local;
+                        for (size_t n = begin; n < end; ++n) addVoxels(*leaves[n], local);
+                        // Integer sums: the order in which the parts arrive does not matter.
+                        const std::lock_guard<std::mutex> lock(mutex);
+                        for (const auto& [label, voxels] : local) sizes[label] += voxels;
+                      });
   auto tile = labels.tree().cbeginValueOn();
   tile.setMaxDepth(Int32Tree::ValueOnCIter::LEAF_DEPTH - 1);
   for (; tile; ++tile)

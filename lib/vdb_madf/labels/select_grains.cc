@@ -10,14 +10,13 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/leaves/detail/voxels.h"
 
 namespace vdb_madf {
 
 namespace {
 
 using Leaf = Int32Tree::LeafNodeType;
-constexpr size_t kLeafGrain = 64;
-
 /// The labels asked for, ascending, and which of them were found.
 class Wanted {
  public:
@@ -81,9 +80,11 @@ Int32Grid::Ptr selectGrains(const Int32Grid& labels, const std::vector<int32_t>&
   std::vector<const Leaf*> leaves;
   labels.tree().getNodes(leaves);
   std::vector<std::unique_ptr<Leaf>> parts(leaves.size());
-  detail::parallelFor(leaves.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) parts[n] = wantedPart(*leaves[n], wanted);
-  });
+  detail::parallelFor(leaves.size(), detail::kLeafGrain, interrupter,
+                      [&](size_t begin, size_t end) {
+                        for (size_t n = begin; n < end; ++n)
+                          parts[n] = wantedPart(*leaves[n], wanted);
+                      });
   for (std::unique_ptr<Leaf>& part : parts) {
     if (!part) continue;
     for (auto voxel = part->cbeginValueOn(); voxel; ++voxel) wanted.find(*voxel);

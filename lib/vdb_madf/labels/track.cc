@@ -29,7 +29,7 @@ namespace vdb_madf {
 namespace {
 
 /// The grains of one side, by number.
-using Grains = std::map<int32_t, TrackedGrain>;
+using TrackedGrains = std::map<int32_t, TrackedGrain>;
 /// The grains that each grain of one side is linked with.
 using Links = std::map<int32_t, std::set<int32_t>>;
 
@@ -53,8 +53,8 @@ CoordBBox shownBox(const Int32Grid& labels, const Coord& shift) {
   return {domain->box().min() + shift, domain->box().max() + shift};
 }
 
-Grains grainsOf(const Int32Grid& labels, Interrupter* interrupter) {
-  Grains grains;
+TrackedGrains grainsOf(const Int32Grid& labels, Interrupter* interrupter) {
+  TrackedGrains grains;
   for (const auto& [number, voxels] : labelSizes(labels, interrupter)) {
     TrackedGrain& grain = grains[number];
     grain.grain = number;
@@ -64,7 +64,7 @@ Grains grainsOf(const Int32Grid& labels, Interrupter* interrupter) {
 }
 
 /// Counts an overlap with a grain of the other side; 0: with none. They come in ascending order.
-void addOverlap(Grains& grains, int32_t number, int32_t other, int64_t voxels) {
+void addOverlap(TrackedGrains& grains, int32_t number, int32_t other, int64_t voxels) {
   if (!number) return;
   TrackedGrain& grain = grains.at(number);
   grain.sharedVoxels += voxels;
@@ -75,7 +75,7 @@ void addOverlap(Grains& grains, int32_t number, int32_t other, int64_t voxels) {
 
 /// The two sides, and how they are linked.
 struct Sides {
-  Grains before, after;
+  TrackedGrains before, after;
   Links fromBefore, fromAfter;
 };
 
@@ -92,8 +92,8 @@ void link(Sides& sides, std::vector<GrainOverlap>& overlaps, double share) {
 
 /// What is said of the grains of one side. `several`: one that is linked with several; `part`: one
 /// that is linked with a grain that is linked with several.
-void judge(Grains& grains, const Links& own, const Links& other, GrainFate several, GrainFate part,
-           GrainFate none) {
+void judge(TrackedGrains& grains, const Links& own, const Links& other, GrainFate several,
+           GrainFate part, GrainFate none) {
   for (auto& [number, grain] : grains) {
     const auto links = own.find(number);
     grain.links = links == own.end() ? 0 : int64_t(links->second.size());
@@ -181,7 +181,7 @@ std::set<Pair> pairsOf(const std::vector<TrackedBond>& bonds) {
   return pairs;
 }
 
-std::vector<TrackedGrain> listed(const Grains& grains) {
+std::vector<TrackedGrain> listed(const TrackedGrains& grains) {
   std::vector<TrackedGrain> list;
   for (const auto& [number, grain] : grains) list.push_back(grain);
   return list;

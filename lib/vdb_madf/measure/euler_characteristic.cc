@@ -16,8 +16,6 @@ namespace vdb_madf {
 
 namespace {
 
-constexpr size_t kLeafGrain = 256;
-
 int64_t count(uint64_t word) {
   return detail::countBits(word);
 }
@@ -43,34 +41,36 @@ int64_t eulerCharacteristic(const LeafIndex& index, Interrupter* interrupter) {
 int64_t detail::eulerCharacteristic(const LeafIndex& index, const LeafLayers& layers,
                                     Interrupter* interrupter) {
   std::atomic<int64_t> sum{0};
-  detail::parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    detail::LeafNeighborhood neighborhood(index);
-    int64_t part = 0;
-    for (size_t leaf = begin; leaf < end; ++leaf) {
-      if (!layers.hold(index.origin(leaf))) continue;
-      const auto& around = neighborhood.around(leaf);
-      const auto word = [&](int x, int dy, int dz) -> uint64_t {
-        const uint32_t from = around[size_t((1 + (x >> 3)) * 9 + (1 + dy) * 3 + 1 + dz)];
-        return from == LeafIndex::kNone ? 0 : index.mask(from)[size_t(x & 7)];
-      };
-      const auto slice = [&](int x) {
-        const uint64_t own = word(x, 0, 0), z = word(x, 0, 1);
-        const uint64_t y = nextY(own, word(x, 1, 0));
-        return Slice{own, y, nextZ(own, z), nextZ(y, nextY(z, word(x, 1, 1)))};
-      };
-      Slice a = slice(0);
-      for (int x = 0; x < 8; ++x) {
-        const Slice b = slice(x + 1);
-        const uint64_t squareYz = a.here & a.y & a.z & a.yz;
-        part += count(a.here) - count(a.here & b.here) - count(a.here & a.y) - count(a.here & a.z);
-        part += count(squareYz) + count(a.here & a.y & b.here & b.y) +
-                count(a.here & a.z & b.here & b.z);
-        part -= count(squareYz & b.here & b.y & b.z & b.yz);
-        a = b;
-      }
-    }
-    sum += part;  // integers: any order
-  });
+  detail::parallelFor(
+      index.leafCount(), detail::kLightLeafGrain, interrupter, [&](size_t begin, size_t end) {
+        detail::LeafNeighborhood neighborhood(index);
+        int64_t part = 0;
+        for (size_t leaf = begin; leaf < end; ++leaf) {
+          if (!layers.hold(index.origin(leaf))) continue;
+          const auto& around = neighborhood.around(leaf);
+          const auto word = [&](int x, int dy, int dz) -> uint64_t {
+            const uint32_t from = around[size_t((1 + (x >> 3)) * 9 + (1 + dy) * 3 + 1 + dz)];
+            return from == LeafIndex::kNone ? 0 : index.mask(from)[size_t(x & 7)];
+          };
+          const auto slice = [&](int x) {
+            const uint64_t own = word(x, 0, 0), z = word(x, 0, 1);
+            const uint64_t y = nextY(own, word(x, 1, 0));
+            return Slice{own, y, nextZ(own, z), nextZ(y, nextY(z, word(x, 1, 1)))};
+          };
+          Slice a = slice(0);
+          for (int x = 0; x < 8; ++x) {
+            const Slice b = slice(x + 1);
+            const uint64_t squareYz = a.here & a.y & a.z & a.yz;
+            part +=
+                count(a.here) - count(a.here & b.here) - count(a.here & a.y) - count(a.here & a.z);
+            part += count(squareYz) + count(a.here & a.y & b.here & b.y) +
+                    count(a.here & a.z & b.here & b.z);
+            part -= count(squareYz & b.here & b.y & b.z & b.yz);
+            a = b;
+          }
+        }
+        sum += part;  // integers: any order
+      });
   return sum;
 }
 

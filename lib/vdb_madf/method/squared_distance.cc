@@ -27,7 +27,7 @@ using Values = detail::SweptValues<int32_t>;
 
 /// A pencil laid out with the swept axis slow and its 64 rows side by side: values[(t + 1) * 64 +
 /// row], one slab of padding at either end.
-struct Scratch {
+struct PencilRows {
   std::vector<uint32_t> leaves;
   std::vector<uint64_t> masks;
   std::vector<uint32_t> in, out;
@@ -75,7 +75,7 @@ detail::RowDomain rowDomain(const Obstacles& obstacles, const Coord& origin, int
 }
 
 template <int Axis>
-VDB_MADF_KERNEL void gather(const Leaves& leaves, const Values& values, Scratch& s) {
+VDB_MADF_KERNEL void gather(const Leaves& leaves, const Values& values, PencilRows& s) {
   int32_t dense[512];
   for (size_t i = 0; i < s.leaves.size(); ++i) {
     leaves.expand(s.leaves[i], values, dense);
@@ -84,7 +84,7 @@ VDB_MADF_KERNEL void gather(const Leaves& leaves, const Values& values, Scratch&
 }
 
 template <int Axis>
-VDB_MADF_KERNEL void scatter(const Leaves& leaves, const Scratch& s, Values& values) {
+VDB_MADF_KERNEL void scatter(const Leaves& leaves, const PencilRows& s, Values& values) {
   int32_t dense[512];
   for (size_t i = 0; i < s.leaves.size(); ++i) {
     if (!leaves.carries(Axis, s.leaves[i])) continue;
@@ -96,7 +96,7 @@ VDB_MADF_KERNEL void scatter(const Leaves& leaves, const Scratch& s, Values& val
 /// Of the pencil in s.in. All that a leaf looks at carried values before.
 template <int Axis>
 void widen(const Leaves& leaves, const detail::RowDomain& d, int32_t weight, int reach,
-           Scratch& s) {
+           PencilRows& s) {
   const int length = int(s.leaves.size()) * 8;
   // Outside the domain nothing is known: not background.
   std::copy(d.before.begin(), d.before.end(), s.in.data());
@@ -115,7 +115,7 @@ void widen(const Leaves& leaves, const detail::RowDomain& d, int32_t weight, int
 
 /// The masks of a pencil as slabs: bit `row` of a word tells whether a voxel is in the object.
 template <int Axis>
-void collectMasks(const LeafIndex& index, Scratch& s) {
+void collectMasks(const LeafIndex& index, PencilRows& s) {
   static_assert(sizeof(LeafIndex::Mask) == 64 && (Axis == 0 || Axis == 2));
   s.masks.clear();
   for (const uint32_t leaf : s.leaves) {
@@ -135,17 +135,17 @@ void continueBeyond(const detail::SlabFaces& faces, const Obstacles& obstacles, 
     d.after = faces.above.of(origin);
 }
 
-/// One sweep along an axis over all pencils; the first one starts from masks. The array holds int32
+/// One sweepPencils along an axis over all pencils; the first one starts from masks. The array holds int32
 /// values; infinite ones have the sign bit set between passes.
 template <int Axis, bool First>
-void sweep(const Leaves& leaves, const Obstacles& obstacles, const detail::SlabFaces* faces,
-           int32_t weight, int reach, Values& values, Interrupter* interrupter) {
+void sweepPencils(const Leaves& leaves, const Obstacles& obstacles, const detail::SlabFaces* faces,
+                  int32_t weight, int reach, Values& values, Interrupter* interrupter) {
   const LeafIndex& index = leaves.index();
   const std::vector<uint32_t> starts = detail::pencilStarts(index, Axis);
-  detail::PerThread<Scratch> scratches;
+  detail::PerThread<PencilRows> scratches;
   detail::parallelFor(
       starts.size(), detail::kPencilGrain, interrupter, [&](size_t begin, size_t end) {
-        Scratch& s = scratches.local();
+        PencilRows& s = scratches.local();
         for (size_t p = begin; p < end; ++p) {
           detail::collectPencil(index, Axis, starts[p], s.leaves);
           if (!leaves.anyCarries(Axis, s.leaves)) continue;
@@ -166,7 +166,7 @@ void sweep(const Leaves& leaves, const Obstacles& obstacles, const detail::SlabF
       });
 }
 
-/// How far a sweep has to look along an axis of that weight for all distances up to `exactUpTo`.
+/// How far a sweepPencils has to look along an axis of that weight for all distances up to `exactUpTo`.
 int reachAlong(uint32_t exactUpTo, int32_t weight) {
   if (exactUpTo == detail::kInfinite) return std::numeric_limits<int>::max();
   return int(std::sqrt(double(exactUpTo) / weight)) + 1;
@@ -178,9 +178,9 @@ void sweepAll(const Leaves& leaves, const Obstacles& obstacles, const VoxelWeigh
   detail::WorkPart first(interrupter, 0, 20), second(interrupter, 20, 60),
       third(interrupter, 60, 100);
   const auto reach = [&](int32_t weight) { return reachAlong(exactUpTo, weight); };
-  sweep<0, true>(leaves, obstacles, nullptr, weights.x, reach(weights.x), values, &first);
-  sweep<1, false>(leaves, obstacles, nullptr, weights.y, reach(weights.y), values, &second);
-  sweep<2, false>(leaves, obstacles, nullptr, weights.z, reach(weights.z), values, &third);
+  sweepPencils<0, true>(leaves, obstacles, nullptr, weights.x, reach(weights.x), values, &first);
+  sweepPencils<1, false>(leaves, obstacles, nullptr, weights.y, reach(weights.y), values, &second);
+  sweepPencils<2, false>(leaves, obstacles, nullptr, weights.z, reach(weights.z), values, &third);
 }
 
 /// Infinite values are the largest.
@@ -253,9 +253,9 @@ SquaredDistance detail::squaredDistanceInSlab(const LeafIndex& index, const Obst
   Values values{result.values, {}};
   constexpr int kFarthest = std::numeric_limits<int>::max();
   WorkPart first(interrupter, 0, 20), second(interrupter, 20, 60), third(interrupter, 60, 100);
-  sweep<2, true>(leaves, obstacles, &faces, weights.z, kFarthest, values, &first);
-  sweep<0, false>(leaves, obstacles, nullptr, weights.x, kFarthest, values, &second);
-  sweep<1, false>(leaves, obstacles, nullptr, weights.y, kFarthest, values, &third);
+  sweepPencils<2, true>(leaves, obstacles, &faces, weights.z, kFarthest, values, &first);
+  sweepPencils<0, false>(leaves, obstacles, nullptr, weights.x, kFarthest, values, &second);
+  sweepPencils<1, false>(leaves, obstacles, nullptr, weights.y, kFarthest, values, &third);
   const uint32_t largest = largestValue(result.values);
   if (largest >= kInfinite)
     throw InvalidInput(

@@ -17,7 +17,7 @@ namespace vdb_madf {
 namespace {
 
 constexpr Rgb kBackground{243, 244, 246}, kPale{206, 209, 214};
-constexpr size_t kRowGrain = 16;
+constexpr size_t kSliceRowGrain = 16;
 constexpr double kOutline = 1 / 300.0;  ///< of the edge: width of an outline, on each side
 
 /// Between the pixels of pictures and the voxels of a box.
@@ -68,7 +68,7 @@ class PlanePainter {
   }
 
   Picture paint(Interrupter* interrupter) {
-    detail::parallelFor(size_t(picture_.height), kRowGrain, interrupter,
+    detail::parallelFor(size_t(picture_.height), kSliceRowGrain, interrupter,
                         [&](size_t begin, size_t end) { paintRows(int(begin), int(end)); });
     return std::move(picture_);
   }

@@ -16,7 +16,7 @@ namespace {
 using detail::Canvas;
 using detail::ScaleBar;
 
-constexpr Rgb kMargin{255, 255, 255}, kInk{40, 40, 40}, kFrame{190, 194, 200};
+constexpr Rgb kMargin{255, 255, 255}, kInk{40, 40, 40}, kFrameLine{190, 194, 200};
 constexpr double kWideness = 1.5;  ///< width over height of a sheet that is just right
 
 /// A panel with what stands below it: its caption and, beside that or in a second line, its bar.
@@ -102,7 +102,7 @@ void frame(const Picture& around, int left, int top, int thickness, Picture& who
   for (int y = -thickness; y < around.height + thickness; ++y)
     for (int x = -thickness; x < around.width + thickness; ++x)
       if (x < 0 || y < 0 || x >= around.width || y >= around.height)
-        whole.at(left + x, top + y) = kFrame;
+        whole.at(left + x, top + y) = kFrameLine;
 }
 
 /// The caption and the bar; the canvas begins at the panel's lower left corner.

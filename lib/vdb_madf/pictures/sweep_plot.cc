@@ -20,8 +20,9 @@ using detail::Canvas;
 using detail::Point;
 
 // Pixels of the drawing.
-constexpr double kWidth = 360, kHeight = 260, kLeft = 64, kTop = 34, kStep = kLeft + kWidth + 14;
-constexpr double kBelow = 46, kLegendRow = 18, kLegendColumn = 230;
+constexpr double kDiagramWidth = 360, kDiagramHeight = 260, kLeft = 64, kDiagramTop = 34,
+                 kDiagramStep = kLeft + kDiagramWidth + 14;
+constexpr double kBelowDiagram = 46, kLegendRow = 18, kLegendColumn = 230;
 
 struct Line {
   int64_t gamma = 0;
@@ -71,9 +72,9 @@ void drawDiagram(Canvas& canvas, const std::vector<Line>& lines, double left,
       values.push_back(valueOf(row));
     }
   if (!logarithmic) values.insert(values.end(), {0.0, 1.0});
-  const detail::DiagramFrame frame{left, kTop, kWidth, kHeight};
-  const detail::PlotAxis x(thetas, false, left, left + kWidth),
-      y(values, logarithmic, kTop + kHeight, kTop);
+  const detail::DiagramFrame frame{left, kDiagramTop, kDiagramWidth, kDiagramHeight};
+  const detail::PlotAxis x(thetas, false, left, left + kDiagramWidth),
+      y(values, logarithmic, kDiagramTop + kDiagramHeight, kDiagramTop);
   detail::drawDiagramFrame(canvas, frame, x, y, "theta", title);
   for (const Line& line : lines) {
     std::vector<Point> points;
@@ -87,16 +88,17 @@ void drawDiagram(Canvas& canvas, const std::vector<Line>& lines, double left,
 
 std::string sweepPlot(const std::vector<SweepRow>& rows, int64_t smallVoxels, PlotType type) {
   const std::vector<Line> lines = linesOf(rows);
-  const auto columns = size_t((3 * kStep) / kLegendColumn);
+  const auto columns = size_t((3 * kDiagramStep) / kLegendColumn);
   const size_t legendRows = (lines.size() + columns - 1) / columns;
-  const double width = 3 * kStep + 14, top = kTop + kHeight + kBelow + 10;
+  const double width = 3 * kDiagramStep + 14,
+               top = kDiagramTop + kDiagramHeight + kBelowDiagram + 10;
   const double height = top + double(legendRows) * kLegendRow + 8;
   const auto draw = [&](Canvas& canvas) {
     drawDiagram(canvas, lines, kLeft, "grains", true,
                 [](const SweepRow& row) { return double(row.grains); });
-    drawDiagram(canvas, lines, kLeft + kStep, "median size of a grain, voxels", true,
+    drawDiagram(canvas, lines, kLeft + kDiagramStep, "median size of a grain, voxels", true,
                 [](const SweepRow& row) { return row.medianVoxels; });
-    drawDiagram(canvas, lines, kLeft + 2 * kStep,
+    drawDiagram(canvas, lines, kLeft + 2 * kDiagramStep,
                 "share of grains smaller than " + std::to_string(smallVoxels) + " voxels", false,
                 [](const SweepRow& row) {
                   return row.grains ? double(row.smallGrains) / double(row.grains) : 0;

@@ -30,10 +30,10 @@ using detail::MaskBlocks;
 constexpr double kBlurSigma = 2;
 constexpr double kNoiseSigma = 1;
 constexpr double kNoiseAmplitude = 1.5;
-constexpr float kCut = 0.45f;
+constexpr float kSinteredCut = 0.45f;
 
 /// Stream 0 places the balls.
-constexpr uint64_t kNoiseStream = 1;
+constexpr uint64_t kSurfaceNoiseStream = 1;
 
 /// 1 inside the balls, 0 outside, at points of Z^3; also beyond the faces of the sample, so that the
 /// blur sees no surface there.
@@ -77,7 +77,8 @@ class SurfaceBuilder {
     if (options_.roughness == 0) return field;
     seen = detail::pointsSeen(box, lattice_, kNoiseSigma);
     const FloatBox noise = detail::blurredAt(
-        box, lattice_, detail::whiteNoise(seen, options_.seed, kNoiseStream, nullptr), kNoiseSigma);
+        box, lattice_, detail::whiteNoise(seen, options_.seed, kSurfaceNoiseStream, nullptr),
+        kNoiseSigma);
     const float amplitude = float(options_.roughness * kNoiseAmplitude);
     for (size_t i = 0; i < field.values.size(); ++i) field.values[i] += amplitude * noise.values[i];
     return field;
@@ -104,7 +105,7 @@ class SurfaceBuilder {
           const float* values = field.values.data() + field.offset(x, y, z);
           const int count = std::min(next, box.max().z() + 1) - z;
           uint64_t row = 0;
-          for (int i = 0; i < count; ++i) row |= uint64_t(values[i] >= kCut) << i;
+          for (int i = 0; i < count; ++i) row |= uint64_t(values[i] >= kSinteredCut) << i;
           if (row == 0) continue;
           auto& mask = blocks_.node(block).touchLeaf({x, y, z})->getValueMask();
           mask.getWord<uint64_t>(x & 7) |= row << (8 * (y & 7) + (z & 7));

@@ -15,6 +15,7 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/grain_name.h"
+#include "vdb_madf/leaves/detail/voxels.h"
 #include "vdb_madf/shapes/detail/mesh_distance.h"
 #include "vdb_madf/shapes/grain_mesh.h"
 
@@ -23,40 +24,38 @@ namespace vdb_madf {
 namespace {
 
 constexpr float kMaxHalfWidth = 16;
-constexpr size_t kLeafGrain = 256;
-
 void check(const Int32Grid& labels, const LevelSetOptions& options) {
   if (!(options.halfWidth >= 1) || options.halfWidth > kMaxHalfWidth)
     throw InvalidInput("the half width of the narrow band must lie between 1 and 16 voxels");
   requireCubicVoxels(labels, "a level set");  // OpenVDB's level sets have one edge
 }
 
-using Leaf = FloatGrid::TreeType::LeafNodeType;
+using FloatLeaf = FloatGrid::TreeType::LeafNodeType;
 
 /// The part of a level set in a box of voxels with these squared distances, if it has any voxel of
 /// the band; `inside`: the leaf of the labels, if there is one.
-std::unique_ptr<Leaf> makeLeaf(const Coord& origin, const CoordBBox& box,
-                               const std::vector<float>& squares,
-                               const Int32Tree::LeafNodeType* inside, int32_t label,
-                               float halfWidth, float edge) {
+std::unique_ptr<FloatLeaf> makeLeaf(const Coord& origin, const CoordBBox& box,
+                                    const std::vector<float>& squares,
+                                    const Int32Tree::LeafNodeType* inside, int32_t label,
+                                    float halfWidth, float edge) {
   const Coord size = box.dim(), from = origin - box.min();
   const float outside = halfWidth * edge;
-  std::unique_ptr<Leaf> leaf;
+  std::unique_ptr<FloatLeaf> leaf;
   const auto squareAt = [&](openvdb::Index i) {
-    const Coord p = from + Leaf::offsetToLocalCoord(i);
+    const Coord p = from + FloatLeaf::offsetToLocalCoord(i);
     return squares[(size_t(p.x()) * size_t(size.y()) + size_t(p.y())) * size_t(size.z()) +
                    size_t(p.z())];
   };
-  for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
+  for (openvdb::Index i = 0; i < FloatLeaf::SIZE; ++i) {
     const float square = squareAt(i);
     if (square >= halfWidth * halfWidth) continue;
-    if (!leaf) leaf = std::make_unique<Leaf>(origin, outside);
+    if (!leaf) leaf = std::make_unique<FloatLeaf>(origin, outside);
     leaf->setValueOn(i, std::sqrt(square) * edge);
   }
   if (!leaf || !inside) return leaf;
   float* distances = leaf->buffer().data();
   const int32_t* labels = inside->buffer().data();
-  for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
+  for (openvdb::Index i = 0; i < FloatLeaf::SIZE; ++i)
     if (detail::labelAt(*inside, labels, i) == label) distances[i] = -distances[i];
   return leaf;
 }
@@ -68,7 +67,7 @@ FloatGrid::Ptr levelSet(const GrainMesh& mesh, size_t grain, const Int32Grid& la
   const float edge = float(labels.voxelSize()[0]);
   const detail::MeshDistance distance(mesh, grain, options.halfWidth);
   const std::vector<CoordBBox>& blocks = distance.blocks();
-  std::vector<std::vector<std::unique_ptr<Leaf>>> made(blocks.size());
+  std::vector<std::vector<std::unique_ptr<FloatLeaf>>> made(blocks.size());
   detail::parallelFor(blocks.size(), 1, interrupter, [&](size_t begin, size_t end) {
     for (size_t block = begin; block < end; ++block) {
       const std::vector<float> squares = distance.squaredDistances(block);
@@ -95,13 +94,14 @@ Int32Grid::Ptr asOneLabel(const Int32Grid& labels) {
   copyProvenance(labels, *one);
   std::vector<Int32Tree::LeafNodeType*> leaves;
   one->tree().getNodes(leaves);
-  detail::parallelFor(leaves.size(), kLeafGrain, nullptr, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) {
-      int32_t* values = leaves[n]->buffer().data();
-      for (openvdb::Index i = 0; i < Int32Tree::LeafNodeType::SIZE; ++i)
-        values[i] = detail::labelAt(*leaves[n], values, i) ? 1 : 0;
-    }
-  });
+  detail::parallelFor(leaves.size(), detail::kLightLeafGrain, nullptr,
+                      [&](size_t begin, size_t end) {
+                        for (size_t n = begin; n < end; ++n) {
+                          int32_t* values = leaves[n]->buffer().data();
+                          for (openvdb::Index i = 0; i < Int32Tree::LeafNodeType::SIZE; ++i)
+                            values[i] = detail::labelAt(*leaves[n], values, i) ? 1 : 0;
+                        }
+                      });
   return one;
 }
 

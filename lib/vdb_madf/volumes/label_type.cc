@@ -9,14 +9,9 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/leaves/detail/voxels.h"
 
 namespace vdb_madf {
-
-namespace {
-
-constexpr size_t kLeafGrain = 64;
-
-}  // namespace
 
 SampleType labelType(const Int32Grid& grid) {
   using Leaf = Int32Tree::LeafNodeType;
@@ -25,7 +20,7 @@ SampleType labelType(const Int32Grid& grid) {
   grid.tree().getNodes(leaves);
   int32_t min = grid.background(), max = min;
   std::mutex mutex;
-  detail::parallelFor(leaves.size(), kLeafGrain, nullptr, [&](size_t begin, size_t end) {
+  detail::parallelFor(leaves.size(), detail::kLeafGrain, nullptr, [&](size_t begin, size_t end) {
     int32_t low = std::numeric_limits<int32_t>::max(), high = std::numeric_limits<int32_t>::min();
     for (size_t i = begin; i < end; ++i) {
       const int32_t* values = leaves[i]->buffer().data();

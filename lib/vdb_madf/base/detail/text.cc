@@ -43,7 +43,7 @@ double decimalOf(float value) {
   return reals(shortestDecimal(value)).value_or(std::vector<double>{double(value)}).front();
 }
 
-std::string quoted(const std::string& text) {
+std::string inQuotes(const std::string& text) {
   std::string printable = "'" + text.substr(0, kMaxQuote);
   for (char& c : printable)
     if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';

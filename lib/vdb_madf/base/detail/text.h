@@ -11,10 +11,14 @@
 
 namespace vdb_madf::detail {
 
+/// True for 0 to 9, in every locale.
+inline bool isDigit(char c) {
+  return c >= '0' && c <= '9';
+}
 /// Without the white space at both ends.
 std::string trimmed(const std::string& text);
 /// Text of a file in quotes for a message: printable, one line, clipped to 60 characters.
-std::string quoted(const std::string& text);
+std::string inQuotes(const std::string& text);
 /// All of the text as numbers between white space, independent of the locale.
 std::optional<std::vector<int64_t>> integers(const std::string& text);
 std::optional<std::vector<double>> reals(const std::string& text);

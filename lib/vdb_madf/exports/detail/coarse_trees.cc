@@ -11,14 +11,13 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/detail/reduction.h"
+#include "vdb_madf/leaves/detail/voxels.h"
 
 namespace vdb_madf::detail {
 
 namespace {
 
 using Leaf = Int32Tree::LeafNodeType;
-
-constexpr size_t kLeafGrain = 256;
 
 int64_t voxelsOf(int factor) {
   return int64_t(factor) * factor * factor;
@@ -68,10 +67,12 @@ CoarseTrees coarseTrees(const Int32Grid& labels, int factor, Interrupter* interr
 std::vector<LabelCount> countLabels(const Int32Tree& labels, Interrupter* interrupter) {
   std::vector<const Leaf*> leaves;
   labels.getNodes(leaves);
-  std::vector<std::vector<LabelCount>> parts((leaves.size() + kLeafGrain - 1) / kLeafGrain);
+  std::vector<std::vector<LabelCount>> parts((leaves.size() + kLightLeafGrain - 1) /
+                                             kLightLeafGrain);
   parallelFor(parts.size(), 1, interrupter, [&](size_t begin, size_t end) {
     for (size_t part = begin; part < end; ++part)
-      for (size_t n = part * kLeafGrain; n < std::min(leaves.size(), (part + 1) * kLeafGrain); ++n)
+      for (size_t n = part * kLightLeafGrain;
+           n < std::min(leaves.size(), (part + 1) * kLightLeafGrain); ++n)
         countLeaf(*leaves[n], parts[part]);
   });
   std::vector<LabelCount> counts;

@@ -19,7 +19,7 @@ namespace vdb_madf::detail {
 
 namespace {
 
-using Json = nlohmann::json;  // of many colors: ordered_json would look for each among all
+using SortedJson = nlohmann::json;  // of many colors: ordered_json would look for each among all
 
 const std::string kFolder = "neuroglancer/";
 constexpr char kFaceColumn[] = "at_domain_face";
@@ -87,7 +87,7 @@ bool areUint32(const MeasureColumn& column) {
   return column.kind == MeasureColumn::Kind::count;
 }
 
-std::string propertiesText(const GrainTable& table) {
+std::string segmentPropertiesText(const GrainTable& table) {
   std::string text = "{\"@type\": \"neuroglancer_segment_properties\", \"inline\": {\"ids\": " +
                      listOf(table, [&](size_t row) { return "\"" + table.number(row, 0) + "\""; }) +
                      ",\n\"properties\": [";
@@ -112,7 +112,7 @@ std::string propertiesText(const GrainTable& table) {
 
 /// The volume as a whole: units along the axes are the edges of voxels, lengths on the screen the
 /// shortest of them.
-void setView(Json& state, const CoordBBox& box, const OmePlace& place) {
+void setView(SortedJson& state, const CoordBBox& box, const OmePlace& place) {
   const double metres = 1 / unitsPerMetre(place.unit).value();
   const double shortest = std::min({place.edges[0], place.edges[1], place.edges[2]});
   double longest = 0;
@@ -128,11 +128,11 @@ void setView(Json& state, const CoordBBox& box, const OmePlace& place) {
 }
 
 /// As of a server on this machine.
-Json stateOf(const std::string& name, const CoordBBox& box, const OmePlace& place,
-             const GrainColors& colors, OmeVersion version) {
+SortedJson stateOf(const std::string& name, const CoordBBox& box, const OmePlace& place,
+                   const GrainColors& colors, OmeVersion version) {
   const std::string url = "http://localhost:8000/" + name;
   const std::string zarr = version == OmeVersion::v05 ? "zarr3://" : "zarr2://";
-  Json shown = Json::array(), palette = Json::object();
+  SortedJson shown = SortedJson::array(), palette = SortedJson::object();
   for (size_t i = 0; i < colors.labels.size(); ++i) {
     const Rgb& c = colors.colors[i];
     char text[8];
@@ -142,7 +142,7 @@ Json stateOf(const std::string& name, const CoordBBox& box, const OmePlace& plac
     // (Where some are chosen, sections show no others; where none is, they show all.)
     if (colors.labels.size() <= kMostShown) shown.push_back(std::to_string(colors.labels[i]));
   }
-  Json grain, object, state;
+  SortedJson grain, object, state;
   grain["type"] = "segmentation";
   grain["name"] = "grain";
   grain["source"] = {zarr + url + "/labels/grain", "precomputed://" + url + "/" + kFolder + "mesh",
@@ -155,7 +155,7 @@ Json stateOf(const std::string& name, const CoordBBox& box, const OmePlace& plac
   object["source"] = zarr + url;
   object["visible"] = false;
   setView(state, box, place);
-  state["layers"] = Json::array({object, grain});
+  state["layers"] = SortedJson::array({object, grain});
   state["selectedLayer"] = {{"layer", "grain"}, {"visible", true}};
   state["layout"] = "4panel";
   return state;
@@ -175,10 +175,10 @@ void writeNeuroglancer(const OutputTree& folder, const std::string& name, const 
                        const GrainColors& colors, const OmeZarrOptions& options,
                        Interrupter* interrupter) {
   writeMeshes(folder, labels, options, interrupter);
-  folder.write(kFolder + "properties/info", propertiesText(table));
-  const Json state = stateOf(name, box, place, colors, options.version);
+  folder.write(kFolder + "properties/info", segmentPropertiesText(table));
+  const SortedJson state = stateOf(name, box, place, colors, options.version);
   folder.write(kFolder + "state.json",
-               state.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+               state.dump(1, ' ', false, SortedJson::error_handler_t::replace) + "\n");
 }
 
 }  // namespace vdb_madf::detail

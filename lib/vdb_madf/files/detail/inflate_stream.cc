@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kInputBytes = size_t(1) << 18;
 /// zlib counts in 32 bits.
-constexpr size_t kMaxBytesPerCall = size_t(1) << 30;
+constexpr size_t kMaxBytesPerInflate = size_t(1) << 30;
 /// Widest window, header (zlib or gzip) detected.
 constexpr int kWindowBits = 15 + 32;
 
@@ -43,7 +43,7 @@ size_t InflateStream::inflateSome(unsigned char* to, size_t count) {
       inflateReset(&stream_);
       ended_ = false;
     }
-    const size_t chunk = std::min(count, kMaxBytesPerCall);
+    const size_t chunk = std::min(count, kMaxBytesPerInflate);
     const bool starved = stream_.avail_in == 0;
     stream_.next_out = to;
     stream_.avail_out = uInt(chunk);

@@ -21,7 +21,7 @@ namespace vdb_madf::detail {
 namespace {
 
 /// Linux moves at most 2 GiB in one call.
-constexpr size_t kMaxBytesPerCall = size_t(1) << 30;
+constexpr size_t kMaxBytesPerRead = size_t(1) << 30;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ InputFile::InputFile(const std::string& path) : name_(path), path_(path) {
 }
 
 InputFile::InputFile(const std::string& header, const std::string& path)
-    : name_(header + ": its data file " + quoted(path)), path_(path) {
+    : name_(header + ": its data file " + inQuotes(path)), path_(path) {
   open();
 }
 
@@ -71,7 +71,7 @@ size_t InputFile::readSome(uint64_t offset, void* to, size_t count) const {
   size_t done = 0;
   while (done < count) {
     const ssize_t got = ::pread(descriptor_, static_cast<char*>(to) + done,
-                                std::min(count - done, kMaxBytesPerCall), off_t(offset + done));
+                                std::min(count - done, kMaxBytesPerRead), off_t(offset + done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) throw IoError(name_ + ": cannot be read: " + std::strerror(errno));
     if (got == 0) break;

@@ -34,7 +34,7 @@ void KeyValueHeader::addLine(const std::string& text) {
   if (separator == std::string::npos) {
     if (syntax_.skipsOtherLines) return;
     throw IoError(path_ + ": not " + syntax_.article + " " + syntax_.name + ": the line " +
-                  quoted(line) + " is not '" + syntax_.lineForm + "'");
+                  inQuotes(line) + " is not '" + syntax_.lineForm + "'");
   }
   if (syntax_.foreignSeparator &&
       line.compare(separator, std::strlen(syntax_.foreignSeparator), syntax_.foreignSeparator) == 0)
@@ -74,7 +74,7 @@ int64_t KeyValueHeader::requireInteger(const std::string& key) const {
 
 void KeyValueHeader::fail(const std::string& key) const {
   throw IoError(path_ + ": " + key + (syntax_.separator == '=' ? " = " : ": ") +
-                quoted(find(key).value_or("")) + " cannot be read in this " + syntax_.name);
+                inQuotes(find(key).value_or("")) + " cannot be read in this " + syntax_.name);
 }
 
 void KeyValueHeader::failToFind(const std::string& key) const {

@@ -15,7 +15,7 @@ namespace {
 constexpr size_t kFileHeader = 14;
 /// The old header has 16-bit sizes and colours of three bytes.
 constexpr size_t kCoreHeader = 12, kInfoHeader = 40;
-constexpr size_t kHeaderBytes = kFileHeader + kInfoHeader;
+constexpr size_t kBmpHeaderBytes = kFileHeader + kInfoHeader;
 
 struct BmpLayout {
   int64_t width = 0, height = 0;
@@ -34,10 +34,10 @@ T numberAt(const std::string& bytes, size_t offset) {
 }
 
 BmpLayout layoutOf(const InputFile& file) {
-  std::string head = file.head(kHeaderBytes);
+  std::string head = file.head(kBmpHeaderBytes);
   if (!isBmpHeader(head) || head.size() < kFileHeader + kCoreHeader)
     throw IoError(file.name() + ": is not a whole BMP file");
-  head.resize(kHeaderBytes);  // the shorter header ends earlier
+  head.resize(kBmpHeaderBytes);  // the shorter header ends earlier
   const auto headerSize = numberAt<uint32_t>(head, 14);
   BmpLayout layout;
   layout.offset = numberAt<uint32_t>(head, 10);

@@ -14,17 +14,17 @@ namespace vdb_madf::detail {
 namespace {
 
 /// DGtal itself takes 20 lines of 128 characters.
-constexpr size_t kMaxHeaderBytes = 4096;
+constexpr size_t kMaxDgtalHeaderBytes = 4096;
 
 /// Lines of "Key: value" up to a line with a full stop.
-KeyValueHeader headerOf(const InputFile& file) {
+KeyValueHeader dgtalHeader(const InputFile& file) {
   HeaderSyntax syntax;
   syntax.name = "vol header";
   syntax.lacks = "the vol header lacks ";
   syntax.lineForm = "Key: value";
   syntax.separator = ':';
   syntax.endLine = ".";
-  std::string text = file.head(kMaxHeaderBytes);
+  std::string text = file.head(kMaxDgtalHeaderBytes);
   text.erase(text.rfind('\n') + 1);  // a line that is cut short
   KeyValueHeader header(file.name(), text, syntax);
   if (!header.ended())
@@ -44,7 +44,7 @@ bool isDgtalHeader(const std::string& head) {
 
 std::unique_ptr<ImageReader> openDgtal(std::unique_ptr<InputFile> file) {
   const std::string path = file->path();
-  const KeyValueHeader header = headerOf(*file);
+  const KeyValueHeader header = dgtalHeader(*file);
   const bool longVoxels = header.has("Lvoxel-Size");
   if (!header.has("Version"))
     throw IoError(path + ": is of version 1 of the format: write it again with DGtal");

@@ -29,7 +29,7 @@ constexpr uint64_t kMaxCacheBytes = uint64_t(256) << 20;
 constexpr size_t kCacheSlots = 12421;
 /// A byte of the file may stand for so many of samples: compression, and chunks that were never
 /// written and hold the fill value.
-constexpr uint64_t kMaxExpansion = uint64_t(1) << 16;
+constexpr uint64_t kMaxHdf5Expansion = uint64_t(1) << 16;
 constexpr size_t kMaxListed = 8;
 
 /// The type that the samples have in memory.
@@ -113,7 +113,7 @@ herr_t collectVolume(hid_t group, const char* name, const H5L_info_t* link, void
 
 [[noreturn]] void failAtLink(const std::string& path, const std::string& name,
                              const std::string& target) {
-  throw IoError(path + ": " + quoted(name) + " is a link to another file, " + target +
+  throw IoError(path + ": " + inQuotes(name) + " is a link to another file, " + target +
                 ", that cannot be opened: put that file beside this one");
 }
 
@@ -134,14 +134,14 @@ std::vector<std::string> namesOf(const std::string& path, hid_t file, const std:
   if (list.volumes.empty() && !list.deadLinks.empty())
     failAtLink(path, list.deadLinks[0], missingHdf5Link(file, list.deadLinks[0]));
   if (list.volumes.empty() && !list.otherGroups.empty())
-    throw IoError(path + ": holds no volume itself, and " + quoted(list.otherGroups[0]) +
+    throw IoError(path + ": holds no volume itself, and " + inQuotes(list.otherGroups[0]) +
                       " is a group of another file: name a dataset in it",
                   Hint::dataset);
   if (list.volumes.empty())
     throw IoError(path + ": holds no dataset of three dimensions with numbers in it");
   std::string text;
   for (size_t i = 0; i < list.volumes.size() && i < kMaxListed; ++i)
-    text += (i ? ", " : "") + quoted(list.volumes[i][0]);
+    text += (i ? ", " : "") + inQuotes(list.volumes[i][0]);
   throw IoError(path + ": choose one of its datasets: " + text +
                     (list.volumes.size() > kMaxListed ? " ..." : ""),
                 Hint::dataset);
@@ -150,12 +150,12 @@ std::vector<std::string> namesOf(const std::string& path, hid_t file, const std:
 ImageSize sizeOf(const std::string& path, const std::string& name,
                  const std::vector<hsize_t>& lengths) {
   if (lengths.size() < 3)
-    throw IoError(path + ": dataset " + quoted(name) + " has " + std::to_string(lengths.size()) +
+    throw IoError(path + ": dataset " + inQuotes(name) + " has " + std::to_string(lengths.size()) +
                   " dimensions; only 3-D ones can be read");
   std::vector<int64_t> size;
   for (size_t i = 0; i < lengths.size(); ++i) {
     if (i + 3 < lengths.size() && lengths[i] != 1)
-      throw IoError(path + ": dataset " + quoted(name) + " has " + std::to_string(lengths[i]) +
+      throw IoError(path + ": dataset " + inQuotes(name) + " has " + std::to_string(lengths[i]) +
                     " volumes along axis " + std::to_string(i) +
                     ": save one as a dataset of its own");
     if (i + 3 >= lengths.size())
@@ -204,7 +204,7 @@ class Hdf5Reader : public ImageReader {
 
  private:
   [[noreturn]] void fail(const std::string& why) const {
-    throw IoError(path_ + ": dataset " + quoted(name_) + " " + why);
+    throw IoError(path_ + ": dataset " + inQuotes(name_) + " " + why);
   }
 
   /// The files can hold what is claimed. Chunks are then kept from slab to slab.
@@ -213,7 +213,7 @@ class Hdf5Reader : public ImageReader {
     files_.insert(files_.end(), sources.files.begin(), sources.files.end());
     const uint64_t held = sources.bytes;
     const uint64_t bytes = imageBytes(info_) / sampleSize(info_.type) * stored_.bytes();
-    if (bytes / kMaxExpansion > held || held == 0)
+    if (bytes / kMaxHdf5Expansion > held || held == 0)
       fail("has " + std::to_string(held) + " bytes in the file, too few for " +
            std::to_string(bytes) + " of samples");
     if (sources.isVirtual) return;
@@ -226,7 +226,7 @@ class Hdf5Reader : public ImageReader {
     if (H5Pget_chunk(creation, int(chunk.size()), chunk.data()) < 0) fail("is damaged");
     uint64_t chunkBytes = stored_.bytes();
     for (const hsize_t n : chunk)
-      if (n < 1 || (chunkBytes *= n) > std::max(bytes, held * kMaxExpansion))
+      if (n < 1 || (chunkBytes *= n) > std::max(bytes, held * kMaxHdf5Expansion))
         fail("has chunks that are too large for it");
     const uint64_t depth =
         std::min<uint64_t>(chunk[chunk.size() - 3], lengths_[lengths_.size() - 3]);

@@ -24,7 +24,7 @@ const std::string kAdvice = ": h5repack -l CONTI puts all into one file";
 class SourceFinder {
  public:
   SourceFinder(const std::string& path, const std::string& name)
-      : what_(path + ": dataset " + quoted(name)) {}
+      : what_(path + ": dataset " + inQuotes(name)) {}
 
   Hdf5Sources find(hid_t dataset) {
     add(dataset, 0);
@@ -62,11 +62,11 @@ class SourceFinder {
       const std::string name = hdf5Text(
           [&](char* to, size_t size) { return H5Pget_virtual_dsetname(creation, i, to, size); });
       if (file.find('%') != std::string::npos || name.find('%') != std::string::npos)
-        fail("is virtual, of any number of files " + quoted(file) + kAdvice);
+        fail("is virtual, of any number of files " + inQuotes(file) + kAdvice);
       const Hdf5Handle opened = file == "." ? Hdf5Handle(-1, H5Fclose) : open(file, path);
       const Hdf5Handle part = openHdf5Dataset(file == "." ? own : hid_t(opened), name);
       if (!part)
-        fail("is virtual, and a part of it, " + quoted(name) + " of the file " + quoted(file) +
+        fail("is virtual, and a part of it, " + inQuotes(name) + " of the file " + inQuotes(file) +
              ", is missing");
       checkExtent(creation, i, part, file);
       if (!seen.insert(file + "\n" + name).second) continue;  // counted already
@@ -104,7 +104,8 @@ class SourceFinder {
       for (size_t axis = 0; fits && axis < lengths.size(); ++axis)
         fits = last[axis] < lengths[axis];
     }
-    if (!fits) fail("is virtual, and its part of the file " + quoted(file) + " is of another size");
+    if (!fits)
+      fail("is virtual, and its part of the file " + inQuotes(file) + " is of another size");
   }
 
   std::string what_;
@@ -130,7 +131,7 @@ std::string missingHdf5Link(hid_t file, const std::string& name) {
     if (H5Lget_val(file, link.c_str(), value.data(), value.size(), H5P_DEFAULT) < 0 ||
         H5Lunpack_elink_val(value.data(), value.size(), &flags, &target, &object) < 0)
       return "";
-    return quoted(target) + " (" + object + ")";
+    return inQuotes(target) + " (" + object + ")";
   }
   return "";
 }

@@ -66,7 +66,7 @@ std::optional<double> length(const std::string& path, hid_t file, const std::str
   double value = 0;
   if (!unit || H5Sget_simple_extent_npoints(space) != 1) return std::nullopt;
   if (H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) < 0)
-    throw IoError(path + ": " + quoted(name) + " cannot be read as a number");
+    throw IoError(path + ": " + inQuotes(name) + " cannot be read as a number");
   return value / *unit;
 }
 

@@ -22,7 +22,7 @@ constexpr const char* kDataset = "data";
 /// Of a chunk: along z as a slab, so that a layer of chunks is no more than that.
 constexpr int kChunkDepth = 8, kChunkSide = 128;
 /// Labels and masks shrink tenfold at the fastest level already.
-constexpr unsigned kDeflateLevel = 1;
+constexpr unsigned kHdf5DeflateLevel = 1;
 
 struct FileType {
   hid_t file, memory;
@@ -63,7 +63,7 @@ class Hdf5Writer : public ImageWriter {
                              std::min<hsize_t>(shape[2], kChunkSide)};
     const Hdf5Handle creation = timelessDataset();
     file_->check(H5Pset_chunk(creation, 3, chunk) >= 0 && H5Pset_shuffle(creation) >= 0 &&
-                 H5Pset_deflate(creation, kDeflateLevel) >= 0);
+                 H5Pset_deflate(creation, kHdf5DeflateLevel) >= 0);
     const Hdf5Handle space(H5Screate_simple(3, shape.data(), nullptr), H5Sclose);
     dataset_ = file_->checked(Hdf5Handle(
         H5Dcreate2(file_->id(), kDataset, type_.file, space, H5P_DEFAULT, creation, H5P_DEFAULT),

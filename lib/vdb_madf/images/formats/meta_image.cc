@@ -23,13 +23,13 @@ namespace vdb_madf::detail {
 namespace {
 
 /// Real headers have well under 2 KiB.
-constexpr size_t kMaxHeaderBytes = size_t(1) << 16;
+constexpr size_t kMaxMetaHeaderBytes = size_t(1) << 16;
 
 struct TypeName {
   const char* name;
   SampleType type;
 };
-constexpr TypeName kTypes[] = {
+constexpr TypeName kMetaTypes[] = {
     {"MET_UCHAR", SampleType::uint8},   {"MET_CHAR", SampleType::int8},
     {"MET_USHORT", SampleType::uint16}, {"MET_SHORT", SampleType::int16},
     {"MET_UINT", SampleType::uint32},   {"MET_INT", SampleType::int32},
@@ -54,7 +54,7 @@ bool flag(const KeyValueHeader& header, const std::string& key) {
 
 SampleType elementType(const KeyValueHeader& header) {
   const std::string name = header.require("ElementType");
-  for (const TypeName& known : kTypes)
+  for (const TypeName& known : kMetaTypes)
     if (name == known.name) return known.type;
   header.fail("ElementType");
 }
@@ -85,7 +85,7 @@ std::string headerText(const ImageInfo& info, const std::array<double, 3>& origi
     for (int axis = 0; axis < 3; ++axis) text += " " + shortestDecimal(origin[axis]);
   }
   text += "\nElementType = ";
-  for (const TypeName& known : kTypes)
+  for (const TypeName& known : kMetaTypes)
     if (known.type == info.type) text += known.name;
   return text + "\nElementDataFile = " + dataFile + "\n";
 }
@@ -97,7 +97,7 @@ std::string dataFileOf(const std::string& header) {
 
 bool namesDataFile(const std::string& header, const std::string& data) {
   try {
-    const KeyValueHeader fields(header, InputFile(header).head(kMaxHeaderBytes), metaSyntax());
+    const KeyValueHeader fields(header, InputFile(header).head(kMaxMetaHeaderBytes), metaSyntax());
     const auto name = fields.find("ElementDataFile");
     return name && isSameFile(besideHeader(header, *name), data);
   } catch (const IoError&) {  // no header that we could read
@@ -151,7 +151,7 @@ bool isMetaHeader(const std::string& head) {
 
 std::unique_ptr<ImageReader> openMeta(std::unique_ptr<InputFile> file) {
   const std::string path = file->path();
-  const KeyValueHeader header(path, file->head(kMaxHeaderBytes), metaSyntax());
+  const KeyValueHeader header(path, file->head(kMaxMetaHeaderBytes), metaSyntax());
   const std::string dataFile = header.require("ElementDataFile");
   if (header.find("ObjectType").value_or("Image") != "Image") header.fail("ObjectType");
   if (header.findInteger("NDims").value_or(3) != 3)

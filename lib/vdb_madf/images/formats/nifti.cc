@@ -21,28 +21,28 @@ namespace vdb_madf::detail {
 
 namespace {
 
-constexpr size_t kHeaderBytes = 348;
+constexpr size_t kNiftiHeaderBytes = 348;
 /// The header is followed by the four bytes of an extension.
 constexpr double kMinOffset = 352;
 /// Extensions (DICOM headers, say) lie before the samples.
 constexpr double kMaxOffset = 1 << 26;
 // Byte offsets in the header.
-constexpr size_t kDim = 40, kDataType = 70, kPixDim = 76, kVoxOffset = 108, kSlope = 112,
-                 kIntercept = 116, kUnits = 123, kMagic = 344;
+constexpr size_t kDim = 40, kDataTypeOffset = 70, kPixDim = 76, kVoxOffset = 108, kSlope = 112,
+                 kIntercept = 116, kUnits = 123, kMagicOffset = 344;
 
 bool isGzip(const InputFile& file) {
   return file.head(2) == "\x1f\x8b";
 }
 
 std::string headerBytes(const InputFile& file) {
-  if (!isGzip(file)) return file.head(kHeaderBytes);
-  std::string bytes(kHeaderBytes, '\0');
+  if (!isGzip(file)) return file.head(kNiftiHeaderBytes);
+  std::string bytes(kNiftiHeaderBytes, '\0');
   InflateStream(file, 0).read(bytes.data(), bytes.size());
   return bytes;
 }
 
 bool hasMagic(const std::string& bytes, const char* magic) {
-  return bytes.size() == kHeaderBytes && bytes.compare(kMagic, 4, magic, 4) == 0;
+  return bytes.size() == kNiftiHeaderBytes && bytes.compare(kMagicOffset, 4, magic, 4) == 0;
 }
 
 class NiftiHeader {
@@ -53,8 +53,8 @@ class NiftiHeader {
     if (!hasMagic(bytes_, "n+1")) throw IoError(path_ + ": is no NIfTI-1 file");
     int32_t size;
     std::memcpy(&size, bytes_.data(), sizeof size);
-    bigEndian_ = size != int32_t(kHeaderBytes);
-    if (number<int32_t>(0) != int32_t(kHeaderBytes))
+    bigEndian_ = size != int32_t(kNiftiHeaderBytes);
+    if (number<int32_t>(0) != int32_t(kNiftiHeaderBytes))
       throw IoError(path_ + ": the NIfTI header does not begin with its size of 348 bytes");
   }
 
@@ -80,7 +80,7 @@ class NiftiHeader {
   }
 
   StoredType type() const {
-    const int code = number<int16_t>(kDataType);
+    const int code = number<int16_t>(kDataTypeOffset);
     for (const auto& [known, type, is64Bit] :
          {Code{2, SampleType::uint8, false}, Code{4, SampleType::int16, false},
           Code{8, SampleType::int32, false}, Code{16, SampleType::float32, false},

@@ -16,9 +16,9 @@ namespace vdb_madf::detail {
 
 namespace {
 
-const std::string kMagic = "\x93NUMPY";
+const std::string kNpyMagic = "\x93NUMPY";
 /// Only records of many fields have longer headers.
-constexpr size_t kMaxHeaderBytes = size_t(1) << 16;
+constexpr size_t kMaxNpyHeaderBytes = size_t(1) << 16;
 /// The samples begin at a multiple of this.
 constexpr size_t kAlignment = 64;
 
@@ -45,7 +45,7 @@ class Dictionary {
 
  private:
   [[noreturn]] void fail() const {
-    throw IoError(path_ + ": the npy header " + quoted(trimmed(text_)) + " cannot be read");
+    throw IoError(path_ + ": the npy header " + inQuotes(trimmed(text_)) + " cannot be read");
   }
   bool next(char c) {
     place_ = std::min(text_.find_first_not_of(' ', place_), text_.size());
@@ -88,8 +88,8 @@ class Dictionary {
 };
 
 /// The text of the header, and where the samples begin.
-std::pair<std::string, uint64_t> headerOf(const InputFile& file) {
-  const std::string head = file.head(kMaxHeaderBytes);
+std::pair<std::string, uint64_t> npyHeader(const InputFile& file) {
+  const std::string head = file.head(kMaxNpyHeaderBytes);
   const auto byte = [&](size_t i) { return size_t(static_cast<unsigned char>(head[i])); };
   if (!isNpyHeader(head) || head.size() < 12)
     throw IoError(file.name() + ": is not a whole npy file");
@@ -109,7 +109,7 @@ std::pair<std::string, uint64_t> headerOf(const InputFile& file) {
 std::vector<int64_t> shapeOf(const std::string& path, std::string text) {
   std::replace(text.begin(), text.end(), ',', ' ');
   const auto shape = integers(text);
-  if (!shape) throw IoError(path + ": the shape " + detail::quoted(text) + " cannot be read");
+  if (!shape) throw IoError(path + ": the shape " + detail::inQuotes(text) + " cannot be read");
   return {shape->rbegin(), shape->rend()};
 }
 
@@ -117,26 +117,26 @@ std::string headerText(const ImageInfo& info) {
   std::string text = "{'descr': '" + numpyName(info.type) + "', 'fortran_order': False, 'shape': (";
   text += std::to_string(info.size.z) + ", " + std::to_string(info.size.y) + ", " +
           std::to_string(info.size.x) + "), }";
-  const size_t before = kMagic.size() + 4, unpadded = before + text.size() + 1;
+  const size_t before = kNpyMagic.size() + 4, unpadded = before + text.size() + 1;
   text.append((kAlignment - unpadded % kAlignment) % kAlignment, ' ');
   text += '\n';
-  return kMagic + '\1' + '\0' + char(text.size() & 255) + char(text.size() >> 8) + text;
+  return kNpyMagic + '\1' + '\0' + char(text.size() & 255) + char(text.size() >> 8) + text;
 }
 
 }  // namespace
 
 bool isNpyHeader(const std::string& head) {
-  return head.compare(0, kMagic.size(), kMagic) == 0;
+  return head.compare(0, kNpyMagic.size(), kNpyMagic) == 0;
 }
 
 std::unique_ptr<ImageReader> openNpy(std::unique_ptr<InputFile> file) {
   const std::string path = file->path();
-  const auto [text, offset] = headerOf(*file);
+  const auto [text, offset] = npyHeader(*file);
   const Dictionary header(path, text);
   const std::string type = header.require("descr");
   const auto stored = storedTypeFromNumpy(type);
   if (!stored)
-    throw IoError(path + ": its type " + quoted(type) +
+    throw IoError(path + ": its type " + inQuotes(type) +
                   " cannot be read: save integers, bool, float32 or float64");
   ImageInfo info;
   info.format = "npy";

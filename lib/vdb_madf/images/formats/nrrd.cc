@@ -21,14 +21,14 @@ namespace vdb_madf::detail {
 namespace {
 
 /// Headers hold key-value pairs of any program (DICOM tags, say), so they are allowed to be long.
-constexpr size_t kMaxHeaderBytes = size_t(1) << 20;
+constexpr size_t kMaxNrrdHeaderBytes = size_t(1) << 20;
 /// A line skip beyond this is no header of text.
 constexpr int64_t kMaxLines = 1 << 20;
 /// Largest cosine between axes that still counts as a right angle.
 constexpr double kShear = 1e-3;
 
 std::optional<SampleType> typeFromName(const std::string& name) {
-  static const std::map<std::string, SampleType> kTypes = {
+  static const std::map<std::string, SampleType> kNrrdTypes = {
       {"signed char", SampleType::int8},
       {"int8", SampleType::int8},
       {"int8_t", SampleType::int8},
@@ -57,8 +57,8 @@ std::optional<SampleType> typeFromName(const std::string& name) {
       {"uint32_t", SampleType::uint32},
       {"float", SampleType::float32},
       {"double", SampleType::float64}};
-  const auto found = kTypes.find(lowerCase(name));
-  if (found == kTypes.end()) return std::nullopt;
+  const auto found = kNrrdTypes.find(lowerCase(name));
+  if (found == kNrrdTypes.end()) return std::nullopt;
   return found->second;
 }
 
@@ -84,17 +84,17 @@ HeaderSyntax nrrdSyntax() {
 }
 
 /// The fields after the first line; the data follow an empty one.
-KeyValueHeader headerOf(const InputFile& file) {
-  const std::string text = file.head(kMaxHeaderBytes);
+KeyValueHeader nrrdHeader(const InputFile& file) {
+  const std::string text = file.head(kMaxNrrdHeaderBytes);
   if (text.compare(0, 4, "NRRD") != 0) throw IoError(file.name() + ": does not begin with NRRD");
   const size_t second = std::min(text.find('\n'), text.size() - 1) + 1;
   KeyValueHeader header(file.name(), text, nrrdSyntax(), second);
-  if (!header.ended() && file.size() > kMaxHeaderBytes)
+  if (!header.ended() && file.size() > kMaxNrrdHeaderBytes)
     throw IoError(file.name() + ": the NRRD header has no end");
   return header;
 }
 
-/// The unit that all three quoted names agree on: "mm" "mm" "mm".
+/// The unit that all three inQuotes names agree on: "mm" "mm" "mm".
 std::optional<double> commonUnit(const std::string& path, const std::optional<std::string>& text) {
   if (!text) return std::nullopt;
   std::vector<std::optional<double>> units;
@@ -107,7 +107,7 @@ std::optional<double> commonUnit(const std::string& path, const std::optional<st
   }
   if (units.size() != 3) return std::nullopt;
   if (units[0] != units[1] || units[0] != units[2])
-    throw IoError(path + ": its axes have different units: " + quoted(*text));
+    throw IoError(path + ": its axes have different units: " + inQuotes(*text));
   return units[0];
 }
 
@@ -181,7 +181,7 @@ SampleLayout layoutOf(const std::string& path, const KeyValueHeader& header, Sam
   const std::string encoding = lowerCase(header.require("encoding"));
   layout.deflated = encoding == "gzip" || encoding == "gz";
   if (!layout.deflated && encoding != "raw")
-    throw IoError(path + ": encoding " + quoted(encoding) + " cannot be read; write raw or gzip");
+    throw IoError(path + ": encoding " + inQuotes(encoding) + " cannot be read; write raw or gzip");
   const std::string endian = lowerCase(header.find("endian").value_or(""));
   if (endian != "little" && endian != "big" && (!endian.empty() || sampleSize(type) > 1))
     throw IoError(path + ": the NRRD header does not say endian: little or big");
@@ -223,7 +223,7 @@ std::string headerText(const ImageInfo& info, const std::array<double, 3>& origi
 
 std::unique_ptr<ImageReader> openNrrd(std::unique_ptr<InputFile> file) {
   const std::string path = file->path();
-  const KeyValueHeader header = headerOf(*file);
+  const KeyValueHeader header = nrrdHeader(*file);
   ImageInfo info;
   info.format = "nrrd";
   const auto size = integers(header.require("sizes"));

@@ -20,7 +20,7 @@ namespace vdb_madf::detail {
 namespace {
 
 /// A dozen lines.
-constexpr size_t kMaxHeaderBytes = size_t(1) << 14;
+constexpr size_t kMaxPyHstHeaderBytes = size_t(1) << 14;
 const std::string kInfoEnding = ".info";
 
 bool hasInfoEnding(const std::string& path) {
@@ -28,7 +28,7 @@ bool hasInfoEnding(const std::string& path) {
 }
 
 /// Lines of KEY = value; those that begin with an exclamation mark are comments.
-KeyValueHeader headerOf(const InputFile& file) {
+KeyValueHeader pyHstHeader(const InputFile& file) {
   HeaderSyntax syntax;
   syntax.article = "an";
   syntax.name = ".info file";
@@ -36,8 +36,9 @@ KeyValueHeader headerOf(const InputFile& file) {
   syntax.lineForm = "KEY = value";
   syntax.comment = '!';
   syntax.skipsBlankLines = true;
-  if (file.size() > kMaxHeaderBytes) throw IoError(file.name() + ": is too long for an .info file");
-  return KeyValueHeader(file.name(), file.head(kMaxHeaderBytes), syntax);
+  if (file.size() > kMaxPyHstHeaderBytes)
+    throw IoError(file.name() + ": is too long for an .info file");
+  return KeyValueHeader(file.name(), file.head(kMaxPyHstHeaderBytes), syntax);
 }
 
 std::optional<VoxelSize> voxelSizeOf(const std::string& path, const KeyValueHeader& header) {
@@ -87,7 +88,7 @@ std::unique_ptr<ImageReader> openPyhst(std::unique_ptr<InputFile> file) {
                       " of PyHST beside it; if it is raw, give its size and type",
                   Hint::rawLayout);
   const auto infoFile = named ? std::move(file) : std::make_unique<InputFile>(path, infoPath);
-  const KeyValueHeader header = headerOf(*infoFile);
+  const KeyValueHeader header = pyHstHeader(*infoFile);
   ImageInfo info;
   info.format = "pyhst";
   info.size = checkedSize(path, {header.requireInteger("NUM_X"), header.requireInteger("NUM_Y"),

@@ -23,10 +23,6 @@ namespace {
 /// Logs have some kilobytes.
 constexpr uint64_t kMaxLogBytes = uint64_t(1) << 20;
 
-bool isDigit(char c) {
-  return c >= '0' && c <= '9';
-}
-
 /// Runs of digits are compared as numbers, all else by bytes.
 bool naturallyBefore(const std::string& a, const std::string& b) {
   size_t i = 0, j = 0;

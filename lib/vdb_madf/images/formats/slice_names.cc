@@ -9,6 +9,7 @@
 #include <set>
 
 #include "vdb_madf/base/counted.h"
+#include "vdb_madf/base/detail/text.h"
 
 namespace vdb_madf::detail {
 
@@ -22,10 +23,6 @@ struct SliceName {
   std::string kind;  ///< the name with '#' for each number
   std::vector<int64_t> numbers;
 };
-
-bool isDigit(char c) {
-  return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
 
 SliceName parsed(const std::string& path) {
   SliceName result;

@@ -16,7 +16,7 @@ namespace vdb_madf::detail {
 
 namespace {
 
-constexpr uint32_t kMaxSide = kMaxImageSide;
+constexpr uint32_t kMaxPageSide = kMaxImageSide;
 /// Red, green, blue, and opacity or whatever a program adds.
 constexpr uint16_t kMaxChannels = 16;
 /// libtiff allocates tag values, raw strips (no larger than the file) and coder states.
@@ -95,9 +95,9 @@ TiffPage TiffFile::page() const {
   TiffPage page;
   page.width = tiff_.field<uint32_t>(TIFFTAG_IMAGEWIDTH, 0);
   page.height = tiff_.field<uint32_t>(TIFFTAG_IMAGELENGTH, 0);
-  if (page.width < 1 || page.width > kMaxSide || page.height < 1 || page.height > kMaxSide)
+  if (page.width < 1 || page.width > kMaxPageSide || page.height < 1 || page.height > kMaxPageSide)
     tiff_.fail("a page of " + std::to_string(page.width) + " x " + std::to_string(page.height) +
-               " is not within 1 .. " + std::to_string(kMaxSide) + " a side");
+               " is not within 1 .. " + std::to_string(kMaxPageSide) + " a side");
   uint16_t format = SAMPLEFORMAT_UINT;
   TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_SAMPLESPERPIXEL, &page.channels);
   TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_BITSPERSAMPLE, &page.bits);
@@ -163,7 +163,7 @@ void TiffFile::checkExtent(const TiffPage& page) const {
     needed = uint64_t(TIFFTileSize64(tiff_.get())) * pieces;
     const uint64_t tileWidth = tiff_.field<uint32_t>(TIFFTAG_TILEWIDTH, 0);
     const uint64_t tileHeight = tiff_.field<uint32_t>(TIFFTAG_TILELENGTH, 0);
-    if (tileWidth < 1 || tileHeight < 1 || tileWidth > kMaxSide || tileHeight > kMaxSide ||
+    if (tileWidth < 1 || tileHeight < 1 || tileWidth > kMaxPageSide || tileHeight > kMaxPageSide ||
         tiff_.field<uint32_t>(TIFFTAG_TILEDEPTH, 1) != 1)
       tiff_.fail("has tiles of an impossible size");
   }

@@ -101,7 +101,7 @@ std::string chooseArray(const std::string& path, const Json& image) {
   if (arrays.size() == 1) return arrays[0];
   std::string list;
   for (size_t i = 0; i < arrays.size() && i < 8; ++i)
-    list += (i ? ", " : "") + detail::quoted(arrays[i]);
+    list += (i ? ", " : "") + detail::inQuotes(arrays[i]);
   if (arrays.empty())
     throw IoError(path + ": this Zarr group holds no array itself: name one of a group in it",
                   Hint::dataset);
@@ -193,7 +193,8 @@ std::unique_ptr<ImageReader> openZarr(const std::string& path, const std::string
     array /= chooseArray(array.string(), multiscale(path, array));
   if (!ZarrArray::isThere(path, array.string()))
     throw IoError(path + ": there is no Zarr array " +
-                  detail::quoted(dataset.empty() ? array.filename().string() : dataset) + " in it");
+                  detail::inQuotes(dataset.empty() ? array.filename().string() : dataset) +
+                  " in it");
   auto reader = std::make_unique<ZarrReader>(path, array.string());
   reader->setVoxelSize(voxelSizeOf(path, array, reader->axes()));
   return reader;

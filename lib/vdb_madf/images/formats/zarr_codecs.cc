@@ -17,7 +17,7 @@ namespace {
 
 constexpr uint64_t kSumBytes = 4;
 /// The most that zstd makes of a byte: runs, 128 KiB in four bytes. Blosc's codecs make no more.
-constexpr uint64_t kMaxExpansion = uint64_t(1) << 15;
+constexpr uint64_t kMaxBloscExpansion = uint64_t(1) << 15;
 /// No codec makes what cannot be compressed so much longer.
 constexpr uint64_t kMaxOverhead = 4096;
 
@@ -60,7 +60,7 @@ std::vector<char> fromBlosc(const std::string& name, const std::vector<char>& co
   if (coded.size() < BLOSC_MIN_HEADER_LENGTH ||
       blosc_cbuffer_validate(coded.data(), coded.size(), &held) != 0)
     throw IoError(name + ": the blosc data are damaged");
-  if (held != bytes || bytes > coded.size() * kMaxExpansion) failToHold(name, held, bytes);
+  if (held != bytes || bytes > coded.size() * kMaxBloscExpansion) failToHold(name, held, bytes);
   std::vector<char> result(static_cast<size_t>(bytes));
   if (blosc_decompress_ctx(coded.data(), result.data(), result.size(), 1) != int(bytes))
     throw IoError(name + ": the blosc data are damaged");
@@ -69,7 +69,7 @@ std::vector<char> fromBlosc(const std::string& name, const std::vector<char>& co
 
 std::vector<char> fromZstd(const std::string& name, const std::vector<char>& coded,
                            uint64_t bytes) {
-  if (bytes > coded.size() * kMaxExpansion) failToHold(name, coded.size(), bytes);
+  if (bytes > coded.size() * kMaxBloscExpansion) failToHold(name, coded.size(), bytes);
   std::vector<char> result(static_cast<size_t>(bytes));
   const size_t made = ZSTD_decompress(result.data(), result.size(), coded.data(), coded.size());
   if (ZSTD_isError(made))

@@ -29,7 +29,7 @@ constexpr size_t kMaxAxes = 8;
 constexpr size_t kMaxCodecs = 8;
 
 std::string quotedJson(const Json& json) {
-  return detail::quoted(json.dump(-1, ' ', true, Json::error_handler_t::replace));
+  return detail::inQuotes(json.dump(-1, ' ', true, Json::error_handler_t::replace));
 }
 
 /// The axes of a shape: x, y, z of the last three, the others have to be 1.
@@ -140,7 +140,7 @@ std::optional<Compressor> compressorOf(const std::string& codec) {
 }
 
 [[noreturn]] void refuseCodec(const std::string& name, const std::string& codec) {
-  throw IoError(name + ": its codec " + detail::quoted(codec) +
+  throw IoError(name + ": its codec " + detail::inQuotes(codec) +
                 " cannot be read in its place: first transpose, then bytes or sharding_indexed, "
                 "then gzip, zstd or blosc, and crc32c");
 }
@@ -262,7 +262,7 @@ void checkKeys(const std::string& name, const Json& json) {
           "fill_value", "codecs", "attributes", "storage_transformers", "dimension_names"})
       isKnown = isKnown || key == known;
     if (!isKnown && member(value, "must_understand") != false)
-      throw IoError(name + ": its description has " + detail::quoted(key) +
+      throw IoError(name + ": its description has " + detail::inQuotes(key) +
                     ", which cannot be read");
   }
   const Json& transformers = member(json, "storage_transformers");
@@ -315,7 +315,7 @@ ZarrDescription readZarr2(const std::string& name, const std::string& path) {
   if (!compressor.is_null()) {
     const auto known = codec == "zlib" ? Compressor::deflate : compressorOf(codec);
     if (!known)
-      throw IoError(name + ": its compressor " + detail::quoted(codec) +
+      throw IoError(name + ": its compressor " + detail::inQuotes(codec) +
                     " cannot be read; only blosc, zlib, gzip and zstd");
     array.codec.compressor = *known;
   }

@@ -8,14 +8,13 @@
 #include <mutex>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/leaves/detail/voxels.h"
 
 namespace vdb_madf::detail {
 
 namespace {
 
 using Leaf = Int32Tree::LeafNodeType;
-
-constexpr size_t kLeafGrain = 256;
 
 /// Where a neighbour's voxels go along one axis: [from, from + count) of it to `to` of the block.
 struct Span {
@@ -96,7 +95,7 @@ LabelBlocks::LabelBlocks(const Int32Grid& labels) : tree_(withoutTiles(labels)) 
 void LabelBlocks::countLabels(const std::vector<const Leaf*>& leaves) {
   std::map<int32_t, int64_t> counts;
   std::mutex mutex;
-  parallelFor(leaves.size(), kLeafGrain, nullptr, [&](size_t begin, size_t end) {
+  parallelFor(leaves.size(), kLightLeafGrain, nullptr, [&](size_t begin, size_t end) {
     std::map<int32_t, int64_t> local;
     for (size_t n = begin; n < end; ++n) {
       const int32_t* values = leaves[n]->buffer().data();

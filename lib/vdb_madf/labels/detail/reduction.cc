@@ -19,7 +19,7 @@ namespace vdb_madf::detail {
 
 namespace {
 
-constexpr size_t kLeafGrain = 4;
+constexpr size_t kReducedLeafGrain = 4;
 
 int floorDiv(int a, int b) {
   return a >= 0 ? a / b : -((b - 1 - a) / b);
@@ -106,7 +106,7 @@ Reduction::Reduction(const Int32Grid& labels, int factor)
 
 void Reduction::run(const std::function<void(size_t, const Coord&, const Cells&)>& f,
                     Interrupter* interrupter) const {
-  parallelFor(leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+  parallelFor(leafCount(), kReducedLeafGrain, interrupter, [&](size_t begin, size_t end) {
     std::vector<uint64_t> keys;
     for (size_t n = begin; n < end; ++n) {
       const Coord origin = pairs_[first_[n]].origin;

@@ -28,7 +28,7 @@ bool isBefore(const LeafVoxels& leaf, const Coord& origin) {
   return leaf.origin < origin;
 }
 
-int64_t count(const VoxelSetByLeaves& voxels) {
+int64_t voxelCount(const VoxelSetByLeaves& voxels) {
   int64_t sum = 0;
   for (const LeafVoxels& leaf : voxels) sum += countVoxels(leaf.mask);
   return sum;
@@ -81,7 +81,8 @@ std::pair<VoxelSetByLeaves, VoxelSetByLeaves> halved(const VoxelSetByLeaves& fir
   constexpr int64_t kKept = 2;  // at least 1 / kKept of the volume
   for (const uint32_t least : {4u, 2u}) {
     auto a = halved(first, least), b = halved(second, least);
-    if (8 * kKept * count(a) >= count(first) && 8 * kKept * count(b) >= count(second))
+    if (8 * kKept * voxelCount(a) >= voxelCount(first) &&
+        8 * kKept * voxelCount(b) >= voxelCount(second))
       return {std::move(a), std::move(b)};
   }
   return {halved(first, 1), halved(second, 1)};

@@ -52,12 +52,12 @@ uint32_t* packPortable(const LeafIndex::Mask& mask, const uint32_t* dense, uint3
 }
 
 #ifdef VDB_MADF_SIMD_LEVELS
-/// Lanes for a permutation of 8, a byte each, by the mask of the lanes that are object voxels.
-using Lanes = std::array<uint64_t, 256>;
+/// Permutations of 8 lanes, a byte each, by the mask of the lanes that are object voxels.
+using Permutations = std::array<uint64_t, 256>;
 
 /// Lane i: how many object lanes come before it.
-constexpr Lanes spreadingLanes() {
-  Lanes lanes{};
+constexpr Permutations spreadingLanes() {
+  Permutations lanes{};
   for (uint32_t mask = 0; mask < 256; ++mask) {
     uint64_t before = 0;
     for (uint32_t lane = 0; lane < 8; ++lane) {
@@ -69,8 +69,8 @@ constexpr Lanes spreadingLanes() {
 }
 
 /// Lane i: the object lane that i others come before.
-constexpr Lanes packingLanes() {
-  Lanes lanes{};
+constexpr Permutations packingLanes() {
+  Permutations lanes{};
   for (uint32_t mask = 0; mask < 256; ++mask) {
     uint32_t before = 0;
     for (uint64_t lane = 0; lane < 8; ++lane)
@@ -79,7 +79,7 @@ constexpr Lanes packingLanes() {
   return lanes;
 }
 
-constexpr Lanes kSpreading = spreadingLanes(), kPacking = packingLanes();
+constexpr Permutations kSpreading = spreadingLanes(), kPacking = packingLanes();
 
 __attribute__((target("arch=x86-64-v3"))) inline __m256i permuted(__m256i values, uint64_t lanes) {
   return _mm256_permutevar8x32_epi32(values,

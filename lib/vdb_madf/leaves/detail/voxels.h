@@ -8,8 +8,12 @@
 
 namespace vdb_madf::detail {
 
+/// Voxels along each side of a leaf.
+constexpr int kLeafSide = 8;
 /// Leaves per task of a loop over voxels: some tens of microseconds.
 constexpr size_t kLeafGrain = 64;
+/// The same of a loop that does little in each leaf.
+constexpr size_t kLightLeafGrain = 256;
 
 /// Bits y*8 + z of a mask word with z = 0, with z = 7.
 constexpr uint64_t kFirstZ = 0x0101010101010101ull, kLastZ = kFirstZ << 7;

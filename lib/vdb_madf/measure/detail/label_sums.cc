@@ -15,7 +15,7 @@ namespace vdb_madf::detail {
 
 namespace {
 
-constexpr size_t kBondGrain = 16;
+constexpr size_t kSummedBondGrain = 16;
 
 /// Number, sum and sum of squares of the set bits' positions.
 struct BitSums {
@@ -203,7 +203,7 @@ std::vector<BondSums> LabelSums::takeBonds(
     }
     bond = bonds_.erase(bond);
   }
-  parallelFor(taken.size(), kBondGrain, interrupter, [&](size_t begin, size_t end) {
+  parallelFor(taken.size(), kSummedBondGrain, interrupter, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       std::sort(taken[i].faces.begin(), taken[i].faces.end(), faceOrder);
   });

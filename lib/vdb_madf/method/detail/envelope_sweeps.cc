@@ -20,13 +20,14 @@ static_assert(kUncovered == kNotNegative);
 
 /// What one thread works with.
 template <typename Key>
-struct Scratch {
+struct EnvelopeScratch {
   std::vector<uint32_t> leaves;  // of the pencil
   EnvelopeRows<Key> rows;
 };
 
 template <int Axis, typename Key>
-VDB_MADF_KERNEL void gather(const SweptLeaves& leaves, const PowerValues& values, Scratch<Key>& s) {
+VDB_MADF_KERNEL void gather(const SweptLeaves& leaves, const PowerValues& values,
+                            EnvelopeScratch<Key>& s) {
   int32_t power[512];
   VoxelId site[512];
   for (size_t i = 0; i < s.leaves.size(); ++i) {
@@ -46,7 +47,7 @@ VDB_MADF_KERNEL void gather(const SweptLeaves& leaves, const PowerValues& values
 }
 
 template <int Axis, typename Key>
-VDB_MADF_KERNEL void scatter(const SweptLeaves& leaves, const Scratch<Key>& s,
+VDB_MADF_KERNEL void scatter(const SweptLeaves& leaves, const EnvelopeScratch<Key>& s,
                              PowerValues& values) {
   int32_t power[512];
   VoxelId site[512];
@@ -64,7 +65,7 @@ VDB_MADF_KERNEL void scatter(const SweptLeaves& leaves, const Scratch<Key>& s,
 /// site along z, then y. `origin` is that of the pencil's first leaf.
 template <int Axis, typename Key>
 VDB_MADF_KERNEL void computeRadii(const LeafIndex& object, const Coord& origin,
-                                  const VoxelWeights& weights, Scratch<Key>& s) {
+                                  const VoxelWeights& weights, EnvelopeScratch<Key>& s) {
   const Coord* origins = &object.origin(0);
   for (size_t t = 0; t < s.leaves.size() * 8; ++t) {
     const int32_t* power = s.rows.power.data() + (t + 1) * kSlab;
@@ -88,9 +89,9 @@ void sweep(const SweptLeaves& leaves, const ForeignSites* foreign, Key multiplie
            const VoxelWeights& weights, PowerValues& values, Interrupter* interrupter) {
   const LeafIndex& index = leaves.index();
   const std::vector<uint32_t> starts = pencilStarts(index, Axis);
-  PerThread<Scratch<Key>> scratches;
+  PerThread<EnvelopeScratch<Key>> scratches;
   parallelFor(starts.size(), kPencilGrain, interrupter, [&](size_t begin, size_t end) {
-    Scratch<Key>& s = scratches.local();
+    EnvelopeScratch<Key>& s = scratches.local();
     for (size_t p = begin; p < end; ++p) {
       collectPencil(index, Axis, starts[p], s.leaves);
       if (!leaves.anyCarries(powerPass(Axis), s.leaves)) continue;

@@ -13,7 +13,7 @@ namespace vdb_madf::detail {
 namespace {
 
 /// What one thread works with.
-struct Scratch {
+struct WindowRows {
   std::vector<uint32_t> leaves;  // of the pencil
   KeyLines lines;
 };
@@ -30,7 +30,7 @@ size_t placeOfRun(const KeyLines& lines, size_t leaf, int run) {
 
 template <int Axis>
 VDB_MADF_KERNEL void gather(const SweptLeaves& leaves, const PowerValues& values, int shift,
-                            Scratch& s) {
+                            WindowRows& s) {
   int32_t key[512];
   VoxelId site[512];
   for (size_t i = 0; i < s.leaves.size(); ++i) {
@@ -53,7 +53,7 @@ VDB_MADF_KERNEL void gather(const SweptLeaves& leaves, const PowerValues& values
 }
 
 template <int Axis>
-VDB_MADF_KERNEL void scatter(const SweptLeaves& leaves, const Scratch& s, int shift,
+VDB_MADF_KERNEL void scatter(const SweptLeaves& leaves, const WindowRows& s, int shift,
                              PowerValues& values) {
   int32_t key[512];
   VoxelId site[512];
@@ -79,9 +79,9 @@ void sweep(const SweptLeaves& leaves, const ForeignSites* foreign, int32_t maxSq
   const int shift = keyShift(maxSquaredRadius), reach = keyReach(maxSquaredRadius, weights[Axis]);
   const LeafIndex& index = leaves.index();
   const std::vector<uint32_t> starts = pencilStarts(index, Axis);
-  PerThread<Scratch> scratches;
+  PerThread<WindowRows> scratches;
   parallelFor(starts.size(), kPencilGrain, interrupter, [&](size_t begin, size_t end) {
-    Scratch& s = scratches.local();
+    WindowRows& s = scratches.local();
     for (size_t p = begin; p < end; ++p) {
       collectPencil(index, Axis, starts[p], s.leaves);
       if (!leaves.anyCarries(powerPass(Axis), s.leaves)) continue;

@@ -2,16 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "vdb_madf/samples/detail/least_cells.h"
+#include "vdb_madf/leaves/detail/voxels.h"
 
 #include <atomic>
 
 namespace vdb_madf::detail {
-
-namespace {
-
-constexpr size_t kLeafGrain = 64;
-
-}  // namespace
 
 void numberOwners(Int32Tree& labels, size_t count, Interrupter* interrupter) {
   std::vector<Int32Tree::LeafNodeType*> leaves;

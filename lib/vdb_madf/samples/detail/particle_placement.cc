@@ -15,8 +15,8 @@ namespace vdb_madf::detail {
 namespace {
 
 /// Random centers tried for a particle before the box counts as full.
-constexpr int kMaxTries = 50000;
-constexpr int kPollInterval = 256;
+constexpr int kMaxParticleTries = 50000;
+constexpr int kParticlePollInterval = 256;
 /// Lognormal radii drawn before the range counts as too narrow for them.
 constexpr int kMaxRadii = 10000;
 
@@ -84,9 +84,9 @@ std::vector<Particle> placeParticles(const ParticleOptions& options, Interrupter
     Particle particle = drawParticle(options.shape, drawRadius(options, random), random);
     int tries = 0;
     do {
-      if (tries % kPollInterval == 0 && interrupter && interrupter->wasInterrupted())
+      if (tries % kParticlePollInterval == 0 && interrupter && interrupter->wasInterrupted())
         throw Interrupted();
-      if (tries++ == kMaxTries)
+      if (tries++ == kMaxParticleTries)
         throw InvalidInput("only " + std::to_string(particles.size()) + " of " +
                            std::to_string(options.count) +
                            " particles fit: use a smaller count, radius or neck, or a larger size");

@@ -12,11 +12,11 @@ namespace vdb_madf::detail {
 namespace {
 
 /// Random positions tried for a ball before the box counts as full.
-constexpr int kMaxTries = 50000;
-constexpr int kPollInterval = 256;
+constexpr int kMaxSinteredTries = 50000;
+constexpr int kSinteredPollInterval = 256;
 
 /// Stream 1 is the noise.
-constexpr uint64_t kBallStream = 0;
+constexpr uint64_t kSinteredBallStream = 0;
 
 bool keepsDistance(const Ball& ball, const std::vector<Ball>& others, double neck) {
   for (const Ball& other : others) {
@@ -31,16 +31,16 @@ bool keepsDistance(const Ball& ball, const std::vector<Ball>& others, double nec
 
 /// Random sequential addition: each ball keeps its radius and tries positions until one fits.
 std::vector<Ball> placeSintered(const SinteredOptions& options, Interrupter* interrupter) {
-  RandomSequence random(options.seed, kBallStream);
+  RandomSequence random(options.seed, kSinteredBallStream);
   std::vector<Ball> balls;
   while (int(balls.size()) < options.count) {
     Ball ball;
     ball.radius = random.uniform(options.minRadius, options.maxRadius);
     int tries = 0;
     do {
-      if (tries % kPollInterval == 0 && interrupter && interrupter->wasInterrupted())
+      if (tries % kSinteredPollInterval == 0 && interrupter && interrupter->wasInterrupted())
         throw Interrupted();
-      if (tries++ == kMaxTries)
+      if (tries++ == kMaxSinteredTries)
         throw InvalidInput("only " + std::to_string(balls.size()) + " of " +
                            std::to_string(options.count) +
                            " balls fit: use a smaller count, radius or neck, or a larger size");

@@ -19,8 +19,8 @@ namespace {
 using openvdb::Vec3d;
 using openvdb::Vec3f;
 
-constexpr size_t kSiteGrain = 4096;
-constexpr size_t kGrainGrain = 8;
+constexpr size_t kMovedSiteGrain = 4096;
+constexpr size_t kMovedGrainGrain = 8;
 /// Volumes are met to this part of themselves, or after so many corrections.
 constexpr double kVolumeTolerance = 1e-3;
 constexpr int kMaxCorrections = 20;
@@ -73,7 +73,7 @@ class VolumeCorrection {
  private:
   void blockDomainFaces() {
     if (!domain_.areKnown) return;
-    parallelFor(homes_.size(), kSiteGrain, nullptr, [&](size_t begin, size_t end) {
+    parallelFor(homes_.size(), kMovedSiteGrain, nullptr, [&](size_t begin, size_t end) {
       for (size_t site = begin; site < end; ++site)
         for (int axis = 0; axis < 3; ++axis)
           blocked_[site] = uint8_t(blocked_[site] | int(domain_.isOn(homes_[site], axis)) << axis);
@@ -123,7 +123,7 @@ class VolumeCorrection {
 
   template <typename F>
   void forEachGrain(Interrupter* interrupter, const F& f) const {
-    parallelFor(volumes_.size(), kGrainGrain, interrupter, [&](size_t begin, size_t end) {
+    parallelFor(volumes_.size(), kMovedGrainGrain, interrupter, [&](size_t begin, size_t end) {
       for (size_t g = begin; g < end; ++g) f(g);
     });
   }
@@ -256,7 +256,7 @@ class VolumeCorrection {
       });
       if (isMoved) hasMoved = true;
     });
-    parallelFor(sharedSites_.size(), kSiteGrain, nullptr, [&](size_t begin, size_t end) {
+    parallelFor(sharedSites_.size(), kMovedSiteGrain, nullptr, [&](size_t begin, size_t end) {
       bool isMoved = false;
       for (size_t n = begin; n < end; ++n) {
         Vec3f step(0);

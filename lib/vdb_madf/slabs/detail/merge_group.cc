@@ -13,10 +13,10 @@ namespace vdb_madf::detail {
 namespace {
 
 using Class = MergeGroup::Class;
-using Edge = MergeGroup::Edge;
+using GroupEdge = MergeGroup::Edge;
 
 /// The order in which merge() visits edges.
-bool comesBefore(const Edge& a, const Edge& b) {
+bool comesBefore(const GroupEdge& a, const GroupEdge& b) {
   if (a.height != b.height) return a.height > b.height;
   return a.lower != b.lower ? a.lower < b.lower : a.upper < b.upper;
 }
@@ -37,7 +37,7 @@ class Contraction {
 
  private:
   /// Would the edge merge a class, be the other one as large as it may?
-  bool isAlive(uint32_t c, const Edge& edge) const {
+  bool isAlive(uint32_t c, const GroupEdge& edge) const {
     return rule_.mergesByNeck(edge.height, classes_[c].top);
   }
 
@@ -46,7 +46,7 @@ class Contraction {
   void dropEdges() {
     DisjointSets rings(classes_.size());
     size_t count = 0;
-    for (Edge edge : edges_) {
+    for (GroupEdge edge : edges_) {
       edge.first = sets_.find(edge.first);
       edge.second = sets_.find(edge.second);
       if (!isAlive(edge.first, edge) && !isAlive(edge.second, edge)) continue;
@@ -62,7 +62,7 @@ class Contraction {
   bool joinClasses() {
     const size_t before = joins_;
     std::vector<char> hasEarlier(classes_.size(), 0);
-    for (const Edge& edge : edges_) {
+    for (const GroupEdge& edge : edges_) {
       bool joins = edge.height == MergeGroup::kCertain;
       for (const uint32_t c : {edge.first, edge.second}) {
         if (!hasEarlier[c] && !classes_[c].isOpen && isAlive(c, edge)) joins = true;
@@ -89,7 +89,7 @@ class Contraction {
       if (root == i) classes_[classOf[i]] = classes_[i];
     }
     classes_.resize(count);
-    for (Edge& edge : edges_) {
+    for (GroupEdge& edge : edges_) {
       edge.first = classOf[edge.first];
       edge.second = classOf[edge.second];
     }
@@ -98,7 +98,7 @@ class Contraction {
 
   const MergeRule& rule_;
   std::vector<Class>& classes_;
-  std::vector<Edge>& edges_;
+  std::vector<GroupEdge>& edges_;
   DisjointSets sets_;
   size_t joins_ = 0;
 };

@@ -9,17 +9,17 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
+#include "vdb_madf/leaves/detail/voxels.h"
 
 namespace vdb_madf::detail {
 
 namespace {
 
 using Leaf = Int32Tree::LeafNodeType;
-constexpr int kLeaf = 8;
 
 /// The leaf at `origin`; null if it holds no label.
 std::unique_ptr<Leaf> makeLeaf(const int32_t* labels, const CoordBBox& slab, const Coord& origin) {
-  CoordBBox box = CoordBBox::createCube(origin, kLeaf);
+  CoordBBox box = CoordBBox::createCube(origin, kLeafSide);
   box.intersect(slab);
   const Coord size = slab.dim();
   std::unique_ptr<Leaf> leaf;
@@ -39,13 +39,14 @@ std::unique_ptr<Leaf> makeLeaf(const int32_t* labels, const CoordBBox& slab, con
 }
 
 void addLeaves(const int32_t* labels, const CoordBBox& slab, Int32Tree& tree) {
-  const Coord first = slab.min() & ~(kLeaf - 1);
+  const Coord first = slab.min() & ~(kLeafSide - 1);
   std::vector<std::vector<std::unique_ptr<Leaf>>> rows(
       size_t((slab.max().y() >> 3) - (slab.min().y() >> 3)) + 1);
   parallelFor(rows.size(), 1, nullptr, [&](size_t begin, size_t end) {
     for (size_t row = begin; row < end; ++row)
-      for (int x = first.x(); x <= slab.max().x(); x += kLeaf)
-        if (auto leaf = makeLeaf(labels, slab, Coord(x, first.y() + int(row) * kLeaf, first.z())))
+      for (int x = first.x(); x <= slab.max().x(); x += kLeafSide)
+        if (auto leaf =
+                makeLeaf(labels, slab, Coord(x, first.y() + int(row) * kLeafSide, first.z())))
           rows[row].push_back(std::move(leaf));
   });
   openvdb::tree::ValueAccessor<Int32Tree> accessor(tree);

@@ -14,13 +14,13 @@
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
+#include "vdb_madf/leaves/detail/voxels.h"
 
 namespace vdb_madf::detail {
 
 namespace {
 
 using MaskLeaf = MaskTree::LeafNodeType;
-constexpr int kLeaf = 8;
 /// A chunk of the parallel loop packs at least this many samples.
 constexpr size_t kSamplesPerChunk = size_t(1) << 16;
 
@@ -130,15 +130,15 @@ uint64_t transposed(uint64_t m) {
 
 std::unique_ptr<MaskLeaf> makeLeaf(const uint64_t* blocks, size_t stride, const Coord& origin) {
   uint64_t any = 0;
-  for (int y = 0; y < kLeaf; ++y) any |= blocks[size_t(y) * stride];
+  for (int y = 0; y < kLeafSide; ++y) any |= blocks[size_t(y) * stride];
   if (any == 0) return nullptr;
-  uint8_t bits[kLeaf][kLeaf];  // [x][y], bit z: the words of the leaf
-  for (int y = 0; y < kLeaf; ++y) {
+  uint8_t bits[kLeafSide][kLeafSide];  // [x][y], bit z: the words of the leaf
+  for (int y = 0; y < kLeafSide; ++y) {
     const uint64_t block = transposed(blocks[size_t(y) * stride]);
-    for (int x = 0; x < kLeaf; ++x) bits[x][y] = uint8_t(block >> (8 * x));
+    for (int x = 0; x < kLeafSide; ++x) bits[x][y] = uint8_t(block >> (8 * x));
   }
   openvdb::util::NodeMask<3> mask;
-  for (openvdb::Index x = 0; x < kLeaf; ++x)
+  for (openvdb::Index x = 0; x < kLeafSide; ++x)
     std::memcpy(&mask.getWord<openvdb::Index64>(x), bits[x], sizeof bits[x]);
   auto leaf = std::make_unique<MaskLeaf>(origin, false);
   leaf->setValueMask(mask);
@@ -156,13 +156,14 @@ size_t leavesAlong(const CoordBBox& slab, int axis) {
 /// transposed.
 template <typename T>
 LeafRow packRow(const T* samples, const CoordBBox& slab, const Intervals<T>& object, int y0) {
-  const Coord size = slab.dim(), first = slab.min() & ~(kLeaf - 1);
+  const Coord size = slab.dim(), first = slab.min() & ~(kLeafSide - 1);
   const size_t nx = size_t(size.x()), columns = leavesAlong(slab, 0);
-  std::vector<uint8_t> marks(columns * kLeaf, 0);            // zero beyond the samples
-  std::vector<uint64_t> blocks(columns * size_t(kLeaf), 0);  // [y][leaf], byte z, bit x
+  std::vector<uint8_t> marks(columns * kLeafSide, 0);            // zero beyond the samples
+  std::vector<uint64_t> blocks(columns * size_t(kLeafSide), 0);  // [y][leaf], byte z, bit x
   std::vector<uint8_t> scratch(object.size() > 1 ? nx : 0);
   auto* bytes = reinterpret_cast<uint8_t*>(blocks.data());
-  const int yBegin = std::max(y0, slab.min().y()), yEnd = std::min(y0 + kLeaf - 1, slab.max().y());
+  const int yBegin = std::max(y0, slab.min().y()),
+            yEnd = std::min(y0 + kLeafSide - 1, slab.max().y());
   for (int z = slab.min().z(); z <= slab.max().z(); ++z)
     for (int y = yBegin; y <= yEnd; ++y) {
       const size_t row = size_t(z - slab.min().z()) * size_t(size.y()) + size_t(y - slab.min().y());
@@ -170,12 +171,12 @@ LeafRow packRow(const T* samples, const CoordBBox& slab, const Intervals<T>& obj
            &marks[size_t(slab.min().x() - first.x())]);
       for (size_t column = 0; column < columns; ++column)
         bytes[(size_t(y - y0) * columns + column) * 8 + size_t(z - first.z())] =
-            packMarks(&marks[column * kLeaf]);
+            packMarks(&marks[column * kLeafSide]);
     }
   LeafRow leaves;
   for (size_t column = 0; column < columns; ++column)
     if (auto leaf = makeLeaf(&blocks[column], columns,
-                             Coord(first.x() + int(column) * kLeaf, y0, first.z())))
+                             Coord(first.x() + int(column) * kLeafSide, y0, first.z())))
       leaves.push_back(std::move(leaf));
   return leaves;
 }
@@ -183,14 +184,14 @@ LeafRow packRow(const T* samples, const CoordBBox& slab, const Intervals<T>& obj
 template <typename T>
 void packAs(const T* samples, const CoordBBox& slab, const Selection& selection, MaskTree& tree) {
   const Intervals<T> object = intervalsOf<T>(selection);
-  const size_t samplesPerRow = size_t(slab.dim().x()) * size_t(kLeaf * slab.dim().z());
+  const size_t samplesPerRow = size_t(slab.dim().x()) * size_t(kLeafSide * slab.dim().z());
   std::vector<LeafRow> rows(leavesAlong(slab, 1));
-  parallelFor(
-      rows.size(), 1 + kSamplesPerChunk / samplesPerRow, nullptr, [&](size_t begin, size_t end) {
-        for (size_t row = begin; row < end; ++row)
-          rows[row] =
-              packRow(samples, slab, object, (slab.min().y() & ~(kLeaf - 1)) + int(row) * kLeaf);
-      });
+  parallelFor(rows.size(), 1 + kSamplesPerChunk / samplesPerRow, nullptr,
+              [&](size_t begin, size_t end) {
+                for (size_t row = begin; row < end; ++row)
+                  rows[row] = packRow(samples, slab, object,
+                                      (slab.min().y() & ~(kLeafSide - 1)) + int(row) * kLeafSide);
+              });
   openvdb::tree::ValueAccessor<MaskTree> accessor(tree);
   for (LeafRow& row : rows)
     for (auto& leaf : row) accessor.addLeaf(leaf.release());
