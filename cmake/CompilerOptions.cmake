@@ -1,6 +1,11 @@
+# All sources of a target in one compilation: OpenVDB's headers, and the code that they put into every
+# object, are paid once a target instead of once a file. Single files are for those who edit them.
+option(VDB_MADF_UNITY "Compile each target as one file" ON)
+
 # Flags of our own targets, never of those that link us.
 function(vdb_madf_compiler_options target)
   target_compile_features(${target} PUBLIC cxx_std_17)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${VDB_MADF_UNITY} UNITY_BUILD_BATCH_SIZE 0)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wshadow -Wno-psabi -ffp-contract=off)
   if(VDB_MADF_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
