@@ -9,13 +9,14 @@
 #     [LINKS target...]     libraries that its headers need
 #     [PRIVATE target...]   libraries that only its sources need
 #     [PACKAGES name...]    what find_package(vdb_madf COMPONENTS NAME) has to find
+#     [OPTIMIZE level]      O1 or O2, where its loops wait for others or for files; default: as the build type
 #     [GRIDS]               its sources see OpenVDB's grids: they share a precompiled header
 #     [SANITIZE])           with the tests, also built with sanitizers, as vdb_madf_NAME_sanitized
 #
 # USES is the one list of arrows between rooms. It is written to rooms.txt in the build folder, where
 # tests/rooms compares every #include with it.
 function(vdb_madf_room name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "GRIDS;SANITIZE" ""
+  cmake_parse_arguments(PARSE_ARGV 1 arg "GRIDS;SANITIZE" "OPTIMIZE"
     "FOLDERS;HEADERS;SOURCES;OBJECTS;USES;LINKS;PRIVATE;PACKAGES")
   if(NOT arg_FOLDERS)
     set(arg_FOLDERS ${name})
@@ -54,6 +55,9 @@ macro(vdb_madf_room_library suffix)
     target_sources(${target}${suffix} PRIVATE $<TARGET_OBJECTS:${objects}>)
   endforeach()
   vdb_madf_compiler_options(${target}${suffix})
+  if(arg_OPTIMIZE)
+    target_compile_options(${target}${suffix} PRIVATE $<$<CONFIG:Release>:-${arg_OPTIMIZE}>)
+  endif()
   set_target_properties(${target}${suffix} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   foreach(room IN LISTS arg_USES)
     target_link_libraries(${target}${suffix} PUBLIC vdb_madf_${room}${suffix})
