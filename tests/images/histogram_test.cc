@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "support/comma_locale.h"
 #include "support/memory_image.h"
 #include "vdb_madf/images/histogram.h"
 
@@ -217,4 +218,12 @@ TEST_CASE("histogram: the value at the corners of all slices can be left out", "
   REQUIRE(low);
   CHECK(low->counts == std::vector<int64_t>{1});
   CHECK(low->max == 4);
+}
+
+TEST_CASE("histogram: its line has points in a locale with a comma", "[histogram]") {
+  const test::CommaLocale locale;
+  if (!locale.isSet()) return;
+  REQUIRE_THAT(histogramLine(histogramOfRow<float>({0.25f, 0.5f, 0.75f})),
+               Catch::Contains("0.5") || Catch::Contains("0.2"));
+  REQUIRE_THAT(histogramLine(histogramOfRow<float>({0.25f, 0.5f, 0.75f})), !Catch::Contains(","));
 }

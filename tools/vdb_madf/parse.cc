@@ -5,7 +5,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <optional>
 
@@ -62,11 +61,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
 }
 
 double parseNumber(const std::string& text, const std::string& option) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(value))
-    throw WrongUsage(option + " " + text + ": not a finite number" + commaHint(text));
-  return value;
+  return withOption(option, [&] { return numberFromText(text); });
 }
 
 Coord parseDims(const std::string& text, const std::string& option) {

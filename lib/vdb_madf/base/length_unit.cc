@@ -3,7 +3,6 @@
 
 #include "vdb_madf/base/length_unit.h"
 
-#include <charconv>
 #include <cmath>
 #include <map>
 
@@ -19,12 +18,8 @@ std::string lengthIn(double unitsPerMetre, double metres) {
   for (const double candidate : {value, std::nextafter(value, 0.0), std::nextafter(value, 1e300)})
     if (candidate / unitsPerMetre == metres) {
       // 8.499999999999999 and 8.5 may both give 8.5e-6 back: the shorter is meant.
-      char text[40];
-      const auto end =
-          std::to_chars(text, text + sizeof text, candidate, std::chars_format::general, 15).ptr;
-      double rounded = 0;
-      std::from_chars(text, end, rounded);
-      if (rounded / unitsPerMetre == metres) return std::string(text, end);
+      const std::string text = detail::generalDecimal(candidate, 15);
+      if (detail::leadingReal(text).value / unitsPerMetre == metres) return text;
       return shortestDecimal(candidate);
     }
   return shortestDecimal(value);

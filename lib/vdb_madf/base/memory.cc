@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "vdb_madf/base/memory.h"
+#include "vdb_madf/base/detail/text.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -64,10 +65,9 @@ std::string readableBytes(int64_t bytes) {
   double number = double(bytes);
   size_t unit = 0;
   for (; number >= 1024 && unit < 4; ++unit) number /= 1024;
-  char text[32];
-  std::snprintf(text, sizeof text, unit == 0 || number >= 100 ? "%.0f %s" : "%.3g %s", number,
-                units[unit]);
-  return text;
+  const bool isWhole = unit == 0 || number >= 100;
+  return (isWhole ? detail::fixedDecimal(number, 0) : detail::generalDecimal(number, 3)) + " " +
+         units[unit];
 }
 
 }  // namespace vdb_madf

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <vector>
 
+#include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/base/lower_case.h"
@@ -37,11 +37,10 @@ VoxelSize voxelSizeFromText(const std::string& text) {
   std::vector<double> edges;
   std::string unit;
   for (auto part = parts.rbegin(); part != parts.rend(); ++part) {  // the last has the unit of all
-    char* end = nullptr;
-    const double value = std::strtod(part->c_str(), &end);
-    if (end == part->c_str() || !std::isfinite(value))
+    const detail::LeadingReal number = detail::leadingReal(*part);
+    if (number.length == 0 || !std::isfinite(number.value))
       throw InvalidInput(text + ": not a finite number");
-    const std::string rest = end;
+    const std::string rest = part->substr(number.length);
     if (rest.find_first_not_of(' ') != std::string::npos) unit = rest;
     const auto perMetre = unitsPerMetre(unit);
     if (!perMetre)
@@ -49,7 +48,7 @@ VoxelSize voxelSizeFromText(const std::string& text) {
                                      ? commaHint(text)
                                      : ": give a unit (nm, um, mm or m), for example 8.5um"));
     // Dividing by a power of ten keeps decimal inputs exact to the last bit.
-    edges.push_back(value / *perMetre);
+    edges.push_back(number.value / *perMetre);
     if (!(edges.back() >= 1e-10 && edges.back() <= 1))
       throw InvalidInput(text + ": must lie between 0.1nm and 1m");
   }
@@ -57,9 +56,8 @@ VoxelSize voxelSizeFromText(const std::string& text) {
 }
 
 int64_t bytesFromText(const std::string& text) {
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  std::string unit = lowerCase(end);
+  const detail::LeadingReal number = detail::leadingReal(text);
+  std::string unit = lowerCase(text.substr(number.length));
   unit.erase(std::remove(unit.begin(), unit.end(), ' '), unit.end());
   double factor = unit == "b" ? 1 : 0;
   const size_t power = unit.empty() ? 0 : std::string("kmgt").find(unit[0]) + 1;
@@ -67,11 +65,18 @@ int64_t bytesFromText(const std::string& text) {
     factor = std::pow(1024.0, double(power));
   else if (power > 0 && unit.substr(1) == "b")
     factor = std::pow(1000.0, double(power));
-  const double bytes = number * factor;
-  if (end == text.c_str() || !(bytes >= 1) || !(bytes < 9e18))
+  const double bytes = number.value * factor;
+  if (number.length == 0 || !(bytes >= 1) || !(bytes < 9e18))
     throw InvalidInput(text + ": give a size with its unit, such as 12GiB or 500M" +
                        commaHint(text));
   return int64_t(bytes);
+}
+
+double numberFromText(const std::string& text) {
+  const detail::LeadingReal number = detail::leadingReal(text);
+  if (number.length != text.size() || text.empty() || !std::isfinite(number.value))
+    throw InvalidInput(text + ": not a finite number" + commaHint(text));
+  return number.value;
 }
 
 std::string commaHint(const std::string& text) {

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <unordered_set>
 
+#include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/histogram_builder.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
@@ -48,12 +48,6 @@ std::vector<size_t> maxima(const std::vector<double>& bins) {
     }
   }
   return found;
-}
-
-std::string text(double value) {
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.6g", value);
-  return buffer;
 }
 
 }  // namespace
@@ -219,9 +213,10 @@ std::string histogramLine(const Histogram& histogram, size_t characters) {
     std::string line;
     for (const double bin : bins)
       line += kHeights[size_t(std::ceil(std::sqrt(bin / most) * double(kLargest)))];
-    return text(low) + " |" + line + "| " + text(high);
+    return detail::generalDecimal(low, 6) + " |" + line + "| " + detail::generalDecimal(high, 6);
   }
-  return text(low) + " |" + kHeights[kLargest] + "| " + text(high);
+  return detail::generalDecimal(low, 6) + " |" + kHeights[kLargest] + "| " +
+         detail::generalDecimal(high, 6);
 }
 
 }  // namespace vdb_madf

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/grids/detail/world_transform.h"
@@ -56,8 +57,7 @@ std::optional<Decimal> decimalOf(double edge) {
   char text[32];  // d.dddddddde-ddd
   const auto end =
       std::to_chars(text, text + sizeof text, edge, std::chars_format::scientific, 8).ptr;
-  double rounded = 0;
-  std::from_chars(text, end, rounded);
+  const double rounded = detail::leadingReal(std::string(text, end)).value;
   if (!(std::abs(rounded - edge) <= 1e-12 * edge)) return std::nullopt;
   Decimal result;
   const char* const mark = std::find(text, end, 'e');
@@ -97,15 +97,12 @@ std::optional<std::array<int64_t, 3>> exactWeights(const Edges& edges) {
   return lengths;
 }
 
-std::string inWords(double edge) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, edge, std::chars_format::general, 6).ptr};
-}
-
 [[noreturn]] void refuse(const Edges& edges, const Coord& extent) {
-  throw InvalidInput("voxels of " + inWords(edges[0]) + " x " + inWords(edges[1]) + " x " +
-                     inWords(edges[2]) + " and an object of " + std::to_string(extent[0]) + " x " +
-                     std::to_string(extent[1]) + " x " + std::to_string(extent[2]) +
+  throw InvalidInput("voxels of " + detail::generalDecimal(edges[0], 6) + " x " +
+                     detail::generalDecimal(edges[1], 6) + " x " +
+                     detail::generalDecimal(edges[2], 6) + " and an object of " +
+                     std::to_string(extent[0]) + " x " + std::to_string(extent[1]) + " x " +
+                     std::to_string(extent[2]) +
                      " of them: squared distances do not fit in 32 bits to within 1 %; resample to "
                      "voxels that are more alike, or crop");
 }
@@ -133,7 +130,7 @@ void checkWeights(const VoxelWeights& weights, const Coord& extent) {
 WeightsOfEdges weightsOfEdges(const Edges& edges, const Coord& extent) {
   for (const double edge : edges)
     if (!(edge > 0 && std::isfinite(edge)))
-      throw InvalidInput("a voxel has an edge of length " + inWords(edge));
+      throw InvalidInput("a voxel has an edge of length " + detail::generalDecimal(edge, 6));
   if (areCubes(edges)) return {};
   const auto exact = exactWeights(edges);
   if (exact && fit(*exact, extent)) return {narrowed(*exact), 0};

@@ -5,12 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 
+#include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/rimmed_slabs.h"
@@ -23,12 +22,8 @@ namespace vdb_madf {
 namespace {
 
 std::string threeDigits(double value) {
-  std::ostringstream text;
-  if (value >= 1000)
-    text << std::lround(value);  // no 1e+03
-  else
-    text << std::setprecision(3) << value;
-  return text.str();
+  return value >= 1000 ? std::to_string(std::lround(value))  // no 1e+03
+                       : detail::generalDecimal(value, 3);
 }
 
 /// How lengths of a sample are written: in one unit, in which its longest edge is 1 or more.

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,9 +29,7 @@ namespace {
 using detail::shortestDecimal;
 
 std::string percent(int64_t part, int64_t whole) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f %%", 100 * double(part) / double(whole));
-  return text;
+  return detail::fixedDecimal(100 * double(part) / double(whole), 1) + " %";
 }
 
 using ThresholdOf = std::optional<double> (*)(const Histogram&);

@@ -4,7 +4,6 @@
 #include "vdb_madf/volumes/volume.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "vdb_madf/base/counted.h"
 #include "vdb_madf/base/detail/text.h"
@@ -97,10 +96,8 @@ std::string text(const VoxelSize& size) {
                                                  : std::pair("mm", 1e3);
   std::string text;
   for (size_t axis = 0; axis < (size.isCube() ? 1 : 3); ++axis) {
-    char edge[40];
-    std::snprintf(edge, sizeof edge, "%s%.4g", axis > 0 ? " x " : "",
-                  size.edges()[axis] * perMetre);
-    text += edge;
+    if (axis > 0) text += " x ";
+    text += detail::generalDecimal(size.edges()[axis] * perMetre, 4);
   }
   return text + " " + unit;
 }
@@ -117,9 +114,7 @@ std::string difference(const VoxelSize& given, const VoxelSize& ofFile) {
   }
   if (factor <= kTolerance) return "";
   if (!given.isCube() || !ofFile.isCube()) return "which differs";
-  char times[40];
-  std::snprintf(times, sizeof times, "%.4g times as %s", factor, ratio > 1 ? "long" : "short");
-  return times;
+  return detail::generalDecimal(factor, 4) + " times as " + (ratio > 1 ? "long" : "short");
 }
 
 /// Mostly a slip of the unit, or another sample's size.

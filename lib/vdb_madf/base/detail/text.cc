@@ -5,6 +5,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdlib>
+#include <string>
+
+#ifndef __cpp_lib_to_chars
+#include <locale.h>
+#endif
 
 namespace vdb_madf::detail {
 
@@ -15,6 +21,28 @@ constexpr size_t kMaxQuote = 60;
 constexpr char kWhite[] = " \t\r\n\f\v";
 
 template <typename T>
+std::from_chars_result readNumber(const char* begin, const char* end, T& value) {
+  return std::from_chars(begin, end, value);
+}
+
+#ifndef __cpp_lib_to_chars
+/// libc++ before 20 reads integers alone in this way.
+std::from_chars_result readNumber(const char* begin, const char* end, double& value) {
+  static const locale_t kPoint = ::newlocale(LC_ALL_MASK, "C", nullptr);
+  const std::string text(begin, end);
+  char* last = nullptr;
+  value = ::strtod_l(text.c_str(), &last, kPoint);
+  const bool isRead = last != text.c_str() && *begin != '+' && *begin != ' ';
+  return {begin + (last - text.c_str()), isRead ? std::errc() : std::errc::invalid_argument};
+}
+#endif
+
+std::string withPrecision(double value, std::chars_format format, int digits) {
+  char text[400];  // 1.8e308 has 309 digits before the point
+  return {text, std::to_chars(text, text + sizeof text, value, format, digits).ptr};
+}
+
+template <typename T>
 std::optional<std::vector<T>> numbers(const std::string& text) {
   std::vector<T> values;
   size_t begin = 0;
@@ -23,7 +51,7 @@ std::optional<std::vector<T>> numbers(const std::string& text) {
     const char* first = text.data() + begin;
     if (*first == '+') ++first;
     T value{};
-    const auto result = std::from_chars(first, text.data() + end, value);
+    const auto result = readNumber(first, text.data() + end, value);
     if (result.ec != std::errc() || result.ptr != text.data() + end) return std::nullopt;
     values.push_back(value);
     begin = end;
@@ -48,6 +76,25 @@ std::string inQuotes(const std::string& text) {
   for (char& c : printable)
     if (static_cast<unsigned char>(c) < ' ' || c == 127) c = '?';
   return printable + (text.size() > kMaxQuote ? "...'" : "'");
+}
+
+LeadingReal leadingReal(const std::string& text) {
+  const size_t begin = text.find_first_not_of(kWhite);
+  if (begin == std::string::npos) return {};
+  const char* first = text.data() + begin;
+  if (*first == '+' && first[1] != '-') ++first;
+  LeadingReal result;
+  const auto [end, error] = readNumber(first, text.data() + text.size(), result.value);
+  if (error == std::errc()) result.length = size_t(end - text.data());
+  return result;
+}
+
+std::string generalDecimal(double value, int digits) {
+  return withPrecision(value, std::chars_format::general, digits);
+}
+
+std::string fixedDecimal(double value, int digits) {
+  return withPrecision(value, std::chars_format::fixed, digits);
 }
 
 std::optional<std::vector<int64_t>> integers(const std::string& text) {

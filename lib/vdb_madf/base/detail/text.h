@@ -22,6 +22,16 @@ std::string inQuotes(const std::string& text);
 /// All of the text as numbers between white space, independent of the locale.
 std::optional<std::vector<int64_t>> integers(const std::string& text);
 std::optional<std::vector<double>> reals(const std::string& text);
+/// The number that a text begins with, after white space and a plus sign, and how many characters it
+/// takes: 0 if there is none. The decimal sign is a point in every locale.
+struct LeadingReal {
+  double value = 0;
+  size_t length = 0;
+};
+LeadingReal leadingReal(const std::string& text);
+/// As printf's %.<digits>g and %.<digits>f, but with a point in every locale.
+std::string generalDecimal(double value, int digits);
+std::string fixedDecimal(double value, int digits);
 /// The shortest decimal that reads back as the same number. Returns its end; it has at most
 /// kDecimalBytes.
 constexpr size_t kDecimalBytes = 64;

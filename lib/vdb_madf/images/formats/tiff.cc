@@ -4,7 +4,6 @@
 #include "vdb_madf/images/formats/tiff.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -50,12 +49,7 @@ double decimalOfReciprocal(float number) {
   constexpr int kMaxDigits = 8;
   const double exact = 1.0 / double(number);
   for (int digits = 1; digits <= kMaxDigits; ++digits) {
-    char text[32];
-    const auto end =
-        std::to_chars(text, text + sizeof text, exact, std::chars_format::scientific, digits - 1)
-            .ptr;
-    double decimal = 0;
-    std::from_chars(text, end, decimal);
+    const double decimal = leadingReal(generalDecimal(exact, digits)).value;
     if (std::abs(1.0 / decimal - double(number)) <=
         std::numeric_limits<float>::epsilon() * double(number))
       return decimal;

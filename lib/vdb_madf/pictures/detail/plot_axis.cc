@@ -2,18 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "vdb_madf/pictures/detail/plot_axis.h"
+#include "vdb_madf/base/detail/text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace vdb_madf::detail {
 
 std::string plotNumber(double value) {
-  std::ostringstream text;
-  text.precision(6);
-  text << value;
-  return text.str();
+  return generalDecimal(value, 6);
 }
 
 PlotAxis::PlotAxis(std::vector<double> values, bool logarithmic, double begin, double end,
