@@ -3,6 +3,9 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
+# All that is installed: what to build before `cmake --install`, without the tests.
+add_custom_target(vdb_madf_product)
+
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/vdb_madf)
 set(room_table "")
 get_property(rooms GLOBAL PROPERTY vdb_madf_rooms)
@@ -13,11 +16,13 @@ foreach(room IN LISTS rooms)
     INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(EXPORT vdb_madf_${room} NAMESPACE vdb_madf:: DESTINATION ${package_dir}
     COMPONENT library)
+  add_dependencies(vdb_madf_product vdb_madf_${room})
   get_property(uses GLOBAL PROPERTY vdb_madf_${room}_uses)
   get_property(packages GLOBAL PROPERTY vdb_madf_${room}_packages)
   string(APPEND room_table
     "set(_vdb_madf_${room}_uses ${uses})\nset(_vdb_madf_${room}_packages ${packages})\n")
 endforeach()
+add_dependencies(vdb_madf_product vdb_madf_checked_decompression)
 install(TARGETS vdb_madf_checked_decompression EXPORT vdb_madf_checked_decompression
   OBJECTS DESTINATION ${CMAKE_INSTALL_LIBDIR}/vdb_madf COMPONENT library)
 install(EXPORT vdb_madf_checked_decompression NAMESPACE vdb_madf:: DESTINATION ${package_dir}
@@ -55,14 +60,18 @@ configure_file(cmake/vdb_madf.pc.in ${PROJECT_BINARY_DIR}/vdb_madf.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/vdb_madf.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
   COMPONENT library)
 
+if(TARGET vdb_madf_python)
+  add_dependencies(vdb_madf_product vdb_madf_python)
+endif()
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR}
   COMPONENT documents)
 if(VDB_MADF_BUILD_TOOLS)
   install(TARGETS vdb_madf_tool DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT command)
+  add_dependencies(vdb_madf_product vdb_madf_tool vdb_madf_completion)
   if(TARGET vdb_madf_mpi_tool)
     install(TARGETS vdb_madf_mpi_tool DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT mpi)
+    add_dependencies(vdb_madf_product vdb_madf_mpi_tool)
   endif()
-  # (OPTIONAL: made with everything, not with the command alone.)
   set(made ${PROJECT_BINARY_DIR}/tools)
   if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
     set(zsh_functions zsh/vendor-completions)  # Debian's place for what is no part of zsh
@@ -75,5 +84,8 @@ if(VDB_MADF_BUILD_TOOLS)
     DESTINATION ${CMAKE_INSTALL_DATADIR}/${zsh_functions})
   install(FILES ${made}/completion.fish RENAME vdb_madf.fish COMPONENT command OPTIONAL
     DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+  if(TARGET vdb_madf_man_pages)
+    add_dependencies(vdb_madf_product vdb_madf_man_pages)
+  endif()
   install(DIRECTORY ${made}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT command OPTIONAL)
 endif()
