@@ -1,9 +1,20 @@
 # The libraries of the rooms.
+if(NOT PROJECT_IS_TOP_LEVEL)
+  # What is found here is linked where the project around this one is.
+  set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
+endif()
 include(OpenVDBModule)
 find_package(OpenVDB 10.0 REQUIRED)
+if(OpenVDB_VERSION VERSION_GREATER_EQUAL 14)
+  message(STATUS "OpenVDB ${OpenVDB_VERSION} is newer than 13, up to which .vdb files are compressed by all "
+    "threads: they are written more slowly")
+endif()
 unset(BUILD_SHARED_LIBS)  # set by FindOpenVDB in this scope; our library says STATIC itself
 find_package(TBB REQUIRED)
-find_package(Eigen3 3.3 REQUIRED)
+find_package(Eigen3 REQUIRED)  # 3.3 or newer: 5 says that it is not compatible with 3
+if(Eigen3_VERSION VERSION_LESS 3.3)
+  message(FATAL_ERROR "Eigen ${Eigen3_VERSION} is too old: 3.3 or newer is wanted")
+endif()
 find_package(Qhull 8.0 REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(TIFF REQUIRED)
@@ -27,10 +38,18 @@ if(NOT TARGET SerialHDF5::hdf5)
 endif()
 
 option(VDB_MADF_MPI "Build vdb_madf_mpi if MPI is found" ON)
+unset(VDB_MADF_HAS_MPI CACHE)  # it may have been installed since
 if(VDB_MADF_MPI)
   set(MPI_CXX_SKIP_MPICXX ON)
   find_package(MPI QUIET COMPONENTS CXX)
+  # Without a compiler of its own, CMake takes any for one that knows MPI.
+  include(CheckIncludeFileCXX)
+  set(CMAKE_REQUIRED_LIBRARIES ${MPI_CXX_LIBRARIES})
+  set(CMAKE_REQUIRED_INCLUDES ${MPI_CXX_INCLUDE_DIRS})
+  check_include_file_cxx(mpi.h VDB_MADF_HAS_MPI)
+  unset(CMAKE_REQUIRED_LIBRARIES)
+  unset(CMAKE_REQUIRED_INCLUDES)
 endif()
-if(NOT TARGET MPI::MPI_CXX)
+if(NOT VDB_MADF_HAS_MPI)
   message(STATUS "vdb_madf_mpi will not be built: no MPI, or VDB_MADF_MPI is off")
 endif()

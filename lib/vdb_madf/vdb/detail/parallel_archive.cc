@@ -163,7 +163,7 @@ void ParallelArchive::writeAll(std::ostream& stream, const std::vector<GridBase:
 
 void ParallelArchive::writeOne(io::GridDescriptor& descriptor, const GridBase::ConstPtr& grid,
                                std::ostream& stream, Interrupter* interrupter) const {
-  const bool isKnown = OPENVDB_LIBRARY_MAJOR_VERSION_NUMBER == 10 && hasBloscCompression();
+  const bool isKnown = OPENVDB_LIBRARY_MAJOR_VERSION_NUMBER <= 13 && hasBloscCompression();
   if (isKnown && grid->isType<Int32Grid>())
     writeAs<Int32Grid>(descriptor, *grid, stream, interrupter);
   else if (isKnown && grid->isType<FloatGrid>() && !grid->saveFloatAsHalf())

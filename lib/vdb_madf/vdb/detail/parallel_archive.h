@@ -12,7 +12,7 @@
 
 namespace vdb_madf::detail {
 
-/// Writes the bytes that openvdb::io::File writes (but for the random UUID), in less time: OpenVDB 10
+/// Writes the bytes that openvdb::io::File writes (but for the random UUID), in less time: OpenVDB (10 to 13)
 /// compresses each leaf node twice, to learn sizes on all threads and to write on one; here it is done
 /// once, on all threads.
 ///
