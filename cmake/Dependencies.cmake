@@ -3,13 +3,14 @@ if(NOT PROJECT_IS_TOP_LEVEL)
   # What is found here is linked where the project around this one is.
   set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
 endif()
+set(VDB_MADF_SHARED ${BUILD_SHARED_LIBS})
 include(OpenVDBModule)
 find_package(OpenVDB 10.0 REQUIRED)
 if(OpenVDB_VERSION VERSION_GREATER_EQUAL 14)
   message(STATUS "OpenVDB ${OpenVDB_VERSION} is newer than 13, up to which .vdb files are compressed by all "
     "threads: they are written more slowly")
 endif()
-unset(BUILD_SHARED_LIBS)  # set by FindOpenVDB in this scope; our library says STATIC itself
+unset(BUILD_SHARED_LIBS)  # set by FindOpenVDB in this scope; our rooms say STATIC themselves
 find_package(TBB REQUIRED)
 find_package(Eigen3 REQUIRED)  # 3.3 or newer: 5 says that it is not compatible with 3
 if(Eigen3_VERSION VERSION_LESS 3.3)

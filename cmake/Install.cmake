@@ -28,6 +28,18 @@ install(TARGETS vdb_madf_checked_decompression EXPORT vdb_madf_checked_decompres
 install(EXPORT vdb_madf_checked_decompression NAMESPACE vdb_madf:: DESTINATION ${package_dir}
   COMPONENT library)
 
+# (A component of its own, so that it is installed on demand where it is not asked for.)
+if(VDB_MADF_SHARED)
+  set(shared_component library)
+  add_dependencies(vdb_madf_product vdb_madf_shared)
+else()
+  set(shared_component shared EXCLUDE_FROM_ALL)
+endif()
+install(TARGETS vdb_madf_shared EXPORT vdb_madf_shared
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${shared_component})
+install(EXPORT vdb_madf_shared NAMESPACE vdb_madf:: DESTINATION ${package_dir}
+  COMPONENT ${shared_component})
+
 configure_package_config_file(cmake/vdb_madfConfig.cmake.in
   ${PROJECT_BINARY_DIR}/vdb_madfConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/vdb_madfConfigVersion.cmake

@@ -17,7 +17,10 @@
 #include "vdb_madf/vdb/write_vdb.h"
 #include "vdb_madf/volumes/write_image.h"
 
+bool segmentsArrays();  // array.cc
+
 int main() {
+  if (!segmentsArrays()) return 1;
   vdb_madf::initialize();
   vdb_madf::SinteredOptions sample;
   sample.size = {64, 64, 64};

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/volumes/segment_array.h"
+
+#include <string>
+#include <utility>
+
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/limits.h"
+#include "vdb_madf/method/segment.h"
+#include "vdb_madf/volumes/dense_volume.h"
+
+namespace vdb_madf {
+
+ArraySegmentation segmentArray(const uint8_t* mask, const std::array<int64_t, 3>& size,
+                               const ArrayOptions& options, Interrupter* interrupter) {
+  for (const int64_t side : size)
+    if (side < 1 || side > kMaxImageSide)
+      throw InvalidInput("an array of " + std::to_string(size[0]) + " x " +
+                         std::to_string(size[1]) + " x " + std::to_string(size[2]) +
+                         " voxels: each side has to be from 1 to " + std::to_string(kMaxImageSide));
+  const DenseLayout layout{SampleType::uint8,
+                           {Coord(0), Coord(int(size[0]) - 1, int(size[1]) - 1, int(size[2]) - 1)},
+                           std::nullopt};
+  SegmentOptions all;
+  all.gamma = options.gamma;
+  all.merge.theta = options.theta;
+  all.merge.delta = options.delta;
+  Segmentation found =
+      segment(*maskFromDense(mask, layout, {}, options.voxelSize, interrupter), all, interrupter);
+  ArraySegmentation result;
+  result.labels.resize(size_t(size[0]) * size_t(size[1]) * size_t(size[2]));
+  DenseLayout out = layout;
+  out.type = SampleType::int32;
+  copyToDense(*found.grain, result.labels.data(), out, interrupter);
+  result.grainVoxels = std::move(found.grainVoxels);
+  return result;
+}
+
+}  // namespace vdb_madf
