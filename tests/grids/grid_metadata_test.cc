@@ -24,7 +24,7 @@ using openvdb::Vec3d;
 using openvdb::Vec3i;
 using openvdb::Vec3IMetadata;
 
-std::string text(const openvdb::MetaMap& metadata, const std::string& key) {
+std::string textAt(const openvdb::MetaMap& metadata, const std::string& key) {
   const auto value = metadata.getMetadata<StringMetadata>(key);
   return value ? value->value() : "(absent)";
 }
@@ -129,7 +129,7 @@ TEST_CASE("grid_metadata: three edges come back and place the voxels", "[grid_me
     setVoxelSize(*grid, size);
     CHECK((*grid)["madf_voxel_size_m"] == nullptr);  // who knows cubes alone must not read one
     CHECK(storedVoxelSize(*grid)->edges() == edges);
-    CHECK(text(*grid, "madf_length_unit") == size.unit());
+    CHECK(textAt(*grid, "madf_length_unit") == size.unit());
     const Vec3d place = grid->indexToWorld(Coord(7, -2, 9));
     const auto inUnit = size.edgesInUnit();
     CHECK(place.eq(Vec3d(7 * inUnit[0], -2 * inUnit[1], 9 * inUnit[2]), 1e-12));
@@ -159,7 +159,7 @@ TEST_CASE("grid_metadata: a voxel size comes back and places the voxels", "[grid
     REQUIRE(storedVoxelSize(*grid).has_value());
     CHECK(storedVoxelSize(*grid)->edge() == metres);
     CHECK(grid->getMetadata<DoubleMetadata>("madf_voxel_size_m")->value() == metres);
-    CHECK(text(*grid, "madf_length_unit") == VoxelSize{metres}.unit());
+    CHECK(textAt(*grid, "madf_length_unit") == VoxelSize{metres}.unit());
     // The centre of voxel p lies at p * size; the unit is the only thing between the two.
     const double edge = metres * (VoxelSize{metres}.unit() == "mm" ? 1e3 : 1e6);
     const Coord p(rng.between(-999, 999), rng.between(-999, 999), rng.between(-999, 999));
@@ -185,7 +185,7 @@ TEST_CASE("grid_metadata: without a size one voxel is one unit", "[grid_metadata
   CHECK_FALSE(storedVoxelSize(*grid).has_value());
   setVoxelSize(*grid, VoxelSize{1e-8});
   setVoxelSize(*grid, VoxelSize{1e-5});  // another unit
-  CHECK(text(*grid, "madf_length_unit") == "mm");
+  CHECK(textAt(*grid, "madf_length_unit") == "mm");
   setVoxelSize(*grid, std::nullopt);
   CHECK_FALSE(storedVoxelSize(*grid).has_value());
   CHECK(all(*grid).empty());
@@ -223,10 +223,10 @@ TEST_CASE("grid_metadata: provenance is copied, and nothing else", "[grid_metada
   CHECK(to->getName() == "to");
   CHECK(storedDomain(*to) == storedDomain(*from));
   CHECK(storedVoxelSize(*to)->edge() == 3e-6);
-  CHECK(text(*to, "madf_length_unit") == "mm");
-  CHECK(text(*to, "madf_source") == "scan.tif");
-  CHECK(text(*to, "madf_boundary") == "open");
-  CHECK(text(*to, "kept") == "as it was");
+  CHECK(textAt(*to, "madf_length_unit") == "mm");
+  CHECK(textAt(*to, "madf_source") == "scan.tif");
+  CHECK(textAt(*to, "madf_boundary") == "open");
+  CHECK(textAt(*to, "kept") == "as it was");
   CHECK((*to)["madf_theta"] == nullptr);
   CHECK((*to)["remark"] == nullptr);
   CHECK(to->transform() == from->transform());

@@ -17,7 +17,7 @@ struct ActiveValue {
 };
 
 /// Voxels and tiles, active or not, around the origin.
-Int32Grid::Ptr randomGrid(unsigned seed, int background) {
+Int32Grid::Ptr gridWithTiles(unsigned seed, int background) {
   std::mt19937 random(seed);
   const auto grid = Int32Grid::create(background);
   const auto place = [&] {
@@ -36,7 +36,8 @@ Int32Grid::Ptr randomGrid(unsigned seed, int background) {
 
 /// Voxels that differ from what the grid says of them one by one; what lies beyond the slab counts.
 template <typename ValueOf>
-size_t differences(const Int32Grid& grid, const CoordBBox& box, int z, int count, bool parallel) {
+size_t slabDifferences(const Int32Grid& grid, const CoordBBox& box, int z, int count,
+                       bool parallel) {
   constexpr int32_t kUntouched = -12345;
   const detail::GridSlabs<Int32Tree, ValueOf> slabs(grid.tree(), box);
   const CoordBBox slab = detail::slicesOf(box, z, count);
@@ -60,7 +61,7 @@ size_t differences(const Int32Grid& grid, const CoordBBox& box, int z, int count
 
 TEST_CASE("grid_slabs: slices from anywhere to anywhere equal the voxels", "[grid_slabs]") {
   for (const int background : {0, 5}) {
-    const auto grid = randomGrid(3, background);
+    const auto grid = gridWithTiles(3, background);
     for (const CoordBBox& box :
          {CoordBBox(Coord(-25, -10, -30), Coord(24, 29, 29)),
           CoordBBox(Coord(-3, 2, -13), Coord(11, 12, 6)), CoordBBox(Coord(0), Coord(0)),
@@ -69,9 +70,9 @@ TEST_CASE("grid_slabs: slices from anywhere to anywhere equal the voxels", "[gri
         for (const int count : {1, 2, 8, 9, 20}) {
           if (z + count - 1 > box.max().z()) continue;
           CAPTURE(background, box, z, count);
-          REQUIRE(differences<detail::StoredValue>(*grid, box, z, count, false) == 0);
-          REQUIRE(differences<detail::StoredValue>(*grid, box, z, count, true) == 0);
-          REQUIRE(differences<ActiveValue>(*grid, box, z, count, false) == 0);
+          REQUIRE(slabDifferences<detail::StoredValue>(*grid, box, z, count, false) == 0);
+          REQUIRE(slabDifferences<detail::StoredValue>(*grid, box, z, count, true) == 0);
+          REQUIRE(slabDifferences<ActiveValue>(*grid, box, z, count, false) == 0);
         }
   }
 }

@@ -25,15 +25,15 @@ using namespace vdb_madf::test;
 
 namespace {
 
-const ImageSize kSize{19, 17, 4};
+const ImageSize kCorpusSize{19, 17, 4};
 /// Shared by the files of a format.
 const int kMutationsPerFormat = mutationsPerFormat(5000);
 /// The files have some kilobytes; a reader's buffers of fixed size and a stray page are allowed.
-constexpr uint64_t kMemory = uint64_t(64) << 20;
+constexpr uint64_t kCorpusMemory = uint64_t(64) << 20;
 /// Of zlib.
 constexpr uint64_t kDeflate = 1032;
 
-struct Sample {
+struct CorpusSample {
   std::string format, path;                  ///< what is opened
   std::map<std::string, std::string> files;  ///< relative path to bytes
   std::string changed;                       ///< the file that is damaged
@@ -54,14 +54,14 @@ struct Sample {
   }
 };
 
-Sample oneFile(const std::string& format, const std::string& name, const std::string& bytes,
-               size_t headerBytes, uint64_t expansion = 1) {
+CorpusSample oneFile(const std::string& format, const std::string& name, const std::string& bytes,
+                     size_t headerBytes, uint64_t expansion = 1) {
   return {format, name, {{name, bytes}}, name, headerBytes, expansion, true};
 }
 
-void addHeaderFiles(std::vector<Sample>& all) {
-  const std::string bytes = randomSamples(SampleType::int16, voxels(kSize), 1);
-  const std::string small = randomSamples(SampleType::uint8, voxels(kSize), 2);
+void addHeaderFiles(std::vector<CorpusSample>& all) {
+  const std::string bytes = randomSamples(SampleType::int16, voxels(kCorpusSize), 1);
+  const std::string small = randomSamples(SampleType::uint8, voxels(kCorpusSize), 2);
   std::string labels;
   for (const char c : small) labels += c + std::string(7, '\0');
   const std::string npy =
@@ -71,12 +71,13 @@ void addHeaderFiles(std::vector<Sample>& all) {
       npyHeader("{'descr': '>i8', 'fortran_order': False, 'shape': (4, 17, 19), }", 2);
   all.push_back(oneFile("npy", "a.npy", wide + swapped(labels, 8), wide.size()));
   IsqLayout isq;
-  isq.voxels = kSize;
+  isq.voxels = kCorpusSize;
   isq.micrometres = ImageSize{190, 170, 40};
   isq.blocks = 1;
   all.push_back(oneFile("isq", "a.isq", isqFile(isq, bytes), 80));
   for (const int version : {3, 4}) {
-    const CompoundFileBytes txm = CompoundWriter(version, 0).write(txmStreams(kSize, 4, bytes));
+    const CompoundFileBytes txm =
+        CompoundWriter(version, 0).write(txmStreams(kCorpusSize, 4, bytes));
     all.push_back(oneFile("txm", "a.txm", txm.bytes, txm.bytes.size()));
   }
   NiftiLayout nifti;
@@ -110,11 +111,11 @@ void addHeaderFiles(std::vector<Sample>& all) {
       {"pyhst", "a.vol", {{"a.vol", bytes}, {"a.vol.info", info}}, "a.vol", 100, 1, true});
 }
 
-void addPictures(std::vector<Sample>& all) {
+void addPictures(std::vector<CorpusSample>& all) {
   const size_t slice = 19 * 17;
   const auto add = [&](const std::string& kind, const auto& picture, uint64_t expansion) {
     const std::string samples = randomSamples(SampleType::uint8, 2 * slice * 4, 3);
-    Sample sample{kind, "s", {}, "s/2." + kind, 90, expansion, true};
+    CorpusSample sample{kind, "s", {}, "s/2." + kind, 90, expansion, true};
     for (size_t z = 0; z < 4; ++z)
       sample.files["s/" + std::to_string(z) + "." + kind] =
           picture(samples.substr(2 * z * slice, 2 * slice));
@@ -150,7 +151,7 @@ void addPictures(std::vector<Sample>& all) {
         return bmpFile({19, 17, 1, true, false, "aaaabbbb", 0, 0}, s.substr(0, 3 * 17));
       },
       8);
-  Sample log = all.back();
+  CorpusSample log = all.back();
   log.files["s/rec.log"] =
       "[Acquisition]\nImage Pixel Size (um)= 8.4\n[Reconstruction]\nPixel Size (um)=8.5\n";
   log.changed = "s/rec.log";
@@ -158,10 +159,10 @@ void addPictures(std::vector<Sample>& all) {
   all.push_back(log);
 }
 
-void addZarr(std::vector<Sample>& all) {
-  const std::string samples = randomSamples(SampleType::uint16, voxels(kSize), 6);
+void addZarr(std::vector<CorpusSample>& all) {
+  const std::string samples = randomSamples(SampleType::uint16, voxels(kCorpusSize), 6);
   for (const std::string codec : {"", "zlib", "lz4", "zstd", "blosclz"}) {
-    const ZarrLayout layout{kSize, ImageSize{10, 9, 2}, "<u2", 2, codec, "C", ".", "0", 0};
+    const ZarrLayout layout{kCorpusSize, ImageSize{10, 9, 2}, "<u2", 2, codec, "C", ".", "0", 0};
     std::map<std::string, std::string> files;
     for (const auto& [name, bytes] : zarrFiles(layout, samples)) files["z/0/" + name] = bytes;
     files["z/.zattrs"] =
@@ -179,11 +180,11 @@ void addZarr(std::vector<Sample>& all) {
   }
 }
 
-void addZarr3(std::vector<Sample>& all) {
-  const std::string samples = randomSamples(SampleType::uint16, voxels(kSize), 7);
+void addZarr3(std::vector<CorpusSample>& all) {
+  const std::string samples = randomSamples(SampleType::uint16, voxels(kCorpusSize), 7);
   const auto addArray = [&](bool sharded, const std::vector<std::string>& codecs,
                             const std::vector<std::string>& indexCodecs) {
-    Zarr3Layout layout{kSize, ImageSize{10, 9, 2}};
+    Zarr3Layout layout{kCorpusSize, ImageSize{10, 9, 2}};
     if (sharded) layout.shard = ImageSize{20, 9, 4};
     layout.type = "uint16";
     layout.bytes = 2;
@@ -213,8 +214,8 @@ bool reads(const std::string& path) {
   }
 }
 
-std::vector<Sample> samples() {
-  std::vector<Sample> all;
+std::vector<CorpusSample> corpusSamples() {
+  std::vector<CorpusSample> all;
   addHeaderFiles(all);
   addPictures(all);
   addZarr(all);
@@ -225,11 +226,11 @@ std::vector<Sample> samples() {
 }  // namespace
 
 TEST_CASE("image_corpus: the samples are sound", "[image_corpus]") {
-  for (const Sample& sample : samples()) {
+  for (const CorpusSample& sample : corpusSamples()) {
     const ScratchFolder folder;
     sample.write(folder);
     CAPTURE(sample.format);
-    CHECK(openImage(folder / sample.path)->info().size == kSize);
+    CHECK(openImage(folder / sample.path)->info().size == kCorpusSize);
     CHECK(sample.format.find(openImage(folder / sample.path)->info().format) == 0);
     CHECK(complaint(folder / sample.path, sample.bytes(), sample.expansion) == "");
   }
@@ -239,10 +240,10 @@ TEST_CASE("image_corpus: files cut short are refused with one line that names th
           "[image_corpus]") {
   const ScratchFolder other;
   CapturedStderr output(other / "stderr");
-  for (const Sample& sample : samples()) {
+  for (const CorpusSample& sample : corpusSamples()) {
     const ScratchFolder folder;
     sample.write(folder);
-    const MemoryLimit limit(kMemory);
+    const MemoryLimit limit(kCorpusMemory);
     const std::string &path = folder / sample.path, whole = sample.files.at(sample.changed);
     const size_t step = whole.size() / 150 + 1;
     for (size_t length = 0; length < whole.size(); length += step) {
@@ -261,14 +262,14 @@ TEST_CASE("image_corpus: changed files read or are refused with one line that na
   const ScratchFolder other;
   CapturedStderr output(other / "stderr");
   unsigned seed = 1000;
-  const std::vector<Sample> all = samples();
-  for (const Sample& sample : all) {
-    const auto files = std::count_if(all.begin(), all.end(), [&](const Sample& another) {
+  const std::vector<CorpusSample> all = corpusSamples();
+  for (const CorpusSample& sample : all) {
+    const auto files = std::count_if(all.begin(), all.end(), [&](const CorpusSample& another) {
       return another.format == sample.format;
     });
     const ScratchFolder folder;
     sample.write(folder);
-    const MemoryLimit limit(kMemory);
+    const MemoryLimit limit(kCorpusMemory);
     const std::string& whole = sample.files.at(sample.changed);
     for (int i = 0; i < kMutationsPerFormat / files; ++i) {
       const std::string bytes = mutated(whole, sample.headerBytes, ++seed);
@@ -288,7 +289,7 @@ TEST_CASE("image_corpus: PNG of sound checksums and unsound content", "[image_co
   const std::string path = folder / "a.png", samples = randomSamples(SampleType::uint8, 19 * 17, 4);
   const std::string file = pngFile({19, 17, 8, 0, true}, samples);
   const size_t first = 8 + 8;  // of the header's 13 bytes, behind signature, length and kind
-  const MemoryLimit limit(kMemory);
+  const MemoryLimit limit(kCorpusMemory);
   std::mt19937 random(5);
   for (int i = 0; i < kMutationsPerFormat; ++i) {
     std::string header = file.substr(first, 13), rows;

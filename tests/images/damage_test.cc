@@ -19,15 +19,15 @@ using namespace vdb_madf::test;
 
 namespace {
 
-const ImageSize kSize{19, 17, 4};
+const ImageSize kDamagedSize{19, 17, 4};
 constexpr int kMutationsPerFile = 1500;
 /// What a header may make us allocate, as a multiple of the file: Deflate's and LZW's expansion,
 /// and eight slices at a time.
 constexpr uint64_t kMaxExpansion = 8 * 4096;
 /// The files have some kilobytes; a reader's buffers of fixed size and a stray page are allowed.
-constexpr uint64_t kMemory = uint64_t(64) << 20;
+constexpr uint64_t kDamageMemory = uint64_t(64) << 20;
 
-struct Sample {
+struct SampleFile {
   std::string name, bytes;
   /// Beside the file, for detached headers.
   std::string dataName, data;
@@ -36,14 +36,15 @@ struct Sample {
 
 std::string tiff(const ScratchFolder& folder, SampleType type, const TiffLayout& layout) {
   const std::string path = folder / "sample.tif";
-  const size_t row = layout.bits == 1 ? size_t(kSize.x + 7) / 8 : size_t(kSize.x);
-  std::string bytes = randomSamples(type, row * size_t(kSize.y) * size_t(kSize.z), 21);
-  writeTiff(path, kSize, type, bytes, layout);
+  const size_t row = layout.bits == 1 ? size_t(kDamagedSize.x + 7) / 8 : size_t(kDamagedSize.x);
+  std::string bytes =
+      randomSamples(type, row * size_t(kDamagedSize.y) * size_t(kDamagedSize.z), 21);
+  writeTiff(path, kDamagedSize, type, bytes, layout);
   return readFile(path);
 }
 
-std::vector<Sample> samples(const ScratchFolder& folder) {
-  std::vector<Sample> all;
+std::vector<SampleFile> sampleFiles(const ScratchFolder& folder) {
+  std::vector<SampleFile> all;
   for (const int compression :
        {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS})
     for (const std::string mode : {"wl", "wb8"})
@@ -66,7 +67,7 @@ std::vector<Sample> samples(const ScratchFolder& folder) {
     const std::string bytes = tiff(folder, SampleType::uint8, layout);
     all.push_back({"a.tif", bytes, "", "", bytes.size()});
   }
-  const std::string voxelBytes = randomSamples(SampleType::int16, voxels(kSize), 22);
+  const std::string voxelBytes = randomSamples(SampleType::int16, voxels(kDamagedSize), 22);
   const std::string meta =
       "ObjectType = Image\nNDims = 3\nBinaryDataByteOrderMSB = False\nDimSize = 19 17 4\n"
       "ElementSpacing = 0.01 0.01 0.01\nElementType = MET_SHORT\n";
@@ -92,10 +93,10 @@ std::vector<Sample> samples(const ScratchFolder& folder) {
 
 TEST_CASE("image_file: the samples of the damage tests are sound", "[image_file]") {
   const ScratchFolder folder;
-  for (const Sample& sample : samples(folder)) {
+  for (const SampleFile& sample : sampleFiles(folder)) {
     writeFile(folder / sample.name, sample.bytes);
     if (!sample.dataName.empty()) writeFile(folder / sample.dataName, sample.data);
-    CHECK(openImage(folder / sample.name)->info().size == kSize);
+    CHECK(openImage(folder / sample.name)->info().size == kDamagedSize);
     const std::string samples = readAll(*openImage(folder / sample.name));
     CHECK(samples.find_first_not_of('\0') != std::string::npos);
   }
@@ -105,7 +106,7 @@ TEST_CASE("image_file: files cut short are refused with one line that names them
   const ScratchFolder folder;
   const ScratchFolder other;
   CapturedStderr output(other / "stderr");
-  for (const Sample& sample : samples(folder)) {
+  for (const SampleFile& sample : sampleFiles(folder)) {
     const std::string path = folder / sample.name;
     const size_t step = sample.bytes.size() / 150 + 1;
     for (size_t length = 0; length < sample.bytes.size(); length += step) {
@@ -127,7 +128,7 @@ TEST_CASE("image_file: files cut short are refused with one line that names them
 
 TEST_CASE("image_file: a truncated volume is never read as a shorter one", "[image_file]") {
   const ScratchFolder folder;
-  for (const Sample& sample : samples(folder)) {
+  for (const SampleFile& sample : sampleFiles(folder)) {
     if (!sample.dataName.empty()) continue;
     const std::string path = folder / sample.name;
     for (const size_t missing : {1u, 5u, 200u, 600u}) {
@@ -136,7 +137,7 @@ TEST_CASE("image_file: a truncated volume is never read as a shorter one", "[ima
       try {
         const auto image = openImage(path);
         readAll(*image);
-        CHECK(image->info().size == kSize);  // only padding was lost
+        CHECK(image->info().size == kDamagedSize);  // only padding was lost
       } catch (const IoError&) {
         SUCCEED();
       }
@@ -150,15 +151,15 @@ TEST_CASE("image_file: mutated files read or are refused with one line that name
   const ScratchFolder other;
   CapturedStderr output(other / "stderr");
   unsigned seed = 1000;
-  const std::vector<Sample> all = samples(folder);
-  for (const Sample& sample : all) {
+  const std::vector<SampleFile> all = sampleFiles(folder);
+  for (const SampleFile& sample : all) {
     const std::string path = folder / sample.name;
-    const auto files = std::count_if(all.begin(), all.end(), [&](const Sample& another) {
+    const auto files = std::count_if(all.begin(), all.end(), [&](const SampleFile& another) {
       return another.name.substr(0, 3) == sample.name.substr(0, 3);  // of the format
     });
     if (!sample.dataName.empty()) writeFile(folder / sample.dataName, sample.data);
     const int mutations = mutationsPerFormat(kMutationsPerFile * int(files)) / int(files);
-    const MemoryLimit limit(kMemory);
+    const MemoryLimit limit(kDamageMemory);
     for (int i = 0; i < mutations; ++i) {
       const std::string bytes = mutated(sample.bytes, sample.headerBytes, ++seed);
       writeFile(path, bytes);
@@ -195,8 +196,8 @@ TEST_CASE("image_file: TIFF pages in a circle end", "[image_file]") {
   const std::string path = folder / "a.tif";
   TiffLayout layout;
   layout.mode = "wl";
-  writeTiff(path, kSize, SampleType::uint8, randomSamples(SampleType::uint8, voxels(kSize), 1),
-            layout);
+  writeTiff(path, kDamagedSize, SampleType::uint8,
+            randomSamples(SampleType::uint8, voxels(kDamagedSize), 1), layout);
   std::string bytes = readFile(path);
   const auto word = [&](size_t place, size_t count) {
     uint32_t value = 0;

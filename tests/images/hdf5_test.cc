@@ -36,8 +36,8 @@ TEST_CASE("image_hdf5: a build without the library says so", "[image_hdf5]") {
 
 namespace {
 
-const ImageSize kSize{11, 7, 9};
-const std::vector<hsize_t> kShape{9, 7, 11};
+const ImageSize kHdf5Size{11, 7, 9};
+const std::vector<hsize_t> kHdf5Shape{9, 7, 11};
 
 struct Types {
   hid_t little, big, memory;
@@ -81,9 +81,10 @@ TEST_CASE("image_hdf5: every type, byte order and layout", "[image_hdf5]") {
     for (const bool bigEndian : {false, true})
       for (const int kind : {0, 1, 2, 3}) {
         CAPTURE(sampleTypeName(type), bigEndian, kind);
-        const std::string bytes = randomSamples(type, voxels(kSize), 1);
+        const std::string bytes = randomSamples(type, voxels(kHdf5Size), 1);
         const Types types = typesOf(type);
-        Hdf5Layout layout{kShape, {}, bigEndian ? types.big : types.little, types.memory, 0, {}};
+        Hdf5Layout layout{kHdf5Shape,   {}, bigEndian ? types.big : types.little,
+                          types.memory, 0,  {}};
         if (kind > 0) layout.chunk = {5, 3, 4};
         if (kind > 1) layout.deflate = 3;
         if (kind > 2) {
@@ -93,7 +94,7 @@ TEST_CASE("image_hdf5: every type, byte order and layout", "[image_hdf5]") {
         writeHdf5(path, "entry/data/volume", layout, bytes.data());
         CHECK(looksLikeImage(path));
         const auto image = openImage(path);
-        CHECK(image->info().size == kSize);
+        CHECK(image->info().size == kHdf5Size);
         CHECK(image->info().type == type);
         CHECK(image->info().format == "hdf5");
         CHECK_FALSE(image->info().voxelSize);
@@ -106,8 +107,8 @@ TEST_CASE("image_hdf5: 64-bit labels and h5py's bool", "[image_hdf5]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.h5";
   std::vector<int64_t> labels;
-  for (int i = 0; i < int(voxels(kSize)); ++i) labels.push_back(i % 7 ? i * 1000003 : -i);
-  const Hdf5Layout wide{kShape, {}, H5T_STD_I64BE, H5T_NATIVE_INT64, 0, {}};
+  for (int i = 0; i < int(voxels(kHdf5Size)); ++i) labels.push_back(i % 7 ? i * 1000003 : -i);
+  const Hdf5Layout wide{kHdf5Shape, {}, H5T_STD_I64BE, H5T_NATIVE_INT64, 0, {}};
   writeHdf5(path, "labels", wide, labels.data());
   CHECK(openImage(path)->info().type == SampleType::int32);
   const std::string bytes = readAll(*openImage(path), 2);
@@ -123,8 +124,8 @@ TEST_CASE("image_hdf5: 64-bit labels and h5py's bool", "[image_hdf5]") {
   const hid_t flag = H5Tenum_create(H5T_NATIVE_INT8);
   for (const int8_t value : {0, 1}) H5Tenum_insert(flag, value ? "TRUE" : "FALSE", &value);
   std::string flags;
-  for (size_t i = 0; i < voxels(kSize); ++i) flags += char(i % 3 == 0);
-  writeHdf5(path, "mask", {kShape, {}, flag, flag, 0, {}}, flags.data());
+  for (size_t i = 0; i < voxels(kHdf5Size); ++i) flags += char(i % 3 == 0);
+  writeHdf5(path, "mask", {kHdf5Shape, {}, flag, flag, 0, {}}, flags.data());
   CHECK(openImage(path)->info().type == SampleType::int8);
   CHECK(readAll(*openImage(path), 2) == flags);
   H5Tclose(flag);
@@ -133,8 +134,8 @@ TEST_CASE("image_hdf5: 64-bit labels and h5py's bool", "[image_hdf5]") {
 TEST_CASE("image_hdf5: the dataset is the only volume, or is named", "[image_hdf5]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.h5";
-  const std::string bytes = randomSamples(SampleType::uint8, voxels(kSize), 2);
-  const Hdf5Layout volume{kShape, {}, H5T_STD_U8LE, H5T_NATIVE_UINT8, 0, {8.5, 8.5, 8.5}};
+  const std::string bytes = randomSamples(SampleType::uint8, voxels(kHdf5Size), 2);
+  const Hdf5Layout volume{kHdf5Shape, {}, H5T_STD_U8LE, H5T_NATIVE_UINT8, 0, {8.5, 8.5, 8.5}};
   hid_t file = newHdf5(path);
   addHdf5(file, "g/curve", {{693}, {}, H5T_STD_U8LE, H5T_NATIVE_UINT8, 0, {}}, bytes.data());
   addHdf5(file, "g/v", volume, bytes.data());
@@ -183,8 +184,8 @@ TEST_CASE("image_hdf5: the dataset is the only volume, or is named", "[image_hdf
 TEST_CASE("image_hdf5: several links to one dataset count once", "[image_hdf5]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.h5";
-  const std::string bytes = randomSamples(SampleType::uint8, voxels(kSize), 4);
-  const Hdf5Layout volume{kShape, {}, H5T_STD_U8LE, H5T_NATIVE_UINT8, 0, {}};
+  const std::string bytes = randomSamples(SampleType::uint8, voxels(kHdf5Size), 4);
+  const Hdf5Layout volume{kHdf5Shape, {}, H5T_STD_U8LE, H5T_NATIVE_UINT8, 0, {}};
   const auto write = [&](double x, double y, const std::string& unit) {
     const hid_t file = newHdf5(path);
     addHdf5(file, "entry/instrument/detector/data", volume, bytes.data());
@@ -211,8 +212,8 @@ TEST_CASE("image_hdf5: several links to one dataset count once", "[image_hdf5]")
 TEST_CASE("image_hdf5: samples in other files are read, or said to be missing", "[image_hdf5]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.h5", part = folder / "part.h5";
-  const std::string bytes = randomSamples(SampleType::uint8, voxels(kSize), 5);
-  const Hdf5Layout volume{kShape, {}, H5T_STD_U8LE, H5T_NATIVE_UINT8, 0, {}};
+  const std::string bytes = randomSamples(SampleType::uint8, voxels(kHdf5Size), 5);
+  const Hdf5Layout volume{kHdf5Shape, {}, H5T_STD_U8LE, H5T_NATIVE_UINT8, 0, {}};
   writeHdf5(part, "g/v", volume, bytes.data());
 
   hid_t file = newHdf5(path);
@@ -242,7 +243,7 @@ TEST_CASE("image_hdf5: samples in other files are read, or said to be missing", 
   };
   const auto virtualOf = [&](const std::string& first, const std::string& second) {
     file = newHdf5(path);
-    addVirtualHdf5(file, "v", kShape, {{first, 0, 4}, {second, 4, 5}});
+    addVirtualHdf5(file, "v", kHdf5Shape, {{first, 0, 4}, {second, 4, 5}});
     H5Fclose(file);
     return readAll(*openImage(path), 2);
   };
@@ -261,7 +262,7 @@ TEST_CASE("image_hdf5: samples in other files are read, or said to be missing", 
   CHECK_THROWS_WITH(virtualOf("first.h5", "text.h5"), Contains("text.h5") && Contains("damaged"));
 
   file = newHdf5(path);
-  addHdf5External(file, "d", kShape, "samples.bin");
+  addHdf5External(file, "d", kHdf5Shape, "samples.bin");
   H5Fclose(file);
   CHECK_THROWS_WITH(openImage(path), Contains("raw files") && Contains("h5repack"));
 }
@@ -346,10 +347,10 @@ TEST_CASE("image_hdf5: damaged files read or are refused with one line", "[image
   const ScratchFolder other;
   CapturedStderr output(other / "stderr");
   const std::string path = folder / "a.h5";
-  const std::string bytes = randomSamples(SampleType::uint16, voxels(kSize), 3);
+  const std::string bytes = randomSamples(SampleType::uint16, voxels(kHdf5Size), 3);
   unsigned seed = 1;
   for (const bool chunked : {false, true}) {
-    Hdf5Layout layout{kShape, {}, H5T_STD_U16BE, H5T_NATIVE_UINT16, 0, {2, 2, 2}};
+    Hdf5Layout layout{kHdf5Shape, {}, H5T_STD_U16BE, H5T_NATIVE_UINT16, 0, {2, 2, 2}};
     if (chunked) {
       layout.chunk = {5, 3, 4};
       layout.deflate = 1;

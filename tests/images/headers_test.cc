@@ -19,7 +19,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const ImageSize kSize{5, 4, 3};
+const ImageSize kHeaderSize{5, 4, 3};
 
 std::string wide(const std::string& bytes, SampleType type) {
   std::string out;
@@ -38,13 +38,14 @@ TEST_CASE("image_headers: npy of every type, byte order and version", "[image_he
   const char* names[] = {"u1", "i1", "u2", "i2", "u4", "i4", "f4", "f8"};
   for (const SampleType type : kSampleTypes)
     for (const int version : {1, 2, 3}) {
-      const std::string bytes = randomSamples(type, voxels(kSize), 1), name = names[size_t(type)];
+      const std::string bytes = randomSamples(type, voxels(kHeaderSize), 1),
+                        name = names[size_t(type)];
       CAPTURE(name, version);
       const std::string little = sampleSize(type) == 1 ? "|" : "<";
       writeFile(path, npyFile(little + name, "(3, 4, 5)", bytes, version));
       CHECK(looksLikeImage(path));
       const auto image = openImage(path);
-      CHECK(image->info().size == kSize);
+      CHECK(image->info().size == kHeaderSize);
       CHECK(image->info().type == type);
       CHECK(image->info().format == "npy");
       CHECK_FALSE(image->info().voxelSize);
@@ -62,7 +63,7 @@ TEST_CASE("image_headers: 64-bit labels are read as far as 32 bits go", "[image_
   const std::string path = folder / "a.npy";
   for (const SampleType type : {SampleType::int32, SampleType::uint32}) {
     const std::string kind = type == SampleType::int32 ? "i8" : "u8";
-    const std::string bytes = randomSamples(type, voxels(kSize), 2);
+    const std::string bytes = randomSamples(type, voxels(kHeaderSize), 2);
     std::string stored = wide(bytes, type);
     writeFile(path, npyFile("<" + kind, "(3, 4, 5)", stored));
     const auto image = openImage(path);
@@ -111,10 +112,10 @@ TEST_CASE("image_headers: npy that is no volume says why", "[image_headers]") {
 TEST_CASE("image_headers: NRRD says size, type, spacing and unit", "[image_headers]") {
   const ScratchFolder folder;
   ImageInfo info;
-  info.size = kSize;
+  info.size = kHeaderSize;
   info.type = SampleType::uint16;
   info.voxelSize = VoxelSize{8.5e-6};
-  const std::string bytes = randomSamples(info.type, voxels(kSize), 3);
+  const std::string bytes = randomSamples(info.type, voxels(kHeaderSize), 3);
   const auto writer = createImage(folder / "a.nrrd", info);
   writer->write(3, bytes.data());
   writer->finish();
@@ -128,16 +129,16 @@ TEST_CASE("image_headers: NRRD says size, type, spacing and unit", "[image_heade
 TEST_CASE("image_headers: ISQ", "[image_headers]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.isq";
-  const std::string bytes = randomSamples(SampleType::int16, voxels(kSize), 4);
+  const std::string bytes = randomSamples(SampleType::int16, voxels(kHeaderSize), 4);
   for (const int blocks : {0, 3})
     for (const size_t padding : {size_t(0), size_t(392), size_t(511)}) {
       IsqLayout layout;
-      layout.voxels = kSize;
+      layout.voxels = kHeaderSize;
       layout.micrometres = ImageSize{50, 40, 30};
       layout.blocks = blocks;
       writeFile(path, isqFile(layout, bytes) + std::string(padding, '\0'));
       const auto image = openImage(path);
-      CHECK(image->info().size == kSize);
+      CHECK(image->info().size == kHeaderSize);
       CHECK(image->info().type == SampleType::int16);
       CHECK(image->info().format == "isq");
       CHECK(image->info().voxelSize->edge() == 1e-5);
@@ -145,13 +146,13 @@ TEST_CASE("image_headers: ISQ", "[image_headers]") {
     }
   const auto edge = [&](const ImageSize& micrometres) {
     IsqLayout layout;
-    layout.voxels = kSize;
+    layout.voxels = kHeaderSize;
     layout.micrometres = micrometres;
     writeFile(path, isqFile(layout, bytes));
     return openImage(path)->info().voxelSize->edge();
   };
   IsqLayout layout;
-  layout.voxels = kSize;
+  layout.voxels = kHeaderSize;
   CHECK(edge(ImageSize{52, 41, 31}) == 10.4 / 1e6);  // 10.4 um, each side rounded
   layout.micrometres = ImageSize{50, 40, 60};
   writeFile(path, isqFile(layout, bytes));
@@ -189,14 +190,14 @@ TEST_CASE("image_headers: NIfTI-1, plain and compressed, in either byte order", 
         layout.units = 2 + 8;  // mm, s
         layout.bigEndian = bigEndian;
         layout.offset = 368;
-        const std::string bytes = randomSamples(type, voxels(kSize), 5);
+        const std::string bytes = randomSamples(type, voxels(kHeaderSize), 5);
         std::string file = niftiFile(layout, bigEndian ? swapped(bytes, sampleSize(type)) : bytes);
         if (compressed) file = deflated(file, 31);
         const std::string path = folder / (compressed ? "a.nii.gz" : "a.nii");
         writeFile(path, file);
         CHECK(looksLikeImage(path));
         const auto image = openImage(path);
-        CHECK(image->info().size == kSize);
+        CHECK(image->info().size == kHeaderSize);
         CHECK(image->info().type == type);
         CHECK(image->info().format == "nifti");
         CHECK(image->info().voxelSize->edge() == 8.5e-6);
@@ -211,7 +212,7 @@ TEST_CASE("image_headers: NIfTI-1 applies slope and unit, and says what it canno
           "[image_headers]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.nii";
-  const std::string bytes = randomSamples(SampleType::int16, voxels(kSize), 6);
+  const std::string bytes = randomSamples(SampleType::int16, voxels(kHeaderSize), 6);
   NiftiLayout layout;
   layout.dim = {3, 5, 4, 3};
   layout.type = 4;
@@ -229,7 +230,7 @@ TEST_CASE("image_headers: NIfTI-1 applies slope and unit, and says what it canno
   const auto scaled = open(bytes);
   CHECK(scaled->info().type == SampleType::float32);
   const std::string values = readAll(*scaled, 2);
-  for (size_t i = 0; i < voxels(kSize); ++i) {
+  for (size_t i = 0; i < voxels(kHeaderSize); ++i) {
     int16_t stored;
     float value;
     std::memcpy(&stored, &bytes[2 * i], 2);
@@ -272,7 +273,7 @@ TEST_CASE("image_headers: NIfTI-1 applies slope and unit, and says what it canno
   layout.dim = {5, 5, 4, 3, 1, 1};
   CHECK(readAll(*open(bytes)) == bytes);
   layout.type = 1024;
-  const std::string labels = randomSamples(SampleType::int32, voxels(kSize), 7);
+  const std::string labels = randomSamples(SampleType::int32, voxels(kHeaderSize), 7);
   CHECK(readAll(*open(wide(labels, SampleType::int32)), 2) == labels);
   writeFile(path, deflated("something else that is compressed", 31));
   CHECK_THROWS_AS(openImage(path), IoError);
@@ -281,13 +282,13 @@ TEST_CASE("image_headers: NIfTI-1 applies slope and unit, and says what it canno
 TEST_CASE("image_headers: DGtal's vol and longvol, versions 2 and 3", "[image_headers]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.vol";
-  const std::string bytes = randomSamples(SampleType::uint8, voxels(kSize), 8);
-  const std::string labels = randomSamples(SampleType::uint32, voxels(kSize), 9);
+  const std::string bytes = randomSamples(SampleType::uint8, voxels(kHeaderSize), 8);
+  const std::string labels = randomSamples(SampleType::uint32, voxels(kHeaderSize), 9);
   for (const int version : {2, 3}) {
     CAPTURE(version);
     const auto coded = [&](const std::string& b) { return version == 3 ? deflated(b, 15) : b; };
     writeFile(path, dgtalHeader("Voxel-Size: 1", version) + coded(bytes));
-    CHECK(openImage(path)->info().size == kSize);
+    CHECK(openImage(path)->info().size == kHeaderSize);
     CHECK(openImage(path)->info().format == "vol");
     CHECK_FALSE(openImage(path)->info().voxelSize);
     CHECK(readAll(*openImage(path), 2) == bytes);
@@ -320,7 +321,7 @@ TEST_CASE("image_headers: PyHST's vol with its info file", "[image_headers]") {
   const std::string path = folder / "a.vol", infoPath = folder / "a.vol.info";
   const std::string size = "! PyHST_SLAVE VOLUME INFO FILE\nNUM_X =  5\nNUM_Y = 4\nNUM_Z = 3\n";
   for (const SampleType type : {SampleType::uint8, SampleType::uint16, SampleType::float32}) {
-    const std::string bytes = randomSamples(type, voxels(kSize), 10);
+    const std::string bytes = randomSamples(type, voxels(kHeaderSize), 10);
     for (const bool bigEndian : {false, true}) {
       CAPTURE(sampleTypeName(type), bigEndian);
       writeFile(path, bigEndian ? swapped(bytes, sampleSize(type)) : bytes);
@@ -330,7 +331,7 @@ TEST_CASE("image_headers: PyHST's vol with its info file", "[image_headers]") {
       for (const std::string& named : {path, infoPath}) {
         CHECK(looksLikeImage(named));
         const auto image = openImage(named);
-        CHECK(image->info().size == kSize);
+        CHECK(image->info().size == kHeaderSize);
         CHECK(image->info().type == type);
         CHECK(image->info().format == "pyhst");
         CHECK(image->info().voxelSize->edge() == 8.5e-6);
@@ -340,7 +341,7 @@ TEST_CASE("image_headers: PyHST's vol with its info file", "[image_headers]") {
       }
     }
   }
-  const std::string bytes = randomSamples(SampleType::int32, voxels(kSize), 11);
+  const std::string bytes = randomSamples(SampleType::int32, voxels(kHeaderSize), 11);
   writeFile(path, bytes);
   writeFile(infoPath, size + "DATA_TYPE = int32\n");
   CHECK(openImage(path)->info().type == SampleType::int32);

@@ -15,7 +15,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const ImageSize kSize{5, 4, 3};
+const ImageSize kSmallSize{5, 4, 3};
 
 std::string metaHeader(const std::string& type, const std::string& more,
                        const std::string& dataFile) {
@@ -68,7 +68,7 @@ TEST_CASE("image_file: what createImage writes, openImage reads", "[image_file]"
   const auto endings = withHdf5({"mhd", "raw", "mha", "tif", "TIFF", "nrrd", "npy"}, "h5");
   for (const std::string& ending : endings)
     for (const SampleType type : kSampleTypes)
-      for (const ImageSize& size : {ImageSize{1, 1, 1}, kSize, ImageSize{17, 1, 9}})
+      for (const ImageSize& size : {ImageSize{1, 1, 1}, kSmallSize, ImageSize{17, 1, 9}})
         for (const double metres : {0.0, 8.5e-6, 3.3e-8, 1.0 / 3e5, 0.05}) {
           if (metres > 0 && type != SampleType::uint16) continue;
           CAPTURE(ending, sampleTypeName(type), size, metres);
@@ -103,9 +103,9 @@ TEST_CASE("image_file: what createImage writes, openImage reads", "[image_file]"
 TEST_CASE("image_file: unequal edges come back, to the last bit where they are decimals",
           "[image_file]") {
   const ScratchFolder folder;
-  const std::string bytes = randomSamples(SampleType::uint8, voxels(kSize), 1);
+  const std::string bytes = randomSamples(SampleType::uint8, voxels(kSmallSize), 1);
   ImageInfo info;
-  info.size = kSize;
+  info.size = kSmallSize;
   for (const std::string& ending : withHdf5({"mhd", "mha", "tif", "nrrd"}, "hdf5"))
     for (const std::array<double, 3>& edges : {std::array<double, 3>{0.5e-6, 0.5e-6, 1.2e-6},
                                                {1.2e-6, 0.7e-6, 0.5e-6},
@@ -115,7 +115,7 @@ TEST_CASE("image_file: unequal edges come back, to the last bit where they are d
       CAPTURE(ending, edges[0], edges[1], edges[2]);
       info.voxelSize = VoxelSize(edges);
       const auto writer = createImage(folder / ("a." + ending), info);
-      writer->write(kSize.z, bytes.data());
+      writer->write(kSmallSize.z, bytes.data());
       writer->finish();
       CHECK(openImage(folder / ("a." + ending))->info().voxelSize->edges() == edges);
     }
@@ -148,9 +148,9 @@ TEST_CASE("image_file: a writer takes exactly its slices, or leaves nothing", "[
 TEST_CASE("image_file: raw files in either byte order", "[image_file]") {
   const ScratchFolder folder;
   for (const SampleType type : kSampleTypes) {
-    const std::string bytes = randomSamples(type, voxels(kSize), 2);
+    const std::string bytes = randomSamples(type, voxels(kSmallSize), 2);
     writeFile(folder / "a.bin", swapped(bytes, sampleSize(type)));
-    const auto image = openImage(folder / "a.bin", RawLayout{kSize, type, true});
+    const auto image = openImage(folder / "a.bin", RawLayout{kSmallSize, type, true});
     CHECK(readAll(*image, 2) == bytes);
     CHECK(image->info().format == "raw");
     CHECK_FALSE(image->info().voxelSize);
@@ -166,7 +166,7 @@ TEST_CASE("image_file: a raw file of the wrong size is refused with both numbers
   const ScratchFolder folder;
   const std::string path = folder / "a.raw";
   writeFile(path, std::string(120, '\0'));
-  CHECK_THROWS_WITH(openImage(path, RawLayout{kSize, SampleType::uint8, false}),
+  CHECK_THROWS_WITH(openImage(path, RawLayout{kSmallSize, SampleType::uint8, false}),
                     Contains(path) && Contains("120") && Contains("60") && Contains("2 bytes"));
   CHECK_THROWS_WITH(openImage(path, RawLayout{ImageSize{5, 5, 3}, SampleType::uint8, false}),
                     Contains("120") && Contains("75") && Contains("5 x 5 x 3"));
@@ -183,7 +183,7 @@ TEST_CASE("image_file: MetaImage in all its forms", "[image_file]") {
   const std::string path = folder / "a.mhd";
   for (const SampleType type : kSampleTypes) {
     CAPTURE(sampleTypeName(type));
-    const std::string bytes = randomSamples(type, voxels(kSize), 3);
+    const std::string bytes = randomSamples(type, voxels(kSmallSize), 3);
     const std::string foreign = swapped(bytes, sampleSize(type));
     const std::string name = metaName(type);
 
@@ -250,7 +250,7 @@ TEST_CASE("image_file: NRRD in all its forms", "[image_file]") {
   const std::string path = folder / "a.nrrd", detached = folder / "a.nhdr";
   for (const SampleType type : kSampleTypes) {
     CAPTURE(sampleTypeName(type));
-    const std::string bytes = randomSamples(type, voxels(kSize), 4);
+    const std::string bytes = randomSamples(type, voxels(kSmallSize), 4);
     const std::string foreign = swapped(bytes, sampleSize(type));
     const std::string name = nrrdName(type), little = "endian: little\n", big = "endian: big\n";
 
@@ -324,10 +324,10 @@ TEST_CASE("image_file: NRRD spacing needs a unit", "[image_file]") {
 
 TEST_CASE("image_file: content goes before the ending", "[image_file]") {
   const ScratchFolder folder;
-  const std::string bytes = randomSamples(SampleType::uint8, voxels(kSize), 5);
+  const std::string bytes = randomSamples(SampleType::uint8, voxels(kSmallSize), 5);
   writeFile(folder / "a.dat", nrrdHeader("uchar", "encoding: raw\n\n") + bytes);
   writeFile(folder / "b.tif", "Comment = x\n" + metaHeader("MET_UCHAR", "", "LOCAL") + bytes);
-  writeTiff(folder / "c.nrrd", kSize, SampleType::uint8, bytes);
+  writeTiff(folder / "c.nrrd", kSmallSize, SampleType::uint8, bytes);
   for (const std::string name : {"a.dat", "b.tif", "c.nrrd"}) {
     CHECK(looksLikeImage(folder / name));
     CHECK(samplesOf(folder / name) == bytes);

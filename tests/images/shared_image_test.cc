@@ -27,7 +27,7 @@ ImageInfo smallInfo() {
 }
 
 /// 20 a slice.
-std::vector<uint16_t> samples() {
+std::vector<uint16_t> sliceSamples() {
   std::vector<uint16_t> values(5 * 4 * 9);
   std::iota(values.begin(), values.end(), uint16_t(1000));
   return values;
@@ -49,16 +49,17 @@ TEST_CASE("shared_image: parts, in any order, make the file of one writer", "[sh
       const auto last = ending == "mhd" ? readFile(folder / (name + "/a.raw")) : std::string();
       return readFile(path) + last;
     };
-    const std::string whole = write(
-        "whole", [&](ImageWriter& image, const std::string&) { image.write(9, samples().data()); });
+    const std::string whole = write("whole", [&](ImageWriter& image, const std::string&) {
+      image.write(9, sliceSamples().data());
+    });
     const auto shared = write("parts", [&](ImageWriter& image, const std::string& path) {
       const auto place = image.share();
       REQUIRE(place);
       const auto high = joinImage(path, *place, info, 6), low = joinImage(path, *place, info, 0);
-      high->write(3, samples().data() + 120);
-      low->write(1, samples().data());
-      low->write(5, samples().data() + 20);
-      CHECK_THROWS_AS(high->write(1, samples().data()), InvalidInput);
+      high->write(3, sliceSamples().data() + 120);
+      low->write(1, sliceSamples().data());
+      low->write(5, sliceSamples().data() + 20);
+      CHECK_THROWS_AS(high->write(1, sliceSamples().data()), InvalidInput);
       high->finish();
       low->finish();
       CHECK_FALSE(std::filesystem::exists(path));
@@ -76,7 +77,7 @@ TEST_CASE("shared_image: what is not finished leaves nothing", "[shared_image]")
     const auto place = image->share();
     REQUIRE(place);
     const auto part = joinImage(path, *place, smallInfo(), 2);
-    part->write(2, samples().data());
+    part->write(2, sliceSamples().data());
     part->finish();
     CHECK(folder.fileCount() == 1);
     SharedImage unseen = *place;

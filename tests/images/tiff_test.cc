@@ -15,7 +15,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const ImageSize kSize{21, 18, 3};
+const ImageSize kTiffSize{21, 18, 3};
 
 /// Pages of fewer or other pixels after those that are there.
 void appendPages(const std::string& path, const ImageSize& size, SampleType type) {
@@ -56,10 +56,10 @@ TEST_CASE("image_file: TIFF of every type, byte order, compression and layout", 
             layout.rowsPerStrip = rows;
             layout.tile = tile;
             if (type == SampleType::uint16 && compression == COMPRESSION_LZW) layout.predictor = 2;
-            const std::string bytes = randomSamples(type, voxels(kSize), 6);
-            writeTiff(path, kSize, type, bytes, layout);
+            const std::string bytes = randomSamples(type, voxels(kTiffSize), 6);
+            writeTiff(path, kTiffSize, type, bytes, layout);
             const auto image = openImage(path);
-            REQUIRE(image->info().size == kSize);
+            REQUIRE(image->info().size == kTiffSize);
             REQUIRE(image->info().type == type);
             REQUIRE(image->info().format == "tiff");
             REQUIRE(readAll(*image) == bytes);
@@ -70,8 +70,8 @@ TEST_CASE("image_file: TIFF of every type, byte order, compression and layout", 
 TEST_CASE("image_file: of 1-bit TIFF the stored bit counts, be it black or white", "[image_file]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.tif";
-  const size_t row = size_t(kSize.x + 7) / 8;
-  std::string packed = randomSamples(SampleType::uint8, row * size_t(kSize.y * kSize.z), 7);
+  const size_t row = size_t(kTiffSize.x + 7) / 8;
+  std::string packed = randomSamples(SampleType::uint8, row * size_t(kTiffSize.y * kTiffSize.z), 7);
   for (size_t i = row - 1; i < packed.size(); i += row) packed[i] = char(packed[i] & 0xf8);
   for (const int compression :
        {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_PACKBITS,
@@ -84,10 +84,10 @@ TEST_CASE("image_file: of 1-bit TIFF the stored bit counts, be it black or white
         layout.compression = compression;
         layout.photometric = photometric;
         layout.rowsPerStrip = rows;
-        writeTiff(path, kSize, SampleType::uint8, packed, layout);
+        writeTiff(path, kTiffSize, SampleType::uint8, packed, layout);
         const auto image = openImage(path);
         REQUIRE(image->info().type == SampleType::uint8);
-        REQUIRE(readAll(*image) == expanded(packed, kSize));
+        REQUIRE(readAll(*image) == expanded(packed, kTiffSize));
         CHECK(image->notes().size() == (photometric == PHOTOMETRIC_MINISWHITE ? 1u : 0u));
       }
 }
@@ -96,8 +96,8 @@ TEST_CASE("image_file: of wider TIFF samples the stored value counts", "[image_f
   const ScratchFolder folder;
   TiffLayout layout;
   layout.photometric = PHOTOMETRIC_MINISWHITE;
-  const std::string bytes = randomSamples(SampleType::uint8, voxels(kSize), 8);
-  writeTiff(folder / "a.tif", kSize, SampleType::uint8, bytes, layout);
+  const std::string bytes = randomSamples(SampleType::uint8, voxels(kTiffSize), 8);
+  writeTiff(folder / "a.tif", kTiffSize, SampleType::uint8, bytes, layout);
   const auto image = openImage(folder / "a.tif");
   CHECK(readAll(*image) == bytes);
   REQUIRE(image->notes().size() == 1);
@@ -107,7 +107,7 @@ TEST_CASE("image_file: of wider TIFF samples the stored value counts", "[image_f
 TEST_CASE("image_file: a folder says which slices have another white, and which are missing",
           "[image_file]") {
   const ScratchFolder folder;
-  const ImageSize slice{kSize.x, kSize.y, 1};
+  const ImageSize slice{kTiffSize.x, kTiffSize.y, 1};
   for (const int z : {1, 2, 3, 5}) {
     TiffLayout layout;
     if (z == 5) layout.photometric = PHOTOMETRIC_MINISWHITE;
@@ -130,7 +130,7 @@ TEST_CASE("image_file: colours of a TIFF are read when they are grey, else refus
         for (const uint32_t tile : {0u, 16u})
           for (const std::string mode : {"wl", "wb"}) {
             CAPTURE(sampleTypeName(type), channels, compression, tile, mode);
-            const std::string gray = randomSamples(type, voxels(kSize), 11);
+            const std::string gray = randomSamples(type, voxels(kTiffSize), 11);
             const size_t bytes = sampleSize(type);
             std::string colors;
             for (size_t i = 0; i < gray.size(); i += bytes) {
@@ -143,11 +143,11 @@ TEST_CASE("image_file: colours of a TIFF are read when they are grey, else refus
             layout.photometric = PHOTOMETRIC_RGB;
             layout.compression = compression;
             layout.tile = tile;
-            writeTiff(path, kSize, type, colors, layout);
+            writeTiff(path, kTiffSize, type, colors, layout);
             CHECK(openImage(path)->info().type == type);
             CHECK(readAll(*openImage(path), 2) == gray);
             colors[bytes] = char(colors[bytes] ^ 1);
-            writeTiff(path, kSize, type, colors, layout);
+            writeTiff(path, kTiffSize, type, colors, layout);
             CHECK_THROWS_WITH(readAll(*openImage(path)), Contains(path) && Contains("colours"));
           }
 }
@@ -157,31 +157,31 @@ TEST_CASE("image_file: TIFF that is not a grey volume is refused", "[image_file]
   const std::string path = folder / "a.tif";
   TiffLayout layout;
   layout.channels = 3;
-  writeTiff(path, kSize, SampleType::uint8, std::string(3 * voxels(kSize), 'a'), layout);
+  writeTiff(path, kTiffSize, SampleType::uint8, std::string(3 * voxels(kTiffSize), 'a'), layout);
   CHECK_THROWS_WITH(openImage(path), Contains(path) && Contains("grey"));
 
   layout = {};
   layout.bits = 4;
-  writeTiff(path, kSize, SampleType::uint8, std::string(voxels(kSize), 'a'), layout);
+  writeTiff(path, kTiffSize, SampleType::uint8, std::string(voxels(kTiffSize), 'a'), layout);
   CHECK_THROWS_WITH(openImage(path), Contains("4 bits"));
   layout.bits = 16;
   layout.format = SAMPLEFORMAT_IEEEFP;
-  writeTiff(path, kSize, SampleType::uint16, std::string(2 * voxels(kSize), 'a'), layout);
+  writeTiff(path, kTiffSize, SampleType::uint16, std::string(2 * voxels(kTiffSize), 'a'), layout);
   CHECK_THROWS_WITH(openImage(path), Contains("16 bits"));
 
   for (const ImageSize& other : {ImageSize{21, 17, 1}, ImageSize{20, 18, 1}}) {
-    writeTiff(path, kSize, SampleType::uint8, std::string(voxels(kSize), 'a'));
+    writeTiff(path, kTiffSize, SampleType::uint8, std::string(voxels(kTiffSize), 'a'));
     appendPages(path, other, SampleType::uint8);
     CHECK_THROWS_WITH(openImage(path), Contains("pages differ"));
   }
-  writeTiff(path, kSize, SampleType::uint8, std::string(voxels(kSize), 'a'));
-  appendPages(path, kSize, SampleType::int8);
+  writeTiff(path, kTiffSize, SampleType::uint8, std::string(voxels(kTiffSize), 'a'));
+  appendPages(path, kTiffSize, SampleType::int8);
   CHECK_THROWS_WITH(openImage(path), Contains("pages differ") && Contains("int8"));
 }
 
 TEST_CASE("image_file: a folder of slices is read in natural order", "[image_file]") {
   const ScratchFolder folder;
-  const ImageSize slice{kSize.x, kSize.y, 1};
+  const ImageSize slice{kTiffSize.x, kTiffSize.y, 1};
   const std::string names[] = {"s2.tif", "s09.TIF", "s10.tiff", "s0100.tif"};
   std::string bytes;
   unsigned seed = 0;
@@ -194,12 +194,13 @@ TEST_CASE("image_file: a folder of slices is read in natural order", "[image_fil
   writeFile(folder / "._s2.tif", "not a slice either");
   CHECK(looksLikeImage(folder.path()));
   const auto image = openImage(folder.path());
-  CHECK(image->info().size == ImageSize{kSize.x, kSize.y, 4});
+  CHECK(image->info().size == ImageSize{kTiffSize.x, kTiffSize.y, 4});
   CHECK(readAll(*image, 3) == bytes);
 
   writeTiff(folder / "s11.tif", slice, SampleType::uint8, std::string(voxels(slice), 'a'));
   CHECK_THROWS_WITH(openImage(folder.path()), Contains("s11.tif") && Contains("uint8"));
-  writeTiff(folder / "s11.tif", kSize, SampleType::uint16, std::string(2 * voxels(kSize), 'a'));
+  writeTiff(folder / "s11.tif", kTiffSize, SampleType::uint16,
+            std::string(2 * voxels(kTiffSize), 'a'));
   CHECK_THROWS_WITH(openImage(folder.path()), Contains("s11.tif") && Contains("several pages"));
   writeFile(folder / "s11.tif", "II");
   CHECK_THROWS_WITH(openImage(folder.path()), Contains("s11.tif"));
@@ -215,7 +216,7 @@ TEST_CASE("image_file: TIFF voxel size as ImageJ writes it", "[image_file]") {
     TiffLayout layout;
     layout.description = description;
     layout.resolution = resolution;
-    writeTiff(path, kSize, SampleType::uint8, std::string(voxels(kSize), 'a'), layout);
+    writeTiff(path, kTiffSize, SampleType::uint8, std::string(voxels(kTiffSize), 'a'), layout);
     return openImage(path)->info().voxelSize;
   };
   CHECK(size("ImageJ=1.52a\nslices=3\nunit=micron\nspacing=4.0\n", 0.25)->edge() == 4e-6);
@@ -240,7 +241,7 @@ TEST_CASE("image_file: TIFF voxel size as OME writes it", "[image_file]") {
   const auto open = [&](const std::string& description) {
     TiffLayout layout;
     layout.description = description;
-    writeTiff(path, kSize, SampleType::uint8, std::string(voxels(kSize), 'a'), layout);
+    writeTiff(path, kTiffSize, SampleType::uint8, std::string(voxels(kTiffSize), 'a'), layout);
     return openImage(path)->info().voxelSize;
   };
   const auto size = [&](const std::string& attributes) {
@@ -283,8 +284,8 @@ TEST_CASE("image_file: ImageJ's large stacks have one page and all samples behin
           "[image_file]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.tif";
-  const ImageSize slice{kSize.x, kSize.y, 1};
-  const std::string bytes = randomSamples(SampleType::uint16, voxels(kSize), 10);
+  const ImageSize slice{kTiffSize.x, kTiffSize.y, 1};
+  const std::string bytes = randomSamples(SampleType::uint16, voxels(kTiffSize), 10);
   TiffLayout layout;
   layout.mode = "wb";
   layout.rowsPerStrip = 1000;
@@ -308,7 +309,7 @@ TEST_CASE("image_file: ImageJ's large stacks have one page and all samples behin
   }
   writeFile(path, file + swapped(bytes, 2));
   const auto image = openImage(path);
-  CHECK(image->info().size == kSize);
+  CHECK(image->info().size == kTiffSize);
   CHECK(readAll(*image, 2) == bytes);
   writeFile(path, (file + swapped(bytes, 2)).substr(0, file.size() + bytes.size() - 1));
   CHECK_THROWS_WITH(openImage(path), Contains("truncated") && Contains("3 images"));

@@ -16,7 +16,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const ImageSize kSize{70, 64, 5};  // slices of uint8 are large streams, in several sectors
+const ImageSize kTxmSize{70, 64, 5};  // slices of uint8 are large streams, in several sectors
 
 CompoundFileBytes txm(const std::map<std::string, std::string>& streams, int version = 3,
                       unsigned seed = 0) {
@@ -45,7 +45,7 @@ TEST_CASE("image_txm: every type, version and order of sectors", "[image_txm]") 
       {SampleType::uint16, 5},   {SampleType::int32, 6},   {SampleType::uint32, 7},
       {SampleType::float32, 10}, {SampleType::float64, 11}};
   for (const auto& [type, number] : types)
-    for (const ImageSize& size : {ImageSize{5, 3, 2}, kSize})
+    for (const ImageSize& size : {ImageSize{5, 3, 2}, kTxmSize})
       for (const int version : {3, 4})
         for (const unsigned seed : {0u, 7u}) {
           CAPTURE(sampleTypeName(type), size, version, seed);
@@ -81,7 +81,7 @@ TEST_CASE("image_txm: what is no scan, or lacks a part, is refused with what is 
           "[image_txm]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.txm";
-  const auto good = txmStreams(kSize, 3, randomSamples(SampleType::uint8, voxels(kSize), 1));
+  const auto good = txmStreams(kTxmSize, 3, randomSamples(SampleType::uint8, voxels(kTxmSize), 1));
   const auto refused = [&](const std::string& stream, const std::string& content) {
     auto streams = good;
     if (content.empty())
@@ -173,11 +173,11 @@ TEST_CASE("image_txm: chains and trees that lead astray end in one line", "[imag
 TEST_CASE("image_txm: large slices, changed at random, read or are refused", "[image_txm]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.txm";
-  const std::string samples = randomSamples(SampleType::uint8, voxels(kSize), 1);
+  const std::string samples = randomSamples(SampleType::uint8, voxels(kTxmSize), 1);
   const MemoryLimit limit(uint64_t(64) << 20);
   unsigned seed = 1;
   for (const int version : {3, 4}) {
-    const CompoundFileBytes file = txm(txmStreams(kSize, 3, samples), version, 9);
+    const CompoundFileBytes file = txm(txmStreams(kTxmSize, 3, samples), version, 9);
     for (int i = 0; i < mutationsPerFormat(2000) / 2; ++i) {
       std::string bytes = file.bytes;
       // One of two changes is in the header, the directory or the table of sectors.

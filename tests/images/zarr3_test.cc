@@ -19,7 +19,7 @@ using Codecs = std::vector<std::string>;
 
 namespace {
 
-const ImageSize kSize{11, 7, 9}, kChunk{4, 3, 5}, kShard{8, 6, 5};
+const ImageSize kZarr3Size{11, 7, 9}, kZarr3Chunk{4, 3, 5}, kZarr3Shard{8, 6, 5};
 
 void write(const std::string& path, const std::map<std::string, std::string>& files) {
   std::filesystem::remove_all(path);
@@ -30,7 +30,7 @@ void write(const std::string& path, const std::map<std::string, std::string>& fi
 }
 
 Zarr3Layout layoutOf(SampleType type) {
-  Zarr3Layout layout{kSize, kChunk};
+  Zarr3Layout layout{kZarr3Size, kZarr3Chunk};
   layout.type = sampleTypeName(type);
   layout.bytes = sampleSize(type);
   return layout;
@@ -38,7 +38,7 @@ Zarr3Layout layoutOf(SampleType type) {
 
 void checkReads(const std::string& path, const std::string& bytes) {
   const auto image = openImage(path);
-  CHECK(image->info().size == kSize);
+  CHECK(image->info().size == kZarr3Size);
   CHECK(image->info().format == "zarr");
   for (const int step : {1, 2, 5, 100}) CHECK(readAll(*image, step) == bytes);
 }
@@ -63,7 +63,7 @@ TEST_CASE("image_zarr3: every type, byte order and order of axes", "[image_zarr3
         layout.bigEndian = bigEndian;
         layout.leading = order == "xyz" ? 2 : 0;
         CAPTURE(layout.type, order, bigEndian);
-        const std::string bytes = randomSamples(type, voxels(kSize), 1);
+        const std::string bytes = randomSamples(type, voxels(kZarr3Size), 1);
         write(path, zarr3Files(layout, bigEndian ? swapped(bytes, layout.bytes) : bytes));
         CHECK(looksLikeImage(path));
         CHECK(openImage(path)->info().type == type);
@@ -75,7 +75,7 @@ TEST_CASE("image_zarr3: every type, byte order and order of axes", "[image_zarr3
 TEST_CASE("image_zarr3: one transposition after the other", "[image_zarr3]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.zarr";
-  const std::string bytes = randomSamples(SampleType::uint8, voxels(kSize), 8);
+  const std::string bytes = randomSamples(SampleType::uint8, voxels(kZarr3Size), 8);
   Zarr3Layout layout = layoutOf(SampleType::uint8);
   layout.order = "yxz";
   auto files = zarr3Files(layout, bytes);
@@ -91,7 +91,7 @@ TEST_CASE("image_zarr3: one transposition after the other", "[image_zarr3]") {
 TEST_CASE("image_zarr3: every codec, in shards or not, and every key", "[image_zarr3]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.zarr";
-  const std::string bytes = randomSamples(SampleType::uint16, voxels(kSize), 2);
+  const std::string bytes = randomSamples(SampleType::uint16, voxels(kZarr3Size), 2);
   for (const Codecs& codecs :
        {Codecs{}, Codecs{"gzip"}, Codecs{"zstd"}, Codecs{"blosc"}, Codecs{"crc32c"},
         Codecs{"gzip", "crc32c"}, Codecs{"crc32c", "gzip"}, Codecs{"crc32c", "zstd", "crc32c"},
@@ -99,7 +99,7 @@ TEST_CASE("image_zarr3: every codec, in shards or not, and every key", "[image_z
     for (const int sharded : {0, 1, 2, 3}) {
       Zarr3Layout layout = layoutOf(SampleType::uint16);
       layout.codecs = codecs;
-      if (sharded > 0) layout.shard = sharded == 3 ? ImageSize{12, 9, 10} : kShard;
+      if (sharded > 0) layout.shard = sharded == 3 ? ImageSize{12, 9, 10} : kZarr3Shard;
       layout.indexAtStart = sharded == 2;
       if (sharded == 3) layout.indexCodecs.clear();
       layout.keys = sharded % 2 ? "v2" : "default";
@@ -120,7 +120,7 @@ TEST_CASE("image_zarr3: bool, 64-bit labels, and codecs and keys that are named 
   const ScratchFolder folder;
   const std::string path = folder / "a.zarr";
   Zarr3Layout layout = layoutOf(SampleType::uint8);
-  std::string bits = randomSamples(SampleType::uint8, voxels(kSize), 3);
+  std::string bits = randomSamples(SampleType::uint8, voxels(kZarr3Size), 3);
   for (char& c : bits) c &= 1;
   layout.type = "bool";
   layout.fill = "false";
@@ -148,10 +148,10 @@ TEST_CASE("image_zarr3: bool, 64-bit labels, and codecs and keys that are named 
                                           R"({"name": "v2"})"));
   checkReads(path, bits);
 
-  const std::string labels = randomSamples(SampleType::uint32, voxels(kSize), 4);
+  const std::string labels = randomSamples(SampleType::uint32, voxels(kZarr3Size), 4);
   std::string wide;
   for (size_t i = 0; i < labels.size(); i += 4) wide += labels.substr(i, 4) + std::string(4, '\0');
-  Zarr3Layout wideLayout{kSize, kChunk};
+  Zarr3Layout wideLayout{kZarr3Size, kZarr3Chunk};
   wideLayout.type = "uint64";
   wideLayout.bytes = 8;
   write(path, zarr3Files(wideLayout, wide));
@@ -165,7 +165,7 @@ TEST_CASE("image_zarr3: bool, 64-bit labels, and codecs and keys that are named 
 TEST_CASE("image_zarr3: chunks and shards that are not there are the fill value", "[image_zarr3]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.zarr";
-  std::string bytes = randomSamples(SampleType::uint8, voxels(kSize), 5);
+  std::string bytes = randomSamples(SampleType::uint8, voxels(kZarr3Size), 5);
   const auto fillBox = [&](const ImageSize& first, const ImageSize& end, char value) {
     std::string filled = bytes;
     for (int z = first.z; z < end.z; ++z)
@@ -179,7 +179,7 @@ TEST_CASE("image_zarr3: chunks and shards that are not there are the fill value"
   std::filesystem::remove(path + "/c/1/0/2");
   checkReads(path, fillBox({8, 0, 5}, {11, 3, 9}, 7));
 
-  layout.shard = kShard;
+  layout.shard = kZarr3Shard;
   bytes = fillBox({4, 3, 0}, {8, 6, 5}, 0);  // a chunk that is left out of its shard
   write(path, zarr3Files(layout, bytes));
   std::filesystem::remove(path + "/c/1/1/0");
@@ -196,7 +196,7 @@ TEST_CASE("image_zarr3: chunks and shards that are not there are the fill value"
 TEST_CASE("image_zarr3: OME-Zarr 0.5 gives scales, voxel sizes and labels", "[image_zarr3]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.ome.zarr";
-  const std::string fine = randomSamples(SampleType::uint16, voxels(kSize), 6);
+  const std::string fine = randomSamples(SampleType::uint16, voxels(kZarr3Size), 6);
   const auto group = [](const std::string& attributes) {
     return R"({"zarr_format": 3, "node_type": "group", "attributes": )" + attributes + "}";
   };
@@ -249,8 +249,8 @@ TEST_CASE("image_zarr3: OME-Zarr 0.5 gives scales, voxel sizes and labels", "[im
 
 TEST_CASE("image_zarr3: what cannot be read says why", "[image_zarr3]") {
   const ScratchFolder folder;
-  const std::string path = folder / "a.zarr", samples(voxels(kSize), 'a');
-  Zarr3Layout layout{kSize, kChunk};
+  const std::string path = folder / "a.zarr", samples(voxels(kZarr3Size), 'a');
+  Zarr3Layout layout{kZarr3Size, kZarr3Chunk};
   const auto refused = [&](const std::string& from, const std::string& to, const std::string& why) {
     auto files = zarr3Files(layout, samples);
     files["zarr.json"] = replaced(files["zarr.json"], from, to);
@@ -283,12 +283,12 @@ TEST_CASE("image_zarr3: what cannot be read says why", "[image_zarr3]") {
   layout.bytes = 2;
   layout.size = ImageSize{11, 7, 4};
   refused("\"endian\": \"little\"", "", "byte order");
-  layout = {kSize, kChunk};
+  layout = {kZarr3Size, kZarr3Chunk};
   layout.order = "xyz";
   for (const std::string order : {"[2, 1]", "[2, 1, 1]", "[3, 1, 0]", "[-1, 1, 0]", "\"F\""})
     refused("[2, 1, 0]", order, "transpose");
   layout.order.clear();
-  layout.shard = kShard;
+  layout.shard = kZarr3Shard;
   refused("[5, 3, 4]", "[5, 4, 4]", "multiples");
   refused("[5, 3, 4]", "[1, 5, 3, 4]", "numbers of axes");
   refused("\"chunk_shape\": [5, 3, 4]", "\"chunk\": 1", "not that of a volume");
@@ -308,8 +308,8 @@ TEST_CASE("image_zarr3: what cannot be read says why", "[image_zarr3]") {
 
 TEST_CASE("image_zarr3: damaged chunks and shards are refused", "[image_zarr3]") {
   const ScratchFolder folder;
-  const std::string path = folder / "a.zarr", samples(voxels(kSize), 'a');
-  Zarr3Layout layout{kSize, kChunk};
+  const std::string path = folder / "a.zarr", samples(voxels(kZarr3Size), 'a');
+  Zarr3Layout layout{kZarr3Size, kZarr3Chunk};
   for (const Codecs& codecs : {Codecs{}, Codecs{"gzip"}, Codecs{"zstd"}, Codecs{"blosc"},
                                Codecs{"crc32c"}, Codecs{"zstd", "crc32c"}})
     for (const std::string& bytes : {std::string(), std::string("abc"), std::string(30, 'x'),
@@ -328,7 +328,7 @@ TEST_CASE("image_zarr3: damaged chunks and shards are refused", "[image_zarr3]")
 
   // Four chunks, then an index of 64 bytes and its checksum.
   layout.codecs.clear();
-  layout.shard = kShard;
+  layout.shard = kZarr3Shard;
   const auto damaged = [&](const std::string& shard, const std::string& why) {
     auto changed = zarr3Files(layout, samples);
     changed["c/0/0/0"] = shard;

@@ -16,7 +16,7 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const ImageSize kSize{11, 7, 9}, kChunk{4, 3, 5};
+const ImageSize kZarrSize{11, 7, 9}, kZarrChunk{4, 3, 5};
 
 void writeZarr(const std::string& path, const ZarrLayout& layout, const std::string& samples) {
   std::filesystem::remove_all(path);
@@ -53,8 +53,8 @@ TEST_CASE("image_zarr: every type, codec, order and separator", "[image_zarr]") 
       for (const std::string order : {"C", "F"}) {
         if (type != SampleType::uint16 && (order == "F" || (codec != "" && codec != "blosc")))
           continue;
-        ZarrLayout layout{kSize,
-                          kChunk,
+        ZarrLayout layout{kZarrSize,
+                          kZarrChunk,
                           "",
                           sampleSize(type),
                           codec,
@@ -64,11 +64,11 @@ TEST_CASE("image_zarr: every type, codec, order and separator", "[image_zarr]") 
                           order == "F" ? 2 : 0};
         layout.type = (layout.bytes == 1 ? "|" : "<") + std::string(names[size_t(type)]);
         CAPTURE(layout.type, codec, order);
-        const std::string bytes = randomSamples(type, voxels(kSize), 1);
+        const std::string bytes = randomSamples(type, voxels(kZarrSize), 1);
         writeZarr(path, layout, bytes);
         CHECK(looksLikeImage(path));
         const auto image = openImage(path);
-        CHECK(image->info().size == kSize);
+        CHECK(image->info().size == kZarrSize);
         CHECK(image->info().type == type);
         CHECK(image->info().format == "zarr");
         CHECK_FALSE(image->info().voxelSize);
@@ -86,8 +86,8 @@ TEST_CASE("image_zarr: chunks that are not there are the fill value", "[image_za
   for (const std::string order : {"C", "F"})
     for (const auto& [fill, value] :
          {std::pair("7", 7), {"null", 0}, {"0.0", 0}, {"true", 1}, {"255", 255}}) {
-      ZarrLayout layout{kSize, kChunk, "|u1", 1, "blosc", order, ".", fill, 0};
-      std::string bytes = randomSamples(SampleType::uint8, voxels(kSize), 2);
+      ZarrLayout layout{kZarrSize, kZarrChunk, "|u1", 1, "blosc", order, ".", fill, 0};
+      std::string bytes = randomSamples(SampleType::uint8, voxels(kZarrSize), 2);
       writeZarr(path, layout, bytes);
       std::filesystem::remove(path + "/1.0.2");
       for (int z = 5; z < 9; ++z)
@@ -96,7 +96,8 @@ TEST_CASE("image_zarr: chunks that are not there are the fill value", "[image_za
       CHECK(readAll(*openImage(path), 8) == bytes);
     }
   for (const std::string fill : {"256", "-1", "0.5", "\"NaN\"", "[]", "1e300"}) {
-    writeZarr(path, {kSize, kChunk, "|u1", 1, "", "C", ".", fill, 0}, std::string(693, 'a'));
+    writeZarr(path, {kZarrSize, kZarrChunk, "|u1", 1, "", "C", ".", fill, 0},
+              std::string(693, 'a'));
     CHECK_THROWS_WITH(openImage(path), Contains(path) && Contains("fill value"));
   }
   ZarrLayout layout{ImageSize{2, 2, 2}, ImageSize{1, 1, 1}, "<f4", 4, "", "C", ".", "\"NaN\"", 0};
@@ -114,24 +115,24 @@ TEST_CASE("image_zarr: chunks that are not there are the fill value", "[image_za
 TEST_CASE("image_zarr: 64-bit labels", "[image_zarr]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.zarr";
-  std::string bytes = randomSamples(SampleType::uint32, voxels(kSize), 3), stored;
+  std::string bytes = randomSamples(SampleType::uint32, voxels(kZarrSize), 3), stored;
   for (size_t i = 0; i < bytes.size(); i += 4) stored += bytes.substr(i, 4) + std::string(4, '\0');
-  writeZarr(path, {kSize, kChunk, "<u8", 8, "zlib", "C", ".", "0", 0}, stored);
+  writeZarr(path, {kZarrSize, kZarrChunk, "<u8", 8, "zlib", "C", ".", "0", 0}, stored);
   CHECK(openImage(path)->info().type == SampleType::uint32);
   CHECK(readAll(*openImage(path), 8) == bytes);
   stored[4] = '\1';
-  writeZarr(path, {kSize, kChunk, "<u8", 8, "zlib", "C", ".", "0", 0}, stored);
+  writeZarr(path, {kZarrSize, kZarrChunk, "<u8", 8, "zlib", "C", ".", "0", 0}, stored);
   CHECK_THROWS_WITH(readAll(*openImage(path)), Contains(path) && Contains("beyond 32 bits"));
 }
 
 TEST_CASE("image_zarr: OME-Zarr gives the first scale and its voxel size", "[image_zarr]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.ome.zarr";
-  const std::string fine = randomSamples(SampleType::uint16, voxels(kSize), 4);
+  const std::string fine = randomSamples(SampleType::uint16, voxels(kZarrSize), 4);
   const std::string coarse = randomSamples(SampleType::uint16, 8, 5);
   const auto write = [&](const std::string& attributes) {
     std::filesystem::remove_all(path);
-    writeZarr(path + "/0", {kSize, kChunk, "<u2", 2, "blosc", "C", "/", "0", 2}, fine);
+    writeZarr(path + "/0", {kZarrSize, kZarrChunk, "<u2", 2, "blosc", "C", "/", "0", 2}, fine);
     writeZarr(path + "/1", {ImageSize{2, 2, 2}, ImageSize{2, 2, 2}, "<u2", 2, "", "C", "/", "0", 2},
               coarse);
     writeFile(path + "/.zgroup", "{\"zarr_format\": 2}");
@@ -174,8 +175,8 @@ TEST_CASE("image_zarr: OME-Zarr gives the first scale and its voxel size", "[ima
 
 TEST_CASE("image_zarr: what cannot be read says why", "[image_zarr]") {
   const ScratchFolder folder;
-  const std::string path = folder / "a.zarr", samples(voxels(kSize), 'a');
-  const ZarrLayout good{kSize, kChunk, "|u1", 1, "", "C", ".", "0", 0};
+  const std::string path = folder / "a.zarr", samples(voxels(kZarrSize), 'a');
+  const ZarrLayout good{kZarrSize, kZarrChunk, "|u1", 1, "", "C", ".", "0", 0};
   const auto refused = [&](const std::string& from, const std::string& to, const std::string& why) {
     writeZarr(path, good, samples);
     std::string text = zarrDescription(good);

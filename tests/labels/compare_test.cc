@@ -14,10 +14,12 @@
 #include <set>
 #include <vector>
 
+#include "support/label_shapes.h"
 #include "support/label_slabs.h"
 #include "vdb_madf/base/errors.h"
 
 using namespace vdb_madf;
+using namespace vdb_madf::test;
 
 namespace {
 
@@ -38,12 +40,8 @@ Int32Grid::Ptr row(const std::vector<int32_t>& values) {
                 [&](const Coord& p) { return values[size_t(p.z())]; });
 }
 
-CoordBBox cube(int edge, const Coord& origin = Coord(0)) {
-  return CoordBBox::createCube(origin, edge);
-}
-
 /// By the definitions, from a dense walk and all pairs of voxels.
-Comparison naive(const Int32Grid& truth, const Int32Grid& test, const CoordBBox& box) {
+Comparison naiveComparison(const Int32Grid& truth, const Int32Grid& test, const CoordBBox& box) {
   Comparison result;
   std::set<int32_t> truthIds, testIds;
   std::vector<std::pair<int32_t, int32_t>> common;
@@ -137,7 +135,7 @@ void requireSamePartition(const Comparison& c) {
 }
 
 /// Labels in [0, count], mixed at random.
-Int32Grid::Ptr randomLabels(std::mt19937& random, const CoordBBox& box, int count) {
+Int32Grid::Ptr mixedLabels(std::mt19937& random, const CoordBBox& box, int count) {
   return labels(box, [&](const Coord&) { return int32_t(random() % unsigned(count + 1)); });
 }
 
@@ -245,7 +243,7 @@ TEST_CASE("compare: over-segmentation shows in the mirror's roles", "[compare]")
 
 TEST_CASE("compare: names of the labels do not matter", "[compare]") {
   std::mt19937 random(3);
-  const auto truth = randomLabels(random, cube(12, Coord(-5)), 9);
+  const auto truth = mixedLabels(random, cube(12, Coord(-5)), 9);
   const auto renamed = truth->deepCopy();
   for (auto voxel = renamed->beginValueOn(); voxel; ++voxel)
     voxel.setValue(2147483647 - *voxel * 1000);
@@ -290,20 +288,20 @@ TEST_CASE("compare: equals the definitions on random labels", "[compare]") {
     CAPTURE(seed);
     std::mt19937 random(seed);
     const CoordBBox box({-3, -9, 5}, {3, -2, 14});
-    const auto truth = randomLabels(random, box, 1 + int(random() % 8));
+    const auto truth = mixedLabels(random, box, 1 + int(random() % 8));
     const auto test = seed % 3 == 0 ? labels(box,
                                              [&](const Coord& p) {
                                                const int32_t t = truth->tree().getValue(p);
                                                return random() % 8 ? t : int32_t(random() % 5);
                                              })
-                                    : randomLabels(random, box, 1 + int(random() % 20));
-    requireEqual(compare(*truth, *test), naive(*truth, *test, box));
+                                    : mixedLabels(random, box, 1 + int(random() % 20));
+    requireEqual(compare(*truth, *test), naiveComparison(*truth, *test, box));
   }
 }
 
 TEST_CASE("compare: exchanging the roles mirrors the result", "[compare]") {
   std::mt19937 random(5);
-  const auto truth = randomLabels(random, cube(20), 4), test = randomLabels(random, cube(17), 7);
+  const auto truth = mixedLabels(random, cube(20), 4), test = mixedLabels(random, cube(17), 7);
   const Comparison there = compare(*truth, *test), back = compare(*test, *truth);
   CHECK(there.misclassifiedPercent == back.mirrorMisclassifiedPercent);
   CHECK(there.mirrorMisclassifiedPercent == back.misclassifiedPercent);
@@ -324,7 +322,7 @@ TEST_CASE("compare: tiles count as their voxels", "[compare]") {
   REQUIRE(voxels->tree().activeTileCount() == 0);
 
   std::mt19937 random(2);
-  const auto other = randomLabels(random, cube(40, Coord(-20)), 6);
+  const auto other = mixedLabels(random, cube(40, Coord(-20)), 6);
   const Comparison expected = compare(*voxels, *other);
   CHECK(expected.commonVoxels + expected.truthOnlyVoxels == 256 * 256 * 256);
   requireEqual(compare(*tiled, *other), expected);
@@ -349,7 +347,7 @@ TEST_CASE("compare: a tile of the root is counted, not visited", "[compare]") {
 
 TEST_CASE("compare: a shift of both grids changes nothing", "[compare]") {
   std::mt19937 random(8);
-  const auto truth = randomLabels(random, cube(11), 5), test = randomLabels(random, cube(11), 3);
+  const auto truth = mixedLabels(random, cube(11), 5), test = mixedLabels(random, cube(11), 3);
   const Comparison expected = compare(*truth, *test);
   for (int shift = 1; shift <= 8; ++shift) {
     const Coord by(-shift, 2 * shift, shift);
@@ -410,8 +408,8 @@ TEST_CASE("compare: rows of the grains equal the definitions on random labels", 
     CAPTURE(seed);
     std::mt19937 random(seed);
     const CoordBBox box({-3, -9, 5}, {3, -2, 14});
-    const auto truth = randomLabels(random, box, 6);
-    const auto test = randomLabels(random, box, int(1 + random() % 90));
+    const auto truth = mixedLabels(random, box, 6);
+    const auto test = mixedLabels(random, box, int(1 + random() % 90));
     const Comparison c = compare(*truth, *test);
     CHECK(asMap(splits(c)) == naiveSplits(c.overlaps, false));
     CHECK(asMap(merges(c)) == naiveSplits(c.overlaps, true));
@@ -432,7 +430,7 @@ TEST_CASE("compare: rows of the grains equal the definitions on random labels", 
 
 TEST_CASE("compare: threads do not matter", "[compare]") {
   std::mt19937 random(4);
-  const auto truth = randomLabels(random, cube(60), 40), test = randomLabels(random, cube(60), 30);
+  const auto truth = mixedLabels(random, cube(60), 40), test = mixedLabels(random, cube(60), 30);
   const Comparison parallel = compare(*truth, *test);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const Comparison sequential = compare(*truth, *test);
@@ -446,8 +444,8 @@ TEST_CASE("compare: labels in slabs, wherever they are cut", "[compare]") {
   std::mt19937 random(6);
   for (int i = 0; i < 8; ++i) {
     const CoordBBox box = cube(10 + int(random() % 20), Coord(-3, 7, -13));
-    const auto truth = randomLabels(random, box, 9);
-    const auto test = i == 0 ? Int32Grid::create(0) : randomLabels(random, box, 5);
+    const auto truth = mixedLabels(random, box, 9);
+    const auto test = i == 0 ? Int32Grid::create(0) : mixedLabels(random, box, 5);
     if (i > 4) test->tree().voxelizeActiveTiles();
     for (int k = 0; k < 40; ++k)
       test->tree().setValueOff(Coord(-3 + int(random() % 9), 9, -13 + int(random() % 9)));

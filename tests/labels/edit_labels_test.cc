@@ -11,6 +11,7 @@
 #include <cmath>
 #include <set>
 
+#include "support/edits.h"
 #include "support/label_shapes.h"
 #include "support/runs.h"
 #include "vdb_madf/base/errors.h"
@@ -22,20 +23,14 @@ using namespace vdb_madf::test;
 
 namespace {
 
-std::vector<Edit> edits(const std::vector<std::string>& texts) {
-  std::vector<Edit> list;
-  for (const std::string& text : texts) list.push_back(parseEdit(text));
-  return list;
-}
-
 EditedLabels edited(const Int32Grid& labels, const std::vector<std::string>& texts) {
-  return editLabels(labels, edits(texts));
+  return editLabels(labels, editsFrom(texts));
 }
 
 constexpr double kEdge = 2e-6;
 
 /// By the definition, voxel by voxel.
-LabelMap naive(const LabelMap& voxels, const Edit& edit, const std::optional<Domain>& domain) {
+LabelMap naiveEdit(const LabelMap& voxels, const Edit& edit, const std::optional<Domain>& domain) {
   std::set<int32_t> numbers, atFaces;
   CoordBBox box;
   for (const auto& [p, label] : voxels) {
@@ -150,7 +145,7 @@ TEST_CASE("edit_labels: as the definition, edit after edit", "[edit_labels]") {
     int64_t dropped = 0;
     for (int n = 0; n < 5 && !expected.empty(); ++n) {
       list.push_back(randomEdit(random, expected));
-      expected = naive(expected, list.back(), domain);
+      expected = naiveEdit(expected, list.back(), domain);
     }
     std::string texts;
     for (const Edit& edit : list) texts += (texts.empty() ? "" : "; ") + toString(edit);
@@ -249,12 +244,12 @@ TEST_CASE("edit_labels: what is not there is refused, and why", "[edit_labels]")
   CHECK_THROWS_WITH(edited(*labels, {"min-diameter 1um"}),
                     Catch::StartsWith("min-diameter 1um: the size of the voxels is unknown"));
   StopAtOnce stop;
-  CHECK_THROWS_AS(editLabels(*labels, edits({"merge 3 7"}), nullptr, &stop), Interrupted);
+  CHECK_THROWS_AS(editLabels(*labels, editsFrom({"merge 3 7"}), nullptr, &stop), Interrupted);
 }
 
 TEST_CASE("edit_labels: the same for any number of threads", "[edit_labels]") {
   const auto labels = labelGrid(randomLabels(4, Coord(-30), 60, 300, 30));
-  const auto texts = edits({"merge 9 12 14", "min-voxels 200", "drop-at-faces", "renumber"});
+  const auto texts = editsFrom({"merge 9 12 14", "min-voxels 200", "drop-at-faces", "renumber"});
   const auto one = withThreads(1, [&] { return editLabels(*labels, texts); });
   const auto four = withThreads(4, [&] { return editLabels(*labels, texts); });
   CHECK(labelDigest(*one.labels) == labelDigest(*four.labels));

@@ -13,15 +13,17 @@
 #include <random>
 #include <set>
 
+#include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
 
 using namespace vdb_madf;
+using namespace vdb_madf::test;
 
 namespace {
 
 using Pairs = std::set<std::pair<int32_t, int32_t>>;
 
-Int32Grid::Ptr randomLabels(unsigned seed, const CoordBBox& box, int count, int blockEdge) {
+Int32Grid::Ptr randomBlocks(unsigned seed, const CoordBBox& box, int count, int blockEdge) {
   std::mt19937 random(seed);
   auto grid = Int32Grid::create(0);
   auto accessor = grid->getAccessor();
@@ -148,10 +150,6 @@ Differences leastDifferences(const Int32Grid& grid, const GrainColors& colors,
   return least;
 }
 
-CoordBBox cube(int edge, const Coord& origin = Coord(0)) {
-  return CoordBBox::createCube(origin, edge);
-}
-
 }  // namespace
 
 TEST_CASE("grain_colors: touching grains are apart for all eyes", "[grain_colors]") {
@@ -171,7 +169,7 @@ TEST_CASE("grain_colors: touching grains are apart for all eyes", "[grain_colors
 
 TEST_CASE("grain_colors: many labels that all touch get the wider palette", "[grain_colors]") {
   // Single voxels at random: each of 50 labels meets each other.
-  const auto grid = randomLabels(3, cube(32), 50, 1);
+  const auto grid = randomBlocks(3, cube(32), 50, 1);
   const Pairs contacts = naiveContacts(*grid, cube(32));
   REQUIRE(contacts.size() == 50 * 49 / 2);
   const GrainColors colors = grainColors(*grid);
@@ -182,7 +180,7 @@ TEST_CASE("grain_colors: many labels that all touch get the wider palette", "[gr
 }
 
 TEST_CASE("grain_colors: noise beyond the palette is counted", "[grain_colors]") {
-  const auto grid = randomLabels(4, cube(40), 80, 1);
+  const auto grid = randomBlocks(4, cube(40), 80, 1);
   const Pairs contacts = naiveContacts(*grid, cube(40));
   const GrainColors colors = grainColors(*grid);
   int64_t alike = 0;
@@ -234,7 +232,7 @@ TEST_CASE("grain_colors: neighbouring numbers spread over the palette", "[grain_
 }
 
 TEST_CASE("grain_colors: threads do not matter", "[grain_colors]") {
-  const auto grid = randomLabels(5, cube(64), 400, 4);
+  const auto grid = randomBlocks(5, cube(64), 400, 4);
   const GrainColors parallel = grainColors(*grid);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const GrainColors sequential = grainColors(*grid);

@@ -11,6 +11,7 @@
 #include <map>
 #include <set>
 
+#include "support/edits.h"
 #include "support/oracle.h"
 #include "support/random_case.h"
 #include "support/runs.h"
@@ -135,15 +136,9 @@ Sample largeSample() {
   return sample;
 }
 
-std::vector<Edit> edits(const std::vector<std::string>& texts) {
-  std::vector<Edit> list;
-  for (const std::string& text : texts) list.push_back(parseEdit(text));
-  return list;
-}
-
-EditedLabels edited(const Int32Grid& labels, const Sample& sample,
-                    const std::vector<std::string>& texts) {
-  return editLabels(labels, edits(texts), sample.segmentation.manifold.get());
+EditedLabels editedSample(const Int32Grid& labels, const Sample& sample,
+                          const std::vector<std::string>& texts) {
+  return editLabels(labels, editsFrom(texts), sample.segmentation.manifold.get());
 }
 
 DenseVolume<int64_t> dense(const ObjectVolume& object, const Int32Grid& grid) {
@@ -262,13 +257,13 @@ TEST_CASE("grain_parts: a grain of a segmentation splits as defined", "[grain_pa
       const std::string text = "split " + std::to_string(grain);
       if (!sides) {
         ++singles;
-        CHECK_THROWS_WITH(edited(*seg.grain, s, {text}),
+        CHECK_THROWS_WITH(editedSample(*seg.grain, s, {text}),
                           text + ": grain " + std::to_string(grain) +
                               " is a single manifold: it cannot be split");
         continue;
       }
       ++splits;
-      const EditedLabels result = edited(*seg.grain, s, {text});
+      const EditedLabels result = editedSample(*seg.grain, s, {text});
       // The half with the grain's largest ball keeps its number; the other's is that of its own.
       const auto largest = [&](const Nodes& nodesOfHalf) {
         return *std::max_element(
@@ -285,7 +280,7 @@ TEST_CASE("grain_parts: a grain of a segmentation splits as defined", "[grain_pa
       CHECK(result.grains == before + 1);
       CHECK(result.voxels == result.voxelsBefore);
       // Its inverse.
-      const EditedLabels back = edited(
+      const EditedLabels back = editedSample(
           *result.labels, s, {"merge " + std::to_string(grain) + " " + std::to_string(other)});
       REQUIRE(difference("labels", *back.labels, s.object, grains) == "");
     }
@@ -302,7 +297,7 @@ TEST_CASE("grain_parts: every edit and its inverse give the same labels", "[grai
     Rng rng(seed);
     Int32Grid::Ptr labels = s.segmentation.grain->deepCopy();
     if (rng.chance(0.3) && s.segmentation.counts.grains > 2)
-      labels = edited(*labels, s, {"drop 2"}).labels;
+      labels = editedSample(*labels, s, {"drop 2"}).labels;
     struct Step {
       std::string digest, inverse;
     };
@@ -320,7 +315,7 @@ TEST_CASE("grain_parts: every edit and its inverse give the same labels", "[grai
       INFO(text);
       EditedLabels result;
       try {
-        result = edited(*labels, s, {text});
+        result = editedSample(*labels, s, {text});
       } catch (const InvalidInput&) {
         continue;  // a single manifold
       }
@@ -342,7 +337,7 @@ TEST_CASE("grain_parts: every edit and its inverse give the same labels", "[grai
     }
     while (!steps.empty()) {
       INFO(steps.back().inverse);
-      labels = edited(*labels, s, {steps.back().inverse}).labels;
+      labels = editedSample(*labels, s, {steps.back().inverse}).labels;
       REQUIRE(labelDigest(*labels) == steps.back().digest);
       steps.pop_back();
     }
@@ -355,12 +350,12 @@ TEST_CASE("grain_parts: every edit and its inverse give the same labels", "[grai
 TEST_CASE("grain_parts: what was merged comes apart at once", "[grain_parts]") {
   const Sample s = largeSample();
   const Int32Grid& grain = *s.segmentation.grain;
-  const EditedLabels merged = edited(grain, s, {"merge 4 2", "merge 4 5 1"});
-  const EditedLabels back = edited(*merged.labels, s, {"split 4"});
+  const EditedLabels merged = editedSample(grain, s, {"merge 4 2", "merge 4 5 1"});
+  const EditedLabels back = editedSample(*merged.labels, s, {"split 4"});
   CHECK(back.results[0].grains == std::vector<int32_t>{1, 2, 4, 5});
   CHECK(labelDigest(*back.labels) == labelDigest(grain));
   // In one go, too.
-  const EditedLabels both = edited(grain, s, {"merge 4 2", "merge 4 5 1", "split 4"});
+  const EditedLabels both = editedSample(grain, s, {"merge 4 2", "merge 4 5 1", "split 4"});
   CHECK(labelDigest(*both.labels) == labelDigest(grain));
 }
 
@@ -368,9 +363,9 @@ TEST_CASE("grain_parts: after renumbering the pieces are the same, with other nu
           "[grain_parts]") {
   const Sample s = largeSample();
   const Int32Grid& grain = *s.segmentation.grain;
-  const EditedLabels merged = edited(grain, s, {"merge 4 2", "drop 1", "renumber"});
+  const EditedLabels merged = editedSample(grain, s, {"merge 4 2", "drop 1", "renumber"});
   // 3, 4 with 2, 5 ... are 1, 2, 3 ...
-  const EditedLabels back = edited(*merged.labels, s, {"split 2"});
+  const EditedLabels back = editedSample(*merged.labels, s, {"split 2"});
   const auto& parts = back.results[0].grains;
   REQUIRE(parts.size() == 2);
   CHECK(back.grains == s.segmentation.counts.grains - 1);
@@ -391,7 +386,7 @@ TEST_CASE("grain_parts: what no manifolds explain is refused", "[grain_parts]") 
   const Int32Grid& grain = *s.segmentation.grain;
   const auto says = [&](const Int32Grid& labels, const Int32Grid& manifold,
                         const std::string& what) {
-    CHECK_THROWS_WITH(editLabels(labels, edits({"split 2"}), &manifold), Catch::Contains(what));
+    CHECK_THROWS_WITH(editLabels(labels, editsFrom({"split 2"}), &manifold), Catch::Contains(what));
   };
   const Int32Grid& manifold = *s.segmentation.manifold;
   SECTION("a voxel more") {
@@ -449,16 +444,17 @@ TEST_CASE("grain_parts: manifolds that were edited have no graph", "[grain_parts
   const Int32Grid& manifold = *s.segmentation.manifold;
   REQUIRE(storedGraph(manifold));
   CHECK(storedGraph(*editLabels(manifold, {}).labels));
-  CHECK_FALSE(storedGraph(*editLabels(manifold, edits({"merge 1 2"})).labels));
+  CHECK_FALSE(storedGraph(*editLabels(manifold, editsFrom({"merge 1 2"})).labels));
   CHECK(storedGraph(manifold));
 }
 
 TEST_CASE("grain_parts: tiles and threads do not matter", "[grain_parts]") {
   const Sample s = largeSample();
   const auto run = [&](const Int32Grid& labels, int threads) {
-    return labelDigest(*withThreads(threads, [&] {
-                          return edited(labels, s, {"merge 1 2", "split 3", "split 1", "split 4"});
-                        }).labels);
+    return labelDigest(
+        *withThreads(threads, [&] {
+           return editedSample(labels, s, {"merge 1 2", "split 3", "split 1", "split 4"});
+         }).labels);
   };
   const auto tiled = s.segmentation.grain->deepCopy();
   tiled->tree().prune();

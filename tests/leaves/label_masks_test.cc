@@ -16,8 +16,8 @@ using detail::LabelMasks;
 namespace {
 
 /// All entries against the labels of voxels, which lie in an array.
-void requireSame(const LabelMasks& masks, const LeafIndex& index,
-                 const VoxelArray<uint32_t>& labels) {
+void requireSameMasks(const LabelMasks& masks, const LeafIndex& index,
+                      const VoxelArray<uint32_t>& labels) {
   for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
     uint32_t before = 0;
     for (auto entry = masks.begin(leaf); entry != masks.end(leaf); ++entry) {
@@ -53,7 +53,7 @@ TEST_CASE("label_masks: each voxel under its label, also after changes", "[label
     for (size_t i = 0; i < labels.size(); ++i)
       labels[i] = seed % 5 == 0 ? 7 : uint32_t(random() % (count + 1));
     LabelMasks masks(index, labels);
-    requireSame(masks, index, labels);
+    requireSameMasks(masks, index, labels);
 
     for (size_t leaf = 0; leaf < index.leafCount(); ++leaf)
       for (int i = 0; i < 10; ++i) {
@@ -67,7 +67,7 @@ TEST_CASE("label_masks: each voxel under its label, also after changes", "[label
             ++changes;
           }
       }
-    requireSame(masks, index, labels);
+    requireSameMasks(masks, index, labels);
   }
   CHECK(changes > 1000);
 }

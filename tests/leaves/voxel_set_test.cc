@@ -18,7 +18,7 @@ using namespace vdb_madf;
 using namespace vdb_madf::test;
 
 /// All that a ranked set says, against the same members in a std::set.
-void requireSame(const VoxelSet& set, const std::set<VoxelId>& expected, size_t leaves) {
+void requireSameVoxels(const VoxelSet& set, const std::set<VoxelId>& expected, size_t leaves) {
   REQUIRE(set.size() == expected.size());
   REQUIRE(set.members() == std::vector<VoxelId>(expected.begin(), expected.end()));
   REQUIRE(set.wordCount() == leaves * 8);
@@ -58,7 +58,7 @@ TEST_CASE("voxel_set: four members, drawn by hand", "[voxel_set]") {
 TEST_CASE("voxel_set: empty and full ones", "[voxel_set]") {
   VoxelSet none;
   none.rankMembers();
-  requireSame(none, {}, 0);
+  requireSameVoxels(none, {}, 0);
   VoxelSet empty(3), full(3);
   std::set<VoxelId> all;
   for (VoxelId id = 0; id < 3 * 512; ++id) {
@@ -67,8 +67,8 @@ TEST_CASE("voxel_set: empty and full ones", "[voxel_set]") {
   }
   empty.rankMembers();
   full.rankMembers();
-  requireSame(empty, {}, 3);
-  requireSame(full, all, 3);
+  requireSameVoxels(empty, {}, 3);
+  requireSameVoxels(full, all, 3);
 }
 
 TEST_CASE("voxel_set: agrees with a std::set", "[voxel_set]") {
@@ -91,7 +91,7 @@ TEST_CASE("voxel_set: agrees with a std::set", "[voxel_set]") {
         }
       }
       set.rankMembers();
-      requireSame(set, expected, leaves);
+      requireSameVoxels(set, expected, leaves);
     }
   }
 }
@@ -102,7 +102,7 @@ TEST_CASE("voxel_set: a word may be written as a whole", "[voxel_set]") {
   set.word(3) = 0xf0;
   set.word(700 / 64) = 0;
   set.rankMembers();
-  requireSame(set, {3 * 64 + 4, 3 * 64 + 5, 3 * 64 + 6, 3 * 64 + 7}, 2);
+  requireSameVoxels(set, {3 * 64 + 4, 3 * 64 + 5, 3 * 64 + 6, 3 * 64 + 7}, 2);
 }
 
 TEST_CASE("voxel_set: holds the voxels of an object in the order of its ranks", "[voxel_set]") {

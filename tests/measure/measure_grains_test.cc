@@ -52,7 +52,7 @@ Int32Grid::Ptr blobs(Rng& rng, const CoordBBox& box) {
   });
 }
 
-void requireSame(const GrainMeasures& a, const GrainMeasures& b, const Coord& shift) {
+void requireSameGrain(const GrainMeasures& a, const GrainMeasures& b, const Coord& shift) {
   CHECK(a.voxels == b.voxels);
   CHECK((a.centroid + shift.asVec3d() - b.centroid).length() < 1e-9);
   CHECK(a.box.min() + shift == b.box.min());
@@ -209,7 +209,8 @@ TEST_CASE("measure_grains: moves with the labels", "[measure_grains]") {
     for (auto p = labels->cbeginValueOn(); p; ++p) moved->tree().setValue(p.getCoord() + shift, *p);
     const Measurements other = measure(*moved);
     REQUIRE(other.grains.size() == m.grains.size());
-    for (size_t i = 0; i < m.grains.size(); ++i) requireSame(m.grains[i], other.grains[i], shift);
+    for (size_t i = 0; i < m.grains.size(); ++i)
+      requireSameGrain(m.grains[i], other.grains[i], shift);
     REQUIRE(other.bonds.size() == m.bonds.size());
     for (size_t i = 0; i < m.bonds.size(); ++i) {
       CHECK(other.bonds[i].area == m.bonds[i].area);

@@ -17,7 +17,7 @@ using namespace vdb_madf::test;
 namespace {
 
 template <typename Inside>
-int64_t euler(const CoordBBox& box, const Inside& inside) {
+int64_t drawnEuler(const CoordBBox& box, const Inside& inside) {
   return measure(*drawLabels(box, inside)).sample.eulerCharacteristic;
 }
 
@@ -33,12 +33,12 @@ TEST_CASE("measure_sample: Euler characteristic of known bodies", "[measure_samp
     const double d = std::hypot(p[0], p[1]) - 8;
     return d * d + p[2] * p[2] < 9 ? 1 : 0;
   };
-  CHECK(euler(box, ball) == 1);
-  CHECK(euler(box, shell) == 2);
-  CHECK(euler(box, ring) == 0);
+  CHECK(drawnEuler(box, ball) == 1);
+  CHECK(drawnEuler(box, shell) == 2);
+  CHECK(drawnEuler(box, ring) == 0);
   // Connected by faces: voxels that share an edge or a corner are apart, ...
-  CHECK(euler(box, [](const Vec3d& p) { return p == Vec3d(0) || p == Vec3d(1, 1, 0) ? 1 : 0; }) ==
-        2);
+  CHECK(drawnEuler(
+            box, [](const Vec3d& p) { return p == Vec3d(0) || p == Vec3d(1, 1, 0) ? 1 : 0; }) == 2);
   // ... and background is connected through them: this cavity has a way out.
   const auto leaky = [](const Vec3d& p) {
     return p.dot(p) <= 3 && p != Vec3d(0) && p != Vec3d(1, 1, 1) && p[0] * p[0] <= 1 &&
@@ -46,7 +46,7 @@ TEST_CASE("measure_sample: Euler characteristic of known bodies", "[measure_samp
                ? 1
                : 0;
   };
-  CHECK(euler(box, leaky) == 1);
+  CHECK(drawnEuler(box, leaky) == 1);
 }
 
 TEST_CASE("measure_sample: layers correlate along themselves", "[measure_sample]") {

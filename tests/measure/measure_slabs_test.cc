@@ -44,8 +44,8 @@ std::string textOf(const Measurements& m) {
   return text.str();
 }
 
-void requireSame(const Int32Grid::Ptr& labels, const std::vector<int>& cuts,
-                 const MeasureOptions& options = {}) {
+void requireSameInSlabs(const Int32Grid::Ptr& labels, const std::vector<int>& cuts,
+                        const MeasureOptions& options = {}) {
   REQUIRE(textOf(measure(inSlabs(labels, cuts), options)) == textOf(measure(*labels, options)));
 }
 
@@ -104,18 +104,18 @@ TEST_CASE("measure_slabs: random labels are measured as in one piece", "[measure
     options.minFaces = i % 5;
     options.bootstrap = i % 8 == 0 ? 100 : 0;
     CAPTURE(i);
-    requireSame(labels, randomCuts(random, all), options);
-    requireSame(labels, {-32, 120}, options);
+    requireSameInSlabs(labels, randomCuts(random, all), options);
+    requireSameInSlabs(labels, {-32, 120}, options);
   }
 }
 
 TEST_CASE("measure_slabs: single voxels that meet at corners", "[measure_slabs]") {
   for (unsigned seed = 0; seed < 6; ++seed) {
     const auto labels = labelGrid(randomLabels(seed, Coord(-3, 5, -12), 26, 5, 50));
-    requireSame(labels, {-16, -8, 0, 8, 16});
-    requireSame(labels, {-24, -16, 8, 24, 40});
+    requireSameInSlabs(labels, {-16, -8, 0, 8, 16});
+    requireSameInSlabs(labels, {-24, -16, 8, 24, 40});
   }
-  requireSame(labelGrid(awkwardLabels()), {-8, 0, 8, 16, 24});
+  requireSameInSlabs(labelGrid(awkwardLabels()), {-8, 0, 8, 16, 24});
 }
 
 TEST_CASE("measure_slabs: what is deeper than the layers around a slab", "[measure_slabs]") {
@@ -125,9 +125,9 @@ TEST_CASE("measure_slabs: what is deeper than the layers around a slab", "[measu
   for (auto p = box.begin(); p; ++p)
     if ((*p).asVec3d().lengthSqr() < 3600) labels->tree().setValueOn(*p, (*p).x() < 9 ? 2 : 1);
   const std::vector<int> cuts{-64, -56, -40, -8, 0, 8, 24, 64};
-  requireSame(labels, cuts);
+  requireSameInSlabs(labels, cuts);
   setDomain(*labels, box);
-  requireSame(labels, cuts);  // nothing is known beyond x = 0
+  requireSameInSlabs(labels, cuts);  // nothing is known beyond x = 0
 }
 
 TEST_CASE("measure_slabs: the nearest background lies beyond what is around a slab",
@@ -138,8 +138,8 @@ TEST_CASE("measure_slabs: the nearest background lies beyond what is around a sl
   labels->denseFill(CoordBBox(Coord(0), Coord(9, 9, 117)), 4);
   setDomain(*labels, CoordBBox(Coord(0, 0, -8), Coord(9, 9, 127)));
   REQUIRE(measure(*labels).grains[0].inscribedRadius == 59);
-  requireSame(labels, {-8, 40, 80, 128});
-  requireSame(labels, {-8, 0, 8, 32, 56, 64, 128});
+  requireSameInSlabs(labels, {-8, 40, 80, 128});
+  requireSameInSlabs(labels, {-8, 0, 8, 32, 56, 64, 128});
 }
 
 TEST_CASE("measure_slabs: correlations over long distances", "[measure_slabs]") {
@@ -154,21 +154,21 @@ TEST_CASE("measure_slabs: correlations over long distances", "[measure_slabs]") 
     std::vector<int> cuts{0};
     while (cuts.back() <= box.max().z()) cuts.push_back(cuts.back() + 8 * (1 + cuts.size() % 2));
     REQUIRE(measure(*labels).sample.correlationLengths[size_t(axis)].value() > 40);
-    requireSame(labels, cuts);
+    requireSameInSlabs(labels, cuts);
   }
 }
 
 TEST_CASE("measure_slabs: labels that fill the domain, and none", "[measure_slabs]") {
   const auto labels = Int32Grid::create(0);
   const CoordBBox box(Coord(0), Coord(15, 9, 39));
-  requireSame(labels, {0, 8, 16});
+  requireSameInSlabs(labels, {0, 8, 16});
   setDomain(*labels, box);
-  requireSame(labels, {0, 8, 16});
+  requireSameInSlabs(labels, {0, 8, 16});
   labels->denseFill(box, 3);
-  requireSame(labels, {0, 8, 16, 40});
+  requireSameInSlabs(labels, {0, 8, 16, 40});
   labels->denseFill(CoordBBox(Coord(0), Coord(15, 9, 20)), 7);
-  requireSame(labels, {0, 24, 32, 40});
-  requireSame(labels, {-80, 0, 8, 16, 40, 120});
+  requireSameInSlabs(labels, {0, 24, 32, 40});
+  requireSameInSlabs(labels, {-80, 0, 8, 16, 40, 120});
 }
 
 TEST_CASE("measure_slabs: the same with any number of threads", "[measure_slabs]") {

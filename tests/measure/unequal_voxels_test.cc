@@ -55,7 +55,7 @@ Int32Grid::Ptr draw(const Vec3d& edges, double halfEdge, const LabelOf& labelOf)
 }
 
 /// Six balls around the origin that overlap, cut at the planes between them.
-struct Packing {
+struct OverlappingBalls {
   std::array<Vec3d, 6> centers{Vec3d{-9.1, -0.3, 0.7}, {8.3, 1.2, -2.4},  {0.4, 9.7, 3.1},
                                {-1.3, -8.8, 4.2},      {2.2, 0.9, -11.3}, {0.8, 1.1, 9.4}};
   double radius = 8.3;
@@ -69,8 +69,8 @@ struct Packing {
   }
 };
 
-Int32Grid::Ptr drawPacking(const Vec3d& edges) {
-  return draw(edges, 24, Packing());
+Int32Grid::Ptr drawOverlappingBalls(const Vec3d& edges) {
+  return draw(edges, 24, OverlappingBalls());
 }
 
 /// The same labels, of voxels that are cubes.
@@ -210,7 +210,7 @@ TEST_CASE("unequal_voxels: free planes have their area", "[unequal_voxels]") {
 
 TEST_CASE("unequal_voxels: permuted axes permute what is measured", "[unequal_voxels]") {
   const Vec3d edges(1, 1.4, 2.7);
-  const auto labels = drawPacking(edges);
+  const auto labels = drawOverlappingBalls(edges);
   const Measurements m = measure(*labels);
   REQUIRE(m.bonds.size() > 8);
   const std::vector<std::array<int, 3>> orders = {{1, 2, 0}, {2, 0, 1}, {1, 0, 2}};
@@ -255,7 +255,7 @@ TEST_CASE("unequal_voxels: permuted axes permute what is measured", "[unequal_vo
 }
 
 TEST_CASE("unequal_voxels: the shape of voxels changes no count", "[unequal_voxels]") {
-  const auto labels = drawPacking({1, 1, 3});
+  const auto labels = drawOverlappingBalls({1, 1, 3});
   const Measurements m = measure(*labels), cubes = measure(*asCubes(*labels));
   CHECK(m.edges == Vec3d(1, 1, 3));
   CHECK(cubes.edges == Vec3d(1));
@@ -286,7 +286,7 @@ TEST_CASE("unequal_voxels: the shape of voxels changes no count", "[unequal_voxe
 
 TEST_CASE("unequal_voxels: boxes are as large as the cubes that they consist of",
           "[unequal_voxels]") {
-  const auto labels = drawPacking({1, 1, 2});
+  const auto labels = drawOverlappingBalls({1, 1, 2});
   const auto split = Int32Grid::create(0);
   auto accessor = split->getAccessor();
   for (auto value = labels->cbeginValueOn(); value; ++value)
@@ -323,7 +323,7 @@ TEST_CASE("unequal_voxels: boxes are as large as the cubes that they consist of"
 
 TEST_CASE("unequal_voxels: representatives are those of the metric", "[unequal_voxels]") {
   const Vec3d edges(1, 1.4, 2.4);
-  const auto labels = drawPacking(edges);
+  const auto labels = drawOverlappingBalls(edges);
   const Measurements m = measure(*labels);
   CoordBBox around = labels->evalActiveVoxelBoundingBox();
   around.expand(1);
@@ -356,7 +356,7 @@ TEST_CASE("unequal_voxels: representatives are those of the metric", "[unequal_v
 
 TEST_CASE("unequal_voxels: a segmentation is measured as its labels, with any number of threads",
           "[unequal_voxels]") {
-  const auto labels = drawPacking({1, 1, 2.5});
+  const auto labels = drawOverlappingBalls({1, 1, 2.5});
   const auto object = MaskGrid::create(false);
   object->setTransform(labels->transform().copy());
   object->tree().topologyUnion(labels->tree());
@@ -377,7 +377,7 @@ TEST_CASE("unequal_voxels: a segmentation is measured as its labels, with any nu
 
 TEST_CASE("unequal_voxels: columns and networks lie in the world", "[unequal_voxels]") {
   const Vec3d edges(0.001, 0.0005, 0.0015);
-  const auto labels = drawPacking({2, 1, 3});
+  const auto labels = drawOverlappingBalls({2, 1, 3});
   setVoxelSize(*labels, VoxelSize(std::array<double, 3>{1e-6, 0.5e-6, 1.5e-6}));
   const Measurements m = measure(*labels);
   const GrainNetwork network = grainNetwork(*labels);

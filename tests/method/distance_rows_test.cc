@@ -15,7 +15,7 @@ using namespace vdb_madf::detail;
 // Weights of an axis. The largest stays below 2^31 with the longest row's square.
 constexpr int kWeights[] = {1, 2, 144, 100000};
 
-size_t at(int t, int row) {
+size_t rowIndex(int t, int row) {
   return size_t(t) * 64 + size_t(row);
 }
 
@@ -52,7 +52,7 @@ TEST_CASE("distance_rows: the first pass by its definition", "[distance_rows]") 
           for (int s = -1; s <= length; ++s)
             if (isBackground(s, row))
               expected = std::min(expected, uint32_t(weight * (s - t) * (s - t)));
-          wrong += out[at(t, row)] != expected;
+          wrong += out[rowIndex(t, row)] != expected;
         }
       }
       REQUIRE(wrong == 0);
@@ -78,11 +78,11 @@ TEST_CASE("distance_rows: the other passes by their definition", "[distance_rows
           uint32_t expected = kInfinite;
           for (int s = -1; s <= length; ++s)
             expected =
-                std::min(expected, in[at(s + 1, row)] + uint32_t(weight * (s - t) * (s - t)));
+                std::min(expected, in[rowIndex(s + 1, row)] + uint32_t(weight * (s - t) * (s - t)));
           if (expected <= known)
-            wrong += out[at(t, row)] != expected;
+            wrong += out[rowIndex(t, row)] != expected;
           else
-            wrong += out[at(t, row)] <= known;
+            wrong += out[rowIndex(t, row)] <= known;
         }
       }
       REQUIRE(wrong == 0);

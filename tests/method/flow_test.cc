@@ -68,7 +68,7 @@ VoxelSet images(const LeafIndex& index, const Sites& s) {
 }
 
 /// Empty if the flow is that of the definition: each voxel followed step by step.
-std::string difference(const LeafIndex& index, const Flow& found, const Sites& s) {
+std::string flowDifference(const LeafIndex& index, const Flow& found, const Sites& s) {
   const SiteMap critical = oracleFlow(s.site);
   std::map<int, int64_t> voxels;  // in lexicographic order
   for (int i = 0; i < s.object.size(); ++i)
@@ -94,12 +94,12 @@ std::string difference(const LeafIndex& index, const Flow& found, const Sites& s
 
 void requireFlow(const Sites& s, Tiles tiles = Tiles::none) {
   const LeafIndex index(*toMask(s.object, tiles));
-  REQUIRE(difference(index, run(index, s, images(index, s)), s) == "");
+  REQUIRE(flowDifference(index, run(index, s, images(index, s)), s) == "");
   // Balls that no voxel goes to make no difference.
   std::vector<Coord> all;
   for (int i = 0; i < s.object.size(); ++i)
     if (s.object[i]) all.push_back(s.object.coord(i));
-  REQUIRE(difference(index, run(index, s, toVoxelSet(index, all)), s) == "");
+  REQUIRE(flowDifference(index, run(index, s, toVoxelSet(index, all)), s) == "");
 }
 
 /// The oracle's (filtered) power map.
@@ -202,7 +202,7 @@ TEST_CASE("flow: threads do not matter", "[flow]") {
   for (const int threads : {1, 2, 4, 4}) {
     CAPTURE(threads);
     const Flow found = withThreads(threads, [&] { return run(index, s, balls); });
-    CHECK(difference(index, found, s) == "");
+    CHECK(flowDifference(index, found, s) == "");
   }
 }
 

@@ -45,29 +45,16 @@ struct Filter {
   Coord siteOf(const Coord& p) const { return index.coord(VoxelId(site[p])); }
 };
 
-/// Values on the row (x, y) along z.
-Values row(const DenseVolume<int64_t>& volume, int x, int y) {
-  Values values;
-  for (int z = volume.box().min().z(); z <= volume.box().max().z(); ++z)
-    values.push_back(volume[Coord(x, y, z)]);
-  return values;
-}
-
 ObjectVolume rod() {
   const std::string slice = "#####/#####/#####";
   return fromPicture(slice + "|" + slice + "|" + slice);
-}
-
-void addBlock(ObjectVolume& object, const Coord& center) {
-  for (int i = 0; i < object.size(); ++i)
-    if (CoordBBox(center - Coord(1), center + Coord(1)).isInside(object.coord(i))) object[i] = 1;
 }
 
 int64_t squaredLength(const Coord& d) {
   return int64_t(d.x()) * d.x() + int64_t(d.y()) * d.y() + int64_t(d.z()) * d.z();
 }
 
-void requireOracle(const ObjectVolume& object, int64_t gamma, Tiles tiles) {
+void requireOracleFilter(const ObjectVolume& object, int64_t gamma, Tiles tiles) {
   const Filter filter(object, gamma, tiles);
   const OraclePower unfiltered = oraclePower(object, filter.distance, object);
   const ObjectVolume kept =
@@ -95,14 +82,14 @@ TEST_CASE("gamma_filter: a rod of three equal balls, drawn by hand", "[gamma_fil
     const Filter filter(rod(), gamma);
     CHECK(coordsOf(filter.index, filter.kept) ==
           std::vector<Coord>{{1, 1, 1}, {1, 1, 2}, {1, 1, 3}});
-    CHECK(row(filter.power, 1, 1) == Values{-3, -4, -4, -4, -3});
+    CHECK(rowOf(filter.power, 1, 1) == Values{-3, -4, -4, -4, -3});
   }
   // The plane z = 2 has 1 - 4 + (0, 1 or 2) to both of the others: the smaller coordinate.
   for (const int64_t gamma : {10, 18}) {
     const Filter filter(rod(), gamma);
     CHECK(coordsOf(filter.index, filter.kept) == std::vector<Coord>{{1, 1, 1}, {1, 1, 3}});
-    CHECK(row(filter.power, 1, 1) == Values{-3, -4, -3, -4, -3});
-    CHECK(row(filter.power, 0, 0) == Values{-1, -2, -1, -2, -1});
+    CHECK(rowOf(filter.power, 1, 1) == Values{-3, -4, -3, -4, -3});
+    CHECK(rowOf(filter.power, 0, 0) == Values{-1, -2, -1, -2, -1});
     CHECK(filter.siteOf(Coord(0, 2, 2)) == Coord(1, 1, 1));
     CHECK(filter.siteOf(Coord(0, 2, 3)) == Coord(1, 1, 3));
   }
@@ -110,7 +97,7 @@ TEST_CASE("gamma_filter: a rod of three equal balls, drawn by hand", "[gamma_fil
   for (const int64_t gamma : {int64_t(19), std::numeric_limits<int64_t>::max()}) {
     const Filter filter(rod(), gamma);
     CHECK(coordsOf(filter.index, filter.kept) == std::vector<Coord>{{1, 1, 1}});
-    CHECK(row(filter.power, 1, 1) == Values{-3, -4, -3, 0, 5});
+    CHECK(rowOf(filter.power, 1, 1) == Values{-3, -4, -3, 0, 5});
     CHECK(filter.siteOf(Coord(2, 2, 4)) == Coord(1, 1, 1));
   }
 }
@@ -126,13 +113,13 @@ TEST_CASE("gamma_filter: the completion stays within the object", "[gamma_filter
   for (int y = 2; y <= 5; ++y) object[Coord(1, y, 11)] = 1;
   object[Coord(1, 5, 10)] = 1;
   const Filter whole(object, 2);
-  CHECK(row(whole.power, 1, 1) == Values{-3, -4, -3, 0, 5, 12, 16, 13, 12, 13, 16, 21});
+  CHECK(rowOf(whole.power, 1, 1) == Values{-3, -4, -3, 0, 5, 12, 16, 13, 12, 13, 16, 21});
   CHECK(whole.siteOf(Coord(1, 1, 5)) == Coord(1, 1, 1));
   CHECK(whole.siteOf(Coord(1, 1, 6)) == Coord(1, 5, 8));
   // Cut off, the second ball is as near as before, but beyond a pore.
   object[Coord(1, 3, 11)] = 0;
   const Filter cut(object, 2);
-  CHECK(row(cut.power, 1, 1) == Values{-3, -4, -3, 0, 5, 12, 21, 32, 45, 60, 77, 96});
+  CHECK(rowOf(cut.power, 1, 1) == Values{-3, -4, -3, 0, 5, 12, 21, 32, 45, 60, 77, 96});
   CHECK(cut.siteOf(Coord(1, 2, 11)) == Coord(1, 1, 1));
   CHECK(cut.siteOf(Coord(1, 4, 11)) == Coord(1, 5, 8));
 }
@@ -152,7 +139,7 @@ TEST_CASE("gamma_filter: of edge cases", "[gamma_filter]") {
   for (const EdgeCase& c : edgeCases())
     for (const int64_t gamma : {0, 2, 30, 100000}) {
       INFO(c.name << ", gamma " << gamma);
-      requireOracle(c.object, gamma, c.tiles);
+      requireOracleFilter(c.object, gamma, c.tiles);
     }
 }
 
@@ -164,7 +151,7 @@ TEST_CASE("gamma_filter: agrees with the oracle", "[gamma_filter]") {
     const ObjectVolume object = randomVolume(kind, boxAt(randomOrigin(rng), size), rng);
     const int64_t gamma = std::vector<int64_t>{0, 1, 2, 3, 5, 9, 20, 60, 1000}[rng.next() % 9];
     INFO("seed " << seed << ", " << name(kind) << ", gamma " << gamma << '\n' << picture(object));
-    requireOracle(object, gamma, seed % 2 ? Tiles::wherePossible : Tiles::none);
+    requireOracleFilter(object, gamma, seed % 2 ? Tiles::wherePossible : Tiles::none);
   }
 }
 

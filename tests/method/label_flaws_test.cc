@@ -35,7 +35,7 @@ LabelFlaws flawsOf(const Labels& labels, int64_t grains, const std::optional<Coo
   return labelFlaws(index, byRank<uint32_t>(index, labels), voxels, domain);
 }
 
-void check(const LabelFlaws& flaws, const LabelFlaws& expected) {
+void checkFlaws(const LabelFlaws& flaws, const LabelFlaws& expected) {
   CHECK(flaws.crumbs == expected.crumbs);
   CHECK(flaws.specks == expected.specks);
   CHECK(flaws.slivers == expected.slivers);
@@ -51,11 +51,11 @@ TEST_CASE("label_flaws: a block, a slab on it, a crumb, and a speck", "[label_fl
   fill(labels, boxAt({-2, 8, -2}, {3, 3, 3}), 3);
   fill(labels, boxAt({14, 14, 14}, {2, 2, 2}), 4);
   const LabelFlaws expected = oracleFlaws(labels, 4, {});
-  check(flawsOf(labels, 4, {}), expected);
-  check(expected, {1, 1, 1, 0});
+  checkFlaws(flawsOf(labels, 4, {}), expected);
+  checkFlaws(expected, {1, 1, 1, 0});
   // Three voxels thick: the middle is two layers deep, as the crumb's middle is.
   fill(labels, boxAt({8, -2, -2}, {3, 10, 10}), 2);
-  check(flawsOf(labels, 4, {}), {1, 1, 0, 0});
+  checkFlaws(flawsOf(labels, 4, {}), {1, 1, 0, 0});
 }
 
 TEST_CASE("label_flaws: what a face of the domain cuts off does not count", "[label_flaws]") {
@@ -63,8 +63,8 @@ TEST_CASE("label_flaws: what a face of the domain cuts off does not count", "[la
   Labels labels(boxAt(Coord(0), Coord(12)));
   fill(labels, boxAt({0, 0, 0}, {2, 12, 12}), 1);
   fill(labels, boxAt({2, 0, 0}, {10, 12, 12}), 2);
-  check(flawsOf(labels, 2, labels.box()), {0, 0, 0, 0});
-  check(flawsOf(labels, 2, {}), {0, 0, 1, 0});
+  checkFlaws(flawsOf(labels, 2, labels.box()), {0, 0, 0, 0});
+  checkFlaws(flawsOf(labels, 2, {}), {0, 0, 1, 0});
 }
 
 TEST_CASE("label_flaws: a grain in two pieces, in one leaf and in two", "[label_flaws]") {
@@ -72,7 +72,7 @@ TEST_CASE("label_flaws: a grain in two pieces, in one leaf and in two", "[label_
     Labels labels(boxAt(Coord(at), {1, 1, 9}));
     fill(labels, boxAt(Coord(at), {1, 1, 9}), 1);
     labels[4] = 2;
-    check(flawsOf(labels, 2, {}), {2, 0, 0, 1});
+    checkFlaws(flawsOf(labels, 2, {}), {2, 0, 0, 1});
   }
 }
 
@@ -93,7 +93,7 @@ TEST_CASE("label_flaws: agree with the oracle", "[label_flaws]") {
     INFO("seed " << seed << ", " << name(kind));
     const LabelFlaws expected = oracleFlaws(labels, grains, domain),
                      flaws = flawsOf(labels, grains, domain);
-    check(flaws, expected);
+    checkFlaws(flaws, expected);
     sum.crumbs += flaws.crumbs;
     sum.specks += flaws.specks;
     sum.slivers += flaws.slivers;

@@ -12,7 +12,7 @@ namespace {
 
 using namespace vdb_madf::detail;
 
-size_t at(int t, int row) {
+size_t slabIndex(int t, int row) {
   return size_t(t) * kEnvelopeSlab + size_t(row);
 }
 
@@ -27,9 +27,9 @@ EnvelopeRows<Key> randomRows(int length, int maxRadius2, uint32_t seed) {
       const bool object = random() % 12 != 0, site = random() % (1 + unsigned(row) % 5) == 0;
       const int radius2 = 1 + int(random() % unsigned(maxRadius2));
       const int power = -1 - int(random() % unsigned(radius2));
-      rows.power[at(t + 1, row)] = !object ? 0 : site ? power : kNotNegative;
-      rows.site[at(t, row)] = uint32_t(t);
-      rows.radius2[at(t + 1, row)] = radius2;
+      rows.power[slabIndex(t + 1, row)] = !object ? 0 : site ? power : kNotNegative;
+      rows.site[slabIndex(t, row)] = uint32_t(t);
+      rows.radius2[slabIndex(t + 1, row)] = radius2;
     }
   }
   return rows;
@@ -37,11 +37,11 @@ EnvelopeRows<Key> randomRows(int length, int maxRadius2, uint32_t seed) {
 
 /// Voxels where the pass is not what its definition says.
 template <typename Key>
-int differences(int length, int maxRadius2, int weight, uint32_t seed) {
+int envelopeDifferences(int length, int maxRadius2, int weight, uint32_t seed) {
   const EnvelopeRows<Key> in = randomRows<Key>(length, maxRadius2, seed);
   EnvelopeRows<Key> out = in;
   lowerEnvelopes(length, Key(maxRadius2) + 1, weight, out);
-  const auto power = [&](int t, int row) { return in.power[at(t + 1, row)]; };
+  const auto power = [&](int t, int row) { return in.power[slabIndex(t + 1, row)]; };
   int wrong = 0;
   for (int row = 0; row < 64; ++row) {
     for (int t = 0; t < length; ++t) {
@@ -54,14 +54,14 @@ int differences(int length, int maxRadius2, int weight, uint32_t seed) {
         if (power(s, row) >= 0) continue;
         const int value = power(s, row) + weight * (s - t) * (s - t);
         if (value >= 0) continue;
-        if (value < best ||
-            (value == best && in.radius2[at(s + 1, row)] > in.radius2[at(site + 1, row)])) {
+        if (value < best || (value == best && in.radius2[slabIndex(s + 1, row)] >
+                                                  in.radius2[slabIndex(site + 1, row)])) {
           best = value;
           site = s;
         }
       }
-      wrong += out.power[at(t + 1, row)] != best;
-      if (site >= 0) wrong += out.site[at(t, row)] != uint32_t(site);
+      wrong += out.power[slabIndex(t + 1, row)] != best;
+      if (site >= 0) wrong += out.site[slabIndex(t, row)] != uint32_t(site);
     }
   }
   return wrong;
@@ -74,8 +74,8 @@ TEST_CASE("lower_envelope: by its definition, with keys of either width", "[lowe
     for (const int maxRadius2 : {1, 3, 40, 2000}) {
       for (uint32_t seed = 1; seed <= 10; ++seed) {
         CAPTURE(length, maxRadius2, seed);
-        REQUIRE(differences<int64_t>(length, maxRadius2, 1, seed) == 0);
-        REQUIRE(differences<__int128>(length, maxRadius2, 1, seed) == 0);
+        REQUIRE(envelopeDifferences<int64_t>(length, maxRadius2, 1, seed) == 0);
+        REQUIRE(envelopeDifferences<__int128>(length, maxRadius2, 1, seed) == 0);
       }
     }
   }
@@ -90,8 +90,8 @@ TEST_CASE("lower_envelope: by its definition, with weights", "[lower_envelope]")
         const bool fits = 2.0 * weight * length * length * (maxRadius2 + 2.0) * length < 9e18;
         for (uint32_t seed = 1; seed <= 5; ++seed) {
           CAPTURE(length, weight, reach, seed);
-          if (fits) REQUIRE(differences<int64_t>(length, maxRadius2, weight, seed) == 0);
-          REQUIRE(differences<__int128>(length, maxRadius2, weight, seed) == 0);
+          if (fits) REQUIRE(envelopeDifferences<int64_t>(length, maxRadius2, weight, seed) == 0);
+          REQUIRE(envelopeDifferences<__int128>(length, maxRadius2, weight, seed) == 0);
         }
       }
     }

@@ -26,16 +26,17 @@ using namespace vdb_madf::test;
 using Edge = ManifoldGraph::Edge;
 using Edges = std::vector<Edge>;
 
-std::string text(const Edge& edge) {
+std::string edgeText(const Edge& edge) {
   return std::to_string(edge.first) + "-" + std::to_string(edge.second) + " faces " +
          std::to_string(edge.contactFaces) + " h " + std::to_string(edge.saddleHeight) +
          (edge.cellsTouch ? " cells" : "");
 }
 
 /// Empty if they are equal, else the first difference.
-std::string difference(const Edges& found, const Edges& expected) {
+std::string edgeDifference(const Edges& found, const Edges& expected) {
   for (size_t i = 0; i < found.size() && i < expected.size(); ++i)
-    if (!(found[i] == expected[i])) return text(found[i]) + ", expected " + text(expected[i]);
+    if (!(found[i] == expected[i]))
+      return edgeText(found[i]) + ", expected " + edgeText(expected[i]);
   return found.size() == expected.size() ? "" : std::to_string(found.size()) + " edges";
 }
 
@@ -133,10 +134,10 @@ Manifolds oracleManifolds(const ObjectVolume& object, int64_t gamma) {
   return m;
 }
 
-void requireOracle(const Manifolds& m, Tiles tiles = Tiles::none) {
+void requireOracleGraph(const Manifolds& m, Tiles tiles = Tiles::none) {
   const ManifoldGraph found = m.graph(tiles), expected = m.expected();
   REQUIRE((found.nodes == expected.nodes));
-  REQUIRE(difference(found.edges, expected.edges) == "");
+  REQUIRE(edgeDifference(found.edges, expected.edges) == "");
 }
 
 }  // namespace
@@ -146,18 +147,18 @@ TEST_CASE("manifold_graph: drawn by hand", "[manifold_graph]") {
   CHECK(drawn("a.b").graph().edges.empty());
   CHECK(drawn("a./.b").graph().edges.empty());        // along an edge
   CHECK(drawn("a./..|../.b").graph().edges.empty());  // at a corner
-  CHECK(difference(drawn("ab").graph().edges, {{0, 1, 1, 1, false}}) == "");
+  CHECK(edgeDifference(drawn("ab").graph().edges, {{0, 1, 1, 1, false}}) == "");
   // Three pairs, of the heights min(5, 3), min(4, 9), min(-2, 7).
-  CHECK(difference(drawn("ab/ab/ab", {-5, -3, -4, -9, 2, -7}).graph().edges,
-                   {{0, 1, 3, 4, false}}) == "");
-  CHECK(difference(drawn("ab", {2, 7}).graph().edges, {{0, 1, 1, -7, false}}) == "");
+  CHECK(edgeDifference(drawn("ab/ab/ab", {-5, -3, -4, -9, 2, -7}).graph().edges,
+                       {{0, 1, 3, 4, false}}) == "");
+  CHECK(edgeDifference(drawn("ab", {2, 7}).graph().edges, {{0, 1, 1, -7, false}}) == "");
   // Cells touch where both voxels of a pair are in them: not across two pairs.
-  CHECK(difference(drawn("AB").graph().edges, {{0, 1, 1, 1, true}}) == "");
-  CHECK(difference(drawn("Ab/aB").graph().edges, {{0, 1, 2, 1, false}}) == "");
-  CHECK(difference(drawn("ab/AB").graph().edges, {{0, 1, 2, 1, true}}) == "");
+  CHECK(edgeDifference(drawn("AB").graph().edges, {{0, 1, 1, 1, true}}) == "");
+  CHECK(edgeDifference(drawn("Ab/aB").graph().edges, {{0, 1, 2, 1, false}}) == "");
+  CHECK(edgeDifference(drawn("ab/AB").graph().edges, {{0, 1, 2, 1, true}}) == "");
   // Sorted by both, each pair once, whichever comes first.
-  CHECK(difference(drawn("abc/cab").graph().edges,
-                   {{0, 1, 3, 1, false}, {0, 2, 2, 1, false}, {1, 2, 2, 1, false}}) == "");
+  CHECK(edgeDifference(drawn("abc/cab").graph().edges,
+                       {{0, 1, 3, 1, false}, {0, 2, 2, 1, false}, {1, 2, 2, 1, false}}) == "");
 }
 
 TEST_CASE("manifold_graph: pairs across the borders of leaves", "[manifold_graph]") {
@@ -173,8 +174,8 @@ TEST_CASE("manifold_graph: pairs across the borders of leaves", "[manifold_graph
         m.map.power[i] = -4 - i;
       }
       CAPTURE(axis, border);
-      CHECK(difference(m.graph().edges, {{0, 1, 1, 4, true}}) == "");
-      requireOracle(m);
+      CHECK(edgeDifference(m.graph().edges, {{0, 1, 1, 4, true}}) == "");
+      requireOracleGraph(m);
     }
 }
 
@@ -182,7 +183,7 @@ TEST_CASE("manifold_graph: of edge cases", "[manifold_graph]") {
   for (const EdgeCase& c : edgeCases())
     for (const int64_t gamma : {0, 30}) {
       INFO(c.name << ", gamma " << gamma);
-      requireOracle(oracleManifolds(c.object, gamma), c.tiles);
+      requireOracleGraph(oracleManifolds(c.object, gamma), c.tiles);
     }
 }
 
@@ -195,7 +196,7 @@ TEST_CASE("manifold_graph: of the oracle's flows", "[manifold_graph]") {
     const int64_t gamma = rng.chance(0.5) ? 0 : rng.between(2, 30);
     INFO("seed " << seed << ", " << name(kind) << ", gamma " << gamma << '\n' << picture(object));
     const Manifolds m = oracleManifolds(object, gamma);
-    requireOracle(m, seed % 2 ? Tiles::wherePossible : Tiles::none);
+    requireOracleGraph(m, seed % 2 ? Tiles::wherePossible : Tiles::none);
     // What holds for every graph of a segmentation, by another count.
     const ManifoldGraph graph = m.graph();
     std::map<Coord, int64_t> number;
@@ -218,7 +219,7 @@ TEST_CASE("manifold_graph: of any manifolds", "[manifold_graph]") {
     const int manifolds = 1 << rng.between(0, 11);
     CAPTURE(seed, name(kind), manifolds);
     const Manifolds m = anyManifolds(boxAt(randomOrigin(rng), size), kind, seed, manifolds);
-    requireOracle(m);
+    requireOracleGraph(m);
     mostEdges = std::max(mostEdges, m.expected().edges.size());
   }
   CHECK(mostEdges > 1000);
@@ -239,7 +240,7 @@ TEST_CASE("manifold_graph: threads do not matter", "[manifold_graph]") {
       const ManifoldGraph found =
           withThreads(threads, [&] { return manifoldGraph(index, flow, power); });
       CHECK((found.nodes == expected.nodes));
-      CHECK(difference(found.edges, expected.edges) == "");
+      CHECK(edgeDifference(found.edges, expected.edges) == "");
     }
   }
 }

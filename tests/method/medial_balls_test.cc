@@ -43,7 +43,7 @@ Balls found(const LeafIndex& index, const PowerMap& map) {
 }
 
 /// The oracle's power map, and the balls that it found in it.
-void requireOracle(const ObjectVolume& object, Tiles tiles) {
+void requireOracleBalls(const ObjectVolume& object, Tiles tiles) {
   const LeafIndex index(*toMask(object, tiles));
   const auto distance = oracleDistance(object, false, {});
   const OraclePower power = oraclePower(object, distance, object);
@@ -128,7 +128,7 @@ TEST_CASE("medial_balls: a rod of three equal balls, drawn by hand", "[medial_ba
 TEST_CASE("medial_balls: of edge cases", "[medial_balls]") {
   for (const EdgeCase& c : edgeCases()) {
     INFO(c.name);
-    requireOracle(c.object, c.tiles);
+    requireOracleBalls(c.object, c.tiles);
   }
 }
 
@@ -139,7 +139,7 @@ TEST_CASE("medial_balls: those that the oracle finds", "[medial_balls]") {
     const Coord size(rng.between(1, 13), rng.between(1, 13), rng.between(1, 13));
     const ObjectVolume object = randomVolume(kind, boxAt(randomOrigin(rng), size), rng);
     INFO("seed " << seed << ", " << name(kind) << '\n' << picture(object));
-    requireOracle(object, seed % 2 ? Tiles::wherePossible : Tiles::none);
+    requireOracleBalls(object, seed % 2 ? Tiles::wherePossible : Tiles::none);
   }
 }
 

@@ -21,7 +21,7 @@ namespace {
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-using Labels = std::vector<int32_t>;
+using NodeLabels = std::vector<int32_t>;
 using Nodes = std::vector<uint32_t>;
 
 /// Balls on the x axis: positions and squared radii.
@@ -40,8 +40,8 @@ MergeOptions options(double theta, MergeMode mode, Adjacency adjacency = Adjacen
   return {theta, mode, adjacency, 0};
 }
 
-void check(const ManifoldGraph& graph, const MergeOptions& merging, const Labels& labels,
-           const Nodes& representatives) {
+void checkMerge(const ManifoldGraph& graph, const MergeOptions& merging, const NodeLabels& labels,
+                const Nodes& representatives) {
   const Merging result = merge(graph, merging), expected = oracleMerge(graph, merging);
   CHECK(result.grainOfNode == labels);
   CHECK(result.representative == representatives);
@@ -53,21 +53,21 @@ void check(const ManifoldGraph& graph, const MergeOptions& merging, const Labels
 
 TEST_CASE("merge: no nodes, no grains", "[merge]") {
   for (const MergeMode mode : {MergeMode::both, MergeMode::angle, MergeMode::neck})
-    check({}, options(1, mode), {}, {});
+    checkMerge({}, options(1, mode), {}, {});
 }
 
 TEST_CASE("merge: nodes without edges stay alone", "[merge]") {
   for (const MergeMode mode : {MergeMode::both, MergeMode::angle, MergeMode::neck})
-    check(ballsOnAxis({{0, 4}, {1, 4}, {2, 9}}), options(1, mode), {1, 2, 3}, {0, 1, 2});
+    checkMerge(ballsOnAxis({{0, 4}, {1, 4}, {2, 9}}), options(1, mode), {1, 2, 3}, {0, 1, 2});
 }
 
 TEST_CASE("merge: the angle must be strictly below theta", "[merge]") {
   // Two balls of D = 4, 2 apart: cos = (4 - 8) / 8 = -0.5, exact in binary.
   ManifoldGraph graph = ballsOnAxis({{0, 4}, {2, 4}});
   connect(graph, 0, 1, 3);
-  check(graph, options(-0.5, MergeMode::angle), {1, 2}, {0, 1});
-  check(graph, options(std::nextafter(-0.5, 0.0), MergeMode::angle), {1, 1}, {0});
-  check(graph, options(std::nextafter(-0.5, -1.0), MergeMode::angle), {1, 2}, {0, 1});
+  checkMerge(graph, options(-0.5, MergeMode::angle), {1, 2}, {0, 1});
+  checkMerge(graph, options(std::nextafter(-0.5, 0.0), MergeMode::angle), {1, 1}, {0});
+  checkMerge(graph, options(std::nextafter(-0.5, -1.0), MergeMode::angle), {1, 2}, {0, 1});
 }
 
 TEST_CASE("merge: the angle is computed in double precision as written", "[merge]") {
@@ -77,8 +77,8 @@ TEST_CASE("merge: the angle is computed in double precision as written", "[merge
   graph.nodes = {{{0, 0, 0}, 5, 1}, {{1, 2, 0}, 10, 1}};
   connect(graph, 0, 1, 0);
   const double cosine = -10.0 / (2 * std::sqrt(50.0));
-  check(graph, options(cosine, MergeMode::angle), {1, 2}, {0, 1});
-  check(graph, options(std::nextafter(cosine, 0.0), MergeMode::angle), {1, 1}, {1});
+  checkMerge(graph, options(cosine, MergeMode::angle), {1, 2}, {0, 1});
+  checkMerge(graph, options(std::nextafter(cosine, 0.0), MergeMode::angle), {1, 1}, {1});
 }
 
 TEST_CASE("merge: large radii do not overflow", "[merge]") {
@@ -86,14 +86,14 @@ TEST_CASE("merge: large radii do not overflow", "[merge]") {
   const int squaredRadius = 1 << 30;
   ManifoldGraph graph = ballsOnAxis({{0, squaredRadius}, {1 << 15, squaredRadius}});
   connect(graph, 0, 1, squaredRadius / 2);
-  check(graph, options(-0.5, MergeMode::angle), {1, 2}, {0, 1});
-  check(graph, options(-0.49, MergeMode::angle), {1, 1}, {0});
-  check(graph, options(0, MergeMode::neck), {1, 1}, {0});  // 2^29 >= 0.5 * 2^30
-  check(graph, options(-0.01, MergeMode::neck), {1, 2}, {0, 1});
+  checkMerge(graph, options(-0.5, MergeMode::angle), {1, 2}, {0, 1});
+  checkMerge(graph, options(-0.49, MergeMode::angle), {1, 1}, {0});
+  checkMerge(graph, options(0, MergeMode::neck), {1, 1}, {0});  // 2^29 >= 0.5 * 2^30
+  checkMerge(graph, options(-0.01, MergeMode::neck), {1, 2}, {0, 1});
   // Far apart: the cosine is beyond 1, no theta merges.
   ManifoldGraph far = ballsOnAxis({{0, 1}, {26753, 1}});
   connect(far, 0, 1, -100);
-  check(far, options(1, MergeMode::both), {1, 2}, {0, 1});
+  checkMerge(far, options(1, MergeMode::both), {1, 2}, {0, 1});
 }
 
 TEST_CASE("merge: angle merges are transitive, on the original balls", "[merge]") {
@@ -102,15 +102,15 @@ TEST_CASE("merge: angle merges are transitive, on the original balls", "[merge]"
   connect(graph, 0, 1, 1);
   connect(graph, 1, 2, 1);
   connect(graph, 2, 3, 1);  // cos = (49 - 8) / 8 > 1
-  check(graph, options(-0.8, MergeMode::angle), {1, 1, 1, 2}, {0, 3});
+  checkMerge(graph, options(-0.8, MergeMode::angle), {1, 1, 1, 2}, {0, 3});
 }
 
 TEST_CASE("merge: theta -1 merges nothing by angle", "[merge]") {
   // 1 apart with D = 4 and 1: touching from inside, cos = (1 - 5) / 4 = -1.
   ManifoldGraph graph = ballsOnAxis({{0, 4}, {1, 1}});
   connect(graph, 0, 1, 0);
-  check(graph, options(-1, MergeMode::angle), {1, 2}, {0, 1});
-  check(graph, options(std::nextafter(-1.0, 0.0), MergeMode::angle), {1, 1}, {0});
+  checkMerge(graph, options(-1, MergeMode::angle), {1, 2}, {0, 1});
+  checkMerge(graph, options(std::nextafter(-1.0, 0.0), MergeMode::angle), {1, 1}, {0});
 }
 
 TEST_CASE("merge: theta -1 merges a node that is no local maximum of the height", "[merge]") {
@@ -118,8 +118,8 @@ TEST_CASE("merge: theta -1 merges a node that is no local maximum of the height"
   ManifoldGraph graph = ballsOnAxis({{0, 9}, {3, 4}, {6, 9}});
   connect(graph, 0, 1, 4);
   connect(graph, 1, 2, 3);
-  check(graph, options(-1, MergeMode::neck), {1, 1, 2}, {0, 2});
-  check(graph, options(-1, MergeMode::both), {1, 1, 2}, {0, 2});
+  checkMerge(graph, options(-1, MergeMode::neck), {1, 1, 2}, {0, 2});
+  checkMerge(graph, options(-1, MergeMode::both), {1, 1, 2}, {0, 2});
 }
 
 TEST_CASE("merge: the neck must reach its share of the lower top, or more", "[merge]") {
@@ -128,9 +128,9 @@ TEST_CASE("merge: the neck must reach its share of the lower top, or more", "[me
     ManifoldGraph graph = ballsOnAxis({{0, 8}, {5, 16}});
     connect(graph, 0, 1, height);
     if (height < 6)
-      check(graph, options(-0.5, MergeMode::neck), {1, 2}, {0, 1});
+      checkMerge(graph, options(-0.5, MergeMode::neck), {1, 2}, {0, 1});
     else
-      check(graph, options(-0.5, MergeMode::neck), {1, 1}, {1});
+      checkMerge(graph, options(-0.5, MergeMode::neck), {1, 1}, {1});
   }
 }
 
@@ -140,9 +140,9 @@ TEST_CASE("merge: necks of no height never merge", "[merge]") {
     ManifoldGraph graph = ballsOnAxis({{0, 9}, {100, 9}});
     connect(graph, 0, 1, height);
     if (height <= 0)
-      check(graph, options(1, MergeMode::neck), {1, 2}, {0, 1});
+      checkMerge(graph, options(1, MergeMode::neck), {1, 2}, {0, 1});
     else
-      check(graph, options(1, MergeMode::neck), {1, 1}, {0});
+      checkMerge(graph, options(1, MergeMode::neck), {1, 1}, {0});
   }
 }
 
@@ -152,28 +152,28 @@ TEST_CASE("merge: necks are visited from the highest down, and tops grow", "[mer
     ManifoldGraph graph = ballsOnAxis({{0, 10}, {10, 10}, {20, 100}});
     connect(graph, 0, 1, 8);   // second: 8 >= 0.8 * min(10, 100)
     connect(graph, 1, 2, 10);  // first: 10 >= 0.8 * min(10, 100)
-    check(graph, options(-0.6, MergeMode::neck), {1, 1, 1}, {2});
+    checkMerge(graph, options(-0.6, MergeMode::neck), {1, 1, 1}, {2});
   }
   SECTION("two large ones do not meet over a small one") {
     // D = 100, 10, 100: 9 >= 8 joins node 1 to the left, and then 8 < 0.8 * min(100, 100).
     ManifoldGraph graph = ballsOnAxis({{0, 100}, {20, 10}, {40, 100}});
     connect(graph, 0, 1, 9);
     connect(graph, 1, 2, 8);
-    check(graph, options(-0.6, MergeMode::neck), {1, 1, 2}, {0, 2});
+    checkMerge(graph, options(-0.6, MergeMode::neck), {1, 1, 2}, {0, 2});
     // ... and to the right, if that neck is the higher one.
     std::swap(graph.edges[0].saddleHeight, graph.edges[1].saddleHeight);
-    check(graph, options(-0.6, MergeMode::neck), {1, 2, 2}, {0, 2});
+    checkMerge(graph, options(-0.6, MergeMode::neck), {1, 2, 2}, {0, 2});
   }
   SECTION("equal necks: the pair with the smaller first node, then the smaller second") {
     ManifoldGraph graph = ballsOnAxis({{0, 100}, {20, 10}, {40, 100}});
     connect(graph, 0, 1, 9);
     connect(graph, 1, 2, 9);
-    check(graph, options(-0.6, MergeMode::neck), {1, 1, 2}, {0, 2});
+    checkMerge(graph, options(-0.6, MergeMode::neck), {1, 1, 2}, {0, 2});
     // Node 0 is the small one between 1 and 2.
     graph = ballsOnAxis({{0, 10}, {20, 100}, {40, 100}});
     connect(graph, 0, 1, 9);
     connect(graph, 0, 2, 9);
-    check(graph, options(-0.6, MergeMode::neck), {1, 1, 2}, {1, 2});
+    checkMerge(graph, options(-0.6, MergeMode::neck), {1, 1, 2}, {1, 2});
   }
 }
 
@@ -184,20 +184,20 @@ TEST_CASE("merge: tops include what the angle merged", "[merge]") {
   connect(graph, 0, 1, 1);
   connect(graph, 1, 2, 90);
   // 0.95 * 81 = 76.95 <= 90 < 95 = 0.95 * 100
-  check(graph, options(-0.9, MergeMode::neck), {1, 2, 2}, {0, 2});
-  check(graph, options(-0.9, MergeMode::both), {1, 1, 2}, {0, 2});
-  check(graph, options(-0.9, MergeMode::angle), {1, 1, 2}, {0, 2});
+  checkMerge(graph, options(-0.9, MergeMode::neck), {1, 2, 2}, {0, 2});
+  checkMerge(graph, options(-0.9, MergeMode::both), {1, 1, 2}, {0, 2});
+  checkMerge(graph, options(-0.9, MergeMode::angle), {1, 1, 2}, {0, 2});
 }
 
 TEST_CASE("merge: adjacency of cells restricts the angle test only", "[merge]") {
   ManifoldGraph graph = ballsOnAxis({{0, 4}, {1, 4}, {2, 4}});
   connect(graph, 0, 1, 1, false);  // cos = -0.875
   connect(graph, 1, 2, 1, true);
-  check(graph, options(-0.8, MergeMode::angle, Adjacency::manifold), {1, 1, 1}, {0});
-  check(graph, options(-0.8, MergeMode::angle, Adjacency::cell), {1, 2, 2}, {0, 1});
+  checkMerge(graph, options(-0.8, MergeMode::angle, Adjacency::manifold), {1, 1, 1}, {0});
+  checkMerge(graph, options(-0.8, MergeMode::angle, Adjacency::cell), {1, 2, 2}, {0, 1});
   graph.edges[0].saddleHeight = 4;
-  check(graph, options(-0.8, MergeMode::neck, Adjacency::cell), {1, 1, 2}, {0, 2});
-  check(graph, options(-0.8, MergeMode::both, Adjacency::cell), {1, 1, 1}, {0});
+  checkMerge(graph, options(-0.8, MergeMode::neck, Adjacency::cell), {1, 1, 2}, {0, 2});
+  checkMerge(graph, options(-0.8, MergeMode::both, Adjacency::cell), {1, 1, 1}, {0});
 }
 
 TEST_CASE("merge: a neck that is narrower by less than delta merges", "[merge]") {
@@ -208,26 +208,26 @@ TEST_CASE("merge: a neck that is narrower by less than delta merges", "[merge]")
     MergeOptions merging = options(-1, mode);
     for (const int delta : {0, 2, 8}) {
       merging.delta = delta;
-      check(graph, merging, {1, 2}, {0, 1});
+      checkMerge(graph, merging, {1, 2}, {0, 1});
     }
     for (const int delta : {9, 80}) {
       merging.delta = delta;
-      check(graph, merging, {1, 1}, {1});
+      checkMerge(graph, merging, {1, 1}, {1});
     }
   }
   MergeOptions angle = options(-1, MergeMode::angle);
   angle.delta = 80;
-  check(graph, angle, {1, 2}, {0, 1});
+  checkMerge(graph, angle, {1, 2}, {0, 1});
 }
 
 TEST_CASE("merge: angles and delta are those of the weights", "[merge]") {
   // On the axis of weight 9, 1 voxel: 3 lengths of balls of radius 2: cos = (9 - 4 - 4) / 8.
   ManifoldGraph graph = ballsOnAxis({{0, 4}, {1, 4}});
   connect(graph, 0, 1, 1);
-  check(graph, options(-0.7, MergeMode::angle), {1, 1}, {0});
+  checkMerge(graph, options(-0.7, MergeMode::angle), {1, 1}, {0});
   graph.weights = {9, 9, 9};
-  check(graph, options(0.125, MergeMode::angle), {1, 2}, {0, 1});
-  check(graph, options(0.13, MergeMode::angle), {1, 1}, {0});
+  checkMerge(graph, options(0.125, MergeMode::angle), {1, 2}, {0, 1});
+  checkMerge(graph, options(0.13, MergeMode::angle), {1, 1}, {0});
   // sqrt(400) - sqrt(324) = 2 is the shortest edge, the root of 4: 8 eighths.
   graph = ballsOnAxis({{0, 400}, {20, 500}});
   connect(graph, 0, 1, 324);
@@ -236,9 +236,9 @@ TEST_CASE("merge: angles and delta are those of the weights", "[merge]") {
     graph.weights = weights;
     MergeOptions merging = options(-1, MergeMode::neck);
     merging.delta = 8;
-    check(graph, merging, {1, 2}, {0, 1});
+    checkMerge(graph, merging, {1, 2}, {0, 1});
     merging.delta = 9;
-    check(graph, merging, {1, 1}, {1});
+    checkMerge(graph, merging, {1, 1}, {1});
   }
 }
 
@@ -249,11 +249,11 @@ TEST_CASE("merge: delta sees tops as they grow, and no neck without height", "[m
   connect(graph, 1, 2, 15);
   MergeOptions merging = options(-1, MergeMode::neck);
   merging.delta = 2;  // sqrt(16) - sqrt(15) = 0.127 voxels would pass
-  check(graph, merging, {1, 1, 2}, {0, 2});
+  checkMerge(graph, merging, {1, 1, 2}, {0, 2});
   graph.edges[0].saddleHeight = 0;
   graph.edges[1].saddleHeight = -1;
   merging.delta = kMaxDelta;  // 4 - 0 < 10
-  check(graph, merging, {1, 2, 3}, {0, 1, 2});
+  checkMerge(graph, merging, {1, 2, 3}, {0, 1, 2});
 }
 
 TEST_CASE("merge: delta at the largest radii", "[merge]") {
@@ -271,9 +271,9 @@ TEST_CASE("merge: delta at the largest radii", "[merge]") {
         const long double narrower = std::sqrt((long double)top) - std::sqrt((long double)height);
         CAPTURE(height, delta, edge);
         if (narrower < edge * delta / 8.0L)
-          check(graph, merging, {1, 1}, {0});
+          checkMerge(graph, merging, {1, 1}, {0});
         else
-          check(graph, merging, {1, 2}, {0, 1});
+          checkMerge(graph, merging, {1, 2}, {0, 1});
       }
     }
   }
@@ -284,7 +284,7 @@ TEST_CASE("merge: a class without a voxel of the object is no grain", "[merge]")
   graph.nodes[0].voxels = graph.nodes[1].voxels = 0;
   connect(graph, 1, 2, 5);
   // Node 0 alone has none; 1 and 2 are one grain, represented by node 1.
-  check(graph, options(-1, MergeMode::neck), {0, 1, 1, 2}, {1, 3});
+  checkMerge(graph, options(-1, MergeMode::neck), {0, 1, 1, 2}, {1, 3});
   CHECK(grainVoxels(graph, merge(graph, options(-1, MergeMode::neck))) ==
         std::vector<int64_t>{1, 1});
 }
@@ -294,7 +294,7 @@ TEST_CASE("merge: grains are numbered by their representatives", "[merge]") {
   ManifoldGraph graph = ballsOnAxis({{0, 4}, {10, 9}, {20, 9}, {30, 5}});
   connect(graph, 0, 3, 4);
   connect(graph, 1, 2, 9);
-  check(graph, options(-1, MergeMode::neck), {2, 1, 1, 2}, {1, 3});
+  checkMerge(graph, options(-1, MergeMode::neck), {2, 1, 1, 2}, {1, 3});
 }
 
 TEST_CASE("merge: theta outside [-1, 1] is refused", "[merge]") {
@@ -344,7 +344,8 @@ TEST_CASE("merge: agrees with the oracle on random graphs", "[merge]") {
 
 TEST_CASE("merge: classes of one's own are numbered as merge() numbers grains", "[merge]") {
   ManifoldGraph graph = ballsOnAxis({{0, 4}, {5, 9}, {10, 9}, {15, 1}});
-  const auto check = [&](const Nodes& classes, const Labels& labels, const Nodes& representatives) {
+  const auto check = [&](const Nodes& classes, const NodeLabels& labels,
+                         const Nodes& representatives) {
     const Merging merging = mergeClasses(graph, classes);
     CHECK(merging.grainOfNode == labels);
     CHECK(merging.representative == representatives);

@@ -22,14 +22,6 @@ using namespace vdb_madf;
 using namespace vdb_madf::test;
 using Values = std::vector<int64_t>;
 
-/// Values along z from (x, y, z0) on.
-Values row(const DenseVolume<int64_t>& volume, int x, int y) {
-  Values values;
-  for (int z = volume.box().min().z(); z <= volume.box().max().z(); ++z)
-    values.push_back(volume[Coord(x, y, z)]);
-  return values;
-}
-
 std::vector<Coord> positions(const ManifoldGraph& graph) {
   std::vector<Coord> result;
   for (const auto& node : graph.nodes) result.push_back(node.position);
@@ -48,13 +40,6 @@ SegmentOptions merging(double theta, MergeMode mode, int64_t gamma = 0) {
 
 int64_t grains(const ObjectVolume& object, double theta, MergeMode mode, int64_t gamma = 0) {
   return oracleSegment(object, {}, merging(theta, mode, gamma)).counts.grains;
-}
-
-/// 3 x 3 x 3 voxels around a centre.
-void addBlock(ObjectVolume& object, const Coord& center) {
-  CoordBBox block(center, center);
-  block.expand(1);
-  for (auto p = block.begin(); p; ++p) object[*p] = 1;
 }
 
 }  // namespace
@@ -95,10 +80,10 @@ TEST_CASE("oracle: on a thin row every voxel is critical", "[oracle]") {
   // Neighbours: cos = (1 - 1 - 1) / 2 = -0.5, h = min(1, 1) = 1.
   const ObjectVolume object = fromPicture("#####");
   const OracleResult result = oracleSegment(object, {}, merging(-0.5, MergeMode::angle));
-  CHECK(row(result.distance, 0, 0) == Values{1, 1, 1, 1, 1});
-  CHECK(row(result.filtered.power, 0, 0) == Values{-1, -1, -1, -1, -1});
-  CHECK(row(result.manifold, 0, 0) == Values{1, 2, 3, 4, 5});
-  CHECK(row(result.grain, 0, 0) == Values{1, 2, 3, 4, 5});  // -0.5 < -0.5 is false
+  CHECK(rowOf(result.distance, 0, 0) == Values{1, 1, 1, 1, 1});
+  CHECK(rowOf(result.filtered.power, 0, 0) == Values{-1, -1, -1, -1, -1});
+  CHECK(rowOf(result.manifold, 0, 0) == Values{1, 2, 3, 4, 5});
+  CHECK(rowOf(result.grain, 0, 0) == Values{1, 2, 3, 4, 5});  // -0.5 < -0.5 is false
   REQUIRE(result.graph.edges.size() == 4);
   CHECK(result.graph.edges[2] == ManifoldGraph::Edge{2, 3, 1, 1, true});
   CHECK(grains(object, -0.4999, MergeMode::angle) == 1);
@@ -113,15 +98,15 @@ TEST_CASE("oracle: weights measure along their axes", "[oracle]") {
   SegmentOptions options = merging(-0.8, MergeMode::angle);
   options.weights = VoxelWeights{9, 9, 4};
   const OracleResult result = oracleSegment(object, {}, options);
-  CHECK(row(result.distance, 0, 0) == Values{4, 9, 9, 9, 4});
-  CHECK(row(result.filtered.power, 0, 0) == Values{-5, -9, -9, -9, -5});
-  CHECK(row(result.manifold, 0, 0) == Values{1, 1, 2, 3, 3});
+  CHECK(rowOf(result.distance, 0, 0) == Values{4, 9, 9, 9, 4});
+  CHECK(rowOf(result.filtered.power, 0, 0) == Values{-5, -9, -9, -9, -5});
+  CHECK(rowOf(result.manifold, 0, 0) == Values{1, 1, 2, 3, 3});
   CHECK(result.counts.grains == 3);
   options.merge.theta = -0.7;
   CHECK(oracleSegment(object, {}, options).counts.grains == 1);
   // Across the row 1 is nearest.
   options.weights = VoxelWeights{9, 1, 4};
-  CHECK(row(oracleSegment(object, {}, options).distance, 0, 0) == Values{1, 1, 1, 1, 1});
+  CHECK(rowOf(oracleSegment(object, {}, options).distance, 0, 0) == Values{1, 1, 1, 1, 1});
 }
 
 TEST_CASE("oracle: equal power goes to the larger ball", "[oracle]") {
@@ -129,11 +114,11 @@ TEST_CASE("oracle: equal power goes to the larger ball", "[oracle]") {
   // 3 - 4 at face, edge and corner voxels; the corners' own balls have -1 too.
   const ObjectVolume object = fromPicture("###/###/###|###/###/###|###/###/###", Coord(-1));
   const OracleResult result = oracleSegment(object, {}, {});
-  CHECK(row(result.distance, 0, 0) == Values{1, 4, 1});
-  CHECK(row(result.distance, 0, 1) == Values{1, 1, 1});
-  CHECK(row(result.filtered.power, 0, 0) == Values{-3, -4, -3});
-  CHECK(row(result.filtered.power, 1, 0) == Values{-2, -3, -2});
-  CHECK(row(result.filtered.power, 1, 1) == Values{-1, -2, -1});
+  CHECK(rowOf(result.distance, 0, 0) == Values{1, 4, 1});
+  CHECK(rowOf(result.distance, 0, 1) == Values{1, 1, 1});
+  CHECK(rowOf(result.filtered.power, 0, 0) == Values{-3, -4, -3});
+  CHECK(rowOf(result.filtered.power, 1, 0) == Values{-2, -3, -2});
+  CHECK(rowOf(result.filtered.power, 1, 1) == Values{-1, -2, -1});
   REQUIRE(result.balls.size() == 1);
   CHECK(result.balls[0].center == Coord(0));
   CHECK(result.balls[0].cellSize == 27);
@@ -151,10 +136,10 @@ TEST_CASE("oracle: a rod of three equal balls, filtered", "[oracle]") {
   SECTION("no filter") {
     for (const int64_t gamma : {0, 1, 9}) {
       const OracleResult result = oracleSegment(object, {}, merging(-0.9, MergeMode::angle, gamma));
-      CHECK(row(result.distance, 1, 1) == Values{1, 4, 4, 4, 1});
-      CHECK(row(result.filtered.power, 1, 1) == Values{-3, -4, -4, -4, -3});
-      CHECK(row(result.manifold, 0, 0) == Values{1, 1, 2, 3, 3});
-      CHECK(row(result.grain, 0, 2) == Values{1, 1, 2, 3, 3});
+      CHECK(rowOf(result.distance, 1, 1) == Values{1, 4, 4, 4, 1});
+      CHECK(rowOf(result.filtered.power, 1, 1) == Values{-3, -4, -4, -4, -3});
+      CHECK(rowOf(result.manifold, 0, 0) == Values{1, 1, 2, 3, 3});
+      CHECK(rowOf(result.grain, 0, 2) == Values{1, 1, 2, 3, 3});
       REQUIRE(result.graph.edges.size() == 2);
       CHECK(result.graph.edges[0] == ManifoldGraph::Edge{0, 1, 9, 4, true});
       CHECK(result.graph.edges[1] == ManifoldGraph::Edge{1, 2, 9, 4, true});
@@ -169,9 +154,9 @@ TEST_CASE("oracle: a rod of three equal balls, filtered", "[oracle]") {
     const OracleResult result = oracleSegment(object, {}, merging(-0.9, MergeMode::angle, 10));
     CHECK(result.counts.medialBalls == 3);
     CHECK(result.counts.keptBalls == 2);
-    CHECK(row(result.filtered.power, 1, 1) == Values{-3, -4, -3, -4, -3});
-    CHECK(row(result.filtered.power, 0, 0) == Values{-1, -2, -1, -2, -1});
-    CHECK(row(result.manifold, 0, 2) == Values{1, 1, 1, 2, 2});
+    CHECK(rowOf(result.filtered.power, 1, 1) == Values{-3, -4, -3, -4, -3});
+    CHECK(rowOf(result.filtered.power, 0, 0) == Values{-1, -2, -1, -2, -1});
+    CHECK(rowOf(result.manifold, 0, 2) == Values{1, 1, 1, 2, 2});
     REQUIRE(result.graph.edges.size() == 1);
     CHECK(result.graph.edges[0] == ManifoldGraph::Edge{0, 1, 9, 3, true});  // min(3, 4)
     // cos = (4 - 8) / 8 = -0.5; (1 + 0.5) / 2 * 4 = 3 <= h
@@ -183,7 +168,7 @@ TEST_CASE("oracle: a rod of three equal balls, filtered", "[oracle]") {
     // (1, 1, 1): 4 - 4 at z = 3 is not covered, 9 - 4 at z = 4.
     const OracleResult result = oracleSegment(object, {}, merging(-0.9, MergeMode::both, 19));
     CHECK(result.kept == std::vector<Coord>{Coord(1, 1, 1)});
-    CHECK(row(result.filtered.power, 1, 1) == Values{-3, -4, -3, 0, 5});
+    CHECK(rowOf(result.filtered.power, 1, 1) == Values{-3, -4, -3, 0, 5});
     CHECK(result.counts.grains == 1);
     CHECK(result.counts.medialBalls == 3);
     CHECK(result.balls.size() == 3);
@@ -199,8 +184,8 @@ TEST_CASE("oracle: uncovered voxels meet between two blocks", "[oracle]") {
   for (int z = 3; z <= 7; ++z) object[Coord(1, 1, z)] = 1;
   const OracleResult result = oracleSegment(object, {}, merging(1, MergeMode::neck, 2));
   CHECK(positions(result.graph) == std::vector<Coord>{{1, 1, 1}, {1, 1, 9}});
-  CHECK(row(result.filtered.power, 1, 1) == Values{-3, -4, -3, 0, 5, 12, 5, 0, -3, -4, -3});
-  CHECK(row(result.manifold, 1, 1) == Values{1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2});
+  CHECK(rowOf(result.filtered.power, 1, 1) == Values{-3, -4, -3, 0, 5, 12, 5, 0, -3, -4, -3});
+  CHECK(rowOf(result.manifold, 1, 1) == Values{1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2});
   REQUIRE(result.graph.edges.size() == 1);
   CHECK(result.graph.edges[0] == ManifoldGraph::Edge{0, 1, 1, -12, true});
   CHECK(result.counts.grains == 2);  // no neck at h <= 0, even with theta 1
@@ -219,8 +204,8 @@ TEST_CASE("oracle: a better site that arrives later replaces the earlier one", "
   object[Coord(1, 5, 10)] = 1;
   const OracleResult result = oracleSegment(object, {}, merging(-1, MergeMode::angle, 2));
   CHECK(positions(result.graph) == std::vector<Coord>{{1, 1, 1}, {1, 5, 8}});
-  CHECK(row(result.manifold, 1, 1) == Values{1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2});
-  CHECK(row(result.filtered.power, 1, 1) == Values{-3, -4, -3, 0, 5, 12, 16, 13, 12, 13, 16, 21});
+  CHECK(rowOf(result.manifold, 1, 1) == Values{1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2});
+  CHECK(rowOf(result.filtered.power, 1, 1) == Values{-3, -4, -3, 0, 5, 12, 16, 13, 12, 13, 16, 21});
 }
 
 TEST_CASE("oracle: a small loose piece keeps its best ball", "[oracle]") {
@@ -230,7 +215,7 @@ TEST_CASE("oracle: a small loose piece keeps its best ball", "[oracle]") {
   object[Coord(1, 1, 5)] = object[Coord(1, 1, 6)] = 1;
   const OracleResult result = oracleSegment(object, {}, merging(-1, MergeMode::both, 20));
   CHECK(result.kept == std::vector<Coord>{{1, 1, 1}, {1, 1, 5}});
-  CHECK(row(result.grain, 1, 1) == Values{1, 1, 1, 0, 0, 2, 2});
+  CHECK(rowOf(result.grain, 1, 1) == Values{1, 1, 1, 0, 0, 2, 2});
   CHECK(result.filtered.power[Coord(1, 1, 6)] == 0);
 }
 
@@ -240,18 +225,18 @@ TEST_CASE("oracle: open and closed boundaries", "[oracle]") {
   SECTION("background before and behind the row") {
     const OracleResult result = oracleSegment(object, boxAt({0, 0, -1}, {1, 1, 7}), options);
     CHECK(result.open);
-    CHECK(row(result.distance, 0, 0) == Values{1, 4, 9, 4, 1});
-    CHECK(row(result.filtered.power, 0, 0) == Values{-5, -8, -9, -8, -5});
+    CHECK(rowOf(result.distance, 0, 0) == Values{1, 4, 9, 4, 1});
+    CHECK(rowOf(result.filtered.power, 0, 0) == Values{-5, -8, -9, -8, -5});
     CHECK(result.counts.criticalPoints == 1);
   }
   SECTION("background on one side only") {
     const OracleResult result = oracleSegment(object, boxAt({0, 0, -1}, {1, 1, 6}), options);
-    CHECK(row(result.distance, 0, 0) == Values{1, 4, 9, 16, 25});
-    CHECK(row(result.filtered.power, 0, 0) == Values{-9, -16, -21, -24, -25});
+    CHECK(rowOf(result.distance, 0, 0) == Values{1, 4, 9, 16, 25});
+    CHECK(rowOf(result.filtered.power, 0, 0) == Values{-9, -16, -21, -24, -25});
   }
   SECTION("closed, or automatic without a domain") {
     options.boundary = Boundary::closed;
-    CHECK(row(oracleSegment(object, boxAt({0, 0, -1}, {1, 1, 7}), options).distance, 0, 0) ==
+    CHECK(rowOf(oracleSegment(object, boxAt({0, 0, -1}, {1, 1, 7}), options).distance, 0, 0) ==
           Values{1, 1, 1, 1, 1});
     options.boundary = Boundary::automatic;
     CHECK_FALSE(oracleSegment(object, {}, options).open);

@@ -74,7 +74,7 @@ void requireRow(const SweepRow& row, const MaskGrid& object, const SweepOptions&
   CHECK(row.flaws.inPieces == segmentation.flaws.inPieces);
 }
 
-bool equal(const SweepRow& a, const SweepRow& b) {
+bool equalRows(const SweepRow& a, const SweepRow& b) {
   return a.gamma == b.gamma && a.mode == b.mode && a.theta == b.theta && a.delta == b.delta &&
          a.grains == b.grains && a.flaws.crumbs == b.flaws.crumbs &&
          a.medianVoxels == b.medianVoxels && a.smallGrains == b.smallGrains &&
@@ -149,7 +149,7 @@ TEST_CASE("parameter_sweep: unequal voxels are measured as they are", "[paramete
   object->setTransform(openvdb::math::Transform::createLinearTransform(matrix));
   const std::vector<SweepRow> rows = parameterSweep(*object, options);
   for (const SweepRow& row : rows) requireRow(row, *object, options);
-  CHECK_FALSE(equal(rows[0], cubes));
+  CHECK_FALSE(equalRows(rows[0], cubes));
 }
 
 TEST_CASE("parameter_sweep: nothing, and options out of range", "[parameter_sweep]") {
@@ -175,7 +175,8 @@ TEST_CASE("parameter_sweep: threads do not matter", "[parameter_sweep]") {
   const std::vector<SweepRow> parallel = parameterSweep(*object, wide());
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const std::vector<SweepRow> sequential = parameterSweep(*object, wide());
-  CHECK(std::equal(parallel.begin(), parallel.end(), sequential.begin(), sequential.end(), equal));
+  CHECK(std::equal(parallel.begin(), parallel.end(), sequential.begin(), sequential.end(),
+                   equalRows));
 }
 
 TEST_CASE("parameter_sweep: stored manifolds give the same rows", "[parameter_sweep]") {
@@ -190,7 +191,7 @@ TEST_CASE("parameter_sweep: stored manifolds give the same rows", "[parameter_sw
   const std::vector<SweepRow> rows = mergingSweep(*segmentation.manifold, options),
                               fresh = parameterSweep(*object, options);
   REQUIRE(rows.size() == fresh.size());
-  for (size_t i = 0; i < rows.size(); ++i) CHECK(equal(rows[i], fresh[i]));
+  for (size_t i = 0; i < rows.size(); ++i) CHECK(equalRows(rows[i], fresh[i]));
   CHECK_THROWS_WITH(mergingSweep(*segmentation.grain, options),
                     Catch::Contains("carries no graph of manifolds"));
 }

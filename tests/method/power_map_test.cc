@@ -19,8 +19,8 @@ using namespace vdb_madf;
 using namespace vdb_madf::test;
 
 /// Voxels where the map is not the oracle's: power and, where it is negative, site.
-int differences(const LeafIndex& index, const PowerMap& map, const ObjectVolume& object,
-                const OraclePower& expected) {
+int powerDifferences(const LeafIndex& index, const PowerMap& map, const ObjectVolume& object,
+                     const OraclePower& expected) {
   int count = 0;
   for (int i = 0; i < object.size(); ++i) {
     if (!object[i]) continue;
@@ -57,7 +57,7 @@ TEST_CASE("power_map: agrees with the oracle, by windows and by envelopes", "[po
       if (c.object[i]) largest = std::max(largest, int32_t(distance[i]));
     for (const int32_t bound : {largest, std::max(largest, kLargeBound), kHugeBound}) {
       const PowerMap map = powerMap(index, {byRank<int32_t>(index, distance), bound, weights});
-      REQUIRE(differences(index, map, c.object, expected) == 0);
+      REQUIRE(powerDifferences(index, map, c.object, expected) == 0);
     }
     voxels += countObject(c.object);
   }
@@ -87,7 +87,7 @@ TEST_CASE("power_map: of some balls only, by windows and by envelopes", "[power_
       PowerMap map{byRank<int32_t>(index, start), VoxelArray<VoxelId>(size_t(index.voxelCount())),
                    weights};
       detail::sweepPower(index, bound, map);
-      REQUIRE(differences(index, map, c.object, expected) == 0);
+      REQUIRE(powerDifferences(index, map, c.object, expected) == 0);
     }
   }
 }

@@ -29,7 +29,7 @@ struct Rows {
 };
 
 /// Gaps, sites among the rest, and so few values that ties are common; sites beyond the ends along z.
-Rows randomRows(int stride, int length, int largest, int weight, uint32_t seed) {
+Rows randomLines(int stride, int length, int largest, int weight, uint32_t seed) {
   std::mt19937 random(seed);
   Rows rows{length, keyReach(largest, weight), {}};
   rows.places.resize(size_t(64 * (length + 2 * rows.reach)));
@@ -57,8 +57,9 @@ size_t placeOf(const KeyLines& lines, int row, int t) {
 }
 
 /// Voxels where the pass is not what its definition says.
-int differences(KeyLines& lines, int stride, int length, int largest, int weight, uint32_t seed) {
-  Rows rows = randomRows(stride, length, largest, weight, seed);
+int windowDifferences(KeyLines& lines, int stride, int length, int largest, int weight,
+                      uint32_t seed) {
+  Rows rows = randomLines(stride, length, largest, weight, seed);
   const int shift = keyShift(largest);
   lines.resize(stride, length, rows.reach);
   for (int row = 0; row < 64; ++row)
@@ -124,6 +125,6 @@ TEST_CASE("power_windows: by its definition", "[power_windows]") {
         for (const int weight : {1, 2, 9, 144, 100000})
           for (uint32_t seed = 1; seed <= 4; ++seed) {
             CAPTURE(stride, length, largest, weight, seed);
-            REQUIRE(differences(lines, stride, length, largest, weight, seed) == 0);
+            REQUIRE(windowDifferences(lines, stride, length, largest, weight, seed) == 0);
           }
 }

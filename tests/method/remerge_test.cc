@@ -42,7 +42,7 @@ Int32Grid::Ptr rowGrid() {
   return grid;
 }
 
-std::vector<int32_t> row(const Int32Grid& grid) {
+std::vector<int32_t> labelsOfRow(const Int32Grid& grid) {
   std::vector<int32_t> values;
   for (int z = 0; z < 7; ++z) values.push_back(grid.tree().getValue(Coord(0, 0, z)));
   return values;
@@ -100,7 +100,7 @@ void requireFresh(RandomCase c) {
 TEST_CASE("remerge: a row, drawn by hand", "[remerge]") {
   const auto manifold = rowGrid();
   const auto labels = [&](double theta, MergeMode mode, Adjacency adjacency = Adjacency::manifold) {
-    return row(*remerge(*manifold, {theta, mode, adjacency, 0}, 0));
+    return labelsOfRow(*remerge(*manifold, {theta, mode, adjacency, 0}, 0));
   };
   using Row = std::vector<int32_t>;
   // 4 >= (1 - theta)/2 * 4 for all theta; 1 >= (1 - theta)/2 * 4 from 0.5 on.
@@ -121,7 +121,7 @@ TEST_CASE("remerge: leaves the manifolds as they are", "[remerge]") {
   manifold->insertMeta("madf_grains", openvdb::Int64Metadata(99));
   const auto before = texts(*manifold);
   const auto grain = remerge(*manifold, {0.5, MergeMode::neck, Adjacency::cell, 3}, 4);
-  CHECK(row(*manifold) == std::vector<int32_t>{1, 1, 2, 2, 3, 3, 3});
+  CHECK(labelsOfRow(*manifold) == std::vector<int32_t>{1, 1, 2, 2, 3, 3, 3});
   CHECK(texts(*manifold) == before);
   CHECK(storedGraph(*manifold)->nodes == rowGraph().nodes);
   CHECK_FALSE(storedGraph(*grain).has_value());
@@ -170,7 +170,7 @@ TEST_CASE("remerge: takes active tiles", "[remerge]") {
   for (const Coord& p : {Coord(-128, 128, 0), Coord(-1, 255, 127)})
     CHECK(grain->tree().getValue(p) == 2);
   CHECK(grain->tree().getValue(Coord(-9, 0, 0)) == 0);
-  CHECK(row(*grain) == std::vector<int32_t>{1, 1, 1, 1, 2, 2, 2});
+  CHECK(labelsOfRow(*grain) == std::vector<int32_t>{1, 1, 1, 1, 2, 2, 2});
 }
 
 TEST_CASE("remerge: a merging of one's own", "[remerge]") {
@@ -179,7 +179,7 @@ TEST_CASE("remerge: a merging of one's own", "[remerge]") {
   manifold->insertMeta("madf_theta", openvdb::DoubleMetadata(-0.9));
   const ManifoldGraph graph = storedGraph(*manifold).value();
   const auto ends = applyMerging(*manifold, mergeClasses(graph, {0, 1, 0}), 0);
-  CHECK(row(*ends) == std::vector<int32_t>{1, 1, 2, 2, 1, 1, 1});
+  CHECK(labelsOfRow(*ends) == std::vector<int32_t>{1, 1, 2, 2, 1, 1, 1});
   CHECK(ends->getName() == "grain");
   CHECK(ends->metaValue<std::string>("madf_source") == "scan.tif");
   CHECK(ends->metaValue<std::string>("madf_merge") == "own");

@@ -33,7 +33,7 @@ std::string word(Adjacency adjacency) {
 }
 
 /// All metadata of ours with their types, as text.
-Texts stored(const openvdb::MetaMap& metadata) {
+Texts storedTexts(const openvdb::MetaMap& metadata) {
   Texts result;
   for (auto entry = metadata.beginMeta(); entry != metadata.endMeta(); ++entry)
     if (entry->first.rfind("madf_", 0) == 0)
@@ -95,7 +95,7 @@ TEST_CASE("segmentation_metadata: every option and count has its key", "[segment
           options.boundary = open ? Boundary::automatic : Boundary::open;
           options.merge = {-0.1234567890123, mode, adjacency, 12};
           describeSegmentation(*grid, options, s);
-          CHECK(stored(*grid) == expectedTexts(options, open, s.counts, s.fillHoles));
+          CHECK(storedTexts(*grid) == expectedTexts(options, open, s.counts, s.fillHoles));
           CHECK(grid->metaValue<double>("madf_theta") == -0.1234567890123);
         }
 }
@@ -126,7 +126,7 @@ TEST_CASE("segmentation_metadata: another merging changes six values", "[segment
   grid->insertMeta("madf_source", StringMetadata("scan.tif"));
   const Segmentation s = numbered(100);
   describeSegmentation(*grid, {}, s);
-  Texts expected = stored(*grid);
+  Texts expected = storedTexts(*grid);
   describeMerging(*grid, {0.25, MergeMode::angle, Adjacency::cell, 5}, 6, 77);
   expected["madf_theta"] = asText(DoubleMetadata(0.25));
   expected["madf_merge"] = asText(StringMetadata("angle"));
@@ -134,7 +134,7 @@ TEST_CASE("segmentation_metadata: another merging changes six values", "[segment
   expected["madf_delta"] = asText(Int64Metadata(5));
   expected["madf_tidy"] = asText(Int64Metadata(6));
   expected["madf_grains"] = asText(Int64Metadata(77));
-  CHECK(stored(*grid) == expected);
+  CHECK(storedTexts(*grid) == expected);
 }
 
 TEST_CASE("segmentation_metadata: the boundary comes back", "[segmentation_metadata]") {
@@ -179,7 +179,7 @@ TEST_CASE("segmentation_metadata: a segmentation describes itself on each of its
     const Texts texts = expectedTexts(c.options, expected.open, expected.counts,
                                       oracleFillHoles(c.options, c.domain));
     for (const auto& grid : {s.grain, s.distanceSquared, s.power, s.manifold}) {
-      const Texts found = stored(*grid);
+      const Texts found = storedTexts(*grid);
       CAPTURE(grid->getName());
       for (const auto& [key, value] : texts) {
         REQUIRE(found.count(key) == 1);

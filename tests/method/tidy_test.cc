@@ -49,7 +49,7 @@ struct Picture {
   }
 };
 
-std::string text(const Labels& labels) {
+std::string labelText(const Labels& labels) {
   std::string result;
   const Coord dim = labels.box().dim();
   for (int y = 0; y < dim.y(); ++y) {
@@ -86,7 +86,7 @@ std::string tidied(const std::string& picture, int rounds) {
   const Picture p(picture);
   const Labels result = tidied(p.labels, objectOf(p.labels), p.representatives, rounds);
   CHECK(result == oracleTidy(p.labels, p.representatives, rounds));
-  return text(result);
+  return labelText(result);
 }
 
 /// Labels by the nearest of some seeds, some voxels changed at random: combs and crumbs.

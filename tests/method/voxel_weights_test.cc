@@ -20,19 +20,19 @@ namespace {
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-using Edges = std::array<double, 3>;
+using EdgeLengths = std::array<double, 3>;
 
-constexpr VoxelWeights kUnit;
+constexpr VoxelWeights kUnitWeights;
 const Coord kExtent(300);
 
-VoxelWeights exactly(const Edges& edges, const Coord& extent = kExtent) {
+VoxelWeights exactly(const EdgeLengths& edges, const Coord& extent = kExtent) {
   const WeightsOfEdges found = weightsOfEdges(edges, extent);
   CHECK(found.error == 0);
   return found.weights;
 }
 
 /// max |w_a s_q / (w_q s_a) - 1|, s the squared edges, q the shortest one.
-double errorOf(const VoxelWeights& w, const Edges& edges) {
+double errorOf(const VoxelWeights& w, const EdgeLengths& edges) {
   const int q = int(std::min_element(edges.begin(), edges.end()) - edges.begin());
   double error = 0;
   for (int a = 0; a < 3; ++a) {
@@ -50,9 +50,9 @@ openvdb::math::Transform transformOf(const openvdb::Mat4d& matrix) {
 
 TEST_CASE("voxel_weights: cubes weigh the same", "[voxel_weights]") {
   for (const double edge : {1.0, 0.005, 3e-9, 1e9, std::sqrt(2)}) {
-    CHECK(exactly({edge, edge, edge}) == kUnit);
-    CHECK(exactly({edge, edge * 1.0009, edge}) == kUnit);
-    CHECK(exactly({edge, edge, edge}, Coord(26754)) == kUnit);
+    CHECK(exactly({edge, edge, edge}) == kUnitWeights);
+    CHECK(exactly({edge, edge * 1.0009, edge}) == kUnitWeights);
+    CHECK(exactly({edge, edge, edge}, Coord(26754)) == kUnitWeights);
   }
   CHECK(exactly({1, 1, 1.002}, Coord(20)) == VoxelWeights{250000, 250000, 251001});
 }
@@ -73,14 +73,14 @@ TEST_CASE("voxel_weights: decimal edges have exact weights, in any unit", "[voxe
 
 TEST_CASE("voxel_weights: other edges get the smallest weights that are close", "[voxel_weights]") {
   // Read as 32-bit floats.
-  const Edges floats = {double(0.1f), double(0.1f), double(0.3f)};
+  const EdgeLengths floats = {double(0.1f), double(0.1f), double(0.3f)};
   const WeightsOfEdges found = weightsOfEdges(floats, kExtent);
   CHECK(found.weights == VoxelWeights{1, 1, 9});
   CHECK(found.error > 0);
   CHECK(found.error < 1e-6);
   CHECK(weightsOfEdges({1, std::sqrt(2), std::sqrt(3)}, kExtent).weights == VoxelWeights{1, 2, 3});
 
-  const Edges edges = {1, std::cbrt(3), std::sqrt(M_PI)};
+  const EdgeLengths edges = {1, std::cbrt(3), std::sqrt(M_PI)};
   for (const int size : {1, 10, 40, 150, 600, 2400}) {
     const WeightsOfEdges w = weightsOfEdges(edges, Coord(size));
     CAPTURE(size, w.weights.toString(), w.error);
@@ -98,7 +98,7 @@ TEST_CASE("voxel_weights: other edges get the smallest weights that are close", 
 }
 
 TEST_CASE("voxel_weights: exact ones that do not fit give way", "[voxel_weights]") {
-  const Edges edges = {0.1234, 0.1999, 0.5001};
+  const EdgeLengths edges = {0.1234, 0.1999, 0.5001};
   const WeightsOfEdges found = weightsOfEdges(edges, Coord(2000));
   CHECK(found.error > 0);
   CHECK(found.error < 0.005);
@@ -106,7 +106,7 @@ TEST_CASE("voxel_weights: exact ones that do not fit give way", "[voxel_weights]
 }
 
 TEST_CASE("voxel_weights: a bound keeps squared distances in 32 bits", "[voxel_weights]") {
-  CHECK(fitWeights(kUnit, Coord(26754)));
+  CHECK(fitWeights(kUnitWeights, Coord(26754)));
   // 2 * 225 + 2088 * 1014^2 is just below 2^31.
   CHECK(fitWeights({1, 2088, 1}, {1, 1000, 1}));
   CHECK_FALSE(fitWeights({1, 2089, 1}, {1, 1000, 1}));
@@ -125,7 +125,7 @@ TEST_CASE("voxel_weights: edges that no weights fit are refused", "[voxel_weight
   const double inf = std::numeric_limits<double>::infinity();
   for (const double edge : {0.0, -1.0, inf, std::nan("")})
     for (size_t axis = 0; axis < 3; ++axis) {
-      Edges edges = {1, 2, 3};
+      EdgeLengths edges = {1, 2, 3};
       edges[axis] = edge;
       CHECK_THROWS_AS(weightsOfEdges(edges, Coord(1)), InvalidInput);
     }
@@ -134,13 +134,13 @@ TEST_CASE("voxel_weights: edges that no weights fit are refused", "[voxel_weight
 TEST_CASE("voxel_weights: edges of a transform", "[voxel_weights]") {
   openvdb::Mat4d matrix = openvdb::Mat4d::identity();
   matrix.preScale(openvdb::Vec3d(0.0005, -0.0005, 0.0012));
-  CHECK(voxelEdges(transformOf(matrix)) == Edges{0.0005, 0.0005, 0.0012});
+  CHECK(voxelEdges(transformOf(matrix)) == EdgeLengths{0.0005, 0.0005, 0.0012});
   // OpenVDB takes the scale of a translated transform from differences of positions.
   matrix.postTranslate(openvdb::Vec3d(1e3, -77.7, 1e5));
   const WeightsOfEdges found = weightsOfEdges(voxelEdges(transformOf(matrix)), kExtent);
   CHECK(found.weights == VoxelWeights{25, 25, 144});
   CHECK(found.error < 1e-6);
-  CHECK(voxelEdges(openvdb::math::Transform()) == Edges{1, 1, 1});
+  CHECK(voxelEdges(openvdb::math::Transform()) == EdgeLengths{1, 1, 1});
   matrix.postRotate(openvdb::math::Z_AXIS, 0.1);
   CHECK_THROWS_AS(voxelEdges(transformOf(matrix)), InvalidInput);
   matrix = openvdb::Mat4d::identity();
@@ -150,10 +150,10 @@ TEST_CASE("voxel_weights: edges of a transform", "[voxel_weights]") {
 
 TEST_CASE("voxel_weights: stored unless they are those of cubes", "[voxel_weights]") {
   openvdb::MetaMap metadata;
-  CHECK(storedWeights(metadata) == kUnit);
+  CHECK(storedWeights(metadata) == kUnitWeights);
   setWeights(metadata, {25, 25, 144});
   CHECK(storedWeights(metadata) == VoxelWeights{25, 25, 144});
-  setWeights(metadata, kUnit);
+  setWeights(metadata, kUnitWeights);
   CHECK(metadata.metaCount() == 0);
   metadata.insertMeta("madf_weights", openvdb::Vec3IMetadata({1, 0, 1}));
   CHECK_THROWS_AS(storedWeights(metadata), InvalidInput);

@@ -39,7 +39,7 @@ struct RandomSet {
   }
 };
 
-uint32_t at(const detail::LeafCounts& counts, uint32_t offset) {
+uint32_t countAt(const detail::LeafCounts& counts, uint32_t offset) {
   uint32_t count = 0;
   for (uint32_t i = 0; i < 5; ++i) count |= uint32_t(detail::holds(counts[i], offset)) << i;
   return count;
@@ -68,12 +68,12 @@ TEST_CASE("voxels_around: counts, faces and comparisons of every voxel", "[voxel
             count += holds;
             faces = faces || (holds && x * x + y * y + z * z == 1);
           }
-      REQUIRE(at(around.count, offset) == uint32_t(count));
+      REQUIRE(countAt(around.count, offset) == uint32_t(count));
       REQUIRE(detail::holds(around.faces, offset) == faces);
       REQUIRE(detail::holds(surrounded, offset) == (count == 27));
-      REQUIRE(detail::holds(greater, offset) == (uint32_t(count) > at(less.count, offset)));
+      REQUIRE(detail::holds(greater, offset) == (uint32_t(count) > countAt(less.count, offset)));
       const bool isSet = detail::holds(set.leaves[13], offset);
-      REQUIRE(at(mixed, offset) == (isSet ? uint32_t(count) : at(less.count, offset)));
+      REQUIRE(countAt(mixed, offset) == (isSet ? uint32_t(count) : countAt(less.count, offset)));
       largest = std::max(largest, count);
     }
   }

@@ -16,12 +16,12 @@ namespace {
 using namespace vdb_madf;
 using namespace vdb_madf::test;
 
-Segmentation segmentObject(const ObjectVolume& object, SegmentOptions options) {
+Segmentation segmentKeepingAll(const ObjectVolume& object, SegmentOptions options) {
   options.keepDistance = options.keepPower = options.keepManifold = options.keepBalls = true;
   return segment(*toMask(object), options);
 }
 
-DenseVolume<int64_t> values(const Int32Grid& grid, const CoordBBox& box, int64_t factor = 1) {
+DenseVolume<int64_t> scaledValues(const Int32Grid& grid, const CoordBBox& box, int64_t factor = 1) {
   DenseVolume<int64_t> result(box);
   const auto accessor = grid.getConstAccessor();
   for (int i = 0; i < result.size(); ++i) result[i] = factor * accessor.getValue(result.coord(i));
@@ -87,14 +87,15 @@ TEST_CASE("weights: a common factor scales squared lengths and changes no label"
     c.options.weights.reset();
     INFO(describe(c));
     const CoordBBox box = c.object.box();
-    const Segmentation cubes = segmentObject(c.object, c.options);
+    const Segmentation cubes = segmentKeepingAll(c.object, c.options);
     for (const int factor : {2, 64}) {
       c.options.weights = VoxelWeights{factor, factor, factor};
-      const Segmentation s = segmentObject(c.object, c.options);
-      REQUIRE(values(*s.grain, box) == values(*cubes.grain, box));
-      REQUIRE(values(*s.manifold, box) == values(*cubes.manifold, box));
-      REQUIRE(values(*s.power, box) == values(*cubes.power, box, factor));
-      REQUIRE(values(*s.distanceSquared, box) == values(*cubes.distanceSquared, box, factor));
+      const Segmentation s = segmentKeepingAll(c.object, c.options);
+      REQUIRE(scaledValues(*s.grain, box) == scaledValues(*cubes.grain, box));
+      REQUIRE(scaledValues(*s.manifold, box) == scaledValues(*cubes.manifold, box));
+      REQUIRE(scaledValues(*s.power, box) == scaledValues(*cubes.power, box, factor));
+      REQUIRE(scaledValues(*s.distanceSquared, box) ==
+              scaledValues(*cubes.distanceSquared, box, factor));
       REQUIRE(s.balls.size() == cubes.balls.size());
       for (size_t i = 0; i < s.balls.size(); ++i) {
         REQUIRE(s.balls[i].center == cubes.balls[i].center);
@@ -117,12 +118,12 @@ TEST_CASE("weights: every k-th slice knows a part of the background", "[weights]
     const ObjectVolume fine = randomVolume(kKinds[seed % 5], boxAt(Coord(0), size), rng);
     const ObjectVolume coarse = sampled(fine, axis, k);
     SegmentOptions options = closed();
-    const Segmentation slow = segmentObject(fine, options);
+    const Segmentation slow = segmentKeepingAll(fine, options);
     options.weights = longAlong(axis, k);
-    const Segmentation quick = segmentObject(coarse, options);
+    const Segmentation quick = segmentKeepingAll(coarse, options);
     CAPTURE(seed, k, axis);
-    const auto all = values(*slow.distanceSquared, fine.box());
-    const auto some = values(*quick.distanceSquared, coarse.box());
+    const auto all = scaledValues(*slow.distanceSquared, fine.box());
+    const auto some = scaledValues(*quick.distanceSquared, coarse.box());
     for (int i = 0; i < coarse.size(); ++i)
       REQUIRE(some[i] >= all[inFine(coarse.coord(i), axis, k)]);
   }
@@ -145,15 +146,15 @@ TEST_CASE("weights: a stretched volume has the same distances, to less than a sl
     options.boundary = Boundary::open;
     options.domain = walls;
     options.weights = longAlong(axis, k);
-    const Segmentation quick = segmentObject(coarse, options);
+    const Segmentation quick = segmentKeepingAll(coarse, options);
     walls = fine.box();
     walls.expand(k);
     options.domain = walls;
     options.weights.reset();
-    const Segmentation slow = segmentObject(fine, options);
+    const Segmentation slow = segmentKeepingAll(fine, options);
     CAPTURE(seed, k, axis);
-    const auto thick = values(*quick.distanceSquared, coarse.box());
-    const auto thin = values(*slow.distanceSquared, fine.box());
+    const auto thick = scaledValues(*quick.distanceSquared, coarse.box());
+    const auto thin = scaledValues(*slow.distanceSquared, fine.box());
     for (int i = 0; i < coarse.size(); ++i) {
       const int64_t d = thick[i], e = thin[inFine(coarse.coord(i), axis, k)];
       REQUIRE(e <= d);
@@ -176,15 +177,15 @@ TEST_CASE("weights: along a prism slices are alike, however thick", "[weights]")
     SegmentOptions options = closed();
     options.boundary = Boundary::open;
     options.domain = fine.box();
-    const Segmentation slow = segmentObject(fine, options);
+    const Segmentation slow = segmentKeepingAll(fine, options);
     options.domain = coarse.box();
     options.weights = longAlong(axis, k);
-    const Segmentation quick = segmentObject(coarse, options);
+    const Segmentation quick = segmentKeepingAll(coarse, options);
     CAPTURE(seed, k, axis);
     REQUIRE(anyViolation(quick, *toMask(coarse), 0) == "");
     for (const auto& [thick, thin] : {std::pair(quick.distanceSquared, slow.distanceSquared),
                                       std::pair(quick.power, slow.power)}) {
-      const auto some = values(*thick, coarse.box()), all = values(*thin, fine.box());
+      const auto some = scaledValues(*thick, coarse.box()), all = scaledValues(*thin, fine.box());
       for (int i = 0; i < coarse.size(); ++i)
         REQUIRE(some[i] == all[inFine(coarse.coord(i), axis, k)]);
     }

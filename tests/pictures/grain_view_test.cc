@@ -11,18 +11,16 @@
 #include <limits>
 #include <random>
 
+#include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 
 using namespace vdb_madf;
+using namespace vdb_madf::test;
 
 namespace {
 
 using Vec = openvdb::Vec3d;
-
-CoordBBox cube(int edge, const Coord& origin = Coord(0)) {
-  return CoordBBox::createCube(origin, edge);
-}
 
 Int32Grid::Ptr ball(const Coord& center, double radius, int32_t label) {
   auto grid = Int32Grid::create(0);

@@ -26,7 +26,7 @@ using namespace vdb_madf::test;
 using detail::Ball;
 using openvdb::Vec3d;
 
-const std::vector<Vec3d> kShapes = {{1, 1, 3}, {2, 1, 1}, {1, 1.7, 2.5}, {5.25, 1, 1.01}};
+const std::vector<Vec3d> kVoxelShapes = {{1, 1, 3}, {2, 1, 1}, {1, 1.7, 2.5}, {5.25, 1, 1.01}};
 
 VoxelSize micrometers(const Vec3d& edges) {
   return VoxelSize({edges[0] / 1e6, edges[1] / 1e6, edges[2] / 1e6});
@@ -75,7 +75,7 @@ void requireBodies(const Sample& sample, const Coord& size, const Vec3d& edges, 
   CHECK(labelsOf(*sample.truth) == owners);
 }
 
-double power(const Ball& ball, const Vec3d& p) {
+double powerAt(const Ball& ball, const Vec3d& p) {
   return (p - Vec3d(ball.x, ball.y, ball.z)).lengthSqr() - ball.radius * ball.radius;
 }
 
@@ -103,19 +103,19 @@ void requireThirdSlicesOf(Options options, const Generate& generate) {
 }  // namespace
 
 TEST_CASE("lattice: spheres are the balls of cubes", "[lattice]") {
-  for (const Vec3d& edges : kShapes) {
+  for (const Vec3d& edges : kVoxelShapes) {
     CAPTURE(edges);
     auto options = sample<SphereOptions>({63, 60, 66}, 9);
     const auto balls = detail::placeSpheres(options, nullptr);
     options.voxelSize = micrometers(edges);
     requireBodies(generateSpheres(options), options.size, edges, balls.size(), 0,
-                  [&](size_t i, const Vec3d& p) { return power(balls[i], p); });
+                  [&](size_t i, const Vec3d& p) { return powerAt(balls[i], p); });
   }
 }
 
 TEST_CASE("lattice: particles are those of cubes", "[lattice]") {
   for (const ParticleShape shape : {ParticleShape::ellipsoids, ParticleShape::polyhedra})
-    for (const Vec3d& edges : kShapes) {
+    for (const Vec3d& edges : kVoxelShapes) {
       CAPTURE(int(shape), edges);
       auto options = sample<ParticleOptions>({64, 50, 52}, 8);
       options.shape = shape;
@@ -147,7 +147,7 @@ TEST_CASE("lattice: the field of sintered balls is that of cubes", "[lattice]") 
   const auto weight = [](double d, double sigma) {
     return std::exp(-d * d / (2 * sigma * sigma)) / (sigma * std::sqrt(2 * M_PI));
   };
-  for (const Vec3d& edges : kShapes) {
+  for (const Vec3d& edges : kVoxelShapes) {
     CAPTURE(edges);
     options.voxelSize = micrometers(edges);
     const Sample sample = generateSintered(options);
@@ -161,7 +161,7 @@ TEST_CASE("lattice: the field of sintered balls is that of cubes", "[lattice]") 
       for (auto q = CoordBBox::createCube(Coord::floor(place).offsetBy(-8), 18).begin(); q; ++q) {
         const Vec3d d = (*q).asVec3d() - place;
         if (std::any_of(balls.begin(), balls.end(),
-                        [&](const Ball& ball) { return power(ball, (*q).asVec3d()) < 0; }))
+                        [&](const Ball& ball) { return powerAt(ball, (*q).asVec3d()) < 0; }))
           blurred += weight(d[0], 2) * weight(d[1], 2) * weight(d[2], 2);
         if (std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])}) <= 4)
           rough += weight(d[0], 1) * weight(d[1], 1) * weight(d[2], 1) *
@@ -177,7 +177,7 @@ TEST_CASE("lattice: the field of sintered balls is that of cubes", "[lattice]") 
       const Vec3d place = placeOf(voxel.getCoord(), edges);
       size_t best = 0;
       for (size_t i = 1; i < balls.size(); ++i)
-        if (power(balls[i], place) < power(balls[best], place)) best = i;
+        if (powerAt(balls[i], place) < powerAt(balls[best], place)) best = i;
       wrong += *voxel != int32_t(best) + 1;
     }
     CHECK(wrong == 0);
@@ -190,7 +190,7 @@ TEST_CASE("lattice: a pack has its fraction", "[lattice]") {
   options.size = {90, 60, 61};
   options.minRadius = 5;
   options.maxRadius = 8;
-  for (const Vec3d& edges : kShapes) {
+  for (const Vec3d& edges : kVoxelShapes) {
     CAPTURE(edges);
     options.voxelSize = micrometers(edges);
     const Sample sample = generatePack(options);

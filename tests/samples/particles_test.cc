@@ -20,9 +20,9 @@ using namespace vdb_madf::test;
 using detail::Particle;
 using detail::Vector;
 
-constexpr ParticleShape kShapes[] = {ParticleShape::balls, ParticleShape::ellipsoids,
-                                     ParticleShape::plates, ParticleShape::prisms,
-                                     ParticleShape::polyhedra};
+constexpr ParticleShape kParticleShapes[] = {ParticleShape::balls, ParticleShape::ellipsoids,
+                                             ParticleShape::plates, ParticleShape::prisms,
+                                             ParticleShape::polyhedra};
 
 ParticleOptions smallParticles(ParticleShape shape) {
   ParticleOptions options;
@@ -61,7 +61,7 @@ std::pair<double, double> lengthAndThickness(const Particle& particle) {
 TEST_CASE("particles: the bits are fixed", "[particles]") {
   const uint64_t expected[] = {0xcf2ed287e6025746u, 0xb1b8ec1428f1bff7u, 0xf1c9a0b437e1fed8u,
                                0x365f857d4ff3f1a2u, 0x29d8cc19c4ab80cbu};
-  for (const ParticleShape shape : kShapes) {
+  for (const ParticleShape shape : kParticleShapes) {
     CAPTURE(int(shape));
     CHECK(hash(generateParticles(smallParticles(shape))) == expected[int(shape)]);
   }
@@ -71,7 +71,7 @@ TEST_CASE("particles: the bits are fixed", "[particles]") {
 }
 
 TEST_CASE("particles: seeds differ, threads do not matter", "[particles]") {
-  for (const ParticleShape shape : kShapes) {
+  for (const ParticleShape shape : kParticleShapes) {
     auto options = smallParticles(shape);
     requireSeedsDiffer([&](uint64_t seed) {
       options.seed = seed;
@@ -84,7 +84,7 @@ TEST_CASE("particles: seeds differ, threads do not matter", "[particles]") {
 
 TEST_CASE("particles: have the volume that they are asked for", "[particles]") {
   detail::RandomSequence random(3, 0);
-  for (const ParticleShape shape : kShapes)
+  for (const ParticleShape shape : kParticleShapes)
     for (int i = 0; i < 4; ++i) {
       CAPTURE(int(shape), i);
       const double radius = 9 + i;
@@ -115,7 +115,7 @@ TEST_CASE("particles: nothing of a particle lies beyond its reach", "[particles]
   detail::RandomSequence random(5, 0);
   std::mt19937 directions(1);
   std::normal_distribution<double> normal;
-  for (const ParticleShape shape : kShapes) {
+  for (const ParticleShape shape : kParticleShapes) {
     const Particle particle = detail::drawParticle(shape, 10, random);
     const double shortest = 1 / particle.slope();
     for (int i = 0; i < 1000; ++i) {
@@ -143,7 +143,7 @@ TEST_CASE("particles: orientations have no preferred direction", "[particles]") 
 }
 
 TEST_CASE("particles: the object is their union, the truth the one of least value", "[particles]") {
-  for (const ParticleShape shape : kShapes) {
+  for (const ParticleShape shape : kParticleShapes) {
     CAPTURE(int(shape));
     auto options = smallParticles(shape);
     options.size = {140, 50, 40};  // two blocks
@@ -167,7 +167,7 @@ TEST_CASE("particles: the object is their union, the truth the one of least valu
 }
 
 TEST_CASE("particles: keep their distance", "[particles]") {
-  for (const ParticleShape shape : kShapes) {
+  for (const ParticleShape shape : kParticleShapes) {
     CAPTURE(int(shape));
     auto options = smallParticles(shape);
     options.count = 25;
@@ -222,7 +222,7 @@ TEST_CASE("particles: says how many fit", "[particles]") {
 }
 
 TEST_CASE("particles: one voxel", "[particles]") {
-  for (const ParticleShape shape : kShapes) {
+  for (const ParticleShape shape : kParticleShapes) {
     ParticleOptions options;
     options.size = Coord(1);
     options.count = 1;
@@ -254,6 +254,6 @@ TEST_CASE("particles: bad options are refused", "[particles]") {
 }
 
 TEST_CASE("particles: stops when asked to", "[particles]") {
-  for (const ParticleShape shape : kShapes)
+  for (const ParticleShape shape : kParticleShapes)
     requireStops([&](Interrupter* stop) { return generateParticles(smallParticles(shape), stop); });
 }

@@ -35,19 +35,6 @@ void checkExact(const LabelMap& voxels) {
   }
 }
 
-using Corners = std::array<std::array<float, 3>, 3>;
-
-/// The corners of a triangle, rotated to begin with the least: equal if it is the same one.
-Corners cornersOf(const GrainMesh& mesh, const std::array<uint32_t, 3>& triangle, bool turned) {
-  Corners corners;
-  for (size_t n = 0; n < 3; ++n) {
-    const Vec3f& p = mesh.points[triangle[turned ? 2 - n : n]];
-    corners[n] = {p.x(), p.y(), p.z()};
-  }
-  std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
-  return corners;
-}
-
 /// Triangles of a grain that another grain has turned over.
 size_t sharedTriangles(const GrainMesh& mesh, size_t a, size_t b) {
   std::multiset<Corners> others;

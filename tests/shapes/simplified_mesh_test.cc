@@ -51,18 +51,7 @@ Int32Grid::Ptr inBox(const LabelMap& voxels) {
   return grid;
 }
 
-using Place = std::array<float, 3>;
-using Corners = std::array<Place, 3>;
-
-Corners cornersOf(const GrainMesh& mesh, const std::array<uint32_t, 3>& triangle, bool turned) {
-  Corners corners;
-  for (size_t n = 0; n < 3; ++n) {
-    const Vec3f& p = mesh.points[triangle[turned ? 2 - n : n]];
-    corners[n] = {p.x(), p.y(), p.z()};
-  }
-  std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
-  return corners;
-}
+using Place = Corners::value_type;
 
 /// Triangles without another one turned over: those towards the background, if all is shared.
 std::vector<Corners> freeTriangles(const GrainMesh& mesh) {

@@ -240,7 +240,7 @@ class Contractor {
 };
 
 /// The groups as parts of slabs, the first the lowest.
-std::vector<SlabPart> partsOf(const Case& c) {
+std::vector<SlabPart> slabPartsOf(const Case& c) {
   std::vector<SlabPart> parts;
   std::vector<std::vector<char>> knows(size_t(c.groups), std::vector<char>(c.nodes.size(), 0));
   for (size_t i = 0; i < c.nodes.size(); ++i) knows[size_t(c.owner[i])][i] = 1;
@@ -350,7 +350,7 @@ TEST_CASE("merge_parts: ranges joined in any order give the grains of the whole"
     Rng rng(seed + 1);
     if (rng.chance(0.3))
       for (CriticalPoint& node : c.nodes) node.voxels = rng.below(2);
-    const std::vector<SlabPart> parts = partsOf(c);
+    const std::vector<SlabPart> parts = slabPartsOf(c);
     const MergeRule rule(c.options, c.weights);
     const TreeGrains found = RandomMergeTree(parts, rule, rng).run();
     const std::string wrong = wrongGrains(c, mergedByDefinition(c), parts, found);

@@ -28,7 +28,7 @@ namespace {
 using namespace vdb_madf;
 using namespace vdb_madf::test;
 
-struct Cut {
+struct CutResult {
   SlabSegmentation result;
   Int32Grid::Ptr labels;     ///< of all slabs; null without any
   Int32Grid::Ptr manifolds;  ///< the same, with the graph, if they are kept
@@ -43,7 +43,7 @@ void addSlab(Int32Grid::Ptr& all, const Int32Grid::Ptr& slab) {
 }
 
 /// Those of all slabs, if there are any.
-void joinSlabs(const std::vector<SlabGrids>& slabs, Cut& cut) {
+void joinSlabs(const std::vector<SlabGrids>& slabs, CutResult& cut) {
   std::vector<GraphPart> parts;
   for (const SlabGrids& grids : slabs) {
     addSlab(cut.labels, grids.grain);
@@ -54,8 +54,8 @@ void joinSlabs(const std::vector<SlabGrids>& slabs, Cut& cut) {
   if (cut.manifolds) setGraph(*cut.manifolds, joinedGraph(parts));
 }
 
-Cut segmentCut(const SlabObject& object, const SegmentOptions& options) {
-  Cut cut;
+CutResult segmentCut(const SlabObject& object, const SegmentOptions& options) {
+  CutResult cut;
   MemoryScratch scratch;
   std::vector<SlabGrids> slabs;
   cut.result = segmentSlabs(object, options, scratch, [&](size_t slab, const SlabGrids& grids) {
@@ -71,8 +71,8 @@ Cut segmentCut(const SlabObject& object, const SegmentOptions& options) {
 }
 
 /// The same by several ranks, each of which knows its own slabs alone.
-Cut segmentByRanks(const SlabObject& object, const SegmentOptions& options, int ranks) {
-  Cut cut;
+CutResult segmentByRanks(const SlabObject& object, const SegmentOptions& options, int ranks) {
+  CutResult cut;
   Team team(ranks);
   std::vector<SlabGrids> slabs(object.slabCount());
   asRanks(team, [&](Ranks& rank) {
@@ -89,7 +89,7 @@ Cut segmentByRanks(const SlabObject& object, const SegmentOptions& options, int 
   return cut;
 }
 
-std::string difference(const Segmentation& whole, const Cut& cut) {
+std::string difference(const Segmentation& whole, const CutResult& cut) {
   const SegmentCounts &a = whole.counts, &b = cut.result.counts;
   std::string text;
   const auto compare = [&](const char* name, int64_t x, int64_t y) {
@@ -135,7 +135,7 @@ Comparison compareSlabs(const RandomCase& c) {
   Comparison result;
   std::string refused, refusedCut;
   Segmentation whole;
-  Cut cut;
+  CutResult cut;
   try {
     whole = segment(*mask, options);
   } catch (const InvalidInput& e) {
@@ -163,7 +163,7 @@ Comparison compareSlabs(const RandomCase& c) {
 }
 
 /// Compares that many volumes, tall ones if `height` is given, in regions if asked for.
-void requireSame(uint64_t first, uint64_t cases, int height, bool inRegions = false) {
+void requireSameAsWhole(uint64_t first, uint64_t cases, int height, bool inRegions = false) {
   uint64_t compared = 0, several = 0;
   for (uint64_t seed = first; seed < first + cases; ++seed) {
     Rng rng(seed + 9000);
@@ -197,13 +197,13 @@ SlabObject row(int length, std::vector<int> cuts) {
 }  // namespace
 
 TEST_CASE("slabs: labels and counts are those of the whole", "[slabs]") {
-  requireSame(fromEnvironment("VDB_MADF_SEED", 1),
-              fromEnvironment("VDB_MADF_CASES", 44 * kCombinations), 0);
+  requireSameAsWhole(fromEnvironment("VDB_MADF_SEED", 1),
+                     fromEnvironment("VDB_MADF_CASES", 44 * kCombinations), 0);
 }
 
 TEST_CASE("slabs: labels and counts of tall objects are those of the whole", "[slabs]") {
-  requireSame(fromEnvironment("VDB_MADF_SEED", 1) + 100000,
-              fromEnvironment("VDB_MADF_CASES", 28 * kCombinations), 90);
+  requireSameAsWhole(fromEnvironment("VDB_MADF_SEED", 1) + 100000,
+                     fromEnvironment("VDB_MADF_CASES", 28 * kCombinations), 90);
 }
 
 TEST_CASE("slabs: what gamma leaves is completed through many slabs, as in the whole", "[slabs]") {
@@ -260,8 +260,8 @@ TEST_CASE("slabs: what comes to a cut with the last round of a window goes on in
 }
 
 TEST_CASE("slabs: labels in regions are those of the whole", "[slabs]") {
-  requireSame(fromEnvironment("VDB_MADF_SEED", 1) + 300000,
-              fromEnvironment("VDB_MADF_CASES", 4 * kCombinations), 70, true);
+  requireSameAsWhole(fromEnvironment("VDB_MADF_SEED", 1) + 300000,
+                     fromEnvironment("VDB_MADF_CASES", 4 * kCombinations), 70, true);
 }
 
 TEST_CASE("slabs: an empty object has no grains, whatever the cuts", "[slabs]") {
@@ -345,12 +345,12 @@ TEST_CASE("slabs: what was stopped goes on to the same labels", "[slabs]") {
     options.tidy = 2;
     options.domain = domainOf(c);
     const SlabObject object = cutObject(*maskOf(c), {-24, -8, 0, 16, 24});
-    const Cut expected = segmentCut(object, options);
+    const CutResult expected = segmentCut(object, options);
     // Stopped again and again. (What is done anew each time makes some 30 changes.)
     for (int every = 40; every < 200; every += every < 60 ? 1 : 13) {
       MortalScratch scratch;
       std::vector<SlabGrids> slabs(object.slabCount());
-      Cut cut;
+      CutResult cut;
       int runs = 0;
       for (bool done = false; !done && runs < 200; ++runs) {
         scratch.left = every;
@@ -433,7 +433,7 @@ TEST_CASE("slabs: what was stopped with some ranks goes on with any number of th
       continue;  // the object leaves the domain, slabs are lower than `tidy` has rounds ...
     }
     SharedPieces all;
-    Cut cut;
+    CutResult cut;
     std::vector<SlabGrids> slabs(object.slabCount());
     int runs = 0;
     // Each time with more changes, so that it ends.

@@ -13,7 +13,7 @@ namespace {
 using namespace vdb_madf;
 
 /// A layer of leaf nodes at z, with that many voxels in each of two leaves.
-MaskTree layerAt(int z, int voxels) {
+MaskTree twoLeavesAt(int z, int voxels) {
   MaskTree layer;
   for (int i = 0; i < voxels; ++i) {
     layer.setValueOn(Coord(-16 + i % 8, i / 8, z + 7));
@@ -25,7 +25,7 @@ MaskTree layerAt(int z, int voxels) {
 SlabObject built(const SlabLimits& limits, const std::vector<int>& layers, Scratch& scratch,
                  const std::optional<Domain>& domain = std::nullopt) {
   SlabBuilder builder(limits, scratch);
-  for (const int z : layers) builder.add(layerAt(z, 10));
+  for (const int z : layers) builder.add(twoLeavesAt(z, 10));
   CHECK_FALSE(hasSlabs(scratch));
   builder.finish(domain);
   CHECK(hasSlabs(scratch));
@@ -71,10 +71,10 @@ TEST_CASE("slab builder: slabs hold the layers, and cover the domain", "[slabs]"
 TEST_CASE("slab builder: layers are single, and ascend", "[slabs]") {
   MemoryScratch scratch;
   SlabBuilder builder({}, scratch);
-  builder.add(layerAt(8, 3));
+  builder.add(twoLeavesAt(8, 3));
   builder.add(MaskTree());
-  CHECK_THROWS_AS(builder.add(layerAt(8, 3)), InvalidInput);
-  MaskTree two = layerAt(16, 1);
+  CHECK_THROWS_AS(builder.add(twoLeavesAt(8, 3)), InvalidInput);
+  MaskTree two = twoLeavesAt(16, 1);
   two.setValueOn(Coord(0, 0, 24));
   CHECK_THROWS_AS(SlabBuilder({}, scratch).add(two), InvalidInput);
   MaskTree tile;

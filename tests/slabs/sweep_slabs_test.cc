@@ -21,7 +21,8 @@ namespace {
 using namespace vdb_madf;
 using namespace vdb_madf::test;
 
-LabelSlabs manifoldsOf(const MaskGrid& mask, const std::vector<int>& cuts, SegmentOptions options) {
+LabelSlabs manifoldSlabsOf(const MaskGrid& mask, const std::vector<int>& cuts,
+                           SegmentOptions options) {
   std::vector<Int32Grid::Ptr> slabs;
   options.keepManifold = true;
   MemoryScratch scratch;
@@ -34,7 +35,7 @@ LabelSlabs manifoldsOf(const MaskGrid& mask, const std::vector<int>& cuts, Segme
   return result;
 }
 
-void requireSame(const std::vector<SweepRow>& rows, const std::vector<SweepRow>& expected) {
+void requireSameRows(const std::vector<SweepRow>& rows, const std::vector<SweepRow>& expected) {
   REQUIRE(rows.size() == expected.size());
   for (size_t i = 0; i < rows.size(); ++i) {
     const SweepRow &a = rows[i], &b = expected[i];
@@ -83,7 +84,7 @@ TEST_CASE("sweep_slabs: rows are those of the whole", "[sweep_slabs]") {
     LabelSlabs manifolds;
     try {
       whole = segment(*mask, options);
-      manifolds = manifoldsOf(*mask, randomCuts(box, rng), options);
+      manifolds = manifoldSlabsOf(*mask, randomCuts(box, rng), options);
     } catch (const std::logic_error&) {
       continue;  // the object leaves the domain
     } catch (const InvalidInput&) {
@@ -98,8 +99,8 @@ TEST_CASE("sweep_slabs: rows are those of the whole", "[sweep_slabs]") {
     sweep.tidy = rng.chance(0.3) ? 0 : rng.below(4);
     const std::vector<SweepRow> expected = mergingSweep(*whole.manifold, sweep);
     MemoryScratch scratch;
-    requireSame(withThreads(c.threads, [&] { return mergingSweep(manifolds, sweep, scratch); }),
-                expected);
+    requireSameRows(withThreads(c.threads, [&] { return mergingSweep(manifolds, sweep, scratch); }),
+                    expected);
     for (const SweepRow& row : expected) {
       sum.crumbs += row.flaws.crumbs;
       sum.specks += row.flaws.specks;
@@ -122,7 +123,7 @@ TEST_CASE("sweep_slabs: a block that is cut is one grain in one piece", "[sweep_
   mask.tree().fill(CoordBBox(Coord(0, 0, 0), Coord(9, 9, 15)), true);
   SegmentOptions options;
   options.domain = CoordBBox(Coord(-3), Coord(20));
-  const LabelSlabs manifolds = manifoldsOf(mask, {-8, 0, 8, 16, 24}, options);
+  const LabelSlabs manifolds = manifoldSlabsOf(mask, {-8, 0, 8, 16, 24}, options);
   MemoryScratch scratch;
   const std::vector<SweepRow> rows = mergingSweep(manifolds, {}, scratch);
   REQUIRE(rows.size() == 1);
@@ -138,7 +139,7 @@ TEST_CASE("sweep_slabs: options that are none are refused", "[sweep_slabs]") {
   mask.tree().fill(CoordBBox(Coord(0, 0, 0), Coord(9, 9, 30)), true);
   SegmentOptions options;
   options.domain = CoordBBox(Coord(-3), Coord(40));
-  const LabelSlabs manifolds = manifoldsOf(mask, {-8, 0, 8, 48}, options);
+  const LabelSlabs manifolds = manifoldSlabsOf(mask, {-8, 0, 8, 48}, options);
   const auto refused = [&](const SweepOptions& sweep) {
     MemoryScratch scratch;
     CHECK_THROWS_AS(mergingSweep(manifolds, sweep, scratch), InvalidInput);

@@ -17,6 +17,12 @@ CoordBBox boxAt(const Coord& origin, const Coord& dim) {
   return {origin, origin + dim - Coord(1)};
 }
 
+void addBlock(ObjectVolume& object, const Coord& center) {
+  const CoordBBox block(center - Coord(1), center + Coord(1));
+  for (auto p = block.begin(); p; ++p)
+    if (object.contains(*p)) object[*p] = 1;
+}
+
 int64_t countObject(const ObjectVolume& object) {
   int64_t count = 0;
   for (int i = 0; i < object.size(); ++i) count += object[i] != 0;

@@ -54,6 +54,15 @@ class DenseVolume {
 /// 1: object, 0: background.
 using ObjectVolume = DenseVolume<uint8_t>;
 
+/// Values on the row (x, y), along z.
+template <typename T>
+std::vector<T> rowOf(const DenseVolume<T>& volume, int x, int y) {
+  std::vector<T> values;
+  for (int z = volume.box().min().z(); z <= volume.box().max().z(); ++z)
+    values.push_back(volume[Coord(x, y, z)]);
+  return values;
+}
+
 /// -x, +x, -y, +y, -z, +z.
 extern const std::array<Coord, 6> kSixNeighbors;
 
@@ -63,6 +72,9 @@ CoordBBox boxAt(const Coord& origin, const Coord& dim);
 int64_t countObject(const ObjectVolume& object);
 /// Of the object voxels; empty if there are none.
 CoordBBox objectBox(const ObjectVolume& object);
+
+/// Adds the 3 x 3 x 3 voxels around a center, as far as they are in the box.
+void addBlock(ObjectVolume& object, const Coord& center);
 
 /// The same voxels in another box, cropped or padded with background.
 ObjectVolume withBox(const ObjectVolume& object, const CoordBBox& box);

@@ -14,6 +14,10 @@
 /// Label grids for what is made of labels, and what is true of their voxels by counting.
 namespace vdb_madf::test {
 
+inline CoordBBox cube(int edge, const Coord& origin = Coord(0)) {
+  return CoordBBox::createCube(origin, edge);
+}
+
 using LabelMap = std::map<Coord, int32_t>;
 
 inline Int32Grid::Ptr labelGrid(const LabelMap& voxels) {

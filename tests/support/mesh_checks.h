@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -64,6 +65,21 @@ inline std::string whyNoDisc(const GrainMesh& mesh) {
     if (steps != length) return "several fans";
   }
   return "";
+}
+
+using Corners = std::array<std::array<float, 3>, 3>;
+
+/// The corners of a triangle, or of the same one turned over, rotated to begin with the least: equal if
+/// it is the same one.
+inline Corners cornersOf(const GrainMesh& mesh, const std::array<uint32_t, 3>& triangle,
+                         bool turned) {
+  Corners corners;
+  for (size_t n = 0; n < 3; ++n) {
+    const openvdb::Vec3f& p = mesh.points[triangle[turned ? 2 - n : n]];
+    corners[n] = {p.x(), p.y(), p.z()};
+  }
+  std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+  return corners;
 }
 
 }  // namespace vdb_madf::test

@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 
@@ -30,6 +31,16 @@ auto withThreads(int threads, const F& f) {
 class StopAtOnce : public Interrupter {
  public:
   bool wasInterrupted(int /*percent*/) override { return true; }
+};
+
+/// Stops what has asked that many times.
+class StopAfter : public Interrupter {
+ public:
+  explicit StopAfter(int polls) : polls_(polls) {}
+  bool wasInterrupted(int /*percent*/) override { return --polls_ < 0; }
+
+ private:
+  std::atomic<int> polls_;
 };
 
 }  // namespace vdb_madf::test

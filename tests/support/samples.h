@@ -5,12 +5,12 @@
 
 #include <tbb/global_control.h>
 
-#include <atomic>
 #include <catch2/catch.hpp>
 #include <set>
 #include <vector>
 
 #include "support/balls.h"
+#include "support/runs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/samples/detail/random.h"
@@ -53,15 +53,6 @@ inline void requireTruth(const Sample& sample, const std::vector<detail::Ball>& 
   CHECK(labels.size() == balls.size());
   CHECK(*labels.begin() == 1);
 }
-
-class StopAfter : public Interrupter {
- public:
-  explicit StopAfter(int polls) : polls_(polls) {}
-  bool wasInterrupted(int) override { return --polls_ < 0; }
-
- private:
-  std::atomic<int> polls_;
-};
 
 /// generate() gives the same bits with one thread and with two.
 template <typename Generate>

@@ -7,13 +7,12 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 
+#include "support/command_runs.h"
 #include "support/refusals.h"
 
 using namespace vdb_madf::test;
 
 namespace {
-
-const std::string kSpheres = "generate spheres --size 40 --count 5 --radius 6:9 ";
 
 /// Renames a metadata key in a VDB file, so that no program finds it.
 void hideMetadata(const Bench& bench, const std::string& file, const std::string& key) {

@@ -10,13 +10,12 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "support/command_runs.h"
 #include "support/refusals.h"
 
 using namespace vdb_madf::test;
 
 namespace {
-
-const std::string kSpheres = "generate spheres --size 40 --count 5 --radius 6:9 ";
 
 /// The command fails, says what is in the way, and leaves all as it was.
 void leavesAlone(const Bench& bench, const std::string& arguments, const std::string& file) {

@@ -41,7 +41,7 @@ Int32Grid::Ptr gridIn(const Domain& domain, const std::string& name) {
   return grid;
 }
 
-VdbReadOptions only(const std::string& name) {
+VdbReadOptions onlyNamed(const std::string& name) {
   VdbReadOptions options;
   options.wanted = [name](const GridBase& grid) { return grid.getName() == name; };
   return options;
@@ -104,10 +104,10 @@ TEST_CASE("region_grid: the region is read with the grids that are wanted", "[re
   const std::string path = folder.file("a.vdb");
   // The region may come first.
   writeVdb(path, {boolGrid(ball()), gridIn(ball(), "grain")});
-  const auto grids = readVdb(path, only("grain"));
+  const auto grids = readVdb(path, onlyNamed("grain"));
   CHECK(namesOf(grids) == std::vector<std::string>{"grain"});
   CHECK(storedDomain(*grids[0]) == ball());
-  CHECK(namesOf(readVdb(path, only("region"))) == std::vector<std::string>{"region"});
+  CHECK(namesOf(readVdb(path, onlyNamed("region"))) == std::vector<std::string>{"region"});
   CHECK(namesOf(readVdbHeaders(path)) == std::vector<std::string>{"region", "grain"});
   CHECK_THROWS_AS(storedDomain(*readVdbHeaders(path)[1]), InvalidInput);
   // It may share its tree with another grid.
@@ -115,7 +115,7 @@ TEST_CASE("region_grid: the region is read with the grids that are wanted", "[re
   shared->setName("object");
   sharing->setName("region");
   writeVdb(path, {shared, sharing, gridIn(ball(), "grain")});
-  CHECK(storedDomain(*readVdb(path, only("grain"))[0]) == ball());
+  CHECK(storedDomain(*readVdb(path, onlyNamed("grain"))[0]) == ball());
 }
 
 TEST_CASE("region_grid: OpenVDB reads it as a grid of its own", "[region_grid]") {
@@ -143,15 +143,16 @@ TEST_CASE("region_grid: a region written by another program is taken", "[region_
   core->setName("core");
   core->tree().setValue(Coord(-20), false);  // active, but not true
   writeWithOpenVdb(path, {grain, core});
-  CHECK(storedDomain(*readVdb(path, only("grain"))[0]) == ball());
+  CHECK(storedDomain(*readVdb(path, onlyNamed("grain"))[0]) == ball());
   for (const char* key : {"madf_domain_min", "madf_domain_max"}) grain->removeMeta(key);
   writeWithOpenVdb(path, {grain, core});
-  CHECK(storedDomain(*readVdb(path, only("grain"))[0]) == ball());
+  CHECK(storedDomain(*readVdb(path, onlyNamed("grain"))[0]) == ball());
   // One that fills its box is that box.
   core->clear();
   core->sparseFill(CoordBBox(Coord(0), Coord(7)), true, true);
   writeWithOpenVdb(path, {grain, core});
-  CHECK(storedDomain(*readVdb(path, only("grain"))[0]) == Domain(CoordBBox(Coord(0), Coord(7))));
+  CHECK(storedDomain(*readVdb(path, onlyNamed("grain"))[0]) ==
+        Domain(CoordBBox(Coord(0), Coord(7))));
 }
 
 TEST_CASE("region_grid: a file without the region that it names is refused", "[region_grid]") {
@@ -163,7 +164,7 @@ TEST_CASE("region_grid: a file without the region that it names is refused", "[r
     const std::string error = errorOf(path);
     requireOneLineNaming(error, path);
     CHECK_THAT(error, Catch::Contains(reason));
-    CHECK(errorOf(path, only("region")).empty());
+    CHECK(errorOf(path, onlyNamed("region")).empty());
     CHECK_NOTHROW(readVdbHeaders(path));
   };
   refused({gridNaming("region")}, "the Bool grid 'region' that should hold it is missing");
@@ -189,7 +190,7 @@ TEST_CASE("region_grid: the size of a region is checked as that of any tree", "[
   writeVdb(path, {grid});
   // Tiles stay tiles, so that they may hold any number of voxels, but not lie anywhere.
   CHECK(storedDomain(*readVdb(path)[0]) == Domain(large));
-  VdbReadOptions options = only("grain");
+  VdbReadOptions options = onlyNamed("grain");
   options.maxCoordinate = 4094;
   CHECK_THAT(errorOf(path, options), Catch::Contains("beyond coordinate"));
   // A damaged one is, whichever grid is wanted.
@@ -199,7 +200,7 @@ TEST_CASE("region_grid: the size of a region is checked as that of any tree", "[
   writeBytes(path, bytes);
   for (const char* name : {"grain", "region"}) {
     CAPTURE(name);
-    requireOneLineNaming(errorOf(path, only(name)), path);
+    requireOneLineNaming(errorOf(path, onlyNamed(name)), path);
   }
 }
 

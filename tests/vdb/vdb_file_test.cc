@@ -272,7 +272,7 @@ TEST_CASE("vdb_file: unknown metadata is carried along", "[vdb_file]") {
 
 namespace {
 
-VdbReadOptions only(const std::set<std::string>& names) {
+VdbReadOptions onlyAmong(const std::set<std::string>& names) {
   VdbReadOptions options;
   options.wanted = [names](const GridBase& grid) { return names.count(grid.getName()) > 0; };
   return options;
@@ -301,14 +301,14 @@ TEST_CASE("vdb_file: of the grids those that are wanted are read", "[vdb_file]")
   const auto surface = levelSet();
   for (const std::string& path : filesOf(folder, {labels, flags, surface})) {
     INFO(path);
-    CHECK(readVdb(path, only({})).empty());
-    CHECK(readVdb(path, only({"nothing"})).empty());
+    CHECK(readVdb(path, onlyAmong({})).empty());
+    CHECK(readVdb(path, onlyAmong({"nothing"})).empty());
     for (const auto& grid : Grids{labels, flags, surface}) {
-      const auto read = readVdb(path, only({grid->getName()}));
+      const auto read = readVdb(path, onlyAmong({grid->getName()}));
       REQUIRE(read.size() == 1);
       CHECK(same(*grid, *read[0]));
     }
-    const auto two = readVdb(path, only({"surface", "grain"}));
+    const auto two = readVdb(path, onlyAmong({"surface", "grain"}));
     REQUIRE(two.size() == 2);
     CHECK(same(*labels, *two[0]));
     CHECK(same(*surface, *two[1]));
@@ -365,11 +365,11 @@ TEST_CASE("vdb_file: a tree that a wanted grid shares is read", "[vdb_file]") {
   for (const std::string& path : filesOf(folder, {first, other, second, third})) {
     INFO(path);
     for (const auto& grid : Grids{first, second, third}) {
-      const auto grids = readVdb(path, only({grid->getName()}));
+      const auto grids = readVdb(path, onlyAmong({grid->getName()}));
       REQUIRE(grids.size() == 1);
       CHECK(same(*grid, *grids[0]));
     }
-    const auto grids = readVdb(path, only({"second", "third"}));
+    const auto grids = readVdb(path, onlyAmong({"second", "third"}));
     REQUIRE(grids.size() == 2);
     CHECK(grids[0]->constBaseTreePtr() == grids[1]->constBaseTreePtr());
     CHECK(same(*third, *grids[1]));
@@ -387,20 +387,20 @@ TEST_CASE("vdb_file: the tree of a grid that is not wanted is not read", "[vdb_f
   bytes.replace(bytes.size() / 2, 8000, 8000, '\xff');  // amid the noise
   writeBytes(path, bytes);
   CHECK_FALSE(errorOf(path).empty());
-  CHECK_FALSE(errorOf(path, only({"noise"})).empty());
-  CHECK(errorOf(path, only({"grain"})).empty());
-  CHECK(same(*labels, *readVdb(path, only({"grain"})).at(0)));
+  CHECK_FALSE(errorOf(path, onlyAmong({"noise"})).empty());
+  CHECK(errorOf(path, onlyAmong({"grain"})).empty());
+  CHECK(same(*labels, *readVdb(path, onlyAmong({"grain"})).at(0)));
   CHECK(readVdbHeaders(path).size() == 2);
   // But a file that is cut is.
   writeBytes(path, bytes.substr(0, bytes.size() - 1));
-  requireOneLineNaming(errorOf(path, only({"grain"})), path);
+  requireOneLineNaming(errorOf(path, onlyAmong({"grain"})), path);
   CHECK_THROWS_AS(readVdbHeaders(path), IoError);
 
   // Nor does its size count.
   const auto large = ballWithTiles<Int32Grid>(Coord(0), 5, "large", true);
   for (const std::string& file : filesOf(folder, {labels, large})) {
     INFO(file);
-    VdbReadOptions options = only({"grain"});
+    VdbReadOptions options = onlyAmong({"grain"});
     options.maxVoxels = int64_t(1) << 30;
     const bool isStream = file.find("stream") != std::string::npos;  // which is walked through
     CHECK(errorOf(file, options).empty() != isStream);

@@ -145,9 +145,9 @@ bool isLabel(double value) {
   return value != 0;
 }
 
-class StopAfter : public Interrupter {
+class RecordingStop : public Interrupter {
  public:
-  explicit StopAfter(int polls) : left_(polls) {}
+  explicit RecordingStop(int polls) : left_(polls) {}
   bool wasInterrupted(int percent) override {
     percents.push_back(percent);
     return left_-- <= 0;
@@ -296,7 +296,7 @@ TEST_CASE("dense_volume: tells how far it is, and stops when asked to", "[dense_
   const auto labels = labelsFromDense(array.first, array.layout);
   const std::vector<int> expected = {0, 15, 55, 95};  // slabs begin at -3, 0, 8 and 16
   const auto check = [&](const auto& run) {
-    StopAfter never(1000), two(2);
+    RecordingStop never(1000), two(2);
     run(never);
     CHECK(never.percents == expected);
     CHECK_THROWS_AS(run(two), Interrupted);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "support/images.h"
+#include "support/runs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/image.h"
@@ -161,15 +162,6 @@ bool hasOnlyLeavesWithObject(const MaskGrid& mask) {
     if (leaf->isEmpty()) return false;
   return mask.tree().activeTileCount() == 0;
 }
-
-class StopAfter : public Interrupter {
- public:
-  explicit StopAfter(int polls) : left_(polls) {}
-  bool wasInterrupted(int) override { return left_-- <= 0; }
-
- private:
-  int left_;
-};
 
 }  // namespace
 

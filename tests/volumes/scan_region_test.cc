@@ -21,15 +21,15 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-const CoordBBox kBox(Coord(0), Coord(40, 36, 20));
+const CoordBBox kScanBox(Coord(0), Coord(40, 36, 20));
 
 /// Values of a gray scan with a round field of view: outside 9, inside 100 to 119, or 200 to 219.
 std::vector<uint8_t> roundScan(double radius, uint8_t outside = 9) {
   std::mt19937 random(1);
   std::vector<uint8_t> samples;
-  for (int z = 0; z <= kBox.max().z(); ++z)
-    for (int y = 0; y <= kBox.max().y(); ++y)
-      for (int x = 0; x <= kBox.max().x(); ++x) {
+  for (int z = 0; z <= kScanBox.max().z(); ++z)
+    for (int y = 0; y <= kScanBox.max().y(); ++y)
+      for (int x = 0; x <= kScanBox.max().x(); ++x) {
         const double dx = x - 20, dy = y - 18;
         const auto value = uint8_t(100 + random() % 20 + 100 * (random() % 3 == 0));
         samples.push_back(dx * dx + dy * dy <= radius * radius ? value : outside);
@@ -38,7 +38,7 @@ std::vector<uint8_t> roundScan(double radius, uint8_t outside = 9) {
 }
 
 void writeScan(const std::string& path, const std::vector<uint8_t>& samples) {
-  const CoordBBox box = kBox;
+  const CoordBBox box = kScanBox;
   const auto grid = Int32Grid::create();
   size_t i = 0;
   for (int z = 0; z <= box.max().z(); ++z)
@@ -75,7 +75,7 @@ VolumeOptions above(double threshold) {
 
 TEST_CASE("scan_region: a cylinder holds the voxels whose centers are within the radius",
           "[scan_region]") {
-  const CoordBBox boxes[] = {kBox, {Coord(-130, -9, -3), Coord(150, 140, 139)}};
+  const CoordBBox boxes[] = {kScanBox, {Coord(-130, -9, -3), Coord(150, 140, 139)}};
   for (const CoordBBox& box : boxes)
     for (int axis = 0; axis < 3; ++axis)
       for (const double radius : {3.0, 14.5, 90.0}) {
@@ -94,10 +94,10 @@ TEST_CASE("scan_region: a cylinder holds the voxels whose centers are within the
         CHECK(domain.voxelCount() == inside);
         CHECK(box.isInside(domain.box()));
       }
-  CHECK(cylinderIn(kBox, {2, {20, 18}, 100}) == Domain(kBox));
-  CHECK_THROWS_AS(cylinderIn(kBox, {2, {90, 18}, 10}), InvalidInput);
-  CHECK(largestRadius(kBox, 2, {20, 18}) == 18.5);
-  CHECK(largestRadius(kBox, 0, {18, 8}) == 8.5);
+  CHECK(cylinderIn(kScanBox, {2, {20, 18}, 100}) == Domain(kScanBox));
+  CHECK_THROWS_AS(cylinderIn(kScanBox, {2, {90, 18}, 10}), InvalidInput);
+  CHECK(largestRadius(kScanBox, 2, {20, 18}) == 18.5);
+  CHECK(largestRadius(kScanBox, 0, {18, 8}) == 8.5);
 }
 
 TEST_CASE("scan_region: a large cylinder takes little memory", "[scan_region]") {
@@ -117,7 +117,7 @@ TEST_CASE("scan_region: the cylinder is fitted to what is not 0 or a value aroun
     options.region.cylinder = CylinderOptions{};
     const Loaded loaded = load(folder / "a.npy", options);
     REQUIRE(loaded.object);
-    CHECK(storedDomain(*loaded.object) == cylinderIn(kBox, {2, {20, 18}, 15}));
+    CHECK(storedDomain(*loaded.object) == cylinderIn(kScanBox, {2, {20, 18}, 15}));
     CHECK_THAT(loaded.notes, Contains("along z around x 20, y 18, to which a radius of 15 voxels"));
     // Of a VDB, the object.
     const MaskGrid::Ptr all = loadObject(folder / "a.npy", above(100));
@@ -133,13 +133,13 @@ TEST_CASE("scan_region: the cylinder is fitted to what is not 0 or a value aroun
   VolumeOptions options = above(200);
   options.region.cylinder = CylinderOptions{};
   CHECK(storedDomain(*load(folder / "b.npy", options).object) ==
-        cylinderIn(kBox, {2, {20, 18}, 18.5}));
+        cylinderIn(kScanBox, {2, {20, 18}, 18.5}));
   options.region.cylinder->axis = 0;
   CHECK(storedDomain(*load(folder / "b.npy", options).object) ==
-        cylinderIn(kBox, {0, {18, 10}, 10.5}));
+        cylinderIn(kScanBox, {0, {18, 10}, 10.5}));
   options.region.cylinder->center = {{90, 0}};
   CHECK_THAT(load(folder / "b.npy", options).error, Contains("give one"));
-  writeScan(folder / "b.npy", std::vector<uint8_t>(kBox.volume(), 7));
+  writeScan(folder / "b.npy", std::vector<uint8_t>(kScanBox.volume(), 7));
   options.region.cylinder = CylinderOptions{};
   CHECK_THAT(load(folder / "b.npy", options).error, Contains("field of view"));
 }
@@ -165,7 +165,7 @@ TEST_CASE("scan_region: object outside is left out, which is said, and nothing e
   writeScan(folder / "a.npy", roundScan(100));
   const MaskGrid::Ptr whole = loadObject(folder / "a.npy", above(200));
   writeVdb(folder / "a.vdb", {toBoolGrid(*whole)});
-  const Domain core = cylinderIn(kBox, {2, {20, 18}, 12.5});
+  const Domain core = cylinderIn(kScanBox, {2, {20, 18}, 12.5});
   for (const bool invert : {false, true})
     for (const char* name : {"a.npy", "a.vdb"}) {
       CAPTURE(name, invert);
@@ -175,7 +175,7 @@ TEST_CASE("scan_region: object outside is left out, which is said, and nothing e
       const Loaded loaded = load(folder / name, options);
       REQUIRE(loaded.object);
       int64_t wrong = 0, outside = 0;
-      for (auto p = kBox.begin(); p != kBox.end(); ++p) {
+      for (auto p = kScanBox.begin(); p != kScanBox.end(); ++p) {
         const bool selected = whole->tree().isValueOn(*p) != invert;
         wrong += (selected && core.isInside(*p)) != loaded.object->tree().isValueOn(*p);
         outside += selected && !core.isInside(*p);
@@ -196,7 +196,7 @@ TEST_CASE("scan_region: a crop is the cropped array at its old place", "[scan_re
   for (int z = crop.min().z(); z <= crop.max().z(); ++z)
     for (int y = crop.min().y(); y <= crop.max().y(); ++y)
       for (int x = crop.min().x(); x <= crop.max().x(); ++x)
-        part.push_back(samples[size_t((z * kBox.dim().y() + y) * kBox.dim().x() + x)]);
+        part.push_back(samples[size_t((z * kScanBox.dim().y() + y) * kScanBox.dim().x() + x)]);
   DenseLayout layout;
   layout.box = crop;
   const auto wanted = maskFromDense(part.data(), layout, Selection::threshold(200));
@@ -220,7 +220,7 @@ TEST_CASE("scan_region: a crop is the cropped array at its old place", "[scan_re
   options.region.crop = crop;
   options.region.cylinder = CylinderOptions{2, {}, 12.5};
   CHECK(storedDomain(*load(folder / "a.npy", options).object) ==
-        cylinderIn(kBox, {2, {20, 18}, 12.5}).within(crop));
+        cylinderIn(kScanBox, {2, {20, 18}, 12.5}).within(crop));
 }
 
 TEST_CASE("scan_region: the region in a file is no object of it", "[scan_region]") {
@@ -228,7 +228,7 @@ TEST_CASE("scan_region: the region in a file is no object of it", "[scan_region]
   const auto phases = Int32Grid::create();
   phases->setName("phases");
   phases->tree().setValue(Coord(20, 18, 3), 2);
-  setDomain(*phases, cylinderIn(kBox, {2, {20, 18}, 12.5}));
+  setDomain(*phases, cylinderIn(kScanBox, {2, {20, 18}, 12.5}));
   writeVdb(folder / "a.vdb", {phases});
   CHECK(loadObject(folder / "a.vdb")->activeVoxelCount() == 1);
   CHECK(loadLabels(folder / "a.vdb")->getName() == "phases");
@@ -247,11 +247,11 @@ TEST_CASE("scan_region: a mask of any kind is a region", "[scan_region]") {
   const ScratchFolder folder;
   writeScan(folder / "a.npy", roundScan(100));
   writeScan(folder / "labels.npy", roundScan(12.5, 0));  // many values: what is not 0
-  const Domain core = cylinderIn(kBox, {2, {20, 18}, 12.5});
+  const Domain core = cylinderIn(kScanBox, {2, {20, 18}, 12.5});
   const auto mask = MaskGrid::create(std::make_shared<MaskTree>(*core.region()));
   mask->setName("object");
   writeVdb(folder / "mask.vdb", {toBoolGrid(*mask)});
-  setDomain(*mask, kBox);
+  setDomain(*mask, kScanBox);
   writeVdb(folder / "known.vdb", {toBoolGrid(*mask)});
   VolumeOptions options = above(200);
   for (const char* name : {"labels.npy", "mask.vdb", "known.vdb"}) {
@@ -269,10 +269,10 @@ TEST_CASE("scan_region: a mask of any kind is a region", "[scan_region]") {
   CHECK_THAT(load(folder / "a.npy", options).error,
              Catch::StartsWith(folder / "two.vdb") && Contains("several grids"));
   // The whole box is no region.
-  writeScan(folder / "full.npy", std::vector<uint8_t>(kBox.volume(), 1));
+  writeScan(folder / "full.npy", std::vector<uint8_t>(kScanBox.volume(), 1));
   options.region.mask = folder / "full.npy";
-  CHECK(storedDomain(*load(folder / "a.npy", options).object) == Domain(kBox));
-  writeScan(folder / "zero.npy", std::vector<uint8_t>(kBox.volume(), 0));
+  CHECK(storedDomain(*load(folder / "a.npy", options).object) == Domain(kScanBox));
+  writeScan(folder / "zero.npy", std::vector<uint8_t>(kScanBox.volume(), 0));
   options.region.mask = folder / "zero.npy";
   CHECK_THAT(load(folder / "a.npy", options).error, Contains("all is 0"));
   // One of another scan, too small or too large.
@@ -295,12 +295,12 @@ TEST_CASE("scan_region: labels are cut to it, be they an image or a grid", "[sca
   writeScan(folder / "view.npy", roundScan(15, 0));
   const auto all = Int32Grid::create(0);
   all->setName("grain");
-  for (auto p = kBox.begin(); p; ++p)
+  for (auto p = kScanBox.begin(); p; ++p)
     if ((*p).x() % 5 > 0) all->tree().setValue(*p, 1 + (*p).x() / 5 + (*p).z() / 12);
   all->tree().addTile(1, Coord(16, 16, 8), 77, true);
-  setDomain(*all, kBox);
+  setDomain(*all, kScanBox);
   writeVdb(folder / "l.vdb", {all});
-  writeImage(folder / "l.npy", *all, kBox, SampleType::int32);
+  writeImage(folder / "l.npy", *all, kScanBox, SampleType::int32);
   VolumeOptions options;
   options.region.mask = folder / "view.npy";
   options.region.crop = CoordBBox(Coord(3, 0, 2), Coord(30, 99, 17));
@@ -312,7 +312,7 @@ TEST_CASE("scan_region: labels are cut to it, be they an image or a grid", "[sca
     const Int32Grid::Ptr labels = loadLabels(folder / file, options);
     CHECK(storedDomain(*labels) == domain);
     int64_t wrong = 0, inside = 0, leftOut = 0;
-    for (auto p = kBox.begin(); p; ++p) {
+    for (auto p = kScanBox.begin(); p; ++p) {
       const int32_t label = domain.isInside(*p) ? all->tree().getValue(*p) : 0;
       wrong += labels->tree().getValue(*p) != label || labels->tree().isValueOn(*p) != (label > 0);
       inside += label > 0;
@@ -341,7 +341,7 @@ TEST_CASE("scan_region: a mask in memory is the region that it is in a file", "[
   region->fill(CoordBBox(Coord(5, 4, 2), Coord(30, 33, 18)), true);
   region->tree().setValueOff(Coord(20, 20, 9));
   region->setName("object");
-  setDomain(*region, kBox);
+  setDomain(*region, kScanBox);
   writeVdb(file, {toBoolGrid(*region)});
   VolumeOptions options = above(150), other = options;
   options.region.mask = file;

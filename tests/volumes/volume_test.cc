@@ -27,12 +27,12 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-const CoordBBox kBox(Coord(0), Coord(11, 9, 8));
+const CoordBBox kLabelBox(Coord(0), Coord(11, 9, 8));
 
 /// Labels 1 to 5 in a domain, with a voxel size.
 Int32Grid::Ptr labelsOfSample() {
   const Int32Grid::Ptr labels = labelGrid(randomLabels(1, Coord(0), 8, 5, 60));
-  setDomain(*labels, kBox);
+  setDomain(*labels, kLabelBox);
   setVoxelSize(*labels, VoxelSize{1e-5});
   return labels;
 }
@@ -66,7 +66,7 @@ TEST_CASE("volume: labels and object are the same from every kind of file", "[vo
     if (fileEnding(path) == ".vdb")
       writeVdb(path, {labels});
     else
-      writeImage(path, *labels, kBox, SampleType::int32);
+      writeImage(path, *labels, kLabelBox, SampleType::int32);
     if (fileEnding(path) == ".raw") options.raw = RawLayout{{12, 10, 9}, SampleType::int32};
     options.selection = Selection::threshold(1);  // such labels look like a gray image
     CHECK(isVdbFile(path) == (fileEnding(path) == ".vdb"));
@@ -74,7 +74,7 @@ TEST_CASE("volume: labels and object are the same from every kind of file", "[vo
     const MaskGrid::Ptr found = loadObject(path, options);
     CHECK(found->getName() == "object");
     CHECK(found->tree().hasSameTopology(object->tree()));
-    CHECK(storedDomain(*found) == std::optional<CoordBBox>(kBox));
+    CHECK(storedDomain(*found) == std::optional<CoordBBox>(kLabelBox));
     options.selection = Selection::phase(2);
     CHECK(loadObject(path, options)->activeVoxelCount() == second->activeVoxelCount());
   }
@@ -84,7 +84,7 @@ TEST_CASE("volume: domain and voxel size of the options replace the file's", "[v
   const ScratchFolder folder;
   const Int32Grid::Ptr labels = labelsOfSample();
   writeVdb(folder / "a.vdb", {labels});
-  writeImage(folder / "a.mha", *labels, kBox, SampleType::int32);
+  writeImage(folder / "a.mha", *labels, kLabelBox, SampleType::int32);
   VolumeOptions options;
   options.domain = CoordBBox(Coord(-1), Coord(20));
   options.voxelSize = VoxelSize{3e-6};
@@ -135,7 +135,7 @@ TEST_CASE("volume: options that do not fit the file are refused", "[volume]") {
   const ScratchFolder folder;
   const Int32Grid::Ptr labels = labelsOfSample();
   writeVdb(folder / "a.vdb", {labels});
-  writeImage(folder / "a.mhd", *labels, kBox, SampleType::int32);
+  writeImage(folder / "a.mhd", *labels, kLabelBox, SampleType::int32);
   VolumeOptions grid, dataset, outputs;
   grid.grid = "grain";
   dataset.dataset = "scan";
@@ -158,7 +158,7 @@ TEST_CASE("volume: an image that is no file is read as its file is", "[volume]")
   const ScratchFolder folder;
   const Int32Grid::Ptr labels = labelsOfSample();
   const std::string path = folder / "a.mha";
-  writeImage(path, *labels, kBox, SampleType::int32);
+  writeImage(path, *labels, kLabelBox, SampleType::int32);
   const ImageOpener open = [&] { return openImage(path); };
   VolumeOptions options;
   options.voxelSize = VoxelSize{2e-5};

@@ -10,6 +10,7 @@
 #include "support/files.h"
 #include "support/full_disk.h"
 #include "support/images.h"
+#include "support/runs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/image.h"
@@ -118,15 +119,6 @@ void write(const ScratchFolder& folder, Value value, SampleType type) {
   grid->tree().setValue(Coord(3, 3, 12), value);
   writeImage(folder / "a.raw", *grid, CoordBBox(Coord(0), Coord(15)), type);
 }
-
-class StopAfter : public Interrupter {
- public:
-  explicit StopAfter(int polls) : left_(polls) {}
-  bool wasInterrupted(int) override { return left_-- <= 0; }
-
- private:
-  int left_;
-};
 
 }  // namespace
 

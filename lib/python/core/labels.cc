@@ -37,7 +37,7 @@ py::tuple boxOfLabel(const GridPtr& labels, int32_t label) {
   return py::make_tuple(triple(toIndex(box.min() - lower)), triple(toIndex(box.max() - lower)));
 }
 
-GridPtr select(const GridPtr& labels, const std::vector<int32_t>& ids, const Call& call) {
+GridPtr selected(const GridPtr& labels, const std::vector<int32_t>& ids, const Call& call) {
   return withoutLock(call, [&](Interrupter* interrupter) -> GridPtr {
     if (!ids.empty()) return selectGrains(asLabels(*labels), ids, interrupter);
     const Int32Grid::Ptr none = asLabels(*labels).copyWithNewTree();
@@ -123,7 +123,7 @@ py::dict mesh(const GridPtr& labels, const Call& call, int smoothing,
 void bindLabels(py::module_& m) {
   m.def("label_sizes", labelSizes, py::arg("labels"), py::arg("call"));
   m.def("box_of_label", boxOfLabel, py::arg("labels"), py::arg("label"));
-  m.def("select", select, py::arg("labels"), py::arg("ids"), py::arg("call"));
+  m.def("select", selected, py::arg("labels"), py::arg("ids"), py::arg("call"));
   m.def("reduce", reduce, py::arg("labels"), py::arg("factor"), py::arg("call"));
   m.def("edit", edit, py::arg("labels"), py::arg("edits"), py::arg("manifold"), py::arg("call"));
   m.def("digest", digest, py::arg("labels"), py::arg("call"));

@@ -45,7 +45,7 @@ bool isLabel(const std::string& name) {
   return name == "id" || name == "first" || name == "second";
 }
 
-py::object toArray(const MeasureColumn& c, const Unit& unit) {
+py::object columnArray(const MeasureColumn& c, const Unit& unit) {
   if (isFlag(c.name)) return column<bool>(c.values, [](double v) { return v != 0; });
   if (isLabel(c.name)) return column<int32_t>(c.values, [](double v) { return v; });
   if (c.kind == MeasureColumn::Kind::count)
@@ -56,7 +56,7 @@ py::object toArray(const MeasureColumn& c, const Unit& unit) {
 py::dict table(const std::vector<MeasureColumn>& columns, const Unit& unit, py::dict& units) {
   py::dict dict;
   for (const MeasureColumn& c : columns) {
-    dict[py::str(c.name)] = toArray(c, unit);
+    dict[py::str(c.name)] = columnArray(c, unit);
     units[py::str(c.name)] = unit.power(c.power);
   }
   return dict;
