@@ -13,7 +13,7 @@ namespace vdb_madf::tools {
 namespace {
 
 std::string givenBelow(const CLI::App& app) {
-  const std::string name = app.get_name();
+  const std::string& name = app.get_name();
   const std::vector<CLI::App*> verbs = app.get_subcommands();
   return verbs.empty() ? name : name + " " + givenBelow(*verbs.front());
 }

@@ -18,6 +18,7 @@ enum class OmeVersion { v04, v05 };
 /// @throw InvalidInput
 OmeVersion omeVersionOf(const std::string& text);
 
+/// What is written beside the labels.
 struct OmeZarrOptions {
   OmeVersion version = OmeVersion::v04;
   MeasureOptions measure;  ///< for the properties of the grains

@@ -23,6 +23,7 @@ struct EditResult {
   int64_t droppedGrains = 0, droppedVoxels = 0;
 };
 
+/// New labels, and what came of each edit.
 struct EditedLabels {
   Int32Grid::Ptr labels;
   std::vector<EditResult> results;  ///< an entry an edit

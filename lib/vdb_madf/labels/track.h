@@ -15,6 +15,7 @@ namespace vdb_madf {
 /// (int64).
 inline constexpr char kTrackKey[] = "madf_track", kLastTrackKey[] = "madf_track_last";
 
+/// How grains of two scans are linked.
 struct TrackOptions {
   std::optional<Coord> shift;  ///< of the sample, in voxels, from before to after; absent: is found
   int maxShift = 10;           ///< that is looked for, along each axis; 0 to kMaxShift
@@ -48,6 +49,7 @@ enum class BondFate {
 const char* toString(GrainFate fate);  ///< "kept", ..., "new" for appeared
 const char* toString(BondFate fate);   ///< "kept", ..., "new" for created
 
+/// A grain of one of the two scans, and what became of it.
 struct TrackedGrain {
   int32_t grain = 0;
   GrainFate fate = GrainFate::outside;
@@ -66,6 +68,7 @@ struct GrainOverlap {
   bool isLink = false;
 };
 
+/// A bond of one of the two scans, and what became of it.
 struct TrackedBond {
   int32_t first = 0, second = 0;
   int64_t faces = 0;        ///< all
@@ -73,6 +76,7 @@ struct TrackedBond {
   BondFate fate = BondFate::unmatched;
 };
 
+/// Grains and bonds of two scans, and how they go together.
 struct Tracks {
   Coord shift;               ///< voxel p before is p + shift after
   int64_t voxelsBefore = 0;  ///< labelled, in what both volumes show

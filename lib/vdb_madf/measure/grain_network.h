@@ -17,6 +17,7 @@ namespace vdb_madf {
 
 /// Grains as nodes, bonds (grains that share a voxel face) as edges, each with named numbers.
 struct GrainNetwork {
+  /// A number of each grain, or of each bond.
   struct Column {
     std::string name;  ///< letters, digits, underscores
     std::vector<double> values;

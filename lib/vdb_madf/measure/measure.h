@@ -24,6 +24,7 @@ namespace vdb_madf {
 
 struct Segmentation;
 
+/// What counts as a surface and as a bond, and what is measured on demand.
 struct MeasureOptions {
   /// What lies beyond the domain; automatic: what the grid says, else open if its domain is known.
   /// Open: the faces of the domain, or the wall of a region, are no surface

@@ -16,6 +16,7 @@ enum class Adjacency {
   cell       ///< only those where the cells of the critical points touch (as the paper words it)
 };
 
+/// When manifolds are one grain; see merge().
 struct MergeOptions {
   double theta = -0.9;  ///< cosine in [-1, 1]; -1 merges least
   MergeMode mode = MergeMode::both;

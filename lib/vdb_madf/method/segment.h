@@ -62,12 +62,14 @@ struct MedialBall {
   int64_t cellSize = 0;       ///< voxels that map to it
 };
 
+/// What a stage took.
 struct StageTime {
   std::string stage;  ///< snake_case
   double seconds = 0;
   int64_t peakBytes = 0;  ///< largest resident memory of the process until the stage's end
 };
 
+/// The grains, what was kept on the way to them, and how they came about.
 struct Segmentation {
   Int32Grid::Ptr grain;              ///< labels 1..N on X; background 0, inactive
   Int32Grid::Ptr distanceSquared;    ///< D, if kept; of the body, on X

@@ -17,6 +17,7 @@ class Passage;
 class ForeignSites;
 }  // namespace detail
 
+/// D of each voxel of the object, by rank, and what later stages have to know of it.
 struct SquaredDistance {
   VoxelArray<int32_t> values;  ///< D >= 1
   int32_t largest = 0;         ///< 0 if X is empty

@@ -12,6 +12,7 @@
 
 namespace vdb_madf {
 
+/// Where a view looks from, and how large it is.
 struct ViewOptions {
   double azimuth = 35;    ///< degrees: 0 looks along +y with x to the right; 90: along -x
   double elevation = 25;  ///< degrees above the x-y plane, -90..90; z is up
@@ -20,6 +21,7 @@ struct ViewOptions {
   bool box = false;  ///< also the edges of the box behind the grains and, around it, names of axes
 };
 
+/// A view, and which grain is seen where.
 struct GrainView {
   Picture picture;
   std::vector<int32_t> labels;  ///< of each pixel, in the picture's order; 0: background

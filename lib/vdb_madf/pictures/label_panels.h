@@ -13,6 +13,7 @@
 
 namespace vdb_madf {
 
+/// Which panels there are, and what they show.
 struct PanelOptions {
   bool slices = true, view = true;
   int edge = 512;                       ///< of each panel, about, in pixels

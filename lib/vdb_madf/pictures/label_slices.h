@@ -12,6 +12,7 @@
 
 namespace vdb_madf {
 
+/// Which slices are drawn, and what of them.
 struct SliceOptions {
   int edge = 512;                  ///< pixels of the longest axis of the box, 1 or more
   std::vector<SlicePlane> planes;  ///< none: middlePlanes()

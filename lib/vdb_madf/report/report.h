@@ -15,6 +15,7 @@
 
 namespace vdb_madf {
 
+/// What a page says of a sample, and how fine its view is.
 struct ReportOptions {
   std::string title;   ///< of the page; empty: the name of the labels' file
   std::string labels;  ///< where they are, such as the path of their file; empty: not said

@@ -32,6 +32,7 @@ struct Clump {
   double volumeError() const { return voxels ? double(outside - uncovered) / double(voxels) : 0; }
 };
 
+/// How many balls a clump has, and what they may leave out.
 struct ClumpOptions {
   int mostBalls = 100;          ///< per grain, 1 or more
   double coverageError = 0.02;  ///< part of a grain that may stay uncovered, 0 .. 1

@@ -24,6 +24,7 @@ struct GrainMesh {
   std::vector<std::array<uint32_t, 3>> triangles;
 };
 
+/// How smooth a mesh is, and how fine.
 struct GrainMeshOptions {
   /// Rounds of smoothing, 0 .. 1000; 0: the faces of the voxels, whose volume is exactly theirs.
   int smoothing = 0;

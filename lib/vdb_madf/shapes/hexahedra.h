@@ -17,6 +17,7 @@ namespace vdb_madf {
 /// One element per voxel: more are some gigabytes of text, and more than solvers take.
 constexpr size_t kMaxHexahedra = 20000000;
 
+/// The size of a file of hexahedra.
 struct HexahedraCounts {
   size_t grains = 0, elements = 0, nodes = 0;
 };

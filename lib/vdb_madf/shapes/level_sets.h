@@ -9,6 +9,7 @@
 
 namespace vdb_madf {
 
+/// What level sets measure the distance to, and how far.
 struct LevelSetOptions {
   int smoothing = 0;       ///< of the mesh that the distances are measured to; see grain_mesh.h
   float halfWidth = 3.0f;  ///< of the narrow band, voxels, 1 .. 16

@@ -13,6 +13,7 @@
 
 namespace vdb_madf {
 
+/// Which grids of a file are read, and which are refused.
 struct VdbReadOptions {
   /// Largest number of voxels that active tiles and leaves of one grid may hold, and the largest
   /// |coordinate|: a file beyond them is refused before its tiles are touched. (Voxels of a region do

@@ -43,6 +43,7 @@ struct ScanPart {
   Domain domain;                     ///< of the object: the rest of it is left out
 };
 
+/// The object in an image, and what is worth knowing of how it was found.
 struct ImageObject {
   MaskGrid::Ptr mask;
   /// Voxels of the box that were selected and do not lie in the domain (0 for an inverted selection;

@@ -11,6 +11,7 @@ namespace vdb_madf {
 
 // Both work on leaf nodes: memory is some 200 bytes for each that the object touches.
 
+/// What despeckling changed.
 struct Despeckled {
   int64_t islands = 0, islandVoxels = 0;   ///< dropped
   int64_t cavities = 0, cavityVoxels = 0;  ///< filled

@@ -24,6 +24,7 @@ struct ArrayOptions {
   std::optional<VoxelSize> voxelSize = {};  ///< matters to labels if its edges differ
 };
 
+/// The grains of an array.
 struct ArraySegmentation {
   std::vector<int32_t> labels;       ///< in the order of the mask: 1..N on the object, 0 elsewhere
   std::vector<int64_t> grainVoxels;  ///< voxels of grain g at g - 1: N of them

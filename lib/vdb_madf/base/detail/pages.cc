@@ -38,7 +38,8 @@ void discardPages(void* block, size_t begin, size_t end) noexcept {
   static const uintptr_t page = uintptr_t(sysconf(_SC_PAGESIZE));
   const uintptr_t from = (uintptr_t(block) + begin + page - 1) & ~(page - 1);
   const uintptr_t to = (uintptr_t(block) + end) & ~(page - 1);
-  if (from < to) madvise(reinterpret_cast<void*>(from), to - from, MADV_DONTNEED);
+  if (from < to)
+    madvise(static_cast<char*>(block) + (from - uintptr_t(block)), to - from, MADV_DONTNEED);
 #endif
 }
 

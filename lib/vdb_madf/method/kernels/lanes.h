@@ -20,7 +20,7 @@ VDB_MADF_KERNEL T largestOf(const Vector& v) {
   if constexpr (Bytes == 16) {
     return std::max(std::max(v[0], v[1]), std::max(v[2], v[3]));
   } else {
-    typedef T Half __attribute__((vector_size(Bytes / 2)));
+    typedef T Half __attribute__((vector_size(Bytes / 2)));  // NOLINT(modernize-use-using)
     Half low, high;
     std::memcpy(&low, &v, Bytes / 2);
     std::memcpy(&high, reinterpret_cast<const char*>(&v) + Bytes / 2, Bytes / 2);
@@ -33,7 +33,7 @@ VDB_MADF_KERNEL T largestOf(const Vector& v) {
 /// processor's a compiler makes single numbers, and arrays of numbers it keeps in memory.)
 template <int Bytes, typename T = int32_t>
 struct Lanes {
-  typedef T Vector __attribute__((vector_size(Bytes)));
+  typedef T Vector __attribute__((vector_size(Bytes)));  // NOLINT(modernize-use-using)
   static constexpr int kCount = kLanes * 4 / Bytes;
   Vector v[kCount];
 
