@@ -7,7 +7,6 @@
 #include <tbb/global_control.h>
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -16,6 +15,7 @@
 #include <sstream>
 #include <utility>
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
@@ -330,7 +330,7 @@ TEST_CASE("clumps: of unequal voxels, balls are round in space", "[clumps]") {
     const auto labels = labelGrid(voxels), balls = labelGrid(distances(voxels, weights));
     setProportions(*labels, shape.edges);
     CHECK_FALSE(areBallsOfVoxels(*labels, *balls));
-    CHECK_THROWS_WITH(clumps(*labels, *balls), Catch::Contains("other voxels"));
+    CHECK_THROWS_WITH(clumps(*labels, *balls), vdb_madf::test::Contains("other voxels"));
     setWeights(*balls, weights);
     CHECK(areBallsOfVoxels(*labels, *balls));
     const auto apartFrom = [&](const Coord& p, const Coord& q) {

@@ -6,9 +6,9 @@
 
 #include <tbb/global_control.h>
 
-#include <catch2/catch.hpp>
 #include <sstream>
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
@@ -127,7 +127,7 @@ TEST_CASE("hexa_file: threads, tiles, empty, limits", "[hexa_file]") {
   CHECK_THROWS_AS(writeHexahedra(folder / "h.vtk", *grid), InvalidInput);
   tile->fill(CoordBBox(Coord(0), Coord(271)), 5);  // 20,123,648 voxels
   CHECK_THROWS_WITH(writeHexahedra(folder / "many.vtu", *tile),
-                    Catch::Matchers::Contains("make the labels smaller"));
+                    vdb_madf::test::Contains("make the labels smaller"));
   CHECK(!std::filesystem::exists(folder / "many.vtu"));
   grid->transform().preShear(0.1, openvdb::math::X_AXIS, openvdb::math::Y_AXIS);
   CHECK_THROWS_AS(writeHexahedra(folder / "h.vtu", *grid), InvalidInput);

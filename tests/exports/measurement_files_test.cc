@@ -5,7 +5,6 @@
 
 #include <openvdb/Metadata.h>
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +12,7 @@
 #include "support/hdf5_files.h"
 #endif
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "support/full_disk.h"
 #include "support/label_shapes.h"
@@ -232,7 +232,7 @@ TEST_CASE("measurement_files: a build without HDF5 says so before the work",
           "[measurement_files]") {
   WARN("SKIPPED: tables in HDF5: built without libhdf5-dev");
   const ScratchFolder scratch;
-  CHECK_THROWS_WITH(MeasurementTables(scratch / "t.h5"), Catch::Contains("libhdf5"));
+  CHECK_THROWS_WITH(MeasurementTables(scratch / "t.h5"), vdb_madf::test::Contains("libhdf5"));
   CHECK(scratch.fileCount() == 0);
 }
 

@@ -4,8 +4,7 @@
 #include "vdb_madf/exports/mesh_file.h"
 #include "vdb_madf/labels/grain_name.h"
 
-#include <catch2/catch.hpp>
-
+#include "support/catch.h"
 #include "support/files.h"
 #include "support/full_disk.h"
 #include "support/label_shapes.h"
@@ -95,7 +94,7 @@ TEST_CASE("mesh_file: a folder of STL appears with all its files or not at all",
   const auto grid = labelGrid(voxels);
   const GrainMesh mesh = grainMesh(*grid);
   const auto refused = [&](const std::string& path) {
-    CHECK_THROWS_WITH(writeStlFolder(path, mesh, optionsOf(*grid)), Catch::Contains(path));
+    CHECK_THROWS_WITH(writeStlFolder(path, mesh, optionsOf(*grid)), vdb_madf::test::Contains(path));
     CHECK_THROWS_AS(writeStlFolder(path, mesh, optionsOf(*grid)), IoError);
   };
   {

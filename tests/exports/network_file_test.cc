@@ -6,10 +6,10 @@
 
 #include <tbb/global_control.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"

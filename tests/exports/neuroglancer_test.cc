@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "support/label_shapes.h"
 #include "vdb_madf/exports/ome_zarr.h"

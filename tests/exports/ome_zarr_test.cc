@@ -6,13 +6,13 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "support/label_shapes.h"
 #include "support/label_slabs.h"
@@ -414,7 +414,7 @@ TEST_CASE("ome_zarr: slabs that cannot be read leave nothing", "[ome_zarr]") {
   OmeZarrOptions meshes;
   meshes.meshes = true;
   CHECK_THROWS_WITH(writeOmeZarr(folder / "a.zarr", labels, kBox, meshes),
-                    Catch::Contains("in one piece"));
+                    vdb_madf::test::Contains("in one piece"));
   for (int failing : {0, 5, 10, 11}) {  // read by measures, colors and levels
     LabelSlabs broken = labels;
     broken.read = [&](size_t slab, Interrupter* interrupter) {
@@ -438,11 +438,12 @@ TEST_CASE("ome_zarr: what cannot be written leaves nothing", "[ome_zarr]") {
   CHECK_THROWS_AS(writeOmeZarr(folder / "none/a.zarr", *grid, kBox), IoError);
   OmeZarrOptions meshes;
   meshes.meshes = true;
-  CHECK_THROWS_WITH(writeOmeZarr(path, *grid, kBox, meshes), Catch::Contains("voxel size"));
+  CHECK_THROWS_WITH(writeOmeZarr(path, *grid, kBox, meshes),
+                    vdb_madf::test::Contains("voxel size"));
   grid->transform().postRotate(0.1);
-  CHECK_THROWS_WITH(writeOmeZarr(path, *grid, kBox), Catch::Contains("resample"));
+  CHECK_THROWS_WITH(writeOmeZarr(path, *grid, kBox), vdb_madf::test::Contains("resample"));
   CHECK(folder.fileCount() == 0);
   fs::create_directories(path + "/mine");
-  CHECK_THROWS_WITH(writeOmeZarr(path, *heapGrid(), kBox), Catch::Contains("already"));
+  CHECK_THROWS_WITH(writeOmeZarr(path, *heapGrid(), kBox), vdb_madf::test::Contains("already"));
   CHECK(fs::exists(path + "/mine"));
 }

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cstdio>
 #include <string>
 
+#include "support/catch.h"
 #include "support/comma_locale.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/length_unit.h"
@@ -32,7 +32,8 @@ TEST_CASE("comma_locale: sizes are read with a point", "[comma_locale]") {
     CAPTURE(wrong);
     REQUIRE_THROWS_AS(numberFromText(wrong), InvalidInput);
   }
-  REQUIRE_THROWS_WITH(voxelSizeFromText("8,5um"), Catch::Contains("write a point, not a comma"));
+  REQUIRE_THROWS_WITH(voxelSizeFromText("8,5um"),
+                      vdb_madf::test::Contains("write a point, not a comma"));
 }
 
 TEST_CASE("comma_locale: numbers are written with a point", "[comma_locale]") {

@@ -5,17 +5,17 @@
 
 #include <sys/stat.h>
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <string>
 
+#include "support/catch.h"
 #include "support/temporary_folder.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/read_text.h"
 
 using namespace vdb_madf;
-using Catch::Contains;
 using detail::InputFile;
+using vdb_madf::test::Contains;
 using vdb_madf::test::TemporaryFolder;
 using vdb_madf::test::writeBytes;
 

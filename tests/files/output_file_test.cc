@@ -7,11 +7,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <catch2/catch.hpp>
 #include <iterator>
 #include <set>
 #include <string>
 
+#include "support/catch.h"
 #include "support/temporary_folder.h"
 #include "vdb_madf/base/errors.h"
 

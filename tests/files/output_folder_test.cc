@@ -3,9 +3,9 @@
 
 #include "vdb_madf/files/output_folder.h"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "vdb_madf/base/errors.h"
 

@@ -3,18 +3,18 @@
 
 #include "vdb_madf/files/detail/output_stream.h"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <string>
 
+#include "support/catch.h"
 #include "support/full_disk.h"
 #include "support/temporary_folder.h"
 #include "vdb_madf/base/errors.h"
 
 using namespace vdb_madf;
-using Catch::Contains;
 using detail::OutputStream;
 using vdb_madf::test::bytesOf;
+using vdb_madf::test::Contains;
 using vdb_madf::test::FullDisk;
 using vdb_madf::test::TemporaryFolder;
 

@@ -3,16 +3,16 @@
 
 #include "vdb_madf/files/output_tree.h"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "support/full_disk.h"
 #include "vdb_madf/base/errors.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-using Catch::Matchers::Contains;
+using vdb_madf::test::Contains;
 namespace fs = std::filesystem;
 
 TEST_CASE("output_tree: it appears with all its files, or leaves nothing", "[output_tree]") {

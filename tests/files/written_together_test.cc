@@ -3,9 +3,9 @@
 
 #include "vdb_madf/files/written_together.h"
 
-#include <catch2/catch.hpp>
 #include <string>
 
+#include "support/catch.h"
 #include "support/temporary_folder.h"
 #include "vdb_madf/base/errors.h"
 
@@ -22,7 +22,7 @@ TEST_CASE("written_together: a companion is replaced with its file, not by itsel
     checkWrittenTogether(file, {folder.file("absent"), other});
     FAIL("not noticed");
   } catch (const IoError& error) {
-    CHECK_THAT(error.what(), Catch::Contains(file) && Catch::Contains(other));
+    CHECK_THAT(error.what(), vdb_madf::test::Contains(file) && vdb_madf::test::Contains(other));
   }
   writeBytes(file, "an earlier output");
   CHECK_NOTHROW(checkWrittenTogether(file, {other}));

@@ -4,9 +4,9 @@
 #include "vdb_madf/gray/gray_planes.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <memory>
 
+#include "support/catch.h"
 #include "vdb_madf/base/errors.h"
 
 using namespace vdb_madf;
@@ -79,5 +79,5 @@ TEST_CASE("gray_planes: one value is gray, and the scan has to hold the box", "[
   const auto gray = readGrayPlanes(scan, CoordBBox(Coord(0), Coord(0, 0, 2)), {{2, 1}});
   CHECK(gray[0].values == std::vector<uint8_t>{128});
   CHECK_THROWS_WITH(readGrayPlanes(scan, CoordBBox(Coord(0), Coord(1, 0, 2)), {{2, 1}}),
-                    Catch::Matchers::Contains("ramp: has 1x1x3 voxels"));
+                    vdb_madf::test::Contains("ramp: has 1x1x3 voxels"));
 }

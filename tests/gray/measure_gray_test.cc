@@ -6,13 +6,13 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <map>
 #include <set>
 
+#include "support/catch.h"
 #include "support/known_bodies.h"
 #include "support/label_slabs.h"
 #include "support/memory_image.h"
@@ -176,7 +176,8 @@ TEST_CASE("measure_gray: grids of a VDB file, from any voxel on", "[measure_gray
   requireDefinitions(*labels, measured, valueOf);
   VolumeOptions named;
   named.grid = "fog";
-  CHECK_THROWS_WITH(openGrayScan(folder.file("scan.vdb"), named), Catch::Contains("'fog'"));
+  CHECK_THROWS_WITH(openGrayScan(folder.file("scan.vdb"), named),
+                    vdb_madf::test::Contains("'fog'"));
 }
 
 TEST_CASE("measure_gray: all voxels of a float scan without numbers", "[measure_gray]") {
@@ -220,15 +221,17 @@ TEST_CASE("measure_gray: the box of the scan has to be that of the labels", "[me
   };
   CHECK(measureWith({10, 11, 12}).grains.at(0).gray->mean == 7);
   for (const ImageSize size : {ImageSize{10, 11, 11}, ImageSize{20, 22, 24}, ImageSize{12, 11, 10}})
-    CHECK_THROWS_WITH(measureWith(size),
-                      Catch::Contains("samples.tif: has ") &&
-                          Catch::Contains("of a scan of 10x11x12 voxels: give the one that"));
+    CHECK_THROWS_WITH(
+        measureWith(size),
+        vdb_madf::test::Contains("samples.tif: has ") &&
+            vdb_madf::test::Contains("of a scan of 10x11x12 voxels: give the one that"));
   // Parts of a scan.
   const CoordBBox part(Coord(3, 0, 0), Coord(9, 10, 11));
   labels = randomLabels(part, 4);
   CHECK(measureWith({10, 11, 12}).grains.at(0).gray->mean == 7);
   CHECK(measureWith({30, 31, 32}).grains.at(0).gray->mean == 7);
-  CHECK_THROWS_WITH(measureWith({10, 11, 9}), Catch::Contains("7x11x12 voxels from 3,0,0 on"));
+  CHECK_THROWS_WITH(measureWith({10, 11, 9}),
+                    vdb_madf::test::Contains("7x11x12 voxels from 3,0,0 on"));
   labels = randomLabels(box, 4);
   MaskGrid region;
   region.fill(box, true);
@@ -237,7 +240,8 @@ TEST_CASE("measure_gray: the box of the scan has to be that of the labels", "[me
   setDomain(*labels, Domain(region.tree()));
   CHECK(measureWith({20, 22, 24}).grains.at(0).gray->mean == 7);
   labels = drawLabels(box, [](const Vec3d&) { return 1; });  // without a domain
-  CHECK_THROWS_WITH(measureWith({10, 11, 12}), Catch::Contains("domain of the labels is unknown"));
+  CHECK_THROWS_WITH(measureWith({10, 11, 12}),
+                    vdb_madf::test::Contains("domain of the labels is unknown"));
 }
 
 TEMPLATE_TEST_CASE("measure_gray: labels in slabs have the bits of the whole", "[measure_gray]",
@@ -278,7 +282,7 @@ TEST_CASE("measure_gray: measures of other labels are refused", "[measure_gray]"
     GrayScan scan{imageOf(ImageSize{10, 11, 12}, std::vector<uint8_t>(10 * 11 * 12)), Coord(0)};
     Measurements result = measured;
     CHECK_THROWS_WITH(measureGray(inSlabs(others, {0, 8, 16}), scan, result),
-                      Catch::Contains("not the labels that were measured"));
+                      vdb_madf::test::Contains("not the labels that were measured"));
     CHECK_FALSE(result.extra.gray);
   };
   refuses(drawLabels(box, [](const Vec3d&) { return 1; }));

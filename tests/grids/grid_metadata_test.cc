@@ -5,12 +5,12 @@
 
 #include <openvdb/Metadata.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/random_volume.h"
 #include "vdb_madf/base/errors.h"
 
@@ -136,7 +136,7 @@ TEST_CASE("grid_metadata: three edges come back and place the voxels", "[grid_me
     CHECK_FALSE(hasCubicVoxels(*grid));
     CHECK(hasVoxelsAlongAxes(*grid));
     CHECK_THROWS_WITH(requireCubicVoxels(*grid, "weighing"),
-                      Catch::Contains("weighing needs cubic voxels"));
+                      vdb_madf::test::Contains("weighing needs cubic voxels"));
 
     const auto copy = Int32Grid::create();
     copyProvenance(*grid, *copy);

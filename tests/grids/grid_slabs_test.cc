@@ -3,9 +3,9 @@
 
 #include "vdb_madf/grids/detail/grid_slabs.h"
 
-#include <catch2/catch.hpp>
-
 #include <random>
+
+#include "support/catch.h"
 
 using namespace vdb_madf;
 

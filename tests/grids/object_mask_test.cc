@@ -3,14 +3,13 @@
 
 #include "vdb_madf/grids/object_mask.h"
 
-#include <catch2/catch.hpp>
-
 #include <openvdb/tools/LevelSetSphere.h>
 
 #include <cmath>
 #include <limits>
 #include <random>
 
+#include "support/catch.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 

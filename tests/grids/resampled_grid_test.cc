@@ -4,9 +4,9 @@
 #include "vdb_madf/grids/resampled_grid.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <optional>
 
+#include "support/catch.h"
 #include "support/random_case.h"
 #include "support/runs.h"
 #include "vdb_madf/base/errors.h"
@@ -264,18 +264,19 @@ TEST_CASE("resampled_grid: the corner of the box stays in the world", "[resample
 TEST_CASE("resampled_grid: what makes no sense is refused", "[resampled_grid]") {
   const auto mask = MaskGrid::create(false);
   mask->denseFill({Coord(0), Coord(99)}, true);
-  CHECK_THROWS_WITH(resampleMask(*mask, 1e-6), Catch::Contains("size of its voxels is unknown"));
+  CHECK_THROWS_WITH(resampleMask(*mask, 1e-6),
+                    vdb_madf::test::Contains("size of its voxels is unknown"));
   setVoxelSize(*mask, VoxelSize({1e-6, 1e-6, 2e-6}));
-  CHECK_THROWS_WITH(resampleMask(*mask, 300e-6), Catch::Contains("256 times"));
-  CHECK_THROWS_WITH(resampleMask(*mask, 7e-9), Catch::Contains("256 times"));
-  CHECK_THROWS_WITH(resampleMask(*mask, 0), Catch::Contains("256 times"));
-  CHECK_THROWS_WITH(resampleMask(*mask, 201e-6), Catch::Contains("half as thick"));
-  CHECK_THROWS_WITH(resampleMask(*mask, 0.01e-6), Catch::Contains("4294966784 voxels"));
+  CHECK_THROWS_WITH(resampleMask(*mask, 300e-6), vdb_madf::test::Contains("256 times"));
+  CHECK_THROWS_WITH(resampleMask(*mask, 7e-9), vdb_madf::test::Contains("256 times"));
+  CHECK_THROWS_WITH(resampleMask(*mask, 0), vdb_madf::test::Contains("256 times"));
+  CHECK_THROWS_WITH(resampleMask(*mask, 201e-6), vdb_madf::test::Contains("half as thick"));
+  CHECK_THROWS_WITH(resampleMask(*mask, 0.01e-6), vdb_madf::test::Contains("4294966784 voxels"));
   setDomain(*mask, CoordBBox(Coord(0), Coord(98, 99, 99)));
-  CHECK_THROWS_WITH(resampleMask(*mask, 1e-6), Catch::Contains("leaves its domain"));
+  CHECK_THROWS_WITH(resampleMask(*mask, 1e-6), vdb_madf::test::Contains("leaves its domain"));
   setDomain(*mask, CoordBBox(Coord(0), Coord(20000, 99, 99)));
   CHECK(resampleMask(*mask, 1e-6)->activeVoxelCount() == 2000000);
-  CHECK_THROWS_WITH(resampleMask(*mask, 0.5e-6), Catch::Contains("26754 voxels long"));
+  CHECK_THROWS_WITH(resampleMask(*mask, 0.5e-6), vdb_madf::test::Contains("26754 voxels long"));
   StopAtOnce stop;
   CHECK_THROWS_AS(resampleMask(*mask, 1e-6, &stop), Interrupted);
   const auto empty = Int32Grid::create(0);

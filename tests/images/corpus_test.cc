@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include <catch2/catch.hpp>
-
 #include <algorithm>
 #include <map>
 
@@ -14,6 +12,7 @@
 #include "support/picture_files.h"
 #include "support/zarr_files.h"
 
+#include "support/catch.h"
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/images/open_image.h"
 

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include <catch2/catch.hpp>
-
 #include <algorithm>
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "support/image_damage.h"
 #include "support/images.h"

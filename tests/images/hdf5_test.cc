@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
 #include "support/files.h"
 #include "support/full_disk.h"
@@ -14,7 +13,7 @@
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-using Catch::Matchers::Contains;
+using vdb_madf::test::Contains;
 
 #ifndef VDB_MADF_HDF5
 
@@ -32,6 +31,7 @@ TEST_CASE("image_hdf5: a build without the library says so", "[image_hdf5]") {
 
 #else
 
+#include "support/catch.h"
 #include "support/hdf5_files.h"
 
 namespace {
@@ -153,7 +153,7 @@ TEST_CASE("image_hdf5: the dataset is the only volume, or is named", "[image_hdf
                     Contains("choose one of its datasets") && Contains("'g/v', 'second'"));
   // (The hint comes from another process.)
   CHECK_THROWS_MATCHES(openImage(path), IoError,
-                       Catch::Predicate<IoError>(
+                       vdb_madf::test::Predicate<IoError>(
                            [](const IoError& error) { return error.hint() == Hint::dataset; }));
   CHECK(readAll(*openImage(path, {}, "second")) == bytes);
 

@@ -1,17 +1,16 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include <catch2/catch.hpp>
-
+#include "vdb_madf/images/open_image.h"
+#include "support/catch.h"
 #include "support/files.h"
 #include "support/images.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/images/image.h"
-#include "vdb_madf/images/open_image.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-using Catch::Matchers::Contains;
+using vdb_madf::test::Contains;
 
 namespace {
 

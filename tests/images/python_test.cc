@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include <catch2/catch.hpp>
-
 #include <cstdio>
 #include <sstream>
 
 #include "support/files.h"
 #include "support/images.h"
 
+#include "support/catch.h"
 #include "vdb_madf/base/voxel_size.h"
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/images/open_image.h"

@@ -4,9 +4,9 @@
 #include "vdb_madf/images/resampled_image.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/catch.h"
 #include "support/memory_image.h"
 #include "vdb_madf/base/errors.h"
 
@@ -131,11 +131,11 @@ TEST_CASE("resampled_image: what makes no sense is refused", "[resampled_image]"
     return imageOf<uint8_t>({2000, 2000, 1}, std::vector<uint8_t>(4000000));
   };
   const VoxelSize voxels({1e-6, 1e-6, 200e-6});
-  CHECK_THROWS_WITH(resampledImage(image(), voxels, 300e-6), Catch::Contains("256 times"));
+  CHECK_THROWS_WITH(resampledImage(image(), voxels, 300e-6), vdb_madf::test::Contains("256 times"));
   CHECK_THROWS_WITH(resampledImage(image(), VoxelSize(1e-6), 10e-6),
-                    Catch::Contains("half as thick"));
+                    vdb_madf::test::Contains("half as thick"));
   CHECK_THROWS_WITH(resampledImage(image(), VoxelSize(1e-6), 0.05e-6),
-                    Catch::Contains("26754 voxels long"));
+                    vdb_madf::test::Contains("26754 voxels long"));
   CHECK_THROWS_WITH(resampledImage(image(), VoxelSize({1e-6, 1e-6, 20e-6}), 0.08e-6),
-                    Catch::Contains("4294966784 voxels"));
+                    vdb_madf::test::Contains("4294966784 voxels"));
 }

@@ -3,12 +3,12 @@
 
 #include "vdb_madf/images/shared_image.h"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <numeric>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/images/open_image.h"
@@ -82,8 +82,9 @@ TEST_CASE("shared_image: what is not finished leaves nothing", "[shared_image]")
     CHECK(folder.fileCount() == 1);
     SharedImage unseen = *place;
     unseen.temporary += "-elsewhere";
-    CHECK_THROWS_WITH(joinImage(path, unseen, smallInfo(), 0),
-                      Catch::Contains("a.mha") && Catch::Contains("is not seen here"));
+    CHECK_THROWS_WITH(
+        joinImage(path, unseen, smallInfo(), 0),
+        vdb_madf::test::Contains("a.mha") && vdb_madf::test::Contains("is not seen here"));
   }
   CHECK(folder.fileCount() == 0);
 }

@@ -3,9 +3,10 @@
 
 #include "vdb_madf/images/formats/slice_names.h"
 
-#include <catch2/catch.hpp>
 #include <string>
 #include <vector>
+
+#include "support/catch.h"
 
 using vdb_madf::detail::numberingNotes;
 
@@ -30,15 +31,16 @@ std::string noteOn(const Names& names) {
 
 TEST_CASE("slice_names: numbers that are left out are said", "[slice_names]") {
   CHECK_THAT(noteOn({"a5.tif", "a6.tif", "a8.tif", "a9.tif"}),
-             Catch::Contains("1 slice missing between a6.tif and a8.tif"));
+             vdb_madf::test::Contains("1 slice missing between a6.tif and a8.tif"));
   CHECK_THAT(noteOn({"a1_05.tif", "a1_06.tif", "a1_10.tif", "a1_11.tif"}),
-             Catch::Contains("3 slices missing between a1_06.tif and a1_10.tif"));
+             vdb_madf::test::Contains("3 slices missing between a1_06.tif and a1_10.tif"));
   CHECK_THAT(noteOn({"a1.tif", "a2.tif", "a4.tif", "a5.tif", "a9.tif", "a10.tif", "a11.tif"}),
-             Catch::Contains("4 slices missing in 2 places, the first between a2.tif and a4.tif"));
+             vdb_madf::test::Contains(
+                 "4 slices missing in 2 places, the first between a2.tif and a4.tif"));
   CHECK_THAT(noteOn({"a0.tif", "a2.tif", "a4.tif", "a8.tif"}),
-             Catch::Contains("1 slice missing between a4.tif and a8.tif"));
+             vdb_madf::test::Contains("1 slice missing between a4.tif and a8.tif"));
   CHECK_THAT(noteOn({"a1_t17.tif", "a2_t23.tif", "a4_t31.tif", "a5_t40.tif"}),
-             Catch::Contains("1 slice missing between a2_t23.tif"));
+             vdb_madf::test::Contains("1 slice missing between a2_t23.tif"));
 }
 
 TEST_CASE("slice_names: numbers without a gap are no news", "[slice_names]") {
@@ -57,8 +59,8 @@ TEST_CASE("slice_names: numbers without a gap are no news", "[slice_names]") {
 
 TEST_CASE("slice_names: what may not belong to the stack is said", "[slice_names]") {
   CHECK_THAT(noteOn({"a06.tif", "a6.tif", "a7.tif"}),
-             Catch::Contains("1 number of slices there twice, as in a06.tif and a6.tif"));
+             vdb_madf::test::Contains("1 number of slices there twice, as in a06.tif and a6.tif"));
   CHECK_THAT(noteOn({"a1.tif", "a2.tif", "a3.tif", "mask.tif"}),
-             Catch::Contains("names of 2 kinds, as a3.tif and mask.tif"));
+             vdb_madf::test::Contains("names of 2 kinds, as a3.tif and mask.tif"));
   CHECK(notesOn({"a1.tif", "a3.tif", "a4.tif", "b1.tif", "b2.tif"}).size() == 2);
 }

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include <catch2/catch.hpp>
-
+#include "support/catch.h"
 #include "support/compound_files.h"
 #include "support/files.h"
 #include "support/image_damage.h"
@@ -12,7 +11,7 @@
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-using Catch::Matchers::Contains;
+using vdb_madf::test::Contains;
 
 namespace {
 

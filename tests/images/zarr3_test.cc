@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include <catch2/catch.hpp>
-
+#include "support/catch.h"
 #include "support/files.h"
 #include "support/images.h"
 #include "support/zarr_files.h"
@@ -14,7 +13,7 @@
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-using Catch::Matchers::Contains;
+using vdb_madf::test::Contains;
 using Codecs = std::vector<std::string>;
 
 namespace {

@@ -6,7 +6,6 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -14,6 +13,7 @@
 #include <set>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/label_shapes.h"
 #include "support/label_slabs.h"
 #include "vdb_madf/base/errors.h"

@@ -7,10 +7,10 @@
 
 #include <openvdb/Metadata.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 
+#include "support/catch.h"
 #include "support/edits.h"
 #include "support/label_shapes.h"
 #include "support/runs.h"
@@ -231,7 +231,7 @@ TEST_CASE("edit_labels: what is not there is refused, and why", "[edit_labels]")
   const auto labels = labelGrid(twoBalls({0, 0, 0}, 4));  // 3 and 7
   const auto says = [&](const std::vector<std::string>& texts, const std::string& what) {
     CAPTURE(texts, what);
-    CHECK_THROWS_WITH(edited(*labels, texts), Catch::Equals(what));
+    CHECK_THROWS_WITH(edited(*labels, texts), vdb_madf::test::Equals(what));
   };
   says({"drop 4"}, "drop 4: there is no grain 4");
   says({"merge 3 7", "drop 7"}, "drop 7: there is no grain 7 any more, after 'merge 3 7'");
@@ -241,8 +241,9 @@ TEST_CASE("edit_labels: what is not there is refused, and why", "[edit_labels]")
        "drop 3: there is no grain 3 any more, after 'min-voxels 1000000'");
   says({"renumber", "drop 3"}, "drop 3: there is no grain 3");
   says({"split 3"}, "split 3: there are no manifolds to split grains by: segment again");
-  CHECK_THROWS_WITH(edited(*labels, {"min-diameter 1um"}),
-                    Catch::StartsWith("min-diameter 1um: the size of the voxels is unknown"));
+  CHECK_THROWS_WITH(
+      edited(*labels, {"min-diameter 1um"}),
+      vdb_madf::test::StartsWith("min-diameter 1um: the size of the voxels is unknown"));
   StopAtOnce stop;
   CHECK_THROWS_AS(editLabels(*labels, editsFrom({"merge 3 7"}), nullptr, &stop), Interrupted);
 }

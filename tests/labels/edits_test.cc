@@ -3,8 +3,7 @@
 
 #include "vdb_madf/labels/edits.h"
 
-#include <catch2/catch.hpp>
-
+#include "support/catch.h"
 #include "vdb_madf/base/errors.h"
 
 using namespace vdb_madf;
@@ -56,11 +55,13 @@ TEST_CASE("edits: what is none is refused, by its line", "[edits]") {
       {"\x01", "'?' is no edit"}};
   for (const auto& [text, says] : wrong) {
     CAPTURE(text);
-    CHECK_THROWS_WITH(parseEdit(text), Catch::Contains(says));
+    CHECK_THROWS_WITH(parseEdit(text), vdb_madf::test::Contains(says));
     CHECK_THROWS_WITH(parseEdits("drop 1\n\n" + std::string(text) + "\n"),
-                      Catch::StartsWith("line 3: ") && Catch::Contains(says));
+                      vdb_madf::test::StartsWith("line 3: ") && vdb_madf::test::Contains(says));
   }
   CHECK_THROWS_AS(parseEdit(""), InvalidInput);
-  CHECK_THROWS_WITH(parseEdits(std::string("drop 1\0 2", 9)), Catch::StartsWith("line 1: "));
-  CHECK_THROWS_WITH(parseEdits(std::string(100000, 'x')), Catch::StartsWith("line 1: 'xxx"));
+  CHECK_THROWS_WITH(parseEdits(std::string("drop 1\0 2", 9)),
+                    vdb_madf::test::StartsWith("line 1: "));
+  CHECK_THROWS_WITH(parseEdits(std::string(100000, 'x')),
+                    vdb_madf::test::StartsWith("line 1: 'xxx"));
 }

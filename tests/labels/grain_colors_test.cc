@@ -7,12 +7,12 @@
 
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <random>
 #include <set>
 
+#include "support/catch.h"
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
 

@@ -3,8 +3,7 @@
 
 #include "vdb_madf/labels/grain_masks.h"
 
-#include <catch2/catch.hpp>
-
+#include "support/catch.h"
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"

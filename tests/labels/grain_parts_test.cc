@@ -5,12 +5,12 @@
 
 #include <openvdb/Metadata.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <set>
 
+#include "support/catch.h"
 #include "support/edits.h"
 #include "support/oracle.h"
 #include "support/random_case.h"
@@ -386,7 +386,8 @@ TEST_CASE("grain_parts: what no manifolds explain is refused", "[grain_parts]") 
   const Int32Grid& grain = *s.segmentation.grain;
   const auto says = [&](const Int32Grid& labels, const Int32Grid& manifold,
                         const std::string& what) {
-    CHECK_THROWS_WITH(editLabels(labels, editsFrom({"split 2"}), &manifold), Catch::Contains(what));
+    CHECK_THROWS_WITH(editLabels(labels, editsFrom({"split 2"}), &manifold),
+                      vdb_madf::test::Contains(what));
   };
   const Int32Grid& manifold = *s.segmentation.manifold;
   SECTION("a voxel more") {

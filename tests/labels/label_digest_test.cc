@@ -3,9 +3,9 @@
 
 #include "vdb_madf/labels/detail/label_digest.h"
 
-#include <catch2/catch.hpp>
 #include <set>
 
+#include "support/catch.h"
 #include "support/label_shapes.h"
 
 using namespace vdb_madf;

@@ -6,13 +6,13 @@
 #include <openvdb/Metadata.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <set>
 #include <tuple>
 
+#include "support/catch.h"
 #include "support/label_shapes.h"
 #include "support/runs.h"
 #include "vdb_madf/base/errors.h"
@@ -370,7 +370,7 @@ TEST_CASE("track: numbers are not used again in a series", "[track]") {
   const auto fourth = grain(1, 40);
   CHECK(track(*none, *fourth, still).after[0].track == 10);
   none->insertMeta(kLastTrackKey, openvdb::Int64Metadata(2147483647));
-  CHECK_THROWS_WITH(track(*none, *fourth, still), Catch::Contains("no numbers left"));
+  CHECK_THROWS_WITH(track(*none, *fourth, still), vdb_madf::test::Contains("no numbers left"));
   none->insertMeta(kLastTrackKey, openvdb::Int64Metadata(-5));
   CHECK(track(*none, *fourth, still).after[0].track == 1);
 }

@@ -3,12 +3,12 @@
 
 #include "vdb_madf/leaves/detail/connected_components.h"
 
-#include <catch2/catch.hpp>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "support/by_rank.h"
+#include "support/catch.h"
 #include "support/edge_cases.h"
 #include "support/oracle.h"
 #include "support/random_volume.h"

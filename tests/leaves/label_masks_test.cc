@@ -3,9 +3,9 @@
 
 #include "vdb_madf/leaves/detail/label_masks.h"
 
-#include <catch2/catch.hpp>
 #include <random>
 
+#include "support/catch.h"
 #include "support/random_case.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 

@@ -3,8 +3,7 @@
 
 #include "vdb_madf/leaves/detail/leaf_faces.h"
 
-#include <catch2/catch.hpp>
-
+#include "support/catch.h"
 #include "support/random_case.h"
 #include "vdb_madf/leaves/voxel_array.h"
 

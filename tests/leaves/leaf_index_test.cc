@@ -7,13 +7,13 @@
 #include "vdb_madf/leaves/leaf_grid.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <iterator>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "support/by_rank.h"
+#include "support/catch.h"
 #include "support/edge_cases.h"
 #include "support/random_volume.h"
 #include "support/runs.h"

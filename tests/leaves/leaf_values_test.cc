@@ -4,9 +4,10 @@
 #include "vdb_madf/leaves/detail/leaf_values.h"
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <random>
 #include <vector>
+
+#include "support/catch.h"
 
 namespace {
 

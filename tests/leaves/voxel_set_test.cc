@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <set>
 #include <thread>
 #include <vector>
 
 #include "support/by_rank.h"
+#include "support/catch.h"
 #include "support/edge_cases.h"
 #include "support/random_volume.h"
 #include "vdb_madf/leaves/voxel_set.h"

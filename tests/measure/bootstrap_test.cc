@@ -5,9 +5,9 @@
 
 #include "vdb_madf/measure/bootstrap.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/catch.h"
 #include "support/random_volume.h"
 #include "vdb_madf/base/errors.h"
 

@@ -3,9 +3,10 @@
 
 #include "vdb_madf/measure/columns.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
+
+#include "support/catch.h"
 
 using namespace vdb_madf;
 

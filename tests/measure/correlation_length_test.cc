@@ -4,11 +4,11 @@
 #include "vdb_madf/measure/correlation_length.h"
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <optional>
 #include <string>
 
+#include "support/catch.h"
 #include "support/edge_cases.h"
 #include "support/random_case.h"
 #include "support/random_volume.h"

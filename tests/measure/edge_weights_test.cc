@@ -3,9 +3,9 @@
 
 #include "vdb_madf/measure/edge_weights.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/catch.h"
 #include "support/known_bodies.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/measure/measure.h"
@@ -146,17 +146,17 @@ TEST_CASE("edge_weights: boxes cut out of a packing tell its sizes", "[edge_weig
 TEST_CASE("edge_weights: refused where faces do not cut", "[edge_weights]") {
   const CoordBBox box(Coord(0), Coord(9));
   const auto labels = drawLabels({Coord(2), Coord(4)}, [](auto) { return 1; });
-  CHECK_THROWS_WITH(measureWeighted(*labels), Catch::Contains("its domain is unknown"));
+  CHECK_THROWS_WITH(measureWeighted(*labels), vdb_madf::test::Contains("its domain is unknown"));
   setDomain(*labels, box);
   CHECK(measureWeighted(*labels).grains.at(0).edgeWeight == Approx(std::pow(10.0 / 6, 3)));
   CHECK(measure(*labels).grains.at(0).edgeWeight == 0);
   MeasureOptions closed;
   closed.edgeWeights = true;
   closed.boundary = Boundary::closed;
-  CHECK_THROWS_WITH(measure(*labels, closed), Catch::Contains("boundary is closed"));
+  CHECK_THROWS_WITH(measure(*labels, closed), vdb_madf::test::Contains("boundary is closed"));
   MaskGrid region;
   region.fill(box, true);
   region.tree().setValueOff(Coord(9));
   setDomain(*labels, Domain(region.tree()));
-  CHECK_THROWS_WITH(measureWeighted(*labels), Catch::Contains("the domain is a region"));
+  CHECK_THROWS_WITH(measureWeighted(*labels), vdb_madf::test::Contains("the domain is a region"));
 }

@@ -4,13 +4,13 @@
 #include "vdb_madf/measure/detail/fit_curvature.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <utility>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/random_volume.h"
 
 namespace {

@@ -6,9 +6,9 @@
 #include "vdb_madf/measure/grain_shape.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <limits>
 
+#include "support/catch.h"
 #include "support/known_bodies.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/measure/measure.h"

@@ -3,8 +3,9 @@
 
 #include "vdb_madf/measure/grain_sizes.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
+
+#include "support/catch.h"
 
 using namespace vdb_madf;
 

@@ -5,11 +5,11 @@
 // errors do not average out, bodies with edges, small balls.
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 #include <utility>
 
+#include "support/catch.h"
 #include "support/known_bodies.h"
 #include "vdb_madf/measure/measure.h"
 

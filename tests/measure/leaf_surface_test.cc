@@ -3,10 +3,10 @@
 
 // How right the areas are: planes at many angles, balls of many radii, the discs between two balls.
 
-#include <catch2/catch.hpp>
 #include <cstdio>
 #include <cstdlib>
 
+#include "support/catch.h"
 #include "support/known_bodies.h"
 #include "vdb_madf/measure/measure.h"
 

@@ -3,8 +3,7 @@
 
 // The table of bonds: interfaces whose measures are known. Areas: leaf_surface_test.cc.
 
-#include <catch2/catch.hpp>
-
+#include "support/catch.h"
 #include "support/known_bodies.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/measure/measure.h"

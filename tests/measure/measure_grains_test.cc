@@ -3,9 +3,9 @@
 
 // The table of grains: bodies whose measures are known.
 
-#include <catch2/catch.hpp>
 #include <map>
 
+#include "support/catch.h"
 #include "support/known_bodies.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/measure/measure.h"

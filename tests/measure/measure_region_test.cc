@@ -4,7 +4,6 @@
 // Samples whose domain is a region.
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -12,6 +11,7 @@
 #include <set>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/known_bodies.h"
 #include "support/oracle.h"
 #include "support/random_case.h"

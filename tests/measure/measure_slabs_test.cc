@@ -5,10 +5,10 @@
 
 #include <tbb/global_control.h>
 
-#include <catch2/catch.hpp>
 #include <random>
 #include <sstream>
 
+#include "support/catch.h"
 #include "support/label_shapes.h"
 #include "support/label_slabs.h"
 #include "vdb_madf/base/errors.h"
@@ -188,14 +188,15 @@ TEST_CASE("measure_slabs: what cannot be measured is refused", "[measure_slabs]"
   const auto labels = labelGrid(awkwardLabels());
   LabelSlabs wrong = inSlabs(labels, {-8, 0, 8, 16, 24});
   wrong.cuts = {-8, 0, 40, 48, 56};
-  CHECK_THROWS_WITH(measure(wrong), Catch::Contains("beyond its cuts"));
+  CHECK_THROWS_WITH(measure(wrong), vdb_madf::test::Contains("beyond its cuts"));
   MeasureOptions options;
   options.domain = CoordBBox(Coord(-20), Coord(20));
   CHECK_THROWS_WITH(measure(inSlabs(labels, {-8, 24}), options),
-                    Catch::Contains("leaves the domain"));
+                    vdb_madf::test::Contains("leaves the domain"));
   MaskTree notched;
   notched.fill(CoordBBox(Coord(-20), Coord(40)), true);
   notched.setValueOff(Coord(-20));
   options.domain = Domain(notched);
-  CHECK_THROWS_WITH(measure(inSlabs(labels, {-8, 24}), options), Catch::Contains("region"));
+  CHECK_THROWS_WITH(measure(inSlabs(labels, {-8, 24}), options),
+                    vdb_madf::test::Contains("region"));
 }

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/known_bodies.h"
 #include "support/runs.h"
 #include "vdb_madf/grids/grid_metadata.h"

@@ -3,8 +3,7 @@
 
 #include "vdb_madf/method/ball_grids.h"
 
-#include <catch2/catch.hpp>
-
+#include "support/catch.h"
 #include "vdb_madf/grids/grid_metadata.h"
 
 using namespace vdb_madf;

@@ -3,11 +3,11 @@
 
 #include "vdb_madf/method/cavities.h"
 
-#include <catch2/catch.hpp>
 #include <optional>
 #include <string>
 
 #include "support/by_rank.h"
+#include "support/catch.h"
 #include "support/oracle.h"
 #include "support/random_volume.h"
 #include "support/runs.h"

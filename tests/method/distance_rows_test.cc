@@ -4,9 +4,10 @@
 #include "vdb_madf/method/kernels/distance_rows.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <random>
 #include <vector>
+
+#include "support/catch.h"
 
 namespace {
 

@@ -4,13 +4,13 @@
 #include "vdb_madf/method/flow.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <map>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/edge_cases.h"
 #include "support/random_volume.h"
 #include "support/runs.h"

@@ -3,13 +3,13 @@
 
 #include "vdb_madf/method/gamma_filter.h"
 
-#include <catch2/catch.hpp>
 #include <limits>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/edge_cases.h"
 #include "support/random_volume.h"
 #include "support/runs.h"

@@ -6,13 +6,13 @@
 
 #include <openvdb/Metadata.h>
 
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <limits>
 #include <random>
 #include <sstream>
 #include <string>
 
+#include "support/catch.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 

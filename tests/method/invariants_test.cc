@@ -5,13 +5,13 @@
 
 #include "support/invariants.h"
 
-#include <catch2/catch.hpp>
 #include <functional>
 #include <utility>
 
 #include "support/oracle.h"
 #include "support/random_case.h"
 
+#include "support/catch.h"
 #include "vdb_madf/leaves/leaf_grid.h"
 
 namespace {

@@ -5,12 +5,12 @@
 #include "vdb_madf/leaves/leaf_grid.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cctype>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/edge_cases.h"
 #include "support/invariants.h"
 #include "support/random_volume.h"

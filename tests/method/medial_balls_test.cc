@@ -3,11 +3,11 @@
 
 #include "vdb_madf/method/medial_balls.h"
 
-#include <catch2/catch.hpp>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/edge_cases.h"
 #include "support/random_volume.h"
 #include "support/runs.h"

@@ -6,13 +6,13 @@
 #include "vdb_madf/method/merge.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/oracle.h"
 #include "support/random_volume.h"
 #include "vdb_madf/base/errors.h"

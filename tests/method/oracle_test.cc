@@ -6,13 +6,13 @@
 
 #include "support/oracle.h"
 
-#include <catch2/catch.hpp>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "support/random_volume.h"
 
+#include "support/catch.h"
 #include "vdb_madf/leaves/leaf_grid.h"
 #include "vdb_madf/method/boundary.h"
 

@@ -6,9 +6,9 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <map>
 
+#include "support/catch.h"
 #include "support/random_volume.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -193,5 +193,5 @@ TEST_CASE("parameter_sweep: stored manifolds give the same rows", "[parameter_sw
   REQUIRE(rows.size() == fresh.size());
   for (size_t i = 0; i < rows.size(); ++i) CHECK(equalRows(rows[i], fresh[i]));
   CHECK_THROWS_WITH(mergingSweep(*segmentation.grain, options),
-                    Catch::Contains("carries no graph of manifolds"));
+                    vdb_madf::test::Contains("carries no graph of manifolds"));
 }

@@ -4,10 +4,10 @@
 #include "vdb_madf/method/power_map.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <limits>
 
 #include "support/by_rank.h"
+#include "support/catch.h"
 #include "support/oracle.h"
 #include "support/random_case.h"
 #include "vdb_madf/method/detail/power_passes.h"

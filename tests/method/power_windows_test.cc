@@ -3,11 +3,11 @@
 
 #include "vdb_madf/method/kernels/power_windows.h"
 
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <random>
 #include <vector>
 
+#include "support/catch.h"
 #include "vdb_madf/method/kernels/lower_envelope.h"
 
 namespace {

@@ -5,12 +5,12 @@
 
 #include <openvdb/Metadata.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/edge_cases.h"
 #include "support/oracle.h"
 #include "support/random_case.h"

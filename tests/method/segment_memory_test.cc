@@ -3,8 +3,7 @@
 
 #include "vdb_madf/method/segment_memory.h"
 
-#include <catch2/catch.hpp>
-
+#include "support/catch.h"
 #include "support/random_volume.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/memory.h"
@@ -63,6 +62,7 @@ TEST_CASE("segment_memory: what does not fit is refused before work starts", "[s
   options.maxMemory = needed;
   CHECK(segment(*mask, options).counts.grains == 1);
   options.maxMemory = needed - 1;
-  CHECK_THROWS_WITH(segment(*mask, options), Catch::Contains(readableBytes(needed) + " of memory"));
+  CHECK_THROWS_WITH(segment(*mask, options),
+                    vdb_madf::test::Contains(readableBytes(needed) + " of memory"));
   CHECK_THROWS_AS(segment(*mask, options), InvalidInput);
 }

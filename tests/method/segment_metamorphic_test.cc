@@ -8,13 +8,13 @@
 
 #include <algorithm>
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <map>
 #include <set>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/invariants.h"
 #include "support/random_case.h"
 #include "vdb_madf/base/errors.h"

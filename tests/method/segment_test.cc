@@ -13,13 +13,13 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <sstream>
 #include <tuple>
 
+#include "support/catch.h"
 #include "support/invariants.h"
 #include "support/oracle.h"
 #include "support/random_case.h"

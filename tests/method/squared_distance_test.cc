@@ -6,10 +6,10 @@
 #include "vdb_madf/method/boundary.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <utility>
 
 #include "support/by_rank.h"
+#include "support/catch.h"
 #include "support/oracle.h"
 #include "support/random_case.h"
 #include "vdb_madf/base/errors.h"

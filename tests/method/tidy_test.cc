@@ -4,13 +4,13 @@
 #include "vdb_madf/method/tidy.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cctype>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "support/by_rank.h"
+#include "support/catch.h"
 #include "support/oracle.h"
 #include "support/random_volume.h"
 #include "support/runs.h"

@@ -6,10 +6,10 @@
 #include <openvdb/Metadata.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "support/catch.h"
 #include "support/random_case.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/method/graph_metadata.h"
@@ -118,8 +118,9 @@ TEST_CASE("voxel_weights: a bound keeps squared distances in 32 bits", "[voxel_w
 }
 
 TEST_CASE("voxel_weights: edges that no weights fit are refused", "[voxel_weights]") {
-  CHECK_THROWS_WITH(weightsOfEdges({1, 1, 5000}, Coord(300)),
-                    Catch::Contains("1 x 1 x 5000") && Catch::Contains("32 bits"));
+  CHECK_THROWS_WITH(
+      weightsOfEdges({1, 1, 5000}, Coord(300)),
+      vdb_madf::test::Contains("1 x 1 x 5000") && vdb_madf::test::Contains("32 bits"));
   CHECK_THROWS_AS(weightsOfEdges({1e-300, 1, 1e300}, Coord(1)), InvalidInput);
   CHECK_THROWS_AS(weightsOfEdges({1, 1.5, 1}, Coord(26000)), InvalidInput);
   const double inf = std::numeric_limits<double>::infinity();

@@ -3,9 +3,9 @@
 
 #include "vdb_madf/method/detail/voxels_around.h"
 
-#include <catch2/catch.hpp>
 #include <random>
 
+#include "support/catch.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 
 using namespace vdb_madf;

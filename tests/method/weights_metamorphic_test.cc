@@ -4,9 +4,9 @@
 // What segment() must do alike on voxels of several shapes: no oracle. That permuted axes permute
 // the weights, and mirrors keep them, is in segment_metamorphic_test.cc.
 
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/catch.h"
 #include "support/invariants.h"
 #include "support/random_case.h"
 #include "vdb_madf/method/segment.h"

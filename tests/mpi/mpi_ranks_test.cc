@@ -8,10 +8,10 @@
 
 #include "vdb_madf/mpi/mpi_ranks.h"
 
-#include <catch2/catch.hpp>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/random_case.h"
 #include "support/runs.h"
 #include "support/slab_objects.h"

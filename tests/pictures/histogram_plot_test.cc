@@ -3,10 +3,10 @@
 
 #include "vdb_madf/pictures/histogram_plot.h"
 
-#include <catch2/catch.hpp>
+#include "support/catch.h"
 
 using namespace vdb_madf;
-using Catch::Matchers::Contains;
+using vdb_madf::test::Contains;
 
 TEST_CASE("histogram_plot: a step a bin, and a line a mark", "[histogram_plot]") {
   const std::string svg = histogramPlot({0, 10, 4}, 0, 300, {{150, "otsu"}});

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
 #include <utility>
 
+#include "support/catch.h"
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -131,7 +131,7 @@ TEST_CASE("label_slices: planes that are asked for, and those outside", "[label_
   for (const SlicePlane& outside : {SlicePlane{2, 5}, {2, -10}, {0, 10}}) {
     options.planes = {outside};
     CHECK_THROWS_WITH(labelSlices(*labels, kBox, colors, options),
-                      Catch::Matchers::Contains("there is no slice"));
+                      vdb_madf::test::Contains("there is no slice"));
   }
 }
 

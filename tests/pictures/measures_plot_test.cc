@@ -3,8 +3,9 @@
 
 #include "vdb_madf/pictures/measures_plot.h"
 
-#include <catch2/catch.hpp>
 #include <string>
+
+#include "support/catch.h"
 
 using namespace vdb_madf;
 

@@ -4,8 +4,8 @@
 #include "vdb_madf/pictures/picture_sheet.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 
+#include "support/catch.h"
 #include "vdb_madf/pictures/detail/canvas.h"
 #include "vdb_madf/pictures/detail/scale_bar.h"
 

@@ -5,10 +5,10 @@
 
 #include <png.h>
 
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <random>
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "vdb_madf/base/errors.h"
 

@@ -3,10 +3,10 @@
 
 // labelPanels() of labels in slabs against those of the whole.
 
-#include <catch2/catch.hpp>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/label_slabs.h"
 #include "support/random_volume.h"
 #include "support/runs.h"

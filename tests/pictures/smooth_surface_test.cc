@@ -4,14 +4,16 @@
 #include "vdb_madf/pictures/detail/smooth_surface.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 
+#include "support/catch.h"
+
 using namespace vdb_madf;
-using Vec = openvdb::Vec3d;
 
 namespace {
+
+using Vec = openvdb::Vec3d;
 
 MaskGrid::Ptr randomObject(unsigned seed, const CoordBBox& box, unsigned oneIn) {
   std::mt19937 random(seed);

@@ -6,12 +6,12 @@
 #include <tbb/global_control.h>
 #include <zlib.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"

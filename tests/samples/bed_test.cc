@@ -4,12 +4,12 @@
 #include "vdb_madf/samples/bed.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 #include <vector>
 
 #include "support/balls.h"
+#include "support/catch.h"
 #include "support/samples.h"
 #include "vdb_madf/samples/detail/bed_placement.h"
 

@@ -6,12 +6,12 @@
 #include "vdb_madf/samples/detail/lattice.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/samples.h"
 #include "vdb_madf/samples/detail/particle_placement.h"
 #include "vdb_madf/samples/detail/sintered_placement.h"
@@ -248,5 +248,5 @@ TEST_CASE("lattice: what cannot be made is refused", "[lattice]") {
   CHECK(scanned(sample, {}).object);
   ScanOptions scan;
   scan.blur = 1;
-  CHECK_THROWS_WITH(scanned(sample, scan), Catch::Contains("needs cubic voxels"));
+  CHECK_THROWS_WITH(scanned(sample, scan), vdb_madf::test::Contains("needs cubic voxels"));
 }

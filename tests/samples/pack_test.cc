@@ -3,10 +3,10 @@
 
 #include "vdb_madf/samples/pack.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "support/catch.h"
 #include "support/samples.h"
 
 namespace {

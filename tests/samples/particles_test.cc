@@ -4,11 +4,11 @@
 #include "vdb_madf/samples/particles.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 
+#include "support/catch.h"
 #include "support/samples.h"
 #include "vdb_madf/base/detail/portable_math.h"
 #include "vdb_madf/samples/detail/particle_placement.h"
@@ -217,8 +217,8 @@ TEST_CASE("particles: functions equal the library's", "[particles]") {
 TEST_CASE("particles: says how many fit", "[particles]") {
   auto options = smallParticles(ParticleShape::balls);
   options.count = 500;
-  CHECK_THROWS_WITH(generateParticles(options),
-                    Catch::Contains("of 500 particles fit") && !Catch::Contains("\n"));
+  CHECK_THROWS_WITH(generateParticles(options), vdb_madf::test::Contains("of 500 particles fit") &&
+                                                    !vdb_madf::test::Contains("\n"));
 }
 
 TEST_CASE("particles: one voxel", "[particles]") {

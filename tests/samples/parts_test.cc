@@ -3,13 +3,13 @@
 
 // The parts that the samples are made of: unions of balls, power cells, noise and blur.
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
 #include <set>
 #include <vector>
 
 #include "support/balls.h"
+#include "support/catch.h"
 #include "vdb_madf/samples/detail/ball_union.h"
 #include "vdb_madf/samples/detail/gaussian_blur.h"
 #include "vdb_madf/samples/detail/power_cells.h"

@@ -4,12 +4,12 @@
 #include "vdb_madf/samples/scan.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <random>
 
+#include "support/catch.h"
 #include "support/samples.h"
 #include "vdb_madf/samples/detail/sample_options.h"
 #include "vdb_madf/samples/detail/surface_distance.h"

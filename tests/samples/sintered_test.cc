@@ -4,12 +4,12 @@
 #include "vdb_madf/samples/sintered.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
 
 #include "support/balls.h"
+#include "support/catch.h"
 #include "support/samples.h"
 #include "vdb_madf/samples/detail/sintered_placement.h"
 
@@ -102,8 +102,8 @@ TEST_CASE("sintered: the surface is the cut of the blurred, noisy union", "[sint
 TEST_CASE("sintered: says how many balls fit", "[sintered]") {
   SinteredOptions options = smallSintered();
   options.count = 500;
-  CHECK_THROWS_WITH(generateSintered(options),
-                    Catch::Contains("of 500 balls fit") && !Catch::Contains("\n"));
+  CHECK_THROWS_WITH(generateSintered(options), vdb_madf::test::Contains("of 500 balls fit") &&
+                                                   !vdb_madf::test::Contains("\n"));
 }
 
 TEST_CASE("sintered: one voxel", "[sintered]") {

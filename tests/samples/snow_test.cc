@@ -4,11 +4,11 @@
 #include "vdb_madf/samples/snow.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/samples.h"
 
 namespace {

@@ -4,7 +4,6 @@
 #include "vdb_madf/samples/spheres.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "support/balls.h"
+#include "support/catch.h"
 #include "support/samples.h"
 #include "vdb_madf/samples/detail/sphere_placement.h"
 

@@ -6,9 +6,9 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <set>
 
+#include "support/catch.h"
 #include "support/label_shapes.h"
 #include "support/mesh_checks.h"
 #include "vdb_madf/base/errors.h"

@@ -3,9 +3,10 @@
 
 #include "vdb_madf/shapes/detail/grain_pressures.h"
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
+
+#include "support/catch.h"
 
 using namespace vdb_madf::detail;
 

@@ -5,8 +5,7 @@
 
 #include "vdb_madf/shapes/hexahedra.h"
 
-#include <catch2/catch.hpp>
-
+#include "support/catch.h"
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
 

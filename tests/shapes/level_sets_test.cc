@@ -4,10 +4,10 @@
 #include "vdb_madf/shapes/level_sets.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "support/catch.h"
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"

@@ -4,10 +4,10 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
 
+#include "support/catch.h"
 #include "support/label_shapes.h"
 #include "support/mesh_checks.h"
 #include "vdb_madf/base/errors.h"

@@ -3,11 +3,11 @@
 
 #include "vdb_madf/slabs/deal_slabs.h"
 
-#include <catch2/catch.hpp>
 #include <map>
 #include <memory>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/thread_ranks.h"
 #include "vdb_madf/base/errors.h"
 

@@ -3,11 +3,11 @@
 
 #include "vdb_madf/slabs/folder_scratch.h"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "vdb_madf/base/errors.h"
 
@@ -52,8 +52,9 @@ TEST_CASE("folder scratch: goes on with the same work alone", "[scratch]") {
   const std::string path = folder / "scratch";
   { FolderScratch(path, "this work", false).write("a", someBytes(100)); }
   writeFile(path + "/.a.piece.999999-0.tmp", "half");
-  CHECK_THROWS_WITH(FolderScratch(path, "this work", false), Catch::Contains("resume it"));
-  CHECK_THROWS_WITH(FolderScratch(path, "other work", true), Catch::Contains("other options"));
+  CHECK_THROWS_WITH(FolderScratch(path, "this work", false), vdb_madf::test::Contains("resume it"));
+  CHECK_THROWS_WITH(FolderScratch(path, "other work", true),
+                    vdb_madf::test::Contains("other options"));
   CHECK(FolderScratch(path, "this work", true).read("a") == someBytes(100));
   CHECK_FALSE(std::filesystem::exists(path + "/.a.piece.999999-0.tmp"));
   // Killed before it was known whose it is.
@@ -66,11 +67,12 @@ TEST_CASE("folder scratch: goes on with the same work alone", "[scratch]") {
   writeFile((folder / "photos") + "/me.jpg", "x");
   CHECK_THROWS_AS(FolderScratch(folder / "photos", "this work", false), IoError);
   CHECK_THROWS_WITH(FolderScratch(folder / "photos", "this work", true),
-                    Catch::Contains("no folder of scratch data"));
+                    vdb_madf::test::Contains("no folder of scratch data"));
   CHECK(readFile((folder / "photos") + "/me.jpg") == "x");
   {
     const FolderScratch first(folder / "two", "work", false);
-    CHECK_THROWS_WITH(FolderScratch(folder / "two/", "work", true), Catch::Contains("another run"));
+    CHECK_THROWS_WITH(FolderScratch(folder / "two/", "work", true),
+                      vdb_madf::test::Contains("another run"));
   }
   FolderScratch again((folder / "two") + "/", "work", true);
   again.removeAll();
@@ -100,10 +102,10 @@ TEST_CASE("folder scratch: damage is noticed wherever it is", "[scratch]") {
 TEST_CASE("folder scratch: is shared by those who take part, and by no others", "[scratch]") {
   const ScratchFolder folder;
   const std::string path = folder / "scratch";
-  CHECK_THROWS_WITH((FolderScratch(path)), Catch::Contains("is not there for all"));
+  CHECK_THROWS_WITH((FolderScratch(path)), vdb_madf::test::Contains("is not there for all"));
   FolderScratch first(path, "work", false);
   CHECK_FALSE(first.isShared());
-  CHECK_THROWS_WITH((FolderScratch(path)), Catch::Contains("another run"));
+  CHECK_THROWS_WITH((FolderScratch(path)), vdb_madf::test::Contains("another run"));
   first.share();
   {
     FolderScratch second(path);
@@ -113,7 +115,7 @@ TEST_CASE("folder scratch: is shared by those who take part, and by no others", 
     CHECK(first.read("a") == someBytes(100));
     first.remove("a");
     CHECK_FALSE(second.has("a"));
-    CHECK_THROWS_WITH(FolderScratch(path, "work", true), Catch::Contains("another run"));
+    CHECK_THROWS_WITH(FolderScratch(path, "work", true), vdb_madf::test::Contains("another run"));
   }
-  CHECK_THROWS_WITH(FolderScratch(path, "work", true), Catch::Contains("another run"));
+  CHECK_THROWS_WITH(FolderScratch(path, "work", true), vdb_madf::test::Contains("another run"));
 }

@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -19,6 +18,7 @@
 #include <tuple>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/merge_tree.h"
 #include "support/random_volume.h"
 #include "support/runs.h"

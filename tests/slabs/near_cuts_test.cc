@@ -8,9 +8,9 @@
 
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/random_volume.h"
 #include "support/slab_objects.h"
 #include "vdb_madf/method/kernels/distance_rows.h"

@@ -6,9 +6,9 @@
 #include "vdb_madf/slabs/detail/point_numbers.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <set>
 
+#include "support/catch.h"
 #include "support/random_volume.h"
 
 using namespace vdb_madf;

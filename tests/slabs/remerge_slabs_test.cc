@@ -6,10 +6,10 @@
 #include "vdb_madf/slabs/remerge_slabs.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/random_case.h"
 #include "support/runs.h"
 #include "support/slab_objects.h"
@@ -135,7 +135,7 @@ TEST_CASE("remerge_slabs: manifolds that do not fit their graph are refused", "[
     Manifolds changed = good;
     for (Int32Grid::Ptr& slab : changed.slabs) slab = slab->deepCopy();
     change(changed.slabs);
-    CHECK_THROWS_WITH(remergeCut(changed, {}, 2), Catch::Contains(why));
+    CHECK_THROWS_WITH(remergeCut(changed, {}, 2), vdb_madf::test::Contains(why));
   };
   using Slabs = std::vector<Int32Grid::Ptr>;
   const auto changePart = [](Int32Grid& slab, auto change) {

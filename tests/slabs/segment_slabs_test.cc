@@ -9,12 +9,12 @@
 #include "vdb_madf/slabs/segment_slabs.h"
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/random_case.h"
 #include "support/runs.h"
 #include "support/slab_objects.h"

@@ -3,9 +3,9 @@
 
 #include "vdb_madf/slabs/slab_builder.h"
 
-#include <catch2/catch.hpp>
 #include <vector>
 
+#include "support/catch.h"
 #include "vdb_madf/base/errors.h"
 
 namespace {

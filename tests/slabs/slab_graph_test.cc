@@ -5,12 +5,12 @@
 // lead through more slabs, and more often, than those of an object do.
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <map>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/merge_tree.h"
 #include "support/random_volume.h"
 #include "vdb_madf/method/merge.h"

@@ -6,9 +6,9 @@
 
 #include "vdb_madf/slabs/sweep_slabs.h"
 
-#include <catch2/catch.hpp>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/random_case.h"
 #include "support/runs.h"
 #include "support/slab_objects.h"

@@ -3,11 +3,11 @@
 
 #pragma once
 
-#include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 
+#include "support/catch.h"
 #include "support/program.h"
 
 /// Samples to make with the command, and what its verb 'info' says of them.

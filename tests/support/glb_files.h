@@ -4,12 +4,13 @@
 #pragma once
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "support/catch.h"
 
 /// A reader of glTF 2.0 binary files, by the specification: what it demands of a file is checked.
 namespace vdb_madf::test {

@@ -4,13 +4,13 @@
 #pragma once
 
 #include <array>
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstring>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/glb_files.h"
 #include "support/vtk_arrays.h"
 #include "vdb_madf/exports/mesh_file.h"

@@ -4,10 +4,10 @@
 #pragma once
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/program.h"
 
 /// What is asked of the command when it refuses.
@@ -24,7 +24,7 @@ inline void checkRefusal(const Outcome& outcome, int code, const std::vector<std
   CHECK((outcome.err.empty() ? ' ' : outcome.err.back()) == '\n');
   for (const std::string& text : says) {
     CAPTURE(text);
-    CHECK_THAT(outcome.err, Catch::Contains(text));
+    CHECK_THAT(outcome.err, vdb_madf::test::Contains(text));
   }
 }
 

@@ -5,11 +5,11 @@
 
 #include <tbb/global_control.h>
 
-#include <catch2/catch.hpp>
 #include <set>
 #include <vector>
 
 #include "support/balls.h"
+#include "support/catch.h"
 #include "support/runs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"

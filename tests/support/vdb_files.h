@@ -5,11 +5,11 @@
 
 #include <openvdb/io/File.h>
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"

@@ -5,12 +5,13 @@
 
 #include <zlib.h>
 
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "support/catch.h"
 
 namespace vdb_madf::test {
 

@@ -3,15 +3,13 @@
 
 // vdb_madf collect, run as a user runs it.
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 
-#include "support/program.h"
+#include "support/catch.h"
+#include "support/command_runs.h"
 
 using namespace vdb_madf::test;
-using Json = nlohmann::json;
 
 namespace {
 

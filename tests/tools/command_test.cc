@@ -6,11 +6,11 @@
 
 #include <openvdb/version.h>
 
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <filesystem>
 #include <sstream>
 
+#include "support/catch.h"
 #include "support/command_runs.h"
 #include "vdb_madf/base/version.h"
 

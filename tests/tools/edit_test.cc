@@ -3,8 +3,7 @@
 
 // The verb edit, run as a user runs it; what edits do: labels/edit_labels_test.cc.
 
-#include <catch2/catch.hpp>
-
+#include "support/catch.h"
 #include "support/command_runs.h"
 #include "support/refusals.h"
 

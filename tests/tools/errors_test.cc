@@ -4,9 +4,9 @@
 // What the command refuses, and how: the exit code, one line on stderr, nothing on stdout, no file
 // left.
 
-#include <catch2/catch.hpp>
 #include <csignal>
 
+#include "support/catch.h"
 #include "support/command_runs.h"
 #include "support/refusals.h"
 
@@ -372,7 +372,8 @@ TEST_CASE("cli: the boundary and the domain have to fit the object", "[cli]") {
   bench.mustRun("segment unknown.vdb c.vdb --boundary open --domain 0,0,0:39,39,39");
   bench.mustRun("segment s.vdb d.vdb");
   CHECK(bench.bytes("c.vdb") == bench.bytes("d.vdb"));
-  CHECK_THAT(bench.mustRun("convert unknown.vdb u.raw --grid object"), Catch::Contains("origin"));
+  CHECK_THAT(bench.mustRun("convert unknown.vdb u.raw --grid object"),
+             vdb_madf::test::Contains("origin"));
 }
 
 TEST_CASE("cli: a signal ends long work within a second and leaves nothing", "[cli]") {
@@ -421,5 +422,5 @@ TEST_CASE("cli: an image that is too long is refused before its samples are read
   for (const std::string arguments :
        {"segment long.mha o.vdb", "segment long.mha --dry-run", "sweep long.mha o.csv"})
     refuses(bench, kFailed, arguments, {"long.mha", "30000 voxels long", "26754"});
-  CHECK_THAT(bench.mustRun("info long.mha --header"), Catch::Contains("30000"));
+  CHECK_THAT(bench.mustRun("info long.mha --header"), vdb_madf::test::Contains("30000"));
 }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include <iterator>
 #include <map>
 
+#include "support/catch.h"
 #include "support/program.h"
 
 using namespace vdb_madf::test;

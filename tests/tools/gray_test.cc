@@ -3,13 +3,13 @@
 
 // From a gray scan to grains, run as a user runs it.
 
-#include <catch2/catch.hpp>
 #include <cstring>
 
+#include "support/catch.h"
 #include "support/command_runs.h"
 
 using namespace vdb_madf::test;
-using Catch::Matchers::Contains;
+using vdb_madf::test::Contains;
 
 namespace {
 
@@ -66,7 +66,7 @@ TEST_CASE("gray: Otsu's threshold takes the object back out of a scan", "[gray]"
   const std::string printed = bench.mustRun("segment s.tif g.vdb --json j.json" + options);
   const Json json = Json::parse(bench.bytes("j.json"));
   const auto steps = json.at("object").get<std::string>();
-  CHECK_THAT(steps, Catch::Matchers::StartsWith("median 1, smooth 0.3, value >= ") &&
+  CHECK_THAT(steps, vdb_madf::test::StartsWith("median 1, smooth 0.3, value >= ") &&
                         Contains("(otsu), despeckle 20 ("));
   CHECK_THAT(printed, Contains(steps));
   CHECK(json.at("threshold") == "otsu");
@@ -135,7 +135,7 @@ TEST_CASE("gray: filters are for images, despeckling is for any volume", "[gray]
   }
   bench.mustRun("convert clean.vdb d.vdb --despeckle 1000");
   CHECK_THAT(gridOf(infoOf(bench, "d.vdb"), "object").at("metadata").at("madf_object"),
-             Catch::Matchers::Predicate<std::string>(
+             vdb_madf::test::Predicate<std::string>(
                  [](const std::string& steps) { return steps.rfind("despeckle 1000 (", 0) == 0; }));
   // Without a selection a filter leaves an image an image.
   bench.mustRun("convert s.tif median.tif --median 1");

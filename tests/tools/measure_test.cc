@@ -5,19 +5,17 @@
 
 #include <algorithm>
 #include <array>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "support/program.h"
+#include "support/catch.h"
+#include "support/command_runs.h"
 #include "support/refusals.h"
 
 using namespace vdb_madf::test;
-using Json = nlohmann::json;
 
 namespace {
 

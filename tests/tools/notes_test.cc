@@ -3,11 +3,11 @@
 
 // What the command says though it is no error: on stderr, unless quiet, and in JSON.
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/command_runs.h"
 #include "vdb_madf/method/initialize.h"
 #include "vdb_madf/vdb/write_vdb.h"
@@ -24,7 +24,7 @@ void notes(const Bench& bench, const std::string& arguments, const std::vector<s
   CHECK(outcome.exitCode == 0);
   CHECK(outcome.err.find("vdb_madf: note: ") == 0);
   CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
-  for (const std::string& text : says) CHECK_THAT(outcome.err, Catch::Contains(text));
+  for (const std::string& text : says) CHECK_THAT(outcome.err, vdb_madf::test::Contains(text));
   bench.mustRun(arguments + " -q");  // without a word
 }
 
@@ -113,7 +113,8 @@ TEST_CASE("cli: a VDB of sheared voxels is refused by all but info", "[cli]") {
     CAPTURE(arguments);
     const Outcome outcome = bench.run(arguments);
     CHECK(outcome.exitCode == 1);
-    CHECK_THAT(outcome.err, Catch::Contains("flat.vdb") && Catch::Contains("turned, sheared"));
+    CHECK_THAT(outcome.err,
+               vdb_madf::test::Contains("flat.vdb") && vdb_madf::test::Contains("turned, sheared"));
     CHECK(bench.names() == before);
   }
   notes(bench, "info flat.vdb", {"flat.vdb", "'grain'", "not along the axes"});
@@ -127,7 +128,7 @@ TEST_CASE("cli: unequal voxels keep their shape, and what needs cubes says so", 
   for (const std::string file : {"flat.vdb", "flat.mhd", "flat.nrrd", "flat.tif"}) {
     if (file != "flat.vdb") bench.mustRun("convert flat.vdb " + file);
     const std::string said = bench.mustRun("info " + file);
-    CHECK_THAT(said, Catch::Contains("voxel_size_mm: [0.0005,0.0007,0.0012]"));
+    CHECK_THAT(said, vdb_madf::test::Contains("voxel_size_mm: [0.0005,0.0007,0.0012]"));
   }
   for (const std::string arguments :
        {"convert flat.mhd o.vdb --labels", "render flat.vdb o.png", "export flat.vdb o.ply",
@@ -142,8 +143,9 @@ TEST_CASE("cli: unequal voxels keep their shape, and what needs cubes says so", 
     const auto before = bench.names();
     const Outcome outcome = bench.run(arguments);
     CHECK(outcome.exitCode == 1);
-    CHECK_THAT(outcome.err, Catch::Contains("flat.vdb") && Catch::Contains("needs cubic voxels") &&
-                                Catch::Contains("(convert --resample)"));
+    CHECK_THAT(outcome.err, vdb_madf::test::Contains("flat.vdb") &&
+                                vdb_madf::test::Contains("needs cubic voxels") &&
+                                vdb_madf::test::Contains("(convert --resample)"));
     CHECK(bench.names() == before);
   }
   for (const std::string arguments :
@@ -154,20 +156,21 @@ TEST_CASE("cli: unequal voxels keep their shape, and what needs cubes says so", 
               "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 3\n"
               "encoding: raw\n\n" +
                   std::string("\1\1\1\1\1\0\0\0", 8));
-  CHECK_THAT(bench.mustRun("info flat.nrrd"), Catch::Contains("voxel_size_units: [1.0,1.0,3.0]"));
+  CHECK_THAT(bench.mustRun("info flat.nrrd"),
+             vdb_madf::test::Contains("voxel_size_units: [1.0,1.0,3.0]"));
   bench.mustRun("convert flat.nrrd unknown.vdb");
   const std::string unknown = bench.mustRun("info unknown.vdb");
-  CHECK_THAT(unknown, Catch::Contains("voxel_size_units: [1.0,1.0,3.0]"));
+  CHECK_THAT(unknown, vdb_madf::test::Contains("voxel_size_units: [1.0,1.0,3.0]"));
   CHECK(unknown.find("voxel_size_mm") == std::string::npos);
   bench.mustRun("convert flat.nrrd known.vdb --voxel-size 1x1x3um");
   CHECK_THAT(bench.mustRun("info known.vdb"),
-             Catch::Contains("voxel_size_mm: [0.001,0.001,0.003]"));
-  CHECK_THAT(bench.mustRun("measure flat.nrrd t"), Catch::Contains("in shortest edges"));
+             vdb_madf::test::Contains("voxel_size_mm: [0.001,0.001,0.003]"));
+  CHECK_THAT(bench.mustRun("measure flat.nrrd t"), vdb_madf::test::Contains("in shortest edges"));
   notes(bench, "convert flat.nrrd o.tif", {"does not say that its voxels are no cubes"});
   notes(bench, "convert unknown.vdb u.mhd", {"does not say that its voxels are no cubes"});
   const Outcome other = bench.run("compare flat.vdb cubes.vdb");
   CHECK(other.exitCode == 1);
-  CHECK_THAT(other.err, Catch::Contains("1, 0.7143, 0.4167 times as long"));
+  CHECK_THAT(other.err, vdb_madf::test::Contains("1, 0.7143, 0.4167 times as long"));
   notes(bench, "convert flat.vdb o.vdb --voxel-size 0.5x0.7x1.3um",
         {"0.5 x 0.7 x 1.2 um", "0.5 x 0.7 x 1.3 um"});
 }

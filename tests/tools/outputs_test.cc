@@ -7,9 +7,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <filesystem>
 
+#include "support/catch.h"
 #include "support/command_runs.h"
 #include "support/refusals.h"
 
@@ -24,8 +24,9 @@ void leavesAlone(const Bench& bench, const std::string& arguments, const std::st
   const std::string content = bench.bytes(file);
   const Outcome outcome = bench.run(arguments);
   CHECK(outcome.exitCode == 1);
-  CHECK_THAT(outcome.err, Catch::Contains(std::filesystem::path(file).filename().string()) &&
-                              Catch::Contains("choose another name"));
+  CHECK_THAT(outcome.err,
+             vdb_madf::test::Contains(std::filesystem::path(file).filename().string()) &&
+                 vdb_madf::test::Contains("choose another name"));
   CHECK(bench.bytes(file) == content);
   CHECK(bench.names() == before);
 }
@@ -91,7 +92,7 @@ TEST_CASE("cli: a folder of meshes holds the grains of one sample", "[cli]") {
   bench.write("meshes/grain_000077.stl", "of another sample");
   const Outcome outcome = bench.run("export g.vdb meshes --as mesh");
   CHECK(outcome.exitCode == 1);
-  CHECK_THAT(outcome.err, Catch::Contains("grain_000077.stl"));
+  CHECK_THAT(outcome.err, vdb_madf::test::Contains("grain_000077.stl"));
 }
 
 TEST_CASE("cli: what a killed run left goes with the next run that writes there", "[cli]") {

@@ -3,14 +3,14 @@
 
 // Regions of a scan, round cores above all, run as a user runs them.
 
-#include <catch2/catch.hpp>
 #include <cstdint>
 
+#include "support/catch.h"
 #include "support/command_runs.h"
 #include "support/refusals.h"
 
 using namespace vdb_madf::test;
-using Catch::Matchers::Contains;
+using vdb_madf::test::Contains;
 
 namespace {
 

@@ -6,13 +6,13 @@
 #include <png.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/program.h"
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/pictures/picture.h"
@@ -177,7 +177,7 @@ TEST_CASE("cli: render draws outlines of grains on the gray scan", "[cli]") {
   bench.mustRun("generate spheres small.tif --size 32 --count 2 --radius 6:8");
   const auto refused = bench.run("render s.vdb w.png --overlay small.tif");
   CHECK(refused.exitCode == 1);
-  CHECK_THAT(refused.err, Catch::Matchers::Contains("small.tif: has 32x32x32 voxels"));
+  CHECK_THAT(refused.err, vdb_madf::test::Contains("small.tif: has 32x32x32 voxels"));
   CHECK(bench.run("render s.vdb w.png --overlay missing.tif").exitCode == 1);
 }
 

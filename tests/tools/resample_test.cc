@@ -3,13 +3,12 @@
 
 // `convert --resample`, run as a user runs it.
 
-#include <catch2/catch.hpp>
-
+#include "support/catch.h"
 #include "support/command_runs.h"
 #include "support/refusals.h"
 
 using namespace vdb_madf::test;
-using Catch::Matchers::Contains;
+using vdb_madf::test::Contains;
 
 namespace {
 

@@ -4,9 +4,9 @@
 // The verbs segment, remerge, sweep and compare, run as a user runs them.
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <sstream>
 
+#include "support/catch.h"
 #include "support/command_runs.h"
 
 using namespace vdb_madf::test;

@@ -3,7 +3,6 @@
 
 // `segment IN OUT.slabs`: a folder of slabs, with the labels of one file.
 
-#include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
 #include <map>
@@ -11,12 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/command_runs.h"
 
 namespace {
 
 using namespace vdb_madf::test;
-using Catch::Contains;
+using vdb_madf::test::Contains;
 
 /// 12 leaf nodes high.
 const std::string kTall = "generate sintered --dims 40x33x93 --count 40 --radius 4:9 ";

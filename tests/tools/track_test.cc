@@ -3,9 +3,9 @@
 
 // The verb track, run as a user runs it; what it finds: labels/track_test.cc.
 
-#include <catch2/catch.hpp>
 #include <sstream>
 
+#include "support/catch.h"
 #include "support/command_runs.h"
 #include "support/refusals.h"
 
@@ -94,7 +94,8 @@ TEST_CASE("cli: a sample that moved is found, in images too", "[cli]") {
   const Outcome near = bench.run("track a.npy b.npy --max-shift 9 -q");
   CHECK(near.exitCode == 0);
   const Outcome told = bench.run("track a.npy b.npy --max-shift 9");
-  CHECK_THAT(told.err, Catch::Contains("b.npy: the shift is the largest that is looked for"));
+  CHECK_THAT(told.err,
+             vdb_madf::test::Contains("b.npy: the shift is the largest that is looked for"));
 }
 
 TEST_CASE("cli: what cannot be tracked is told in a line", "[cli]") {

@@ -6,13 +6,13 @@
 #include <openvdb/io/Stream.h>
 #include <openvdb/version.h>
 
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <random>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/method/initialize.h"
 

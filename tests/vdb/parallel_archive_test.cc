@@ -3,12 +3,12 @@
 
 #include <tbb/global_control.h>
 
-#include <catch2/catch.hpp>
 #include <limits>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/temporary_folder.h"
 #include "support/vdb_files.h"
 #include "vdb_madf/method/initialize.h"

@@ -3,10 +3,10 @@
 
 #include <openvdb/io/File.h>
 
-#include <catch2/catch.hpp>
 #include <memory>
 #include <string>
 
+#include "support/catch.h"
 #include "support/temporary_folder.h"
 #include "support/vdb_files.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -163,7 +163,7 @@ TEST_CASE("region_grid: a file without the region that it names is refused", "[r
     writeWithOpenVdb(path, grids);
     const std::string error = errorOf(path);
     requireOneLineNaming(error, path);
-    CHECK_THAT(error, Catch::Contains(reason));
+    CHECK_THAT(error, vdb_madf::test::Contains(reason));
     CHECK(errorOf(path, onlyNamed("region")).empty());
     CHECK_NOTHROW(readVdbHeaders(path));
   };
@@ -192,7 +192,7 @@ TEST_CASE("region_grid: the size of a region is checked as that of any tree", "[
   CHECK(storedDomain(*readVdb(path)[0]) == Domain(large));
   VdbReadOptions options = onlyNamed("grain");
   options.maxCoordinate = 4094;
-  CHECK_THAT(errorOf(path, options), Catch::Contains("beyond coordinate"));
+  CHECK_THAT(errorOf(path, options), vdb_madf::test::Contains("beyond coordinate"));
   // A damaged one is, whichever grid is wanted.
   std::string bytes = bytesOf(path);
   const size_t at = bytes.rfind("madf_domain_min");
@@ -213,7 +213,8 @@ TEST_CASE("region_grid: grids that one file cannot hold are refused", "[region_g
       writeVdb(path, grids);
       FAIL("written");
     } catch (const InvalidInput& error) {
-      CHECK_THAT(error.what(), Catch::StartsWith(path) && Catch::Contains(reason));
+      CHECK_THAT(error.what(),
+                 vdb_madf::test::StartsWith(path) && vdb_madf::test::Contains(reason));
     }
     CHECK(folder.entries() == 0);
   };

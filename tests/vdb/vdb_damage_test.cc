@@ -3,13 +3,13 @@
 
 #include <openvdb/io/Stream.h>
 
-#include <catch2/catch.hpp>
 #include <cstring>
 #include <fstream>
 #include <limits>
 #include <random>
 #include <set>
 
+#include "support/catch.h"
 #include "support/damage.h"
 #include "support/temporary_folder.h"
 #include "support/vdb_files.h"
@@ -80,7 +80,7 @@ TEST_CASE("vdb_file: what is no VDB file is refused by name", "[vdb_file]") {
   const auto refused = [](const std::string& path, const std::string& reason) {
     const std::string error = errorOf(path);
     requireOneLineNaming(error, path);
-    CHECK_THAT(error, Catch::Contains(reason));
+    CHECK_THAT(error, vdb_madf::test::Contains(reason));
   };
   refused(folder.file("missing.vdb"), "No such file");
   refused(folder.path(), "folder");
@@ -107,7 +107,7 @@ TEST_CASE("vdb_file: other versions of the format are refused", "[vdb_file]") {
     writeBytes(path, bytes);
     const std::string error = errorOf(path);
     requireOneLineNaming(error, path);
-    CHECK_THAT(error, Catch::Contains("format " + std::to_string(version)));
+    CHECK_THAT(error, vdb_madf::test::Contains("format " + std::to_string(version)));
   }
   for (const uint32_t version : {222u, 223u, 224u}) {
     std::memcpy(&bytes[8], &version, 4);

@@ -9,13 +9,13 @@
 #include <tbb/global_control.h>
 
 #include <atomic>
-#include <catch2/catch.hpp>
 #include <random>
 #include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "support/catch.h"
 #include "support/full_disk.h"
 #include "support/temporary_folder.h"
 #include "support/vdb_files.h"

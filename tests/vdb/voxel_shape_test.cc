@@ -3,9 +3,9 @@
 
 #include <openvdb/math/Transform.h>
 
-#include <catch2/catch.hpp>
 #include <string>
 
+#include "support/catch.h"
 #include "support/temporary_folder.h"
 #include "support/vdb_files.h"
 #include "vdb_madf/method/initialize.h"
@@ -65,8 +65,8 @@ std::string errorWith(const Transform::Ptr& transform, const VdbReadOptions& opt
 TEST_CASE("vdb_file: voxels that are no boxes along the axes are refused", "[vdb_file]") {
   for (const auto& transform : {turned(0.01), turned(1.5707963267948966), sheared(), frustum()}) {
     const std::string error = errorWith(transform);
-    CHECK_THAT(error, Catch::Contains("'grain'"));
-    CHECK_THAT(error, Catch::Contains("resample it to voxels along the axes"));
+    CHECK_THAT(error, vdb_madf::test::Contains("'grain'"));
+    CHECK_THAT(error, vdb_madf::test::Contains("resample it to voxels along the axes"));
     VdbReadOptions any;
     any.anyVoxelShape = true;
     CHECK(errorWith(transform, any) == "");
@@ -89,7 +89,7 @@ TEST_CASE("vdb_file: the shape of voxels counts in grids that are wanted", "[vdb
   const auto other = gridOf(sheared());
   other->setName("other");
   writeWithOpenVdb(path, {other, gridOf(scaled({1, 1, 1}))});
-  CHECK_THAT(errorOf(path), Catch::Contains("'other'"));
+  CHECK_THAT(errorOf(path), vdb_madf::test::Contains("'other'"));
   CHECK(readVdbHeaders(path).size() == 2);
   VdbReadOptions options;
   options.wanted = [](const openvdb::GridBase& grid) { return grid.getName() == "grain"; };

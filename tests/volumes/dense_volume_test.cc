@@ -3,11 +3,10 @@
 
 #include "vdb_madf/volumes/dense_volume.h"
 
-#include <catch2/catch.hpp>
-
 #include <cmath>
 #include <random>
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "support/images.h"
 #include "vdb_madf/base/errors.h"
@@ -20,7 +19,7 @@
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-using Catch::Matchers::Contains;
+using vdb_madf::test::Contains;
 
 namespace {
 

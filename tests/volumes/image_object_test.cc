@@ -3,13 +3,12 @@
 
 #include "vdb_madf/volumes/image_object.h"
 
-#include <catch2/catch.hpp>
-
 #include <cmath>
 #include <cstdio>
 #include <numeric>
 #include <sstream>
 
+#include "support/catch.h"
 #include "support/dense_volume.h"
 #include "support/files.h"
 #include "support/images.h"
@@ -22,7 +21,7 @@
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-using Catch::Matchers::Contains;
+using vdb_madf::test::Contains;
 
 namespace {
 
@@ -248,7 +247,7 @@ TEST_CASE("image_object: says how it was made, and only then", "[image_object]")
   inverted.invert = true;
   const auto object = objectOf(kSize, samples, inverted, gray);
   CHECK_THAT(object->metaValue<std::string>(kObjectKey),
-             Catch::Matchers::StartsWith("median 1, smooth 0.7, value >= ") &&
+             vdb_madf::test::StartsWith("median 1, smooth 0.7, value >= ") &&
                  Contains(" (otsu), inverted, despeckle 4 ("));
   const double threshold = object->metaValue<double>(kThresholdKey);
   // The threshold by hand gives the same object.

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include <catch2/catch.hpp>
-
 #include <cmath>
 #include <limits>
 
+#include "support/catch.h"
 #include "support/images.h"
 #include "support/runs.h"
 #include "vdb_madf/base/errors.h"

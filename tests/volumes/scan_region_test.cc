@@ -3,9 +3,9 @@
 
 #include "vdb_madf/volumes/scan_region.h"
 
-#include <catch2/catch.hpp>
 #include <random>
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -17,7 +17,7 @@
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-using Catch::Matchers::Contains;
+using vdb_madf::test::Contains;
 
 namespace {
 
@@ -60,7 +60,7 @@ Loaded load(const std::string& path, VolumeOptions options) {
     loaded.object = loadObject(path, options);
   } catch (const InvalidInput& error) {
     loaded.error = error.what();
-    CHECK_THAT(loaded.error, Catch::StartsWith(path) || Contains(options.region.mask));
+    CHECK_THAT(loaded.error, vdb_madf::test::StartsWith(path) || Contains(options.region.mask));
   }
   return loaded;
 }
@@ -267,7 +267,7 @@ TEST_CASE("scan_region: a mask of any kind is a region", "[scan_region]") {
   writeVdb(folder / "two.vdb", {toBoolGrid(*mask), second});
   options.region.mask = folder / "two.vdb";
   CHECK_THAT(load(folder / "a.npy", options).error,
-             Catch::StartsWith(folder / "two.vdb") && Contains("several grids"));
+             vdb_madf::test::StartsWith(folder / "two.vdb") && Contains("several grids"));
   // The whole box is no region.
   writeScan(folder / "full.npy", std::vector<uint8_t>(kScanBox.volume(), 1));
   options.region.mask = folder / "full.npy";

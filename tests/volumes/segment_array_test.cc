@@ -3,11 +3,11 @@
 
 #include "vdb_madf/volumes/segment_array.h"
 
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <random>
 #include <vector>
 
+#include "support/catch.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/method/segment.h"

@@ -3,12 +3,12 @@
 
 #include "vdb_madf/volumes/volume.h"
 
-#include <catch2/catch.hpp>
 #include <filesystem>
 #include <random>
 #include <set>
 #include <string>
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
@@ -22,8 +22,8 @@
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-using Catch::Matchers::Contains;
-using Catch::Matchers::StartsWith;
+using vdb_madf::test::Contains;
+using vdb_madf::test::StartsWith;
 
 namespace {
 

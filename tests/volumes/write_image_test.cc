@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include <catch2/catch.hpp>
-
 #include <cmath>
 #include <limits>
 #include <random>
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "support/full_disk.h"
 #include "support/images.h"
@@ -22,7 +21,7 @@
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-using Catch::Matchers::Contains;
+using vdb_madf::test::Contains;
 
 namespace {
 

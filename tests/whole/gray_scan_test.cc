@@ -3,12 +3,11 @@
 
 // A clean object, made a gray scan of 16 bits by blur and noise, comes back by Otsu's threshold.
 
-#include <catch2/catch.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "support/catch.h"
 #include "support/images.h"
 #include "support/memory_image.h"
 #include "vdb_madf/images/filtered_image.h"

@@ -5,8 +5,7 @@
 
 #include <tbb/global_control.h>
 
-#include <catch2/catch.hpp>
-
+#include "support/catch.h"
 #include "vdb_madf/method/segment.h"
 #include "vdb_madf/samples/pack.h"
 

@@ -6,12 +6,12 @@
 // variable VDB_MADF_DATA or, without it, by the definition VDB_MADF_DATA_DIR. An independent dense
 // implementation of the method computed the numbers.
 
-#include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <string>
 
+#include "support/catch.h"
 #include "support/invariants.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/open_image.h"

@@ -4,9 +4,9 @@
 // A round core of a homogeneous sample tells of it what the whole block tells.
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <cmath>
 
+#include "support/catch.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/measure/measure.h"
 #include "vdb_madf/method/segment.h"

@@ -5,8 +5,8 @@
 // voxels three times as long along an axis.
 
 #include <array>
-#include <catch2/catch.hpp>
 
+#include "support/catch.h"
 #include "vdb_madf/labels/compare.h"
 #include "vdb_madf/measure/measure.h"
 #include "vdb_madf/method/segment.h"

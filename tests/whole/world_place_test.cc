@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <sstream>
 
+#include "support/catch.h"
 #include "support/files.h"
 #include "support/label_shapes.h"
 #include "support/mesh_files.h"
@@ -368,8 +368,8 @@ TEST_CASE("world_place: elements", "[world_place]") {
 TEST_CASE("world_place: what needs cubes refuses other voxels", "[world_place]") {
   const auto flat = markedGrid(kFlat);
   const auto refuses = [](const auto& work) {
-    CHECK_THROWS_WITH(
-        work(), Catch::Contains("needs cubic voxels") && Catch::Contains("0.25 x 0.5 x 0.0625"));
+    CHECK_THROWS_WITH(work(), vdb_madf::test::Contains("needs cubic voxels") &&
+                                  vdb_madf::test::Contains("0.25 x 0.5 x 0.0625"));
   };
   refuses([&] { grainLevelSets(*flat); });
   refuses([&] { surfaceLevelSet(*flat); });

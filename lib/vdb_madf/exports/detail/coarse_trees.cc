@@ -33,10 +33,11 @@ void countLeaf(const Leaf& leaf, std::vector<LabelCount>& counts) {
   for (openvdb::Index i = 0; i < Leaf::SIZE; ++i)
     labels[i] = labelAt(leaf, leaf.buffer().data(), i);
   std::sort(labels.begin(), labels.end());
-  for (auto begin = std::upper_bound(labels.begin(), labels.end(), 0), end = begin;
-       begin != labels.end(); begin = end) {
-    end = std::upper_bound(begin, labels.end(), *begin);
+  auto begin = std::upper_bound(labels.begin(), labels.end(), 0);
+  while (begin != labels.end()) {
+    const auto end = std::upper_bound(begin, labels.end(), *begin);
     counts.push_back({leaf.origin(), *begin, end - begin});
+    begin = end;
   }
 }
 

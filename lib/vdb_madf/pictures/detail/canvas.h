@@ -11,7 +11,7 @@
 #include "vdb_madf/pictures/picture.h"
 #include "vdb_madf/pictures/plot_type.h"
 
-typedef struct _cairo cairo_t;
+typedef struct _cairo cairo_t;  // NOLINT: as cairo.h says it
 
 namespace vdb_madf::detail {
 
