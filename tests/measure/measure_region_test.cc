@@ -375,7 +375,8 @@ TEST_CASE("measure_region: of unequal voxels, by the definitions on random label
     if (!c.domain) c.domain = c.object.box();
     drawRegion(c);
     if (!c.region || objectBox(c.object).empty()) continue;
-    const auto& [edges, weights] = kUnequal[seed % kUnequal.size()];
+    const UnequalVoxels& unequal = kUnequal[seed % kUnequal.size()];
+    const auto& edges = unequal.edges;
     INFO("edges " << edges << ", " << describe(c));
     const DenseVolume<int64_t> labels = randomCells(c.object, rng);
     const OracleDomain domain = *oracleDomainOf(c);
@@ -399,13 +400,13 @@ TEST_CASE("measure_region: of unequal voxels, by the definitions on random label
     REQUIRE(m.sample.objectFraction ==
             double(countObject(c.object)) / double(countObject(*c.region)));
     if (countObject(c.object) == countObject(*c.region)) continue;
-    const auto distance = oracleDistance(c.object, true, domain, weights);
+    const auto distance = oracleDistance(c.object, true, domain, unequal.weights);
     for (const GrainMeasures& grain : m.grains) {
       int64_t deepest = 0;
       for (int i = 0; i < labels.size(); ++i)
         if (labels[i] == grain.id) deepest = std::max(deepest, distance[i]);
       REQUIRE(grain.inscribedRadius ==
-              Approx(std::sqrt(double(deepest) / double(weights.least()))));
+              Approx(std::sqrt(double(deepest) / double(unequal.weights.least()))));
     }
   }
   CHECK(cutGrains > 100);

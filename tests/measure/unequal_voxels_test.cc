@@ -180,7 +180,8 @@ TEST_CASE("unequal_voxels: interfaces have their area, direction and curvature",
 
 TEST_CASE("unequal_voxels: free planes have their area", "[unequal_voxels]") {
   Rng rng(8);
-  for (const auto& [edges, mean, worst] : kAreas) {
+  for (const auto& [unequal, mean, worst] : kAreas) {
+    const auto& edges = unequal;  // for a lambda
     Errors errors;
     for (int i = 0; i < 24; ++i) {
       // Through four walls of a tall box.
