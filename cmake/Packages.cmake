@@ -1,7 +1,7 @@
 # Debian packages by CPack, one for each component of the installation: the command, the library and, if
 # it is built, the Python package. tools/release makes them.
 get_cmake_property(CPACK_COMPONENTS_ALL COMPONENTS)
-list(REMOVE_ITEM CPACK_COMPONENTS_ALL documents Unspecified)
+list(REMOVE_ITEM CPACK_COMPONENTS_ALL documents shared Unspecified)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME vdb-madf)
