@@ -86,7 +86,12 @@ TEST_CASE("segment_array: odd input", "[segment_array]") {
   const std::vector<uint8_t> none(27), full(27, 1);
   REQUIRE(segmentArray(none.data(), {3, 3, 3}).labels == std::vector<int32_t>(27));
   REQUIRE(segmentArray(none.data(), {3, 3, 3}).grainVoxels.empty());
-  REQUIRE(segmentArray(full.data(), {1, 1, 1}).labels == std::vector<int32_t>{1});
+  std::vector<uint8_t> one(27);
+  one[13] = 255;
+  const ArraySegmentation found = segmentArray(one.data(), {3, 3, 3});
+  REQUIRE(found.grainVoxels == std::vector<int64_t>{1});
+  for (size_t i = 0; i < 27; ++i) REQUIRE(found.labels[i] == (i == 13 ? 1 : 0));
+  REQUIRE_THROWS_WITH(segmentArray(full.data(), {3, 3, 3}), test::Contains("no background"));
   REQUIRE_THROWS_AS(segmentArray(full.data(), {3, 0, 3}), InvalidInput);
   REQUIRE_THROWS_AS(segmentArray(full.data(), {3, 3, -1}), InvalidInput);
   REQUIRE_THROWS_AS(segmentArray(full.data(), {int64_t(1) << 40, 3, 3}), InvalidInput);

@@ -36,7 +36,8 @@ struct ArraySegmentation {
 /// @param size  nx, ny, nz
 /// An empty object gives labels of 0 and no grains. Memory: 4 bytes a voxel for the labels, and what
 /// segment() needs (segment_memory.h).
-/// @throw InvalidInput for a size below 1 or beyond what limits.h says, and for the options; Interrupted.
+/// @throw InvalidInput for a size below 1 or beyond what limits.h says, for an object that fills the volume,
+/// and for the options; Interrupted.
 ArraySegmentation segmentArray(const uint8_t* mask, const std::array<int64_t, 3>& size,
                                const ArrayOptions& options = {},
                                Interrupter* interrupter = nullptr);
