@@ -32,8 +32,8 @@ template vdb_madf::FloatGrid::Ptr openvdb::Grid<vdb_madf::FloatGrid::TreeType>::
 
 template class openvdb::Grid<vdb_madf::MaskTree>;
 template class openvdb::Grid<vdb_madf::Int32Tree>;
-template class openvdb::Grid<vdb_madf::StandardTree<bool> >;
-template class openvdb::Grid<vdb_madf::StandardTree<float> >;
+template class openvdb::Grid<vdb_madf::StandardTree<bool>>;
+template class openvdb::Grid<vdb_madf::StandardTree<float>>;
 template class openvdb::tree::Tree<vdb_madf::MaskTree::RootNodeType>;
 template class openvdb::tree::Tree<vdb_madf::Int32Tree::RootNodeType>;
 template class openvdb::tree::Tree<vdb_madf::StandardTree<bool>::RootNodeType>;
