@@ -66,7 +66,7 @@ macro(vdb_madf_room_library suffix)
   if(arg_GRIDS AND name STREQUAL core)
     target_precompile_headers(${target}${suffix} PRIVATE
       <vdb_madf/grids/grid_types.h> <vdb_madf/grids/detail/grid_instances.h>)
-  elseif(arg_GRIDS)
+  elseif(arg_GRIDS AND NOT arg_OPTIMIZE)  # compiled with the same options, as GCC asks
     target_precompile_headers(${target}${suffix} REUSE_FROM vdb_madf_core${suffix})
   endif()
 endmacro()
