@@ -18,6 +18,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/detail/grid_copy.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/grain_parts.h"
 #include "vdb_madf/labels/detail/label_leaves.h"
@@ -102,7 +103,7 @@ class Editor {
   /// Nothing else can be asked then.
   Int32Grid::Ptr finish() {
     flush();
-    return current_ ? current_ : original_.deepCopy();
+    return current_ ? current_ : detail::deepCopyOf(original_);
   }
 
  private:
@@ -237,7 +238,7 @@ class Editor {
 
   /// The grid becomes a copy that may be changed.
   void own() {
-    if (!current_) current_ = original_.deepCopy();
+    if (!current_) current_ = detail::deepCopyOf(original_);
   }
 
   /// Gives the voxels the numbers that their grains have got.

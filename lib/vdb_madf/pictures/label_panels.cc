@@ -11,6 +11,7 @@
 
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/detail/grid_copy.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/rimmed_slabs.h"
 #include "vdb_madf/labels/grain_colors.h"
@@ -185,7 +186,7 @@ class SlabParts {
   Int32Grid::Ptr shownPart(const Int32Grid& labels, Interrupter* interrupter) const {
     if (!isPart()) return nullptr;
     Int32Grid::Ptr shown =
-        options_.interfaces ? interfaceVoxels(labels, interrupter) : labels.deepCopy();
+        options_.interfaces ? interfaceVoxels(labels, interrupter) : detail::deepCopyOf(labels);
     if (selected_.empty()) return shown;
     for (auto leaf = shown->tree().beginLeaf(); leaf; ++leaf)
       for (auto voxel = leaf->beginValueOn(); voxel; ++voxel)
