@@ -6,6 +6,8 @@
 #include "vdb_madf/measure/bootstrap.h"
 
 #include <cmath>
+#include <string>
+#include <string_view>
 
 #include "support/catch.h"
 #include "support/random_volume.h"
@@ -45,10 +47,10 @@ struct Chain {
   }
 };
 
-const MeanInterval& find(const std::vector<MeanInterval>& means, const std::string& name) {
+const MeanInterval& find(const std::vector<MeanInterval>& means, std::string_view name) {
   for (const MeanInterval& mean : means)
     if (mean.name == name) return mean;
-  throw std::runtime_error("no " + name);
+  throw std::runtime_error("no " + std::string(name));
 }
 
 }  // namespace

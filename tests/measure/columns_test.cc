@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <set>
+#include <string>
+#include <string_view>
 
 #include "support/catch.h"
 
@@ -19,10 +21,10 @@ std::string names(const std::vector<MeasureColumn>& columns) {
   return text;
 }
 
-const MeasureColumn& column(const std::vector<MeasureColumn>& columns, const std::string& name) {
+const MeasureColumn& column(const std::vector<MeasureColumn>& columns, std::string_view name) {
   for (const MeasureColumn& candidate : columns)
     if (candidate.name == name) return candidate;
-  throw std::runtime_error("no column " + name);
+  throw std::runtime_error("no column " + std::string(name));
 }
 
 }  // namespace
