@@ -3,12 +3,18 @@
 
 // vdb_madf segment and convert by the processes of an MPI job.
 
+#include <cstdio>
+#include <exception>
+
 #include "../vdb_madf/run_command.h"
 #include "vdb_madf/mpi/mpi_ranks.h"
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   vdb_madf::MpiRanks ranks(&argc, &argv);
   const int code = vdb_madf::tools::runCommand("vdb_madf_mpi", argc, argv, &ranks);
   if (code != 0) vdb_madf::MpiRanks::abort(code);
   return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "vdb_madf_mpi: error: %s\n", error.what());
+  return 1;
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <stdexcept>
 
 namespace vdb_madf {
 
@@ -52,6 +53,10 @@ void forEachPiece(const Bytes& message, const F& f) {
 MpiRanks::MpiRanks(int* argc, char*** argv) {
   int provided = 0;
   MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
+  if (provided < MPI_THREAD_FUNNELED) {
+    MPI_Finalize();
+    throw std::runtime_error("this MPI does not allow threads (MPI_THREAD_FUNNELED)");
+  }
   MPI_Comm_size(MPI_COMM_WORLD, &count_);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   outbox_.resize(size_t(count_));
@@ -63,11 +68,13 @@ MpiRanks::~MpiRanks() {
 
 void MpiRanks::post(int to, const std::string& name, const Bytes& bytes) {
   Bytes& message = outbox_[size_t(to)];
-  for (const auto& [data, size] : {std::make_pair(name.data(), uint64_t(name.size())),
-                                   std::make_pair(bytes.data(), uint64_t(bytes.size()))}) {
+  const auto add = [&message](const auto& part) {
+    const uint64_t size = part.size();
     append(message, &size, sizeof size);
-    append(message, data, size);
-  }
+    append(message, part.data(), size);
+  };
+  add(name);
+  add(bytes);
 }
 
 void MpiRanks::exchange(Scratch& own) {

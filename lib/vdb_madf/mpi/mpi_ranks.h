@@ -15,7 +15,8 @@ namespace vdb_madf {
 /// it. Messages of any size; they are in memory until exchange().
 class MpiRanks : public Ranks {
  public:
-  /// Begins MPI (MPI_THREAD_FUNNELED); one for a process.
+  /// Begins MPI (MPI_THREAD_FUNNELED); one for a process. @throw std::runtime_error if this MPI allows
+  /// no threads beside its calls.
   MpiRanks(int* argc, char*** argv);
   /// Ends MPI, with the others.
   ~MpiRanks() override;
