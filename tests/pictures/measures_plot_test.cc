@@ -6,21 +6,14 @@
 #include <string>
 
 #include "support/catch.h"
+#include "support/svg.h"
 
 using namespace vdb_madf;
 
 namespace {
 
-/// How many areas have this color.
-int areas(const std::string& svg, const std::string& color) {
-  int found = 0;
-  for (size_t at = svg.find("fill:rgb(" + color); at != std::string::npos;
-       at = svg.find("fill:rgb(" + color, at + 1))
-    ++found;
-  return found;
-}
-
-const std::string kBar = "0%,44.705882%,69.803922%)", kSector = "83.529412%,36.862745%,0%)";
+const std::string kBar = "fill:rgb(0%,44.705882%,69.803922%)",
+                  kSector = "fill:rgb(83.529412%,36.862745%,0%)";
 
 /// Whole grains of diameters 1, 2 ... along z, one that is cut, and bonds along x.
 Measurements measured(int grains, int bonds) {
@@ -52,9 +45,9 @@ TEST_CASE("measures_plot: a bar a bin and a sector a direction", "[measures_plot
   const std::string svg = measuresPlot(measured(27, 5), "sample");
   // Six bins of diameters by Rice's rule, in two histograms; one of equal sphericities and of equal
   // radii each; three numbers of bonds.
-  CHECK(areas(svg, kBar) == 6 + 6 + 1 + 3 + 1);
+  CHECK(test::countInSvg(svg, kBar) == 6 + 6 + 1 + 3 + 1);
   // Along x: one and its opposite; across z, and along it: one in each quarter.
-  CHECK(areas(svg, kSector) == 2 + 4 + 4);
+  CHECK(test::countInSvg(svg, kSector) == 2 + 4 + 4);
   CHECK(svg.find("nan") == std::string::npos);
   CHECK(svg.find("inf") == std::string::npos);
 }
@@ -82,7 +75,7 @@ TEST_CASE("measures_plot: large bonds count for more in the roses", "[measures_p
 
 TEST_CASE("measures_plot: nothing to plot, and the title", "[measures_plot]") {
   const std::string none = measuresPlot({}, "");
-  CHECK(areas(none, kBar) == 0);
+  CHECK(test::countInSvg(none, kBar) == 0);
   CHECK(none.find("nan") == std::string::npos);
   CHECK((measuresPlot({}, "a <b> & µ") != none));
   CHECK(measuresPlot(measured(1, 0), "", PlotType::pdf).substr(0, 4) == "%PDF");

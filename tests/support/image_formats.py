@@ -42,17 +42,30 @@ def write_nifti(nib, folder, volume, labels):
 
 
 def write_zarr(zarr, folder, volume, labels):
+    """Zarr 2 by its module, whose version 3 has other calls for it."""
     import numcodecs
+    new = int(zarr.__version__.split(".")[0]) >= 3
+
+    def save(name, array, chunks, separator=".", **more):
+        if not new:
+            store = zarr.DirectoryStore(f"{folder}/{name}", dimension_separator=separator)
+            zarr.create(array.shape, chunks=chunks, dtype=array.dtype, store=store, overwrite=True, **more)[:] = array
+            return
+        if "compressor" in more:
+            more["compressors"] = more.pop("compressor")
+        config = {"write_empty_chunks": more.pop("write_empty_chunks", True)}
+        zarr.create_array(f"{folder}/{name}", shape=array.shape, chunks=chunks, dtype=array.dtype, zarr_format=2,
+                          chunk_key_encoding={"name": "v2", "separator": separator}, config=config, overwrite=True,
+                          **more)[:] = array
+
     for name, compressor in (("blosc", numcodecs.Blosc(cname="zstd", shuffle=2)),
                              ("zlib", numcodecs.Zlib()), ("gzip", numcodecs.GZip()),
                              ("zstd", numcodecs.Zstd()), ("none", None)):
-        zarr.save_array(f"{folder}/{name}.zarr", volume, chunks=(4, 3, 5), compressor=compressor)
+        save(f"{name}.zarr", volume, (4, 3, 5), compressor=compressor)
         print(f"file volume.raw {name}.zarr 0")
-    store = zarr.DirectoryStore(f"{folder}/image.ome.zarr", dimension_separator="/")
-    group = zarr.group(store)
-    group.create_dataset("0", data=labels[None, None], chunks=(1, 1, 4, 3, 5), fill_value=0,
-                         write_empty_chunks=False)
-    group.create_dataset("1", data=volume[None, None], chunks=(1, 1, 2, 8, 8), order="F")
+    group = zarr.open_group(f"{folder}/image.ome.zarr", mode="w", **({"zarr_format": 2} if new else {}))
+    save("image.ome.zarr/0", labels[None, None], (1, 1, 4, 3, 5), "/", fill_value=0, write_empty_chunks=False)
+    save("image.ome.zarr/1", volume[None, None], (1, 1, 2, 8, 8), "/", order="F")
     scale = [{"type": "scale", "scale": [1, 1, UM, UM, UM]}]
     group.attrs["multiscales"] = [{
         "version": "0.4",
