@@ -18,7 +18,6 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/grids/detail/grid_copy.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/grain_parts.h"
 #include "vdb_madf/labels/detail/label_leaves.h"
@@ -103,7 +102,7 @@ class Editor {
   /// Nothing else can be asked then.
   Int32Grid::Ptr finish() {
     flush();
-    return current_ ? current_ : detail::deepCopyOf(original_);
+    return current_ ? current_ : original_.deepCopy();
   }
 
  private:
@@ -238,7 +237,7 @@ class Editor {
 
   /// The grid becomes a copy that may be changed.
   void own() {
-    if (!current_) current_ = detail::deepCopyOf(original_);
+    if (!current_) current_ = original_.deepCopy();
   }
 
   /// Gives the voxels the numbers that their grains have got.

@@ -11,7 +11,6 @@
 
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/grids/detail/grid_copy.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/rimmed_slabs.h"
 #include "vdb_madf/labels/grain_colors.h"
@@ -186,7 +185,7 @@ class SlabParts {
   Int32Grid::Ptr shownPart(const Int32Grid& labels, Interrupter* interrupter) const {
     if (!isPart()) return nullptr;
     Int32Grid::Ptr shown =
-        options_.interfaces ? interfaceVoxels(labels, interrupter) : detail::deepCopyOf(labels);
+        options_.interfaces ? interfaceVoxels(labels, interrupter) : labels.deepCopy();
     if (selected_.empty()) return shown;
     for (auto leaf = shown->tree().beginLeaf(); leaf; ++leaf)
       for (auto voxel = leaf->beginValueOn(); voxel; ++voxel)

@@ -14,7 +14,6 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/grids/detail/grid_copy.h"
 #include "vdb_madf/grids/object_keys.h"
 #include "vdb_madf/images/detail/histogram_builder.h"
 #include "vdb_madf/images/filtered_image.h"
@@ -156,7 +155,7 @@ ImageObject hysteresisMask(ImageReader& image, double low, const Selection& high
     keepSeeded(*object, *masks[1], &end);
     return {object, read.leftOut};
   }
-  const MaskGrid::Ptr seeded = detail::deepCopyOf(*object);
+  const MaskGrid::Ptr seeded = object->deepCopy();
   keepSeeded(*seeded, *masks[1], &end);
   object->tree().topologyDifference(seeded->tree());
   object->tree().topologyUnion(masks[2]->tree());

@@ -5,8 +5,7 @@
 
 #include "vdb_madf/grids/grid_types.h"
 
-// The grids of grid_types.h, compiled once: by OpenVDB itself, where its library shows them, or else in
-// grid_instances.cc. Without this every file that makes
+// The grids of grid_types.h, compiled once, in grid_instances.cc. Without this every file that makes
 // or copies a grid would compile the grid's and the tree's whole virtual interface again. Part of
 // the precompiled header of our sources; programs that use the library do not see it.
 
