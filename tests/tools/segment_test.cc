@@ -176,7 +176,7 @@ TEST_CASE("cli: sweep gives a line for each choice, equal to its segmentation", 
                               std::to_string(json.at("grains_in_pieces").get<int>());
     CHECK(lines[line].substr(lines[line].size() - flaws.size()) == flaws);
     CHECK(std::stoll(gamma) == json.at("gamma"));
-    CHECK(merge == json.at("merge"));
+    CHECK(merge == json.at("merge").get<std::string>());
     CHECK(std::stod(theta) == json.at("theta"));
     CHECK(std::stoll(grains) == json.at("grains"));
   }
