@@ -435,7 +435,7 @@ TEST_CASE("slabs: what does not fit becomes one file all the same, if that is as
 
   std::filesystem::create_directory(bench.path("out.vdb.slabs"));
   CHECK_THAT(bench.run(in + "out.vdb" + automatic).err, Contains("is there"));
-  for (const std::string other : {"out.slabs", "out.vdb --keep power", "out.vdb --gamma 20"})
+  for (const std::string other : {"out.slabs", "out.vdb --keep power", "out.vdb --dry-run"})
     CHECK(bench.run(in + other + automatic).exitCode == 2);
 
   bench.mustRun(kTall + "in.vdb -q");  // fits

@@ -87,8 +87,7 @@ void parse(SegmentArguments& o) {
   if (o.autoSlabs && !couldBeInSlabs(o))
     throw WrongUsage(
         "--auto-slabs gives one file of labels and manifolds: leave other grids of --keep, "
-        "--tables, "
-        "--gamma, --roi and --dry-run out");
+        "--tables and --dry-run out");
 }
 
 /// What segmenting would take, without doing it.

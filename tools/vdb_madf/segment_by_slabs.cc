@@ -42,8 +42,7 @@ void joinSlabs(const SegmentArguments& o, const Common& common) {
 
 bool couldBeInSlabs(const SegmentArguments& o) {
   return !o.segment.keepDistance && !o.segment.keepPower && !o.segment.keepBalls &&
-         o.tables.empty() && !o.dryRun && o.segment.gamma <= 1 && o.input.roi.empty() &&
-         !isOnStandardOutput(o.out);
+         o.tables.empty() && !o.dryRun && !isOnStandardOutput(o.out);
 }
 
 bool isSurelyForSlabs(const SegmentArguments& o) {
