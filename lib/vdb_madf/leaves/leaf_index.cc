@@ -79,8 +79,7 @@ std::vector<SourceLeaf> sortedLeaves(const MaskTree& tree) {
       leaves.push_back({origin, nullptr});
     });
   });
-  detail::parallelSort(leaves.begin(), leaves.end(),
-                       [](const auto& a, const auto& b) { return a.origin < b.origin; });
+  detail::parallelSort(leaves.begin(), leaves.end(), ByOrigin());
   return leaves;
 }
 
@@ -114,6 +113,8 @@ LeafIndex::LeafIndex(const MaskGrid& object) {
   }
   finish();
 }
+
+LeafIndex::LeafIndex(const std::vector<LeafVoxels>& leaves) : LeafIndex(LeafIndex(), leaves) {}
 
 LeafIndex::LeafIndex(const LeafIndex& object, const std::vector<LeafVoxels>& more)
     : boundingBox_(object.boundingBox_) {
@@ -154,9 +155,8 @@ std::optional<uint32_t> LeafIndex::findLeaf(const Coord& origin) const {
 
 std::optional<VoxelId> LeafIndex::findVoxel(const Coord& p) const {
   const auto leaf = findLeaf(p & ~7);
-  const uint32_t offset = uint32_t((p.x() & 7) * 64 + (p.y() & 7) * 8 + (p.z() & 7));
-  if (!leaf || !detail::holds(masks_[*leaf], offset)) return std::nullopt;
-  return *leaf * 512 + offset;
+  if (!leaf || !detail::holds(masks_[*leaf], offsetOf(p))) return std::nullopt;
+  return voxelId(*leaf, offsetOf(p));
 }
 
 void LeafIndex::finish() {

@@ -20,6 +20,12 @@ namespace vdb_madf {
 /// In a leaf's mask (see LeafIndex::Mask) it is a bit of a word.
 using VoxelId = uint32_t;
 
+constexpr VoxelId voxelId(size_t leaf, size_t offset) {
+  return VoxelId(leaf << 9 | offset);
+}
+constexpr VoxelId voxelId(size_t leaf, size_t word, size_t bit) {
+  return VoxelId(leaf << 9 | word << 6 | bit);
+}
 constexpr uint32_t leafOf(VoxelId id) {
   return id >> 9;
 }
@@ -31,6 +37,9 @@ constexpr uint32_t wordOf(VoxelId id) {  ///< x within the leaf
 }
 constexpr uint32_t bitOf(VoxelId id) {  ///< y*8 + z within the leaf
   return id & 63;
+}
+inline uint32_t offsetOf(const Coord& p) {
+  return uint32_t((p.x() & 7) << 6 | (p.y() & 7) << 3 | (p.z() & 7));
 }
 
 /// The topology of the object X: its 8x8x8 leaves sorted by origin (x, then y, then z), their masks
@@ -55,6 +64,8 @@ class LeafIndex {
     Coord origin;
     Mask mask;
   };
+  /// Leaves that ascend by origin (ByOrigin), each origin once. @throw InvalidInput as above.
+  explicit LeafIndex(const std::vector<LeafVoxels>& leaves);
   /// The voxels of `object` and `more` besides, which ascends by origin, each origin once.
   /// @throw InvalidInput as above.
   LeafIndex(const LeafIndex& object, const std::vector<LeafVoxels>& more);
@@ -104,6 +115,18 @@ class LeafIndex {
   std::vector<uint32_t> firstRank_{0};             // one more at the end
   std::vector<std::array<uint16_t, 8>> wordRank_;  // object voxels of the leaf before each word
   CoordBBox boundingBox_;
+};
+
+/// The order of leaves by their origins: x, then y, then z.
+struct ByOrigin {
+  template <typename Leaf>
+  bool operator()(const Leaf& a, const Leaf& b) const {
+    return a.origin < b.origin;
+  }
+  template <typename Leaf>
+  bool operator()(const Leaf& leaf, const Coord& origin) const {
+    return leaf.origin < origin;
+  }
 };
 
 }  // namespace vdb_madf

@@ -207,8 +207,7 @@ class CavityFinder {
     }
     for (const auto& [origin, node] : empty_)
       if (!isOutside(node)) found.leaves.push_back({origin, domainMask(origin)});
-    std::sort(found.leaves.begin(), found.leaves.end(),
-              [](const auto& a, const auto& b) { return a.origin < b.origin; });
+    std::sort(found.leaves.begin(), found.leaves.end(), ByOrigin());
     return found;
   }
 
@@ -229,8 +228,7 @@ class CavityFinder {
 LeafIndex withPartialLeaves(const LeafIndex& object, const MaskTree& region) {
   std::vector<LeafIndex::LeafVoxels> leaves;
   for (auto leaf = region.cbeginLeaf(); leaf; ++leaf) leaves.push_back({leaf->origin(), Mask{}});
-  std::sort(leaves.begin(), leaves.end(),
-            [](const auto& a, const auto& b) { return a.origin < b.origin; });
+  std::sort(leaves.begin(), leaves.end(), ByOrigin());
   return {object, leaves};
 }
 
@@ -267,7 +265,7 @@ std::vector<VoxelId> cavityVoxels(const LeafIndex& body, const Cavities& cavitie
     const uint32_t number = *body.findLeaf(leaf.origin);
     for (uint32_t x = 0; x < 8; ++x)
       detail::forEachBit(leaf.mask[x],
-                         [&](int bit) { ids.push_back(number * 512 + x * 64 + uint32_t(bit)); });
+                         [&](int bit) { ids.push_back(voxelId(number, x, size_t(bit))); });
   }
   return ids;
 }

@@ -53,7 +53,7 @@ VoxelSet keptBalls(const LeafIndex& index, const PowerMap& map, const VoxelSet& 
       for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece)
         for (uint32_t x = 0; x < 8 && hasNone[piece->component]; ++x)
           detail::forEachBit(piece->mask[x], [&](int bit) {
-            const size_t rank = index.rank(leaf * 512 + x * 64 + uint32_t(bit));
+            const size_t rank = index.rank(voxelId(leaf, x, size_t(bit)));
             offer(piece->component, balls.rank(map.site[rank]));
           });
   }

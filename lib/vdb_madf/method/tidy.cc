@@ -61,7 +61,7 @@ std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const detail::LabelM
       if (held[piece->component]) continue;
       for (uint32_t x = 0; x < 8; ++x)
         detail::forEachBit(piece->mask[x], [&](int bit) {
-          loose.push_back({leaf * 512 + x * 64 + uint32_t(bit), piece->label});
+          loose.push_back({voxelId(leaf, x, size_t(bit)), piece->label});
         });
     }
   return loose;

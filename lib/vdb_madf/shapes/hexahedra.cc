@@ -65,7 +65,7 @@ void addElements(const detail::LabelLeaves& leaves, size_t leaf, std::vector<uin
   for (const detail::LabelPart& part : leaves.parts(leaf))
     for (size_t x = 0; x < 8; ++x)
       detail::forEachBit(part.mask[x], [&](int bit) {
-        elements.push_back(uint64_t(part.label) << 32 | (leaf * 512 + x * 64 + size_t(bit)));
+        elements.push_back(uint64_t(part.label) << 32 | voxelId(leaf, x, size_t(bit)));
       });
 }
 
@@ -101,11 +101,12 @@ std::array<uint32_t, 8> Hexahedra::nodes(size_t element) const {
   const auto id = VoxelId(elements_[element] & 0xffffffffu);
   std::array<uint32_t, 8> result;
   for (size_t i = 0; i < 8; ++i) {
-    const unsigned x = wordOf(id) + (kCorners[i] >> 2),
-                   y = (bitOf(id) >> 3) + (kCorners[i] >> 1 & 1),
-                   z = (bitOf(id) & 7) + (kCorners[i] & 1);
-    const uint32_t leaf = around_[leafOf(id)][(x >> 3) * 4 + (y >> 3) * 2 + (z >> 3)];
-    result[i] = uint32_t(corners_.rank(leaf * 512 + (x & 7) * 64 + (y & 7) * 8 + (z & 7)));
+    const Coord p(int(wordOf(id) + (kCorners[i] >> 2)),
+                  int((bitOf(id) >> 3) + (kCorners[i] >> 1 & 1)),
+                  int((bitOf(id) & 7) + (kCorners[i] & 1)));
+    const uint32_t leaf =
+        around_[leafOf(id)][size_t((p.x() >> 3) * 4 + (p.y() >> 3) * 2 + (p.z() >> 3))];
+    result[i] = uint32_t(corners_.rank(voxelId(leaf, offsetOf(p))));
   }
   return result;
 }
@@ -115,7 +116,7 @@ void Hexahedra::forEachNode(const std::function<void(const openvdb::Vec3d&)>& f)
     for (unsigned offset = 0; offset < 512; ++offset)
       if (corners_.mask(leaf)[offset >> 6] >> (offset & 63) & 1)
         f(origin_ +
-          edges_ * (corners_.coord(VoxelId(leaf * 512 + offset)).asVec3d() - openvdb::Vec3d(0.5)));
+          edges_ * (corners_.coord(voxelId(leaf, offset)).asVec3d() - openvdb::Vec3d(0.5)));
 }
 
 /// The leaf of corners and those above it, as in kCorners.

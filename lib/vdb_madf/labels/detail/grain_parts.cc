@@ -28,10 +28,6 @@ using Mask = LeafIndex::Mask;
 using LeafVoxels = LeafIndex::LeafVoxels;
 constexpr uint32_t kForeign = 0xffffffffu;  // a voxel's manifold is none of the part's
 
-bool before(const LeafVoxels& leaf, const Coord& origin) {
-  return leaf.origin < origin;
-}
-
 int64_t count(const std::vector<LeafVoxels>& voxels) {
   int64_t sum = 0;
   for (const LeafVoxels& leaf : voxels) sum += countVoxels(leaf.mask);
@@ -43,7 +39,7 @@ int64_t countCommon(const std::vector<LeafVoxels>& few, const std::vector<LeafVo
   int64_t sum = 0;
   auto other = many.begin();
   for (const LeafVoxels& leaf : few) {
-    other = std::lower_bound(other, many.end(), leaf.origin, before);
+    other = std::lower_bound(other, many.end(), leaf.origin, ByOrigin());
     if (other == many.end()) break;
     if (other->origin == leaf.origin) sum += countVoxels(both(leaf.mask, other->mask));
   }
@@ -67,8 +63,7 @@ std::vector<LeafVoxels> voxelsWith(const Int32Grid& labels, int32_t grain,
   std::vector<LeafVoxels> voxels;
   for (size_t n = 0; n < leaves.size(); ++n)
     if (anyVoxel(masks[n])) voxels.push_back({leaves[n]->origin(), masks[n]});
-  std::sort(voxels.begin(), voxels.end(),
-            [](const LeafVoxels& a, const LeafVoxels& b) { return a.origin < b.origin; });
+  std::sort(voxels.begin(), voxels.end(), ByOrigin());
   return voxels;
 }
 
@@ -247,7 +242,7 @@ bool GrainParts::addParts(GrainPart whole, const std::vector<LeafVoxels>& wanted
 
 std::optional<std::array<GrainPart, 2>> GrainParts::halves(const GrainPart& part,
                                                            Interrupter* interrupter) const {
-  const LeafIndex index(LeafIndex(), part.voxels);
+  const LeafIndex index(part.voxels);
   const VoxelArray<uint32_t> places = placesIn(part, index, interrupter);
   std::vector<int64_t> voxels(part.nodes.size(), 0);
   for (size_t rank = 0; rank < places.size(); ++rank)

@@ -56,7 +56,7 @@ LabelLeaves::LabelLeaves(const std::vector<const LabelLeaves*>& parts, const Lea
   voxels.reserve(sources.size());
   for (const Source& source : sources)
     voxels.push_back({source.origin(), source.from->index().mask(source.leaf)});
-  index_ = LeafIndex(LeafIndex(), voxels);
+  index_ = LeafIndex(voxels);
   chunks_.resize((sources.size() + kChunk - 1) / kChunk);
   for (size_t i = 0; i < sources.size(); ++i) {
     auto& [own, first] = chunks_[i / kChunk];

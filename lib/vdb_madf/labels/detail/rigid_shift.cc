@@ -24,10 +24,6 @@ using Mask = LeafIndex::Mask;
 constexpr int kSearched = 3;    // all shifts up to this are tried
 constexpr size_t kRefined = 4;  // best ones that are looked at more closely
 
-bool isBefore(const LeafVoxels& leaf, const Coord& origin) {
-  return leaf.origin < origin;
-}
-
 int64_t voxelCount(const VoxelSetByLeaves& voxels) {
   int64_t sum = 0;
   for (const LeafVoxels& leaf : voxels) sum += countVoxels(leaf.mask);
@@ -181,7 +177,7 @@ int64_t commonVoxels(const VoxelSetByLeaves& before, const VoxelSetByLeaves& aft
       const Coord by = whole.offsetBy(8 * corner.x(), 8 * corner.y(), 8 * corner.z());
       // Both ascend: each step goes on where the last one ended.
       auto other =
-          std::lower_bound(after.begin(), after.end(), before[begin].origin + by, isBefore);
+          std::lower_bound(after.begin(), after.end(), before[begin].origin + by, ByOrigin());
       for (size_t leaf = begin; leaf < end; ++leaf) {
         const Coord wanted = before[leaf].origin + by;
         while (other != after.end() && other->origin < wanted) ++other;

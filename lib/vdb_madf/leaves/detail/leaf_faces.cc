@@ -55,7 +55,7 @@ void copyFace(const LeafIndex& index, const uint32_t* values, uint32_t leaf, int
   }
   const LeafIndex::Mask& mask = index.mask(leaf);
   if (axis == 0) {
-    const VoxelId first = leaf * 512 + uint32_t(position) * 64;
+    const VoxelId first = voxelId(leaf, size_t(position), 0);
     expandWord(mask[size_t(position)], values + index.rank(first), face);
     return;
   }

@@ -25,7 +25,7 @@ void forEachVoxel(const LeafIndex& index, size_t begin, size_t end, const F& f) 
   for (size_t leaf = begin; leaf < end; ++leaf) {
     const LeafIndex::Mask& mask = index.mask(leaf);
     for (size_t x = 0; x < 8; ++x)
-      forEachBit(mask[x], [&](int bit) { f(VoxelId(leaf * 512 + x * 64 + size_t(bit)), rank++); });
+      forEachBit(mask[x], [&](int bit) { f(voxelId(leaf, x, size_t(bit)), rank++); });
   }
 }
 
@@ -41,11 +41,11 @@ void forEachNeighbor(const LeafIndex& index, VoxelId id, const F& f) {
     if (t > 0)
       f(leafBase + offset - step, axis, -1);
     else if (leaves[2 * axis] != LeafIndex::kNone)
-      f(leaves[2 * axis] * 512 + offset + 7 * step, axis, -1);
+      f(voxelId(leaves[2 * axis], offset + 7 * step), axis, -1);
     if (t < 7)
       f(leafBase + offset + step, axis, 1);
     else if (leaves[2 * axis + 1] != LeafIndex::kNone)
-      f(leaves[2 * axis + 1] * 512 + offset - 7 * step, axis, 1);
+      f(voxelId(leaves[2 * axis + 1], offset - 7 * step), axis, 1);
   }
 }
 

@@ -40,7 +40,7 @@ GrainRepresentative deepestOf(const LabelPart& part, const LeafIndex& index, siz
   GrainRepresentative deepest;
   for (size_t x = 0; x < 8; ++x)
     forEachBit(part.mask[x], [&](int bit) {
-      const auto id = VoxelId(leaf * 512 + x * 64 + size_t(bit));
+      const auto id = voxelId(leaf, x, size_t(bit));
       const int32_t d = distances[index.rank(id)];
       // Voxels come in the order that decides ties.
       if (d > deepest.squaredRadius) deepest = {index.coord(id), d};

@@ -55,8 +55,7 @@ void ForeignSites::name(LeafIndex& index) {
     for (Named& named : *side) {
       const Coord& p = named.site.position;
       const auto leaf = std::lower_bound(leaves.begin(), leaves.end(), p & ~7);
-      named.id = VoxelId(index.leafCount() + size_t(leaf - leaves.begin())) * 512 +
-                 VoxelId((p.x() & 7) * 64 + (p.y() & 7) * 8 + (p.z() & 7));
+      named.id = voxelId(index.leafCount() + size_t(leaf - leaves.begin()), offsetOf(p));
     }
   index.nameForeignLeaves(leaves);
 }

@@ -50,8 +50,7 @@ std::vector<LeafIndex::LeafVoxels> unknownVoxels(MaskTree leaves, const Domain& 
       if (anyVoxel(mask)) unknown.push_back({origin, mask});
     }
   }
-  std::sort(unknown.begin(), unknown.end(),
-            [](const auto& a, const auto& b) { return a.origin < b.origin; });
+  std::sort(unknown.begin(), unknown.end(), ByOrigin());
   return unknown;
 }
 

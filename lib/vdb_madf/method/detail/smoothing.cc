@@ -174,7 +174,7 @@ std::vector<char> apply(const LeafIndex& index, const Takings& takings, LabelMas
         markLeaves(neighborhood.around(taking.leaf), taking.voxels, marks);
         for (uint32_t x = 0; x < 8; ++x)
           forEachBit(taking.voxels[x], [&](int bit) {
-            grains.label[index.rank(taking.leaf * 512 + x * 64 + uint32_t(bit))] = taking.label;
+            grains.label[index.rank(voxelId(taking.leaf, x, size_t(bit)))] = taking.label;
           });
       }
   });
