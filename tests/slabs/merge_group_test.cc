@@ -7,7 +7,7 @@
 // The random comparisons read from the environment VDB_MADF_GRAPHS (how many) and VDB_MADF_SEED (the
 // first).
 
-#include "vdb_madf/slabs/detail/merge_group.h"
+#include "vdb_madf/slabs/cuts/merge_group.h"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 // What a slab offers to others, of the distances near its cuts, against the same of the distances of the
 // whole object.
 
-#include "vdb_madf/slabs/detail/near_cuts.h"
+#include "vdb_madf/slabs/cuts/near_cuts.h"
 
 #include <algorithm>
 #include <array>

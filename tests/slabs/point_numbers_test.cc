@@ -3,7 +3,7 @@
 
 // Numbers of points in the order of all of them, which come slab by slab.
 
-#include "vdb_madf/slabs/detail/point_numbers.h"
+#include "vdb_madf/slabs/cuts/point_numbers.h"
 
 #include <algorithm>
 #include <set>

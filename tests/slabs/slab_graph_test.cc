@@ -14,8 +14,8 @@
 #include "support/merge_tree.h"
 #include "support/random_volume.h"
 #include "vdb_madf/method/merge.h"
-#include "vdb_madf/slabs/detail/slab_exits.h"
-#include "vdb_madf/slabs/detail/slab_part.h"
+#include "vdb_madf/slabs/cuts/slab_exits.h"
+#include "vdb_madf/slabs/cuts/slab_part.h"
 
 namespace {
 

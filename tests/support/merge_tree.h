@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "support/random_volume.h"
-#include "vdb_madf/slabs/detail/merge_parts.h"
+#include "vdb_madf/slabs/cuts/merge_parts.h"
 
 // Parts of a graph, merged in ranges that are joined in any order of neighbors.
 

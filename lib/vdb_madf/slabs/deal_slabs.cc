@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/slabs/detail/object_pieces.h"
+#include "vdb_madf/slabs/store/slab_store.h"
 
 namespace vdb_madf {
 
@@ -132,9 +132,8 @@ void SlabDealer::receive(const std::vector<int>& cuts, int64_t reach, const Laye
       const Leaves layer = detail::readLeaves(scratch_, done.back());
       slab.insert(slab.end(), layer.begin(), layer.end());
     }
-    std::sort(slab.begin(), slab.end(),
-              [](const auto& a, const auto& b) { return a.origin < b.origin; });
-    detail::writeLeaves(scratch_, detail::objectName(s), slab);
+    std::sort(slab.begin(), slab.end(), ByOrigin());
+    detail::writeLeaves(scratch_, detail::kObject.of(s), slab);
     for (const std::string& name : done) scratch_.remove(name);
   }
 }

@@ -7,8 +7,8 @@
 
 #include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/method/segmentation_metadata.h"
-#include "vdb_madf/slabs/detail/slab_options.h"
-#include "vdb_madf/slabs/detail/slab_remerge.h"
+#include "vdb_madf/slabs/steps/slab_options.h"
+#include "vdb_madf/slabs/steps/slab_remerge.h"
 
 namespace vdb_madf {
 

@@ -11,11 +11,11 @@
 #include "vdb_madf/method/detail/segment_options.h"
 #include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/method/segmentation_metadata.h"
-#include "vdb_madf/slabs/detail/slab_flow.h"
-#include "vdb_madf/slabs/detail/slab_grains.h"
-#include "vdb_madf/slabs/detail/slab_graph.h"
-#include "vdb_madf/slabs/detail/slab_labels.h"
-#include "vdb_madf/slabs/detail/slab_options.h"
+#include "vdb_madf/slabs/steps/slab_flow.h"
+#include "vdb_madf/slabs/steps/slab_grains.h"
+#include "vdb_madf/slabs/steps/slab_graph.h"
+#include "vdb_madf/slabs/steps/slab_labels.h"
+#include "vdb_madf/slabs/steps/slab_options.h"
 
 namespace vdb_madf {
 
@@ -26,21 +26,20 @@ Int32Grid::Ptr manifoldGrid(const detail::SlabWork& work, size_t slab,
                             const detail::SlabBody& body) {
   detail::SlabPart part;
   VoxelArray<uint32_t> manifold;
-  if (body.index.voxelCount() > 0) manifold = work.readVoxels<uint32_t>("flow", slab);
-  if (work.has(detail::kGraphPart, slab))
-    part = detail::SlabPart::readFrom(work.read(detail::kGraphPart, slab));
+  if (body.index.voxelCount() > 0) manifold = work.store.read(detail::kFlow, slab);
+  if (work.store.has(detail::kGraphPart, slab)) part = work.store.read(detail::kGraphPart, slab);
   for (size_t i = 0; i < manifold.size(); ++i)
     manifold[i] = part.number[part.nodeOf[(manifold[i] & ~Flow::kOwnCell) - 1]];
   const Int32Grid::Ptr grid = detail::slabGrid(work, slab, body, std::move(manifold), "manifold");
-  part.graph.weights = work.weights;
+  part.graph.weights = work.facts.weights;
   setGraphPart(*grid, std::move(part));
   return grid;
 }
 
 /// Says of a grid how it was made.
 void describe(const detail::SlabWork& work, const SlabSegmentation& result, Int32Grid& grid) {
-  copyProvenance(*work.object.about, grid);
-  if (work.domain) setDomain(grid, *work.domain);
+  copyProvenance(*work.plan.object.about, grid);
+  if (work.facts.domain) setDomain(grid, *work.facts.domain);
   Segmentation about;
   about.counts = result.counts;
   about.fillHoles = result.fillHoles;
@@ -60,19 +59,16 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
   if (object.slabCount() == 0) return result;
   result.domain = options.domain ? options.domain : storedDomain(*object.about);
   detail::SlabWork work(object, options, scratch, ranks, interrupter);
-  work.domain = result.domain;
+  work.facts.domain = result.domain;
   detail::flowInSlabs(work, result);
-  work.beginStage("merge");
+  work.steps.beginStage("merge");
   std::vector<Coord> representatives;
   if (result.counts.objectVoxels > 0)
-    representatives = detail::mergeParts(work, [&](size_t s) {
-      return detail::SlabPart::readFrom(work.read(detail::kGraphPart, s));
-    });
+    representatives =
+        detail::mergeParts(work, [&](size_t s) { return work.store.read(detail::kGraphPart, s); });
   result.counts.grains = int64_t(representatives.size());
-  if (work.isRoot()) result.grainVoxels.assign(representatives.size(), 0);
-  detail::ByteWriter counts;
-  counts.add(result.counts);
-  result.counts = detail::ByteReader(work.broadcast(counts)).value<SegmentCounts>();
+  if (work.plan.isRoot()) result.grainVoxels.assign(representatives.size(), 0);
+  result.counts = work.store.broadcast(result.counts);
   detail::labelSlabs(work, std::move(representatives), result,
                      [&](size_t slab, const detail::SlabBody& body, VoxelArray<uint32_t> labels) {
                        SlabGrids grids;
@@ -82,7 +78,7 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
                          if (grid) describe(work, result, *grid);
                        put(slab, grids);
                      });
-  work.endStages(result);
+  work.steps.endStages(result);
   return result;
 }
 
@@ -96,6 +92,8 @@ void detail::checkSlabOptions(const SlabObject& object, const SegmentOptions& op
   checkSegmentOptions(options);
   if (options.keepDistance || options.keepPower || options.keepBalls)
     throw InvalidInput("slabs give labels and manifolds alone: keep no other grids");
+  if (options.maxMemory != 0)
+    throw InvalidInput("the memory of slabs follows from their cuts: leave maxMemory 0");
   const std::vector<int>& cuts = object.cuts;
   for (size_t i = 0; i < cuts.size(); ++i)
     if ((cuts[i] & 7) != 0 || (i > 0 && cuts[i] <= cuts[i - 1]))
@@ -107,7 +105,7 @@ void detail::checkSlabOptions(const SlabObject& object, const SegmentOptions& op
 }
 
 bool isSlabPut(const Scratch& scratch, size_t slab) {
-  return scratch.has(detail::SlabWork::name("put", slab));
+  return scratch.has(detail::kPut.of(slab));
 }
 
 }  // namespace vdb_madf

@@ -66,8 +66,9 @@ using PutSlab = std::function<void(size_t slab, const SlabGrids& grids)>;
 /// where that stopped.
 /// @param put is called for each slab, from the lowest on (not again for those that a run before had
 ///   put: isSlabPut())
-/// Of the options that keep grids keepManifold alone is known here; maxMemory has to be 0.
-/// @throw as segment(); InvalidInput for these options, cuts that are none, slabs, but for the first and the
+/// Of the options that keep grids keepManifold alone is known here. maxMemory has to be 0: what a slab
+/// takes follows from the cuts.
+/// @throw as segment(); InvalidInput for other options, cuts that are none, slabs, but for the first and the
 ///   last, lower than `tidy` has rounds, or balls that reach too far; what scratch and put throw.
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
                               Scratch& scratch, const PutSlab& put,

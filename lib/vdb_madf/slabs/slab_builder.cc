@@ -10,7 +10,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/active_tiles.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
-#include "vdb_madf/slabs/detail/object_pieces.h"
+#include "vdb_madf/slabs/store/slab_store.h"
 
 namespace vdb_madf {
 
@@ -59,9 +59,8 @@ void SlabBuilder::add(const MaskTree& layer) {
 }
 
 void SlabBuilder::endSlab(int z) {
-  std::sort(leaves_.begin(), leaves_.end(),
-            [](const auto& a, const auto& b) { return a.origin < b.origin; });
-  detail::writeLeaves(scratch_, detail::objectName(cuts_.size() - 1), leaves_);
+  std::sort(leaves_.begin(), leaves_.end(), ByOrigin());
+  detail::writeLeaves(scratch_, detail::kObject.of(cuts_.size() - 1), leaves_);
   leaves_.clear();
   bytes_ = 0;
   cuts_.push_back(z);
@@ -90,9 +89,7 @@ SlabObject storedSlabs(const Scratch& scratch, MaskGrid::ConstPtr about) {
   SlabObject object;
   object.about = std::move(about);
   object.cuts = detail::ByteReader(scratch.read(kCuts)).vector<int>();
-  object.leaves = [&scratch](size_t slab) {
-    return detail::readLeaves(scratch, detail::objectName(slab));
-  };
+  object.leaves = [&scratch](size_t slab) { return detail::storedObject(scratch, slab); };
   return object;
 }
 

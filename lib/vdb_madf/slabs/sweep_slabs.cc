@@ -9,9 +9,9 @@
 
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/method/detail/sweep_rows.h"
-#include "vdb_madf/slabs/detail/slab_flaws.h"
-#include "vdb_madf/slabs/detail/slab_options.h"
-#include "vdb_madf/slabs/detail/slab_remerge.h"
+#include "vdb_madf/slabs/steps/slab_flaws.h"
+#include "vdb_madf/slabs/steps/slab_options.h"
+#include "vdb_madf/slabs/steps/slab_remerge.h"
 
 namespace vdb_madf {
 

@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/slabs/steps/slab_grains.h"
+
+#include <map>
+#include <utility>
+
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/slabs/cuts/merge_parts.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+/// A binary tree over the ranks: after the join of a distance d, rank r has merged the slabs of ranks r
+/// to r + 2 d - 1, for each r that is a multiple of 2 d. What has left a rank comes back as the grains of
+/// the classes that it handed over.
+class MergeTree {
+ public:
+  explicit MergeTree(SlabWork& work)
+      : work_(work),
+        rank_(work.ranks.rank()),
+        count_(work.ranks.count()),
+        merging_(MergeRule(work.options.merge, work.facts.weights)) {}
+
+  std::vector<Coord> run(const std::function<SlabPart(size_t slab)>& part) {
+    for (size_t s = work_.plan.firstOwn(); s < work_.plan.endOwn(); ++s) mergeSlab(s, part(s));
+    int distance = 1;
+    for (; distance < count_; distance *= 2) {
+      if (isUpper(distance)) handOver(rank_ - distance);
+      work_.steps.exchange();
+      if (isLower(distance)) join(rank_ + distance);
+    }
+    if (work_.plan.isRoot()) numberGrains();
+    while ((distance /= 2) > 0) {
+      if (isLower(distance)) tellGrains(rank_ + distance);
+      work_.steps.exchange();
+      if (isUpper(distance)) takeGrains();
+    }
+    for (size_t s = work_.plan.firstOwn(); s < work_.plan.endOwn(); ++s) {
+      auto grains = work_.store.read(kClasses, s);
+      for (uint32_t& grain : grains) grain = grainOfClass_[grain];
+      work_.store.write(kGrains, s, grains);
+    }
+    return std::move(representatives_);
+  }
+
+ private:
+  // A join of a distance is one of a lower and an upper rank.
+  bool isLower(int distance) const {
+    return rank_ % (2 * distance) == 0 && rank_ + distance < count_;
+  }
+  bool isUpper(int distance) const { return rank_ % (2 * distance) == distance; }
+
+  void mergeSlab(size_t s, const SlabPart& part) {
+    if (work_.interrupter && work_.interrupter->wasInterrupted(75)) throw Interrupted();
+    const std::vector<uint32_t> classOfNode = merging_.add(part);
+    std::vector<uint32_t> classes;
+    for (const uint32_t node : part.nodeOf) classes.push_back(classOfNode[node]);
+    work_.store.write(kClasses, s, classes);
+  }
+
+  /// A message of a run by so many members.
+  template <typename T>
+  void send(int to, const Piece<T>& piece, int about, const AsIs<T>& value) {
+    work_.store.give(to, piece.at(count_), size_t(about), value);
+  }
+  template <typename T>
+  T receive(const Piece<T>& piece, int about) {
+    T value = work_.store.read(piece.at(count_), size_t(about));
+    work_.store.remove(piece.at(count_), size_t(about));
+    return value;
+  }
+
+  void handOver(int lower) {
+    const std::vector<Coord> decided = merging_.decided();
+    send(lower, kMergeOpen, rank_, merging_.handOver());
+    send(0, kMergeDecided, rank_, decided);
+  }
+  void join(int upper) { classesOf_[upper] = merging_.add(receive(kMergeOpen, upper)); }
+
+  /// At the root: by their representatives.
+  void numberGrains() {
+    struct Grain {
+      Coord representative;
+      int rank;
+    };
+    std::vector<Grain> all;
+    const auto add = [&](const std::vector<Coord>& decided, int rank) {
+      for (const Coord& representative : decided) all.push_back({representative, rank});
+    };
+    add(merging_.decided(), rank_);
+    for (int rank = 1; rank < count_; ++rank) add(receive(kMergeDecided, rank), rank);
+    parallelSort(all.begin(), all.end(), [](const Grain& a, const Grain& b) {
+      return a.representative < b.representative;
+    });
+    std::vector<std::vector<uint32_t>> numbers;
+    numbers.resize(size_t(count_));
+    for (const Grain& grain : all) {
+      representatives_.push_back(grain.representative);
+      numbers[size_t(grain.rank)].push_back(uint32_t(representatives_.size()));
+    }
+    for (int rank = 1; rank < count_; ++rank)
+      send(rank, kMergeNumbers, rank, numbers[size_t(rank)]);
+    // Nothing is open any more.
+    grainOfClass_ = merging_.grains(numbers[0], {});
+  }
+
+  void tellGrains(int upper) {
+    std::vector<uint32_t> grains;
+    for (const uint32_t c : classesOf_.at(upper)) grains.push_back(grainOfClass_[c]);
+    send(upper, kMergeGrains, upper, grains);
+  }
+  void takeGrains() {
+    const std::vector<uint32_t> ofDecided = receive(kMergeNumbers, rank_);
+    grainOfClass_ = merging_.grains(ofDecided, receive(kMergeGrains, rank_));
+  }
+
+  SlabWork& work_;
+  const int rank_, count_;
+  MergeParts merging_;
+  std::map<int, std::vector<uint32_t>> classesOf_;  // by upper rank: of the classes it handed over
+  std::vector<uint32_t> grainOfClass_;
+  std::vector<Coord> representatives_;
+};
+
+}  // namespace
+
+std::vector<Coord> mergeParts(SlabWork& work, const std::function<SlabPart(size_t slab)>& part) {
+  return MergeTree(work).run(part);
+}
+
+}  // namespace vdb_madf::detail
