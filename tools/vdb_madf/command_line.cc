@@ -4,6 +4,9 @@
 #include "command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <cstring>
+#include <memory>
+#include <string>
 #include <utility>
 
 #include "nearest_name.h"
@@ -103,6 +106,46 @@ VerbWords verbWords(const CLI::App& app, const Choices& choices) {
     words.verbs.push_back(verbWords(*verb, choices));
   return words;
 }
+
+/// The help as CLI11 2.1 writes it: later ones have other headings and reflow texts, by version.
+class HelpText : public CLI::Formatter {
+ public:
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
+    std::string usage = make_usage(app, std::move(name));
+    usage = usage.substr(usage.find_first_not_of('\n'));
+    if (usage.rfind("Usage:", 0) != 0) usage = "Usage: " + usage;
+    usage.resize(usage.find('\n') + 1);
+    std::string groups =
+        make_positionals(app) + make_groups(app, mode) + make_subcommands(app, mode);
+    for (const auto& [newer, heading] : {std::pair("\nPOSITIONALS:\n", "\nPositionals:\n"),
+                                         std::pair("\nOPTIONS:\n", "\nOptions:\n"),
+                                         std::pair("\nSUBCOMMANDS:\n", "\nSubcommands:\n")}) {
+      const size_t at = groups.find(newer);
+      if (at != std::string::npos) groups.replace(at, std::strlen(newer), heading);
+    }
+    const std::string footer = app->get_footer();
+    return make_description(app) + usage + groups + "\n" + (footer.empty() ? "" : footer + "\n");
+  }
+  std::string make_option(const CLI::Option* option, bool isPositional) const override {
+    return line(option->get_name(isPositional, !isPositional) + make_option_opts(option),
+                make_option_desc(option));
+  }
+  std::string make_subcommand(const CLI::App* app) const override {
+    return line(app->get_name(), app->get_description());
+  }
+
+ private:
+  std::string line(const std::string& name, const std::string& description) const {
+    const size_t width = get_column_width();
+    std::string text = "  " + name;
+    if (text.size() >= width && !description.empty()) text += "\n" + std::string(width, ' ');
+    if (text.size() < width) text.resize(width, ' ');
+    for (const char c : description)
+      text += c == '\n' ? c + std::string(width, ' ') : std::string(1, c);
+    return text + "\n";
+  }
+};
 
 }  // namespace
 
@@ -217,6 +260,7 @@ CommandLine::CommandLine(const std::string& name, const std::string& description
                          const std::string& version)
     : app_(std::make_unique<CLI::App>(description, name)) {
   app_->set_version_flag("--version", name + " " + version);
+  app_->formatter(std::make_shared<HelpText>());
   app_->get_formatter()->column_width(34);
   app_->get_formatter()->label("SUBCOMMAND", "VERB");
   app_->get_formatter()->label("Subcommands", "Verbs");

@@ -37,10 +37,12 @@ class Hdf5Output {
  public:
   /// @throw IoError
   explicit Hdf5Output(const std::string& path) : out_(path), target_{out_}, file_(-1, H5Fclose) {
-    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose),
+        creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+    H5Pset_obj_track_times(creation, false);         // of the group of all
     H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);  // with all that is open in it
     Hdf5Driver::choose(access, target_);
-    file_ = Hdf5Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
+    file_ = Hdf5Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose);
     check(bool(file_));
   }
 
