@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "support/catch.h"
-#include "support/thread_ranks.h"
+#include "support/thread_team.h"
 #include "vdb_madf/base/errors.h"
 
 namespace {
@@ -23,32 +23,32 @@ MaskTree layerAt(int z, int voxels) {
   return layer;
 }
 
-/// Layers by their z; each is read by a rank.
+/// Layers by their z; each is read by a member.
 using Layers = std::map<int, int>;
 
 struct Dealt {
   std::vector<int> cuts;
   std::vector<std::map<size_t, std::vector<Coord>>>
-      leaves;  ///< of each rank: what it has of each slab
+      leaves;  ///< of each member: what it has of each slab
 };
 
-Dealt deal(const Layers& layers, int ranks, const SlabLimits& limits, int64_t reach,
+Dealt deal(const Layers& layers, int members, const SlabLimits& limits, int64_t reach,
            const std::optional<Domain>& domain = std::nullopt) {
   Dealt dealt;
-  dealt.leaves.resize(size_t(ranks));
-  Team team(ranks);
-  asRanks(team, [&](Ranks& rank) {
+  dealt.leaves.resize(size_t(members));
+  ThreadTeam team(members);
+  asMembers(team, [&](Team& member) {
     MemoryScratch scratch;
-    SlabDealer dealer(rank, scratch);
+    SlabDealer dealer(member, scratch);
     int next = 0;
     for (const auto& [z, voxels] : layers)
-      if (next++ % ranks == rank.rank()) dealer.add(layerAt(z, voxels));
+      if (next++ % members == member.member()) dealer.add(layerAt(z, voxels));
     dealer.finish(limits, reach, domain);
     const SlabObject object = storedSlabs(scratch, MaskGrid::create());
-    if (rank.rank() == 0) dealt.cuts = object.cuts;
+    if (member.member() == 0) dealt.cuts = object.cuts;
     for (size_t s = 0; s < object.slabCount(); ++s) {
       if (!scratch.has("object-" + std::to_string(s))) continue;
-      auto& of = dealt.leaves[size_t(rank.rank())][s];
+      auto& of = dealt.leaves[size_t(member.member())][s];
       for (const LeafIndex::LeafVoxels& leaf : object.leaves(s)) of.push_back(leaf.origin);
     }
     if (scratch.has("layer-0")) throw std::logic_error("a layer is left");
@@ -61,7 +61,7 @@ using Places = std::vector<Coord>;
 
 }  // namespace
 
-TEST_CASE("dealt slabs: about as much for each rank, within the limits", "[slabs]") {
+TEST_CASE("dealt slabs: about as much for each member, within the limits", "[slabs]") {
   const Layers layers{{-8, 6}, {0, 6}, {8, 6}, {16, 6}, {24, 6}, {40, 6}};
   const int64_t two = 2 * slabBytes(1, 6, 5 * 512 / 216);
   CHECK(deal(layers, 1, {}, 0).cuts == Cuts{-8, 48});
@@ -75,7 +75,7 @@ TEST_CASE("dealt slabs: about as much for each rank, within the limits", "[slabs
   CHECK(deal(layers, 1, {}, 0, domain).cuts == Cuts{-24, 64});
 }
 
-TEST_CASE("dealt slabs: a rank has its own, and what lies within reach", "[slabs]") {
+TEST_CASE("dealt slabs: a member has its own, and what lies within reach", "[slabs]") {
   const Layers layers{{0, 1}, {8, 30}, {16, 1}, {24, 1}, {32, 1}, {40, 1}};
   const Dealt own = deal(layers, 3, {0, 16, 8}, 0);
   REQUIRE(own.cuts == Cuts{0, 8, 16, 32, 48});
@@ -94,7 +94,7 @@ TEST_CASE("dealt slabs: a rank has its own, and what lies within reach", "[slabs
 }
 
 TEST_CASE("dealt slabs: layers are single, and each comes once", "[slabs]") {
-  Ranks alone;
+  Team alone;
   MemoryScratch scratch;
   SlabDealer dealer(alone, scratch);
   dealer.add(layerAt(8, 3));

@@ -18,7 +18,7 @@
 #include "support/random_case.h"
 #include "support/runs.h"
 #include "support/slab_objects.h"
-#include "support/thread_ranks.h"
+#include "support/thread_team.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/method/graph_metadata.h"
 #include "vdb_madf/method/initialize.h"
@@ -70,21 +70,21 @@ CutResult segmentCut(const SlabObject& object, const SegmentOptions& options) {
   return cut;
 }
 
-/// The same by several ranks, each of which knows its own slabs alone.
-CutResult segmentByRanks(const SlabObject& object, const SegmentOptions& options, int ranks) {
+/// The same by several members, each of which knows its own slabs alone.
+CutResult segmentByMembers(const SlabObject& object, const SegmentOptions& options, int members) {
   CutResult cut;
-  Team team(ranks);
+  ThreadTeam team(members);
   std::vector<SlabGrids> slabs(object.slabCount());
-  asRanks(team, [&](Ranks& rank) {
+  asMembers(team, [&](Team& member) {
     MemoryScratch scratch;
     SlabSegmentation result =
-        segmentSlabs(object, options, scratch, rank,
+        segmentSlabs(object, options, scratch, member,
                      [&](size_t slab, const SlabGrids& grids) { slabs[slab] = grids; });
-    if (rank.rank() == 0) cut.result = std::move(result);
+    if (member.member() == 0) cut.result = std::move(result);
   });
-  if (ranks > 1 && object.slabCount() > 1 && cut.result.counts.objectVoxels > 0 &&
+  if (members > 1 && object.slabCount() > 1 && cut.result.counts.objectVoxels > 0 &&
       team.messages == 0)
-    throw std::logic_error("ranks sent nothing");
+    throw std::logic_error("members sent nothing");
   joinSlabs(slabs, cut);
   return cut;
 }
@@ -144,9 +144,9 @@ Comparison compareSlabs(const RandomCase& c) {
   try {
     const SlabObject object = cutObject(*mask, randomCuts(box, rng));
     for (size_t s = 0; s < object.slabCount(); ++s) result.slabs += !object.leaves(s).empty();
-    const int ranks = rng.chance(0.4) ? rng.between(2, 4) : 1;
+    const int members = rng.chance(0.4) ? rng.between(2, 4) : 1;
     cut = withThreads(c.threads, [&] {
-      return ranks > 1 ? segmentByRanks(object, options, ranks) : segmentCut(object, options);
+      return members > 1 ? segmentByMembers(object, options, members) : segmentCut(object, options);
     });
   } catch (const std::logic_error&) {
     result.refused = true;  // the object leaves the domain
@@ -233,7 +233,7 @@ TEST_CASE("slabs: what gamma leaves is completed through many slabs, as in the w
   for (int z = 0; z <= 344; z += 8) cuts.push_back(z);
   const SlabObject object = cutObject(mask, cuts);
   CHECK(difference(whole, segmentCut(object, options)).empty());
-  CHECK(difference(whole, segmentByRanks(object, options, 3)).empty());
+  CHECK(difference(whole, segmentByMembers(object, options, 3)).empty());
   CHECK(difference(whole, segmentCut(cutObject(mask, {0, 40, 240, 344}), options)).empty());
 }
 
@@ -377,7 +377,7 @@ TEST_CASE("slabs: what was stopped goes on to the same labels", "[slabs]") {
 
 namespace {
 
-/// What ranks share; all of them stop after so many changes.
+/// What members share; all of them stop after so many changes.
 struct SharedPieces {
   std::mutex mutex;
   MortalScratch pieces;
@@ -410,7 +410,7 @@ class SharedScratch : public Scratch {
 
 }  // namespace
 
-TEST_CASE("slabs: what was stopped with some ranks goes on with any number of them", "[slabs]") {
+TEST_CASE("slabs: what was stopped with some members goes on with any number of them", "[slabs]") {
   const uint64_t first = fromEnvironment("VDB_MADF_SEED", 1) + 400000;
   const uint64_t cases = fromEnvironment("VDB_MADF_CASES", 300);
   int64_t stops = 0;
@@ -441,15 +441,15 @@ TEST_CASE("slabs: what was stopped with some ranks goes on with any number of th
     int runs = 0;
     // Each time with more changes, so that it ends.
     for (bool done = false; !done; ++runs) {
-      Team team(rng.between(1, 4));
+      ThreadTeam team(rng.between(1, 4));
       all.pieces.left = 20 + 4 * runs + rng.below(60);
       try {
-        asRanks(team, [&](Ranks& rank) {
+        asMembers(team, [&](Team& member) {
           SharedScratch scratch(all);
           SlabSegmentation result =
-              segmentSlabs(object, options, scratch, rank,
+              segmentSlabs(object, options, scratch, member,
                            [&](size_t slab, const SlabGrids& grids) { slabs[slab] = grids; });
-          if (rank.rank() == 0) cut.result = std::move(result);
+          if (member.member() == 0) cut.result = std::move(result);
         });
         done = true;
       } catch (const Killed&) {
@@ -463,20 +463,19 @@ TEST_CASE("slabs: what was stopped with some ranks goes on with any number of th
   CHECK((cases < 100 || stops > int64_t(cases)));
 }
 
-TEST_CASE("slabs: a scratch that the ranks do not share, though it says so, is noticed",
+TEST_CASE("slabs: a scratch that the members do not share, though it says so, is noticed",
           "[slabs]") {
   struct OwnScratch : MemoryScratch {
     bool isShared() const override { return true; }
   };
-  Team team(2);
-  CHECK_THROWS_AS(
-      asRanks(
-          team,
-          [](Ranks& rank) {
-            OwnScratch scratch;
-            segmentSlabs(row(40, {0, 16, 40}), {}, scratch, rank, [](size_t, const SlabGrids&) {});
-          }),
-      IoError);
+  ThreadTeam team(2);
+  CHECK_THROWS_AS(asMembers(team,
+                            [](Team& member) {
+                              OwnScratch scratch;
+                              segmentSlabs(row(40, {0, 16, 40}), {}, scratch, member,
+                                           [](size_t, const SlabGrids&) {});
+                            }),
+                  IoError);
 }
 
 TEST_CASE("slabs: an interrupter stops them", "[slabs]") {

@@ -10,7 +10,7 @@
 #include "command_line.h"
 #include "progress.h"
 #include "vdb_madf/base/counted.h"
-#include "vdb_madf/slabs/ranks.h"
+#include "vdb_madf/slabs/team.h"
 
 namespace vdb_madf::tools {
 
@@ -20,7 +20,7 @@ struct Common {
   bool quiet = false;
   bool verbose = false;
   Progress* progress = nullptr;
-  Ranks* ranks = nullptr;  ///< of vdb_madf_mpi
+  Team* team = nullptr;  ///< of vdb_madf_mpi
 };
 
 using Action = std::function<void()>;

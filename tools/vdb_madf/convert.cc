@@ -11,9 +11,9 @@
 #include "command.h"
 #include "grid_image.h"
 #include "input_options.h"
+#include "member_failure.h"
 #include "outputs.h"
 #include "parse.h"
-#include "rank_failure.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
@@ -192,14 +192,14 @@ void runByRanks(const ConvertArguments& o, const Common& common) {
         "several processes copy the labels of a folder of slabs to an image; for all else there is "
         "vdb_madf convert");
   // The others would take the temporary of a process of another node for one that a killed run left.
-  inAllRanks(*common.ranks, [&] {
-    if (common.ranks->rank() == 0) checkWritable(o.out);
+  inAllMembers(*common.team, [&] {
+    if (common.team->member() == 0) checkWritable(o.out);
   });
   copySlabs(o, common);
 }
 
 void runConvert(const ConvertArguments& o, const Common& common) {
-  if (common.ranks) return runByRanks(o, common);
+  if (common.team) return runByRanks(o, common);
   checkWritable(o.out);
   const bool fromVdb = isVdb(o.input);
   if (fromVdb && readsGray(o.input.gray) && !o.input.selection)

@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
+#include "member_failure.h"
 #include "outputs.h"
-#include "rank_failure.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -51,14 +51,14 @@ void report(const std::string& path, const openvdb::GridBase& grid, const CoordB
   reportImage(path, "grid '" + grid.getName() + "'", box.dim(), type, common);
 }
 
-/// Around the boxes of all ranks.
-CoordBBox unitedBox(Ranks& ranks, const CoordBBox& box) {
+/// Around the boxes of all members.
+CoordBBox unitedBox(Team& team, const CoordBBox& box) {
   std::vector<int64_t> ends;  // maxima: the lower ones negative
   for (int axis = 0; axis < 3; ++axis) {
     ends.push_back(-int64_t(box.min()[axis]));
     ends.push_back(box.max()[axis]);
   }
-  ranks.max(ends);
+  team.max(ends);
   CoordBBox all;
   for (int axis = 0; axis < 3; ++axis) {
     all.min()[axis] = int(-ends[size_t(2 * axis)]);
@@ -67,14 +67,14 @@ CoordBBox unitedBox(Ranks& ranks, const CoordBBox& box) {
   return all;
 }
 
-/// Rank 0 makes the file and puts it in its place; all write their slabs.
+/// Member 0 makes the file and puts it in its place; all write their slabs.
 void writeByRanks(const std::string& path, const LabelSlabs& labels, size_t begin, size_t end,
                   const CoordBBox& box, SampleType type, const Common& common) {
-  Ranks& ranks = *common.ranks;
+  Team& team = *common.team;
   std::unique_ptr<ImageWriter> image;
   SharedImage shared;
-  inAllRanks(ranks, [&] {
-    if (ranks.rank() != 0) return;
+  inAllMembers(team, [&] {
+    if (team.member() != 0) return;
     image = createSharedImage(path, labels, box, type);
     const auto made = image->share();
     if (!made)
@@ -84,14 +84,14 @@ void writeByRanks(const std::string& path, const LabelSlabs& labels, size_t begi
     shared = *made;
   });
   Bytes name(shared.temporary.begin(), shared.temporary.end());
-  ranks.broadcast(name);
+  team.broadcast(name);
   shared.temporary.assign(name.begin(), name.end());
   std::vector<int64_t> offset{int64_t(shared.offset)};
-  ranks.max(offset);
+  team.max(offset);
   shared.offset = uint64_t(offset[0]);
-  inAllRanks(ranks,
-             [&] { writeImagePart(path, shared, labels, begin, end, box, type, common.progress); });
-  inAllRanks(ranks, [&] {
+  inAllMembers(
+      team, [&] { writeImagePart(path, shared, labels, begin, end, box, type, common.progress); });
+  inAllMembers(team, [&] {
     if (image) image->finish();
   });
 }
@@ -121,15 +121,15 @@ void writeGridAsImage(const std::string& path, const openvdb::GridBase& grid,
 void writeSlabsAsImage(const std::string& path, const LabelSlabs& labels,
                        const std::optional<SampleType>& type, const std::string& source,
                        const Common& common) {
-  Ranks alone;
-  Ranks& ranks = common.ranks ? *common.ranks : alone;
-  const size_t begin = ranks.firstSlab(ranks.rank(), labels.slabCount()),
-               end = ranks.firstSlab(ranks.rank() + 1, labels.slabCount());
+  Team alone;
+  Team& team = common.team ? *common.team : alone;
+  const size_t begin = team.firstSlab(team.member(), labels.slabCount()),
+               end = team.firstSlab(team.member() + 1, labels.slabCount());
   const auto domain = storedDomain(*labels.about);
   CoordBBox box = domain ? domain->box() : CoordBBox();
   SampleType chosen = type.value_or(naturalType(*labels.about, path));
   if (!domain || (!type && hasTiffEnding(path))) {
-    inAllRanks(ranks, [&] {
+    inAllMembers(team, [&] {
       for (size_t s = begin; s < end; ++s) {
         const Int32Grid::Ptr slab = labels.read(s, common.progress);
         if (!domain && slab->activeVoxelCount() > 0) box.expand(slab->evalActiveVoxelBoundingBox());
@@ -138,11 +138,11 @@ void writeSlabsAsImage(const std::string& path, const LabelSlabs& labels,
         if (!type && chosen != SampleType::int32 && own != SampleType::uint16) chosen = own;
       }
     });
-    box = unitedBox(ranks, box);
+    box = unitedBox(team, box);
     if (box.empty()) refuseEmpty(*labels.about, source);
     if (!domain) tellBox(path, box, common);
   }
-  if (common.ranks)
+  if (common.team)
     writeByRanks(path, labels, begin, end, box, chosen, common);
   else
     writeImage(path, labels, box, chosen, common.progress);

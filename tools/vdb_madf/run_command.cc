@@ -16,9 +16,9 @@
 
 #include "command.h"
 #include "command_line.h"
+#include "member_failure.h"
 #include "message.h"
 #include "outputs.h"
-#include "rank_failure.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/method/initialize.h"
 #include "version_text.h"
@@ -44,11 +44,11 @@ namespace {
 
 constexpr int kDone = 0, kFailed = 1, kWrongUsage = 2, kInterrupted = 130;
 
-int fail(const Ranks* ranks, int code, const std::string& what) {
+int fail(const Team* team, int code, const std::string& what) {
   // What several find wrong is said once: the first of them ends the others while these wait. That takes a
   // moment.
-  if (ranks && ranks->rank() > 0)
-    std::this_thread::sleep_for(std::chrono::seconds(2 + std::min(ranks->rank(), 20)));
+  if (team && team->member() > 0)
+    std::this_thread::sleep_for(std::chrono::seconds(2 + std::min(team->member(), 20)));
   printMessage("error", what);
   return code;
 }
@@ -110,7 +110,7 @@ void addVerbs(Verb command, const CommandLine& line, Common& common, Action& act
   addCompletion(command, line, action);
 }
 
-int run(const char* program, int argc, char** argv, Ranks* ranks) {
+int run(const char* program, int argc, char** argv, Team* team) {
   rejectEmptyArguments(argc, argv);
   CommandLine line(program, "Separates the grains of granular microstructures in micro-CT volumes.",
                    versionText());
@@ -120,23 +120,23 @@ int run(const char* program, int argc, char** argv, Ranks* ranks) {
       "  vdb_madf segment scan.tif grains.vdb --phase 1 --voxel-size 8.5um");
 
   Common common;
-  common.ranks = ranks;
+  common.team = team;
   Action action;
-  if (ranks) {
+  if (team) {
     addConvert(command, common, action);
     addSegment(command, common, action);
   } else {
     addVerbs(command, line, common, action);
   }
   if (const std::optional<std::string> text = line.parse(argc, argv)) {
-    if (!ranks || ranks->rank() == 0) std::cout << *text;
+    if (!team || team->member() == 0) std::cout << *text;
     flushStandardOutput();
     return kDone;
   }
   const std::string given = line.given();
   if (!action) throw WrongUsage("say what to do: see " + given + " --help");
 
-  common.quiet |= ranks && ranks->rank() > 0;
+  common.quiet |= team && team->member() > 0;
   catchInterrupts();
   Progress progress(common.quiet, given.substr(given.find(' ') + 1));
   common.progress = &progress;
@@ -151,25 +151,25 @@ int run(const char* program, int argc, char** argv, Ranks* ranks) {
 
 }  // namespace
 
-int runCommand(const char* program, int argc, char** argv, Ranks* ranks) {
+int runCommand(const char* program, int argc, char** argv, Team* team) {
   try {
-    return run(program, argc, argv, ranks);
+    return run(program, argc, argv, team);
   } catch (const OtherRankFailed&) {
     std::this_thread::sleep_for(std::chrono::minutes(1));  // that one ends this one
     return kFailed;
   } catch (const WrongUsage& error) {
-    return fail(ranks, kWrongUsage, error.what());
+    return fail(team, kWrongUsage, error.what());
   } catch (const Interrupted&) {
-    return fail(ranks, kInterrupted, "interrupted");
+    return fail(team, kInterrupted, "interrupted");
   } catch (const InvalidInput& error) {
-    return fail(ranks, kFailed, std::string(error.what()) + optionFor(error.hint()));
+    return fail(team, kFailed, std::string(error.what()) + optionFor(error.hint()));
   } catch (const IoError& error) {
-    return fail(ranks, kFailed, std::string(error.what()) + optionFor(error.hint()));
+    return fail(team, kFailed, std::string(error.what()) + optionFor(error.hint()));
   } catch (const std::bad_alloc&) {
-    return fail(ranks, kFailed,
+    return fail(team, kFailed,
                 "out of memory: crop or coarsen the volume, or use a machine with more memory");
   } catch (const std::exception& error) {
-    return fail(ranks, kFailed, error.what());
+    return fail(team, kFailed, error.what());
   }
 }
 

@@ -231,7 +231,7 @@ void addSegment(Verb command, Common& common, Action& action) {
   verb.flag("--dry-run", o->dryRun, "only say how much memory it would take");
   verb.onParsed([o, &common, &action] {
     parse(*o);
-    if (common.ranks && !hasSlabsEnding(o->out))
+    if (common.team && !hasSlabsEnding(o->out))
       throw WrongUsage("vdb_madf_mpi writes a folder of slabs: choose an output like OUT.slabs");
     action = [o, &common] { runSegment(*o, besideOutput(common, o->out)); };
   });

@@ -11,8 +11,8 @@
 #include <memory>
 #include <utility>
 
+#include "member_failure.h"
 #include "parse.h"
-#include "rank_failure.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/base/version.h"
@@ -59,18 +59,18 @@ MaskGrid::Ptr readSlabs(const SegmentArguments& o, const Common& common, WorkPla
   return object;
 }
 
-/// The same by several ranks, each of which reads a part.
+/// The same by several members, each of which reads a part.
 MaskGrid::Ptr readShare(const SegmentArguments& o, const Common& common, WorkPlace& place) {
-  Ranks& ranks = *common.ranks;
+  Team& team = *common.team;
   const SlabLimits limits = limitsOf(o, o.segment.maxMemory);  // others share what is free
-  SlabDealer dealer(ranks, place.scratch());
+  SlabDealer dealer(team, place.scratch());
   MaskGrid::Ptr object;
-  inAllRanks(ranks, [&] {
+  inAllMembers(team, [&] {
     VolumeOptions volume = o.input.volume(common.progress);
-    volume.share = {ranks.rank(), ranks.count()};
+    volume.share = {team.member(), team.count()};
     volume.takeLayer = [&](const MaskTree& layer) { dealer.add(layer); };
     object = loadObject(o.input, volume, common.progress);
-    if (ranks.rank() == 0 && !place.isInMemory())
+    if (team.member() == 0 && !place.isInMemory())
       writeVdb(place.aboutFile(), {object}, common.progress);
   });
   const auto domain = storedDomain(*object);
@@ -155,14 +155,14 @@ Json slabIndex(const SegmentArguments& o, const SlabObject& object, const Json& 
   return index;
 }
 
-/// Reads, segments and puts slabs in their place. @param jsonFile of rank 0; null for the others
-void workInSlabs(const SegmentArguments& o, const Common& common, Ranks& ranks, WorkPlace& place,
+/// Reads, segments and puts slabs in their place. @param jsonFile of member 0; null for the others
+void workInSlabs(const SegmentArguments& o, const Common& common, Team& team, WorkPlace& place,
                  JsonFile* jsonFile) {
   const Clock::time_point start = Clock::now();
   SegmentTiming timing;
   common.progress->start("read");
   const MaskGrid::Ptr about = place.holdsSlabs() ? storedAbout(place)
-                              : common.ranks     ? readShare(o, common, place)
+                              : common.team      ? readShare(o, common, place)
                                                  : readSlabs(o, common, place);
   timing.read = secondsSince(start);
   SegmentOptions options = o.segment;
@@ -174,7 +174,7 @@ void workInSlabs(const SegmentArguments& o, const Common& common, Ranks& ranks, 
   common.progress->start("segment");
   const SlabSegmentation s = withFileName(o.input.path, [&] {
     return segmentSlabs(
-        object, options, place.scratch(), ranks,
+        object, options, place.scratch(), team,
         [&](size_t slab, const SlabGrids& grids) {
           const Clock::time_point startWrite = Clock::now();
           writeSlab(place.file(slabFileName(slab)), grids, slab, object.slabCount(),
@@ -190,33 +190,33 @@ void workInSlabs(const SegmentArguments& o, const Common& common, Ranks& ranks, 
   Json json = toJson(o, summary);
   addSlabCosts(object, s, json);
   json["seconds_scratch"] = place.scratchSeconds();
-  if (common.ranks) json["ranks"] = ranks.count();
+  if (common.team) json["ranks"] = team.count();
   addNotes(json, *common.progress);
   JsonFile(place.file(kSlabIndex)).write(slabIndex(o, object, json));
   place.finish();
   jsonFile->write(json);
   if (common.quiet || jsonFile->isStandardOutput()) return;
   print(o, common, summary);
-  const std::string by = ", by " + std::to_string(ranks.count()) + " processes";
-  std::printf("  slabs            %zu%s%s\n", object.slabCount(), common.ranks ? by.c_str() : "",
+  const std::string by = ", by " + std::to_string(team.count()) + " processes";
+  std::printf("  slabs            %zu%s%s\n", object.slabCount(), common.team ? by.c_str() : "",
               o.fileOfSlabs.empty() ? ", each a .vdb; convert makes one of them" : "");
 }
 
 }  // namespace
 
 void runInSlabs(const SegmentArguments& o, const Common& common) {
-  Ranks alone;
-  Ranks& ranks = common.ranks ? *common.ranks : alone;
+  Team alone;
+  Team& team = common.team ? *common.team : alone;
   std::optional<JsonFile> jsonFile;
-  if (ranks.rank() == 0) jsonFile.emplace(o.json);
-  WorkPlace place(o, common, ranks);
+  if (team.member() == 0) jsonFile.emplace(o.json);
+  WorkPlace place(o, common, team);
   if (place.isDone()) {
     place.finish();
     common.progress->note(o.out + ": was whole already");
     return;
   }
   try {
-    workInSlabs(o, common, ranks, place, jsonFile ? &*jsonFile : nullptr);
+    workInSlabs(o, common, team, place, jsonFile ? &*jsonFile : nullptr);
   } catch (const InvalidInput&) {
     common.progress->end();
     place.abandon(true);

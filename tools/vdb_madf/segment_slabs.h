@@ -22,9 +22,9 @@ void checkSlabArguments(const SegmentArguments& o);
 void writeSlab(const std::string& path, const SlabGrids& grids, size_t slab, size_t count,
                Progress* progress);
 
-/// Works in OUT.slabs.part, and in scratch. Both stay for --resume, by any number of ranks, if the work is
+/// Works in OUT.slabs.part, and in scratch. Both stay for --resume, by any number of members, if the work is
 /// cut off after the object was read; at the end OUT.slabs appears whole.
-/// Where there are common.ranks, these share the work: see WorkPlace.
+/// Where there are common.team, these share the work: see WorkPlace.
 void runInSlabs(const SegmentArguments& o, const Common& common);
 
 }  // namespace vdb_madf::tools

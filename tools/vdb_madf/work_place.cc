@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "rank_failure.h"
+#include "member_failure.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/version.h"
 #include "vdb_madf/slabs/slab_builder.h"
@@ -62,11 +62,11 @@ constexpr char kWhole[] = "done";  // the piece that says that OUT.slabs.part is
 
 }  // namespace
 
-WorkPlace::WorkPlace(const SegmentArguments& o, const Common& common, Ranks& ranks)
-    : ranks_(ranks), progress_(common.progress), out_(o.out), part_(o.out + ".part") {
-  const bool inMemory = common.ranks && o.scratch.empty() && !o.resume && o.maxMemory.empty();
-  const bool isRoot = ranks.rank() == 0;
-  inAllRanks(ranks, [&] {
+WorkPlace::WorkPlace(const SegmentArguments& o, const Common& common, Team& team)
+    : team_(team), progress_(common.progress), out_(o.out), part_(o.out + ".part") {
+  const bool inMemory = common.team && o.scratch.empty() && !o.resume && o.maxMemory.empty();
+  const bool isRoot = team.member() == 0;
+  inAllMembers(team, [&] {
     if (!isRoot) return;
     checkSlabFolder(out_);
     if (inMemory)
@@ -76,7 +76,7 @@ WorkPlace::WorkPlace(const SegmentArguments& o, const Common& common, Ranks& ran
   });
   if (inMemory) return;
   try {
-    inAllRanks(ranks, [&] {
+    inAllMembers(team, [&] {
       if (!isRoot) folder_ = std::make_unique<FolderScratch>(scratchOf(o));
       isDone_ = folder_->has(kWhole);
     });
@@ -107,7 +107,7 @@ void WorkPlace::makeFolders(const SegmentArguments& o) {
   makePart(o);
   try {
     folder_ = std::make_unique<FolderScratch>(scratch, workOf(o), o.resume);
-    if (ranks_.count() > 1) folder_->share();
+    if (team_.count() > 1) folder_->share();
   } catch (...) {
     if (isNew) fs::remove(part_, ignored);
     throw;
@@ -132,7 +132,7 @@ void WorkPlace::checkSlabs(size_t count) const {
 }
 
 void WorkPlace::finish() {
-  if (ranks_.rank() != 0) return;
+  if (team_.member() != 0) return;
   std::error_code ignored;
   if (folder_) folder_->write(kWhole, {});
   if (fs::exists(file(kSlabIndex), ignored)) commitSlabFolder(part_, out_);
@@ -141,8 +141,8 @@ void WorkPlace::finish() {
 }
 
 void WorkPlace::abandon(bool isHopeless) {
-  // The others may still be at work, and need the folders until rank 0 ends them.
-  if (!folder_ || (ranks_.rank() == 0 && (isHopeless || !holdsSlabs())))
+  // The others may still be at work, and need the folders until member 0 ends them.
+  if (!folder_ || (team_.member() == 0 && (isHopeless || !holdsSlabs())))
     discard();
   else
     progress_->note("what was done so far is kept in " + part_ + " and " + folder_->path() +

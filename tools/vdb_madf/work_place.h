@@ -12,12 +12,12 @@
 namespace vdb_madf::tools {
 
 /// Where `segment IN OUT.slabs` works: OUT.slabs.part has the labels that are done, scratch all the rest.
-/// Of several ranks each makes one, together; they share the folders, which rank 0 makes and removes.
-/// Without --scratch, --resume and --max-memory the scratch of several ranks is in their memory.
+/// Of several members each makes one, together; they share the folders, which member 0 makes and removes.
+/// Without --scratch, --resume and --max-memory the scratch of several members is in their memory.
 class WorkPlace {
  public:
   /// @throw IoError, InvalidInput, one line, if the folders are in use or of other work; OtherRankFailed
-  WorkPlace(const SegmentArguments& o, const Common& common, Ranks& ranks);
+  WorkPlace(const SegmentArguments& o, const Common& common, Team& team);
 
   Scratch& scratch() { return folder_ ? static_cast<Scratch&>(*folder_) : memory_; }
   bool isInMemory() const { return !folder_; }
@@ -35,7 +35,7 @@ class WorkPlace {
 
   /// Was the work all done by a run before, but for finish()?
   bool isDone() const { return isDone_; }
-  /// By all ranks: puts the folder in the place of OUT, and removes scratch.
+  /// By all members: puts the folder in the place of OUT, and removes scratch.
   void finish();
   /// After an error: removes what nobody can go on with, or says what is kept.
   /// @param isHopeless it would be the same error again
@@ -47,7 +47,7 @@ class WorkPlace {
   void clearPart(bool butSlabs);
   void discard();
 
-  Ranks& ranks_;
+  Team& team_;
   Progress* progress_;
   std::string out_, part_;
   MemoryScratch memory_;

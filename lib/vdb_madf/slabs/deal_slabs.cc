@@ -21,22 +21,22 @@ std::string layerName(int z) {
   return "layer-" + std::to_string(z);
 }
 
-/// Does a layer or slab lie within reach of the slabs of a rank? Not if it has none.
-bool isWanted(const Ranks& ranks, int rank, const std::vector<int>& cuts, int64_t reach, int begin,
+/// Does a layer or slab lie within reach of the slabs of a member? Not if it has none.
+bool isWanted(const Team& team, int member, const std::vector<int>& cuts, int64_t reach, int begin,
               int end) {
-  const size_t slabs = cuts.size() - 1, first = ranks.firstSlab(rank, slabs),
-               last = ranks.firstSlab(rank + 1, slabs);
+  const size_t slabs = cuts.size() - 1, first = team.firstSlab(member, slabs),
+               last = team.firstSlab(member + 1, slabs);
   return first < last && end + reach > cuts[first] && begin - reach < cuts[last];
 }
 
 }  // namespace
 
-/// What each layer takes, of all ranks.
+/// What each layer takes, of all members.
 struct SlabDealer::Layers {
   int first = 0;               ///< z of the lowest
   std::vector<int64_t> bytes;  ///< slabBytes()
 
-  std::vector<int> chooseCuts(const SlabLimits& limits, int ranks) const;
+  std::vector<int> chooseCuts(const SlabLimits& limits, int members) const;
 };
 
 void SlabDealer::add(const MaskTree& layer) {
@@ -53,14 +53,14 @@ void SlabDealer::add(const MaskTree& layer) {
 void SlabDealer::finish(const SlabLimits& limits, int64_t reach,
                         const std::optional<Domain>& domain) {
   const Layers layers = countLayers(domain);
-  const std::vector<int> cuts = layers.chooseCuts(limits, ranks_.count());
-  if (scratch_.isShared()) reach = 0;  // what lies beyond its slabs a rank reads where it is
+  const std::vector<int> cuts = layers.chooseCuts(limits, team_.count());
+  if (scratch_.isShared()) reach = 0;  // what lies beyond its slabs a member reads where it is
   send(cuts, reach);
-  ranks_.exchange(scratch_);
+  team_.exchange(scratch_);
   receive(cuts, reach, layers);
-  ranks_.exchange(scratch_);
-  if (!scratch_.isShared() || ranks_.rank() == 0) writeCuts(scratch_, cuts);
-  ranks_.exchange(scratch_);
+  team_.exchange(scratch_);
+  if (!scratch_.isShared() || team_.member() == 0) writeCuts(scratch_, cuts);
+  team_.exchange(scratch_);
 }
 
 SlabDealer::Layers SlabDealer::countLayers(const std::optional<Domain>& domain) const {
@@ -71,20 +71,20 @@ SlabDealer::Layers SlabDealer::countLayers(const std::optional<Domain>& domain) 
   };
   if (!read_.empty()) include(read_.begin()->first, read_.rbegin()->first);
   if (domain && !domain->box().empty()) include(domain->box().min().z(), domain->box().max().z());
-  ranks_.max(ends);
+  team_.max(ends);
   if (ends[0] == kNothing) return {0, {0}};
   Layers layers;
   layers.first = int(-ends[0]) & ~7;
   layers.bytes.assign(size_t((ends[1] - layers.first) / 8 + 1), 0);
   for (const auto& [z, ofLayer] : read_) layers.bytes[size_t(z - layers.first) / 8] = ofLayer;
-  ranks_.sum(layers.bytes);
+  team_.sum(layers.bytes);
   return layers;
 }
 
-std::vector<int> SlabDealer::Layers::chooseCuts(const SlabLimits& limits, int ranks) const {
+std::vector<int> SlabDealer::Layers::chooseCuts(const SlabLimits& limits, int members) const {
   int64_t total = 0;
   for (const int64_t ofLayer : bytes) total += ofLayer;
-  int64_t most = total / ranks + 1;
+  int64_t most = total / members + 1;
   if (limits.bytes > 0) most = std::min(most, limits.bytes);
   std::vector<int> cuts{first};
   int64_t inSlab = 0;
@@ -110,17 +110,17 @@ void SlabDealer::send(const std::vector<int>& cuts, int64_t reach) {
   for (const auto& layer : read_) {
     const int z = layer.first;
     const Bytes bytes = scratch_.read(layerName(z));
-    for (int rank = 0; rank < ranks_.count(); ++rank)
-      if (rank != ranks_.rank() && isWanted(ranks_, rank, cuts, reach, z, z + 8))
-        ranks_.send(rank, layerName(z), bytes, scratch_);
-    if (!isWanted(ranks_, ranks_.rank(), cuts, reach, z, z + 8)) scratch_.remove(layerName(z));
+    for (int member = 0; member < team_.count(); ++member)
+      if (member != team_.member() && isWanted(team_, member, cuts, reach, z, z + 8))
+        team_.send(member, layerName(z), bytes, scratch_);
+    if (!isWanted(team_, team_.member(), cuts, reach, z, z + 8)) scratch_.remove(layerName(z));
   }
 }
 
 /// Makes slabs of layers.
 void SlabDealer::receive(const std::vector<int>& cuts, int64_t reach, const Layers& layers) {
   const auto isWantedHere = [&](int begin, int end) {
-    return isWanted(ranks_, ranks_.rank(), cuts, reach, begin, end);
+    return isWanted(team_, team_.member(), cuts, reach, begin, end);
   };
   for (size_t s = 0; s + 1 < cuts.size(); ++s) {
     if (!isWantedHere(cuts[s], cuts[s + 1])) continue;

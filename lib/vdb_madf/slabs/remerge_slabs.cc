@@ -36,7 +36,7 @@ std::vector<int64_t> remergeSlabs(const LabelSlabs& manifolds, const MergeOption
   const SlabObject object = detail::manifoldObject(manifolds, scratch);
   detail::checkSlabOptions(object, how);
   if (object.slabCount() == 0) return {};
-  Ranks alone;
+  Team alone;
   detail::SlabWork work(object, how, scratch, alone, interrupter);
   detail::SlabRemerge remerge(manifolds, work);
   remerge.read();

@@ -46,7 +46,7 @@ class Scratch {
     return bytes;
   }
 
-  /// Is it one and the same for all ranks, so that each has what another one writes?
+  /// Is it one and the same for all members, so that each has what another one writes?
   virtual bool isShared() const { return false; }
 };
 

@@ -52,13 +52,13 @@ void describe(const detail::SlabWork& work, const SlabSegmentation& result, Int3
 }  // namespace
 
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
-                              Scratch& scratch, Ranks& ranks, const PutSlab& put,
+                              Scratch& scratch, Team& team, const PutSlab& put,
                               Interrupter* interrupter) {
   detail::checkSlabOptions(object, options);
   SlabSegmentation result;
   if (object.slabCount() == 0) return result;
   result.domain = options.domain ? options.domain : storedDomain(*object.about);
-  detail::SlabWork work(object, options, scratch, ranks, interrupter);
+  detail::SlabWork work(object, options, scratch, team, interrupter);
   work.facts.domain = result.domain;
   detail::flowInSlabs(work, result);
   work.steps.beginStage("merge");
@@ -84,7 +84,7 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
 
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
                               Scratch& scratch, const PutSlab& put, Interrupter* interrupter) {
-  Ranks alone;
+  Team alone;
   return segmentSlabs(object, options, scratch, alone, put, interrupter);
 }
 

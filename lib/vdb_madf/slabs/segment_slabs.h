@@ -10,8 +10,8 @@
 
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/method/segment.h"
-#include "vdb_madf/slabs/ranks.h"
 #include "vdb_madf/slabs/scratch.h"
+#include "vdb_madf/slabs/team.h"
 
 namespace vdb_madf {
 
@@ -31,8 +31,8 @@ struct SlabObject {
 /// What a part of the work took. Of a run that goes on: of that run alone.
 struct SlabStage {
   std::string name;
-  double seconds = 0;        ///< of the rank that took longest
-  int64_t messageBytes = 0;  ///< sent from slab to slab, by all ranks
+  double seconds = 0;        ///< of the member that took longest
+  int64_t messageBytes = 0;  ///< sent from slab to slab, by all members
 };
 
 /// What segmentSlabs() finds beside the labels.
@@ -77,10 +77,10 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
 /// The same by several processes, which all call it, with equal arguments but for their scratch (it may be
 /// one that all share). Each works on slabs of its own, which alone it asks for and puts (with cavities to
 /// fill it also asks for those that are less than `fillHoles` voxels away, and in a region, where scratch
-/// is shared, for any). Counts and boundary are known to all, the voxels of grains to rank 0. What is in a
-/// scratch that was shared does not depend on the number of ranks: any number may go on with it.
+/// is shared, for any). Counts and boundary are known to all, the voxels of grains to member 0. What is in a
+/// scratch that was shared does not depend on the number of members: any number may go on with it.
 SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& options,
-                              Scratch& scratch, Ranks& ranks, const PutSlab& put,
+                              Scratch& scratch, Team& team, const PutSlab& put,
                               Interrupter* interrupter = nullptr);
 
 /// Were the labels of a slab put by a run before, so that they are not put again?

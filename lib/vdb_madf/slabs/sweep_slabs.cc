@@ -56,7 +56,7 @@ std::vector<SweepRow> mergingSweep(const LabelSlabs& manifolds, const SweepOptio
   how.tidy = options.tidy;
   const SlabObject object = detail::manifoldObject(manifolds, scratch);
   detail::checkSlabOptions(object, how);
-  Ranks alone;
+  Team alone;
   {
     detail::SlabWork work(object, how, scratch, alone, interrupter);
     detail::SlabRemerge(manifolds, work).read();

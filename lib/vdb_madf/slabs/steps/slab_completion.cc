@@ -274,7 +274,7 @@ void SlabCompletion::run() {
     std::vector<int64_t> total{0};
     for (size_t s = work_.plan.firstOwn(); s < work_.plan.endOwn(); ++s)
       if (!work_.steps.isBeyond(s)) total[0] += f(s);
-    work_.ranks.sum(total);
+    work_.team.sum(total);
     return total[0];
   };
   while (sum([&](size_t s) { return work_.store.read(kCompletion.at(window_), s).isActive; }) > 0) {
@@ -306,7 +306,7 @@ int SlabCompletion::firstWindow() const {
     found[0] = std::max<int64_t>(found[0], first);
     found[1] = std::max<int64_t>(found[1], first + hasNext);
   }
-  work_.ranks.max(found);
+  work_.team.max(found);
   return int(found[2] ? found[1] : found[0]);
 }
 

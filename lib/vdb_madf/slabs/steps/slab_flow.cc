@@ -83,14 +83,14 @@ class SlabFlow {
         const int told = work_.store.read(kLargest, s).reach;
         unknown[0] += told == 0 || told > reach;  // in a run before, perhaps
       }
-      work_.ranks.sum(unknown);
+      work_.team.sum(unknown);
     }
   }
   void shareLargest() {
     std::vector<int64_t> largest{0};
     for (size_t s = work_.plan.firstOwn(); s < work_.plan.endOwn(); ++s)
       largest[0] = std::max<int64_t>(largest[0], work_.store.read(kLargest, s).squaredDistance);
-    work_.ranks.max(largest);
+    work_.team.max(largest);
     work_.facts.largestSquaredDistance = int32_t(largest[0]);
     result_.counts.largestSquaredDistance = largest[0];
   }

@@ -14,28 +14,28 @@ namespace vdb_madf::detail {
 
 namespace {
 
-/// A binary tree over the ranks: after the join of a distance d, rank r has merged the slabs of ranks r
-/// to r + 2 d - 1, for each r that is a multiple of 2 d. What has left a rank comes back as the grains of
+/// A binary tree over the members: after the join of a distance d, member r has merged the slabs of members r
+/// to r + 2 d - 1, for each r that is a multiple of 2 d. What has left a member comes back as the grains of
 /// the classes that it handed over.
 class MergeTree {
  public:
   explicit MergeTree(SlabWork& work)
       : work_(work),
-        rank_(work.ranks.rank()),
-        count_(work.ranks.count()),
+        member_(work.team.member()),
+        count_(work.team.count()),
         merging_(MergeRule(work.options.merge, work.facts.weights)) {}
 
   std::vector<Coord> run(const std::function<SlabPart(size_t slab)>& part) {
     for (size_t s = work_.plan.firstOwn(); s < work_.plan.endOwn(); ++s) mergeSlab(s, part(s));
     int distance = 1;
     for (; distance < count_; distance *= 2) {
-      if (isUpper(distance)) handOver(rank_ - distance);
+      if (isUpper(distance)) handOver(member_ - distance);
       work_.steps.exchange();
-      if (isLower(distance)) join(rank_ + distance);
+      if (isLower(distance)) join(member_ + distance);
     }
     if (work_.plan.isRoot()) numberGrains();
     while ((distance /= 2) > 0) {
-      if (isLower(distance)) tellGrains(rank_ + distance);
+      if (isLower(distance)) tellGrains(member_ + distance);
       work_.steps.exchange();
       if (isUpper(distance)) takeGrains();
     }
@@ -48,11 +48,11 @@ class MergeTree {
   }
 
  private:
-  // A join of a distance is one of a lower and an upper rank.
+  // A join of a distance is one of a lower and an upper member.
   bool isLower(int distance) const {
-    return rank_ % (2 * distance) == 0 && rank_ + distance < count_;
+    return member_ % (2 * distance) == 0 && member_ + distance < count_;
   }
-  bool isUpper(int distance) const { return rank_ % (2 * distance) == distance; }
+  bool isUpper(int distance) const { return member_ % (2 * distance) == distance; }
 
   void mergeSlab(size_t s, const SlabPart& part) {
     if (work_.interrupter && work_.interrupter->wasInterrupted(75)) throw Interrupted();
@@ -76,8 +76,8 @@ class MergeTree {
 
   void handOver(int lower) {
     const std::vector<Coord> decided = merging_.decided();
-    send(lower, kMergeOpen, rank_, merging_.handOver());
-    send(0, kMergeDecided, rank_, decided);
+    send(lower, kMergeOpen, member_, merging_.handOver());
+    send(0, kMergeDecided, member_, decided);
   }
   void join(int upper) { classesOf_[upper] = merging_.add(receive(kMergeOpen, upper)); }
 
@@ -85,14 +85,14 @@ class MergeTree {
   void numberGrains() {
     struct Grain {
       Coord representative;
-      int rank;
+      int member;
     };
     std::vector<Grain> all;
-    const auto add = [&](const std::vector<Coord>& decided, int rank) {
-      for (const Coord& representative : decided) all.push_back({representative, rank});
+    const auto add = [&](const std::vector<Coord>& decided, int member) {
+      for (const Coord& representative : decided) all.push_back({representative, member});
     };
-    add(merging_.decided(), rank_);
-    for (int rank = 1; rank < count_; ++rank) add(receive(kMergeDecided, rank), rank);
+    add(merging_.decided(), member_);
+    for (int member = 1; member < count_; ++member) add(receive(kMergeDecided, member), member);
     parallelSort(all.begin(), all.end(), [](const Grain& a, const Grain& b) {
       return a.representative < b.representative;
     });
@@ -100,10 +100,10 @@ class MergeTree {
     numbers.resize(size_t(count_));
     for (const Grain& grain : all) {
       representatives_.push_back(grain.representative);
-      numbers[size_t(grain.rank)].push_back(uint32_t(representatives_.size()));
+      numbers[size_t(grain.member)].push_back(uint32_t(representatives_.size()));
     }
-    for (int rank = 1; rank < count_; ++rank)
-      send(rank, kMergeNumbers, rank, numbers[size_t(rank)]);
+    for (int member = 1; member < count_; ++member)
+      send(member, kMergeNumbers, member, numbers[size_t(member)]);
     // Nothing is open any more.
     grainOfClass_ = merging_.grains(numbers[0], {});
   }
@@ -114,14 +114,15 @@ class MergeTree {
     send(upper, kMergeGrains, upper, grains);
   }
   void takeGrains() {
-    const std::vector<uint32_t> ofDecided = receive(kMergeNumbers, rank_);
-    grainOfClass_ = merging_.grains(ofDecided, receive(kMergeGrains, rank_));
+    const std::vector<uint32_t> ofDecided = receive(kMergeNumbers, member_);
+    grainOfClass_ = merging_.grains(ofDecided, receive(kMergeGrains, member_));
   }
 
   SlabWork& work_;
-  const int rank_, count_;
+  const int member_, count_;
   MergeParts merging_;
-  std::map<int, std::vector<uint32_t>> classesOf_;  // by upper rank: of the classes it handed over
+  std::map<int, std::vector<uint32_t>>
+      classesOf_;  // by upper member: of the classes it handed over
   std::vector<uint32_t> grainOfClass_;
   std::vector<Coord> representatives_;
 };

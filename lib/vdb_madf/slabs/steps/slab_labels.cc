@@ -114,7 +114,7 @@ class SlabLabels {
   }
 
   /// The voxel of each grain that never changes: its representative, or the nearest to it if that lies
-  /// in a cavity. Known at all ranks.
+  /// in a cavity. Known at all members.
   void shareAnchors() {
     Lost lost;
     if (work_.plan.isRoot()) lost = findLost();

@@ -8,15 +8,15 @@
 
 #include "vdb_madf/slabs/cuts/site_offers.h"
 #include "vdb_madf/slabs/cuts/slab_body.h"
-#include "vdb_madf/slabs/ranks.h"
 #include "vdb_madf/slabs/store/slab_store.h"
+#include "vdb_madf/slabs/team.h"
 
 namespace vdb_madf::detail {
 
 /// Where the object is cut, and which slabs a member of the team works on.
 struct SlabPlan {
   const SlabObject& object;
-  const Ranks& ranks;
+  const Team& team;
 
   size_t slabCount() const { return object.slabCount(); }
   int begin(size_t slab) const { return object.cuts[slab]; }
@@ -28,9 +28,9 @@ struct SlabPlan {
   }
 
   /// Slabs of this member: firstOwn() <= s < endOwn().
-  size_t firstOwn() const { return ranks.firstSlab(ranks.rank(), slabCount()); }
-  size_t endOwn() const { return ranks.firstSlab(ranks.rank() + 1, slabCount()); }
-  bool isRoot() const { return ranks.rank() == 0; }
+  size_t firstOwn() const { return team.firstSlab(team.member(), slabCount()); }
+  size_t endOwn() const { return team.firstSlab(team.member() + 1, slabCount()); }
+  bool isRoot() const { return team.member() == 0; }
 };
 
 }  // namespace vdb_madf::detail

@@ -23,10 +23,10 @@ LeafIndex bodyOf(const SlabWork& work, size_t slab) {
   return LeafIndex(work.store.read(kAround, slab));
 }
 
-/// Does one of the slabs of a rank lie within reach of a slab?
-bool isNear(const SlabWork& work, int rank, size_t slab, int64_t reach) {
-  const size_t first = work.ranks.firstSlab(rank, work.plan.slabCount()),
-               last = work.ranks.firstSlab(rank + 1, work.plan.slabCount());
+/// Does one of the slabs of a member lie within reach of a slab?
+bool isNear(const SlabWork& work, int member, size_t slab, int64_t reach) {
+  const size_t first = work.team.firstSlab(member, work.plan.slabCount()),
+               last = work.team.firstSlab(member + 1, work.plan.slabCount());
   return first < last && work.plan.end(slab) + reach > work.plan.begin(first) &&
          work.plan.begin(slab) - reach < work.plan.end(last - 1);
 }
@@ -93,15 +93,15 @@ SquaredDistance distanceIn(const SlabWork& work, const LeafIndex& window,
 }  // namespace
 
 void shareBodies(SlabWork& work, int reach) {
-  if (work.ranks.count() == 1 || work.store.isShared()) return;
+  if (work.team.count() == 1 || work.store.isShared()) return;
   for (size_t s = work.plan.firstOwn(); s < work.plan.endOwn(); ++s) {
     const LeafIndex index = work.body(s).index;
     std::vector<LeafIndex::LeafVoxels> leaves;
     for (size_t leaf = 0; leaf < index.leafCount(); ++leaf)
       leaves.push_back({index.origin(leaf), index.mask(leaf)});
-    for (int rank = 0; rank < work.ranks.count(); ++rank)
-      if (rank != work.ranks.rank() && isNear(work, rank, s, reach))
-        work.store.give(rank, kAround, s, leaves);
+    for (int member = 0; member < work.team.count(); ++member)
+      if (member != work.team.member() && isNear(work, member, s, reach))
+        work.store.give(member, kAround, s, leaves);
   }
   work.steps.exchange();
 }

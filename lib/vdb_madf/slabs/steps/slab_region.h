@@ -16,7 +16,7 @@
 
 namespace vdb_madf::detail {
 
-/// All ranks call it: each tells the others of its slabs that lie as near to theirs as `reach` voxels. (Where
+/// All members call it: each tells the others of its slabs that lie as near to theirs as `reach` voxels. (Where
 /// the scratch is shared, there is nothing to tell.)
 void shareBodies(SlabWork& work, int reach);
 

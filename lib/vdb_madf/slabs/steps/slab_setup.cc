@@ -51,7 +51,7 @@ class Setup {
       sums[1] += int64_t(index.leafCount());
       extent.expand(index.boundingBox());
     }
-    work_.ranks.sum(sums);
+    work_.team.sum(sums);
     counts.objectVoxels = sums[0];
     counts.leaves = sums[1];
     return ofAll(extent);
@@ -63,7 +63,7 @@ class Setup {
       ends.push_back(-int64_t(box.min()[axis]));
       ends.push_back(box.max()[axis]);
     }
-    work_.ranks.max(ends);
+    work_.team.max(ends);
     return {Coord(int(-ends[0]), int(-ends[2]), int(-ends[4])),
             Coord(int(ends[1]), int(ends[3]), int(ends[5]))};
   }

@@ -8,7 +8,7 @@
 namespace vdb_madf::detail {
 
 /// What comes before the first sweep: counts of the object, boundary, cavities, weights. The same at all
-/// ranks. @throw as segmentSlabs()
+/// team. @throw as segmentSlabs()
 void setUpSlabs(SlabWork& work, SlabSegmentation& result);
 
 }  // namespace vdb_madf::detail

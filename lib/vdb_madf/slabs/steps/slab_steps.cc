@@ -35,11 +35,11 @@ Share shareOf(Step step, bool isFiltered) {
 
 }  // namespace
 
-SlabSteps::SlabSteps(const SlabPlan& plan, SlabStore& store, Ranks& ranks, bool isFiltered,
+SlabSteps::SlabSteps(const SlabPlan& plan, SlabStore& store, Team& team, bool isFiltered,
                      Interrupter* interrupter)
     : plan_(plan),
       store_(store),
-      ranks_(ranks),
+      team_(team),
       isFiltered_(isFiltered),
       interrupter_(interrupter),
       done_(plan.slabCount(), 0) {
@@ -74,8 +74,8 @@ void SlabSteps::endStages(SlabSegmentation& result) {
     bytes.push_back(stage.messageBytes);
     nanoseconds.push_back(int64_t(stage.seconds * 1e9));
   }
-  ranks_.sum(bytes);
-  ranks_.max(nanoseconds);
+  team_.sum(bytes);
+  team_.max(nanoseconds);
   for (size_t i = 0; i < stages_.size(); ++i)
     result.stages.push_back({stages_[i].name, double(nanoseconds[i]) * 1e-9, bytes[i]});
   result.exchanges = exchanges_;

@@ -16,7 +16,7 @@ namespace vdb_madf::detail {
 /// run that goes on skips those; what it does not need any more it forgets (Step of pieces.h).
 class SlabSteps {
  public:
-  SlabSteps(const SlabPlan& plan, SlabStore& store, Ranks& ranks, bool isFiltered,
+  SlabSteps(const SlabPlan& plan, SlabStore& store, Team& team, bool isFiltered,
             Interrupter* interrupter);
 
   /// A step: f(s) for all own slabs, if they have not done it; then messages are exchanged. What the table
@@ -39,8 +39,8 @@ class SlabSteps {
   template <typename F>
   void upward(Step step, const F& f) {
     ++step_;
-    for (int member = 0; member < ranks_.count(); ++member) {
-      if (member == ranks_.rank())
+    for (int member = 0; member < team_.count(); ++member) {
+      if (member == team_.member())
         for (size_t s = plan_.firstOwn(); s < plan_.endOwn(); ++s) run(step, s, f);
       exchange();
     }
@@ -48,8 +48,8 @@ class SlabSteps {
   template <typename F>
   void downward(Step step, const F& f) {
     ++step_;
-    for (int member = ranks_.count(); member-- > 0;) {
-      if (member == ranks_.rank())
+    for (int member = team_.count(); member-- > 0;) {
+      if (member == team_.member())
         for (size_t s = plan_.endOwn(); s-- > plan_.firstOwn();) run(step, s, f);
       exchange();
     }
@@ -87,7 +87,7 @@ class SlabSteps {
 
   const SlabPlan& plan_;
   SlabStore& store_;
-  Ranks& ranks_;
+  Team& team_;
   bool isFiltered_;
   Interrupter* interrupter_;
   int step_ = 0;

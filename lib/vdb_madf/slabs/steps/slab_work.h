@@ -25,17 +25,17 @@ struct SlabFacts {
 
 /// What all steps of segmentSlabs() work with.
 struct SlabWork {
-  SlabWork(const SlabObject& object, const SegmentOptions& how, Scratch& scratch, Ranks& team,
+  SlabWork(const SlabObject& object, const SegmentOptions& how, Scratch& scratch, Team& members,
            Interrupter* stop)
       : options(how),
-        ranks(team),
+        team(members),
         interrupter(stop),
-        plan{object, team},
-        store(object.slabCount(), scratch, team),
-        steps(plan, store, team, isFiltered(), stop) {}
+        plan{object, members},
+        store(object.slabCount(), scratch, members),
+        steps(plan, store, members, isFiltered(), stop) {}
 
   const SegmentOptions& options;
-  Ranks& ranks;
+  Team& team;
   Interrupter* interrupter;
   SlabPlan plan;
   SlabFacts facts;

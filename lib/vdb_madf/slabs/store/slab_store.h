@@ -6,8 +6,8 @@
 #include <string>
 
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/slabs/ranks.h"
 #include "vdb_madf/slabs/store/pieces.h"
+#include "vdb_madf/slabs/team.h"
 
 namespace vdb_madf::detail {
 
@@ -26,8 +26,8 @@ inline Leaves storedObject(const Scratch& scratch, size_t slab) {
 /// says does not compile.
 class SlabStore {
  public:
-  SlabStore(size_t slabCount, Scratch& scratch, Ranks& ranks)
-      : slabCount_(slabCount), scratch_(&scratch), ranks_(&ranks) {}
+  SlabStore(size_t slabCount, Scratch& scratch, Team& team)
+      : slabCount_(slabCount), scratch_(&scratch), team_(&team) {}
 
   // Pieces of an own slab.
   bool has(const StoredName& piece, size_t slab) const { return scratch_->has(piece.of(slab)); }
@@ -62,7 +62,7 @@ class SlabStore {
   void send(const Message<T>& message, size_t from, size_t to, const AsIs<T>& value) {
     const Bytes bytes = bytesOf<T>(value);
     if (from != to) sentBytes_ += int64_t(bytes.size());
-    ranks_->send(ranks_->ownerOf(to, slabCount_), nameOf(message, from, to), bytes, *scratch_);
+    team_->send(team_->ownerOf(to, slabCount_), nameOf(message, from, to), bytes, *scratch_);
   }
   /// T() if none was sent.
   template <typename T>
@@ -79,19 +79,19 @@ class SlabStore {
   void give(int member, const Piece<T>& piece, size_t slab, const AsIs<T>& value) {
     const Bytes bytes = bytesOf<T>(value);
     sentBytes_ += int64_t(bytes.size());
-    ranks_->send(member, piece.of(slab), bytes, *scratch_);
+    team_->send(member, piece.of(slab), bytes, *scratch_);
   }
 
   /// What the root has.
   template <typename T>
   T broadcast(const T& value) const {
     Bytes bytes = bytesOf<T>(value);
-    ranks_->broadcast(bytes);
+    team_->broadcast(bytes);
     return valueOf<T>(std::move(bytes));
   }
 
   /// Messages so far get to their slabs.
-  void exchange() { ranks_->exchange(*scratch_); }
+  void exchange() { team_->exchange(*scratch_); }
 
   /// Forgets what a slab does not need after a step that it has done.
   void forget(Step step, size_t slab);
@@ -116,7 +116,7 @@ class SlabStore {
 
   size_t slabCount_;
   Scratch* scratch_;
-  Ranks* ranks_;
+  Team* team_;
   int64_t sentBytes_ = 0;
 };
 

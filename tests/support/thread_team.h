@@ -14,18 +14,19 @@
 #include <utility>
 #include <vector>
 
-#include "vdb_madf/slabs/ranks.h"
+#include "vdb_madf/slabs/team.h"
 
-// Ranks that are threads, each with a scratch of its own: what one does not send, the others never have.
+// Members that are threads, each with a scratch of its own: what one does not send, the others never have.
 
 namespace vdb_madf::test {
 
 /// What threads have in common.
-class Team {
+class ThreadTeam {
  public:
-  explicit Team(int ranks) : count(ranks), mail(size_t(ranks)), votes(size_t(ranks)) {}
+  explicit ThreadTeam(int members)
+      : count(members), mail(size_t(members)), votes(size_t(members)) {}
 
-  /// Thrown in a rank when another one failed.
+  /// Thrown in a member when another one failed.
   struct OtherFailed {};
 
   /// Waits for all; the last one does something first.
@@ -48,14 +49,14 @@ class Team {
     failed_ = true;
     all_.notify_all();
   }
-  void post(int rank, const std::string& name, const Bytes& bytes) {
+  void post(int member, const std::string& name, const Bytes& bytes) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    mail[size_t(rank)].emplace_back(name, bytes);
+    mail[size_t(member)].emplace_back(name, bytes);
     ++messages;
   }
 
   const int count;
-  std::vector<std::vector<std::pair<std::string, Bytes>>> mail;  ///< to each rank
+  std::vector<std::vector<std::pair<std::string, Bytes>>> mail;  ///< to each member
   std::vector<std::vector<int64_t>> votes;
   Bytes word;
   int64_t messages = 0;
@@ -68,15 +69,15 @@ class Team {
   bool failed_ = false;
 };
 
-class ThreadRank : public Ranks {
+class ThreadMember : public Team {
  public:
-  ThreadRank(Team& team, int rank) : team_(team), rank_(rank) {}
+  ThreadMember(ThreadTeam& team, int member) : team_(team), member_(member) {}
 
   int count() const override { return team_.count; }
-  int rank() const override { return rank_; }
+  int member() const override { return member_; }
   void exchange(Scratch& own) override {
     team_.meet();
-    for (const auto& [name, bytes] : std::exchange(team_.mail[size_t(rank_)], {}))
+    for (const auto& [name, bytes] : std::exchange(team_.mail[size_t(member_)], {}))
       receive(name, bytes, own);
     team_.meet();
   }
@@ -87,7 +88,7 @@ class ThreadRank : public Ranks {
     vote(values, [](int64_t a, int64_t b) { return std::max(a, b); });
   }
   void broadcast(Bytes& bytes) override {
-    if (rank_ == 0) team_.word = bytes;
+    if (member_ == 0) team_.word = bytes;
     team_.meet();
     bytes = team_.word;
     team_.meet();
@@ -99,32 +100,32 @@ class ThreadRank : public Ranks {
   }
   template <typename F>
   void vote(std::vector<int64_t>& values, const F& join) {
-    team_.votes[size_t(rank_)] = values;
+    team_.votes[size_t(member_)] = values;
     team_.meet([&] {
       std::vector<int64_t> all = team_.votes[0];
       for (size_t r = 1; r < team_.votes.size(); ++r)
         for (size_t i = 0; i < all.size(); ++i) all[i] = join(all[i], team_.votes[r].at(i));
       team_.votes.assign(team_.votes.size(), all);
     });
-    values = team_.votes[size_t(rank_)];
+    values = team_.votes[size_t(member_)];
     team_.meet();
   }
 
-  Team& team_;
-  int rank_;
+  ThreadTeam& team_;
+  int member_;
 };
 
-/// Runs f(rank) in so many threads. @throw what the first of them throws
+/// Runs f(member) in so many threads. @throw what the first of them throws
 template <typename F>
-void asRanks(Team& team, const F& f) {
+void asMembers(ThreadTeam& team, const F& f) {
   std::vector<std::exception_ptr> errors(size_t(team.count));
   std::vector<std::thread> threads;
   for (int r = 0; r < team.count; ++r)
     threads.emplace_back([&, r] {
-      ThreadRank rank(team, r);
+      ThreadMember member(team, r);
       try {
-        f(rank);
-      } catch (const Team::OtherFailed&) {
+        f(member);
+      } catch (const ThreadTeam::OtherFailed&) {
       } catch (...) {
         errors[size_t(r)] = std::current_exception();
         team.fail();

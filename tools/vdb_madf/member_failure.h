@@ -7,17 +7,17 @@
 #include <exception>
 #include <vector>
 
-#include "vdb_madf/slabs/ranks.h"
+#include "vdb_madf/slabs/team.h"
 
 namespace vdb_madf::tools {
 
 /// Another process of the job failed, and says why.
 struct OtherRankFailed {};
 
-/// f() in all ranks, which does not wait for others. If it throws in one, it fails in all.
+/// f() in all members, which does not wait for others. If it throws in one, it fails in all.
 /// @throw what f() throws; OtherRankFailed where it does not
 template <typename F>
-void inAllRanks(Ranks& ranks, const F& f) {
+void inAllMembers(Team& team, const F& f) {
   std::exception_ptr failure;
   try {
     f();
@@ -25,7 +25,7 @@ void inAllRanks(Ranks& ranks, const F& f) {
     failure = std::current_exception();
   }
   std::vector<int64_t> failures{failure ? 1 : 0};
-  ranks.sum(failures);
+  team.sum(failures);
   if (failure) std::rethrow_exception(failure);
   if (failures[0] > 0) throw OtherRankFailed();
 }

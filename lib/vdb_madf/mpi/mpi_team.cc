@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/mpi/mpi_ranks.h"
+#include "vdb_madf/mpi/mpi_team.h"
 
 #include <mpi.h>
 
@@ -50,7 +50,7 @@ void forEachPiece(const Bytes& message, const F& f) {
 
 }  // namespace
 
-MpiRanks::MpiRanks(int* argc, char*** argv) {
+MpiTeam::MpiTeam(int* argc, char*** argv) {
   int provided = 0;
   MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
   if (provided < MPI_THREAD_FUNNELED) {
@@ -58,15 +58,15 @@ MpiRanks::MpiRanks(int* argc, char*** argv) {
     throw std::runtime_error("this MPI does not allow threads (MPI_THREAD_FUNNELED)");
   }
   MPI_Comm_size(MPI_COMM_WORLD, &count_);
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+  MPI_Comm_rank(MPI_COMM_WORLD, &member_);
   outbox_.resize(size_t(count_));
 }
 
-MpiRanks::~MpiRanks() {
+MpiTeam::~MpiTeam() {
   MPI_Finalize();
 }
 
-void MpiRanks::post(int to, const std::string& name, const Bytes& bytes) {
+void MpiTeam::post(int to, const std::string& name, const Bytes& bytes) {
   Bytes& message = outbox_[size_t(to)];
   const auto add = [&message](const auto& part) {
     const uint64_t size = part.size();
@@ -77,15 +77,15 @@ void MpiRanks::post(int to, const std::string& name, const Bytes& bytes) {
   add(bytes);
 }
 
-void MpiRanks::exchange(Scratch& own) {
-  const auto ranks = size_t(count_);
-  std::vector<uint64_t> sent(ranks), coming(ranks);
-  for (size_t r = 0; r < ranks; ++r) sent[r] = outbox_[r].size();
+void MpiTeam::exchange(Scratch& own) {
+  const auto members = size_t(count_);
+  std::vector<uint64_t> sent(members), coming(members);
+  for (size_t r = 0; r < members; ++r) sent[r] = outbox_[r].size();
   MPI_Alltoall(sent.data(), 1, MPI_UINT64_T, coming.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD);
-  std::vector<Bytes> inbox(ranks);
+  std::vector<Bytes> inbox(members);
   std::vector<MPI_Request> requests;
-  // Messages between two ranks do not overtake each other, so chunks need no number.
-  for (size_t r = 0; r < ranks; ++r) {
+  // Messages between two members do not overtake each other, so chunks need no number.
+  for (size_t r = 0; r < members; ++r) {
     inbox[r].resize(coming[r]);
     forEachChunk(coming[r], [&](size_t at, int count) {
       requests.emplace_back();
@@ -98,7 +98,7 @@ void MpiRanks::exchange(Scratch& own) {
     });
   }
   MPI_Waitall(int(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
-  outbox_.assign(ranks, {});
+  outbox_.assign(members, {});
   for (Bytes& message : inbox) {
     forEachPiece(message,
                  [&](const std::string& name, const Bytes& bytes) { receive(name, bytes, own); });
@@ -106,17 +106,17 @@ void MpiRanks::exchange(Scratch& own) {
   }
 }
 
-void MpiRanks::sum(std::vector<int64_t>& values) {
+void MpiTeam::sum(std::vector<int64_t>& values) {
   MPI_Allreduce(MPI_IN_PLACE, values.data(), int(values.size()), MPI_INT64_T, MPI_SUM,
                 MPI_COMM_WORLD);
 }
 
-void MpiRanks::max(std::vector<int64_t>& values) {
+void MpiTeam::max(std::vector<int64_t>& values) {
   MPI_Allreduce(MPI_IN_PLACE, values.data(), int(values.size()), MPI_INT64_T, MPI_MAX,
                 MPI_COMM_WORLD);
 }
 
-void MpiRanks::broadcast(Bytes& bytes) {
+void MpiTeam::broadcast(Bytes& bytes) {
   uint64_t size = bytes.size();
   MPI_Bcast(&size, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
   bytes.resize(size);
@@ -125,7 +125,7 @@ void MpiRanks::broadcast(Bytes& bytes) {
   });
 }
 
-void MpiRanks::abort(int code) {
+void MpiTeam::abort(int code) {
   MPI_Abort(MPI_COMM_WORLD, code);
   std::_Exit(code);
 }

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The ranks of an MPI job: this program is run by mpiexec. All ranks make the same cases.
+// The members of an MPI job: this program is run by mpiexec. All members make the same cases.
 //
 // The random comparison reads from the environment VDB_MADF_CASES (how many) and VDB_MADF_SEED (the
 // first).
 
-#include "vdb_madf/mpi/mpi_ranks.h"
+#include "vdb_madf/mpi/mpi_team.h"
 
 #include <string>
 #include <vector>
@@ -23,9 +23,9 @@ namespace {
 using namespace vdb_madf;
 using namespace vdb_madf::test;
 
-MpiRanks& world() {
-  static MpiRanks ranks(nullptr, nullptr);
-  return ranks;
+MpiTeam& world() {
+  static MpiTeam team(nullptr, nullptr);
+  return team;
 }
 
 /// Bytes that tell from whom to whom they go.
@@ -43,47 +43,47 @@ int64_t sumOf(int64_t value) {
 
 }  // namespace
 
-TEST_CASE("mpi: there are several ranks", "[mpi]") {
+TEST_CASE("mpi: there are several members", "[mpi]") {
   CHECK(world().count() > 1);
   CHECK(sumOf(1) == world().count());
 }
 
 TEST_CASE("mpi: messages arrive whole, at the next exchange", "[mpi]") {
-  Ranks& ranks = world();
+  Team& team = world();
   for (const size_t size : {0u, 1u, 1000u, 3000000u}) {
     MemoryScratch scratch;
-    for (int to = 0; to < ranks.count(); ++to)
+    for (int to = 0; to < team.count(); ++to)
       for (const char* name : {"a", "another piece"})
-        ranks.send(to, name + std::to_string(ranks.rank()),
-                   letter(ranks.rank(), to, size + size_t(to)), scratch);
-    ranks.exchange(scratch);
-    for (int from = 0; from < ranks.count(); ++from)
+        team.send(to, name + std::to_string(team.member()),
+                  letter(team.member(), to, size + size_t(to)), scratch);
+    team.exchange(scratch);
+    for (int from = 0; from < team.count(); ++from)
       for (const char* name : {"a", "another piece"}) {
         REQUIRE(scratch.has(name + std::to_string(from)));
         REQUIRE(scratch.read(name + std::to_string(from)) ==
-                letter(from, ranks.rank(), size + size_t(ranks.rank())));
+                letter(from, team.member(), size + size_t(team.member())));
       }
     MemoryScratch empty;
-    ranks.exchange(empty);
+    team.exchange(empty);
     CHECK_FALSE(empty.has("a0"));
   }
 }
 
 TEST_CASE("mpi: votes and words are those of all", "[mpi]") {
-  Ranks& ranks = world();
-  const int n = ranks.count(), r = ranks.rank();
+  Team& team = world();
+  const int n = team.count(), r = team.member();
   std::vector<int64_t> sums{r, 1, int64_t(r) << 40}, maxima{r, -r, int64_t(r) << 40};
-  ranks.sum(sums);
-  ranks.max(maxima);
+  team.sum(sums);
+  team.max(maxima);
   CHECK(sums == std::vector<int64_t>{n * (n - 1) / 2, n, int64_t(n * (n - 1) / 2) << 40});
   CHECK(maxima == std::vector<int64_t>{n - 1, 0, int64_t(n - 1) << 40});
   Bytes word = r == 0 ? letter(0, 0, 100000) : Bytes(3, 'x');
-  ranks.broadcast(word);
+  team.broadcast(word);
   CHECK(word == letter(0, 0, 100000));
 }
 
-TEST_CASE("mpi: each rank puts the labels of the whole in its slabs", "[mpi]") {
-  Ranks& ranks = world();
+TEST_CASE("mpi: each member puts the labels of the whole in its slabs", "[mpi]") {
+  Team& team = world();
   const uint64_t first = fromEnvironment("VDB_MADF_SEED", 1) + 200000;
   const uint64_t cases = fromEnvironment("VDB_MADF_CASES", 500);
   int64_t put = 0;
@@ -101,21 +101,21 @@ TEST_CASE("mpi: each rank puts the labels of the whole in its slabs", "[mpi]") {
     try {
       whole = segment(*mask, options);
     } catch (const InvalidInput&) {
-      continue;  // all ranks alike
+      continue;  // all members alike
     }
     SlabLimits limits;
     limits.height = rng.chance(0.5) ? 8 : 0;
     limits.leastHeight = options.tidy;
     MemoryScratch scratch;
-    SlabDealer dealer(ranks, scratch);
+    SlabDealer dealer(team, scratch);
     for (const auto& [z, layer] : layersOf(*mask))  // each has read some
-      if ((z >> 3 & 0xff) % ranks.count() == ranks.rank()) dealer.add(layer);
+      if ((z >> 3 & 0xff) % team.count() == team.member()) dealer.add(layer);
     dealer.finish(limits, whole.fillHoles, whole.domain);
     const SlabObject object =
         storedSlabs(scratch, openvdb::gridConstPtrCast<MaskGrid>(mask->copyGridWithNewTree()));
     int64_t different = 0;
     const SlabSegmentation result =
-        segmentSlabs(object, options, scratch, ranks, [&](size_t slab, const SlabGrids& grids) {
+        segmentSlabs(object, options, scratch, team, [&](size_t slab, const SlabGrids& grids) {
           ++put;
           const Int32Grid::Ptr part = whole.grain->deepCopy();
           const CoordBBox inside(Coord(INT32_MIN, INT32_MIN, object.cuts[slab]),
@@ -128,7 +128,7 @@ TEST_CASE("mpi: each rank puts the labels of the whole in its slabs", "[mpi]") {
           different += !areSame(*part, *grids.grain);
         });
     different += result.counts.grains != whole.counts.grains;
-    if (ranks.rank() == 0) different += result.grainVoxels != whole.grainVoxels;
+    if (team.member() == 0) different += result.grainVoxels != whole.grainVoxels;
     INFO(describe(c));
     REQUIRE(sumOf(different) == 0);
   }

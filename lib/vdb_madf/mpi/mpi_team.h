@@ -7,22 +7,22 @@
 #include <string>
 #include <vector>
 
-#include "vdb_madf/slabs/ranks.h"
+#include "vdb_madf/slabs/team.h"
 
 namespace vdb_madf {
 
-/// The processes of an MPI job (MPI_COMM_WORLD), each a rank. All calls are made by the thread that made
+/// The processes of an MPI job (MPI_COMM_WORLD), each a member. All calls are made by the thread that made
 /// it. Messages of any size; they are in memory until exchange().
-class MpiRanks : public Ranks {
+class MpiTeam : public Team {
  public:
   /// Begins MPI (MPI_THREAD_FUNNELED); one for a process. @throw std::runtime_error if this MPI allows
   /// no threads beside its calls.
-  MpiRanks(int* argc, char*** argv);
+  MpiTeam(int* argc, char*** argv);
   /// Ends MPI, with the others.
-  ~MpiRanks() override;
+  ~MpiTeam() override;
 
   int count() const override { return count_; }
-  int rank() const override { return rank_; }
+  int member() const override { return member_; }
   void exchange(Scratch& own) override;
   void sum(std::vector<int64_t>& values) override;
   void max(std::vector<int64_t>& values) override;
@@ -34,8 +34,8 @@ class MpiRanks : public Ranks {
  private:
   void post(int to, const std::string& name, const Bytes& bytes) override;
 
-  int count_ = 1, rank_ = 0;
-  std::vector<Bytes> outbox_;  // to each rank: names and bytes
+  int count_ = 1, member_ = 0;
+  std::vector<Bytes> outbox_;  // to each member: names and bytes
 };
 
 }  // namespace vdb_madf
