@@ -8,9 +8,9 @@
 #include <iostream>
 
 #include "vdb_madf/exports/mesh_file.h"
-#include "vdb_madf/method/initialize.h"
-#include "vdb_madf/method/segment.h"
 #include "vdb_madf/samples/sintered.h"
+#include "vdb_madf/segmentation/initialize.h"
+#include "vdb_madf/segmentation/segment.h"
 
 int main() {
   vdb_madf::initialize();

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <iostream>
 
-#include "vdb_madf/method/initialize.h"
-#include "vdb_madf/method/segment.h"
+#include "vdb_madf/segmentation/initialize.h"
+#include "vdb_madf/segmentation/segment.h"
 
 int main() {
   // OpenVDB wants this once in a program, before any of its grids is used.

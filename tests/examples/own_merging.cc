@@ -8,11 +8,11 @@
 #include <iostream>
 #include <numeric>
 
-#include "vdb_madf/method/graph_metadata.h"
-#include "vdb_madf/method/initialize.h"
-#include "vdb_madf/method/remerge.h"
-#include "vdb_madf/method/segment.h"
 #include "vdb_madf/samples/sintered.h"
+#include "vdb_madf/segmentation/graph_metadata.h"
+#include "vdb_madf/segmentation/initialize.h"
+#include "vdb_madf/segmentation/remerge.h"
+#include "vdb_madf/segmentation/segment.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/write_vdb.h"
 

@@ -19,8 +19,8 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/measure.h"
-#include "vdb_madf/method/segment.h"
 #include "vdb_madf/method/voxel_weights.h"
+#include "vdb_madf/segmentation/segment.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;

@@ -8,7 +8,7 @@
 #include "support/catch.h"
 #include "support/known_bodies.h"
 #include "vdb_madf/measure/measure.h"
-#include "vdb_madf/method/segment.h"
+#include "vdb_madf/segmentation/segment.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;

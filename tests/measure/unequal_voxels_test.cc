@@ -17,7 +17,7 @@
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/grain_network.h"
 #include "vdb_madf/measure/measure.h"
-#include "vdb_madf/method/segment.h"
+#include "vdb_madf/segmentation/segment.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;

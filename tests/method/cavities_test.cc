@@ -12,7 +12,6 @@
 #include "support/random_volume.h"
 #include "support/runs.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/method/segment.h"
 
 namespace {
 
@@ -155,28 +154,4 @@ TEST_CASE("cavities: threads do not matter, and interruption stops", "[cavities]
         cavityVoxels(LeafIndex(index, four.leaves), four));
   StopAtOnce stop;
   CHECK_THROWS_AS(findCavities(index, {}, false, 27, &stop), Interrupted);
-}
-
-TEST_CASE("cavities: get no label, and their balls are those of the body", "[cavities]") {
-  // A ball of radius 9 with a hole in its center: one grain with the hole filled, hollow without.
-  ObjectVolume object(boxAt(Coord(-10), Coord(21)));
-  for (int i = 0; i < object.size(); ++i) {
-    const Coord p = object.coord(i);
-    object[i] = p.x() * p.x() + p.y() * p.y() + p.z() * p.z() <= 81 && p != Coord(0);
-  }
-  SegmentOptions options;
-  options.keepDistance = options.keepManifold = true;
-  const Segmentation s = segment(*toMask(object), options);
-  CHECK(s.counts.cavities == 1);
-  CHECK(s.counts.cavityVoxels == 1);
-  CHECK(s.counts.objectVoxels == countObject(object));
-  CHECK(s.counts.grains == 1);
-  CHECK(s.counts.largestSquaredDistance >= 81);
-  for (const auto& grid : {s.grain, s.distanceSquared, s.manifold}) {
-    CHECK_FALSE(grid->tree().isValueOn(Coord(0)));
-    CHECK(grid->tree().getValue(Coord(0)) == 0);
-    CHECK(int64_t(grid->activeVoxelCount()) == countObject(object));
-  }
-  options.fillHoles = 0;
-  CHECK(segment(*toMask(object), options).counts.largestSquaredDistance < 40);
 }

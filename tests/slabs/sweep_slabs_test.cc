@@ -13,8 +13,8 @@
 #include "support/runs.h"
 #include "support/slab_objects.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/method/graph_metadata.h"
-#include "vdb_madf/method/initialize.h"
+#include "vdb_madf/segmentation/graph_metadata.h"
+#include "vdb_madf/segmentation/initialize.h"
 
 namespace {
 

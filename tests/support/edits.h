@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "vdb_madf/labels/edits.h"
+#include "vdb_madf/edits/edits.h"
 
 namespace vdb_madf::test {
 

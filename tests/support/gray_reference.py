@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The vdb_madf authors
 # SPDX-License-Identifier: Apache-2.0
-"""What SciPy and scikit-image make of gray volumes: tests/volumes/image_object_test.cc compares.
+"""What SciPy and scikit-image make of gray volumes: tests/scans/image_object_test.cc compares.
 
     gray_reference.py FOLDER    writes volumes and results as .npy, and prints a line for each result:
                                 "VOLUME RESULT METHOD NUMBERS..."; or "skipped MODULE"

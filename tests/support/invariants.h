@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "vdb_madf/method/segment.h"
+#include "vdb_madf/segmentation/segment.h"
 
 // What holds for every segmentation, whatever the object: checked without an oracle, so on real
 // data too. Each returns an empty string, or a description of the first violation.

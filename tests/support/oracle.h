@@ -9,7 +9,7 @@
 
 #include "support/dense_volume.h"
 #include "vdb_madf/method/boundary.h"
-#include "vdb_madf/method/segment.h"
+#include "vdb_madf/segmentation/segment.h"
 
 // The whole method by brute force, from its definitions, on dense volumes. Of the library it uses
 // the plain data of the public headers (options, graph, counts) and no code. Steps are those of

@@ -10,7 +10,7 @@
 #include "support/dense_volume.h"
 #include "support/oracle.h"
 #include "support/random_volume.h"
-#include "vdb_madf/method/segment.h"
+#include "vdb_madf/segmentation/segment.h"
 
 namespace vdb_madf::test {
 

@@ -11,7 +11,7 @@
 
 #include "support/catch.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/method/graph_metadata.h"
+#include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
 
 /// Grids and files for the tests of VDB files.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The verb edit, run as a user runs it; what edits do: labels/edit_labels_test.cc.
+// The verb edit, run as a user runs it; what edits do: edits/edit_labels_test.cc.
 
 #include "support/catch.h"
 #include "support/command_runs.h"

@@ -9,7 +9,7 @@
 
 #include "support/catch.h"
 #include "support/command_runs.h"
-#include "vdb_madf/method/initialize.h"
+#include "vdb_madf/segmentation/initialize.h"
 #include "vdb_madf/vdb/write_vdb.h"
 
 using namespace vdb_madf;

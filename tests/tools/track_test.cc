@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The verb track, run as a user runs it; what it finds: labels/track_test.cc.
+// The verb track, run as a user runs it; what it finds: matching/track_test.cc.
 
 #include <sstream>
 

@@ -14,7 +14,7 @@
 
 #include "support/catch.h"
 #include "vdb_madf/grids/grid_types.h"
-#include "vdb_madf/method/initialize.h"
+#include "vdb_madf/segmentation/initialize.h"
 
 using namespace vdb_madf;
 namespace io = openvdb::io;

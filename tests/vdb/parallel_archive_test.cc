@@ -11,7 +11,7 @@
 #include "support/catch.h"
 #include "support/temporary_folder.h"
 #include "support/vdb_files.h"
-#include "vdb_madf/method/initialize.h"
+#include "vdb_madf/segmentation/initialize.h"
 #include "vdb_madf/vdb/write_vdb.h"
 
 // What we write is, byte for byte, what openvdb::io::File writes, but for the UUID.

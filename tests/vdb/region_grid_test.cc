@@ -10,7 +10,7 @@
 #include "support/temporary_folder.h"
 #include "support/vdb_files.h"
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/method/initialize.h"
+#include "vdb_madf/segmentation/initialize.h"
 #include "vdb_madf/vdb/write_vdb.h"
 
 // Domains that are regions, in files.

@@ -14,7 +14,7 @@
 #include "support/temporary_folder.h"
 #include "support/vdb_files.h"
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/method/initialize.h"
+#include "vdb_madf/segmentation/initialize.h"
 #include "vdb_madf/vdb/write_vdb.h"
 
 // VDB files that cannot be read: other files, cut or damaged ones, and those beyond the limits.

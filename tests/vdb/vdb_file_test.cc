@@ -20,7 +20,7 @@
 #include "support/temporary_folder.h"
 #include "support/vdb_files.h"
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/method/initialize.h"
+#include "vdb_madf/segmentation/initialize.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;

@@ -8,7 +8,7 @@
 #include "support/catch.h"
 #include "support/temporary_folder.h"
 #include "support/vdb_files.h"
-#include "vdb_madf/method/initialize.h"
+#include "vdb_madf/segmentation/initialize.h"
 #include "vdb_madf/vdb/read_vdb.h"
 
 using namespace vdb_madf;

@@ -13,9 +13,9 @@
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/open_image.h"
-#include "vdb_madf/volumes/image_box.h"
+#include "vdb_madf/scans/image_box.h"
+#include "vdb_madf/scans/read_mask.h"
 #include "vdb_madf/volumes/read_labels.h"
-#include "vdb_madf/volumes/read_mask.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/volumes/scan_region.h"
+#include "vdb_madf/scans/scan_region.h"
 
 #include <random>
 

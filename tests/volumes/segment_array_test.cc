@@ -10,7 +10,7 @@
 #include "support/catch.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/method/segment.h"
+#include "vdb_madf/segmentation/segment.h"
 
 using namespace vdb_madf;
 

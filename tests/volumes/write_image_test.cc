@@ -14,9 +14,9 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/images/open_image.h"
-#include "vdb_madf/volumes/image_box.h"
+#include "vdb_madf/scans/image_box.h"
+#include "vdb_madf/scans/read_mask.h"
 #include "vdb_madf/volumes/label_type.h"
-#include "vdb_madf/volumes/read_mask.h"
 #include "vdb_madf/volumes/write_image.h"
 
 using namespace vdb_madf;

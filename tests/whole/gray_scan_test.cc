@@ -10,13 +10,13 @@
 #include "support/catch.h"
 #include "support/images.h"
 #include "support/memory_image.h"
-#include "vdb_madf/images/filtered_image.h"
 #include "vdb_madf/images/open_image.h"
-#include "vdb_madf/method/segment.h"
 #include "vdb_madf/samples/snow.h"
+#include "vdb_madf/scans/filtered_image.h"
+#include "vdb_madf/scans/image_box.h"
+#include "vdb_madf/scans/image_object.h"
+#include "vdb_madf/segmentation/segment.h"
 #include "vdb_madf/volumes/dense_volume.h"
-#include "vdb_madf/volumes/image_box.h"
-#include "vdb_madf/volumes/image_object.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;

@@ -6,8 +6,8 @@
 #include <tbb/global_control.h>
 
 #include "support/catch.h"
-#include "vdb_madf/method/segment.h"
 #include "vdb_madf/samples/pack.h"
+#include "vdb_madf/segmentation/segment.h"
 
 namespace {
 

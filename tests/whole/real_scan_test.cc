@@ -15,8 +15,8 @@
 #include "support/invariants.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/open_image.h"
-#include "vdb_madf/method/segment.h"
-#include "vdb_madf/volumes/read_mask.h"
+#include "vdb_madf/scans/read_mask.h"
+#include "vdb_madf/segmentation/segment.h"
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include "support/catch.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/measure/measure.h"
-#include "vdb_madf/method/segment.h"
 #include "vdb_madf/samples/snow.h"
+#include "vdb_madf/segmentation/segment.h"
 
 namespace {
 

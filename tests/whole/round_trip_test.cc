@@ -14,9 +14,9 @@
 #include "vdb_madf/images/open_image.h"
 #include "vdb_madf/labels/reduced_labels.h"
 #include "vdb_madf/pictures/preview_volume.h"
+#include "vdb_madf/scans/image_box.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/write_vdb.h"
-#include "vdb_madf/volumes/image_box.h"
 #include "vdb_madf/volumes/read_labels.h"
 #include "vdb_madf/volumes/write_image.h"
 

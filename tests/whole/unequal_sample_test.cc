@@ -7,12 +7,12 @@
 #include <array>
 
 #include "support/catch.h"
-#include "vdb_madf/labels/compare.h"
+#include "vdb_madf/matching/compare.h"
 #include "vdb_madf/measure/measure.h"
-#include "vdb_madf/method/segment.h"
 #include "vdb_madf/samples/particles.h"
 #include "vdb_madf/samples/sintered.h"
 #include "vdb_madf/samples/spheres.h"
+#include "vdb_madf/segmentation/segment.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/labels/compare.h"
+#include "vdb_madf/matching/compare.h"
 
 #include <cstdio>
 #include <memory>

@@ -18,15 +18,15 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/grids/resampled_grid.h"
-#include "vdb_madf/images/copy_image.h"
-#include "vdb_madf/images/histogram.h"
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/images/open_image.h"
-#include "vdb_madf/images/resampled_image.h"
-#include "vdb_madf/method/segmentation_metadata.h"
+#include "vdb_madf/scans/copy_image.h"
+#include "vdb_madf/scans/histogram.h"
+#include "vdb_madf/scans/image_box.h"
+#include "vdb_madf/scans/resampled_image.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/write_vdb.h"
-#include "vdb_madf/volumes/image_box.h"
 
 namespace vdb_madf::tools {
 

@@ -11,10 +11,10 @@
 #include "json_file.h"
 #include "outputs.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/edits/edit_labels.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/files/standard_streams.h"
-#include "vdb_madf/labels/edit_labels.h"
-#include "vdb_madf/method/segmentation_metadata.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/write_vdb.h"
 

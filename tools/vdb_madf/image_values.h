@@ -7,8 +7,8 @@
 
 #include "input_options.h"
 #include "json_file.h"
-#include "vdb_madf/images/histogram.h"
 #include "vdb_madf/pictures/plot_type.h"
+#include "vdb_madf/scans/histogram.h"
 
 namespace vdb_madf::tools {
 

@@ -14,9 +14,9 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/image.h"
-#include "vdb_madf/method/graph_metadata.h"
+#include "vdb_madf/scans/image_box.h"
+#include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
-#include "vdb_madf/volumes/image_box.h"
 
 namespace vdb_madf::tools {
 

@@ -11,10 +11,10 @@
 #include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_keys.h"
-#include "vdb_madf/images/filtered_image.h"
-#include "vdb_madf/method/segmentation_metadata.h"
+#include "vdb_madf/scans/filtered_image.h"
+#include "vdb_madf/scans/image_box.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/vdb/slab_folder.h"
-#include "vdb_madf/volumes/image_box.h"
 #include "wrong_usage.h"
 
 namespace vdb_madf::tools {

@@ -12,7 +12,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/labels/compare.h"
+#include "vdb_madf/matching/compare.h"
 
 namespace vdb_madf::tools {
 

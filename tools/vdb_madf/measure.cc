@@ -14,7 +14,7 @@
 #include "scan_option.h"
 #include "text_file.h"
 #include "vdb_madf/exports/measurement_files.h"
-#include "vdb_madf/gray/measure_gray.h"
+#include "vdb_madf/intensity/measure_gray.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
 #include "vdb_madf/pictures/measures_plot.h"

@@ -10,7 +10,7 @@
 #include "vdb_madf/base/voxel_size.h"
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/method/boundary.h"
-#include "vdb_madf/volumes/scan_region.h"
+#include "vdb_madf/scans/scan_region.h"
 
 namespace vdb_madf::tools {
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/method/remerge.h"
+#include "vdb_madf/segmentation/remerge.h"
 
 #include <iostream>
 #include <memory>
@@ -14,8 +14,8 @@
 #include "remerge_slabs.h"
 #include "segment_slabs.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/method/graph_metadata.h"
-#include "vdb_madf/method/segmentation_metadata.h"
+#include "vdb_madf/segmentation/graph_metadata.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/write_vdb.h"
 

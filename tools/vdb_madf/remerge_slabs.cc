@@ -16,7 +16,7 @@
 #include "vdb_madf/base/version.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/measure/grain_sizes.h"
-#include "vdb_madf/method/segmentation_metadata.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/slabs/remerge_slabs.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/slab_folder.h"

@@ -16,8 +16,8 @@
 #include "scan_option.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
-#include "vdb_madf/gray/gray_planes.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/intensity/gray_planes.h"
 #include "vdb_madf/pictures/label_panels.h"
 #include "vdb_madf/pictures/png_file.h"
 

@@ -20,7 +20,7 @@
 #include "message.h"
 #include "outputs.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/method/initialize.h"
+#include "vdb_madf/segmentation/initialize.h"
 #include "version_text.h"
 
 namespace vdb_madf::tools {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "input_options.h"
-#include "vdb_madf/gray/gray_scan.h"
+#include "vdb_madf/intensity/gray_scan.h"
 
 namespace vdb_madf::tools {
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/method/segment.h"
+#include "vdb_madf/segmentation/segment.h"
 #include "vdb_madf/base/memory.h"
 
 #include <algorithm>
@@ -28,8 +28,8 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/measure/measure.h"
-#include "vdb_madf/method/ball_grids.h"
-#include "vdb_madf/method/segment_memory.h"
+#include "vdb_madf/segmentation/ball_grids.h"
+#include "vdb_madf/segmentation/segment_memory.h"
 #include "vdb_madf/vdb/write_vdb.h"
 
 namespace vdb_madf::tools {

@@ -12,7 +12,7 @@
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_keys.h"
-#include "vdb_madf/method/segmentation_metadata.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
 
 namespace vdb_madf::tools {
 

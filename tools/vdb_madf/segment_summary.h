@@ -14,7 +14,7 @@
 #include "json_file.h"
 #include "merge_options.h"
 #include "vdb_madf/measure/grain_sizes.h"
-#include "vdb_madf/method/segment.h"
+#include "vdb_madf/segmentation/segment.h"
 #include "vdb_madf/slabs/segment_slabs.h"
 
 namespace vdb_madf::tools {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "vdb_madf/base/memory.h"
-#include "vdb_madf/method/parameter_sweep.h"
+#include "vdb_madf/segmentation/parameter_sweep.h"
 
 #include <openvdb/Metadata.h>
 
@@ -20,8 +20,8 @@
 #include "text_file.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
-#include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/pictures/sweep_plot.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/slabs/sweep_slabs.h"
 #include "vdb_madf/vdb/read_vdb.h"
 

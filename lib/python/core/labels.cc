@@ -3,8 +3,8 @@
 
 #include "bindings.h"
 #include "mesh_options.h"
+#include "vdb_madf/edits/edit_labels.h"
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/labels/edit_labels.h"
 #include "vdb_madf/labels/grain_colors.h"
 #include "vdb_madf/labels/label_digest.h"
 #include "vdb_madf/labels/label_sizes.h"

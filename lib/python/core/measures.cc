@@ -6,8 +6,8 @@
 
 #include "array_source.h"
 #include "bindings.h"
-#include "vdb_madf/gray/measure_gray.h"
-#include "vdb_madf/labels/compare.h"
+#include "vdb_madf/intensity/measure_gray.h"
+#include "vdb_madf/matching/compare.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
 #include "vdb_madf/measure/measure.h"

@@ -5,12 +5,12 @@
 
 #include "bindings.h"
 #include "vdb_madf/base/memory.h"
-#include "vdb_madf/method/ball_grids.h"
-#include "vdb_madf/method/parameter_sweep.h"
-#include "vdb_madf/method/remerge.h"
-#include "vdb_madf/method/segment.h"
-#include "vdb_madf/method/segment_memory.h"
-#include "vdb_madf/method/segmentation_metadata.h"
+#include "vdb_madf/segmentation/ball_grids.h"
+#include "vdb_madf/segmentation/parameter_sweep.h"
+#include "vdb_madf/segmentation/remerge.h"
+#include "vdb_madf/segmentation/segment.h"
+#include "vdb_madf/segmentation/segment_memory.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
 
 namespace vdb_madf::python {
 

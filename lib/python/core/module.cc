@@ -7,8 +7,8 @@
 #include "vdb_madf/base/size_text.h"
 #include "vdb_madf/base/version.h"
 #include "vdb_madf/images/open_image.h"
-#include "vdb_madf/method/initialize.h"
-#include "vdb_madf/volumes/image_object.h"
+#include "vdb_madf/scans/image_object.h"
+#include "vdb_madf/segmentation/initialize.h"
 
 namespace vdb_madf::python {
 

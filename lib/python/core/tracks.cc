@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "bindings.h"
-#include "vdb_madf/labels/track.h"
+#include "vdb_madf/matching/track.h"
 
 namespace vdb_madf::python {
 

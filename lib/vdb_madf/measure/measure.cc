@@ -13,7 +13,7 @@
 #include "vdb_madf/measure/detail/correlation_decay.h"
 #include "vdb_madf/measure/detail/measuring.h"
 #include "vdb_madf/measure/detail/voxel_pairs.h"
-#include "vdb_madf/method/segment.h"
+#include "vdb_madf/segmentation/segment.h"
 
 namespace vdb_madf {
 

@@ -9,8 +9,8 @@
 #include <functional>
 #include <string>
 
-#include "vdb_madf/method/segmentation_metadata.h"
 #include "vdb_madf/pictures/detail/diagram.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
 
 namespace vdb_madf {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "vdb_madf/method/parameter_sweep.h"
 #include "vdb_madf/pictures/plot_type.h"
+#include "vdb_madf/segmentation/parameter_sweep.h"
 
 namespace vdb_madf {
 

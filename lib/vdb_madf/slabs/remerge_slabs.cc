@@ -5,8 +5,8 @@
 
 #include <utility>
 
-#include "vdb_madf/method/graph_metadata.h"
-#include "vdb_madf/method/segmentation_metadata.h"
+#include "vdb_madf/segmentation/graph_metadata.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/slabs/steps/slab_options.h"
 #include "vdb_madf/slabs/steps/slab_remerge.h"
 

@@ -8,9 +8,9 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/method/detail/segment_options.h"
-#include "vdb_madf/method/graph_metadata.h"
-#include "vdb_madf/method/segmentation_metadata.h"
+#include "vdb_madf/segmentation/detail/segment_options.h"
+#include "vdb_madf/segmentation/graph_metadata.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/slabs/steps/slab_flow.h"
 #include "vdb_madf/slabs/steps/slab_grains.h"
 #include "vdb_madf/slabs/steps/slab_graph.h"

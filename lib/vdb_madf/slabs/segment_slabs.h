@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "vdb_madf/leaves/leaf_index.h"
-#include "vdb_madf/method/segment.h"
+#include "vdb_madf/segmentation/segment.h"
 #include "vdb_madf/slabs/scratch.h"
 #include "vdb_madf/slabs/team.h"
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/method/detail/sweep_rows.h"
+#include "vdb_madf/segmentation/detail/sweep_rows.h"
 #include "vdb_madf/slabs/steps/slab_flaws.h"
 #include "vdb_madf/slabs/steps/slab_options.h"
 #include "vdb_madf/slabs/steps/slab_remerge.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "vdb_madf/grids/label_slabs.h"
-#include "vdb_madf/method/parameter_sweep.h"
+#include "vdb_madf/segmentation/parameter_sweep.h"
 #include "vdb_madf/slabs/scratch.h"
 
 namespace vdb_madf {

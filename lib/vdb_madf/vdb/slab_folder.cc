@@ -19,7 +19,7 @@
 #include "vdb_madf/files/detail/output_place.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/grids/detail/region_metadata.h"
-#include "vdb_madf/method/graph_metadata.h"
+#include "vdb_madf/segmentation/graph_metadata.h"
 
 namespace vdb_madf {
 

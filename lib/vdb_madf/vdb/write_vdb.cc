@@ -10,7 +10,7 @@
 
 #include "vdb_madf/files/detail/file_buffer.h"
 #include "vdb_madf/files/detail/output_stream.h"
-#include "vdb_madf/method/initialize.h"
+#include "vdb_madf/segmentation/initialize.h"
 #include "vdb_madf/vdb/detail/parallel_archive.h"
 #include "vdb_madf/vdb/detail/region_grid.h"
 #include "vdb_madf/vdb/detail/uuid_place.h"

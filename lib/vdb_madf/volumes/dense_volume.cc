@@ -14,8 +14,8 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
 #include "vdb_madf/images/detail/slabs.h"
+#include "vdb_madf/scans/detail/mask_packer.h"
 #include "vdb_madf/volumes/detail/label_packer.h"
-#include "vdb_madf/volumes/detail/mask_packer.h"
 #include "vdb_madf/volumes/detail/sample_slabs.h"
 
 namespace vdb_madf {

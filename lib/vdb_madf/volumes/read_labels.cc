@@ -9,7 +9,7 @@
 #include "vdb_madf/grids/detail/grid_slabs.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/slabs.h"
-#include "vdb_madf/volumes/detail/image_grid.h"
+#include "vdb_madf/scans/detail/image_grid.h"
 #include "vdb_madf/volumes/detail/label_packer.h"
 
 namespace vdb_madf {

@@ -8,7 +8,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
-#include "vdb_madf/method/segment.h"
+#include "vdb_madf/segmentation/segment.h"
 #include "vdb_madf/volumes/dense_volume.h"
 
 namespace vdb_madf {

@@ -4,7 +4,7 @@
 #pragma once
 
 // For programs that hand a mask in and want labels out. No header of OpenVDB comes with this one, so that
-// a file that includes it compiles in a second; method/segment.h has all options and results.
+// a file that includes it compiles in a second; segmentation/segment.h has all options and results.
 
 #include <array>
 #include <cstdint>

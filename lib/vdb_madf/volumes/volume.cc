@@ -13,13 +13,13 @@
 #include "vdb_madf/grids/detail/region_metadata.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
-#include "vdb_madf/images/histogram.h"
+#include "vdb_madf/scans/detail/field_of_view.h"
+#include "vdb_madf/scans/detail/scan_part.h"
+#include "vdb_madf/scans/histogram.h"
+#include "vdb_madf/scans/image_box.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/slab_folder.h"
 #include "vdb_madf/volumes/detail/chosen_part.h"
-#include "vdb_madf/volumes/detail/field_of_view.h"
-#include "vdb_madf/volumes/detail/scan_part.h"
-#include "vdb_madf/volumes/image_box.h"
 #include "vdb_madf/volumes/read_labels.h"
 
 namespace vdb_madf {

@@ -16,8 +16,8 @@
 #include "vdb_madf/grids/selection.h"
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/images/open_image.h"
-#include "vdb_madf/volumes/image_object.h"
-#include "vdb_madf/volumes/scan_region.h"
+#include "vdb_madf/scans/image_object.h"
+#include "vdb_madf/scans/scan_region.h"
 
 namespace vdb_madf {
 

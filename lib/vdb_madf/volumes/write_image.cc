@@ -11,8 +11,8 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/open_image.h"
 #include "vdb_madf/images/shared_image.h"
+#include "vdb_madf/scans/image_box.h"
 #include "vdb_madf/volumes/detail/sample_slabs.h"
-#include "vdb_madf/volumes/image_box.h"
 
 namespace vdb_madf {
 

@@ -10,9 +10,9 @@
 #include <iostream>
 
 #include "vdb_madf/exports/network_file.h"
-#include "vdb_madf/method/initialize.h"
-#include "vdb_madf/method/segment.h"
 #include "vdb_madf/samples/sintered.h"
+#include "vdb_madf/segmentation/initialize.h"
+#include "vdb_madf/segmentation/segment.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/write_vdb.h"
 #include "vdb_madf/volumes/write_image.h"

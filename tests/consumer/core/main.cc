@@ -5,8 +5,8 @@
 
 #include <iostream>
 
-#include "vdb_madf/method/initialize.h"
-#include "vdb_madf/method/segment.h"
+#include "vdb_madf/segmentation/initialize.h"
+#include "vdb_madf/segmentation/segment.h"
 
 int main() {
   vdb_madf::initialize();

@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-#include "vdb_madf/method/graph_part.h"
+#include "vdb_madf/segmentation/graph_part.h"
 
 namespace vdb_madf::detail {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "vdb_madf/method/graph_part.h"
+#include "vdb_madf/segmentation/graph_part.h"
 #include "vdb_madf/slabs/cuts/slab_terminals.h"
 #include "vdb_madf/slabs/store/bytes.h"
 

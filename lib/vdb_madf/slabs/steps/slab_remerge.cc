@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/method/detail/manifold_labels.h"
-#include "vdb_madf/method/graph_metadata.h"
+#include "vdb_madf/segmentation/detail/manifold_labels.h"
+#include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/slabs/cuts/part_check.h"
 #include "vdb_madf/slabs/steps/slab_grains.h"
 #include "vdb_madf/slabs/steps/slab_graph.h"

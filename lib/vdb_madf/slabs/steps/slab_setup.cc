@@ -9,7 +9,7 @@
 
 #include "vdb_madf/method/cavities.h"
 #include "vdb_madf/method/detail/check_background.h"
-#include "vdb_madf/method/detail/segment_options.h"
+#include "vdb_madf/segmentation/detail/segment_options.h"
 
 namespace vdb_madf::detail {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "vdb_madf/volumes/detail/cylinder_axis.h"
+#include "vdb_madf/scans/detail/cylinder_axis.h"
 #include "vdb_madf/volumes/volume.h"
 
 namespace vdb_madf::detail {

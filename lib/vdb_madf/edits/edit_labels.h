@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "vdb_madf/edits/edits.h"
+#include "vdb_madf/grids/grid_types.h"
+
+namespace vdb_madf {
+
+/// What was edited, in the metadata of labels (string): the texts of the edits, joined by "; ".
+inline constexpr char kEditsKey[] = "madf_edits";
+
+/// What an edit did.
+struct EditResult {
+  Edit edit;
+  /// split: the parts, ascending, one of which has the grain's number; merge: the grain.
+  std::vector<int32_t> grains;
+  int64_t droppedGrains = 0, droppedVoxels = 0;
+};
+
+/// New labels, and what came of each edit.
+struct EditedLabels {
+  Int32Grid::Ptr labels;
+  std::vector<EditResult> results;  ///< an entry an edit
+  int64_t grainsBefore = 0, grains = 0;
+  int64_t voxelsBefore = 0, voxels = 0;
+};
+
+/// Edits labels, one edit after the other: each sees what the ones before it left. Labels are the
+/// active voxels, tiles included, of positive value. Grains that no edit names or drops keep their
+/// voxels and numbers (but for `renumber`). Dropped voxels become background, inactive.
+///
+/// merge: the grains become one, whether they touch or not. split: its inverse. A grain is divided
+/// into the grains of the segmentation and the parts of such that it consists of, each as it was; a
+/// grain of the segmentation, or a part of one, in two at its weakest neck (detail/grain_parts.h). A
+/// part has the number that it always has when it is one grain, if that is free: what is merged and
+/// split, or split and merged, has the same labels as before, bit for bit. Otherwise it gets the
+/// least number above all others; if none has the number of the divided grain, the largest gets it.
+/// dropAtFaces: grains that have a voxel with a face neighbor outside the domain; if that is unknown,
+/// outside the box of the grains that are left.
+///
+/// Metadata are those of the labels; kEditsKey tells the edits after those that were there, counts of
+/// a segmentation are brought up to date (segmentation/segmentation_metadata.h: updateCounts()), and a graph
+/// of manifolds goes, for it is not that of edited ones.
+/// @param manifold with the graph of the segmentation that the labels come from (`segment` with
+///   keepManifold); for split alone
+/// @throw InvalidInput that names the edit: a grain that is not there, a diameter where the size of
+///   voxels is unknown, a grain that cannot be split; without manifold or graph, or if these do not
+///   fit the labels, every split; Interrupted.
+EditedLabels editLabels(const Int32Grid& labels, const std::vector<Edit>& edits,
+                        const Int32Grid* manifold = nullptr, Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

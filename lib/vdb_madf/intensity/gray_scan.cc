@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/intensity/gray_scan.h"
+
+#include <utility>
+
+#include "vdb_madf/base/limits.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/scans/image_box.h"
+#include "vdb_madf/vdb/read_vdb.h"
+#include "vdb_madf/volumes/dense_volume.h"
+
+namespace vdb_madf {
+
+namespace {
+
+SampleType typeOf(const openvdb::GridBase& grid) {
+  const std::string type = grid.valueType();
+  if (type == "float") return SampleType::float32;
+  if (type == "double" || type == "int64") return SampleType::float64;
+  return type == "int32" ? SampleType::int32 : SampleType::uint8;  // or a mask
+}
+
+/// A grid as an image of its box.
+class GridReader : public ImageReader {
+ public:
+  GridReader(const std::string& path, openvdb::GridBase::ConstPtr grid, const CoordBBox& box)
+      : grid_(std::move(grid)), box_(box) {
+    path_ = path;
+    files_ = {path};
+    info_.size = toImageSize(box.dim());
+    info_.type = typeOf(*grid_);
+    info_.voxelSize = storedVoxelSize(*grid_);
+    info_.format = "vdb";
+  }
+  void read(int first, int count, void* samples) override {
+    DenseLayout layout;
+    layout.type = info_.type;
+    layout.box = box_;
+    layout.box.min().z() += first;
+    layout.box.max().z() = layout.box.min().z() + count - 1;
+    copyToDense(*grid_, samples, layout);
+  }
+
+ private:
+  openvdb::GridBase::ConstPtr grid_;
+  CoordBBox box_;
+};
+
+GrayScan scanOfGrid(const std::string& path, const VolumeOptions& options,
+                    Interrupter* interrupter) {
+  if (!options.dataset.empty())
+    throw InvalidInput(path + ": a dataset is named, and this is a VDB file: name a grid");
+  const auto chosen =
+      chooseGrid(readVdbHeaders(path, interrupter), path, GridUse::object, options.grid);
+  VdbReadOptions reading;
+  reading.anyVoxelShape = true;
+  reading.wanted = [&chosen](const openvdb::GridBase& grid) {
+    return grid.getName() == chosen->getName() && grid.type() == chosen->type();
+  };
+  const openvdb::GridBase::Ptr grid = readVdb(path, reading, interrupter).at(0);
+  const CoordBBox box = boxOf(*grid);
+  if (box.empty())
+    throw InvalidInput(path + ": grid '" + grid->getName() + "' is empty and has no domain");
+  if (box.dim()[box.maxExtent()] > kMaxImageSide)
+    throw InvalidInput(path + ": grid '" + grid->getName() + "' is too long for a scan");
+  return {std::make_unique<GridReader>(path, grid, box), box.min()};
+}
+
+}  // namespace
+
+CoordBBox GrayScan::box() const {
+  return {first, first + toCoord(image->info().size).offsetBy(-1)};
+}
+
+GrayScan openGrayScan(const std::string& path, const VolumeOptions& options,
+                      Interrupter* interrupter) {
+  if (!options.raw && isVdbFile(path)) return scanOfGrid(path, options, interrupter);
+  if (!options.grid.empty())
+    throw InvalidInput(path + ": a grid is named, and this is no VDB file");
+  return {openVolumeImage(path, options), Coord(0)};
+}
+
+}  // namespace vdb_madf

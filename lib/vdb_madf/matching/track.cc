@@ -1,0 +1,282 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/matching/track.h"
+
+#include <openvdb/Metadata.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/limits.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/labels/detail/relabelled.h"
+#include "vdb_madf/labels/label_sizes.h"
+#include "vdb_madf/matching/compare.h"
+#include "vdb_madf/matching/detail/label_contacts.h"
+#include "vdb_madf/matching/detail/moved_labels.h"
+#include "vdb_madf/matching/detail/rigid_shift.h"
+#include "vdb_madf/segmentation/graph_metadata.h"
+
+namespace vdb_madf {
+
+namespace {
+
+/// The grains of one side, by number.
+using TrackedGrains = std::map<int32_t, TrackedGrain>;
+/// The grains that each grain of one side is linked with.
+using Links = std::map<int32_t, std::set<int32_t>>;
+
+void check(const TrackOptions& options) {
+  if (options.maxShift < 0 || options.maxShift > kMaxShift)
+    throw InvalidInput("the largest shift must lie between 0 and " + std::to_string(kMaxShift) +
+                       " voxels");
+  if (!(options.share > 0 && options.share <= 1))
+    throw InvalidInput("the share of voxels that links grains must lie above 0, and be 1 at most");
+  if (options.minFaces < 0) throw InvalidInput("the fewest faces of a bond must be 0 or more");
+  if (options.shift)
+    for (int axis = 0; axis < 3; ++axis)
+      if (std::abs(int64_t((*options.shift)[axis])) > kMaxExtent)
+        throw InvalidInput("a shift is at most " + std::to_string(kMaxExtent) + " voxels");
+}
+
+/// The box of a domain that has moved; all there is, if it is unknown.
+CoordBBox shownBox(const Int32Grid& labels, const Coord& shift) {
+  const auto domain = storedDomain(labels);
+  if (!domain) return CoordBBox::inf();
+  return {domain->box().min() + shift, domain->box().max() + shift};
+}
+
+TrackedGrains grainsOf(const Int32Grid& labels, Interrupter* interrupter) {
+  TrackedGrains grains;
+  for (const auto& [number, voxels] : labelSizes(labels, interrupter)) {
+    TrackedGrain& grain = grains[number];
+    grain.grain = number;
+    grain.voxels = voxels;
+  }
+  return grains;
+}
+
+/// Counts an overlap with a grain of the other side; 0: with none. They come in ascending order.
+void addOverlap(TrackedGrains& grains, int32_t number, int32_t other, int64_t voxels) {
+  if (!number) return;
+  TrackedGrain& grain = grains.at(number);
+  grain.sharedVoxels += voxels;
+  if (!other || voxels <= grain.overlapVoxels) return;
+  grain.partner = other;
+  grain.overlapVoxels = voxels;
+}
+
+/// The two sides, and how they are linked.
+struct Sides {
+  TrackedGrains before, after;
+  Links fromBefore, fromAfter;
+};
+
+void link(Sides& sides, std::vector<GrainOverlap>& overlaps, double share) {
+  for (GrainOverlap& overlap : overlaps) {
+    const int64_t smaller = std::min(sides.before.at(overlap.before).sharedVoxels,
+                                     sides.after.at(overlap.after).sharedVoxels);
+    overlap.isLink = double(overlap.voxels) >= share * double(smaller);
+    if (!overlap.isLink) continue;
+    sides.fromBefore[overlap.before].insert(overlap.after);
+    sides.fromAfter[overlap.after].insert(overlap.before);
+  }
+}
+
+/// What is said of the grains of one side. `several`: one that is linked with several; `part`: one
+/// that is linked with a grain that is linked with several.
+void judge(TrackedGrains& grains, const Links& own, const Links& other, GrainFate several,
+           GrainFate part, GrainFate none) {
+  for (auto& [number, grain] : grains) {
+    const auto links = own.find(number);
+    grain.links = links == own.end() ? 0 : int64_t(links->second.size());
+    if (grain.sharedVoxels == 0)
+      grain.fate = GrainFate::outside;
+    else if (grain.links == 0)
+      grain.fate = none;
+    else if (grain.links > 1)
+      grain.fate = several;
+    else
+      grain.fate = other.at(*links->second.begin()).size() > 1 ? part : GrainFate::kept;
+  }
+}
+
+/// What a series of labels has used already.
+int64_t lastTrackOf(const Int32Grid& labels) {
+  const auto last = labels.getMetadata<openvdb::Int64Metadata>(kLastTrackKey);
+  return last ? std::clamp<int64_t>(last->value(), 0, std::numeric_limits<int32_t>::max()) : 0;
+}
+
+/// Returns the largest number so far.
+int32_t number(Sides& sides, std::vector<GrainOverlap> links, int64_t last) {
+  std::stable_sort(links.begin(), links.end(), [](const GrainOverlap& a, const GrainOverlap& b) {
+    return a.voxels > b.voxels;
+  });
+  std::set<int32_t> used;
+  for (const GrainOverlap& overlap : links) {
+    TrackedGrain& after = sides.after.at(overlap.after);
+    if (overlap.isLink && after.track == 0 && used.insert(overlap.before).second)
+      after.track = overlap.before;
+  }
+  for (auto& [own, grain] : sides.before) {
+    grain.track = own;
+    last = std::max<int64_t>(last, own);
+  }
+  for (auto& [own, grain] : sides.after) {
+    if (grain.track > 0) continue;
+    if (++last > std::numeric_limits<int32_t>::max())
+      throw InvalidInput("there are no numbers left for new grains: renumber the first labels");
+    grain.track = int32_t(last);
+  }
+  return int32_t(last);
+}
+
+using Pair = std::pair<int32_t, int32_t>;
+
+/// Of the bonds of one side. `lost`: between grains that are linked, but have no such bond there.
+void judge(std::vector<TrackedBond>& bonds, const Links& links, const std::set<Pair>& there,
+           BondFate lost) {
+  for (TrackedBond& bond : bonds) {
+    const auto first = links.find(bond.first), second = links.find(bond.second);
+    if (bond.fate == BondFate::outside || first == links.end() || second == links.end()) continue;
+    bond.fate = lost;
+    for (const int32_t a : first->second) {
+      if (bond.fate == lost && second->second.count(a)) bond.fate = BondFate::inside;
+      for (const int32_t b : second->second)
+        if (a != b && there.count({std::min(a, b), std::max(a, b)})) bond.fate = BondFate::kept;
+    }
+  }
+}
+
+/// \p shared: the same labels, as far as both volumes show them.
+std::vector<TrackedBond> bondsOf(const Int32Grid& labels, const Int32Grid& shared, int64_t minFaces,
+                                 Interrupter* interrupter) {
+  std::map<Pair, int64_t> sharedFaces;
+  for (const detail::LabelContact& contact : detail::labelContacts(shared, interrupter))
+    sharedFaces[{contact.first, contact.second}] = contact.faces;
+  std::vector<TrackedBond> bonds;
+  for (const detail::LabelContact& contact : detail::labelContacts(labels, interrupter)) {
+    if (contact.faces < minFaces) continue;
+    const auto here = sharedFaces.find({contact.first, contact.second});
+    const int64_t faces = here == sharedFaces.end() ? 0 : here->second;
+    bonds.push_back(
+        {contact.first, contact.second, contact.faces, faces,
+         faces < std::max<int64_t>(minFaces, 1) ? BondFate::outside : BondFate::unmatched});
+  }
+  return bonds;
+}
+
+/// Of those in what both volumes show.
+std::set<Pair> pairsOf(const std::vector<TrackedBond>& bonds) {
+  std::set<Pair> pairs;
+  for (const TrackedBond& bond : bonds)
+    if (bond.fate != BondFate::outside) pairs.emplace(bond.first, bond.second);
+  return pairs;
+}
+
+std::vector<TrackedGrain> listed(const TrackedGrains& grains) {
+  std::vector<TrackedGrain> list;
+  for (const auto& [number, grain] : grains) list.push_back(grain);
+  return list;
+}
+
+}  // namespace
+
+const char* toString(GrainFate fate) {
+  switch (fate) {
+    case GrainFate::kept:
+      return "kept";
+    case GrainFate::split:
+      return "split";
+    case GrainFate::merged:
+      return "merged";
+    case GrainFate::vanished:
+      return "vanished";
+    case GrainFate::appeared:
+      return "new";
+    case GrainFate::outside:
+      break;
+  }
+  return "outside";
+}
+
+const char* toString(BondFate fate) {
+  switch (fate) {
+    case BondFate::kept:
+      return "kept";
+    case BondFate::broken:
+      return "broken";
+    case BondFate::created:
+      return "new";
+    case BondFate::inside:
+      return "inside";
+    case BondFate::unmatched:
+      return "unmatched";
+    case BondFate::outside:
+      break;
+  }
+  return "outside";
+}
+
+Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions& options,
+             Interrupter* interrupter) {
+  check(options);
+  Tracks tracks;
+  tracks.shift = options.shift ? *options.shift
+                               : detail::findShift(detail::labelledVoxels(before),
+                                                   detail::labelledVoxels(after), options.maxShift,
+                                                   interrupter);
+  Sides sides{grainsOf(before, interrupter), grainsOf(after, interrupter), {}, {}};
+  const auto first =
+      detail::movedLabels(before, tracks.shift, shownBox(after, Coord(0)), interrupter);
+  const auto second =
+      detail::movedLabels(after, Coord(0), shownBox(before, tracks.shift), interrupter);
+  const std::vector<Overlap> overlaps = compare(*first, *second, interrupter).overlaps;
+  for (const Overlap& overlap : overlaps) {
+    addOverlap(sides.before, overlap.truth, overlap.test, overlap.voxels);
+    addOverlap(sides.after, overlap.test, overlap.truth, overlap.voxels);
+    if (overlap.truth) tracks.voxelsBefore += overlap.voxels;
+    if (overlap.test) tracks.voxelsAfter += overlap.voxels;
+    if (!overlap.truth || !overlap.test) continue;
+    tracks.commonVoxels += overlap.voxels;
+    tracks.overlaps.push_back({overlap.truth, overlap.test, overlap.voxels, false});
+  }
+  link(sides, tracks.overlaps, options.share);
+  judge(sides.before, sides.fromBefore, sides.fromAfter, GrainFate::split, GrainFate::merged,
+        GrainFate::vanished);
+  judge(sides.after, sides.fromAfter, sides.fromBefore, GrainFate::merged, GrainFate::split,
+        GrainFate::appeared);
+  tracks.lastTrack = number(sides, tracks.overlaps, lastTrackOf(before));
+  tracks.before = listed(sides.before);
+  tracks.after = listed(sides.after);
+  tracks.bondsBefore = bondsOf(before, *first, options.minFaces, interrupter);
+  tracks.bondsAfter = bondsOf(after, *second, options.minFaces, interrupter);
+  const std::set<Pair> pairsBefore = pairsOf(tracks.bondsBefore),
+                       pairsAfter = pairsOf(tracks.bondsAfter);
+  judge(tracks.bondsBefore, sides.fromBefore, pairsAfter, BondFate::broken);
+  judge(tracks.bondsAfter, sides.fromAfter, pairsBefore, BondFate::created);
+  return tracks;
+}
+
+Int32Grid::Ptr trackedLabels(const Int32Grid& after, const Tracks& tracks,
+                             Interrupter* interrupter) {
+  std::vector<Pair> to;
+  for (const TrackedGrain& grain : tracks.after) to.emplace_back(grain.grain, grain.track);
+  const auto labels = detail::relabelled(after, to, interrupter);
+  const Coord& s = tracks.shift;
+  const std::string shift =
+      std::to_string(s.x()) + "," + std::to_string(s.y()) + "," + std::to_string(s.z());
+  removeGraph(*labels);  // of manifolds, should these have been tracked themselves
+  labels->insertMeta(kTrackKey, openvdb::StringMetadata("shift " + shift));
+  labels->insertMeta(kLastTrackKey, openvdb::Int64Metadata(tracks.lastTrack));
+  return labels;
+}
+
+}  // namespace vdb_madf

@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/scans/detail/histogram_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "vdb_madf/images/detail/sample_conversion.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+constexpr size_t kRowsPerChunk = 16;
+/// Bins narrower than this (in powers of two) would not multiply out.
+constexpr int kLeastExponent = -1000;
+
+template <typename T>
+bool isFinite(T value) {
+  if constexpr (std::is_integral_v<T>)
+    return true;
+  else
+    return std::isfinite(value);
+}
+
+/// The least exponent whose bins hold these values in less than kBins, and whole numbers below
+/// 2^53; not below 0 for integers. It does not fall when the range grows.
+int neededExponent(double low, double high, bool isIntegral) {
+  int exponent = 0, digits = 0;
+  if (!isIntegral) {
+    std::frexp(std::max(std::abs(low), std::abs(high)), &digits);
+    exponent = std::max(digits - 53, kLeastExponent);
+  }
+  std::frexp(high / 2 - low / 2, &digits);  // 2^digits <= range < 2^(digits + 1), if there is one
+  if (high > low) exponent = std::max(exponent, digits - 17);
+  while (std::floor(std::ldexp(high, -exponent)) - std::floor(std::ldexp(low, -exponent)) >=
+         double(HistogramBuilder::kBins))
+    ++exponent;
+  return exponent;
+}
+
+}  // namespace
+
+int64_t HistogramBuilder::binOf(double value) const {
+  const double scaled = value * scale_;  // below 2^53
+  const auto bin = int64_t(scaled);
+  return bin - (double(bin) > scaled);
+}
+
+void HistogramBuilder::widen(int exponent) {
+  const int shift = std::min(exponent - exponent_, 63);
+  const int64_t begin = binOf(min_), end = binOf(max_) + 1;
+  std::vector<int64_t> counts(size_t{kBins}), runs(size_t{kBins});
+  for (int64_t bin = begin; bin < end; ++bin) {
+    const auto from = size_t(bin & (kBins - 1)), to = size_t((bin >> shift) & (kBins - 1));
+    counts[to] += counts_[from];
+    runs[to] += runs_[from];
+  }
+  counts_.swap(counts);
+  runs_.swap(runs);
+  setExponent(exponent);
+}
+
+void HistogramBuilder::setExponent(int exponent) {
+  exponent_ = exponent;
+  scale_ = std::ldexp(1, -exponent);
+}
+
+void HistogramBuilder::include(double low, double high, bool isIntegral) {
+  if (!any_) {
+    counts_.assign(size_t{kBins}, 0);
+    runs_.assign(size_t{kBins}, 0);
+    setExponent(neededExponent(low, high, isIntegral));
+    min_ = low;
+    max_ = high;
+    any_ = true;
+    return;
+  }
+  if (low >= min_ && high <= max_) return;
+  const double newLow = std::min(low, min_), newHigh = std::max(high, max_);
+  const int exponent = neededExponent(newLow, newHigh, isIntegral);
+  if (exponent > exponent_) widen(exponent);
+  min_ = newLow;
+  max_ = newHigh;
+}
+
+void HistogramBuilder::addValue(double value) {
+  if (few_.size() > kFewValues) return;
+  const auto place = std::lower_bound(few_.begin(), few_.end(), value);
+  if (place == few_.end() || *place != value) few_.insert(place, value);
+}
+
+/// True if the row has no other values than these, which are then counted: mostly so in a mask.
+template <typename T>
+bool HistogramBuilder::addTwoValues(const T* samples, size_t count, T low, T high) {
+  size_t highs = 0, others = 0, changes = 0;
+  for (size_t i = 0; i < count; ++i) {
+    highs += samples[i] == high;
+    others += size_t((samples[i] != low) & (samples[i] != high));
+  }
+  if (others > 0) return false;
+  for (size_t i = 1; i < count; ++i) changes += samples[i] != samples[i - 1];
+  // Each run has a beginning and an end.
+  const size_t ends = changes + size_t(samples[0] == high) + size_t(samples[count - 1] == high);
+  const auto highRuns = int64_t(ends / 2);
+  this->count(binOf(double(high)), int64_t(highs), highRuns);
+  addValue(double(high));
+  whole_ &= double(high) == std::floor(double(high));
+  if (highs == count) return true;
+  this->count(binOf(double(low)), int64_t(count - highs), int64_t(changes) + 1 - highRuns);
+  addValue(double(low));
+  whole_ &= double(low) == std::floor(double(low));
+  return true;
+}
+
+template <typename T>
+void HistogramBuilder::addRuns(const T* samples, size_t count) {
+  for (size_t i = 0; i < count;) {
+    if (!isFinite(samples[i])) {
+      ++i;
+      continue;
+    }
+    size_t end = i + 1;
+    while (end < count && samples[end] == samples[i]) ++end;
+    const auto value = double(samples[i]);
+    this->count(binOf(value), int64_t(end - i), 1);
+    addValue(value);
+    if constexpr (!std::is_integral_v<T>) whole_ &= value == std::floor(value);
+    i = end;
+  }
+}
+
+template <typename T>
+void HistogramBuilder::addRow(const T* samples, size_t count) {
+  size_t finite = 0;
+  for (size_t i = 0; i < count; ++i) finite += isFinite(samples[i]);
+  finite_ += int64_t(finite);
+  notFinite_ += int64_t(count - finite);
+  if (finite == 0) return;
+  T low = *std::find_if(samples, samples + count, isFinite<T>), high = low;
+  for (size_t i = 0; i < count; ++i) {
+    const T value = isFinite(samples[i]) ? samples[i] : low;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  include(double(low), double(high), std::is_integral_v<T>);
+  if (finite < count || !addTwoValues(samples, count, low, high)) addRuns(samples, count);
+}
+
+void HistogramBuilder::add(const HistogramBuilder& other) {
+  finite_ += other.finite_;
+  notFinite_ += other.notFinite_;
+  whole_ &= other.whole_;
+  for (const double value : other.few_) addValue(value);
+  if (!other.any_) return;
+  // Integers have whole bins on both sides, so the exponents say what else to include.
+  include(other.min_, other.max_, other.exponent_ >= 0);
+  if (other.exponent_ > exponent_) widen(other.exponent_);
+  const int shift = std::min(exponent_ - other.exponent_, 63);
+  for (int64_t bin = other.binOf(other.min_); bin <= other.binOf(other.max_); ++bin) {
+    const auto from = size_t(bin & (kBins - 1));
+    count(bin >> shift, other.counts_[from], other.runs_[from]);
+  }
+}
+
+Histogram HistogramBuilder::result(SampleType type) const {
+  Histogram histogram;
+  histogram.type = type;
+  histogram.finite = finite_;
+  histogram.notFinite = notFinite_;
+  histogram.whole = whole_;
+  histogram.onlyFew = few_.size() <= kFewValues;
+  histogram.few = few_;
+  if (!histogram.onlyFew) histogram.few.clear();
+  if (!any_) return histogram;
+  histogram.width = std::ldexp(1, exponent_);
+  histogram.first = binOf(min_);
+  histogram.min = min_;
+  histogram.max = max_;
+  for (int64_t bin = histogram.first; bin <= binOf(max_); ++bin) {
+    histogram.counts.push_back(counts_[size_t(bin & (kBins - 1))]);
+    histogram.runs.push_back(runs_[size_t(bin & (kBins - 1))]);
+  }
+  return histogram;
+}
+
+CountedImage::CountedImage(ImageReader& image, RowParts parts)
+    : image_(image), parts_(std::move(parts)) {
+  info_ = image.info();
+  path_ = image.path();
+  files_ = image.files();
+}
+
+void CountedImage::read(int first, int count, void* samples) {
+  image_.read(first, count, samples);
+  const auto nx = size_t(info_.size.x), ny = size_t(info_.size.y);
+  withSampleType(info_.type, [&](auto sample) {
+    const auto* rows = static_cast<const decltype(sample)*>(samples);
+    for (size_t z = 0; z < size_t(count) && !parts_; ++z) {
+      const auto *firstRow = rows + z * nx * ny, *lastRow = firstRow + (ny - 1) * nx;
+      lookAtCorners({double(firstRow[0]), double(firstRow[nx - 1]), double(lastRow[0]),
+                     double(lastRow[nx - 1])});
+    }
+    parallelFor(size_t(info_.size.y) * size_t(count), kRowsPerChunk, nullptr,
+                [&](size_t begin, size_t end) {
+                  HistogramBuilder& builder = builders_.local();
+                  for (size_t row = begin; row < end; ++row) {
+                    if (!parts_) {
+                      builder.addRow(rows + row * nx, nx);
+                      continue;
+                    }
+                    for (const auto& [from, to] : parts_(int(row % ny), first + int(row / ny)))
+                      builder.addRow(rows + row * nx + from, size_t(to - from));
+                  }
+                });
+  });
+}
+
+void CountedImage::lookAtCorners(const double (&corners)[4]) {
+  if (!corner_) corner_ = corners[0];
+  for (const double corner : corners) cornersDiffer_ |= !(corner == *corner_);
+}
+
+Histogram CountedImage::histogram() const {
+  HistogramBuilder all;
+  for (const HistogramBuilder& builder : builders_) all.add(builder);
+  Histogram histogram = all.result(info_.type);
+  if (corner_ && !cornersDiffer_ && isFinite(*corner_)) histogram.corner = corner_;
+  return histogram;
+}
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include "vdb_madf/scans/detail/histogram_builder.h"
+#include "vdb_madf/scans/image_object.h"
+
+namespace vdb_madf::detail {
+
+/// What is read of an image of this size. @throw InvalidInput if that is nothing.
+CoordBBox boxOf(const ScanPart& part, const ImageSize& size);
+
+/// Leaves a grid the active voxels of the part, and tells it its domain.
+/// @return how many of the box were left out
+int64_t cutTo(const ScanPart& part, MaskGrid& mask);
+int64_t cutTo(const ScanPart& part, Int32Grid& labels);
+
+/// The parts of the rows of such an image that lie in the domain.
+RowParts rowsOf(const ScanPart& part, const ImageSize& size);
+
+/// Of the voxels of an image that lie in the domain; slices without any are not read. Says nothing
+/// of corners. @throw as histogramOf()
+Histogram histogramIn(const ScanPart& part, ImageReader& image, Interrupter* interrupter);
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,274 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/scans/image_object.h"
+
+#include <openvdb/Metadata.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/object_keys.h"
+#include "vdb_madf/scans/detail/histogram_builder.h"
+#include "vdb_madf/scans/detail/scan_part.h"
+#include "vdb_madf/scans/filtered_image.h"
+#include "vdb_madf/scans/histogram.h"
+#include "vdb_madf/scans/mask_cleaning.h"
+#include "vdb_madf/scans/read_mask.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using detail::shortestDecimal;
+
+std::string percent(int64_t part, int64_t whole) {
+  return detail::fixedDecimal(100 * double(part) / double(whole), 1) + " %";
+}
+
+using ThresholdOf = std::optional<double> (*)(const Histogram&);
+
+/// What the threshold would be without a value that fills the corners of all slices of a gray image,
+/// as it does around a round field of view; none if that hardly changes the object.
+std::optional<double> thresholdInside(const Histogram& histogram, ThresholdOf thresholdOf,
+                                      double threshold) {
+  constexpr double kLittle = 0.001;  // of the voxels
+  if (kindOf(histogram) != ImageKind::gray) return std::nullopt;
+  const auto inside = withoutCorner(histogram);
+  const auto other = inside ? thresholdOf(*inside) : std::nullopt;
+  if (!other) return std::nullopt;
+  const auto change = double(voxelsFrom(histogram, threshold) - voxelsFrom(histogram, *other));
+  if (std::abs(change) <= kLittle * double(histogram.finite)) return std::nullopt;
+  return other;
+}
+
+std::string cornerText(const Histogram& histogram) {
+  return "without the value " + shortestDecimal(*histogram.corner) +
+         ", which the corners of all slices have";
+}
+
+std::string grayRefusal(const Histogram& histogram) {
+  std::string text = "is a gray image (" + sampleTypeName(histogram.type) + ", values " +
+                     shortestDecimal(histogram.min) + " to " + shortestDecimal(histogram.max) +
+                     "; " + histogramLine(histogram) + "): say which values are object";
+  if (const auto otsu = otsuThreshold(histogram)) {
+    const auto voxels = histogram.finite + histogram.notFinite;
+    text += "; Otsu's threshold is " + shortestDecimal(*otsu) + ", which takes " +
+            percent(voxelsFrom(histogram, *otsu), voxels);
+    if (const auto inside = thresholdInside(histogram, otsuThreshold, *otsu))
+      text += ", or " + shortestDecimal(*inside) + " " + cornerText(histogram) + ", which takes " +
+              percent(voxelsFrom(histogram, *inside), voxels);
+  }
+  return text;
+}
+
+std::string phasesRefusal(const Histogram& histogram) {
+  std::string text = "has the values";
+  for (const double value : histogram.few)
+    text += (value == histogram.few[0] ? " " : ", ") + shortestDecimal(value);
+  return text + ": say which of them are object";
+}
+
+using Part = std::optional<ScanPart>;
+
+struct PartMasks {
+  std::vector<MaskGrid::Ptr> masks;
+  int64_t leftOut = 0;  ///< of the first
+};
+
+/// One mask a selection, of the part of the image. `take` gets the layers of the first.
+PartMasks readPart(ImageReader& image, const std::vector<Selection>& selections, const Part& part,
+                   Interrupter* interrupter, const TakeLayer& take = nullptr) {
+  int64_t leftOutOfLayers = 0;
+  LayerRead layerRead;
+  if (take)
+    layerRead = [&](const std::vector<MaskGrid::Ptr>& masks) {
+      if (part) leftOutOfLayers += detail::cutTo(*part, *masks[0]);
+      masks[0]->tree().voxelizeActiveTiles();
+      take(masks[0]->tree());
+      masks[0]->clear();
+    };
+  if (!part) return {readMasks(image, selections, interrupter, std::nullopt, layerRead), 0};
+  PartMasks result{
+      readMasks(image, selections, interrupter, detail::boxOf(*part, image.info().size), layerRead),
+      leftOutOfLayers};
+  for (const MaskGrid::Ptr& mask : result.masks) {
+    const int64_t leftOut = detail::cutTo(*part, *mask);
+    if (mask == result.masks[0]) result.leftOut += leftOut;
+  }
+  if (selections[0].invert) result.leftOut = 0;
+  return result;
+}
+
+/// What is not 0 (or, inverted, what is), unless that would be a guess.
+ImageObject plainMask(ImageReader& image, const Selection& nonZero, const Part& part,
+                      Interrupter* interrupter, const TakeLayer& take) {
+  detail::CountedImage counted(image, part ? detail::rowsOf(*part, image.info().size) : nullptr);
+  const PartMasks read = readPart(counted, {nonZero}, part, interrupter, take);
+  const Histogram histogram = counted.histogram();
+  const ImageKind kind = kindOf(histogram);
+  if (kind == ImageKind::gray) throw SelectionNeeded(image.path() + ": " + grayRefusal(histogram));
+  if (kind == ImageKind::phases)
+    throw SelectionNeeded(image.path() + ": " + phasesRefusal(histogram));
+  return {read.masks[0], read.leftOut, kind == ImageKind::labels && !nonZero.invert};
+}
+
+double automaticThreshold(ImageReader& image, AutomaticThreshold method, const Part& part,
+                          Interrupter* interrupter) {
+  const Histogram histogram =
+      part ? detail::histogramIn(*part, image, interrupter) : histogramOf(image, interrupter);
+  const bool isOtsu = method == AutomaticThreshold::otsu;
+  const ThresholdOf thresholdOf = isOtsu ? otsuThreshold : valleyThreshold;
+  const auto threshold = thresholdOf(histogram);
+  if (!threshold && isOtsu)
+    throw InvalidInput(image.path() + ": has but one value, so Otsu's threshold cannot divide it");
+  if (!threshold)
+    throw SelectionNeeded(
+        image.path() + ": its histogram (" + histogramLine(histogram) +
+        ") has no two modes with a valley between them: choose another threshold");
+  if (const auto inside = thresholdInside(histogram, thresholdOf, *threshold))
+    throw SelectionNeeded(image.path() + ": the threshold would be " + shortestDecimal(*threshold) +
+                          ", but " + shortestDecimal(*inside) + " " + cornerText(histogram) +
+                          " (a round field of view?): choose one of the two by its value");
+  return *threshold;
+}
+
+/// Voxels from `high` on, and those from `low` on that are connected with them; if the selection is
+/// inverted, all others.
+ImageObject hysteresisMask(ImageReader& image, double low, const Selection& high, const Part& part,
+                           Interrupter* interrupter) {
+  Selection below = Selection::threshold(low);
+  below.invert = true;
+  std::vector<Selection> selections{Selection::threshold(low), Selection::threshold(high.low)};
+  if (high.invert) selections.push_back(below);
+  const PartMasks read = readPart(image, selections, part, interrupter);
+  const std::vector<MaskGrid::Ptr>& masks = read.masks;
+  const MaskGrid::Ptr object = masks[0];
+  detail::WorkPart end(interrupter, 100, 100);
+  if (!high.invert) {
+    keepSeeded(*object, *masks[1], &end);
+    return {object, read.leftOut};
+  }
+  const MaskGrid::Ptr seeded = object->deepCopy();
+  keepSeeded(*seeded, *masks[1], &end);
+  object->tree().topologyDifference(seeded->tree());
+  object->tree().topologyUnion(masks[2]->tree());
+  return {object};
+}
+
+std::string describe(const Selection& selection, const GrayOptions& gray) {
+  const std::string low = shortestDecimal(selection.low), high = shortestDecimal(selection.high);
+  std::string text;
+  switch (selection.kind) {
+    case Selection::Kind::nonZero:
+      text = "value not 0";
+      break;
+    case Selection::Kind::phase:
+      text = "value " + low;
+      for (const double value : selection.more) text += " or " + shortestDecimal(value);
+      break;
+    case Selection::Kind::threshold:
+      text = "value >= " + low;
+      break;
+    case Selection::Kind::range:
+      text = "value " + low + " to " + high;
+      break;
+  }
+  if (gray.automatic == AutomaticThreshold::otsu) text += " (otsu)";
+  if (gray.automatic == AutomaticThreshold::valley) text += " (valley)";
+  if (gray.low) text += ", or >= " + shortestDecimal(*gray.low) + " connected with such";
+  return text + (selection.invert ? ", inverted" : "");
+}
+
+void setText(openvdb::GridBase& grid, const std::string& text) {
+  grid.insertMeta(kObjectKey, openvdb::StringMetadata(text));
+}
+
+void describeObject(const Selection& selection, const GrayOptions& gray, MaskGrid& object) {
+  std::string text;
+  if (gray.median > 0) text += "median " + std::to_string(gray.median) + ", ";
+  if (gray.smooth > 0) text += "smooth " + shortestDecimal(gray.smooth) + ", ";
+  setText(object, text + describe(selection, gray));
+  if (selection.kind == Selection::Kind::threshold)
+    object.insertMeta(kThresholdKey, openvdb::DoubleMetadata(selection.low));
+  if (gray.low) object.insertMeta(kThresholdLowKey, openvdb::DoubleMetadata(*gray.low));
+}
+
+}  // namespace
+
+bool readsGray(const GrayOptions& gray) {
+  return gray.median > 0 || gray.smooth > 0 || gray.low ||
+         gray.automatic != AutomaticThreshold::none;
+}
+
+std::unique_ptr<ImageReader> filteredImage(std::unique_ptr<ImageReader> image,
+                                           const GrayOptions& gray) {
+  if (gray.median != 0) image = medianImage(std::move(image), gray.median);
+  if (gray.smooth != 0) image = smoothedImage(std::move(image), gray.smooth);
+  return image;
+}
+
+ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& open,
+                        const std::optional<Selection>& selection, const GrayOptions& gray,
+                        const std::optional<ScanPart>& part, Interrupter* interrupter,
+                        const TakeLayer& take) {
+  const auto image = [&] { return filteredImage(open(), gray); };
+  const bool automatic = gray.automatic != AutomaticThreshold::none;
+  Selection chosen = selection.value_or(Selection{});
+  if (automatic) {
+    detail::WorkPart counting(interrupter, 0, 50);
+    const bool invert = chosen.invert;
+    chosen = Selection::threshold(automaticThreshold(*image(), gray.automatic, part, &counting));
+    chosen.invert = invert;
+  }
+  detail::WorkPart reading(interrupter, automatic ? 50 : 0, 100);
+  const bool needsWhole = gray.low || gray.despeckle > 1;
+  const TakeLayer takeRead = needsWhole ? nullptr : take;
+  ImageObject object;
+  if (gray.low)
+    object = hysteresisMask(*image(), *gray.low, chosen, part, &reading);
+  else if (chosen.kind == Selection::Kind::nonZero)
+    object = plainMask(*image(), chosen, part, &reading, takeRead);
+  else {
+    const PartMasks read = readPart(*image(), {chosen}, part, &reading, takeRead);
+    object = {read.masks[0], read.leftOut};
+  }
+  if (readsGray(gray)) describeObject(chosen, gray, *object.mask);
+  despeckleObject(*object.mask, gray.despeckle, interrupter);
+  if (take && needsWhole) takeLayers(object.mask->tree(), take);
+  return object;
+}
+
+void takeLayers(MaskTree& object, const TakeLayer& take) {
+  object.voxelizeActiveTiles();
+  std::vector<const MaskTree::LeafNodeType*> leaves;
+  for (auto leaf = object.cbeginLeaf(); leaf; ++leaf) leaves.push_back(&*leaf);
+  std::stable_sort(leaves.begin(), leaves.end(),
+                   [](const auto* a, const auto* b) { return a->origin().z() < b->origin().z(); });
+  for (auto next = leaves.begin(); next != leaves.end();) {
+    MaskTree layer;
+    const int z = (*next)->origin().z();
+    for (; next != leaves.end() && (*next)->origin().z() == z; ++next)
+      layer.addLeaf(new MaskTree::LeafNodeType(**next));
+    take(layer);
+  }
+  object.clear();
+}
+
+void despeckleObject(MaskGrid& object, int64_t voxels, Interrupter* interrupter) {
+  if (voxels <= 1) return;
+  detail::WorkPart end(interrupter, 100, 100);
+  const Despeckled counts = despeckle(object, voxels, &end);
+  const auto before = object.getMetadata<openvdb::StringMetadata>(kObjectKey);
+  setText(object, (before ? before->value() + ", " : "") + "despeckle " + std::to_string(voxels) +
+                      " (" + std::to_string(counts.islandVoxels) + " voxels dropped, " +
+                      std::to_string(counts.cavityVoxels) + " filled)");
+}
+
+}  // namespace vdb_madf

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/segmentation/segment_memory.h"
+
+#include <openvdb/tree/LeafManager.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/leaves/detail/leaf_mask.h"
+#include "vdb_madf/leaves/detail/voxels.h"
+
+namespace vdb_madf {
+
+namespace {
+
+// Bytes per leaf.
+constexpr double kIndex = 128;    // origin, mask, neighbours, ranks
+constexpr double kVoxelSet = 96;  // one bit per voxel, and ranks
+constexpr double kGrid = 2224;    // an Int32 leaf as the heap holds it, and its share of the tree
+constexpr double kPieces = 160;   // connected pieces within leaves, of the object or of labels
+
+// Bytes per object voxel.
+constexpr double kPower = 4, kSite = 4, kManifold = 4;
+// Medial balls are 1 to 8 % of the voxels, and all of thin structures: their ids and roots, or cells and
+// radii, of 4 bytes each.
+constexpr double kBallShare = 0.08, kBalls = 12, kBallTable = 16, kBallList = 48;
+// Voxels that change in one round of the geodesic completion, 12 bytes each in growing lists.
+constexpr double kCompletion = 0.12 * 24;
+
+// Critical points, in the graph and what makes it: of thin structures nearly each voxel is one, but for
+// those that the filter drops; of others next to none.
+constexpr double kGraph = 100, kFilteredShare = 0.25;
+
+// Threads' scratch space and stacks, the graph, code.
+constexpr double kBase = 48 << 20;
+
+}  // namespace
+
+ObjectSize objectSize(const MaskGrid& object) {
+  const MaskTree& tree = object.constTree();
+  ObjectSize size;
+  size.leaves = int64_t(tree.leafCount());
+  size.voxels = int64_t(tree.activeVoxelCount());
+  size.leaves += (size.voxels - int64_t(tree.activeLeafVoxelCount())) / 512;
+  const openvdb::tree::LeafManager<const MaskTree> leaves(tree);
+  std::atomic<int64_t> thin{0};
+  detail::parallelFor(leaves.leafCount(), detail::kLeafGrain, nullptr,
+                      [&](size_t begin, size_t end) {
+                        for (size_t i = begin; i < end; ++i)
+                          thin += detail::countThin(detail::maskOf(leaves.leaf(i)));
+                      });
+  size.thin = thin;
+  return size;
+}
+
+int64_t segmentMemory(const ObjectSize& size, const SegmentOptions& options) {
+  const bool filter = options.gamma > 1;
+  const double leaves = double(size.leaves), voxels = double(size.voxels);
+  const double perGrid = kGrid * leaves;
+  const double ballCount = kBallShare * voxels + double(size.thin);
+  // What lives until the end.
+  double kept = kBase + kIndex * leaves;
+  if (options.keepDistance) kept += perGrid;
+
+  double peak = kept + (kPower + kSite) * voxels;  // power map
+  if (options.keepBalls) kept += kBallList * ballCount;
+  double sets = kVoxelSet * leaves;
+  double balls = kBalls * ballCount;
+  if (filter) {
+    sets += (kVoxelSet + kPieces) * leaves;
+    balls += kBallTable * ballCount;
+    peak = std::max(peak, kept + (kPower + kSite + kCompletion) * voxels + balls + sets +
+                              2 * kVoxelSet * leaves);
+  }
+  peak = std::max(peak, kept + (kPower + kSite) * voxels + balls + sets);  // flow
+  kept += kGraph * double(size.thin) * (filter ? kFilteredShare : 1);
+  if (options.keepPower) {
+    kept += perGrid;
+    peak = std::max(peak, kept + (kPower + kManifold) * voxels + sets);
+  }
+  if (options.keepManifold) kept += perGrid;
+  // tidy: masks of labels, and pieces of them
+  peak = std::max(peak, kept + sets + kManifold * voxels + 2 * kPieces * leaves);
+  // The labels' grid grows while the manifolds shrink.
+  peak = std::max(peak, kept + sets + std::max(kManifold * voxels, perGrid));
+  if (options.keepManifold) peak = std::max(peak, kept + sets + kManifold * voxels);
+  if (options.keepBalls) peak = std::max(peak, kept + 3 * perGrid);  // written as two grids
+  return int64_t(peak);
+}
+
+}  // namespace vdb_madf

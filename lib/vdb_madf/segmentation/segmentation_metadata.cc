@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/segmentation/segmentation_metadata.h"
+
+#include <openvdb/Metadata.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <string>
+
+#include "vdb_madf/base/version.h"
+
+namespace vdb_madf {
+
+namespace {
+
+constexpr char kGrains[] = "madf_grains", kObjectVoxels[] = "madf_object_voxels",
+               kLeaves[] = "madf_leaves";
+
+void setText(openvdb::GridBase& grid, const char* key, const std::string& value) {
+  grid.insertMeta(key, openvdb::StringMetadata(value));
+}
+void setCount(openvdb::GridBase& grid, const char* key, int64_t value) {
+  grid.insertMeta(key, openvdb::Int64Metadata(value));
+}
+
+/// Finds the value that is called so.
+template <typename Enum>
+bool isNamed(const std::string& name, std::initializer_list<Enum> values, Enum& found) {
+  for (const Enum value : values) {
+    if (name != toString(value)) continue;
+    found = value;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+const char* toString(MergeMode mode) {
+  switch (mode) {
+    case MergeMode::both:
+      return "both";
+    case MergeMode::angle:
+      return "angle";
+    case MergeMode::neck:
+      break;
+  }
+  return "neck";
+}
+
+const char* toString(Adjacency adjacency) {
+  return adjacency == Adjacency::manifold ? "manifold" : "cell";
+}
+
+void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options,
+                          const Segmentation& segmentation) {
+  const SegmentCounts& counts = segmentation.counts;
+  setText(grid, "madf_version", kVersion);
+  setCount(grid, "madf_gamma", options.gamma);
+  setBoundary(grid, segmentation.open ? Boundary::open : Boundary::closed);
+  setCount(grid, "madf_fill_holes", segmentation.fillHoles);
+  setWeights(grid, segmentation.weights);
+  setCount(grid, kObjectVoxels, counts.objectVoxels);
+  setCount(grid, "madf_cavities", counts.cavities);
+  setCount(grid, "madf_cavity_voxels", counts.cavityVoxels);
+  setCount(grid, "madf_medial_balls", counts.medialBalls);
+  setCount(grid, "madf_kept_balls", counts.keptBalls);
+  setCount(grid, "madf_critical_points", counts.criticalPoints);
+  setCount(grid, "madf_largest_squared_distance", counts.largestSquaredDistance);
+  setCount(grid, kLeaves, counts.leaves);
+  describeMerging(grid, options.merge, segmentation.tidy, counts.grains);
+}
+
+void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int tidy,
+                     int64_t grains) {
+  grid.insertMeta("madf_theta", openvdb::DoubleMetadata(options.theta));
+  setText(grid, "madf_merge", toString(options.mode));
+  setText(grid, "madf_adjacency", toString(options.adjacency));
+  setCount(grid, "madf_delta", options.delta);
+  setCount(grid, "madf_tidy", tidy);
+  setCount(grid, kGrains, grains);
+}
+
+void describeOwnMerging(openvdb::GridBase& grid, int tidy, int64_t grains) {
+  for (const char* key : {"madf_theta", "madf_adjacency", "madf_delta"}) grid.removeMeta(key);
+  setText(grid, "madf_merge", "own");
+  setCount(grid, "madf_tidy", tidy);
+  setCount(grid, kGrains, grains);
+}
+
+std::optional<StoredMerging> storedMerging(const openvdb::MetaMap& metadata) {
+  const auto theta = metadata.getMetadata<openvdb::DoubleMetadata>("madf_theta");
+  const auto mode = metadata.getMetadata<openvdb::StringMetadata>("madf_merge");
+  const auto adjacency = metadata.getMetadata<openvdb::StringMetadata>("madf_adjacency");
+  const auto delta = metadata.getMetadata<openvdb::Int64Metadata>("madf_delta");
+  const auto tidy = metadata.getMetadata<openvdb::Int64Metadata>("madf_tidy");
+  if (!theta || !mode || !adjacency || !delta || !tidy) return std::nullopt;
+  StoredMerging merging;
+  merging.options.theta = theta->value();
+  if (!isNamed(mode->value(), {MergeMode::both, MergeMode::angle, MergeMode::neck},
+               merging.options.mode) ||
+      !isNamed(adjacency->value(), {Adjacency::manifold, Adjacency::cell},
+               merging.options.adjacency))
+    return std::nullopt;
+  // Beyond any option: their checks refuse it.
+  merging.options.delta = int(std::clamp<int64_t>(delta->value(), -1, kMaxDelta + 1));
+  merging.tidy = int(std::clamp<int64_t>(tidy->value(), -1, kMaxTidy + 1));
+  return merging;
+}
+
+void updateCounts(openvdb::GridBase& grid, int64_t grains, bool voxelsWent) {
+  if (!grainCount(grid)) return;
+  setCount(grid, kGrains, grains);
+  if (!voxelsWent) return;
+  setCount(grid, kObjectVoxels, int64_t(grid.activeVoxelCount()));
+  setCount(grid, kLeaves, int64_t(grid.baseTree().leafCount()));
+  for (const char* key :
+       {"madf_cavities", "madf_cavity_voxels", "madf_medial_balls", "madf_kept_balls",
+        "madf_critical_points", "madf_largest_squared_distance"})
+    grid.removeMeta(key);
+}
+
+std::optional<int64_t> grainCount(const openvdb::GridBase& grid) {
+  const auto count = grid.getMetadata<openvdb::Int64Metadata>(kGrains);
+  if (!count) return std::nullopt;
+  return count->value();
+}
+
+}  // namespace vdb_madf
