@@ -13,13 +13,23 @@ import sys
 
 from proof import Bench, check, skip
 
-MANUAL = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../tools/README.md")
+MANUAL = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../tools/manual")
+PAGES = ("clumps.md", "lammps.md", "yade.md")
 # Kinetic energy at the end, in parts of the largest on the way.
 AT_REST = 0.05
 
 
-def block(language, section):
-    found = re.findall(rf"^```{language}\n(.*?)^```", section, re.S | re.M)
+def blocks(language):
+    """What the pages have in blocks of a language, one after the other."""
+    text = ""
+    for page in PAGES:
+        with open(os.path.join(MANUAL, page)) as file:
+            text += file.read()
+    return re.findall(rf"^```{language}\n(.*?)^```", text, re.S | re.M)
+
+
+def block(language):
+    found = blocks(language)
     check(len(found) == 1, f"{len(found)} blocks of {language} in the manual")
     return found[0]
 
@@ -103,13 +113,11 @@ PROGRAMS = {"yade": ("yade", "tools/setup --yade"), "lammps": ("lmp", "tools/set
 chosen = sys.argv[2]
 if not shutil.which(PROGRAMS[chosen][0]):
     skip(f"clumps at rest in {chosen}: it is not installed ({PROGRAMS[chosen][1]})")
-with open(MANUAL) as file:
-    section = re.search(r"^### In simulations\n(.*?)^##", file.read(), re.S | re.M)[1]
 with Bench() as bench:
     environment = {**os.environ, "PATH": bench.folder + os.pathsep + os.environ["PATH"]}
     os.symlink(bench.tool, bench.path("vdb_madf"))
     sample = "vdb_madf generate sintered scan.tif --size 120 --count 30 -q"
-    lines = [line for line in block("sh", section).splitlines()
+    lines = [line for line in "".join(blocks("sh")).splitlines()
              if re.search(r" segment |--as clumps|^awk ", line)]
     check(len(lines) == 5, f"the manual's lines for clumps are {lines}")
     for line in [sample] + lines:
@@ -120,12 +128,12 @@ with Bench() as bench:
         bonds = list(csv.DictReader(file))
     check(len(bonds) > 10, f"only {len(bonds)} bonds")
     if chosen == "yade":
-        text = block("python", section)
+        text = block("python")
         loose = replaced(text, r"^for row in .*?(?=^O\.dt)", "")
         yade(bench, loose, "YADE, loose grains", 0)
         yade(bench, text, "YADE, bonded grains", len(bonds))
     else:
-        text = block("lammps", section)
+        text = block("lammps")
         loose = replaced(text, r"^(bond_style|include bonds)[^\n]*\n", "")
         lammps(bench, loose, "LAMMPS, loose grains", [])
         lammps(bench, text, "LAMMPS, bonded grains", bonds)
