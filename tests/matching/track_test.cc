@@ -16,7 +16,6 @@
 #include "support/label_shapes.h"
 #include "support/runs.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/edits/edit_labels.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/label_digest.h"
 #include "vdb_madf/matching/detail/rigid_shift.h"
@@ -214,20 +213,17 @@ void requireAsDefined(const Tracks& tracks, const LabelMap& before, const LabelM
 
 /// Some of the grains are merged, dropped, halved, renumbered, and loose voxels are added.
 LabelMap changed(LabelMap voxels, std::mt19937& random) {
-  const auto grid = labelGrid(voxels);
   std::vector<int32_t> labels;
   for (const auto& [label, size] : volumes(voxels)) labels.push_back(label);
   std::shuffle(labels.begin(), labels.end(), random);
-  const auto text = [&](size_t i) { return " " + std::to_string(labels[i]); };
-  std::vector<Edit> edits{parseEdit("drop" + text(0)), parseEdit("merge" + text(1) + text(2))};
-  if (random() % 2) edits.push_back(parseEdit("renumber"));
-  const auto edited = editLabels(*grid, edits).labels;
+  std::map<int32_t, int32_t> edited;  // the label of each one; none: it is dropped
+  for (size_t i = 1; i < labels.size(); ++i) edited[labels[i]] = labels[i == 2 ? 1 : i];
+  if (random() % 2)
+    for (auto& [label, after] : edited) after = 1 + (after - 1) * 7 % 400;
+  const int32_t halved = labels[random() % 2 ? 1 : 3];
   LabelMap result;
-  const int32_t halved = random() % 2 ? edited->tree().getValue(voxels.begin()->first) : labels[3];
-  for (auto voxel = edited->cbeginValueOn(); voxel; ++voxel) {
-    const Coord p = voxel.getCoord();
-    result[p] = *voxel == halved && p.x() % 16 < 4 ? 500 : *voxel;
-  }
+  for (const auto& [p, label] : voxels)
+    if (edited.count(label)) result[p] = label == halved && p.x() % 16 < 4 ? 500 : edited.at(label);
   for (int n = 0; n < 6; ++n)
     result[voxels.begin()->first.offsetBy(int(random() % 20), int(random() % 20), -3)] = 700 + n;
   return result;
