@@ -69,8 +69,20 @@ struct StageTime {
   int64_t peakBytes = 0;  ///< largest resident memory of the process until the stage's end
 };
 
+/// What a run says of itself, in memory or in slabs; with the options this is what grids tell of it.
+struct SegmentationRecord {
+  SegmentCounts counts;
+  std::optional<Domain> domain;
+  bool open = false;      ///< the boundary that was used
+  int64_t fillHoles = 0;  ///< the number that was used
+  int tidy = 0;           ///< rounds
+  /// That were used: all squared lengths of the run are in their units, voxels squared for 1:1:1.
+  VoxelWeights weights;
+  double weightsError = 0;  ///< of squared lengths, relative (WeightsOfEdges)
+};
+
 /// The grains, what was kept on the way to them, and how they came about.
-struct Segmentation {
+struct Segmentation : SegmentationRecord {
   Int32Grid::Ptr grain;              ///< labels 1..N on X; background 0, inactive
   Int32Grid::Ptr distanceSquared;    ///< D, if kept; of the body, on X
   Int32Grid::Ptr power;              ///< pi' = least power, if kept
@@ -78,16 +90,8 @@ struct Segmentation {
   std::vector<MedialBall> balls;     ///< lexicographic centers, if kept; some in cavities
   ManifoldGraph graph;               ///< node i is critical point i + 1; voxels: those of X
   std::vector<int64_t> grainVoxels;  ///< voxels of grain g at g - 1
-  SegmentCounts counts;
-  LabelFlaws flaws;       ///< of the final labels
-  int64_t fillHoles = 0;  ///< the number that was used
-  int tidy = 0;           ///< rounds
-  std::optional<Domain> domain;
-  bool open = false;  ///< the boundary that was used
-  /// That were used: all squared lengths here are in their units, voxels squared for 1:1:1.
-  VoxelWeights weights;
-  double weightsError = 0;       ///< of squared lengths, relative (WeightsOfEdges)
-  std::vector<StageTime> times;  ///< disjoint, in the order of work
+  LabelFlaws flaws;                  ///< of the final labels
+  std::vector<StageTime> times;      ///< disjoint, in the order of work
 };
 
 /// Cuts the object into grains: cavities -> distance -> power map -> filter -> flow -> graph -> merge

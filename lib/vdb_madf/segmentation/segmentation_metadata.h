@@ -15,7 +15,7 @@ namespace vdb_madf {
 /// `madf_grains`, `madf_largest_squared_distance`, `madf_leaves` (int64); and `madf_weights`, if they
 /// are not 1:1:1 (voxel_weights.h).
 void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options,
-                          const Segmentation& segmentation);
+                          const SegmentationRecord& record);
 
 /// Replaces what another merging changes: theta, mode, adjacency, delta, tidy and the number of
 /// grains.

@@ -39,14 +39,8 @@ Int32Grid::Ptr manifoldGrid(const detail::SlabWork& work, size_t slab,
 /// Says of a grid how it was made.
 void describe(const detail::SlabWork& work, const SlabSegmentation& result, Int32Grid& grid) {
   copyProvenance(*work.plan.object.about, grid);
-  if (work.facts.domain) setDomain(grid, *work.facts.domain);
-  Segmentation about;
-  about.counts = result.counts;
-  about.fillHoles = result.fillHoles;
-  about.tidy = result.tidy;
-  about.open = result.open;
-  about.weights = result.weights;
-  describeSegmentation(grid, work.options, about);
+  if (result.domain) setDomain(grid, *result.domain);
+  describeSegmentation(grid, work.options, result);
 }
 
 }  // namespace

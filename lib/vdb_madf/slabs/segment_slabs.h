@@ -36,17 +36,10 @@ struct SlabStage {
 };
 
 /// What segmentSlabs() finds beside the labels.
-struct SlabSegmentation {
-  SegmentCounts counts;
+struct SlabSegmentation : SegmentationRecord {
   std::vector<int64_t> grainVoxels;  ///< voxels of grain g at g - 1
-  int64_t fillHoles = 0;
-  int tidy = 0;
-  bool open = false;
-  std::optional<Domain> domain;
-  VoxelWeights weights;
-  double weightsError = 0;
-  std::vector<SlabStage> stages;  ///< in their order
-  int64_t exchanges = 0;          ///< how often messages were exchanged
+  std::vector<SlabStage> stages;     ///< in their order
+  int64_t exchanges = 0;             ///< how often messages were exchanged
 };
 
 /// The parts that lie in a slab of grids of a Segmentation, with their metadata.
