@@ -229,7 +229,7 @@ void detail::checkBackground(const Obstacles& obstacles, int64_t objectVoxels) {
 SquaredDistance squaredDistance(const LeafIndex& index, const Obstacles& obstacles,
                                 const VoxelWeights& weights, Interrupter* interrupter) {
   detail::checkBackground(obstacles, index.voxelCount());
-  const bool region = obstacles.open && !obstacles.domain.isBox() && index.voxelCount() > 0;
+  const bool region = obstacles.inRegion() && index.voxelCount() > 0;
   checkWeights(weights, region ? obstacles.domain.box().dim() : index.boundingBox().dim());
   SquaredDistance result;
   result.weights = weights;

@@ -8,7 +8,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/segmentation/detail/segment_options.h"
+#include "vdb_madf/segmentation/detail/prepare.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/slabs/steps/slab_flow.h"
@@ -51,9 +51,7 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
   detail::checkSlabOptions(object, options);
   SlabSegmentation result;
   if (object.slabCount() == 0) return result;
-  result.domain = options.domain ? options.domain : storedDomain(*object.about);
   detail::SlabWork work(object, options, scratch, team, interrupter);
-  work.facts.domain = result.domain;
   detail::flowInSlabs(work, result);
   work.steps.beginStage("merge");
   std::vector<Coord> representatives;
