@@ -42,8 +42,4 @@ std::vector<AnchorCandidate> anchorCandidates(const LeafIndex& index, const Grai
                                               const std::vector<uint32_t>& wanted,
                                               Interrupter* interrupter);
 
-/// The label that most of a voxel's neighbors have, of equally frequent ones the smallest; 0 if none
-/// has one. \p around: their labels, 0 where there is none.
-uint32_t mostFrequent(const uint32_t (&around)[6]);
-
 }  // namespace vdb_madf::detail

@@ -8,6 +8,7 @@
 
 #include "vdb_madf/base/detail/disjoint_sets.h"
 #include "vdb_madf/leaves/detail/connected_components.h"
+#include "vdb_madf/method/detail/refill.h"
 #include "vdb_madf/slabs/cuts/site_offers.h"
 #include "vdb_madf/slabs/cuts/slab_smoothing.h"
 
@@ -58,8 +59,8 @@ std::vector<char> piecesWithAnchor(const LeafIndex& index, const VoxelArray<uint
 /// A voxel that has lost its label.
 struct LooseVoxel {
   Coord position;
-  uint32_t label;      ///< that it lost; then the one it gets
-  uint32_t around[6];  ///< labels of its neighbors; 0: none, or loose itself
+  uint32_t label;       ///< that it lost; then the one it gets
+  LabelsAround around;  ///< of neighbors that are not loose
 };
 
 /// What lies beyond a cut: the pieces beside it, and which of the pieces of their slab hold an anchor, be
@@ -85,8 +86,8 @@ std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const VoxelArray<uin
                                     const std::vector<LeafPiece>& loose, int begin, int end,
                                     const BeyondPieces& below, const BeyondPieces& above);
 
-/// Gives all of them a label, in synchronous rounds; those that no round reaches keep what they lost.
-/// Sorts them by position.
-void refill(std::vector<LooseVoxel>& loose);
+/// Gives all of them a label (refill.h); those that no round reaches keep what they lost. Sorts them by
+/// position.
+void refillAll(std::vector<LooseVoxel>& loose, Interrupter* interrupter);
 
 }  // namespace vdb_madf::detail

@@ -251,7 +251,7 @@ class SlabLabels {
       const auto found = work_.store.receive(kLoose, s, kRoot);
       loose.insert(loose.end(), found.begin(), found.end());
     }
-    refill(loose);
+    refillAll(loose, work_.interrupter);
     std::vector<std::vector<LooseVoxel>> of(work_.plan.slabCount());
     for (const LooseVoxel& voxel : loose)
       of[work_.plan.slabOf(voxel.position.z())].push_back(voxel);

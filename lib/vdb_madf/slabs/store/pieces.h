@@ -24,6 +24,7 @@
 namespace vdb_madf::detail {
 
 class ColumnSteps;
+struct ComponentBall;
 struct OpenGraph;
 struct SlabPart;
 struct SlabTerminals;
@@ -34,7 +35,6 @@ struct FaceChange;
 struct CompletionState;
 struct PlayedWindow;
 struct SizedBall;
-struct ComponentBalls;
 struct BallCounts;
 struct TerminalExits;
 struct BallAnswer;
@@ -156,10 +156,10 @@ inline constexpr Message<Values<ForeignSite>> kOffersFromAbove("offers-down", Fr
 
 // The filter by gamma.
 inline constexpr Message<Values<SizedBall>> kCells("cells", From::all, Step::keptMap);
-inline constexpr Piece<Values<ComponentBalls>> kElsewhere("elsewhere", Step::keptMap);
+inline constexpr Piece<Values<ComponentBall>> kElsewhere("elsewhere", Step::keptMap);
 inline constexpr Piece<Values<SizedBall>> kSizedBalls("sized-balls", Step::keptMap);
-inline constexpr Message<Values<ComponentBalls>> kComponents("components", From::toRoot,
-                                                             Step::never);
+inline constexpr Message<Values<ComponentBall>> kComponents("components", From::toRoot,
+                                                            Step::never);
 inline constexpr Piece<Values<FacePiece>> kLowestComponents("lowest-components", Step::keptMap);
 inline constexpr Message<Values<FacePiece>> kComponentsBelow("highest-components", From::below,
                                                              Step::keptMap);
