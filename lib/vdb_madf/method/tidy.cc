@@ -13,7 +13,6 @@
 #include "vdb_madf/leaves/detail/label_masks.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/voxels.h"
-#include "vdb_madf/method/detail/grain_flags.h"
 #include "vdb_madf/method/detail/metric.h"
 #include "vdb_madf/method/detail/refill.h"
 #include "vdb_madf/method/detail/tidy_steps.h"
@@ -74,8 +73,8 @@ void moveVoxel(VoxelId id, uint32_t label, detail::LabelMasks& masks) {
   masks.give(leafOf(id), label, voxel);
 }
 
-/// Gives every voxel that is not connected with its grain's anchor to a neighbor. Returns whether each
-/// found one: then each grain is connected.
+/// Gives every voxel that is not connected with its grain's anchor to a neighbor. Returns whether
+/// each found one: then each grain is connected.
 bool connect(const LeafIndex& index, const std::vector<VoxelId>& anchor, detail::LabelMasks& masks,
              GrainLabels& grains, Interrupter* interrupter) {
   const std::vector<LooseVoxel> loose = looseVoxels(index, masks, anchor, interrupter);
@@ -92,14 +91,6 @@ bool connect(const LeafIndex& index, const std::vector<VoxelId>& anchor, detail:
   const auto unreached = detail::refill(loose.size(), around, give, interrupter);
   for (const uint32_t i : unreached) grains.label[index.rank(loose[i].id)] = loose[i].lost;
   return unreached.empty();
-}
-
-/// Returns as connect().
-bool tidyMasks(const LeafIndex& index, int rounds, detail::LabelMasks& masks, GrainLabels& grains,
-               Interrupter* interrupter) {
-  const std::vector<VoxelId> anchor = findAnchors(index, grains, interrupter);
-  detail::smoothInterfaces(index, rounds, anchor, masks, grains, interrupter);
-  return connect(index, anchor, masks, grains, interrupter);
 }
 
 }  // namespace
@@ -146,6 +137,13 @@ uint32_t detail::mostFrequent(const LabelsAround& around) {
   return best;
 }
 
+bool detail::tidyMasks(const LeafIndex& index, int rounds, LabelMasks& masks, GrainLabels& grains,
+                       Interrupter* interrupter) {
+  const std::vector<VoxelId> anchor = findAnchors(index, grains, interrupter);
+  smoothInterfaces(index, rounds, anchor, masks, grains, interrupter);
+  return connect(index, anchor, masks, grains, interrupter);
+}
+
 void checkTidy(int rounds) {
   if (rounds < 0 || rounds > kMaxTidy)
     throw InvalidInput("tidy is a number of rounds: it must lie between 0 and " +
@@ -156,19 +154,7 @@ void tidy(const LeafIndex& index, int rounds, GrainLabels& grains, Interrupter* 
   checkTidy(rounds);
   if (rounds == 0) return;
   detail::LabelMasks masks(index, grains.label, interrupter);
-  tidyMasks(index, rounds, masks, grains, interrupter);
-}
-
-LabelFlaws detail::tidyAndCountFlaws(const LeafIndex& index, int rounds,
-                                     const std::optional<Domain>& domain, GrainLabels& grains,
-                                     Interrupter* interrupter) {
-  checkTidy(rounds);
-  LabelMasks masks(index, grains.label, interrupter);
-  const bool areConnected = rounds > 0 && tidyMasks(index, rounds, masks, grains, interrupter);
-  const size_t count = grains.voxels.size();
-  const std::vector<uint32_t> pieces = areConnected ? std::vector<uint32_t>(count, 1)
-                                                    : countPieces(index, masks, count, interrupter);
-  return labelFlaws(index, masks, grains.voxels, pieces, domain, interrupter);
+  detail::tidyMasks(index, rounds, masks, grains, interrupter);
 }
 
 }  // namespace vdb_madf
