@@ -13,7 +13,8 @@
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/leaves/voxel_array.h"
 
-// How voxels without a label get one: the second part of tidy(), also where they are not in one index.
+// How voxels without a label get one: the second part of tidy(), also where they are not in one
+// index.
 
 namespace vdb_madf::detail {
 
@@ -32,8 +33,8 @@ inline LabelsAround labelsAround(const LeafIndex& index, const VoxelArray<uint32
 /// The label that most neighbors have, of equally frequent ones the smallest; 0 if none has one.
 uint32_t mostFrequent(const LabelsAround& around);
 
-/// Gives labels to `count` voxels that have none, in synchronous rounds: each takes the most frequent
-/// one around it, until a round changes nothing.
+/// Gives labels to `count` voxels that have none, in synchronous rounds: each takes the most
+/// frequent one around it, until a round changes nothing.
 /// @param around around(i): the labels around voxel i, as they are before the round
 /// @param give give(i, label): voxel i has it from now on
 /// @return the voxels that no round reaches, ascending. @throw Interrupted

@@ -15,11 +15,12 @@ void checkSegmentOptions(const SegmentOptions& options);
 
 /// Checks the options and decides what no voxel is needed for: domain, boundary, cavities, tidying.
 /// \p about: its transform and metadata are those of the object.
-/// @throw InvalidInput also if the boundary is open without a domain, or voxels are turned or sheared
+/// @throw InvalidInput also if the boundary is open without a domain, or voxels are turned or
+///   sheared
 Obstacles prepare(const MaskGrid& about, const SegmentOptions& options, SegmentationRecord& record);
 
-/// Decides the weights: those that are asked for, or those of the edges of voxels. \p body: the box of
-/// the object with its cavities filled. @throw InvalidInput if none fit
+/// Decides the weights: those that are asked for, or those of the edges of voxels. \p body: the box
+/// of the object with its cavities filled. @throw InvalidInput if none fit
 void chooseWeights(const MaskGrid& about, const SegmentOptions& options, const Obstacles& obstacles,
                    const CoordBBox& body, SegmentationRecord& record);
 

@@ -113,8 +113,8 @@ class SlabLabels {
     work_.steps.exchange();
   }
 
-  /// The voxel of each grain that never changes: its representative, or the nearest to it if that lies
-  /// in a cavity. Known at all members.
+  /// The voxel of each grain that never changes: its representative, or the nearest to it if that
+  /// lies in a cavity. Known at all members.
   void shareAnchors() {
     Lost lost;
     if (work_.plan.isRoot()) lost = findLost();
