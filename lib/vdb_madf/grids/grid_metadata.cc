@@ -143,6 +143,12 @@ std::optional<MetadataValue> plainValue(const openvdb::Metadata& metadata) {
   return {};
 }
 
+void copyMetadata(const openvdb::GridBase& from, openvdb::GridBase& to) {
+  for (auto meta = from.beginMeta(); meta != from.endMeta(); ++meta)
+    if (meta->first != openvdb::GridBase::META_GRID_NAME) to.insertMeta(meta->first, *meta->second);
+  to.setTransform(from.transform().copy());
+}
+
 void copyProvenance(const openvdb::GridBase& from, openvdb::GridBase& to) {
   for (const char* key :
        {kDomainMin, kDomainMax, detail::kRegionKey, kVoxelSizeKey, kVoxelEdgesKey, kLengthUnit,

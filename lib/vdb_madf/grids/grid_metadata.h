@@ -63,6 +63,9 @@ bool hasVoxelsAlongAxes(const openvdb::GridBase& grid);
 using MetadataValue = std::variant<bool, int64_t, double, std::string>;
 std::optional<MetadataValue> plainValue(const openvdb::Metadata& metadata);
 
+/// Copies all metadata but the name, and the transform, from one grid to another.
+void copyMetadata(const openvdb::GridBase& from, openvdb::GridBase& to);
+
 /// Copies domain, voxel size, transform, `madf_source` and `madf_boundary` from one grid to
 /// another.
 void copyProvenance(const openvdb::GridBase& from, openvdb::GridBase& to);
