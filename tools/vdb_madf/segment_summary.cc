@@ -55,20 +55,15 @@ std::optional<double> SegmentSummary::porosity() const {
 namespace {
 
 /// What a segmentation says itself; \p grid has the metadata of its object.
-template <typename S>
-SegmentSummary summaryOf(const S& s, const openvdb::GridBase& grid, const Common& common) {
+SegmentSummary summaryOf(const SegmentationRecord& record, const std::vector<int64_t>& grainVoxels,
+                         const openvdb::GridBase& grid, const Common& common) {
   SegmentSummary summary;
-  summary.counts = s.counts;
-  summary.sizes = grainSizes(s.grainVoxels);
-  summary.fillHoles = s.fillHoles;
-  summary.domain = s.domain;
-  summary.weights = s.weights;
-  summary.weightsError = s.weightsError;
+  static_cast<SegmentationRecord&>(summary) = record;
+  summary.sizes = grainSizes(grainVoxels);
   summary.voxelSize = storedVoxelSize(grid);
   summary.objectSteps = objectSteps(grid);
   if (const auto threshold = grid.getMetadata<openvdb::DoubleMetadata>(kThresholdKey))
     summary.threshold = threshold->value();
-  summary.open = s.open;
   summary.threads = usedThreads(common.threads);
   return summary;
 }
@@ -90,7 +85,7 @@ void addTiming(const SegmentArguments& o, const SegmentTiming& timing,
 
 SegmentSummary summarize(const SegmentArguments& o, const Common& common, const Segmentation& s,
                          const SegmentTiming& timing) {
-  SegmentSummary summary = summaryOf(s, *s.grain, common);
+  SegmentSummary summary = summaryOf(s, s.grainVoxels, *s.grain, common);
   summary.flaws = s.flaws;
   addTiming(o, timing, s.times, summary);
   summary.hints = hints(o.segment, summary);
@@ -99,7 +94,7 @@ SegmentSummary summarize(const SegmentArguments& o, const Common& common, const 
 
 SegmentSummary summarize(const SegmentArguments& o, const Common& common, const SlabSegmentation& s,
                          const openvdb::GridBase& object, const SegmentTiming& timing) {
-  SegmentSummary summary = summaryOf(s, object, common);
+  SegmentSummary summary = summaryOf(s, s.grainVoxels, object, common);
   addTiming(o, timing, {}, summary);
   return summary;
 }

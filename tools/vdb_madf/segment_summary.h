@@ -46,18 +46,12 @@ struct SegmentTiming {
 };
 
 /// What is said of a segmentation, by the lines that are printed and by the JSON.
-struct SegmentSummary {
-  SegmentCounts counts;
+struct SegmentSummary : SegmentationRecord {
   GrainSizes sizes;
   std::optional<LabelFlaws> flaws;  ///< not counted in slabs
-  int64_t fillHoles = 0;
-  std::optional<Domain> domain;
-  VoxelWeights weights;     ///< of squared lengths along x, y, z
-  double weightsError = 0;  ///< relative
   std::optional<VoxelSize> voxelSize;
   std::string objectSteps;  ///< from a gray image
   std::optional<double> threshold;
-  bool open = false;
   int threads = 0;
   std::vector<std::pair<std::string, double>> seconds;  ///< of each part of the work, then "total"
   std::vector<std::pair<std::string, int64_t>> peakBytesUntil;  ///< the end of each stage

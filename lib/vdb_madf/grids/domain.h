@@ -20,11 +20,11 @@ class Domain {
   /// @throw InvalidInput if there are none, or coordinates are beyond kMaxCoordinate.
   explicit Domain(const MaskTree& region);
 
-  /// For voxels that are known to be such a region, with their bounding box.
+  /// Takes voxels that are known to be such a region, with their bounding box.
   Domain(std::shared_ptr<const MaskTree> region, const CoordBBox& box)
       : box_(box), region_(std::move(region)) {}
 
-  const CoordBBox& box() const { return box_; }  ///< that bounds B
+  const CoordBBox& box() const { return box_; }  ///< bounds B
   bool isBox() const { return !region_; }
   const std::shared_ptr<const MaskTree>& region() const { return region_; }  ///< null for a box
   /// Voxels of B; beyond 64 bits in boxes far larger than any object.

@@ -74,12 +74,12 @@ bool isRegion(const openvdb::GridBase& grid, const std::vector<openvdb::GridBase
 }
 
 std::optional<VoxelSize> storedVoxelSize(const openvdb::MetaMap& metadata) {
-  const auto isLength = [](double metres) { return metres > 0; };
+  const auto isLength = [](double meters) { return meters > 0; };
   if (const auto cube = metadata.getMetadata<openvdb::DoubleMetadata>(kVoxelSizeKey))
     return isLength(cube->value()) ? std::optional(VoxelSize(cube->value())) : std::nullopt;
-  const auto metres = metadata.getMetadata<openvdb::Vec3DMetadata>(kVoxelEdgesKey);
-  if (!metres) return std::nullopt;
-  const std::array<double, 3> edges{metres->value().x(), metres->value().y(), metres->value().z()};
+  const auto meters = metadata.getMetadata<openvdb::Vec3DMetadata>(kVoxelEdgesKey);
+  if (!meters) return std::nullopt;
+  const std::array<double, 3> edges{meters->value().x(), meters->value().y(), meters->value().z()};
   if (!std::all_of(edges.begin(), edges.end(), isLength)) return std::nullopt;
   return VoxelSize(edges);
 }
@@ -107,7 +107,8 @@ void setVoxelSize(openvdb::GridBase& grid, const std::optional<VoxelSize>& size)
 }
 
 void setProportions(openvdb::GridBase& grid, const std::array<double, 3>& edges) {
-  // OpenVDB refuses voxel volumes below 3e-15; a thousandth of an unknown unit is as good as the unit.
+  // OpenVDB refuses voxel volumes below 3e-15; a thousandth of an unknown unit is as good as the
+  // unit.
   constexpr double kMinEdge = 1.9e-5, kStep = 1e3;
   openvdb::Vec3d scale(edges[0], edges[1], edges[2]);
   while (std::min({scale[0], scale[1], scale[2]}) < kMinEdge) scale *= kStep;
@@ -140,6 +141,12 @@ std::optional<MetadataValue> plainValue(const openvdb::Metadata& metadata) {
   if (type == "double") return static_cast<const openvdb::DoubleMetadata&>(metadata).value();
   if (type == "string") return static_cast<const openvdb::StringMetadata&>(metadata).value();
   return {};
+}
+
+void copyMetadata(const openvdb::GridBase& from, openvdb::GridBase& to) {
+  for (auto meta = from.beginMeta(); meta != from.endMeta(); ++meta)
+    if (meta->first != openvdb::GridBase::META_GRID_NAME) to.insertMeta(meta->first, *meta->second);
+  to.setTransform(from.transform().copy());
 }
 
 void copyProvenance(const openvdb::GridBase& from, openvdb::GridBase& to) {

@@ -25,8 +25,8 @@ inline constexpr char kBoundaryKey[] = "madf_boundary";  ///< "open" or "closed"
 /// The image domain B of a grid: the box, both corners inclusive, in the metadata
 /// `madf_domain_min` and `madf_domain_max` (Vec3i), a region besides in `madf_region`
 /// (detail/region_metadata.h). Absent: unknown.
-/// @throw InvalidInput if only one of the two corners is there, min > max, or the region that a file
-///   names is not there.
+/// @throw InvalidInput if only one of the two corners is there, min > max, or the region that a
+///   file names is not there.
 std::optional<Domain> storedDomain(const openvdb::MetaMap& metadata);
 void setDomain(openvdb::MetaMap& metadata, const Domain& domain);
 /// The box of the domain; where that is unknown, of the active voxels.
@@ -43,7 +43,7 @@ std::optional<VoxelSize> storedVoxelSize(const openvdb::MetaMap& metadata);
 /// Sets the metadata alone, but for the unit.
 void setStoredVoxelSize(openvdb::MetaMap& metadata, const std::optional<VoxelSize>& size);
 /// Sets the metadata and the grid's linear transform: world = index * size along each axis, so that
-/// the world position of voxel (i,j,k) is its centre. Without a size the transform is the identity.
+/// the world position of voxel (i,j,k) is its center. Without a size the transform is the identity.
 void setVoxelSize(openvdb::GridBase& grid, const std::optional<VoxelSize>& size);
 
 /// Sets the grid's transform alone, for edges > 0 along x, y and z in an unknown unit.
@@ -62,6 +62,9 @@ bool hasVoxelsAlongAxes(const openvdb::GridBase& grid);
 /// A truth value, number or text of metadata; none for other types.
 using MetadataValue = std::variant<bool, int64_t, double, std::string>;
 std::optional<MetadataValue> plainValue(const openvdb::Metadata& metadata);
+
+/// Copies all metadata but the name, and the transform, from one grid to another.
+void copyMetadata(const openvdb::GridBase& from, openvdb::GridBase& to);
 
 /// Copies domain, voxel size, transform, `madf_source` and `madf_boundary` from one grid to
 /// another.

@@ -16,12 +16,16 @@ namespace vdb_madf {
 struct LabelSlabs {
   /// Slab s is cuts[s] <= z < cuts[s + 1]: multiples of 8, ascending.
   std::vector<int> cuts;
-  /// The labels in a slab; none lies outside of it. Called more than once.
+  /// The labels in a slab; none lies outside of it. Called more than once. Who reads may turn tiles
+  /// of the grid into leaf nodes.
   std::function<Int32Grid::Ptr(size_t slab, Interrupter* interrupter)> read;
   /// Its name, transform and metadata are those of the labels; it has no voxels.
   Int32Grid::ConstPtr about;
 
   size_t slabCount() const { return cuts.empty() ? 0 : cuts.size() - 1; }
 };
+
+/// Labels that are in memory as a single slab, for functions that take slabs.
+LabelSlabs singleSlab(const Int32Grid::Ptr& labels);
 
 }  // namespace vdb_madf

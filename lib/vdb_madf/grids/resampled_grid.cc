@@ -68,7 +68,8 @@ class Cubes {
   CoordBBox touched(const CoordBBox& voxels) const { return cubesOf(voxels, false); }
   CoordBBox filled(const CoordBBox& voxels) const { return cubesOf(voxels, true); }
 
-  /// Tells a grid of cubes what its voxels' grid says of itself, but for the domain, and where it lies.
+  /// Tells a grid of cubes what its voxels' grid says of itself, but for the domain, and where it
+  /// lies.
   void place(openvdb::GridBase& result) const {
     result.setName(grid_.getName());
     copyProvenance(grid_, result);
@@ -78,9 +79,9 @@ class Cubes {
     setVoxelSize(result, size_);  // maybe in another unit
     Vec3d center, signs;
     for (int axis = 0; axis < 3; ++axis) {
-      const double metres = voxels.edges()[size_t(axis)] / std::abs(edges[axis]);
+      const double meters = voxels.edges()[size_t(axis)] / std::abs(edges[axis]);
       signs[axis] = edges[axis] < 0 ? -1 : 1;
-      center[axis] = corner[axis] * metres * (size_.inUnit() / size_.edge()) +
+      center[axis] = corner[axis] * meters * (size_.inUnit() / size_.edge()) +
                      signs[axis] * size_.inUnit() / 2;
     }
     if (signs != Vec3d(1)) result.transform().preScale(signs);

@@ -19,7 +19,7 @@ Int32Grid::Ptr toGrid(const LeafIndex& index, const VoxelArray<int32_t>& values,
 /// Writes values[rank] & 0x7fffffff to each voxel.
 Int32Grid::Ptr toGrid(const LeafIndex& index, const VoxelArray<uint32_t>& values,
                       const std::string& name, Interrupter* interrupter = nullptr);
-/// The same; the array's memory goes back to the system while the grid grows.
+/// Writes the same grid; the array's memory goes back to the system while the grid grows.
 Int32Grid::Ptr toGrid(const LeafIndex& index, VoxelArray<uint32_t>&& values,
                       const std::string& name, Interrupter* interrupter = nullptr);
 

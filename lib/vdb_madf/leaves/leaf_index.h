@@ -16,8 +16,8 @@
 
 namespace vdb_madf {
 
-/// Position of a voxel in a LeafIndex: leaf * 512 + offset, offset = x*64 + y*8 + z within the leaf.
-/// In a leaf's mask (see LeafIndex::Mask) it is a bit of a word.
+/// Position of a voxel in a LeafIndex: leaf * 512 + offset, offset = x*64 + y*8 + z within the
+/// leaf. A voxel is a bit of a word in its leaf's mask (see LeafIndex::Mask).
 using VoxelId = uint32_t;
 
 constexpr VoxelId voxelId(size_t leaf, size_t offset) {
@@ -43,10 +43,10 @@ inline uint32_t offsetOf(const Coord& p) {
 }
 
 /// The topology of the object X: its 8x8x8 leaves sorted by origin (x, then y, then z), their masks
-/// and their six neighbours. The one place that knows the topology; every stage works on it.
+/// and their six neighbors. The one place that knows the topology; every stage works on it.
 class LeafIndex {
  public:
-  static constexpr uint32_t kNone = 0xffffffffu;  ///< no neighbour
+  static constexpr uint32_t kNone = 0xffffffffu;  ///< no neighbor
 
   /// Bit y*8 + z of word x is voxel (x, y, z) of the leaf.
   using Mask = std::array<uint64_t, 8>;
@@ -74,11 +74,11 @@ class LeafIndex {
   /// namedLeafCount() + i of before. Nothing but coord(), origin() and isForeign() takes them.
   void nameForeignLeaves(const std::vector<Coord>& origins);
   bool isForeign(VoxelId id) const { return leafOf(id) >= leafCount(); }
-  size_t namedLeafCount() const { return origins_.size(); }  ///< with the foreign ones
+  size_t namedLeafCount() const { return origins_.size(); }  ///< counts the foreign ones, too
 
   size_t leafCount() const { return masks_.size(); }
   int64_t voxelCount() const { return firstRank_.back(); }  ///< |X|, size of a VoxelArray
-  /// Of the active voxels; empty if there are none.
+  /// The box of the active voxels; empty if there are none.
   const CoordBBox& boundingBox() const { return boundingBox_; }
 
   const Coord& origin(size_t leaf) const { return origins_[leaf]; }

@@ -25,6 +25,9 @@ enum class Boundary {
 struct Obstacles {
   bool open = false;
   Domain domain;  ///< used if open
+
+  /// May there be unknown voxels within the domain's box?
+  bool inRegion() const { return open && !domain.isBox(); }
 };
 
 /// @throw InvalidInput: open without a domain, or voxels of `index` outside the domain.

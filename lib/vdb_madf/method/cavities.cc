@@ -223,8 +223,8 @@ class CavityFinder {
   std::vector<bool> outside_;  // no cavity, at the root
 };
 
-/// The object, and without a voxel of it the leaves of a region of which only a part is inside: other
-/// untouched ones are in one piece.
+/// The object, and without a voxel of it the leaves of a region of which only a part is inside:
+/// other untouched ones are in one piece.
 LeafIndex withPartialLeaves(const LeafIndex& object, const MaskTree& region) {
   std::vector<LeafIndex::LeafVoxels> leaves;
   for (auto leaf = region.cbeginLeaf(); leaf; ++leaf) leaves.push_back({leaf->origin(), Mask{}});

@@ -32,8 +32,8 @@ int64_t defaultFillHoles(const std::optional<Domain>& domain);
 /// The 6-connected components of the background, within the domain, of fewer than \p fillHoles
 /// voxels. If `closed`, components that reach a face of the domain are none. Without a domain the
 /// background is unbounded. All or nothing: if no background would be left in an open domain, there
-/// are no cavities. Object empty or fillHoles at most 1: none. Memory is per touched leaf node, and per
-/// untouched one in a component of fewer than fillHoles voxels.
+/// are no cavities. Object empty or fillHoles at most 1: none. Memory is per touched leaf node, and
+/// per untouched one in a component of fewer than fillHoles voxels.
 /// @throw InvalidInput if these are more than kMaxLeaves; Interrupted
 Cavities findCavities(const LeafIndex& object, const std::optional<Domain>& domain, bool open,
                       int64_t fillHoles, Interrupter* interrupter = nullptr);

@@ -93,8 +93,9 @@ class VoxelCounts {
   Slot slots_[kSlots];
 };
 
-/// Replaces the sites of a leaf's voxels by their manifolds. Neighbors along z mostly share their ball:
-/// it is looked up once a run. No branch waits for what is looked up, so that many look-ups overlap.
+/// Replaces the sites of a leaf's voxels by their manifolds. Neighbors along z mostly share their
+/// ball: it is looked up once a run. No branch waits for what is looked up, so that many look-ups
+/// overlap.
 VDB_MADF_KERNEL size_t replaceRuns(const VoxelSet& balls, const uint32_t* manifold, size_t count,
                                    uint32_t* values, uint32_t* last, uint32_t* number) {
   uint16_t runOf[512];

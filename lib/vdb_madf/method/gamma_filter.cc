@@ -10,55 +10,40 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/detail/connected_components.h"
 #include "vdb_madf/leaves/detail/voxels.h"
+#include "vdb_madf/method/detail/component_ball.h"
 #include "vdb_madf/method/detail/geodesic_completion.h"
 #include "vdb_madf/method/detail/power_passes.h"
 
 namespace vdb_madf {
 
-namespace {
-
-constexpr uint32_t kNoBall = ~uint32_t(0);
-
-}  // namespace
-
 VoxelSet keptBalls(const LeafIndex& index, const PowerMap& map, const VoxelSet& balls,
                    const MedialBallTable& table, int64_t gamma, Interrupter* interrupter) {
+  using detail::ComponentBall;
   if (gamma <= 1) return balls;
   VoxelSet kept(index.leafCount());
   const detail::ConnectedComponents components(index, interrupter);
-  std::vector<char> hasKept(components.count(), 0);
+  std::vector<ComponentBall> best(components.count());
   const std::vector<VoxelId> members = balls.members();
   for (uint32_t i = 0; i < members.size(); ++i) {
-    if (table.cellSize[i] < gamma) continue;
-    kept.insert(members[i]);
-    hasKept[components.componentOf(members[i])] = 1;
+    const bool isKept = table.cellSize[i] >= gamma;
+    if (isKept) kept.insert(members[i]);
+    best[components.componentOf(members[i])].offer(
+        {isKept ? ComponentBall::kept : ComponentBall::own, table.squaredRadius[i],
+         index.coord(members[i])});
   }
-  std::vector<uint32_t> best(components.count(), kNoBall);
-  const auto offer = [&](uint32_t component, uint32_t i) {
-    uint32_t& b = best[component];
-    if (b == kNoBall || table.squaredRadius[i] > table.squaredRadius[b] ||
-        (table.squaredRadius[i] == table.squaredRadius[b] &&
-         index.coord(members[i]) < index.coord(members[b])))
-      b = i;
-  };
-  for (uint32_t i = 0; i < members.size(); ++i) {
-    const uint32_t component = components.componentOf(members[i]);
-    if (!hasKept[component]) offer(component, i);
-  }
-  if (map.passage) {  // balls may reach across what is unknown
-    std::vector<char> hasNone(components.count(), 0);
-    for (uint32_t c = 0; c < components.count(); ++c)
-      hasNone[c] = !hasKept[c] && best[c] == kNoBall;
+  if (map.passage)  // balls may reach across what is unknown
     for (uint32_t leaf = 0; leaf < index.leafCount(); ++leaf)
-      for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece)
-        for (uint32_t x = 0; x < 8 && hasNone[piece->component]; ++x)
+      for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece) {
+        ComponentBall& ball = best[piece->component];
+        for (uint32_t x = 0; x < 8 && ball.kind <= ComponentBall::elsewhere; ++x)
           detail::forEachBit(piece->mask[x], [&](int bit) {
-            const size_t rank = index.rank(voxelId(leaf, x, size_t(bit)));
-            offer(piece->component, balls.rank(map.site[rank]));
+            const VoxelId site = map.site[index.rank(voxelId(leaf, x, size_t(bit)))];
+            ball.offer({ComponentBall::elsewhere, table.squaredRadius[balls.rank(site)],
+                        index.coord(site)});
           });
-  }
-  for (const uint32_t b : best)
-    if (b != kNoBall) kept.insert(members[b]);
+      }
+  for (const ComponentBall& ball : best)
+    if (ball.isRescued()) kept.insert(*index.findVoxel(ball.center));
   kept.rankMembers();
   return kept;
 }

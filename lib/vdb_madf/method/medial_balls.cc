@@ -48,7 +48,7 @@ MedialBallTable measureBalls(const LeafIndex& index, const PowerMap& map, const 
   table.squaredRadius.assign(balls.size(), 0);
   detail::parallelFor(
       index.leafCount(), detail::kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-        // Neighbours along z mostly share their ball: count runs, add once.
+        // Neighbors along z mostly share their ball: count runs, add once.
         VoxelId first = 0, site = 0;
         int32_t power = 0;
         uint32_t run = 0;

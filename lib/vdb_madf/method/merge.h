@@ -21,8 +21,8 @@ struct MergeOptions {
   double theta = -0.9;  ///< cosine in [-1, 1]; -1 merges least
   MergeMode mode = MergeMode::both;
   Adjacency adjacency = Adjacency::manifold;
-  /// How much narrower than the smaller grain a neck has to be at least to divide, in eighths of the
-  /// shortest edge of a voxel; 0 to kMaxDelta; 0: theta alone decides.
+  /// How much narrower than the smaller grain a neck has to be at least to divide, in eighths of
+  /// the shortest edge of a voxel; 0 to kMaxDelta; 0: theta alone decides.
   int delta = 2;
 };
 

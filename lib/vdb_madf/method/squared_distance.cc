@@ -40,8 +40,9 @@ struct PencilRows {
 
 using RowEnds = std::array<uint32_t, 64>;
 
-/// What lies beyond the ends of the 64 rows of a pencil: 0 where that is background, kInfinite where
-/// it is outside the region. `origin` is that of the leaf there, `last` says which of its slabs.
+/// What lies beyond the ends of the 64 rows of a pencil: 0 where that is background, kInfinite
+/// where it is outside the region. `origin` is that of the leaf there, `last` says which of its
+/// slabs.
 template <int Axis>
 RowEnds beyondRegion(const Domain& region, const Coord& origin, bool last) {
   const LeafIndex::Mask inside = detail::insideMask(region, origin);
@@ -135,8 +136,8 @@ void continueBeyond(const detail::SlabFaces& faces, const Obstacles& obstacles, 
     d.after = faces.above.of(origin);
 }
 
-/// One sweepPencils along an axis over all pencils; the first one starts from masks. The array holds int32
-/// values; infinite ones have the sign bit set between passes.
+/// One sweepPencils along an axis over all pencils; the first one starts from masks. The array
+/// holds int32 values; infinite ones have the sign bit set between passes.
 template <int Axis, bool First>
 void sweepPencils(const Leaves& leaves, const Obstacles& obstacles, const detail::SlabFaces* faces,
                   int32_t weight, int reach, Values& values, Interrupter* interrupter) {
@@ -166,7 +167,8 @@ void sweepPencils(const Leaves& leaves, const Obstacles& obstacles, const detail
       });
 }
 
-/// How far a sweepPencils has to look along an axis of that weight for all distances up to `exactUpTo`.
+/// How far a sweepPencils has to look along an axis of that weight for all distances up to
+/// `exactUpTo`.
 int reachAlong(uint32_t exactUpTo, int32_t weight) {
   if (exactUpTo == detail::kInfinite) return std::numeric_limits<int>::max();
   return int(std::sqrt(double(exactUpTo) / weight)) + 1;
@@ -229,7 +231,7 @@ void detail::checkBackground(const Obstacles& obstacles, int64_t objectVoxels) {
 SquaredDistance squaredDistance(const LeafIndex& index, const Obstacles& obstacles,
                                 const VoxelWeights& weights, Interrupter* interrupter) {
   detail::checkBackground(obstacles, index.voxelCount());
-  const bool region = obstacles.open && !obstacles.domain.isBox() && index.voxelCount() > 0;
+  const bool region = obstacles.inRegion() && index.voxelCount() > 0;
   checkWeights(weights, region ? obstacles.domain.box().dim() : index.boundingBox().dim());
   SquaredDistance result;
   result.weights = weights;

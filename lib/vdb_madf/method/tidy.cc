@@ -13,8 +13,8 @@
 #include "vdb_madf/leaves/detail/label_masks.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/voxels.h"
-#include "vdb_madf/method/detail/grain_flags.h"
 #include "vdb_madf/method/detail/metric.h"
+#include "vdb_madf/method/detail/refill.h"
 #include "vdb_madf/method/detail/tidy_steps.h"
 
 namespace vdb_madf {
@@ -67,59 +67,30 @@ std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const detail::LabelM
   return loose;
 }
 
-uint32_t mostFrequentAround(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
-                            VoxelId id) {
-  uint32_t around[6] = {}, count = 0;
-  detail::forEachNeighbor(index, id, [&](VoxelId q, int, int) {
-    if (detail::isObject(index, q)) around[count++] = labels[index.rank(q)];
-  });
-  return detail::mostFrequent(around);
-}
-
 void moveVoxel(VoxelId id, uint32_t label, detail::LabelMasks& masks) {
   LeafIndex::Mask voxel{};
   voxel[wordOf(id)] = uint64_t(1) << bitOf(id);
   masks.give(leafOf(id), label, voxel);
 }
 
-/// Gives every voxel that is not connected with its grain's anchor to a neighbor. Returns whether each
-/// found one: then each grain is connected.
+/// Gives every voxel that is not connected with its grain's anchor to a neighbor. Returns whether
+/// each found one: then each grain is connected.
 bool connect(const LeafIndex& index, const std::vector<VoxelId>& anchor, detail::LabelMasks& masks,
              GrainLabels& grains, Interrupter* interrupter) {
-  constexpr size_t kVoxelGrain = 1024;
-  std::vector<LooseVoxel> loose = looseVoxels(index, masks, anchor, interrupter);
+  const std::vector<LooseVoxel> loose = looseVoxels(index, masks, anchor, interrupter);
   for (const LooseVoxel& voxel : loose) grains.label[index.rank(voxel.id)] = 0;
-  std::vector<uint32_t> found;
-  for (bool changed = true; changed && !loose.empty();) {
-    found.resize(loose.size());
-    detail::parallelFor(loose.size(), kVoxelGrain, interrupter, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i)
-        found[i] = mostFrequentAround(index, grains.label, loose[i].id);
-    });
-    size_t left = 0;
-    for (size_t i = 0; i < loose.size(); ++i) {
-      if (found[i] == 0) {
-        loose[left++] = loose[i];
-        continue;
-      }
-      grains.label[index.rank(loose[i].id)] = found[i];
-      moveVoxel(loose[i].id, found[i], masks);
-      --grains.voxels[loose[i].lost - 1];
-      ++grains.voxels[found[i] - 1];
-    }
-    changed = left < loose.size();
-    loose.resize(left);
-  }
-  for (const LooseVoxel& voxel : loose) grains.label[index.rank(voxel.id)] = voxel.lost;
-  return loose.empty();
-}
-
-/// Returns as connect().
-bool tidyMasks(const LeafIndex& index, int rounds, detail::LabelMasks& masks, GrainLabels& grains,
-               Interrupter* interrupter) {
-  const std::vector<VoxelId> anchor = findAnchors(index, grains, interrupter);
-  detail::smoothInterfaces(index, rounds, anchor, masks, grains, interrupter);
-  return connect(index, anchor, masks, grains, interrupter);
+  const auto around = [&](uint32_t i) {
+    return detail::labelsAround(index, grains.label, loose[i].id);
+  };
+  const auto give = [&](uint32_t i, uint32_t label) {
+    grains.label[index.rank(loose[i].id)] = label;
+    moveVoxel(loose[i].id, label, masks);
+    --grains.voxels[loose[i].lost - 1];
+    ++grains.voxels[label - 1];
+  };
+  const auto unreached = detail::refill(loose.size(), around, give, interrupter);
+  for (const uint32_t i : unreached) grains.label[index.rank(loose[i].id)] = loose[i].lost;
+  return unreached.empty();
 }
 
 }  // namespace
@@ -152,18 +123,25 @@ std::vector<AnchorCandidate> detail::anchorCandidates(const LeafIndex& index,
   return best;
 }
 
-uint32_t detail::mostFrequent(const uint32_t (&around)[6]) {
+uint32_t detail::mostFrequent(const LabelsAround& around) {
   uint32_t best = 0;
   int64_t most = 0;
   for (const uint32_t label : around) {
     if (label == 0) continue;
-    const int64_t same = std::count(around, around + 6, label);
+    const int64_t same = std::count(around.begin(), around.end(), label);
     if (same > most || (same == most && label < best)) {
       best = label;
       most = same;
     }
   }
   return best;
+}
+
+bool detail::tidyMasks(const LeafIndex& index, int rounds, LabelMasks& masks, GrainLabels& grains,
+                       Interrupter* interrupter) {
+  const std::vector<VoxelId> anchor = findAnchors(index, grains, interrupter);
+  smoothInterfaces(index, rounds, anchor, masks, grains, interrupter);
+  return connect(index, anchor, masks, grains, interrupter);
 }
 
 void checkTidy(int rounds) {
@@ -176,19 +154,7 @@ void tidy(const LeafIndex& index, int rounds, GrainLabels& grains, Interrupter* 
   checkTidy(rounds);
   if (rounds == 0) return;
   detail::LabelMasks masks(index, grains.label, interrupter);
-  tidyMasks(index, rounds, masks, grains, interrupter);
-}
-
-LabelFlaws detail::tidyAndCountFlaws(const LeafIndex& index, int rounds,
-                                     const std::optional<Domain>& domain, GrainLabels& grains,
-                                     Interrupter* interrupter) {
-  checkTidy(rounds);
-  LabelMasks masks(index, grains.label, interrupter);
-  const bool areConnected = rounds > 0 && tidyMasks(index, rounds, masks, grains, interrupter);
-  const size_t count = grains.voxels.size();
-  const std::vector<uint32_t> pieces = areConnected ? std::vector<uint32_t>(count, 1)
-                                                    : countPieces(index, masks, count, interrupter);
-  return labelFlaws(index, masks, grains.voxels, pieces, domain, interrupter);
+  detail::tidyMasks(index, rounds, masks, grains, interrupter);
 }
 
 }  // namespace vdb_madf

@@ -33,12 +33,12 @@ struct GrainLabels {
 ///
 /// Smoothing: `rounds` synchronous rounds. A voxel p of label a, no anchor, takes of a and the
 /// labels of its six neighbors the one that most object voxels of the 3 x 3 x 3 cube around p have;
-/// a if that is among the most frequent, else the smallest label among them.
-/// Connection, then: voxels that no 6-connected path of their label joins with its anchor lose the
-/// label. In synchronous rounds each takes the label that most of its six neighbors have (of equally
-/// frequent ones the smallest), until a round changes nothing. Those never reached, which lie beside
-/// cavities, keep the label they had.
-/// 0 rounds: nothing is done. @throw InvalidInput as checkTidy; Interrupted
+/// a if that is among the most frequent, else the smallest label among them. Connection, then:
+/// voxels that no 6-connected path of their label joins with its anchor lose the label. In
+/// synchronous rounds each takes the label that most of its six neighbors have (of equally frequent
+/// ones the smallest), until a round changes nothing. Those never reached, which lie beside
+/// cavities, keep the label they had. 0 rounds: nothing is done. @throw InvalidInput as checkTidy;
+/// Interrupted
 void tidy(const LeafIndex& index, int rounds, GrainLabels& grains,
           Interrupter* interrupter = nullptr);
 

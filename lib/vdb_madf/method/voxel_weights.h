@@ -14,9 +14,9 @@ namespace vdb_madf {
 
 /// The metric of the method on voxels that need not be cubes:
 ///   |d|^2 = x dx^2 + y dy^2 + z dz^2  of a difference d in voxels,
-/// with integer weights in the ratio of the squared edges. So squared distances stay exact integers.
-/// They are in units of (edge along an axis)^2 / (weight of the axis), which is the same for all
-/// axes: voxels squared for cubes, 1:1:1.
+/// with integer weights in the ratio of the squared edges. So squared distances stay exact
+/// integers. They are in units of (edge along an axis)^2 / (weight of the axis), which is the same
+/// for all axes: voxels squared for cubes, 1:1:1.
 struct VoxelWeights {
   int32_t x = 1, y = 1, z = 1;
 

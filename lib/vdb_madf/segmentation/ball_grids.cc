@@ -3,6 +3,8 @@
 
 #include "vdb_madf/segmentation/ball_grids.h"
 
+#include "vdb_madf/grids/grid_metadata.h"
+
 namespace vdb_madf {
 
 namespace {
@@ -11,10 +13,8 @@ constexpr const char *kSquaredRadius = "balls", *kCellSize = "balls_cell_size";
 
 Int32Grid::Ptr emptyGrid(const char* name, const Int32Grid& labels) {
   const auto grid = Int32Grid::create(0);
-  for (auto meta = labels.beginMeta(); meta != labels.endMeta(); ++meta)
-    grid->insertMeta(meta->first, *meta->second);
+  copyMetadata(labels, *grid);
   grid->setName(name);
-  grid->setTransform(labels.transform().copy());
   return grid;
 }
 

@@ -181,8 +181,8 @@ void writeItems(std::ostream& stream, const std::vector<Item>& items, size_t ite
   }
 }
 
-/// A graph, or a part of one. Copies share it: OpenVDB copies metadata whenever it copies or writes a
-/// grid.
+/// A graph, or a part of one. Copies share it: OpenVDB copies metadata whenever it copies or writes
+/// a grid.
 class GraphMetadata final : public openvdb::Metadata {
  public:
   GraphMetadata() = default;

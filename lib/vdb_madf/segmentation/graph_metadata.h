@@ -16,23 +16,24 @@ namespace vdb_madf {
 /// The value, in bytes, all integers little-endian: version 1 (u32), number of nodes (u32), number
 /// of edges (u32); per node x, y, z, squared radius (i32), voxels (i64); per edge first, second
 /// (u32), contact faces (i64), saddle height (i32), cells touch (u8, 0 or 1). The graph's weights
-/// stand beside it, in `madf_weights` (voxel_weights.h). The part of a slab has version 2, and after the
-/// edges the number of each node (u32), then of each whether it goes on (u8, 0 or 1).
+/// stand beside it, in `madf_weights` (voxel_weights.h). The part of a slab has version 2, and
+/// after the edges the number of each node (u32), then of each whether it goes on (u8, 0 or 1).
 /// @throw InvalidInput if the graph breaks a rule of manifold_graph.h (order, ranges), or takes
 ///   4 GiB or more.
 void setGraph(openvdb::GridBase& grid, ManifoldGraph graph);
 
-/// Absent: the grid has no graph. @throw InvalidInput if it has a part of one alone, or `madf_weights`
-/// cannot be those of the graph.
+/// Absent: the grid has no graph. @throw InvalidInput if it has a part of one alone, or
+/// `madf_weights` cannot be those of the graph.
 std::optional<ManifoldGraph> storedGraph(const openvdb::GridBase& grid);
 
-/// The same of a grid that has to have one. @throw InvalidInput also if it has none
+/// The graph of a grid that has to have one. @throw InvalidInput as storedGraph(), and if there is
+/// none
 ManifoldGraph requiredGraph(const openvdb::GridBase& grid);
 
-/// Also of a part.
+/// Removes the graph of a grid, or the part of one.
 void removeGraph(openvdb::GridBase& grid);
 
-/// The same for the part of a slab.
+/// Writes and reads the part of a slab, as setGraph() and storedGraph() do the whole.
 void setGraphPart(openvdb::GridBase& grid, GraphPart part);
 std::optional<GraphPart> storedGraphPart(const openvdb::GridBase& grid);
 

@@ -8,7 +8,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/method/detail/tidy_steps.h"
+#include "vdb_madf/segmentation/detail/grain_flags.h"
 #include "vdb_madf/segmentation/detail/manifold_labels.h"
 #include "vdb_madf/segmentation/detail/sweep_rows.h"
 #include "vdb_madf/segmentation/graph_metadata.h"

@@ -9,10 +9,10 @@
 
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/method/boundary.h"
-#include "vdb_madf/method/label_flaws.h"
 #include "vdb_madf/method/merge.h"
 #include "vdb_madf/method/squared_distance.h"
 #include "vdb_madf/method/tidy.h"
+#include "vdb_madf/segmentation/label_flaws.h"
 
 namespace vdb_madf {
 
@@ -53,9 +53,9 @@ struct SweepRow {
 std::vector<SweepRow> parameterSweep(const MaskGrid& object, const SweepOptions& options,
                                      Interrupter* interrupter = nullptr);
 
-/// The same rows for stored manifolds (segment() with keepManifold), without distances and power
-/// map. Of the options it takes modes, thetas, deltas, adjacency, smallVoxels and tidy; the rows
-/// repeat the first gamma.
+/// Makes the same rows of stored manifolds (segment() with keepManifold), without distances and
+/// power map. Of the options it takes modes, thetas, deltas, adjacency, smallVoxels and tidy; the
+/// rows repeat the first gamma.
 /// @throw InvalidInput also if the grid carries no graph or does not fit it; Interrupted.
 std::vector<SweepRow> mergingSweep(const Int32Grid& manifold, const SweepOptions& options,
                                    Interrupter* interrupter = nullptr);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/leaves/leaf_grid.h"
 #include "vdb_madf/segmentation/detail/manifold_labels.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
@@ -47,10 +48,7 @@ Int32Grid::Ptr mergedGrains(const Int32Grid& manifold, const ManifoldGraph& grap
   GrainLabels grains = detail::labelGrains(manifold, index, graph, merging, interrupter);
   tidy(index, tidyRounds, grains, interrupter);
   const Int32Grid::Ptr grain = toGrid(index, std::move(grains.label), "grain", interrupter);
-  for (auto meta = manifold.beginMeta(); meta != manifold.endMeta(); ++meta)
-    if (meta->first != openvdb::GridBase::META_GRID_NAME)
-      grain->insertMeta(meta->first, *meta->second);
-  grain->setTransform(manifold.transform().copy());
+  copyMetadata(manifold, *grain);
   removeGraph(*grain);
   return grain;
 }

@@ -16,7 +16,7 @@ namespace vdb_madf {
 Int32Grid::Ptr remerge(const Int32Grid& manifold, const MergeOptions& options = {},
                        int tidyRounds = kTidy, Interrupter* interrupter = nullptr);
 
-/// The same for a merging of one's own (merge.h: mergeClasses()) of the graph stored on the grid
+/// Makes grains by a merging of one's own (merge.h: mergeClasses()) of the graph stored on the grid
 /// (graph_metadata.h: storedGraph()). In the metadata `madf_merge` is "own"; theta, adjacency and
 /// delta are gone. If the manifolds of a grain do not touch, give 0 rounds: tidying gives what is
 /// not connected with the representative to the grains around it.

@@ -10,12 +10,12 @@
 
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/method/boundary.h"
-#include "vdb_madf/method/label_flaws.h"
 #include "vdb_madf/method/manifold_graph.h"
 #include "vdb_madf/method/merge.h"
 #include "vdb_madf/method/squared_distance.h"
 #include "vdb_madf/method/tidy.h"
 #include "vdb_madf/method/voxel_weights.h"
+#include "vdb_madf/segmentation/label_flaws.h"
 
 namespace vdb_madf {
 
@@ -41,8 +41,8 @@ struct SegmentOptions {
   int64_t maxMemory = 0;
 };
 
-/// Balls and critical points are those of the body, cavities filled; voxels, leaves and grains those
-/// of the object.
+/// Balls and critical points are those of the body, cavities filled; voxels, leaves and grains
+/// those of the object.
 struct SegmentCounts {
   int64_t objectVoxels = 0;
   int64_t cavities = 0;        ///< that were filled
@@ -69,8 +69,22 @@ struct StageTime {
   int64_t peakBytes = 0;  ///< largest resident memory of the process until the stage's end
 };
 
+/// What a run says of itself, in memory or in slabs; with the options this is what grids tell of
+/// it.
+struct SegmentationRecord {
+  SegmentCounts counts;
+  std::optional<Domain> domain;
+  bool open = false;      ///< the boundary that was used
+  int64_t fillHoles = 0;  ///< the number that was used
+  int tidy = 0;           ///< rounds
+  /// The weights that were used: all squared lengths of the run are in their units, voxels squared
+  /// for 1:1:1.
+  VoxelWeights weights;
+  double weightsError = 0;  ///< of squared lengths, relative (WeightsOfEdges)
+};
+
 /// The grains, what was kept on the way to them, and how they came about.
-struct Segmentation {
+struct Segmentation : SegmentationRecord {
   Int32Grid::Ptr grain;              ///< labels 1..N on X; background 0, inactive
   Int32Grid::Ptr distanceSquared;    ///< D, if kept; of the body, on X
   Int32Grid::Ptr power;              ///< pi' = least power, if kept
@@ -78,27 +92,19 @@ struct Segmentation {
   std::vector<MedialBall> balls;     ///< lexicographic centers, if kept; some in cavities
   ManifoldGraph graph;               ///< node i is critical point i + 1; voxels: those of X
   std::vector<int64_t> grainVoxels;  ///< voxels of grain g at g - 1
-  SegmentCounts counts;
-  LabelFlaws flaws;       ///< of the final labels
-  int64_t fillHoles = 0;  ///< the number that was used
-  int tidy = 0;           ///< rounds
-  std::optional<Domain> domain;
-  bool open = false;  ///< the boundary that was used
-  /// That were used: all squared lengths here are in their units, voxels squared for 1:1:1.
-  VoxelWeights weights;
-  double weightsError = 0;       ///< of squared lengths, relative (WeightsOfEdges)
-  std::vector<StageTime> times;  ///< disjoint, in the order of work
+  LabelFlaws flaws;                  ///< of the final labels
+  std::vector<StageTime> times;      ///< disjoint, in the order of work
 };
 
-/// Cuts the object into grains: cavities -> distance -> power map -> filter -> flow -> graph -> merge
-/// -> tidy (the whole of Wang et al. 2014, section 4 and 5; cavities, the neck test, its tolerance
-/// and tidying are ours, and can be turned off).
+/// Cuts the object into grains: cavities -> distance -> power map -> filter -> flow -> graph ->
+/// merge -> tidy (the whole of Wang et al. 2014, section 4 and 5; cavities, the neck test, its
+/// tolerance and tidying are ours, and can be turned off).
 ///
 /// The active voxels of `object` are X, active tiles included. Labels depend on nothing but X, the
-/// domain, the shape of voxels and the options: not on tiles, threads or the order of work. X empty:
-/// zero grains. Voxels that are no cubes, which the mask's transform tells, get the weights of
-/// weightsOfEdges() for the object's extent, cavities filled.
-/// The interrupter is told each stage's name and the percentage of the whole.
+/// domain, the shape of voxels and the options: not on tiles, threads or the order of work. X
+/// empty: zero grains. Voxels that are no cubes, which the mask's transform tells, get the weights
+/// of weightsOfEdges() for the object's extent, cavities filled. The interrupter is told each
+/// stage's name and the percentage of the whole.
 /// @throw InvalidInput if an option is out of range, X leaves the domain, a limit of leaf_index.h
 ///   is exceeded, there is no background at all, voxels are turned or sheared, no weights fit, or
 ///   maxMemory is too little; Interrupted if the interrupter says so.

@@ -17,21 +17,21 @@ namespace vdb_madf {
 namespace {
 
 // Bytes per leaf.
-constexpr double kIndex = 128;    // origin, mask, neighbours, ranks
+constexpr double kIndex = 128;    // origin, mask, neighbors, ranks
 constexpr double kVoxelSet = 96;  // one bit per voxel, and ranks
 constexpr double kGrid = 2224;    // an Int32 leaf as the heap holds it, and its share of the tree
 constexpr double kPieces = 160;   // connected pieces within leaves, of the object or of labels
 
 // Bytes per object voxel.
 constexpr double kPower = 4, kSite = 4, kManifold = 4;
-// Medial balls are 1 to 8 % of the voxels, and all of thin structures: their ids and roots, or cells and
-// radii, of 4 bytes each.
+// Medial balls are 1 to 8 % of the voxels, and all of thin structures: their ids and roots, or
+// cells and radii, of 4 bytes each.
 constexpr double kBallShare = 0.08, kBalls = 12, kBallTable = 16, kBallList = 48;
 // Voxels that change in one round of the geodesic completion, 12 bytes each in growing lists.
 constexpr double kCompletion = 0.12 * 24;
 
-// Critical points, in the graph and what makes it: of thin structures nearly each voxel is one, but for
-// those that the filter drops; of others next to none.
+// Critical points, in the graph and what makes it: of thin structures nearly each voxel is one, but
+// for those that the filter drops; of others next to none.
 constexpr double kGraph = 100, kFilteredShare = 0.25;
 
 // Threads' scratch space and stacks, the graph, code.

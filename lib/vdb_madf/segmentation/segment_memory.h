@@ -11,8 +11,8 @@
 namespace vdb_madf {
 
 /// What the memory of segment() depends on: touched 8x8x8 leaves (active tiles counted as leaves)
-/// and active voxels; and about how many of these are in structures one or two voxels thick, which may all be
-/// balls and critical points.
+/// and active voxels; and about how many of these are in structures one or two voxels thick, which
+/// may all be balls and critical points.
 struct ObjectSize {
   int64_t leaves = 0;
   int64_t voxels = 0;

@@ -55,13 +55,13 @@ const char* toString(Adjacency adjacency) {
 }
 
 void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options,
-                          const Segmentation& segmentation) {
-  const SegmentCounts& counts = segmentation.counts;
+                          const SegmentationRecord& record) {
+  const SegmentCounts& counts = record.counts;
   setText(grid, "madf_version", kVersion);
   setCount(grid, "madf_gamma", options.gamma);
-  setBoundary(grid, segmentation.open ? Boundary::open : Boundary::closed);
-  setCount(grid, "madf_fill_holes", segmentation.fillHoles);
-  setWeights(grid, segmentation.weights);
+  setBoundary(grid, record.open ? Boundary::open : Boundary::closed);
+  setCount(grid, "madf_fill_holes", record.fillHoles);
+  setWeights(grid, record.weights);
   setCount(grid, kObjectVoxels, counts.objectVoxels);
   setCount(grid, "madf_cavities", counts.cavities);
   setCount(grid, "madf_cavity_voxels", counts.cavityVoxels);
@@ -70,7 +70,7 @@ void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options
   setCount(grid, "madf_critical_points", counts.criticalPoints);
   setCount(grid, "madf_largest_squared_distance", counts.largestSquaredDistance);
   setCount(grid, kLeaves, counts.leaves);
-  describeMerging(grid, options.merge, segmentation.tidy, counts.grains);
+  describeMerging(grid, options.merge, record.tidy, counts.grains);
 }
 
 void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int tidy,

@@ -11,18 +11,19 @@ namespace vdb_madf {
 /// Writes how a segmentation was made onto one of its grids: `madf_version`, `madf_gamma`,
 /// `madf_boundary` ("open", "closed"), `madf_theta`, `madf_merge`, `madf_adjacency`,
 /// `madf_fill_holes`, `madf_delta`, `madf_tidy`, and the counts `madf_object_voxels`,
-/// `madf_cavities`, `madf_cavity_voxels`, `madf_medial_balls`, `madf_kept_balls`, `madf_critical_points`,
-/// `madf_grains`, `madf_largest_squared_distance`, `madf_leaves` (int64); and `madf_weights`, if they
-/// are not 1:1:1 (voxel_weights.h).
+/// `madf_cavities`, `madf_cavity_voxels`, `madf_medial_balls`, `madf_kept_balls`,
+/// `madf_critical_points`, `madf_grains`, `madf_largest_squared_distance`, `madf_leaves` (int64);
+/// and `madf_weights`, if they are not 1:1:1 (voxel_weights.h).
 void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options,
-                          const Segmentation& segmentation);
+                          const SegmentationRecord& record);
 
 /// Replaces what another merging changes: theta, mode, adjacency, delta, tidy and the number of
 /// grains.
 void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int tidy,
                      int64_t grains);
 
-/// The same for a merging of one's own: `madf_merge` is "own"; theta, adjacency and delta go.
+/// Replaces the same by a merging of one's own: `madf_merge` is "own"; theta, adjacency and delta
+/// go.
 void describeOwnMerging(openvdb::GridBase& grid, int tidy, int64_t grains);
 
 /// How manifolds were merged.

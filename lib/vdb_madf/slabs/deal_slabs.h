@@ -11,21 +11,23 @@
 
 namespace vdb_madf {
 
-/// Cuts an object that several members read, each some of its layers of leaf nodes, into slabs of about as
-/// many voxels each, as many as there are members or more, and deals these to the team. All make one. Of
-/// the object nothing is in the memory of a member but a layer or a slab; the rest is in scratch.
+/// Cuts an object that several members read, each some of its layers of leaf nodes, into slabs of
+/// about as many voxels each, as many as there are members or more, and deals these to the team.
+/// All make one. Of the object nothing is in the memory of a member but a layer or a slab; the rest
+/// is in scratch.
 class SlabDealer {
  public:
   SlabDealer(Team& team, Scratch& scratch) : team_(team), scratch_(scratch) {}
 
-  /// A layer, which no other member reads, in any order. @throw InvalidInput if it is not one, or comes twice
+  /// A layer, which no other member reads, in any order. @throw InvalidInput if it is not one, or
+  /// comes twice
   void add(const MaskTree& layer);
 
-  /// After the last of all members, which call it together.
+  /// Comes after the last layer of all members, which call it together.
   /// @param limits of a slab
   /// @param reach how far beyond its slabs a member has to know the object, voxels
-  /// The cuts cover the domain, if there is one, and the object; they do not depend on who read what.
-  /// Those in a scratch that is shared count as finished (hasSlabs()) when all is in it.
+  /// The cuts cover the domain, if there is one, and the object; they do not depend on who read
+  /// what. Slabs in a scratch that is shared count as finished (hasSlabs()) when all is in it.
   void finish(const SlabLimits& limits, int64_t reach, const std::optional<Domain>& domain);
 
  private:

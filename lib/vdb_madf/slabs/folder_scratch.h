@@ -15,22 +15,22 @@ namespace detail {
 class FolderLock;
 }
 
-/// A folder with a file for each piece, compressed, with a checksum. Each file is there whole or not at
-/// all, so that what a killed program left can be taken up again.
+/// A folder with a file for each piece, compressed, with a checksum. Each file is there whole or
+/// not at all, so that what a killed program left can be taken up again.
 class FolderScratch : public Scratch {
  public:
   /// Makes the folder, or takes what is there, if that was made for the same work.
   /// @param work what the pieces depend on, as text
   /// @param resume take up what is there; otherwise the folder must be new or empty
-  /// @throw IoError if it cannot be made, is not empty, or another run works in it; InvalidInput if it
-  ///   was made for other work
+  /// @throw IoError if it cannot be made, is not empty, or another run works in it; InvalidInput if
+  ///   it was made for other work
   FolderScratch(const std::string& path, const std::string& work, bool resume);
   /// Takes part in the folder of another process, which has called share().
   /// @throw IoError if this process does not see it, or a run works in it that does not share it
   explicit FolderScratch(const std::string& path);
   ~FolderScratch() override;
 
-  /// From now on other processes may take part, and all have what one writes.
+  /// Lets other processes take part from now on: all have what one writes.
   void share();
   bool isShared() const override { return isShared_; }
 
@@ -44,7 +44,7 @@ class FolderScratch : public Scratch {
   bool has(const std::string& name) const override;
   void remove(const std::string& name) override;
 
-  /// All that is in it, and the folder.
+  /// Removes all that is in it, and the folder.
   void removeAll();
 
   /// What reading and writing took so far, in this process.

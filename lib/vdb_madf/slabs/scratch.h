@@ -50,7 +50,7 @@ class Scratch {
   virtual bool isShared() const { return false; }
 };
 
-/// In memory: for volumes that fit.
+/// A scratch in memory, for volumes that fit.
 class MemoryScratch : public Scratch {
  public:
   void writeBytes(const std::string& name, const char* bytes, size_t size) override {

@@ -8,7 +8,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/segmentation/detail/segment_options.h"
+#include "vdb_madf/segmentation/detail/prepare.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/slabs/steps/slab_flow.h"
@@ -39,14 +39,8 @@ Int32Grid::Ptr manifoldGrid(const detail::SlabWork& work, size_t slab,
 /// Says of a grid how it was made.
 void describe(const detail::SlabWork& work, const SlabSegmentation& result, Int32Grid& grid) {
   copyProvenance(*work.plan.object.about, grid);
-  if (work.facts.domain) setDomain(grid, *work.facts.domain);
-  Segmentation about;
-  about.counts = result.counts;
-  about.fillHoles = result.fillHoles;
-  about.tidy = result.tidy;
-  about.open = result.open;
-  about.weights = result.weights;
-  describeSegmentation(grid, work.options, about);
+  if (result.domain) setDomain(grid, *result.domain);
+  describeSegmentation(grid, work.options, result);
 }
 
 }  // namespace
@@ -57,9 +51,7 @@ SlabSegmentation segmentSlabs(const SlabObject& object, const SegmentOptions& op
   detail::checkSlabOptions(object, options);
   SlabSegmentation result;
   if (object.slabCount() == 0) return result;
-  result.domain = options.domain ? options.domain : storedDomain(*object.about);
   detail::SlabWork work(object, options, scratch, team, interrupter);
-  work.facts.domain = result.domain;
   detail::flowInSlabs(work, result);
   work.steps.beginStage("merge");
   std::vector<Coord> representatives;

@@ -18,9 +18,9 @@ struct SlabLimits {
   int leastHeight = 8;  ///< of a slab, but for the last
 };
 
-/// The memory that segmentSlabs() takes at its peak for a slab, about. For limits; what is kept of the
-/// whole is not counted (README.md). \p thin: how many voxels are in structures one or two voxels
-/// thick (about), each of which may become a critical point.
+/// The memory that segmentSlabs() takes at its peak for a slab, about. For limits; what is kept of
+/// the whole is not counted (README.md). \p thin: how many voxels are in structures one or two
+/// voxels thick (about), each of which may become a critical point.
 constexpr int64_t slabBytes(int64_t leaves, int64_t voxels, int64_t thin) {
   constexpr int64_t kLeaf = 2560;  // mostly that of the grid of labels
   constexpr int64_t kVoxel = 24;   // maps, and what of them goes to scratch
@@ -41,7 +41,7 @@ class SlabBuilder {
 
   /// The next layer, which lies above those before. @throw InvalidInput if it does not
   void add(const MaskTree& layer);
-  /// After the last. The slabs cover the domain, if there is one, and the object.
+  /// Comes after the last layer. The slabs cover the domain, if there is one, and the object.
   void finish(const std::optional<Domain>& domain);
 
  private:

@@ -11,8 +11,8 @@
 
 namespace vdb_madf {
 
-/// mergingSweep() for manifolds that need not fit in memory together: the same rows. Each row goes through
-/// all slabs; memory and `scratch` as remergeSlabs().
+/// mergingSweep() for manifolds that need not fit in memory together: the same rows. Each row goes
+/// through all slabs; memory and `scratch` as remergeSlabs().
 /// @throw as remergeSlabs() and mergingSweep()
 std::vector<SweepRow> mergingSweep(const LabelSlabs& manifolds, const SweepOptions& options,
                                    Scratch& scratch, Interrupter* interrupter = nullptr);

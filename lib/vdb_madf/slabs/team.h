@@ -13,9 +13,9 @@
 
 namespace vdb_madf {
 
-/// The processes that share the slabs of an object. All run segmentSlabs() at a time, each with its own
-/// slabs, which follow each other; what one slab has to tell another goes through here. All call
-/// exchange(), sum(), max() and broadcast() in the same order. This one works alone.
+/// The processes that share the slabs of an object. All run segmentSlabs() at a time, each with its
+/// own slabs, which follow each other; what one slab has to tell another goes through here. All
+/// call exchange(), sum(), max() and broadcast() in the same order. This one works alone.
 class Team {
  public:
   Team() = default;
@@ -26,16 +26,17 @@ class Team {
   virtual int count() const { return 1; }
   virtual int member() const { return 0; }
 
-  /// Slabs are dealt evenly: member r has those from firstSlab(r, slabs) to before firstSlab(r + 1, slabs);
-  /// member 0 has some if there are any.
+  /// Slabs are dealt evenly: member r has those from firstSlab(r, slabs) to before firstSlab(r + 1,
+  /// slabs); member 0 has some if there are any.
   size_t firstSlab(int member, size_t slabs) const {
     const auto members = size_t(count());
     return (slabs * size_t(member) + members - 1) / members;
   }
   int ownerOf(size_t slab, size_t slabs) const { return int(slab * size_t(count()) / slabs); }
 
-  /// A piece for the scratch of a member: of this one, `own`, at once; of another one, which has it after
-  /// the next exchange(). (To a scratch that is shared this one writes it, and tells its name.)
+  /// A piece for the scratch of a member: of this one, `own`, at once; of another one, which has it
+  /// after the next exchange(). (To a scratch that is shared this one writes it, and tells its
+  /// name.)
   void send(int to, const std::string& name, const Bytes& bytes, Scratch& own) {
     if (to == member() || own.isShared()) own.write(name, bytes);
     if (to != member()) post(to, name, own.isShared() ? Bytes() : bytes);

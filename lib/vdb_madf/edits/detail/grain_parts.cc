@@ -15,6 +15,7 @@
 #include "vdb_madf/edits/detail/weakest_neck.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
+#include "vdb_madf/method/detail/refill.h"
 #include "vdb_madf/segmentation/detail/manifold_labels.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"
@@ -74,32 +75,15 @@ uint32_t representative(const ManifoldGraph& graph, const std::vector<uint32_t>&
   });
 }
 
-/// Gives voxels without a label that of most voxels around, of 1 and 2 the former in doubt, in
-/// synchronous rounds; 1 where none reaches.
-void fill(const LeafIndex& index, VoxelArray<uint32_t>& labels) {
+/// Gives voxels without a label that of most voxels around (refill.h); 1 where no round reaches.
+void fill(const LeafIndex& index, VoxelArray<uint32_t>& labels, Interrupter* interrupter) {
   std::vector<VoxelId> open;
   forEachVoxel(index, 0, index.leafCount(), [&](VoxelId id, size_t rank) {
     if (labels[rank] == 0) open.push_back(id);
   });
-  std::vector<std::pair<VoxelId, uint32_t>> found;
-  while (!open.empty()) {
-    found.clear();
-    std::vector<VoxelId> left;
-    for (const VoxelId id : open) {
-      int around[3] = {0, 0, 0};
-      forEachNeighbor(index, id, [&](VoxelId q, int, int) {
-        if (isObject(index, q)) ++around[labels[index.rank(q)]];
-      });
-      if (around[1] + around[2] > 0)
-        found.emplace_back(id, around[2] > around[1] ? 2 : 1);
-      else
-        left.push_back(id);
-    }
-    if (found.empty())
-      for (const VoxelId id : std::exchange(left, {})) found.emplace_back(id, 1);
-    for (const auto& [id, label] : found) labels[index.rank(id)] = label;
-    open = std::move(left);
-  }
+  const auto around = [&](uint32_t i) { return labelsAround(index, labels, open[i]); };
+  const auto give = [&](uint32_t i, uint32_t label) { labels[index.rank(open[i])] = label; };
+  for (const uint32_t i : refill(open.size(), around, give, interrupter)) give(i, 1);
 }
 
 /// The voxels of an index with a label.
@@ -256,7 +240,7 @@ std::optional<std::array<GrainPart, 2>> GrainParts::halves(const GrainPart& part
   grains.label = VoxelArray<uint32_t>(places.size());
   for (size_t rank = 0; rank < places.size(); ++rank)
     grains.label[rank] = places[rank] == kForeign ? 0 : 1 + uint32_t((*beyond)[places[rank]]);
-  fill(index, grains.label);
+  fill(index, grains.label, interrupter);
   grains.voxels = {0, 0};
   for (size_t rank = 0; rank < places.size(); ++rank) ++grains.voxels[grains.label[rank] - 1];
   for (size_t place = 0; place < part.nodes.size(); ++place)

@@ -5,9 +5,9 @@
 
 #include "vdb_madf/grids/grid_types.h"
 
-// The grids of grid_types.h, compiled once, in grid_instances.cc. Without this every file that makes
-// or copies a grid would compile the grid's and the tree's whole virtual interface again. Part of
-// the precompiled header of our sources; programs that use the library do not see it.
+// The grids of grid_types.h, compiled once, in grid_instances.cc. Without this every file that
+// makes or copies a grid would compile the grid's and the tree's whole virtual interface again.
+// Part of the precompiled header of our sources; programs that use the library do not see it.
 
 extern template class openvdb::Grid<vdb_madf::MaskTree>;
 extern template class openvdb::Grid<vdb_madf::Int32Tree>;

@@ -52,7 +52,7 @@ class GridSlabs {
     for (; tile; ++tile) addTile(tile.getBoundingBox(), ValueOf()(*tile, tile.isValueOn()));
   }
 
-  /// Of `count` slices from z on, all within the box.
+  /// Reads `count` slices from z on, all within the box.
   void read(int z, int count, Value* values) const {
     readLayers(z, count, values, [](size_t pieces, const auto& body) { body(0, pieces); });
   }

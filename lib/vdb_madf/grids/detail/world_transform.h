@@ -48,8 +48,8 @@ inline bool areEdgesOfCube(const openvdb::Vec3d& edges) {
   return vdb_madf::areEdgesOfCube({std::abs(edges[0]), std::abs(edges[1]), std::abs(edges[2])});
 }
 
-/// The edges of a voxel in units of the shortest; 1 for cubes, and for voxels that are not along the
-/// axes.
+/// The edges of a voxel in units of the shortest; 1 for cubes, and for voxels that are not along
+/// the axes.
 inline openvdb::Vec3d proportions(const openvdb::math::Transform& transform) {
   const auto edges = edgesAlongAxes(transform);
   if (!edges || areEdgesOfCube(*edges)) return openvdb::Vec3d(1);
@@ -59,7 +59,7 @@ inline openvdb::Vec3d proportions(const openvdb::math::Transform& transform) {
 
 /// World = origin + index * edges, along each axis.
 struct WorldTransform {
-  openvdb::Vec3d origin;  ///< of the centre of voxel (0,0,0)
+  openvdb::Vec3d origin;  ///< of the center of voxel (0,0,0)
   openvdb::Vec3d edges{1, 1, 1};
   double shortestEdge() const { return std::min({edges[0], edges[1], edges[2]}); }
 };

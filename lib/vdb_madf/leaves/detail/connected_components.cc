@@ -79,9 +79,9 @@ void ConnectedComponents::findPieces(const LeafIndex& index, const LabelMasks* l
   });
 }
 
-/// Pieces that meet in a face between leaves belong together, if their labels agree. First those within
-/// parts of the leaves, which share no sets, in parallel; then those between two parts, between two pairs
-/// of parts, and so on.
+/// Pieces that meet in a face between leaves belong together, if their labels agree. First those
+/// within parts of the leaves, which share no sets, in parallel; then those between two parts,
+/// between two pairs of parts, and so on.
 void ConnectedComponents::joinPieces(const LeafIndex& index, DisjointSets& sets,
                                      Interrupter* interrupter) const {
   constexpr size_t kParts = 32;
@@ -104,8 +104,8 @@ void ConnectedComponents::joinPieces(const LeafIndex& index, DisjointSets& sets,
   }
 }
 
-/// The pieces on both sides of the face between a leaf and the next one along an axis. Pieces of a leaf
-/// ascend by label.
+/// The pieces on both sides of the face between a leaf and the next one along an axis. Pieces of a
+/// leaf ascend by label.
 void ConnectedComponents::joinFaces(uint32_t leaf, uint32_t next, size_t axis,
                                     DisjointSets& sets) const {
   struct Face {

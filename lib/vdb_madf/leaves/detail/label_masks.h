@@ -11,8 +11,8 @@
 
 namespace vdb_madf::detail {
 
-/// The voxels of each label, leaf by leaf: most leaves have one or two labels, and what is asked of 64
-/// voxels at a time costs little.
+/// The voxels of each label, leaf by leaf: most leaves have one or two labels, and what is asked of
+/// 64 voxels at a time costs little.
 class LabelMasks {
  public:
   struct Entry {

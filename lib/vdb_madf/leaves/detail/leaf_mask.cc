@@ -9,7 +9,7 @@ namespace vdb_madf::detail {
 
 namespace {
 
-/// A word and its neighbours along y and z.
+/// A word and its neighbors along y and z.
 uint64_t dilateWord(uint64_t w) {
   return w | (w & ~kLastZ) << 1 | (w & ~kFirstZ) >> 1 | w << 8 | w >> 8;
 }

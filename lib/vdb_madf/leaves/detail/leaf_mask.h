@@ -57,7 +57,8 @@ inline std::array<uint64_t, 8> layersAlongZ(const LeafIndex::Mask& mask) {
   return layers;
 }
 
-/// 64 bytes of 0 or 1, those of the voxels of one x, to a word of a mask. For kernels (simd.h), too.
+/// 64 bytes of 0 or 1, those of the voxels of one x, to a word of a mask. For kernels (simd.h),
+/// too.
 [[gnu::always_inline]] inline uint64_t wordOfBytes(const uint8_t* bytes) {
   uint64_t word = 0;
   for (size_t y = 0; y < 8; ++y) {
@@ -71,7 +72,7 @@ inline std::array<uint64_t, 8> layersAlongZ(const LeafIndex::Mask& mask) {
 /// Grows `seed` to the 6-connected component of `mask` that holds it.
 LeafIndex::Mask flood(LeafIndex::Mask seed, const LeafIndex::Mask& mask);
 
-/// The voxels of the leaf on a side (in the order of LeafIndex::Neighbors) that are neighbours of
+/// The voxels of the leaf on a side (in the order of LeafIndex::Neighbors) that are neighbors of
 /// voxels of `mask`.
 LeafIndex::Mask across(const LeafIndex::Mask& mask, size_t side);
 
@@ -80,12 +81,12 @@ constexpr size_t opposite(size_t side) {
   return side ^ 1;
 }
 
-/// The voxels of `mask` and their neighbours within the leaf.
+/// The voxels of `mask` and their neighbors within the leaf.
 LeafIndex::Mask dilate(const LeafIndex::Mask& mask);
 
-/// About how many voxels are in structures one or two voxels thick: those that have no face in common with
-/// a voxel all of whose neighbours are in `mask`. Told by the voxels that are not at faces of the leaf, for
-/// all in proportion.
+/// About how many voxels are in structures one or two voxels thick: those that have no face in
+/// common with a voxel all of whose neighbors are in `mask`. Told by the voxels that are not at
+/// faces of the leaf, for all in proportion.
 int64_t countThin(const LeafIndex::Mask& mask);
 
 /// The voxels of the leaf at `origin` that lie in a box.
@@ -94,7 +95,7 @@ LeafIndex::Mask inBox(const Coord& origin, const CoordBBox& box);
 /// The voxels of the leaf at `origin` that lie in a domain.
 LeafIndex::Mask insideMask(const Domain& domain, const Coord& origin);
 
-/// Those of them whose six neighbors lie in it, too.
+/// The voxels of the leaf at `origin` that lie in a domain together with their six neighbors.
 LeafIndex::Mask innerMask(const Domain& domain, const Coord& origin);
 
 /// The origin of the leaf on a side.

@@ -15,7 +15,7 @@ namespace vdb_madf::detail {
 /// VoxelArray::kSlack values past the last.
 void expandLeaf(const LeafIndex::Mask& mask, const uint32_t* values, uint32_t* dense);
 
-/// The same with the 64 voxels of one x, a word of the mask.
+/// Expands the 64 voxels of one x, a word of the mask, likewise.
 void expandWord(uint64_t word, const uint32_t* values, uint32_t* dense);
 
 /// The way back: the dense values of the object voxels, one after the other.
@@ -24,7 +24,8 @@ void packLeaf(const LeafIndex::Mask& mask, const uint32_t* dense, uint32_t* valu
 /// The voxels of a leaf, dense as above, that have a value.
 LeafIndex::Mask voxelsOf(const uint32_t* dense, uint32_t value);
 
-/// f(value, voxels) for each value that some voxels of a leaf have, by its first one. `dense`: as above.
+/// f(value, voxels) for each value that some voxels of a leaf have, by its first one. `dense`: as
+/// above.
 template <typename F>
 void forEachValue(LeafIndex::Mask voxels, const uint32_t* dense, const F& f) {
   for (size_t x = 0; x < 8; ++x)

@@ -14,7 +14,7 @@ namespace vdb_madf::detail {
 /// Pencils per task: a pencil of a few leaves costs some tens of microseconds.
 constexpr size_t kPencilGrain = 8;
 
-/// First leaves of the pencils along an axis: the leaves without a neighbour before them.
+/// First leaves of the pencils along an axis: the leaves without a neighbor before them.
 inline std::vector<uint32_t> pencilStarts(const LeafIndex& index, int axis) {
   std::vector<uint32_t> starts;
   for (size_t i = 0; i < index.leafCount(); ++i)

@@ -8,7 +8,8 @@
 
 namespace vdb_madf::detail {
 
-/// Bit i, i < count <= 64: does values[i] differ from the value before it? `before`: before the first.
+/// Bit i, i < count <= 64: does values[i] differ from the value before it? `before`: before the
+/// first.
 uint64_t runStarts(const uint32_t* values, size_t count, uint32_t before);
 
 }  // namespace vdb_madf::detail

@@ -12,7 +12,7 @@ namespace vdb_madf::detail {
 constexpr int kLeafSide = 8;
 /// Leaves per task of a loop over voxels: some tens of microseconds.
 constexpr size_t kLeafGrain = 64;
-/// The same of a loop that does little in each leaf.
+/// Leaves per task of a loop that does little in each leaf.
 constexpr size_t kLightLeafGrain = 256;
 
 /// Bits y*8 + z of a mask word with z = 0, with z = 7.
@@ -29,7 +29,7 @@ void forEachVoxel(const LeafIndex& index, size_t begin, size_t end, const F& f) 
   }
 }
 
-/// f(id, axis, step) for the 6-neighbours of a voxel, `step` (-1, 1) along `axis`, that lie in
+/// f(id, axis, step) for the 6-neighbors of a voxel, `step` (-1, 1) along `axis`, that lie in
 /// leaves of the index (whether or not they are object voxels).
 template <typename F>
 void forEachNeighbor(const LeafIndex& index, VoxelId id, const F& f) {

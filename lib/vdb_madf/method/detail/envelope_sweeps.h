@@ -8,9 +8,9 @@
 
 namespace vdb_madf::detail {
 
-/// As sweepPower(), for balls of any size: each row takes the lower envelope of its parabolas. If
-/// maxSquaredRadius and the object are so large that 64-bit keys overflow, the slower 128-bit ones are
-/// used.
+/// Does what sweepPower() does, for balls of any size: each row takes the lower envelope of its
+/// parabolas. If maxSquaredRadius and the object are so large that 64-bit keys overflow, the slower
+/// 128-bit ones are used.
 void sweepEnvelopes(const SweptLeaves& leaves, const ForeignSites* foreign,
                     int32_t maxSquaredRadius, const VoxelWeights& weights, PowerValues& values,
                     Interrupter* interrupter);

@@ -19,7 +19,7 @@ struct ForeignSite {
   int32_t squaredRadius = 0;
 };
 
-/// By leaf column, then column, then z.
+/// Orders sites by leaf column, then column, then z.
 struct ColumnOrder {
   bool operator()(const ForeignSite& a, const ForeignSite& b) const {
     return placeOf(a.position) < placeOf(b.position);
@@ -35,15 +35,16 @@ struct ColumnOrder {
 /// voxel at a cut, joined to it by the object.
 class ForeignSites {
  public:
-  /// Each at most once, in ColumnOrder. Names their leaves in the index of the slab begin <= z < end.
+  /// Takes each site at most once, in ColumnOrder. Names their leaves in the index of the slab
+  /// begin <= z < end.
   ForeignSites(const std::vector<ForeignSite>& below, const std::vector<ForeignSite>& above,
                int begin, int end, LeafIndex& index);
 
-  /// Those in line with the pencil of `length` voxels along z that starts at `origin`.
+  /// Adds the sites in line with the pencil of `length` voxels along z that starts at `origin`.
   template <typename Key>
   void addTo(const Coord& origin, int length, EnvelopeRows<Key>& rows) const;
 
-  /// The same for lines along z, as far as these reach.
+  /// Adds the sites in line with lines along z, as far as these reach.
   void addTo(const Coord& origin, int shift, KeyLines& lines) const;
 
   int32_t largestSquaredRadius() const { return largest_; }

@@ -13,7 +13,8 @@ namespace vdb_madf::detail {
 
 constexpr VoxelId kNoSite = ~VoxelId(0);
 
-/// Gives the voxels that no kept ball covers a site, in the synchronous rounds of filteredPowerMap().
+/// Gives the voxels that no kept ball covers a site, in the synchronous rounds of
+/// filteredPowerMap().
 class GeodesicCompletion {
  public:
   struct State {
@@ -27,12 +28,13 @@ class GeodesicCompletion {
 
   GeodesicCompletion(const LeafIndex& index, PowerMap& map);
 
-  /// Before the first round: all voxels that the map does not cover have no site, and may get one.
+  /// Comes before the first round: all voxels that the map does not cover have no site, and may get
+  /// one.
   void start(Interrupter* interrupter);
-  /// One round: decides for all voxels of the front from the state before it, then writes. Only voxels
-  /// beside a change can change in the next round. False if nothing changed.
+  /// One round: decides for all voxels of the front from the state before it, then writes. Only
+  /// voxels beside a change can change in the next round. False if nothing changed.
   bool round(Interrupter* interrupter);
-  /// Of the last round, in no particular order.
+  /// The changes of the last round, in no particular order.
   const std::vector<std::vector<Change>>& changes() const { return changes_; }
 
   // What follows is for an object that goes on beyond the layers at the ends of the index along z.

@@ -11,7 +11,7 @@
 
 namespace vdb_madf::detail {
 
-/// Which edges merge their nodes, as merge() says.
+/// Tells which edges merge their nodes, as merge() says.
 class MergeRule {
  public:
   MergeRule(const MergeOptions& options, const VoxelWeights& weights)
@@ -27,15 +27,15 @@ class MergeRule {
 
   /// Is an edge of that saddle height tested by its neck?
   bool seesNeck(int32_t height) const { return options_.mode != MergeMode::angle && height > 0; }
-  /// Does a neck of that height, > 0, merge two classes of which that is the smaller top? If it does, so
-  /// does any higher neck, and with any smaller top.
+  /// Does a neck of that height, > 0, merge two classes of which that is the smaller top? If it
+  /// does, so does any higher neck, and with any smaller top.
   bool mergesByNeck(int32_t height, int32_t top) const {
     return height >= factor_ * top || isWithin(top, height);
   }
 
  private:
-  /// Is the neck of squared radius h, 0 < h, less than k / 8 of the shortest edge narrower than a ball
-  /// of squared radius m? That edge is sqrt(w), w its weight:
+  /// Is the neck of squared radius h, 0 < h, less than k / 8 of the shortest edge narrower than a
+  /// ball of squared radius m? That edge is sqrt(w), w its weight:
   ///   sqrt(m) < sqrt(h) + k sqrt(w) / 8  <=>  L := 64 (m - h) - k^2 w < 16 k sqrt(w h)
   ///                                      <=>  L < 0  or  L^2 < 256 k^2 w h   (where k > 0).
   bool isWithin(int64_t m, int64_t h) const {

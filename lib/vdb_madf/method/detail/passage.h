@@ -22,19 +22,20 @@ namespace vdb_madf::detail {
 /// a box domain none of it is unknown. In a region some of it may be, so unknown voxels take part
 /// in the sweeps: they carry values on, and have none of their own.
 ///
-/// They do so within the box of the region, at least as far away from the object, along each axis, as
-/// is needed; and in those passes only after which a line can turn to the object, or come from it.
+/// Unknown voxels do so within the box of the region, at least as far away from the object, along
+/// each axis, as is needed; and in those passes only after which a line can turn to the object, or
+/// come from it.
 class Passage {
  public:
-  /// For distances (passes along x, y, z): `reach` voxels. So a squared distance D is exact if
-  /// D <= w reach^2, w the least weight; a larger one may be too large.
+  /// Reaches `reach` voxels, for distances (passes along x, y, z). So a squared distance D is exact
+  /// if D <= w reach^2, w the least weight; a larger one may be too large.
   Passage(const LeafIndex& object, const Domain& region, int reach, const VoxelWeights& weights);
-  /// For powers (passes along z, y, x): around each voxel the radius of its ball.
+  /// Reaches as far as its ball around each voxel, for powers (passes along z, y, x).
   Passage(const LeafIndex& object, const Domain& region, const VoxelArray<int32_t>& squaredRadii,
           const VoxelWeights& weights);
 
-  /// Of the object and those unknown voxels, in leaves of 8 voxels as always: a voxel of one of its
-  /// leaves that is none of them is background.
+  /// The index of the object and those unknown voxels, in leaves of 8 voxels as always: a voxel of
+  /// one of its leaves that is none of them is background.
   const LeafIndex& index() const { return index_; }
   /// The largest D that is exact, of distances; kInfinite (distance_rows.h) if all are.
   uint32_t exactUpTo() const { return exactUpTo_; }
@@ -50,7 +51,7 @@ class Passage {
 
  private:
   void linkObject(const LeafIndex& object);
-  /// For passes along these axes; do all values come from the object?
+  /// Chooses for passes along these axes. \p fromObject: do all values come from the object?
   void chooseCarriers(const std::array<int, 3>& axes, bool fromObject);
 
   LeafIndex index_;

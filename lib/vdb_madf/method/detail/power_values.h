@@ -7,14 +7,14 @@
 
 namespace vdb_madf::detail {
 
-/// What the sweeps of a power map go through: a power, or a number for it, and a site for each voxel.
-/// Unknown voxels are uncovered.
+/// What the sweeps of a power map go through: a power, or a number for it, and a site for each
+/// voxel. Unknown voxels are uncovered.
 struct PowerValues {
   SweptValues<int32_t> power;
   SweptValues<VoxelId> site;
 };
 
-/// Which of the three passes goes along an axis: z, y, x.
+/// The number of the pass along an axis: passes go along z, y, x.
 constexpr int powerPass(int axis) {
   return 2 - axis;
 }

@@ -26,7 +26,7 @@ class ColumnSteps {
   ColumnSteps() = default;
   ColumnSteps(std::vector<std::array<int, 2>> leaves, std::vector<Rows> rows)
       : leaves_(std::move(leaves)), rows_(std::move(rows)) {}
-  /// For the columns that the leaf at `origin` stands in; by ascending origins in one plane.
+  /// Adds the columns that the leaf at `origin` stands in; by ascending origins in one plane.
   void add(const Coord& origin, const Rows& rows) {
     leaves_.push_back({origin.x(), origin.y()});
     rows_.push_back(rows);

@@ -36,7 +36,7 @@ class SweptLeaves {
     if (!passage_) return leaf;
     return std::min(passage_->objectLeavesBefore(leaf), uint32_t(object_.leafCount()) - 1);
   }
-  /// As that of Passage: yes, if there is none.
+  /// Does a leaf take part in a pass (Passage)? Each does if there is no passage.
   bool carries(int pass, uint32_t leaf) const { return !passage_ || passage_->carries(pass, leaf); }
   bool anyCarries(int pass, const std::vector<uint32_t>& leaves) const {
     return std::any_of(leaves.begin(), leaves.end(),
@@ -49,7 +49,7 @@ class SweptLeaves {
     expand(leaf, values.object, passage_ ? values.unknown.data() + unknownBefore(leaf) : nullptr,
            dense);
   }
-  /// The same, with one value for all unknown voxels.
+  /// Expands a leaf with one value for all unknown voxels.
   template <typename T>
   void expand(uint32_t leaf, const VoxelArray<T>& ofObject, T ofUnknown, T* dense) const {
     std::array<T, 512 + VoxelArray<T>::kSlack> same;

@@ -4,27 +4,25 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "vdb_madf/leaves/detail/label_masks.h"
 #include "vdb_madf/leaves/leaf_index.h"
-#include "vdb_madf/method/label_flaws.h"
 #include "vdb_madf/method/tidy.h"
 
 namespace vdb_madf::detail {
 
-/// No voxel of the index: of the anchor of a grain that has none in it.
+/// Stands for the anchor of a grain that has no voxel in the index.
 constexpr VoxelId kNoAnchor = ~VoxelId(0);
 
-/// tidy(), then labelFlaws() of what it gives: both work on the same masks.
-LabelFlaws tidyAndCountFlaws(const LeafIndex& index, int rounds,
-                             const std::optional<Domain>& domain, GrainLabels& grains,
-                             Interrupter* interrupter);
+/// tidy() of one round or more, with the masks of the labels. Returns whether each grain is
+/// connected then.
+bool tidyMasks(const LeafIndex& index, int rounds, LabelMasks& masks, GrainLabels& grains,
+               Interrupter* interrupter);
 
-/// The first part of tidy(): rounds of smoothing. \p anchor: of grain g at g - 1. A round only looks at
-/// leaves where something may change: the first at all, another at those that see a change of the round
-/// before.
+/// The first part of tidy(): rounds of smoothing. \p anchor: of grain g at g - 1. A round only
+/// looks at leaves where something may change: the first at all, another at those that see a change
+/// of the round before.
 void smoothInterfaces(const LeafIndex& index, int rounds, const std::vector<VoxelId>& anchor,
                       LabelMasks& masks, GrainLabels& grains, Interrupter* interrupter);
 
@@ -41,9 +39,5 @@ struct AnchorCandidate {
 std::vector<AnchorCandidate> anchorCandidates(const LeafIndex& index, const GrainLabels& grains,
                                               const std::vector<uint32_t>& wanted,
                                               Interrupter* interrupter);
-
-/// The label that most of a voxel's neighbors have, of equally frequent ones the smallest; 0 if none
-/// has one. \p around: their labels, 0 where there is none.
-uint32_t mostFrequent(const uint32_t (&around)[6]);
 
 }  // namespace vdb_madf::detail

@@ -18,8 +18,8 @@ struct WindowRows {
   KeyLines lines;
 };
 
-/// Where a run of 8 voxels along z of the pencil's leaf number `leaf` is in the lines. Along z a row is
-/// a line; else the runs of two rows lie side by side (pencil.h has the order of rows).
+/// Where a run of 8 voxels along z of the pencil's leaf number `leaf` is in the lines. Along z a
+/// row is a line; else the runs of two rows lie side by side (pencil.h has the order of rows).
 template <int Axis>
 size_t placeOfRun(const KeyLines& lines, size_t leaf, int run) {
   const int x = run >> 3, y = run & 7, first = int(leaf) * 8;

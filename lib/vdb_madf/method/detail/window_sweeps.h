@@ -8,7 +8,8 @@
 
 namespace vdb_madf::detail {
 
-/// As sweepPower(), for D up to kLargestKeyedSquaredRadius: each voxel looks at all sites in reach.
+/// Does what sweepPower() does, for D up to kLargestKeyedSquaredRadius: each voxel looks at all
+/// sites in reach.
 void sweepWindows(const SweptLeaves& leaves, const ForeignSites* foreign, int32_t maxSquaredRadius,
                   const VoxelWeights& weights, PowerValues& values, Interrupter* interrupter);
 

@@ -25,7 +25,8 @@ VDB_MADF_KERNEL void scan(const uint64_t* masks, int length, const RowDomain& do
                           Weight weight, uint32_t* out) {
   using Numbers = Lanes<Bytes, uint32_t>;
   Numbers state, inside;
-  // One more than the state before, but at voxels outside the object: 0, or kFar if not in the domain.
+  // One more than the state before, but at voxels outside the object: 0, or kFar if not in the
+  // domain.
   const auto advance = [&](int t) VDB_MADF_INLINE {
     inside.fillFromBits(uint32_t(masks[t] >> first & 0xffff));
     const uint32_t outside = t >= domain.begin && t < domain.end ? 0 : kFar;

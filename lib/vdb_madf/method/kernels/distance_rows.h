@@ -11,8 +11,8 @@
 
 namespace vdb_madf::detail {
 
-/// No background voxel known yet. Adding the square of a row's length to it does not overflow 32
-/// bits.
+/// The distance where no background voxel is known yet. Adding the square of a row's length to it
+/// does not overflow 32 bits.
 constexpr uint32_t kInfinite = 1u << 31;
 
 // `weight` is that of the axis (voxel_weights.h); weight * length^2 must be less than 2^31.
@@ -33,10 +33,10 @@ struct RowDomain {
 void scanRows(const uint64_t* masks, int length, const RowDomain& domain, int32_t weight,
               uint32_t* out);
 
-/// Other passes, at the positions t in [begin, end): out(t) = min over s of in(s) + weight (s - t)^2,
-/// at most kInfinite; where that is more than weight * reach^2, anything more. `in` and `out` point to
-/// the slab of position 0; `in` has `length` slabs and one more at either end, the positions -1 and
-/// `length`.
+/// Other passes, at the positions t in [begin, end): out(t) = min over s of in(s) + weight (s -
+/// t)^2, at most kInfinite; where that is more than weight * reach^2, anything more. `in` and `out`
+/// point to the slab of position 0; `in` has `length` slabs and one more at either end, the
+/// positions -1 and `length`.
 void widenWindows(const uint32_t* in, int length, int begin, int end, int32_t weight, int reach,
                   uint32_t* out);
 

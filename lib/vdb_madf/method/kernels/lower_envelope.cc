@@ -46,16 +46,16 @@ template struct EnvelopeRows<__int128>;
 
 namespace {
 
-/// Marks object voxels and candidates. Let a, b, c be the parabolas of the positions t - 1, t, t + 1.
-/// At every u
+/// Marks object voxels and candidates. Let a, b, c be the parabolas of the positions t - 1, t, t +
+/// 1. At every u
 ///   f_a(u) + f_c(u) - 2 f_b(u) = p_a + p_c - 2 p_b + 2 w =: bend,
 /// so b is
 ///   bend < 0:  least nowhere, for a or c is less;
 ///   bend = 0:  least only where all three are equal, and it wins that tie only if D_b > D_a and
 ///              D_b >= D_c, which needs 2 D_b - D_a - D_c =: radiusBend > 0;
 ///   bend > 0:  a candidate. So it is where a or c is no site.
-/// Whatever is left out has a better one wherever it is below 0, so the best one of a voxel is never
-/// left out, nor are its parabolas in the passes before.
+/// Whatever is left out has a better one wherever it is below 0, so the best one of a voxel is
+/// never left out, nor are its parabolas in the passes before.
 template <typename Key, typename Weight>
 VDB_MADF_KERNEL void markCandidates(size_t length, Weight weight, EnvelopeRows<Key>& s) {
   constexpr bool kFilter = sizeof(Key) == 8;  // wide keys: what follows could overflow
@@ -98,8 +98,8 @@ inline uint64_t bitsBetween(int first, int begin, int end) {
   return from & to;
 }
 
-/// The envelope of the candidates in [begin, end) of a row, and of what is `before` and `after` that, in
-/// s.envelope. Returns their number.
+/// The envelope of the candidates in [begin, end) of a row, and of what is `before` and `after`
+/// that, in s.envelope. Returns their number.
 ///
 /// In the order of keys, c less than b means, with x = position,
 ///   key_c(u) < key_b(u)  <=>  k_c - 2 M w x_c u < k_b - 2 M w x_b u

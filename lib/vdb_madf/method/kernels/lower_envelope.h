@@ -36,7 +36,7 @@ struct BeyondRow {
   uint32_t site;
 };
 
-/// Those of all 64 rows, row after row, ascending by position.
+/// The foreign sites of all 64 rows, row after row, ascending by position.
 struct BeyondRows {
   std::vector<BeyondRow> sites;
   std::array<uint32_t, 65> first{};  ///< of a row; one more at the end
@@ -62,17 +62,17 @@ struct EnvelopeRows {
   /// Sites that take part in the run at the first position of their row, or the last.
   BeyondRows before, after;
 
-  /// For rows of `length` positions, a multiple of 8. Never shrinks: growing again would clear what
-  /// is overwritten anyway.
+  /// Makes room for rows of `length` positions, a multiple of 8. Never shrinks: growing again would
+  /// clear what is overwritten anyway.
   void resize(size_t length);
 };
 
-/// In place, for each row and each of its runs of object voxels (power not 0):
+/// Replaces powers and sites, for each row and each of its runs of object voxels (power not 0):
 ///   power(t) = min over s in the run, power(s) < 0, of power(s) + w (t - s)^2,  site(t) = site(s);
 /// of several such s the one of larger D, then the smaller s. kNotNegative, and any site, where
-/// that is 0 or more, or there is no such s.
-/// multiplier: larger than any D; weight: w, of the axis. w length^2 must be less than 2^31, and with 64-bit keys
-/// 2 max(w length^2, D) (multiplier + 1) length less than 2^63; length with what is beyond.
+/// that is 0 or more, or there is no such s. multiplier: larger than any D; weight: w, of the axis.
+/// w length^2 must be less than 2^31, and with 64-bit keys 2 max(w length^2, D) (multiplier + 1)
+/// length less than 2^63; length with what is beyond.
 template <typename Key>
 void lowerEnvelopes(int length, Key multiplier, int32_t weight, EnvelopeRows<Key>& rows);
 

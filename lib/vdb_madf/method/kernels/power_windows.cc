@@ -10,8 +10,9 @@
 #include "vdb_madf/method/kernels/lanes.h"
 #include "vdb_madf/method/kernels/lower_envelope.h"
 
-// Why keys tell powers and ties apart stands in lower_envelope.cc, with M = 2^shift there. A ball of
-// D < 2^15 has keys above -2^30 wherever it counts, and what is added to one in reach is below 2^30.
+// Why keys tell powers and ties apart stands in lower_envelope.cc, with M = 2^shift there. A ball
+// of D < 2^15 has keys above -2^30 wherever it counts, and what is added to one in reach is below
+// 2^30.
 
 namespace vdb_madf::detail {
 
@@ -48,8 +49,8 @@ template <int Bytes>
 struct Least {
   Lanes<Bytes> key, site;
 
-  /// Of equal keys that of the smaller position wins: `Before` says whether the others lie before all
-  /// that was seen so far, or after it.
+  /// Of equal keys that of the smaller position wins: `Before` says whether the others lie before
+  /// all that was seen so far, or after it.
   template <bool Before>
   VDB_MADF_INLINE void take(const int32_t* keys, const uint32_t* sites, int32_t added) {
     Lanes<Bytes> otherKey, otherSite;
@@ -63,11 +64,11 @@ struct Least {
   }
 };
 
-/// The window around 16 voxels grows by one position at either end, k = 1, 2, ... What is further away
-/// than k - 1 adds at least 2^shift w k^2 to `least`, the least key of the line, so nothing can win
-/// once that is more than the largest of the 16. `unit`: 2^shift w. Voxels that are none of the object
-/// have the smallest number, and wait for nothing; those without a site take keys below -2^shift, that
-/// is, of negative powers.
+/// The window around 16 voxels grows by one position at either end, k = 1, 2, ... What is further
+/// away than k - 1 adds at least 2^shift w k^2 to `least`, the least key of the line, so nothing
+/// can win once that is more than the largest of the 16. `unit`: 2^shift w. Voxels that are none of
+/// the object have the smallest number, and wait for nothing; those without a site take keys below
+/// -2^shift, that is, of negative powers.
 template <int Stride, int Bytes>
 VDB_MADF_KERNEL Least<Bytes> leastInWindow(const int32_t* key, const uint32_t* site, int shift,
                                            int32_t unit, int reach, int32_t least) {

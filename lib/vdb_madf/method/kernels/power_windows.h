@@ -46,9 +46,9 @@ struct KeyLines {
   std::vector<int32_t> leastKey;
   std::vector<uint32_t> leastSite;  ///< where leastKey is negative, so is the power
 
-  /// For rows of `length` positions, a multiple of 8. Clears the padding; never shrinks.
+  /// Makes room for rows of `length` positions, a multiple of 8. Clears the padding; never shrinks.
   void resize(int stride, int length, int reach);
-  /// Of a position, -reach() to length + reach() - 1, of the first row of a line.
+  /// The place of a position, -reach() to length + reach() - 1, of the first row of a line.
   size_t at(int line, int position) const {
     return size_t(line) * pitch_ + size_t((padding_ + position) * stride_);
   }
@@ -61,11 +61,11 @@ struct KeyLines {
   size_t pitch_ = 0;
 };
 
-/// For each row and its object voxels t
+/// Computes for each row and its object voxels t
 ///   leastKey(t) = min over the sites s of the row of key(s) + 2^shift w (s - t)^2,
-/// leastSite(t) = site(s), at equal keys of the smaller s; kNotNegative, and any site, where no power is
-/// negative. Anything at other voxels. `weight`, w, is that of the axis; no site reaches further than
-/// lines.reach().
+/// leastSite(t) = site(s), at equal keys of the smaller s; kNotNegative, and any site, where no
+/// power is negative. Anything at other voxels. `weight`, w, is that of the axis; no site reaches
+/// further than lines.reach().
 void leastKeys(int shift, int32_t weight, KeyLines& lines);
 
 }  // namespace vdb_madf::detail

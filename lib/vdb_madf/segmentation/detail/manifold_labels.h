@@ -30,7 +30,7 @@ GrainLabels labelGrains(const Int32Grid& manifold, const LeafIndex& index,
                         const ManifoldGraph& graph, const Merging& merging,
                         Interrupter* interrupter);
 
-/// No voxels yet.
+/// The grains of a merging, without labels of voxels yet.
 GrainLabels grainsOf(const ManifoldGraph& graph, const Merging& merging);
 
 }  // namespace vdb_madf::detail

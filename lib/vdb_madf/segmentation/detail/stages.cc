@@ -37,7 +37,7 @@ Stages::Stages(Interrupter* interrupter, const std::vector<std::string>& omitted
   for (const StageWeight& s : kStageWeights) total_ += weight(s, omitted_);
 }
 
-void Stages::begin(const char* stage) {
+Interrupter* Stages::begin(const char* stage) {
   finish();
   times_.push_back({stage, 0, 0});
   start_ = Clock::now();
@@ -48,9 +48,9 @@ void Stages::begin(const char* stage) {
     if (std::string(stage) == s.stage) break;
     before_ += weight_;
   }
-  if (!interrupter_) return;
-  interrupter_->start(stage);
+  if (interrupter_) interrupter_->start(stage);
   if (wasInterrupted(0)) throw Interrupted();
+  return this;
 }
 
 void Stages::finish() {

@@ -22,8 +22,9 @@ class Stages : public Interrupter {
   Stages(const Stages&) = delete;
   Stages& operator=(const Stages&) = delete;
 
-  /// Ends the stage before. @throw Interrupted
-  void begin(const char* stage);
+  /// Ends the stage before. @return this, for the stage to be told of
+  /// @throw Interrupted
+  Interrupter* begin(const char* stage);
   void finish();
 
   bool wasInterrupted(int percent) override;

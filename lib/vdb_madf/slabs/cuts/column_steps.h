@@ -8,15 +8,15 @@
 
 namespace vdb_madf::detail {
 
-/// In ColumnSteps: object from cut to cut of the slab.
+/// The steps of a column (ColumnSteps) that is object from cut to cut of the slab.
 constexpr uint32_t kThrough = ~uint32_t(0);
 
-/// What a slab's upper neighbor needs to know of the columns below their cut (above: its lower one of
-/// those above theirs), as far as the slab alone can tell: kThrough where it does not.
+/// What a slab's upper neighbor needs to know of the columns below their cut (above: its lower one
+/// of those above theirs), as far as the slab alone can tell: kThrough where it does not.
 ColumnSteps columnSteps(const LeafIndex& index, const Obstacles& obstacles, const SlabFaces& faces,
                         bool above);
 
-/// The same where the steps beyond the slab's other cut are known, too.
+/// Tells the same where the steps beyond the slab's other cut are known, too.
 ColumnSteps passOn(const ColumnSteps& own, const ColumnSteps& beyond, int height);
 
 }  // namespace vdb_madf::detail

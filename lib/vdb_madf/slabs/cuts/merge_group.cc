@@ -28,8 +28,8 @@ class Contraction {
 
   std::vector<uint32_t> run() {
     parallelSort(edges_.begin(), edges_.end(), comesBefore);
-    // What is not alive at its first edge never joins another class, and makes that with which it is
-    // joined like it; so those that go on at least halve in each round.
+    // What is not alive at its first edge never joins another class, and makes that with which it
+    // is joined like it; so those that go on at least halve in each round.
     do dropEdges();
     while (joinClasses());
     return renumber();
@@ -41,8 +41,8 @@ class Contraction {
     return rule_.mergesByNeck(edge.height, classes_[c].top);
   }
 
-  /// Those within a class, those that merge neither of their classes, and those that close a ring of
-  /// earlier ones.
+  /// Those within a class, those that merge neither of their classes, and those that close a ring
+  /// of earlier ones.
   void dropEdges() {
     DisjointSets rings(classes_.size());
     size_t count = 0;
@@ -58,7 +58,8 @@ class Contraction {
     edges_.resize(count);
   }
 
-  /// Joins each class with that beyond its first edge, if it is alive there. @return were there any?
+  /// Joins each class with that beyond its first edge, if it is alive there. @return were there
+  /// any?
   bool joinClasses() {
     const size_t before = joins_;
     std::vector<char> hasEarlier(classes_.size(), 0);

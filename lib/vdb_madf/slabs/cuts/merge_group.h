@@ -12,8 +12,8 @@
 
 namespace vdb_madf::detail {
 
-/// A part of the graph that merge() is about, as far as it is not decided: classes of critical points
-/// that are merged already, and edges that may merge more of them.
+/// A part of the graph that merge() is about, as far as it is not decided: classes of critical
+/// points that are merged already, and edges that may merge more of them.
 struct MergeGroup {
   struct Class {
     int32_t top = 0;      ///< the largest D, of what the group knows
@@ -27,17 +27,18 @@ struct MergeGroup {
   std::vector<Class> classes;
   std::vector<Edge> edges;  ///< a pair may have several
 
-  /// Of an edge that merges whatever the tops are: by the angle, or as its ends are known to be of one
-  /// class. (A neck of that height does, too.)
+  /// The height of an edge that merges whatever the tops are: by the angle, or as its ends are
+  /// known to be of one class. (A neck of that height does, too.)
   static constexpr int32_t kCertain = std::numeric_limits<int32_t>::max();
 };
 
-/// Merges all classes of which it is certain that merge() merges them, and drops all edges that do not
-/// matter for what is left. Two groups are joined by putting them side by side, with an edge kCertain
-/// between the classes of each critical point that is in both. In whatever order all edges of a graph
-/// have come together: once no class is open, no edge is left, and the classes are those of merge().
-/// README.md says why.
-/// @return the class of each one that there was; classes are numbered as the first of those in them was
+/// Merges all classes of which it is certain that merge() merges them, and drops all edges that do
+/// not matter for what is left. Two groups are joined by putting them side by side, with an edge
+/// kCertain between the classes of each critical point that is in both. In whatever order all edges
+/// of a graph have come together: once no class is open, no edge is left, and the classes are those
+/// of merge(). README.md says why.
+/// @return the class of each one that there was; classes are numbered as the first of those in them
+///   was
 std::vector<uint32_t> contract(MergeGroup& group, const MergeRule& rule);
 
 }  // namespace vdb_madf::detail

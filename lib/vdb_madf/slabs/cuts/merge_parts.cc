@@ -81,8 +81,8 @@ OpenGraph MergeParts::openGraph(const SlabPart& part) const {
   return open;
 }
 
-/// Those that both ranges know are one: the range below tells whether lower slabs know it, the one above
-/// whether higher ones do. Keeps those that are still known beyond.
+/// Those that both ranges know are one: the range below tells whether lower slabs know it, the one
+/// above whether higher ones do. Keeps those that are still known beyond.
 void MergeParts::joinNodes(const std::vector<OpenGraph::Node>& above) {
   using Node = OpenGraph::Node;
   std::vector<Node> joined;

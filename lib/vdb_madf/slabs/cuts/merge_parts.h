@@ -28,17 +28,17 @@ struct OpenGraph {
     bool startsBelow, goesOn;
   };
   MergeGroup group;
-  std::vector<About> about;  ///< of each class of the group
+  std::vector<About> about;  ///< what is known of each class of the group
   std::vector<Node> nodes;   ///< ascending
 
   void writeTo(ByteWriter& bytes) const;
   static OpenGraph readFrom(ByteReader bytes);
 };
 
-/// merge() for the graph in a range of slabs, which grows upward: by the part of the next slab, or by the
-/// next range, merged apart. In memory are the classes and edges that slabs beyond the range may still
-/// decide about, and a few numbers for each class. How the whole is divided into ranges, and in what order
-/// neighbors are joined, does not matter (README.md says why).
+/// merge() for the graph in a range of slabs, which grows upward: by the part of the next slab, or
+/// by the next range, merged apart. In memory are the classes and edges that slabs beyond the range
+/// may still decide about, and a few numbers for each class. How the whole is divided into ranges,
+/// and in what order neighbors are joined, does not matter (README.md says why).
 class MergeParts {
  public:
   explicit MergeParts(const MergeRule& rule) : rule_(rule) {}

@@ -14,12 +14,12 @@ namespace vdb_madf::detail {
 
 /// The balls of a slab that may win beyond its cuts, of the distances near the cuts alone.
 ///
-/// After the pass along z a distance only depends on voxels of its own layer, so some layers of a slab are
-/// measured as the whole is, if they are told how the columns go on. How many layers at a cut are enough?
-/// Take a voxel further away that is joined to the cut by object voxels of its column, and whose ball
-/// reaches beyond the cut. One of these is in the last of the layers; as roots of squared distances differ
-/// by no more than the way between two voxels, its ball reaches beyond the cut, too. So if no ball of that
-/// layer does, no voxel further away is offered.
+/// After the pass along z a distance only depends on voxels of its own layer, so some layers of a
+/// slab are measured as the whole is, if they are told how the columns go on. How many layers at a
+/// cut are enough? Take a voxel further away that is joined to the cut by object voxels of its
+/// column, and whose ball reaches beyond the cut. One of these is in the last of the layers; as
+/// roots of squared distances differ by no more than the way between two voxels, its ball reaches
+/// beyond the cut, too. So if no ball of that layer does, no voxel further away is offered.
 class NearCuts {
  public:
   NearCuts(const LeafIndex& slab, const Obstacles& obstacles, const VoxelWeights& weights,
@@ -30,12 +30,12 @@ class NearCuts {
         faces_(faces),
         interrupter_(interrupter) {}
 
-  /// Those of siteOffers(). @throw as squaredDistanceInSlab()
+  /// The offers that siteOffers() makes. @throw as squaredDistanceInSlab()
   std::vector<ForeignSite> offers(bool isUpper);
 
  private:
   SlabFaces nearFaces(const Cut& cut, int reach) const;
-  /// In the part of the work that a cut is.
+  /// Measures in the part of the work that a cut is.
   SquaredDistance measure(const LeafIndex& index, const SlabFaces& faces, bool isUpper) const;
 
   const LeafIndex& slab_;

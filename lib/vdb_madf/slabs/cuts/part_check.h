@@ -18,7 +18,7 @@ class PartCheck {
   explicit PartCheck(uint32_t criticalPoints) : seen_(criticalPoints, false) {}
   /// @throw InvalidInput
   void add(const GraphPart& part);
-  /// After the last.
+  /// Comes after the last part. @throw InvalidInput
   void finish() const;
 
  private:

@@ -10,8 +10,8 @@
 
 namespace vdb_madf::detail {
 
-/// Numbers points that come in slabs along z in the order of x, y, z of all of them, from 1 on: what is
-/// kept is how many there are in each column.
+/// Numbers points that come in slabs along z in the order of x, y, z of all of them, from 1 on:
+/// what is kept is how many there are in each column.
 class PointNumbers {
  public:
   /// The points of a slab, ascending. Of all slabs, before the first number is asked for.

@@ -15,7 +15,7 @@ struct Cut {
   int begin, end;
   bool isUpper;
 
-  int layer() const { return isUpper ? end - 1 : begin; }  ///< of the slab's voxels beside it
+  int layer() const { return isUpper ? end - 1 : begin; }  ///< z of the slab's voxels beside it
   /// Voxels along z from a voxel to the first one beyond the cut.
   int away(int z) const { return isUpper ? end - z : z - begin + 1; }
 };
@@ -30,8 +30,8 @@ std::vector<ForeignSite> siteOffers(const LeafIndex& index,
                                     const VoxelArray<int32_t>& squaredRadius, int32_t weight,
                                     const Cut& cut);
 
-/// The same, with the balls (in ColumnOrder, too) that were offered to the slab at its other cut: they go on where a column
-/// is object from cut to cut. \p columns: those beside the cut.
+/// Offers besides the balls (in ColumnOrder, too) that were offered to the slab at its other cut:
+/// they go on where a column is object from cut to cut. \p columns: those beside the cut.
 std::vector<ForeignSite> passOn(const std::vector<ForeignSite>& own,
                                 const std::vector<ForeignSite>& offered, const ColumnSteps& columns,
                                 int32_t weight, const Cut& cut);

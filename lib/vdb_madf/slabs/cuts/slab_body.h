@@ -21,9 +21,9 @@ struct SlabBody {
            const std::vector<LeafIndex::LeafVoxels>& holes);
 };
 
-/// The voxels in a slab of the cavities of fewer than `fillHoles` voxels. These reach less than that
-/// beyond its cuts, so it is enough to look that far: what lies in the slab and reaches further is no
-/// cavity.
+/// The voxels in a slab of the cavities of fewer than `fillHoles` voxels. These reach less than
+/// that beyond its cuts, so it is enough to look that far: what lies in the slab and reaches
+/// further is no cavity.
 std::vector<LeafIndex::LeafVoxels> slabHoles(const SlabObject& object, std::optional<Domain> domain,
                                              size_t slab, bool open, int64_t fillHoles,
                                              Interrupter* interrupter);
@@ -31,7 +31,7 @@ std::vector<LeafIndex::LeafVoxels> slabHoles(const SlabObject& object, std::opti
 /// Counts cavities, which may lie in several slabs.
 class HoleCount {
  public:
-  /// Those of the next slab, from the lowest on.
+  /// Adds the holes of the next slab, from the lowest on.
   void add(const std::vector<LeafIndex::LeafVoxels>& holes, int begin, int end);
   int64_t voxels() const { return voxels_; }
   int64_t count() const { return pieces_.count(); }

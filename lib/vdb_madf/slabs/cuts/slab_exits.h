@@ -11,7 +11,8 @@
 
 namespace vdb_madf::detail {
 
-/// Where the terminals that are balls of other slabs lead to. Of all others it knows how many there are.
+/// Where the terminals that are balls of other slabs lead to. Of all others it knows how many there
+/// are.
 class SlabExits {
  public:
   /// @param cuts slab s is cuts[s] <= z < cuts[s + 1]
@@ -22,10 +23,10 @@ class SlabExits {
     uint32_t terminal;
     Coord position;
   };
-  /// Of the next slab, from the lowest on. @param exits ascending
+  /// Adds the exits of the next slab, from the lowest on. @param exits ascending
   void add(size_t terminals, const std::vector<Exit>& exits);
-  size_t slabCount() const { return first_.size() - 1; }  ///< of those that were added
-  /// Of a slab; of all of them.
+  size_t slabCount() const { return first_.size() - 1; }  ///< that were added
+  /// How many terminals a slab has, and how many critical points all slabs.
   size_t terminals(size_t slab) const { return first_[slab + 1] - first_[slab]; }
   int64_t criticalPoints() const { return int64_t(first_.back()) - int64_t(foreign_.size()); }
 
@@ -34,7 +35,7 @@ class SlabExits {
     Coord position;
     uint32_t asking;  ///< an exit: a number of this graph
   };
-  /// Those to a slab, by position.
+  /// The questions to a slab, by position.
   const std::vector<Question>& questions(size_t slab);
   /// The answer: a terminal of the slab, as in Flow::manifold, and its point.
   void answer(size_t slab, const Question& question, uint32_t terminal, const CriticalPoint& point);
@@ -51,7 +52,7 @@ class SlabExits {
   struct Foreign {
     uint32_t terminal;
     uint32_t next;  ///< where it flows to: another terminal; its critical point, if finished
-    // Of `next`:
+    // What is known of `next`:
     Coord position;
     int32_t squaredRadius;
   };

@@ -9,7 +9,6 @@
 
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/voxels.h"
-#include "vdb_madf/method/detail/tidy_steps.h"
 #include "vdb_madf/slabs/cuts/face_voxels.h"
 
 namespace vdb_madf::detail {
@@ -100,7 +99,7 @@ std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const VoxelArray<uin
     LooseVoxel voxel{index.coord(id), label, {}};
     forEachNeighbor(index, id, [&](VoxelId q, int axis, int step) {
       if (isObject(index, q) && !isLoose(q))
-        voxel.around[2 * axis + (step > 0)] = labels[index.rank(q)];
+        voxel.around[size_t(2 * axis + (step > 0))] = labels[index.rank(q)];
     });
     const Coord& p = voxel.position;
     if (p.z() == begin) voxel.around[4] = beyond(below, p);
@@ -116,7 +115,7 @@ std::vector<LooseVoxel> looseVoxels(const LeafIndex& index, const VoxelArray<uin
   return voxels;
 }
 
-void refill(std::vector<LooseVoxel>& loose) {
+void refillAll(std::vector<LooseVoxel>& loose, Interrupter* interrupter) {
   std::sort(loose.begin(), loose.end(),
             [](const LooseVoxel& a, const LooseVoxel& b) { return a.position < b.position; });
   const auto find = [&](const Coord& p) {
@@ -124,29 +123,16 @@ void refill(std::vector<LooseVoxel>& loose) {
     const auto found = std::lower_bound(loose.begin(), loose.end(), p, less);
     return found != loose.end() && found->position == p ? &*found : nullptr;
   };
-  std::vector<size_t> rest(loose.size());
-  for (size_t i = 0; i < rest.size(); ++i) rest[i] = i;
-  std::vector<uint32_t> found;
-  for (bool changed = true; changed && !rest.empty();) {
-    found.clear();
-    for (const size_t i : rest) found.push_back(mostFrequent(loose[i].around));
-    size_t left = 0;
-    for (size_t i = 0; i < rest.size(); ++i) {
-      LooseVoxel& voxel = loose[rest[i]];
-      if (found[i] == 0) {
-        rest[left++] = rest[i];
-        continue;
-      }
-      voxel.label = found[i];
-      for (int side = 0; side < 6; ++side) {
-        Coord q = voxel.position;
-        q[side / 2] += side % 2 ? 1 : -1;
-        if (LooseVoxel* const next = find(q)) next->around[side ^ 1] = found[i];
-      }
+  const auto around = [&](uint32_t i) { return loose[i].around; };
+  const auto give = [&](uint32_t i, uint32_t label) {
+    loose[i].label = label;
+    for (size_t side = 0; side < 6; ++side) {
+      Coord q = loose[i].position;
+      q[int(side / 2)] += side % 2 ? 1 : -1;
+      if (LooseVoxel* const next = find(q)) next->around[side ^ 1] = label;
     }
-    changed = left < rest.size();
-    rest.resize(left);
-  }
+  };
+  refill(loose.size(), around, give, interrupter);
 }
 
 }  // namespace vdb_madf::detail

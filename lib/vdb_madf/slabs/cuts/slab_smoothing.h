@@ -23,7 +23,7 @@ struct LeafLabels {
   static LeafLabels readFrom(ByteReader bytes);
 };
 
-/// Those of the leaves with begin <= z < end.
+/// The labels of the leaves with begin <= z < end.
 LeafLabels labelsBetween(const LeafIndex& index, const VoxelArray<uint32_t>& labels, int begin,
                          int end);
 
@@ -39,8 +39,8 @@ LabelWindow labelWindow(const LeafIndex& index, const VoxelArray<uint32_t>& labe
 /// The voxels that must not change, of grain g at g - 1.
 using Anchors = std::vector<Coord>;
 
-/// Smooths the labels of a slab. \p below and \p above: the merged labels beyond its cuts, as far away
-/// as there are rounds.
+/// Smooths the labels of a slab. \p below and \p above: the merged labels beyond its cuts, as far
+/// away as there are rounds.
 void smoothSlab(const LeafIndex& index, const LeafLabels& below, const LeafLabels& above,
                 const Anchors& anchors, int rounds, VoxelArray<uint32_t>& labels,
                 Interrupter* interrupter);

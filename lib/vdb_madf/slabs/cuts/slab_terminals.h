@@ -30,11 +30,11 @@ struct SlabTerminals {
   std::vector<CriticalPoint> points;
   std::vector<ManifoldGraph::Edge> edges;  ///< between points; adjacent voxels of the slab
   int64_t balls = 0;  ///< medial balls that are voxels of the slab, as it knows
-  /// By leaf column, then x, y; not written.
+  /// The voxels beside the cuts, by leaf column, then x, y; not written.
   std::vector<FaceVoxel> lowest, highest;
 
-  /// The pairs of adjacent voxels on either side of a cut, as edges from a point of the slab below to
-  /// one of that above (first and second are numbers of different lists).
+  /// The pairs of adjacent voxels on either side of a cut, as edges from a point of the slab below
+  /// to one of that above (first and second are numbers of different lists).
   static std::vector<ManifoldGraph::Edge> contacts(const std::vector<FaceVoxel>& below,
                                                    const std::vector<FaceVoxel>& above);
 

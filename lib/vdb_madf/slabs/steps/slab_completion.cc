@@ -290,8 +290,8 @@ void SlabCompletion::run() {
   }
 }
 
-/// The state before a window goes when all slabs have agreed on the window, so that of slabs which have
-/// two the later one counts if another slab has no other, or has gone on.
+/// The state before a window goes when all slabs have agreed on the window, so that of slabs which
+/// have two the later one counts if another slab has no other, or has gone on.
 int SlabCompletion::firstWindow() const {
   std::vector<int64_t> found{
       0, 0, 0};  // first state of the slab that has gone furthest; last; is one beyond?

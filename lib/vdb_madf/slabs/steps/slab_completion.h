@@ -10,11 +10,11 @@ namespace vdb_madf::detail {
 /// GeodesicCompletion (method/detail) in slabs.
 ///
 /// What a voxel is after a round depends on itself and its neighbors after the round before. A slab
-/// plays a window of rounds, with what it knows of the changes beyond its cuts in that window, and tells
-/// its own ones there. If it learns of others, it plays the window again. When none does, all is as in
-/// common rounds: by induction over the rounds, for the first wrong change would have a cause before
-/// it. Each time one round more at least is right, so a window of n rounds is played n times at most.
-/// Windows double; the last one ends with no voxel that may still change.
+/// plays a window of rounds, with what it knows of the changes beyond its cuts in that window, and
+/// tells its own ones there. If it learns of others, it plays the window again. When none does, all
+/// is as in common rounds: by induction over the rounds, for the first wrong change would have a
+/// cause before it. Each time one round more at least is right, so a window of n rounds is played n
+/// times at most. Windows double; the last one ends with no voxel that may still change.
 class SlabCompletion {
  public:
   explicit SlabCompletion(SlabWork& work) : work_(work) {}

@@ -9,6 +9,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/detail/connected_components.h"
+#include "vdb_madf/method/detail/component_ball.h"
 #include "vdb_madf/method/detail/power_passes.h"
 #include "vdb_madf/method/medial_balls.h"
 #include "vdb_madf/slabs/cuts/slab_pieces.h"
@@ -25,11 +26,6 @@ struct SizedBall {
 
 namespace {
 
-bool isBetter(const SizedBall& a, const SizedBall& b) {
-  return a.squaredRadius != b.squaredRadius ? a.squaredRadius > b.squaredRadius
-                                            : a.center < b.center;
-}
-
 /// The balls of the same center as one.
 void joinBalls(std::vector<SizedBall>& balls) {
   std::sort(balls.begin(), balls.end(),
@@ -45,28 +41,6 @@ void joinBalls(std::vector<SizedBall>& balls) {
 }
 
 }  // namespace
-
-/// Of a connected component of a slab: its best ball, of those that are too small.
-struct ComponentBalls {
-  SizedBall best;
-  /// In a region, of a component without balls: the best that its voxels map to, across the unknown.
-  SizedBall elsewhere;
-  int32_t hasBest, hasElsewhere, hasKept;
-
-  void offer(const SizedBall& ball) {
-    if (!hasBest || isBetter(ball, best)) best = ball;
-    hasBest = 1;
-  }
-  void offerElsewhere(const SizedBall& ball) {
-    if (!hasElsewhere || isBetter(ball, elsewhere)) elsewhere = ball;
-    hasElsewhere = 1;
-  }
-  void join(const ComponentBalls& other) {
-    hasKept |= other.hasKept;
-    if (other.hasBest) offer(other.best);
-    if (other.hasElsewhere) offerElsewhere(other.elsewhere);
-  }
-};
 
 /// The balls of a slab.
 struct BallCounts {
@@ -134,17 +108,18 @@ class SlabFilter {
   }
 
   /// The best ball that the voxels of each component map to.
-  std::vector<ComponentBalls> elsewhere(const LeafIndex& index, const PowerMap& map,
-                                        const VoxelSet& balls, const MedialBallTable& table) const {
+  std::vector<ComponentBall> elsewhere(const LeafIndex& index, const PowerMap& map,
+                                       const VoxelSet& balls, const MedialBallTable& table) const {
     const ConnectedComponents components(index, work_.interrupter);
-    std::vector<ComponentBalls> found(components.count(), ComponentBalls{});
+    std::vector<ComponentBall> found(components.count());
     for (uint32_t leaf = 0; leaf < index.leafCount(); ++leaf)
       for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece)
         for (uint32_t x = 0; x < 8; ++x)
           forEachBit(piece->mask[x], [&](int bit) {
             const VoxelId site = map.site[index.rank(voxelId(leaf, x, size_t(bit)))];
-            found[piece->component].offerElsewhere(
-                {index.coord(site), table.squaredRadius[balls.rank(site)], 0});
+            found[piece->component].offer({ComponentBall::elsewhere,
+                                           table.squaredRadius[balls.rank(site)],
+                                           index.coord(site)});
           });
     return found;
   }
@@ -159,15 +134,12 @@ class SlabFilter {
     joinBalls(balls);
     const SlabBody slab = work_.body(s);
     const ConnectedComponents components(slab.index, work_.interrupter);
-    std::vector<ComponentBalls> found(components.count(), ComponentBalls{});
+    std::vector<ComponentBall> found(components.count());
     if (work_.facts.inRegion()) found = work_.store.read(kElsewhere, s);
-    for (const SizedBall& ball : balls) {
-      ComponentBalls& component = found[components.componentOf(*slab.index.findVoxel(ball.center))];
-      if (ball.cellSize >= work_.options.gamma)
-        component.hasKept = 1;
-      else
-        component.offer(ball);
-    }
+    for (const SizedBall& ball : balls)
+      found[components.componentOf(*slab.index.findVoxel(ball.center))].offer(
+          {ball.cellSize >= work_.options.gamma ? ComponentBall::kept : ComponentBall::own,
+           ball.squaredRadius, ball.center});
     work_.store.write(kSizedBalls, s, balls);
     work_.store.send(kComponents, s, kRoot, found);
     const auto face = [&](bool isUpper) {
@@ -187,25 +159,18 @@ class SlabFilter {
   /// At the root: the best balls of components that would have none.
   void rescue() {
     PieceUnion components;
-    std::vector<ComponentBalls> all;
     const size_t slabs = work_.plan.slabCount();
     const auto foundIn = [&](size_t s) { return work_.store.receive(kComponents, s, kRoot); };
     for (size_t s = 0; s < slabs; ++s)
       components.add(foundIn(s).size(), work_.store.receive(kJoinedComponents, s, kRoot));
-    all.assign(components.size(), ComponentBalls{});
+    std::vector<ComponentBall> best(components.size());
     for (size_t s = 0; s < slabs; ++s) {
-      const std::vector<ComponentBalls> found = foundIn(s);
-      for (uint32_t i = 0; i < found.size(); ++i) {
-        ComponentBalls& whole = all[components.find(s, i)];
-        whole.join(found[i]);
-      }
+      const std::vector<ComponentBall> found = foundIn(s);
+      for (uint32_t i = 0; i < found.size(); ++i) best[components.find(s, i)].offer(found[i]);
     }
     std::vector<std::vector<Coord>> rescued(slabs);
-    for (const ComponentBalls& component : all) {
-      if (component.hasKept || !(component.hasBest || component.hasElsewhere)) continue;
-      const Coord& center = component.hasBest ? component.best.center : component.elsewhere.center;
-      rescued[work_.plan.slabOf(center.z())].push_back(center);
-    }
+    for (const ComponentBall& ball : best)
+      if (ball.isRescued()) rescued[work_.plan.slabOf(ball.center.z())].push_back(ball.center);
     for (size_t s = 0; s < slabs; ++s) work_.store.send(kRescued, kRoot, s, rescued[s]);
   }
 

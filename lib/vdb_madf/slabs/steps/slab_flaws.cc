@@ -35,7 +35,8 @@ void SlabFlaws::addPieces(Interrupter* interrupter) {
   labelOf_.push_back(std::move(label));
 }
 
-/// Flags need to see one voxel beyond the cuts. What the leaves there show of themselves is true, too.
+/// Flags need to see one voxel beyond the cuts. What the leaves there show of themselves is true,
+/// too.
 void SlabFlaws::lookAtLast(const LeafLabels& above, Interrupter* interrupter) {
   const LabelWindow window = labelWindow(last_.index, last_.labels, below_, above);
   const LabelMasks masks(window.index, window.labels, interrupter);

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "vdb_madf/method/detail/grain_flags.h"
+#include "vdb_madf/segmentation/detail/grain_flags.h"
 #include "vdb_madf/slabs/cuts/slab_pieces.h"
 
 namespace vdb_madf::detail {
@@ -20,7 +20,7 @@ class SlabFlaws {
 
   /// The labels of the next slab, from the lowest on. @throw Interrupted
   void add(const LeafIndex& index, VoxelArray<uint32_t> labels, Interrupter* interrupter);
-  /// After the last.
+  /// Counts the flaws, after the last slab.
   LabelFlaws finish(const std::vector<int64_t>& grainVoxels, Interrupter* interrupter);
 
  private:

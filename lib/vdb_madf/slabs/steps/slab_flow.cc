@@ -66,8 +66,8 @@ class SlabFlow {
     NearCuts cuts(slab.index, work_.facts.obstacles, work_.facts.weights, faces, &part);
     offers_.offer(s, [&](bool isUpper) { return cuts.offers(isUpper); });
   }
-  /// In windows that grow until they tell the distances of all slabs. What a slab leaves: the largest
-  /// squared distance, and the reach that told it (0: none has yet).
+  /// In windows that grow until they tell the distances of all slabs. What a slab leaves: the
+  /// largest squared distance, and the reach that told it (0: none has yet).
   void measureInRegion() {
     std::vector<int64_t> unknown{1};
     for (int reach = 32; unknown[0] > 0; reach *= 2) {

@@ -14,9 +14,9 @@ namespace vdb_madf::detail {
 
 namespace {
 
-/// A binary tree over the members: after the join of a distance d, member r has merged the slabs of members r
-/// to r + 2 d - 1, for each r that is a multiple of 2 d. What has left a member comes back as the grains of
-/// the classes that it handed over.
+/// A binary tree over the members: after the join of a distance d, member r has merged the slabs of
+/// members r to r + 2 d - 1, for each r that is a multiple of 2 d. What has left a member comes
+/// back as the grains of the classes that it handed over.
 class MergeTree {
  public:
   explicit MergeTree(SlabWork& work)

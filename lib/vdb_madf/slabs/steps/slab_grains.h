@@ -11,9 +11,9 @@
 
 namespace vdb_madf::detail {
 
-/// Merges the parts of the slabs: each member those of its own, which are asked for one after the other, from
-/// the lowest on; then pairs of neighboring members join what is open, pairs of pairs, and so on. Leaves the
-/// pieces kGrains.
+/// Merges the parts of the slabs: each member those of its own, which are asked for one after the
+/// other, from the lowest on; then pairs of neighboring members join what is open, pairs of pairs,
+/// and so on. Leaves the pieces kGrains.
 /// @return at the root the representative of grain g at g - 1
 std::vector<Coord> mergeParts(SlabWork& work, const std::function<SlabPart(size_t slab)>& part);
 

@@ -62,7 +62,8 @@ class PartSteps {
   }
 
  private:
-  /// The contacts to the slab below, between the terminals there that have any and those of the slab.
+  /// The contacts to the slab below, between the terminals there that have any and those of the
+  /// slab.
   void findContacts(size_t s) {
     std::vector<Edge> contacts;
     std::vector<uint32_t> touched;
@@ -132,7 +133,8 @@ class PartSteps {
       work_.store.send(kLeads, kRoot, s, exits_.leads(s));
   }
 
-  /// At the root: the numbers of the critical points of all slabs, by terminal; 0: lies in another slab.
+  /// At the root: the numbers of the critical points of all slabs, by terminal; 0: lies in another
+  /// slab.
   void numberPoints() {
     PointNumbers numbers;
     const auto points = [&](size_t s) { return work_.store.receive(kPoints, s, kRoot); };

@@ -113,8 +113,8 @@ class SlabLabels {
     work_.steps.exchange();
   }
 
-  /// The voxel of each grain that never changes: its representative, or the nearest to it if that lies
-  /// in a cavity. Known at all members.
+  /// The voxel of each grain that never changes: its representative, or the nearest to it if that
+  /// lies in a cavity. Known at all members.
   void shareAnchors() {
     Lost lost;
     if (work_.plan.isRoot()) lost = findLost();
@@ -251,7 +251,7 @@ class SlabLabels {
       const auto found = work_.store.receive(kLoose, s, kRoot);
       loose.insert(loose.end(), found.begin(), found.end());
     }
-    refill(loose);
+    refillAll(loose, work_.interrupter);
     std::vector<std::vector<LooseVoxel>> of(work_.plan.slabCount());
     for (const LooseVoxel& voxel : loose)
       of[work_.plan.slabOf(voxel.position.z())].push_back(voxel);

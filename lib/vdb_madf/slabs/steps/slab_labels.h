@@ -16,8 +16,8 @@ void writeRims(SlabWork& work, size_t slab, const SlabBody& body, VoxelArray<uin
 using PutLabels =
     std::function<void(size_t slab, const SlabBody& body, VoxelArray<uint32_t> labels)>;
 
-/// The labels of all slabs, from where their voxels flow to and the grains of those terminals: tidied,
-/// counted in result.grainVoxels (at the root), and put. The pieces kGrains are there, and
+/// The labels of all slabs, from where their voxels flow to and the grains of those terminals:
+/// tidied, counted in result.grainVoxels (at the root), and put. The pieces kGrains are there, and
 /// in result the voxels of the object and the number of grains. \p representatives: at the root.
 void labelSlabs(SlabWork& work, std::vector<Coord> representatives, SlabSegmentation& result,
                 const PutLabels& put);

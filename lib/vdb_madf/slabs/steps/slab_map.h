@@ -12,12 +12,12 @@ namespace vdb_madf::detail {
 /// The largest squared distance in a slab.
 struct Largest {
   int32_t squaredDistance;
-  int32_t
-      reach;  ///< of the window that told it (slab_region.h); 0: none has yet, or none is needed
+  /// The reach of the window that told it (slab_region.h); 0: none has yet, or none is needed.
+  int32_t reach;
 };
 
-/// The power map of all balls in a slab. Names the leaves of foreign balls in its index. Leaves the piece
-/// kLargest, but in a region. @throw as squaredDistanceInSlab()
+/// The power map of all balls in a slab. Names the leaves of foreign balls in its index. Leaves the
+/// piece kLargest, but in a region. @throw as squaredDistanceInSlab()
 PowerMap slabPowerMap(SlabWork& work, const SlabOffers& offers, size_t slab, LeafIndex& index,
                       Interrupter* interrupter);
 

@@ -38,7 +38,7 @@ class SlabOffers {
  public:
   SlabOffers(SlabWork& work, const OfferNames& names) : work_(work), names_(names) {}
 
-  /// Of an own slab; sites(isUpper): what it offers at a cut, in ColumnOrder.
+  /// Offers the balls of an own slab; sites(isUpper): what it offers at a cut, in ColumnOrder.
   void offer(size_t slab, const std::function<std::vector<ForeignSite>(bool isUpper)>& sites);
   /// Two steps: passes all on, from slab to slab, tables alone.
   void passOn();

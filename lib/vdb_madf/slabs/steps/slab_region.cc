@@ -127,8 +127,8 @@ std::optional<int32_t> largestInRegion(const SlabWork& work, size_t slab, int re
 }
 
 int mappedReach(const SlabWork& work) {
-  // Balls that reach the slab are as far away as their radius, and measured rightly if the window goes on
-  // as far again. Others are at most too small, and reach it even less.
+  // Balls that reach the slab are as far away as their radius, and measured rightly if the window
+  // goes on as far again. Others are at most too small, and reach it even less.
   return 2 * reachOf(work, work.facts.largestSquaredDistance);
 }
 

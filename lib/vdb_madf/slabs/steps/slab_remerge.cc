@@ -78,8 +78,8 @@ void SlabRemerge::merge(SlabSegmentation& result, const PutLabels& put) {
   labelSlabs(work_, std::move(representatives), result, put);
 }
 
-/// Reads the manifolds of a slab: leaves of its object what steps of a segmentation do, with the nodes
-/// of its part as terminals.
+/// Reads the manifolds of a slab: leaves of its object what steps of a segmentation do, with the
+/// nodes of its part as terminals.
 void SlabRemerge::take(size_t s) {
   const Int32Grid::Ptr manifold = manifolds_.read(s, work_.interrupter);
   const SlabPart part = requiredPart(*manifold);

@@ -19,10 +19,11 @@ class SlabRemerge {
  public:
   SlabRemerge(const LabelSlabs& manifolds, SlabWork& work);
 
-  /// The first step, which leaves in scratch what does not depend on how manifolds are merged, but on
-  /// the rounds of tidying.
+  /// The first step, which leaves in scratch what does not depend on how manifolds are merged, but
+  /// on the rounds of tidying.
   void read();
-  /// All others. How many grains there are is known before the first slab is put: result.counts
+  /// Does all other steps. How many grains there are is known before the first slab is put:
+  /// result.counts
   void merge(SlabSegmentation& result, const PutLabels& put);
 
  private:

@@ -4,12 +4,10 @@
 #include "vdb_madf/slabs/steps/slab_setup.h"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
-#include "vdb_madf/method/cavities.h"
 #include "vdb_madf/method/detail/check_background.h"
-#include "vdb_madf/segmentation/detail/segment_options.h"
+#include "vdb_madf/segmentation/detail/prepare.h"
 
 namespace vdb_madf::detail {
 
@@ -20,19 +18,14 @@ class Setup {
   Setup(SlabWork& work, SlabSegmentation& result) : work_(work), result_(result) {}
 
   void run() {
-    result_.fillHoles = work_.options.fillHoles.value_or(defaultFillHoles(work_.facts.domain));
-    result_.tidy = work_.options.tidy;
+    const MaskGrid& about = *work_.plan.object.about;
+    Obstacles& obstacles = work_.facts.obstacles;
+    obstacles = prepare(about, work_.options, result_);
     CoordBBox extent = countObject();
     fillHoles(extent);
-    const std::array<double, 3> edges = work_.options.weights
-                                            ? std::array<double, 3>{1, 1, 1}
-                                            : voxelEdges(work_.plan.object.about->transform());
-    // Across a region the nearest background may lie anywhere.
-    if (work_.facts.inRegion()) extent = work_.facts.obstacles.domain.box();
-    const WeightsOfEdges weights = resolveWeights(work_.options.weights, edges, extent.dim());
-    work_.facts.weights = result_.weights = weights.weights;
-    result_.weightsError = weights.error;
-    checkBackground(work_.facts.obstacles, result_.counts.objectVoxels);
+    chooseWeights(about, work_.options, obstacles, extent, result_);
+    work_.facts.weights = result_.weights;
+    checkBackground(obstacles, result_.counts.objectVoxels);
   }
 
  private:
@@ -40,13 +33,10 @@ class Setup {
   CoordBBox countObject() {
     SegmentCounts& counts = result_.counts;
     CoordBBox extent;
-    work_.facts.obstacles =
-        resolveBoundary(LeafIndex(), work_.options.boundary, work_.facts.domain);
-    result_.open = work_.facts.obstacles.open;
     std::vector<int64_t> sums{0, 0};
     for (size_t s = work_.plan.firstOwn(); s < work_.plan.endOwn(); ++s) {
       const LeafIndex index(work_.plan.object.leaves(s));
-      resolveBoundary(index, work_.options.boundary, work_.facts.domain);
+      resolveBoundary(index, work_.options.boundary, result_.domain);
       sums[0] += index.voxelCount();
       sums[1] += int64_t(index.leafCount());
       extent.expand(index.boundingBox());
@@ -80,8 +70,8 @@ class Setup {
       WorkPart part = work_.steps.part(Step::cavities, s);
       std::vector<LeafIndex::LeafVoxels> found;
       if (any)
-        found = slabHoles(work_.plan.object, work_.facts.domain, s, result_.open, result_.fillHoles,
-                          &part);
+        found =
+            slabHoles(work_.plan.object, result_.domain, s, result_.open, result_.fillHoles, &part);
       work_.store.write(kCavities, s, found);
       work_.store.send(kHoles, s, kRoot, found);
     });

@@ -7,8 +7,8 @@
 
 namespace vdb_madf::detail {
 
-/// What comes before the first sweep: counts of the object, boundary, cavities, weights. The same at all
-/// team. @throw as segmentSlabs()
+/// What comes before the first sweep: counts of the object, boundary, cavities, weights. The same
+/// at all members. @throw as segmentSlabs()
 void setUpSlabs(SlabWork& work, SlabSegmentation& result);
 
 }  // namespace vdb_madf::detail

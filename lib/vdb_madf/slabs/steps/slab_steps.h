@@ -11,16 +11,17 @@
 
 namespace vdb_madf::detail {
 
-/// Runs the steps. A step is a function of a slab: of the pieces that the steps before left of it, and of
-/// the messages that other slabs sent to it. Each slab notes in scratch which step it has done, so that a
-/// run that goes on skips those; what it does not need any more it forgets (Step of pieces.h).
+/// Runs the steps. A step is a function of a slab: of the pieces that the steps before left of it,
+/// and of the messages that other slabs sent to it. Each slab notes in scratch which step it has
+/// done, so that a run that goes on skips those; what it does not need any more it forgets (Step of
+/// pieces.h).
 class SlabSteps {
  public:
   SlabSteps(const SlabPlan& plan, SlabStore& store, Team& team, bool isFiltered,
             Interrupter* interrupter);
 
-  /// A step: f(s) for all own slabs, if they have not done it; then messages are exchanged. What the table
-  /// of pieces cannot say that a slab forgets after it goes in forget(s).
+  /// A step: f(s) for all own slabs, if they have not done it; then messages are exchanged. What
+  /// the table of pieces cannot say that a slab forgets after it goes in forget(s).
   template <typename F, typename G>
   void forEachSlab(Step step, const F& f, const G& forget) {
     ++step_;
@@ -34,8 +35,8 @@ class SlabSteps {
   void forEachSlab(Step step, const F& f) {
     forEachSlab(step, f, [](size_t) {});
   }
-  /// A step of one slab after another, from the lowest or the highest one on: each has the messages of
-  /// the one before. For short steps: other members wait.
+  /// A step of one slab after another, from the lowest or the highest one on: each has the messages
+  /// of the one before. For short steps: other members wait.
   template <typename F>
   void upward(Step step, const F& f) {
     ++step_;

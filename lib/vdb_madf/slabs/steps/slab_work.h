@@ -3,8 +3,6 @@
 
 #pragma once
 
-#include <optional>
-
 #include "vdb_madf/method/boundary.h"
 #include "vdb_madf/slabs/segment_slabs.h"
 #include "vdb_madf/slabs/steps/slab_steps.h"
@@ -13,14 +11,12 @@ namespace vdb_madf::detail {
 
 /// What is known of the whole object: setUpSlabs() says it, the same to all members.
 struct SlabFacts {
-  std::optional<Domain> domain;
   Obstacles obstacles{};
   VoxelWeights weights;
   bool fillsNone = false;              ///< would the cavities be all background?
   int32_t largestSquaredDistance = 0;  ///< of all slabs, once they are measured
 
-  /// Are there unknown voxels that sweeps pass?
-  bool inRegion() const { return obstacles.open && !obstacles.domain.isBox(); }
+  bool inRegion() const { return obstacles.inRegion(); }
 };
 
 /// What all steps of segmentSlabs() work with.

@@ -74,7 +74,8 @@ class ByteReader {
   size_t at_ = 0;
 };
 
-/// How a value is stored: by its writeTo(ByteWriter&) and readFrom(ByteReader), or as it lies in memory.
+/// How a value is stored: by its writeTo(ByteWriter&) and readFrom(ByteReader), or as it lies in
+/// memory.
 template <typename T, typename = void>
 struct Stored {
   static void write(ByteWriter& bytes, const T& value) { bytes.add(value); }

@@ -18,23 +18,23 @@
 #include "vdb_madf/slabs/cuts/slab_smoothing.h"
 #include "vdb_madf/slabs/store/bytes.h"
 
-// All that steps leave in scratch for later ones, and send to other slabs: one table of names, types and
-// lifetimes. What is not in it cannot be written (slab_store.h).
+// All that steps leave in scratch for later ones, and send to other slabs: one table of names,
+// types and lifetimes. What is not in it cannot be written (slab_store.h).
 
 namespace vdb_madf::detail {
 
 class ColumnSteps;
+struct ComponentBall;
 struct OpenGraph;
 struct SlabPart;
 struct SlabTerminals;
-// Of slab_setup.cc, slab_map.h, slab_completion.cc, slab_filter.cc, slab_graph.cc, slab_labels.cc and
-// slab_remerge.cc.
+// Types of slab_setup.cc, slab_map.h, slab_completion.cc, slab_filter.cc, slab_graph.cc,
+// slab_labels.cc and slab_remerge.cc.
 struct Largest;
 struct FaceChange;
 struct CompletionState;
 struct PlayedWindow;
 struct SizedBall;
-struct ComponentBalls;
 struct BallCounts;
 struct TerminalExits;
 struct BallAnswer;
@@ -43,9 +43,9 @@ struct AnchorCandidate;
 struct CountedLabel;
 struct PartFacts;
 
-/// The steps of slabs, in their order. (remergeSlabs() and mergingSweep() begin with `read` and go on with
-/// `anchors`; a filter by gamma has `cells` to `keptMap`; a region has `distances` in place of `columns` to
-/// `offersDown`, and none of `keptUp`, `keptDown`.)
+/// The steps of slabs, in their order. (remergeSlabs() and mergingSweep() begin with `read` and go
+/// on with `anchors`; a filter by gamma has `cells` to `keptMap`; a region has `distances` in place
+/// of `columns` to `offersDown`, and none of `keptUp`, `keptDown`.)
 enum class Step {
   read,
   cavities,
@@ -92,12 +92,12 @@ struct StoredName {
   }
 };
 
-/// What a slab leaves for its later steps. T: a trivial type, a vector or VoxelArray of one, or a type with
-/// writeTo() and readFrom().
+/// What a slab leaves for its later steps. T: a trivial type, a vector or VoxelArray of one, or a
+/// type with writeTo() and readFrom().
 template <typename T>
 struct Piece : StoredName {
   constexpr Piece(const char* pieceName, Step lastStep) : StoredName{pieceName, lastStep} {}
-  /// One of several: of a window, or of a number of members.
+  /// The piece of one window, or of one number of members.
   constexpr Piece at(int which) const {
     Piece piece = *this;
     piece.part = which;
@@ -140,7 +140,8 @@ inline constexpr Piece<Leaves> kCavities("cavities", Step::never);
 inline constexpr Message<Leaves> kHoles("holes", From::toRoot, Step::never);
 inline constexpr Piece<Leaves> kAround("around", Step::never);  // with a slab of another member
 
-// How far the background of columns is: below a slab's upper cut, above its lower one; beyond its cuts.
+// How far the background of columns is: below a slab's upper cut, above its lower one; beyond its
+// cuts.
 inline constexpr Piece<ColumnSteps> kColumnsBelowUpper("columns-below-upper", Step::flow);
 inline constexpr Piece<ColumnSteps> kColumnsAboveLower("columns-above-lower", Step::flow);
 inline constexpr Message<ColumnSteps> kColumnsBeyond("steps", From::neighbors, Step::flow);
@@ -156,10 +157,10 @@ inline constexpr Message<Values<ForeignSite>> kOffersFromAbove("offers-down", Fr
 
 // The filter by gamma.
 inline constexpr Message<Values<SizedBall>> kCells("cells", From::all, Step::keptMap);
-inline constexpr Piece<Values<ComponentBalls>> kElsewhere("elsewhere", Step::keptMap);
+inline constexpr Piece<Values<ComponentBall>> kElsewhere("elsewhere", Step::keptMap);
 inline constexpr Piece<Values<SizedBall>> kSizedBalls("sized-balls", Step::keptMap);
-inline constexpr Message<Values<ComponentBalls>> kComponents("components", From::toRoot,
-                                                             Step::never);
+inline constexpr Message<Values<ComponentBall>> kComponents("components", From::toRoot,
+                                                            Step::never);
 inline constexpr Piece<Values<FacePiece>> kLowestComponents("lowest-components", Step::keptMap);
 inline constexpr Message<Values<FacePiece>> kComponentsBelow("highest-components", From::below,
                                                              Step::keptMap);
@@ -204,8 +205,8 @@ inline constexpr Message<Values<SlabRoot>> kRootsBelow("roots", From::below, Ste
 inline constexpr Piece<SlabPart> kGraphPart("part", Step::never);
 inline constexpr Piece<Values<PartFacts>> kPartFacts("known", Step::never);
 
-// The merge. Members write to members, each .at(how many members there are): a run that goes on may have
-// another number of them.
+// The merge. Members write to members, each .at(how many members there are): a run that goes on may
+// have another number of them.
 inline constexpr Piece<Values<uint32_t>> kClasses("classes", Step::never);
 inline constexpr Piece<Values<uint32_t>> kGrains("grains", Step::never);  // of terminals; 0: none
 inline constexpr Piece<OpenGraph> kMergeOpen("merge-open", Step::never);

@@ -22,8 +22,8 @@ inline Leaves storedObject(const Scratch& scratch, size_t slab) {
   return readLeaves(scratch, kObject.of(slab));
 }
 
-/// Reads and writes the pieces and messages of slabs (pieces.h). A value of another type than the table
-/// says does not compile.
+/// Reads and writes the pieces and messages of slabs (pieces.h). A value of another type than the
+/// table says does not compile.
 class SlabStore {
  public:
   SlabStore(size_t slabCount, Scratch& scratch, Team& team)

@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/method/label_flaws.h"
+#include "vdb_madf/segmentation/label_flaws.h"
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/detail/connected_components.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/leaf_neighborhood.h"
 #include "vdb_madf/leaves/detail/voxels.h"
-#include "vdb_madf/method/detail/grain_flags.h"
+#include "vdb_madf/method/detail/tidy_steps.h"
 #include "vdb_madf/method/detail/voxels_around.h"
+#include "vdb_madf/segmentation/detail/grain_flags.h"
 
 namespace vdb_madf {
 
@@ -45,7 +46,8 @@ class FlawFinder {
              const std::optional<Domain>& domain)
       : index_(index), labels_(labels), domain_(domain) {}
 
-  /// Has a label a voxel in a leaf that is two layers deep? What lies outside the domain does not count.
+  /// Has a label a voxel in a leaf that is two layers deep? What lies outside the domain does not
+  /// count.
   bool isDeep(uint32_t leaf, const Entry& own, detail::LeafNeighborhood& neighborhood) const {
     std::array<Mask, 27> masks{};
     std::array<const Mask*, 27> set;
@@ -170,6 +172,18 @@ LabelFlaws detail::labelFlaws(const LeafIndex& index, const LabelMasks& labels,
   GrainFlags flags(grainVoxels.size());
   findFlags(index, labels, domain, small, flags, interrupter);
   return countFlaws(flags, grainVoxels, pieces);
+}
+
+LabelFlaws detail::tidyAndCountFlaws(const LeafIndex& index, int rounds,
+                                     const std::optional<Domain>& domain, GrainLabels& grains,
+                                     Interrupter* interrupter) {
+  checkTidy(rounds);
+  LabelMasks masks(index, grains.label, interrupter);
+  const bool areConnected = rounds > 0 && tidyMasks(index, rounds, masks, grains, interrupter);
+  const size_t count = grains.voxels.size();
+  const std::vector<uint32_t> pieces = areConnected ? std::vector<uint32_t>(count, 1)
+                                                    : countPieces(index, masks, count, interrupter);
+  return labelFlaws(index, masks, grains.voxels, pieces, domain, interrupter);
 }
 
 }  // namespace vdb_madf

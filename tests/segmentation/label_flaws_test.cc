@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/method/label_flaws.h"
+#include "vdb_madf/segmentation/label_flaws.h"
 
 #include <optional>
 #include <vector>

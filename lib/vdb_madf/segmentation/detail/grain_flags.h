@@ -8,11 +8,17 @@
 #include <vector>
 
 #include "vdb_madf/leaves/detail/label_masks.h"
-#include "vdb_madf/method/label_flaws.h"
+#include "vdb_madf/method/tidy.h"
+#include "vdb_madf/segmentation/label_flaws.h"
 
-// The parts of labelFlaws(), for labels that come in several windows.
+// The parts of labelFlaws(): for labels that are tidied before, or come in several windows.
 
 namespace vdb_madf::detail {
+
+/// tidy(), then labelFlaws() of what it gives: both work on the same masks.
+LabelFlaws tidyAndCountFlaws(const LeafIndex& index, int rounds,
+                             const std::optional<Domain>& domain, GrainLabels& grains,
+                             Interrupter* interrupter);
 
 /// How many pieces, 6-connected, each grain is in: of grain g at g - 1.
 std::vector<uint32_t> countPieces(const LeafIndex& index, const LabelMasks& labels, size_t grains,
@@ -30,8 +36,8 @@ struct GrainFlags {
   std::vector<char> touching;  ///< has a voxel beside another grain
 };
 
-/// Sets the flags that the voxels of an index show. Whether a grain touches another is looked up if it is
-/// not deep, or one of \p small.
+/// Sets the flags that the voxels of an index show. Whether a grain touches another is looked up if
+/// it is not deep, or one of \p small.
 void findFlags(const LeafIndex& index, const LabelMasks& labels,
                const std::optional<Domain>& domain, const std::vector<char>& small,
                GrainFlags& flags, Interrupter* interrupter);
