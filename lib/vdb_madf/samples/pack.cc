@@ -133,14 +133,14 @@ void checkBalls(const PackOptions& options) {
   detail::checkFraction(options.fraction);
 }
 
-void describePack(MaskGrid& object, const PackOptions& options, const Coord& voxels) {
+Sample packOf(MaskTree::Ptr object, const PackOptions& options, const Coord& voxels) {
   detail::SourceText source("pack");
   source.size(options.size)
       .add("fraction", options.fraction)
       .range("radius", options.minRadius, options.maxRadius)
       .add("seed", std::to_string(options.seed))
       .edges(options.voxelSize);
-  detail::describe(object, "object", voxels, source, options.voxelSize);
+  return detail::described({MaskGrid::create(object), nullptr}, voxels, source, options.voxelSize);
 }
 
 }  // namespace
@@ -152,10 +152,7 @@ Sample generatePack(const PackOptions& options, Interrupter* interrupter) {
   const Coord voxels = lattice.voxels(options.size);
   detail::BallUnion balls(voxels, true, lattice);
   PackBuilder(options, balls, interrupter).build();
-  Sample sample;
-  sample.object = MaskGrid::create(balls.takeTree());
-  describePack(*sample.object, options, voxels);
-  return sample;
+  return packOf(balls.takeTree(), options, voxels);
 }
 
 PackSlabs::PackSlabs(const PackOptions& options, Interrupter* interrupter) : options_(options) {
@@ -177,9 +174,7 @@ int64_t PackSlabs::objectVoxels() const {
 }
 
 MaskGrid::Ptr PackSlabs::object(size_t slab, Interrupter* interrupter) const {
-  const MaskGrid::Ptr object = MaskGrid::create(balls_->slab(slab, interrupter));
-  describePack(*object, options_, voxels_);
-  return object;
+  return packOf(balls_->slab(slab, interrupter), options_, voxels_).object;
 }
 
 }  // namespace vdb_madf

@@ -144,9 +144,7 @@ Sample generateSintered(const SinteredOptions& options, Interrupter* interrupter
       .add("roughness", options.roughness)
       .add("seed", std::to_string(options.seed))
       .edges(options.voxelSize);
-  detail::describe(*sample.object, "object", voxels, source, options.voxelSize);
-  detail::describe(*sample.truth, "truth", voxels, source, options.voxelSize);
-  return sample;
+  return detail::described(sample, voxels, source, options.voxelSize);
 }
 
 }  // namespace vdb_madf

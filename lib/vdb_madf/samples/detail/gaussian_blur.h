@@ -26,8 +26,7 @@ struct FloatBox {
 /// Boxes below this many values are worked on by the calling thread alone.
 constexpr size_t kSequentialValues = size_t(1) << 23;
 
-/// One side of a normalised, sampled Gaussian, centre first, cut at 4 sigma. The same bits on every
-/// machine: no library exponential.
+/// The weights of gaussianWeights() as floats.
 std::vector<float> gaussianKernel(double sigma);
 
 /// The farthest voxel that the kernel sees.

@@ -82,12 +82,17 @@ std::string SourceText::number(double value) {
   return shortestDecimal(value);
 }
 
-void describe(openvdb::GridBase& grid, const std::string& name, const Coord& size,
-              const SourceText& source, const std::optional<VoxelSize>& voxelSize) {
-  grid.setName(name);
-  setDomain(grid, CoordBBox(Coord(0), size.offsetBy(-1)));
-  setVoxelSize(grid, voxelSize);
-  grid.insertMeta(kSourceKey, openvdb::StringMetadata(source.str()));
+Sample described(Sample sample, const Coord& size, const SourceText& source,
+                 const std::optional<VoxelSize>& voxelSize) {
+  const auto describe = [&](openvdb::GridBase& grid, const char* name) {
+    grid.setName(name);
+    setDomain(grid, CoordBBox(Coord(0), size.offsetBy(-1)));
+    setVoxelSize(grid, voxelSize);
+    grid.insertMeta(kSourceKey, openvdb::StringMetadata(source.str()));
+  };
+  describe(*sample.object, "object");
+  if (sample.truth) describe(*sample.truth, "truth");
+  return sample;
 }
 
 }  // namespace vdb_madf::detail

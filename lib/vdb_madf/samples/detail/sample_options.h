@@ -7,7 +7,7 @@
 #include <string>
 
 #include "vdb_madf/base/voxel_size.h"
-#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/samples/sample.h"
 
 namespace vdb_madf::detail {
 
@@ -41,9 +41,9 @@ class SourceText {
   std::string text_;
 };
 
-/// Gives a sample's grid its name, the domain [0, size - 1] in voxels, its source and the size of its
-/// voxels.
-void describe(openvdb::GridBase& grid, const std::string& name, const Coord& size,
-              const SourceText& source, const std::optional<VoxelSize>& voxelSize = {});
+/// Gives the grids of a sample their names, the domain [0, size - 1] in voxels, the source and the
+/// size of the voxels.
+Sample described(Sample sample, const Coord& size, const SourceText& source,
+                 const std::optional<VoxelSize>& voxelSize = {});
 
 }  // namespace vdb_madf::detail
