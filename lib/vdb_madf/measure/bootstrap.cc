@@ -3,6 +3,8 @@
 
 #include "vdb_madf/measure/bootstrap.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -102,9 +104,8 @@ double percentile(const std::vector<double>& values, double share) {
 
 void requireReplicates(int replicates) {
   if (replicates < kMinReplicates || replicates > kMaxReplicates)
-    throw InvalidInput("a bootstrap of " + std::to_string(replicates) +
-                       " replicates: must be from " + std::to_string(kMinReplicates) + " to " +
-                       std::to_string(kMaxReplicates));
+    throw InvalidInput(fmt::format("a bootstrap of {} replicates: must be from {} to {}",
+                                   replicates, kMinReplicates, kMaxReplicates));
 }
 
 std::vector<MeanInterval> bootstrapMeans(const std::vector<GrainMeasures>& grains,

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_madf/base/counted.h"
 #include "vdb_madf/pictures/detail/diagram.h"
 
 namespace vdb_madf {
@@ -159,10 +160,6 @@ void drawInclinations(Canvas& canvas, int cell, const Directions& directions,
   const std::vector<double> half = densities;
   densities.insert(densities.end(), half.begin(), half.end());
   drawRose(canvas, cell, densities, 0, title, "", "z");
-}
-
-std::string counted(size_t number, const std::string& noun) {
-  return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
 }
 
 }  // namespace

@@ -46,5 +46,7 @@ std::string shortestDecimal(T value) {
 }
 /// As a double that prints like the float: 0.0085 rather than 0.008500000461935997.
 double decimalOf(float value);
+/// Text for HTML and XML: & < > " become references.
+std::string markupEscaped(const std::string& text);
 
 }  // namespace vdb_madf::detail

@@ -8,9 +8,6 @@
 
 namespace vdb_madf::detail {
 
-/// A text as it may stand in HTML, between tags or in a value in quotes.
-std::string htmlEscaped(const std::string& text);
-
 /// A script element that is data: no browser runs it.
 /// @param text base64
 std::string dataElement(const std::string& id, const std::string& text);

@@ -3,6 +3,7 @@
 
 #include "vdb_madf/report/detail/report_parts.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -180,9 +181,10 @@ std::string ReportParts::picture() const {
   const PanelOptions panel{false, true, options_.pictureEdge, view_};
   const std::vector<PicturePanel> panels = labelPanels(labels_, box_, panel, interrupter_);
   const Picture sheet = pictureSheet(panels, storedVoxelSize(labels_));
-  return "<img id=\"picture" + suffix_ + "\" alt=\"The grains from outside\" width=\"" +
-         std::to_string(sheet.width) + "\" height=\"" + std::to_string(sheet.height) +
-         "\" src=\"data:image/png;base64," + base64(pngBytes(sheet)) + "\">\n";
+  return fmt::format(
+      "<img id=\"picture{}\" alt=\"The grains from outside\" width=\"{}\" height=\"{}\" "
+      "src=\"data:image/png;base64,{}\">\n",
+      suffix_, sheet.width, sheet.height, base64(pngBytes(sheet)));
 }
 
 }  // namespace vdb_madf::detail
