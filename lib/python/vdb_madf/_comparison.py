@@ -23,7 +23,7 @@ class Comparison:
     truth_grains: int
     test_grains: int
     common_voxels: int
-    """Labelled in both."""
+    """Labeled in both."""
     truth_only_voxels: int
     test_only_voxels: int
     misclassified_percent: float
@@ -52,8 +52,8 @@ class Comparison:
     """Pairs that meet, for scipy.sparse.coo_array: `truth`, `test` (0: none), `voxels`."""
 
 
-def compare(truth: Union[Labels, Segmentation, Source], test: Union[Labels, Segmentation, Source], *,
-            progress: Progress = None, threads: int = 0) -> Comparison:
+def compare(truth: Union[Labels, Segmentation, Source], test: Union[Labels, Segmentation, Source],
+            *, progress: Progress = None, threads: int = 0) -> Comparison:
     """Compares labels, of any program and numbering, voxel by voxel."""
     with calling(progress, threads) as call:
         first, second = (labels_of(given, call, threads) for given in (truth, test))

@@ -13,9 +13,11 @@ import numpy.typing as npt
 
 @dataclass(frozen=True)
 class Mesh:
-    """A closed mesh for each grain. Where two grains touch, their points and triangles match exactly.
+    """A closed mesh for each grain. Where two grains touch, their points and triangles match
+    exactly.
 
-    The arrays show the memory of the library: nothing is copied, and they stay valid by themselves."""
+    The arrays show the memory of the library: nothing is copied, and they stay valid by
+    themselves."""
 
     ids: npt.NDArray[np.int32]
     """(G,) labels of the grains, ascending."""
