@@ -20,7 +20,7 @@ namespace {
 using detail::OutputStream;
 using openvdb::Vec3d;
 
-/// f(clump number, centre, radius) for all balls, world.
+/// f(clump number, center, radius) for all balls, world.
 template <typename F>
 void forEachBall(const std::vector<Clump>& clumps, const detail::WorldTransform& world,
                  const F& f) {
@@ -38,8 +38,8 @@ void numbers(OutputStream& out, const Vec3d& center, char separator) {
 }
 
 /// `fix rigid` refuses bodies of one atom, or of atoms at one place: such a clump has a second one
-/// within its ball, which touches nothing. Its radius, and how far it is from the center along x, in
-/// radii of the ball.
+/// within its ball, which touches nothing. Its radius, and how far it is from the center along x,
+/// in radii of the ball.
 constexpr double kCoreRadius = 0.5, kCoreShift = 1.0 / 16;
 
 bool needsCore(const Clump& clump) {

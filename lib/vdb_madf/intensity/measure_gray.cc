@@ -59,8 +59,8 @@ struct Slab {
   }
 };
 
-/// Gathers the samples of each grain and bond, in an order that depends on the labels alone, until all of
-/// them are there.
+/// Gathers the samples of each grain and bond, in an order that depends on the labels alone, until
+/// all of them are there.
 template <typename T>
 class SampleLists {
  public:

@@ -73,8 +73,8 @@ class Renderer {
     }
   }
 
-  /// Rays all over those pixels at which a grain or a surface ends. `view` has its first rays in all
-  /// rows, `smooth` gets the result.
+  /// Rays all over those pixels at which a grain or a surface ends. `view` has its first rays in
+  /// all rows, `smooth` gets the result.
   void smoothRow(int y, const Picture& backdrop, const GrainView& view,
                  const std::vector<float>& depths, Picture& smooth) const {
     Eye eye(*this);

@@ -48,7 +48,7 @@ class PackBuilder {
         balls_(balls),
         boxVoxels_(double(voxels_.x()) * voxels_.y() * voxels_.z()),
         goal_(options.fraction * boxVoxels_) {
-    // Centres lie in the box grown by the largest radius, so that the faces see as many balls as
+    // Centers lie in the box grown by the largest radius, so that the faces see as many balls as
     // the middle.
     const double grow = 2 * options.maxRadius;
     centerVolume_ =
@@ -81,8 +81,8 @@ class PackBuilder {
   double missing() const { return goal_ - double(balls_.voxelCount()); }
 
   /// Draws balls until their volumes sum to a part of what the union can take before it reaches the
-  /// goal. (A sum of volumes V in the volume of the centres covers at most V / that volume of
-  /// what is still free.) False, and nothing drawn, if too few would do.
+  /// goal. (A sum of volumes V in the volume of the centers covers at most V / that volume of what
+  /// is still free.) False, and nothing drawn, if too few would do.
   bool addBatch() {
     const double r = options_.maxRadius;
     const double largest = 4.0 / 3.0 * M_PI * r * r * r;

@@ -35,8 +35,8 @@ constexpr float kSinteredCut = 0.45f;
 /// Stream 0 places the balls.
 constexpr uint64_t kSurfaceNoiseStream = 1;
 
-/// 1 inside the balls, 0 outside, at points of Z^3; also beyond the faces of the sample, so that the
-/// blur sees no surface there.
+/// 1 inside the balls, 0 outside, at points of Z^3; also beyond the faces of the sample, so that
+/// the blur sees no surface there.
 FloatBox indicator(const CoordBBox& box, const std::vector<Ball>& balls) {
   FloatBox field(box);
   for (const Ball& ball : balls) {

@@ -28,7 +28,8 @@ using openvdb::Vec3f;
 
 constexpr size_t kBlockGrain = 16;
 constexpr int kMaxRounds = 1000;
-/// Along an axis, in voxels: so far points of a simplified mesh go to give the grains their volumes.
+/// Along an axis, in voxels: so far points of a simplified mesh go to give the grains their
+/// volumes.
 constexpr float kSimplifiedReach = 1;
 
 GrainMesh assemble(SharedMesh&& shared, const std::vector<int32_t>& labels) {

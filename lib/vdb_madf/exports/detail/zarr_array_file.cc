@@ -82,7 +82,7 @@ class Chunks {
   const Coord& number(size_t i) const { return pieces_[first_[i]].chunk; }
   size_t voxels() const { return voxelsOf(edges_); }
 
-  /// f(place in the chunk, x fastest; label) for the labelled voxels of a chunk within the box.
+  /// f(place in the chunk, x fastest; label) for the labeled voxels of a chunk within the box.
   template <typename F>
   void forEachLabel(size_t i, const F& f) const {
     const Coord& chunk = number(i);

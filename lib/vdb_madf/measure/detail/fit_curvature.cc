@@ -40,8 +40,9 @@ struct Jet {
 using Shape = Eigen::Matrix2d;  ///< second derivatives of the height
 using Terms = Eigen::Matrix<double, 6, 1>;
 
-/// How much deeper than a paraboloid a round surface lies at (a, b): a ball or cylinder of curvature
-/// k is 1 - sqrt(1 - s^2) deep in units of 1/k, where s = k |(a, b)|, and the paraboloid s^2 / 2.
+/// How much deeper than a paraboloid a round surface lies at (a, b): a ball or cylinder of
+/// curvature k is 1 - sqrt(1 - s^2) deep in units of 1/k, where s = k |(a, b)|, and the paraboloid
+/// s^2 / 2.
 double roundness(const Shape& shape, double a, double b) {
   const double slope = std::min((shape * Eigen::Vector2d(a, b)).squaredNorm(), kSteepest);
   return 2 / (1 + std::sqrt(1 - slope));

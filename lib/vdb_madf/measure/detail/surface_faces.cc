@@ -190,7 +190,8 @@ int64_t SurfaceFaces::area(const SurfaceTarget* begin, const SurfaceTarget* end,
     if (!(along > 0)) continue;
     const double length =
         std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-    // Sums are small integers: of cubes no cosine is half of a unit, and this rounds to the nearest.
+    // Sums are small integers: of cubes no cosine is half of a unit, and this rounds to the
+    // nearest.
     area += int64_t(kAreaUnit * faceAreas_[size_t(side >> 1)] * (along / length) + 0.5);
   }
   return area;

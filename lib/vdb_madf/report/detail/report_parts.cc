@@ -58,8 +58,8 @@ Json columnsJson(const std::vector<MeasureColumn>& columns) {
   return json;
 }
 
-/// How far to reduce labels for about so many triangles: the surface of a sample has a factor squared
-/// less.
+/// How far to reduce labels for about so many triangles: the surface of a sample has a factor
+/// squared less.
 int reductionTo(uint64_t most, const Int32Grid& labels, Interrupter* interrupter) {
   const double times = double(countTriangles(labels, interrupter)) / double(most);
   return std::clamp(int(std::ceil(std::sqrt(times))), 1, kMaxReduction);

@@ -23,13 +23,13 @@ void checkRange(const char* name, double value, double lower, double upper);
 class SourceText {
  public:
   explicit SourceText(const std::string& sample) : text_("generate " + sample) {}
-  /// As a grid has it, to add to it.
+  /// The source that a grid has, to add to it.
   static SourceText of(const openvdb::GridBase& grid);
   SourceText& size(const Coord& size);
   SourceText& add(const char* option, const std::string& value);
   SourceText& add(const char* option, double value) { return add(option, number(value)); }
   SourceText& range(const char* option, double lower, double upper);
-  /// Of voxels that are no cubes.
+  /// Adds the edges of voxels that are no cubes.
   SourceText& edges(const std::optional<VoxelSize>& voxelSize);
   const std::string& str() const { return text_; }
 

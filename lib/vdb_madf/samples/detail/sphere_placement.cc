@@ -17,7 +17,7 @@ namespace {
 /// Relative; half of what the documentation promises.
 constexpr double kOverlapTolerance = 0.005;
 
-/// Random centres tried for a ball that must not swallow the others.
+/// Random centers tried for a ball that must not swallow the others.
 constexpr int kMaxTries = 10000;
 /// Moves tried on the way to the asked overlap before it counts as impossible.
 constexpr int64_t kSearchMoves = 20000, kSearchMovesPerBall = 500;
@@ -161,7 +161,7 @@ class Placement {
     unionVoxels_ = oldUnion;
   }
 
-  /// Where a ball lies wholly inside, its real surface between the outermost voxels' centres.
+  /// Where a ball lies wholly inside, its real surface between the outermost voxels' centers.
   CoordBBox centerBox(double radius) const {
     const int margin = int(std::ceil(radius));
     return {Coord(margin), options_.size.offsetBy(-1 - margin)};
@@ -175,7 +175,7 @@ class Placement {
     return center;
   }
 
-  /// Of ball i and any other, each has the least power at its own centre.
+  /// Of ball i and any other, each has the least power at its own center.
   bool ownsCenters(size_t i) const {
     const LatticeBall& ball = balls_[i];
     const double square = ball.radius() * ball.radius();

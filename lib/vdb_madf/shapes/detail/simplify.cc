@@ -22,8 +22,8 @@ using openvdb::Vec3f;
 constexpr uint32_t kNone = SharedMesh::kNone;
 constexpr size_t kSiteGrain = 1024;
 constexpr size_t kGrainGrain = 4;
-/// Of the sites that may go, those of least error in one pass: fewer are nearer to strict order, and
-/// take more passes.
+/// Of the sites that may go, those of least error in one pass: fewer are nearer to strict order,
+/// and take more passes.
 constexpr double kPassPart = 0.4;
 /// More triangles around a point make fans.
 constexpr size_t kMaxValence = 32;
@@ -316,8 +316,8 @@ class Simplifier {
     return true;
   }
 
-  /// Collapses that do not know of each other: none begins or ends at a site whose neighbors another
-  /// one changes.
+  /// Collapses that do not know of each other: none begins or ends at a site whose neighbors
+  /// another one changes.
   void select(uint64_t triangles) {
     chosen_.clear();
     ++stamp_;

@@ -26,8 +26,8 @@ Vec3f home(const Coord& corner) {
 /// x, y, z and 0.
 using Offset = float __attribute__((vector_size(16)));
 
-/// What a round makes of the offsets of a corner's links: it goes to the sum of their offsets and their
-/// directions, times the step over their number.
+/// What a round makes of the offsets of a corner's links: it goes to the sum of their offsets and
+/// their directions, times the step over their number.
 struct Mean {
   Offset directions{};
   float scale = 0;
@@ -48,7 +48,8 @@ std::array<Mean, 64> means() {
   return table;
 }
 
-/// Moves the corners by their offsets from the lattice: at most half a voxel, so that all digits count.
+/// Moves the corners by their offsets from the lattice: at most half a voxel, so that all digits
+/// count.
 class Relaxation {
  public:
   Relaxation(SurfaceNet& net, const DomainFaces& domain, Interrupter* interrupter)
