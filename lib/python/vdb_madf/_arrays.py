@@ -52,7 +52,7 @@ def _target(dtype: np.dtype[Any]) -> np.dtype[Any]:
 
 
 def _narrowed(slab: npt.NDArray[Any], first: int) -> npt.NDArray[Any]:
-    """Of 64-bit integers, which have to fit in 32 bits."""
+    """64-bit integers as 32-bit ones, in which they have to fit."""
     limits = np.iinfo(np.int32)
     for value in (slab.min(), slab.max()):
         if not limits.min <= value <= limits.max:

@@ -66,7 +66,7 @@ def meters(voxel_size: Optional[str]) -> Optional[_core.Edges]:
 
 
 def bytes_of(max_memory: Union[int, str, None]) -> int:
-    """Of a number of bytes or a text with a unit; 0 for None."""
+    """A number of bytes, or a text with a unit, as bytes; 0 for None."""
     if max_memory is None:
         return 0
     if isinstance(max_memory, str):

@@ -46,7 +46,7 @@ class Labels(Volume):
 
     @property
     def dtype(self) -> np.dtype[Any]:
-        """Of the values of slices: int32."""
+        """The type of the values of slices: int32."""
         return np.dtype(np.int32)
 
     def _read(self, first: _core.Index, out: npt.NDArray[Any]) -> None:

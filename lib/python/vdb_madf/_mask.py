@@ -59,7 +59,7 @@ class Mask(Volume):
 
     @property
     def dtype(self) -> np.dtype[Any]:
-        """Of the values of slices: bool."""
+        """The type of the values of slices: bool."""
         return np.dtype(bool)
 
     def _read(self, first: _core.Index, out: npt.NDArray[Any]) -> None:

@@ -35,9 +35,9 @@ class Measurements:
     """`solid_fraction`, `specific_surface`, `mean_coordination` ...; `bond_fabric` and
     `grain_fabric` are (3, 3), [z, y, x]; `diameter_by_volume[50]` is the median."""
     unit: str
-    """Of lengths: "mm", "um" or "voxel"."""
+    """The unit of lengths: "mm", "um" or "voxel"."""
     units: Dict[str, str] = field(repr=False)
-    """Of each column and each number of the sample: "mm^3", "1/mm", "" ..."""
+    """The unit of each column and each number of the sample: "mm^3", "1/mm", "" ..."""
     provenance: Dict[str, Any] = field(repr=False)
     """What the labels say of their making (madf_*)."""
 

@@ -30,7 +30,7 @@ class Mesh:
     triangle_offsets: npt.NDArray[np.uint32]
     """(G + 1,) likewise."""
     unit: str
-    """Of the points: "mm", "um" or "voxel"."""
+    """The unit of the points: "mm", "um" or "voxel"."""
 
     def grain(self, id: int) -> Tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]]:
         """Points (P, 3) and triangles (T, 3) of one grain."""

@@ -32,7 +32,7 @@ class Segmentation:
     counts: Dict[str, int]
     """`grains`, `object_voxels`, `critical_points`, `medial_balls` ... and flaws of the labels."""
     seconds: Dict[str, float]
-    """Of each stage, in the order of work."""
+    """Seconds of each stage, in the order of work."""
     options: Dict[str, Any]
     """What was used: theta, gamma, merge, adjacency, delta, fill_holes, tidy, boundary."""
     graph: Dict[str, npt.NDArray[Any]] = field(repr=False)

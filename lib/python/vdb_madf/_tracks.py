@@ -21,7 +21,7 @@ class Tracks:
     """What became of grains and bonds from one scan of a sample to the next."""
 
     labels: Labels
-    """Those after, with the numbers of their tracks: what is linked has the label from before."""
+    """The grains after by the numbers of their tracks: what is linked has the label from before."""
     shift: Tuple[int, int, int]
     """Voxel [z, y, x] before is [z, y, x] + shift after."""
     voxels_before: int
@@ -32,14 +32,14 @@ class Tracks:
     """A row a grain: `id`, `fate` ("kept", "split", "merged", "vanished", "outside"), `track`,
     `voxels`, `shared_voxels` (in what both volumes show), `links`, `partner`, `overlap_voxels`."""
     after: Dict[str, npt.NDArray[Any]] = field(repr=False)
-    """The same after; "new" in the place of "vanished"."""
+    """What `before` says, after; "new" in the place of "vanished"."""
     overlaps: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """Pairs that have voxels in common: `before`, `after`, `voxels`, `link`."""
     bonds_before: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """A row a bond: `first`, `second`, `faces`, `shared_faces` (in what both volumes show), `fate`
     ("kept", "broken", "inside", "unmatched", "outside")."""
     bonds_after: Dict[str, npt.NDArray[Any]] = field(repr=False)
-    """The same after; "new" in the place of "broken"."""
+    """What `bonds_before` says, after; "new" in the place of "broken"."""
 
 
 def track(before: Union[Labels, Segmentation, Source], after: Union[Labels, Segmentation, Source],

@@ -37,7 +37,7 @@ class Volume:
 
     @property
     def dtype(self) -> np.dtype[Any]:
-        """Of the values of slices."""
+        """The type of the values of slices."""
         raise NotImplementedError
 
     def _read(self, first: _core.Index, out: npt.NDArray[Any]) -> None:

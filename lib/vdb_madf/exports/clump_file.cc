@@ -46,7 +46,8 @@ bool needsCore(const Clump& clump) {
   return clump.balls.size() == 1;
 }
 
-/// At which all atoms of a clump weigh as much as its grain of density 1, however they overlap.
+/// The density at which all atoms of a clump weigh as much as its grain of density 1, however they
+/// overlap.
 double densityOfAtoms(const Clump& clump, const detail::WorldTransform& world) {
   double volume = 0;
   for (const Clump::Ball& ball : clump.balls)

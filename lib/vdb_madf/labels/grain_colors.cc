@@ -56,7 +56,7 @@ constexpr std::array<int, 13> kForward{kZ,           kY - kZ, kY, kY + kZ, kX - 
 
 constexpr int32_t kNoLabel = std::numeric_limits<int32_t>::max();
 
-// By value: std::max() and std::min() keep loops from becoming SIMD.
+// std::max() and std::min(), which take references, keep loops from becoming SIMD.
 inline int32_t larger(int32_t a, int32_t b) {
   return a > b ? a : b;
 }
@@ -171,7 +171,7 @@ Contacts findContacts(const Int32Grid& grid, Interrupter* interrupter) {
   return {{labels.begin(), labels.end()}, std::move(pairs)};
 }
 
-/// Of two sorted lists.
+/// The union of two sorted lists.
 template <typename T>
 std::vector<T> united(const std::vector<T>& a, const std::vector<T>& b) {
   std::vector<T> all;

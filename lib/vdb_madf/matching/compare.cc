@@ -46,7 +46,7 @@ class Counts {
     for (const auto& [key, voxels] : other.counts_) counts_[key] += voxels;
   }
 
-  /// By truth, then by test.
+  /// The overlaps by truth, then by test.
   std::vector<Overlap> sorted() const {
     std::vector<Overlap> entries;
     for (const auto& [key, voxels] : counts_)

@@ -50,7 +50,7 @@ class GrainQuotients {
   std::vector<std::vector<Quotient>> columns_;
 };
 
-/// By id: the sum over its bonds of bond radius / radius of the smaller grain.
+/// The sum over the bonds of each grain, by id, of bond radius / radius of the smaller grain.
 std::map<int32_t, double> bondRatios(const std::vector<GrainMeasures>& grains,
                                      const std::vector<BondMeasures>& bonds) {
   std::map<int32_t, double> diameters, ratios;

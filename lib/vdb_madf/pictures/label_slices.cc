@@ -22,7 +22,7 @@ constexpr Rgb kBackground{243, 244, 246}, kPale{206, 209, 214};
 constexpr size_t kSliceRowGrain = 16;
 constexpr double kOutline = 1 / 300.0;  ///< of the edge: width of an outline, on each side
 
-/// Between the pixels of pictures and the voxels of a box.
+/// Goes between the pixels of pictures and the voxels of a box.
 class Scale {
  public:
   /// @param edges of a voxel; the shortest is 1

@@ -119,8 +119,8 @@ void drawRose(Canvas& canvas, int cell, const std::vector<double>& densities, do
 
 using Directions = std::vector<std::pair<openvdb::Vec3d, double>>;  ///< with what each counts
 
-/// In the x-y plane: each direction with its shadow's length there. The axes lie in the middle of
-/// their sectors.
+/// A rose in the x-y plane: each direction counts with its shadow's length there. The axes lie in
+/// the middle of their sectors.
 void drawAzimuths(Canvas& canvas, int cell, const Directions& directions,
                   const std::string& title) {
   constexpr int kHalf = 18;

@@ -23,7 +23,7 @@ using detail::Ball;
 /// Half of what the documentation promises.
 constexpr double kFractionTolerance = 0.0025;
 
-/// With fewer balls than this to go they are added one by one, each counted.
+/// The last balls, fewer than this, are added one by one, each counted.
 constexpr int64_t kMinBatch = 1024;
 /// Bounds the memory of a batch, and the time until an interruption is seen.
 constexpr int64_t kMaxBatch = 1 << 18;

@@ -25,8 +25,7 @@ using detail::FloatBox;
 constexpr uint64_t kSurfaceStream = 2;
 constexpr uint64_t kNoiseStream = 3;
 
-/// In standard deviations.
-constexpr double kFarthestMove = 4;
+constexpr double kFarthestMove = 4;  // standard deviations
 /// A voxel farther than this from all true ones is noise of its own.
 constexpr int kNoiseReach = 2;
 constexpr float kCut = 0.5f;

@@ -84,7 +84,7 @@ class SurfaceBuilder {
     return field;
   }
 
-  /// In pieces that see about as many points as a block of cubes.
+  /// Works in pieces that see about as many points as a block of cubes.
   void fillBlock(size_t block) {
     const CoordBBox box = blocks_.box(block);
     for (int x = box.min().x(); x <= box.max().x(); x += piece_.x())

@@ -226,7 +226,7 @@ void endAtOtherGrains(const Int32Tree& labels, const CoordBBox& bounds, int32_t 
   }
 }
 
-/// From the unit of the weights to the shortest edge.
+/// Converts lengths from the unit of the weights to the shortest edge.
 void toShortestEdges(const VoxelWeights& weights, std::vector<Clump>& clumps) {
   const double unit = weights.least();
   for (Clump& clump : clumps) {

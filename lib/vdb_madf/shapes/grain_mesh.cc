@@ -70,7 +70,7 @@ GrainMesh grainMesh(const Int32Grid& labels, const GrainMeshOptions& options,
   const LabelBlocks blocks(labels);
   const CoordBBox box = domainBox(labels);
   const DomainFaces domain = facesOf(box);
-  // Of the work as a whole, in per cent.
+  // Shares of the work, in per cent.
   const int meshed = options.triangles > 0 ? 25 : 100, built = meshed / 3, smoothed = meshed / 2;
   detail::WorkPart building(interrupter, 0, built), smoothing(interrupter, built, smoothed),
       correcting(interrupter, smoothed, meshed), simplifying(interrupter, meshed, 95),

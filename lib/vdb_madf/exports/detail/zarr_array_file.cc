@@ -26,14 +26,13 @@ using Leaf = Int32Tree::LeafNodeType;
 
 /// Labels are mostly runs: more effort gains little.
 constexpr int kGzipLevel = 3;
-/// For zlib: the widest window, and gzip's header (without name and time).
+/// zlib's widest window, and gzip's header (without name and time).
 constexpr int kGzipWindow = 15 + 16;
 
 std::string within(const std::string& folder, const std::string& name) {
   return (std::filesystem::path(folder) / name).string();
 }
 
-/// Of a Coord as the arrays have it.
 Json zyx(const Coord& c) {
   return Json::array({c.z(), c.y(), c.x()});
 }

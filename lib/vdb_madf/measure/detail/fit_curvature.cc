@@ -90,11 +90,12 @@ class Fit {
     rows_.clear();
     for (const Point& point : points_) {
       Row row;
-      // By area, and none of a sheet that folds back.
+      // Faces weigh by their area, and those of a sheet that folds back nothing.
       row.weight = normal[point.axis] * point.sign * faceAreas_[point.axis];
       row.a = point.position.dot(u);
       row.b = point.position.dot(v);
-      // By distance along the plane: to leave out the deeper ones at the rim would flatten the fit.
+      // Distance counts along the plane: to leave out the deeper ones at the rim would flatten the
+      // fit.
       if (row.weight <= 0 || row.a * row.a + row.b * row.b > kWithin) continue;
       row.height = point.position.dot(normal);
       rows_.push_back(row);

@@ -37,7 +37,7 @@ constexpr uint64_t kTrianglesOfGrain = 150, kFewestTriangles = 40000;
 /// Labels with more than so many times the triangles that are wanted, or this number, are reduced
 /// before they are meshed: simplifying takes some 10 microseconds and 200 bytes a triangle.
 constexpr uint64_t kMostSimplified = 8, kMostMeshed = 3000000;
-/// Of a point in the page, voxels (reduced ones, if the mesh is made of such).
+/// The step of a point in the page, voxels (reduced ones, if the mesh is made of such).
 constexpr double kMeshStep = 1.0 / 32;
 
 std::string packed(const std::string& text) {

@@ -48,7 +48,7 @@ class LatticeBall {
   int64_t voxels() const { return voxels_; }
   int reach() const { return reach_; }
 
-  /// Of row (x, y) of the space, along z.
+  /// The part of row (x, y), along z.
   RowRange row(int x, int y) const {
     const int dx = std::abs(x - center.x()), dy = std::abs(y - center.y());
     if (dx > reach_ || dy > reach_) return {0, -1};
@@ -175,7 +175,7 @@ class Placement {
     return center;
   }
 
-  /// Of ball i and any other, each has the least power at its own center.
+  /// Does each of ball i and any other have the least power at its own center?
   bool ownsCenters(size_t i) const {
     const LatticeBall& ball = balls_[i];
     const double square = ball.radius() * ball.radius();

@@ -73,7 +73,7 @@ class NetBuilder {
         for (int z = 0; z < 8; ++z) f(x, y, z);
   }
 
-  /// Those places of a block around whose corners the labels are not all alike.
+  /// Visits the places of a block around whose corners the labels are not all alike.
   template <typename F>
   static void forEachMixedPlace(const LabelHalo& halo, const F& f) {
     for (int x = 0; x < 8; ++x)

@@ -16,8 +16,7 @@ using openvdb::Vec3d;
 using openvdb::Vec3f;
 
 constexpr size_t kCornerGrain = 4096;
-/// Of the way to the mean in each round.
-constexpr float kStep = 0.5f;
+constexpr float kStep = 0.5f;  // of the way to the mean in each round
 
 Vec3f home(const Coord& corner) {
   return {float(corner.x()) - 0.5f, float(corner.y()) - 0.5f, float(corner.z()) - 0.5f};
@@ -33,7 +32,7 @@ struct Mean {
   float scale = 0;
 };
 
-/// For each set of links, bit d: the link in direction d.
+/// The mean for each set of links; bit d is the link in direction d.
 std::array<Mean, 64> means() {
   std::array<Mean, 64> table;
   for (size_t set = 1; set < table.size(); ++set) {

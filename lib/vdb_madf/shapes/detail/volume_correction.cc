@@ -24,10 +24,11 @@ constexpr size_t kMovedGrainGrain = 8;
 /// Volumes are met to this part of themselves, or after so many corrections.
 constexpr double kVolumeTolerance = 1e-3;
 constexpr int kMaxCorrections = 20;
-/// Of the tolerance: what the pressures leave to the next correction.
+/// What the pressures leave to the next correction, in parts of the tolerance.
 constexpr double kSolved = 0.1;
-/// Of the squared gradients of a grain: its growth with its pressure is overstated by no more, or
-/// by the area of a cube of its volume (a face of it, voxels squared) if that is more.
+/// The growth of a grain with its pressure is overstated by no more than this part of its squared
+/// gradients, or by the area of a cube of its volume (a face of it, voxels squared) if that is
+/// more.
 constexpr double kHeldBack = 0.1;
 /// Voxels: grains whose points would move by less on the average stay as they are.
 constexpr double kLeastMove = 1e-4;
@@ -196,7 +197,7 @@ class VolumeCorrection {
     missing_[grain] = double(volumes_[grain]) - threefold / 3;
   }
 
-  /// Of two gradients, along the axes that the site can move along.
+  /// The product of two gradients along the axes that the site can move along.
   double freeDot(uint32_t site, const Vec3d& a, const Vec3d& b) const {
     double sum = 0;
     for (int axis = 0; axis < 3; ++axis)
