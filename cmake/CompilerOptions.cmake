@@ -1,5 +1,6 @@
-# All sources of a target in one compilation: OpenVDB's headers, and the code that they put into every
-# object, are paid once a target instead of once a file. Single files are for those who edit them.
+# All sources of a target in one compilation: OpenVDB's headers, and the code that they put into
+# every object, are paid once a target instead of once a file. Single files are for those who edit
+# them.
 option(VDB_MADF_UNITY "Compile each target as one file" ON)
 
 # Flags of our own targets, never of those that link us.
@@ -12,9 +13,9 @@ function(vdb_madf_compiler_options target)
   endif()
 endfunction()
 
-# The same with AddressSanitizer and UndefinedBehaviorSanitizer. (No -Werror: GCC 12 warns falsely of
-# uninitialized values when it instruments.) Left out is what AddressSanitizer sees as the bad access
-# itself: these checks would double the time to compile.
+# The same with AddressSanitizer and UndefinedBehaviorSanitizer. (No -Werror: GCC 12 warns falsely
+# of uninitialized values when it instruments.) Left out is what AddressSanitizer sees as the bad
+# access itself: these checks would double the time to compile.
 function(vdb_madf_sanitize target)
   target_compile_options(${target} PRIVATE -O1 -Wno-error -fsanitize=address,undefined
     -fno-sanitize=null,alignment,object-size,pointer-overflow,vptr -fno-sanitize-recover=all
@@ -23,5 +24,6 @@ function(vdb_madf_sanitize target)
 endfunction()
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES AND PROJECT_IS_TOP_LEVEL)
-  message(STATUS "No CMAKE_BUILD_TYPE given: the library will be slow. Use -DCMAKE_BUILD_TYPE=Release.")
+  message(STATUS
+    "No CMAKE_BUILD_TYPE given: the library will be slow. Use -DCMAKE_BUILD_TYPE=Release.")
 endif()

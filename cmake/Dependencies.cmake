@@ -7,7 +7,8 @@ set(VDB_MADF_SHARED ${BUILD_SHARED_LIBS})
 include(OpenVDBModule)
 find_package(OpenVDB 10.0 REQUIRED)
 if(OpenVDB_VERSION VERSION_GREATER_EQUAL 14)
-  message(STATUS "OpenVDB ${OpenVDB_VERSION} is newer than 13, up to which .vdb files are compressed by all "
+  message(STATUS
+    "OpenVDB ${OpenVDB_VERSION} is newer than 13, up to which .vdb files are compressed by all "
     "threads: they are written more slowly")
 endif()
 unset(BUILD_SHARED_LIBS)  # set by FindOpenVDB in this scope; our rooms say STATIC themselves
@@ -29,6 +30,7 @@ endif()
 find_package(Blosc REQUIRED)  # with OpenVDB's own find module
 find_package(zstd REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_package(fmt REQUIRED)
 
 option(VDB_MADF_HDF5 "Read and write HDF5 if libhdf5 is found" ON)
 if(VDB_MADF_HDF5)

@@ -1,6 +1,7 @@
 # The bytes of a file as a C++ source:
 #   cmake -D INPUT=FILE -D OUTPUT=FILE.cc -D NAME=kName -P EmbedFile.cmake
-# defines `const unsigned char kName[]` and `const size_t kNameSize` in the namespace vdb_madf::detail.
+# defines `const unsigned char kName[]` and `const size_t kNameSize` in the namespace
+# vdb_madf::detail.
 file(READ ${INPUT} bytes HEX)
 string(REGEX REPLACE "(................................)" "\\1\n" bytes "${bytes}")
 string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${bytes}")

@@ -1,6 +1,7 @@
-# Writes the parts of a page, HTML, STYLE and SCRIPT, into the C++ source OUT. A literal is limited by some
-# compilers, so each part is several that follow one another.
-set(text "// Made by cmake/EmbedPage.cmake.\n#include \"vdb_madf/report/detail/page_sources.h\"\n\n")
+# Writes the parts of a page, HTML, STYLE and SCRIPT, into the C++ source OUT. A literal is limited
+# by some compilers, so each part is several that follow one another.
+set(text
+  "// Made by cmake/EmbedPage.cmake.\n#include \"vdb_madf/report/detail/page_sources.h\"\n\n")
 string(APPEND text "namespace vdb_madf::detail {\n\nnamespace {\n\n")
 foreach(part HTML STYLE SCRIPT)
   file(READ ${${part}} content)
@@ -14,5 +15,7 @@ foreach(part HTML STYLE SCRIPT)
   string(APPEND text ";\n\n")
 endforeach()
 string(APPEND text "const PageSources kSources{html, style, script};\n\n}  // namespace\n\n")
-string(APPEND text "const PageSources* pageSources() {\n  return &kSources;\n}\n\n}  // namespace vdb_madf::detail\n")
+string(APPEND text
+  "const PageSources* pageSources() {\n  return &kSources;\n}\n\n"
+  "}  // namespace vdb_madf::detail\n")
 file(WRITE ${OUT} "${text}")

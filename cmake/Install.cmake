@@ -49,8 +49,8 @@ install(FILES ${PROJECT_BINARY_DIR}/vdb_madfConfig.cmake
   cmake/OpenVDBModule.cmake
   DESTINATION ${package_dir} COMPONENT library)
 
-# For pkg-config: all rooms, each before those that it uses, as static libraries want it. OpenVDB has
-# no such file of its own.
+# For pkg-config: all rooms, each before those that it uses, as static libraries want it. OpenVDB
+# has no such file of its own.
 set(pkgconfig_rooms "")
 foreach(room IN LISTS rooms)
   string(PREPEND pkgconfig_rooms " -lvdb_madf_${room}")

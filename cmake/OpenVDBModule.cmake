@@ -1,6 +1,7 @@
-# OpenVDB comes with a find module, not with a package config, in cmake/OpenVDB of its library folder.
-# Adds that folder to CMAKE_MODULE_PATH: the first one below OpenVDB_ROOT, CMAKE_PREFIX_PATH (both may be
-# in the environment) and the places of the system. A FindOpenVDB.cmake in CMAKE_MODULE_PATH goes first.
+# OpenVDB comes with a find module, not with a package config, in cmake/OpenVDB of its library
+# folder. Adds that folder to CMAKE_MODULE_PATH: the first one below OpenVDB_ROOT, CMAKE_PREFIX_PATH
+# (both may be in the environment) and the places of the system. A FindOpenVDB.cmake in
+# CMAKE_MODULE_PATH goes first.
 set(_openvdb_prefixes ${OpenVDB_ROOT} $ENV{OpenVDB_ROOT} ${CMAKE_PREFIX_PATH})
 file(TO_CMAKE_PATH "$ENV{CMAKE_PREFIX_PATH}" _openvdb_environment)
 find_path(_openvdb_module FindOpenVDB.cmake

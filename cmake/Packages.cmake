@@ -1,5 +1,5 @@
-# Debian packages by CPack, one for each component of the installation: the command, the library and, if
-# it is built, the Python package. tools/release makes them.
+# Debian packages by CPack, one for each component of the installation: the command, the library
+# and, if it is built, the Python package. tools/release makes them.
 get_cmake_property(CPACK_COMPONENTS_ALL COMPONENTS)
 list(REMOVE_ITEM CPACK_COMPONENTS_ALL documents shared Unspecified)
 
@@ -27,7 +27,8 @@ networks. Labels are sparse OpenVDB grids.")
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libvdb-madf-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
-string(JOIN ", " CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS libopenvdb-dev libtbb-dev libtiff-dev libpng-dev libcairo2-dev
+string(JOIN ", " CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS libopenvdb-dev libtbb-dev libtiff-dev
+  libpng-dev libcairo2-dev
   libblosc-dev libzstd-dev libboost-iostreams-dev libqhull-dev zlib1g-dev)
 if(TARGET SerialHDF5::hdf5)
   string(APPEND CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS ", libhdf5-dev")

@@ -9,12 +9,13 @@
 #     [LINKS target...]     libraries that its headers need
 #     [PRIVATE target...]   libraries that only its sources need
 #     [PACKAGES name...]    what find_package(vdb_madf COMPONENTS NAME) has to find
-#     [OPTIMIZE level]      O1 or O2, where its loops wait for others or for files; default: as the build type
+#     [OPTIMIZE level]      O1 or O2, where its loops wait for others or for files; default: that
+#                           of the build type
 #     [GRIDS]               its sources see OpenVDB's grids: they share a precompiled header
 #     [SANITIZE])           with the tests, also built with sanitizers, as vdb_madf_NAME_sanitized
 #
-# USES is the one list of arrows between rooms. It is written to rooms.txt in the build folder, where
-# tests/rooms compares every #include with it.
+# USES is the one list of arrows between rooms. It is written to rooms.txt in the build folder,
+# where tests/rooms compares every #include with it.
 function(vdb_madf_room name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "GRIDS;SANITIZE" "OPTIMIZE"
     "FOLDERS;HEADERS;SOURCES;OBJECTS;USES;LINKS;PRIVATE;PACKAGES")
@@ -62,7 +63,8 @@ macro(vdb_madf_room_library suffix)
   foreach(room IN LISTS arg_USES)
     target_link_libraries(${target}${suffix} PUBLIC vdb_madf_${room}${suffix})
   endforeach()
-  target_link_libraries(${target}${suffix} PUBLIC ${arg_LINKS} PRIVATE ${arg_PRIVATE})
+  target_link_libraries(${target}${suffix} PUBLIC ${arg_LINKS}
+    PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:fmt::fmt-header-only>)
   if(arg_GRIDS AND name STREQUAL core)
     target_precompile_headers(${target}${suffix} PRIVATE
       <vdb_madf/grids/grid_types.h> <vdb_madf/grids/detail/grid_instances.h>)

@@ -1,4 +1,5 @@
-# Is OpenVDB's find module found below any prefix, the named ones first? Variables: SOURCE_DIR, WORK_DIR.
+# Is OpenVDB's find module found below any prefix, the named ones first? Variables: SOURCE_DIR,
+# WORK_DIR.
 file(REMOVE_RECURSE ${WORK_DIR})
 foreach(place a/lib b/lib64 c/lib/x86-fox system/lib)
   file(WRITE ${WORK_DIR}/${place}/cmake/OpenVDB/FindOpenVDB.cmake "")

@@ -3,8 +3,8 @@
 # %% [markdown]
 # # From a gray scan to a figure
 #
-# A scan of sintered grains, made up so that this runs anywhere: gray values, noise, a round field of
-# view. With your own, `scan` is a file or an array, and the first cell goes.
+# A scan of sintered grains, made up so that this runs anywhere: gray values, noise, a round field
+# of view. With your own, `scan` is a file or an array, and the first cell goes.
 
 # %%
 import matplotlib.pyplot as plt
@@ -21,14 +21,15 @@ scan = np.where(outside, 0, (70 + 100 * np.asarray(solid) + noise).clip(1, 255))
 # %% [markdown]
 # ## What is solid?
 #
-# A Gaussian takes the noise away, Otsu's threshold is found within the field of view, and specks go.
-# Only voxels in the cylinder are known: nothing outside of it is taken for air.
+# A Gaussian takes the noise away, Otsu's threshold is found within the field of view, and specks
+# go. Only voxels in the cylinder are known: nothing outside of it is taken for air.
 
 # %%
 mask = madf.Mask(scan, threshold="otsu", smooth=1.0, despeckle=30, voxel_size="8.5um",
                  roi=madf.Cylinder("z", center=(54.5, 54.5), radius=53))
 print(mask.metadata["madf_object"])
-print(f"solid fraction {mask.fraction:.3f}; to segment it takes up to {mask.segment_memory / 2**20:.0f} MiB")
+print(f"solid fraction {mask.fraction:.3f}; to segment it takes up to "
+      f"{mask.segment_memory / 2**20:.0f} MiB")
 
 # %% [markdown]
 # ## Grains
@@ -54,7 +55,8 @@ grains, bonds = measured.grains, measured.bonds
 whole = ~grains["at_domain_face"]
 print(f"{whole.sum()} of {len(whole)} grains are whole,",
       f"{measured.sample['mean_coordination']:.1f} bonds a grain,",
-      f"specific surface {measured.sample['specific_surface']:.1f} {measured.units['specific_surface']}")
+      f"specific surface {measured.sample['specific_surface']:.1f} "
+      f"{measured.units['specific_surface']}")
 
 # %% [markdown]
 # ## The figure

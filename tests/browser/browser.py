@@ -23,8 +23,8 @@ if not os.path.exists(DRIVER):
     skip("reports in a browser: chromium-driver is not installed")
 
 OPTIONS = ("--headless", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-sync",
-           "--disable-background-networking", "--disable-component-update", "--disable-dev-shm-usage",
-           "--enable-unsafe-swiftshader", "--window-size=1200,1000")
+           "--disable-background-networking", "--disable-component-update",
+           "--disable-dev-shm-usage", "--enable-unsafe-swiftshader", "--window-size=1200,1000")
 SECONDS = 120  # for what takes some on a busy machine
 
 
@@ -63,7 +63,8 @@ class Page:
             message = json.loads(entry["message"])["message"]
             if message["method"] == "Network.requestWillBeSent":
                 asked.append(message["params"]["request"]["url"])
-        return [address for address in asked if not address.startswith(("file:", "data:", "blob:", "about:"))]
+        return [address for address in asked
+                if not address.startswith(("file:", "data:", "blob:", "about:"))]
 
     def wait(self, script):
         end = time.time() + SECONDS
@@ -80,7 +81,8 @@ class Page:
     def settle(self):
         """Until what is due has been drawn."""
         self.driver.execute_async_script(
-            "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => done()));")
+            "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => "
+            "done()));")
 
     def find(self, selector):
         return self.driver.find_element(By.CSS_SELECTOR, selector)
@@ -96,7 +98,8 @@ class Page:
         actions = ActionChains(self.driver)
         if shift:
             actions.key_down("\ue008")
-        actions.move_to_element_with_offset(node, round(x - size["width"] / 2), round(y - size["height"] / 2))
+        actions.move_to_element_with_offset(node, round(x - size["width"] / 2),
+                                            round(y - size["height"] / 2))
         actions.click()
         if shift:
             actions.key_up("\ue008")
@@ -113,4 +116,5 @@ class Page:
     def selected(self):
         """Labels of the selected grains."""
         return self.run("const {selection, sample} = window.report;"
-                        "return [...selection.selected].map((row) => sample.ids[row]).sort((a, b) => a - b)")
+                        "return [...selection.selected].map((row) => sample.ids[row]).sort((a, b) "
+                        "=> a - b)")

@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: The vdb_madf authors
 # SPDX-License-Identifier: Apache-2.0
-"""The report in a browser: it asks for nothing, and what it shows, selects and filters are the labels and
-tables of the command. Chromium draws without a graphics card, so this takes longer than other tests."""
+"""The report in a browser: it asks for nothing, and what it shows, selects and filters are the
+labels and tables of the command. Chromium draws without a graphics card, so this takes longer than
+other tests."""
 
 import csv
 import math
@@ -42,18 +43,21 @@ def table(name):
 
 
 class View:
-    """Where rays through the pixels of the view meet the labels: the voxels are walked along in short steps."""
+    """Where rays through the pixels of the view meet the labels: the voxels are walked along in
+    short steps."""
 
     def __init__(self, page, labels):
         self.labels = labels  # [z, y, x]
-        size = page.run("const s = document.getElementById('stage'); return [s.clientWidth, s.clientHeight]")
+        size = page.run("const s = document.getElementById('stage'); return [s.clientWidth, "
+                        "s.clientHeight]")
         self.width, self.height = size
         self.shape = numpy.array(labels.shape[::-1])
         azimuth, elevation, zoom = page.run(
             "const c = window.report.camera; return [c.azimuth, c.elevation, c.zoom]")
         a, e = math.radians(azimuth), math.radians(elevation)
         self.right = numpy.array([math.cos(a), math.sin(a), 0])
-        self.along = numpy.array([-math.sin(a) * math.cos(e), math.cos(a) * math.cos(e), -math.sin(e)])
+        self.along = numpy.array([-math.sin(a) * math.cos(e), math.cos(a) * math.cos(e),
+                                  -math.sin(e)])
         self.up = numpy.cross(self.right, self.along)
         self.diagonal = math.sqrt((self.shape ** 2).sum())
         self.scale = zoom * min(size) / self.diagonal
@@ -61,7 +65,8 @@ class View:
     def pixel(self, voxel):
         """The pixel of a voxel x, y, z."""
         place = numpy.array(voxel) - (self.shape - 1) / 2
-        return (self.width / 2 + place @ self.right * self.scale, self.height / 2 - place @ self.up * self.scale)
+        return (self.width / 2 + place @ self.right * self.scale,
+                self.height / 2 - place @ self.up * self.scale)
 
     def label(self, x, y):
         """What the ray through a place sees; 0: nothing."""
@@ -76,7 +81,8 @@ class View:
         """The same, where all rays a voxel or so around see it; none otherwise."""
         reach = 1.3 * self.scale
         around = {self.label(x + dx * reach, y + dy * reach) for dx, dy in
-                  ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (0.7, 0.7), (0.7, -0.7), (-0.7, 0.7), (-0.7, -0.7))}
+                  ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (0.7, 0.7), (0.7, -0.7), (-0.7, 0.7),
+                   (-0.7, -0.7))}
         return around.pop() if len(around) == 1 else None
 
 
@@ -85,21 +91,25 @@ def check_clicks(page, labels):
     view = View(page, labels)
     done = set()
     while len(done) < 20:
-        x, y = random.randrange(view.width // 5, 4 * view.width // 5), random.randrange(view.height // 5, 4 * view.height // 5)
+        x, y = random.randrange(view.width // 5,
+                                4 * view.width // 5), random.randrange(view.height // 5,
+                                                                       4 * view.height // 5)
         expected = view.clear_label(x + 0.5, y + 0.5)
         if not expected or (x, y) in done:
             continue
         done.add((x, y))
         page.run("window.report.selection.select([])")
         page.click_at("#stage", x, y)
-        demand(page.selected() == [expected], f"a click at {x}, {y} selects {page.selected()}, not {expected}")
+        demand(page.selected() == [expected],
+               f"a click at {x}, {y} selects {page.selected()}, not {expected}")
     for label in numpy.unique(labels[labels > 0]):
         page.run("const {selection} = window.report; selection.select([]);"
                  "selection.setFilter('grains', 'id', [arguments[0], arguments[0]])", int(label))
         voxels = numpy.argwhere(labels == label)[:, ::-1]
         middle = voxels[((voxels - voxels.mean(axis=0)) ** 2).sum(axis=1).argmin()]
         page.click_at("#stage", *view.pixel(middle))
-        demand(page.selected() == [int(label)], f"grain {label} cannot be clicked alone: {page.selected()}")
+        demand(page.selected() == [int(label)],
+               f"grain {label} cannot be clicked alone: {page.selected()}")
     page.run("window.report.selection.clearFilters(); window.report.selection.select([])")
 
 
@@ -112,21 +122,27 @@ def check_filters(page, grains):
     field.send_keys(f"{low!r}:\n")
     expected = sum(value >= low for value in diameters)
     told = page.find("#shown").text
-    demand(told.startswith(f"{expected} of {len(grains)} grains"), f"{expected} grains pass, the page says: {told}")
-    demand(page.run("return Array.from(window.report.selection.states).filter(Boolean).length") == expected,
+    demand(told.startswith(f"{expected} of {len(grains)} grains"),
+           f"{expected} grains pass, the page says: {told}")
+    demand(
+        page.run(
+            "return Array.from(window.report.selection.states).filter(Boolean).length") == expected,
            "the view shows other grains than the table")
     page.button("Clear filters").click()
 
     page.drag(page.find("#charts svg.drag"), (0.5, 0.5), (0.95, 0.4))
     [[name, [low, high]]] = page.run("return [...window.report.selection.filters.grains]")
     expected = sum(low <= value <= high for value in diameters)
-    demand(name == "equivalent_diameter" and 0 < expected < len(grains), f"a drag in a chart filters {name}, {low}, {high}")
-    demand(page.find("#shown").text.startswith(f"{expected} of "), "a drag in a chart filters other grains")
+    demand(name == "equivalent_diameter" and 0 < expected < len(grains),
+           f"a drag in a chart filters {name}, {low}, {high}")
+    demand(page.find("#shown").text.startswith(f"{expected} of "),
+           "a drag in a chart filters other grains")
     page.button("Clear filters").click()
 
     page.find("#inside").click()
     expected = sum(row["at_domain_face"] == "0" for row in grains)
-    demand(page.find("#shown").text.startswith(f"{expected} of "), "'inside only' shows other grains")
+    demand(page.find("#shown").text.startswith(f"{expected} of "),
+           "'inside only' shows other grains")
     page.button("Clear filters").click()
 
 
@@ -137,9 +153,11 @@ def check_links(page, grains, bonds):
     demand(page.selected() == [int(largest)], "'Largest' selects another grain")
     partners = sorted(int(row["second"] if row["first"] == largest else row["first"])
                       for row in bonds if largest in (row["first"], row["second"]))
-    shown = sorted(int(node.text) for node in page.find("#grain").find_elements("css selector", "td .link"))
+    shown = sorted(int(node.text) for node in page.find("#grain").find_elements("css selector",
+                                                                                "td .link"))
     demand(shown == partners, f"the card of grain {largest} has bonds with {shown}, not {partners}")
-    chosen = [row.text.split()[0] for row in page.find("#table-grains").find_elements("css selector", "tr.chosen")]
+    chosen = [row.text.split(
+        )[0] for row in page.find("#table-grains").find_elements("css selector", "tr.chosen")]
     demand(chosen == [largest], f"the rows {chosen} are marked")
     row = page.find("#table-grains tbody tr:nth-child(3)")
     page.run("arguments[0].focus()", row)
@@ -152,16 +170,16 @@ def check_links(page, grains, bonds):
 def check_state(page, path, labels_path, folder):
     """Keys turn; the address keeps the state; corrections are such that 'edit' takes."""
     page.find("#stage").send_keys("\ue014")  # to the right
-    page.run("const {selection} = window.report; selection.select([0, 1]); selection.cuts = [1, 0.5, 1];"
-             "selection.changed('cuts')")
+    page.run("const {selection} = window.report; selection.select([0, 1]); selection.cuts = [1, "
+             "0.5, 1];selection.changed('cuts')")
     page.button("Merge the selected").click()
     page.wait("return location.hash.includes('edit=') && location.hash.includes('grains=')")
-    state = page.run("const {selection, camera} = window.report; return [camera.azimuth, selection.cuts, "
-                     "[...selection.selected], selection.edits]")
+    state = page.run("const {selection, camera} = window.report; return [camera.azimuth, "
+                     "selection.cuts, [...selection.selected], selection.edits]")
     complaints = page.open(path, page.run("return location.hash.slice(1)"))
     demand(not complaints, f"the page with a state: {complaints}")
-    again = page.run("const {selection, camera} = window.report; return [camera.azimuth, selection.cuts, "
-                     "[...selection.selected], selection.edits]")
+    again = page.run("const {selection, camera} = window.report; return [camera.azimuth, "
+                     "selection.cuts, [...selection.selected], selection.edits]")
     demand(again == state and state[0] == 30, f"the state {state} became {again}")
     edits = os.path.join(folder, "edits.txt")
     with open(edits, "w") as file:
@@ -173,7 +191,8 @@ def check_odd_samples(page, folder):
     """Pages of samples that lack something, or have something large."""
     raw = os.path.join(folder, "odd.raw")
     samples = {
-        "no grain": {}, "one grain": {(3, 3, 3): 1, (4, 3, 3): 1}, "no bond": {(1, 1, 1): 1, (5, 5, 5): 2},
+        "no grain": {}, "one grain": {(3, 3, 3): 1, (4, 3, 3): 1},
+        "no bond": {(1, 1, 1): 1, (5, 5, 5): 2},
         "large numbers": {(1, 1, 1): 70000, (2, 1, 1): 70000, (3, 1, 1): 2147483647},
     }
     for name, voxels in samples.items():
@@ -183,11 +202,14 @@ def check_odd_samples(page, folder):
         values.tofile(raw)
         out = os.path.join(folder, "odd.html")
         command("report", raw, out, "--dims", "6x7x8", "--type", "int32", "-q",
-                "--title", f"{name} </script><script>boom()</script> & <b>", "--domain", "0,0,0:5,6,7")
+                "--title", f"{name} </script><script>boom()</script> & <b>", "--domain",
+                "0,0,0:5,6,7")
         complaints = page.open(out)
         demand(not complaints, f"the page of {name}: {complaints}")
-        demand(page.run("return document.documentElement.dataset.ready") == "yes", f"the page of {name} is not shown")
-        demand(page.find("h1").text.startswith(f"{name} </script>"), f"the title of the page of {name}")
+        demand(page.run("return document.documentElement.dataset.ready") == "yes",
+               f"the page of {name} is not shown")
+        demand(page.find("h1").text.startswith(f"{name} </script>"),
+               f"the title of the page of {name}")
         shown = page.find("#shown").text
         demand(f"of {len(set(voxels.values()))} grains" in shown, f"the page of {name} has {shown}")
         if name == "large numbers":
@@ -202,7 +224,8 @@ def check_comparison(page, folder, labels, grains):
     command("report", labels, "large.vdb", out, "-q")
     complaints = page.open(out)
     demand(not complaints, f"the page of two samples: {complaints}")
-    cells = [cell.text for cell in page.find("#numbers tbody tr").find_elements("css selector", "td")]
+    cells = [cell.text for cell in page.find("#numbers tbody tr").find_elements("css selector",
+                                                                                "td")]
     large = sum(int(row["voxels"]) >= 800 for row in grains)
     demand(cells == [str(len(grains)), str(large)], f"two samples have {cells} grains")
     lines = page.find("#charts").find_elements("css selector", ".steps")
@@ -220,12 +243,14 @@ with tempfile.TemporaryDirectory() as folder:
         skip("reports in a browser: built without esbuild, libjs-three and libjs-jquery-datatables")
     command("measure", "l.vdb", "tables", "-q")
     command("convert", "l.vdb", "l.npy", "--grid", "grain", "-q")
-    labels, grains, bonds = numpy.load("l.npy"), table("tables/grains.csv"), table("tables/bonds.csv")
+    labels, grains, bonds = numpy.load("l.npy"), table("tables/grains.csv"), table(
+        "tables/bonds.csv")
     path = os.path.join(folder, "r.html")
     with Page() as page:
         complaints = page.open(path)
         demand(not complaints, f"the page complains: {complaints}")
-        demand(len(page.find("#charts").find_elements("css selector", ".steps")) >= 3, "the sweep is not plotted")
+        demand(len(page.find("#charts").find_elements("css selector", ".steps")) >= 3,
+               "the sweep is not plotted")
         check_clicks(page, labels)
         check_filters(page, grains)
         check_links(page, grains, bonds)
@@ -236,7 +261,8 @@ with tempfile.TemporaryDirectory() as folder:
         complaints = [text for text in page.open(path) if "WebGL" not in text]
         demand(not complaints, f"the page without WebGL complains: {complaints}")
         demand(page.run("const p = document.getElementById('picture');"
-                        "return p.complete && p.naturalWidth > 100 && p.offsetWidth > 100"), "no picture without WebGL")
+                        "return p.complete && p.naturalWidth > 100 && p.offsetWidth > 100"),
+                        "no picture without WebGL")
         page.button("Largest").click()
         demand(len(page.selected()) == 1, "nothing is selected without WebGL")
 print(f"{len(grains)} grains were clicked, filtered and linked")

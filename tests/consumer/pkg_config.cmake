@@ -1,5 +1,5 @@
-# Installs the built library, moves the tree, and compiles and runs a consumer with what pkg-config says
-# of it. Variables: BUILD_DIR, SOURCE_DIR, WORK_DIR, COMPILER.
+# Installs the built library, moves the tree, and compiles and runs a consumer with what pkg-config
+# says of it. Variables: BUILD_DIR, SOURCE_DIR, WORK_DIR, COMPILER.
 find_program(PKG_CONFIG NAMES pkg-config pkgconf)
 if(NOT PKG_CONFIG)
   message("SKIPPED: the consumer with pkg-config: there is no pkg-config")
@@ -23,5 +23,6 @@ set(ENV{PKG_CONFIG_PATH} ${folder})
 step(${PKG_CONFIG} --cflags --libs vdb_madf)
 separate_arguments(flags UNIX_COMMAND "${output}")
 file(WRITE ${WORK_DIR}/all_headers.h "")
-step(${COMPILER} -std=c++17 -I${WORK_DIR} ${SOURCE_DIR}/main.cc ${SOURCE_DIR}/array.cc -o consumer ${flags})
+step(${COMPILER} -std=c++17 -I${WORK_DIR} ${SOURCE_DIR}/main.cc ${SOURCE_DIR}/array.cc -o consumer
+  ${flags})
 step(${WORK_DIR}/consumer)

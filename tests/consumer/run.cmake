@@ -1,6 +1,6 @@
-# Installs the built library into a scratch prefix, then configures, builds and runs a consumer against
-# that tree alone. Variables: BUILD_DIR, SOURCE_DIR, WORK_DIR, GENERATOR, BUILD_TYPE; PROGRAMS, if it makes
-# others than one called consumer.
+# Installs the built library into a scratch prefix, then configures, builds and runs a consumer
+# against that tree alone. Variables: BUILD_DIR, SOURCE_DIR, WORK_DIR, GENERATOR, BUILD_TYPE;
+# PROGRAMS, if it makes others than one called consumer.
 include(${CMAKE_CURRENT_LIST_DIR}/step.cmake)
 
 file(REMOVE_RECURSE ${WORK_DIR})

@@ -1,5 +1,5 @@
-# Links the shared library, looks at the names that it shows, installs it, and builds and runs a consumer
-# against it. Variables: BUILD_DIR, SOURCE_DIR, WORK_DIR, GENERATOR, BUILD_TYPE, NM.
+# Links the shared library, looks at the names that it shows, installs it, and builds and runs a
+# consumer against it. Variables: BUILD_DIR, SOURCE_DIR, WORK_DIR, GENERATOR, BUILD_TYPE, NM.
 include(${CMAKE_CURRENT_LIST_DIR}/step.cmake)
 
 file(REMOVE_RECURSE ${WORK_DIR})
@@ -16,7 +16,8 @@ string(REGEX MATCHALL "[^\n]+" names "${output}")
 set(shown 0)
 foreach(name IN LISTS names)
   string(REGEX REPLACE "^[0-9a-f]* *[A-Za-z] " "" name "${name}")
-  if(name MATCHES "^((typeinfo|typeinfo name|vtable) for )?vdb_madf::" AND NOT name MATCHES "^[a-z ]*vdb_madf::detail::")
+  if(name MATCHES "^((typeinfo|typeinfo name|vtable) for )?vdb_madf::" AND NOT name MATCHES
+    "^[a-z ]*vdb_madf::detail::")
     math(EXPR shown "${shown} + 1")
   else()
     message(SEND_ERROR "the shared library shows ${name}")

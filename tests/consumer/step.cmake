@@ -1,4 +1,5 @@
-# step(COMMAND ...) runs a command in WORK_DIR, leaves what it prints in `output`, and fails as it does.
+# step(COMMAND ...) runs a command in WORK_DIR, leaves what it prints in `output`, and fails as it
+# does.
 function(step)
   execute_process(COMMAND ${ARGV} WORKING_DIRECTORY ${WORK_DIR}
     RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)

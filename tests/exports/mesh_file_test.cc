@@ -68,7 +68,7 @@ TEST_CASE("mesh_file: every format has every triangle at its place in the world"
       for (const auto& [label, count] : volume)
         CHECK(found.at(label) == Approx(double(count) * cube));
     }
-    // The world position of a voxel is its centre, so its faces are half a voxel away.
+    // The world position of a voxel is its center, so its faces are half a voxel away.
     const CoordBBox box = grid->evalActiveVoxelBoundingBox();
     CHECK(boxOf(faces).min() == kEdge * (box.min().asVec3d() - Vec3d(0.5)));
     CHECK(boxOf(faces).max() == kEdge * (box.max().asVec3d() + Vec3d(0.5)));

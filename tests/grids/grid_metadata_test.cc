@@ -92,7 +92,7 @@ TEST_CASE("grid_metadata: half a domain, and an inverted one, are refused", "[gr
   }
 }
 
-TEST_CASE("grid_metadata: millimetres, below 20 nanometres micrometres", "[grid_metadata]") {
+TEST_CASE("grid_metadata: millimeters, below 20 nanometers micrometers", "[grid_metadata]") {
   CHECK(VoxelSize{8.5e-6}.unit() == "mm");
   CHECK(VoxelSize{8.5e-6}.inUnit() == Approx(0.0085));
   CHECK(VoxelSize{2}.unit() == "mm");
@@ -160,7 +160,7 @@ TEST_CASE("grid_metadata: a voxel size comes back and places the voxels", "[grid
     CHECK(storedVoxelSize(*grid)->edge() == metres);
     CHECK(grid->getMetadata<DoubleMetadata>("madf_voxel_size_m")->value() == metres);
     CHECK(textAt(*grid, "madf_length_unit") == VoxelSize{metres}.unit());
-    // The centre of voxel p lies at p * size; the unit is the only thing between the two.
+    // The center of voxel p lies at p * size; the unit is the only thing between the two.
     const double edge = metres * (VoxelSize{metres}.unit() == "mm" ? 1e3 : 1e6);
     const Coord p(rng.between(-999, 999), rng.between(-999, 999), rng.between(-999, 999));
     const Vec3d place = grid->indexToWorld(p);
@@ -174,7 +174,7 @@ TEST_CASE("grid_metadata: proportions are a transform alone", "[grid_metadata]")
   setProportions(*grid, {1, 0.5, 3});
   CHECK(grid->indexToWorld(Coord(1, 1, 1)) == Vec3d(1, 0.5, 3));
   CHECK(all(*grid).empty());
-  setProportions(*grid, {5e-7, 5e-7, 1.2e-6});  // metres, which OpenVDB would refuse
+  setProportions(*grid, {5e-7, 5e-7, 1.2e-6});  // meters, which OpenVDB would refuse
   const Vec3d place = grid->indexToWorld(Coord(1, 1, 1));
   CHECK(place.z() / place.x() == Approx(2.4).epsilon(1e-12));
   CHECK(place.y() == place.x());

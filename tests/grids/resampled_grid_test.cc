@@ -18,7 +18,7 @@ using openvdb::Vec3d;
 
 namespace {
 
-constexpr double kUnit = 1e-7;  // metres: a tenth of a micrometre
+constexpr double kUnit = 1e-7;  // meters: a tenth of a micrometer
 
 VoxelSize sizeOf(const Coord& edges) {
   return VoxelSize({edges.x() * kUnit, edges.y() * kUnit, edges.z() * kUnit});
@@ -239,7 +239,7 @@ TEST_CASE("resampled_grid: the corner of the box stays in the world", "[resample
     return std::pair(grid.indexToWorld(domain.min().asVec3d() - Vec3d(0.5)),
                      grid.indexToWorld(domain.max().asVec3d() + Vec3d(0.5)));
   };
-  const double millimetres = 1e3;  // in a metre
+  const double millimetres = 1e3;  // in a meter
   for (const bool mirrored : {false, true}) {
     setVoxelSize(*mask, VoxelSize({0.5e-6, 0.6e-6, 1.2e-6}));
     if (mirrored) mask->transform().preScale(Vec3d(1, 1, -1));
@@ -253,7 +253,7 @@ TEST_CASE("resampled_grid: the corner of the box stays in the world", "[resample
       CHECK(storedVoxelSize(*cubes)->edges() == VoxelSize(edge).edges());
       CHECK(hasCubicVoxels(*cubes));
       const auto [first, last] = corners(*cubes);
-      const double unit = edge < 20e-9 ? 1e3 : 1;  // micrometres
+      const double unit = edge < 20e-9 ? 1e3 : 1;  // micrometers
       CHECK((first - low * unit).length() < 1e-9 * unit);
       for (int axis = 0; axis < 3; ++axis)
         CHECK(std::abs(last[axis] - high[axis] * unit) < 0.501 * edge * millimetres * unit);

@@ -131,7 +131,7 @@ struct Differences {
   double normal = 1e9, colorBlind = 1e9;
 };
 
-/// The least differences of touching labels, to normal eyes and to others; the colours must be there
+/// The least differences of touching labels, to normal eyes and to others; the colors must be there
 /// for all labels of the grid.
 Differences leastDifferences(const Int32Grid& grid, const GrainColors& colors,
                              const Pairs& contacts) {
@@ -221,7 +221,7 @@ TEST_CASE("grain_colors: distance and what is no label do not touch", "[grain_co
   CHECK(grainColors(*Int32Grid::create(0)).labels.empty());
 }
 
-TEST_CASE("grain_colors: neighbouring numbers spread over the palette", "[grain_colors]") {
+TEST_CASE("grain_colors: neighboring numbers spread over the palette", "[grain_colors]") {
   const auto grid = Int32Grid::create(0);
   for (int i = 0; i < 240; ++i) grid->tree().setValue(Coord(3 * i, 0, 0), i + 1);
   std::map<Rgb, int> uses;

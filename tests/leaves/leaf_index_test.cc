@@ -92,7 +92,7 @@ TEST_CASE("leaf_index: three voxels, drawn by hand", "[leaf_index]") {
   CHECK(index.coord(512 + 2 * 64 + 3 * 8 + 5) == Coord(2, 3, 5));
 }
 
-TEST_CASE("leaf_index: holds the object's leaves in order, with their neighbours", "[leaf_index]") {
+TEST_CASE("leaf_index: holds the object's leaves in order, with their neighbors", "[leaf_index]") {
   for (const EdgeCase& c : edgeCases()) {
     INFO(c.name);
     requireIndexOf(LeafIndex(*toMask(c.object, c.tiles)), c.object);

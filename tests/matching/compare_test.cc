@@ -201,7 +201,7 @@ TEST_CASE("compare: a hand-drawn case", "[compare]") {
   CHECK(c.variationOfInformation == Approx(0.750977).epsilon(1e-6));
 }
 
-TEST_CASE("compare: voxels labelled in one grid only are reported apart", "[compare]") {
+TEST_CASE("compare: voxels labeled in one grid only are reported apart", "[compare]") {
   const Comparison c = compare(*row({1, 1, 1, 0, 0, 3}), *row({0, 5, 5, 5, 5, 0}));
   CHECK(c.truthGrains == 2);
   CHECK(c.testGrains == 1);

@@ -18,7 +18,8 @@ double diameter(double voxels) {
 }  // namespace
 
 TEST_CASE("grain_sizes: diameters are by volume", "[grain_sizes]") {
-  // 10 % of the volume lies in the two grains of 50 voxels, 40 % in the one of 400, 50 % in that of 500.
+  // 10 % of the volume lies in the two grains of 50 voxels, 40 % in the one of 400, 50 % in that of
+  // 500.
   const GrainSizes sizes = grainSizes({500, 50, 400, 50});
   CHECK(sizes.d10 == diameter(50));
   CHECK(sizes.d50 == diameter(400));

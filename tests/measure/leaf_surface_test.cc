@@ -270,7 +270,7 @@ TEST_CASE("surface_area: free planes along the diagonals of the lattice", "[surf
       options.domain = box;
       Vec3d n = steps;
       n.normalize();
-      const double offset = -0.5 * (n[0] + n[1] + n[2]);  // through the centre
+      const double offset = -0.5 * (n[0] + n[1] + n[2]);  // through the center
       measured[k] =
           measure(*drawLabels(box, [&](const Vec3d& p) { return n.dot(p) < offset; }), options)
               .grains.at(0)

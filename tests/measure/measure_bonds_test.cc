@@ -46,7 +46,7 @@ TEST_CASE("measure_bonds: the disc between two balls", "[measure_bonds]") {
     CHECK(std::abs(bond.curvature->mean) < 0.02);
     CHECK(std::abs(bond.curvature->gaussian) < 0.002);
     CHECK(bond.curvature->residual < 0.5);
-    // The deepest voxels are the centres, or nearly so.
+    // The deepest voxels are the centers, or nearly so.
     const double distance = balls.firstOffset() + balls.secondOffset();
     CHECK(bond.distance.value() == Approx(distance).margin(2));
     const double a = balls.first, b = balls.second;
@@ -56,7 +56,7 @@ TEST_CASE("measure_bonds: the disc between two balls", "[measure_bonds]") {
 }
 
 TEST_CASE("measure_bonds: representatives, distance and angle to the digit", "[measure_bonds]") {
-  // Two cubes of edge 5 side by side: centres 5 apart, D = 3^2.
+  // Two cubes of edge 5 side by side: centers 5 apart, D = 3^2.
   const auto labels =
       drawLabels({Coord(0), Coord(9, 4, 4)}, [](const Vec3d& p) { return p[0] < 5 ? 1 : 2; });
   const Measurements m = measure(*labels);
@@ -115,7 +115,7 @@ TEST_CASE("measure_bonds: how curvatures spread over an interface", "[measure_bo
 }
 
 TEST_CASE("measure_bonds: curvature of a saddle", "[measure_bonds]") {
-  constexpr double kRadius = 16;  // of both principal curvatures, at the centre
+  constexpr double kRadius = 16;  // of both principal curvatures, at the center
   const auto labels = drawLabels(cubeAround(10), [&](const Vec3d& p) {
     if (p[0] * p[0] + p[1] * p[1] > 36) return 0;
     return p[2] < (p[0] * p[0] - p[1] * p[1]) / (2 * kRadius) + 0.2 ? 1 : 2;

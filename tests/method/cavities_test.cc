@@ -57,7 +57,8 @@ TEST_CASE("cavities: fewer voxels than asked for", "[cavities]") {
 }
 
 TEST_CASE("cavities: rooms of whole leaves, where the object touches none", "[cavities]") {
-  // The room holds up to 27 untouched leaves; from (-8, 8, 16) on its walls lie in leaves of their own.
+  // The room holds up to 27 untouched leaves; from (-8, 8, 16) on its walls lie in leaves of their
+  // own.
   for (const int side : {8, 9, 17, 24, 30})
     for (const Coord& origin : {Coord(-9, 7, 15), Coord(-9, 6, 15), Coord(-4, 5, 6)}) {
       const ObjectVolume object = shell(Coord(side), origin);

@@ -181,7 +181,7 @@ TEST_CASE("gamma_filter: what holds for every filtered map", "[gamma_filter]") {
       REQUIRE(filter.power[i] == powerOf(site));
       if (filter.power[i] < 0) continue;
       ++uncovered;
-      for (const Coord& step : kSixNeighbors)  // no neighbour has a better one to offer
+      for (const Coord& step : kSixNeighbors)  // no neighbor has a better one to offer
         if (object.get(p + step, 0)) REQUIRE(powerOf(filter.siteOf(p + step)) >= filter.power[i]);
     }
     CHECK(uncovered > 100);

@@ -72,7 +72,7 @@ TEST_CASE("merge: the angle must be strictly below theta", "[merge]") {
 
 TEST_CASE("merge: the angle is computed in double precision as written", "[merge]") {
   // D = 5 and 10, |ci - cj|^2 = 5: cos = -10 / (2 sqrt(50)) = -0.70710678118654752...: the nearest
-  // double to theta must be told from its neighbours.
+  // double to theta must be told from its neighbors.
   ManifoldGraph graph;
   graph.nodes = {{{0, 0, 0}, 5, 1}, {{1, 2, 0}, 10, 1}};
   connect(graph, 0, 1, 0);
@@ -97,7 +97,7 @@ TEST_CASE("merge: large radii do not overflow", "[merge]") {
 }
 
 TEST_CASE("merge: angle merges are transitive, on the original balls", "[merge]") {
-  // Neighbours 1 apart with D = 4: cos = (1 - 8) / 8 = -0.875; the ends are not tested at all.
+  // Neighbors 1 apart with D = 4: cos = (1 - 8) / 8 = -0.875; the ends are not tested at all.
   ManifoldGraph graph = ballsOnAxis({{0, 4}, {1, 4}, {2, 4}, {9, 4}});
   connect(graph, 0, 1, 1);
   connect(graph, 1, 2, 1);

@@ -77,7 +77,7 @@ TEST_CASE("oracle: one voxel is one ball, one critical point, one grain", "[orac
 
 TEST_CASE("oracle: on a thin row every voxel is critical", "[oracle]") {
   // Background beside each voxel: D = 1. pi_x(p) = |p-x|^2 - 1 is least, -1, at x = p.
-  // Neighbours: cos = (1 - 1 - 1) / 2 = -0.5, h = min(1, 1) = 1.
+  // Neighbors: cos = (1 - 1 - 1) / 2 = -0.5, h = min(1, 1) = 1.
   const ObjectVolume object = fromPicture("#####");
   const OracleResult result = oracleSegment(object, {}, merging(-0.5, MergeMode::angle));
   CHECK(rowOf(result.distance, 0, 0) == Values{1, 1, 1, 1, 1});
@@ -110,8 +110,8 @@ TEST_CASE("oracle: weights measure along their axes", "[oracle]") {
 }
 
 TEST_CASE("oracle: equal power goes to the larger ball", "[oracle]") {
-  // A 3 x 3 x 3 block: D = 4 at the centre, 1 elsewhere. pi of the centre's ball is 1 - 4, 2 - 4,
-  // 3 - 4 at face, edge and corner voxels; the corners' own balls have -1 too.
+  // A 3 x 3 x 3 block: D = 4 at the center, 1 elsewhere. pi of the center's ball is 1 - 4, 2 - 4, 3
+  // - 4 at face, edge and corner voxels; the corners' own balls have -1 too.
   const ObjectVolume object = fromPicture("###/###/###|###/###/###|###/###/###", Coord(-1));
   const OracleResult result = oracleSegment(object, {}, {});
   CHECK(rowOf(result.distance, 0, 0) == Values{1, 4, 1});
@@ -129,7 +129,7 @@ TEST_CASE("oracle: equal power goes to the larger ball", "[oracle]") {
 TEST_CASE("oracle: a rod of three equal balls, filtered", "[oracle]") {
   // 3 x 3 x 5 voxels: D = 4 at z = 1, 2, 3 of the middle line, 1 elsewhere. Each of these three
   // keeps itself (-4 against 1 - 4); the planes z = 0, 1 map to the first, 2 to the second, 3, 4 to
-  // the third. Neighbours: cos = (1 - 8) / 8 = -0.875; h = 4, on the middle line.
+  // the third. Neighbors: cos = (1 - 8) / 8 = -0.875; h = 4, on the middle line.
   const std::string slice = "#####/#####/#####";
   const ObjectVolume object = fromPicture(slice + "|" + slice + "|" + slice);
 
@@ -176,7 +176,7 @@ TEST_CASE("oracle: a rod of three equal balls, filtered", "[oracle]") {
 }
 
 TEST_CASE("oracle: uncovered voxels meet between two blocks", "[oracle]") {
-  // Blocks around z = 1 and z = 9, joined by single voxels z = 3..7. gamma 2 keeps the two centres
+  // Blocks around z = 1 and z = 9, joined by single voxels z = 3..7. gamma 2 keeps the two centers
   // (D = 4). The row's voxels take the nearer one; z = 5 has 16 - 4 to both: smaller coordinate.
   ObjectVolume object(boxAt({0, 0, 0}, {3, 3, 11}));
   addBlock(object, {1, 1, 1});

@@ -28,7 +28,8 @@ struct Rows {
   Place& at(int row, int t) { return places[size_t(row * (length + 2 * reach) + reach + t)]; }
 };
 
-/// Gaps, sites among the rest, and so few values that ties are common; sites beyond the ends along z.
+/// Gaps, sites among the rest, and so few values that ties are common; sites beyond the ends along
+/// z.
 Rows randomLines(int stride, int length, int largest, int weight, uint32_t seed) {
   std::mt19937 random(seed);
   Rows rows{length, keyReach(largest, weight), {}};

@@ -35,7 +35,7 @@ TEST_CASE("png_file: a picture is read back as it was", "[png_file]") {
     REQUIRE(png_image_finish_read(&image, nullptr, read.pixels.data(), 0, nullptr));
     CHECK(read.pixels == picture.pixels);
     CHECK(readFile(folder / "a.png").substr(37, 12) ==
-          std::string("pHYs\0\0\x2e\x23\0\0\x2e\x23", 12));  // 11811 pixels a metre: 300 dpi
+          std::string("pHYs\0\0\x2e\x23\0\0\x2e\x23", 12));  // 11811 pixels a meter: 300 dpi
   }
 }
 

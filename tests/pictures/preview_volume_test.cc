@@ -108,7 +108,7 @@ TEST_CASE("label_preview: of a region those coarse voxels are left that are half
   }
 }
 
-TEST_CASE("label_preview: density is the labelled part, color that of the commonest label",
+TEST_CASE("label_preview: density is the labeled part, color that of the commonest label",
           "[label_preview]") {
   for (const int factor : {1, 2, 5}) {
     const LabelMap voxels = randomLabels(7, Coord(-6), 17, 9, 60);

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The vdb_madf authors
 # SPDX-License-Identifier: Apache-2.0
-"""A picture of an export in the colours of its grains, by Blender without a display:
+"""A picture of an export in the colors of its grains, by Blender without a display:
 
     blender --background --factory-startup --python blender_picture.py -- grains.obj picture.png
 
@@ -16,7 +16,7 @@ import mathutils
 
 
 def opened(path):
-    """Empties the scene and loads a file into it, with the colours of its grains as material."""
+    """Empties the scene and loads a file into it, with the colors of its grains as material."""
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
     if path.lower().endswith(".vdb"):
@@ -43,7 +43,7 @@ def new_material(thing):
 
 
 def paint_mesh(mesh):
-    """Base Color from the colours of the points."""
+    """Base Color from the colors of the points."""
     tree, output = new_material(mesh)
     attribute = tree.nodes.new("ShaderNodeAttribute")
     attribute.attribute_name = mesh.data.color_attributes[0].name
@@ -53,7 +53,7 @@ def paint_mesh(mesh):
 
 
 def paint_volume(fog):
-    """Colours from the grid `color`; dense enough that light ends within a voxel or two."""
+    """Colors from the grid `color`; dense enough that light ends within a voxel or two."""
     fog.data.grids.load()
     edge = fog.data.grids["density"].matrix_object[0][0]
     tree, output = new_material(fog)
@@ -105,7 +105,7 @@ def render_export(thing, path, pixels, samples, corners=None):
 
 
 def hues(path, kinds):
-    """For each pixel of a picture which of so many hues it has; None for grey and dark ones."""
+    """For each pixel of a picture which of so many hues it has; None for gray and dark ones."""
     image = bpy.data.images.load(path)
     values = list(image.pixels)
     found = []

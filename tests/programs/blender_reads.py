@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The vdb_madf authors
 # SPDX-License-Identifier: Apache-2.0
-"""Blender, without a display, reads our preview VDB and our PLY, meshes the fog and renders both; and
-finds each grain of our GLB at its place, with its colour and its measures.
+"""Blender, without a display, reads our preview VDB and our PLY, meshes the fog and renders both;
+and finds each grain of our GLB at its place, with its color and its measures.
 
 Runs itself again inside Blender. With a second argument the pictures are kept in that folder.
 """
@@ -67,9 +67,9 @@ def check_mesh(mesh):
           f"the PLY begins at {extent(mesh, min)}")
     check(near(extent(mesh, max), [i + 0.5 for i in LAST], 1e-3),
           f"the PLY ends at {extent(mesh, max)}")
-    check(len(mesh.color_attributes) == 1, "the PLY has no colours")
+    check(len(mesh.color_attributes) == 1, "the PLY has no colors")
     colors = {tuple(round(c, 3) for c in item.color) for item in mesh.color_attributes[0].data}
-    check(len(colors) == len(set(LABELS.values())), f"{len(colors)} colours")
+    check(len(colors) == len(set(LABELS.values())), f"{len(colors)} colors")
 
 
 def volume_of(mesh):
@@ -86,18 +86,20 @@ def check_grains(path):
     before = set(bpy.data.objects)
     bpy.ops.import_scene.gltf(filepath=path)
     grains = {thing.name: thing for thing in set(bpy.data.objects) - before}
-    check(set(grains) == {f"grain_{label:06d}" for label in VOXELS}, f"the GLB has {sorted(grains)}")
+    check(set(grains) == {f"grain_{label:06d}" for label in VOXELS},
+          f"the GLB has {sorted(grains)}")
     for label, count in VOXELS.items():
         grain = grains[f"grain_{label:06d}"]
         places = [grain.matrix_world @ vertex.co for vertex in grain.data.vertices]
-        bounds = [which(place[axis] for place in places) for axis in range(3) for which in (min, max)]
+        bounds = [which(place[axis] for place in places) for axis in range(3)
+                  for which in (min, max)]
         check(near(bounds, box_of(label)), f"{grain.name} lies at {bounds}, not {box_of(label)}")
         voxels = volume_of(grain.data) / EDGE**3
         check(abs(voxels - count) < 1e-3, f"{grain.name} has the volume of {voxels} voxels")
         check(grain["grain_id"] == label and grain["voxels"] == count and
               abs(grain["volume"] - count * EDGE**3) < 1e-12, f"{grain.name} has {dict(grain)}")
     colors = {tuple(grain.data.materials[0].diffuse_color) for grain in grains.values()}
-    check(len(colors) == len(VOXELS), f"the GLB has {len(colors)} colours")
+    check(len(colors) == len(VOXELS), f"the GLB has {len(colors)} colors")
     for grain in grains.values():
         bpy.data.objects.remove(grain)
 

@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: The vdb_madf authors
 # SPDX-License-Identifier: Apache-2.0
 """A real scan goes the whole way: segment, export as preview volume and as mesh, and Blender's
-pictures of both show the same grains in the same many colours.
+pictures of both show the same grains in the same many colors.
 
-The folder that holds nmc.tif (see tests/whole/real_scan_test.cc) is $VDB_MADF_DATA, without it $VDB_MADF_DATA_DIR.
-Runs itself again inside Blender. With a second argument the pictures are kept in that folder.
+The folder that holds nmc.tif (see tests/whole/real_scan_test.cc) is $VDB_MADF_DATA, without it
+$VDB_MADF_DATA_DIR. Runs itself again inside Blender. With a second argument the pictures are kept
+in that folder.
 """
 
 import os
@@ -31,7 +32,8 @@ def start():
     data = os.environ.get("VDB_MADF_DATA") or os.environ.get("VDB_MADF_DATA_DIR", "")
     scan = os.path.join(data, "nmc.tif")
     if not os.path.exists(scan):
-        skip(f"a real scan in Blender: no {scan}. Set VDB_MADF_DATA to the folder that holds nmc.tif")
+        skip(f"a real scan in Blender: no {scan}. Set VDB_MADF_DATA to the folder that holds "
+             f"nmc.tif")
     if not shutil.which("blender"):
         skip("a real scan in Blender: blender is not installed (tools/setup --blender)")
     with tempfile.TemporaryDirectory(prefix="vdb_madf_") as folder:
@@ -61,7 +63,7 @@ def inside(folder):
     pictures, corners = {}, None
     for name, source in (("mesh", "grains.obj"), ("volume", "view.vdb")):
         thing = blender_picture.opened(os.path.join(folder, source))
-        # The mesh's place for both: else each picture would be centred by itself.
+        # The mesh's place for both: else each picture would be centered by itself.
         corners = corners or blender_picture.box_of(thing)
         picture = os.path.join(folder, name + ".png")
         blender_picture.render_export(thing, picture, PIXELS, 24, corners)
@@ -74,7 +76,7 @@ def inside(folder):
         said.append(f"{name}: {covered / len(shown):.0%} of the picture, {len(kinds)} of 24 hues")
         check(0.3 < covered / len(shown) < 0.8, said[-1])
         check(len(kinds) >= 14, said[-1])
-        # Grains, not noise: a neighbour seldom has another hue.
+        # Grains, not noise: a neighbor seldom has another hue.
         pairs = [(a, b) for a, b in zip(hues, hues[1:]) if a is not None and b is not None]
         check(sum((a - b + 1) % 24 <= 2 for a, b in pairs) > 0.7 * len(pairs), f"{name} is noise")
     (here, one), (there, other) = pictures.values()
@@ -82,7 +84,7 @@ def inside(folder):
     check(both > 0.9, f"mesh and volume share only {both:.0%} of their pixels")
     pairs = [(a, b) for a, b in zip(one, other) if a is not None and b is not None]
     alike = sum((a - b + 1) % 24 <= 2 for a, b in pairs) / len(pairs)
-    check(alike > 0.6, f"mesh and volume have the same colour on only {alike:.0%} of their pixels")
+    check(alike > 0.6, f"mesh and volume have the same color on only {alike:.0%} of their pixels")
     print(f"DONE: a real scan in Blender: {'; '.join(said)}; {both:.0%} of the pixels shared, "
           f"{alike:.0%} of them alike")
 

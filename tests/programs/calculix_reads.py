@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The vdb_madf authors
 # SPDX-License-Identifier: Apache-2.0
-"""CalculiX, which reads Abaqus input, takes our elements: the volume of each grain's element set."""
+"""CalculiX, which reads Abaqus input, takes our elements: the volume of each grain's element
+set."""
 
 import os
 import shutil

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: The vdb_madf authors
 # SPDX-License-Identifier: Apache-2.0
-"""The inputs for YADE and LAMMPS that the manual shows, run as they stand on its sample: under gravity
-the packing comes to rest and no grain leaves it, loose or bonded."""
+"""The inputs for YADE and LAMMPS that the manual shows, run as they stand on its sample: under
+gravity the packing comes to rest and no grain leaves it, loose or bonded."""
 
 import csv
 import json

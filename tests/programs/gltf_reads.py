@@ -27,10 +27,13 @@ def environment():
         skip("what the validator of glTF says: node is not installed")
     paths = [os.environ.get("NODE_PATH", "")]
     if shutil.which("npm"):
-        paths.append(subprocess.run(["npm", "root", "-g"], capture_output=True, text=True).stdout.strip())
+        paths.append(subprocess.run(["npm", "root", "-g"], capture_output=True,
+                                    text=True).stdout.strip())
     result = dict(os.environ, NODE_PATH=os.pathsep.join(path for path in paths if path))
-    if subprocess.run(["node", "-e", "require('gltf-validator')"], env=result, capture_output=True).returncode:
-        skip("what the validator of glTF says: node does not find it (npm install -g gltf-validator)")
+    if subprocess.run(["node", "-e", "require('gltf-validator')"], env=result,
+                      capture_output=True).returncode:
+        skip("what the validator of glTF says: node does not find it (npm install -g "
+             "gltf-validator)")
     return result
 
 
@@ -40,7 +43,8 @@ def main():
         with open(bench.path("none.raw"), "wb") as file:
             file.write(bytes(4 * SIZE[0] * SIZE[1] * SIZE[2]))
         bench.segment_sintered(60, 10)
-        files = [bench.run("export", "exact.glb", "--smooth", "0"), bench.run("export", "smooth.glb"),
+        files = [bench.run("export", "exact.glb", "--smooth", "0"),
+                 bench.run("export", "smooth.glb"),
                  bench.run("export", "none.glb", source="none.raw"),
                  bench.run("export", "grains.glb", source="grains.vdb")]
         meshes = 0

@@ -14,7 +14,8 @@ try:
 except ImportError as error:
     skip(f"what h5py reads: python3-h5py is not installed ({error})")
 
-SUFFIXES = {"": "", "mm": "_mm", "mm^2": "_mm2", "mm^3": "_mm3", "1/mm": "_per_mm", "1/mm^2": "_per_mm2"}
+SUFFIXES = {"": "", "mm": "_mm", "mm^2": "_mm2", "mm^3": "_mm3", "1/mm": "_per_mm",
+            "1/mm^2": "_per_mm2"}
 
 
 def check_columns(group, rows, table):
@@ -23,7 +24,8 @@ def check_columns(group, rows, table):
     check(names == rows[0], f"{table}: {names}")
     for i, name in enumerate(group):
         wanted = np.array([float(row[i] or "nan") for row in rows[1:]])
-        check(np.allclose(group[name][...], wanted, rtol=1e-8, atol=0, equal_nan=True), f"{table}/{name}")
+        check(np.allclose(group[name][...], wanted, rtol=1e-8, atol=0, equal_nan=True),
+              f"{table}/{name}")
 
 
 def plain(thing):

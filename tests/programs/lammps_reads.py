@@ -87,7 +87,8 @@ def prove(name, bench, balls, volumes):
         check(abs(radius - ball["radius"]) < 1e-9, f"{name}: radius {radius}")
     for molecule, label in enumerate(grains, 1):
         mass = sum(atom[3] for atom in before if atom[0] == molecule)
-        check(abs(mass / (density * volumes[label]) - 1) < 1e-6, f"{name}: grain {label}: mass {mass}")
+        check(abs(mass / (density * volumes[label]) - 1) < 1e-6,
+              f"{name}: grain {label}: mass {mass}")
 
     bodies = f"{len(grains)} rigid bodies with {len(before)} atoms"
     check(bodies in result.stdout, f"{name}: not {bodies}: {result.stdout}")
@@ -116,9 +117,11 @@ with Bench() as bench:
             bench.run("export", name, "--as", "clumps", "--balls", most, "--uncovered", "0",
                       source="grains.vdb")
         with open(bench.path("clumps.csv")) as file:
-            balls = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+            balls = [{key: float(value) for key, value in row.items()}
+                     for row in csv.DictReader(file)]
         for name, (program, _, _) in PROGRAMS.items():
             if shutil.which(program):
                 prove(name, bench, balls, volumes)
             else:
-                print(f"SKIPPED: what {name} reads: {name.lower()} is not installed (tools/setup --programs)")
+                print(f"SKIPPED: what {name} reads: {name.lower()} is not installed (tools/setup "
+                      f"--programs)")

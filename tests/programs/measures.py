@@ -1,9 +1,11 @@
 # SPDX-FileCopyrightText: The vdb_madf authors
 # SPDX-License-Identifier: Apache-2.0
-"""Shapes, gray values, edge weights and bootstrap intervals of `measure` are those of NumPy and SciPy.
+"""Shapes, gray values, edge weights and bootstrap intervals of `measure` are those of NumPy and
+SciPy.
 
-Seeded samples: cells of random points in a noisy object, with grains of one voxel, a row and a sheet, of
-cubes and of unequal voxels. Everything is computed again by its definition from the array of labels.
+Seeded samples: cells of random points in a noisy object, with grains of one voxel, a row and a
+sheet, of cubes and of unequal voxels. Everything is computed again by its definition from the array
+of labels.
 """
 
 import csv
@@ -132,8 +134,8 @@ def check_weights(labels, grains, numbers, unit):
          "corrected mean diameter")
     near(numbers[f"corrected_grain_volume_mean_{unit}3"],
          np.average(grains[f"volume_{unit}3"], weights=weights), "corrected mean volume")
-    near(numbers["corrected_mean_coordination"], np.average(grains["coordination"], weights=weights),
-         "corrected coordination")
+    near(numbers["corrected_mean_coordination"],
+         np.average(grains["coordination"], weights=weights), "corrected coordination")
     for kind, factor in (("number", 1), ("volume", grains["voxels"])):
         found = numbers[f"corrected_grain_diameter_by_{kind}_{unit}"]
         for percent in (5, 10, 25, 50, 75, 90, 95):
@@ -153,7 +155,8 @@ def check_intervals(grains, bonds, numbers, unit):
         f"grain_diameter_mean_interval_{unit}": (diameters, one),
         f"grain_volume_mean_interval_{unit}3": (grains[f"volume_{unit}3"], one),
         "sphericity_mean_interval": (grains["sphericity"], one),
-        f"specific_surface_interval_per_{unit}": (grains[f"free_area_{unit}2"], grains[f"volume_{unit}3"]),
+        f"specific_surface_interval_per_{unit}": (grains[f"free_area_{unit}2"],
+                                                  grains[f"volume_{unit}3"]),
         "mean_coordination_interval": (grains["coordination"], one),
         "bond_to_grain_ratio_interval": (ratios, grains["coordination"]),
         "solidity_mean_interval": (grains["solidity"], one),
@@ -164,7 +167,8 @@ def check_intervals(grains, bonds, numbers, unit):
     for replicate in range(1, REPLICATES + 1):
         generator = np.random.MT19937()
         generator._legacy_seeding(replicate)  # that of C++
-        picks = generator.random_raw(len(ids)).astype(np.uint64) * np.uint64(len(ids)) >> np.uint64(32)
+        picks = generator.random_raw(len(ids)).astype(np.uint64) * np.uint64(len(ids)) >> np.uint64(
+            32)
         for name, (above, below) in quotients.items():
             if below[picks].sum() > 0:
                 drawn[name].append(above[picks].sum() / below[picks].sum())
@@ -188,7 +192,8 @@ with Bench() as bench:
         np.save(bench.path("scan.npy"), scan)
         subprocess.run([bench.tool, "measure", bench.path("labels.npy"), bench.path("tables"), "-q",
                         "--shape", "--intensity", bench.path("scan.npy"), "--edge-weights",
-                        "--bootstrap", str(REPLICATES), *(["--voxel-size", voxel] if voxel else [])],
+                        "--bootstrap", str(REPLICATES),
+                        *(["--voxel-size", voxel] if voxel else [])],
                        check=True)
         grains, bonds = read(bench.path("tables/grains.csv")), read(bench.path("tables/bonds.csv"))
         with open(bench.path("tables/sample.json")) as file:

@@ -3,10 +3,10 @@
 """Our network table keeps the rules of OpenPNM's network_from_csv, and OpenPNM reads it.
 
 The rules, from OpenPNM's documentation of its data and the docstrings of openpnm.io: a column per
-property, `pore.` or `throat.` before its name; columns of an array end in [0], [1] ...; `pore.coords`
-has three, `throat.conns` two, which count pores from 0; the shorter of the two lists ends where the
-first column of `pore.coords` or `throat.conns` is empty; a cell without a value is empty.
-Debian has no OpenPNM: where `pip install openpnm` put one, it is asked too.
+property, `pore.` or `throat.` before its name; columns of an array end in [0], [1] ...;
+`pore.coords` has three, `throat.conns` two, which count pores from 0; the shorter of the two lists
+ends where the first column of `pore.coords` or `throat.conns` is empty; a cell without a value is
+empty. Debian has no OpenPNM: where `pip install openpnm` put one, it is asked too.
 """
 
 import csv

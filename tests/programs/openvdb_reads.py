@@ -79,7 +79,8 @@ with Bench() as bench:
         check(near(density.transform.indexToWorld(place), [EDGE * i for i in place]),
               f"view.vdb: place of {place}")
     coarse = pyopenvdb.read(half, "density")
-    check(near(coarse.transform.indexToWorld((0, 0, 0)), [0.5 * EDGE] * 3), "half.vdb: half a voxel")
+    check(near(coarse.transform.indexToWorld((0, 0, 0)), [0.5 * EDGE] * 3),
+          "half.vdb: half a voxel")
     check(abs(coarse.getAccessor().getValue((1, 1, 2)) - 1 / 8) < 1e-6, "half.vdb: solid fraction")
 
     names = sorted(grid.name for grid in pyopenvdb.readAllGridMetadata(grids))
@@ -89,7 +90,8 @@ with Bench() as bench:
         mask = pyopenvdb.read(masks, f"grain_{label:06d}")
         check(mask.valueTypeName == "bool", f"masks.vdb: {mask.valueTypeName}")
         voxels = [place for place in LABELS if mask.getAccessor().getValue(place)]
-        check(voxels == [place for place in LABELS if LABELS[place] == label], f"masks.vdb: {label}")
+        check(voxels == [place for place in LABELS if LABELS[place] == label],
+              f"masks.vdb: {label}")
         check(mask.activeVoxelCount() == len(voxels), f"masks.vdb: voxels of {label}")
     for path, name, inside in ((grids, "grain_000001", (2, 3, 5)), (surface, "surface", (7, 1, 2))):
         level_set = pyopenvdb.read(path, name)

@@ -55,15 +55,17 @@ class Bench:
 
     def run(self, verb, output, *options, source="labels.raw"):
         """Writes an output of the volume; returns its path."""
-        raw = ["--dims", "x".join(map(str, SIZE)), "--type", "int32"] if source.endswith(".raw") else []
+        raw = ["--dims", "x".join(map(str, SIZE)), "--type",
+               "int32"] if source.endswith(".raw") else []
         subprocess.run([self.tool, verb, self.path(source), self.path(output), "-q",
                         *raw, "--voxel-size", "10um", *options], check=True)
         return self.path(output)
 
     def segment_sintered(self, size, count):
-        """Writes grains.vdb: grains of a sample of balls, with the balls that clumps are made of."""
-        subprocess.run([self.tool, "generate", "sintered", self.path("sample.vdb"), "--size", str(size),
-                        "--count", str(count), "--voxel-size", "10um", "-q"], check=True)
+        """Writes grains.vdb: grains of a sample of balls, with the balls that clumps are made
+        of."""
+        subprocess.run([self.tool, "generate", "sintered", self.path("sample.vdb"), "--size",
+                        str(size), "--count", str(count), "--voxel-size", "10um", "-q"], check=True)
         self.run("segment", "grains.vdb", "--keep", "balls", "--boundary", "closed",
                  source="sample.vdb")
 
@@ -72,7 +74,8 @@ def run_in_blender(script, folder, what):
     """Runs a script with a folder as its argument inside Blender; returns what it says is done."""
     if not shutil.which("blender"):
         skip(f"{what}: blender is not installed (tools/setup --blender)")
-    # Blender takes the modules of the first Python of its version in the PATH: Debian's own has numpy.
+    # Blender takes the modules of the first Python of its version in the PATH: Debian's own has
+    # numpy.
     places = os.pathsep.join(["/usr/bin", os.environ.get("PATH", "")])
     result = subprocess.run(
         ["blender", "--background", "--factory-startup", "-noaudio", "--python-exit-code", "1",

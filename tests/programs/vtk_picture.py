@@ -69,7 +69,7 @@ def tubes(network):
 
 
 def shown(data, colors):
-    """In the colours of the grains; grey without."""
+    """In the colors of the grains; gray without."""
     mapper = vtkPolyDataMapper()
     actor = vtkActor()
     actor.SetMapper(mapper)

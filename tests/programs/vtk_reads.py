@@ -70,11 +70,13 @@ with Bench() as bench:
             check(LABELS[x, y, z] == label and near(middle, (x * EDGE, y * EDGE, z * EDGE)),
                   f"{name}: voxel {x},{y},{z} lies at {middle}")
 
-    mesh = read(vtkXMLPolyDataReader(), bench.run("export", "mesh.vtp", "--as", "mesh", "--smooth", "0"))
+    mesh = read(vtkXMLPolyDataReader(), bench.run("export", "mesh.vtp", "--as", "mesh", "--smooth",
+                                                  "0"))
     check(mesh.GetCellData().GetArray("color").GetNumberOfComponents() == 3, "mesh.vtp: no colors")
     for label, count in VOXELS.items():
         part = grain(mesh, label)
-        check(near(part.GetBounds(), box_of(label)), f"mesh.vtp: grain {label} at {part.GetBounds()}")
+        check(near(part.GetBounds(), box_of(label)),
+              f"mesh.vtp: grain {label} at {part.GetBounds()}")
         check(open_edges(part) == 0, f"mesh.vtp: grain {label} is not closed")
         check(abs(volume(part) / EDGE**3 - count) < 1e-3, f"mesh.vtp: volume of grain {label}")
 

@@ -75,8 +75,10 @@ with Bench() as bench:
         found = json.load(file)
 
     check(len(balls) > 5, f"only {len(balls)} grains: nothing to tell apart")
-    check(len(found["clumps"]) == len(balls), f"{len(found['clumps'])} clumps of {len(balls)} grains")
-    check(found["bodies"] == len(balls) + sum(map(len, balls.values())), f"{found['bodies']} bodies")
+    check(len(found["clumps"]) == len(balls),
+          f"{len(found['clumps'])} clumps of {len(balls)} grains")
+    check(found["bodies"] == len(balls) + sum(map(len, balls.values())),
+          f"{found['bodies']} bodies")
     for clump, (label, wanted) in zip(found["clumps"], balls.items()):
         check(len(clump["balls"]) == len(wanted), f"grain {label}: {len(clump['balls'])} balls")
         for here, there in zip(clump["balls"], wanted):

@@ -40,7 +40,7 @@ def labels():
 
 def level(volume, factor):
     """The most frequent value of each block, of equally frequent ones the smallest; and the part of
-    the blocks that is labelled, as 0 to 255. Blocks reach into background beyond the volume."""
+    the blocks that is labeled, as 0 to 255. Blocks reach into background beyond the volume."""
     padded = np.pad(volume, [(0, -n % factor) for n in volume.shape])
     shape = [n // factor for n in padded.shape]
 

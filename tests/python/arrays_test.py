@@ -55,7 +55,8 @@ def test_memmap_and_its_file(array, expected, command, tmp_path):
     of_array = madf.segment(volume, voxel_size="10um", **PHASE).labels
     assert np.asarray(of_array).tobytes() == expected.tobytes()
     of_array.save(tmp_path / "array.vdb")
-    madf.segment(tmp_path / "scan.npy", voxel_size="10um", **PHASE).labels.save(tmp_path / "file.vdb")
+    madf.segment(tmp_path / "scan.npy", voxel_size="10um",
+                 **PHASE).labels.save(tmp_path / "file.vdb")
     command("segment", tmp_path / "scan.npy", tmp_path / "command.vdb", "--phase", "1",
             "--voxel-size", "10um")
     of_command = (tmp_path / "command.vdb").read_bytes()
@@ -73,7 +74,8 @@ def test_a_memmap_does_not_become_memory(tmp_path):
         "before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
         "madf.Mask(np.load('scan.npy', mmap_mode='r'), phase=1)\n"
         "print(1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before))\n")
-    run = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, stdout=subprocess.PIPE, check=True)
+    run = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, stdout=subprocess.PIPE,
+                         check=True)
     assert int(run.stdout) < 4 * slab
     changed = np.load(tmp_path / "scan.npy", mmap_mode="c")
     changed[40, 5, 6] = 1
@@ -89,8 +91,8 @@ def test_h5py(array, expected, tmp_path):
 
 def test_zarr(array, expected, tmp_path):
     zarr = pytest.importorskip("zarr", reason="arrays of zarr: not installed")
-    chunked = zarr.open(str(tmp_path / "scan.zarr"), mode="w", shape=array.shape, chunks=(10, 20, 30),
-                        dtype=">i2")
+    chunked = zarr.open(str(tmp_path / "scan.zarr"), mode="w", shape=array.shape,
+                        chunks=(10, 20, 30), dtype=">i2")
     chunked[...] = array
     assert np.asarray(madf.segment(chunked, **PHASE).labels).tobytes() == expected.tobytes()
 

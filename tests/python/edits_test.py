@@ -50,13 +50,16 @@ def test_edits_equal_numpy(seg):
     assert np.array_equal(kept.relabel(), order.reshape(array.shape))
     sizes = np.bincount(array.ravel())
     median = int(np.median(sizes[1:]))
-    assert np.array_equal(labels.edit(f"max-voxels {median}"), np.where(sizes[array] <= median, array, 0))
+    assert np.array_equal(labels.edit(f"max-voxels {median}"),
+                          np.where(sizes[array] <= median, array, 0))
     edge = np.cbrt(6 * median / np.pi) * 10
-    assert np.array_equal(labels.edit(f"max-diameter {edge + .001:.6f}um"), labels.edit(f"max-voxels {median}"))
+    assert np.array_equal(labels.edit(f"max-diameter {edge + .001:.6f}um"),
+                          labels.edit(f"max-voxels {median}"))
     inner = array[1:-1, 1:-1, 1:-1]
     outer = set(array.ravel()) - {label for label in set(inner.ravel())
                                   if np.count_nonzero(inner == label) == sizes[label]}
-    assert np.array_equal(labels.edit("drop-at-faces"), np.where(np.isin(array, list(outer)), 0, array))
+    assert np.array_equal(labels.edit("drop-at-faces"),
+                          np.where(np.isin(array, list(outer)), 0, array))
     assert labels.edit([]).digest() == labels.digest()
 
 
@@ -71,7 +74,8 @@ def test_digests_are_those_of_the_tables(seg, command, tmp_path):
 
 
 def test_wrong_edits_are_refused(seg, sample):
-    for edits, says in (("merge 1 99", "there is no grain 99"), ("splot 3", "line 1: 'splot' is no edit"),
+    for edits, says in (("merge 1 99", "there is no grain 99"),
+                        ("splot 3", "line 1: 'splot' is no edit"),
                         (["drop 1", "drop 1"], "there is no grain 1 any more, after 'drop 1'"),
                         ("merge 1 1", "named twice")):
         with pytest.raises(madf.InvalidInput, match=says):

@@ -38,7 +38,8 @@ def columns(path):
             for i, name in enumerate(rows[0])}
 
 
-SUFFIX = {"": "", "mm": "_mm", "mm^2": "_mm2", "mm^3": "_mm3", "1/mm": "_per_mm", "1/mm^2": "_per_mm2"}
+SUFFIX = {"": "", "mm": "_mm", "mm^2": "_mm2", "mm^3": "_mm3", "1/mm": "_per_mm",
+          "1/mm^2": "_per_mm2"}
 
 
 @pytest.mark.parametrize("table", ["grains", "bonds"])
@@ -61,14 +62,15 @@ def test_types_of_columns(measured):
 def test_the_sample(measured, tables):
     there = json.loads((tables / "sample.json").read_text())
     here = measured.sample
-    for name in ("grains", "bonds", "object_voxels", "solid_fraction", "euler_characteristic", "components",
-                 "mean_coordination", "labels_digest", "boundary", "box"):
+    for name in ("grains", "bonds", "object_voxels", "solid_fraction", "euler_characteristic",
+                 "components", "mean_coordination", "labels_digest", "boundary", "box"):
         assert here[name] == there[name], name
     assert here["specific_surface"] == pytest.approx(there["specific_surface_per_mm"], rel=1e-12)
     assert here["correlation_length"][::-1] == pytest.approx(there["correlation_length_mm"])
     assert np.allclose(here["bond_fabric"][::-1, ::-1], there["bond_normal_fabric"]["tensor"])
     assert np.allclose(here["grain_fabric"][::-1, ::-1], there["grain_axis_fabric"]["tensor"])
-    assert here["diameter_by_volume"][50] == pytest.approx(there["grain_diameter_by_volume_mm"]["d50"])
+    assert here["diameter_by_volume"][50] == pytest.approx(
+        there["grain_diameter_by_volume_mm"]["d50"])
     assert list(here["coordinations"]) == there["coordination_distribution"]
     assert measured.provenance["madf_theta"] == -0.9
 
@@ -89,14 +91,16 @@ def test_what_is_there_on_demand(labels, scan, command, tmp_path):
         here = madf.measure(labels, intensity=source, **everything)
         for table in ("grains", "bonds"):
             columns_there = columns(tmp_path / "out" / f"{table}.csv")
-            for (name, values), expected in zip(getattr(here, table).items(), columns_there.values()):
+            for (name, values), expected in zip(getattr(here, table).items(),
+                                                columns_there.values()):
                 assert np.allclose(values, expected, rtol=1e-8, atol=0, equal_nan=True), name
             assert len(getattr(here, table)) == len(columns_there)
     assert here.grains["zingg_class"].dtype == here.grains["gray_voxels"].dtype == np.int64
     assert here.units["convex_volume"] == "mm^3" and here.units["gray_mean"] == ""
     for name, key in (("corrected_grain_diameter_mean", "corrected_grain_diameter_mean_mm"),
                       ("grain_volume_mean", "grain_volume_mean_mm3"),
-                      ("grains_at_faces", "grains_at_faces"), ("corrected_grains", "corrected_grains"),
+                      ("grains_at_faces", "grains_at_faces"),
+                      ("corrected_grains", "corrected_grains"),
                       ("corrected_mean_coordination", "corrected_mean_coordination")):
         assert here.sample[name] == pytest.approx(there[key], rel=1e-12), name
     assert list(here.sample["corrected_diameter_by_volume"].values()) == pytest.approx(
@@ -114,7 +118,8 @@ def test_what_is_there_on_demand(labels, scan, command, tmp_path):
 def test_what_cannot_be_had_on_demand(labels, measured, scan):
     assert "feret_max" not in measured.grains and "gray_mean" not in measured.bonds
     assert "intervals" not in measured.sample and "edge_weight" not in measured.grains
-    with pytest.raises(ValueError, match="has 79x72x64 voxels, and the labels are those of a scan of 80x"):
+    with pytest.raises(ValueError, match="has 79x72x64 voxels, and the labels are those of a scan "
+                       "of 80x"):
         madf.measure(labels, intensity=scan[:, :, 1:])
     with pytest.raises(ValueError, match="from 100 to 100000"):
         madf.measure(labels, bootstrap=7)
@@ -172,7 +177,8 @@ def test_comparison(sample, labels):
     a, b = np.asarray(truth), np.asarray(labels)
     assert found.truth_grains == len(truth.ids) and found.common_voxels == ((a > 0) & (b > 0)).sum()
     pairs, counts = np.unique(np.stack([a[a > 0], b[a > 0]]), axis=1, return_counts=True)
-    assert (found.overlaps["truth"] == pairs[0]).all() and (found.overlaps["voxels"] == counts).all()
+    assert (found.overlaps["truth"] == pairs[0]).all() and (
+        found.overlaps["voxels"] == counts).all()
     same = madf.compare(labels, labels)
     assert same.adjusted_rand_index == 1 and same.misclassified_percent == 0
 
@@ -215,12 +221,14 @@ FILES = [
     ("a.obj", dict(reduce=2, smoothing=0), ["export", "--reduce", "2", "--smooth", "0"]),
     ("a.vtp", dict(kind="mesh", triangles=3000), ["export", "--as", "mesh", "--triangles", "3000"]),
     ("a.glb", {}, ["export"]),
-    ("b.glb", dict(triangles=3000, smoothing=0), ["export", "--triangles", "3000", "--smooth", "0"]),
+    ("b.glb", dict(triangles=3000, smoothing=0),
+     ["export", "--triangles", "3000", "--smooth", "0"]),
     pytest.param("a.h5", {}, ["convert"], marks=HDF5),
     pytest.param("m.hdf5", dict(kind="mask"), ["export", "--as", "mask"], marks=HDF5),
     ("a.graphml", {}, ["export"]), ("a.csv", dict(kind="network", min_faces=9),
                                     ["export", "--as", "network", "--min-faces", "9"]),
-    ("a.txt", dict(max_balls=20, apart=True), ["export", "--as", "clumps", "--balls", "20", "--apart"]),
+    ("a.txt", dict(max_balls=20, apart=True),
+     ["export", "--as", "clumps", "--balls", "20", "--apart"]),
     ("a.inp", {}, ["export"]), ("a.vtu", {}, ["export"]),
     ("p.vdb", dict(kind="preview", reduce=2), ["export", "--as", "viz", "--reduce", "2"]),
     ("s.vdb", dict(kind="surface"), ["export", "--as", "surface"]),
@@ -266,13 +274,16 @@ def test_ome_zarr_is_that_of_the_command_and_is_read_back(labels, tables, comman
         ours, theirs = (tmp_path / f"{place}{ome}.ome.zarr" for place in ("here", "there"))
         with_meshes = ome == "0.5"
         labels.save(ours, ome=ome, meshes=with_meshes, reduce=2)
-        command("export", tables / "labels.vdb", theirs, "--ome", ome, *["--meshes", "--reduce", "2"] * with_meshes)
+        command("export", tables / "labels.vdb", theirs, "--ome", ome,
+                *["--meshes", "--reduce", "2"] * with_meshes)
         files = sorted(path.relative_to(ours) for path in ours.rglob("*"))
-        assert len(files) > 8 and files == sorted(path.relative_to(theirs) for path in theirs.rglob("*"))
+        assert len(files) > 8 and files == sorted(path.relative_to(theirs)
+                                                  for path in theirs.rglob("*"))
         for file in files:
             if file.name == "state.json":  # it has the name of the folder
                 continue
-            assert (ours / file).is_dir() or (ours / file).read_bytes() == (theirs / file).read_bytes()
+            assert (ours / file).is_dir() or (ours / file).read_bytes() == (theirs
+                                                                            / file).read_bytes()
         read = madf.Labels(ours, dataset="labels/grain")
         assert np.array_equal(read, labels) and read.spacing == labels.spacing
         with pytest.raises(madf.IoError, match="already"):

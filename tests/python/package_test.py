@@ -16,7 +16,8 @@ import vdb_madf as madf
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2] / "lib/python"
 TRY = ("import numpy as np, vdb_madf as madf; "
-       "print(madf.__file__, madf.segment(np.ones((3, 4, 5), bool), boundary='closed').counts['grains'])")
+       "print(madf.__file__, madf.segment(np.ones((3, 4, 5), bool), "
+       "boundary='closed').counts['grains'])")
 
 
 @pytest.fixture(scope="module")
@@ -29,8 +30,8 @@ def prefix(tmp_path_factory):
 
 def tried(python, cwd, **environment):
     clean = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
-    run = subprocess.run([python, "-c", TRY], check=True, stdout=subprocess.PIPE, text=True, cwd=cwd,
-                         env={**clean, **environment})
+    run = subprocess.run([python, "-c", TRY], check=True, stdout=subprocess.PIPE, text=True,
+                         cwd=cwd, env={**clean, **environment})
     file, grains = run.stdout.split()
     assert grains == "1"
     return pathlib.Path(file)
@@ -57,9 +58,12 @@ def test_pip(prefix, tmp_path):
     assert wheel.name.startswith(f"vdb_madf-{madf.__version__}-cp3")
     names = zipfile.ZipFile(wheel).namelist()
     assert {name.split("/")[1] for name in names if name.startswith("vdb_madf/")} == {
-        path.name for path in (SOURCE / "vdb_madf").iterdir() if path.suffix in (".py", ".pyi", ".typed")
+        path.name for path in (SOURCE / "vdb_madf").iterdir()
+        if path.suffix in (".py", ".pyi", ".typed")
     } | {pathlib.Path(sys.modules["vdb_madf._core"].__file__).name}
-    subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", tmp_path / "venv"], check=True)
+    subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", tmp_path / "venv"],
+                   check=True)
     python = tmp_path / "venv/bin/python"
-    subprocess.run([python, "-m", "pip", "install", "-q", "--no-index", "--no-deps", wheel], check=True)
+    subprocess.run([python, "-m", "pip", "install", "-q", "--no-index", "--no-deps", wheel],
+                   check=True)
     assert tmp_path / "venv" in tried(python, tmp_path).parents

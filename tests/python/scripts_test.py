@@ -58,8 +58,8 @@ def needs(script):
 def run(script, folder, name):
     needs(script)
     (folder / name).write_text(script)
-    done = subprocess.run([sys.executable, "-W", "error::DeprecationWarning:__main__", name], cwd=folder,
-                          text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    done = subprocess.run([sys.executable, "-W", "error::DeprecationWarning:__main__", name],
+                          cwd=folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     assert done.returncode == 0, done.stdout
     return done.stdout
 

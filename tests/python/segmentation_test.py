@@ -28,8 +28,10 @@ def gray(array, tmp_path_factory):
 # Arguments here, options there.
 SAME = [
     ({}, []),
-    (dict(theta=-0.5, merge="angle", adjacency="cell", delta=0), ["--theta", "-0.5", "--merge", "angle",
-                                                                  "--adjacency", "cell", "--delta", "0"]),
+    (dict(theta=-0.5, merge="angle", adjacency="cell", delta=0),
+     ["--theta", "-0.5", "--merge", "angle",
+                                                                  "--adjacency", "cell", "--delta",
+                                                                  "0"]),
     (dict(gamma=30, fill_holes=0, tidy=0), ["--gamma", "30", "--fill-holes", "0", "--tidy", "0"]),
     (madf.PAPER, ["--paper"]),
     (dict(boundary="closed", invert=True), ["--boundary", "closed", "--invert"]),
@@ -51,7 +53,8 @@ def test_files_are_those_of_the_command(arguments, options, scan, command, tmp_p
 @pytest.mark.parametrize("arguments, options", [
     (dict(threshold="otsu"), ["--threshold", "otsu"]),
     (dict(threshold=(95, 120), despeckle=20), ["--threshold", "95:120", "--despeckle", "20"]),
-    (dict(threshold=105, median=1, smooth=0.7), ["--threshold", "105", "--median", "1", "--smooth", "0.7"]),
+    (dict(threshold=105, median=1, smooth=0.7),
+     ["--threshold", "105", "--median", "1", "--smooth", "0.7"]),
     (dict(range=(100, 180)), ["--range", "100:180"]),
     (dict(threshold="valley", smooth=1, roi="cylinder"), ["--threshold", "valley", "--smooth", "1",
                                                           "--roi", "cylinder"]),
@@ -105,7 +108,8 @@ def test_what_is_kept(sample, command, tmp_path):
     seg = madf.segment(sample[0], keep=("manifold", "distance", "power", "balls"))
     mask = np.asarray(sample[0])
     distance = np.asarray(seg.distance_squared)
-    assert (distance > 0).sum() == mask.sum() and distance.max() == seg.counts["largest_squared_distance"]
+    assert (distance > 0).sum() == mask.sum() and distance.max() == seg.counts[
+        "largest_squared_distance"]
     assert seg.manifold.ids[-1] == seg.counts["critical_points"] == len(seg.graph["position"])
     z, y, x = seg.graph["position"].T
     inside = mask[z, y, x]  # or in a filled cavity
@@ -164,8 +168,8 @@ def test_files_that_are_not_there(tmp_path):
 
 
 def test_samples():
-    mask, truth = madf.generate("particles", size=40, count=4, radius=(6, 9), shape="plates", blur=1,
-                                noise=0.1)
+    mask, truth = madf.generate("particles", size=40, count=4, radius=(6, 9), shape="plates",
+                                blur=1, noise=0.1)
     assert mask.shape == (40, 40, 40) and 1 <= len(truth.ids) <= 4
     snow, none = madf.generate("snow", size=(16, 20, 24), fraction=0.3, length=12)
     assert snow.shape == (16, 20, 24) and none is None and abs(snow.fraction - 0.3) < 0.01

@@ -24,8 +24,8 @@ def test_tracks_are_those_of_the_command(labels, command, tmp_path):
     later = madf.Labels(np.asarray(labels.merge([(1, 2)]).drop([4]))[3:, :, :-2], voxel_size="10um")
     labels.save(tmp_path / "a.vdb")
     later.save(tmp_path / "b.vdb")
-    command("track", tmp_path / "a.vdb", tmp_path / "b.vdb", tmp_path / "there.vdb", "--min-faces", "3",
-            "--grains", tmp_path / "grains.csv", "--bonds", tmp_path / "bonds.csv",
+    command("track", tmp_path / "a.vdb", tmp_path / "b.vdb", tmp_path / "there.vdb", "--min-faces",
+            "3", "--grains", tmp_path / "grains.csv", "--bonds", tmp_path / "bonds.csv",
             "--links", tmp_path / "links.csv")
     tracks = madf.track(labels, later, min_faces=3)
     assert tracks.shift == (-3, 0, 0)
@@ -34,7 +34,8 @@ def test_tracks_are_those_of_the_command(labels, command, tmp_path):
                                 ("after", tracks.after, tracks.bonds_after)):
         there = rows(tmp_path / "grains.csv", side)
         assert [row["grain"] for row in there] == [str(i) for i in grains["id"]]
-        for name in ("fate", "track", "voxels", "shared_voxels", "links", "partner", "overlap_voxels"):
+        for name in ("fate", "track", "voxels", "shared_voxels", "links", "partner",
+                     "overlap_voxels"):
             assert [row[name] for row in there] == [str(value) for value in grains[name]]
         there = rows(tmp_path / "bonds.csv", side)
         for name in ("first", "second", "faces", "shared_faces", "fate"):
@@ -54,7 +55,8 @@ def test_what_was_done_is_told(labels):
     assert np.array_equal(tracks.labels, labels.merge([(larger, 3 - larger)]).drop([4]))
     assert tracks.common_voxels == tracks.voxels_after < tracks.voxels_before
     kept = set(tracks.labels.ids)
-    for first, second, fate in zip(*(tracks.bonds_before[name] for name in ("first", "second", "fate"))):
+    for first, second, fate in zip(*(tracks.bonds_before[name]
+                                     for name in ("first", "second", "fate"))):
         assert fate == ("inside" if {first, second} == {1, 2} else
                         "kept" if {first, second} <= kept | {1, 2} else "unmatched")
 
@@ -71,6 +73,7 @@ def test_a_series_and_a_given_shift(labels):
 
 
 def test_wrong_arguments_are_refused(labels):
-    for wrong in (dict(share=0), dict(share=1.5), dict(max_shift=-1), dict(max_shift=1000), dict(min_faces=-1)):
+    for wrong in (dict(share=0), dict(share=1.5), dict(max_shift=-1), dict(max_shift=1000),
+                  dict(min_faces=-1)):
         with pytest.raises(madf.InvalidInput):
             madf.track(labels, labels, **wrong)

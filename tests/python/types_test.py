@@ -43,7 +43,8 @@ vdb_madf._core.(ArraySource|Call|Grid|VolumeOptions)
 vdb_madf._core.Grid.__(init|pybind11).*
 vdb_madf._core.(Edges|Index)
 """)
-    checked("mypy.stubtest", "vdb_madf._core", "--concise", "--allowlist", allowed, tmp_path=tmp_path)
+    checked("mypy.stubtest", "vdb_madf._core", "--concise", "--allowlist", allowed,
+            tmp_path=tmp_path)
 
 
 @pytest.mark.parametrize("name", [name for name in madf.__all__ if callable(getattr(madf, name))

@@ -88,7 +88,7 @@ TEST_CASE("generate: power cells equal the definition, gaps in the numbers close
   CHECK(wrong == 0);
 }
 
-TEST_CASE("generate: the kernel is a normalised Gaussian", "[generate]") {
+TEST_CASE("generate: the kernel is a normalized Gaussian", "[generate]") {
   for (const double sigma : {0.6, 1.0, 2.0, 7.3}) {
     const auto kernel = detail::gaussianKernel(sigma);
     double sum = kernel[0];

@@ -53,10 +53,7 @@ Sample halfSpace(const Coord& size, int height) {
         sample.object->tree().setValueOn({x, y, z});
         sample.truth->tree().setValueOn({x, y, z}, x < size.x() / 2 ? 1 : 2);
       }
-  const detail::SourceText source("wall");
-  detail::describe(*sample.object, "object", size, source);
-  detail::describe(*sample.truth, "truth", size, source);
-  return sample;
+  return detail::described(sample, size, detail::SourceText("wall"));
 }
 
 /// By the definition: 0 if no labeled voxel lies within reach.
@@ -219,9 +216,8 @@ TEST_CASE("scan: the gray values are the blurred object with white noise", "[sca
 }
 
 TEST_CASE("scan: noise has the standard deviation and the length", "[scan]") {
-  Sample air;
-  air.object = MaskGrid::create();
-  detail::describe(*air.object, "object", {100, 90, 80}, detail::SourceText("air"));
+  const Sample air =
+      detail::described({MaskGrid::create(), nullptr}, {100, 90, 80}, detail::SourceText("air"));
   ScanOptions options;
   options.noise = 0.5;  // object is what exceeds one standard deviation
   for (const double length : {0.0, 3.0}) {

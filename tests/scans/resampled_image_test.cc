@@ -25,7 +25,7 @@ std::vector<T> readAll(ImageReader& image, int slices) {
   return samples;
 }
 
-/// Linear between the centers of voxels, the outermost value beyond; all in tenths of a micrometre.
+/// Linear between the centers of voxels, the outermost value beyond; all in tenths of a micrometer.
 template <typename T>
 double interpolated(const std::vector<T>& samples, const ImageSize& size, const int (&voxel)[3],
                     int cube, const int (&place)[3]) {

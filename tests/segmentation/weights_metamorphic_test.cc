@@ -75,8 +75,8 @@ constexpr VolumeKind kKinds[] = {VolumeKind::blurredNoise, VolumeKind::roughBall
 }  // namespace
 
 TEST_CASE("weights: a common factor scales squared lengths and changes no label", "[weights]") {
-  // A power of two: cosines are then the same to the last bit, too. The kernels for cubes are others
-  // than those with weights, so this compares the two.
+  // A power of two: cosines are then the same to the last bit, too. The kernels for cubes are
+  // others than those with weights, so this compares the two.
   for (uint64_t seed = 1; seed <= 30; ++seed) {
     Rng rng(seed);
     RandomCase c = randomCase(seed);
@@ -108,8 +108,9 @@ TEST_CASE("weights: a common factor scales squared lengths and changes no label"
 
 TEST_CASE("weights: every k-th slice knows a part of the background", "[weights]") {
   // Lengths between slices are those in the fine volume, and the background voxels in them are some
-  // of its own: so D of the slices is at least D of the fine volume. It is the same where the object
-  // does not change along the axis: the nearest background then lies in the voxel's own slice.
+  // of its own: so D of the slices is at least D of the fine volume. It is the same where the
+  // object does not change along the axis: the nearest background then lies in the voxel's own
+  // slice.
   for (uint64_t seed = 1; seed <= 40; ++seed) {
     Rng rng(seed + 50);
     const int k = rng.between(2, 5), axis = rng.below(3);
@@ -131,8 +132,8 @@ TEST_CASE("weights: every k-th slice knows a part of the background", "[weights]
 
 TEST_CASE("weights: a stretched volume has the same distances, to less than a slice", "[weights]") {
   // Every slice k times instead of k times as thick. The nearest background of a voxel in the first
-  // slice of its k lies in the same column, at most k - 1 slices nearer; the norm changes by at most
-  // as much: sqrt(D) - (k - 1) <= sqrt(D of the stretched) <= sqrt(D).
+  // slice of its k lies in the same column, at most k - 1 slices nearer; the norm changes by at
+  // most as much: sqrt(D) - (k - 1) <= sqrt(D of the stretched) <= sqrt(D).
   for (uint64_t seed = 1; seed <= 40; ++seed) {
     Rng rng(seed + 150);
     const int k = rng.between(2, 5), axis = rng.below(3);

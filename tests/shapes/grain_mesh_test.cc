@@ -121,8 +121,8 @@ TEST_CASE("grain_mesh: interfaces are shared, smoothed or not", "[grain_mesh]") 
 
 namespace {
 
-/// A ring of grain 1 that passes an edge of the lattice twice: on either side of it in two voxels, which
-/// are joined below and above. What lies in the other two: \p one and \p other; 0: nothing.
+/// A ring of grain 1 that passes an edge of the lattice twice: on either side of it in two voxels,
+/// which are joined below and above. What lies in the other two: \p one and \p other; 0: nothing.
 LabelMap pinched(int32_t one, int32_t other) {
   LabelMap voxels;
   for (const int z : {-1, 1})

@@ -12,8 +12,8 @@ using namespace vdb_madf::detail;
 
 namespace {
 
-/// A chain of grains that each take from the next one what they gain at their contact; \p surface: what
-/// they gain towards the background.
+/// A chain of grains that each take from the next one what they gain at their contact; \p surface:
+/// what they gain towards the background.
 PressureEquations chain(size_t count, double surface, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<double> contacts(count + 1);

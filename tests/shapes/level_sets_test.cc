@@ -97,7 +97,7 @@ TEST_CASE("level_sets: negative inside, zero on the faces of the voxels", "[leve
       const auto found = voxels.find(*p);
       const bool inside = found != voxels.end() && (label == 0 || found->second == label);
       const double value = double(levelSet->tree().getValue(*p));
-      // A voxel's centre is half a voxel from its faces, or farther.
+      // A voxel's center is half a voxel from its faces, or farther.
       wrong += inside ? value > -0.49 * kEdge : value < 0.49 * kEdge;
     }
     CHECK(wrong == 0);

@@ -25,8 +25,8 @@ constexpr int kSide = 40;
 const Coord kLow(-7, 3, 11);
 const CoordBBox kBox(kLow, kLow.offsetBy(kSide - 1));
 
-/// The nearest of some random centers, in all of a box: faces, lines and corners of all kinds, and no
-/// background. Voxels farther than \p most from their center are left out.
+/// The nearest of some random centers, in all of a box: faces, lines and corners of all kinds, and
+/// no background. Voxels farther than \p most from their center are left out.
 LabelMap cells(unsigned seed, int count, double most = 1e9) {
   std::mt19937 random(seed);
   std::vector<Coord> centers;

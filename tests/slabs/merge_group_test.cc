@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// contract() on random graphs that are cut into groups, and MergeParts on such that are cut into parts,
-// against the definition of merging, edge after edge, written here again.
+// contract() on random graphs that are cut into groups, and MergeParts on such that are cut into
+// parts, against the definition of merging, edge after edge, written here again.
 //
-// The random comparisons read from the environment VDB_MADF_GRAPHS (how many) and VDB_MADF_SEED (the
-// first).
+// The random comparisons read from the environment VDB_MADF_GRAPHS (how many) and VDB_MADF_SEED
+// (the first).
 
 #include "vdb_madf/slabs/cuts/merge_group.h"
 

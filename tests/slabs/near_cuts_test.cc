@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What a slab offers to others, of the distances near its cuts, against the same of the distances of the
-// whole object.
+// What a slab offers to others, of the distances near its cuts, against the same of the distances
+// of the whole object.
 
 #include "vdb_madf/slabs/cuts/near_cuts.h"
 
@@ -58,7 +58,8 @@ LeafIndex leavesBetween(const LeafIndex& index, int begin, int end) {
   return {LeafIndex(), leaves};
 }
 
-/// How many object voxels follow each other in the columns of the leaves at `leafZ`, from z on by step.
+/// How many object voxels follow each other in the columns of the leaves at `leafZ`, from z on by
+/// step.
 ColumnSteps countSteps(const TallObject& object, const LeafIndex& index, int leafZ, int z,
                        int step) {
   const auto countFrom = [&](Coord p) {

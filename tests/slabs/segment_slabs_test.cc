@@ -207,8 +207,8 @@ TEST_CASE("slabs: labels and counts of tall objects are those of the whole", "[s
 }
 
 TEST_CASE("slabs: what gamma leaves is completed through many slabs, as in the whole", "[slabs]") {
-  // Balls with long thin fibers, along z and winding, that the filter leaves without a ball; hundreds of
-  // rounds, from both ends of a fiber and around loops.
+  // Balls with long thin fibers, along z and winding, that the filter leaves without a ball;
+  // hundreds of rounds, from both ends of a fiber and around loops.
   MaskGrid mask;
   const auto ball = [&](const Coord& center, int radius) {
     for (auto p = CoordBBox::createCube(center.offsetBy(-radius), 2 * radius + 1).begin(); p; ++p)
@@ -239,8 +239,8 @@ TEST_CASE("slabs: what gamma leaves is completed through many slabs, as in the w
 
 TEST_CASE("slabs: what comes to a cut with the last round of a window goes on in the next",
           "[slabs]") {
-  // A window of completion has 64 rounds. One ball and a fiber along z, so that each round covers one
-  // voxel: in one of eight places round 64 covers the last one before a cut.
+  // A window of completion has 64 rounds. One ball and a fiber along z, so that each round covers
+  // one voxel: in one of eight places round 64 covers the last one before a cut.
   SegmentOptions options;
   options.gamma = 300;
   options.weights = VoxelWeights{};

@@ -12,8 +12,9 @@
 
 namespace vdb_madf::test {
 
-/// A locale that writes decimals with a comma, as a host program may set one, for as long as this lives.
-/// Where the system has none, one is made, if it has localedef and its sources (Debian: locales).
+/// A locale that writes decimals with a comma, as a host program may set one, for as long as this
+/// lives. Where the system has none, one is made, if it has localedef and its sources (Debian:
+/// locales).
 class CommaLocale {
  public:
   CommaLocale() {

@@ -27,7 +27,7 @@ struct CompoundFileBytes {
   std::vector<uint32_t> table;  ///< sectors of the table of sectors
 
   size_t place(uint32_t sector) const { return (size_t(sector) + 1) * sectorBytes; }
-  /// Of the number of the sector that follows.
+  /// The place of the number of the sector that follows.
   size_t placeOfLink(uint32_t sector) const {
     const size_t links = sectorBytes / 4;
     return place(table[sector / links]) + 4 * (sector % links);

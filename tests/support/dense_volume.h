@@ -70,7 +70,7 @@ extern const std::array<Coord, 6> kSixNeighbors;
 CoordBBox boxAt(const Coord& origin, const Coord& dim);
 
 int64_t countObject(const ObjectVolume& object);
-/// Of the object voxels; empty if there are none.
+/// The box of the object voxels; empty if there are none.
 CoordBBox objectBox(const ObjectVolume& object);
 
 /// Adds the 3 x 3 x 3 voxels around a center, as far as they are in the box.

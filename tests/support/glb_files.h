@@ -42,7 +42,8 @@ class Glb {
 
   const nlohmann::json& json() const { return json_; }
 
-  /// By the names of the nodes of the scene; each a mesh of one primitive of triangles, at its place.
+  /// The primitives by the names of the nodes of the scene, each a mesh of one primitive of
+  /// triangles, at its place.
   std::map<std::string, GlbPrimitive> primitives() const {
     std::map<std::string, GlbPrimitive> result;
     for (const auto& index : json_.at("scenes").at(0).value("nodes", nlohmann::json::array())) {

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What SciPy and scikit-image make of gray volumes: tests/scans/image_object_test.cc compares.
 
-    gray_reference.py FOLDER    writes volumes and results as .npy, and prints a line for each result:
+    gray_reference.py FOLDER    writes volumes and results as .npy, and prints a line for each
+    result:
                                 "VOLUME RESULT METHOD NUMBERS..."; or "skipped MODULE"
 """
 import sys
@@ -40,7 +41,8 @@ def results(gray):
         yield "valley", gray > filters.threshold_minimum(gray)
     low, high = (float(np.quantile(gray, share)) for share in (0.45, 0.95))
     below = [np.nextafter(value, -np.inf) for value in (low, high)]  # theirs is >, ours >=
-    yield f"hysteresis {low!r} {high!r}", filters.apply_hysteresis_threshold(gray.astype(float), *below)
+    yield f"hysteresis {low!r} {high!r}", filters.apply_hysteresis_threshold(gray.astype(float),
+                                                                             *below)
     level = float(np.quantile(gray, 0.6))
     for size in (2, 9, 40):
         kept = morphology.remove_small_objects(gray >= level, size)
@@ -50,5 +52,6 @@ def results(gray):
 for name, gray in volumes():
     np.save(f"{sys.argv[1]}/{name}.npy", gray)
     for number, (method, result) in enumerate(results(gray)):
-        np.save(f"{sys.argv[1]}/{name}_{number}.npy", result.astype(np.uint8) if result.dtype == bool else result)
+        np.save(f"{sys.argv[1]}/{name}_{number}.npy",
+                result.astype(np.uint8) if result.dtype == bool else result)
         print(f"{name}.npy {name}_{number}.npy {method}")

@@ -3,8 +3,8 @@
 """Volumes as files of every format that can be read, made from the formats' definitions alone.
 
 write_all(folder) writes them and returns their names: (files of images, files of grids). The same
-bytes come out on every machine. Axes are x, y, z with x fastest, and all of other length, so that an
-exchange of two shows.
+bytes come out on every machine. Axes are x, y, z with x fastest, and all of other length, so that
+an exchange of two shows.
 """
 import gzip
 import os
@@ -29,9 +29,9 @@ def values(low=0, high=200):
     return result
 
 
-RANGES = {"B": (0, 255), "b": (-128, 127), "H": (0, 65535), "h": (-32768, 32767), "I": (0, 2**32 - 1),
-          "i": (-2**31, 2**31 - 1), "q": (-2**31, 2**31 - 1), "Q": (0, 2**32 - 1), "f": (-999, 999),
-          "d": (-999, 999), "?": (0, 1)}
+RANGES = {"B": (0, 255), "b": (-128, 127), "H": (0, 65535), "h": (-32768, 32767),
+          "I": (0, 2**32 - 1), "i": (-2**31, 2**31 - 1), "q": (-2**31, 2**31 - 1),
+          "Q": (0, 2**32 - 1), "f": (-999, 999), "d": (-999, 999), "?": (0, 1)}
 
 
 def samples(code, order="<"):
@@ -52,13 +52,14 @@ def npy(kind, data, version=1, shape=f"({NZ}, {NY}, {NX})", fortran=False):
 
 
 def nrrd(kind, fields, data=b""):
-    return (f"NRRD0004\n# made by hand\ntype: {kind}\ndimension: 3\nsizes: {NX} {NY} {NZ}\n{fields}\n\n"
+    return (f"NRRD0004\n# made by hand\ntype: {kind}\ndimension: 3\nsizes: {NX} {NY} "
+            f"{NZ}\n{fields}\n\n"
             .encode() + data)
 
 
 def meta(kind, fields, data_file="LOCAL", data=b""):
-    return (f"ObjectType = Image\nNDims = 3\nDimSize = {NX} {NY} {NZ}\nElementType = {kind}\n{fields}"
-            f"ElementDataFile = {data_file}\n".encode() + data)
+    return (f"ObjectType = Image\nNDims = 3\nDimSize = {NX} {NY} {NZ}\nElementType = "
+            f"{kind}\n{fields}ElementDataFile = {data_file}\n".encode() + data)
 
 
 def isq(data, blocks=0):
@@ -84,18 +85,21 @@ def nifti(kind, data, order="<", slope=0.0, intercept=0.0, units=0, edge=1.0):
 
 
 def dgtal(size_line, version, data):
-    return (f"Center-X: 5\nCenter-Y: 3\nCenter-Z: 3\nX: {NX}\nY: {NY}\nZ: {NZ}\n{size_line}\nAlpha-Color: 0"
-            f"\nVoxel-Endian: 0\nInt-Endian: 0123\nVersion: {version}\n.\n".encode() + data)
+    return (f"Center-X: 5\nCenter-Y: 3\nCenter-Z: 3\nX: {NX}\nY: {NY}\nZ: "
+            f"{NZ}\n{size_line}\nAlpha-Color: 0\nVoxel-Endian: 0\nInt-Endian: 0123\nVersion: "
+            f"{version}\n.\n".encode() + data)
 
 
 def pyhst(fields):
-    return f"! PyHST_SLAVE VOLUME INFO FILE\nNUM_X = {NX}\nNUM_Y = {NY}\nNUM_Z = {NZ}\n{fields}".encode()
+    size = f"NUM_X = {NX}\nNUM_Y = {NY}\nNUM_Z = {NZ}\n"
+    return f"! PyHST_SLAVE VOLUME INFO FILE\n{size}{fields}".encode()
 
 
 # --- TIFF
 
 def packbits(data):
-    return b"".join(bytes([len(data[i:i + 128]) - 1]) + data[i:i + 128] for i in range(0, len(data), 128))
+    return b"".join(bytes([len(data[i:i + 128]) - 1]) + data[i:i + 128]
+                    for i in range(0, len(data), 128))
 
 
 def lzw(data):
@@ -113,11 +117,13 @@ COMPRESSIONS = {1: lambda data: data, 5: lzw, 8: zlib.compress, 32773: packbits}
 
 def tiff(pages, bits=8, sample_format=1, order="<", big=False, compression=1, rows=3, tile=0,
          description="", resolution=0, photometric=1):
-    """`pages`: the bytes of each slice, rows padded to whole bytes, in the byte order of the file."""
+    """`pages`: the bytes of each slice, rows padded to whole bytes, in the byte order of the
+    file."""
     word = "Q" if big else "I"
     row = (NX * bits + 7) // 8
     magic = {"<": b"II", ">": b"MM"}[order]
-    out = magic + (struct.pack(order + "HHHQ", 43, 8, 0, 0) if big else struct.pack(order + "HI", 42, 0))
+    out = magic + (struct.pack(order + "HHHQ", 43, 8, 0, 0) if big
+                   else struct.pack(order + "HI", 42, 0))
     link = 8 if big else 4  # where the offset of the next directory belongs
     for page in pages:
         if tile:
@@ -135,7 +141,8 @@ def tiff(pages, bits=8, sample_format=1, order="<", big=False, compression=1, ro
         tags = {256: ("I", [NX]), 257: ("I", [NY]), 258: ("H", [bits]), 259: ("H", [compression]),
                 262: ("H", [photometric]), 277: ("H", [1]), 339: ("H", [sample_format])}
         if tile:
-            tags.update({322: ("I", [tile]), 323: ("I", [tile]), 324: (word, offsets), 325: (word, counts)})
+            tags.update({322: ("I", [tile]), 323: ("I", [tile]), 324: (word, offsets),
+                         325: (word, counts)})
         else:
             tags.update({273: (word, offsets), 278: ("I", [rows]), 279: (word, counts)})
         if description:
@@ -171,30 +178,35 @@ def slices(data):
 def bit_rows(data):
     """A bit for each byte, rows padded to whole bytes."""
     rows = ("".join("1" if v else "0" for v in data[i:i + NX]) for i in range(0, len(data), NX))
-    return b"".join(int(row.ljust((NX + 7) // 8 * 8, "0"), 2).to_bytes((NX + 7) // 8, "big") for row in rows)
+    return b"".join(int(row.ljust((NX + 7) // 8 * 8, "0"), 2).to_bytes((NX + 7) // 8, "big")
+                    for row in rows)
 
 
 # --- pictures
 
-def png(rows, bits=8, colour=0):
+def png(rows, bits=8, color=0):
     def chunk(kind, content):
-        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
+        return struct.pack(">I", len(content)) + kind + content + struct.pack(">I",
+                                                                              zlib.crc32(kind
+                                                                                         + content))
     row = len(rows) // NY
     lines = b"".join(b"\0" + rows[i:i + row] for i in range(0, len(rows), row))
-    palette = chunk(b"PLTE", bytes(range(0, 96)) * 8) if colour == 3 else b""
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", NX, NY, bits, colour, 0, 0, 0)) +
+    palette = chunk(b"PLTE", bytes(range(0, 96)) * 8) if color == 3 else b""
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR",
+                                         struct.pack(">IIBBBBB", NX, NY, bits, color, 0, 0, 0)) +
             palette + chunk(b"IDAT", zlib.compress(lines)) + chunk(b"IEND", b""))
 
 
 def bmp(rows, bits=8, top_down=False):
-    colours = b"" if bits == 24 else b"".join(bytes([i, i, i, 0]) for i in range(2**bits))
+    colors = b"" if bits == 24 else b"".join(bytes([i, i, i, 0]) for i in range(2**bits))
     row = len(rows) // NY
     lines = [rows[i:i + row] + bytes(-row % 4) for i in range(0, len(rows), row)]
-    start = 54 + len(colours)
+    start = 54 + len(colors)
     pixels = b"".join(lines if top_down else lines[::-1])
     return (struct.pack("<2sIII", b"BM", start + len(pixels), 0, start) +
-            struct.pack("<IiiHHIIiiII", 40, NX, -NY if top_down else NY, 1, bits, 0, 0, 0, 0, 0, 0) +
-            colours + pixels)
+            struct.pack("<IiiHHIIiiII", 40, NX, -NY if top_down else NY, 1, bits, 0, 0, 0, 0, 0,
+                        0) +
+            colors + pixels)
 
 
 # --- Zarr
@@ -204,8 +216,8 @@ def blosc(data, size):
     return struct.pack("<BBBBIII", 2, 1, 2, size, len(data), len(data), len(data) + 16) + data
 
 
-CODECS = {"null": lambda data, size: data, '{"id": "zlib", "level": 1}': lambda data, size: zlib.compress(data),
-          '{"id": "gzip", "level": 1}': lambda data, size: zipped(data),
+CODECS = {"null": lambda data, size: data, '{"id": "zlib", "level": 1}': lambda data,
+          size: zlib.compress(data), '{"id": "gzip", "level": 1}': lambda data, size: zipped(data),
           '{"id": "blosc", "cname": "lz4"}': blosc}
 
 
@@ -214,9 +226,10 @@ def zarr(kind, data, codec="null", chunk=(4, 3, 5), order="C", separator=".", le
     size = len(data) // COUNT
     cx, cy, cz = chunk
     ones = "1, " * leading
-    text = (f'{{"chunks": [{ones}{cz}, {cy}, {cx}], "compressor": {codec}, "dtype": "{kind}", "fill_value": 7,'
-            f' "filters": null, "order": "{order}", "shape": [{ones}{NZ}, {NY}, {NX}], "zarr_format": 2,'
-            f' "dimension_separator": "{separator}"}}')
+    text = (
+        f'{{"chunks": [{ones}{cz}, {cy}, {cx}], "compressor": {codec}, "dtype": "{kind}", '
+        f'"fill_value": 7, "filters": null, "order": "{order}", "shape": [{ones}{NZ}, {NY}, {NX}], '
+        f'"zarr_format": 2, "dimension_separator": "{separator}"}}')
     files = {".zarray": text.encode()}
     for number in ((i, j, k) for k in range(-(-NZ // cz)) for j in range(-(-NY // cy))
                    for i in range(-(-NX // cx))):
@@ -236,10 +249,13 @@ def zarr(kind, data, codec="null", chunk=(4, 3, 5), order="C", separator=".", le
 
 
 def ome_zarr(path):
-    transformation = f'"coordinateTransformations": [{{"type": "scale", "scale": [1, {UM}, {UM}, {UM}]}}]'
-    axes = ", ".join(f'{{"name": "{axis}", "type": "space", "unit": "micrometer"}}' for axis in "zyx")
-    return (f'{{"multiscales": [{{"version": "0.4", "axes": [{{"name": "c", "type": "channel"}}, {axes}],'
-            f' "datasets": [{{"path": "{path}", {transformation}}}]}}]}}').encode()
+    scale = f'{{"type": "scale", "scale": [1, {UM}, {UM}, {UM}]}}'
+    axes = ", ".join(f'{{"name": "{axis}", "type": "space", "unit": "micrometer"}}'
+                     for axis in "zyx")
+    return (
+        f'{{"multiscales": [{{"version": "0.4", "axes": [{{"name": "c", "type": "channel"}}, '
+        f'{axes}], "datasets": [{{"path": "{path}", '
+        f'"coordinateTransformations": [{scale}]}}]}}]}}').encode()
 
 
 # --- HDF5
@@ -286,11 +302,12 @@ def hdf5_dataset(place, size, edge=0.0):
     """uint16 samples that lie at a place of the file."""
     uint16 = bytes([0x10, 0, 0, 0]) + struct.pack("<IHH", 2, 0, 16)
     float64 = bytes([0x11, 0x20, 63, 0]) + struct.pack("<IHHBBBBI", 8, 0, 64, 52, 11, 0, 52, 1023)
-    messages = [(1, bytes([2, 3, 0, 1]) + struct.pack("<3Q", NZ, NY, NX)), (3, uint16), (5, b"\3\x0a"),
-                (8, b"\3\1" + struct.pack("<QQ", place, size))]
+    messages = [(1, bytes([2, 3, 0, 1]) + struct.pack("<3Q", NZ, NY, NX)), (3, uint16),
+                (5, b"\3\x0a"), (8, b"\3\1" + struct.pack("<QQ", place, size))]
     if edge:
         name, space = b"element_size_um\0", bytes([2, 1, 0, 1]) + struct.pack("<Q", 3)
-        messages.append((12, struct.pack("<BBHHHB", 3, 0, len(name), len(float64), len(space), 0) + name +
+        messages.append((12, struct.pack("<BBHHHB", 3, 0, len(name), len(float64), len(space),
+                                         0) + name +
                          float64 + space + struct.pack("<3d", edge, edge, edge)))
     return hdf5_object(*messages)
 
@@ -316,14 +333,16 @@ def hdf5(data, edge=0.0, second=b""):
 # --- all of them
 
 # What is no volume that can be read; the others are.
-REFUSED = ("beside.dat", "colour_dir", "complex.nii", "empty_dir", "filters.zarr", "flat.mha", "flat.npy",
-           "fortran.npy", "group.zarr", "half.npy", "jpeg.tif", "list.mhd", "long.mha", "mixed_dir",
-           "pyhst_lone.vol", "sheared.nrrd", "text.nrrd", "two.hdf5", "uneven_dir", "version1.vol", "version3.zarr")
+REFUSED = ("beside.dat", "colour_dir", "complex.nii", "empty_dir", "filters.zarr", "flat.mha",
+           "flat.npy", "fortran.npy", "group.zarr", "half.npy", "jpeg.tif", "list.mhd", "long.mha",
+           "mixed_dir", "pyhst_lone.vol", "sheared.nrrd", "text.nrrd", "two.hdf5", "uneven_dir",
+           "version1.vol", "version3.zarr")
 
 
 def numpy_files():
     files = {}
-    for code, name in zip("BbHhIifd?qQ", ("|u1", "|i1", "u2", "i2", "u4", "i4", "f4", "f8", "|b1", "i8", "u8")):
+    for code, name in zip("BbHhIifd?qQ", ("|u1", "|i1", "u2", "i2", "u4", "i4", "f4", "f8", "|b1",
+                                          "i8", "u8")):
         for order, letter in (("<", "little"), (">", "big")):
             if name[0] != "|":
                 files[f"{name}_{letter}.npy"] = npy(order + name, samples(code, order))
@@ -377,8 +396,10 @@ def header_files():
         "version2.longvol": dgtal("Lvoxel-Size: 4", 2, samples("I")),
         "version3.longvol": dgtal("Lvoxel-Size: 8", 3, zlib.compress(samples("Q"))),
     }
-    for name, data, fields in (("float", samples("f"), f"voxelSize = {UM}\nBYTEORDER = LOWBYTEFIRST\n"),
-                               ("short", samples("H"), "ValMin = 1\n"), ("byte", byte, "DATA_TYPE = uint8\n"),
+    for name, data, fields in (("float", samples("f"),
+                                f"voxelSize = {UM}\nBYTEORDER = LOWBYTEFIRST\n"),
+                               ("short", samples("H"), "ValMin = 1\n"),
+                               ("byte", byte, "DATA_TYPE = uint8\n"),
                                ("big", samples("f", ">"), "BYTEORDER = HIGHBYTEFIRST\n")):
         files[f"pyhst_{name}.vol"] = data
         files[f"pyhst_{name}.vol.info"] = pyhst(fields)
@@ -413,7 +434,7 @@ def tiff_files():
 def folders():
     """The files of each folder of slices and of each Zarr array."""
     byte, short = samples("B"), samples("H")
-    grey = [b"".join(bytes([v, v, v]) for v in page) for page in slices(byte)]
+    gray = [b"".join(bytes([v, v, v]) for v in page) for page in slices(byte)]
     nibbles = [bytes(v % 16 for v in page) for page in slices(byte)]
     large = [samples("H", ">")[i:i + 2 * SLICE] for i in range(0, 2 * COUNT, 2 * SLICE)]
     log = f"[System]\nImage Pixel Size (um)= 99\n[Reconstruction]\nPixel Size (um)={UM}\n".encode()
@@ -424,15 +445,17 @@ def folders():
         "png_dir": {**numbered([png(p) for p in slices(byte)], "png"), "scan.log": log},
         "png16_dir": numbered([png(p, bits=16) for p in large], "png"),
         "png1_dir": numbered([png(p, bits=1) for p in slices(bit_rows(samples("?")))], "png"),
-        "palette_dir": numbered([png(p, colour=3) for p in slices(byte)], "png"),
-        "grey_dir": numbered([png(p, colour=2) for p in grey], "png"),
-        "colour_dir": numbered([png(p[1:] + p[:1], colour=2) for p in grey], "png"),
+        "palette_dir": numbered([png(p, color=3) for p in slices(byte)], "png"),
+        "grey_dir": numbered([png(p, color=2) for p in gray], "png"),
+        "colour_dir": numbered([png(p[1:] + p[:1], color=2) for p in gray], "png"),
         "bmp_dir": {**numbered([bmp(p) for p in slices(byte)], "bmp"), "scan.log": log},
-        "bmp24_dir": numbered([bmp(p, 24) for p in grey], "bmp"),
-        "bmp1_dir": numbered([bmp(p, 1, top_down=True) for p in slices(bit_rows(samples("?")))], "bmp"),
+        "bmp24_dir": numbered([bmp(p, 24) for p in gray], "bmp"),
+        "bmp1_dir": numbered([bmp(p, 1, top_down=True) for p in slices(bit_rows(samples("?")))],
+                             "bmp"),
         "bmp4_dir": numbered([bmp(b"".join(bytes([a << 4 | b for a, b in zip(
-            row[::2], row[1::2] + b"\0" * (NX % 2))]) for row in (page[i:i + NX] for i in range(0, SLICE, NX))),
-            4) for page in nibbles], "bmp"),
+            row[::2], row[1::2] + b"\0" * (NX % 2))])
+            for row in (page[i:i + NX] for i in range(0, SLICE, NX))), 4) for page in nibbles],
+            "bmp"),
         "tiff_dir": {**numbered([tiff([p]) for p in slices(byte)], "tif"), "scan.log": log},
         "mixed_dir": {"a.png": png(slices(byte)[0]), "b.bmp": bmp(slices(byte)[0])},
         "uneven_dir": {"a.png": png(slices(byte)[0]), "b.png": png(large[0], bits=16)},
@@ -447,7 +470,8 @@ def folders():
                          for name, data in zarr("|u1", byte).items()},
     }
     result["ome.zarr"] = {".zgroup": b'{"zarr_format": 2}', ".zattrs": ome_zarr("0"),
-                          **{f"0/{name}": data for name, data in zarr("<u2", short, leading=1).items()}}
+                          **{f"0/{name}": data
+                             for name, data in zarr("<u2", short, leading=1).items()}}
     result["group.zarr"] = {".zgroup": b'{"zarr_format": 2}',
                             **{f"{array}/{name}": data for array in "ab"
                                for name, data in zarr("|u1", byte).items()}}
@@ -461,13 +485,15 @@ def plain_files():
     for _ in range(3000):
         state = (state * 1664525 + 1013904223) % 2**32
         garbage.append(state >> 24)
-    files = {"small.raw": samples("B"), "short.raw": samples("H"), "short_big.raw": samples("H", ">"),
-             "float.raw": samples("f"), "nan.raw": struct.pack("<4f", 0, 1, float("nan"), 0),
-             "half.raw": struct.pack("<4f", 0, 1, 1.5, 0), "huge.raw": struct.pack("<4f", 0, 1, 3e9, 0),
-             "left.raw": struct.pack("<4f", 1, 1, 0, 0), "right.raw": struct.pack("<4f", 0, 0, 1, 1),
-             "solid.raw": b"\1" * 40**3}
-    for ending in ("vdb", "tif", "mhd", "mha", "nrrd", "npy", "png", "bmp", "isq", "nii", "nii.gz", "vol",
-                   "longvol", "info", "h5", "raw", "xyz"):
+    files = {"small.raw": samples("B"), "short.raw": samples("H"),
+             "short_big.raw": samples("H", ">"), "float.raw": samples("f"),
+             "nan.raw": struct.pack("<4f", 0, 1, float("nan"), 0),
+             "half.raw": struct.pack("<4f", 0, 1, 1.5, 0),
+             "huge.raw": struct.pack("<4f", 0, 1, 3e9, 0),
+             "left.raw": struct.pack("<4f", 1, 1, 0, 0),
+             "right.raw": struct.pack("<4f", 0, 0, 1, 1), "solid.raw": b"\1" * 40**3}
+    for ending in ("vdb", "tif", "mhd", "mha", "nrrd", "npy", "png", "bmp", "isq", "nii", "nii.gz",
+                   "vol", "longvol", "info", "h5", "raw", "xyz"):
         files["empty." + ending] = b""
         files["garbage." + ending] = bytes(garbage)
     return files
@@ -478,7 +504,8 @@ def write_all(folder):
     images = {**numpy_files(), **header_files(), **tiff_files()}
     grids = hand_made_vdb.vdb_files()
     inside = folders()
-    nested = {f"{name}/{file}": data for name, files in inside.items() for file, data in files.items()}
+    nested = {f"{name}/{file}": data for name, files in inside.items()
+              for file, data in files.items()}
     for name, data in {**images, **grids, **nested, **plain_files()}.items():
         path = os.path.join(folder, name)
         os.makedirs(os.path.dirname(path), exist_ok=True)

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: The vdb_madf authors
 # SPDX-License-Identifier: Apache-2.0
-"""VDB files made from the format's definition: grids of all types that are read, with active tiles."""
+"""VDB files made from the format's definition: grids of all types that are read, with active
+tiles."""
 import struct
 import zlib
 
@@ -37,7 +38,8 @@ class Tree:
     def block(self, entries, count):
         """All values of a node, whether active or not."""
         background = self.value(self.background)
-        data = b"".join(self.value(entries[i][0]) if i in entries else background for i in range(count))
+        data = b"".join(self.value(entries[i][0]) if i in entries else background
+                        for i in range(count))
         if not self.zip:
             return b"\6" + data
         packed = zlib.compress(data)
@@ -53,17 +55,20 @@ class Tree:
         """`children` and `tiles`: by the coordinates of their lowest voxel."""
         count = 1 << 3 * log2
         inside = {index(p, node, log2): (value, True) for p, value in tiles.items()}
-        return (self.mask([index(p, node, log2) for p in children], count) + self.mask(inside, count) +
+        return (self.mask([index(p, node, log2) for p in children], count) + self.mask(inside,
+                                                                                       count) +
                 self.block(inside, count))
 
     def bytes(self):
         """Topology and buffers."""
         lower = {}
         for leaf in self.leaves:
-            lower.setdefault(tuple(c >> 4 for c in leaf), ([], {}))[0].append(tuple(c << 3 for c in leaf))
+            lower.setdefault(tuple(c >> 4 for c in leaf),
+                             ([], {}))[0].append(tuple(c << 3 for c in leaf))
         for p, value in self.tiles[3].items():
             lower.setdefault(tuple(c >> 7 for c in p), ([], {}))[1][p] = value
-        topology = struct.pack("<i", 1) + self.value(self.background) + struct.pack("<II3i", 0, 1, 0, 0, 0)
+        topology = struct.pack("<i", 1) + self.value(self.background) + struct.pack("<II3i", 0, 1,
+                                                                                    0, 0, 0)
         nodes = {tuple(c << 7 for c in p): content for p, content in lower.items()}
         topology += self.internal(7, 5, nodes, self.tiles[7])
         buffers = b""
@@ -86,7 +91,8 @@ class Tree:
 def vdb(grids, edge=1.0):
     """`grids`: name, type, tree, and more metadata as pairs of name and (type, bytes)."""
     # Magic number, versions of format and library, offsets, a UUID; no metadata; how many grids.
-    out = struct.pack("<qIII?", 0x56444220, 224, 10, 0, True) + b"00000000-0000-4000-8000-000000000000"
+    out = struct.pack("<qIII?", 0x56444220, 224, 10, 0,
+                      True) + b"00000000-0000-4000-8000-000000000000"
     out += struct.pack("<Ii", 0, len(grids))
     scale = [edge, edge, 1 / edge, 1 / edge**2, 0.5 / edge]  # of a ScaleMap, each for x, y and z
     transform = text("UniformScaleMap") + b"".join(struct.pack("<3d", v, v, v) for v in scale)
@@ -99,7 +105,8 @@ def vdb(grids, edge=1.0):
         descriptor = text(name) + text(f"Tree_{kind}_5_4_3") + text("")
         start = len(out) + len(descriptor) + 24
         body = head + transform + topology
-        out += descriptor + struct.pack("<qqq", start, start + len(body), start + len(body) + len(buffers))
+        out += descriptor + struct.pack("<qqq", start, start + len(body),
+                                        start + len(body) + len(buffers))
         out += body + buffers
     return out
 
@@ -109,7 +116,8 @@ DOMAIN = {"madf_domain_min": ("vec3i", struct.pack("<3i", 0, 0, 0)),
 
 
 def two_balls(code, background, value, zipped_blocks=True, tiles=()):
-    """Balls at x = 12 and 27; `value` of which (0, 1) and the place in it. `tiles`: edge's log2, origin."""
+    """Balls at x = 12 and 27; `value` of which (0, 1) and the place in it. `tiles`: edge's log2,
+    origin."""
     tree = Tree(code, background, zipped_blocks)
     for which, center in enumerate(((12, 14, 15), (27, 16, 15))):
         for p in BALL:
@@ -143,16 +151,20 @@ def vdb_files():
         "labels.vdb": vdb([("grain", "int32", two_balls("i", 0, label), DOMAIN)], 0.01),
         "plain.vdb": vdb([("grain", "int32", two_balls("i", 0, label, zipped_blocks=False), {})]),
         "tiles.vdb": vdb([("grain", "int32", two_balls("i", 0, label, tiles=far), DOMAIN)], 0.01),
-        "large_tile.vdb": vdb([("grain", "int32", two_balls("i", 0, label, tiles=[(7, (128, 0, 0), 9)]), {})]),
+        "large_tile.vdb": vdb([("grain", "int32",
+                                two_balls("i", 0, label, tiles=[(7, (128, 0, 0), 9)]), {})]),
         "object.vdb": vdb([("object", "bool", two_balls("?", False, lambda which, p: True, tiles=[
             (3, (40, 0, 0), True), (7, (0, 0, 128), True)]), {})]),
-        "fog.vdb": vdb([("density", "float", two_balls("f", 0.0, fog, tiles=[(3, (40, 0, 0), 0.5)]), {
+        "fog.vdb": vdb([("density", "float", two_balls("f", 0.0, fog, tiles=[(3, (40, 0, 0), 0.5)]),
+                         {
             "class": ("string", b"fog volume"), **DOMAIN})]),
-        "level_set.vdb": vdb([("surface", "float", level_set(), {"class": ("string", b"level set")})], 0.5),
+        "level_set.vdb": vdb([("surface", "float", level_set(),
+                               {"class": ("string", b"level set")})], 0.5),
         "many.vdb": vdb([
             ("int64", "int64", two_balls("q", 0, label), DOMAIN),
             ("double", "double", two_balls("d", -1.0, fog), DOMAIN),
-            ("vector", "vec3s", two_balls("3f", (0.0, 0.0, 0.0), lambda which, p: (1.0, which, 0.5)), {}),
+            ("vector", "vec3s", two_balls("3f", (0.0, 0.0, 0.0), lambda which,
+                                          p: (1.0, which, 0.5)), {}),
             ("label", "int32", two_balls("i", 0, label), {})]),
         "unknown_type.vdb": vdb([("points", "ptdataidx32", two_balls("i", 0, label), {}),
                                  ("grain", "int32", two_balls("i", 0, label), DOMAIN)]),

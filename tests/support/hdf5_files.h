@@ -73,7 +73,7 @@ struct VirtualHdf5Part {
   hsize_t first, count;
 };
 
-/// Of uint8.
+/// Adds a virtual dataset of uint8.
 inline void addVirtualHdf5(hid_t file, const std::string& name, const std::vector<hsize_t>& shape,
                            const std::vector<VirtualHdf5Part>& parts) {
   const hid_t space = H5Screate_simple(3, shape.data(), nullptr),
@@ -91,7 +91,7 @@ inline void addVirtualHdf5(hid_t file, const std::string& name, const std::vecto
   H5Sclose(space);
 }
 
-/// Of uint8, the samples in a raw file.
+/// Adds a dataset of uint8 with the samples in a raw file.
 inline void addHdf5External(hid_t file, const std::string& name, const std::vector<hsize_t>& shape,
                             const std::string& samples) {
   const hid_t space = H5Screate_simple(int(shape.size()), shape.data(), nullptr),

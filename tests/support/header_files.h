@@ -88,7 +88,7 @@ inline std::string niftiFile(const NiftiLayout& layout, const std::string& sampl
   return bytes + samples;
 }
 
-/// Of 5 x 4 x 3 voxels. Version 0: none is stated.
+/// A header of 5 x 4 x 3 voxels. Version 0: none is stated.
 inline std::string dgtalHeader(const std::string& voxelSize, int version) {
   return "Center-X: 2\nCenter-Y: 1\nCenter-Z: 1\nX: 5\nY: 4\nZ: 3\n" + voxelSize +
          "\nAlpha-Color: 0\nVoxel-Endian: 0\nInt-Endian: 0123\n" +

@@ -1,11 +1,15 @@
 # SPDX-FileCopyrightText: The vdb_madf authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writes one volume in formats of other programs, or reads what we wrote, with those programs' own modules.
+"""Writes one volume in formats of other programs, or reads what we wrote, with those programs' own
+modules.
 
-    image_formats.py write FOLDER   volume.raw (int16, x fastest) and labels.raw (int64), and the same
-                                    as other files; prints a line each: "file TRUTH NAME METRES [DATASET]",
-                                    METRES 0 where the format knows none; or "skipped MODULE"
-    image_formats.py check FOLDER   compares ours.npy, ours.tif, ours.nrrd, ours.h5 with labels.raw; prints "same NAME"
+    image_formats.py write FOLDER   volume.raw (int16, x fastest) and labels.raw (int64), and the
+    same
+                                    as other files; prints a line each: "file TRUTH NAME METRES
+                                    [DATASET]", METRES 0 where the format knows none; or "skipped
+                                    MODULE"
+    image_formats.py check FOLDER   compares ours.npy, ours.tif, ours.nrrd, ours.h5 with labels.raw;
+    prints "same NAME"
 
 The axes of the arrays are [z, y, x], all of other length; no two voxels of the volume are equal.
 """
@@ -34,7 +38,8 @@ def write_numpy(np, folder, volume, labels):
 
 def write_nifti(nib, folder, volume, labels):
     for name in ("volume.nii", "volume.nii.gz"):
-        image = nib.Nifti1Image(volume.transpose(2, 1, 0), [[UM / 1e3, 0, 0, 0], [0, UM / 1e3, 0, 0],
+        image = nib.Nifti1Image(volume.transpose(2, 1, 0),
+                                [[UM / 1e3, 0, 0, 0], [0, UM / 1e3, 0, 0],
                                                            [0, 0, UM / 1e3, 0], [0, 0, 0, 1]])
         image.header.set_xyzt_units("mm")
         nib.save(image, f"{folder}/{name}")
@@ -49,22 +54,25 @@ def write_zarr(zarr, folder, volume, labels):
     def save(name, array, chunks, separator=".", **more):
         if not new:
             store = zarr.DirectoryStore(f"{folder}/{name}", dimension_separator=separator)
-            zarr.create(array.shape, chunks=chunks, dtype=array.dtype, store=store, overwrite=True, **more)[:] = array
+            zarr.create(array.shape, chunks=chunks, dtype=array.dtype, store=store, overwrite=True,
+                        **more)[:] = array
             return
         if "compressor" in more:
             more["compressors"] = more.pop("compressor")
         config = {"write_empty_chunks": more.pop("write_empty_chunks", True)}
-        zarr.create_array(f"{folder}/{name}", shape=array.shape, chunks=chunks, dtype=array.dtype, zarr_format=2,
-                          chunk_key_encoding={"name": "v2", "separator": separator}, config=config, overwrite=True,
-                          **more)[:] = array
+        zarr.create_array(f"{folder}/{name}", shape=array.shape, chunks=chunks, dtype=array.dtype,
+                          zarr_format=2, chunk_key_encoding={"name": "v2", "separator": separator},
+                          config=config, overwrite=True, **more)[:] = array
 
     for name, compressor in (("blosc", numcodecs.Blosc(cname="zstd", shuffle=2)),
                              ("zlib", numcodecs.Zlib()), ("gzip", numcodecs.GZip()),
                              ("zstd", numcodecs.Zstd()), ("none", None)):
         save(f"{name}.zarr", volume, (4, 3, 5), compressor=compressor)
         print(f"file volume.raw {name}.zarr 0")
-    group = zarr.open_group(f"{folder}/image.ome.zarr", mode="w", **({"zarr_format": 2} if new else {}))
-    save("image.ome.zarr/0", labels[None, None], (1, 1, 4, 3, 5), "/", fill_value=0, write_empty_chunks=False)
+    group = zarr.open_group(f"{folder}/image.ome.zarr", mode="w",
+                            **({"zarr_format": 2} if new else {}))
+    save("image.ome.zarr/0", labels[None, None], (1, 1, 4, 3, 5), "/", fill_value=0,
+         write_empty_chunks=False)
     save("image.ome.zarr/1", volume[None, None], (1, 1, 2, 8, 8), "/", order="F")
     scale = [{"type": "scale", "scale": [1, 1, UM, UM, UM]}]
     group.attrs["multiscales"] = [{
@@ -96,7 +104,8 @@ def write_zarr3(numcodecs, folder, volume, labels):
         "none": ([], lambda b: b),
         "gzip": ([{"name": "gzip", "configuration": {"level": 5}}], numcodecs.GZip(5).encode),
         "zstd": ([{"name": "zstd", "configuration": {"level": 3, "checksum": False}},
-                  {"name": "crc32c"}], lambda b: (lambda e: e + crc32c(e))(bytes(numcodecs.Zstd(3).encode(b)))),
+                  {"name": "crc32c"}], lambda b: (lambda e: e
+                                                  + crc32c(e))(bytes(numcodecs.Zstd(3).encode(b)))),
         "blosc": ([{"name": "blosc", "configuration": {"cname": "zstd", "clevel": 5, "typesize": 2,
                                                        "shuffle": "bitshuffle", "blocksize": 0}}],
                   numcodecs.Blosc("zstd", 5, 2).encode)}
@@ -131,7 +140,8 @@ def write_zarr3(numcodecs, folder, volume, labels):
                     files["c/" + "/".join(map(str, shard))] = data + places + crc32c(places)
             shape = [2 * c for c in chunk] if sharded else chunk
             codec = [{"name": "sharding_indexed", "configuration": {
-                "chunk_shape": chunk, "codecs": inner, "index_codecs": index}}] if sharded else inner
+                "chunk_shape": chunk, "codecs": inner,
+                "index_codecs": index}}] if sharded else inner
             files["zarr.json"] = json.dumps({
                 "zarr_format": 3, "node_type": "array", "shape": volume.shape, "data_type": "int16",
                 "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": shape}},
@@ -146,8 +156,8 @@ def write_zarr3(numcodecs, folder, volume, labels):
 
 def write_hdf5(h5py, folder, volume, labels):
     with h5py.File(f"{folder}/volume.h5", "w") as file:
-        data = file.create_dataset("exported_data", data=volume, chunks=(4, 3, 5), compression="gzip",
-                                   shuffle=True)
+        data = file.create_dataset("exported_data", data=volume, chunks=(4, 3, 5),
+                                   compression="gzip", shuffle=True)
         data.attrs["element_size_um"] = (UM, UM, UM)
         file.create_dataset("more/labels", data=labels)
     print("file volume.raw volume.h5", UM / 1e6, "exported_data")
@@ -174,8 +184,8 @@ def write(folder):
     volume.tofile(f"{folder}/volume.raw")
     labels.tofile(f"{folder}/labels.raw")
     write_numpy(np, folder, volume, labels)
-    for name, function in (("nibabel", write_nifti), ("zarr", write_zarr), ("numcodecs", write_zarr3),
-                           ("h5py", write_hdf5),
+    for name, function in (("nibabel", write_nifti), ("zarr", write_zarr),
+                           ("numcodecs", write_zarr3), ("h5py", write_hdf5),
                            ("PIL.Image", write_slices)):
         found = module(name)
         if found:

@@ -17,12 +17,12 @@ namespace vdb_madf::test {
 /// is 0.
 std::string labelsCoverObject(const MaskGrid& object, const Int32Grid& labels, int64_t count);
 
-/// D >= 1 on the object, and sqrt(D) differs by at most the edge sqrt(w) between 6-neighbours, w the
-/// weight of their axis.
+/// D >= 1 on the object, and sqrt(D) differs by at most the edge sqrt(w) between 6-neighbours, w
+/// the weight of their axis.
 std::string distanceIsLipschitz(const MaskGrid& object, const Int32Grid& distanceSquared,
                                 const VoxelWeights& weights = {});
 
-/// Without a filter: power <= -D (the ball at p itself is a candidate).
+/// power <= -D without a filter (the ball at p itself is a candidate).
 std::string powerIsAtMostMinusDistance(const Int32Grid& distanceSquared, const Int32Grid& power);
 
 /// H = -power is at most D of the critical point that the voxel flows to; equal only there.

@@ -18,8 +18,8 @@
 namespace vdb_madf::test {
 
 /// Empty if every grain of the mesh is closed and oriented by itself: each edge is used once
-/// one way and once the other, every triangle has three points, all points are used and those of its
-/// grain.
+/// one way and once the other, every triangle has three points, all points are used and those of
+/// its grain.
 inline std::string whyNotClosed(const GrainMesh& mesh) {
   if (mesh.firstPoint.size() != mesh.labels.size() + 1 || mesh.firstPoint.front() != 0 ||
       mesh.firstPoint.back() != mesh.points.size() ||
@@ -69,8 +69,8 @@ inline std::string whyNoDisc(const GrainMesh& mesh) {
 
 using Corners = std::array<std::array<float, 3>, 3>;
 
-/// The corners of a triangle, or of the same one turned over, rotated to begin with the least: equal if
-/// it is the same one.
+/// The corners of a triangle, or of the same one turned over, rotated to begin with the least:
+/// equal if it is the same one.
 inline Corners cornersOf(const GrainMesh& mesh, const std::array<uint32_t, 3>& triangle,
                          bool turned) {
   Corners corners;

@@ -155,7 +155,6 @@ inline std::vector<Face> readGlb(const std::string& bytes) {
   return faces;
 }
 
-/// By the ending.
 inline std::vector<Face> readMesh(const std::string& ending, const std::string& bytes) {
   return ending == "ply"   ? readPly(bytes)
          : ending == "obj" ? readObj(bytes)

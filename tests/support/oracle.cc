@@ -110,9 +110,9 @@ OracleBody oracleBody(const ObjectVolume& object, const std::optional<OracleDoma
 
 DenseVolume<int64_t> oracleDistance(const ObjectVolume& object, bool open,
                                     const OracleDomain& domain, const VoxelWeights& weights) {
-  // Only the background voxels that have a 6-neighbour that is none can be nearest to a p in X: from
-  // the nearest one, q, a step along an axis in which q and p differ leads nearer to p, so what lies
-  // there is not background; then it is in X, or outside the domain.
+  // Only the background voxels that have a 6-neighbour that is none can be nearest to a p in X:
+  // from the nearest one, q, a step along an axis in which q and p differ leads nearer to p, so
+  // what lies there is not background; then it is in X, or outside the domain.
   CoordBBox around = object.box();
   if (!around.empty()) around.expand(1);
   if (!around.empty() && open) around = domain.box();

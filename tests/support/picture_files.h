@@ -17,7 +17,7 @@ namespace vdb_madf::test {
 struct PngLayout {
   int width = 0, height = 0;
   int bits = 8;
-  int colour = 0;  ///< 0 grey, 2 RGB, 3 palette, 4 grey and opacity, 6 RGB and opacity
+  int colour = 0;  ///< 0 gray, 2 RGB, 3 palette, 4 gray and opacity, 6 RGB and opacity
   bool interlaced = false;
 };
 

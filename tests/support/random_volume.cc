@@ -17,7 +17,7 @@ void fillBox(ObjectVolume& object, CoordBBox part, uint8_t value = 1) {
   for (auto p = part.begin(); p; ++p) object[*p] = value;
 }
 
-/// Centres need not be voxels: `center` is in voxels from the corner of the box.
+/// Centers need not be voxels: `center` is in voxels from the corner of the box.
 struct Ball {
   std::array<double, 3> center;
   double radius;
@@ -54,7 +54,7 @@ CoordBBox randomPart(const CoordBBox& box, Rng& rng) {
   return part;
 }
 
-/// Half of the balls are centred on a voxel: symmetric, with many ties.
+/// Half of the balls are centered on a voxel: symmetric, with many ties.
 Ball randomBall(const ObjectVolume& object, double least, double most, Rng& rng) {
   Ball ball{};
   const bool onVoxel = rng.chance(0.5);

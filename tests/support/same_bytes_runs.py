@@ -11,9 +11,11 @@ import same_bytes_refusals
 from hand_made_files import REFUSED
 from same_bytes_refusals import DAMAGED, Edit
 
-IMAGES = ("tif", "mhd", "raw", "mha", "nrrd", "npy")  # an .mhd would not replace the .raw of another
+# an .mhd would not replace the .raw of another
+IMAGES = ("tif", "mhd", "raw", "mha", "nrrd", "npy")
 TYPES = ("uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64")
-VERBS = ("generate", "convert", "segment", "remerge", "edit", "sweep", "measure", "collect", "compare", "track", "render", "report", "export", "info")
+VERBS = ("generate", "convert", "segment", "remerge", "edit", "sweep", "measure", "collect",
+         "compare", "track", "render", "report", "export", "info")
 KINDS = {"spheres": "--count 6 --radius 6:9", "pack": "--radius 4:8", "snow": "--length 12",
          "sintered": "--count 6 --radius 7:9", "particles": "--count 6 --radius 7:9",
          "bed": "--radius 7:9 --rounds 2"}
@@ -44,24 +46,30 @@ def generate():
     yield "generate sintered sintered.vdb --size 64 --count 12 --radius 9:13 --voxel-size 8.5um"
     yield "generate spheres spheres.vdb --size 64 --count 12 --radius 8:12"
     yield "generate pack pack.vdb --dims 96x72x40 --radius 5:10 --fraction 0.3 --voxel-size 1mm"
-    yield "generate snow large.vdb --size 128 --length 24 --fraction 0.35 --seed 3 --voxel-size 20um"
+    yield ("generate snow large.vdb --size 128 --length 24 --fraction 0.35 --seed 3 --voxel-size "
+           "20um")
     for kind, ending in product(KINDS, ("vdb", "tiff") + IMAGES):
         yield f"generate {kind} {kind}32.{ending} --size 32 {KINDS[kind]}"
     for kind, options in KINDS.items():
         for number, more in enumerate(("--seed 2", "--threads 1", "--threads 2", "--quiet --seed 5",
-                                       "--verbose --seed 18446744073709551615", "--voxel-size 15nm")):
+                                       "--verbose --seed 18446744073709551615",
+                                       "--voxel-size 15nm")):
             yield f"generate {kind} {kind}_{number}.vdb --dims 40x36x33 {options} {more}"
     for number, options in enumerate((
-            "spheres --count 9 --radius 7 --overlap 0.2", "spheres --count 9 --radius 6:8 --max-cover 0",
-            "spheres --count 9 --radius 6:8 --max-cover 1 --overlap 0", "pack --fraction 0.5 --radius 3:5",
-            "pack --fraction 0.05 --radius 6", "snow --fraction 0.1 --length 9", "snow --fraction 0.9 --length 30",
+            "spheres --count 9 --radius 7 --overlap 0.2",
+            "spheres --count 9 --radius 6:8 --max-cover 0",
+            "spheres --count 9 --radius 6:8 --max-cover 1 --overlap 0",
+            "pack --fraction 0.5 --radius 3:5", "pack --fraction 0.05 --radius 6",
+            "snow --fraction 0.1 --length 9", "snow --fraction 0.9 --length 30",
             "sintered --count 9 --radius 6:8 --neck 0.6 --roughness 0.3",
             "sintered --count 9 --radius 6:8 --neck 0.95 --roughness 1",
-            "sintered --count 9 --radius 7 --roughness 0", "particles --count 9 --radius 6:8 --shape balls --neck 0.7",
+            "sintered --count 9 --radius 7 --roughness 0",
+            "particles --count 9 --radius 6:8 --shape balls --neck 0.7",
             "particles --count 9 --radius 4:9 --lognormal 0.3 --shape plates",
             "particles --count 9 --radius 6:8 --shape prisms --surface 1:5",
-            "spheres --count 9 --radius 6:8 --surface 1.5:4 --scan-noise 0.8:0.1", "snow --scan-noise 0:0.3:2",
-            "particles --count 9 --radius 6 --shape polyhedra", "bed --radius 5:9 --rounds 0 --surface 1:4")):
+            "spheres --count 9 --radius 6:8 --surface 1.5:4 --scan-noise 0.8:0.1",
+            "snow --scan-noise 0:0.3:2", "particles --count 9 --radius 6 --shape polyhedra",
+            "bed --radius 5:9 --rounds 0 --surface 1:4")):
         kind, rest = options.split(" ", 1)
         yield f"generate {kind} option{number}.vdb --size 40 {rest}"
     yield "generate snow one.vdb --size 1 --length 4"
@@ -77,10 +85,12 @@ def convert(images, grids):
         yield f"convert {name} labels_from_{source}.{target}{layout(name, kind='int32')}"
     scan = "convert sintered32.truth.tif"
     for number, select in enumerate((
-            "--phase 1", "--phase 0", "--phase 3.5", "--threshold 3", "--range 2:4", "--range 0:0")):
+            "--phase 1", "--phase 0", "--phase 3.5", "--threshold 3", "--range 2:4",
+            "--range 0:0")):
         for invert in ("", " --invert"):
             yield f"{scan} select{number}{invert.strip(' -')}.vdb {select}{invert}"
-            yield f"convert sintered32.vdb grid{number}{invert.strip(' -')}.vdb --grid truth {select}{invert}"
+            yield (f"convert sintered32.vdb grid{number}{invert.strip(' -')}.vdb --grid truth "
+                   f"{select}{invert}")
     yield f"{scan} select.npy --phase 2"
     yield f"{scan} inverted.mha --invert"
     yield "convert snow.vdb inverted.vdb --invert"
@@ -133,19 +143,23 @@ def convert(images, grids):
 
 
 def segment():
-    for boundary, gamma, merge, adjacency in product(("open", "closed"), (0, 20), ("both", "angle", "neck"),
+    for boundary, gamma, merge, adjacency in product(("open", "closed"), (0, 20),
+                                                     ("both", "angle", "neck"),
                                                      ("manifold", "cell")):
-        yield (f"segment snow.vdb {boundary}_{gamma}_{merge}_{adjacency}.vdb --boundary {boundary} --gamma {gamma}"
-               f" --merge {merge} --adjacency {adjacency}")
+        yield (f"segment snow.vdb {boundary}_{gamma}_{merge}_{adjacency}.vdb --boundary {boundary} "
+               f"--gamma {gamma} --merge {merge} --adjacency {adjacency}")
     for sample, gamma in product(("snow", "sintered", "spheres", "pack"), (0, 20)):
         yield (f"segment {sample}.vdb all_{sample}_{gamma}.vdb --grid object --gamma {gamma}"
                f" --keep distance,power,manifold,balls --tables all_{sample}_{gamma}_dir"
                f" --json all_{sample}_{gamma}.json --boundary closed")
-    yield "segment large.vdb large_labels.vdb --json large.json --tables large_dir --keep manifold,balls"
+    yield ("segment large.vdb large_labels.vdb --json large.json --tables large_dir --keep "
+           "manifold,balls")
     for threads in (1, 2):
-        yield (f"segment large.vdb threads{threads}.vdb --threads {threads} --gamma 20 --json threads{threads}.json"
-               f" --keep distance,power,manifold,balls --tables threads{threads}_dir")
-        yield f"segment sintered.vdb grid_threads{threads}.vdb --grid object --threads {threads} --boundary closed"
+        yield (f"segment large.vdb threads{threads}.vdb --threads {threads} --gamma 20 --json "
+               f"threads{threads}.json --keep distance,power,manifold,balls --tables "
+               f"threads{threads}_dir")
+        yield (f"segment sintered.vdb grid_threads{threads}.vdb --grid object --threads {threads} "
+               f"--boundary closed")
     for keep in ("distance", "power", "manifold", "balls", "balls,power"):
         yield f"segment snow.vdb keep_{keep.replace(',', '_')}.vdb --keep {keep}"
     for theta in (-1, -0.95, -0.6, 0, 1):
@@ -164,12 +178,15 @@ def segment():
     yield "segment snow.vdb selected.vdb --threshold 1 --voxel-size 1um"
     yield "segment snow.vdb pores.vdb --invert --json pores.json"
     yield "segment snow.vdb domain.vdb --domain -8,-8,-8:71,72,73 --tables domain_dir"
-    for number, select in enumerate(("--phase 2", "--threshold 4", "--range 2:4", "--range 1:3 --invert", "")):
+    for number, select in enumerate(("--phase 2", "--threshold 4", "--range 2:4",
+                                     "--range 1:3 --invert", "")):
         for ending in ("tif", "raw"):
             name = f"sintered32.truth.{ending}"
-            yield f"segment {name} image{number}_{ending}.vdb{layout(name, kind='int32')} {select} --voxel-size 8.5um"
+            yield (f"segment {name} image{number}_{ending}.vdb{layout(name, kind='int32')} "
+                   f"{select} --voxel-size 8.5um")
     yield "segment png_dir picture_dir_labels.vdb --threshold 100 --json picture.json"
-    yield "segment solid.vdb solid_labels.vdb --boundary closed --keep distance,power,manifold,balls"
+    yield ("segment solid.vdb solid_labels.vdb --boundary closed --keep "
+           "distance,power,manifold,balls")
     yield "segment object.vdb tile_labels.vdb --boundary closed --keep distance,manifold,balls"
     yield "segment inverted.vdb pores_labels.vdb --keep manifold"
     yield "segment fog.vdb fog_labels.vdb --threshold 0.2"
@@ -192,18 +209,24 @@ def remerge():
 
 
 def edit():
-    yield "edit keep_manifold.vdb edited.vdb --merge 1,2 --split 1 --min-voxels 20 --drop-at-faces --json edited.json"
+    yield ("edit keep_manifold.vdb edited.vdb --merge 1,2 --split 1 --min-voxels 20 "
+           "--drop-at-faces --json edited.json")
     yield "edit edited.vdb renumbered.tif --renumber --max-voxels 5000"
     yield "edit sintered32.truth.tif edited_image.vdb --renumber --drop 1 --quiet"
 
 
 def sweep():
     yield "sweep snow.vdb sweep.csv --plot sweep.svg"
-    yield "sweep snow.vdb sweep_gamma.csv --gamma 0,5 --theta -1:-0.5:0.25,-0.1 --merge angle --plot sweep_gamma.svg"
-    yield "sweep sintered.vdb sweep_cell.csv --grid object --adjacency cell --boundary closed --small 1000 --gamma 20"
-    yield "sweep spheres32.tif sweep_image.csv --phase 1 --gamma 0 --boundary open --theta -0.9 --plot -"
-    yield "sweep snow.vdb sweep_invert.csv --invert --gamma 0,20 --merge neck,both --quiet --plot sweep_invert.svg"
-    yield "sweep sintered32.truth.raw sweep_raw.csv --dims 32x32x32 --type int32 --range 2:4 --threads 1 --gamma 0"
+    yield ("sweep snow.vdb sweep_gamma.csv --gamma 0,5 --theta -1:-0.5:0.25,-0.1 --merge angle "
+           "--plot sweep_gamma.svg")
+    yield ("sweep sintered.vdb sweep_cell.csv --grid object --adjacency cell --boundary closed "
+           "--small 1000 --gamma 20")
+    yield ("sweep spheres32.tif sweep_image.csv --phase 1 --gamma 0 --boundary open --theta -0.9 "
+           "--plot -")
+    yield ("sweep snow.vdb sweep_invert.csv --invert --gamma 0,20 --merge neck,both --quiet --plot "
+           "sweep_invert.svg")
+    yield ("sweep sintered32.truth.raw sweep_raw.csv --dims 32x32x32 --type int32 --range 2:4 "
+           "--threads 1 --gamma 0")
     yield "sweep snow.vdb sweep_domain.csv --domain -8,-8,-8:71,72,73 --gamma 160"
     yield "sweep solid_none.vdb sweep_none.csv --plot sweep_none.svg"
 
@@ -228,7 +251,8 @@ def measure():
 
 def collect():
     yield "collect measured_snow_dir measured_pack_dir all_sintered_20_dir collected.csv"
-    yield "collect measured_spheres_dir measured_tiles_dir measured_none_dir collected_voxels.csv --quiet"
+    yield ("collect measured_spheres_dir measured_tiles_dir measured_none_dir collected_voxels.csv "
+           "--quiet")
     yield "collect measured_snow_dir png_dir measured_snow_dir collected_one.csv"
     yield "collect measured_snow_dir -"
     yield "! collect measured_snow_dir measured_spheres_dir mixed.csv"
@@ -254,7 +278,8 @@ def compare():
 
 
 def track():
-    yield "track all_snow_0.vdb all_snow_20.vdb tracked.vdb --grains tracked.csv --links links.csv --bonds linked.csv --json tracked.json"
+    yield ("track all_snow_0.vdb all_snow_20.vdb tracked.vdb --grains tracked.csv --links "
+           "links.csv --bonds linked.csv --json tracked.json")
     yield "track keep_manifold.vdb edited.vdb tracked.tif --shift 1,0,-1 --share 0.3 --min-faces 4"
 
 
@@ -274,13 +299,16 @@ def render():
     for only in ("slices", "view"):
         yield f"render all_snow_0.vdb {only}.png --only {only}"
         yield f"render sintered32.truth.tif {only}_image.png --only {only} --size 90 --quiet"
-    for number, (azimuth, elevation) in enumerate(((0, 0), (90, 90), (-135, -30), (33.3, 12.5), (360, -90))):
-        yield f"render all_pack_0.vdb view{number}.png --only view --size 150 --azimuth {azimuth} --elevation {elevation}"
+    for number, (azimuth, elevation) in enumerate(((0, 0), (90, 90), (-135, -30), (33.3, 12.5),
+                                                   (360, -90))):
+        yield (f"render all_pack_0.vdb view{number}.png --only view --size 150 --azimuth {azimuth} "
+               f"--elevation {elevation}")
     yield "render sintered.vdb truth.png --grid truth --threads 1"
     yield "render sintered.vdb truth_threads.png --grid truth --threads 2"
     yield "render spheres32.truth.raw raw.png --dims 32x32x32 --type int32"
     for name in ("tiles", "plain", "solid_labels", "large_tile", "none", "one_labels", "size5"):
-        yield f"{'?' if name in ('none', 'size5') else ''} render {name}.vdb of_{name}.png --size 100"
+        yield (f"{'?' if name in ('none', 'size5') else ''} render {name}.vdb of_{name}.png --size "
+               f"100")
 
 
 def export():
@@ -296,11 +324,13 @@ def export():
     yield f"{labels} stl_dir --as mesh"
     yield f"{labels} stl_exact_dir --as mesh --smooth 0 --reduce 2"
     for kind in ("viz", "lod"):
-        for number, options in enumerate(("", "--reduce 2", "--reduce 3 --threads 1", "--max-dim 30", "--max-dim 500")):
+        for number, options in enumerate(("", "--reduce 2", "--reduce 3 --threads 1",
+                                          "--max-dim 30", "--max-dim 500")):
             yield f"{labels} {kind}{number}.vdb --as {kind} {options}"
         yield f"export large_labels.vdb {kind}_large.vdb --as {kind} --max-dim 64"
         yield f"export tiles.vdb {kind}_tiles.vdb --as {kind} --reduce 2"
-    for number, options in enumerate(("", "--smooth 0", "--smooth 3 --voxel-size 1um", "--threads 1")):
+    for number, options in enumerate(("", "--smooth 0", "--smooth 3 --voxel-size 1um",
+                                      "--threads 1")):
         yield f"export sintered32.vdb grids{number}.vdb --as grids {options}"
         yield f"export sintered32.vdb surface{number}.vdb --as surface {options}"
     yield "export all_sintered_0.vdb grids.vdb --as grids"
@@ -317,11 +347,13 @@ def export():
         yield f"export all_pack_20.vdb pack_network.{ending} --as network"
         yield f"export one_labels.vdb one_network.{ending} --as network"
     for ending in ("csv", "txt", "data"):
-        for number, options in enumerate(("", "--balls 5", "--uncovered 0.2", "--uncovered 0 --balls 1000")):
+        for number, options in enumerate(("", "--balls 5", "--uncovered 0.2",
+                                          "--uncovered 0 --balls 1000")):
             yield f"{labels} clumps{number}.{ending} --as clumps {options}"
         yield f"export threads1.vdb clumps_open.{ending} --as clumps --balls 20"
         yield f"export solid_labels.vdb clumps_solid.{ending} --as clumps"
-        yield f"{labels} clumps_apart.{ending} --as clumps --apart --bonds bonds_{ending}.csv --cover cover_{ending}.csv"
+        yield (f"{labels} clumps_apart.{ending} --as clumps --apart --bonds bonds_{ending}.csv "
+               f"--cover cover_{ending}.csv")
     for ending in ("vtu", "inp"):
         yield f"{labels} hexa.{ending}"
         yield f"{labels} hexa_named.{ending} --as hexa --voxel-size 1um"
@@ -333,8 +365,9 @@ def export():
         name = f"sintered32.truth.{ending}"
         yield f"export {name} of_{ending}.ply{layout(name, kind='int32')} --voxel-size 1um"
     for number, (name, options) in enumerate(product(("none", "solid_labels", "one_labels"), (
-            "surface.vdb --as surface", "mesh.ply", "viz.vdb --as viz", "lod.vdb --as lod", "grids.vdb --as grids",
-            "cells.vti", "network.vtp --as network", "hexa.vtu", "mask.raw --as mask"))):
+            "surface.vdb --as surface", "mesh.ply", "viz.vdb --as viz", "lod.vdb --as lod",
+            "grids.vdb --as grids", "cells.vti", "network.vtp --as network", "hexa.vtu",
+            "mask.raw --as mask"))):
         yield f"? export {name}.vdb {name}_{options}"
     yield "convert surface0.vdb of_surface.vdb"
     yield "convert surface0.vdb of_surface.npy"
@@ -352,8 +385,9 @@ def info(images, grids):
         yield f"info {name}"
     yield "info imagej.tif"
     yield "info i8_big.npy"
-    for name in ("snow", "sintered", "inverted", "solid", "all_snow_20", "threads1", "remerged_cell", "viz1", "lod1",
-                 "surface0", "grids0", "bool_grids", "none", "size0", "size4"):
+    for name in ("snow", "sintered", "inverted", "solid", "all_snow_20", "threads1",
+                 "remerged_cell", "viz1", "lod1", "surface0", "grids0", "bool_grids", "none",
+                 "size0", "size4"):
         yield f"info {name}.vdb"
         yield f"info {name}.vdb --json info_{name}.json"
     yield "info all_snow_0.vdb --json -"
@@ -384,14 +418,16 @@ def scan():
     yield "measure nmc_labels.vdb nmc_dir"
     yield "render nmc_labels.vdb nmc.png"
     yield Edit("nmc.raw", "nmc_crop.raw", crop((301, 301, 251), 60, 128))
-    yield ("segment nmc_crop.raw nmc_crop.vdb --dims 128x128x128 --type uint8 --phase 1 --voxel-size 0.4um"
-           " --keep distance,power,manifold,balls --tables nmc_crop_dir --boundary closed --json nmc_crop.json")
+    yield ("segment nmc_crop.raw nmc_crop.vdb --dims 128x128x128 --type uint8 --phase 1 "
+           "--voxel-size 0.4um --keep distance,power,manifold,balls --tables nmc_crop_dir "
+           "--boundary closed --json nmc_crop.json")
     yield "remerge nmc_crop.vdb nmc_merged.vdb --theta -0.5"
-    yield ("sweep nmc_crop.raw nmc_sweep.csv --dims 128x128x128 --type uint8 --phase 1 --gamma 0,160"
-           " --plot nmc_sweep.svg")
+    yield ("sweep nmc_crop.raw nmc_sweep.csv --dims 128x128x128 --type uint8 --phase 1 --gamma "
+           "0,160 --plot nmc_sweep.svg")
     yield "compare nmc_crop.vdb nmc_merged.vdb --json nmc_compared.json"
-    for options in ("nmc.ply", "nmc.vtp --as mesh", "nmc_view.vdb --as viz", "nmc_surface.vdb --as surface",
-                    "nmc.graphml", "nmc_clumps.txt --as clumps --balls 20", "nmc.vti --compress"):
+    for options in ("nmc.ply", "nmc.vtp --as mesh", "nmc_view.vdb --as viz",
+                    "nmc_surface.vdb --as surface", "nmc.graphml",
+                    "nmc_clumps.txt --as clumps --balls 20", "nmc.vti --compress"):
         yield f"export nmc_crop.vdb {options}"
 
 

@@ -44,8 +44,8 @@ inline std::map<int, MaskTree> layersOf(const MaskGrid& mask) {
   return layers;
 }
 
-/// At every layer of leaves, or at some or few of them, so that slabs are high; now and then there are
-/// empty slabs at the ends.
+/// At every layer of leaves, or at some or few of them, so that slabs are high; now and then there
+/// are empty slabs at the ends.
 inline std::vector<int> randomCuts(const CoordBBox& box, Rng& rng) {
   const int first = (box.min().z() & ~7) - 8 * rng.below(2);
   const int last = (box.max().z() | 7) + 1 + 8 * rng.below(2);

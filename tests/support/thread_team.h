@@ -16,7 +16,8 @@
 
 #include "vdb_madf/slabs/team.h"
 
-// Members that are threads, each with a scratch of its own: what one does not send, the others never have.
+// Members that are threads, each with a scratch of its own: what one does not send, the others
+// never have.
 
 namespace vdb_madf::test {
 

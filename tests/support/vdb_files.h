@@ -29,7 +29,7 @@ inline bool valueAt(const Coord& c) {
   return (c.x() + c.y()) % 2 == 0;
 }
 
-/// A ball of values around the centre, with an active tile of each level beside it and an inactive
+/// A ball of values around the center, with an active tile of each level beside it and an inactive
 /// value that is not the background.
 template <typename GridType>
 typename GridType::Ptr ballWithTiles(const Coord& center, int radius, const std::string& name,
@@ -74,7 +74,7 @@ inline FloatGrid::Ptr levelSet() {
   return grid;
 }
 
-/// As another program would write it.
+/// Writes the file as another program would.
 inline void writeWithOpenVdb(
     const std::string& path, const Grids& grids,
     uint32_t compression = openvdb::io::Archive::DEFAULT_COMPRESSION_FLAGS) {

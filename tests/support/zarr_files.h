@@ -200,7 +200,7 @@ inline void appendNumber(std::string& text, uint64_t number, bool bigEndian) {
   text += bigEndian ? std::string(bytes.rbegin(), bytes.rend()) : bytes;
 }
 
-/// Of a shard: chunks of zeros alone are left out.
+/// The bytes of a shard; chunks of zeros alone are left out.
 inline std::string zarr3Shard(const Zarr3Layout& layout, const std::string& samples, int i, int j,
                               int k) {
   const ImageSize per{layout.shard.x / layout.chunk.x, layout.shard.y / layout.chunk.y,

@@ -144,7 +144,7 @@ TEST_CASE("cli: labels without a voxel are exported, but for their surface", "[c
     bench.mustRun("export zero.raw " + out + layout);
   const Outcome surface = bench.run("export zero.raw s.vdb --as surface" + layout);
   CHECK(surface.exitCode == 1);
-  CHECK(surface.err.find("no labelled voxel") != std::string::npos);
+  CHECK(surface.err.find("no labeled voxel") != std::string::npos);
   CHECK(bench.names().count("s.vdb") == 0);
 }
 

@@ -71,7 +71,7 @@ int longestBar(const Picture& picture) {
 
 }  // namespace
 
-TEST_CASE("cli: render shows the middle slices, touching grains in unlike colours", "[cli]") {
+TEST_CASE("cli: render shows the middle slices, touching grains in unlike colors", "[cli]") {
   const Bench bench;
   bench.mustRun(kSintered);
   bench.mustRun("render s.vdb s.png --size 64 --only slices");
@@ -98,7 +98,7 @@ TEST_CASE("cli: render shows the middle slices, touching grains in unlike colour
                                                {label(31, i, 63 - j), pixel(2)}};
       for (const auto& [id, color] : seen) {
         const Rgb known = colors.emplace(id, color).first->second;
-        REQUIRE(known == color);  // stable: a label has one colour
+        REQUIRE(known == color);  // stable: a label has one color
       }
     }
   for (int i = 0; i < 63; ++i)

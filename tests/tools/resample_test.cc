@@ -31,7 +31,7 @@ TEST_CASE("resample: labels keep their values, masks their volume, gray images t
   bench.mustRun("convert v.raw o.nrrd" + kRaw);
   bench.mustRun("convert o.nrrd o.raw");
   CHECK(bench.bytes("o.raw") == std::string{5, 90, 0, 6, 80, 2, 8, 60, 5, 9, 50, 7});
-  // The corner stays: the first cube lies half a micrometre below the first voxel.
+  // The corner stays: the first cube lies half a micrometer below the first voxel.
   CHECK_THAT(bench.bytes("o.nrrd"), Contains("space origin: (0,0,-5e-04)"));
 
   for (const std::string ending : {"vdb", "npy"}) {

@@ -23,8 +23,8 @@ using namespace vdb_madf::test;
 
 namespace {
 
-/// 20000 where there is nothing and 35000 in the object, blurred by 0.6 voxels, with white noise of a
-/// tenth of the contrast.
+/// 20000 where there is nothing and 35000 in the object, blurred by 0.6 voxels, with white noise of
+/// a tenth of the contrast.
 std::vector<uint16_t> grayScan(const MaskGrid& object, const ImageSize& size) {
   std::vector<float> clean(voxels(size));
   DenseLayout layout;

@@ -28,7 +28,7 @@
 #include "vdb_madf/volumes/write_image.h"
 
 // A voxel (i,j,k) of labels without symmetry lies at the same point of the world in every format:
-// its centre at (i,j,k) * edge + shift.
+// its center at (i,j,k) * edge + shift.
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
@@ -134,7 +134,7 @@ TEST_CASE("world_place: images that have an origin", "[world_place]") {
   }
 
   const auto grid = markedGrid();
-  // Smaller voxels have transforms in micrometres, but these formats want millimetres.
+  // Smaller voxels have transforms in micrometers, but these formats want millimeters.
   setVoxelSize(*grid, VoxelSize{1e-8});
   writeImage(folder / "b.mha", *grid, box, SampleType::int32);
   CHECK(near(numbersAfter(readFile(folder / "b.mha"), "\nOffset ="), 1e-5 * box.min().asVec3d()));

@@ -34,7 +34,7 @@ class Monitor : public Interrupter {
 
   void start(const char* stage) override;
   bool wasInterrupted(int percent) override;
-  /// With the lock of the interpreter: throws what was raised, if anything was.
+  /// Throws what was raised, if anything was. The caller holds the lock of the interpreter.
   void rethrow() const {
     if (raised_) std::rethrow_exception(raised_);
   }

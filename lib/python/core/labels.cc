@@ -75,7 +75,7 @@ py::tuple colors(const GridPtr& labels, const Call& call) {
   return py::make_tuple(toArray(std::move(found.labels)), rgb);
 }
 
-/// From index coordinates to the world.
+/// Moves points from index coordinates to the world.
 void toWorld(const openvdb::math::Transform& transform, GrainMesh& mesh) {
   for (openvdb::Vec3f& point : mesh.points)
     point = openvdb::Vec3f(transform.indexToWorld(openvdb::Vec3d(point)));

@@ -120,7 +120,8 @@ py::dict toDict(const Segmentation& s, const SegmentOptions& options) {
   return dict;
 }
 
-/// What is free, or the rest of what the caller allows for the process, less the mask that is there.
+/// What is free, or the rest of what the caller allows for the process, less the mask that is
+/// there.
 int64_t memoryFor(const MaskGrid& mask, int64_t allowed) {
   if (allowed <= 0) return availableMemory();
   return std::max<int64_t>(1, allowed - int64_t(mask.memUsage()));

@@ -75,8 +75,8 @@ void bindOptions(py::module_& m) {
              o.gray.despeckle = despeckle;
            })
       .def("set_voxel_size",
-           [](VolumeOptions& o, const std::array<double, 3>& metres) {
-             o.voxelSize = VoxelSize(reversed(metres));
+           [](VolumeOptions& o, const std::array<double, 3>& meters) {
+             o.voxelSize = VoxelSize(reversed(meters));
            })
       .def("set_domain", [=](VolumeOptions& o, const Box& box) { o.domain = toBox(box); })
       .def("set_crop", [=](VolumeOptions& o, const Box& box) { o.region.crop = toBox(box); })

@@ -6,8 +6,8 @@
     seg = madf.segment("scan.tif", threshold="otsu", voxel_size="8.5um")
     grains, bonds = madf.measure(seg.labels).to_pandas()
 
-Arrays are [z, y, x]; columns whose names end in _x, _y, _z name their axis. Lengths are in millimeters
-(micrometers for voxels under 20 nm), in voxels if their size is unknown."""
+Arrays are [z, y, x]; columns whose names end in _x, _y, _z name their axis. Lengths are in
+millimeters (micrometers for voxels under 20 nm), in voxels if their size is unknown."""
 
 from ._arrays import ArrayLike3D, Source
 from ._calls import Progress
@@ -24,4 +24,5 @@ from ._tracks import Tracks, track
 
 __all__ = ["ArrayLike3D", "Comparison", "Cylinder", "InvalidInput", "IoError", "Labels", "Mask",
            "Measurements", "Mesh", "NotEnoughMemory", "PAPER", "Progress", "Segmentation", "Source",
-           "Tracks", "__version__", "compare", "generate", "measure", "reads_hdf5", "segment", "track"]
+           "Tracks", "__version__", "compare", "generate", "measure", "reads_hdf5", "segment",
+           "track"]

@@ -15,7 +15,8 @@ from . import _core
 
 
 class ArrayLike3D(Protocol):
-    """What can be read: numpy arrays in any order of bytes and strides, numpy.memmap, h5py, zarr, dask.
+    """What can be read: numpy arrays in any order of bytes and strides, numpy.memmap, h5py, zarr,
+    dask.
 
     It has three axes, [z, y, x], and `array[first:stop]` are slices."""
 
@@ -42,20 +43,24 @@ def _target(dtype: np.dtype[Any]) -> np.dtype[Any]:
     if dtype.kind == "b":
         return np.dtype(np.uint8)
     if dtype.kind in "iu":
-        return np.dtype(np.int32) if dtype.itemsize == 8 else np.dtype(f"{dtype.kind}{dtype.itemsize}")
+        return np.dtype(np.int32) if dtype.itemsize == 8 else np.dtype(
+            f"{dtype.kind}{dtype.itemsize}")
     if dtype.kind == "f" and dtype.itemsize <= 8:
         return np.dtype(f"f{max(4, dtype.itemsize)}")
-    raise TypeError(f"an array of type {dtype} holds no samples: give integers, float32, float64 or bool")
+    raise TypeError(f"an array of type {dtype} holds no samples: give integers, float32, float64 "
+                    f"or bool")
 
 
 def _narrowed(slab: npt.NDArray[Any], first: int) -> npt.NDArray[Any]:
-    """Of 64-bit integers, which have to fit in 32 bits."""
+    """64-bit integers as 32-bit ones, in which they have to fit."""
     limits = np.iinfo(np.int32)
     for value in (slab.min(), slab.max()):
         if not limits.min <= value <= limits.max:
             raise _core.InvalidInput(
-                f"the array has the value {value} in the slices from {first} on, beyond 32 bits: give "
-                "labels smaller numbers first, for example by skimage.segmentation.relabel_sequential")
+                f"the array has the value {value} in the slices from {first} on, beyond 32 bits: "
+                f"give "
+                "labels smaller numbers first, for example by "
+                "skimage.segmentation.relabel_sequential")
     return slab
 
 
@@ -69,7 +74,8 @@ def _array_source(array: Any) -> _core.ArraySource:
         dtype = array.dtype
     shape = tuple(int(n) for n in array.shape)
     if len(shape) != 3:
-        raise _core.InvalidInput(f"the array has {len(shape)} axes, of {shape}: give three, [z, y, x]")
+        raise _core.InvalidInput(f"the array has {len(shape)} axes, of {shape}: give three, [z, y, "
+                                 f"x]")
     if 0 in shape:
         raise _core.InvalidInput(f"the array, of {shape}, has no voxels")
     target = _target(dtype)
@@ -87,8 +93,8 @@ def _array_source(array: Any) -> _core.ArraySource:
 
 
 def _mapped(array: Any) -> Optional[mmap.mmap]:
-    """The memory map behind a read-only numpy.memmap: what was read of it is forgotten slab by slab, or
-    the whole file would count as memory of the process."""
+    """The memory map behind a read-only numpy.memmap: what was read of it is forgotten slab by
+    slab, or the whole file would count as memory of the process."""
     owner = array
     while isinstance(owner, np.ndarray):
         if isinstance(owner, np.memmap) and owner.mode != "r":

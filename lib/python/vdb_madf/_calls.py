@@ -33,8 +33,8 @@ def _bar() -> Iterator[Callable[[int, str], None]]:
     try:
         from tqdm.auto import tqdm  # type: ignore[import]
     except ImportError:
-        raise ImportError("progress=True draws its bar with tqdm, which is not installed: install it, "
-                          "or give a function of percent and stage") from None
+        raise ImportError("progress=True draws its bar with tqdm, which is not installed: install "
+                          "it, or give a function of percent and stage") from None
     with tqdm(total=100, leave=False, bar_format="{l_bar}{bar}| {elapsed}<{remaining}") as bar:
         def tell(percent: int, stage: str) -> None:
             bar.set_description_str(stage.replace("_", " "), refresh=False)
@@ -52,7 +52,7 @@ def warn(notes: List[str]) -> None:
         warnings.warn(note, UserWarning, stacklevel=level)
 
 
-def metres(voxel_size: Optional[str]) -> Optional[_core.Edges]:
+def meters(voxel_size: Optional[str]) -> Optional[_core.Edges]:
     """Edges of a voxel along z, y, x from a text with a unit."""
     if voxel_size is None:
         return None
@@ -66,7 +66,7 @@ def metres(voxel_size: Optional[str]) -> Optional[_core.Edges]:
 
 
 def bytes_of(max_memory: Union[int, str, None]) -> int:
-    """Of a number of bytes or a text with a unit; 0 for None."""
+    """A number of bytes, or a text with a unit, as bytes; 0 for None."""
     if max_memory is None:
         return 0
     if isinstance(max_memory, str):

@@ -21,8 +21,9 @@ _FAR = 2**20  # beyond the coordinates that are read
 class Cylinder:
     """The round field of view of a core: voxels whose centers are at most `radius` from the axis.
 
-    axis: "z", "y" or "x"; center: where the axis passes, along the two other axes in the order of the
-    array, voxels (default: the middle of the scan); radius: voxels (default: fitted to the values)."""
+    axis: "z", "y" or "x"; center: where the axis passes, along the two other axes in the order of
+    the array, voxels (default: the middle of the scan); radius: voxels (default: fitted to the
+    values)."""
 
     axis: str = "z"
     center: Optional[Tuple[float, float]] = None
@@ -80,7 +81,8 @@ def volume_options(
         raise ValueError("give only one of phase, threshold and range")
     options = _core.VolumeOptions()
     if phase is not None:
-        options.select_phases([float(v) for v in phase] if isinstance(phase, Sequence) else [float(phase)])
+        options.select_phases([float(v) for v in phase] if isinstance(phase, Sequence)
+                              else [float(phase)])
     if isinstance(threshold, str):
         options.select_automatically(threshold)
     elif isinstance(threshold, tuple):

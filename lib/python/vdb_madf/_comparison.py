@@ -23,13 +23,13 @@ class Comparison:
     truth_grains: int
     test_grains: int
     common_voxels: int
-    """Labelled in both."""
+    """Labeled in both."""
     truth_only_voxels: int
     test_only_voxels: int
     misclassified_percent: float
-    """Of the common voxels: each true grain goes with the test grain that has most of it."""
+    """Of the common voxels; each true grain goes with the test grain that has most of it."""
     mirror_misclassified_percent: float
-    """With the roles exchanged: sees over-segmentation."""
+    """`misclassified_percent` with the roles exchanged: it sees over-segmentation."""
     adjusted_rand_index: float
     """1: the same partition."""
     variation_of_information: float
@@ -47,13 +47,13 @@ class Comparison:
     """A row a true grain: `id`, `voxels`, `partner`, `overlap_voxels`, `intersection_over_union`,
     `pieces`."""
     test_matches: Dict[str, npt.NDArray[Any]] = field(repr=False)
-    """The same for the test's grains."""
+    """What `truth_matches` says, for the test's grains."""
     overlaps: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """Pairs that meet, for scipy.sparse.coo_array: `truth`, `test` (0: none), `voxels`."""
 
 
-def compare(truth: Union[Labels, Segmentation, Source], test: Union[Labels, Segmentation, Source], *,
-            progress: Progress = None, threads: int = 0) -> Comparison:
+def compare(truth: Union[Labels, Segmentation, Source], test: Union[Labels, Segmentation, Source],
+            *, progress: Progress = None, threads: int = 0) -> Comparison:
     """Compares labels, of any program and numbering, voxel by voxel."""
     with calling(progress, threads) as call:
         first, second = (labels_of(given, call, threads) for given in (truth, test))

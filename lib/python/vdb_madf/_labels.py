@@ -32,8 +32,8 @@ class Labels(Volume):
     _sizes: Optional[Tuple[npt.NDArray[np.int32], npt.NDArray[np.int64]]] = None
 
     def __init__(self, source: Source, *, voxel_size: Optional[str] = None,
-                 dataset: Optional[str] = None, grid: Optional[str] = None, progress: Progress = None,
-                 threads: int = 0) -> None:
+                 dataset: Optional[str] = None, grid: Optional[str] = None,
+                 progress: Progress = None, threads: int = 0) -> None:
         options = _core.VolumeOptions()
         edges = edges_of(source, voxel_size)
         if edges is not None:
@@ -46,7 +46,7 @@ class Labels(Volume):
 
     @property
     def dtype(self) -> np.dtype[Any]:
-        """Of the values of slices: int32."""
+        """The type of the values of slices: int32."""
         return np.dtype(np.int32)
 
     def _read(self, first: _core.Index, out: npt.NDArray[Any]) -> None:
@@ -78,8 +78,8 @@ class Labels(Volume):
 
     def paint(self, ids: _Ids, values: npt.ArrayLike, background: float = np.nan,
               dtype: npt.DTypeLike = np.float32) -> npt.NDArray[Any]:
-        """An array [z, y, x] with a value for each grain: `values[i]` where the label is `ids[i]`, and
-        `background` where it is none of them."""
+        """An array [z, y, x] with a value for each grain: `values[i]` where the label is `ids[i]`,
+        and `background` where it is none of them."""
         known, painted = np.asarray(ids, np.int64), np.asarray(values)
         if known.ndim != 1 or known.shape != painted.shape:
             raise ValueError(f"{known.shape} ids and {painted.shape} values: give one for each")
@@ -94,8 +94,8 @@ class Labels(Volume):
         return out
 
     def crop(self, id: int, pad: int = 0) -> Tuple[npt.NDArray[np.bool_], Tuple[int, int, int]]:
-        """One grain: True in an array of its box and `pad` voxels around it, as far as the volume goes,
-        and the place of that array's first voxel in the volume."""
+        """One grain: True in an array of its box and `pad` voxels around it, as far as the volume
+        goes, and the place of that array's first voxel in the volume."""
         if pad < 0:
             raise ValueError(f"pad={pad}: must be 0 or more")
         first, last = _core.box_of_label(self._grid, id)
@@ -114,8 +114,8 @@ class Labels(Volume):
 
     def edit(self, edits: Union[str, Sequence[str]], *, manifold: Optional["Labels"] = None,
              progress: Progress = None, threads: int = 0) -> "Labels":
-        """Other grains, as `vdb_madf edit` makes them: "merge 12 17" or a list of such edits, done one after
-        the other. All grains that none of them concerns keep their voxels and labels.
+        """Other grains, as `vdb_madf edit` makes them: "merge 12 17" or a list of such edits, done
+        one after the other. All grains that none of them concerns keep their voxels and labels.
 
         - "merge A B ...": one grain, of the first label; "split A": undoes it
         - "drop A B ...", "keep A B ...", "drop-at-faces" (of the volume or its region)
@@ -138,24 +138,26 @@ class Labels(Volume):
         return self.edit("renumber")
 
     def digest(self) -> str:
-        """A checksum of the places and labels of the grains, `labels_digest` of the command's sample.json:
-        equal labels have the same one, whatever file or array they come from."""
+        """A checksum of the places and labels of the grains, `labels_digest` of the command's
+        sample.json: equal labels have the same one, whatever file or array they come from."""
         return _core.digest(self._grid, _core.Call(None, 0))
 
     def reduce(self, factor: int) -> "Labels":
-        """The volume smaller by a whole factor: each voxel has the most frequent label of its own."""
+        """The volume smaller by a whole factor: each voxel has the most frequent label of its
+        own."""
         return Labels._of(_core.reduce(self._grid, factor, _core.Call(None, 0)))
 
     def colors(self) -> Tuple[npt.NDArray[np.int32], npt.NDArray[np.uint8]]:
         """(N,) labels and (N, 3) sRGB, such that grains that touch never look alike."""
         return _core.colors(self._grid, _core.Call(None, 0))
 
-    def mesh(self, *, smoothing: int = 10, triangles: Optional[int] = None, ids: Optional[_Ids] = None,
-             progress: Progress = None, threads: int = 0) -> Mesh:
+    def mesh(self, *, smoothing: int = 10, triangles: Optional[int] = None,
+             ids: Optional[_Ids] = None, progress: Progress = None, threads: int = 0) -> Mesh:
         """Surfaces of all grains, or of those with these ids.
 
-        smoothing: rounds; 0: the faces of the voxels, whose volume is exactly theirs. triangles: simplify
-        to so many of all grains together, or fewer; no grain and no contact is given up for it."""
+        smoothing: rounds; 0: the faces of the voxels, whose volume is exactly theirs. triangles:
+        simplify to so many of all grains together, or fewer; no grain and no contact is given up
+        for it."""
         with calling(progress, threads) as call:
             arrays = _core.mesh(self._grid, call, smoothing=smoothing, triangles=triangles,
                                 ids=[] if ids is None else [int(i) for i in ids])
@@ -164,24 +166,29 @@ class Labels(Volume):
     def save(self, path: Union[str, "os.PathLike[str]"], *, kind: Optional[str] = None,
              type: Optional[str] = None, smoothing: int = 10, reduce: int = 1,
              triangles: Optional[int] = None, compress: bool = False, min_faces: int = 1,
-             ome: str = "0.4", meshes: bool = False, max_balls: int = 100, uncovered: float = 0.02, apart: bool = False, size: int = 512,
-             azimuth: float = 35, elevation: float = 25, progress: Progress = None,
-             threads: int = 0) -> None:
-        """Writes a file, whole or not at all; what it is the ending says, or `kind` where it does not:
+             ome: str = "0.4", meshes: bool = False, max_balls: int = 100, uncovered: float = 0.02,
+             apart: bool = False, size: int = 512, azimuth: float = 35, elevation: float = 25,
+             progress: Progress = None, threads: int = 0) -> None:
+        """Writes a file, whole or not at all; what it is the ending says, or `kind` where it does
+        not:
 
-        - "labels": .vdb (Int32 grid `grain`), .tif, .raw, .mhd, .mha, .nrrd, .npy, .h5; `type` of the
-          samples; "mask": the same with 1 where there is a label
-        - "mesh": .ply, .obj, .stl, .glb (a node a grain, with its measures), .vtp or a folder of .stl
-          files; `smoothing`, `reduce`, `triangles`
+        - "labels": .vdb (Int32 grid `grain`), .tif, .raw, .mhd, .mha, .nrrd, .npy, .h5; `type` of
+          the samples; "mask": the same with 1 where there is a label
+        - "mesh": .ply, .obj, .stl, .glb (a node a grain, with its measures), .vtp or a folder of
+          .stl files; `smoothing`, `reduce`, `triangles`
         - "vti": VTK's image, `compress`; "hexahedra": .vtu, .inp (Abaqus), an element a voxel
-        - "network": .graphml, .vtp, .csv: grains and bonds with their measures, `min_faces` of a bond
+        - "network": .graphml, .vtp, .csv: grains and bonds with their measures, `min_faces` of a
+          bond
         - "zarr": .zarr, a folder that is not there yet: OME-Zarr `ome` "0.4" or "0.5" for napari,
-          neuroglancer and others: pyramids of the object and of `labels/grain`, colors and measures;
-          `meshes` (`smoothing`, `reduce`, `triangles`): also meshes and measures for neuroglancer
-        - "clumps": .txt (YADE), .data (LAMMPS), .csv: grains as balls, `max_balls` each, `uncovered`
-          part of them, `apart` if balls of different grains shall not overlap
-        - "preview" (fog and color, `reduce`), "level sets", "surface" (`smoothing`): .vdb for renderers
-        - "picture": .png as of `vdb_madf render`; `size` of each part in pixels, `azimuth`, `elevation`
+          neuroglancer and others: pyramids of the object and of `labels/grain`, colors and
+          measures; `meshes` (`smoothing`, `reduce`, `triangles`): also meshes and measures for
+          neuroglancer
+        - "clumps": .txt (YADE), .data (LAMMPS), .csv: grains as balls, `max_balls` each,
+          `uncovered` part of them, `apart` if balls of different grains shall not overlap
+        - "preview" (fog and color, `reduce`), "level sets", "surface" (`smoothing`): .vdb for
+          renderers
+        - "picture": .png as of `vdb_madf render`; `size` of each part in pixels, `azimuth`,
+          `elevation`
         """
         name = os.fspath(path)
         kind = kind_of(name, kind)
@@ -203,7 +210,8 @@ class Labels(Volume):
             elif kind == "network":
                 _core.save_network(name, grid, min_faces, call)
             elif kind == "zarr":
-                _core.save_zarr(name, grid, ome, min_faces, meshes, smoothing, reduce, triangles, call)
+                _core.save_zarr(name, grid, ome, min_faces, meshes, smoothing, reduce, triangles,
+                                call)
             elif kind == "clumps":
                 balls = _core.ball_grids(_core.mask_of_labels(grid), call)
                 _core.save_clumps(name, grid, balls, max_balls, uncovered, apart, call)

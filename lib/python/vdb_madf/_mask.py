@@ -29,13 +29,13 @@ class Mask(Volume):
     Anything else has to be said:
 
     phase: the value, or some of them; threshold: the least value, "otsu", "valley" (found in the
-    histogram) or (low, high) for hysteresis; range: (least, largest value); invert: all other voxels.
-    median (radius, 1 to 3 voxels) and smooth (standard deviation, voxels) filter the image first;
-    despeckle drops islands and fills cavities of fewer voxels at last.
+    histogram) or (low, high) for hysteresis; range: (least, largest value); invert: all other
+    voxels. median (radius, 1 to 3 voxels) and smooth (standard deviation, voxels) filter the image
+    first; despeckle drops islands and fills cavities of fewer voxels at last.
 
     voxel_size: the edge of a voxel with its unit, "8.5um", or three along x, y, z: "1x1x3um".
-    roi, crop: work within a region (see Cylinder), or a box such as numpy.s_[10:90, :, 5:50]; what lies
-    outside is unknown. domain: the box of the scan, of a .vdb that does not say it.
+    roi, crop: work within a region (see Cylinder), or a box such as numpy.s_[10:90, :, 5:50]; what
+    lies outside is unknown. domain: the box of the scan, of a .vdb that does not say it.
     dataset: of a Zarr group or an HDF5 file; grid: of a .vdb.
     progress: a function of percent and stage, or True for a bar (tqdm); threads: 0 for all."""
 
@@ -43,13 +43,14 @@ class Mask(Volume):
                  threshold: Union[float, str, Tuple[float, float], None] = None,
                  range: Optional[Tuple[float, float]] = None, invert: bool = False, median: int = 0,
                  smooth: float = 0, despeckle: int = 0, voxel_size: Optional[str] = None,
-                 roi: Optional[Region] = None, crop: Optional[Box] = None, domain: Optional[Box] = None,
-                 dataset: Optional[str] = None, grid: Optional[str] = None, progress: Progress = None,
-                 threads: int = 0) -> None:
+                 roi: Optional[Region] = None, crop: Optional[Box] = None,
+                 domain: Optional[Box] = None, dataset: Optional[str] = None,
+                 grid: Optional[str] = None, progress: Progress = None, threads: int = 0) -> None:
         options = volume_options(
-            mask_type=Mask, phase=phase, threshold=threshold, range=range, invert=invert, median=median,
-            smooth=smooth, despeckle=despeckle, voxel_size=edges_of(source, voxel_size), roi=roi, crop=crop,
-            domain=domain, dataset=dataset, grid=grid)
+            mask_type=Mask, phase=phase, threshold=threshold, range=range, invert=invert,
+            median=median, smooth=smooth, despeckle=despeckle,
+            voxel_size=edges_of(source, voxel_size), roi=roi, crop=crop, domain=domain,
+            dataset=dataset, grid=grid)
         with calling(progress, threads) as call:
             if phase is None and threshold is None and range is None and _is_bool(source):
                 options.select_phases([1.0])
@@ -58,7 +59,7 @@ class Mask(Volume):
 
     @property
     def dtype(self) -> np.dtype[Any]:
-        """Of the values of slices: bool."""
+        """The type of the values of slices: bool."""
         return np.dtype(bool)
 
     def _read(self, first: _core.Index, out: npt.NDArray[Any]) -> None:
@@ -81,8 +82,8 @@ class Mask(Volume):
 
     def save(self, path: Union[str, "os.PathLike[str]"], *, progress: Progress = None,
              threads: int = 0) -> None:
-        """Writes the mask whole or not at all: .vdb (Bool grid `object`), .tif, .raw, .mhd, .mha, .nrrd,
-        .npy or .h5 (uint8, 0 and 1)."""
+        """Writes the mask whole or not at all: .vdb (Bool grid `object`), .tif, .raw, .mhd, .mha,
+        .nrrd, .npy or .h5 (uint8, 0 and 1)."""
         name = os.fspath(path)
         with calling(progress, threads) as call:
             if name.lower().endswith(".vdb"):

@@ -26,18 +26,18 @@ class Measurements:
     `vdb_madf measure`, but without the unit in the names. NaN: not known."""
 
     grains: Dict[str, npt.NDArray[Any]] = field(repr=False)
-    """A row a grain, by `id`: `voxels`, `volume`, `equivalent_diameter`, `centroid_x` ..., `sphericity`,
-    `coordination`, `at_domain_face` ..."""
+    """A row a grain, by `id`: `voxels`, `volume`, `equivalent_diameter`, `centroid_x` ...,
+    `sphericity`, `coordination`, `at_domain_face` ..."""
     bonds: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """A row for each pair of grains that touch, by `first`, then `second` (ids): `area`, `radius`,
     `normal_x` ..., `flatness`, `mean_curvature` ..."""
     sample: Dict[str, Any]
-    """`solid_fraction`, `specific_surface`, `mean_coordination` ...; `bond_fabric` and `grain_fabric`
-    are (3, 3), [z, y, x]; `diameter_by_volume[50]` is the median."""
+    """`solid_fraction`, `specific_surface`, `mean_coordination` ...; `bond_fabric` and
+    `grain_fabric` are (3, 3), [z, y, x]; `diameter_by_volume[50]` is the median."""
     unit: str
-    """Of lengths: "mm", "um" or "voxel"."""
+    """The unit of lengths: "mm", "um" or "voxel"."""
     units: Dict[str, str] = field(repr=False)
-    """Of each column and each number of the sample: "mm^3", "1/mm", "" ..."""
+    """The unit of each column and each number of the sample: "mm^3", "1/mm", "" ..."""
     provenance: Dict[str, Any] = field(repr=False)
     """What the labels say of their making (madf_*)."""
 
@@ -46,8 +46,8 @@ class Measurements:
         try:
             import pandas as pd
         except ImportError:
-            raise ImportError("to_pandas() needs pandas, which is not installed; grains and bonds are "
-                              "dicts of numpy arrays without it") from None
+            raise ImportError("to_pandas() needs pandas, which is not installed; grains and bonds "
+                              "are dicts of numpy arrays without it") from None
         grains = pd.DataFrame(self.grains).set_index("id")
         bonds = pd.DataFrame(self.bonds)
         for table in (grains, bonds):
@@ -62,10 +62,11 @@ class Measurements:
         return np.array([table[f"{column}_{axis}"] for axis in "zyx"], np.float64).T
 
 
-def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional[str] = None, boundary: str = "auto",
-            min_faces: int = 1, shape: bool = False, intensity: Optional[Source] = None,
-            intensity_grid: Optional[str] = None, edge_weights: bool = False, bootstrap: int = 0,
-            dataset: Optional[str] = None, grid: Optional[str] = None, progress: Progress = None,
+def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional[str] = None,
+            boundary: str = "auto", min_faces: int = 1, shape: bool = False,
+            intensity: Optional[Source] = None, intensity_grid: Optional[str] = None,
+            edge_weights: bool = False, bootstrap: int = 0, dataset: Optional[str] = None,
+            grid: Optional[str] = None, progress: Progress = None,
             threads: int = 0) -> Measurements:
     """Measures the grains of labels, of any program.
 
@@ -74,18 +75,21 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
     of Labels, of files and arrays. Columns: lib/vdb_madf/measure/README.md says what they mean.
 
     What is there on demand:
-    shape: columns `feret_max`, `feret_min`, `convex_volume`, `solidity`, `zingg_class` of the grains.
-    intensity: the scan that the labels were made of, a file or an array [z, y, x] of the same shape,
-    read slab by slab: columns `gray_mean`, `gray_sd`, `gray_min`, `gray_max`, `gray_median`,
-    `gray_voxels` of grains and bonds. intensity_grid: of a VDB, or the array of a Zarr or HDF5 file.
+    shape: columns `feret_max`, `feret_min`, `convex_volume`, `solidity`, `zingg_class` of the
+    grains.
+    intensity: the scan that the labels were made of, a file or an array [z, y, x] of the same
+    shape, read slab by slab: columns `gray_mean`, `gray_sd`, `gray_min`, `gray_max`, `gray_median`,
+    `gray_voxels` of grains and bonds. intensity_grid: of a VDB, or the array of a Zarr or HDF5
+    file.
     edge_weights: column `edge_weight` of the grains (0 at the faces), and in the sample
     `corrected_grain_diameter_mean`, `corrected_diameter_by_number` ... The domain has to be a box.
-    bootstrap: replicates, 100 to 100000: in the sample `intervals`, by name of a mean its `mean` and
-    the ends `low` and `high` of its 95 % interval."""
+    bootstrap: replicates, 100 to 100000: in the sample `intervals`, by name of a mean its `mean`
+    and the ends `low` and `high` of its 95 % interval."""
     with calling(progress, threads) as call:
-        measured = labels_of(labels, call, threads, voxel_size=voxel_size, dataset=dataset, grid=grid)
-        made = _core.measure(measured._grid, call, boundary=boundary, min_faces=min_faces, shape=shape,
-                             intensity=None if intensity is None else readable(intensity),
-                             intensity_grid=intensity_grid or "", edge_weights=edge_weights,
-                             bootstrap=bootstrap)
+        measured = labels_of(labels, call, threads, voxel_size=voxel_size, dataset=dataset,
+                             grid=grid)
+        made = _core.measure(measured._grid, call, boundary=boundary, min_faces=min_faces,
+                             shape=shape, intensity=None if intensity is None
+                             else readable(intensity), intensity_grid=intensity_grid or "",
+                             edge_weights=edge_weights, bootstrap=bootstrap)
     return Measurements(**made, provenance=measured.metadata)

@@ -13,9 +13,11 @@ import numpy.typing as npt
 
 @dataclass(frozen=True)
 class Mesh:
-    """A closed mesh for each grain. Where two grains touch, their points and triangles match exactly.
+    """A closed mesh for each grain. Where two grains touch, their points and triangles match
+    exactly.
 
-    The arrays show the memory of the library: nothing is copied, and they stay valid by themselves."""
+    The arrays show the memory of the library: nothing is copied, and they stay valid by
+    themselves."""
 
     ids: npt.NDArray[np.int32]
     """(G,) labels of the grains, ascending."""
@@ -28,7 +30,7 @@ class Mesh:
     triangle_offsets: npt.NDArray[np.uint32]
     """(G + 1,) likewise."""
     unit: str
-    """Of the points: "mm", "um" or "voxel"."""
+    """The unit of the points: "mm", "um" or "voxel"."""
 
     def grain(self, id: int) -> Tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]]:
         """Points (P, 3) and triangles (T, 3) of one grain."""

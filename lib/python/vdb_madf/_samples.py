@@ -7,7 +7,7 @@ from __future__ import annotations
 from typing import Any, Optional, Tuple, Union
 
 from . import _core
-from ._calls import Progress, calling, metres
+from ._calls import Progress, calling, meters
 from ._labels import Labels
 from ._mask import Mask
 
@@ -15,8 +15,8 @@ from ._mask import Mask
 def generate(kind: str, *, size: Union[int, Tuple[int, int, int], None] = None, seed: int = 1,
              voxel_size: Optional[str] = None, progress: Progress = None, threads: int = 0,
              **options: Any) -> Tuple[Mask, Optional[Labels]]:
-    """A synthetic object and its true grains, None where there is no truth. The same options give the
-    same voxels on every machine.
+    """A synthetic object and its true grains, None where there is no truth. The same options give
+    the same voxels on every machine.
 
     size: voxels, an edge or (z, y, x). Kinds and their options, lengths in voxels:
 
@@ -28,10 +28,11 @@ def generate(kind: str, *, size: Union[int, Tuple[int, int, int], None] = None, 
       lognormal, neck
     - "bed": radius, rounds
 
-    Of any kind: surface, surface_length (rough surfaces), blur, noise, noise_length (as of a scan)."""
+    Of any kind: surface, surface_length (rough surfaces), blur, noise, noise_length (as of a
+    scan)."""
     if size is not None:
         options["size"] = (size, size, size) if isinstance(size, int) else tuple(size)
     options["seed"] = seed
     with calling(progress, threads) as call:
-        mask, truth = _core.generate(kind, options, metres(voxel_size), call)
+        mask, truth = _core.generate(kind, options, meters(voxel_size), call)
     return Mask._of(mask), None if truth is None else Labels._of(truth)

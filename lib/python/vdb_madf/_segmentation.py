@@ -17,7 +17,8 @@ from ._labels import Labels
 from ._mask import Mask
 
 #: The method to the letter of the paper: segment(mask, **PAPER).
-PAPER: Dict[str, Any] = dict(theta=-0.8, merge="angle", adjacency="cell", delta=0, fill_holes=0, tidy=0)
+PAPER: Dict[str, Any] = dict(theta=-0.8, merge="angle", adjacency="cell", delta=0, fill_holes=0,
+                             tidy=0)
 
 _FLAWS = ("crumbs", "specks", "slivers", "in_pieces")
 
@@ -31,13 +32,13 @@ class Segmentation:
     counts: Dict[str, int]
     """`grains`, `object_voxels`, `critical_points`, `medial_balls` ... and flaws of the labels."""
     seconds: Dict[str, float]
-    """Of each stage, in the order of work."""
+    """Seconds of each stage, in the order of work."""
     options: Dict[str, Any]
     """What was used: theta, gamma, merge, adjacency, delta, fill_holes, tidy, boundary."""
     graph: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """Critical points: `position` (K, 3) z, y, x in voxels of the scan, `squared_radius` (K,),
-    `voxels` (K,) of their manifolds; pairs of manifolds that touch: `first`, `second` (E,), numbers of
-    critical points from 0, `contact_faces`, `saddle_height`, `cells_touch` (E,)."""
+    `voxels` (K,) of their manifolds; pairs of manifolds that touch: `first`, `second` (E,), numbers
+    of critical points from 0, `contact_faces`, `saddle_height`, `cells_touch` (E,)."""
     manifold: Optional[Labels] = field(default=None, repr=False)
     """Critical points 1 to K, if kept: what remerge() and sweep() work on."""
     distance_squared: Optional[Labels] = field(default=None, repr=False)
@@ -59,14 +60,15 @@ class Segmentation:
         """The grains of other options of merging, without distances again: the same labels, bit for
         bit, as a fresh segment(). What is not given stays as it was."""
         given = dict(theta=theta, merge=merge, adjacency=adjacency, delta=delta, tidy=tidy)
-        options = {name: self.options[name] if value is None else value for name, value in given.items()}
+        options = {name: self.options[name] if value is None else value
+                   for name, value in given.items()}
         with calling(progress, threads) as call:
             grid = _core.remerge(self._manifolds(), call, **options)
         labels = Labels._of(grid)
         counts = {name: count for name, count in self.counts.items() if name not in _FLAWS}
         counts["grains"] = labels.metadata["madf_grains"]
-        return Segmentation(labels, counts, {}, {**self.options, **options}, self.graph, self.manifold,
-                            self.distance_squared, self.power, self.balls)
+        return Segmentation(labels, counts, {}, {**self.options, **options}, self.graph,
+                            self.manifold, self.distance_squared, self.power, self.balls)
 
     def edit(self, edits: Union[str, Sequence[str]], *, progress: Progress = None,
              threads: int = 0) -> "Segmentation":
@@ -77,27 +79,30 @@ class Segmentation:
         return replace(self, labels=labels, counts=counts, seconds={})
 
     def sweep(self, theta: Union[Sequence[float], npt.NDArray[Any]],
-              merge: Union[str, Sequence[str], None] = None, delta: Union[int, Sequence[int], None] = None,
-              small: int = 100, *, progress: Progress = None, threads: int = 0) -> Dict[str, Any]:
+              merge: Union[str, Sequence[str], None] = None,
+              delta: Union[int, Sequence[int], None] = None, small: int = 100, *,
+              progress: Progress = None, threads: int = 0) -> Dict[str, Any]:
         """The grains for every combination of merge modes, deltas and thetas, a row each: `merge`,
-        `delta`, `theta`, `grains`, `median_voxels`, `small_grains` and `small_voxels` (grains of fewer
-        than `small` voxels), `largest_voxels` and flaws. pandas.DataFrame() makes a table of it."""
+        `delta`, `theta`, `grains`, `median_voxels`, `small_grains` and `small_voxels` (grains of
+        fewer than `small` voxels), `largest_voxels` and flaws. pandas.DataFrame() makes a table of
+        it."""
         modes = ([self.options["merge"]] if merge is None else
                  [merge] if isinstance(merge, str) else list(merge))
         deltas = ([self.options["delta"]] if delta is None else
                   [delta] if isinstance(delta, int) else [int(d) for d in delta])
         with calling(progress, threads) as call:
-            return _core.sweep(self._manifolds(), call, thetas=[float(t) for t in theta], modes=modes,
-                               deltas=deltas, adjacency=self.options["adjacency"],
+            return _core.sweep(self._manifolds(), call, thetas=[float(t) for t in theta],
+                               modes=modes, deltas=deltas, adjacency=self.options["adjacency"],
                                tidy=self.options["tidy"], small=small)
 
     def save(self, path: Union[str, "os.PathLike[str]"], *, progress: Progress = None,
              threads: int = 0) -> None:
-        """Writes the labels and all grids that were kept into a .vdb, as `vdb_madf segment --keep` does
-        (but for balls); `vdb_madf remerge` and `measure` go on from it."""
+        """Writes the labels and all grids that were kept into a .vdb, as `vdb_madf segment --keep`
+        does (but for balls); `vdb_madf remerge` and `measure` go on from it."""
         name = os.fspath(path)
         if not name.lower().endswith(".vdb"):
-            raise _core.InvalidInput(f"{name}: several grids go into a .vdb; labels.save() knows more "
+            raise _core.InvalidInput(
+                f"{name}: several grids go into a .vdb; labels.save() knows more "
                                      "endings")
         kept = (self.labels, self.distance_squared, self.power, self.manifold)
         with calling(progress, threads) as call:
@@ -119,26 +124,28 @@ def labels_of(source: Union[Labels, Segmentation, Source], call: _core.Call, thr
     return labels
 
 
-def segment(source: Union[Mask, Source], *, theta: float = -0.9, gamma: int = 0, merge: str = "both",
-            adjacency: str = "manifold", delta: int = 2, fill_holes: Optional[int] = None, tidy: int = 2,
-            boundary: str = "auto", keep: Sequence[str] = ("manifold",),
-            max_memory: Union[int, str, None] = None, progress: Progress = None, threads: int = 0,
-            **selection: Any) -> Segmentation:
+def segment(source: Union[Mask, Source], *, theta: float = -0.9, gamma: int = 0,
+            merge: str = "both", adjacency: str = "manifold", delta: int = 2,
+            fill_holes: Optional[int] = None, tidy: int = 2, boundary: str = "auto",
+            keep: Sequence[str] = ("manifold",), max_memory: Union[int, str, None] = None,
+            progress: Progress = None, threads: int = 0, **selection: Any) -> Segmentation:
     """Cuts the object into grains.
 
     source: a Mask, or what makes one, with its arguments besides: segment("scan.tif", phase=1,
     voxel_size="10um"), segment(array, threshold="otsu", roi="cylinder").
 
-    theta: cosine, -1 merges least; gamma: least cell of a medial ball, voxels; merge: "both", "angle"
-    or "neck"; adjacency: "manifold" or "cell"; delta: in eighths of a voxel, how much narrower a neck
-    has to be than its grain; fill_holes: cavities of fewer voxels are filled meanwhile (None: 27);
+    theta: cosine, -1 merges least; gamma: least cell of a medial ball, voxels; merge: "both",
+    "angle" or "neck"; adjacency: "manifold" or "cell"; delta: in eighths of a voxel, how much
+    narrower a neck has to be than its grain; fill_holes: cavities of fewer voxels are filled
+    meanwhile (None: 27);
     tidy: rounds of smoothing the interfaces; boundary: beyond the faces "open" (unknown), "closed"
     (background) or "auto" (open). **PAPER: the method without our additions.
 
-    keep: which of "manifold" (for remerge() and sweep()), "distance", "power", "balls" are returned.
+    keep: which of "manifold" (for remerge() and sweep()), "distance", "power", "balls" are
+    returned.
     max_memory: bytes, or a text such as "12GiB", that the work may take; default: what is free.
-    progress: a function of percent and stage, or True for a bar (tqdm); threads: 0 for all. Labels do
-    not depend on threads.
+    progress: a function of percent and stage, or True for a bar (tqdm); threads: 0 for all. Labels
+    do not depend on threads.
 
     Raises InvalidInput (a ValueError), NotEnoughMemory (a MemoryError), IoError (an OSError)."""
     allowed = bytes_of(max_memory)
@@ -150,8 +157,9 @@ def segment(source: Union[Mask, Source], *, theta: float = -0.9, gamma: int = 0,
         else:
             mask = Mask(source, progress=call.progress, threads=threads, **selection)
         made = _core.segment(
-            mask._grid, call, theta=theta, gamma=gamma, merge=merge, adjacency=adjacency, delta=delta,
-            fill_holes=fill_holes, tidy=tidy, boundary=boundary, keep=list(keep), max_memory=allowed)
+            mask._grid, call, theta=theta, gamma=gamma, merge=merge, adjacency=adjacency,
+            delta=delta, fill_holes=fill_holes, tidy=tidy, boundary=boundary, keep=list(keep),
+            max_memory=allowed)
     volumes = {name: None if made[name] is None else Labels._of(made[name])
                for name in ("manifold", "distance_squared", "power")}
     return Segmentation(labels=Labels._of(made["labels"]), counts=made["counts"],

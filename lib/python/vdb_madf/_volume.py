@@ -13,17 +13,18 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._calls import metres
+from ._calls import meters
 
 
 _AnyVolume = TypeVar("_AnyVolume", bound="Volume")
 
 
 class Volume:
-    """A volume on a sparse grid, read like an array [z, y, x]: what is asked for costs what it covers.
+    """A volume on a sparse grid, read like an array [z, y, x]: what is asked for costs what it
+    covers.
 
-    `volume[100]` is a slice; whole numbers, slices and `...` are taken. `numpy.asarray(volume)` is all
-    of it."""
+    `volume[100]` is a slice; whole numbers, slices and `...` are taken. `numpy.asarray(volume)` is
+    all of it."""
 
     ndim = 3
     _grid: _core.Grid
@@ -36,7 +37,7 @@ class Volume:
 
     @property
     def dtype(self) -> np.dtype[Any]:
-        """Of the values of slices."""
+        """The type of the values of slices."""
         raise NotImplementedError
 
     def _read(self, first: _core.Index, out: npt.NDArray[Any]) -> None:
@@ -75,7 +76,7 @@ class Volume:
 
     @property
     def voxel_size(self) -> Optional[Tuple[float, float, float]]:
-        """Edges of a voxel along z, y, x in metres; None if unknown."""
+        """Edges of a voxel along z, y, x in meters; None if unknown."""
         return self._grid.voxel_size
 
     @property
@@ -120,7 +121,8 @@ class Volume:
                 out[first:first + len(slab)] = _fitted(slab, out.dtype)
         return out
 
-    def __array__(self, dtype: npt.DTypeLike = None, copy: Optional[bool] = None) -> npt.NDArray[Any]:
+    def __array__(self, dtype: npt.DTypeLike = None,
+                  copy: Optional[bool] = None) -> npt.NDArray[Any]:
         return self.to_array(dtype)
 
     def _slabs(self) -> Any:
@@ -144,10 +146,10 @@ class Volume:
 
 
 def edges_of(source: object, voxel_size: Optional[str]) -> Optional[_core.Edges]:
-    """Edges of a voxel that were given, or are those of another volume, metres."""
+    """Edges of a voxel that were given, or are those of another volume, meters."""
     if voxel_size is None and isinstance(source, Volume):
         return source.voxel_size
-    return metres(voxel_size)
+    return meters(voxel_size)
 
 
 def _fitted(slab: npt.NDArray[Any], dtype: np.dtype[Any]) -> npt.NDArray[Any]:

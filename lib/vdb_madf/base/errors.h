@@ -8,8 +8,8 @@
 
 namespace vdb_madf {
 
-/// What the caller can give to get further. The messages do without names of options: a program that
-/// has some can add them.
+/// What the caller can give to get further. The messages do without names of options: a program
+/// that has some can add them.
 enum class Hint {
   none,
   rawLayout,      ///< size and type of a file without a header

@@ -9,14 +9,13 @@
 
 namespace vdb_madf {
 
-/// How many of the unit make a metre: "um", "micron", "µm" in its many spellings, "mm" ... Nothing
+/// How many of the unit make a meter: "um", "micron", "µm" in its many spellings, "mm" ... Nothing
 /// for a word that is no unit of length.
 std::optional<double> unitsPerMetre(const std::string& unit);
 
 /// A length as a decimal in another unit, such that the decimal / unitsPerMetre gives back `metres`
 /// to the last bit (or nearly, where no double does).
 std::string lengthIn(double unitsPerMetre, double metres);
-/// The same of three lengths.
 std::array<std::string, 3> lengthsIn(double unitsPerMetre, const std::array<double, 3>& metres);
 
 }  // namespace vdb_madf

@@ -5,10 +5,9 @@
 
 namespace vdb_madf {
 
-/// For which instruction sets the inner loops were compiled that run here: "x86-64-v4" (AVX-512),
-/// "x86-64-v3" (AVX2) or "baseline", what every processor of the kind has. The results are the same
-/// bits. It is the widest one of the processor; the environment variable VDB_MADF_SIMD_LEVEL (4, 3 or
-/// 0) asks for less.
+/// The instruction set of the inner loops that run here: "x86-64-v4" (AVX-512), "x86-64-v3" (AVX2)
+/// or "baseline", what every processor of the kind has. It is the widest one of the processor; the
+/// environment variable VDB_MADF_SIMD_LEVEL (4, 3 or 0) asks for less. All give the same bits.
 /// @throw InvalidInput if that variable is anything else
 const char* simdLevel();
 

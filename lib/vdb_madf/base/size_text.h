@@ -21,7 +21,8 @@ VoxelSize voxelSizeFromText(const std::string& text);
 /// 1000; upper and lower case are the same.
 int64_t bytesFromText(const std::string& text);
 
-/// A finite number without a unit, such as a threshold. The decimal sign is a point in every locale.
+/// A finite number without a unit, such as a threshold. The decimal sign is a point in every
+/// locale.
 double numberFromText(const std::string& text);
 
 /// What to add to a message on a text that is no number: something, if it has a decimal comma, as

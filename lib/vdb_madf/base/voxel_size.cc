@@ -13,7 +13,7 @@ namespace vdb_madf {
 
 namespace {
 
-/// Below this edge, millimetres would make a voxel volume that OpenVDB's transforms refuse.
+/// Below this edge, millimeters would make a voxel volume that OpenVDB's transforms refuse.
 constexpr double kMinMetresInMillimetres = 20e-9;
 
 bool isSmall(const VoxelSize& size) {

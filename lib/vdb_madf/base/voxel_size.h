@@ -13,23 +13,21 @@ bool areEdgesOfCube(const std::array<double, 3>& edges);
 
 /// Edges of a voxel and the unit that the transform of a grid is written in.
 ///
-/// OpenVDB refuses transforms with a voxel volume below 3e-15, so metres do not work for micro-CT:
-/// grids are written in millimetres (below 20 nm: micrometres), the SI size stands in metadata.
+/// OpenVDB refuses transforms with a voxel volume below 3e-15, so meters do not work for micro-CT:
+/// grids are written in millimeters (below 20 nm: micrometers), the SI size stands in metadata.
 class VoxelSize {
  public:
-  /// A cube. @param edge metres, > 0
+  /// A cube. @param edge meters, > 0
   explicit VoxelSize(double edge) : edges_{edge, edge, edge} {}
-  /// @param edges metres, > 0, along x, y and z. Those of a cube are all taken for that along x.
+  /// @param edges meters, > 0, along x, y and z. Those of a cube are all taken for that along x.
   explicit VoxelSize(const std::array<double, 3>& edges);
 
-  /// Metres, along x, y and z.
+  /// The edges along x, y and z, meters.
   const std::array<double, 3>& edges() const { return edges_; }
   bool isCube() const { return edges_[0] == edges_[1] && edges_[0] == edges_[2]; }
-  /// Metres. @pre isCube()
-  double edge() const;
-  /// Metres.
-  double shortestEdge() const;
-  /// Metres: of the cube of equal volume; the edge, if it is a cube.
+  double edge() const;          ///< meters. @pre isCube()
+  double shortestEdge() const;  ///< meters
+  /// The edge of the cube of equal volume, meters; the edge itself, if it is a cube.
   double meanEdge() const;
 
   /// "mm", or "um" if an edge is below 20 nm.

@@ -37,16 +37,16 @@ struct EditedLabels {
 ///
 /// merge: the grains become one, whether they touch or not. split: its inverse. A grain is divided
 /// into the grains of the segmentation and the parts of such that it consists of, each as it was; a
-/// grain of the segmentation, or a part of one, in two at its weakest neck (detail/grain_parts.h). A
-/// part has the number that it always has when it is one grain, if that is free: what is merged and
-/// split, or split and merged, has the same labels as before, bit for bit. Otherwise it gets the
-/// least number above all others; if none has the number of the divided grain, the largest gets it.
-/// dropAtFaces: grains that have a voxel with a face neighbor outside the domain; if that is unknown,
-/// outside the box of the grains that are left.
+/// grain of the segmentation, or a part of one, in two at its weakest neck (detail/grain_parts.h).
+/// A part has the number that it always has when it is one grain, if that is free: what is merged
+/// and split, or split and merged, has the same labels as before, bit for bit. Otherwise it gets
+/// the least number above all others; if none has the number of the divided grain, the largest gets
+/// it. dropAtFaces: grains that have a voxel with a face neighbor outside the domain; if that is
+/// unknown, outside the box of the grains that are left.
 ///
-/// Metadata are those of the labels; kEditsKey tells the edits after those that were there, counts of
-/// a segmentation are brought up to date (segmentation/segmentation_metadata.h: updateCounts()), and a graph
-/// of manifolds goes, for it is not that of edited ones.
+/// Metadata are those of the labels; kEditsKey tells the edits after those that were there, counts
+/// of a segmentation are brought up to date (segmentation/segmentation_metadata.h: updateCounts()),
+/// and a graph of manifolds goes, for it is not that of edited ones.
 /// @param manifold with the graph of the segmentation that the labels come from (`segment` with
 ///   keepManifold); for split alone
 /// @throw InvalidInput that names the edit: a grain that is not there, a diameter where the size of

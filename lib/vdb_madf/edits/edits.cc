@@ -3,6 +3,8 @@
 
 #include "vdb_madf/edits/edits.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -60,8 +62,8 @@ int32_t grainFrom(const std::string& text) {
     throw InvalidInput(detail::inQuotes(text) + " is no number of a grain");
   const int64_t grain = number->front();
   if (grain < 1 || grain > std::numeric_limits<int32_t>::max())
-    throw InvalidInput("grain " + std::to_string(grain) +
-                       " cannot be: they are numbered from 1 to 2147483647");
+    throw InvalidInput(
+        fmt::format("grain {} cannot be: they are numbered from 1 to 2147483647", grain));
   return int32_t(grain);
 }
 
@@ -71,12 +73,11 @@ std::vector<int32_t> grainsFrom(const std::vector<std::string>& texts, const Wor
   std::vector<int32_t> sorted = grains;
   std::sort(sorted.begin(), sorted.end());
   const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-  if (twice != sorted.end())
-    throw InvalidInput("grain " + std::to_string(*twice) + " is named twice");
+  if (twice != sorted.end()) throw InvalidInput(fmt::format("grain {} is named twice", *twice));
   if (grains.size() < word.least || grains.size() > word.most)
-    throw InvalidInput(std::string(word.name) + " takes " +
-                       (word.most == 1 ? "one grain" : std::to_string(word.least) + " or more") +
-                       ", and is given " + std::to_string(grains.size()));
+    throw InvalidInput(fmt::format(
+        "{} takes {}, and is given {}", word.name,
+        word.most == 1 ? "one grain" : std::to_string(word.least) + " or more", grains.size()));
   return grains;
 }
 
@@ -129,11 +130,12 @@ Edit parseEdit(const std::string& text) {
   }
   const size_t wanted = word.takes == Takes::nothing ? 0 : 1;
   if (words.size() != wanted)
-    throw InvalidInput(std::string(word.name) + " takes " +
-                       (word.takes == Takes::nothing  ? "nothing"
-                        : word.takes == Takes::voxels ? "one number of voxels"
-                                                      : "one length with its unit, as 100um") +
-                       ", and is given " + std::to_string(words.size()));
+    throw InvalidInput(fmt::format("{} takes {}, and is given {}", word.name,
+                                   word.takes == Takes::nothing ? "nothing"
+                                   : word.takes == Takes::voxels
+                                       ? "one number of voxels"
+                                       : "one length with its unit, as 100um",
+                                   words.size()));
   if (word.takes == Takes::voxels) edit.voxels = voxelsFrom(words.front());
   if (word.takes == Takes::length) edit.diameter = lengthFrom(words.front());
   return edit;
@@ -150,7 +152,7 @@ std::vector<Edit> parseEdits(const std::string& text) {
     try {
       edits.push_back(parseEdit(edit));
     } catch (const InvalidInput& error) {
-      throw InvalidInput("line " + std::to_string(number) + ": " + error.what());
+      throw InvalidInput(fmt::format("line {}: {}", number, error.what()));
     }
   }
   return edits;

@@ -9,8 +9,8 @@
 
 namespace vdb_madf {
 
-/// One change of labels (edit_labels.h), and its text: a word and what it is of, parted by spaces or
-/// commas.
+/// One change of labels (edit_labels.h), and its text: a word and what it is of, parted by spaces
+/// or commas.
 struct Edit {
   enum class Kind {
     split,        ///< "split 9"
@@ -35,8 +35,8 @@ const char* toString(Edit::Kind kind);
 /// The text that parseEdit() reads.
 std::string toString(const Edit& edit);
 
-/// @throw InvalidInput, one line without the text: an unknown word, numbers that cannot be grains or
-///   are there twice, too few or too many.
+/// @throw InvalidInput, one line without the text: an unknown word, numbers that cannot be grains
+///   or are there twice, too few or too many.
 Edit parseEdit(const std::string& text);
 /// A line an edit; empty lines, and what follows a '#', are passed over.
 /// @throw InvalidInput that names the line.

@@ -29,9 +29,9 @@ std::vector<ClumpBond> clumpBonds(const std::vector<Clump>& clumps,
                                   const openvdb::math::Transform& transform);
 
 /// Writes a line per bond, world units, whole or not at all: `bond` (1, 2 ...), `first`,
-/// `second` (ids of grains), `first_clump`, `second_clump`, `first_ball`, `second_ball` (numbers from 0
-/// in the files of writeClumps(); an atom of LAMMPS is its ball + 1), `distance` (of the two balls'
-/// centers), `area`, `radius` (of the disc of this area), `centroid_x`, `_y`, `_z`,
+/// `second` (ids of grains), `first_clump`, `second_clump`, `first_ball`, `second_ball` (numbers
+/// from 0 in the files of writeClumps(); an atom of LAMMPS is its ball + 1), `distance` (of the two
+/// balls' centers), `area`, `radius` (of the disc of this area), `centroid_x`, `_y`, `_z`,
 /// `normal_x`, `_y`, `_z` (from the first to the second).
 /// @throw InvalidInput for an ending other than .csv, or voxels that are mirrored; IoError.
 void writeClumpBonds(const std::string& path, const std::vector<ClumpBond>& bonds,

@@ -11,6 +11,8 @@
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 
+#include <fmt/format.h>
+
 namespace vdb_madf {
 
 namespace {
@@ -18,7 +20,7 @@ namespace {
 using detail::OutputStream;
 using openvdb::Vec3d;
 
-/// f(clump number, centre, radius) for all balls, world.
+/// f(clump number, center, radius) for all balls, world.
 template <typename F>
 void forEachBall(const std::vector<Clump>& clumps, const detail::WorldTransform& world,
                  const F& f) {
@@ -36,15 +38,16 @@ void numbers(OutputStream& out, const Vec3d& center, char separator) {
 }
 
 /// `fix rigid` refuses bodies of one atom, or of atoms at one place: such a clump has a second one
-/// within its ball, which touches nothing. Its radius, and how far it is from the center along x, in
-/// radii of the ball.
+/// within its ball, which touches nothing. Its radius, and how far it is from the center along x,
+/// in radii of the ball.
 constexpr double kCoreRadius = 0.5, kCoreShift = 1.0 / 16;
 
 bool needsCore(const Clump& clump) {
   return clump.balls.size() == 1;
 }
 
-/// At which all atoms of a clump weigh as much as its grain of density 1, however they overlap.
+/// The density at which all atoms of a clump weigh as much as its grain of density 1, however they
+/// overlap.
 double densityOfAtoms(const Clump& clump, const detail::WorldTransform& world) {
   double volume = 0;
   for (const Clump::Ball& ball : clump.balls)
@@ -58,9 +61,8 @@ void writeBonds(OutputStream& out, const std::vector<ClumpBond>& bonds) {
   if (bonds.empty()) return;
   out.text("\nBonds\n\n");
   for (size_t bond = 1; bond <= bonds.size(); ++bond)
-    out.text(std::to_string(bond) + " " + std::to_string(bond) + " " +
-             std::to_string(bonds[bond - 1].firstBall + 1) + " " +
-             std::to_string(bonds[bond - 1].secondBall + 1) + "\n");
+    out.text(fmt::format("{} {} {} {}\n", bond, bond, bonds[bond - 1].firstBall + 1,
+                         bonds[bond - 1].secondBall + 1));
 }
 
 void writeLammps(OutputStream& out, const std::vector<Clump>& clumps,
@@ -76,8 +78,7 @@ void writeLammps(OutputStream& out, const std::vector<Clump>& clumps,
   out.text("LAMMPS data: grains as clumps of balls, a molecule each (vdb_madf)\n\n");
   out.text(std::to_string(atoms) + " atoms\n1 atom types\n");
   if (!bonds.empty())
-    out.text(std::to_string(bonds.size()) + " bonds\n" + std::to_string(bonds.size()) +
-             " bond types\n");
+    out.text(fmt::format("{} bonds\n{} bond types\n", bonds.size(), bonds.size()));
   out.text("\n");
   const char* names[3] = {" xlo xhi\n", " ylo yhi\n", " zlo zhi\n"};
   for (int axis = 0; axis < 3; ++axis)
@@ -92,8 +93,7 @@ void writeLammps(OutputStream& out, const std::vector<Clump>& clumps,
     out.number(++atom);
     out.text(" 1 ");
     numbers(out, center, ' ');
-    out.text(" " + detail::shortestDecimal(2 * radius) + " " + densities[n] + " " +
-             std::to_string(n + 1) + "\n");
+    out.text(fmt::format(" {} {} {}\n", detail::shortestDecimal(2 * radius), densities[n], n + 1));
   };
   forEachBall(clumps, world, writeAtom);
   forEachBall(clumps, world, [&](size_t n, const Vec3d& center, double radius) {
@@ -140,13 +140,10 @@ void writeClumpCover(const std::string& path, const std::vector<Clump>& clumps,
   OutputStream out(path, interrupter);
   out.text("grain_id,voxels,balls,uncovered,outside,volume_error,farthest\n");
   for (const Clump& clump : clumps) {
-    out.text(
-        std::to_string(clump.label) + "," + std::to_string(clump.voxels) + "," +
-        std::to_string(clump.balls.size()) + "," + std::to_string(clump.uncovered) + "," +
-        std::to_string(clump.outside) + "," + detail::shortestDecimal(clump.volumeError()) + "," +
-        (clump.balls.empty() ? ""
-                             : detail::shortestDecimal(world.shortestEdge() * clump.farthest)) +
-        "\n");
+    out.text(fmt::format(
+        "{},{},{},{},{},{},{}\n", clump.label, clump.voxels, clump.balls.size(), clump.uncovered,
+        clump.outside, detail::shortestDecimal(clump.volumeError()),
+        clump.balls.empty() ? "" : detail::shortestDecimal(world.shortestEdge() * clump.farthest)));
   }
   out.commit();
 }

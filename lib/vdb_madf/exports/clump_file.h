@@ -11,7 +11,7 @@
 
 namespace vdb_madf {
 
-/// Writes world centres and radii, whole or not at all, by ending:
+/// Writes world centers and radii, whole or not at all, by ending:
 /// - .csv: grain_id, x, y, z, radius
 /// - .txt: x y z radius clump, a line per ball, as YADE exports and ymport.textClumps reads; clumps
 ///   are numbered from 0
@@ -25,9 +25,10 @@ namespace vdb_madf {
 void writeClumps(const std::string& path, const std::vector<Clump>& clumps,
                  const openvdb::math::Transform& transform,
                  const std::vector<ClumpBond>& bonds = {}, Interrupter* interrupter = nullptr);
-/// Writes a line per grain, whole or not at all: `grain_id`, `voxels`, `balls`, `uncovered` (voxels of
-/// the grain in no ball), `outside` (voxels of the balls that are not the grain's), `volume_error`
-/// ((outside - uncovered) / voxels), `farthest` (largest distance of a voxel from the balls, world).
+/// Writes a line per grain, whole or not at all: `grain_id`, `voxels`, `balls`, `uncovered` (voxels
+/// of the grain in no ball), `outside` (voxels of the balls that are not the grain's),
+/// `volume_error` ((outside - uncovered) / voxels), `farthest` (largest distance of a voxel from
+/// the balls, world).
 /// @throw InvalidInput for an ending other than .csv, or voxels that are mirrored; IoError.
 void writeClumpCover(const std::string& path, const std::vector<Clump>& clumps,
                      const openvdb::math::Transform& transform, Interrupter* interrupter = nullptr);

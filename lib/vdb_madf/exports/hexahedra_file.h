@@ -9,7 +9,7 @@
 
 namespace vdb_madf {
 
-/// Writes the labelled voxels as hexahedra (hexahedra.h), whole or not at all, by ending:
+/// Writes the labeled voxels as hexahedra (hexahedra.h), whole or not at all, by ending:
 /// - .vtu: VTK unstructured grid, appended raw; Int32 cell data `grain_id`
 /// - .inp: Abaqus (also CalculiX) nodes and C3D8 elements, an element set `grain_000123` per grain;
 ///   nodes and elements are numbered from 1

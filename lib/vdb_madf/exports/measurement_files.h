@@ -25,7 +25,7 @@ struct TableOptions {
   /// Name of the sample: the first column of both tables, so that those of several samples can be
   /// joined. Empty: no such column.
   std::string sample;
-  /// Of the grains' material, kg/m^3, above 0; none: nothing is said of masses.
+  /// Density of the grains' material, kg/m^3, above 0; none: nothing is said of masses.
   std::optional<double> density;
 };
 
@@ -47,11 +47,12 @@ MeasurementTexts measurementTexts(const Measurements& measurements,
 /// where the numbers come from: our version, the labels and their digest, and of the metadata of
 /// their grid the numbers and texts whose names begin with `madf_`.
 ///
-/// A name that ends with .h5 or .hdf5 is that of one HDF5 file instead, with the same bytes whenever
-/// it is written: groups `grains` and `bonds` with a dataset per column, named without the unit, which
-/// is its attribute `units` ("mm", "mm^2", "1/mm"; none of plain numbers); counts are int64 (if
-/// all are known), other numbers float64 with all their digits, NaN if unknown. The members of the group `sample` are those
-/// of sample.json, lists as arrays, true and false as 1 and 0; it has the name of the sample.
+/// A name that ends with .h5 or .hdf5 is that of one HDF5 file instead, with the same bytes
+/// whenever it is written: groups `grains` and `bonds` with a dataset per column, named without the
+/// unit, which is its attribute `units` ("mm", "mm^2", "1/mm"; none of plain numbers); counts are
+/// int64 (if all are known), other numbers float64 with all their digits, NaN if unknown. The
+/// members of the group `sample` are those of sample.json, lists as arrays, true and false as 1 and
+/// 0; it has the name of the sample.
 class MeasurementTables {
  public:
   /// @throw IoError, also for HDF5 if it was not there when this was built

@@ -14,24 +14,24 @@ namespace vdb_madf {
 
 /// What a mesh file says beyond the mesh.
 struct MeshFileOptions {
-  /// Index to world. The centre of voxel (i,j,k) lies at the world position of (i,j,k), so a
+  /// Index to world. The center of voxel (i,j,k) lies at the world position of (i,j,k), so a
   /// voxel's faces half a voxel from it: the half voxel is in the points already.
   openvdb::math::Transform::ConstPtr transform;  ///< null: identity
   std::string lengthUnit;  ///< for comments in the file; empty: one unit is one voxel
   GrainColors colors;
-  // Of .glb alone:
+  // What follows is for .glb alone.
   const GrainNetwork* measured = nullptr;  ///< its numbers become properties of the grains
   bool shadeSmooth = false;                ///< with normals; else triangles are shown as planes
 };
 
 /// Writes all grains into one file, whole or not at all, by ending:
-/// - .ply: binary; points with colour and int `grain_id`, faces with int `grain_id` and colour
-/// - .obj: a group `grain_000123` per grain, points with colour
+/// - .ply: binary; points with color and int `grain_id`, faces with int `grain_id` and color
+/// - .obj: a group `grain_000123` per grain, points with color
 /// - .stl: binary, all triangles; the grains are not told apart (see writeStlFolder)
 /// - .vtp: VTK polygons, appended raw; per point and per polygon Int32 `grain_id` and UInt8 `color`
 /// - .glb: glTF 2.0; a node `grain_000123` per grain, with a material of its color, and the label
 ///   and the numbers of `measured` in its `extras`, by their names; what is not known is left out.
-///   One unit of length is that of the grid, though glTF says metres; y is upwards, so that a
+///   One unit of length is that of the grid, though glTF says meters; y is upwards, so that a
 ///   program with z upwards, which turns such files, shows the places of the grid.
 /// An empty mesh is written as a file without faces.
 /// @throw InvalidInput for another ending, a transform that is not linear, or more than 4 GiB in a

@@ -10,6 +10,8 @@
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/files/file_ending.h"
 
+#include <fmt/format.h>
+
 namespace vdb_madf {
 
 namespace {
@@ -26,9 +28,10 @@ void addColumn(detail::VtkFile& file, const Column& column) {
 void writeVtp(const std::string& path, const GrainNetwork& network, Interrupter* interrupter) {
   const size_t grains = network.grains.size(), bonds = network.bonds.size();
   detail::VtkFile file("PolyData");
-  file.xml("<PolyData>\n<Piece NumberOfPoints=\"" + std::to_string(grains) +
-           "\" NumberOfVerts=\"0\" NumberOfLines=\"" + std::to_string(bonds) +
-           "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<PointData Scalars=\"grain_id\">\n");
+  file.xml(fmt::format(
+      "<PolyData>\n<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"{}\" "
+      "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<PointData Scalars=\"grain_id\">\n",
+      grains, bonds));
   file.array("Int32", "grain_id", 1, 4 * grains,
              [&](OutputStream& out) { out.bytes(network.grains.data(), 4 * grains); });
   file.array("UInt8", "color", 3, 3 * grains, [&](OutputStream& out) {
@@ -79,7 +82,7 @@ void writeGraphml(const std::string& path, const GrainNetwork& network, Interrup
     out.text("</data>");
   };
   for (size_t i = 0; i < network.grains.size(); ++i) {
-    out.text("<node id=\"n" + std::to_string(network.grains[i]) + "\">");
+    out.text(fmt::format("<node id=\"n{}\">", network.grains[i]));
     data("node_grain_id", network.grains[i]);
     data("node_x", network.centers[i].x());
     data("node_y", network.centers[i].y());
@@ -88,8 +91,8 @@ void writeGraphml(const std::string& path, const GrainNetwork& network, Interrup
     out.text("</node>\n");
   }
   for (size_t i = 0; i < network.bonds.size(); ++i) {
-    out.text("<edge source=\"n" + std::to_string(network.grains[network.bonds[i][0]]) +
-             "\" target=\"n" + std::to_string(network.grains[network.bonds[i][1]]) + "\">");
+    out.text(fmt::format("<edge source=\"n{}\" target=\"n{}\">",
+                         network.grains[network.bonds[i][0]], network.grains[network.bonds[i][1]]));
     for (const Column& column : network.bondColumns) data("edge_" + column.name, column.values[i]);
     out.text("</edge>\n");
   }

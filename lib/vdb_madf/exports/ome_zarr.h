@@ -22,8 +22,8 @@ OmeVersion omeVersionOf(const std::string& text);
 struct OmeZarrOptions {
   OmeVersion version = OmeVersion::v04;
   MeasureOptions measure;  ///< for the properties of the grains
-  /// Also `neuroglancer/`, for the viewer of this name: a mesh for each grain, the measures that are
-  /// known of all, and a state that shows both with the labels. Wants a voxel size.
+  /// Adds `neuroglancer/`, for the viewer of this name: a mesh for each grain, the measures that
+  /// are known of all, and a state that shows both with the labels. Wants a voxel size.
   bool meshes = false;
   GrainMeshOptions mesh{10};
   int meshReduction = 1;  ///< meshes of labels at 1/n, 1 to kMaxReduction
@@ -40,20 +40,21 @@ struct OmeZarrOptions {
 /// a chunk, 64 (at most 1/256). Coarse voxel i stands for the voxels factor * i ... of the index
 /// space, as in reduced_labels.h: a label is the most frequent one, of equally frequent ones the
 /// smallest; background counts, also that beyond the box; the object's value is 255 times its part
-/// of the voxels, rounded half up. The translation of each level says where the centre of its first
+/// of the voxels, rounded half up. The translation of each level says where the center of its first
 /// voxel lies, so that a voxel has the place in the world that its grid gives it.
 ///
-/// Chunks are compressed by gzip; those of background alone are left out. The bytes depend on labels
-/// and options alone, those of meshes on the name of the folder, too. Memory: that of measure(), or
-/// the two grids of a coarse level and a chunk per thread; with meshes those of all grains.
+/// Chunks are compressed by gzip; those of background alone are left out. The bytes depend on
+/// labels and options alone, those of meshes on the name of the folder, too. Memory: that of
+/// measure(), or the two grids of a coarse level and a chunk per thread; with meshes those of all
+/// grains.
 /// @throw InvalidInput if the box is empty, voxels are not along the axes, or as measure(); with
 ///   meshes also without a voxel size, and as reduceLabels() and grainMesh(); IoError; Interrupted.
 void writeOmeZarr(const std::string& path, const Int32Grid& labels, const CoordBBox& box,
                   const OmeZarrOptions& options = {}, Interrupter* interrupter = nullptr);
 
-/// The same of labels in slabs, which need not fit in memory together: the same files. Each slab is read
-/// four times, or more often as by measure(). Memory: that of measure(), or two slabs and of each level
-/// what there is of a layer of chunks.
+/// Labels in slabs, which need not fit in memory together, give the same files. Each slab is read
+/// four times, or more often as by measure(). Memory: that of measure(), or two slabs and of each
+/// level what there is of a layer of chunks.
 /// @throw as above; InvalidInput if the domain is a region, or for meshes; what reading throws.
 void writeOmeZarr(const std::string& path, const LabelSlabs& labels, const CoordBBox& box,
                   const OmeZarrOptions& options = {}, Interrupter* interrupter = nullptr);

@@ -54,7 +54,7 @@ class Slabs {
   CoordBBox box_;
 };
 
-/// Of the voxels; background is black.
+/// The colors of the voxels; background is black.
 std::vector<Rgb> colorsOf(const std::vector<int32_t>& labels, const GrainColors& colors) {
   std::vector<Rgb> result(labels.size());
   int32_t last = 0;

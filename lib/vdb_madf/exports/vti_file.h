@@ -12,7 +12,7 @@ namespace vdb_madf {
 /// Writes the labels over `box` as a VTK image, whole or not at all: Int32 cell data `grain_id`
 /// (background 0) and UInt8 `color` (grainColors(), background black), x fastest, appended raw.
 ///
-/// Cell (i,j,k) is voxel (i,j,k), extents are those of the box: a cell's centre lies at the world
+/// Cell (i,j,k) is voxel (i,j,k), extents are those of the box: a cell's center lies at the world
 /// position of its voxel, so the origin, a corner of cells, lies half a voxel below that of
 /// (0,0,0). Memory: eight slices; compressed (zlib): the compressed file and eight slices per
 /// thread.

@@ -3,6 +3,8 @@
 
 #include "vdb_madf/intensity/gray_planes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -25,8 +27,7 @@ struct Samples {
 };
 
 std::string sizeText(const CoordBBox& box) {
-  return std::to_string(box.dim().x()) + "x" + std::to_string(box.dim().y()) + "x" +
-         std::to_string(box.dim().z()) + " voxels";
+  return fmt::format("{}x{}x{} voxels", box.dim().x(), box.dim().y(), box.dim().z());
 }
 
 /// Takes what planes show of the slices [z, z + count) of the scan.

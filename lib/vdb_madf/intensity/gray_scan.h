@@ -22,9 +22,9 @@ struct GrayScan {
 };
 
 /// Any readable file: an image, as openVolumeImage(), or a grid of numbers of a VDB file (the one
-/// that the options name, or GridUse::object), with its background outside of its voxels; its box is
-/// its domain, or the box of its active voxels. Of the options `grid`, `dataset`, `raw`, `outputs`
-/// and `note` count.
+/// that the options name, or GridUse::object), with its background outside of its voxels; its box
+/// is its domain, or the box of its active voxels. Of the options `grid`, `dataset`, `raw`,
+/// `outputs` and `note` count.
 /// @throw InvalidInput, one line that names the file; IoError; Interrupted.
 GrayScan openGrayScan(const std::string& path, const VolumeOptions& options = {},
                       Interrupter* interrupter = nullptr);

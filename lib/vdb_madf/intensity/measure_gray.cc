@@ -59,8 +59,8 @@ struct Slab {
   }
 };
 
-/// Gathers the samples of each grain and bond, in an order that depends on the labels alone, until all of
-/// them are there.
+/// Gathers the samples of each grain and bond, in an order that depends on the labels alone, until
+/// all of them are there.
 template <typename T>
 class SampleLists {
  public:
@@ -150,7 +150,7 @@ class SampleLists {
     }
   }
 
-  /// With the row of the bond; a voxel comes once for each bond of which it has a face.
+  /// Samples with the row of their bond; a voxel comes once for each bond of which it has a face.
   std::vector<std::pair<size_t, T>> samplesBesideBonds(const Int32Tree& tree, const Coord& origin,
                                                        const Slab<T>& slab) const {
     std::vector<std::pair<size_t, T>> found;

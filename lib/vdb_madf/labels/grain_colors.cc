@@ -26,10 +26,10 @@ namespace {
 
 using Pair = std::pair<int32_t, int32_t>;
 
-/// Calm colors of middle lightness (L* 45 to 90, chroma 18 to 62), which stay apart from white and from
-/// a dark background. The first 16 have the largest least distance for normal eyes and for those
-/// that lack one kind of cones (protanopia, deuteranopia, tritanopia, simulated after Machado et
-/// al. 2009); the others are each as far as possible from all before it, for all these eyes.
+/// Calm colors of middle lightness (L* 45 to 90, chroma 18 to 62), which stay apart from white and
+/// from a dark background. The first 16 have the largest least distance for normal eyes and for
+/// those that lack one kind of cones (protanopia, deuteranopia, tritanopia, simulated after Machado
+/// et al. 2009); the others are each as far as possible from all before it, for all these eyes.
 constexpr size_t kFirstChoice = 16, kPaletteSize = 64;
 constexpr std::array<Rgb, kPaletteSize> kPalette{{
     {30, 165, 150},  {180, 75, 30},   {120, 90, 180},  {255, 225, 105}, {150, 135, 105},
@@ -49,14 +49,14 @@ constexpr std::array<Rgb, kPaletteSize> kPalette{{
 constexpr Rgb kUnknown{128, 128, 128};
 
 constexpr int kX = detail::kHaloStride[0], kY = detail::kHaloStride[1], kZ = detail::kHaloStride[2];
-/// To half of the 26 neighbours; the others lie opposite.
+/// To half of the 26 neighbors; the others lie opposite.
 constexpr std::array<int, 13> kForward{kZ,           kY - kZ, kY, kY + kZ, kX - kY - kZ, kX - kY,
                                        kX - kY + kZ, kX - kZ, kX, kX + kZ, kX + kY - kZ, kX + kY,
                                        kX + kY + kZ};
 
 constexpr int32_t kNoLabel = std::numeric_limits<int32_t>::max();
 
-// By value: std::max() and std::min() keep loops from becoming SIMD.
+// std::max() and std::min(), which take references, keep loops from becoming SIMD.
 inline int32_t larger(int32_t a, int32_t b) {
   return a > b ? a : b;
 }
@@ -64,8 +64,9 @@ inline int32_t smaller(int32_t a, int32_t b) {
   return a < b ? a : b;
 }
 
-/// The largest and the smallest label (0 and kNoLabel: there is none) of a halo and, in `largest` and
-/// `smallest`, of what lies within one voxel of each voxel of the leaf; of others nothing is known.
+/// The largest and the smallest label (0 and kNoLabel: there is none) of a halo and, in `largest`
+/// and `smallest`, of what lies within one voxel of each voxel of the leaf; of others nothing is
+/// known.
 VDB_MADF_KERNEL std::pair<int32_t, int32_t> extremesOf(const int32_t* halo, int32_t* largest,
                                                        int32_t* smallest) {
   constexpr size_t kSize = std::tuple_size_v<detail::LabelHalo>;
@@ -95,7 +96,7 @@ VDB_MADF_KERNEL std::pair<int32_t, int32_t> extremesOf(const int32_t* halo, int3
   return {highest, lowest};
 }
 
-/// f(label) for each labelled voxel of the leaf.
+/// f(label) for each labeled voxel of the leaf.
 template <typename F>
 void forEachLabel(const detail::LabelHalo& halo, const F& f) {
   for (int x = 0; x < 8; ++x)
@@ -118,7 +119,7 @@ void forEachContact(const detail::LabelHalo& halo, const F& f) {
         const auto at = int(detail::haloAt(x, y, z));
         const int32_t a = halo[size_t(at)];
         if (!a || largest[size_t(at)] == smallest[size_t(at)]) continue;
-        // All 26: a neighbour in another leaf may be the only one to see it, or not be a leaf.
+        // All 26: a neighbor in another leaf may be the only one to see it, or not be a leaf.
         const auto contact = [&](int32_t b) {
           if (b && b != a) f(smaller(a, b), larger(a, b));
         };
@@ -170,7 +171,7 @@ Contacts findContacts(const Int32Grid& grid, Interrupter* interrupter) {
   return {{labels.begin(), labels.end()}, std::move(pairs)};
 }
 
-/// Of two sorted lists.
+/// The union of two sorted lists.
 template <typename T>
 std::vector<T> united(const std::vector<T>& a, const std::vector<T>& b) {
   std::vector<T> all;
@@ -179,7 +180,7 @@ std::vector<T> united(const std::vector<T>& a, const std::vector<T>& b) {
   return all;
 }
 
-using Graph = std::vector<std::vector<uint32_t>>;  ///< the neighbours of each label's index
+using Graph = std::vector<std::vector<uint32_t>>;  ///< the neighbors of each label's index
 
 Graph asGraph(const std::vector<int32_t>& labels, const std::vector<Pair>& pairs) {
   const auto indexOf = [&](int32_t label) {
@@ -195,7 +196,7 @@ Graph asGraph(const std::vector<int32_t>& labels, const std::vector<Pair>& pairs
 }
 
 /// The reverse of: take away, again and again, a node of least remaining degree. Each node then has
-/// few neighbours before it: as many as that degree.
+/// few neighbors before it: as many as that degree.
 std::vector<uint32_t> smallestLast(const Graph& graph) {
   std::vector<size_t> degree(graph.size());
   std::set<std::pair<size_t, uint32_t>> queue;
@@ -217,13 +218,13 @@ std::vector<uint32_t> smallestLast(const Graph& graph) {
   return order;
 }
 
-/// Where the label's search of the palette begins: mixed, so that all colours come into use
-/// (the multiplier is 2^32 divided by the golden ratio).
+/// Where the label's search of the palette begins: mixed, so that all colors come into use (the
+/// multiplier is 2^32 divided by the golden ratio).
 size_t preference(int32_t label) {
   return size_t((uint64_t(uint32_t(label) * 2654435769u) * kFirstChoice) >> 32);
 }
 
-/// The first colour that is not `used`, else the preferred one.
+/// The first color that is not `used`, else the preferred one.
 size_t pick(int32_t label, const std::array<bool, kPaletteSize>& used) {
   const size_t preferred = preference(label);
   for (size_t k = 0; k < kFirstChoice; ++k) {

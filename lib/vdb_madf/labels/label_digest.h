@@ -9,8 +9,8 @@
 
 namespace vdb_madf {
 
-/// A checksum of the places and labels of the labelled voxels, 32 hexadecimal digits: equal labels
-/// have equal digests, whatever file or grid they come from. The one that measure() gives.
+/// A checksum of the places and labels of the labeled voxels, 32 hexadecimal digits: equal labels
+/// have equal digests, whatever file or grid they come from. It is the one that measure() gives.
 /// @throw InvalidInput as LeafIndex does; Interrupted.
 std::string labelDigest(const Int32Grid& labels, Interrupter* interrupter = nullptr);
 

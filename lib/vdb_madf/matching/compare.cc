@@ -36,7 +36,7 @@ struct Part {
   int32_t constant = 0;
 };
 
-/// Voxels by (truth label, test label), either of them 0 where only the other one is labelled.
+/// Voxels by (truth label, test label), either of them 0 where only the other one is labeled.
 class Counts {
  public:
   void add(int32_t truth, int32_t test, int64_t voxels) {
@@ -46,7 +46,7 @@ class Counts {
     for (const auto& [key, voxels] : other.counts_) counts_[key] += voxels;
   }
 
-  /// By truth, then by test.
+  /// The overlaps by truth, then by test.
   std::vector<Overlap> sorted() const {
     std::vector<Overlap> entries;
     for (const auto& [key, voxels] : counts_)
@@ -137,7 +137,7 @@ class OverlapCounter {
     int32_t truths[Leaf::SIZE], tests[Leaf::SIZE];
     labels(truth, truths);
     labels(test, tests);
-    // Neighbours mostly share their labels: one look-up for a run.
+    // Neighbors mostly share their labels: one look-up for a run.
     for (int begin = 0, end; begin < int(Leaf::SIZE); begin = end) {
       end = begin + 1;
       while (end < int(Leaf::SIZE) && truths[end] == truths[begin] && tests[end] == tests[begin])
@@ -188,7 +188,7 @@ Counts countWindow(const detail::LabelLeaves& truth, const detail::LabelLeaves& 
 /// The grains of one grid, gathered from the overlaps.
 struct Grains {
   std::map<int32_t, GrainMatch> matches;
-  std::map<int32_t, int64_t> common;  ///< voxels labelled in both grids, where there are any
+  std::map<int32_t, int64_t> common;  ///< voxels labeled in both grids, where there are any
 
   void add(int32_t grain, int32_t other, int64_t voxels) {
     if (!grain) return;

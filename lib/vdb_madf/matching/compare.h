@@ -11,7 +11,7 @@
 
 namespace vdb_madf {
 
-/// Voxels that have a pair of labels; 0: labelled in the other grid only.
+/// Voxels that have a pair of labels; 0: labeled in the other grid only.
 struct Overlap {
   int32_t truth = 0, test = 0;
   int64_t voxels = 0;
@@ -30,13 +30,13 @@ struct GrainMatch {
 /// How well the labels of a test grid agree with those of a truth grid.
 struct Comparison {
   int64_t truthGrains = 0, testGrains = 0;  ///< distinct labels > 0, over all voxels of each grid
-  int64_t commonVoxels = 0;                 ///< labelled in both
+  int64_t commonVoxels = 0;                 ///< labeled in both
   int64_t truthOnlyVoxels = 0, testOnlyVoxels = 0;
   /// Percent of commonVoxels. Each truth label is associated with the test label that most of its
   /// voxels have (tie: smaller id); its other voxels are misclassified (paper, section 6.1).
   /// Several truth labels may share a test label. 0 if there are no common voxels.
   double misclassifiedPercent = 0;
-  /// The same with the roles of truth and test exchanged: sees over-segmentation.
+  /// misclassifiedPercent with the roles of truth and test exchanged: it sees over-segmentation.
   double mirrorMisclassifiedPercent = 0;
   /// Adjusted Rand index (Hubert & Arabie 1985) over the common voxels; 1: same partition.
   double adjustedRandIndex = 1;
@@ -71,8 +71,8 @@ std::vector<GrainGroup> merges(const Comparison& comparison);
 Comparison compare(const Int32Grid& truth, const Int32Grid& test,
                    Interrupter* interrupter = nullptr);
 
-/// The same of labels in slabs, which need not fit in memory together; they may be cut elsewhere. One
-/// slab of each is held at a time, or the layers that lie in one of the other.
+/// Labels in slabs need not fit in memory together, and the two may be cut elsewhere. One slab of
+/// each is held at a time, or the layers that lie in one of the other.
 /// @throw as above; what reading throws.
 Comparison compare(const LabelSlabs& truth, const LabelSlabs& test,
                    Interrupter* interrupter = nullptr);

@@ -140,7 +140,7 @@ int32_t number(Sides& sides, std::vector<GrainOverlap> links, int64_t last) {
 
 using Pair = std::pair<int32_t, int32_t>;
 
-/// Of the bonds of one side. `lost`: between grains that are linked, but have no such bond there.
+/// Judges the bonds of one side. `lost`: the grains are linked, but have no such bond there.
 void judge(std::vector<TrackedBond>& bonds, const Links& links, const std::set<Pair>& there,
            BondFate lost) {
   for (TrackedBond& bond : bonds) {
@@ -173,7 +173,7 @@ std::vector<TrackedBond> bondsOf(const Int32Grid& labels, const Int32Grid& share
   return bonds;
 }
 
-/// Of those in what both volumes show.
+/// The pairs of bonds in what both volumes show.
 std::set<Pair> pairsOf(const std::vector<TrackedBond>& bonds) {
   std::set<Pair> pairs;
   for (const TrackedBond& bond : bonds)

@@ -11,15 +11,16 @@
 
 namespace vdb_madf {
 
-/// Metadata of tracked labels: the shift (string), and the largest number that a grain has had so far
-/// (int64).
+/// Metadata of tracked labels: the shift (string), and the largest number that a grain has had so
+/// far (int64).
 inline constexpr char kTrackKey[] = "madf_track", kLastTrackKey[] = "madf_track_last";
 
 /// How grains of two scans are linked.
 struct TrackOptions {
   std::optional<Coord> shift;  ///< of the sample, in voxels, from before to after; absent: is found
   int maxShift = 10;           ///< that is looked for, along each axis; 0 to kMaxShift
-  /// Of the voxels of the smaller of two grains, how many they have to share to be linked; (0, 1].
+  /// The share of the smaller grain's voxels that two grains must have in common to be linked; (0,
+  /// 1].
   double share = 0.5;
   int64_t minFaces = 1;  ///< grains that share fewer voxel faces have no bond
 };
@@ -79,26 +80,25 @@ struct TrackedBond {
 /// Grains and bonds of two scans, and how they go together.
 struct Tracks {
   Coord shift;               ///< voxel p before is p + shift after
-  int64_t voxelsBefore = 0;  ///< labelled, in what both volumes show
+  int64_t voxelsBefore = 0;  ///< labeled, in what both volumes show
   int64_t voxelsAfter = 0;
-  int64_t commonVoxels = 0;                          ///< labelled in both
+  int64_t commonVoxels = 0;                          ///< labeled in both
   std::vector<TrackedGrain> before, after;           ///< ascending
   std::vector<GrainOverlap> overlaps;                ///< by before, then after
   std::vector<TrackedBond> bondsBefore, bondsAfter;  ///< by first, then second
   int32_t lastTrack = 0;  ///< the largest number of a grain so far; 0: there is none
 };
 
-/// Follows grains from one label grid to a later one of the same voxels, between which the sample may
-/// have moved by whole voxels. Labels are the active voxels, tiles included, of positive value.
+/// Follows grains from one label grid to a later one of the same voxels, between which the sample
+/// may have moved by whole voxels. Labels are the active voxels, tiles included, of positive value.
 ///
-/// The shift, if it is not given, is the one that most labelled voxels share
-/// (detail/rigid_shift.h: findShift()). What both volumes show is the box of the one's domain in that
-/// of the other's; where a domain is unknown, all. Two grains are linked if their common voxels are at
-/// least `share` of those that the smaller of them has there.
-/// The track of a grain after: links in descending order of their voxels (then by ascending numbers)
-/// give the number of the grain before to the grain after, unless either has been used; what is left
-/// gets numbers above all of before, in ascending order; if before are tracked labels, above all that
-/// their series has had.
+/// The shift, if it is not given, is the one that most labeled voxels share (detail/rigid_shift.h:
+/// findShift()). What both volumes show is the box of the one's domain in that of the other's;
+/// where a domain is unknown, all. Two grains are linked if their common voxels are at least
+/// `share` of those that the smaller of them has there. The track of a grain after: links in
+/// descending order of their voxels (then by ascending numbers) give the number of the grain before
+/// to the grain after, unless either has been used; what is left gets numbers above all of before,
+/// in ascending order; if before are tracked labels, above all that their series has had.
 /// Deterministic. Memory: a copy of each grid, and per pair of grains that meet.
 /// @throw InvalidInput if an option is out of range, or a limit of leaf_index.h is exceeded;
 ///   Interrupted.

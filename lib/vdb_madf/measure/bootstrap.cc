@@ -3,6 +3,8 @@
 
 #include "vdb_madf/measure/bootstrap.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -48,7 +50,7 @@ class GrainQuotients {
   std::vector<std::vector<Quotient>> columns_;
 };
 
-/// By id: the sum over its bonds of bond radius / radius of the smaller grain.
+/// The sum over the bonds of each grain, by id, of bond radius / radius of the smaller grain.
 std::map<int32_t, double> bondRatios(const std::vector<GrainMeasures>& grains,
                                      const std::vector<BondMeasures>& bonds) {
   std::map<int32_t, double> diameters, ratios;
@@ -102,9 +104,8 @@ double percentile(const std::vector<double>& values, double share) {
 
 void requireReplicates(int replicates) {
   if (replicates < kMinReplicates || replicates > kMaxReplicates)
-    throw InvalidInput("a bootstrap of " + std::to_string(replicates) +
-                       " replicates: must be from " + std::to_string(kMinReplicates) + " to " +
-                       std::to_string(kMaxReplicates));
+    throw InvalidInput(fmt::format("a bootstrap of {} replicates: must be from {} to {}",
+                                   replicates, kMinReplicates, kMaxReplicates));
 }
 
 std::vector<MeanInterval> bootstrapMeans(const std::vector<GrainMeasures>& grains,

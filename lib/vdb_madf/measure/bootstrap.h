@@ -33,9 +33,9 @@ struct MeanInterval {
 /// replicates, interpolated between neighbors of rank (n - 1) q. In this order:
 /// `grain_diameter_mean`, `grain_volume_mean`, `sphericity_mean`, `specific_surface` (sum of free
 /// areas over sum of volumes), `mean_coordination`, `bond_to_grain_ratio` (mean over the bonds of
-/// the grains drawn: a bond whose two grains are drawn counts twice), with the shape `solidity_mean`,
-/// with edge weights `corrected_grain_diameter_mean`. Replicates in which one is undefined, such as
-/// those without a bond, do not count for it.
+/// the grains drawn: a bond whose two grains are drawn counts twice), with the shape
+/// `solidity_mean`, with edge weights `corrected_grain_diameter_mean`. Replicates in which one is
+/// undefined, such as those without a bond, do not count for it.
 ///
 /// The numbers are the same on every machine: replicate r, from 1, takes the outputs x of
 /// std::mt19937(r), in their order, as grains x * n / 2^32, rounded down.

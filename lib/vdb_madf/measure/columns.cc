@@ -62,7 +62,7 @@ void addShape(ColumnMaker<GrainMeasures>& make) {
   make.addCount("zingg_class", [](const G& g) { return zinggClass(g.ellipsoid.values); });
 }
 
-/// Of grains or bonds.
+/// Adds the columns of grains or bonds.
 template <typename Item>
 void addGray(ColumnMaker<Item>& make) {
   make.addCount("gray_voxels", [](const Item& item) { return item.gray ? item.gray->voxels : 0; });

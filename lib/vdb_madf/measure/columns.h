@@ -38,7 +38,7 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
                                         const ExtraMeasures& extra = {});
 
 /// `first`, `second`, `faces` (shared voxel faces), `area`, `radius`, `centroid_x`, `_y`, `_z`
-/// (mean of the centres of the faces), `normal_x`, `_y`, `_z`, `distance`, `cos_alpha`, `flatness`,
+/// (mean of the centers of the faces), `normal_x`, `_y`, `_z`, `distance`, `cos_alpha`, `flatness`,
 /// `patches`, `curvature_points`, `mean_curvature`, `mean_curvature_sd`, `gaussian_curvature`,
 /// `gaussian_curvature_sd`, `curvature_residual`. A bond without a curvature has 0
 /// `curvature_points` and none of the four. With gray values the columns that grains have.
@@ -48,8 +48,8 @@ std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
 /// What a power of a length appends to a name: "" (0), "_mm", "_mm2", "_per_mm", "_per_mm2" ...
 std::string unitSuffix(int power, const std::string& unit);
 
-/// A number in voxels, of that power of a length, where voxels have this edge; the shortest, if they
-/// are no cubes.
+/// A number in voxels, of that power of a length, where voxels have this edge; the shortest, if
+/// they are no cubes.
 double scaled(double value, int power, double edge);
 
 /// A number of a column where voxels have these edges: places are index coordinates, all else is in

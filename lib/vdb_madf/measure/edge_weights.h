@@ -12,14 +12,15 @@
 namespace vdb_madf {
 
 /// How much a grain counts among those that are whole (Miles 1974; Lantuejoul 1980): a box of
-/// n voxels along an axis holds a grain of m voxels, without touching its faces, at n - m - 1 places
-/// of those n where its first voxel lies in it. So a large grain is rarer among the whole ones than
-/// it is, and the product of n / (n - m - 1) over the axes makes up for it. In L / (L - l), as it is
-/// mostly written, l is one voxel more than the grain: a grain that touches a face may go on beyond.
+/// n voxels along an axis holds a grain of m voxels, without touching its faces, at n - m - 1
+/// places of those n where its first voxel lies in it. So a large grain is rarer among the whole
+/// ones than it is, and the product of n / (n - m - 1) over the axes makes up for it. In L / (L -
+/// l), as it is mostly written, l is one voxel more than the grain: a grain that touches a face may
+/// go on beyond.
 /// @return 0 for a grain that touches a face of the box
 double edgeWeight(const CoordBBox& grain, const CoordBBox& box);
 
-/// Of all grains alike; none without grains. In voxels, as in Measurements.
+/// Means over all grains alike, in voxels, as in Measurements; none without grains.
 std::optional<double> meanDiameter(const std::vector<GrainMeasures>& grains);
 std::optional<double> meanVolume(const std::vector<GrainMeasures>& grains);
 
@@ -32,7 +33,7 @@ struct EdgeCorrected {
 };
 EdgeCorrected edgeCorrected(const std::vector<GrainMeasures>& grains);
 
-/// As diameterPercentile(), of the grains by their weights, or their weights times their volumes.
+/// diameterPercentile() of the grains by their weights, or their weights times their volumes.
 double correctedDiameterPercentile(const std::vector<GrainMeasures>& grains, double share,
                                    bool byVolume);
 

@@ -10,8 +10,8 @@
 namespace vdb_madf {
 
 /// Euler characteristic of X for 6-connected object and 26-connected background: voxels - pairs of
-/// face neighbours + full 2x2x1 squares - full 2x2x2 cubes. It is components - tunnels + cavities:
-/// 1 for a ball, 0 for a ring, 2 for a hollow ball. X ends at the border of the domain, a box or a
+/// face neighbors + full 2x2x1 squares - full 2x2x2 cubes. It is components - tunnels + cavities: 1
+/// for a ball, 0 for a ring, 2 for a hollow ball. X ends at the border of the domain, a box or a
 /// region, whatever lies beyond. From masks alone, exact. @throw Interrupted
 int64_t eulerCharacteristic(const LeafIndex& index, Interrupter* interrupter = nullptr);
 

@@ -41,7 +41,8 @@ uint32_t position(const std::vector<int32_t>& labels, int32_t label) {
   return uint32_t(std::lower_bound(labels.begin(), labels.end(), label) - labels.begin());
 }
 
-/// Of labels, a grid or slabs. @param about has their transform
+/// @param labels a grid or slabs
+/// @param about has their transform
 template <typename Labels>
 GrainNetwork networkOf(const Labels& labels, const Int32Grid& about, const MeasureOptions& options,
                        Interrupter* interrupter) {

@@ -37,14 +37,15 @@ struct GrainNetwork {
 /// curvature).
 ///
 /// Columns are those of columns.h in their order, but for the labels, which `grains` and `bonds`
-/// hold. `box_min` and `box_max` are the places of the outermost voxels (their centers). Bonds have two more: `face_area` (of the voxel faces: overestimates oblique bonds) and `length`
-/// (between the centroids).
+/// hold. `box_min` and `box_max` are the places of the outermost voxels (their centers). Bonds have
+/// two more: `face_area` (of the voxel faces: overestimates oblique bonds) and `length` (between
+/// the centroids).
 /// @throw InvalidInput if voxels are not along the axes of the world, or mirrored, or as measure();
 ///   Interrupted.
 GrainNetwork grainNetwork(const Int32Grid& labels, const MeasureOptions& options = {},
                           Interrupter* interrupter = nullptr);
 
-/// The same of labels in slabs, which are read once more than by measure().
+/// Labels in slabs are read once more than by measure().
 /// @throw as above; InvalidInput if the domain is a region; what reading throws.
 GrainNetwork grainNetwork(const LabelSlabs& labels, const MeasureOptions& options = {},
                           Interrupter* interrupter = nullptr);

@@ -5,8 +5,8 @@
 
 namespace vdb_madf {
 
-/// Of the interface of two grains, in 1/voxel and 1/voxel^2: mean and standard deviation over the
-/// points. The mean curvature is positive where the first grain is convex.
+/// The curvature of the interface of two grains, in 1/voxel and 1/voxel^2: mean and standard
+/// deviation over the points. The mean curvature is positive where the first grain is convex.
 struct InterfaceCurvature {
   int points = 0;  ///< that had enough others around them
   double mean = 0, meanDeviation = 0;

@@ -61,7 +61,7 @@ class SlabMeasuring {
   detail::LeafLayers layersOf(size_t slab) const {
     return {slabs_.cuts[slab], slabs_.cuts[slab + 1]};
   }
-  /// Of a slab, in a part of the work that goes over all slabs.
+  /// The share of a slab in a part of the work that goes over all slabs.
   detail::WorkPart workPart(int begin, int end, size_t slab) const {
     const auto at = [&](size_t s) {
       return begin + int(s) * (end - begin) / int(slabs_.slabCount());

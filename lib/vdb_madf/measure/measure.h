@@ -35,7 +35,7 @@ struct MeasureOptions {
   /// 0 and 1: all that touch have one.
   int64_t minFaces = 1;
   bool shape = false;  ///< also GrainMeasures::shape
-  /// Also GrainMeasures::edgeWeight. The boundary has to be open, and the domain a box.
+  /// Fills GrainMeasures::edgeWeight. The boundary has to be open, and the domain a box.
   bool edgeWeights = false;
   /// Replicates of a bootstrap of the means (bootstrap.h); 0: none.
   int bootstrap = 0;
@@ -56,8 +56,8 @@ struct Measurements {
   openvdb::Vec3d edges{1, 1, 1};        ///< of a voxel, in units of the shortest
   std::string gridName;
   openvdb::MetaMap metadata;  ///< of the grid: how the labels were made
-  /// Of the places and labels of the voxels, 32 hexadecimal digits: a checksum that equal labels
-  /// share, whatever file or grid they come from.
+  /// A checksum of the places and labels of the voxels, 32 hexadecimal digits: equal labels share
+  /// it, whatever file or grid they come from.
   std::string labelDigest;
 };
 
@@ -72,15 +72,16 @@ struct Measurements {
 Measurements measure(const Int32Grid& labels, const MeasureOptions& options = {},
                      Interrupter* interrupter = nullptr);
 
-/// The same of labels in slabs, which need not fit in memory together: the same numbers, bit for bit.
-/// They are read twice, and more often if they correlate over long distances. Memory: a slab with what
-/// lies around it, as far as its deepest voxel is from the background, 40 voxels at least; per grain and
-/// bond; and per face of a bond, or row of a grain with `shape`, of which more is to come.
+/// Labels in slabs need not fit in memory together, and give the same numbers, bit for bit. They
+/// are read twice, and more often if they correlate over long distances. Memory: a slab with what
+/// lies around it, as far as its deepest voxel is from the background, 40 voxels at least; per
+/// grain and bond; and per face of a bond, or row of a grain with `shape`, of which more is to
+/// come.
 /// @throw as above; InvalidInput if the domain is a region; what reading throws.
 Measurements measure(const LabelSlabs& labels, const MeasureOptions& options = {},
                      Interrupter* interrupter = nullptr);
 
-/// The same of a segmentation's labels, with their own domain and boundary. Faster: unless balls
+/// Measures a segmentation's labels in their own domain and boundary. It is faster: unless balls
 /// were filtered out, what is known of its critical points spares the distance map.
 Measurements measure(const Segmentation& segmentation, Interrupter* interrupter = nullptr);
 

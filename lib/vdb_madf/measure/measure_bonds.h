@@ -18,22 +18,22 @@ struct BondMeasures {
   int32_t first = 0, second = 0;  ///< labels, first < second
   int64_t faces = 0;              ///< voxel faces between them
   double faceArea = 0;            ///< of these, = faces, of cubes: overestimates the area
-  /// Of the interface, estimated; README.md beside this says how.
+  /// Area of the interface, estimated; README.md beside this says how.
   double area = 0;
   double equivalentRadius = 0;  ///< of the disc of this area
-  openvdb::Vec3d centroid;      ///< mean of the centres of the faces, index coordinates
-  /// Unit vector from the first to the second grain: direction of the sum of the faces' area vectors.
-  /// If they cancel (one grain encloses the other), the direction of least extent.
+  openvdb::Vec3d centroid;      ///< mean of the centers of the faces, index coordinates
+  /// Unit vector from the first to the second grain: direction of the sum of the faces' area
+  /// vectors. If they cancel (one grain encloses the other), the direction of least extent.
   openvdb::Vec3d normal;
-  double flatness = 0;  ///< smallest eigenvalue of the covariance of the faces' centres
+  double flatness = 0;  ///< smallest eigenvalue of the covariance of the faces' centers
   int patches = 0;      ///< parts of the interface, faces with a common corner being one
   /// None of an interface of fewer than 10 faces, or of faces in a row.
   std::optional<InterfaceCurvature> curvature;
-  /// Between the representatives c of the grains, with squared inscribed radii D: their distance
-  /// and cos alpha = (|c1 - c2|^2 - D1 - D2) / (2 sqrt(D1 D2)). None without background.
+  /// Distance of the representatives c of the grains, with squared inscribed radii D, and cos alpha
+  /// = (|c1 - c2|^2 - D1 - D2) / (2 sqrt(D1 D2)). None without background.
   std::optional<double> distance, cosAlpha;
-  /// At the voxels on both sides: those of either grain with a face towards the other, each once.
-  /// None unless it was asked for.
+  /// Gray values at the voxels on both sides, those of either grain with a face towards the other,
+  /// each once. None unless it was asked for.
   std::optional<GrayValues> gray;
 };
 

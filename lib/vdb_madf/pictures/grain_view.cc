@@ -42,7 +42,7 @@ Vec rayOrigin(const detail::Camera& camera, int x, int y, int ray) {
   return camera.origin(x + (ray % kRays + 0.5) / kRays, y + double(ray / kRays + 0.5) / kRays);
 }
 
-/// As leaves without tiles, nothing beyond the box.
+/// The object as leaves without tiles, and nothing beyond the box.
 MaskGrid::Ptr clipped(const MaskGrid::Ptr& object, const CoordBBox& box) {
   object->clip(box);  // makes tiles of full leaves
   object->tree().voxelizeActiveTiles();
@@ -73,8 +73,8 @@ class Renderer {
     }
   }
 
-  /// Rays all over those pixels at which a grain or a surface ends. `view` has its first rays in all
-  /// rows, `smooth` gets the result.
+  /// Rays all over those pixels at which a grain or a surface ends. `view` has its first rays in
+  /// all rows, `smooth` gets the result.
   void smoothRow(int y, const Picture& backdrop, const GrainView& view,
                  const std::vector<float>& depths, Picture& smooth) const {
     Eye eye(*this);
@@ -185,7 +185,7 @@ void forEachRow(const detail::Camera& camera, Interrupter* interrupter, const F&
   });
 }
 
-/// Of those from `first` on.
+/// Sorts the leaves from `first` on.
 void sortUnique(std::vector<Coord>& leaves, size_t first) {
   std::sort(leaves.begin() + std::ptrdiff_t(first), leaves.end());
   leaves.erase(std::unique(leaves.begin() + std::ptrdiff_t(first), leaves.end()), leaves.end());

@@ -41,10 +41,10 @@ struct GrainView {
 GrainView viewGrains(const Int32Grid& labels, const CoordBBox& box, const GrainColors& colors,
                      const ViewOptions& options = {}, Interrupter* interrupter = nullptr);
 
-// The same where the labels do not fit in memory together, but the object that they cover does.
+// What follows is for labels that do not fit in memory together while the object they cover does.
 
-/// The origins of the leaf nodes whose labels may be seen, ascending. Cuts the object, which has the
-/// transform of the labels, to the box.
+/// The origins of the leaf nodes whose labels may be seen, ascending. Cuts the object, which has
+/// the transform of the labels, to the box.
 /// @throw as viewGrains()
 std::vector<Coord> seenLeaves(const MaskGrid::Ptr& object, const CoordBBox& box,
                               const ViewOptions& options = {}, Interrupter* interrupter = nullptr);

@@ -16,8 +16,8 @@ struct PlotMark {
   std::string name;  ///< plain letters
 };
 
-/// The bytes of a file with a histogram: `counts` of voxels in equal bins from `low` to `high`, on a linear scale.
-/// low < high, at least one bin.
+/// The bytes of a file with a histogram: `counts` of voxels in equal bins from `low` to `high`, on
+/// a linear scale. low < high, at least one bin.
 std::string histogramPlot(const std::vector<double>& counts, double low, double high,
                           const std::vector<PlotMark>& marks, PlotType type = PlotType::svg);
 

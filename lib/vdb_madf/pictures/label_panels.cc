@@ -181,7 +181,7 @@ class SlabParts {
 
   bool isPart() const { return options_.interfaces || !selected_.empty(); }
 
-  /// As that of the whole, but in the leaves beside a slab. Null: all.
+  /// What is shown of the leaves of a slab and beside it. Null: all.
   Int32Grid::Ptr shownPart(const Int32Grid& labels, Interrupter* interrupter) const {
     if (!isPart()) return nullptr;
     Int32Grid::Ptr shown =

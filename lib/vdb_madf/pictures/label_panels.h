@@ -21,9 +21,10 @@ struct PanelOptions {
   bool axes = true;                     ///< around the view: box and names of axes
   std::vector<SlicePlane> planes = {};  ///< none: the middle ones
   std::vector<GrayPlane> gray = {};     ///< under each of the planes: as in SliceOptions
-  /// Grains that are shown: in slices the others are pale, in the view they are left out. None: all.
+  /// Grains that are shown: in slices the others are pale, in the view they are left out. None:
+  /// all.
   std::vector<int32_t> select = {};
-  /// Of grains, the voxels alone that share a face with another grain.
+  /// Shows only the voxels of grains that share a face with another grain.
   bool interfaces = false;
 };
 
@@ -35,9 +36,10 @@ std::vector<PicturePanel> labelPanels(const Int32Grid& labels, const CoordBBox& 
                                       const PanelOptions& options,
                                       Interrupter* interrupter = nullptr);
 
-/// The same pictures of labels in slabs, which need not fit in memory together. All slabs are read once, for
-/// the colors, and those again that are seen in the view. In memory are two slabs, the leaf nodes that
-/// the planes cut, those that are seen, and for the view a bit for each voxel of the other leaf nodes.
+/// The same pictures of labels in slabs, which need not fit in memory together. All slabs are read
+/// once, for the colors, and those again that are seen in the view. In memory are two slabs, the
+/// leaf nodes that the planes cut, those that are seen, and for the view a bit for each voxel of
+/// the other leaf nodes.
 std::vector<PicturePanel> labelPanels(const LabelSlabs& labels, const CoordBBox& box,
                                       const PanelOptions& options,
                                       Interrupter* interrupter = nullptr);

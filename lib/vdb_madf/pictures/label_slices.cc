@@ -3,6 +3,8 @@
 
 #include "vdb_madf/pictures/label_slices.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +22,7 @@ constexpr Rgb kBackground{243, 244, 246}, kPale{206, 209, 214};
 constexpr size_t kSliceRowGrain = 16;
 constexpr double kOutline = 1 / 300.0;  ///< of the edge: width of an outline, on each side
 
-/// Between the pixels of pictures and the voxels of a box.
+/// Goes between the pixels of pictures and the voxels of a box.
 class Scale {
  public:
   /// @param edges of a voxel; the shortest is 1
@@ -182,9 +184,9 @@ void check(const CoordBBox& box, const std::vector<SlicePlane>& planes,
   for (const SlicePlane& plane : planes) {
     const std::string axis(1, "xyz"[plane.axis]);
     if (plane.index < box.min()[plane.axis] || plane.index > box.max()[plane.axis])
-      throw InvalidInput("there is no slice " + axis + " = " + std::to_string(plane.index) + ": " +
-                         axis + " goes from " + std::to_string(box.min()[plane.axis]) + " to " +
-                         std::to_string(box.max()[plane.axis]));
+      throw InvalidInput(fmt::format("there is no slice {} = {}: {} goes from {} to {}", axis,
+                                     plane.index, axis, box.min()[plane.axis],
+                                     box.max()[plane.axis]));
   }
   if (!gray.empty() && gray.size() != planes.size())
     throw InvalidInput("slices: gray values are wanted for each plane or for none");

@@ -19,7 +19,7 @@ struct SliceOptions {
   /// The grains, or parts of them, that have their color, under their labels; the others are pale.
   /// Null: all.
   const Int32Grid* shown = nullptr;
-  /// Of each plane, what lies under it: then the grains are outlines. None: grains are filled.
+  /// What lies under each plane: the grains are then outlines. None: the grains are filled.
   std::vector<GrayPlane> gray;
 };
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "vdb_madf/base/counted.h"
 #include "vdb_madf/pictures/detail/diagram.h"
 
 namespace vdb_madf {
@@ -118,8 +119,8 @@ void drawRose(Canvas& canvas, int cell, const std::vector<double>& densities, do
 
 using Directions = std::vector<std::pair<openvdb::Vec3d, double>>;  ///< with what each counts
 
-/// In the x-y plane: each direction with its shadow's length there. The axes lie in the middle of
-/// their sectors.
+/// A rose in the x-y plane: each direction counts with its shadow's length there. The axes lie in
+/// the middle of their sectors.
 void drawAzimuths(Canvas& canvas, int cell, const Directions& directions,
                   const std::string& title) {
   constexpr int kHalf = 18;
@@ -159,10 +160,6 @@ void drawInclinations(Canvas& canvas, int cell, const Directions& directions,
   const std::vector<double> half = densities;
   densities.insert(densities.end(), half.begin(), half.end());
   drawRose(canvas, cell, densities, 0, title, "", "z");
-}
-
-std::string counted(size_t number, const std::string& noun) {
-  return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ Layout arranged(const std::vector<Cell>& cells, Layout layout, size_t columns) {
   return layout;
 }
 
-/// Of all numbers of columns the one whose sheet is smallest, if it is wide enough.
+/// The number of columns whose sheet is smallest, if it is wide enough.
 Layout bestLayout(const std::vector<Cell>& cells, const Layout& layout) {
   Layout best = layout;
   double least = -1;

@@ -8,11 +8,11 @@
 
 namespace vdb_madf {
 
-/// Files that plots are drawn to. In SVG and PDF letters are outlines or come with their font, so that
-/// they look the same everywhere; PNG has 300 dpi.
+/// Files that plots are drawn to. In SVG and PDF letters are outlines or come with their font, so
+/// that they look the same everywhere; PNG has 300 dpi.
 enum class PlotType { png, svg, pdf };
 
-/// By the ending of the file's name, in small letters or capitals: .png, .svg, .pdf; none of others.
+/// The type by the ending of the file's name, in any case: .png, .svg, .pdf; none for others.
 std::optional<PlotType> plotTypeOf(const std::string& path);
 
 }  // namespace vdb_madf

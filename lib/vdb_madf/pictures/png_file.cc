@@ -16,7 +16,7 @@ namespace vdb_madf {
 namespace {
 
 constexpr size_t kHeaderBytes = 33;  // signature and IHDR
-/// The chunk pHYs of 11811 pixels a metre, with its length and check sum.
+/// The chunk pHYs of 11811 pixels a meter, with its length and check sum.
 constexpr std::array<unsigned char, 21> kDotsPerInch300{0x00, 0x00, 0x00, 0x09, 'p',  'H',  'Y',
                                                         's',  0x00, 0x00, 0x2e, 0x23, 0x00, 0x00,
                                                         0x2e, 0x23, 0x01, 0x78, 0xa5, 0x3f, 0x76};

@@ -13,8 +13,8 @@ namespace vdb_madf {
 /// @throw IoError with libpng's words
 std::string pngBytes(const Picture& picture);
 
-/// Writes an RGB PNG of 8 bits a channel at 300 dpi, whole or not at all. It is made in memory first: about
-/// three bytes a pixel. The picture has at least one pixel.
+/// Writes an RGB PNG of 8 bits a channel at 300 dpi, whole or not at all. It is made in memory
+/// first: about three bytes a pixel. The picture has at least one pixel.
 /// @throw IoError, one line that names the file.
 void writePng(const std::string& path, const Picture& picture);
 

@@ -9,15 +9,15 @@ namespace vdb_madf {
 
 using ColorGrid = openvdb::Grid<StandardTree<openvdb::Vec3f>>;  ///< = openvdb::Vec3SGrid
 
-/// What renderers show: fog and colours on the same voxels.
+/// What renderers show: fog and colors on the same voxels.
 struct LabelPreview {
-  FloatGrid::Ptr density;  ///< fog volume: the labelled part of each coarse voxel, (0, 1]
+  FloatGrid::Ptr density;  ///< fog volume: the labeled part of each coarse voxel, (0, 1]
   /// Linear RGB (of the sRGB of grain_colors.h) of the most frequent label, background left out; of
   /// equally frequent ones the smallest. Not a vector to be turned: VEC_INVARIANT.
   ColorGrid::Ptr color;
 };
-/// Colours are those of the full resolution. Factor: as reduceLabels()
-/// (labels/reduced_labels.h), also what it throws.
+/// Colors are those of the full resolution. Factor: as reduceLabels() (labels/reduced_labels.h),
+/// also what it throws.
 LabelPreview previewLabels(const Int32Grid& labels, int factor, Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

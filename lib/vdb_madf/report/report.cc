@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/report/detail/page_sources.h"
@@ -53,7 +54,7 @@ uint64_t write(detail::OutputStream& file, const detail::PageSources& sources,
   detail::fillIn(
       sources.html,
       [&](const std::string& name) -> std::string {
-        if (name == "TITLE") return detail::htmlEscaped(page.title);
+        if (name == "TITLE") return detail::markupEscaped(page.title);
         if (name == "STYLE") return sources.style;
         if (name == "PICTURE") return page.picture;
         if (name == "DATA") return page.data;

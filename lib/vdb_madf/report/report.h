@@ -21,8 +21,8 @@ struct ReportOptions {
   std::string labels;  ///< where they are, such as the path of their file; empty: not said
   std::optional<double> density;  ///< of the grains' material, kg/m^3: adds what is per mass
   MeasureOptions measure;
-  /// Of all grains together, about: 150 a grain, or 40000 if that is more, but no more than this. 0:
-  /// no view in three dimensions.
+  /// Triangles of all grains together: about 150 a grain, or 40000 if that is more, but no more
+  /// than this. 0: no view in three dimensions.
   uint64_t maxTriangles = 1000000;
   std::string sweep;  ///< the text of a table of the verb sweep, to be shown as plots; empty: none
   /// Slices are those of labels that are reduced to at most so many voxels a side, 1 or more.
@@ -45,14 +45,14 @@ bool canWriteReport();
 bool isSweepTable(const std::string& text);
 
 /// Writes a sample as a web page in one file, whole or not at all: its numbers, its grains to look
-/// at from all sides, slices, tables and charts, which a reader can click, sort and filter. The file
-/// holds all that it needs and asks for nothing else: it opens without a network. Same labels and
-/// options, same bytes.
+/// at from all sides, slices, tables and charts, which a reader can click, sort and filter. The
+/// file holds all that it needs and asks for nothing else: it opens without a network. Same labels
+/// and options, same bytes.
 ///
-/// The tables are those of measurementTexts(). Grains are meshed, smoothed and simplified; of labels
-/// with many times the triangles reduced ones are meshed, and a grain that is lost there becomes an
-/// octahedron of its volume.
-/// Memory: that of measure() and grainMesh(), and of the page's text.
+/// The tables are those of measurementTexts(). Grains are meshed, smoothed and simplified; of
+/// labels with many times the triangles reduced ones are meshed, and a grain that is lost there
+/// becomes an octahedron of its volume. Memory: that of measure() and grainMesh(), and of the
+/// page's text.
 /// @throw InvalidInput for options out of range, labels without a domain and without grains, and as
 ///   measure() does; IoError, also if !canWriteReport(); Interrupted.
 Report writeReport(const std::string& path, const Int32Grid& labels,

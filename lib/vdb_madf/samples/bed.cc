@@ -70,17 +70,6 @@ class Sintering : public detail::ObjectChange {
   float level_;
 };
 
-Sample describedBed(Sample sample, const BedOptions& options) {
-  detail::SourceText source("bed");
-  source.size(options.size)
-      .range("radius", options.minRadius, options.maxRadius)
-      .add("rounds", std::to_string(options.rounds))
-      .add("seed", std::to_string(options.seed));
-  detail::describe(*sample.object, "object", options.size, source);
-  detail::describe(*sample.truth, "truth", options.size, source);
-  return sample;
-}
-
 }  // namespace
 
 Sample generateBed(const BedOptions& options, Interrupter* interrupter) {
@@ -95,11 +84,16 @@ Sample generateBed(const BedOptions& options, Interrupter* interrupter) {
   Sample sample;
   sample.object = MaskGrid::create(object.takeTree());
   sample.truth = Int32Grid::create(detail::powerCells(sample.object->tree(), balls, interrupter));
-  sample = describedBed(sample, options);
+  detail::SourceText source("bed");
+  source.size(options.size)
+      .range("radius", options.minRadius, options.maxRadius)
+      .add("rounds", std::to_string(options.rounds))
+      .add("seed", std::to_string(options.seed));
+  sample = detail::described(sample, options.size, source);
   for (int round = 0; round < options.rounds; ++round) {
     const Sintering sintering(sample, interrupter);
-    sample =
-        describedBed(detail::changed(sample, sintering, sintering.reach(), interrupter), options);
+    sample = detail::described(detail::changed(sample, sintering, sintering.reach(), interrupter),
+                               options.size, source);
   }
   return sample;
 }

@@ -23,7 +23,7 @@ using detail::Ball;
 /// Half of what the documentation promises.
 constexpr double kFractionTolerance = 0.0025;
 
-/// With fewer balls than this to go they are added one by one, each counted.
+/// The last balls, fewer than this, are added one by one, each counted.
 constexpr int64_t kMinBatch = 1024;
 /// Bounds the memory of a batch, and the time until an interruption is seen.
 constexpr int64_t kMaxBatch = 1 << 18;
@@ -48,7 +48,7 @@ class PackBuilder {
         balls_(balls),
         boxVoxels_(double(voxels_.x()) * voxels_.y() * voxels_.z()),
         goal_(options.fraction * boxVoxels_) {
-    // Centres lie in the box grown by the largest radius, so that the faces see as many balls as
+    // Centers lie in the box grown by the largest radius, so that the faces see as many balls as
     // the middle.
     const double grow = 2 * options.maxRadius;
     centerVolume_ =
@@ -81,8 +81,8 @@ class PackBuilder {
   double missing() const { return goal_ - double(balls_.voxelCount()); }
 
   /// Draws balls until their volumes sum to a part of what the union can take before it reaches the
-  /// goal. (A sum of volumes V in the volume of the centres covers at most V / that volume of
-  /// what is still free.) False, and nothing drawn, if too few would do.
+  /// goal. (A sum of volumes V in the volume of the centers covers at most V / that volume of what
+  /// is still free.) False, and nothing drawn, if too few would do.
   bool addBatch() {
     const double r = options_.maxRadius;
     const double largest = 4.0 / 3.0 * M_PI * r * r * r;
@@ -133,14 +133,14 @@ void checkBalls(const PackOptions& options) {
   detail::checkFraction(options.fraction);
 }
 
-void describePack(MaskGrid& object, const PackOptions& options, const Coord& voxels) {
+Sample packOf(MaskTree::Ptr object, const PackOptions& options, const Coord& voxels) {
   detail::SourceText source("pack");
   source.size(options.size)
       .add("fraction", options.fraction)
       .range("radius", options.minRadius, options.maxRadius)
       .add("seed", std::to_string(options.seed))
       .edges(options.voxelSize);
-  detail::describe(object, "object", voxels, source, options.voxelSize);
+  return detail::described({MaskGrid::create(object), nullptr}, voxels, source, options.voxelSize);
 }
 
 }  // namespace
@@ -152,10 +152,7 @@ Sample generatePack(const PackOptions& options, Interrupter* interrupter) {
   const Coord voxels = lattice.voxels(options.size);
   detail::BallUnion balls(voxels, true, lattice);
   PackBuilder(options, balls, interrupter).build();
-  Sample sample;
-  sample.object = MaskGrid::create(balls.takeTree());
-  describePack(*sample.object, options, voxels);
-  return sample;
+  return packOf(balls.takeTree(), options, voxels);
 }
 
 PackSlabs::PackSlabs(const PackOptions& options, Interrupter* interrupter) : options_(options) {
@@ -177,9 +174,7 @@ int64_t PackSlabs::objectVoxels() const {
 }
 
 MaskGrid::Ptr PackSlabs::object(size_t slab, Interrupter* interrupter) const {
-  const MaskGrid::Ptr object = MaskGrid::create(balls_->slab(slab, interrupter));
-  describePack(*object, options_, voxels_);
-  return object;
+  return packOf(balls_->slab(slab, interrupter), options_, voxels_).object;
 }
 
 }  // namespace vdb_madf

@@ -101,9 +101,7 @@ Sample generateParticles(const ParticleOptions& options, Interrupter* interrupte
       .add("neck", options.neck)
       .add("seed", std::to_string(options.seed))
       .edges(options.voxelSize);
-  detail::describe(*sample.object, "object", voxels, source, options.voxelSize);
-  detail::describe(*sample.truth, "truth", voxels, source, options.voxelSize);
-  return sample;
+  return detail::described(sample, voxels, source, options.voxelSize);
 }
 
 }  // namespace vdb_madf

@@ -22,7 +22,7 @@ enum class ParticleShape {
   polyhedra,   ///< 8 to 14 random half-spaces, cut by a cube of 3.2 times their distance
 };
 
-/// As the enumerators are called, in their order.
+/// The names of the enumerators, in their order.
 const std::vector<std::string>& particleShapeNames();
 
 /// Particles of one shape with known grains, turned at random, cropped at the faces. Their size is
@@ -36,8 +36,8 @@ const std::vector<std::string>& particleShapeNames();
 ///
 /// The object is the union. Truth = the particle of least value at the voxel, where the value is
 /// the factor by which a particle would have to be scaled about its center to reach the voxel
-/// (tie: the smaller number). A particle that owns no voxel is no grain. Of a sharp corner a voxel or
-/// two may be left that no face joins to their grain.
+/// (tie: the smaller number). A particle that owns no voxel is no grain. Of a sharp corner a voxel
+/// or two may be left that no face joins to their grain.
 struct ParticleOptions {
   Coord size{180, 180, 180};
   uint64_t seed = 1;
@@ -47,9 +47,8 @@ struct ParticleOptions {
   /// 0: radii are uniform; else the standard deviation of their logarithm about that of the
   /// geometric mean of the two, and a radius beyond them is drawn again. 0..1
   double lognormal = 0;
-  double neck = 0.82;  ///< 0..2
-  /// Of voxels that need not be cubes: see sample.h.
-  std::optional<VoxelSize> voxelSize;
+  double neck = 0.82;                  ///< 0..2
+  std::optional<VoxelSize> voxelSize;  ///< need not be cubes: see sample.h
 };
 Sample generateParticles(const ParticleOptions& options, Interrupter* interrupter = nullptr);
 

@@ -25,8 +25,7 @@ using detail::FloatBox;
 constexpr uint64_t kSurfaceStream = 2;
 constexpr uint64_t kNoiseStream = 3;
 
-/// In standard deviations.
-constexpr double kFarthestMove = 4;
+constexpr double kFarthestMove = 4;  // standard deviations
 /// A voxel farther than this from all true ones is noise of its own.
 constexpr int kNoiseReach = 2;
 constexpr float kCut = 0.5f;
@@ -102,14 +101,6 @@ class GrayChange : public detail::ObjectChange {
   SmoothNoise noise_;
 };
 
-/// As the sample that this one comes from, but for the source.
-void describe(Sample& result, const Sample& sample, const detail::SourceText& source) {
-  const Coord size = storedDomain(*sample.object)->box().dim();
-  const auto voxelSize = storedVoxelSize(*sample.object);
-  detail::describe(*result.object, "object", size, source, voxelSize);
-  if (result.truth) detail::describe(*result.truth, "truth", size, source, voxelSize);
-}
-
 }  // namespace
 
 void checkScan(const ScanOptions& options) {
@@ -125,18 +116,21 @@ Sample scanned(const Sample& sample, const ScanOptions& options, Interrupter* in
   if (options.surface > 0 || options.blur > 0 || options.noise > 0)
     requireCubicVoxels(*sample.object, "making a scan of a sample");
   auto source = detail::SourceText::of(*sample.object);
+  const Coord size = storedDomain(*sample.object)->box().dim();
+  const auto voxelSize = storedVoxelSize(*sample.object);
   Sample result = sample;
   if (options.surface > 0) {
     const SurfaceChange change(result, options);
     result = detail::changed(result, change, change.reach(), interrupter);
-    describe(result, sample, source.range("surface", options.surface, options.surfaceLength));
+    source.range("surface", options.surface, options.surfaceLength);
+    result = detail::described(result, size, source, voxelSize);
   }
   if (options.blur > 0 || options.noise > 0) {
     result = detail::changed(result, GrayChange(result, options), kNoiseReach, interrupter);
     source.add("scan-noise", detail::shortestDecimal(options.blur) + ":" +
                                  detail::shortestDecimal(options.noise) + ":" +
                                  detail::shortestDecimal(options.noiseLength));
-    describe(result, sample, source);
+    result = detail::described(result, size, source, voxelSize);
   }
   return result;
 }

@@ -9,8 +9,8 @@
 
 namespace vdb_madf {
 
-/// What makes a sample of cubes look like a scan of real particles, in this order; lengths in voxels.
-/// Beyond a face the object goes on as its voxels at the face.
+/// What makes a sample of cubes look like a scan of real particles, in this order; lengths in
+/// voxels. Beyond a face the object goes on as its voxels at the face.
 struct ScanOptions {
   uint64_t seed = 1;
 

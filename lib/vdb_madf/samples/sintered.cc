@@ -35,8 +35,8 @@ constexpr float kSinteredCut = 0.45f;
 /// Stream 0 places the balls.
 constexpr uint64_t kSurfaceNoiseStream = 1;
 
-/// 1 inside the balls, 0 outside, at points of Z^3; also beyond the faces of the sample, so that the
-/// blur sees no surface there.
+/// 1 inside the balls, 0 outside, at points of Z^3; also beyond the faces of the sample, so that
+/// the blur sees no surface there.
 FloatBox indicator(const CoordBBox& box, const std::vector<Ball>& balls) {
   FloatBox field(box);
   for (const Ball& ball : balls) {
@@ -84,7 +84,7 @@ class SurfaceBuilder {
     return field;
   }
 
-  /// In pieces that see about as many points as a block of cubes.
+  /// Works in pieces that see about as many points as a block of cubes.
   void fillBlock(size_t block) {
     const CoordBBox box = blocks_.box(block);
     for (int x = box.min().x(); x <= box.max().x(); x += piece_.x())
@@ -144,9 +144,7 @@ Sample generateSintered(const SinteredOptions& options, Interrupter* interrupter
       .add("roughness", options.roughness)
       .add("seed", std::to_string(options.seed))
       .edges(options.voxelSize);
-  detail::describe(*sample.object, "object", voxels, source, options.voxelSize);
-  detail::describe(*sample.truth, "truth", voxels, source, options.voxelSize);
-  return sample;
+  return detail::described(sample, voxels, source, options.voxelSize);
 }
 
 }  // namespace vdb_madf

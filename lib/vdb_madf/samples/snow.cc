@@ -234,15 +234,13 @@ Sample generateSnow(const SnowOptions& options, Interrupter* interrupter) {
   detail::checkFraction(options.fraction);
   detail::checkRange("length", options.length, kMinLength, kMaxExtent);
 
-  Sample sample;
-  sample.object = MaskGrid::create(SnowBuilder(options, interrupter).build());
   detail::SourceText source("snow");
   source.size(options.size)
       .add("fraction", options.fraction)
       .add("length", options.length)
       .add("seed", std::to_string(options.seed));
-  detail::describe(*sample.object, "object", options.size, source);
-  return sample;
+  const auto object = MaskGrid::create(SnowBuilder(options, interrupter).build());
+  return detail::described({object, nullptr}, options.size, source);
 }
 
 }  // namespace vdb_madf

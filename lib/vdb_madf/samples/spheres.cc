@@ -54,9 +54,7 @@ Sample generateSpheres(const SphereOptions& options, Interrupter* interrupter) {
       .add("max-cover", std::to_string(options.maxCover))
       .add("seed", std::to_string(options.seed))
       .edges(options.voxelSize);
-  detail::describe(*sample.object, "object", voxels, source, options.voxelSize);
-  detail::describe(*sample.truth, "truth", voxels, source, options.voxelSize);
-  return sample;
+  return detail::described(sample, voxels, source, options.voxelSize);
 }
 
 }  // namespace vdb_madf

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "vdb_madf/base/detail/gaussian.h"
 #include "vdb_madf/base/detail/parallel.h"
-#include "vdb_madf/base/detail/portable_math.h"
 #include "vdb_madf/base/detail/simd.h"
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
@@ -130,19 +130,6 @@ class MedianImage : public FilteredImage {
   SliceWindow<T> window_;
 };
 
-/// One side of the normalized Gaussian, center first.
-std::vector<double> gaussianWeights(double sigma) {
-  const int radius = int(4 * sigma + 0.5);
-  std::vector<double> weights;
-  double sum = 0;
-  for (int k = 0; k <= radius; ++k) {
-    weights.push_back(detail::exponential(-(k * k / (2 * sigma * sigma))));
-    sum += k == 0 ? weights.back() : 2 * weights.back();
-  }
-  for (double& weight : weights) weight /= sum;
-  return weights;
-}
-
 // Each lane by itself, so that vectors of any width give the same bits.
 template <typename T>
 VDB_MADF_KERNEL void scale(const T* in, double weight, double* sums, size_t count) {
@@ -159,7 +146,7 @@ class SmoothedImage : public FilteredImage {
  public:
   SmoothedImage(std::unique_ptr<ImageReader> image, double sigma)
       : FilteredImage(std::move(image)),
-        weights_(gaussianWeights(sigma)),
+        weights_(detail::gaussianWeights(sigma)),
         window_(*image_, radius()) {
     info_.type = std::is_same_v<T, float> ? SampleType::float32 : SampleType::float64;
   }

@@ -67,8 +67,8 @@ CoordBBox boxOf(const std::vector<Clump::Ball>& balls, const VoxelWeights& weigh
   return box;
 }
 
-/// Lazy greedy cover (Minoux 1978). At first a ball is thought to cover all its voxels: the smallest
-/// ones are never asked.
+/// Lazy greedy cover (Minoux 1978). At first a ball is thought to cover all its voxels: the
+/// smallest ones are never asked.
 void chooseBalls(const std::vector<Clump::Ball>& balls, const ClumpOptions& options,
                  detail::BallRowsCache& rows, BitBox& uncovered, Clump& clump) {
   clump.uncovered = clump.voxels;
@@ -122,8 +122,8 @@ struct Grains {
   std::vector<std::vector<Clump::Ball>> balls;
 };
 
-/// The label nearest to a ball's center, within the ball and kMaxReach (tie: the smaller coordinate);
-/// 0: none. In cubes of growing size.
+/// The label nearest to a ball's center, within the ball and kMaxReach (tie: the smaller
+/// coordinate); 0: none. In cubes of growing size.
 int32_t nearestLabel(const openvdb::tree::ValueAccessor<const Int32Tree>& labels,
                      const Clump::Ball& ball, const VoxelWeights& weights) {
   constexpr int kMaxReach = 16;  // a cavity is small
@@ -226,7 +226,7 @@ void endAtOtherGrains(const Int32Tree& labels, const CoordBBox& bounds, int32_t 
   }
 }
 
-/// From the unit of the weights to the shortest edge.
+/// Converts lengths from the unit of the weights to the shortest edge.
 void toShortestEdges(const VoxelWeights& weights, std::vector<Clump>& clumps) {
   const double unit = weights.least();
   for (Clump& clump : clumps) {

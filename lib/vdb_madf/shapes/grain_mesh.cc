@@ -28,7 +28,8 @@ using openvdb::Vec3f;
 
 constexpr size_t kBlockGrain = 16;
 constexpr int kMaxRounds = 1000;
-/// Along an axis, in voxels: so far points of a simplified mesh go to give the grains their volumes.
+/// Along an axis, in voxels: so far points of a simplified mesh go to give the grains their
+/// volumes.
 constexpr float kSimplifiedReach = 1;
 
 GrainMesh assemble(SharedMesh&& shared, const std::vector<int32_t>& labels) {
@@ -69,7 +70,7 @@ GrainMesh grainMesh(const Int32Grid& labels, const GrainMeshOptions& options,
   const LabelBlocks blocks(labels);
   const CoordBBox box = domainBox(labels);
   const DomainFaces domain = facesOf(box);
-  // Of the work as a whole, in per cent.
+  // Shares of the work, in per cent.
   const int meshed = options.triangles > 0 ? 25 : 100, built = meshed / 3, smoothed = meshed / 2;
   detail::WorkPart building(interrupter, 0, built), smoothing(interrupter, built, smoothed),
       correcting(interrupter, smoothed, meshed), simplifying(interrupter, meshed, 95),

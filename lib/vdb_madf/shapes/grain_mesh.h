@@ -20,7 +20,7 @@ struct GrainMesh {
   /// Grain g has points [firstPoint[g], firstPoint[g + 1]), and triangles likewise.
   std::vector<uint32_t> firstPoint{0}, firstTriangle{0};
   std::vector<openvdb::Vec3f> points;  ///< index coordinates; voxel (i,j,k) is i - 1/2 .. i + 1/2
-  /// Into `points`; counterclockwise seen from outside the grain.
+  /// Corners, as places in `points`; counterclockwise seen from outside the grain.
   std::vector<std::array<uint32_t, 3>> triangles;
 };
 
@@ -28,8 +28,8 @@ struct GrainMesh {
 struct GrainMeshOptions {
   /// Rounds of smoothing, 0 .. 1000; 0: the faces of the voxels, whose volume is exactly theirs.
   int smoothing = 0;
-  /// Simplify to so many triangles of all grains together, or fewer; 0: all that there are. No grain
-  /// and no contact is given up for it: where that takes more triangles, there are more.
+  /// Simplify to so many triangles of all grains together, or fewer; 0: all that there are. No
+  /// grain and no contact is given up for it: where that takes more triangles, there are more.
   uint64_t triangles = 0;
   /// In voxels, 0 or more: simplify no further where that would move the surface by more, even if
   /// there are more triangles than asked for.
@@ -59,9 +59,9 @@ struct GrainMeshOptions {
 /// stays closed with its Euler number (a ball keeps 4 triangles or more), no contact vanishes, and
 /// the faces of the domain stay flat. The error is the root of the mean squared distance to the
 /// planes of the triangles that a point stands for (Garland and Heckbert 1997), not a bound on the
-/// distance. At last points move, at most a voxel along each axis, until the volumes are the voxels'
-/// again; with too few triangles they cannot. Memory: some 200 bytes a triangle of the mesh that is
-/// simplified, which may have 1,431,655,765; time: some 4 times that of meshing.
+/// distance. At last points move, at most a voxel along each axis, until the volumes are the
+/// voxels' again; with too few triangles they cannot. Memory: some 200 bytes a triangle of the mesh
+/// that is simplified, which may have 1,431,655,765; time: some 4 times that of meshing.
 ///
 /// Points and triangles are ordered by label, then by place: the same for any number of threads.
 /// An empty grid has an empty mesh.
@@ -70,8 +70,8 @@ struct GrainMeshOptions {
 GrainMesh grainMesh(const Int32Grid& labels, const GrainMeshOptions& options = {},
                     Interrupter* interrupter = nullptr);
 
-/// The same of some grains alone (select_grains.h), at their cost: each a closed mesh. As voxels it
-/// is their part of the mesh of all, to the bit (but where a grain that is left out cuts an edge);
+/// Meshes some grains alone (select_grains.h), at their cost: each mesh is closed. As voxels it is
+/// their part of the mesh of all, to the bit (but where a grain that is left out cuts an edge);
 /// smoothed or simplified they move as if no other grain were there.
 /// @throw InvalidInput also if there is no such grain; Interrupted.
 GrainMesh meshOfGrains(const Int32Grid& labels, const std::vector<int32_t>& grains,

@@ -22,8 +22,8 @@ struct HexahedraCounts {
   size_t grains = 0, elements = 0, nodes = 0;
 };
 
-/// Every labelled voxel (active, tiles included, > 0) as a hexahedron: elements and the nodes at
-/// their corners, the voxel's centre +- half a voxel.
+/// Every labeled voxel (active, tiles included, > 0) as a hexahedron: elements and the nodes at
+/// their corners, the voxel's center +- half a voxel.
 ///
 /// Voxels that share a corner share the node, those of other grains too: bonds are perfect, and
 /// voxels that touch along an edge or at a corner only are hinged there. Elements are ordered by
@@ -37,7 +37,7 @@ class Hexahedra {
 
   const HexahedraCounts& counts() const { return counts_; }
   int32_t label(size_t element) const { return int32_t(elements_[element] >> 32); }
-  /// Of its grain.
+  /// Is the element the first one of its grain?
   bool isFirst(size_t element) const {
     return element == 0 || label(element) != label(element - 1);
   }

@@ -133,7 +133,7 @@ FloatGrid::Ptr surfaceLevelSet(const Int32Grid& labels, const LevelSetOptions& o
   meshOptions.smoothing = options.smoothing;
   const Int32Grid::Ptr one = asOneLabel(labels);
   const GrainMesh mesh = grainMesh(*one, meshOptions, interrupter);
-  if (mesh.labels.empty()) throw InvalidInput("there is no labelled voxel: no surface to write");
+  if (mesh.labels.empty()) throw InvalidInput("there is no labeled voxel: no surface to write");
   const FloatGrid::Ptr grid = levelSet(mesh, 0, *one, one->tree(), options, interrupter);
   grid->setName("surface");
   return grid;

@@ -19,13 +19,13 @@ struct LevelSetOptions {
 /// world units to the nearest of all triangles of the grain's mesh, negative in the grain's voxels.
 /// It is right to 1e-6 voxels and the rounding to float; the voxels nearer than the half width are
 /// active. Time goes with the voxels of the bands. An empty grid has no level sets.
-/// @throw InvalidInput if there are more than kMaxGrainGrids labels, for voxels that are no cubes, or
-/// as grainMesh(); Interrupted.
+/// @throw InvalidInput if there are more than kMaxGrainGrids labels, for voxels that are no cubes,
+/// or as grainMesh(); Interrupted.
 std::vector<FloatGrid::Ptr> grainLevelSets(const Int32Grid& labels,
                                            const LevelSetOptions& options = {},
                                            Interrupter* interrupter = nullptr);
 
-/// The same of all labels as one object, named `surface`.
+/// The level set of all labels as one object, named `surface`.
 FloatGrid::Ptr surfaceLevelSet(const Int32Grid& labels, const LevelSetOptions& options = {},
                                Interrupter* interrupter = nullptr);
 

@@ -13,8 +13,8 @@ OURS = {"ours, default": "",
         "ours, before (fill-holes 0, delta 0, tidy 0)": "--fill-holes 0 --delta 0 --tidy 0",
         "ours, fill-holes 100": "--fill-holes 100",
         "the paper to the letter (160, -0.8)": "--paper --gamma 160 --theta -0.8"}
-WATERSHEDS = {"watershed, every maximum": "plain", "watershed, smoothed": "smoothed", "SNOW's steps": "snow",
-              "watershed, h-maxima": "h_maxima"}
+WATERSHEDS = {"watershed, every maximum": "plain", "watershed, smoothed": "smoothed",
+              "SNOW's steps": "snow", "watershed, h-maxima": "h_maxima"}
 CDGS = "CDGS, tuned to the truth"
 FILLED = ", holes filled"
 METHODS = [*OURS, *WATERSHEDS, CDGS, *(name + FILLED for name in WATERSHEDS), CDGS + FILLED]
@@ -47,7 +47,8 @@ def grains(solid, truth, work):
 
 
 def form(labels):
-    """How many crumbs, slivers and grains in pieces there are; accuracy_report.py says what these are."""
+    """How many crumbs, slivers and grains in pieces there are; accuracy_report.py says what these
+    are."""
     sizes = numpy.bincount(labels.ravel())
     sizes[0] = 0
     touching = numpy.zeros(len(sizes), bool)
@@ -62,7 +63,8 @@ def form(labels):
     counts = numpy.bincount(labels.ravel()[first], minlength=len(sizes))
     counts[0] = 0
     return {"crumbs": int((touching & (sizes < m.DUST)).sum()),
-            "slivers": int((touching & ~deep & (sizes >= SLIVER)).sum()), "in_pieces": int((counts > 1).sum())}
+            "slivers": int((touching & ~deep & (sizes >= SLIVER)).sum()),
+            "in_pieces": int((counts > 1).sum())}
 
 
 def flatness(file, work):
@@ -74,10 +76,12 @@ def agreement(truth, file, work):
     m.madf("compare", truth, file, "--json", work / "compare.json", "--grains", work / "grains.csv")
     all_of = json.loads((work / "compare.json").read_text())
     with open(work / "grains.csv", newline="") as lines:
-        rows = [(r["side"], int(r["voxels"]), float(r["intersection_over_union"])) for r in csv.DictReader(lines)]
+        rows = [(r["side"], int(r["voxels"]), float(r["intersection_over_union"]))
+                for r in csv.DictReader(lines)]
     true = all_of["truth_grains"]
     found = sum(side == "truth" and share > 0.5 for side, _, share in rows)
-    spurious = sum(side == "test" and voxels >= m.DUST and share <= 0.5 for side, voxels, share in rows)
+    spurious = sum(side == "test" and voxels >= m.DUST and share <= 0.5
+                   for side, voxels, share in rows)
     return {"true": true, "grains": all_of["test_grains"], "found": found, "spurious": spurious,
             "found_percent": 100 * found / true, "spurious_percent": 100 * spurious / true,
             "missed_percent": 100 * (true - found) / true,
@@ -92,5 +96,6 @@ def judge(solid, truth, work):
     numpy.save(files[TRUTH], truth)
     files.update(grains(solid, truth, work))
     figures = {file: {**agreement(files[TRUTH], file, work), **form(numpy.load(file)),
-                      "flatness_voxel2": flatness(file, work)} for file in dict.fromkeys(files.values())}
+                      "flatness_voxel2": flatness(file, work)}
+                      for file in dict.fromkeys(files.values())}
     return {name: figures[file] for name, file in files.items()}

@@ -37,19 +37,24 @@ def write(folder, done, seeds, quick):
     edge = 100 if quick else 140
     report.say(
         "# How right the grains are",
-        f"Samples of {edge}^3 voxels with known grains, seed {' and '.join(map(str, seeds))}. Seed 1 is for choosing "
-        f"(our defaults; h = {watershed.H:g} voxels of the h-maxima), other seeds are for showing. All other "
-        "parameters of the watersheds are those published or common; nothing is tuned to a group. Figures are means "
-        "over a group's sets and seeds.",
-        "*found*: true grains that share more than half of the voxels of either with one grain; *missed*: the "
-        "others; *spurious*: grains of 100 voxels or more that match no true one; in % of the true grains. *ARI*: "
-        "adjusted Rand index. *VI*: variation of information. Grains in a sample: *crumbs* of fewer than 100 voxels "
-        "that touch another grain; *slivers* of 20 voxels or more that touch another grain and have no voxel whose "
-        "26 neighbors are all of the grain; grains *in pieces* (6-connected). *Flatness*: mean smallest eigenvalue "
-        "of the interfaces, less is flatter; it should be the truth's. *Holes filled*: cavities of fewer than "
+        f"Samples of {edge}^3 voxels with known grains, seed {' and '.join(map(str, seeds))}. Seed "
+        f"1 is for choosing (our defaults; h = {watershed.H:g} voxels of the h-maxima), other "
+        f"seeds are for showing. All other "
+        "parameters of the watersheds are those published or common; nothing is tuned to a group. "
+        "Figures are means over a group's sets and seeds.",
+        "*found*: true grains that share more than half of the voxels of either with one grain; "
+        "*missed*: the others; *spurious*: grains of 100 voxels or more that match no true one; in "
+        "% of the true grains. *ARI*: adjusted Rand index. *VI*: variation of information. Grains "
+        "in a sample: *crumbs* of fewer than 100 voxels that touch another grain; *slivers* of 20 "
+        "voxels or more that touch another grain and have no voxel whose 26 neighbors are all of "
+        "the grain; grains *in pieces* (6-connected). *Flatness*: mean smallest eigenvalue of the "
+        "interfaces, less is flatter; it should be the truth's. *Holes filled*: cavities of fewer "
+        "than "
         f"{watershed.CAVITY} voxels were filled before.",
         "## Summary", "*found, spurious; misclassified; VI*:")
-    report.table(["method", *groups], [[name, *(brief([r[name] for _, _, r in runs]) for runs in groups.values())]
+    report.table(["method", *groups], [[name,
+                                        *(brief([r[name] for _, _, r in runs])
+                                          for runs in groups.values())]
                                        for name in METHODS])
     for group in dict.fromkeys([its.group for its, _, _ in done]):
         report.say(f"## {group[0].upper()}{group[1:]}")
@@ -66,7 +71,8 @@ def write_group(report, runs, quick):
     true = mean([r[TRUTH] for _, _, r in runs], "true", 1)
     report.say(f"{'; '.join(sets)}. True grains: {true} a sample.")
     report.table(["method", *COLUMNS],
-                 [[name, *(mean([r[name] for _, _, r in runs], *column) for column in COLUMNS.values())]
+                 [[name, *(mean([r[name] for _, _, r in runs], *column)
+                           for column in COLUMNS.values())]
                   for name in (TRUTH, *METHODS)])
 
 
@@ -82,7 +88,8 @@ def cell(value):
 def write_runs(folder, done):
     rows = [{"group": its.group, "set": its.name, "seed": seed, "method": name,
              **{key: cell(value) for key, value in figures.items()}}
-            for its, seed, result in done if not isinstance(result, str) for name, figures in result.items()]
+            for its, seed, result in done if not isinstance(result, str)
+            for name, figures in result.items()]
     with open(folder / "accuracy.csv.part", "w", newline="") as file:
         lines = csv.DictWriter(file, rows[0].keys() if rows else [], lineterminator="\n")
         lines.writeheader()

@@ -11,7 +11,8 @@ class Set:
     group: str
     name: str
     generate: str  # a kind of `vdb_madf generate` and its options
-    count: tuple = (90, 33)  # grains: at 140^3, and at 100^3 (--quick); None: the kind has no such option
+    # grains: at 140^3, and at 100^3 (--quick); None: the kind has no such option
+    count: tuple = (90, 33)
 
 
 SETS = [
@@ -49,7 +50,8 @@ def sample(its, quick, seed, work):
     if its.count:
         options += ["--count", its.count[quick]]
     kind, *options = map(str, options)
-    done = subprocess.run([m.MADF, "generate", kind, work / "set.vdb", *options, "--threads", "1", "-q"],
+    done = subprocess.run([m.MADF, "generate", kind, work / "set.vdb", *options, "--threads", "1",
+                           "-q"],
                           stderr=subprocess.PIPE, text=True)
     if done.returncode == 2:  # a kind or an option that this command does not have
         raise Skipped("skipped: this vdb_madf has no generate " + its.generate)

@@ -1,37 +1,46 @@
 """CDGS, curvature-driven grain segmentation, as a baseline: the third method of the paper's tables.
 
-X. Wang, L. Gillibert, F. Flin, D. Coeurjolly: "Curvature-driven volumetric segmentation of binary shapes: an
-application to snow microstructure analysis", ICPR 2012. There is no public code of it, and the text of that
-article was not at hand: this is our own writing of the method's outline (grooves of concave curvature on the
-surface, the regions between them, spread into the volume), so its figures stand for the idea, not for the
-authors' program. Steps, on a boolean volume [z, y, x]:
+X. Wang, L. Gillibert, F. Flin, D. Coeurjolly: "Curvature-driven volumetric segmentation of binary
+shapes: an application to snow microstructure analysis", ICPR 2012. There is no public code of it,
+and the text of that article was not at hand: this is our own writing of the method's outline
+(grooves of concave curvature on the surface, the regions between them, spread into the volume), so
+its figures stand for the idea, not for the authors' program. Steps, on a boolean volume [z, y, x]:
 
-1. Normals. The signed distance map's gradient, in a band of BAND voxels on both sides of the surface, is averaged
-   in windows of growing size. A surface voxel takes the largest window in which, and in all smaller ones, the
-   gradients agree: wide windows where the surface is smooth, narrow ones in a groove.
-2. Mean curvature: half of the divergence of the outward normals; 1/r on a ball, negative in a groove.
-3. Grooves: surface voxels with a curvature below a threshold, and what is within some voxels of them.
+1. Normals. The signed distance map's gradient, in a band of BAND voxels on both sides of the
+   surface, is averaged in windows of growing size. A surface voxel takes the largest window in
+   which, and in all smaller ones, the gradients agree: wide windows where the surface is smooth,
+   narrow ones in a groove.
+2. Mean curvature: half of the divergence of the outward normals; 1/r on a ball, negative in a
+   groove.
+3. Grooves: surface voxels with a curvature below a threshold, and what is within some voxels of
+   them.
 4. Regions: the other surface voxels, connected by faces; small regions are dropped.
-5. Grains: each object voxel takes the label of the nearest region. The distance is the straight one to a voxel
-   of a region, but labels pass from voxel to voxel (26-connected) within the object only.
+5. Grains: each object voxel takes the label of the nearest region. The distance is the straight one
+   to a voxel of a region, but labels pass from voxel to voxel (26-connected) within the object
+   only.
 
 Parameters (lengths in voxels):
-- threshold  mean curvature (1/voxel) below which the surface is a groove. Too low: grooves have gaps, and grains
-             stay together. Too high: flat and rough surfaces are grooves, too, and grains fall apart.
-- windows    standard deviations of the Gaussian windows, growing. Small: exact on creases. Large: bear roughness.
-- tolerance  degrees; gradients agree while their mean (of unit vectors) is no shorter than its cosine.
+- threshold  mean curvature (1/voxel) below which the surface is a groove. Too low: grooves have
+             gaps, and grains stay together. Too high: flat and rough surfaces are grooves, too, and
+             grains fall apart.
+- windows    standard deviations of the Gaussian windows, growing. Small: exact on creases. Large:
+  bear roughness.
+- tolerance  degrees; gradients agree while their mean (of unit vectors) is no shorter than its
+  cosine.
 - widen      by how many voxels grooves are widened; closes gaps, but blurs where the border runs.
 - least      voxels of the smallest region.
 
 What the outline leaves open, and what was decided:
 - The windows' shape and when they stop growing: Gaussians and the length of the mean, as above.
-- The surface: object voxels with background among their 26 neighbors; that layer is thick enough that face
-  neighbors connect a region, and a groove one voxel wide separates two.
+- The surface: object voxels with background among their 26 neighbors; that layer is thick enough
+  that face neighbors connect a region, and a groove one voxel wide separates two.
 - Whether grooves are cleaned: only widened, not thinned, and none is dropped for being small.
-- A border between grains where two regions are equally near: the region's voxel first in the order z, y, x.
+- A border between grains where two regions are equally near: the region's voxel first in the order
+  z, y, x.
 - The border of the volume: not a surface, for the object goes on behind it.
 - A piece of the object (connected by faces) that no region reaches: a grain of its own.
-- How parameters were chosen: `tuned` takes those whose regions match the true grains best, see there.
+- How parameters were chosen: `tuned` takes those whose regions match the true grains best, see
+  there.
 """
 import numpy
 from scipy import ndimage
@@ -50,22 +59,27 @@ THRESHOLDS = (-0.05, -0.03, -0.02, -0.01, 0, 0.01, 0.02, 0.03, 0.04)
 
 
 def grains(solid, normals=None, **parameters):
-    """Labels 1..N (int32, 0: background) of a boolean volume [z, y, x], at least 2 voxels along each edge.
+    """Labels 1..N (int32, 0: background) of a boolean volume [z, y, x], at least 2 voxels along
+    each edge.
 
-    normals: its Normals, if they are there already. Parameters other than DEFAULT's are given by name.
+    normals: its Normals, if they are there already. Parameters other than DEFAULT's are given by
+    name.
     """
     chosen = {**DEFAULT, **parameters}
     solid = numpy.asarray(solid, bool)
-    curvature = mean_curvature(normals or Normals(solid), chosen.pop("windows"), chosen.pop("tolerance"))
+    curvature = mean_curvature(normals or Normals(solid), chosen.pop("windows"),
+                               chosen.pop("tolerance"))
     return spread(solid, regions(curvature, **chosen))
 
 
 def tuned(truth, solid=None, normals=None):
     """The grains with the parameters whose regions match the true grains best; and these in words.
 
-    solid: what is cut, if not just the true grains; normals: its Normals, if they are there already.
+    solid: what is cut, if not just the true grains; normals: its Normals, if they are there
+    already.
 
-    Least is the number of true grains without a region of their own and of regions beyond these; first, of equals.
+    Least is the number of true grains without a region of their own and of regions beyond these;
+    first, of equals.
     """
     best, solid = None, truth > 0 if solid is None else solid
     normals = normals or Normals(solid)
@@ -99,13 +113,14 @@ def unit(vectors):
 
 
 class Normals:
-    """Step 1 but the choice: of each surface voxel, for a window, half the divergence of the averaged normals and the
-    length of their mean."""
+    """Step 1 but the choice: of each surface voxel, for a window, half the divergence of the
+    averaged normals and the length of their mean."""
 
     def __init__(self, solid):
         inside = ndimage.distance_transform_edt(solid).astype(numpy.float32)
         outside = ndimage.distance_transform_edt(~solid).astype(numpy.float32)
-        distance = numpy.where(solid, 0.5 - inside, outside - 0.5)  # grows outward; 0 between two voxels
+        # grows outward; 0 between two voxels
+        distance = numpy.where(solid, 0.5 - inside, outside - 0.5)
         self.band = (numpy.abs(distance) <= BAND).astype(numpy.float32)
         self.gradient = unit([g * self.band for g in numpy.gradient(distance)])[0]
         self.shape = solid.shape
@@ -114,7 +129,8 @@ class Normals:
 
     def averaged(self, window):
         if window not in self.windows:
-            normal, length = unit([ndimage.gaussian_filter(g, window, truncate=TRUNCATE) for g in self.gradient])
+            normal, length = unit([ndimage.gaussian_filter(g, window, truncate=TRUNCATE)
+                                   for g in self.gradient])
             weight = ndimage.gaussian_filter(self.band, window, truncate=TRUNCATE)
             divergence = sum(numpy.gradient(n, axis=axis) for axis, n in enumerate(normal))
             self.windows[window] = divergence[self.at] / 2, length[self.at], weight[self.at]
@@ -147,9 +163,11 @@ def regions(curvature, threshold, widen, least):
 
 
 def spread(solid, seeds):
-    """Step 5. Each voxel keeps the key of its nearest seed: squared distance, then the seed's place."""
+    """Step 5. Each voxel keeps the key of its nearest seed: squared distance, then the seed's
+    place."""
     inner = (slice(1, -1),) * 3
-    solid, seeds = numpy.pad(solid, 1), numpy.pad(seeds, 1)  # so that no neighbor is beyond the volume
+    # so that no neighbor is beyond the volume
+    solid, seeds = numpy.pad(solid, 1), numpy.pad(seeds, 1)
     shape, flat = solid.shape, solid.ravel()
     low = int(solid.size).bit_length()  # the bits of a place
     key = numpy.full(solid.size, FAR)

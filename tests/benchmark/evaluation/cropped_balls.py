@@ -1,11 +1,11 @@
-"""Balls as in the fifth row of the paper's Table 1 (a), which `generate spheres` cannot make: of the
-paper's number and radii they would, wholly inside the cube, fill more than the cube.
+"""Balls as in the fifth row of the paper's Table 1 (a), which `generate spheres` cannot make: of
+the paper's number and radii they would, wholly inside the cube, fill more than the cube.
 
-Integer centres anywhere in the cube, balls cropped by it; real radii uniform in [low, high]; open
+Integer centers anywhere in the cube, balls cropped by it; real radii uniform in [low, high]; open
 balls |p - c| < r. |Bi| counts the voxels inside the cube. overlap = (sum |Bi| - |X|) / |X| is met
-within 1 %: starting from uniform centres, single balls move to uniform places whenever this brings the
-overlap nearer. Each ball has the least power at its own centre, |ci - cj|^2 > |ri^2 - rj^2|, so that
-none is swallowed. Arrays are [z, y, x].
+within 1 %: starting from uniform centers, single balls move to uniform places whenever this brings
+the overlap nearer. Each ball has the least power at its own center, |ci - cj|^2 > |ri^2 - rj^2|, so
+that none is swallowed. Arrays are [z, y, x].
 """
 import random
 
@@ -15,7 +15,8 @@ import numpy
 def boxes(balls, size, step=1):
     """For each ball its slices of the cube, and |p - c|^2 - r^2 there; on every step-th voxel."""
     for center, radius in balls:
-        ranges = [range(max(0, -int((radius - c) // step)), min(-(-size // step), int((c + radius) // step) + 1))
+        ranges = [range(max(0, -int((radius - c) // step)),
+                        min(-(-size // step), int((c + radius) // step) + 1))
                   for c in center]
         axes = [(numpy.arange(r.start, r.stop) * step - c) ** 2.0 for r, c in zip(ranges, center)]
         power = axes[0][:, None, None] + axes[1][:, None] + axes[2] - radius**2
@@ -45,7 +46,8 @@ def place(balls, i, size, rng):
 
 
 def labels(size, count, low, high, target, seed):
-    """The true grains (int32, 0: background): the power map of the balls; and the overlap reached."""
+    """The true grains (int32, 0: background): the power map of the balls; and the overlap
+    reached."""
     rng = random.Random(seed)
     radii = sorted((low + (high - low) * rng.random() for _ in range(count)), reverse=True)
     balls = []

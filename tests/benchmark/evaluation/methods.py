@@ -1,5 +1,5 @@
-"""What tests/benchmark/paper and accuracy run on one volume: vdb_madf, the watershed and CDGS, and how they are
-judged."""
+"""What tests/benchmark/paper and accuracy run on one volume: vdb_madf, the watershed and CDGS, and
+how they are judged."""
 import csv
 import json
 import os
@@ -7,7 +7,8 @@ import pathlib
 import subprocess
 
 HERE = pathlib.Path(__file__).resolve().parent
-MADF = pathlib.Path(os.environ.get("VDB_MADF_BUILD", HERE.parents[2] / "build")) / "tools" / "vdb_madf"
+MADF = pathlib.Path(os.environ.get("VDB_MADF_BUILD",
+                                   HERE.parents[2] / "build")) / "tools" / "vdb_madf"
 DUST = 100  # voxels; smaller grains are counted apart
 
 try:
@@ -43,7 +44,8 @@ def both(theta, delta=2):
 
 
 # Of the gammas and thetas the paper took: 0, -1 for balls; 160, -0.8 for MF; 20, -0.5 for RG.
-BALL_METHODS = {"MADF to the letter, theta -1": angle(0, -1), "MADF, both tests, theta -1, delta 0": both(-1, 0),
+BALL_METHODS = {"MADF to the letter, theta -1": angle(0, -1),
+                "MADF, both tests, theta -1, delta 0": both(-1, 0),
                 "MADF, our default (theta -0.9)": both(-0.9)}
 SNOW_METHODS = {"MADF, our default": both(-0.9), "MADF to the letter, 0, -0.8": angle(0, -0.8),
                 "MADF to the letter, 20, -0.5": angle(20, -0.5),
@@ -61,7 +63,8 @@ def dense(volume, work, *options):
 
 
 def cut(volume, work, methods, tune=False):
-    """The grains by each method, each watershed and CDGS, where they can run: name -> file of labels.
+    """The grains by each method, each watershed and CDGS, where they can run: name -> file of
+    labels.
 
     tune: CDGS tuned to the true grains, too; what it took is in work / "tuned.txt".
     """
@@ -86,7 +89,8 @@ def cut(volume, work, methods, tune=False):
         if tune:
             files[CDGS_TUNED] = work / "cdgs_tuned.npy"
             grid = () if volume.suffix == ".npy" else ("--grid", "truth")
-            labels, taken = cdgs.tuned(dense(volume, work, *grid, "--type", "int32"), solid, normals)
+            labels, taken = cdgs.tuned(dense(volume, work, *grid, "--type", "int32"), solid,
+                                       normals)
             numpy.save(files[CDGS_TUNED], labels)
             (work / "tuned.txt").write_text(taken)
     return files
@@ -94,7 +98,8 @@ def cut(volume, work, methods, tune=False):
 
 def judge(volume, work, methods):
     """The score of each method on a sample with known truth."""
-    scores = {name: score(volume, file, work) for name, file in cut(volume, work, methods, tune=True).items()}
+    scores = {name: score(volume, file, work)
+              for name, file in cut(volume, work, methods, tune=True).items()}
     if CDGS_TUNED in scores:
         scores[CDGS_TUNED]["tuned"] = (work / "tuned.txt").read_text()
     return scores
@@ -107,20 +112,23 @@ def score(truth, test, work):
         rows = list(csv.DictReader(file))
     found = sum(r["side"] == "truth" and float(r["intersection_over_union"]) > 0.5 for r in rows)
     dust = sum(r["side"] == "test" and int(r["voxels"]) < DUST for r in rows)
-    return {"true": all_of["truth_grains"], "grains": all_of["test_grains"], "found": found, "dust": dust,
-            "extra": all_of["test_grains"] - dust - found, "percent": all_of["misclassified_percent"],
+    return {"true": all_of["truth_grains"], "grains": all_of["test_grains"], "found": found,
+            "dust": dust, "extra": all_of["test_grains"] - dust - found,
+            "percent": all_of["misclassified_percent"],
             "mirror": all_of["mirror_misclassified_percent"]}
 
 
 def interfaces(labels, work):
-    """For each interface |mean curvature|, |Gaussian curvature| (None where too small) and flatness."""
+    """For each interface |mean curvature|, |Gaussian curvature| (None where too small) and
+    flatness."""
     madf("measure", labels, work / "tables")
     with open(work / "tables" / "bonds.csv", newline="") as file:
         rows = list(csv.DictReader(file))
 
     def of(row, key):
         return abs(float(row[key])) if row[key] else None
-    return [(of(r, "mean_curvature_per_voxel"), of(r, "gaussian_curvature_per_voxel2"), of(r, "flatness_voxel2"))
+    return [(of(r, "mean_curvature_per_voxel"), of(r, "gaussian_curvature_per_voxel2"),
+             of(r, "flatness_voxel2"))
             for r in rows]
 
 
@@ -130,7 +138,8 @@ def bond_ratio(labels, work):
 
 
 def interface_voxels(labels):
-    """Of an array of labels: voxels with a face in common with another grain, labelled by the pair."""
+    """Of an array of labels: voxels with a face in common with another grain, labeled by the
+    pair."""
     pair = numpy.zeros(labels.shape, numpy.int64)
     for axis in range(3):
         low = [slice(None)] * 3
@@ -146,7 +155,8 @@ def interface_voxels(labels):
 
 
 def power_cells(squared_radius, z):
-    """Slice z of the power map of balls (array of squared radii, 0: none): a number for each ball."""
+    """Slice z of the power map of balls (array of squared radii, 0: none): a number for each
+    ball."""
     least = numpy.zeros(squared_radius.shape[1:], numpy.int64)
     cells = numpy.zeros(squared_radius.shape[1:], numpy.int32)
     zs, ys, xs = numpy.nonzero(squared_radius)

@@ -24,19 +24,22 @@ class Sizes:
 
 
 def sintered(path, size, count, neck=0.82, roughness=0, seed=1, threads=1):
-    m.madf("generate", "sintered", path, "--size", size, "--count", count, "--neck", neck, "--roughness",
-           roughness, "--seed", seed, threads=threads)
+    m.madf("generate", "sintered", path, "--size", size, "--count", count, "--neck", neck,
+           "--roughness", roughness, "--seed", seed, threads=threads)
     return path
 
 
 def balls(work, row, cover, seed, size):
-    """A sample of Table 1 (a) and its truth, in one file; lengths in proportion to the edge of 300."""
+    """A sample of Table 1 (a) and its truth, in one file; lengths in proportion to the edge of
+    300."""
     count, low, high, target, _ = BALLS[row]
     scale = size / 300
     if row == CROPPED:
         from evaluation import cropped_balls
-        m.numpy.save(work / "set.npy", cropped_balls.labels(size, count, low * scale, high * scale, target, seed)[0])
+        m.numpy.save(work / "set.npy", cropped_balls.labels(size, count, low * scale, high * scale,
+                                                            target, seed)[0])
         return work / "set.npy"
     m.madf("generate", "spheres", work / "set.vdb", "--size", size, "--count", count, "--radius",
-           f"{low * scale}:{high * scale}", "--overlap", target, "--max-cover", cover, "--seed", seed)
+           f"{low * scale}:{high * scale}", "--overlap", target, "--max-cover", cover, "--seed",
+           seed)
     return work / "set.vdb"

@@ -1,16 +1,18 @@
-"""The peer of tests/benchmark/paper and tests/benchmark/accuracy: scikit-image's watershed on the distance map.
+"""The peer of tests/benchmark/paper and tests/benchmark/accuracy: scikit-image's watershed on the
+distance map.
 
-The kinds differ in the markers and in how the distance map is smoothed, the rest is alike (scipy's exact
-distance map, flooded from the markers, 6-connected, within the object):
+The kinds differ in the markers and in how the distance map is smoothed, the rest is alike (scipy's
+exact distance map, flooded from the markers, 6-connected, within the object):
 - plain: every regional maximum of the distance map (26-connected; a plateau is one marker);
-- smoothed: the maxima of the distance map blurred by a Gaussian of SIGMA, at least APART apart: what is
-  commonly done against too many grains;
+- smoothed: the maxima of the distance map blurred by a Gaussian of SIGMA, at least APART apart:
+  what is commonly done against too many grains;
 - snow: the steps of J. T. Gostick, "Versatile and efficient pore network extraction method using
   marker-based watershed segmentation", Phys. Rev. E 96 (2017) 023307, written anew: the map blurred
-  by a Gaussian of SNOW_SIGMA; peaks are the maxima over balls of SNOW_RADIUS; a peak whose plateau is no
-  regional maximum is a saddle point and goes; of two nearest peaks that are nearer to each other than to
-  the background goes the one that is nearer to the background;
-- h_maxima: the regional maxima that are left where the map is lowered by H and rebuilt below itself.
+  by a Gaussian of SNOW_SIGMA; peaks are the maxima over balls of SNOW_RADIUS; a peak whose plateau
+  is no regional maximum is a saddle point and goes; of two nearest peaks that are nearer to each
+  other than to the background goes the one that is nearer to the background;
+- h_maxima: the regional maxima that are left where the map is lowered by H and rebuilt below
+  itself.
 A piece of the object without a marker becomes a grain of its own. Arrays are [z, y, x].
 """
 import time
@@ -25,7 +27,8 @@ SIGMA = 2  # voxels
 APART = 5  # voxels
 SNOW_SIGMA = 0.4  # voxels
 SNOW_RADIUS = 4  # voxels
-H = 0.5  # voxels; of 0.25, 0.5, 1, 1.5 it had the least mean VI on seed 1 of accuracy --quick, holes filled
+# voxels; of 0.25, 0.5, 1, 1.5 it had the least mean VI on seed 1 of accuracy --quick, holes filled
+H = 0.5
 CAVITY = 27  # voxels
 FULL = numpy.ones((3, 3, 3), bool)
 
@@ -67,7 +70,8 @@ KINDS = {"plain": plain, "smoothed": smoothed, "snow": snow, "h_maxima": h_maxim
 
 
 def filled(solid):
-    """The object with its cavities of fewer than CAVITY voxels (6-connected, none that reaches a face)."""
+    """The object with its cavities of fewer than CAVITY voxels (6-connected, none that reaches a
+    face)."""
     pores, count = ndimage.label(~solid)
     small = numpy.bincount(pores.ravel(), minlength=count + 1) < CAVITY
     small[0] = False

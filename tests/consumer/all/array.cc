@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What a program looks like that has its own arrays and wants nothing of OpenVDB: it hands a mask in and
-// gets labels out, and takes a second to compile.
+// What a program looks like that has its own arrays and wants nothing of OpenVDB: it hands a mask
+// in and gets labels out, and takes a second to compile.
 
 #include "vdb_madf/volumes/segment_array.h"
 

@@ -8,8 +8,8 @@
 
 namespace vdb_madf::detail {
 
-/// Of a sequence of 64-bit words: two lanes of multiply and xor-shift. Tells contents apart; no
-/// defence against forgery.
+/// A checksum of 64-bit words: two lanes of multiply and xor-shift. It tells contents apart, and is
+/// no defense against forgery.
 class Checksum {
  public:
   void add(uint64_t word) {

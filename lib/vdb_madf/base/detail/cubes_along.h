@@ -16,7 +16,7 @@ class CubesAlong {
   /// @throw InvalidInput if it lies beyond 256, either way
   CubesAlong(double voxelEdge, double cubeEdge);
 
-  // Without a common factor, so that all lengths are whole numbers.
+  // The edges have no common factor, so that all lengths are whole numbers.
   int64_t voxelEdge() const { return voxel_; }
   int64_t cubeEdge() const { return cube_; }
 

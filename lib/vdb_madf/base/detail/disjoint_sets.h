@@ -18,7 +18,7 @@ class DisjointSets {
   explicit DisjointSets(size_t count) : parent_(count) {
     std::iota(parent_.begin(), parent_.end(), 0u);
   }
-  /// Another set, of one new element.
+  /// Adds a set of one new element.
   uint32_t add() {
     parent_.push_back(uint32_t(parent_.size()));
     return parent_.back();

@@ -9,12 +9,12 @@
 
 namespace vdb_madf::detail {
 
-/// Uninitialised memory; large blocks come in huge pages where the system has them.
+/// Uninitialized memory; large blocks come in huge pages where the system has them.
 /// @throw std::bad_alloc
 void* allocatePages(size_t bytes);
 void freePages(void* block) noexcept;
 
-/// Of a vector whose numbers come from allocatePages(), and are not cleared when it grows.
+/// Lets a vector take its numbers from allocatePages(), and not clear them when it grows.
 template <typename T>
 struct PageAllocator {
   using value_type = T;

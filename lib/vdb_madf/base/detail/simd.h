@@ -3,16 +3,16 @@
 
 #pragma once
 
-// Inner loops are compiled for several instruction sets, and the widest one that simdWidth() tells is
-// taken at run time:
+// Inner loops are compiled for several instruction sets, and the widest one that simdWidth() tells
+// is taken at run time:
 //
 //   VDB_MADF_KERNEL void add(const int* a, int* sum, size_t count) { ... }
 //   atBestLevel([&]() VDB_MADF_INLINE { add(a, sum, count); });
 //
 // All that is to be compiled so has to be inlined into the lambda. Pass numbers and pointers on as
-// arguments: what a lambda captures by reference is read again after each store. All levels give the
-// same bits: integer arithmetic, or single operations of floating point, which are rounded alike
-// (-ffp-contract=off).
+// arguments: what a lambda captures by reference is read again after each store. All levels give
+// the same bits: integer arithmetic, or single operations of floating point, which are rounded
+// alike (-ffp-contract=off).
 
 #include <type_traits>
 

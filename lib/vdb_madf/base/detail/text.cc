@@ -105,4 +105,15 @@ std::optional<std::vector<double>> reals(const std::string& text) {
   return numbers<double>(text);
 }
 
+std::string markupEscaped(const std::string& text) {
+  std::string result;
+  for (const char c : text)
+    result += c == '&'   ? "&amp;"
+              : c == '<' ? "&lt;"
+              : c == '>' ? "&gt;"
+              : c == '"' ? "&quot;"
+                         : std::string(1, c);
+  return result;
+}
+
 }  // namespace vdb_madf::detail

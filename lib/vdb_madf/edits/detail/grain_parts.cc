@@ -257,7 +257,7 @@ std::optional<std::array<GrainPart, 2>> GrainParts::halves(const GrainPart& part
   return two;
 }
 
-/// Of each voxel the place of its manifold in the part's list; kForeign: it is not there.
+/// The place of each voxel's manifold in the part's list; kForeign: it is not there.
 VoxelArray<uint32_t> GrainParts::placesIn(const GrainPart& part, const LeafIndex& index,
                                           Interrupter* interrupter) const {
   VoxelArray<uint32_t> places(size_t(index.voxelCount()));

@@ -18,9 +18,9 @@ namespace vdb_madf::detail {
 
 /// Manifolds that are a grain of the segmentation or a part of one, with their voxels.
 struct GrainPart {
-  /// Of a part that has the representative of its grain: the grain's number; of others the number of
-  /// grains plus that of the manifold which is the part's representative. No two parts that have no
-  /// voxel in common share it.
+  /// The grain's number for the part that has the representative of its grain; for others the
+  /// number of grains plus that of the manifold that represents the part. No two disjoint parts
+  /// share it.
   int32_t number = 0;
   int32_t grain = 0;            ///< of the segmentation
   std::vector<uint32_t> nodes;  ///< of the graph, ascending; of a whole grain none until wanted
@@ -28,12 +28,12 @@ struct GrainPart {
   int64_t voxelCount = 0;
 };
 
-/// What the grains of a segmentation consist of, as its manifolds and their graph tell it: a tree of
-/// parts for each grain, which depends on the segmentation alone. The halves of a part are the two
-/// sides of its weakest neck (weakest_neck.h). A voxel goes to the half that has its manifold; what
-/// tidying gave to the grain from others is filled from the voxels around, in synchronous rounds;
-/// then the halves are tidied, in as many rounds as the segmentation was, without regard to other
-/// grains.
+/// What the grains of a segmentation consist of, as its manifolds and their graph tell it: a tree
+/// of parts for each grain, which depends on the segmentation alone. The halves of a part are the
+/// two sides of its weakest neck (weakest_neck.h). A voxel goes to the half that has its manifold;
+/// what tidying gave to the grain from others is filled from the voxels around, in synchronous
+/// rounds; then the halves are tidied, in as many rounds as the segmentation was, without regard to
+/// other grains.
 class GrainParts {
  public:
   /// @param labels whose metadata say how the manifolds were merged

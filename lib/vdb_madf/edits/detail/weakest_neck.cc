@@ -39,7 +39,7 @@ std::vector<Neck> necksWithin(const ManifoldGraph& graph, const std::vector<uint
   return necks;
 }
 
-/// In the order in which they join.
+/// The necks in the order in which they join.
 std::vector<Neck> spanningTree(const ManifoldGraph& graph, const std::vector<uint32_t>& nodes) {
   std::vector<Neck> necks = necksWithin(graph, nodes);
   std::stable_sort(necks.begin(), necks.end(),

@@ -25,11 +25,11 @@ struct LabelCount {
   int32_t label = 0;
   int64_t voxels = 0;
 };
-/// Of all leaves of a tree without active tiles. @throw Interrupted
+/// Counts the labels of all leaves of a tree without active tiles. @throw Interrupted
 std::vector<LabelCount> countLabels(const Int32Tree& labels, Interrupter* interrupter);
 
-/// coarseTrees() of labels that come in layers of leaves from below, for a multiple of 8 as factor: what
-/// is known of the coarse voxels that are not complete.
+/// coarseTrees() of labels that come in layers of leaves from below, for a multiple of 8 as factor:
+/// what is known of the coarse voxels that are not complete.
 class CoarseCounts {
  public:
   explicit CoarseCounts(int factor) : factor_(factor) {}
@@ -39,7 +39,7 @@ class CoarseCounts {
   CoarseTrees take(int end);
 
  private:
-  /// Of a coarse voxel, in the place of the leaf.
+  /// The count of a coarse voxel, whose place stands for the leaf.
   using Entry = LabelCount;
   static bool comesBefore(const Entry& a, const Entry& b);
 

@@ -216,7 +216,7 @@ class GlbFile {
     return json;
   }
 
-  /// Of a grain's points: the mean of those of the triangles around, by their areas.
+  /// The normals of a grain's points: means over the triangles around, by their areas.
   std::vector<Vec3f> normals(size_t grain) const {
     std::vector<Vec3d> sums(points(grain), Vec3d(0));
     for (uint32_t i = mesh().firstTriangle[grain]; i < mesh().firstTriangle[grain + 1]; ++i) {
@@ -234,7 +234,7 @@ class GlbFile {
     return result;
   }
 
-  /// As they are counted within the grain.
+  /// Writes the corners as they are counted within the grain.
   void writeIndices(OutputStream& out, size_t grain) const {
     for (uint32_t i = mesh().firstTriangle[grain]; i < mesh().firstTriangle[grain + 1]; ++i)
       for (const uint32_t corner : world_.triangle(i)) {

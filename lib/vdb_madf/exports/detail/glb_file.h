@@ -10,8 +10,9 @@
 
 namespace vdb_madf::detail {
 
-/// Writes glTF 2.0 (Khronos, ISO/IEC 12113) as one binary file: a header, a chunk of JSON and one of
-/// numbers. @throw InvalidInput if that is more than the 4 GiB of such a file; IoError; Interrupted.
+/// Writes glTF 2.0 (Khronos, ISO/IEC 12113) as one binary file: a header, a chunk of JSON and one
+/// of numbers. @throw InvalidInput if that is more than the 4 GiB of such a file; IoError;
+/// Interrupted.
 void writeGlb(const std::string& path, const WorldMesh& world, const MeshFileOptions& options,
               Interrupter* interrupter);
 

@@ -22,8 +22,8 @@ struct Hdf5Tables {
 /// True if that is written into one file, by the ending: .h5 or .hdf5.
 bool isHdf5Tables(const std::string& path);
 
-/// Finds out before the work. @throw IoError if there can be no such file, or HDF5 was not there when
-/// this was built.
+/// Finds out before the work. @throw IoError if there can be no such file, or HDF5 was not there
+/// when this was built.
 void checkHdf5Tables(const std::string& path);
 
 /// Whole or not at all, with the same bytes whenever it is written. @throw IoError

@@ -23,9 +23,9 @@ using SortedJson = nlohmann::json;  // of many colors: ordered_json would look f
 
 const std::string kFolder = "neuroglancer/";
 constexpr char kFaceColumn[] = "at_domain_face";
-/// Of more grains no mesh is shown until it is chosen: a browser takes long to load them all.
+/// Meshes of more grains are shown only once they are chosen: to load all takes a browser long.
 constexpr size_t kMostShown = 5000;
-/// As large as a section is on most screens.
+/// A section is about as large on most screens.
 constexpr double kViewPixels = 400;
 
 template <typename T>
@@ -127,7 +127,7 @@ void setView(SortedJson& state, const CoordBBox& box, const OmePlace& place) {
   state["projectionScale"] = 2 * longest;
 }
 
-/// As of a server on this machine.
+/// The state for a server on this machine.
 SortedJson stateOf(const std::string& name, const CoordBBox& box, const OmePlace& place,
                    const GrainColors& colors, OmeVersion version) {
   const std::string url = "http://localhost:8000/" + name;

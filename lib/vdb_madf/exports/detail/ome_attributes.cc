@@ -25,7 +25,7 @@ Json transformationsOf(const OmePlace& place, const OmeScale& level) {
     const double edge = place.edges[size_t(axis)];
     scale.push_back(edge * level.factor);
     const double first =
-        double(level.factor) * level.first[axis] + (level.factor - 1) / 2.0;  // its centre
+        double(level.factor) * level.first[axis] + (level.factor - 1) / 2.0;  // its center
     translation.push_back(place.origin[size_t(axis)] + first * edge);
   }
   return Json::array({{{"type", "scale"}, {"scale", scale}},

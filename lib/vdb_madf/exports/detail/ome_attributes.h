@@ -16,7 +16,7 @@ namespace vdb_madf::detail {
 
 // The metadata of OME-Zarr, as text of JSON. Source: OME-NGFF 0.4 and 0.5.
 
-/// Where voxels lie, in `unit`: the centre of voxel (0,0,0), and edges, along x, y and z.
+/// Where voxels lie, in `unit`: the center of voxel (0,0,0), and edges, along x, y and z.
 struct OmePlace {
   std::array<double, 3> origin{}, edges{};
   std::string unit;  ///< "micrometer"; empty: the physical size is not known
@@ -29,7 +29,7 @@ struct OmeScale {
   int factor = 1;
   Coord first;
 };
-/// Of arrays called 0, 1, 2 ...
+/// The attributes of a multiscale image whose arrays are called 0, 1, 2 ...
 std::string multiscales(const std::string& name, const OmePlace& place,
                         const std::vector<OmeScale>& scales, OmeVersion version);
 

@@ -57,7 +57,8 @@ class SlabLevel {
             ZarrVersion version)
       : factor_(level.factor), counts_(level.factor), arrays_(folder, level, name, version) {}
 
-  /// The next slab; the finest level takes its leaves. @param counts of its leaves, for factors above 8
+  /// The next slab; the finest level takes its leaves. @param counts of its leaves, for factors
+  /// above 8
   /// @param end all labels of the slices below it have come
   void add(Int32Grid& slab, const std::vector<LabelCount>& counts, int end,
            Interrupter* interrupter) {

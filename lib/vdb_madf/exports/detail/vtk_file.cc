@@ -3,15 +3,21 @@
 
 #include "vdb_madf/exports/detail/vtk_file.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <utility>
+
+#include "vdb_madf/base/detail/text.h"
 
 namespace vdb_madf::detail {
 
 void VtkFile::addArray(const std::string& vtkType, const std::string& name, int components,
                        uint64_t bytesInFile, Writer write) {
-  xml_ += "<DataArray type=\"" + vtkType + "\" Name=\"" + xmlEscaped(name) +
-          "\" NumberOfComponents=\"" + std::to_string(components) +
-          "\" format=\"appended\" offset=\"" + std::to_string(offset_) + "\"/>\n";
+  xml_ += fmt::format(
+      "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
+      "offset=\"{}\"/>\n",
+      vtkType, xmlEscaped(name), components, offset_);
   arrays_.push_back(std::move(write));
   offset_ += bytesInFile;
 }
@@ -50,27 +56,10 @@ void VtkFile::write(const std::string& path, Interrupter* interrupter) const {
   out.commit();
 }
 
-std::string xmlEscaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return result;
+std::string xmlEscaped(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
+  return markupEscaped(text);
 }
 
 }  // namespace vdb_madf::detail

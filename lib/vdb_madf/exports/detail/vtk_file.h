@@ -46,6 +46,6 @@ class VtkFile {
 };
 
 /// Text that XML may hold between quotes.
-std::string xmlEscaped(const std::string& text);
+std::string xmlEscaped(std::string text);
 
 }  // namespace vdb_madf::detail

@@ -26,14 +26,13 @@ using Leaf = Int32Tree::LeafNodeType;
 
 /// Labels are mostly runs: more effort gains little.
 constexpr int kGzipLevel = 3;
-/// For zlib: the widest window, and gzip's header (without name and time).
+/// zlib's widest window, and gzip's header (without name and time).
 constexpr int kGzipWindow = 15 + 16;
 
 std::string within(const std::string& folder, const std::string& name) {
   return (std::filesystem::path(folder) / name).string();
 }
 
-/// Of a Coord as the arrays have it.
 Json zyx(const Coord& c) {
   return Json::array({c.z(), c.y(), c.x()});
 }
@@ -82,7 +81,7 @@ class Chunks {
   const Coord& number(size_t i) const { return pieces_[first_[i]].chunk; }
   size_t voxels() const { return voxelsOf(edges_); }
 
-  /// f(place in the chunk, x fastest; label) for the labelled voxels of a chunk within the box.
+  /// f(place in the chunk, x fastest; label) for the labeled voxels of a chunk within the box.
   template <typename F>
   void forEachLabel(size_t i, const F& f) const {
     const Coord& chunk = number(i);

@@ -24,9 +24,9 @@ enum class ZarrSamples {
 /// Voxels along each edge of a chunk, or as many as the array has.
 constexpr int kZarrChunk = 64;
 
-/// An array [z, y, x] of a box, at `name` within a folder: its description, and chunks by gzip, layer by
-/// layer. Chunks of background alone are left out, but for the first where there would be none: an array
-/// without any looks like one whose chunks were lost.
+/// An array [z, y, x] of a box, at `name` within a folder: its description, and chunks by gzip,
+/// layer by layer. Chunks of background alone are left out, but for the first where there would be
+/// none: an array without any looks like one whose chunks were lost.
 class ZarrArray {
  public:
   /// Writes the description. The folder must live as long. @throw IoError
@@ -37,11 +37,11 @@ class ZarrArray {
   int layerCount() const;
   int firstSlice(int layer) const { return box_.min().z() + layer * edges_.z(); }
 
-  /// Writes the chunks in the layers [begin, end), all of whose values are there. Memory: a chunk per
-  /// thread. @param values without active tiles
+  /// Writes the chunks in the layers [begin, end), all of whose values are there. Memory: a chunk
+  /// per thread. @param values without active tiles
   /// @throw IoError; Interrupted
   void write(const Int32Tree& values, int begin, int end, Interrupter* interrupter);
-  /// After all layers. @throw IoError
+  /// Completes the array when all layers are written. @throw IoError
   void finish() const;
 
  private:

@@ -49,7 +49,7 @@ void setMoments(const T* begin, const T* end, GrayValues& values) {
   }
 }
 
-/// Of samples, which it reorders.
+/// The statistics of samples, which it reorders.
 template <typename T>
 GrayValues grayValues(T* begin, T* end) {
   if constexpr (std::is_floating_point_v<T>)

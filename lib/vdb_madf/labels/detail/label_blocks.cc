@@ -16,7 +16,7 @@ namespace {
 
 using Leaf = Int32Tree::LeafNodeType;
 
-/// Where a neighbour's voxels go along one axis: [from, from + count) of it to `to` of the block.
+/// Where a neighbor's voxels go along one axis: [from, from + count) of it to `to` of the block.
 struct Span {
   int from, count, to;
 };

@@ -21,7 +21,7 @@ inline int32_t labelAt(const Int32Tree::LeafNodeType& leaf, const int32_t* value
 
 /// Labels of an 8x8x8 block with one voxel more on each side: -1 to 8 along x, y and z; 0: none.
 using LabelHalo = std::array<int32_t, 1000>;
-/// From a voxel of it to the next along x, y and z.
+/// Steps from a voxel of it to the next along x, y and z.
 constexpr int kHaloStride[3] = {100, 10, 1};
 inline size_t haloAt(int x, int y, int z) {
   return size_t((x + 1) * kHaloStride[0] + (y + 1) * kHaloStride[1] + (z + 1) * kHaloStride[2]);
@@ -29,7 +29,7 @@ inline size_t haloAt(int x, int y, int z) {
 /// Reads the block at an origin; tiles are read as the voxels that they stand for.
 void readLabelHalo(const Int32Tree& tree, const Coord& origin, LabelHalo& halo);
 
-/// The 8x8x8 blocks that own a corner of a labelled voxel, sorted by origin (x, then y, then z).
+/// The 8x8x8 blocks that own a corner of a labeled voxel, sorted by origin (x, then y, then z).
 ///
 /// Corner p of the voxel lattice is the point p - 1/2, shared by the voxels p - 1 to p; it belongs
 /// to the block of voxel p, which may itself hold no label.

@@ -11,7 +11,7 @@
 
 namespace vdb_madf::detail {
 
-/// A checksum of the places and labels of the labelled voxels. Equal labels have equal digests,
+/// A checksum of the places and labels of the labeled voxels. Equal labels have equal digests,
 /// however they are stored, and in whatever parts they come: it is a sum over their leaves.
 class LabelDigest {
  public:
@@ -22,7 +22,7 @@ class LabelDigest {
   std::array<uint64_t, 2> sums_{};
 };
 
-/// Of all at once.
+/// The digest of all leaves.
 std::string labelDigest(const LabelLeaves& labels);
 
 }  // namespace vdb_madf::detail

@@ -17,7 +17,7 @@ struct LabelPart {
   LeafIndex::Mask mask{};
 };
 
-/// A label grid by leaves. Labelled are the active voxels, tiles included, of positive value.
+/// A label grid by leaves. Labeled are the active voxels, tiles included, of positive value.
 class LabelLeaves {
  public:
   LabelLeaves(const Int32Grid& labels, Interrupter* interrupter);
@@ -42,7 +42,7 @@ class LabelLeaves {
     const uint32_t* first = &chunk.first[leaf % kChunk];
     return {chunk.parts.data() + first[0], chunk.parts.data() + first[1]};
   }
-  /// Of a labelled voxel.
+  /// @pre the voxel is labeled
   int32_t label(size_t leaf, int offset) const;
 
  private:

@@ -46,7 +46,7 @@ class LabelWindow {
   /// The voxels that have any label, or this one.
   void labelled(WindowRows& rows) const;
   void labelled(int32_t label, WindowRows& rows) const;
-  /// Of a labelled voxel, -8 to 15 along each axis.
+  /// The label of a labeled voxel, -8 to 15 along each axis.
   int32_t label(int x, int y, int z) const;
 
  private:

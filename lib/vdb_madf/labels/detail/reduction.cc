@@ -118,7 +118,7 @@ void Reduction::run(const std::function<void(size_t, const Coord&, const Cells&)
   });
 }
 
-/// One key per labelled voxel: its coarse voxel, then its label.
+/// One key per labeled voxel: its coarse voxel, then its label.
 void Reduction::collect(const Leaf& leaf, const Coord& origin, std::vector<uint64_t>& keys) const {
   const int32_t* values = leaf.buffer().data();
   for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel) {

@@ -15,17 +15,17 @@
 
 namespace vdb_madf::detail {
 
-/// Rounds towards minus infinity.
+/// Divides, and rounds towards minus infinity.
 Coord floorDiv(const Coord& a, int b);
 
-/// Of a box the coarse voxels that it meets; of a region those of which it holds half or more.
+/// The coarse voxels that a box meets, or those of which a region holds half or more.
 /// @throw InvalidInput if there are none.
 Domain reducedDomain(const Domain& domain, int factor);
 
 /// What the fine voxels of a coarse one are.
 struct Cell {
   int32_t majority = 0;  ///< of all
-  int32_t label = 0;     ///< of the labelled ones
+  int32_t label = 0;     ///< of the labeled ones
   int64_t labelled = 0;
 };
 using Cells = std::array<Cell, Int32Tree::LeafNodeType::SIZE>;

@@ -7,8 +7,8 @@
 
 namespace vdb_madf::detail {
 
-/// Goes through slabs of labels from the lowest on. Each has the leaves with it that lie beside it, beyond
-/// its cuts; the next slab is in memory, too.
+/// Goes through slabs of labels from the lowest on. Each has the leaves with it that lie beside it,
+/// beyond its cuts; the next slab is in memory, too.
 class RimmedSlabs {
  public:
   explicit RimmedSlabs(const LabelSlabs& slabs) : slabs_(slabs) {}

@@ -10,14 +10,15 @@
 
 namespace vdb_madf::detail {
 
-/// A window that moves up through slabs: those below it are forgotten, and read again if need be. What
-/// it holds takes a tenth of the memory of a grid.
+/// A window that moves up through slabs: those below it are forgotten, and read again if need be.
+/// What it holds takes a tenth of the memory of a grid.
 class SlabWindow {
  public:
   explicit SlabWindow(const LabelSlabs& slabs) : slabs_(&slabs) {}
 
   /// The leaves in some layers.
-  /// @throw InvalidInput if a slab has labels outside of its cuts; Interrupted; what reading throws.
+  /// @throw InvalidInput if a slab has labels outside of its cuts; Interrupted; what reading
+  /// throws.
   LabelLeaves leaves(const LeafLayers& layers, Interrupter* interrupter);
 
  private:

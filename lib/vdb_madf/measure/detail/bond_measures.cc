@@ -18,7 +18,7 @@ namespace {
 
 constexpr size_t kBondGrain = 4;
 
-/// Exact sums over the faces' centres, doubled and relative to `origin`.
+/// Exact sums over the faces' centers, doubled and relative to `origin`.
 struct FaceSums {
   std::array<int64_t, 3> sum{};
   std::array<int64_t, 6> products{};

@@ -10,7 +10,7 @@
 
 namespace vdb_madf::detail {
 
-/// Without distance and angle. @throw Interrupted
+/// The measures of bonds but for distance and angle. @throw Interrupted
 std::vector<BondMeasures> bondMeasures(const std::vector<BondSums>& sums, const VoxelShape& voxel,
                                        Interrupter* interrupter);
 

@@ -12,8 +12,8 @@
 
 namespace vdb_madf::detail {
 
-/// Counts the 6-connected components of an object that comes in slabs, from the lowest on. Memory: per
-/// column of the highest layer, besides what the components of a slab take.
+/// Counts the 6-connected components of an object that comes in slabs, from the lowest on. Memory:
+/// per column of the highest layer, besides what the components of a slab take.
 class ComponentCount {
  public:
   /// \p slab: the leaves in these layers, above those before. @throw Interrupted

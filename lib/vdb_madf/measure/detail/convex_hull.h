@@ -32,8 +32,8 @@ ConvexHull convexHull(const std::vector<openvdb::Vec3d>& points);
 double diameter(const ConvexHull& hull);
 
 /// The least distance of two parallel planes that enclose the hull. It is found where one plane
-/// holds a facet, or each of the two an edge: the planes are turned about each edge, from one of its
-/// facets to the other. Time: edges times vertices.
+/// holds a facet, or each of the two an edge: the planes are turned about each edge, from one of
+/// its facets to the other. Time: edges times vertices.
 double leastWidth(const ConvexHull& hull);
 
 }  // namespace vdb_madf::detail

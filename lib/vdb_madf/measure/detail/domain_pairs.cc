@@ -29,7 +29,7 @@ struct Piece {
   const Leaf* leaf;
 };
 
-/// By pencils, and along them.
+/// The pieces by pencils, and along them.
 std::vector<Piece> piecesOf(const MaskTree& region, int axis) {
   const int a = (axis + 1) % 3, b = (axis + 2) % 3;
   std::vector<Piece> pieces;

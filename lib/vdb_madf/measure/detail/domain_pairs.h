@@ -18,7 +18,7 @@ class DomainPairs {
  public:
   DomainPairs(const Domain& domain, int axis);
 
-  /// Of voxels `lag` apart, 1 or more. @throw Interrupted
+  /// Counts the pairs of voxels that lie `lag` apart, 1 or more. @throw Interrupted
   double count(int lag, Interrupter* interrupter) const;
 
  private:

@@ -10,8 +10,8 @@
 
 namespace vdb_madf::detail {
 
-/// What the leaves in some layers contribute to the Euler characteristic, which is the sum of all such
-/// parts. The next leaves have to be there, too. @throw Interrupted
+/// What the leaves in some layers contribute to the Euler characteristic, which is the sum of all
+/// such parts. The next leaves have to be there, too. @throw Interrupted
 int64_t eulerCharacteristic(const LeafIndex& index, const LeafLayers& layers,
                             Interrupter* interrupter);
 

@@ -40,8 +40,9 @@ struct Jet {
 using Shape = Eigen::Matrix2d;  ///< second derivatives of the height
 using Terms = Eigen::Matrix<double, 6, 1>;
 
-/// How much deeper than a paraboloid a round surface lies at (a, b): a ball or cylinder of curvature
-/// k is 1 - sqrt(1 - s^2) deep in units of 1/k, where s = k |(a, b)|, and the paraboloid s^2 / 2.
+/// How much deeper than a paraboloid a round surface lies at (a, b): a ball or cylinder of
+/// curvature k is 1 - sqrt(1 - s^2) deep in units of 1/k, where s = k |(a, b)|, and the paraboloid
+/// s^2 / 2.
 double roundness(const Shape& shape, double a, double b) {
   const double slope = std::min((shape * Eigen::Vector2d(a, b)).squaredNorm(), kSteepest);
   return 2 / (1 + std::sqrt(1 - slope));
@@ -89,11 +90,12 @@ class Fit {
     rows_.clear();
     for (const Point& point : points_) {
       Row row;
-      // By area, and none of a sheet that folds back.
+      // Faces weigh by their area, and those of a sheet that folds back nothing.
       row.weight = normal[point.axis] * point.sign * faceAreas_[point.axis];
       row.a = point.position.dot(u);
       row.b = point.position.dot(v);
-      // By distance along the plane: to leave out the deeper ones at the rim would flatten the fit.
+      // Distance counts along the plane: to leave out the deeper ones at the rim would flatten the
+      // fit.
       if (row.weight <= 0 || row.a * row.a + row.b * row.b > kWithin) continue;
       row.height = point.position.dot(normal);
       rows_.push_back(row);

@@ -13,7 +13,7 @@ namespace vdb_madf::detail {
 
 namespace {
 
-/// Second moment of a cube of one voxel about its centre, along each axis.
+/// Second moment of a cube of one voxel about its center, along each axis.
 constexpr double kVoxelMoment = 1.0 / 12;
 
 /// A solid ellipsoid of half axis a has the moment a^2 / 5 along it.

@@ -48,7 +48,7 @@ GrainRepresentative deepestOf(const LabelPart& part, const LeafIndex& index, siz
   return deepest;
 }
 
-/// Of the leaves in some layers.
+/// The deepest voxels in some layers of leaves.
 GrainRepresentatives deepest(const LabelLeaves& labels, const LeafLayers& layers,
                              const VoxelArray<int32_t>& distances, Interrupter* interrupter) {
   GrainRepresentatives result;
@@ -92,7 +92,7 @@ void improve(const GrainRepresentatives& candidates, GrainRepresentatives& best)
 SlabRepresentatives::SlabRepresentatives(const CoordBBox& object, const Obstacles& obstacles,
                                          const VoxelWeights& weights)
     : domain_(object), weights_(weights) {
-  // Of all background outside of the object's box, one beside it is nearest.
+  // The nearest background outside of the object's box is beside it.
   domain_.expand(1);
   if (obstacles.open) domain_ = obstacles.domain.box();
 }

@@ -19,19 +19,18 @@ struct GrainRepresentative {
   int32_t squaredRadius = 0;  ///< in the unit of the weights
 };
 
-/// By label.
-using GrainRepresentatives = std::map<int32_t, GrainRepresentative>;
+using GrainRepresentatives = std::map<int32_t, GrainRepresentative>;  ///< by label
 
 /// Empty if there is no background. Computed from the labels alone.
 /// Memory while it runs: four bytes per voxel.
 GrainRepresentatives grainRepresentatives(const LabelLeaves& labels, const Obstacles& obstacles,
                                           const VoxelWeights& weights, Interrupter* interrupter);
 
-/// Takes over those of other voxels of the same labels, where they lie deeper.
+/// Takes over the candidates that lie deeper; they are of other voxels of the same labels.
 void improve(const GrainRepresentatives& candidates, GrainRepresentatives& best);
 
-/// The same of labels that come in slabs. Distances that may end beyond what is known of the labels
-/// around a slab are not taken: more is asked for.
+/// Finds the representatives of labels that come in slabs. Distances that may end beyond what is
+/// known of the labels around a slab are not taken: more is asked for.
 class SlabRepresentatives {
  public:
   static constexpr int kFirstReach = 40;  ///< above and below a slab, a multiple of 8
@@ -53,9 +52,9 @@ class SlabRepresentatives {
   int reach_ = kFirstReach;
 };
 
-/// The same of labels that were segmented without a filter, from the critical points. The deepest
-/// voxel p of a grain is one of them: were p in the cell of a ball s != p, then by
-/// |p - s|^2 - D(s) <= -D(p) that s, of the same grain, would lie deeper.
+/// Takes the representatives of labels that were segmented without a filter from the critical
+/// points. The deepest voxel p of a grain is one of them: were p in the cell of a ball s != p, then
+/// by |p - s|^2 - D(s) <= -D(p) that s, of the same grain, would lie deeper.
 GrainRepresentatives grainRepresentatives(const Int32Grid& labels, const ManifoldGraph& graph);
 
 }  // namespace vdb_madf::detail

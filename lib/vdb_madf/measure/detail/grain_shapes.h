@@ -14,9 +14,9 @@
 
 namespace vdb_madf::detail {
 
-/// The shapes of grains whose voxels may come in slabs. Memory: 16 bytes for each label of a leaf of a
-/// slab, for each thread the ends of the rows of voxels of a grain, and these for each grain that goes
-/// on beyond a slab.
+/// The shapes of grains whose voxels may come in slabs. Memory: 16 bytes for each label of a leaf
+/// of a slab, for each thread the ends of the rows of voxels of a grain, and these for each grain
+/// that goes on beyond a slab.
 class GrainShapes {
  public:
   explicit GrainShapes(const VoxelShape& voxel) : voxel_(voxel) {}
@@ -24,10 +24,11 @@ class GrainShapes {
   /// \p isComplete: of a label, whether none of its voxels are in slabs to come. @throw Interrupted
   void add(const LabelLeaves& slab, const std::function<bool(int32_t label)>& isComplete,
            Interrupter* interrupter);
-  /// Of the labels that are complete.
+  /// The shapes of the labels that are complete.
   const std::map<int32_t, GrainShape>& shapes() const { return shapes_; }
 
-  /// A row of voxels along z, from the first to the last; what lies between has no part in the hull.
+  /// A row of voxels along z, from the first to the last; what lies between has no part in the
+  /// hull.
   struct Row {
     int x, y, first, last;
   };

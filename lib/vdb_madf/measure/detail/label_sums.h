@@ -36,11 +36,12 @@ struct BondSums {
 };
 
 /// All that grains and bonds are measured from, in one pass over the leaves. These may come slab by
-/// slab: the sums are those of the whole. Memory: per grain, per bond and per face of a bond that was
-/// not taken, for each thread.
+/// slab: the sums are those of the whole. Memory: per grain, per bond and per face of a bond that
+/// was not taken, for each thread.
 class LabelSums {
  public:
-  /// Grains are summed from `origin`. `open`: what lies outside the domain is no background but unknown.
+  /// Grains are summed from `origin`. `open`: what lies outside the domain is no background but
+  /// unknown.
   LabelSums(const Coord& origin, const Domain& domain, bool open, const VoxelShape& voxel);
 
   /// The leaves in some layers. Those around them have to be there, too. @throw Interrupted
@@ -48,7 +49,8 @@ class LabelSums {
 
   const Coord& origin() const { return origin_; }
   std::vector<GrainSums> grains() const;  ///< by label
-  /// Takes away the bonds of which nothing more comes; by first, then second label. @throw Interrupted
+  /// Takes away the bonds of which nothing more comes; by first, then second label. @throw
+  /// Interrupted
   std::vector<BondSums> takeBonds(
       const std::function<bool(int32_t first, int32_t second)>& isComplete,
       Interrupter* interrupter);

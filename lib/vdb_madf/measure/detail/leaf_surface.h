@@ -41,11 +41,13 @@ namespace vdb_madf::detail {
 ///
 /// Faces and pairs start at a voxel of the leaf. Free faces are centered at -1/2 .. 7 1/2 and reach
 /// 2 1/2 voxels; pairs, up to 4 apart, are centered at 0 .. 9 and reach 4. The bars "free" and
-/// "shared" hold the lower voxels of the faces within that reach, the window along x also the upper ones. Along y and z it holds the 27 leaves.
+/// "shared" hold the lower voxels of the faces within that reach, the window along x also the upper
+/// ones. Along y and z it holds the 27 leaves.
 ///
-/// That is for cubes. Where voxels are longer along one axis, surfaces are only known by their steps
-/// along it, so the reaches are in longest edges of a voxel, and span more voxels along the other
-/// axes: up to 7 1/2 for free faces, 6 for shared ones, which is all that the 27 leaves allow.
+/// That is for cubes. Where voxels are longer along one axis, surfaces are only known by their
+/// steps along it, so the reaches are in longest edges of a voxel, and span more voxels along the
+/// other axes: up to 7 1/2 for free faces, 6 for shared ones, which is all that the 27 leaves
+/// allow.
 class LeafSurface {
  public:
   struct Free {
@@ -56,8 +58,8 @@ class LeafSurface {
   };
   struct Shared {
     int32_t first = 0, second = 0;  ///< labels, first < second
-    /// In kAreaUnit: of pairs of voxels 1, 2, 4 apart; the latter two count each crossing twice and
-    /// four times.
+    /// Areas from pairs of voxels 1, 2, 4 apart, in kAreaUnit; the latter two count each crossing
+    /// twice and four times.
     std::array<int64_t, 3> areas{};
     std::vector<InterfaceFace> faces;
   };
@@ -66,7 +68,7 @@ class LeafSurface {
   LeafSurface(const LabelLeaves& labels, const std::optional<Domain>& domain,
               const VoxelShape& voxel);
 
-  /// Free faces belong to the leaf of their labelled voxel, shared ones and pairs to that of their
+  /// Free faces belong to the leaf of their labeled voxel, shared ones and pairs to that of their
   /// lower voxel.
   void measure(size_t leaf);
 

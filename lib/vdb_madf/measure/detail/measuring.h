@@ -17,8 +17,8 @@
 
 namespace vdb_madf::detail {
 
-/// Measures labels that come in slabs, of which all labels may be the only one. First each is surveyed,
-/// then each is added, in ascending order.
+/// Measures labels that come in slabs, of which all labels may be the only one. First each is
+/// surveyed, then each is added, in ascending order.
 class Measuring {
  public:
   /// \p about: has the transform and the metadata of the labels.
@@ -28,7 +28,7 @@ class Measuring {
   /// @throw InvalidInput if labels leave the domain, or options do not fit it
   void survey(const LabelLeaves& slab);
 
-  // After the survey.
+  // What the survey finds.
   const CoordBBox& object() const { return object_; }
   int64_t voxels() const { return voxels_; }
   const Obstacles& obstacles() const { return obstacles_; }

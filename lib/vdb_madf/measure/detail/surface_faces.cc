@@ -59,7 +59,7 @@ void addTargets(const WindowRows& own, const WindowRows& other, int axis, int st
   }
 }
 
-/// Those of a side whose lower voxel has an x.
+/// Collects the faces of a side whose lower voxel has an x.
 VDB_MADF_KERNEL void SurfaceFaces::collect(const WindowRows& first, const WindowRows& second,
                                            const FaceRange& range, int side, int x) {
   const int axis = side >> 1;
@@ -139,8 +139,8 @@ VDB_MADF_KERNEL void SurfaceFaces::addWeightsInBall(const List& list, bool along
   }
 }
 
-/// The same in any reach. In 32 bits: distances are below 2^8, factors 2^18 / 25 at most, and
-/// fewer than 2^13 faces of one side fit into the window.
+/// Adds weights in any reach. They fit in 32 bits: distances are below 2^8, factors 2^18 / 25 at
+/// most, and fewer than 2^13 faces of one side fit into the window.
 VDB_MADF_KERNEL void SurfaceFaces::addWeights(const List& list, bool alongX,
                                               const SurfaceTarget* begin, const SurfaceTarget* end,
                                               const NormalReach& reach, int skippedSide,
@@ -190,7 +190,8 @@ int64_t SurfaceFaces::area(const SurfaceTarget* begin, const SurfaceTarget* end,
     if (!(along > 0)) continue;
     const double length =
         std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-    // Sums are small integers: of cubes no cosine is half of a unit, and this rounds to the nearest.
+    // Sums are small integers: of cubes no cosine is half of a unit, and this rounds to the
+    // nearest.
     area += int64_t(kAreaUnit * faceAreas_[size_t(side >> 1)] * (along / length) + 0.5);
   }
   return area;

@@ -79,7 +79,7 @@ class SurfaceFaces {
   static constexpr int kSide = WindowRows::kLine;
   static constexpr size_t kRoom = size_t(kSide * kSide * kSide) + kTogether;
 
-  /// Faces of one axis and direction, sorted by x; centres doubled.
+  /// Faces of one axis and direction, sorted by x; centers doubled.
   struct List {
     size_t count = 0;
     std::array<uint32_t, size_t(kSide) + 1> from{};  // the first whose lower voxel has an x

@@ -11,13 +11,14 @@
 
 namespace vdb_madf::detail {
 
-/// Counts pairs of object voxels along an axis, leaf by leaf in pencils. The index must live as long.
+/// Counts pairs of object voxels along an axis, leaf by leaf in pencils. The index must live as
+/// long.
 class VoxelPairs {
  public:
   /// The first voxel of a pair lies in some layers of leaves.
   VoxelPairs(const LeafIndex& index, int axis, const LeafLayers& layers = {});
 
-  /// Of voxels `lag` apart; best asked for in rising order. @throw Interrupted
+  /// Counts the pairs that lie `lag` apart; it is fastest in rising order. @throw Interrupted
   int64_t count(int lag, Interrupter* interrupter);
 
   /// A leaf, and the two that lie across it once it is shifted along its pencil; null: none.

@@ -19,7 +19,7 @@ struct VoxelShape {
   double longestEdge() const { return std::max({edges[0], edges[1], edges[2]}); }
   double meanEdge() const { return std::cbrt(volume()); }  ///< of the cube of equal volume
   double volume() const { return edges[0] * edges[1] * edges[2]; }
-  /// Of the face across an axis.
+  /// Area of the face across an axis.
   double faceArea(int axis) const { return edges[(axis + 1) % 3] * edges[(axis + 2) % 3]; }
 };
 

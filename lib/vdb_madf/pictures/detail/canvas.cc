@@ -134,7 +134,7 @@ void Canvas::text(const Point& at, const std::string& text, double size, const R
 double textWidth(const std::string& text, double size) {
   const Context context = contextOf(image(1, 1));
   cairo_text_extents_t extents;
-  // Of a large font, so that it does not depend on whole pixels.
+  // The font is large, so that the extents do not depend on whole pixels.
   constexpr double kLarge = 1000;
   cairo_set_font_size(context.get(), kLarge);
   cairo_text_extents(context.get(), text.c_str(), &extents);

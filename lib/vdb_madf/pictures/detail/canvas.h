@@ -57,8 +57,8 @@ double textWidth(const std::string& text, double size);
 /// origin; what lies outside of the part or of the picture is cut off.
 void paint(Picture& picture, int left, int top, int width, int height, const Drawing& drawing);
 
-/// The bytes of a file: the drawing on white, in units of 1/96 inch (PNG: at 300 dpi). The same each
-/// time: no dates.
+/// The bytes of a file: the drawing on white, in units of 1/96 inch (PNG: at 300 dpi). The same
+/// each time: no dates.
 std::string plotFile(PlotType type, double width, double height, const Drawing& drawing);
 
 }  // namespace vdb_madf::detail

@@ -10,7 +10,7 @@ namespace vdb_madf::detail {
 
 namespace {
 
-/// Without what is left of 0.1 + 0.2; 12 000 000 rather than 1.2e+07.
+/// Drops what is left of 0.1 + 0.2, and writes 12 000 000 rather than 1.2e+07.
 std::string tickText(double tick) {
   constexpr double kLargest = 1e12;
   if (std::abs(tick) < 1e4 || std::abs(tick) >= kLargest || tick != std::floor(tick))

@@ -14,8 +14,8 @@ std::string plotNumber(double value);
 /// From values to pixels, and where its ticks are.
 class PlotAxis {
  public:
-  /// Holds the values; from pixel `begin` to pixel `end`. It ends at ticks or, if it is tight and not
-  /// logarithmic, at the least and largest value.
+  /// Holds the values; from pixel `begin` to pixel `end`. It ends at ticks or, if it is tight and
+  /// not logarithmic, at the least and largest value.
   PlotAxis(std::vector<double> values, bool logarithmic, double begin, double end,
            bool tight = false);
   bool shows(double value) const { return !logarithmic_ || value > 0; }

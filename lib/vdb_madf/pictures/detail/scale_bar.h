@@ -13,8 +13,8 @@ struct ScaleBar {
   std::string text;  ///< "200 µm"
 };
 
-/// The longest bar of 1, 2 or 5 times a power of ten (metres) that is not longer than `widest`
-/// pixels; none if even a nanometre is.
+/// The longest bar of 1, 2 or 5 times a power of ten (meters) that is not longer than `widest`
+/// pixels; none if even a nanometer is.
 std::optional<ScaleBar> fitScaleBar(double metresPerPixel, double widest);
 
 }  // namespace vdb_madf::detail

@@ -34,7 +34,8 @@ class SmoothSurface {
   const MaskGrid::ConstAccessor object_;
   Coord low_{0};           ///< of the voxels that are remembered
   bool isFilled_ = false;  ///< are there any?
-  /// The rows of them along z, by x, then y: the lower four voxels and the upper ones as bits, times 16.
+  /// The rows of them along z, by x, then y: the lower four voxels and the upper ones as bits,
+  /// times 16.
   std::array<uint8_t, 64> nearer_{}, farther_{};
 };
 

@@ -58,13 +58,13 @@ class CellWalk {
 };
 
 /// The first voxel of a leaf that a ray meets, from its point at `t` on, which lies in (or, for
-/// rounding, next to) the leaf; `t` becomes where it enters that voxel. The walk of CellWalk, with the
-/// crossings of all planes found at once, and no branch on the axis.
-/// No sums whose order the compiler chooses: the same bits for all instruction sets.
+/// rounding, next to) the leaf; `t` becomes where it enters that voxel. The walk of CellWalk, with
+/// the crossings of all planes found at once, and no branch on the axis. No sums whose order the
+/// compiler chooses: the same bits for all instruction sets.
 VDB_MADF_KERNEL bool firstInLeaf(const MaskLeaf& leaf, const Coord& corner, const Vec& origin,
                                  const Vec& direction, const Vec& size, Coord& voxel, double& t) {
-  // Voxels are counted in the direction of the ray: x in bits 8 to 10 of `place`, y in 4 to 6, z in 0
-  // to 2. The bit above tells that the ray has left the leaf.
+  // Voxels are counted in the direction of the ray: x in bits 8 to 10 of `place`, y in 4 to 6, z in
+  // 0 to 2. The bit above tells that the ray has left the leaf.
   constexpr unsigned kLeft = 0x888;
   unsigned place = 0, backwards = 0;
   double next[3][8];  // where the ray leaves a voxel

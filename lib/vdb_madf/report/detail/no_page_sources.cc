@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// In the place of what cmake/ReportPage.cmake makes, where it cannot.
+// This stands in for what cmake/ReportPage.cmake makes, where it cannot.
 #include "vdb_madf/report/detail/page_sources.h"
 
 namespace vdb_madf::detail {

@@ -25,7 +25,7 @@ struct Body {
   std::vector<std::array<uint32_t, 3>> triangles;
 };
 
-/// Of half axis h: its volume is 4/3 h^3.
+/// An octahedron of half axis h has the volume 4/3 h^3.
 Body octahedron(const GrainMeasures& grain) {
   const double half = std::cbrt(0.75 * double(grain.voxels));
   Body body;

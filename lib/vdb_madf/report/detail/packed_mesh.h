@@ -14,12 +14,12 @@ namespace vdb_madf::detail {
 
 /// The mesh as the page has it, and what the page has to know to read it.
 struct PackedMesh {
-  /// Of the grains, 32 bits each: numbers of points, of triangles; then origins x, y, z of grain 0,
-  /// 1 ..., signed, in steps. Then planes of bytes (PackedBytes::planes): of 16 bits for all x, all
-  /// y, all z of the points, each the difference to the point before it in its grain (to the origin,
-  /// of the first) in steps, 2 |d| if it is not negative and 2 |d| - 1 if it is; of 32 bits for the
-  /// corners of the triangles: the number of points of its grain that corners before named, less the
-  /// point's own.
+  /// First come, 32 bits each and grain by grain, numbers of points, of triangles; then origins x,
+  /// y, z of grain 0, 1 ..., signed, in steps. Then planes of bytes (PackedBytes::planes): of 16
+  /// bits for all x, all y, all z of the points, each the difference to the point before it in its
+  /// grain (to the origin, of the first) in steps, 2 |d| if it is not negative and 2 |d| - 1 if it
+  /// is; of 32 bits for the corners of the triangles: the number of points of its grain that
+  /// corners before named, less the point's own.
   std::string text;
   double step = 0;  ///< in voxels: points are rounded to it
   uint64_t points = 0, triangles = 0;

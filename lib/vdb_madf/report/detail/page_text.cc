@@ -5,27 +5,6 @@
 
 namespace vdb_madf::detail {
 
-std::string htmlEscaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  return result;
-}
-
 std::string dataElement(const std::string& id, const std::string& text) {
   return "<script type=\"application/octet-stream\" id=\"" + id + "\">" + text + "</script>\n";
 }

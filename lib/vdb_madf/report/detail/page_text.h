@@ -8,13 +8,10 @@
 
 namespace vdb_madf::detail {
 
-/// A text as it may stand in HTML, between tags or in a value in quotes.
-std::string htmlEscaped(const std::string& text);
-
 /// A script element that is data: no browser runs it.
 /// @param text base64
 std::string dataElement(const std::string& id, const std::string& text);
-/// The same of JSON: '<' becomes \u003c, so that no text in it ends the element.
+/// A script element of JSON: '<' becomes \u003c, so that no text in it ends the element.
 std::string jsonElement(const std::string& id, const std::string& json);
 
 /// Hands over a text piece by piece, with what `replacement` says in the place of each word @NAME@

@@ -3,6 +3,7 @@
 
 #include "vdb_madf/report/detail/report_parts.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -36,7 +37,7 @@ constexpr uint64_t kTrianglesOfGrain = 150, kFewestTriangles = 40000;
 /// Labels with more than so many times the triangles that are wanted, or this number, are reduced
 /// before they are meshed: simplifying takes some 10 microseconds and 200 bytes a triangle.
 constexpr uint64_t kMostSimplified = 8, kMostMeshed = 3000000;
-/// Of a point in the page, voxels (reduced ones, if the mesh is made of such).
+/// The step of a point in the page, voxels (reduced ones, if the mesh is made of such).
 constexpr double kMeshStep = 1.0 / 32;
 
 std::string packed(const std::string& text) {
@@ -57,8 +58,8 @@ Json columnsJson(const std::vector<MeasureColumn>& columns) {
   return json;
 }
 
-/// How far to reduce labels for about so many triangles: the surface of a sample has a factor squared
-/// less.
+/// How far to reduce labels for about so many triangles: the surface of a sample has a factor
+/// squared less.
 int reductionTo(uint64_t most, const Int32Grid& labels, Interrupter* interrupter) {
   const double times = double(countTriangles(labels, interrupter)) / double(most);
   return std::clamp(int(std::ceil(std::sqrt(times))), 1, kMaxReduction);
@@ -180,9 +181,10 @@ std::string ReportParts::picture() const {
   const PanelOptions panel{false, true, options_.pictureEdge, view_};
   const std::vector<PicturePanel> panels = labelPanels(labels_, box_, panel, interrupter_);
   const Picture sheet = pictureSheet(panels, storedVoxelSize(labels_));
-  return "<img id=\"picture" + suffix_ + "\" alt=\"The grains from outside\" width=\"" +
-         std::to_string(sheet.width) + "\" height=\"" + std::to_string(sheet.height) +
-         "\" src=\"data:image/png;base64," + base64(pngBytes(sheet)) + "\">\n";
+  return fmt::format(
+      "<img id=\"picture{}\" alt=\"The grains from outside\" width=\"{}\" height=\"{}\" "
+      "src=\"data:image/png;base64,{}\">\n",
+      suffix_, sheet.width, sheet.height, base64(pngBytes(sheet)));
 }
 
 }  // namespace vdb_madf::detail

@@ -18,7 +18,7 @@ struct Ball {
   double x = 0, y = 0, z = 0, radius = 0;
 };
 
-/// Sorts balls by centre (x, then y, then z): the order in which the true grains are numbered.
+/// Sorts balls by center (x, then y, then z): the order in which the true grains are numbered.
 void sortByCenter(std::vector<Ball>& balls);
 
 /// Voxels along z; empty if last < first.
@@ -38,7 +38,7 @@ class BallUnion {
  public:
   BallUnion(const Coord& size, bool fullLeavesAsTiles, const Lattice& lattice = {})
       : BallUnion(size, fullLeavesAsTiles, lattice, CoordBBox::inf()) {}
-  /// Only of the blocks that meet `part`.
+  /// Draws the blocks alone that meet `part`.
   BallUnion(const Coord& size, bool fullLeavesAsTiles, const Lattice& lattice,
             const CoordBBox& part)
       : lattice_(lattice), blocks_(size), part_(part), tiles_(fullLeavesAsTiles) {}

@@ -22,7 +22,7 @@ struct Step {
   Coord offset;
 };
 
-/// To all voxels within reach, the nearest first.
+/// The steps to all voxels within reach, the nearest first.
 std::vector<Step> stepsWithin(int reach) {
   std::vector<Step> steps;
   for (auto k = CoordBBox(Coord(-reach), Coord(reach)).begin(); k; ++k) {

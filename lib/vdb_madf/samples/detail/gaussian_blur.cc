@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vdb_madf/base/detail/gaussian.h"
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/detail/portable_math.h"
 
@@ -44,17 +45,13 @@ FloatBox convolved(const FloatBox& in, const std::vector<float>& kernel, int axi
   return out;
 }
 
-int radiusOf(double sigma) {
-  return int(4 * sigma + 0.5);
-}
-
 /// The points that a Gaussian around a place sees along an axis, and their weights.
 struct Window {
   int first;
   std::vector<float> weights;
 
-  Window(double place, double sigma) : first(int(std::ceil(place - radiusOf(sigma)))) {
-    const int last = int(std::floor(place + radiusOf(sigma)));
+  Window(double place, double sigma) : first(int(std::ceil(place - gaussianRadius(sigma)))) {
+    const int last = int(std::floor(place + gaussianRadius(sigma)));
     std::vector<double> values;
     double sum = 0;
     for (int i = first; i <= last; ++i) {
@@ -94,16 +91,8 @@ FloatBox convolvedAt(const CoordBBox& voxels, const Lattice& lattice, const Floa
 }  // namespace
 
 std::vector<float> gaussianKernel(double sigma) {
-  const int radius = radiusOf(sigma);
-  std::vector<double> weights;
-  double sum = 0;
-  for (int k = 0; k <= radius; ++k) {
-    weights.push_back(exponential(-(k * k / (2 * sigma * sigma))));
-    sum += k == 0 ? weights[k] : 2 * weights[k];
-  }
-  std::vector<float> kernel;
-  for (const double weight : weights) kernel.push_back(float(weight / sum));
-  return kernel;
+  const std::vector<double> weights = gaussianWeights(sigma);
+  return {weights.begin(), weights.end()};
 }
 
 FloatBox blurred(FloatBox field, const std::vector<float>& kernel, Interrupter* interrupter) {
@@ -114,8 +103,10 @@ FloatBox blurred(FloatBox field, const std::vector<float>& kernel, Interrupter* 
 CoordBBox pointsSeen(const CoordBBox& voxels, const Lattice& lattice, double sigma) {
   CoordBBox points;
   for (int axis = 0; axis < 3; ++axis) {
-    points.min()[axis] = int(std::ceil(lattice.place(axis, voxels.min()[axis]) - radiusOf(sigma)));
-    points.max()[axis] = int(std::floor(lattice.place(axis, voxels.max()[axis]) + radiusOf(sigma)));
+    points.min()[axis] =
+        int(std::ceil(lattice.place(axis, voxels.min()[axis]) - gaussianRadius(sigma)));
+    points.max()[axis] =
+        int(std::floor(lattice.place(axis, voxels.max()[axis]) + gaussianRadius(sigma)));
   }
   return points;
 }

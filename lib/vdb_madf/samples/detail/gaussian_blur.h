@@ -26,8 +26,7 @@ struct FloatBox {
 /// Boxes below this many values are worked on by the calling thread alone.
 constexpr size_t kSequentialValues = size_t(1) << 23;
 
-/// One side of a normalised, sampled Gaussian, centre first, cut at 4 sigma. The same bits on every
-/// machine: no library exponential.
+/// The weights of gaussianWeights() as floats.
 std::vector<float> gaussianKernel(double sigma);
 
 /// The farthest voxel that the kernel sees.
@@ -42,8 +41,8 @@ FloatBox blurred(FloatBox field, const std::vector<float>& kernel, Interrupter* 
 /// The points of Z^3 that a Gaussian, cut at 4 sigma, sees from voxels of a lattice.
 CoordBBox pointsSeen(const CoordBBox& voxels, const Lattice& lattice, double sigma);
 
-/// What a field on these points is at the voxels when it is blurred: of cubes as above, along longer
-/// edges by a Gaussian around the place of each voxel, which need not be one of the points.
+/// What a field on these points is at the voxels when it is blurred: of cubes as above, along
+/// longer edges by a Gaussian around the place of each voxel, which need not be one of the points.
 FloatBox blurredAt(const CoordBBox& voxels, const Lattice& lattice, FloatBox field, double sigma);
 
 }  // namespace vdb_madf::detail

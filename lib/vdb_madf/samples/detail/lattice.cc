@@ -3,6 +3,8 @@
 
 #include "vdb_madf/samples/detail/lattice.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <string>
 
@@ -31,10 +33,10 @@ Coord Lattice::voxels(const Coord& size) const {
   Coord result;
   for (int axis = 0; axis < 3; ++axis) {
     if (edges_[axis] > size[axis] + kTolerance)
-      throw InvalidInput(std::string("a voxel is longer than the sample along ") + "xyz"[axis] +
-                         ", where it measures " + shortestDecimal(edges_[axis]) +
-                         " of its shortest edges, the sample " + std::to_string(size[axis]) +
-                         ": use a larger size");
+      throw InvalidInput(
+          fmt::format("a voxel is longer than the sample along {}, where it measures {} of its "
+                      "shortest edges, the sample {}: use a larger size",
+                      "xyz"[axis], shortestDecimal(edges_[axis]), size[axis]));
     result[axis] = int(std::ceil(size[axis] / edges_[axis] - kTolerance));
   }
   return result;

@@ -12,11 +12,11 @@
 
 namespace vdb_madf::detail {
 
-/// Where the voxels of a sample lie. The unit of length is the shortest edge of a voxel, and the box
-/// begins at -1/2 along each axis, whatever its voxels: so voxel i of cubes lies at i, exactly.
+/// Where the voxels of a sample lie. The unit of length is the shortest edge of a voxel, and the
+/// box begins at -1/2 along each axis, whatever its voxels: so voxel i of cubes lies at i, exactly.
 class Lattice {
  public:
-  /// Of cubes.
+  /// Voxels are cubes.
   Lattice() = default;
   /// Edges are in the unit of length to nine decimals, so that it makes no difference which unit
   /// they were written in.

@@ -22,7 +22,7 @@ struct ValueRange {
 /// Closes the gaps that owners without a voxel leave in the labels 1..count. @throw Interrupted
 void numberOwners(Int32Tree& labels, size_t count, Interrupter* interrupter);
 
-/// For each voxel p of the object the site of least value (tie: the earlier one), with the object's
+/// Gives each voxel p of the object the site of least value (tie: the earlier one), in the object's
 /// topology. The sites that own a voxel are numbered 1..N in their order. The object must have no
 /// active tiles. `Sites` has size(), value(i, p), range(i, lower corner, edge) over the voxels of a
 /// cube, and kSlack, far above the rounding of values. @throw Interrupted
@@ -58,7 +58,7 @@ class LeastCells {
   /// Edge of the regions whose candidates are listed once for all their leaves.
   static constexpr int kRegionEdge = 64;
 
-  /// Those of the numbered sites that may have the least value somewhere in the cube, in order.
+  /// The sites among some that may have the least value somewhere in the cube, in order.
   std::vector<int32_t> candidates(const std::vector<int32_t>& among, const Coord& lower,
                                   int edge) const {
     std::vector<ValueRange> ranges;

@@ -61,7 +61,7 @@ Particle ellipsoid(const Frame& frame, double a, double b, double c) {
   return particle;
 }
 
-/// Of unit width between opposite sides.
+/// A prism of unit width between opposite sides.
 Particle hexagonalPrism(const Frame& frame, double height) {
   Particle particle;
   const double root = std::sqrt(3.0);
@@ -111,7 +111,7 @@ void scale(Particle& particle, double factor) {
   particle.reach *= factor;
 }
 
-/// Of the volume of the unit ball.
+/// A particle of the volume of the unit ball.
 Particle drawUnit(ParticleShape shape, RandomSequence& random) {
   Particle particle;
   double volume = 0;

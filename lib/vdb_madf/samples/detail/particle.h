@@ -17,7 +17,7 @@ using Vector = openvdb::Vec3d;
 /// A convex body about its center. Voxel p is inside if value(p) < 1.
 struct Particle {
   Vector center{0, 0, 0};
-  /// Of an ellipsoid, its unit axes over its half axes; else the unit normals of the faces over
+  /// The unit axes of an ellipsoid over its half axes; else the unit normals of the faces over
   /// their distances from the center.
   std::vector<Vector> rows;
   bool round = false;

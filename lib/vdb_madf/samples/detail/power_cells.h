@@ -10,9 +10,9 @@
 
 namespace vdb_madf::detail {
 
-/// For each voxel of the object, at p, the ball of least power |p - c|^2 - r^2 (tie: the earlier
-/// ball), with the object's topology. The balls that own a voxel are numbered 1..N in their order. The
-/// object must have no active tiles.
+/// Gives each voxel p of the object the ball of least power |p - c|^2 - r^2 (tie: the earlier
+/// ball), in the object's topology. The balls that own a voxel are numbered 1..N in their order.
+/// The object must have no active tiles.
 /// @throw Interrupted
 Int32Tree::Ptr powerCells(const MaskTree& object, const std::vector<Ball>& balls,
                           Interrupter* interrupter, const Lattice& lattice = {});

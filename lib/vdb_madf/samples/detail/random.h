@@ -7,7 +7,7 @@
 
 namespace vdb_madf::detail {
 
-/// The finaliser of splitmix64 (Steele, Lea, Flood 2014) on the next state: a bijection of 64 bits
+/// The finalizer of splitmix64 (Steele, Lea, Flood 2014) on the next state: a bijection of 64 bits
 /// that serves as counter-based generator. The standard library's distributions differ from one
 /// implementation to the next, so samples draw their numbers here.
 inline uint64_t mixBits(uint64_t x) {

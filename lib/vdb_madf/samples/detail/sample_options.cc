@@ -3,6 +3,7 @@
 
 #include "vdb_madf/samples/detail/sample_options.h"
 
+#include <fmt/format.h>
 #include <openvdb/Metadata.h>
 
 #include <cmath>
@@ -24,14 +25,14 @@ constexpr double kMinRadius = 0.5;
 void checkSize(const Coord& size) {
   for (int axis = 0; axis < 3; ++axis)
     if (size[axis] < 1 || size[axis] > kMaxExtent)
-      throw InvalidInput("size must be 1 to " + std::to_string(kMaxExtent) +
-                         " voxels along each axis, not " + std::to_string(size[axis]));
+      throw InvalidInput(fmt::format("size must be 1 to {} voxels along each axis, not {}",
+                                     kMaxExtent, size[axis]));
 }
 
 void checkRange(const char* name, double value, double lower, double upper) {
   if (!(value >= lower && value <= upper))  // false for NaN, too
-    throw InvalidInput(std::string(name) + " must be " + shortestDecimal(lower) + " to " +
-                       shortestDecimal(upper) + ", not " + shortestDecimal(value));
+    throw InvalidInput(fmt::format("{} must be {} to {}, not {}", name, shortestDecimal(lower),
+                                   shortestDecimal(upper), shortestDecimal(value)));
 }
 
 void checkRadii(double minimum, double maximum) {
@@ -63,8 +64,7 @@ SourceText& SourceText::add(const char* option, const std::string& value) {
 }
 
 SourceText& SourceText::size(const Coord& size) {
-  return add("dims", std::to_string(size.x()) + "x" + std::to_string(size.y()) + "x" +
-                         std::to_string(size.z()));
+  return add("dims", fmt::format("{}x{}x{}", size.x(), size.y(), size.z()));
 }
 
 SourceText& SourceText::range(const char* option, double lower, double upper) {
@@ -74,20 +74,25 @@ SourceText& SourceText::range(const char* option, double lower, double upper) {
 SourceText& SourceText::edges(const std::optional<VoxelSize>& voxelSize) {
   if (!voxelSize || voxelSize->isCube()) return *this;
   const auto edges = voxelSize->edgesInUnit();
-  return add("voxel-size", number(edges[0]) + "x" + number(edges[1]) + "x" + number(edges[2]) +
-                               voxelSize->unit());
+  return add("voxel-size", fmt::format("{}x{}x{}{}", number(edges[0]), number(edges[1]),
+                                       number(edges[2]), voxelSize->unit()));
 }
 
 std::string SourceText::number(double value) {
   return shortestDecimal(value);
 }
 
-void describe(openvdb::GridBase& grid, const std::string& name, const Coord& size,
-              const SourceText& source, const std::optional<VoxelSize>& voxelSize) {
-  grid.setName(name);
-  setDomain(grid, CoordBBox(Coord(0), size.offsetBy(-1)));
-  setVoxelSize(grid, voxelSize);
-  grid.insertMeta(kSourceKey, openvdb::StringMetadata(source.str()));
+Sample described(Sample sample, const Coord& size, const SourceText& source,
+                 const std::optional<VoxelSize>& voxelSize) {
+  const auto describe = [&](openvdb::GridBase& grid, const char* name) {
+    grid.setName(name);
+    setDomain(grid, CoordBBox(Coord(0), size.offsetBy(-1)));
+    setVoxelSize(grid, voxelSize);
+    grid.insertMeta(kSourceKey, openvdb::StringMetadata(source.str()));
+  };
+  describe(*sample.object, "object");
+  if (sample.truth) describe(*sample.truth, "truth");
+  return sample;
 }
 
 }  // namespace vdb_madf::detail

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "vdb_madf/base/voxel_size.h"
-#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/samples/sample.h"
 
 namespace vdb_madf::detail {
 
@@ -23,13 +23,13 @@ void checkRange(const char* name, double value, double lower, double upper);
 class SourceText {
  public:
   explicit SourceText(const std::string& sample) : text_("generate " + sample) {}
-  /// As a grid has it, to add to it.
+  /// The source that a grid has, to add to it.
   static SourceText of(const openvdb::GridBase& grid);
   SourceText& size(const Coord& size);
   SourceText& add(const char* option, const std::string& value);
   SourceText& add(const char* option, double value) { return add(option, number(value)); }
   SourceText& range(const char* option, double lower, double upper);
-  /// Of voxels that are no cubes.
+  /// Adds the edges of voxels that are no cubes.
   SourceText& edges(const std::optional<VoxelSize>& voxelSize);
   const std::string& str() const { return text_; }
 
@@ -41,9 +41,9 @@ class SourceText {
   std::string text_;
 };
 
-/// Gives a sample's grid its name, the domain [0, size - 1] in voxels, its source and the size of its
-/// voxels.
-void describe(openvdb::GridBase& grid, const std::string& name, const Coord& size,
-              const SourceText& source, const std::optional<VoxelSize>& voxelSize = {});
+/// Gives the grids of a sample their names, the domain [0, size - 1] in voxels, the source and the
+/// size of the voxels.
+Sample described(Sample sample, const Coord& size, const SourceText& source,
+                 const std::optional<VoxelSize>& voxelSize = {});
 
 }  // namespace vdb_madf::detail

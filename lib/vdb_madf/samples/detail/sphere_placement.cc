@@ -17,7 +17,7 @@ namespace {
 /// Relative; half of what the documentation promises.
 constexpr double kOverlapTolerance = 0.005;
 
-/// Random centres tried for a ball that must not swallow the others.
+/// Random centers tried for a ball that must not swallow the others.
 constexpr int kMaxTries = 10000;
 /// Moves tried on the way to the asked overlap before it counts as impossible.
 constexpr int64_t kSearchMoves = 20000, kSearchMovesPerBall = 500;
@@ -48,7 +48,7 @@ class LatticeBall {
   int64_t voxels() const { return voxels_; }
   int reach() const { return reach_; }
 
-  /// Of row (x, y) of the space, along z.
+  /// The part of row (x, y), along z.
   RowRange row(int x, int y) const {
     const int dx = std::abs(x - center.x()), dy = std::abs(y - center.y());
     if (dx > reach_ || dy > reach_) return {0, -1};
@@ -161,7 +161,7 @@ class Placement {
     unionVoxels_ = oldUnion;
   }
 
-  /// Where a ball lies wholly inside, its real surface between the outermost voxels' centres.
+  /// Where a ball lies wholly inside, its real surface between the outermost voxels' centers.
   CoordBBox centerBox(double radius) const {
     const int margin = int(std::ceil(radius));
     return {Coord(margin), options_.size.offsetBy(-1 - margin)};
@@ -175,7 +175,7 @@ class Placement {
     return center;
   }
 
-  /// Of ball i and any other, each has the least power at its own centre.
+  /// Does each of ball i and any other have the least power at its own center?
   bool ownsCenters(size_t i) const {
     const LatticeBall& ball = balls_[i];
     const double square = ball.radius() * ball.radius();

@@ -18,8 +18,8 @@ struct BallRows {
   static constexpr int kMaxReach = 31;
 
   int64_t voxels = 0;
-  /// Of the rows along z, center at bit 32: row (x, y) is (x + reachX) * (2 * reachY + 1) + y + reachY.
-  /// None if the ball reaches farther than kMaxReach.
+  /// The rows along z, with the center at bit 32: row (x, y) is number (x + reachX) * (2 * reachY +
+  /// 1) + y + reachY. None if the ball reaches farther than kMaxReach.
   std::vector<uint64_t> masks;
   int reachX = 0, reachY = 0;
 };
@@ -30,7 +30,7 @@ class BallRowsCache {
   static constexpr size_t kMaxRadii = 1024;  // at most 31 KiB each; cubes have fewer with masks
 
   explicit BallRowsCache(const VoxelWeights& weights) : weights_(weights) {}
-  /// Until the next call. \p squaredRadius: in units of the weights
+  /// The rows of a ball, valid until the next call. \p squaredRadius: in units of the weights
   const BallRows& of(double squaredRadius);
 
  private:

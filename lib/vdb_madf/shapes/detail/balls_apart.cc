@@ -31,7 +31,7 @@ BBoxd boxOf(const Clump& clump, const VoxelWeights& weights) {
   return box;
 }
 
-/// Of each clump the others whose boxes meet its own, from a sweep along x.
+/// The clumps whose boxes meet that of each clump, from a sweep along x.
 std::vector<std::vector<size_t>> neighborsOf(const std::vector<BBoxd>& boxes) {
   std::vector<size_t> order(boxes.size());
   std::iota(order.begin(), order.end(), size_t(0));

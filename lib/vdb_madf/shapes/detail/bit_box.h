@@ -15,8 +15,8 @@
 
 namespace vdb_madf::detail {
 
-/// A bit per voxel of a box, in rows along z. Balls are those of a metric: their squared radii are in
-/// units of its weights.
+/// A bit per voxel of a box, in rows along z. Balls are those of a metric: their squared radii are
+/// in units of its weights.
 class BitBox {
  public:
   BitBox(const CoordBBox& box, const VoxelWeights& weights)

@@ -18,12 +18,12 @@ using openvdb::Vec3f;
 
 /// Voxels: so much farther than it could be, voxels are measured to a feature.
 constexpr double kSlack = 1e-4;
-/// Of a triangle's height: voxels so far beside it still count as above it.
+/// Voxels so far beside a triangle, in parts of its height, still count as above it.
 constexpr double kBeside = 1e-6;
 /// Triangles that turn by less (1 - cosine) have no wedge between them: their slack fills it.
 constexpr double kFlat = 1e-14;
-/// Wedges of a smaller cosine are searched in the whole reach around their edges, those with normals
-/// along the axis of less than kLeastSlope in a box.
+/// Wedges of a smaller cosine are searched in the whole reach around their edges, those with
+/// normals along the axis of less than kLeastSlope in a box.
 constexpr double kWide = -0.9, kLeastSlope = 0.2;
 
 int longest(const Vec3d& v) {

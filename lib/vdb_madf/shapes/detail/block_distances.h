@@ -11,25 +11,24 @@
 
 namespace vdb_madf::detail {
 
-/// The squared distances of the voxels of a block to the points, triangles and edges that are added,
-/// each measured for the voxels that it can be nearest to; see mesh_distance.h.
+/// The squared distances of the voxels of a block to the points, triangles and edges that are
+/// added, each measured for the voxels that it can be nearest to; see mesh_distance.h.
 class BlockDistances {
  public:
   /// Voxels along an axis of a block, at most: its distances stay in a core's cache.
   static constexpr int kMaxSide = 64;
 
-  /// \p reach: in voxels; the distance of what is as far or farther
+  /// \p reach: in voxels; what lies farther has this distance
   BlockDistances(const CoordBBox& box, float reach);
 
   void addPoint(const openvdb::Vec3f& point);
   void addTriangle(const openvdb::Vec3d& a, const openvdb::Vec3d& b, const openvdb::Vec3d& c);
-  /// The edge from a to b of two triangles with these unit normals (0: they have no area), of which the
-  /// first one has it in this direction.
+  /// Adds the edge from a to b, in the direction of the first of two triangles with these unit
+  /// normals (0: the triangle has no area).
   void addEdge(const openvdb::Vec3d& a, const openvdb::Vec3d& b, openvdb::Vec3d one,
                openvdb::Vec3d other);
 
-  /// z fastest.
-  std::vector<float> squares() const;
+  std::vector<float> squares() const;  ///< z fastest
 
  private:
   static constexpr double kFar = 1e30;
@@ -48,13 +47,13 @@ class BlockDistances {
     return size_t((x - box_.min().x()) * layerLength_ + (y - box_.min().y()) * rowLength_ + z -
                   box_.min().z() + beside_);
   }
-  /// The voxels of an edge's wedge, whose ends of the reach have normals to them between two steps;
-  /// within reach along each axis.
+  /// A box around the wedge of edge ab: all points within reach of the edge whose offset from it
+  /// lies between the directions `step` and `otherStep`.
   std::array<Range, 3> boxOfWedge(const openvdb::Vec3d& a, const openvdb::Vec3d& b,
                                   const openvdb::Vec3d& step,
                                   const openvdb::Vec3d& otherStep) const;
-  /// f(w, u, v, square) for voxels of the block, by their places along the axis W and the two after it:
-  /// in each slice w of a range those of rectangleOf(w).
+  /// f(w, u, v, square) for voxels of the block, by their places along the axis W and the two after
+  /// it: those of rectangleOf(w) in each slice w of a range.
   template <int kW, typename RectangleOf, typename F>
   void forEachIn(const Range& heights, const RectangleOf& rectangleOf, const F& f);
 

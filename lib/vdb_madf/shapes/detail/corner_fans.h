@@ -14,7 +14,7 @@ namespace vdb_madf::detail {
 // The eight voxels around a corner: number dx*4 + dy*2 + dz, d = 0 below the corner, 1 above. The
 // twelve faces between them: axis*4 + du*2 + dv, where u and v are the axes after `axis`, cyclic.
 
-/// For every set of voxels around a corner (bit n: voxel n belongs to the grain): which of the
+/// Says for every set of voxels around a corner (bit n: voxel n belongs to the grain) which of the
 /// faces of the set around the corner hang together in one fan.
 struct Fans {
   std::array<uint8_t, 256> count{};

@@ -54,7 +54,7 @@ class QuadCutter {
  private:
   using Triangle = std::array<uint32_t, 3>;
 
-  /// By grain.
+  /// Sorts the points by grain.
   void sortPoints() {
     const Lists points(mesh_.pointGrain, mesh_.grainCount());
     std::vector<uint32_t> place(points.items.size()), sites(points.items.size());

@@ -27,39 +27,42 @@ void multiply(const PressureEquations& equations, const std::vector<double>& x,
   });
 }
 
-/// In order: the same for any number of threads.
+/// A sum in order: the same for any number of threads.
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
 }  // namespace
 
+// The preconditioned conjugate gradient method with the diagonal as preconditioner (Y. Saad,
+// Iterative Methods for Sparse Linear Systems, 2nd edition, SIAM 2003, algorithm 9.1).
 std::vector<double> pressuresFor(const PressureEquations& equations,
                                  const std::vector<double>& missing,
                                  const std::vector<double>& tolerance) {
   const size_t count = missing.size();
-  std::vector<double> pressures(count), rest(missing), scaled(count), direction(count),
-      growth(count);
+  std::vector<double> pressures(count), residual(missing), z(count), direction(count),
+      product(count);
   for (size_t g = 0; g < count; ++g)
-    if (!(equations.own[g] > 0)) rest[g] = 0;
-  double before = 0;
+    if (!(equations.own[g] > 0)) residual[g] = 0;
+  double lastRho = 0;
   for (int step = 0; step < kMaxSteps; ++step) {
     bool isDone = true;
     for (size_t g = 0; g < count; ++g) {
-      scaled[g] = equations.own[g] > 0 ? rest[g] / equations.own[g] : 0;
-      isDone = isDone && std::abs(rest[g]) <= tolerance[g];
+      z[g] = equations.own[g] > 0 ? residual[g] / equations.own[g] : 0;
+      isDone = isDone && std::abs(residual[g]) <= tolerance[g];
     }
     if (isDone) break;
-    const double now = dot(rest, scaled), turn = step > 0 ? now / before : 0;
-    for (size_t g = 0; g < count; ++g) direction[g] = scaled[g] + turn * direction[g];
-    multiply(equations, direction, growth);
-    const double curvature = dot(direction, growth);
+    const double rho = dot(residual, z), beta = step > 0 ? rho / lastRho : 0;
+    for (size_t g = 0; g < count; ++g) direction[g] = z[g] + beta * direction[g];
+    multiply(equations, direction, product);
+    const double curvature = dot(direction, product);
     if (!(curvature > 0)) break;  // grains that fill all there is: nothing is left to be gained
+    const double alpha = rho / curvature;
     for (size_t g = 0; g < count; ++g) {
-      pressures[g] += now / curvature * direction[g];
-      rest[g] -= now / curvature * growth[g];
+      pressures[g] += alpha * direction[g];
+      residual[g] -= alpha * product[g];
     }
-    before = now;
+    lastRho = rho;
   }
   return pressures;
 }

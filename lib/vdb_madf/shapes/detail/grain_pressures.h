@@ -17,8 +17,9 @@ struct PressureEquations {
   std::vector<double> byNeighbor;   ///< its volume by the pressures in them
 };
 
-/// Pressures that make the volumes grow by \p missing, each to within \p tolerance; 0 where a grain does
-/// not grow with its own. By conjugate gradients, with the same bits for any number of threads.
+/// Pressures that make the volumes grow by \p missing, each to within \p tolerance; 0 where a grain
+/// does not grow with its own. By conjugate gradients, with the same bits for any number of
+/// threads.
 std::vector<double> pressuresFor(const PressureEquations& equations,
                                  const std::vector<double>& missing,
                                  const std::vector<double>& tolerance);

@@ -14,11 +14,11 @@ namespace vdb_madf::detail {
 
 /// Exact distances to the closed mesh of a grain, for the voxels nearer than a reach, in blocks.
 ///
-/// The point of a mesh that is nearest to a voxel lies within a triangle, within an edge, or is one of
-/// its points. The first can be for the voxels above and below the triangle alone, the second for those
-/// of the wedge between the two triangles of the edge. So each triangle and edge is measured for these
-/// few voxels, each point for all within reach, and time goes with the voxels of the band (after Mauch
-/// 2003, who knows the voxels of points, too).
+/// The point of a mesh that is nearest to a voxel lies within a triangle, within an edge, or is one
+/// of its points. The first can be for the voxels above and below the triangle alone, the second
+/// for those of the wedge between the two triangles of the edge. So each triangle and edge is
+/// measured for these few voxels, each point for all within reach, and time goes with the voxels of
+/// the band (after Mauch 2003, who knows the voxels of points, too).
 class MeshDistance {
  public:
   /// Refers to the mesh. \p reach: in voxels, 1 or more

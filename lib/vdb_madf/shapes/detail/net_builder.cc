@@ -73,7 +73,7 @@ class NetBuilder {
         for (int z = 0; z < 8; ++z) f(x, y, z);
   }
 
-  /// Those places of a block around whose corners the labels are not all alike.
+  /// Visits the places of a block around whose corners the labels are not all alike.
   template <typename F>
   static void forEachMixedPlace(const LabelHalo& halo, const F& f) {
     for (int x = 0; x < 8; ++x)
@@ -258,8 +258,8 @@ class NetBuilder {
     return false;
   }
 
-  /// Labels around the edge of the lattice from corner p upwards along `axis`, with what is outside of
-  /// the domain as another one.
+  /// Labels around the edge of the lattice from corner p upwards along `axis`, with what is outside
+  /// of the domain as another one.
   std::array<int32_t, 4> labelsAround(const int32_t* at, const Coord& p, int axis) const {
     const int a = (axis + 1) % 3, b = (axis + 2) % 3;
     std::array<int32_t, 4> around;
@@ -274,8 +274,8 @@ class NetBuilder {
     return around;
   }
 
-  /// The edge of the lattice from corner p upwards along `axis`; `isInner`: all voxels around it are
-  /// known to be in the domain.
+  /// The edge of the lattice from corner p upwards along `axis`; `isInner`: all voxels around it
+  /// are known to be in the domain.
   void addLink(const int32_t* at, const CornerTable& table, const Coord& origin, const Coord& p,
                int axis, bool isInner) {
     const int u = kHaloStride[(axis + 1) % 3], v = kHaloStride[(axis + 2) % 3];

@@ -21,12 +21,12 @@ struct SharedMesh {
   std::vector<uint32_t> pointSite, pointGrain;     ///< grains ascend
   std::vector<uint32_t> firstTriangle{0};          ///< per grain, one more at the end
   std::vector<std::array<uint32_t, 3>> triangles;  ///< of points, counterclockwise from outside
-  /// Per triangle, what is beyond it: another label, 0 for background, or less than 0 for one of the
-  /// six faces of the domain.
+  /// Per triangle, what is beyond it: another label, 0 for background, or less than 0 for one of
+  /// the six faces of the domain.
   std::vector<int32_t> beyond;
 
   size_t grainCount() const { return firstTriangle.size() - 1; }
-  /// Per grain, one more at the end.
+  /// The first point of each grain, and one more at the end.
   std::vector<uint32_t> firstPoints() const {
     std::vector<uint32_t> first(grainCount() + 1);
     for (const uint32_t grain : pointGrain) ++first[grain + 1];
@@ -46,11 +46,11 @@ struct DomainFaces {
 };
 
 /// Farthest from its lattice point that a corner may go along an axis, in voxels: the net cannot
-/// fold over, and the boundary between two voxels stays between their centres.
+/// fold over, and the boundary between two voxels stays between their centers.
 constexpr float kCornerReach = 0.5f;
 
-/// The wanted place, but at most `reach` along an axis from `home`, in the domain, and on those of its
-/// faces that `home` is on.
+/// The wanted place, but at most `reach` along an axis from `home`, in the domain, and on those of
+/// its faces that `home` is on.
 inline openvdb::Vec3f withinReach(const openvdb::Vec3f& home, const openvdb::Vec3f& wanted,
                                   float reach, const DomainFaces& domain) {
   openvdb::Vec3f result;

@@ -22,8 +22,8 @@ using openvdb::Vec3f;
 constexpr uint32_t kNone = SharedMesh::kNone;
 constexpr size_t kSiteGrain = 1024;
 constexpr size_t kGrainGrain = 4;
-/// Of the sites that may go, those of least error in one pass: fewer are nearer to strict order, and
-/// take more passes.
+/// The part of the sites that may go, those of least error, that goes in one pass: a smaller one is
+/// nearer to strict order, and takes more passes.
 constexpr double kPassPart = 0.4;
 /// More triangles around a point make fans.
 constexpr size_t kMaxValence = 32;
@@ -292,8 +292,8 @@ class Simplifier {
     });
   }
 
-  /// Of one grain: the surface stays one of discs around points (the link condition of closed
-  /// surfaces), no rim meets another one, and no triangle turns over.
+  /// Does the surface of one grain allow it? It stays one of discs around points (the link
+  /// condition of closed surfaces), no rim meets another one, and no triangle turns over.
   bool isAllowed(uint32_t from, const Spoke& edge, Ring& ring, bool isOnRim, Ring& other) const {
     const uint32_t to = edge.point;
     size_t valence = 0, common = 0;
@@ -316,8 +316,8 @@ class Simplifier {
     return true;
   }
 
-  /// Collapses that do not know of each other: none begins or ends at a site whose neighbors another
-  /// one changes.
+  /// Collapses that do not know of each other: none begins or ends at a site whose neighbors
+  /// another one changes.
   void select(uint64_t triangles) {
     chosen_.clear();
     ++stamp_;

@@ -16,8 +16,7 @@ using openvdb::Vec3d;
 using openvdb::Vec3f;
 
 constexpr size_t kCornerGrain = 4096;
-/// Of the way to the mean in each round.
-constexpr float kStep = 0.5f;
+constexpr float kStep = 0.5f;  // of the way to the mean in each round
 
 Vec3f home(const Coord& corner) {
   return {float(corner.x()) - 0.5f, float(corner.y()) - 0.5f, float(corner.z()) - 0.5f};
@@ -26,14 +25,14 @@ Vec3f home(const Coord& corner) {
 /// x, y, z and 0.
 using Offset = float __attribute__((vector_size(16)));
 
-/// What a round makes of the offsets of a corner's links: it goes to the sum of their offsets and their
-/// directions, times the step over their number.
+/// What a round makes of the offsets of a corner's links: it goes to the sum of their offsets and
+/// their directions, times the step over their number.
 struct Mean {
   Offset directions{};
   float scale = 0;
 };
 
-/// For each set of links, bit d: the link in direction d.
+/// The mean for each set of links; bit d is the link in direction d.
 std::array<Mean, 64> means() {
   std::array<Mean, 64> table;
   for (size_t set = 1; set < table.size(); ++set) {
@@ -48,7 +47,8 @@ std::array<Mean, 64> means() {
   return table;
 }
 
-/// Moves the corners by their offsets from the lattice: at most half a voxel, so that all digits count.
+/// Moves the corners by their offsets from the lattice: at most half a voxel, so that all digits
+/// count.
 class Relaxation {
  public:
   Relaxation(SurfaceNet& net, const DomainFaces& domain, Interrupter* interrupter)

@@ -31,8 +31,8 @@ struct SurfaceNet {
   /// Corners linked to one: -x, +x, -y, +y, -z, +z; kNone where all voxels around the edge between
   /// them are alike. Filled for smoothing only.
   std::vector<std::array<uint32_t, 6>> links;
-  /// Bit d: around the link in direction d there are three labels or more (background counts, and as
-  /// another one what is outside of the domain).
+  /// Bit d: around the link in direction d there are three labels or more (background counts, and
+  /// as another one what is outside of the domain).
   std::vector<uint8_t> junctions;
 };
 
@@ -44,8 +44,9 @@ std::vector<openvdb::Vec3f> latticePositions(const SurfaceNet& net);
 std::vector<openvdb::Vec3f> relax(SurfaceNet& net, int rounds, const DomainFaces& domain,
                                   Interrupter* interrupter);
 
-/// Cuts the quads into triangles, and the pinches in their middles: each edge then has two triangles
-/// of a grain. Sites are the corners, then those middles. \param positions: of the corners
+/// Cuts the quads into triangles, and the pinches in their middles: each edge then has two
+/// triangles of a grain. Sites are the corners, then those middles. \param positions: of the
+/// corners
 /// @throw InvalidInput for more than 2^32 - 1 triangles
 SharedMesh cutQuads(const SurfaceNet& net, std::vector<openvdb::Vec3f> positions);
 

@@ -24,16 +24,18 @@ constexpr size_t kMovedGrainGrain = 8;
 /// Volumes are met to this part of themselves, or after so many corrections.
 constexpr double kVolumeTolerance = 1e-3;
 constexpr int kMaxCorrections = 20;
-/// Of the tolerance: what the pressures leave to the next correction.
+/// What the pressures leave to the next correction, in parts of the tolerance.
 constexpr double kSolved = 0.1;
-/// Of the squared gradients of a grain: its growth with its pressure is overstated by no more, or by the
-/// area of a cube of its volume (a face of it, voxels squared) if that is more.
+/// The growth of a grain with its pressure is overstated by no more than this part of its squared
+/// gradients, or by the area of a cube of its volume (a face of it, voxels squared) if that is
+/// more.
 constexpr double kHeldBack = 0.1;
 /// Voxels: grains whose points would move by less on the average stay as they are.
 constexpr double kLeastMove = 1e-4;
 
-/// Newton's method. The unknowns are pressures in the grains: a site moves by the sum over its points of
-/// the pressure in the point's grain times the gradient of that grain's volume by the point.
+/// Newton's method. The unknowns are pressures in the grains: a site moves by the sum over its
+/// points of the pressure in the point's grain times the gradient of that grain's volume by the
+/// point.
 class VolumeCorrection {
  public:
   VolumeCorrection(SharedMesh& mesh, const std::vector<int64_t>& volumes,
@@ -149,8 +151,8 @@ class VolumeCorrection {
     equations_.byNeighbor.resize(equations_.neighbors.size());
   }
 
-  /// Measures the volumes and their gradients where points have moved; the largest error relative to
-  /// the true volume.
+  /// Measures the volumes and their gradients where points have moved; the largest error relative
+  /// to the true volume.
   double largestError(Interrupter* interrupter) {
     PerThread<std::vector<Vec3f>> places;
     forEachGrain(interrupter, [&](size_t g) {
@@ -174,8 +176,8 @@ class VolumeCorrection {
       places.push_back(mesh_.positions[mesh_.pointSite[point]]);
     Vec3f* gradients = &gradients_[first];
     std::fill(gradients, gradients + (end - first), Vec3f(0));
-    // The surface is closed: of what the triangles around a point add to its gradient, their normals
-    // are left.
+    // The surface is closed: of what the triangles around a point add to its gradient, their
+    // normals are left.
     for (size_t t = mesh_.firstTriangle[grain]; t < mesh_.firstTriangle[grain + 1]; ++t) {
       const auto& [a, b, c] = mesh_.triangles[t];
       const Vec3f &p = places[a - first], &q = places[b - first], &r = places[c - first];
@@ -195,7 +197,7 @@ class VolumeCorrection {
     missing_[grain] = double(volumes_[grain]) - threefold / 3;
   }
 
-  /// Of two gradients, along the axes that the site can move along.
+  /// The product of two gradients along the axes that the site can move along.
   double freeDot(uint32_t site, const Vec3d& a, const Vec3d& b) const {
     double sum = 0;
     for (int axis = 0; axis < 3; ++axis)
@@ -236,8 +238,9 @@ class VolumeCorrection {
         byNeighbor[last - begin] += product;
       });
     }
-    // Held back: what would move points farther than they may go. But only so much of a grain that is
-    // more than a crumb, for others would grow at its expense where the volumes cannot all be met.
+    // Held back: what would move points farther than they may go. But only so much of a grain that
+    // is more than a crumb, for others would grow at its expense where the volumes cannot all be
+    // met.
     const double volume = double(volumes_[grain]),
                  most = std::max(kHeldBack * squares_[grain], std::cbrt(volume * volume));
     equations_.own[grain] =

@@ -10,8 +10,8 @@
 
 namespace vdb_madf::detail {
 
-/// Moves the sites along the gradients of the grains' volumes until these are \p volumes (voxels; to
-/// 0.1 %), each at most `reach` along an axis from its place in \p homes; those on a face of the
+/// Moves the sites along the gradients of the grains' volumes until these are \p volumes (voxels;
+/// to 0.1 %), each at most `reach` along an axis from its place in \p homes; those on a face of the
 /// domain within it.
 /// @throw Interrupted
 void correctVolumes(SharedMesh& mesh, const std::vector<int64_t>& volumes,

@@ -5,7 +5,7 @@
 
 namespace vdb_madf::detail {
 
-/// Of values that fit; without SSE 4.1 those of the standard are calls.
+// std::floor and std::ceil for values that fit an int: without SSE 4.1 those are calls.
 inline int floorOf(double value) {
   const int whole = int(value);
   return whole - (double(whole) > value);
