@@ -302,6 +302,24 @@ TEST_CASE("graph_metadata: the numbers of a part follow its edges", "[graph_meta
   REQUIRE(stored(part) == expected);
 }
 
+TEST_CASE("graph_metadata: voxels in cavities follow all else", "[graph_metadata]") {
+  initialize();
+  GraphPart part;
+  part.graph.nodes = {{Coord(1, -2, 3), 4, 5, 0x0203}};
+  part.number = {0x01020304};
+  part.goesOn = {1};
+  const std::string asPart = stored(part), whole = stored(part.graph);
+  REQUIRE(asPart.substr(0, 8) == std::string("\x31\0\0\0\4\0\0\0", 8));
+  REQUIRE(asPart.substr(asPart.size() - 9) == std::string("\1\3\2\0\0\0\0\0\0", 9));
+  REQUIRE(whole.substr(0, 8) == std::string("\x2c\0\0\0\3\0\0\0", 8));
+  REQUIRE(equal(restoredPart(asPart), part));
+  REQUIRE(equal(restored(whole, true), part.graph));
+  for (size_t length = 4; length < whole.size(); ++length)
+    REQUIRE_THROWS_AS(restored(withSize(whole.substr(0, length)), true), std::exception);
+  part.graph.nodes[0].cavityVoxels = -1;
+  REQUIRE_THROWS_AS(setGraphPart(*Int32Grid::create(), part), InvalidInput);
+}
+
 TEST_CASE("graph_metadata: a part that breaks the rules, or is damaged, is refused",
           "[graph_metadata]") {
   initialize();
@@ -327,7 +345,7 @@ TEST_CASE("graph_metadata: a part that breaks the rules, or is damaged, is refus
   changed.back() = 2;  // neither true nor false
   REQUIRE_THROWS_AS(restoredPart(changed), std::exception);
   changed = bytes;
-  changed[4] = 3;  // version
+  changed[4] = 5;  // version
   REQUIRE_THROWS_AS(restoredPart(changed), std::exception);
 }
 

@@ -378,14 +378,16 @@ OracleResult oracleSegment(const ObjectVolume& object, const std::optional<Oracl
   std::map<Coord, size_t> node;
   for (size_t i = 0; i < result.graph.nodes.size(); ++i) {
     node[result.graph.nodes[i].position] = i;
-    result.graph.nodes[i].voxels = 0;  // of the object alone
+    std::swap(result.graph.nodes[i].voxels, result.graph.nodes[i].cavityVoxels);
   }
   result.manifold = DenseVolume<int64_t>(body.box());
   for (int i = 0; i < body.size(); ++i) {
     if (!body[i]) continue;
     const size_t n = node.at(body.coord(critical[i]));
     result.manifold[i] = int64_t(n) + 1;
-    if (object.get(body.coord(i), 0)) ++result.graph.nodes[n].voxels;
+    if (!object.get(body.coord(i), 0)) continue;  // a cavity's
+    ++result.graph.nodes[n].voxels;
+    --result.graph.nodes[n].cavityVoxels;
   }
   result.merging = oracleMerge(result.graph, options.merge);
 

@@ -13,9 +13,16 @@ namespace vdb_madf {
 struct CriticalPoint {
   Coord position;
   int32_t squaredRadius = 0;  ///< D(c)
-  int64_t voxels = 0;         ///< of its stable manifold
+  int64_t voxels = 0;         ///< of its stable manifold, in the object
+  int64_t cavityVoxels = 0;   ///< of its stable manifold, in cavities that were filled
   bool operator==(const CriticalPoint& o) const {
-    return position == o.position && squaredRadius == o.squaredRadius && voxels == o.voxels;
+    return position == o.position && squaredRadius == o.squaredRadius && voxels == o.voxels &&
+           cavityVoxels == o.cavityVoxels;
+  }
+  /// One of its voxels lies in a cavity.
+  void leaveToCavity() {
+    --voxels;
+    ++cavityVoxels;
   }
 };
 

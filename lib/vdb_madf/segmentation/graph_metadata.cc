@@ -27,16 +27,32 @@ namespace vdb_madf {
 namespace {
 
 constexpr const char* kName = kGraphMetadata;  // of the metadata and of its type
-constexpr uint32_t kWhole = 1, kPart = 2;      // versions
 constexpr size_t kHeaderBytes = 12, kNodeBytes = 24, kEdgeBytes = 21, kNumberBytes = 4,
-                 kFlagBytes = 1;
+                 kFlagBytes = 1, kCountBytes = 8;
 /// Read and written in pieces of about this size: a corrupt count then ends at the end of the file,
 /// not in an allocation of its size.
 constexpr size_t kBlockBytes = 1 << 16;
 
-uint64_t byteCount(uint64_t nodes, uint64_t edges, bool isPart) {
-  const size_t ofPart = isPart ? kNumberBytes + kFlagBytes : 0;
-  return kHeaderBytes + nodes * (kNodeBytes + ofPart) + edges * kEdgeBytes;
+/// What a value holds besides nodes and edges.
+struct Layout {
+  bool isPart = false, hasCavities = false;
+
+  /// Versions 1 and 2 are a whole and a part without cavities, 3 and 4 those with some.
+  uint32_t version() const { return 1 + uint32_t(isPart) + 2 * uint32_t(hasCavities); }
+  static Layout ofVersion(uint32_t version) {
+    if (version < 1 || version > 4)
+      throw std::runtime_error("the graph has the unknown version " + std::to_string(version));
+    return {version % 2 == 0, version > 2};
+  }
+  uint64_t byteCount(uint64_t nodes, uint64_t edges) const {
+    const size_t more = (isPart ? kNumberBytes + kFlagBytes : 0) + (hasCavities ? kCountBytes : 0);
+    return kHeaderBytes + nodes * (kNodeBytes + more) + edges * kEdgeBytes;
+  }
+};
+
+Layout layoutOf(const ManifoldGraph& graph, bool isPart) {
+  return {isPart, std::any_of(graph.nodes.begin(), graph.nodes.end(),
+                              [](const CriticalPoint& node) { return node.cavityVoxels > 0; })};
 }
 
 /// The rule that the graph breaks; empty if none.
@@ -44,8 +60,10 @@ std::string brokenRule(const ManifoldGraph& graph) {
   const auto& nodes = graph.nodes;
   constexpr int64_t kMaxVoxels = int64_t(kMaxLeaves) * 512;
   for (size_t i = 0; i < nodes.size(); ++i) {
-    if (nodes[i].squaredRadius < 0 || nodes[i].voxels < 0) return "a node has a negative size";
-    if (nodes[i].voxels > kMaxVoxels) return "a node has more voxels than fit in a grid";
+    if (nodes[i].squaredRadius < 0 || nodes[i].voxels < 0 || nodes[i].cavityVoxels < 0)
+      return "a node has a negative size";
+    if (nodes[i].voxels > kMaxVoxels || nodes[i].cavityVoxels > kMaxVoxels)
+      return "a node has more voxels than fit in a grid";
     for (int axis = 0; axis < 3; ++axis)
       if (std::abs(int64_t(nodes[i].position[axis])) > kMaxCoordinate)
         return "a node lies beyond the largest coordinate";
@@ -140,6 +158,15 @@ uint32_t getNumber(const char* from) {
   return number;
 }
 
+void putCount(char* to, const int64_t& count) {
+  put(to, count);
+}
+int64_t getCount(const char* from) {
+  int64_t count = 0;
+  get(from, count);
+  return count;
+}
+
 void putFlag(char* to, const char& flag) {
   *to = flag;
 }
@@ -214,7 +241,8 @@ class GraphMetadata final : public openvdb::Metadata {
   bool asBool() const override { return !part_->graph.nodes.empty(); }
   openvdb::Index32 size() const override {
     const ManifoldGraph& graph = part_->graph;
-    return openvdb::Index32(byteCount(graph.nodes.size(), graph.edges.size(), isPart_));
+    return openvdb::Index32(
+        layoutOf(graph, isPart_).byteCount(graph.nodes.size(), graph.edges.size()));
   }
 
  protected:
@@ -224,33 +252,40 @@ class GraphMetadata final : public openvdb::Metadata {
     if (bytes < header.size()) throw std::runtime_error("the graph ends early");
     readBytes(stream, header.data(), header.size());
     get(get(get(header.data(), version), nodes), edges);
-    if (version != kWhole && version != kPart)
-      throw std::runtime_error("the graph has the unknown version " + std::to_string(version));
-    const bool isPart = version == kPart;
-    if (byteCount(nodes, edges, isPart) != bytes)
+    const Layout layout = Layout::ofVersion(version);
+    if (layout.byteCount(nodes, edges) != bytes)
       throw std::runtime_error("the graph is not as long as its counts say");
     auto part = std::make_shared<GraphPart>();
     part->graph.nodes = readItems(stream, nodes, kNodeBytes, getNode);
     part->graph.edges = readItems(stream, edges, kEdgeBytes, getEdge);
-    if (isPart) {
+    if (layout.isPart) {
       part->number = readItems(stream, nodes, kNumberBytes, getNumber);
       part->goesOn = readItems(stream, nodes, kFlagBytes, getFlag);
     }
-    const std::string rule = isPart ? brokenRule(*part) : brokenRule(part->graph);
+    if (layout.hasCavities) {
+      const auto counts = readItems(stream, nodes, kCountBytes, getCount);
+      for (size_t i = 0; i < nodes; ++i) part->graph.nodes[i].cavityVoxels = counts[i];
+    }
+    const std::string rule = layout.isPart ? brokenRule(*part) : brokenRule(part->graph);
     if (!rule.empty()) throw std::runtime_error("the graph is wrong: " + rule);
     part_ = std::move(part);
-    isPart_ = isPart;
+    isPart_ = layout.isPart;
   }
 
   void writeValue(std::ostream& stream) const override {
     std::array<char, kHeaderBytes> header{};
-    put(put(put(header.data(), isPart_ ? kPart : kWhole), uint32_t(part_->graph.nodes.size())),
+    const Layout layout = layoutOf(part_->graph, isPart_);
+    put(put(put(header.data(), layout.version()), uint32_t(part_->graph.nodes.size())),
         uint32_t(part_->graph.edges.size()));
     stream.write(header.data(), header.size());
     writeItems(stream, part_->graph.nodes, kNodeBytes, putNode);
     writeItems(stream, part_->graph.edges, kEdgeBytes, putEdge);
     writeItems(stream, part_->number, kNumberBytes, putNumber);
     writeItems(stream, part_->goesOn, kFlagBytes, putFlag);
+    if (!layout.hasCavities) return;
+    std::vector<int64_t> counts;
+    for (const CriticalPoint& node : part_->graph.nodes) counts.push_back(node.cavityVoxels);
+    writeItems(stream, counts, kCountBytes, putCount);
   }
 
  private:
@@ -262,7 +297,7 @@ void store(openvdb::GridBase& grid, GraphPart part, bool isPart) {
   const std::string rule = isPart ? brokenRule(part) : brokenRule(part.graph);
   if (!rule.empty()) throw InvalidInput("the manifold graph cannot be stored: " + rule);
   // OpenVDB keeps the size of a metadata value in 32 bits.
-  if (byteCount(part.graph.nodes.size(), part.graph.edges.size(), isPart) >
+  if (layoutOf(part.graph, isPart).byteCount(part.graph.nodes.size(), part.graph.edges.size()) >
       std::numeric_limits<uint32_t>::max())
     throw InvalidInput(
         "the manifold graph takes 4 GiB or more and cannot be stored: cut the "

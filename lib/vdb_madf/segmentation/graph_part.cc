@@ -37,6 +37,7 @@ ManifoldGraph joinedGraph(const std::vector<GraphPart>& parts) {
         fail(at + 1, " is another one in another part");
       isKnown[at] = 1;
       all.voxels += node.voxels;
+      all.cavityVoxels += node.cavityVoxels;
     }
     for (ManifoldGraph::Edge edge : part.graph.edges) {
       edge.first = part.number[edge.first] - 1;

@@ -138,7 +138,7 @@ class Segmenter {
     Flow found = flow(index_, std::move(map.site), map.power, balls, stages_.begin("flow"));
     counts_.criticalPoints = int64_t(found.criticalPoints.size());
     for (const VoxelId id : cavities_)
-      --found.criticalPoints[(found.manifold[index_.rank(id)] & ~Flow::kOwnCell) - 1].voxels;
+      found.criticalPoints[(found.manifold[index_.rank(id)] & ~Flow::kOwnCell) - 1].leaveToCavity();
     return found;
   }
 

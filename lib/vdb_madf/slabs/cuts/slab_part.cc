@@ -22,7 +22,7 @@ std::vector<CriticalPoint> sortedNodes(std::vector<CriticalPoint> nodes) {
       nodes.begin(), nodes.end(),
       [](const CriticalPoint& a, const CriticalPoint& b) { return a.position == b.position; });
   nodes.erase(end, nodes.end());
-  for (CriticalPoint& node : nodes) node.voxels = 0;
+  for (CriticalPoint& node : nodes) node.voxels = node.cavityVoxels = 0;
   return nodes;
 }
 
@@ -83,8 +83,10 @@ SlabPart slabPart(size_t slab, const SlabTerminals& terminals, const std::vector
   const std::vector<uint32_t> nodeBelow = nodesOf(below);
   // The next part has these contacts.
   for (const uint32_t terminal : above) part.goesOn[part.nodeOf[terminal]] = 1;
-  for (size_t i = 0; i < roots.size(); ++i)
+  for (size_t i = 0; i < roots.size(); ++i) {
     graph.nodes[part.nodeOf[i]].voxels += terminals.points[i].voxels;
+    graph.nodes[part.nodeOf[i]].cavityVoxels += terminals.points[i].cavityVoxels;
+  }
 
   const auto addEdge = [&](Edge edge, uint32_t a, uint32_t b, bool areTerminals) {
     if (a == b) return;

@@ -53,7 +53,7 @@ SlabTerminals slabTerminals(const LeafIndex& index, const Flow& flow,
   result.points = std::move(graph.nodes);
   result.edges = std::move(graph.edges);
   for (const VoxelId id : cavities)
-    --result.points[(flow.manifold[index.rank(id)] & ~Flow::kOwnCell) - 1].voxels;
+    result.points[(flow.manifold[index.rank(id)] & ~Flow::kOwnCell) - 1].leaveToCavity();
   for (size_t word = 0; word < index.leafCount() * 8; ++word)
     result.balls += countBits(balls.word(word));
   result.lowest = faceVoxels(index, flow, power, begin, 0);
