@@ -5,17 +5,22 @@
 
 #include <cstdint>
 
+#include "vdb_madf/base/errors.h"
 #include "vdb_madf/method/critical_point.h"
 #include "vdb_madf/method/detail/metric.h"
 #include "vdb_madf/method/merge.h"
 
 namespace vdb_madf::detail {
 
-/// Which edges merge their nodes, as merge() says.
+/// Which edges merge their nodes, as the tests of merge() say.
 class MergeRule {
  public:
+  /// @throw InvalidInput with MergeMode::score, which merge() alone knows
   MergeRule(const MergeOptions& options, const VoxelWeights& weights)
-      : options_(options), weights_(weights), factor_((1 - options.theta) / 2) {}
+      : options_(options), weights_(weights), factor_((1 - options.theta) / 2) {
+    if (options.mode == MergeMode::score)
+      throw InvalidInput("in slabs manifolds are not merged by score yet: choose another mode");
+  }
 
   /// @param cellsTouch ManifoldGraph::Edge::cellsTouch
   bool mergesByAngle(const CriticalPoint& a, const CriticalPoint& b, bool cellsTouch) const {
