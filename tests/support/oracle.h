@@ -115,6 +115,23 @@ ManifoldGraph oracleGraph(const ObjectVolume& object, const DenseVolume<int64_t>
 /// Steps 7 and 8: the classes, numbered. @throw Undefined unless theta is in [-1, 1]
 Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options);
 
+/// Step 7 by score: all joins of classes, each class named by its representative's node.
+struct OracleHierarchy {
+  struct Join {
+    uint32_t first, second;  ///< first < second
+    int64_t score;           ///< in units of 1/512
+  };
+  std::vector<uint32_t> classOf;  ///< of each node, before any join
+  std::vector<Join> joins;
+};
+OracleHierarchy oracleHierarchy(const ManifoldGraph& graph);
+/// The class of each node at a strictness.
+std::vector<uint32_t> oracleCut(const ManifoldGraph& graph, const OracleHierarchy& hierarchy,
+                                double strictness);
+/// Of a pair of classes, a of the smaller top.
+int64_t oracleScore(int64_t voxelsA, int64_t topA, int64_t voxelsB, int64_t topB, int64_t faces,
+                    int64_t height, const VoxelWeights& weights = {});
+
 /// Step 9, on labels of the object (0: none), given the representatives of grains 1, 2, ...
 DenseVolume<int64_t> oracleTidy(const DenseVolume<int64_t>& labels,
                                 const std::vector<Coord>& representatives, int rounds,

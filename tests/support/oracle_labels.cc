@@ -39,8 +39,11 @@ Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
     return largest;
   };
 
+  if (options.mode == MergeMode::score)
+    classOf = oracleCut(graph, oracleHierarchy(graph), options.strictness);
+
   // The angle test.
-  if (options.mode != MergeMode::neck)
+  if (options.mode == MergeMode::both || options.mode == MergeMode::angle)
     for (const auto& edge : graph.edges) {
       if (options.adjacency == Adjacency::cell && !edge.cellsTouch) continue;
       const auto &ci = nodes[edge.first], &cj = nodes[edge.second];
@@ -53,7 +56,7 @@ Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
 
   // The neck test. Nodes are in lexicographic order, so the order of pairs is that of their
   // indices.
-  if (options.mode != MergeMode::angle) {
+  if (options.mode == MergeMode::both || options.mode == MergeMode::neck) {
     auto edges = graph.edges;
     std::sort(edges.begin(), edges.end(), [](const auto& a, const auto& b) {
       return std::make_tuple(-int64_t(a.saddleHeight), a.first, a.second) <

@@ -4,11 +4,14 @@
 #include "vdb_madf/method/merge.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "vdb_madf/base/detail/disjoint_sets.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/method/detail/merge_classes.h"
 #include "vdb_madf/method/detail/merge_rule.h"
+#include "vdb_madf/method/hierarchy.h"
 
 namespace vdb_madf {
 
@@ -55,18 +58,27 @@ void checkMergeOptions(const MergeOptions& options) {
   if (options.delta < 0 || options.delta > kMaxDelta)
     throw InvalidInput("delta is in eighths of a voxel: it must lie between 0 and " +
                        std::to_string(kMaxDelta));
+  if (!(std::abs(options.strictness) <= kMaxStrictness))
+    throw InvalidInput("strictness is a score: it must lie between -200000 and 200000");
 }
 
-Merging merge(const ManifoldGraph& graph, const MergeOptions& options) {
-  checkMergeOptions(options);
-  detail::DisjointSets grains(graph.nodes.size());
-  const detail::MergeRule rule(options, graph.weights);
+std::vector<uint32_t> detail::mergedClasses(const ManifoldGraph& graph,
+                                            const MergeOptions& options) {
+  DisjointSets grains(graph.nodes.size());
+  const MergeRule rule(options, graph.weights);
   mergeByAngle(graph, rule, grains);
   mergeByNeck(graph, rule, grains);
 
   std::vector<uint32_t> classOfNode(graph.nodes.size());
   for (uint32_t i = 0; i < classOfNode.size(); ++i) classOfNode[i] = grains.find(i);
-  return mergeClasses(graph, classOfNode);
+  return classOfNode;
+}
+
+Merging merge(const ManifoldGraph& graph, const MergeOptions& options) {
+  checkMergeOptions(options);
+  if (options.mode == MergeMode::score)
+    return cut(mergeHierarchy(graph, options.strictness), options.strictness);
+  return mergeClasses(graph, detail::mergedClasses(graph, options));
 }
 
 Merging mergeClasses(const ManifoldGraph& graph, const std::vector<uint32_t>& classOfNode) {

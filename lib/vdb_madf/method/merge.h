@@ -10,13 +10,19 @@
 
 namespace vdb_madf {
 
-enum class MergeMode { both, angle, neck };
+enum class MergeMode {
+  both,   ///< the angle test, then the neck test
+  angle,  ///< the angle test alone (the paper)
+  neck,   ///< the neck test alone
+  score   ///< joins by score, the best first (hierarchy.h)
+};
 enum class Adjacency {
   manifold,  ///< the angle test sees all edges of the graph
   cell       ///< only those where the cells of the critical points touch (as the paper words it)
 };
 
-/// When manifolds are one grain; see merge().
+/// When manifolds are one grain; see merge(). theta, adjacency and delta are for the tests,
+/// strictness is for MergeMode::score.
 struct MergeOptions {
   double theta = -0.9;  ///< cosine in [-1, 1]; -1 merges least
   MergeMode mode = MergeMode::both;
@@ -24,9 +30,13 @@ struct MergeOptions {
   /// How much narrower than the smaller grain a neck has to be at least to divide, in eighths of
   /// the shortest edge of a voxel; 0 to kMaxDelta; 0: theta alone decides.
   int delta = 2;
+  /// The least score that joins two classes, to the nearest 1/512 (hierarchy.h); the larger, the
+  /// more grains; -kMaxStrictness to kMaxStrictness.
+  double strictness = 11;
 };
 
-constexpr int kMaxDelta = 80;  ///< ten voxels
+constexpr int kMaxDelta = 80;              ///< ten voxels
+constexpr double kMaxStrictness = 200000;  ///< no score is larger, and none smaller than -200000
 
 /// Grains as classes of critical points.
 struct Merging {
@@ -36,7 +46,8 @@ struct Merging {
   std::vector<uint32_t> representative;
 };
 
-/// @throw InvalidInput unless theta is in [-1, 1] (NaN is not) and delta in [0, kMaxDelta].
+/// @throw InvalidInput unless theta is in [-1, 1] (NaN is not), delta in [0, kMaxDelta] and
+///   strictness in [-kMaxStrictness, kMaxStrictness].
 void checkMergeOptions(const MergeOptions& options);
 
 /// Merges critical points by the angle of their balls (paper, section 5.2, eq. 7), then by the
@@ -52,6 +63,7 @@ void checkMergeOptions(const MergeOptions& options);
 ///   sqrt(m) - sqrt(h) < delta / 8 of the shortest edge of a voxel:
 /// theta compares radii in proportion, but the error of a digital radius is some tenths of a voxel
 /// whatever the grain. (Decided in integers.)
+/// MergeMode::score has neither test: cut(mergeHierarchy(graph), strictness) of hierarchy.h.
 /// Grains are numbered in lexicographic order of their representatives.
 /// @throw InvalidInput as checkMergeOptions.
 Merging merge(const ManifoldGraph& graph, const MergeOptions& options = {});

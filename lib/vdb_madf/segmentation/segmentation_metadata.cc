@@ -44,6 +44,8 @@ const char* toString(MergeMode mode) {
       return "both";
     case MergeMode::angle:
       return "angle";
+    case MergeMode::score:
+      return "score";
     case MergeMode::neck:
       break;
   }

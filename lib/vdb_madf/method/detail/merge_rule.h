@@ -11,11 +11,19 @@
 
 namespace vdb_madf::detail {
 
-/// Tells which edges merge their nodes, as merge() says.
+/// Tells which edges merge their nodes, as the tests of merge() say. Of MergeMode::score these are
+/// the tests that its classes begin with (hierarchy.h): only what is no local maximum merges.
 class MergeRule {
  public:
   MergeRule(const MergeOptions& options, const VoxelWeights& weights)
-      : options_(options), weights_(weights), factor_((1 - options.theta) / 2) {}
+      : options_(options), weights_(weights) {
+    if (options.mode == MergeMode::score) {
+      options_.mode = MergeMode::neck;
+      options_.theta = -1;
+      options_.delta = 0;
+    }
+    factor_ = (1 - options_.theta) / 2;
+  }
 
   /// @param cellsTouch ManifoldGraph::Edge::cellsTouch
   bool mergesByAngle(const CriticalPoint& a, const CriticalPoint& b, bool cellsTouch) const {

@@ -67,7 +67,8 @@ OpenGraph MergeParts::openGraph(const SlabPart& part) const {
   const std::vector<CriticalPoint>& nodes = part.graph.nodes;
   for (uint32_t i = 0; i < nodes.size(); ++i) {
     open.group.classes.push_back({nodes[i].squaredRadius, false});
-    open.about.push_back({nodes[i].position, nodes[i].squaredRadius, nodes[i].voxels > 0});
+    open.about.push_back(
+        {nodes[i].position, nodes[i].squaredRadius, keepsEmpty_ || nodes[i].voxels > 0});
     open.nodes.push_back({nodes[i].position, i, part.startsBelow[i] != 0, part.goesOn[i] != 0});
   }
   for (const ManifoldGraph::Edge& edge : part.graph.edges) {

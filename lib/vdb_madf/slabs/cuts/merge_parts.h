@@ -41,7 +41,9 @@ struct OpenGraph {
 /// and in what order neighbors are joined, does not matter (README.md says why).
 class MergeParts {
  public:
-  explicit MergeParts(const MergeRule& rule) : rule_(rule) {}
+  /// @param keepsEmpty are classes without a voxel of the object numbered, too?
+  explicit MergeParts(const MergeRule& rule, bool keepsEmpty = false)
+      : rule_(rule), keepsEmpty_(keepsEmpty) {}
 
   /// The part of the next slab. @return the class of each node of the part
   std::vector<uint32_t> add(const SlabPart& part);
@@ -68,6 +70,7 @@ class MergeParts {
   void dropDecided();
 
   MergeRule rule_;
+  bool keepsEmpty_;
   OpenGraph open_;
   std::vector<uint32_t> number_;  // of each class that is open; kNone: it has none yet
   DisjointSets numbers_{0};

@@ -8,6 +8,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/slabs/cuts/class_graph.h"
 #include "vdb_madf/slabs/cuts/merge_parts.h"
 
 namespace vdb_madf::detail {
@@ -23,7 +24,8 @@ class MergeTree {
       : work_(work),
         member_(work.team.member()),
         count_(work.team.count()),
-        merging_(MergeRule(work.options.merge, work.facts.weights)) {}
+        joinsByScore_(work.options.merge.mode == MergeMode::score),
+        merging_(MergeRule(work.options.merge, work.facts.weights), joinsByScore_) {}
 
   std::vector<Coord> run(const std::function<SlabPart(size_t slab)>& part) {
     for (size_t s = work_.plan.firstOwn(); s < work_.plan.endOwn(); ++s) mergeSlab(s, part(s));
@@ -39,9 +41,13 @@ class MergeTree {
       work_.steps.exchange();
       if (isUpper(distance)) takeGrains();
     }
+    const std::vector<uint32_t> grainOf = joinsByScore_ ? joinByScore() : std::vector<uint32_t>();
     for (size_t s = work_.plan.firstOwn(); s < work_.plan.endOwn(); ++s) {
       auto grains = work_.store.read(kClasses, s);
-      for (uint32_t& grain : grains) grain = grainOfClass_[grain];
+      for (uint32_t& grain : grains) {
+        grain = grainOfClass_[grain];
+        if (joinsByScore_) grain = grainOf[grain - 1];
+      }
       work_.store.write(kGrains, s, grains);
     }
     return std::move(representatives_);
@@ -60,6 +66,33 @@ class MergeTree {
     std::vector<uint32_t> classes;
     for (const uint32_t node : part.nodeOf) classes.push_back(classOfNode[node]);
     work_.store.write(kClasses, s, classes);
+    if (joinsByScore_) work_.store.write(kNodeClasses, s, classOfNode);
+  }
+
+  /// The grains so far are the classes that a hierarchy begins with: few, so the root joins them.
+  /// @return the grain of each
+  std::vector<uint32_t> joinByScore() {
+    for (size_t s = work_.plan.firstOwn(); s < work_.plan.endOwn(); ++s) {
+      auto classes = work_.store.read(kNodeClasses, s);
+      for (uint32_t& c : classes) c = grainOfClass_[c] - 1;
+      work_.store.send(kClassGraph, s, kRoot, classGraph(work_.store.read(kGraphPart, s), classes));
+      work_.store.remove(kNodeClasses, s);
+    }
+    work_.steps.exchange();
+    std::vector<uint32_t> grains;
+    if (work_.plan.isRoot()) {
+      JoinedClasses joined(representatives_, work_.facts.weights);
+      for (size_t s = 0; s < work_.plan.slabCount(); ++s) {
+        joined.add(work_.store.receive(kClassGraph, s, kRoot));
+        work_.store.removeMessage(kClassGraph, s, kRoot);
+      }
+      const Merging merging = merge(joined.finish(), work_.options.merge);
+      grains.assign(merging.grainOfNode.begin(), merging.grainOfNode.end());
+      std::vector<Coord> ofGrains;
+      for (const uint32_t c : merging.representative) ofGrains.push_back(representatives_[c]);
+      representatives_ = std::move(ofGrains);
+    }
+    return work_.store.broadcast(grains);
   }
 
   /// A message of a run by so many members.
@@ -120,6 +153,7 @@ class MergeTree {
 
   SlabWork& work_;
   const int member_, count_;
+  const bool joinsByScore_;
   MergeParts merging_;
   std::map<int, std::vector<uint32_t>>
       classesOf_;  // by upper member: of the classes it handed over

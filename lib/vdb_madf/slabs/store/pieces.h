@@ -24,6 +24,7 @@
 namespace vdb_madf::detail {
 
 class ColumnSteps;
+struct ClassGraph;
 struct ComponentBall;
 struct OpenGraph;
 struct SlabPart;
@@ -209,6 +210,9 @@ inline constexpr Piece<Values<PartFacts>> kPartFacts("known", Step::never);
 // have another number of them.
 inline constexpr Piece<Values<uint32_t>> kClasses("classes", Step::never);
 inline constexpr Piece<Values<uint32_t>> kGrains("grains", Step::never);  // of terminals; 0: none
+// Of nodes, where classes are joined by score.
+inline constexpr Piece<Values<uint32_t>> kNodeClasses("node-classes", Step::never);
+inline constexpr Message<ClassGraph> kClassGraph("class-graph", From::toRoot, Step::never);
 inline constexpr Piece<OpenGraph> kMergeOpen("merge-open", Step::never);
 inline constexpr Piece<Values<Coord>> kMergeDecided("merge-decided", Step::never);
 inline constexpr Piece<Values<uint32_t>> kMergeNumbers("merge-numbers", Step::never);

@@ -1,0 +1,314 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/method/hierarchy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+
+#include "vdb_madf/base/detail/disjoint_sets.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/method/detail/join_score.h"
+#include "vdb_madf/method/detail/merge_classes.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using detail::JoinScore;
+
+int32_t unitsOf(double score) {
+  return int32_t(std::lround(score * Hierarchy::kUnitsOfScore));
+}
+
+/// Counts saturate: what is larger is no different to a score.
+int64_t addVoxels(int64_t some, int64_t more) {
+  const int64_t most = JoinScore::kMaxVoxels;
+  return std::min(some + std::clamp<int64_t>(more, 0, most), most);
+}
+
+/// Nodes are in lexicographic order, so the first of the largest is the representative.
+void addClasses(const ManifoldGraph& graph, Hierarchy& hierarchy) {
+  MergeOptions maxima;
+  maxima.mode = MergeMode::score;
+  const std::vector<uint32_t> root = detail::mergedClasses(graph, maxima);
+  const auto count = uint32_t(graph.nodes.size());
+  std::vector<uint32_t> best(root);
+  for (uint32_t i = 0; i < count; ++i)
+    if (graph.nodes[i].squaredRadius > graph.nodes[best[root[i]]].squaredRadius) best[root[i]] = i;
+  std::vector<uint32_t> classOfRoot(count);
+  for (uint32_t i = 0; i < count; ++i) {
+    if (best[root[i]] != i) continue;
+    classOfRoot[root[i]] = uint32_t(hierarchy.classes.size());
+    hierarchy.classes.push_back({i, graph.nodes[i].squaredRadius, 0, 0});
+  }
+  hierarchy.classOfNode.reserve(count);
+  for (uint32_t i = 0; i < count; ++i) {
+    hierarchy.classOfNode.push_back(classOfRoot[root[i]]);
+    Hierarchy::Class& all = hierarchy.classes[hierarchy.classOfNode[i]];
+    all.voxels = addVoxels(all.voxels, graph.nodes[i].voxels);
+    all.cavityVoxels = addVoxels(all.cavityVoxels, graph.nodes[i].cavityVoxels);
+  }
+}
+
+/// Joins the pair of largest score, again and again.
+///
+/// Each pair waits in the heap of its b, under the score less b's volume term, 2 lg V_b; b takes a
+/// turn with its first pair. When b has grown, but has its m and name still, what was computed of
+/// its pairs is a bound, for it can only have become smaller (JoinScore): that of the first one is
+/// computed anew when it is its turn. So a class that joins thousands of small neighbors does not
+/// look at all others each time.
+///
+/// Wherever there is a score 1 <= h < m: an edge with 0 < h that had not h < m of both its classes
+/// has joined them before (addClasses), and m only grows.
+class Joining {
+ public:
+  Joining(const ManifoldGraph& graph, Hierarchy& hierarchy)
+      : score_(graph.weights), hierarchy_(hierarchy) {
+    for (uint32_t c = 0; c < hierarchy.classes.size(); ++c) {
+      const Hierarchy::Class& one = hierarchy.classes[c];
+      const int64_t voxels = addVoxels(one.voxels, one.cavityVoxels);
+      clusters_.push_back({voxels, {std::max<int64_t>(1, voxels), one.top}, c});
+    }
+    for (const ManifoldGraph::Edge& edge : graph.edges) addContact(edge);
+    for (uint32_t c = 0; c < contacts_.size(); ++c) score(c);
+    for (uint32_t c = 0; c < clusters_.size(); ++c) takeTurn(c);
+  }
+
+  void run(int32_t lowest) {
+    while (!turns_.empty()) {
+      const Waiting turn = turns_.front();
+      Cluster& b = clusters_[turn.of];
+      if (turn.version == b.version) {
+        if (turn.score < lowest) return;
+        const Waiting first = b.pairs.front();
+        const bool isNew = contacts_[first.of].version == first.version;
+        const Pair pair = isNew ? pairOf(first.of) : Pair();
+        if (isNew && first.score == restOfScore(pair, first.of)) {
+          pop(turns_);
+          join(first.of, pair, turn);
+          continue;
+        }
+        pop(b.pairs);
+        if (isNew) push(b.pairs, waiting(restOfScore(pair, first.of), first.of));
+        pop(turns_);
+        takeTurn(turn.of);
+      } else {
+        pop(turns_);
+      }
+    }
+  }
+
+ private:
+  /// What waits for its score to be the largest: a pair of clusters, named by its contact, or a
+  /// cluster with its first pair. It is out of date if that has another version by now.
+  struct Waiting {
+    int32_t score;
+    uint32_t first, second;  ///< the names of the pair, ascending
+    uint32_t of, version;
+    bool operator<(const Waiting& o) const {  // the first is the largest in a heap
+      return score != o.score ? score < o.score
+                              : std::tie(first, second) > std::tie(o.first, o.second);
+    }
+  };
+  struct Contact {
+    uint32_t one, two;  ///< clusters
+    int32_t height;
+    int64_t faces;  ///< up to JoinScore::kMaxFaces
+    uint32_t version = 0;
+  };
+  struct Cluster {
+    int64_t voxels = 0;
+    detail::ScoredClass size;
+    uint32_t name = 0;  ///< the class of its representative
+    uint32_t version = 0;
+    std::unordered_map<uint32_t, uint32_t> contactWith = {};  ///< by cluster
+    std::vector<Waiting> pairs = {};                          ///< a heap: those of which it is b
+    std::vector<Waiting> above = {};                          ///< those of which it is a
+  };
+  struct Pair {
+    uint32_t a = 0, b = 0;
+  };
+
+  static void push(std::vector<Waiting>& heap, const Waiting& item) {
+    heap.push_back(item);
+    std::push_heap(heap.begin(), heap.end());
+  }
+  static void pop(std::vector<Waiting>& heap) {
+    std::pop_heap(heap.begin(), heap.end());
+    heap.pop_back();
+  }
+
+  void addContact(const ManifoldGraph::Edge& edge) {
+    const uint32_t one = hierarchy_.classOfNode[edge.first],
+                   two = hierarchy_.classOfNode[edge.second];
+    if (one == two) return;
+    const auto next = uint32_t(contacts_.size());
+    const auto [known, isNew] = clusters_[one].contactWith.emplace(two, next);
+    if (isNew) {
+      clusters_[two].contactWith.emplace(one, next);
+      contacts_.push_back({one, two, edge.saddleHeight, 0});
+    }
+    widen(contacts_[known->second], edge.contactFaces, edge.saddleHeight);
+  }
+
+  static void widen(Contact& contact, int64_t faces, int32_t height) {
+    contact.faces += std::clamp<int64_t>(faces, 0, JoinScore::kMaxFaces);
+    contact.faces = std::min(contact.faces, JoinScore::kMaxFaces);
+    contact.height = std::max(contact.height, height);
+  }
+
+  Pair pairOf(uint32_t contact) const {
+    const uint32_t one = contacts_[contact].one, two = contacts_[contact].two;
+    const auto isSmaller = [](const Cluster& x, const Cluster& y) {
+      if (x.size.top != y.size.top) return x.size.top < y.size.top;
+      if (x.size.voxels != y.size.voxels) return x.size.voxels < y.size.voxels;
+      return x.name > y.name;
+    };
+    return isSmaller(clusters_[one], clusters_[two]) ? Pair{one, two} : Pair{two, one};
+  }
+
+  int32_t volumeTerm(const Cluster& b) const { return 2 * detail::lg(b.size.voxels); }
+  int32_t restOfScore(const Pair& pair, uint32_t contact) const {
+    const Cluster &a = clusters_[pair.a], &b = clusters_[pair.b];
+    const Contact& c = contacts_[contact];
+    return score_(a.size, b.size, c.faces, c.height) - volumeTerm(b);
+  }
+
+  Waiting waiting(int32_t score, uint32_t contact) const {
+    const Contact& c = contacts_[contact];
+    const auto [first, second] = std::minmax(clusters_[c.one].name, clusters_[c.two].name);
+    return {score, first, second, contact, c.version};
+  }
+
+  /// Lets the pair of a contact wait anew, if it has a score.
+  void score(uint32_t contact) {
+    ++contacts_[contact].version;
+    if (contacts_[contact].height <= 0) return;
+    const Pair pair = pairOf(contact);
+    const Waiting entry = waiting(restOfScore(pair, contact), contact);
+    clusters_[pair.a].above.push_back(entry);
+    push(clusters_[pair.b].pairs, entry);
+    if (clusters_[pair.b].pairs.front().of == contact) takeTurn(pair.b);
+  }
+
+  void takeTurn(uint32_t cluster) {
+    Cluster& b = clusters_[cluster];
+    ++b.version;
+    if (b.pairs.empty()) return;
+    Waiting turn = b.pairs.front();
+    turn.score += volumeTerm(b);
+    turn.of = cluster;
+    turn.version = b.version;
+    push(turns_, turn);
+  }
+
+  void join(uint32_t contact, const Pair& pair, const Waiting& turn) {
+    hierarchy_.joins.push_back({turn.first, turn.second, turn.score});
+    const bool isLarger =
+        clusters_[pair.a].contactWith.size() > clusters_[pair.b].contactWith.size();
+    const uint32_t keptIndex = isLarger ? pair.a : pair.b, goneIndex = isLarger ? pair.b : pair.a;
+    ++contacts_[contact].version;
+    Cluster gone;
+    std::swap(gone, clusters_[goneIndex]);
+    clusters_[goneIndex].version = gone.version + 1;  // its turn never comes
+    Cluster& kept = clusters_[keptIndex];
+    const uint32_t nameBefore = kept.name;
+    if (gone.size.top > kept.size.top || (gone.size.top == kept.size.top && gone.name < kept.name))
+      kept.name = gone.name;
+    kept.size.top = std::max(kept.size.top, gone.size.top);
+    kept.voxels = addVoxels(kept.voxels, gone.voxels);
+    kept.size.voxels = std::max<int64_t>(1, kept.voxels);
+
+    kept.contactWith.erase(goneIndex);
+    gone.contactWith.erase(keptIndex);
+    std::vector<uint32_t> changed;
+    for (const auto& [other, its] : gone.contactWith)
+      changed.push_back(moveContact(its, other, goneIndex, keptIndex));
+    // Another name, another order of equal scores, and maybe another m; else only what touches the
+    // part that came, and the scores in which the cluster is a, are new.
+    if (kept.name != nameBefore) {
+      changed.clear();
+      for (const auto& [other, its] : kept.contactWith) changed.push_back(its);
+      kept.above.clear();
+    } else {
+      for (const uint32_t c : changed) ++contacts_[c].version;
+      for (const Waiting& entry : kept.above)
+        if (contacts_[entry.of].version == entry.version) changed.push_back(entry.of);
+      kept.above.clear();
+    }
+    for (const uint32_t c : changed) score(c);
+    takeTurn(keptIndex);
+  }
+
+  /// @return the contact that the other cluster has with the kept one
+  uint32_t moveContact(uint32_t contact, uint32_t other, uint32_t gone, uint32_t kept) {
+    clusters_[other].contactWith.erase(gone);
+    const auto [known, isNew] = clusters_[kept].contactWith.emplace(other, contact);
+    Contact& moved = contacts_[contact];
+    if (isNew) {
+      (moved.one == gone ? moved.one : moved.two) = kept;
+      clusters_[other].contactWith.emplace(kept, contact);
+    } else {
+      ++moved.version;
+      widen(contacts_[known->second], moved.faces, moved.height);
+    }
+    return known->second;
+  }
+
+  JoinScore score_;
+  Hierarchy& hierarchy_;
+  std::vector<Cluster> clusters_;
+  std::vector<Contact> contacts_;
+  std::vector<Waiting> turns_;  // a heap: of clusters
+};
+
+}  // namespace
+
+Hierarchy mergeHierarchy(const ManifoldGraph& graph, double lowest) {
+  if (!(std::abs(lowest) <= kMaxStrictness))
+    throw InvalidInput("the lowest strictness must lie between -200000 and 200000");
+  Hierarchy hierarchy;
+  hierarchy.lowest = lowest;
+  addClasses(graph, hierarchy);
+  Joining(graph, hierarchy).run(unitsOf(lowest));
+  return hierarchy;
+}
+
+Merging cut(const Hierarchy& hierarchy, double strictness) {
+  if (!(strictness >= hierarchy.lowest && strictness <= kMaxStrictness))
+    throw InvalidInput("the hierarchy has no grains at the strictness " +
+                       std::to_string(strictness) + ": it must lie between " +
+                       std::to_string(hierarchy.lowest) + " and 200000");
+  const std::vector<Hierarchy::Class>& classes = hierarchy.classes;
+  detail::DisjointSets sets(classes.size());
+  for (const Hierarchy::Join& join : hierarchy.joins) {
+    if (join.score < unitsOf(strictness)) break;
+    sets.unite(join.first, join.second);
+  }
+  std::vector<uint32_t> best(classes.size());
+  std::vector<char> hasVoxels(classes.size(), 0);
+  for (uint32_t c = 0; c < classes.size(); ++c) {
+    const uint32_t root = sets.find(c);  // the first of its set
+    if (root == c || classes[c].top > classes[best[root]].top) best[root] = c;
+    if (classes[c].voxels > 0) hasVoxels[root] = 1;
+  }
+  Merging merging;
+  std::vector<int32_t> grainOfRoot(classes.size(), 0);
+  for (uint32_t c = 0; c < classes.size(); ++c) {
+    const uint32_t root = sets.find(c);
+    if (best[root] != c || !hasVoxels[root]) continue;
+    merging.representative.push_back(classes[c].representative);
+    grainOfRoot[root] = int32_t(merging.representative.size());
+  }
+  merging.grainOfNode.reserve(hierarchy.classOfNode.size());
+  for (const uint32_t c : hierarchy.classOfNode)
+    merging.grainOfNode.push_back(grainOfRoot[sets.find(c)]);
+  return merging;
+}
+
+}  // namespace vdb_madf

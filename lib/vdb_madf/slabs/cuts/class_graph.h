@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vdb_madf/slabs/cuts/slab_part.h"
+#include "vdb_madf/slabs/store/bytes.h"
+
+namespace vdb_madf::detail {
+
+/// What a slab adds to the graph of the classes that a hierarchy begins with (hierarchy.h). Classes
+/// are numbered from 0, in the order of their representatives.
+struct ClassGraph {
+  struct Size {
+    uint32_t number;
+    int32_t top;  ///< the largest D that the slab knows of
+    int64_t voxels, cavityVoxels;
+  };
+  std::vector<Size> sizes;                    ///< ascending, each class once
+  std::vector<ManifoldGraph::Edge> contacts;  ///< ascending, each pair once
+
+  void writeTo(ByteWriter& bytes) const;
+  static ClassGraph readFrom(ByteReader bytes);
+};
+
+/// @param classOfNode of each node of the part
+ClassGraph classGraph(const SlabPart& part, const std::vector<uint32_t>& classOfNode);
+
+/// The graph of all classes: merge() by score makes of it what it makes of the graph of the
+/// manifolds, as no edge that is left joins a class at the tests that it begins with. (Tops grow, and
+/// each edge was lower than both when it was visited.)
+class JoinedClasses {
+ public:
+  JoinedClasses(const std::vector<Coord>& representatives, const VoxelWeights& weights);
+  void add(const ClassGraph& part);
+  ManifoldGraph finish();
+
+ private:
+  ManifoldGraph graph_;
+};
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,420 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Joining by score, against the oracle's, which looks at all pairs before each join.
+
+#include "vdb_madf/method/hierarchy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/catch.h"
+#include "support/oracle.h"
+#include "support/random_volume.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/method/detail/join_score.h"
+
+namespace {
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+using vdb_madf::detail::JoinScore;
+using Labels = std::vector<int32_t>;
+
+/// Of a pair of classes.
+struct Case {
+  int64_t voxelsA;
+  int32_t topA;
+  int64_t voxelsB;
+  int32_t topB;
+  int64_t faces;
+  int32_t height;
+};
+
+int32_t score(const Case& c, const VoxelWeights& weights = {}) {
+  return JoinScore(weights)({c.voxelsA, c.topA}, {c.voxelsB, c.topB}, c.faces, c.height);
+}
+int64_t slowScore(const Case& c, const VoxelWeights& weights = {}) {
+  return oracleScore(c.voxelsA, c.topA, c.voxelsB, c.topB, c.faces, c.height, weights);
+}
+
+/// Nodes on the x axis: squared radii and voxels.
+ManifoldGraph nodesOnAxis(const std::vector<std::pair<int, int64_t>>& nodes) {
+  ManifoldGraph graph;
+  for (const auto& [squaredRadius, voxels] : nodes)
+    graph.nodes.push_back({{10 * int(graph.nodes.size()), 0, 0}, squaredRadius, voxels});
+  return graph;
+}
+
+MergeOptions atStrictness(double strictness) {
+  MergeOptions options;
+  options.mode = MergeMode::score;
+  options.strictness = strictness;
+  return options;
+}
+
+/// A logarithmic number up to a largest one.
+int64_t logarithmic(Rng& rng, double bits) {
+  return int64_t(std::exp2(rng.unit() * bits));
+}
+
+/// Few different radii, sizes, faces and heights: many ties.
+ManifoldGraph randomGraph(Rng& rng) {
+  std::set<Coord> positions;
+  const bool alike = rng.chance(0.3);
+  const int side = rng.between(2, 12), count = rng.between(1, 24),
+            radii = alike ? 1 + rng.below(2) : rng.between(1, 30),
+            sizes = alike ? 1 + rng.below(2) : rng.between(1, 200),
+            faces = alike ? 1 + rng.below(2) : rng.between(1, 60);
+  const bool anySize = !alike && rng.chance(0.3);
+  for (int i = 0; i < count; ++i)
+    positions.insert({rng.below(side), rng.below(side), rng.below(side)});
+  ManifoldGraph graph;
+  const double empty = rng.chance(0.2) ? 0.3 : 0;  // nodes without voxels of the object
+  for (const Coord& p : positions)
+    graph.nodes.push_back({p, 2 + rng.below(radii),
+                           rng.chance(empty) ? 0
+                           : anySize         ? logarithmic(rng, 16)
+                                             : 1 + rng.below(sizes),
+                           rng.chance(0.2) ? rng.below(20) : 0});
+  const double density = rng.unit() * rng.unit(), steep = rng.chance(0.3) ? rng.unit() : 0;
+  for (uint32_t a = 0; a < graph.nodes.size(); ++a)
+    for (uint32_t b = a + 1; b < graph.nodes.size(); ++b) {
+      if (!rng.chance(density)) continue;
+      int highest = std::min(graph.nodes[a].squaredRadius, graph.nodes[b].squaredRadius);
+      if (!rng.chance(steep)) --highest;  // few are no local maximum
+      graph.edges.push_back({a, b, 1 + rng.below(faces), rng.between(-2, highest), false});
+    }
+  if (rng.chance(0.2)) graph.weights = {rng.between(1, 9), rng.between(1, 9), rng.between(1, 9)};
+  return graph;
+}
+
+/// As a set of sets.
+bool refines(const Labels& fine, const Labels& coarse) {
+  std::map<int32_t, int32_t> of;
+  for (size_t i = 0; i < fine.size(); ++i) {
+    if (fine[i] == 0) continue;  // no grain, which may become part of one
+    if (of.emplace(fine[i], coarse[i]).first->second != coarse[i]) return false;
+  }
+  return true;
+}
+
+void requireSame(const Merging& a, const Merging& b) {
+  REQUIRE(a.grainOfNode == b.grainOfNode);
+  REQUIRE(a.representative == b.representative);
+}
+
+/// The same joins as the oracle's, and the same grains wherever the hierarchy is cut.
+void requireOracles(const ManifoldGraph& graph) {
+  const Hierarchy hierarchy = mergeHierarchy(graph);
+  const OracleHierarchy expected = oracleHierarchy(graph);
+  REQUIRE(hierarchy.joins.size() == expected.joins.size());
+  for (size_t i = 0; i < expected.joins.size(); ++i) {
+    CAPTURE(i);
+    const Hierarchy::Join& join = hierarchy.joins[i];
+    REQUIRE(join.score == expected.joins[i].score);
+    REQUIRE(hierarchy.classes[join.first].representative == expected.joins[i].first);
+    REQUIRE(hierarchy.classes[join.second].representative == expected.joins[i].second);
+  }
+  for (size_t i = 0; i < graph.nodes.size(); ++i)
+    REQUIRE(hierarchy.classes[hierarchy.classOfNode[i]].representative == expected.classOf[i]);
+
+  std::set<double> cuts{-kMaxStrictness, 10, 11, 12, kMaxStrictness};
+  for (const Hierarchy::Join& join : hierarchy.joins)
+    for (const int step : {0, 1}) cuts.insert((join.score + step) / 512.0);
+  std::optional<Merging> coarser;
+  for (const double k : cuts) {  // ascending
+    CAPTURE(k);
+    const Merging merging = cut(hierarchy, k);
+    requireSame(merging, merge(graph, atStrictness(k)));
+    requireSame(merging, mergeClasses(graph, oracleCut(graph, expected, k)));
+    if (coarser) REQUIRE(refines(merging.grainOfNode, coarser->grainOfNode));
+    coarser = merging;
+  }
+  requireSame(cut(hierarchy, 11), oracleMerge(graph, atStrictness(11)));
+}
+
+}  // namespace
+
+TEST_CASE("hierarchy: logarithms and roots are floors", "[hierarchy]") {
+  // A logarithm that never falls is a floor if it is one on either side of each step.
+  int64_t last = 0;
+  for (int step = 1; step < 43 * 256; ++step) {
+    const long double power = std::exp2((long double)step / 256);
+    const auto n = int64_t(std::ceil(power));
+    if (step % 256 != 0) REQUIRE(n - power > 1e-6L);  // long double is sure enough
+    if (step % 256 != 0) REQUIRE(power - (n - 1) > 1e-6L);
+    CAPTURE(step, n);
+    if (n == last) continue;  // several steps below one integer
+    last = n;
+    const auto highest = int64_t(std::floor(256 * std::log2((long double)n)));
+    REQUIRE(detail::lg(n) == highest);
+    if (n > 1) REQUIRE(detail::lg(n - 1) < step);
+  }
+  CHECK(detail::lg(1) == 0);
+  CHECK(detail::lg(2) == 256);
+  CHECK(detail::lg(3) == 405);
+  CHECK(detail::lg(18) == 1067);
+  CHECK(detail::lg(128) == 1792);
+  CHECK(detail::lg(JoinScore::kMaxVoxels) == 11007);
+  for (int64_t root : {0, 1, 2, 3, 255, 256, 65535, 65536, 11863282, (1 << 24) - 1}) {
+    CHECK(detail::squareRoot(root * root) == root);
+    CHECK(detail::squareRoot(root * root + root) == root);
+    CHECK(detail::squareRoot(root * root + 2 * root) == root);
+  }
+}
+
+TEST_CASE("hierarchy: scores, as integers of any size give them", "[hierarchy]") {
+  const std::vector<std::pair<Case, int32_t>> cases = {
+      {{1, 2, 1, 2, 1, 1}, 10416},
+      {{1, 2, 1, 2, 0, 1}, 9136},
+      {{1, 2, 8796093022207, 2147483647, 2147483647, 1}, 32992},
+      {{8796093022207, 2147483647, 8796093022207, 2147483647, 2147483647, 1}, -94893158},
+      {{8796093022207, 2147483647, 8796093022207, 2147483647, 2147483647, 2147483646}, 11058},
+      {{8796093022207, 2147483647, 1, 2147483647, 2147483647, 1}, -94880667},
+      {{1, 2147483647, 8796093022207, 2147483647, 0, 1}, -94872218},
+      {{1, 2147483647, 1, 2147483647, 0, 1}, -94894232},
+      {{1, 2147483647, 1, 2147483647, 2147483647, 2147483646}, 50939},
+      {{1, 2, 8796093022207, 2147483647, 0, 1}, 26542},
+      {{8796093022207, 2, 8796093022207, 2, 2147483647, 1}, 21034},
+      {{8796093022207, 2, 1, 2, 2147483647, 1}, 23725},
+      {{8796093022207, 2, 8796093022207, 2, 0, 1}, 4784},
+      {{1, 2, 8796093022207, 2, 2147483647, 1}, 47400},
+      {{8796093022207, 2147483646, 8796093022207, 2147483647, 1, 1073741823}, -27792818},
+      {{4398046511104, 715776516, 4398046511105, 715776516, 1000000000, 715723009}, 7325},
+      {{127, 9, 500, 16, 12, 8}, 4568},
+      {{128, 9, 500, 16, 12, 8}, 4559},
+      {{129, 9, 500, 16, 12, 8}, 4559},
+      {{4096, 100, 4096, 100, 300, 99}, 6004},
+      {{20000, 100, 20000, 100, 314, 99}, 6898},
+      {{20000, 100, 20000, 101, 314, 90}, 5910},
+      {{3000, 144, 90000, 400, 150, 60}, -3272},
+      {{65536, 225, 65537, 225, 700, 224}, 6945},
+      {{99999, 81, 1000000, 10000, 99, 80}, 3028},
+      {{5, 3, 7, 3, 2, 2}, 8497},
+      {{7, 5, 7, 5, 4, 3}, 8193},
+      {{1000, 64, 1000, 64, 8191, 50}, 43659},
+      {{33554432, 46340, 33554431, 46341, 1, 12345}, -208732},
+  };
+  for (const auto& [c, expected] : cases) {
+    CAPTURE(c.voxelsA, c.topA, c.voxelsB, c.topB, c.faces, c.height);
+    CHECK(score(c) == expected);
+    CHECK(slowScore(c) == expected);
+  }
+  const std::vector<std::pair<std::pair<Case, VoxelWeights>, int32_t>> unequal = {
+      {{{4096, 2500, 4096, 2600, 300, 2400}, {25, 25, 144}}, 7248},
+      {{{1, 2, 3, 3, 1, 1}, {1, 1, 400}}, 10380},
+      {{{3, 2, 3, 3, 0, 1}, {1, 1, 400}}, 7885},
+      {{{5000, 90000, 6000, 1000000, 100, 45000}, {100000, 9, 77}}, -58105},
+      {{{4096, 400, 4096, 404, 300, 396}, {4, 4, 4}}, 5968},
+      {{{8796093022207, 2147483647, 8796093022207, 2147483647, 2147483647, 1}, {400000, 1, 400001}},
+       -94882334},
+  };
+  for (const auto& [c, expected] : unequal) {
+    CAPTURE(c.first.voxelsA, c.first.topA, c.second.toString());
+    CHECK(score(c.first, c.second) == expected);
+    CHECK(slowScore(c.first, c.second) == expected);
+  }
+}
+
+TEST_CASE("hierarchy: scores, as the definition has them", "[hierarchy]") {
+  Rng rng(1);
+  for (int i = 0; i < 20000; ++i) {
+    const auto top = [&] { return int32_t(1 + logarithmic(rng, 30.9)); };
+    const auto [topA, topB] = std::minmax({top(), top()});
+    Case c{logarithmic(rng, 42.9),     topA,
+           logarithmic(rng, 42.9),     topB,
+           logarithmic(rng, 30.9) - 1, std::max(1, int32_t(topA * rng.unit()))};
+    VoxelWeights weights;
+    if (i % 2) weights = {rng.between(1, 30), rng.between(1, 30), rng.between(1, 30)};
+    CAPTURE(c.voxelsA, c.topA, c.voxelsB, c.topB, c.faces, c.height, weights.toString());
+    const int32_t whole = score(c, weights);
+    REQUIRE(whole == slowScore(c, weights));
+    // What is left without b's volume term does not grow with b.
+    Case larger = c;
+    larger.voxelsB += logarithmic(rng, 42.9);
+    larger.voxelsB = std::min(larger.voxelsB, JoinScore::kMaxVoxels);
+    REQUIRE(score(larger, weights) - 2 * detail::lg(larger.voxelsB) <=
+            whole - 2 * detail::lg(c.voxelsB));
+    // A common factor of the weights changes nothing.
+    if (topB < (1 << 30) / 5) {
+      for (int32_t* length : {&c.topA, &c.topB, &c.height}) *length *= 5;
+      REQUIRE(score(c, {5 * weights.x, 5 * weights.y, 5 * weights.z}) == whole);
+    }
+  }
+}
+
+TEST_CASE("hierarchy: nothing to join", "[hierarchy]") {
+  CHECK(mergeHierarchy({}).classes.empty());
+  CHECK(cut(mergeHierarchy({}), 11).grainOfNode.empty());
+  requireOracles({});
+  requireOracles(nodesOnAxis({{4, 30}}));
+  requireOracles(nodesOnAxis({{4, 30}, {4, 30}, {9, 100}}));
+  ManifoldGraph graph = nodesOnAxis({{4, 30}, {4, 30}});
+  for (const int height : {0, -1}) {  // a contact without a neck
+    graph.edges = {{0, 1, 10, height, false}};
+    CHECK(mergeHierarchy(graph).joins.empty());
+    requireOracles(graph);
+  }
+}
+
+TEST_CASE("hierarchy: halves of a body join, grains with a neck do not", "[hierarchy]") {
+  // Two balls of radius 10, some 4000 voxels. A broad contact: log2(4000 / 4000) + 9 +
+  // 2.5 * 300 / 252 - 4 (10 - sqrt(99)) = 11.8. A narrow one, of radius 5: 9 + 0.8 - 20.
+  ManifoldGraph graph = nodesOnAxis({{100, 4000}, {100, 4000}});
+  graph.edges = {{0, 1, 300, 99, true}};
+  CHECK(mergeHierarchy(graph).joins.at(0).score / 512.0 == Approx(11.8).margin(0.1));
+  CHECK(merge(graph, atStrictness(11)).grainOfNode == Labels{1, 1});
+  CHECK(merge(graph, atStrictness(12)).grainOfNode == Labels{1, 2});
+  requireOracles(graph);
+  graph.edges = {{0, 1, 78, 25, true}};
+  CHECK(mergeHierarchy(graph).joins.at(0).score / 512.0 == Approx(-10.2).margin(0.1));
+  CHECK(merge(graph, atStrictness(11)).grainOfNode == Labels{1, 2});
+  requireOracles(graph);
+}
+
+TEST_CASE("hierarchy: what is no local maximum is part of a class from the beginning",
+          "[hierarchy]") {
+  ManifoldGraph graph = nodesOnAxis({{9, 50}, {4, 20}, {9, 60}});
+  graph.edges = {{0, 1, 1, 3, true}, {1, 2, 1, 4, true}};
+  const Hierarchy hierarchy = mergeHierarchy(graph);
+  CHECK(hierarchy.classOfNode == std::vector<uint32_t>{0, 1, 1});
+  REQUIRE(hierarchy.classes.size() == 2);
+  CHECK(hierarchy.classes[1].representative == 2);
+  CHECK(hierarchy.classes[1].top == 9);
+  CHECK(hierarchy.classes[1].voxels == 80);
+  CHECK(hierarchy.joins.size() == 1);
+  requireOracles(graph);
+}
+
+TEST_CASE("hierarchy: of equal scores the pair with the smaller representatives", "[hierarchy]") {
+  // A ring of four alike: 0-1 first; then 0 and 1 weigh more beside 2 and 3.
+  ManifoldGraph graph = nodesOnAxis({{25, 500}, {25, 500}, {25, 500}, {25, 500}});
+  graph.edges = {
+      {0, 1, 40, 20, true}, {0, 3, 40, 20, true}, {1, 2, 40, 20, true}, {2, 3, 40, 20, true}};
+  const Hierarchy hierarchy = mergeHierarchy(graph);
+  REQUIRE(hierarchy.joins.size() == 3);
+  CHECK(hierarchy.joins[0].first == 0);
+  CHECK(hierarchy.joins[0].second == 1);
+  requireOracles(graph);
+  // All with all, of equal volumes: the names alone decide.
+  graph.edges.clear();
+  for (uint32_t a = 0; a < 4; ++a)
+    for (uint32_t b = a + 1; b < 4; ++b) graph.edges.push_back({a, b, 40, 20, true});
+  requireOracles(graph);
+}
+
+TEST_CASE("hierarchy: a join can make a larger score", "[hierarchy]") {
+  // Two small ones beside a large one join each other, and their contacts with it add up.
+  ManifoldGraph graph = nodesOnAxis({{30, 300}, {30, 300}, {400, 30000}});
+  graph.edges = {{0, 1, 60, 16, true}, {0, 2, 1000, 16, true}, {1, 2, 1000, 16, true}};
+  const Hierarchy hierarchy = mergeHierarchy(graph);
+  REQUIRE(hierarchy.joins.size() == 2);
+  CHECK(hierarchy.joins[0].second == 1);
+  CHECK(hierarchy.joins[1].score > hierarchy.joins[0].score);
+  requireOracles(graph);
+}
+
+TEST_CASE("hierarchy: a class without a voxel of the object is no grain", "[hierarchy]") {
+  ManifoldGraph graph = nodesOnAxis({{30, 0}, {30, 0}, {25, 400}});
+  graph.edges = {{1, 2, 3, 1, true}};
+  CHECK(merge(graph, atStrictness(100)).grainOfNode == Labels{0, 0, 1});
+  CHECK(merge(graph, atStrictness(-100)).grainOfNode == Labels{0, 1, 1});
+  CHECK(merge(graph, atStrictness(-100)).representative == std::vector<uint32_t>{1});
+  requireOracles(graph);
+}
+
+TEST_CASE("hierarchy: as the oracle joins, on random graphs", "[hierarchy]") {
+  const char* cases = std::getenv("VDB_MADF_GRAPHS");
+  const uint64_t count = cases ? std::stoull(cases) : 2000;
+  size_t joins = 0, rises = 0, ties = 0;
+  for (uint64_t seed = 1; seed <= count; ++seed) {
+    INFO("seed " << seed);
+    Rng rng(seed);
+    const ManifoldGraph graph = randomGraph(rng);
+    requireOracles(graph);
+    const Hierarchy hierarchy = mergeHierarchy(graph);
+    joins += hierarchy.joins.size();
+    for (size_t i = 1; i < hierarchy.joins.size(); ++i) {
+      rises += hierarchy.joins[i].score > hierarchy.joins[i - 1].score;
+      ties += hierarchy.joins[i].score == hierarchy.joins[i - 1].score;
+    }
+  }
+  CHECK(joins > 5 * count);
+  CHECK(rises > count / 10);
+  CHECK(ties > count / 20);
+}
+
+TEST_CASE("hierarchy: any sizes are joined, however large", "[hierarchy]") {
+  Rng rng(3);
+  constexpr int64_t kHuge = int64_t(1) << 62;
+  for (int i = 0; i < 200; ++i) {
+    ManifoldGraph graph = randomGraph(rng);
+    for (ManifoldGraph::Node& node : graph.nodes) {
+      node.voxels = rng.chance(0.3) ? kHuge : logarithmic(rng, 50);
+      node.squaredRadius = rng.chance(0.3) ? 2147483647 : int32_t(2 + logarithmic(rng, 30.9));
+    }
+    for (ManifoldGraph::Edge& edge : graph.edges) {
+      edge.contactFaces = rng.chance(0.3) ? kHuge : logarithmic(rng, 40);
+      edge.saddleHeight = rng.chance(0.3) ? 2147483646 : int32_t(logarithmic(rng, 30.9));
+    }
+    const Hierarchy hierarchy = mergeHierarchy(graph);
+    for (const Hierarchy::Join& join : hierarchy.joins) {
+      CHECK(join.score <= 72953);
+      CHECK(join.score > -94930000);
+    }
+    requireSame(cut(hierarchy, 11), merge(graph, atStrictness(11)));
+  }
+}
+
+TEST_CASE("hierarchy: a class with many neighbors does not look at all of them each time",
+          "[hierarchy]") {
+  // It would take minutes, and gigabytes.
+  ManifoldGraph graph;
+  constexpr int kNeighbors = 100000;
+  graph.nodes.push_back({{0, 0, 0}, 10000, 4000000});
+  Rng rng(5);
+  for (int i = 1; i <= kNeighbors; ++i) {
+    graph.nodes.push_back({{i, 0, 0}, rng.between(4, 60), rng.between(1, 300)});
+    graph.edges.push_back({0, uint32_t(i), rng.between(1, 40), rng.between(1, 3), true});
+  }
+  const Hierarchy hierarchy = mergeHierarchy(graph);
+  REQUIRE(hierarchy.joins.size() == kNeighbors);
+  CHECK(std::all_of(hierarchy.joins.begin(), hierarchy.joins.end(),
+                    [](const Hierarchy::Join& join) { return join.first == 0; }));
+}
+
+TEST_CASE("hierarchy: a strictness is rounded to the nearest unit", "[hierarchy]") {
+  ManifoldGraph graph = nodesOnAxis({{100, 4000}, {100, 4000}});
+  graph.edges = {{0, 1, 300, 99, true}};
+  const Hierarchy hierarchy = mergeHierarchy(graph);
+  const double unit = 1 / 512.0, exact = hierarchy.joins.at(0).score * unit;
+  for (const double k : {exact, exact + 0.49 * unit, exact - 0.5 * unit})
+    CHECK(cut(hierarchy, k).grainOfNode == Labels{1, 1});
+  for (const double k : {exact + 0.5 * unit, exact + unit, kMaxStrictness})
+    CHECK(cut(hierarchy, k).grainOfNode == Labels{1, 2});
+}
+
+TEST_CASE("hierarchy: is cut where it has joins", "[hierarchy]") {
+  ManifoldGraph graph = nodesOnAxis({{100, 4000}, {100, 4000}});
+  graph.edges = {{0, 1, 78, 25, true}};
+  const Hierarchy hierarchy = mergeHierarchy(graph, 9.5);
+  CHECK(hierarchy.joins.empty());
+  CHECK(cut(hierarchy, 9.5).representative.size() == 2);
+  CHECK_THROWS_AS(cut(hierarchy, 9.4), InvalidInput);
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const double k : {std::nan(""), inf, -inf, 200001.0, -200001.0}) {
+    CHECK_THROWS_AS(mergeHierarchy(graph, k), InvalidInput);
+    CHECK_THROWS_AS(cut(hierarchy, k), InvalidInput);
+    CHECK_THROWS_AS(merge(graph, atStrictness(k)), InvalidInput);
+    CHECK_THROWS_AS(merge({}, atStrictness(k)), InvalidInput);
+  }
+}
