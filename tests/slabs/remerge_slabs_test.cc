@@ -97,8 +97,8 @@ TEST_CASE("remerge_slabs: labels are those of a fresh segmentation", "[remerge_s
     std::vector<int> cuts = randomCuts(box, rng);
     SegmentOptions other = options;
     const double thetas[] = {-1, -0.9, -0.8, -0.5, 0};
-    other.merge = {thetas[rng.below(5)], MergeMode(rng.below(3)), Adjacency(rng.below(2)),
-                   rng.chance(0.5) ? 0 : rng.below(9)};
+    other.merge = {thetas[rng.below(5)], MergeMode(rng.below(4)), Adjacency(rng.below(2)),
+                   rng.chance(0.5) ? 0 : rng.below(9), double(rng.between(4, 16))};
     other.tidy = rng.below(9);
     options.tidy = 0;
     Segmentation whole;

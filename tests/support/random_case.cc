@@ -21,7 +21,8 @@ constexpr std::array<int, 6> kDeltas = {0, 1, 2, 4, 20, 80};
 constexpr std::array<int, 4> kTidies = {0, 1, 2, 5};
 constexpr std::array<double, 8> kThetas = {-1, -0.95, -0.9, -0.8, -0.5, 0, 0.5, 1};
 constexpr std::array<const char*, 3> kBoundaryNames = {"automatic", "open", "closed"};
-constexpr std::array<const char*, 3> kModeNames = {"both", "angle", "neck"};
+constexpr std::array<double, 7> kStrictnesses = {11, -200, 4, 8, 10, 13.5, 20};
+constexpr std::array<const char*, 4> kModeNames = {"both", "angle", "neck", "score"};
 
 void setRegion(RandomCase& c, const ObjectVolume& region) {
   const CoordBBox box = objectBox(region);
@@ -202,7 +203,7 @@ RandomCase randomCase(uint64_t seed, const std::optional<Coord>& size) {
   };
   c.options.boundary = Boundary(choose(3));
   c.options.merge.adjacency = Adjacency(choose(2));
-  c.options.merge.mode = MergeMode(choose(3));
+  c.options.merge.mode = MergeMode(choose(4));
   c.threads = 1 + choose(3);
 
   Rng rng(seed);
@@ -222,6 +223,7 @@ RandomCase randomCase(uint64_t seed, const std::optional<Coord>& size) {
   c.domainInMetadata = c.domain && rng.chance(0.5);
   c.tiles = rng.chance(0.5) ? Tiles::wherePossible : Tiles::none;
   c.options.weights = randomWeights(seed);
+  c.options.merge.strictness = kStrictnesses[seed / 7 % kStrictnesses.size()];
   return c;
 }
 
@@ -275,9 +277,9 @@ std::string describe(const RandomCase& c) {
        << kModeNames[size_t(c.options.merge.mode)] << ", adjacency "
        << (c.options.merge.adjacency == Adjacency::cell ? "cell" : "manifold") << ", fill-holes "
        << (c.options.fillHoles ? std::to_string(*c.options.fillHoles) : "default") << ", delta "
-       << c.options.merge.delta << ", tidy " << c.options.tidy << ", weights "
-       << c.options.weights.value_or(VoxelWeights{}).toString() << ", "
-       << (c.tiles == Tiles::none ? "no tiles, " : "tiles, ") << c.threads << " threads\n";
+       << c.options.merge.delta << ", strictness " << c.options.merge.strictness << ", tidy "
+       << c.options.tidy << ", weights " << c.options.weights.value_or(VoxelWeights{}).toString()
+       << ", " << (c.tiles == Tiles::none ? "no tiles, " : "tiles, ") << c.threads << " threads\n";
   if (c.object.size() <= kMaxPictureBytes) text << picture(c.object);
   if (c.region) text << "in a region of " << countObject(*c.region) << " voxels\n";
   if (c.region && c.region->size() <= kMaxPictureBytes) text << picture(*c.region);

@@ -29,7 +29,7 @@ struct RandomCase {
 
 /// Boundary x adjacency x mode x threads, which the seed runs through in turn: no combination is
 /// left to chance.
-constexpr int kCombinations = 3 * 2 * 3 * 3;
+constexpr int kCombinations = 3 * 2 * 4 * 3;
 
 /// The case of a seed; all else is drawn at random. `size`: of the volume, random if absent.
 RandomCase randomCase(uint64_t seed, const std::optional<Coord>& size = {});
