@@ -5,6 +5,7 @@
 
 #include <openvdb/Metadata.h>
 
+#include <array>
 #include <limits>
 #include <map>
 #include <set>
@@ -26,7 +27,7 @@ using openvdb::StringMetadata;
 using Texts = std::map<std::string, std::string>;
 
 std::string word(MergeMode mode) {
-  return mode == MergeMode::both ? "both" : mode == MergeMode::angle ? "angle" : "neck";
+  return std::array<const char*, 4>{"both", "angle", "neck", "score"}.at(size_t(mode));
 }
 std::string word(Adjacency adjacency) {
   return adjacency == Adjacency::manifold ? "manifold" : "cell";
@@ -48,24 +49,30 @@ std::string asText(const openvdb::Metadata& value) {
 /// What describeSegmentation() says, from its description.
 Texts expectedTexts(const SegmentOptions& options, bool open, const SegmentCounts& counts,
                     int64_t fillHoles) {
-  return {{"madf_version", asText(StringMetadata(kVersion))},
-          {"madf_gamma", asText(Int64Metadata(options.gamma))},
-          {"madf_boundary", asText(StringMetadata(open ? "open" : "closed"))},
-          {"madf_theta", asText(DoubleMetadata(options.merge.theta))},
-          {"madf_merge", asText(StringMetadata(word(options.merge.mode)))},
-          {"madf_adjacency", asText(StringMetadata(word(options.merge.adjacency)))},
-          {"madf_delta", asText(Int64Metadata(options.merge.delta))},
-          {"madf_fill_holes", asText(Int64Metadata(fillHoles))},
-          {"madf_tidy", asText(Int64Metadata(options.tidy))},
-          {"madf_cavities", asText(Int64Metadata(counts.cavities))},
-          {"madf_cavity_voxels", asText(Int64Metadata(counts.cavityVoxels))},
-          {"madf_object_voxels", asText(Int64Metadata(counts.objectVoxels))},
-          {"madf_medial_balls", asText(Int64Metadata(counts.medialBalls))},
-          {"madf_kept_balls", asText(Int64Metadata(counts.keptBalls))},
-          {"madf_critical_points", asText(Int64Metadata(counts.criticalPoints))},
-          {"madf_grains", asText(Int64Metadata(counts.grains))},
-          {"madf_largest_squared_distance", asText(Int64Metadata(counts.largestSquaredDistance))},
-          {"madf_leaves", asText(Int64Metadata(counts.leaves))}};
+  Texts texts = {
+      {"madf_version", asText(StringMetadata(kVersion))},
+      {"madf_gamma", asText(Int64Metadata(options.gamma))},
+      {"madf_boundary", asText(StringMetadata(open ? "open" : "closed"))},
+      {"madf_merge", asText(StringMetadata(word(options.merge.mode)))},
+      {"madf_fill_holes", asText(Int64Metadata(fillHoles))},
+      {"madf_tidy", asText(Int64Metadata(options.tidy))},
+      {"madf_cavities", asText(Int64Metadata(counts.cavities))},
+      {"madf_cavity_voxels", asText(Int64Metadata(counts.cavityVoxels))},
+      {"madf_object_voxels", asText(Int64Metadata(counts.objectVoxels))},
+      {"madf_medial_balls", asText(Int64Metadata(counts.medialBalls))},
+      {"madf_kept_balls", asText(Int64Metadata(counts.keptBalls))},
+      {"madf_critical_points", asText(Int64Metadata(counts.criticalPoints))},
+      {"madf_grains", asText(Int64Metadata(counts.grains))},
+      {"madf_largest_squared_distance", asText(Int64Metadata(counts.largestSquaredDistance))},
+      {"madf_leaves", asText(Int64Metadata(counts.leaves))}};
+  if (options.merge.mode == MergeMode::score) {
+    texts["madf_strictness"] = asText(DoubleMetadata(options.merge.strictness));
+    return texts;
+  }
+  texts["madf_theta"] = asText(DoubleMetadata(options.merge.theta));
+  texts["madf_adjacency"] = asText(StringMetadata(word(options.merge.adjacency)));
+  texts["madf_delta"] = asText(Int64Metadata(options.merge.delta));
+  return texts;
 }
 
 /// A different number in each place.
@@ -83,7 +90,8 @@ TEST_CASE("segmentation_metadata: every option and count has its key", "[segment
   // Beyond 32 bits; the second description replaces the first.
   const auto grid = Int32Grid::create();
   for (const int64_t first : {int64_t(1), int64_t(10000000000)})
-    for (const MergeMode mode : {MergeMode::both, MergeMode::angle, MergeMode::neck})
+    for (const MergeMode mode :
+         {MergeMode::both, MergeMode::score, MergeMode::angle, MergeMode::neck})
       for (const Adjacency adjacency : {Adjacency::manifold, Adjacency::cell})
         for (const bool open : {false, true}) {
           Segmentation s = numbered(first);
@@ -93,10 +101,11 @@ TEST_CASE("segmentation_metadata: every option and count has its key", "[segment
           s.tidy = options.tidy = 11;
           // What was used counts, not what was asked for.
           options.boundary = open ? Boundary::automatic : Boundary::open;
-          options.merge = {-0.1234567890123, mode, adjacency, 12};
+          options.merge = {-0.1234567890123, mode, adjacency, 12, 10.75};
           describeSegmentation(*grid, options, s);
           CHECK(storedTexts(*grid) == expectedTexts(options, open, s.counts, s.fillHoles));
-          CHECK(grid->metaValue<double>("madf_theta") == -0.1234567890123);
+          if (mode != MergeMode::score)
+            CHECK(grid->metaValue<double>("madf_theta") == -0.1234567890123);
         }
 }
 
@@ -116,6 +125,13 @@ TEST_CASE("segmentation_metadata: how manifolds were merged is read again",
       CHECK(merging->tidy == 6);
     }
   grid->insertMeta("madf_adjacency", StringMetadata("face"));
+  CHECK_FALSE(storedMerging(*grid));
+  describeMerging(*grid, {-0.5, MergeMode::score, Adjacency::cell, 12, 10.75}, 6, 77);
+  REQUIRE(storedMerging(*grid));
+  CHECK(storedMerging(*grid)->options.mode == MergeMode::score);
+  CHECK(storedMerging(*grid)->options.strictness == 10.75);
+  CHECK(storedMerging(*grid)->tidy == 6);
+  grid->removeMeta("madf_strictness");
   CHECK_FALSE(storedMerging(*grid));
   describeOwnMerging(*grid, 2, 5);
   CHECK_FALSE(storedMerging(*grid));

@@ -25,6 +25,11 @@ void setCount(openvdb::GridBase& grid, const char* key, int64_t value) {
   grid.insertMeta(key, openvdb::Int64Metadata(value));
 }
 
+void removeMergeOptions(openvdb::GridBase& grid) {
+  for (const char* key : {"madf_theta", "madf_adjacency", "madf_delta", "madf_strictness"})
+    grid.removeMeta(key);
+}
+
 /// Finds the value that is called so.
 template <typename Enum>
 bool isNamed(const std::string& name, std::initializer_list<Enum> values, Enum& found) {
@@ -77,29 +82,43 @@ void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options
 
 void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int tidy,
                      int64_t grains) {
-  grid.insertMeta("madf_theta", openvdb::DoubleMetadata(options.theta));
+  removeMergeOptions(grid);
   setText(grid, "madf_merge", toString(options.mode));
-  setText(grid, "madf_adjacency", toString(options.adjacency));
-  setCount(grid, "madf_delta", options.delta);
+  if (options.mode == MergeMode::score) {
+    grid.insertMeta("madf_strictness", openvdb::DoubleMetadata(options.strictness));
+  } else {
+    grid.insertMeta("madf_theta", openvdb::DoubleMetadata(options.theta));
+    setText(grid, "madf_adjacency", toString(options.adjacency));
+    setCount(grid, "madf_delta", options.delta);
+  }
   setCount(grid, "madf_tidy", tidy);
   setCount(grid, kGrains, grains);
 }
 
 void describeOwnMerging(openvdb::GridBase& grid, int tidy, int64_t grains) {
-  for (const char* key : {"madf_theta", "madf_adjacency", "madf_delta"}) grid.removeMeta(key);
+  removeMergeOptions(grid);
   setText(grid, "madf_merge", "own");
   setCount(grid, "madf_tidy", tidy);
   setCount(grid, kGrains, grains);
 }
 
 std::optional<StoredMerging> storedMerging(const openvdb::MetaMap& metadata) {
-  const auto theta = metadata.getMetadata<openvdb::DoubleMetadata>("madf_theta");
   const auto mode = metadata.getMetadata<openvdb::StringMetadata>("madf_merge");
+  const auto theta = metadata.getMetadata<openvdb::DoubleMetadata>("madf_theta");
+  const auto strictness = metadata.getMetadata<openvdb::DoubleMetadata>("madf_strictness");
   const auto adjacency = metadata.getMetadata<openvdb::StringMetadata>("madf_adjacency");
   const auto delta = metadata.getMetadata<openvdb::Int64Metadata>("madf_delta");
   const auto tidy = metadata.getMetadata<openvdb::Int64Metadata>("madf_tidy");
-  if (!theta || !mode || !adjacency || !delta || !tidy) return std::nullopt;
+  if (!mode || !tidy) return std::nullopt;
   StoredMerging merging;
+  merging.tidy = int(std::clamp<int64_t>(tidy->value(), -1, kMaxTidy + 1));
+  if (mode->value() == toString(MergeMode::score)) {
+    if (!strictness) return std::nullopt;
+    merging.options.mode = MergeMode::score;
+    merging.options.strictness = strictness->value();
+    return merging;
+  }
+  if (!theta || !adjacency || !delta) return std::nullopt;
   merging.options.theta = theta->value();
   if (!isNamed(mode->value(), {MergeMode::both, MergeMode::angle, MergeMode::neck},
                merging.options.mode) ||
@@ -108,7 +127,6 @@ std::optional<StoredMerging> storedMerging(const openvdb::MetaMap& metadata) {
     return std::nullopt;
   // Beyond any option: their checks refuse it.
   merging.options.delta = int(std::clamp<int64_t>(delta->value(), -1, kMaxDelta + 1));
-  merging.tidy = int(std::clamp<int64_t>(tidy->value(), -1, kMaxTidy + 1));
   return merging;
 }
 

@@ -13,16 +13,16 @@ namespace vdb_madf {
 /// `madf_fill_holes`, `madf_delta`, `madf_tidy`, and the counts `madf_object_voxels`,
 /// `madf_cavities`, `madf_cavity_voxels`, `madf_medial_balls`, `madf_kept_balls`,
 /// `madf_critical_points`, `madf_grains`, `madf_largest_squared_distance`, `madf_leaves` (int64);
-/// and `madf_weights`, if they are not 1:1:1 (voxel_weights.h).
+/// and `madf_weights`, if they are not 1:1:1 (voxel_weights.h). With MergeMode::score
+/// `madf_strictness` stands in the place of theta, adjacency and delta.
 void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options,
                           const SegmentationRecord& record);
 
-/// Replaces what another merging changes: theta, mode, adjacency, delta, tidy and the number of
-/// grains.
+/// Replaces what another merging changes: the mode and its options, tidy and the number of grains.
 void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int tidy,
                      int64_t grains);
 
-/// Replaces the same by a merging of one's own: `madf_merge` is "own"; theta, adjacency and delta
+/// Replaces the same by a merging of one's own: `madf_merge` is "own"; the options of modes
 /// go.
 void describeOwnMerging(openvdb::GridBase& grid, int tidy, int64_t grains);
 
