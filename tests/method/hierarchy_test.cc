@@ -27,7 +27,7 @@ namespace {
 using namespace vdb_madf;
 using namespace vdb_madf::test;
 using vdb_madf::detail::JoinScore;
-using Labels = std::vector<int32_t>;
+using GrainNumbers = std::vector<int32_t>;
 
 /// Of a pair of classes.
 struct Case {
@@ -98,7 +98,7 @@ ManifoldGraph randomGraph(Rng& rng) {
 }
 
 /// As a set of sets.
-bool refines(const Labels& fine, const Labels& coarse) {
+bool refines(const GrainNumbers& fine, const GrainNumbers& coarse) {
   std::map<int32_t, int32_t> of;
   for (size_t i = 0; i < fine.size(); ++i) {
     if (fine[i] == 0) continue;  // no grain, which may become part of one
@@ -272,12 +272,12 @@ TEST_CASE("hierarchy: halves of a body join, grains with a neck do not", "[hiera
   ManifoldGraph graph = nodesOnAxis({{100, 4000}, {100, 4000}});
   graph.edges = {{0, 1, 300, 99, true}};
   CHECK(mergeHierarchy(graph).joins.at(0).score / 512.0 == Approx(11.8).margin(0.1));
-  CHECK(merge(graph, atStrictness(11)).grainOfNode == Labels{1, 1});
-  CHECK(merge(graph, atStrictness(12)).grainOfNode == Labels{1, 2});
+  CHECK(merge(graph, atStrictness(11)).grainOfNode == GrainNumbers{1, 1});
+  CHECK(merge(graph, atStrictness(12)).grainOfNode == GrainNumbers{1, 2});
   requireOracles(graph);
   graph.edges = {{0, 1, 78, 25, true}};
   CHECK(mergeHierarchy(graph).joins.at(0).score / 512.0 == Approx(-10.2).margin(0.1));
-  CHECK(merge(graph, atStrictness(11)).grainOfNode == Labels{1, 2});
+  CHECK(merge(graph, atStrictness(11)).grainOfNode == GrainNumbers{1, 2});
   requireOracles(graph);
 }
 
@@ -326,8 +326,8 @@ TEST_CASE("hierarchy: a join can make a larger score", "[hierarchy]") {
 TEST_CASE("hierarchy: a class without a voxel of the object is no grain", "[hierarchy]") {
   ManifoldGraph graph = nodesOnAxis({{30, 0}, {30, 0}, {25, 400}});
   graph.edges = {{1, 2, 3, 1, true}};
-  CHECK(merge(graph, atStrictness(100)).grainOfNode == Labels{0, 0, 1});
-  CHECK(merge(graph, atStrictness(-100)).grainOfNode == Labels{0, 1, 1});
+  CHECK(merge(graph, atStrictness(100)).grainOfNode == GrainNumbers{0, 0, 1});
+  CHECK(merge(graph, atStrictness(-100)).grainOfNode == GrainNumbers{0, 1, 1});
   CHECK(merge(graph, atStrictness(-100)).representative == std::vector<uint32_t>{1});
   requireOracles(graph);
 }
@@ -398,9 +398,9 @@ TEST_CASE("hierarchy: a strictness is rounded to the nearest unit", "[hierarchy]
   const Hierarchy hierarchy = mergeHierarchy(graph);
   const double unit = 1 / 512.0, exact = hierarchy.joins.at(0).score * unit;
   for (const double k : {exact, exact + 0.49 * unit, exact - 0.5 * unit})
-    CHECK(cut(hierarchy, k).grainOfNode == Labels{1, 1});
+    CHECK(cut(hierarchy, k).grainOfNode == GrainNumbers{1, 1});
   for (const double k : {exact + 0.5 * unit, exact + unit, kMaxStrictness})
-    CHECK(cut(hierarchy, k).grainOfNode == Labels{1, 2});
+    CHECK(cut(hierarchy, k).grainOfNode == GrainNumbers{1, 2});
 }
 
 TEST_CASE("hierarchy: is cut where it has joins", "[hierarchy]") {
