@@ -79,12 +79,13 @@ ManifoldGraph randomGraph(Rng& rng) {
     positions.insert({rng.below(side), rng.below(side), rng.below(side)});
   ManifoldGraph graph;
   const double empty = rng.chance(0.2) ? 0.3 : 0;  // nodes without voxels of the object
+  const double hollow = rng.chance(0.3) ? 0.3 : 0;  // nodes with voxels in cavities
   for (const Coord& p : positions)
     graph.nodes.push_back({p, 2 + rng.below(radii),
                            rng.chance(empty) ? 0
                            : anySize         ? logarithmic(rng, 16)
                                              : 1 + rng.below(sizes),
-                           rng.chance(0.2) ? rng.below(20) : 0});
+                           rng.chance(hollow) ? rng.below(20) : 0});
   const double density = rng.unit() * rng.unit(), steep = rng.chance(0.3) ? rng.unit() : 0;
   for (uint32_t a = 0; a < graph.nodes.size(); ++a)
     for (uint32_t b = a + 1; b < graph.nodes.size(); ++b) {
