@@ -45,7 +45,7 @@ void requireRow(const SweepRow& row, const MaskGrid& object, const SweepOptions&
   CAPTURE(row.gamma, int(row.mode), row.theta, row.delta);
   SegmentOptions one;
   one.gamma = row.gamma;
-  one.merge = {row.theta, row.mode, options.adjacency, row.delta};
+  one.merge = {row.theta, row.mode, options.adjacency, row.delta, row.strictness};
   one.tidy = options.tidy;
   one.boundary = options.boundary;
   const Segmentation segmentation = segment(object, one);
@@ -79,7 +79,7 @@ bool equalRows(const SweepRow& a, const SweepRow& b) {
          a.grains == b.grains && a.flaws.crumbs == b.flaws.crumbs &&
          a.medianVoxels == b.medianVoxels && a.smallGrains == b.smallGrains &&
          a.smallVoxels == b.smallVoxels && a.largestVoxels == b.largestVoxels &&
-         a.objectVoxels == b.objectVoxels;
+         a.objectVoxels == b.objectVoxels && a.strictness == b.strictness;
 }
 
 }  // namespace
@@ -97,6 +97,29 @@ TEST_CASE("parameter_sweep: each row is what a segmentation with its options giv
     CHECK(rows[0].grains < rows[1].grains);
     CHECK(rows.back().grains > rows[0].grains);
   }
+}
+
+TEST_CASE("parameter_sweep: rows by score have a strictness, and no theta and delta",
+          "[parameter_sweep]") {
+  initialize();
+  const MaskGrid::Ptr object = rough();
+  SweepOptions options = wide();
+  options.modes = {MergeMode::score, MergeMode::both};
+  options.strictnesses = {11, 12.5, 9};
+  const std::vector<SweepRow> rows = parameterSweep(*object, options);
+  REQUIRE(rows.size() == 2 * (3 + 6));
+  for (const SweepRow& row : rows) requireRow(row, *object, options);
+  for (size_t i = 0; i < 3; ++i) {
+    CHECK(rows[i].mode == MergeMode::score);
+    CHECK(rows[i].strictness == options.strictnesses[i]);
+    CHECK(rows[3 + i].mode == MergeMode::both);
+  }
+  CHECK(rows[2].grains < rows[0].grains);
+  CHECK(rows[0].grains < rows[1].grains);
+  options.strictnesses = {};
+  CHECK_THROWS_AS(parameterSweep(*object, options), InvalidInput);
+  options.strictnesses = {11, 1e9};
+  CHECK_THROWS_AS(parameterSweep(*object, options), InvalidInput);
 }
 
 TEST_CASE("parameter_sweep: rows come by gamma, mode, delta and theta, as asked for",
@@ -184,6 +207,8 @@ TEST_CASE("parameter_sweep: stored manifolds give the same rows", "[parameter_sw
   const MaskGrid::Ptr object = rough();
   SweepOptions options = wide();
   options.gammas = {12};
+  options.modes.push_back(MergeMode::score);
+  options.strictnesses = {10, 11};
   SegmentOptions one;
   one.gamma = 12;
   one.keepManifold = true;

@@ -61,7 +61,9 @@ const std::vector<MergeOptions> kMergings = {{-1, MergeMode::both, Adjacency::ma
                                              {-0.8, MergeMode::angle, Adjacency::manifold, 0},
                                              {-0.8, MergeMode::angle, Adjacency::cell, 0},
                                              {-0.6, MergeMode::neck, Adjacency::manifold, 5},
-                                             {1, MergeMode::both, Adjacency::cell, 80}};
+                                             {1, MergeMode::both, Adjacency::cell, 80},
+                                             {-0.9, MergeMode::score, Adjacency::manifold, 2, 8},
+                                             {-0.5, MergeMode::score, Adjacency::manifold, 2, 11}};
 
 /// Labels as the oracle merges its own manifolds, and all else as a fresh segmentation has it.
 void requireFresh(RandomCase c) {

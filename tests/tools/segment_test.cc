@@ -195,6 +195,34 @@ TEST_CASE("cli: sweep gives a line for each choice, equal to its segmentation", 
   CHECK(svg == bench.bytes("b.svg"));
 }
 
+TEST_CASE("cli: grains by score, segmented, remerged and swept", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSnow + "s.vdb");
+  bench.mustRun("segment s.vdb all.vdb --keep manifold");
+  bench.mustRun("sweep s.vdb a.csv --gamma 0 --merge score --strictness 9:12:1.5,11 --plot a.svg");
+  std::istringstream csv(bench.bytes("a.csv"));
+  std::string line;
+  std::getline(csv, line);
+  CHECK(line.find("gamma,merge,delta,theta,strictness,grains,") == 0);
+  for (const std::string strictness : {"9", "10.5", "12", "11"}) {
+    std::getline(csv, line);
+    CAPTURE(strictness, line);
+    const std::string how = strictness == "11" ? "" : " --strictness " + strictness;
+    const Json json =
+        Json::parse(bench.mustRun("segment s.vdb g.vdb --json - --merge score" + how));
+    CHECK(line.find("0,score,,," + strictness + "," + std::to_string(json.at("grains").get<int>()) +
+                    ",") == 0);
+    bench.mustRun("remerge all.vdb r.vdb --merge score" + how);
+    bench.mustRun("convert r.vdb r.npy --grid grain");
+    bench.mustRun("convert g.vdb g.npy --grid grain");
+    CHECK(bench.bytes("r.npy") == bench.bytes("g.npy"));
+  }
+  CHECK(bench.bytes("a.svg").find("nan") == std::string::npos);
+  bench.mustRun("sweep s.vdb b.csv --gamma 0 --merge neck,score --theta -0.9");
+  CHECK(bench.bytes("b.csv").find("\n0,neck,2,-0.9,,") != std::string::npos);
+  CHECK(bench.bytes("b.csv").find("\n0,score,,,11,") != std::string::npos);
+}
+
 TEST_CASE("cli: compare finds a file equal to itself", "[cli]") {
   const Bench bench;
   bench.mustRun(kSpheres + "s.vdb");

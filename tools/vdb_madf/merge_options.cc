@@ -3,6 +3,9 @@
 
 #include "merge_options.h"
 
+#include <cmath>
+#include <utility>
+
 #include "parse.h"
 #include "vdb_madf/method/tidy.h"
 #include "wrong_usage.h"
@@ -12,18 +15,34 @@ namespace vdb_madf::tools {
 void MergeArguments::add(Verb verb) {
   verb.option("--theta", theta, "merge balls that meet at a cosine below T, -1..1 (default -0.9)")
       .typeName("T");
-  verb.option("--merge", mode, "tests: both, angle (the paper's), neck (default both)")
-      .oneOf({"both", "angle", "neck"});
+  verb.option("--merge", mode, "tests: both, angle (the paper's), neck; or score (default both)")
+      .oneOf({"both", "angle", "neck", "score"});
   verb.option("--adjacency", adjacency,
               "what the angle test pairs: manifold, cell (default manifold)")
       .oneOf({"manifold", "cell"});
   verb.option("--delta", delta,
               "also merge where the neck is under K/8 voxel narrower than the grain (default 2)")
       .typeName("K");
+  verb.option("--strictness", strictness,
+              "of --merge score: least score that joins; larger: more grains (default 11)")
+      .typeName("K");
 }
 
 MergeOptions MergeArguments::parse() const {
   MergeOptions options;
+  if (mode == "score") {
+    for (const auto& [text, name] : {std::pair<const std::string*, const char*>{&theta, "--theta"},
+                                     {&delta, "--delta"},
+                                     {&adjacency, "--adjacency"}})
+      if (!text->empty())
+        throw WrongUsage(std::string(name) +
+                         ": belongs to --merge both, angle and neck; score has --strictness");
+    options.mode = MergeMode::score;
+    if (!strictness.empty()) options.strictness = parseStrictness(strictness);
+    return options;
+  }
+  if (!strictness.empty())
+    throw WrongUsage("--strictness " + strictness + ": belongs to --merge score: give that, too");
   if (!theta.empty()) options.theta = parseNumber(theta, "--theta");
   if (!(options.theta >= -1 && options.theta <= 1))
     throw WrongUsage("--theta " + theta + ": is a cosine, it must lie between -1 and 1");
@@ -40,6 +59,13 @@ int parseDelta(const std::string& text) {
     throw WrongUsage("--delta " + text + ": is in eighths of a voxel, it must lie between 0 and " +
                      std::to_string(kMaxDelta));
   return int(delta);
+}
+
+double parseStrictness(const std::string& text) {
+  const double strictness = parseNumber(text, "--strictness");
+  if (!(std::abs(strictness) <= kMaxStrictness))
+    throw WrongUsage("--strictness " + text + ": must lie between -200000 and 200000");
+  return strictness;
 }
 
 void addFillHoles(Verb verb, std::string& text) {

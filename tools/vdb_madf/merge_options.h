@@ -14,7 +14,7 @@ namespace vdb_madf::tools {
 
 /// The merge options as typed; empty: not given.
 struct MergeArguments {
-  std::string theta, mode, adjacency, delta;
+  std::string theta, mode, adjacency, delta, strictness;
   void add(Verb verb);
   /// @throw WrongUsage
   MergeOptions parse() const;
@@ -22,6 +22,9 @@ struct MergeArguments {
 
 /// --delta. @throw WrongUsage
 int parseDelta(const std::string& text);
+
+/// --strictness. @throw WrongUsage
+double parseStrictness(const std::string& text);
 
 /// --fill-holes: how cavities are filled; empty: not given.
 void addFillHoles(Verb verb, std::string& text);

@@ -6,11 +6,13 @@
 
 #include <openvdb/Metadata.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "command.h"
 #include "input_options.h"
@@ -29,17 +31,17 @@ namespace vdb_madf::tools {
 
 namespace {
 
-constexpr char kGammas[] = "0,20,160";
+constexpr char kGammas[] = "0,20,160", kThetas[] = "-1:-0.5:0.05", kDeltas[] = "2";
 
 struct SweepArguments {
   InputOptions input;
-  std::string out, plot, gamma = kGammas, theta = "-1:-0.5:0.05", merge = "both,angle,neck";
-  std::string adjacency = "manifold", boundary = "auto", small = "100", delta = "2";
-  std::string fillHoles, tidy, scratch;
+  std::string out, plot, gamma = kGammas, theta = kThetas, merge = "both,angle,neck";
+  std::string adjacency = "manifold", boundary = "auto", small = "100", delta = kDeltas;
+  std::string strictness, fillHoles, tidy, scratch;
   SweepOptions sweep;
 };
 
-constexpr int kMaxThetas = 1000;
+constexpr int kMaxSteps = 1000;
 
 /// As split(), but nothing need follow the last separator.
 std::vector<std::string> listed(const std::string& text, char separator) {
@@ -56,24 +58,29 @@ double asTyped(double number) {
   return std::stod(text);
 }
 
-/// A list of cosines and of ranges FIRST:LAST:STEP, the last included.
-std::vector<double> parseThetas(const std::string& text) {
-  std::vector<double> thetas;
+/// A list of numbers and of ranges FIRST:LAST:STEP, the last included.
+std::vector<double> parseRanges(const std::string& text, const std::string& option) {
+  std::vector<double> numbers;
   for (const std::string& part : listed(text, ',')) {
     std::vector<double> range;
     for (const std::string& number : listed(part, ':'))
-      range.push_back(parseNumber(number, "--theta"));
+      range.push_back(parseNumber(number, option));
     if (range.size() == 1) {
-      thetas.push_back(range[0]);
+      numbers.push_back(range[0]);
     } else {
       const double count = range.size() == 3 ? (range[1] - range[0]) / range[2] : -1;
-      if (!(count >= 0 && count < kMaxThetas))
-        throw WrongUsage("--theta " + part + ": must be a number or FIRST:LAST:STEP of at most " +
-                         std::to_string(kMaxThetas) + " steps from FIRST to LAST");
+      if (!(count >= 0 && count < kMaxSteps))
+        throw WrongUsage(option + " " + part + ": must be a number or FIRST:LAST:STEP of at most " +
+                         std::to_string(kMaxSteps) + " steps from FIRST to LAST");
       for (int i = 0; i <= int(count + 1e-9); ++i)
-        thetas.push_back(asTyped(range[0] + i * range[2]));
+        numbers.push_back(asTyped(range[0] + i * range[2]));
     }
   }
+  return numbers;
+}
+
+std::vector<double> parseThetas(const std::string& text) {
+  const std::vector<double> thetas = parseRanges(text, "--theta");
   for (const double theta : thetas)
     if (!(theta >= -1 && theta <= 1))
       throw WrongUsage("--theta " + text + ": cosines must lie between -1 and 1");
@@ -85,6 +92,30 @@ void requireDifferent(const std::vector<T>& values, const std::string& option) {
   if (values.empty()) throw WrongUsage(option + ": the list is empty");
   if (std::set<T>(values.begin(), values.end()).size() < values.size())
     throw WrongUsage(option + ": a value is there twice");
+}
+
+/// @throw WrongUsage if options of the tests are given for scores alone, or those of scores without
+void parseStrictnesses(SweepArguments& o) {
+  const std::vector<MergeMode>& modes = o.sweep.modes;
+  const auto scores = std::count(modes.begin(), modes.end(), MergeMode::score);
+  if (!scores && !o.strictness.empty())
+    throw WrongUsage("--strictness " + o.strictness + ": belongs to --merge score: give that, too");
+  if (scores && modes.size() == 1)
+    for (const auto& [isGiven, name] :
+         {std::pair(o.theta != kThetas, "--theta"), std::pair(o.delta != kDeltas, "--delta"),
+          std::pair(o.adjacency != "manifold", "--adjacency")})
+      if (isGiven)
+        throw WrongUsage(std::string(name) +
+                         ": belongs to --merge both, angle and neck; score has --strictness");
+  if (scores && modes.size() > 1 && !o.plot.empty())
+    throw WrongUsage(
+        "--plot draws grains by --strictness or by --theta: sweep --merge score alone");
+  if (o.strictness.empty()) return;
+  o.sweep.strictnesses = parseRanges(o.strictness, "--strictness");
+  for (const double strictness : o.sweep.strictnesses)
+    if (!(std::abs(strictness) <= kMaxStrictness))
+      throw WrongUsage("--strictness " + o.strictness + ": must lie between -200000 and 200000");
+  requireDifferent(o.sweep.strictnesses, "--strictness");
 }
 
 void parse(SweepArguments& o) {
@@ -105,8 +136,9 @@ void parse(SweepArguments& o) {
     arguments.mode = mode;
     sweep.modes.push_back(arguments.parse().mode);
     if (mode != toString(sweep.modes.back()))
-      throw WrongUsage("--merge " + mode + ": the tests are both, angle and neck");
+      throw WrongUsage("--merge " + mode + ": must be both, angle, neck or score");
   }
+  parseStrictnesses(o);
   sweep.thetas = parseThetas(o.theta);
   sweep.deltas.clear();
   for (const std::string& delta : listed(o.delta, ',')) sweep.deltas.push_back(parseDelta(delta));
@@ -128,17 +160,25 @@ double share(int64_t part, int64_t whole) {
 }
 
 std::string table(const std::vector<SweepRow>& rows) {
+  const bool hasScores = std::any_of(
+      rows.begin(), rows.end(), [](const SweepRow& row) { return row.mode == MergeMode::score; });
   std::ostringstream csv;
-  csv << "gamma,merge,delta,theta,grains,median_voxels,small_grains,small_grains_share,"
+  csv << "gamma,merge,delta,theta," << (hasScores ? "strictness," : "")
+      << "grains,median_voxels,small_grains,small_grains_share,"
          "small_grains_volume_share,largest_grain_volume_share,crumbs,specks,slivers,grains_in_"
          "pieces\n";
   csv.precision(9);
-  for (const SweepRow& row : rows)
-    csv << row.gamma << ',' << toString(row.mode) << ',' << row.delta << ',' << row.theta << ','
-        << row.grains << ',' << row.medianVoxels << ',' << row.smallGrains << ','
+  for (const SweepRow& row : rows) {
+    csv << row.gamma << ',' << toString(row.mode) << ',';
+    if (row.mode == MergeMode::score)
+      csv << ",," << row.strictness << ',';
+    else
+      csv << row.delta << ',' << row.theta << (hasScores ? ",," : ",");
+    csv << row.grains << ',' << row.medianVoxels << ',' << row.smallGrains << ','
         << share(row.smallGrains, row.grains) << ',' << share(row.smallVoxels, row.objectVoxels)
         << ',' << share(row.largestVoxels, row.objectVoxels) << ',' << row.flaws.crumbs << ','
         << row.flaws.specks << ',' << row.flaws.slivers << ',' << row.flaws.inPieces << '\n';
+  }
   return csv.str();
 }
 
@@ -232,13 +272,16 @@ void addSweep(Verb command, Common& common, Action& action) {
   verb.option("--theta", o->theta, "list of cosines and of ranges FIRST:LAST:STEP")
       .typeName("LIST")
       .showDefault();
-  verb.option("--merge", o->merge, "list of the tests: both, angle, neck")
+  verb.option("--merge", o->merge, "list of the tests: both, angle, neck; or score")
       .typeName("LIST")
-      .offer({"both", "angle", "neck"})
+      .offer({"both", "angle", "neck", "score"})
       .showDefault();
   verb.option("--delta", o->delta, "list of tolerances, eighths of a voxel")
       .typeName("LIST")
       .showDefault();
+  verb.option("--strictness", o->strictness,
+              "of --merge score: list of numbers and of ranges (default 11)")
+      .typeName("LIST");
   addFillHoles(verb, o->fillHoles);
   addTidy(verb, o->tidy);
   verb.option("--adjacency", o->adjacency, "what the angle test pairs: manifold, cell")

@@ -29,8 +29,15 @@ struct Line {
   MergeMode mode = MergeMode::both;
   int delta = 0;
   detail::Pen pen;
-  std::vector<SweepRow> rows;  ///< by theta
+  std::vector<SweepRow> rows;  ///< by theta, or strictness
 };
+
+bool isByScore(const Line& line) {
+  return line.mode == MergeMode::score;
+}
+double sweptOf(const SweepRow& row) {
+  return row.mode == MergeMode::score ? row.strictness : row.theta;
+}
 
 /// Rows of equal gamma, mode and delta follow each other.
 std::vector<Line> linesOf(const std::vector<SweepRow>& rows) {
@@ -57,7 +64,7 @@ std::vector<Line> linesOf(const std::vector<SweepRow>& rows) {
   }
   for (Line& line : lines)
     std::sort(line.rows.begin(), line.rows.end(),
-              [](const SweepRow& a, const SweepRow& b) { return a.theta < b.theta; });
+              [](const SweepRow& a, const SweepRow& b) { return sweptOf(a) < sweptOf(b); });
   return lines;
 }
 
@@ -65,21 +72,22 @@ using ValueOf = std::function<double(const SweepRow&)>;
 
 void drawDiagram(Canvas& canvas, const std::vector<Line>& lines, double left,
                  const std::string& title, bool logarithmic, const ValueOf& valueOf) {
-  std::vector<double> thetas, values;
+  std::vector<double> swept, values;
   for (const Line& line : lines)
     for (const SweepRow& row : line.rows) {
-      thetas.push_back(row.theta);
+      swept.push_back(sweptOf(row));
       values.push_back(valueOf(row));
     }
   if (!logarithmic) values.insert(values.end(), {0.0, 1.0});
   const detail::DiagramFrame frame{left, kDiagramTop, kDiagramWidth, kDiagramHeight};
-  const detail::PlotAxis x(thetas, false, left, left + kDiagramWidth),
+  const detail::PlotAxis x(swept, false, left, left + kDiagramWidth),
       y(values, logarithmic, kDiagramTop + kDiagramHeight, kDiagramTop);
-  detail::drawDiagramFrame(canvas, frame, x, y, "theta", title);
+  const bool byScore = !lines.empty() && isByScore(lines.front());
+  detail::drawDiagramFrame(canvas, frame, x, y, byScore ? "strictness" : "theta", title);
   for (const Line& line : lines) {
     std::vector<Point> points;
     for (const SweepRow& row : line.rows)
-      if (y.shows(valueOf(row))) points.push_back({x(row.theta), y(valueOf(row))});
+      if (y.shows(valueOf(row))) points.push_back({x(sweptOf(row)), y(valueOf(row))});
     canvas.line(points, line.pen);
   }
 }
@@ -109,7 +117,7 @@ std::string sweepPlot(const std::vector<SweepRow>& rows, int64_t smallVoxels, Pl
       canvas.line({{x, y}, {x + 34, y}}, lines[i].pen);
       canvas.text({x + 42, y + 4},
                   "gamma " + std::to_string(lines[i].gamma) + ", " + toString(lines[i].mode) +
-                      ", delta " + std::to_string(lines[i].delta),
+                      (isByScore(lines[i]) ? "" : ", delta " + std::to_string(lines[i].delta)),
                   detail::kPlotText, detail::kPlotInk);
     }
   };

@@ -8,6 +8,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/method/hierarchy.h"
 #include "vdb_madf/segmentation/detail/grain_flags.h"
 #include "vdb_madf/segmentation/detail/manifold_labels.h"
 #include "vdb_madf/segmentation/detail/sweep_rows.h"
@@ -44,9 +45,15 @@ void addRows(const Int32Grid& manifold, const ManifoldGraph& graph,
              const std::optional<Domain>& domain, int64_t gamma, const SweepOptions& options,
              std::vector<SweepRow>& rows, Interrupter* interrupter) {
   const LeafIndex index = detail::topologyOf(manifold);
+  std::optional<Hierarchy> hierarchy;  // one for all strictnesses
+  const auto mergingOf = [&](const MergeOptions& how) {
+    if (how.mode != MergeMode::score) return merge(graph, how);
+    const auto& all = options.strictnesses;
+    if (!hierarchy) hierarchy = mergeHierarchy(graph, *std::min_element(all.begin(), all.end()));
+    return cut(*hierarchy, how.strictness);
+  };
   const auto merged = [&](const MergeOptions& how) {
-    GrainLabels grains =
-        detail::labelGrains(manifold, index, graph, merge(graph, how), interrupter);
+    GrainLabels grains = detail::labelGrains(manifold, index, graph, mergingOf(how), interrupter);
     const LabelFlaws flaws =
         detail::tidyAndCountFlaws(index, options.tidy, domain, grains, interrupter);
     return detail::SweptGrains{std::move(grains.voxels), flaws};
@@ -58,7 +65,7 @@ void addRows(const Int32Grid& manifold, const ManifoldGraph& graph,
 
 void detail::checkSweep(const SweepOptions& options) {
   if (options.gammas.empty() || options.modes.empty() || options.thetas.empty() ||
-      options.deltas.empty())
+      options.deltas.empty() || options.strictnesses.empty())
     throw InvalidInput(
         "nothing to sweep: give at least one gamma, one merge mode, one theta and one delta");
   for (const int64_t gamma : options.gammas)
@@ -72,13 +79,34 @@ void detail::checkSweep(const SweepOptions& options) {
     merge.delta = delta;
     checkMergeOptions(merge);
   }
+  for (const double strictness : options.strictnesses) {
+    merge.strictness = strictness;
+    checkMergeOptions(merge);
+  }
   checkTidy(options.tidy);
 }
 
 void detail::addSweepRows(const SweepOptions& options, int64_t gamma,
                           const std::function<SweptGrains(const MergeOptions& merge)>& merged,
                           std::vector<SweepRow>& rows) {
-  for (const MergeMode mode : options.modes)
+  const auto addRow = [&](SweepRow row) {
+    row.gamma = gamma;
+    SweptGrains grains =
+        merged({row.theta, row.mode, options.adjacency, row.delta, row.strictness});
+    row.flaws = grains.flaws;
+    count(std::move(grains.voxels), options.smallVoxels, row);
+    rows.push_back(row);
+  };
+  for (const MergeMode mode : options.modes) {
+    SweepRow row;
+    row.mode = mode;
+    if (mode == MergeMode::score) {
+      for (const double strictness : options.strictnesses) {
+        row.strictness = strictness;
+        addRow(row);
+      }
+      continue;
+    }
     for (const int delta : options.deltas)
       for (const double theta : options.thetas) {
         if (mode == MergeMode::angle && delta != options.deltas.front()) {  // it has no delta
@@ -86,16 +114,11 @@ void detail::addSweepRows(const SweepOptions& options, int64_t gamma,
           rows.back().delta = delta;
           continue;
         }
-        SweepRow row;
-        row.gamma = gamma;
-        row.mode = mode;
         row.theta = theta;
         row.delta = delta;
-        SweptGrains grains = merged({theta, mode, options.adjacency, delta});
-        row.flaws = grains.flaws;
-        count(std::move(grains.voxels), options.smallVoxels, row);
-        rows.push_back(row);
+        addRow(row);
       }
+  }
 }
 
 std::vector<SweepRow> parameterSweep(const MaskGrid& object, const SweepOptions& options,

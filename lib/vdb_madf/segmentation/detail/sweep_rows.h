@@ -20,7 +20,7 @@ struct SweptGrains {
   LabelFlaws flaws;
 };
 
-/// Adds a row for each mode, delta and theta.
+/// Adds a row for each mode, delta and theta, or strictness.
 void addSweepRows(const SweepOptions& options, int64_t gamma,
                   const std::function<SweptGrains(const MergeOptions& merge)>& merged,
                   std::vector<SweepRow>& rows);
