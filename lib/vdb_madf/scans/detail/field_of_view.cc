@@ -16,7 +16,7 @@ namespace vdb_madf::detail {
 
 namespace {
 
-constexpr size_t kRowsPerChunk = 16;
+constexpr size_t kRowsOfView = 16;
 
 /// Of the voxels whose value differs from the first one's, and of those that are not 0: which of the
 /// two are the field of view is known when the last corner was seen.
@@ -56,7 +56,7 @@ double farthestSample(ImageReader& image, const CylinderAxis& axis, Interrupter*
         sameCorners &=
             slice[corner] == *first || (*first != *first && slice[corner] != slice[corner]);
     }
-    parallelFor(ny * size_t(count), kRowsPerChunk, nullptr, [&](size_t begin, size_t end) {
+    parallelFor(ny * size_t(count), kRowsOfView, nullptr, [&](size_t begin, size_t end) {
       Farthest& farthest = partial.local();
       for (size_t row = begin; row < end; ++row) {
         const Coord p(0, int(row % ny), z + int(row / ny));
