@@ -29,8 +29,8 @@ struct BondMeasures {
   int patches = 0;      ///< parts of the interface, faces with a common corner being one
   /// None of an interface of fewer than 10 faces, or of faces in a row.
   std::optional<InterfaceCurvature> curvature;
-  /// Distance of the representatives c of the grains, with squared inscribed radii D, and cos alpha
-  /// = (|c1 - c2|^2 - D1 - D2) / (2 sqrt(D1 D2)). None without background.
+  /// Distance of the representatives c of the grains, with squared inscribed radii D, and
+  /// cos alpha = (|c1 - c2|^2 - D1 - D2) / (2 sqrt(D1 D2)). None without background.
   std::optional<double> distance, cosAlpha;
   /// Gray values at the voxels on both sides, those of either grain with a face towards the other,
   /// each once. None unless it was asked for.
