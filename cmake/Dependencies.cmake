@@ -29,6 +29,7 @@ endif()
 find_package(Blosc REQUIRED)  # with OpenVDB's own find module
 find_package(zstd REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_package(fmt REQUIRED)
 
 option(VDB_MADF_HDF5 "Read and write HDF5 if libhdf5 is found" ON)
 if(VDB_MADF_HDF5)

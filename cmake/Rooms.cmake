@@ -62,7 +62,8 @@ macro(vdb_madf_room_library suffix)
   foreach(room IN LISTS arg_USES)
     target_link_libraries(${target}${suffix} PUBLIC vdb_madf_${room}${suffix})
   endforeach()
-  target_link_libraries(${target}${suffix} PUBLIC ${arg_LINKS} PRIVATE ${arg_PRIVATE})
+  target_link_libraries(${target}${suffix} PUBLIC ${arg_LINKS}
+    PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:fmt::fmt-header-only>)
   if(arg_GRIDS AND name STREQUAL core)
     target_precompile_headers(${target}${suffix} PRIVATE
       <vdb_madf/grids/grid_types.h> <vdb_madf/grids/detail/grid_instances.h>)
