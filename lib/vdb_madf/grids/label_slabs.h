@@ -24,4 +24,15 @@ struct LabelSlabs {
   size_t slabCount() const { return cuts.empty() ? 0 : cuts.size() - 1; }
 };
 
+/// Labels that are in memory as a single slab, for functions that take slabs.
+inline LabelSlabs singleSlab(const Int32Grid::Ptr& labels) {
+  LabelSlabs slabs;
+  const CoordBBox box = labels->evalActiveVoxelBoundingBox();
+  slabs.cuts = {0, 8};
+  if (!labels->empty() && !box.empty()) slabs.cuts = {box.min().z() & ~7, (box.max().z() | 7) + 1};
+  slabs.read = [labels](size_t, Interrupter*) { return labels; };
+  slabs.about = labels;
+  return slabs;
+}
+
 }  // namespace vdb_madf

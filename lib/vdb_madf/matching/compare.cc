@@ -340,14 +340,4 @@ Comparison compare(const LabelSlabs& truth, const LabelSlabs& test, Interrupter*
   return comparisonOf(counts.sorted());
 }
 
-LabelSlabs singleSlab(const Int32Grid::Ptr& labels) {
-  LabelSlabs slabs;
-  const CoordBBox box = labels->evalActiveVoxelBoundingBox();
-  slabs.cuts = {0, 8};
-  if (!labels->empty() && !box.empty()) slabs.cuts = {box.min().z() & ~7, (box.max().z() | 7) + 1};
-  slabs.read = [labels](size_t, Interrupter*) { return labels; };
-  slabs.about = labels;
-  return slabs;
-}
-
 }  // namespace vdb_madf

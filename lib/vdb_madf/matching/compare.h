@@ -77,7 +77,4 @@ Comparison compare(const Int32Grid& truth, const Int32Grid& test,
 Comparison compare(const LabelSlabs& truth, const LabelSlabs& test,
                    Interrupter* interrupter = nullptr);
 
-/// Labels that are in memory as a single slab, for functions that take slabs.
-LabelSlabs singleSlab(const Int32Grid::Ptr& labels);
-
 }  // namespace vdb_madf
