@@ -15,6 +15,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/base/memory.h"
+#include "vdb_madf/base/word_list.h"
 #include "vdb_madf/exports/clump_bonds.h"
 #include "vdb_madf/exports/clump_file.h"
 #include "vdb_madf/exports/hexahedra_file.h"
@@ -214,7 +215,7 @@ void exportSurface(const ExportArguments& o, const Common& common, const Int32Gr
 struct ExportKind {
   const char* name;
   void (*run)(const ExportArguments&, const Common&, const Int32Grid&);
-  const char* endings;  ///< in words
+  std::string endings;  ///< in words
   bool (*accepts)(const std::string& out);
   /// Of labels that need not fit in memory together; null: not known.
   void (*runSlabs)(const ExportArguments&, const Common&, const LabelSlabs&) = nullptr;
@@ -338,7 +339,7 @@ bool isVtiOutput(const std::string& out) {
   return fileEnding(out) == ".vti";
 }
 
-constexpr ExportKind kExportKinds[] = {
+const ExportKind kExportKinds[] = {
     {"mesh", exportMesh, ".ply, .obj, .stl, .glb or .vtp, or a folder name without an ending (STL)",
      isMeshOutput},
     {"viz", exportPreview, ".vdb", hasVdbEnding},
@@ -348,7 +349,7 @@ constexpr ExportKind kExportKinds[] = {
     {"vti", exportVti, ".vti", isVtiOutput},
     {"clumps", exportClumps, ".csv, .txt (YADE) or .data (LAMMPS)", isClumpEnding},
     {"hexa", exportHexahedra, ".vtu or .inp (Abaqus)", isHexahedraEnding},
-    {"mask", exportMask, ".tif, .raw, .mhd, .mha, .nrrd, .npy or .h5", isImageEnding, exportMask},
+    {"mask", exportMask, wordList(writtenEndings()), isImageEnding, exportMask},
     {"network", exportNetwork, ".vtp, .graphml or .csv", isNetworkEnding, exportNetwork},
     {"zarr", exportZarr, ".zarr, a folder (.ome.zarr)", isZarrEnding, exportZarr},
 };

@@ -8,11 +8,13 @@
 #include <optional>
 
 #include "command.h"
+#include "grid_image.h"
 #include "outputs.h"
 #include "pack_slabs.h"
 #include "parse.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/base/word_list.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/written_together.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -266,9 +268,9 @@ void parse(const SampleKind& kind, GenerateArguments& options) {
     if (!options.surface.empty() || !options.scanNoise.empty())
       throw WrongUsage(options.out +
                        ": --surface and --scan-noise change the whole: leave them out in slabs");
-  } else if (!hasVdbEnding(options.out) && !isImageEnding(options.out))
-    throw WrongUsage(options.out +
-                     ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd, .npy or .h5");
+  } else {
+    checkVolumeEnding(options.out);
+  }
   if (!options.voxelSizeText.empty()) options.voxelSize = parseVoxelSize(options.voxelSizeText);
   checkVoxels(kind, options);
   kind.parse(options);
@@ -318,7 +320,7 @@ void runGenerate(const SampleKind& kind, const GenerateArguments& options, const
 void addKind(Verb generate, Common& common, Action& action, const SampleKind& kind) {
   auto options = std::make_shared<GenerateArguments>();
   Verb verb = addVerb(generate, common, kind.name, kind.description, kind.example);
-  verb.option("OUT", options->out, "file to write: .vdb, .tif, .raw, .mhd, .mha, .nrrd, .npy, .h5")
+  verb.option("OUT", options->out, "file to write: .vdb, " + wordList(writtenEndings()))
       .required();
   const Option size =
       verb.option("--size", options->size, "edge of a cube, voxels").range(1, kMaxExtent);

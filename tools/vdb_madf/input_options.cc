@@ -8,6 +8,7 @@
 #include "outputs.h"
 #include "parse.h"
 #include "vdb_madf/base/lower_case.h"
+#include "vdb_madf/base/word_list.h"
 #include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_keys.h"
@@ -22,11 +23,7 @@ namespace vdb_madf::tools {
 namespace {
 
 std::string typeNames() {
-  const std::vector<std::string> names = sampleTypeNames();
-  std::string text = names.front();
-  for (size_t i = 1; i < names.size(); ++i)
-    text += (i + 1 < names.size() ? ", " : " or ") + names[i];
-  return text;
+  return wordList(sampleTypeNames());
 }
 
 /// Runs `load`; if it has to be said what is object, the message says by which options.
