@@ -18,6 +18,9 @@
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/vdb/slab_folder_writer.h"
 #include "vdb_madf/vdb/write_vdb.h"
+#include "vdb_madf/volumes/choose_grid.h"
+#include "vdb_madf/volumes/load_labels.h"
+#include "vdb_madf/volumes/load_object.h"
 #include "vdb_madf/volumes/write_image.h"
 
 using namespace vdb_madf;
@@ -221,15 +224,13 @@ TEST_CASE("volume: shares are the layers of the whole, each once", "[volume]") {
         CAPTURE(name, parts);
         MaskTree joined;
         std::set<int> layers;
-        VolumeOptions sharing = options;
-        sharing.takeLayer = [&](MaskTree& layer) {
+        const TakeLayer take = [&](MaskTree& layer) {
           if (layer.empty()) return;
           CHECK(layers.insert(layer.cbeginLeaf()->origin().z()).second);
           joined.topologyUnion(layer);
         };
         for (int part = 0; part < parts; ++part) {
-          sharing.share = {part, parts};
-          const MaskGrid::Ptr about = loadObject(folder / name, sharing);
+          const MaskGrid::Ptr about = streamObject(folder / name, options, take, {part, parts});
           REQUIRE(storedDomain(*about)->box() == storedDomain(*whole)->box());
           REQUIRE(about->empty());
         }

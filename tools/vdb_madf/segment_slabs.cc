@@ -53,9 +53,8 @@ SlabLimits limitsOf(const SegmentArguments& o, int64_t memory) {
 MaskGrid::Ptr readSlabs(const SegmentArguments& o, const Common& common, WorkPlace& place) {
   const int64_t memory = o.maxMemory.empty() ? availableMemory() : o.segment.maxMemory;
   SlabBuilder builder(limitsOf(o, memory), place.scratch());
-  VolumeOptions volume = o.input.volume(common.progress);
-  volume.takeLayer = [&](const MaskTree& layer) { builder.add(layer); };
-  const MaskGrid::Ptr object = loadObject(o.input, volume, common.progress);
+  const MaskGrid::Ptr object = streamObject(
+      o.input, [&](const MaskTree& layer) { builder.add(layer); }, {}, common.progress);
   writeVdb(place.aboutFile(), {object}, common.progress);
   builder.finish(storedDomain(*object));
   return object;
@@ -68,11 +67,8 @@ MaskGrid::Ptr readShare(const SegmentArguments& o, const Common& common, WorkPla
   SlabDealer dealer(team, place.scratch());
   MaskGrid::Ptr object;
   inAllMembers(team, [&] {
-    VolumeOptions volume = o.input.volume(common.progress);
-    volume.share = {team.member(), team.count()};
-    volume.takeLayer = [&](const MaskTree& layer) { dealer.add(layer); };
-    object = loadObject(o.input, volume, common.progress);
-}, {team.member(), team.count()},
+    object = streamObject(
+        o.input, [&](const MaskTree& layer) { dealer.add(layer); }, {team.member(), team.count()},
         common.progress);
     if (team.member() == 0 && !place.isInMemory())
       writeVdb(place.aboutFile(), {object}, common.progress);
