@@ -187,7 +187,7 @@ void copyAsImage(const ConvertArguments& o, const Common& common) {
 }
 
 /// @throw WrongUsage for what is not done slab by slab
-void runByRanks(const ConvertArguments& o, const Common& common) {
+void runByMembers(const ConvertArguments& o, const Common& common) {
   if (!isInSlabs(o.input) || hasVdbEnding(o.out) || o.labels || o.cube || o.input.selection ||
       readsGray(o.input.gray) || o.input.gray.despeckle > 0 || o.input.region.any() ||
       o.boundary != "auto")
@@ -203,7 +203,7 @@ void runByRanks(const ConvertArguments& o, const Common& common) {
 }
 
 void runConvert(const ConvertArguments& o, const Common& common) {
-  if (common.team) return runByRanks(o, common);
+  if (common.team) return runByMembers(o, common);
   checkWritable(o.out);
   const bool fromVdb = isVdb(o.input);
   if (fromVdb && readsGray(o.input.gray) && !o.input.selection)

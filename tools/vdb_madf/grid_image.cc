@@ -69,7 +69,7 @@ CoordBBox unitedBox(Team& team, const CoordBBox& box) {
 }
 
 /// Member 0 makes the file and puts it in its place; all write their slabs.
-void writeByRanks(const std::string& path, const LabelSlabs& labels, size_t begin, size_t end,
+void writeByMembers(const std::string& path, const LabelSlabs& labels, size_t begin, size_t end,
                     const CoordBBox& box, SampleType type, const Common& common) {
   Team& team = *common.team;
   std::unique_ptr<ImageWriter> image;
@@ -143,7 +143,7 @@ void writeSlabsAsImage(const std::string& path, const LabelSlabs& labels,
     if (!domain) tellBox(path, box, common);
   }
   if (common.team)
-    writeByRanks(path, labels, begin, end, box, chosen, common);
+    writeByMembers(path, labels, begin, end, box, chosen, common);
   else
     writeImage(path, labels, box, chosen, common.progress);
   report(path, *labels.about, box, chosen, common);

@@ -18,7 +18,7 @@ namespace vdb_madf::tools {
 class WorkPlace {
  public:
   /// @throw IoError, InvalidInput, one line, if the folders are in use or of other work;
-  ///   OtherRankFailed
+  ///   OtherMemberFailed
   WorkPlace(const SegmentArguments& o, const Common& common, Team& team);
 
   Scratch& scratch() { return folder_ ? static_cast<Scratch&>(*folder_) : memory_; }

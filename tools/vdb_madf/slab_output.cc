@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "segment_slabs.h"
+#include "slab_output.h"
 
 #include <fmt/format.h>
 #include <openvdb/Metadata.h>
