@@ -4,6 +4,7 @@
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/segmentation/parameter_sweep.h"
 
+#include <fmt/format.h>
 #include <openvdb/Metadata.h>
 
 #include <cmath>
@@ -68,8 +69,10 @@ std::vector<double> parseThetas(const std::string& text) {
     } else {
       const double count = range.size() == 3 ? (range[1] - range[0]) / range[2] : -1;
       if (!(count >= 0 && count < kMaxThetas))
-        throw WrongUsage("--theta " + part + ": must be a number or FIRST:LAST:STEP of at most " +
-                         std::to_string(kMaxThetas) + " steps from FIRST to LAST");
+        throw WrongUsage(
+            fmt::format("--theta {}: must be a number or FIRST:LAST:STEP of at most {} steps from "
+                        "FIRST to LAST",
+                        part, kMaxThetas));
       for (int i = 0; i <= int(count + 1e-9); ++i)
         thetas.push_back(asTyped(range[0] + i * range[2]));
     }
