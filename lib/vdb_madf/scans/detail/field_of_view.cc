@@ -16,10 +16,10 @@ namespace vdb_madf::detail {
 
 namespace {
 
-constexpr size_t kRowsPerChunk = 16;
+constexpr size_t kRowsPerPiece = 16;
 
-/// Of the voxels whose value differs from the first one's, and of those that are not 0: which of the
-/// two are the field of view is known when the last corner was seen.
+/// Of the voxels whose value differs from the first one's, and of those that are not 0: which of
+/// the two are the field of view is known when the last corner was seen.
 struct Farthest {
   double notFirst = -1, notZero = -1;
 
@@ -56,7 +56,7 @@ double farthestSample(ImageReader& image, const CylinderAxis& axis, Interrupter*
         sameCorners &=
             slice[corner] == *first || (*first != *first && slice[corner] != slice[corner]);
     }
-    parallelFor(ny * size_t(count), kRowsPerChunk, nullptr, [&](size_t begin, size_t end) {
+    parallelFor(ny * size_t(count), kRowsPerPiece, nullptr, [&](size_t begin, size_t end) {
       Farthest& farthest = partial.local();
       for (size_t row = begin; row < end; ++row) {
         const Coord p(0, int(row % ny), z + int(row / ny));
