@@ -14,8 +14,8 @@ int main() {
   vdb_madf::initialize();
 
   // The object is the active voxels of a mask grid, which are set like this. A program with a file
-  // reads it by loadObject() of volumes/volume.h; one with an array of all voxels needs no grid:
-  // segmentArray() of volumes/segment_array.h.
+  // reads it by loadObject() of volumes/load_object.h; one with an array of all voxels needs no
+  // grid: segmentArray() of volumes/segment_array.h.
   const auto object = vdb_madf::MaskGrid::create();
   auto voxels = object->getAccessor();
   const auto addBall = [&](const vdb_madf::Coord& center, int radius) {

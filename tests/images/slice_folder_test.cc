@@ -110,7 +110,7 @@ TEST_CASE("image_pictures: colours are read when they are grey, else refused", "
       pixels[pixels.size() - 2] = char(pixels[pixels.size() - 2] ^ 1);
       writeFile(path, pngFile({kWidth, kHeight, 8, colour, interlaced}, pixels));
       if (colour == 2)
-        CHECK_THROWS_WITH(readAll(*openImage(path)), Contains(path) && Contains("colours"));
+        CHECK_THROWS_WITH(readAll(*openImage(path)), Contains(path) && Contains("colors"));
     }
   std::string wide = repeated(grey, 6);  // both bytes of three samples
   writeFile(path, pngFile({kWidth, kHeight, 16, 2, false}, wide));
@@ -118,7 +118,7 @@ TEST_CASE("image_pictures: colours are read when they are grey, else refused", "
   CHECK(readAll(*openImage(path)) == repeated(grey, 2));
   wide[5] = char(wide[5] ^ 1);
   writeFile(path, pngFile({kWidth, kHeight, 16, 2, false}, wide));
-  CHECK_THROWS_WITH(readAll(*openImage(path)), Contains(path) && Contains("colours"));
+  CHECK_THROWS_WITH(readAll(*openImage(path)), Contains(path) && Contains("colors"));
 }
 
 TEST_CASE("image_pictures: a folder of slices", "[image_pictures]") {

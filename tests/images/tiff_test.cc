@@ -119,7 +119,7 @@ TEST_CASE("image_file: a folder says which slices have another white, and which 
   CHECK_THAT(notes[1], Contains(folder.path()) && Contains("1 of its 4 slices"));
 }
 
-TEST_CASE("image_file: colours of a TIFF are read when they are grey, else refused",
+TEST_CASE("image_file: colors of a TIFF are read when they are gray, else refused",
           "[image_file]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.tif";
@@ -147,17 +147,17 @@ TEST_CASE("image_file: colours of a TIFF are read when they are grey, else refus
             CHECK(readAll(*openImage(path), 2) == gray);
             colors[bytes] = char(colors[bytes] ^ 1);
             writeTiff(path, kTiffSize, type, colors, layout);
-            CHECK_THROWS_WITH(readAll(*openImage(path)), Contains(path) && Contains("colours"));
+            CHECK_THROWS_WITH(readAll(*openImage(path)), Contains(path) && Contains("colors"));
           }
 }
 
-TEST_CASE("image_file: TIFF that is not a grey volume is refused", "[image_file]") {
+TEST_CASE("image_file: TIFF that is not a gray volume is refused", "[image_file]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.tif";
   TiffLayout layout;
   layout.channels = 3;
   writeTiff(path, kTiffSize, SampleType::uint8, std::string(3 * voxels(kTiffSize), 'a'), layout);
-  CHECK_THROWS_WITH(openImage(path), Contains(path) && Contains("grey"));
+  CHECK_THROWS_WITH(openImage(path), Contains(path) && Contains("gray"));
 
   layout = {};
   layout.bits = 4;

@@ -78,7 +78,7 @@ ManifoldGraph randomGraph(Rng& rng) {
   for (int i = 0; i < count; ++i)
     positions.insert({rng.below(side), rng.below(side), rng.below(side)});
   ManifoldGraph graph;
-  const double empty = rng.chance(0.2) ? 0.3 : 0;  // nodes without voxels of the object
+  const double empty = rng.chance(0.2) ? 0.3 : 0;   // nodes without voxels of the object
   const double hollow = rng.chance(0.3) ? 0.3 : 0;  // nodes with voxels in cavities
   for (const Coord& p : positions)
     graph.nodes.push_back({p, 2 + rng.below(radii),

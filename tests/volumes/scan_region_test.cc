@@ -12,7 +12,8 @@
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/vdb/write_vdb.h"
 #include "vdb_madf/volumes/dense_volume.h"
-#include "vdb_madf/volumes/volume.h"
+#include "vdb_madf/volumes/load_labels.h"
+#include "vdb_madf/volumes/load_object.h"
 #include "vdb_madf/volumes/write_image.h"
 
 using namespace vdb_madf;

@@ -16,8 +16,11 @@
 #include "vdb_madf/files/same_file.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
-#include "vdb_madf/vdb/slab_folder.h"
+#include "vdb_madf/vdb/slab_folder_writer.h"
 #include "vdb_madf/vdb/write_vdb.h"
+#include "vdb_madf/volumes/choose_grid.h"
+#include "vdb_madf/volumes/load_labels.h"
+#include "vdb_madf/volumes/load_object.h"
 #include "vdb_madf/volumes/write_image.h"
 
 using namespace vdb_madf;
@@ -186,19 +189,13 @@ namespace {
 
 /// Writes the voxels of `labels` as a folder of slabs 16 voxels high, up to z = 47.
 void writeSlabs(const std::string& path, const Int32Grid& labels) {
-  std::filesystem::create_directory(path);
-  std::string slabs;
+  const SlabFolderWriter folder(path, {0, 16, 32, 48});
   for (int s = 0; s < 3; ++s) {
-    const CoordBBox box(Coord(0, 0, 16 * s), Coord(100, 100, 16 * s + 15));
     const Int32Grid::Ptr slab = labels.deepCopy();
-    slab->tree().clip(box);
-    markSlab(*slab, size_t(s), 3);
-    writeVdb(path + "/" + slabFileName(size_t(s)), {slab});
-    slabs += std::string(s > 0 ? "," : "") + "{\"file\": \"" + slabFileName(size_t(s)) +
-             "\", \"z_first\": " + std::to_string(16 * s) +
-             ", \"z_last\": " + std::to_string(16 * s + 15) + "}";
+    slab->tree().clip(CoordBBox(Coord(0, 0, 16 * s), Coord(100, 100, 16 * s + 15)));
+    folder.write(size_t(s), {slab});
   }
-  writeFile(path + "/index.json", "{\"format\": \"vdb_madf slabs\", \"slabs\": [" + slabs + "]}");
+  folder.commit();
 }
 
 }  // namespace
@@ -227,15 +224,13 @@ TEST_CASE("volume: shares are the layers of the whole, each once", "[volume]") {
         CAPTURE(name, parts);
         MaskTree joined;
         std::set<int> layers;
-        VolumeOptions sharing = options;
-        sharing.takeLayer = [&](MaskTree& layer) {
+        const TakeLayer take = [&](MaskTree& layer) {
           if (layer.empty()) return;
           CHECK(layers.insert(layer.cbeginLeaf()->origin().z()).second);
           joined.topologyUnion(layer);
         };
         for (int part = 0; part < parts; ++part) {
-          sharing.share = {part, parts};
-          const MaskGrid::Ptr about = loadObject(folder / name, sharing);
+          const MaskGrid::Ptr about = streamObject(folder / name, options, take, {part, parts});
           REQUIRE(storedDomain(*about)->box() == storedDomain(*whole)->box());
           REQUIRE(about->empty());
         }

@@ -29,7 +29,7 @@ using Action = std::function<void()>;
 Verb addVerb(Verb parent, Common& common, const std::string& name, const std::string& description,
              const std::string& example);
 
-/// With what is printed left out where it would get into an output on standard output.
+/// Leaves out what is printed where it would get into an output on standard output.
 Common besideOutput(Common common, const std::string& output);
 
 // One function per verb; the returned action does the work once the command line is parsed.

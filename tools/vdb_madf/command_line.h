@@ -41,7 +41,7 @@ class Option {
   Option& oneOf(const std::vector<std::string>& values);
   /// Offers these values where words are completed; others are not refused here.
   Option& offer(const std::vector<std::string>& values);
-  /// From `low` to `high`, both included. NaN passes.
+  /// Requires a value from `low` to `high`, both included. NaN passes.
   Option& range(int low, int high);
   Option& range(int64_t low, int64_t high);
   Option& range(double low, double high);
@@ -67,11 +67,11 @@ class Verb {
   Option option(const std::string& name, uint64_t& value, const std::string& help);
   Option option(const std::string& name, int64_t& value, const std::string& help);
   Option option(const std::string& name, double& value, const std::string& help);
-  /// One or more values.
+  /// An option of one or more values.
   Option option(const std::string& name, std::vector<std::string>& values, const std::string& help);
   void flag(const std::string& name, bool& value, const std::string& help);
-  /// An option or a flag that may be given again and again: adds its name, as it stands here, and its
-  /// value to a list that several share, in the order in which they are given.
+  /// An option or a flag that may be given again and again: adds its name, as it stands here, and
+  /// its value to a list that several share, in the order in which they are given.
   Option repeatedOption(const std::string& name, GivenOptions& given, const std::string& help);
   void repeatedFlag(const std::string& name, GivenOptions& given, const std::string& help);
   /// Text below the help.

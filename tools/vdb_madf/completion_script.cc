@@ -52,8 +52,8 @@ struct Dialect {
   std::function<std::string(const VerbWords&)> offerOptions, offerVerbs;
 };
 
-/// The body that the functions for bash and zsh have in common: `verb` is the path of verbs that were
-/// given, `before` the word before the one to complete, `word` that one.
+/// The body that the functions for bash and zsh have in common: `verb` is the path of verbs that
+/// were given, `before` the word before the one to complete, `word` that one.
 std::string cases(const VerbWords& command, const Dialect& dialect) {
   std::string text = "  case \"$verb\" in\n";
   eachVerb(command, "", [&](const VerbWords& verb, const std::string& path) {

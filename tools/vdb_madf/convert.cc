@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include <fmt/format.h>
 #include <openvdb/tools/Count.h>
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include "outputs.h"
 #include "parse.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/word_list.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/grids/resampled_grid.h"
@@ -37,7 +39,7 @@ struct ConvertArguments {
   std::string out, outType, boundary = "auto", resample;
   bool labels = false;
   std::optional<SampleType> parsedOutType;
-  std::optional<double> cube;  ///< edge to resample to, metres
+  std::optional<double> cube;  ///< edge to resample to, meters
 };
 
 std::optional<SampleType> outputType(const ConvertArguments& o) {
@@ -78,9 +80,10 @@ void convertLabels(const ConvertArguments& o, const Common& common) {
   Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
   auto range = openvdb::tools::minMax(labels->tree());
   if (range.min() < 0)
-    throw InvalidInput(
-        o.input.path + ": has the label " + std::to_string(range.min()) +
-        "; grains have numbers above 0, and 0 is background: set negative ones to 0");
+    throw InvalidInput(fmt::format(
+        "{}: has the label {}; grains have numbers above 0, and 0 is background: set negative ones "
+        "to 0",
+        o.input.path, range.min()));
   if (o.cube) {
     labels = withFileName(o.input.path,
                           [&] { return resampleLabels(*labels, *o.cube, common.progress); });
@@ -110,10 +113,10 @@ void resampleVdb(ConvertArguments o, const Common& common) {
   if (grid->isType<Int32Grid>()) return convertLabels(o, common);
   if (!grid->isType<MaskGrid>() && !grid->isType<BoolGrid>() &&
       grid->getGridClass() != openvdb::GRID_LEVEL_SET)
-    throw InvalidInput(o.input.path + ": grid '" + o.input.gridName + "' holds " +
-                       grid->valueType() +
-                       " values, and --resample takes masks and labels: say which values are "
-                       "object (--threshold, --range)");
+    throw InvalidInput(fmt::format(
+        "{}: grid '{}' holds {} values, and --resample takes masks and labels: say which values "
+        "are object (--threshold, --range)",
+        o.input.path, o.input.gridName, grid->valueType()));
   convertMask(o, common);
 }
 
@@ -184,14 +187,15 @@ void copyAsImage(const ConvertArguments& o, const Common& common) {
 }
 
 /// @throw WrongUsage for what is not done slab by slab
-void runByRanks(const ConvertArguments& o, const Common& common) {
+void runByMembers(const ConvertArguments& o, const Common& common) {
   if (!isInSlabs(o.input) || hasVdbEnding(o.out) || o.labels || o.cube || o.input.selection ||
       readsGray(o.input.gray) || o.input.gray.despeckle > 0 || o.input.region.any() ||
       o.boundary != "auto")
     throw WrongUsage(
         "several processes copy the labels of a folder of slabs to an image; for all else there is "
         "vdb_madf convert");
-  // The others would take the temporary of a process of another node for one that a killed run left.
+  // The others would take the temporary of a process of another node for one that a killed run
+  // left.
   inAllMembers(*common.team, [&] {
     if (common.team->member() == 0) checkWritable(o.out);
   });
@@ -199,7 +203,7 @@ void runByRanks(const ConvertArguments& o, const Common& common) {
 }
 
 void runConvert(const ConvertArguments& o, const Common& common) {
-  if (common.team) return runByRanks(o, common);
+  if (common.team) return runByMembers(o, common);
   checkWritable(o.out);
   const bool fromVdb = isVdb(o.input);
   if (fromVdb && readsGray(o.input.gray) && !o.input.selection)
@@ -233,9 +237,8 @@ void addConvert(Verb command, Common& common, Action& action) {
       addVerb(command, common, "convert", "any readable volume to any writable volume",
               "vdb_madf convert scan.raw ice.vdb --dims 301x301x251 --type uint8 --threshold 128");
   verb.option("IN", o->input.path, "any readable volume").required();
-  verb.option(
-          "OUT", o->out,
-          ".vdb (of an image a mask, or see --labels), .tif, .raw, .mhd, .mha, .nrrd, .npy, .h5")
+  verb.option("OUT", o->out,
+              ".vdb (of an image a mask, or see --labels), " + wordList(writtenEndings()))
       .required();
   o->input.addSelection(verb);
   o->input.addRaw(verb);

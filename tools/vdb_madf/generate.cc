@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -8,11 +10,12 @@
 #include <optional>
 
 #include "command.h"
+#include "grid_image.h"
 #include "outputs.h"
-#include "pack_slabs.h"
 #include "parse.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/base/word_list.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/written_together.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -25,6 +28,7 @@
 #include "vdb_madf/samples/sintered.h"
 #include "vdb_madf/samples/snow.h"
 #include "vdb_madf/samples/spheres.h"
+#include "vdb_madf/vdb/slab_folder_writer.h"
 #include "vdb_madf/vdb/write_vdb.h"
 #include "vdb_madf/volumes/write_image.h"
 
@@ -161,7 +165,7 @@ constexpr SampleKind kSampleKinds[] = {
        SinteredOptions& sintered = options.sintered;
        verb.option("--count", sintered.count, "number of balls").showDefault();
        verb.option("--radius", options.radius, "radii A:B, voxels (default 12:22)");
-       verb.option("--neck", sintered.neck, "least distance of centres / (ri + rj)").showDefault();
+       verb.option("--neck", sintered.neck, "least distance of centers / (ri + rj)").showDefault();
        verb.option("--roughness", sintered.roughness, "amplitude of surface noise").showDefault();
      },
      [](GenerateArguments& options) {
@@ -266,9 +270,9 @@ void parse(const SampleKind& kind, GenerateArguments& options) {
     if (!options.surface.empty() || !options.scanNoise.empty())
       throw WrongUsage(options.out +
                        ": --surface and --scan-noise change the whole: leave them out in slabs");
-  } else if (!hasVdbEnding(options.out) && !isImageEnding(options.out))
-    throw WrongUsage(options.out +
-                     ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd, .npy or .h5");
+  } else {
+    checkVolumeEnding(options.out);
+  }
   if (!options.voxelSizeText.empty()) options.voxelSize = parseVoxelSize(options.voxelSizeText);
   checkVoxels(kind, options);
   kind.parse(options);
@@ -289,7 +293,10 @@ void runInSlabs(const GenerateArguments& options, const Common& common) {
     throw WrongUsage(std::string("cannot generate this: ") + error.what());
   }
   common.progress->start("write");
-  writePackSlabs(options.out, *slabs, common);
+  const SlabFolderWriter folder(options.out, slabs->cuts());
+  for (size_t s = 0; s < slabs->slabCount(); ++s)
+    folder.write(s, {toBoolGrid(*slabs->object(s, common.progress))}, common.progress);
+  folder.commit(fmt::format(R"({{"object_voxels": {}}})", slabs->objectVoxels()));
   common.progress->end();
   if (!common.quiet)
     printVoxels(options, double(slabs->objectVoxels()),
@@ -318,8 +325,7 @@ void runGenerate(const SampleKind& kind, const GenerateArguments& options, const
 void addKind(Verb generate, Common& common, Action& action, const SampleKind& kind) {
   auto options = std::make_shared<GenerateArguments>();
   Verb verb = addVerb(generate, common, kind.name, kind.description, kind.example);
-  verb.option("OUT", options->out, "file to write: .vdb, .tif, .raw, .mhd, .mha, .nrrd, .npy, .h5")
-      .required();
+  verb.option("OUT", options->out, "file to write: .vdb, " + wordList(writtenEndings())).required();
   const Option size =
       verb.option("--size", options->size, "edge of a cube, voxels").range(1, kMaxExtent);
   verb.option("--dims", options->dims, "size NXxNYxNZ, voxels").excludes(size);

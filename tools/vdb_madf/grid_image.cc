@@ -10,6 +10,7 @@
 #include "member_failure.h"
 #include "outputs.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/word_list.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/open_image.h"
@@ -68,8 +69,8 @@ CoordBBox unitedBox(Team& team, const CoordBBox& box) {
 }
 
 /// Member 0 makes the file and puts it in its place; all write their slabs.
-void writeByRanks(const std::string& path, const LabelSlabs& labels, size_t begin, size_t end,
-                  const CoordBBox& box, SampleType type, const Common& common) {
+void writeByMembers(const std::string& path, const LabelSlabs& labels, size_t begin, size_t end,
+                    const CoordBBox& box, SampleType type, const Common& common) {
   Team& team = *common.team;
   std::unique_ptr<ImageWriter> image;
   SharedImage shared;
@@ -101,8 +102,7 @@ void writeByRanks(const std::string& path, const LabelSlabs& labels, size_t begi
 void checkVolumeEnding(const std::string& path) {
   if (path == "-") throw WrongUsage("-: say in which format: raw:-, npy:- or nrrd:-");
   if (!hasVdbEnding(path) && !isImageEnding(path))
-    throw WrongUsage(path +
-                     ": the ending must be .vdb, .tif, .raw, .mhd, .mha, .nrrd, .npy or .h5");
+    throw WrongUsage(path + ": the ending must be .vdb, " + wordList(writtenEndings()));
 }
 
 void writeGridAsImage(const std::string& path, const openvdb::GridBase& grid,
@@ -143,7 +143,7 @@ void writeSlabsAsImage(const std::string& path, const LabelSlabs& labels,
     if (!domain) tellBox(path, box, common);
   }
   if (common.team)
-    writeByRanks(path, labels, begin, end, box, chosen, common);
+    writeByMembers(path, labels, begin, end, box, chosen, common);
   else
     writeImage(path, labels, box, chosen, common.progress);
   report(path, *labels.about, box, chosen, common);

@@ -24,8 +24,8 @@ void writeGridAsImage(const std::string& path, const openvdb::GridBase& grid,
                       const std::optional<SampleType>& type, const std::string& source,
                       const Common& common);
 
-/// The same of labels in slabs, one by one; twice, where the box or the type follows from them. Where there
-/// are common.team, each writes some of them.
+/// Writes labels in slabs as an image, one by one; reads them twice, where the box or the type
+/// follows from them. Where there are common.team, each writes some of them.
 /// @throw InvalidInput if several processes cannot write such a file
 void writeSlabsAsImage(const std::string& path, const LabelSlabs& labels,
                        const std::optional<SampleType>& type, const std::string& source,

@@ -76,7 +76,7 @@ Json describeGrid(const openvdb::GridBase& grid) {
   }
   const openvdb::Vec3d edge = grid.voxelSize();
   json["voxel_size_units"] = {edge.x(), edge.y(), edge.z()};
-  if (const auto size = storedVoxelSize(grid)) json["voxel_size_mm"] = inMillimetres(*size);
+  if (const auto size = storedVoxelSize(grid)) json["voxel_size_mm"] = inMillimeters(*size);
   json["memory_bytes"] = grid.memUsage();
   if (const auto domain = regionOf(grid)) {
     json["domain"] = "region, " + regionText(*domain);
@@ -144,7 +144,7 @@ Json describeImage(const ImageReader& image) {
   json["format"] = info.format;
   json["size"] = coordJson(toCoord(info.size));
   json["type"] = sampleTypeName(info.type);
-  if (info.voxelSize) json["voxel_size_mm"] = inMillimetres(*info.voxelSize);
+  if (info.voxelSize) json["voxel_size_mm"] = inMillimeters(*info.voxelSize);
   if (const auto& edges = info.proportions) json["voxel_size_units"] = *edges;
   // Of slices in a folder; a Zarr group names itself, too.
   if (const auto& files = image.files();

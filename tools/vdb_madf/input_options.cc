@@ -3,11 +3,13 @@
 
 #include "input_options.h"
 
+#include <fmt/format.h>
 #include <openvdb/Metadata.h>
 
 #include "outputs.h"
 #include "parse.h"
 #include "vdb_madf/base/lower_case.h"
+#include "vdb_madf/base/word_list.h"
 #include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_keys.h"
@@ -22,25 +24,7 @@ namespace vdb_madf::tools {
 namespace {
 
 std::string typeNames() {
-  const std::vector<std::string> names = sampleTypeNames();
-  std::string text = names.front();
-  for (size_t i = 1; i < names.size(); ++i)
-    text += (i + 1 < names.size() ? ", " : " or ") + names[i];
-  return text;
-}
-
-/// Runs `load`; if it has to be said what is object, the message says by which options.
-template <typename Load>
-auto withSelectionOptions(const InputOptions& input, const Load& load) {
-  try {
-    return load();
-  } catch (const SelectionNeeded& error) {
-    const char* options = input.gray.automatic == AutomaticThreshold::none
-                              ? " (--threshold otsu or a value, --phase, --range; labels of "
-                                "grains: convert --labels)"
-                              : " (--threshold VALUE)";
-    throw InvalidInput(error.what() + std::string(options));
-  }
+  return wordList(sampleTypeNames());
 }
 
 /// Runs `choose`; if the grid has to be named, the message says by which option.
@@ -50,8 +34,23 @@ auto withGridOption(const InputOptions& input, const std::string& gridOption,
   try {
     return choose();
   } catch (const AmbiguousGrid& error) {
-    throw InvalidInput(input.path + ": choose a grid with " + gridOption + "; the file holds " +
-                       error.grids());
+    throw InvalidInput(fmt::format("{}: choose a grid with {}; the file holds {}", input.path,
+                                   gridOption, error.grids()));
+  }
+}
+
+/// Runs `load`; if it has to be said what is object, the message says by which options.
+template <typename Load>
+MaskGrid::Ptr withObjectOptions(const InputOptions& input, const Load& load) {
+  if (!isVdb(input)) checkNoGrid(input, "--grid");
+  try {
+    return withGridOption(input, "--grid", load);
+  } catch (const SelectionNeeded& error) {
+    const char* options = input.gray.automatic == AutomaticThreshold::none
+                              ? " (--threshold otsu or a value, --phase, --range; labels of "
+                                "grains: convert --labels)"
+                              : " (--threshold VALUE)";
+    throw InvalidInput(error.what() + std::string(options));
   }
 }
 
@@ -180,15 +179,15 @@ void InputOptions::parseGray() {
   if (!median.empty()) {
     const int64_t radius = parseCount(median, "--median");
     if (radius > kMaxMedianRadius)
-      throw WrongUsage("--median " + median + ": must be a radius of 0 to " +
-                       std::to_string(kMaxMedianRadius) + " voxels");
+      throw WrongUsage(
+          fmt::format("--median {}: must be a radius of 0 to {} voxels", median, kMaxMedianRadius));
     gray.median = int(radius);
   }
   if (!smooth.empty()) {
     gray.smooth = parseNumber(smooth, "--smooth");
     if (gray.smooth != 0 && !(gray.smooth >= kMinSmoothing && gray.smooth <= kMaxSmoothing))
-      throw WrongUsage("--smooth " + smooth + ": must be 0, or 0.1 to " +
-                       std::to_string(int(kMaxSmoothing)) + " voxels");
+      throw WrongUsage(
+          fmt::format("--smooth {}: must be 0, or 0.1 to {} voxels", smooth, int(kMaxSmoothing)));
   }
   if (!despeckle.empty()) gray.despeckle = parseCount(despeckle, "--despeckle");
 }
@@ -232,18 +231,17 @@ openvdb::GridBase::Ptr chooseGrid(const InputOptions& input,
   });
 }
 
-MaskGrid::Ptr loadObject(const InputOptions& input, Progress* progress) {
-  return loadObject(input, input.volume(progress), progress);
+MaskGrid::Ptr streamObject(const InputOptions& input, const TakeLayer& take,
+                           const ObjectShare& share, Progress* progress) {
+  return withObjectOptions(input, [&] {
+    return vdb_madf::streamObject(input.path, input.volume(progress), take, share, progress);
+  });
 }
 
-MaskGrid::Ptr loadObject(const InputOptions& input, const VolumeOptions& options,
-                         Progress* progress) {
-  if (!isVdb(input)) checkNoGrid(input, "--grid");
-  const MaskGrid::Ptr object = withGridOption(input, "--grid", [&] {
-    return withSelectionOptions(
-        input, [&] { return vdb_madf::loadObject(input.path, options, progress); });
-  });
-  if (input.selection && object->empty() && !options.takeLayer)
+MaskGrid::Ptr loadObject(const InputOptions& input, Progress* progress) {
+  const MaskGrid::Ptr object = withObjectOptions(
+      input, [&] { return vdb_madf::loadObject(input.path, input.volume(progress), progress); });
+  if (input.selection && object->empty())
     progress->note(input.path +
                    (input.gray.despeckle > 0
                         ? ": nothing is left after --despeckle, or was selected"
@@ -294,8 +292,8 @@ std::string objectSteps(const openvdb::GridBase& grid) {
 }
 
 std::string regionText(const Domain& domain) {
-  return std::to_string(int64_t(domain.voxelCount())) + " of " +
-         std::to_string(int64_t(Domain(domain.box()).voxelCount())) + " voxels of the box";
+  return fmt::format("{} of {} voxels of the box", int64_t(domain.voxelCount()),
+                     int64_t(Domain(domain.box()).voxelCount()));
 }
 
 const char* hintIfEmpty(int64_t objectVoxels) {

@@ -15,7 +15,9 @@
 #include "vdb_madf/grids/selection.h"
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/method/boundary.h"
-#include "vdb_madf/volumes/volume.h"
+#include "vdb_madf/volumes/choose_grid.h"
+#include "vdb_madf/volumes/load_labels.h"
+#include "vdb_madf/volumes/load_object.h"
 
 namespace vdb_madf::tools {
 
@@ -50,9 +52,11 @@ struct InputOptions {
   void addVoxelSize(Verb verb);
   void addDomain(Verb verb);
   void addRegion(Verb verb);  ///< --roi and --crop
-  /// Also checks that the outputs overwrite neither the input nor each other. @throw WrongUsage
+  /// Reads the texts. Also checks that the outputs overwrite neither the input nor each other.
+  /// @throw WrongUsage
   void parse();
-  /// Its notes go to `progress`, which has to live as long as they come.
+  /// The options of the library; their notes go to `progress`, which has to live as long as they
+  /// come.
   VolumeOptions volume(Progress* progress) const;
 
  private:
@@ -64,21 +68,21 @@ struct InputOptions {
 /// True if the input is to be read as OpenVDB.
 /// @throw InvalidInput if it is, and a dataset was asked for
 bool isVdb(const InputOptions& input);
-/// Where the input is no VDB file. @throw InvalidInput if a grid was asked for
+/// Checks an input that is no VDB file. @throw InvalidInput if a grid was asked for
 void checkNoGrid(const InputOptions& input, const std::string& gridOption);
 
-// The functions of volumes/volume.h; messages name the options.
+// The functions of the room volumes; messages name the options.
 openvdb::GridBase::Ptr chooseGrid(const InputOptions& input,
                                   const std::vector<openvdb::GridBase::Ptr>& grids,
                                   GridUse use = GridUse::values);
 MaskGrid::Ptr loadObject(const InputOptions& input, Progress* progress);
-MaskGrid::Ptr loadObject(const InputOptions& input, const VolumeOptions& options,
-                         Progress* progress);
+MaskGrid::Ptr streamObject(const InputOptions& input, const TakeLayer& take,
+                           const ObjectShare& share, Progress* progress);
 Int32Grid::Ptr loadLabels(const InputOptions& input, const std::string& gridOption,
                           Progress* progress);
 LabelSlabs openLabelSlabs(const InputOptions& input, const std::string& gridOption,
                           Progress* progress);
-/// Is it a folder of slabs, so that these can be taken one by one?
+/// True if it is a folder of slabs, which can be taken one by one.
 bool isInSlabs(const InputOptions& input);
 
 /// Runs `work`; what the library has to say against the data then names the file, too.

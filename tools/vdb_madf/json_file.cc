@@ -5,7 +5,7 @@
 
 namespace vdb_madf::tools {
 
-Json inMillimetres(const VoxelSize& size) {
+Json inMillimeters(const VoxelSize& size) {
   const auto& [x, y, z] = size.edges();
   if (size.isCube()) return x * 1e3;
   return {x * 1e3, y * 1e3, z * 1e3};

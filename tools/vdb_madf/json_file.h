@@ -16,7 +16,7 @@ namespace vdb_madf::tools {
 using Json = nlohmann::ordered_json;
 
 /// The edge of a cube, or the three of another voxel.
-Json inMillimetres(const VoxelSize& size);
+Json inMillimeters(const VoxelSize& size);
 
 /// The three coordinates.
 Json coordJson(const Coord& c);

@@ -3,6 +3,8 @@
 
 #include "vdb_madf/measure/measure.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -49,8 +51,8 @@ void parse(MeasureArguments& o) {
   if (!o.bootstrap.empty()) {
     const int64_t replicates = parseCount(o.bootstrap, "--bootstrap");
     if (replicates < kMinReplicates || replicates > kMaxReplicates)
-      throw WrongUsage("--bootstrap " + o.bootstrap + ": must be from " +
-                       std::to_string(kMinReplicates) + " to " + std::to_string(kMaxReplicates));
+      throw WrongUsage(fmt::format("--bootstrap {}: must be from {} to {}", o.bootstrap,
+                                   kMinReplicates, kMaxReplicates));
     o.measure.bootstrap = int(replicates);
   }
 }

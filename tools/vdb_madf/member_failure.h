@@ -12,10 +12,10 @@
 namespace vdb_madf::tools {
 
 /// Another process of the job failed, and says why.
-struct OtherRankFailed {};
+struct OtherMemberFailed {};
 
 /// f() in all members, which does not wait for others. If it throws in one, it fails in all.
-/// @throw what f() throws; OtherRankFailed where it does not
+/// @throw what f() throws; OtherMemberFailed where it does not
 template <typename F>
 void inAllMembers(Team& team, const F& f) {
   std::exception_ptr failure;
@@ -27,7 +27,7 @@ void inAllMembers(Team& team, const F& f) {
   std::vector<int64_t> failures{failure ? 1 : 0};
   team.sum(failures);
   if (failure) std::rethrow_exception(failure);
-  if (failures[0] > 0) throw OtherRankFailed();
+  if (failures[0] > 0) throw OtherMemberFailed();
 }
 
 }  // namespace vdb_madf::tools

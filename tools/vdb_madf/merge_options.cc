@@ -3,6 +3,8 @@
 
 #include "merge_options.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <utility>
 
@@ -56,8 +58,8 @@ MergeOptions MergeArguments::parse() const {
 int parseDelta(const std::string& text) {
   const int64_t delta = parseCount(text, "--delta");
   if (delta > kMaxDelta)
-    throw WrongUsage("--delta " + text + ": is in eighths of a voxel, it must lie between 0 and " +
-                     std::to_string(kMaxDelta));
+    throw WrongUsage(fmt::format(
+        "--delta {}: is in eighths of a voxel, it must lie between 0 and {}", text, kMaxDelta));
   return int(delta);
 }
 
@@ -89,7 +91,7 @@ void addTidy(Verb verb, std::string& text) {
 int parseTidy(const std::string& text) {
   const int64_t rounds = text.empty() ? kTidy : parseCount(text, "--tidy");
   if (rounds > kMaxTidy)
-    throw WrongUsage("--tidy " + text + ": at most " + std::to_string(kMaxTidy) + " rounds");
+    throw WrongUsage(fmt::format("--tidy {}: at most {} rounds", text, kMaxTidy));
   return int(rounds);
 }
 

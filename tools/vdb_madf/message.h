@@ -7,8 +7,8 @@
 
 namespace vdb_madf::tools {
 
-/// "vdb_madf: KIND: WHAT" on stderr: one line, whatever a file name or a corrupt header brought into
-/// it.
+/// "vdb_madf: KIND: WHAT" on stderr: one line, whatever a file name or a corrupt header brought
+/// into it.
 void printMessage(const std::string& kind, std::string what);
 
 }  // namespace vdb_madf::tools

@@ -3,6 +3,8 @@
 
 #include "parse.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -68,8 +70,9 @@ Coord parseDims(const std::string& text, const std::string& option) {
   const std::optional<Coord> size = parseCoord(text, 'x');
   if (!size || size->x() < 1 || size->y() < 1 || size->z() < 1 || size->x() > kMaxImageSide ||
       size->y() > kMaxImageSide || size->z() > kMaxImageSide)
-    throw WrongUsage(option + " " + text + ": write NXxNYxNZ, each from 1 to " +
-                     std::to_string(kMaxImageSide) + ", for example 301x301x251");
+    throw WrongUsage(
+        fmt::format("{} {}: write NXxNYxNZ, each from 1 to {}, for example 301x301x251", option,
+                    text, kMaxImageSide));
   return *size;
 }
 
@@ -84,16 +87,16 @@ CoordBBox parseBox(const std::string& text, const std::string& option) {
         return box;
     }
   }
-  throw WrongUsage(option + " " + text +
-                   ": write x0,y0,z0:x1,y1,z1 (inclusive, x0 <= x1 ..., within +-" +
-                   std::to_string(kMaxImageSide) + ")");
+  throw WrongUsage(
+      fmt::format("{} {}: write x0,y0,z0:x1,y1,z1 (inclusive, x0 <= x1 ..., within +-{})", option,
+                  text, kMaxImageSide));
 }
 
 Coord parseShift(const std::string& text, const std::string& option) {
   const std::optional<Coord> shift = parseCoord(text, ',');
   if (!shift || !CoordBBox(Coord(-kMaxExtent), Coord(kMaxExtent)).isInside(*shift))
-    throw WrongUsage(option + " " + text + ": write X,Y,Z, whole voxels within +-" +
-                     std::to_string(kMaxExtent) + ", for example 3,-2,0");
+    throw WrongUsage(fmt::format("{} {}: write X,Y,Z, whole voxels within +-{}, for example 3,-2,0",
+                                 option, text, kMaxExtent));
   return *shift;
 }
 

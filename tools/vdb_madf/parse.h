@@ -14,8 +14,8 @@
 
 namespace vdb_madf::tools {
 
-// Strict: the whole text must be what is asked for. Each function throws a WrongUsage that names the
-// option.
+// Strict: the whole text must be what is asked for. Each function throws a WrongUsage that names
+// the option.
 
 /// Finite.
 double parseNumber(const std::string& text, const std::string& option);

@@ -13,8 +13,8 @@
 
 namespace vdb_madf::tools {
 
-/// What is said while the work is under way: one progress line (stage, percentage, remaining time) on
-/// stderr when that is a terminal (TERM not dumb), and notes. Also turns Ctrl-C into a cancel.
+/// What is said while the work is under way: one progress line (stage, percentage, remaining time)
+/// on stderr when that is a terminal (TERM not dumb), and notes. Also turns Ctrl-C into a cancel.
 class Progress : public Interrupter {
  public:
   /// @param work is shown outside of named stages
@@ -38,14 +38,14 @@ class Progress : public Interrupter {
   std::vector<std::string> notes_;
   bool lineShown_ = false;
   std::chrono::steady_clock::time_point lastShown_;
-  // Where the percentage began to grow: it falls back when a new work begins.
+  // The time and place at which the percentage began to grow: it falls back when a new work begins.
   int firstPercent_ = 0, lastPercent_ = 101;
   std::chrono::steady_clock::time_point firstTime_;
 };
 
-/// From now on Ctrl-C, SIGQUIT, termination requests and a closed terminal are taken by Progress, and a
-/// write beyond the limit of file sizes fails like any other: no signal may end the program before
-/// it has removed its temporary files.
+/// From now on Ctrl-C, SIGQUIT, termination requests and a closed terminal are taken by Progress,
+/// and a write beyond the limit of file sizes fails like any other: no signal may end the program
+/// before it has removed its temporary files.
 void catchInterrupts();
 
 /// The number of threads that work: what the option says, or all (0).

@@ -12,7 +12,7 @@
 #include "merge_options.h"
 #include "outputs.h"
 #include "remerge_slabs.h"
-#include "segment_slabs.h"
+#include "slab_output.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"

@@ -10,16 +10,14 @@
 #include <utility>
 
 #include "json_file.h"
-#include "part_folder.h"
-#include "segment_slabs.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/base/version.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/measure/grain_sizes.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/slabs/remerge_slabs.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/slab_folder.h"
+#include "vdb_madf/vdb/slab_folder_writer.h"
 
 namespace vdb_madf::tools {
 
@@ -32,7 +30,6 @@ Json newIndex(const std::string& folder, const MergeOptions& merge, int tidy,
   Json index =
       Json::parse(readText((std::filesystem::path(folder) / kSlabIndex).string(), kMostBytes));
   const GrainSizes sizes = grainSizes(grainVoxels);
-  index["version"] = kVersion;
   index["grains"] = grainVoxels.size();
   index["grains_under_100_voxels"] = sizes.dustGrains;
   index["voxels_in_grains_under_100_voxels"] = sizes.dustVoxels;
@@ -85,7 +82,7 @@ void remergeInSlabs(const InputOptions& input, const std::string& out, const Mer
                     int tidy, const Common& common) {
   common.progress->start("read");
   const LabelSlabs manifolds = openManifoldSlabs(input, common.progress);
-  const PartFolder folder(out);
+  const SlabFolderWriter folder(out, manifolds.cuts);
   std::optional<ScratchFolder> scratch(std::in_place, folder.file("scratch"));
   const std::vector<int64_t> voxels = withFileName(input.path, [&] {
     return remergeSlabs(
@@ -93,14 +90,12 @@ void remergeInSlabs(const InputOptions& input, const std::string& out, const Mer
         [&](size_t slab, const Int32Grid::Ptr& grain) {
           const Int32Grid::Ptr manifold = manifolds.read(slab, common.progress);
           describeMerging(*manifold, merge, tidy, *grainCount(*grain));
-          writeSlab(folder.file(slabFileName(slab)), {grain, manifold}, slab, manifolds.slabCount(),
-                    common.progress);
+          folder.write(slab, {grain, manifold}, common.progress);
         },
         common.progress);
   });
   scratch.reset();
-  JsonFile(folder.file(kSlabIndex)).write(newIndex(input.path, merge, tidy, voxels));
-  folder.commit();
+  folder.commit(newIndex(input.path, merge, tidy, voxels).dump());
   common.progress->end();
   if (!common.quiet)
     std::cout << out << ": " << counted(int64_t(voxels.size()), "grain") << " in "

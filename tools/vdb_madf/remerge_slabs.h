@@ -15,16 +15,18 @@ namespace vdb_madf::tools {
 
 constexpr char kManifoldGrid[] = "manifold";
 
-/// Are there manifolds among the grids of a file?
+/// True if there are manifolds among the grids of a file.
 bool hasManifolds(const std::vector<openvdb::GridBase::Ptr>& grids);
-/// The manifolds in a folder of slabs. @throw InvalidInput if it has none
+/// Opens the manifolds in a folder of slabs. @throw InvalidInput if it has none
 LabelSlabs openManifoldSlabs(const InputOptions& input, Progress* progress);
 
-/// What `remerge` does from a folder of slabs to another one, slab by slab; OUT.slabs appears whole.
+/// What `remerge` does from a folder of slabs to another one, slab by slab; OUT.slabs appears
+/// whole.
 void remergeInSlabs(const InputOptions& input, const std::string& out, const MergeOptions& merge,
                     int tidy, const Common& common);
 
-/// Scratch data in a folder, which goes again. What a killed run left in it is no use, and goes first.
+/// Scratch data in a folder, which goes again. What a killed run left in it is no use, and goes
+/// first.
 class ScratchFolder {
  public:
   /// @throw as FolderScratch

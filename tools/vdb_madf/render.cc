@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <iostream>
 #include <limits>
@@ -64,8 +66,8 @@ void parse(RenderArguments& o) {
   if (o.only == "view" && !o.scan.empty()) throw WrongUsage("--overlay: --only view has no slices");
   o.planes = parseSlices(o.slice);
   if (int64_t(o.planes.size() + 1) * o.size * o.size > kMostPixels)
-    throw WrongUsage("--slice: " + counted(int64_t(o.planes.size()), "slice") + " of " +
-                     std::to_string(o.size) + " pixels are too large a picture: lower --size");
+    throw WrongUsage(fmt::format("--slice: {} of {} pixels are too large a picture: lower --size",
+                                 counted(int64_t(o.planes.size()), "slice"), o.size));
   o.selected = parseGrains(o.select, "--select");
   o.input.outputs = {o.out};
   o.input.parse();

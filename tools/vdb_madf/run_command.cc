@@ -45,8 +45,8 @@ namespace {
 constexpr int kDone = 0, kFailed = 1, kWrongUsage = 2, kInterrupted = 130;
 
 int fail(const Team* team, int code, const std::string& what) {
-  // What several find wrong is said once: the first of them ends the others while these wait. That takes a
-  // moment.
+  // What several find wrong is said once: the first of them ends the others while these wait. That
+  // takes a moment.
   if (team && team->member() > 0)
     std::this_thread::sleep_for(std::chrono::seconds(2 + std::min(team->member(), 20)));
   printMessage("error", what);
@@ -154,8 +154,10 @@ int run(const char* program, int argc, char** argv, Team* team) {
 int runCommand(const char* program, int argc, char** argv, Team* team) {
   try {
     return run(program, argc, argv, team);
-  } catch (const OtherRankFailed&) {
-    std::this_thread::sleep_for(std::chrono::minutes(1));  // that one ends this one
+  } catch (const OtherMemberFailed&) {
+    // The member that failed prints why, and then ends this process, by MPI_Abort. If this one
+    // ended first, the job would be over before that message came.
+    std::this_thread::sleep_for(std::chrono::minutes(1));
     return kFailed;
   } catch (const WrongUsage& error) {
     return fail(team, kWrongUsage, error.what());

@@ -2,16 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "vdb_madf/segmentation/segment.h"
-#include "vdb_madf/base/memory.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <optional>
 #include <sstream>
 #include <utility>
 #include <vector>
 
+#include "auto_slabs.h"
 #include "command.h"
 #include "grid_image.h"
 #include "input_options.h"
@@ -19,11 +22,11 @@
 #include "merge_options.h"
 #include "outputs.h"
 #include "parse.h"
-#include "segment_by_slabs.h"
-#include "segment_slabs.h"
 #include "segment_summary.h"
+#include "slab_output.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/base/memory.h"
 #include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
@@ -36,7 +39,7 @@ namespace vdb_madf::tools {
 
 namespace {
 
-void parse(SegmentArguments& o) {
+void parseFiles(SegmentArguments& o) {
   o.out = withoutSlash(o.out);
   o.input.outputs = {o.out, o.json};
   if (!o.tables.empty())
@@ -46,48 +49,67 @@ void parse(SegmentArguments& o) {
   o.input.parse();
   if (!o.maxMemory.empty()) o.segment.maxMemory = parseMemory(o.maxMemory);
   if (o.out.empty() && !o.dryRun) throw WrongUsage("OUT is required (or --dry-run)");
-  const bool inSlabs = hasSlabsEnding(o.out);
-  if (!o.out.empty() && !inSlabs) checkVolumeEnding(o.out);
-  if (!o.out.empty() && !inSlabs && !hasVdbEnding(o.out) && !o.keep.empty())
-    throw WrongUsage("--keep is for .vdb files, and " + o.out +
-                     " takes the labels alone: leave it out, or write a .vdb and convert it");
-  if (o.paper) {
-    for (const std::string* given :
-         {&o.merge.mode, &o.merge.adjacency, &o.merge.delta, &o.fillHoles, &o.tidy})
-      if (!given->empty())
-        throw WrongUsage(
-            "--paper sets --merge, --adjacency, --delta, --fill-holes and --tidy itself: leave "
-            "them "
-            "out");
-    o.merge.mode = "angle";
-    o.merge.adjacency = "cell";
-    o.merge.delta = o.fillHoles = o.tidy = "0";
-    if (o.merge.theta.empty()) o.merge.theta = "-0.8";
-  }
+  if (o.out.empty() || hasSlabsEnding(o.out)) return;
+  checkVolumeEnding(o.out);
+  if (!hasVdbEnding(o.out) && !o.keep.empty())
+    throw WrongUsage(fmt::format(
+        "--keep is for .vdb files, and {} takes the labels alone: leave it out, or write a .vdb "
+        "and convert it",
+        o.out));
+}
+
+void applyPaper(SegmentArguments& o) {
+  if (!o.paper) return;
+  for (const std::string* given :
+       {&o.merge.mode, &o.merge.adjacency, &o.merge.delta, &o.fillHoles, &o.tidy})
+    if (!given->empty())
+      throw WrongUsage(
+          "--paper sets --merge, --adjacency, --delta, --fill-holes and --tidy itself: leave them "
+          "out");
+  o.merge.mode = "angle";
+  o.merge.adjacency = "cell";
+  o.merge.delta = o.fillHoles = o.tidy = "0";
+  if (o.merge.theta.empty()) o.merge.theta = "-0.8";
+}
+
+void parseMethod(SegmentArguments& o) {
+  applyPaper(o);
   o.segment.merge = o.merge.parse();
   o.segment.gamma = parseCount(o.gamma, "--gamma");
   o.segment.fillHoles = parseFillHoles(o.fillHoles);
   o.segment.tidy = parseTidy(o.tidy);
+}
+
+void parseKeep(SegmentArguments& o) {
+  const std::map<std::string, bool*> grids{{"distance", &o.segment.keepDistance},
+                                           {"power", &o.segment.keepPower},
+                                           {"manifold", &o.segment.keepManifold},
+                                           {"balls", &o.segment.keepBalls}};
   std::stringstream keep(o.keep);
   for (std::string what; std::getline(keep, what, ',');) {
-    if (what == "distance")
-      o.segment.keepDistance = true;
-    else if (what == "power")
-      o.segment.keepPower = true;
-    else if (what == "manifold")
-      o.segment.keepManifold = true;
-    else if (what == "balls")
-      o.segment.keepBalls = true;
-    else
+    if (grids.count(what) == 0)
       throw WrongUsage("--keep " + what + ": can keep distance, power, manifold and balls");
+    *grids.at(what) = true;
   }
-  if (!o.autoSlabs) checkSlabArguments(o);
-  if (o.autoSlabs && inSlabs)
+}
+
+void checkAutoSlabs(const SegmentArguments& o) {
+  if (hasSlabsEnding(o.out))
     throw WrongUsage(o.out + " is in slabs anyway: leave --auto-slabs out");
-  if (o.autoSlabs && !couldBeInSlabs(o))
+  if (!couldBeInSlabs(o))
     throw WrongUsage(
         "--auto-slabs gives one file of labels and manifolds: leave other grids of --keep, "
         "--tables and --dry-run out");
+}
+
+void parse(SegmentArguments& o) {
+  parseFiles(o);
+  parseMethod(o);
+  parseKeep(o);
+  if (o.autoSlabs)
+    checkAutoSlabs(o);
+  else
+    checkSlabArguments(o);
 }
 
 /// What segmenting would take, without doing it.
@@ -117,7 +139,7 @@ void printEstimate(const SegmentArguments& o, const Common& common, const MaskGr
 
 void runSegment(const SegmentArguments& o, const Common& common) {
   if (hasSlabsEnding(o.out)) return runInSlabs(o, common);
-  if (o.autoSlabs && isSurelyForSlabs(o)) return runBySlabs(o, common);
+  if (o.autoSlabs && isSurelyForSlabs(o)) return runAutoSlabs(o, common);
   const Clock::time_point start = Clock::now();
   SegmentTiming timing;
   if (!o.dryRun) checkWritable(o.out);
@@ -144,7 +166,7 @@ void runSegment(const SegmentArguments& o, const Common& common) {
       options.maxMemory == 0 || segmentMemory(objectSize(*object), options) <= options.maxMemory;
   if (!fits && o.autoSlabs) {
     object.reset();
-    return runBySlabs(o, common);
+    return runAutoSlabs(o, common);
   }
   Segmentation s;
   try {

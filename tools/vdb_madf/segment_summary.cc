@@ -3,6 +3,7 @@
 
 #include "segment_summary.h"
 
+#include <fmt/format.h>
 #include <openvdb/Metadata.h>
 
 #include <algorithm>
@@ -23,9 +24,7 @@ std::vector<std::string> hints(const SegmentOptions& options, const SegmentSumma
   const int64_t grains = summary.counts.grains;
   const LabelFlaws& flaws = *summary.flaws;
   std::vector<std::string> all;
-  const auto share = [&](int64_t part) {
-    return std::to_string(part) + " of " + std::to_string(grains) + " grains";
-  };
+  const auto share = [&](int64_t part) { return fmt::format("{} of {} grains", part, grains); };
   const bool neck = options.merge.mode != MergeMode::angle;
   if (2 * flaws.crumbs > grains)
     all.push_back(share(flaws.crumbs) + " are crumbs: " +
@@ -121,7 +120,7 @@ Json toJson(const SegmentArguments& o, const SegmentSummary& summary) {
     if (!domain->isBox()) json["region_voxels"] = int64_t(domain->voxelCount());
     json["porosity"] = *summary.porosity();
   }
-  if (summary.voxelSize) json["voxel_size_mm"] = inMillimetres(*summary.voxelSize);
+  if (summary.voxelSize) json["voxel_size_mm"] = inMillimeters(*summary.voxelSize);
   if (summary.weights != VoxelWeights{}) {
     json["weights"] = {summary.weights.x, summary.weights.y, summary.weights.z};
     json["weights_error"] = summary.weightsError;

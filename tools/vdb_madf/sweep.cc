@@ -4,6 +4,7 @@
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/segmentation/parameter_sweep.h"
 
+#include <fmt/format.h>
 #include <openvdb/Metadata.h>
 
 #include <algorithm>
@@ -70,8 +71,10 @@ std::vector<double> parseRanges(const std::string& text, const std::string& opti
     } else {
       const double count = range.size() == 3 ? (range[1] - range[0]) / range[2] : -1;
       if (!(count >= 0 && count < kMaxSteps))
-        throw WrongUsage(option + " " + part + ": must be a number or FIRST:LAST:STEP of at most " +
-                         std::to_string(kMaxSteps) + " steps from FIRST to LAST");
+        throw WrongUsage(
+            fmt::format("{} {}: must be a number or FIRST:LAST:STEP of at most {} steps from "
+                        "FIRST to LAST",
+                        option, part, kMaxSteps));
       for (int i = 0; i <= int(count + 1e-9); ++i)
         numbers.push_back(asTyped(range[0] + i * range[2]));
     }

@@ -3,6 +3,8 @@
 
 #include "vdb_madf/matching/track.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -162,8 +164,9 @@ void noteShift(const TrackArguments& o, const Tracks& t, const Common& common) {
   const int most = o.track.maxShift;
   for (int axis = 0; axis < 3; ++axis)
     if (!o.track.shift && most > 0 && std::abs(t.shift[axis]) == most) {
-      common.progress->note(o.after.path + ": the shift is the largest that is looked for: try " +
-                            std::to_string(std::min(2 * most, kMaxShift)) + " (--max-shift)");
+      common.progress->note(
+          fmt::format("{}: the shift is the largest that is looked for: try {} (--max-shift)",
+                      o.after.path, std::min(2 * most, kMaxShift)));
       return;
     }
 }

@@ -7,8 +7,8 @@
 
 namespace vdb_madf::tools {
 
-/// The version of the command, and in lines below it what it was built with and runs with: OpenVDB's
-/// version, the instruction set, optional formats.
+/// The version of the command, and in lines below it what it was built with and runs with:
+/// OpenVDB's version, the instruction set, optional formats.
 std::string versionText();
 
 }  // namespace vdb_madf::tools

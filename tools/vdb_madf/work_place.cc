@@ -3,6 +3,8 @@
 
 #include "work_place.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include "vdb_madf/base/version.h"
 #include "vdb_madf/slabs/slab_builder.h"
 #include "vdb_madf/vdb/slab_folder.h"
+#include "vdb_madf/vdb/slab_folder_writer.h"
 
 namespace vdb_madf::tools {
 
@@ -23,10 +26,9 @@ std::string workOf(const SegmentArguments& o) {
   const InputOptions& in = o.input;
   std::error_code ignored;
   std::string work =
-      std::string(kVersion) + "\n" + fs::absolute(o.out, ignored).string() + "\n" +
-      fs::absolute(in.path, ignored).string() + " " +
-      std::to_string(fs::file_size(in.path, ignored)) + " " +
-      std::to_string(fs::last_write_time(in.path, ignored).time_since_epoch().count());
+      fmt::format("{}\n{}\n{} {} {}", kVersion, fs::absolute(o.out, ignored).string(),
+                  fs::absolute(in.path, ignored).string(), fs::file_size(in.path, ignored),
+                  fs::last_write_time(in.path, ignored).time_since_epoch().count());
   for (const std::string& text : {in.gridName,   in.dataset,
                                   in.dims,       in.type,
                                   in.skip,       in.phase,
@@ -100,8 +102,8 @@ void WorkPlace::makePart(const SegmentArguments& o) {
 void WorkPlace::makeFolders(const SegmentArguments& o) {
   const std::string scratch = scratchOf(o);
   if (isWithin(out_, scratch) || isWithin(scratch, out_) || isWithin(scratch, part_))
-    throw IoError("scratch data cannot be in " + scratch + ", for " + out_ +
-                  ": choose another folder");
+    throw IoError(
+        fmt::format("scratch data cannot be in {}, for {}: choose another folder", scratch, out_));
   std::error_code ignored;
   const bool isNew = !fs::exists(part_, ignored);
   makePart(o);
@@ -127,8 +129,8 @@ void WorkPlace::checkSlabs(size_t count) const {
   std::error_code ignored;
   for (size_t s = 0; folder_ && s < count; ++s)
     if (isSlabPut(*folder_, s) && !fs::exists(file(slabFileName(s)), ignored))
-      throw IoError(file(slabFileName(s)) + ": is missing; remove " + part_ + " and " +
-                    folder_->path() + ", and begin anew");
+      throw IoError(fmt::format("{}: is missing; remove {} and {}, and begin anew",
+                                file(slabFileName(s)), part_, folder_->path()));
 }
 
 void WorkPlace::finish() {
@@ -145,8 +147,9 @@ void WorkPlace::abandon(bool isHopeless) {
   if (!folder_ || (team_.member() == 0 && (isHopeless || !holdsSlabs())))
     discard();
   else
-    progress_->note("what was done so far is kept in " + part_ + " and " + folder_->path() +
-                    ": give --resume to go on, or remove both");
+    progress_->note(fmt::format(
+        "what was done so far is kept in {} and {}: give --resume to go on, or remove both", part_,
+        folder_->path()));
 }
 
 void WorkPlace::discard() {

@@ -11,37 +11,40 @@
 
 namespace vdb_madf::tools {
 
-/// Where `segment IN OUT.slabs` works: OUT.slabs.part has the labels that are done, scratch all the rest.
-/// Of several members each makes one, together; they share the folders, which member 0 makes and removes.
-/// Without --scratch, --resume and --max-memory the scratch of several members is in their memory.
+/// Where `segment IN OUT.slabs` works: OUT.slabs.part has the labels that are done, scratch all the
+/// rest. Of several members each makes one, together; they share the folders, which member 0 makes
+/// and removes. Without --scratch, --resume and --max-memory the scratch of several members is in
+/// their memory.
 class WorkPlace {
  public:
-  /// @throw IoError, InvalidInput, one line, if the folders are in use or of other work; OtherRankFailed
+  /// @throw IoError, InvalidInput, one line, if the folders are in use or of other work;
+  ///   OtherMemberFailed
   WorkPlace(const SegmentArguments& o, const Common& common, Team& team);
 
   Scratch& scratch() { return folder_ ? static_cast<Scratch&>(*folder_) : memory_; }
   bool isInMemory() const { return !folder_; }
   /// What reading and writing scratch took this process, seconds; 0 in memory.
   double scratchSeconds() const { return folder_ ? folder_->seconds() : 0; }
-  /// Is the object there, in slabs, from a run before?
+  /// True if the object is there, in slabs, from a run before.
   bool holdsSlabs() const;
-  /// A file of OUT.slabs.
-  std::string file(const std::string& name) const;
+  /// The folder in which OUT.slabs is made.
+  const std::string& part() const { return part_; }
   /// What is known of the object beside its voxels; not in memory.
   std::string aboutFile() const { return folder_->file("about.vdb"); }
 
   /// @throw IoError if slabs are missing that a run before wrote
   void checkSlabs(size_t count) const;
 
-  /// Was the work all done by a run before, but for finish()?
+  /// True if the work was all done by a run before, but for finish().
   bool isDone() const { return isDone_; }
-  /// By all members: puts the folder in the place of OUT, and removes scratch.
+  /// Puts, called by all members, the folder in the place of OUT, and removes scratch.
   void finish();
-  /// After an error: removes what nobody can go on with, or says what is kept.
+  /// Removes, after an error, what nobody can go on with, or says what is kept.
   /// @param isHopeless it would be the same error again
   void abandon(bool isHopeless);
 
  private:
+  std::string file(const std::string& name) const;
   void makeFolders(const SegmentArguments& o);
   void makePart(const SegmentArguments& o);
   void clearPart(bool butSlabs);

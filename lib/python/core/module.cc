@@ -93,6 +93,7 @@ PYBIND11_MODULE(_core, m) {
   });
   m.def("bytes_from_text", &vdb_madf::bytesFromText);
   m.def("reads_hdf5", &vdb_madf::readsHdf5);
+  m.def("written_endings", &vdb_madf::writtenEndings);
   bindGrids(m);
   bindVolumes(m);
   bindMethod(m);

@@ -6,7 +6,8 @@
 #include "array_source.h"
 #include "bindings.h"
 #include "vdb_madf/grids/object_mask.h"
-#include "vdb_madf/volumes/volume.h"
+#include "vdb_madf/volumes/load_labels.h"
+#include "vdb_madf/volumes/load_object.h"
 
 namespace vdb_madf::python {
 

@@ -10,11 +10,12 @@ from typing import Any, Callable, Optional
 
 from . import _core
 
+_VOLUMES = (".vdb", *_core.written_endings())
+
 #: kind of file -> endings
 KINDS = {
-    "labels": (".vdb", ".tif", ".tiff", ".raw", ".mhd", ".mha", ".nrrd", ".npy", ".h5",
-               ".hdf5"),
-    "mask": (".tif", ".tiff", ".raw", ".mhd", ".mha", ".nrrd", ".npy", ".h5", ".hdf5", ".vdb"),
+    "labels": _VOLUMES,
+    "mask": _VOLUMES,
     "mesh": (".ply", ".obj", ".stl", ".glb", ".vtp", ""),
     "vti": (".vti",),
     "network": (".graphml", ".vtp", ".csv"),

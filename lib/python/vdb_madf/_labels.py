@@ -172,8 +172,9 @@ class Labels(Volume):
         """Writes a file, whole or not at all; what it is the ending says, or `kind` where it does
         not:
 
-        - "labels": .vdb (Int32 grid `grain`), .tif, .raw, .mhd, .mha, .nrrd, .npy, .h5; `type` of
-          the samples; "mask": the same with 1 where there is a label
+        - "labels": .vdb (Int32 grid `grain`), or an image of any format that is written, such as
+          .tif, .nrrd or .npy, with `type` of the samples; "mask": the same with 1 where there is a
+          label
         - "mesh": .ply, .obj, .stl, .glb (a node a grain, with its measures), .vtp or a folder of
           .stl files; `smoothing`, `reduce`, `triangles`
         - "vti": VTK's image, `compress`; "hexahedra": .vtu, .inp (Abaqus), an element a voxel

@@ -82,8 +82,8 @@ class Mask(Volume):
 
     def save(self, path: Union[str, "os.PathLike[str]"], *, progress: Progress = None,
              threads: int = 0) -> None:
-        """Writes the mask whole or not at all: .vdb (Bool grid `object`), .tif, .raw, .mhd, .mha,
-        .nrrd, .npy or .h5 (uint8, 0 and 1)."""
+        """Writes the mask whole or not at all: .vdb (Bool grid `object`), or an image (uint8, 0
+        and 1) of any format that is written, such as .tif, .nrrd or .npy."""
         name = os.fspath(path)
         with calling(progress, threads) as call:
             if name.lower().endswith(".vdb"):

@@ -4,6 +4,7 @@
 #include "vdb_madf/exports/ome_zarr.h"
 
 #include <filesystem>
+#include <type_traits>
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
@@ -48,23 +49,19 @@ std::string nameOf(const std::string& path) {
   return (name.has_filename() ? name : name.parent_path()).filename().string();
 }
 
-void checkBox(const CoordBBox& box) {
+/// @param about the transform and the metadata of the labels
+template <typename Labels>
+void writeFolder(const std::string& path, const Labels& labels, const Int32Grid& about,
+                 const CoordBBox& box, const OmeZarrOptions& options, Interrupter* interrupter) {
   if (box.empty()) throw InvalidInput("there is no voxel and no domain: nothing to write");
-}
-
-ZarrVersion zarrVersionOf(const OmeZarrOptions& options) {
-  return options.version == OmeVersion::v05 ? ZarrVersion::three : ZarrVersion::two;
-}
-
-}  // namespace
-
-void writeOmeZarr(const std::string& path, const Int32Grid& labels, const CoordBBox& box,
-                  const OmeZarrOptions& options, Interrupter* interrupter) {
-  checkBox(box);
-  const OmePlace place = detail::omePlaceOf(labels);
-  const ZarrVersion zarr = zarrVersionOf(options);
+  constexpr bool kInOnePiece = std::is_same_v<Labels, Int32Grid>;
+  if (!kInOnePiece && options.meshes)
+    throw InvalidInput("meshes are made of labels in one piece, not of slabs");
+  const OmePlace place = detail::omePlaceOf(about);
+  const ZarrVersion zarr =
+      options.version == OmeVersion::v05 ? ZarrVersion::three : ZarrVersion::two;
   const std::vector<OmeLevel> levels = detail::omeLevels(box);
-  detail::checkNeuroglancer(labels, options);
+  detail::checkNeuroglancer(about, options);
   OutputTree folder(path);
   {
     WorkPart part(interrupter, 0, kMeasured);
@@ -72,38 +69,26 @@ void writeOmeZarr(const std::string& path, const Int32Grid& labels, const CoordB
     const GrainColors colors = grainColors(labels, interrupter);
     writeGroups(folder, place, levels, detail::imageLabel(table, colors, options.version),
                 options.version, zarr);
-    if (options.meshes)
-      detail::writeNeuroglancer(folder, nameOf(path), labels, box, place, table, colors, options,
-                                interrupter);
-  }
-  for (size_t i = 0; i < levels.size(); ++i) {
-    const auto percent = [&](size_t done) {
-      return kMeasured + int(done) * (100 - kMeasured) / int(levels.size());
-    };
-    WorkPart part(interrupter, percent(i), percent(i + 1));
-    detail::writeOmeLevel(folder, labels, levels[i], std::to_string(i), zarr, &part);
-  }
-  folder.commit();
-}
-
-void writeOmeZarr(const std::string& path, const LabelSlabs& labels, const CoordBBox& box,
-                  const OmeZarrOptions& options, Interrupter* interrupter) {
-  checkBox(box);
-  if (options.meshes) throw InvalidInput("meshes are made of labels in one piece, not of slabs");
-  const OmePlace place = detail::omePlaceOf(*labels.about);
-  const ZarrVersion zarr = zarrVersionOf(options);
-  const std::vector<OmeLevel> levels = detail::omeLevels(box);
-  OutputTree folder(path);
-  {
-    WorkPart part(interrupter, 0, kMeasured);
-    const detail::GrainTable table(measure(labels, options.measure, &part));
-    writeGroups(folder, place, levels,
-                detail::imageLabel(table, grainColors(labels, interrupter), options.version),
-                options.version, zarr);
+    if constexpr (kInOnePiece)
+      if (options.meshes)
+        detail::writeNeuroglancer(folder, nameOf(path), labels, box, place, table, colors, options,
+                                  interrupter);
   }
   WorkPart part(interrupter, kMeasured, 100);
   detail::writeOmeLevels(folder, labels, levels, zarr, &part);
   folder.commit();
+}
+
+}  // namespace
+
+void writeOmeZarr(const std::string& path, const Int32Grid& labels, const CoordBBox& box,
+                  const OmeZarrOptions& options, Interrupter* interrupter) {
+  writeFolder(path, labels, labels, box, options, interrupter);
+}
+
+void writeOmeZarr(const std::string& path, const LabelSlabs& labels, const CoordBBox& box,
+                  const OmeZarrOptions& options, Interrupter* interrupter) {
+  writeFolder(path, labels, *labels.about, box, options, interrupter);
 }
 
 OmeVersion omeVersionOf(const std::string& text) {

@@ -30,8 +30,9 @@ class OutputFile {
   bool committed_ = false;
 };
 
-/// Removes what is left of killed programs that were writing these files or folders: the temporaries
-/// with the number of a process that does not exist (on this machine). What cannot be removed stays.
+/// Removes what is left of killed programs that were writing these files or folders: the
+/// temporaries with the number of a process that does not exist (on this machine). What cannot be
+/// removed stays.
 void removeLeftovers(const std::vector<std::string>& paths);
 
 }  // namespace vdb_madf

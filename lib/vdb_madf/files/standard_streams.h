@@ -13,7 +13,8 @@ inline bool isStandardInput(const std::string& path) {
 }
 
 /// The paths `raw:-`, `npy:-`, `nrrd:-` ... are standard output, in the format that stands in the
-/// place of an ending (fileEnding()). Only what is written from its beginning to its end can go there.
+/// place of an ending (fileEnding()). Only what is written from its beginning to its end can go
+/// there.
 inline bool isStandardOutput(const std::string& path) {
   return path.size() > 2 && path.compare(path.size() - 2, 2, ":-") == 0 &&
          path.find('/') == std::string::npos;

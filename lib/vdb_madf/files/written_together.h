@@ -8,9 +8,9 @@
 
 namespace vdb_madf {
 
-/// For a file that was asked for, and others that are written with it without having been named.
-/// Where one of these is there and the file is not, it comes from elsewhere.
-/// @throw IoError, before anything is written, rather than that it is replaced.
+/// Protects side files that are not ours. `others` are written along with `path` (the .raw of an
+/// .mhd) without having been named: if one exists and `path` does not, something else made it.
+/// @throw IoError then, before anything is written
 void checkWrittenTogether(const std::string& path, const std::vector<std::string>& others);
 
 }  // namespace vdb_madf

@@ -74,9 +74,9 @@ class ImageWriter {
   virtual void write(int count, const void* samples) = 0;  ///< the next count slices, x fastest
   virtual void finish() = 0;
 
-  /// Lets several processes write the samples at the same time (shared_image.h). The header is written and
-  /// the file has its full length then; write() is not called, and finish() waits until they are done.
-  /// None if slices of this format come in order.
+  /// Lets several processes write the samples at the same time (shared_image.h). The header is
+  /// written and the file has its full length then; write() is not called, and finish() waits until
+  /// they are done. None if slices of this format come in order.
   virtual std::optional<SharedImage> share() { return std::nullopt; }
 };
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/word_list.h"
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/standard_streams.h"
@@ -209,6 +210,14 @@ std::unique_ptr<ImageReader> openImage(const std::string& path, const std::optio
                 Hint::rawLayout);
 }
 
+std::vector<std::string> writtenEndings() {
+  std::vector<std::string> endings;
+  for (const FileFormat& format : fileFormats())
+    endings.insert(endings.end(), format.endings.begin(),
+                   format.endings.begin() + std::ptrdiff_t(format.writtenEndings));
+  return endings;
+}
+
 bool readsHdf5() {
 #ifdef VDB_MADF_HDF5
   return true;
@@ -235,8 +244,7 @@ std::unique_ptr<ImageWriter> createImage(const std::string& path, const ImageInf
   if (const FileFormat* format = writtenFormat(path)) return format->create(path, info, origin);
   throw InvalidInput(path + (isStandardOutput(path)
                                  ? ": images on standard output are raw:-, nrrd:- or npy:-"
-                                 : ": images are written as .tif, .tiff, .raw, .mhd, .mha, .nrrd, "
-                                   ".npy, .h5 or .hdf5"));
+                                 : ": images are written as " + wordList(writtenEndings())));
 }
 
 void checkImagePlace(const std::string& path) {

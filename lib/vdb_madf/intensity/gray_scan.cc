@@ -9,6 +9,7 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/scans/image_box.h"
 #include "vdb_madf/vdb/read_vdb.h"
+#include "vdb_madf/volumes/choose_grid.h"
 #include "vdb_madf/volumes/dense_volume.h"
 
 namespace vdb_madf {

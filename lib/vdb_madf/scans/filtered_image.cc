@@ -3,6 +3,8 @@
 
 #include "vdb_madf/scans/filtered_image.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -61,8 +63,8 @@ void order(T* a, T* b) {
   }
 }
 
-/// The median of an odd number of values in each lane. Of one value more than half of them the least
-/// and the greatest are not it: they are dropped, the next value is added, and so on.
+/// The median of an odd number of values in each lane. Of one value more than half of them the
+/// least and the greatest are not it: they are dropped, the next value is added, and so on.
 /// `fetch(i, to)` writes the values number i; `work` has room for count / 2 + 2.
 template <typename T, typename Fetch>
 const T* medians(size_t count, const Fetch& fetch, T* work) {
@@ -209,8 +211,8 @@ class SmoothedImage : public FilteredImage {
 
 std::unique_ptr<ImageReader> medianImage(std::unique_ptr<ImageReader> image, int radius) {
   if (radius < 1 || radius > kMaxMedianRadius)
-    throw InvalidInput("the radius of a median is 1 to " + std::to_string(kMaxMedianRadius) +
-                       " voxels, and " + std::to_string(radius) + " was given");
+    throw InvalidInput(fmt::format("the radius of a median is 1 to {} voxels, and {} was given",
+                                   kMaxMedianRadius, radius));
   std::unique_ptr<ImageReader> median;
   detail::withSampleType(image->info().type, [&](auto sample) {
     median = std::make_unique<MedianImage<decltype(sample)>>(std::move(image), radius);

@@ -50,11 +50,13 @@ enum class ImageKind {
 };
 ImageKind kindOf(const Histogram& histogram);
 
-/// How many voxels along x have the same value, on average; 0 is not counted. 1 if there is no other.
+/// How many voxels along x have the same value, on average; 0 is not counted. 1 if there is no
+/// other.
 double meanRun(const Histogram& histogram);
 
-/// How many values but 0 there are, all of which are whole numbers. Takes another pass over the image
-/// where a bin holds several values; memory is that of the values. @throw IoError; Interrupted.
+/// How many values but 0 there are, all of which are whole numbers. Takes another pass over the
+/// image where a bin holds several values; memory is that of the values. @throw IoError;
+/// Interrupted.
 int64_t countLabels(const Histogram& histogram, ImageReader& image,
                     Interrupter* interrupter = nullptr);
 
@@ -65,8 +67,8 @@ int64_t countLabels(const Histogram& histogram, ImageReader& image,
 std::optional<double> otsuThreshold(const Histogram& histogram);
 
 /// The deepest place between two modes: the histogram, gathered into 256 bins from the least to the
-/// greatest value if it has more, is smoothed (by means of three bins, at most 10000 times) until it
-/// has two maxima; the threshold is the least bin between them, as scikit-image's
+/// greatest value if it has more, is smoothed (by means of three bins, at most 10000 times) until
+/// it has two maxima; the threshold is the least bin between them, as scikit-image's
 /// threshold_minimum() finds it: with one bin a value the next value, else the middle of the bin.
 /// None if there are no two maxima.
 std::optional<double> valleyThreshold(const Histogram& histogram);

@@ -3,6 +3,7 @@
 
 #include "vdb_madf/scans/image_object.h"
 
+#include <fmt/format.h>
 #include <openvdb/Metadata.h>
 
 #include <algorithm>
@@ -34,8 +35,8 @@ std::string percent(int64_t part, int64_t whole) {
 
 using ThresholdOf = std::optional<double> (*)(const Histogram&);
 
-/// What the threshold would be without a value that fills the corners of all slices of a gray image,
-/// as it does around a round field of view; none if that hardly changes the object.
+/// What the threshold would be without a value that fills the corners of all slices of a gray
+/// image, as it does around a round field of view; none if that hardly changes the object.
 std::optional<double> thresholdInside(const Histogram& histogram, ThresholdOf thresholdOf,
                                       double threshold) {
   constexpr double kLittle = 0.001;  // of the voxels
@@ -54,16 +55,17 @@ std::string cornerText(const Histogram& histogram) {
 }
 
 std::string grayRefusal(const Histogram& histogram) {
-  std::string text = "is a gray image (" + sampleTypeName(histogram.type) + ", values " +
-                     shortestDecimal(histogram.min) + " to " + shortestDecimal(histogram.max) +
-                     "; " + histogramLine(histogram) + "): say which values are object";
+  std::string text =
+      fmt::format("is a gray image ({}, values {} to {}; {}): say which values are object",
+                  sampleTypeName(histogram.type), shortestDecimal(histogram.min),
+                  shortestDecimal(histogram.max), histogramLine(histogram));
   if (const auto otsu = otsuThreshold(histogram)) {
     const auto voxels = histogram.finite + histogram.notFinite;
-    text += "; Otsu's threshold is " + shortestDecimal(*otsu) + ", which takes " +
-            percent(voxelsFrom(histogram, *otsu), voxels);
+    text += fmt::format("; Otsu's threshold is {}, which takes {}", shortestDecimal(*otsu),
+                        percent(voxelsFrom(histogram, *otsu), voxels));
     if (const auto inside = thresholdInside(histogram, otsuThreshold, *otsu))
-      text += ", or " + shortestDecimal(*inside) + " " + cornerText(histogram) + ", which takes " +
-              percent(voxelsFrom(histogram, *inside), voxels);
+      text += fmt::format(", or {} {}, which takes {}", shortestDecimal(*inside),
+                          cornerText(histogram), percent(voxelsFrom(histogram, *inside), voxels));
   }
   return text;
 }
@@ -129,13 +131,16 @@ double automaticThreshold(ImageReader& image, AutomaticThreshold method, const P
   if (!threshold && isOtsu)
     throw InvalidInput(image.path() + ": has but one value, so Otsu's threshold cannot divide it");
   if (!threshold)
-    throw SelectionNeeded(
-        image.path() + ": its histogram (" + histogramLine(histogram) +
-        ") has no two modes with a valley between them: choose another threshold");
+    throw SelectionNeeded(fmt::format(
+        "{}: its histogram ({}) has no two modes with a valley between them: choose another "
+        "threshold",
+        image.path(), histogramLine(histogram)));
   if (const auto inside = thresholdInside(histogram, thresholdOf, *threshold))
-    throw SelectionNeeded(image.path() + ": the threshold would be " + shortestDecimal(*threshold) +
-                          ", but " + shortestDecimal(*inside) + " " + cornerText(histogram) +
-                          " (a round field of view?): choose one of the two by its value");
+    throw SelectionNeeded(fmt::format(
+        "{}: the threshold would be {}, but {} {} (a round field of view?): choose one of the two "
+        "by its value",
+        image.path(), shortestDecimal(*threshold), shortestDecimal(*inside),
+        cornerText(histogram)));
   return *threshold;
 }
 
@@ -266,9 +271,9 @@ void despeckleObject(MaskGrid& object, int64_t voxels, Interrupter* interrupter)
   detail::WorkPart end(interrupter, 100, 100);
   const Despeckled counts = despeckle(object, voxels, &end);
   const auto before = object.getMetadata<openvdb::StringMetadata>(kObjectKey);
-  setText(object, (before ? before->value() + ", " : "") + "despeckle " + std::to_string(voxels) +
-                      " (" + std::to_string(counts.islandVoxels) + " voxels dropped, " +
-                      std::to_string(counts.cavityVoxels) + " filled)");
+  setText(object, fmt::format("{}despeckle {} ({} voxels dropped, {} filled)",
+                              before ? before->value() + ", " : "", voxels, counts.islandVoxels,
+                              counts.cavityVoxels));
 }
 
 }  // namespace vdb_madf

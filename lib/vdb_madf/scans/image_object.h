@@ -31,8 +31,8 @@ struct GrayOptions {
   double smooth = 0;  ///< standard deviation, voxels: see smoothedImage(); 0: none
   /// Takes the place of the selection's threshold: see otsuThreshold(), valleyThreshold().
   AutomaticThreshold automatic = AutomaticThreshold::none;
-  /// Hysteresis: the selection is a threshold, and voxels from `low` on are object, too, if they are
-  /// 6-connected with one that it selects by others such as they.
+  /// Hysteresis: the selection is a threshold, and voxels from `low` on are object, too, if they
+  /// are 6-connected with one that it selects by others such as they.
   std::optional<double> low;
   int64_t despeckle = 0;  ///< see despeckle(); it works on any object
 };
@@ -46,21 +46,21 @@ struct ScanPart {
 /// The object in an image, and what is worth knowing of how it was found.
 struct ImageObject {
   MaskGrid::Ptr mask;
-  /// Voxels of the box that were selected and do not lie in the domain (0 for an inverted selection;
-  /// with hysteresis those from the lower threshold on).
+  /// Voxels of the box that were selected and do not lie in the domain (0 for an inverted
+  /// selection; with hysteresis those from the lower threshold on).
   int64_t leftOut = 0;
   /// No values were chosen, and the image is one of labels, which are all in one mask now.
   bool fromLabels = false;
 };
 
-/// Gets an object in layers of leaf nodes, ascending in z; those without voxels may be left out. What is
-/// taken is not kept, so the object need not fit in memory.
+/// Gets an object in layers of leaf nodes, ascending in z; those without voxels may be left out.
+/// What is taken is not kept, so the object need not fit in memory.
 using TakeLayer = std::function<void(MaskTree& layer)>;
 
-/// The layers of an object that is in memory. The tree is empty then.
+/// Hands over the layers of an object that is in memory. The tree is empty then.
 void takeLayers(MaskTree& object, const TakeLayer& take);
 
-/// True if anything but despeckling is asked for: of images alone.
+/// True if anything but despeckling is asked for, which images alone take.
 bool readsGray(const GrayOptions& gray);
 
 /// The image behind the median and the Gaussian that are asked for.
@@ -74,10 +74,10 @@ std::unique_ptr<ImageReader> filteredImage(std::unique_ptr<ImageReader> image,
 /// @param open called for each pass over the image
 /// @param part absent: all of the image. Thresholds are found, and voxels connected, within its
 ///   domain alone; filters look beyond it.
-/// @param take gets the voxels, and the mask has none. With hysteresis and despeckle the whole of the
-///   mask is made first.
-/// @param selection absent: what is not 0. That, inverted or not, is taken of masks and label images
-///   alone (see kindOf()): other images need a selection by value.
+/// @param take gets the voxels, and the mask has none. With hysteresis and despeckle the whole of
+///   the mask is made first.
+/// @param selection absent: what is not 0. That, inverted or not, is taken of masks and label
+///   images alone (see kindOf()): other images need a selection by value.
 /// @throw SelectionNeeded, one line that names the file, for a gray image or one of phases without
 ///   one, and for a histogram without a valley; InvalidInput; IoError; Interrupted.
 ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& open,

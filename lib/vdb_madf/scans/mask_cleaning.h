@@ -19,8 +19,8 @@ struct Despeckled {
 
 /// Drops the 6-connected components of the object with fewer than `voxels` voxels, then fills those
 /// of the background within the domain: scikit-image's remove_small_objects() and
-/// remove_small_holes(), whose connectivity is 1. So a cavity may reach a face of the domain; without
-/// a domain one that is enclosed is filled. If no background would be left, none is filled.
+/// remove_small_holes(), whose connectivity is 1. So a cavity may reach a face of the domain;
+/// without a domain one that is enclosed is filled. If no background would be left, none is filled.
 /// @throw InvalidInput if the object has more than kMaxLeaves leaf nodes; Interrupted.
 Despeckled despeckle(MaskGrid& mask, int64_t voxels, Interrupter* interrupter = nullptr);
 

@@ -3,6 +3,8 @@
 
 #include "vdb_madf/scans/read_mask.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 #include <new>
@@ -27,8 +29,8 @@ std::vector<MaskGrid::Ptr> readMasks(ImageReader& image, const std::vector<Selec
   const size_t slabBytes = size_t(detail::sliceBytes(info)) * size_t(slices);
   const std::unique_ptr<char[]> samples(new (std::nothrow) char[slabBytes]);
   if (!samples)
-    throw IoError(image.path() + ": its slices are too large: " + std::to_string(slabBytes) +
-                  " bytes are needed for eight");
+    throw IoError(fmt::format("{}: its slices are too large: {} bytes are needed for eight",
+                              image.path(), slabBytes));
   const CoordBBox part = box.value_or(imageBox(info.size));
   detail::forEachSlab(part.min().z(), part.max().z() + 1, interrupter, [&](int z, int count) {
     image.read(z, count, samples.get());

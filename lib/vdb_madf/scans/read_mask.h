@@ -19,11 +19,12 @@ namespace vdb_madf {
 MaskGrid::Ptr readMask(ImageReader& image, const Selection& selection = {},
                        Interrupter* interrupter = nullptr);
 
-/// Is given the masks with what was read last besides what it left in them: a layer of leaf nodes,
-/// from the lowest on, not yet cut to the box. What it takes out need not fit in memory.
+/// A function that is given the masks with what was read last besides what it left in them: a layer
+/// of leaf nodes, from the lowest on, not yet cut to the box. What it takes out need not fit in
+/// memory.
 using LayerRead = std::function<void(const std::vector<MaskGrid::Ptr>& masks)>;
 
-/// Several such masks in one pass.
+/// Reads several such masks in one pass.
 /// @param box a part of the image's: what lies outside is not read, or left out
 std::vector<MaskGrid::Ptr> readMasks(ImageReader& image, const std::vector<Selection>& selections,
                                      Interrupter* interrupter = nullptr,

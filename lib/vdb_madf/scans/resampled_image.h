@@ -17,13 +17,14 @@ namespace vdb_madf {
 /// come nearest to its length (half a cube: one more). It holds the two slices around a cube. The
 /// same bits for any number of threads, and however it is read.
 /// @param voxels their size, whatever the image says
-/// @param edge of the cubes, metres, > 0
+/// @param edge of the cubes, meters, > 0
 /// @throw InvalidInput if cubes are beyond 256 times as long or short, less than half of one is
 ///   needed, or the result would be too large
 std::unique_ptr<ImageReader> resampledImage(std::unique_ptr<ImageReader> image,
                                             const VoxelSize& voxels, double edge);
 
-/// Where the center of the first cube of resampledImage() is, if that of the first voxel is at 0; mm.
+/// The place of the center of the first cube of resampledImage(), if that of the first voxel is at
+/// 0; mm.
 std::array<double, 3> resampledOrigin(const VoxelSize& voxels, double edge);
 
 }  // namespace vdb_madf

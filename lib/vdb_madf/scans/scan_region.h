@@ -21,8 +21,8 @@ struct Cylinder {
 };
 
 /// A cylinder of which not all is said. The center is then the middle of the scan's box. The radius
-/// is fitted to the field of view: the least one, rounded up to hundredths, that holds all voxels of
-/// other values than 0, but at most the largest that lies in the box. (Of an image whose eight
+/// is fitted to the field of view: the least one, rounded up to hundredths, that holds all voxels
+/// of other values than 0, but at most the largest that lies in the box. (Of an image whose eight
 /// corners have one value, all voxels of other values than that; NaN never counts. Of a VDB grid,
 /// the object that it has without a selection.)
 struct CylinderOptions {

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // OpenVDB before 11 reads a compressed block into its buffer before it compares the size that the
-// file gives with the size of the buffer: one wrong bit overflows the heap. Later ones take some wrong
-// sizes for right. These functions check first. They carry the names of the library's own, so that a program that they are linked into
-// uses them instead, in the library's code too: the dynamic linker takes the program's definition.
+// file gives with the size of the buffer: one wrong bit overflows the heap. Later ones take some
+// wrong sizes for right. These functions check first. They carry the names of the library's own, so
+// that a program that they are linked into uses them instead, in the library's code too: the
+// dynamic linker takes the program's definition.
 
 #include <blosc.h>
 #include <openvdb/Exceptions.h>

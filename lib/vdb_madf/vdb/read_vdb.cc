@@ -3,6 +3,7 @@
 
 #include "vdb_madf/vdb/read_vdb.h"
 
+#include <fmt/format.h>
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
 #include <openvdb/openvdb.h>
@@ -82,13 +83,15 @@ Header readHeader(detail::InputBuffer& file) {
     refuse(file, "it is not a VDB file; give a file that OpenVDB has written");
   Header header;
   header.format = file.read<uint32_t>();
-  const std::string format = "its VDB format " + std::to_string(header.format);
   if (header.format > openvdb::OPENVDB_FILE_VERSION)
-    refuse(file, format + " is newer than " + std::to_string(openvdb::OPENVDB_FILE_VERSION) +
-                     "; save it from an older program, or update this one");
+    refuse(file,
+           fmt::format("its VDB format {} is newer than {}; save it from an older program, or "
+                       "update this one",
+                       header.format, int(openvdb::OPENVDB_FILE_VERSION)));
   if (header.format < kOldestFormat)
-    refuse(file, format + " is older than " + std::to_string(kOldestFormat) +
-                     "; save it again from a newer program");
+    refuse(file,
+           fmt::format("its VDB format {} is older than {}; save it again from a newer program",
+                       header.format, kOldestFormat));
   header.library.first = file.read<uint32_t>();
   header.library.second = file.read<uint32_t>();
   const auto flag = file.read<uint8_t>();
@@ -295,8 +298,9 @@ class Reader {
     if (header_.hasOffsets && entry.descriptor.buffers != extent.topologyEnd)
       damaged("the voxels of a grid are not where their offset says");
     if (extent.memoryBytes > memoryLimit())
-      refuse(file_, "it takes " + std::to_string(extent.memoryBytes >> 20) +
-                        " MiB of memory, more than there is; crop it, or use a larger computer");
+      refuse(file_, fmt::format("it takes {} MiB of memory, more than there is; crop it, or use a "
+                                "larger computer",
+                                extent.memoryBytes >> 20));
     file_.moveTo(entry.treeStart);
     entry.grid->readTopology(stream_);
     if (file_.position() != extent.topologyEnd) damaged("its nodes have the wrong size");

@@ -16,14 +16,14 @@ namespace vdb_madf {
 /// Which grids of a file are read, and which are refused.
 struct VdbReadOptions {
   /// Largest number of voxels that active tiles and leaves of one grid may hold, and the largest
-  /// |coordinate|: a file beyond them is refused before its tiles are touched. (Voxels of a region do
-  /// not count: its tiles stay tiles.)
+  /// |coordinate|: a file beyond them is refused before its tiles are touched. (Voxels of a region
+  /// do not count: its tiles stay tiles.)
   int64_t maxVoxels = int64_t(1) << 32;
   int maxCoordinate = kMaxImageSide;
-  /// Which grids to read: asked with each, that has its name, type, metadata and transform but an
-  /// empty tree. Absent: all. The trees of the others are passed over unread, and what is wrong
-  /// within them is not seen; a tree that a wanted grid shares with another is read, and so is the
-  /// region that is its domain.
+  /// Says which grids to read. It is asked with each, which has its name, type, metadata and
+  /// transform but an empty tree. Absent: all. The trees of the others are passed over unread, and
+  /// what is wrong within them is not seen; a tree that a wanted grid shares with another is read,
+  /// and so is the region that is its domain.
   std::function<bool(const openvdb::GridBase&)> wanted;
   /// Reads grids whatever the shape of their voxels. Everything here measures in cubes: otherwise a
   /// wanted grid is refused whose voxels have edges that differ by more than 0.1 % in the world, or
@@ -33,12 +33,12 @@ struct VdbReadOptions {
 
 /// The volumes of a .vdb file in its order, read eagerly (no delayed loading) from a file that may
 /// be damaged; point grids are left out. Formats 222 to 224. A grid whose domain is a region, which
-/// the file holds in a Bool grid, has it again: storedDomain(). The structure of each grid is checked
-/// before OpenVDB reads it; linked against OpenVDB before 11, a program also needs the checked
-/// decompression of tools/ for files that may change while they are read.
+/// the file holds in a Bool grid, has it again: storedDomain(). The structure of each grid is
+/// checked before OpenVDB reads it; linked against OpenVDB before 11, a program also needs the
+/// checked decompression of tools/ for files that may change while they are read.
 /// A folder of slabs (slab_folder.h) is one such volume; its grids have to fit in memory together.
-/// @throw IoError, one line that names the file, if it is missing, truncated, corrupt or not VDB, has
-///   voxels that are no cubes, or names a region that it does not hold; Interrupted.
+/// @throw IoError, one line that names the file, if it is missing, truncated, corrupt or not VDB,
+///   has voxels that are no cubes, or names a region that it does not hold; Interrupted.
 std::vector<openvdb::GridBase::Ptr> readVdb(const std::string& path,
                                             const VdbReadOptions& options = {},
                                             Interrupter* interrupter = nullptr);

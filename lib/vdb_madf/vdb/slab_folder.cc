@@ -3,11 +3,9 @@
 
 #include "vdb_madf/vdb/slab_folder.h"
 
+#include <fmt/format.h>
 #include <openvdb/Metadata.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -16,7 +14,6 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/files/detail/input_file.h"
-#include "vdb_madf/files/detail/output_place.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/grids/detail/region_metadata.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
@@ -28,22 +25,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr char kSlab[] = "madf_slab";
-constexpr char kSlabs[] = "madf_slabs";
-
 template <typename Grid>
 bool mergeAs(openvdb::GridBase& grid, openvdb::GridBase& next) {
   if (!grid.isType<Grid>() || !next.isType<Grid>()) return false;
   static_cast<Grid&>(grid).tree().merge(static_cast<Grid&>(next).tree());
   return true;
-}
-
-/// Is there an index that says that it is one? It is written last.
-bool hasIndex(const std::string& folder) {
-  std::error_code ignored;
-  const std::string index = (fs::path(folder) / kSlabIndex).string();
-  return fs::is_regular_file(index, ignored) &&
-         detail::InputFile(index).head(100).find("\"vdb_madf slabs\"") != std::string::npos;
 }
 
 [[noreturn]] void refuseIndex(const std::string& path) {
@@ -77,35 +63,10 @@ std::optional<int> numberOf(const Json& json, const char* key) {
 std::map<std::string, std::string> ownMetadata(const openvdb::GridBase& grid) {
   std::map<std::string, std::string> texts;
   for (auto meta = grid.beginMeta(); meta != grid.endMeta(); ++meta)
-    if (meta->first.rfind("madf_", 0) == 0 && meta->first != kSlab && meta->first != kSlabs &&
+    if (meta->first.rfind("madf_", 0) == 0 && meta->first != kSlabKey && meta->first != kSlabsKey &&
         meta->first != kGraphMetadata)
       texts[meta->first] = meta->second->typeName() + " " + meta->second->str();
   return texts;
-}
-
-/// The number of the process that put a folder out of its place follows.
-constexpr char kReplaced[] = ".replaced-";
-
-/// What a run that was killed has put out of the place of its output goes back there if that is empty, else
-/// away.
-void settleReplaced(const std::string& path) {
-  const detail::OutputPlace place = detail::outputPlaceOf(path);
-  const std::string stem = place.name + kReplaced;
-  std::error_code error;
-  std::vector<fs::path> left;
-  for (const auto& entry : fs::directory_iterator(place.folder, error)) {
-    const std::string name = entry.path().filename().string();
-    const std::string number = name.substr(std::min(stem.size(), name.size()));
-    if (name.compare(0, stem.size(), stem) == 0 && !number.empty() && number.size() < 10 &&
-        number.find_first_not_of("0123456789") == std::string::npos &&
-        detail::isGone(std::stoi(number)) && hasIndex(entry.path().string()))
-      left.push_back(entry.path());
-  }
-  for (const fs::path& old : left)
-    if (fs::exists(path, error))
-      fs::remove_all(old, error);
-    else
-      fs::rename(old, path, error);
 }
 
 /// All slabs have the whole region of their domain beside them.
@@ -116,19 +77,19 @@ bool holdsRegion(const openvdb::GridBase& grid) {
 }  // namespace
 
 std::string slabFileName(size_t slab) {
-  char name[40];
-  std::snprintf(name, sizeof name, "slab-%04zu.vdb", slab);
-  return name;
+  return fmt::format("slab-{:04}.vdb", slab);
 }
 
-void markSlab(openvdb::GridBase& grid, size_t slab, size_t count) {
-  grid.insertMeta(kSlab, openvdb::Int64Metadata(int64_t(slab)));
-  grid.insertMeta(kSlabs, openvdb::Int64Metadata(int64_t(count)));
+bool hasSlabIndex(const std::string& folder) {
+  std::error_code ignored;
+  const std::string index = (fs::path(folder) / kSlabIndex).string();
+  return fs::is_regular_file(index, ignored) &&
+         detail::InputFile(index).head(100).find("\"vdb_madf slabs\"") != std::string::npos;
 }
 
 bool isSlabFolder(const std::string& path) {
   std::error_code ignored;
-  return hasIndex(path) || fs::is_regular_file(fs::path(path) / slabFileName(0), ignored);
+  return hasSlabIndex(path) || fs::is_regular_file(fs::path(path) / slabFileName(0), ignored);
 }
 
 SlabFolder openSlabFolder(const std::string& path) {
@@ -149,37 +110,9 @@ SlabFolder openSlabFolder(const std::string& path) {
   std::error_code ignored;
   for (const std::string& file : folder.files)
     if (!fs::exists(file, ignored))
-      throw IoError(file + ": is missing in a folder of " + std::to_string(folder.slabCount()) +
-                    " slabs");
+      throw IoError(
+          fmt::format("{}: is missing in a folder of {} slabs", file, folder.slabCount()));
   return folder;
-}
-
-void checkSlabFolder(const std::string& path) {
-  settleReplaced(path);
-  std::error_code ignored;
-  if (fs::exists(path, ignored) && !hasIndex(path))
-    throw IoError("cannot write " + path +
-                  ": it is there, and no folder of slabs; choose another name");
-}
-
-void commitSlabFolder(const std::string& made, const std::string& path) {
-  checkSlabFolder(path);
-  const auto rename = [](const std::string& from, const std::string& to) {
-    std::error_code error;
-    fs::rename(from, to, error);
-    return error;
-  };
-  std::error_code ignored;
-  const std::string old = path + kReplaced + std::to_string(::getpid());
-  const bool replaces = fs::exists(path, ignored);
-  if (replaces)
-    if (const auto error = rename(path, old))
-      throw IoError("cannot replace " + path + ": " + error.message() + "; the new one is " + made);
-  if (const auto error = rename(made, path)) {
-    if (replaces) rename(old, path);
-    throw IoError("cannot write " + path + ": " + error.message() + "; it is complete in " + made);
-  }
-  if (replaces) fs::remove_all(old, ignored);
 }
 
 void checkSlab(const std::vector<openvdb::GridBase::Ptr>& grids, const SlabFolder& folder,
@@ -189,14 +122,14 @@ void checkSlab(const std::vector<openvdb::GridBase::Ptr>& grids, const SlabFolde
   for (size_t i = 0; fits && i < grids.size(); ++i) {
     openvdb::GridBase& grid = *grids[i];
     if (holdsRegion(grid)) continue;
-    const auto number = grid.getMetadata<openvdb::Int64Metadata>(kSlab),
-               all = grid.getMetadata<openvdb::Int64Metadata>(kSlabs);
+    const auto number = grid.getMetadata<openvdb::Int64Metadata>(kSlabKey),
+               all = grid.getMetadata<openvdb::Int64Metadata>(kSlabsKey);
     if (!number || !all || number->value() != int64_t(slab) ||
         all->value() != int64_t(folder.slabCount()))
-      throw IoError(path + ": is not slab " + std::to_string(slab + 1) + " of " +
-                    std::to_string(folder.slabCount()) + ": it is of another folder");
-    grid.removeMeta(kSlab);
-    grid.removeMeta(kSlabs);
+      throw IoError(fmt::format("{}: is not slab {} of {}: it is of another folder", path, slab + 1,
+                                folder.slabCount()));
+    grid.removeMeta(kSlabKey);
+    grid.removeMeta(kSlabsKey);
     const CoordBBox box = grid.evalActiveVoxelBoundingBox();
     if (!grid.empty() && !box.empty() &&
         (box.min().z() < folder.cuts[slab] || box.max().z() >= folder.cuts[slab + 1]))

@@ -11,19 +11,24 @@
 
 namespace vdb_madf {
 
-// A folder of slabs: a volume that was cut along z into files slab-0000.vdb, slab-0001.vdb ..., which
-// have one transform and no leaf node in common. Each opens alone. The file index.json says what they
-// are; it is written last, so that a folder without it is none.
+// A folder of slabs: a volume that was cut along z into files slab-0000.vdb, slab-0001.vdb ...,
+// which have one transform and no leaf node in common. Each opens alone. The file index.json says
+// what they are; it is written last, so that a folder without it is none. SlabFolderWriter makes
+// such folders.
 
 constexpr char kSlabIndex[] = "index.json";
 
 /// "slab-0012.vdb"
 std::string slabFileName(size_t slab);
 
-/// Tells a grid which slab it is, of how many: metadata `madf_slab` (from 0) and `madf_slabs` (int64).
-void markSlab(openvdb::GridBase& grid, size_t slab, size_t count);
+/// Metadata (int64) of the grids of a slab: which one it is (from 0), of how many.
+constexpr char kSlabKey[] = "madf_slab";
+constexpr char kSlabsKey[] = "madf_slabs";
 
-/// Is this a folder of slabs, be it a damaged one?
+/// True if there is an index that says so: the folder is whole.
+bool hasSlabIndex(const std::string& path);
+
+/// True if this is a folder of slabs, be it a damaged one.
 bool isSlabFolder(const std::string& path);
 
 /// What the index of a folder says.
@@ -34,21 +39,13 @@ struct SlabFolder {
   size_t slabCount() const { return files.size(); }
 };
 
-/// @throw IoError, one line, if the index is missing or damaged, or a slab is missing
+/// Reads the index. @throw IoError, one line, if it is missing or damaged, or a slab is missing
 SlabFolder openSlabFolder(const std::string& path);
 
-/// Before the work. A folder that commitSlabFolder() of a killed run has put aside goes back to its path
-/// if none is there, else away. @throw IoError if something else is at the path of a folder that is to be
-/// written
-void checkSlabFolder(const std::string& path);
-
-/// Puts the folder `made` in the place of `path`, and of the folder of slabs that is there.
-/// @throw IoError
-void commitSlabFolder(const std::string& made, const std::string& path);
-
-/// Checks the grids of the file of a slab, which are all that it holds, against those of slab 0, whose
-/// voxels do not matter, and takes away their marks.
-/// @throw IoError, one line, if they are of another slab or of other labels, or reach beyond the cuts
+/// Checks the grids of the file of a slab, which are all that it holds, against those of slab 0,
+/// whose voxels do not matter, and takes away their marks.
+/// @throw IoError, one line, if they are of another slab or of other labels, or reach beyond the
+///   cuts
 void checkSlab(const std::vector<openvdb::GridBase::Ptr>& grids, const SlabFolder& folder,
                size_t slab, const std::vector<openvdb::GridBase::Ptr>& lowest);
 

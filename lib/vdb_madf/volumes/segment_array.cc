@@ -3,6 +3,8 @@
 
 #include "vdb_madf/volumes/segment_array.h"
 
+#include <fmt/format.h>
+
 #include <string>
 #include <utility>
 
@@ -17,9 +19,9 @@ ArraySegmentation segmentArray(const uint8_t* mask, const std::array<int64_t, 3>
                                const ArrayOptions& options, Interrupter* interrupter) {
   for (const int64_t side : size)
     if (side < 1 || side > kMaxImageSide)
-      throw InvalidInput("an array of " + std::to_string(size[0]) + " x " +
-                         std::to_string(size[1]) + " x " + std::to_string(size[2]) +
-                         " voxels: each side has to be from 1 to " + std::to_string(kMaxImageSide));
+      throw InvalidInput(
+          fmt::format("an array of {} x {} x {} voxels: each side has to be from 1 to {}", size[0],
+                      size[1], size[2], kMaxImageSide));
   const DenseLayout layout{SampleType::uint8,
                            {Coord(0), Coord(int(size[0]) - 1, int(size[1]) - 1, int(size[2]) - 1)},
                            std::nullopt};

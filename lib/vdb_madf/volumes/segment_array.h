@@ -3,8 +3,9 @@
 
 #pragma once
 
-// For programs that hand a mask in and want labels out. No header of OpenVDB comes with this one, so that
-// a file that includes it compiles in a second; segmentation/segment.h has all options and results.
+// This header is for programs that hand a mask in and want labels out. No header of OpenVDB comes
+// with this one, so that a file that includes it compiles in a second; segmentation/segment.h has
+// all options and results.
 
 #include <array>
 #include <cstdint>
@@ -31,13 +32,13 @@ struct ArraySegmentation {
 };
 
 /// The grains of a dense volume, as segment() finds them.
-/// @param mask  nx * ny * nz voxels, x fastest: (x, y, z) is at (z * ny + y) * nx + x; those that are
-///   not 0 are the object. What lies beyond the faces is unknown, as for an image.
+/// @param mask  nx * ny * nz voxels, x fastest: (x, y, z) is at (z * ny + y) * nx + x; those that
+///   are not 0 are the object. What lies beyond the faces is unknown, as for an image.
 /// @param size  nx, ny, nz
-/// An empty object gives labels of 0 and no grains. Memory: 4 bytes a voxel for the labels, and what
-/// segment() needs (segment_memory.h).
-/// @throw InvalidInput for a size below 1 or beyond what limits.h says, for an object that fills the volume,
-/// and for the options; Interrupted.
+/// An empty object gives labels of 0 and no grains. Memory: 4 bytes a voxel for the labels, and
+/// what segment() needs (segment_memory.h).
+/// @throw InvalidInput for a size below 1 or beyond what limits.h says, for an object that fills
+/// the volume, and for the options; Interrupted.
 ArraySegmentation segmentArray(const uint8_t* mask, const std::array<int64_t, 3>& size,
                                const ArrayOptions& options = {},
                                Interrupter* interrupter = nullptr);

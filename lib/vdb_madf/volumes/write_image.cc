@@ -52,8 +52,8 @@ void writeSlices(const std::string& path, const Int32Grid& grid, CoordBBox box, 
       [&](int, int count, const void* samples) { writer.write(count, samples); });
 }
 
-/// Slabs from `begin` to before `end`: the first one with what of the box lies below all slabs, the last
-/// one with what lies above them.
+/// Slabs from `begin` to before `end`: the first one with what of the box lies below all slabs, the
+/// last one with what lies above them.
 void writeSlabs(const std::string& path, const LabelSlabs& labels, size_t begin, size_t end,
                 const CoordBBox& box, SampleType type, Interrupter* interrupter,
                 ImageWriter& writer) {

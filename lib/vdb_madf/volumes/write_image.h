@@ -20,19 +20,19 @@ namespace vdb_madf {
 void writeImage(const std::string& path, const openvdb::GridBase& grid, const CoordBBox& box,
                 SampleType type, Interrupter* interrupter = nullptr);
 
-/// The same of labels in slabs, each of which is read once.
+/// Writes labels in slabs, each of which is read once, as above.
 void writeImage(const std::string& path, const LabelSlabs& labels, const CoordBBox& box,
                 SampleType type, Interrupter* interrupter = nullptr);
 
-// The same by several processes: one creates the image, which share() of it shares; each writes the part of
-// some slabs; and when all are done the first one finishes it.
+// Several processes write an image together: one creates it, and its share() shares it; each writes
+// the part of some slabs; and when all are done the first one finishes it.
 
-/// @throw as writeImage()
+/// Creates the image. @throw as writeImage()
 std::unique_ptr<ImageWriter> createSharedImage(const std::string& path, const LabelSlabs& labels,
                                                const CoordBBox& box, SampleType type);
 
-/// The slabs from `begin` to before `end`: the lowest one of all with what of the box lies below it, the
-/// highest one with what lies above. Synced to disk.
+/// Writes the slabs from `begin` to before `end`: the lowest one of all with what of the box lies
+/// below it, the highest one with what lies above. Synced to disk.
 /// @throw as writeImage(); IoError if this process does not see the shared file
 void writeImagePart(const std::string& path, const SharedImage& shared, const LabelSlabs& labels,
                     size_t begin, size_t end, const CoordBBox& box, SampleType type,

@@ -123,16 +123,21 @@ std::vector<OmeLevel> omeLevels(const CoordBBox& box) {
   return levels;
 }
 
-void writeOmeLevel(const OutputTree& folder, const Int32Grid& labels, const OmeLevel& level,
-                   const std::string& name, ZarrVersion version, Interrupter* interrupter) {
-  LevelArrays arrays(folder, level, name, version);
-  if (level.factor == 1) {
-    arrays.write(*withoutTiles(labels), Int32Tree(), 0, arrays.layerCount(), interrupter);
-  } else {
-    const CoarseTrees trees = coarseTrees(labels, level.factor, interrupter);
-    arrays.write(trees.label, trees.gray, 0, arrays.layerCount(), interrupter);
+void writeOmeLevels(const OutputTree& folder, const Int32Grid& labels,
+                    const std::vector<OmeLevel>& levels, ZarrVersion version,
+                    Interrupter* interrupter) {
+  for (size_t i = 0; i < levels.size(); ++i) {
+    const auto percent = [&](size_t done) { return int(done * 100 / levels.size()); };
+    WorkPart part(interrupter, percent(i), percent(i + 1));
+    LevelArrays arrays(folder, levels[i], std::to_string(i), version);
+    if (levels[i].factor == 1) {
+      arrays.write(*withoutTiles(labels), Int32Tree(), 0, arrays.layerCount(), &part);
+    } else {
+      const CoarseTrees trees = coarseTrees(labels, levels[i].factor, &part);
+      arrays.write(trees.label, trees.gray, 0, arrays.layerCount(), &part);
+    }
+    arrays.finish();
   }
-  arrays.finish();
 }
 
 void writeOmeLevels(const OutputTree& folder, const LabelSlabs& labels,

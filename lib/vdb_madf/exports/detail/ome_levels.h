@@ -24,10 +24,11 @@ struct OmeLevel {
 /// The levels of labels over a box, from factor 1 on.
 std::vector<OmeLevel> omeLevels(const CoordBBox& box);
 
-/// Writes both arrays of a level, called `name`: of the object and of labels.
+/// Writes both arrays, of the object and of labels, of all levels, called 0, 1, 2 ...
 /// @throw InvalidInput; IoError; Interrupted
-void writeOmeLevel(const OutputTree& folder, const Int32Grid& labels, const OmeLevel& level,
-                   const std::string& name, ZarrVersion version, Interrupter* interrupter);
+void writeOmeLevels(const OutputTree& folder, const Int32Grid& labels,
+                    const std::vector<OmeLevel>& levels, ZarrVersion version,
+                    Interrupter* interrupter);
 
 /// Writes all levels, called 0, 1, 2 ..., of labels in slabs, each of which is read once. Memory: a
 /// slab, and of each level what there is of a layer of chunks.

@@ -24,9 +24,9 @@ class EarlyEnd : public std::runtime_error {
   EarlyEnd() : std::runtime_error("it ends early") {}
 };
 
-/// An InputFile behind one large buffer, for a std::istream. Unlike std::filebuf it keeps the buffer
-/// when it moves within it, knows how much is left, says why a read failed, and asks the interrupter
-/// whenever it is filled.
+/// An InputFile behind one large buffer, for a std::istream. Unlike std::filebuf it keeps the
+/// buffer when it moves within it, knows how much is left, says why a read failed, and asks the
+/// interrupter whenever it is filled.
 class InputBuffer final : public std::streambuf {
  public:
   /// @throw IoError if it cannot be opened or is not a regular file.
@@ -65,9 +65,9 @@ class InputBuffer final : public std::streambuf {
   std::vector<char> buffer_;
 };
 
-/// An OutputStream behind one large buffer, for a std::ostream. A write that fails throws instead of
-/// setting a flag, the interrupter is asked whenever the buffer is written, and what is written is
-/// hashed on its way.
+/// An OutputStream behind one large buffer, for a std::ostream. A write that fails throws instead
+/// of setting a flag, the interrupter is asked whenever the buffer is written, and what is written
+/// is hashed on its way.
 class OutputBuffer final : public std::streambuf {
  public:
   /// `unhashed` bytes from `unhashedStart` on are left out of the hash.
@@ -77,7 +77,7 @@ class OutputBuffer final : public std::streambuf {
 
   /// Writes what is buffered. @throw IoError; Interrupted.
   void flush();
-  /// Of the sequence of writes up to the last flush: where, and which bytes.
+  /// The writes up to the last flush: their places and their bytes.
   std::array<uint64_t, 2> hash() const { return hash_.value(); }
   /// Flushes, then replaces bytes that were written before; they are not hashed.
   void replace(int64_t position, const std::string& bytes);

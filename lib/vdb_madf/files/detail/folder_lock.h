@@ -7,8 +7,8 @@
 
 namespace vdb_madf::detail {
 
-/// Holds a folder for one process at a time, or for several that share it, by a lock on the file kName in
-/// it, which stays.
+/// Holds a folder for one process at a time, or for several that share it, by a lock on the file
+/// kName in it, which stays.
 class FolderLock {
  public:
   static constexpr char kName[] = ".lock";
@@ -19,7 +19,7 @@ class FolderLock {
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
-  /// From now on others may share it. @throw IoError if another one holds it by then
+  /// Lets others share it from now on. @throw IoError if another one holds it by then
   void share();
 
  private:

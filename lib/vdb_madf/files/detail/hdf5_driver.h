@@ -19,20 +19,20 @@
 
 namespace vdb_madf::detail {
 
-/// What libhdf5 writes goes to an OutputStream. Errors, as of a full disk, are kept from the library,
-/// which crashes at the end of the program if a file could not be closed: what cannot be written any
-/// more (at most what is being written, and the library's buffers) stays in memory, until the file is
-/// closed and its writer asks for the error.
+/// What libhdf5 writes goes to an OutputStream. Errors, as of a full disk, are kept from the
+/// library, which crashes at the end of the program if a file could not be closed: what cannot be
+/// written any more (at most what is being written, and the library's buffers) stays in memory,
+/// until the file is closed and its writer asks for the error.
 class Hdf5Driver {
  public:
-  /// Where the bytes go; outlives the file.
+  /// The stream that the bytes go to; it outlives the file.
   struct Target {
     OutputStream& out;
     std::exception_ptr error = {};                  ///< the first
     std::map<haddr_t, std::string> unwritten = {};  ///< by place; since then
   };
 
-  /// For H5Fcreate, which reads it: files go to this target.
+  /// Lets H5Fcreate, which reads `access`, write to this target.
   static void choose(hid_t access, Target& target) {
     static const hid_t driver = add();
     const Info info{&target};

@@ -12,7 +12,7 @@
 #include "vdb_madf/files/detail/hdf5_handle.h"
 #include "vdb_madf/files/detail/output_stream.h"
 
-// For rooms that link libhdf5: this one does without.
+// This header is for rooms that link libhdf5; the room files does not.
 
 namespace vdb_madf::detail {
 
@@ -71,7 +71,7 @@ class Hdf5Output {
   Hdf5Handle file_;  // goes before what it is written to
 };
 
-/// For objects that do not keep the time.
+/// The creation list of objects that do not keep the time.
 inline Hdf5Handle timelessDataset() {
   Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(creation, false);

@@ -21,7 +21,7 @@ class InputFile {
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
 
-  /// For messages.
+  /// The name for messages.
   const std::string& name() const { return name_; }
   const std::string& path() const { return path_; }
   uint64_t size() const { return size_; }
@@ -29,7 +29,7 @@ class InputFile {
   void read(uint64_t offset, void* to, size_t count) const;
   /// Returns how many of the `count` bytes there are: fewer at the end of the file.
   size_t readSome(uint64_t offset, void* to, size_t count) const;
-  /// At most the first `count` bytes.
+  /// Reads the first `count` bytes, or as many as there are.
   std::string head(size_t count) const;
 
  private:

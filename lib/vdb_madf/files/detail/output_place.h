@@ -13,10 +13,10 @@ namespace vdb_madf::detail {
 /// @throw IoError that says why a path cannot be written, and what to do.
 [[noreturn]] void failToWrite(const std::string& path, const std::string& reason,
                               const std::string& advice);
-/// The same of an errno.
+/// Throws as above, with the text of an errno.
 [[noreturn]] void failToWrite(const std::string& path, int error);
 
-/// Where an output goes, in parts.
+/// The parts of the path that an output goes to.
 struct OutputPlace {
   std::string folder, name;  ///< the folder with its slash; "." for that of the process
 };

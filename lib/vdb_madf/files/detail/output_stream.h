@@ -49,7 +49,7 @@ class OutputStream {
     bytes(decimal, size_t(writeDecimal(value, decimal) - decimal));
   }
 
-  // At any place, without the buffer: not together with the functions above.
+  // Bytes at any place are written without the buffer: not together with the functions above.
   void writeAt(uint64_t position, const void* data, size_t count);
   /// Reads back what was written; returns how many bytes there were.
   size_t readAt(uint64_t position, void* to, size_t count) const;
@@ -58,8 +58,8 @@ class OutputStream {
   /// The bytes that are in the file.
   uint64_t size() const { return size_; }
 
-  /// Lets other processes write the rest of so many bytes (SharedFile): writes what is buffered, and
-  /// returns the temporary. None on standard output.
+  /// Lets other processes write the rest of so many bytes (SharedFile): writes what is buffered,
+  /// and returns the temporary. None on standard output.
   std::optional<std::string> share(uint64_t size);
 
   /// Writes what is buffered and frees buffer and descriptor: only commit() is left.

@@ -7,7 +7,7 @@ namespace vdb_madf::detail {
 
 // Descriptors that the caller closes; standard_streams.cc.
 
-/// For what keepStandardInput() kept, which it calls. @throw IoError
+/// A descriptor of what keepStandardInput() kept, which this calls. @throw IoError
 int openStandardInput();
 /// @throw IoError if standard output is closed or a terminal.
 int openStandardOutput();

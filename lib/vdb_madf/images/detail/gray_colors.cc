@@ -16,8 +16,8 @@ void grayOfColors(const std::string& name, const void* pixels, size_t channels, 
   for (size_t i = 0; i < count; ++i, pixel += channels * bytes, sample += bytes) {
     if (std::memcmp(pixel, pixel + bytes, 2 * bytes) != 0)
       throw IoError(name +
-                    ": is a picture in colours, whose red, green and blue differ: convert it to "
-                    "grey values first");
+                    ": is a picture in colors, whose red, green and blue differ: convert it to "
+                    "gray values first");
     std::memcpy(sample, pixel, bytes);
   }
 }

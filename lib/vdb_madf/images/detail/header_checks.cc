@@ -16,8 +16,8 @@ namespace vdb_madf::detail {
 
 namespace {
 
-/// Lengths beyond these are no voxels, and break transforms: an atom, a kilometre.
-constexpr double kMinVoxelMetres = 1e-10, kMaxVoxelMetres = 1e3;
+/// Lengths beyond these are no voxels, and break transforms: an atom, a kilometer.
+constexpr double kMinVoxelMeters = 1e-10, kMaxVoxelMeters = 1e3;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ std::optional<VoxelSize> checkedVoxelSize(const std::string& path,
   std::array<double, 3> edges = spacing;
   for (double& edge : edges) {
     edge /= *unitsPerMetre;
-    if (edge < kMinVoxelMetres || edge > kMaxVoxelMetres)
+    if (edge < kMinVoxelMeters || edge > kMaxVoxelMeters)
       throw IoError(path + ": a voxel size of " + shortestDecimal(edge) +
                     " m is not plausible: correct the header");
   }

@@ -20,8 +20,8 @@ namespace vdb_madf::detail {
 /// `name` as seen from the folder of the file `header`.
 std::string besideHeader(const std::string& header, const std::string& name);
 
-/// The edges of a voxel from the spacing along x, y and z. Without a unit there is no physical size,
-/// but voxels that are not cubes are an error: they would be taken for cubes.
+/// The edges of a voxel from the spacing along x, y and z. Without a unit there is no physical
+/// size, but voxels that are not cubes are an error: they would be taken for cubes.
 /// @throw IoError if a spacing is no plausible length.
 std::optional<VoxelSize> checkedVoxelSize(const std::string& path,
                                           const std::array<double, 3>& spacing,

@@ -77,7 +77,7 @@ struct Reply {
 struct Description {
   int size[3];
   SampleType type;
-  double edges[3];  ///< metres; 0: unknown
+  double edges[3];  ///< meters; 0: unknown
   char format[16];
 };
 

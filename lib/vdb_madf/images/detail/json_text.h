@@ -25,8 +25,8 @@ inline Json jsonObject(const std::string& name, const std::string& path,
   return json;
 }
 
-/// The same without the members `image-label`, which have a part for each of maybe a million labels;
-/// what is left may still not be long. @throw IoError
+/// Parses as above, without the members `image-label`, which have a part for each of maybe a
+/// million labels; what is left may still not be long. @throw IoError
 inline Json jsonObjectWithoutLabels(const std::string& name, const std::string& path) {
   constexpr uint64_t kMaxBytes = uint64_t(1) << 31;
   constexpr size_t kMaxParts = size_t(1) << 18;

@@ -44,7 +44,7 @@ class KeyValueHeader {
   const std::vector<std::pair<std::string, std::string>>& fields() const { return fields_; }
   /// True if the line or the key that ends the header was found.
   bool ended() const { return ended_; }
-  /// Where in the text the line after the header begins.
+  /// The place in the text at which the line after the header begins.
   size_t dataOffset() const { return dataOffset_; }
 
   bool has(const std::string& key) const { return find(key).has_value(); }

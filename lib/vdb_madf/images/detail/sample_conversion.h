@@ -43,7 +43,7 @@ auto withSampleType(SampleType type, const F& f) {
 }
 
 /// True if the sample type can hold the value. Integers must be met exactly, also in float types
-/// (a label must not become its neighbour); a double becomes the nearest float.
+/// (a label must not become its neighbor); a double becomes the nearest float.
 template <typename Sample, typename Value>
 bool fits(Value value) {
   using Limits = std::numeric_limits<Sample>;

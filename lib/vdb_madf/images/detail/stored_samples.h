@@ -14,7 +14,7 @@
 
 namespace vdb_madf::detail {
 
-/// Where the samples lie in a file and how they are coded.
+/// The place of the samples in a file, and how they are coded.
 struct SampleLayout {
   uint64_t offset = 0;
   bool atEnd = false;     ///< the last bytes of the file, whatever comes before (not if deflated)
@@ -34,7 +34,7 @@ std::unique_ptr<ImageReader> openSamples(const std::string& path, const ImageInf
                                          const SampleLayout& layout,
                                          const std::vector<std::string>& otherFiles = {});
 
-/// One file: a header, then the samples, little-endian.
+/// Writes one file: a header, then the samples, little-endian.
 std::unique_ptr<ImageWriter> createSamples(const std::string& path, const ImageInfo& info,
                                            const std::string& header);
 

@@ -21,7 +21,7 @@ struct StoredType {
   size_t bytes() const { return is64Bit ? 8 : sampleSize(type); }
 };
 
-/// From stored samples to samples in native byte order; the two may be the same memory.
+/// Converts stored samples to samples in native byte order; the two may be the same memory.
 /// @throw IoError that names the path and the first value beyond 32 bits.
 void toSamples(const std::string& path, const StoredType& stored, const void* from, size_t count,
                void* samples);

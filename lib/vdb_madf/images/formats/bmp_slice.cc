@@ -13,7 +13,7 @@ namespace vdb_madf::detail {
 namespace {
 
 constexpr size_t kFileHeader = 14;
-/// The old header has 16-bit sizes and colours of three bytes.
+/// The old header has 16-bit sizes and colors of three bytes.
 constexpr size_t kCoreHeader = 12, kInfoHeader = 40;
 constexpr size_t kBmpHeaderBytes = kFileHeader + kInfoHeader;
 

@@ -11,7 +11,7 @@
 
 namespace vdb_madf::detail {
 
-/// Where the samples of a dataset are.
+/// The files that have the samples of a dataset.
 struct Hdf5Sources {
   uint64_t bytes = 0;              ///< that files hold of them, compressed or not
   bool isVirtual = false;          ///< put together from parts of other datasets

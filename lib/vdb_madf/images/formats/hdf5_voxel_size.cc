@@ -56,7 +56,7 @@ std::string textAttribute(hid_t object, const char* name) {
   return trimmed(text.substr(0, text.find('\0')));
 }
 
-/// A number with a unit of length, in metres.
+/// A number with a unit of length, in meters.
 std::optional<double> length(const std::string& path, hid_t file, const std::string& name) {
   if (H5Lexists(file, name.c_str(), H5P_DEFAULT) <= 0) return std::nullopt;
   const Hdf5Handle dataset = openHdf5Dataset(file, name);

@@ -12,7 +12,7 @@
 namespace vdb_madf::detail {
 
 /// Scanco's .isq: int16, little-endian, as stored (not divided by the mu scaling). The voxel size
-/// is the field of view over the voxels, which the header has in whole micrometres. Not read:
+/// is the field of view over the voxels, which the header has in whole micrometers. Not read:
 /// projections (.rad), .aim. Source: layout of the header as in itk::ScancoImageIO (ITKIOScanco)
 /// and BoneJ's ISQReader.
 std::unique_ptr<ImageReader> openIsq(std::unique_ptr<InputFile> file);

@@ -159,7 +159,7 @@ std::unique_ptr<ImageReader> openMeta(std::unique_ptr<InputFile> file) {
   if (header.find("BinaryData") && !flag(header, "BinaryData"))
     throw IoError(path + ": its samples are text; write them in binary form");
   if (header.findInteger("ElementNumberOfChannels").value_or(1) != 1)
-    throw IoError(path + ": has several channels; convert it to grey values first");
+    throw IoError(path + ": has several channels; convert it to gray values first");
 
   ImageInfo info;
   info.format = "mhd";

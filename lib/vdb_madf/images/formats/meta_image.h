@@ -12,7 +12,7 @@
 namespace vdb_madf::detail {
 
 /// MetaImage (.mhd with a data file, .mha with the data in it), raw or zlib. Its spacing has no
-/// unit; by ITK's convention it is millimetres. A spacing of exactly 1 is what programs write that
+/// unit; by ITK's convention it is millimeters. A spacing of exactly 1 is what programs write that
 /// know nothing better: it gives no physical size.
 /// Not read: text data, several channels, data spread over several files.
 std::unique_ptr<ImageReader> openMeta(std::unique_ptr<InputFile> file);

@@ -17,7 +17,8 @@ namespace vdb_madf::detail {
 /// Not read: text and bzip2 encodings, other than three dimensions, data spread over several files.
 /// Source: "Definition of NRRD File Format", teem.sourceforge.net/nrrd/format.html.
 std::unique_ptr<ImageReader> openNrrd(std::unique_ptr<InputFile> file);
-/// One file, encoding raw. The spacing is written in millimetres, which is what ITK takes it for.
+/// Writes one file, encoding raw. The spacing is written in millimeters, which is what ITK takes it
+/// for.
 std::unique_ptr<ImageWriter> createNrrd(const std::string& path, const ImageInfo& info,
                                         const std::array<double, 3>& origin);
 

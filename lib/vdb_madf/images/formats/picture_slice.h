@@ -24,16 +24,16 @@ struct PictureHeader {
   }
 };
 
-// Samples are returned as stored, the top row first: gray values, or the numbers of a palette, which
-// is what a program that writes labels means. A color (n, n, n) is the gray value n; any other color
-// is an error. Opacity is ignored.
+// Samples are returned as stored, the top row first: gray values, or the numbers of a palette,
+// which is what a program that writes labels means. A color (n, n, n) is the gray value n; any
+// other color is an error. Opacity is ignored.
 
 /// PNG of 1, 2, 4, 8 (uint8) or 16 bits (uint16), interlaced or not.
 /// Source: Portable Network Graphics specification; decoded by libpng.
 PictureHeader pngHeader(const InputFile& file);
 void readPng(const InputFile& file, const PictureHeader& picture, void* samples);
 
-/// BMP of 1, 4, 8, 24 or 32 bits, uncompressed, either row order. Of two colours the brighter is 1.
+/// BMP of 1, 4, 8, 24 or 32 bits, uncompressed, either row order. Of two colors the brighter is 1.
 /// Source: BITMAPFILEHEADER, BITMAPCOREHEADER and BITMAPINFOHEADER of the Windows documentation.
 PictureHeader bmpHeader(const InputFile& file);
 void readBmp(const InputFile& file, const PictureHeader& picture, void* samples);

@@ -47,7 +47,7 @@ bool naturallyBefore(const std::string& a, const std::string& b) {
 }
 
 /// From the last line of the log that has it: the section of the reconstruction is the last.
-std::optional<double> micrometresIn(const std::string& path, const std::string& log) {
+std::optional<double> micrometersIn(const std::string& path, const std::string& log) {
   HeaderSyntax syntax;
   syntax.skipsOtherLines = true;
   syntax.canonicalKey = [](const std::string& key) { return lowerCase(key); };
@@ -129,7 +129,7 @@ std::optional<VoxelSize> voxelSizeInLog(const std::string& folder) {
   for (const std::string& path : slicesIn(folder, {".log"})) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error)) continue;
-    const auto edge = micrometresIn(path, InputFile(path).head(kMaxLogBytes));
+    const auto edge = micrometersIn(path, InputFile(path).head(kMaxLogBytes));
     if (!edge) continue;
     if (size) return std::nullopt;  // which one belongs to the slices?
     size = checkedVoxelSize(path, {*edge, *edge, *edge}, unitsPerMetre("um"));

@@ -63,7 +63,7 @@ size_t counterOf(const Names& names, size_t begin, size_t end) {
   return 0;
 }
 
-/// The step that most neighbours have, the smaller of two; 0 if it is not that of half of them.
+/// The step that most neighbors have, the smaller of two; 0 if it is not that of half of them.
 int64_t usualStep(const std::vector<int64_t>& steps) {
   std::map<int64_t, size_t> counts;
   for (const int64_t step : steps)

@@ -43,8 +43,8 @@ std::optional<double> numberIn(const KeyValueHeader& imageJ, const std::string& 
   return values->front();
 }
 
-/// The shortest decimal whose reciprocal is the number, to its precision: who wrote 0.8333333 meant an
-/// edge of 1.2, and the method weighs axes by the ratio of their edges.
+/// The shortest decimal whose reciprocal is the number, to its precision: who wrote 0.8333333 meant
+/// an edge of 1.2, and the method weighs axes by the ratio of their edges.
 double decimalOfReciprocal(float number) {
   constexpr int kMaxDigits = 8;
   const double exact = 1.0 / double(number);
@@ -57,8 +57,8 @@ double decimalOfReciprocal(float number) {
   return exact;
 }
 
-/// Only the calibrations of OME and ImageJ are trusted: the plain resolution tags are mostly a scanner's or a
-/// printer's default of 72 dots per inch.
+/// Only the calibrations of OME and ImageJ are trusted: the plain resolution tags are mostly a
+/// scanner's or a printer's default of 72 dots per inch.
 std::optional<VoxelSize> calibration(const TiffFile& file, const KeyValueHeader& imageJ,
                                      const OmePixels& ome, int slices) {
   if (ome.images() > 0) return ome.voxelSize(file.path());
@@ -70,8 +70,8 @@ std::optional<VoxelSize> calibration(const TiffFile& file, const KeyValueHeader&
   // ImageJ leaves out a slice spacing of 1; then nobody may have set it.
   const auto z = numberIn(imageJ, "spacing");
   if (!z && slices > 1 && std::abs(x - 1) > 1e-3) return std::nullopt;
-  // The text is exact and the tags are single precision: the text comes first. Its sign is the order
-  // of the slices.
+  // The text is exact and the tags are single precision: the text comes first. Its sign is the
+  // order of the slices.
   const double depth = z ? std::abs(*z) : slices > 1 ? 1.0 : x;
   if (areEdgesOfCube({depth, x, y}))
     return checkedVoxelSize(file.path(), {depth, depth, depth}, unit);

@@ -104,7 +104,7 @@ TiffPage TiffFile::page() const {
   TIFFGetFieldDefaulted(tiff_.get(), TIFFTAG_SAMPLEFORMAT, &format);
   if (page.channels != 1 && !isColor(page))
     tiff_.fail("has " + std::to_string(page.channels) +
-               " samples per pixel, and not as a plain colour: convert it to grey values first");
+               " samples per pixel, and not as a plain color: convert it to gray values first");
   if (tiff_.field<uint32_t>(TIFFTAG_IMAGEDEPTH, 1) != 1) tiff_.fail("has pages with a depth");
   const auto type = sampleType(page.bits, format);
   if (!type)

@@ -26,7 +26,7 @@ struct TiffPage {
   bool plain = false;        ///< the bytes in the file are the samples, but for their order
   bool swapped = false;      ///< plain samples are in foreign byte order
 
-  /// Of a row as it is stored.
+  /// The bits of a row as it is stored.
   uint64_t rowBits() const { return uint64_t(width) * bits * channels; }
   uint64_t bytes() const { return uint64_t(width) * height * sampleSize(type); }
   bool sameAs(const TiffPage& other) const {

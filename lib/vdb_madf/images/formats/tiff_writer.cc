@@ -93,11 +93,11 @@ class TiffWriter : public ImageWriter {
     const double smallest = std::min({x, y, z});
     const bool small = smallest < 1e-7, large = smallest >= 1e-2;
     const std::string unit = small ? "nm" : large ? "mm" : "micron";
-    const double perMetre = unitsPerMetre(unit).value();
+    const double perMeter = unitsPerMetre(unit).value();
     const std::string text =
-        "ImageJ=1.53k\nunit=" + unit + "\nspacing=" + lengthIn(perMetre, z) + "\n";
-    return TIFFSetField(tiff_.get(), TIFFTAG_XRESOLUTION, 1 / (x * perMetre)) &&
-           TIFFSetField(tiff_.get(), TIFFTAG_YRESOLUTION, 1 / (y * perMetre)) &&
+        "ImageJ=1.53k\nunit=" + unit + "\nspacing=" + lengthIn(perMeter, z) + "\n";
+    return TIFFSetField(tiff_.get(), TIFFTAG_XRESOLUTION, 1 / (x * perMeter)) &&
+           TIFFSetField(tiff_.get(), TIFFTAG_YRESOLUTION, 1 / (y * perMeter)) &&
            TIFFSetField(tiff_.get(), TIFFTAG_RESOLUTIONUNIT, RESUNIT_NONE) &&
            (!first || TIFFSetField(tiff_.get(), TIFFTAG_IMAGEDESCRIPTION, text.c_str()));
   }

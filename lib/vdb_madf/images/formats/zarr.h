@@ -12,9 +12,9 @@ namespace vdb_madf::detail {
 
 /// A Zarr array [z, y, x] of version 2 or 3, or an array of a group: the one that is named (or of
 /// the group that is named), else the first scale of an OME-Zarr image, else the only volume. The
-/// voxel size comes from the axes and scales of OME-Zarr 0.4 or 0.5, if the axes have units. A layer
-/// of chunks is kept decoded if it is not too large. Not read: several channels or times, other
-/// codecs than those of zarr_array.h.
+/// voxel size comes from the axes and scales of OME-Zarr 0.4 or 0.5, if the axes have units. A
+/// layer of chunks is kept decoded if it is not too large. Not read: several channels or times,
+/// other codecs than those of zarr_array.h.
 /// Source: Zarr storage specification version 2, core specification version 3; OME-NGFF 0.4 and 0.5
 /// (multiscales).
 std::unique_ptr<ImageReader> openZarr(const std::string& path, const std::string& dataset);

@@ -17,8 +17,8 @@ namespace vdb_madf::detail {
 /// One array of a Zarr store on disk, [z, y, x], maybe behind axes of length 1: its description
 /// (.zarray of version 2, zarr.json of version 3) and its chunks.
 /// Version 2: no compressor, blosc, zlib, gzip, zstd; no filters. Version 3: regular grids of
-/// chunks, keys `default` and `v2`, codecs transpose, bytes, sharding_indexed (alone, and not within
-/// another), at most one of gzip, zstd and blosc, and crc32c.
+/// chunks, keys `default` and `v2`, codecs transpose, bytes, sharding_indexed (alone, and not
+/// within another), at most one of gzip, zstd and blosc, and crc32c.
 /// Source: Zarr storage specification version 2, codecs as in numcodecs; Zarr core specification
 /// version 3 and its codecs.
 class ZarrArray {
@@ -45,7 +45,7 @@ class ZarrArray {
  private:
   using ChunkNumber = std::array<int, 3>;  ///< x, y, z
 
-  /// Where the chunks of a shard lie: offset and length, x fastest.
+  /// The places of the chunks of a shard: offset and length, x fastest.
   struct Place {
     uint64_t offset = 0, length = 0;
     bool isThere() const { return ~offset != 0 || ~length != 0; }
@@ -56,7 +56,7 @@ class ZarrArray {
   std::string chunkPath(const ChunkNumber& number) const;
   std::vector<Place> readIndex(const InputFile& shard) const;
   void readShard(const ChunkNumber& shard, int first, int count, char* samples) const;
-  /// One chunk's part of the slices; a piece that is not there is the fill value.
+  /// Reads one chunk's part of the slices; a piece that is not there is the fill value.
   void readChunk(const ChunkNumber& chunk, const std::optional<StoredPiece>& piece, int first,
                  int count, char* samples) const;
   /// Chunks beyond this size are decoded one after the other, for the memory they take.

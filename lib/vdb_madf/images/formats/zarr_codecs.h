@@ -14,8 +14,8 @@ namespace vdb_madf::detail {
 /// Blosc and numcodecs count in 31 bits; checksums want room.
 constexpr uint64_t kMaxZarrChunkBytes = (uint64_t(1) << 31) - 64;
 
-/// From the bytes of a chunk to what is stored: checksums (CRC-32C, 4 bytes behind the others), at
-/// most one compressor, checksums of what that makes.
+/// The way from the bytes of a chunk to what is stored: checksums (CRC-32C, 4 bytes behind the
+/// others), at most one compressor, checksums of what that makes.
 struct ZarrCodec {
   enum class Compressor { none, blosc, deflate, zstd };
   Compressor compressor = Compressor::none;

@@ -39,10 +39,10 @@ struct ZarrDescription {
   uint64_t chunkBytes() const { return chunkSamples() * stored.bytes(); }
 };
 
-/// Of version 2. @param name for messages
+/// Reads a description of version 2. @param name for messages
 /// @throw IoError for what is malformed or cannot be read
 ZarrDescription readZarr2(const std::string& name, const std::string& path);
-/// Of version 3. @throw the same
+/// Reads a description of version 3. @throw the same
 ZarrDescription readZarr3(const std::string& name, const std::string& path);
 
 }  // namespace vdb_madf::detail

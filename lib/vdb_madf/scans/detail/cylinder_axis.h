@@ -22,7 +22,7 @@ struct CylinderAxis {
     const double du = p[u()] - center[0], dv = p[v()] - center[1];
     return du * du + dv * dv;
   }
-  /// Of the points of a box, the corners included.
+  /// The least squared distance of the points of a box, the corners included.
   double nearest(const CoordBBox& box) const {
     const double du = std::clamp(center[0], double(box.min()[u()]), double(box.max()[u()])),
                  dv = std::clamp(center[1], double(box.min()[v()]), double(box.max()[v()]));

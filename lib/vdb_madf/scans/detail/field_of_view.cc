@@ -18,8 +18,8 @@ namespace {
 
 constexpr size_t kRowsOfView = 16;
 
-/// Of the voxels whose value differs from the first one's, and of those that are not 0: which of the
-/// two are the field of view is known when the last corner was seen.
+/// Of the voxels whose value differs from the first one's, and of those that are not 0: which of
+/// the two are the field of view is known when the last corner was seen.
 struct Farthest {
   double notFirst = -1, notZero = -1;
 

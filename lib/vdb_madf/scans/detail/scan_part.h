@@ -8,7 +8,7 @@
 
 namespace vdb_madf::detail {
 
-/// What is read of an image of this size. @throw InvalidInput if that is nothing.
+/// The box that is read of an image of this size. @throw InvalidInput if that is nothing.
 CoordBBox boxOf(const ScanPart& part, const ImageSize& size);
 
 /// Leaves a grid the active voxels of the part, and tells it its domain.
@@ -19,8 +19,8 @@ int64_t cutTo(const ScanPart& part, Int32Grid& labels);
 /// The parts of the rows of such an image that lie in the domain.
 RowParts rowsOf(const ScanPart& part, const ImageSize& size);
 
-/// Of the voxels of an image that lie in the domain; slices without any are not read. Says nothing
-/// of corners. @throw as histogramOf()
+/// The histogram of the voxels of an image that lie in the domain; slices without any are not read.
+/// Says nothing of corners. @throw as histogramOf()
 Histogram histogramIn(const ScanPart& part, ImageReader& image, Interrupter* interrupter);
 
 }  // namespace vdb_madf::detail

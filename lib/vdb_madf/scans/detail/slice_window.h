@@ -54,7 +54,7 @@ class SliceWindow {
 
  private:
   size_t slice() const { return size_t(image_.info().size.x) * size_t(image_.info().size.y); }
-  /// One slice after the other where they have to be converted.
+  /// Reads one slice after the other where they have to be converted.
   void readInto(int begin, int end, T* to) {
     withSampleType(image_.info().type, [&](auto sample) {
       using Sample = decltype(sample);

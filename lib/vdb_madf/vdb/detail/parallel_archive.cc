@@ -69,8 +69,8 @@ size_t bytesBeforeValues(int8_t inactive) {
   return bytes;
 }
 
-/// What Leaf::writeBuffers() writes of labels, faster: false, and nothing, unless all inactive values
-/// are the background.
+/// What Leaf::writeBuffers() writes of labels, faster: false, and nothing, unless all inactive
+/// values are the background.
 bool writeLabels(const Int32Tree::LeafNodeType& leaf, int32_t background, std::ostream& stream) {
   LeafIndex::Mask active, inactive;
   for (openvdb::Index x = 0; x < 8; ++x) {

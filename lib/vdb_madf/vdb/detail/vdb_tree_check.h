@@ -33,7 +33,7 @@ struct TreeSettings {
   int64_t maxCoordinate = 0;
 };
 
-/// Where the parts of a stored tree end, and what it will take to load it.
+/// The places at which the parts of a stored tree end, and what it will take to load it.
 struct TreeExtent {
   static constexpr size_t kLeavesAtOnce = 256;
   int64_t topologyEnd = 0, end = 0;  ///< positions in the file

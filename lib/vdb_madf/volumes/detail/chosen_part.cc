@@ -3,21 +3,39 @@
 
 #include "vdb_madf/volumes/detail/chosen_part.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/scans/detail/cylinder_axis.h"
+#include "vdb_madf/scans/detail/field_of_view.h"
+#include "vdb_madf/scans/detail/scan_part.h"
+#include "vdb_madf/scans/image_box.h"
+#include "vdb_madf/volumes/choose_grid.h"
+#include "vdb_madf/volumes/load_object.h"
 
 namespace vdb_madf::detail {
 
 namespace {
 
+/// What is known of a scan before its region is chosen.
+struct ScanExtent {
+  std::optional<Domain> domain;
+  CoordBBox box;  ///< where the domain is unknown: of its voxels
+  /// As farthestFromAxis().
+  std::function<double(const CylinderAxis&)> farthestFromAxis;
+};
+
 constexpr char kAxes[] = "xyz";
 
 std::string sizeText(const CoordBBox& box) {
   const Coord size = box.dim();
-  return std::to_string(size.x()) + "x" + std::to_string(size.y()) + "x" + std::to_string(size.z());
+  return fmt::format("{}x{}x{}", size.x(), size.y(), size.z());
 }
 
 MaskGrid::ConstPtr readRegion(const VolumeOptions& options, Interrupter* interrupter) {
@@ -47,9 +65,9 @@ Domain maskRegion(const std::string& path, const VolumeOptions& options,
     throw InvalidInput(name + ": all is 0, and a region is what is not: give one with voxels");
   const auto known = storedDomain(*mask);
   if (known && scan && !known->box().isInside(scan->box()))
-    throw InvalidInput(name + ": is " + sizeText(known->box()) +
-                       " voxels large and does not cover " + path + ", of " +
-                       sizeText(scan->box()) + ": give a region of the same voxels");
+    throw InvalidInput(fmt::format(
+        "{}: is {} voxels large and does not cover {}, of {}: give a region of the same voxels",
+        name, sizeText(known->box()), path, sizeText(scan->box())));
   if (known && scan && known->box() != scan->box() && !region.crop && options.note)
     options.note(name + ": is larger than " + path + "; voxels of equal index belong together",
                  NoteAbout::file);
@@ -81,15 +99,14 @@ Cylinder wholeCylinder(const std::string& path, const VolumeOptions& options, co
   if (given.radius) return {axis.axis, axis.center, *given.radius};
   const double radius = fittedRadius(path, box, axis, extent);
   if (options.note)
-    options.note(path + ": the region is a cylinder along " + kAxes[axis.axis] + " around " +
-                     kAxes[axis.u()] + " " + shortestDecimal(axis.center[0]) + ", " +
-                     kAxes[axis.v()] + " " + shortestDecimal(axis.center[1]) +
-                     ", to which a radius of " + shortestDecimal(radius) + " voxels was fitted",
-                 NoteAbout::file);
+    options.note(
+        fmt::format("{}: the region is a cylinder along {} around {} {}, {} {}, to which a "
+                    "radius of {} voxels was fitted",
+                    path, kAxes[axis.axis], kAxes[axis.u()], shortestDecimal(axis.center[0]),
+                    kAxes[axis.v()], shortestDecimal(axis.center[1]), shortestDecimal(radius)),
+        NoteAbout::file);
   return {axis.axis, axis.center, radius};
 }
-
-}  // namespace
 
 ScanPart chosenPart(const std::string& path, const VolumeOptions& options, const ScanExtent& extent,
                     Interrupter* interrupter) {
@@ -110,6 +127,37 @@ ScanPart chosenPart(const std::string& path, const VolumeOptions& options, const
   }
   part.domain = *domain;
   return part;
+}
+
+}  // namespace
+
+std::optional<ScanPart> partOf(openvdb::GridBase& grid, const std::string& path,
+                               const VolumeOptions& options, Interrupter* interrupter) {
+  if (!options.region.any()) return std::nullopt;
+  ScanExtent extent;
+  extent.domain = storedDomain(grid);
+  const auto& cylinder = options.region.cylinder;
+  if (cylinder && !(cylinder->radius && extent.domain)) {  // else nothing depends on its voxels
+    const MaskGrid::Ptr voxels = objectMask(grid);
+    extent.box = voxels->evalActiveVoxelBoundingBox();
+    extent.farthestFromAxis = [voxels](const CylinderAxis& axis) {
+      return farthestFromAxis(voxels->tree(), axis);
+    };
+  }
+  const ScanPart part = chosenPart(path, options, extent, interrupter);
+  setDomain(grid, part.domain);
+  return part;
+}
+
+std::optional<ScanPart> partOfImage(const ImageOpener& open, const VolumeOptions& options,
+                                    Interrupter* interrupter) {
+  if (!options.region.any()) return std::nullopt;
+  const auto image = open();
+  const CoordBBox box = imageBox(image->info().size);
+  ScanExtent extent{Domain(options.domain.value_or(box)), box, [&](const CylinderAxis& axis) {
+                      return farthestFromAxis(*image, axis, interrupter);
+                    }};
+  return chosenPart(image->path(), options, extent, interrupter);
 }
 
 }  // namespace vdb_madf::detail

@@ -1,14 +1,16 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "segment_by_slabs.h"
+#include "auto_slabs.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
 
 #include "grid_image.h"
 #include "outputs.h"
-#include "segment_slabs.h"
+#include "slab_output.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/base/memory.h"
@@ -56,12 +58,13 @@ bool isSurelyForSlabs(const SegmentArguments& o) {
 }
 
 InvalidInput withSlabsAdvice(const SegmentArguments& o, const InvalidInput& error) {
-  return InvalidInput(std::string(error.what()) +
-                      " (--max-memory), or work in slabs, which need not fit together: " +
-                      (o.out.empty() ? "OUT" : o.out) + ".slabs, or --auto-slabs for one file");
+  return InvalidInput(fmt::format(
+      "{} (--max-memory), or work in slabs, which need not fit together: {}.slabs, or --auto-slabs "
+      "for one file",
+      error.what(), o.out.empty() ? "OUT" : o.out));
 }
 
-void runBySlabs(const SegmentArguments& o, const Common& common) {
+void runAutoSlabs(const SegmentArguments& o, const Common& common) {
   SegmentArguments inSlabs = o;
   inSlabs.out = slabsOf(o);
   inSlabs.fileOfSlabs = o.out;

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "segment_slabs.h"
+#include "slab_output.h"
 
+#include <fmt/format.h>
 #include <openvdb/Metadata.h>
 
 #include <algorithm>
@@ -10,18 +11,18 @@
 #include <filesystem>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "member_failure.h"
 #include "parse.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/memory.h"
-#include "vdb_madf/base/version.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/method/cavities.h"
 #include "vdb_madf/slabs/deal_slabs.h"
 #include "vdb_madf/vdb/read_vdb.h"
-#include "vdb_madf/vdb/slab_folder.h"
+#include "vdb_madf/vdb/slab_folder_writer.h"
 #include "vdb_madf/vdb/write_vdb.h"
 #include "work_place.h"
 
@@ -41,9 +42,10 @@ SlabLimits limitsOf(const SegmentArguments& o, int64_t memory) {
   constexpr int64_t kLeast = int64_t(32) << 20;
   limits.bytes = std::min(memory - kSlabOtherBytes, kMostSlabBytes);
   if (limits.bytes < kLeast)
-    throw InvalidInput("slabs need at least " + readableBytes(kSlabOtherBytes + kLeast) +
-                           " of memory, and " + readableBytes(memory) + " may be used: allow more",
-                       Hint::memoryLimit);
+    throw InvalidInput(
+        fmt::format("slabs need at least {} of memory, and {} may be used: allow more",
+                    readableBytes(kSlabOtherBytes + kLeast), readableBytes(memory)),
+        Hint::memoryLimit);
   return limits;
 }
 
@@ -51,9 +53,8 @@ SlabLimits limitsOf(const SegmentArguments& o, int64_t memory) {
 MaskGrid::Ptr readSlabs(const SegmentArguments& o, const Common& common, WorkPlace& place) {
   const int64_t memory = o.maxMemory.empty() ? availableMemory() : o.segment.maxMemory;
   SlabBuilder builder(limitsOf(o, memory), place.scratch());
-  VolumeOptions volume = o.input.volume(common.progress);
-  volume.takeLayer = [&](const MaskTree& layer) { builder.add(layer); };
-  const MaskGrid::Ptr object = loadObject(o.input, volume, common.progress);
+  const MaskGrid::Ptr object = streamObject(
+      o.input, [&](const MaskTree& layer) { builder.add(layer); }, {}, common.progress);
   writeVdb(place.aboutFile(), {object}, common.progress);
   builder.finish(storedDomain(*object));
   return object;
@@ -66,10 +67,9 @@ MaskGrid::Ptr readShare(const SegmentArguments& o, const Common& common, WorkPla
   SlabDealer dealer(team, place.scratch());
   MaskGrid::Ptr object;
   inAllMembers(team, [&] {
-    VolumeOptions volume = o.input.volume(common.progress);
-    volume.share = {team.member(), team.count()};
-    volume.takeLayer = [&](const MaskTree& layer) { dealer.add(layer); };
-    object = loadObject(o.input, volume, common.progress);
+    object = streamObject(
+        o.input, [&](const MaskTree& layer) { dealer.add(layer); }, {team.member(), team.count()},
+        common.progress);
     if (team.member() == 0 && !place.isInMemory())
       writeVdb(place.aboutFile(), {object}, common.progress);
   });
@@ -112,21 +112,10 @@ void checkSlabArguments(const SegmentArguments& o) {
                      "--dry-run out");
 }
 
-void writeSlab(const std::string& path, const SlabGrids& grids, size_t slab, size_t count,
-               Progress* progress) {
-  std::vector<openvdb::GridBase::ConstPtr> written;
-  for (const Int32Grid::Ptr& grid : {grids.grain, grids.manifold}) {
-    if (!grid) continue;
-    markSlab(*grid, slab, count);
-    written.push_back(grid);
-  }
-  writeVdb(path, written, progress);
-}
-
 namespace {
 
-/// Adds to the summary of a segmentation what slabs took: `slab_count`, `exchanges`, and of each stage
-/// `seconds` and `message_bytes`.
+/// Adds to the summary of a segmentation what slabs took: `slab_count`, `exchanges`, and of each
+/// stage `seconds` and `message_bytes`.
 void addSlabCosts(const SlabObject& object, const SlabSegmentation& s, Json& json) {
   json["slab_count"] = object.slabCount();
   json["exchanges"] = s.exchanges;
@@ -135,24 +124,16 @@ void addSlabCosts(const SlabObject& object, const SlabSegmentation& s, Json& jso
         {{"name", stage.name}, {"seconds", stage.seconds}, {"message_bytes", stage.messageBytes}});
 }
 
-/// What index.json says of slabs, from what is said of the segmentation.
-Json slabIndex(const SegmentArguments& o, const SlabObject& object, const Json& summary) {
-  Json index;
-  index["format"] = "vdb_madf slabs";
-  index["format_version"] = 1;
-  index["version"] = kVersion;
-  index["slabs"] = Json::array();
-  for (size_t s = 0; s < object.slabCount(); ++s)
-    index["slabs"].push_back({{"file", slabFileName(s)},
-                              {"z_first", object.cuts[s]},
-                              {"z_last", object.cuts[s + 1] - 1}});
+/// The part of what is said of the segmentation that index.json says, too, as JSON.
+std::string aboutSlabs(const SegmentArguments& o, const Json& summary) {
+  Json index = Json::object();
   for (const auto& [key, value] : summary.items())
     if (key.rfind("seconds_", 0) != 0 && key.find("memory") == std::string::npos &&
         key != "threads" && key != "stages" && key != "exchanges" && key != "ranks" &&
         key != "output" && key != "hints" && key != "input" && key != "notes")
       index[key] = value;
   index["input"] = fs::path(o.input.path).filename().string();
-  return index;
+  return index.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 /// Reads, segments and puts slabs in their place. @param jsonFile of member 0; null for the others
@@ -177,8 +158,9 @@ void workInSlabs(const SegmentArguments& o, const Common& common, Team& team, Wo
         object, options, place.scratch(), team,
         [&](size_t slab, const SlabGrids& grids) {
           const Clock::time_point startWrite = Clock::now();
-          writeSlab(place.file(slabFileName(slab)), grids, slab, object.slabCount(),
-                    common.progress);
+          std::vector<openvdb::GridBase::ConstPtr> written{grids.grain};
+          if (grids.manifold) written.push_back(grids.manifold);
+          writeSlab(place.part(), slab, object.slabCount(), written, common.progress);
           timing.write += secondsSince(startWrite);
         },
         common.progress);
@@ -192,7 +174,7 @@ void workInSlabs(const SegmentArguments& o, const Common& common, Team& team, Wo
   json["seconds_scratch"] = place.scratchSeconds();
   if (common.team) json["ranks"] = team.count();
   addNotes(json, *common.progress);
-  JsonFile(place.file(kSlabIndex)).write(slabIndex(o, object, json));
+  writeSlabIndex(place.part(), object.cuts, aboutSlabs(o, json));
   place.finish();
   jsonFile->write(json);
   if (common.quiet || jsonFile->isStandardOutput()) return;

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/volumes/detail/volume_notes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "vdb_madf/base/counted.h"
+#include "vdb_madf/base/detail/text.h"
+
+namespace vdb_madf::detail {
+
+namespace {
+
+/// "8.5 um", "0.5 x 0.5 x 1.2 um"
+std::string text(const VoxelSize& size) {
+  const double longest = *std::max_element(size.edges().begin(), size.edges().end());
+  const auto [unit, perMeter] = longest < 1e-6   ? std::pair("nm", 1e9)
+                                : longest < 1e-3 ? std::pair("um", 1e6)
+                                                 : std::pair("mm", 1e3);
+  std::string text;
+  for (size_t axis = 0; axis < (size.isCube() ? 1 : 3); ++axis) {
+    if (axis > 0) text += " x ";
+    text += generalDecimal(size.edges()[axis] * perMeter, 4);
+  }
+  return text + " " + unit;
+}
+
+/// "2.5 times as long"; empty if they differ by no more than 1 %.
+std::string difference(const VoxelSize& given, const VoxelSize& ofFile) {
+  constexpr double kTolerance = 1.01;
+  double ratio = 1, factor = 1;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const double here = given.edges()[axis] / ofFile.edges()[axis];
+    if (std::max(here, 1 / here) <= factor) continue;
+    ratio = here;
+    factor = std::max(here, 1 / here);
+  }
+  if (factor <= kTolerance) return "";
+  if (!given.isCube() || !ofFile.isCube()) return "which differs";
+  return generalDecimal(factor, 4) + " times as " + (ratio > 1 ? "long" : "short");
+}
+
+}  // namespace
+
+void noteVoxelSize(const std::string& path, const std::optional<VoxelSize>& ofFile,
+                   const VolumeOptions& options) {
+  if (!options.note || !options.voxelSize || !ofFile) return;
+  const std::string times = difference(*options.voxelSize, *ofFile);
+  if (times.empty()) return;
+  options.note(
+      fmt::format("{}: the file says that a voxel is {} long; {}, {}, was given and is taken", path,
+                  text(*ofFile), text(*options.voxelSize), times),
+      NoteAbout::voxelSize);
+}
+
+void noteLeftOut(const std::string& path, int64_t voxels, const char* kind,
+                 const VolumeOptions& options) {
+  if (voxels > 0 && options.note)
+    options.note(fmt::format("{}: outside of the region, {} left out", path, counted(voxels, kind)),
+                 NoteAbout::file);
+}
+
+}  // namespace vdb_madf::detail

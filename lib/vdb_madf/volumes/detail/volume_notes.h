@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "vdb_madf/volumes/volume.h"
+
+namespace vdb_madf::detail {
+
+/// Notes that the options have another voxel size than the file: mostly a slip of the unit, or
+/// another sample's size.
+void noteVoxelSize(const std::string& path, const std::optional<VoxelSize>& ofFile,
+                   const VolumeOptions& options);
+
+/// Notes how many voxels of a kind lie outside of the region, if any do.
+void noteLeftOut(const std::string& path, int64_t voxels, const char* kind,
+                 const VolumeOptions& options);
+
+}  // namespace vdb_madf::detail

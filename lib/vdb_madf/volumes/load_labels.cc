@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/volumes/load_labels.h"
+
+#include <fmt/format.h>
+
+#include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/detail/region_metadata.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/scans/detail/scan_part.h"
+#include "vdb_madf/scans/histogram.h"
+#include "vdb_madf/vdb/slab_folder.h"
+#include "vdb_madf/volumes/detail/chosen_part.h"
+#include "vdb_madf/volumes/detail/reading.h"
+#include "vdb_madf/volumes/detail/volume_notes.h"
+#include "vdb_madf/volumes/read_labels.h"
+
+namespace vdb_madf {
+
+namespace {
+
+/// A gray scan would have millions of grains: it has many values, and hardly two voxels side by
+/// side have the same.
+void checkLabels(ImageReader& image, Interrupter* interrupter) {
+  constexpr double kNoise = 1.5;
+  constexpr size_t kFewValues = 100;
+  const Histogram values = histogramOf(image, interrupter);
+  if (values.counts.size() > kFewValues && kindOf(values) == ImageKind::gray &&
+      meanRun(values) < kNoise)
+    throw InvalidInput(fmt::format(
+        "{}: is a gray image, with values from {} to {}, not labels: segment it first",
+        image.path(), detail::shortestDecimal(values.min), detail::shortestDecimal(values.max)));
+}
+
+Int32Grid::Ptr labelsOfGrid(const std::string& path, const VolumeOptions& options,
+                            Interrupter* interrupter) {
+  const auto labels = openvdb::gridPtrCast<Int32Grid>(
+      detail::readGrid(path, GridUse::labels, options, interrupter));
+  if (options.domain) setDomain(*labels, *options.domain);
+  if (const auto part = detail::partOf(*labels, path, options, interrupter))
+    detail::noteLeftOut(path, detail::cutTo(*part, *labels), "labelled voxel", options);
+  detail::noteVoxelSize(path, storedVoxelSize(*labels), options);
+  return labels;
+}
+
+Int32Grid::Ptr labelsOfImage(const std::string& path, const ImageOpener& open,
+                             const VolumeOptions& options, Interrupter* interrupter) {
+  checkLabels(*open(), interrupter);
+  const auto part = detail::partOfImage(open, options, interrupter);
+  const auto image = open();
+  if (!part) {
+    const Int32Grid::Ptr labels = readLabels(*image, interrupter);
+    if (options.domain) setDomain(*labels, *options.domain);
+    return labels;
+  }
+  const Int32Grid::Ptr labels =
+      readLabels(*image, interrupter, detail::boxOf(*part, image->info().size));
+  detail::noteLeftOut(path, detail::cutTo(*part, *labels), "labelled voxel", options);
+  return labels;
+}
+
+}  // namespace
+
+Int32Grid::Ptr loadLabels(const std::string& path, const VolumeOptions& options,
+                          Interrupter* interrupter) {
+  const Int32Grid::Ptr labels = detail::naming(path, options.region.mask, [&] {
+    return detail::isReadAsVdb(path, options)
+               ? labelsOfGrid(path, options, interrupter)
+               : labelsOfImage(
+                     path, [&] { return openVolumeImage(path, options); }, options, interrupter);
+  });
+  if (options.voxelSize) setVoxelSize(*labels, options.voxelSize);
+  return labels;
+}
+
+LabelSlabs openLabelSlabs(const std::string& path, const VolumeOptions& options,
+                          Interrupter* interrupter) {
+  const SlabFolder folder = openSlabFolder(path);
+  auto chosen = chooseGrid(readVdbHeaders(path, interrupter), path, GridUse::labels, options.grid);
+  if ((*chosen)[detail::kRegionKey])  // headers do not hold a region's voxels
+    chosen = readVdbSlab(folder, 0, detail::readingAlone(*chosen), interrupter)
+                 .at(0)
+                 ->copyGridWithNewTree();
+  LabelSlabs slabs;
+  slabs.cuts = folder.cuts;
+  slabs.read = [folder, reading = detail::readingAlone(*chosen)](size_t slab, Interrupter* of) {
+    return openvdb::gridPtrCast<Int32Grid>(readVdbSlab(folder, slab, reading, of).at(0));
+  };
+  overrideFile(*chosen, path, options);
+  slabs.about = openvdb::gridPtrCast<Int32Grid>(chosen);
+  return slabs;
+}
+
+Int32Grid::Ptr loadLabels(const ImageOpener& open, const VolumeOptions& options,
+                          Interrupter* interrupter) {
+  const ImageOpener checked = [&] { return detail::checkedImage(open(), options); };
+  const std::string path = open()->path();
+  const Int32Grid::Ptr labels = detail::naming(path, options.region.mask, [&] {
+    return labelsOfImage(path, checked, options, interrupter);
+  });
+  if (options.voxelSize) setVoxelSize(*labels, options.voxelSize);
+  return labels;
+}
+
+}  // namespace vdb_madf

@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "export.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/memory.h"
+#include "vdb_madf/exports/clump_bonds.h"
+#include "vdb_madf/exports/clump_file.h"
+#include "vdb_madf/exports/hexahedra_file.h"
+#include "vdb_madf/exports/mesh_file.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/labels/grain_masks.h"
+#include "vdb_madf/labels/reduced_labels.h"
+#include "vdb_madf/labels/select_grains.h"
+#include "vdb_madf/measure/grain_network.h"
+#include "vdb_madf/pictures/preview_volume.h"
+#include "vdb_madf/segmentation/ball_grids.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
+#include "vdb_madf/shapes/level_sets.h"
+#include "vdb_madf/vdb/read_vdb.h"
+#include "vdb_madf/vdb/write_vdb.h"
+
+namespace vdb_madf::tools {
+
+namespace {
+
+std::string unitOf(const openvdb::GridBase& grid) {
+  const auto size = storedVoxelSize(grid);
+  return size ? size->unit() : std::string();
+}
+
+/// Labels as they are meshed: those of the chosen grains, reduced.
+Int32Grid::ConstPtr meshedLabels(const ExportArguments& o, const Common& common,
+                                 const Int32Grid& labels, int factor) {
+  const Int32Grid::ConstPtr all =
+      factor == 1 ? labels.copy() : reduceLabels(labels, factor, common.progress);
+  return o.grains.empty() ? all : selectGrains(*all, o.grains, common.progress);
+}
+
+/// @throw InvalidInput for voxels that level sets do not take
+void requireCubes(const Int32Grid& labels) {
+  try {
+    requireCubicVoxels(labels, "a level set");
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(error.what() + std::string(" (convert --resample)"));
+  }
+}
+
+/// The medial balls that were kept with the labels, unless those had other voxels; else the balls
+/// of the labels' voxels, with air beyond the faces.
+Int32Grid::Ptr ballsOf(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
+  if (!o.input.size && isVdb(o.input))
+    if (const auto kept = storedBalls(readVdb(o.input.path, {}, common.progress)))
+      if (areBallsOfVoxels(labels, *kept)) return kept;
+  return closedBalls(*objectMask(labels), availableMemory(), common.progress);
+}
+
+/// Writes the tables of the bonds and of the cover, if they are asked for.
+/// @return the bonds
+std::vector<ClumpBond> exportClumpTables(const ExportArguments& o, const Common& common,
+                                         const Int32Grid& labels,
+                                         const std::vector<Clump>& clumps) {
+  if (!o.cover.empty()) writeClumpCover(o.cover, clumps, labels.transform(), common.progress);
+  if (o.bonds.empty()) return {};
+  const auto bonds =
+      clumpBonds(clumps, measure(labels, o.measure, common.progress).bonds, labels.transform());
+  writeClumpBonds(o.bonds, bonds, labels.transform(), common.progress);
+  return bonds;
+}
+
+}  // namespace
+
+GrainMeshOptions meshOptions(const ExportArguments& o) {
+  GrainMeshOptions options;
+  options.smoothing = o.smoothing;
+  options.triangles = uint64_t(o.mostTriangles);
+  return options;
+}
+
+void exportMesh(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
+  const GrainMeshOptions options = meshOptions(o);
+  const int factor = reductionOf(o, labels);
+  const Int32Grid::ConstPtr meshed = meshedLabels(o, common, labels, factor);
+  MeshFileOptions file;
+  file.transform = meshed->constTransformPtr();
+  file.lengthUnit = unitOf(labels);
+  file.shadeSmooth = o.smoothing > 0;
+  if (isGlb(o.out) && options.triangles == 0)
+    checkMeshRoom(o.out, countTriangles(*meshed, common.progress), file);
+  const GrainMesh mesh = grainMesh(*meshed, options, common.progress);
+  file.colors = grainColors(labels, common.progress);
+  std::optional<GrainNetwork> measured;
+  if (isGlb(o.out)) file.measured = &measured.emplace(grainNetwork(labels, {}, common.progress));
+  if (isMeshEnding(o.out))
+    writeMesh(o.out, mesh, file, common.progress);
+  else
+    writeStlFolder(o.out, mesh, file, common.progress);
+  const bool isOver = options.triangles > 0 && mesh.triangles.size() > options.triangles;
+  say(o, common,
+      fmt::format("{}, {}, {}{}{}; lengths in {}", counted(mesh.labels.size(), "grain"),
+                  counted(mesh.points.size(), "point"), counted(mesh.triangles.size(), "triangle"),
+                  isOver ? " (fewer would not keep all grains and contacts)" : "",
+                  factor == 1 ? "" : fmt::format(" (labels at 1/{})", factor),
+                  file.lengthUnit.empty() ? "voxels" : file.lengthUnit));
+}
+
+void exportPreview(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
+  const int factor = reductionOf(o, labels);
+  const LabelPreview preview = previewLabels(labels, factor, common.progress);
+  writeVdb(o.out, {preview.color, preview.density}, common.progress);
+  say(o, common,
+      fmt::format("density (fog) and color at 1/{}, {}", factor,
+                  counted(preview.density->activeVoxelCount(), "voxel")));
+}
+
+void exportReduced(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
+  const int factor = o.reduce == 0 && o.maxDim == 0 ? 2 : reductionOf(o, labels);
+  const Int32Grid::Ptr reduced = reduceLabels(labels, factor, common.progress);
+  writeVdb(o.out, {reduced}, common.progress);
+  say(o, common,
+      fmt::format("labels at 1/{}, {}", factor, counted(reduced->activeVoxelCount(), "voxel")));
+}
+
+void exportGrainGrids(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
+  if (o.asBool) {
+    const auto grids = grainMasks(labels, common.progress);
+    writeVdb(o.out, {grids.begin(), grids.end()}, common.progress);
+    say(o, common, counted(grids.size(), "Bool grid"));
+    return;
+  }
+  requireCubes(labels);
+  LevelSetOptions options;
+  options.smoothing = o.smoothing;
+  const auto grids = grainLevelSets(labels, options, common.progress);
+  writeVdb(o.out, {grids.begin(), grids.end()}, common.progress);
+  say(o, common, counted(grids.size(), "level set"));
+}
+
+void exportSurface(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
+  requireCubes(labels);
+  LevelSetOptions options;
+  options.smoothing = o.smoothing;
+  const auto grid = surfaceLevelSet(labels, options, common.progress);
+  writeVdb(o.out, {grid}, common.progress);
+  say(o, common,
+      "level set of the object, " + counted(grid->activeVoxelCount(), "voxel") + " in its band");
+}
+
+void exportClumps(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
+  const Int32Grid::Ptr balls = ballsOf(o, common, labels);
+  const auto made = clumps(labels, *balls, o.clumps, common.progress);
+  const auto bonds = exportClumpTables(o, common, labels, made);
+  writeClumps(o.out, made, labels.transform(), bonds, common.progress);
+  size_t ballCount = 0, without = 0;
+  int64_t voxels = 0, uncovered = 0, outside = 0;
+  double farthest = 0;
+  for (const Clump& clump : made) {
+    ballCount += clump.balls.size();
+    without += clump.balls.empty();
+    voxels += clump.voxels;
+    uncovered += clump.uncovered;
+    outside += clump.outside;
+    farthest = std::max(farthest, clump.farthest);
+  }
+  const auto percent = [&](int64_t part) {
+    return voxels ? 100.0 * double(part) / double(voxels) : 0.0;
+  };
+  std::string text = fmt::format(
+      "{}, {}; uncovered {:.2f} %, outside the own grain {:.2f} %, volume error {:.2f} %, farthest "
+      "voxel {:.2f} {} from its balls",
+      counted(made.size(), "grain"), counted(ballCount, "ball"), percent(uncovered),
+      percent(outside), percent(outside - uncovered), farthest,
+      hasCubicVoxels(labels) ? "voxels" : "shortest edges");
+  if (without > 0) text += fmt::format("; {} without a ball", counted(without, "grain"));
+  if (!o.bonds.empty()) text += fmt::format("; {} in {}", counted(bonds.size(), "bond"), o.bonds);
+  // Distances ignore what may be beyond the faces of an open scan.
+  if (storedBoundary(*balls) == Boundary::open)
+    text += "; balls reach beyond the scan (segment with --boundary closed to prevent that)";
+  say(o, common, text);
+}
+
+void exportHexahedra(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
+  const HexahedraCounts counts = writeHexahedra(o.out, labels, common.progress);
+  say(o, common,
+      fmt::format("{}, {}, {}", counted(counts.grains, "grain"),
+                  counted(counts.elements, "element"), counted(counts.nodes, "node")));
+}
+
+}  // namespace vdb_madf::tools

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <string>
+
+#include "segment_summary.h"
+
+namespace vdb_madf::tools {
+
+// What `segment` does for an output like OUT.slabs: a folder of parts, from slabs that need not fit
+// in memory together.
+
+/// True for the ending .slabs.
+bool hasSlabsEnding(const std::string& path);
+/// Makes "OUT.slabs" of "OUT.slabs/", as shells complete it; other paths as they are.
+std::string withoutSlash(std::string path);
+
+/// Checks the options of an output in slabs. @throw WrongUsage for what slabs do not know
+void checkSlabArguments(const SegmentArguments& o);
+
+/// Works in OUT.slabs.part, and in scratch. Both stay for --resume, by any number of members, if
+/// the work is cut off after the object was read; at the end OUT.slabs appears whole.
+/// Where there are common.team, these share the work: see WorkPlace.
+void runInSlabs(const SegmentArguments& o, const Common& common);
+
+}  // namespace vdb_madf::tools
