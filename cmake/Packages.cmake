@@ -11,7 +11,8 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-set(VDB_MADF_PACKAGE_RELEASE 1 CACHE STRING "The part of a package's version that names the release it is made for")
+set(VDB_MADF_PACKAGE_RELEASE 1 CACHE STRING
+  "The part of a package's version that names the release it is made for")
 set(CPACK_DEBIAN_PACKAGE_RELEASE ${VDB_MADF_PACKAGE_RELEASE})
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_COMPRESSION_TYPE gzip)  # xz takes a minute for the library

@@ -208,7 +208,7 @@ TEST_CASE("image_file: MetaImage in all its forms", "[image_file]") {
   }
 }
 
-TEST_CASE("image_file: MetaImage spacing is millimetres unless it is 1", "[image_file]") {
+TEST_CASE("image_file: MetaImage spacing is millimeters unless it is 1", "[image_file]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.mha";
   const auto spacing = [&](const std::string& line) {

@@ -98,7 +98,7 @@ TEST_CASE("image_pictures: BMP of every depth and row order", "[image_pictures]"
       }
 }
 
-TEST_CASE("image_pictures: colours are read when they are grey, else refused", "[image_pictures]") {
+TEST_CASE("image_pictures: colors are read when they are gray, else refused", "[image_pictures]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.png";
   const std::string grey = randomBytes(kWidth * kHeight, 8, 3);

@@ -128,7 +128,7 @@ OracleHierarchy oracleHierarchy(const ManifoldGraph& graph);
 /// The class of each node at a strictness.
 std::vector<uint32_t> oracleCut(const ManifoldGraph& graph, const OracleHierarchy& hierarchy,
                                 double strictness);
-/// Of a pair of classes, a of the smaller top.
+/// The score of a pair of classes, a of the smaller top.
 int64_t oracleScore(int64_t voxelsA, int64_t topA, int64_t voxelsB, int64_t topB, int64_t faces,
                     int64_t height, const VoxelWeights& weights = {});
 

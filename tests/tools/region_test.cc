@@ -189,8 +189,8 @@ TEST_CASE("region: labels of another program are cut to it", "[region]") {
   const Outcome outcome = bench.run("convert g.npy l.vdb --labels --roi view.npy");
   CHECK(outcome.exitCode == 0);
   CHECK(outcome.err == note("g.npy: outside of the region, " + std::to_string(core.outside) +
-                            " labelled voxels left out"));
-  CHECK_THAT(outcome.out, Contains(std::to_string(core.object) + " labelled voxels"));
+                            " labeled voxels left out"));
+  CHECK_THAT(outcome.out, Contains(std::to_string(core.object) + " labeled voxels"));
   CHECK(gridOf(infoOf(bench, "l.vdb"), "grain").at("region_voxels") == core.inside);
   bench.mustRun("measure l.vdb tables");
   // To an image, too.

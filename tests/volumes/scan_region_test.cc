@@ -322,7 +322,7 @@ TEST_CASE("scan_region: labels are cut to it, be they an image or a grid", "[sca
     CHECK(wrong == 0);
     CHECK(int64_t(labels->activeVoxelCount()) == inside);
     CHECK_THAT(notes, Contains(file + ": outside of the region, " + std::to_string(leftOut) +
-                               " labelled voxels left out"));
+                               " labeled voxels left out"));
   }
   options.region.mask = folder / "missing.npy";
   CHECK_THROWS_WITH(loadLabels(folder / "l.npy", options), Contains("missing.npy"));

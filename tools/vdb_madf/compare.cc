@@ -61,7 +61,7 @@ Json summary(const CompareArguments& o, const Comparison& c) {
 void print(const Comparison& c) {
   std::printf("grains                    truth %lld, test %lld\n", (long long)c.truthGrains,
               (long long)c.testGrains);
-  std::printf("voxels labelled           in both %lld, in truth only %lld, in test only %lld\n",
+  std::printf("voxels labeled            in both %lld, in truth only %lld, in test only %lld\n",
               (long long)c.commonVoxels, (long long)c.truthOnlyVoxels, (long long)c.testOnlyVoxels);
   std::printf("misclassified             %.4f %% (mirror %.4f %%)\n", c.misclassifiedPercent,
               c.mirrorMisclassifiedPercent);
@@ -75,7 +75,7 @@ void print(const Comparison& c) {
   if (!sameTopology(c))
     std::printf(
         "note: the grids differ in topology; all but grains and their unions is compared over the "
-        "voxels labelled in both\n");
+        "voxels labeled in both\n");
 }
 
 /// One line per grain of either grid.
@@ -127,7 +127,7 @@ void runCompare(const CompareArguments& o, const Common& common) {
     comparison = compare(*truths, *tests, common.progress);
   }
   if (comparison.commonVoxels == 0 && comparison.truthGrains + comparison.testGrains > 0)
-    throw InvalidInput(o.test.path + ": no voxel is labelled both here and in " + o.truth.path +
+    throw InvalidInput(o.test.path + ": no voxel is labeled both here and in " + o.truth.path +
                        ", so there is nothing to compare: give labels of the same sample");
   common.progress->end();
   grainFile.write(grainTable(comparison));

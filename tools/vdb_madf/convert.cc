@@ -99,7 +99,7 @@ void convertLabels(const ConvertArguments& o, const Common& common) {
   common.progress->end();
   if (common.quiet) return;
   const int64_t voxels = int64_t(labels->activeVoxelCount());
-  std::cout << o.out << ": grid 'grain', " << counted(voxels, "labelled voxel");
+  std::cout << o.out << ": grid 'grain', " << counted(voxels, "labeled voxel");
   if (voxels > 0) std::cout << ", largest label " << range.max();
   if (voxels > 0 && range.min() == range.max())
     std::cout << ", which all of them have: is this a mask? segment it";

@@ -98,7 +98,7 @@ void printFates(const char* what, const Json& fates) {
 void print(const TrackArguments& o, const Tracks& t, const Json& json) {
   std::printf("shift          %d,%d,%d voxels%s\n", t.shift.x(), t.shift.y(), t.shift.z(),
               o.track.shift ? "" : ", found");
-  std::printf("in common      %.2f %% of the labelled voxels before, %.2f %% of those after\n",
+  std::printf("in common      %.2f %% of the labeled voxels before, %.2f %% of those after\n",
               percent(t.commonVoxels, t.voxelsBefore), percent(t.commonVoxels, t.voxelsAfter));
   printFates("grains before", json["grains_before"]);
   printFates("grains after ", json["grains_after"]);
@@ -181,8 +181,7 @@ void runTrack(const TrackArguments& o, const Common& common) {
   common.progress->start("track");
   const Tracks tracks = track(*before, *after, o.track, common.progress);
   if (tracks.commonVoxels == 0 && !tracks.before.empty() && !tracks.after.empty())
-    throw InvalidInput(o.after.path + ": no labelled voxel comes to lie on one of " +
-                       o.before.path +
+    throw InvalidInput(o.after.path + ": no labeled voxel comes to lie on one of " + o.before.path +
                        ": give labels of the same sample, or how far it moved (--shift, "
                        "--max-shift)");
   if (!o.out.empty()) {

@@ -39,8 +39,8 @@ struct Hierarchy {
 ///
 /// The classes to begin with: those of merge() by the neck at theta -1, delta 0, which merges only
 /// what is no local maximum of the height. Of a class, V is the number of its voxels, those in
-/// filled cavities included, m its top; of two classes that touch, F is the number of contact faces between them, h the
-/// largest saddle height. A join adds V and F, and takes the larger m and h.
+/// filled cavities included, m its top; of two classes that touch, F is the number of contact faces
+/// between them, h the largest saddle height. A join adds V and F, and takes the larger m and h.
 ///
 /// Of a pair of classes with h > 0, a is the one of smaller m, then of smaller V, then of larger
 /// representative; b the other one. Its score is, with U = V, but no more than sqrt(18 m^3) (about

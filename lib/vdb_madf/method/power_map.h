@@ -9,7 +9,7 @@
 
 namespace vdb_madf {
 
-/// For each p in X (arrays by rank, see leaf_index.h) the ball of least power distance
+/// The ball of least power distance for each p in X (arrays by rank, see leaf_index.h):
 ///   pi_x(p) = |p - x|^2 - D(x)
 /// among the balls (x, D(x)) of the sites x. At equal power the larger D wins, then the
 /// lexicographically smaller x.
@@ -21,7 +21,8 @@ struct PowerMap {
   std::shared_ptr<const detail::ForeignSites> foreign{};  ///< likewise
 };
 
-/// In a filtered map: an object voxel that no ball covers (least power >= 0), still without a site.
+/// Marks an object voxel of a filtered map that no ball covers (least power >= 0) and that has no
+/// site yet.
 constexpr int32_t kUncovered = 1;
 
 /// Power map of all balls (p, D(p)), p in X (paper, section 4, eq. 5), with the weights of the

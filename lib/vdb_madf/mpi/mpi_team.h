@@ -11,12 +11,12 @@
 
 namespace vdb_madf {
 
-/// The processes of an MPI job (MPI_COMM_WORLD), each a member. All calls are made by the thread that made
-/// it. Messages of any size; they are in memory until exchange().
+/// The processes of an MPI job (MPI_COMM_WORLD), each a member. All calls are made by the thread
+/// that made it. Messages of any size; they are in memory until exchange().
 class MpiTeam : public Team {
  public:
-  /// Begins MPI (MPI_THREAD_FUNNELED); one for a process. @throw std::runtime_error if this MPI allows
-  /// no threads beside its calls.
+  /// Begins MPI (MPI_THREAD_FUNNELED); one for a process. @throw std::runtime_error if this MPI
+  /// allows no threads beside its calls.
   MpiTeam(int* argc, char*** argv);
   /// Ends MPI, with the others.
   ~MpiTeam() override;

@@ -11,7 +11,7 @@
 namespace vdb_madf {
 
 /// The medial balls of a segmentation as a file keeps them: two grids with the transform and the
-/// metadata of the labels, whose active voxels are the balls' centres. "balls" holds the squared
+/// metadata of the labels, whose active voxels are the balls' centers. "balls" holds the squared
 /// radius (D); "balls_cell_size" how many voxels map to the ball.
 std::vector<Int32Grid::Ptr> ballGrids(const Segmentation& segmentation);
 

@@ -18,8 +18,8 @@ namespace vdb_madf {
 /// (u32), contact faces (i64), saddle height (i32), cells touch (u8, 0 or 1). The graph's weights
 /// stand beside it, in `madf_weights` (voxel_weights.h). The part of a slab has version 2, and
 /// after the edges the number of each node (u32), then of each whether it goes on (u8, 0 or 1).
-/// Where a manifold has voxels in cavities, version 3 (of a part: 4) ends with their number for each
-/// node (i64).
+/// Where a manifold has voxels in cavities, version 3 (of a part: 4) ends with their number for
+/// each node (i64).
 /// @throw InvalidInput if the graph breaks a rule of manifold_graph.h (order, ranges), or takes
 ///   4 GiB or more.
 void setGraph(openvdb::GridBase& grid, ManifoldGraph graph);

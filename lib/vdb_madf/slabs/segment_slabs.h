@@ -45,7 +45,7 @@ struct SlabSegmentation : SegmentationRecord {
 /// The parts that lie in a slab of grids of a Segmentation, with their metadata.
 struct SlabGrids {
   Int32Grid::Ptr grain;
-  /// If kept: with its part of the graph (graph_metadata.h), in place of the graph.
+  /// None unless kept; carries its part of the graph (graph_metadata.h) in place of the graph.
   Int32Grid::Ptr manifold;
 };
 

@@ -40,7 +40,7 @@ Int32Grid::Ptr labelsOfGrid(const std::string& path, const VolumeOptions& option
       detail::readGrid(path, GridUse::labels, options, interrupter));
   if (options.domain) setDomain(*labels, *options.domain);
   if (const auto part = detail::partOf(*labels, path, options, interrupter))
-    detail::noteLeftOut(path, detail::cutTo(*part, *labels), "labelled voxel", options);
+    detail::noteLeftOut(path, detail::cutTo(*part, *labels), "labeled voxel", options);
   detail::noteVoxelSize(path, storedVoxelSize(*labels), options);
   return labels;
 }
@@ -57,7 +57,7 @@ Int32Grid::Ptr labelsOfImage(const std::string& path, const ImageOpener& open,
   }
   const Int32Grid::Ptr labels =
       readLabels(*image, interrupter, detail::boxOf(*part, image->info().size));
-  detail::noteLeftOut(path, detail::cutTo(*part, *labels), "labelled voxel", options);
+  detail::noteLeftOut(path, detail::cutTo(*part, *labels), "labeled voxel", options);
   return labels;
 }
 

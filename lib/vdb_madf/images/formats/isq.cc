@@ -27,7 +27,7 @@ int32_t integerAt(const std::string& header, size_t offset) {
   return value;
 }
 
-/// Each side of the field of view is rounded to a micrometre: that alone makes no voxel unequal.
+/// Each side of the field of view is rounded to a micrometer: that alone makes no voxel unequal.
 std::optional<VoxelSize> spacing(const std::string& path, const ImageSize& size,
                                  const std::string& header) {
   std::array<double, 3> edges;

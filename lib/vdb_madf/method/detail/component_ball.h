@@ -13,9 +13,9 @@ namespace vdb_madf::detail {
 /// The best ball of a connected component of the object, for the filter by gamma: a component all
 /// of whose balls are too small keeps it.
 struct ComponentBall {
-  /// From worse to better. `elsewhere`: a voxel of the component maps to it, across the unknown
-  /// voxels of a region; `own`: it lies in the component; `kept`: that, and its cell is large
-  /// enough.
+  /// Kinds go from worse to better. `elsewhere`: a voxel of the component maps to it, across the
+  /// unknown voxels of a region; `own`: it lies in the component; `kept`: that, and its cell is
+  /// large enough.
   enum Kind : int32_t { none, elsewhere, own, kept };
   Kind kind = none;
   int32_t squaredRadius = 0;

@@ -59,8 +59,8 @@ class LeafSmoothing {
     VoxelsAround around;
   };
 
-  /// Lists the labels in a leaf and across its faces, ascending. The list may have labels that do not
-  /// touch, but misses none that does: with one label alone nothing changes here.
+  /// Lists the labels in a leaf and across its faces, ascending. The list may have labels that do
+  /// not touch, but misses none that does: with one label alone nothing changes here.
   void findLabels(uint32_t leaf) {
     labels_.clear();
     for (auto entry = masks_.begin(leaf); entry != masks_.end(leaf); ++entry)

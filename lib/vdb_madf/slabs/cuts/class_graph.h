@@ -30,8 +30,8 @@ struct ClassGraph {
 ClassGraph classGraph(const SlabPart& part, const std::vector<uint32_t>& classOfNode);
 
 /// The graph of all classes: merge() by score makes of it what it makes of the graph of the
-/// manifolds, as no edge that is left joins a class at the tests that it begins with. (Tops grow, and
-/// each edge was lower than both when it was visited.)
+/// manifolds, as no edge that is left joins a class at the tests that it begins with. (Tops grow,
+/// and each edge was lower than both when it was visited.)
 class JoinedClasses {
  public:
   JoinedClasses(const std::vector<Coord>& representatives, const VoxelWeights& weights);

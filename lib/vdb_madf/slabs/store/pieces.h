@@ -210,7 +210,7 @@ inline constexpr Piece<Values<PartFacts>> kPartFacts("known", Step::never);
 // have another number of them.
 inline constexpr Piece<Values<uint32_t>> kClasses("classes", Step::never);
 inline constexpr Piece<Values<uint32_t>> kGrains("grains", Step::never);  // of terminals; 0: none
-// Of nodes, where classes are joined by score.
+// The classes of nodes, where these are joined by score.
 inline constexpr Piece<Values<uint32_t>> kNodeClasses("node-classes", Step::never);
 inline constexpr Message<ClassGraph> kClassGraph("class-graph", From::toRoot, Step::never);
 inline constexpr Piece<OpenGraph> kMergeOpen("merge-open", Step::never);
