@@ -34,6 +34,7 @@ TEST_CASE("slabs: one file of them is the one that segment writes", "[slabs]") {
   bench.mustRun(kTall + "in.vdb --voxel-size 8um -q");
   for (const std::string options :
        {"", "--boundary closed --tidy 0", "--paper", "--fill-holes 1000 --merge neck --tidy 9",
+        "--merge score", "--merge score --strictness 9 --fill-holes 1000",
         "--theta -1 --delta 0 --crop 3,3,5:35,30,71", "--roi cylinder:z:20,16:14 --gamma 9"}) {
     INFO(options);
     const std::string choice = " --grid object -q " + options;
@@ -60,6 +61,9 @@ TEST_CASE("slabs: manifolds and their graph are those of one file", "[slabs]") {
     requireSame(bench);
     bench.mustRun("remerge one.vdb merged.vdb --theta -0.5 -q");
     bench.mustRun("remerge out.slabs joined.vdb --theta -0.5 -q");
+    REQUIRE(bench.bytes("joined.vdb") == bench.bytes("merged.vdb"));
+    bench.mustRun("remerge one.vdb merged.vdb --merge score -q");
+    bench.mustRun("remerge out.slabs joined.vdb --merge score -q");
     REQUIRE(bench.bytes("joined.vdb") == bench.bytes("merged.vdb"));
   }
   bench.mustRun("segment in.vdb auto.vdb --auto-slabs --grid object --keep manifold -q");
