@@ -11,6 +11,7 @@
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
 #include "vdb_madf/measure/measure.h"
+#include "vdb_madf/volumes/choose_grid.h"
 
 namespace vdb_madf::python {
 
