@@ -48,6 +48,7 @@ class MergeTree {
         grain = grainOfClass_[grain];
         if (joinsByScore_) grain = grainOf[grain - 1];
       }
+      if (joinsByScore_) grains = ofTerminals(work_.store.read(kGraphPart, s), grains);
       work_.store.write(kGrains, s, grains);
     }
     return std::move(representatives_);
@@ -63,29 +64,31 @@ class MergeTree {
   void mergeSlab(size_t s, const SlabPart& part) {
     if (work_.interrupter && work_.interrupter->wasInterrupted(75)) throw Interrupted();
     const std::vector<uint32_t> classOfNode = merging_.add(part);
-    std::vector<uint32_t> classes;
-    for (const uint32_t node : part.nodeOf) classes.push_back(classOfNode[node]);
-    work_.store.write(kClasses, s, classes);
-    if (joinsByScore_) work_.store.write(kNodeClasses, s, classOfNode);
+    work_.store.write(kClasses, s, joinsByScore_ ? classOfNode : ofTerminals(part, classOfNode));
+  }
+
+  static std::vector<uint32_t> ofTerminals(const SlabPart& part,
+                                           const std::vector<uint32_t>& ofNodes) {
+    std::vector<uint32_t> values;
+    values.reserve(part.nodeOf.size());
+    for (const uint32_t node : part.nodeOf) values.push_back(ofNodes[node]);
+    return values;
   }
 
   /// The grains so far are the classes that a hierarchy begins with: few, so the root joins them.
   /// @return the grain of each
   std::vector<uint32_t> joinByScore() {
     for (size_t s = work_.plan.firstOwn(); s < work_.plan.endOwn(); ++s) {
-      auto classes = work_.store.read(kNodeClasses, s);
+      auto classes = work_.store.read(kClasses, s);  // of nodes
       for (uint32_t& c : classes) c = grainOfClass_[c] - 1;
       work_.store.send(kClassGraph, s, kRoot, classGraph(work_.store.read(kGraphPart, s), classes));
-      work_.store.remove(kNodeClasses, s);
     }
     work_.steps.exchange();
     std::vector<uint32_t> grains;
     if (work_.plan.isRoot()) {
       JoinedClasses joined(representatives_, work_.facts.weights);
-      for (size_t s = 0; s < work_.plan.slabCount(); ++s) {
+      for (size_t s = 0; s < work_.plan.slabCount(); ++s)
         joined.add(work_.store.receive(kClassGraph, s, kRoot));
-        work_.store.removeMessage(kClassGraph, s, kRoot);
-      }
       const Merging merging = merge(joined.finish(), work_.options.merge);
       grains.assign(merging.grainOfNode.begin(), merging.grainOfNode.end());
       std::vector<Coord> ofGrains;

@@ -208,10 +208,9 @@ inline constexpr Piece<Values<PartFacts>> kPartFacts("known", Step::never);
 
 // The merge. Members write to members, each .at(how many members there are): a run that goes on may
 // have another number of them.
+// The classes of terminals; where these are joined by score, of nodes.
 inline constexpr Piece<Values<uint32_t>> kClasses("classes", Step::never);
 inline constexpr Piece<Values<uint32_t>> kGrains("grains", Step::never);  // of terminals; 0: none
-// The classes of nodes, where these are joined by score.
-inline constexpr Piece<Values<uint32_t>> kNodeClasses("node-classes", Step::never);
 inline constexpr Message<ClassGraph> kClassGraph("class-graph", From::toRoot, Step::never);
 inline constexpr Piece<OpenGraph> kMergeOpen("merge-open", Step::never);
 inline constexpr Piece<Values<Coord>> kMergeDecided("merge-decided", Step::never);
