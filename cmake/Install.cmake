@@ -55,7 +55,7 @@ set(pkgconfig_rooms "")
 foreach(room IN LISTS rooms)
   string(PREPEND pkgconfig_rooms " -lvdb_madf_${room}")
 endforeach()
-set(pkgconfig_requires "tbb zlib libtiff-4 libpng cairo freetype2 blosc libzstd qhull_r")
+set(pkgconfig_requires "tbb zlib libtiff-4 libpng cairo freetype2 fmt blosc libzstd qhull_r")
 if(TARGET Imath::Imath)  # OpenVDB's headers call it
   string(APPEND pkgconfig_requires " Imath")
 endif()

@@ -29,7 +29,7 @@ networks. Labels are sparse OpenVDB grids.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libvdb-madf-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
 string(JOIN ", " CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS libopenvdb-dev libtbb-dev libtiff-dev
-  libpng-dev libcairo2-dev
+  libpng-dev libcairo2-dev libfmt-dev
   libblosc-dev libzstd-dev libboost-iostreams-dev libqhull-dev zlib1g-dev)
 if(TARGET SerialHDF5::hdf5)
   string(APPEND CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS ", libhdf5-dev")

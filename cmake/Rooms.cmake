@@ -11,7 +11,7 @@
 #     [PACKAGES name...]    what find_package(vdb_madf COMPONENTS NAME) has to find
 #     [OPTIMIZE level]      O1 or O2, where its loops wait for others or for files; default: that
 #                           of the build type
-#     [GRIDS]               its sources see OpenVDB's grids: they share a precompiled header
+#     [GRIDS]               its sources see OpenVDB's grids, by a precompiled header
 #     [SANITIZE])           with the tests, also built with sanitizers, as vdb_madf_NAME_sanitized
 #
 # USES is the one list of arrows between rooms. It is written to rooms.txt in the build folder,
@@ -49,6 +49,36 @@ function(vdb_madf_room name)
   endforeach()
 endfunction()
 
+# Lets `target` see OpenVDB's grids by a precompiled header. GCC wants that compiled with the same
+# options, so there is one for each level of optimization, and one with the sanitizers (the suffix
+# _sanitized).
+function(vdb_madf_share_header target level suffix)
+  set(owner vdb_madf_grids_header${level}${suffix})
+  if(NOT TARGET ${owner})
+    set(source ${PROJECT_BINARY_DIR}/grids_header.cc)
+    file(CONFIGURE OUTPUT ${source} CONTENT "")
+    add_library(${owner} OBJECT EXCLUDE_FROM_ALL ${source})
+    vdb_madf_compiler_options(${owner})
+    vdb_madf_optimize(${owner} "${level}")
+    if(suffix)
+      vdb_madf_sanitize(${owner})
+    endif()
+    set_target_properties(${owner} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_include_directories(${owner} PRIVATE ${PROJECT_SOURCE_DIR}/lib)
+    target_link_libraries(${owner} PRIVATE OpenVDB::openvdb TBB::tbb)
+    target_precompile_headers(${owner} PRIVATE
+      <vdb_madf/grids/grid_types.h> <vdb_madf/grids/detail/grid_instances.h>)
+  endif()
+  target_precompile_headers(${target} REUSE_FROM ${owner})
+endfunction()
+
+# The level is "" or as OPTIMIZE of vdb_madf_room().
+function(vdb_madf_optimize target level)
+  if(level)
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-${level}>)
+  endif()
+endfunction()
+
 # Part of vdb_madf_room(): the library, or with the suffix _sanitized its instrumented twin.
 macro(vdb_madf_room_library suffix)
   add_library(${target}${suffix} STATIC ${arg_SOURCES})
@@ -56,20 +86,19 @@ macro(vdb_madf_room_library suffix)
     target_sources(${target}${suffix} PRIVATE $<TARGET_OBJECTS:${objects}>)
   endforeach()
   vdb_madf_compiler_options(${target}${suffix})
-  if(arg_OPTIMIZE)
-    target_compile_options(${target}${suffix} PRIVATE $<$<CONFIG:Release>:-${arg_OPTIMIZE}>)
+  if("${suffix}" STREQUAL "")
+    vdb_madf_optimize(${target} "${arg_OPTIMIZE}")
+    set(level "${arg_OPTIMIZE}")
+  else()  # all at one level
+    set(level "")
   endif()
   set_target_properties(${target}${suffix} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   foreach(room IN LISTS arg_USES)
     target_link_libraries(${target}${suffix} PUBLIC vdb_madf_${room}${suffix})
   endforeach()
-  target_link_libraries(${target}${suffix} PUBLIC ${arg_LINKS}
-    PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:fmt::fmt-header-only>)
-  if(arg_GRIDS AND name STREQUAL core)
-    target_precompile_headers(${target}${suffix} PRIVATE
-      <vdb_madf/grids/grid_types.h> <vdb_madf/grids/detail/grid_instances.h>)
-  elseif(arg_GRIDS AND NOT arg_OPTIMIZE)  # compiled with the same options, as GCC asks
-    target_precompile_headers(${target}${suffix} REUSE_FROM vdb_madf_core${suffix})
+  target_link_libraries(${target}${suffix} PUBLIC ${arg_LINKS} PRIVATE ${arg_PRIVATE})
+  if(arg_GRIDS)
+    vdb_madf_share_header(${target}${suffix} "${level}" "${suffix}")
   endif()
 endmacro()
 

@@ -3,7 +3,7 @@
 
 #include "auto_slabs.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <filesystem>

@@ -3,7 +3,7 @@
 
 #include "input_options.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <openvdb/Metadata.h>
 
 #include "outputs.h"

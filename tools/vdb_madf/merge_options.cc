@@ -3,7 +3,7 @@
 
 #include "merge_options.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <utility>

@@ -3,7 +3,7 @@
 
 #include "parse.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <charconv>
 #include <cmath>

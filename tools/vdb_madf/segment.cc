@@ -3,7 +3,7 @@
 
 #include "vdb_madf/segmentation/segment.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cstdio>

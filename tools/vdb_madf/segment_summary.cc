@@ -3,7 +3,7 @@
 
 #include "segment_summary.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <openvdb/Metadata.h>
 
 #include <algorithm>

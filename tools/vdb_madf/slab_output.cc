@@ -3,7 +3,7 @@
 
 #include "slab_output.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <openvdb/Metadata.h>
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/segmentation/parameter_sweep.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <openvdb/Metadata.h>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 
 #include "vdb_madf/matching/track.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cstdio>

@@ -3,7 +3,7 @@
 
 #include "work_place.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <filesystem>
 #include <vector>

@@ -3,7 +3,7 @@
 
 #include "vdb_madf/edits/edits.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

@@ -11,7 +11,7 @@
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace vdb_madf {
 

@@ -10,7 +10,7 @@
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/files/file_ending.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace vdb_madf {
 

@@ -3,7 +3,7 @@
 
 #include "vdb_madf/intensity/gray_planes.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include "vdb_madf/pictures/label_slices.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 
 #include "vdb_madf/scans/filtered_image.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <string>

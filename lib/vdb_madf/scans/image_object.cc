@@ -3,7 +3,7 @@
 
 #include "vdb_madf/scans/image_object.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <openvdb/Metadata.h>
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 
 #include "vdb_madf/scans/read_mask.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <memory>

@@ -3,7 +3,7 @@
 
 #include "vdb_madf/vdb/read_vdb.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
 #include <openvdb/openvdb.h>

@@ -3,7 +3,7 @@
 
 #include "vdb_madf/vdb/slab_folder.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <openvdb/Metadata.h>
 
 #include <filesystem>

@@ -3,7 +3,7 @@
 
 #include "vdb_madf/vdb/slab_folder_writer.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <openvdb/Metadata.h>
 #include <unistd.h>
 

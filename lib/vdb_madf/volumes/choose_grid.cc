@@ -3,7 +3,7 @@
 
 #include "vdb_madf/volumes/choose_grid.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/files/file_ending.h"

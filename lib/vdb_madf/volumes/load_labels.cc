@@ -3,7 +3,7 @@
 
 #include "vdb_madf/volumes/load_labels.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"

@@ -3,7 +3,7 @@
 
 #include "vdb_madf/volumes/segment_array.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <string>
 #include <utility>

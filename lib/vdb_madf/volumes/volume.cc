@@ -3,7 +3,7 @@
 
 #include "vdb_madf/volumes/volume.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "vdb_madf/files/same_file.h"
 #include "vdb_madf/grids/grid_metadata.h"

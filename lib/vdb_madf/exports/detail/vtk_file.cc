@@ -3,7 +3,7 @@
 
 #include "vdb_madf/exports/detail/vtk_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <utility>

@@ -3,7 +3,7 @@
 
 #include "vdb_madf/report/detail/report_parts.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <algorithm>
 #include <array>
 #include <cmath>

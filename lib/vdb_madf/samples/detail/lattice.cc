@@ -3,7 +3,7 @@
 
 #include "vdb_madf/samples/detail/lattice.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 #include <string>

@@ -3,7 +3,7 @@
 
 #include "vdb_madf/samples/detail/sample_options.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <openvdb/Metadata.h>
 
 #include <cmath>

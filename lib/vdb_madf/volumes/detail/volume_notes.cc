@@ -3,7 +3,7 @@
 
 #include "vdb_madf/volumes/detail/volume_notes.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <utility>
