@@ -354,6 +354,36 @@ TEST_CASE("hierarchy: as the oracle joins, on random graphs", "[hierarchy]") {
   CHECK(ties > count / 20);
 }
 
+TEST_CASE("hierarchy: tells the grains that each join leaves", "[hierarchy]") {
+  for (uint64_t seed = 1; seed <= 300; ++seed) {
+    INFO("seed " << seed);
+    Rng rng(seed);
+    const ManifoldGraph graph = randomGraph(rng);
+    const Hierarchy hierarchy = mergeHierarchy(graph);
+    const std::vector<JoinedGrains> joins = joinedGrains(hierarchy);
+    REQUIRE(joins.size() == hierarchy.joins.size());
+    for (size_t i = 0; i < joins.size(); ++i) {
+      const JoinedGrains& join = joins[i];
+      REQUIRE(join.strictness <= join.score);
+      // The joins of the same strictness are made together.
+      if (i + 1 < joins.size() && joins[i + 1].strictness == join.strictness) continue;
+      const Merging at = cut(hierarchy, join.strictness);
+      REQUIRE(int64_t(at.representative.size()) == join.grains);
+      REQUIRE(at.grainOfNode[join.first] == at.grainOfNode[join.second]);
+      if (at.grainOfNode[join.first] == 0) continue;
+      const Merging before = cut(hierarchy, join.strictness + 1.0 / Hierarchy::kUnitsOfScore);
+      const std::vector<int64_t> voxels = grainVoxels(graph, before);
+      if (i > 0 && joins[i - 1].strictness == join.strictness) continue;
+      const auto voxelsOf = [&](uint32_t node) {
+        const int32_t grain = before.grainOfNode[node];
+        return grain ? voxels[grain - 1] : 0;
+      };
+      REQUIRE(voxelsOf(join.first) == join.firstVoxels);
+      REQUIRE(voxelsOf(join.second) == join.secondVoxels);
+    }
+  }
+}
+
 TEST_CASE("hierarchy: any sizes are joined, however large", "[hierarchy]") {
   Rng rng(3);
   constexpr int64_t kHuge = int64_t(1) << 62;

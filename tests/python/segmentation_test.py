@@ -104,6 +104,36 @@ def test_remerge_and_sweep_equal_fresh_segmentations(sample):
         madf.segment(sample[0], keep=()).remerge(theta=0)
 
 
+def test_merging_by_score():
+    mask = madf.generate("snow", size=64, fraction=0.4, length=12)[0]
+    seg = madf.segment(mask, merge="score", strictness=12)
+    assert seg.options["merge"] == "score" and seg.options["strictness"] == 12
+    assert not {"theta", "delta", "adjacency"} & set(seg.options)
+    joins = seg.hierarchy
+    made_at = joins["strictness"]
+    assert len(made_at) > 4
+    for strictness in (made_at[0], made_at[len(made_at) // 2], made_at[-1]):
+        fresh = madf.segment(mask, merge="score", strictness=strictness)
+        again = seg.cut(strictness)
+        assert (np.asarray(fresh.labels) == np.asarray(again.labels)).all()
+        assert again.options == fresh.options and again.labels.metadata == fresh.labels.metadata
+        made = joins["strictness"] >= strictness
+        assert joins["grains"][made][-1] == fresh.counts["grains"]
+    assert (np.diff(joins["strictness"]) <= 0).all()
+    assert (joins["strictness"] <= joins["score"]).all()
+    both = seg.remerge(merge="both")
+    assert both.options == madf.segment(mask).options
+    assert both.cut(12).options == seg.options
+    rows = seg.sweep(merge=["score", "neck"], strictness=[9, 11], theta=[-0.9])
+    assert rows["merge"] == ["score", "score", "neck"]
+    assert rows["grains"][1] == seg.cut(11).counts["grains"]
+    assert np.isnan(rows["theta"][:2]).all() and np.isnan(rows["strictness"][2])
+    with pytest.raises(madf.InvalidInput, match="theta: belongs to merge='both'"):
+        seg.remerge(theta=-0.5)
+    with pytest.raises(madf.InvalidInput, match="strictness: belongs to merge='score'"):
+        madf.segment(mask, strictness=9)
+
+
 def test_what_is_kept(sample, command, tmp_path):
     seg = madf.segment(sample[0], keep=("manifold", "distance", "power", "balls"))
     mask = np.asarray(sample[0])

@@ -218,9 +218,54 @@ TEST_CASE("cli: grains by score, segmented, remerged and swept", "[cli]") {
     CHECK(bench.bytes("r.npy") == bench.bytes("g.npy"));
   }
   CHECK(bench.bytes("a.svg").find("nan") == std::string::npos);
+  const Json json = Json::parse(bench.mustRun("segment s.vdb g.vdb --json - --merge score"));
+  CHECK(json.at("strictness") == 11);
+  for (const char* key : {"theta", "delta", "adjacency"}) CHECK(!json.contains(key));
+  const std::string said = bench.mustRun("segment s.vdb g.vdb --merge score");
+  CHECK(said.find("merge score, strictness 11, boundary open,\n") != std::string::npos);
+  CHECK(said.find("theta") == std::string::npos);
   bench.mustRun("sweep s.vdb b.csv --gamma 0 --merge neck,score --theta -0.9");
   CHECK(bench.bytes("b.csv").find("\n0,neck,2,-0.9,,") != std::string::npos);
   CHECK(bench.bytes("b.csv").find("\n0,score,,,11,") != std::string::npos);
+}
+
+TEST_CASE("cli: the joins of the hierarchy, in one file and in slabs", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSnow + "s.vdb");
+  bench.mustRun("segment s.vdb all.vdb --keep manifold --merge score --strictness 3");
+  CHECK(bench.mustRun("hierarchy all.vdb joins.csv").find(" joins of ") != std::string::npos);
+  const std::string table = bench.bytes("joins.csv");
+  std::istringstream csv(table);
+  std::string line, last;
+  std::getline(csv, line);
+  CHECK(line ==
+        "join,score,strictness,grains,first,first_x,first_y,first_z,first_voxels,second,second_x,"
+        "second_y,second_z,second_voxels");
+  while (std::getline(csv, line)) {
+    std::istringstream fields(line);
+    std::string join, score, strictness, grains;
+    for (std::string* field : {&join, &score, &strictness, &grains})
+      std::getline(fields, *field, ',');
+    if (std::stod(strictness) < 3) break;
+    last = grains;
+  }
+  const Json info = Json::parse(bench.mustRun("info all.vdb --json -"));
+  const Json* labels = nullptr;
+  for (const Json& grid : info.at("grids"))
+    if (grid.at("name") == "grain") labels = &grid;
+  REQUIRE(labels);
+  CHECK(last == std::to_string(labels->at("metadata").at("madf_grains").get<int>()));
+  CHECK(bench.mustRun("hierarchy all.vdb -") == table);
+  bench.mustRun("segment s.vdb all.slabs --slab-height 16 --keep manifold");
+  bench.mustRun("hierarchy all.slabs cut.csv");
+  CHECK(bench.bytes("cut.csv") == table);
+
+  bench.mustRun("segment s.vdb grains.vdb");
+  const Outcome none = bench.run("hierarchy grains.vdb joins.csv");
+  CHECK(none.exitCode == 1);
+  CHECK(none.err.find("holds no manifolds") != std::string::npos);
+  CHECK(bench.bytes("joins.csv") == table);
+  CHECK(bench.run("hierarchy all.vdb joins.txt").exitCode == 2);
 }
 
 TEST_CASE("cli: compare finds a file equal to itself", "[cli]") {

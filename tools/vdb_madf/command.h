@@ -39,6 +39,7 @@ void addSegment(Verb command, Common& common, Action& action);
 void addRemerge(Verb command, Common& common, Action& action);
 void addEdit(Verb command, Common& common, Action& action);
 void addSweep(Verb command, Common& common, Action& action);
+void addHierarchy(Verb command, Common& common, Action& action);
 void addMeasure(Verb command, Common& common, Action& action);
 void addCollect(Verb command, Common& common, Action& action);
 void addCompare(Verb command, Common& common, Action& action);

@@ -36,10 +36,17 @@ Json newIndex(const std::string& folder, const MergeOptions& merge, int tidy,
   index["grain_diameter_d10_voxels"] = sizes.d10;
   index["grain_diameter_d50_voxels"] = sizes.d50;
   index["grain_diameter_d90_voxels"] = sizes.d90;
-  index["theta"] = merge.theta;
-  index["merge"] = toString(merge.mode);
-  index["adjacency"] = toString(merge.adjacency);
-  index["delta"] = merge.delta;
+  if (merge.mode == MergeMode::score) {
+    for (const char* key : {"theta", "adjacency", "delta"}) index.erase(key);
+    index["merge"] = toString(merge.mode);
+    index["strictness"] = merge.strictness;
+  } else {
+    index.erase("strictness");
+    index["theta"] = merge.theta;
+    index["merge"] = toString(merge.mode);
+    index["adjacency"] = toString(merge.adjacency);
+    index["delta"] = merge.delta;
+  }
   index["tidy"] = tidy;
   return index;
 }

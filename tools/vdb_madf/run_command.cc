@@ -99,6 +99,7 @@ void addVerbs(Verb command, const CommandLine& line, Common& common, Action& act
   addRemerge(command, common, action);
   addEdit(command, common, action);
   addSweep(command, common, action);
+  addHierarchy(command, common, action);
   addMeasure(command, common, action);
   addCollect(command, common, action);
   addCompare(command, common, action);

@@ -25,14 +25,20 @@ std::vector<std::string> hints(const SegmentOptions& options, const SegmentSumma
   const LabelFlaws& flaws = *summary.flaws;
   std::vector<std::string> all;
   const auto share = [&](int64_t part) { return fmt::format("{} of {} grains", part, grains); };
-  const bool neck = options.merge.mode != MergeMode::angle;
+  const MergeMode mode = options.merge.mode;
+  const bool neck = mode == MergeMode::both || mode == MergeMode::neck;
   if (2 * flaws.crumbs > grains)
     all.push_back(share(flaws.crumbs) + " are crumbs: " +
-                  (neck ? "raise --delta or --theta, or try --gamma 20"
-                        : "the angle alone needs --gamma, such as 20 or 160"));
+                  (mode == MergeMode::score ? "lower --strictness, or try --gamma 20"
+                   : neck                   ? "raise --delta or --theta, or try --gamma 20"
+                                            : "the angle alone needs --gamma, such as 20 or 160"));
   else if (flaws.slivers >= 10 && 50 * flaws.slivers > grains)
-    all.push_back(share(flaws.slivers) + " are slivers: raise " +
-                  (neck && options.merge.delta < 8 ? "--delta or " : "") + "--theta; see sweep");
+    all.push_back(share(flaws.slivers) + " are slivers: " +
+                  (mode == MergeMode::score
+                       ? "lower --strictness"
+                       : std::string("raise ") +
+                             (neck && options.merge.delta < 8 ? "--delta or " : "") + "--theta") +
+                  "; see sweep");
   if (flaws.specks >= 10 && 5 * flaws.specks > grains)
     all.push_back(
         share(flaws.specks) +
@@ -146,12 +152,17 @@ Json toJson(const SegmentArguments& o, const SegmentSummary& summary) {
   if (!summary.objectSteps.empty()) json["object"] = summary.objectSteps;
   if (summary.threshold) json["threshold_value"] = *summary.threshold;
   json["gamma"] = o.segment.gamma;
-  json["theta"] = o.segment.merge.theta;
+  const MergeOptions& merge = o.segment.merge;
+  const bool byScore = merge.mode == MergeMode::score;
+  if (!byScore) json["theta"] = merge.theta;
   json["boundary"] = summary.open ? "open" : "closed";
-  json["merge"] = toString(o.segment.merge.mode);
-  json["adjacency"] = toString(o.segment.merge.adjacency);
+  json["merge"] = toString(merge.mode);
+  if (byScore)
+    json["strictness"] = merge.strictness;
+  else
+    json["adjacency"] = toString(merge.adjacency);
   json["fill_holes"] = summary.fillHoles;
-  json["delta"] = o.segment.merge.delta;
+  if (!byScore) json["delta"] = merge.delta;
   json["tidy"] = o.segment.tidy;
   json["threads"] = summary.threads;
   for (const auto& [part, seconds] : summary.seconds) json["seconds_" + part] = seconds;
@@ -161,6 +172,26 @@ Json toJson(const SegmentArguments& o, const SegmentSummary& summary) {
   json["hints"] = summary.hints;
   return json;
 }
+
+namespace {
+
+void printSettings(const SegmentOptions& options, const SegmentSummary& summary) {
+  const auto gamma = (long long)options.gamma, fillHoles = (long long)summary.fillHoles;
+  const MergeOptions& merge = options.merge;
+  const char* const boundary = summary.open ? "open" : "closed";
+  if (merge.mode == MergeMode::score) {
+    std::printf("  settings         gamma %lld, merge %s, strictness %g, boundary %s,\n", gamma,
+                toString(merge.mode), merge.strictness, boundary);
+    std::printf("                   fill-holes %lld, tidy %d\n", fillHoles, options.tidy);
+    return;
+  }
+  std::printf("  settings         gamma %lld, theta %g, merge %s, adjacency %s, boundary %s,\n",
+              gamma, merge.theta, toString(merge.mode), toString(merge.adjacency), boundary);
+  std::printf("                   fill-holes %lld, delta %d, tidy %d\n", fillHoles, merge.delta,
+              options.tidy);
+}
+
+}  // namespace
 
 void print(const SegmentArguments& o, const Common& common, const SegmentSummary& summary) {
   const SegmentCounts& counts = summary.counts;
@@ -204,11 +235,7 @@ void print(const SegmentArguments& o, const Common& common, const SegmentSummary
                 count(counts.cavities), count(summary.fillHoles), count(counts.cavityVoxels));
   std::printf("  medial balls     %lld, kept %lld; critical points %lld\n",
               count(counts.medialBalls), count(counts.keptBalls), count(counts.criticalPoints));
-  std::printf("  settings         gamma %lld, theta %g, merge %s, adjacency %s, boundary %s,\n",
-              count(o.segment.gamma), o.segment.merge.theta, toString(o.segment.merge.mode),
-              toString(o.segment.merge.adjacency), summary.open ? "open" : "closed");
-  std::printf("                   fill-holes %lld, delta %d, tidy %d\n", count(summary.fillHoles),
-              o.segment.merge.delta, o.segment.tidy);
+  printSettings(o.segment, summary);
   std::printf("  time, memory     %.2f s with %d threads, %.0f MiB at the peak\n",
               summary.seconds.back().second, summary.threads,
               double(summary.peakBytes) / (1 << 20));

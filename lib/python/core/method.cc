@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <algorithm>
+#include <limits>
 
 #include "bindings.h"
 #include "vdb_madf/base/memory.h"
+#include "vdb_madf/method/hierarchy.h"
 #include "vdb_madf/segmentation/ball_grids.h"
+#include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/segmentation/parameter_sweep.h"
 #include "vdb_madf/segmentation/remerge.h"
 #include "vdb_madf/segmentation/segment.h"
@@ -28,9 +31,11 @@ Enum named(const char* argument, const std::string& text,
 }
 
 MergeMode mergeMode(const std::string& name) {
-  return named<MergeMode>(
-      "merge", name,
-      {{"both", MergeMode::both}, {"angle", MergeMode::angle}, {"neck", MergeMode::neck}});
+  return named<MergeMode>("merge", name,
+                          {{"both", MergeMode::both},
+                           {"angle", MergeMode::angle},
+                           {"neck", MergeMode::neck},
+                           {"score", MergeMode::score}});
 }
 
 Adjacency adjacencyOf(const std::string& name) {
@@ -38,9 +43,41 @@ Adjacency adjacencyOf(const std::string& name) {
                           {{"manifold", Adjacency::manifold}, {"cell", Adjacency::cell}});
 }
 
-MergeOptions mergeOptions(double theta, const std::string& merge, const std::string& adjacency,
-                          int delta) {
-  return {theta, mergeMode(merge), adjacencyOf(adjacency), delta};
+/// The options of merging as Python gives them: None is the default; what belongs to another mode
+/// is refused.
+MergeOptions mergeOptions(const py::dict& given) {
+  MergeOptions options;
+  options.mode = mergeMode(given["merge"].cast<std::string>());
+  const bool byScore = options.mode == MergeMode::score;
+  for (const auto& [key, value] : given) {
+    const auto name = key.cast<std::string>();
+    if (name == "merge" || value.is_none()) continue;
+    if (byScore != (name == "strictness"))
+      throw InvalidInput(byScore ? name +
+                                       ": belongs to merge='both', 'angle' and 'neck'; 'score' "
+                                       "has strictness"
+                                 : name + ": belongs to merge='score': give that, too");
+    if (name == "theta") options.theta = value.cast<double>();
+    if (name == "adjacency") options.adjacency = adjacencyOf(value.cast<std::string>());
+    if (name == "delta") options.delta = value.cast<int>();
+    if (name == "strictness") options.strictness = value.cast<double>();
+  }
+  checkMergeOptions(options);
+  return options;
+}
+
+/// As mergeOptions() takes them, without what is of another mode.
+py::dict toDict(const MergeOptions& options) {
+  py::dict dict;
+  dict["merge"] = toString(options.mode);
+  if (options.mode == MergeMode::score) {
+    dict["strictness"] = options.strictness;
+  } else {
+    dict["theta"] = options.theta;
+    dict["adjacency"] = toString(options.adjacency);
+    dict["delta"] = options.delta;
+  }
+  return dict;
 }
 
 template <typename Items, typename Place>
@@ -98,13 +135,9 @@ py::dict toDict(const SegmentCounts& c, const LabelFlaws& flaws) {
 }
 
 py::dict toDict(const Segmentation& s, const SegmentOptions& options) {
-  py::dict dict, seconds, used;
+  py::dict dict, seconds, used = toDict(options.merge);
   for (const StageTime& stage : s.times) seconds[py::str(stage.stage)] = stage.seconds;
-  used["theta"] = options.merge.theta;
   used["gamma"] = options.gamma;
-  used["merge"] = toString(options.merge.mode);
-  used["adjacency"] = toString(options.merge.adjacency);
-  used["delta"] = options.merge.delta;
   used["fill_holes"] = s.fillHoles;
   used["tidy"] = s.tidy;
   used["boundary"] = s.open ? "open" : "closed";
@@ -150,37 +183,56 @@ SegmentOptions segmentOptions(const MaskGrid& mask, int64_t gamma, const std::st
   return options;
 }
 
-py::dict segmentMask(const GridPtr& object, const Call& call, double theta, int64_t gamma,
-                     const std::string& merge, const std::string& adjacency, int delta,
-                     const std::optional<int64_t>& fillHoles, int tidy, const std::string& boundary,
-                     const std::vector<std::string>& keep, int64_t maxMemory) {
+py::dict segmentMask(const GridPtr& object, const Call& call, const py::dict& merging,
+                     int64_t gamma, const std::optional<int64_t>& fillHoles, int tidy,
+                     const std::string& boundary, const std::vector<std::string>& keep,
+                     int64_t maxMemory) {
   const MaskGrid& mask = asMask(*object);
-  const SegmentOptions options =
-      segmentOptions(mask, gamma, boundary, mergeOptions(theta, merge, adjacency, delta), fillHoles,
-                     tidy, keep, maxMemory);
+  const SegmentOptions options = segmentOptions(mask, gamma, boundary, mergeOptions(merging),
+                                                fillHoles, tidy, keep, maxMemory);
   return toDict(
       withoutLock(call,
                   [&](Interrupter* interrupter) { return segment(mask, options, interrupter); }),
       options);
 }
 
-GridPtr remergeManifolds(const GridPtr& manifold, const Call& call, double theta,
-                         const std::string& merge, const std::string& adjacency, int delta,
+GridPtr remergeManifolds(const GridPtr& manifold, const Call& call, const py::dict& merging,
                          int tidy) {
   const Int32Grid& grid = asLabels(*manifold);
-  const MergeOptions options = mergeOptions(theta, merge, adjacency, delta);
+  const MergeOptions options = mergeOptions(merging);
   return withoutLock(call, [&](Interrupter* interrupter) -> GridPtr {
     return remerge(grid, options, tidy, interrupter);
   });
 }
 
+py::dict joinsOf(const GridPtr& manifold) {
+  const ManifoldGraph graph = requiredGraph(asLabels(*manifold));
+  const std::vector<JoinedGrains> joins = joinedGrains(mergeHierarchy(graph));
+  py::dict dict;
+  dict["score"] = column<double>(joins, [](const JoinedGrains& j) { return j.score; });
+  dict["strictness"] = column<double>(joins, [](const JoinedGrains& j) { return j.strictness; });
+  dict["grains"] = column<int64_t>(joins, [](const JoinedGrains& j) { return j.grains; });
+  dict["first"] = column<int32_t>(joins, [](const JoinedGrains& j) { return j.first; });
+  dict["second"] = column<int32_t>(joins, [](const JoinedGrains& j) { return j.second; });
+  dict["first_voxels"] =
+      column<int64_t>(joins, [](const JoinedGrains& j) { return j.firstVoxels; });
+  dict["second_voxels"] =
+      column<int64_t>(joins, [](const JoinedGrains& j) { return j.secondVoxels; });
+  return dict;
+}
+
 py::dict toDict(const std::vector<SweepRow>& rows) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const auto byScore = [](const SweepRow& r) { return r.mode == MergeMode::score; };
   py::dict dict;
   py::list modes;
   for (const SweepRow& row : rows) modes.append(toString(row.mode));
   dict["merge"] = modes;
   dict["delta"] = column<int64_t>(rows, [](const SweepRow& r) { return r.delta; });
-  dict["theta"] = column<double>(rows, [](const SweepRow& r) { return r.theta; });
+  dict["theta"] =
+      column<double>(rows, [&](const SweepRow& r) { return byScore(r) ? kNone : r.theta; });
+  dict["strictness"] =
+      column<double>(rows, [&](const SweepRow& r) { return byScore(r) ? r.strictness : kNone; });
   dict["grains"] = column<int64_t>(rows, [](const SweepRow& r) { return r.grains; });
   dict["median_voxels"] = column<double>(rows, [](const SweepRow& r) { return r.medianVoxels; });
   dict["small_grains"] = column<int64_t>(rows, [](const SweepRow& r) { return r.smallGrains; });
@@ -194,15 +246,16 @@ py::dict toDict(const std::vector<SweepRow>& rows) {
 }
 
 py::dict sweepManifolds(const GridPtr& manifold, const Call& call,
-                        const std::vector<double>& thetas, const std::vector<std::string>& modes,
-                        const std::vector<int>& deltas, const std::string& adjacency, int tidy,
-                        int64_t small) {
+                        const std::vector<std::string>& modes, const std::vector<double>& thetas,
+                        const std::vector<int>& deltas, const std::vector<double>& strictnesses,
+                        const std::string& adjacency, int tidy, int64_t small) {
   const Int32Grid& grid = asLabels(*manifold);
   SweepOptions options;
   options.thetas = thetas;
   options.modes.clear();
   for (const std::string& mode : modes) options.modes.push_back(mergeMode(mode));
   options.deltas = deltas;
+  options.strictnesses = strictnesses;
   options.adjacency = adjacencyOf(adjacency);
   options.tidy = tidy;
   options.smallVoxels = small;
@@ -228,16 +281,16 @@ Boundary boundaryOf(const std::string& name) {
 }
 
 void bindMethod(py::module_& m) {
-  m.def("segment", segmentMask, py::arg("mask"), py::arg("call"), py::kw_only(), py::arg("theta"),
-        py::arg("gamma"), py::arg("merge"), py::arg("adjacency"), py::arg("delta"),
-        py::arg("fill_holes"), py::arg("tidy"), py::arg("boundary"), py::arg("keep"),
-        py::arg("max_memory"));
+  m.def("segment", segmentMask, py::arg("mask"), py::arg("call"), py::kw_only(), py::arg("merging"),
+        py::arg("gamma"), py::arg("fill_holes"), py::arg("tidy"), py::arg("boundary"),
+        py::arg("keep"), py::arg("max_memory"));
   m.def("remerge", remergeManifolds, py::arg("manifold"), py::arg("call"), py::kw_only(),
-        py::arg("theta"), py::arg("merge"), py::arg("adjacency"), py::arg("delta"),
-        py::arg("tidy"));
+        py::arg("merging"), py::arg("tidy"));
+  m.def("merge_options", [](const py::dict& given) { return toDict(mergeOptions(given)); });
+  m.def("joins", joinsOf, py::arg("manifold"));
   m.def("sweep", sweepManifolds, py::arg("manifold"), py::arg("call"), py::kw_only(),
-        py::arg("thetas"), py::arg("modes"), py::arg("deltas"), py::arg("adjacency"),
-        py::arg("tidy"), py::arg("small"));
+        py::arg("modes"), py::arg("thetas"), py::arg("deltas"), py::arg("strictnesses"),
+        py::arg("adjacency"), py::arg("tidy"), py::arg("small"));
   m.def("segment_memory", memoryOfSegment, py::arg("mask"), py::kw_only(), py::arg("gamma"),
         py::arg("keep"));
   m.def(

@@ -34,7 +34,8 @@ class Segmentation:
     seconds: Dict[str, float]
     """Seconds of each stage, in the order of work."""
     options: Dict[str, Any]
-    """What was used: theta, gamma, merge, adjacency, delta, fill_holes, tidy, boundary."""
+    """What was used: merge, theta, adjacency, delta (or strictness), gamma, fill_holes, tidy,
+    boundary."""
     graph: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """Critical points: `position` (K, 3) z, y, x in voxels of the scan, `squared_radius` (K,),
     `voxels` (K,) of their manifolds; pairs of manifolds that touch: `first`, `second` (E,), numbers
@@ -55,20 +56,41 @@ class Segmentation:
 
     def remerge(self, *, theta: Optional[float] = None, merge: Optional[str] = None,
                 adjacency: Optional[str] = None, delta: Optional[int] = None,
-                tidy: Optional[int] = None, progress: Progress = None,
-                threads: int = 0) -> "Segmentation":
+                strictness: Optional[float] = None, tidy: Optional[int] = None,
+                progress: Progress = None, threads: int = 0) -> "Segmentation":
         """The grains of other options of merging, without distances again: the same labels, bit for
-        bit, as a fresh segment(). What is not given stays as it was."""
-        given = dict(theta=theta, merge=merge, adjacency=adjacency, delta=delta, tidy=tidy)
-        options = {name: self.options[name] if value is None else value
-                   for name, value in given.items()}
+        bit, as a fresh segment(). What is not given stays as it was, and is the default where merge
+        goes from "score" to another or back."""
+        given = dict(theta=theta, adjacency=adjacency, delta=delta, strictness=strictness)
+        mode = self.options["merge"] if merge is None else merge
+        stays = self.options if (mode == "score") == (self.options["merge"] == "score") else {}
+        merging = _core.merge_options(
+            {"merge": mode, **{name: stays.get(name) if value is None else value
+                               for name, value in given.items()}})
+        rounds = self.options["tidy"] if tidy is None else tidy
         with calling(progress, threads) as call:
-            grid = _core.remerge(self._manifolds(), call, **options)
+            grid = _core.remerge(self._manifolds(), call, merging=merging, tidy=rounds)
         labels = Labels._of(grid)
         counts = {name: count for name, count in self.counts.items() if name not in _FLAWS}
         counts["grains"] = labels.metadata["madf_grains"]
-        return Segmentation(labels, counts, {}, {**self.options, **options}, self.graph,
+        options = {name: value for name, value in self.options.items() if name not in given}
+        return Segmentation(labels, counts, {}, {**options, **merging, "tidy": rounds}, self.graph,
                             self.manifold, self.distance_squared, self.power, self.balls)
+
+    @property
+    def hierarchy(self) -> Dict[str, npt.NDArray[Any]]:
+        """The joins that merge="score" makes, the best first: `score`; `strictness`, the largest
+        one at which cut() makes it; `grains` that are left; `first`, `second`: critical points,
+        numbers from 0 as in `graph`, and the voxels of the two, `first_voxels`, `second_voxels`.
+        Of the kept manifolds."""
+        joins: Dict[str, npt.NDArray[Any]] = _core.joins(self._manifolds())
+        return joins
+
+    def cut(self, strictness: float, *, progress: Progress = None,
+            threads: int = 0) -> "Segmentation":
+        """The grains of the hierarchy at a number: remerge(merge="score", strictness=...)."""
+        return self.remerge(merge="score", strictness=strictness, progress=progress,
+                            threads=threads)
 
     def edit(self, edits: Union[str, Sequence[str]], *, progress: Progress = None,
              threads: int = 0) -> "Segmentation":
@@ -78,22 +100,29 @@ class Segmentation:
         counts["grains"] = labels.metadata["madf_grains"]
         return replace(self, labels=labels, counts=counts, seconds={})
 
-    def sweep(self, theta: Union[Sequence[float], npt.NDArray[Any]],
+    def sweep(self, theta: Union[Sequence[float], npt.NDArray[Any], None] = None,
               merge: Union[str, Sequence[str], None] = None,
               delta: Union[int, Sequence[int], None] = None, small: int = 100, *,
+              strictness: Union[Sequence[float], npt.NDArray[Any], None] = None,
               progress: Progress = None, threads: int = 0) -> Dict[str, Any]:
-        """The grains for every combination of merge modes, deltas and thetas, a row each: `merge`,
-        `delta`, `theta`, `grains`, `median_voxels`, `small_grains` and `small_voxels` (grains of
-        fewer than `small` voxels), `largest_voxels` and flaws. pandas.DataFrame() makes a table of
-        it."""
+        """The grains for every combination of merge modes, deltas and thetas, and of "score" for
+        every strictness, a row each: `merge`, `delta`, `theta`, `strictness`, `grains`,
+        `median_voxels`, `small_grains` and `small_voxels` (grains of fewer than `small` voxels),
+        `largest_voxels` and flaws. What a row's mode has not is NaN (`delta`: 0).
+        pandas.DataFrame() makes a table of it."""
         modes = ([self.options["merge"]] if merge is None else
                  [merge] if isinstance(merge, str) else list(merge))
-        deltas = ([self.options["delta"]] if delta is None else
+        used = {**_core.merge_options({"merge": "both"}), **_core.merge_options({"merge": "score"}),
+                **self.options}
+        deltas = ([used["delta"]] if delta is None else
                   [delta] if isinstance(delta, int) else [int(d) for d in delta])
         with calling(progress, threads) as call:
-            return _core.sweep(self._manifolds(), call, thetas=[float(t) for t in theta],
-                               modes=modes, deltas=deltas, adjacency=self.options["adjacency"],
-                               tidy=self.options["tidy"], small=small)
+            return _core.sweep(
+                self._manifolds(), call, modes=modes, deltas=deltas,
+                thetas=[used["theta"]] if theta is None else [float(t) for t in theta],
+                strictnesses=([used["strictness"]] if strictness is None else
+                              [float(s) for s in strictness]),
+                adjacency=used["adjacency"], tidy=used["tidy"], small=small)
 
     def save(self, path: Union[str, "os.PathLike[str]"], *, progress: Progress = None,
              threads: int = 0) -> None:
@@ -124,19 +153,23 @@ def labels_of(source: Union[Labels, Segmentation, Source], call: _core.Call, thr
     return labels
 
 
-def segment(source: Union[Mask, Source], *, theta: float = -0.9, gamma: int = 0,
-            merge: str = "both", adjacency: str = "manifold", delta: int = 2,
-            fill_holes: Optional[int] = None, tidy: int = 2, boundary: str = "auto",
-            keep: Sequence[str] = ("manifold",), max_memory: Union[int, str, None] = None,
+def segment(source: Union[Mask, Source], *, theta: Optional[float] = None, gamma: int = 0,
+            merge: str = "both", adjacency: Optional[str] = None, delta: Optional[int] = None,
+            strictness: Optional[float] = None, fill_holes: Optional[int] = None, tidy: int = 2,
+            boundary: str = "auto", keep: Sequence[str] = ("manifold",),
+            max_memory: Union[int, str, None] = None,
             progress: Progress = None, threads: int = 0, **selection: Any) -> Segmentation:
     """Cuts the object into grains.
 
     source: a Mask, or what makes one, with its arguments besides: segment("scan.tif", phase=1,
     voxel_size="10um"), segment(array, threshold="otsu", roi="cylinder").
 
-    theta: cosine, -1 merges least; gamma: least cell of a medial ball, voxels; merge: "both",
-    "angle" or "neck"; adjacency: "manifold" or "cell"; delta: in eighths of a voxel, how much
-    narrower a neck has to be than its grain; fill_holes: cavities of fewer voxels are filled
+    merge: "both", "angle", "neck" or "score". Of the first three: theta (-0.9): cosine, -1 merges
+    least; adjacency: "manifold" (None) or "cell"; delta (2): in eighths of a voxel, how much
+    narrower a neck has to be than its grain. Of "score": strictness (11), the least score that
+    joins; the larger, the more grains.
+
+    gamma: least cell of a medial ball, voxels; fill_holes: cavities of fewer voxels are filled
     meanwhile (None: 27);
     tidy: rounds of smoothing the interfaces; boundary: beyond the faces "open" (unknown), "closed"
     (background) or "auto" (open). **PAPER: the method without our additions.
@@ -149,6 +182,8 @@ def segment(source: Union[Mask, Source], *, theta: float = -0.9, gamma: int = 0,
 
     Raises InvalidInput (a ValueError), NotEnoughMemory (a MemoryError), IoError (an OSError)."""
     allowed = bytes_of(max_memory)
+    merging = _core.merge_options(dict(merge=merge, theta=theta, adjacency=adjacency, delta=delta,
+                                       strictness=strictness))
     with calling(progress, threads) as call:
         if isinstance(source, Mask):
             if selection:
@@ -157,9 +192,8 @@ def segment(source: Union[Mask, Source], *, theta: float = -0.9, gamma: int = 0,
         else:
             mask = Mask(source, progress=call.progress, threads=threads, **selection)
         made = _core.segment(
-            mask._grid, call, theta=theta, gamma=gamma, merge=merge, adjacency=adjacency,
-            delta=delta, fill_holes=fill_holes, tidy=tidy, boundary=boundary, keep=list(keep),
-            max_memory=allowed)
+            mask._grid, call, merging=merging, gamma=gamma, fill_holes=fill_holes, tidy=tidy,
+            boundary=boundary, keep=list(keep), max_memory=allowed)
     volumes = {name: None if made[name] is None else Labels._of(made[name])
                for name in ("manifold", "distance_squared", "power")}
     return Segmentation(labels=Labels._of(made["labels"]), counts=made["counts"],

@@ -279,6 +279,30 @@ Hierarchy mergeHierarchy(const ManifoldGraph& graph, double lowest) {
   return hierarchy;
 }
 
+std::vector<JoinedGrains> joinedGrains(const Hierarchy& hierarchy) {
+  std::vector<Hierarchy::Class> classes = hierarchy.classes;
+  int64_t grains = std::count_if(classes.begin(), classes.end(),
+                                 [](const Hierarchy::Class& c) { return c.voxels > 0; });
+  std::vector<JoinedGrains> all;
+  all.reserve(hierarchy.joins.size());
+  for (const Hierarchy::Join& join : hierarchy.joins) {
+    Hierarchy::Class &first = classes[join.first], &second = classes[join.second];
+    if (first.voxels > 0 && second.voxels > 0) --grains;
+    JoinedGrains row;
+    row.first = first.representative;
+    row.second = second.representative;
+    row.firstVoxels = first.voxels;
+    row.secondVoxels = second.voxels;
+    row.score = double(join.score) / Hierarchy::kUnitsOfScore;
+    row.strictness = all.empty() ? row.score : std::min(row.score, all.back().strictness);
+    row.grains = grains;
+    all.push_back(row);
+    Hierarchy::Class& kept = second.top > first.top ? second : first;
+    kept.voxels = addVoxels(row.firstVoxels, row.secondVoxels);
+  }
+  return all;
+}
+
 Merging cut(const Hierarchy& hierarchy, double strictness) {
   if (!(strictness >= hierarchy.lowest && strictness <= kMaxStrictness))
     throw InvalidInput("the hierarchy has no grains at the strictness " +

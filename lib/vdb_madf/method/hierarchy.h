@@ -61,6 +61,19 @@ struct Hierarchy {
 /// @throw InvalidInput unless lowest is in [-kMaxStrictness, kMaxStrictness].
 Hierarchy mergeHierarchy(const ManifoldGraph& graph, double lowest = -kMaxStrictness);
 
+/// A join, told of the grains that it makes one.
+struct JoinedGrains {
+  uint32_t first = 0, second = 0;             ///< nodes: their representatives
+  int64_t firstVoxels = 0, secondVoxels = 0;  ///< in the object; may be 0
+  double score = 0;
+  double strictness =
+      0;               ///< the largest one at which cut() makes this join: the least score so far
+  int64_t grains = 0;  ///< that are left, of those with voxels in the object
+};
+
+/// What is joined to what, join by join.
+std::vector<JoinedGrains> joinedGrains(const Hierarchy& hierarchy);
+
 /// The grains at a strictness, which is rounded to the nearest unit (halves away from 0): those of
 /// the joins before the first one of a smaller score. That is merge() with MergeMode::score and
 /// this strictness: it joins the same pairs in the same order until the largest score is smaller.
