@@ -71,7 +71,9 @@ const std::string& withoutLeftovers(const std::string& path) {
 }  // namespace
 
 ScratchFolder::ScratchFolder(const std::string& path)
-    : scratch_(withoutLeftovers(path), kWork, false) {}
+    : scratch_(withoutLeftovers(path), kWork, false) {
+  scratch_.serveThisRun();
+}
 
 ScratchFolder::~ScratchFolder() {
   scratch_.removeAll();

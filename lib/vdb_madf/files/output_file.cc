@@ -76,16 +76,16 @@ OutputFile::~OutputFile() {
   if (!committed_) ::unlink(temporaryPath_.c_str());
 }
 
-void OutputFile::commit() {
+void OutputFile::commit(bool sync) {
   if (committed_) return;
   const int file = ::open(temporaryPath_.c_str(), O_WRONLY | O_CLOEXEC);
   int error = file < 0 ? errno : 0;
-  if (file >= 0 && ::fsync(file) != 0 && errno != EINVAL) error = errno;
+  if (file >= 0 && sync && ::fsync(file) != 0 && errno != EINVAL) error = errno;
   if (file >= 0 && ::close(file) != 0 && errno != EINTR && error == 0) error = errno;
   if (error == 0 && std::rename(temporaryPath_.c_str(), target_.c_str()) != 0) error = errno;
   if (error != 0) failToWrite(path_, error);
   committed_ = true;
-  detail::syncFolderOf(target_);
+  if (sync) detail::syncFolderOf(target_);
 }
 
 void removeLeftovers(const std::vector<std::string>& paths) {

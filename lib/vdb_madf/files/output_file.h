@@ -22,8 +22,9 @@ class OutputFile {
 
   const std::string& path() const { return path_; }
   const std::string& temporaryPath() const { return temporaryPath_; }
+  /// @param sync wait until all is on the disk, so that a power failure loses nothing
   /// @throw IoError if syncing or renaming fails.
-  void commit();
+  void commit(bool sync = true);
 
  private:
   std::string path_, target_, temporaryPath_;

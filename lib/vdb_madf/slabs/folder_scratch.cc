@@ -176,7 +176,7 @@ void FolderScratch::writeBytes(const std::string& name, const char* bytes, size_
   out.bytes(&header, sizeof header);
   out.bytes(tableBytes, table.size() * sizeof(Block));
   for (const Bytes& block : blocks) out.bytes(block.data(), block.size());
-  out.commit();
+  out.commit(lasts_);
 }
 
 void FolderScratch::readBytes(const std::string& name, const Allocate& allocate) const {

@@ -30,6 +30,10 @@ class FolderScratch : public Scratch {
   explicit FolderScratch(const std::string& path);
   ~FolderScratch() override;
 
+  /// What is written from now on serves this run alone, which nobody takes up again: it need not
+  /// outlive the machine.
+  void serveThisRun() { lasts_ = false; }
+
   /// Lets other processes take part from now on: all have what one writes.
   void share();
   bool isShared() const override { return isShared_; }
@@ -55,6 +59,7 @@ class FolderScratch : public Scratch {
 
   std::string path_;
   bool isShared_ = false;
+  bool lasts_ = true;
   mutable double seconds_ = 0;
   std::unique_ptr<detail::FolderLock> lock_;
 };

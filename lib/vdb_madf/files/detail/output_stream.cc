@@ -92,9 +92,9 @@ void OutputStream::close() {
   if (::close(descriptor) != 0 && errno != EINTR) fail(errno);
 }
 
-void OutputStream::commit() {
+void OutputStream::commit(bool sync) {
   if (descriptor_ >= 0) close();
-  if (file_) file_->commit();
+  if (file_) file_->commit(sync);
 }
 
 void OutputStream::fail(int error) const {

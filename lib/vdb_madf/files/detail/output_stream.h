@@ -64,8 +64,8 @@ class OutputStream {
 
   /// Writes what is buffered and frees buffer and descriptor: only commit() is left.
   void close();
-  /// Closes the file if it is open.
-  void commit();
+  /// Closes the file if it is open; sync: as of OutputFile.
+  void commit(bool sync = true);
 
  private:
   void bytesBeyondBuffer(const void* data, size_t count);
