@@ -79,7 +79,7 @@ MaskGrid twoBalls() {
 TEST_CASE("remerge_slabs: labels are those of a fresh segmentation", "[remerge_slabs]") {
   initialize();
   const uint64_t first = fromEnvironment("VDB_MADF_SEED", 1) + 500000,
-                 cases = fromEnvironment("VDB_MADF_CASES", 20 * kCombinations);
+                 cases = fromEnvironment("VDB_MADF_CASES", 12 * kCombinations);
   uint64_t compared = 0, others = 0;
   for (uint64_t seed = first; seed < first + cases; ++seed) {
     Rng rng(seed);
