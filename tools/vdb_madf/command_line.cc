@@ -128,8 +128,11 @@ class HelpText : public CLI::Formatter {
     return make_description(app) + usage + groups + "\n" + (footer.empty() ? "" : footer + "\n");
   }
   std::string make_option(const CLI::Option* option, bool isPositional) const override {
-    return line(option->get_name(isPositional, !isPositional) + make_option_opts(option),
-                make_option_desc(option));
+    std::string type = make_option_opts(option);
+    const std::string preset = option->get_default_str(), newer = " [" + preset + "] ";
+    const size_t at = preset.empty() ? std::string::npos : type.find(newer);
+    if (at != std::string::npos) type.replace(at, newer.size(), "=" + preset);
+    return line(option->get_name(isPositional, !isPositional) + type, make_option_desc(option));
   }
   std::string make_subcommand(const CLI::App* app) const override {
     return line(app->get_name(), app->get_description());
