@@ -10,13 +10,12 @@
 
 #include "command.h"
 #include "input_options.h"
+#include "outputs.h"
 #include "remerge_slabs.h"
 #include "text_file.h"
 #include "vdb_madf/base/counted.h"
-#include "vdb_madf/base/errors.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
-#include "wrong_usage.h"
 
 namespace vdb_madf::tools {
 
@@ -37,9 +36,7 @@ ManifoldGraph keptGraph(const InputOptions& input, Progress* progress) {
         parts.push_back(std::move(*part));
     return joinedGraph(parts);
   }
-  for (const auto& grid : readVdbHeaders(input.path, progress))
-    if (grid->getName() == kManifoldGrid && grid->isType<Int32Grid>()) return requiredGraph(*grid);
-  throw InvalidInput(input.path + ": holds no manifolds: segment again with --keep manifold");
+  return requiredGraph(*requiredManifolds(readVdbHeaders(input.path, progress), input.path));
 }
 
 std::string table(const ManifoldGraph& graph, const std::vector<JoinedGrains>& joins) {
@@ -87,8 +84,7 @@ void addHierarchy(Verb command, Common& common, Action& action) {
   verb.onParsed([o, &common, &action] {
     o->input.outputs = {o->out};
     o->input.parse();
-    if (o->out != "-" && (o->out.size() < 4 || o->out.compare(o->out.size() - 4, 4, ".csv") != 0))
-      throw WrongUsage(o->out + ": the output's ending must be .csv");
+    checkTableEnding(o->out);
     action = [o, &common] { runHierarchy(*o, besideOutput(common, o->out)); };
   });
 }

@@ -67,5 +67,9 @@ bool hasRawEnding(const std::string& path) {
 bool hasPngEnding(const std::string& path) {
   return fileEnding(path) == ".png";
 }
+void checkTableEnding(const std::string& path) {
+  if (path != "-" && (path.size() < 4 || path.compare(path.size() - 4, 4, ".csv") != 0))
+    throw WrongUsage(path + ": the output's ending must be .csv");
+}
 
 }  // namespace vdb_madf::tools

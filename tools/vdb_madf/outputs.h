@@ -24,5 +24,7 @@ bool hasVdbEnding(const std::string& path);
 bool hasTiffEnding(const std::string& path);
 bool hasRawEnding(const std::string& path);
 bool hasPngEnding(const std::string& path);
+/// A table goes to a .csv or to "-". @throw WrongUsage
+void checkTableEnding(const std::string& path);
 
 }  // namespace vdb_madf::tools

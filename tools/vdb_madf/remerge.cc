@@ -41,11 +41,7 @@ void runRemerge(const RemergeArguments& o, const Common& common) {
   }
   checkWritable(o.out);
   const auto grids = readVdb(o.input.path, {}, common.progress);
-  Int32Grid::Ptr manifold;
-  for (const auto& grid : grids)
-    if (grid->getName() == "manifold") manifold = openvdb::gridPtrCast<Int32Grid>(grid);
-  if (!manifold)
-    throw InvalidInput(o.input.path + ": holds no manifolds: segment again with --keep manifold");
+  const Int32Grid::Ptr manifold = requiredManifolds(grids, o.input.path);
 
   const Int32Grid::Ptr grain =
       withFileName(o.input.path, [&] { return remerge(*manifold, merge, tidy, common.progress); });

@@ -53,10 +53,19 @@ Json newIndex(const std::string& folder, const MergeOptions& merge, int tidy,
 
 }  // namespace
 
-bool hasManifolds(const std::vector<openvdb::GridBase::Ptr>& grids) {
-  return std::any_of(grids.begin(), grids.end(), [](const auto& grid) {
-    return grid->getName() == kManifoldGrid && grid->template isType<Int32Grid>();
-  });
+Int32Grid::Ptr manifoldsAmong(const std::vector<openvdb::GridBase::Ptr>& grids) {
+  for (const auto& grid : grids)
+    if (grid->getName() == kManifoldGrid && grid->isType<Int32Grid>())
+      return openvdb::gridPtrCast<Int32Grid>(grid);
+  return nullptr;
+}
+
+Int32Grid::Ptr requiredManifolds(const std::vector<openvdb::GridBase::Ptr>& grids,
+                                 const std::string& path) {
+  const Int32Grid::Ptr manifolds = manifoldsAmong(grids);
+  if (!manifolds)
+    throw InvalidInput(path + ": holds no manifolds: segment again with --keep manifold");
+  return manifolds;
 }
 
 namespace {
@@ -80,8 +89,7 @@ ScratchFolder::~ScratchFolder() {
 }
 
 LabelSlabs openManifoldSlabs(const InputOptions& input, Progress* progress) {
-  if (!hasManifolds(readVdbHeaders(input.path, progress)))
-    throw InvalidInput(input.path + ": holds no manifolds: segment again with --keep manifold");
+  requiredManifolds(readVdbHeaders(input.path, progress), input.path);
   InputOptions manifolds = input;
   manifolds.gridName = kManifoldGrid;
   return openLabelSlabs(manifolds, "--grid", progress);

@@ -15,8 +15,11 @@ namespace vdb_madf::tools {
 
 constexpr char kManifoldGrid[] = "manifold";
 
-/// True if there are manifolds among the grids of a file.
-bool hasManifolds(const std::vector<openvdb::GridBase::Ptr>& grids);
+/// The manifolds among the grids of a file; null if there are none.
+Int32Grid::Ptr manifoldsAmong(const std::vector<openvdb::GridBase::Ptr>& grids);
+/// The manifolds among the grids of the file `path`. @throw InvalidInput if there are none
+Int32Grid::Ptr requiredManifolds(const std::vector<openvdb::GridBase::Ptr>& grids,
+                                 const std::string& path);
 /// Opens the manifolds in a folder of slabs. @throw InvalidInput if it has none
 LabelSlabs openManifoldSlabs(const InputOptions& input, Progress* progress);
 

@@ -18,6 +18,7 @@
 #include "command.h"
 #include "input_options.h"
 #include "merge_options.h"
+#include "outputs.h"
 #include "parse.h"
 #include "remerge_slabs.h"
 #include "text_file.h"
@@ -125,8 +126,7 @@ void parse(SweepArguments& o) {
   o.input.outputs = {o.out, o.plot};
   o.input.longestSide = kMaxExtent;
   o.input.parse();
-  if (o.out != "-" && (o.out.size() < 4 || o.out.compare(o.out.size() - 4, 4, ".csv") != 0))
-    throw WrongUsage(o.out + ": the output's ending must be .csv");
+  checkTableEnding(o.out);
   if (!o.plot.empty() && o.plot != "-" && !plotTypeOf(o.plot))
     throw WrongUsage(o.plot + ": the plot's ending must be .svg, .pdf or .png");
   SweepOptions& sweep = o.sweep;
@@ -189,7 +189,7 @@ std::string table(const std::vector<SweepRow>& rows) {
 bool isOfManifolds(const SweepArguments& o, const Common& common) {
   if (!isInSlabs(o.input) || !(o.input.gridName.empty() || o.input.gridName == kManifoldGrid))
     return false;
-  return hasManifolds(readVdbHeaders(o.input.path, common.progress));
+  return manifoldsAmong(readVdbHeaders(o.input.path, common.progress)) != nullptr;
 }
 
 /// What of the options does not concern manifolds. @throw WrongUsage
