@@ -10,20 +10,20 @@ from skimage import measure
 from evaluation import cdgs, methods as m, watershed
 
 OURS = {"ours, default": "",
-        "ours, before (fill-holes 0, delta 0, tidy 0)": "--fill-holes 0 --delta 0 --tidy 0",
-        "ours, fill-holes 100": "--fill-holes 100",
+        "ours, angle and neck (theta -0.9, delta 2)": "--merge both --theta -0.9 --delta 2",
         "the paper to the letter (160, -0.8)": "--paper --gamma 160 --theta -0.8"}
 WATERSHEDS = {"watershed, every maximum": "plain", "watershed, smoothed": "smoothed",
               "SNOW's steps": "snow", "watershed, h-maxima": "h_maxima"}
 CDGS = "CDGS, tuned to the truth"
 FILLED = ", holes filled"
-METHODS = [*OURS, *WATERSHEDS, CDGS, *(name + FILLED for name in WATERSHEDS), CDGS + FILLED]
+RIVALS = [*WATERSHEDS, CDGS, *(name + FILLED for name in WATERSHEDS), CDGS + FILLED]
+METHODS = {"ours": list(OURS), "all": [*OURS, *RIVALS]}
 TRUTH = "the truth"
 SLIVER = 20  # voxels; smaller grains are no slivers
 
 
-def grains(solid, truth, work):
-    """name -> file of labels, of the object by each method."""
+def grains(solid, truth, work, methods):
+    """name -> file of labels, of the object by each of these METHODS."""
     numpy.save(work / "object.npy", solid.astype(numpy.uint8))
     files = {}
 
@@ -33,6 +33,8 @@ def grains(solid, truth, work):
     for name, options in OURS.items():
         m.madf("segment", work / "object.npy", work / "grains.vdb", *options.split())
         keep(name, m.dense(work / "grains.vdb", work))
+    if methods == "ours":
+        return files
     for name, kind in WATERSHEDS.items():
         keep(name, watershed.grains(solid, [kind])[kind][0])
     keep(CDGS, cdgs.tuned(truth, solid)[0])
@@ -90,11 +92,11 @@ def agreement(truth, file, work):
             "variation_of_information_bits": all_of["variation_of_information_bits"]}
 
 
-def judge(solid, truth, work):
-    """name -> its figures, of all methods and the truth itself."""
+def judge(solid, truth, work, methods):
+    """name -> its figures, of these METHODS and the truth itself."""
     files = {TRUTH: work / "truth.npy"}
     numpy.save(files[TRUTH], truth)
-    files.update(grains(solid, truth, work))
+    files.update(grains(solid, truth, work, methods))
     figures = {file: {**agreement(files[TRUTH], file, work), **form(numpy.load(file)),
                       "flatness_voxel2": flatness(file, work)}
                       for file in dict.fromkeys(files.values())}

@@ -3,7 +3,7 @@ import csv
 import statistics
 
 from evaluation import watershed
-from evaluation.accuracy_methods import METHODS, TRUTH
+from evaluation.accuracy_methods import TRUTH
 from evaluation.report import Report
 
 COLUMNS = {"found, %": ("found_percent", 1), "spurious, %": ("spurious_percent", 1),
@@ -24,8 +24,9 @@ def brief(runs):
     return f"{found}, {spurious}; {misclassified}; {information}"
 
 
-def write(folder, done, seeds, quick):
-    """Of done: a list of sets, seeds and what judge() returned, or why it was skipped."""
+def write(folder, done, seeds, quick, methods):
+    """Of done: a list of sets, seeds and what judge() returned of the methods, or why it was
+    skipped."""
     groups = {}
     skipped = {}
     for its, seed, result in done:
@@ -55,25 +56,25 @@ def write(folder, done, seeds, quick):
     report.table(["method", *groups], [[name,
                                         *(brief([r[name] for _, _, r in runs])
                                           for runs in groups.values())]
-                                       for name in METHODS])
+                                       for name in methods])
     for group in dict.fromkeys([its.group for its, _, _ in done]):
         report.say(f"## {group[0].upper()}{group[1:]}")
         if group in groups:
-            write_group(report, groups[group], quick)
+            write_group(report, groups[group], quick, methods)
         for name, reason in skipped.get(group, {}).items():
             report.say(f"{name}: {reason}.")
     report.write()
     write_runs(folder, done)
 
 
-def write_group(report, runs, quick):
+def write_group(report, runs, quick, methods):
     sets = dict.fromkeys(describe(its, quick) for its, _, _ in runs)
     true = mean([r[TRUTH] for _, _, r in runs], "true", 1)
     report.say(f"{'; '.join(sets)}. True grains: {true} a sample.")
     report.table(["method", *COLUMNS],
                  [[name, *(mean([r[name] for _, _, r in runs], *column)
                            for column in COLUMNS.values())]
-                  for name in (TRUTH, *METHODS)])
+                  for name in (TRUTH, *methods)])
 
 
 def describe(its, quick):
