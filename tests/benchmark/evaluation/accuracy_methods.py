@@ -20,6 +20,8 @@ RIVALS = [*WATERSHEDS, CDGS, *(name + FILLED for name in WATERSHEDS), CDGS + FIL
 METHODS = {"ours": list(OURS), "all": [*OURS, *RIVALS]}
 TRUTH = "the truth"
 SLIVER = 20  # voxels; smaller grains are no slivers
+# pixels of a section: smaller grains are not counted as spurious; true ones not as missed
+SECTION_DUST, SECTION_LEAST = 40, 30
 
 
 def grains(solid, truth, work, methods):
@@ -37,10 +39,12 @@ def grains(solid, truth, work, methods):
         return files
     for name, kind in WATERSHEDS.items():
         keep(name, watershed.grains(solid, [kind])[kind][0])
-    keep(CDGS, cdgs.tuned(truth, solid)[0])
+    thin = 1 in solid.shape  # has no normals
+    if not thin:
+        keep(CDGS, cdgs.tuned(truth, solid)[0])
     body = watershed.filled(solid)
     if (body == solid).all():
-        files.update({name + FILLED: files[name] for name in (*WATERSHEDS, CDGS)})
+        files.update({name + FILLED: files[name] for name in (*WATERSHEDS, CDGS) if name in files})
         return files
     for name, kind in WATERSHEDS.items():
         keep(name + FILLED, numpy.where(solid, watershed.grains(body, [kind])[kind][0], 0))
@@ -48,9 +52,9 @@ def grains(solid, truth, work, methods):
     return files
 
 
-def form(labels):
-    """How many crumbs, slivers and grains in pieces there are; accuracy_report.py says what these
-    are."""
+def form(labels, dust):
+    """How many crumbs, slivers, large grains and grains in pieces there are: accuracy_report.py
+    says what these are."""
     sizes = numpy.bincount(labels.ravel())
     sizes[0] = 0
     touching = numpy.zeros(len(sizes), bool)
@@ -64,8 +68,9 @@ def form(labels):
     first = numpy.unique(pieces, return_index=True)[1]
     counts = numpy.bincount(labels.ravel()[first], minlength=len(sizes))
     counts[0] = 0
-    return {"crumbs": int((touching & (sizes < m.DUST)).sum()),
+    return {"crumbs": int((touching & (sizes < dust)).sum()),
             "slivers": int((touching & ~deep & (sizes >= SLIVER)).sum()),
+            "large": int((sizes >= dust).sum()),
             "in_pieces": int((counts > 1).sum())}
 
 
@@ -74,15 +79,17 @@ def flatness(file, work):
     return statistics.mean(values) if values else None
 
 
-def agreement(truth, file, work):
+def agreement(truth, file, work, dust, least):
+    """How the grains of a file are those of the truth. Grains of fewer than `dust` voxels are not
+    spurious, true ones of fewer than `least` not looked for."""
     m.madf("compare", truth, file, "--json", work / "compare.json", "--grains", work / "grains.csv")
     all_of = json.loads((work / "compare.json").read_text())
     with open(work / "grains.csv", newline="") as lines:
         rows = [(r["side"], int(r["voxels"]), float(r["intersection_over_union"]))
                 for r in csv.DictReader(lines)]
-    true = all_of["truth_grains"]
-    found = sum(side == "truth" and share > 0.5 for side, _, share in rows)
-    spurious = sum(side == "test" and voxels >= m.DUST and share <= 0.5
+    shares = [share for side, voxels, share in rows if side == "truth" and voxels >= least]
+    true, found = len(shares), sum(share > 0.5 for share in shares)
+    spurious = sum(side == "test" and voxels >= dust and share <= 0.5
                    for side, voxels, share in rows)
     return {"true": true, "grains": all_of["test_grains"], "found": found, "spurious": spurious,
             "found_percent": 100 * found / true, "spurious_percent": 100 * spurious / true,
@@ -92,12 +99,14 @@ def agreement(truth, file, work):
             "variation_of_information_bits": all_of["variation_of_information_bits"]}
 
 
-def judge(solid, truth, work, methods):
+def judge(solid, truth, work, methods, section):
     """name -> its figures, of these METHODS and the truth itself."""
     files = {TRUTH: work / "truth.npy"}
     numpy.save(files[TRUTH], truth)
     files.update(grains(solid, truth, work, methods))
-    figures = {file: {**agreement(files[TRUTH], file, work), **form(numpy.load(file)),
+    dust, least = (SECTION_DUST, SECTION_LEAST) if section else (m.DUST, 0)
+    figures = {file: {**agreement(files[TRUTH], file, work, dust, least),
+                      **form(numpy.load(file), dust),
                       "flatness_voxel2": flatness(file, work)}
                       for file in dict.fromkeys(files.values())}
     return {name: figures[file] for name, file in files.items()}
