@@ -114,7 +114,8 @@ TEST_CASE("lattice: spheres are the balls of cubes", "[lattice]") {
 }
 
 TEST_CASE("lattice: particles are those of cubes", "[lattice]") {
-  for (const ParticleShape shape : {ParticleShape::ellipsoids, ParticleShape::polyhedra})
+  for (const ParticleShape shape :
+       {ParticleShape::ellipsoids, ParticleShape::polyhedra, ParticleShape::rods})
     for (const Vec3d& edges : kVoxelShapes) {
       CAPTURE(int(shape), edges);
       auto options = sample<ParticleOptions>({64, 50, 52}, 8);

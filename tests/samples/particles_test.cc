@@ -20,9 +20,10 @@ using namespace vdb_madf::test;
 using detail::Particle;
 using detail::Vector;
 
-constexpr ParticleShape kParticleShapes[] = {ParticleShape::balls, ParticleShape::ellipsoids,
-                                             ParticleShape::plates, ParticleShape::prisms,
-                                             ParticleShape::polyhedra};
+constexpr ParticleShape kParticleShapes[] = {ParticleShape::balls,     ParticleShape::ellipsoids,
+                                             ParticleShape::plates,    ParticleShape::prisms,
+                                             ParticleShape::polyhedra, ParticleShape::rods,
+                                             ParticleShape::columns};
 
 ParticleOptions smallParticles(ParticleShape shape) {
   ParticleOptions options;
@@ -33,6 +34,10 @@ ParticleOptions smallParticles(ParticleShape shape) {
   options.maxRadius = 11;
   options.seed = 6;
   return options;
+}
+
+Particle drawn(ParticleShape shape, double radius, detail::RandomSequence& random) {
+  return detail::drawParticle(smallParticles(shape), radius, random);
 }
 
 int64_t voxelsInside(const Particle& particle) {
@@ -60,7 +65,8 @@ std::pair<double, double> lengthAndThickness(const Particle& particle) {
 // Whoever compares methods on these samples relies on a seed giving the same sample for ever.
 TEST_CASE("particles: the bits are fixed", "[particles]") {
   const uint64_t expected[] = {0xcf2ed287e6025746u, 0xb1b8ec1428f1bff7u, 0xf1c9a0b437e1fed8u,
-                               0x365f857d4ff3f1a2u, 0x29d8cc19c4ab80cbu};
+                               0x365f857d4ff3f1a2u, 0x29d8cc19c4ab80cbu, 0x47f8abb44854abccu,
+                               0x88325dcd34f23e9du};
   for (const ParticleShape shape : kParticleShapes) {
     CAPTURE(int(shape));
     CHECK(hash(generateParticles(smallParticles(shape))) == expected[int(shape)]);
@@ -88,7 +94,7 @@ TEST_CASE("particles: have the volume that they are asked for", "[particles]") {
     for (int i = 0; i < 4; ++i) {
       CAPTURE(int(shape), i);
       const double radius = 9 + i;
-      Particle particle = detail::drawParticle(shape, radius, random);
+      Particle particle = drawn(shape, radius, random);
       particle.center = {20.3, 21.1, 19.8};
       const double volume = 4.0 / 3.0 * M_PI * radius * radius * radius;
       CHECK(double(voxelsInside(particle)) == Approx(volume).epsilon(0.025));
@@ -98,7 +104,7 @@ TEST_CASE("particles: have the volume that they are asked for", "[particles]") {
 TEST_CASE("particles: have the proportions of their shape", "[particles]") {
   detail::RandomSequence random(4, 0);
   const auto proportion = [&](ParticleShape shape) {
-    const auto [length, thickness] = lengthAndThickness(detail::drawParticle(shape, 10, random));
+    const auto [length, thickness] = lengthAndThickness(drawn(shape, 10, random));
     return length / thickness;
   };
   for (int i = 0; i < 5; ++i) {
@@ -111,12 +117,39 @@ TEST_CASE("particles: have the proportions of their shape", "[particles]") {
   }
 }
 
+TEST_CASE("particles: rods and columns are as long as asked for", "[particles]") {
+  detail::RandomSequence random(7, 0);
+  for (const double aspect : {1.0, 1.5, 2.0, 5.0, 15.0}) {
+    CAPTURE(aspect);
+    auto options = smallParticles(ParticleShape::rods);
+    options.minAspect = options.maxAspect = aspect;
+    const Particle rod = detail::drawParticle(options, 10, random);
+    const Vector axis = rod.rows[0].unit();
+    const double radius = 1 / rod.rows[0].length();
+    CHECK(1 / rod.value(axis) == Approx(aspect * radius));
+    const Vector across = axis.cross(Vector(0.3, -0.5, 0.8)).unit();
+    const auto isOnSurface = [&](const Vector& p) {
+      CHECK(rod.value(p) == Approx(1));
+      CHECK(rod.value(p * -2.7) == Approx(2.7));
+    };
+    const Vector core = axis * ((aspect - 1) * radius);
+    for (const double along : {0.0, 0.4, 1.0}) isOnSurface(core * along + across * radius);
+    for (const double angle : {0.0, 0.3, 1.2})
+      isOnSurface(core + (axis * std::cos(angle) + across * std::sin(angle)) * radius);
+    CHECK(rod.value(rod.center) == 0);
+    options.shape = ParticleShape::columns;
+    const Particle column = detail::drawParticle(options, 10, random);
+    const Vector length = column.rows.back(), width = column.rows.front();
+    CHECK(width.length() / length.length() == Approx(aspect));
+  }
+}
+
 TEST_CASE("particles: nothing of a particle lies beyond its reach", "[particles]") {
   detail::RandomSequence random(5, 0);
   std::mt19937 directions(1);
   std::normal_distribution<double> normal;
   for (const ParticleShape shape : kParticleShapes) {
-    const Particle particle = detail::drawParticle(shape, 10, random);
+    const Particle particle = drawn(shape, 10, random);
     const double shortest = 1 / particle.slope();
     for (int i = 0; i < 1000; ++i) {
       Vector u(normal(directions), normal(directions), normal(directions));
@@ -132,7 +165,7 @@ TEST_CASE("particles: orientations have no preferred direction", "[particles]") 
   constexpr int kCount = 3000;
   Vector squares(0, 0, 0);
   for (int i = 0; i < kCount; ++i) {
-    const Particle plate = detail::drawParticle(ParticleShape::plates, 1, random);
+    const Particle plate = drawn(ParticleShape::plates, 1, random);
     Vector axis = plate.rows.back();
     axis.normalize();
     squares += axis * axis;
@@ -247,6 +280,10 @@ TEST_CASE("particles: bad options are refused", "[particles]") {
   refuses([](auto& o) { o.lognormal = -0.1; });
   refuses([](auto& o) { o.lognormal = 1.1; });
   refuses([&](auto& o) { o.lognormal = nan; });
+  refuses([](auto& o) { o.minAspect = 0.9; });
+  refuses([](auto& o) { o.maxAspect = 101; });
+  refuses([](auto& o) { o.minAspect = o.maxAspect + 1; });
+  refuses([&](auto& o) { o.maxAspect = nan; });
   refuses([](auto& o) {  // no range for a spread
     o.lognormal = 0.2;
     o.minRadius = o.maxRadius;

@@ -88,6 +88,7 @@ TEST_CASE("cli: generate makes the same file of the same seed", "[cli]") {
        {"spheres --size 40 --count 4 --radius 6:8", "pack --size 24 --radius 3:5",
         "snow --dims 24x16x20 --length 8", "sintered --size 40 --count 4 --radius 6:9",
         "particles --size 40 --count 4 --radius 6:9 --shape polyhedra",
+        "particles --size 40 --count 4 --radius 4:6 --shape rods --aspect 3:5",
         "bed --size 40 --radius 6:9 --rounds 2",
         "particles --size 40 --count 4 --radius 6:9 --surface 1:5 --scan-noise 1:0.2"}) {
     CAPTURE(kind);

@@ -38,7 +38,7 @@ namespace {
 
 /// What is typed for any kind of sample, and the options of each kind.
 struct GenerateArguments {
-  std::string out, dims, radius, shape, surface, scanNoise, voxelSizeText;
+  std::string out, dims, radius, shape, aspect, surface, scanNoise, voxelSizeText;
   int size = 0;
   uint64_t seed = 1;
   std::optional<VoxelSize> voxelSize;
@@ -69,16 +69,20 @@ void parseSizeAndSeed(const GenerateArguments& typed, KindOptions& kind) {
   kind.seed = typed.seed;
 }
 
-template <typename KindOptions>
-void parseRadius(const GenerateArguments& typed, KindOptions& kind) {
-  const std::string& text = typed.radius;
+/// A:B, or A for both; they stay as they are if nothing is typed.
+void parseSpan(const std::string& text, const std::string& option, double& least,
+               double& greatest) {
   if (text.empty()) return;
   const size_t colon = text.find(':');
-  kind.minRadius = parseNumber(text.substr(0, colon), "--radius");
-  kind.maxRadius =
-      colon == std::string::npos ? kind.minRadius : parseNumber(text.substr(colon + 1), "--radius");
-  if (!(kind.minRadius > 0 && kind.minRadius <= kind.maxRadius))
-    throw WrongUsage("--radius " + text + ": write A:B, 0 < A <= B");
+  least = parseNumber(text.substr(0, colon), option);
+  greatest = colon == std::string::npos ? least : parseNumber(text.substr(colon + 1), option);
+  if (!(least > 0 && least <= greatest))
+    throw WrongUsage(option + " " + text + ": write A:B, 0 < A <= B");
+}
+
+template <typename KindOptions>
+void parseRadius(const GenerateArguments& typed, KindOptions& kind) {
+  parseSpan(typed.radius, "--radius", kind.minRadius, kind.maxRadius);
 }
 
 /// Numbers between colons; those that are not typed stay as they are.
@@ -185,6 +189,8 @@ constexpr SampleKind kSampleKinds[] = {
        verb.option("--count", particles.count, "number of particles").showDefault();
        verb.option("--radius", options.radius,
                    "radii A:B of the balls of equal volume, voxels (default 12:22)");
+       verb.option("--aspect", options.aspect,
+                   "of rods and columns: length over thickness, A:B (default 4:8)");
        verb.option("--lognormal", particles.lognormal,
                    "standard deviation of the logarithm of the radii (0: uniform radii)")
            .showDefault();
@@ -195,7 +201,11 @@ constexpr SampleKind kSampleKinds[] = {
        parseSizeAndSeed(options, options.particles);
        options.particles.voxelSize = options.voxelSize;
        parseRadius(options, options.particles);
-       parseShape(options.shape, options.particles.shape);
+       ParticleOptions& particles = options.particles;
+       parseShape(options.shape, particles.shape);
+       if (!options.aspect.empty() && !haveAspect(particles.shape))
+         throw WrongUsage("--aspect " + options.aspect + ": of --shape rods and columns only");
+       parseSpan(options.aspect, "--aspect", particles.minAspect, particles.maxAspect);
      },
      [](const GenerateArguments& options, Interrupter* interrupter) {
        return generateParticles(options.particles, interrupter);

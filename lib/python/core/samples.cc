@@ -34,11 +34,14 @@ class Arguments {
       throw py::type_error(std::string(name) + " is of the wrong type");
     }
   }
+  void takeSpan(const char* name, double& least, double& greatest) {
+    std::pair<double, double> span{least, greatest};
+    take(name, span);
+    std::tie(least, greatest) = span;
+  }
   template <typename Options>
   void takeRadius(Options& options) {
-    std::pair<double, double> radius{options.minRadius, options.maxRadius};
-    take("radius", radius);
-    std::tie(options.minRadius, options.maxRadius) = radius;
+    takeSpan("radius", options.minRadius, options.maxRadius);
   }
   /// @throw TypeError if something is left
   void end() const {
@@ -111,6 +114,7 @@ Maker particles(Arguments& a) {
   const auto name = std::find(names.begin(), names.end(), shape);
   if (name == names.end()) throw InvalidInput("shape='" + shape + "': there is no such shape");
   o.shape = ParticleShape(name - names.begin());
+  if (haveAspect(o.shape)) a.takeSpan("aspect", o.minAspect, o.maxAspect);
   return [o](Interrupter* interrupter) { return generateParticles(o, interrupter); };
 }
 

@@ -24,8 +24,8 @@ def generate(kind: str, *, size: Union[int, Tuple[int, int, int], None] = None, 
     - "pack" (no truth): fraction, radius
     - "snow" (no truth): fraction, length
     - "sintered": count, radius, neck, roughness
-    - "particles": count, radius, shape ("balls", "ellipsoids", "plates", "prisms", "polyhedra"),
-      lognormal, neck
+    - "particles": count, radius, shape ("balls", "ellipsoids", "plates", "prisms", "polyhedra",
+      "rods", "columns"), lognormal, neck, of rods and columns aspect=(least, largest)
     - "bed": radius, rounds
 
     Of any kind: surface, surface_length (rough surfaces), blur, noise, noise_length (as of a

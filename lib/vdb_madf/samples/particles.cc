@@ -73,15 +73,21 @@ class ParticleSites {
 }  // namespace
 
 const std::vector<std::string>& particleShapeNames() {
-  static const std::vector<std::string> names{"balls", "ellipsoids", "plates", "prisms",
-                                              "polyhedra"};
+  static const std::vector<std::string> names{"balls",     "ellipsoids", "plates", "prisms",
+                                              "polyhedra", "rods",       "columns"};
   return names;
+}
+
+bool haveAspect(ParticleShape shape) {
+  return shape == ParticleShape::rods || shape == ParticleShape::columns;
 }
 
 Sample generateParticles(const ParticleOptions& options, Interrupter* interrupter) {
   detail::checkSize(options.size);
   detail::checkCount(options.count);
   detail::checkRadii(options.minRadius, options.maxRadius);
+  detail::checkRange("aspect", options.maxAspect, 1, 100);
+  detail::checkRange("least aspect", options.minAspect, 1, options.maxAspect);
   detail::checkRange("lognormal", options.lognormal, 0, 1);
   detail::checkRange("neck", options.neck, 0, 2);
 
@@ -96,8 +102,9 @@ Sample generateParticles(const ParticleOptions& options, Interrupter* interrupte
   source.size(options.size)
       .add("shape", particleShapeNames()[size_t(options.shape)])
       .add("count", std::to_string(options.count))
-      .range("radius", options.minRadius, options.maxRadius)
-      .add("lognormal", options.lognormal)
+      .range("radius", options.minRadius, options.maxRadius);
+  if (haveAspect(options.shape)) source.range("aspect", options.minAspect, options.maxAspect);
+  source.add("lognormal", options.lognormal)
       .add("neck", options.neck)
       .add("seed", std::to_string(options.seed))
       .edges(options.voxelSize);

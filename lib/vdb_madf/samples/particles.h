@@ -20,7 +20,12 @@ enum class ParticleShape {
   plates,      ///< flat hexagonal prisms, as high as a third of their width
   prisms,      ///< hexagonal prisms, twice as high as wide
   polyhedra,   ///< 8 to 14 random half-spaces, cut by a cube of 3.2 times their distance
+  rods,        ///< the points within some radius of a line segment: straight, with round ends
+  columns,     ///< hexagonal prisms as long as asked for
 };
+
+/// Whether ParticleOptions::minAspect and maxAspect have a meaning: for rods and columns.
+bool haveAspect(ParticleShape shape);
 
 /// The names of the enumerators, in their order.
 const std::vector<std::string>& particleShapeNames();
@@ -47,7 +52,10 @@ struct ParticleOptions {
   /// 0: radii are uniform; else the standard deviation of their logarithm about that of the
   /// geometric mean of the two, and a radius beyond them is drawn again. 0..1
   double lognormal = 0;
-  double neck = 0.82;                  ///< 0..2
+  /// Of rods and columns alone: length over thickness, uniform. Of rods the length has the ends in
+  /// it; columns are as thick as the distance of opposite sides. 1..100
+  double minAspect = 4, maxAspect = 8;
+  double neck = 0.82;                  ///< 0..2; from 1 on no voxel lies in two particles
   std::optional<VoxelSize> voxelSize;  ///< need not be cubes: see sample.h
 };
 Sample generateParticles(const ParticleOptions& options, Interrupter* interrupter = nullptr);

@@ -55,9 +55,19 @@ Vector drawDirection(RandomSequence& random) {
 
 Particle ellipsoid(const Frame& frame, double a, double b, double c) {
   Particle particle;
-  particle.round = true;
+  particle.form = Particle::Form::ellipsoid;
   particle.rows = {frame.axes[0] / a, frame.axes[1] / b, frame.axes[2] / c};
   particle.reach = std::max({a, b, c});
+  return particle;
+}
+
+/// A rod of unit radius.
+Particle rod(const Frame& frame, double aspect) {
+  Particle particle;
+  particle.form = Particle::Form::rod;
+  particle.rows = {frame.axes[2]};
+  particle.core = aspect - 1;
+  particle.reach = aspect;
   return particle;
 }
 
@@ -112,7 +122,8 @@ void scale(Particle& particle, double factor) {
 }
 
 /// A particle of the volume of the unit ball.
-Particle drawUnit(ParticleShape shape, RandomSequence& random) {
+Particle drawUnit(const ParticleOptions& options, RandomSequence& random) {
+  const ParticleShape shape = options.shape;
   Particle particle;
   double volume = 0;
   if (shape == ParticleShape::polyhedra) {
@@ -125,6 +136,11 @@ Particle drawUnit(ParticleShape shape, RandomSequence& random) {
       const double b = random.uniform(1.2, 1.4), c = random.uniform(1.55, 1.85);
       particle = ellipsoid(frame, 1, b, c);
       volume = kUnitBall * b * c;
+    } else if (haveAspect(shape)) {
+      const double aspect = random.uniform(options.minAspect, options.maxAspect);
+      const bool isRod = shape == ParticleShape::rods;
+      particle = isRod ? rod(frame, aspect) : hexagonalPrism(frame, aspect);
+      volume = isRod ? kUnitBall + 2 * M_PI * (aspect - 1) : std::sqrt(3.0) / 2 * aspect;
     } else {
       const bool flat = shape == ParticleShape::plates;
       const double height = flat ? random.uniform(0.28, 0.39) : random.uniform(1.7, 2.3);
@@ -136,12 +152,23 @@ Particle drawUnit(ParticleShape shape, RandomSequence& random) {
   return particle;
 }
 
+/// Of a rod whose core ends at -core and core along its axis, for a point `along` the axis and
+/// `across` it from the center, all in radii. Beyond the core the value s solves
+/// (along - s core)^2 + across^2 = s^2, written so that nothing cancels.
+double rodValue(double core, double along, double across) {
+  if (along <= across * core) return across;
+  const double square = along * along + across * across;
+  const double root = std::sqrt(std::max(0.0, square - across * across * core * core));
+  return square / (along * core + root);
+}
+
 }  // namespace
 
 double Particle::value(const Vector& p) const {
   const Vector v = p - center;
   double result = 0;
-  if (round) {
+  if (form == Form::rod) return rodValue(core, std::abs(rows[0].dot(v)), rows[0].cross(v).length());
+  if (form == Form::ellipsoid) {
     for (const Vector& row : rows) result += row.dot(v) * row.dot(v);
     return std::sqrt(result);
   }
@@ -164,8 +191,8 @@ CoordBBox Particle::box(double scale) const {
   return {corner(-1), corner(1).offsetBy(1)};
 }
 
-Particle drawParticle(ParticleShape shape, double radius, RandomSequence& random) {
-  Particle particle = drawUnit(shape, random);
+Particle drawParticle(const ParticleOptions& options, double radius, RandomSequence& random) {
+  Particle particle = drawUnit(options, random);
   scale(particle, radius);
   return particle;
 }

@@ -17,10 +17,13 @@ using Vector = openvdb::Vec3d;
 /// A convex body about its center. Voxel p is inside if value(p) < 1.
 struct Particle {
   Vector center{0, 0, 0};
-  /// The unit axes of an ellipsoid over its half axes; else the unit normals of the faces over
-  /// their distances from the center.
+  enum class Form { faces, ellipsoid, rod };
+  Form form = Form::faces;
+  /// The unit normals of the faces over their distances from the center; of an ellipsoid the unit
+  /// axes over its half axes; of a rod its unit axis over its radius.
   std::vector<Vector> rows;
-  bool round = false;
+  /// Half the line segment that is the core of a rod, in its radii.
+  double core = 0;
   /// Radius of a ball about the center that contains the particle.
   double reach = 0;
 
@@ -32,7 +35,8 @@ struct Particle {
   CoordBBox box(double scale = 1) const;
 };
 
-/// A particle at the origin, turned at random, with the volume of a ball of this radius.
-Particle drawParticle(ParticleShape shape, double radius, RandomSequence& random);
+/// A particle at the origin, of the options' shape and aspect, turned at random, with the volume of
+/// a ball of this radius.
+Particle drawParticle(const ParticleOptions& options, double radius, RandomSequence& random);
 
 }  // namespace vdb_madf::detail

@@ -81,7 +81,7 @@ std::vector<Particle> placeParticles(const ParticleOptions& options, Interrupter
   RandomSequence random(options.seed, kParticleStream);
   std::vector<Particle> particles;
   while (int(particles.size()) < options.count) {
-    Particle particle = drawParticle(options.shape, drawRadius(options, random), random);
+    Particle particle = drawParticle(options, drawRadius(options, random), random);
     int tries = 0;
     do {
       if (tries % kParticlePollInterval == 0 && interrupter && interrupter->wasInterrupted())
