@@ -29,12 +29,14 @@ def grains(solid, truth, work, methods):
     numpy.save(work / "object.npy", solid.astype(numpy.uint8))
     files = {}
 
-    def keep(name, labels):
+    def new(name):
         files[name] = work / f"{len(files)}.npy"
-        numpy.save(files[name], labels)
+        return files[name]
+
+    def keep(name, labels):
+        numpy.save(new(name), labels)
     for name, options in OURS.items():
-        m.madf("segment", work / "object.npy", work / "grains.vdb", *options.split())
-        keep(name, m.dense(work / "grains.vdb", work))
+        m.madf("segment", work / "object.npy", new(name), *options.split())
     if methods == "ours":
         return files
     for name, kind in WATERSHEDS.items():
