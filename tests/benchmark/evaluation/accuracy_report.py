@@ -2,7 +2,7 @@
 import csv
 import statistics
 
-from evaluation import methods as m, watershed
+from evaluation import finney, methods as m, watershed
 from evaluation.accuracy_methods import (METHODS, OURS, RIVALS, SECTION_DUST, SECTION_LEAST, SLIVER,
                                          TRUTH)
 from evaluation.report import Report
@@ -63,7 +63,8 @@ def write(folder, done, seeds, quick, methods):
     edge = 100 if quick else 140
     report.say(
         "# How right the grains are",
-        f"Samples with known grains, of {edge}^3 voxels where no other size is said, seed "
+        f"Samples with known grains, of {edge}^3 voxels where no other size is said (packs: "
+        f"{finney.EDGE:g} radii), seed "
         f"{' and '.join(map(str, seeds))}. Seed "
         f"1 is for choosing (our defaults; h = {watershed.H:g} voxels of the h-maxima), other "
         f"seeds are for showing. All other "

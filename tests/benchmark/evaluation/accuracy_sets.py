@@ -17,13 +17,14 @@ class Set:
     generate: str = None  # a kind of `vdb_madf generate` and its options
     # grains: at the full size, and with --quick; None: the kind has no such option
     count: tuple = (90, 33)
-    size: tuple = (140, 100)  # voxels, an edge: full, and with --quick
+    # voxels, an edge: full, and with --quick; None: `make` has its own
+    size: tuple = (140, 100)
     make: callable = None  # instead of `generate`: edge, seed -> what sample() returns
     section: bool = False  # the slice in the middle of z alone
 
     def describe(self, quick):
         if not self.generate:
-            return self.name
+            return f"{self.name}, {self.size[quick]}^3" if self.size else self.name
         size = f" --size {self.size[quick]}" if self.size != Set.size else ""
         count = f" --count {self.count[quick]}" if self.count else ""
         return f"`generate {self.generate}{size}{count}`"
@@ -34,7 +35,7 @@ def own(group, name, make, *its, size=(120, 90)):
 
 
 def pack(name, radius, inflated=1.0, blur=0, noise=0):
-    return Set("packs", f"radius {radius}, {name}",
+    return Set("packs", f"radius {radius}, {name}", size=None,
                make=functools.partial(measured_pack, radius, inflated, blur, noise))
 
 
@@ -123,7 +124,7 @@ GROUPS = list(dict.fromkeys(s.group for s in SETS))
 
 def sample(its, quick, seed, work):
     """The object (bool) and its true grains (int32) as arrays [z, y, x]."""
-    size = its.size[quick]
+    size = its.size and its.size[quick]
     solid, truth = its.make(size, seed) if its.make else generated(its, size, quick, seed, work)
     if not its.section:
         return solid, truth
