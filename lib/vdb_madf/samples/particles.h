@@ -52,8 +52,8 @@ struct ParticleOptions {
   /// 0: radii are uniform; else the standard deviation of their logarithm about that of the
   /// geometric mean of the two, and a radius beyond them is drawn again. 0..1
   double lognormal = 0;
-  /// Of rods and columns alone: length over thickness, uniform. Of rods the length has the ends in
-  /// it; columns are as thick as the distance of opposite sides. 1..100
+  /// Length over thickness of rods and columns, uniform; no other shape has it. The length of a rod
+  /// has the round ends in it; a column is as thick as the distance of opposite sides. 1..100
   double minAspect = 4, maxAspect = 8;
   double neck = 0.82;                  ///< 0..2; from 1 on no voxel lies in two particles
   std::optional<VoxelSize> voxelSize;  ///< need not be cubes: see sample.h
