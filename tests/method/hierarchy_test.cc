@@ -39,11 +39,17 @@ struct Case {
   int32_t height;
 };
 
-int32_t score(const Case& c, const VoxelWeights& weights = {}) {
-  return JoinScore(weights)({c.voxelsA, c.topA}, {c.voxelsB, c.topB}, c.faces, c.height);
+int32_t score(const Case& c, const VoxelWeights& weights = {},
+              const std::optional<int>& flatAxis = {}) {
+  return JoinScore(weights, flatAxis)({c.voxelsA, c.topA}, {c.voxelsB, c.topB}, c.faces, c.height);
 }
 int64_t slowScore(const Case& c, const VoxelWeights& weights = {}) {
   return oracleScore(c.voxelsA, c.topA, c.voxelsB, c.topB, c.faces, c.height, weights);
+}
+
+int64_t slowPlaneScore(const Case& c, int weightX = 1, int weightY = 1) {
+  return oraclePlaneScore(c.voxelsA, c.topA, c.voxelsB, c.topB, c.faces, c.height, weightX,
+                          weightY);
 }
 
 /// Nodes on the x axis: squared radii and voxels.
@@ -95,6 +101,7 @@ ManifoldGraph randomGraph(Rng& rng) {
       graph.edges.push_back({a, b, 1 + rng.below(faces), rng.between(-2, highest), false});
     }
   if (rng.chance(0.2)) graph.weights = {rng.between(1, 9), rng.between(1, 9), rng.between(1, 9)};
+  if (rng.chance(0.3)) graph.flatAxis = rng.below(3);
   return graph;
 }
 
@@ -224,6 +231,75 @@ TEST_CASE("hierarchy: scores, as integers of any size give them", "[hierarchy]")
     CHECK(score(c.first, c.second) == expected);
     CHECK(slowScore(c.first, c.second) == expected);
   }
+}
+
+TEST_CASE("hierarchy: scores in a plane", "[hierarchy]") {
+  const std::vector<std::pair<Case, int32_t>> cases = {
+      {{1, 2, 1, 2, 1, 1}, 8174},
+      {{1, 2, 1, 2, 0, 1}, 6638},
+      {{1, 2, 8796093022207, 2147483647, 2147483647, 1}, 84709},
+      {{8796093022207, 2147483647, 8796093022207, 2147483647, 2147483647, 1}, -59260357},
+      {{8796093022207, 2147483647, 8796093022207, 2147483647, 2147483647, 2147483646}, 54778},
+      {{8796093022207, 2147483647, 1, 2147483647, 2147483647, 1}, -59293378},
+      {{1, 2147483647, 8796093022207, 2147483647, 0, 1}, -59274946},
+      {{1, 2147483647, 1, 2147483647, 2147483647, 2147483646}, 56314},
+      {{8796093022207, 2, 8796093022207, 2, 2147483647, 1}, 54248},
+      {{63, 9, 500, 16, 6, 8}, 7124},
+      {{64, 9, 500, 16, 6, 8}, 7112},
+      {{65, 9, 500, 16, 6, 8}, 7112},
+      {{400, 100, 400, 100, 20, 99}, 6491},
+      {{4000, 100, 4000, 100, 20, 99}, 6533},
+      {{1600, 100, 3000, 100, 20, 90}, 6784},
+      {{900, 144, 9000, 400, 15, 60}, 1045},
+      {{65536, 225, 65537, 225, 30, 224}, 5941},
+      {{1000, 64, 1000, 64, 8191, 50}, 53588},
+  };
+  for (const auto& [c, expected] : cases) {
+    CAPTURE(c.voxelsA, c.topA, c.voxelsB, c.topB, c.faces, c.height);
+    CHECK(slowPlaneScore(c) == expected);
+    // The edge along the flat axis does not count.
+    for (const int axis : {0, 1, 2}) {
+      VoxelWeights weights;
+      (axis == 0 ? weights.x : axis == 1 ? weights.y : weights.z) = 7;
+      CHECK(score(c, {}, axis) == expected);
+      CHECK(score(c, weights, axis) == expected);
+    }
+  }
+  CHECK(score({4096, 2500, 4096, 2600, 30, 2400}, {25, 9, 144}, 1) == 6732);
+  CHECK(score({1, 2, 3, 3, 1, 1}, {3, 1, 400}, 0) == 8871);
+  CHECK(score({5000, 90000, 6000, 1000000, 100, 45000}, {9, 77, 2}, 2) == -34098);
+  CHECK(score({400, 400, 400, 404, 20, 396}, {4, 1, 4}, 1) == 6453);
+  CHECK(score({8796093022207, 2147483647, 8796093022207, 2147483647, 2147483647, 1},
+              {400000, 400001, 1}, 2) == -39007);
+
+  Rng rng(1);
+  for (int i = 0; i < 20000; ++i) {
+    const auto top = [&] { return int32_t(1 + logarithmic(rng, 30.9)); };
+    const auto [topA, topB] = std::minmax({top(), top()});
+    const Case c{logarithmic(rng, 42.9),     topA,
+                 logarithmic(rng, 42.9),     topB,
+                 logarithmic(rng, 30.9) - 1, std::max(1, int32_t(topA * rng.unit()))};
+    const int x = i % 2 ? rng.between(1, 30) : 1, y = i % 2 ? rng.between(1, 30) : 1;
+    CAPTURE(c.voxelsA, c.topA, c.voxelsB, c.topB, c.faces, c.height, x, y);
+    const int32_t whole = score(c, {x, y, 1}, 2);
+    REQUIRE(whole == slowPlaneScore(c, x, y));
+    Case larger = c;
+    larger.voxelsB = std::min(c.voxelsB + logarithmic(rng, 42.9), JoinScore::kMaxVoxels);
+    REQUIRE(score(larger, {x, y, 1}, 2) - 3 * detail::lg(larger.voxelsB) <=
+            whole - 3 * detail::lg(c.voxelsB));
+  }
+}
+
+TEST_CASE("hierarchy: a rod in a plane joins, however long its pieces are", "[hierarchy]") {
+  for (int radius = 2; radius < 400; radius += 1 + radius / 5)
+    for (double first = radius; first < 2e6; first *= 1.7)
+      for (double second = first; second < 2e6; second *= 1.7) {
+        const int width = 2 * radius;
+        CAPTURE(radius, first, second);
+        REQUIRE(score({int64_t(first * width), radius * radius, int64_t(second * width),
+                       radius * radius, width, radius * radius},
+                      {}, 2) >= 11 * Hierarchy::kUnitsOfScore);
+      }
 }
 
 TEST_CASE("hierarchy: scores, as the definition has them", "[hierarchy]") {
@@ -399,7 +475,7 @@ TEST_CASE("hierarchy: any sizes are joined, however large", "[hierarchy]") {
     }
     const Hierarchy hierarchy = mergeHierarchy(graph);
     for (const Hierarchy::Join& join : hierarchy.joins) {
-      CHECK(join.score <= 72953);
+      CHECK(join.score <= (graph.flatAxis ? 89335 : 72953));
       CHECK(join.score > -94930000);
     }
     requireSame(cut(hierarchy, 11), merge(graph, atStrictness(11)));

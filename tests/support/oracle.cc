@@ -375,6 +375,9 @@ OracleResult oracleSegment(const ObjectVolume& object, const std::optional<Oracl
   const SiteMap critical = oracleFlow(result.filtered.site);
   result.graph = oracleGraph(body, result.distance, result.filtered, critical);
   result.graph.weights = weights;
+  if (domain)
+    for (int axis = 2; axis >= 0; --axis)
+      if (domain->box().dim()[axis] == 1) result.graph.flatAxis = axis;
   std::map<Coord, size_t> node;
   for (size_t i = 0; i < result.graph.nodes.size(); ++i) {
     node[result.graph.nodes[i].position] = i;

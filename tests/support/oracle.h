@@ -131,6 +131,9 @@ std::vector<uint32_t> oracleCut(const ManifoldGraph& graph, const OracleHierarch
 /// The score of a pair of classes, a of the smaller top.
 int64_t oracleScore(int64_t voxelsA, int64_t topA, int64_t voxelsB, int64_t topB, int64_t faces,
                     int64_t height, const VoxelWeights& weights = {});
+/// The score of a pair of classes in a plane, whose two weights are given.
+int64_t oraclePlaneScore(int64_t voxelsA, int64_t topA, int64_t voxelsB, int64_t topB,
+                         int64_t faces, int64_t height, int64_t weightX = 1, int64_t weightY = 1);
 
 /// Step 9, on labels of the object (0: none), given the representatives of grains 1, 2, ...
 DenseVolume<int64_t> oracleTidy(const DenseVolume<int64_t>& labels,

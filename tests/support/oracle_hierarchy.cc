@@ -69,6 +69,30 @@ int64_t oracleScore(int64_t voxelsA, int64_t topA, int64_t voxelsB, int64_t topB
          3 * std::max<int64_t>(0, 1792 - lg(voxelsA));
 }
 
+int64_t oraclePlaneScore(int64_t voxelsA, int64_t topA, int64_t voxelsB, int64_t topB,
+                         int64_t faces, int64_t height, int64_t weightX, int64_t weightY) {
+  const int64_t least = std::min(weightX, weightY);
+  int64_t factor = 1;
+  for (int64_t g = 2; g <= least; ++g)
+    if (weightX % g == 0 && weightY % g == 0) factor = g;
+  const int64_t rho = root(65536 * topA / topB);
+  const int64_t d = root(65536 * topA / least) - root(65536 * height / least);
+  const int64_t disc = 338 + lg(std::max<int64_t>(1, topA / factor)) -
+                       (lg(weightX / factor) + lg(weightY / factor)) / 2;
+  const int64_t u = std::max(lg(voxelsA) - 512, std::min(lg(voxelsA), std::max<int64_t>(0, disc)));
+  // The largest w with w^2 <= (10 m)^2 / (wx wy), from somewhat below its root on.
+  const Wide square = Wide(100) * topB * topB / (Wide(weightX) * weightY);
+  auto w = std::max<int64_t>(1, int64_t(std::sqrt((long double)square)) - 2);
+  while (Wide(w + 1) * (w + 1) <= square) ++w;
+  w = std::max(voxelsB, std::min(4 * voxelsB, w));
+  const Wide whole = Wide(512 * faces) * (512 * faces);
+  const long double about = std::sqrt((long double)whole / (long double)w);
+  int64_t f = std::max<int64_t>(0, int64_t(std::min(about, 8191.0L)) - 2);
+  while (f < 8191 && Wide(f + 1) * (f + 1) * w <= whole) ++f;
+  return 3 * (lg(voxelsB) - u) + 16 * rho + 6 * f - 5 * d +
+         2 * std::max<int64_t>(0, 1536 - lg(voxelsA));
+}
+
 OracleHierarchy oracleHierarchy(const ManifoldGraph& graph) {
   const auto& nodes = graph.nodes;
   OracleHierarchy result;
@@ -116,8 +140,12 @@ OracleHierarchy oracleHierarchy(const ManifoldGraph& graph) {
       if (touch.height <= 0) continue;
       Size a = sizes[pair.first], b = sizes[pair.second];
       if (!comesFirst(a, b)) std::swap(a, b);
+      const VoxelWeights& w = graph.weights;
       const int64_t score =
-          oracleScore(a.voxels, a.top, b.voxels, b.top, touch.faces, touch.height, graph.weights);
+          graph.flatAxis
+              ? oraclePlaneScore(a.voxels, a.top, b.voxels, b.top, touch.faces, touch.height,
+                                 *graph.flatAxis == 0 ? w.y : w.x, *graph.flatAxis == 2 ? w.y : w.z)
+              : oracleScore(a.voxels, a.top, b.voxels, b.top, touch.faces, touch.height, w);
       if (!best || score > best->score) best = {pair.first, pair.second, score};
     }
     if (!best) return result;

@@ -37,6 +37,12 @@ __int128 Domain::voxelCount() const {
   return region_ ? __int128(region_->activeVoxelCount()) : volumeOf(box_);
 }
 
+std::optional<int> Domain::flatAxis() const {
+  for (int axis = 0; axis < 3; ++axis)
+    if (box_.min()[axis] == box_.max()[axis]) return axis;
+  return std::nullopt;
+}
+
 bool Domain::isInside(const Coord& voxel) const {
   return region_ ? region_->isValueOn(voxel) : box_.isInside(voxel);
 }

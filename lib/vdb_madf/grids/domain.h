@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "vdb_madf/grids/grid_types.h"
@@ -29,6 +30,8 @@ class Domain {
   const std::shared_ptr<const MaskTree>& region() const { return region_; }  ///< null for a box
   /// Voxels of B; beyond 64 bits in boxes far larger than any object.
   __int128 voxelCount() const;
+  /// The axis along which B is one voxel thick: the first, if there are several.
+  std::optional<int> flatAxis() const;
   bool isInside(const Coord& voxel) const;  ///< one look-up in a tree
   /// The voxels of B that lie in another one, such as a box. @throw InvalidInput if there are none.
   Domain within(const Domain& other) const;

@@ -235,9 +235,7 @@ LeafIndex withPartialLeaves(const LeafIndex& object, const MaskTree& region) {
 }  // namespace
 
 int64_t defaultFillHoles(const std::optional<Domain>& domain) {
-  for (int axis = 0; domain && axis < 3; ++axis)
-    if (domain->box().min()[axis] == domain->box().max()[axis]) return 0;
-  return kFillHoles;
+  return domain && domain->flatAxis() ? 0 : kFillHoles;
 }
 
 Cavities detail::smallHoles(const LeafIndex& object, const std::optional<Domain>& domain, bool open,

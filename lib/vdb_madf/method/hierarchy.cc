@@ -57,7 +57,7 @@ void addClasses(const ManifoldGraph& graph, Hierarchy& hierarchy) {
 
 /// Joins the pair of largest score, again and again.
 ///
-/// Each pair waits in the heap of its b, under the score less b's volume term, 2 lg V_b; b takes a
+/// Each pair waits in the heap of its b, under the score less b's volume term; b takes a
 /// turn with its first pair. When b has grown, but has its m and name still, what was computed of
 /// its pairs is a bound, for it can only have become smaller (JoinScore): that of the first one is
 /// computed anew when it is its turn. So a class that joins thousands of small neighbors does not
@@ -68,7 +68,7 @@ void addClasses(const ManifoldGraph& graph, Hierarchy& hierarchy) {
 class Joining {
  public:
   Joining(const ManifoldGraph& graph, Hierarchy& hierarchy)
-      : score_(graph.weights), hierarchy_(hierarchy) {
+      : score_(graph.weights, graph.flatAxis), hierarchy_(hierarchy) {
     for (uint32_t c = 0; c < hierarchy.classes.size(); ++c) {
       const Hierarchy::Class& one = hierarchy.classes[c];
       const int64_t voxels = addVoxels(one.voxels, one.cavityVoxels);
@@ -172,7 +172,7 @@ class Joining {
     return isSmaller(clusters_[one], clusters_[two]) ? Pair{one, two} : Pair{two, one};
   }
 
-  int32_t volumeTerm(const Cluster& b) const { return 2 * detail::lg(b.size.voxels); }
+  int32_t volumeTerm(const Cluster& b) const { return score_.volumeTerm(b.size.voxels); }
   int32_t restOfScore(const Pair& pair, uint32_t contact) const {
     const Cluster &a = clusters_[pair.a], &b = clusters_[pair.b];
     const Contact& c = contacts_[contact];

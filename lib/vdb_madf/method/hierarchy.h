@@ -52,6 +52,12 @@ struct Hierarchy {
 /// shortest edges of a voxel, V and F in voxels and faces, all in integers (detail/join_score.h).
 /// From 2^43 voxels and 2^31 faces on, a class and a contact count as one less.
 ///
+/// In a plane, where the domain is one voxel thick (ManifoldGraph::flatAxis), V is an area and F a
+/// length: U is V, but no more than 2.5 m (about the largest disc), but no less than V / 4, and the
+/// score is
+///   1.5 log2(V_b / U_a) + 8 sqrt(m_a / m_b) + 3 F / sqrt(U_b) - 2.5 (sqrt(m_a) - sqrt(h))
+///     + max(0, 6 - log2 V_a).
+///
 /// Again and again the pair of largest score is joined; of equal ones that whose smaller
 /// representative is lexicographically smaller, then the other one.
 ///

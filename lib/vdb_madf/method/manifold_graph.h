@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "vdb_madf/leaves/leaf_index.h"
@@ -32,9 +33,12 @@ struct ManifoldGraph {
   std::vector<Node> nodes;
   std::vector<Edge> edges;
   VoxelWeights weights{};  ///< in whose metric radii and heights are
+  /// The axis along which the domain is one voxel thick: all is in a plane then (hierarchy.h).
+  std::optional<int> flatAxis{};
 };
 
-/// The graph of a flow, all but the weights; \p power is the (filtered) power map that it followed.
+/// The graph of a flow, all but the weights and the axis; \p power is the (filtered) power map that
+/// it followed.
 /// Height of a voxel: H(p) = -power(p) = D(s) - |p - s|^2 with s = Pi(p).
 /// @throw Interrupted
 ManifoldGraph manifoldGraph(const LeafIndex& index, const Flow& flow,

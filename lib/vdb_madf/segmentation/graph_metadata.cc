@@ -20,6 +20,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/segmentation/detail/graph_metadata_type.h"
 
 namespace vdb_madf {
@@ -311,10 +312,11 @@ std::shared_ptr<const GraphMetadata> metadataOf(const openvdb::GridBase& grid) {
   return std::dynamic_pointer_cast<const GraphMetadata>(grid[kName]);
 }
 
-/// Gives a graph that was stored on a grid its weights.
-void takeWeights(const openvdb::GridBase& grid, ManifoldGraph& graph) {
+/// Gives a graph that was stored on a grid its weights and its axis.
+void takeMetric(const openvdb::GridBase& grid, ManifoldGraph& graph) {
   graph.weights = storedWeights(grid);
   checkWeights(graph.weights, extentOf(graph));
+  if (const auto domain = storedDomain(grid)) graph.flatAxis = domain->flatAxis();
 }
 
 }  // namespace
@@ -330,7 +332,7 @@ std::optional<ManifoldGraph> storedGraph(const openvdb::GridBase& grid) {
     throw InvalidInput("grid '" + grid.getName() +
                        "' carries the graph of one slab: give the whole folder of slabs");
   ManifoldGraph graph = metadata->value().graph;
-  takeWeights(grid, graph);
+  takeMetric(grid, graph);
   return graph;
 }
 
@@ -354,7 +356,7 @@ std::optional<GraphPart> storedGraphPart(const openvdb::GridBase& grid) {
   const auto metadata = metadataOf(grid);
   if (!metadata || !metadata->isPart()) return std::nullopt;
   GraphPart part = metadata->value();
-  takeWeights(grid, part.graph);
+  takeMetric(grid, part.graph);
   return part;
 }
 

@@ -16,8 +16,9 @@ namespace vdb_madf {
 /// The value, in bytes, all integers little-endian: version 1 (u32), number of nodes (u32), number
 /// of edges (u32); per node x, y, z, squared radius (i32), voxels (i64); per edge first, second
 /// (u32), contact faces (i64), saddle height (i32), cells touch (u8, 0 or 1). The graph's weights
-/// stand beside it, in `madf_weights` (voxel_weights.h). The part of a slab has version 2, and
-/// after the edges the number of each node (u32), then of each whether it goes on (u8, 0 or 1).
+/// stand beside it, in `madf_weights` (voxel_weights.h), its flat axis follows from the domain. The
+/// part of a slab has version 2, and after the edges the number of each node (u32), then of each
+/// whether it goes on (u8, 0 or 1).
 /// Where a manifold has voxels in cavities, version 3 (of a part: 4) ends with their number for
 /// each node (i64).
 /// @throw InvalidInput if the graph breaks a rule of manifold_graph.h (order, ranges), or takes

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 
 #include "vdb_madf/method/voxel_weights.h"
 
@@ -55,26 +56,43 @@ struct ScoredClass {
 /// - 0 <= 2 lg V <= 22014 and 0 <= u <= 22014, 18 rho <= 4608, 5 f <= 40955, 8 d < 2^27, the last
 ///   term at most 5376: the score is within 32 bits, at most 72953, and above -94.93 10^6.
 ///
-/// Of V_b alone it depends by 2 lg V_b and by f, which falls as V_b grows: if a, F, h and m_b stay,
-/// the score less 2 lg V_b never grows with V_b.
+/// In a plane, where V is an area and F a length:
+/// - the disc is below 10 m < 2^35, so w < 2^45, x^2 w < 2^71 and (512 F)^2 < 2^80;
+/// - u <= 11007, 16 rho <= 4096, 6 f <= 49146, the last term at most 3072: at most 89335.
+///
+/// Of V_b alone it depends by volumeTerm() and by f, which falls as V_b grows: if a, F, h and m_b
+/// stay, the score less that term never grows with V_b.
 class JoinScore {
  public:
   static constexpr int64_t kMaxVoxels = (int64_t(1) << 43) - 1, kMaxFaces = (int64_t(1) << 31) - 1;
 
-  explicit JoinScore(const VoxelWeights& weights)
-      : shortest_(weights.least()),
-        factor_(std::gcd(std::gcd(weights.x, weights.y), weights.z)),
-        product_(Wide(uint64_t(weights.x) * uint64_t(weights.y)) * uint64_t(weights.z)),
-        lgProduct_(lg(weights.x / factor_) + lg(weights.y / factor_) + lg(weights.z / factor_)) {}
+  /// @param flatAxis all is in a plane, one voxel thick along it
+  JoinScore(const VoxelWeights& weights, const std::optional<int>& flatAxis)
+      : isFlat_(flatAxis.has_value()) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (flatAxis == axis) continue;
+      const int32_t weight = weights[axis];
+      shortest_ = shortest_ > 0 ? std::min(shortest_, weight) : weight;
+      factor_ = std::gcd(factor_, weight);
+      product_ *= uint64_t(weight);
+    }
+    for (int axis = 0; axis < 3; ++axis)
+      if (flatAxis != axis) lgProduct_ += lg(weights[axis] / factor_);
+  }
 
   int32_t operator()(const ScoredClass& a, const ScoredClass& b, int64_t faces,
                      int32_t height) const {
     const int32_t rho = squareRoot((int64_t(a.top) << 16) / b.top);
     const int32_t d = rootInEdges(a.top) - rootInEdges(height);
     const int32_t lgVoxels = lg(a.voxels);
-    return 2 * lg(b.voxels) - twiceLgLimited(a, lgVoxels) + 18 * rho + 5 * contact(b, faces) -
+    if (isFlat_)
+      return volumeTerm(b.voxels) - 3 * lgLimited(a, lgVoxels) + 16 * rho +
+             6 * contactInPlane(b, faces) - 5 * d + 2 * std::max(0, 1536 - lgVoxels);
+    return volumeTerm(b.voxels) - twiceLgLimited(a, lgVoxels) + 18 * rho + 5 * contact(b, faces) -
            8 * d + 3 * std::max(0, 1792 - lgVoxels);
   }
+
+  int32_t volumeTerm(int64_t voxels) const { return (isFlat_ ? 3 : 2) * lg(voxels); }
 
  private:
   using Wide = unsigned __int128;
@@ -105,9 +123,34 @@ class JoinScore {
     return int32_t(x);
   }
 
-  int32_t shortest_, factor_;
-  Wide product_;
-  int32_t lgProduct_;
+  /// lg U_a: V_a, but no more than about its largest disc, 2.5 m, but no less than V_a / 4.
+  /// 338 = lg 2.5. The disc's voxels on unequal ones: 2.5 m / sqrt(wx wy).
+  int32_t lgLimited(const ScoredClass& a, int32_t lgVoxels) const {
+    const int32_t disc = 338 + lg(std::max(1, a.top / factor_)) - lgProduct_ / 2;
+    return std::max(lgVoxels - 512, std::min(lgVoxels, std::max(0, disc)));
+  }
+
+  /// 256 F / sqrt(U_b), at most 8191: the largest x with x^2 4 U_b <= (512 F)^2.
+  int32_t contactInPlane(const ScoredClass& b, int64_t faces) const {
+    const Wide squared = Wide(100) * uint64_t(b.top) * uint64_t(b.top) / product_;
+    Wide disc = 0;  // floor(10 m / sqrt(wx wy))
+    for (Wide bit = Wide(1) << 35; bit > 0; bit >>= 1)
+      if ((disc + bit) * (disc + bit) <= squared) disc += bit;
+    const Wide area = uint64_t(b.voxels);
+    const Wide limited = std::max(area, std::min(4 * area, std::max(Wide(1), disc)));
+    const Wide whole = Wide(faces) * 512;
+    uint64_t x = 0;
+    for (uint64_t bit = 4096; bit > 0; bit >>= 1) {
+      const uint64_t next = x + bit;
+      if (next * next * limited <= whole * whole) x = next;
+    }
+    return int32_t(x);
+  }
+
+  bool isFlat_;
+  int32_t shortest_ = 0, factor_ = 0;  // of the axes that count
+  Wide product_ = 1;
+  int32_t lgProduct_ = 0;
 };
 
 }  // namespace vdb_madf::detail

@@ -52,9 +52,10 @@ ClassGraph classGraph(const SlabPart& part, const std::vector<uint32_t>& classOf
   return graph;
 }
 
-JoinedClasses::JoinedClasses(const std::vector<Coord>& representatives,
-                             const VoxelWeights& weights) {
+JoinedClasses::JoinedClasses(const std::vector<Coord>& representatives, const VoxelWeights& weights,
+                             const std::optional<int>& flatAxis) {
   graph_.weights = weights;
+  graph_.flatAxis = flatAxis;
   graph_.nodes.reserve(representatives.size());
   for (const Coord& position : representatives) graph_.nodes.push_back({position, 0, 0});
 }

@@ -34,7 +34,8 @@ ClassGraph classGraph(const SlabPart& part, const std::vector<uint32_t>& classOf
 /// and each edge was lower than both when it was visited.)
 class JoinedClasses {
  public:
-  JoinedClasses(const std::vector<Coord>& representatives, const VoxelWeights& weights);
+  JoinedClasses(const std::vector<Coord>& representatives, const VoxelWeights& weights,
+                const std::optional<int>& flatAxis);
   void add(const ClassGraph& part);
   ManifoldGraph finish();
 

@@ -86,7 +86,7 @@ class MergeTree {
     work_.steps.exchange();
     std::vector<uint32_t> grains;
     if (work_.plan.isRoot()) {
-      JoinedClasses joined(representatives_, work_.facts.weights);
+      JoinedClasses joined(representatives_, work_.facts.weights, work_.facts.flatAxis);
       for (size_t s = 0; s < work_.plan.slabCount(); ++s)
         joined.add(work_.store.receive(kClassGraph, s, kRoot));
       const Merging merging = merge(joined.finish(), work_.options.merge);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/segmentation/detail/manifold_labels.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/slabs/cuts/part_check.h"
@@ -51,6 +52,7 @@ SlabObject manifoldObject(const LabelSlabs& manifolds, const Scratch& scratch) {
 SlabRemerge::SlabRemerge(const LabelSlabs& manifolds, SlabWork& work)
     : manifolds_(manifolds), work_(work) {
   work_.facts.weights = storedWeights(*manifolds.about);
+  if (const auto domain = storedDomain(*manifolds.about)) work_.facts.flatAxis = domain->flatAxis();
 }
 
 void SlabRemerge::read() {
@@ -67,12 +69,10 @@ void SlabRemerge::merge(SlabSegmentation& result, const PutLabels& put) {
     criticalPoints += known.criticalPoints;
   }
   PartCheck check(criticalPoints);
-  std::vector<Coord> representatives = mergeParts(work_, [&](size_t s) {
-    SlabPart part = work_.store.read(kGraphPart, s);
-    check.add(part);
-    return part;
-  });
+  for (size_t s = 0; s < work_.plan.slabCount(); ++s) check.add(work_.store.read(kGraphPart, s));
   check.finish();
+  std::vector<Coord> representatives =
+      mergeParts(work_, [&](size_t s) { return work_.store.read(kGraphPart, s); });
   result.counts.grains = int64_t(representatives.size());
   result.grainVoxels.assign(representatives.size(), 0);
   labelSlabs(work_, std::move(representatives), result, put);

@@ -13,6 +13,7 @@ namespace vdb_madf::detail {
 struct SlabFacts {
   Obstacles obstacles{};
   VoxelWeights weights;
+  std::optional<int> flatAxis{};       ///< of the domain
   bool fillsNone = false;              ///< would the cavities be all background?
   int32_t largestSquaredDistance = 0;  ///< of all slabs, once they are measured
 
