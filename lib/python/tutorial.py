@@ -34,13 +34,13 @@ print(f"solid fraction {mask.fraction:.3f}; to segment it takes up to "
 # %% [markdown]
 # ## Grains
 #
-# How sure is their number? If it hardly changes with theta, the grains are clear.
+# How sure is their number? If it hardly changes with strictness, the grains are clear.
 
 # %%
 seg = madf.segment(mask)
-sweep = seg.sweep(theta=np.linspace(-1, -0.3, 15))
+sweep = seg.sweep(np.linspace(8, 14, 13))
 print(seg.counts["grains"], "grains;",
-      dict(zip(sweep["theta"].round(2).tolist(), sweep["grains"].tolist())))
+      dict(zip(sweep["strictness"].tolist(), sweep["grains"].tolist())))
 agreement = madf.compare(truth, seg.labels)
 print(f"{agreement.misclassified_percent:.1f} % of the voxels lie in a wrong grain")
 

@@ -237,7 +237,8 @@ with tempfile.TemporaryDirectory() as folder:
     command("generate", "sintered", "s.vdb", "--size", "64", "--count", "30", "--radius", "7:11",
             "--voxel-size", "10um", "-q")
     command("segment", "s.vdb", "l.vdb", "-q")
-    command("sweep", "s.vdb", "sweep.csv", "--theta", "-0.9,-0.7", "-q")
+    command("sweep", "s.vdb", "sweep.csv", "--merge", "score,both", "--strictness", "9:11:1",
+            "--theta", "-0.9,-0.7", "-q")
     refusal = command("report", "l.vdb", "r.html", "--sweep", "sweep.csv", refused=True)
     if "cannot be written by this program" in refusal:
         skip("reports in a browser: built without esbuild, libjs-three and libjs-jquery-datatables")

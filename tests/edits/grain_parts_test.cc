@@ -21,6 +21,7 @@
 #include "vdb_madf/labels/label_digest.h"
 #include "vdb_madf/labels/label_sizes.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
@@ -115,9 +116,10 @@ Sample sampleOf(uint64_t seed) {
   sample.object = randomVolume(kKinds[seed % 5], boxAt(randomOrigin(rng), {26, 24, 22}), rng);
   sample.options.keepManifold = true;
   sample.options.tidy = int(seed % 3);
+  sample.options.merge.mode = MergeMode(rng.below(4));
+  sample.options.merge.strictness = rng.between(4, 14);
   sample.options.merge.theta = rng.chance(0.4) ? -0.95 : rng.chance(0.5) ? -0.5 : 1;
   sample.options.merge.delta = rng.below(5);
-  if (rng.chance(0.3)) sample.options.merge.mode = MergeMode::angle;
   if (rng.chance(0.3)) sample.options.gamma = 9;
   if (rng.chance(0.3)) sample.options.weights = VoxelWeights{1, 1, 4};
   sample.segmentation = segment(*toMask(sample.object), sample.options);
@@ -130,7 +132,7 @@ Sample largeSample() {
   Sample sample;
   sample.object = randomVolume(VolumeKind::blurredNoise, boxAt({-20, 3, -9}, {40, 38, 36}), rng);
   sample.options.keepManifold = true;
-  sample.options.merge.theta = -0.8;
+  sample.options.merge.strictness = 10;
   sample.segmentation = segment(*toMask(sample.object), sample.options);
   REQUIRE(sample.segmentation.counts.grains >= 6);
   return sample;
@@ -419,13 +421,17 @@ TEST_CASE("grain_parts: what no manifolds explain is refused", "[grain_parts]") 
     says(grain, *changed, "and its graph says");
   }
   SECTION("labels that do not say how they were merged") {
-    for (const char* key :
-         {"madf_theta", "madf_merge", "madf_adjacency", "madf_delta", "madf_tidy"}) {
-      const auto labels = grain.deepCopy();
-      labels->removeMeta(key);
-      says(*labels, manifold, "do not say by which options");
-    }
     const auto labels = grain.deepCopy();
+    const auto saysWithout = [&](const std::vector<const char*>& keys) {
+      for (const char* key : keys) {
+        const auto less = labels->deepCopy();
+        less->removeMeta(key);
+        says(*less, manifold, "do not say by which options");
+      }
+    };
+    saysWithout({"madf_merge", "madf_strictness", "madf_tidy"});
+    describeMerging(*labels, {MergeMode::both}, 2, 9);
+    saysWithout({"madf_theta", "madf_merge", "madf_adjacency", "madf_delta", "madf_tidy"});
     labels->insertMeta("madf_merge", openvdb::StringMetadata("own"));
     says(*labels, manifold, "do not say by which options");
     labels->insertMeta("madf_merge", openvdb::StringMetadata("both"));

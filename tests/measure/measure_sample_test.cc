@@ -121,6 +121,7 @@ TEST_CASE("measure_sample: a segmentation measures as its labels do", "[measure_
         SegmentOptions options;
         options.gamma = gamma;
         options.boundary = boundary;
+        options.merge.strictness = 14;  // noise has many grains then
         options.domain = CoordBBox(Coord(-9), Coord(30));
         // Plain labels are measured with the help of their graph.
         if (kind == VolumeKind::denseNoise) options.fillHoles = options.tidy = 0;

@@ -361,7 +361,9 @@ TEST_CASE("unequal_voxels: a segmentation is measured as its labels, with any nu
   const auto object = MaskGrid::create(false);
   object->setTransform(labels->transform().copy());
   object->tree().topologyUnion(labels->tree());
-  const Segmentation segmentation = segment(*object);
+  SegmentOptions options;
+  options.merge.strictness = 13;
+  const Segmentation segmentation = segment(*object, options);
   REQUIRE(segmentation.weights == VoxelWeights{4, 4, 25});
   const auto cells = [](const Measurements& m) {
     std::vector<double> values;

@@ -52,7 +52,7 @@ struct Sample {
   /// mode angle at theta -0.9: four grains; mode neck: the rod is one.
   explicit Sample(MergeMode mode = MergeMode::angle) {
     SegmentOptions options;
-    options.merge = {-0.9, mode, Adjacency::manifold, 0};
+    options.merge = {mode, 11, -0.9, 0, Adjacency::manifold};
     options.fillHoles = options.tidy = 0;
     s = asSegmentation(object, oracleSegment(object, {}, options), 0);
   }

@@ -37,7 +37,7 @@ void connect(ManifoldGraph& graph, uint32_t first, uint32_t second, int saddleHe
 }
 
 MergeOptions options(double theta, MergeMode mode, Adjacency adjacency = Adjacency::manifold) {
-  return {theta, mode, adjacency, 0};
+  return {mode, 11, theta, 0, adjacency};
 }
 
 void checkMerge(const ManifoldGraph& graph, const MergeOptions& merging, const NodeLabels& labels,
@@ -307,7 +307,7 @@ TEST_CASE("merge: theta outside [-1, 1] is refused", "[merge]") {
       CHECK_THROWS_AS(merge({}, options(theta, mode)), InvalidInput);
     }
   for (const int delta : {-1, kMaxDelta + 1})
-    CHECK_THROWS_AS(merge(graph, {-0.9, MergeMode::both, Adjacency::manifold, delta}),
+    CHECK_THROWS_AS(merge(graph, {MergeMode::both, 11, -0.9, delta, Adjacency::manifold}),
                     InvalidInput);
 }
 

@@ -152,7 +152,7 @@ def test_memory_is_given_back():
 
     def work():
         seg = madf.segment(array)
-        madf.measure(seg.remerge(theta=-0.5).labels)
+        madf.measure(seg.remerge(strictness=9).labels)
         seg.labels.mesh()
         return seg.labels[20].sum()
     for _ in range(30):

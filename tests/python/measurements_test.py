@@ -72,7 +72,7 @@ def test_the_sample(measured, tables):
     assert here["diameter_by_volume"][50] == pytest.approx(
         there["grain_diameter_by_volume_mm"]["d50"])
     assert list(here["coordinations"]) == there["coordination_distribution"]
-    assert measured.provenance["madf_theta"] == -0.9
+    assert measured.provenance["madf_strictness"] == 11
 
 
 @pytest.fixture(scope="module")

@@ -28,10 +28,9 @@ def gray(array, tmp_path_factory):
 # Arguments here, options there.
 SAME = [
     ({}, []),
+    (dict(strictness=9.5), ["--strictness", "9.5"]),
     (dict(theta=-0.5, merge="angle", adjacency="cell", delta=0),
-     ["--theta", "-0.5", "--merge", "angle",
-                                                                  "--adjacency", "cell", "--delta",
-                                                                  "0"]),
+     ["--theta", "-0.5", "--merge", "angle", "--adjacency", "cell", "--delta", "0"]),
     (dict(gamma=30, fill_holes=0, tidy=0), ["--gamma", "30", "--fill-holes", "0", "--tidy", "0"]),
     (madf.PAPER, ["--paper"]),
     (dict(boundary="closed", invert=True), ["--boundary", "closed", "--invert"]),
@@ -101,19 +100,19 @@ def test_remerge_and_sweep_equal_fresh_segmentations(sample):
         assert rows["largest_voxels"][row] == fresh.labels.voxels.max()
     assert rows["grains"][0] > rows["grains"][3]
     with pytest.raises(madf.InvalidInput, match="keep"):
-        madf.segment(sample[0], keep=()).remerge(theta=0)
+        madf.segment(sample[0], keep=()).remerge(strictness=0)
 
 
 def test_merging_by_score():
     mask = madf.generate("snow", size=64, fraction=0.4, length=12)[0]
-    seg = madf.segment(mask, merge="score", strictness=12)
+    seg = madf.segment(mask, strictness=12)
     assert seg.options["merge"] == "score" and seg.options["strictness"] == 12
     assert not {"theta", "delta", "adjacency"} & set(seg.options)
     joins = seg.hierarchy
     made_at = joins["strictness"]
     assert len(made_at) > 4
     for strictness in (made_at[0], made_at[len(made_at) // 2], made_at[-1]):
-        fresh = madf.segment(mask, merge="score", strictness=strictness)
+        fresh = madf.segment(mask, strictness=strictness)
         again = seg.cut(strictness)
         assert (np.asarray(fresh.labels) == np.asarray(again.labels)).all()
         assert again.options == fresh.options and again.labels.metadata == fresh.labels.metadata
@@ -122,16 +121,22 @@ def test_merging_by_score():
     assert (np.diff(joins["strictness"]) <= 0).all()
     assert (joins["strictness"] <= joins["score"]).all()
     both = seg.remerge(merge="both")
-    assert both.options == madf.segment(mask).options
+    assert both.options == madf.segment(mask, merge="both").options
     assert both.cut(12).options == seg.options
+    assert list(seg.sweep(made_at[:3])["grains"]) == [
+        joins["grains"][made_at >= at][-1] for at in made_at[:3]]
     rows = seg.sweep(merge=["score", "neck"], strictness=[9, 11], theta=[-0.9])
     assert rows["merge"] == ["score", "score", "neck"]
     assert rows["grains"][1] == seg.cut(11).counts["grains"]
     assert np.isnan(rows["theta"][:2]).all() and np.isnan(rows["strictness"][2])
     with pytest.raises(madf.InvalidInput, match="theta: belongs to merge='both'"):
         seg.remerge(theta=-0.5)
+    with pytest.raises(madf.InvalidInput, match="theta: belongs to merge='both'"):
+        seg.sweep(theta=[-0.5])
     with pytest.raises(madf.InvalidInput, match="strictness: belongs to merge='score'"):
-        madf.segment(mask, strictness=9)
+        madf.segment(mask, merge="neck", strictness=9)
+    with pytest.raises(madf.InvalidInput, match="strictness: belongs to merge='score'"):
+        seg.sweep([9], merge="neck")
 
 
 def test_what_is_kept(sample, command, tmp_path):
@@ -150,8 +155,8 @@ def test_what_is_kept(sample, command, tmp_path):
     assert len(seg.balls["position"]) == seg.counts["medial_balls"]
     assert set(seg.seconds) >= {"squared_distance", "power_map", "merge", "labels"}
     seg.save(tmp_path / "all.vdb")
-    command("remerge", tmp_path / "all.vdb", tmp_path / "there.vdb", "--theta", "-0.2")
-    here, there = seg.remerge(theta=-0.2).labels, madf.Labels(tmp_path / "there.vdb")
+    command("remerge", tmp_path / "all.vdb", tmp_path / "there.vdb", "--strictness", "7")
+    here, there = seg.remerge(strictness=7).labels, madf.Labels(tmp_path / "there.vdb")
     assert (np.asarray(here) == np.asarray(there)).all() and here.metadata == there.metadata
 
 
@@ -168,7 +173,9 @@ def test_memory_is_said_and_limited(sample, array):
     (dict(voxel_size=8.5), TypeError, "unit"),
     (dict(voxel_size="8.5"), ValueError, "voxel_size: 8.5: give a unit"),
     (dict(voxel_size="8,5um"), ValueError, "point, not a comma"),
-    (dict(theta=2), ValueError, "cosine"),
+    (dict(theta=2, merge="both"), ValueError, "cosine"),
+    (dict(strictness=1e6), ValueError, "strictness"),
+    (dict(theta=-0.8), ValueError, "belongs to merge='both'"),
     (dict(merge="most"), ValueError, "both, angle, neck"),
     (dict(keep=("ball",)), ValueError, "manifold"),
     (dict(boundary="half"), ValueError, "auto, open, closed"),

@@ -339,7 +339,7 @@ TEST_CASE("report: the table of a sweep goes along", "[report]") {
   NEEDS_PAGE();
   ReportOptions options;
   options.sweep =
-      "gamma,merge,delta,theta,grains,median_voxels,small_grains,more\n0,both,2,-1,9,8,7,6\n";
+      "gamma,merge,strictness,delta,theta,grains,median_voxels,more\n0,score,11,,,9,8,6\n";
   const Page page = write(*balls(), options);
   CHECK(page.bytes("sweep") == options.sweep);
 }

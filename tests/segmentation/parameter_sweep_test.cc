@@ -45,7 +45,7 @@ void requireRow(const SweepRow& row, const MaskGrid& object, const SweepOptions&
   CAPTURE(row.gamma, int(row.mode), row.theta, row.delta);
   SegmentOptions one;
   one.gamma = row.gamma;
-  one.merge = {row.theta, row.mode, options.adjacency, row.delta, row.strictness};
+  one.merge = {row.mode, row.strictness, row.theta, row.delta, options.adjacency};
   one.tidy = options.tidy;
   one.boundary = options.boundary;
   const Segmentation segmentation = segment(object, one);
@@ -164,6 +164,7 @@ TEST_CASE("parameter_sweep: the boundary and the domain are heeded", "[parameter
 TEST_CASE("parameter_sweep: unequal voxels are measured as they are", "[parameter_sweep]") {
   const MaskGrid::Ptr object = rough();
   SweepOptions options;
+  options.modes = {MergeMode::score, MergeMode::both};
   options.thetas = {-0.9, -0.5};
   options.deltas = {8};
   const SweepRow cubes = parameterSweep(*object, options)[0];

@@ -56,14 +56,14 @@ std::map<std::string, std::string> texts(const openvdb::MetaMap& metadata) {
   return result;
 }
 
-const std::vector<MergeOptions> kMergings = {{-1, MergeMode::both, Adjacency::manifold, 0},
-                                             {-0.9, MergeMode::both, Adjacency::manifold, 2},
-                                             {-0.8, MergeMode::angle, Adjacency::manifold, 0},
-                                             {-0.8, MergeMode::angle, Adjacency::cell, 0},
-                                             {-0.6, MergeMode::neck, Adjacency::manifold, 5},
-                                             {1, MergeMode::both, Adjacency::cell, 80},
-                                             {-0.9, MergeMode::score, Adjacency::manifold, 2, 8},
-                                             {-0.5, MergeMode::score, Adjacency::manifold, 2, 11}};
+const std::vector<MergeOptions> kMergings = {{MergeMode::both, 11, -1, 0, Adjacency::manifold},
+                                             {MergeMode::both, 11, -0.9, 2, Adjacency::manifold},
+                                             {MergeMode::angle, 11, -0.8, 0, Adjacency::manifold},
+                                             {MergeMode::angle, 11, -0.8, 0, Adjacency::cell},
+                                             {MergeMode::neck, 11, -0.6, 5, Adjacency::manifold},
+                                             {MergeMode::both, 11, 1, 80, Adjacency::cell},
+                                             {MergeMode::score, 8, -0.9, 2, Adjacency::manifold},
+                                             {MergeMode::score, 11, -0.5, 2, Adjacency::manifold}};
 
 /// Labels as the oracle merges its own manifolds, and all else as a fresh segmentation has it.
 void requireFresh(RandomCase c) {
@@ -77,7 +77,7 @@ void requireFresh(RandomCase c) {
   const Segmentation first = segment(*maskOf(c), optionsOf(c));
   for (const MergeOptions& merging : kMergings) {
     const int tidy = merging.theta < -0.7 ? 2 : 0;
-    CAPTURE(merging.theta, int(merging.mode), int(merging.adjacency), tidy);
+    CAPTURE(merging.strictness, merging.theta, int(merging.mode), int(merging.adjacency), tidy);
     const Merging merged = oracleMerge(oracle.graph, merging);
     std::vector<Coord> representatives;
     for (const uint32_t node : merged.representative)
@@ -102,7 +102,7 @@ void requireFresh(RandomCase c) {
 TEST_CASE("remerge: a row, drawn by hand", "[remerge]") {
   const auto manifold = rowGrid();
   const auto labels = [&](double theta, MergeMode mode, Adjacency adjacency = Adjacency::manifold) {
-    return labelsOfRow(*remerge(*manifold, {theta, mode, adjacency, 0}, 0));
+    return labelsOfRow(*remerge(*manifold, {mode, 11, theta, 0, adjacency}, 0));
   };
   using Row = std::vector<int32_t>;
   // 4 >= (1 - theta)/2 * 4 for all theta; 1 >= (1 - theta)/2 * 4 from 0.5 on.
@@ -122,7 +122,7 @@ TEST_CASE("remerge: leaves the manifolds as they are", "[remerge]") {
   manifold->insertMeta("madf_source", openvdb::StringMetadata("scan.tif"));
   manifold->insertMeta("madf_grains", openvdb::Int64Metadata(99));
   const auto before = texts(*manifold);
-  const auto grain = remerge(*manifold, {0.5, MergeMode::neck, Adjacency::cell, 3}, 4);
+  const auto grain = remerge(*manifold, {MergeMode::neck, 11, 0.5, 3, Adjacency::cell}, 4);
   CHECK(labelsOfRow(*manifold) == std::vector<int32_t>{1, 1, 2, 2, 3, 3, 3});
   CHECK(texts(*manifold) == before);
   CHECK(storedGraph(*manifold)->nodes == rowGraph().nodes);
@@ -166,7 +166,7 @@ TEST_CASE("remerge: takes active tiles", "[remerge]") {
   graph.nodes[0].voxels += 512;
   graph.nodes[2].voxels += 128 * 128 * 128;
   setGraph(*manifold, graph);
-  const auto grain = remerge(*manifold, {-1, MergeMode::neck, Adjacency::manifold, 0}, 0);
+  const auto grain = remerge(*manifold, {MergeMode::neck, 11, -1, 0, Adjacency::manifold}, 0);
   CHECK(grain->activeVoxelCount() == 7 + 512 + 128 * 128 * 128);
   for (const Coord& p : {Coord(-8, 0, 0), Coord(-1, 7, 7)}) CHECK(grain->tree().getValue(p) == 1);
   for (const Coord& p : {Coord(-128, 128, 0), Coord(-1, 255, 127)})
@@ -196,7 +196,7 @@ TEST_CASE("remerge: a merging of one's own", "[remerge]") {
   SegmentOptions options;
   options.keepManifold = true;
   const auto result = segment(*toMask(object), options);
-  const MergeOptions merging{-0.7, MergeMode::both, Adjacency::manifold};
+  const MergeOptions merging{MergeMode::both, 11, -0.7, 2, Adjacency::manifold};
   for (const int rounds : {0, 2}) {
     const auto expected = remerge(*result.manifold, merging, rounds),
                own = applyMerging(*result.manifold, merge(result.graph, merging), rounds);
@@ -242,12 +242,12 @@ TEST_CASE("remerge: what does not fit is refused", "[remerge]") {
   }
   SECTION("theta") {
     for (const double theta : {-1.01, 1.01, std::nan("")})
-      CHECK_THROWS_AS(remerge(*manifold, {theta, MergeMode::both, Adjacency::manifold}),
+      CHECK_THROWS_AS(remerge(*manifold, {MergeMode::both, 11, theta, 2, Adjacency::manifold}),
                       InvalidInput);
   }
   SECTION("delta and tidy") {
     for (const int delta : {-1, 81})
-      CHECK_THROWS_AS(remerge(*manifold, {-0.9, MergeMode::both, Adjacency::manifold, delta}),
+      CHECK_THROWS_AS(remerge(*manifold, {MergeMode::both, 11, -0.9, delta, Adjacency::manifold}),
                       InvalidInput);
     CHECK_THROWS_AS(remerge(*manifold, {}, -1), InvalidInput);
   }
@@ -271,7 +271,7 @@ TEST_CASE("remerge: threads do not matter, nor where the grid lies", "[remerge]"
       randomVolume(VolumeKind::roughBalls, boxAt({-43, -40, 100}, {60, 53, 57}), rng);
   SegmentOptions options;
   options.keepManifold = true;
-  const MergeOptions merging{-0.7, MergeMode::both, Adjacency::manifold};
+  const MergeOptions merging{MergeMode::both, 11, -0.7, 2, Adjacency::manifold};
   options.merge = merging;
   const auto expected = segment(*toMask(object), options).grain;
   DenseVolume<int64_t> labels(object.box());

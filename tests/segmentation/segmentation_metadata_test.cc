@@ -101,7 +101,7 @@ TEST_CASE("segmentation_metadata: every option and count has its key", "[segment
           s.tidy = options.tidy = 11;
           // What was used counts, not what was asked for.
           options.boundary = open ? Boundary::automatic : Boundary::open;
-          options.merge = {-0.1234567890123, mode, adjacency, 12, 10.75};
+          options.merge = {mode, 10.75, -0.1234567890123, 12, adjacency};
           describeSegmentation(*grid, options, s);
           CHECK(storedTexts(*grid) == expectedTexts(options, open, s.counts, s.fillHoles));
           if (mode != MergeMode::score)
@@ -115,7 +115,7 @@ TEST_CASE("segmentation_metadata: how manifolds were merged is read again",
   CHECK_FALSE(storedMerging(*grid));
   for (const MergeMode mode : {MergeMode::both, MergeMode::angle, MergeMode::neck})
     for (const Adjacency adjacency : {Adjacency::manifold, Adjacency::cell}) {
-      describeMerging(*grid, {-0.1234567890123, mode, adjacency, 12}, 6, 77);
+      describeMerging(*grid, {mode, 11, -0.1234567890123, 12, adjacency}, 6, 77);
       const auto merging = storedMerging(*grid);
       REQUIRE(merging);
       CHECK(merging->options.theta == -0.1234567890123);
@@ -126,7 +126,7 @@ TEST_CASE("segmentation_metadata: how manifolds were merged is read again",
     }
   grid->insertMeta("madf_adjacency", StringMetadata("face"));
   CHECK_FALSE(storedMerging(*grid));
-  describeMerging(*grid, {-0.5, MergeMode::score, Adjacency::cell, 12, 10.75}, 6, 77);
+  describeMerging(*grid, {MergeMode::score, 10.75, -0.5, 12, Adjacency::cell}, 6, 77);
   REQUIRE(storedMerging(*grid));
   CHECK(storedMerging(*grid)->options.mode == MergeMode::score);
   CHECK(storedMerging(*grid)->options.strictness == 10.75);
@@ -137,13 +137,15 @@ TEST_CASE("segmentation_metadata: how manifolds were merged is read again",
   CHECK_FALSE(storedMerging(*grid));
 }
 
-TEST_CASE("segmentation_metadata: another merging changes six values", "[segmentation_metadata]") {
+TEST_CASE("segmentation_metadata: another merging changes what it is told by",
+          "[segmentation_metadata]") {
   const auto grid = Int32Grid::create();
   grid->insertMeta("madf_source", StringMetadata("scan.tif"));
   const Segmentation s = numbered(100);
   describeSegmentation(*grid, {}, s);
   Texts expected = storedTexts(*grid);
-  describeMerging(*grid, {0.25, MergeMode::angle, Adjacency::cell, 5}, 6, 77);
+  describeMerging(*grid, {MergeMode::angle, 11, 0.25, 5, Adjacency::cell}, 6, 77);
+  expected.erase("madf_strictness");
   expected["madf_theta"] = asText(DoubleMetadata(0.25));
   expected["madf_merge"] = asText(StringMetadata("angle"));
   expected["madf_adjacency"] = asText(StringMetadata("cell"));

@@ -53,8 +53,8 @@ Case randomGraph(uint64_t seed) {
   Case c;
   c.groups = rng.between(1, 5);
   const double thetas[] = {-1, -0.9, -0.8, -0.5, 0, 0.5, 1};
-  c.options = {thetas[rng.below(7)], MergeMode(rng.below(3)), Adjacency(rng.below(2)),
-               rng.chance(0.5) ? 0 : rng.between(1, 12)};
+  c.options = {MergeMode(rng.below(3)), 11, thetas[rng.below(7)],
+               rng.chance(0.5) ? 0 : rng.between(1, 12), Adjacency(rng.below(2))};
   if (rng.chance(0.2)) c.weights = {rng.between(1, 9), rng.between(1, 9), rng.between(1, 9)};
   // Few radii and heights: many ties.
   const int count = rng.between(1, 12), radii = rng.between(1, 24), side = rng.between(3, 12);
@@ -364,7 +364,7 @@ TEST_CASE("merge_parts: ranges joined in any order give the grains of the whole"
 }
 
 TEST_CASE("merge_group: nothing is decided that depends on other groups", "[merge_group]") {
-  const MergeRule rule({-0.8, MergeMode::neck, Adjacency::manifold, 0}, {});
+  const MergeRule rule({MergeMode::neck, 11, -0.8, 0, Adjacency::manifold}, {});
   const Coord a(0, 0, 0), b(9, 0, 0), c(18, 0, 0);
   MergeGroup group;
   group.classes = {{100, false}, {9, true}, {100, false}};

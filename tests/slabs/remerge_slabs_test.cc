@@ -97,8 +97,8 @@ TEST_CASE("remerge_slabs: labels are those of a fresh segmentation", "[remerge_s
     std::vector<int> cuts = randomCuts(box, rng);
     SegmentOptions other = options;
     const double thetas[] = {-1, -0.9, -0.8, -0.5, 0};
-    other.merge = {thetas[rng.below(5)], MergeMode(rng.below(4)), Adjacency(rng.below(2)),
-                   rng.chance(0.5) ? 0 : rng.below(9), double(rng.between(4, 16))};
+    other.merge = {MergeMode(rng.below(4)), double(rng.between(4, 16)), thetas[rng.below(5)],
+                   rng.chance(0.5) ? 0 : rng.below(9), Adjacency(rng.below(2))};
     other.tidy = rng.below(9);
     options.tidy = 0;
     Segmentation whole;
@@ -127,15 +127,18 @@ TEST_CASE("remerge_slabs: manifolds that do not fit their graph are refused", "[
   initialize();
   const MaskGrid mask = twoBalls();
   const Manifolds good = manifoldsOf(mask, {0, 8, 16, 24, 32}, {});
-  REQUIRE(remergeCut(good, {-1, MergeMode::neck, Adjacency::manifold, 0}, 2).grainVoxels.size() ==
-          2);
-  REQUIRE(remergeCut(good, {1, MergeMode::neck, Adjacency::manifold, 0}, 2).grainVoxels.size() ==
-          1);
+  REQUIRE(
+      remergeCut(good, {MergeMode::neck, 11, -1, 0, Adjacency::manifold}, 2).grainVoxels.size() ==
+      2);
+  REQUIRE(
+      remergeCut(good, {MergeMode::neck, 11, 1, 0, Adjacency::manifold}, 2).grainVoxels.size() ==
+      1);
   const auto refused = [&](const std::string& why, auto change) {
     Manifolds changed = good;
     for (Int32Grid::Ptr& slab : changed.slabs) slab = slab->deepCopy();
     change(changed.slabs);
-    CHECK_THROWS_WITH(remergeCut(changed, {}, 2), vdb_madf::test::Contains(why));
+    for (const MergeMode mode : {MergeMode::score, MergeMode::both})
+      CHECK_THROWS_WITH(remergeCut(changed, {mode}, 2), vdb_madf::test::Contains(why));
   };
   using Slabs = std::vector<Int32Grid::Ptr>;
   const auto changePart = [](Int32Grid& slab, auto change) {
@@ -166,7 +169,7 @@ TEST_CASE("remerge_slabs: manifolds that do not fit their graph are refused", "[
 TEST_CASE("remerge_slabs: options and slabs that are none are refused", "[remerge_slabs]") {
   initialize();
   const Manifolds manifolds = manifoldsOf(twoBalls(), {0, 8, 16, 32}, {});
-  CHECK_THROWS_AS(remergeCut(manifolds, {2, MergeMode::both, Adjacency::manifold, 0}, 2),
+  CHECK_THROWS_AS(remergeCut(manifolds, {MergeMode::both, 11, 2, 0, Adjacency::manifold}, 2),
                   InvalidInput);
   CHECK_THROWS_AS(remergeCut(manifolds, {}, -1), InvalidInput);
   CHECK_THROWS_AS(remergeCut(manifolds, {}, 9), InvalidInput);  // the slab in the middle is lower

@@ -322,8 +322,8 @@ TEST_CASE("slab_graph: parts are those of the whole, and so are the grains", "[s
     REQUIRE(joined.edges == whole.edges);
 
     const double thetas[] = {-1, -0.9, -0.8, -0.5, 0, 0.5};
-    const MergeOptions options{thetas[rng.below(6)], MergeMode(rng.below(3)),
-                               Adjacency(rng.below(2)), rng.chance(0.5) ? 0 : rng.below(9)};
+    const MergeOptions options{MergeMode(rng.below(3)), 11, thetas[rng.below(6)],
+                               rng.chance(0.5) ? 0 : rng.below(9), Adjacency(rng.below(2))};
     if (rng.chance(0.3)) whole.weights = {rng.between(1, 9), rng.between(1, 9), 1};
     const Merging expected = merge(whole, options);
     const MergeRule rule(options, whole.weights);

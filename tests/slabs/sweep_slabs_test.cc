@@ -92,7 +92,8 @@ TEST_CASE("sweep_slabs: rows are those of the whole", "[sweep_slabs]") {
     }
     SweepOptions sweep;
     sweep.gammas = {options.gamma};
-    sweep.modes = {MergeMode::both, MergeMode::angle};
+    sweep.modes = {MergeMode::both, MergeMode::score, MergeMode::angle};
+    sweep.strictnesses = {11, 6};
     sweep.thetas = {-1, -0.8};
     sweep.deltas = {0, 3};
     sweep.smallVoxels = rng.between(1, 200);

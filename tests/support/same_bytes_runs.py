@@ -163,7 +163,10 @@ def segment():
     for keep in ("distance", "power", "manifold", "balls", "balls,power"):
         yield f"segment snow.vdb keep_{keep.replace(',', '_')}.vdb --keep {keep}"
     for theta in (-1, -0.95, -0.6, 0, 1):
-        yield f"segment snow.vdb theta{theta}.vdb --theta {theta} --json theta{theta}.json"
+        yield (f"segment snow.vdb theta{theta}.vdb --merge both --theta {theta} "
+               f"--json theta{theta}.json")
+    for strictness in (-200, 9, 10.5, 14):
+        yield f"segment snow.vdb strict{strictness}.vdb --strictness {strictness}"
     yield "segment snow.vdb paper.vdb --paper --keep manifold --json paper.json"
     yield "segment snow.vdb paper_theta.vdb --paper --theta -0.5 --gamma 160"
     yield "segment snow.vdb quiet.vdb --quiet"
@@ -202,7 +205,7 @@ def remerge():
     for merge, theta in product(("both", "angle", "neck"), (-1, -0.8, -0.3)):
         yield f"remerge all_snow_0.vdb remerged_{merge}{theta}.vdb --merge {merge} --theta {theta}"
     yield "remerge all_snow_20.vdb remerged_cell.vdb --merge angle --adjacency cell"
-    yield "remerge threads1.vdb remerged_large.vdb --theta -0.7 --threads 1"
+    yield "remerge threads1.vdb remerged_large.vdb --merge both --theta -0.7 --threads 1"
     yield "remerge keep_manifold.vdb remerged_quiet.vdb --quiet"
     yield "remerge solid_labels.vdb remerged_solid.vdb"
     yield "remerge none.vdb remerged_none.vdb"
@@ -219,10 +222,10 @@ def sweep():
     yield "sweep snow.vdb sweep.csv --plot sweep.svg"
     yield ("sweep snow.vdb sweep_gamma.csv --gamma 0,5 --theta -1:-0.5:0.25,-0.1 --merge angle "
            "--plot sweep_gamma.svg")
-    yield ("sweep sintered.vdb sweep_cell.csv --grid object --adjacency cell --boundary closed "
-           "--small 1000 --gamma 20")
-    yield ("sweep spheres32.tif sweep_image.csv --phase 1 --gamma 0 --boundary open --theta -0.9 "
-           "--plot -")
+    yield ("sweep sintered.vdb sweep_cell.csv --grid object --merge both --adjacency cell "
+           "--boundary closed --small 1000 --gamma 20")
+    yield ("sweep spheres32.tif sweep_image.csv --phase 1 --gamma 0 --boundary open --merge both "
+           "--theta -0.9 --plot -")
     yield ("sweep snow.vdb sweep_invert.csv --invert --gamma 0,20 --merge neck,both --quiet --plot "
            "sweep_invert.svg")
     yield ("sweep sintered32.truth.raw sweep_raw.csv --dims 32x32x32 --type int32 --range 2:4 "
@@ -421,7 +424,7 @@ def scan():
     yield ("segment nmc_crop.raw nmc_crop.vdb --dims 128x128x128 --type uint8 --phase 1 "
            "--voxel-size 0.4um --keep distance,power,manifold,balls --tables nmc_crop_dir "
            "--boundary closed --json nmc_crop.json")
-    yield "remerge nmc_crop.vdb nmc_merged.vdb --theta -0.5"
+    yield "remerge nmc_crop.vdb nmc_merged.vdb --merge both --theta -0.5"
     yield ("sweep nmc_crop.raw nmc_sweep.csv --dims 128x128x128 --type uint8 --phase 1 --gamma "
            "0,160 --plot nmc_sweep.svg")
     yield "compare nmc_crop.vdb nmc_merged.vdb --json nmc_compared.json"

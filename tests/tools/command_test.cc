@@ -377,7 +377,7 @@ TEST_CASE("cli: volumes come from standard input and go to standard output", "[c
   CHECK(piped("segment - npy:- --boundary closed", bench.bytes("s.npy")) == bench.bytes("g.npy"));
   CHECK(Json::parse(piped("info - --json -", bench.bytes("s.npy"))).at("size") ==
         Json({20, 20, 20}));
-  CHECK(piped("sweep - - --theta -1", bench.bytes("s.npy")).find("gamma,") == 0);
+  CHECK(piped("sweep - - --merge both --theta -1", bench.bytes("s.npy")).find("gamma,") == 0);
   CHECK(piped("export - csv:- --as network", bench.bytes("g.npy")).find("pore.") == 0);
 
   RunOptions redirected;

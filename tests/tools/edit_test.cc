@@ -47,7 +47,7 @@ TEST_CASE("cli: edits are done in the order given, from the command line and fro
   CHECK(grain.at("madf_grains") == grains);
   CHECK(grain.at("madf_object_voxels") == voxels);
   CHECK(grain.count("madf_medial_balls") == 0);
-  CHECK(grain.at("madf_theta") == -0.9);
+  CHECK(grain.at("madf_strictness") == 11);
   const Json manifold = metadataOf(bench, "e.vdb", "manifold");
   CHECK(manifold.at("madf_grains") == grains);
   CHECK(manifold.count("madf_edits") == 0);
@@ -69,7 +69,7 @@ TEST_CASE("cli: edits are done in the order given, from the command line and fro
 TEST_CASE("cli: an edit and its inverse give back the labels", "[cli]") {
   const Bench bench;
   bench.mustRun(kSnow + "s.vdb");
-  bench.mustRun("segment s.vdb g.vdb --keep manifold --theta -0.3");
+  bench.mustRun("segment s.vdb g.vdb --keep manifold --merge both --theta -0.3");
   const std::string before = digestOf(bench, "g.vdb");
   const Json info = Json::parse(bench.mustRun("edit g.vdb split.vdb --split 1 --json -"));
   const Json parts = info.at("edits")[0].at("grains");
@@ -83,7 +83,7 @@ TEST_CASE("cli: an edit and its inverse give back the labels", "[cli]") {
   bench.mustRun("edit merged.vdb back.vdb --split 3");
   CHECK(digestOf(bench, "back.vdb") == before);
   // A fresh merging forgets the edits.
-  bench.mustRun("remerge merged.vdb fresh.vdb --theta -0.3");
+  bench.mustRun("remerge merged.vdb fresh.vdb --merge both --theta -0.3");
   CHECK(digestOf(bench, "fresh.vdb") == before);
   CHECK(metadataOf(bench, "fresh.vdb", "grain").count("madf_edits") == 0);
 }

@@ -443,7 +443,9 @@ TEST_CASE("cli: segment writes the tables that measure writes, with any threads"
 TEST_CASE("cli: sample.json tells where the labels come from and how they were made", "[cli]") {
   const Bench bench;
   bench.mustRun("generate snow --size 48 --length 14 --voxel-size 10um snow.tif");
-  bench.mustRun("segment snow.tif g.vdb --gamma 20 --theta -0.7 --delta 4 --fill-holes 9 --tidy 1");
+  bench.mustRun(
+      "segment snow.tif g.vdb --gamma 20 --merge both --theta -0.7 --delta 4 --fill-holes 9 --tidy "
+      "1");
   bench.mustRun("measure g.vdb t --sample first");
   const Json sample = Json::parse(bench.bytes("t/sample.json"));
   CHECK(sample.at("sample") == "first");

@@ -146,7 +146,7 @@ TEST_CASE("region: all verbs keep it", "[region]") {
   CHECK_THAT(bench.mustRun("info g.vdb"),
              Contains("domain: region, " + voxels + " of 76800 voxels of the box\n"));
   // remerge, to and fro.
-  bench.mustRun("remerge g.vdb r.vdb --theta -0.5");
+  bench.mustRun("remerge g.vdb r.vdb --merge both --theta -0.5");
   CHECK(regionOf("r.vdb") == core.inside);
   bench.mustRun("remerge r.vdb s.vdb");
   CHECK(bench.bytes("s.vdb") == bench.bytes("g.vdb"));
@@ -178,7 +178,7 @@ TEST_CASE("region: all verbs keep it", "[region]") {
   // Reduced, the region is so, too.
   bench.mustRun("export g.vdb small.vdb --as lod --reduce 2");
   CHECK(regionOf("small.vdb").get<double>() == Approx(double(core.inside) / 8).epsilon(0.05));
-  CHECK_THAT(bench.run("sweep core.npy s.csv --gamma 0 --theta -0.9 --roi cylinder").out,
+  CHECK_THAT(bench.run("sweep core.npy s.csv --strictness 9:11:1 --roi cylinder").out,
              Contains("3 rows"));
 }
 

@@ -25,23 +25,20 @@ TEST_CASE("cli: segment reports what it did as JSON", "[cli]") {
                           "seconds_read",  "seconds_write",
                           "seconds_total", "peak_memory_bytes",
                           "threads",       "voxel_size_mm",
-                          "gamma",         "theta",
+                          "gamma",         "strictness",
                           "boundary",      "merge",
-                          "adjacency",     "input",
-                          "output",        "fill_holes",
-                          "delta",         "tidy",
+                          "input",         "output",
+                          "fill_holes",    "tidy",
                           "cavities",      "cavity_voxels",
                           "crumbs",        "specks",
                           "slivers",       "grains_in_pieces",
                           "hints"})
     CHECK(json.count(key) == 1);
   CHECK(json.at("gamma") == 4);
-  CHECK(json.at("theta") == -0.9);
-  CHECK(json.at("merge") == "both");
-  CHECK(json.at("adjacency") == "manifold");
+  CHECK(json.at("merge") == "score");
+  CHECK(json.at("strictness") == 11);
   CHECK(json.at("boundary") == "open");
   CHECK(json.at("fill_holes") == 27);
-  CHECK(json.at("delta") == 2);
   CHECK(json.at("tidy") == 2);
   CHECK(json.at("grains_in_pieces") == 0);
   CHECK(json.at("grains").get<int>() > 1);
@@ -71,7 +68,8 @@ TEST_CASE("cli: segment keeps the grids that are asked for, each with its metada
   bench.mustRun(kSnow + "s.vdb");
   bench.mustRun("segment s.vdb g.vdb");
   CHECK(gridsOf(infoOf(bench, "g.vdb")) == std::set<std::string>{"grain"});
-  bench.mustRun("segment s.vdb g.vdb --keep distance,power,manifold,balls --theta -0.7");
+  bench.mustRun(
+      "segment s.vdb g.vdb --keep distance,power,manifold,balls --merge both --theta -0.7");
   const Json info = infoOf(bench, "g.vdb");
   CHECK(gridsOf(info) == std::set<std::string>{"grain", "distance_squared", "power", "manifold",
                                                "balls", "balls_cell_size"});
@@ -118,8 +116,8 @@ TEST_CASE("cli: remerge equals a fresh segmentation", "[cli]") {
   bench.mustRun(kSnow + "s.vdb");
   bench.mustRun("segment s.vdb g.vdb --keep manifold");
   for (const std::string options :
-       {"", " --theta -0.5", " --theta 1", " --merge angle --adjacency cell", " --merge neck",
-        " --delta 0 --tidy 0", " --delta 9 --tidy 5"}) {
+       {"", " --strictness 9", " --strictness 12.5 --tidy 0", " --merge both --theta 1",
+        " --merge angle --adjacency cell", " --merge neck", " --merge both --delta 9 --tidy 5"}) {
     CAPTURE(options);
     bench.mustRun("remerge g.vdb re.vdb" + options);
     bench.mustRun("segment s.vdb fresh.vdb --keep manifold" + options);
@@ -133,14 +131,14 @@ TEST_CASE("cli: segment and remerge write images as convert does", "[cli]") {
   const Bench bench;
   bench.mustRun(kSnow + "s.vdb");
   bench.mustRun("segment s.vdb g.vdb --keep manifold");
-  bench.mustRun("remerge g.vdb r.vdb --theta -0.5");
+  bench.mustRun("remerge g.vdb r.vdb --merge both --theta -0.5");
   for (const std::string ending : {".tif", ".raw", ".mha", ".nrrd", ".npy"}) {
     CAPTURE(ending);
     const std::string said = bench.mustRun("segment s.vdb segmented" + ending);
     CHECK(said.find("segmented" + ending + ": grid 'grain', 48x48x48 voxels of type ") == 0);
     bench.mustRun("convert g.vdb wanted" + ending);
     CHECK(bench.bytes("segmented" + ending) == bench.bytes("wanted" + ending));
-    bench.mustRun("remerge g.vdb remerged" + ending + " --theta -0.5");
+    bench.mustRun("remerge g.vdb remerged" + ending + " --merge both --theta -0.5");
     bench.mustRun("convert r.vdb wanted" + ending);
     CHECK(bench.bytes("remerged" + ending) == bench.bytes("wanted" + ending));
   }
@@ -157,7 +155,7 @@ TEST_CASE("cli: sweep gives a line for each choice, equal to its segmentation", 
   std::vector<std::string> lines;
   for (std::string line; std::getline(csv, line);) lines.push_back(line);
   REQUIRE(lines.size() == 1 + 2 * 2 * 2 * 5);
-  CHECK(lines[0].find("gamma,merge,delta,theta,grains,median_voxels,small_grains,") == 0);
+  CHECK(lines[0].find("gamma,merge,strictness,delta,theta,grains,median_voxels,") == 0);
   for (const auto& [line, options] :
        {std::pair<size_t, std::string>{1, "--gamma 0 --theta -1 --merge angle"},
         {8, "--gamma 0 --theta -0.8 --merge angle --delta 4"},
@@ -166,8 +164,8 @@ TEST_CASE("cli: sweep gives a line for each choice, equal to its segmentation", 
     const Json json = Json::parse(
         bench.mustRun("segment s.vdb g.vdb --tidy 1 --fill-holes 9 --json - " + options));
     std::istringstream fields(lines[line]);
-    std::string gamma, merge, delta, theta, grains;
-    for (std::string* field : {&gamma, &merge, &delta, &theta, &grains})
+    std::string gamma, merge, strictness, delta, theta, grains;
+    for (std::string* field : {&gamma, &merge, &strictness, &delta, &theta, &grains})
       std::getline(fields, *field, ',');
     CHECK(std::stoi(delta) == json.at("delta"));
     const std::string flaws = "," + std::to_string(json.at("crumbs").get<int>()) + "," +
@@ -199,40 +197,39 @@ TEST_CASE("cli: grains by score, segmented, remerged and swept", "[cli]") {
   const Bench bench;
   bench.mustRun(kSnow + "s.vdb");
   bench.mustRun("segment s.vdb all.vdb --keep manifold");
-  bench.mustRun("sweep s.vdb a.csv --gamma 0 --merge score --strictness 9:12:1.5,11 --plot a.svg");
+  bench.mustRun("sweep s.vdb a.csv --strictness 9:12:1.5,11 --plot a.svg");
   std::istringstream csv(bench.bytes("a.csv"));
   std::string line;
   std::getline(csv, line);
-  CHECK(line.find("gamma,merge,delta,theta,strictness,grains,") == 0);
+  CHECK(line.find("gamma,merge,strictness,delta,theta,grains,") == 0);
   for (const std::string strictness : {"9", "10.5", "12", "11"}) {
     std::getline(csv, line);
     CAPTURE(strictness, line);
     const std::string how = strictness == "11" ? "" : " --strictness " + strictness;
-    const Json json =
-        Json::parse(bench.mustRun("segment s.vdb g.vdb --json - --merge score" + how));
-    CHECK(line.find("0,score,,," + strictness + "," + std::to_string(json.at("grains").get<int>()) +
+    const Json json = Json::parse(bench.mustRun("segment s.vdb g.vdb --json -" + how));
+    CHECK(line.find("0,score," + strictness + ",,," + std::to_string(json.at("grains").get<int>()) +
                     ",") == 0);
-    bench.mustRun("remerge all.vdb r.vdb --merge score" + how);
+    bench.mustRun("remerge all.vdb r.vdb" + how);
     bench.mustRun("convert r.vdb r.npy --grid grain");
     bench.mustRun("convert g.vdb g.npy --grid grain");
     CHECK(bench.bytes("r.npy") == bench.bytes("g.npy"));
   }
   CHECK(bench.bytes("a.svg").find("nan") == std::string::npos);
-  const Json json = Json::parse(bench.mustRun("segment s.vdb g.vdb --json - --merge score"));
+  const Json json = Json::parse(bench.mustRun("segment s.vdb g.vdb --json -"));
   CHECK(json.at("strictness") == 11);
   for (const char* key : {"theta", "delta", "adjacency"}) CHECK(!json.contains(key));
-  const std::string said = bench.mustRun("segment s.vdb g.vdb --merge score");
+  const std::string said = bench.mustRun("segment s.vdb g.vdb");
   CHECK(said.find("merge score, strictness 11, boundary open,\n") != std::string::npos);
   CHECK(said.find("theta") == std::string::npos);
-  bench.mustRun("sweep s.vdb b.csv --gamma 0 --merge neck,score --theta -0.9");
-  CHECK(bench.bytes("b.csv").find("\n0,neck,2,-0.9,,") != std::string::npos);
-  CHECK(bench.bytes("b.csv").find("\n0,score,,,11,") != std::string::npos);
+  bench.mustRun("sweep s.vdb b.csv --merge neck,score --theta -0.9 --strictness 11");
+  CHECK(bench.bytes("b.csv").find("\n0,neck,,2,-0.9,") != std::string::npos);
+  CHECK(bench.bytes("b.csv").find("\n0,score,11,,,") != std::string::npos);
 }
 
 TEST_CASE("cli: the joins of the hierarchy, in one file and in slabs", "[cli]") {
   const Bench bench;
   bench.mustRun(kSnow + "s.vdb");
-  bench.mustRun("segment s.vdb all.vdb --keep manifold --merge score --strictness 3");
+  bench.mustRun("segment s.vdb all.vdb --keep manifold --strictness 3");
   CHECK(bench.mustRun("hierarchy all.vdb joins.csv").find(" joins of ") != std::string::npos);
   const std::string table = bench.bytes("joins.csv");
   std::istringstream csv(table);

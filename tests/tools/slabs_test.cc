@@ -34,8 +34,9 @@ TEST_CASE("slabs: one file of them is the one that segment writes", "[slabs]") {
   bench.mustRun(kTall + "in.vdb --voxel-size 8um -q");
   for (const std::string options :
        {"", "--boundary closed --tidy 0", "--paper", "--fill-holes 1000 --merge neck --tidy 9",
-        "--merge score", "--merge score --strictness 9 --fill-holes 1000",
-        "--theta -1 --delta 0 --crop 3,3,5:35,30,71", "--roi cylinder:z:20,16:14 --gamma 9"}) {
+        "--merge both", "--strictness 9 --fill-holes 1000",
+        "--merge both --theta -1 --delta 0 --crop 3,3,5:35,30,71",
+        "--roi cylinder:z:20,16:14 --gamma 9"}) {
     INFO(options);
     const std::string choice = " --grid object -q " + options;
     bench.mustRun("segment in.vdb one.vdb" + choice);
@@ -59,11 +60,11 @@ TEST_CASE("slabs: manifolds and their graph are those of one file", "[slabs]") {
     bench.mustRun("segment in.vdb one.vdb" + choice);
     bench.mustRun("segment in.vdb out.slabs --slab-height 16" + choice);
     requireSame(bench);
-    bench.mustRun("remerge one.vdb merged.vdb --theta -0.5 -q");
-    bench.mustRun("remerge out.slabs joined.vdb --theta -0.5 -q");
+    bench.mustRun("remerge one.vdb merged.vdb --merge both --theta -0.5 -q");
+    bench.mustRun("remerge out.slabs joined.vdb --merge both --theta -0.5 -q");
     REQUIRE(bench.bytes("joined.vdb") == bench.bytes("merged.vdb"));
-    bench.mustRun("remerge one.vdb merged.vdb --merge score -q");
-    bench.mustRun("remerge out.slabs joined.vdb --merge score -q");
+    bench.mustRun("remerge one.vdb merged.vdb --strictness 8 -q");
+    bench.mustRun("remerge out.slabs joined.vdb --strictness 8 -q");
     REQUIRE(bench.bytes("joined.vdb") == bench.bytes("merged.vdb"));
   }
   bench.mustRun("segment in.vdb auto.vdb --auto-slabs --grid object --keep manifold -q");
@@ -82,8 +83,8 @@ TEST_CASE("slabs: remerge makes others of them, as of one file", "[slabs]") {
     const std::string choice = " --grid object --keep manifold -q " + options;
     bench.mustRun("segment in.vdb one.vdb" + choice);
     bench.mustRun("segment in.vdb in.slabs --slab-height 16" + choice);
-    for (const std::string merge : {"--theta -0.5", "--merge angle --delta 0 --tidy 0",
-                                    "--adjacency cell --tidy 9 --threads 1"}) {
+    for (const std::string merge : {"--merge both --theta -0.5", "--merge angle --delta 0 --tidy 0",
+                                    "--strictness 9 --tidy 9 --threads 1"}) {
       INFO(options << " " << merge);
       bench.mustRun("remerge one.vdb merged.vdb -q " + merge);
       bench.mustRun("remerge in.slabs out.slabs/ -q " + merge);
@@ -136,7 +137,8 @@ TEST_CASE("slabs: sweep merges their manifolds, as of one file", "[slabs]") {
     bench.mustRun(
         "segment in.vdb in.slabs --slab-height 16 --grid object --keep manifold -q --gamma " +
         gamma);
-    const std::string how = " -q --theta -1:-0.4:0.3 --delta 0,2 --small 300 --tidy 1 --plot ";
+    const std::string how =
+        " -q --merge both,neck --theta -1:-0.4:0.3 --delta 0,2 --small 300 --tidy 1 --plot ";
     bench.mustRun("sweep in.vdb one.csv --grid object --gamma " + gamma + how + "one.svg");
     bench.mustRun("sweep in.slabs cut.csv" + how + "cut.svg");
     CHECK(bench.bytes("one.csv") == bench.bytes("cut.csv"));
@@ -146,8 +148,9 @@ TEST_CASE("slabs: sweep merges their manifolds, as of one file", "[slabs]") {
   }
   CHECK_FALSE(bench.names().count("data"));
   CHECK_FALSE(bench.names().count("cut.csv.scratch"));
-  bench.mustRun("sweep in.slabs grain.csv --grid grain --gamma 0 --theta -1 -q");  // segments it
-  bench.mustRun("sweep in.vdb object.csv --grid object --gamma 0 --theta -1 -q");
+  bench.mustRun(
+      "sweep in.slabs grain.csv --grid grain --gamma 0 --strictness 9 -q");  // segments it
+  bench.mustRun("sweep in.vdb object.csv --grid object --gamma 0 --strictness 9 -q");
   CHECK(bench.bytes("grain.csv") == bench.bytes("object.csv"));
 
   const auto refused = [&](const std::string& arguments, const std::string& why) {
@@ -171,8 +174,8 @@ TEST_CASE("slabs: sweep merges their manifolds, as of one file", "[slabs]") {
   CHECK_THAT(piped.err, Contains("--scratch DIR"));
 
   // What a killed one left is no use to the next, and in nobody's way.
-  const std::string sweep = "sweep in.slabs again.csv --theta -1:-0.4:0.02 -q";
-  const std::string rows = bench.mustRun("sweep in.slabs - --scratch data --theta -1:-0.4:0.02");
+  const std::string sweep = "sweep in.slabs again.csv --strictness 1:16:0.5 -q";
+  const std::string rows = bench.mustRun("sweep in.slabs - --scratch data --strictness 1:16:0.5");
   RunOptions killing;
   killing.interruptOn = "again.csv.scratch";
   killing.signal = SIGKILL;
@@ -281,7 +284,7 @@ TEST_CASE("slabs: every verb that takes labels reads the folder", "[slabs]") {
     requireRefused("is not slab 6 of 6",
                    {"compare one.vdb out.slabs", "measure out.slabs tables", "info out.slabs",
                     "convert out.slabs back.vdb", "convert out.slabs out.raw"});
-    bench.mustRun("segment in.vdb other.slabs --grid object --slab-height 16 --theta -1 -q");
+    bench.mustRun("segment in.vdb other.slabs --grid object --slab-height 16 --strictness 12 -q");
     replace("other.slabs/slab-0005.vdb");
     requireRefused("does not fit slab-0000.vdb", {"measure out.slabs tables"});
   }
@@ -342,7 +345,7 @@ TEST_CASE("slabs: tables, comparisons and images are those of one file", "[slabs
     cut.erase("labels");
     CHECK(one == cut);
 
-    bench.mustRun("segment in.vdb other.slabs --slab-height 24 --theta -0.7" + choice);
+    bench.mustRun("segment in.vdb other.slabs --slab-height 24 --gamma 5" + choice);
     bench.mustRun("convert other.slabs other.vdb -q");
     const std::string truth = bench.mustRun("compare one.vdb other.vdb");
     for (const std::string pair : {"one.vdb other.slabs", "out.slabs other.slabs"})

@@ -29,7 +29,7 @@ std::vector<std::vector<std::string>> rows(const std::string& csv) {
 /// Grains of snow, and the same a little later: two are one, one has come apart, one is gone.
 void makeSeries(const Bench& bench) {
   bench.mustRun(kSnow + "s.vdb");
-  bench.mustRun("segment s.vdb a.vdb --keep manifold --theta -0.3");
+  bench.mustRun("segment s.vdb a.vdb --keep manifold --merge both --theta -0.3");
   bench.mustRun("edit a.vdb b.vdb --merge 1,2 --split 3 --drop 4 --renumber");
 }
 

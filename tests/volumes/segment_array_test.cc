@@ -65,21 +65,19 @@ TEST_CASE("segment_array: the labels are those of segment()", "[segment_array]")
   };
   compare({});
   options.gamma = 9;
-  options.merge.theta = -0.6;
-  options.merge.delta = 0;
-  compare({9, -0.6, 0});
+  options.merge.strictness = 8;
+  compare({9, 8});
   options.gamma = 0;
   options.merge = {};
   options.weights = VoxelWeights{1, 1, 4};
-  compare({0, -0.9, 2, VoxelSize({1e-6, 1e-6, 2e-6})});
+  compare({0, 11, VoxelSize({1e-6, 1e-6, 2e-6})});
 }
 
 TEST_CASE("segment_array: its defaults are those of segment()", "[segment_array]") {
   const ArrayOptions few;
   const SegmentOptions all;
   REQUIRE(few.gamma == all.gamma);
-  REQUIRE(few.theta == all.merge.theta);
-  REQUIRE(few.delta == all.merge.delta);
+  REQUIRE(few.strictness == all.merge.strictness);
 }
 
 TEST_CASE("segment_array: odd input", "[segment_array]") {
@@ -95,5 +93,5 @@ TEST_CASE("segment_array: odd input", "[segment_array]") {
   REQUIRE_THROWS_AS(segmentArray(full.data(), {3, 0, 3}), InvalidInput);
   REQUIRE_THROWS_AS(segmentArray(full.data(), {3, 3, -1}), InvalidInput);
   REQUIRE_THROWS_AS(segmentArray(full.data(), {int64_t(1) << 40, 3, 3}), InvalidInput);
-  REQUIRE_THROWS_AS(segmentArray(full.data(), {3, 3, 3}, {0, 2.0, 2}), InvalidInput);
+  REQUIRE_THROWS_AS(segmentArray(full.data(), {3, 3, 3}, {0, 1e6}), InvalidInput);
 }

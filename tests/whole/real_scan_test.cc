@@ -61,7 +61,7 @@ constexpr Row kRows[] = {{Boundary::closed, 0, 868123, 868123, 87324, 56699, 204
                          {Boundary::open, 160, 768750, 11756, 3205, 1815, 1747, 1748}};
 
 int64_t grains(const ManifoldGraph& graph, double theta, MergeMode mode) {
-  const Merging merging = merge(graph, {theta, mode, Adjacency::manifold, 0});
+  const Merging merging = merge(graph, {mode, 11, theta, 0, Adjacency::manifold});
   return int64_t(merging.representative.size());
 }
 
@@ -81,7 +81,7 @@ TEST_CASE("nmc: all reference counts", "[nmc]") {
     SegmentOptions options;
     options.gamma = row.gamma;
     options.boundary = row.boundary;
-    options.merge = {-0.8, MergeMode::both, Adjacency::manifold, 0};
+    options.merge = {MergeMode::both, 11, -0.8, 0, Adjacency::manifold};
     options.fillHoles = options.tidy = 0;
     const Segmentation result = segment(*mask, options);
     INFO((result.open ? "open" : "closed") << ", gamma " << row.gamma);
@@ -121,6 +121,7 @@ TEST_CASE("nmc: cavities, and necks narrower by less than delta", "[nmc]") {
     SegmentOptions options;
     options.boundary = row.boundary;
     options.fillHoles = row.fillHoles;
+    options.merge.mode = MergeMode::both;
     options.merge.delta = row.delta;
     const Segmentation result = segment(*mask, options);
     INFO((result.open ? "open" : "closed")
@@ -133,6 +134,18 @@ TEST_CASE("nmc: cavities, and necks narrower by less than delta", "[nmc]") {
     CHECK(result.counts.grains == row.grains);
     CHECK(result.flaws.inPieces == 0);
   }
+}
+
+TEST_CASE("nmc: grains by score", "[nmc]") {
+  const MaskGrid::Ptr mask = nmc();
+  if (!mask) return;
+  const Segmentation result = segment(*mask);
+  CHECK(result.counts.grains == 2159);
+  CHECK(result.flaws.crumbs == 27);
+  CHECK(result.flaws.slivers == 8);
+  for (const auto& [strictness, grains] :
+       {std::pair(10., 2117), {10.5, 2136}, {11.5, 2190}, {12., 2225}})
+    CHECK(int(merge(result.graph, {MergeMode::score, strictness}).representative.size()) == grains);
 }
 
 TEST_CASE("nmc: the invariants hold", "[nmc]") {

@@ -15,44 +15,52 @@
 namespace vdb_madf::tools {
 
 void MergeArguments::add(Verb verb) {
-  verb.option("--theta", theta, "merge balls that meet at a cosine below T, -1..1 (default -0.9)")
+  verb.option("--strictness", strictness,
+              "least score that joins pieces; larger: more grains (default 11)")
+      .typeName("K");
+  verb.option("--merge", mode, "by score, or by tests: both, angle, neck (default score)")
+      .oneOf({"score", "both", "angle", "neck"});
+  verb.option("--theta", theta,
+              "of the tests: merge balls that meet at a cosine below T, -1..1 (default -0.9)")
       .typeName("T");
-  verb.option("--merge", mode, "tests: both, angle (the paper's), neck; or score (default both)")
-      .oneOf({"both", "angle", "neck", "score"});
+  verb.option("--delta", delta,
+              "of the tests: merge where the neck is under K/8 voxel narrower (default 2)")
+      .typeName("K");
   verb.option("--adjacency", adjacency,
               "what the angle test pairs: manifold, cell (default manifold)")
       .oneOf({"manifold", "cell"});
-  verb.option("--delta", delta,
-              "also merge where the neck is under K/8 voxel narrower than the grain (default 2)")
-      .typeName("K");
-  verb.option("--strictness", strictness,
-              "of --merge score: least score that joins; larger: more grains (default 11)")
-      .typeName("K");
 }
 
 MergeOptions MergeArguments::parse() const {
   MergeOptions options;
-  if (mode == "score") {
+  if (mode.empty() || mode == "score") {
     for (const auto& [text, name] : {std::pair<const std::string*, const char*>{&theta, "--theta"},
                                      {&delta, "--delta"},
                                      {&adjacency, "--adjacency"}})
-      if (!text->empty())
-        throw WrongUsage(std::string(name) +
-                         ": belongs to --merge both, angle and neck; score has --strictness");
-    options.mode = MergeMode::score;
+      if (!text->empty()) refuseOptionOfTests(name);
     if (!strictness.empty()) options.strictness = parseStrictness(strictness);
     return options;
   }
-  if (!strictness.empty())
-    throw WrongUsage("--strictness " + strictness + ": belongs to --merge score: give that, too");
+  if (!strictness.empty()) refuseStrictness(mode);
   if (!theta.empty()) options.theta = parseNumber(theta, "--theta");
   if (!(options.theta >= -1 && options.theta <= 1))
     throw WrongUsage("--theta " + theta + ": is a cosine, it must lie between -1 and 1");
-  if (mode == "angle") options.mode = MergeMode::angle;
-  if (mode == "neck") options.mode = MergeMode::neck;
+  options.mode = mode == "angle"  ? MergeMode::angle
+                 : mode == "neck" ? MergeMode::neck
+                                  : MergeMode::both;
   if (adjacency == "cell") options.adjacency = Adjacency::cell;
   if (!delta.empty()) options.delta = parseDelta(delta);
   return options;
+}
+
+void refuseOptionOfTests(const std::string& name) {
+  throw WrongUsage(name +
+                   ": belongs to the tests: add --merge both (or angle, neck); the default, score, "
+                   "has --strictness");
+}
+
+void refuseStrictness(const std::string& mode) {
+  throw WrongUsage("--strictness: belongs to --merge score, not " + mode);
 }
 
 int parseDelta(const std::string& text) {

@@ -14,11 +14,15 @@ namespace vdb_madf::tools {
 
 /// The merge options as typed; empty: not given.
 struct MergeArguments {
-  std::string theta, mode, adjacency, delta, strictness;
+  std::string strictness, mode, theta, delta, adjacency;
   void add(Verb verb);
   /// @throw WrongUsage
   MergeOptions parse() const;
 };
+
+/// Says to which way of merging it belongs.
+[[noreturn]] void refuseOptionOfTests(const std::string& name);
+[[noreturn]] void refuseStrictness(const std::string& mode);
 
 /// --delta. @throw WrongUsage
 int parseDelta(const std::string& text);

@@ -69,7 +69,7 @@ void addRemerge(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<RemergeArguments>();
   Verb verb = addVerb(command, common, "remerge",
                       "merge stored manifolds anew, without distances and power map",
-                      "vdb_madf remerge grains.vdb coarser.vdb --theta -0.7");
+                      "vdb_madf remerge grains.vdb coarser.vdb --strictness 10");
   verb.option("SEG.vdb", o->input.path, "made by segment with --keep manifold").required();
   verb.option("OUT", o->out,
               "gets the new labels; a .vdb all other grids too; of slabs .slabs, slab by slab")

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "json_file.h"
+#include "segment_summary.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/measure/grain_sizes.h"
@@ -27,8 +28,14 @@ namespace {
 Json newIndex(const std::string& folder, const MergeOptions& merge, int tidy,
               const std::vector<int64_t>& grainVoxels) {
   constexpr uint64_t kMostBytes = uint64_t(1) << 28;
-  Json index =
+  const Json before =
       Json::parse(readText((std::filesystem::path(folder) / kSlabIndex).string(), kMostBytes));
+  Json index = Json::object();
+  for (const auto& [key, value] : before.items())
+    if (key == "merge")
+      addMerging(index, merge);
+    else if (key != "strictness" && key != "theta" && key != "delta" && key != "adjacency")
+      index[key] = value;
   const GrainSizes sizes = grainSizes(grainVoxels);
   index["grains"] = grainVoxels.size();
   index["grains_under_100_voxels"] = sizes.dustGrains;
@@ -36,17 +43,6 @@ Json newIndex(const std::string& folder, const MergeOptions& merge, int tidy,
   index["grain_diameter_d10_voxels"] = sizes.d10;
   index["grain_diameter_d50_voxels"] = sizes.d50;
   index["grain_diameter_d90_voxels"] = sizes.d90;
-  if (merge.mode == MergeMode::score) {
-    for (const char* key : {"theta", "adjacency", "delta"}) index.erase(key);
-    index["merge"] = toString(merge.mode);
-    index["strictness"] = merge.strictness;
-  } else {
-    index.erase("strictness");
-    index["theta"] = merge.theta;
-    index["merge"] = toString(merge.mode);
-    index["adjacency"] = toString(merge.adjacency);
-    index["delta"] = merge.delta;
-  }
   index["tidy"] = tidy;
   return index;
 }

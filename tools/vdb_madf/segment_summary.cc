@@ -104,6 +104,17 @@ SegmentSummary summarize(const SegmentArguments& o, const Common& common, const 
   return summary;
 }
 
+void addMerging(Json& json, const MergeOptions& options) {
+  json["merge"] = toString(options.mode);
+  if (options.mode == MergeMode::score) {
+    json["strictness"] = options.strictness;
+    return;
+  }
+  json["theta"] = options.theta;
+  json["delta"] = options.delta;
+  json["adjacency"] = toString(options.adjacency);
+}
+
 Json toJson(const SegmentArguments& o, const SegmentSummary& summary) {
   const SegmentCounts& counts = summary.counts;
   Json json;
@@ -152,17 +163,9 @@ Json toJson(const SegmentArguments& o, const SegmentSummary& summary) {
   if (!summary.objectSteps.empty()) json["object"] = summary.objectSteps;
   if (summary.threshold) json["threshold_value"] = *summary.threshold;
   json["gamma"] = o.segment.gamma;
-  const MergeOptions& merge = o.segment.merge;
-  const bool byScore = merge.mode == MergeMode::score;
-  if (!byScore) json["theta"] = merge.theta;
   json["boundary"] = summary.open ? "open" : "closed";
-  json["merge"] = toString(merge.mode);
-  if (byScore)
-    json["strictness"] = merge.strictness;
-  else
-    json["adjacency"] = toString(merge.adjacency);
   json["fill_holes"] = summary.fillHoles;
-  if (!byScore) json["delta"] = merge.delta;
+  addMerging(json, o.segment.merge);
   json["tidy"] = o.segment.tidy;
   json["threads"] = summary.threads;
   for (const auto& [part, seconds] : summary.seconds) json["seconds_" + part] = seconds;

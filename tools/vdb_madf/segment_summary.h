@@ -67,6 +67,8 @@ SegmentSummary summarize(const SegmentArguments& o, const Common& common, const 
 SegmentSummary summarize(const SegmentArguments& o, const Common& common, const SlabSegmentation& s,
                          const openvdb::GridBase& object, const SegmentTiming& timing);
 Json toJson(const SegmentArguments& o, const SegmentSummary& summary);
+/// What says how pieces were merged: the options that the merge mode looks at.
+void addMerging(Json& json, const MergeOptions& options);
 void print(const SegmentArguments& o, const Common& common, const SegmentSummary& summary);
 
 }  // namespace vdb_madf::tools

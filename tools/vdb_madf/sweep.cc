@@ -33,13 +33,13 @@ namespace vdb_madf::tools {
 
 namespace {
 
-constexpr char kGammas[] = "0,20,160", kThetas[] = "-1:-0.5:0.05", kDeltas[] = "2";
+constexpr char kStrictnesses[] = "8:14:0.5", kThetas[] = "-1:-0.5:0.05", kDeltas[] = "2";
 
 struct SweepArguments {
   InputOptions input;
-  std::string out, plot, gamma = kGammas, theta = kThetas, merge = "both,angle,neck";
-  std::string adjacency = "manifold", boundary = "auto", small = "100", delta = kDeltas;
-  std::string strictness, fillHoles, tidy, scratch;
+  std::string out, plot, gamma = "0", merge = "score", strictness = kStrictnesses;
+  std::string theta = kThetas, delta = kDeltas, adjacency = "manifold";
+  std::string boundary = "auto", small = "100", fillHoles, tidy, scratch;
   SweepOptions sweep;
 };
 
@@ -102,19 +102,15 @@ void requireDifferent(const std::vector<T>& values, const std::string& option) {
 void parseStrictnesses(SweepArguments& o) {
   const std::vector<MergeMode>& modes = o.sweep.modes;
   const auto scores = std::count(modes.begin(), modes.end(), MergeMode::score);
-  if (!scores && !o.strictness.empty())
-    throw WrongUsage("--strictness " + o.strictness + ": belongs to --merge score: give that, too");
+  if (!scores && o.strictness != kStrictnesses) refuseStrictness(o.merge);
   if (scores && modes.size() == 1)
     for (const auto& [isGiven, name] :
          {std::pair(o.theta != kThetas, "--theta"), std::pair(o.delta != kDeltas, "--delta"),
           std::pair(o.adjacency != "manifold", "--adjacency")})
-      if (isGiven)
-        throw WrongUsage(std::string(name) +
-                         ": belongs to --merge both, angle and neck; score has --strictness");
+      if (isGiven) refuseOptionOfTests(name);
   if (scores && modes.size() > 1 && !o.plot.empty())
     throw WrongUsage(
         "--plot draws grains by --strictness or by --theta: sweep --merge score alone");
-  if (o.strictness.empty()) return;
   o.sweep.strictnesses = parseRanges(o.strictness, "--strictness");
   for (const double strictness : o.sweep.strictnesses)
     if (!(std::abs(strictness) <= kMaxStrictness))
@@ -139,7 +135,7 @@ void parse(SweepArguments& o) {
     arguments.mode = mode;
     sweep.modes.push_back(arguments.parse().mode);
     if (mode != toString(sweep.modes.back()))
-      throw WrongUsage("--merge " + mode + ": must be both, angle, neck or score");
+      throw WrongUsage("--merge " + mode + ": must be score, both, angle or neck");
   }
   parseStrictnesses(o);
   sweep.thetas = parseThetas(o.theta);
@@ -163,20 +159,17 @@ double share(int64_t part, int64_t whole) {
 }
 
 std::string table(const std::vector<SweepRow>& rows) {
-  const bool hasScores = std::any_of(
-      rows.begin(), rows.end(), [](const SweepRow& row) { return row.mode == MergeMode::score; });
   std::ostringstream csv;
-  csv << "gamma,merge,delta,theta," << (hasScores ? "strictness," : "")
-      << "grains,median_voxels,small_grains,small_grains_share,"
+  csv << "gamma,merge,strictness,delta,theta,grains,median_voxels,small_grains,small_grains_share,"
          "small_grains_volume_share,largest_grain_volume_share,crumbs,specks,slivers,grains_in_"
          "pieces\n";
   csv.precision(9);
   for (const SweepRow& row : rows) {
     csv << row.gamma << ',' << toString(row.mode) << ',';
     if (row.mode == MergeMode::score)
-      csv << ",," << row.strictness << ',';
+      csv << row.strictness << ",,,";
     else
-      csv << row.delta << ',' << row.theta << (hasScores ? ",," : ",");
+      csv << ',' << row.delta << ',' << row.theta << ',';
     csv << row.grains << ',' << row.medianVoxels << ',' << row.smallGrains << ','
         << share(row.smallGrains, row.grains) << ',' << share(row.smallVoxels, row.objectVoxels)
         << ',' << share(row.largestVoxels, row.objectVoxels) << ',' << row.flaws.crumbs << ','
@@ -210,7 +203,7 @@ void checkManifoldOptions(const SweepArguments& o, const LabelSlabs& manifolds) 
                        " out, or name a grid to segment: --grid grain");
   const auto gamma = manifolds.about->getMetadata<openvdb::Int64Metadata>("madf_gamma");
   const std::string stored = std::to_string(gamma ? gamma->value() : 0);
-  if (in.invert || o.boundary != "auto" || (o.gamma != kGammas && o.gamma != stored))
+  if (in.invert || o.boundary != "auto" || (o.gamma != "0" && o.gamma != stored))
     throw WrongUsage(in.path + ": the manifolds in it are those of gamma " + stored +
                      ": leave --gamma, --boundary and --invert out, or name a grid to segment: "
                      "--grid grain");
@@ -261,10 +254,11 @@ void runSweep(const SweepArguments& o, const Common& common) {
 void addSweep(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<SweepArguments>();
   Verb verb =
-      addVerb(command, common, "sweep", "grains for many gamma, theta, delta and merge modes",
-              "vdb_madf sweep scan.tif sweep.csv --phase 1 --plot sweep.svg --gamma 0,20");
+      addVerb(command, common, "sweep", "grains for many strictnesses, or theta, delta, gamma",
+              "vdb_madf sweep scan.tif sweep.csv --phase 1 --plot sweep.svg");
   verb.option("IN", o->input.path, "any readable volume").required();
-  verb.option("OUT.csv", o->out, "a line per gamma, merge mode, delta and theta").required();
+  verb.option("OUT.csv", o->out, "a line per gamma and strictness (or merge mode, delta and theta)")
+      .required();
   o->input.addSelection(verb);
   o->input.addRaw(verb);
   o->input.addDomain(verb);
@@ -272,19 +266,19 @@ void addSweep(Verb command, Common& common, Action& action) {
   verb.option("--gamma", o->gamma, "list of gammas, voxels; one segmentation each")
       .typeName("LIST")
       .showDefault();
-  verb.option("--theta", o->theta, "list of cosines and of ranges FIRST:LAST:STEP")
+  verb.option("--strictness", o->strictness, "list of numbers and of ranges FIRST:LAST:STEP")
       .typeName("LIST")
       .showDefault();
-  verb.option("--merge", o->merge, "list of the tests: both, angle, neck; or score")
+  verb.option("--merge", o->merge, "list: score, or of the tests: both, angle, neck")
       .typeName("LIST")
-      .offer({"both", "angle", "neck", "score"})
+      .offer({"score", "both", "angle", "neck"})
       .showDefault();
-  verb.option("--delta", o->delta, "list of tolerances, eighths of a voxel")
+  verb.option("--theta", o->theta, "of the tests: list of cosines and of ranges")
       .typeName("LIST")
       .showDefault();
-  verb.option("--strictness", o->strictness,
-              "of --merge score: list of numbers and of ranges (default 11)")
-      .typeName("LIST");
+  verb.option("--delta", o->delta, "of the tests: list of tolerances, eighths of a voxel")
+      .typeName("LIST")
+      .showDefault();
   addFillHoles(verb, o->fillHoles);
   addTidy(verb, o->tidy);
   verb.option("--adjacency", o->adjacency, "what the angle test pairs: manifold, cell")

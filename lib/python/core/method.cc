@@ -32,10 +32,10 @@ Enum named(const char* argument, const std::string& text,
 
 MergeMode mergeMode(const std::string& name) {
   return named<MergeMode>("merge", name,
-                          {{"both", MergeMode::both},
+                          {{"score", MergeMode::score},
+                           {"both", MergeMode::both},
                            {"angle", MergeMode::angle},
-                           {"neck", MergeMode::neck},
-                           {"score", MergeMode::score}});
+                           {"neck", MergeMode::neck}});
 }
 
 Adjacency adjacencyOf(const std::string& name) {
@@ -54,9 +54,9 @@ MergeOptions mergeOptions(const py::dict& given) {
     if (name == "merge" || value.is_none()) continue;
     if (byScore != (name == "strictness"))
       throw InvalidInput(byScore ? name +
-                                       ": belongs to merge='both', 'angle' and 'neck'; 'score' "
-                                       "has strictness"
-                                 : name + ": belongs to merge='score': give that, too");
+                                       ": belongs to merge='both', 'angle' and 'neck'; 'score', "
+                                       "the default, has strictness"
+                                 : name + ": belongs to merge='score'");
     if (name == "theta") options.theta = value.cast<double>();
     if (name == "adjacency") options.adjacency = adjacencyOf(value.cast<std::string>());
     if (name == "delta") options.delta = value.cast<int>();

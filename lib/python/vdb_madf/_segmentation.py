@@ -34,7 +34,7 @@ class Segmentation:
     seconds: Dict[str, float]
     """Seconds of each stage, in the order of work."""
     options: Dict[str, Any]
-    """What was used: merge, theta, adjacency, delta (or strictness), gamma, fill_holes, tidy,
+    """What was used: merge, strictness (or theta, delta, adjacency), gamma, fill_holes, tidy,
     boundary."""
     graph: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """Critical points: `position` (K, 3) z, y, x in voxels of the scan, `squared_radius` (K,),
@@ -54,9 +54,9 @@ class Segmentation:
             raise _core.InvalidInput("the manifolds were not kept: segment with keep=('manifold',)")
         return self.manifold._grid
 
-    def remerge(self, *, theta: Optional[float] = None, merge: Optional[str] = None,
-                adjacency: Optional[str] = None, delta: Optional[int] = None,
-                strictness: Optional[float] = None, tidy: Optional[int] = None,
+    def remerge(self, *, strictness: Optional[float] = None, merge: Optional[str] = None,
+                theta: Optional[float] = None, delta: Optional[int] = None,
+                adjacency: Optional[str] = None, tidy: Optional[int] = None,
                 progress: Progress = None, threads: int = 0) -> "Segmentation":
         """The grains of other options of merging, without distances again: the same labels, bit for
         bit, as a fresh segment(). What is not given stays as it was, and is the default where merge
@@ -100,18 +100,23 @@ class Segmentation:
         counts["grains"] = labels.metadata["madf_grains"]
         return replace(self, labels=labels, counts=counts, seconds={})
 
-    def sweep(self, theta: Union[Sequence[float], npt.NDArray[Any], None] = None,
+    def sweep(self, strictness: Union[Sequence[float], npt.NDArray[Any], None] = None, *,
               merge: Union[str, Sequence[str], None] = None,
-              delta: Union[int, Sequence[int], None] = None, small: int = 100, *,
-              strictness: Union[Sequence[float], npt.NDArray[Any], None] = None,
+              theta: Union[Sequence[float], npt.NDArray[Any], None] = None,
+              delta: Union[int, Sequence[int], None] = None, small: int = 100,
               progress: Progress = None, threads: int = 0) -> Dict[str, Any]:
-        """The grains for every combination of merge modes, deltas and thetas, and of "score" for
-        every strictness, a row each: `merge`, `delta`, `theta`, `strictness`, `grains`,
+        """The grains for every strictness, and of other merge modes for every combination of them,
+        deltas and thetas, a row each: `merge`, `strictness`, `delta`, `theta`, `grains`,
         `median_voxels`, `small_grains` and `small_voxels` (grains of fewer than `small` voxels),
         `largest_voxels` and flaws. What a row's mode has not is NaN (`delta`: 0).
         pandas.DataFrame() makes a table of it."""
         modes = ([self.options["merge"]] if merge is None else
                  [merge] if isinstance(merge, str) else list(merge))
+        for name, value, has_it in (("strictness", strictness, "score" in modes),
+                                    ("theta", theta, modes != ["score"]),
+                                    ("delta", delta, modes != ["score"])):
+            if value is not None and not has_it:
+                _core.merge_options({"merge": modes[0], name: value})  # says where it belongs
         used = {**_core.merge_options({"merge": "both"}), **_core.merge_options({"merge": "score"}),
                 **self.options}
         deltas = ([used["delta"]] if delta is None else
@@ -153,9 +158,9 @@ def labels_of(source: Union[Labels, Segmentation, Source], call: _core.Call, thr
     return labels
 
 
-def segment(source: Union[Mask, Source], *, theta: Optional[float] = None, gamma: int = 0,
-            merge: str = "both", adjacency: Optional[str] = None, delta: Optional[int] = None,
-            strictness: Optional[float] = None, fill_holes: Optional[int] = None, tidy: int = 2,
+def segment(source: Union[Mask, Source], *, strictness: Optional[float] = None, gamma: int = 0,
+            merge: str = "score", theta: Optional[float] = None, delta: Optional[int] = None,
+            adjacency: Optional[str] = None, fill_holes: Optional[int] = None, tidy: int = 2,
             boundary: str = "auto", keep: Sequence[str] = ("manifold",),
             max_memory: Union[int, str, None] = None,
             progress: Progress = None, threads: int = 0, **selection: Any) -> Segmentation:
@@ -164,10 +169,10 @@ def segment(source: Union[Mask, Source], *, theta: Optional[float] = None, gamma
     source: a Mask, or what makes one, with its arguments besides: segment("scan.tif", phase=1,
     voxel_size="10um"), segment(array, threshold="otsu", roi="cylinder").
 
-    merge: "both", "angle", "neck" or "score". Of the first three: theta (-0.9): cosine, -1 merges
-    least; adjacency: "manifold" (None) or "cell"; delta (2): in eighths of a voxel, how much
-    narrower a neck has to be than its grain. Of "score": strictness (11), the least score that
-    joins; the larger, the more grains.
+    merge: "score": pieces that are alike and meet in a broad contact are joined, the best pair
+    first, down to the score strictness (11); the larger, the more grains. "both", "angle", "neck":
+    the tests. Of these: theta (-0.9): cosine, -1 merges least; adjacency: "manifold" (None) or
+    "cell"; delta (2): in eighths of a voxel, how much narrower a neck has to be than its grain.
 
     gamma: least cell of a medial ball, voxels; fill_holes: cavities of fewer voxels are filled
     meanwhile (None: 27);

@@ -14,25 +14,25 @@ enum class MergeMode {
   both,   ///< the angle test, then the neck test
   angle,  ///< the angle test alone (the paper)
   neck,   ///< the neck test alone
-  score   ///< joins by score, the best first (hierarchy.h)
+  score   ///< joins by score, the best first (hierarchy.h): the default
 };
 enum class Adjacency {
   manifold,  ///< the angle test sees all edges of the graph
   cell       ///< only those where the cells of the critical points touch (as the paper words it)
 };
 
-/// When manifolds are one grain; see merge(). theta, adjacency and delta are for the tests,
-/// strictness is for MergeMode::score.
+/// When manifolds are one grain; see merge(). strictness is for MergeMode::score; theta, delta and
+/// adjacency are for the tests.
 struct MergeOptions {
-  double theta = -0.9;  ///< cosine in [-1, 1]; -1 merges least
-  MergeMode mode = MergeMode::both;
-  Adjacency adjacency = Adjacency::manifold;
-  /// How much narrower than the smaller grain a neck has to be at least to divide, in eighths of
-  /// the shortest edge of a voxel; 0 to kMaxDelta; 0: theta alone decides.
-  int delta = 2;
+  MergeMode mode = MergeMode::score;
   /// The least score that joins two classes, to the nearest 1/512 (hierarchy.h); the larger, the
   /// more grains; -kMaxStrictness to kMaxStrictness.
   double strictness = 11;
+  double theta = -0.9;  ///< cosine in [-1, 1]; -1 merges least
+  /// How much narrower than the smaller grain a neck has to be at least to divide, in eighths of
+  /// the shortest edge of a voxel; 0 to kMaxDelta; 0: theta alone decides.
+  int delta = 2;
+  Adjacency adjacency = Adjacency::manifold;
 };
 
 constexpr int kMaxDelta = 80;              ///< ten voxels
@@ -50,9 +50,10 @@ struct Merging {
 ///   strictness in [-kMaxStrictness, kMaxStrictness].
 void checkMergeOptions(const MergeOptions& options);
 
-/// Merges critical points by the angle of their balls (paper, section 5.2, eq. 7), then by the
-/// neck.
+/// Merges critical points by score, or by the angle of their balls (paper, section 5.2, eq. 7) and
+/// the neck.
 ///
+/// Score (not in the paper): cut(mergeHierarchy(graph), strictness) of hierarchy.h.
 /// Angle: an edge merges its nodes if
 ///   cos alpha = (|ci - cj|^2 - D(ci) - D(cj)) / (2 sqrt(D(ci) D(cj))) < theta;
 /// each edge is tested once, on the original balls.
@@ -63,7 +64,6 @@ void checkMergeOptions(const MergeOptions& options);
 ///   sqrt(m) - sqrt(h) < delta / 8 of the shortest edge of a voxel:
 /// theta compares radii in proportion, but the error of a digital radius is some tenths of a voxel
 /// whatever the grain. (Decided in integers.)
-/// MergeMode::score has neither test: cut(mergeHierarchy(graph), strictness) of hierarchy.h.
 /// Grains are numbered in lexicographic order of their representatives.
 /// @throw InvalidInput as checkMergeOptions.
 Merging merge(const ManifoldGraph& graph, const MergeOptions& options = {});

@@ -26,7 +26,7 @@ constexpr double kBelowDiagram = 46, kLegendRow = 18, kLegendColumn = 230;
 
 struct Line {
   int64_t gamma = 0;
-  MergeMode mode = MergeMode::both;
+  MergeMode mode = MergeMode::score;
   int delta = 0;
   detail::Pen pen;
   std::vector<SweepRow> rows;  ///< by theta, or strictness

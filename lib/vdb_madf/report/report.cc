@@ -76,7 +76,7 @@ bool canWriteReport() {
 }
 
 bool isSweepTable(const std::string& text) {
-  const std::string head = "gamma,merge,delta,theta,grains,median_voxels,small_grains,";
+  const std::string head = "gamma,merge,strictness,delta,theta,grains,median_voxels,";
   return text.compare(0, head.size(), head) == 0;
 }
 

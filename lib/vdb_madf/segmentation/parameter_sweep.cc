@@ -92,7 +92,7 @@ void detail::addSweepRows(const SweepOptions& options, int64_t gamma,
   const auto addRow = [&](SweepRow row) {
     row.gamma = gamma;
     SweptGrains grains =
-        merged({row.theta, row.mode, options.adjacency, row.delta, row.strictness});
+        merged({row.mode, row.strictness, row.theta, row.delta, options.adjacency});
     row.flaws = grains.flaws;
     count(std::move(grains.voxels), options.smallVoxels, row);
     rows.push_back(row);

@@ -20,7 +20,7 @@ namespace vdb_madf {
 /// delta and theta, every combination of gamma and strictness.
 struct SweepOptions {
   std::vector<int64_t> gammas{0};  ///< voxels, 0 or more
-  std::vector<MergeMode> modes{MergeMode::both};
+  std::vector<MergeMode> modes{MergeMode::score};
   std::vector<double> thetas{-0.9};      ///< cosines in [-1, 1]
   std::vector<int> deltas{2};            ///< eighths of a voxel, see MergeOptions
   std::vector<double> strictnesses{11};  ///< see MergeOptions
@@ -36,7 +36,7 @@ struct SweepOptions {
 /// The grains of one choice of parameters.
 struct SweepRow {
   int64_t gamma = 0;
-  MergeMode mode = MergeMode::both;
+  MergeMode mode = MergeMode::score;
   double theta = 0;
   int delta = 0;
   double strictness = 0;  ///< of MergeMode::score; theta and delta are those of the others

@@ -27,7 +27,7 @@ struct SegmentOptions {
   std::optional<Domain> domain;             ///< overrides the domain in the mask's metadata
   /// Overrides the weights that the edges in the mask's transform give (voxel_weights.h).
   std::optional<VoxelWeights> weights;
-  MergeOptions merge;  ///< theta, mode, adjacency, delta
+  MergeOptions merge;
   /// Cavities of fewer voxels are filled while the method runs (cavities.h); 0: none; absent:
   /// defaultFillHoles().
   std::optional<int64_t> fillHoles;
@@ -97,8 +97,8 @@ struct Segmentation : SegmentationRecord {
 };
 
 /// Cuts the object into grains: cavities -> distance -> power map -> filter -> flow -> graph ->
-/// merge -> tidy (the whole of Wang et al. 2014, section 4 and 5; cavities, the neck test, its
-/// tolerance and tidying are ours, and can be turned off).
+/// merge -> tidy (the whole of Wang et al. 2014, section 4 and 5; cavities, merging by score or
+/// neck, and tidying are ours, and can be turned off).
 ///
 /// The active voxels of `object` are X, active tiles included. Labels depend on nothing but X, the
 /// domain, the shape of voxels and the options: not on tiles, threads or the order of work. X

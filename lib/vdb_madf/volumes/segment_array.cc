@@ -27,8 +27,7 @@ ArraySegmentation segmentArray(const uint8_t* mask, const std::array<int64_t, 3>
                            std::nullopt};
   SegmentOptions all;
   all.gamma = options.gamma;
-  all.merge.theta = options.theta;
-  all.merge.delta = options.delta;
+  all.merge.strictness = options.strictness;
   Segmentation found =
       segment(*maskFromDense(mask, layout, {}, options.voxelSize, interrupter), all, interrupter);
   ArraySegmentation result;

@@ -20,8 +20,7 @@ namespace vdb_madf {
 /// The options of SegmentOptions that are set most often, with its defaults.
 struct ArrayOptions {
   int64_t gamma = 0;                        ///< smallest cell of a medial ball, voxels
-  double theta = -0.9;                      ///< cosine in [-1, 1]; -1 merges least
-  int delta = 2;                            ///< tolerance of necks, eighths of an edge
+  double strictness = 11;                   ///< of joins; the larger, the more grains
   std::optional<VoxelSize> voxelSize = {};  ///< matters to labels if its edges differ
 };
 

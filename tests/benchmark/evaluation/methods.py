@@ -43,11 +43,13 @@ def both(theta, delta=2):
     return [], ["--merge", "both", "--theta", theta, "--delta", delta]
 
 
+DEFAULT = [], []
 # Of the gammas and thetas the paper took: 0, -1 for balls; 160, -0.8 for MF; 20, -0.5 for RG.
 BALL_METHODS = {"MADF to the letter, theta -1": angle(0, -1),
                 "MADF, both tests, theta -1, delta 0": both(-1, 0),
-                "MADF, our default (theta -0.9)": both(-0.9)}
-SNOW_METHODS = {"MADF, our default": both(-0.9), "MADF to the letter, 0, -0.8": angle(0, -0.8),
+                "MADF, both tests, theta -0.9": both(-0.9), "MADF, our default": DEFAULT}
+SNOW_METHODS = {"MADF, our default": DEFAULT, "MADF, both tests, theta -0.9": both(-0.9),
+                "MADF to the letter, 0, -0.8": angle(0, -0.8),
                 "MADF to the letter, 20, -0.5": angle(20, -0.5),
                 "MADF to the letter, 160, -0.8": angle(160, -0.8)}
 

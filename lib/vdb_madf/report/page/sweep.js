@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
-// What 'vdb_madf sweep' found for other options: lines against theta.
+// What 'vdb_madf sweep' found for other options: lines against strictness or theta.
 import { bytes, element } from './decode.js';
 import { Plot } from './plot.js';
 import { lineColors, make } from './sample.js';
@@ -18,21 +18,27 @@ function rowsOf(csv) {
   return lines.slice(1).map((line) => Object.fromEntries(line.split(',').map((cell, i) => [names[i], cell])));
 }
 
-/// Rows of equal options but theta.
+/// What changes along the line of a row.
+const axisOf = (row) => (row.merge === 'score' ? 'strictness' : 'theta');
+
+/// Rows of equal options but strictness or theta.
 function linesOf(rows) {
   const lines = new Map();
   for (const row of rows) {
-    const name = `gamma ${row.gamma}, ${row.merge}, delta ${row.delta}`;
+    const name = `gamma ${row.gamma}, ${row.merge}` + (row.delta ? `, delta ${row.delta}` : '');
     if (!lines.has(name)) lines.set(name, []);
     lines.get(name).push(row);
   }
-  return [...lines].map(([name, its], i) => ({ name, color: lineColors[i % lineColors.length],
-    rows: its.sort((a, b) => a.theta - b.theta), isDashed: i >= lineColors.length }));
+  return [...lines].map(([name, its], i) => {
+    const axis = axisOf(its[0]);
+    return { name, axis, color: lineColors[i % lineColors.length], isDashed: i >= lineColors.length,
+      rows: its.sort((a, b) => a[axis] - b[axis]) };
+  });
 }
 
-function draw(lines, { name, title, isLog }, theta) {
+function draw(lines, axis, { name, title, isLog }, used) {
   const height = (row) => (isLog ? Math.log10(Number(row[name])) : Number(row[name]));
-  const places = lines.map(({ rows }) => rows.map((row) => [Number(row.theta), height(row)])
+  const places = lines.map(({ rows }) => rows.map((row) => [Number(row[axis]), height(row)])
     .filter((place) => place.every(Number.isFinite)));
   const all = places.flat();
   if (all.length === 0) return make('span');
@@ -42,9 +48,9 @@ function draw(lines, { name, title, isLog }, theta) {
   };
   const y = range(all.map((place) => place[1]), 0.06);
   if (!isLog) y[0] = 0;
-  const plot = new Plot(title, 'theta', '', { x: range(all.map((place) => place[0]), 0.03), y, isLog });
+  const plot = new Plot(title, axis, '', { x: range(all.map((place) => place[0]), 0.03), y, isLog });
   plot.clear(1);
-  plot.upright(theta);
+  plot.upright(used);
   lines.forEach(({ color, isDashed }, i) => plot.line(places[i], color, isDashed));
   return plot.figure;
 }
@@ -53,12 +59,13 @@ export async function startSweep(sample) {
   const packed = await bytes('sweep');
   if (!packed) return;
   const lines = linesOf(rowsOf(new TextDecoder().decode(packed)));
-  const theta = Number(sample.numbers.segmentation.theta);
   element('charts').append(make('h2', {}, 'With other options'),
-    make('p', { className: 'hint' }, 'What a sweep found for other theta, gamma, delta and ways of merging. Dashed: theta of these labels.'),
+    make('p', { className: 'hint' }, 'What a sweep found for other strictness, or theta, gamma, delta and ways of merging. Dashed: that of these labels.'),
     make('ul', { className: 'legend' }, ...lines.map(({ name, color, isDashed }) => {
       const line = make('i');
       line.style.borderTop = `4px ${isDashed ? 'dotted' : 'solid'} ${color}`;
       return make('li', {}, line, name);
-    })), make('div', { className: 'panels' }, ...plots.map((spec) => draw(lines, spec, theta))));
+    })), ...['strictness', 'theta'].filter((axis) => lines.some((line) => line.axis === axis)).map((axis) =>
+      make('div', { className: 'panels' }, ...plots.map((spec) =>
+        draw(lines.filter((line) => line.axis === axis), axis, spec, Number(sample.numbers.segmentation[axis]))))));
 }
