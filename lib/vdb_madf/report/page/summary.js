@@ -19,7 +19,7 @@ export function originOf(sample) {
     ? `voxels of ${cubes ? edges[0] : edges.join(' \u00d7 ')}`
     : 'voxels of unknown size: lengths are in voxels';
   const made = ['merge', 'strictness', 'gamma', 'theta', 'delta'].filter((key) => key in numbers.segmentation)
-    .map((key) => `${key.replace('_', ' ')} ${numbers.segmentation[key]}`).join(', ');
+    .map((key) => `${key} ${numbers.segmentation[key]}`).join(', ');
   return [numbers.labels, `${size.join(' \u00d7 ')} voxels`, voxel, made].filter(Boolean).join('; ');
 }
 

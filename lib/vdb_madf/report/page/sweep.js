@@ -18,9 +18,6 @@ function rowsOf(csv) {
   return lines.slice(1).map((line) => Object.fromEntries(line.split(',').map((cell, i) => [names[i], cell])));
 }
 
-/// What changes along the line of a row.
-const axisOf = (row) => (row.merge === 'score' ? 'strictness' : 'theta');
-
 /// Rows of equal options but strictness or theta.
 function linesOf(rows) {
   const lines = new Map();
@@ -30,7 +27,7 @@ function linesOf(rows) {
     lines.get(name).push(row);
   }
   return [...lines].map(([name, its], i) => {
-    const axis = axisOf(its[0]);
+    const axis = its[0].merge === 'score' ? 'strictness' : 'theta';
     return { name, axis, color: lineColors[i % lineColors.length], isDashed: i >= lineColors.length,
       rows: its.sort((a, b) => a[axis] - b[axis]) };
   });
