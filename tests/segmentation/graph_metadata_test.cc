@@ -352,14 +352,15 @@ TEST_CASE("graph_metadata: a part that breaks the rules, or is damaged, is refus
 TEST_CASE("graph_metadata: parts that are not of one graph are not joined", "[graph_metadata]") {
   // Two manifolds that touch, one of them in both parts.
   const std::vector<GraphPart> parts{
-      {{{{Coord(0, 0, 7), 9, 40}}, {}, {}}, {1}, {1}},
-      {{{{Coord(0, 0, 7), 9, 2}, {Coord(5, 0, 9), 4, 3}}, {{0, 1, 7, 3, false}}, {}},
+      {{{{Coord(0, 0, 7), 9, 40}}, {}, {}, 1}, {1}, {1}},
+      {{{{Coord(0, 0, 7), 9, 2}, {Coord(5, 0, 9), 4, 3}}, {{0, 1, 7, 3, false}}, {}, 1},
        {1, 2},
        {0, 0}}};
   const ManifoldGraph joined = joinedGraph(parts);
   REQUIRE(joined.nodes ==
           std::vector<CriticalPoint>{{Coord(0, 0, 7), 9, 42}, {Coord(5, 0, 9), 4, 3}});
   REQUIRE(joined.edges == parts[1].graph.edges);
+  REQUIRE(joined.flatAxis == 1);
   REQUIRE(joinedGraph({}).nodes.empty());
   const auto refused = [&](auto change) {
     std::vector<GraphPart> changed = parts;

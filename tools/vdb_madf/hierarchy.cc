@@ -34,9 +34,7 @@ ManifoldGraph keptGraph(const InputOptions& input, Progress* progress) {
     for (size_t slab = 0; slab < manifolds.slabCount(); ++slab)
       if (auto part = storedGraphPart(*manifolds.read(slab, progress)))
         parts.push_back(std::move(*part));
-    ManifoldGraph graph = joinedGraph(parts);
-    if (const auto domain = storedDomain(*manifolds.about)) graph.flatAxis = domain->flatAxis();
-    return graph;
+    return joinedGraph(parts);
   }
   return requiredGraph(*requiredManifolds(readVdbHeaders(input.path, progress), input.path));
 }

@@ -27,6 +27,7 @@ ManifoldGraph joinedGraph(const std::vector<GraphPart>& parts) {
   std::vector<char> isKnown(count, 0);
   for (const GraphPart& part : parts) {
     whole.weights = part.graph.weights;
+    whole.flatAxis = part.graph.flatAxis;
     for (size_t i = 0; i < part.number.size(); ++i) {
       const size_t at = part.number[i] - 1;
       const ManifoldGraph::Node& node = part.graph.nodes[i];
