@@ -128,6 +128,9 @@ OracleHierarchy oracleHierarchy(const ManifoldGraph& graph);
 /// The class of each node at a strictness.
 std::vector<uint32_t> oracleCut(const ManifoldGraph& graph, const OracleHierarchy& hierarchy,
                                 double strictness);
+/// Step 7, small grains: what each node's grain (0: none) has joined.
+std::vector<uint32_t> oracleJoinSmall(const ManifoldGraph& graph,
+                                      const std::vector<int32_t>& grainOfNode, int64_t least);
 /// The score of a pair of classes, a of the smaller top.
 int64_t oracleScore(int64_t voxelsA, int64_t topA, int64_t voxelsB, int64_t topB, int64_t faces,
                     int64_t height, const VoxelWeights& weights = {});

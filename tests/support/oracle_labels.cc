@@ -17,6 +17,65 @@ namespace vdb_madf::test {
 
 // ----------------------------------------------------------------------------------- Merge
 
+namespace {
+
+/// Step 8: the representative has the largest D; of equal ones the first in node order.
+Merging numbered(const ManifoldGraph& graph, const std::vector<uint32_t>& classOf) {
+  const auto& nodes = graph.nodes;
+  std::map<uint32_t, uint32_t> representative;  // by class
+  for (uint32_t i = 0; i < nodes.size(); ++i) {
+    const auto known = representative.find(classOf[i]);
+    if (known == representative.end() ||
+        nodes[i].squaredRadius > nodes[known->second].squaredRadius)
+      representative[classOf[i]] = i;
+  }
+  Merging merging;
+  for (const auto& [c, node] : representative) {
+    int64_t voxels = 0;
+    for (size_t i = 0; i < nodes.size(); ++i)
+      if (classOf[i] == c) voxels += nodes[i].voxels;
+    if (voxels > 0) merging.representative.push_back(node);  // else it is no grain
+  }
+  std::sort(merging.representative.begin(), merging.representative.end());
+  std::map<uint32_t, int32_t> number;
+  int32_t grains = 0;
+  for (const uint32_t r : merging.representative) number[classOf[r]] = ++grains;
+  for (const uint32_t c : classOf) merging.grainOfNode.push_back(number[c]);
+  return merging;
+}
+
+}  // namespace
+
+std::vector<uint32_t> oracleJoinSmall(const ManifoldGraph& graph,
+                                      const std::vector<int32_t>& grainOfNode, int64_t least) {
+  std::vector<uint32_t> grainOf(grainOfNode.begin(), grainOfNode.end());
+  for (bool joined = true; joined;) {
+    joined = false;
+    std::map<uint32_t, int64_t> voxels;
+    for (size_t i = 0; i < grainOf.size(); ++i) voxels[grainOf[i]] += graph.nodes[i].voxels;
+    std::set<std::pair<int64_t, uint32_t>> small;
+    for (const auto& [grain, size] : voxels)
+      if (grain != 0 && size < least) small.emplace(size, grain);
+    for (const auto& [size, grain] : small) {
+      std::map<uint32_t, int64_t> faces;  // by neighbor
+      for (const auto& edge : graph.edges) {
+        const uint32_t a = grainOf[edge.first], b = grainOf[edge.second];
+        if (a == grain && b != grain && b != 0) faces[b] += edge.contactFaces;
+        if (b == grain && a != grain && a != 0) faces[a] += edge.contactFaces;
+      }
+      if (faces.empty()) continue;
+      uint32_t to = faces.begin()->first;
+      for (const auto& [other, shared] : faces)  // ascending
+        if (shared > faces[to]) to = other;
+      for (uint32_t& g : grainOf)
+        if (g == grain) g = to;
+      joined = true;
+      break;
+    }
+  }
+  return grainOf;
+}
+
 Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
   const double theta = options.theta;
   if (!(theta >= -1 && theta <= 1)) throw Undefined("theta is not in [-1, 1]");
@@ -76,27 +135,7 @@ Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
     }
   }
 
-  // Step 8: the representative has the largest D; of equal ones the first in node order.
-  std::map<uint32_t, uint32_t> representative;  // by class
-  for (uint32_t i = 0; i < nodes.size(); ++i) {
-    const auto known = representative.find(classOf[i]);
-    if (known == representative.end() ||
-        nodes[i].squaredRadius > nodes[known->second].squaredRadius)
-      representative[classOf[i]] = i;
-  }
-  Merging merging;
-  for (const auto& [c, node] : representative) {
-    int64_t voxels = 0;
-    for (size_t i = 0; i < nodes.size(); ++i)
-      if (classOf[i] == c) voxels += nodes[i].voxels;
-    if (voxels > 0) merging.representative.push_back(node);  // else it is no grain
-  }
-  std::sort(merging.representative.begin(), merging.representative.end());
-  std::map<uint32_t, int32_t> number;
-  int32_t grains = 0;
-  for (const uint32_t r : merging.representative) number[classOf[r]] = ++grains;
-  for (const uint32_t c : classOf) merging.grainOfNode.push_back(number[c]);
-  return merging;
+  return numbered(graph, classOf);
 }
 
 // ------------------------------------------------------------------------------------ Tidy
