@@ -29,8 +29,37 @@ EditedLabels edited(const Int32Grid& labels, const std::vector<std::string>& tex
 
 constexpr double kEdge = 2e-6;
 
+/// By the definition: faces counted anew for each grain that joins another.
+LabelMap naiveJoin(LabelMap voxels, int64_t least) {
+  for (;;) {
+    std::set<std::pair<int64_t, int32_t>> small;
+    for (const auto& [label, size] : volumes(voxels))
+      if (size < least) small.emplace(size, label);
+    int32_t from = 0, to = 0;
+    for (const auto& [size, label] : small) {
+      std::map<int32_t, int> faces;
+      for (const auto& [p, own] : voxels)
+        for (int side = 0; side < 6 && own == label; ++side) {
+          Coord next = p;
+          next[side / 2] += side % 2 ? 1 : -1;
+          const auto other = voxels.find(next);
+          if (other != voxels.end() && other->second != label) ++faces[other->second];
+        }
+      if (faces.empty()) continue;
+      from = label;
+      for (const auto& [other, count] : faces)  // ascending
+        if (to == 0 || count > faces[to]) to = other;
+      break;
+    }
+    if (from == 0) return voxels;
+    for (auto& [p, label] : voxels)
+      if (label == from) label = to;
+  }
+}
+
 /// By the definition, voxel by voxel.
 LabelMap naiveEdit(const LabelMap& voxels, const Edit& edit, const std::optional<Domain>& domain) {
+  if (edit.kind == Edit::Kind::joinBelow) return naiveJoin(voxels, edit.voxels);
   std::set<int32_t> numbers, atFaces;
   CoordBBox box;
   for (const auto& [p, label] : voxels) {
@@ -82,6 +111,7 @@ LabelMap naiveEdit(const LabelMap& voxels, const Edit& edit, const std::optional
         now = 1 + int32_t(std::distance(numbers.begin(), numbers.find(label)));
         break;
       case Edit::Kind::split:
+      case Edit::Kind::joinBelow:
         break;
     }
     if (now) result[p] = now;
@@ -96,7 +126,7 @@ Edit randomEdit(std::mt19937& random, const LabelMap& voxels) {
   std::shuffle(labels.begin(), labels.end(), random);
   labels.resize(std::min<size_t>(labels.size(), 2 + random() % 2));
   Edit edit;
-  edit.kind = Edit::Kind(1 + random() % 9);  // not split
+  edit.kind = Edit::Kind(1 + random() % 10);  // not split
   if (edit.kind == Edit::Kind::merge && labels.size() < 2) edit.kind = Edit::Kind::drop;
   if (edit.kind == Edit::Kind::keep)  // most of them
     for (const auto& [label, size] : sizes)
@@ -188,6 +218,28 @@ TEST_CASE("edit_labels: what it says of each edit", "[edit_labels]") {
   CHECK(again.labels->empty());
   CHECK(edited(*again.labels, {"renumber", "drop-at-faces", "min-voxels 3"}).grains == 0);
   CHECK_FALSE((*edited(*labels, {}).labels)[kEditsKey]);
+}
+
+TEST_CASE("edit_labels: small grains join what they touch most", "[edit_labels]") {
+  LabelMap voxels = twoBalls({0, 0, 0}, 5);  // 3 and 7
+  const auto before = volumes(voxels);
+  for (const int z : {5, 6, 7}) voxels[{0, 0, z}] = z == 5 ? 1 : 2;  // a thorn on 3, in two parts
+  voxels[{40, 0, 0}] = 5;                                            // which touches none
+  const auto labels = labelGrid(voxels);
+  const EditedLabels result = edited(*labels, {"join-below 0", "join-below 2", "join-below 27"});
+  std::vector<int64_t> joined;
+  for (const EditResult& edit : result.results) joined.push_back(edit.joinedGrains);
+  CHECK(joined == std::vector<int64_t>{0, 1, 1});
+  CHECK(result.results[1].grains == std::vector<int32_t>{2});
+  CHECK(result.results[2].grains == std::vector<int32_t>{3});
+  CHECK(result.grains == 3);
+  CHECK(result.voxels == result.voxelsBefore);
+  requireSame(*result.labels, naiveJoin(voxels, 27));
+  CHECK(volumes(naiveJoin(voxels, 27)) ==
+        std::map<int32_t, int64_t>{{3, before.at(3) + 3}, {5, 1}, {7, before.at(7)}});
+  CHECK_THROWS_WITH(
+      edited(*labels, {"join-below 2", "drop 1"}),
+      vdb_madf::test::Equals("drop 1: there is no grain 1 any more, after 'join-below 2'"));
 }
 
 TEST_CASE("edit_labels: counts of a segmentation stay true or go", "[edit_labels]") {

@@ -17,7 +17,7 @@ TEST_CASE("edits: a text says what it is of", "[edits]") {
   CHECK(parseEdit("max-diameter 1mm").diameter == 1e-3);
   for (const std::string text :
        {"split 9", "merge 12 17 3", "drop 5", "keep 1 2 3", "min-voxels 100", "max-voxels 5000",
-        "min-diameter 8.5um", "max-diameter 1000um", "drop-at-faces", "renumber"})
+        "join-below 27", "min-diameter 8.5um", "max-diameter 1000um", "drop-at-faces", "renumber"})
     CHECK(toString(parseEdit(text)) == text);
 }
 
@@ -47,6 +47,8 @@ TEST_CASE("edits: what is none is refused, by its line", "[edits]") {
       {"keep x", "'x' is no number of a grain"},
       {"min-voxels", "min-voxels takes one number of voxels, and is given 0"},
       {"min-voxels -1", "'-1' is no number of voxels"},
+      {"join-below -1", "'-1' is no number of voxels"},
+      {"join-below 2.5", "'2.5' is no number of voxels"},
       {"max-voxels 1 2", "max-voxels takes one number of voxels, and is given 2"},
       {"min-diameter 100", "100: "},
       {"min-diameter 1x2x3um", "a diameter is one length"},

@@ -52,6 +52,9 @@ def test_edits_equal_numpy(seg):
     median = int(np.median(sizes[1:]))
     assert np.array_equal(labels.edit(f"max-voxels {median}"),
                           np.where(sizes[array] <= median, array, 0))
+    joined = np.asarray(labels.edit("join-below 200"))
+    assert set(np.unique(array)) - set(np.unique(joined)) <= set(np.flatnonzero(sizes < 200))
+    assert np.array_equal(joined > 0, array > 0)
     edge = np.cbrt(6 * median / np.pi) * 10
     assert np.array_equal(labels.edit(f"max-diameter {edge + .001:.6f}um"),
                           labels.edit(f"max-voxels {median}"))

@@ -88,6 +88,28 @@ TEST_CASE("cli: an edit and its inverse give back the labels", "[cli]") {
   CHECK(metadataOf(bench, "fresh.vdb", "grain").count("madf_edits") == 0);
 }
 
+TEST_CASE("cli: small grains join their neighbors, and a split gives them back", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSnow + "s.vdb");
+  bench.mustRun("segment s.vdb g.vdb --keep manifold");
+  const Json json = Json::parse(bench.mustRun("edit g.vdb e.vdb --join-below 400 --json -"));
+  const int joined = json.at("edits")[0].at("joined_grains");
+  REQUIRE(joined > 0);
+  CHECK(json.at("grains") == json.at("grains_before").get<int>() - joined);
+  CHECK(json.at("voxels") == json.at("voxels_before"));
+  CHECK(metadataOf(bench, "e.vdb", "grain").at("madf_edits") == "join-below 400");
+  bench.write("list.txt", "join-below 400\n");
+  CHECK(bench.mustRun("edit g.vdb listed.vdb --edits list.txt")
+            .find("join-below 400: joined " + std::to_string(joined) + " grain") !=
+        std::string::npos);
+  CHECK(bench.bytes("listed.vdb") == bench.bytes("e.vdb"));
+  std::string splits;
+  for (const Json& grown : json.at("edits")[0].at("grains"))
+    splits += " --split " + std::to_string(grown.get<int>());
+  bench.mustRun("edit e.vdb back.vdb" + splits);
+  CHECK(digestOf(bench, "back.vdb") == digestOf(bench, "g.vdb"));
+}
+
 TEST_CASE("cli: edits of labels of another program", "[cli]") {
   const Bench bench;
   bench.mustRun(kSpheres + "s.vdb --voxel-size 10um");

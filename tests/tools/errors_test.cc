@@ -142,6 +142,8 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"edit in.vdb out.vdb", "--merge"},
       {"edit in.vdb out.jpg --renumber", "out.jpg"},
       {"edit in.vdb in.vdb --renumber", "in.vdb"},
+      {"edit in.vdb out.vdb --join-below -3", "--join-below -3: '-3' is no number of voxels"},
+      {"edit in.vdb out.vdb --join-below 2.5", "--join-below 2.5: '2.5' is no number of voxels"},
       {"edit in.vdb out.vdb --merge 12", "--merge 12: merge takes 2 or more"},
       {"edit in.vdb out.vdb --merge 12,17,12", "grain 12 is named twice"},
       {"edit in.vdb out.vdb --split 1,2", "--split 1,2: split takes one grain"},

@@ -103,11 +103,14 @@ Json summary(const EditArguments& o, const EditedLabels& edited) {
   json["voxels_before"] = edited.voxelsBefore;
   json["voxels"] = edited.voxels;
   json["edits"] = Json::array();
-  for (const EditResult& result : edited.results)
+  for (const EditResult& result : edited.results) {
     json["edits"].push_back({{"edit", toString(result.edit)},
                              {"grains", result.grains},
                              {"dropped_grains", result.droppedGrains},
                              {"dropped_voxels", result.droppedVoxels}});
+    if (result.edit.kind == Edit::Kind::joinBelow)
+      json["edits"].back()["joined_grains"] = result.joinedGrains;
+  }
   return json;
 }
 
@@ -119,6 +122,8 @@ std::string didWhat(const EditResult& result) {
     case Edit::Kind::split:
     case Edit::Kind::merge:
       return "now " + text;
+    case Edit::Kind::joinBelow:
+      return "joined " + counted(result.joinedGrains, "grain") + " to neighbors";
     case Edit::Kind::renumber:
       return "done";
     default:
@@ -195,6 +200,7 @@ void addEdit(Verb command, Common& common, Action& action) {
   edit("--keep", "A,B,...", "drops all others");
   edit("--min-voxels", "N", "drops grains of fewer voxels");
   edit("--max-voxels", "N", "drops grains of more");
+  edit("--join-below", "N", "joins grains of fewer to the neighbor of most shared faces");
   edit("--min-diameter", "LENGTH", "drops grains of a smaller equivalent diameter, such as 100um");
   edit("--max-diameter", "LENGTH", "drops grains of a larger one");
   verb.repeatedFlag("--drop-at-faces", o->given, "drops grains at the faces of the domain");

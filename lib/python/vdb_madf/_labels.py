@@ -119,6 +119,7 @@ class Labels(Volume):
 
         - "merge A B ...": one grain, of the first label; "split A": undoes it
         - "drop A B ...", "keep A B ...", "drop-at-faces" (of the volume or its region)
+        - "join-below N": grains of fewer voxels become part of the neighbor of most shared faces
         - "min-voxels N", "max-voxels N", "min-diameter 100um", "max-diameter 1mm" (of equal volume)
         - "renumber": 1, 2, 3 ... in the order of the labels
 

@@ -20,10 +20,12 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/edits/detail/grain_parts.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/labels/detail/label_contacts.h"
 #include "vdb_madf/labels/detail/label_leaves.h"
 #include "vdb_madf/labels/detail/relabelled.h"
 #include "vdb_madf/labels/label_sizes.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
+#include "vdb_madf/method/join_small.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"
 
@@ -81,7 +83,8 @@ class Editor {
   }
 
   EditResult apply(const Edit& edit) {
-    result_ = {edit, {}, 0, 0};
+    result_ = {};
+    result_.edit = edit;
     for (const int32_t grain : edit.grains) require(grain);
     switch (edit.kind) {
       case Kind::split:
@@ -89,6 +92,9 @@ class Editor {
         break;
       case Kind::merge:
         merge(edit.grains);
+        break;
+      case Kind::joinBelow:
+        joinBelow(edit.voxels);
         break;
       case Kind::renumber:
         renumber();
@@ -126,15 +132,43 @@ class Editor {
     changed_ = true;
   }
 
+  void join(int32_t number, int32_t into) {
+    Grain& whole = grains_.at(into);
+    const Grain& part = grains_.at(number);
+    whole.voxels += part.voxels;
+    whole.from.insert(whole.from.end(), part.from.begin(), part.from.end());
+    remove(number);
+  }
+
   void merge(const std::vector<int32_t>& numbers) {
-    Grain& whole = grains_.at(numbers.at(0));
-    for (size_t i = 1; i < numbers.size(); ++i) {
-      const Grain& part = grains_.at(numbers[i]);
-      whole.voxels += part.voxels;
-      whole.from.insert(whole.from.end(), part.from.begin(), part.from.end());
-      remove(numbers[i]);
-    }
+    for (size_t i = 1; i < numbers.size(); ++i) join(numbers[i], numbers[0]);
     result_.grains = {numbers.at(0)};
+  }
+
+  void joinBelow(int64_t least) {
+    flush();
+    std::vector<int32_t> numbers;
+    std::vector<int64_t> voxels;
+    for (const auto& [number, grain] : grains_) {
+      numbers.push_back(number);
+      voxels.push_back(grain.voxels);
+    }
+    const auto place = [&](int32_t number) {
+      return uint32_t(std::lower_bound(numbers.begin(), numbers.end(), number) - numbers.begin());
+    };
+    std::vector<GrainContact> contacts;
+    for (const auto& [first, second, faces] : detail::labelContacts(grid(), interrupter_))
+      contacts.push_back({place(first), place(second), faces});
+    const std::vector<uint32_t> into = joinSmall(std::move(voxels), contacts, least);
+    for (size_t i = 0; i < numbers.size(); ++i) {
+      if (into[i] == i) continue;
+      join(numbers[i], numbers[into[i]]);
+      result_.grains.push_back(numbers[into[i]]);
+      ++result_.joinedGrains;
+    }
+    std::vector<int32_t>& grown = result_.grains;
+    std::sort(grown.begin(), grown.end());
+    grown.erase(std::unique(grown.begin(), grown.end()), grown.end());
   }
 
   void renumber() {

@@ -18,9 +18,11 @@ inline constexpr char kEditsKey[] = "madf_edits";
 /// What an edit did.
 struct EditResult {
   Edit edit;
-  /// split: the parts, ascending, one of which has the grain's number; merge: the grain.
+  /// split: the parts, ascending, one of which has the grain's number; merge: the grain; joinBelow:
+  /// those that others have joined, ascending.
   std::vector<int32_t> grains;
   int64_t droppedGrains = 0, droppedVoxels = 0;
+  int64_t joinedGrains = 0;  ///< joinBelow: those that have become part of others
 };
 
 /// New labels, and what came of each edit.
@@ -41,7 +43,8 @@ struct EditedLabels {
 /// A part has the number that it always has when it is one grain, if that is free: what is merged
 /// and split, or split and merged, has the same labels as before, bit for bit. Otherwise it gets
 /// the least number above all others; if none has the number of the divided grain, the largest gets
-/// it. dropAtFaces: grains that have a voxel with a face neighbor outside the domain; if that is
+/// it. joinBelow: joinSmall() of method/join_small.h, for grains in the order of their numbers.
+/// dropAtFaces: grains that have a voxel with a face neighbor outside the domain; if that is
 /// unknown, outside the box of the grains that are left.
 ///
 /// Metadata are those of the labels; kEditsKey tells the edits after those that were there, counts

@@ -31,7 +31,7 @@ struct Word {
 
 constexpr size_t kAny = std::numeric_limits<size_t>::max();
 using Takes = Word::Takes;
-constexpr std::array<Word, 10> kWords{{{Kind::split, "split", Takes::grains, 1, 1},
+constexpr std::array<Word, 11> kWords{{{Kind::split, "split", Takes::grains, 1, 1},
                                        {Kind::merge, "merge", Takes::grains, 2, kAny},
                                        {Kind::drop, "drop", Takes::grains, 1, kAny},
                                        {Kind::keep, "keep", Takes::grains, 1, kAny},
@@ -39,6 +39,7 @@ constexpr std::array<Word, 10> kWords{{{Kind::split, "split", Takes::grains, 1, 
                                        {Kind::maxVoxels, "max-voxels", Takes::voxels},
                                        {Kind::minDiameter, "min-diameter", Takes::length},
                                        {Kind::maxDiameter, "max-diameter", Takes::length},
+                                       {Kind::joinBelow, "join-below", Takes::voxels},
                                        {Kind::dropAtFaces, "drop-at-faces", Takes::nothing},
                                        {Kind::renumber, "renumber", Takes::nothing}}};
 

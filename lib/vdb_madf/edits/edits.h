@@ -21,12 +21,13 @@ struct Edit {
     maxVoxels,    ///< "max-voxels 5000": grains of more go
     minDiameter,  ///< "min-diameter 100um": grains of a smaller equivalent diameter go
     maxDiameter,  ///< "max-diameter 1mm"
+    joinBelow,    ///< "join-below 27": grains of fewer voxels become part of a neighbor
     dropAtFaces,  ///< "drop-at-faces": what the domain may have cut goes
     renumber      ///< "renumber": 1, 2, 3 ... in the order of the numbers
   };
   Kind kind = Kind::renumber;
   std::vector<int32_t> grains;  ///< of split, merge, drop, keep
-  int64_t voxels = 0;           ///< of minVoxels, maxVoxels
+  int64_t voxels = 0;           ///< of minVoxels, maxVoxels, joinBelow
   double diameter = 0;          ///< of minDiameter, maxDiameter; meters
 };
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/matching/detail/label_contacts.h"
+#include "vdb_madf/labels/detail/label_contacts.h"
 
 #include <algorithm>
 #include <map>
