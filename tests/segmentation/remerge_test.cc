@@ -56,14 +56,17 @@ std::map<std::string, std::string> texts(const openvdb::MetaMap& metadata) {
   return result;
 }
 
-const std::vector<MergeOptions> kMergings = {{MergeMode::both, 11, -1, 0, Adjacency::manifold},
-                                             {MergeMode::both, 11, -0.9, 2, Adjacency::manifold},
-                                             {MergeMode::angle, 11, -0.8, 0, Adjacency::manifold},
-                                             {MergeMode::angle, 11, -0.8, 0, Adjacency::cell},
-                                             {MergeMode::neck, 11, -0.6, 5, Adjacency::manifold},
-                                             {MergeMode::both, 11, 1, 80, Adjacency::cell},
-                                             {MergeMode::score, 8, -0.9, 2, Adjacency::manifold},
-                                             {MergeMode::score, 11, -0.5, 2, Adjacency::manifold}};
+const std::vector<MergeOptions> kMergings = {
+    {MergeMode::both, 11, -1, 0, Adjacency::manifold},
+    {MergeMode::both, 11, -0.9, 2, Adjacency::manifold},
+    {MergeMode::angle, 11, -0.8, 0, Adjacency::manifold},
+    {MergeMode::angle, 11, -0.8, 0, Adjacency::cell},
+    {MergeMode::neck, 11, -0.6, 5, Adjacency::manifold},
+    {MergeMode::both, 11, 1, 80, Adjacency::cell},
+    {MergeMode::score, 8, -0.9, 2, Adjacency::manifold},
+    {MergeMode::score, 11, -0.5, 2, Adjacency::manifold},
+    {MergeMode::score, 11, -0.9, 2, Adjacency::manifold, 20},
+    {MergeMode::both, 11, -1, 0, Adjacency::manifold, 99}};
 
 /// Labels as the oracle merges its own manifolds, and all else as a fresh segmentation has it.
 void requireFresh(RandomCase c) {
@@ -77,7 +80,8 @@ void requireFresh(RandomCase c) {
   const Segmentation first = segment(*maskOf(c), optionsOf(c));
   for (const MergeOptions& merging : kMergings) {
     const int tidy = merging.theta < -0.7 ? 2 : 0;
-    CAPTURE(merging.strictness, merging.theta, int(merging.mode), int(merging.adjacency), tidy);
+    CAPTURE(merging.strictness, merging.theta, int(merging.mode), int(merging.adjacency),
+            merging.minGrain, tidy);
     const Merging merged = oracleMerge(oracle.graph, merging);
     std::vector<Coord> representatives;
     for (const uint32_t node : merged.representative)
@@ -250,6 +254,8 @@ TEST_CASE("remerge: what does not fit is refused", "[remerge]") {
       CHECK_THROWS_AS(remerge(*manifold, {MergeMode::both, 11, -0.9, delta, Adjacency::manifold}),
                       InvalidInput);
     CHECK_THROWS_AS(remerge(*manifold, {}, -1), InvalidInput);
+    CHECK_THROWS_AS(remerge(*manifold, {MergeMode::score, 11, -0.9, 2, Adjacency::manifold, -1}),
+                    InvalidInput);
   }
   SECTION("more or fewer voxels of a manifold than its graph says") {
     manifold->tree().setValueOn(Coord(0, 0, 7), 3);

@@ -65,6 +65,8 @@ Texts expectedTexts(const SegmentOptions& options, bool open, const SegmentCount
       {"madf_grains", asText(Int64Metadata(counts.grains))},
       {"madf_largest_squared_distance", asText(Int64Metadata(counts.largestSquaredDistance))},
       {"madf_leaves", asText(Int64Metadata(counts.leaves))}};
+  if (options.merge.minGrain > 0)
+    texts["madf_min_grain"] = asText(Int64Metadata(options.merge.minGrain));
   if (options.merge.mode == MergeMode::score) {
     texts["madf_strictness"] = asText(DoubleMetadata(options.merge.strictness));
     return texts;
@@ -126,8 +128,9 @@ TEST_CASE("segmentation_metadata: how manifolds were merged is read again",
     }
   grid->insertMeta("madf_adjacency", StringMetadata("face"));
   CHECK_FALSE(storedMerging(*grid));
-  describeMerging(*grid, {MergeMode::score, 10.75, -0.5, 12, Adjacency::cell}, 6, 77);
+  describeMerging(*grid, {MergeMode::score, 10.75, -0.5, 12, Adjacency::cell, 27}, 6, 77);
   REQUIRE(storedMerging(*grid));
+  CHECK(storedMerging(*grid)->options.minGrain == 27);
   CHECK(storedMerging(*grid)->options.mode == MergeMode::score);
   CHECK(storedMerging(*grid)->options.strictness == 10.75);
   CHECK(storedMerging(*grid)->tidy == 6);
@@ -135,6 +138,7 @@ TEST_CASE("segmentation_metadata: how manifolds were merged is read again",
   CHECK_FALSE(storedMerging(*grid));
   describeOwnMerging(*grid, 2, 5);
   CHECK_FALSE(storedMerging(*grid));
+  CHECK_FALSE((*grid)["madf_min_grain"]);
 }
 
 TEST_CASE("segmentation_metadata: another merging changes what it is told by",
@@ -145,6 +149,7 @@ TEST_CASE("segmentation_metadata: another merging changes what it is told by",
   describeSegmentation(*grid, {}, s);
   Texts expected = storedTexts(*grid);
   describeMerging(*grid, {MergeMode::angle, 11, 0.25, 5, Adjacency::cell}, 6, 77);
+  CHECK(expected.count("madf_min_grain") == 0);
   expected.erase("madf_strictness");
   expected["madf_theta"] = asText(DoubleMetadata(0.25));
   expected["madf_merge"] = asText(StringMetadata("angle"));

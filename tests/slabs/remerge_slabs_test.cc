@@ -97,8 +97,9 @@ TEST_CASE("remerge_slabs: labels are those of a fresh segmentation", "[remerge_s
     std::vector<int> cuts = randomCuts(box, rng);
     SegmentOptions other = options;
     const double thetas[] = {-1, -0.9, -0.8, -0.5, 0};
-    other.merge = {MergeMode(rng.below(4)), double(rng.between(4, 16)), thetas[rng.below(5)],
-                   rng.chance(0.5) ? 0 : rng.below(9), Adjacency(rng.below(2))};
+    other.merge = {MergeMode(rng.below(4)), double(rng.between(4, 16)),
+                   thetas[rng.below(5)],    rng.chance(0.5) ? 0 : rng.below(9),
+                   Adjacency(rng.below(2)), seed % 3 ? 0 : int64_t(seed % 101)};
     other.tidy = rng.below(9);
     options.tidy = 0;
     Segmentation whole;

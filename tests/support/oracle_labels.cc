@@ -80,6 +80,7 @@ Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
   const double theta = options.theta;
   if (!(theta >= -1 && theta <= 1)) throw Undefined("theta is not in [-1, 1]");
   if (options.delta < 0 || options.delta > 80) throw Undefined("delta is not in 0..80");
+  if (options.minGrain < 0) throw Undefined("minGrain is negative");
   const auto& nodes = graph.nodes;
   const VoxelWeights& weights = graph.weights;
   const int shortest = std::min({weights.x, weights.y, weights.z});  // an edge, squared
@@ -135,7 +136,10 @@ Merging oracleMerge(const ManifoldGraph& graph, const MergeOptions& options) {
     }
   }
 
-  return numbered(graph, classOf);
+  Merging merging = numbered(graph, classOf);
+  if (options.minGrain > 0)
+    merging = numbered(graph, oracleJoinSmall(graph, merging.grainOfNode, options.minGrain));
+  return merging;
 }
 
 // ------------------------------------------------------------------------------------ Tidy

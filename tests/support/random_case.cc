@@ -22,6 +22,7 @@ constexpr std::array<int, 4> kTidies = {0, 1, 2, 5};
 constexpr std::array<double, 8> kThetas = {-1, -0.95, -0.9, -0.8, -0.5, 0, 0.5, 1};
 constexpr std::array<const char*, 3> kBoundaryNames = {"automatic", "open", "closed"};
 constexpr std::array<double, 7> kStrictnesses = {11, -200, 4, 8, 10, 13.5, 20};
+constexpr std::array<int64_t, 6> kMinGrains = {0, 27, 0, 4, 0, 300};
 constexpr std::array<const char*, 4> kModeNames = {"both", "angle", "neck", "score"};
 
 void setRegion(RandomCase& c, const ObjectVolume& region) {
@@ -166,6 +167,7 @@ class Shrinker {
     attempt(best_.options.gamma != 0, [](RandomCase& c) { c.options.gamma = 0; });
     attempt(best_.options.fillHoles != 0, [](RandomCase& c) { c.options.fillHoles = 0; });
     attempt(best_.options.merge.delta != 0, [](RandomCase& c) { c.options.merge.delta = 0; });
+    attempt(best_.options.merge.minGrain != 0, [](RandomCase& c) { c.options.merge.minGrain = 0; });
     attempt(best_.options.tidy != 0, [](RandomCase& c) { c.options.tidy = 0; });
     attempt(best_.options.weights.has_value(), [](RandomCase& c) { c.options.weights.reset(); });
     attempt(best_.domain.has_value(), [](RandomCase& c) {
@@ -226,6 +228,7 @@ RandomCase randomCase(uint64_t seed, const std::optional<Coord>& size) {
   c.tiles = rng.chance(0.5) ? Tiles::wherePossible : Tiles::none;
   c.options.weights = randomWeights(seed);
   c.options.merge.strictness = kStrictnesses[seed / 7 % kStrictnesses.size()];
+  c.options.merge.minGrain = kMinGrains[seed / 11 % kMinGrains.size()];
   return c;
 }
 
@@ -279,9 +282,10 @@ std::string describe(const RandomCase& c) {
        << kModeNames[size_t(c.options.merge.mode)] << ", adjacency "
        << (c.options.merge.adjacency == Adjacency::cell ? "cell" : "manifold") << ", fill-holes "
        << (c.options.fillHoles ? std::to_string(*c.options.fillHoles) : "default") << ", delta "
-       << c.options.merge.delta << ", strictness " << c.options.merge.strictness << ", tidy "
-       << c.options.tidy << ", weights " << c.options.weights.value_or(VoxelWeights{}).toString()
-       << ", " << (c.tiles == Tiles::none ? "no tiles, " : "tiles, ") << c.threads << " threads\n";
+       << c.options.merge.delta << ", strictness " << c.options.merge.strictness << ", least grain "
+       << c.options.merge.minGrain << ", tidy " << c.options.tidy << ", weights "
+       << c.options.weights.value_or(VoxelWeights{}).toString() << ", "
+       << (c.tiles == Tiles::none ? "no tiles, " : "tiles, ") << c.threads << " threads\n";
   if (c.object.size() <= kMaxPictureBytes) text << picture(c.object);
   if (c.region) text << "in a region of " << countObject(*c.region) << " voxels\n";
   if (c.region && c.region->size() <= kMaxPictureBytes) text << picture(*c.region);

@@ -117,7 +117,8 @@ TEST_CASE("cli: remerge equals a fresh segmentation", "[cli]") {
   bench.mustRun("segment s.vdb g.vdb --keep manifold");
   for (const std::string options :
        {"", " --strictness 9", " --strictness 12.5 --tidy 0", " --merge both --theta 1",
-        " --merge angle --adjacency cell", " --merge neck", " --merge both --delta 9 --tidy 5"}) {
+        " --merge angle --adjacency cell", " --merge neck", " --merge both --delta 9 --tidy 5",
+        " --min-grain 400", " --merge angle --min-grain 400 --tidy 0"}) {
     CAPTURE(options);
     bench.mustRun("remerge g.vdb re.vdb" + options);
     bench.mustRun("segment s.vdb fresh.vdb --keep manifold" + options);
@@ -125,6 +126,33 @@ TEST_CASE("cli: remerge equals a fresh segmentation", "[cli]") {
     bench.mustRun("remerge re.vdb back.vdb");  // the manifolds went along
     CHECK(bench.bytes("back.vdb") == bench.bytes("g.vdb"));
   }
+}
+
+TEST_CASE("cli: a least grain is told, swept and taken along", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSnow + "s.vdb");
+  const Json plain = Json::parse(bench.mustRun("segment s.vdb g.vdb --keep manifold --json -"));
+  CHECK(plain.count("min_grain") == 0);
+  CHECK(bench.mustRun("segment s.vdb h.vdb --keep manifold --min-grain 0 --tidy 0")
+            .find("min-grain") == std::string::npos);
+  const std::string said = bench.mustRun("segment s.vdb m.vdb --min-grain 400 --tidy 0");
+  CHECK(said.find("fill-holes 27, min-grain 400, tidy 0\n") != std::string::npos);
+  CHECK(bench.mustRun("segment s.vdb n.vdb --merge both --min-grain 400")
+            .find("fill-holes 27, delta 2, min-grain 400, tidy 2\n") != std::string::npos);
+  const Json json = Json::parse(bench.mustRun("segment s.vdb m.vdb --min-grain 400 --json -"));
+  CHECK(json.at("min_grain") == 400);
+  CHECK(json.at("grains") < plain.at("grains"));
+  CHECK(gridOf(infoOf(bench, "m.vdb"), "grain").at("metadata").at("madf_min_grain") == 400);
+  CHECK(gridOf(infoOf(bench, "g.vdb"), "grain").at("metadata").count("madf_min_grain") == 0);
+  bench.mustRun("sweep s.vdb a.csv --strictness 11 --min-grain 400");
+  CHECK(bench.bytes("a.csv").find("\n0,score,11,,," + std::to_string(json.at("grains").get<int>()) +
+                                  ",") != std::string::npos);
+  // Before they are tidied, labels are those of the edit.
+  bench.mustRun("segment s.vdb m.vdb --min-grain 400 --tidy 0");
+  bench.mustRun("edit h.vdb e.vdb --join-below 400");
+  const Json same = Json::parse(bench.mustRun("compare m.vdb e.vdb --json -"));
+  CHECK(same.at("misclassified_percent") == 0);
+  CHECK(same.at("test_grains") == json.at("grains"));
 }
 
 TEST_CASE("cli: segment and remerge write images as convert does", "[cli]") {

@@ -34,7 +34,7 @@ TEST_CASE("slabs: one file of them is the one that segment writes", "[slabs]") {
   bench.mustRun(kTall + "in.vdb --voxel-size 8um -q");
   for (const std::string options :
        {"", "--boundary closed --tidy 0", "--paper", "--fill-holes 1000 --merge neck --tidy 9",
-        "--merge both", "--strictness 9 --fill-holes 1000",
+        "--merge both --min-grain 999", "--strictness 9 --fill-holes 1000 --min-grain 999",
         "--merge both --theta -1 --delta 0 --crop 3,3,5:35,30,71",
         "--roi cylinder:z:20,16:14 --gamma 9"}) {
     INFO(options);
@@ -83,8 +83,9 @@ TEST_CASE("slabs: remerge makes others of them, as of one file", "[slabs]") {
     const std::string choice = " --grid object --keep manifold -q " + options;
     bench.mustRun("segment in.vdb one.vdb" + choice);
     bench.mustRun("segment in.vdb in.slabs --slab-height 16" + choice);
-    for (const std::string merge : {"--merge both --theta -0.5", "--merge angle --delta 0 --tidy 0",
-                                    "--strictness 9 --tidy 9 --threads 1"}) {
+    for (const std::string merge :
+         {"--merge both --theta -0.5", "--merge angle --delta 0 --tidy 0",
+          "--strictness 9 --tidy 9 --threads 1", "--merge neck --min-grain 999"}) {
       INFO(options << " " << merge);
       bench.mustRun("remerge one.vdb merged.vdb -q " + merge);
       bench.mustRun("remerge in.slabs out.slabs/ -q " + merge);

@@ -29,10 +29,12 @@ void MergeArguments::add(Verb verb) {
   verb.option("--adjacency", adjacency,
               "what the angle test pairs: manifold, cell (default manifold)")
       .oneOf({"manifold", "cell"});
+  addMinGrain(verb, minGrain);
 }
 
 MergeOptions MergeArguments::parse() const {
   MergeOptions options;
+  options.minGrain = parseMinGrain(minGrain);
   if (mode.empty() || mode == "score") {
     for (const auto& [text, name] : {std::pair<const std::string*, const char*>{&theta, "--theta"},
                                      {&delta, "--delta"},
@@ -76,6 +78,16 @@ double parseStrictness(const std::string& text) {
   if (!(std::abs(strictness) <= kMaxStrictness))
     throw WrongUsage("--strictness " + text + ": must lie between -200000 and 200000");
   return strictness;
+}
+
+void addMinGrain(Verb verb, std::string& text) {
+  verb.option("--min-grain", text,
+              "then join grains of fewer voxels to the neighbor of most shared faces (default 0)")
+      .typeName("N");
+}
+
+int64_t parseMinGrain(const std::string& text) {
+  return text.empty() ? 0 : parseCount(text, "--min-grain");
 }
 
 void addFillHoles(Verb verb, std::string& text) {

@@ -14,7 +14,7 @@ namespace vdb_madf::tools {
 
 /// The merge options as typed; empty: not given.
 struct MergeArguments {
-  std::string strictness, mode, theta, delta, adjacency;
+  std::string strictness, mode, theta, delta, adjacency, minGrain;
   void add(Verb verb);
   /// @throw WrongUsage
   MergeOptions parse() const;
@@ -29,6 +29,11 @@ int parseDelta(const std::string& text);
 
 /// --strictness. @throw WrongUsage
 double parseStrictness(const std::string& text);
+
+/// --min-grain; empty: not given.
+void addMinGrain(Verb verb, std::string& text);
+/// @throw WrongUsage
+int64_t parseMinGrain(const std::string& text);
 
 /// --fill-holes: how cavities are filled; empty: not given.
 void addFillHoles(Verb verb, std::string& text);

@@ -34,7 +34,8 @@ Json newIndex(const std::string& folder, const MergeOptions& merge, int tidy,
   for (const auto& [key, value] : before.items())
     if (key == "merge")
       addMerging(index, merge);
-    else if (key != "strictness" && key != "theta" && key != "delta" && key != "adjacency")
+    else if (key != "strictness" && key != "theta" && key != "delta" && key != "adjacency" &&
+             key != "min_grain")
       index[key] = value;
   const GrainSizes sizes = grainSizes(grainVoxels);
   index["grains"] = grainVoxels.size();

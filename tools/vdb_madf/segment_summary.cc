@@ -108,11 +108,12 @@ void addMerging(Json& json, const MergeOptions& options) {
   json["merge"] = toString(options.mode);
   if (options.mode == MergeMode::score) {
     json["strictness"] = options.strictness;
-    return;
+  } else {
+    json["theta"] = options.theta;
+    json["delta"] = options.delta;
+    json["adjacency"] = toString(options.adjacency);
   }
-  json["theta"] = options.theta;
-  json["delta"] = options.delta;
-  json["adjacency"] = toString(options.adjacency);
+  if (options.minGrain > 0) json["min_grain"] = options.minGrain;
 }
 
 Json toJson(const SegmentArguments& o, const SegmentSummary& summary) {
@@ -182,16 +183,19 @@ void printSettings(const SegmentOptions& options, const SegmentSummary& summary)
   const auto gamma = (long long)options.gamma, fillHoles = (long long)summary.fillHoles;
   const MergeOptions& merge = options.merge;
   const char* const boundary = summary.open ? "open" : "closed";
+  const std::string minGrain =
+      merge.minGrain > 0 ? fmt::format(", min-grain {}", merge.minGrain) : "";
   if (merge.mode == MergeMode::score) {
     std::printf("  settings         gamma %lld, merge %s, strictness %g, boundary %s,\n", gamma,
                 toString(merge.mode), merge.strictness, boundary);
-    std::printf("                   fill-holes %lld, tidy %d\n", fillHoles, options.tidy);
+    std::printf("                   fill-holes %lld%s, tidy %d\n", fillHoles, minGrain.c_str(),
+                options.tidy);
     return;
   }
   std::printf("  settings         gamma %lld, theta %g, merge %s, adjacency %s, boundary %s,\n",
               gamma, merge.theta, toString(merge.mode), toString(merge.adjacency), boundary);
-  std::printf("                   fill-holes %lld, delta %d, tidy %d\n", fillHoles, merge.delta,
-              options.tidy);
+  std::printf("                   fill-holes %lld, delta %d%s, tidy %d\n", fillHoles, merge.delta,
+              minGrain.c_str(), options.tidy);
 }
 
 }  // namespace

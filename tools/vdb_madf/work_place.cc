@@ -29,33 +29,14 @@ std::string workOf(const SegmentArguments& o) {
       fmt::format("{}\n{}\n{} {} {}", kVersion, fs::absolute(o.out, ignored).string(),
                   fs::absolute(in.path, ignored).string(), fs::file_size(in.path, ignored),
                   fs::last_write_time(in.path, ignored).time_since_epoch().count());
-  for (const std::string& text : {in.gridName,
-                                  in.dataset,
-                                  in.dims,
-                                  in.type,
-                                  in.skip,
-                                  in.phase,
-                                  in.threshold,
-                                  in.range,
-                                  in.median,
-                                  in.smooth,
-                                  in.despeckle,
-                                  in.voxelSizeText,
-                                  in.domainText,
-                                  in.roi,
-                                  in.cropText,
-                                  o.boundary,
-                                  o.gamma,
-                                  o.fillHoles,
-                                  o.tidy,
-                                  o.merge.strictness,
-                                  o.merge.mode,
-                                  o.merge.theta,
-                                  o.merge.delta,
-                                  o.merge.adjacency,
-                                  o.keep,
-                                  o.maxMemory,
-                                  std::to_string(o.slabHeight)})
+  for (const std::string& text :
+       {in.gridName,      in.dataset,    in.dims,       in.type,
+        in.skip,          in.phase,      in.threshold,  in.range,
+        in.median,        in.smooth,     in.despeckle,  in.voxelSizeText,
+        in.domainText,    in.roi,        in.cropText,   o.boundary,
+        o.gamma,          o.fillHoles,   o.tidy,        o.merge.strictness,
+        o.merge.mode,     o.merge.theta, o.merge.delta, o.merge.adjacency,
+        o.merge.minGrain, o.keep,        o.maxMemory,   std::to_string(o.slabHeight)})
     work += "\n" + text;
   for (const bool flag : {in.bigEndian, in.invert, o.paper}) work += flag ? "\nyes" : "\nno";
   return work;

@@ -81,9 +81,10 @@ struct JoinedGrains {
 std::vector<JoinedGrains> joinedGrains(const Hierarchy& hierarchy);
 
 /// The grains at a strictness, which is rounded to the nearest unit (halves away from 0): those of
-/// the joins before the first one of a smaller score. That is merge() with MergeMode::score and
-/// this strictness: it joins the same pairs in the same order until the largest score is smaller.
-/// So each grain is a union of grains at any larger strictness. Grains are numbered as by merge().
+/// the joins before the first one of a smaller score. That is merge() with MergeMode::score, this
+/// strictness and no minGrain: it joins the same pairs in the same order until the largest score is
+/// smaller. So each grain is a union of grains at any larger strictness. Grains are numbered as by
+/// merge().
 /// @throw InvalidInput unless strictness is in [hierarchy.lowest, kMaxStrictness].
 Merging cut(const Hierarchy& hierarchy, double strictness);
 

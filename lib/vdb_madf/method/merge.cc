@@ -12,6 +12,7 @@
 #include "vdb_madf/method/detail/merge_classes.h"
 #include "vdb_madf/method/detail/merge_rule.h"
 #include "vdb_madf/method/hierarchy.h"
+#include "vdb_madf/method/join_small.h"
 
 namespace vdb_madf {
 
@@ -60,6 +61,8 @@ void checkMergeOptions(const MergeOptions& options) {
                        std::to_string(kMaxDelta));
   if (!(std::abs(options.strictness) <= kMaxStrictness))
     throw InvalidInput("strictness is a score: it must lie between -200000 and 200000");
+  if (options.minGrain < 0)
+    throw InvalidInput("the least grain is a number of voxels: it must not be negative");
 }
 
 std::vector<uint32_t> detail::mergedClasses(const ManifoldGraph& graph,
@@ -76,9 +79,11 @@ std::vector<uint32_t> detail::mergedClasses(const ManifoldGraph& graph,
 
 Merging merge(const ManifoldGraph& graph, const MergeOptions& options) {
   checkMergeOptions(options);
-  if (options.mode == MergeMode::score)
-    return cut(mergeHierarchy(graph, options.strictness), options.strictness);
-  return mergeClasses(graph, detail::mergedClasses(graph, options));
+  Merging merging = options.mode == MergeMode::score
+                        ? cut(mergeHierarchy(graph, options.strictness), options.strictness)
+                        : mergeClasses(graph, detail::mergedClasses(graph, options));
+  if (options.minGrain > 0) merging = joinSmallGrains(graph, merging, options.minGrain);
+  return merging;
 }
 
 Merging mergeClasses(const ManifoldGraph& graph, const std::vector<uint32_t>& classOfNode) {

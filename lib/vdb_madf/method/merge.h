@@ -33,6 +33,8 @@ struct MergeOptions {
   /// the shortest edge of a voxel; 0 to kMaxDelta; 0: theta alone decides.
   int delta = 2;
   Adjacency adjacency = Adjacency::manifold;
+  /// Grains of fewer voxels then join the neighbor of most shared faces (join_small.h); 0: none.
+  int64_t minGrain = 0;
 };
 
 constexpr int kMaxDelta = 80;              ///< ten voxels
@@ -46,8 +48,8 @@ struct Merging {
   std::vector<uint32_t> representative;
 };
 
-/// @throw InvalidInput unless theta is in [-1, 1] (NaN is not), delta in [0, kMaxDelta] and
-///   strictness in [-kMaxStrictness, kMaxStrictness].
+/// @throw InvalidInput unless theta is in [-1, 1] (NaN is not), delta in [0, kMaxDelta], strictness
+///   in [-kMaxStrictness, kMaxStrictness] and minGrain 0 or more.
 void checkMergeOptions(const MergeOptions& options);
 
 /// Merges critical points by score, or by the angle of their balls (paper, section 5.2, eq. 7) and
@@ -64,6 +66,7 @@ void checkMergeOptions(const MergeOptions& options);
 ///   sqrt(m) - sqrt(h) < delta / 8 of the shortest edge of a voxel:
 /// theta compares radii in proportion, but the error of a digital radius is some tenths of a voxel
 /// whatever the grain. (Decided in integers.)
+/// Small grains (not in the paper): with minGrain, joinSmallGrains() of join_small.h follows.
 /// Grains are numbered in lexicographic order of their representatives.
 /// @throw InvalidInput as checkMergeOptions.
 Merging merge(const ManifoldGraph& graph, const MergeOptions& options = {});

@@ -16,7 +16,7 @@ namespace vdb_madf {
 namespace {
 
 constexpr char kGrains[] = "madf_grains", kObjectVoxels[] = "madf_object_voxels",
-               kLeaves[] = "madf_leaves";
+               kLeaves[] = "madf_leaves", kMinGrain[] = "madf_min_grain";
 
 void setText(openvdb::GridBase& grid, const char* key, const std::string& value) {
   grid.insertMeta(key, openvdb::StringMetadata(value));
@@ -26,7 +26,8 @@ void setCount(openvdb::GridBase& grid, const char* key, int64_t value) {
 }
 
 void removeMergeOptions(openvdb::GridBase& grid) {
-  for (const char* key : {"madf_theta", "madf_adjacency", "madf_delta", "madf_strictness"})
+  for (const char* key :
+       {"madf_theta", "madf_adjacency", "madf_delta", "madf_strictness", kMinGrain})
     grid.removeMeta(key);
 }
 
@@ -91,6 +92,7 @@ void describeMerging(openvdb::GridBase& grid, const MergeOptions& options, int t
     setText(grid, "madf_adjacency", toString(options.adjacency));
     setCount(grid, "madf_delta", options.delta);
   }
+  if (options.minGrain > 0) setCount(grid, kMinGrain, options.minGrain);
   setCount(grid, "madf_tidy", tidy);
   setCount(grid, kGrains, grains);
 }
@@ -109,8 +111,10 @@ std::optional<StoredMerging> storedMerging(const openvdb::MetaMap& metadata) {
   const auto adjacency = metadata.getMetadata<openvdb::StringMetadata>("madf_adjacency");
   const auto delta = metadata.getMetadata<openvdb::Int64Metadata>("madf_delta");
   const auto tidy = metadata.getMetadata<openvdb::Int64Metadata>("madf_tidy");
+  const auto minGrain = metadata.getMetadata<openvdb::Int64Metadata>(kMinGrain);
   if (!mode || !tidy) return std::nullopt;
   StoredMerging merging;
+  if (minGrain) merging.options.minGrain = minGrain->value();
   merging.tidy = int(std::clamp<int64_t>(tidy->value(), -1, kMaxTidy + 1));
   if (mode->value() == toString(MergeMode::score)) {
     if (!strictness) return std::nullopt;

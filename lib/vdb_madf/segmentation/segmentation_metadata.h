@@ -14,7 +14,8 @@ namespace vdb_madf {
 /// `madf_cavities`, `madf_cavity_voxels`, `madf_medial_balls`, `madf_kept_balls`,
 /// `madf_critical_points`, `madf_grains`, `madf_largest_squared_distance`, `madf_leaves` (int64);
 /// and `madf_weights`, if they are not 1:1:1 (voxel_weights.h). With MergeMode::score
-/// `madf_strictness` stands in the place of theta, adjacency and delta.
+/// `madf_strictness` stands in the place of theta, adjacency and delta. With minGrain there is
+/// `madf_min_grain` (int64), too.
 void describeSegmentation(openvdb::GridBase& grid, const SegmentOptions& options,
                           const SegmentationRecord& record);
 

@@ -11,8 +11,9 @@
 
 namespace vdb_madf::detail {
 
-/// What a slab adds to the graph of the classes that a hierarchy begins with (hierarchy.h). Classes
-/// are numbered from 0, in the order of their representatives.
+/// What a slab adds to the graph of the classes that a hierarchy begins with (hierarchy.h), or of
+/// those of the tests, of which small ones join others (join_small.h). Classes are numbered from 0,
+/// in the order of their representatives.
 struct ClassGraph {
   struct Size {
     uint32_t number;

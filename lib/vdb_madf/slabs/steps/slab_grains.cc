@@ -4,10 +4,12 @@
 #include "vdb_madf/slabs/steps/slab_grains.h"
 
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/method/join_small.h"
 #include "vdb_madf/slabs/cuts/class_graph.h"
 #include "vdb_madf/slabs/cuts/merge_parts.h"
 
@@ -24,8 +26,9 @@ class MergeTree {
       : work_(work),
         member_(work.team.member()),
         count_(work.team.count()),
-        joinsByScore_(work.options.merge.mode == MergeMode::score),
-        merging_(MergeRule(work.options.merge, work.facts.weights), joinsByScore_) {}
+        joinsClasses_(work.options.merge.mode == MergeMode::score ||
+                      work.options.merge.minGrain > 0),
+        merging_(MergeRule(work.options.merge, work.facts.weights), joinsClasses_) {}
 
   std::vector<Coord> run(const std::function<SlabPart(size_t slab)>& part) {
     for (size_t s = work_.plan.firstOwn(); s < work_.plan.endOwn(); ++s) mergeSlab(s, part(s));
@@ -41,14 +44,14 @@ class MergeTree {
       work_.steps.exchange();
       if (isUpper(distance)) takeGrains();
     }
-    const std::vector<uint32_t> grainOf = joinsByScore_ ? joinByScore() : std::vector<uint32_t>();
+    const std::vector<uint32_t> grainOf = joinsClasses_ ? joinClasses() : std::vector<uint32_t>();
     for (size_t s = work_.plan.firstOwn(); s < work_.plan.endOwn(); ++s) {
       auto grains = work_.store.read(kClasses, s);
       for (uint32_t& grain : grains) {
         grain = grainOfClass_[grain];
-        if (joinsByScore_) grain = grainOf[grain - 1];
+        if (joinsClasses_) grain = grainOf[grain - 1];
       }
-      if (joinsByScore_) grains = ofTerminals(work_.store.read(kGraphPart, s), grains);
+      if (joinsClasses_) grains = ofTerminals(work_.store.read(kGraphPart, s), grains);
       work_.store.write(kGrains, s, grains);
     }
     return std::move(representatives_);
@@ -64,7 +67,7 @@ class MergeTree {
   void mergeSlab(size_t s, const SlabPart& part) {
     if (work_.interrupter && work_.interrupter->wasInterrupted(75)) throw Interrupted();
     const std::vector<uint32_t> classOfNode = merging_.add(part);
-    work_.store.write(kClasses, s, joinsByScore_ ? classOfNode : ofTerminals(part, classOfNode));
+    work_.store.write(kClasses, s, joinsClasses_ ? classOfNode : ofTerminals(part, classOfNode));
   }
 
   static std::vector<uint32_t> ofTerminals(const SlabPart& part,
@@ -75,9 +78,9 @@ class MergeTree {
     return values;
   }
 
-  /// The grains so far are the classes that a hierarchy begins with: few, so the root joins them.
-  /// @return the grain of each
-  std::vector<uint32_t> joinByScore() {
+  /// The grains so far are the classes that a hierarchy begins with, or those of the tests: few, so
+  /// the root joins them. @return the grain of each
+  std::vector<uint32_t> joinClasses() {
     for (size_t s = work_.plan.firstOwn(); s < work_.plan.endOwn(); ++s) {
       auto classes = work_.store.read(kClasses, s);  // of nodes
       for (uint32_t& c : classes) c = grainOfClass_[c] - 1;
@@ -89,13 +92,21 @@ class MergeTree {
       JoinedClasses joined(representatives_, work_.facts.weights, work_.facts.flatAxis);
       for (size_t s = 0; s < work_.plan.slabCount(); ++s)
         joined.add(work_.store.receive(kClassGraph, s, kRoot));
-      const Merging merging = merge(joined.finish(), work_.options.merge);
+      const Merging merging = grainsOfClasses(joined.finish());
       grains.assign(merging.grainOfNode.begin(), merging.grainOfNode.end());
       std::vector<Coord> ofGrains;
       for (const uint32_t c : merging.representative) ofGrains.push_back(representatives_[c]);
       representatives_ = std::move(ofGrains);
     }
     return work_.store.broadcast(grains);
+  }
+
+  Merging grainsOfClasses(const ManifoldGraph& classes) const {
+    const MergeOptions& how = work_.options.merge;
+    if (how.mode == MergeMode::score) return merge(classes, how);
+    std::vector<uint32_t> apart(classes.nodes.size());
+    std::iota(apart.begin(), apart.end(), 0u);
+    return joinSmallGrains(classes, mergeClasses(classes, apart), how.minGrain);
   }
 
   /// A message of a run by so many members.
@@ -156,7 +167,7 @@ class MergeTree {
 
   SlabWork& work_;
   const int member_, count_;
-  const bool joinsByScore_;
+  const bool joinsClasses_;
   MergeParts merging_;
   std::map<int, std::vector<uint32_t>>
       classesOf_;  // by upper member: of the classes it handed over

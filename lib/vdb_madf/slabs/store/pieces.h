@@ -208,7 +208,7 @@ inline constexpr Piece<Values<PartFacts>> kPartFacts("known", Step::never);
 
 // The merge. Members write to members, each .at(how many members there are): a run that goes on may
 // have another number of them.
-// The classes of terminals; where these are joined by score, of nodes.
+// The classes of terminals; where the root joins these, by score or small ones, of nodes.
 inline constexpr Piece<Values<uint32_t>> kClasses("classes", Step::never);
 inline constexpr Piece<Values<uint32_t>> kGrains("grains", Step::never);  // of terminals; 0: none
 inline constexpr Message<ClassGraph> kClassGraph("class-graph", From::toRoot, Step::never);
