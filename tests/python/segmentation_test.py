@@ -29,6 +29,7 @@ def gray(array, tmp_path_factory):
 SAME = [
     ({}, []),
     (dict(strictness=9.5), ["--strictness", "9.5"]),
+    (dict(min_grain=5000), ["--min-grain", "5000"]),
     (dict(theta=-0.5, merge="angle", adjacency="cell", delta=0),
      ["--theta", "-0.5", "--merge", "angle", "--adjacency", "cell", "--delta", "0"]),
     (dict(gamma=30, fill_holes=0, tidy=0), ["--gamma", "30", "--fill-holes", "0", "--tidy", "0"]),
@@ -101,6 +102,26 @@ def test_remerge_and_sweep_equal_fresh_segmentations(sample):
     assert rows["grains"][0] > rows["grains"][3]
     with pytest.raises(madf.InvalidInput, match="keep"):
         madf.segment(sample[0], keep=()).remerge(strictness=0)
+
+
+def test_a_least_grain_stays_until_it_is_given_anew(sample):
+    seg = madf.segment(sample[0], merge="both", min_grain=np.int64(5000))
+    plain = madf.segment(sample[0])
+    assert seg.options["min_grain"] == 5000 and "min_grain" not in plain.options
+    fresh = madf.segment(sample[0], min_grain=5000)
+    assert fresh.counts["grains"] < plain.counts["grains"]
+    for again in (seg.cut(11), plain.remerge(min_grain=5000)):
+        assert again.options == fresh.options
+        assert np.array_equal(again.labels, fresh.labels)
+    assert seg.sweep([11], merge="score")["grains"] == [fresh.counts["grains"]]
+    back = fresh.remerge(min_grain=0)
+    assert back.options == plain.options and back.labels.metadata == plain.labels.metadata
+    for wrong, says in ((-1, "must not be negative"), (2.5, "=2.5: must be a whole number"),
+                        ("few", "min_grain='few': must be a whole number")):
+        with pytest.raises(madf.InvalidInput, match=says):
+            madf.segment(sample[0], min_grain=wrong)
+    with pytest.raises(madf.InvalidInput, match="delta=0.5: must be a whole number"):
+        madf.segment(sample[0], merge="both", delta=0.5)
 
 
 def test_merging_by_score():

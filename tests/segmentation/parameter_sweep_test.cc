@@ -45,7 +45,7 @@ void requireRow(const SweepRow& row, const MaskGrid& object, const SweepOptions&
   CAPTURE(row.gamma, int(row.mode), row.theta, row.delta);
   SegmentOptions one;
   one.gamma = row.gamma;
-  one.merge = {row.mode, row.strictness, row.theta, row.delta, options.adjacency};
+  one.merge = {row.mode, row.strictness, row.theta, row.delta, options.adjacency, options.minGrain};
   one.tidy = options.tidy;
   one.boundary = options.boundary;
   const Segmentation segmentation = segment(object, one);
@@ -116,6 +116,14 @@ TEST_CASE("parameter_sweep: rows by score have a strictness, and no theta and de
   }
   CHECK(rows[2].grains < rows[0].grains);
   CHECK(rows[0].grains <= rows[1].grains);
+  options.minGrain = 100000;
+  const std::vector<SweepRow> joined = parameterSweep(*object, options);
+  for (const SweepRow& row : joined) requireRow(row, *object, options);
+  CHECK(joined[1].grains < rows[1].grains);
+  CHECK(joined[3].grains < rows[3].grains);
+  options.minGrain = -1;
+  CHECK_THROWS_AS(parameterSweep(*object, options), InvalidInput);
+  options.minGrain = 0;
   options.strictnesses = {};
   CHECK_THROWS_AS(parameterSweep(*object, options), InvalidInput);
   options.strictnesses = {11, 1e9};

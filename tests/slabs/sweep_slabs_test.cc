@@ -97,6 +97,7 @@ TEST_CASE("sweep_slabs: rows are those of the whole", "[sweep_slabs]") {
     sweep.thetas = {-1, -0.8};
     sweep.deltas = {0, 3};
     sweep.smallVoxels = rng.between(1, 200);
+    sweep.minGrain = seed % 3 ? 0 : 20;
     sweep.tidy = rng.chance(0.3) ? 0 : rng.below(4);
     const std::vector<SweepRow> expected = mergingSweep(*whole.manifold, sweep);
     MemoryScratch scratch;

@@ -39,7 +39,7 @@ struct SweepArguments {
   InputOptions input;
   std::string out, plot, gamma = "0", merge = "score", strictness = kStrictnesses;
   std::string theta = kThetas, delta = kDeltas, adjacency = "manifold";
-  std::string boundary = "auto", small = "100", fillHoles, tidy, scratch;
+  std::string boundary = "auto", small = "100", minGrain, fillHoles, tidy, scratch;
   SweepOptions sweep;
 };
 
@@ -141,6 +141,7 @@ void parse(SweepArguments& o) {
   sweep.thetas = parseThetas(o.theta);
   sweep.deltas.clear();
   for (const std::string& delta : listed(o.delta, ',')) sweep.deltas.push_back(parseDelta(delta));
+  sweep.minGrain = parseMinGrain(o.minGrain);
   sweep.fillHoles = parseFillHoles(o.fillHoles);
   sweep.tidy = parseTidy(o.tidy);
   requireDifferent(sweep.deltas, "--delta");
@@ -279,6 +280,7 @@ void addSweep(Verb command, Common& common, Action& action) {
   verb.option("--delta", o->delta, "of the tests: list of tolerances, eighths of a voxel")
       .typeName("LIST")
       .showDefault();
+  addMinGrain(verb, o->minGrain);
   addFillHoles(verb, o->fillHoles);
   addTidy(verb, o->tidy);
   verb.option("--adjacency", o->adjacency, "what the angle test pairs: manifold, cell")

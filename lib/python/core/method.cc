@@ -43,6 +43,16 @@ Adjacency adjacencyOf(const std::string& name) {
                           {{"manifold", Adjacency::manifold}, {"cell", Adjacency::cell}});
 }
 
+template <typename Number>
+Number wholeNumber(const std::string& name, const py::handle& value) {
+  try {
+    return value.cast<Number>();
+  } catch (const py::cast_error&) {
+    throw InvalidInput(name + "=" + py::repr(value).cast<std::string>() +
+                       ": must be a whole number");
+  }
+}
+
 /// The options of merging as Python gives them: None is the default; what belongs to another mode
 /// is refused.
 MergeOptions mergeOptions(const py::dict& given) {
@@ -52,6 +62,10 @@ MergeOptions mergeOptions(const py::dict& given) {
   for (const auto& [key, value] : given) {
     const auto name = key.cast<std::string>();
     if (name == "merge" || value.is_none()) continue;
+    if (name == "min_grain") {
+      options.minGrain = wholeNumber<int64_t>(name, value);
+      continue;
+    }
     if (byScore != (name == "strictness"))
       throw InvalidInput(byScore ? name +
                                        ": belongs to merge='both', 'angle' and 'neck'; 'score', "
@@ -59,7 +73,7 @@ MergeOptions mergeOptions(const py::dict& given) {
                                  : name + ": belongs to merge='score'");
     if (name == "theta") options.theta = value.cast<double>();
     if (name == "adjacency") options.adjacency = adjacencyOf(value.cast<std::string>());
-    if (name == "delta") options.delta = value.cast<int>();
+    if (name == "delta") options.delta = wholeNumber<int>(name, value);
     if (name == "strictness") options.strictness = value.cast<double>();
   }
   checkMergeOptions(options);
@@ -77,6 +91,7 @@ py::dict toDict(const MergeOptions& options) {
     dict["adjacency"] = toString(options.adjacency);
     dict["delta"] = options.delta;
   }
+  if (options.minGrain > 0) dict["min_grain"] = options.minGrain;
   return dict;
 }
 
@@ -248,7 +263,7 @@ py::dict toDict(const std::vector<SweepRow>& rows) {
 py::dict sweepManifolds(const GridPtr& manifold, const Call& call,
                         const std::vector<std::string>& modes, const std::vector<double>& thetas,
                         const std::vector<int>& deltas, const std::vector<double>& strictnesses,
-                        const std::string& adjacency, int tidy, int64_t small) {
+                        const std::string& adjacency, int64_t minGrain, int tidy, int64_t small) {
   const Int32Grid& grid = asLabels(*manifold);
   SweepOptions options;
   options.thetas = thetas;
@@ -257,6 +272,7 @@ py::dict sweepManifolds(const GridPtr& manifold, const Call& call,
   options.deltas = deltas;
   options.strictnesses = strictnesses;
   options.adjacency = adjacencyOf(adjacency);
+  options.minGrain = minGrain;
   options.tidy = tidy;
   options.smallVoxels = small;
   return toDict(withoutLock(
@@ -290,7 +306,7 @@ void bindMethod(py::module_& m) {
   m.def("joins", joinsOf, py::arg("manifold"));
   m.def("sweep", sweepManifolds, py::arg("manifold"), py::arg("call"), py::kw_only(),
         py::arg("modes"), py::arg("thetas"), py::arg("deltas"), py::arg("strictnesses"),
-        py::arg("adjacency"), py::arg("tidy"), py::arg("small"));
+        py::arg("adjacency"), py::arg("min_grain"), py::arg("tidy"), py::arg("small"));
   m.def("segment_memory", memoryOfSegment, py::arg("mask"), py::kw_only(), py::arg("gamma"),
         py::arg("keep"));
   m.def(

@@ -34,8 +34,8 @@ class Segmentation:
     seconds: Dict[str, float]
     """Seconds of each stage, in the order of work."""
     options: Dict[str, Any]
-    """What was used: merge, strictness (or theta, delta, adjacency), gamma, fill_holes, tidy,
-    boundary."""
+    """What was used: merge, strictness (or theta, delta, adjacency), min_grain if it is not 0,
+    gamma, fill_holes, tidy, boundary."""
     graph: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """Critical points: `position` (K, 3) z, y, x in voxels of the scan, `squared_radius` (K,),
     `voxels` (K,) of their manifolds; pairs of manifolds that touch: `first`, `second` (E,), numbers
@@ -56,24 +56,28 @@ class Segmentation:
 
     def remerge(self, *, strictness: Optional[float] = None, merge: Optional[str] = None,
                 theta: Optional[float] = None, delta: Optional[int] = None,
-                adjacency: Optional[str] = None, tidy: Optional[int] = None,
-                progress: Progress = None, threads: int = 0) -> "Segmentation":
+                adjacency: Optional[str] = None, min_grain: Optional[int] = None,
+                tidy: Optional[int] = None, progress: Progress = None,
+                threads: int = 0) -> "Segmentation":
         """The grains of other options of merging, without distances again: the same labels, bit for
         bit, as a fresh segment(). What is not given stays as it was, and is the default where merge
         goes from "score" to another or back."""
         given = dict(theta=theta, adjacency=adjacency, delta=delta, strictness=strictness)
         mode = self.options["merge"] if merge is None else merge
         stays = self.options if (mode == "score") == (self.options["merge"] == "score") else {}
+        least = self.options.get("min_grain", 0) if min_grain is None else min_grain
         merging = _core.merge_options(
-            {"merge": mode, **{name: stays.get(name) if value is None else value
-                               for name, value in given.items()}})
+            {"merge": mode, "min_grain": least,
+             **{name: stays.get(name) if value is None else value
+                for name, value in given.items()}})
         rounds = self.options["tidy"] if tidy is None else tidy
         with calling(progress, threads) as call:
             grid = _core.remerge(self._manifolds(), call, merging=merging, tidy=rounds)
         labels = Labels._of(grid)
         counts = {name: count for name, count in self.counts.items() if name not in _FLAWS}
         counts["grains"] = labels.metadata["madf_grains"]
-        options = {name: value for name, value in self.options.items() if name not in given}
+        options = {name: value for name, value in self.options.items()
+                   if name not in (*given, "min_grain")}
         return Segmentation(labels, counts, {}, {**options, **merging, "tidy": rounds}, self.graph,
                             self.manifold, self.distance_squared, self.power, self.balls)
 
@@ -88,7 +92,8 @@ class Segmentation:
 
     def cut(self, strictness: float, *, progress: Progress = None,
             threads: int = 0) -> "Segmentation":
-        """The grains of the hierarchy at a number: remerge(merge="score", strictness=...)."""
+        """The grains of the hierarchy at a number: remerge(merge="score", strictness=...), with the
+        min_grain of this segmentation."""
         return self.remerge(merge="score", strictness=strictness, progress=progress,
                             threads=threads)
 
@@ -108,7 +113,8 @@ class Segmentation:
         """The grains for every strictness, and of other merge modes for every combination of them,
         deltas and thetas, a row each: `merge`, `strictness`, `delta`, `theta`, `grains`,
         `median_voxels`, `small_grains` and `small_voxels` (grains of fewer than `small` voxels),
-        `largest_voxels` and flaws. What a row's mode has not is NaN (`delta`: 0).
+        `largest_voxels` and flaws. What a row's mode has not is NaN (`delta`: 0). All rows have the
+        min_grain and tidy of this segmentation.
         pandas.DataFrame() makes a table of it."""
         modes = ([self.options["merge"]] if merge is None else
                  [merge] if isinstance(merge, str) else list(merge))
@@ -127,7 +133,8 @@ class Segmentation:
                 thetas=[used["theta"]] if theta is None else [float(t) for t in theta],
                 strictnesses=([used["strictness"]] if strictness is None else
                               [float(s) for s in strictness]),
-                adjacency=used["adjacency"], tidy=used["tidy"], small=small)
+                adjacency=used["adjacency"], min_grain=used.get("min_grain", 0), tidy=used["tidy"],
+                small=small)
 
     def save(self, path: Union[str, "os.PathLike[str]"], *, progress: Progress = None,
              threads: int = 0) -> None:
@@ -160,8 +167,8 @@ def labels_of(source: Union[Labels, Segmentation, Source], call: _core.Call, thr
 
 def segment(source: Union[Mask, Source], *, strictness: Optional[float] = None, gamma: int = 0,
             merge: str = "score", theta: Optional[float] = None, delta: Optional[int] = None,
-            adjacency: Optional[str] = None, fill_holes: Optional[int] = None, tidy: int = 2,
-            boundary: str = "auto", keep: Sequence[str] = ("manifold",),
+            adjacency: Optional[str] = None, min_grain: int = 0, fill_holes: Optional[int] = None,
+            tidy: int = 2, boundary: str = "auto", keep: Sequence[str] = ("manifold",),
             max_memory: Union[int, str, None] = None,
             progress: Progress = None, threads: int = 0, **selection: Any) -> Segmentation:
     """Cuts the object into grains.
@@ -173,6 +180,8 @@ def segment(source: Union[Mask, Source], *, strictness: Optional[float] = None, 
     first, down to the score strictness (11); the larger, the more grains. "both", "angle", "neck":
     the tests. Of these: theta (-0.9): cosine, -1 merges least; adjacency: "manifold" (None) or
     "cell"; delta (2): in eighths of a voxel, how much narrower a neck has to be than its grain.
+
+    min_grain: grains of fewer voxels then become part of the neighbor of most shared faces.
 
     gamma: least cell of a medial ball, voxels; fill_holes: cavities of fewer voxels are filled
     meanwhile (None: 27);
@@ -188,7 +197,7 @@ def segment(source: Union[Mask, Source], *, strictness: Optional[float] = None, 
     Raises InvalidInput (a ValueError), NotEnoughMemory (a MemoryError), IoError (an OSError)."""
     allowed = bytes_of(max_memory)
     merging = _core.merge_options(dict(merge=merge, theta=theta, adjacency=adjacency, delta=delta,
-                                       strictness=strictness))
+                                       strictness=strictness, min_grain=min_grain))
     with calling(progress, threads) as call:
         if isinstance(source, Mask):
             if selection:

@@ -9,6 +9,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/method/hierarchy.h"
+#include "vdb_madf/method/join_small.h"
 #include "vdb_madf/segmentation/detail/grain_flags.h"
 #include "vdb_madf/segmentation/detail/manifold_labels.h"
 #include "vdb_madf/segmentation/detail/sweep_rows.h"
@@ -50,7 +51,9 @@ void addRows(const Int32Grid& manifold, const ManifoldGraph& graph,
     if (how.mode != MergeMode::score) return merge(graph, how);
     const auto& all = options.strictnesses;
     if (!hierarchy) hierarchy = mergeHierarchy(graph, *std::min_element(all.begin(), all.end()));
-    return cut(*hierarchy, how.strictness);
+    Merging merging = cut(*hierarchy, how.strictness);
+    if (how.minGrain > 0) merging = joinSmallGrains(graph, merging, how.minGrain);
+    return merging;
   };
   const auto merged = [&](const MergeOptions& how) {
     GrainLabels grains = detail::labelGrains(manifold, index, graph, mergingOf(how), interrupter);
@@ -71,6 +74,7 @@ void detail::checkSweep(const SweepOptions& options) {
   for (const int64_t gamma : options.gammas)
     if (gamma < 0) throw InvalidInput("gamma is a number of voxels: it must not be negative");
   MergeOptions merge;
+  merge.minGrain = options.minGrain;
   for (const double theta : options.thetas) {
     merge.theta = theta;
     checkMergeOptions(merge);
@@ -91,8 +95,8 @@ void detail::addSweepRows(const SweepOptions& options, int64_t gamma,
                           std::vector<SweepRow>& rows) {
   const auto addRow = [&](SweepRow row) {
     row.gamma = gamma;
-    SweptGrains grains =
-        merged({row.mode, row.strictness, row.theta, row.delta, options.adjacency});
+    SweptGrains grains = merged(
+        {row.mode, row.strictness, row.theta, row.delta, options.adjacency, options.minGrain});
     row.flaws = grains.flaws;
     count(std::move(grains.voxels), options.smallVoxels, row);
     rows.push_back(row);

@@ -25,6 +25,7 @@ struct SweepOptions {
   std::vector<int> deltas{2};            ///< eighths of a voxel, see MergeOptions
   std::vector<double> strictnesses{11};  ///< see MergeOptions
   Adjacency adjacency = Adjacency::manifold;
+  int64_t minGrain = 0;              ///< as MergeOptions
   int64_t smallVoxels = 100;         ///< a grain of fewer voxels is small
   std::optional<int64_t> fillHoles;  ///< as SegmentOptions
   int tidy = kTidy;                  ///< rounds, as SegmentOptions
@@ -58,8 +59,8 @@ std::vector<SweepRow> parameterSweep(const MaskGrid& object, const SweepOptions&
                                      Interrupter* interrupter = nullptr);
 
 /// Makes the same rows of stored manifolds (segment() with keepManifold), without distances and
-/// power map. Of the options it takes modes, thetas, deltas, strictnesses, adjacency, smallVoxels
-/// and tidy; the rows repeat the first gamma.
+/// power map. Of the options it takes modes, thetas, deltas, strictnesses, adjacency, minGrain,
+/// smallVoxels and tidy; the rows repeat the first gamma.
 /// @throw InvalidInput also if the grid carries no graph or does not fit it; Interrupted.
 std::vector<SweepRow> mergingSweep(const Int32Grid& manifold, const SweepOptions& options,
                                    Interrupter* interrupter = nullptr);
