@@ -167,6 +167,7 @@ def segment():
                f"--json theta{theta}.json")
     for strictness in (-200, 9, 10.5, 14):
         yield f"segment snow.vdb strict{strictness}.vdb --strictness {strictness}"
+    yield "segment snow.vdb least_grain.vdb --min-grain 300"
     yield "segment snow.vdb paper.vdb --paper --keep manifold --json paper.json"
     yield "segment snow.vdb paper_theta.vdb --paper --theta -0.5 --gamma 160"
     yield "segment snow.vdb quiet.vdb --quiet"
@@ -215,6 +216,7 @@ def edit():
     yield ("edit keep_manifold.vdb edited.vdb --merge 1,2 --split 1 --min-voxels 20 "
            "--drop-at-faces --json edited.json")
     yield "edit edited.vdb renumbered.tif --renumber --max-voxels 5000"
+    yield "edit keep_manifold.vdb joined.vdb --join-below 300"
     yield "edit sintered32.truth.tif edited_image.vdb --renumber --drop 1 --quiet"
 
 

@@ -82,7 +82,7 @@ double parseStrictness(const std::string& text) {
 
 void addMinGrain(Verb verb, std::string& text) {
   verb.option("--min-grain", text,
-              "then join grains of fewer voxels to the neighbor of most shared faces (default 0)")
+              "join grains of fewer voxels to the neighbor of most shared faces (default 0)")
       .typeName("N");
 }
 
