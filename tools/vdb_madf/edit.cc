@@ -200,7 +200,7 @@ void addEdit(Verb command, Common& common, Action& action) {
   edit("--keep", "A,B,...", "drops all others");
   edit("--min-voxels", "N", "drops grains of fewer voxels");
   edit("--max-voxels", "N", "drops grains of more");
-  edit("--join-below", "N", "joins grains of fewer to the neighbor of most shared faces");
+  edit("--join-below", "N", "joins grains of fewer voxels to the neighbor of most shared faces");
   edit("--min-diameter", "LENGTH", "drops grains of a smaller equivalent diameter, such as 100um");
   edit("--max-diameter", "LENGTH", "drops grains of a larger one");
   verb.repeatedFlag("--drop-at-faces", o->given, "drops grains at the faces of the domain");
