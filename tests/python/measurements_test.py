@@ -303,3 +303,33 @@ def test_files_that_cannot_be_written(name, arguments, text, labels, tmp_path):
     with pytest.raises((madf.InvalidInput, madf.IoError), match=text):
         labels.save(tmp_path / name, **arguments)
     assert not list(tmp_path.iterdir())
+
+
+def test_necks_in_a_gray_scan(tmp_path):
+    z, y, x = np.indices((40, 40, 64), np.float64)
+    sharp = np.max([np.clip(10.5 - np.sqrt((z - 19.6) ** 2 + (y - 20.2) ** 2 + (x - c) ** 2), 0, 1)
+                    for c in (22.4, 40.4)], axis=0)  # 18 apart: a neck of radius 4.36
+    gray = sharp.copy()
+    for axis in range(3):  # a blur of variance 1/2 along each axis
+        gray = (np.roll(gray, 1, axis) + 2 * gray + np.roll(gray, -1, axis)) / 4
+    gray += np.random.default_rng(1).normal(0, 0.03, gray.shape)
+    values = (1000 + 2000 * gray).astype(np.float32)
+    labels = madf.segment(values, threshold=2000.0, voxel_size="10um").labels
+    measured = madf.measure(labels, gray=values)
+    assert len(measured.bonds["first"]) == 1 and measured.bonds["neck_confirmed"][0] == 1
+    truth = np.pi * (10 ** 2 - 9 ** 2) * 1e-4  # mm^2
+    assert measured.bonds["neck_area"][0] == pytest.approx(truth, rel=0.08)
+    assert measured.bonds["area"][0] > 1.2 * truth
+    assert measured.units["neck_area"] == "mm^2" and measured.units["scan_blur"] == "mm"
+    assert measured.sample["scan_blur"] == pytest.approx(np.sqrt(0.5 + 1 / 12) * 0.01, rel=0.05)
+    assert measured.sample["scan_noise_of_contrast"] == pytest.approx(0.03, rel=0.05)
+    np.save(tmp_path / "scan.npy", values)
+    labels.save(tmp_path / "labels.vdb")
+    command("measure", tmp_path / "labels.vdb", tmp_path / "out", "--gray", tmp_path / "scan.npy")
+    there = columns(tmp_path / "out" / "bonds.csv")
+    assert there["neck_area_mm2"] == pytest.approx(measured.bonds["neck_area"], rel=1e-8)
+    sample = json.loads((tmp_path / "out" / "sample.json").read_text())
+    assert sample["necks_confirmed"] == 1
+    assert sample["scan_blur_mm"] == pytest.approx(measured.sample["scan_blur"])
+    with pytest.raises(ValueError, match="its edges tell no blur"):
+        madf.measure(labels, gray=(values > 2000).astype(np.uint8))

@@ -581,6 +581,9 @@ TEST_CASE("cli: measure refuses scans and options that do not fit its labels", "
   refuses(bench, kWrongUsage, measure + "--bootstrap 99", {"--bootstrap 99", "100 to 100000"});
   refuses(bench, kFailed, measure + "--edge-weights --boundary closed",
           {"balls.vdb", "boundary is closed"});
+  refuses(bench, kFailed, measure + "--gray scan.npy", {"scan.npy: its edges tell no blur"});
+  refuses(bench, kFailed, measure + "--gray nothing.tif", {"nothing.tif"});
+  refuses(bench, kWrongUsage, measure + "--gray-grid fog", {"give --gray, too"});
 }
 
 TEST_CASE("cli: measure plots what it measures", "[cli]") {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/pictures/histogram_plot.h"
 
 namespace vdb_madf::tools {
@@ -72,6 +73,11 @@ void describeValues(const InputOptions& input, const Histogram& histogram, Json&
     if (const auto otsu = otsuThreshold(*inside)) json["otsu_threshold_without_it"] = number(*otsu);
   }
   if (const auto valley = valleyThreshold(histogram)) json["valley_threshold"] = number(*valley);
+  if (const auto blur =
+          estimateBlur(*openVolumeImage(input.path, input.volume(progress)), progress)) {
+    json["blur_voxels"] = blur->sigma;
+    json["noise_of_contrast"] = blur->noise;
+  }
 }
 
 std::string plotValues(const InputOptions& input, const Histogram& histogram, PlotType type) {

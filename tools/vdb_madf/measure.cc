@@ -16,7 +16,9 @@
 #include "scan_option.h"
 #include "text_file.h"
 #include "vdb_madf/exports/measurement_files.h"
+#include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/intensity/measure_gray.h"
+#include "vdb_madf/intensity/measure_necks.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
 #include "vdb_madf/pictures/measures_plot.h"
@@ -27,7 +29,8 @@ namespace {
 
 struct MeasureArguments {
   InputOptions input;
-  std::string folder, boundary = "auto", density, minFaces = "1", bootstrap, scan, scanGrid, plot;
+  std::string folder, boundary = "auto", density, minFaces = "1", bootstrap, plot;
+  ScanOption intensity{"", "", "--intensity"}, gray{"", "", "--gray"};
   bool ice = false;
   MeasureOptions measure;
   TableOptions tables;
@@ -45,7 +48,8 @@ void parse(MeasureArguments& o) {
     o.tables.density = parseNumber(o.density, "--density");
     if (!(*o.tables.density > 0)) throw WrongUsage("--density " + o.density + ": must be above 0");
   }
-  checkScan({o.scan, o.scanGrid, "--intensity"}, o.input);
+  checkScan(o.intensity, o.input);
+  checkScan(o.gray, o.input);
   o.measure.boundary = parseBoundary(o.boundary);
   o.measure.minFaces = parseCount(o.minFaces, "--min-faces");
   if (!o.bootstrap.empty()) {
@@ -78,6 +82,24 @@ void printIntervals(const Measurements& m, double length, const std::string& uni
                   scaled(*mean.high, mean.power, length));
 }
 
+/// Necks as the labels have them and as the scan shows them.
+void printNecks(const Measurements& m, double length, const std::string& unit) {
+  int64_t confirmed = 0;
+  double labelled = 0, shown = 0;
+  for (const BondMeasures& bond : m.bonds)
+    if (bond.neck->confirmed) {
+      ++confirmed;
+      labelled += bond.area;
+      shown += bond.neck->area;
+    }
+  std::printf("  scan                blur %.2f voxel, noise %.1f %% of the contrast\n",
+              m.scan->sigma, 100 * m.scan->noise);
+  std::printf("  necks in the scan   %lld of %s, mean area %.5g %s2 (%.5g in the labels)\n",
+              (long long)confirmed, counted(int64_t(m.bonds.size()), "bond").c_str(),
+              confirmed ? shown / double(confirmed) * length * length : 0.0, unit.c_str(),
+              confirmed ? labelled / double(confirmed) * length * length : 0.0);
+}
+
 void print(const MeasureArguments& o, const Measurements& m) {
   const std::string unit = m.voxelSize ? m.voxelSize->unit() : "voxel";
   const auto edges = m.voxelSize ? m.voxelSize->edgesInUnit() : std::array<double, 3>{1, 1, 1};
@@ -107,6 +129,7 @@ void print(const MeasureArguments& o, const Measurements& m) {
   if (m.sample.bondsWithoutCurvature > 0)
     std::printf("  too small to curve  %s (under 10 faces, or all in a row)\n",
                 counted(m.sample.bondsWithoutCurvature, "bond").c_str());
+  if (m.scan) printNecks(m, length, unit);
   printIntervals(m, length, unit);
 }
 
@@ -119,9 +142,15 @@ std::string titleOf(const MeasureArguments& o) {
 /// Of labels, a grid or slabs.
 template <typename Labels>
 Measurements measureLabels(const MeasureArguments& o, const Common& common, const Labels& labels) {
-  std::optional<GrayScan> scan;  // opened before the work: what is wrong with it is said at once
-  if (!o.scan.empty())
-    scan = openScan({o.scan, o.scanGrid, "--intensity"}, o.input, common.progress);
+  // Scans are opened before the work: what is wrong with them is said at once.
+  std::optional<GrayScan> scan;
+  if (!o.intensity.path.empty()) scan = openScan(o.intensity, o.input, common.progress);
+  std::optional<ScanBlur> blur;
+  if (!o.gray.path.empty()) {
+    const GrayScan gray = openScan(o.gray, o.input, common.progress);
+    common.progress->start("blur");
+    blur = blurOf(*gray.image, common.progress);
+  }
   common.progress->start("measure");
   Measurements measurements =
       withFileName(o.input.path, [&] { return measure(labels, o.measure, common.progress); });
@@ -129,15 +158,22 @@ Measurements measureLabels(const MeasureArguments& o, const Common& common, cons
     common.progress->start("gray values");
     measureGray(labels, *scan, measurements, common.progress);
   }
+  if constexpr (std::is_same_v<Labels, Int32Grid>) {
+    if (blur) {
+      common.progress->start("necks");
+      GrayScan gray = openScan(o.gray, o.input, common.progress);
+      measureNecks(labels, gray, *blur, measurements, common.progress);
+    }
+  }
   return measurements;
 }
 
 Measurements measureInput(const MeasureArguments& o, const Common& common) {
-  if (isInSlabs(o.input)) {
+  if (isInSlabs(o.input) && o.gray.path.empty()) {
     const LabelSlabs labels = openLabelSlabs(o.input, "--grid", common.progress);
     const auto domain = storedDomain(*labels.about);
     if (!domain || domain->isBox()) return measureLabels(o, common, labels);
-  }  // in a region they have to be there together
+  }  // in a region, and for necks, they have to be there together
   common.progress->start("read");
   return measureLabels(o, common, *loadLabels(o.input, "--grid", common.progress));
 }
@@ -183,11 +219,17 @@ void addMeasure(Verb command, Common& common, Action& action) {
             "adds Feret diameters, convex volume, solidity and Zingg's class");
   verb.flag("--edge-weights", o->measure.edgeWeights,
             "adds weights for what the faces of a box cut, and sizes corrected by them");
-  verb.option("--intensity", o->scan,
+  verb.option("--intensity", o->intensity.path,
               "adds the gray values of grains and bonds in the scan that they were made of")
       .typeName("FILE");
-  verb.option("--intensity-grid", o->scanGrid,
+  verb.option("--intensity-grid", o->intensity.grid,
               "of the scan: the grid of a VDB, the array of a Zarr or HDF5 file")
+      .typeName("NAME");
+  verb.option("--gray", o->gray.path,
+              "adds the necks of bonds as this gray scan shows them, freed of its blur")
+      .typeName("FILE");
+  verb.option("--gray-grid", o->gray.grid,
+              "of that scan: the grid of a VDB, the array of a Zarr or HDF5 file")
       .typeName("NAME");
   verb.option("--bootstrap", o->bootstrap,
               "adds 95 % intervals of the means, from N samples drawn of the grains")

@@ -6,7 +6,9 @@
 
 #include "array_source.h"
 #include "bindings.h"
+#include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/intensity/measure_gray.h"
+#include "vdb_madf/intensity/measure_necks.h"
 #include "vdb_madf/matching/compare.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
@@ -164,6 +166,10 @@ py::dict sampleOf(const Measurements& m, const Unit& unit, py::dict& units) {
   dict["labels_digest"] = m.labelDigest;
   if (m.extra.edgeWeights) addEdgeCorrected(m, unit, dict, units);
   if (m.replicates > 0) addIntervals(m, unit, dict, units);
+  if (m.scan) {
+    add("scan_blur", m.scan->sigma, 1);
+    dict["scan_noise_of_contrast"] = m.scan->noise;
+  }
   return dict;
 }
 
@@ -181,7 +187,8 @@ std::optional<GrayScan> openScan(const py::object& source, const std::string& pa
 
 py::dict measureLabels(const GridPtr& labels, const Call& call, const std::string& boundary,
                        int64_t minFaces, bool shape, const py::object& intensity,
-                       const std::string& intensityGrid, bool edgeWeights, int bootstrap) {
+                       const std::string& intensityGrid, const py::object& gray,
+                       const std::string& grayGrid, bool edgeWeights, int bootstrap) {
   const Int32Grid& grid = asLabels(*labels);
   MeasureOptions options;
   options.minFaces = minFaces;
@@ -191,9 +198,12 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
   if (const Boundary given = boundaryOf(boundary); given != Boundary::automatic)
     options.boundary = given;
   std::optional<GrayScan> scan = openScan(intensity, intensityGrid);
+  std::optional<GrayScan> edges = openScan(gray, grayGrid), sections = openScan(gray, grayGrid);
   const Measurements measured = withoutLock(call, [&](Interrupter* interrupter) {
     Measurements result = measure(grid, options, interrupter);
     if (scan) measureGray(grid, *scan, result, interrupter);
+    if (edges)
+      measureNecks(grid, *sections, blurOf(*edges->image, interrupter), result, interrupter);
     return result;
   });
   const Unit unit(measured);
@@ -253,7 +263,8 @@ py::dict compareLabels(const GridPtr& truth, const GridPtr& test, const Call& ca
 void bindMeasures(py::module_& m) {
   m.def("measure", measureLabels, py::arg("labels"), py::arg("call"), py::kw_only(),
         py::arg("boundary"), py::arg("min_faces"), py::arg("shape"), py::arg("intensity"),
-        py::arg("intensity_grid"), py::arg("edge_weights"), py::arg("bootstrap"));
+        py::arg("intensity_grid"), py::arg("gray"), py::arg("gray_grid"), py::arg("edge_weights"),
+        py::arg("bootstrap"));
   m.def("compare", compareLabels, py::arg("truth"), py::arg("test"), py::arg("call"));
 }
 

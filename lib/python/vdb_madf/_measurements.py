@@ -65,6 +65,7 @@ class Measurements:
 def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional[str] = None,
             boundary: str = "auto", min_faces: int = 1, shape: bool = False,
             intensity: Optional[Source] = None, intensity_grid: Optional[str] = None,
+            gray: Optional[Source] = None, gray_grid: Optional[str] = None,
             edge_weights: bool = False, bootstrap: int = 0, dataset: Optional[str] = None,
             grid: Optional[str] = None, progress: Progress = None,
             threads: int = 0) -> Measurements:
@@ -81,6 +82,9 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
     shape, read slab by slab: columns `gray_mean`, `gray_sd`, `gray_min`, `gray_max`, `gray_median`,
     `gray_voxels` of grains and bonds. intensity_grid: of a VDB, or the array of a Zarr or HDF5
     file.
+    gray: the gray scan that the labels were made of, likewise: columns `neck_area`, `neck_radius`,
+    `neck_error`, `neck_confirmed`, `neck_normal_x` ... of the bonds, freed of the scan's blur, and
+    in the sample `scan_blur` and `scan_noise_of_contrast`. gray_grid: as intensity_grid.
     edge_weights: column `edge_weight` of the grains (0 at the faces), and in the sample
     `corrected_grain_diameter_mean`, `corrected_diameter_by_number` ... The domain has to be a box.
     bootstrap: replicates, 100 to 100000: in the sample `intervals`, by name of a mean its `mean`
@@ -91,5 +95,7 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
         made = _core.measure(measured._grid, call, boundary=boundary, min_faces=min_faces,
                              shape=shape, intensity=None if intensity is None
                              else readable(intensity), intensity_grid=intensity_grid or "",
-                             edge_weights=edge_weights, bootstrap=bootstrap)
+                             gray=None if gray is None else readable(gray),
+                             gray_grid=gray_grid or "", edge_weights=edge_weights,
+                             bootstrap=bootstrap)
     return Measurements(**made, provenance=measured.metadata)

@@ -154,6 +154,22 @@ void addIntervals(const Measurements& m, const Unit& unit, Json& json) {
   }
 }
 
+void addScan(const Measurements& m, const Unit& unit, Json& json) {
+  int64_t confirmed = 0;
+  double area = 0;
+  for (const BondMeasures& bond : m.bonds)
+    if (bond.neck && bond.neck->confirmed) {
+      ++confirmed;
+      area += bond.neck->area;
+    }
+  json["scan_blur_" + unit.name] = m.scan->sigma * unit.length;
+  json["scan_noise_of_contrast"] = m.scan->noise;
+  json["scan_gray_inside"] = m.scan->inside;
+  json["scan_gray_outside"] = m.scan->outside;
+  json["necks_confirmed"] = confirmed;
+  json["neck_area_" + unit.name + "2"] = area * unit.area();
+}
+
 Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& options) {
   const SampleMeasures& s = m.sample;
   const std::string& u = unit.name;
@@ -210,6 +226,7 @@ Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& opt
   json["bond_normal_fabric"] = toJson(s.bondFabric);
   if (m.extra.edgeWeights) addEdgeCorrected(m, unit, json);
   if (m.replicates > 0) addIntervals(m, unit, json);
+  if (m.scan) addScan(m, unit, json);
   return json;
 }
 

@@ -13,6 +13,7 @@
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
 #include "vdb_madf/intensity/detail/gray_statistics.h"
+#include "vdb_madf/intensity/detail/scan_fit.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/detail/label_leaves.h"
 #include "vdb_madf/labels/detail/rimmed_slabs.h"
@@ -24,27 +25,6 @@ namespace {
 
 constexpr size_t kLeavesTogether = 64, kGrainsTogether = 4;
 constexpr int kLeaf = 8;
-
-std::string text(const CoordBBox& box) {
-  const Coord size = box.dim(), first = box.min();
-  const auto join = [](const Coord& c, const std::string& with) {
-    return std::to_string(c.x()) + with + std::to_string(c.y()) + with + std::to_string(c.z());
-  };
-  return join(size, "x") + " voxels" +
-         (first == Coord(0) ? "" : " from " + join(first, ",") + " on");
-}
-
-void checkBox(const std::string& path, const CoordBBox& scan, const SampleMeasures& sample) {
-  if (!sample.domainKnown)
-    throw InvalidInput(path +
-                       ": the domain of the labels is unknown, so that nothing tells whether this "
-                       "is their scan: give the domain");
-  const bool isPart = sample.regionVoxels || sample.box.min() != scan.min();
-  if (scan == sample.box || (isPart && scan.isInside(sample.box))) return;
-  throw InvalidInput(path + ": has " + text(scan) + ", and the labels are those of a scan of " +
-                     text(sample.box) +
-                     ": give the one that they were made of, cropped as they were");
-}
 
 /// The samples of one slab at places of the grid.
 template <typename T>
@@ -233,7 +213,7 @@ void addSlabs(const LabelSlabs& slabs, GrayScan& scan, SampleLists<T>& lists,
 /// addAll(lists) adds all labels.
 template <typename AddAll>
 void measureSamples(GrayScan& scan, Measurements& measured, const AddAll& addAll) {
-  checkBox(scan.image->path(), scan.box(), measured.sample);
+  detail::checkScanBox(scan.image->path(), scan.box(), measured.sample);
   detail::withSampleType(scan.image->info().type, [&](auto sample) {
     SampleLists<decltype(sample)> lists(measured);
     addAll(lists);

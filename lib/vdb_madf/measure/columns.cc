@@ -76,6 +76,18 @@ void addGray(ColumnMaker<Item>& make) {
   make.add("gray_median", 0, ofGray(&GrayValues::median));
 }
 
+void addNecks(ColumnMaker<BondMeasures>& make) {
+  using B = BondMeasures;
+  const auto ofNeck = [](double Neck::*member) {
+    return [member](const B& b) { return b.neck ? (*b.neck).*member : kNone; };
+  };
+  make.add("neck_area", 2, ofNeck(&Neck::area));
+  make.add("neck_radius", 1, ofNeck(&Neck::radius));
+  make.add("neck_error", 2, ofNeck(&Neck::error));
+  make.addCount("neck_confirmed", [](const B& b) { return b.neck && b.neck->confirmed; });
+  make.addVector("neck_normal", [](const B& b) { return b.neck ? b.neck->normal : Vec3d(kNone); });
+}
+
 }  // namespace
 
 std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains,
@@ -148,6 +160,7 @@ std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
   addCurvature("gaussian_curvature_sd", -2, &InterfaceCurvature::gaussianDeviation);
   addCurvature("curvature_residual", 1, &InterfaceCurvature::residual);
   if (extra.gray) addGray(make);
+  if (extra.necks) addNecks(make);
   return make.columns();
 }
 

@@ -17,6 +17,7 @@
 #include "vdb_madf/measure/measure_bonds.h"
 #include "vdb_madf/measure/measure_grains.h"
 #include "vdb_madf/measure/measure_sample.h"
+#include "vdb_madf/measure/scan_blur.h"
 #include "vdb_madf/method/boundary.h"
 #include "vdb_madf/method/squared_distance.h"
 
@@ -51,6 +52,7 @@ struct Measurements {
   ExtraMeasures extra;                  ///< what there is besides
   std::vector<MeanInterval> intervals;  ///< of bootstrapMeans(), if it was asked for
   int replicates = 0;                   ///< of these
+  std::optional<ScanBlur> scan;         ///< that necks were measured in
   bool open = false;                    ///< the boundary
   std::optional<VoxelSize> voxelSize;   ///< of the grid
   openvdb::Vec3d edges{1, 1, 1};        ///< of a voxel, in units of the shortest

@@ -9,6 +9,7 @@
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/measure/gray_values.h"
 #include "vdb_madf/measure/interface_curvature.h"
+#include "vdb_madf/measure/neck.h"
 
 namespace vdb_madf {
 
@@ -35,6 +36,7 @@ struct BondMeasures {
   /// Gray values at the voxels on both sides, those of either grain with a face towards the other,
   /// each once. None unless it was asked for.
   std::optional<GrayValues> gray;
+  std::optional<Neck> neck;  ///< of the gray scan; none unless it was asked for
 };
 
 }  // namespace vdb_madf

@@ -1,0 +1,209 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/intensity/estimate_blur.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/images/detail/header_checks.h"
+#include "vdb_madf/images/detail/sample_conversion.h"
+#include "vdb_madf/scans/histogram.h"
+
+namespace vdb_madf {
+
+namespace {
+
+constexpr int kMiddleSide = 512, kMiddleSlices = 48;
+constexpr int kFar = 5;               // voxels from an edge, and further ones are far
+constexpr int64_t kFewestFar = 1000;  // voxels of either material
+constexpr double kSmoothing = 0.5;    // variance of (1 2 1)/4
+
+/// The middle of an image, x fastest.
+struct Middle {
+  int nx = 0, ny = 0, nz = 0;
+  std::vector<float> values;
+  std::optional<double> corner;  // the one value at the corners of all slices
+
+  size_t voxels() const { return values.size(); }
+};
+
+Middle readMiddle(ImageReader& image, Interrupter* interrupter) {
+  const ImageSize& size = image.info().size;
+  Middle middle;
+  middle.nx = std::min(size.x, kMiddleSide);
+  middle.ny = std::min(size.y, kMiddleSide);
+  middle.nz = std::min(size.z, kMiddleSlices);
+  middle.values.resize(size_t(middle.nx) * size_t(middle.ny) * size_t(middle.nz));
+  const int x0 = (size.x - middle.nx) / 2, y0 = (size.y - middle.ny) / 2;
+  const int z0 = (size.z - middle.nz) / 2;
+  std::vector<char> slice(size_t(detail::sliceBytes(image.info())));
+  bool cornersDiffer = false;
+  float* to = middle.values.data();
+  for (int z = 0; z < middle.nz; ++z) {
+    if (interrupter && interrupter->wasInterrupted(z * 100 / middle.nz)) throw Interrupted();
+    image.read(z0 + z, 1, slice.data());
+    detail::withSampleType(image.info().type, [&](auto type) {
+      const auto* samples = reinterpret_cast<const decltype(type)*>(slice.data());
+      const size_t last = size_t(size.x) * size_t(size.y) - 1, row = size_t(size.x);
+      for (const size_t place : {size_t(0), row - 1, last - row + 1, last}) {
+        if (!middle.corner) middle.corner = double(samples[place]);
+        cornersDiffer |= double(samples[place]) != *middle.corner;
+      }
+      for (int y = 0; y < middle.ny; ++y) {
+        const auto* from = samples + size_t(y0 + y) * row + size_t(x0);
+        to = std::transform(from, from + middle.nx, to, [](auto value) { return float(value); });
+      }
+    });
+  }
+  if (cornersDiffer) middle.corner.reset();
+  return middle;
+}
+
+/// f(first, step, count) for each line of voxels along an axis.
+template <typename F>
+void forEachLine(const Middle& m, int axis, const F& f) {
+  const size_t n[3] = {size_t(m.nx), size_t(m.ny), size_t(m.nz)};
+  const size_t steps[3] = {1, n[0], n[0] * n[1]};
+  const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+  detail::parallelFor(n[b], 1, nullptr, [&](size_t begin, size_t end) {
+    for (size_t j = begin; j < end; ++j)
+      for (size_t i = 0; i < n[a]; ++i) f(i * steps[a] + j * steps[b], steps[axis], n[axis]);
+  });
+}
+
+/// (1 2 1)/4 along each axis; beyond the faces stands the mirror image.
+std::vector<float> smoothed(const Middle& middle) {
+  std::vector<float> values = middle.values;
+  for (int axis = 0; axis < 3; ++axis)
+    forEachLine(middle, axis, [&](size_t first, size_t step, size_t count) {
+      float before = values[first];
+      for (size_t i = 0; i < count; ++i) {
+        float& value = values[first + i * step];
+        const float here = value, after = i + 1 < count ? values[first + (i + 1) * step] : here;
+        value = (before + 2 * here + after) / 4;
+        before = here;
+      }
+    });
+  return values;
+}
+
+/// Values that are there as an image; others are NaN.
+class ValuesReader : public ImageReader {
+ public:
+  ValuesReader(const Middle& middle, const std::vector<float>& values) : values_(values) {
+    info_.size = {middle.nx, middle.ny, middle.nz};
+    info_.type = SampleType::float32;
+  }
+  void read(int first, int count, void* samples) override {
+    const size_t slice = size_t(info_.size.x) * size_t(info_.size.y);
+    std::copy_n(values_.begin() + std::ptrdiff_t(slice * size_t(first)), slice * size_t(count),
+                static_cast<float*>(samples));
+  }
+
+ private:
+  const std::vector<float>& values_;
+};
+
+enum Material : uint8_t { pore, solid, absent };
+
+/// Which voxels have another material within kFar voxels; 2: one that is absent.
+std::vector<uint8_t> nearOthers(const Middle& middle, const std::vector<uint8_t>& materials) {
+  constexpr uint8_t kFarAway = kFar * kFar + 1;
+  std::vector<uint8_t> near(middle.voxels(), 0);
+  for (const uint8_t material : {pore, solid, absent}) {
+    std::vector<uint8_t> squares(middle.voxels());  // distances to this material, at most kFarAway
+    std::transform(materials.begin(), materials.end(), squares.begin(),
+                   [&](uint8_t m) { return m == material ? uint8_t(0) : kFarAway; });
+    for (int axis = 0; axis < 3; ++axis)
+      forEachLine(middle, axis, [&](size_t first, size_t step, size_t count) {
+        uint8_t line[kMiddleSide];
+        for (size_t i = 0; i < count; ++i) line[i] = squares[first + i * step];
+        for (size_t i = 0; i < count; ++i) {
+          int least = line[i];
+          for (int d = 1; d <= kFar; ++d) {
+            if (i >= size_t(d)) least = std::min(least, line[i - size_t(d)] + d * d);
+            if (i + size_t(d) < count) least = std::min(least, line[i + size_t(d)] + d * d);
+          }
+          squares[first + i * step] = uint8_t(std::min<int>(least, kFarAway));
+        }
+      });
+    for (size_t i = 0; i < near.size(); ++i)
+      if (materials[i] != material && squares[i] < kFarAway)
+        near[i] = material == absent ? 2 : std::max<uint8_t>(near[i], 1);
+  }
+  return near;
+}
+
+/// Mean and variance of the values of some voxels.
+struct Moments {
+  int64_t count = 0;
+  double sum = 0, squares = 0;
+
+  void add(double value) {
+    ++count;
+    sum += value;
+    squares += value * value;
+  }
+  double mean() const { return sum / double(count); }
+  double variance() const { return squares / double(count) - mean() * mean(); }
+};
+
+/// Sum of f (1 - f) at the edges without what the noise adds to it.
+double edgeSum(const std::vector<float>& values, const std::vector<uint8_t>& materials,
+               const std::vector<uint8_t>& near, ScanBlur& blur) {
+  Moments far[2];
+  for (size_t i = 0; i < values.size(); ++i)
+    if (near[i] == 0 && materials[i] != absent) far[materials[i]].add(double(values[i]));
+  blur.inside = far[solid].mean();
+  blur.outside = far[pore].mean();
+  const double contrast = blur.inside - blur.outside;
+  const double variance =
+      (far[solid].variance() + far[pore].variance()) / 2 / (contrast * contrast);
+  blur.noise = std::sqrt(std::max(variance, 0.0));
+  double sum = 0;
+  for (size_t i = 0; i < values.size(); ++i)
+    if (near[i] == 1 && materials[i] != absent) {
+      const double f = (double(values[i]) - blur.outside) / contrast;
+      sum += f * (1 - f) + variance;
+    }
+  return sum;
+}
+
+}  // namespace
+
+std::optional<ScanBlur> estimateBlur(ImageReader& image, Interrupter* interrupter) {
+  const Middle middle = readMiddle(image, interrupter);
+  std::vector<float> smooth = smoothed(middle);
+  for (size_t i = 0; i < smooth.size(); ++i)
+    if (middle.corner && double(middle.values[i]) == *middle.corner) smooth[i] = NAN;
+  ValuesReader reader(middle, smooth);
+  const auto threshold = otsuThreshold(histogramOf(reader, interrupter));
+  if (!threshold) return std::nullopt;
+  std::vector<uint8_t> materials(smooth.size());
+  for (size_t i = 0; i < smooth.size(); ++i)
+    materials[i] = !std::isfinite(smooth[i]) ? absent : smooth[i] >= *threshold ? solid : pore;
+  const std::vector<uint8_t> near = nearOthers(middle, materials);
+  int64_t far[2] = {0, 0};
+  for (size_t i = 0; i < near.size(); ++i)
+    if (near[i] == 0 && materials[i] != absent) ++far[materials[i]];
+  if (far[pore] < kFewestFar || far[solid] < kFewestFar) return std::nullopt;
+  ScanBlur blur, afterwards;
+  const double sharper = edgeSum(middle.values, materials, near, blur);
+  const double ratio = sharper / edgeSum(smooth, materials, near, afterwards);
+  if (!(ratio > 0 && ratio < 1)) return std::nullopt;
+  blur.sigma = std::sqrt(kSmoothing * ratio * ratio / (1 - ratio * ratio));
+  return blur;
+}
+
+ScanBlur blurOf(ImageReader& image, Interrupter* interrupter) {
+  if (const auto blur = estimateBlur(image, interrupter)) return *blur;
+  throw InvalidInput(image.path() +
+                     ": its edges tell no blur: give the gray scan of two materials, in which "
+                     "grains and pores are wider than 10 voxels");
+}
+
+}  // namespace vdb_madf

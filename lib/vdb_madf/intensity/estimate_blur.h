@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <optional>
+
+#include "vdb_madf/base/interrupter.h"
+#include "vdb_madf/images/image.h"
+#include "vdb_madf/measure/scan_blur.h"
+
+namespace vdb_madf {
+
+/// What the edges of a gray scan say of its blur and noise: of the middle of the image, up to
+/// 512 x 512 x 48 voxels.
+///
+/// Object is what Otsu's threshold leaves of the image smoothed once by (1 2 1)/4 along each axis;
+/// voxels that have one value with all corners of the slices do not count. Let f be 0 far outside
+/// and 1 far inside: across a straight edge with a Gaussian blur the integral of f (1 - f) is
+/// sigma / sqrt(pi) per area, and sqrt(sigma^2 + 1/2) / sqrt(pi) after the smoothing, so that their
+/// ratio tells sigma without the area. Noise adds its variance to each, which is known from the
+/// voxels more than five voxels from any edge.
+///
+/// Memory: 16 bytes a voxel of the middle.
+/// @return none if fewer than 1000 voxels of either material are that far from edges, or the edges
+///   tell no blur (a mask, labels, a scan without two materials).
+/// @throw IoError; Interrupted.
+std::optional<ScanBlur> estimateBlur(ImageReader& image, Interrupter* interrupter = nullptr);
+
+/// What estimateBlur() says, where a blur is needed. @throw InvalidInput, one line that names the image, if none is
+/// found
+ScanBlur blurOf(ImageReader& image, Interrupter* interrupter = nullptr);
+
+}  // namespace vdb_madf

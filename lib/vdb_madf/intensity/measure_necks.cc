@@ -1,0 +1,377 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/intensity/measure_necks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/images/detail/header_checks.h"
+#include "vdb_madf/images/detail/sample_conversion.h"
+#include "vdb_madf/intensity/detail/scan_fit.h"
+#include "vdb_madf/intensity/detail/section_fit.h"
+#include "vdb_madf/labels/detail/label_blocks.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using detail::SectionFit;
+using openvdb::Vec3d;
+using FloatTree = FloatGrid::TreeType;
+
+constexpr size_t kBondsTogether = 8;
+constexpr double kFlank = 3;        // voxels around a bond that tell its normal
+constexpr double kMaxReach = 64;    // of a section, along it
+constexpr double kBlursOfRim = 3;   // from a surface on all is inside or outside
+constexpr double kRim = 0.7;        // voxels, and that many blurs
+constexpr int kEnoughVoxels = 100;  // for a mean of their own
+constexpr double kLeastArea = 7;    // voxel faces of a confirmed neck
+
+/// Height of the last voxels that count in a section.
+const double kHeight = SectionFit::kReach + 4 * SectionFit::kThickness;
+
+/// The values of a box, z fastest.
+template <typename T>
+struct Block {
+  CoordBBox box;
+  std::vector<T> values;
+
+  explicit Block(const CoordBBox& whole) : box(whole), values(whole.volume(), T(0)) {}
+  size_t at(const Coord& p) const {
+    const Coord from = p - box.min(), size = box.dim();
+    return (size_t(from.x()) * size_t(size.y()) + size_t(from.y())) * size_t(size.z()) +
+           size_t(from.z());
+  }
+};
+
+/// valueAt(leaf, offset) of the voxels of the tree's leaf nodes within the box; 0 elsewhere.
+template <typename T, typename Tree, typename ValueAt>
+Block<T> copyOf(const Tree& tree, const CoordBBox& box, const ValueAt& valueAt) {
+  Block<T> block(box);
+  const auto first = [](int v) { return v & ~7; };
+  const Coord& low = box.min();
+  for (int x = first(low.x()); x <= box.max().x(); x += 8)
+    for (int y = first(low.y()); y <= box.max().y(); y += 8)
+      for (int z = first(low.z()); z <= box.max().z(); z += 8) {
+        const auto* leaf = tree.probeConstLeaf(Coord(x, y, z));
+        if (!leaf) continue;
+        CoordBBox part = leaf->getNodeBoundingBox();
+        part.intersect(box);
+        for (auto p = part.begin(); p; ++p)
+          block.values[block.at(*p)] = valueAt(*leaf, leaf->coordToOffset(*p));
+      }
+  return block;
+}
+
+Block<int32_t> labelsIn(const Int32Tree& tree, const CoordBBox& box) {
+  return copyOf<int32_t>(tree, box, [](const Int32Tree::LeafNodeType& leaf, openvdb::Index i) {
+    return detail::labelAt(leaf, leaf.buffer().data(), i);
+  });
+}
+
+CoordBBox around(const Vec3d& center, const Vec3d& halves) {
+  return {Coord::floor(center - halves), Coord::ceil(center + halves)};
+}
+
+/// A bond with what its sections need.
+struct Section {
+  Vec3d center, normal;
+  double radius = 0;  // of the bond, as measured
+  double reach = 0;   // of the sections, from the center
+  CoordBBox box;      // of what is within reach of the planes
+};
+
+/// The line between the means of the voxels of either side; from the first to the second.
+Vec3d normalOf(const Int32Tree& labels, const BondMeasures& bond) {
+  const double radius = std::min(bond.equivalentRadius, kMaxReach) + kFlank;
+  const Vec3d center = bond.centroid;
+  const Block<int32_t> block = labelsIn(labels, around(center, Vec3d(radius)));
+  std::vector<Vec3d> places;
+  for (auto p = block.box.begin(); p; ++p) {
+    const int32_t label = block.values[block.at(*p)];
+    const Vec3d from = (*p).asVec3d() - center;
+    if ((label == bond.first || label == bond.second) && from.lengthSqr() < radius * radius)
+      places.push_back(from);
+  }
+  Vec3d normal = bond.normal;
+  constexpr int kRounds = 3;
+  for (int round = 0; round < kRounds; ++round) {
+    Vec3d sums[2] = {Vec3d(0), Vec3d(0)};
+    double counts[2] = {0, 0};
+    for (const Vec3d& from : places) {
+      const bool above = from.dot(normal) > 0;
+      sums[above] += from;
+      ++counts[above];
+    }
+    if (counts[0] == 0 || counts[1] == 0) return normal;
+    Vec3d across = sums[1] / counts[1] - sums[0] / counts[0];
+    if (!across.normalize()) return normal;
+    normal = across;
+  }
+  return normal;
+}
+
+class NeckMeter {
+ public:
+  NeckMeter(const Int32Tree& labels, const FloatTree& gray, const ScanBlur& blur)
+      : labels_(labels),
+        gray_(gray),
+        blur_(blur),
+        fit_(blur.sigma),
+        rim_(kBlursOfRim * blur.sigma + kRim + 0.5) {
+    const int reach = int(rim_);
+    for (auto p = CoordBBox(Coord(-reach), Coord(reach)).begin(); p; ++p)
+      if (const double d2 = (*p).asVec3d().lengthSqr(); d2 <= rim_ * rim_)
+        around_.emplace_back(*p, int(d2));
+  }
+
+  Neck measure(const BondMeasures& bond, const Section& section) const {
+    const Block<int32_t> labels = labelsIn(labels_, section.box);
+    const Block<float> gray = copyOf<float>(
+        gray_, section.box,
+        [](const FloatTree::LeafNodeType& leaf, openvdb::Index i) { return leaf.getValue(i); });
+    const std::vector<char> own = connected(bond, section, labels);
+    const std::vector<Rim> rims = rimsOf(labels, own);
+    const auto area = areaOf(section, labels, gray, own, rims);
+    Neck neck;
+    neck.normal = section.normal;
+    neck.area = std::max(0.0, area.value);
+    neck.radius = std::sqrt(neck.area / M_PI);
+    neck.error = area.error;
+    neck.confirmed = area.value >= std::max(kLeastArea, area.error);
+    return neck;
+  }
+
+ private:
+  /// How near the other side of a surface is, and whether a pore voxel's nearest grain is `own`.
+  struct Rim {
+    int square = -1;  // none within the rim
+    bool own = false;
+  };
+
+  /// The voxels of both grains that are connected to the bond within the sections.
+  static std::vector<char> connected(const BondMeasures& bond, const Section& section,
+                                     const Block<int32_t>& labels) {
+    std::vector<char> own(labels.values.size(), 0);
+    std::vector<Coord> open;
+    const auto tryAt = [&](const Coord& p, double height, double radius) {
+      const size_t i = labels.at(p);
+      if (own[i] || (labels.values[i] != bond.first && labels.values[i] != bond.second)) return;
+      const Vec3d from = p.asVec3d() - section.center;
+      const double z = from.dot(section.normal);
+      if (std::abs(z) > height || from.lengthSqr() - z * z > radius * radius) return;
+      own[i] = 1;
+      open.push_back(p);
+    };
+    constexpr double kSeed = 1.5;
+    for (auto p = labels.box.begin(); p; ++p) tryAt(*p, kSeed, section.radius + kSeed);
+    while (!open.empty()) {
+      const Coord p = open.back();
+      open.pop_back();
+      for (int side = 0; side < 6; ++side) {
+        Coord q = p;
+        q[side / 2] += side % 2 ? 1 : -1;
+        if (labels.box.isInside(q)) tryAt(q, kHeight, section.reach);
+      }
+    }
+    return own;
+  }
+
+  /// Of all voxels: pore voxels from the nearest of an object, and the other way round.
+  std::vector<Rim> rimsOf(const Block<int32_t>& labels, const std::vector<char>& own) const {
+    std::vector<Rim> rims(labels.values.size());
+    for (auto p = labels.box.begin(); p; ++p) {
+      const size_t i = labels.at(*p);
+      const bool isPore = labels.values[i] == 0;
+      if (!isAtSurface(labels, *p, isPore)) continue;
+      for (const auto& [step, square] : around_) {
+        const Coord q = *p + step;
+        if (!labels.box.isInside(q)) continue;
+        const size_t j = labels.at(q);
+        if ((labels.values[j] == 0) == isPore) continue;
+        Rim& rim = rims[j];
+        if (rim.square >= 0 && rim.square < square) continue;
+        rim.own = own[i] || (rim.square == square && rim.own);
+        rim.square = square;
+      }
+    }
+    return rims;
+  }
+  static bool isAtSurface(const Block<int32_t>& labels, const Coord& p, bool isPore) {
+    for (int side = 0; side < 6; ++side) {
+      Coord q = p;
+      q[side / 2] += side % 2 ? 1 : -1;
+      if (labels.box.isInside(q) && (labels.values[labels.at(q)] == 0) != isPore) return true;
+    }
+    return false;
+  }
+
+  SectionFit::Area areaOf(const Section& section, const Block<int32_t>& labels,
+                          const Block<float>& gray, const std::vector<char>& own,
+                          const std::vector<Rim>& rims) const {
+    double sums[2] = {0, 0}, counts[2] = {0, 0};  // outside, inside
+    for (size_t i = 0; i < own.size(); ++i)
+      if (rims[i].square < 0 && (own[i] || labels.values[i] == 0) &&
+          std::isfinite(gray.values[i])) {
+        sums[size_t(own[i])] += double(gray.values[i]);
+        ++counts[size_t(own[i])];
+      }
+    const double outside = counts[0] < kEnoughVoxels ? blur_.outside : sums[0] / counts[0];
+    const double inside = counts[1] < kEnoughVoxels ? blur_.inside : sums[1] / counts[1];
+    const double contrast = inside - outside;
+    // Voxels by their height, in steps that a section's weight does not tell from one another.
+    constexpr int kFine = 16;
+    const int slices = int(std::ceil(2 * kHeight * kFine));
+    std::vector<double> byHeight(size_t(slices) + 1, 0);
+    double blurred = 0;  // voxels with noise, within the middle of the sections
+    constexpr double kMiddle = 3;
+    for (auto p = labels.box.begin(); p; ++p) {
+      const size_t i = labels.at(*p);
+      const bool inRim = rims[i].square >= 0;
+      if (!own[i] && !(labels.values[i] == 0 && inRim && rims[i].own)) continue;
+      const Vec3d from = (*p).asVec3d() - section.center;
+      const double z = from.dot(section.normal);
+      if (std::abs(z) > kHeight || from.lengthSqr() - z * z > section.reach * section.reach)
+        continue;
+      const double f = inRim ? (double(gray.values[i]) - outside) / contrast : 1;
+      if (!std::isfinite(f)) continue;
+      byHeight[size_t((z + kHeight) * kFine)] += f;
+      blurred += inRim && std::abs(z) < kMiddle;
+    }
+    SectionFit::Sections sections;
+    constexpr double kThickness = SectionFit::kThickness;
+    for (int k = 0; k < SectionFit::kSections; ++k) {
+      double sum = 0;
+      for (size_t s = 0; s < byHeight.size(); ++s) {
+        const double z = (double(s) + 0.5) / kFine - kHeight;
+        const double d = (z - (k * 0.5 - SectionFit::kReach)) / kThickness;
+        if (std::abs(d) < 4) sum += byHeight[s] * std::exp(-0.5 * d * d);
+      }
+      sections[k] = sum / (kThickness * std::sqrt(2 * M_PI));
+    }
+    const double noise = blur_.noise * (blur_.inside - blur_.outside) / contrast;
+    const double variance =
+        noise * noise * blurred / (2 * kMiddle) / (2 * kThickness * std::sqrt(M_PI));
+    return fit_.leastArea(sections, variance);
+  }
+
+  const Int32Tree& labels_;
+  const FloatTree& gray_;
+  const ScanBlur blur_;
+  const SectionFit fit_;
+  const double rim_;                           // distance of voxel centers
+  std::vector<std::pair<Coord, int>> around_;  // steps to the voxels of the rim, and their squares
+};
+
+/// The bonds' sections, by the labels alone.
+std::vector<Section> sectionsOf(const Int32Tree& labels, const Measurements& measured,
+                                const CoordBBox& scan, double blur, Interrupter* interrupter) {
+  const auto radiusOf = [&](int32_t label) {
+    const auto& grains = measured.grains;
+    const auto found =
+        std::lower_bound(grains.begin(), grains.end(), label,
+                         [](const GrainMeasures& grain, int32_t id) { return grain.id < id; });
+    if (found == grains.end() || found->id != label)
+      throw InvalidInput("these are not the labels that were measured");
+    return found->equivalentDiameter / 2;
+  };
+  std::vector<Section> sections(measured.bonds.size());
+  detail::parallelFor(sections.size(), kBondsTogether, interrupter, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const BondMeasures& bond = measured.bonds[i];
+      Section& section = sections[i];
+      section.center = bond.centroid;
+      section.normal = normalOf(labels, bond);
+      section.radius = std::min(bond.equivalentRadius, kMaxReach);
+      // Balls of that size have sections within this reach, and a rim around them.
+      const double ball = std::max(radiusOf(bond.first), radiusOf(bond.second));
+      section.reach =
+          std::min(kMaxReach, std::sqrt(section.radius * section.radius + 2 * ball * kHeight)) +
+          kBlursOfRim * blur + kRim + 1;
+      Vec3d halves;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double along = section.normal[axis];
+        halves[axis] =
+            section.reach * std::sqrt(std::max(0.0, 1 - along * along)) + kHeight * std::abs(along);
+      }
+      section.box = around(section.center, halves);
+      section.box.intersect(scan);
+    }
+  });
+  return sections;
+}
+
+/// The scan's values in the leaf nodes that the boxes touch.
+FloatTree::Ptr readAround(const std::vector<Section>& sections, GrayScan& scan,
+                          Interrupter* interrupter) {
+  auto tree = std::make_shared<FloatTree>(0.0F);
+  for (const Section& section : sections)
+    for (int x = section.box.min().x() & ~7; x <= section.box.max().x(); x += 8)
+      for (int y = section.box.min().y() & ~7; y <= section.box.max().y(); y += 8)
+        for (int z = section.box.min().z() & ~7; z <= section.box.max().z(); z += 8)
+          tree->touchLeaf(Coord(x, y, z));
+  std::map<int, std::vector<FloatTree::LeafNodeType*>> layers;
+  for (auto leaf = tree->beginLeaf(); leaf; ++leaf)
+    layers[leaf->origin().z()].push_back(leaf.getLeaf());
+  const CoordBBox box = scan.box();
+  const Coord size = box.dim();
+  std::vector<char> bytes(size_t(detail::sliceBytes(scan.image->info())) *
+                          size_t(std::min(8, size.z())));
+  int done = 0;
+  for (const auto& [z, leaves] : layers) {
+    if (interrupter && interrupter->wasInterrupted(done++ * 100 / int(layers.size())))
+      throw Interrupted();
+    const int first = std::max(z, box.min().z()), last = std::min(z + 7, box.max().z());
+    scan.image->read(first - box.min().z(), last - first + 1, bytes.data());
+    detail::withSampleType(scan.image->info().type, [&, first = first](auto type) {
+      const auto* samples = reinterpret_cast<const decltype(type)*>(bytes.data());
+      for (auto* leaf : leaves) {
+        CoordBBox part = leaf->getNodeBoundingBox();
+        part.intersect(box);
+        for (auto p = part.begin(); p; ++p) {
+          const Coord from = *p - Coord(box.min().x(), box.min().y(), first);
+          leaf->setValueOnly(
+              *p, float(samples[(size_t(from.z()) * size_t(size.y()) + size_t(from.y())) *
+                                    size_t(size.x()) +
+                                size_t(from.x())]));
+        }
+      }
+    });
+  }
+  return tree;
+}
+
+}  // namespace
+
+void measureNecks(const Int32Grid& labels, GrayScan& scan, const ScanBlur& blur,
+                  Measurements& measured, Interrupter* interrupter) {
+  detail::checkScanBox(scan.image->path(), scan.box(), measured.sample);
+  if (measured.edges != Vec3d(1))
+    throw InvalidInput(scan.image->path() +
+                       ": necks are measured in a scan of cubic voxels: resample it "
+                       "(vdb_madf convert --resample) and segment that");
+  if (const Coord size = scan.box().dim(); size[size.minIndex()] == 1)
+    throw InvalidInput(scan.image->path() + ": is a slice, and necks are measured in a volume");
+  const Int32Tree::ConstPtr tree = detail::withoutTiles(labels);
+  detail::WorkPart framing(interrupter, 0, 20), reading(interrupter, 20, 50),
+      fitting(interrupter, 50, 100);
+  const std::vector<Section> sections =
+      sectionsOf(*tree, measured, scan.box(), blur.sigma, &framing);
+  const FloatTree::Ptr gray = readAround(sections, scan, &reading);
+  const NeckMeter meter(*tree, *gray, blur);
+  detail::parallelFor(sections.size(), kBondsTogether, &fitting, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      measured.bonds[i].neck = meter.measure(measured.bonds[i], sections[i]);
+  });
+  measured.scan = blur;
+  measured.extra.necks = true;
+}
+
+}  // namespace vdb_madf
