@@ -314,6 +314,30 @@ TEST_CASE("image_file: ImageJ's large stacks have one page and all samples behin
   CHECK_THROWS_WITH(openImage(path), Contains("truncated") && Contains("3 images"));
 }
 
+TEST_CASE("image_file: TIFF cut at any byte is refused or read whole", "[image_file]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.tif";
+  const ImageSize size{3, 2, 3};
+  for (const std::string mode : {"wl", "wb", "wl8", "wb8"}) {
+    TiffLayout layout;
+    layout.mode = mode;
+    writeTiff(path, size, SampleType::uint8, randomSamples(SampleType::uint8, voxels(size), 12),
+              layout);
+    const std::string whole = readFile(path);
+    for (size_t length = 0; length < whole.size(); ++length) {
+      CAPTURE(mode, length, whole.size());
+      writeFile(path, whole.substr(0, length));
+      int slices = size.z;
+      try {
+        slices = openImage(path)->info().size.z;
+      } catch (const IoError& error) {
+        CHECK_THAT(error.what(), Contains(path));
+      }
+      CHECK(slices == size.z);
+    }
+  }
+}
+
 TEST_CASE("image_file: the real scan has the known phase", "[image_file]") {
   const auto path = dataFile("nmc.tif");
   if (!path) {

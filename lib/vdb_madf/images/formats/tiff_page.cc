@@ -83,6 +83,24 @@ bool TiffFile::isSlice() const {
           (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) == 0;
 }
 
+uint64_t TiffFile::number(uint64_t offset, size_t bytes) const {
+  uint64_t value = 0;
+  data_->read(offset, &value, bytes);
+  if (TIFFIsByteSwapped(tiff_.get())) swapBytes(&value, 1, bytes);
+  return value;
+}
+
+bool TiffFile::isLast() const {
+  if (!TIFFLastDirectory(tiff_.get())) return false;
+  // libtiff takes a link to the next page that it cannot read for none, so it is read again.
+  const bool big = TIFFIsBigTIFF(tiff_.get()) != 0;
+  const uint64_t countBytes = big ? 8 : 2, entryBytes = big ? 20 : 12, linkBytes = big ? 8 : 4;
+  const uint64_t entries = number(directory(), countBytes);
+  if (number(directory() + countBytes + entries * entryBytes, linkBytes) != 0)
+    tiff_.fail("a page is damaged or missing");
+  return true;
+}
+
 void TiffFile::next() {
   if (!TIFFReadDirectory(tiff_.get())) tiff_.fail("a page is damaged or missing");
 }

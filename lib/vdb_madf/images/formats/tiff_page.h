@@ -47,7 +47,8 @@ class TiffFile {
   /// Thumbnails and transparency masks are not slices.
   bool isSlice() const;
   uint64_t directory() const { return TIFFCurrentDirOffset(tiff_.get()); }
-  bool isLast() const { return TIFFLastDirectory(tiff_.get()) != 0; }
+  /// @throw IoError if the file ends, or cannot be read, where it would say which page is next.
+  bool isLast() const;
   void next();
   void select(uint64_t directory);
   /// The samples of the current page, native byte order.
@@ -59,6 +60,7 @@ class TiffFile {
   const TiffHandle& handle() const { return tiff_; }
 
  private:
+  uint64_t number(uint64_t offset, size_t bytes) const;
   bool isColor(const TiffPage& page) const;
   void checkExtent(const TiffPage& page) const;
   void unpackRow(const TiffPage& page, const char* from, size_t count, char* to) const;
