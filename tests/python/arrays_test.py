@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Labels of arrays of every kind are those of the command, byte for byte."""
 
+import itertools
 import subprocess
 import sys
 
@@ -113,6 +114,33 @@ def test_arrays_are_read_in_slabs(array, expected):
     assert (np.asarray(madf.segment(slabs, **PHASE).labels) == expected).all()
     assert all(key.stop - key.start <= 8 for key in slabs.asked)
     assert [key.start for key in slabs.asked] == list(range(0, array.shape[0], 8))
+
+
+class Named(Slabs):
+    """An array that names its axes, as an xarray.DataArray does."""
+
+    def __init__(self, array, dims):
+        super().__init__(array)
+        self.dims = dims
+
+    def __array__(self, dtype=None, copy=None):
+        return self.array
+
+
+@pytest.mark.parametrize("order", itertools.permutations("zyx"))
+def test_names_of_axes_are_looked_at(order, array):
+    turned = array.transpose(["zyx".index(name) for name in order])
+    named = Named(turned, order)
+    mask = madf.Mask(named, voxel_size="1x2x3um", **PHASE)
+    assert mask.shape == array.shape and mask.voxel_size == (3e-6, 2e-6, 1e-6)
+    assert np.array_equal(mask, array)
+    along_z = [key[order.index("z")] if isinstance(key, tuple) else key for key in named.asked]
+    assert all(key.stop - key.start <= 8 for key in along_z)
+
+
+def test_other_names_of_axes_are_taken_in_order(array):
+    for names in (("time", "row", "column"), ("x", "y", "depth"), ("Z", "Y", "X")):
+        assert np.array_equal(madf.Mask(Named(array, names), **PHASE), array)
 
 
 def test_an_error_of_the_array_comes_out(array):

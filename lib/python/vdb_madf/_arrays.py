@@ -16,9 +16,10 @@ from . import _core
 
 class ArrayLike3D(Protocol):
     """What can be read: numpy arrays in any order of bytes and strides, numpy.memmap, h5py, zarr,
-    dask.
+    dask, xarray.
 
-    It has three axes, [z, y, x], and `array[first:stop]` are slices."""
+    It has three axes, [z, y, x], and `array[first:stop]` are slices. Where `array.dims` calls the
+    axes "x", "y" and "z", as xarray does, they may come in any order."""
 
     @property
     def shape(self) -> Tuple[int, ...]: ...
@@ -36,6 +37,24 @@ Source = Union[str, "os.PathLike[str]", ArrayLike3D]
 def readable(source: Any) -> Union[str, _core.ArraySource]:
     """A path, or the array as a source of slabs, of which nothing is read yet."""
     return os.fspath(source) if isinstance(source, (str, os.PathLike)) else _array_source(source)
+
+
+def dense(array: Any) -> npt.NDArray[Any]:
+    """A number, or all of an array as [z, y, x]."""
+    order = _axes(array)
+    values = np.asarray(array)
+    return values if order is None else values.transpose(order)
+
+
+def _axes(array: Any) -> Optional[Tuple[int, int, int]]:
+    """Which of its axes are z, y and x, of an array that names them all in another order."""
+    dims = getattr(array, "dims", None)
+    if not isinstance(dims, tuple):  # the names of h5py are no tuple, and mostly empty
+        return None
+    names = [str(name).lower() for name in dims]
+    if sorted(names) != ["x", "y", "z"] or names == ["z", "y", "x"]:
+        return None
+    return names.index("z"), names.index("y"), names.index("x")
 
 
 def _target(dtype: np.dtype[Any]) -> np.dtype[Any]:
@@ -78,13 +97,21 @@ def _array_source(array: Any) -> _core.ArraySource:
                                  f"x]")
     if 0 in shape:
         raise _core.InvalidInput(f"the array, of {shape}, has no voxels")
+    order = _axes(array)
+    if order is not None:
+        shape = tuple(shape[axis] for axis in order)
     target = _target(dtype)
     pages = _mapped(array)
 
     def read(first: int, stop: int) -> npt.NDArray[Any]:
         if pages is not None:
             pages.madvise(mmap.MADV_DONTNEED)
-        slab = np.asarray(array[first:stop])
+        if order is None:
+            slab = np.asarray(array[first:stop])
+        else:
+            key = tuple(slice(first, stop) if axis == order[0] else slice(None)
+                        for axis in range(3))
+            slab = np.asarray(array[key]).transpose(order)
         if slab.dtype.kind in "iu" and slab.dtype.itemsize == 8:
             slab = _narrowed(slab, first)
         return np.ascontiguousarray(slab, dtype=target)
