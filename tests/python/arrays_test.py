@@ -136,6 +136,7 @@ def test_names_of_axes_are_looked_at(order, array):
     assert np.array_equal(mask, array)
     along_z = [key[order.index("z")] if isinstance(key, tuple) else key for key in named.asked]
     assert all(key.stop - key.start <= 8 for key in along_z)
+    assert (mask == Named(turned, order)).all()
 
 
 def test_other_names_of_axes_are_taken_in_order(array):

@@ -3,6 +3,7 @@
 """Volumes are read like arrays; what they cost, how they are copied and kept."""
 
 import multiprocessing
+import operator
 import pickle
 import random
 from concurrent.futures import ProcessPoolExecutor
@@ -48,6 +49,31 @@ def test_iteration_and_numpy(labels, dense):
     assert all((a == b).all() for a, b in zip(labels, dense))
     assert np.asarray(labels, np.float32).dtype == np.float32
     assert np.max(labels) == dense.max()
+
+
+@pytest.mark.parametrize("compare", [operator.eq, operator.ne, operator.lt, operator.le,
+                                     operator.gt, operator.ge])
+def test_comparisons_are_those_of_arrays(compare, labels, sample, dense):
+    mask = sample[0]
+    others = [3, np.int16(3), 2.5, True, dense[::-1], dense.astype(np.float64), mask, labels]
+    for volume, whole in ((labels, dense), (mask, np.asarray(mask))):
+        for other in others:
+            got, want = compare(volume, other), compare(whole, np.asarray(other))
+            assert isinstance(got, np.ndarray) and got.dtype == bool
+            assert np.array_equal(got, want), other
+            assert np.array_equal(compare(np.asarray(other), volume), compare(np.asarray(other),
+                                                                              whole)), other
+    with pytest.raises(ValueError, match="compared with"):
+        compare(labels, dense[1:])
+
+
+def test_a_volume_is_no_text_and_stays_a_key(labels):
+    assert not labels == "a" and labels != "a"
+    with pytest.raises(TypeError):
+        labels < "a"
+    assert {labels: 1}[labels] == 1 and labels not in {labels.relabel()}
+    seg = madf.segment(labels > 0)
+    assert seg == seg and seg != madf.segment(labels > 0)
 
 
 @pytest.mark.parametrize("key", [True, "a", 1.5, [1, 2], (1, 2, 3, 4), (..., ...), 64, -65,

@@ -23,7 +23,7 @@ PAPER: Dict[str, Any] = dict(theta=-0.8, merge="angle", adjacency="cell", delta=
 _FLAWS = ("crumbs", "specks", "slivers", "in_pieces")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Segmentation:
     """Grains and how they came about."""
 

@@ -16,7 +16,7 @@ from ._labels import Labels
 from ._segmentation import Segmentation, labels_of
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Tracks:
     """What became of grains and bonds from one scan of a sample to the next."""
 

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._arrays import dense
 from ._calls import meters
 
 
@@ -24,10 +25,13 @@ class Volume:
     covers.
 
     `volume[100]` is a slice; whole numbers, slices and `...` are taken. `numpy.asarray(volume)` is
-    all of it."""
+    all of it. ==, !=, <, <=, > and >= with a number, an array or a volume give a dense array of
+    bool, as those of arrays do; as a key of a dict a volume is equal to itself alone."""
 
     ndim = 3
     _grid: _core.Grid
+
+    __hash__ = object.__hash__
 
     @classmethod
     def _of(cls: Type[_AnyVolume], grid: _core.Grid) -> _AnyVolume:
@@ -124,6 +128,41 @@ class Volume:
     def __array__(self, dtype: npt.DTypeLike = None,
                   copy: Optional[bool] = None) -> npt.NDArray[Any]:
         return self.to_array(dtype)
+
+    def __eq__(self, other: Any) -> Any:
+        return self._compared(np.equal, other)
+
+    def __ne__(self, other: Any) -> Any:
+        return self._compared(np.not_equal, other)
+
+    def __lt__(self, other: Any) -> Any:
+        return self._compared(np.less, other)
+
+    def __le__(self, other: Any) -> Any:
+        return self._compared(np.less_equal, other)
+
+    def __gt__(self, other: Any) -> Any:
+        return self._compared(np.greater, other)
+
+    def __ge__(self, other: Any) -> Any:
+        return self._compared(np.greater_equal, other)
+
+    def _compared(self, compare: np.ufunc, other: Any) -> Any:
+        """What each voxel says beside a number, or its own voxel of an array or a volume."""
+        if not isinstance(other, Volume):
+            other = dense(other)
+            if other.dtype.kind not in "biuf":
+                return NotImplemented
+            if other.ndim == 0:
+                other = np.broadcast_to(other, self.shape)
+        if other.shape != self.shape:
+            raise ValueError(f"the volume is of {self.shape}, and what it is compared with of "
+                             f"{other.shape}")
+        result = np.empty(self.shape, bool)
+        for first, slab in self._slabs():
+            part = slice(first, first + len(slab))
+            compare(slab, other[part], out=result[part])
+        return result
 
     def _slabs(self) -> Any:
         """(first slice, slab) through the volume; the slab's memory is used again."""
