@@ -6,6 +6,7 @@ import csv
 import gc
 import json
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -181,6 +182,23 @@ def test_comparison(sample, labels):
         found.overlaps["voxels"] == counts).all()
     same = madf.compare(labels, labels)
     assert same.adjusted_rand_index == 1 and same.misclassified_percent == 0
+
+
+def test_what_is_said_of_a_comparison(labels):
+    dense = np.asarray(labels)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        madf.compare(labels, labels)
+        madf.compare(labels, dense)
+    with pytest.warns(UserWarning, match="the domains differ") as heard:
+        madf.compare(labels, labels[1:])
+    assert any("differ in topology" in str(warning.message) for warning in heard)
+    assert {warning.filename for warning in heard} == {__file__}
+    for work in (madf.compare, madf.track):
+        with pytest.raises(ValueError, match="its voxels are 2 times as long as those of"):
+            work(labels, madf.Labels(dense, voxel_size="20um"))
+    with pytest.raises(ValueError, match="test: no voxel is labeled both here and in truth"):
+        madf.compare(labels, np.zeros_like(dense))
 
 
 def test_mesh(labels, measured):

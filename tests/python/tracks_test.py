@@ -3,6 +3,7 @@
 """track() equals the command; what was done to labels is told."""
 
 import csv
+import warnings
 
 import numpy as np
 import pytest
@@ -70,6 +71,17 @@ def test_a_series_and_a_given_shift(labels):
     assert madf.track(labels, moved, shift=(4, -6, 1)).labels.digest() == found.labels.digest()
     assert madf.track(found.labels, array, shift=(-4, 6, -1)).shift == (-4, 6, -1)
     assert madf.track(array, moved, max_shift=0).shift == (0, 0, 0)
+
+
+def test_unrelated_samples_are_said_to_be(labels):
+    other = madf.generate("sintered", size=labels.shape, count=9, radius=(8, 13), seed=7)[1]
+    with pytest.warns(UserWarning, match="after: has .* of unrelated samples: .*max_shift"):
+        madf.track(labels, other)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        madf.track(labels, labels.merge([(1, 2)]))
+    with pytest.raises(ValueError, match="no labeled voxel comes to lie on one of before"):
+        madf.track(labels, other, shift=(900, 0, 0))
 
 
 def test_wrong_arguments_are_refused(labels):

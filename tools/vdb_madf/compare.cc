@@ -12,8 +12,6 @@
 #include "json_file.h"
 #include "label_pair.h"
 #include "text_file.h"
-#include "vdb_madf/base/errors.h"
-#include "vdb_madf/grids/grid_metadata.h"
 
 namespace vdb_madf::tools {
 
@@ -72,10 +70,6 @@ void print(const Comparison& c) {
               (long long)c.foundGrains, (long long)c.truthGrains, c.meanIntersectionOverUnion);
   std::printf("splits, merges            %s split, %s merged\n",
               counted(c.splits, "truth grain").c_str(), counted(c.merges, "test grain").c_str());
-  if (!sameTopology(c))
-    std::printf(
-        "note: the grids differ in topology; all but grains and their unions is compared over the "
-        "voxels labeled in both\n");
 }
 
 /// One line per grain of either grid.
@@ -99,16 +93,10 @@ std::string confusionTable(const Comparison& c) {
   return csv.str();
 }
 
-std::string text(const Domain& domain) {
-  std::ostringstream text;
-  text << domain.box().min() << " to " << domain.box().max();
-  if (!domain.isBox()) text << " (region, " << regionText(domain) << ")";
-  return text.str();
-}
-
 void runCompare(const CompareArguments& o, const Common& common) {
   JsonFile jsonFile(o.json);
   TextFile grainFile(o.grains), confusionFile(o.confusion);
+  const PairNames names = namesOf(o.truth, o.test);
   Int32Grid::ConstPtr truth, test;  // their voxels are not there if they come in slabs
   Comparison comparison;
   if (isInSlabs(o.truth) || isInSlabs(o.test)) {
@@ -116,19 +104,17 @@ void runCompare(const CompareArguments& o, const Common& common) {
                      tests = loadSlabs(o.test, "--test-grid", common.progress);
     truth = truths.about;
     test = tests.about;
-    checkSameVoxels(o.truth, *truth, o.test, *test);
+    checkSameVoxels(*truth, *test, names);
     comparison = compare(truths, tests, common.progress);
   } else {
     const Int32Grid::Ptr truths = loadLabels(o.truth, "--truth-grid", common.progress),
                          tests = loadLabels(o.test, "--test-grid", common.progress);
     truth = truths;
     test = tests;
-    checkSameVoxels(o.truth, *truth, o.test, *test);
+    checkSameVoxels(*truth, *test, names);
     comparison = compare(*truths, *tests, common.progress);
   }
-  if (comparison.commonVoxels == 0 && comparison.truthGrains + comparison.testGrains > 0)
-    throw InvalidInput(o.test.path + ": no voxel is labeled both here and in " + o.truth.path +
-                       ", so there is nothing to compare: give labels of the same sample");
+  checkAnyCommon(comparison, names);
   common.progress->end();
   grainFile.write(grainTable(comparison));
   confusionFile.write(confusionTable(comparison));
@@ -139,10 +125,8 @@ void runCompare(const CompareArguments& o, const Common& common) {
                      confusionFile.isStandardOutput();
   if (common.quiet || asked) return;
   print(comparison);
-  const auto truthDomain = storedDomain(*truth), testDomain = storedDomain(*test);
-  if (truthDomain && testDomain && *truthDomain != *testDomain)
-    std::printf("note: the domains differ: %s and %s; voxels of equal index are compared\n",
-                text(*truthDomain).c_str(), text(*testDomain).c_str());
+  for (const std::string& note : notesOn(comparison, *truth, *test))
+    std::printf("note: %s\n", note.c_str());
 }
 
 }  // namespace

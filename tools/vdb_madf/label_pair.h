@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "input_options.h"
+#include "vdb_madf/matching/pair_checks.h"
 
 namespace vdb_madf::tools {
 
@@ -16,10 +17,8 @@ namespace vdb_madf::tools {
 /// is for whichever of the two is RAW. @throw WrongUsage
 void parsePair(InputOptions& first, InputOptions& second, const std::vector<std::string>& outputs);
 
-/// Voxels are compared by their index, so they must be of equal size, where both are known.
-/// @throw InvalidInput
-void checkSameVoxels(const InputOptions& first, const Int32Grid& firstLabels,
-                     const InputOptions& second, const Int32Grid& secondLabels);
+/// How messages call the two.
+PairNames namesOf(const InputOptions& first, const InputOptions& second);
 
 /// The labels of a file as one slab, or those of a folder of slabs.
 LabelSlabs loadSlabs(const InputOptions& input, const std::string& gridOption, Progress* progress);

@@ -3,11 +3,8 @@
 
 #include "vdb_madf/matching/track.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <sstream>
 
@@ -160,30 +157,17 @@ std::string bondTable(const Tracks& t) {
   return csv.str();
 }
 
-void noteShift(const TrackArguments& o, const Tracks& t, const Common& common) {
-  const int most = o.track.maxShift;
-  for (int axis = 0; axis < 3; ++axis)
-    if (!o.track.shift && most > 0 && std::abs(t.shift[axis]) == most) {
-      common.progress->note(
-          fmt::format("{}: the shift is the largest that is looked for: try {} (--max-shift)",
-                      o.after.path, std::min(2 * most, kMaxShift)));
-      return;
-    }
-}
-
 void runTrack(const TrackArguments& o, const Common& common) {
   if (!o.out.empty()) checkWritable(o.out);
   JsonFile jsonFile(o.json);
   TextFile grainFile(o.grains), linkFile(o.links), bondFile(o.bonds);
   const Int32Grid::Ptr before = loadLabels(o.before, "--before-grid", common.progress);
   const Int32Grid::Ptr after = loadLabels(o.after, "--after-grid", common.progress);
-  checkSameVoxels(o.before, *before, o.after, *after);
+  const PairNames names = namesOf(o.before, o.after);
+  checkSameVoxels(*before, *after, names);
   common.progress->start("track");
   const Tracks tracks = track(*before, *after, o.track, common.progress);
-  if (tracks.commonVoxels == 0 && !tracks.before.empty() && !tracks.after.empty())
-    throw InvalidInput(o.after.path + ": no labeled voxel comes to lie on one of " + o.before.path +
-                       ": give labels of the same sample, or how far it moved (--shift, "
-                       "--max-shift)");
+  checkAnyCommon(tracks, names);
   if (!o.out.empty()) {
     const Int32Grid::Ptr labels = trackedLabels(*after, tracks, common.progress);
     if (hasVdbEnding(o.out))
@@ -192,7 +176,8 @@ void runTrack(const TrackArguments& o, const Common& common) {
       writeGridAsImage(o.out, *labels, std::nullopt, o.after.path, common);
   }
   common.progress->end();
-  noteShift(o, tracks, common);
+  for (const std::string& note : notesOn(tracks, *before, *after, o.track, names))
+    common.progress->note(note);
   grainFile.write(grainTable(tracks));
   linkFile.write(linkTable(tracks));
   bondFile.write(bondTable(tracks));

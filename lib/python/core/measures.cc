@@ -10,6 +10,7 @@
 #include "vdb_madf/intensity/measure_gray.h"
 #include "vdb_madf/intensity/measure_necks.h"
 #include "vdb_madf/matching/compare.h"
+#include "vdb_madf/matching/pair_checks.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
 #include "vdb_madf/measure/measure.h"
@@ -230,9 +231,12 @@ py::dict matches(const std::vector<GrainMatch>& list) {
 }
 
 py::dict compareLabels(const GridPtr& truth, const GridPtr& test, const Call& call) {
-  const Comparison c = withoutLock(call, [&](Interrupter* interrupter) {
-    return compare(asLabels(*truth), asLabels(*test), interrupter);
-  });
+  const Int32Grid &truths = asLabels(*truth), &tests = asLabels(*test);
+  const PairNames names{"truth", "test"};
+  checkSameVoxels(truths, tests, names);
+  const Comparison c = withoutLock(
+      call, [&](Interrupter* interrupter) { return compare(truths, tests, interrupter); });
+  checkAnyCommon(c, names);
   py::dict dict, overlaps;
   dict["truth_grains"] = c.truthGrains;
   dict["test_grains"] = c.testGrains;
@@ -255,6 +259,7 @@ py::dict compareLabels(const GridPtr& truth, const GridPtr& test, const Call& ca
   overlaps["test"] = column<int32_t>(c.overlaps, [](const Overlap& o) { return o.test; });
   overlaps["voxels"] = column<int64_t>(c.overlaps, [](const Overlap& o) { return o.voxels; });
   dict["overlaps"] = overlaps;
+  dict["notes"] = notesOn(c, truths, tests);
   return dict;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "bindings.h"
+#include "vdb_madf/matching/pair_checks.h"
 #include "vdb_madf/matching/track.h"
 
 namespace vdb_madf::python {
@@ -59,10 +60,14 @@ py::dict trackGrains(const GridPtr& before, const GridPtr& after, const Call& ca
   options.maxShift = maxShift;
   options.share = share;
   options.minFaces = minFaces;
+  const Int32Grid &first = asLabels(*before), &second = asLabels(*after);
+  const PairNames names{"before", "after"};
+  checkSameVoxels(first, second, names);
   Int32Grid::Ptr labels;
   const Tracks tracks = withoutLock(call, [&](Interrupter* interrupter) {
-    Tracks found = track(asLabels(*before), asLabels(*after), options, interrupter);
-    labels = trackedLabels(asLabels(*after), found, interrupter);
+    Tracks found = track(first, second, options, interrupter);
+    checkAnyCommon(found, names);
+    labels = trackedLabels(second, found, interrupter);
     return found;
   });
   py::dict dict;
@@ -76,6 +81,7 @@ py::dict trackGrains(const GridPtr& before, const GridPtr& after, const Call& ca
   dict["overlaps"] = toDict(tracks.overlaps);
   dict["bonds_before"] = toDict(tracks.bondsBefore);
   dict["bonds_after"] = toDict(tracks.bondsAfter);
+  dict["notes"] = notesOn(tracks, first, second, options, names);
   return dict;
 }
 

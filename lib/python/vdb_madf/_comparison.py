@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._arrays import Source
-from ._calls import Progress, calling
+from ._calls import Progress, calling, warn
 from ._labels import Labels
 from ._segmentation import Segmentation, labels_of
 
@@ -54,7 +54,12 @@ class Comparison:
 
 def compare(truth: Union[Labels, Segmentation, Source], test: Union[Labels, Segmentation, Source],
             *, progress: Progress = None, threads: int = 0) -> Comparison:
-    """Compares labels, of any program and numbering, voxel by voxel."""
+    """Compares labels, of any program and numbering, voxel by voxel.
+
+    Voxels of equal place are compared. A warning says where domains differ, or what is labeled;
+    voxels of other sizes, and labels that have no voxel in common, are refused."""
     with calling(progress, threads) as call:
         first, second = (labels_of(given, call, threads) for given in (truth, test))
-        return Comparison(**_core.compare(first._grid, second._grid, call))
+        found = _core.compare(first._grid, second._grid, call)
+    warn(found.pop("notes"))
+    return Comparison(**found)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._arrays import Source
-from ._calls import Progress, calling
+from ._calls import Progress, calling, warn
 from ._labels import Labels
 from ._segmentation import Segmentation, labels_of
 
@@ -50,11 +50,13 @@ def track(before: Union[Labels, Segmentation, Source], after: Union[Labels, Segm
     shift: of the sample in voxels, (z, y, x); None: the one, up to max_shift along each axis, that
     most voxels agree with. share: part of the smaller of two grains that they have to share to be
     linked.
-    min_faces: of a bond. The manual of `vdb_madf track` defines the fates.
+    min_faces: of a bond. The manual of `vdb_madf track` defines the fates. A warning says if hardly
+    more is common than of unrelated samples.
 
     For a series give the labels of the last step: track(track(a, b).labels, c)."""
     with calling(progress, threads) as call:
         first, second = (labels_of(given, call, threads) for given in (before, after))
         found = _core.track(first._grid, second._grid, call, shift=shift, max_shift=max_shift,
                             share=share, min_faces=min_faces)
+    warn(found.pop("notes"))
     return Tracks(labels=Labels._of(found.pop("labels")), **found)
