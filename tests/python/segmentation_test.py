@@ -236,9 +236,9 @@ def test_samples():
     assert rods.shape == (60, 60, 60) and len(truth.ids) == 3
     with pytest.raises(TypeError, match="no option 'aspect'"):
         madf.generate("particles", aspect=(4, 5))
-    with pytest.raises(TypeError, match="no option 'lengths'"):
-        madf.generate("snow", lengths=3)
-    with pytest.raises(TypeError, match="wrong type"):
-        madf.generate("snow", length="long")
+    with pytest.raises(TypeError, match="no option 'neck'"):
+        madf.generate("snow", neck=3)
+    with pytest.raises(ValueError, match="seed: is out of range"):
+        madf.generate("snow", seed=-1)
     with pytest.raises(ValueError, match="must be spheres"):
         madf.generate("rain")

@@ -35,6 +35,19 @@ volume: float = float(measured.grains["volume"].sum()) + madf.compare(seg.labels
     checked("mypy", "--strict", use, tmp_path=tmp_path)  # and the package that it imports
 
 
+@pytest.mark.parametrize("call, wrong", [
+    ("madf.segment('scan.tif', treshold=1)", "treshold"),
+    ("madf.generate('snow', lenght=20)", "lenght"),
+    ("madf.segment('scan.tif', phase=1, gamma=20.0)", "float"),
+    ("madf.measure('labels.tif', shapes=True)", "shapes"),
+])
+def test_wrong_calls_are_seen(call, wrong, tmp_path):
+    use = tmp_path / "use.py"
+    use.write_text(f"import vdb_madf as madf\n{call}\n")
+    with pytest.raises(AssertionError, match=f"use.py:2: error: .*{wrong}"):
+        checked("mypy", use, tmp_path=tmp_path)
+
+
 def test_stubs_are_those_of_the_library(tmp_path):
     # pybind11's own; names of types that the stub alone knows.
     allowed = tmp_path / "allowed"

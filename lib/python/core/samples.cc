@@ -31,7 +31,7 @@ class Arguments {
     try {
       value = values_.attr("pop")(name).template cast<T>();
     } catch (const py::cast_error&) {
-      throw py::type_error(std::string(name) + " is of the wrong type");
+      throw InvalidInput(std::string(name) + ": is out of range");
     }
   }
   void takeSpan(const char* name, double& least, double& greatest) {

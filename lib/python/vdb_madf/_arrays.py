@@ -31,7 +31,15 @@ class ArrayLike3D(Protocol):
 
 
 #: A file or an array.
-Source = Union[str, "os.PathLike[str]", ArrayLike3D]
+Source = Union[str, os.PathLike[str], ArrayLike3D]
+
+
+def shown(value: Any) -> str:
+    """A value in a message: in a line, however long it is."""
+    if hasattr(value, "shape") and hasattr(value, "dtype"):
+        return f"<an array of {value.dtype}, {tuple(value.shape)}>"
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 60 else text[:57] + "..."
 
 
 def readable(source: Any) -> Union[str, _core.ArraySource]:

@@ -56,9 +56,6 @@ def meters(voxel_size: Optional[str]) -> Optional[_core.Edges]:
     """Edges of a voxel along z, y, x from a text with a unit."""
     if voxel_size is None:
         return None
-    if not isinstance(voxel_size, str):
-        raise TypeError(f"voxel_size={voxel_size!r}: give a text with the unit, such as '8.5um': a "
-                        "number alone does not say which")
     try:
         return _core.voxel_size_from_text(voxel_size)
     except _core.InvalidInput as error:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import Any, Optional, Sequence, Tuple, Union
+from typing import Any, Collection, Optional, Sequence, Tuple, Union
 
 from . import _core
 from ._arrays import readable
@@ -31,8 +31,6 @@ class Cylinder:
 
 
 def _bounds(box: Box, name: str, open_ended: bool) -> Tuple[_core.Index, _core.Index]:
-    if not (isinstance(box, tuple) and len(box) == 3 and all(isinstance(s, slice) for s in box)):
-        raise TypeError(f"{name}={box!r}: give three slices, such as numpy.s_[10:90, :, 5:50]")
     first, last = [], []
     for part in box:
         if part.step not in (None, 1):
@@ -81,11 +79,11 @@ def volume_options(
         raise ValueError("give only one of phase, threshold and range")
     options = _core.VolumeOptions()
     if phase is not None:
-        options.select_phases([float(v) for v in phase] if isinstance(phase, Sequence)
+        options.select_phases([float(v) for v in phase] if isinstance(phase, Collection)
                               else [float(phase)])
     if isinstance(threshold, str):
         options.select_automatically(threshold)
-    elif isinstance(threshold, tuple):
+    elif isinstance(threshold, Collection):
         low, high = (float(v) for v in threshold)
         if low > high:
             raise ValueError(f"threshold={threshold}: the first value exceeds the second")

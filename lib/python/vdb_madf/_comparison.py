@@ -10,6 +10,7 @@ from typing import Any, Dict, Union
 import numpy.typing as npt
 
 from . import _core
+from ._arguments import checked
 from ._arrays import Source
 from ._calls import Progress, calling, warn
 from ._labels import Labels
@@ -52,6 +53,7 @@ class Comparison:
     """Pairs that meet, for scipy.sparse.coo_array: `truth`, `test` (0: none), `voxels`."""
 
 
+@checked
 def compare(truth: Union[Labels, Segmentation, Source], test: Union[Labels, Segmentation, Source],
             *, progress: Progress = None, threads: int = 0) -> Comparison:
     """Compares labels, of any program and numbering, voxel by voxel.

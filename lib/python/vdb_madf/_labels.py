@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._arguments import checked
 from ._arrays import Source, readable
 from ._calls import Progress, calling, warn
 from ._files import is_tiff, kind_of, loaded
@@ -31,6 +32,7 @@ class Labels(Volume):
 
     _sizes: Optional[Tuple[npt.NDArray[np.int32], npt.NDArray[np.int64]]] = None
 
+    @checked
     def __init__(self, source: Source, *, voxel_size: Optional[str] = None,
                  dataset: Optional[str] = None, grid: Optional[str] = None,
                  progress: Progress = None, threads: int = 0) -> None:
@@ -67,6 +69,7 @@ class Labels(Volume):
         """Voxels of each label, in the order of `ids`."""
         return self._counted()[1]
 
+    @checked
     def to_array(self, dtype: npt.DTypeLike = None,
                  out: Optional[npt.NDArray[Any]] = None) -> npt.NDArray[Any]:
         """All voxels as an array of that type, or into `out`, of the shape of the labels.
@@ -76,6 +79,7 @@ class Labels(Volume):
             dtype = np.min_scalar_type(int(self.ids[-1]) if len(self.ids) else 0)
         return super().to_array(dtype, out)
 
+    @checked
     def paint(self, ids: _Ids, values: npt.ArrayLike, background: float = np.nan,
               dtype: npt.DTypeLike = np.float32) -> npt.NDArray[Any]:
         """An array [z, y, x] with a value for each grain: `values[i]` where the label is `ids[i]`,
@@ -93,6 +97,7 @@ class Labels(Volume):
             out[first:first + len(slab)] = table[np.clip(slab, -1, largest + 1)]
         return out
 
+    @checked
     def crop(self, id: int, pad: int = 0) -> Tuple[npt.NDArray[np.bool_], Tuple[int, int, int]]:
         """One grain: True in an array of its box and `pad` voxels around it, as far as the volume
         goes, and the place of that array's first voxel in the volume."""
@@ -104,14 +109,17 @@ class Labels(Volume):
         part = self[low[0]:high[0], low[1]:high[1], low[2]:high[2]]
         return np.asarray(part == id), (low[0], low[1], low[2])
 
+    @checked
     def keep(self, ids: _Ids) -> "Labels":
         """These grains alone; their labels stay."""
         return Labels._of(_core.select(self._grid, [int(i) for i in ids], _core.Call(None, 0)))
 
+    @checked
     def drop(self, ids: _Ids) -> "Labels":
         """All other grains; their labels stay."""
         return self.keep(np.setdiff1d(self.ids, np.asarray(ids)))
 
+    @checked
     def edit(self, edits: Union[str, Sequence[str]], *, manifold: Optional["Labels"] = None,
              progress: Progress = None, threads: int = 0) -> "Labels":
         """Other grains, as `vdb_madf edit` makes them: "merge 12 17" or a list of such edits, done
@@ -130,6 +138,7 @@ class Labels(Volume):
             grid = _core.edit(self._grid, text, None if manifold is None else manifold._grid, call)
         return Labels._of(grid)
 
+    @checked
     def merge(self, groups: Sequence[_Ids]) -> "Labels":
         """Each group of grains, such as a pair, becomes one, with the label that comes first."""
         return self.edit(["merge " + " ".join(str(int(i)) for i in group) for group in groups])
@@ -143,6 +152,7 @@ class Labels(Volume):
         sample.json: equal labels have the same one, whatever file or array they come from."""
         return _core.digest(self._grid, _core.Call(None, 0))
 
+    @checked
     def reduce(self, factor: int) -> "Labels":
         """The volume smaller by a whole factor: each voxel has the most frequent label of its
         own."""
@@ -152,6 +162,7 @@ class Labels(Volume):
         """(N,) labels and (N, 3) sRGB, such that grains that touch never look alike."""
         return _core.colors(self._grid, _core.Call(None, 0))
 
+    @checked
     def mesh(self, *, smoothing: int = 10, triangles: Optional[int] = None,
              ids: Optional[_Ids] = None, progress: Progress = None, threads: int = 0) -> Mesh:
         """Surfaces of all grains, or of those with these ids.
@@ -164,7 +175,8 @@ class Labels(Volume):
                                 ids=[] if ids is None else [int(i) for i in ids])
         return Mesh(**arrays, unit=self.unit)
 
-    def save(self, path: Union[str, "os.PathLike[str]"], *, kind: Optional[str] = None,
+    @checked
+    def save(self, path: Union[str, os.PathLike[str]], *, kind: Optional[str] = None,
              type: Optional[str] = None, smoothing: int = 10, reduce: int = 1,
              triangles: Optional[int] = None, compress: bool = False, min_faces: int = 1,
              ome: str = "0.4", meshes: bool = False, max_balls: int = 100, uncovered: float = 0.02,

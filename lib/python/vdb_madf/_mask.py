@@ -11,13 +11,14 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._arguments import checked
 from ._arrays import ArrayLike3D, Source, readable
 from ._calls import Progress, calling, warn
 from ._choices import Box, Cylinder, volume_options
 from ._volume import Volume, edges_of
 
 #: A region: the round field of view, or voxels that are not 0 in a mask, an array or a file.
-Region = Union[str, Cylinder, "Mask", "os.PathLike[str]", ArrayLike3D]
+Region = Union[str, Cylinder, "Mask", os.PathLike[str], ArrayLike3D]
 
 
 class Mask(Volume):
@@ -39,6 +40,7 @@ class Mask(Volume):
     dataset: of a Zarr group or an HDF5 file; grid: of a .vdb.
     progress: a function of percent and stage, or True for a bar (tqdm); threads: 0 for all."""
 
+    @checked
     def __init__(self, source: Source, *, phase: Union[float, Sequence[float], None] = None,
                  threshold: Union[float, str, Tuple[float, float], None] = None,
                  range: Optional[Tuple[float, float]] = None, invert: bool = False, median: int = 0,
@@ -80,7 +82,8 @@ class Mask(Volume):
         """Bytes that segment() may need with its own options, this mask included."""
         return _core.segment_memory(self._grid, gamma=0, keep=["manifold"])
 
-    def save(self, path: Union[str, "os.PathLike[str]"], *, progress: Progress = None,
+    @checked
+    def save(self, path: Union[str, os.PathLike[str]], *, progress: Progress = None,
              threads: int = 0) -> None:
         """Writes the mask whole or not at all: .vdb (Bool grid `object`), or an image (uint8, 0
         and 1) of any format that is written, such as .tif, .nrrd or .npy."""

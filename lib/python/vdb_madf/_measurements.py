@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._arguments import checked
 from ._arrays import Source, readable
 from ._calls import Progress, calling
 from ._labels import Labels
@@ -23,17 +24,55 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class Measurements:
     """What is measured, in columns: the same names, numbers and order of rows as in the tables of
-    `vdb_madf measure`, but without the unit in the names. NaN: not known."""
+    `vdb_madf measure`, but without the unit in the names. NaN: not known. `*` is x, y and z.
+
+    grains, a row a grain, by `id`:
+    - `voxels`, `volume`, `equivalent_diameter`: of the ball of this volume
+    - `centroid_*`: mean of the voxels' centers; `box_min_*`, `box_max_*`: voxels, inclusive
+    - `representative_*`, `inscribed_radius`: the voxel farthest from the background, and how far
+    - `free_area` towards the background, `shared_area` towards other grains, `area` of both;
+      `cut_area`: faces at the wall of an open domain, which are no surface
+    - `sphericity`: area of the ball of this volume / (area + cut area)
+    - axes of the ellipsoid of the same second moments, the longest first: `axis1_length`,
+      `axis2_length`, `axis3_length`, directions `axis1_*`, `axis2_*`, `axis3_*`, and ratios of the
+      lengths `aspect_2_to_1`, `aspect_3_to_2`
+    - `coordination`: bonds; `at_domain_face`: has a voxel at the wall of the domain
+    - with shape: `feret_max`, `feret_min`; `convex_volume`, `solidity` (volume / that);
+      `zingg_class`: 1 disc, 2 equant, 3 blade, 4 rod
+    - with intensity: `gray_voxels`, `gray_mean`, `gray_sd`, `gray_min`, `gray_max`, `gray_median`
+    - with edge_weights: `edge_weight`: how much it counts in corrected sizes; 0 at the faces
+
+    bonds, a row for each pair of grains that touch, by `first`, then `second` (ids):
+    - `faces` of voxels; `area`, `radius` of the disc of this area; `centroid_*`, and `normal_*`
+      from first to second
+    - `distance` d of the representatives, whose squared radii are D1 and D2; `cos_alpha`:
+      (d^2 - D1 - D2) / (2 sqrt(D1 D2)), over 1 where the two balls do not meet
+    - `flatness`: smallest eigenvalue of the covariance of the faces; `patches`: parts
+    - `mean_curvature` (positive where the first is convex), `gaussian_curvature`, their standard
+      deviations `mean_curvature_sd`, `gaussian_curvature_sd`, at `curvature_points` points with the
+      misfit `curvature_residual`
+    - with intensity: the `gray_` columns, of the voxels on both sides
+
+    sample:
+    - `grains`, `bonds`, `contacts_left_out`, `area_left_out` (by `min_faces`),
+      `bonds_without_curvature`, `components`, `euler_characteristic`
+    - `object_voxels`, `object_volume`; `solid_fraction` and `correlation_length` (z, y, x) refer
+      to the `box` ("domain", "region" or that of the "grains"), `box_min` to `box_max`; `boundary`
+    - `free_area`, `shared_area`, `specific_surface`: free area / volume of the grains
+    - `mean_coordination`, `coordinations`: grains with 0, 1, 2 ... bonds; `bond_to_grain_ratio`:
+      mean of bond radius / radius of the smaller grain
+    - `diameter_by_number`, `diameter_by_volume`: percentiles 5 to 95; [50] is the median
+    - `grain_fabric`, `bond_fabric`: (3, 3), [z, y, x], of longest axes by volume, of normals by
+      area
+    - `labels_digest`: of equal labels the same
+    - with edge_weights: `grains_at_faces`, `corrected_grains`, `grain_diameter_mean`,
+      `corrected_grain_diameter_mean`, `grain_volume_mean`, `corrected_grain_volume_mean`,
+      `corrected_mean_coordination`, `corrected_diameter_by_number`, `corrected_diameter_by_volume`
+    - with bootstrap: `intervals`, by name of a mean its `mean`, and `low` and `high` of 95 %"""
 
     grains: Dict[str, npt.NDArray[Any]] = field(repr=False)
-    """A row a grain, by `id`: `voxels`, `volume`, `equivalent_diameter`, `centroid_x` ...,
-    `sphericity`, `coordination`, `at_domain_face` ..."""
     bonds: Dict[str, npt.NDArray[Any]] = field(repr=False)
-    """A row for each pair of grains that touch, by `first`, then `second` (ids): `area`, `radius`,
-    `normal_x` ..., `flatness`, `mean_curvature` ..."""
     sample: Dict[str, Any]
-    """`solid_fraction`, `specific_surface`, `mean_coordination` ...; `bond_fabric` and
-    `grain_fabric` are (3, 3), [z, y, x]; `diameter_by_volume[50]` is the median."""
     unit: str
     """The unit of lengths: "mm", "um" or "voxel"."""
     units: Dict[str, str] = field(repr=False)
@@ -55,6 +94,7 @@ class Measurements:
                                units={name: self.units[name] for name in table.columns})
         return grains, bonds
 
+    @checked
     def points(self, column: str = "centroid", of: str = "grains") -> npt.NDArray[np.float64]:
         """(N, 3) z, y, x in `unit` of "centroid", "representative", "axis1" ... of the grains, or
         "centroid", "normal" of the bonds."""
@@ -62,6 +102,7 @@ class Measurements:
         return np.array([table[f"{column}_{axis}"] for axis in "zyx"], np.float64).T
 
 
+@checked
 def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional[str] = None,
             boundary: str = "auto", min_faces: int = 1, shape: bool = False,
             intensity: Optional[Source] = None, intensity_grid: Optional[str] = None,
@@ -73,7 +114,7 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
 
     boundary: what lies beyond the faces, "open" (unknown, so that they are no surface), "closed" or
     "auto": as the labels were made, else open. min_faces: of a bond. voxel_size, dataset, grid: as
-    of Labels, of files and arrays. Columns: lib/vdb_madf/measure/README.md says what they mean.
+    of Labels, of files and arrays. help(Measurements) says what the columns mean.
 
     What is there on demand:
     shape: columns `feret_max`, `feret_min`, `convex_volume`, `solidity`, `zingg_class` of the

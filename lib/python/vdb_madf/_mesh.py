@@ -10,6 +10,8 @@ from typing import Tuple
 import numpy as np
 import numpy.typing as npt
 
+from ._arguments import checked
+
 
 @dataclass(frozen=True)
 class Mesh:
@@ -32,6 +34,7 @@ class Mesh:
     unit: str
     """The unit of the points: "mm", "um" or "voxel"."""
 
+    @checked
     def grain(self, id: int) -> Tuple[npt.NDArray[np.float32], npt.NDArray[np.uint32]]:
         """Points (P, 3) and triangles (T, 3) of one grain."""
         place = int(np.searchsorted(self.ids, id))

@@ -7,14 +7,24 @@ from __future__ import annotations
 from typing import Any, Optional, Tuple, Union
 
 from . import _core
+from ._arguments import checked
 from ._calls import Progress, calling, meters
 from ._labels import Labels
 from ._mask import Mask
 
 
+@checked
 def generate(kind: str, *, size: Union[int, Tuple[int, int, int], None] = None, seed: int = 1,
-             voxel_size: Optional[str] = None, progress: Progress = None, threads: int = 0,
-             **options: Any) -> Tuple[Mask, Optional[Labels]]:
+             voxel_size: Optional[str] = None, count: Optional[int] = None,
+             radius: Optional[Tuple[float, float]] = None, overlap: Optional[float] = None,
+             max_cover: Optional[int] = None, fraction: Optional[float] = None,
+             length: Optional[float] = None, neck: Optional[float] = None,
+             roughness: Optional[float] = None, shape: Optional[str] = None,
+             lognormal: Optional[float] = None, aspect: Optional[Tuple[float, float]] = None,
+             rounds: Optional[int] = None, surface: Optional[float] = None,
+             surface_length: Optional[float] = None, blur: Optional[float] = None,
+             noise: Optional[float] = None, noise_length: Optional[float] = None,
+             progress: Progress = None, threads: int = 0) -> Tuple[Mask, Optional[Labels]]:
     """A synthetic object and its true grains, None where there is no truth. The same options give
     the same voxels on every machine.
 
@@ -30,9 +40,13 @@ def generate(kind: str, *, size: Union[int, Tuple[int, int, int], None] = None, 
 
     Of any kind: surface, surface_length (rough surfaces), blur, noise, noise_length (as of a
     scan)."""
-    if size is not None:
-        options["size"] = (size, size, size) if isinstance(size, int) else tuple(size)
-    options["seed"] = seed
+    given = dict(
+        size=(size, size, size) if isinstance(size, int) else size, seed=seed, count=count,
+        radius=radius, overlap=overlap, max_cover=max_cover, fraction=fraction, length=length,
+        neck=neck, roughness=roughness, shape=shape, lognormal=lognormal, aspect=aspect,
+        rounds=rounds, surface=surface, surface_length=surface_length, blur=blur, noise=noise,
+        noise_length=noise_length)
+    options = {name: value for name, value in given.items() if value is not None}
     with calling(progress, threads) as call:
         mask, truth = _core.generate(kind, options, meters(voxel_size), call)
     return Mask._of(mask), None if truth is None else Labels._of(truth)

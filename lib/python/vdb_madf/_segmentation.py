@@ -6,15 +6,17 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field, replace
-from typing import Any, Dict, Optional, Sequence, Union
+from typing import Any, Dict, Optional, Sequence, Tuple, Union
 
 import numpy.typing as npt
 
 from . import _core
+from ._arguments import checked
 from ._arrays import Source
 from ._calls import Progress, bytes_of, calling
+from ._choices import Box
 from ._labels import Labels
-from ._mask import Mask
+from ._mask import Mask, Region
 
 #: The method to the letter of the paper: segment(mask, **PAPER).
 PAPER: Dict[str, Any] = dict(theta=-0.8, merge="angle", adjacency="cell", delta=0, fill_holes=0,
@@ -54,6 +56,7 @@ class Segmentation:
             raise _core.InvalidInput("the manifolds were not kept: segment with keep=('manifold',)")
         return self.manifold._grid
 
+    @checked
     def remerge(self, *, strictness: Optional[float] = None, merge: Optional[str] = None,
                 theta: Optional[float] = None, delta: Optional[int] = None,
                 adjacency: Optional[str] = None, min_grain: Optional[int] = None,
@@ -90,6 +93,7 @@ class Segmentation:
         joins: Dict[str, npt.NDArray[Any]] = _core.joins(self._manifolds())
         return joins
 
+    @checked
     def cut(self, strictness: float, *, progress: Progress = None,
             threads: int = 0) -> "Segmentation":
         """The grains of the hierarchy at a number: remerge(merge="score", strictness=...), with the
@@ -97,6 +101,7 @@ class Segmentation:
         return self.remerge(merge="score", strictness=strictness, progress=progress,
                             threads=threads)
 
+    @checked
     def edit(self, edits: Union[str, Sequence[str]], *, progress: Progress = None,
              threads: int = 0) -> "Segmentation":
         """Edited labels, as of Labels.edit(), with the kept manifolds to split grains by."""
@@ -105,6 +110,7 @@ class Segmentation:
         counts["grains"] = labels.metadata["madf_grains"]
         return replace(self, labels=labels, counts=counts, seconds={})
 
+    @checked
     def sweep(self, strictness: Union[Sequence[float], npt.NDArray[Any], None] = None, *,
               merge: Union[str, Sequence[str], None] = None,
               theta: Union[Sequence[float], npt.NDArray[Any], None] = None,
@@ -136,7 +142,8 @@ class Segmentation:
                 adjacency=used["adjacency"], min_grain=used.get("min_grain", 0), tidy=used["tidy"],
                 small=small)
 
-    def save(self, path: Union[str, "os.PathLike[str]"], *, progress: Progress = None,
+    @checked
+    def save(self, path: Union[str, os.PathLike[str]], *, progress: Progress = None,
              threads: int = 0) -> None:
         """Writes the labels and all grids that were kept into a .vdb, as `vdb_madf segment --keep`
         does (but for balls); `vdb_madf remerge` and `measure` go on from it."""
@@ -165,16 +172,24 @@ def labels_of(source: Union[Labels, Segmentation, Source], call: _core.Call, thr
     return labels
 
 
+@checked
 def segment(source: Union[Mask, Source], *, strictness: Optional[float] = None, gamma: int = 0,
             merge: str = "score", theta: Optional[float] = None, delta: Optional[int] = None,
             adjacency: Optional[str] = None, min_grain: int = 0, fill_holes: Optional[int] = None,
             tidy: int = 2, boundary: str = "auto", keep: Sequence[str] = ("manifold",),
             max_memory: Union[int, str, None] = None,
-            progress: Progress = None, threads: int = 0, **selection: Any) -> Segmentation:
+            phase: Union[float, Sequence[float], None] = None,
+            threshold: Union[float, str, Tuple[float, float], None] = None,
+            range: Optional[Tuple[float, float]] = None, invert: bool = False, median: int = 0,
+            smooth: float = 0, despeckle: int = 0, voxel_size: Optional[str] = None,
+            roi: Optional[Region] = None, crop: Optional[Box] = None, domain: Optional[Box] = None,
+            dataset: Optional[str] = None, grid: Optional[str] = None, progress: Progress = None,
+            threads: int = 0) -> Segmentation:
     """Cuts the object into grains.
 
-    source: a Mask, or what makes one, with its arguments besides: segment("scan.tif", phase=1,
-    voxel_size="10um"), segment(array, threshold="otsu", roi="cylinder").
+    source: a Mask, or what makes one, with its arguments besides (phase to grid, as of Mask):
+    segment("scan.tif", phase=1, voxel_size="10um"), segment(array, threshold="otsu",
+    roi="cylinder").
 
     merge: "score": pieces that are alike and meet in a broad contact are joined, the best pair
     first, down to the score strictness (11); the larger, the more grains. "both", "angle", "neck":
@@ -198,10 +213,17 @@ def segment(source: Union[Mask, Source], *, strictness: Optional[float] = None, 
     allowed = bytes_of(max_memory)
     merging = _core.merge_options(dict(merge=merge, theta=theta, adjacency=adjacency, delta=delta,
                                        strictness=strictness, min_grain=min_grain))
+    selection: Dict[str, Any] = dict(
+        phase=phase, threshold=threshold, range=range, invert=invert, median=median, smooth=smooth,
+        despeckle=despeckle, voxel_size=voxel_size, roi=roi, crop=crop, domain=domain,
+        dataset=dataset, grid=grid)
     with calling(progress, threads) as call:
         if isinstance(source, Mask):
-            if selection:
-                raise TypeError(f"{', '.join(selection)}: a Mask is chosen already")
+            given = [name for name, value in selection.items()
+                     if value is not None and value is not False and
+                     not (value == 0 and name in ("median", "smooth", "despeckle"))]
+            if given:
+                raise TypeError(f"{', '.join(given)}: a Mask is chosen already")
             mask = source
         else:
             mask = Mask(source, progress=call.progress, threads=threads, **selection)

@@ -10,6 +10,7 @@ from typing import Any, Dict, Optional, Tuple, Union
 import numpy.typing as npt
 
 from . import _core
+from ._arguments import checked
 from ._arrays import Source
 from ._calls import Progress, calling, warn
 from ._labels import Labels
@@ -42,6 +43,7 @@ class Tracks:
     """What `bonds_before` says, after; "new" in the place of "broken"."""
 
 
+@checked
 def track(before: Union[Labels, Segmentation, Source], after: Union[Labels, Segmentation, Source],
           *, shift: Optional[Tuple[int, int, int]] = None, max_shift: int = 10, share: float = 0.5,
           min_faces: int = 1, progress: Progress = None, threads: int = 0) -> Tracks:

@@ -13,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import dense
+from ._arguments import checked
+from ._arrays import dense, shown
 from ._calls import meters
 
 
@@ -109,6 +110,7 @@ class Volume:
             self._read((z, low[1], low[2]), plane)
             slice_of_result[...] = plane[0, ::ranges[1].step, ::ranges[2].step]
 
+    @checked
     def to_array(self, dtype: npt.DTypeLike = None,
                  out: Optional[npt.NDArray[Any]] = None) -> npt.NDArray[Any]:
         """All voxels as an array of that type, or into `out`, of the shape of the volume."""
@@ -221,8 +223,8 @@ def _ranges(key: Any, shape: Tuple[int, int, int]) -> Tuple[List[range], List[bo
         except TypeError:
             place = None
         if place is None or isinstance(part, (bool, np.bool_)):
-            raise IndexError(f"{part!r} is no whole number, slice or ...: read an array first, "
-                             "numpy.asarray(volume), to index it by anything else")
+            raise IndexError(f"{shown(part)} is no whole number, slice or ...: read an array "
+                             "first, numpy.asarray(volume), to index it by anything else")
         if not -length <= place < length:
             raise IndexError(f"{place} is out of the {length} voxels of axis {axis}")
         ranges.append(range(place % length, place % length + 1))

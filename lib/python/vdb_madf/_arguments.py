@@ -1,0 +1,128 @@
+# SPDX-FileCopyrightText: The vdb_madf authors
+# SPDX-License-Identifier: Apache-2.0
+"""Arguments of wrong types are refused in a line that names them."""
+
+from __future__ import annotations
+
+import collections.abc
+import functools
+import inspect
+import operator
+import os
+import typing
+from typing import Any, Callable, Dict, TypeVar, Union
+
+import numpy as np
+
+from . import _core
+from ._arrays import ArrayLike3D, shown
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+_NAMES: Dict[Any, str] = {
+    bool: "True or False", int: "a whole number", float: "a number", str: "a text",
+    slice: "a slice", ArrayLike3D: "an array [z, y, x]"}
+
+#: What is hard to guess from a type.
+_EXAMPLES = {
+    "voxel_size": ", with its unit, such as '8.5um'", "max_memory": ", such as '12GiB'",
+    "threshold": ", such as 128, 'otsu' or (100, 120)", "range": ", such as (100, 180)",
+    "crop": ", such as numpy.s_[10:90, :, 5:50]", "domain": ", such as numpy.s_[0:90, 0:90, 0:50]",
+    "roi": ", such as 'cylinder'", "radius": ", such as (8, 13)", "aspect": ", such as (4, 8)"}
+
+
+def checked(function: _Function) -> _Function:
+    """The function, which refuses arguments of other types than its signature has."""
+    signature = inspect.signature(function)
+
+    @functools.wraps(function)
+    def call(*args: Any, **kwargs: Any) -> Any:
+        try:
+            given = signature.bind(*args, **kwargs).arguments
+        except TypeError:
+            given = {}  # the call itself says it better
+        hints = _hints(function)
+        for name, value in given.items():
+            if name in hints and not _fits(value, hints[name]):
+                raise TypeError(f"{name}={shown(value)}: give {_wanted(hints[name])}"
+                                f"{_EXAMPLES.get(name, '')}")
+        try:
+            return function(*args, **kwargs)
+        except TypeError as error:
+            if "incompatible function arguments" not in str(error):
+                raise
+            raise _core.InvalidInput(_out_of_range(given)) from None
+
+    return typing.cast(_Function, call)
+
+
+@functools.lru_cache(maxsize=None)
+def _hints(function: Callable[..., Any]) -> Dict[str, Any]:
+    return typing.get_type_hints(function)
+
+
+def _out_of_range(given: Dict[str, Any]) -> str:
+    """Of the right type, numbers can still be beyond those of the library."""
+    far = [f"{name}={value}" for name, value in given.items()
+           if isinstance(value, int) and not 0 <= value < 2**31]
+    return f"{', '.join(far) or 'an argument'}: is out of range"
+
+
+def _fits(value: Any, hint: Any) -> bool:
+    origin, parts = typing.get_origin(hint), typing.get_args(hint)
+    if origin is Union:
+        return any(_fits(value, part) for part in parts)
+    if hint is bool:
+        return isinstance(value, (bool, np.bool_))
+    if hint is int:
+        return not isinstance(value, (bool, np.bool_)) and _is_index(value)
+    if hint is float:
+        return (hasattr(value, "__float__") and not isinstance(value, (bool, np.bool_))
+                and getattr(value, "ndim", 0) == 0)
+    if hint is ArrayLike3D:
+        return isinstance(value, (list, tuple)) or hasattr(value, "shape")
+    if origin is tuple:
+        return _are_items(value) and len(value) == len(parts) and all(map(_fits, value, parts))
+    if origin is collections.abc.Sequence:
+        return _are_items(value) and all(_fits(item, parts[0]) for item in value)
+    if origin is collections.abc.Callable:
+        return callable(value)
+    kind = origin or hint
+    return not isinstance(kind, type) or isinstance(value, kind)
+
+
+def _is_index(value: Any) -> bool:
+    try:
+        operator.index(value)
+    except TypeError:
+        return False
+    return True
+
+
+def _are_items(value: Any) -> bool:
+    return (isinstance(value, collections.abc.Collection)
+            and not isinstance(value, (str, bytes, collections.abc.Mapping))
+            and getattr(value, "ndim", 1) == 1)
+
+
+def _wanted(hint: Any) -> str:
+    """The type in words: "a number or two numbers". Where a path is taken, a text is one."""
+    origin, parts = typing.get_origin(hint), typing.get_args(hint)
+    if origin is Union:
+        hides = (type(None), str if os.PathLike in map(typing.get_origin, parts) else None)
+        words = [_wanted(part) for part in parts if part not in hides]
+        return ", ".join(words[:-1]) + " or " + words[-1] if len(words) > 1 else words[0]
+    if origin is tuple:
+        return f"{('no', 'one', 'two', 'three')[len(parts)]} {_plural(parts[0])}"
+    if origin is collections.abc.Sequence:
+        return f"a list of {_plural(parts[0])}"
+    if origin is collections.abc.Callable:
+        return "a function"
+    kind = origin or hint
+    return _NAMES.get(kind) or {os.PathLike: "a path", np.ndarray: "an array"}.get(
+        kind, getattr(kind, "__name__", str(kind)))
+
+
+def _plural(hint: Any) -> str:
+    words = _wanted(hint)
+    return words[2:] + "s" if words.startswith("a ") else words

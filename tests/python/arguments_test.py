@@ -1,0 +1,91 @@
+# SPDX-FileCopyrightText: The vdb_madf authors
+# SPDX-License-Identifier: Apache-2.0
+"""Arguments are in the signatures, and of a wrong type refused in a line that names them."""
+
+import inspect
+import re
+
+import numpy as np
+import pytest
+
+import vdb_madf as madf
+
+METHODS = [value for kind in (madf.Mask, madf.Labels, madf.Segmentation, madf.Measurements,
+                              madf.Mesh)
+           for name, value in inspect.getmembers(kind, inspect.isfunction)
+           if not name.startswith("_")]
+FUNCTIONS = [madf.segment, madf.measure, madf.compare, madf.track, madf.generate,
+             madf.Mask.__init__, madf.Labels.__init__, *METHODS]
+
+# What numpy makes an array or a type of.
+ANYTHING = {"dtype", "values"}
+# What has to be given, as it should be.
+GOOD = dict(source="a.tif", labels="a.vdb", truth="a.vdb", test="a.vdb", before="a.vdb",
+            after="a.vdb", kind="snow", ids=[1], values=[1], groups=[[1, 2]], edits="renumber",
+            factor=2, id=1, strictness=9.5, path="a.vdb")
+
+
+@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda f: f.__qualname__)
+def test_every_argument_is_checked(function):
+    parameters = dict(inspect.signature(function).parameters)
+    self = [None] if parameters.pop("self", None) else []
+    needed = {name: GOOD[name] for name, p in parameters.items() if p.default is p.empty}
+    for name, parameter in parameters.items():
+        assert parameter.kind not in (parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL)
+        if name in ANYTHING:
+            continue
+        with pytest.raises(TypeError) as refused:
+            function(*self, **{**needed, name: object()})
+        line = str(refused.value)
+        assert re.fullmatch(rf"{name}=<object object at \w+>: give .+", line), line
+
+
+@pytest.mark.parametrize("arguments, text", [
+    (dict(gamma=20.0), "gamma=20.0: give a whole number"),
+    (dict(gamma=True), "gamma=True: give a whole number"),
+    (dict(range="1:1"), "range='1:1': give two numbers, such as (100, 180)"),
+    (dict(range=(1, 2, 3)), "range=(1, 2, 3): give two numbers, such as (100, 180)"),
+    (dict(threshold=(1, "b")), "threshold=(1, 'b'): give a number, a text or two numbers, such as "
+                               "128, 'otsu' or (100, 120)"),
+    (dict(keep="manifold"), "keep='manifold': give a list of texts"),
+    (dict(crop=5), "crop=5: give three slices, such as numpy.s_[10:90, :, 5:50]"),
+    (dict(source=None), "source=None: give Mask, a path or an array [z, y, x]"),
+    (dict(theta=np.zeros((3, 3))), "theta=<an array of float64, (3, 3)>: give a number"),
+    (dict(merge=["a" * 1000]), "merge=['" + "a" * 55 + "...: give a text"),
+])
+def test_what_is_said(arguments, text):
+    with pytest.raises(TypeError) as refused:
+        madf.segment(**{"source": "a.tif", **arguments})
+    assert str(refused.value) == text
+
+
+def test_numbers_of_numpy_are_numbers(array, expected):
+    labels = madf.segment(array, phase=np.array([1]), gamma=np.int64(0), theta=None,
+                          strictness=np.float32(11), keep=()).labels
+    assert np.array_equal(labels, expected)
+    gray = madf.Mask(array * 100, threshold=[50, 90], smooth=np.float64(0), median=np.uint8(0))
+    assert np.array_equal(gray, array)
+
+
+def test_numbers_out_of_range(array):
+    for name, value in (("gamma", 10**30), ("tidy", 2**40), ("fill_holes", -10**20)):
+        with pytest.raises(ValueError, match=f"{name}={value}: is out of range"):
+            madf.segment(array, phase=1, **{name: value})
+
+
+def test_an_index_that_is_an_array_is_refused_in_a_line(expected):
+    labels = madf.Labels(expected)
+    with pytest.raises(IndexError) as refused:
+        labels[labels > 3]
+    assert str(refused.value).startswith(f"<an array of bool, {expected.shape}> is no whole number")
+    assert len(str(refused.value)) < 160
+
+
+def test_the_help_says_what_is_measured(array):
+    measured = madf.measure(madf.segment(array, phase=1), shape=True, intensity=array,
+                            edge_weights=True, bootstrap=100)
+    text = inspect.getdoc(madf.Measurements)
+    for name in {**measured.grains, **measured.bonds, **measured.sample}:
+        assert f"`{re.sub('_[xyz]$', '_*', name)}`" in text, name
+    for function in FUNCTIONS:
+        assert "README" not in inspect.getdoc(function)
