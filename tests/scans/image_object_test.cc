@@ -147,15 +147,34 @@ TEST_CASE("image_object: a round field of view does not pass for pores", "[image
   CHECK_THROWS_WITH(objectOf(size, samples, std::nullopt, gray),
                     Contains("the threshold would be ") &&
                         Contains("but 3700.5 without the value 0") &&
-                        Contains("choose one of the two by its value"));
+                        Contains("a cylinder, or choose one of the two by its value"));
   CHECK_THROWS_AS(objectOf(size, samples, std::nullopt, gray), SelectionNeeded);
   CHECK_THROWS_WITH(objectOf(size, samples, std::nullopt),
                     Contains("or 3700.5 without the value 0"));
+  // Chosen by value, it is said.
+  const auto cornerOf = [&](const ImageSize& part, const GrayOptions& options = {},
+                            const std::optional<ScanPart>& region = std::nullopt) {
+    return imageObject([&] { return imageOf(part, samples); }, Selection::threshold(3700), options,
+                       region)
+        .corner;
+  };
+  GrayOptions hysteresis;
+  hysteresis.low = 3000;
+  CHECK(cornerOf(size) == 0.0);
+  CHECK(cornerOf(size, hysteresis) == 0.0);
+  CHECK(cornerOf({40, 40, kCornerSlices}) == 0.0);
+  CHECK_FALSE(cornerOf({40, 40, kCornerSlices - 1}));
+  const CoordBBox box(Coord(0), Coord(39, 39, 8));
+  CHECK_FALSE(cornerOf(size, {}, ScanPart{box, Domain(box)}));
+  samples[40 * 40 * 5 + 39] = 1;
+  CHECK_FALSE(cornerOf(size));
+  samples[40 * 40 * 5 + 39] = 0;
   for (uint16_t& sample : samples) sample = uint16_t(std::max<int>(sample, 3000));
   CHECK_NOTHROW(objectOf(size, samples, std::nullopt, gray));
   // A mask has zeros at its corners, too.
   for (uint16_t& sample : samples) sample = sample > 3700;
   CHECK_NOTHROW(objectOf(size, samples, std::nullopt, gray));
+  CHECK_FALSE(cornerOf(size));
 }
 
 TEST_CASE("image_object: phases have to be chosen, masks and labels are taken", "[image_object]") {

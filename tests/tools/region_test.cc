@@ -182,6 +182,31 @@ TEST_CASE("region: all verbs keep it", "[region]") {
              Contains("3 rows"));
 }
 
+TEST_CASE("region: a gray scan of a round core that is taken for a box is told", "[region]") {
+  const Bench bench;
+  std::string core;
+  uint32_t state = 1;
+  for (int i = 0; i < kSide * kSide * 8; ++i) {
+    state = state * 1664525 + 1013904223;
+    const bool inside = isInCore(i % kSide, i / kSide % kSide);
+    core += char(inside ? (i / 6 % 2 ? 120 : 60) + int(state >> 28) : 0);
+  }
+  bench.write("x.raw", core);
+  bench.mustRun("convert x.raw core.npy --dims 48x48x8 --type uint8");
+  const std::string said = "core.npy: the corners of all slices have the value 0";
+  for (const std::string verb : {"convert core.npy o.vdb", "segment core.npy o.vdb",
+                                 "segment core.npy o.slabs", "sweep core.npy o.csv"}) {
+    CAPTURE(verb);
+    const Outcome outcome = bench.run(verb + " --threshold 100");
+    CHECK(outcome.exitCode == 0);
+    CHECK_THAT(outcome.err, Contains(said) && Contains("(--roi cylinder)"));
+    CHECK(outcome.err.find(said) == outcome.err.rfind(said));
+    CHECK_THAT(bench.run(verb + " --threshold 100 --roi cylinder").err, !Contains(said));
+  }
+  CHECK_THAT(bench.run("segment core.npy o.vdb --threshold otsu").err,
+             Contains("(--roi cylinder, or --threshold VALUE)"));
+}
+
 TEST_CASE("region: labels of another program are cut to it", "[region]") {
   const Bench bench;
   const Core core(bench);

@@ -46,7 +46,8 @@ MaskGrid::Ptr withObjectOptions(const InputOptions& input, const Load& load) {
   try {
     return withGridOption(input, "--grid", load);
   } catch (const SelectionNeeded& error) {
-    const char* options = input.gray.automatic == AutomaticThreshold::none
+    const char* options = error.orCylinder() ? " (--roi cylinder, or --threshold VALUE)"
+                          : input.gray.automatic == AutomaticThreshold::none
                               ? " (--threshold otsu or a value, --phase, --range; labels of "
                                 "grains: convert --labels)"
                               : " (--threshold VALUE)";
@@ -205,9 +206,10 @@ VolumeOptions InputOptions::volume(Progress* progress) const {
   options.outputs = filesOf(outputs);
   options.longestSide = longestSide;
   options.note = [progress](const std::string& text, NoteAbout about) {
-    progress->note(text + (about == NoteAbout::voxelSize ? " (--voxel-size)"
-                           : about == NoteAbout::labels  ? " (convert --labels keeps them apart)"
-                                                         : ""));
+    progress->note(text + (about == NoteAbout::voxelSize  ? " (--voxel-size)"
+                           : about == NoteAbout::labels   ? " (convert --labels keeps them apart)"
+                           : about == NoteAbout::cylinder ? " (--roi cylinder)"
+                                                          : ""));
   };
   return options;
 }

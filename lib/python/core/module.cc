@@ -59,7 +59,9 @@ void bindErrors(py::module_& m) {
     try {
       if (error) std::rethrow_exception(error);
     } catch (const SelectionNeeded& e) {
-      const std::string text = std::string(e.what()) + " (threshold=, phase= or range=)";
+      const std::string text =
+          std::string(e.what()) +
+          (e.orCylinder() ? " (roi='cylinder', or threshold=)" : " (threshold=, phase= or range=)");
       PyErr_SetString(invalidInput.ptr(), text.c_str());
     } catch (const InvalidInput& e) {
       const bool memory = e.hint() == Hint::memoryLimit;

@@ -96,7 +96,8 @@ using Loaded = std::pair<GridPtr, std::vector<std::string>>;  // with notes
 template <typename Load>
 Loaded withNotes(VolumeOptions options, const Call& call, const Load& load) {
   std::vector<std::string> notes;
-  options.note = [&notes](const std::string& text, NoteAbout) {
+  options.note = [&notes](const std::string& said, NoteAbout about) {
+    const std::string text = said + (about == NoteAbout::cylinder ? " (roi='cylinder')" : "");
     if (std::find(notes.begin(), notes.end(), text) == notes.end()) notes.push_back(text);
   };
   const GridPtr grid = withoutLock(

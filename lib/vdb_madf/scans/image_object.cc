@@ -111,7 +111,8 @@ PartMasks readPart(ImageReader& image, const std::vector<Selection>& selections,
 /// What is not 0 (or, inverted, what is), unless that would be a guess.
 ImageObject plainMask(ImageReader& image, const Selection& nonZero, const Part& part,
                       Interrupter* interrupter, const TakeLayer& take) {
-  detail::CountedImage counted(image, part ? detail::rowsOf(*part, image.info().size) : nullptr);
+  detail::CountedImage counted(image, part ? detail::rowsOf(*part, image.info().size) : nullptr,
+                               !part);
   const PartMasks read = readPart(counted, {nonZero}, part, interrupter, take);
   const Histogram histogram = counted.histogram();
   const ImageKind kind = kindOf(histogram);
@@ -136,12 +137,28 @@ double automaticThreshold(ImageReader& image, AutomaticThreshold method, const P
         "threshold",
         image.path(), histogramLine(histogram)));
   if (const auto inside = thresholdInside(histogram, thresholdOf, *threshold))
-    throw SelectionNeeded(fmt::format(
-        "{}: the threshold would be {}, but {} {} (a round field of view?): choose one of the two "
-        "by its value",
-        image.path(), shortestDecimal(*threshold), shortestDecimal(*inside),
-        cornerText(histogram)));
+    throw SelectionNeeded(
+        fmt::format("{}: the threshold would be {}, but {} {} (a round field of view?): say that "
+                    "the scan is a cylinder, or choose one of the two by its value",
+                    image.path(), shortestDecimal(*threshold), shortestDecimal(*inside),
+                    cornerText(histogram)),
+        true);
   return *threshold;
+}
+
+/// An image of which the middle rows tell the kind, at little cost.
+detail::CountedImage sampled(ImageReader& image, const Part& part) {
+  const int width = image.info().size.x, middle = image.info().size.y / 2;
+  const auto rows = [=](int y, int) {
+    return y == middle ? std::vector{std::pair(0, width)} : std::vector<std::pair<int, int>>{};
+  };
+  return {image, rows, !part};
+}
+
+std::optional<double> cornerOfGray(const detail::CountedImage& image) {
+  const Histogram histogram = image.histogram();
+  const bool enough = image.info().size.z >= kCornerSlices;
+  return enough && kindOf(histogram) == ImageKind::gray ? histogram.corner : std::nullopt;
 }
 
 /// Voxels from `high` on, and those from `low` on that are connected with them; if the selection is
@@ -235,14 +252,19 @@ ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& ope
   detail::WorkPart reading(interrupter, automatic ? 50 : 0, 100);
   const bool needsWhole = gray.low || gray.despeckle > 1;
   const TakeLayer takeRead = needsWhole ? nullptr : take;
+  const std::unique_ptr<ImageReader> opened = image();
   ImageObject object;
-  if (gray.low)
-    object = hysteresisMask(*image(), *gray.low, chosen, part, &reading);
-  else if (chosen.kind == Selection::Kind::nonZero)
-    object = plainMask(*image(), chosen, part, &reading, takeRead);
-  else {
-    const PartMasks read = readPart(*image(), {chosen}, part, &reading, takeRead);
-    object = {read.masks[0], read.leftOut};
+  if (!gray.low && chosen.kind == Selection::Kind::nonZero) {
+    object = plainMask(*opened, chosen, part, &reading, takeRead);
+  } else {
+    detail::CountedImage counted = sampled(*opened, part);
+    if (gray.low) {
+      object = hysteresisMask(counted, *gray.low, chosen, part, &reading);
+    } else {
+      const PartMasks read = readPart(counted, {chosen}, part, &reading, takeRead);
+      object = {read.masks[0], read.leftOut};
+    }
+    object.corner = cornerOfGray(counted);
   }
   if (readsGray(gray)) describeObject(chosen, gray, *object.mask);
   despeckleObject(*object.mask, gray.despeckle, interrupter);

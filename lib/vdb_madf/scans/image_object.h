@@ -20,7 +20,13 @@ namespace vdb_madf {
 /// Which values of an image are object has to be said; what() says it without options.
 class SelectionNeeded : public InvalidInput {
  public:
-  explicit SelectionNeeded(const std::string& what) : InvalidInput(what) {}
+  explicit SelectionNeeded(const std::string& what, bool orCylinder = false)
+      : InvalidInput(what), orCylinder_(orCylinder) {}
+  /// True if a cylinder as the region would do, too.
+  bool orCylinder() const { return orCylinder_; }
+
+ private:
+  bool orCylinder_;
 };
 
 enum class AutomaticThreshold { none, otsu, valley };
@@ -51,7 +57,13 @@ struct ImageObject {
   int64_t leftOut = 0;
   /// No values were chosen, and the image is one of labels, which are all in one mask now.
   bool fromLabels = false;
+  /// The one value at the four corners of all slices of a gray image, as around a round field of
+  /// view: of kCornerSlices and more that were read without a part.
+  std::optional<double> corner = std::nullopt;
 };
+
+/// In fewer slices all corners may well have one value by chance.
+constexpr int kCornerSlices = 8;
 
 /// Gets an object in layers of leaf nodes, ascending in z; those without voxels may be left out.
 /// What is taken is not kept, so the object need not fit in memory.

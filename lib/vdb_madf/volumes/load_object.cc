@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
@@ -121,6 +122,12 @@ MaskGrid::Ptr objectOfImage(const std::string& path, const ImageOpener& open,
   if (found.fromLabels && options.note)
     options.note(path + ": it has several values besides 0, and all of them become one mask",
                  NoteAbout::labels);
+  if (found.corner && options.note)
+    options.note(path + ": the corners of all slices have the value " +
+                     detail::shortestDecimal(*found.corner) +
+                     ", as around a round field of view, and count as scanned: say that the scan "
+                     "is a cylinder, if it is one",
+                 NoteAbout::cylinder);
   detail::noteLeftOut(path, found.leftOut, "object voxel", options);
   if (options.domain && !part) setDomain(*found.mask, *options.domain);
   return found.mask;

@@ -20,7 +20,7 @@
 namespace vdb_madf {
 
 /// What a note is about: a program with options can add the one that matters.
-enum class NoteAbout { file, voxelSize, labels };
+enum class NoteAbout { file, voxelSize, labels, cylinder };
 
 /// Any readable file, OpenVDB or an image of openImage(), as one volume. The defaults suit every
 /// file that describes itself and holds one volume.

@@ -186,8 +186,8 @@ Histogram HistogramBuilder::result(SampleType type) const {
   return histogram;
 }
 
-CountedImage::CountedImage(ImageReader& image, RowParts parts)
-    : image_(image), parts_(std::move(parts)) {
+CountedImage::CountedImage(ImageReader& image, RowParts parts, bool corners)
+    : image_(image), parts_(std::move(parts)), looksAtCorners_(corners) {
   info_ = image.info();
   path_ = image.path();
   files_ = image.files();
@@ -198,7 +198,7 @@ void CountedImage::read(int first, int count, void* samples) {
   const auto nx = size_t(info_.size.x), ny = size_t(info_.size.y);
   withSampleType(info_.type, [&](auto sample) {
     const auto* rows = static_cast<const decltype(sample)*>(samples);
-    for (size_t z = 0; z < size_t(count) && !parts_; ++z) {
+    for (size_t z = 0; z < size_t(count) && looksAtCorners_; ++z) {
       const auto *firstRow = rows + z * nx * ny, *lastRow = firstRow + (ny - 1) * nx;
       lookAtCorners({double(firstRow[0]), double(firstRow[nx - 1]), double(lastRow[0]),
                      double(lastRow[nx - 1])});

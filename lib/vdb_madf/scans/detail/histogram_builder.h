@@ -59,8 +59,10 @@ using RowParts = std::function<std::vector<std::pair<int, int>>(int y, int z)>;
 /// Reads another image and counts what it reads.
 class CountedImage : public ImageReader {
  public:
-  /// @param parts absent: whole rows; else no corners are looked at
-  explicit CountedImage(ImageReader& image, RowParts parts = nullptr);
+  explicit CountedImage(ImageReader& image) : CountedImage(image, nullptr, true) {}
+  /// @param parts absent: whole rows
+  /// @param corners whether the corners of the slices are looked at
+  CountedImage(ImageReader& image, RowParts parts, bool corners);
   void read(int first, int count, void* samples) override;
   Histogram histogram() const;  ///< of the slices read so far
 
@@ -69,6 +71,7 @@ class CountedImage : public ImageReader {
 
   ImageReader& image_;
   const RowParts parts_;
+  const bool looksAtCorners_;
   std::optional<double> corner_;
   bool cornersDiffer_ = false;
   mutable PerThread<HistogramBuilder> builders_;

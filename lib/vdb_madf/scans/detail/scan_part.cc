@@ -88,7 +88,7 @@ Histogram histogramIn(const ScanPart& part, ImageReader& image, Interrupter* int
   const ImageInfo& info = image.info();
   const CoordBBox box = domainOf(part, info.size).box();
   std::vector<char> samples(size_t(sliceBytes(info)) * size_t(std::min(kSlab, info.size.z)));
-  CountedImage counted(image, rowsOf(part, info.size));
+  CountedImage counted(image, rowsOf(part, info.size), false);
   forEachSlab(box.min().z(), box.max().z() + 1, interrupter,
               [&](int z, int count) { counted.read(z, count, samples.data()); });
   return counted.histogram();
