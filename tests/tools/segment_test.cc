@@ -11,6 +11,7 @@
 #include "support/svg.h"
 
 using namespace vdb_madf::test;
+using vdb_madf::test::Contains;
 
 TEST_CASE("cli: segment reports what it did as JSON", "[cli]") {
   const Bench bench;
@@ -383,4 +384,19 @@ TEST_CASE("cli: segment --dry-run says what it would take, and does nothing", "[
   CHECK(needed < 3 * peak);
   CHECK(bench.mustRun("segment p.vdb --dry-run --max-memory 1M").find("it does not fit") !=
         std::string::npos);
+
+  const std::string inSlabs = "segment p.vdb o.slabs --slab-height 40 ";
+  const Json slabs = Json::parse(bench.mustRun(inSlabs + "--dry-run --json -"));
+  CHECK_THAT(bench.mustRun(inSlabs + "--dry-run"), Contains("slabs            4") &&
+                                                       Contains("scratch          about ") &&
+                                                       Contains("it fits"));
+  CHECK(bench.run(inSlabs + "--dry-run --resume").exitCode == 2);
+  const Json made = Json::parse(bench.mustRun(inSlabs + "--json -"));
+  for (const char* same : {"object_voxels", "leaves", "slab_count"})
+    CHECK(slabs.at(same) == made.at(same));
+  CHECK(slabs.at("slab_count") == 4);
+  CHECK(slabs.at("estimated_scratch_bytes") == 2 * slabs.at("object_voxels").get<int64_t>());
+  const double slabMemory = slabs.at("estimated_memory_bytes");
+  CHECK(slabMemory > made.at("peak_memory_bytes"));
+  CHECK(slabMemory < 4 * made.at("peak_memory_bytes").get<double>());
 }

@@ -519,6 +519,33 @@ TEST_CASE("slabs: what was killed goes on", "[slabs]") {
   CHECK(kills > 3);
 }
 
+TEST_CASE("slabs: what is finished is not done again to resume it", "[slabs]") {
+  const Bench bench;
+  bench.mustRun(kTall + "in.vdb -q");
+  const std::string segment = "segment in.vdb out.slabs --grid object ";
+  bench.mustRun(segment + "--slab-height 8 --resume -q");
+  const std::string slab = bench.path("out.slabs/slab-0000.vdb");
+  const auto made = std::filesystem::last_write_time(slab);
+  const auto isMadeAnew = [&] { return std::filesystem::last_write_time(slab) != made; };
+  const Outcome again = bench.run(segment + "--resume");
+  CHECK(again.exitCode == 0);
+  CHECK_THAT(again.err, Contains("out.slabs: is finished"));
+  for (const std::string other : {"--gamma 5", "--keep manifold", "--crop 0,0,0:9,9,9", "--invert",
+                                  "--boundary closed", "--strictness 9", "--tidy 0"}) {
+    const Outcome refused = bench.run(segment + "--resume " + other);
+    CHECK(refused.exitCode == 1);
+    CHECK_THAT(refused.err, Contains("is finished, and was made of another input or with other"));
+  }
+  std::filesystem::last_write_time(bench.path("in.vdb"),
+                                   std::filesystem::file_time_type::clock::now());
+  CHECK_THAT(bench.run(segment + "--resume").err, Contains("made of another input"));
+  CHECK_FALSE(isMadeAnew());
+  bench.mustRun(segment + "-q");
+  CHECK(isMadeAnew());
+  std::filesystem::remove(slab);
+  CHECK_THAT(bench.run(segment + "--resume").err, Contains("slab-0000.vdb"));
+}
+
 TEST_CASE("slabs: nothing is made of a half of what a run left", "[slabs]") {
   const Bench bench;
   bench.mustRun(kTall + "in.vdb -q");

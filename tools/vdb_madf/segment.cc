@@ -16,6 +16,7 @@
 
 #include "auto_slabs.h"
 #include "command.h"
+#include "estimate.h"
 #include "grid_image.h"
 #include "input_options.h"
 #include "json_file.h"
@@ -112,33 +113,8 @@ void parse(SegmentArguments& o) {
     checkSlabArguments(o);
 }
 
-/// What segmenting would take, without doing it.
-void printEstimate(const SegmentArguments& o, const Common& common, const MaskGrid& object,
-                   const SegmentOptions& options, double secondsRead, JsonFile& jsonFile) {
-  const ObjectSize size = objectSize(object);
-  const int64_t mask = int64_t(object.memUsage()), needed = mask + segmentMemory(size, options);
-  Json json;
-  json["input"] = o.input.path;
-  json["object_voxels"] = size.voxels;
-  json["leaves"] = size.leaves;
-  json["estimated_memory_bytes"] = needed;
-  json["memory_limit_bytes"] = mask + options.maxMemory;
-  json["seconds_read"] = secondsRead;
-  const bool fits = needed <= mask + options.maxMemory;
-  json["fits"] = fits;
-  addNotes(json, *common.progress);
-  jsonFile.write(json);
-  if (common.quiet || jsonFile.isStandardOutput()) return;
-  std::printf("%s: %lld object voxels in %lld leaf nodes\n", o.input.path.c_str(),
-              (long long)size.voxels, (long long)size.leaves);
-  std::printf("  memory           about %s (%lld bytes) to segment it\n",
-              readableBytes(needed).c_str(), (long long)needed);
-  std::printf("  limit            %s: %s\n", readableBytes(mask + options.maxMemory).c_str(),
-              fits ? "it fits" : "it does not fit");
-}
-
 void runSegment(const SegmentArguments& o, const Common& common) {
-  if (hasSlabsEnding(o.out)) return runInSlabs(o, common);
+  if (hasSlabsEnding(o.out)) return o.dryRun ? estimateSlabs(o, common) : runInSlabs(o, common);
   if (o.autoSlabs && isSurelyForSlabs(o)) return runAutoSlabs(o, common);
   const Clock::time_point start = Clock::now();
   SegmentTiming timing;
@@ -159,7 +135,12 @@ void runSegment(const SegmentArguments& o, const Common& common) {
     options.maxMemory = std::max<int64_t>(1, options.maxMemory - int64_t(object->memUsage()));
   if (o.dryRun) {
     common.progress->end();
-    return printEstimate(o, common, *object, options, timing.read, jsonFile);
+    const ObjectSize size = objectSize(*object);
+    const auto mask = int64_t(object->memUsage());
+    return say(o, common,
+               {size.voxels, size.leaves, mask + segmentMemory(size, options),
+                options.maxMemory > 0 ? mask + options.maxMemory : 0, 0, timing.read},
+               jsonFile);
   }
 
   const bool fits =
@@ -250,7 +231,7 @@ void addSegment(Verb command, Common& common, Action& action) {
   verb.flag("--auto-slabs", o->autoSlabs,
             "what does not fit is cut into slabs, and one file made of these");
   verb.flag("--resume", o->resume, "OUT.slabs: go on with what a run left that did not end");
-  verb.flag("--dry-run", o->dryRun, "only say how much memory it would take");
+  verb.flag("--dry-run", o->dryRun, "only say how much memory it would take, in slabs also disk");
   verb.onParsed([o, &common, &action] {
     parse(*o);
     if (common.team && !hasSlabsEnding(o->out))

@@ -8,11 +8,11 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "estimate.h"
 #include "member_failure.h"
 #include "parse.h"
 #include "vdb_madf/base/errors.h"
@@ -29,8 +29,6 @@
 namespace vdb_madf::tools {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Of any slab: far fewer leaf nodes than can be numbered.
 constexpr int64_t kMostSlabBytes = int64_t(8) << 30;
@@ -49,10 +47,13 @@ SlabLimits limitsOf(const SegmentArguments& o, int64_t memory) {
   return limits;
 }
 
+int64_t memoryFor(const SegmentArguments& o) {
+  return o.maxMemory.empty() ? availableMemory() : o.segment.maxMemory;
+}
+
 /// Reads the object into slabs; returns it without voxels.
 MaskGrid::Ptr readSlabs(const SegmentArguments& o, const Common& common, WorkPlace& place) {
-  const int64_t memory = o.maxMemory.empty() ? availableMemory() : o.segment.maxMemory;
-  SlabBuilder builder(limitsOf(o, memory), place.scratch());
+  SlabBuilder builder(limitsOf(o, memoryFor(o)), place.scratch());
   const MaskGrid::Ptr object = streamObject(
       o.input, [&](const MaskTree& layer) { builder.add(layer); }, {}, common.progress);
   writeVdb(place.aboutFile(), {object}, common.progress);
@@ -106,13 +107,22 @@ void checkSlabArguments(const SegmentArguments& o) {
   const SegmentOptions& keep = o.segment;
   if (!o.tables.empty())
     throw WrongUsage(o.out + ": tables are made of slabs by vdb_madf measure: leave --tables out");
-  if (keep.keepDistance || keep.keepPower || keep.keepBalls || o.dryRun)
-    throw WrongUsage(o.out +
-                     ": slabs get labels and --keep manifold alone: leave other grids and "
-                     "--dry-run out");
+  if (keep.keepDistance || keep.keepPower || keep.keepBalls)
+    throw WrongUsage(o.out + ": slabs get labels and --keep manifold alone: leave other grids out");
+  if (o.dryRun && o.resume)
+    throw WrongUsage("--resume goes on with work, and --dry-run does none: leave one of them out");
 }
 
 namespace {
+
+/// Keeps nothing, for who wants to know where an object would be cut.
+class NoScratch : public Scratch {
+ public:
+  void writeBytes(const std::string&, const char*, size_t) override {}
+  void readBytes(const std::string&, const Allocate& allocate) const override { allocate(0); }
+  bool has(const std::string&) const override { return false; }
+  void remove(const std::string&) override {}
+};
 
 /// Adds to the summary of a segmentation what slabs took: `slab_count`, `exchanges`, and of each
 /// stage `seconds` and `message_bytes`.
@@ -132,7 +142,7 @@ std::string aboutSlabs(const SegmentArguments& o, const Json& summary) {
         key != "threads" && key != "stages" && key != "exchanges" && key != "ranks" &&
         key != "output" && key != "hints" && key != "input" && key != "notes")
       index[key] = value;
-  index["input"] = fs::path(o.input.path).filename().string();
+  index.update(originOf(o));
   return index.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -186,9 +196,41 @@ void workInSlabs(const SegmentArguments& o, const Common& common, Team& team, Wo
 
 }  // namespace
 
+void estimateSlabs(const SegmentArguments& o, const Common& common) {
+  if (common.team) throw WrongUsage("--dry-run is for one process: take vdb_madf");
+  const Clock::time_point start = Clock::now();
+  JsonFile jsonFile(o.json);
+  SegmentEstimate estimate;
+  estimate.limit = memoryFor(o);
+  common.progress->start("read");
+  NoScratch nowhere;
+  SlabBuilder builder(limitsOf(o, estimate.limit), nowhere);
+  const MaskGrid::Ptr about = streamObject(
+      o.input,
+      [&](const MaskTree& layer) {
+        estimate.voxels += int64_t(layer.activeVoxelCount());
+        estimate.leaves += int64_t(layer.leafCount());
+        builder.add(layer);
+      },
+      {}, common.progress);
+  builder.finish(storedDomain(*about));
+  boundaryOf(o.boundary, o.input, *about);
+  estimate.memory = kSlabOtherBytes + builder.largestSlabBytes();
+  estimate.slabs = int64_t(builder.slabCount());
+  estimate.secondsRead = secondsSince(start);
+  common.progress->end();
+  say(o, common, estimate, jsonFile);
+}
+
 void runInSlabs(const SegmentArguments& o, const Common& common) {
   Team alone;
   Team& team = common.team ? *common.team : alone;
+  bool finished = false;
+  inAllMembers(team, [&] { finished = o.resume && isFinished(o); });
+  if (finished) {
+    common.progress->note(o.out + ": is finished, there is nothing to go on with");
+    return;
+  }
   std::optional<JsonFile> jsonFile;
   if (team.member() == 0) jsonFile.emplace(o.json);
   WorkPlace place(o, common, team);

@@ -20,6 +20,10 @@ std::string withoutSlash(std::string path);
 /// Checks the options of an output in slabs. @throw WrongUsage for what slabs do not know
 void checkSlabArguments(const SegmentArguments& o);
 
+/// Says, for --dry-run, how many slabs there would be, and what memory and scratch they would take.
+/// Reads the object.
+void estimateSlabs(const SegmentArguments& o, const Common& common);
+
 /// Works in OUT.slabs.part, and in scratch. Both stay for --resume, by any number of members, if
 /// the work is cut off after the object was read; at the end OUT.slabs appears whole.
 /// Where there are common.team, these share the work: see WorkPlace.

@@ -6,6 +6,8 @@
 #include <fmt/core.h>
 
 #include <filesystem>
+#include <fstream>
+#include <utility>
 #include <vector>
 
 #include "member_failure.h"
@@ -21,25 +23,68 @@ namespace {
 
 namespace fs = std::filesystem;
 
+using NamedText = std::pair<const char*, std::string>;
+
+/// What was typed of how IN is read, of which the summary of a segmentation says nothing else.
+std::vector<NamedText> readingOptions(const InputOptions& in) {
+  return {{"dataset", in.dataset},
+          {"dims", in.dims},
+          {"type", in.type},
+          {"skip", in.skip},
+          {"big_endian", in.bigEndian ? "yes" : ""},
+          {"median", in.median},
+          {"smooth", in.smooth},
+          {"despeckle", in.despeckle},
+          {"voxel_size", in.voxelSizeText},
+          {"domain", in.domainText},
+          {"roi", in.roi},
+          {"crop", in.cropText}};
+}
+
+/// What was typed that the summary says, too.
+std::vector<NamedText> choiceOptions(const SegmentArguments& o) {
+  const InputOptions& in = o.input;
+  return {{"grid", in.gridName},
+          {"phase", in.phase},
+          {"threshold", in.threshold},
+          {"range", in.range},
+          {"keep", o.keep}};
+}
+
 /// What the slabs in scratch depend on.
 std::string workOf(const SegmentArguments& o) {
-  const InputOptions& in = o.input;
+  const std::string& in = o.input.path;
   std::error_code ignored;
   std::string work =
       fmt::format("{}\n{}\n{} {} {}", kVersion, fs::absolute(o.out, ignored).string(),
-                  fs::absolute(in.path, ignored).string(), fs::file_size(in.path, ignored),
-                  fs::last_write_time(in.path, ignored).time_since_epoch().count());
-  for (const std::string& text :
-       {in.gridName,      in.dataset,    in.dims,       in.type,
-        in.skip,          in.phase,      in.threshold,  in.range,
-        in.median,        in.smooth,     in.despeckle,  in.voxelSizeText,
-        in.domainText,    in.roi,        in.cropText,   o.boundary,
-        o.gamma,          o.fillHoles,   o.tidy,        o.merge.strictness,
-        o.merge.mode,     o.merge.theta, o.merge.delta, o.merge.adjacency,
-        o.merge.minGrain, o.keep,        o.maxMemory,   std::to_string(o.slabHeight)})
+                  fs::absolute(in, ignored).string(), fs::file_size(in, ignored),
+                  fs::last_write_time(in, ignored).time_since_epoch().count());
+  for (const auto& option : readingOptions(o.input)) work += "\n" + option.second;
+  for (const auto& option : choiceOptions(o)) work += "\n" + option.second;
+  for (const std::string& text : {o.boundary, o.gamma, o.fillHoles, o.tidy, o.merge.strictness,
+                                  o.merge.mode, o.merge.theta, o.merge.delta, o.merge.adjacency,
+                                  o.merge.minGrain, o.maxMemory, std::to_string(o.slabHeight)})
     work += "\n" + text;
-  for (const bool flag : {in.bigEndian, in.invert, o.paper}) work += flag ? "\nyes" : "\nno";
+  for (const bool flag : {o.input.invert, o.paper}) work += flag ? "\nyes" : "\nno";
   return work;
+}
+
+/// True if an index says of the labels what they would be of these arguments.
+bool isOf(const Json& index, const SegmentArguments& o) {
+  Json wanted = originOf(o);
+  wanted["version"] = kVersion;
+  wanted["gamma"] = o.segment.gamma;
+  wanted["tidy"] = o.segment.tidy;
+  addMerging(wanted, o.segment.merge);
+  if (o.boundary != "auto") wanted["boundary"] = o.boundary;
+  if (o.segment.fillHoles) wanted["fill_holes"] = *o.segment.fillHoles;
+  for (const auto& [key, value] : wanted.items())
+    if (!index.contains(key) || index.at(key) != value) return false;
+  for (const auto& [key, text] : choiceOptions(o))
+    if (index.value(key, "") != text) return false;
+  return index.value("invert", false) == o.input.invert &&
+         index.value("min_grain", int64_t(0)) == int64_t(o.segment.merge.minGrain) &&
+         index.contains("reading") == wanted.contains("reading");
 }
 
 /// Is a path that of a folder, or of something in it?
@@ -58,6 +103,33 @@ std::string scratchOf(const SegmentArguments& o) {
 constexpr char kWhole[] = "done";  // the piece that says that OUT.slabs.part is whole
 
 }  // namespace
+
+Json originOf(const SegmentArguments& o) {
+  std::error_code error;
+  const auto bytes = fs::file_size(o.input.path, error);
+  Json origin{{"input", fs::path(o.input.path).filename().string()},
+              {"input_bytes", error ? 0 : bytes}};
+  for (const auto& [name, text] : readingOptions(o.input))
+    if (!text.empty()) origin["reading"][name] = text;
+  return origin;
+}
+
+bool isFinished(const SegmentArguments& o) {
+  std::error_code ignored;
+  if (!hasSlabIndex(o.out) || fs::exists(o.out + ".part", ignored) ||
+      fs::exists(scratchOf(o), ignored))
+    return false;
+  openSlabFolder(o.out);
+  const std::string path = (fs::path(o.out) / kSlabIndex).string();
+  std::ifstream file(path);
+  const Json index = Json::parse(file, nullptr, false);
+  if (!isOf(index, o) ||
+      fs::last_write_time(o.input.path, ignored) > fs::last_write_time(path, ignored))
+    throw InvalidInput(o.out +
+                       ": is finished, and was made of another input or with other options: leave "
+                       "--resume out to make it anew");
+  return true;
+}
 
 WorkPlace::WorkPlace(const SegmentArguments& o, const Common& common, Team& team)
     : team_(team), progress_(common.progress), out_(o.out), part_(o.out + ".part") {

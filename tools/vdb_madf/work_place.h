@@ -11,6 +11,14 @@
 
 namespace vdb_madf::tools {
 
+/// What labels in slabs come from, for the index of their folder: name and bytes of IN, and how it
+/// was read.
+Json originOf(const SegmentArguments& o);
+
+/// Was OUT.slabs made, of the same IN and with the same options, by a run that ended?
+/// @throw InvalidInput if there is one of other ones; IoError if it is damaged
+bool isFinished(const SegmentArguments& o);
+
 /// Where `segment IN OUT.slabs` works: OUT.slabs.part has the labels that are done, scratch all the
 /// rest. Of several members each makes one, together; they share the folders, which member 0 makes
 /// and removes. Without --scratch, --resume and --max-memory the scratch of several members is in

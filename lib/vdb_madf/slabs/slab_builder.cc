@@ -62,6 +62,7 @@ void SlabBuilder::endSlab(int z) {
   std::sort(leaves_.begin(), leaves_.end(), ByOrigin());
   detail::writeLeaves(scratch_, detail::kObject.of(cuts_.size() - 1), leaves_);
   leaves_.clear();
+  largestSlabBytes_ = std::max(largestSlabBytes_, bytes_);
   bytes_ = 0;
   cuts_.push_back(z);
 }

@@ -44,6 +44,9 @@ class SlabBuilder {
   /// Comes after the last layer. The slabs cover the domain, if there is one, and the object.
   void finish(const std::optional<Domain>& domain);
 
+  size_t slabCount() const { return cuts_.size() - 1; }           ///< once it is finished
+  int64_t largestSlabBytes() const { return largestSlabBytes_; }  ///< slabBytes() of any slab
+
  private:
   void endSlab(int z);
 
@@ -52,6 +55,7 @@ class SlabBuilder {
   std::vector<int> cuts_;
   std::vector<LeafIndex::LeafVoxels> leaves_;  // of the slab that is not ended
   int64_t bytes_ = 0;                          // of the same
+  int64_t largestSlabBytes_ = 0;
   std::optional<int> lastLayer_;
 };
 
