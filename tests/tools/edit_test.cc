@@ -150,6 +150,8 @@ TEST_CASE("cli: edits that cannot be done are told in a line", "[cli]") {
   says("--edits none.txt", {"none.txt: line 1"});
   says("--edits twice.txt", {"drop 1: there is no grain 1 any more, after 'drop 1'"});
   says("--edits missing.txt", {"missing.txt"});
+  says("--edits /proc/self/mem", {"/proc/self/mem: cannot be read"});
+  says("--edits /proc/self/status", {"/proc/self/status: line 1: 'Name:' is no edit"});
   // Nothing left is no error, but worth knowing.
   const Outcome empty = bench.run("edit g.vdb o.vdb --min-voxels 1000000");
   CHECK(empty.exitCode == 0);

@@ -13,7 +13,18 @@ std::string readText(const std::string& path, uint64_t mostBytes) {
   if (file.size() > mostBytes)
     throw IoError(file.name() + ": has " + std::to_string(file.size()) +
                   " bytes, and a text of at most " + std::to_string(mostBytes) + " is expected");
-  return file.head(size_t(file.size()));
+  // Some files, such as those of /proc, do not say how large they are.
+  constexpr size_t kPart = size_t(1) << 16;
+  std::string text;
+  for (size_t got = kPart; got == kPart;) {
+    if (text.size() > mostBytes)
+      throw IoError(file.name() + ": has more than the " + std::to_string(mostBytes) +
+                    " bytes of a text that is expected");
+    text.resize(text.size() + kPart);
+    got = file.readSome(text.size() - kPart, &text[text.size() - kPart], kPart);
+    text.resize(text.size() - kPart + got);
+  }
+  return text;
 }
 
 }  // namespace vdb_madf
