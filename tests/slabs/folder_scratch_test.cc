@@ -9,6 +9,7 @@
 
 #include "support/catch.h"
 #include "support/files.h"
+#include "support/full_disk.h"
 #include "vdb_madf/base/errors.h"
 
 namespace {
@@ -78,6 +79,22 @@ TEST_CASE("folder scratch: goes on with the same work alone", "[scratch]") {
   again.removeAll();
   CHECK_FALSE(std::filesystem::exists(folder / "two"));
   CHECK_THROWS_AS(FolderScratch((folder / "none") + "/scratch", "work", false), IoError);
+}
+
+TEST_CASE("folder scratch: leaves nothing where it cannot begin", "[scratch]") {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder / "there");
+  {
+    const FullDisk full(16);
+    for (const std::string& path : {folder / "new", folder / "there"})
+      CHECK_THROWS_AS(FolderScratch(path, "work", false), IoError);
+  }
+  CHECK_FALSE(std::filesystem::exists(folder / "new"));
+  CHECK(std::filesystem::is_empty(folder / "there"));
+  // What another run left stays.
+  { FolderScratch(folder / "there", "work", false).write("a", someBytes(100)); }
+  CHECK_THROWS_AS(FolderScratch(folder / "there", "work", false), IoError);
+  CHECK(FolderScratch(folder / "there", "work", true).read("a") == someBytes(100));
 }
 
 TEST_CASE("folder scratch: damage is noticed wherever it is", "[scratch]") {

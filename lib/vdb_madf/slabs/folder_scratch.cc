@@ -116,7 +116,7 @@ FolderScratch::FolderScratch(const std::string& path) : path_(pathOf(path)), isS
 FolderScratch::FolderScratch(const std::string& path, const std::string& work, bool resume)
     : path_(pathOf(path)) {
   std::error_code error;
-  fs::create_directory(path_, error);
+  const bool isNew = fs::create_directory(path_, error);
   if (error)
     throw IoError("cannot make " + path_ + ": " + error.message() +
                   "; give the path of a folder, in one that is there");
@@ -126,7 +126,14 @@ FolderScratch::FolderScratch(const std::string& path, const std::string& work, b
   if (!isEmpty && !has(kWork))
     throw IoError(path_ + ": is no folder of scratch data: choose another one");
   lock_ = std::make_unique<detail::FolderLock>(path_);
-  take(work, resume, isEmpty);
+  try {
+    take(work, resume, isEmpty);
+  } catch (...) {
+    std::error_code ignored;
+    if (isEmpty) fs::remove(file(kLock), ignored);
+    if (isNew) fs::remove(path_, ignored);
+    throw;
+  }
 }
 
 FolderScratch::~FolderScratch() = default;
