@@ -96,7 +96,9 @@ void syncFolderOf(const std::string& target) {
   if (folder < 0) return;
   const int error = ::fsync(folder) == 0 ? 0 : errno;
   ::close(folder);
-  if (error == EIO) failToWrite(target, std::strerror(error), "check the disk");
+  if (error == EIO)
+    throw IoError(target + ": is written, but may be lost if the machine stops: its folder: " +
+                  std::strerror(error) + "; check the disk");
 }
 
 }  // namespace vdb_madf::detail
