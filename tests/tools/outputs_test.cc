@@ -190,7 +190,36 @@ TEST_CASE("cli: a full disk leaves nothing, and what was there before", "[cli]")
   refuses(bench, kFailed, "generate snow p.vdb --size 64 --length 12", {"p.vdb"}, full);
   full.largestFile = 100;
   refuses(bench, kFailed, "render g.vdb p.png", {"p.png"}, full);
-  refuses(bench, kFailed, "info g.vdb --json j.json", {"j.json"}, full);
+  refuses(bench, kFailed, "info g.vdb --json j.json",
+          {"cannot write j.json: File too large; write it elsewhere"}, full);
+}
+
+TEST_CASE("cli: outputs that are in each other's way are refused before the work", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate pack s.slabs --dims 24x24x48 --radius 4:6 -q");
+  bench.mustRun("convert s.slabs s.vdb");
+  for (const std::string tables : {"o.vdb", "o.vdb/", "./o.vdb"}) {
+    std::filesystem::remove(bench.path("o.vdb"));
+    refuses(bench, kWrongUsage, "segment s.vdb o.vdb --tables " + tables,
+            {"o.vdb: two outputs would go to this place"});
+    bench.write("o.vdb", "before");
+    refuses(bench, kWrongUsage, "segment s.vdb o.vdb --tables " + tables, {"o.vdb: two outputs"});
+    CHECK(bench.bytes("o.vdb") == "before");
+  }
+  refuses(bench, kWrongUsage, "segment s.vdb p.vdb --tables j --json j", {"j: two outputs"});
+  const std::string slab = bench.bytes("s.slabs/slab-0000.vdb");
+  for (const std::string output : {"s.slabs/slab-0000.vdb", "s.slabs/new.tif", "./s.slabs/o.npy"})
+    refuses(bench, kWrongUsage, "convert s.slabs " + output, {"among the slabs of the input"});
+  CHECK(bench.bytes("s.slabs/slab-0000.vdb") == slab);
+}
+
+TEST_CASE("cli: a plot on standard output is nothing but the plot", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate snow s.vdb --size 24 --length 8");
+  const std::string sweep = "sweep s.vdb s.csv --strictness 9:11:1 --plot ";
+  const std::string plot = bench.mustRun(sweep + "-");
+  bench.mustRun(sweep + "s.svg");
+  CHECK(plot == bench.bytes("s.svg"));
 }
 
 TEST_CASE("cli: a standard output that takes nothing is an error", "[cli]") {

@@ -11,6 +11,7 @@
 #include "vdb_madf/files/same_file.h"
 #include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/images/open_image.h"
+#include "vdb_madf/vdb/slab_folder.h"
 #include "wrong_usage.h"
 
 namespace vdb_madf::tools {
@@ -26,6 +27,17 @@ std::vector<std::string> filesOf(const std::vector<std::string>& outputs) {
   return files;
 }
 
+namespace {
+
+/// True if the file would be one of a folder of slabs.
+bool isOfSlabs(const std::string& file, const std::string& folder) {
+  std::error_code ignored;
+  const auto place = std::filesystem::absolute(file, ignored).parent_path();
+  return isSlabFolder(folder) && isSameFile(place.string(), folder);
+}
+
+}  // namespace
+
 bool isOnStandardOutput(const std::string& output) {
   return output == "-" || output == "/dev/stdout" || isStandardOutput(output);
 }
@@ -40,6 +52,10 @@ void checkOutputs(const std::vector<std::string>& outputs, const std::string& in
   for (size_t i = 0; i < files.size(); ++i) {
     if (isSameFile(input, files[i]))
       throw WrongUsage(files[i] + ": the output would overwrite the input; choose another name");
+    if (isOfSlabs(files[i], input))
+      throw WrongUsage(files[i] +
+                       ": the output would lie among the slabs of the input; choose "
+                       "another folder");
     for (size_t j = 0; j < i; ++j)
       if (isSameFile(files[j], files[i]))
         throw WrongUsage(files[i] + ": two outputs would go to this file; choose another name");

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -40,12 +41,22 @@ namespace vdb_madf::tools {
 
 namespace {
 
+/// The path of a file or a folder, whether or not it is there.
+std::filesystem::path placeOf(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored) / "";
+}
+
 void parseFiles(SegmentArguments& o) {
   o.out = withoutSlash(o.out);
   o.input.outputs = {o.out, o.json};
-  if (!o.tables.empty())
+  if (!o.tables.empty()) {
     for (const std::string& path : MeasurementTables::paths(o.tables))
       o.input.outputs.push_back(path);
+    for (const std::string* file : {&o.out, &o.json})
+      if (!file->empty() && placeOf(*file) == placeOf(o.tables))
+        throw WrongUsage(*file + ": two outputs would go to this place; choose another name");
+  }
   o.input.longestSide = hasSlabsEnding(o.out) || o.autoSlabs ? kMaxImageSide : kMaxExtent;
   o.input.parse();
   if (!o.maxMemory.empty()) o.segment.maxMemory = parseMemory(o.maxMemory);

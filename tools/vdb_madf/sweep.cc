@@ -298,7 +298,7 @@ void addSweep(Verb command, Common& common, Action& action) {
       .typeName("DIR");
   verb.onParsed([o, &common, &action] {
     parse(*o);
-    action = [o, &common] { runSweep(*o, besideOutput(common, o->out)); };
+    action = [o, &common] { runSweep(*o, besideOutput(besideOutput(common, o->out), o->plot)); };
   });
 }
 

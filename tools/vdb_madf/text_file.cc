@@ -3,6 +3,8 @@
 
 #include "text_file.h"
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -29,9 +31,10 @@ void TextFile::write(const std::string& text) {
     return;
   }
   std::ofstream stream(file_ ? file_->temporaryPath() : path_, std::ios::binary);
-  stream << text;
+  stream << text << std::flush;
+  if (!stream)
+    throw IoError("cannot write " + path_ + ": " + std::strerror(errno) + "; write it elsewhere");
   stream.close();
-  if (!stream) throw IoError(path_ + ": cannot be written: is the disk full?");
   if (file_) file_->commit();
 }
 
