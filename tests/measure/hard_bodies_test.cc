@@ -223,7 +223,7 @@ TEST_CASE("hard_bodies: mean curvature of balls and cylinders", "[hard_bodies]")
 namespace {
 
 /// The waist of a neck with a round fillet: a ring of the inside of a torus.
-struct Neck {
+struct RoundedNeck {
   double waist, fillet, half;  ///< radii; half the height of the ring
   Vec3d center, axis;
 
@@ -262,7 +262,7 @@ TEST_CASE("hard_bodies: curvatures of necks", "[hard_bodies]") {
        {std::pair<double, double>(6, 12), {8, 8}, {8, 16}, {12, 8}, {12, 20}}) {
     CAPTURE(waist, fillet);
     const Vec3d center = randomPoint(rng), axis = randomDirection(rng);
-    const Neck neck{waist, fillet, 5, center, axis};
+    const RoundedNeck neck{waist, fillet, 5, center, axis};
     const auto labels = drawLabels(cubeAround(waist + 8), neck);
     const InterfaceCurvature found = measure(*labels).bonds.at(0).curvature.value();
     const auto [mean, gaussian] = neck.meanAndGaussian();

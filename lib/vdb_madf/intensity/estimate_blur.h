@@ -27,8 +27,8 @@ namespace vdb_madf {
 /// @throw IoError; Interrupted.
 std::optional<ScanBlur> estimateBlur(ImageReader& image, Interrupter* interrupter = nullptr);
 
-/// What estimateBlur() says, where a blur is needed. @throw InvalidInput, one line that names the image, if none is
-/// found
+/// What estimateBlur() says, where a blur is needed.
+/// @throw InvalidInput, one line that names the image, if none is found; as above
 ScanBlur blurOf(ImageReader& image, Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf
