@@ -388,14 +388,16 @@ TEST_CASE("cli: segment --dry-run says what it would take, and does nothing", "[
   const std::string inSlabs = "segment p.vdb o.slabs --slab-height 40 ";
   const Json slabs = Json::parse(bench.mustRun(inSlabs + "--dry-run --json -"));
   CHECK_THAT(bench.mustRun(inSlabs + "--dry-run"), Contains("slabs            4") &&
-                                                       Contains("scratch          about ") &&
+                                                       Contains("scratch          up to some ") &&
                                                        Contains("it fits"));
   CHECK(bench.run(inSlabs + "--dry-run --resume").exitCode == 2);
   const Json made = Json::parse(bench.mustRun(inSlabs + "--json -"));
   for (const char* same : {"object_voxels", "leaves", "slab_count"})
     CHECK(slabs.at(same) == made.at(same));
   CHECK(slabs.at("slab_count") == 4);
-  CHECK(slabs.at("estimated_scratch_bytes") == 2 * slabs.at("object_voxels").get<int64_t>());
+  CHECK(slabs.at("estimated_scratch_bytes") == 5 * slabs.at("object_voxels").get<int64_t>());
+  const Json filtered = Json::parse(bench.mustRun(inSlabs + "--gamma 9 --dry-run --json -"));
+  CHECK(filtered.at("estimated_scratch_bytes") > slabs.at("estimated_scratch_bytes"));
   const double slabMemory = slabs.at("estimated_memory_bytes");
   CHECK(slabMemory > made.at("peak_memory_bytes"));
   CHECK(slabMemory < 4 * made.at("peak_memory_bytes").get<double>());

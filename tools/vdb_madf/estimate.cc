@@ -20,7 +20,7 @@ void say(const SegmentArguments& o, const Common& common, const SegmentEstimate&
   json["memory_limit_bytes"] = estimate.limit;
   if (estimate.slabs > 0) {
     json["slab_count"] = estimate.slabs;
-    json["estimated_scratch_bytes"] = estimate.scratch();
+    json["estimated_scratch_bytes"] = estimate.scratch;
   }
   json["seconds_read"] = estimate.secondsRead;
   json["fits"] = fits;
@@ -31,8 +31,8 @@ void say(const SegmentArguments& o, const Common& common, const SegmentEstimate&
               (long long)estimate.voxels, (long long)estimate.leaves);
   if (estimate.slabs > 0) {
     std::printf("  slabs            %lld\n", (long long)estimate.slabs);
-    std::printf("  scratch          about %s (%lld bytes) on the disk\n",
-                readableBytes(estimate.scratch()).c_str(), (long long)estimate.scratch());
+    std::printf("  scratch          up to some %s (%lld bytes) on the disk\n",
+                readableBytes(estimate.scratch).c_str(), (long long)estimate.scratch);
   }
   std::printf("  memory           about %s (%lld bytes) to segment it\n",
               readableBytes(estimate.memory).c_str(), (long long)estimate.memory);

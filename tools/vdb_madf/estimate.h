@@ -16,9 +16,7 @@ struct SegmentEstimate {
   int64_t limit = 0;   ///< bytes that it may take; 0: not known
   int64_t slabs = 0;   ///< 0: as a whole
   double secondsRead = 0;
-
-  /// Slabs take some 2 bytes for each object voxel, beside their labels at the end.
-  int64_t scratch() const { return 2 * voxels; }
+  int64_t scratch = 0;  ///< bytes on the disk that slabs take beside their labels, at most
 };
 
 /// Says it as `segment --dry-run` does, and as JSON.

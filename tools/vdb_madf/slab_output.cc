@@ -47,6 +47,9 @@ SlabLimits limitsOf(const SegmentArguments& o, int64_t memory) {
   return limits;
 }
 
+/// Bytes of scratch for each object voxel, of fine snow; coarse grains take a seventh.
+constexpr int64_t kScratch = 5, kFilteredScratch = 13;
+
 int64_t memoryFor(const SegmentArguments& o) {
   return o.maxMemory.empty() ? availableMemory() : o.segment.maxMemory;
 }
@@ -217,6 +220,7 @@ void estimateSlabs(const SegmentArguments& o, const Common& common) {
   boundaryOf(o.boundary, o.input, *about);
   estimate.memory = kSlabOtherBytes + builder.largestSlabBytes();
   estimate.slabs = int64_t(builder.slabCount());
+  estimate.scratch = estimate.voxels * (o.segment.gamma > 0 ? kFilteredScratch : kScratch);
   estimate.secondsRead = secondsSince(start);
   common.progress->end();
   say(o, common, estimate, jsonFile);
