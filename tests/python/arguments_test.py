@@ -59,6 +59,17 @@ def test_what_is_said(arguments, text):
     assert str(refused.value) == text
 
 
+@pytest.mark.parametrize("arguments, text", [
+    (dict(radius="wide"), "radius='wide': give a number"),
+    (dict(center=5), "center=5: give two numbers"),
+    (dict(axis=2), "axis=2: give a text"),
+])
+def test_what_is_said_of_a_cylinder(arguments, text):
+    with pytest.raises(TypeError) as refused:
+        madf.Cylinder(**arguments)
+    assert str(refused.value) == text
+
+
 def test_numbers_of_numpy_are_numbers(array, expected):
     labels = madf.segment(array, phase=np.array([1]), gamma=np.int64(0), theta=None,
                           strictness=np.float32(11), keep=()).labels

@@ -28,7 +28,7 @@ _EXAMPLES = {
     "voxel_size": ", with its unit, such as '8.5um'", "max_memory": ", such as '12GiB'",
     "threshold": ", such as 128, 'otsu' or (100, 120)", "range": ", such as (100, 180)",
     "crop": ", such as numpy.s_[10:90, :, 5:50]", "domain": ", such as numpy.s_[0:90, 0:90, 0:50]",
-    "roi": ", such as 'cylinder'", "radius": ", such as (8, 13)", "aspect": ", such as (4, 8)"}
+    "roi": ", such as 'cylinder'", "aspect": ", such as (4, 8)"}
 
 
 def checked(function: _Function) -> _Function:
@@ -41,31 +41,36 @@ def checked(function: _Function) -> _Function:
             given = signature.bind(*args, **kwargs).arguments
         except TypeError:
             given = {}  # the call itself says it better
-        hints = _hints(function)
-        for name, value in given.items():
-            if name in hints and not _fits(value, hints[name]):
-                raise TypeError(f"{name}={shown(value)}: give {_wanted(hints[name])}"
-                                f"{_EXAMPLES.get(name, '')}")
+        refuse_wrong_types(function, given)
         try:
             return function(*args, **kwargs)
         except TypeError as error:
-            if "incompatible function arguments" not in str(error):
+            far = _beyond_the_library(given)
+            if "incompatible function arguments" not in str(error) or not far:
                 raise
-            raise _core.InvalidInput(_out_of_range(given)) from None
+            raise _core.InvalidInput(f"{far}: is out of range") from None
 
     return typing.cast(_Function, call)
 
 
+def refuse_wrong_types(of: Any, given: Dict[str, Any]) -> None:
+    """Of arguments of a function, or fields of a class."""
+    hints = _hints(of)
+    for name, value in given.items():
+        if name in hints and not _fits(value, hints[name]):
+            raise TypeError(f"{name}={shown(value)}: give {_wanted(hints[name])}"
+                            f"{_EXAMPLES.get(name, '')}")
+
+
 @functools.lru_cache(maxsize=None)
-def _hints(function: Callable[..., Any]) -> Dict[str, Any]:
-    return typing.get_type_hints(function)
+def _hints(of: Any) -> Dict[str, Any]:
+    return typing.get_type_hints(of)
 
 
-def _out_of_range(given: Dict[str, Any]) -> str:
-    """Of the right type, numbers can still be beyond those of the library."""
-    far = [f"{name}={value}" for name, value in given.items()
-           if isinstance(value, int) and not 0 <= value < 2**31]
-    return f"{', '.join(far) or 'an argument'}: is out of range"
+def _beyond_the_library(given: Dict[str, Any]) -> str:
+    """Numbers that are whole, but perhaps larger or smaller than the library takes."""
+    return ", ".join(f"{name}={value}" for name, value in given.items()
+                     if isinstance(value, int) and not 0 <= value < 2**31)
 
 
 def _fits(value: Any, hint: Any) -> bool:

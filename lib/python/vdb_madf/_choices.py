@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Collection, Optional, Sequence, Tuple, Union
 
 from . import _core
+from ._arguments import refuse_wrong_types
 from ._arrays import readable
 
 #: numpy.s_[10:90, :, 5:50]: along z, y and x.
@@ -28,6 +29,9 @@ class Cylinder:
     axis: str = "z"
     center: Optional[Tuple[float, float]] = None
     radius: Optional[float] = None
+
+    def __post_init__(self) -> None:
+        refuse_wrong_types(Cylinder, vars(self))
 
 
 def _bounds(box: Box, name: str, open_ended: bool) -> Tuple[_core.Index, _core.Index]:
