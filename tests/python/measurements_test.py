@@ -323,7 +323,7 @@ def test_files_that_cannot_be_written(name, arguments, text, labels, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_necks_in_a_gray_scan(tmp_path):
+def test_necks_in_a_gray_scan(command, tmp_path):
     z, y, x = np.indices((40, 40, 64), np.float64)
     sharp = np.max([np.clip(10.5 - np.sqrt((z - 19.6) ** 2 + (y - 20.2) ** 2 + (x - c) ** 2), 0, 1)
                     for c in (22.4, 40.4)], axis=0)  # 18 apart: a neck of radius 4.36

@@ -187,3 +187,23 @@ TEST_CASE("gray: info of a folder says how many slices there are, and which", "[
   CHECK(info.at("last_file") == "s11.tif");
   CHECK(infoOf(bench, "a.tif").count("files") == 0);
 }
+
+TEST_CASE("gray: necks are measured in the scan that is segmented", "[gray]") {
+  const Bench bench;
+  makeScan(bench);
+  const std::string segment = "segment s.tif o.vdb --threshold otsu --tables t";
+  CHECK_THAT(bench.mustRun(segment), Contains("hint") && Contains("--necks frees them of it"));
+  CHECK_FALSE(Json::parse(bench.bytes("t/sample.json")).contains("scan_blur_voxel"));
+  CHECK_THAT(bench.mustRun("measure o.vdb m"), Contains("thresholded scan") && Contains("--gray"));
+  CHECK_THAT(bench.mustRun(segment + " --necks"), !Contains("--necks frees"));
+  const std::string bonds = bench.bytes("t/bonds.csv");
+  const Json sample = Json::parse(bench.bytes("t/sample.json"));
+  CHECK(sample.at("scan_blur_voxel").get<double>() == Approx(0.6).margin(0.15));
+  CHECK_THAT(bench.mustRun("measure o.vdb m --gray s.tif"),
+             Contains("blur 0.") && Contains("necks in the scan"));
+  CHECK((bench.bytes("m/bonds.csv") == bonds));
+  bench.mustRun(segment + " --necks --crop 4,0,0:59,63,60");
+  CHECK(Json::parse(bench.bytes("t/sample.json")).at("necks_confirmed").get<int>() > 0);
+  CHECK(bench.run("segment clean.vdb o.vdb --tables t --necks").exitCode == 2);
+  CHECK(bench.run("segment s.tif o.vdb --threshold otsu --necks").exitCode == 2);
+}

@@ -16,6 +16,7 @@
 #include "scan_option.h"
 #include "text_file.h"
 #include "vdb_madf/exports/measurement_files.h"
+#include "vdb_madf/grids/object_keys.h"
 #include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/intensity/measure_gray.h"
 #include "vdb_madf/intensity/measure_necks.h"
@@ -129,7 +130,11 @@ void print(const MeasureArguments& o, const Measurements& m) {
   if (m.sample.bondsWithoutCurvature > 0)
     std::printf("  too small to curve  %s (under 10 faces, or all in a row)\n",
                 counted(m.sample.bondsWithoutCurvature, "bond").c_str());
-  if (m.scan) printNecks(m, length, unit);
+  if (m.scan)
+    printNecks(m, length, unit);
+  else if (m.metadata[kThresholdKey])
+    std::printf(
+        "  areas of bonds      of a thresholded scan, too large by its blur (--gray SCAN)\n");
   printIntervals(m, length, unit);
 }
 

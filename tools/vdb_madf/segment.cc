@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "vdb_madf/segmentation/segment.h"
+#include "vdb_madf/intensity/estimate_blur.h"
+#include "vdb_madf/intensity/measure_necks.h"
 
 #include <fmt/core.h>
 
@@ -60,6 +62,8 @@ void parseFiles(SegmentArguments& o) {
   o.input.longestSide = hasSlabsEnding(o.out) || o.autoSlabs ? kMaxImageSide : kMaxExtent;
   o.input.parse();
   if (!o.maxMemory.empty()) o.segment.maxMemory = parseMemory(o.maxMemory);
+  if (o.necks && (o.tables.empty() || !readsGray(o.input.gray)))
+    throw WrongUsage("--necks measures those of a gray scan: give --tables and --threshold, too");
   if (o.out.empty() && !o.dryRun) throw WrongUsage("OUT is required (or --dry-run)");
   if (o.out.empty() || hasSlabsEnding(o.out)) return;
   checkVolumeEnding(o.out);
@@ -68,6 +72,18 @@ void parseFiles(SegmentArguments& o) {
         "--keep is for .vdb files, and {} takes the labels alone: leave it out, or write a .vdb "
         "and convert it",
         o.out));
+}
+
+/// The tables, with the necks as the gray scan IN shows them if that was asked for.
+Measurements measureGrains(const SegmentArguments& o, const Segmentation& s, Progress* progress) {
+  Measurements measurements = measure(s, progress);
+  if (!o.necks) return measurements;
+  progress->start("necks");
+  const auto open = [&] { return openGrayScan(o.input.path, o.input.volume(progress), progress); };
+  const ScanBlur blur = blurOf(*open().image, progress);
+  GrayScan scan = open();
+  measureNecks(*s.grain, scan, blur, measurements, progress);
+  return measurements;
 }
 
 void applyPaper(SegmentArguments& o) {
@@ -173,7 +189,7 @@ void runSegment(const SegmentArguments& o, const Common& common) {
     const Clock::time_point startMeasure = Clock::now();
     TableOptions about;
     about.labels = o.out;
-    tables->write(measure(s, common.progress), about);
+    tables->write(measureGrains(o, s, common.progress), about);
     timing.measure = secondsSince(startMeasure);
   }
 
@@ -229,6 +245,8 @@ void addSegment(Verb command, Common& common, Action& action) {
   verb.option("--tables", o->tables,
               "also measure: grains.csv, bonds.csv, sample.json in here (a folder, or FILE.h5)")
       .typeName("DIR");
+  verb.flag("--necks", o->necks,
+            "with --tables: the necks as the gray scan shows them, freed of its blur, too");
   verb.option("--json", o->json, "machine-readable summary (-: standard output)").typeName("FILE");
   verb.option("--max-memory", o->maxMemory,
               "refuse what needs more, such as 12GiB (default: what the machine has free)")

@@ -20,7 +20,8 @@ namespace vdb_madf::tools {
 namespace {
 
 /// What to turn if the grains are hardly true ones.
-std::vector<std::string> hints(const SegmentOptions& options, const SegmentSummary& summary) {
+std::vector<std::string> hints(const SegmentArguments& arguments, const SegmentSummary& summary) {
+  const SegmentOptions& options = arguments.segment;
   const int64_t grains = summary.counts.grains;
   const LabelFlaws& flaws = *summary.flaws;
   std::vector<std::string> all;
@@ -47,6 +48,10 @@ std::vector<std::string> hints(const SegmentOptions& options, const SegmentSumma
       summary.fillHoles < 100)
     all.push_back(std::to_string(summary.counts.cavities) +
                   " small cavities: a noisy scan may need --fill-holes 100");
+  if (!arguments.tables.empty() && readsGray(arguments.input.gray) && !arguments.necks)
+    all.push_back(
+        "areas of bonds are those of the thresholded scan, too large by its blur: "
+        "--necks frees them of it");
   return all;
 }
 
@@ -93,7 +98,7 @@ SegmentSummary summarize(const SegmentArguments& o, const Common& common, const 
   SegmentSummary summary = summaryOf(s, s.grainVoxels, *s.grain, common);
   summary.flaws = s.flaws;
   addTiming(o, timing, s.times, summary);
-  summary.hints = hints(o.segment, summary);
+  summary.hints = hints(o, summary);
   return summary;
 }
 

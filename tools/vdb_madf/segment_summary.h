@@ -26,6 +26,7 @@ struct SegmentArguments {
   std::string fillHoles, tidy;
   MergeArguments merge;
   bool paper = false, dryRun = false;
+  bool necks = false;  ///< with tables: of the gray scan
   int slabHeight = 0;  ///< 0: as memory allows
   std::string scratch;
   bool resume = false;
