@@ -11,6 +11,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
+#include "vdb_madf/intensity/detail/near_squares.h"
 #include "vdb_madf/scans/histogram.h"
 
 namespace vdb_madf {
@@ -112,27 +113,14 @@ enum Material : uint8_t { pore, solid, absent };
 
 /// Which voxels have another material within kFar voxels; 2: one that is absent.
 std::vector<uint8_t> nearOthers(const Middle& middle, const std::vector<uint8_t>& materials) {
-  constexpr uint8_t kFarAway = kFar * kFar + 1;
-  std::vector<uint8_t> near(middle.voxels(), 0);
+  std::vector<uint8_t> near(middle.voxels(), 0), isOfIt(middle.voxels());
   for (const uint8_t material : {pore, solid, absent}) {
-    std::vector<uint8_t> squares(middle.voxels());  // distances to this material, at most kFarAway
-    std::transform(materials.begin(), materials.end(), squares.begin(),
-                   [&](uint8_t m) { return m == material ? uint8_t(0) : kFarAway; });
-    for (int axis = 0; axis < 3; ++axis)
-      forEachLine(middle, axis, [&](size_t first, size_t step, size_t count) {
-        uint8_t line[kMiddleSide];
-        for (size_t i = 0; i < count; ++i) line[i] = squares[first + i * step];
-        for (size_t i = 0; i < count; ++i) {
-          int least = line[i];
-          for (int d = 1; d <= kFar; ++d) {
-            if (i >= size_t(d)) least = std::min(least, line[i - size_t(d)] + d * d);
-            if (i + size_t(d) < count) least = std::min(least, line[i + size_t(d)] + d * d);
-          }
-          squares[first + i * step] = uint8_t(std::min<int>(least, kFarAway));
-        }
-      });
+    std::transform(materials.begin(), materials.end(), isOfIt.begin(),
+                   [&](uint8_t m) { return uint8_t(m == material); });
+    const std::vector<int16_t> squares = detail::nearSquares(
+        {size_t(middle.nz), size_t(middle.ny), size_t(middle.nx)}, isOfIt, kFar);
     for (size_t i = 0; i < near.size(); ++i)
-      if (materials[i] != material && squares[i] < kFarAway)
+      if (materials[i] != material && squares[i] <= kFar * kFar)
         near[i] = material == absent ? 2 : std::max<uint8_t>(near[i], 1);
   }
   return near;

@@ -14,6 +14,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
+#include "vdb_madf/intensity/detail/near_squares.h"
 #include "vdb_madf/intensity/detail/scan_fit.h"
 #include "vdb_madf/intensity/detail/section_fit.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
@@ -125,21 +126,15 @@ class NeckMeter {
         gray_(gray),
         blur_(blur),
         fit_(blur.sigma),
-        rim_(kBlursOfRim * blur.sigma + kRim + 0.5) {
-    const int reach = int(rim_);
-    for (auto p = CoordBBox(Coord(-reach), Coord(reach)).begin(); p; ++p)
-      if (const double d2 = (*p).asVec3d().lengthSqr(); d2 <= rim_ * rim_)
-        around_.emplace_back(*p, int(d2));
-  }
+        rim_(kBlursOfRim * blur.sigma + kRim + 0.5) {}
 
   Neck measure(const BondMeasures& bond, const Section& section) const {
     const Block<int32_t> labels = labelsIn(labels_, section.box);
     const Block<float> gray = copyOf<float>(
         gray_, section.box,
         [](const FloatTree::LeafNodeType& leaf, openvdb::Index i) { return leaf.getValue(i); });
-    const std::vector<char> own = connected(bond, section, labels);
-    const std::vector<Rim> rims = rimsOf(labels, own);
-    const auto area = areaOf(section, labels, gray, own, rims);
+    const std::vector<Part> parts = partsOf(labels, connected(bond, section, labels));
+    const auto area = areaOf(section, gray, parts);
     Neck neck;
     neck.normal = section.normal;
     neck.area = std::max(0.0, area.value);
@@ -150,16 +145,10 @@ class NeckMeter {
   }
 
  private:
-  /// How near the other side of a surface is, and whether a pore voxel's nearest grain is `own`.
-  struct Rim {
-    int square = -1;  // none within the rim
-    bool own = false;
-  };
-
   /// The voxels of both grains that are connected to the bond within the sections.
-  static std::vector<char> connected(const BondMeasures& bond, const Section& section,
-                                     const Block<int32_t>& labels) {
-    std::vector<char> own(labels.values.size(), 0);
+  static std::vector<uint8_t> connected(const BondMeasures& bond, const Section& section,
+                                        const Block<int32_t>& labels) {
+    std::vector<uint8_t> own(labels.values.size(), 0);
     std::vector<Coord> open;
     const auto tryAt = [&](const Coord& p, double height, double radius) {
       const size_t i = labels.at(p);
@@ -171,7 +160,9 @@ class NeckMeter {
       open.push_back(p);
     };
     constexpr double kSeed = 1.5;
-    for (auto p = labels.box.begin(); p; ++p) tryAt(*p, kSeed, section.radius + kSeed);
+    CoordBBox seeds = around(section.center, Vec3d(section.radius + 2 * kSeed));
+    seeds.intersect(labels.box);
+    for (auto p = seeds.begin(); p; ++p) tryAt(*p, kSeed, section.radius + kSeed);
     while (!open.empty()) {
       const Coord p = open.back();
       open.pop_back();
@@ -184,44 +175,46 @@ class NeckMeter {
     return own;
   }
 
-  /// Of all voxels: pore voxels from the nearest of an object, and the other way round.
-  std::vector<Rim> rimsOf(const Block<int32_t>& labels, const std::vector<char>& own) const {
-    std::vector<Rim> rims(labels.values.size());
-    for (auto p = labels.box.begin(); p; ++p) {
-      const size_t i = labels.at(*p);
-      const bool isPore = labels.values[i] == 0;
-      if (!isAtSurface(labels, *p, isPore)) continue;
-      for (const auto& [step, square] : around_) {
-        const Coord q = *p + step;
-        if (!labels.box.isInside(q)) continue;
-        const size_t j = labels.at(q);
-        if ((labels.values[j] == 0) == isPore) continue;
-        Rim& rim = rims[j];
-        if (rim.square >= 0 && rim.square < square) continue;
-        rim.own = own[i] || (rim.square == square && rim.own);
-        rim.square = square;
-      }
+  /// How a voxel counts in a section.
+  enum Part : uint8_t {
+    none,
+    rim,    ///< of a surface of the two grains: by its gray value
+    whole,  ///< inside
+    empty   ///< pore, far from all grains
+  };
+
+  /// Rims are on both sides of the surface of what is `own`; where another grain is nearer, a pore
+  /// voxel is none.
+  std::vector<Part> partsOf(const Block<int32_t>& labels, const std::vector<uint8_t>& own) const {
+    const Coord dim = labels.box.dim();
+    const std::array<size_t, 3> sizes{size_t(dim.x()), size_t(dim.y()), size_t(dim.z())};
+    const int reach = int(rim_), square = int(rim_ * rim_);
+    std::vector<uint8_t> isPore(own.size()), isObject(own.size());
+    for (size_t i = 0; i < own.size(); ++i) {
+      isPore[i] = labels.values[i] == 0;
+      isObject[i] = !isPore[i];
     }
-    return rims;
-  }
-  static bool isAtSurface(const Block<int32_t>& labels, const Coord& p, bool isPore) {
-    for (int side = 0; side < 6; ++side) {
-      Coord q = p;
-      q[side / 2] += side % 2 ? 1 : -1;
-      if (labels.box.isInside(q) && (labels.values[labels.at(q)] == 0) != isPore) return true;
-    }
-    return false;
+    const auto toPore = detail::nearSquares(sizes, isPore, reach);
+    const auto toObject = detail::nearSquares(sizes, isObject, reach);
+    const auto toOwn = detail::nearSquares(sizes, own, reach);
+    std::vector<Part> parts(own.size(), none);
+    for (size_t i = 0; i < own.size(); ++i)
+      if (own[i])
+        parts[i] = toPore[i] <= square ? rim : whole;
+      else if (isPore[i] && toObject[i] > square)
+        parts[i] = empty;
+      else if (isPore[i] && toOwn[i] <= toObject[i])
+        parts[i] = rim;
+    return parts;
   }
 
-  SectionFit::Area areaOf(const Section& section, const Block<int32_t>& labels,
-                          const Block<float>& gray, const std::vector<char>& own,
-                          const std::vector<Rim>& rims) const {
+  SectionFit::Area areaOf(const Section& section, const Block<float>& gray,
+                          const std::vector<Part>& parts) const {
     double sums[2] = {0, 0}, counts[2] = {0, 0};  // outside, inside
-    for (size_t i = 0; i < own.size(); ++i)
-      if (rims[i].square < 0 && (own[i] || labels.values[i] == 0) &&
-          std::isfinite(gray.values[i])) {
-        sums[size_t(own[i])] += double(gray.values[i]);
-        ++counts[size_t(own[i])];
+    for (size_t i = 0; i < parts.size(); ++i)
+      if ((parts[i] == whole || parts[i] == empty) && std::isfinite(gray.values[i])) {
+        sums[size_t(parts[i] == whole)] += double(gray.values[i]);
+        ++counts[size_t(parts[i] == whole)];
       }
     const double outside = counts[0] < kEnoughVoxels ? blur_.outside : sums[0] / counts[0];
     const double inside = counts[1] < kEnoughVoxels ? blur_.inside : sums[1] / counts[1];
@@ -232,10 +225,10 @@ class NeckMeter {
     std::vector<double> byHeight(size_t(slices) + 1, 0);
     double blurred = 0;  // voxels with noise, within the middle of the sections
     constexpr double kMiddle = 3;
-    for (auto p = labels.box.begin(); p; ++p) {
-      const size_t i = labels.at(*p);
-      const bool inRim = rims[i].square >= 0;
-      if (!own[i] && !(labels.values[i] == 0 && inRim && rims[i].own)) continue;
+    size_t i = 0;
+    for (auto p = gray.box.begin(); p; ++p, ++i) {
+      if (parts[i] != rim && parts[i] != whole) continue;
+      const bool inRim = parts[i] == rim;
       const Vec3d from = (*p).asVec3d() - section.center;
       const double z = from.dot(section.normal);
       if (std::abs(z) > kHeight || from.lengthSqr() - z * z > section.reach * section.reach)
@@ -266,8 +259,7 @@ class NeckMeter {
   const FloatTree& gray_;
   const ScanBlur blur_;
   const SectionFit fit_;
-  const double rim_;                           // distance of voxel centers
-  std::vector<std::pair<Coord, int>> around_;  // steps to the voxels of the rim, and their squares
+  const double rim_;  // distance of voxel centers
 };
 
 /// The bonds' sections, by the labels alone.
