@@ -100,6 +100,31 @@ TEST_CASE("cli: generate makes the same file of the same seed", "[cli]") {
   }
 }
 
+TEST_CASE("cli: generate draws the balls of a list", "[cli]") {
+  const Bench bench;
+  bench.write("beads.txt", "# beads\n1 0 0 0\n2 1.9,0,0\n3 0 2 0\n");
+  bench.mustRun("generate balls beads.txt a.vdb --numbered --radius 6");
+  CHECK(infoOf(bench, "a.vdb").at("grids").at(0).at("metadata").at("madf_domain_max") ==
+        Json({23, 23, 11}));
+  bench.mustRun("generate balls beads.txt b.tif --numbered --radius 6 --size 12");
+  CHECK(bench.names().count("b.truth.tif") == 1);
+  const std::pair<const char*, const char*> cases[] = {
+      {"beads.txt o.vdb --radius 6", "beads.txt: line 2: the radius must be above 0"},
+      {"none.txt o.vdb --radius 6", "none.txt"},
+      {"beads.txt o.vdb", "--radius"},
+      {"beads.txt o.vdb --numbered --radius 0", "radius must be above 0"},
+      {"beads.txt o.vdb --numbered --radius 6:7", "--radius"},
+      {"beads.txt o.vdb --numbered --radius 9999", "voxels along x"},
+      {"b.tif b.tif --radius 6", "b.tif"}};
+  for (const auto& [arguments, says] : cases) {
+    CAPTURE(arguments);
+    const Outcome outcome = bench.run(std::string("generate balls ") + arguments);
+    CHECK(outcome.exitCode != 0);
+    CHECK_THAT(outcome.err, Contains(says));
+    CHECK(bench.names().count("o.vdb") == 0);
+  }
+}
+
 TEST_CASE("cli: generate writes the truth beside an image", "[cli]") {
   const Bench bench;
   for (const std::string ending : {".vdb", ".mhd", ".raw", ".tif"})

@@ -11,16 +11,19 @@
 
 #include "command.h"
 #include "grid_image.h"
+#include "input_options.h"
 #include "outputs.h"
 #include "parse.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/base/word_list.h"
 #include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/read_text.h"
 #include "vdb_madf/files/written_together.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/images/open_image.h"
+#include "vdb_madf/samples/balls.h"
 #include "vdb_madf/samples/bed.h"
 #include "vdb_madf/samples/pack.h"
 #include "vdb_madf/samples/particles.h"
@@ -36,11 +39,14 @@ namespace vdb_madf::tools {
 
 namespace {
 
+constexpr uint64_t kMostListBytes = uint64_t(1) << 30;
+
 /// What is typed for any kind of sample, and the options of each kind.
 struct GenerateArguments {
-  std::string out, dims, radius, shape, aspect, surface, scanNoise, voxelSizeText;
+  std::string centers, out, dims, radius, shape, aspect, surface, scanNoise, voxelSizeText;
   int size = 0;
   uint64_t seed = 1;
+  bool numbered = false;
   std::optional<VoxelSize> voxelSize;
   SphereOptions spheres;
   PackOptions pack;
@@ -48,6 +54,7 @@ struct GenerateArguments {
   SinteredOptions sintered;
   ParticleOptions particles;
   BedOptions bed;
+  BallOptions balls;
   ScanOptions scan;
 };
 
@@ -60,12 +67,18 @@ struct SampleKind {
   Sample (*make)(const GenerateArguments& options, Interrupter* interrupter);
   bool hasTruth = true;
   bool cubesOnly = false;
+  bool isListed = false;
 };
 
 template <typename KindOptions>
-void parseSizeAndSeed(const GenerateArguments& typed, KindOptions& kind) {
+void parseSize(const GenerateArguments& typed, KindOptions& kind) {
   if (!typed.dims.empty()) kind.size = parseDims(typed.dims, "--dims");
   if (typed.size > 0) kind.size = Coord(typed.size);
+}
+
+template <typename KindOptions>
+void parseSizeAndSeed(const GenerateArguments& typed, KindOptions& kind) {
+  parseSize(typed, kind);
   kind.seed = typed.seed;
 }
 
@@ -224,6 +237,23 @@ constexpr SampleKind kSampleKinds[] = {
        return generateBed(options.bed, interrupter);
      },
      true, true},
+    {"balls", "balls at the centers of a list, with known grains",
+     "vdb_madf generate balls beads.txt beads.vdb --radius 10 --size 200",
+     [](Verb verb, GenerateArguments& options) {
+       verb.option("--radius", options.radius, "voxels for each unit of the list").required();
+       verb.flag("--numbered", options.numbered, "skip the first number of each line");
+     },
+     [](GenerateArguments& options) {
+       checkOutputs({options.out}, options.centers);
+       parseSize(options, options.balls);
+       options.balls.voxelSize = options.voxelSize;
+       options.balls.radius = parseNumber(options.radius, "--radius");
+       options.balls.list = options.centers + (options.numbered ? " --numbered" : "");
+     },
+     [](const GenerateArguments& options, Interrupter* interrupter) {
+       return generateBalls(options.balls, interrupter);
+     },
+     true, false, true},
 };
 
 /// OUT.tif -> OUT.truth.tif
@@ -245,7 +275,14 @@ void writeSample(const std::string& out, Sample& sample, Interrupter* interrupte
   if (sample.truth) writeImage(truthPath(out), *sample.truth, box, SampleType::int32, interrupter);
 }
 
-/// Nothing is read, so whatever cannot be made is the fault of the options.
+void readCenters(GenerateArguments& options) {
+  const auto read = [&] {
+    return parseBalls(readText(options.centers, kMostListBytes), options.numbered);
+  };
+  options.balls.balls = withFileName(options.centers, read);
+}
+
+/// The list is read before, so whatever cannot be made is the fault of the options.
 Sample makeSample(const SampleKind& kind, const GenerateArguments& options,
                   Interrupter* interrupter) {
   try {
@@ -335,9 +372,16 @@ void runGenerate(const SampleKind& kind, const GenerateArguments& options, const
 void addKind(Verb generate, Common& common, Action& action, const SampleKind& kind) {
   auto options = std::make_shared<GenerateArguments>();
   Verb verb = addVerb(generate, common, kind.name, kind.description, kind.example);
+  if (kind.isListed)
+    verb.option("CENTERS", options->centers,
+                "text, a line for each ball: x y z, or x y z r (without r the radius is 1)")
+        .required();
   verb.option("OUT", options->out, "file to write: .vdb, " + wordList(writtenEndings())).required();
-  const Option size =
-      verb.option("--size", options->size, "edge of a cube, voxels").range(1, kMaxExtent);
+  const Option size = verb.option("--size", options->size,
+                                  kind.isListed ? "edge of a cube in the middle, voxels (default: "
+                                                  "all balls)"
+                                                : "edge of a cube, voxels")
+                          .range(1, kMaxExtent);
   verb.option("--dims", options->dims, "size NXxNYxNZ, voxels").excludes(size);
   verb.option("--seed", options->seed, "same seed, same bits")
       .notNegative()  // would wrap around
@@ -355,7 +399,10 @@ void addKind(Verb generate, Common& common, Action& action, const SampleKind& ki
               "B:S:L for noise of correlation length L, voxels");
   verb.onParsed([options, &common, &action, &kind] {
     parse(kind, *options);
-    action = [options, &common, &kind] { runGenerate(kind, *options, common); };
+    action = [options, &common, &kind] {
+      if (kind.isListed) readCenters(*options);
+      runGenerate(kind, *options, common);
+    };
   });
 }
 

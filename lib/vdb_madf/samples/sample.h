@@ -23,8 +23,8 @@ namespace vdb_madf {
 struct Sample {
   MaskGrid::Ptr object;  ///< named `object`
   /// Named `truth`, the object's topology but for specks of noise (scan.h): labels 1..N of the true
-  /// grains, numbered by the centers of their balls or particles (x, then y, then z). Null where
-  /// there is no truth.
+  /// grains, numbered by the centers of their balls or particles (x, then y, then z); those of a
+  /// list by their order in it. Null where there is no truth.
   Int32Grid::Ptr truth;
 };
 

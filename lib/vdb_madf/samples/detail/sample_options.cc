@@ -15,13 +15,6 @@
 
 namespace vdb_madf::detail {
 
-namespace {
-
-/// A smaller ball is no voxel, most of the time.
-constexpr double kMinRadius = 0.5;
-
-}  // namespace
-
 void checkSize(const Coord& size) {
   for (int axis = 0; axis < 3; ++axis)
     if (size[axis] < 1 || size[axis] > kMaxExtent)

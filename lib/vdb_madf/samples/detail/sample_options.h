@@ -11,6 +11,9 @@
 
 namespace vdb_madf::detail {
 
+/// A smaller ball is no voxel, most of the time.
+constexpr double kMinRadius = 0.5;
+
 /// Each @throw InvalidInput, one line that names the option and its range.
 void checkSize(const Coord& size);
 void checkRadii(double minimum, double maximum);
