@@ -4,6 +4,7 @@
 #include "vdb_madf/samples/scan.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -11,11 +12,15 @@
 
 #include "support/catch.h"
 #include "support/samples.h"
+#include "vdb_madf/samples/balls.h"
+#include "vdb_madf/samples/bed.h"
+#include "vdb_madf/samples/detail/bodies.h"
 #include "vdb_madf/samples/detail/sample_options.h"
 #include "vdb_madf/samples/detail/surface_distance.h"
 #include "vdb_madf/samples/pack.h"
 #include "vdb_madf/samples/particles.h"
 #include "vdb_madf/samples/sintered.h"
+#include "vdb_madf/samples/spheres.h"
 
 namespace {
 
@@ -68,6 +73,47 @@ int32_t nearestTrue(const Sample& before, const Coord& p, int reach) {
     if (!isNew) place->second = std::min(place->second, label);
   }
   return least.empty() ? 0 : least.begin()->second;
+}
+
+CoordBBox boxOf(const Sample& sample) {
+  return storedDomain(*sample.object)->box();
+}
+
+/// The share in the bodies that a gray value without noise stands for.
+double shareOf(uint16_t gray) {
+  return (gray - 10000) / 20000.0;
+}
+
+double sumOfShares(const std::vector<uint16_t>& gray) {
+  double sum = 0;
+  for (const uint16_t value : gray) sum += shareOf(value);
+  return sum;
+}
+
+Sample oneBall(double radius, const std::optional<VoxelSize>& voxelSize = {}) {
+  BallOptions options;
+  options.balls = {{0.2, 0.3, 0.4}};
+  options.radius = radius;
+  options.size = Coord(2 * int(radius) + 5);
+  options.voxelSize = voxelSize;
+  return generateBalls(options);
+}
+
+/// Air but for a cube with faces at x = 5.25 and so on.
+Sample oneCube() {
+  Sample sample =
+      detail::described({MaskGrid::create(), nullptr}, Coord(11, 1, 1), detail::SourceText("cube"));
+  detail::Particle cube;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {-1, 1}) {
+      detail::Vector row(0);
+      row[axis] = side / 20.0;
+      cube.rows.push_back(row);
+    }
+  cube.center = {-14.75, 0, 0};
+  cube.reach = 20 * std::sqrt(3.0);
+  sample.bodies = detail::particleBodies({cube}, {});
+  return sample;
 }
 
 int64_t countMoved(const Sample& a, const Sample& b) {
@@ -286,4 +332,158 @@ TEST_CASE("scan: bad options are refused", "[scan]") {
 TEST_CASE("scan: stops when asked to", "[scan]") {
   const Sample sample = plates();
   requireStops([&](Interrupter* stop) { return scanned(sample, badScan(), stop); });
+}
+
+TEST_CASE("scan: a ball has its volume in the gray values", "[scan]") {
+  for (const double radius : {4.3, 9.0, 14.9}) {
+    const Sample sample = oneBall(radius);
+    const double volume = 4 / 3.0 * M_PI * std::pow(radius, 3);
+    const auto sharp = grayValues(sample, {}, boxOf(sample));
+    CHECK(sumOfShares(sharp) == Approx(volume).epsilon(0.001));
+    CHECK(*std::min_element(sharp.begin(), sharp.end()) == 10000);
+    CHECK(*std::max_element(sharp.begin(), sharp.end()) == 30000);
+    ScanOptions options;
+    options.blur = 0.5;
+    CHECK(sumOfShares(grayValues(sample, options, boxOf(sample))) == Approx(volume).epsilon(0.001));
+  }
+  const Sample flat = oneBall(9, VoxelSize(std::array<double, 3>{1, 1, 2.5}));
+  CHECK(2.5 * sumOfShares(grayValues(flat, {}, boxOf(flat))) ==
+        Approx(4 / 3.0 * M_PI * 729).epsilon(0.001));
+}
+
+TEST_CASE("scan: what two bodies share counts once", "[scan]") {
+  BallOptions options;
+  options.balls = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}};
+  options.radius = 10;
+  const Sample sample = generateBalls(options);
+  // Two balls less the lens that they share.
+  CHECK(sumOfShares(grayValues(sample, {}, boxOf(sample))) ==
+        Approx(M_PI * 1000 * (8 / 3.0 - 5 / 12.0)).epsilon(0.001));
+}
+
+TEST_CASE("scan: boxes elsewhere show their part of the bodies", "[scan]") {
+  BallOptions options;
+  options.balls = {{0, 0, 0}, {4, 3, 0}, {0, 3, 4}, {4, 0, 4}};
+  options.radius = 7;
+  const Sample sample = generateBalls(options);
+  const CoordBBox all = boxOf(sample);
+  const Coord dim = all.dim();
+  const auto whole = grayValues(sample, {}, all);
+  // No ball is in the middle, or beyond.
+  for (const CoordBBox& box :
+       {CoordBBox({18, 16, 18}, {22, 18, 22}), CoordBBox({12, 3, 5}, {30, 20, 9}),
+        CoordBBox({0, 0, 30}, {9, 9, 40}), CoordBBox(Coord(60), Coord(70))}) {
+    const auto part = grayValues(sample, {}, box);
+    size_t wrong = 0, i = 0;
+    for (int z = box.min().z(); z <= box.max().z(); ++z)
+      for (int y = box.min().y(); y <= box.max().y(); ++y)
+        for (int x = box.min().x(); x <= box.max().x(); ++x)
+          wrong += part[i++] != (all.isInside(Coord(x, y, z))
+                                     ? whole[size_t((z * dim.y() + y) * dim.x() + x)]
+                                     : 10000);
+    CHECK(wrong == 0);
+  }
+}
+
+TEST_CASE("scan: a plane face has the gray values of its place", "[scan]") {
+  const Sample sample = oneCube();
+  const auto sharp = grayValues(sample, {}, boxOf(sample));
+  for (int x = 0; x < 11; ++x) CHECK(sharp[size_t(x)] == (x < 5 ? 30000 : x == 5 ? 25000 : 10000));
+  ScanOptions options;
+  options.blur = 1;
+  const auto blurred = grayValues(sample, options, boxOf(sample));
+  double sum = 0, weights[5];
+  for (int k = 0; k < 5; ++k) sum += (k > 0 ? 2 : 1) * (weights[k] = std::exp(-k * k / 2.0));
+  for (int x = 0; x < 11; ++x) {
+    double share = 0;
+    for (int k = -4; k <= 4; ++k)
+      share += weights[std::abs(k)] / sum * (x + k < 5 ? 1 : x + k == 5 ? 0.75 : 0);
+    CHECK(blurred[size_t(x)] == Approx(10000 + 20000 * share).margin(0.6));
+  }
+  // In a box elsewhere the bodies are the same.
+  const auto part = grayValues(sample, options, {Coord(4, -3, 2), Coord(8, -3, 2)});
+  for (int x = 4; x <= 8; ++x) CHECK(part[size_t(x - 4)] == blurred[size_t(x)]);
+}
+
+TEST_CASE("scan: gray values show the bodies of the labels", "[scan]") {
+  SphereOptions spheres;
+  spheres.size = Coord(56);
+  spheres.count = 8;
+  spheres.minRadius = 8;
+  spheres.maxRadius = 11;
+  SinteredOptions sintered;
+  sintered.size = Coord(50);
+  sintered.count = 5;
+  sintered.roughness = 0.1;
+  BedOptions bed;
+  bed.size = Coord(40);
+  bed.minRadius = 7;
+  bed.maxRadius = 9;
+  bed.rounds = 2;
+  BedOptions balls = bed;
+  balls.rounds = 0;
+  ParticleOptions rods;
+  rods.size = {50, 44, 40};
+  rods.shape = ParticleShape::rods;
+  rods.count = 8;
+  rods.minRadius = rods.maxRadius = 9;
+  for (const Sample& sample :
+       {generateSpheres(spheres), generateSintered(sintered), generateBed(bed), generateBed(balls),
+        generateParticles(rods), plates()}) {
+    const CoordBBox box = boxOf(sample);
+    CAPTURE(sample.object->metaValue<std::string>(kSourceKey));
+    const auto gray = grayValues(sample, {}, box);
+    int64_t object = 0, below = 0, above = 0;
+    for (auto p = box.begin(); p; ++p) {
+      const Coord dim = box.dim(), at = *p;
+      const double share = shareOf(gray[size_t((at.z() * dim.y() + at.y()) * dim.x() + at.x())]);
+      const bool isObject = sample.object->tree().isValueOn(at);
+      object += isObject;
+      below += isObject && share < 0.5;
+      above += !isObject && share > 0.5;
+    }
+    CHECK(double(below) < 0.01 * double(object));
+    CHECK(double(above) < 0.01 * double(object));
+    CHECK(sumOfShares(gray) == Approx(double(object)).epsilon(0.01));
+  }
+}
+
+TEST_CASE("scan: gray noise has its deviation, and is the same for any threads", "[scan]") {
+  const Sample sample = oneBall(30);  // several blocks
+  ScanOptions options;
+  options.seed = 3;
+  options.blur = 0.7;
+  options.noise = 0.1;
+  const auto valuesWith = [&](size_t threads) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    return grayValues(sample, options, boxOf(sample));
+  };
+  const auto noisy = valuesWith(2);
+  CHECK(noisy == valuesWith(1));
+  options.noise = 0;
+  const auto clean = grayValues(sample, options, boxOf(sample));
+  double squares = 0;
+  for (size_t i = 0; i < clean.size(); ++i) squares += std::pow(noisy[i] - clean[i], 2);
+  CHECK(std::sqrt(squares / double(clean.size())) == Approx(2000).epsilon(0.02));
+  options.noise = 1;
+  const auto cut = grayValues(sample, options, boxOf(sample));
+  CHECK(*std::min_element(cut.begin(), cut.end()) == 0);
+  CHECK(*std::max_element(cut.begin(), cut.end()) == 65535);
+}
+
+TEST_CASE("scan: gray values that cannot be made are refused", "[scan]") {
+  const Sample sample = oneBall(5);
+  ScanOptions options;
+  options.surface = 1;
+  CHECK_THROWS_WITH(grayValues(sample, options, boxOf(sample)), Contains("surface"));
+  CHECK_THROWS_WITH(grayValues(halfSpace(Coord(5), 2), {}, CoordBBox(Coord(0), Coord(4))),
+                    Contains("no bodies"));
+  options = {};
+  options.blur = 1;
+  const Sample flat = oneBall(5, VoxelSize(std::array<double, 3>{1, 1, 2}));
+  CHECK_THROWS_AS(grayValues(flat, options, boxOf(flat)), InvalidInput);
+  options.blur = -1;
+  CHECK_THROWS_AS(grayValues(sample, options, boxOf(sample)), InvalidInput);
+  StopAfter stop(0);
+  CHECK_THROWS_AS(grayValues(sample, {}, boxOf(sample), &stop), Interrupted);
 }

@@ -125,6 +125,32 @@ TEST_CASE("cli: generate draws the balls of a list", "[cli]") {
   }
 }
 
+TEST_CASE("cli: generate writes a gray scan of the same bodies", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSpheres + "plain.tif");
+  bench.mustRun(kSpheres + "sharp.tif --gray clean.tif --voxel-size 8.5um");
+  bench.mustRun(kSpheres + "s.tif --gray noisy.npy --scan-noise 1:0.1");
+  bench.mustRun(kSpheres + "t.tif --gray again.npy --scan-noise 1:0.1 --threads 1");
+  CHECK(bench.bytes("s.tif") == bench.bytes("plain.tif"));
+  CHECK(bench.bytes("s.truth.tif") == bench.bytes("plain.truth.tif"));
+  CHECK(bench.bytes("noisy.npy") == bench.bytes("again.npy"));
+  const Json info = infoOf(bench, "clean.tif");
+  CHECK(info.at("type") == "uint16");
+  CHECK(info.at("size") == Json({40, 40, 40}));
+  CHECK(info.at("voxel_size_mm") == 0.0085);
+  // Where half of the voxel is solid, nearly.
+  bench.mustRun("convert clean.tif cut.raw --threshold 20000");
+  bench.mustRun("convert plain.tif plain.raw");
+  const std::string cut = bench.bytes("cut.raw"), plain = bench.bytes("plain.raw");
+  REQUIRE(cut.size() == plain.size());
+  size_t others = 0, solid = 0;
+  for (size_t i = 0; i < cut.size(); ++i) {
+    others += (cut[i] != 0) != (plain[i] != 0);
+    solid += plain[i] != 0;
+  }
+  CHECK(100 * others < solid);
+}
+
 TEST_CASE("cli: generate writes the truth beside an image", "[cli]") {
   const Bench bench;
   for (const std::string ending : {".vdb", ".mhd", ".raw", ".tif"})

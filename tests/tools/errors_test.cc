@@ -239,6 +239,11 @@ TEST_CASE("cli: a wrong command line ends with 2 before any file is opened", "[c
       {"generate spheres out.vdb --size 40 --count 3 --radius 6 --surface 1", "--surface"},
       {"generate sintered out.vdb --size 24 --surface 1:99", "length"},
       {"generate sintered out.vdb --size 24 --scan-noise 1:x", "--scan-noise"},
+      {"generate spheres out.vdb --gray out.png", "--gray out.png: the scan is an image"},
+      {"generate spheres out.vdb --gray npy:-", "--gray npy:-"},
+      {"generate spheres out.tif --gray out.truth.tif", "two outputs"},
+      {"generate spheres out.vdb --gray out.tif --surface 1:4", "leave one out"},
+      {"generate pack out.vdb --gray out.tif", "no option --gray"},
       {"generate sintered out.vdb --size 24 --scan-noise 1:2", "noise"}};
   for (const auto& [arguments, says] : cases) refuses(bench, kWrongUsage, arguments, {says});
 }

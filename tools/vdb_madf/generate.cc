@@ -31,6 +31,7 @@
 #include "vdb_madf/samples/sintered.h"
 #include "vdb_madf/samples/snow.h"
 #include "vdb_madf/samples/spheres.h"
+#include "vdb_madf/scans/image_box.h"
 #include "vdb_madf/vdb/slab_folder_writer.h"
 #include "vdb_madf/vdb/write_vdb.h"
 #include "vdb_madf/volumes/write_image.h"
@@ -43,7 +44,7 @@ constexpr uint64_t kMostListBytes = uint64_t(1) << 30;
 
 /// What is typed for any kind of sample, and the options of each kind.
 struct GenerateArguments {
-  std::string centers, out, dims, radius, shape, aspect, surface, scanNoise, voxelSizeText;
+  std::string centers, out, gray, dims, radius, shape, aspect, surface, scanNoise, voxelSizeText;
   int size = 0;
   uint64_t seed = 1;
   bool numbered = false;
@@ -67,6 +68,7 @@ struct SampleKind {
   Sample (*make)(const GenerateArguments& options, Interrupter* interrupter);
   bool hasTruth = true;
   bool cubesOnly = false;
+  bool hasBodies = true;
   bool isListed = false;
 };
 
@@ -161,7 +163,7 @@ constexpr SampleKind kSampleKinds[] = {
      [](const GenerateArguments& options, Interrupter* interrupter) {
        return generatePack(options.pack, interrupter);
      },
-     false},
+     false, false, false},
     {"snow", "a snow-like random structure",
      "vdb_madf generate snow snow.vdb --size 256 --fraction 0.3 --voxel-size 10um",
      [](Verb verb, GenerateArguments& options) {
@@ -175,7 +177,7 @@ constexpr SampleKind kSampleKinds[] = {
      [](const GenerateArguments& options, Interrupter* interrupter) {
        return generateSnow(options.snow, interrupter);
      },
-     false, true},
+     false, true, false},
     {"sintered", "sintered balls with known grains",
      "vdb_madf generate sintered grains.vdb --count 90 --roughness 0.15",
      [](Verb verb, GenerateArguments& options) {
@@ -244,7 +246,6 @@ constexpr SampleKind kSampleKinds[] = {
        verb.flag("--numbered", options.numbered, "skip the first number of each line");
      },
      [](GenerateArguments& options) {
-       checkOutputs({options.out}, options.centers);
        parseSize(options, options.balls);
        options.balls.voxelSize = options.voxelSize;
        options.balls.radius = parseNumber(options.radius, "--radius");
@@ -253,7 +254,7 @@ constexpr SampleKind kSampleKinds[] = {
      [](const GenerateArguments& options, Interrupter* interrupter) {
        return generateBalls(options.balls, interrupter);
      },
-     true, false, true},
+     true, false, true, true},
 };
 
 /// OUT.tif -> OUT.truth.tif
@@ -282,12 +283,31 @@ void readCenters(GenerateArguments& options) {
   options.balls.balls = withFileName(options.centers, read);
 }
 
+/// Slices of the scan that are made at a time.
+constexpr int kGraySlices = 64;
+
+void writeGray(const GenerateArguments& options, const Sample& sample, Interrupter* interrupter) {
+  CoordBBox box = storedDomain(*sample.object)->box();
+  ImageInfo info;
+  info.size = toImageSize(box.dim());
+  info.type = SampleType::uint16;
+  info.voxelSize = storedVoxelSize(*sample.object);
+  const auto writer = createImage(options.gray, info);
+  for (int z = 0; z < info.size.z; z += kGraySlices) {
+    box.min().z() = z;
+    box.max().z() = std::min(z + kGraySlices, info.size.z) - 1;
+    writer->write(box.dim().z(), grayValues(sample, options.scan, box, interrupter).data());
+  }
+  writer->finish();
+}
+
 /// The list is read before, so whatever cannot be made is the fault of the options.
 Sample makeSample(const SampleKind& kind, const GenerateArguments& options,
                   Interrupter* interrupter) {
   try {
     checkScan(options.scan);
     const Sample sample = kind.make(options, interrupter);
+    if (!options.gray.empty()) return sample;
     return scanned(sample, options.scan, interrupter);
   } catch (const InvalidInput& error) {
     throw WrongUsage(std::string("cannot generate this: ") + error.what());
@@ -308,6 +328,24 @@ bool isInSlabs(const GenerateArguments& options) {
   return fileEnding(options.out) == ".slabs";
 }
 
+/// All files that the sample is written to.
+std::vector<std::string> outputsOf(const SampleKind& kind, const GenerateArguments& options) {
+  std::vector<std::string> outputs{options.out};
+  if (kind.hasTruth && !hasVdbEnding(options.out)) outputs.push_back(truthPath(options.out));
+  if (!options.gray.empty()) outputs.push_back(options.gray);
+  return outputs;
+}
+
+void checkGray(const GenerateArguments& options) {
+  if (options.gray.empty()) return;
+  if (isOnStandardOutput(options.gray) || !isImageEnding(options.gray))
+    throw WrongUsage("--gray " + options.gray + ": the scan is an image: write " +
+                     wordList(writtenEndings()));
+  if (!options.surface.empty())
+    throw WrongUsage(
+        "--surface moves the voxels of the object, and --gray shows the bodies: leave one out");
+}
+
 void parse(const SampleKind& kind, GenerateArguments& options) {
   if (isOnStandardOutput(options.out))
     throw WrongUsage(options.out + ": samples are written to files only; give the path of one");
@@ -320,8 +358,11 @@ void parse(const SampleKind& kind, GenerateArguments& options) {
   } else {
     checkVolumeEnding(options.out);
   }
+  checkGray(options);
   if (!options.voxelSizeText.empty()) options.voxelSize = parseVoxelSize(options.voxelSizeText);
   checkVoxels(kind, options);
+  if (kind.isListed || !options.gray.empty())
+    checkOutputs(outputsOf(kind, options), options.centers);
   kind.parse(options);
   parseScan(options, options.scan);
 }
@@ -352,17 +393,16 @@ void runInSlabs(const GenerateArguments& options, const Common& common) {
 
 void runGenerate(const SampleKind& kind, const GenerateArguments& options, const Common& common) {
   if (isInSlabs(options)) return runInSlabs(options, common);
-  checkWritable(options.out);
-  if (kind.hasTruth && !hasVdbEnding(options.out)) {
+  for (const std::string& output : outputsOf(kind, options)) checkWritable(output);
+  if (kind.hasTruth && !hasVdbEnding(options.out))
     checkWrittenTogether(options.out, {truthPath(options.out)});
-    checkWritable(truthPath(options.out));
-  }
   Sample sample = makeSample(kind, options, common.progress);
   if (options.voxelSize) {
     setVoxelSize(*sample.object, options.voxelSize);
     if (sample.truth) setVoxelSize(*sample.truth, options.voxelSize);
   }
   writeSample(options.out, sample, common.progress);
+  if (!options.gray.empty()) writeGray(options, sample, common.progress);
   common.progress->end();
   if (common.quiet) return;
   printVoxels(options, double(sample.object->activeVoxelCount()),
@@ -397,6 +437,11 @@ void addKind(Verb generate, Common& common, Action& action, const SampleKind& ki
   verb.option("--scan-noise", options->scanNoise,
               "B:S blurs the object by B voxels, adds noise of standard deviation S, cuts at 0.5; "
               "B:S:L for noise of correlation length L, voxels");
+  if (kind.hasBodies)
+    verb.option("--gray", options->gray,
+                "writes a gray scan of the same bodies, too, uint16 with air at 10000 and solid at "
+                "30000; --scan-noise is then in the scan alone")
+        .typeName("SCAN");
   verb.onParsed([options, &common, &action, &kind] {
     parse(kind, *options);
     action = [options, &common, &kind] {

@@ -14,6 +14,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/samples/detail/ball_union.h"
+#include "vdb_madf/samples/detail/bodies.h"
 #include "vdb_madf/samples/detail/power_cells.h"
 #include "vdb_madf/samples/detail/sample_options.h"
 
@@ -142,6 +143,7 @@ Sample generateBalls(const BallOptions& options, Interrupter* interrupter) {
   sample.object = MaskGrid::create(object.takeTree());
   sample.truth =
       Int32Grid::create(detail::powerCells(sample.object->tree(), balls, interrupter, lattice));
+  sample.bodies = detail::ballBodies(balls, lattice);
   detail::SourceText source("balls " + options.list);
   source.size(size).add("radius", options.radius).edges(options.voxelSize);
   return detail::described(sample, voxels, source, options.voxelSize);

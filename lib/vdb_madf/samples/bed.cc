@@ -4,12 +4,14 @@
 #include "vdb_madf/samples/bed.h"
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/samples/detail/ball_union.h"
 #include "vdb_madf/samples/detail/bed_placement.h"
+#include "vdb_madf/samples/detail/bodies.h"
 #include "vdb_madf/samples/detail/mask_blocks.h"
 #include "vdb_madf/samples/detail/object_change.h"
 #include "vdb_madf/samples/detail/power_cells.h"
@@ -36,13 +38,13 @@ class Sintering : public detail::ObjectChange {
   /// No new voxel is farther than this from the old object.
   int reach() const { return 2 * detail::kernelRadius(kernel_); }
 
- private:
   FloatBox height(const CoordBBox& box) const override {
     FloatBox field = blurredIn(box);
     for (float& value : field.values) value -= level_;
     return field;
   }
 
+ private:
   FloatBox blurredIn(const CoordBBox& box) const {
     return detail::blurred(indicatorIn(box, detail::kernelRadius(kernel_)), kernel_, nullptr);
   }
@@ -70,6 +72,25 @@ class Sintering : public detail::ObjectChange {
   float level_;
 };
 
+/// The object as the last round of sintering made it.
+class SinteredBed : public detail::Bodies {
+ public:
+  SinteredBed(const Sample& before, Interrupter* interrupter)
+      : before_{before.object, nullptr}, sintering_(before_, interrupter) {}
+
+  const Sintering& sintering() const { return sintering_; }
+
+  FloatBox shares(const CoordBBox& box) const override {
+    CoordBBox grown = box;
+    grown.expand(1);
+    return detail::sharesAbove(sintering_.height(grown), 0);
+  }
+
+ private:
+  Sample before_;
+  Sintering sintering_;
+};
+
 }  // namespace
 
 Sample generateBed(const BedOptions& options, Interrupter* interrupter) {
@@ -89,11 +110,14 @@ Sample generateBed(const BedOptions& options, Interrupter* interrupter) {
       .range("radius", options.minRadius, options.maxRadius)
       .add("rounds", std::to_string(options.rounds))
       .add("seed", std::to_string(options.seed));
+  sample.bodies = detail::ballBodies(balls, {});
   sample = detail::described(sample, options.size, source);
   for (int round = 0; round < options.rounds; ++round) {
-    const Sintering sintering(sample, interrupter);
+    const auto bed = std::make_shared<SinteredBed>(sample, interrupter);
+    const Sintering& sintering = bed->sintering();
     sample = detail::described(detail::changed(sample, sintering, sintering.reach(), interrupter),
                                options.size, source);
+    sample.bodies = bed;
   }
   return sample;
 }

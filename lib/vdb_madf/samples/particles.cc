@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/samples/detail/bodies.h"
 #include "vdb_madf/samples/detail/lattice.h"
 #include "vdb_madf/samples/detail/least_cells.h"
 #include "vdb_madf/samples/detail/mask_blocks.h"
@@ -98,6 +99,7 @@ Sample generateParticles(const ParticleOptions& options, Interrupter* interrupte
   sample.object = MaskGrid::create(uniteParticles(voxels, lattice, particles, interrupter));
   sample.truth = Int32Grid::create(detail::LeastCells(ParticleSites(particles, lattice))
                                        .label(sample.object->tree(), interrupter));
+  sample.bodies = detail::particleBodies(particles, lattice);
   detail::SourceText source("particles");
   source.size(options.size)
       .add("shape", particleShapeNames()[size_t(options.shape)])

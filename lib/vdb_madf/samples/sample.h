@@ -3,10 +3,16 @@
 
 #pragma once
 
+#include <memory>
+
 #include "vdb_madf/base/interrupter.h"
 #include "vdb_madf/grids/grid_types.h"
 
 namespace vdb_madf {
+
+namespace detail {
+class Bodies;
+}
 
 /// A synthetic object in [0, size - 1], with its domain in the metadata, and in `madf_source` the
 /// command that makes it. The same options give the same bits on every machine and for any number
@@ -26,6 +32,8 @@ struct Sample {
   /// grains, numbered by the centers of their balls or particles (x, then y, then z); those of a
   /// list by their order in it. Null where there is no truth.
   Int32Grid::Ptr truth;
+  /// What grayValues() shows (scan.h), of spheres, balls, sintered, particles and beds.
+  std::shared_ptr<const detail::Bodies> bodies = nullptr;
 };
 
 }  // namespace vdb_madf

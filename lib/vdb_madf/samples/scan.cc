@@ -7,8 +7,11 @@
 #include <cmath>
 #include <vector>
 
+#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/samples/detail/bodies.h"
 #include "vdb_madf/samples/detail/gaussian_blur.h"
 #include "vdb_madf/samples/detail/object_change.h"
 #include "vdb_madf/samples/detail/sample_options.h"
@@ -29,6 +32,10 @@ constexpr double kFarthestMove = 4;  // standard deviations
 /// A voxel farther than this from all true ones is noise of its own.
 constexpr int kNoiseReach = 2;
 constexpr float kCut = 0.5f;
+
+constexpr float kAirGray = 10000, kSolidGray = 30000, kMaxGray = 65535;
+/// Gray values are made in blocks of so many voxels a side, by one thread each.
+constexpr int kGrayBlock = 64;
 
 /// A Gaussian random field on Z^3, the same whatever box is looked at. A Gaussian blur of white
 /// noise by sigma has the correlation exp(-r^2 / (4 sigma^2)).
@@ -81,11 +88,15 @@ class SurfaceChange : public detail::ObjectChange {
   float farthest_;
 };
 
+std::vector<float> blurKernel(const ScanOptions& options) {
+  return options.blur == 0 ? std::vector<float>{1} : detail::gaussianKernel(options.blur);
+}
+
 class GrayChange : public detail::ObjectChange {
  public:
   GrayChange(const Sample& sample, const ScanOptions& options)
       : ObjectChange(sample),
-        kernel_(options.blur == 0 ? std::vector<float>{1} : detail::gaussianKernel(options.blur)),
+        kernel_(blurKernel(options)),
         noise_(options.seed, kNoiseStream, options.noise, options.noiseLength) {}
 
  private:
@@ -100,6 +111,48 @@ class GrayChange : public detail::ObjectChange {
   std::vector<float> kernel_;
   SmoothNoise noise_;
 };
+
+class GrayScan {
+ public:
+  GrayScan(const detail::Bodies& bodies, const ScanOptions& options)
+      : bodies_(bodies),
+        kernel_(blurKernel(options)),
+        noise_(options.seed, kNoiseStream, options.noise, options.noiseLength),
+        hasNoise_(options.noise > 0) {}
+
+  /// 0 in the air, 1 in the bodies.
+  FloatBox in(const CoordBBox& box) const {
+    CoordBBox seen = box;
+    seen.expand(detail::kernelRadius(kernel_));
+    FloatBox field = detail::blurred(bodies_.shares(seen), kernel_, nullptr);
+    if (!hasNoise_) return field;
+    const FloatBox noise = noise_.in(box);
+    for (size_t i = 0; i < field.values.size(); ++i) field.values[i] += noise.values[i];
+    return field;
+  }
+
+ private:
+  const detail::Bodies& bodies_;
+  std::vector<float> kernel_;
+  SmoothNoise noise_;
+  bool hasNoise_;
+};
+
+uint16_t grayOf(float value) {
+  const float gray = kAirGray + (kSolidGray - kAirGray) * value;
+  return uint16_t(std::clamp(gray, 0.0f, kMaxGray) + 0.5f);
+}
+
+std::vector<CoordBBox> grayBlocks(const CoordBBox& box) {
+  std::vector<CoordBBox> blocks;
+  for (int x = box.min().x(); x <= box.max().x(); x += kGrayBlock)
+    for (int y = box.min().y(); y <= box.max().y(); y += kGrayBlock)
+      for (int z = box.min().z(); z <= box.max().z(); z += kGrayBlock) {
+        blocks.push_back({Coord(x, y, z), Coord(x, y, z).offsetBy(kGrayBlock - 1)});
+        blocks.back().intersect(box);
+      }
+  return blocks;
+}
 
 }  // namespace
 
@@ -133,6 +186,31 @@ Sample scanned(const Sample& sample, const ScanOptions& options, Interrupter* in
     result = detail::described(result, size, source, voxelSize);
   }
   return result;
+}
+
+std::vector<uint16_t> grayValues(const Sample& sample, const ScanOptions& options,
+                                 const CoordBBox& box, Interrupter* interrupter) {
+  checkScan(options);
+  if (!sample.bodies) throw InvalidInput("the sample has no bodies that a scan could show");
+  if (options.surface > 0)
+    throw InvalidInput("a surface is that of an object's voxels, not of bodies in a scan");
+  if (options.blur > 0 || options.noise > 0)
+    requireCubicVoxels(*sample.object, "making a scan of a sample");
+  const GrayScan scan(*sample.bodies, options);
+  const std::vector<CoordBBox> blocks = grayBlocks(box);
+  const Coord dim = box.dim();
+  std::vector<uint16_t> values(size_t(dim.x()) * dim.y() * dim.z());
+  detail::parallelFor(blocks.size(), 1, interrupter, [&](size_t begin, size_t end) {
+    for (size_t block = begin; block < end; ++block) {
+      const FloatBox field = scan.in(blocks[block]);
+      size_t i = 0;
+      for (auto p = field.box.begin(); p; ++p, ++i) {
+        const Coord at = *p - box.min();
+        values[(size_t(at.z()) * dim.y() + at.y()) * dim.x() + at.x()] = grayOf(field.values[i]);
+      }
+    }
+  });
+  return values;
 }
 
 }  // namespace vdb_madf

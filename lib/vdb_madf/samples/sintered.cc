@@ -4,10 +4,12 @@
 #include "vdb_madf/samples/sintered.h"
 
 #include <algorithm>
+#include <memory>
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/samples/detail/ball_union.h"
+#include "vdb_madf/samples/detail/bodies.h"
 #include "vdb_madf/samples/detail/gaussian_blur.h"
 #include "vdb_madf/samples/detail/lattice.h"
 #include "vdb_madf/samples/detail/mask_blocks.h"
@@ -53,25 +55,14 @@ FloatBox indicator(const CoordBBox& box, const std::vector<Ball>& balls) {
   return field;
 }
 
-/// Fills the object block by block; only the pieces at work are held as dense arrays.
-class SurfaceBuilder {
+/// The object is where this field reaches the cut.
+class SinteredBodies : public detail::Bodies {
  public:
-  SurfaceBuilder(const SinteredOptions& options, const std::vector<Ball>& balls,
-                 const Lattice& lattice, const Coord& voxels)
-      : options_(options), balls_(balls), lattice_(lattice), blocks_(voxels) {
-    for (int axis = 0; axis < 3; ++axis)
-      piece_[axis] = std::max(1, int(MaskBlocks::kEdge / lattice.edge(axis)));
-  }
+  SinteredBodies(const SinteredOptions& options, const std::vector<Ball>& balls,
+                 const Lattice& lattice)
+      : options_(options), balls_(balls), lattice_(lattice) {}
 
-  MaskTree::Ptr build(Interrupter* interrupter) {
-    detail::parallelFor(blocks_.count(), 1, interrupter, [&](size_t begin, size_t end) {
-      for (size_t block = begin; block < end; ++block) fillBlock(block);
-    });
-    return blocks_.takeTree();
-  }
-
- private:
-  FloatBox surfaceField(const CoordBBox& box) const {
+  FloatBox field(const CoordBBox& box) const {
     CoordBBox seen = detail::pointsSeen(box, lattice_, kBlurSigma);
     FloatBox field = detail::blurredAt(box, lattice_, indicator(seen, balls_), kBlurSigma);
     if (options_.roughness == 0) return field;
@@ -84,6 +75,35 @@ class SurfaceBuilder {
     return field;
   }
 
+  FloatBox shares(const CoordBBox& box) const override {
+    CoordBBox grown = box;
+    grown.expand(1);
+    return detail::sharesAbove(field(grown), kSinteredCut);
+  }
+
+ private:
+  SinteredOptions options_;
+  std::vector<Ball> balls_;
+  Lattice lattice_;
+};
+
+/// Fills the object block by block; only the pieces at work are held as dense arrays.
+class SurfaceBuilder {
+ public:
+  SurfaceBuilder(const SinteredBodies& bodies, const Lattice& lattice, const Coord& voxels)
+      : bodies_(bodies), blocks_(voxels) {
+    for (int axis = 0; axis < 3; ++axis)
+      piece_[axis] = std::max(1, int(MaskBlocks::kEdge / lattice.edge(axis)));
+  }
+
+  MaskTree::Ptr build(Interrupter* interrupter) {
+    detail::parallelFor(blocks_.count(), 1, interrupter, [&](size_t begin, size_t end) {
+      for (size_t block = begin; block < end; ++block) fillBlock(block);
+    });
+    return blocks_.takeTree();
+  }
+
+ private:
   /// Works in pieces that see about as many points as a block of cubes.
   void fillBlock(size_t block) {
     const CoordBBox box = blocks_.box(block);
@@ -97,7 +117,7 @@ class SurfaceBuilder {
   }
 
   void fillPiece(size_t block, const CoordBBox& box) {
-    const FloatBox field = surfaceField(box);
+    const FloatBox field = bodies_.field(box);
     for (int x = box.min().x(); x <= box.max().x(); ++x)
       for (int y = box.min().y(); y <= box.max().y(); ++y)
         for (int z = box.min().z(), next; z <= box.max().z(); z = next) {
@@ -112,9 +132,7 @@ class SurfaceBuilder {
         }
   }
 
-  SinteredOptions options_;
-  const std::vector<Ball>& balls_;
-  const Lattice& lattice_;
+  const SinteredBodies& bodies_;
   MaskBlocks blocks_;
   Coord piece_;
 };
@@ -132,10 +150,11 @@ Sample generateSintered(const SinteredOptions& options, Interrupter* interrupter
   const Coord voxels = lattice.voxels(options.size);
   const std::vector<Ball> balls = detail::placeSintered(options, interrupter);
   Sample sample;
-  sample.object =
-      MaskGrid::create(SurfaceBuilder(options, balls, lattice, voxels).build(interrupter));
+  const auto bodies = std::make_shared<SinteredBodies>(options, balls, lattice);
+  sample.object = MaskGrid::create(SurfaceBuilder(*bodies, lattice, voxels).build(interrupter));
   sample.truth =
       Int32Grid::create(detail::powerCells(sample.object->tree(), balls, interrupter, lattice));
+  sample.bodies = bodies;
   detail::SourceText source("sintered");
   source.size(options.size)
       .add("count", std::to_string(options.count))

@@ -10,6 +10,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/samples/detail/ball_union.h"
+#include "vdb_madf/samples/detail/bodies.h"
 #include "vdb_madf/samples/detail/power_cells.h"
 #include "vdb_madf/samples/detail/sample_options.h"
 #include "vdb_madf/samples/detail/sphere_placement.h"
@@ -46,6 +47,7 @@ Sample generateSpheres(const SphereOptions& options, Interrupter* interrupter) {
   sample.object = MaskGrid::create(object.takeTree());
   sample.truth =
       Int32Grid::create(detail::powerCells(sample.object->tree(), balls, interrupter, lattice));
+  sample.bodies = detail::ballBodies(balls, lattice);
   detail::SourceText source("spheres");
   source.size(options.size)
       .add("count", std::to_string(options.count))
