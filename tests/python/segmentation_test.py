@@ -116,11 +116,12 @@ def test_a_least_grain_stays_until_it_is_given_anew(sample):
     assert seg.sweep([11], merge="score")["grains"] == [fresh.counts["grains"]]
     back = fresh.remerge(min_grain=0)
     assert back.options == plain.options and back.labels.metadata == plain.labels.metadata
-    for wrong, says in ((-1, "must not be negative"), (2.5, "=2.5: must be a whole number"),
-                        ("few", "min_grain='few': must be a whole number")):
-        with pytest.raises(madf.InvalidInput, match=says):
+    for wrong, error, says in ((-1, madf.InvalidInput, "must not be negative"),
+                               (2.5, TypeError, "min_grain=2.5: give a whole number"),
+                               ("few", TypeError, "min_grain='few': give a whole number")):
+        with pytest.raises(error, match=says):
             madf.segment(sample[0], min_grain=wrong)
-    with pytest.raises(madf.InvalidInput, match="delta=0.5: must be a whole number"):
+    with pytest.raises(TypeError, match="delta=0.5: give a whole number"):
         madf.segment(sample[0], merge="both", delta=0.5)
 
 

@@ -9,8 +9,8 @@ namespace vdb_madf {
 struct ExtraMeasures {
   bool shape = false;        ///< GrainMeasures::shape
   bool gray = false;         ///< GrainMeasures::gray, BondMeasures::gray
-  bool necks = false;        ///< BondMeasures::neck, Measurements::scan
   bool edgeWeights = false;  ///< GrainMeasures::edgeWeight
+  bool necks = false;        ///< BondMeasures::neck, Measurements::scan
 };
 
 }  // namespace vdb_madf

@@ -158,7 +158,12 @@ detail::CountedImage sampled(ImageReader& image, const Part& part) {
 std::optional<double> cornerOfGray(const detail::CountedImage& image) {
   const Histogram histogram = image.histogram();
   const bool enough = image.info().size.z >= kCornerSlices;
-  return enough && kindOf(histogram) == ImageKind::gray ? histogram.corner : std::nullopt;
+  if (!enough || !histogram.corner || kindOf(histogram) != ImageKind::gray) return std::nullopt;
+  // A circle leaves 21 % of its square; what most voxels have is the pore of a scan without noise.
+  constexpr double kMostAround = 0.4;
+  const int64_t around = voxelsFrom(histogram, *histogram.corner) -
+                         voxelsFrom(histogram, *histogram.corner + histogram.width);
+  return double(around) <= kMostAround * double(histogram.finite) ? histogram.corner : std::nullopt;
 }
 
 /// Voxels from `high` on, and those from `low` on that are connected with them; if the selection is
