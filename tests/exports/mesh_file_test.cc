@@ -87,6 +87,22 @@ TEST_CASE("mesh_file: one STL per grain", "[mesh_file]") {
   CHECK(grainName(123) == "grain_000123");
 }
 
+TEST_CASE("mesh_file: voxels that touch along an edge are apart in every format", "[mesh_file]") {
+  const ScratchFolder folder;
+  const auto grid = labelGrid({{Coord(0, 0, 0), 1}, {Coord(1, 1, 0), 1}});
+  const GrainMesh mesh = grainMesh(*grid);
+  for (const std::string end : {"ply", "obj", "stl", "vtp", "glb"}) {
+    CAPTURE(end);
+    const std::string path = folder / ("mesh." + end);
+    writeMesh(path, mesh, optionsOf(*grid));
+    std::map<std::pair<Vec3f, Vec3f>, int> edges;
+    for (const Face& face : readMesh(end, readFile(path)))
+      for (size_t n = 0; n < 3; ++n)
+        ++edges[std::minmax(face.corners[n], face.corners[(n + 1) % 3])];
+    for (const auto& edge : edges) CHECK(edge.second == 2);
+  }
+}
+
 TEST_CASE("mesh_file: a folder of STL appears with all its files or not at all", "[mesh_file]") {
   const ScratchFolder folder;
   LabelMap voxels = twoBalls({0, 0, 0}, 4);

@@ -67,6 +67,26 @@ inline std::string whyNoDisc(const GrainMesh& mesh) {
   return "";
 }
 
+/// What a program sees that takes points of a grain at one place for one.
+inline GrainMesh mergedByPlace(const GrainMesh& mesh, const std::vector<openvdb::Vec3f>& points) {
+  GrainMesh merged;
+  merged.labels = mesh.labels;
+  merged.firstTriangle = mesh.firstTriangle;
+  for (size_t g = 0; g < mesh.labels.size(); ++g) {
+    std::map<openvdb::Vec3f, uint32_t> places;
+    for (uint32_t i = mesh.firstPoint[g]; i < mesh.firstPoint[g + 1]; ++i)
+      if (places.emplace(points[i], uint32_t(merged.points.size())).second)
+        merged.points.push_back(points[i]);
+    merged.firstPoint.push_back(uint32_t(merged.points.size()));
+    for (uint32_t t = mesh.firstTriangle[g]; t < mesh.firstTriangle[g + 1]; ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      merged.triangles.push_back(
+          {places.at(points[a]), places.at(points[b]), places.at(points[c])});
+    }
+  }
+  return merged;
+}
+
 using Corners = std::array<std::array<float, 3>, 3>;
 
 /// The corners of a triangle, or of the same one turned over, rotated to begin with the least:

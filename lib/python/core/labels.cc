@@ -11,6 +11,7 @@
 #include "vdb_madf/labels/reduced_labels.h"
 #include "vdb_madf/labels/select_grains.h"
 #include "vdb_madf/shapes/grain_mesh.h"
+#include "vdb_madf/shapes/world_points.h"
 
 namespace vdb_madf::python {
 
@@ -75,12 +76,6 @@ py::tuple colors(const GridPtr& labels, const Call& call) {
   return py::make_tuple(toArray(std::move(found.labels)), rgb);
 }
 
-/// Moves points from index coordinates to the world.
-void toWorld(const openvdb::math::Transform& transform, GrainMesh& mesh) {
-  for (openvdb::Vec3f& point : mesh.points)
-    point = openvdb::Vec3f(transform.indexToWorld(openvdb::Vec3d(point)));
-}
-
 /// The arrays show the mesh's own memory, which lives as long as one of them.
 py::dict toDict(GrainMesh mesh) {
   auto owned = std::make_unique<GrainMesh>(std::move(mesh));
@@ -113,7 +108,7 @@ py::dict mesh(const GridPtr& labels, const Call& call, int smoothing,
     asLabels(*labels);
     if (!ids.empty()) grid = selectGrains(*grid, ids, interrupter);
     GrainMesh made = grainMesh(*grid, options, interrupter);
-    toWorld(grid->transform(), made);
+    made.points = worldPoints(made, grid->transform());
     return made;
   }));
 }

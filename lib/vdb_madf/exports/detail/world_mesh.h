@@ -10,6 +10,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/mesh_file.h"
+#include "vdb_madf/shapes/world_points.h"
 
 namespace vdb_madf::detail {
 
@@ -19,10 +20,12 @@ class WorldMesh {
   WorldMesh(const GrainMesh& mesh, const MeshFileOptions& options, const std::string& path)
       : mesh_(mesh), options_(options) {
     for (const int32_t label : mesh.labels) colors_.push_back(options.colors.colorOf(label));
-    if (!options.transform) return;
-    if (!options.transform->isLinear())
+    const openvdb::math::Transform::ConstPtr transform =
+        options.transform ? options.transform : openvdb::math::Transform::createLinearTransform();
+    if (!transform->isLinear())
       throw InvalidInput(path + ": the grid's transform is not linear: resample the grid first");
-    isMirrored_ = options.transform->baseMap()->determinant() < 0;
+    isMirrored_ = transform->baseMap()->determinant() < 0;
+    points_ = worldPoints(mesh, *transform);
   }
 
   const GrainMesh& mesh() const { return mesh_; }
@@ -30,11 +33,7 @@ class WorldMesh {
   int32_t label(size_t grain) const { return mesh_.labels[grain]; }
   Rgb color(size_t grain) const { return colors_[grain]; }
 
-  openvdb::Vec3f point(uint32_t index) const {
-    const openvdb::Vec3f& p = mesh_.points[index];
-    return options_.transform ? openvdb::Vec3f(options_.transform->indexToWorld(openvdb::Vec3d(p)))
-                              : p;
-  }
+  const openvdb::Vec3f& point(uint32_t index) const { return points_[index]; }
   /// A mirrored world turns triangles inside out.
   std::array<uint32_t, 3> triangle(uint32_t index) const {
     std::array<uint32_t, 3> result = mesh_.triangles[index];
@@ -65,6 +64,7 @@ class WorldMesh {
   const GrainMesh& mesh_;
   const MeshFileOptions& options_;
   std::vector<Rgb> colors_;  ///< of the grains
+  std::vector<openvdb::Vec3f> points_;
   bool isMirrored_ = false;
 };
 
