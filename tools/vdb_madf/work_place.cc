@@ -51,7 +51,7 @@ std::vector<NamedText> choiceOptions(const SegmentArguments& o) {
           {"keep", o.keep}};
 }
 
-/// What the slabs in scratch depend on.
+/// What the slabs in scratch depend on. --max-memory only says where to cut, which is done once.
 std::string workOf(const SegmentArguments& o) {
   const std::string& in = o.input.path;
   std::error_code ignored;
@@ -63,7 +63,7 @@ std::string workOf(const SegmentArguments& o) {
   for (const auto& option : choiceOptions(o)) work += "\n" + option.second;
   for (const std::string& text : {o.boundary, o.gamma, o.fillHoles, o.tidy, o.merge.strictness,
                                   o.merge.mode, o.merge.theta, o.merge.delta, o.merge.adjacency,
-                                  o.merge.minGrain, o.maxMemory, std::to_string(o.slabHeight)})
+                                  o.merge.minGrain, std::to_string(o.slabHeight)})
     work += "\n" + text;
   for (const bool flag : {o.input.invert, o.paper}) work += flag ? "\nyes" : "\nno";
   return work;
