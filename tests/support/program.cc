@@ -59,6 +59,10 @@ struct Pipe {
     const rlimit limit{rlim_t(options.largestFile), rlim_t(options.largestFile)};
     ::setrlimit(RLIMIT_FSIZE, &limit);
   }
+  if (options.memory > 0) {
+    const rlimit limit{rlim_t(options.memory), rlim_t(options.memory)};
+    ::setrlimit(RLIMIT_AS, &limit);
+  }
   // A program that hangs, or that outlives an aborted test, must not stay.
   const rlimit seconds{kMaxSeconds, kMaxSeconds};
   ::setrlimit(RLIMIT_CPU, &seconds);

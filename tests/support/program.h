@@ -26,6 +26,7 @@ struct RunOptions {
   std::string piped;        ///< what comes through a pipe there, at most 64 KiB
   std::string out;          ///< file or device for standard output, which is then not captured
   int64_t largestFile = 0;  ///< bytes; 0: no limit
+  int64_t memory = 0;       ///< bytes that it may map; 0: no limit
   std::string interruptOn;  ///< send `signal` when a file appears whose name begins with this
   int signal = 0;
   double delay = 0;  ///< seconds from then to the signal

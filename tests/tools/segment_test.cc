@@ -385,6 +385,11 @@ TEST_CASE("cli: segment --dry-run says what it would take, and does nothing", "[
   CHECK(bench.mustRun("segment p.vdb --dry-run --max-memory 1M").find("it does not fit") !=
         std::string::npos);
 
+  RunOptions little;  // ulimit -v
+  little.memory = int64_t(2) << 30;
+  const Json within = Json::parse(bench.run("segment p.vdb --dry-run --json -", little).out);
+  CHECK(within.at("memory_limit_bytes") < little.memory);
+
   const std::string inSlabs = "segment p.vdb o.slabs --slab-height 40 ";
   const Json slabs = Json::parse(bench.mustRun(inSlabs + "--dry-run --json -"));
   CHECK_THAT(bench.mustRun(inSlabs + "--dry-run"), Contains("slabs            4") &&

@@ -169,8 +169,10 @@ int runCommand(const char* program, int argc, char** argv, Team* team) {
   } catch (const IoError& error) {
     return fail(team, kFailed, std::string(error.what()) + optionFor(error.hint()));
   } catch (const std::bad_alloc&) {
-    return fail(team, kFailed,
-                "out of memory: crop or coarsen the volume, or use a machine with more memory");
+    return fail(
+        team, kFailed,
+        "out of memory: crop or coarsen the volume, segment in slabs (OUT.slabs) with a lower "
+        "--max-memory, or use a machine with more memory");
   } catch (const std::exception& error) {
     return fail(team, kFailed, error.what());
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "vdb_madf/base/memory.h"
+#include "vdb_madf/base/detail/control_groups.h"
 #include "vdb_madf/base/detail/text.h"
 
 #include <sys/resource.h>
@@ -10,18 +11,32 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <string>
+#include <utility>
 
 namespace vdb_madf {
 
 namespace {
 
-/// A control group's number of bytes; 0 if there is none ("max").
-int64_t groupBytes(const char* path) {
+std::string textOf(const char* path) {
   std::ifstream file(path);
-  int64_t bytes = 0;
-  return file >> bytes ? bytes : 0;
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// What this process may still map: its own limits (`ulimit -v`, `ulimit -d`) without what it has.
+int64_t freeInProcess() {
+  std::ifstream file("/proc/self/statm");
+  int64_t pages[6] = {};  // the first: all, the last: data and stack
+  for (int64_t& number : pages) file >> number;
+  int64_t least = std::numeric_limits<int64_t>::max();
+  for (const auto& [resource, used] : {std::pair(RLIMIT_AS, pages[0]), {RLIMIT_DATA, pages[5]}}) {
+    struct rlimit limit {};
+    if (::getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+      least = std::min(least, int64_t(limit.rlim_cur) - used * ::sysconf(_SC_PAGESIZE));
+  }
+  return least;
 }
 
 }  // namespace
@@ -42,10 +57,10 @@ int64_t availableMemory() {
     }
     std::getline(file, rest);
   }
-  if (const int64_t limit = groupBytes("/sys/fs/cgroup/memory.max"))
-    available = std::min(available,
-                         std::max<int64_t>(1, limit - groupBytes("/sys/fs/cgroup/memory.current")));
-  return available;
+  if (available == 0) return 0;
+  const int64_t allowed = std::min(
+      freeInProcess(), detail::freeInGroups(textOf("/proc/self/cgroup"), "/sys/fs/cgroup"));
+  return std::max<int64_t>(1, std::min(available, allowed));
 }
 
 int64_t memoryLimit() {

@@ -11,8 +11,8 @@ namespace vdb_madf {
 /// Largest resident memory of this process so far, bytes.
 int64_t peakMemory();
 
-/// Bytes that the machine has free for a program, caches given back, within the limit of its
-/// control group; 0 if that is unknown.
+/// Bytes that the machine has free for a program, caches given back, within the limits of its
+/// control groups and its own (`ulimit -v`); 0 if that is unknown.
 int64_t availableMemory();
 
 /// Bytes that this process can have at most: the machine's memory, or the process's own limits.
