@@ -181,7 +181,7 @@ TEST_CASE("estimate_blur: none of a mask, noise, one value, NaN or small grains"
   for (float& value : values) value = std::numeric_limits<float>::quiet_NaN();
   CHECK_FALSE(estimateBlur(*row.scan().image));
   size_t at = 0;
-  for (float& value : values) value = at++ % 23 < 9 ? 1 : 0;  // sheets of nine voxels
+  for (float& value : values) value = at++ % 12 < 6 ? 1 : 0;  // sheets of six voxels
   CHECK_FALSE(estimateBlur(*row.scan().image));
   CHECK_THROWS_AS(blurOf(*row.scan().image), InvalidInput);
 }

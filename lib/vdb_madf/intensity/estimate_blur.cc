@@ -19,9 +19,9 @@ namespace vdb_madf {
 namespace {
 
 constexpr int kMiddleSide = 512, kMiddleSlices = 48;
-constexpr int kFar = 5;               // voxels from an edge, and further ones are far
-constexpr int64_t kFewestFar = 1000;  // voxels of either material
-constexpr double kSmoothing = 0.5;    // variance of (1 2 1)/4
+constexpr int kFar = 5, kLeastFar = 3;  // voxels from an edge, and further ones are far
+constexpr int64_t kFewestFar = 1000;    // voxels of either material
+constexpr double kSmoothing = 0.5;      // variance of (1 2 1)/4
 
 /// The middle of an image, x fastest.
 struct Middle {
@@ -111,19 +111,37 @@ class ValuesReader : public ImageReader {
 
 enum Material : uint8_t { pore, solid, absent };
 
-/// Which voxels have another material within kFar voxels; 2: one that is absent.
-std::vector<uint8_t> nearOthers(const Middle& middle, const std::vector<uint8_t>& materials) {
-  std::vector<uint8_t> near(middle.voxels(), 0), isOfIt(middle.voxels());
+constexpr int16_t kAbsent = -1;
+
+/// Squared distances to the nearest voxel of another material, up to kFar; kAbsent within that of
+/// one that is absent.
+std::vector<int16_t> edgeSquares(const Middle& middle, const std::vector<uint8_t>& materials) {
+  std::vector<int16_t> nearest(middle.voxels(), (kFar + 1) * (kFar + 1));
+  std::vector<uint8_t> isOfIt(middle.voxels());
   for (const uint8_t material : {pore, solid, absent}) {
     std::transform(materials.begin(), materials.end(), isOfIt.begin(),
                    [&](uint8_t m) { return uint8_t(m == material); });
     const std::vector<int16_t> squares = detail::nearSquares(
         {size_t(middle.nz), size_t(middle.ny), size_t(middle.nx)}, isOfIt, kFar);
-    for (size_t i = 0; i < near.size(); ++i)
-      if (materials[i] != material && squares[i] <= kFar * kFar)
-        near[i] = material == absent ? 2 : std::max<uint8_t>(near[i], 1);
+    for (size_t i = 0; i < nearest.size(); ++i)
+      if (material == absent && squares[i] <= kFar * kFar)
+        nearest[i] = kAbsent;
+      else if (materials[i] != material)
+        nearest[i] = std::min(nearest[i], squares[i]);
   }
-  return near;
+  return nearest;
+}
+
+/// How far from edges voxels have to be so that there are enough of either material.
+std::optional<int> farOf(const std::vector<uint8_t>& materials,
+                         const std::vector<int16_t>& squares) {
+  for (int far = kFar; far >= kLeastFar; --far) {
+    int64_t voxels[2] = {0, 0};
+    for (size_t i = 0; i < squares.size(); ++i)
+      if (squares[i] > far * far) ++voxels[materials[i]];
+    if (voxels[pore] >= kFewestFar && voxels[solid] >= kFewestFar) return far;
+  }
+  return std::nullopt;
 }
 
 /// Mean and variance of the values of some voxels.
@@ -142,19 +160,19 @@ struct Moments {
 
 /// Sum of f (1 - f) at the edges without what the noise adds to it.
 double edgeSum(const std::vector<float>& values, const std::vector<uint8_t>& materials,
-               const std::vector<uint8_t>& near, ScanBlur& blur) {
-  Moments far[2];
+               const std::vector<int16_t>& squares, int far, ScanBlur& blur) {
+  Moments plain[2];
   for (size_t i = 0; i < values.size(); ++i)
-    if (near[i] == 0 && materials[i] != absent) far[materials[i]].add(double(values[i]));
-  blur.inside = far[solid].mean();
-  blur.outside = far[pore].mean();
+    if (squares[i] > far * far) plain[materials[i]].add(double(values[i]));
+  blur.inside = plain[solid].mean();
+  blur.outside = plain[pore].mean();
   const double contrast = blur.inside - blur.outside;
   const double variance =
-      (far[solid].variance() + far[pore].variance()) / 2 / (contrast * contrast);
+      (plain[solid].variance() + plain[pore].variance()) / 2 / (contrast * contrast);
   blur.noise = std::sqrt(std::max(variance, 0.0));
   double sum = 0;
   for (size_t i = 0; i < values.size(); ++i)
-    if (near[i] == 1 && materials[i] != absent) {
+    if (squares[i] >= 0 && squares[i] <= far * far) {
       const double f = (double(values[i]) - blur.outside) / contrast;
       sum += f * (1 - f) + variance;
     }
@@ -174,14 +192,12 @@ std::optional<ScanBlur> estimateBlur(ImageReader& image, Interrupter* interrupte
   std::vector<uint8_t> materials(smooth.size());
   for (size_t i = 0; i < smooth.size(); ++i)
     materials[i] = !std::isfinite(smooth[i]) ? absent : smooth[i] >= *threshold ? solid : pore;
-  const std::vector<uint8_t> near = nearOthers(middle, materials);
-  int64_t far[2] = {0, 0};
-  for (size_t i = 0; i < near.size(); ++i)
-    if (near[i] == 0 && materials[i] != absent) ++far[materials[i]];
-  if (far[pore] < kFewestFar || far[solid] < kFewestFar) return std::nullopt;
+  const std::vector<int16_t> squares = edgeSquares(middle, materials);
+  const auto far = farOf(materials, squares);
+  if (!far) return std::nullopt;
   ScanBlur blur, afterwards;
-  const double sharper = edgeSum(middle.values, materials, near, blur);
-  const double ratio = sharper / edgeSum(smooth, materials, near, afterwards);
+  const double sharper = edgeSum(middle.values, materials, squares, *far, blur);
+  const double ratio = sharper / edgeSum(smooth, materials, squares, *far, afterwards);
   if (!(ratio > 0 && ratio < 1)) return std::nullopt;
   blur.sigma = std::sqrt(kSmoothing * ratio * ratio / (1 - ratio * ratio));
   return blur;
@@ -191,7 +207,7 @@ ScanBlur blurOf(ImageReader& image, Interrupter* interrupter) {
   if (const auto blur = estimateBlur(image, interrupter)) return *blur;
   throw InvalidInput(image.path() +
                      ": its edges tell no blur: give the gray scan of two materials, in which "
-                     "grains and pores are wider than 10 voxels");
+                     "grains and pores are wider than 8 voxels");
 }
 
 }  // namespace vdb_madf

@@ -19,10 +19,10 @@ namespace vdb_madf {
 /// and 1 far inside: across a straight edge with a Gaussian blur the integral of f (1 - f) is
 /// sigma / sqrt(pi) per area, and sqrt(sigma^2 + 1/2) / sqrt(pi) after the smoothing, so that their
 /// ratio tells sigma without the area. Noise adds its variance to each, which is known from the
-/// voxels more than five voxels from any edge.
+/// voxels more than five voxels from any edge (four or three, if there are too few).
 ///
 /// Memory: 16 bytes a voxel of the middle.
-/// @return none if fewer than 1000 voxels of either material are that far from edges, or the edges
+/// @return none if fewer than 1000 voxels of either material are so far from edges, or the edges
 ///   tell no blur (a mask, labels, a scan without two materials).
 /// @throw IoError; Interrupted.
 std::optional<ScanBlur> estimateBlur(ImageReader& image, Interrupter* interrupter = nullptr);
