@@ -224,6 +224,7 @@ TEST_CASE("segment: by angle, a larger theta gives coarser grains", "[segment]")
     RandomCase c = usableCase(seed, smallSize(seed));
     c.options.merge.mode = MergeMode::angle;
     c.options.tidy = 0;  // tidied, grains share no manifolds
+    c.options.merge.minGrain = 0;
     Segmentation finer;
     for (const double theta : {-1.0, -0.95, -0.8, -0.5, 0.0, 1.0}) {
       c.options.merge.theta = theta;
@@ -384,6 +385,29 @@ TEST_CASE("segment: stops at any poll of the interrupter, with no result", "[seg
       // Nothing is left behind: the next run is as the first.
       CHECK(Everything(segment(*mask, options), object.box()) == expected);
     }
+  }
+}
+
+TEST_CASE("segment: the percentage that the interrupter hears never falls", "[segment]") {
+  class Hears : public Interrupter {
+   public:
+    bool wasInterrupted(int percent) override {
+      if (percent >= 0) percents.push_back(percent);
+      return false;
+    }
+    std::vector<int> percents;
+  };
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+  Rng rng(3);
+  const auto mask =
+      toMask(randomVolume(VolumeKind::roughBalls, boxAt({0, 0, 0}, {40, 43, 45}), rng));
+  for (const int64_t gamma : {0, 20}) {
+    SegmentOptions options;
+    options.gamma = gamma;
+    Hears hears;
+    segment(*mask, options, &hears);
+    CHECK(std::is_sorted(hears.percents.begin(), hears.percents.end()));
+    CHECK(hears.percents.back() > 90);
   }
 }
 

@@ -42,7 +42,7 @@ Interrupter* Stages::begin(const char* stage) {
   times_.push_back({stage, 0, 0});
   start_ = Clock::now();
   running_ = true;
-  before_ = 0;
+  before_ = largest_ = 0;
   for (const StageWeight& s : kStageWeights) {
     weight_ = weight(s, omitted_);
     if (std::string(stage) == s.stage) break;
@@ -63,8 +63,11 @@ void Stages::finish() {
 
 bool Stages::wasInterrupted(int percent) {
   if (!interrupter_) return false;
-  return interrupter_->wasInterrupted(percent < 0 ? percent
-                                                  : (100 * before_ + percent * weight_) / total_);
+  if (percent < 0) return interrupter_->wasInterrupted(percent);
+  int largest = largest_;
+  while (percent > largest && !largest_.compare_exchange_weak(largest, percent)) continue;
+  return interrupter_->wasInterrupted((100 * before_ + std::max(percent, largest) * weight_) /
+                                      total_);
 }
 
 }  // namespace vdb_madf::detail

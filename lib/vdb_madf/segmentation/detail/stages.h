@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <string>
 #include <vector>
@@ -27,6 +28,7 @@ class Stages : public Interrupter {
   Interrupter* begin(const char* stage);
   void finish();
 
+  /// Work in several loops counts each from 0: within a stage the percentage never falls.
   bool wasInterrupted(int percent) override;
 
  private:
@@ -38,6 +40,7 @@ class Stages : public Interrupter {
   Clock::time_point start_;
   bool running_ = false;
   int before_ = 0, weight_ = 0, total_ = 0;
+  std::atomic<int> largest_{0};  // per cent of the stage
 };
 
 }  // namespace vdb_madf::detail
