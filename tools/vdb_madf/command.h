@@ -32,6 +32,12 @@ Verb addVerb(Verb parent, Common& common, const std::string& name, const std::st
 /// Leaves out what is printed where it would get into an output on standard output.
 Common besideOutput(Common common, const std::string& output);
 
+/// A line to begin with. @param team of vdb_madf_mpi; null for vdb_madf
+inline const char* exampleOfSegment(const Team* team) {
+  return team ? "mpiexec -n 4 vdb_madf_mpi segment core.tif core.slabs --phase 1"
+              : "vdb_madf segment scan.tif grains.vdb --phase 1 --voxel-size 8.5um";
+}
+
 // One function per verb; the returned action does the work once the command line is parsed.
 void addGenerate(Verb command, Common& common, Action& action);
 void addConvert(Verb command, Common& common, Action& action);

@@ -235,7 +235,9 @@ void addConvert(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<ConvertArguments>();
   Verb verb =
       addVerb(command, common, "convert", "any readable volume to any writable volume",
-              "vdb_madf convert scan.raw ice.vdb --dims 301x301x251 --type uint8 --threshold 128");
+              common.team ? "mpiexec -n 4 vdb_madf_mpi convert core.slabs core.raw"
+                          : "vdb_madf convert scan.raw ice.vdb --dims 301x301x251 --type uint8 "
+                            "--threshold 128");
   verb.option("IN", o->input.path, "any readable volume").required();
   verb.option("OUT", o->out,
               ".vdb (of an image a mask, or see --labels), " + wordList(writtenEndings()))

@@ -3,6 +3,7 @@
 
 #include "run_command.h"
 
+#include <fmt/core.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
@@ -116,12 +117,10 @@ int run(const char* program, int argc, char** argv, Team* team) {
   CommandLine line(program, "Separates the grains of granular microstructures in micro-CT volumes.",
                    versionText());
   Verb command = line.command();
-  command.footer(
-      "vdb_madf help VERB explains a verb.\nExample:\n"
-      "  vdb_madf segment scan.tif grains.vdb --phase 1 --voxel-size 8.5um");
-
   Common common;
   common.team = team;
+  command.footer(fmt::format("{} help VERB explains a verb.\nExample:\n  {}", program,
+                             exampleOfSegment(team)));
   Action action;
   if (team) {
     addConvert(command, common, action);

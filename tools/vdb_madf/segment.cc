@@ -223,7 +223,7 @@ void runSegment(const SegmentArguments& o, const Common& common) {
 void addSegment(Verb command, Common& common, Action& action) {
   auto o = std::make_shared<SegmentArguments>();
   Verb verb = addVerb(command, common, "segment", "cut the object into grains",
-                      "vdb_madf segment scan.tif grains.vdb --phase 1 --voxel-size 8.5um");
+                      exampleOfSegment(common.team));
   verb.option("IN", o->input.path, "any readable volume").required();
   verb.option("OUT", o->out,
               "gets the labels: .vdb (Int32 grid 'grain'), an image: .tif, .npy ..., or .slabs");
