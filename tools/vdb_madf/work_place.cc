@@ -61,9 +61,9 @@ std::string workOf(const SegmentArguments& o) {
                   fs::last_write_time(in, ignored).time_since_epoch().count());
   for (const auto& option : readingOptions(o.input)) work += "\n" + option.second;
   for (const auto& option : choiceOptions(o)) work += "\n" + option.second;
-  for (const std::string& text : {o.boundary, o.gamma, o.fillHoles, o.tidy, o.merge.strictness,
-                                  o.merge.mode, o.merge.theta, o.merge.delta, o.merge.adjacency,
-                                  o.merge.minGrain, std::to_string(o.slabHeight)})
+  for (const std::string& text :
+       {o.boundary, o.gamma, o.fillHoles, o.tidy, o.merge.strictness, o.merge.mode, o.merge.theta,
+        o.merge.delta, o.merge.adjacency, o.merge.minGrain, std::to_string(o.slabHeight)})
     work += "\n" + text;
   for (const bool flag : {o.input.invert, o.paper}) work += flag ? "\nyes" : "\nno";
   return work;
