@@ -41,7 +41,9 @@ void checkEdgeWeights(const std::optional<Domain>& domain, bool open) {
   const std::string what = "weights for grains cut by the faces of the scan";
   if (!domain) throw InvalidInput(what + ": its domain is unknown: give it");
   if (!domain->isBox())
-    throw InvalidInput(what + " are known for boxes alone, and the domain is a region: crop a box");
+    throw InvalidInput(what +
+                       " are known for boxes alone, and the domain is a region: crop a box out of "
+                       "it (vdb_madf convert --labels --crop)");
   if (!open)
     throw InvalidInput(what + ": none is cut where the boundary is closed; measure with it open");
 }
