@@ -172,7 +172,7 @@ TEST_CASE("grain_network: every measure is there, in world units", "[grain_netwo
     CHECK(value("inscribed_radius") == grain.inscribedRadius);
     CHECK(value("area") == Approx(value("free_area") + value("shared_area")));
     CHECK(value("free_area") == grain.freeArea);
-    CHECK(value("sphericity") == grain.sphericity);
+    CHECK(value("sphericity") == grain.sphericity.value());
     CHECK(value("axis2_length") == grain.ellipsoid.values[1]);
     CHECK(value("axis3_y") == grain.ellipsoid.axes[2][1]);
     CHECK(value("aspect_3_to_2") == grain.ellipsoid.values[2] / grain.ellipsoid.values[1]);
@@ -198,7 +198,8 @@ TEST_CASE("grain_network: what is not known is left out", "[grain_network]") {
   const auto grid = labelGrid(full);
   setDomain(*grid, CoordBBox(Coord(0), Coord(1)));
   const GrainNetwork network = grainNetwork(*grid);
-  for (const char* name : {"representative_x", "representative_z", "inscribed_radius"})
+  for (const char* name :
+       {"representative_x", "representative_z", "inscribed_radius", "sphericity"})
     CHECK(std::isnan(column(network.grainColumns, name)[1]));
   for (const char* name : {"distance", "cos_alpha", "mean_curvature", "curvature_residual"})
     CHECK(std::isnan(column(network.bondColumns, name)[0]));
@@ -206,8 +207,8 @@ TEST_CASE("grain_network: what is not known is left out", "[grain_network]") {
   for (const std::string end : {"vtp", "graphml", "csv"})
     writeNetwork(folder / ("n." + end), network);
   const std::string graphml = readFile(folder / "n.graphml"), csv = readFile(folder / "n.csv");
-  // Beside the columns a grain has its id and place; it lacks four of them.
-  const size_t grainData = 4 + network.grainColumns.size() - 4,
+  // Beside the columns a grain has its id and place; it lacks five of them.
+  const size_t grainData = 4 + network.grainColumns.size() - 5,
                bondData = network.bondColumns.size() - 7;
   CHECK(count(graphml, "</data>") == 2 * grainData + bondData);
   CHECK(count(csv, ",") == 3 * (5 + network.grainColumns.size() + network.bondColumns.size()));

@@ -7,6 +7,7 @@
 
 #include "support/catch.h"
 #include "support/known_bodies.h"
+#include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/measure/measure.h"
 
@@ -114,7 +115,18 @@ TEST_CASE("measure_grains: ellipsoids in any position", "[measure_grains]") {
     }
     CHECK(grain.inscribedRadius == Approx(semiAxes[2]).margin(1));
     CHECK((grain.representative->asVec3d() - center).length() < 3);
-    CHECK(grain.sphericity < 0.95);
+    CHECK(grain.sphericity.value() < 0.95);
+  }
+}
+
+TEST_CASE("measure_grains: the sphericity of a few voxels is not known", "[measure_grains]") {
+  for (const int edge : {1, 2, 3, 4}) {
+    LabelMap voxels;  // one grain in the other
+    for (const Coord& p : cube(edge + 8, Coord(-4))) voxels[p] = 1;
+    for (const Coord& p : cube(edge)) voxels[p] = 2;
+    const GrainMeasures grain = measure(*labelGrid(voxels)).grains.at(1);
+    CHECK(grain.sphericity.has_value() == (edge >= 3));
+    CHECK(grain.sphericity.value_or(0) <= 1);
   }
 }
 
@@ -123,7 +135,7 @@ TEST_CASE("measure_grains: a ball is round", "[measure_grains]") {
       drawLabels(cubeAround(17), [](const Vec3d& p) { return p.lengthSqr() < 15.2 * 15.2; });
   const GrainMeasures grain = measure(*labels).grains.at(0);
   CHECK(grain.equivalentDiameter == Approx(2 * 15.2).epsilon(0.005));
-  CHECK(grain.sphericity == Approx(1).epsilon(0.01));
+  CHECK(grain.sphericity.value() == Approx(1).epsilon(0.01));
   CHECK(grain.ellipsoid.values[2] / grain.ellipsoid.values[0] == Approx(1).epsilon(0.005));
   CHECK(grain.representative.value() == Coord(0));
   CHECK(grain.inscribedRadius == Approx(15.2).margin(0.8));

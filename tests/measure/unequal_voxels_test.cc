@@ -99,7 +99,7 @@ TEST_CASE("unequal_voxels: balls have the size that they have in space", "[unequ
       CHECK(grain.volume == Approx(4. / 3 * M_PI * radius * radius * radius).epsilon(0.01));
       CHECK(grain.equivalentDiameter == Approx(2 * radius).epsilon(0.01));
       CHECK(grain.freeArea == Approx(4 * M_PI * radius * radius).epsilon(0.02));
-      CHECK(grain.sphericity == Approx(1).epsilon(0.02));
+      CHECK(grain.sphericity.value() == Approx(1).epsilon(0.02));
       CHECK((grain.centroid * edges - center).length() < 0.1);
       for (const double length : grain.ellipsoid.values)
         CHECK(length == Approx(2 * radius).epsilon(0.02));

@@ -154,7 +154,8 @@ def check_intervals(grains, bonds, numbers, unit):
     quotients = {
         f"grain_diameter_mean_interval_{unit}": (diameters, one),
         f"grain_volume_mean_interval_{unit}3": (grains[f"volume_{unit}3"], one),
-        "sphericity_mean_interval": (grains["sphericity"], one),
+        "sphericity_mean_interval": (np.nan_to_num(grains["sphericity"]),
+                                     np.isfinite(grains["sphericity"]).astype(float)),
         f"specific_surface_interval_per_{unit}": (grains[f"free_area_{unit}2"],
                                                   grains[f"volume_{unit}3"]),
         "mean_coordination_interval": (grains["coordination"], one),

@@ -32,7 +32,7 @@ class Measurements:
     - `representative_*`, `inscribed_radius`: the voxel farthest from the background, and how far
     - `free_area` towards the background, `shared_area` towards other grains, `area` of both;
       `cut_area`: faces at the wall of an open domain, which are no surface
-    - `sphericity`: area of the ball of this volume / (area + cut area)
+    - `sphericity`: area of the ball of this volume / (area + cut area), of 27 voxels or more
     - axes of the ellipsoid of the same second moments, the longest first: `axis1_length`,
       `axis2_length`, `axis3_length`, directions `axis1_*`, `axis2_*`, `axis3_*`, and ratios of the
       lengths `aspect_2_to_1`, `aspect_3_to_2`

@@ -72,7 +72,9 @@ GrainQuotients quotientsOf(const std::vector<GrainMeasures>& grains,
   };
   addMean("grain_diameter_mean", 1, [](const G& g) { return g.equivalentDiameter; });
   addMean("grain_volume_mean", 3, [](const G& g) { return g.volume; });
-  addMean("sphericity_mean", 0, [](const G& g) { return g.sphericity; });
+  quotients.add("sphericity_mean", 0, [](const G& g) {
+    return Quotient{g.sphericity.value_or(0), g.sphericity ? 1.0 : 0.0};
+  });
   quotients.add("specific_surface", -1, [](const G& g) { return Quotient{g.freeArea, g.volume}; });
   addMean("mean_coordination", 0, [](const G& g) { return g.coordination; });
   std::map<int32_t, double> ratios = bondRatios(grains, bonds);

@@ -110,7 +110,7 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
   make.add("free_area", 2, [](const G& g) { return g.freeArea; });
   make.add("shared_area", 2, [](const G& g) { return g.sharedArea; });
   make.add("cut_area", 2, [](const G& g) { return g.cutArea; });
-  make.add("sphericity", 0, [](const G& g) { return g.sphericity; });
+  make.add("sphericity", 0, [](const G& g) { return g.sphericity.value_or(kNone); });
   const std::string axes[] = {"axis1", "axis2", "axis3"};
   for (size_t i = 0; i < 3; ++i)
     make.add(axes[i] + "_length", 1, [i](const G& g) { return g.ellipsoid.values[i]; });

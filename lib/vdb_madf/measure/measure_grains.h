@@ -38,7 +38,9 @@ struct GrainMeasures {
   double freeArea = 0;            ///< towards the background
   double sharedArea = 0;          ///< towards other grains, be there a bond or too few faces for it
   double cutArea = 0;             ///< voxel faces at the wall of an open domain; in no other area
-  double sphericity = 0;          ///< area of the ball of this volume / area, the cut one included
+  /// Area of the ball of this volume / area, the cut one included; none for grains of fewer than
+  /// 27 voxels, whose area is too uncertain.
+  std::optional<double> sphericity;
   /// Axes of inertia and the lengths (not half lengths) of the axes of the ellipsoid that has the
   /// grain's second moments, voxels being boxes.
   Principal ellipsoid;

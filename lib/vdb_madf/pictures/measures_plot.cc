@@ -178,7 +178,7 @@ std::string measuresPlot(const Measurements& m, const std::string& title, PlotTy
     if (grain.atDomainFace) continue;
     diameters.add(length * grain.equivalentDiameter, 1);
     volumes.add(length * grain.equivalentDiameter, grain.volume / volume);
-    sphericities.add(grain.sphericity, 1);
+    if (grain.sphericity) sphericities.add(*grain.sphericity, 1);
     coordinations.add(grain.coordination, 1);
     axes.emplace_back(grain.ellipsoid.axes[0], grain.volume);
   }

@@ -15,6 +15,8 @@ namespace {
 
 /// Second moment of a cube of one voxel about its center, along each axis.
 constexpr double kVoxelMoment = 1.0 / 12;
+/// Voxels, of a cube of three. The area of fewer may come out under that of their ball.
+constexpr int64_t kLeastOfSphericity = 27;
 
 /// A solid ellipsoid of half axis a has the moment a^2 / 5 along it.
 Principal ellipsoidOf(const GrainSums& grain, const VoxelShape& voxel) {
@@ -67,7 +69,7 @@ std::vector<GrainMeasures> grainMeasures(const LabelSums& sums,
   for (GrainMeasures& grain : grains) {
     const double ball = M_PI * grain.equivalentDiameter * grain.equivalentDiameter;
     const double area = grain.totalArea() + grain.cutArea;
-    grain.sphericity = area > 0 ? ball / area : 0;
+    if (grain.voxels >= kLeastOfSphericity && area > 0) grain.sphericity = ball / area;
   }
   return grains;
 }
