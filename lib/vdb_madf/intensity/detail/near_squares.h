@@ -10,8 +10,8 @@
 
 namespace vdb_madf::detail {
 
-/// Squared distances of the voxels of a dense block to the nearest source, those beyond `reach`
-/// being (reach + 1)^2. One axis after the other (Saito & Toriwaki 1994), only as far as it reaches.
+/// Squared distances of the voxels of a dense block to the nearest source; those beyond `reach` are
+/// (reach + 1)^2. One axis after the other (Saito & Toriwaki 1994), only as far as it reaches.
 /// @param sizes of the axes, the one whose voxels follow one another last
 /// @param isSource one for each voxel, 0 or 1
 /// @param reach at most 100
