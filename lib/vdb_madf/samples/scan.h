@@ -44,7 +44,8 @@ Sample scanned(const Sample& sample, const ScanOptions& options,
 /// The gray values of a scan of the sample's bodies in a box of voxels, x fastest: 10000 in the air
 /// and 30000 in the bodies, in between by the share of the voxel that lies in them; then blur and
 /// noise as above (noise 0.1 has standard deviation 2000), rounded, and cut at 0 and 65535. Unlike
-/// an object, which goes on as its voxels at the face, bodies lie beyond the faces as they are.
+/// an object, which goes on as its voxels at the face, balls and particles lie beyond the faces as
+/// they are; a sintered bed goes on as its voxels do.
 ///
 /// Shares are counted over 8 x 8 x 8 points in each voxel that a surface crosses. That of a plane
 /// is off by 0.004 in the root of the mean square over all places and directions, and by up to 1/16
