@@ -183,6 +183,9 @@ TEST_CASE("estimate_blur: none of a mask, noise, one value, NaN or small grains"
   size_t at = 0;
   for (float& value : values) value = at++ % 12 < 6 ? 1 : 0;  // sheets of six voxels
   CHECK_FALSE(estimateBlur(*row.scan().image));
+  row = fourPairs();  // edges that are wider than what is looked at
+  smoothedImage(imageOf(row.size, row.grays), 4)->read(0, row.size.z, row.grays.data());
+  CHECK_FALSE(estimateBlur(*row.scan().image));
   CHECK_THROWS_AS(blurOf(*row.scan().image), InvalidInput);
 }
 

@@ -19,9 +19,10 @@ namespace vdb_madf {
 namespace {
 
 constexpr int kMiddleSide = 512, kMiddleSlices = 48;
-constexpr int kFar = 5, kLeastFar = 3;  // voxels from an edge, and further ones are far
-constexpr int64_t kFewestFar = 1000;    // voxels of either material
-constexpr double kSmoothing = 0.5;      // variance of (1 2 1)/4
+constexpr int kFar = 5, kLeastFar = 3;    // voxels from an edge, and further ones are far
+constexpr double kMostBlur = kFar / 2.0;  // wider edges reach beyond what is far
+constexpr int64_t kFewestFar = 1000;      // voxels of either material
+constexpr double kSmoothing = 0.5;        // variance of (1 2 1)/4
 
 /// The middle of an image, x fastest.
 struct Middle {
@@ -200,6 +201,7 @@ std::optional<ScanBlur> estimateBlur(ImageReader& image, Interrupter* interrupte
   const double ratio = sharper / edgeSum(smooth, materials, squares, *far, afterwards);
   if (!(ratio > 0 && ratio < 1)) return std::nullopt;
   blur.sigma = std::sqrt(kSmoothing * ratio * ratio / (1 - ratio * ratio));
+  if (blur.sigma > kMostBlur) return std::nullopt;
   return blur;
 }
 

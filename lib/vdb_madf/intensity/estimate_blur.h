@@ -23,7 +23,7 @@ namespace vdb_madf {
 ///
 /// Memory: 16 bytes a voxel of the middle.
 /// @return none if fewer than 1000 voxels of either material are so far from edges, or the edges
-///   tell no blur (a mask, labels, a scan without two materials).
+///   tell no blur, or one of more than 2.5 voxels (a mask, labels, a scan without two materials).
 /// @throw IoError; Interrupted.
 std::optional<ScanBlur> estimateBlur(ImageReader& image, Interrupter* interrupter = nullptr);
 

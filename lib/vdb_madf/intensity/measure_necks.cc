@@ -244,7 +244,7 @@ class NeckMeter {
       double sum = 0;
       for (size_t s = 0; s < byHeight.size(); ++s) {
         const double z = (double(s) + 0.5) / kFine - kHeight;
-        const double d = (z - (k * 0.5 - SectionFit::kReach)) / kThickness;
+        const double d = (z - SectionFit::height(k)) / kThickness;
         if (std::abs(d) < 4) sum += byHeight[s] * std::exp(-0.5 * d * d);
       }
       sections[k] = sum / (kThickness * std::sqrt(2 * M_PI));

@@ -11,7 +11,6 @@ namespace vdb_madf::detail {
 
 namespace {
 
-constexpr double kStep = 0.5;
 constexpr double kRoundings[] = {0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 1.75, 2, 2.5, 3, 3.5, 4};
 constexpr double kLastShift = 1.25, kShiftStep = 0.25;
 /// Before the sections are seen.
@@ -20,10 +19,6 @@ constexpr double kCuspShare = 0.5;
 constexpr double kUncorrelated = 0.05;
 constexpr double kLeastVariance = 0.1;  // voxel faces squared: the voxels' own grain
 constexpr int kQuadrature = 200;        // steps over five deviations to either side
-
-double height(int section) {
-  return section * kStep - SectionFit::kReach;
-}
 
 double rounded(double z, double rounding) {
   const double distance = std::abs(z);

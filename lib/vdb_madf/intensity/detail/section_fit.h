@@ -14,13 +14,16 @@ namespace vdb_madf::detail {
 /// k(z) = |z| beyond t and z^2 / 2t + t / 2 within: of two balls t is 0, a fillet rounds the neck.
 /// The blurred model is fitted by least squares for each shift s and rounding t of a grid, with the
 /// covariance of neighboring sections; what it leaves is added to it, sharpened once (van Cittert).
-/// The result is the mean over all s and t by their likelihood, with 4/5 for t = 0 beforehand.
+/// The result is the mean over all s and t by their likelihood, with 1/2 for t = 0 beforehand.
 class SectionFit {
  public:
   /// Sections are taken with a Gaussian weight of this deviation along the normal.
   static constexpr double kThickness = 0.6;
-  static constexpr int kSections = 21;  ///< half a voxel apart
+  static constexpr int kSections = 21;
+  static constexpr double kStep = 0.5;  ///< from one to the next, voxels
   static constexpr double kReach = 5;   ///< height of the last one
+
+  static constexpr double height(int section) { return section * kStep - kReach; }
 
   using Sections = Eigen::Matrix<double, kSections, 1>;
   struct Area {
