@@ -13,9 +13,7 @@
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
-#include "vdb_madf/samples/detail/ball_union.h"
-#include "vdb_madf/samples/detail/bodies.h"
-#include "vdb_madf/samples/detail/power_cells.h"
+#include "vdb_madf/samples/detail/ball_sample.h"
 #include "vdb_madf/samples/detail/sample_options.h"
 
 namespace vdb_madf {
@@ -137,16 +135,10 @@ Sample generateBalls(const BallOptions& options, Interrupter* interrupter) {
   const detail::Lattice lattice(options.voxelSize);
   const Coord voxels = lattice.voxels(size);
   const std::vector<Ball> balls = ballsIn(size, options, bounds.lower / 2.0 + bounds.upper / 2.0);
-  detail::BallUnion object(voxels, false, lattice);
-  object.add(balls, interrupter);
-  Sample sample;
-  sample.object = MaskGrid::create(object.takeTree());
-  sample.truth =
-      Int32Grid::create(detail::powerCells(sample.object->tree(), balls, interrupter, lattice));
-  sample.bodies = detail::ballBodies(balls, lattice);
   detail::SourceText source("balls " + options.list);
   source.size(size).add("radius", options.radius).edges(options.voxelSize);
-  return detail::described(sample, voxels, source, options.voxelSize);
+  return detail::described(detail::ballSample(balls, voxels, lattice, interrupter), voxels, source,
+                           options.voxelSize);
 }
 
 }  // namespace vdb_madf

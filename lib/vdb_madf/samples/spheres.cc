@@ -9,9 +9,7 @@
 #include <vector>
 
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/samples/detail/ball_union.h"
-#include "vdb_madf/samples/detail/bodies.h"
-#include "vdb_madf/samples/detail/power_cells.h"
+#include "vdb_madf/samples/detail/ball_sample.h"
 #include "vdb_madf/samples/detail/sample_options.h"
 #include "vdb_madf/samples/detail/sphere_placement.h"
 
@@ -40,14 +38,6 @@ Sample generateSpheres(const SphereOptions& options, Interrupter* interrupter) {
   const detail::Lattice lattice(options.voxelSize);
   const Coord voxels = lattice.voxels(options.size);
   const std::vector<detail::Ball> balls = detail::placeSpheres(options, interrupter);
-  detail::BallUnion object(voxels, false, lattice);
-  object.add(balls, interrupter);
-
-  Sample sample;
-  sample.object = MaskGrid::create(object.takeTree());
-  sample.truth =
-      Int32Grid::create(detail::powerCells(sample.object->tree(), balls, interrupter, lattice));
-  sample.bodies = detail::ballBodies(balls, lattice);
   detail::SourceText source("spheres");
   source.size(options.size)
       .add("count", std::to_string(options.count))
@@ -56,7 +46,8 @@ Sample generateSpheres(const SphereOptions& options, Interrupter* interrupter) {
       .add("max-cover", std::to_string(options.maxCover))
       .add("seed", std::to_string(options.seed))
       .edges(options.voxelSize);
-  return detail::described(sample, voxels, source, options.voxelSize);
+  return detail::described(detail::ballSample(balls, voxels, lattice, interrupter), voxels, source,
+                           options.voxelSize);
 }
 
 }  // namespace vdb_madf
