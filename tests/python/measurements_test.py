@@ -82,11 +82,11 @@ def scan(labels):
 
 
 def test_what_is_there_on_demand(labels, scan, command, tmp_path):
-    everything = dict(shape=True, edge_weights=True, bootstrap=200)
+    everything = dict(shape=True, edge_weights=True, voronoi=True, bootstrap=200)
     np.save(tmp_path / "scan.npy", scan)
     labels.save(tmp_path / "labels.vdb")
     command("measure", tmp_path / "labels.vdb", tmp_path / "out", "--shape", "--edge-weights",
-            "--bootstrap", "200", "--intensity", tmp_path / "scan.npy")
+            "--voronoi", "--bootstrap", "200", "--intensity", tmp_path / "scan.npy")
     there = json.loads((tmp_path / "out" / "sample.json").read_text())
     for source in (scan, str(tmp_path / "scan.npy")):
         here = madf.measure(labels, intensity=source, **everything)

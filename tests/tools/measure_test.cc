@@ -526,7 +526,8 @@ TEST_CASE(
   bench.mustRun("convert balls.vdb scan.tif --grid truth --type uint8");
   bench.mustRun("measure balls.vdb plain");
   const std::string said = bench.mustRun(
-      "measure balls.vdb all --shape --edge-weights --bootstrap 100 --intensity scan.tif");
+      "measure balls.vdb all --shape --edge-weights --voronoi --bootstrap 100 --intensity "
+      "scan.tif");
   CHECK(said.find("corrected diameter") != std::string::npos);
   CHECK(said.find("  mean_coordination  ") != std::string::npos);
   const Table plain(bench.bytes("plain/grains.csv")), all(bench.bytes("all/grains.csv")),
@@ -537,8 +538,11 @@ TEST_CASE(
     CHECK(all.at(i, "gray_min") == all.at(i, "id"));  // the scan is that of the labels
     CHECK(all.at(i, "gray_max") == all.at(i, "id"));
     CHECK(all.at(i, "feret_max_mm") > all.at(i, "feret_min_mm"));
+    CHECK(all.at(i, "local_solid_fraction") ==
+          Approx(all.at(i, "volume_mm3") / all.at(i, "cell_volume_mm3")));
     CHECK((all.at(i, "edge_weight") == 0) == (all.at(i, "at_domain_face") == 1));
   }
+  CHECK(all.sum("cell_volume_mm3") == Approx(48 * 48 * 48 * 8e-6));  // the whole box
   for (size_t i = 0; i < bonds.rows.size(); ++i) {
     CHECK(bonds.at(i, "gray_min") == bonds.at(i, "first"));
     CHECK(bonds.at(i, "gray_max") == bonds.at(i, "second"));

@@ -325,7 +325,8 @@ TEST_CASE("slabs: tables, comparisons and images are those of one file", "[slabs
     std::string made, height, options, measures;
   };
   for (const Sample& sample :
-       {Sample{"--voxel-size 8um", "8", "", "--shape --edge-weights --bootstrap 100 --min-faces 5"},
+       {Sample{"--voxel-size 8um", "8", "",
+               "--shape --edge-weights --voronoi --bootstrap 100 --min-faces 5"},
         Sample{"--voxel-size 8x8x20um", "16", "--boundary closed --tidy 0", "--shape"},
         Sample{"", "40", "--fill-holes 1000 --merge neck", "--boundary closed --sample a"}}) {
     INFO(sample.made);

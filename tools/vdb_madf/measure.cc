@@ -224,6 +224,8 @@ void addMeasure(Verb command, Common& common, Action& action) {
             "adds Feret diameters, convex volume, solidity and Zingg's class");
   verb.flag("--edge-weights", o->measure.edgeWeights,
             "adds weights for what the faces of a box cut, and sizes corrected by them");
+  verb.flag("--voronoi", o->measure.cells,
+            "adds each grain's set-Voronoi cell: its volume, local solid fraction and neighbors");
   verb.option("--intensity", o->intensity.path,
               "adds the gray values of grains and bonds in the scan that they were made of")
       .typeName("FILE");

@@ -43,7 +43,7 @@ struct Unit {
 };
 
 bool isFlag(const std::string& name) {
-  return name == "at_domain_face";
+  return name == "at_domain_face" || name == "cell_at_domain_face";
 }
 bool isLabel(const std::string& name) {
   return name == "id" || name == "first" || name == "second";
@@ -189,12 +189,13 @@ std::optional<GrayScan> openScan(const py::object& source, const std::string& pa
 py::dict measureLabels(const GridPtr& labels, const Call& call, const std::string& boundary,
                        int64_t minFaces, bool shape, const py::object& intensity,
                        const std::string& intensityGrid, const py::object& gray,
-                       const std::string& grayGrid, bool edgeWeights, int bootstrap) {
+                       const std::string& grayGrid, bool edgeWeights, bool voronoi, int bootstrap) {
   const Int32Grid& grid = asLabels(*labels);
   MeasureOptions options;
   options.minFaces = minFaces;
   options.shape = shape;
   options.edgeWeights = edgeWeights;
+  options.cells = voronoi;
   options.bootstrap = bootstrap;
   if (const Boundary given = boundaryOf(boundary); given != Boundary::automatic)
     options.boundary = given;
@@ -269,7 +270,7 @@ void bindMeasures(py::module_& m) {
   m.def("measure", measureLabels, py::arg("labels"), py::arg("call"), py::kw_only(),
         py::arg("boundary"), py::arg("min_faces"), py::arg("shape"), py::arg("intensity"),
         py::arg("intensity_grid"), py::arg("gray"), py::arg("gray_grid"), py::arg("edge_weights"),
-        py::arg("bootstrap"));
+        py::arg("voronoi"), py::arg("bootstrap"));
   m.def("compare", compareLabels, py::arg("truth"), py::arg("test"), py::arg("call"));
 }
 

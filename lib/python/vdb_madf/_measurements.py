@@ -41,6 +41,8 @@ class Measurements:
       `zingg_class`: 1 disc, 2 equant, 3 blade, 4 rod
     - with intensity: `gray_voxels`, `gray_mean`, `gray_sd`, `gray_min`, `gray_max`, `gray_median`
     - with edge_weights: `edge_weight`: how much it counts in corrected sizes; 0 at the faces
+    - with voronoi: `cell_volume` of what is nearer to this grain than to others,
+      `local_solid_fraction` (volume / that), `cell_neighbors`; `cell_at_domain_face`: it ends there
 
     bonds, a row for each pair of grains that touch, by `first`, then `second` (ids):
     - `faces` of voxels; `area`, `radius` of the disc of this area; `centroid_*`, and `normal_*`
@@ -107,8 +109,8 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
             boundary: str = "auto", min_faces: int = 1, shape: bool = False,
             intensity: Optional[Source] = None, intensity_grid: Optional[str] = None,
             gray: Optional[Source] = None, gray_grid: Optional[str] = None,
-            edge_weights: bool = False, bootstrap: int = 0, dataset: Optional[str] = None,
-            grid: Optional[str] = None, progress: Progress = None,
+            edge_weights: bool = False, voronoi: bool = False, bootstrap: int = 0,
+            dataset: Optional[str] = None, grid: Optional[str] = None, progress: Progress = None,
             threads: int = 0) -> Measurements:
     """Measures the grains of labels, of any program.
 
@@ -128,6 +130,8 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
     in the sample `scan_blur` and `scan_noise_of_contrast`. gray_grid: as intensity_grid.
     edge_weights: column `edge_weight` of the grains (0 at the faces), and in the sample
     `corrected_grain_diameter_mean`, `corrected_diameter_by_number` ... The domain has to be a box.
+    voronoi: columns `cell_volume`, `local_solid_fraction`, `cell_neighbors`, `cell_at_domain_face`
+    of the grains' set-Voronoi cells, in the time of the domain's box.
     bootstrap: replicates, 100 to 100000: in the sample `intervals`, by name of a mean its `mean`
     and the ends `low` and `high` of its 95 % interval."""
     with calling(progress, threads) as call:
@@ -137,6 +141,6 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
                              shape=shape, intensity=None if intensity is None
                              else readable(intensity), intensity_grid=intensity_grid or "",
                              gray=None if gray is None else readable(gray),
-                             gray_grid=gray_grid or "", edge_weights=edge_weights,
+                             gray_grid=gray_grid or "", edge_weights=edge_weights, voronoi=voronoi,
                              bootstrap=bootstrap)
     return Measurements(**made, provenance=measured.metadata)

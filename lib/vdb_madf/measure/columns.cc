@@ -62,6 +62,15 @@ void addShape(ColumnMaker<GrainMeasures>& make) {
   make.addCount("zingg_class", [](const G& g) { return zinggClass(g.ellipsoid.values); });
 }
 
+void addCells(ColumnMaker<GrainMeasures>& make) {
+  using G = GrainMeasures;
+  make.add("cell_volume", 3, [](const G& g) { return g.cell ? g.cell->volume : kNone; });
+  make.add("local_solid_fraction", 0,
+           [](const G& g) { return g.cell ? g.localSolidFraction() : kNone; });
+  make.addCount("cell_neighbors", [](const G& g) { return g.cell ? g.cell->neighbors : 0; });
+  make.addCount("cell_at_domain_face", [](const G& g) { return g.cell && g.cell->atDomainFace; });
+}
+
 /// Adds the columns of grains or bonds.
 template <typename Item>
 void addGray(ColumnMaker<Item>& make) {
@@ -129,6 +138,7 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
   if (extra.shape) addShape(make);
   if (extra.gray) addGray(make);
   if (extra.edgeWeights) make.add("edge_weight", 0, [](const G& g) { return g.edgeWeight; });
+  if (extra.cells) addCells(make);
   return make.columns();
 }
 

@@ -33,7 +33,9 @@ struct MeasureColumn {
 /// `axis3...`, `box_min_x` ..., `box_max_x` ... (index coordinates), `coordination`,
 /// `at_domain_face` (0 or 1). With the shape also `feret_max`, `feret_min`, `convex_volume`,
 /// `solidity`, `zingg_class` (1 to 4: zinggClass()); with gray values `gray_voxels`, `gray_mean`,
-/// `gray_sd`, `gray_min`, `gray_max`, `gray_median`; with edge weights `edge_weight`.
+/// `gray_sd`, `gray_min`, `gray_max`, `gray_median`; with edge weights `edge_weight`;
+/// with cells `cell_volume`, `local_solid_fraction`, `cell_neighbors`, `cell_at_domain_face` (0 or
+/// 1).
 std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains,
                                         const ExtraMeasures& extra = {});
 

@@ -11,6 +11,7 @@ struct ExtraMeasures {
   bool gray = false;         ///< GrainMeasures::gray, BondMeasures::gray
   bool edgeWeights = false;  ///< GrainMeasures::edgeWeight
   bool necks = false;        ///< BondMeasures::neck, Measurements::scan
+  bool cells = false;        ///< GrainMeasures::cell
 };
 
 }  // namespace vdb_madf

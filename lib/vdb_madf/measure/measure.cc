@@ -50,7 +50,8 @@ class SlabMeasuring {
     measure();
     std::array<std::optional<double>, 3> lengths;
     for (size_t axis = 0; axis < decays_.size(); ++axis) lengths[axis] = decays_[axis].length();
-    return measuring_.finish(representatives_, lengths, nullptr);
+    detail::WorkPart part(interrupter_, 100, 100);
+    return measuring_.finish(representatives_, lengths, &part);
   }
 
  private:

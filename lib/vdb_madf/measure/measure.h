@@ -38,6 +38,7 @@ struct MeasureOptions {
   bool shape = false;  ///< also GrainMeasures::shape
   /// Fills GrainMeasures::edgeWeight. The boundary has to be open, and the domain a box.
   bool edgeWeights = false;
+  bool cells = false;  ///< also GrainMeasures::cell, which takes the time of the domain's box
   /// Replicates of a bootstrap of the means (bootstrap.h); 0: none.
   int bootstrap = 0;
 };
@@ -69,8 +70,8 @@ struct Measurements {
 /// exact. Depends on nothing but labels, domain and boundary: not on tiles or threads, bit for bit.
 /// Memory: per grain, per face of a bond, and for the representatives per voxel.
 /// @throw InvalidInput if labels leave the domain, the boundary is open without one, minFaces is
-///   negative, edge weights or a bootstrap are asked for that cannot be had, no weights fit the
-///   voxels (voxel_weights.h), or a limit of leaf_index.h is exceeded; Interrupted.
+///   negative, edge weights, cells or a bootstrap are asked for that cannot be had, no weights fit
+///   the voxels (voxel_weights.h), or a limit of leaf_index.h is exceeded; Interrupted.
 Measurements measure(const Int32Grid& labels, const MeasureOptions& options = {},
                      Interrupter* interrupter = nullptr);
 

@@ -21,6 +21,13 @@ struct Principal {
   std::array<double, 3> values{};
 };
 
+/// The part of the domain to which no other grain is nearer (detail/voronoi_cells.h).
+struct GrainCell {
+  double volume = 0;          ///< with the grain itself
+  int neighbors = 0;          ///< grains whose cells share a voxel face with it
+  bool atDomainFace = false;  ///< it ends at the domain, and is too small
+};
+
 /// A grain; lengths in voxels, of unequal ones in their shortest edge (Measurements::edges).
 struct GrainMeasures {
   int32_t id = 0;  ///< its label
@@ -49,9 +56,11 @@ struct GrainMeasures {
   std::optional<GrainShape> shape;
   std::optional<GrayValues> gray;  ///< at its voxels
   double edgeWeight = 0;           ///< see edge_weights.h
+  std::optional<GrainCell> cell;
 
   double totalArea() const { return freeArea + sharedArea; }
   double solidity() const { return volume / shape.value().convexVolume; }
+  double localSolidFraction() const { return volume / cell.value().volume; }
 };
 
 }  // namespace vdb_madf

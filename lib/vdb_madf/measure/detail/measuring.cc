@@ -95,8 +95,21 @@ void Measuring::add(const LabelLeaves& slab, const LabelLeaves& around, const Le
   const std::vector<BondMeasures> measured = bondMeasures(bonds, voxel_, interrupter);
   bonds_.insert(bonds_.end(), measured.begin(), measured.end());
   if (options_.shape) shapes_.add(slab, isComplete, interrupter);
+  if (options_.cells) {
+    if (!cells_) cells_.emplace(whole(), weights());
+    cells_->add(slab);
+  }
   euler_ += eulerCharacteristic(around.index(), layers, interrupter);
   components_.add(slab.index(), layers, interrupter);
+}
+
+void Measuring::setCells(std::vector<GrainMeasures>& grains, Interrupter* interrupter) const {
+  if (!cells_) return;
+  const auto cells = cells_->cells(interrupter);
+  for (GrainMeasures& grain : grains) {
+    const VoronoiCells::Cell& cell = cells.at(grain.id);
+    grain.cell = {double(cell.voxels) * voxel_.volume(), cell.neighbors, cell.atDomainFace};
+  }
 }
 
 void Measuring::setRepresentatives(const GrainRepresentatives& representatives,
@@ -126,6 +139,7 @@ Measurements Measuring::finish(const GrainRepresentatives& representatives,
   result.minFaces = options_.minFaces;
   result.extra.shape = options_.shape;
   result.extra.edgeWeights = options_.edgeWeights;
+  result.extra.cells = options_.cells;
   result.replicates = options_.bootstrap;
   result.open = obstacles_.open;
   result.gridName = about_->getName();
@@ -140,6 +154,7 @@ Measurements Measuring::finish(const GrainRepresentatives& representatives,
     if (options_.edgeWeights) grain.edgeWeight = edgeWeight(grain.box, whole().box());
     if (options_.shape) grain.shape = shapes_.shapes().at(grain.id);
   }
+  setCells(result.grains, interrupter);
   setRepresentatives(representatives, result);
   const std::vector<BondMeasures> leftOut = takeSmallBonds(result);
   SampleMeasures& sample = result.sample;

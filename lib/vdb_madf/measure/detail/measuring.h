@@ -13,6 +13,7 @@
 #include "vdb_madf/measure/detail/grain_representatives.h"
 #include "vdb_madf/measure/detail/grain_shapes.h"
 #include "vdb_madf/measure/detail/label_sums.h"
+#include "vdb_madf/measure/detail/voronoi_cells.h"
 #include "vdb_madf/measure/measure.h"
 
 namespace vdb_madf::detail {
@@ -50,6 +51,7 @@ class Measuring {
                       Interrupter* interrupter);
 
  private:
+  void setCells(std::vector<GrainMeasures>& grains, Interrupter* interrupter) const;
   void setRepresentatives(const GrainRepresentatives& representatives, Measurements& result);
 
   const Int32Grid* about_;
@@ -65,6 +67,7 @@ class Measuring {
   std::optional<LabelSums> sums_;
   std::vector<BondMeasures> bonds_;
   GrainShapes shapes_;
+  std::optional<VoronoiCells> cells_;
   ComponentCount components_;
   int64_t euler_ = 0;
 };
