@@ -61,6 +61,8 @@ TEST_CASE("columns: what is there on demand comes last", "[columns]") {
         "neck_normal_z");
   CHECK(added(grainColumns({}, {false, false, false, false, true}), grains) ==
         "cell_volume_u3 local_solid_fraction cell_neighbors cell_at_domain_face");
+  CHECK(added(grainColumns({}, {false, false, false, false, false, true}), grains) ==
+        "projected_diameter_u");
 
   GrainMeasures grain;
   grain.volume = 6;

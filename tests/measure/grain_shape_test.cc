@@ -6,6 +6,7 @@
 #include "vdb_madf/measure/grain_shape.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "support/catch.h"
@@ -102,6 +103,9 @@ TEST_CASE("grain_shape: a voxel, a rod, a plate and a brick", "[grain_shape]") {
       CHECK(grain.shape->convexVolume ==
             Approx(lengths[0] * lengths[1] * lengths[2]).epsilon(1e-12));
       CHECK(grain.solidity() == Approx(1).epsilon(1e-12));
+      const double quarter =
+          (lengths[0] * lengths[1] + lengths[1] * lengths[2] + lengths[2] * lengths[0]) / 2;
+      CHECK(grain.shape->projectedDiameter == Approx(2 * std::sqrt(quarter / M_PI)).epsilon(1e-12));
     }
 }
 

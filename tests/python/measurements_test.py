@@ -116,6 +116,27 @@ def test_what_is_there_on_demand(labels, scan, command, tmp_path):
     here.to_pandas()
 
 
+def test_size_curves(labels, command, tmp_path):
+    reference = tmp_path / "sieves.csv"
+    reference.write_text("size_um,percent_passing\n300,10\n400,50\n500,80\n")
+    labels.save(tmp_path / "labels.vdb")
+    command("measure", tmp_path / "labels.vdb", tmp_path / "out", "--size-curve",
+            tmp_path / "curve.csv", "--size-reference", reference)
+    there = json.loads((tmp_path / "out" / "sample.json").read_text())["size_curve_rms_percent"]
+    here = madf.measure(labels, size_curve=True, size_reference=str(reference))
+    assert here.sample["size_curve_rms_percent"] == pytest.approx(there, rel=1e-12)
+    assert len(there) == 4 and min(there.values()) > 0
+    curve = here.sample["size_curve"]
+    for (name, values), expected in zip(curve.items(), columns(tmp_path / "curve.csv").values()):
+        assert np.allclose(values, expected, rtol=1e-8, atol=0), name
+    diameters = np.sort(here.grains["equivalent_diameter"])
+    share = np.cumsum(diameters**3) / np.sum(diameters**3)
+    assert curve["equivalent_diameter"][50] == diameters[np.searchsorted(share, 0.5)]
+    reference.write_text("size_um,percent_passing\n300,x\n")
+    with pytest.raises(ValueError, match="sieves.csv: '300,x': is no size"):
+        madf.measure(labels, size_reference=str(reference))
+
+
 def test_what_cannot_be_had_on_demand(labels, measured, scan):
     assert "feret_max" not in measured.grains and "gray_mean" not in measured.bonds
     assert "intervals" not in measured.sample and "edge_weight" not in measured.grains

@@ -590,6 +590,31 @@ TEST_CASE("cli: measure refuses scans and options that do not fit its labels", "
   refuses(bench, kWrongUsage, measure + "--gray-grid fog", {"give --gray, too"});
 }
 
+TEST_CASE("cli: measure writes curves of sizes, and their distance from another", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate spheres --size 40 --count 5 --radius 5:7 --voxel-size 20um balls.vdb");
+  bench.write("sieves.csv", "size_um,percent_passing\n200,5\n240,50\n300,95\n");
+  const std::string said = bench.mustRun(
+      "measure balls.vdb out --size-curve curve.csv --size-reference sieves.csv --sample S");
+  CHECK(said.find("  feret_min           RMS ") != std::string::npos);
+  const std::string curve = bench.bytes("curve.csv");
+  CHECK(curve.substr(0, curve.find('\n')) ==
+        "sample,percent_passing,equivalent_diameter_mm,axis2_length_mm,feret_min_mm,"
+        "projected_diameter_mm");
+  CHECK(std::count(curve.begin(), curve.end(), '\n') == 102);
+  CHECK(Json::parse(bench.bytes("out/sample.json")).at("size_curve_rms_percent").size() == 4);
+  CHECK(bench.mustRun("measure balls.vdb out --sample S --size-curve -") == curve);
+
+  refuses(bench, kWrongUsage, "measure balls.vdb out --size-curve curve.txt", {"must be .csv"});
+  refuses(bench, kWrongUsage, "measure balls.vdb out --size-curve a.csv --size-reference a.csv",
+          {"would overwrite the input"});
+  refuses(bench, kFailed, "measure balls.vdb out --size-reference nothing.csv", {"nothing.csv"});
+  refuses(bench, kFailed, "measure balls.vdb out --size-reference curve.csv",
+          {"curve.csv: a curve of sizes begins with the line size_mm,percent_passing"});
+  bench.write("voxels.csv", "size_voxel,percent_passing\n10,50\n");
+  refuses(bench, kFailed, "measure balls.vdb out --size-reference voxels.csv", {"are in voxels"});
+}
+
 TEST_CASE("cli: measure plots what it measures", "[cli]") {
   const Bench bench;
   bench.mustRun("generate sintered s.vdb --size 40 --count 4 --voxel-size 8.5um");

@@ -12,10 +12,12 @@
 
 #include "command.h"
 #include "input_options.h"
+#include "outputs.h"
 #include "parse.h"
 #include "scan_option.h"
 #include "text_file.h"
 #include "vdb_madf/exports/measurement_files.h"
+#include "vdb_madf/files/read_text.h"
 #include "vdb_madf/grids/object_keys.h"
 #include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/intensity/measure_gray.h"
@@ -30,7 +32,8 @@ namespace {
 
 struct MeasureArguments {
   InputOptions input;
-  std::string folder, boundary = "auto", density, minFaces = "1", bootstrap, plot;
+  std::string folder, boundary = "auto", density, minFaces = "1", bootstrap, plot, sizeCurve,
+                      sizeReference;
   ScanOption intensity{"", "", "--intensity"}, gray{"", "", "--gray"};
   bool ice = false;
   MeasureOptions measure;
@@ -40,6 +43,10 @@ struct MeasureArguments {
 void parse(MeasureArguments& o) {
   o.input.outputs = MeasurementTables::paths(o.folder);
   o.input.outputs.push_back(o.plot);
+  o.input.outputs.push_back(o.sizeCurve);
+  if (!o.sizeCurve.empty()) checkTableEnding(o.sizeCurve);
+  if (!o.sizeReference.empty()) checkOutputs(o.input.outputs, o.sizeReference);
+  o.measure.sizes = !o.sizeCurve.empty();
   if (!o.plot.empty() && !plotTypeOf(o.plot))
     throw WrongUsage(o.plot + ": the plot's ending must be .svg, .pdf or .png");
   o.input.parse();
@@ -135,6 +142,8 @@ void print(const MeasureArguments& o, const Measurements& m) {
   else if (m.metadata[kThresholdKey])
     std::printf(
         "  areas of bonds      of a thresholded scan, too large by its blur (--gray SCAN)\n");
+  for (const SizeDeviation& deviation : m.sizeDeviations)
+    std::printf("  %-20sRMS %.2f %% from the curve\n", deviation.size.c_str(), deviation.percent);
   printIntervals(m, length, unit);
 }
 
@@ -183,16 +192,21 @@ Measurements measureInput(const MeasureArguments& o, const Common& common) {
   return measureLabels(o, common, *loadLabels(o.input, "--grid", common.progress));
 }
 
-void runMeasure(const MeasureArguments& o, const Common& common) {
+void runMeasure(MeasureArguments& o, const Common& common) {
+  constexpr uint64_t kMostBytes = 1 << 20;
+  if (!o.sizeReference.empty())
+    o.measure.sizeReference = withFileName(
+        o.sizeReference, [&] { return parseSizeReference(readText(o.sizeReference, kMostBytes)); });
   MeasurementTables tables(o.folder);
-  TextFile plot(o.plot);
+  TextFile plot(o.plot), sizes(o.sizeCurve);
   const Measurements measurements = measureInput(o, common);
   TableOptions options = o.tables;
   options.labels = o.input.path;
   tables.write(measurements, options);
   if (!plot.isNowhere()) plot.write(measuresPlot(measurements, titleOf(o), *plotTypeOf(o.plot)));
+  if (!sizes.isNowhere()) sizes.write(sizeCurveText(measurements, options));
   common.progress->end();
-  if (!common.quiet) print(o, measurements);
+  if (!common.quiet && !sizes.isStandardOutput()) print(o, measurements);
 }
 
 }  // namespace
@@ -226,6 +240,12 @@ void addMeasure(Verb command, Common& common, Action& action) {
             "adds weights for what the faces of a box cut, and sizes corrected by them");
   verb.flag("--voronoi", o->measure.cells,
             "adds each grain's set-Voronoi cell: its volume, local solid fraction and neighbors");
+  verb.option("--size-curve", o->sizeCurve,
+              "writes the sizes that 0 to 100 % of the volume pass, of four kinds; with --shape")
+      .typeName("FILE.csv");
+  verb.option("--size-reference", o->sizeReference,
+              "adds how far these curves are from that of a table: size_mm,percent_passing")
+      .typeName("FILE.csv");
   verb.option("--intensity", o->intensity.path,
               "adds the gray values of grains and bonds in the scan that they were made of")
       .typeName("FILE");

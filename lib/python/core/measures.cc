@@ -6,6 +6,7 @@
 
 #include "array_source.h"
 #include "bindings.h"
+#include "vdb_madf/files/read_text.h"
 #include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/intensity/measure_gray.h"
 #include "vdb_madf/intensity/measure_necks.h"
@@ -41,6 +42,8 @@ struct Unit {
     return (exponent < 0 ? "1/" : "") + positive;
   }
 };
+
+constexpr uint64_t kMostReferenceBytes = 1 << 20;
 
 bool isFlag(const std::string& name) {
   return name == "at_domain_face" || name == "cell_at_domain_face";
@@ -167,6 +170,12 @@ py::dict sampleOf(const Measurements& m, const Unit& unit, py::dict& units) {
   dict["labels_digest"] = m.labelDigest;
   if (m.extra.edgeWeights) addEdgeCorrected(m, unit, dict, units);
   if (m.replicates > 0) addIntervals(m, unit, dict, units);
+  if (!m.sizeDeviations.empty()) {
+    py::dict deviations;
+    for (const SizeDeviation& deviation : m.sizeDeviations)
+      deviations[py::str(deviation.size)] = deviation.percent;
+    dict["size_curve_rms_percent"] = deviations;
+  }
   if (m.scan) {
     add("scan_blur", m.scan->sigma, 1);
     dict["scan_noise_of_contrast"] = m.scan->noise;
@@ -186,16 +195,29 @@ std::optional<GrayScan> openScan(const py::object& source, const std::string& pa
   return openGrayScan(path, options);
 }
 
+/// Of a file, which errors name.
+SizeReference readReference(const std::string& path) {
+  const std::string text = readText(path, kMostReferenceBytes);
+  try {
+    return parseSizeReference(text);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(path + ": " + error.what());
+  }
+}
+
 py::dict measureLabels(const GridPtr& labels, const Call& call, const std::string& boundary,
                        int64_t minFaces, bool shape, const py::object& intensity,
                        const std::string& intensityGrid, const py::object& gray,
-                       const std::string& grayGrid, bool edgeWeights, bool voronoi, int bootstrap) {
+                       const std::string& grayGrid, bool edgeWeights, bool voronoi, bool sizeCurve,
+                       const std::string& sizeReference, int bootstrap) {
   const Int32Grid& grid = asLabels(*labels);
   MeasureOptions options;
   options.minFaces = minFaces;
   options.shape = shape;
   options.edgeWeights = edgeWeights;
   options.cells = voronoi;
+  options.sizes = sizeCurve;
+  if (!sizeReference.empty()) options.sizeReference = readReference(sizeReference);
   options.bootstrap = bootstrap;
   if (const Boundary given = boundaryOf(boundary); given != Boundary::automatic)
     options.boundary = given;
@@ -213,6 +235,7 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
   dict["grains"] = table(grainColumns(measured.grains, measured.extra), unit, units);
   dict["bonds"] = table(bondColumns(measured.bonds, measured.extra), unit, units);
   dict["sample"] = sampleOf(measured, unit, units);
+  if (sizeCurve) dict["sample"]["size_curve"] = table(vdb_madf::sizeCurve(measured), unit, units);
   dict["unit"] = unit.name;
   dict["units"] = units;
   return dict;
@@ -270,7 +293,7 @@ void bindMeasures(py::module_& m) {
   m.def("measure", measureLabels, py::arg("labels"), py::arg("call"), py::kw_only(),
         py::arg("boundary"), py::arg("min_faces"), py::arg("shape"), py::arg("intensity"),
         py::arg("intensity_grid"), py::arg("gray"), py::arg("gray_grid"), py::arg("edge_weights"),
-        py::arg("voronoi"), py::arg("bootstrap"));
+        py::arg("voronoi"), py::arg("size_curve"), py::arg("size_reference"), py::arg("bootstrap"));
   m.def("compare", compareLabels, py::arg("truth"), py::arg("test"), py::arg("call"));
 }
 

@@ -43,6 +43,8 @@ class Measurements:
     - with edge_weights: `edge_weight`: how much it counts in corrected sizes; 0 at the faces
     - with voronoi: `cell_volume` of what is nearer to this grain than to others,
       `local_solid_fraction` (volume / that), `cell_neighbors`; `cell_at_domain_face`: it ends there
+    - with size_curve or size_reference: the columns of shape, and `projected_diameter`: of the disc
+      of the convex hull's mean projected area
 
     bonds, a row for each pair of grains that touch, by `first`, then `second` (ids):
     - `faces` of voxels; `area`, `radius` of the disc of this area; `centroid_*`, and `normal_*`
@@ -70,7 +72,10 @@ class Measurements:
     - with edge_weights: `grains_at_faces`, `corrected_grains`, `grain_diameter_mean`,
       `corrected_grain_diameter_mean`, `grain_volume_mean`, `corrected_grain_volume_mean`,
       `corrected_mean_coordination`, `corrected_diameter_by_number`, `corrected_diameter_by_volume`
-    - with bootstrap: `intervals`, by name of a mean its `mean`, and `low` and `high` of 95 %"""
+    - with bootstrap: `intervals`, by name of a mean its `mean`, and `low` and `high` of 95 %
+    - with size_curve: `size_curve`, by kind of size (columns of the grains) the sizes that
+      `percent_passing` of the volume have or are below; with size_reference:
+      `size_curve_rms_percent`, the deviations by kind of size"""
 
     grains: Dict[str, npt.NDArray[Any]] = field(repr=False)
     bonds: Dict[str, npt.NDArray[Any]] = field(repr=False)
@@ -109,7 +114,8 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
             boundary: str = "auto", min_faces: int = 1, shape: bool = False,
             intensity: Optional[Source] = None, intensity_grid: Optional[str] = None,
             gray: Optional[Source] = None, gray_grid: Optional[str] = None,
-            edge_weights: bool = False, voronoi: bool = False, bootstrap: int = 0,
+            edge_weights: bool = False, voronoi: bool = False, size_curve: bool = False,
+            size_reference: Optional[str] = None, bootstrap: int = 0,
             dataset: Optional[str] = None, grid: Optional[str] = None, progress: Progress = None,
             threads: int = 0) -> Measurements:
     """Measures the grains of labels, of any program.
@@ -132,6 +138,9 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
     `corrected_grain_diameter_mean`, `corrected_diameter_by_number` ... The domain has to be a box.
     voronoi: columns `cell_volume`, `local_solid_fraction`, `cell_neighbors`, `cell_at_domain_face`
     of the grains' set-Voronoi cells, in the time of the domain's box.
+    size_curve: cumulative curves by volume, in the sample as `size_curve`. size_reference: a CSV
+    file size_mm,percent_passing (or size_um, size_voxel): in the sample `size_curve_rms_percent`,
+    how far each kind of curve is from it between 5 and 95 %.
     bootstrap: replicates, 100 to 100000: in the sample `intervals`, by name of a mean its `mean`
     and the ends `low` and `high` of its 95 % interval."""
     with calling(progress, threads) as call:
@@ -142,5 +151,6 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
                              else readable(intensity), intensity_grid=intensity_grid or "",
                              gray=None if gray is None else readable(gray),
                              gray_grid=gray_grid or "", edge_weights=edge_weights, voronoi=voronoi,
+                             size_curve=size_curve, size_reference=size_reference or "",
                              bootstrap=bootstrap)
     return Measurements(**made, provenance=measured.metadata)

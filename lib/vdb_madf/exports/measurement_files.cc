@@ -226,6 +226,9 @@ Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& opt
   json["bond_normal_fabric"] = toJson(s.bondFabric);
   if (m.extra.edgeWeights) addEdgeCorrected(m, unit, json);
   if (m.replicates > 0) addIntervals(m, unit, json);
+  for (const SizeDeviation& deviation : m.sizeDeviations)
+    json["size_curve_rms_percent"][deviation.size] =
+        std::isnan(deviation.percent) ? Json() : Json(deviation.percent);
   if (m.scan) addScan(m, unit, json);
   return json;
 }
@@ -242,6 +245,10 @@ MeasurementTexts measurementTexts(const Measurements& m, const TableOptions& opt
   return {table(grainColumns(m.grains, m.extra), unit, options.sample),
           table(bondColumns(m.bonds, m.extra), unit, options.sample),
           jsonText(sampleJson(m, unit, options))};
+}
+
+std::string sizeCurveText(const Measurements& m, const TableOptions& options) {
+  return table(sizeCurve(m), Unit(m), options.sample);
 }
 
 std::vector<std::string> MeasurementTables::paths(const std::string& folder) {

@@ -139,6 +139,9 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
   if (extra.gray) addGray(make);
   if (extra.edgeWeights) make.add("edge_weight", 0, [](const G& g) { return g.edgeWeight; });
   if (extra.cells) addCells(make);
+  if (extra.sizes)
+    make.add("projected_diameter", 1,
+             [](const G& g) { return g.shape ? g.shape->projectedDiameter : kNone; });
   return make.columns();
 }
 

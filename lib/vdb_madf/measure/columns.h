@@ -35,7 +35,7 @@ struct MeasureColumn {
 /// `solidity`, `zingg_class` (1 to 4: zinggClass()); with gray values `gray_voxels`, `gray_mean`,
 /// `gray_sd`, `gray_min`, `gray_max`, `gray_median`; with edge weights `edge_weight`;
 /// with cells `cell_volume`, `local_solid_fraction`, `cell_neighbors`, `cell_at_domain_face` (0 or
-/// 1).
+/// 1); with sizes `projected_diameter`.
 std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains,
                                         const ExtraMeasures& extra = {});
 

@@ -12,6 +12,7 @@ struct ExtraMeasures {
   bool edgeWeights = false;  ///< GrainMeasures::edgeWeight
   bool necks = false;        ///< BondMeasures::neck, Measurements::scan
   bool cells = false;        ///< GrainMeasures::cell
+  bool sizes = false;        ///< GrainShape::projectedDiameter as a column
 };
 
 }  // namespace vdb_madf

@@ -15,6 +15,9 @@ struct GrainShape {
   /// The smallest distance of two parallel planes with the hull between them, of any direction.
   double minFeret = 0;
   double convexVolume = 0;
+  /// Diameter of the disc whose area is the mean of the hull's projections in all directions: a
+  /// quarter of its surface (Cauchy).
+  double projectedDiameter = 0;
 };
 
 /// The class of a body by its axes a >= b >= c > 0 after Zingg (1935, Beitrag zur

@@ -18,6 +18,7 @@
 #include "vdb_madf/measure/measure_grains.h"
 #include "vdb_madf/measure/measure_sample.h"
 #include "vdb_madf/measure/scan_blur.h"
+#include "vdb_madf/measure/size_curve.h"
 #include "vdb_madf/method/boundary.h"
 #include "vdb_madf/method/squared_distance.h"
 
@@ -39,6 +40,8 @@ struct MeasureOptions {
   /// Fills GrainMeasures::edgeWeight. The boundary has to be open, and the domain a box.
   bool edgeWeights = false;
   bool cells = false;  ///< also GrainMeasures::cell, which takes the time of the domain's box
+  bool sizes = false;  ///< all kinds of size_curve.h, and shape
+  std::optional<SizeReference> sizeReference{};  ///< with it sizeDeviations, and sizes
   /// Replicates of a bootstrap of the means (bootstrap.h); 0: none.
   int bootstrap = 0;
 };
@@ -49,14 +52,15 @@ struct Measurements {
   std::vector<GrainMeasures> grains;  ///< by id
   std::vector<BondMeasures> bonds;    ///< by first, then second
   SampleMeasures sample;
-  int64_t minFaces = 1;                 ///< that a bond had to have
-  ExtraMeasures extra;                  ///< what there is besides
-  std::vector<MeanInterval> intervals;  ///< of bootstrapMeans(), if it was asked for
-  int replicates = 0;                   ///< of these
-  std::optional<ScanBlur> scan;         ///< that necks were measured in
-  bool open = false;                    ///< the boundary
-  std::optional<VoxelSize> voxelSize;   ///< of the grid
-  openvdb::Vec3d edges{1, 1, 1};        ///< of a voxel, in units of the shortest
+  int64_t minFaces = 1;                       ///< that a bond had to have
+  ExtraMeasures extra;                        ///< what there is besides
+  std::vector<MeanInterval> intervals;        ///< of bootstrapMeans(), if it was asked for
+  std::vector<SizeDeviation> sizeDeviations;  ///< from the curve that was given
+  int replicates = 0;                         ///< of these
+  std::optional<ScanBlur> scan;               ///< that necks were measured in
+  bool open = false;                          ///< the boundary
+  std::optional<VoxelSize> voxelSize;         ///< of the grid
+  openvdb::Vec3d edges{1, 1, 1};              ///< of a voxel, in units of the shortest
   std::string gridName;
   openvdb::MetaMap metadata;  ///< of the grid: how the labels were made
   /// A checksum of the places and labels of the voxels, 32 hexadecimal digits: equal labels share
@@ -70,8 +74,8 @@ struct Measurements {
 /// exact. Depends on nothing but labels, domain and boundary: not on tiles or threads, bit for bit.
 /// Memory: per grain, per face of a bond, and for the representatives per voxel.
 /// @throw InvalidInput if labels leave the domain, the boundary is open without one, minFaces is
-///   negative, edge weights, cells or a bootstrap are asked for that cannot be had, no weights fit
-///   the voxels (voxel_weights.h), or a limit of leaf_index.h is exceeded; Interrupted.
+///   negative, edge weights, cells, deviations or a bootstrap are asked for that cannot be had, no
+///   weights fit the voxels (voxel_weights.h), or a limit of leaf_index.h is exceeded; Interrupted.
 Measurements measure(const Int32Grid& labels, const MeasureOptions& options = {},
                      Interrupter* interrupter = nullptr);
 

@@ -146,6 +146,7 @@ ConvexHull convexHull(const std::vector<Vec3d>& points) {
     const Vec3d a = hull.vertices[corners[0]] - middle, b = hull.vertices[corners[1]] - middle,
                 c = hull.vertices[corners[2]] - middle;
     hull.volume += std::abs(a.dot(b.cross(c))) / 6;
+    hull.area += (b - a).cross(c - a).length() / 2;
   }
   hull.edges = edgesOf(std::move(sides));
   return hull;

@@ -20,7 +20,7 @@ struct ConvexHull {
   };
   std::vector<openvdb::Vec3d> vertices;  ///< all corners, perhaps with points on the faces
   std::vector<Edge> edges;
-  double volume = 0;
+  double volume = 0, area = 0;
 };
 
 /// By qhull (Barber, Dobkin & Huhdanpaa 1996); the same points in the same order give the same

@@ -4,6 +4,7 @@
 #include "vdb_madf/measure/detail/grain_shapes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "vdb_madf/base/detail/parallel.h"
@@ -94,7 +95,7 @@ GrainShape shapeOf(const std::vector<Row>& rows, const VoxelShape& voxel) {
   for (const Coord& corner : corners)
     points.push_back((corner - corners.front()).asVec3d() * voxel.edges);
   const ConvexHull hull = convexHull(points);
-  return {diameter(hull), leastWidth(hull), hull.volume};
+  return {diameter(hull), leastWidth(hull), hull.volume, std::sqrt(hull.area / M_PI)};
 }
 
 /// The parts of the leaves by grain.

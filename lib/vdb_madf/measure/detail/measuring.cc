@@ -58,6 +58,9 @@ Measuring::Measuring(const Int32Grid& about, const MeasureOptions& options)
       shapes_(voxel_) {
   if (options.minFaces < 0)
     throw InvalidInput("the least number of faces of a bond must not be negative");
+  if (options.sizeReference) edgeIn(*options.sizeReference, storedVoxelSize(about));
+  options_.sizes = options.sizes || options.sizeReference;
+  options_.shape = options.shape || options_.sizes;
   if (options_.boundary == Boundary::automatic) options_.boundary = storedBoundary(about);
   obstacles_ = resolveBoundary(LeafIndex(), options_.boundary, domain_);
   if (options.edgeWeights) checkEdgeWeights(domain_, obstacles_.open);
@@ -140,6 +143,7 @@ Measurements Measuring::finish(const GrainRepresentatives& representatives,
   result.extra.shape = options_.shape;
   result.extra.edgeWeights = options_.edgeWeights;
   result.extra.cells = options_.cells;
+  result.extra.sizes = options_.sizes;
   result.replicates = options_.bootstrap;
   result.open = obstacles_.open;
   result.gridName = about_->getName();
@@ -168,6 +172,8 @@ Measurements Measuring::finish(const GrainRepresentatives& representatives,
     if (auto& length = sample.correlationLengths[size_t(axis)]) *length *= voxel_.edges[axis];
   sample.eulerCharacteristic = euler_;
   sample.components = components_.count();
+  if (options_.sizeReference)
+    result.sizeDeviations = sizeDeviations(result, *options_.sizeReference);
   if (options_.bootstrap != 0)
     result.intervals =
         bootstrapMeans(result.grains, result.bonds, result.extra, options_.bootstrap, interrupter);

@@ -33,7 +33,7 @@ class VoronoiCells {
     bool atDomainFace = false;  ///< a voxel of it has a face neighbor outside the domain
     int neighbors = 0;          ///< grains whose cells share a voxel face with it
   };
-  /// By label. @throw Interrupted
+  /// The cells by label. @throw Interrupted
   std::unordered_map<int32_t, Cell> cells(Interrupter* interrupter) const;
 
   /// The labels of the cells in a slice of the domain's box, by x, then y; the lowest is slice 0.
