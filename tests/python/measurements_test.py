@@ -137,6 +137,27 @@ def test_size_curves(labels, command, tmp_path):
         madf.measure(labels, size_reference=str(reference))
 
 
+def test_binder(labels, command, tmp_path):
+    inside = np.asarray(labels) > 0
+    map = np.where(inside, 2, 0).astype(np.uint8)
+    map[1:][inside[:-1] & ~inside[1:]] = 1  # a layer above each grain
+    np.save(tmp_path / "map.npy", map)
+    labels.save(tmp_path / "labels.vdb")
+    command("measure", tmp_path / "labels.vdb", tmp_path / "out", "--phases", tmp_path / "map.npy",
+            "--bridges", tmp_path / "bridges.csv")
+    there = columns(tmp_path / "bridges.csv")
+    for source in (map, str(tmp_path / "map.npy")):
+        here = madf.measure(labels, phases=source)
+        assert len(here.bridges) == len(there) and len(here.bridges["first"]) > 3
+        for (name, values), expected in zip(here.bridges.items(), there.values()):
+            assert np.allclose(values, expected, rtol=1e-8, atol=0), name
+    assert here.bridges["volume"].sum() + here.sample["binder_loose_volume"] == pytest.approx(
+        here.sample["binder_volume"])
+    assert madf.measure(labels, phases=map, binder=7).sample["binder_volume"] == 0
+    with pytest.raises(ValueError, match="the phases have 79x72x64 voxels"):
+        madf.measure(labels, phases=map[:, :, 1:])
+
+
 def test_what_cannot_be_had_on_demand(labels, measured, scan):
     assert "feret_max" not in measured.grains and "gray_mean" not in measured.bonds
     assert "intervals" not in measured.sample and "edge_weight" not in measured.grains

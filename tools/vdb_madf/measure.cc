@@ -24,6 +24,7 @@
 #include "vdb_madf/intensity/measure_necks.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
+#include "vdb_madf/measure/measure_binder.h"
 #include "vdb_madf/pictures/measures_plot.h"
 
 namespace vdb_madf::tools {
@@ -34,7 +35,9 @@ struct MeasureArguments {
   InputOptions input;
   std::string folder, boundary = "auto", density, minFaces = "1", bootstrap, plot, sizeCurve,
                       sizeReference;
-  ScanOption intensity{"", "", "--intensity"}, gray{"", "", "--gray"};
+  ScanOption intensity{"", "", "--intensity"}, gray{"", "", "--gray"}, phases{"", "", "--phases"};
+  std::string binderText, bridges;
+  int64_t binder = 1;
   bool ice = false;
   MeasureOptions measure;
   TableOptions tables;
@@ -44,6 +47,15 @@ void parse(MeasureArguments& o) {
   o.input.outputs = MeasurementTables::paths(o.folder);
   o.input.outputs.push_back(o.plot);
   o.input.outputs.push_back(o.sizeCurve);
+  o.input.outputs.push_back(o.bridges);
+  if (!o.bridges.empty()) checkTableEnding(o.bridges);
+  if (o.phases.path.empty() != o.bridges.empty())
+    throw WrongUsage("--phases MAP and --bridges FILE.csv go together: give both");
+  if (!o.binderText.empty()) {
+    if (o.phases.path.empty())
+      throw WrongUsage("--binder is a value of a map of phases: give --phases, too");
+    o.binder = parseCount(o.binderText, "--binder");
+  }
   if (!o.sizeCurve.empty()) checkTableEnding(o.sizeCurve);
   if (!o.sizeReference.empty()) checkOutputs(o.input.outputs, o.sizeReference);
   o.measure.sizes = !o.sizeCurve.empty();
@@ -58,6 +70,7 @@ void parse(MeasureArguments& o) {
   }
   checkScan(o.intensity, o.input);
   checkScan(o.gray, o.input);
+  checkScan(o.phases, o.input);
   o.measure.boundary = parseBoundary(o.boundary);
   o.measure.minFaces = parseCount(o.minFaces, "--min-faces");
   if (!o.bootstrap.empty()) {
@@ -142,6 +155,10 @@ void print(const MeasureArguments& o, const Measurements& m) {
   else if (m.metadata[kThresholdKey])
     std::printf(
         "  areas of bonds      of a thresholded scan, too large by its blur (--gray SCAN)\n");
+  if (m.binder)
+    std::printf("  binder              %s, %.3g %% of the binder in none\n",
+                counted(int64_t(m.binder->bridges.size()), "bridge").c_str(),
+                m.binder->volume > 0 ? 100 * m.binder->looseVolume / m.binder->volume : 0.0);
   for (const SizeDeviation& deviation : m.sizeDeviations)
     std::printf("  %-20sRMS %.2f %% from the curve\n", deviation.size.c_str(), deviation.percent);
   printIntervals(m, length, unit);
@@ -159,6 +176,8 @@ Measurements measureLabels(const MeasureArguments& o, const Common& common, cons
   // Scans are opened before the work: what is wrong with them is said at once.
   std::optional<GrayScan> scan;
   if (!o.intensity.path.empty()) scan = openScan(o.intensity, o.input, common.progress);
+  const MaskGrid::Ptr binder =
+      o.phases.path.empty() ? nullptr : loadPhase(o.phases, o.binder, o.input, common.progress);
   std::optional<ScanBlur> blur;
   if (!o.gray.path.empty()) {
     const GrayScan gray = openScan(o.gray, o.input, common.progress);
@@ -173,6 +192,12 @@ Measurements measureLabels(const MeasureArguments& o, const Common& common, cons
     measureGray(labels, *scan, measurements, common.progress);
   }
   if constexpr (std::is_same_v<Labels, Int32Grid>) {
+    if (binder) {
+      common.progress->start("binder");
+      withFileName(o.phases.path, [&] {
+        measureBinder(labels, *binder, o.measure, measurements, common.progress);
+      });
+    }
     if (blur) {
       common.progress->start("necks");
       GrayScan gray = openScan(o.gray, o.input, common.progress);
@@ -183,11 +208,11 @@ Measurements measureLabels(const MeasureArguments& o, const Common& common, cons
 }
 
 Measurements measureInput(const MeasureArguments& o, const Common& common) {
-  if (isInSlabs(o.input) && o.gray.path.empty()) {
+  if (isInSlabs(o.input) && o.gray.path.empty() && o.phases.path.empty()) {
     const LabelSlabs labels = openLabelSlabs(o.input, "--grid", common.progress);
     const auto domain = storedDomain(*labels.about);
     if (!domain || domain->isBox()) return measureLabels(o, common, labels);
-  }  // in a region, and for necks, they have to be there together
+  }  // in a region, for necks and for binder, they have to be there together
   common.progress->start("read");
   return measureLabels(o, common, *loadLabels(o.input, "--grid", common.progress));
 }
@@ -198,15 +223,17 @@ void runMeasure(MeasureArguments& o, const Common& common) {
     o.measure.sizeReference = withFileName(
         o.sizeReference, [&] { return parseSizeReference(readText(o.sizeReference, kMostBytes)); });
   MeasurementTables tables(o.folder);
-  TextFile plot(o.plot), sizes(o.sizeCurve);
+  TextFile plot(o.plot), sizes(o.sizeCurve), bridges(o.bridges);
   const Measurements measurements = measureInput(o, common);
   TableOptions options = o.tables;
   options.labels = o.input.path;
   tables.write(measurements, options);
   if (!plot.isNowhere()) plot.write(measuresPlot(measurements, titleOf(o), *plotTypeOf(o.plot)));
+  if (!bridges.isNowhere()) bridges.write(bridgesText(measurements, options));
   if (!sizes.isNowhere()) sizes.write(sizeCurveText(measurements, options));
   common.progress->end();
-  if (!common.quiet && !sizes.isStandardOutput()) print(o, measurements);
+  if (!common.quiet && !sizes.isStandardOutput() && !bridges.isStandardOutput())
+    print(o, measurements);
 }
 
 }  // namespace
@@ -258,6 +285,17 @@ void addMeasure(Verb command, Common& common, Action& action) {
   verb.option("--gray-grid", o->gray.grid,
               "of that scan: the grid of a VDB, the array of a Zarr or HDF5 file")
       .typeName("NAME");
+  verb.option("--phases", o->phases.path,
+              "a map of phases on the voxels of the labels: measures the binder between grains")
+      .typeName("FILE");
+  verb.option("--phases-grid", o->phases.grid,
+              "of that map: the grid of a VDB, the array of a Zarr or HDF5 file")
+      .typeName("NAME");
+  verb.option("--binder", o->binderText, "the value of binder in the map, 1 if it is not given")
+      .typeName("V");
+  verb.option("--bridges", o->bridges,
+              "table of the binder of each pair of grains: volume, section, what it covers")
+      .typeName("FILE.csv");
   verb.option("--bootstrap", o->bootstrap,
               "adds 95 % intervals of the means, from N samples drawn of the grains")
       .typeName("N");

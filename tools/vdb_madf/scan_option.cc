@@ -34,13 +34,17 @@ void checkScan(const ScanOption& scan, const InputOptions& labels) {
   checkOutputs(labels.outputs, scan.path);
 }
 
-GrayScan openScan(const ScanOption& scan, const InputOptions& labels, Progress* progress) {
+namespace {
+
+/// What open(input) makes of the scan; what goes wrong names the scan's options.
+template <typename Open>
+auto openedWith(const ScanOption& scan, const InputOptions& labels, const Open& open) {
   InputOptions input;
   input.path = scan.path;
   (isVdb(input) ? input.gridName : input.dataset) = scan.grid;
   input.outputs = labels.outputs;
   try {
-    return openGrayScan(scan.path, input.volume(progress), progress);
+    return open(input);
   } catch (const AmbiguousGrid& error) {
     throw InvalidInput(std::string(error.what()) + " (" + scan.option + "-grid" + ")");
   } catch (const InvalidInput& error) {
@@ -48,6 +52,22 @@ GrayScan openScan(const ScanOption& scan, const InputOptions& labels, Progress* 
   } catch (const IoError& error) {
     throw IoError(error.what() + hintForScan(error.hint(), scan));
   }
+}
+
+}  // namespace
+
+MaskGrid::Ptr loadPhase(const ScanOption& map, int64_t value, const InputOptions& labels,
+                        Progress* progress) {
+  return openedWith(map, labels, [&](InputOptions& input) {
+    input.selection = Selection::phase(double(value));
+    return vdb_madf::loadObject(map.path, input.volume(progress), progress);
+  });
+}
+
+GrayScan openScan(const ScanOption& scan, const InputOptions& labels, Progress* progress) {
+  return openedWith(scan, labels, [&](const InputOptions& input) {
+    return openGrayScan(scan.path, input.volume(progress), progress);
+  });
 }
 
 }  // namespace vdb_madf::tools

@@ -22,6 +22,9 @@ void checkScan(const ScanOption& scan, const InputOptions& labels);
 
 /// @param labels the scan must not be one of its outputs
 /// @throw InvalidInput, IoError: one line that names the file and what to do.
+/// The voxels of a map of phases that have this value. @throw as loadObject()
+MaskGrid::Ptr loadPhase(const ScanOption& map, int64_t value, const InputOptions& labels,
+                        Progress* progress);
 GrayScan openScan(const ScanOption& scan, const InputOptions& labels, Progress* progress);
 
 }  // namespace vdb_madf::tools

@@ -15,7 +15,9 @@
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
 #include "vdb_madf/measure/measure.h"
+#include "vdb_madf/measure/measure_binder.h"
 #include "vdb_madf/volumes/choose_grid.h"
+#include "vdb_madf/volumes/load_object.h"
 
 namespace vdb_madf::python {
 
@@ -46,7 +48,7 @@ struct Unit {
 constexpr uint64_t kMostReferenceBytes = 1 << 20;
 
 bool isFlag(const std::string& name) {
-  return name == "at_domain_face" || name == "cell_at_domain_face";
+  return name == "at_domain_face" || name == "bonded" || name == "cell_at_domain_face";
 }
 bool isLabel(const std::string& name) {
   return name == "id" || name == "first" || name == "second";
@@ -176,6 +178,10 @@ py::dict sampleOf(const Measurements& m, const Unit& unit, py::dict& units) {
       deviations[py::str(deviation.size)] = deviation.percent;
     dict["size_curve_rms_percent"] = deviations;
   }
+  if (m.binder) {
+    add("binder_volume", m.binder->volume, 3);
+    add("binder_loose_volume", m.binder->looseVolume, 3);
+  }
   if (m.scan) {
     add("scan_blur", m.scan->sigma, 1);
     dict["scan_noise_of_contrast"] = m.scan->noise;
@@ -195,6 +201,21 @@ std::optional<GrayScan> openScan(const py::object& source, const std::string& pa
   return openGrayScan(path, options);
 }
 
+/// The binder of a map of phases, a path or an array.
+MaskGrid::Ptr loadBinder(const py::object& source, const std::string& part, int64_t value) {
+  VolumeOptions options;
+  options.selection = Selection::phase(double(value));
+  if (!py::isinstance<py::str>(source)) {
+    const auto& array = source.cast<const ArraySource&>();
+    const py::gil_scoped_release release;
+    return loadObject([&] { return std::make_unique<ArrayReader>(array); }, options);
+  }
+  const auto path = source.cast<std::string>();
+  (isVdbFile(path) ? options.grid : options.dataset) = part;
+  const py::gil_scoped_release release;
+  return loadObject(path, options);
+}
+
 /// Of a file, which errors name.
 SizeReference readReference(const std::string& path) {
   const std::string text = readText(path, kMostReferenceBytes);
@@ -209,7 +230,8 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
                        int64_t minFaces, bool shape, const py::object& intensity,
                        const std::string& intensityGrid, const py::object& gray,
                        const std::string& grayGrid, bool edgeWeights, bool voronoi, bool sizeCurve,
-                       const std::string& sizeReference, int bootstrap) {
+                       const std::string& sizeReference, const py::object& phases,
+                       const std::string& phasesGrid, int64_t binder, int bootstrap) {
   const Int32Grid& grid = asLabels(*labels);
   MeasureOptions options;
   options.minFaces = minFaces;
@@ -223,9 +245,11 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
     options.boundary = given;
   std::optional<GrayScan> scan = openScan(intensity, intensityGrid);
   std::optional<GrayScan> edges = openScan(gray, grayGrid), sections = openScan(gray, grayGrid);
+  const MaskGrid::Ptr third = phases.is_none() ? nullptr : loadBinder(phases, phasesGrid, binder);
   const Measurements measured = withoutLock(call, [&](Interrupter* interrupter) {
     Measurements result = measure(grid, options, interrupter);
     if (scan) measureGray(grid, *scan, result, interrupter);
+    if (third) measureBinder(grid, *third, options, result, interrupter);
     if (edges)
       measureNecks(grid, *sections, blurOf(*edges->image, interrupter), result, interrupter);
     return result;
@@ -235,6 +259,8 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
   dict["grains"] = table(grainColumns(measured.grains, measured.extra), unit, units);
   dict["bonds"] = table(bondColumns(measured.bonds, measured.extra), unit, units);
   dict["sample"] = sampleOf(measured, unit, units);
+  if (measured.binder)
+    dict["bridges"] = table(bridgeColumns(measured.binder->bridges), unit, units);
   if (sizeCurve) dict["sample"]["size_curve"] = table(vdb_madf::sizeCurve(measured), unit, units);
   dict["unit"] = unit.name;
   dict["units"] = units;
@@ -293,7 +319,8 @@ void bindMeasures(py::module_& m) {
   m.def("measure", measureLabels, py::arg("labels"), py::arg("call"), py::kw_only(),
         py::arg("boundary"), py::arg("min_faces"), py::arg("shape"), py::arg("intensity"),
         py::arg("intensity_grid"), py::arg("gray"), py::arg("gray_grid"), py::arg("edge_weights"),
-        py::arg("voronoi"), py::arg("size_curve"), py::arg("size_reference"), py::arg("bootstrap"));
+        py::arg("voronoi"), py::arg("size_curve"), py::arg("size_reference"), py::arg("phases"),
+        py::arg("phases_grid"), py::arg("binder"), py::arg("bootstrap"));
   m.def("compare", compareLabels, py::arg("truth"), py::arg("test"), py::arg("call"));
 }
 

@@ -86,6 +86,11 @@ class Measurements:
     """The unit of each column and each number of the sample: "mm^3", "1/mm", "" ..."""
     provenance: Dict[str, Any] = field(repr=False)
     """What the labels say of their making (madf_*)."""
+    bridges: Dict[str, npt.NDArray[Any]] = field(default_factory=dict, repr=False)
+    """With phases, a row for each pair of grains that binder connects, by `first`, then `second`:
+    `bonded`: they touch, too; `voxels`, `volume`; `section_area` where it is as far from both,
+    `section_radius`; `first_cover_area`, `second_cover_area` of the grains, and `..._share` of
+    their free areas. In the sample `binder_volume`, `binder_loose_volume` (in no bridge)."""
 
     def to_pandas(self) -> Tuple["pd.DataFrame", "pd.DataFrame"]:
         """Grains, indexed by id, and bonds. `attrs` has "unit", "units" and "provenance"."""
@@ -115,7 +120,8 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
             intensity: Optional[Source] = None, intensity_grid: Optional[str] = None,
             gray: Optional[Source] = None, gray_grid: Optional[str] = None,
             edge_weights: bool = False, voronoi: bool = False, size_curve: bool = False,
-            size_reference: Optional[str] = None, bootstrap: int = 0,
+            size_reference: Optional[str] = None, phases: Optional[Source] = None,
+            phases_grid: Optional[str] = None, binder: int = 1, bootstrap: int = 0,
             dataset: Optional[str] = None, grid: Optional[str] = None, progress: Progress = None,
             threads: int = 0) -> Measurements:
     """Measures the grains of labels, of any program.
@@ -141,6 +147,8 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
     size_curve: cumulative curves by volume, in the sample as `size_curve`. size_reference: a CSV
     file size_mm,percent_passing (or size_um, size_voxel): in the sample `size_curve_rms_percent`,
     how far each kind of curve is from it between 5 and 95 %.
+    phases: a map of phases of the same shape, a file or an array: `bridges`, the binder (the voxels
+    of value `binder`) between grains. phases_grid: as intensity_grid.
     bootstrap: replicates, 100 to 100000: in the sample `intervals`, by name of a mean its `mean`
     and the ends `low` and `high` of its 95 % interval."""
     with calling(progress, threads) as call:
@@ -152,5 +160,7 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
                              gray=None if gray is None else readable(gray),
                              gray_grid=gray_grid or "", edge_weights=edge_weights, voronoi=voronoi,
                              size_curve=size_curve, size_reference=size_reference or "",
+                             phases=None if phases is None else readable(phases),
+                             phases_grid=phases_grid or "", binder=binder,
                              bootstrap=bootstrap)
     return Measurements(**made, provenance=measured.metadata)

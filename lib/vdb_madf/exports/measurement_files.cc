@@ -226,6 +226,11 @@ Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& opt
   json["bond_normal_fabric"] = toJson(s.bondFabric);
   if (m.extra.edgeWeights) addEdgeCorrected(m, unit, json);
   if (m.replicates > 0) addIntervals(m, unit, json);
+  if (m.binder) {
+    json["binder_volume_" + u + "3"] = m.binder->volume * unit.volume();
+    json["binder_loose_volume_" + u + "3"] = m.binder->looseVolume * unit.volume();
+    json["bridges"] = m.binder->bridges.size();
+  }
   for (const SizeDeviation& deviation : m.sizeDeviations)
     json["size_curve_rms_percent"][deviation.size] =
         std::isnan(deviation.percent) ? Json() : Json(deviation.percent);
@@ -249,6 +254,10 @@ MeasurementTexts measurementTexts(const Measurements& m, const TableOptions& opt
 
 std::string sizeCurveText(const Measurements& m, const TableOptions& options) {
   return table(sizeCurve(m), Unit(m), options.sample);
+}
+
+std::string bridgesText(const Measurements& m, const TableOptions& options) {
+  return table(bridgeColumns(m.binder.value().bridges), Unit(m), options.sample);
 }
 
 std::vector<std::string> MeasurementTables::paths(const std::string& folder) {

@@ -40,6 +40,9 @@ MeasurementTexts measurementTexts(const Measurements& measurements,
 /// sizeCurve() as comma-separated values, with units as in the tables. @pre measured with sizes
 std::string sizeCurveText(const Measurements& measurements, const TableOptions& options = {});
 
+/// bridgeColumns() likewise. @pre measured with binder
+std::string bridgesText(const Measurements& measurements, const TableOptions& options = {});
+
 /// grains.csv, bonds.csv and sample.json in a folder, which is made if it is not there. Made before
 /// the work, so that a folder that cannot be written to is reported before it. The files appear
 /// whole or not at all. A run replaces the files of an earlier one; if one of them is there without

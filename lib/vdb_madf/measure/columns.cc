@@ -177,6 +177,22 @@ std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
   return make.columns();
 }
 
+std::vector<MeasureColumn> bridgeColumns(const std::vector<Bridge>& bridges) {
+  ColumnMaker<Bridge> make(bridges);
+  make.addCount("first", [](const Bridge& b) { return b.first; });
+  make.addCount("second", [](const Bridge& b) { return b.second; });
+  make.addCount("bonded", [](const Bridge& b) { return b.bonded; });
+  make.addCount("voxels", [](const Bridge& b) { return b.voxels; });
+  make.add("volume", 3, [](const Bridge& b) { return b.volume; });
+  make.add("section_area", 2, [](const Bridge& b) { return b.section; });
+  make.add("section_radius", 1, [](const Bridge& b) { return b.sectionRadius; });
+  make.add("first_cover_area", 2, [](const Bridge& b) { return b.firstCover; });
+  make.add("second_cover_area", 2, [](const Bridge& b) { return b.secondCover; });
+  make.add("first_cover_share", 0, [](const Bridge& b) { return b.firstShare; });
+  make.add("second_cover_share", 0, [](const Bridge& b) { return b.secondShare; });
+  return make.columns();
+}
+
 std::string unitSuffix(int power, const std::string& unit) {
   if (power == 0) return "";
   const int size = std::abs(power);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "vdb_madf/measure/binder.h"
 #include "vdb_madf/measure/extra_measures.h"
 #include "vdb_madf/measure/measure_bonds.h"
 #include "vdb_madf/measure/measure_grains.h"
@@ -48,6 +49,10 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
 /// `_y`, `_z`.
 std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
                                        const ExtraMeasures& extra = {});
+
+/// `first`, `second`, `bonded` (0 or 1), `voxels`, `volume`, `section_area`, `section_radius`,
+/// `first_cover_area`, `second_cover_area`, `first_cover_share`, `second_cover_share`.
+std::vector<MeasureColumn> bridgeColumns(const std::vector<Bridge>& bridges);
 
 /// What a power of a length appends to a name: "" (0), "_mm", "_mm2", "_per_mm", "_per_mm2" ...
 std::string unitSuffix(int power, const std::string& unit);

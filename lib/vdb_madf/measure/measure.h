@@ -12,6 +12,7 @@
 #include "vdb_madf/base/voxel_size.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/label_slabs.h"
+#include "vdb_madf/measure/binder.h"
 #include "vdb_madf/measure/bootstrap.h"
 #include "vdb_madf/measure/extra_measures.h"
 #include "vdb_madf/measure/measure_bonds.h"
@@ -58,6 +59,7 @@ struct Measurements {
   std::vector<SizeDeviation> sizeDeviations;  ///< from the curve that was given
   int replicates = 0;                         ///< of these
   std::optional<ScanBlur> scan;               ///< that necks were measured in
+  std::optional<Binder> binder;               ///< of measureBinder()
   bool open = false;                          ///< the boundary
   std::optional<VoxelSize> voxelSize;         ///< of the grid
   openvdb::Vec3d edges{1, 1, 1};              ///< of a voxel, in units of the shortest
