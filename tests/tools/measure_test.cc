@@ -617,19 +617,19 @@ TEST_CASE("cli: measure writes curves of sizes, and their distance from another"
 
 TEST_CASE("cli: measure tells the binder of grains by a map of phases", "[cli]") {
   const Bench bench;
-  bench.mustRun("generate spheres --size 40 --count 5 --radius 5:7 --voxel-size 20um balls.vdb");
-  bench.mustRun("generate spheres --size 41 --count 5 --radius 5:7 --voxel-size 20um other.vdb");
+  bench.mustRun("generate spheres --size 40 --count 5 --radius 5:7 balls.vdb");
+  bench.mustRun("generate spheres --size 41 --count 5 --radius 5:7 other.vdb");
   bench.mustRun("convert balls.vdb map.tif --grid object --type uint8 --invert");
   bench.mustRun("convert other.vdb other.tif --grid object --type uint8");
-  const std::string said = bench.mustRun(
-      "measure balls.vdb out --phases map.tif --bridges bridges.csv --voxel-size 1mm");
+  const std::string said =
+      bench.mustRun("measure balls.vdb out --phases map.tif --bridges bridges.csv");
   CHECK(said.find("  binder              ") != std::string::npos);
   const Table bridges(bench.bytes("bridges.csv"));
   REQUIRE(!bridges.rows.empty());  // all pores are binder
   const Json sample = Json::parse(bench.bytes("out/sample.json"));
   const double pores = 40.0 * 40 * 40 - sample.at("object_voxels").get<double>();
   CHECK(bridges.sum("voxels") == pores);
-  CHECK(sample.at("binder_volume_mm3") == Approx(pores));
+  CHECK(sample.at("binder_volume_voxel3") == Approx(pores));
   CHECK(sample.at("bridges") == bridges.rows.size());
   bench.mustRun("measure balls.vdb out --phases map.tif --bridges none.csv --binder 3");
   CHECK(Table(bench.bytes("none.csv")).rows.empty());
