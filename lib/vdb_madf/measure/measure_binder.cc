@@ -88,12 +88,7 @@ class BinderMeter {
   void findCells(Interrupter* interrupter) {
     const detail::LabelLeaves leaves(labels_, interrupter);
     first_ = leaves.index().boundingBox().min();
-    const VoxelWeights weights =
-        voxel_.isCube() || leaves.index().voxelCount() == 0
-            ? VoxelWeights()
-            : weightsOfEdges(voxelEdges(labels_.transform()), leaves.index().boundingBox().dim())
-                  .weights;
-    detail::VoronoiCells cells(domain_, weights);
+    detail::VoronoiCells cells(domain_, labels_.transform());
     cells.add(leaves);
     const CoordBBox box = domain_.box();
     std::map<int, std::vector<size_t>> layers;  // by the z of their origins

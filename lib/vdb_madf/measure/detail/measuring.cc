@@ -99,7 +99,7 @@ void Measuring::add(const LabelLeaves& slab, const LabelLeaves& around, const Le
   bonds_.insert(bonds_.end(), measured.begin(), measured.end());
   if (options_.shape) shapes_.add(slab, isComplete, interrupter);
   if (options_.cells) {
-    if (!cells_) cells_.emplace(whole(), weights());
+    if (!cells_) cells_.emplace(whole(), about_->transform());
     cells_->add(slab);
   }
   euler_ += eulerCharacteristic(around.index(), layers, interrupter);

@@ -9,6 +9,8 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/detail/world_transform.h"
+#include "vdb_madf/measure/detail/voxel_shape.h"
 
 namespace vdb_madf::detail {
 
@@ -84,11 +86,13 @@ struct VoronoiCells::Part {
   std::vector<uint64_t> neighbors;
 };
 
-VoronoiCells::VoronoiCells(const Domain& domain, const VoxelWeights& weights)
-    : domain_(domain), weights_(weights), min_(domain.box().min()), dim_(domain.box().dim()) {
+VoronoiCells::VoronoiCells(const Domain& domain, const openvdb::math::Transform& transform)
+    : domain_(domain), min_(domain.box().min()), dim_(domain.box().dim()) {
+  if (!VoxelShape{proportions(transform)}.isCube())
+    weights_ = weightsOfEdges(voxelEdges(transform), dim_).weights;
   double longest = 0;
   for (int axis = 0; axis < 3; ++axis)
-    longest += double(weights[axis]) * double(dim_[axis]) * double(dim_[axis]);
+    longest += double(weights_[axis]) * double(dim_[axis]) * double(dim_[axis]);
   if (longest >= double(int64_t(1) << kLabelBits))
     throw InvalidInput("cells of grains: the domain is too large for exact distances; crop it");
   columns_.resize(size_t(dim_.x()) * size_t(dim_.y()));

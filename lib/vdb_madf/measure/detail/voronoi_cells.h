@@ -23,8 +23,10 @@ namespace vdb_madf::detail {
 /// domain's box.
 class VoronoiCells {
  public:
-  /// @throw InvalidInput if squared distances in the domain could exceed 31 bits
-  VoronoiCells(const Domain& domain, const VoxelWeights& weights);
+  /// @param transform of the labels, which tells the edges of voxels
+  /// @throw InvalidInput if squared distances in the domain could exceed 31 bits, or no weights fit
+  ///   the voxels (voxel_weights.h)
+  VoronoiCells(const Domain& domain, const openvdb::math::Transform& transform);
 
   void add(const LabelLeaves& slab);
 
