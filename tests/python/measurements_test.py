@@ -391,5 +391,17 @@ def test_necks_in_a_gray_scan(command, tmp_path):
     sample = json.loads((tmp_path / "out" / "sample.json").read_text())
     assert sample["necks_confirmed"] == 1
     assert sample["scan_blur_mm"] == pytest.approx(measured.sample["scan_blur"])
+    again = madf.measure(labels, gray=values, sensitivity=5, vary={"gamma": 0})
+    assert again.bonds["p_bond"][0] == 1 and again.units["area_sd"] == "mm^2"
+    assert again.sample["sensitivity"]["gamma"] == (1, 1)
+    command("measure", tmp_path / "labels.vdb", tmp_path / "again", "--gray", tmp_path / "scan.npy",
+            "--sensitivity", "5", "--vary", "gamma:0")
+    assert columns(tmp_path / "again" / "bonds.csv")["area_sd_mm2"] == pytest.approx(
+        again.bonds["area_sd"], rel=1e-8)
+    for arguments in (dict(sensitivity=5), dict(gray=values, vary={"gamma": 0}),
+                      dict(gray=values, sensitivity=5, vary={"fog": 1}),
+                      dict(gray=values, sensitivity=4)):
+        with pytest.raises(ValueError, match="gray|sensitivity|fog"):
+            madf.measure(labels, **arguments)
     with pytest.raises(ValueError, match="its edges tell no blur"):
         madf.measure(labels, gray=(values > 2000).astype(np.uint8))

@@ -202,8 +202,21 @@ TEST_CASE("gray: necks are measured in the scan that is segmented", "[gray]") {
   CHECK_THAT(bench.mustRun("measure o.vdb m --gray s.tif"),
              Contains("blur 0.") && Contains("necks in the scan"));
   CHECK((bench.bytes("m/bonds.csv") == bonds));
+  const std::string again = "measure o.vdb r --gray s.tif --sensitivity 5";
+  CHECK_THAT(bench.mustRun(again + " --vary gamma:0"),
+             Contains("5 runs: threshold ") && Contains("in 90 % of them"));
+  CHECK_THAT(bench.bytes("r/bonds.csv"), Contains(",p_bond,area_sd_"));
+  CHECK_THAT(bench.bytes("r/grains.csv"), Contains(",p_grain,volume_sd_"));
+  const Json recurring = Json::parse(bench.bytes("r/sample.json"));
+  CHECK(recurring.at("sensitivity_gamma") == Json{1, 1});
+  CHECK(recurring.at("specific_surface_sensitivity_per_voxel").at("low") <
+        recurring.at("specific_surface_sensitivity_per_voxel").at("high"));
   bench.mustRun(segment + " --necks --crop 4,0,0:59,63,60");
   CHECK(Json::parse(bench.bytes("t/sample.json")).at("necks_confirmed").get<int>() > 0);
   CHECK(bench.run("segment clean.vdb o.vdb --tables t --necks").exitCode == 2);
   CHECK(bench.run("segment s.tif o.vdb --threshold otsu --necks").exitCode == 2);
+  // A threshold by its value is told, too, and in a part of the scan the runs stay in it.
+  bench.mustRun("segment s.tif o.vdb --threshold 29500 --crop 4,0,0:59,63,60");
+  bench.mustRun(again);
+  CHECK(Json::parse(bench.bytes("r/sample.json")).at("segmentation").at("threshold") == 29500);
 }

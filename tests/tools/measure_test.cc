@@ -588,6 +588,13 @@ TEST_CASE("cli: measure refuses scans and options that do not fit its labels", "
   refuses(bench, kFailed, measure + "--gray scan.npy", {"scan.npy: its edges tell no blur"});
   refuses(bench, kFailed, measure + "--gray nothing.tif", {"nothing.tif"});
   refuses(bench, kWrongUsage, measure + "--gray-grid fog", {"give --gray, too"});
+  refuses(bench, kWrongUsage, measure + "--sensitivity 20", {"give it with --gray SCAN"});
+  refuses(bench, kWrongUsage, measure + "--vary gamma:3", {"--sensitivity"});
+  const std::string again = measure + "--gray scan.npy --sensitivity ";
+  refuses(bench, kWrongUsage, again + "4", {"from 5 to 1000"});
+  refuses(bench, kWrongUsage, again + "9 --vary fog:1", {"threshold:T,smooth:S"});
+  refuses(bench, kWrongUsage, again + "9 --vary smooth", {"--vary smooth"});
+  refuses(bench, kWrongUsage, again + "9 --vary smooth:-1", {"0 or more"});
 }
 
 TEST_CASE("cli: measure writes curves of sizes, and their distance from another", "[cli]") {

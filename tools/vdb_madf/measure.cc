@@ -22,6 +22,7 @@
 #include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/intensity/measure_gray.h"
 #include "vdb_madf/intensity/measure_necks.h"
+#include "vdb_madf/intensity/measure_sensitivity.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
 #include "vdb_madf/measure/measure_binder.h"
@@ -38,10 +39,52 @@ struct MeasureArguments {
   ScanOption intensity{"", "", "--intensity"}, gray{"", "", "--gray"}, phases{"", "", "--phases"};
   std::string binderText, bridges;
   int64_t binder = 1;
+  std::string runs, vary;
   bool ice = false;
   MeasureOptions measure;
+  std::optional<SensitivityOptions> sensitivity;
   TableOptions tables;
 };
+
+/// --vary threshold:T,smooth:S,strictness:K,gamma:G, or some of these.
+void parseVary(const std::string& text, SensitivityOptions& options) {
+  for (const std::string& item : split(text, ',')) {
+    const size_t colon = item.find(':');
+    const std::string name = item.substr(0, colon);
+    const std::string value = colon == std::string::npos ? "" : item.substr(colon + 1);
+    const std::string about = "--vary " + name;
+    if (name == "gamma") {
+      options.gamma = parseCount(value, about);
+      continue;
+    }
+    std::optional<double>* const number = name == "threshold"    ? &options.threshold
+                                          : name == "smooth"     ? &options.smooth
+                                          : name == "strictness" ? &options.strictness
+                                                                 : nullptr;
+    if (!number)
+      throw WrongUsage("--vary " + text +
+                       ": write threshold:T,smooth:S,strictness:K,gamma:G, or some of these");
+    *number = parseNumber(value, about);
+    if (!(**number >= 0)) throw WrongUsage(about + ":" + value + ": must be 0 or more");
+  }
+}
+
+void parseSensitivity(MeasureArguments& o) {
+  if (o.runs.empty()) {
+    if (!o.vary.empty()) throw WrongUsage("--vary says how far --sensitivity goes: give it, too");
+    return;
+  }
+  if (o.gray.path.empty())
+    throw WrongUsage("--sensitivity segments the scan again: give it with --gray SCAN");
+  const int64_t runs = parseCount(o.runs, "--sensitivity");
+  if (runs < kMinRuns || runs > kMaxRuns)
+    throw WrongUsage(
+        fmt::format("--sensitivity {}: must be from {} to {}", o.runs, kMinRuns, kMaxRuns));
+  o.sensitivity.emplace();
+  o.sensitivity->runs = int(runs);
+  o.sensitivity->measure = o.measure;
+  if (!o.vary.empty()) parseVary(o.vary, *o.sensitivity);
+}
 
 void parse(MeasureArguments& o) {
   o.input.outputs = MeasurementTables::paths(o.folder);
@@ -80,6 +123,7 @@ void parse(MeasureArguments& o) {
                                    kMinReplicates, kMaxReplicates));
     o.measure.bootstrap = int(replicates);
   }
+  parseSensitivity(o);
 }
 
 void printCorrected(const Measurements& m, double length, const std::string& unit) {
@@ -94,13 +138,32 @@ void printCorrected(const Measurements& m, double length, const std::string& uni
     std::printf("  corrected diameter  unknown: no grain is whole\n");
 }
 
-void printIntervals(const Measurements& m, double length, const std::string& unit) {
-  for (const MeanInterval& mean : m.intervals)
+void printIntervals(const std::vector<MeanInterval>& intervals, double length,
+                    const std::string& unit) {
+  for (const MeanInterval& mean : intervals)
     if (mean.low && mean.high)
       std::printf("  %-33s %.4g, 95 %% from %.4g to %.4g\n",
                   (mean.name + unitSuffix(mean.power, unit)).c_str(),
                   scaled(*mean.mean, mean.power, length), scaled(*mean.low, mean.power, length),
                   scaled(*mean.high, mean.power, length));
+}
+
+/// How much of it all comes again by other choices.
+void printSensitivity(const Measurements& m, double length, const std::string& unit) {
+  const Sensitivity& s = *m.sensitivity;
+  std::printf(
+      "  sensitivity         %d runs: threshold %.5g to %.5g, smooth %.2f to %.2f,\n"
+      "                      strictness %.4g to %.4g, gamma %.0f to %.0f\n",
+      s.runs, s.threshold.low, s.threshold.high, s.smooth.low, s.smooth.high, s.strictness.low,
+      s.strictness.high, s.gamma.low, s.gamma.high);
+  const auto often = [](const auto& list) {
+    return (long long)std::count_if(list.begin(), list.end(),
+                                    [](const auto& item) { return item.recurrence->share >= 0.9; });
+  };
+  std::printf("  in 90 %% of them     %lld of %s, %lld of %s\n", often(m.grains),
+              counted(int64_t(m.grains.size()), "grain").c_str(), often(m.bonds),
+              counted(int64_t(m.bonds.size()), "bond").c_str());
+  printIntervals(s.intervals, length, unit);
 }
 
 /// Necks as the labels have them and as the scan shows them.
@@ -161,7 +224,8 @@ void print(const MeasureArguments& o, const Measurements& m) {
                 m.binder->volume > 0 ? 100 * m.binder->looseVolume / m.binder->volume : 0.0);
   for (const SizeDeviation& deviation : m.sizeDeviations)
     std::printf("  %-20sRMS %.2f %% from the curve\n", deviation.size.c_str(), deviation.percent);
-  printIntervals(m, length, unit);
+  printIntervals(m.intervals, length, unit);
+  if (m.sensitivity) printSensitivity(m, length, unit);
 }
 
 /// The sample's name, else that of the file without folders.
@@ -202,6 +266,14 @@ Measurements measureLabels(const MeasureArguments& o, const Common& common, cons
       common.progress->start("necks");
       GrayScan gray = openScan(o.gray, o.input, common.progress);
       measureNecks(labels, gray, *blur, measurements, common.progress);
+    }
+    if (o.sensitivity) {
+      common.progress->start("sensitivity");
+      withFileName(o.input.path, [&] {
+        measureSensitivity(
+            labels, [&] { return openScan(o.gray, o.input, common.progress); }, *o.sensitivity,
+            measurements, common.progress);
+      });
     }
   }
   return measurements;
@@ -299,6 +371,12 @@ void addMeasure(Verb command, Common& common, Action& action) {
   verb.option("--bootstrap", o->bootstrap,
               "adds 95 % intervals of the means, from N samples drawn of the grains")
       .typeName("N");
+  verb.option("--sensitivity", o->runs,
+              "adds what comes again when the --gray scan is segmented N times by other choices")
+      .typeName("N");
+  verb.option("--vary", o->vary,
+              "how far these go: threshold:T,smooth:S,strictness:K,gamma:G (default: by the scan)")
+      .typeName("LIST");
   verb.option("--plot", o->plot,
               "draws histograms and roses of grains and bonds: .svg, .pdf or .png")
       .typeName("FILE");

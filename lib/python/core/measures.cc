@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 #include "array_source.h"
 #include "bindings.h"
@@ -10,6 +11,7 @@
 #include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/intensity/measure_gray.h"
 #include "vdb_madf/intensity/measure_necks.h"
+#include "vdb_madf/intensity/measure_sensitivity.h"
 #include "vdb_madf/matching/compare.h"
 #include "vdb_madf/matching/pair_checks.h"
 #include "vdb_madf/measure/columns.h"
@@ -116,9 +118,9 @@ void addEdgeCorrected(const Measurements& m, const Unit& unit, py::dict& dict, p
   }
 }
 
-void addIntervals(const Measurements& m, const Unit& unit, py::dict& dict, py::dict& units) {
+py::dict intervalsOf(const std::vector<MeanInterval>& list, const Unit& unit, py::dict& units) {
   py::dict intervals;
-  for (const MeanInterval& mean : m.intervals) {
+  for (const MeanInterval& mean : list) {
     py::dict interval;
     interval["mean"] = scaled(orNan(mean.mean), mean.power, unit.length);
     interval["low"] = scaled(orNan(mean.low), mean.power, unit.length);
@@ -126,7 +128,38 @@ void addIntervals(const Measurements& m, const Unit& unit, py::dict& dict, py::d
     intervals[py::str(mean.name)] = interval;
     units[py::str(mean.name)] = unit.power(mean.power);
   }
-  dict["intervals"] = intervals;
+  return intervals;
+}
+
+py::dict sensitivityOf(const Sensitivity& s, const Unit& unit, py::dict& units) {
+  const auto range = [](const VariedRange& varied) {
+    return py::make_tuple(varied.low, varied.high);
+  };
+  py::dict dict;
+  dict["runs"] = s.runs;
+  dict["threshold"] = range(s.threshold);
+  dict["smooth_voxels"] = range(s.smooth);
+  dict["strictness"] = range(s.strictness);
+  dict["gamma"] = range(s.gamma);
+  dict["intervals"] = intervalsOf(s.intervals, unit, units);
+  return dict;
+}
+
+/// How far choices are varied, by name; what is not named has its default.
+void setVaried(const std::map<std::string, double>& vary, SensitivityOptions& options) {
+  for (const auto& [name, value] : vary) {
+    if (!(value >= 0)) throw InvalidInput("vary: " + name + " must be 0 or more");
+    if (name == "threshold")
+      options.threshold = value;
+    else if (name == "smooth")
+      options.smooth = value;
+    else if (name == "strictness")
+      options.strictness = value;
+    else if (name == "gamma")
+      options.gamma = int64_t(std::min(value, 1e18));
+    else
+      throw InvalidInput("vary: '" + name + "' is none of threshold, smooth, strictness, gamma");
+  }
 }
 
 py::dict sampleOf(const Measurements& m, const Unit& unit, py::dict& units) {
@@ -171,7 +204,7 @@ py::dict sampleOf(const Measurements& m, const Unit& unit, py::dict& units) {
   units["diameter_by_volume"] = unit.power(1);
   dict["labels_digest"] = m.labelDigest;
   if (m.extra.edgeWeights) addEdgeCorrected(m, unit, dict, units);
-  if (m.replicates > 0) addIntervals(m, unit, dict, units);
+  if (m.replicates > 0) dict["intervals"] = intervalsOf(m.intervals, unit, units);
   if (!m.sizeDeviations.empty()) {
     py::dict deviations;
     for (const SizeDeviation& deviation : m.sizeDeviations)
@@ -186,6 +219,7 @@ py::dict sampleOf(const Measurements& m, const Unit& unit, py::dict& units) {
     add("scan_blur", m.scan->sigma, 1);
     dict["scan_noise_of_contrast"] = m.scan->noise;
   }
+  if (m.sensitivity) dict["sensitivity"] = sensitivityOf(*m.sensitivity, unit, units);
   return dict;
 }
 
@@ -231,7 +265,8 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
                        const std::string& intensityGrid, const py::object& gray,
                        const std::string& grayGrid, bool edgeWeights, bool voronoi, bool sizeCurve,
                        const std::string& sizeReference, const py::object& phases,
-                       const std::string& phasesGrid, int64_t binder, int bootstrap) {
+                       const std::string& phasesGrid, int64_t binder, int bootstrap,
+                       int sensitivity, const std::map<std::string, double>& vary) {
   const Int32Grid& grid = asLabels(*labels);
   MeasureOptions options;
   options.minFaces = minFaces;
@@ -246,12 +281,21 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
   std::optional<GrayScan> scan = openScan(intensity, intensityGrid);
   std::optional<GrayScan> edges = openScan(gray, grayGrid), sections = openScan(gray, grayGrid);
   const MaskGrid::Ptr third = phases.is_none() ? nullptr : loadBinder(phases, phasesGrid, binder);
+  SensitivityOptions again;
+  again.runs = sensitivity;
+  again.measure = options;
+  setVaried(vary, again);
+  const auto openAgain = [&] {
+    const py::gil_scoped_acquire lock;
+    return std::move(*openScan(gray, grayGrid));
+  };
   const Measurements measured = withoutLock(call, [&](Interrupter* interrupter) {
     Measurements result = measure(grid, options, interrupter);
     if (scan) measureGray(grid, *scan, result, interrupter);
     if (third) measureBinder(grid, *third, options, result, interrupter);
     if (edges)
       measureNecks(grid, *sections, blurOf(*edges->image, interrupter), result, interrupter);
+    if (sensitivity > 0) measureSensitivity(grid, openAgain, again, result, interrupter);
     return result;
   });
   const Unit unit(measured);
@@ -320,7 +364,8 @@ void bindMeasures(py::module_& m) {
         py::arg("boundary"), py::arg("min_faces"), py::arg("shape"), py::arg("intensity"),
         py::arg("intensity_grid"), py::arg("gray"), py::arg("gray_grid"), py::arg("edge_weights"),
         py::arg("voronoi"), py::arg("size_curve"), py::arg("size_reference"), py::arg("phases"),
-        py::arg("phases_grid"), py::arg("binder"), py::arg("bootstrap"));
+        py::arg("phases_grid"), py::arg("binder"), py::arg("bootstrap"), py::arg("sensitivity"),
+        py::arg("vary"));
   m.def("compare", compareLabels, py::arg("truth"), py::arg("test"), py::arg("call"));
 }
 

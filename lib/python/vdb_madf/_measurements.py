@@ -40,6 +40,7 @@ class Measurements:
     - with shape: `feret_max`, `feret_min`; `convex_volume`, `solidity` (volume / that);
       `zingg_class`: 1 disc, 2 equant, 3 blade, 4 rod
     - with intensity: `gray_voxels`, `gray_mean`, `gray_sd`, `gray_min`, `gray_max`, `gray_median`
+    - with sensitivity: `p_grain`, share of the runs in which it comes again, `volume_sd` over these
     - with edge_weights: `edge_weight`: how much it counts in corrected sizes; 0 at the faces
     - with voronoi: `cell_volume` of what is nearer to this grain than to others,
       `local_solid_fraction` (volume / that), `cell_neighbors`; `cell_at_domain_face`: it ends there
@@ -56,6 +57,8 @@ class Measurements:
       deviations `mean_curvature_sd`, `gaussian_curvature_sd`, at `curvature_points` points with the
       misfit `curvature_residual`
     - with intensity: the `gray_` columns, of the voxels on both sides
+    - with sensitivity: `p_bond`, share of the runs in which both grains are there and touch, and
+      `area_sd` over these
 
     sample:
     - `grains`, `bonds`, `contacts_left_out`, `area_left_out` (by `min_faces`),
@@ -72,6 +75,7 @@ class Measurements:
     - with edge_weights: `grains_at_faces`, `corrected_grains`, `grain_diameter_mean`,
       `corrected_grain_diameter_mean`, `grain_volume_mean`, `corrected_grain_volume_mean`,
       `corrected_mean_coordination`, `corrected_diameter_by_number`, `corrected_diameter_by_volume`
+    - with sensitivity: `sensitivity`: `runs`, the ends of what was varied, and `intervals`
     - with bootstrap: `intervals`, by name of a mean its `mean`, and `low` and `high` of 95 %
     - with size_curve: `size_curve`, by kind of size (columns of the grains) the sizes that
       `percent_passing` of the volume have or are below; with size_reference:
@@ -122,6 +126,7 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
             edge_weights: bool = False, voronoi: bool = False, size_curve: bool = False,
             size_reference: Optional[str] = None, phases: Optional[Source] = None,
             phases_grid: Optional[str] = None, binder: int = 1, bootstrap: int = 0,
+            sensitivity: int = 0, vary: Optional[Dict[str, float]] = None,
             dataset: Optional[str] = None, grid: Optional[str] = None, progress: Progress = None,
             threads: int = 0) -> Measurements:
     """Measures the grains of labels, of any program.
@@ -150,7 +155,16 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
     phases: a map of phases of the same shape, a file or an array: `bridges`, the binder (the voxels
     of value `binder`) between grains. phases_grid: as intensity_grid.
     bootstrap: replicates, 100 to 100000: in the sample `intervals`, by name of a mean its `mean`
-    and the ends `low` and `high` of its 95 % interval."""
+    and the ends `low` and `high` of its 95 % interval.
+    sensitivity: runs, 5 to 1000, in which the scan of `gray` is segmented by other choices: columns
+    `p_grain` and `p_bond` (share of the runs in which a grain or bond comes again), `volume_sd` and
+    `area_sd`, and in the sample `sensitivity`: what was varied and `intervals` as of bootstrap.
+    vary: how far, such as {"threshold": 800, "smooth": 0.3, "strictness": 1, "gamma": 8}; what is
+    not named goes by the scan's contrast, noise and blur."""
+    if sensitivity > 0 and gray is None:
+        raise _core.InvalidInput("sensitivity segments the scan again: give it as gray")
+    if vary and sensitivity <= 0:
+        raise _core.InvalidInput("vary says how far sensitivity goes: give it, too")
     with calling(progress, threads) as call:
         measured = labels_of(labels, call, threads, voxel_size=voxel_size, dataset=dataset,
                              grid=grid)
@@ -162,5 +176,5 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
                              size_curve=size_curve, size_reference=size_reference or "",
                              phases=None if phases is None else readable(phases),
                              phases_grid=phases_grid or "", binder=binder,
-                             bootstrap=bootstrap)
+                             bootstrap=bootstrap, sensitivity=sensitivity, vary=vary or {})
     return Measurements(**made, provenance=measured.metadata)

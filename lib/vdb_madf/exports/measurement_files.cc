@@ -143,14 +143,14 @@ void addEdgeCorrected(const Measurements& m, const Unit& unit, Json& json) {
       json);
 }
 
-void addIntervals(const Measurements& m, const Unit& unit, Json& json) {
-  json["bootstrap_replicates"] = m.replicates;
-  for (const MeanInterval& mean : m.intervals) {
+void addIntervals(const std::vector<MeanInterval>& intervals, const std::string& ending,
+                  const Unit& unit, Json& json) {
+  for (const MeanInterval& mean : intervals) {
     Json interval;
     interval["mean"] = orNull(mean.mean, mean.power, unit.length);
     interval["low"] = orNull(mean.low, mean.power, unit.length);
     interval["high"] = orNull(mean.high, mean.power, unit.length);
-    json[mean.name + "_interval" + unitSuffix(mean.power, unit.name)] = interval;
+    json[mean.name + ending + unitSuffix(mean.power, unit.name)] = interval;
   }
 }
 
@@ -168,6 +168,17 @@ void addScan(const Measurements& m, const Unit& unit, Json& json) {
   json["scan_gray_outside"] = m.scan->outside;
   json["necks_confirmed"] = confirmed;
   json["neck_area_" + unit.name + "2"] = area * unit.area();
+}
+
+void addSensitivity(const Measurements& m, const Unit& unit, Json& json) {
+  const Sensitivity& s = *m.sensitivity;
+  const auto range = [](const VariedRange& varied) { return Json{varied.low, varied.high}; };
+  json["sensitivity_runs"] = s.runs;
+  json["sensitivity_threshold"] = range(s.threshold);
+  json["sensitivity_smooth_voxels"] = range(s.smooth);
+  json["sensitivity_strictness"] = range(s.strictness);
+  json["sensitivity_gamma"] = range(s.gamma);
+  addIntervals(s.intervals, "_sensitivity", unit, json);
 }
 
 Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& options) {
@@ -225,7 +236,10 @@ Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& opt
   json["grain_axis_fabric"] = toJson(s.grainFabric);
   json["bond_normal_fabric"] = toJson(s.bondFabric);
   if (m.extra.edgeWeights) addEdgeCorrected(m, unit, json);
-  if (m.replicates > 0) addIntervals(m, unit, json);
+  if (m.replicates > 0) {
+    json["bootstrap_replicates"] = m.replicates;
+    addIntervals(m.intervals, "_interval", unit, json);
+  }
   if (m.binder) {
     json["binder_volume_" + u + "3"] = m.binder->volume * unit.volume();
     json["binder_loose_volume_" + u + "3"] = m.binder->looseVolume * unit.volume();
@@ -235,6 +249,7 @@ Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& opt
     json["size_curve_rms_percent"][deviation.size] =
         std::isnan(deviation.percent) ? Json() : Json(deviation.percent);
   if (m.scan) addScan(m, unit, json);
+  if (m.sensitivity) addSensitivity(m, unit, json);
   return json;
 }
 

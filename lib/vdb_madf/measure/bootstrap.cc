@@ -110,6 +110,13 @@ void requireReplicates(int replicates) {
                                    replicates, kMinReplicates, kMaxReplicates));
 }
 
+void setInterval(std::vector<double> values, MeanInterval& interval) {
+  if (values.empty()) return;
+  std::sort(values.begin(), values.end());
+  interval.low = percentile(values, kLow);
+  interval.high = percentile(values, kHigh);
+}
+
 std::vector<MeanInterval> bootstrapMeans(const std::vector<GrainMeasures>& grains,
                                          const std::vector<BondMeasures>& bonds,
                                          const ExtraMeasures& extra, int replicates,
@@ -149,10 +156,7 @@ std::vector<MeanInterval> bootstrapMeans(const std::vector<GrainMeasures>& grain
         std::remove_if(values.begin(), values.end(), [](double v) { return std::isnan(v); }),
         values.end());
     result[k].mean = meanOf(sums);
-    if (values.empty()) continue;
-    std::sort(values.begin(), values.end());
-    result[k].low = percentile(values, kLow);
-    result[k].high = percentile(values, kHigh);
+    setInterval(std::move(values), result[k]);
   }
   return result;
 }

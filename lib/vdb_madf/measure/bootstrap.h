@@ -28,9 +28,13 @@ struct MeanInterval {
   std::optional<double> mean, low, high;
 };
 
+/// Sets `low` and `high` to the percentiles 2.5 and 97.5 of values, interpolated between neighbors
+/// of rank (n - 1) q; of no values there are none.
+void setInterval(std::vector<double> values, MeanInterval& interval);
+
 /// Percentile bootstrap (Efron 1979): each replicate draws as many grains as there are, with
-/// replacement, and takes the means anew. `low` and `high` are the percentiles 2.5 and 97.5 of the
-/// replicates, interpolated between neighbors of rank (n - 1) q. In this order:
+/// replacement, and takes the means anew; setInterval() takes those of the replicates. In this
+/// order:
 /// `grain_diameter_mean`, `grain_volume_mean`, `sphericity_mean`, `specific_surface` (sum of free
 /// areas over sum of volumes), `mean_coordination`, `bond_to_grain_ratio` (mean over the bonds of
 /// the grains drawn: a bond whose two grains are drawn counts twice), with the shape

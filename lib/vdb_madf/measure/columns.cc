@@ -97,6 +97,19 @@ void addNecks(ColumnMaker<BondMeasures>& make) {
   make.addVector("neck_normal", [](const B& b) { return b.neck ? b.neck->normal : Vec3d(kNone); });
 }
 
+/// Adds the columns of grains or bonds.
+template <typename Item>
+void addRecurrence(ColumnMaker<Item>& make, const std::string& share, const std::string& deviation,
+                   int power) {
+  const auto number = [](double Recurrence::*member) {
+    return [member](const Item& i) { return i.recurrence ? (*i.recurrence).*member : kNone; };
+  };
+  make.add(share, 0, number(&Recurrence::share));
+  make.add(deviation, power, [](const Item& i) {
+    return i.recurrence && i.recurrence->share > 0 ? i.recurrence->deviation : kNone;
+  });
+}
+
 }  // namespace
 
 std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains,
@@ -142,6 +155,7 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
   if (extra.sizes)
     make.add("projected_diameter", 1,
              [](const G& g) { return g.shape ? g.shape->projectedDiameter : kNone; });
+  if (extra.recurrence) addRecurrence(make, "p_grain", "volume_sd", 3);
   return make.columns();
 }
 
@@ -174,6 +188,7 @@ std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
   addCurvature("curvature_residual", 1, &InterfaceCurvature::residual);
   if (extra.gray) addGray(make);
   if (extra.necks) addNecks(make);
+  if (extra.recurrence) addRecurrence(make, "p_bond", "area_sd", 2);
   return make.columns();
 }
 

@@ -13,6 +13,8 @@ struct ExtraMeasures {
   bool necks = false;        ///< BondMeasures::neck, Measurements::scan
   bool cells = false;        ///< GrainMeasures::cell
   bool sizes = false;        ///< GrainShape::projectedDiameter as a column
+  /// GrainMeasures::recurrence, BondMeasures::recurrence, Measurements::sensitivity.
+  bool recurrence = false;
 };
 
 }  // namespace vdb_madf

@@ -19,6 +19,7 @@
 #include "vdb_madf/measure/measure_grains.h"
 #include "vdb_madf/measure/measure_sample.h"
 #include "vdb_madf/measure/scan_blur.h"
+#include "vdb_madf/measure/sensitivity.h"
 #include "vdb_madf/measure/size_curve.h"
 #include "vdb_madf/method/boundary.h"
 #include "vdb_madf/method/squared_distance.h"
@@ -60,6 +61,7 @@ struct Measurements {
   int replicates = 0;                         ///< of these
   std::optional<ScanBlur> scan;               ///< that necks were measured in
   std::optional<Binder> binder;               ///< of measureBinder()
+  std::optional<Sensitivity> sensitivity;     ///< to the choices the labels were made by
   bool open = false;                          ///< the boundary
   std::optional<VoxelSize> voxelSize;         ///< of the grid
   openvdb::Vec3d edges{1, 1, 1};              ///< of a voxel, in units of the shortest

@@ -10,6 +10,7 @@
 #include "vdb_madf/measure/gray_values.h"
 #include "vdb_madf/measure/interface_curvature.h"
 #include "vdb_madf/measure/neck.h"
+#include "vdb_madf/measure/recurrence.h"
 
 namespace vdb_madf {
 
@@ -36,7 +37,8 @@ struct BondMeasures {
   /// Gray values at the voxels on both sides, those of either grain with a face towards the other,
   /// each once. None unless it was asked for.
   std::optional<GrayValues> gray;
-  std::optional<Neck> neck;  ///< of the gray scan; none unless it was asked for
+  std::optional<Neck> neck;              ///< of the gray scan; none unless it was asked for
+  std::optional<Recurrence> recurrence;  ///< likewise, when the scan was segmented by other choices
 };
 
 }  // namespace vdb_madf

@@ -11,6 +11,7 @@
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/measure/grain_shape.h"
 #include "vdb_madf/measure/gray_values.h"
+#include "vdb_madf/measure/recurrence.h"
 
 namespace vdb_madf {
 
@@ -57,6 +58,7 @@ struct GrainMeasures {
   std::optional<GrayValues> gray;  ///< at its voxels
   double edgeWeight = 0;           ///< see edge_weights.h
   std::optional<GrainCell> cell;
+  std::optional<Recurrence> recurrence;  ///< when the scan was segmented by other choices
 
   double totalArea() const { return freeArea + sharedArea; }
   double solidity() const { return volume / shape.value().convexVolume; }

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <locale>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -222,8 +224,6 @@ void describeObject(const Selection& selection, const GrayOptions& gray, MaskGri
   if (gray.median > 0) text += "median " + std::to_string(gray.median) + ", ";
   if (gray.smooth > 0) text += "smooth " + shortestDecimal(gray.smooth) + ", ";
   setText(object, text + describe(selection, gray));
-  if (selection.kind == Selection::Kind::threshold)
-    object.insertMeta(kThresholdKey, openvdb::DoubleMetadata(selection.low));
   if (gray.low) object.insertMeta(kThresholdLowKey, openvdb::DoubleMetadata(*gray.low));
 }
 
@@ -271,7 +271,10 @@ ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& ope
     }
     object.corner = cornerOfGray(counted);
   }
-  if (readsGray(gray)) describeObject(chosen, gray, *object.mask);
+  if (readsGray(gray) || (chosen.kind == Selection::Kind::threshold && chosen.invert))
+    describeObject(chosen, gray, *object.mask);
+  if (chosen.kind == Selection::Kind::threshold)
+    object.mask->insertMeta(kThresholdKey, openvdb::DoubleMetadata(chosen.low));
   despeckleObject(*object.mask, gray.despeckle, interrupter);
   if (take && needsWhole) takeLayers(object.mask->tree(), take);
   return object;
@@ -291,6 +294,24 @@ void takeLayers(MaskTree& object, const TakeLayer& take) {
     take(layer);
   }
   object.clear();
+}
+
+std::optional<StoredReading> storedReading(const openvdb::MetaMap& metadata) {
+  const auto threshold = metadata.getMetadata<openvdb::DoubleMetadata>(kThresholdKey);
+  if (!threshold) return std::nullopt;
+  StoredReading reading{Selection::threshold(threshold->value()), {}};
+  if (const auto low = metadata.getMetadata<openvdb::DoubleMetadata>(kThresholdLowKey))
+    reading.gray.low = low->value();
+  const auto text = metadata.getMetadata<openvdb::StringMetadata>(kObjectKey);
+  std::istringstream steps(text ? text->value() : "");
+  steps.imbue(std::locale::classic());
+  for (std::string word; steps >> word;) {
+    if (word == "median") steps >> reading.gray.median;
+    if (word == "smooth") steps >> reading.gray.smooth;
+    if (word == "despeckle") steps >> reading.gray.despeckle;
+    if (word == "inverted" || word == "inverted,") reading.selection.invert = true;
+  }
+  return reading;
 }
 
 void despeckleObject(MaskGrid& object, int64_t voxels, Interrupter* interrupter) {

@@ -80,7 +80,7 @@ std::unique_ptr<ImageReader> filteredImage(std::unique_ptr<ImageReader> image,
                                            const GrayOptions& gray);
 
 /// The object of an image, as readMask() makes it, with all steps. How it was made is said by
-/// `madf_object`, `madf_threshold` and `madf_threshold_low` if one of the gray options was used.
+/// `madf_object`, if one of the gray options was used, `madf_threshold` and `madf_threshold_low`.
 /// Peak memory: the mask (three with hysteresis), what despeckle() needs, and one slab with as many
 /// slices on either side as the filters reach. An automatic threshold takes two passes.
 /// @param open called for each pass over the image
@@ -96,6 +96,15 @@ ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& ope
                         const std::optional<Selection>& selection, const GrayOptions& gray = {},
                         const std::optional<ScanPart>& part = std::nullopt,
                         Interrupter* interrupter = nullptr, const TakeLayer& take = nullptr);
+
+/// How the object of an image was found.
+struct StoredReading {
+  Selection selection;  ///< a threshold
+  GrayOptions gray;     ///< none is automatic
+};
+/// What imageObject() wrote onto a mask, which its labels have, too; none if the object was not
+/// found by a threshold.
+std::optional<StoredReading> storedReading(const openvdb::MetaMap& metadata);
 
 /// Despeckles the object and adds that to what it says of itself.
 void despeckleObject(MaskGrid& object, int64_t voxels, Interrupter* interrupter);
