@@ -188,6 +188,30 @@ TEST_CASE("gray: info of a folder says how many slices there are, and which", "[
   CHECK(infoOf(bench, "a.tif").count("files") == 0);
 }
 
+TEST_CASE("gray: the intervals of a noisy scan hold the true numbers", "[gray]") {
+  const Bench bench;
+  bench.mustRun(
+      "generate sintered truth.vdb --size 100 --count 30 --radius 7:12 --gray s.tif "
+      "--scan-noise 0.7:0.08");
+  bench.mustRun("measure truth.vdb t");
+  bench.mustRun("segment s.tif o.vdb --threshold otsu --smooth 0.7 --despeckle 27");
+  bench.mustRun("measure o.vdb m --gray s.tif --sensitivity 10 --bootstrap 100 --edge-weights");
+  const Json truth = Json::parse(bench.bytes("t/sample.json"));
+  const Json found = Json::parse(bench.bytes("m/sample.json"));
+  CHECK(found.at("grains") == truth.at("grains"));
+  const auto holds = [&](const std::string& name, double value) {
+    CAPTURE(name);
+    const Json& interval = found.at(name);
+    CHECK(interval.at("low").get<double>() <= value);
+    CHECK(value <= interval.at("high").get<double>());
+  };
+  holds("solid_fraction_sensitivity", truth.at("solid_fraction"));
+  holds("specific_surface_sensitivity_per_voxel", truth.at("specific_surface_per_voxel"));
+  holds("grain_diameter_d50_by_volume_sensitivity_voxel",
+        truth.at("grain_diameter_by_volume_voxel").at("d50"));
+  holds("specific_surface_interval_per_voxel", truth.at("specific_surface_per_voxel"));
+}
+
 TEST_CASE("gray: necks are measured in the scan that is segmented", "[gray]") {
   const Bench bench;
   makeScan(bench);
