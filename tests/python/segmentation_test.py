@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """segment() and what comes of it equal the command; wrong options are refused."""
 
+import re
 import warnings
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -159,6 +161,95 @@ def test_merging_by_score():
         madf.segment(mask, merge="neck", strictness=9)
     with pytest.raises(madf.InvalidInput, match="strictness: belongs to merge='score'"):
         seg.sweep([9], merge="neck")
+
+
+def test_cuts_at_forty_numbers():
+    mask = madf.generate("snow", size=48, fraction=0.5, length=8)[0]
+    seg = madf.segment(mask)
+    numbers = np.linspace(0, 25, 40)
+    grains = set()
+    for number, swept in zip(numbers, seg.sweep(numbers)["grains"]):
+        fresh = madf.segment(mask, strictness=number, keep=())
+        again = seg.cut(number)
+        assert np.array_equal(again.labels, fresh.labels), number
+        assert again.counts["grains"] == fresh.counts["grains"] == swept
+        grains.add(swept)
+    assert len(grains) > 15
+
+
+def trees_of(newick):
+    """(names of the leaves, length of the branch above, names and lengths of the items) of each
+    tree."""
+    tokens = re.findall(r"[(),;]|[^(),;]+", newick.replace("\n", ""))
+    position = 0
+
+    def item():
+        nonlocal position
+        parts = []
+        if tokens[position] == "(":
+            while tokens[position] != ")":
+                position += 1
+                parts.append(item())
+            position += 1
+        name, _, length = tokens[position].partition(":")
+        position += 1
+        return name, float(length or 0), parts
+
+    while position < len(tokens):
+        yield item()
+        assert tokens[position] == ";"
+        position += 1
+
+
+def test_the_hierarchy_as_trees(command, tmp_path):
+    seg = madf.segment(madf.generate("snow", size=64, fraction=0.4, length=12)[0], strictness=30)
+    joins = seg.hierarchy
+    seg.save(tmp_path / "all.vdb")
+    for ending in ("nwk", "graphml"):
+        command("hierarchy", tmp_path / "all.vdb", tmp_path / f"joins.{ending}")
+
+    # Cut where the height above the leaves says so, the trees have the grains of that strictness.
+    leaves, made = [], {}
+
+    def walk(name, parts):
+        heights = [walk(*child[::2]) + child[1] for child in parts]
+        if not parts:
+            leaves.append(name)
+            return 0.0
+        assert len(parts) == 2 and np.isclose(*heights)
+        made[name] = (joins["strictness"][0] - heights[0], {child[0] for child in parts})
+        return heights[0]
+
+    trees = list(trees_of((tmp_path / "joins.nwk").read_text()))
+    for name, length, parts in trees:
+        assert length == 0
+        walk(name, parts)
+    count = len(joins["score"])
+    assert set(made) == {f"j{i + 1}" for i in range(count)}
+    assert len(trees) == len(leaves) - count
+    assert np.allclose([made[f"j{i + 1}"][0] for i in range(count)], joins["strictness"], atol=1e-9)
+    first = {name for _, parts in made.values() for name in parts if name[0] != "j"}
+    assert first <= {str(i + 1) for i in np.concatenate([joins["first"], joins["second"]])}
+
+    graph = ElementTree.parse(tmp_path / "joins.graphml").getroot()
+    space = "{http://graphml.graphdrawing.org/xmlns}"
+    keys = {key.get("id") for key in graph.iter(space + "key")}
+    nodes = {node.get("id"): {data.get("key"): float(data.text) for data in node}
+             for node in graph.iter(space + "node")}
+    edges = [(edge.get("source"), edge.get("target")) for edge in graph.iter(space + "edge")]
+    assert set(nodes) == set(leaves) | set(made) and len(nodes) == count + len(leaves)
+    assert {key for data in nodes.values() for key in data} == keys
+    assert sum(nodes[name]["voxels"] for name in leaves) == seg.counts["object_voxels"]
+    for i in range(count):
+        name = f"j{i + 1}"
+        parts = [part for source, part in edges if source == name]
+        assert set(parts) == made[name][1]
+        assert nodes[name]["voxels"] == sum(nodes[part]["voxels"] for part in parts)
+        assert nodes[name]["score"] == joins["score"][i]
+        assert nodes[name]["grains"] == joins["grains"][i]
+    for name in leaves:
+        place = [nodes[name][axis] for axis in "zyx"]
+        assert place == seg.graph["position"][int(name) - 1].tolist()
 
 
 def test_what_is_kept(sample, command, tmp_path):
