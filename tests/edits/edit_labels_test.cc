@@ -17,6 +17,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/label_digest.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;

@@ -81,6 +81,57 @@ def scan(labels):
     return np.random.default_rng(3).integers(0, 60000, labels.shape).astype(np.uint16)
 
 
+def test_stability(command, tmp_path):
+    mask = madf.generate("snow", size=64, fraction=0.4, length=12)[0]
+    seg = madf.segment(mask, strictness=12, tidy=0)
+    seg.save(tmp_path / "all.vdb")
+    measured = madf.measure(seg, stability=True)
+    born, dies, stability = (measured.grains[name] for name in ("born", "dies", "stability"))
+    assert len(born) > 20 and np.isfinite(born).any() and np.isfinite(dies).any()
+    assert not (born < 12).any() and not (dies >= 12).any()
+    assert np.array_equal(stability, np.fmin(born - 12, 12 - dies), equal_nan=True)
+    place = measured.points("representative").astype(int)
+
+    def voxels_at(strictness, z, y, x):
+        labels = np.asarray(seg.cut(strictness).labels)
+        return np.count_nonzero(labels == labels[z, y, x])
+
+    step = 1 / 512
+    for grain in np.flatnonzero(np.isfinite(dies))[:10]:
+        voxels = measured.grains["voxels"][grain]
+        assert voxels >= 0.98 * voxels_at(dies[grain] + step, *place[grain])
+        assert voxels < 0.98 * voxels_at(dies[grain], *place[grain])
+    vanishes = measured.bonds["vanishes"]
+    assert len(vanishes) > 20 and (vanishes < 12).any()
+    for bond in range(0, len(vanishes), 5):
+        ends = [tuple(place[measured.bonds[end][bond] - 1]) for end in ("first", "second")]
+        for strictness, are_one in ((vanishes[bond] + step, False), (vanishes[bond], True)):
+            labels = np.asarray(seg.cut(strictness).labels)
+            assert (labels[ends[0]] == labels[ends[1]]) == are_one
+
+    command("segment", tmp_path / "all.vdb", tmp_path / "all.slabs", "--grid", "grain",
+            "--strictness", "12", "--tidy", "0", "--keep", "manifold", "--slab-height", "24")
+    for file in ("all.vdb", "all.slabs"):
+        command("measure", tmp_path / file, tmp_path / "tables", "--stability", "--grid", "grain")
+        grains, bonds = (columns(tmp_path / "tables" / f"{name}.csv") for name in ("grains", "bonds"))
+        for name in ("born", "dies", "stability"):
+            assert np.allclose(grains[name], measured.grains[name], rtol=1e-8, equal_nan=True)
+        assert np.allclose(bonds["vanishes"], vanishes, rtol=1e-8, equal_nan=True)
+    assert not {"born", "dies", "stability"} & set(madf.measure(seg).grains)
+
+    small = madf.segment(mask, min_grain=300)  # as without: its grains are some of those
+    few, all_ = (madf.measure(s, stability=True).grains for s in (small, seg.cut(11)))
+    assert len(few["id"]) < len(all_["id"]) and set(few["dies"][:3]) <= set(all_["dies"])
+    with pytest.raises(madf.InvalidInput, match="give the Segmentation itself"):
+        madf.measure(seg.labels, stability=True)
+    with pytest.raises(madf.InvalidInput, match="manifolds were not kept"):
+        madf.measure(madf.segment(mask, keep=()), stability=True)
+    with pytest.raises(madf.InvalidInput, match="of grains merged by score"):
+        madf.measure(seg.remerge(merge="both"), stability=True)
+    with pytest.raises(madf.InvalidInput, match="and these were edited"):
+        madf.measure(seg.edit("merge 1 2"), stability=True)
+
+
 def test_what_is_there_on_demand(labels, scan, command, tmp_path):
     everything = dict(shape=True, edge_weights=True, voronoi=True, bootstrap=200)
     np.save(tmp_path / "scan.npy", scan)

@@ -64,19 +64,6 @@ struct JoinTrees {
   }
 };
 
-/// The graph of the kept manifolds. The voxels of one file are not read.
-ManifoldGraph keptGraph(const InputOptions& input, Progress* progress) {
-  if (isInSlabs(input)) {
-    const LabelSlabs manifolds = openManifoldSlabs(input, progress);
-    std::vector<GraphPart> parts;
-    for (size_t slab = 0; slab < manifolds.slabCount(); ++slab)
-      if (auto part = storedGraphPart(*manifolds.read(slab, progress)))
-        parts.push_back(std::move(*part));
-    return joinedGraph(parts);
-  }
-  return requiredGraph(*requiredManifolds(readVdbHeaders(input.path, progress), input.path));
-}
-
 constexpr int kDigits = 12;
 
 std::string table(const ManifoldGraph& graph, const JoinTrees& trees) {

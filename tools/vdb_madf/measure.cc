@@ -14,6 +14,7 @@
 #include "input_options.h"
 #include "outputs.h"
 #include "parse.h"
+#include "remerge_slabs.h"
 #include "scan_option.h"
 #include "text_file.h"
 #include "vdb_madf/exports/measurement_files.h"
@@ -26,6 +27,7 @@
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
 #include "vdb_madf/measure/measure_binder.h"
+#include "vdb_madf/measure/measure_stability.h"
 #include "vdb_madf/pictures/measures_plot.h"
 
 namespace vdb_madf::tools {
@@ -40,7 +42,7 @@ struct MeasureArguments {
   std::string binderText, bridges;
   int64_t binder = 1;
   std::string runs, vary;
-  bool ice = false;
+  bool ice = false, stability = false;
   MeasureOptions measure;
   std::optional<SensitivityOptions> sensitivity;
   TableOptions tables;
@@ -111,6 +113,9 @@ void parse(MeasureArguments& o) {
     o.tables.density = parseNumber(o.density, "--density");
     if (!(*o.tables.density > 0)) throw WrongUsage("--density " + o.density + ": must be above 0");
   }
+  if (o.stability && !hasVdbEnding(o.input.path) && !isInSlabs(o.input))
+    throw WrongUsage(o.input.path +
+                     ": --stability needs what segment --keep manifold keeps, in .vdb or .slabs");
   checkScan(o.intensity, o.input);
   checkScan(o.gray, o.input);
   checkScan(o.phases, o.input);
@@ -248,9 +253,13 @@ Measurements measureLabels(const MeasureArguments& o, const Common& common, cons
     common.progress->start("blur");
     blur = blurOf(*gray.image, common.progress);
   }
+  std::optional<ManifoldGraph> graph;
+  if (o.stability)
+    graph = withFileName(o.input.path, [&] { return keptGraph(o.input, common.progress); });
   common.progress->start("measure");
   Measurements measurements =
       withFileName(o.input.path, [&] { return measure(labels, o.measure, common.progress); });
+  if (graph) withFileName(o.input.path, [&] { measureStability(*graph, measurements); });
   if (scan) {
     common.progress->start("gray values");
     measureGray(labels, *scan, measurements, common.progress);
@@ -368,6 +377,9 @@ void addMeasure(Verb command, Common& common, Action& action) {
   verb.option("--bridges", o->bridges,
               "table of the binder of each pair of grains: volume, section, what it covers")
       .typeName("FILE.csv");
+  verb.flag("--stability", o->stability,
+            "adds the strictnesses between which grains stay the same, and bonds vanish (manifolds "
+            "kept)");
   verb.option("--bootstrap", o->bootstrap,
               "adds 95 % intervals of the means, from N samples drawn of the grains")
       .typeName("N");

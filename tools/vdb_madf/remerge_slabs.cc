@@ -14,6 +14,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/measure/grain_sizes.h"
+#include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/slabs/remerge_slabs.h"
 #include "vdb_madf/vdb/read_vdb.h"
@@ -90,6 +91,18 @@ LabelSlabs openManifoldSlabs(const InputOptions& input, Progress* progress) {
   InputOptions manifolds = input;
   manifolds.gridName = kManifoldGrid;
   return openLabelSlabs(manifolds, "--grid", progress);
+}
+
+ManifoldGraph keptGraph(const InputOptions& input, Progress* progress) {
+  if (isInSlabs(input)) {
+    const LabelSlabs manifolds = openManifoldSlabs(input, progress);
+    std::vector<GraphPart> parts;
+    for (size_t slab = 0; slab < manifolds.slabCount(); ++slab)
+      if (auto part = storedGraphPart(*manifolds.read(slab, progress)))
+        parts.push_back(std::move(*part));
+    return joinedGraph(parts);
+  }
+  return requiredGraph(*requiredManifolds(readVdbHeaders(input.path, progress), input.path));
 }
 
 void remergeInSlabs(const InputOptions& input, const std::string& out, const MergeOptions& merge,

@@ -8,6 +8,7 @@
 
 #include "command.h"
 #include "input_options.h"
+#include "vdb_madf/method/manifold_graph.h"
 #include "vdb_madf/method/merge.h"
 #include "vdb_madf/slabs/folder_scratch.h"
 
@@ -22,6 +23,9 @@ Int32Grid::Ptr requiredManifolds(const std::vector<openvdb::GridBase::Ptr>& grid
                                  const std::string& path);
 /// Opens the manifolds in a folder of slabs. @throw InvalidInput if it has none
 LabelSlabs openManifoldSlabs(const InputOptions& input, Progress* progress);
+/// The graph of the kept manifolds, in one file, of which no voxels are read, or in slabs.
+/// @throw InvalidInput if there are none
+ManifoldGraph keptGraph(const InputOptions& input, Progress* progress);
 
 /// What `remerge` does from a folder of slabs to another one, slab by slab; OUT.slabs appears
 /// whole.

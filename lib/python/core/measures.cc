@@ -18,6 +18,8 @@
 #include "vdb_madf/measure/edge_weights.h"
 #include "vdb_madf/measure/measure.h"
 #include "vdb_madf/measure/measure_binder.h"
+#include "vdb_madf/measure/measure_stability.h"
+#include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/volumes/choose_grid.h"
 #include "vdb_madf/volumes/load_object.h"
 
@@ -265,8 +267,8 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
                        const std::string& intensityGrid, const py::object& gray,
                        const std::string& grayGrid, bool edgeWeights, bool voronoi, bool sizeCurve,
                        const std::string& sizeReference, const py::object& phases,
-                       const std::string& phasesGrid, int64_t binder, int bootstrap,
-                       int sensitivity, const std::map<std::string, double>& vary) {
+                       const std::string& phasesGrid, int64_t binder, const GridPtr& manifold,
+                       int bootstrap, int sensitivity, const std::map<std::string, double>& vary) {
   const Int32Grid& grid = asLabels(*labels);
   MeasureOptions options;
   options.minFaces = minFaces;
@@ -289,8 +291,11 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
     const py::gil_scoped_acquire lock;
     return std::move(*openScan(gray, grayGrid));
   };
+  std::optional<ManifoldGraph> graph;
+  if (manifold) graph = requiredGraph(asLabels(*manifold));
   const Measurements measured = withoutLock(call, [&](Interrupter* interrupter) {
     Measurements result = measure(grid, options, interrupter);
+    if (graph) measureStability(*graph, result);
     if (scan) measureGray(grid, *scan, result, interrupter);
     if (third) measureBinder(grid, *third, options, result, interrupter);
     if (edges)
@@ -364,8 +369,8 @@ void bindMeasures(py::module_& m) {
         py::arg("boundary"), py::arg("min_faces"), py::arg("shape"), py::arg("intensity"),
         py::arg("intensity_grid"), py::arg("gray"), py::arg("gray_grid"), py::arg("edge_weights"),
         py::arg("voronoi"), py::arg("size_curve"), py::arg("size_reference"), py::arg("phases"),
-        py::arg("phases_grid"), py::arg("binder"), py::arg("bootstrap"), py::arg("sensitivity"),
-        py::arg("vary"));
+        py::arg("phases_grid"), py::arg("binder"), py::arg("manifold"), py::arg("bootstrap"),
+        py::arg("sensitivity"), py::arg("vary"));
   m.def("compare", compareLabels, py::arg("truth"), py::arg("test"), py::arg("call"));
 }
 

@@ -93,7 +93,7 @@ def measure(labels: Grid, call: Call, *, boundary: str, min_faces: int, shape: b
             intensity: Union[None, str, ArraySource], intensity_grid: str,
             gray: Union[None, str, ArraySource], gray_grid: str, edge_weights: bool, voronoi: bool, size_curve: bool,
             size_reference: str, phases: Union[None, str, ArraySource], phases_grid: str,
-            binder: int, bootstrap: int, sensitivity: int,
+            binder: int, manifold: Optional[Grid], bootstrap: int, sensitivity: int,
             vary: Dict[str, float]) -> Dict[str, Any]: ...
 def compare(truth: Grid, test: Grid, call: Call) -> Dict[str, Any]: ...
 

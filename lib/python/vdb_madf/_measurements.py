@@ -46,6 +46,9 @@ class Measurements:
       `local_solid_fraction` (volume / that), `cell_neighbors`; `cell_at_domain_face`: it ends there
     - with size_curve or size_reference: the columns of shape, and `projected_diameter`: of the disc
       of the convex hull's mean projected area
+    - with stability: the grain is the same but for 2 % of its voxels from the strictness `born`
+      (NaN: from any) down to `dies`, where it is part of a larger one (NaN: never); `stability`:
+      how far its own strictness is from the nearer of the two
 
     bonds, a row for each pair of grains that touch, by `first`, then `second` (ids):
     - `faces` of voxels; `area`, `radius` of the disc of this area; `centroid_*`, and `normal_*`
@@ -59,6 +62,7 @@ class Measurements:
     - with intensity: the `gray_` columns, of the voxels on both sides
     - with sensitivity: `p_bond`, share of the runs in which both grains are there and touch, and
       `area_sd` over these
+    - with stability: `vanishes`, the largest strictness at which the two grains are one
 
     sample:
     - `grains`, `bonds`, `contacts_left_out`, `area_left_out` (by `min_faces`),
@@ -125,7 +129,7 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
             gray: Optional[Source] = None, gray_grid: Optional[str] = None,
             edge_weights: bool = False, voronoi: bool = False, size_curve: bool = False,
             size_reference: Optional[str] = None, phases: Optional[Source] = None,
-            phases_grid: Optional[str] = None, binder: int = 1, bootstrap: int = 0,
+            phases_grid: Optional[str] = None, binder: int = 1, stability: bool = False, bootstrap: int = 0,
             sensitivity: int = 0, vary: Optional[Dict[str, float]] = None,
             dataset: Optional[str] = None, grid: Optional[str] = None, progress: Progress = None,
             threads: int = 0) -> Measurements:
@@ -154,6 +158,8 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
     how far each kind of curve is from it between 5 and 95 %.
     phases: a map of phases of the same shape, a file or an array: `bridges`, the binder (the voxels
     of value `binder`) between grains. phases_grid: as intensity_grid.
+    stability: of a Segmentation that kept its manifolds: columns `born`, `dies`, `stability` of the
+    grains and `vanishes` of the bonds.
     bootstrap: replicates, 100 to 100000: in the sample `intervals`, by name of a mean its `mean`
     and the ends `low` and `high` of its 95 % interval.
     sensitivity: runs, 5 to 1000, in which the scan of `gray` is segmented by other choices: columns
@@ -165,6 +171,11 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
         raise _core.InvalidInput("sensitivity segments the scan again: give it as gray")
     if vary and sensitivity <= 0:
         raise _core.InvalidInput("vary says how far sensitivity goes: give it, too")
+    if stability:
+        if not isinstance(labels, Segmentation):
+            raise _core.InvalidInput("stability: give the Segmentation itself, which has the "
+                                     "manifolds")
+        manifold = labels._manifolds()
     with calling(progress, threads) as call:
         measured = labels_of(labels, call, threads, voxel_size=voxel_size, dataset=dataset,
                              grid=grid)
@@ -176,5 +187,5 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
                              size_curve=size_curve, size_reference=size_reference or "",
                              phases=None if phases is None else readable(phases),
                              phases_grid=phases_grid or "", binder=binder,
-                             bootstrap=bootstrap, sensitivity=sensitivity, vary=vary or {})
+                             manifold=labels._manifolds() if stability else None, bootstrap=bootstrap, sensitivity=sensitivity, vary=vary or {})
     return Measurements(**made, provenance=measured.metadata)

@@ -12,9 +12,6 @@
 
 namespace vdb_madf {
 
-/// What was edited, in the metadata of labels (string): the texts of the edits, joined by "; ".
-inline constexpr char kEditsKey[] = "madf_edits";
-
 /// What an edit did.
 struct EditResult {
   Edit edit;
@@ -48,7 +45,7 @@ struct EditedLabels {
 /// unknown, outside the box of the grains that are left.
 ///
 /// Metadata are those of the labels; kEditsKey tells the edits after those that were there, counts
-/// of a segmentation are brought up to date (segmentation/segmentation_metadata.h: updateCounts()),
+/// of a segmentation are brought up to date (updateCounts(), segmentation/segmentation_metadata.h),
 /// and a graph of manifolds goes, for it is not that of edited ones.
 /// @param manifold with the graph of the segmentation that the labels come from (`segment` with
 ///   keepManifold); for split alone

@@ -156,6 +156,11 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
     make.add("projected_diameter", 1,
              [](const G& g) { return g.shape ? g.shape->projectedDiameter : kNone; });
   if (extra.recurrence) addRecurrence(make, "p_grain", "volume_sd", 3);
+  if (extra.stability) {
+    make.add("born", 0, [](const G& g) { return g.life.born.value_or(kNone); });
+    make.add("dies", 0, [](const G& g) { return g.life.dies.value_or(kNone); });
+    make.add("stability", 0, [](const G& g) { return g.life.stability.value_or(kNone); });
+  }
   return make.columns();
 }
 
@@ -188,6 +193,8 @@ std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
   addCurvature("curvature_residual", 1, &InterfaceCurvature::residual);
   if (extra.gray) addGray(make);
   if (extra.necks) addNecks(make);
+  if (extra.stability)
+    make.add("vanishes", 0, [](const B& b) { return b.vanishes.value_or(kNone); });
   if (extra.recurrence) addRecurrence(make, "p_bond", "area_sd", 2);
   return make.columns();
 }

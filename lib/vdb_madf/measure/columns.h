@@ -34,10 +34,10 @@ struct MeasureColumn {
 /// `axis3...`, `box_min_x` ..., `box_max_x` ... (index coordinates), `coordination`,
 /// `at_domain_face` (0 or 1). With the shape also `feret_max`, `feret_min`, `convex_volume`,
 /// `solidity`, `zingg_class` (1 to 4: zinggClass()); with gray values `gray_voxels`, `gray_mean`,
-/// `gray_sd`, `gray_min`, `gray_max`, `gray_median`; with edge weights `edge_weight`;
-/// with cells `cell_volume`, `local_solid_fraction`, `cell_neighbors`, `cell_at_domain_face` (0 or
-/// 1); with sizes `projected_diameter`; with
-/// recurrences `p_grain`, `volume_sd`.
+/// `gray_sd`, `gray_min`, `gray_max`, `gray_median`; with edge weights `edge_weight`; with cells
+/// `cell_volume`, `local_solid_fraction`, `cell_neighbors`, `cell_at_domain_face` (0 or 1); with
+/// sizes `projected_diameter`; with recurrences `p_grain`, `volume_sd`; with the stability `born`,
+/// `dies`, `stability`.
 std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains,
                                         const ExtraMeasures& extra = {});
 
@@ -47,7 +47,7 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
 /// `gaussian_curvature_sd`, `curvature_residual`. A bond without a curvature has 0
 /// `curvature_points` and none of the four. With gray values the columns that grains have;
 /// with necks `neck_area`, `neck_radius`, `neck_error`, `neck_confirmed` (0 or 1), `neck_normal_x`,
-/// `_y`, `_z`; with recurrences `p_bond`, `area_sd`.
+/// `_y`, `_z`; with recurrences `p_bond`, `area_sd`; with the stability `vanishes`.
 std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
                                        const ExtraMeasures& extra = {});
 

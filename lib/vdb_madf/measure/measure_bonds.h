@@ -39,6 +39,8 @@ struct BondMeasures {
   std::optional<GrayValues> gray;
   std::optional<Neck> neck;              ///< of the gray scan; none unless it was asked for
   std::optional<Recurrence> recurrence;  ///< likewise, when the scan was segmented by other choices
+  /// The largest strictness at which the two grains are one; none: nowhere, or not asked for.
+  std::optional<double> vanishes;
 };
 
 }  // namespace vdb_madf

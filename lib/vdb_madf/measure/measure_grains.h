@@ -12,6 +12,7 @@
 #include "vdb_madf/measure/grain_shape.h"
 #include "vdb_madf/measure/gray_values.h"
 #include "vdb_madf/measure/recurrence.h"
+#include "vdb_madf/method/grain_lives.h"
 
 namespace vdb_madf {
 
@@ -59,6 +60,7 @@ struct GrainMeasures {
   double edgeWeight = 0;           ///< see edge_weights.h
   std::optional<GrainCell> cell;
   std::optional<Recurrence> recurrence;  ///< when the scan was segmented by other choices
+  GrainLife life;                        ///< see measure_stability.h
 
   double totalArea() const { return freeArea + sharedArea; }
   double solidity() const { return volume / shape.value().convexVolume; }

@@ -303,17 +303,25 @@ std::vector<JoinedGrains> joinedGrains(const Hierarchy& hierarchy) {
   return all;
 }
 
-Merging cut(const Hierarchy& hierarchy, double strictness) {
+size_t joinsAt(const Hierarchy& hierarchy, double strictness) {
   if (!(strictness >= hierarchy.lowest && strictness <= kMaxStrictness))
     throw InvalidInput("the hierarchy has no grains at the strictness " +
                        std::to_string(strictness) + ": it must lie between " +
                        std::to_string(hierarchy.lowest) + " and 200000");
+  const std::vector<Hierarchy::Join>& joins = hierarchy.joins;
+  const int32_t least = unitsOf(strictness);
+  const auto end = std::find_if(joins.begin(), joins.end(), [least](const Hierarchy::Join& join) {
+    return join.score < least;
+  });
+  return size_t(end - joins.begin());
+}
+
+Merging cut(const Hierarchy& hierarchy, double strictness) {
   const std::vector<Hierarchy::Class>& classes = hierarchy.classes;
   detail::DisjointSets sets(classes.size());
-  for (const Hierarchy::Join& join : hierarchy.joins) {
-    if (join.score < unitsOf(strictness)) break;
-    sets.unite(join.first, join.second);
-  }
+  const size_t joins = joinsAt(hierarchy, strictness);
+  for (size_t i = 0; i < joins; ++i)
+    sets.unite(hierarchy.joins[i].first, hierarchy.joins[i].second);
   std::vector<uint32_t> best(classes.size());
   std::vector<char> hasVoxels(classes.size(), 0);
   for (uint32_t c = 0; c < classes.size(); ++c) {

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -87,5 +88,8 @@ std::vector<JoinedGrains> joinedGrains(const Hierarchy& hierarchy);
 /// merge().
 /// @throw InvalidInput unless strictness is in [hierarchy.lowest, kMaxStrictness].
 Merging cut(const Hierarchy& hierarchy, double strictness);
+
+/// How many joins, from the first on, cut() makes. @throw InvalidInput as cut()
+size_t joinsAt(const Hierarchy& hierarchy, double strictness);
 
 }  // namespace vdb_madf

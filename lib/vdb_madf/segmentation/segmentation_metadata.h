@@ -35,6 +35,9 @@ struct StoredMerging {
 /// What describeMerging() wrote; absent: a grid does not say it, or its merging was one's own.
 std::optional<StoredMerging> storedMerging(const openvdb::MetaMap& metadata);
 
+/// What was edited (string; edits/edit_labels.h): the texts of the edits, joined by "; ".
+inline constexpr char kEditsKey[] = "madf_edits";
+
 /// Brings the counts up to date of a grid some of whose grains were joined, divided or dropped: the
 /// grains, and if voxels went the voxels and leaves; counts of balls, critical points and cavities
 /// then go, for they are those of the whole object. A grid without counts gets none.
