@@ -113,7 +113,8 @@ def test_stability(command, tmp_path):
             "--strictness", "12", "--tidy", "0", "--keep", "manifold", "--slab-height", "24")
     for file in ("all.vdb", "all.slabs"):
         command("measure", tmp_path / file, tmp_path / "tables", "--stability", "--grid", "grain")
-        grains, bonds = (columns(tmp_path / "tables" / f"{name}.csv") for name in ("grains", "bonds"))
+        grains, bonds = (columns(tmp_path / "tables" / f"{name}.csv")
+                         for name in ("grains", "bonds"))
         for name in ("born", "dies", "stability"):
             assert np.allclose(grains[name], measured.grains[name], rtol=1e-8, equal_nan=True)
         assert np.allclose(bonds["vanishes"], vanishes, rtol=1e-8, equal_nan=True)

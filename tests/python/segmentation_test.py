@@ -2,7 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """segment() and what comes of it equal the command; wrong options are refused."""
 
+import json
+import os
 import re
+import subprocess
 import warnings
 from xml.etree import ElementTree
 
@@ -208,6 +211,17 @@ def test_the_hierarchy_as_trees(command, tmp_path):
     for ending in ("nwk", "graphml"):
         command("hierarchy", tmp_path / "all.vdb", tmp_path / f"joins.{ending}")
 
+    command("hierarchy", tmp_path / "all.vdb", tmp_path / "parents.csv", "--levels", "12,11,9.5")
+    header, *rows = (tmp_path / "parents.csv").read_text().split()
+    assert header == "grain_at_12,grain_at_11,grain_at_9.5,voxels"
+    rows = np.array([row.split(",") for row in rows], int)
+    fine, *coarse = (np.asarray(seg.remerge(strictness=k, tidy=0).labels) for k in (12, 11, 9.5))
+    assert (rows[:, 0] == np.arange(1, fine.max() + 1)).all() and len(np.unique(rows[:, 2])) > 1
+    assert (rows[:, 3] == np.bincount(fine.ravel())[1:]).all()
+    for column, labels in zip((1, 2), coarse):
+        parents = np.concatenate([[0], rows[:, column]])
+        assert np.array_equal(parents[fine], labels)
+
     # Cut where the height above the leaves says so, the trees have the grains of that strictness.
     leaves, made = [], {}
 
@@ -250,6 +264,49 @@ def test_the_hierarchy_as_trees(command, tmp_path):
     for name in leaves:
         place = [nodes[name][axis] for axis in "zyx"]
         assert place == seg.graph["position"][int(name) - 1].tolist()
+
+
+def test_the_most_stable_strictness(command, tmp_path):
+    mask = madf.generate("particles", shape="rods", size=64, count=12, radius=(3, 6))[0]
+    mask.save(tmp_path / "mask.vdb")
+    seg = madf.segment(mask, tidy=0)
+    stable = seg.stable_strictness
+    best = stable["strictness"]
+    assert best != 11
+    levels = stable["levels"]
+    assert np.allclose(levels, np.arange(80, 141) / 10)
+    assert stable["stability"][levels == best] == stable["stability"].max()
+    for level in (8, 10, best):
+        measured = madf.measure(seg.cut(level), stability=True).grains
+        weights = np.fmin(measured["stability"], 1)  # NaN: always there
+        mean = (weights * measured["voxels"]).sum() / measured["voxels"].sum()
+        at = np.flatnonzero(levels == level)
+        assert np.isclose(stable["stability"][at], mean, atol=0.002)
+        assert stable["grains"][at] == len(measured["id"])
+    if stable["plateau"]:
+        first, last = (stable["grains"][levels == end] for end in stable["plateau"])
+        assert first <= last < 1.05 * first
+
+    command("segment", tmp_path / "mask.vdb", tmp_path / "auto.vdb", "--strictness", "auto",
+            "--json", tmp_path / "auto.json", "--keep", "manifold")
+    said = json.loads((tmp_path / "auto.json").read_text())
+    assert said["strictness"] == best and said["strictness_auto"]
+    expected = seg.remerge(strictness=best, tidy=2).labels
+    command("segment", tmp_path / "mask.vdb", tmp_path / "all.slabs", "--keep", "manifold",
+            "--slab-height", "24")
+    for source, result in (("auto.vdb", "again.vdb"), ("all.slabs", "again.slabs")):
+        command("remerge", tmp_path / source, tmp_path / result, "--strictness", "auto")
+        again = madf.Labels(tmp_path / result, grid="grain")
+        assert np.array_equal(again, expected)
+        assert again.metadata["madf_strictness"] == best
+    labels = madf.Labels(tmp_path / "auto.vdb", grid="grain")
+    assert np.array_equal(labels, expected) and labels.metadata == expected.metadata
+    tool = os.environ["VDB_MADF_TOOL"]
+    for options, says in ((["x.slabs"], "is not for slabs: segment with --keep manifold"),
+                          (["x.vdb", "--merge", "both"], "belongs to --merge score")):
+        refused = subprocess.run([tool, "segment", tmp_path / "mask.vdb", *options, "--strictness",
+                                  "auto"], stderr=subprocess.PIPE, text=True, cwd=tmp_path)
+        assert refused.returncode == 2 and says in refused.stderr
 
 
 def test_what_is_kept(sample, command, tmp_path):

@@ -340,6 +340,12 @@ TEST_CASE("segment: options out of range are refused", "[segment]") {
       CHECK(segment(*mask, options).counts.keptBalls == 1);
     }
   }
+  SECTION("a strictness to be found for tests") {
+    options.autoStrictness = true;
+    CHECK_NOTHROW(segment(*mask, options));
+    options.merge.mode = MergeMode::both;
+    CHECK_THROWS_AS(segment(*mask, options), InvalidInput);
+  }
   SECTION("an open boundary without a domain") {
     options.boundary = Boundary::open;
     CHECK_THROWS_AS(segment(*mask, options), InvalidInput);

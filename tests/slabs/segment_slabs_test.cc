@@ -301,6 +301,9 @@ TEST_CASE("slabs: what they do not know is refused", "[slabs]") {
   options.maxMemory = int64_t(1) << 40;
   CHECK_THROWS_AS(segmentCut(object, options), InvalidInput);
   options = {};
+  options.autoStrictness = true;
+  CHECK_THROWS_AS(segmentCut(object, options), InvalidInput);
+  options = {};
   options.tidy = 9;  // more rounds than the slab in the middle has layers
   CHECK_THROWS_AS(segmentCut(row(40, {0, 16, 24, 40}), options), InvalidInput);
   options.tidy = 16;

@@ -12,6 +12,7 @@
 
 #include "command.h"
 #include "input_options.h"
+#include "merge_options.h"
 #include "outputs.h"
 #include "remerge_slabs.h"
 #include "text_file.h"
@@ -26,7 +27,8 @@ namespace {
 
 struct HierarchyArguments {
   InputOptions input;
-  std::string out;
+  std::string out, levelsText;
+  std::vector<double> levels;
 };
 
 /// The joins as trees: the classes that they begin with are the leaves, and the join of index i is
@@ -66,7 +68,7 @@ struct JoinTrees {
 
 constexpr int kDigits = 12;
 
-std::string table(const ManifoldGraph& graph, const JoinTrees& trees) {
+std::string joinTable(const ManifoldGraph& graph, const JoinTrees& trees) {
   const std::vector<JoinedGrains>& joins = trees.joins;
   std::ostringstream csv;
   csv.precision(kDigits);
@@ -161,10 +163,45 @@ using Writer = std::string (*)(const ManifoldGraph&, const JoinTrees&);
 /// By the ending of the file. @throw WrongUsage
 Writer writerOf(const std::string& path) {
   const std::string ending = path == "-" ? ".csv" : fileEnding(path);
-  if (ending == ".csv") return table;
+  if (ending == ".csv") return joinTable;
   if (ending == ".nwk") return newick;
   if (ending == ".graphml") return graphml;
   throw WrongUsage(path + ": the output's ending must be .csv, .nwk or .graphml");
+}
+
+/// The grains at the first level, and what they are part of at the others.
+std::string parents(const Hierarchy& hierarchy, const std::vector<double>& levels) {
+  std::vector<Merging> mergings;
+  std::ostringstream csv;
+  csv.precision(kDigits);
+  for (const double level : levels) {
+    csv << "grain_at_" << level << ',';
+    mergings.push_back(cut(hierarchy, level));
+  }
+  csv << "voxels\n";
+  const Merging& finest = mergings.front();
+  std::vector<int64_t> voxels(finest.representative.size(), 0);
+  for (const Hierarchy::Class& c : hierarchy.classes)
+    if (const int32_t grain = finest.grainOfNode[c.representative])
+      voxels[size_t(grain) - 1] += c.voxels;
+  for (size_t g = 0; g < voxels.size(); ++g) {
+    for (const Merging& merging : mergings)
+      csv << merging.grainOfNode[finest.representative[g]] << ',';
+    csv << voxels[g] << '\n';
+  }
+  return csv.str();
+}
+
+/// Of --levels. @throw WrongUsage
+std::vector<double> parseLevels(const std::string& text) {
+  std::vector<double> levels;
+  std::stringstream list(text);
+  for (std::string level; std::getline(list, level, ',');) {
+    levels.push_back(parseStrictness(level));
+    if (levels.size() > 1 && !(levels.back() < levels[levels.size() - 2]))
+      throw WrongUsage("--levels " + text + ": each has to be smaller than the one before");
+  }
+  return levels;
 }
 
 void runHierarchy(const HierarchyArguments& o, const Common& common) {
@@ -173,8 +210,9 @@ void runHierarchy(const HierarchyArguments& o, const Common& common) {
   const ManifoldGraph graph =
       withFileName(o.input.path, [&] { return keptGraph(o.input, common.progress); });
   common.progress->start("join");
-  const JoinTrees trees(mergeHierarchy(graph));
-  file.write(writerOf(o.out)(graph, trees));
+  const Hierarchy hierarchy = mergeHierarchy(graph);
+  const JoinTrees trees(hierarchy);
+  file.write(o.levels.empty() ? writerOf(o.out)(graph, trees) : parents(hierarchy, o.levels));
   common.progress->end();
   if (!common.quiet)
     std::printf("%s: %s of %s\n", o.out.c_str(),
@@ -194,10 +232,15 @@ void addHierarchy(Verb command, Common& common, Action& action) {
           "OUT", o->out,
           ".csv: a line per join, the best first; .nwk: trees (Newick); .graphml: these as a graph")
       .required();
+  verb.option("--levels", o->levelsText,
+              "instead, of each grain at the first strictness what it is part of at the others")
+      .typeName("K,K...");
   verb.onParsed([o, &common, &action] {
     o->input.outputs = {o->out};
     o->input.parse();
-    writerOf(o->out);
+    o->levels = parseLevels(o->levelsText);
+    if (writerOf(o->out) != joinTable && !o->levels.empty())
+      throw WrongUsage(o->out + ": --levels makes a table: choose a name like OUT.csv");
     action = [o, &common] { runHierarchy(*o, besideOutput(common, o->out)); };
   });
 }

@@ -16,7 +16,7 @@ namespace vdb_madf::tools {
 
 void MergeArguments::add(Verb verb) {
   verb.option("--strictness", strictness,
-              "least score that joins pieces; larger: more grains (default 11)")
+              "least score that joins pieces; larger: more grains (default 11); auto: most stable")
       .typeName("K");
   verb.option("--merge", mode, "by score, or by tests: both, angle, neck (default score)")
       .oneOf({"score", "both", "angle", "neck"});
@@ -40,7 +40,7 @@ MergeOptions MergeArguments::parse() const {
                                      {&delta, "--delta"},
                                      {&adjacency, "--adjacency"}})
       if (!text->empty()) refuseOptionOfTests(name);
-    if (!strictness.empty()) options.strictness = parseStrictness(strictness);
+    if (!strictness.empty() && !isAutomatic()) options.strictness = parseStrictness(strictness);
     return options;
   }
   if (!strictness.empty()) refuseStrictness(mode);
@@ -53,6 +53,15 @@ MergeOptions MergeArguments::parse() const {
   if (adjacency == "cell") options.adjacency = Adjacency::cell;
   if (!delta.empty()) options.delta = parseDelta(delta);
   return options;
+}
+
+std::string textOf(const StableStrictness& stable, const std::string& indentOfSecond) {
+  const auto& plateau = stable.plateau;
+  return fmt::format("auto: {:g}, of 8 to 14 where grains are most stable;\n{}", stable.strictness,
+                     indentOfSecond) +
+         (plateau ? fmt::format("the number of grains changes by less than 5 % from {:g} to {:g}",
+                                plateau->first, plateau->second)
+                  : "nowhere does the number of grains stay within 5 % over 1: no preferred scale");
 }
 
 void refuseOptionOfTests(const std::string& name) {

@@ -9,6 +9,7 @@
 
 #include "command_line.h"
 #include "vdb_madf/method/merge.h"
+#include "vdb_madf/method/stable_strictness.h"
 
 namespace vdb_madf::tools {
 
@@ -16,9 +17,14 @@ namespace vdb_madf::tools {
 struct MergeArguments {
   std::string strictness, mode, theta, delta, adjacency, minGrain;
   void add(Verb verb);
+  /// Is the strictness of largest stability to be found (stable_strictness.h)?
+  bool isAutomatic() const { return strictness == "auto"; }
   /// @throw WrongUsage
   MergeOptions parse() const;
 };
+
+/// What there is to say of a strictness that was found: two lines, without the last end of line.
+std::string textOf(const StableStrictness& stable, const std::string& indentOfSecond);
 
 /// Says to which way of merging it belongs.
 [[noreturn]] void refuseOptionOfTests(const std::string& name);

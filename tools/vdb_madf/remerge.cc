@@ -30,16 +30,29 @@ struct RemergeArguments {
   std::string tidy;
 };
 
+/// Finds and tells the strictness of largest stability.
+double stableStrictnessOf(const RemergeArguments& o, const Common& common) {
+  common.progress->start("strictness");
+  const StableStrictness stable = withFileName(o.input.path, [&] {
+    return stableStrictness(mergeHierarchy(keptGraph(o.input, common.progress)));
+  });
+  common.progress->end();
+  if (!common.quiet) std::cout << "strictness " << textOf(stable, "  ") << "\n";
+  return stable.strictness;
+}
+
 void runRemerge(const RemergeArguments& o, const Common& common) {
-  const MergeOptions merge = o.merge.parse();
+  MergeOptions merge = o.merge.parse();
   const int tidy = parseTidy(o.tidy);
   if (hasSlabsEnding(o.out)) {
     if (!isInSlabs(o.input))
       throw InvalidInput(o.input.path + ": is no folder of slabs, so none is made of it: choose " +
                          "an output like OUT.vdb, or segment into slabs");
+    if (o.merge.isAutomatic()) merge.strictness = stableStrictnessOf(o, common);
     return remergeInSlabs(o.input, o.out, merge, tidy, common);
   }
   checkWritable(o.out);
+  if (o.merge.isAutomatic()) merge.strictness = stableStrictnessOf(o, common);
   const auto grids = readVdb(o.input.path, {}, common.progress);
   const Int32Grid::Ptr manifold = requiredManifolds(grids, o.input.path);
 

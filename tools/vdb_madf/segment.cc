@@ -103,6 +103,7 @@ void applyPaper(SegmentArguments& o) {
 void parseMethod(SegmentArguments& o) {
   applyPaper(o);
   o.segment.merge = o.merge.parse();
+  o.segment.autoStrictness = o.merge.isAutomatic();
   o.segment.gamma = parseCount(o.gamma, "--gamma");
   o.segment.fillHoles = parseFillHoles(o.fillHoles);
   o.segment.tidy = parseTidy(o.tidy);
@@ -134,6 +135,9 @@ void parse(SegmentArguments& o) {
   parseFiles(o);
   parseMethod(o);
   parseKeep(o);
+  if (o.segment.autoStrictness && (o.autoSlabs || hasSlabsEnding(o.out)))
+    throw WrongUsage(
+        "--strictness auto is not for slabs: segment with --keep manifold, then remerge with it");
   if (o.autoSlabs)
     checkAutoSlabs(o);
   else
@@ -211,11 +215,13 @@ void runSegment(const SegmentArguments& o, const Common& common) {
   timing.write = timing.total - timing.read - timing.measure;
   for (const StageTime& stage : s.times) timing.write -= stage.seconds;
   common.progress->end();
-  const SegmentSummary summary = summarize(o, common, s, timing);
-  Json json = toJson(o, summary);
+  SegmentArguments used = o;
+  if (s.stable) used.segment.merge.strictness = s.stable->strictness;
+  const SegmentSummary summary = summarize(used, common, s, timing);
+  Json json = toJson(used, summary);
   addNotes(json, *common.progress);
   jsonFile.write(json);
-  if (!common.quiet && !jsonFile.isStandardOutput()) print(o, common, summary);
+  if (!common.quiet && !jsonFile.isStandardOutput()) print(used, common, summary);
 }
 
 }  // namespace

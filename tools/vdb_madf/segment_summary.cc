@@ -97,6 +97,7 @@ SegmentSummary summarize(const SegmentArguments& o, const Common& common, const 
                          const SegmentTiming& timing) {
   SegmentSummary summary = summaryOf(s, s.grainVoxels, *s.grain, common);
   summary.flaws = s.flaws;
+  summary.stable = s.stable;
   addTiming(o, timing, s.times, summary);
   summary.hints = hints(o, summary);
   return summary;
@@ -172,6 +173,11 @@ Json toJson(const SegmentArguments& o, const SegmentSummary& summary) {
   json["boundary"] = summary.open ? "open" : "closed";
   json["fill_holes"] = summary.fillHoles;
   addMerging(json, o.segment.merge);
+  if (const auto& stable = summary.stable) {
+    json["strictness_auto"] = true;
+    json["strictness_plateau"] =
+        stable->plateau ? Json{stable->plateau->first, stable->plateau->second} : Json();
+  }
   json["tidy"] = o.segment.tidy;
   json["threads"] = summary.threads;
   for (const auto& [part, seconds] : summary.seconds) json["seconds_" + part] = seconds;
@@ -248,6 +254,8 @@ void print(const SegmentArguments& o, const Common& common, const SegmentSummary
   std::printf("  medial balls     %lld, kept %lld; critical points %lld\n",
               count(counts.medialBalls), count(counts.keptBalls), count(counts.criticalPoints));
   printSettings(o.segment, summary);
+  if (summary.stable)
+    std::printf("  strictness       %s\n", textOf(*summary.stable, std::string(19, ' ')).c_str());
   std::printf("  time, memory     %.2f s with %d threads, %.0f MiB at the peak\n",
               summary.seconds.back().second, summary.threads,
               double(summary.peakBytes) / (1 << 20));

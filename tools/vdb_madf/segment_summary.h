@@ -50,6 +50,7 @@ struct SegmentTiming {
 struct SegmentSummary : SegmentationRecord {
   GrainSizes sizes;
   std::optional<LabelFlaws> flaws;  ///< not counted in slabs
+  std::optional<StableStrictness> stable;
   std::optional<VoxelSize> voxelSize;
   std::string objectSteps;  ///< from a gray image
   std::optional<double> threshold;

@@ -236,6 +236,21 @@ py::dict joinsOf(const GridPtr& manifold) {
   return dict;
 }
 
+py::dict stableOf(const GridPtr& manifold) {
+  using Level = StableStrictness::Level;
+  const StableStrictness stable =
+      stableStrictness(mergeHierarchy(requiredGraph(asLabels(*manifold))));
+  py::dict dict;
+  dict["strictness"] = stable.strictness;
+  dict["plateau"] = stable.plateau
+                        ? py::object(py::make_tuple(stable.plateau->first, stable.plateau->second))
+                        : py::none();
+  dict["levels"] = column<double>(stable.levels, [](const Level& l) { return l.strictness; });
+  dict["grains"] = column<int64_t>(stable.levels, [](const Level& l) { return l.grains; });
+  dict["stability"] = column<double>(stable.levels, [](const Level& l) { return l.stability; });
+  return dict;
+}
+
 py::dict toDict(const std::vector<SweepRow>& rows) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const auto byScore = [](const SweepRow& r) { return r.mode == MergeMode::score; };
@@ -304,6 +319,7 @@ void bindMethod(py::module_& m) {
         py::arg("merging"), py::arg("tidy"));
   m.def("merge_options", [](const py::dict& given) { return toDict(mergeOptions(given)); });
   m.def("joins", joinsOf, py::arg("manifold"));
+  m.def("stable_strictness", stableOf, py::arg("manifold"));
   m.def("sweep", sweepManifolds, py::arg("manifold"), py::arg("call"), py::kw_only(),
         py::arg("modes"), py::arg("thetas"), py::arg("deltas"), py::arg("strictnesses"),
         py::arg("adjacency"), py::arg("min_grain"), py::arg("tidy"), py::arg("small"));

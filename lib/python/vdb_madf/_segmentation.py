@@ -93,6 +93,15 @@ class Segmentation:
         joins: Dict[str, npt.NDArray[Any]] = _core.joins(self._manifolds())
         return joins
 
+    @property
+    def stable_strictness(self) -> Dict[str, Any]:
+        """The strictness from 8 to 14 at which grains are most stable: `strictness`, for cut();
+        `plateau`, the widest interval of 1 or more in which the number of grains changes by less
+        than 5 %, or None; and of each of the `levels` the number of `grains` and their `stability`:
+        the mean over the voxels of how far the number can go until 2 % of their grain are others,
+        1 at most. Of the kept manifolds."""
+        return _core.stable_strictness(self._manifolds())
+
     @checked
     def cut(self, strictness: float, *, progress: Progress = None,
             threads: int = 0) -> "Segmentation":

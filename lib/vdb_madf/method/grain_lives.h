@@ -28,7 +28,7 @@ class GrainLives {
   /// Time is about (joins) log (joins). @throw InvalidInput as cut()
   GrainLives(const Hierarchy& hierarchy, double strictness);
 
-  /// Of a grain without voxels of the object both are none.
+  /// All three are none for a grain without voxels of the object.
   GrainLife of(uint32_t node) const;
   /// The largest strictness at which two grains are one; none: they never are, or they are the
   /// same.

@@ -75,6 +75,10 @@ class Segmenter {
     linkManifolds(flowMap, map);
     map = {};
     stages_.begin("merge");
+    if (options_.autoStrictness) {
+      result_.stable = stableStrictness(mergeHierarchy(result_.graph));
+      options_.merge.strictness = result_.stable->strictness;
+    }
     const Merging merging = merge(result_.graph, options_.merge);
     counts_.grains = int64_t(merging.representative.size());
     stages_.begin("tidy");
@@ -189,7 +193,7 @@ class Segmenter {
   }
 
   const MaskGrid& object_;
-  const SegmentOptions& options_;
+  SegmentOptions options_;
   Segmentation result_;
   SegmentCounts& counts_ = result_.counts;
   const Obstacles obstacles_;

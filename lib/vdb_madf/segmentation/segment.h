@@ -13,6 +13,7 @@
 #include "vdb_madf/method/manifold_graph.h"
 #include "vdb_madf/method/merge.h"
 #include "vdb_madf/method/squared_distance.h"
+#include "vdb_madf/method/stable_strictness.h"
 #include "vdb_madf/method/tidy.h"
 #include "vdb_madf/method/voxel_weights.h"
 #include "vdb_madf/segmentation/label_flaws.h"
@@ -28,6 +29,9 @@ struct SegmentOptions {
   /// Overrides the weights that the edges in the mask's transform give (voxel_weights.h).
   std::optional<VoxelWeights> weights;
   MergeOptions merge;
+  /// Takes the strictness of largest stability (stable_strictness.h) in place of merge.strictness;
+  /// not in slabs.
+  bool autoStrictness = false;
   /// Cavities of fewer voxels are filled while the method runs (cavities.h); 0: none; absent:
   /// defaultFillHoles().
   std::optional<int64_t> fillHoles;
@@ -85,15 +89,16 @@ struct SegmentationRecord {
 
 /// The grains, what was kept on the way to them, and how they came about.
 struct Segmentation : SegmentationRecord {
-  Int32Grid::Ptr grain;              ///< labels 1..N on X; background 0, inactive
-  Int32Grid::Ptr distanceSquared;    ///< D, if kept; of the body, on X
-  Int32Grid::Ptr power;              ///< pi' = least power, if kept
-  Int32Grid::Ptr manifold;           ///< critical points 1..K, if kept
-  std::vector<MedialBall> balls;     ///< lexicographic centers, if kept; some in cavities
-  ManifoldGraph graph;               ///< node i is critical point i + 1; voxels: those of X
-  std::vector<int64_t> grainVoxels;  ///< voxels of grain g at g - 1
-  LabelFlaws flaws;                  ///< of the final labels
-  std::vector<StageTime> times;      ///< disjoint, in the order of work
+  Int32Grid::Ptr grain;                    ///< labels 1..N on X; background 0, inactive
+  Int32Grid::Ptr distanceSquared;          ///< D, if kept; of the body, on X
+  Int32Grid::Ptr power;                    ///< pi' = least power, if kept
+  Int32Grid::Ptr manifold;                 ///< critical points 1..K, if kept
+  std::vector<MedialBall> balls;           ///< lexicographic centers, if kept; some in cavities
+  ManifoldGraph graph;                     ///< node i is critical point i + 1; voxels: those of X
+  std::vector<int64_t> grainVoxels;        ///< voxels of grain g at g - 1
+  LabelFlaws flaws;                        ///< of the final labels
+  std::optional<StableStrictness> stable;  ///< with autoStrictness: the strictness that was used
+  std::vector<StageTime> times;            ///< disjoint, in the order of work
 };
 
 /// Cuts the object into grains: cavities -> distance -> power map -> filter -> flow -> graph ->

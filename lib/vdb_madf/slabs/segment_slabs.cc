@@ -84,6 +84,10 @@ void detail::checkSlabOptions(const SlabObject& object, const SegmentOptions& op
   checkSegmentOptions(options);
   if (options.keepDistance || options.keepPower || options.keepBalls)
     throw InvalidInput("slabs give labels and manifolds alone: keep no other grids");
+  if (options.autoStrictness)
+    throw InvalidInput(
+        "the strictness of largest stability is that of a whole graph: segment with keepManifold, "
+        "and remerge at it");
   if (options.maxMemory != 0)
     throw InvalidInput("the memory of slabs follows from their cuts: leave maxMemory 0");
   const std::vector<int>& cuts = object.cuts;

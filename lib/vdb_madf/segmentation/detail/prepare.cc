@@ -15,6 +15,8 @@ void checkSegmentOptions(const SegmentOptions& options) {
     throw InvalidInput("cavities are filled below a number of voxels: it must not be negative");
   checkTidy(options.tidy);
   checkMergeOptions(options.merge);
+  if (options.autoStrictness && options.merge.mode != MergeMode::score)
+    throw InvalidInput("autoStrictness belongs to MergeMode::score");
 }
 
 Obstacles prepare(const MaskGrid& about, const SegmentOptions& options,
