@@ -222,6 +222,11 @@ def test_the_hierarchy_as_trees(command, tmp_path):
         parents = np.concatenate([[0], rows[:, column]])
         assert np.array_equal(parents[fine], labels)
 
+    command("sweep", tmp_path / "all.vdb", tmp_path / "sweep.csv", "--strictness", "9,11.5")
+    header, *rows = (tmp_path / "sweep.csv").read_text().split()
+    grains = [int(row.split(",")[header.split(",").index("grains")]) for row in rows]
+    assert grains == list(seg.sweep([9, 11.5])["grains"])
+
     # Cut where the height above the leaves says so, the trees have the grains of that strictness.
     leaves, made = [], {}
 

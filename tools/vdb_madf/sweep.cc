@@ -179,15 +179,16 @@ std::string table(const std::vector<SweepRow>& rows) {
   return csv.str();
 }
 
-/// Is it a folder of slabs with manifolds, which are to be merged?
+/// Is it a file or a folder of slabs with manifolds, which are to be merged?
 bool isOfManifolds(const SweepArguments& o, const Common& common) {
-  if (!isInSlabs(o.input) || !(o.input.gridName.empty() || o.input.gridName == kManifoldGrid))
+  if (!(isInSlabs(o.input) || hasVdbEnding(o.input.path)) ||
+      !(o.input.gridName.empty() || o.input.gridName == kManifoldGrid))
     return false;
   return manifoldsAmong(readVdbHeaders(o.input.path, common.progress)) != nullptr;
 }
 
 /// What of the options does not concern manifolds. @throw WrongUsage
-void checkManifoldOptions(const SweepArguments& o, const LabelSlabs& manifolds) {
+void checkManifoldOptions(const SweepArguments& o, const openvdb::MetaMap& manifolds) {
   const InputOptions& in = o.input;
   for (const auto& [text, name] : {std::pair<const std::string*, const char*>{&in.phase, "--phase"},
                                    {&in.threshold, "--threshold"},
@@ -202,7 +203,7 @@ void checkManifoldOptions(const SweepArguments& o, const LabelSlabs& manifolds) 
     if (!text->empty())
       throw WrongUsage(in.path + ": the manifolds in it are merged as they are: leave " + name +
                        " out, or name a grid to segment: --grid grain");
-  const auto gamma = manifolds.about->getMetadata<openvdb::Int64Metadata>("madf_gamma");
+  const auto gamma = manifolds.getMetadata<openvdb::Int64Metadata>("madf_gamma");
   const std::string stored = std::to_string(gamma ? gamma->value() : 0);
   if (in.invert || o.boundary != "auto" || (o.gamma != "0" && o.gamma != stored))
     throw WrongUsage(in.path + ": the manifolds in it are those of gamma " + stored +
@@ -210,15 +211,36 @@ void checkManifoldOptions(const SweepArguments& o, const LabelSlabs& manifolds) 
                      "--grid grain");
 }
 
-/// The rows of the manifolds in a folder of slabs.
-std::vector<SweepRow> sweepManifolds(const SweepArguments& o, const Common& common) {
-  const LabelSlabs manifolds = openManifoldSlabs(o.input, common.progress);
+/// What there is to sweep, and the gamma of the manifolds.
+SweepOptions manifoldOptions(const SweepArguments& o, const openvdb::MetaMap& manifolds) {
   checkManifoldOptions(o, manifolds);
+  SweepOptions options = o.sweep;
+  if (const auto gamma = manifolds.getMetadata<openvdb::Int64Metadata>("madf_gamma"))
+    options.gammas = {gamma->value()};
+  return options;
+}
+
+void refuseScratch(const SweepArguments& o) {
+  if (!o.scratch.empty()) throw WrongUsage("--scratch is for manifolds in a folder of slabs");
+}
+
+/// The rows of the manifolds in a file, or in a folder of slabs.
+std::vector<SweepRow> sweepManifolds(const SweepArguments& o, const Common& common) {
+  if (!isInSlabs(o.input)) {
+    refuseScratch(o);
+    VdbReadOptions manifolds;
+    manifolds.wanted = [](const auto& grid) { return grid.getName() == kManifoldGrid; };
+    manifolds.anyVoxelShape = true;
+    const Int32Grid::Ptr manifold =
+        requiredManifolds(readVdb(o.input.path, manifolds, common.progress), o.input.path);
+    const SweepOptions options = manifoldOptions(o, *manifold);
+    return withFileName(o.input.path,
+                        [&] { return mergingSweep(*manifold, options, common.progress); });
+  }
+  const LabelSlabs manifolds = openManifoldSlabs(o.input, common.progress);
+  const SweepOptions options = manifoldOptions(o, *manifolds.about);
   if (o.scratch.empty() && o.out == "-")
     throw WrongUsage("-: say where scratch data may be: --scratch DIR");
-  SweepOptions options = o.sweep;
-  if (const auto gamma = manifolds.about->getMetadata<openvdb::Int64Metadata>("madf_gamma"))
-    options.gammas = {gamma->value()};
   ScratchFolder folder(o.scratch.empty() ? o.out + ".scratch" : o.scratch);
   return withFileName(o.input.path, [&] {
     return mergingSweep(manifolds, options, folder.scratch(), common.progress);
@@ -226,7 +248,7 @@ std::vector<SweepRow> sweepManifolds(const SweepArguments& o, const Common& comm
 }
 
 std::vector<SweepRow> sweepObject(const SweepArguments& o, const Common& common) {
-  if (!o.scratch.empty()) throw WrongUsage("--scratch is for manifolds in a folder of slabs");
+  refuseScratch(o);
   const MaskGrid::Ptr object = loadObject(o.input, common.progress);
   SweepOptions options = o.sweep;
   options.boundary = boundaryOf(o.boundary, o.input, *object);
@@ -246,7 +268,7 @@ void runSweep(const SweepArguments& o, const Common& common) {
   common.progress->end();
   if (!common.quiet)
     std::printf("%s: %s, of %s\n", o.out.c_str(), counted(int64_t(rows.size()), "row").c_str(),
-                isOfStored ? "the manifolds in slabs"
+                isOfStored ? isInSlabs(o.input) ? "the manifolds in slabs" : "the manifolds"
                            : counted(int64_t(o.sweep.gammas.size()), "segmentation").c_str());
 }
 
