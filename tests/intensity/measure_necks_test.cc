@@ -205,6 +205,8 @@ TEST_CASE("measure_necks: areas without the blur, gaps, normals", "[measure_neck
     CHECK(neck.normal.dot(pair.normal) > std::cos((pair.neck > 0 ? 2 : 5) * M_PI / 180));
     CHECK(neck.radius == Approx(std::sqrt(neck.area / M_PI)));
     CHECK(neck.confirmed == (pair.neck > 0));
+    CHECK(neck.gap == Approx(pair.neck > 0 ? 0 : -2 * pair.neck).margin(0.1));
+    CHECK(neck.touches() == (pair.neck > 0));
     if (pair.neck < 0) continue;
     const double truth = M_PI * pair.neck * pair.neck;
     CHECK(neck.area == Approx(truth).epsilon(0.06));
@@ -213,7 +215,7 @@ TEST_CASE("measure_necks: areas without the blur, gaps, normals", "[measure_neck
     if (pair.fillet == 0) CHECK(measured.bonds[i].area > 1.1 * truth);
   }
   const auto columns = bondColumns(measured.bonds, measured.extra);
-  CHECK(columns[columns.size() - 7].name == "neck_area");
+  CHECK(columns[columns.size() - 8].name == "neck_area");
   CHECK(columns[columns.size() - 4].values == std::vector<double>{1, 1, 1, 0});
 
   SECTION("the same bits on one thread") {
@@ -236,6 +238,32 @@ TEST_CASE("measure_necks: areas without the blur, gaps, normals", "[measure_neck
     measureNecks(*labels, other, blur, again);
     for (size_t i = 0; i < 3; ++i)
       CHECK(again.bonds[i].neck->area == Approx(measured.bonds[i].neck->area).epsilon(0.03));
+  }
+}
+
+TEST_CASE("measure_necks: how wide gaps are", "[measure_necks]") {
+  std::vector<Pair> pairs;
+  Rng rng(5);
+  for (const double gap : {0.0, 0.0, 0.2, 0.2, 0.5, 0.5, 0.8, 0.8}) {
+    const Vec3d center = Vec3d(kCell * (double(pairs.size()) + 0.5), 28, 28) + randomPoint(rng);
+    pairs.push_back({center, randomDirection(rng), 8, 8 + 0.5 * double(pairs.size()), -gap / 2});
+  }
+  for (const double noise : {0.01, 0.05, 0.1}) {
+    const Row row(pairs, 0.7, noise);
+    const auto labels = row.sides();
+    Measurements measured = measure(*labels);
+    GrayScan scan = row.scan();
+    measureNecks(*labels, scan, blurOf(*row.scan().image), measured);
+    REQUIRE(measured.bonds.size() == pairs.size());
+    Spread errors;
+    for (size_t i = 0; i < pairs.size(); ++i) {
+      const double gap = -2 * pairs[i].neck, found = measured.bonds[i].neck->gap;
+      INFO("noise " << noise << ": " << found << " for " << gap);
+      CHECK(found == Approx(gap).margin(0.05 + 1.5 * noise));
+      errors.add(found - gap);
+    }
+    CHECK(std::abs(errors.mean()) < 0.04 + 0.2 * noise);
+    CHECK(contactCoordination(measured) == 0.5);  // four of eight bonds, of sixteen grains
   }
 }
 

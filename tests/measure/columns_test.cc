@@ -57,8 +57,8 @@ TEST_CASE("columns: what is there on demand comes last", "[columns]") {
         "feret_max_u feret_min_u convex_volume_u3 solidity zingg_class " + gray + " edge_weight");
   CHECK(added(bondColumns({}, {true, true, true}), bonds) == gray);
   CHECK(added(bondColumns({}, {false, false, false, true}), bonds) ==
-        "neck_area_u2 neck_radius_u neck_error_u2 neck_confirmed neck_normal_x neck_normal_y "
-        "neck_normal_z");
+        "neck_area_u2 neck_radius_u neck_error_u2 neck_gap_u neck_confirmed neck_normal_x "
+        "neck_normal_y neck_normal_z");
   CHECK(added(grainColumns({}, {false, false, false, false, true}), grains) ==
         "cell_volume_u3 local_solid_fraction cell_neighbors cell_at_domain_face");
   CHECK(added(grainColumns({}, {false, false, false, false, false, true}), grains) ==

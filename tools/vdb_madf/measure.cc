@@ -187,6 +187,8 @@ void printNecks(const Measurements& m, double length, const std::string& unit) {
               (long long)confirmed, counted(int64_t(m.bonds.size()), "bond").c_str(),
               confirmed ? shown / double(confirmed) * length * length : 0.0, unit.c_str(),
               confirmed ? labelled / double(confirmed) * length * length : 0.0);
+  std::printf("  contacts a grain    %.2f with gaps of up to %.3g %s\n", contactCoordination(m),
+              kContactGap * length, unit.c_str());
 }
 
 void print(const MeasureArguments& o, const Measurements& m) {

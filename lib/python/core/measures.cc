@@ -220,6 +220,7 @@ py::dict sampleOf(const Measurements& m, const Unit& unit, py::dict& units) {
   if (m.scan) {
     add("scan_blur", m.scan->sigma, 1);
     dict["scan_noise_of_contrast"] = m.scan->noise;
+    dict["contact_coordination"] = contactCoordination(m);
   }
   if (m.sensitivity) dict["sensitivity"] = sensitivityOf(*m.sensitivity, unit, units);
   return dict;

@@ -168,6 +168,8 @@ void addScan(const Measurements& m, const Unit& unit, Json& json) {
   json["scan_gray_outside"] = m.scan->outside;
   json["necks_confirmed"] = confirmed;
   json["neck_area_" + unit.name + "2"] = area * unit.area();
+  json["contact_gap_" + unit.name] = kContactGap * unit.length;
+  json["contact_coordination"] = contactCoordination(m);
 }
 
 void addSensitivity(const Measurements& m, const Unit& unit, Json& json) {

@@ -21,7 +21,7 @@ namespace {
 constexpr int kMiddleSide = 512, kMiddleSlices = 48;
 constexpr int kFar = 5, kLeastFar = 3;    // voxels from an edge, and further ones are far
 constexpr double kMostBlur = kFar / 2.0;  // wider edges reach beyond what is far
-constexpr int64_t kFewestFar = 1000;      // voxels of either material
+constexpr int64_t kFewestFar = 500;       // voxels of either material
 constexpr double kSmoothing = 0.5;        // variance of (1 2 1)/4
 
 /// The middle of an image, x fastest.
@@ -114,8 +114,14 @@ enum Material : uint8_t { pore, solid, absent };
 
 constexpr int16_t kAbsent = -1;
 
+/// Whether a place is within kFar of an end of a line of voxels, beyond which all is unknown. Of
+/// lines that are hardly longer than that, none is.
+bool nearEnd(int place, int count) {
+  return count > 4 * kFar && (place < kFar || place >= count - kFar);
+}
+
 /// Squared distances to the nearest voxel of another material, up to kFar; kAbsent within that of
-/// one that is absent.
+/// one that is absent or of a face of the middle.
 std::vector<int16_t> edgeSquares(const Middle& middle, const std::vector<uint8_t>& materials) {
   std::vector<int16_t> nearest(middle.voxels(), (kFar + 1) * (kFar + 1));
   std::vector<uint8_t> isOfIt(middle.voxels());
@@ -130,6 +136,12 @@ std::vector<int16_t> edgeSquares(const Middle& middle, const std::vector<uint8_t
       else if (materials[i] != material)
         nearest[i] = std::min(nearest[i], squares[i]);
   }
+  size_t i = 0;
+  for (int z = 0; z < middle.nz; ++z)
+    for (int y = 0; y < middle.ny; ++y)
+      for (int x = 0; x < middle.nx; ++x, ++i)
+        if (nearEnd(x, middle.nx) || nearEnd(y, middle.ny) || nearEnd(z, middle.nz))
+          nearest[i] = kAbsent;
   return nearest;
 }
 
@@ -143,6 +155,24 @@ std::optional<int> farOf(const std::vector<uint8_t>& materials,
     if (voxels[pore] >= kFewestFar && voxels[solid] >= kFewestFar) return far;
   }
   return std::nullopt;
+}
+
+/// Leaves out edges that others are near, such as those of grooves between grains: their voxels
+/// become absent. Across a straight edge there are far voxels on both sides.
+void keepStraight(const Middle& middle, const std::vector<uint8_t>& materials, int far,
+                  std::vector<int16_t>& squares) {
+  std::vector<double> across(middle.voxels(), 0);
+  std::vector<uint8_t> isFar(middle.voxels());
+  for (const uint8_t material : {pore, solid}) {
+    for (size_t i = 0; i < squares.size(); ++i)
+      isFar[i] = materials[i] == material && squares[i] > far * far;
+    const std::vector<int16_t> toFar = detail::nearSquares(
+        {size_t(middle.nz), size_t(middle.ny), size_t(middle.nx)}, isFar, 2 * far + 2);
+    for (size_t i = 0; i < squares.size(); ++i) across[i] += std::sqrt(double(toFar[i]));
+  }
+  constexpr double kSlack = 2;  // of voxels that a straight edge passes anyhow
+  for (size_t i = 0; i < squares.size(); ++i)
+    if (squares[i] <= far * far && across[i] > 2 * far + kSlack) squares[i] = kAbsent;
 }
 
 /// Mean and variance of the values of some voxels.
@@ -193,9 +223,10 @@ std::optional<ScanBlur> estimateBlur(ImageReader& image, Interrupter* interrupte
   std::vector<uint8_t> materials(smooth.size());
   for (size_t i = 0; i < smooth.size(); ++i)
     materials[i] = !std::isfinite(smooth[i]) ? absent : smooth[i] >= *threshold ? solid : pore;
-  const std::vector<int16_t> squares = edgeSquares(middle, materials);
+  std::vector<int16_t> squares = edgeSquares(middle, materials);
   const auto far = farOf(materials, squares);
   if (!far) return std::nullopt;
+  keepStraight(middle, materials, *far, squares);
   ScanBlur blur, afterwards;
   const double sharper = edgeSum(middle.values, materials, squares, *far, blur);
   const double ratio = sharper / edgeSum(smooth, materials, squares, *far, afterwards);

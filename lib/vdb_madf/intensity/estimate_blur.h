@@ -19,10 +19,13 @@ namespace vdb_madf {
 /// and 1 far inside: across a straight edge with a Gaussian blur the integral of f (1 - f) is
 /// sigma / sqrt(pi) per area, and sqrt(sigma^2 + 1/2) / sqrt(pi) after the smoothing, so that their
 /// ratio tells sigma without the area. Noise adds its variance to each, which is known from the
-/// voxels more than five voxels from any edge (four or three, if there are too few).
+/// voxels more than five voxels from any edge (four or three, if there are too few). Edges count
+/// that have such voxels right across on both sides: in the grooves around contacts f falls to 0
+/// late, which is no blur. Nor do voxels count within five voxels of a face, beyond which there may
+/// be edges.
 ///
-/// Memory: 16 bytes a voxel of the middle.
-/// @return none if fewer than 1000 voxels of either material are so far from edges, or the edges
+/// Memory: 24 bytes a voxel of the middle.
+/// @return none if fewer than 500 voxels of either material are so far from edges, or the edges
 ///   tell no blur, or one of more than 2.5 voxels (a mask, labels, a scan without two materials).
 /// @throw IoError; Interrupted.
 std::optional<ScanBlur> estimateBlur(ImageReader& image, Interrupter* interrupter = nullptr);

@@ -134,13 +134,15 @@ class NeckMeter {
         gray_, section.box,
         [](const FloatTree::LeafNodeType& leaf, openvdb::Index i) { return leaf.getValue(i); });
     const std::vector<Part> parts = partsOf(labels, connected(bond, section, labels));
-    const auto area = areaOf(section, gray, parts);
+    const auto [sections, variance] = areasOf(section, gray, parts);
+    const auto area = fit_.leastArea(sections, variance);
     Neck neck;
     neck.normal = section.normal;
     neck.area = std::max(0.0, area.value);
     neck.radius = std::sqrt(neck.area / M_PI);
     neck.error = area.error;
     neck.confirmed = area.value >= std::max(kLeastArea, area.error);
+    neck.gap = neck.confirmed ? 0 : std::max(0.0, fit_.gap(sections, variance));
     return neck;
   }
 
@@ -208,13 +210,18 @@ class NeckMeter {
     return parts;
   }
 
-  SectionFit::Area areaOf(const Section& section, const Block<float>& gray,
-                          const std::vector<Part>& parts) const {
+  /// The areas of the sections, and the variance of each.
+  std::pair<SectionFit::Sections, double> areasOf(const Section& section, const Block<float>& gray,
+                                                  const std::vector<Part>& parts) const {
     double sums[2] = {0, 0}, counts[2] = {0, 0};  // outside, inside
-    for (size_t i = 0; i < parts.size(); ++i)
-      if ((parts[i] == whole || parts[i] == empty) && std::isfinite(gray.values[i])) {
-        sums[size_t(parts[i] == whole)] += double(gray.values[i]);
-        ++counts[size_t(parts[i] == whole)];
+    CoordBBox known = gray.box;                   // beyond it there may be surfaces
+    known.expand(-int(rim_));
+    size_t at = 0;
+    for (auto p = gray.box.begin(); p; ++p, ++at)
+      if ((parts[at] == whole || parts[at] == empty) && known.isInside(*p) &&
+          std::isfinite(gray.values[at])) {
+        sums[size_t(parts[at] == whole)] += double(gray.values[at]);
+        ++counts[size_t(parts[at] == whole)];
       }
     const double outside = counts[0] < kEnoughVoxels ? blur_.outside : sums[0] / counts[0];
     const double inside = counts[1] < kEnoughVoxels ? blur_.inside : sums[1] / counts[1];
@@ -252,7 +259,7 @@ class NeckMeter {
     const double noise = blur_.noise * (blur_.inside - blur_.outside) / contrast;
     const double variance =
         noise * noise * blurred / (2 * kMiddle) / (2 * kThickness * std::sqrt(M_PI));
-    return fit_.leastArea(sections, variance);
+    return {sections, variance};
   }
 
   const Int32Tree& labels_;

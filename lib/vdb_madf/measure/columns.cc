@@ -93,6 +93,7 @@ void addNecks(ColumnMaker<BondMeasures>& make) {
   make.add("neck_area", 2, ofNeck(&Neck::area));
   make.add("neck_radius", 1, ofNeck(&Neck::radius));
   make.add("neck_error", 2, ofNeck(&Neck::error));
+  make.add("neck_gap", 1, ofNeck(&Neck::gap));
   make.addCount("neck_confirmed", [](const B& b) { return b.neck && b.neck->confirmed; });
   make.addVector("neck_normal", [](const B& b) { return b.neck ? b.neck->normal : Vec3d(kNone); });
 }

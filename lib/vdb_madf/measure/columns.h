@@ -46,8 +46,8 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
 /// `patches`, `curvature_points`, `mean_curvature`, `mean_curvature_sd`, `gaussian_curvature`,
 /// `gaussian_curvature_sd`, `curvature_residual`. A bond without a curvature has 0
 /// `curvature_points` and none of the four. With gray values the columns that grains have;
-/// with necks `neck_area`, `neck_radius`, `neck_error`, `neck_confirmed` (0 or 1), `neck_normal_x`,
-/// `_y`, `_z`; with recurrences `p_bond`, `area_sd`; with the stability `vanishes`.
+/// with necks `neck_area`, `neck_radius`, `neck_error`, `neck_gap`, `neck_confirmed` (0 or 1),
+/// `neck_normal_x`, `_y`, `_z`; with recurrences `p_bond`, `area_sd`; with the stability `vanishes`.
 std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
                                        const ExtraMeasures& extra = {});
 

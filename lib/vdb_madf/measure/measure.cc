@@ -183,4 +183,12 @@ Measurements measure(const Segmentation& segmentation, Interrupter* interrupter)
                        interrupter);
 }
 
+double contactCoordination(const Measurements& measured) {
+  if (measured.grains.empty()) return 0;
+  const auto contacts =
+      std::count_if(measured.bonds.begin(), measured.bonds.end(),
+                    [](const BondMeasures& bond) { return bond.neck && bond.neck->touches(); });
+  return 2.0 * double(contacts) / double(measured.grains.size());
+}
+
 }  // namespace vdb_madf

@@ -96,4 +96,7 @@ Measurements measure(const LabelSlabs& labels, const MeasureOptions& options = {
 /// were filtered out, what is known of its critical points spares the distance map.
 Measurements measure(const Segmentation& segmentation, Interrupter* interrupter = nullptr);
 
+/// Mean number of the bonds of a grain that touch in the scan (Neck::touches()); needs necks.
+double contactCoordination(const Measurements& measured);
+
 }  // namespace vdb_madf

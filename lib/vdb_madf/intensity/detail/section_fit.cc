@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kRoundings[] = {0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 1.75, 2, 2.5, 3, 3.5, 4};
 constexpr double kLastShift = 1.25, kShiftStep = 0.25;
+constexpr double kLeastGap = -1, kMostGap = 3, kGapStep = 0.05, kGapShiftStep = 0.125;
 /// Before the sections are seen.
 constexpr double kCuspShare = 0.5;
 /// What is uncertain of a section besides its noise, as a share of the noise's variance.
@@ -23,6 +24,13 @@ constexpr int kQuadrature = 200;        // steps over five deviations to either 
 double rounded(double z, double rounding) {
   const double distance = std::abs(z);
   return distance >= rounding ? distance : z * z / (2 * rounding) + rounding / 2;
+}
+
+/// Takes sections to the terms that fit them best.
+template <int kRows, int kColumns>
+Eigen::Matrix<double, kColumns, kRows> inverseOf(
+    const Eigen::Matrix<double, kRows, kColumns>& whitened) {
+  return (whitened.transpose() * whitened).ldlt().solve(whitened.transpose());
 }
 
 }  // namespace
@@ -39,26 +47,48 @@ SectionFit::SectionFit(double blur) {
   covariance.diagonal().array() += kUncorrelated;
   for (int i = 0; i < kSections; ++i) blurring_.row(i) /= blurring_.row(i).sum();
   whitening_ = covariance.llt().matrixL().solve(decltype(covariance)::Identity());
-  std::vector<double> places(kQuadrature + 1), weights(kQuadrature + 1);
-  double sum = 0;
+  std::vector<double> places, weights;
+  double total = 0;
   for (int i = 0; i <= kQuadrature; ++i) {
-    places[size_t(i)] = deviation * (10.0 * i / kQuadrature - 5);
-    sum += weights[size_t(i)] = std::exp(-0.5 * std::pow(10.0 * i / kQuadrature - 5, 2));
+    const double place = 10.0 * i / kQuadrature - 5;
+    places.push_back(deviation * place);
+    weights.push_back(std::exp(-0.5 * place * place));
+    total += weights.back();
   }
+  // The mean of f around a height, by the blur.
+  const auto blurred = [&](double z, const auto& f) {
+    double sum = 0;
+    for (size_t i = 0; i < places.size(); ++i) sum += weights[i] * f(z + places[i]);
+    return sum / total;
+  };
   for (const double rounding : kRoundings)
     for (double shift = -kLastShift; shift <= kLastShift; shift += kShiftStep) {
       Model model{rounding, shift, {}, {}, {}};
       for (int i = 0; i < kSections; ++i) {
         const double z = height(i) - shift;
-        double blurred = 0;
-        for (size_t q = 0; q < places.size(); ++q)
-          blurred += weights[q] * rounded(z + places[q], rounding);
-        model.basis.row(i) << 1, blurred / sum, z, z * z + deviation * deviation;
+        const double arms = blurred(z, [&](double h) { return rounded(h, rounding); });
+        model.basis.row(i) << 1, arms, z, z * z + deviation * deviation;
       }
       model.whitened = whitening_ * model.basis;
-      model.inverse =
-          (model.whitened.transpose() * model.whitened).ldlt().solve(model.whitened.transpose());
+      model.inverse = inverseOf(model.whitened);
       models_.push_back(model);
+    }
+  for (int step = 0; kLeastGap + step * kGapStep <= kMostGap; ++step)
+    for (double shift = -kLastShift; shift <= kLastShift; shift += kGapShiftStep) {
+      GapModel model{kLeastGap + step * kGapStep, {}, {}};
+      const auto arm = [&](double h) {
+        const double beyond = std::abs(h) - model.gap / 2;
+        return model.gap > 0 ? std::max(0.0, beyond) : beyond;
+      };
+      for (int i = 0; i < kSections; ++i) {
+        const double z = height(i) - shift;
+        model.whitened.row(i) << blurred(z, [&](double h) { return h > 0 ? arm(h) : 0; }),
+            blurred(z, [&](double h) { return h > 0 ? 0 : arm(h); }),
+            blurred(z, [&](double h) { return arm(h) * arm(h); });
+      }
+      model.whitened = whitening_ * model.whitened;
+      model.inverse = inverseOf(model.whitened);
+      gapModels_.push_back(model);
     }
 }
 
@@ -113,6 +143,29 @@ SectionFit::Area SectionFit::leastArea(const Sections& sections, double variance
   }
   const double mean = areas / sum;
   return {mean, std::sqrt(std::max(0.0, squares / sum - mean * mean))};
+}
+
+double SectionFit::gap(const Sections& sections, double variance) const {
+  const Sections whitened = whitening_ * sections;
+  constexpr int kFree = kSections - 3 - 2;
+  std::vector<double> misfits;
+  double least = std::numeric_limits<double>::infinity();
+  for (const GapModel& model : gapModels_) {
+    const Eigen::Vector3d terms = model.inverse * whitened;
+    misfits.push_back(terms[0] > 0 && terms[1] > 0
+                          ? (whitened - model.whitened * terms).squaredNorm()
+                          : std::numeric_limits<double>::infinity());
+    least = std::min(least, misfits.back());
+  }
+  if (std::isinf(least)) return 0;
+  const double spread = std::max(std::max(variance, kLeastVariance), least / kFree);
+  double sum = 0, gaps = 0;
+  for (size_t i = 0; i < misfits.size(); ++i) {
+    const double weight = std::exp(-0.5 * (misfits[i] - least) / spread);
+    sum += weight;
+    gaps += weight * gapModels_[i].gap;
+  }
+  return gaps / sum;
 }
 
 }  // namespace vdb_madf::detail

@@ -15,6 +15,10 @@ namespace vdb_madf::detail {
 /// The blurred model is fitted by least squares for each shift s and rounding t of a grid, with the
 /// covariance of neighboring sections; what it leaves is added to it, sharpened once (van Cittert).
 /// The result is the mean over all s and t by their likelihood, with 1/2 for t = 0 beforehand.
+///
+/// Grains whose tips are a gap g apart have sections b (z - s - g/2) + d (z - s - g/2)^2 above and
+/// with another b, and -z, below; none within the gap. The gap is the mean over all s and g likewise.
+/// Where g is below 0 the curves meet above 0: there is a neck.
 class SectionFit {
  public:
   /// Sections are taken with a Gaussian weight of this deviation along the normal.
@@ -35,6 +39,9 @@ class SectionFit {
   /// @param variance of a section's area by noise
   Area leastArea(const Sections& sections, double variance) const;
 
+  /// Width of the gap, voxels; below 0: there is none. Between -1 and 3.
+  double gap(const Sections& sections, double variance) const;
+
  private:
   static constexpr int kTerms = 4;
   using Basis = Eigen::Matrix<double, kSections, kTerms>;
@@ -43,11 +50,17 @@ class SectionFit {
     Basis basis, whitened;
     Eigen::Matrix<double, kTerms, kSections> inverse;  ///< of `whitened`
   };
+  struct GapModel {
+    double gap;
+    Eigen::Matrix<double, kSections, 3> whitened;
+    Eigen::Matrix<double, 3, kSections> inverse;
+  };
   double leastOf(const Model& model, const Eigen::Matrix<double, kTerms, 1>& terms,
                  const Sections& sections) const;
 
   Eigen::Matrix<double, kSections, kSections> whitening_, blurring_;
   std::vector<Model> models_;
+  std::vector<GapModel> gapModels_;
 };
 
 }  // namespace vdb_madf::detail
