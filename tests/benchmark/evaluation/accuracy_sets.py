@@ -20,10 +20,11 @@ class Set:
     # voxels, an edge: full, and with --quick; None: `make` has its own
     size: tuple = (140, 100)
     make: callable = None  # instead of `generate`: edge, seed -> what sample() returns
+    balls: callable = None  # of `generate balls`: seed -> their list
     section: bool = False  # the slice in the middle of z alone
 
     def describe(self, quick):
-        if not self.generate:
+        if self.balls or not self.generate:
             return f"{self.name}, {self.size[quick]}^3" if self.size else self.name
         size = f" --size {self.size[quick]}" if self.size != Set.size else ""
         count = f" --count {self.count[quick]}" if self.count else ""
@@ -34,16 +35,9 @@ def own(group, name, make, *its, size=(120, 90)):
     return Set(group, name, make=functools.partial(make, *its), size=size)
 
 
-def pack(name, radius, inflated=1.0, blur=0, noise=0):
-    return Set("packs", f"radius {radius}, {name}", size=None,
-               make=functools.partial(measured_pack, radius, inflated, blur, noise))
-
-
-def measured_pack(radius, inflated, blur, noise, edge, seed):
-    if not finney.FILE.exists():
-        raise Skipped(f"skipped: there is no {finney.FILE}; VDB_MADF_DATA names the folder that "
-                      "holds it")
-    return finney.sample(radius, inflated, blur, noise, seed)
+def pack(name, radius, inflated=1.0, options=""):
+    return Set("packs", f"radius {radius}, {name}", f"balls --radius {radius} {options}", None,
+               None, balls=functools.partial(finney.some, radius, inflated))
 
 
 def scaled(group, size, *lines):
@@ -111,7 +105,7 @@ SETS = [
             ("bed", "bed --radius 32:50 --rounds 20", None)),
     *(its for radius in (5, 8, 12)
       for its in (pack("clean", radius), pack("inflated by 3 %", radius, 1.03),
-                  pack("blur 1, noise 0.1", radius, blur=1, noise=0.1))),
+                  pack("blur 1, noise 0.1", radius, options="--scan-noise 1:0.1"))),
 ]
 # One set of each kind is cut in the middle, too.
 SECTIONS = [("balls", "in pairs"), ("deep necks", "0.65"), ("sintered", "0.82"),
@@ -143,11 +137,19 @@ def pieces(labels):
 
 
 def generated(its, size, quick, seed, work):
-    options = [*its.generate.split(), "--size", size, "--seed", seed]
+    if its.balls and not finney.FILE.exists():
+        raise Skipped(f"skipped: there is no {finney.FILE}; VDB_MADF_DATA names the folder that "
+                      "holds it")
+    kind, *options = its.generate.split()
+    options += ["--seed", str(seed)]
+    if size:
+        options += ["--size", str(size)]
     if its.count:
-        options += ["--count", its.count[quick]]
-    kind, *options = map(str, options)
-    done = subprocess.run([m.MADF, "generate", kind, work / "set.vdb", *options, "--threads", "1",
+        options += ["--count", str(its.count[quick])]
+    if its.balls:
+        (work / "balls.txt").write_text(its.balls(seed))
+        options.append(work / "balls.txt")
+    done = subprocess.run([m.MADF, "generate", kind, *options, work / "set.vdb", "--threads", "1",
                            "-q"],
                           stderr=subprocess.PIPE, text=True)
     if done.returncode == 2:  # a kind or an option that this command does not have
