@@ -7,6 +7,7 @@
 
 #include "bindings.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/samples/balls.h"
 #include "vdb_madf/samples/bed.h"
 #include "vdb_madf/samples/pack.h"
 #include "vdb_madf/samples/particles.h"
@@ -126,6 +127,21 @@ Maker bed(Arguments& a) {
   return [o](Interrupter* interrupter) { return generateBed(o, interrupter); };
 }
 
+Maker balls(Arguments& a) {
+  BallOptions o;
+  o.radius = 1;
+  o.list = "centers";
+  std::vector<std::array<double, 4>> centers;
+  a.take("centers", centers);
+  for (const auto& [z, y, x, r] : centers) o.balls.push_back({x, y, z, r});
+  std::optional<Index> size;
+  a.take("size", size);
+  if (size) o.size = toCoord(*size);
+  uint64_t seed = 0;  // that of the noise
+  a.take("seed", seed);
+  return [o](Interrupter* interrupter) { return generateBalls(o, interrupter); };
+}
+
 ScanOptions scanOptions(Arguments& a) {
   ScanOptions scan;
   a.take("seed", scan.seed);
@@ -137,17 +153,18 @@ ScanOptions scanOptions(Arguments& a) {
   return scan;
 }
 
-py::tuple generate(const std::string& kind, const py::dict& options,
+/// The object, its true grains, and with `gray` a scan, else None.
+py::tuple generate(const std::string& kind, const py::dict& options, bool gray,
                    const std::optional<std::array<double, 3>>& voxelSize, const Call& call) {
   using Make = Maker (*)(Arguments&);
   constexpr std::pair<const char*, Make> kKinds[] = {
-      {"spheres", spheres},   {"pack", pack},           {"snow", snow},
-      {"sintered", sintered}, {"particles", particles}, {"bed", bed}};
+      {"spheres", spheres},     {"pack", pack}, {"snow", snow},  {"sintered", sintered},
+      {"particles", particles}, {"bed", bed},   {"balls", balls}};
   const auto found = std::find_if(std::begin(kKinds), std::end(kKinds),
                                   [&](const auto& known) { return kind == known.first; });
   if (found == std::end(kKinds))
     throw InvalidInput("kind '" + kind +
-                       "': must be spheres, pack, snow, sintered, particles or bed");
+                       "': must be spheres, pack, snow, sintered, particles, bed or balls");
   Arguments scanArguments(kind, options);
   const ScanOptions scan = scanOptions(scanArguments);
   Arguments arguments(kind, options);
@@ -156,22 +173,31 @@ py::tuple generate(const std::string& kind, const py::dict& options,
   arguments.end();
   if (voxelSize && !VoxelSize(reversed(*voxelSize)).isCube())
     throw InvalidInput("samples are made of cubes: give one edge");
+  std::vector<uint16_t> values;
   const Sample sample = withoutLock(call, [&](Interrupter* interrupter) {
     checkScan(scan);
-    return scanned(make(interrupter), scan, interrupter);
+    Sample made = make(interrupter);
+    if (!gray) return scanned(made, scan, interrupter);
+    values = grayValues(made, scan, storedDomain(*made.object)->box(), interrupter);
+    return made;
   });
   if (voxelSize) {
     setVoxelSize(*sample.object, VoxelSize(reversed(*voxelSize)));
     if (sample.truth) setVoxelSize(*sample.truth, VoxelSize(reversed(*voxelSize)));
   }
-  return py::make_tuple(GridPtr(sample.object), GridPtr(sample.truth));
+  py::object scanOf = py::none();
+  if (gray) {
+    const Coord dim = storedDomain(*sample.object)->box().dim();
+    scanOf = py::array_t<uint16_t>({dim.z(), dim.y(), dim.x()}, values.data());
+  }
+  return py::make_tuple(GridPtr(sample.object), GridPtr(sample.truth), scanOf);
 }
 
 }  // namespace
 
 void bindSamples(py::module_& m) {
-  m.def("generate", generate, py::arg("kind"), py::arg("options"), py::arg("voxel_size"),
-        py::arg("call"));
+  m.def("generate", generate, py::arg("kind"), py::arg("options"), py::arg("gray"),
+        py::arg("voxel_size"), py::arg("call"));
 }
 
 }  // namespace vdb_madf::python
