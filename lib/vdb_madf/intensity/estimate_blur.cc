@@ -170,7 +170,7 @@ void keepStraight(const Middle& middle, const std::vector<uint8_t>& materials, i
         {size_t(middle.nz), size_t(middle.ny), size_t(middle.nx)}, isFar, 2 * far + 2);
     for (size_t i = 0; i < squares.size(); ++i) across[i] += std::sqrt(double(toFar[i]));
   }
-  constexpr double kSlack = 2;  // of voxels that a straight edge passes anyhow
+  constexpr double kSlack = 1.5;  // of voxels that a straight edge passes anyhow
   for (size_t i = 0; i < squares.size(); ++i)
     if (squares[i] <= far * far && across[i] > 2 * far + kSlack) squares[i] = kAbsent;
 }

@@ -24,7 +24,8 @@ namespace vdb_madf {
 /// outside, pore voxels go with the nearest grain, and other grains do not count. The grays of
 /// inside and outside are those around the bond, if there are 100 voxels of each, else the scan's.
 /// A neck is confirmed if its area is at least 7 voxel faces and not below its error. Of others the
-/// gap is told: how far apart the tips of the two grains are, by how their sections grow from there.
+/// gap is told: how far apart the tips of the two grains are, by how their sections grow from
+/// there.
 ///
 /// The scan is read once, in slabs of eight slices. Memory: that, and four bytes for each voxel of
 /// the leaf nodes around bonds.

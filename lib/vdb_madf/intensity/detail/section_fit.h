@@ -17,8 +17,8 @@ namespace vdb_madf::detail {
 /// The result is the mean over all s and t by their likelihood, with 1/2 for t = 0 beforehand.
 ///
 /// Grains whose tips are a gap g apart have sections b (z - s - g/2) + d (z - s - g/2)^2 above and
-/// with another b, and -z, below; none within the gap. The gap is the mean over all s and g likewise.
-/// Where g is below 0 the curves meet above 0: there is a neck.
+/// with another b, and -z, below; none within the gap. The gap is the mean over all s and g
+/// likewise. Where g is below 0 the curves meet above 0: there is a neck.
 class SectionFit {
  public:
   /// Sections are taken with a Gaussian weight of this deviation along the normal.
