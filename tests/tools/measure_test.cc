@@ -420,7 +420,11 @@ TEST_CASE("cli: measure says what each column says, to the digit", "[cli]") {
   for (size_t i = 0; i < 3; ++i)
     CHECK(fabric.at("eigenvalues").at(i).get<double>() == Approx(weights[i]));
   CHECK(sample.at("correlation_length_mm").size() == 3);
-  CHECK(sample.size() == 36);  // no key that is not looked at
+  const Json& biases = sample.at("expected_bias_percent");  // of median radii of 8 and 4 voxels
+  CHECK(biases.size() >= 2);
+  CHECK(biases.at("specific_surface").get<double>() == Approx(-7).margin(1));
+  CHECK(biases.at("mean_coordination").get<double>() == Approx(17).margin(2));
+  CHECK(sample.size() == 37);  // no key that is not looked at
 }
 
 TEST_CASE("cli: segment writes the tables that measure writes, with any threads", "[cli]") {

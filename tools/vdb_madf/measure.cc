@@ -28,6 +28,7 @@
 #include "vdb_madf/measure/edge_weights.h"
 #include "vdb_madf/measure/measure_binder.h"
 #include "vdb_madf/measure/measure_stability.h"
+#include "vdb_madf/measure/size_biases.h"
 #include "vdb_madf/pictures/measures_plot.h"
 
 namespace vdb_madf::tools {
@@ -233,6 +234,8 @@ void print(const MeasureArguments& o, const Measurements& m) {
     std::printf("  %-20sRMS %.2f %% from the curve\n", deviation.size.c_str(), deviation.percent);
   printIntervals(m.intervals, length, unit);
   if (m.sensitivity) printSensitivity(m, length, unit);
+  for (const SizeBias& bias : sizeBiases(m))
+    std::printf("  too small for       %s\n", toString(bias).c_str());
 }
 
 /// The sample's name, else that of the file without folders.

@@ -35,6 +35,7 @@
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/measure/measure.h"
+#include "vdb_madf/measure/size_biases.h"
 #include "vdb_madf/segmentation/ball_grids.h"
 #include "vdb_madf/segmentation/segment_memory.h"
 #include "vdb_madf/vdb/write_vdb.h"
@@ -189,11 +190,14 @@ void runSegment(const SegmentArguments& o, const Common& common) {
   }
   object.reset();
 
+  std::vector<SizeBias> biases;
   if (tables) {
     const Clock::time_point startMeasure = Clock::now();
     TableOptions about;
     about.labels = o.out;
-    tables->write(measureGrains(o, s, common.progress), about);
+    const Measurements measurements = measureGrains(o, s, common.progress);
+    biases = sizeBiases(measurements);
+    tables->write(measurements, about);
     timing.measure = secondsSince(startMeasure);
   }
 
@@ -217,7 +221,8 @@ void runSegment(const SegmentArguments& o, const Common& common) {
   common.progress->end();
   SegmentArguments used = o;
   if (s.stable) used.segment.merge.strictness = s.stable->strictness;
-  const SegmentSummary summary = summarize(used, common, s, timing);
+  SegmentSummary summary = summarize(used, common, s, timing);
+  for (const SizeBias& bias : biases) summary.hints.push_back("too small for " + toString(bias));
   Json json = toJson(used, summary);
   addNotes(json, *common.progress);
   jsonFile.write(json);

@@ -20,6 +20,7 @@
 #include "vdb_madf/measure/measure_binder.h"
 #include "vdb_madf/measure/measure_stability.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
+#include "vdb_madf/measure/size_biases.h"
 #include "vdb_madf/volumes/choose_grid.h"
 #include "vdb_madf/volumes/load_object.h"
 
@@ -223,6 +224,9 @@ py::dict sampleOf(const Measurements& m, const Unit& unit, py::dict& units) {
     dict["contact_coordination"] = contactCoordination(m);
   }
   if (m.sensitivity) dict["sensitivity"] = sensitivityOf(*m.sensitivity, unit, units);
+  py::dict biases;
+  for (const SizeBias& bias : sizeBiases(m)) biases[bias.number.c_str()] = bias.expected;
+  dict["expected_bias"] = biases;
   return dict;
 }
 

@@ -76,6 +76,7 @@ class Measurements:
     - `grain_fabric`, `bond_fabric`: (3, 3), [z, y, x], of longest axes by volume, of normals by
       area
     - `labels_digest`: of equal labels the same
+    - `expected_bias`: of numbers for which the grains or bonds are too small, by name, as a share
     - with edge_weights: `grains_at_faces`, `corrected_grains`, `grain_diameter_mean`,
       `corrected_grain_diameter_mean`, `grain_volume_mean`, `corrected_grain_volume_mean`,
       `corrected_mean_coordination`, `corrected_diameter_by_number`, `corrected_diameter_by_volume`
@@ -147,9 +148,9 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
     `gray_voxels` of grains and bonds. intensity_grid: of a VDB, or the array of a Zarr or HDF5
     file.
     gray: the gray scan that the labels were made of, likewise: columns `neck_area`, `neck_radius`,
-    `neck_error`, `neck_gap`, `neck_confirmed`, `neck_normal_x` ... of the bonds, freed of the scan's
-    blur, and in the sample `scan_blur`, `scan_noise_of_contrast` and `contact_coordination`.
-    gray_grid: as intensity_grid.
+    `neck_error`, `neck_gap`, `neck_confirmed`, `neck_normal_x` ... of the bonds, freed of the
+    scan's blur, and in the sample `scan_blur`, `scan_noise_of_contrast` and
+    `contact_coordination`. gray_grid: as intensity_grid.
     edge_weights: column `edge_weight` of the grains (0 at the faces), and in the sample
     `corrected_grain_diameter_mean`, `corrected_diameter_by_number` ... The domain has to be a box.
     voronoi: columns `cell_volume`, `local_solid_fraction`, `cell_neighbors`, `cell_at_domain_face`

@@ -20,6 +20,7 @@
 #include "vdb_madf/files/written_together.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
+#include "vdb_madf/measure/size_biases.h"
 
 namespace vdb_madf {
 
@@ -252,6 +253,8 @@ Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& opt
         std::isnan(deviation.percent) ? Json() : Json(deviation.percent);
   if (m.scan) addScan(m, unit, json);
   if (m.sensitivity) addSensitivity(m, unit, json);
+  for (const SizeBias& bias : sizeBiases(m))
+    json["expected_bias_percent"][bias.number] = int(std::round(100 * bias.expected));
   return json;
 }
 

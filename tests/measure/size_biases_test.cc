@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/measure/size_biases.h"
+
+#include <cmath>
+
+#include "support/catch.h"
+#include "vdb_madf/grids/object_keys.h"
+
+using namespace vdb_madf;
+
+namespace {
+
+/// Grains and bonds of one size each.
+Measurements ofSizes(double grainRadius, double bondRadius) {
+  Measurements measured;
+  measured.grains.resize(3);
+  for (GrainMeasures& grain : measured.grains) {
+    grain.equivalentDiameter = 2 * grainRadius;
+    grain.volume = 4 * M_PI / 3 * std::pow(grainRadius, 3);
+  }
+  measured.bonds.resize(2);
+  for (BondMeasures& bond : measured.bonds) bond.equivalentRadius = bondRadius;
+  return measured;
+}
+
+std::vector<std::string> numbers(const Measurements& measured) {
+  std::vector<std::string> all;
+  for (const SizeBias& bias : sizeBiases(measured)) all.push_back(bias.number);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("size_biases: no word of large grains, and of none", "[size_biases]") {
+  CHECK(sizeBiases({}).empty());
+  CHECK(sizeBiases(ofSizes(40, 12)).empty());
+}
+
+TEST_CASE("size_biases: each number by its own size, up to where it is enough", "[size_biases]") {
+  using Names = std::vector<std::string>;
+  CHECK(numbers(ofSizes(2.5, 12)) == Names{"grains", "specific_surface", "mean_coordination"});
+  CHECK(numbers(ofSizes(40, 2)) == Names{"bond_area"});
+  Measurements alone = ofSizes(40, 2);
+  alone.bonds.clear();
+  CHECK(sizeBiases(alone).empty());
+  for (const SizeBias& bias : sizeBiases(ofSizes(4, 2))) {
+    const bool ofBonds = bias.number == "bond_area";
+    INFO(toString(bias));
+    const auto at = [&](double radius) {
+      return ofBonds ? ofSizes(40, radius) : ofSizes(radius, 12);
+    };
+    const auto says = [&](double radius) {
+      const Names all = numbers(at(radius));
+      return std::find(all.begin(), all.end(), bias.number) != all.end();
+    };
+    CHECK(says(bias.enough - 0.2));
+    CHECK_FALSE(says(bias.enough + 0.2));
+  }
+}
+
+TEST_CASE("size_biases: of a gray scan they are larger", "[size_biases]") {
+  Measurements measured = ofSizes(4, 2);
+  const auto clean = sizeBiases(measured);
+  measured.metadata.insertMeta(kThresholdKey, openvdb::DoubleMetadata(7));
+  const auto scan = sizeBiases(measured);
+  REQUIRE(clean.size() == 3);
+  REQUIRE(scan.size() == 3);
+  for (size_t i = 0; i < 3; ++i) {
+    CHECK(std::abs(scan[i].expected) > std::abs(clean[i].expected));
+    CHECK(scan[i].enough > clean[i].enough);
+  }
+  CHECK(clean[0].expected == Approx(-0.14));
+  CHECK(toString(clean[0]).find("specific_surface about -14 % at a median radius of 4.0 voxels "
+                                "(within 5 % from 12 on)") == 0);
+}
