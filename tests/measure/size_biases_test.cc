@@ -3,7 +3,10 @@
 
 #include "vdb_madf/measure/size_biases.h"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "support/catch.h"
 #include "vdb_madf/grids/object_keys.h"
@@ -33,9 +36,13 @@ std::vector<std::string> numbers(const Measurements& measured) {
 
 }  // namespace
 
-TEST_CASE("size_biases: no word of large grains, and of none", "[size_biases]") {
+TEST_CASE("size_biases: no word of large grains, of none, of slices", "[size_biases]") {
   CHECK(sizeBiases({}).empty());
   CHECK(sizeBiases(ofSizes(40, 12)).empty());
+  Measurements small = ofSizes(3, 2);
+  CHECK_FALSE(sizeBiases(small).empty());
+  small.sample.box = {openvdb::Coord(0), openvdb::Coord(20, 20, 0)};
+  CHECK(sizeBiases(small).empty());
 }
 
 TEST_CASE("size_biases: each number by its own size, up to where it is enough", "[size_biases]") {

@@ -62,6 +62,12 @@ double enoughOf(const std::vector<Point>& points) {
   return radius;
 }
 
+/// Of a slice nothing is said: its grains have no volume.
+bool isSlice(const CoordBBox& box) {
+  return box.min().x() == box.max().x() || box.min().y() == box.max().y() ||
+         box.min().z() == box.max().z();
+}
+
 double medianRadius(const std::vector<BondMeasures>& bonds) {
   std::vector<double> radii;
   for (const BondMeasures& bond : bonds) radii.push_back(bond.equivalentRadius);
@@ -74,7 +80,7 @@ double medianRadius(const std::vector<BondMeasures>& bonds) {
 
 std::vector<SizeBias> sizeBiases(const Measurements& measured) {
   std::vector<SizeBias> biases;
-  if (measured.grains.empty()) return biases;
+  if (measured.grains.empty() || isSlice(measured.sample.box)) return biases;
   const bool ofScan = measured.scan || measured.metadata[kThresholdKey];
   for (const Row& row : rows()) {
     if (row.ofBonds && measured.bonds.empty()) continue;

@@ -22,7 +22,7 @@ constexpr double kTrusted = 0.05;
 
 /// The numbers that are expected to be off by more than kTrusted: as they are of equal balls that
 /// touch in points (of areas of bonds: of overlapping ones), clean or, for labels of a gray scan,
-/// through a blur of 0.7 voxel and noise of 5 % (tests/benchmark/packs).
+/// through a blur of 0.7 voxel and noise of 5 % (tests/benchmark/packs). Of a slice, none.
 std::vector<SizeBias> sizeBiases(const Measurements& measured);
 
 /// Such as "specific_surface about -14 % at a median radius of 4.1 voxels (within 5 % from 12 on)".
