@@ -11,6 +11,7 @@
 
 #include "support/catch.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/verified_files.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
 
@@ -83,6 +84,12 @@ inline void writeWithOpenVdb(
   file.write(grids);
   file.close();
 }
+
+/// While it lives, files are not verified.
+struct Unverified {
+  Unverified() { setFilesAreVerified(false); }
+  ~Unverified() { setFilesAreVerified(true); }
+};
 
 /// The error of reading; empty if it can be read.
 inline std::string errorOf(const std::string& path, const VdbReadOptions& options = {}) {

@@ -100,6 +100,7 @@ TEST_CASE("vdb_file: other versions of the format are refused", "[vdb_file]") {
   initialize();
   const TemporaryFolder folder;
   const std::string path = folder.file("a.vdb");
+  const Unverified unverified;
   writeVdb(path, {ballWithTiles<Int32Grid>(Coord(0), 3, "grain")});
   std::string bytes = bytesOf(path);
   const uint32_t next = openvdb::OPENVDB_FILE_VERSION + 1;
@@ -144,6 +145,7 @@ TEST_CASE("vdb_file: damaged files are read or refused, quickly and in little me
           "[vdb_file]") {
   const TemporaryFolder folder;
   const std::string path = folder.file("damaged.vdb");
+  const Unverified unverified;
   // An allocation beyond it ends this program.
   const MemoryLimit limit(uint64_t(64) << 20);
   int refused = 0, total = 0;

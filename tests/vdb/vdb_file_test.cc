@@ -380,6 +380,7 @@ TEST_CASE("vdb_file: a tree that a wanted grid shares is read", "[vdb_file]") {
 TEST_CASE("vdb_file: the tree of a grid that is not wanted is not read", "[vdb_file]") {
   initialize();
   const TemporaryFolder folder;
+  const Unverified unverified;
   const auto labels = ballWithTiles<Int32Grid>(Coord(0), 5, "grain");
   const std::string path = folder.file("a.vdb");
   writeVdb(path, {labels, noise(300)});

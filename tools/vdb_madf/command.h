@@ -19,6 +19,7 @@ struct Common {
   int threads = 0;  ///< 0: all
   bool quiet = false;
   bool verbose = false;
+  bool unverified = false;  ///< see setFilesAreVerified()
   Progress* progress = nullptr;
   Team* team = nullptr;  ///< of vdb_madf_mpi
 };

@@ -102,7 +102,8 @@ ManifoldGraph keptGraph(const InputOptions& input, Progress* progress) {
         parts.push_back(std::move(*part));
     return joinedGraph(parts);
   }
-  return requiredGraph(*requiredManifolds(readVdbHeaders(input.path, progress), input.path));
+  return requiredGraph(
+      *requiredManifolds(readVdbHeaders(input.path, progress, /*verified=*/true), input.path));
 }
 
 void remergeInSlabs(const InputOptions& input, const std::string& out, const MergeOptions& merge,

@@ -21,6 +21,7 @@
 #include "message.h"
 #include "outputs.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/verified_files.h"
 #include "vdb_madf/segmentation/initialize.h"
 #include "version_text.h"
 
@@ -32,6 +33,8 @@ Verb addVerb(Verb parent, Common& common, const std::string& name, const std::st
   verb.option("--threads", common.threads, "number of threads (default: all)").range(1, 4096);
   verb.flag("-q,--quiet", common.quiet, "print nothing but errors");
   verb.flag("-v,--verbose", common.verbose, "print more");
+  verb.flag("--no-verify", common.unverified,
+            "read files whose content is not what their digest says");
   verb.footer("Example:\n  " + example);
   return verb;
 }
@@ -71,6 +74,8 @@ const char* optionFor(Hint hint) {
       return " with --keep manifold";
     case Hint::smallerLabels:
       return " (export --as lod)";
+    case Hint::unverified:
+      return " (--no-verify)";
   }
   return "";
 }
@@ -144,6 +149,7 @@ int run(const char* program, int argc, char** argv, Team* team) {
   if (common.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, size_t(common.threads));
   initialize();
+  setFilesAreVerified(!common.unverified);
   action();
   flushStandardOutput();
   return kDone;

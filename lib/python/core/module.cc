@@ -6,6 +6,7 @@
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/base/size_text.h"
 #include "vdb_madf/base/version.h"
+#include "vdb_madf/files/verified_files.h"
 #include "vdb_madf/images/open_image.h"
 #include "vdb_madf/scans/image_object.h"
 #include "vdb_madf/segmentation/initialize.h"
@@ -31,6 +32,8 @@ const char* argumentFor(Hint hint) {
       return " (keep=)";
     case Hint::smallerLabels:
       return " (Labels.reduce)";
+    case Hint::unverified:
+      return " (verify_files(False))";
   }
   return "";
 }
@@ -94,6 +97,9 @@ PYBIND11_MODULE(_core, m) {
     return triple(reversed(vdb_madf::voxelSizeFromText(text).edges()));
   });
   m.def("bytes_from_text", &vdb_madf::bytesFromText);
+  m.def("verify_files", &vdb_madf::setFilesAreVerified, py::arg("verified"),
+        "Whether files of ours are compared with their digest when they are read, in this process: "
+        "so at first.");
   m.def("reads_hdf5", &vdb_madf::readsHdf5);
   m.def("written_endings", &vdb_madf::writtenEndings);
   bindGrids(m);

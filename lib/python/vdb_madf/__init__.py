@@ -13,7 +13,8 @@ from ._arrays import ArrayLike3D, Source
 from ._calls import Progress
 from ._choices import Cylinder
 from ._comparison import Comparison, compare
-from ._core import InvalidInput, IoError, NotEnoughMemory, __version__, reads_hdf5
+from ._core import (InvalidInput, IoError, NotEnoughMemory, __version__, reads_hdf5,
+                    verify_files)
 from ._labels import Labels
 from ._mask import Mask
 from ._measurements import Measurements, measure
@@ -25,4 +26,4 @@ from ._tracks import Tracks, track
 __all__ = ["ArrayLike3D", "Comparison", "Cylinder", "InvalidInput", "IoError", "Labels", "Mask",
            "Measurements", "Mesh", "NotEnoughMemory", "PAPER", "Progress", "Segmentation", "Source",
            "Tracks", "__version__", "compare", "generate", "measure", "reads_hdf5", "segment",
-           "track"]
+           "track", "verify_files"]

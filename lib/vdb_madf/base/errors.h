@@ -18,6 +18,7 @@ enum class Hint {
   memoryLimit,    ///< a higher one
   manifolds,      ///< a segmentation that keeps them
   smallerLabels,  ///< a reduced copy of the labels
+  unverified,     ///< that files are read whatever their digests say
 };
 
 /// The caller's data or options cannot be worked with; what() is one line that says why and what to

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <tuple>
@@ -46,17 +45,6 @@ struct Block {
   uint64_t size = 0;
   std::array<uint64_t, 2> checksum{};
 };
-
-std::array<uint64_t, 2> checksumOf(const char* bytes, size_t size) {
-  detail::Checksum sum;
-  sum.add(size);
-  for (size_t i = 0; i < size; i += 8) {
-    uint64_t word = 0;
-    std::memcpy(&word, bytes + i, std::min<size_t>(8, size - i));
-    sum.add(word);
-  }
-  return sum.value();
-}
 
 size_t blockCount(size_t size) {
   return (size + kBlock - 1) / kBlock;
@@ -175,10 +163,10 @@ void FolderScratch::writeBytes(const std::string& name, const char* bytes, size_
                                            blocks[i].data(), blocks[i].size(), "lz4", 0, 1);
     if (written <= 0) throw IoError(file(name + kEnding) + ": cannot be compressed");
     blocks[i].resize(size_t(written));
-    table[i] = {blocks[i].size(), checksumOf(blocks[i].data(), blocks[i].size())};
+    table[i] = {blocks[i].size(), detail::checksumOf(blocks[i].data(), blocks[i].size())};
   });
   const auto* tableBytes = reinterpret_cast<const char*>(table.data());
-  header.checksum = checksumOf(tableBytes, table.size() * sizeof(Block));
+  header.checksum = detail::checksumOf(tableBytes, table.size() * sizeof(Block));
   detail::OutputStream out(file(name + kEnding));
   out.bytes(&header, sizeof header);
   out.bytes(tableBytes, table.size() * sizeof(Block));
@@ -198,7 +186,8 @@ void FolderScratch::readBytes(const std::string& name, const Allocate& allocate)
   std::vector<Block> table(blockCount(header.size));
   const size_t tableBytes = table.size() * sizeof(Block);
   if (in.readSome(sizeof header, table.data(), tableBytes) != tableBytes ||
-      checksumOf(reinterpret_cast<const char*>(table.data()), tableBytes) != header.checksum)
+      detail::checksumOf(reinterpret_cast<const char*>(table.data()), tableBytes) !=
+          header.checksum)
     failDamaged(path);
   std::vector<uint64_t> place{sizeof header + tableBytes};
   for (const Block& block : table) {
@@ -212,7 +201,7 @@ void FolderScratch::readBytes(const std::string& name, const Allocate& allocate)
     in.read(place[i], stored.data(), stored.size());
     const size_t size = std::min<size_t>(kBlock, header.size - i * kBlock);
     size_t held = 0;
-    if (checksumOf(stored.data(), stored.size()) != table[i].checksum ||
+    if (detail::checksumOf(stored.data(), stored.size()) != table[i].checksum ||
         blosc_cbuffer_validate(stored.data(), stored.size(), &held) != 0 || held != size ||
         blosc_decompress_ctx(stored.data(), bytes + i * kBlock, size, 1) != int(size))
       failDamaged(path);

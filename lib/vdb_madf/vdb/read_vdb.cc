@@ -23,7 +23,9 @@
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/memory.h"
+#include "vdb_madf/files/detail/content_digest.h"
 #include "vdb_madf/files/detail/file_buffer.h"
+#include "vdb_madf/files/verified_files.h"
 #include "vdb_madf/grids/detail/region_metadata.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/grids/domain.h"
@@ -33,7 +35,7 @@
 #include "vdb_madf/segmentation/initialize.h"
 #include "vdb_madf/vdb/detail/read_leaves.h"
 #include "vdb_madf/vdb/detail/region_grid.h"
-#include "vdb_madf/vdb/detail/uuid_place.h"
+#include "vdb_madf/vdb/detail/uuid_digest.h"
 #include "vdb_madf/vdb/detail/vdb_tree_check.h"
 
 namespace vdb_madf {
@@ -74,6 +76,7 @@ struct Header {
   uint32_t format = 0;
   openvdb::VersionId library;
   bool hasOffsets = false;
+  std::string uuid;
 };
 
 Header readHeader(detail::InputBuffer& file) {
@@ -97,7 +100,8 @@ Header readHeader(detail::InputBuffer& file) {
   const auto flag = file.read<uint8_t>();
   if (flag > 1) damaged("its header is wrong");
   header.hasOffsets = flag == 1;
-  file.skip(detail::kUuidLength);
+  header.uuid.resize(detail::kUuidLength);
+  file.read(header.uuid.data(), detail::kUuidLength);
   return header;
 }
 
@@ -181,8 +185,9 @@ class Reader {
   }
 
   /// All grids without their trees.
-  std::vector<GridBase::Ptr> readHeaders() {
+  std::vector<GridBase::Ptr> readHeaders(bool verified) {
     readEntries([](const GridBase&) { return false; });
+    if (verified) verify();
     std::vector<GridBase::Ptr> grids;
     for (const Entry& entry : entries_) grids.push_back(entry.grid);
     return grids;
@@ -190,6 +195,7 @@ class Reader {
 
   std::vector<GridBase::Ptr> read() {
     readEntries(options_.wanted ? options_.wanted : [](const GridBase&) { return true; });
+    verify();
     for (Entry& entry : entries_) named_[entry.descriptor.name] = &entry;
     std::vector<GridBase::Ptr> grids;
     for (Entry& entry : entries_) {
@@ -215,6 +221,8 @@ class Reader {
   /// The volumes, with the trees of those that are wanted.
   void readEntries(const std::function<bool(const GridBase&)>& wanted) {
     header_ = readHeader(file_);
+    if (detail::isDigest(header_.uuid) && filesAreVerified())
+      file_.tell(&sum_.emplace(file_.size()));
     // OpenVDB's readers ask the stream for these.
     io::setStreamMetadataPtr(stream_, streamState_, /*transfer=*/false);
     io::setVersion(stream_, header_.library, header_.format);
@@ -233,6 +241,15 @@ class Reader {
         skipGrid(descriptor);
     }
     if (file_.left() != 0) damaged("something follows its last grid");
+  }
+
+  /// Compares the content of a file of ours with its digest.
+  void verify() {
+    if (!sum_) return;
+    sum_->addRest(
+        [this](uint64_t position, char* to, size_t count) { file_.readAt(position, to, count); },
+        nullptr);
+    detail::requireDigest(file_.path(), header_.uuid, detail::uuidOf(*sum_));
   }
 
   void readEntry(const Descriptor& descriptor, const detail::TreeLayout& layout,
@@ -343,6 +360,7 @@ class Reader {
   const VdbReadOptions& options_;
   Header header_;
   std::vector<Entry> entries_;
+  std::optional<detail::VdbSum> sum_;  ///< of a file of ours
   std::map<std::string, Entry*> named_;
 };
 
@@ -379,8 +397,10 @@ std::vector<GridBase::Ptr> readFile(const std::string& path, const VdbReadOption
   return readWith(path, options, interrupter, [](Reader& reader) { return reader.read(); });
 }
 
-std::vector<GridBase::Ptr> readHeaders(const std::string& path, Interrupter* interrupter) {
-  return readWith(path, {}, interrupter, [](Reader& reader) { return reader.readHeaders(); });
+std::vector<GridBase::Ptr> readHeaders(const std::string& path, Interrupter* interrupter,
+                                       bool verified = false) {
+  return readWith(path, {}, interrupter,
+                  [&](Reader& reader) { return reader.readHeaders(verified); });
 }
 
 int64_t memoryOf(const std::vector<GridBase::Ptr>& grids) {
@@ -452,10 +472,11 @@ std::vector<GridBase::Ptr> readVdbSlab(const SlabFolder& folder, size_t slab,
   return grids;
 }
 
-std::vector<GridBase::Ptr> readVdbHeaders(const std::string& path, Interrupter* interrupter) {
-  if (!isSlabFolder(path)) return readHeaders(path, interrupter);
+std::vector<GridBase::Ptr> readVdbHeaders(const std::string& path, Interrupter* interrupter,
+                                          bool verified) {
+  if (!isSlabFolder(path)) return readHeaders(path, interrupter, verified);
   const SlabFolder folder = openSlabFolder(path);
-  const std::vector<GridBase::Ptr> grids = readHeaders(folder.files[0], interrupter);
+  const std::vector<GridBase::Ptr> grids = readHeaders(folder.files[0], interrupter, verified);
   checkSlab(grids, folder, 0, grids);
   return grids;
 }

@@ -36,9 +36,12 @@ struct VdbReadOptions {
 /// the file holds in a Bool grid, has it again: storedDomain(). The structure of each grid is
 /// checked before OpenVDB reads it; linked against OpenVDB before 11, a program also needs the
 /// checked decompression of tools/ for files that may change while they are read.
+/// A file of ours is verified (files/verified_files.h): its UUID is the digest of all its other
+/// bytes. A file that another program has written again has another UUID, and is not.
 /// A folder of slabs (slab_folder.h) is one such volume; its grids have to fit in memory together.
 /// @throw IoError, one line that names the file, if it is missing, truncated, corrupt or not VDB,
-///   has voxels that are no cubes, or names a region that it does not hold; Interrupted.
+///   has voxels that are no cubes, names a region that it does not hold, or is not what its digest
+///   says; Interrupted.
 std::vector<openvdb::GridBase::Ptr> readVdb(const std::string& path,
                                             const VdbReadOptions& options = {},
                                             Interrupter* interrupter = nullptr);
@@ -53,8 +56,10 @@ std::vector<openvdb::GridBase::Ptr> readVdbSlab(const SlabFolder& folder, size_t
 /// (no regions).
 /// Trees are passed over as with VdbReadOptions::wanted, so that a large file is listed at once
 /// (a file without offsets, such as a stream has, is walked through). Voxels may have any shape.
+/// @param verified for those who do not read the voxels later: the whole file is verified
 /// @throw as readVdb.
 std::vector<openvdb::GridBase::Ptr> readVdbHeaders(const std::string& path,
-                                                   Interrupter* interrupter = nullptr);
+                                                   Interrupter* interrupter = nullptr,
+                                                   bool verified = false);
 
 }  // namespace vdb_madf

@@ -13,6 +13,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/files/detail/content_digest.h"
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/grids/detail/region_metadata.h"
@@ -42,8 +43,12 @@ Json slabsOf(const std::string& index) {
   std::error_code ignored;
   if (!fs::exists(index, ignored))
     throw IoError(index + ": is missing, so this folder of slabs is not whole: make it again");
-  const Json json = Json::parse(readText(index, kMostBytes), nullptr, false);
+  Json json = Json::parse(readText(index, kMostBytes), nullptr, false);
   if (!json.is_object() || !json.contains("slabs")) refuseIndex(index);
+  const Json digest = json.value(detail::kDigestKey, Json(""));
+  if (!digest.is_string()) refuseIndex(index);
+  json.erase(detail::kDigestKey);
+  detail::requireDigest(index, digest.get<std::string>(), detail::digestOf(json.dump()));
   const Json& slabs = json["slabs"];
   if (!slabs.is_array() || slabs.empty()) refuseIndex(index);
   for (const Json& slab : slabs)

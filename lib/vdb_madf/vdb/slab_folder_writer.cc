@@ -14,6 +14,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/version.h"
+#include "vdb_madf/files/detail/content_digest.h"
 #include "vdb_madf/files/detail/output_place.h"
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/vdb/slab_folder.h"
@@ -108,6 +109,9 @@ void writeSlabIndex(const std::string& folder, const std::vector<int>& cuts,
     index["slabs"].push_back(
         {{"file", slabFileName(s)}, {"z_first", cuts[s]}, {"z_last", cuts[s + 1] - 1}});
   index.insert(more.begin(), more.end());  // where a name is taken, nothing changes
+  index.erase(detail::kDigestKey);
+  // Of members in the order of their names.
+  index[detail::kDigestKey] = detail::digestOf(nlohmann::json(index).dump());
   detail::OutputStream file((fs::path(folder) / kSlabIndex).string());
   file.text(index.dump(2) + "\n");
   file.commit();

@@ -50,7 +50,7 @@ void writeSlab(const std::string& folder, size_t slab, size_t count,
 
 /// Writes the index of a folder.
 /// @param about a JSON object whose members follow what the index says of the slabs; members of the
-///   names that this has (format, format_version, version, slabs) are left out
+///   names that this has (format, format_version, version, slabs, digest) are left out
 /// @throw InvalidInput if `about` is no JSON object; IoError
 void writeSlabIndex(const std::string& folder, const std::vector<int>& cuts,
                     const std::string& about = "{}");

@@ -4,7 +4,12 @@
 #pragma once
 
 #include <array>
+#include <cinttypes>
+#include <cstddef>
 #include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <string>
 
 namespace vdb_madf::detail {
 
@@ -24,5 +29,33 @@ class Checksum {
   // Any two different odd numbers; these are from the fractional part of the golden ratio.
   std::array<uint64_t, 2> lanes_{0x9e3779b97f4a7c15u, 0xf39cc0605cedc835u};
 };
+
+/// Adds bytes as words, the last of them filled up with zeros.
+inline void addToChecksum(Checksum& sum, const char* bytes, size_t size) {
+  uint64_t word = 0;
+  for (; size >= sizeof word; size -= sizeof word, bytes += sizeof word) {
+    std::memcpy(&word, bytes, sizeof word);
+    sum.add(word);
+  }
+  if (size == 0) return;
+  word = 0;
+  std::memcpy(&word, bytes, size);
+  sum.add(word);
+}
+
+/// The checksum of bytes and their number.
+inline std::array<uint64_t, 2> checksumOf(const char* bytes, size_t size) {
+  Checksum sum;
+  sum.add(size);
+  addToChecksum(sum, bytes, size);
+  return sum.value();
+}
+
+/// 32 hexadecimal digits.
+inline std::string checksumText(const std::array<uint64_t, 2>& sum) {
+  char text[33];
+  std::snprintf(text, sizeof text, "%016" PRIx64 "%016" PRIx64, sum[0], sum[1]);
+  return text;
+}
 
 }  // namespace vdb_madf::detail

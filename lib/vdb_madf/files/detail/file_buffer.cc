@@ -4,7 +4,6 @@
 #include "vdb_madf/files/detail/file_buffer.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "vdb_madf/base/errors.h"
 
@@ -13,7 +12,7 @@ namespace vdb_madf::detail {
 namespace {
 
 /// Large enough that system calls do not count, small enough that an interrupt is seen at once.
-constexpr size_t kBufferSize = size_t(1) << 18;
+constexpr size_t kBufferSize = ContentSum::kPart;
 
 /// Where seekoff leads, or -1.
 int64_t target(int64_t offset, std::ios_base::seekdir direction, int64_t position, int64_t end) {
@@ -67,10 +66,13 @@ InputBuffer::int_type InputBuffer::underflow() {
   if (interrupter_ &&
       interrupter_->wasInterrupted(int(position() * 100 / std::max<int64_t>(size(), 1))))
     throw Interrupted();
-  start_ = position();
+  const int64_t at = position(), before = at % int64_t(kBufferSize);
+  start_ = at - before;
   const size_t count = file_.readSome(uint64_t(start_), buffer_.data(), buffer_.size());
-  setg(buffer_.data(), buffer_.data(), buffer_.data() + count);
-  return count == 0 ? traits_type::eof() : traits_type::to_int_type(*gptr());
+  if (sum_) sum_->addPart(start_, buffer_.data(), count);
+  char* const end = buffer_.data() + std::max(count, size_t(before));  // the file may be cut by now
+  setg(buffer_.data(), buffer_.data() + before, end);
+  return gptr() == egptr() ? traits_type::eof() : traits_type::to_int_type(*gptr());
 }
 
 InputBuffer::pos_type InputBuffer::seekoff(off_type offset, std::ios_base::seekdir direction,
@@ -85,44 +87,17 @@ InputBuffer::pos_type InputBuffer::seekpos(pos_type position, std::ios_base::ope
   return seekoff(off_type(position), std::ios_base::beg, which);
 }
 
-OutputBuffer::OutputBuffer(OutputStream& file, Interrupter* interrupter, int64_t unhashedStart,
-                           int64_t unhashed)
-    : file_(file),
-      interrupter_(interrupter),
-      unhashedStart_(unhashedStart),
-      unhashedEnd_(unhashedStart + unhashed),
-      buffer_(kBufferSize) {
+OutputBuffer::OutputBuffer(OutputStream& file, Interrupter* interrupter)
+    : file_(file), interrupter_(interrupter), buffer_(kBufferSize) {
   setp(buffer_.data(), buffer_.data() + buffer_.size());
 }
 
 void OutputBuffer::flush() {
   if (interrupter_ && interrupter_->wasInterrupted()) throw Interrupted();
   const size_t count = size_t(pptr() - pbase());
-  addToHash(start_, pbase(), count);
   file_.writeAt(uint64_t(start_), pbase(), count);
   start_ += int64_t(count);
   setp(buffer_.data(), buffer_.data() + buffer_.size());
-}
-
-void OutputBuffer::replace(int64_t position, const std::string& bytes) {
-  flush();
-  file_.writeAt(uint64_t(position), bytes.data(), bytes.size());
-}
-
-void OutputBuffer::addToHash(int64_t position, const char* bytes, size_t count) {
-  const auto addBytes = [&](int64_t first, int64_t last) {
-    if (first >= last) return;
-    hash_.add(uint64_t(first));
-    hash_.add(uint64_t(last));
-    for (const char* p = bytes + (first - position); first < last; first += 8, p += 8) {
-      uint64_t word = 0;
-      std::memcpy(&word, p, size_t(std::min<int64_t>(8, last - first)));
-      hash_.add(word);
-    }
-  };
-  const int64_t end = position + int64_t(count);
-  addBytes(position, std::min(end, unhashedStart_));
-  addBytes(std::max(position, unhashedEnd_), end);
 }
 
 OutputBuffer::int_type OutputBuffer::overflow(int_type character) {

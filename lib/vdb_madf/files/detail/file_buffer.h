@@ -3,7 +3,6 @@
 
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <stdexcept>
 #include <streambuf>
@@ -11,8 +10,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "vdb_madf/base/detail/checksum.h"
 #include "vdb_madf/base/interrupter.h"
+#include "vdb_madf/files/detail/content_digest.h"
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/files/detail/output_stream.h"
 
@@ -52,6 +51,11 @@ class InputBuffer final : public std::streambuf {
   /// Characters behind their 32-bit number, as OpenVDB writes strings.
   std::string readString();
 
+  /// From now on the sum gets each part of the file that comes into the buffer.
+  void tell(ContentSum* sum) { sum_ = sum; }
+  /// Reads beside the buffer, from several threads if need be. @throw IoError
+  void readAt(uint64_t position, void* to, size_t count) const { file_.read(position, to, count); }
+
  protected:
   int_type underflow() override;
   pos_type seekoff(off_type offset, std::ios_base::seekdir direction,
@@ -61,26 +65,19 @@ class InputBuffer final : public std::streambuf {
  private:
   InputFile file_;
   Interrupter* interrupter_;
+  ContentSum* sum_ = nullptr;
   int64_t start_ = 0;  ///< position of the buffer's first byte
   std::vector<char> buffer_;
 };
 
 /// An OutputStream behind one large buffer, for a std::ostream. A write that fails throws instead
-/// of setting a flag, the interrupter is asked whenever the buffer is written, and what is written
-/// is hashed on its way.
+/// of setting a flag, and the interrupter is asked whenever the buffer is written.
 class OutputBuffer final : public std::streambuf {
  public:
-  /// `unhashed` bytes from `unhashedStart` on are left out of the hash.
-  /// @throw IoError
-  OutputBuffer(OutputStream& file, Interrupter* interrupter, int64_t unhashedStart = 0,
-               int64_t unhashed = 0);
+  OutputBuffer(OutputStream& file, Interrupter* interrupter);
 
   /// Writes what is buffered. @throw IoError; Interrupted.
   void flush();
-  /// The writes up to the last flush: their places and their bytes.
-  std::array<uint64_t, 2> hash() const { return hash_.value(); }
-  /// Flushes, then replaces bytes that were written before; they are not hashed.
-  void replace(int64_t position, const std::string& bytes);
 
  protected:
   int_type overflow(int_type character) override;
@@ -90,14 +87,10 @@ class OutputBuffer final : public std::streambuf {
   pos_type seekpos(pos_type position, std::ios_base::openmode which) override;
 
  private:
-  void addToHash(int64_t position, const char* bytes, size_t count);
-
   OutputStream& file_;
   Interrupter* interrupter_;
-  int64_t unhashedStart_, unhashedEnd_;
   int64_t start_ = 0;  ///< position of the buffer's first byte
   std::vector<char> buffer_;
-  Checksum hash_;
 };
 
 }  // namespace vdb_madf::detail

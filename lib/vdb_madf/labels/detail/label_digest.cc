@@ -3,9 +3,6 @@
 
 #include "vdb_madf/labels/detail/label_digest.h"
 
-#include <cinttypes>
-#include <cstdio>
-
 #include "vdb_madf/base/detail/checksum.h"
 
 namespace vdb_madf::detail {
@@ -26,9 +23,7 @@ void LabelDigest::add(const LabelLeaves& labels) {
 }
 
 std::string LabelDigest::text() const {
-  char text[33];
-  std::snprintf(text, sizeof text, "%016" PRIx64 "%016" PRIx64, sums_[0], sums_[1]);
-  return text;
+  return checksumText(sums_);
 }
 
 std::string labelDigest(const LabelLeaves& labels) {
