@@ -168,6 +168,8 @@ def segment():
     for strictness in (-200, 9, 10.5, 14):
         yield f"segment snow.vdb strict{strictness}.vdb --strictness {strictness}"
     yield "segment snow.vdb least_grain.vdb --min-grain 300"
+    yield "segment snow.vdb snow.slabs --slab-height 24 --keep manifold --boundary closed"
+    yield "convert snow.slabs snow_slabs.npy --grid grain"
     yield "segment snow.vdb paper.vdb --paper --keep manifold --json paper.json"
     yield "segment snow.vdb paper_theta.vdb --paper --theta -0.5 --gamma 160"
     yield "segment snow.vdb quiet.vdb --quiet"
@@ -207,6 +209,7 @@ def remerge():
         yield f"remerge all_snow_0.vdb remerged_{merge}{theta}.vdb --merge {merge} --theta {theta}"
     yield "remerge all_snow_20.vdb remerged_cell.vdb --merge angle --adjacency cell"
     yield "remerge threads1.vdb remerged_large.vdb --merge both --theta -0.7 --threads 1"
+    yield "remerge snow.slabs remerged.slabs --merge both --theta -0.8"
     yield "remerge keep_manifold.vdb remerged_quiet.vdb --quiet"
     yield "remerge solid_labels.vdb remerged_solid.vdb"
     yield "remerge none.vdb remerged_none.vdb"
