@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: The vdb_madf authors
 # SPDX-License-Identifier: Apache-2.0
-"""The entries of same_bytes_runs.py as objects, what they need of each other, and the files they make."""
+"""The entries of same_bytes_runs.py as objects, what they need of each other, and their files."""
 import fnmatch
 import os
 import re
@@ -44,7 +44,7 @@ def is_path(word):
 
 
 def names_of(path):
-    """What a run may call the file that others call `path`: its folder, or the file that it belongs to."""
+    """What a run may call the file `path` of others: its folder, or the file that it belongs to."""
     yield path
     if "/" in path:
         yield path.split("/")[0]
@@ -59,13 +59,14 @@ def entries_of(lines):
 
 
 def needed(entries, patterns):
-    """The runs that match, with all entries that make what they read, in order. And the former alone."""
+    """The runs that match and, in order, all entries that make what they read; the former alone."""
     makers = {}  # of each path, the first entry that names it
     for i, entry in enumerate(entries):
         if entry.fails is not True:
             for path in entry.paths():
                 makers.setdefault(path, i)
-    chosen = {i for i, entry in enumerate(entries) if isinstance(entry, Run) and matches(entry.name, patterns)}
+    chosen = {i for i, entry in enumerate(entries)
+              if isinstance(entry, Run) and matches(entry.name, patterns)}
     wanted, left = set(), list(chosen)
     while left:
         i = left.pop()

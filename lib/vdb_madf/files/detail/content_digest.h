@@ -21,7 +21,8 @@ class ContentSum {
  public:
   static constexpr size_t kPart = size_t(1) << 18;
 
-  /// Of a file of `size` bytes, of which `left` from `leftStart` on are left out.
+  /// @param size bytes of the file
+  /// @param left bytes from `leftStart` on that are left out
   ContentSum(int64_t size, int64_t leftStart, int64_t left);
   /// Adds a part of the file, kPart bytes or what the last one has, unless it was added before.
   void addPart(int64_t position, const char* bytes, size_t count);

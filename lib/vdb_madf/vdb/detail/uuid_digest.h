@@ -18,7 +18,7 @@ namespace vdb_madf::detail {
 /// Where the UUID stands in a VDB file, as text.
 constexpr size_t kUuidStart = 21, kUuidLength = 36;
 
-/// Of a VDB file, but for its UUID.
+/// The checksum of a VDB file, but for its UUID.
 class VdbSum : public ContentSum {
  public:
   explicit VdbSum(int64_t size) : ContentSum(size, kUuidStart, kUuidLength) {}
