@@ -206,3 +206,18 @@ def test_warnings_point_to_the_caller(array):
         with pytest.warns(UserWarning, match="fitted") as heard:
             work()
         assert {warning.filename for warning in heard} == {__file__}
+
+
+def test_a_file_that_is_not_what_was_written_is_refused(tmp_path):
+    path = tmp_path / "a.vdb"
+    madf.Labels(np.ones((3, 4, 5), np.int32)).save(path)
+    data = bytearray(path.read_bytes())
+    data[data.index(b"madf_domain_max") + 5] ^= 1
+    path.write_bytes(data)
+    with pytest.raises(madf.IoError, match=r"is not what was written.*verify_files\(False\)"):
+        madf.Labels(path)
+    madf.verify_files(False)
+    try:
+        assert madf.Labels(path).ids.tolist() == [1]
+    finally:
+        madf.verify_files(True)
