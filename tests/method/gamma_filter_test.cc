@@ -3,6 +3,7 @@
 
 #include "vdb_madf/method/gamma_filter.h"
 
+#include <ctime>
 #include <limits>
 #include <set>
 #include <string>
@@ -206,6 +207,26 @@ TEST_CASE("gamma_filter: moves with the object, whatever the threads", "[gamma_f
       REQUIRE(other.siteOf(p + shift) == expected.siteOf(p) + shift);
     }
   }
+}
+
+TEST_CASE("gamma_filter: a thin path is completed in time that goes with its length",
+          "[gamma_filter][long]") {
+  constexpr int kSide = 500;
+  const auto mask = MaskGrid::create();
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide; ++x)
+      if (y % 2 == 0 || x == (y % 4 == 1 ? kSide - 1 : 0)) mask->tree().setValueOn(Coord(x, y, 0));
+  const LeafIndex index(*mask);
+  PowerMap map = powerMap(index, squaredDistance(index, {}));
+  const VoxelSet balls = medialBalls(index, map);
+  const MedialBallTable table = measureBalls(index, map, balls);
+  const VoxelSet kept = keptBalls(index, map, balls, table, 2);
+  const std::clock_t start = std::clock();
+  map = filteredPowerMap(index, std::move(map), balls, table, kept);
+  const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
+  CHECK(kept.size() == 1);
+  INFO(seconds << " s of computing");
+  CHECK(seconds < 4e-6 * double(index.voxelCount()));
 }
 
 TEST_CASE("gamma_filter: none once interrupted", "[gamma_filter]") {

@@ -4,7 +4,6 @@
 #include "vdb_madf/method/detail/geodesic_completion.h"
 
 #include <algorithm>
-#include <atomic>
 
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
@@ -25,6 +24,7 @@ void GeodesicCompletion::start(Interrupter* interrupter) {
     });
   });
   front_ = uncovered_;
+  frontWords_.reset();
 }
 
 void GeodesicCompletion::set(const Change& voxel, bool isInFront) {
@@ -32,12 +32,31 @@ void GeodesicCompletion::set(const Change& voxel, bool isInFront) {
   const size_t rank = index_.rank(voxel.voxel);
   map_.site[rank] = voxel.state.site;
   map_.power[rank] = voxel.state.power;
-  if (isInFront) front_.insert(voxel.voxel);
+  if (isInFront) addToFront(voxel.voxel);
 }
 
 void GeodesicCompletion::setBeyond(VoxelId voxel, bool above, const State& state) {
   (above ? above_ : below_)[voxel] = state;
-  if (uncovered_.contains(voxel)) front_.insert(voxel);
+  if (uncovered_.contains(voxel)) addToFront(voxel);
+}
+
+void GeodesicCompletion::addToFront(VoxelId voxel) {
+  front_.insert(voxel);
+  if (frontWords_) frontWords_->push_back(uint32_t(voxel >> 6));
+}
+
+/// Those with something to do, in their order.
+std::vector<uint32_t> GeodesicCompletion::takeFrontWords() {
+  std::vector<uint32_t> words;
+  if (frontWords_) {
+    words.swap(*frontWords_);
+    std::sort(words.begin(), words.end());
+    words.erase(std::unique(words.begin(), words.end()), words.end());
+  } else {
+    for (size_t i = 0; i < front_.wordCount(); ++i)
+      if (front_.word(i)) words.push_back(uint32_t(i));
+  }
+  return words;
 }
 
 /// Is site a better than b at equal power at p? The larger D wins, then the smaller coordinate.
@@ -75,9 +94,7 @@ GeodesicCompletion::State GeodesicCompletion::best(VoxelId p) const {
 
 bool GeodesicCompletion::round(Interrupter* interrupter) {
   // Chunks of words with something to do; each keeps its own list, so nothing depends on threads.
-  std::vector<uint32_t> words;
-  for (size_t i = 0; i < front_.wordCount(); ++i)
-    if (front_.word(i)) words.push_back(uint32_t(i));
+  const std::vector<uint32_t> words = takeFrontWords();
   constexpr size_t kWordsPerChunk = 256;
   changes_.assign((words.size() + kWordsPerChunk - 1) / kWordsPerChunk, {});
   parallelFor(changes_.size(), 1, interrupter, [&](size_t begin, size_t end) {
@@ -94,7 +111,11 @@ bool GeodesicCompletion::round(Interrupter* interrupter) {
       }
     }
   });
-  std::atomic<bool> changed{false};
+  size_t changed = 0;
+  for (const std::vector<Change>& chunk : changes_) changed += chunk.size();
+  // To look through all words then takes no longer.
+  const bool isMuch = changed > front_.wordCount() / 64;
+  std::vector<std::vector<uint32_t>> touched(isMuch ? 0 : changes_.size());
   parallelFor(changes_.size(), 1, interrupter, [&](size_t begin, size_t end) {
     for (size_t chunk = begin; chunk < end; ++chunk) {
       for (const Change& change : changes_[chunk]) {
@@ -102,13 +123,18 @@ bool GeodesicCompletion::round(Interrupter* interrupter) {
         map_.site[rank] = change.state.site;
         map_.power[rank] = change.state.power;
         forEachNeighbor(index_, change.voxel, [&](VoxelId q, int, int) {
-          if (uncovered_.contains(q)) front_.insertAtomic(q);
+          if (!uncovered_.contains(q)) return;
+          front_.insertAtomic(q);
+          if (!isMuch) touched[chunk].push_back(uint32_t(q >> 6));
         });
       }
-      if (!changes_[chunk].empty()) changed = true;
     }
   });
-  return changed;
+  frontWords_.reset();
+  if (!isMuch) frontWords_.emplace();
+  for (const std::vector<uint32_t>& more : touched)
+    frontWords_->insert(frontWords_->end(), more.begin(), more.end());
+  return changed > 0;
 }
 
 }  // namespace vdb_madf::detail

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -47,6 +48,8 @@ class GeodesicCompletion {
   void setBeyond(VoxelId voxel, bool above, const State& state);
 
  private:
+  std::vector<uint32_t> takeFrontWords();
+  void addToFront(VoxelId voxel);
   bool winsTie(const Coord& p, VoxelId a, VoxelId b) const;
   State best(VoxelId p) const;
 
@@ -54,6 +57,9 @@ class GeodesicCompletion {
   PowerMap& map_;
   VoxelSet uncovered_;
   VoxelSet front_;  // uncovered voxels beside a change of the last round
+  // The words of the front that are not empty, and others, so that a round along a thin path does
+  // not look through all; absent where they are many.
+  std::optional<std::vector<uint32_t>> frontWords_;
   std::vector<std::vector<Change>> changes_;
   std::unordered_map<VoxelId, State> below_, above_;
 };
