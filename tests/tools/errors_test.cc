@@ -20,6 +20,7 @@ void hideMetadata(const Bench& bench, const std::string& file, const std::string
   size_t at = bytes.find(key);
   REQUIRE(at != std::string::npos);
   for (; at != std::string::npos; at = bytes.find(key, at)) bytes[at] = '_';
+  bytes[21] = '0';  // a UUID that is no digest, as other programs write
   bench.write(file, bytes);
 }
 
