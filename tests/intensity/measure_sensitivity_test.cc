@@ -151,7 +151,7 @@ TEST_CASE("measure_sensitivity: refuses labels that do not tell how they were ma
   CHECK_THROWS_WITH(sample.recurring(options), Contains("from 5 to 1000"));
   options.runs = 5;
   options.threshold.reset();
-  CHECK_THROWS_WITH(sample.recurring(options), Contains("its edges tell no blur"));
+  CHECK_THROWS_WITH(sample.recurring(options), Contains("is no gray scan"));
   options.threshold = 10;
   const Int32Grid::Ptr labels = sample.labels;
   sample.labels = labels->deepCopy();

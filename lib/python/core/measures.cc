@@ -19,8 +19,8 @@
 #include "vdb_madf/measure/measure.h"
 #include "vdb_madf/measure/measure_binder.h"
 #include "vdb_madf/measure/measure_stability.h"
-#include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/measure/size_biases.h"
+#include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/volumes/choose_grid.h"
 #include "vdb_madf/volumes/load_object.h"
 
@@ -303,8 +303,11 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
     if (graph) measureStability(*graph, result);
     if (scan) measureGray(grid, *scan, result, interrupter);
     if (third) measureBinder(grid, *third, options, result, interrupter);
-    if (edges)
-      measureNecks(grid, *sections, blurOf(*edges->image, interrupter), result, interrupter);
+    if (edges) {
+      const auto blur = sensitivity > 0 ? estimateBlur(*edges->image, interrupter)
+                                        : blurOf(*edges->image, interrupter);
+      if (blur) measureNecks(grid, *sections, *blur, result, interrupter);
+    }
     if (sensitivity > 0) measureSensitivity(grid, openAgain, again, result, interrupter);
     return result;
   });

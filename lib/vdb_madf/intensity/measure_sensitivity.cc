@@ -18,6 +18,7 @@
 #include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/matching/compare.h"
 #include "vdb_madf/scans/filtered_image.h"
+#include "vdb_madf/scans/histogram.h"
 #include "vdb_madf/scans/image_object.h"
 #include "vdb_madf/segmentation/segment.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"
@@ -28,6 +29,7 @@ namespace {
 
 constexpr double kThresholdShare = 0.2;  // of the contrast
 constexpr double kSmoothShare = 0.5;     // of the blur
+constexpr double kUsualBlur = 0.7;       // voxels, where a scan tells none
 constexpr double kStrictness = 3;
 constexpr int64_t kGamma = 8;
 
@@ -64,14 +66,30 @@ Choices choicesOf(const Int32Grid& labels, const MeasureOptions& options) {
   return choices;
 }
 
+/// The difference of the means of the gray values from a threshold on and of those below it.
+double contrastAt(double threshold, ImageReader& image) {
+  const Histogram histogram = histogramOf(image);
+  if (kindOf(histogram) != ImageKind::gray)
+    throw InvalidInput(image.path() + ": is no gray scan, so that its threshold cannot be varied");
+  double sums[2] = {0, 0}, counts[2] = {0, 0};
+  for (size_t bin = 0; bin < histogram.counts.size(); ++bin) {
+    const double value = histogram.lowerEdge(bin);
+    sums[value >= threshold] += value * double(histogram.counts[bin]);
+    counts[value >= threshold] += double(histogram.counts[bin]);
+  }
+  return sums[1] / std::max(1.0, counts[1]) - sums[0] / std::max(1.0, counts[0]);
+}
+
 Sensitivity boundsOf(const Choices& choices, const SensitivityOptions& options,
                      const std::function<GrayScan()>& open, Interrupter* interrupter) {
   double threshold = options.threshold.value_or(0), smooth = options.smooth.value_or(0);
   if (!options.threshold || !options.smooth) {
-    const ScanBlur blur = blurOf(*open().image, interrupter);
-    const double contrast = std::abs(blur.inside - blur.outside);
-    threshold = options.threshold.value_or(std::max(kThresholdShare, blur.noise) * contrast);
-    smooth = options.smooth.value_or(kSmoothShare * blur.sigma);
+    const auto blur = estimateBlur(*open().image, interrupter);
+    const double contrast = blur ? std::abs(blur->inside - blur->outside)
+                                 : contrastAt(choices.selection.low, *open().image);
+    const double share = std::max(kThresholdShare, blur ? blur->noise : 0);
+    threshold = options.threshold.value_or(share * contrast);
+    smooth = options.smooth.value_or(kSmoothShare * (blur ? blur->sigma : kUsualBlur));
   }
   const double strictness = options.strictness.value_or(kStrictness);
   Sensitivity bounds;

@@ -31,7 +31,8 @@ struct SensitivityOptions {
 /// The labels tell the threshold, the filters and the options of the method. In each run threshold,
 /// smoothing, strictness and gamma are drawn anew, evenly and independently, within bounds: the
 /// threshold by a fifth of the contrast up and down, or by the noise if that is more; the smoothing
-/// by half of the blur; the strictness by 3; gamma from its value up to 8. (Run r, from 1, takes
+/// by half of the blur (of 0.7 voxel and the contrast of the two sides of the threshold, where the
+/// scan tells no blur); the strictness by 3; gamma from its value up to 8. (Run r, from 1, takes
 /// the point r of the Halton sequence of the bases 2, 3, 5 and 7; gamma goes by its logarithm.)
 ///
 /// A grain comes again in a run if one of its grains overlaps it by more than half of the voxels
@@ -43,7 +44,7 @@ struct SensitivityOptions {
 /// @param open the scan, anew for each run
 /// @param measured what measure() says of these labels
 /// @throw InvalidInput, one line, if the labels do not tell how they were made (a threshold of a
-///   scan, and merging by score), the scan's box does not fit, or its blur is needed and not found;
+///   scan, and merging by score), the scan's box does not fit, or it is no gray one;
 ///   what reading, segmenting and measuring throw; Interrupted.
 void measureSensitivity(const Int32Grid& labels, const std::function<GrayScan()>& open,
                         const SensitivityOptions& options, Measurements& measured,

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "measure_arguments.h"
+
+#include <fmt/core.h>
+
+#include "command.h"
+#include "outputs.h"
+#include "parse.h"
+#include "vdb_madf/measure/bootstrap.h"
+#include "vdb_madf/pictures/measures_plot.h"
+#include "wrong_usage.h"
+
+namespace vdb_madf::tools {
+
+namespace {
+
+/// --vary threshold:T,smooth:S,strictness:K,gamma:G, or some of these.
+void parseVary(const std::string& text, SensitivityOptions& options) {
+  for (const std::string& item : split(text, ',')) {
+    const size_t colon = item.find(':');
+    const std::string name = item.substr(0, colon);
+    const std::string value = colon == std::string::npos ? "" : item.substr(colon + 1);
+    const std::string about = "--vary " + name;
+    if (name == "gamma") {
+      options.gamma = parseCount(value, about);
+      continue;
+    }
+    std::optional<double>* const number = name == "threshold"    ? &options.threshold
+                                          : name == "smooth"     ? &options.smooth
+                                          : name == "strictness" ? &options.strictness
+                                                                 : nullptr;
+    if (!number)
+      throw WrongUsage("--vary " + text +
+                       ": write threshold:T,smooth:S,strictness:K,gamma:G, or some of these");
+    *number = parseNumber(value, about);
+    if (!(**number >= 0)) throw WrongUsage(about + ":" + value + ": must be 0 or more");
+  }
+}
+
+void parseSensitivity(MeasureArguments& o) {
+  if (o.runs.empty()) {
+    if (!o.vary.empty()) throw WrongUsage("--vary says how far --sensitivity goes: give it, too");
+    return;
+  }
+  if (o.gray.path.empty())
+    throw WrongUsage("--sensitivity segments the scan again: give it with --gray SCAN");
+  const int64_t runs = parseCount(o.runs, "--sensitivity");
+  if (runs < kMinRuns || runs > kMaxRuns)
+    throw WrongUsage(
+        fmt::format("--sensitivity {}: must be from {} to {}", o.runs, kMinRuns, kMaxRuns));
+  o.sensitivity.emplace();
+  o.sensitivity->runs = int(runs);
+  o.sensitivity->measure = o.measure;
+  if (!o.vary.empty()) parseVary(o.vary, *o.sensitivity);
+}
+
+void parseBinder(MeasureArguments& o) {
+  if (!o.bridges.empty()) checkTableEnding(o.bridges);
+  if (o.phases.path.empty() != o.bridges.empty())
+    throw WrongUsage("--phases MAP and --bridges FILE.csv go together: give both");
+  if (!o.binderText.empty()) {
+    if (o.phases.path.empty())
+      throw WrongUsage("--binder is a value of a map of phases: give --phases, too");
+    o.binder = parseCount(o.binderText, "--binder");
+  }
+}
+
+void parseDensity(MeasureArguments& o) {
+  if (o.ice) o.tables.density = kIceDensity;
+  if (!o.density.empty()) {
+    if (o.ice) throw WrongUsage("--ice is --density 917: give one of the two");
+    o.tables.density = parseNumber(o.density, "--density");
+    if (!(*o.tables.density > 0)) throw WrongUsage("--density " + o.density + ": must be above 0");
+  }
+}
+
+void parseBootstrap(MeasureArguments& o) {
+  if (!o.bootstrap.empty()) {
+    const int64_t replicates = parseCount(o.bootstrap, "--bootstrap");
+    if (replicates < kMinReplicates || replicates > kMaxReplicates)
+      throw WrongUsage(fmt::format("--bootstrap {}: must be from {} to {}", o.bootstrap,
+                                   kMinReplicates, kMaxReplicates));
+    o.measure.bootstrap = int(replicates);
+  }
+}
+
+}  // namespace
+
+void parse(MeasureArguments& o) {
+  o.input.outputs = MeasurementTables::paths(o.folder);
+  o.input.outputs.push_back(o.plot);
+  o.input.outputs.push_back(o.sizeCurve);
+  o.input.outputs.push_back(o.bridges);
+  parseBinder(o);
+  if (!o.sizeCurve.empty()) checkTableEnding(o.sizeCurve);
+  if (!o.sizeReference.empty()) checkOutputs(o.input.outputs, o.sizeReference);
+  o.measure.sizes = !o.sizeCurve.empty();
+  if (!o.plot.empty() && !plotTypeOf(o.plot))
+    throw WrongUsage(o.plot + ": the plot's ending must be .svg, .pdf or .png");
+  o.input.parse();
+  parseDensity(o);
+  if (o.stability && !hasVdbEnding(o.input.path) && !isInSlabs(o.input))
+    throw WrongUsage(o.input.path +
+                     ": --stability needs what segment --keep manifold keeps, in .vdb or .slabs");
+  checkScan(o.intensity, o.input);
+  checkScan(o.gray, o.input);
+  checkScan(o.phases, o.input);
+  o.measure.boundary = parseBoundary(o.boundary);
+  o.measure.minFaces = parseCount(o.minFaces, "--min-faces");
+  parseBootstrap(o);
+  parseSensitivity(o);
+}
+
+}  // namespace vdb_madf::tools
