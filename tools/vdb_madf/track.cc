@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <sstream>
 
@@ -17,6 +18,7 @@
 #include "parse.h"
 #include "text_file.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/read_text.h"
 #include "vdb_madf/vdb/write_vdb.h"
 
 namespace vdb_madf::tools {
@@ -25,7 +27,7 @@ namespace {
 
 struct TrackArguments {
   InputOptions before, after;
-  std::string out, shift, json, grains, links, bonds, minFaces = "1";
+  std::string out, shift, motion, json, grains, links, bonds, minFaces = "1";
   TrackOptions track;
 };
 
@@ -36,12 +38,43 @@ void parse(TrackArguments& o) {
   o.track.minFaces = parseCount(o.minFaces, "--min-faces");
   if (!(o.track.share > 0 && o.track.share <= 1))
     throw WrongUsage("--share: is the part of a grain, above 0 and at most 1");
+  if (!o.motion.empty() && !o.links.empty())
+    throw WrongUsage("--links: lists voxels in common, which --motion does without: see --grains");
+}
+
+/// The twelve numbers of a guess: three rows of a matrix, each with a number of the shift.
+Motion parseMotion(const std::string& text, const std::string& path) {
+  std::istringstream words(text);
+  std::vector<double> numbers;
+  for (std::string word; words >> word;) numbers.push_back(parseNumber(word, path));
+  if (numbers.size() != 12)
+    throw InvalidInput(path + ": has " + std::to_string(numbers.size()) +
+                       " numbers: a guess of a motion is three rows of a matrix, each followed by "
+                       "a number of the shift, 12 in all");
+  Motion motion;
+  for (size_t row = 0; row < 3; ++row) {
+    for (size_t column = 0; column < 3; ++column)
+      motion.linear(int(row), int(column)) = numbers[4 * row + column];
+    motion.shift[int(row)] = numbers[4 * row + 3];
+  }
+  if (!(motion.linear.det() > 0))
+    throw InvalidInput(path + ": the determinant of the matrix must be above 0");
+  return motion;
+}
+
+MatchOptions motionOf(const std::string& text) {
+  constexpr uint64_t kMostBytes = 1 << 16;
+  for (const MotionKind kind : {MotionKind::rigid, MotionKind::affine, MotionKind::free})
+    if (text == toString(kind)) return {kind, std::nullopt};
+  return {MotionKind::affine, parseMotion(readText(text, kMostBytes), text)};
 }
 
 constexpr GrainFate kGrainFates[] = {GrainFate::kept,     GrainFate::split,    GrainFate::merged,
-                                     GrainFate::vanished, GrainFate::appeared, GrainFate::outside};
-constexpr BondFate kBondFates[] = {BondFate::kept,   BondFate::broken,    BondFate::created,
-                                   BondFate::inside, BondFate::unmatched, BondFate::outside};
+                                     GrainFate::vanished, GrainFate::appeared, GrainFate::lost,
+                                     GrainFate::outside};
+constexpr BondFate kBondFates[] = {BondFate::kept,      BondFate::broken,   BondFate::created,
+                                   BondFate::inside,    BondFate::detached, BondFate::separated,
+                                   BondFate::unmatched, BondFate::outside};
 
 template <typename Items, typename Fate>
 int64_t countOf(const Items& items, Fate fate) {
@@ -63,21 +96,49 @@ double percent(int64_t part, int64_t whole) {
   return whole > 0 ? 100.0 * double(part) / double(whole) : 0.0;
 }
 
+/// Of the bonds that were followed, and what it is at least and at most if some were lost.
+Json brokenJson(const BrokenBonds& bonds) {
+  Json json = Json::object();
+  if (bonds.kept + bonds.broken == 0) return json;
+  json["share"] = double(bonds.broken) / double(bonds.kept + bonds.broken);
+  json["at_least"] = double(bonds.broken) / double(bonds.all());
+  json["at_most"] = double(bonds.broken + bonds.unknown) / double(bonds.all());
+  return json;
+}
+
+void addMotion(Json& json, const Tracks& t, int gap) {
+  json["motion"] = toString(*t.motion);
+  if (t.whole) {
+    Json rows = Json::array();
+    for (int row = 0; row < 3; ++row)
+      rows.push_back({t.whole->linear(row, 0), t.whole->linear(row, 1), t.whole->linear(row, 2),
+                      t.whole->shift[row]});
+    json["motion_of_whole"] = rows;
+  }
+  json["gap"] = gap;
+}
+
 Json summary(const TrackArguments& o, const Tracks& t) {
   Json json;
   json["before"] = o.before.path;
   json["after"] = o.after.path;
   if (!o.out.empty()) json["output"] = o.out;
-  json["shift"] = coordJson(t.shift);
-  json["share"] = o.track.share;
-  json["min_faces"] = o.track.minFaces;
-  json["voxels_before"] = t.voxelsBefore;
-  json["voxels_after"] = t.voxelsAfter;
-  json["common_voxels"] = t.commonVoxels;
+  if (t.motion) {
+    addMotion(json, t, o.track.gap);
+    json["min_faces"] = o.track.minFaces;
+  } else {
+    json["shift"] = coordJson(t.shift);
+    json["share"] = o.track.share;
+    json["min_faces"] = o.track.minFaces;
+    json["voxels_before"] = t.voxelsBefore;
+    json["voxels_after"] = t.voxelsAfter;
+    json["common_voxels"] = t.commonVoxels;
+  }
   json["grains_before"] = fatesOf(t.before, kGrainFates);
   json["grains_after"] = fatesOf(t.after, kGrainFates);
   json["bonds_before"] = fatesOf(t.bondsBefore, kBondFates);
   json["bonds_after"] = fatesOf(t.bondsAfter, kBondFates);
+  if (t.motion) json["broken_bonds"] = brokenJson(brokenBonds(t));
   return json;
 }
 
@@ -92,15 +153,40 @@ void printFates(const char* what, const Json& fates) {
   std::printf("\n");
 }
 
-void print(const TrackArguments& o, const Tracks& t, const Json& json) {
+void printMotion(const Tracks& t) {
+  std::printf("motion         %s\n", toString(*t.motion));
+  if (!t.whole) return;
+  const Strain strain = strainOf(t.whole->linear);
+  std::printf(
+      "of the whole   turned by %.2f degrees, strain %.4f (volumetric), %.4f (deviatoric)\n",
+      strain.turn.length(), strain.volumetric, strain.deviatoric);
+}
+
+void printBroken(const BrokenBonds& bonds) {
+  const int64_t followed = bonds.kept + bonds.broken;
+  if (followed == 0) return;
+  std::printf("broken         %.2f %% of the bonds that are followed, %.2f to %.2f %% of all\n",
+              percent(bonds.broken, followed), percent(bonds.broken, bonds.all()),
+              percent(bonds.broken + bonds.unknown, bonds.all()));
+}
+
+void printShift(const TrackArguments& o, const Tracks& t) {
   std::printf("shift          %d,%d,%d voxels%s\n", t.shift.x(), t.shift.y(), t.shift.z(),
               o.track.shift ? "" : ", found");
   std::printf("in common      %.2f %% of the labeled voxels before, %.2f %% of those after\n",
               percent(t.commonVoxels, t.voxelsBefore), percent(t.commonVoxels, t.voxelsAfter));
+}
+
+void print(const TrackArguments& o, const Tracks& t, const Json& json) {
+  if (t.motion)
+    printMotion(t);
+  else
+    printShift(o, t);
   printFates("grains before", json["grains_before"]);
   printFates("grains after ", json["grains_after"]);
   printFates("bonds before ", json["bonds_before"]);
   printFates("bonds after  ", json["bonds_after"]);
+  if (t.motion) printBroken(brokenBonds(t));
 }
 
 /// A share with nine digits; empty where there is nothing to have a share of.
@@ -120,6 +206,50 @@ std::string grainTable(const Tracks& t) {
       csv << side << ',' << g.grain << ',' << toString(g.fate) << ',' << g.track << ',' << g.voxels
           << ',' << g.sharedVoxels << ',' << g.links << ',' << g.partner << ',' << g.overlapVoxels;
       addShare(csv, g.overlapVoxels, g.sharedVoxels);
+      csv << '\n';
+    }
+  return csv.str();
+}
+
+/// What a grain's motion was; empty cells for what is not known.
+void addMove(std::ostream& csv, const GrainMove* move) {
+  if (!move) {
+    csv << std::string(20, ',');
+    return;
+  }
+  const auto add = [&](double value) { csv << ',' << value; };
+  add(move->confidence);
+  add(move->miss);
+  for (int axis = 0; axis < 3; ++axis) add(move->displacement[axis]);
+  csv << ',' << move->neighbors;
+  if (!move->gradient) {
+    csv << std::string(14, ',');
+    return;
+  }
+  for (int n = 0; n < 9; ++n) add((*move->gradient)(n / 3, n % 3));
+  const Strain strain = strainOf(*move->gradient);
+  add(strain.volumetric);
+  add(strain.deviatoric);
+  for (int axis = 0; axis < 3; ++axis) add(strain.turn[axis]);
+}
+
+/// With a motion. What was followed has its motion on either side.
+std::string moveTable(const Tracks& t) {
+  std::ostringstream csv;
+  csv.precision(9);
+  csv << "side,grain,fate,track,voxels,partner,confidence,miss,displacement_x,displacement_y,"
+         "displacement_z,neighbors,f_xx,f_xy,f_xz,f_yx,f_yy,f_yz,f_zx,f_zy,f_zz,"
+         "strain_volumetric,strain_deviatoric,rotation_x,rotation_y,rotation_z\n";
+  std::map<int32_t, const GrainMove*> moves;  // by the number before
+  for (size_t n = 0; n < t.before.size(); ++n)
+    if (t.before[n].partner) moves[t.before[n].grain] = &t.moves[n];
+  for (const auto& [side, grains] :
+       {std::pair<const char*, const std::vector<TrackedGrain>&>{"before", t.before},
+        {"after", t.after}})
+    for (const TrackedGrain& g : grains) {
+      csv << side << ',' << g.grain << ',' << toString(g.fate) << ',' << g.track << ',' << g.voxels
+          << ',' << g.partner;
+      addMove(csv, g.partner ? moves.at(g.track) : nullptr);
       csv << '\n';
     }
   return csv.str();
@@ -157,7 +287,8 @@ std::string bondTable(const Tracks& t) {
   return csv.str();
 }
 
-void runTrack(const TrackArguments& o, const Common& common) {
+void runTrack(TrackArguments o, const Common& common) {
+  if (!o.motion.empty()) o.track.motion = motionOf(o.motion);
   if (!o.out.empty()) checkWritable(o.out);
   JsonFile jsonFile(o.json);
   TextFile grainFile(o.grains), linkFile(o.links), bondFile(o.bonds);
@@ -178,7 +309,7 @@ void runTrack(const TrackArguments& o, const Common& common) {
   common.progress->end();
   for (const std::string& note : notesOn(tracks, *before, *after, o.track, names))
     common.progress->note(note);
-  grainFile.write(grainTable(tracks));
+  grainFile.write(tracks.motion ? moveTable(tracks) : grainTable(tracks));
   linkFile.write(linkTable(tracks));
   bondFile.write(bondTable(tracks));
   Json json = summary(o, tracks);
@@ -207,6 +338,17 @@ void addTrack(Verb command, Common& common, Action& action) {
       .typeName("N")
       .showDefault()
       .excludes(given);
+  verb.option(
+          "--motion", o->motion,
+          "the sample was turned or strained: 'rigid' or 'affine' is looked for, 'free' follows "
+          "neighbors alone, FILE has a guess of 12 numbers")
+      .typeName("KIND")
+      .excludes(given);
+  verb.option("--gap", o->track.gap,
+              "with --motion: broken bonds are detached up to so many voxels, else separated")
+      .range(1, kMaxGap)
+      .typeName("N")
+      .showDefault();
   verb.option("--share", o->track.share,
               "part of the smaller of two grains that they have to share to be linked")
       .typeName("F")

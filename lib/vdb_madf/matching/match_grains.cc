@@ -577,7 +577,7 @@ void check(const GrainSet& set) {
 }  // namespace
 
 std::optional<FollowedGrains> matchGrains(const GrainSet& before, const GrainSet& after,
-                                        const MatchOptions& options, Interrupter* interrupter) {
+                                          const MatchOptions& options, Interrupter* interrupter) {
   check(before);
   check(after);
   const Scan first(before, interrupter), second(after, interrupter);
@@ -596,6 +596,22 @@ std::optional<FollowedGrains> matchGrains(const GrainSet& before, const GrainSet
     }
   following.finish(interrupter);
   return following.result();
+}
+
+Strain strainOf(const Mat3d& gradient) {
+  Strain strain;
+  const Mat3d green = (gradient.transpose() * gradient - Mat3d::identity()) * 0.5;
+  strain.volumetric = detail::trace(green);
+  const Mat3d rest = green - Mat3d::identity() * (strain.volumetric / 3);
+  strain.deviatoric = std::sqrt(2. / 3 * detail::squaredNorm(rest));
+  const Mat3d turn = detail::turnOf(gradient);
+  // The antisymmetric part has the sine of the angle, the trace its cosine.
+  const Vec3d sine =
+      Vec3d(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1)) * 0.5;
+  const double length = sine.length(), cosine = (detail::trace(turn) - 1) / 2;
+  if (length > 0)
+    strain.turn = sine * (std::atan2(length, cosine) * (180 / 3.141592653589793) / length);
+  return strain;
 }
 
 }  // namespace vdb_madf

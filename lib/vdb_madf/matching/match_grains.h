@@ -63,9 +63,9 @@ struct FollowedGrain {
 };
 
 struct FollowedGrains {
-  std::optional<Motion> whole;     ///< unless the motion is free
+  std::optional<Motion> whole;        ///< unless the motion is free
   std::vector<FollowedGrain> grains;  ///< as those of before
-  int64_t count = 0;               ///< of those that were followed
+  int64_t count = 0;                  ///< of those that were followed
 };
 
 /// Follows grains by their features alone. First a place is looked for where the neighborhood of a
@@ -82,7 +82,15 @@ struct FollowedGrains {
 /// @return nothing if no such place is found, and there is no guess
 /// @throw InvalidInput if numbers do not ascend, or a feature is not finite; Interrupted
 std::optional<FollowedGrains> matchGrains(const GrainSet& before, const GrainSet& after,
-                                        const MatchOptions& options = {},
-                                        Interrupter* interrupter = nullptr);
+                                          const MatchOptions& options = {},
+                                          Interrupter* interrupter = nullptr);
+
+/// What a deformation gradient F = R U does. E = (F^T F - 1) / 2 is the Green-Lagrange strain.
+struct Strain {
+  double volumetric = 0;         ///< trace of E
+  double deviatoric = 0;         ///< sqrt(2/3 D:D), D being E without a third of its trace
+  openvdb::Vec3d turn{0, 0, 0};  ///< R: the axis, as long as the angle in degrees
+};
+Strain strainOf(const openvdb::Mat3d& gradient);
 
 }  // namespace vdb_madf

@@ -84,6 +84,7 @@ void checkAnyCommon(const Comparison& comparison, const PairNames& names) {
 }
 
 void checkAnyCommon(const Tracks& tracks, const PairNames& names) {
+  if (tracks.motion) return;
   if (tracks.commonVoxels == 0 && !tracks.before.empty() && !tracks.after.empty())
     throw InvalidInput(names.second + ": no labeled voxel comes to lie on one of " + names.first +
                        ": give labels of the same sample, or how far it moved (" + names.shift +
@@ -108,6 +109,18 @@ std::vector<std::string> notesOn(const Tracks& tracks, const Int32Grid& before,
                                  const Int32Grid& after, const TrackOptions& options,
                                  const PairNames& names) {
   std::vector<std::string> notes;
+  if (tracks.motion) {
+    const auto count = [&](GrainFate fate) {
+      return std::count_if(tracks.before.begin(), tracks.before.end(),
+                           [&](const TrackedGrain& grain) { return grain.fate == fate; });
+    };
+    const auto kept = count(GrainFate::kept), lost = count(GrainFate::lost);
+    if (lost > kept)
+      notes.push_back(names.second + ": only " + std::to_string(kept) + " of " +
+                      std::to_string(kept + lost) + " grains of " + names.first +
+                      " are followed: give scans between them, or a guess of the motion");
+    return notes;
+  }
   const int most = options.maxShift;
   const Coord shift = tracks.shift;
   const int largest = std::max({std::abs(shift.x()), std::abs(shift.y()), std::abs(shift.z())});

@@ -6,6 +6,7 @@
 #include <openvdb/Metadata.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <map>
@@ -20,7 +21,10 @@
 #include "vdb_madf/labels/detail/relabelled.h"
 #include "vdb_madf/labels/label_sizes.h"
 #include "vdb_madf/matching/compare.h"
+#include "vdb_madf/matching/detail/grain_set.h"
+#include "vdb_madf/matching/detail/local_fit.h"
 #include "vdb_madf/matching/detail/moved_labels.h"
+#include "vdb_madf/matching/detail/point_cells.h"
 #include "vdb_madf/matching/detail/rigid_shift.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
 
@@ -40,6 +44,9 @@ void check(const TrackOptions& options) {
   if (!(options.share > 0 && options.share <= 1))
     throw InvalidInput("the share of voxels that links grains must lie above 0, and be 1 at most");
   if (options.minFaces < 0) throw InvalidInput("the fewest faces of a bond must be 0 or more");
+  if (options.gap < 1 || options.gap > kMaxGap)
+    throw InvalidInput("the gap of a detached bond must lie between 1 and " +
+                       std::to_string(kMaxGap) + " voxels");
   if (options.shift)
     for (int axis = 0; axis < 3; ++axis)
       if (std::abs(int64_t((*options.shift)[axis])) > kMaxExtent)
@@ -181,13 +188,134 @@ std::set<Pair> pairsOf(const std::vector<TrackedBond>& bonds) {
   return pairs;
 }
 
+/// Whether a ball as large as a grain lies in a box.
+bool isWithin(const CoordBBox& box, const openvdb::Vec3d& center, double volume) {
+  constexpr double kBall = 0.2387324146378430;  // 3 / (4 pi)
+  const double radius = std::cbrt(kBall * volume);
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(center[axis] - radius >= box.min()[axis] - 0.5 &&
+          center[axis] + radius <= box.max()[axis] + 0.5))
+      return false;
+  return true;
+}
+
+/// Links grains that were followed, and judges all. Of those that were not it is asked whether both
+/// volumes show them.
+void link(Sides& sides, Tracks& tracks, const GrainSet& before, const GrainSet& after,
+          const FollowedGrains& followed, const CoordBBox& boxBefore, const CoordBBox& boxAfter) {
+  std::map<int32_t, const GrainFeatures*> ofAfter;
+  for (const GrainFeatures& grain : after.grains) ofAfter[grain.grain] = &grain;
+  std::vector<openvdb::Vec3d> places;  // after, of those whose gradient is known
+  std::vector<size_t> known;
+  for (size_t n = 0; n < before.grains.size(); ++n) {
+    const GrainFeatures& grain = before.grains[n];
+    const FollowedGrain& match = followed.grains[n];
+    GrainMove& move = tracks.moves.emplace_back();
+    TrackedGrain& here = sides.before.at(grain.grain);
+    here.partner = match.partner;
+    if (!match.partner) {
+      const bool isSeen = !match.isPlaced || isWithin(boxAfter, match.place, grain.volume);
+      here.fate = isSeen ? GrainFate::lost : GrainFate::outside;
+      continue;
+    }
+    const openvdb::Vec3d& there = ofAfter.at(match.partner)->center;
+    move = {match.confidence, there - grain.center, match.miss, match.neighbors, match.gradient};
+    TrackedGrain& partner = sides.after.at(match.partner);
+    partner.partner = grain.grain;
+    here.fate = partner.fate = GrainFate::kept;
+    here.links = partner.links = 1;
+    sides.fromBefore[grain.grain].insert(match.partner);
+    sides.fromAfter[match.partner].insert(grain.grain);
+    tracks.overlaps.push_back({grain.grain, match.partner, here.voxels, true});
+    if (!match.gradient || !detail::inverseOf(*match.gradient)) continue;
+    places.push_back(there);
+    known.push_back(n);
+  }
+  const detail::PointCells cells(places);
+  for (const GrainFeatures& grain : after.grains) {
+    TrackedGrain& here = sides.after.at(grain.grain);
+    if (here.partner) continue;
+    here.fate = GrainFate::appeared;
+    if (known.empty()) continue;
+    const size_t near = cells.nearest(grain.center, 1)[0];
+    const openvdb::Vec3d from =
+        before.grains[known[near]].center +
+        *detail::inverseOf(*followed.grains[known[near]].gradient) * (grain.center - cells[near]);
+    if (!isWithin(boxBefore, from, grain.volume)) here.fate = GrainFate::outside;
+  }
+}
+
+/// Says of broken bonds whether their grains are near, and of bonds of which an end is outside that
+/// they are.
+void refine(Tracks& tracks, const Sides& sides, const Int32Grid& after, int gap,
+            Interrupter* interrupter) {
+  const auto partners = [&](const TrackedBond& bond) {
+    return Pair(
+        std::minmax(sides.before.at(bond.first).partner, sides.before.at(bond.second).partner));
+  };
+  std::set<Pair> apart;
+  for (const TrackedBond& bond : tracks.bondsBefore)
+    if (bond.fate == BondFate::separated) apart.insert(partners(bond));
+  const std::set<Pair> near = detail::nearPairs(after, apart, gap, interrupter);
+  for (TrackedBond& bond : tracks.bondsBefore)
+    if (bond.fate == BondFate::separated && near.count(partners(bond)))
+      bond.fate = BondFate::detached;
+  for (auto* bonds : {&tracks.bondsBefore, &tracks.bondsAfter}) {
+    const TrackedGrains& grains = bonds == &tracks.bondsBefore ? sides.before : sides.after;
+    for (TrackedBond& bond : *bonds)
+      for (const int32_t end : {bond.first, bond.second})
+        if (grains.at(end).fate == GrainFate::outside) bond.fate = BondFate::outside;
+  }
+}
+
 std::vector<TrackedGrain> listed(const TrackedGrains& grains) {
   std::vector<TrackedGrain> list;
   for (const auto& [number, grain] : grains) list.push_back(grain);
   return list;
 }
 
+Tracks trackMotion(const Int32Grid& before, const Int32Grid& after, const TrackOptions& options,
+                   Interrupter* interrupter) {
+  for (const Int32Grid* labels : {&before, &after})
+    requireCubicVoxels(*labels, "following grains through a motion");
+  const GrainSet first = detail::grainSet(before, interrupter),
+                 second = detail::grainSet(after, interrupter);
+  const auto followed = matchGrains(first, second, *options.motion, interrupter);
+  if (!followed)
+    throw InvalidInput(
+        "no motion is found that brings some grain and its neighbors to such of the later scan: "
+        "give labels of the same sample, or a guess of its motion");
+  Tracks tracks;
+  tracks.motion = options.motion->kind;
+  tracks.whole = followed->whole;
+  Sides sides{grainsOf(before, interrupter), grainsOf(after, interrupter), {}, {}};
+  link(sides, tracks, first, second, *followed, boxOf(before), boxOf(after));
+  tracks.lastTrack = number(sides, std::exchange(tracks.overlaps, {}), lastTrackOf(before));
+  tracks.bondsBefore = bondsOf(before, before, options.minFaces, interrupter);
+  tracks.bondsAfter = bondsOf(after, after, options.minFaces, interrupter);
+  const std::set<Pair> pairsBefore = pairsOf(tracks.bondsBefore),
+                       pairsAfter = pairsOf(tracks.bondsAfter);
+  judge(tracks.bondsBefore, sides.fromBefore, pairsAfter, BondFate::separated);
+  judge(tracks.bondsAfter, sides.fromAfter, pairsBefore, BondFate::created);
+  refine(tracks, sides, after, options.gap, interrupter);
+  tracks.before = listed(sides.before);
+  tracks.after = listed(sides.after);
+  return tracks;
+}
+
 }  // namespace
+
+const char* toString(MotionKind kind) {
+  switch (kind) {
+    case MotionKind::rigid:
+      return "rigid";
+    case MotionKind::affine:
+      return "affine";
+    case MotionKind::free:
+      break;
+  }
+  return "free";
+}
 
 const char* toString(GrainFate fate) {
   switch (fate) {
@@ -201,6 +329,8 @@ const char* toString(GrainFate fate) {
       return "vanished";
     case GrainFate::appeared:
       return "new";
+    case GrainFate::lost:
+      return "lost";
     case GrainFate::outside:
       break;
   }
@@ -217,6 +347,10 @@ const char* toString(BondFate fate) {
       return "new";
     case BondFate::inside:
       return "inside";
+    case BondFate::detached:
+      return "detached";
+    case BondFate::separated:
+      return "separated";
     case BondFate::unmatched:
       return "unmatched";
     case BondFate::outside:
@@ -228,6 +362,7 @@ const char* toString(BondFate fate) {
 Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions& options,
              Interrupter* interrupter) {
   check(options);
+  if (options.motion) return trackMotion(before, after, options, interrupter);
   Tracks tracks;
   tracks.shift = options.shift ? *options.shift
                                : detail::findShift(detail::labelledVoxels(before),
@@ -265,6 +400,17 @@ Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions
   return tracks;
 }
 
+BrokenBonds brokenBonds(const Tracks& tracks) {
+  BrokenBonds bonds;
+  for (const TrackedBond& bond : tracks.bondsBefore) {
+    bonds.kept += bond.fate == BondFate::kept;
+    bonds.unknown += bond.fate == BondFate::unmatched;
+    bonds.broken += bond.fate == BondFate::broken || bond.fate == BondFate::detached ||
+                    bond.fate == BondFate::separated;
+  }
+  return bonds;
+}
+
 Int32Grid::Ptr trackedLabels(const Int32Grid& after, const Tracks& tracks,
                              Interrupter* interrupter) {
   std::vector<Pair> to;
@@ -274,7 +420,9 @@ Int32Grid::Ptr trackedLabels(const Int32Grid& after, const Tracks& tracks,
   const std::string shift =
       std::to_string(s.x()) + "," + std::to_string(s.y()) + "," + std::to_string(s.z());
   removeGraph(*labels);  // of manifolds, should these have been tracked themselves
-  labels->insertMeta(kTrackKey, openvdb::StringMetadata("shift " + shift));
+  labels->insertMeta(kTrackKey, openvdb::StringMetadata(tracks.motion ? std::string("motion ") +
+                                                                            toString(*tracks.motion)
+                                                                      : "shift " + shift));
   labels->insertMeta(kLastTrackKey, openvdb::Int64Metadata(tracks.lastTrack));
   return labels;
 }

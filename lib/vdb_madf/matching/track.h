@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/matching/match_grains.h"
 
 namespace vdb_madf {
 
-/// Metadata of tracked labels: the shift (string), and the largest number that a grain has had so
+/// Metadata of tracked labels: the shift or kind of motion (string), and the largest number that a grain has had so
 /// far (int64).
 inline constexpr char kTrackKey[] = "madf_track", kLastTrackKey[] = "madf_track_last";
 
@@ -23,9 +24,13 @@ struct TrackOptions {
   /// 1].
   double share = 0.5;
   int64_t minFaces = 1;  ///< grains that share fewer voxel faces have no bond
+  /// The sample was turned or strained: grains are followed by matchGrains(), and the shift and the
+  /// share are not looked at.
+  std::optional<MatchOptions> motion;
+  int gap = 2;  ///< voxels, with a motion: grains of a broken bond that are near; 1 to kMaxGap
 };
 
-constexpr int kMaxShift = 256;
+constexpr int kMaxShift = 256, kMaxGap = 16;
 
 /// What becomes of a grain, or where it comes from.
 enum class GrainFate {
@@ -34,15 +39,18 @@ enum class GrainFate {
   merged,    ///< before: linked with one that is with several; after: with several
   vanished,  ///< before: linked with none
   appeared,  ///< after: linked with none
-  outside    ///< no voxel lies in what both volumes show
+  lost,      ///< before, with a motion: it may be there, but is not followed
+  outside    ///< no voxel lies in what both volumes show; with a motion: some would lie out of it
 };
 
 /// What becomes of a bond, or where it comes from; by the faces in what both volumes show.
 enum class BondFate {
-  kept,     ///< a grain linked with the one end is bonded to another that is linked with the other
-  broken,   ///< before: both ends are linked, but not so
-  created,  ///< after: both ends are linked, but not so
-  inside,   ///< ... and a grain is linked with both ends
+  kept,      ///< a grain linked with the one end is bonded to another that is linked with the other
+  broken,    ///< before: both ends are linked, but not so
+  created,   ///< after: both ends are linked, but not so
+  inside,    ///< ... and a grain is linked with both ends
+  detached,  ///< with a motion: broken, and the ends have voxels within the gap
+  separated,  ///< with a motion: broken, and they have not
   unmatched,  ///< an end is linked with none
   outside     ///< fewer than minFaces (or none) of its faces lie in what both volumes show
 };
@@ -60,6 +68,15 @@ struct TrackedGrain {
   int32_t partner = 0;  ///< most voxels in common, linked or not (tie: smaller number); 0: none
   int64_t overlapVoxels = 0;  ///< in common with the partner
   int32_t track = 0;          ///< its number through time: before, its own; after, see track()
+};
+
+/// How a grain has moved, with a motion.
+struct GrainMove {
+  double confidence = 0;                   ///< see matchGrains(); 0: it was not followed
+  openvdb::Vec3d displacement{0, 0, 0};    ///< of the center, in voxels
+  double miss = 0;                         ///< from where neighbors say it is, in voxels
+  int neighbors = 0;                       ///< that the gradient is from
+  std::optional<openvdb::Mat3d> gradient;  ///< see FollowedGrain
 };
 
 /// Two grains that have voxels in common.
@@ -87,7 +104,22 @@ struct Tracks {
   std::vector<GrainOverlap> overlaps;                ///< by before, then after
   std::vector<TrackedBond> bondsBefore, bondsAfter;  ///< by first, then second
   int32_t lastTrack = 0;  ///< the largest number of a grain so far; 0: there is none
+
+  // With a motion; the shift, the voxels and the overlaps above are left as they are.
+  std::optional<MotionKind> motion;
+  std::optional<Motion> whole;   ///< unless it is free
+  std::vector<GrainMove> moves;  ///< of before
 };
+
+const char* toString(MotionKind kind);  ///< "rigid", "affine", "free"
+
+/// Bonds before that tell of breaking: both ends are followed, or one is lost.
+struct BrokenBonds {
+  int64_t kept = 0, broken = 0, unknown = 0;  ///< unknown: an end is lost
+
+  int64_t all() const { return kept + broken + unknown; }
+};
+BrokenBonds brokenBonds(const Tracks& tracks);
 
 /// Follows grains from one label grid to a later one of the same voxels, between which the sample
 /// may have moved by whole voxels. Labels are the active voxels, tiles included, of positive value.
@@ -99,9 +131,11 @@ struct Tracks {
 /// descending order of their voxels (then by ascending numbers) give the number of the grain before
 /// to the grain after, unless either has been used; what is left gets numbers above all of before,
 /// in ascending order; if before are tracked labels, above all that their series has had.
+/// With a motion matchGrains() says which grains are linked, and what both volumes show are the
+/// grains that would lie wholly in the other's box where their neighbors say.
 /// Deterministic. Memory: a copy of each grid, and per pair of grains that meet.
-/// @throw InvalidInput if an option is out of range, or a limit of leaf_index.h is exceeded;
-///   Interrupted.
+/// @throw InvalidInput if an option is out of range, or a limit of leaf_index.h is exceeded; with a
+///   motion if none is found, or voxels are no cubes; Interrupted.
 Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions& options = {},
              Interrupter* interrupter = nullptr);
 

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <set>
+#include <utility>
+
+#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/matching/match_grains.h"
+
+namespace vdb_madf::detail {
+
+/// The grains of labels, from exact sums; lengths are in voxels, which are boxes. Contacts are of
+/// a face or more. @throw Interrupted
+GrainSet grainSet(const Int32Grid& labels, Interrupter* interrupter);
+
+/// Those of some pairs, smaller label first, of which two voxels lie at most `gap` apart, from
+/// center to center. @throw Interrupted
+std::set<std::pair<int32_t, int32_t>> nearPairs(const Int32Grid& labels,
+                                                const std::set<std::pair<int32_t, int32_t>>& pairs,
+                                                int gap, Interrupter* interrupter);
+
+}  // namespace vdb_madf::detail
