@@ -89,3 +89,54 @@ def test_wrong_arguments_are_refused(labels):
                   dict(min_faces=-1)):
         with pytest.raises(madf.InvalidInput):
             madf.track(labels, labels, **wrong)
+
+
+def balls(centers, shape, radius=6):
+    """Balls about centers, the first having label 1."""
+    array = np.zeros(shape, np.int32)
+    places = np.moveaxis(np.indices(shape), 0, -1)
+    for label, center in enumerate(centers, 1):
+        array[((places - center) ** 2).sum(-1) <= radius ** 2] = label
+    return array
+
+
+def test_a_turned_sample_is_that_of_the_command(command, tmp_path):
+    random, centers = np.random.default_rng(2), []
+    while len(centers) < 40:
+        center = random.random(3) * 44 + 13
+        if all(np.linalg.norm(center - other) > 11.5 for other in centers):
+            centers.append(center)
+    motion = np.array([[0.9, 0, 0, 5], [0, 0.98, -0.2, 8], [0, 0.2, 0.98, -4]])  # z, y, x
+    places = np.array(centers) @ motion[:, :3].T + motion[:, 3]
+    before, after = balls(centers, (70,) * 3), balls(places[:-2], (80,) * 3)
+    np.save(tmp_path / "a.npy", before)
+    np.save(tmp_path / "b.npy", after)
+    command("track", tmp_path / "a.npy", tmp_path / "b.npy", "--motion", "affine", "--grains",
+            tmp_path / "grains.csv", "--bonds", tmp_path / "bonds.csv")
+    tracks = madf.track(before, after, motion="affine")
+    assert tracks.shift is None and np.abs(tracks.motion - motion)[:, :3].max() < 0.02
+    for side, grains in (("before", tracks.before), ("after", tracks.after)):
+        there = rows(tmp_path / "grains.csv", side)
+        for name in ("fate", "track", "voxels", "partner"):
+            assert [row[name] for row in there] == [str(value) for value in grains[name]]
+        for name, values in (("confidence", grains["confidence"]),
+                             ("displacement_y", grains["displacement"][:, 1]),
+                             ("f_zx", grains["gradient"][:, 0, 2]),
+                             ("strain_deviatoric", grains["strain_deviatoric"]),
+                             ("rotation_z", grains["rotation"][:, 0])):
+            assert np.allclose([float(row[name] or "nan") for row in there], values, rtol=1e-6,
+                               equal_nan=True)
+    assert [row["fate"] for row in rows(tmp_path / "bonds.csv", "before")] == list(
+        tracks.bonds_before["fate"])
+    assert list(tracks.before["partner"][:-2]) == list(tracks.after["id"])
+    assert np.isnan(tracks.before["displacement"][-1]).all()
+    moved = places[:-2] - centers[:-2]
+    assert np.abs(tracks.before["displacement"][:-2] - moved).max() < 0.5
+    guessed = madf.track(before, after, motion=motion)
+    assert list(guessed.before["partner"]) == list(tracks.before["partner"])
+    assert madf.track(before, after, motion="free").motion is None
+    for wrong in ("fast", motion[:2], motion * np.nan):
+        with pytest.raises(madf.InvalidInput, match="motion"):
+            madf.track(before, after, motion=wrong)
+    with pytest.raises(madf.InvalidInput, match="no motion is found"):
+        madf.track(before, balls(random.random((30, 3)) * 44 + 13, (70,) * 3), motion="rigid")

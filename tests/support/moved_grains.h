@@ -56,7 +56,9 @@ class Dice {
 };
 
 inline openvdb::Mat3d turnAbout(const openvdb::Vec3d& axis, double degrees) {
-  return openvdb::math::rotation<openvdb::Mat3d>(axis.unit(), degrees * 3.141592653589793 / 180);
+  // OpenVDB's is for rows.
+  return openvdb::math::rotation<openvdb::Mat3d>(axis.unit(), degrees * 3.141592653589793 / 180)
+      .transpose();
 }
 
 /// Places in a cube, pushed apart until grains of these radii hardly overlap; about 0.6 solid.

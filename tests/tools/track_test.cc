@@ -3,6 +3,10 @@
 
 // The verb track, run as a user runs it; what it finds: matching/track_test.cc.
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
 #include <sstream>
 
 #include "support/catch.h"
@@ -109,4 +113,62 @@ TEST_CASE("cli: what cannot be tracked is told in a line", "[cli]") {
   refuses(bench, kFailed, "track g.vdb s.vdb --after-grid snow", {"s.vdb", "'snow'"});
   refuses(bench, kFailed, "track g.vdb s.vdb --shift 900,0,0", {"s.vdb", "g.vdb", "--shift"});
   bench.mustRun("track g.vdb s.vdb --after-grid truth --shift 0,0,0 -q");
+}
+
+TEST_CASE("cli: a sample that was turned and shortened is followed", "[cli]") {
+  const Bench bench;
+  // Balls at random places, of the same numbers, before and after.
+  std::mt19937 random(3);
+  std::vector<std::array<double, 3>> centers;
+  while (centers.size() < 60) {
+    std::array<double, 3> p;
+    for (double& value : p) value = double(random() % 6000) / 100;
+    const bool isFree = std::all_of(centers.begin(), centers.end(), [&](const auto& q) {
+      return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]) > 10.5;
+    });
+    if (isFree) centers.push_back(p);
+  }
+  std::ostringstream before, after;
+  const double cosine = 0.98, sine = std::sqrt(1 - cosine * cosine);
+  for (const auto& p : centers) {
+    before << p[0] << ' ' << p[1] << ' ' << p[2] << " 5\n";
+    after << cosine * p[0] - sine * p[1] << ' ' << sine * p[0] + cosine * p[1] << ' ' << 0.9 * p[2]
+          << " 5\n";
+  }
+  bench.write("before.txt", before.str());
+  bench.write("after.txt", after.str());
+  for (const std::string side : {"before", "after"})
+    bench.mustRun("generate balls " + side + ".txt " + side + ".vdb --radius 1");
+  const std::string pair = "track before.vdb after.vdb --before-grid truth --after-grid truth ";
+  for (const std::string kind : {"rigid", "affine", "free"}) {
+    const Json json = Json::parse(bench.mustRun(pair + "t.vdb --motion " + kind +
+                                                " --grains g.csv --bonds b.csv --json - -q"));
+    CHECK(json.at("motion") == kind);
+    CHECK(json.at("grains_before").at("kept") == 60);
+    CHECK(json.count("shift") == 0);
+    const auto table = rows(bench.bytes("g.csv"));
+    REQUIRE(table.size() == 120);
+    for (const auto& row : table) {
+      REQUIRE(row.size() == 26);
+      CHECK(row[2] == "kept");
+      CHECK(row[3] == row[1]);
+      CHECK(std::abs(std::stod(row[20]) - 0.9) < 0.05);   // f_zz
+      CHECK(std::abs(std::stod(row[25]) - 11.48) < 2.5);  // rotation_z
+    }
+    CHECK(gridOf(infoOf(bench, "t.vdb"), "truth").at("metadata").at("madf_track") ==
+          "motion " + kind);
+  }
+  const std::string told = bench.mustRun(pair + "--motion affine");
+  CHECK(told.find("turned by 11.") != std::string::npos);
+  bench.write("guess.txt", "0.98 -0.2 0 0\n0.2 0.98 0 0\n0 0 0.9 0\n");
+  CHECK(bench.mustRun(pair + "--motion guess.txt").find(" 60 kept") != std::string::npos);
+  bench.write("bad.txt", "1 0 0 0 1 0 0 0 1\n");
+  refuses(bench, kFailed, pair + "--motion bad.txt", {"bad.txt", "9 numbers", "12 in all"});
+  bench.write("bad.txt", "1 0 0 0 0 1 0 0 0 0 -1 0\n");
+  refuses(bench, kFailed, pair + "--motion bad.txt", {"bad.txt", "above 0"});
+  refuses(bench, kFailed, pair + "--motion none.txt", {"none.txt"});
+  bench.mustRun(kSpheres + "other.vdb");
+  refuses(bench, kFailed,
+          "track before.vdb other.vdb --before-grid truth --after-grid truth --motion free",
+          {"other.vdb", "no motion is found"});
 }

@@ -297,7 +297,8 @@ void runTrack(TrackArguments o, const Common& common) {
   const PairNames names = namesOf(o.before, o.after);
   checkSameVoxels(*before, *after, names);
   common.progress->start("track");
-  const Tracks tracks = track(*before, *after, o.track, common.progress);
+  const Tracks tracks =
+      withFileName(o.after.path, [&] { return track(*before, *after, o.track, common.progress); });
   checkAnyCommon(tracks, names);
   if (!o.out.empty()) {
     const Int32Grid::Ptr labels = trackedLabels(*after, tracks, common.progress);

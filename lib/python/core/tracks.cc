@@ -1,7 +1,11 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include <cmath>
+#include <map>
+
 #include "bindings.h"
+#include "vdb_madf/base/errors.h"
 #include "vdb_madf/matching/pair_checks.h"
 #include "vdb_madf/matching/track.h"
 
@@ -52,14 +56,96 @@ py::dict toDict(const std::vector<TrackedBond>& bonds) {
   return dict;
 }
 
+/// Numbers of each grain along z, y and x, or pairs of these axes; NaN where there are none.
+template <size_t kSize, typename Numbers>
+py::array_t<double> numbers(const std::vector<const GrainMove*>& moves, std::vector<size_t> shape,
+                            const Numbers& numbersOf) {
+  std::vector<double> all;
+  for (const GrainMove* move : moves)
+    for (size_t n = 0; n < kSize; ++n) all.push_back(numbersOf(move, int(n)));
+  shape.insert(shape.begin(), moves.size());
+  return toArray(std::move(all)).reshape(std::vector<py::ssize_t>(shape.begin(), shape.end()));
+}
+
+/// With a motion; what was followed has it on either side.
+py::dict toDict(const std::vector<TrackedGrain>& grains, const Tracks& tracks) {
+  using G = TrackedGrain;
+  using M = GrainMove;
+  std::map<int32_t, const M*> byNumber;
+  for (size_t n = 0; n < tracks.before.size(); ++n)
+    if (tracks.before[n].partner) byNumber[tracks.before[n].grain] = &tracks.moves[n];
+  std::vector<const M*> moves;
+  for (const G& grain : grains) moves.push_back(grain.partner ? byNumber.at(grain.track) : nullptr);
+  const double none = std::nan("");
+  const auto strains = [&](const auto& of) {
+    return [&none, of](const M* m, int n) {
+      return m && m->gradient ? of(strainOf(*m->gradient), n) : none;
+    };
+  };
+  py::dict dict;
+  dict["id"] = column<int32_t>(grains, [](const G& g) { return g.grain; });
+  dict["fate"] = texts(grains, [](const G& g) { return toString(g.fate); });
+  dict["track"] = column<int32_t>(grains, [](const G& g) { return g.track; });
+  dict["voxels"] = column<int64_t>(grains, [](const G& g) { return g.voxels; });
+  dict["partner"] = column<int32_t>(grains, [](const G& g) { return g.partner; });
+  dict["confidence"] = column<double>(moves, [&](const M* m) { return m ? m->confidence : none; });
+  dict["miss"] = column<double>(moves, [&](const M* m) { return m ? m->miss : none; });
+  dict["displacement"] =
+      numbers<3>(moves, {3}, [&](const M* m, int n) { return m ? m->displacement[2 - n] : none; });
+  dict["neighbors"] = column<int64_t>(moves, [](const M* m) { return m ? m->neighbors : 0; });
+  dict["gradient"] = numbers<9>(moves, {3, 3}, [&](const M* m, int n) {
+    return m && m->gradient ? (*m->gradient)(2 - n / 3, 2 - n % 3) : none;
+  });
+  dict["strain_volumetric"] =
+      numbers<1>(moves, {}, strains([](const Strain& s, int) { return s.volumetric; }));
+  dict["strain_deviatoric"] =
+      numbers<1>(moves, {}, strains([](const Strain& s, int) { return s.deviatoric; }));
+  dict["rotation"] =
+      numbers<3>(moves, {3}, strains([](const Strain& s, int n) { return s.turn[2 - n]; }));
+  return dict;
+}
+
+using Rows = std::array<std::array<double, 4>, 3>;  ///< z, y, x; each z, y, x and the shift
+
+Motion toMotion(const Rows& rows) {
+  Motion motion;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column)
+      motion.linear(2 - row, 2 - column) = rows[size_t(row)][size_t(column)];
+    motion.shift[2 - row] = rows[size_t(row)][3];
+  }
+  return motion;
+}
+
+py::object toRows(const std::optional<Motion>& motion) {
+  if (!motion) return py::none();
+  std::vector<double> rows;
+  for (int row = 2; row >= 0; --row) {
+    for (int column = 2; column >= 0; --column) rows.push_back(motion->linear(row, column));
+    rows.push_back(motion->shift[row]);
+  }
+  return toArray(std::move(rows)).reshape({3, 4});
+}
+
+MatchOptions toOptions(const std::string& kind, const std::optional<Rows>& guess) {
+  for (const MotionKind known : {MotionKind::rigid, MotionKind::affine, MotionKind::free})
+    if (kind == toString(known))
+      return {known, guess ? std::optional(toMotion(*guess)) : std::nullopt};
+  throw InvalidInput("motion is 'rigid', 'affine', 'free' or an array of 3 x 4 numbers, not '" +
+                     kind + "'");
+}
+
 py::dict trackGrains(const GridPtr& before, const GridPtr& after, const Call& call,
                      const std::optional<Index>& shift, int maxShift, double share,
-                     int64_t minFaces) {
+                     int64_t minFaces, const std::optional<std::string>& motion,
+                     const std::optional<Rows>& guess, int gap) {
   TrackOptions options;
   if (shift) options.shift = toCoord(*shift);
   options.maxShift = maxShift;
   options.share = share;
   options.minFaces = minFaces;
+  options.gap = gap;
+  if (motion) options.motion = toOptions(*motion, guess);
   const Int32Grid &first = asLabels(*before), &second = asLabels(*after);
   const PairNames names{"before", "after"};
   checkSameVoxels(first, second, names);
@@ -72,12 +158,16 @@ py::dict trackGrains(const GridPtr& before, const GridPtr& after, const Call& ca
   });
   py::dict dict;
   dict["labels"] = GridPtr(labels);
-  dict["shift"] = triple(toIndex(tracks.shift));
+  dict["motion"] = toRows(tracks.whole);
+  if (tracks.motion)
+    dict["shift"] = py::none();
+  else
+    dict["shift"] = triple(toIndex(tracks.shift));
   dict["voxels_before"] = tracks.voxelsBefore;
   dict["voxels_after"] = tracks.voxelsAfter;
   dict["common_voxels"] = tracks.commonVoxels;
-  dict["before"] = toDict(tracks.before);
-  dict["after"] = toDict(tracks.after);
+  dict["before"] = tracks.motion ? toDict(tracks.before, tracks) : toDict(tracks.before);
+  dict["after"] = tracks.motion ? toDict(tracks.after, tracks) : toDict(tracks.after);
   dict["overlaps"] = toDict(tracks.overlaps);
   dict["bonds_before"] = toDict(tracks.bondsBefore);
   dict["bonds_after"] = toDict(tracks.bondsAfter);
@@ -89,7 +179,8 @@ py::dict trackGrains(const GridPtr& before, const GridPtr& after, const Call& ca
 
 void bindTracks(py::module_& m) {
   m.def("track", trackGrains, py::arg("before"), py::arg("after"), py::arg("call"), py::kw_only(),
-        py::arg("shift"), py::arg("max_shift"), py::arg("share"), py::arg("min_faces"));
+        py::arg("shift"), py::arg("max_shift"), py::arg("share"), py::arg("min_faces"),
+        py::arg("motion"), py::arg("guess"), py::arg("gap"));
 }
 
 }  // namespace vdb_madf::python

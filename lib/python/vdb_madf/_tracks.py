@@ -7,6 +7,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Dict, Optional, Tuple, Union
 
+import numpy as np
 import numpy.typing as npt
 
 from . import _core
@@ -23,42 +24,62 @@ class Tracks:
 
     labels: Labels
     """The grains after by the numbers of their tracks: what is linked has the label from before."""
-    shift: Tuple[int, int, int]
-    """Voxel [z, y, x] before is [z, y, x] + shift after."""
+    shift: Optional[Tuple[int, int, int]]
+    """Voxel [z, y, x] before is [z, y, x] + shift after. With a motion: None."""
     voxels_before: int
-    """Labeled, in what both volumes show."""
+    """Labeled, in what both volumes show. With a motion this and the next two are 0."""
     voxels_after: int
     common_voxels: int
     before: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """A row a grain: `id`, `fate` ("kept", "split", "merged", "vanished", "outside"), `track`,
-    `voxels`, `shared_voxels` (in what both volumes show), `links`, `partner`, `overlap_voxels`."""
+    `voxels`, `shared_voxels` (in what both volumes show), `links`, `partner`, `overlap_voxels`.
+    With a motion ("kept", "lost", "outside") the last are `partner`, `confidence` (0 to 1), `miss`
+    (voxels from where its neighbors say it is), `displacement` (z, y, x), `neighbors` (that these
+    are of:) `gradient` (3 x 3), `strain_volumetric`, `strain_deviatoric` (Green-Lagrange),
+    `rotation` (degrees about z, y, x); NaN for what is not known."""
     after: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """What `before` says, after; "new" in the place of "vanished"."""
     overlaps: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """Pairs that have voxels in common: `before`, `after`, `voxels`, `link`."""
     bonds_before: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """A row a bond: `first`, `second`, `faces`, `shared_faces` (in what both volumes show), `fate`
-    ("kept", "broken", "inside", "unmatched", "outside")."""
+    ("kept", "broken", "inside", "unmatched", "outside"; with a motion "detached" and "separated" in
+    the place of "broken")."""
     bonds_after: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """What `bonds_before` says, after; "new" in the place of "broken"."""
+    motion: Optional[npt.NDArray[Any]] = field(default=None, repr=False)
+    """Of the whole sample, if it was asked for: rows z, y, x, each with factors of z, y, x, and the
+    shift."""
 
 
 @checked
 def track(before: Union[Labels, Segmentation, Source], after: Union[Labels, Segmentation, Source],
           *, shift: Optional[Tuple[int, int, int]] = None, max_shift: int = 10, share: float = 0.5,
-          min_faces: int = 1, progress: Progress = None, threads: int = 0) -> Tracks:
+          min_faces: int = 1, motion: Union[None, str, npt.ArrayLike] = None, gap: int = 2,
+          progress: Progress = None, threads: int = 0) -> Tracks:
     """Follows grains from one scan to a later one by the voxels that they share.
 
     shift: of the sample in voxels, (z, y, x); None: the one, up to max_shift along each axis, that
     most voxels agree with. share: part of the smaller of two grains that they have to share to be
     linked.
-    min_faces: of a bond. The manual of `vdb_madf track` defines the fates. A warning says if hardly
+    min_faces: of a bond.
+    motion: the sample was turned or strained in between: "rigid" or "affine" is looked for, "free"
+    follows neighbors alone, an array of 3 x 4 numbers is a guess (Tracks.motion says of what).
+    shift, max_shift and share are not looked at then. gap: voxels between the grains of a broken
+    bond up to which it is detached, else separated.
+    The manual of `vdb_madf track` defines the fates. A warning says if hardly
     more is common than of unrelated samples.
 
     For a series give the labels of the last step: track(track(a, b).labels, c)."""
+    guess = None
+    if motion is not None and not isinstance(motion, str):
+        rows = np.asarray(motion, dtype=float)
+        if rows.shape != (3, 4) or not np.isfinite(rows).all():
+            raise _core.InvalidInput("motion: a guess is an array of 3 x 4 finite numbers")
+        guess, motion = rows.tolist(), "affine"
     with calling(progress, threads) as call:
         first, second = (labels_of(given, call, threads) for given in (before, after))
         found = _core.track(first._grid, second._grid, call, shift=shift, max_shift=max_shift,
-                            share=share, min_faces=min_faces)
+                            share=share, min_faces=min_faces, motion=motion, guess=guess, gap=gap)
     warn(found.pop("notes"))
     return Tracks(labels=Labels._of(found.pop("labels")), **found)

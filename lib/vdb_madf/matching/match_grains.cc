@@ -34,9 +34,12 @@ constexpr size_t kConfident = 12;  // neighbors that the confidence asks
 constexpr double kLeastRatio = 0.6, kMostRatio = 1.6;  // of volumes
 constexpr double kUnique = 1.6;                        // how much more anything else has to cost
 constexpr double kLimit = 0.5;                         // farthest partner, in spacings
+constexpr double kLeastLimit = 0.3;  // the same, where most are nearer: bonds that break let go
 constexpr double kReach = kUnique * kLimit;
 // What differs costs as much as a distance in spacings, squared, times these.
 constexpr double kVolumeCost = 0.25, kMomentCost = 0.25, kContactCost = 0.1;
+constexpr size_t kLeastSound = 7;   // grains that were followed
+constexpr double kSound = 0.2;      // half of them miss their place by less, in spacings
 constexpr size_t kGrainGrain = 64;  // grains per task
 constexpr int kMaxSweeps = 400;
 
@@ -123,30 +126,31 @@ struct Seed {
 class SeedSearch {
  public:
   SeedSearch(const Scan& before, const Scan& after, const MatchOptions& options)
-      : before_(before), after_(after), guess_(options.guess) {
+      : before_(before),
+        after_(after),
+        guess_(options.guess),
+        depthsBefore_(depthsOf(before)),
+        depthsAfter_(depthsOf(after)),
+        inner_(sorted(before.size(), before.size(), [&](size_t n) { return depthsBefore_[n]; })) {
     if (options.kind != MotionKind::rigid) return;
     shortest_ = 0.88;
     longest_ = 1.14;
   }
 
-  std::optional<Seed> operator()(Interrupter* interrupter) const {
-    const std::vector<double> depthBefore = depthsOf(before_), depthAfter = depthsOf(after_);
-    const std::vector<size_t> inner =
-        sorted(before_.size(), before_.size(), [&](size_t n) { return depthBefore[n]; });
-    const size_t step = std::max<size_t>(1, inner.size() / 100);  // not all of one bad place
-    for (size_t k = 0; k < kSeeds && k * step < inner.size(); ++k) {
-      const size_t n = inner[k * step];
-      // Whole samples have their inner grains in common, and a guess is near.
-      const std::vector<size_t> places =
-          guess_ ? sorted(after_.size(), kGuessed,
-                          [&](size_t m) {
-                            return ((*guess_)(before_.center(n)) - after_.center(m)).lengthSqr();
-                          })
-                 : sorted(after_.size(), after_.size(),
-                          [&](size_t m) { return std::abs(depthAfter[m] - depthBefore[n]); });
-      if (auto seed = bestOf(n, places, interrupter)) return seed;
-    }
-    return std::nullopt;
+  /// Grains that are tried one after the other: the inner half, the innermost first.
+  size_t count() const { return std::min(kSeeds, before_.size()); }
+
+  std::optional<Seed> operator()(size_t k, Interrupter* interrupter) const {
+    const size_t n = inner_[k * std::max<size_t>(1, inner_.size() / (2 * kSeeds))];
+    // Whole samples have their inner grains in common, and a guess is near.
+    const std::vector<size_t> places =
+        guess_ ? sorted(after_.size(), kGuessed,
+                        [&](size_t m) {
+                          return ((*guess_)(before_.center(n)) - after_.center(m)).lengthSqr();
+                        })
+               : sorted(after_.size(), after_.size(),
+                        [&](size_t m) { return std::abs(depthsAfter_[m] - depthsBefore_[n]); });
+    return bestOf(n, places, interrupter);
   }
 
  private:
@@ -154,6 +158,16 @@ class SeedSearch {
   static constexpr size_t kCorners = 10, kCandidates = 18, kTested = 14;
   static constexpr double kNear = 0.35;  // spacings
   static constexpr size_t kLeastPairs = 7;
+  /// Neighbors that are looked for, how far from where, and the share of them to be found: farther
+  /// ones need not be in the scan. Chance may find as many; then little grows from there.
+  struct Stage {
+    size_t neighbors;
+    double near, share;
+  };
+  static constexpr Stage kStages[] = {{kTested, kNear, 0.7},
+                                      {kAround, kNear, 0.6},
+                                      {2 * kAround, 0.3, 0.4},
+                                      {2 * kAround, 0.25, 0.4}};
 
   /// Distances from the middle, the mean square being one.
   static std::vector<double> depthsOf(const Scan& scan) {
@@ -282,7 +296,7 @@ class SeedSearch {
 
   std::optional<Seed> refined(size_t n, const std::vector<size_t>& far, Pairs pairs) const {
     Mat3d gradient = Mat3d::identity();
-    for (const size_t wanted : {kTested, kAround, 2 * kAround, 2 * kAround}) {
+    for (const Stage& stage : kStages) {
       LocalFit fit;
       for (const auto& [a, b] : pairs) fit.add(before_.center(a), after_.center(b));
       const auto fitted = fit.gradient(Mat3d::identity(), 0);
@@ -290,20 +304,23 @@ class SeedSearch {
       gradient = *fitted;
       pairs.clear();
       std::set<size_t> used;
-      const size_t count = std::min(wanted, far.size());
+      const size_t count = std::min(stage.neighbors, far.size());
       for (size_t k = 0; k <= count; ++k) {
         const size_t a = k == 0 ? n : far[k - 1];
         const Vec3d place = fit.meanY() + gradient * (before_.center(a) - fit.meanX());
-        const size_t b = near(a, place, kNear * before_.spacing[n]);
+        const size_t b = near(a, place, stage.near * before_.spacing[n]);
         if (b != kNone && used.insert(b).second) pairs.emplace_back(a, b);
       }
-      if (pairs.size() < std::max(kLeastPairs, 7 * (count + 1) / 10)) return std::nullopt;
+      if (pairs.size() < std::max(kLeastPairs, size_t(stage.share * double(count + 1))))
+        return std::nullopt;
     }
     return Seed{pairs, gradient};
   }
 
   const Scan &before_, &after_;
   std::optional<Motion> guess_;
+  std::vector<double> depthsBefore_, depthsAfter_;
+  std::vector<size_t> inner_;
   double shortest_ = 0.7, longest_ = 1.32;  // edges, of what they were: a fifth, and noise
 };
 
@@ -337,13 +354,27 @@ class Following {
     }
   }
 
+  /// Whether what has grown is more than chance: most of the grains whose neighbors say that they
+  /// lie among those of after are there, and close to where they say.
+  bool isSound() const {
+    openvdb::BBoxd box;
+    for (size_t m = 0; m < after_.size(); ++m) box.expand(after_.center(m));
+    size_t inside = 0;
+    std::vector<double> misses;
+    for (size_t n = 0; n < before_.size(); ++n) {
+      inside += expected_[n].isPlaced && box.isInside(expected_[n].place);
+      if (partners_[n] != kNone) misses.push_back(missOf(n) / before_.spacing[n]);
+    }
+    return misses.size() >= kLeastSound && 2 * misses.size() >= inside && median(misses) <= kSound;
+  }
+
   /// All are looked at again, with an eye on how far the partners of most are.
   void finish(Interrupter* interrupter) {
     std::vector<double> misses;
     for (size_t n = 0; n < before_.size(); ++n)
       if (partners_[n] != kNone) misses.push_back(missOf(n) / before_.spacing[n]);
     if (misses.empty()) return;
-    limit_ = std::clamp(4 * median(misses), 0.1, kLimit);
+    limit_ = std::clamp(4 * median(misses), kLeastLimit, kLimit);
     for (int sweep = 0; sweep < 3; ++sweep) {
       std::fill(changed_.begin(), changed_.end(), 1);
       expectAll(interrupter);
@@ -581,21 +612,30 @@ std::optional<FollowedGrains> matchGrains(const GrainSet& before, const GrainSet
   check(before);
   check(after);
   const Scan first(before, interrupter), second(after, interrupter);
-  Following following(first, second);
-  if (options.guess) following.setWhole(*options.guess);
-  const auto seed = SeedSearch(first, second, options)(interrupter);
-  if (seed)
-    following.take(*seed);
-  else if (!options.guess)
-    return std::nullopt;
-  following.settle(interrupter);
+  const SeedSearch search(first, second, options);
+  std::optional<Following> following;
+  bool isSound = false;
+  for (size_t k = 0; k < search.count() && !isSound; ++k) {
+    const auto seed = search(k, interrupter);
+    if (!seed) continue;
+    following.emplace(first, second);
+    following->take(*seed);
+    following->settle(interrupter);
+    isSound = following->isSound();
+  }
+  if (!isSound) {
+    if (!options.guess) return std::nullopt;
+    following.emplace(first, second);
+    following->setWhole(*options.guess);
+    following->settle(interrupter);
+  }
   if (options.kind != MotionKind::free)
-    if (const auto whole = following.wholeOf(options.kind)) {
-      following.setWhole(*whole);
-      following.settle(interrupter);
+    if (const auto whole = following->wholeOf(options.kind)) {
+      following->setWhole(*whole);
+      following->settle(interrupter);
     }
-  following.finish(interrupter);
-  return following.result();
+  following->finish(interrupter);
+  return following->result();
 }
 
 Strain strainOf(const Mat3d& gradient) {

@@ -26,7 +26,7 @@ struct TrackOptions {
   int64_t minFaces = 1;  ///< grains that share fewer voxel faces have no bond
   /// The sample was turned or strained: grains are followed by matchGrains(), and the shift and the
   /// share are not looked at.
-  std::optional<MatchOptions> motion;
+  std::optional<MatchOptions> motion = {};
   int gap = 2;  ///< voxels, with a motion: grains of a broken bond that are near; 1 to kMaxGap
 };
 
