@@ -22,8 +22,9 @@ void printRow(const MovedGrainsOptions& options) {
   const auto matches = matchGrains(moved.before, moved.after);
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
   const MatchScore score = matches ? scoreOf(moved, *matches) : MatchScore{1, 0, 0};
-  std::printf("| %s | %zu | %.0f | %.0f | %.1f | %.2f | %.3f | %.2f |\n", options.kind.c_str(),
-              options.count, 100 * options.strain, options.degrees, options.wave,
+  std::printf("| %s | %zu | %.0f | %.0f | %.0f | %.0f | %.1f | %.2f | %.3f | %.1f |\n",
+              options.kind.c_str(), options.count, 100 * options.strain, options.degrees,
+              100 * options.noise, 100 * options.changed, options.wave,
               100 * double(score.right) / double(score.all),
               100 * double(score.wrong) / double(score.all), seconds.count());
   std::fflush(stdout);
@@ -35,23 +36,28 @@ int main(int argc, char** argv) {
   std::vector<size_t> counts;
   for (int n = 1; n < argc; ++n) counts.push_back(std::strtoul(argv[n], nullptr, 10));
   if (counts.empty()) counts = {500, 5000, 50000};
-  std::printf("| grains | number | strain %% | turn | waves | right %% | wrong %% | seconds |\n");
-  std::printf("|---|---|---|---|---|---|---|---|\n");
+  struct Row {
+    double strain, degrees, noise, changed, wave;
+  };
+  constexpr Row kRows[] = {{0, 10, 0.05, 0.03, 0},   {0.16, 10, 0.05, 0.03, 0},
+                           {0.2, 30, 0.05, 0.03, 0}, {0.16, 10, 0.05, 0.03, 1.5},
+                           {0.16, 10, 0.1, 0.03, 0}, {0.16, 10, 0.05, 0.15, 0},
+                           {0.16, 10, 0.15, 0.1, 0}};
+  std::printf(
+      "| grains | number | strain %% | turn | noise %% | changed %% | waves | right %% | wrong %% "
+      "| "
+      "seconds |\n|---|---|---|---|---|---|---|---|---|---|\n");
   for (const size_t count : counts)
-    for (const char* kind : {"balls", "ellipsoids", "sand", "snow"}) {
-      MovedGrainsOptions options;
-      options.kind = kind;
-      options.count = count;
-      for (const auto& [strain, degrees] :
-           {std::pair(0., 10.), std::pair(0.08, 10.), std::pair(0.16, 10.), std::pair(0.16, 30.),
-            std::pair(0.2, 30.)}) {
-        options.strain = strain;
-        options.degrees = degrees;
+    for (const char* kind : {"balls", "ellipsoids", "sand", "snow"})
+      for (const Row& row : kRows) {
+        MovedGrainsOptions options;
+        options.kind = kind;
+        options.count = count;
+        options.strain = row.strain;
+        options.degrees = row.degrees;
+        options.noise = row.noise;
+        options.changed = row.changed;
+        options.wave = row.wave;
         printRow(options);
       }
-      options.strain = 0.16;
-      options.degrees = 10;
-      options.wave = 1.5;
-      if (count >= 5000) printRow(options);
-    }
 }

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Dict, Optional, Tuple, Union
+from typing import Any, Dict, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -55,8 +55,9 @@ class Tracks:
 @checked
 def track(before: Union[Labels, Segmentation, Source], after: Union[Labels, Segmentation, Source],
           *, shift: Optional[Tuple[int, int, int]] = None, max_shift: int = 10, share: float = 0.5,
-          min_faces: int = 1, motion: Union[None, str, npt.ArrayLike] = None, gap: int = 2,
-          progress: Progress = None, threads: int = 0) -> Tracks:
+          min_faces: int = 1,
+          motion: Union[None, str, Sequence[Sequence[float]], npt.NDArray[Any]] = None,
+          gap: int = 2, progress: Progress = None, threads: int = 0) -> Tracks:
     """Follows grains from one scan to a later one by the voxels that they share.
 
     shift: of the sample in voxels, (z, y, x); None: the one, up to max_shift along each axis, that
@@ -67,8 +68,8 @@ def track(before: Union[Labels, Segmentation, Source], after: Union[Labels, Segm
     follows neighbors alone, an array of 3 x 4 numbers is a guess (Tracks.motion says of what).
     shift, max_shift and share are not looked at then. gap: voxels between the grains of a broken
     bond up to which it is detached, else separated.
-    The manual of `vdb_madf track` defines the fates. A warning says if hardly
-    more is common than of unrelated samples.
+    The manual of `vdb_madf track` defines the fates. A warning says if hardly more is common than
+    of unrelated samples, and with a motion if fewer grains are followed than are lost.
 
     For a series give the labels of the last step: track(track(a, b).labels, c)."""
     guess = None
