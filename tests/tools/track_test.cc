@@ -172,3 +172,22 @@ TEST_CASE("cli: a sample that was turned and shortened is followed", "[cli]") {
           "track before.vdb other.vdb --before-grid truth --after-grid truth --motion free",
           {"other.vdb", "no motion is found"});
 }
+
+TEST_CASE("cli: a series of scans keeps one number a grain", "[cli]") {
+  const Bench bench;
+  makeSeries(bench);
+  bench.mustRun("edit b.vdb c.vdb --drop 2 --renumber");
+  const std::string told = bench.mustRun("track a.vdb b.vdb c.vdb out");
+  CHECK(told.find("b.vdb") < told.find("c.vdb"));
+  bench.mustRun("track a.vdb b.vdb step.vdb --grains g.csv --bonds o.csv -q");
+  CHECK(bench.bytes("out/b.vdb") == bench.bytes("step.vdb"));
+  CHECK(bench.bytes("out/b_grains.csv") == bench.bytes("g.csv"));
+  CHECK(bench.bytes("out/b_bonds.csv") == bench.bytes("o.csv"));
+  bench.mustRun("track step.vdb c.vdb next.vdb --grains g.csv -q");
+  CHECK(bench.bytes("out/c.vdb") == bench.bytes("next.vdb"));
+  CHECK(bench.bytes("out/c_grains.csv") == bench.bytes("g.csv"));
+  refuses(bench, kWrongUsage, "track a.vdb b.vdb c.vdb out --grains g.csv", {"g.csv", "folder"});
+  refuses(bench, kWrongUsage, "track a.vdb b.vdb b.vdb other", {"b.vdb"});
+  refuses(bench, kWrongUsage, "track a.vdb b.vdb c.vdb .", {"b.vdb"});
+  refuses(bench, kFailed, "track a.vdb b.vdb none.vdb other", {"none.vdb"});
+}

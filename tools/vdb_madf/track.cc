@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <sstream>
@@ -18,6 +19,7 @@
 #include "parse.h"
 #include "text_file.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/files/output_folder.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/vdb/write_vdb.h"
 
@@ -27,13 +29,55 @@ namespace {
 
 struct TrackArguments {
   InputOptions before, after;
+  std::vector<std::string> more;  // of a series: further scans, and the folder
   std::string out, shift, motion, json, grains, links, bonds, minFaces = "1";
   TrackOptions track;
 };
 
+/// What a series writes of a scan.
+struct SeriesFiles {
+  std::string labels, grains, bonds;
+};
+
+SeriesFiles seriesFiles(const TrackArguments& o, const std::string& scan) {
+  namespace fs = std::filesystem;
+  const std::string stem = (fs::path(o.more.back()) / fs::path(scan).stem()).string();
+  return {stem + ".vdb", stem + "_grains.csv", stem + "_bonds.csv"};
+}
+
+/// The scans after the first one of a series.
+std::vector<std::string> laterScans(const TrackArguments& o) {
+  std::vector<std::string> scans{o.after.path, o.out};
+  scans.insert(scans.end(), o.more.begin(), o.more.end() - 1);
+  return scans;
+}
+
+/// All that is read and written is told apart by its place.
+void parseSeries(TrackArguments& o) {
+  for (const std::string& table : {o.json, o.grains, o.links, o.bonds})
+    if (!table.empty())
+      throw WrongUsage(table + ": of more than two scans all tables go to the folder, " +
+                       o.more.back());
+  std::vector<std::string> outputs;
+  for (const std::string& scan : laterScans(o)) {
+    const SeriesFiles files = seriesFiles(o, scan);
+    outputs.insert(outputs.end(), {files.labels, files.grains, files.bonds});
+  }
+  for (const std::string& scan : laterScans(o)) {
+    InputOptions before = o.before, after = o.after;
+    after.path = scan;
+    parsePair(before, after, outputs);
+  }
+}
+
 void parse(TrackArguments& o) {
-  parsePair(o.before, o.after, {o.out, o.json, o.grains, o.links, o.bonds});
-  if (!o.out.empty()) checkVolumeEnding(o.out);
+  if (!o.more.empty()) {
+    parseSeries(o);
+    parsePair(o.before, o.after, {});
+  } else {
+    parsePair(o.before, o.after, {o.out, o.json, o.grains, o.links, o.bonds});
+    if (!o.out.empty()) checkVolumeEnding(o.out);
+  }
   if (!o.shift.empty()) o.track.shift = parseShift(o.shift, "--shift");
   o.track.minFaces = parseCount(o.minFaces, "--min-faces");
   if (!(o.track.share > 0 && o.track.share <= 1))
@@ -287,21 +331,58 @@ std::string bondTable(const Tracks& t) {
   return csv.str();
 }
 
-void runTrack(TrackArguments o, const Common& common) {
-  if (!o.motion.empty()) o.track.motion = motionOf(o.motion);
+/// Tracks, the notes on them, and the labels after by tracks, if these are asked for.
+Tracks tracksOf(const TrackArguments& o, const Int32Grid& before, const Int32Grid& after,
+                const PairNames& names, Int32Grid::Ptr* labels, const Common& common) {
+  checkSameVoxels(before, after, names);
+  const Tracks tracks =
+      withFileName(names.second, [&] { return track(before, after, o.track, common.progress); });
+  checkAnyCommon(tracks, names);
+  if (labels) *labels = trackedLabels(after, tracks, common.progress);
+  return tracks;
+}
+
+/// Each scan but the first one is tracked from the one before it, which has the tracks by now.
+void runSeries(TrackArguments o, const Common& common) {
+  OutputFolder folder(o.more.back());
+  Int32Grid::Ptr before = loadLabels(o.before, "--before-grid", common.progress);
+  for (const std::string& scan : laterScans(o)) {
+    const SeriesFiles files = seriesFiles(o, scan);
+    TextFile grainFile(files.grains), bondFile(files.bonds);
+    o.after.path = scan;
+    const Int32Grid::Ptr after = loadLabels(o.after, "--after-grid", common.progress);
+    const PairNames names = namesOf(o.before, o.after);
+    common.progress->start("track");
+    Int32Grid::Ptr labels;
+    const Tracks tracks = tracksOf(o, *before, *after, names, &labels, common);
+    writeVdb(files.labels, {labels}, common.progress);
+    common.progress->end();
+    for (const std::string& note : notesOn(tracks, *before, *after, o.track, names))
+      common.progress->note(note);
+    grainFile.write(tracks.motion ? moveTable(tracks) : grainTable(tracks));
+    bondFile.write(bondTable(tracks));
+    folder.keep();
+    if (!common.quiet) {
+      std::printf("%s%s\n", scan == laterScans(o).front() ? "" : "\n", scan.c_str());
+      print(o, tracks, summary(o, tracks));
+    }
+    before = labels;
+    o.before.path = scan;
+  }
+}
+
+void runTrack(const TrackArguments& o, const Common& common) {
   if (!o.out.empty()) checkWritable(o.out);
   JsonFile jsonFile(o.json);
   TextFile grainFile(o.grains), linkFile(o.links), bondFile(o.bonds);
   const Int32Grid::Ptr before = loadLabels(o.before, "--before-grid", common.progress);
   const Int32Grid::Ptr after = loadLabels(o.after, "--after-grid", common.progress);
   const PairNames names = namesOf(o.before, o.after);
-  checkSameVoxels(*before, *after, names);
   common.progress->start("track");
+  Int32Grid::Ptr labels;
   const Tracks tracks =
-      withFileName(o.after.path, [&] { return track(*before, *after, o.track, common.progress); });
-  checkAnyCommon(tracks, names);
-  if (!o.out.empty()) {
-    const Int32Grid::Ptr labels = trackedLabels(*after, tracks, common.progress);
+      tracksOf(o, *before, *after, names, o.out.empty() ? nullptr : &labels, common);
+  if (labels) {
     if (hasVdbEnding(o.out))
       writeVdb(o.out, {labels}, common.progress);
     else
@@ -329,6 +410,9 @@ void addTrack(Verb command, Common& common, Action& action) {
   verb.option("BEFORE", o->before.path, "labels: VDB or integer image").required();
   verb.option("AFTER", o->after.path, "labels of a later scan, of the same voxels").required();
   verb.option("OUT", o->out, "gets the labels of AFTER with the numbers of BEFORE");
+  verb.option("MORE", o->more,
+              "of a series, OUT being a scan: further scans, and last a folder, which gets labels "
+              "and tables of all but the first");
   verb.option("--before-grid", o->before.gridName, "grid of BEFORE").typeName("NAME");
   verb.option("--after-grid", o->after.gridName, "grid of AFTER").typeName("NAME");
   const Option given =
@@ -366,6 +450,8 @@ void addTrack(Verb command, Common& common, Action& action) {
   verb.onParsed([o, &common, &action] {
     parse(*o);
     action = [o, &common] {
+      if (!o->motion.empty()) o->track.motion = motionOf(o->motion);
+      if (!o->more.empty()) return runSeries(*o, besideOutput(common, o->more.back()));
       Common beside = common;
       for (const std::string& output : {o->out, o->json, o->grains, o->links, o->bonds})
         beside = besideOutput(beside, output);

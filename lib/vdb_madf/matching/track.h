@@ -12,8 +12,8 @@
 
 namespace vdb_madf {
 
-/// Metadata of tracked labels: the shift or kind of motion (string), and the largest number that a grain has had so
-/// far (int64).
+/// Metadata of tracked labels: the shift or the kind of motion (string), and the largest number that
+/// a grain has had so far (int64).
 inline constexpr char kTrackKey[] = "madf_track", kLastTrackKey[] = "madf_track_last";
 
 /// How grains of two scans are linked.
@@ -105,10 +105,10 @@ struct Tracks {
   std::vector<TrackedBond> bondsBefore, bondsAfter;  ///< by first, then second
   int32_t lastTrack = 0;  ///< the largest number of a grain so far; 0: there is none
 
-  // With a motion; the shift, the voxels and the overlaps above are left as they are.
+  /// If it was asked for; then there is no shift, and no voxel counts as common.
   std::optional<MotionKind> motion;
-  std::optional<Motion> whole;   ///< unless it is free
-  std::vector<GrainMove> moves;  ///< of before
+  std::optional<Motion> whole;   ///< with a motion, unless it is free
+  std::vector<GrainMove> moves;  ///< with a motion: of before
 };
 
 const char* toString(MotionKind kind);  ///< "rigid", "affine", "free"

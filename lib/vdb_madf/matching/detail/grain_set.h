@@ -15,8 +15,8 @@ namespace vdb_madf::detail {
 /// a face or more. @throw Interrupted
 GrainSet grainSet(const Int32Grid& labels, Interrupter* interrupter);
 
-/// Those of some pairs, smaller label first, of which two voxels lie at most `gap` apart, from
-/// center to center. @throw Interrupted
+/// Chooses from pairs of labels, the smaller one first, those of which two voxels lie at most `gap`
+/// apart, from center to center. @throw Interrupted
 std::set<std::pair<int32_t, int32_t>> nearPairs(const Int32Grid& labels,
                                                 const std::set<std::pair<int32_t, int32_t>>& pairs,
                                                 int gap, Interrupter* interrupter);
