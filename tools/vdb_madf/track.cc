@@ -344,6 +344,9 @@ Tracks tracksOf(const TrackArguments& o, const Int32Grid& before, const Int32Gri
 
 /// Each scan but the first one is tracked from the one before it, which has the tracks by now.
 void runSeries(TrackArguments o, const Common& common) {
+  for (const std::string& scan : laterScans(o))  // before hours of work
+    if (!std::filesystem::exists(scan))
+      throw IoError(scan + ": cannot be opened: No such file or directory");
   OutputFolder folder(o.more.back());
   Int32Grid::Ptr before = loadLabels(o.before, "--before-grid", common.progress);
   for (const std::string& scan : laterScans(o)) {

@@ -12,8 +12,8 @@
 
 namespace vdb_madf {
 
-/// Metadata of tracked labels: the shift or the kind of motion (string), and the largest number that
-/// a grain has had so far (int64).
+/// Metadata of tracked labels: the shift or the kind of motion (string), and the largest number
+/// that a grain has had so far (int64).
 inline constexpr char kTrackKey[] = "madf_track", kLastTrackKey[] = "madf_track_last";
 
 /// How grains of two scans are linked.
