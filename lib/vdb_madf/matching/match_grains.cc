@@ -158,6 +158,7 @@ class SeedSearch {
   static constexpr size_t kCorners = 10, kCandidates = 18, kTested = 14;
   static constexpr double kNear = 0.35;  // spacings
   static constexpr size_t kLeastPairs = 7;
+  static constexpr double kCertain = 0.65;  // of the farther neighbors
   /// Neighbors that are looked for, how far from where, and the share of them to be found: farther
   /// ones need not be in the scan. Chance may find as many; then little grows from there.
   struct Stage {
@@ -215,17 +216,18 @@ class SeedSearch {
     const auto corners = cornersOf(n);
     if (corners[0] == kNone) return std::nullopt;
     const std::vector<size_t> far = before_.aroundOf(n, 2 * kAround);
+    std::optional<Seed> best;
     for (size_t first = 0; first < places.size(); first += kBlock) {
       std::vector<std::optional<Seed>> seeds(std::min(kBlock, places.size() - first));
       detail::parallelFor(seeds.size(), 16, interrupter, [&](size_t begin, size_t end) {
         for (size_t k = begin; k < end; ++k) seeds[k] = at(n, corners, far, places[first + k]);
       });
-      std::optional<Seed> best;
       for (const auto& seed : seeds)
         if (seed && (!best || seed->pairs.size() > best->pairs.size())) best = seed;
-      if (best) return best;
+      // Chance does not find as many; fewer may be the right ones, where a scan ends.
+      if (best && double(best->pairs.size()) >= kCertain * double(far.size() + 1)) break;
     }
-    return std::nullopt;
+    return best;
   }
 
   bool alikeInLength(const Vec3d& a, const Vec3d& b) const {
