@@ -38,7 +38,7 @@ TEST_CASE("cli: help names every verb and gives an example", "[cli]") {
   const std::string help = bench.mustRun("--help");
   for (const std::string verb :
        {"generate", "convert", "segment", "remerge", "edit", "sweep", "hierarchy", "measure",
-        "compare", "track", "render", "report", "export", "info"}) {
+        "verify", "compare", "track", "render", "report", "export", "info"}) {
     CHECK(help.find("  " + verb + " ") != std::string::npos);
     CHECK(bench.mustRun(verb + " --help").find("Example:\n  vdb_madf " + verb) !=
           std::string::npos);

@@ -36,7 +36,7 @@ Int32Grid::Ptr labelsOf(const RandomCase& c, const MaskGrid& object) {
 std::string faultOf(const RandomCase& c) {
   const MaskGrid::Ptr object = maskOf(c);
   const Int32Grid::Ptr labels = labelsOf(c, *object);
-  return labels ? verify(*labels, *object).fault : "";
+  return labels ? verify(singleSlab(labels), *object).fault : "";
 }
 
 /// A sample of several grains, all of which touch others.
@@ -98,13 +98,13 @@ TEST_CASE("verify: labels with one fault are refused, and where it is is told", 
     const RandomCase c = grainyCase(seed);
     const MaskGrid::Ptr object = maskOf(c);
     const Int32Grid::Ptr right = labelsOf(c, *object);
-    REQUIRE(verify(*right, *object).fault == "");
+    REQUIRE(verify(singleSlab(right), *object).fault == "");
     const auto pairs = touchingVoxels(*right);
     REQUIRE(pairs.size() > 20);
     const auto wrong = [&](const std::function<void(Int32Grid&)>& change) {
       const Int32Grid::Ptr labels = right->deepCopy();
       change(*labels);
-      const Verification found = verify(*labels, *object);
+      const Verification found = verify(singleSlab(labels), *object);
       CHECK(found.fault != "");
       return found;
     };
@@ -188,11 +188,11 @@ TEST_CASE("verify: labels hold by other options only if these give the same", "[
       change(other.options);
       // The labels of the one, with what those of the other say of themselves.
       const Int32Grid::Ptr labels = labelsOf(other, *object)->deepCopy();
-      CHECK(verify(*labels, *object).fault == "");
+      CHECK(verify(singleSlab(labels), *object).fault == "");
       labels->setTree(right->tree().copy());
       const bool isSame = sameLabels(*right, *labelsOf(other, *object));
       INFO(name);
-      CHECK(verify(*labels, *object).fault.empty() == isSame);
+      CHECK(verify(singleSlab(labels), *object).fault.empty() == isSame);
       refused[name] += !isSame;
     }
   }
@@ -207,8 +207,28 @@ TEST_CASE("verify: what remerge() makes holds", "[verify]") {
   for (const double strictness : {0., 5., 11., 30.}) {
     MergeOptions options;
     options.strictness = strictness;
-    CHECK(verify(*remerge(*s.manifold, options), *object).fault == "");
+    CHECK(verify(singleSlab(remerge(*s.manifold, options)), *object).fault == "");
   }
+}
+
+TEST_CASE("verify: labels in slabs are read one by one", "[verify]") {
+  const RandomCase c = grainyCase(2);
+  const MaskGrid::Ptr object = maskOf(c);
+  const Int32Grid::Ptr labels = labelsOf(c, *object);
+  LabelSlabs slabs;
+  slabs.cuts = {0, 16, 24, 32};
+  slabs.about = labels->copyWithNewTree();
+  slabs.read = [&](size_t slab, Interrupter*) {
+    const Int32Grid::Ptr part = labels->deepCopy();
+    CoordBBox box = labels->evalActiveVoxelBoundingBox();
+    box.min().z() = slabs.cuts[slab];
+    box.max().z() = slabs.cuts[slab + 1] - 1;
+    part->clip(box);
+    return part;
+  };
+  CHECK(verify(slabs, *object).fault == "");
+  slabs.cuts = {0, 16, 24};  // the last one is missing
+  CHECK(verify(slabs, *object).differing > 0);
 }
 
 TEST_CASE("verify: labels that no definition gives are refused", "[verify]") {
@@ -219,7 +239,7 @@ TEST_CASE("verify: labels that no definition gives are refused", "[verify]") {
     const Int32Grid::Ptr labels = right->deepCopy();
     change(*labels);
     try {
-      verify(*labels, *object);
+      verify(singleSlab(labels), *object);
     } catch (const InvalidInput& error) {
       return error.what();
     }
@@ -237,6 +257,6 @@ TEST_CASE("verify: labels that no definition gives are refused", "[verify]") {
                l.removeMeta("madf_domain_max");
              }),
              Catch::Contains("domain"));
-  CHECK_THROWS_AS(verify(*right, *object, 24 * 24 * 24 * 24 - 1), InvalidInput);
-  CHECK(verify(*right, *object, 24 * 24 * 24 * 24).fault == "");
+  CHECK_THROWS_AS(verify(singleSlab(right), *object, 24 * 24 * 24 * 24 - 1), InvalidInput);
+  CHECK(verify(singleSlab(right), *object, 24 * 24 * 24 * 24).fault == "");
 }

@@ -49,6 +49,7 @@ void addSweep(Verb command, Common& common, Action& action);
 void addHierarchy(Verb command, Common& common, Action& action);
 void addMeasure(Verb command, Common& common, Action& action);
 void addCollect(Verb command, Common& common, Action& action);
+void addVerify(Verb command, Common& common, Action& action);
 void addCompare(Verb command, Common& common, Action& action);
 void addTrack(Verb command, Common& common, Action& action);
 void addRender(Verb command, Common& common, Action& action);

@@ -108,6 +108,7 @@ void addVerbs(Verb command, const CommandLine& line, Common& common, Action& act
   addHierarchy(command, common, action);
   addMeasure(command, common, action);
   addCollect(command, common, action);
+  addVerify(command, common, action);
   addCompare(command, common, action);
   addTrack(command, common, action);
   addRender(command, common, action);

@@ -107,15 +107,17 @@ std::string labelText(int32_t label) {
   return label == 0 ? "no grain" : "grain " + std::to_string(label);
 }
 
-/// Compares voxel by voxel; `right` becomes the labels that are there.
-void compareLabels(const DenseBox& space, const Int32Grid& labels, std::vector<int32_t>& right,
-                   Verification& found) {
+/// Compares voxel by voxel.
+void compareLabels(const DenseBox& space, const LabelSlabs& labels,
+                   const std::vector<int32_t>& right, Verification& found,
+                   Interrupter* interrupter) {
   std::vector<int32_t> there(right.size(), 0);
   int64_t outside = 0, noLabels = 0;
-  forActive(labels.tree(), [&](const CoordBBox& bounds, int32_t value) {
-    if (value <= 0) noLabels += int64_t(bounds.volume());
-    outside += forVoxels(space, bounds, [&](int64_t i) { there[size_t(i)] = value; });
-  });
+  for (size_t slab = 0; slab < labels.slabCount(); ++slab)
+    forActive(labels.read(slab, interrupter)->tree(), [&](const CoordBBox& bounds, int32_t value) {
+      if (value <= 0) noLabels += int64_t(bounds.volume());
+      outside += forVoxels(space, bounds, [&](int64_t i) { there[size_t(i)] = value; });
+    });
   int64_t first = -1;
   for (size_t i = 0; i < right.size(); ++i) {
     if (there[i] == right[i]) continue;
@@ -135,7 +137,7 @@ void compareLabels(const DenseBox& space, const Int32Grid& labels, std::vector<i
   found.fault = text.str();
 }
 
-void compareCounts(const Int32Grid& labels,
+void compareCounts(const openvdb::MetaMap& labels,
                    const std::vector<std::pair<const char*, int64_t>>& counts,
                    Verification& found) {
   for (const auto& [key, right] : counts) {
@@ -148,21 +150,29 @@ void compareCounts(const Int32Grid& labels,
   }
 }
 
+int64_t voxelsOf(const LabelSlabs& labels, Interrupter* interrupter) {
+  int64_t voxels = 0;
+  for (size_t slab = 0; slab < labels.slabCount(); ++slab)
+    voxels += int64_t(labels.read(slab, interrupter)->activeVoxelCount());
+  return voxels;
+}
+
 }  // namespace
 
-Verification verify(const Int32Grid& labels, const MaskGrid& object, int64_t maxMemory,
+Verification verify(const LabelSlabs& labels, const MaskGrid& object, int64_t maxMemory,
                     Interrupter* interrupter) {
-  const Definition definition(labels);
+  const Definition definition(*labels.about);
   Verification found;
   const auto domain = storedDomain(object);
   if (domain && (!definition.domain || *domain != *definition.domain)) {
-    found.fault = "the domain is not that of the object";
+    found.fault = "their domain is not that of the object";
     return found;
   }
-  if (object.tree().empty() || object.activeVoxelCount() == 0) {
-    found.differing = int64_t(labels.activeVoxelCount());
+  std::vector<std::pair<const char*, int64_t>> counts;
+  if (object.activeVoxelCount() == 0) {
+    found.differing = voxelsOf(labels, interrupter);
     if (found.differing > 0)
-      found.fault = counted(found.differing, "labeled voxel") + " of an object that has none";
+      found.fault = counted(found.differing, "voxel") + " of an object that has none";
     return found;
   }
   const CoordBBox box = boxToJudge(definition, object);
@@ -170,15 +180,13 @@ Verification verify(const Int32Grid& labels, const MaskGrid& object, int64_t max
   const DenseBox space(box);
   Voxels voxels;
   if (const int64_t outside = fillVoxels(space, definition, object, voxels)) {
-    found.fault = counted(outside, "voxel") + " of the object lie outside of the domain";
+    found.fault = counted(outside, "voxel") + " of the object outside of their domain";
     return found;
   }
-  std::vector<std::pair<const char*, int64_t>> counts;
-  std::vector<int32_t> right =
+  const std::vector<int32_t> right =
       rightLabels(space, definition, std::move(voxels), counts, found, interrupter);
-  if (!found.fault.empty()) return found;
-  compareLabels(space, labels, right, found);
-  if (found.fault.empty()) compareCounts(labels, counts, found);
+  if (found.fault.empty()) compareLabels(space, labels, right, found, interrupter);
+  if (found.fault.empty()) compareCounts(*labels.about, counts, found);
   return found;
 }
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/label_slabs.h"
 
 namespace vdb_madf {
 
@@ -20,13 +20,14 @@ struct Verification {
 /// Are these the labels that the definition gives for the object, by the options and the domain that
 /// the labels' metadata tell, and are the counts right that they tell besides?
 ///
-/// A judge of segment(), segmentSlabs() and remerge(): everything is computed anew, on dense arrays
-/// over the domain's box (where it is unknown, the object's and one layer around), straight from the
-/// definition, by code that shares nothing with the method. Takes about 24 bytes a voxel of that box.
+/// A judge of segment(), segmentSlabs() and remerge(): everything is computed anew, straight from
+/// the definition, by code that shares nothing with the method, on dense arrays over the domain's
+/// box (where it is unknown, the object's and one layer around). Slabs are read one by one, but it
+/// takes about 24 bytes a voxel of that box.
 /// @param maxMemory bytes that these arrays may take; 0: no limit
 /// @throw InvalidInput if the labels do not say how they were made, were edited or merged by a rule
 ///   of one's own, or the box is too large; Interrupted.
-Verification verify(const Int32Grid& labels, const MaskGrid& object, int64_t maxMemory = 0,
+Verification verify(const LabelSlabs& labels, const MaskGrid& object, int64_t maxMemory = 0,
                     Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf
