@@ -1,10 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What the command does with files of ours whose content is not what was written; which changes are
-// found: vdb/vdb_digest_test.cc.
-
-#include <filesystem>
+// The verb verify, run as a user runs it; what it finds: verify/verify_test.cc.
 
 #include "support/catch.h"
 #include "support/command_runs.h"
@@ -12,59 +9,38 @@
 
 using namespace vdb_madf::test;
 
-namespace {
+TEST_CASE("cli: labels hold for the object that they were made of, read as it was", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSnow + "s.npy");
+  bench.mustRun("segment s.npy g.vdb --phase 1 --keep manifold --strictness 9");
+  CHECK_THAT(bench.mustRun("verify g.vdb s.npy --phase 1"), StartsWith("g.vdb: holds: each of "));
+  CHECK(bench.mustRun("verify g.vdb s.npy --phase 1 -q") == "");
+  bench.mustRun("remerge g.vdb r.vdb --merge both --theta -0.7");
+  bench.mustRun("verify r.vdb s.npy --phase 1");
+  bench.mustRun("segment s.npy p.vdb --phase 1 --paper --gamma 8 --boundary closed");
+  bench.mustRun("verify p.vdb s.npy --phase 1");
+  bench.mustRun("segment s.npy s.slabs --phase 1 --slab-height 16 --min-grain 50");
+  bench.mustRun("verify s.slabs s.npy --phase 1");
+  bench.mustRun(
+      "segment s.npy c.vdb --phase 1 -q --roi cylinder:z:20,21:17 --voxel-size 1x1x1.5um");
+  bench.mustRun("verify c.vdb s.npy --phase 1 -q --roi cylinder:z:20,21:17");
 
-/// Changes a letter of a text in a file.
-void damage(const Bench& bench, const std::string& file, const std::string& text) {
-  std::string bytes = bench.bytes(file);
-  const size_t at = bytes.find(text);
-  REQUIRE(at != std::string::npos);
-  bytes[at + text.size() - 1] ^= 1;
-  bench.write(file, bytes);
+  refuses(bench, kFailed, "verify c.vdb s.npy --phase 1",
+          {"c.vdb: are not the labels of s.npy: their domain is not that of the object"});
+  refuses(bench, kFailed, "verify g.vdb s.npy --phase 0",
+          {"g.vdb: are not the labels of s.npy: ", " voxels differ: the first, [", ", has ",
+           " and should have "});
+  refuses(bench, kFailed, "verify g.vdb s.npy --phase 1 --max-memory 2MiB",
+          {"g.vdb: verifying a box of 48 x 48 x 48 voxels needs about 2.53 MiB", "--max-memory"});
 }
 
-}  // namespace
-
-TEST_CASE("cli: every verb refuses a file that is not what was written, unless told otherwise",
-          "[cli]") {
+TEST_CASE("cli: labels that no definition gives are not verified", "[cli]") {
   const Bench bench;
-  bench.mustRun(kSpheres + "s.vdb");
-  bench.mustRun("segment s.vdb g.vdb --keep manifold,distance");
-  bench.mustRun("segment s.vdb g.slabs --slab-height 16 --keep manifold");
-  bench.mustRun("convert g.vdb copy.vdb");
-  damage(bench, "s.vdb", "madf_source");
-  damage(bench, "g.vdb", "madf_strictness");
-  damage(bench, "g.slabs/index.json", "\"version");
-  bench.mustRun("segment copy.vdb more.slabs --slab-height 16 --keep manifold --grid grain");
-  damage(bench, "more.slabs/slab-0001.vdb", "file_bbox_max");
-  for (const std::string run : {"segment s.vdb out.vdb",
-                                "segment s.vdb out.slabs --slab-height 16",
-                                "remerge g.vdb out.vdb --strictness 9",
-                                "edit g.vdb out.vdb --renumber",
-                                "convert g.vdb out.vdb",
-                                "convert g.vdb out.npy --grid distance_squared",
-                                "sweep s.vdb out.csv --strictness 9,11",
-                                "sweep g.vdb out.csv --grid grain --strictness 9,11",
-                                "hierarchy g.vdb out.csv",
-                                "measure g.vdb out",
-                                "compare copy.vdb g.vdb",
-                                "track g.vdb copy.vdb out.vdb",
-                                "render g.vdb out.png",
-                                "export g.vdb out.graphml --as network",
-                                "info g.vdb",
-                                "info g.slabs",
-                                "measure g.slabs out",
-                                "remerge g.slabs out.slabs",
-                                "convert g.slabs out.vdb",
-                                "hierarchy more.slabs out.csv",
-                                "measure more.slabs out",
-                                "info more.slabs",
-                                "remerge more.slabs out.slabs"}) {
-    refuses(bench, kFailed, run, {"is not what was written", "--no-verify"});
-    INFO("vdb_madf " << run);
-    CHECK(bench.run(run + " --no-verify -q").exitCode == 0);
-    for (const char* made :
-         {"out.vdb", "out.slabs", "out.npy", "out.csv", "out", "out.png", "out.graphml"})
-      std::filesystem::remove_all(bench.path(made));
-  }
+  bench.mustRun(kSnow + "s.vdb");
+  bench.mustRun("segment s.vdb g.vdb");
+  bench.mustRun("edit g.vdb e.vdb --merge 1,2");
+  bench.mustRun("convert g.vdb g.tif");
+  refuses(bench, kFailed, "verify e.vdb s.vdb", {"e.vdb: the labels were edited"});
+  refuses(bench, kFailed, "verify g.tif s.vdb", {"g.tif: the labels do not say madf_"});
+  refuses(bench, kWrongUsage, "verify g.vdb", {"OBJECT"});
 }

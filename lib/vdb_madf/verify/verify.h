@@ -17,8 +17,8 @@ struct Verification {
   int64_t voxels = 0, cavityVoxels = 0, medialBalls = 0, criticalPoints = 0, grains = 0;  ///< right
 };
 
-/// Are these the labels that the definition gives for the object, by the options and the domain that
-/// the labels' metadata tell, and are the counts right that they tell besides?
+/// Are these the labels that the definition gives for the object, by the options and the domain
+/// that the labels' metadata tell, and are the counts right that they tell besides?
 ///
 /// A judge of segment(), segmentSlabs() and remerge(): everything is computed anew, straight from
 /// the definition, by code that shares nothing with the method, on dense arrays over the domain's

@@ -53,24 +53,31 @@ Sites leastPower(const DenseBox& space, const Definition& definition,
                   weight = definition.weights[size_t(axis)];
     space.forRows(axis, interrupter, [&](int64_t first) {
       std::vector<Ball> row(size_t(n), Ball{});
-      int64_t least = 0;
       for (int64_t i = 0; i < n; ++i) {
         const auto at = size_t(first + i * stride);
         row[size_t(i)] = {power[at], site[at]};
-        least = std::min<int64_t>(least, power[at]);
       }
+      // The least power from a place on, to either side.
+      std::vector<int64_t> below(size_t(n), 0), above(size_t(n), 0);
+      int64_t least = 0;
+      for (int64_t i = 0; i < n; ++i)
+        below[size_t(i)] = least = std::min(least, row[size_t(i)].power);
       if (least == 0) return;
+      least = 0;
+      for (int64_t i = n - 1; i >= 0; --i)
+        above[size_t(i)] = least = std::min(least, row[size_t(i)].power);
       for (int64_t i = 0; i < n; ++i) {
         Ball best = row[size_t(i)];
-        for (int64_t t = 1; t < n; ++t) {
-          const int64_t step = weight * t * t;
-          if (least + step > best.power || least + step >= 0) break;
-          for (const int64_t j : {i - t, i + t}) {
-            if (j < 0 || j >= n) continue;
+        const auto look = [&](int64_t to, const std::vector<int64_t>& bound) {
+          for (int64_t j = i + to, t = 1; j >= 0 && j < n; j += to, ++t) {
+            const int64_t step = weight * t * t, any = bound[size_t(j)] + step;
+            if (any > best.power || any >= 0) break;
             const Ball ball{row[size_t(j)].power + step, row[size_t(j)].site};
             if (ball.power < 0 && isBetter(ball, best)) best = ball;
           }
-        }
+        };
+        look(-1, below);
+        look(1, above);
         const auto at = size_t(first + i * stride);
         power[at] = int32_t(best.power);
         site[at] = best.site;
