@@ -63,7 +63,7 @@ void addVerify(Verb command, Common& common, Action& action) {
   o->object.addDomain(verb);
   o->object.addRegion(verb);
   verb.option("--max-memory", o->maxMemory,
-              "refuse what needs more, such as 12GiB; 24 bytes a voxel of the domain's box "
+              "refuse what needs more, such as 12GiB; 32 bytes a voxel of the domain's box "
               "(default: what the machine has free)")
       .typeName("SIZE");
   verb.onParsed([o, &common, &action] {

@@ -30,7 +30,7 @@ CoordBBox boxToJudge(const Definition& definition, const MaskGrid& object) {
 }
 
 void checkMemory(const CoordBBox& box, int64_t maxMemory) {
-  constexpr double kBytesPerVoxel = 24;
+  constexpr double kBytesPerVoxel = 32;
   const Coord n = box.dim();
   const double voxels = double(n.x()) * n.y() * n.z(), bytes = kBytesPerVoxel * voxels;
   std::ostringstream size;

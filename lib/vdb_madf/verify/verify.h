@@ -23,7 +23,7 @@ struct Verification {
 /// A judge of segment(), segmentSlabs() and remerge(): everything is computed anew, straight from
 /// the definition, by code that shares nothing with the method, on dense arrays over the domain's
 /// box (where it is unknown, the object's and one layer around). Slabs are read one by one, but it
-/// takes about 24 bytes a voxel of that box.
+/// takes about 32 bytes a voxel of that box, and more in noise.
 /// @param maxMemory bytes that these arrays may take; 0: no limit
 /// @throw InvalidInput if the labels do not say how they were made, were edited or merged by a rule
 ///   of one's own, or the box is too large; Interrupted.

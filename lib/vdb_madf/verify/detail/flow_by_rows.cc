@@ -28,12 +28,11 @@ std::vector<int32_t> component(const DenseBox& space, int64_t first, const IsIn&
   return part;
 }
 
-/// The ball of least power at each voxel among those of some centers, where that power is negative:
-/// along one axis after the other, looking away from each voxel for as long as a ball of that row
-/// could still be better.
+/// The ball of least power at each voxel, where that is negative, among those of some centers (the
+/// voxels that are their own site): along one axis after the other, looking away from each voxel for
+/// as long as a ball of that row could still be better.
 Sites leastPower(const DenseBox& space, const Definition& definition,
-                 const std::vector<int32_t>& distance, const Sites& centers,
-                 Interrupter* interrupter) {
+                 const std::vector<int32_t>& distance, Sites site, Interrupter* interrupter) {
   struct Ball {
     int64_t power = 0;
     int32_t site = kNone;
@@ -44,7 +43,6 @@ Sites leastPower(const DenseBox& space, const Definition& definition,
     const int32_t da = distance[size_t(a.site)], db = distance[size_t(b.site)];
     return da != db ? da > db : a.site < b.site;
   };
-  Sites site = centers;
   std::vector<int32_t> power(site.size(), 0);
   for (size_t i = 0; i < site.size(); ++i)
     if (site[i] != kNone) power[i] = -distance[i];
@@ -228,10 +226,10 @@ std::vector<int32_t> squaredDistance(const DenseBox& space, const Definition& de
 Flow flowOf(const DenseBox& space, const Definition& definition, const Voxels& voxels,
             const std::vector<int32_t>& distance, Interrupter* interrupter) {
   Flow flow;
-  Sites own(voxels.size(), kNone);
-  for (size_t i = 0; i < own.size(); ++i)
-    if (isBody(voxels[i])) own[i] = int32_t(i);
-  Sites site = leastPower(space, definition, distance, own, interrupter);
+  Sites site(voxels.size(), kNone);  // first all centers
+  for (size_t i = 0; i < site.size(); ++i)
+    if (isBody(voxels[i])) site[i] = int32_t(i);
+  site = leastPower(space, definition, distance, std::move(site), interrupter);
   std::vector<int32_t> cell(site.size(), 0);
   for (size_t i = 0; i < site.size(); ++i) {
     if (!isBody(voxels[i])) site[i] = kNone;
@@ -239,14 +237,16 @@ Flow flowOf(const DenseBox& space, const Definition& definition, const Voxels& v
   }
   flow.keptBalls = flow.medialBalls;
   if (definition.gamma > 0) {
-    const Sites kept = keptBalls(space, definition, voxels, distance, site, cell);
-    flow.keptBalls = int64_t(kept.size()) - std::count(kept.begin(), kept.end(), kNone);
-    site = leastPower(space, definition, distance, kept, interrupter);
+    site = keptBalls(space, definition, voxels, distance, site, cell);
+    cell = {};
+    flow.keptBalls = int64_t(site.size()) - std::count(site.begin(), site.end(), kNone);
+    site = leastPower(space, definition, distance, std::move(site), interrupter);
     for (size_t i = 0; i < site.size(); ++i)
       if (!isBody(voxels[i])) site[i] = kNone;
     complete(space, definition, voxels, distance, site, interrupter);
   }
-  flow.critical = std::move(own);
+  cell = {};
+  flow.critical.assign(site.size(), kNone);
   for (size_t i = 0; i < site.size(); ++i) {
     if (site[i] == kNone) continue;
     auto c = int32_t(i);
