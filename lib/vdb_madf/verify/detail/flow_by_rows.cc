@@ -29,8 +29,8 @@ std::vector<int32_t> component(const DenseBox& space, int64_t first, const IsIn&
 }
 
 /// The ball of least power at each voxel, where that is negative, among those of some centers (the
-/// voxels that are their own site): along one axis after the other, looking away from each voxel for
-/// as long as a ball of that row could still be better.
+/// voxels that are their own site): along one axis after the other, looking away from each voxel
+/// for as long as a ball of that row could still be better.
 Sites leastPower(const DenseBox& space, const Definition& definition,
                  const std::vector<int32_t>& distance, Sites site, Interrupter* interrupter) {
   struct Ball {
