@@ -130,8 +130,8 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
             gray: Optional[Source] = None, gray_grid: Optional[str] = None,
             edge_weights: bool = False, voronoi: bool = False, size_curve: bool = False,
             size_reference: Optional[str] = None, phases: Optional[Source] = None,
-            phases_grid: Optional[str] = None, binder: int = 1, stability: bool = False, bootstrap: int = 0,
-            sensitivity: int = 0, vary: Optional[Dict[str, float]] = None,
+            phases_grid: Optional[str] = None, binder: int = 1, stability: bool = False,
+            bootstrap: int = 0, sensitivity: int = 0, vary: Optional[Dict[str, float]] = None,
             dataset: Optional[str] = None, grid: Optional[str] = None, progress: Progress = None,
             threads: int = 0) -> Measurements:
     """Measures the grains of labels, of any program.
@@ -189,5 +189,6 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
                              size_curve=size_curve, size_reference=size_reference or "",
                              phases=None if phases is None else readable(phases),
                              phases_grid=phases_grid or "", binder=binder,
-                             manifold=labels._manifolds() if stability else None, bootstrap=bootstrap, sensitivity=sensitivity, vary=vary or {})
+                             manifold=labels._manifolds() if stability else None,
+                             bootstrap=bootstrap, sensitivity=sensitivity, vary=vary or {})
     return Measurements(**made, provenance=measured.metadata)

@@ -47,7 +47,8 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
 /// `gaussian_curvature_sd`, `curvature_residual`. A bond without a curvature has 0
 /// `curvature_points` and none of the four. With gray values the columns that grains have;
 /// with necks `neck_area`, `neck_radius`, `neck_error`, `neck_gap`, `neck_confirmed` (0 or 1),
-/// `neck_normal_x`, `_y`, `_z`; with recurrences `p_bond`, `area_sd`; with the stability `vanishes`.
+/// `neck_normal_x`, `_y`, `_z`; with recurrences `p_bond`, `area_sd`; with the stability
+/// `vanishes`.
 std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
                                        const ExtraMeasures& extra = {});
 
