@@ -260,6 +260,15 @@ TEST_CASE("verify: labels that no definition gives are refused", "[verify]") {
                l.removeMeta("madf_domain_max");
              }),
              Catch::Contains("domain"));
+  const auto setWeights = [](Int32Grid& labels, int32_t w) {
+    labels.insertMeta("madf_weights", openvdb::Vec3IMetadata({w, w, w}));
+  };
+  CHECK_THAT(refusal([&](Int32Grid& l) { setWeights(l, 0); }), Catch::Contains("positive"));
+  const Int32Grid::Ptr far = right->deepCopy();
+  setWeights(*far, INT32_MAX);
+  CHECK_THAT(verify(singleSlab(far), *object).fault, Catch::Contains("32 bits"));
+  CHECK_THAT(refusal([](Int32Grid& l) { l.insertMeta("madf_tidy", openvdb::Int64Metadata(1001)); }),
+             Catch::Contains("1000 rounds"));
   StopAtOnce stop;
   CHECK_THROWS_AS(verify(singleSlab(right), *object, 0, &stop), Interrupted);
   CHECK_THROWS_AS(verify(singleSlab(right), *object, 32 * 24 * 24 * 24 - 1), InvalidInput);

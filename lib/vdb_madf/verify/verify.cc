@@ -29,7 +29,7 @@ CoordBBox boxToJudge(const Definition& definition, const MaskGrid& object) {
   return box;
 }
 
-void checkMemory(const CoordBBox& box, int64_t maxMemory) {
+void checkBox(const CoordBBox& box, const Definition& definition, int64_t maxMemory) {
   constexpr double kBytesPerVoxel = 32;
   const Coord n = box.dim();
   const double voxels = double(n.x()) * n.y() * n.z(), bytes = kBytesPerVoxel * voxels;
@@ -38,6 +38,9 @@ void checkMemory(const CoordBBox& box, int64_t maxMemory) {
   if (voxels >= double(INT32_MAX))
     throw InvalidInput("the box to verify has " + size.str() +
                        ": only boxes of fewer than 2^31 voxels can be verified");
+  for (int axis = 0; axis < 3; ++axis)
+    if (double(definition.weights[size_t(axis)]) * n[axis] * n[axis] > 1e18)
+      throw InvalidInput("metadata madf_weights: too large for a box of " + size.str());
   if (maxMemory > 0 && bytes > double(maxMemory))
     throw InvalidInput("verifying a box of " + size.str() + " needs about " +
                            readableBytes(int64_t(bytes)) + " of memory, and " +
@@ -72,17 +75,14 @@ std::vector<int32_t> rightLabels(const DenseBox& space, const Definition& defini
   found.voxels = std::count(voxels.begin(), voxels.end(), Voxel::object);
   found.cavityVoxels = std::count(voxels.begin(), voxels.end(), Voxel::cavity);
   std::vector<int32_t> distance = squaredDistance(space, definition, voxels, interrupter);
-  if (*std::max_element(distance.begin(), distance.end()) == kFar && definition.open) {
-    // Unknown voxels may be far from everything; the body must not.
-    for (size_t i = 0; i < voxels.size(); ++i)
-      if (isBody(voxels[i]) && distance[i] == kFar) {
-        found.fault = "the object has no background, so there are no labels of it";
-        return {};
-      }
-  }
   int64_t largest = 0;
   for (size_t i = 0; i < voxels.size(); ++i)
     if (isBody(voxels[i])) largest = std::max<int64_t>(largest, distance[i]);
+  if (largest == kFar) {
+    found.fault =
+        "there is no background, or it is farther than squared distances of 32 bits reach";
+    return {};
+  }
   Flow flow = flowOf(space, definition, voxels, distance, interrupter);
   const Manifolds manifolds = manifoldsOf(space, definition, voxels, distance, flow);
   flow.site = {};
@@ -176,7 +176,7 @@ Verification verify(const LabelSlabs& labels, const MaskGrid& object, int64_t ma
     return found;
   }
   const CoordBBox box = boxToJudge(definition, object);
-  checkMemory(box, maxMemory);
+  checkBox(box, definition, maxMemory);
   const DenseBox space(box);
   Voxels voxels;
   if (const int64_t outside = fillVoxels(space, definition, object, voxels)) {

@@ -50,6 +50,9 @@ Definition::Definition(const openvdb::MetaMap& metadata) : domain(storedDomain(m
   gamma = toldCount(metadata, "madf_gamma");
   fillHoles = toldCount(metadata, "madf_fill_holes");
   tidy = toldCount(metadata, "madf_tidy");
+  if (tidy > 1000)
+    throw InvalidInput("metadata madf_tidy says " + std::to_string(tidy) +
+                       ": no more than 1000 rounds can be verified");
   if (metadata["madf_min_grain"]) minGrain = toldCount(metadata, "madf_min_grain");
   if (metadata["madf_weights"]) {
     const openvdb::Vec3i w = told<openvdb::Vec3IMetadata>(metadata, "madf_weights");

@@ -273,10 +273,10 @@ void joinSmall(const Manifolds& manifolds, int64_t least, Grains& grains) {
     small.erase({voxels[size_t(to)], to});
     voxels[size_t(to)] += voxels[size_t(grain)];
     if (voxels[size_t(to)] < least) small.emplace(voxels[size_t(to)], to);
-    for (int32_t& g : now)
-      if (g == grain) g = to;
+    now[size_t(grain)] = to;
   }
-  for (int32_t& g : grains.ofNode) g = now[size_t(g)];
+  for (int32_t& g : grains.ofNode)
+    while (now[size_t(g)] != g) g = now[size_t(g)];
 }
 
 }  // namespace
