@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/matching/compare.h"
 
 #include <cstdio>
@@ -116,11 +117,13 @@ void runCompare(const CompareArguments& o, const Common& common) {
   }
   checkAnyCommon(comparison, names);
   common.progress->end();
+  OutputSet files;
   grainFile.write(grainTable(comparison));
   confusionFile.write(confusionTable(comparison));
   Json json = summary(o, comparison);
   addNotes(json, *common.progress);
   jsonFile.write(json);
+  files.commit();
   const bool asked = jsonFile.isStandardOutput() || grainFile.isStandardOutput() ||
                      confusionFile.isStandardOutput();
   if (common.quiet || asked) return;

@@ -12,6 +12,7 @@
 #include "outputs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/edits/edit_labels.h"
+#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"
@@ -159,6 +160,7 @@ void runEdit(const EditArguments& o, const Common& common) {
   });
   if (edited.grains == 0 && edited.grainsBefore > 0)
     common.progress->note(o.out + ": no grain is left");
+  OutputSet files;
   if (!hasVdbEnding(o.out)) {
     writeGridAsImage(o.out, *edited.labels, std::nullopt, o.input.path, common);
   } else {
@@ -179,6 +181,7 @@ void runEdit(const EditArguments& o, const Common& common) {
   Json json = summary(o, edited);
   addNotes(json, *common.progress);
   jsonFile.write(json);
+  files.commit();
   if (!common.quiet) print(o, edited, common.verbose);
 }
 

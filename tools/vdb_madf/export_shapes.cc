@@ -13,6 +13,7 @@
 #include "vdb_madf/exports/clump_file.h"
 #include "vdb_madf/exports/hexahedra_file.h"
 #include "vdb_madf/exports/mesh_file.h"
+#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/labels/grain_masks.h"
@@ -155,8 +156,10 @@ void exportSurface(const ExportArguments& o, const Common& common, const Int32Gr
 void exportClumps(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
   const Int32Grid::Ptr balls = ballsOf(o, common, labels);
   const auto made = clumps(labels, *balls, o.clumps, common.progress);
+  OutputSet files;
   const auto bonds = exportClumpTables(o, common, labels, made);
   writeClumps(o.out, made, labels.transform(), bonds, common.progress);
+  files.commit();
   size_t ballCount = 0, without = 0;
   int64_t voxels = 0, uncovered = 0, outside = 0;
   double farthest = 0;

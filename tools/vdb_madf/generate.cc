@@ -18,6 +18,7 @@
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/base/word_list.h"
 #include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/files/written_together.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -401,8 +402,10 @@ void runGenerate(const SampleKind& kind, const GenerateArguments& options, const
     setVoxelSize(*sample.object, options.voxelSize);
     if (sample.truth) setVoxelSize(*sample.truth, options.voxelSize);
   }
+  OutputSet files;
   writeSample(options.out, sample, common.progress);
   if (!options.gray.empty()) writeGray(options, sample, common.progress);
+  files.commit();
   common.progress->end();
   if (common.quiet) return;
   printVoxels(options, double(sample.object->activeVoxelCount()),

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/measure/measure.h"
 
 #include <memory>
@@ -105,10 +106,12 @@ void runMeasure(MeasureArguments& o, const Common& common) {
   const Measurements measurements = measureInput(o, common);
   TableOptions options = o.tables;
   options.labels = o.input.path;
+  OutputSet files;
   tables.write(measurements, options);
   if (!plot.isNowhere()) plot.write(measuresPlot(measurements, titleOf(o), *plotTypeOf(o.plot)));
   if (!bridges.isNowhere()) bridges.write(bridgesText(measurements, options));
   if (!sizes.isNowhere()) sizes.write(sizeCurveText(measurements, options));
+  files.commit();
   common.progress->end();
   if (!common.quiet && !sizes.isStandardOutput() && !bridges.isStandardOutput())
     print(o, measurements);

@@ -64,9 +64,9 @@ void checkOutputs(const std::vector<std::string>& outputs, const std::string& in
 
 void checkWritable(const std::string& output) {
   if (isStandardOutput(output)) return;
-  checkImagePlace(output);
   const std::vector<std::string> files = filesOf({output});
   removeLeftovers(files);
+  checkImagePlace(output);
   for (const std::string& file : files) const OutputFile probe(file);
 }
 

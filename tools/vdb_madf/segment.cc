@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/segmentation/segment.h"
 #include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/intensity/measure_necks.h"
@@ -191,6 +192,7 @@ void runSegment(const SegmentArguments& o, const Common& common) {
   object.reset();
 
   std::vector<SizeBias> biases;
+  OutputSet files;
   if (tables) {
     const Clock::time_point startMeasure = Clock::now();
     TableOptions about;
@@ -226,6 +228,7 @@ void runSegment(const SegmentArguments& o, const Common& common) {
   Json json = toJson(used, summary);
   addNotes(json, *common.progress);
   jsonFile.write(json);
+  files.commit();
   if (!common.quiet && !jsonFile.isStandardOutput()) print(used, common, summary);
 }
 

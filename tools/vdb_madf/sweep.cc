@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "vdb_madf/base/memory.h"
+#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/segmentation/parameter_sweep.h"
 
 #include <fmt/core.h>
@@ -263,8 +264,10 @@ void runSweep(const SweepArguments& o, const Common& common) {
   const bool isOfStored = isOfManifolds(o, common);
   const std::vector<SweepRow> rows =
       isOfStored ? sweepManifolds(o, common) : sweepObject(o, common);
+  OutputSet files;
   csv.write(table(rows));
   plot.write(sweepPlot(rows, o.sweep.smallVoxels, plotTypeOf(o.plot).value_or(PlotType::svg)));
+  files.commit();
   common.progress->end();
   if (!common.quiet)
     std::printf("%s: %s, of %s\n", o.out.c_str(), counted(int64_t(rows.size()), "row").c_str(),

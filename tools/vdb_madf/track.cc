@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/matching/track.h"
 
 #include <algorithm>
@@ -358,12 +359,14 @@ void runSeries(TrackArguments o, const Common& common) {
     common.progress->start("track");
     Int32Grid::Ptr labels;
     const Tracks tracks = tracksOf(o, *before, *after, names, &labels, common);
+    OutputSet set;
     writeVdb(files.labels, {labels}, common.progress);
     common.progress->end();
     for (const std::string& note : notesOn(tracks, *before, *after, o.track, names))
       common.progress->note(note);
     grainFile.write(tracks.motion ? moveTable(tracks) : grainTable(tracks));
     bondFile.write(bondTable(tracks));
+    set.commit();
     folder.keep();
     if (!common.quiet) {
       std::printf("%s%s\n", scan == laterScans(o).front() ? "" : "\n", scan.c_str());
@@ -385,6 +388,7 @@ void runTrack(const TrackArguments& o, const Common& common) {
   Int32Grid::Ptr labels;
   const Tracks tracks =
       tracksOf(o, *before, *after, names, o.out.empty() ? nullptr : &labels, common);
+  OutputSet files;
   if (labels) {
     if (hasVdbEnding(o.out))
       writeVdb(o.out, {labels}, common.progress);
@@ -400,6 +404,7 @@ void runTrack(const TrackArguments& o, const Common& common) {
   Json json = summary(o, tracks);
   addNotes(json, *common.progress);
   jsonFile.write(json);
+  files.commit();
   if (!common.quiet) print(o, tracks, json);
 }
 

@@ -17,6 +17,7 @@
 #include "vdb_madf/files/csv_cell.h"
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/files/output_file.h"
+#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/files/written_together.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
@@ -317,11 +318,9 @@ void MeasurementTables::write(const Measurements& measurements, const TableOptio
   files_.at(0)->text(texts.grains);
   files_.at(1)->text(texts.bonds);
   files_.at(2)->text(texts.sample);
-  for (const auto& file : files_) file->close();
-  for (const auto& file : files_) {
-    file->commit();
-    folder_->keep();
-  }
+  OutputSet set;
+  for (const auto& file : files_) file->commit();
+  set.commit();
 }
 
 }  // namespace vdb_madf

@@ -19,6 +19,7 @@
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/output_folder.h"
+#include "vdb_madf/files/output_set.h"
 
 namespace vdb_madf {
 
@@ -221,7 +222,9 @@ void writeStlFolder(const std::string& folder, const GrainMesh& mesh,
     writeStl(*files.back(), world, grain, grain + 1);
     files.back()->close();
   }
+  OutputSet set;
   for (const auto& file : files) file->commit();
+  set.commit();
   made.keep();
 }
 

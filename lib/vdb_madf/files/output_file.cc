@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "vdb_madf/files/detail/output_place.h"
+#include "vdb_madf/files/output_set.h"
 
 namespace vdb_madf {
 
@@ -82,6 +83,12 @@ void OutputFile::commit(bool sync) {
   int error = file < 0 ? errno : 0;
   if (file >= 0 && sync && ::fsync(file) != 0 && errno != EINVAL) error = errno;
   if (file >= 0 && ::close(file) != 0 && errno != EINTR && error == 0) error = errno;
+  OutputSet* const set = sync ? OutputSet::current() : nullptr;
+  if (error == 0 && set) {
+    set->members_.push_back({path_, target_, temporaryPath_});
+    committed_ = true;
+    return;
+  }
   if (error == 0 && std::rename(temporaryPath_.c_str(), target_.c_str()) != 0) error = errno;
   if (error != 0) failToWrite(path_, error);
   committed_ = true;
@@ -95,15 +102,21 @@ void removeLeftovers(const std::vector<std::string>& paths) {
     stems[folder].insert(detail::temporaryStem(name));
   }
   for (const auto& [folder, ofFolder] : stems) {
+    bool areWhole = true;  // the sets of files there
+    std::vector<std::filesystem::path> left;
     std::error_code error;
     for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
          entry.increment(error)) {
       const auto temporary = detail::temporaryOf(entry->path().filename().string());
-      if (!temporary || ofFolder.count(temporary->stem) == 0 || !detail::isGone(temporary->process))
-        continue;
-      std::error_code ignored;
-      std::filesystem::remove_all(entry->path(), ignored);
+      if (!temporary || !detail::isGone(temporary->process)) continue;
+      if (temporary->isJournal)
+        areWhole = detail::undoSet(entry->path().string()) == 0 && areWhole;
+      else if (ofFolder.count(temporary->stem) > 0)
+        left.push_back(entry->path());
     }
+    std::error_code ignored;
+    for (const auto& path : left)
+      if (areWhole) std::filesystem::remove_all(path, ignored);
   }
 }
 

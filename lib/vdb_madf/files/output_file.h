@@ -22,6 +22,7 @@ class OutputFile {
 
   const std::string& path() const { return path_; }
   const std::string& temporaryPath() const { return temporaryPath_; }
+  /// Where an OutputSet lives, only that puts the file in place, if it is synced.
   /// @param sync wait until all is on the disk, so that a power failure loses nothing
   /// @throw IoError if syncing or renaming fails.
   void commit(bool sync = true);
@@ -32,8 +33,9 @@ class OutputFile {
 };
 
 /// Removes what is left of killed programs that were writing these files or folders: the
-/// temporaries with the number of a process that does not exist (on this machine). What cannot be
-/// removed stays.
+/// temporaries with the number of a process that does not exist (on this machine). Sets of which such
+/// a program had replaced a part (OutputSet), in these folders, are put back. What cannot be removed
+/// stays.
 void removeLeftovers(const std::vector<std::string>& paths);
 
 }  // namespace vdb_madf

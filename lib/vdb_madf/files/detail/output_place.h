@@ -28,18 +28,25 @@ std::string temporaryStem(const std::string& name);
 /// The path of another one with each call. The number of the process tells programs apart, the
 /// other threads and what a program of the same number in another container left behind.
 std::string nextTemporary(const OutputPlace& place);
+/// As well, ending with ".undo": the journal of a set (output_set.h).
+std::string nextJournal(const OutputPlace& place);
 
 /// The name of a temporary in parts; nothing if it is none.
 struct Temporary {
   std::string stem;
   int process = 0;
+  bool isJournal = false;
 };
 std::optional<Temporary> temporaryOf(const std::string& name);
 /// True if there is no such process on this machine.
 bool isGone(int process);
 
-/// Makes the renaming of something in the folder of `target` last. Some file systems cannot sync a
-/// folder: the output is in place all the same. @throw IoError if the disk fails
+/// Makes the renaming of something in a folder last. Some file systems cannot sync a folder: the
+/// output is in place all the same. @return EIO if the disk fails, or 0
+int syncFolder(const std::string& path);
+/// @throw IoError that says that syncFolder() failed
+[[noreturn]] void failToLast(const std::string& target, int error);
+/// Both, of the folder of `target`. @throw IoError
 void syncFolderOf(const std::string& target);
 
 }  // namespace vdb_madf::detail

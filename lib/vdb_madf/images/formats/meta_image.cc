@@ -12,6 +12,7 @@
 #include "vdb_madf/base/lower_case.h"
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/files/same_file.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/key_value_header.h"
@@ -96,11 +97,14 @@ std::string dataFileOf(const std::string& header) {
 }
 
 bool namesDataFile(const std::string& header, const std::string& data) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(header, ignored)) return false;
+  const std::string text = InputFile(header).head(kMaxMetaHeaderBytes);
   try {
-    const KeyValueHeader fields(header, InputFile(header).head(kMaxMetaHeaderBytes), metaSyntax());
+    const KeyValueHeader fields(header, text, metaSyntax());
     const auto name = fields.find("ElementDataFile");
     return name && isSameFile(besideHeader(header, *name), data);
-  } catch (const IoError&) {  // no header that we could read
+  } catch (const IoError&) {  // no header of such an image
     return false;
   }
 }
@@ -123,10 +127,10 @@ class MetaWriter : public ImageWriter {
   }
   void finish() override {
     counter_.finish();
-    if (data_) data_->close();
-    out_.close();
+    OutputSet files;
     if (data_) data_->commit();
     out_.commit();
+    files.commit();
   }
   std::optional<SharedImage> share() override {
     return shareSamples(counter_, data_ ? *data_ : out_, before_);

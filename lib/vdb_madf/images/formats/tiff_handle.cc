@@ -22,7 +22,8 @@ int TiffHandle::collect(TIFF*, void* text, const char*, const char* format, va_l
   return 1;  // handled: libtiff's global handler, which prints, is not called
 }
 
-// These are called from C, too: libtiff gets to know that they failed, and nothing is thrown.
+// These are called from C, too: libtiff gets to know that they failed, and fail() throws what they
+// caught.
 
 tmsize_t TiffHandle::read(thandle_t handle, void* to, tmsize_t count) {
   Client& client = *static_cast<Client*>(handle);
@@ -32,6 +33,7 @@ tmsize_t TiffHandle::read(thandle_t handle, void* to, tmsize_t count) {
     client.position += got;
     return tmsize_t(got);
   } catch (const std::exception&) {
+    client.failure = std::current_exception();
     return -1;
   }
 }
@@ -44,6 +46,7 @@ tmsize_t TiffHandle::write(thandle_t handle, void* from, tmsize_t count) {
     client.position += uint64_t(count);
     return count;
   } catch (const std::exception&) {
+    client.failure = std::current_exception();
     return -1;
   }
 }
@@ -96,6 +99,7 @@ void TiffHandle::close() {
 }
 
 void TiffHandle::fail(const std::string& what) const {
+  if (client_->failure) std::rethrow_exception(client_->failure);
   throw IoError(path_ + ": " + what +
                 (client_->error.empty() ? std::string() : " (" + client_->error + ")"));
 }

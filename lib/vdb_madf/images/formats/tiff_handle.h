@@ -5,6 +5,7 @@
 
 #include <tiffio.h>
 
+#include <exception>
 #include <memory>
 #include <string>
 
@@ -30,7 +31,8 @@ class TiffHandle {
   const std::string& path() const { return path_; }
   void close();
 
-  /// @throw IoError with the path, what went wrong, and libtiff's first error.
+  /// @throw IoError with the path, what went wrong, and libtiff's first error; or the one that
+  ///   reading or writing ended with
   [[noreturn]] void fail(const std::string& what) const;
   bool warned() const { return !client_->warning.empty(); }
   void forgetMessages();
@@ -48,6 +50,7 @@ class TiffHandle {
     OutputStream* output = nullptr;
     uint64_t position = 0;
     std::string error, warning;
+    std::exception_ptr failure;
   };
   void open(const char* mode, int64_t maxAllocation);
   static tmsize_t read(thandle_t client, void* to, tmsize_t count);
