@@ -4,12 +4,13 @@
 // A library to preload (LD_PRELOAD) that makes one system call fail, or one allocation; tests/faults
 // runs the command with it. From the environment:
 //   FAULT_CALL   open, read, write, sync, rename, close, map, resize, mkdir, link, unlink, allocate
-//   FAULT_NUMBER which of these calls, from 1 on, counted over all threads
+//   FAULT_NUMBER which of these calls, from 1 on, of all threads
 //   FAULT_ERROR  the errno that it fails with; 0: only half the bytes are moved; -1: SIGKILL
 //   FAULT_ALWAYS set: the calls after it fail, too
 //   FAULT_FOLDER only calls that have to do with files below this folder count
 //   FAULT_BYTES  only allocations of at least so many bytes count
-//   FAULT_NOTE   this file is made when the call fails
+//   FAULT_NOTE   this file is made when the call fails; if FAULT_NUMBER is 0, at the end, and says
+//                how many calls there were of each kind
 
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -26,7 +27,10 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-static atomic_long calls;
+static const char* const kinds[] = {"open",   "read",  "write", "sync", "rename", "close",
+                                    "map",    "resize", "mkdir", "link", "unlink", "allocate"};
+enum { kKinds = sizeof kinds / sizeof *kinds };
+static atomic_long calls[kKinds];
 
 static long numberOf(const char* name, long otherwise) {
   const char* text = getenv(name);
@@ -36,8 +40,11 @@ static long numberOf(const char* name, long otherwise) {
 /// True if this call is one that fails; not if only half of its bytes are moved.
 static int isHit(const char* call) {
   const char* wanted = getenv("FAULT_CALL");
+  int kind = 0;
+  while (strcmp(kinds[kind], call) != 0) ++kind;
+  const long number = atomic_fetch_add(&calls[kind], 1) + 1;
   if (!wanted || strcmp(wanted, call) != 0) return 0;
-  const long number = atomic_fetch_add(&calls, 1) + 1, fatal = numberOf("FAULT_NUMBER", 1);
+  const long fatal = numberOf("FAULT_NUMBER", 1);
   if (number < fatal || (number > fatal && !getenv("FAULT_ALWAYS"))) return 0;
   const char* note = getenv("FAULT_NOTE");
   if (note) syscall(SYS_close, syscall(SYS_openat, AT_FDCWD, note, O_CREAT | O_WRONLY, 0600));
@@ -45,6 +52,15 @@ static int isHit(const char* call) {
   if (error < 0) syscall(SYS_kill, getpid(), SIGKILL);
   errno = (int)error;
   return 1;
+}
+
+static __attribute__((destructor)) void sayCounts(void) {
+  const char* note = getenv("FAULT_NOTE");
+  if (!note || numberOf("FAULT_NUMBER", 0) > 0) return;
+  FILE* file = fopen(note, "w");
+  for (int kind = 0; file && kind < kKinds; ++kind)
+    fprintf(file, "%s %ld\n", kinds[kind], atomic_load(&calls[kind]));
+  if (file) fclose(file);
 }
 
 static int isBelow(const char* path) {
@@ -206,26 +222,33 @@ int __libc_start_main(int (*run)(int, char**, char**), int count, char** words, 
   return next(mainOfProgram, count, words, first, last, ofLoader, end);
 }
 
-static int hitsAllocation(size_t bytes) {
+// Those of Blosc do not fail: it does not look whether they did.
+static int isBlosc(const void* caller) {
+  Dl_info info;
+  return dladdr(caller, &info) && info.dli_fname && strstr(info.dli_fname, "libblosc");
+}
+
+static int hitsAllocation(size_t bytes, const void* caller) {
   static long least = -1;
   if (!atomic_load(&isInMain)) return 0;
   if (least < 0) least = numberOf("FAULT_BYTES", 0);
-  return least > 0 && bytes >= (size_t)least && isHit("allocate");
+  return least > 0 && bytes >= (size_t)least && !isBlosc(caller) && isHit("allocate");
 }
+#define CALLER __builtin_return_address(0)
 void* malloc(size_t bytes) {
-  return hitsAllocation(bytes) ? NULL : __libc_malloc(bytes);
+  return hitsAllocation(bytes, CALLER) ? NULL : __libc_malloc(bytes);
 }
 void* calloc(size_t count, size_t bytes) {
-  return hitsAllocation(count * bytes) ? NULL : __libc_calloc(count, bytes);
+  return hitsAllocation(count * bytes, CALLER) ? NULL : __libc_calloc(count, bytes);
 }
 void* realloc(void* old, size_t bytes) {
-  return hitsAllocation(bytes) ? NULL : __libc_realloc(old, bytes);
+  return hitsAllocation(bytes, CALLER) ? NULL : __libc_realloc(old, bytes);
 }
 void* aligned_alloc(size_t alignment, size_t bytes) {
-  return hitsAllocation(bytes) ? NULL : __libc_memalign(alignment, bytes);
+  return hitsAllocation(bytes, CALLER) ? NULL : __libc_memalign(alignment, bytes);
 }
 int posix_memalign(void** to, size_t alignment, size_t bytes) {
-  if (hitsAllocation(bytes)) return ENOMEM;
+  if (hitsAllocation(bytes, CALLER)) return ENOMEM;
   *to = __libc_memalign(alignment, bytes);
   return *to ? 0 : ENOMEM;
 }

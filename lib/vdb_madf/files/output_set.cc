@@ -72,6 +72,8 @@ std::vector<Earlier> readJournal(const std::string& journal) {
 /// Keeps an earlier file under another name. Some file systems know no links. An errno, or 0.
 int keepEarlier(const Earlier& file) {
   if (file.backup.empty() || ::link(file.target.c_str(), file.backup.c_str()) == 0) return 0;
+  std::error_code ignored;
+  if (fs::is_directory(file.target, ignored)) return EISDIR;
   return std::rename(file.target.c_str(), file.backup.c_str()) == 0 ? 0 : errno;
 }
 

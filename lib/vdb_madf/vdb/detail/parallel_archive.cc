@@ -105,6 +105,8 @@ LeafBuffers leafBuffers(const Grid& grid, uint32_t compression, Interrupter* int
     for (size_t block = begin; block < end; ++block) {
       TextBuffer buffer;
       std::ostream stream(&buffer);
+      // Or a stream would keep to itself that there is no memory, and the file be short.
+      stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
       io::setDataCompression(stream, compression);
       io::setGridBackgroundValuePtr(stream, &background);
       for (size_t i = block * kLeavesAtOnce;
