@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -20,6 +22,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/csv_cell.h"
 #include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/read_text.h"
 #include "vdb_madf/measure/columns.h"
 
 namespace vdb_madf::tools {
@@ -50,6 +53,8 @@ void checkReplaces(const std::string& out) {
   std::ifstream file(out, std::ios::binary);
   std::string header(kFirstColumns.size(), ' ');
   file.read(header.data(), std::streamsize(header.size()));
+  if (!file.is_open() || file.bad())
+    throw IoError(out + ": cannot be read: " + std::strerror(errno));
   if (header != kFirstColumns)
     throw WrongUsage(out +
                      ": is there, and not made by collect: choose another name for the table");
@@ -72,8 +77,8 @@ MeasuredSample readSample(const std::string& folder) {
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) refuse("is no file");
   if (fs::file_size(path, ignored) > kLargestSample) refuse("is too large");
-  std::ifstream file(path, std::ios::binary);
-  MeasuredSample sample{folder, "", Json::parse(file, nullptr, false)};
+  MeasuredSample sample{folder, "",
+                        Json::parse(readText(path.string(), kLargestSample), nullptr, false)};
   const auto text = [&](const char* key) {
     const auto found = sample.json.is_object() ? sample.json.find(key) : sample.json.end();
     return found != sample.json.end() && found->is_string() ? found->get<std::string>() : "";

@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
-#include <set>
+#include <map>
 #include <utility>
 
 #include "vdb_madf/base/errors.h"
@@ -35,17 +35,15 @@ struct Earlier {
   std::string target, backup;  ///< where it goes meanwhile; empty: there was none
 };
 
-/// In a journal: a path as it is seen from there, so that the folder may be moved.
-std::string seenFrom(const std::string& journal, const std::string& path) {
-  return fs::absolute(path).lexically_proximate(fs::absolute(journal).parent_path()).string();
+std::string nameOf(const std::string& path) {
+  return fs::path(path).filename().string();
 }
 
-/// Texts that each end with a zero: two per file, then the end. An errno, or 0.
+/// Names that each end with a zero: two per file, then the end. An errno, or 0.
 int writeJournal(const std::string& journal, const std::vector<Earlier>& files) {
   std::string text;
   for (const Earlier& file : files)
-    text += seenFrom(journal, file.target) + '\0' +
-            (file.backup.empty() ? "" : seenFrom(journal, file.backup)) + '\0';
+    text += nameOf(file.target) + '\0' + (file.backup.empty() ? "" : nameOf(file.backup)) + '\0';
   text += kJournalEnd + std::string(1, '\0');
   const int descriptor = ::open(journal.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) return errno;
@@ -114,42 +112,47 @@ void OutputSet::commit() {
     return members_.clear();
   }
   if (members_.empty()) return;
-  std::vector<Earlier> files;
-  std::set<std::string> folders;
+  struct Folder {
+    std::string journal;
+    std::vector<Earlier> files;
+  };
+  std::map<std::string, Folder> folders;
   for (const Member& member : members_) {
     const detail::OutputPlace place = detail::outputPlaceOf(member.target);
     const bool isThere = ::access(member.target.c_str(), F_OK) == 0;
-    files.push_back({member.target, isThere ? detail::nextTemporary(place) : ""});
-    folders.insert(place.folder);
+    Folder& folder = folders[place.folder];
+    if (folder.journal.empty()) folder.journal = detail::nextJournal(place);
+    folder.files.push_back({member.target, isThere ? detail::nextTemporary(place) : ""});
   }
-  const std::string journal = detail::nextJournal(detail::outputPlaceOf(members_[0].target));
-  const auto fail = [&](const Member& member, int error) {
-    putBack(files, journal);
-    failToWrite(member.path, error);
+  const auto fail = [&](const std::string& path, int error) {
+    for (const auto& [ignored, folder] : folders) putBack(folder.files, folder.journal);
+    failToWrite(path, error);
   };
   // One file alone is replaced by one step.
   const bool isOne = members_.size() == 1;
-  if (const int error = isOne ? 0 : writeJournal(journal, files)) fail(members_[0], error);
-  for (size_t i = 0; i < files.size() && !isOne; ++i)
-    if (const int error = keepEarlier(files[i])) fail(members_[i], error);
+  for (const auto& [ignored, folder] : folders) {
+    if (isOne) break;
+    if (const int error = writeJournal(folder.journal, folder.files))
+      fail(folder.files[0].target, error);
+    for (const Earlier& file : folder.files)
+      if (const int error = keepEarlier(file)) fail(file.target, error);
+  }
   for (const Member& member : members_)
-    if (std::rename(member.temporary.c_str(), member.target.c_str()) != 0) fail(member, errno);
+    if (std::rename(member.temporary.c_str(), member.target.c_str()) != 0) fail(member.path, errno);
+  const std::string first = members_[0].target;
   members_.clear();
-  const auto syncFolders = [&] {
-    int error = 0;
-    for (const std::string& folder : folders)
-      if (const int found = detail::syncFolder(folder)) error = found;
-    return error;
-  };
-  int error = syncFolders();
-  if (!isOne) {
-    ::unlink(journal.c_str());
+  int error = 0;
+  for (const auto& [path, ignored] : folders)
+    if (const int found = detail::syncFolder(path)) error = found;
+  for (const auto& [path, folder] : folders) {
+    if (isOne) break;
+    ::unlink(folder.journal.c_str());
     // The journal has to be gone for good before what it speaks of is.
-    if (const int found = syncFolders()) error = found;
-    for (const Earlier& file : files)
+    if (const int found = detail::syncFolder(path)) error = found;
+    for (const Earlier& file : folder.files)
       if (!file.backup.empty()) ::unlink(file.backup.c_str());
   }
-  if (error != 0) detail::failToLast(files[0].target, error);
+  if (error != 0) detail::failToLast(first, error);
 }
 
 int detail::undoSet(const std::string& journal) {

@@ -14,9 +14,9 @@ namespace vdb_madf {
 /// lives hands its files over to that. Destroyed without commit: the temporaries are removed.
 ///
 /// A program that is killed in commit() leaves some of the new files in place, the earlier ones
-/// beside them, and a journal, ".out.mhd.1234-5.undo" in the folder of the first file, which says
-/// what belongs where: removeLeftovers(), with which runs that write to that folder begin, then
-/// puts the earlier files back.
+/// beside them, and in each folder a journal, ".out.mhd.1234-5.undo", which says what belongs where:
+/// removeLeftovers(), with which runs that write to that folder begin, then puts the earlier files of
+/// the folder back.
 class OutputSet {
  public:
   OutputSet();
