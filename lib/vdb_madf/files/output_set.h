@@ -10,13 +10,14 @@ namespace vdb_madf {
 
 /// Files that replace earlier ones together or not at all. While a set lives, the files that its
 /// thread commits (OutputFile; those that are synced) wait in their temporaries, and commit() puts
-/// them in place. If one cannot be, all earlier files are put back. A set that is made while another
-/// lives hands its files over to that. Destroyed without commit: the temporaries are removed.
+/// them in place. If one cannot be, all earlier files are put back. A set that is made while
+/// another lives hands its files over to that. Destroyed without commit: the temporaries are
+/// removed.
 ///
 /// A program that is killed in commit() leaves some of the new files in place, the earlier ones
-/// beside them, and in each folder a journal, ".out.mhd.1234-5.undo", which says what belongs where:
-/// removeLeftovers(), with which runs that write to that folder begin, then puts the earlier files of
-/// the folder back.
+/// beside them, and in each folder a journal, ".out.mhd.1234-5.undo", which says what belongs
+/// where: removeLeftovers(), with which runs that write to that folder begin, then puts the
+/// earlier files of the folder back.
 class OutputSet {
  public:
   OutputSet();
