@@ -33,9 +33,9 @@ class OutputFile {
 };
 
 /// Removes what is left of killed programs that were writing these files or folders: the
-/// temporaries with the number of a process that does not exist (on this machine). Sets of which such
-/// a program had replaced a part (OutputSet), in these folders, are put back. What cannot be removed
-/// stays.
+/// temporaries with the number of a process that does not exist (on this machine). Sets of which
+/// such a program had replaced a part (OutputSet), in these folders, are put back. What cannot be
+/// removed stays.
 void removeLeftovers(const std::vector<std::string>& paths);
 
 }  // namespace vdb_madf

@@ -28,7 +28,7 @@ std::string temporaryStem(const std::string& name);
 /// The path of another one with each call. The number of the process tells programs apart, the
 /// other threads and what a program of the same number in another container left behind.
 std::string nextTemporary(const OutputPlace& place);
-/// As well, ending with ".undo": the journal of a set (output_set.h).
+/// The path of another journal of a set (output_set.h), which ends with ".undo".
 std::string nextJournal(const OutputPlace& place);
 
 /// The name of a temporary in parts; nothing if it is none.
