@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/matching/compare.h"
+#include "vdb_madf/files/output_set.h"
 
 #include <cstdio>
 #include <memory>

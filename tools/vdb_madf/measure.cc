@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/measure/measure.h"
 
 #include <memory>
@@ -13,6 +12,7 @@
 #include "remerge_slabs.h"
 #include "text_file.h"
 #include "vdb_madf/exports/measurement_files.h"
+#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/intensity/measure_gray.h"

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/matching/track.h"
 
 #include <algorithm>
@@ -21,6 +20,7 @@
 #include "text_file.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/output_folder.h"
+#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/vdb/write_vdb.h"
 
