@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <sstream>
 
@@ -109,8 +108,7 @@ Motion parseMotion(const std::string& text, const std::string& path) {
 
 MatchOptions motionOf(const std::string& text) {
   constexpr uint64_t kMostBytes = 1 << 16;
-  for (const MotionKind kind : {MotionKind::rigid, MotionKind::affine, MotionKind::free})
-    if (text == toString(kind)) return {kind, std::nullopt};
+  if (const auto kind = motionKindOf(text)) return {*kind, std::nullopt};
   return {MotionKind::affine, parseMotion(readText(text, kMostBytes), text)};
 }
 
@@ -285,16 +283,14 @@ std::string moveTable(const Tracks& t) {
   csv << "side,grain,fate,track,voxels,partner,confidence,miss,displacement_x,displacement_y,"
          "displacement_z,neighbors,f_xx,f_xy,f_xz,f_yx,f_yy,f_yz,f_zx,f_zy,f_zz,"
          "strain_volumetric,strain_deviatoric,rotation_x,rotation_y,rotation_z\n";
-  std::map<int32_t, const GrainMove*> moves;  // by the number before
-  for (size_t n = 0; n < t.before.size(); ++n)
-    if (t.before[n].partner) moves[t.before[n].grain] = &t.moves[n];
+  const MoveOf move = moveOf(t);
   for (const auto& [side, grains] :
        {std::pair<const char*, const std::vector<TrackedGrain>&>{"before", t.before},
         {"after", t.after}})
     for (const TrackedGrain& g : grains) {
       csv << side << ',' << g.grain << ',' << toString(g.fate) << ',' << g.track << ',' << g.voxels
           << ',' << g.partner;
-      addMove(csv, g.partner ? moves.at(g.track) : nullptr);
+      addMove(csv, move(g));
       csv << '\n';
     }
   return csv.str();

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <cmath>
-#include <map>
 
 #include "bindings.h"
 #include "vdb_madf/base/errors.h"
@@ -71,11 +70,9 @@ py::array_t<double> numbers(const std::vector<const GrainMove*>& moves, std::vec
 py::dict toDict(const std::vector<TrackedGrain>& grains, const Tracks& tracks) {
   using G = TrackedGrain;
   using M = GrainMove;
-  std::map<int32_t, const M*> byNumber;
-  for (size_t n = 0; n < tracks.before.size(); ++n)
-    if (tracks.before[n].partner) byNumber[tracks.before[n].grain] = &tracks.moves[n];
+  const MoveOf move = moveOf(tracks);
   std::vector<const M*> moves;
-  for (const G& grain : grains) moves.push_back(grain.partner ? byNumber.at(grain.track) : nullptr);
+  for (const G& grain : grains) moves.push_back(move(grain));
   const double none = std::nan("");
   const auto strains = [&](const auto& of) {
     return [&none, of](const M* m, int n) {
@@ -128,9 +125,8 @@ py::object toRows(const std::optional<Motion>& motion) {
 }
 
 MatchOptions toOptions(const std::string& kind, const std::optional<Rows>& guess) {
-  for (const MotionKind known : {MotionKind::rigid, MotionKind::affine, MotionKind::free})
-    if (kind == toString(known))
-      return {known, guess ? std::optional(toMotion(*guess)) : std::nullopt};
+  if (const auto known = motionKindOf(kind))
+    return {*known, guess ? std::optional(toMotion(*guess)) : std::nullopt};
   throw InvalidInput("motion is 'rigid', 'affine', 'free' or an array of 3 x 4 numbers, not '" +
                      kind + "'");
 }

@@ -317,6 +317,21 @@ const char* toString(MotionKind kind) {
   return "free";
 }
 
+std::optional<MotionKind> motionKindOf(const std::string& name) {
+  for (const MotionKind kind : {MotionKind::rigid, MotionKind::affine, MotionKind::free})
+    if (name == toString(kind)) return kind;
+  return std::nullopt;
+}
+
+MoveOf moveOf(const Tracks& tracks) {
+  std::map<int32_t, const GrainMove*> moves;  // by the number before
+  for (size_t n = 0; n < tracks.before.size(); ++n)
+    if (tracks.before[n].partner) moves[tracks.before[n].grain] = &tracks.moves[n];
+  return [moves](const TrackedGrain& grain) {
+    return grain.partner ? moves.at(grain.track) : nullptr;
+  };
+}
+
 const char* toString(GrainFate fate) {
   switch (fate) {
     case GrainFate::kept:

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -112,6 +113,12 @@ struct Tracks {
 };
 
 const char* toString(MotionKind kind);  ///< "rigid", "affine", "free"
+/// The kind of this name, if there is one.
+std::optional<MotionKind> motionKindOf(const std::string& name);
+
+/// Tells how a grain of either side has moved, with a motion; null if it was not followed.
+using MoveOf = std::function<const GrainMove*(const TrackedGrain&)>;
+MoveOf moveOf(const Tracks& tracks);
 
 /// Bonds before that tell of breaking: both ends are followed, or one is lost.
 struct BrokenBonds {

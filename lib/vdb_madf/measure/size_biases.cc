@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "vdb_madf/base/detail/median.h"
 #include "vdb_madf/grids/object_keys.h"
 
 namespace vdb_madf {
@@ -71,9 +73,7 @@ bool isSlice(const CoordBBox& box) {
 double medianRadius(const std::vector<BondMeasures>& bonds) {
   std::vector<double> radii;
   for (const BondMeasures& bond : bonds) radii.push_back(bond.equivalentRadius);
-  const auto middle = radii.begin() + std::ptrdiff_t(radii.size() / 2);
-  std::nth_element(radii.begin(), middle, radii.end());
-  return *middle;
+  return detail::upperMedian(std::move(radii));
 }
 
 }  // namespace

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "vdb_madf/base/interrupter.h"
+#include "vdb_madf/matching/detail/local_fit.h"
+#include "vdb_madf/matching/detail/scan_grains.h"
+#include "vdb_madf/matching/detail/seed_search.h"
+
+namespace vdb_madf::detail {
+
+/// Follows grains from what is known already.
+class Following {
+ public:
+  static constexpr double kLimit = 0.5;  ///< farthest partner, in spacings
+
+  Following(const ScanGrains& before, const ScanGrains& after)
+      : before_(before),
+        after_(after),
+        partners_(before.size(), kNoIndex),
+        changed_(before.size(), 1),
+        expected_(before.size()) {}
+
+  void take(const Seed& seed) {
+    for (const auto& [n, m] : seed.pairs) {
+      partners_[n] = m;
+      expected_[n].gradient = seed.gradient;
+    }
+  }
+
+  void setWhole(const Motion& whole) {
+    whole_ = whole;
+    std::fill(changed_.begin(), changed_.end(), 1);
+  }
+
+  /// Matches until nothing changes. Grains are looked at again where a neighbor has changed.
+  void settle(Interrupter* interrupter);
+
+  /// Whether what has grown is more than chance: most of the grains whose neighbors say that they
+  /// lie among those of after are there, and close to where they say.
+  bool isSound() const;
+
+  /// All are looked at again, with an eye on how far the partners of most are.
+  void finish(Interrupter* interrupter);
+
+  /// The motion of most, by least squares without those that are far off.
+  std::optional<Motion> wholeOf(MotionKind kind) const;
+
+  FollowedGrains result() const;
+
+ private:
+  struct Candidate {
+    size_t grain;
+    double cost, distance;
+  };
+  /// Where a grain should be, and what is there.
+  struct Expected {
+    bool isPlaced = false;
+    Vec3d place{0, 0, 0};
+    Mat3d gradient = Mat3d::identity();
+    std::vector<Candidate> candidates;
+  };
+
+  double missOf(size_t n) const {
+    return (after_.center(partners_[n]) - expected_[n].place).length();
+  }
+  /// How far all that are followed miss their places, in spacings.
+  std::vector<double> misses() const;
+  double missOf(size_t n, const Motion& motion) const {
+    return (after_.center(partners_[n]) - motion(before_.center(n))).length();
+  }
+
+  void expectAll(Interrupter* interrupter);
+
+  Expected expect(size_t n) const;
+
+  void addCandidates(size_t n, Expected& here) const;
+
+  /// The share of the followed grains at one that touch its partner, too; 1: there are none.
+  double contactsKept(size_t n, size_t m) const;
+
+  /// @return whether anything has changed
+  bool match();
+
+  const ScanGrains &before_, &after_;
+  std::vector<size_t> partners_;
+  std::vector<char> changed_;
+  std::vector<Expected> expected_;
+  std::vector<double> ratios_;
+  std::optional<Motion> whole_;
+  double limit_ = kLimit;
+};
+
+}  // namespace vdb_madf::detail

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// track() with a motion, on labels; on features: match_grains_test.cc.
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "support/catch.h"
+#include "support/label_shapes.h"
+#include "support/moved_grains.h"
+#include "support/runs.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/labels/label_digest.h"
+#include "vdb_madf/matching/track.h"
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+
+namespace {
+
+/// Balls that touch, as labels; where their centers go, and their numbers.
+LabelMap drawnBalls(const std::vector<openvdb::Vec3d>& centers, const std::vector<int32_t>& numbers,
+                    double radius) {
+  std::map<Coord, std::pair<double, int32_t>> nearest;
+  for (size_t n = 0; n < centers.size(); ++n) {
+    const int reach = int(radius) + 1;
+    const Coord middle = Coord::round(centers[n]);
+    for (int x = -reach; x <= reach; ++x)
+      for (int y = -reach; y <= reach; ++y)
+        for (int z = -reach; z <= reach; ++z) {
+          const Coord p = middle.offsetBy(x, y, z);
+          const double squared = (p.asVec3d() - centers[n]).lengthSqr();
+          if (squared > radius * radius) continue;
+          const auto [at, isNew] = nearest.try_emplace(p, squared, numbers[n]);
+          if (!isNew) at->second = std::min(at->second, {squared, numbers[n]});
+        }
+  }
+  LabelMap voxels;
+  for (const auto& [p, owner] : nearest) voxels[p] = owner.second;
+  return voxels;
+}
+
+}  // namespace
+
+TEST_CASE("track: bonds are followed through a motion", "[track_motion]") {
+  // Balls that touch in pairs; later all is turned, shortened and moved.
+  Dice dice(4);
+  std::vector<openvdb::Vec3d> before, after;
+  std::vector<int32_t> numbers, later;
+  const openvdb::Mat3d turn = turnAbout({0, 0, 1}, 15);
+  openvdb::Mat3d stretch = openvdb::Mat3d::identity();
+  stretch(2, 2) = 0.88;
+  int pair = 0;
+  for (const openvdb::Vec3d& middle : packed(std::vector<double>(36, 12), dice)) {
+    // The bonds of the pairs 0 to 2 break: the first ends up near, the others far. The second ball
+    // of pair 3 goes, and pair 4 is bonded anew.
+    const double first = pair == 4 ? 6.5 : 4.5, second = pair == 0                ? 5.9
+                                                         : pair == 1 || pair == 2 ? 7.5
+                                                                                  : 4.5;
+    for (const double side : {-1., 1.}) {
+      before.push_back(middle + openvdb::Vec3d(side * first, 0, 0));
+      after.push_back(turn * (stretch * middle + openvdb::Vec3d(side * second, 0, 0)) +
+                      openvdb::Vec3d(90, -40, 7));
+      numbers.push_back(int32_t(numbers.size()) + 1);
+      later.push_back(100 - numbers.back());
+    }
+    ++pair;
+  }
+  const auto a = labelGrid(drawnBalls(before, numbers, 5));
+  auto there = after;
+  auto thereNumbers = later;
+  there.erase(there.begin() + 7);
+  thereNumbers.erase(thereNumbers.begin() + 7);
+  const auto b = labelGrid(drawnBalls(there, thereNumbers, 5));
+  setDomain(*a, CoordBBox(Coord(-30), Coord(120)));
+  setDomain(*b, CoordBBox(Coord(-100), Coord(250)));
+  for (const MotionKind kind : {MotionKind::rigid, MotionKind::affine, MotionKind::free}) {
+    CAPTURE(toString(kind));
+    TrackOptions options;
+    options.motion = MatchOptions{kind, {}};
+    const Tracks tracks = track(*a, *b, options);
+    REQUIRE(tracks.moves.size() == tracks.before.size());
+    for (size_t n = 0; n < tracks.before.size(); ++n) {
+      const TrackedGrain& grain = tracks.before[n];
+      CAPTURE(grain.grain);
+      CHECK(grain.partner == (grain.grain == 8 ? 0 : later[n]));
+      CHECK(grain.fate == (grain.grain == 8 ? GrainFate::lost : GrainFate::kept));
+      if (grain.partner)
+        CHECK((tracks.moves[n].displacement - (after[n] - before[n])).length() < 0.3);
+    }
+    for (const TrackedGrain& grain : tracks.after) {
+      CHECK(grain.fate == GrainFate::kept);
+      CHECK(grain.track == 100 - grain.grain);
+    }
+    std::map<std::string, int> fates;
+    for (const TrackedBond& bond : tracks.bondsBefore) {
+      ++fates[toString(bond.fate)];
+      if (bond.first == 1 && bond.second == 2) CHECK(bond.fate == BondFate::detached);
+      if (bond.first == 3 && bond.second == 4) CHECK(bond.fate == BondFate::separated);
+      if (bond.first == 5 && bond.second == 6) CHECK(bond.fate == BondFate::separated);
+      if (bond.first == 7 && bond.second == 8) CHECK(bond.fate == BondFate::unmatched);
+      if (bond.first > 10 && bond.second == bond.first + 1 && bond.first % 2)
+        CHECK(bond.fate == BondFate::kept);
+    }
+    const BrokenBonds broken = brokenBonds(tracks);
+    CHECK(broken.broken == fates["detached"] + fates["separated"]);
+    CHECK(broken.kept == fates["kept"]);
+    CHECK(broken.unknown == fates["unmatched"]);
+    bool isNew = false;
+    for (const TrackedBond& bond : tracks.bondsAfter)
+      isNew = isNew || (bond.fate == BondFate::created && bond.first == 90 && bond.second == 91);
+    CHECK(isNew);
+    // With a gap that reaches them all, none is separated.
+    options.gap = kMaxGap;
+    for (const TrackedBond& bond : track(*a, *b, options).bondsBefore)
+      CHECK(bond.fate != BondFate::separated);
+    const auto named = trackedLabels(*b, tracks);
+    CHECK(named->tree().getValue(Coord::round(after[20])) == 21);
+  }
+  // Of a part of the sample the rest is outside, not lost; and from there it is followed back.
+  TrackOptions options;
+  options.motion = MatchOptions{};
+  LabelMap visible;
+  std::vector<double> along;
+  for (const openvdb::Vec3d& center : after) along.push_back(center.x());
+  std::sort(along.begin(), along.end());
+  const int cut = int(along[along.size() * 7 / 10]);
+  for (const auto& [p, label] : drawnBalls(there, thereNumbers, 5))
+    if (p.x() <= cut) visible[p] = label;
+  const auto part = labelGrid(visible);
+  setDomain(*part, CoordBBox(Coord(-100), Coord(cut, 250, 250)));
+  for (const auto& [first, second] : {std::pair(a, part), std::pair(part, a)}) {
+    const Tracks tracks = track(*first, *second, options);
+    const auto& whole = first == a ? tracks.before : tracks.after;
+    const auto outside = std::count_if(whole.begin(), whole.end(), [](const TrackedGrain& g) {
+      return g.fate == GrainFate::outside;
+    });
+    CHECK(outside > 10);
+    int seen = 0, kept = 0;
+    for (const TrackedGrain& grain : whole) {
+      CAPTURE(grain.grain);
+      if (after[size_t(grain.grain) - 1].x() > cut + 6) CHECK(grain.fate == GrainFate::outside);
+      if (after[size_t(grain.grain) - 1].x() > cut - 7) continue;
+      ++seen;
+      kept += grain.fate == GrainFate::kept;
+    }
+    CHECK(kept > 0.8 * seen);
+  }
+  options.gap = 0;
+  CHECK_THROWS_AS(track(*a, *b, options), InvalidInput);
+  options.gap = 2;
+  CHECK_THROWS_WITH(track(*a, *labelGrid(twoBalls({0, 0, 0}, 5)), options),
+                    vdb_madf::test::Contains("no motion is found"));
+}
