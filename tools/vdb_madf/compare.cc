@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "vdb_madf/matching/compare.h"
-#include "vdb_madf/files/output_set.h"
 
 #include <cstdio>
 #include <memory>
@@ -13,6 +12,7 @@
 #include "json_file.h"
 #include "label_pair.h"
 #include "text_file.h"
+#include "vdb_madf/files/output_set.h"
 
 namespace vdb_madf::tools {
 

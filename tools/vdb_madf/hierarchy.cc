@@ -180,10 +180,7 @@ std::string parents(const Hierarchy& hierarchy, const std::vector<double>& level
   }
   csv << "voxels\n";
   const Merging& finest = mergings.front();
-  std::vector<int64_t> voxels(finest.representative.size(), 0);
-  for (const Hierarchy::Class& c : hierarchy.classes)
-    if (const int32_t grain = finest.grainOfNode[c.representative])
-      voxels[size_t(grain) - 1] += c.voxels;
+  const std::vector<int64_t> voxels = grainVoxels(hierarchy, finest);
   for (size_t g = 0; g < voxels.size(); ++g) {
     for (const Merging& merging : mergings)
       csv << merging.grainOfNode[finest.representative[g]] << ',';

@@ -13,7 +13,6 @@
 #include "text_file.h"
 #include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/files/output_set.h"
-#include "vdb_madf/files/read_text.h"
 #include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/intensity/measure_gray.h"
 #include "vdb_madf/intensity/measure_necks.h"
@@ -97,10 +96,7 @@ Measurements measureInput(const MeasureArguments& o, const Common& common) {
 }
 
 void runMeasure(MeasureArguments& o, const Common& common) {
-  constexpr uint64_t kMostBytes = 1 << 20;
-  if (!o.sizeReference.empty())
-    o.measure.sizeReference = withFileName(
-        o.sizeReference, [&] { return parseSizeReference(readText(o.sizeReference, kMostBytes)); });
+  if (!o.sizeReference.empty()) o.measure.sizeReference = readSizeReference(o.sizeReference);
   MeasurementTables tables(o.folder);
   TextFile plot(o.plot), sizes(o.sizeCurve), bridges(o.bridges);
   const Measurements measurements = measureInput(o, common);

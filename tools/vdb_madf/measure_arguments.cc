@@ -16,6 +16,13 @@ namespace vdb_madf::tools {
 
 namespace {
 
+int parseTimes(const std::string& text, const std::string& option, int least, int most) {
+  const int64_t times = parseCount(text, option);
+  if (times < least || times > most)
+    throw WrongUsage(fmt::format("{} {}: must be from {} to {}", option, text, least, most));
+  return int(times);
+}
+
 /// --vary threshold:T,smooth:S,strictness:K,gamma:G, or some of these.
 void parseVary(const std::string& text, SensitivityOptions& options) {
   for (const std::string& item : split(text, ',')) {
@@ -23,19 +30,13 @@ void parseVary(const std::string& text, SensitivityOptions& options) {
     const std::string name = item.substr(0, colon);
     const std::string value = colon == std::string::npos ? "" : item.substr(colon + 1);
     const std::string about = "--vary " + name;
-    if (name == "gamma") {
-      options.gamma = parseCount(value, about);
-      continue;
-    }
-    std::optional<double>* const number = name == "threshold"    ? &options.threshold
-                                          : name == "smooth"     ? &options.smooth
-                                          : name == "strictness" ? &options.strictness
-                                                                 : nullptr;
-    if (!number)
+    const bool isWhole = name == "gamma";
+    if (!options.vary(name, 0))
       throw WrongUsage("--vary " + text +
                        ": write threshold:T,smooth:S,strictness:K,gamma:G, or some of these");
-    *number = parseNumber(value, about);
-    if (!(**number >= 0)) throw WrongUsage(about + ":" + value + ": must be 0 or more");
+    const double number = isWhole ? double(parseCount(value, about)) : parseNumber(value, about);
+    if (!(number >= 0)) throw WrongUsage(about + ":" + value + ": must be 0 or more");
+    options.vary(name, number);
   }
 }
 
@@ -46,12 +47,8 @@ void parseSensitivity(MeasureArguments& o) {
   }
   if (o.gray.path.empty())
     throw WrongUsage("--sensitivity segments the scan again: give it with --gray SCAN");
-  const int64_t runs = parseCount(o.runs, "--sensitivity");
-  if (runs < kMinRuns || runs > kMaxRuns)
-    throw WrongUsage(
-        fmt::format("--sensitivity {}: must be from {} to {}", o.runs, kMinRuns, kMaxRuns));
   o.sensitivity.emplace();
-  o.sensitivity->runs = int(runs);
+  o.sensitivity->runs = parseTimes(o.runs, "--sensitivity", kMinRuns, kMaxRuns);
   o.sensitivity->measure = o.measure;
   if (!o.vary.empty()) parseVary(o.vary, *o.sensitivity);
 }
@@ -73,16 +70,6 @@ void parseDensity(MeasureArguments& o) {
     if (o.ice) throw WrongUsage("--ice is --density 917: give one of the two");
     o.tables.density = parseNumber(o.density, "--density");
     if (!(*o.tables.density > 0)) throw WrongUsage("--density " + o.density + ": must be above 0");
-  }
-}
-
-void parseBootstrap(MeasureArguments& o) {
-  if (!o.bootstrap.empty()) {
-    const int64_t replicates = parseCount(o.bootstrap, "--bootstrap");
-    if (replicates < kMinReplicates || replicates > kMaxReplicates)
-      throw WrongUsage(fmt::format("--bootstrap {}: must be from {} to {}", o.bootstrap,
-                                   kMinReplicates, kMaxReplicates));
-    o.measure.bootstrap = int(replicates);
   }
 }
 
@@ -109,7 +96,8 @@ void parse(MeasureArguments& o) {
   checkScan(o.phases, o.input);
   o.measure.boundary = parseBoundary(o.boundary);
   o.measure.minFaces = parseCount(o.minFaces, "--min-faces");
-  parseBootstrap(o);
+  if (!o.bootstrap.empty())
+    o.measure.bootstrap = parseTimes(o.bootstrap, "--bootstrap", kMinReplicates, kMaxReplicates);
   parseSensitivity(o);
 }
 

@@ -20,11 +20,11 @@ struct ScanOption {
 /// What can be said of the option before the work. @throw WrongUsage
 void checkScan(const ScanOption& scan, const InputOptions& labels);
 
-/// @param labels the scan must not be one of its outputs
-/// @throw InvalidInput, IoError: one line that names the file and what to do.
 /// The voxels of a map of phases that have this value. @throw as loadObject()
 MaskGrid::Ptr loadPhase(const ScanOption& map, int64_t value, const InputOptions& labels,
                         Progress* progress);
+/// @param labels the scan must not be one of its outputs
+/// @throw InvalidInput, IoError: one line that names the file and what to do.
 GrayScan openScan(const ScanOption& scan, const InputOptions& labels, Progress* progress);
 
 }  // namespace vdb_madf::tools

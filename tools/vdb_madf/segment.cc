@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "vdb_madf/segmentation/segment.h"
-#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/intensity/measure_necks.h"
 
@@ -33,6 +32,7 @@
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/exports/measurement_files.h"
+#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/measure/measure.h"

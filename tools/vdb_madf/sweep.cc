@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "vdb_madf/base/memory.h"
-#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/segmentation/parameter_sweep.h"
 
 #include <fmt/core.h>
@@ -25,6 +24,7 @@
 #include "text_file.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/pictures/sweep_plot.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/slabs/sweep_slabs.h"

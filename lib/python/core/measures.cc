@@ -7,7 +7,7 @@
 
 #include "array_source.h"
 #include "bindings.h"
-#include "vdb_madf/files/read_text.h"
+#include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/intensity/measure_gray.h"
 #include "vdb_madf/intensity/measure_necks.h"
@@ -49,8 +49,6 @@ struct Unit {
     return (exponent < 0 ? "1/" : "") + positive;
   }
 };
-
-constexpr uint64_t kMostReferenceBytes = 1 << 20;
 
 bool isFlag(const std::string& name) {
   return name == "at_domain_face" || name == "bonded" || name == "cell_at_domain_face";
@@ -150,19 +148,9 @@ py::dict sensitivityOf(const Sensitivity& s, const Unit& unit, py::dict& units) 
 
 /// How far choices are varied, by name; what is not named has its default.
 void setVaried(const std::map<std::string, double>& vary, SensitivityOptions& options) {
-  for (const auto& [name, value] : vary) {
-    if (!(value >= 0)) throw InvalidInput("vary: " + name + " must be 0 or more");
-    if (name == "threshold")
-      options.threshold = value;
-    else if (name == "smooth")
-      options.smooth = value;
-    else if (name == "strictness")
-      options.strictness = value;
-    else if (name == "gamma")
-      options.gamma = int64_t(std::min(value, 1e18));
-    else
+  for (const auto& [name, value] : vary)
+    if (!options.vary(name, std::min(value, 1e18)))
       throw InvalidInput("vary: '" + name + "' is none of threshold, smooth, strictness, gamma");
-  }
 }
 
 py::dict sampleOf(const Measurements& m, const Unit& unit, py::dict& units) {
@@ -257,16 +245,6 @@ MaskGrid::Ptr loadBinder(const py::object& source, const std::string& part, int6
   return loadObject(path, options);
 }
 
-/// Of a file, which errors name.
-SizeReference readReference(const std::string& path) {
-  const std::string text = readText(path, kMostReferenceBytes);
-  try {
-    return parseSizeReference(text);
-  } catch (const InvalidInput& error) {
-    throw InvalidInput(path + ": " + error.what());
-  }
-}
-
 py::dict measureLabels(const GridPtr& labels, const Call& call, const std::string& boundary,
                        int64_t minFaces, bool shape, const py::object& intensity,
                        const std::string& intensityGrid, const py::object& gray,
@@ -281,7 +259,7 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
   options.edgeWeights = edgeWeights;
   options.cells = voronoi;
   options.sizes = sizeCurve;
-  if (!sizeReference.empty()) options.sizeReference = readReference(sizeReference);
+  if (!sizeReference.empty()) options.sizeReference = readSizeReference(sizeReference);
   options.bootstrap = bootstrap;
   if (const Boundary given = boundaryOf(boundary); given != Boundary::automatic)
     options.boundary = given;

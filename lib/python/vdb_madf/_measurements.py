@@ -173,11 +173,8 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
         raise _core.InvalidInput("sensitivity segments the scan again: give it as gray")
     if vary and sensitivity <= 0:
         raise _core.InvalidInput("vary says how far sensitivity goes: give it, too")
-    if stability:
-        if not isinstance(labels, Segmentation):
-            raise _core.InvalidInput("stability: give the Segmentation itself, which has the "
-                                     "manifolds")
-        manifold = labels._manifolds()
+    if stability and not isinstance(labels, Segmentation):
+        raise _core.InvalidInput("stability: give the Segmentation itself, which has the manifolds")
     with calling(progress, threads) as call:
         measured = labels_of(labels, call, threads, voxel_size=voxel_size, dataset=dataset,
                              grid=grid)

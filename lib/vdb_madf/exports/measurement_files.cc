@@ -18,6 +18,7 @@
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/files/output_file.h"
 #include "vdb_madf/files/output_set.h"
+#include "vdb_madf/files/read_text.h"
 #include "vdb_madf/files/written_together.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
@@ -271,6 +272,16 @@ MeasurementTexts measurementTexts(const Measurements& m, const TableOptions& opt
   return {table(grainColumns(m.grains, m.extra), unit, options.sample),
           table(bondColumns(m.bonds, m.extra), unit, options.sample),
           jsonText(sampleJson(m, unit, options))};
+}
+
+SizeReference readSizeReference(const std::string& path) {
+  constexpr uint64_t kMostBytes = 1 << 20;
+  const std::string text = readText(path, kMostBytes);
+  try {
+    return parseSizeReference(text);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(path + ": " + error.what());
+  }
 }
 
 std::string sizeCurveText(const Measurements& m, const TableOptions& options) {

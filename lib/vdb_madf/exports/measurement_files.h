@@ -37,6 +37,9 @@ struct MeasurementTexts {
 MeasurementTexts measurementTexts(const Measurements& measurements,
                                   const TableOptions& options = {});
 
+/// Reads a file for parseSizeReference(). @throw InvalidInput, which names the file, too; IoError
+SizeReference readSizeReference(const std::string& path);
+
 /// sizeCurve() as comma-separated values, with units as in the tables. @pre measured with sizes
 std::string sizeCurveText(const Measurements& measurements, const TableOptions& options = {});
 

@@ -31,7 +31,7 @@ constexpr double kThresholdShare = 0.2;  // of the contrast
 constexpr double kSmoothShare = 0.5;     // of the blur
 constexpr double kUsualBlur = 0.7;       // voxels, where a scan tells none
 constexpr double kStrictness = 3;
-constexpr int64_t kGamma = 8;
+constexpr double kGamma = 8;
 
 /// How labels were made of a scan.
 struct Choices {
@@ -81,10 +81,11 @@ double contrastAt(double threshold, ImageReader& image) {
 }
 
 Sensitivity boundsOf(const Choices& choices, const SensitivityOptions& options,
-                     const std::function<GrayScan()>& open, Interrupter* interrupter) {
+                     const std::optional<ScanBlur>& known, const std::function<GrayScan()>& open,
+                     Interrupter* interrupter) {
   double threshold = options.threshold.value_or(0), smooth = options.smooth.value_or(0);
   if (!options.threshold || !options.smooth) {
-    const auto blur = estimateBlur(*open().image, interrupter);
+    const auto blur = known ? known : estimateBlur(*open().image, interrupter);
     const double contrast = blur ? std::abs(blur->inside - blur->outside)
                                  : contrastAt(choices.selection.low, *open().image);
     const double share = std::max(kThresholdShare, blur ? blur->noise : 0);
@@ -98,8 +99,8 @@ Sensitivity boundsOf(const Choices& choices, const SensitivityOptions& options,
   bounds.smooth = {std::max(0.0, choices.gray.smooth - smooth), choices.gray.smooth + smooth};
   bounds.strictness = {choices.segment.merge.strictness - strictness,
                        choices.segment.merge.strictness + strictness};
-  const int64_t gamma = std::max<int64_t>(1, choices.segment.gamma);
-  bounds.gamma = {double(gamma), double(std::max(gamma, options.gamma.value_or(kGamma)))};
+  const auto gamma = double(std::max<int64_t>(1, choices.segment.gamma));
+  bounds.gamma = {gamma, std::max(gamma, std::floor(options.gamma.value_or(kGamma)))};
   return bounds;
 }
 
@@ -206,6 +207,18 @@ std::vector<MeanInterval> intervalsOf(const std::vector<std::vector<MeanInterval
 
 }  // namespace
 
+bool SensitivityOptions::vary(const std::string& name, double number) {
+  std::optional<double>* const choice = name == "threshold"    ? &threshold
+                                        : name == "smooth"     ? &smooth
+                                        : name == "strictness" ? &strictness
+                                        : name == "gamma"      ? &gamma
+                                                               : nullptr;
+  if (!choice) return false;
+  if (!(number >= 0)) throw InvalidInput(name + " must be 0 or more");
+  *choice = number;
+  return true;
+}
+
 void measureSensitivity(const Int32Grid& labels, const std::function<GrayScan()>& open,
                         const SensitivityOptions& options, Measurements& measured,
                         Interrupter* interrupter) {
@@ -220,7 +233,7 @@ void measureSensitivity(const Int32Grid& labels, const std::function<GrayScan()>
       throw InvalidInput(scan.image->path() +
                          ": its voxels do not begin at 0,0,0: save it as .tif");
   }
-  Sensitivity sensitivity = boundsOf(choices, options, open, nullptr);
+  Sensitivity sensitivity = boundsOf(choices, options, measured.scan, open, interrupter);
   const Domain& domain = *choices.segment.domain;
   MeasureOptions measuring;
   measuring.boundary = choices.segment.boundary;

@@ -3,9 +3,9 @@
 
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/intensity/gray_scan.h"
@@ -21,8 +21,13 @@ struct SensitivityOptions {
   std::optional<double> threshold;  ///< gray values
   std::optional<double> smooth;     ///< voxels
   std::optional<double> strictness;
-  std::optional<int64_t> gamma;  ///< largest least cell of a medial ball, voxels
-  MeasureOptions measure;        ///< what counts as a surface and as a bond
+  std::optional<double> gamma;  ///< largest least cell of a medial ball, whole voxels
+  MeasureOptions measure;       ///< what counts as a surface and as a bond
+
+  /// Says how far one of these is varied: "threshold", "smooth", "strictness" or "gamma".
+  /// @return false if there is no such choice
+  /// @throw InvalidInput unless the number is 0 or more
+  bool vary(const std::string& name, double number);
 };
 
 /// Segments a scan by other choices than those its labels were made by, and tells what comes again:

@@ -34,8 +34,7 @@ void checkDomains(const MaskGrid& binder, const SampleMeasures& sample) {
     throw InvalidInput(
         "whether phases and labels have the same voxels is unknown, for the domain "
         "of one of them is: give both as images, or --domain");
-  const bool isPart = sample.regionVoxels || sample.box.min() != domain->box().min();
-  if (domain->box() == sample.box || (isPart && domain->box().isInside(sample.box))) return;
+  if (fitsScan(sample, domain->box())) return;
   const auto text = [](const Coord& size) {
     return std::to_string(size.x()) + "x" + std::to_string(size.y()) + "x" +
            std::to_string(size.z());

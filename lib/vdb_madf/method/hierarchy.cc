@@ -343,4 +343,12 @@ Merging cut(const Hierarchy& hierarchy, double strictness) {
   return merging;
 }
 
+std::vector<int64_t> grainVoxels(const Hierarchy& hierarchy, const Merging& merging) {
+  std::vector<int64_t> voxels(merging.representative.size(), 0);
+  for (const Hierarchy::Class& c : hierarchy.classes)
+    if (const int32_t grain = merging.grainOfNode[c.representative])
+      voxels[size_t(grain) - 1] += c.voxels;
+  return voxels;
+}
+
 }  // namespace vdb_madf

@@ -89,6 +89,9 @@ std::vector<JoinedGrains> joinedGrains(const Hierarchy& hierarchy);
 /// @throw InvalidInput unless strictness is in [hierarchy.lowest, kMaxStrictness].
 Merging cut(const Hierarchy& hierarchy, double strictness);
 
+/// Voxels of grain g of a cut at g - 1.
+std::vector<int64_t> grainVoxels(const Hierarchy& hierarchy, const Merging& merging);
+
 /// How many joins, from the first on, cut() makes. @throw InvalidInput as cut()
 size_t joinsAt(const Hierarchy& hierarchy, double strictness);
 

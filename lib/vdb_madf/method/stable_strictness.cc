@@ -46,10 +46,7 @@ StableStrictness stableStrictness(const Hierarchy& hierarchy) {
     const double strictness = double(tenths) / kTenths;
     const Merging merging = cut(hierarchy, strictness);
     const GrainLives lives(hierarchy, strictness);
-    std::vector<int64_t> voxels(merging.representative.size(), 0);
-    for (const Hierarchy::Class& c : hierarchy.classes)
-      if (const int32_t grain = merging.grainOfNode[c.representative])
-        voxels[size_t(grain) - 1] += c.voxels;
+    const std::vector<int64_t> voxels = grainVoxels(hierarchy, merging);
     int64_t sum = 0, all = 0;
     for (size_t g = 0; g < voxels.size(); ++g) {
       sum += voxels[g] * stabilityOf(lives.of(merging.representative[g]), strictness);

@@ -25,8 +25,7 @@ void checkScanBox(const std::string& path, const CoordBBox& scan, const SampleMe
     throw InvalidInput(path +
                        ": the domain of the labels is unknown, so that nothing tells whether this "
                        "is their scan: give the domain");
-  const bool isPart = sample.regionVoxels || sample.box.min() != scan.min();
-  if (scan == sample.box || (isPart && scan.isInside(sample.box))) return;
+  if (fitsScan(sample, scan)) return;
   throw InvalidInput(path + ": has " + sizeAndPlace(scan) +
                      ", and the labels are those of a scan of " + sizeAndPlace(sample.box) +
                      ": give the one that they were made of, cropped as they were");

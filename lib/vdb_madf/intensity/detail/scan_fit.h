@@ -9,9 +9,8 @@
 
 namespace vdb_madf::detail {
 
-/// Is this the box of the scan that the labels were made of? It has to be the domain of the labels;
-/// around labels that know but a part of it, a region or a box that begins elsewhere, it may be
-/// larger. @throw InvalidInput, one line that begins with the path
+/// Is this the box of the scan that the labels were made of (fitsScan())?
+/// @throw InvalidInput, one line that begins with the path
 void checkScanBox(const std::string& path, const CoordBBox& scan, const SampleMeasures& sample);
 
 }  // namespace vdb_madf::detail
