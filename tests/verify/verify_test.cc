@@ -119,7 +119,7 @@ TEST_CASE("verify: labels with one fault are refused, and where it is is told", 
       CHECK(moved.differing == 1);
       std::ostringstream where;
       where << p << ", has grain " << other << " and should have grain " << own;
-      CHECK_THAT(moved.fault, Catch::Contains(where.str()));
+      CHECK_THAT(moved.fault, Contains(where.str()));
       CHECK(wrong([&](Int32Grid& l) { l.tree().setValueOff(p, 0); }).differing == 1);
       CHECK(wrong([&](Int32Grid& l) { l.tree().setValueOn(p, -own); }).differing == 1);
     }
@@ -250,25 +250,25 @@ TEST_CASE("verify: labels that no definition gives are refused", "[verify]") {
   };
   for (const char* key : {"madf_gamma", "madf_boundary", "madf_fill_holes", "madf_tidy",
                           "madf_merge", "madf_strictness"})
-    CHECK_THAT(refusal([&](Int32Grid& l) { l.removeMeta(key); }), Catch::Contains(key));
-  CHECK_THAT(refusal([](Int32Grid& l) { describeOwnMerging(l, 2, 3); }), Catch::Contains("'own'"));
+    CHECK_THAT(refusal([&](Int32Grid& l) { l.removeMeta(key); }), Contains(key));
+  CHECK_THAT(refusal([](Int32Grid& l) { describeOwnMerging(l, 2, 3); }), Contains("'own'"));
   CHECK_THAT(
       refusal([](Int32Grid& l) { l.insertMeta(kEditsKey, openvdb::StringMetadata("merge 1 2")); }),
-      Catch::Contains("edited"));
+      Contains("edited"));
   CHECK_THAT(refusal([](Int32Grid& l) {
                l.removeMeta("madf_domain_min");
                l.removeMeta("madf_domain_max");
              }),
-             Catch::Contains("domain"));
+             Contains("domain"));
   const auto setWeights = [](Int32Grid& labels, int32_t w) {
     labels.insertMeta("madf_weights", openvdb::Vec3IMetadata({w, w, w}));
   };
-  CHECK_THAT(refusal([&](Int32Grid& l) { setWeights(l, 0); }), Catch::Contains("positive"));
+  CHECK_THAT(refusal([&](Int32Grid& l) { setWeights(l, 0); }), Contains("positive"));
   const Int32Grid::Ptr far = right->deepCopy();
   setWeights(*far, INT32_MAX);
-  CHECK_THAT(verify(singleSlab(far), *object).fault, Catch::Contains("32 bits"));
+  CHECK_THAT(verify(singleSlab(far), *object).fault, Contains("32 bits"));
   CHECK_THAT(refusal([](Int32Grid& l) { l.insertMeta("madf_tidy", openvdb::Int64Metadata(1001)); }),
-             Catch::Contains("1000 rounds"));
+             Contains("1000 rounds"));
   StopAtOnce stop;
   CHECK_THROWS_AS(verify(singleSlab(right), *object, 0, &stop), Interrupted);
   CHECK_THROWS_AS(verify(singleSlab(right), *object, 32 * 24 * 24 * 24 - 1), InvalidInput);

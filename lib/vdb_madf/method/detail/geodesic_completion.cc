@@ -130,10 +130,13 @@ bool GeodesicCompletion::round(Interrupter* interrupter) {
       }
     }
   });
-  frontWords_.reset();
-  if (!isMuch) frontWords_.emplace();
+  std::vector<uint32_t> ahead;
   for (const std::vector<uint32_t>& more : touched)
-    frontWords_->insert(frontWords_->end(), more.begin(), more.end());
+    ahead.insert(ahead.end(), more.begin(), more.end());
+  if (isMuch)
+    frontWords_.reset();
+  else
+    frontWords_ = std::move(ahead);
   return changed > 0;
 }
 
