@@ -32,16 +32,12 @@ bool better(const Candidate& a, const Candidate& b) {
          std::make_tuple(b.center.x(), b.center.y(), b.center.z());
 }
 
-Candidate candidate(const Coord& p, const Coord& center, int64_t squaredRadius,
-                    const VoxelWeights& weights) {
+inline Candidate candidate(const Coord& p, const Coord& center, int64_t squaredRadius,
+                           const VoxelWeights& weights) {
   return {squaredLength(p - center, weights) - squaredRadius, squaredRadius, center};
 }
 
 }  // namespace
-
-int64_t squaredLength(const Coord& d, const VoxelWeights& w) {
-  return int64_t(w.x) * d.x() * d.x() + int64_t(w.y) * d.y() * d.y() + int64_t(w.z) * d.z() * d.z();
-}
 
 // ------------------------------------------------------------------------------- The boundary
 

@@ -66,7 +66,9 @@ class OracleDomain {
   std::optional<ObjectVolume> region_;
 };
 
-int64_t squaredLength(const Coord& d, const VoxelWeights& weights);
+inline int64_t squaredLength(const Coord& d, const VoxelWeights& w) {
+  return int64_t(w.x) * d.x() * d.x() + int64_t(w.y) * d.y() * d.y() + int64_t(w.z) * d.z() * d.z();
+}
 
 /// Before all steps: is the boundary open (boundary.h)? @throw Undefined
 bool oracleBoundary(const ObjectVolume& object, Boundary boundary,
