@@ -358,14 +358,14 @@ TEST_CASE("image_hdf5: damaged files read or are refused with one line", "[image
     writeHdf5(path, "v", layout, bytes.data());
     const std::string whole = readFile(path);
     const MemoryLimit limit(uint64_t(512) << 20);
-    for (int i = 0; i < mutationsPerFormat(2000) / 2; ++i) {
+    // A process is made for each, which takes most of the time.
+    for (int i = 0; i < mutationsPerFormat(600) / 2; ++i) {
       writeFile(path, mutated(whole, whole.size(), ++seed));
       CAPTURE(chunked, seed);
       REQUIRE(complaint(path, 2 * whole.size(), 1 << 16) == "");
     }
-    // A process is made for each.
     writeFile(path, whole);
-    REQUIRE(complaintOfCuts(path, path, 2048, 1 << 16, 17) == "");
+    REQUIRE(complaintOfCuts(path, path, 2048, 1 << 16, 41) == "");
   }
   CHECK(output.text() == "");
 }

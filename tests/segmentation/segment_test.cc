@@ -170,7 +170,7 @@ void requireAgreement(const RandomCase& c) {
 
 TEST_CASE("segment: agrees with the oracle on random volumes", "[segment]") {
   const uint64_t first = fromEnvironment("VDB_MADF_SEED", 1);
-  const uint64_t cases = fromEnvironment("VDB_MADF_CASES", 14 * kCombinations);
+  const uint64_t cases = fromEnvironment("VDB_MADF_CASES", 10 * kCombinations);
   const int side = int(fromEnvironment("VDB_MADF_SIDE", 0));
   constexpr uint64_t kLargeEvery = 211;  // a prime: all combinations get large volumes in the end
   std::map<std::tuple<Boundary, Adjacency, MergeMode, int>, int> seen;
@@ -196,7 +196,7 @@ TEST_CASE("segment: agrees with the oracle on random volumes", "[segment]") {
 
 TEST_CASE("segment: agrees with the oracle in random regions", "[segment]") {
   const uint64_t first = fromEnvironment("VDB_MADF_SEED", 1);
-  const uint64_t cases = fromEnvironment("VDB_MADF_CASES", 10 * kCombinations);
+  const uint64_t cases = fromEnvironment("VDB_MADF_CASES", 8 * kCombinations);
   uint64_t regions = 0, open = 0;
   for (uint64_t seed = first; seed < first + cases; ++seed) {
     Rng rng(seed + 5000);

@@ -299,17 +299,18 @@ TEST_CASE("cli: a file that is missing or none of ours is named", "[cli]") {
     bench.write("empty" + ending, "");
     bench.write("garbage" + ending, garbage);
   }
+  const std::set<std::string> byEachVerb{"missing.vdb", "missing.tif", "folder",     "folder.vdb",
+                                         "empty.vdb",   "garbage.vdb", "garbage.tif"};
   for (const std::string& file : files) {
     refuses(bench, kFailed, "segment " + file + " out.vdb", {file});
-    refuses(bench, kFailed, "convert " + file + " out.raw", {file});
     refuses(bench, kFailed, "info " + file, {file});
+    if (!byEachVerb.count(file)) continue;
+    refuses(bench, kFailed, "convert " + file + " out.raw", {file});
     refuses(bench, kFailed, "render " + file + " out.png", {file});
     refuses(bench, kFailed, "report " + file + " out.html", {file});
     refuses(bench, kFailed, "remerge " + file + " out.vdb", {file});
     refuses(bench, kFailed, "edit " + file + " out.vdb --renumber", {file});
   }
-  for (const std::string file : {"missing.vdb", "folder.vdb"})
-    refuses(bench, kFailed, "remerge " + file + " out.vdb", {file});
   refuses(bench, kFailed, "info garbage.vdb", {"not a VDB file"});
   refuses(bench, kFailed, "compare missing.vdb empty.vdb", {"missing.vdb"});
   refuses(bench, kFailed, "track missing.vdb empty.vdb", {"missing.vdb"});
