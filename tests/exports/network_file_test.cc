@@ -39,11 +39,11 @@ size_t count(const std::string& text, const std::string& what) {
 }  // namespace
 
 TEST_CASE("grain_network: grains and bonds are those of the voxels", "[grain_network]") {
-  constexpr double kEdge = 0.25;
+  constexpr double kVoxelEdge = 0.25;
   for (const LabelMap& voxels :
        {twoBalls({-3, 8, 5}, 6), awkwardLabels(), randomLabels(5, Coord(-6), 15, 8, 85)}) {
     const auto grid = labelGrid(voxels);
-    setVoxelSize(*grid, VoxelSize{kEdge * 1e-3});
+    setVoxelSize(*grid, VoxelSize{kVoxelEdge * 1e-3});
     const GrainNetwork network = grainNetwork(*grid);
 
     std::map<int32_t, std::vector<Vec3d>> places;
@@ -59,7 +59,7 @@ TEST_CASE("grain_network: grains and bonds are those of the voxels", "[grain_net
     const auto mean = [&](const std::vector<Vec3d>& points) {
       Vec3d sum(0);
       for (const Vec3d& p : points) sum += p;
-      return kEdge * sum / double(points.size());
+      return kVoxelEdge * sum / double(points.size());
     };
 
     REQUIRE(network.grains.size() == places.size());
@@ -68,7 +68,7 @@ TEST_CASE("grain_network: grains and bonds are those of the voxels", "[grain_net
       const auto& own = places.at(network.grains[i]);
       CHECK((network.centers[i] - mean(own)).length() < 1e-9);
       CHECK(column(network.grainColumns, "voxels")[i] == double(own.size()));
-      const double volume = double(own.size()) * std::pow(kEdge, 3);
+      const double volume = double(own.size()) * std::pow(kVoxelEdge, 3);
       CHECK(column(network.grainColumns, "volume")[i] == Approx(volume));
       const double diameter = column(network.grainColumns, "equivalent_diameter")[i];
       CHECK(M_PI / 6 * std::pow(diameter, 3) == Approx(volume));
@@ -83,7 +83,7 @@ TEST_CASE("grain_network: grains and bonds are those of the voxels", "[grain_net
       ++coordination[second];
       CHECK(column(network.bondColumns, "faces")[i] == double(own.size()));
       CHECK(column(network.bondColumns, "face_area")[i] ==
-            Approx(double(own.size()) * kEdge * kEdge));
+            Approx(double(own.size()) * kVoxelEdge * kVoxelEdge));
       CHECK(column(network.bondColumns, "length")[i] ==
             Approx((network.centers[first] - network.centers[second]).length()));
       const Vec3d center(column(network.bondColumns, "centroid_x")[i],
@@ -113,11 +113,11 @@ TEST_CASE("grain_network: the columns are those of the tables, in their order", 
 }
 
 TEST_CASE("grain_network: every measure is there, in world units", "[grain_network]") {
-  constexpr double kEdge = 0.25;
+  constexpr double kVoxelEdge = 0.25;
   const auto grid = labelGrid(twoBalls({-3, 8, 5}, 6));
   const GrainNetwork plain = grainNetwork(*grid);
   const Measurements measured = measure(*grid);
-  setVoxelSize(*grid, VoxelSize{kEdge * 1e-3});
+  setVoxelSize(*grid, VoxelSize{kVoxelEdge * 1e-3});
   grid->transform().postTranslate(Vec3d(10, 20, 30));
   const GrainNetwork scaled = grainNetwork(*grid);
 
@@ -154,8 +154,8 @@ TEST_CASE("grain_network: every measure is there, in world units", "[grain_netwo
       const auto power = powers.find(name);
       for (size_t row = 0; row < one[i].values.size(); ++row) {
         double expected = one[i].values[row];
-        if (isPlace) expected = kEdge * expected + 10 * (name.back() - 'w');
-        if (power != powers.end()) expected *= std::pow(kEdge, power->second);
+        if (isPlace) expected = kVoxelEdge * expected + 10 * (name.back() - 'w');
+        if (power != powers.end()) expected *= std::pow(kVoxelEdge, power->second);
         CHECK(other[i].values[row] == Approx(expected).margin(1e-12));
       }
     }

@@ -25,7 +25,7 @@ TEST_CASE("histogram_plot: each type of file, with the same bytes each time", "[
   for (const auto& [type, begin] : {std::pair<PlotType, std::string>{PlotType::png, "\x89PNG"},
                                     {PlotType::svg, "<?xml"},
                                     {PlotType::pdf, "%PDF"}}) {
-    const auto plot = [&, type = type] { return histogramPlot({1, 2}, 0, 1, {{0.5, "µ"}}, type); };
+    const auto plot = [&, as = type] { return histogramPlot({1, 2}, 0, 1, {{0.5, "µ"}}, as); };
     const std::string bytes = plot();
     CHECK(bytes.substr(0, begin.size()) == begin);
     const bool same = bytes == plot();

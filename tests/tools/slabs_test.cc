@@ -417,11 +417,11 @@ TEST_CASE("slabs: what does not fit becomes one file all the same, if that is as
           "[slabs]") {
   const Bench bench;
   // A voxel in each of some 83,000 leaf nodes: they take 210 MiB as a whole.
-  constexpr int kSide = 8 * 34, kHeight = 8 * 72;
-  std::string voxels(size_t(kSide) * kSide * kHeight, '\0');
+  constexpr int kWidth = 8 * 34, kHeight = 8 * 72;
+  std::string voxels(size_t(kWidth) * kWidth * kHeight, '\0');
   for (size_t z = 3; z < kHeight; z += 8)
-    for (size_t y = 4; y < kSide; y += 8)
-      for (size_t x = z / 100; x < kSide; x += 8) voxels[(z * kSide + y) * kSide + x] = 1;
+    for (size_t y = 4; y < kWidth; y += 8)
+      for (size_t x = z / 100; x < kWidth; x += 8) voxels[(z * kWidth + y) * kWidth + x] = 1;
   bench.write("in.raw", voxels);
   const std::string in = "segment in.raw ", how = " --dims 272x272x576 --type uint8 --phase 1 -q";
   bench.mustRun(in + "one.vdb" + how);

@@ -113,7 +113,7 @@ TEST_CASE("verify: labels with one fault are refused, and where it is is told", 
     };
     // Labels of single voxels.
     for (const size_t i : {size_t(0), pairs.size() / 3, pairs.size() / 2, pairs.size() - 1}) {
-      const auto& [p, q] = pairs[i];
+      const Coord p = pairs[i].first, q = pairs[i].second;
       const int32_t own = right->tree().getValue(p), other = right->tree().getValue(q);
       const Verification moved = wrong([&](Int32Grid& l) { l.tree().setValue(p, other); });
       CHECK(moved.differing == 1);

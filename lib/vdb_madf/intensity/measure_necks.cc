@@ -324,12 +324,14 @@ FloatTree::Ptr readAround(const std::vector<Section>& sections, GrayScan& scan,
   std::vector<char> bytes(size_t(detail::sliceBytes(scan.image->info())) *
                           size_t(std::min(8, size.z())));
   int done = 0;
-  for (const auto& [z, leaves] : layers) {
+  for (const auto& layer : layers) {
+    const int z = layer.first;
+    const std::vector<FloatTree::LeafNodeType*>& leaves = layer.second;
     if (interrupter && interrupter->wasInterrupted(done++ * 100 / int(layers.size())))
       throw Interrupted();
     const int first = std::max(z, box.min().z()), last = std::min(z + 7, box.max().z());
     scan.image->read(first - box.min().z(), last - first + 1, bytes.data());
-    detail::withSampleType(scan.image->info().type, [&, first = first](auto type) {
+    detail::withSampleType(scan.image->info().type, [&](auto type) {
       const auto* samples = reinterpret_cast<const decltype(type)*>(bytes.data());
       for (auto* leaf : leaves) {
         CoordBBox part = leaf->getNodeBoundingBox();

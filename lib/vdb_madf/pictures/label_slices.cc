@@ -53,7 +53,6 @@ class PlanePainter {
       : labels_(labels),
         box_(box),
         colors_(colors),
-        scale_(scale),
         plane_(plane),
         shown_(options.shown),
         gray_(gray),
@@ -170,7 +169,6 @@ class PlanePainter {
   const Int32Grid& labels_;
   const CoordBBox box_;
   const GrainColors& colors_;
-  const Scale& scale_;
   const SlicePlane plane_;
   const Int32Grid* shown_;
   const GrayPlane* gray_;

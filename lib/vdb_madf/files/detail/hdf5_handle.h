@@ -63,11 +63,11 @@ inline Hdf5Handle openHdf5Dataset(hid_t file, const std::string& name, hid_t acc
 
 /// The lengths of the axes; empty if there are none or too many.
 inline std::vector<hsize_t> hdf5Lengths(hid_t dataset) {
-  constexpr int kMaxAxes = 8;
+  constexpr int kMostAxes = 8;
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
   if (!space) return {};
   const int axes = H5Sget_simple_extent_ndims(space);
-  if (axes < 1 || axes > kMaxAxes) return {};
+  if (axes < 1 || axes > kMostAxes) return {};
   std::vector<hsize_t> lengths(static_cast<size_t>(axes));
   if (H5Sget_simple_extent_dims(space, lengths.data(), nullptr) < 0) return {};
   return lengths;

@@ -341,9 +341,9 @@ class Simplifier {
   void apply() {
     parallelFor(chosen_.size(), kSiteGrain, nullptr, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
-        const auto& [cost, from, to] = chosen_[i];
-        forEachPoint(from, [&, to = to](uint32_t point) { move(point, to); });
-        quadrics_[to] += quadrics_[from];
+        const Collapse& collapse = chosen_[i];
+        forEachPoint(collapse.from, [&](uint32_t point) { move(point, collapse.to); });
+        quadrics_[collapse.to] += quadrics_[collapse.from];
       }
     });
     for (const Collapse& collapse : chosen_) stamps_[collapse.from] = kNone;
