@@ -40,8 +40,10 @@ TallObject randomObject(Rng& rng) {
   const bool isWide = rng.chance(0.4);
   const int side = isWide ? rng.between(60, 100) : rng.between(1, 24);
   const VolumeKind kind = isWide && rng.chance(0.5) ? VolumeKind::fullBlock : kKinds[rng.below(8)];
-  const CoordBBox box =
-      boxAt(Coord(-3, 5, rng.between(-30, 30)), Coord(side, side + 2, rng.between(80, 260)));
+  // One after another, so that each compiler draws the same objects.
+  const int height = rng.between(80, 260);
+  const int bottom = rng.between(-30, 30);
+  const CoordBBox box = boxAt(Coord(-3, 5, bottom), Coord(side, side + 2, height));
   TallObject object{randomVolume(kind, box, rng), {}, {}};
   object.voxels[box.min() + Coord(side / 2, side / 2, rng.below(80))] = 0;  // never all of it
   object.obstacles.open = rng.chance(0.5);
