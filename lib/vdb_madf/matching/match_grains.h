@@ -44,6 +44,7 @@ enum class MotionKind {
   free     ///< nothing is said of the whole; neighbors move alike
 };
 
+/// What is known of the motion.
 struct MatchOptions {
   MotionKind kind = MotionKind::affine;
   std::optional<Motion> guess;  ///< of the whole: is near it
@@ -62,6 +63,7 @@ struct FollowedGrain {
   std::optional<openvdb::Mat3d> gradient;
 };
 
+/// Where all of them went.
 struct FollowedGrains {
   std::optional<Motion> whole;        ///< unless the motion is free
   std::vector<FollowedGrain> grains;  ///< as those of before

@@ -14,6 +14,7 @@ namespace vdb_madf {
 
 /// Where a hierarchy is best cut if nothing is known of the sample.
 struct StableStrictness {
+  /// What a cut at a strictness gives.
   struct Level {
     double strictness = 0;
     int64_t grains = 0;
