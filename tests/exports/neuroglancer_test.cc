@@ -34,7 +34,7 @@ TEST_CASE("neuroglancer: meshes, properties and state are those of the labels", 
   OmeZarrOptions options;
   options.meshes = true;
   options.mesh.smoothing = 0;
-  options.version = GENERATE(OmeVersion::v04, OmeVersion::v05);
+  options.version = GENERATE(OmeVersion::v04, OmeVersion::v05, OmeVersion::v06);
   options.meshReduction = GENERATE(1, 2);
   writeOmeZarr(folder / "a.ome.zarr/", *grid, box, options);
   const std::string path = folder / "a.ome.zarr/neuroglancer/";

@@ -29,7 +29,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr OmeVersion kVersions[] = {OmeVersion::v04, OmeVersion::v05};
+constexpr OmeVersion kVersions[] = {OmeVersion::v04, OmeVersion::v05, OmeVersion::v06};
+
+std::string textOf(OmeVersion version) {
+  return version == OmeVersion::v04 ? "0.4" : version == OmeVersion::v05 ? "0.5" : "0.6";
+}
 
 std::string gunzipped(const std::string& coded, size_t size) {
   std::string bytes(size + 1, '\0');
@@ -61,7 +65,7 @@ struct Array {
 };
 
 Array readArray(const std::string& path, OmeVersion version) {
-  const bool isThree = version == OmeVersion::v05;
+  const bool isThree = version != OmeVersion::v04;
   const Json json = Json::parse(readFile(path + (isThree ? "/zarr.json" : "/.zarray")));
   Array array;
   array.size = fromZyx(json.at("shape"));
@@ -121,8 +125,35 @@ Json attributesOf(const std::string& path, OmeVersion version) {
   const Json json = Json::parse(readFile(path + "/zarr.json"));
   CHECK(json.at("zarr_format") == 3);
   CHECK(json.at("node_type") == "group");
-  CHECK(json.at("attributes").at("ome").at("version") == "0.5");
+  CHECK(json.at("attributes").at("ome").at("version") == textOf(version));
   return json.at("attributes").at("ome");
+}
+
+/// The axes of an image, and the scale and the translation of a level of it. Of OME-Zarr 0.6 they
+/// belong to its one coordinate system.
+struct Place {
+  Json axes, scale, translation;
+};
+Place placeOf(const Json& image, size_t level, OmeVersion version) {
+  const Json& dataset = image.at("datasets").at(level);
+  CHECK(dataset.at("path") == std::to_string(level));
+  const Json& given = dataset.at("coordinateTransformations");
+  const bool hasSystems = version == OmeVersion::v06;
+  CHECK(image.contains("axes") != hasSystems);
+  if (hasSystems) {
+    REQUIRE(given.size() == 1);
+    CHECK(given[0].at("type") == "sequence");
+    CHECK(given[0].at("input") == Json::parse("{\"path\": \"" + std::to_string(level) + "\"}"));
+    CHECK(given[0].at("output") == Json::parse(R"({"name": "physical"})"));
+    REQUIRE(image.at("coordinateSystems").size() == 1);
+    CHECK(image["coordinateSystems"][0].at("name") == "physical");
+  }
+  const Json& steps = hasSystems ? given[0].at("transformations") : given;
+  REQUIRE(steps.size() == 2);
+  CHECK(steps[0].at("type") == "scale");
+  CHECK(steps[1].at("type") == "translation");
+  return {(hasSystems ? image["coordinateSystems"][0] : image).at("axes"), steps[0].at("scale"),
+          steps[1].at("translation")};
 }
 
 int floorDiv(int a, int b) {
@@ -224,6 +255,10 @@ TEST_CASE("ome_zarr: each level holds the most frequent labels, and the object's
     CHECK(readArray(path + "/0", version).chunkFiles < 8);  // background is left out
     CHECK_FALSE(fs::exists(path + "/3"));
     CHECK(attributesOf(path + "/labels", version).at("labels") == Json::array({"grain"}));
+    if (version == OmeVersion::v06)
+      CHECK(attributesOf(path, version).at("multiscales").at(0).at("coordinateTransformations") ==
+            Json::parse(R"([{"type": "identity", "input": {"name": "physical"},
+                             "output": {"name": "physical", "path": "labels/grain"}}])"));
     CHECK(attributesOf(path + "/labels/grain", version).at("image-label").at("source") ==
           Json::parse(R"({"image": "../../"})"));
   }
@@ -250,36 +285,113 @@ TEST_CASE("ome_zarr: scale and translation put each voxel where its grid has it"
         REQUIRE(images.size() == 1);
         const Json& image = images[0];
         CHECK(image.value("version", "") == (version == OmeVersion::v04 ? "0.4" : ""));
-        REQUIRE(image.at("axes").size() == 3);
+        const Json axes = placeOf(image, 0, version).axes;
+        REQUIRE(axes.size() == 3);
         for (size_t i = 0; i < 3; ++i) {
-          const Json& axis = image["axes"][i];
+          const Json& axis = axes[i];
           CHECK(axis.at("name") == std::string(1, "zyx"[i]));
           CHECK(axis.at("type") == "space");
           CHECK(axis.value("unit", "") == (hasSize ? "micrometer" : ""));
         }
         REQUIRE(image.at("datasets").size() == 3);
         for (int level = 0; level < 3; ++level) {
-          const Json& dataset = image["datasets"][size_t(level)];
-          CHECK(dataset.at("path") == std::to_string(level));
-          const Json& steps = dataset.at("coordinateTransformations");
-          REQUIRE(steps.size() == 2);
-          CHECK(steps[0].at("type") == "scale");
-          CHECK(steps[1].at("type") == "translation");
+          const Place place = placeOf(image, size_t(level), version);
           const int factor = 1 << level;
           const double unit = hasSize ? 1e-3 : 1;  // mm, or voxels
           for (size_t i = 0; i < 3; ++i) {
             const int axis = 2 - int(i), first = floorDiv(kBox.min()[axis], factor);
             const double edge = hasSize ? edges[size_t(axis)] * 1e6 : 1;
-            CHECK(steps[0]["scale"][i].get<double>() == Approx(factor * edge).epsilon(1e-15));
+            CHECK(place.scale[i].get<double>() == Approx(factor * edge).epsilon(1e-15));
             // The mean place of the fine voxels that the first coarse one stands for.
             const double low = grid->indexToWorld(Coord(factor * first))[axis],
                          high = grid->indexToWorld(Coord(factor * first + factor - 1))[axis];
-            CHECK(unit * steps[1]["translation"][i].get<double>() ==
+            CHECK(unit * place.translation[i].get<double>() ==
                   Approx((low + high) / 2).margin(1e-12));
           }
         }
       }
     }
+}
+
+TEST_CASE("ome_zarr: a scene holds both images, and says where points of the one lie in the other",
+          "[ome_zarr]") {
+  const ScratchFolder folder;
+  LabelMap voxels = twoBalls(Coord(20), 9);
+  for (const auto& one : marker()) voxels.insert(one);
+  const auto before = labelGrid(voxels), after = heapGrid();
+  setVoxelSize(*before, VoxelSize({1e-6, 2e-6, 4e-6}));
+  setVoxelSize(*after, VoxelSize({1e-6, 2e-6, 5e-6}));
+  after->transform().postTranslate(openvdb::Vec3d(0.5, -20, 3));
+  OmeZarrOptions options;
+  options.version = OmeVersion::v06;
+  writeOmeZarr(folder / "before.zarr", *before, boxOf(*before), options);
+  writeOmeZarr(folder / "after.zarr", *after, boxOf(*after), options);
+  const openvdb::Mat3d sheared(1.1, 0.2, 0., -0.1, 0.9, 0.3, 0., 0., 1.),
+      one(openvdb::Mat3d::identity());
+  const openvdb::Mat3d turned =
+      openvdb::math::rotation<openvdb::Mat3d>(openvdb::Vec3d(1, 2, 2).unit(), 0.7);
+  const openvdb::Vec3d shift(3, -2.5, 8);
+  int number = 0;
+  const auto write = [&](const OmeScene& scene) {
+    const std::string path = folder / ("scene" + std::to_string(number++));
+    writeOmeScene(path, scene);
+    return attributesOf(path, OmeVersion::v06).at("scene").at("coordinateTransformations").at(0);
+  };
+  // What a reader makes of a transformation, of points as z, y, x.
+  const auto apply = [](const Json& given, openvdb::Vec3d p) {
+    const Json steps =
+        given["type"] == "sequence" ? given.at("transformations") : Json::array({given});
+    for (const Json& step : steps) {
+      const std::string type = step.at("type");
+      openvdb::Vec3d moved(0);
+      for (int row = 0; row < 3; ++row) {
+        if (type == "translation") {
+          moved[row] = p[row] + step.at(type).at(size_t(row)).get<double>();
+          continue;
+        }
+        const Json& line = step.at(type).at(size_t(row));
+        REQUIRE(line.size() == (type == "affine" ? 4 : 3));
+        for (int column = 0; column < 3; ++column)
+          moved[row] += line[size_t(column)].get<double>() * p[column];
+        if (type == "affine") moved[row] += line[3].get<double>();
+      }
+      p = moved;
+    }
+    return p;
+  };
+  const auto zyx = [](const Int32Grid& grid, const openvdb::Vec3d& voxel) {
+    const openvdb::Vec3d world = grid.indexToWorld(voxel) * 1e3;  // mm to um
+    return openvdb::Vec3d(world[2], world[1], world[0]);
+  };
+  for (const auto& [first, linear, type] : {std::tuple{after, one, "translation"},
+                                            {before, one, "affine"},
+                                            {after, sheared, "affine"}}) {
+    const Json given = write({*first, *after, linear, shift});
+    CHECK(given.at("type") == type);
+    CHECK(given.at("input") == Json::parse(R"({"path": "before", "name": "physical"})"));
+    CHECK(given.at("output") == Json::parse(R"({"path": "after", "name": "physical"})"));
+    for (const openvdb::Vec3d p : {openvdb::Vec3d(0), openvdb::Vec3d(5, -7, 30)}) {
+      const openvdb::Vec3d wanted = zyx(*after, linear * p + shift);
+      CHECK((apply(given, zyx(*first, p)) - wanted).length() < 1e-9);
+    }
+  }
+  const auto cubes = labelGrid(voxels);
+  setVoxelSize(*cubes, VoxelSize{8.5e-6});
+  const Json given = write({*cubes, *cubes, turned, shift});
+  CHECK(given.at("transformations").at(0).at("type") == "rotation");
+  const openvdb::Vec3d p(5, -7, 30);
+  CHECK((apply(given, zyx(*cubes, p)) - zyx(*cubes, turned * p + shift)).length() < 1e-9);
+
+  for (const std::string image : {"before", "after"}) {
+    const auto files = filesBelow(folder / (image + ".zarr"));
+    CHECK(filesBelow(folder / ("scene1/" + image)) == files);
+    for (const std::string& file : files)
+      CHECK(readFile(folder / ("scene1/" + image + "/" + file)) ==
+            readFile(folder / (image + ".zarr/" + file)));
+  }
+  CHECK_THROWS_WITH(writeOmeScene(folder / "no", {*before, *labelGrid(voxels)}),
+                    vdb_madf::test::Contains("both, or none"));
+  CHECK_FALSE(fs::exists(folder / "no"));
 }
 
 TEST_CASE("ome_zarr: colors and measures are those of the tables", "[ome_zarr]") {
@@ -376,8 +488,8 @@ TEST_CASE("ome_zarr: labels in slabs give the files of the whole", "[ome_zarr]")
               *p,
               1 + std::abs((*p).x() / 5 + 3 * ((*p).y() / 4) + 7 * ((*p).z() / height)) % grains);
       setDomain(*labels, box);
-      requireSame(labels, box, randomCuts(box, rng), kVersions[seed % 2]);
-      requireSame(labels, box, {low.z() & ~7, ((box.max().z() | 7) + 1)}, kVersions[seed % 2]);
+      requireSame(labels, box, randomCuts(box, rng), kVersions[seed % 3]);
+      requireSame(labels, box, {low.z() & ~7, ((box.max().z() | 7) + 1)}, kVersions[seed % 3]);
     }
   }
   SECTION("with the largest factor, 256") {

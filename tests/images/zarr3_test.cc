@@ -192,6 +192,55 @@ TEST_CASE("image_zarr3: chunks and shards that are not there are the fill value"
   }
 }
 
+TEST_CASE("image_zarr3: the voxel size of OME-Zarr 0.6 is that of the coordinate system of a scale",
+          "[image_zarr3]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "scene.zarr";
+  const auto axes = [](const std::string& name, const std::string& unit) {
+    std::string all;
+    for (const char* axis : {"z", "y", "x"})
+      all += std::string(all.empty() ? "" : ", ") + "{\"name\": \"" + axis +
+             "\", \"type\": \"space\", \"unit\": \"" + unit + "\"}";
+    return "{\"name\": \"" + name + "\", \"axes\": [" + all + "]}";
+  };
+  const auto group = [](const std::string& attributes) {
+    return R"({"zarr_format": 3, "node_type": "group", "attributes": {"ome": {"version": "0.6", )" +
+           attributes + "}}}";
+  };
+  const std::string scale = R"("type": "scale", "scale": [8.5, 8.5, 8.5])",
+                    ends = R"("input": {"path": "0"}, "output": {"name": "physical"})",
+                    sequence = R"({"type": "sequence", "transformations": [{)" + scale +
+                               R"(}, {"type": "translation", "translation": [1, 2, 3]}], )" + ends +
+                               "}";
+  const auto image = [&](const std::string& transformation) {
+    return group(R"("multiscales": [{"coordinateSystems": [)" + axes("turned", "meter") + ", " +
+                 axes("physical", "micrometer") + R"(], "datasets": [{"path": "0", )" +
+                 R"("coordinateTransformations": [)" + transformation + R"(]}], )" +
+                 R"("coordinateTransformations": [{"type": "scale", "scale": [2, 2, 2], )" +
+                 R"("input": {"name": "physical"}, "output": {"name": "turned"}}]}])");
+  };
+  const std::string fine = randomSamples(SampleType::uint16, voxels(kZarr3Size), 6);
+  std::map<std::string, std::string> files;
+  for (const auto& [name, bytes] : zarr3Files(layoutOf(SampleType::uint16), fine))
+    files["before/0/" + name] = files["after/0/" + name] = files["lost/0/" + name] = bytes;
+  files["zarr.json"] = group(R"("scene": {"coordinateTransformations": []})");
+  files["before/zarr.json"] = image(sequence);
+  files["after/zarr.json"] = image("{" + scale + ", " + ends + "}");
+  files["lost/zarr.json"] = image("{" + scale + R"(, "output": {"name": "nowhere"}})");
+  write(path, files);
+  for (const std::string dataset : {"before", "after"}) {
+    const auto opened = openImage(path, {}, dataset);
+    CHECK(readAll(*opened, 8) == fine);
+    REQUIRE(opened->info().voxelSize);
+    CHECK(opened->info().voxelSize->edge() == 8.5e-6);
+  }
+  CHECK_FALSE(openImage(path, {}, "lost")->info().voxelSize);
+  CHECK_THROWS_WITH(openImage(path), Contains("name one of a group in it"));
+  files["before/zarr.json"] = image(R"({"type": "sequence", "transformations": 3, )" + ends + "}");
+  write(path, files);
+  CHECK_THROWS_WITH(openImage(path, {}, "before"), Contains("scales cannot be read"));
+}
+
 TEST_CASE("image_zarr3: OME-Zarr 0.5 gives scales, voxel sizes and labels", "[image_zarr3]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.ome.zarr";

@@ -3,7 +3,7 @@
 """Programs that know Zarr read our OME-Zarr: every level, voxel by voxel, against NumPy.
 
     zarr_reads.py COMMAND zarr       Python's zarr module, OME-Zarr 0.4
-    zarr_reads.py COMMAND zarrita    zarrita, for browsers, by node: 0.4 and 0.5; and the command
+    zarr_reads.py COMMAND zarrita    zarrita, for browsers, by node: 0.4 to 0.6; and the command
                                      reads Zarr 3 that zarrita writes by each codec that it can
 
 zarrita is looked for in the folder that VDB_MADF_ZARRITA names (`npm install zarrita` there).
@@ -72,10 +72,12 @@ def write(bench, version):
 
 def check_attributes(attributes, name):
     image = attributes["multiscales"][0]
-    check([axis["name"] for axis in image["axes"]] == ["z", "y", "x"], f"{name}: axes")
+    system = image["coordinateSystems"][0] if name == "0.6" else image
+    check([axis["name"] for axis in system["axes"]] == ["z", "y", "x"], f"{name}: axes")
     check(len(image["datasets"]) == LEVELS, f"{name}: levels")
     for number, dataset in enumerate(image["datasets"]):
-        scale, translation = dataset["coordinateTransformations"]
+        steps = dataset["coordinateTransformations"]
+        scale, translation = steps[0]["transformations"] if name == "0.6" else steps
         check(scale["scale"] == [e * 2**number for e in EDGES], f"{name}: {scale}")
         check(translation["translation"] == [e * (2**number - 1) / 2 for e in EDGES],
               f"{name}: {translation}")
@@ -162,7 +164,7 @@ def run_zarrita(script, *arguments):
 
 
 def proof_zarrita(bench):
-    for version in ("0.4", "0.5"):
+    for version in ("0.4", "0.5", "0.6"):
         found = run_zarrita(READ, write(bench, version), *wanted())
         attributes = found["attributes"]
         check_attributes(attributes if version == "0.4" else attributes["ome"], version)
@@ -175,7 +177,7 @@ def proof_zarrita(bench):
         subprocess.run([bench.tool, "convert", bench.path(f"{name}.zarr"), bench.path("read.npy"),
                         "--type", "uint32", "-q"], check=True)
         check((np.load(bench.path("read.npy")) == labels()).all(), f"what zarrita wrote: {name}")
-    print("zarrita reads OME-Zarr 0.4 and 0.5; we read what it writes")
+    print("zarrita reads OME-Zarr 0.4, 0.5 and 0.6; we read what it writes")
 
 
 with Bench() as bench:

@@ -382,7 +382,7 @@ def test_a_folder_of_meshes(labels, tmp_path):
 
 
 def test_ome_zarr_is_that_of_the_command_and_is_read_back(labels, tables, command, tmp_path):
-    for ome in ("0.4", "0.5"):
+    for ome in ("0.4", "0.5", "0.6"):
         ours, theirs = (tmp_path / f"{place}{ome}.ome.zarr" for place in ("here", "there"))
         with_meshes = ome == "0.5"
         labels.save(ours, ome=ome, meshes=with_meshes, reduce=2)
@@ -403,7 +403,7 @@ def test_ome_zarr_is_that_of_the_command_and_is_read_back(labels, tables, comman
 
 
 @pytest.mark.parametrize("name, arguments, text", [
-    ("a.zarr", dict(ome="0.3"), "0.4 or 0.5"),
+    ("a.zarr", dict(ome="0.3"), "0.4, 0.5 or 0.6"),
     ("a.docx", {}, "no format has the ending '.docx'"),
     ("a.csv", {}, "kind='network' or 'clumps'"),
     ("a.png", dict(kind="mesh"), "must be one of .ply"),

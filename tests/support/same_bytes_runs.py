@@ -289,6 +289,7 @@ def track():
     yield ("track all_snow_0.vdb all_snow_20.vdb tracked.vdb --grains tracked.csv --links "
            "links.csv --bonds linked.csv --json tracked.json")
     yield "track keep_manifold.vdb edited.vdb tracked.tif --shift 1,0,-1 --share 0.3 --min-faces 4"
+    yield "track keep_manifold.vdb edited.vdb scene.zarr"
 
 
 def report():

@@ -90,7 +90,7 @@ TEST_CASE("cli: export writes every kind, the same for any number of threads", "
 TEST_CASE("cli: OME-Zarr is the same for any number of threads, and read back", "[cli]") {
   const Bench bench;
   makeLabels(bench);
-  for (const std::string version : {"0.4", "0.5"}) {
+  for (const std::string version : {"0.4", "0.5", "0.6"}) {
     CAPTURE(version);
     const std::string options = " --ome " + version;
     CHECK(bench.mustRun("export g.vdb a.ome.zarr" + options).find("OME-Zarr " + version) !=

@@ -167,10 +167,35 @@ TEST_CASE("cli: a sample that was turned and shortened is followed", "[cli]") {
   bench.write("bad.txt", "1 0 0 0 0 1 0 0 0 0 -1 0\n");
   refuses(bench, kFailed, pair + "--motion bad.txt", {"bad.txt", "above 0"});
   refuses(bench, kFailed, pair + "--motion none.txt", {"none.txt"});
+  refuses(bench, kWrongUsage, pair + "scene.zarr --motion free", {"scene.zarr", "rigid or affine"});
   bench.mustRun(kSpheres + "other.vdb");
   refuses(bench, kFailed,
           "track before.vdb other.vdb --before-grid truth --after-grid truth --motion free",
           {"other.vdb", "no motion is found"});
+}
+
+TEST_CASE("cli: a pair of scans becomes a scene of OME-Zarr", "[cli]") {
+  const Bench bench;
+  makeSeries(bench);
+  const std::string printed = bench.mustRun("track a.vdb b.vdb scene.ome.zarr --grains g.csv");
+  CHECK(printed == bench.mustRun("track a.vdb b.vdb tracked.vdb --grains other.csv"));
+  CHECK(bench.bytes("g.csv") == bench.bytes("other.csv"));
+  const Json root = Json::parse(bench.bytes("scene.ome.zarr/zarr.json"));
+  const Json scene = root.at("attributes").at("ome");
+  CHECK(scene.at("version") == "0.6");
+  CHECK(scene.at("scene").at("coordinateTransformations").at(0).at("translation") ==
+        Json({0.0, 0.0, 0.0}));
+  bench.mustRun("convert scene.ome.zarr before.npy --dataset before/labels/grain --type int32");
+  bench.mustRun("convert scene.ome.zarr after.npy --dataset after/labels/grain --type int32");
+  bench.mustRun("convert a.vdb a.npy --grid grain");
+  bench.mustRun("convert tracked.vdb tracked.npy --grid grain");
+  CHECK(bench.bytes("before.npy") == bench.bytes("a.npy"));
+  CHECK(bench.bytes("after.npy") == bench.bytes("tracked.npy"));
+  bench.mustRun("track a.vdb b.vdb one.zarr --threads 1 -q");
+  for (const std::string file :
+       {"/zarr.json", "/before/zarr.json", "/after/labels/grain/0/zarr.json"})
+    CHECK(bench.bytes("one.zarr" + file) == bench.bytes("scene.ome.zarr" + file));
+  refuses(bench, kFailed, "track a.vdb b.vdb scene.ome.zarr", {"scene.ome.zarr", "already"});
 }
 
 TEST_CASE("cli: a series of scans keeps one number a grain", "[cli]") {

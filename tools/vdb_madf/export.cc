@@ -179,9 +179,9 @@ void addExport(Verb command, Common& common, Action& action) {
       .typeName("FILE.csv");
   verb.option("--cover", o->cover, "clumps: also a table of how well each grain is covered")
       .typeName("FILE.csv");
-  verb.option("--ome", o->ome, "zarr: version of OME-Zarr, 0.4 (Zarr 2) or 0.5 (Zarr 3)")
+  verb.option("--ome", o->ome, "zarr: version of OME-Zarr, 0.4 (Zarr 2), 0.5 or 0.6 (Zarr 3)")
       .typeName("VERSION")
-      .oneOf({"0.4", "0.5"})
+      .oneOf({"0.4", "0.5", "0.6"})
       .showDefault();
   verb.flag("--meshes", o->meshes, "zarr: also meshes and measures for neuroglancer");
   o->input.addRaw(verb);

@@ -18,8 +18,10 @@
 #include "parse.h"
 #include "text_file.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/exports/ome_zarr.h"
 #include "vdb_madf/files/output_folder.h"
 #include "vdb_madf/files/output_set.h"
+#include "vdb_madf/files/output_tree.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/vdb/write_vdb.h"
 
@@ -76,7 +78,12 @@ void parse(TrackArguments& o) {
     parsePair(o.before, o.after, {});
   } else {
     parsePair(o.before, o.after, {o.out, o.json, o.grains, o.links, o.bonds});
-    if (!o.out.empty()) checkVolumeEnding(o.out);
+    const bool isScene = isZarrEnding(o.out);
+    if (!o.out.empty() && !isScene) checkVolumeEnding(o.out);
+    if (isScene && motionKindOf(o.motion) == MotionKind::free)
+      throw WrongUsage(o.out +
+                       ": a scene tells where the whole has gone, which --motion free does "
+                       "not find: choose rigid or affine, or write labels");
   }
   if (!o.shift.empty()) o.track.shift = parseShift(o.shift, "--shift");
   o.track.minFaces = parseCount(o.minFaces, "--min-faces");
@@ -339,6 +346,23 @@ Tracks tracksOf(const TrackArguments& o, const Int32Grid& before, const Int32Gri
   return tracks;
 }
 
+/// Both scans, and where the whole has gone, as an OME-Zarr.
+void writeScene(const TrackArguments& o, const Int32Grid& before, const Int32Grid& labels,
+                const Tracks& tracks, const Common& common) {
+  OmeScene scene{before, labels};
+  if (tracks.whole) {
+    scene.linear = tracks.whole->linear;
+    scene.shift = tracks.whole->shift;
+  } else {
+    scene.shift = tracks.shift.asVec3d();
+  }
+  MeasureOptions measure;
+  measure.minFaces = o.track.minFaces;
+  common.progress->start("scene");
+  writeOmeScene(o.out, scene, measure, common.progress);
+  common.progress->end();
+}
+
 /// Each scan but the first one is tracked from the one before it, which has the tracks by now.
 void runSeries(TrackArguments o, const Common& common) {
   for (const std::string& scan : laterScans(o))  // before hours of work
@@ -374,7 +398,11 @@ void runSeries(TrackArguments o, const Common& common) {
 }
 
 void runTrack(const TrackArguments& o, const Common& common) {
-  if (!o.out.empty()) checkWritable(o.out);
+  const bool isScene = isZarrEnding(o.out);
+  if (isScene)
+    checkOutputTree(o.out);
+  else if (!o.out.empty())
+    checkWritable(o.out);
   JsonFile jsonFile(o.json);
   TextFile grainFile(o.grains), linkFile(o.links), bondFile(o.bonds);
   const Int32Grid::Ptr before = loadLabels(o.before, "--before-grid", common.progress);
@@ -385,7 +413,7 @@ void runTrack(const TrackArguments& o, const Common& common) {
   const Tracks tracks =
       tracksOf(o, *before, *after, names, o.out.empty() ? nullptr : &labels, common);
   OutputSet files;
-  if (labels) {
+  if (labels && !isScene) {
     if (hasVdbEnding(o.out))
       writeVdb(o.out, {labels}, common.progress);
     else
@@ -400,6 +428,7 @@ void runTrack(const TrackArguments& o, const Common& common) {
   Json json = summary(o, tracks);
   addNotes(json, *common.progress);
   jsonFile.write(json);
+  if (isScene) writeScene(o, *before, *labels, tracks, common);
   files.commit();
   if (!common.quiet) print(o, tracks, json);
 }
@@ -413,7 +442,9 @@ void addTrack(Verb command, Common& common, Action& action) {
                       "vdb_madf track grains.vdb later.vdb tracked.vdb --max-shift 20");
   verb.option("BEFORE", o->before.path, "labels: VDB or integer image").required();
   verb.option("AFTER", o->after.path, "labels of a later scan, of the same voxels").required();
-  verb.option("OUT", o->out, "gets the labels of AFTER with the numbers of BEFORE");
+  verb.option(
+      "OUT", o->out,
+      "gets the labels of AFTER with the numbers of BEFORE; .zarr: both, as a scene of OME-Zarr");
   verb.option("MORE", o->more,
               "of a series, OUT being a scan: further scans, and last a folder, which gets labels "
               "and tables of all but the first");

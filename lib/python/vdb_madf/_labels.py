@@ -193,8 +193,8 @@ class Labels(Volume):
         - "vti": VTK's image, `compress`; "hexahedra": .vtu, .inp (Abaqus), an element a voxel
         - "network": .graphml, .vtp, .csv: grains and bonds with their measures, `min_faces` of a
           bond
-        - "zarr": .zarr, a folder that is not there yet: OME-Zarr `ome` "0.4" or "0.5" for napari,
-          neuroglancer and others: pyramids of the object and of `labels/grain`, colors and
+        - "zarr": .zarr, a folder that is not there yet: OME-Zarr `ome` "0.4", "0.5" or "0.6" for
+          napari, neuroglancer and others: pyramids of the object and of `labels/grain`, colors and
           measures; `meshes` (`smoothing`, `reduce`, `triangles`): also meshes and measures for
           neuroglancer
         - "clumps": .txt (YADE), .data (LAMMPS), .csv: grains as balls, `max_balls` each,

@@ -12,9 +12,10 @@
 
 namespace vdb_madf {
 
-/// Which OME-Zarr: 0.4 lies on Zarr version 2, which more programs read, 0.5 on version 3.
-enum class OmeVersion { v04, v05 };
-/// \param text: "0.4" or "0.5"
+/// Which OME-Zarr: 0.4 lies on Zarr version 2, which more programs read, 0.5 on version 3, 0.6 too,
+/// with named coordinate systems.
+enum class OmeVersion { v04, v05, v06 };
+/// \param text: "0.4", "0.5" or "0.6"
 /// @throw InvalidInput
 OmeVersion omeVersionOf(const std::string& text);
 
@@ -58,6 +59,22 @@ void writeOmeZarr(const std::string& path, const Int32Grid& labels, const CoordB
 /// @throw as above; InvalidInput if the domain is a region, or for meshes; what reading throws.
 void writeOmeZarr(const std::string& path, const LabelSlabs& labels, const CoordBBox& box,
                   const OmeZarrOptions& options = {}, Interrupter* interrupter = nullptr);
+
+/// Two samples, or one at two times, and where points of the first lie in the second: in voxels, p
+/// is at linear * p + shift.
+struct OmeScene {
+  const Int32Grid& before;
+  const Int32Grid& after;
+  openvdb::Mat3d linear = openvdb::Mat3d::identity();
+  openvdb::Vec3d shift{0, 0, 0};
+};
+
+/// Writes a scene of OME-Zarr 0.6: a folder with the images `before` and `after`, each as
+/// writeOmeZarr() writes it, and the transformation from the coordinates of the one to those of the
+/// other: a translation, a rotation and a translation, or an affine one, whichever says it.
+/// @throw as writeOmeZarr(); InvalidInput if the voxel size of one alone is known
+void writeOmeScene(const std::string& path, const OmeScene& scene,
+                   const MeasureOptions& measure = {}, Interrupter* interrupter = nullptr);
 
 /// True for .zarr, so also for .ome.zarr.
 bool isZarrEnding(const std::string& path);

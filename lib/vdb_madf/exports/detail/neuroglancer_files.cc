@@ -131,7 +131,7 @@ void setView(SortedJson& state, const CoordBBox& box, const OmePlace& place) {
 SortedJson stateOf(const std::string& name, const CoordBBox& box, const OmePlace& place,
                    const GrainColors& colors, OmeVersion version) {
   const std::string url = "http://localhost:8000/" + name;
-  const std::string zarr = version == OmeVersion::v05 ? "zarr3://" : "zarr2://";
+  const std::string zarr = version == OmeVersion::v04 ? "zarr2://" : "zarr3://";
   SortedJson shown = SortedJson::array(), palette = SortedJson::object();
   for (size_t i = 0; i < colors.labels.size(); ++i) {
     const Rgb& c = colors.colors[i];

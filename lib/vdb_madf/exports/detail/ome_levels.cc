@@ -24,13 +24,12 @@ constexpr int kLeaf = Leaf::DIM;
 /// The arrays of a level.
 class LevelArrays {
  public:
-  LevelArrays(const OutputTree& folder, const OmeLevel& level, const std::string& name,
-              ZarrVersion version)
+  LevelArrays(const OutputTree& folder, const std::string& group, const OmeLevel& level,
+              const std::string& name, ZarrVersion version)
       : isFinest_(level.factor == 1),
-        object_(folder, name, level.box, isFinest_ ? ZarrSamples::mask : ZarrSamples::gray,
+        object_(folder, group + name, level.box, isFinest_ ? ZarrSamples::mask : ZarrSamples::gray,
                 version),
-        label_(folder, std::string(kLabelGroup) + "/" + name, level.box, ZarrSamples::label,
-               version) {}
+        label_(folder, group + kLabelGroup + "/" + name, level.box, ZarrSamples::label, version) {}
 
   int layerCount() const { return label_.layerCount(); }
   int firstSlice(int layer) const { return label_.firstSlice(layer); }
@@ -53,9 +52,11 @@ class LevelArrays {
 /// A level of labels that come slab by slab.
 class SlabLevel {
  public:
-  SlabLevel(const OutputTree& folder, const OmeLevel& level, const std::string& name,
-            ZarrVersion version)
-      : factor_(level.factor), counts_(level.factor), arrays_(folder, level, name, version) {}
+  SlabLevel(const OutputTree& folder, const std::string& group, const OmeLevel& level,
+            const std::string& name, ZarrVersion version)
+      : factor_(level.factor),
+        counts_(level.factor),
+        arrays_(folder, group, level, name, version) {}
 
   /// The next slab; the finest level takes its leaves. @param counts of its leaves, for factors
   /// above 8
@@ -123,13 +124,13 @@ std::vector<OmeLevel> omeLevels(const CoordBBox& box) {
   return levels;
 }
 
-void writeOmeLevels(const OutputTree& folder, const Int32Grid& labels,
+void writeOmeLevels(const OutputTree& folder, const std::string& group, const Int32Grid& labels,
                     const std::vector<OmeLevel>& levels, ZarrVersion version,
                     Interrupter* interrupter) {
   for (size_t i = 0; i < levels.size(); ++i) {
     const auto percent = [&](size_t done) { return int(done * 100 / levels.size()); };
     WorkPart part(interrupter, percent(i), percent(i + 1));
-    LevelArrays arrays(folder, levels[i], std::to_string(i), version);
+    LevelArrays arrays(folder, group, levels[i], std::to_string(i), version);
     if (levels[i].factor == 1) {
       arrays.write(*withoutTiles(labels), Int32Tree(), 0, arrays.layerCount(), &part);
     } else {
@@ -140,12 +141,13 @@ void writeOmeLevels(const OutputTree& folder, const Int32Grid& labels,
   }
 }
 
-void writeOmeLevels(const OutputTree& folder, const LabelSlabs& labels,
+void writeOmeLevels(const OutputTree& folder, const std::string& group, const LabelSlabs& labels,
                     const std::vector<OmeLevel>& levels, ZarrVersion version,
                     Interrupter* interrupter) {
   std::vector<std::unique_ptr<SlabLevel>> open;
   for (size_t i = 0; i < levels.size(); ++i)
-    open.push_back(std::make_unique<SlabLevel>(folder, levels[i], std::to_string(i), version));
+    open.push_back(
+        std::make_unique<SlabLevel>(folder, group, levels[i], std::to_string(i), version));
   for (size_t s = 0; s < labels.slabCount(); ++s) {
     const auto percent = [&](size_t done) { return int(done * 100 / labels.slabCount()); };
     WorkPart part(interrupter, percent(s), percent(s + 1));

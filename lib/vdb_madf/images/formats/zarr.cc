@@ -42,11 +42,15 @@ Json multiscale(const std::string& name, const fs::path& group) {
   return images.is_array() && !images.empty() && images[0].is_object() ? images[0] : Json();
 }
 
-/// Multiplies by the scales of a list of transformations. False if it cannot be understood.
+/// Multiplies by the scales of a list of transformations, and of the sequences in it. False if it
+/// cannot be understood.
 bool applyScales(const Json& transformations, std::vector<double>& scale) {
   if (transformations.is_null()) return true;
   if (!transformations.is_array()) return false;
   for (const Json& one : transformations) {
+    if (textOf(member(one, "type")) == "sequence" &&
+        !applyScales(member(one, "transformations"), scale))
+      return false;
     if (textOf(member(one, "type")) != "scale") continue;
     const Json& factors = member(one, "scale");
     if (!factors.is_array() || factors.size() != scale.size()) return false;
@@ -58,20 +62,37 @@ bool applyScales(const Json& transformations, std::vector<double>& scale) {
   return true;
 }
 
+/// The axes that the transformations of a scale lead to: before OME-Zarr 0.6 the only ones.
+const Json& axesOf(const Json& image, const Json& transformations) {
+  const Json& systems = member(image, "coordinateSystems");
+  if (!systems.is_array()) return member(image, "axes");
+  static const Json kNoAxes;
+  if (!transformations.is_array() || transformations.empty()) return kNoAxes;
+  const std::string name = textOf(member(member(transformations[0], "output"), "name"));
+  const auto system = std::find_if(systems.begin(), systems.end(), [&](const Json& one) {
+    return textOf(member(one, "name")) == name;
+  });
+  return system == systems.end() ? kNoAxes : member(*system, "axes");
+}
+
 /// Of the scale at `path` within the image.
 std::optional<VoxelSize> voxelSizeOf(const std::string& name, const Json& image,
                                      const std::string& path, size_t axesCount) {
-  const Json &axes = member(image, "axes"), &datasets = member(image, "datasets");
-  if (!axes.is_array() || axes.size() != axesCount || !datasets.is_array()) return std::nullopt;
+  const Json& datasets = member(image, "datasets");
+  if (!datasets.is_array()) return std::nullopt;
   const auto dataset = std::find_if(datasets.begin(), datasets.end(), [&](const Json& one) {
     return textOf(member(one, "path")) == path;
   });
   if (dataset == datasets.end()) return std::nullopt;
   const Json& transformations = member(*dataset, "coordinateTransformations");
+  const Json& axes = axesOf(image, transformations);
+  if (!axes.is_array() || axes.size() != axesCount) return std::nullopt;
   if (transformations.is_null()) return std::nullopt;  // before version 0.4
   std::vector<double> scale(axesCount, 1.0);
+  // Since version 0.6 what is said of all scales leads from these axes to others.
+  const bool hasSystems = !member(image, "coordinateSystems").is_null();
   if (!applyScales(transformations, scale) ||
-      !applyScales(member(image, "coordinateTransformations"), scale))
+      (!hasSystems && !applyScales(member(image, "coordinateTransformations"), scale)))
     throw IoError(
         name + ": its scales cannot be read: correct its metadata, or give the voxel size",
         Hint::voxelSize);
