@@ -236,9 +236,21 @@ TEST_CASE("image_zarr3: the voxel size of OME-Zarr 0.6 is that of the coordinate
   }
   CHECK_FALSE(openImage(path, {}, "lost")->info().voxelSize);
   CHECK_THROWS_WITH(openImage(path), Contains("name one of a group in it"));
-  files["before/zarr.json"] = image(R"({"type": "sequence", "transformations": 3, )" + ends + "}");
-  write(path, files);
-  CHECK_THROWS_WITH(openImage(path, {}, "before"), Contains("scales cannot be read"));
+  const auto nested = [](int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) text += R"([{"type": "sequence", "transformations": )";
+    text += "[]";
+    for (int i = 0; i < count; ++i) text += "}]";
+    return text;
+  };
+  for (const auto& [steps, said] : {std::pair{std::string("3"), "scales cannot be read"},
+                                    {nested(1), "scales cannot be read"},
+                                    {nested(50000), "too deep"}}) {
+    files["before/zarr.json"] =
+        image(R"({"type": "sequence", "transformations": )" + steps + ", " + ends + "}");
+    write(path, files);
+    CHECK_THROWS_WITH(openImage(path, {}, "before"), Contains(said));
+  }
 }
 
 TEST_CASE("image_zarr3: OME-Zarr 0.5 gives scales, voxel sizes and labels", "[image_zarr3]") {

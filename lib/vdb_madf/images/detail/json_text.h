@@ -14,13 +14,21 @@ namespace vdb_madf::detail {
 
 using Json = nlohmann::json;
 
-/// The object in a JSON file, of at most so many bytes. @throw IoError
+/// The object in a JSON file, of at most so many bytes, and not too deep: copies are made by
+/// recursion. @throw IoError
 inline Json jsonObject(const std::string& name, const std::string& path,
                        const Json::parser_callback_t& keep = nullptr,
                        uint64_t mostBytes = uint64_t(1) << 22) {
   const InputFile file(name, path);
   if (file.size() > mostBytes) throw IoError(file.name() + ": is too long for a description");
-  Json json = Json::parse(file.head(mostBytes), keep, false);
+  constexpr int kMaxDepth = 64;
+  Json json = Json::parse(
+      file.head(mostBytes),
+      [&](int depth, Json::parse_event_t event, Json& value) {
+        if (depth > kMaxDepth) throw IoError(file.name() + ": has too deep a description");
+        return !keep || keep(depth, event, value);
+      },
+      false);
   if (!json.is_object()) throw IoError(file.name() + ": is no JSON object");
   return json;
 }

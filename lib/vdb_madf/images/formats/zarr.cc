@@ -42,14 +42,14 @@ Json multiscale(const std::string& name, const fs::path& group) {
   return images.is_array() && !images.empty() && images[0].is_object() ? images[0] : Json();
 }
 
-/// Multiplies by the scales of a list of transformations, and of the sequences in it. False if it
-/// cannot be understood.
-bool applyScales(const Json& transformations, std::vector<double>& scale) {
+/// Multiplies by the scales of a list of transformations, and of the sequences in it, in which
+/// there is no other one. False if it cannot be understood.
+bool applyScales(const Json& transformations, std::vector<double>& scale, bool isSequence = false) {
   if (transformations.is_null()) return true;
   if (!transformations.is_array()) return false;
   for (const Json& one : transformations) {
     if (textOf(member(one, "type")) == "sequence" &&
-        !applyScales(member(one, "transformations"), scale))
+        (isSequence || !applyScales(member(one, "transformations"), scale, true)))
       return false;
     if (textOf(member(one, "type")) != "scale") continue;
     const Json& factors = member(one, "scale");
