@@ -198,12 +198,12 @@ SlabObject row(int length, std::vector<int> cuts) {
 
 TEST_CASE("slabs: labels and counts are those of the whole", "[slabs]") {
   requireSameAsWhole(fromEnvironment("VDB_MADF_SEED", 1),
-                     fromEnvironment("VDB_MADF_CASES", 24 * kCombinations), 0);
+                     fromEnvironment("VDB_MADF_CASES", 10 * kCombinations), 0);
 }
 
 TEST_CASE("slabs: labels and counts of tall objects are those of the whole", "[slabs]") {
   requireSameAsWhole(fromEnvironment("VDB_MADF_SEED", 1) + 100000,
-                     fromEnvironment("VDB_MADF_CASES", 16 * kCombinations), 90);
+                     fromEnvironment("VDB_MADF_CASES", 8 * kCombinations), 90);
 }
 
 TEST_CASE("slabs: what gamma leaves is completed through many slabs, as in the whole", "[slabs]") {
@@ -261,7 +261,7 @@ TEST_CASE("slabs: what comes to a cut with the last round of a window goes on in
 
 TEST_CASE("slabs: labels in regions are those of the whole", "[slabs]") {
   requireSameAsWhole(fromEnvironment("VDB_MADF_SEED", 1) + 300000,
-                     fromEnvironment("VDB_MADF_CASES", 4 * kCombinations), 70, true);
+                     fromEnvironment("VDB_MADF_CASES", 3 * kCombinations), 70, true);
 }
 
 TEST_CASE("slabs: an empty object has no grains, whatever the cuts", "[slabs]") {
