@@ -124,7 +124,7 @@ class GlbFile {
                          return accessor(i / accessorsOfGrain(), i % accessorsOfGrain());
                        });
     if (bytes_) {
-      Json views = {view(0, pointBytes(), kVertices)};
+      Json views = Json::array({view(0, pointBytes(), kVertices)});
       if (options_.shadeSmooth) views.push_back(view(pointBytes(), pointBytes(), kVertices));
       views.push_back(view(indexStart(), bytes_ - indexStart(), kIndices));
       text += ",\"bufferViews\":" + views.dump() +
