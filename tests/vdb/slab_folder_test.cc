@@ -82,6 +82,16 @@ TEST_CASE("slab_folder: without commit nothing is left", "[slab_folder]") {
   CHECK_THROWS_AS(SlabFolderWriter(path, {0, 8}), IoError);
 }
 
+TEST_CASE("slab_folder: an index that is nested too deeply is refused", "[slab_folder]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.slabs";
+  constexpr size_t kDepth = 400000;
+  std::filesystem::create_directory(path);
+  std::ofstream(path + "/index.json") << "{\"format\": \"vdb_madf slabs\", \"slabs\": "
+                                      << std::string(kDepth, '[') + std::string(kDepth, ']') + "}";
+  CHECK_THROWS_AS(openSlabFolder(path), IoError);
+}
+
 TEST_CASE("slab_folder: a new folder takes the place of the old one", "[slab_folder]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.slabs";

@@ -15,6 +15,7 @@
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/files/detail/content_digest.h"
 #include "vdb_madf/files/detail/input_file.h"
+#include "vdb_madf/files/detail/json_depth.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/grids/detail/region_metadata.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
@@ -43,7 +44,13 @@ Json slabsOf(const std::string& index) {
   std::error_code ignored;
   if (!fs::exists(index, ignored))
     throw IoError(index + ": is missing, so this folder of slabs is not whole: make it again");
-  Json json = Json::parse(readText(index, kMostBytes), nullptr, false);
+  Json json = Json::parse(
+      readText(index, kMostBytes),
+      [&](int depth, Json::parse_event_t, Json&) {
+        if (depth > detail::kMaxJsonDepth) refuseIndex(index);
+        return true;
+      },
+      false);
   if (!json.is_object() || !json.contains("slabs")) refuseIndex(index);
   const Json digest = json.value(detail::kDigestKey, Json(""));
   if (!digest.is_string()) refuseIndex(index);

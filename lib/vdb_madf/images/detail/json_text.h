@@ -9,23 +9,22 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/detail/input_file.h"
+#include "vdb_madf/files/detail/json_depth.h"
 
 namespace vdb_madf::detail {
 
 using Json = nlohmann::json;
 
-/// The object in a JSON file, of at most so many bytes, and not too deep: copies are made by
-/// recursion. @throw IoError
+/// The object in a JSON file, of at most so many bytes, and not too deep. @throw IoError
 inline Json jsonObject(const std::string& name, const std::string& path,
                        const Json::parser_callback_t& keep = nullptr,
                        uint64_t mostBytes = uint64_t(1) << 22) {
   const InputFile file(name, path);
   if (file.size() > mostBytes) throw IoError(file.name() + ": is too long for a description");
-  constexpr int kMaxDepth = 64;
   Json json = Json::parse(
       file.head(mostBytes),
       [&](int depth, Json::parse_event_t event, Json& value) {
-        if (depth > kMaxDepth) throw IoError(file.name() + ": has too deep a description");
+        if (depth > kMaxJsonDepth) throw IoError(file.name() + ": has too deep a description");
         return !keep || keep(depth, event, value);
       },
       false);
