@@ -3,8 +3,6 @@
 
 #include "vdb_madf/exports/detail/ome_attributes.h"
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "vdb_madf/base/detail/text.h"
@@ -157,15 +155,16 @@ std::string sceneText(const std::array<std::string, 2>& paths,
   const auto system = [](const std::string& path) {
     return Json{{"path", path}, {"name", kSystem}};
   };
-  const Json translation = {{"type", "translation"}, {"translation", {move[2], move[1], move[0]}}};
+  const Json translation = {move[2], move[1], move[0]};
   Json json;
   if (isIdentity(matrix)) {
     json = between("translation", system(paths[0]), system(paths[1]));
-    json["translation"] = translation["translation"];
+    json["translation"] = translation;
   } else if (isIdentity(matrix * matrix.transpose()) && matrix.det() > 0) {
     json = between("sequence", system(paths[0]), system(paths[1]));
-    json["transformations"] = Json::array(
-        {{{"type", "rotation"}, {"rotation", matrixJson(matrix, nullptr)}}, translation});
+    json["transformations"] =
+        Json::array({{{"type", "rotation"}, {"rotation", matrixJson(matrix, nullptr)}},
+                     {{"type", "translation"}, {"translation", translation}}});
   } else {
     json = between("affine", system(paths[0]), system(paths[1]));
     json["affine"] = matrixJson(matrix, &move);
