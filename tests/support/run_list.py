@@ -8,7 +8,7 @@ import shlex
 
 # What may differ between two runs of one program.
 VARYING = [(re.compile(pattern, re.MULTILINE), rb"\1#\2") for pattern in (
-    rb'("(?:seconds_\w+|peak_memory_bytes\w*|memory_limit_bytes)": )[-+.\de]+()',
+    rb'("(?:seconds_\w+|page_faults_\w+|peak_memory_bytes\w*|memory_limit_bytes)": )[-+.\de]+()',
     rb"^(  time, memory +)[\d.]+( s with )",
     rb"^(  time, memory .* threads, )\d+( MiB)",
     rb"^(    \w+ +)\d+\.\d{3}( s)$",

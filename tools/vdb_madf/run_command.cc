@@ -17,6 +17,7 @@
 
 #include "command.h"
 #include "command_line.h"
+#include "large_pages.h"
 #include "member_failure.h"
 #include "message.h"
 #include "outputs.h"
@@ -159,6 +160,7 @@ int run(const char* program, int argc, char** argv, Team* team) {
 }  // namespace
 
 int runCommand(const char* program, int argc, char** argv, Team* team) {
+  askForLargePages();
   try {
     return run(program, argc, argv, team);
   } catch (const OtherMemberFailed&) {

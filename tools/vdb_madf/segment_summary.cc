@@ -84,7 +84,9 @@ void addTiming(const SegmentArguments& o, const SegmentTiming& timing,
   for (const StageTime& stage : stages) {
     summary.seconds.emplace_back(stage.stage, stage.seconds);
     summary.peakBytesUntil.emplace_back(stage.stage, stage.peakBytes);
+    summary.pageFaults.emplace_back(stage.stage, stage.pageFaults);
   }
+  summary.pageFaults.emplace_back("total", pageFaults());
   if (!o.tables.empty()) summary.seconds.emplace_back("measure", timing.measure);
   summary.seconds.emplace_back("write", timing.write);
   summary.seconds.emplace_back("total", timing.total);
@@ -183,6 +185,7 @@ Json toJson(const SegmentArguments& o, const SegmentSummary& summary) {
   for (const auto& [part, seconds] : summary.seconds) json["seconds_" + part] = seconds;
   for (const auto& [stage, bytes] : summary.peakBytesUntil)
     json["peak_memory_bytes_until_" + stage] = bytes;
+  for (const auto& [stage, faults] : summary.pageFaults) json["page_faults_" + stage] = faults;
   json["peak_memory_bytes"] = summary.peakBytes;
   json["hints"] = summary.hints;
   return json;

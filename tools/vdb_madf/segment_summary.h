@@ -57,6 +57,7 @@ struct SegmentSummary : SegmentationRecord {
   int threads = 0;
   std::vector<std::pair<std::string, double>> seconds;  ///< of each part of the work, then "total"
   std::vector<std::pair<std::string, int64_t>> peakBytesUntil;  ///< the end of each stage
+  std::vector<std::pair<std::string, int64_t>> pageFaults;      ///< of each stage, then "total"
   int64_t peakBytes = 0;
   std::vector<std::string> hints;  ///< what to turn if the grains look wrong
 

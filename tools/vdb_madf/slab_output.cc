@@ -141,9 +141,10 @@ void addSlabCosts(const SlabObject& object, const SlabSegmentation& s, Json& jso
 std::string aboutSlabs(const SegmentArguments& o, const Json& summary) {
   Json index = Json::object();
   for (const auto& [key, value] : summary.items())
-    if (key.rfind("seconds_", 0) != 0 && key.find("memory") == std::string::npos &&
-        key != "threads" && key != "stages" && key != "exchanges" && key != "ranks" &&
-        key != "output" && key != "hints" && key != "input" && key != "notes")
+    if (key.rfind("seconds_", 0) != 0 && key.rfind("page_faults_", 0) != 0 &&
+        key.find("memory") == std::string::npos && key != "threads" && key != "stages" &&
+        key != "exchanges" && key != "ranks" && key != "output" && key != "hints" &&
+        key != "input" && key != "notes")
       index[key] = value;
   index.update(originOf(o));
   return index.dump(-1, ' ', false, Json::error_handler_t::replace);

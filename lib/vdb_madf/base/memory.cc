@@ -47,6 +47,12 @@ int64_t peakMemory() {
   return int64_t(usage.ru_maxrss) * 1024;
 }
 
+int64_t pageFaults() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_minflt;
+}
+
 int64_t availableMemory() {
   int64_t available = 0;
   std::ifstream file("/proc/meminfo");

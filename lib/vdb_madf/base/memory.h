@@ -11,6 +11,9 @@ namespace vdb_madf {
 /// Largest resident memory of this process so far, bytes.
 int64_t peakMemory();
 
+/// Pages of memory that this process has touched for the first time, small or large.
+int64_t pageFaults();
+
 /// Bytes that the machine has free for a program, caches given back, within the limits of its
 /// control groups and its own (`ulimit -v`); 0 if that is unknown.
 int64_t availableMemory();

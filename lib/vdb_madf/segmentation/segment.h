@@ -70,7 +70,8 @@ struct MedialBall {
 struct StageTime {
   std::string stage;  ///< snake_case
   double seconds = 0;
-  int64_t peakBytes = 0;  ///< largest resident memory of the process until the stage's end
+  int64_t peakBytes = 0;   ///< largest resident memory of the process until the stage's end
+  int64_t pageFaults = 0;  ///< pages that the process touched for the first time
 };
 
 /// What a run says of itself, in memory or in slabs; with the options this is what grids tell of

@@ -39,7 +39,8 @@ Stages::Stages(Interrupter* interrupter, const std::vector<std::string>& omitted
 
 Interrupter* Stages::begin(const char* stage) {
   finish();
-  times_.push_back({stage, 0, 0});
+  times_.push_back({stage});
+  faultsBefore_ = pageFaults();
   start_ = Clock::now();
   running_ = true;
   before_ = largest_ = 0;
@@ -57,6 +58,7 @@ void Stages::finish() {
   if (!running_) return;
   times_.back().seconds = std::chrono::duration<double>(Clock::now() - start_).count();
   times_.back().peakBytes = peakMemory();
+  times_.back().pageFaults = pageFaults() - faultsBefore_;
   if (interrupter_) interrupter_->end();
   running_ = false;
 }

@@ -38,6 +38,7 @@ class Stages : public Interrupter {
   std::vector<std::string> omitted_;
   std::vector<StageTime>& times_;
   Clock::time_point start_;
+  int64_t faultsBefore_ = 0;
   bool running_ = false;
   int before_ = 0, weight_ = 0, total_ = 0;
   std::atomic<int> largest_{0};  // per cent of the stage
