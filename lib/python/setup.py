@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Builds the module with CMake: `pip install ./lib/python`."""
 
+import os
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -34,6 +36,7 @@ class CMakeBuild(build_ext):
             options.append(f"-Dpybind11_DIR={pybind11.get_cmake_dir()}")
         except ImportError:
             pass  # CMake finds that of the system
+        options += shlex.split(os.environ.get("CMAKE_ARGS", ""))  # as other packages have it
         subprocess.run(["cmake", "-S", HERE, "-B", build, *options], check=True)
         subprocess.run(["cmake", "--build", build, "--target", "vdb_madf_python", "--parallel"],
                        check=True)

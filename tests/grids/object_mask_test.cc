@@ -10,6 +10,7 @@
 #include <random>
 
 #include "support/catch.h"
+#include "support/other_grids.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 
@@ -167,7 +168,7 @@ TEST_CASE("object_mask: a background that is NaN is no object", "[object_mask]")
 }
 
 TEST_CASE("object_mask: what cannot be is refused", "[object_mask]") {
-  const auto vectors = openvdb::Grid<StandardTree<openvdb::Vec3f>>::create();
+  const auto vectors = test::Vec3sGrid::create();
   CHECK_THROWS_AS(objectMask(*vectors), InvalidInput);
   const auto grid = Int32Grid::create(0);
   Selection selection;

@@ -149,7 +149,7 @@ TEST_CASE("surface_area: discs between two balls, and the caps beside them",
   }
 }
 
-TEST_CASE("surface_area: discs between unequal balls", "[surface_area]") {
+TEST_CASE("surface_area: discs between unequal balls", "[surface_area][long]") {
   Rng rng(5);
   Errors errors;
   for (int i = 0; i < 40; ++i) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "support/catch.h"
+#include "support/other_grids.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/verified_files.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
@@ -18,7 +19,6 @@
 /// Grids and files for the tests of VDB files.
 namespace vdb_madf::test {
 
-using Vec3sGrid = openvdb::Grid<StandardTree<openvdb::Vec3s>>;
 using Grids = std::vector<openvdb::GridBase::ConstPtr>;
 
 template <typename T>

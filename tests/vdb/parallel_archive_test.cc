@@ -22,9 +22,6 @@ using openvdb::GridBase;
 
 namespace {
 
-using DoubleGrid = openvdb::Grid<StandardTree<double>>;
-using Int64Grid = openvdb::Grid<StandardTree<int64_t>>;
-
 std::string withoutUuid(std::string bytes) {
   return bytes.replace(21, 36, 36, '-');
 }

@@ -29,9 +29,6 @@ namespace io = openvdb::io;
 
 namespace {
 
-using DoubleGrid = openvdb::Grid<StandardTree<double>>;
-using Int64Grid = openvdb::Grid<StandardTree<int64_t>>;
-
 /// Leaves full of random values: they do not compress.
 Int32Grid::Ptr noise(int leaves, uint32_t seed = 1) {
   std::mt19937 random(seed);

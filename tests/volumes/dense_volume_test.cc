@@ -9,6 +9,7 @@
 #include "support/catch.h"
 #include "support/files.h"
 #include "support/images.h"
+#include "support/other_grids.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -273,7 +274,7 @@ TEST_CASE("dense_volume: what cannot be is refused", "[dense_volume]") {
   layout.type = SampleType::uint8;
   CHECK_THROWS_WITH(copyToDense(*grid, samples.data(), layout),
                     Contains("the array") && Contains(" 256 ") && Contains("uint8"));
-  const auto vectors = openvdb::Grid<StandardTree<openvdb::Vec3f>>::create();
+  const auto vectors = test::Vec3sGrid::create();
   CHECK_THROWS_AS(copyToDense(*vectors, samples.data(), layout), InvalidInput);
 
   for (const CoordBBox& box :

@@ -9,6 +9,7 @@
 #include "support/files.h"
 #include "support/full_disk.h"
 #include "support/images.h"
+#include "support/other_grids.h"
 #include "support/runs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -197,7 +198,7 @@ TEST_CASE("image_write: what is not there to write is refused", "[image_write]")
   CHECK_THROWS_AS(
       writeImage(folder / "a.vdb", *grid, CoordBBox(Coord(0), Coord(1)), SampleType::uint8),
       InvalidInput);
-  const auto vectors = openvdb::Grid<StandardTree<openvdb::Vec3f>>::create();
+  const auto vectors = test::Vec3sGrid::create();
   CHECK_THROWS_AS(
       writeImage(folder / "a.raw", *vectors, CoordBBox(Coord(0), Coord(1)), SampleType::uint8),
       InvalidInput);
