@@ -12,12 +12,14 @@
 #     [OPTIMIZE level]      O1 or O2, where its loops wait for others or for files; default: that
 #                           of the build type
 #     [GRIDS]               its sources see OpenVDB's grids, by a precompiled header
-#     [SANITIZE])           with the tests, also built with sanitizers, as vdb_madf_NAME_sanitized
+#     [SANITIZE]            with the tests, also built with sanitizers, as vdb_madf_NAME_sanitized
+#     [SANITIZABLE])        the same, if VDB_MADF_SANITIZE_ALL is on
 #
 # USES is the one list of arrows between rooms. It is written to rooms.txt in the build folder,
 # where tests/rooms compares every #include with it.
+option(VDB_MADF_SANITIZE_ALL "Sanitizers also for rooms that compute with what others read" OFF)
 function(vdb_madf_room name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "GRIDS;SANITIZE" "OPTIMIZE"
+  cmake_parse_arguments(PARSE_ARGV 1 arg "GRIDS;SANITIZE;SANITIZABLE" "OPTIMIZE"
     "FOLDERS;HEADERS;SOURCES;OBJECTS;USES;LINKS;PRIVATE;PACKAGES")
   if(NOT arg_FOLDERS)
     set(arg_FOLDERS ${name})
@@ -30,6 +32,9 @@ function(vdb_madf_room name)
   target_sources(${target} PUBLIC FILE_SET HEADERS
     BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR} FILES ${arg_HEADERS})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERIFY_INTERFACE_HEADER_SETS ON)
+  if(arg_SANITIZABLE AND VDB_MADF_SANITIZE_ALL)
+    set(arg_SANITIZE ON)
+  endif()
   if(arg_SANITIZE AND VDB_MADF_BUILD_TESTS)
     vdb_madf_room_library(_sanitized)
     target_include_directories(${target}_sanitized PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})

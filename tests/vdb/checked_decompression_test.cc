@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "support/catch.h"
+#include "support/other_grids.h"
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/segmentation/initialize.h"
 
@@ -174,7 +175,6 @@ TEST_CASE("checked_decompression: damaged blocks are read or refused", "[checked
 TEST_CASE("checked_decompression: is what OpenVDB calls", "[checked_decompression]") {
   initialize();
   // Float trees are compiled into the library, uint32 trees here.
-  using UInt32Grid = openvdb::Grid<StandardTree<uint32_t>>;
   if (!UInt32Grid::isRegistered()) UInt32Grid::registerGrid();
   REQUIRE(errorOfReadingWrongLeaf<FloatGrid>().find("checked decompression") != std::string::npos);
   REQUIRE(errorOfReadingWrongLeaf<Int32Grid>().find("checked decompression") != std::string::npos);
