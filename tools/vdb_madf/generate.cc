@@ -196,7 +196,7 @@ constexpr SampleKind kSampleKinds[] = {
      [](const GenerateArguments& options, Interrupter* interrupter) {
        return generateSintered(options.sintered, interrupter);
      }},
-    {"particles", "convex particles of one shape with known grains",
+    {"particles", "particles of one shape with known grains",
      "vdb_madf generate particles plates.vdb --shape plates --count 90 --radius 12:22",
      [](Verb verb, GenerateArguments& options) {
        ParticleOptions& particles = options.particles;

@@ -39,7 +39,8 @@ def generate(kind: str, *, size: Union[int, Tuple[int, int, int], None] = None, 
     - "snow" (no truth): fraction, length
     - "sintered": count, radius, neck, roughness
     - "particles": count, radius, shape ("balls", "ellipsoids", "plates", "prisms", "polyhedra",
-      "rods", "columns"), lognormal, neck, of rods and columns aspect=(least, largest)
+      "rods", "columns", "sand-ottawa", "sand-ottawa-fine", "sand-hamburg", "sand-hostun"),
+      lognormal, neck, of rods and columns aspect=(least, largest)
     - "bed": radius, rounds
     - "balls": centers, an array with a row (z, y, x, radius) for each ball, whose bounding box is
       in the middle of the sample; without a size the sample is as large

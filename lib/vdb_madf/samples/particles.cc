@@ -74,13 +74,18 @@ class ParticleSites {
 }  // namespace
 
 const std::vector<std::string>& particleShapeNames() {
-  static const std::vector<std::string> names{"balls",     "ellipsoids", "plates", "prisms",
-                                              "polyhedra", "rods",       "columns"};
+  static const std::vector<std::string> names{
+      "balls",   "ellipsoids",  "plates",           "prisms",       "polyhedra",  "rods",
+      "columns", "sand-ottawa", "sand-ottawa-fine", "sand-hamburg", "sand-hostun"};
   return names;
 }
 
 bool haveAspect(ParticleShape shape) {
   return shape == ParticleShape::rods || shape == ParticleShape::columns;
+}
+
+bool isSand(ParticleShape shape) {
+  return shape >= ParticleShape::sandOttawa;
 }
 
 Sample generateParticles(const ParticleOptions& options, Interrupter* interrupter) {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "vdb_madf/base/detail/portable_math.h"
+#include "vdb_madf/samples/detail/sand_grain.h"
 
 namespace vdb_madf::detail {
 
@@ -41,16 +42,6 @@ Frame drawFrame(RandomSequence& random) {
   return {{{1 - s * (c * c + d * d), s * (b * c + a * d), s * (b * d - a * c)},
            {s * (b * c - a * d), 1 - s * (b * b + d * d), s * (c * d + a * b)},
            {s * (b * d + a * c), s * (c * d - a * b), 1 - s * (b * b + c * c)}}};
-}
-
-Vector drawDirection(RandomSequence& random) {
-  Vector v;
-  double square;
-  do {
-    for (int axis = 0; axis < 3; ++axis) v[axis] = random.uniform(-1, 1);
-    square = v.dot(v);
-  } while (square > 1 || square < 1e-6);
-  return v / std::sqrt(square);
 }
 
 Particle ellipsoid(const Frame& frame, double a, double b, double c) {
@@ -121,6 +112,15 @@ void scale(Particle& particle, double factor) {
   particle.reach *= factor;
 }
 
+Particle sand(const Frame& frame, const SandGrain& grain) {
+  const auto& [a, b, c] = grain.axes;
+  Particle particle = ellipsoid(frame, a, b, c);
+  particle.form = Particle::Form::bumpy;
+  particle.inverseRadius = grain.inverseRadius;
+  particle.reach *= 1 / grain.inverseRadius.least();
+  return particle;
+}
+
 /// A particle of the volume of the unit ball.
 Particle drawUnit(const ParticleOptions& options, RandomSequence& random) {
   const ParticleShape shape = options.shape;
@@ -132,7 +132,12 @@ Particle drawUnit(const ParticleOptions& options, RandomSequence& random) {
   } else {
     const Frame frame = drawFrame(random);
     if (shape == ParticleShape::balls) return ellipsoid(frame, 1, 1, 1);
-    if (shape == ParticleShape::ellipsoids) {
+    if (isSand(shape)) {
+      const SandGrain grain = drawSandGrain(shape, random);
+      particle = sand(frame, grain);
+      volume =
+          grain.axes[0] * grain.axes[1] * grain.axes[2] * grain.inverseRadius.volumeOfInverse();
+    } else if (shape == ParticleShape::ellipsoids) {
       const double b = random.uniform(1.2, 1.4), c = random.uniform(1.55, 1.85);
       particle = ellipsoid(frame, 1, b, c);
       volume = kUnitBall * b * c;
@@ -172,6 +177,11 @@ double Particle::value(const Vector& p) const {
     for (const Vector& row : rows) result += row.dot(v) * row.dot(v);
     return std::sqrt(result);
   }
+  if (form == Form::bumpy) {
+    const Vector u(rows[0].dot(v), rows[1].dot(v), rows[2].dot(v));
+    const double length = u.length();
+    return length == 0 ? 0 : length * inverseRadius.value(u);
+  }
   for (const Vector& row : rows) result = std::max(result, row.dot(v));
   return result;
 }
@@ -179,6 +189,10 @@ double Particle::value(const Vector& p) const {
 double Particle::slope() const {
   double square = 0;
   for (const Vector& row : rows) square = std::max(square, row.dot(row));
+  if (form == Form::bumpy) {
+    const double radial = inverseRadius.greatest(), along = inverseRadius.slope();
+    square *= radial * radial + along * along;
+  }
   return std::sqrt(square);
 }
 

@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "vdb_madf/samples/detail/directions.h"
 #include "vdb_madf/samples/detail/random.h"
 #include "vdb_madf/samples/particles.h"
 
@@ -14,16 +15,18 @@ namespace vdb_madf::detail {
 
 using Vector = openvdb::Vec3d;
 
-/// A convex body about its center. Voxel p is inside if value(p) < 1.
+/// A body about its center, which sees all of its surface. Voxel p is inside if value(p) < 1.
 struct Particle {
   Vector center{0, 0, 0};
-  enum class Form { faces, ellipsoid, rod };
+  enum class Form { faces, ellipsoid, rod, bumpy };
   Form form = Form::faces;
-  /// The unit normals of the faces over their distances from the center; of an ellipsoid the unit
-  /// axes over its half axes; of a rod its unit axis over its radius.
+  /// The unit normals of the faces over their distances from the center; of an ellipsoid, bumpy or
+  /// not, the unit axes over its half axes; of a rod its unit axis over its radius.
   std::vector<Vector> rows;
   /// Half the line segment that is the core of a rod, in its radii.
   double core = 0;
+  /// What bumps make of an ellipsoid, by the directions that the rows make of those in space.
+  DirectionMap inverseRadius;
   /// Radius of a ball about the center that contains the particle.
   double reach = 0;
 

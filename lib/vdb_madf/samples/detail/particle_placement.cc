@@ -23,18 +23,11 @@ constexpr int kMaxRadii = 10000;
 /// The scans of a sample have streams of their own.
 constexpr uint64_t kParticleStream = 0;
 
-/// Zero mean, unit variance, nearly normal.
-double drawNormal(RandomSequence& random) {
-  double sum = -6;
-  for (int i = 0; i < 12; ++i) sum += random.uniform();
-  return sum;
-}
-
 double drawRadius(const ParticleOptions& options, RandomSequence& random) {
   if (options.lognormal == 0) return random.uniform(options.minRadius, options.maxRadius);
   const double middle = std::sqrt(options.minRadius * options.maxRadius);
   for (int i = 0; i < kMaxRadii; ++i) {
-    const double radius = middle * exponential(options.lognormal * drawNormal(random));
+    const double radius = middle * exponential(options.lognormal * random.normal());
     if (radius >= options.minRadius && radius <= options.maxRadius) return radius;
   }
   throw InvalidInput(

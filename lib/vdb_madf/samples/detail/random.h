@@ -28,6 +28,12 @@ class RandomSequence {
   double uniform(double lower, double upper) { return lower + (upper - lower) * uniform(); }
   /// Integer in [lower, upper]; the bias is below 2^-37 for ranges of 16 bits.
   int integer(int lower, int upper) { return lower + int(uniform() * (upper - lower + 1)); }
+  /// Zero mean, unit variance, nearly normal.
+  double normal() {
+    double sum = -6;
+    for (int i = 0; i < 12; ++i) sum += uniform();
+    return sum;
+  }
 
  private:
   uint64_t state_;
