@@ -187,6 +187,56 @@ def check_state(page, path, labels_path, folder):
     command("edit", labels_path, os.path.join(folder, "edited.vdb"), "--edits", edits, "-q")
 
 
+def check_strictness(page, folder):
+    """At each strictness the slices, tables and numbers have the grains of remerge."""
+    command("segment", "s.vdb", "k.vdb", "--keep", "manifold", "-q")
+    out = os.path.join(folder, "slider.html")
+    command("report", "k.vdb", out, "-q")
+    complaints = page.open(out)
+    demand(not complaints, f"the page with a slider: {complaints}")
+    command("measure", "k.vdb", "own", "-q")
+    own = [int(row["voxels"]) for row in table("own/grains.csv")]
+    voxels = "return Array.from(window.report.sample.grains.column('voxels'))"
+    demand(page.run(voxels) == own, "the page has not the grains of the labels")
+    slider = page.find("#strictness")
+    counts = set()
+    for strictness in (8, 9.3, 10.5, 12, 14):
+        command("remerge", "k.vdb", "m.vdb", "--strictness", str(strictness), "--tidy", "0", "-q")
+        command("measure", "m.vdb", "cut", "-q")
+        command("convert", "m.vdb", "m.npy", "--grid", "grain", "-q")
+        grains, bonds = table("cut/grains.csv"), table("cut/bonds.csv")
+        page.run("arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'))",
+                 slider, round(10 * strictness))
+        counts.add(len(grains))
+        demand(page.run(voxels) == [int(row["voxels"]) for row in grains],
+               f"grains at {strictness} are not those of remerge")
+        pairs = page.run("const {bonds} = window.report.sample; return ['first', 'second', 'faces']."
+                         "map((name) => Array.from(bonds.column(name)))")
+        demand(pairs == [[int(row[name]) for row in bonds] for name in ("first", "second", "faces")],
+               f"bonds at {strictness} are not those of remerge")
+        for name in ("equivalent_diameter", "centroid_y", "inscribed_radius", "axis2_length",
+                     "axis1_z", "aspect_3_to_2", "box_min_x", "at_domain_face", "coordination"):
+            unit = "_mm" if name + "_mm" in grains[0] else ""
+            mine = page.run("return Array.from(window.report.sample.grains.column(arguments[0]))",
+                            name)
+            worst = max(abs(a - float(row[name + unit])) for a, row in zip(mine, grains))
+            demand(worst < 1e-4, f"{name} at {strictness} is off by {worst}")
+        labels = numpy.load("m.npy")
+        shown = page.run(
+            "const {sample} = window.report, {size} = sample.about.slices, rows = [];"
+            "for (let k = 0; k < size[2]; ++k) for (let j = 0; j < size[1]; ++j)"
+            "for (let i = 0; i < size[0]; ++i) rows.push(sample.rowAt(i, j, k) + 1); return rows")
+        demand(shown == labels.ravel().tolist(), f"slices at {strictness} are not those of remerge")
+        page.wait(f"return document.querySelector('#table-grains_info').textContent.trim()."
+                  f"endsWith('of {len(grains)}')")
+        demand(page.find("#shown").text.startswith(f"{len(grains)} of {len(grains)} grains"),
+               f"at {strictness} the page says: {page.find('#shown').text}")
+    demand(len(counts) > 2, f"the slider changes nothing: {counts}")
+    check_clicks(page, labels)
+    page.button("As in the labels").click()
+    demand(page.run(voxels) == own, "the grains of the labels do not come again")
+
+
 def check_odd_samples(page, folder):
     """Pages of samples that lack something, or have something large."""
     raw = os.path.join(folder, "odd.raw")
@@ -257,6 +307,7 @@ with tempfile.TemporaryDirectory() as folder:
         check_links(page, grains, bonds)
         check_state(page, path, "l.vdb", folder)
         check_comparison(page, folder, "l.vdb", grains)
+        check_strictness(page, folder)
         check_odd_samples(page, folder)
     with Page("--disable-3d-apis") as page:
         complaints = [text for text in page.open(path) if "WebGL" not in text]

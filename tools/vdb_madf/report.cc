@@ -12,10 +12,12 @@
 #include "input_options.h"
 #include "outputs.h"
 #include "parse.h"
+#include "remerge_slabs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/read_text.h"
+#include "vdb_madf/vdb/read_vdb.h"
 
 namespace vdb_madf::tools {
 
@@ -60,6 +62,14 @@ void parse(ReportArguments& o) {
   }
 }
 
+/// The manifolds that a file keeps beside its labels; null if it does not.
+Int32Grid::Ptr manifoldsBeside(const InputOptions& input, Progress* progress) {
+  if (!isVdb(input) || isInSlabs(input)) return nullptr;
+  VdbReadOptions manifolds;
+  manifolds.wanted = [](const openvdb::GridBase& grid) { return grid.getName() == kManifoldGrid; };
+  return manifoldsAmong(readVdb(input.path, manifolds, progress));
+}
+
 Report writeOne(const ReportArguments& o, const Common& common) {
   ReportOptions options = o.report;
   if (!o.sweep.empty()) options.sweep = readText(o.sweep, kMaxSweepBytes);
@@ -67,6 +77,7 @@ Report writeOne(const ReportArguments& o, const Common& common) {
     throw InvalidInput(o.sweep + ": is no table of the verb sweep");
   common.progress->start("read");
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
+  options.manifold = manifoldsBeside(o.input, common.progress);
   return withFileName(o.input.path,
                       [&] { return writeReport(o.out, *labels, options, common.progress); });
 }
@@ -97,6 +108,7 @@ void runReport(const ReportArguments& o, const Common& common) {
   if (report.sliceReduction > 1)
     std::printf("  slices              reduced %d times: a voxel of them is %d^3 of the labels\n",
                 report.sliceReduction, report.sliceReduction);
+  if (report.hasLevels) std::printf("  strictness          a slider joins and parts grains\n");
 }
 
 }  // namespace

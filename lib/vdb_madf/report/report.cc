@@ -89,6 +89,7 @@ Report writeReport(const std::string& path, const Int32Grid& labels, const Repor
   PageText page{parts.title(), parts.picture(), ""};
   page.data = parts.tables() + parts.colors() + parts.sweep() + parts.slices();
   page.data += parts.mesh();
+  page.data += parts.levels();
   page.data += parts.about();
   Report report = parts.report();
   report.bytes = write(file, sources, page);
@@ -108,6 +109,7 @@ Report writeComparison(const std::string& path, const std::vector<ReportSample>&
     ReportOptions own = options;
     own.title = samples[i].name;
     own.labels = samples[i].path;
+    own.manifold = nullptr;
     const auto made = partsOf(*labels, own, "-" + std::to_string(i), interrupter);
     const detail::ReportParts& parts = *made;
     if (i > 0 && parts.unit() != unit)

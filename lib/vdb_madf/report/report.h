@@ -25,6 +25,9 @@ struct ReportOptions {
   /// than this. 0: no view in three dimensions.
   uint64_t maxTriangles = 1000000;
   std::string sweep;  ///< the text of a table of the verb sweep, to be shown as plots; empty: none
+  /// What the labels were merged from (segment with keepManifold): the page gets a slider for the
+  /// strictness, if merging by score made them and nothing has edited them since. Null: none.
+  Int32Grid::ConstPtr manifold;
   /// Slices are those of labels that are reduced to at most so many voxels a side, 1 or more.
   int maxSlice = 256;
   int pictureEdge = 640;  ///< pixels of the picture for where there is no WebGL, about; 16 .. 8192
@@ -35,6 +38,7 @@ struct Report {
   int64_t grains = 0, bonds = 0;
   uint64_t triangles = 0;
   int sliceReduction = 1;  ///< voxels of the labels along an edge of one in the slices
+  bool hasLevels = false;  ///< a slider for the strictness
   uint64_t bytes = 0;      ///< of the file
 };
 
@@ -51,7 +55,9 @@ bool isSweepTable(const std::string& text);
 ///
 /// The tables are those of measurementTexts(). Grains are meshed, smoothed and simplified; of
 /// labels with many times the triangles reduced ones are meshed, and a grain that is lost there
-/// becomes an octahedron of its volume. Memory: that of measure() and grainMesh(), and of the
+/// becomes an octahedron of its volume. With manifolds, mesh and slices are those of the grains at
+/// the largest strictness of the slider, without tidying; at any other, the page joins these and
+/// adds up their measures. Memory: that of measure() and grainMesh(), and of the
 /// page's text.
 /// @throw InvalidInput for options out of range, labels without a domain and without grains, and as
 ///   measure() does; IoError, also if !canWriteReport(); Interrupted.
@@ -65,7 +71,7 @@ struct ReportSample {
 };
 
 /// Writes samples side by side: their numbers, pictures, distributions and roses. Of the options
-/// those of view and slices are not used, nor is `labels`.
+/// those of view and slices are not used, nor are `labels` and `manifold`.
 /// @throw InvalidInput also if lengths are not in one unit; else as writeReport()
 Report writeComparison(const std::string& path, const std::vector<ReportSample>& samples,
                        const ReportOptions& options = {}, Interrupter* interrupter = nullptr);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "vdb_madf/base/errors.h"
@@ -58,6 +59,20 @@ Json columnsJson(const std::vector<MeasureColumn>& columns) {
   return json;
 }
 
+Json listed(const std::vector<PackedLeaves::Column>& columns) {
+  Json json = Json::array();
+  for (const PackedLeaves::Column& column : columns)
+    json.push_back({{"name", column.name}, {"exact", column.isExact}});
+  return json;
+}
+
+/// The colors that are enough to tell these apart, each once.
+Json paletteJson(const GrainColors& colors) {
+  std::set<std::array<int, 3>> palette;
+  for (const Rgb& color : colors.colors) palette.insert({color[0], color[1], color[2]});
+  return palette;
+}
+
 /// How far to reduce labels for about so many triangles: the surface of a sample has a factor
 /// squared less.
 int reductionTo(uint64_t most, const Int32Grid& labels, Interrupter* interrupter) {
@@ -82,6 +97,24 @@ ReportParts::ReportParts(const Int32Grid& labels, const ReportOptions& options, 
   if (box_.empty()) throw InvalidInput("has no labels and no domain: nothing to show");
   colors_ = grainColors(labels, interrupter);
   for (const GrainMeasures& grain : measured_.grains) ids_.push_back(grain.id);
+  if (options.manifold) addLevels();
+}
+
+void ReportParts::addLevels() {
+  begin("levels");
+  levels_ = grainLevels(labels_, ids_, *options_.manifold, interrupter_);
+  if (!levels_) return;
+  setVoxelSize(*levels_->leaves, storedVoxelSize(labels_));
+  MeasureOptions options = options_.measure;
+  options.domain = options.domain ? options.domain : storedDomain(labels_);
+  options.minFaces = 1;  // the page sums the faces of leaves before it counts them
+  leafMeasures_ = measure(*levels_->leaves, options, interrupter_);
+}
+
+std::vector<int32_t> ReportParts::bodyIds() const {
+  std::vector<int32_t> ids;
+  for (const GrainMeasures& body : bodyMeasures().grains) ids.push_back(body.id);
+  return ids;
 }
 
 void ReportParts::begin(const char* stage) const {
@@ -101,7 +134,11 @@ std::string ReportParts::unit() const {
 }
 
 Report ReportParts::report() const {
-  return {int64_t(measured_.grains.size()), int64_t(measured_.bonds.size()), triangles_, reduction_,
+  return {int64_t(measured_.grains.size()),
+          int64_t(measured_.bonds.size()),
+          triangles_,
+          reduction_,
+          levels_.has_value(),
           0};
 }
 
@@ -128,10 +165,10 @@ std::string ReportParts::slices() {
   begin("slices");
   reduction_ = reductionFor(box_, options_.maxSlice);
   const Int32Grid::ConstPtr reduced =
-      reduction_ > 1 ? reduceLabels(labels_, reduction_, interrupter_) : nullptr;
+      reduction_ > 1 ? reduceLabels(bodies(), reduction_, interrupter_) : nullptr;
   if (reduced) sliceBox_ = boxOf(*reduced);
   return dataElement("labels" + suffix_,
-                     packLabels(reduced ? *reduced : labels_, sliceBox_, ids_, interrupter_));
+                     packLabels(reduced ? *reduced : bodies(), sliceBox_, bodyIds(), interrupter_));
 }
 
 std::string ReportParts::mesh() {
@@ -139,19 +176,27 @@ std::string ReportParts::mesh() {
   begin("mesh");
   const GrainMeshOptions options{
       kSmoothing,
-      std::min(options_.maxTriangles, std::max(kFewestTriangles, kTrianglesOfGrain * ids_.size()))};
+      std::min(options_.maxTriangles,
+               std::max(kFewestTriangles, kTrianglesOfGrain * bodyMeasures().grains.size()))};
   const uint64_t most =
       std::min(kMostMeshed, kMostSimplified * std::max(options.triangles, kFewestTriangles));
-  const int factor = reductionTo(most, labels_, interrupter_);
+  const int factor = reductionTo(most, bodies(), interrupter_);
   GrainMesh mesh =
-      factor > 1 ? grainMesh(*reduceLabels(labels_, factor, interrupter_), options, interrupter_)
-                 : grainMesh(labels_, options, interrupter_);
+      factor > 1 ? grainMesh(*reduceLabels(bodies(), factor, interrupter_), options, interrupter_)
+                 : grainMesh(bodies(), options, interrupter_);
   if (factor > 1) enlarge(mesh, factor);
-  const PackedMesh packed = packMesh(mesh, measured_.grains, kMeshStep * double(factor));
+  const PackedMesh packed = packMesh(mesh, bodyMeasures().grains, kMeshStep * double(factor));
   points_ = packed.points;
   triangles_ = packed.triangles;
   step_ = packed.step;
   return dataElement("mesh" + suffix_, packed.text);
+}
+
+std::string ReportParts::levels() {
+  if (!levels_) return "";
+  packedLeaves_ = packLeaves(*leafMeasures_);
+  return dataElement("joins" + suffix_, packJoins(*levels_)) +
+         dataElement("leaves" + suffix_, packedLeaves_.text);
 }
 
 std::string ReportParts::about() const {
@@ -172,6 +217,20 @@ std::string ReportParts::about() const {
   json["view"] = {{"azimuth", view_.azimuth}, {"elevation", view_.elevation}};
   json["columns"] = {{"grains", columnsJson(grainColumns({}, measured_.extra))},
                      {"bonds", columnsJson(bondColumns({}, measured_.extra))}};
+  if (levels_) {
+    json["levels"] = {
+        {"lowest", levels_->lowest},
+        {"highest", levels_->highest},
+        {"own", levels_->own},
+        {"leaves", leafMeasures_->grains.size()},
+        {"bonds", leafMeasures_->bonds.size()},
+        {"empty", levels_->empty},
+        {"joins", levels_->joins.size()},
+        {"minFaces", measured_.minFaces},
+        {"palette", paletteJson(grainColors(*levels_->leaves, interrupter_))},
+        {"columns",
+         {{"grains", listed(packedLeaves_.grains)}, {"bonds", listed(packedLeaves_.bonds)}}}};
+  }
   // A file name need not be UTF-8: what is not is replaced.
   return jsonElement("about" + suffix_, json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }

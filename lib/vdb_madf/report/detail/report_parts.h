@@ -4,12 +4,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "vdb_madf/labels/grain_colors.h"
 #include "vdb_madf/measure/measure.h"
 #include "vdb_madf/pictures/grain_view.h"
+#include "vdb_madf/report/detail/grain_levels.h"
 #include "vdb_madf/report/report.h"
 
 namespace vdb_madf::detail {
@@ -32,13 +34,20 @@ class ReportParts {
   std::string sweep() const;
   std::string slices();
   std::string mesh();
-  /// After slices() and mesh(), if there are these: it tells how to read them.
+  /// What the slider needs; empty if there is none.
+  std::string levels();
+  /// After slices(), mesh() and levels(), if there are these: it tells how to read them.
   std::string about() const;
   /// An image element for where there is no WebGL, and for paper.
   std::string picture() const;
 
  private:
   void begin(const char* stage) const;
+  void addLevels();
+  /// What mesh and slices show: the leaves of the slider, or the labels.
+  const Int32Grid& bodies() const { return levels_ ? *levels_->leaves : labels_; }
+  const Measurements& bodyMeasures() const { return levels_ ? *leafMeasures_ : measured_; }
+  std::vector<int32_t> bodyIds() const;
 
   const Int32Grid& labels_;
   const ReportOptions& options_;
@@ -49,6 +58,9 @@ class ReportParts {
   CoordBBox box_, sliceBox_;
   GrainColors colors_;
   std::vector<int32_t> ids_;
+  std::optional<GrainLevels> levels_;
+  std::optional<Measurements> leafMeasures_;
+  PackedLeaves packedLeaves_;
   int reduction_ = 1;
   uint64_t points_ = 0, triangles_ = 0;  ///< of the mesh
   double step_ = 0;

@@ -14,6 +14,7 @@ export function writeState(selection, camera) {
   const set = (key, value, usual) => { if (String(value) !== String(usual)) parts.set(key, value); };
   set('camera', [camera.azimuth, camera.elevation, camera.zoom, ...camera.target].map(round),
     [camera.view.azimuth, camera.view.elevation, 1, 0, 0, 0]);
+  set('strictness', selection.strictness, null);
   set('grains', [...selection.selected].map((row) => selection.sample.ids[row]), '');
   for (const [key, kind] of Object.entries(kFilters))
     for (const [name, range] of selection.filters[kind]) parts.append(key, `${name}=${writeRange(range)}`);
@@ -38,6 +39,9 @@ export function readState(text, selection, camera) {
     return parts.get(key) && values.length === count && values.every(Number.isFinite) ? values : null;
   };
   const oneOf = (key, values, usual) => (values.includes(parts.get(key)) ? parts.get(key) : usual);
+  const strictness = numbers('strictness', 1);
+  if (strictness && sample.levels && strictness[0] >= sample.levels.lowest && strictness[0] <= sample.levels.highest)
+    selection.setStrictness(strictness[0]);
   const view = numbers('camera', 6);
   if (view) {
     [camera.azimuth, camera.elevation] = view;

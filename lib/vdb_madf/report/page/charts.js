@@ -10,17 +10,23 @@ import { make } from './sample.js';
 /// Bars of the values of a column, each counted as one or by its weight.
 class Histogram {
   constructor(sample, selection, { kind, name, title, weight, discrete, what }) {
-    Object.assign(this, { sample, selection, kind, name, discrete });
-    this.values = sample[kind].column(name);
-    this.weights = weight && sample[kind].column(weight);
+    Object.assign(this, { sample, selection, kind, name, weight, discrete });
     this.flags = () => (kind === 'grains' ? selection.visible : selection.visibleBonds);
-    this.edges = binEdges(this.values, discrete);
-    this.total = sumsOf(this.values, this.weights, this.edges).reduce((a, b) => a + b, 0);
-    this.plot = new Plot(title || sample.titleOf(name), sample.titleWithUnit(kind, name), what,
-      { x: [this.edges[0], this.edges[this.edges.length - 1]] });
+    this.plot = new Plot(title || sample.titleOf(name), sample.titleWithUnit(kind, name), what, { x: [0, 1] });
+    this.load();
     this.plot.onDrag(([low, high]) => selection.setFilter(kind, name, this.rounded(low, high)),
       () => selection.setFilter(kind, name, null));
     this.figure = this.plot.figure;
+  }
+
+  /// Takes the numbers of the sample as it is now.
+  load() {
+    const { sample, kind, name, weight, discrete } = this;
+    this.values = sample[kind].column(name);
+    this.weights = weight && sample[kind].column(weight);
+    this.edges = binEdges(this.values, discrete);
+    this.total = sumsOf(this.values, this.weights, this.edges).reduce((a, b) => a + b, 0);
+    this.plot.x = [this.edges[0], this.edges[this.edges.length - 1]];
   }
 
   sums(flags) {
@@ -49,10 +55,14 @@ class Histogram {
 class Scatter {
   constructor(sample, selection, title, names) {
     Object.assign(this, { sample, selection, names });
-    this.values = names.map((name) => sample.grains.column(name));
+    this.load();
     this.plot = new Plot(title, sample.titleOf(names[0]), sample.titleOf(names[1]), { x: [0, 1], y: [0, 1] });
     this.plot.onDrag((x, y) => this.filter([x, y]), () => this.filter([null, null]));
     this.figure = this.plot.figure;
+  }
+
+  load() {
+    this.values = this.names.map((name) => this.sample.grains.column(name));
   }
 
   filter(ranges) {
@@ -93,6 +103,9 @@ export function startCharts(sample, selection) {
     make('p', { className: 'hint' }, 'Gray: all. Blue: what passes the filters. Drag in a chart to filter by it, click in it to take that back. Circles of roses: no preferred direction.'),
     make('div', { className: 'panels' }, ...charts.map((chart) => chart.figure)));
   const drawAll = () => charts.forEach((chart) => chart.draw());
-  selection.listen((what) => { if (what === 'filter') drawAll(); });
+  selection.listen((what) => {
+    if (what === 'strictness') charts.forEach((chart) => chart.load());
+    if (what === 'strictness' || what === 'filter') drawAll();
+  });
   drawAll();
 }

@@ -26,9 +26,9 @@ export function startEdits(sample, selection) {
     make('div', { className: 'bar' }, merge, drop, split, keep, save), list);
   const draw = () => {
     const count = selection.selected.size;
-    merge.disabled = count < 2;
-    drop.disabled = split.disabled = count === 0;
-    keep.disabled = selection.filters.grains.size === 0 && !selection.insideOnly ||
+    merge.disabled = !sample.isOwn || count < 2;
+    drop.disabled = split.disabled = !sample.isOwn || count === 0;
+    keep.disabled = !sample.isOwn || selection.filters.grains.size === 0 && !selection.insideOnly ||
       !selection.visible.includes(1);
     save.disabled = selection.edits.length === 0;
     list.replaceChildren(...selection.edits.map((edit, i) => make('li', {},
@@ -38,6 +38,6 @@ export function startEdits(sample, selection) {
         selection.changed('edits');
       }))));
   };
-  selection.listen((what) => { if (['selection', 'filter', 'edits'].includes(what)) draw(); });
+  selection.listen((what) => { if (['selection', 'filter', 'edits', 'strictness'].includes(what)) draw(); });
   draw();
 }

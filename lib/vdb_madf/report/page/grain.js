@@ -9,9 +9,9 @@ const shown = ['equivalent_diameter', 'voxels', 'coordination', 'inscribed_radiu
 
 export function startGrain(sample, selection) {
   const card = element('grain');
-  const diameters = sample.grains.column('equivalent_diameter');
-  const bySize = Array.from(diameters.keys()).sort((a, b) => diameters[b] - diameters[a] || a - b);
   const draw = () => {
+    const diameters = sample.grains.column('equivalent_diameter');
+    const bySize = Array.from(diameters.keys()).sort((a, b) => diameters[b] - diameters[a] || a - b);
     const rows = [...selection.selected];
     card.replaceChildren(make('h2', {}, 'Grain'), finder(sample, selection, bySize));
     if (rows.length === 0) {
@@ -22,7 +22,7 @@ export function startGrain(sample, selection) {
       card.append(make('p', {}, `${rows.length} grains: `, ...links(sample, selection, rows)));
     }
   };
-  selection.listen((what) => { if (what === 'selection' || what === 'filter') draw(); });
+  selection.listen((what) => { if (['selection', 'filter', 'strictness'].includes(what)) draw(); });
   draw();
 }
 

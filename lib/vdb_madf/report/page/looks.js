@@ -24,6 +24,36 @@ export function rangeOf(values) {
   return high > low ? [low, high] : [low, low + (Math.abs(low) || 1)];
 }
 
+/// Three bytes a grain. Each has the color of its largest leaf in the labels, unless a larger one
+/// beside it has that: then the next one of the palette that is free.
+export function colorsOfUnions({ count, grains, bondsOf, bondEnds, rowOfBody, levels, own }) {
+  const palette = [], indexOf = new Map();
+  const indexOfColor = (color) => {
+    const key = String(color);
+    if (!indexOf.has(key)) indexOf.set(key, palette.push(color) - 1);
+    return indexOf.get(key);
+  };
+  levels.palette.forEach(indexOfColor);
+  const preferred = new Array(count), largest = new Float64Array(count);
+  rowOfBody.forEach((row, body) => {
+    if (levels.leaf.voxels[body] <= largest[row]) return;
+    largest[row] = levels.leaf.voxels[body];
+    const ownRow = own.rowOfBody[body];
+    preferred[row] = indexOfColor(Array.from(own.colors.subarray(3 * ownRow, 3 * ownRow + 3)));
+  });
+  const voxels = grains.column('voxels'), chosen = new Int32Array(count).fill(-1);
+  const colors = new Uint8Array(3 * count);
+  for (const row of Array.from(voxels.keys()).sort((a, b) => voxels[b] - voxels[a] || a - b)) {
+    const taken = new Set(bondsOf[row].map((bond) =>
+      chosen[bondEnds.first[bond] === row ? bondEnds.second[bond] : bondEnds.first[bond]]));
+    let color = preferred[row];
+    for (let i = 0; i < palette.length && taken.has(color); ++i) color = (color + 1) % palette.length;
+    chosen[row] = color;
+    colors.set(palette[chosen[row]], 3 * row);
+  }
+  return colors;
+}
+
 /// Three bytes a grain.
 export function colorsOf(sample, name) {
   if (!name) return sample.colors;

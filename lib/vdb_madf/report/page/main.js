@@ -9,6 +9,7 @@ import { startGrain } from './grain.js';
 import { make, Sample } from './sample.js';
 import { Selection } from './selection.js';
 import { startSlices } from './slices.js';
+import { startStrictness } from './strictness.js';
 import { startSummary } from './summary.js';
 import { startSweep } from './sweep.js';
 import { startTables } from './tables.js';
@@ -27,7 +28,8 @@ async function startSample() {
   readState(location.hash.slice(1), selection, camera);
   selection.applyFilters();
   selection.changed('looks');
-  startSummary(sample);
+  startSummary(sample, selection);
+  startStrictness(sample, selection);
   startGrain(sample, selection);
   startSlices(sample, selection);
   startCharts(sample, selection);

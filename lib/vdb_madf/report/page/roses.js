@@ -9,12 +9,18 @@ const middle = 105, unit = 45, most = 84;
 
 class Rose {
   constructor(sample, selection, title, kind, name, weight, sectors, corners) {
-    Object.assign(this, { sectors, corners });
-    this.directions = ['x', 'y', 'z'].map((axis) => sample[kind].column(`${name}_${axis}`));
-    this.weights = sample[kind].column(weight);
+    Object.assign(this, { sample, kind, name, weight, sectors, corners });
+    this.load();
     this.flags = () => (kind === 'grains' ? selection.visible : selection.visibleBonds);
     this.svg = makeSvg('svg', { viewBox: '-6 4 222 202', role: 'img', 'aria-label': title, class: 'rose' });
     this.figure = make('figure', {}, make('figcaption', {}, title), this.svg);
+  }
+
+  /// Takes the numbers of the sample as it is now.
+  load() {
+    const { sample, kind, name, weight } = this;
+    this.directions = ['x', 'y', 'z'].map((axis) => sample[kind].column(`${name}_${axis}`));
+    this.weights = sample[kind].column(weight);
   }
 
   draw() {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the page shows: the tables, colors and labels of one sample, and how numbers are written.
 import { bytes, grainMesh, json, labelVolume, table } from './decode.js';
+import { Levels } from './levels.js';
+import { colorsOfUnions } from './looks.js';
 
 const powers = { '-2': '1/u\u00b2', '-1': '1/u', 1: 'u', 2: 'u\u00b2', 3: 'u\u00b3' };
 
@@ -19,32 +21,53 @@ export class Sample {
   /// Its tables. `suffix`: of the ids of its elements.
   static async load(suffix = '') {
     const sample = new Sample();
+    sample.isOwn = true;
     sample.about = json(`about${suffix}`);
     sample.numbers = json(`sample${suffix}`);
     const text = new TextDecoder();
     const { columns } = sample.about;
     sample.grains = table(text.decode(await bytes(`grains${suffix}`)), columns.grains);
     sample.bonds = table(text.decode(await bytes(`bonds${suffix}`)), columns.bonds);
-    sample.count = sample.grains.rows;
-    sample.ids = sample.grains.column('id');
-    sample.rowOf = new Map(Array.from(sample.ids, (id, row) => [id, row]));
-    sample.linkBonds();
+    sample.link();
     return sample;
   }
 
   async loadVoxels() {
     this.colors = await bytes('colors');
-    this.volume = labelVolume(await bytes('labels'), this.about.slices.size, this.count);
+    this.levels = await Levels.load(this.about);
+    // Bodies: what slices and mesh are made of, the grains or the leaves of the levels.
+    this.bodies = this.levels ? this.levels.leaves : this.count;
+    this.rowOfBody = this.levels ? Uint32Array.from(this.levels.ownGrain, (id) => this.rowOf.get(id))
+      : Uint32Array.from({ length: this.count }, (_, row) => row);
+    this.volume = labelVolume(await bytes('labels'), this.about.slices.size, this.bodies);
+    this.own = { ...this };
+  }
+
+  /// Shows the grains at another strictness; null: those of the labels.
+  setStrictness(strictness) {
+    this.isOwn = strictness === null;
+    if (this.isOwn) {
+      Object.assign(this, this.own);
+      return;
+    }
+    Object.assign(this, this.levels.at(strictness, this.own));
+    this.link();
+    this.numbers = numbersOf(this, strictness);
+    this.colors = colorsOfUnions(this);
   }
 
   async loadMesh() {
     const packed = await bytes('mesh');
-    return packed && grainMesh(packed, this.about.mesh, this.count);
+    return packed && grainMesh(packed, this.about.mesh, this.bodies);
   }
 
-  /// Rows of the grains of each bond, bonds of each grain, and the ratio of the radii.
-  linkBonds() {
+  /// Grains by number, rows of the grains of each bond, bonds of each grain, and the ratio of the
+  /// radii.
+  link() {
     const { bonds, grains } = this;
+    this.count = grains.rows;
+    this.ids = grains.column('id');
+    this.rowOf = new Map(Array.from(this.ids, (id, row) => [id, row]));
     const [first, second] = ['first', 'second'].map((name) =>
       Uint32Array.from(bonds.column(name), (id) => this.rowOf.get(id)));
     this.bondEnds = { first, second };
@@ -57,7 +80,7 @@ export class Sample {
       ratio[bond] = 2 * radius[bond] / Math.min(diameter[first[bond]], diameter[second[bond]]);
     }
     const column = bonds.column;
-    bonds.columns = [...bonds.columns, { name: 'radius_ratio', power: 0 }];
+    bonds.columns = [...bonds.columns, { name: 'radius_ratio', power: 0, isDerived: true }];
     bonds.column = (name) => (name === 'radius_ratio' ? ratio : column(name));
   }
 
@@ -93,10 +116,34 @@ export class Sample {
       this[kind].column(`${name}_${axis}`)[row] / this.about.edges[i]);
   }
 
-  labelAt(i, j, k) {
+  /// From 1 on; 0: none.
+  bodyAt(i, j, k) {
     const { size } = this.about.slices;
     return this.volume[(k * size[1] + j) * size[0] + i];
   }
+  /// -1: none.
+  rowAt(i, j, k) {
+    const body = this.bodyAt(i, j, k);
+    return body > 0 ? this.rowOfBody[body - 1] : -1;
+  }
+}
+
+/// Those of the labels, but for what another strictness changes.
+function numbersOf({ grains, bonds, own, about }, strictness) {
+  const diameters = grains.column('equivalent_diameter');
+  const median = (weights) => {
+    const rows = Array.from(diameters.keys()).sort((a, b) => diameters[a] - diameters[b]);
+    const half = 0.5 * weights.reduce((sum, weight) => sum + weight, 0);
+    let below = 0;
+    return { d50: diameters[rows.find((row) => (below += weights[row]) >= half)] };
+  };
+  const ratios = bonds.column('radius_ratio');
+  return { ...own.numbers, grains: grains.rows, bonds: bonds.rows,
+    mean_coordination: grains.rows > 0 ? 2 * bonds.rows / grains.rows : 0,
+    bond_to_grain_ratio: bonds.rows > 0 ? ratios.reduce((sum, ratio) => sum + ratio, 0) / bonds.rows : null,
+    [`grain_diameter_by_number_${about.unit}`]: median(diameters.map(() => 1)),
+    [`grain_diameter_by_volume_${about.unit}`]: median(grains.column('voxels')),
+    bonds_without_curvature: 0, segmentation: { ...own.numbers.segmentation, strictness } };
 }
 
 /// Four digits, without an exponent where that is short.

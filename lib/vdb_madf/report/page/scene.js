@@ -40,6 +40,7 @@ export class Scene {
     this.frame.add(new three.LineSegments(frameGeometry(this.space), raw(shaders.lineVertex, shaders.lineFragment, {})));
     selection.listen((what) => {
       if (what === 'slices' || what === 'edits') return;
+      if (what === 'strictness') this.updatePlaces();
       if (what !== 'camera' && what !== 'cuts') this.updateLooks();
       if (what === 'cuts') this.updateCuts();
       this.redraw();
@@ -49,21 +50,26 @@ export class Scene {
   }
 
   makeTables() {
-    const height = Math.max(1, Math.ceil(this.sample.count / kTableWidth));
+    const height = Math.max(1, Math.ceil(this.sample.bodies / kTableWidth));
     const cells = kTableWidth * height;
     this.looks = new three.DataTexture(new Uint8Array(4 * cells), kTableWidth, height,
       three.RGBAFormat, three.UnsignedByteType);
-    const centers = new Float32Array(4 * cells);
-    for (let row = 0; row < this.sample.count; ++row)
-      centers.set(this.space.toWorld(this.sample.placeOf('grains', row)), 4 * row);
-    const places = new three.DataTexture(centers, kTableWidth, height, three.RGBAFormat, three.FloatType);
-    places.needsUpdate = true;
+    this.places = new three.DataTexture(new Float32Array(4 * cells), kTableWidth, height,
+      three.RGBAFormat, three.FloatType);
+    this.updatePlaces();
     this.shared = {
-      looks: { value: this.looks }, places: { value: places }, tableWidth: { value: kTableWidth },
+      looks: { value: this.looks }, places: { value: this.places }, tableWidth: { value: kTableWidth },
       low: { value: new three.Vector3() }, high: { value: new three.Vector3() },
       explode: { value: 0 }, lowState: { value: 0 }, highState: { value: 0 }, strength: { value: 1 },
       picking: { value: false },
     };
+  }
+
+  updatePlaces() {
+    const { sample, space } = this;
+    const centers = Array.from({ length: sample.count }, (_, row) => space.toWorld(sample.placeOf('grains', row)));
+    sample.rowOfBody.forEach((row, body) => this.places.image.data.set(centers[row], 4 * body));
+    this.places.needsUpdate = true;
   }
 
   makeGrains(mesh) {
@@ -108,12 +114,12 @@ export class Scene {
     const plain = bondsAs !== 'none' && selected.size === 0
       ? { pale: kPale, plain: kPlain, hidden: kHidden }[others] : kPlain;
     const { data } = this.looks.image;
-    for (let row = 0; row < states.length; ++row) {
+    this.sample.rowOfBody.forEach((row, body) => {
       const state = states[row];
       const color = state === kSelected ? selectedColor : colors.subarray(3 * row, 3 * row + 3);
-      data.set(color, 4 * row);
-      data[4 * row + 3] = state === kPlain ? plain : state;
-    }
+      data.set(color, 4 * body);
+      data[4 * body + 3] = state === kPlain ? plain : state;
+    });
     this.looks.needsUpdate = true;
     this.sortBodies();
     this.shared.explode.value = this.selection.explode;
@@ -129,11 +135,11 @@ export class Scene {
     let to = 0;
     const add = (isWanted) => {
       const start = to;
-      for (let row = 0; row < this.sample.count; ++row) {
-        if (!isWanted(data[4 * row + 3])) continue;
-        const body = corners.subarray(3 * firstTriangle[row], 3 * firstTriangle[row + 1]);
-        index.array.set(body, to);
-        to += body.length;
+      for (let body = 0; body < this.sample.bodies; ++body) {
+        if (!isWanted(data[4 * body + 3])) continue;
+        const its = corners.subarray(3 * firstTriangle[body], 3 * firstTriangle[body + 1]);
+        index.array.set(its, to);
+        to += its.length;
       }
       return { start, count: to - start };
     };
@@ -186,7 +192,7 @@ export class Scene {
     let to = 0;
     for (p[up] = 0; p[up] < size[up]; ++p[up])
       for (p[right] = 0; p[right] < size[right]; ++p[right], to += 4) {
-        const number = this.sample.labelAt(p[0], p[1], p[2]);
+        const number = this.sample.bodyAt(p[0], p[1], p[2]);
         data[to] = number & 255;
         data[to + 1] = (number >> 8) & 255;
         data[to + 2] = number >> 16;
@@ -274,18 +280,18 @@ export class Scene {
     this.renderer.setRenderTarget(this.pixel);
     this.renderer.setClearColor(0, 0);
     const bytes = new Uint8Array(4);
-    let row = -1;
+    let body = -1;
     for (const part of [this.solid, this.pale]) {
       this.renderer.clear();
       this.drawGrains(part);
       this.renderer.readRenderTargetPixels(this.pixel, 0, 0, 1, 1, bytes);
-      row = bytes[0] + 256 * bytes[1] + 65536 * bytes[2] - 1;
-      if (row >= 0) break;
+      body = bytes[0] + 256 * bytes[1] + 65536 * bytes[2] - 1;
+      if (body >= 0) break;
     }
     this.renderer.setRenderTarget(null);
     this.renderer.setClearColor(0xffffff, 1);
     this.shared.picking.value = false;
-    return row;
+    return body < 0 ? -1 : this.sample.rowOfBody[body];
   }
 }
 

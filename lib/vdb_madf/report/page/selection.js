@@ -22,20 +22,39 @@ export class Selection {
     const { size } = sample.about.slices;
     this.slices = size.map((count) => Math.floor(count / 2));
     this.edits = [];
-    this.visible = new Uint8Array(sample.count).fill(1);
-    this.visibleBonds = new Uint8Array(sample.bonds.rows).fill(1);
-    this.states = new Uint8Array(sample.count).fill(kPlain);
+    this.strictness = null;  // that of the labels
+    this.startFlags();
     this.colors = colorsOf(sample, '');
   }
 
-  /// call(what): 'selection', 'filter', 'looks', 'cuts', 'slices', 'edits', 'camera'
+  startFlags() {
+    const { sample } = this;
+    this.visible = new Uint8Array(sample.count).fill(1);
+    this.visibleBonds = new Uint8Array(sample.bonds.rows).fill(1);
+    this.states = new Uint8Array(sample.count).fill(kPlain);
+  }
+
+  /// Another one, or null for that of the labels. Filters stay; what is selected becomes the grains
+  /// that it is part of.
+  setStrictness(strictness) {
+    const bodies = [...this.selected].map((row) => this.sample.rowOfBody.indexOf(row));
+    this.strictness = strictness;
+    this.sample.setStrictness(strictness);
+    this.selected = new Set(bodies.map((body) => this.sample.rowOfBody[body]));
+    this.startFlags();
+    this.changed('strictness');
+  }
+
+  /// call(what): 'selection', 'filter', 'looks', 'cuts', 'slices', 'edits', 'camera',
+  /// 'strictness' (all of the sample is new)
   listen(call) {
     this.listeners.push(call);
   }
 
   changed(...what) {
-    if (what.includes('filter')) this.applyFilters();
-    if (what.includes('looks')) this.colors = colorsOf(this.sample, this.colorBy);
+    const isNew = what.includes('strictness');
+    if (isNew || what.includes('filter')) this.applyFilters();
+    if (isNew || what.includes('looks')) this.colors = colorsOf(this.sample, this.colorBy);
     this.updateStates();
     for (const one of what) for (const call of this.listeners) call(one);
   }

@@ -4,7 +4,8 @@
 
 const head = '#version 300 es\nprecision highp float;\nprecision highp int;\n';
 
-/// looks: of each grain red, green, blue and its state (selection.js); places: its centroid.
+/// Grains are the bodies of the sample (sample.js). looks: of each red, green, blue and its state (selection.js); places: the
+/// centroid of the grain that it is part of.
 const grainTables = `
 uniform sampler2D looks;
 uniform sampler2D places;

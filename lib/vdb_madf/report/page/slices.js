@@ -78,7 +78,7 @@ class Panel {
   click(event) {
     const voxel = this.voxelAt(event);
     const more = event.shiftKey || event.ctrlKey;
-    const row = this.sample.labelAt(...voxel) - 1;
+    const row = this.sample.rowAt(...voxel);
     if (row >= 0) {
       this.selection.select([row], more);
     } else if (!more) {
@@ -89,7 +89,7 @@ class Panel {
   }
 
   hover(event) {
-    const row = this.sample.labelAt(...this.voxelAt(event)) - 1;
+    const row = this.sample.rowAt(...this.voxelAt(event));
     this.frame.title = row < 0 ? '' : `grain ${this.sample.ids[row]}`;
   }
 
@@ -100,7 +100,7 @@ class Panel {
     let to = 0;
     for (let line = 0; line < this.height; ++line)
       for (let column = 0; column < this.width; ++column, to += 4) {
-        const row = sample.labelAt(...this.voxel(column, line)) - 1;
+        const row = sample.rowAt(...this.voxel(column, line));
         const state = row < 0 ? -1 : states[row];
         const color = state < 0 ? white : state === kHidden ? hiddenColor
           : state === kSelected ? selectedColor : null;

@@ -70,13 +70,17 @@ export function warnings(sample) {
   return found;
 }
 
-export function startSummary(sample) {
-  element('origin').textContent = originOf(sample);
-  element('numbers').append(...tiles(sample).map(([title, value]) =>
-    make('div', { className: 'tile' }, make('b', {}, value), make('span', {}, title))));
-  const list = warnings(sample);
-  if (list.length > 0)
-    element('warnings').append(make('ul', {}, ...list.map((text) => make('li', {}, text))));
+export function startSummary(sample, selection) {
+  const draw = () => {
+    element('origin').textContent = originOf(sample);
+    element('numbers').replaceChildren(...tiles(sample).map(([title, value]) =>
+      make('div', { className: 'tile' }, make('b', {}, value), make('span', {}, title))));
+    const list = warnings(sample);
+    element('warnings').replaceChildren(
+      ...(list.length > 0 ? [make('ul', {}, ...list.map((text) => make('li', {}, text)))] : []));
+  };
+  selection.listen((what) => { if (what === 'strictness') draw(); });
+  draw();
   tellMaker(sample.about.version, [sample.numbers.labels_digest]);
 }
 

@@ -27,6 +27,8 @@ export function writeRange([low, high]) {
   return low === high ? text(low) : `${text(low)}:${text(high)}`;
 }
 
+const kTableDelay = 150;  // milliseconds
+
 export function startTables(sample, selection) {
   addDataTables(jQuery, window);
   const tables = ['grains', 'bonds'].map((kind) => new SampleTable(sample, selection, kind));
@@ -60,7 +62,7 @@ function filterBar(sample, selection) {
     status.textContent = `${counted(grains)} of ${counted(sample.count)} grains, ` +
       `${counted(bonds)} of ${counted(sample.bonds.rows)} bonds`;
   };
-  selection.listen((what) => { if (what === 'filter') tell(); });
+  selection.listen((what) => { if (what === 'filter' || what === 'strictness') tell(); });
   tell();
   return make('div', { className: 'bar' }, status,
     make('label', {}, inside, ' only grains that no face of the scan cuts'), clear);
@@ -68,7 +70,7 @@ function filterBar(sample, selection) {
 
 class SampleTable {
   constructor(sample, selection, kind) {
-    Object.assign(this, { sample, selection, kind, table: sample[kind] });
+    Object.assign(this, { sample, selection, kind });
     this.flags = () => (kind === 'grains' ? selection.visible : selection.visibleBonds);
     this.heading = kind === 'grains' ? 'Grains' : 'Bonds';
     this.columns = this.table.columns.map(({ name }) => name);
@@ -80,6 +82,13 @@ class SampleTable {
       make('div', { className: 'bar' }, make('label', {}, all, ' all columns'),
         this.button('Copy numbers', () => this.copy()), this.button('Save as CSV', () => this.save())),
       this.node);
+  }
+
+  get table() {
+    return this.sample[this.kind];
+  }
+  rows() {
+    return Array.from({ length: this.table.rows }, (_, row) => row);
   }
 
   button(title, act) {
@@ -106,19 +115,18 @@ class SampleTable {
   }
 
   start() {
-    const rows = Array.from({ length: this.table.rows }, (_, row) => row);
     jQuery.fn.dataTable.ext.search.push((settings, data, row) =>
       settings.nTable !== this.node || this.flags()[row] === 1);
     this.data = jQuery(this.node).DataTable({
-      data: rows, deferRender: true, autoWidth: false, orderCellsTop: true, pageLength: 12, dom: '<"scroll"t>ip',
+      data: this.rows(), deferRender: true, autoWidth: false, orderCellsTop: true, pageLength: 12, dom: '<"scroll"t>ip',
       order: this.kind === 'grains' ? [[this.columns.indexOf('equivalent_diameter'), 'desc']]
         : [[this.columns.indexOf('area'), 'desc']],
-      columns: this.columns.map((name) => {
-        const values = this.table.column(name);
-        return { data: null, searchable: false, visible: shownAtFirst[this.kind].includes(name),
-          orderSequence: ['desc', 'asc'], className: 'number',
-          render: (row, type) => (type === 'display' ? written(values[row]) : values[row]) };
-      }),
+      columns: this.columns.map((name) => ({ data: null, searchable: false,
+        visible: shownAtFirst[this.kind].includes(name), orderSequence: ['desc', 'asc'], className: 'number',
+        render: (row, type) => {
+          const value = this.table.column(name)[row];
+          return type === 'display' ? written(value) : value;
+        } })),
       createdRow: (tr, row) => {
         tr.tabIndex = 0;
         tr.dataset.row = row;
@@ -153,6 +161,14 @@ class SampleTable {
   }
 
   follow(what) {
+    // Filling a table of thousands of rows takes longer than all else: it waits for the last step.
+    if (what === 'strictness') {
+      clearTimeout(this.due);
+      this.due = setTimeout(() => {
+        this.data.clear().rows.add(this.rows());
+        this.follow('filter');
+      }, kTableDelay);
+    }
     if (what === 'filter') {
       for (const [name, input] of this.inputs) {
         const range = this.selection.filters[this.kind].get(name);

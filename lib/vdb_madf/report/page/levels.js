@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+// The grains at other strictnesses than that of the labels: each is a union of leaves, the grains at
+// the largest one, and its measures are made of theirs.
+import { bytes } from './decode.js';
+import { principalAxes } from './principal.js';
+
+const kUnitsOfScore = 512;
+const kLeastOfSphericity = 27;  // voxels
+const axes = ['x', 'y', 'z'];
+const products = ['xx', 'yy', 'zz', 'xy', 'xz', 'yz'];
+
+/// Numbers of the next planes of bytes.
+function planeReader(packed) {
+  let at = 0;
+  return (Type, count) => {
+    const width = Type.BYTES_PER_ELEMENT, own = new Uint8Array(width * count);
+    for (let plane = 0; plane < width; ++plane)
+      for (let i = 0; i < count; ++i) own[width * i + plane] = packed[at++];
+    return new Type(own.buffer);
+  };
+}
+
+export class Levels {
+  /// Null if the page has none.
+  static async load(about) {
+    return about.levels ? new Levels(about, await bytes('joins'), await bytes('leaves')) : null;
+  }
+
+  constructor(about, joins, leaves) {
+    const { levels } = about;
+    Object.assign(this, levels, { edges: about.edges });
+    const next = planeReader(joins);
+    this.ownGrain = next(Int32Array, levels.leaves);  // labels
+    [this.kept, this.gone] = [next(Uint32Array, levels.joins), next(Uint32Array, levels.joins)];
+    this.strictness = next(Int32Array, levels.joins);
+    const column = planeReader(leaves);
+    const columns = (kind, rows) => Object.fromEntries(levels.columns[kind].map(({ name, exact }) =>
+      [name, column(exact ? Float64Array : Float32Array, rows)]));
+    this.leaf = columns('grains', levels.leaves);
+    this.contact = columns('bonds', levels.bonds);
+    const empty = new Set(levels.empty);
+    this.places = levels.leaves + levels.empty.length;
+    this.placeOf = Uint32Array.from(Array.from({ length: this.places }, (_, i) => i).filter((i) => !empty.has(i)));
+  }
+
+  /// The grain of each leaf, from 0 on, numbered as 'vdb_madf remerge' does (from 1 on).
+  grainsAt(strictness) {
+    const least = Math.round(strictness * kUnitsOfScore);
+    let made = 0;
+    while (made < this.joins && this.strictness[made] >= least) ++made;
+    // What a name became in the end is known of the later joins first.
+    const name = Uint32Array.from({ length: this.places }, (_, i) => i);
+    for (let join = made - 1; join >= 0; --join) name[this.gone[join]] = name[this.kept[join]];
+    const hasVoxels = new Uint8Array(this.places);
+    for (const place of this.placeOf) hasVoxels[name[place]] = 1;
+    const number = new Uint32Array(this.places);
+    let count = 0;
+    for (let place = 0; place < this.places; ++place) if (hasVoxels[place]) number[place] = count++;
+    return { count, grainOf: this.placeOf.map((place) => number[name[place]]) };
+  }
+
+  /// The measures of grains, by name; what does not follow from those of leaves is missing.
+  grainColumns(count, grainOf, bonds) {
+    const { leaf, edges } = this;
+    const sum = (value) => {
+      const sums = new Float64Array(count);
+      for (let i = 0; i < grainOf.length; ++i) sums[grainOf[i]] += value(i);
+      return sums;
+    };
+    const extreme = (values, sign) => {
+      const found = new Float64Array(count).fill(-Infinity);
+      for (let i = 0; i < grainOf.length; ++i) found[grainOf[i]] = Math.max(found[grainOf[i]], sign * values[i]);
+      return found.map((value) => sign * value);
+    };
+    const voxels = sum((i) => leaf.voxels[i]);
+    const result = { id: Float64Array.from(voxels, (_, grain) => grain + 1), voxels,
+      volume: voxels.map((value) => value * edges[0] * edges[1] * edges[2]) };
+    result.equivalent_diameter = result.volume.map((volume) => Math.cbrt(6 * volume / Math.PI));
+    for (const axis of axes) {
+      result[`centroid_${axis}`] = sum((i) => leaf.voxels[i] * leaf[`centroid_${axis}`][i])
+        .map((value, grain) => value / voxels[grain]);
+      result[`box_min_${axis}`] = extreme(leaf[`box_min_${axis}`], -1);
+      result[`box_max_${axis}`] = extreme(leaf[`box_max_${axis}`], 1);
+    }
+    this.addRepresentatives(result, count, grainOf);
+    for (const name of ['free_area', 'cut_area']) result[name] = sum((i) => leaf[name][i]);
+    result.at_domain_face = extreme(leaf.at_domain_face, 1);
+    result.shared_area = new Float64Array(count);
+    result.coordination = new Float64Array(count);
+    for (const { first, second, area, faces } of bonds)
+      for (const grain of [first, second]) {
+        result.shared_area[grain] += area;
+        if (faces >= this.minFaces) ++result.coordination[grain];
+      }
+    result.area = result.free_area.map((area, grain) => area + result.shared_area[grain]);
+    result.sphericity = result.area.map((area, grain) => {
+      const whole = area + result.cut_area[grain];
+      return voxels[grain] >= kLeastOfSphericity && whole > 0
+        ? Math.PI * result.equivalent_diameter[grain] ** 2 / whole : NaN;
+    });
+    this.addEllipsoids(result, grainOf, sum);
+    return result;
+  }
+
+  /// The deepest one of the leaves, of several the first.
+  addRepresentatives(result, count, grainOf) {
+    const { leaf } = this;
+    const names = axes.map((axis) => `representative_${axis}`);
+    const isBefore = (a, b) => {
+      const name = names.find((one) => leaf[one][a] !== leaf[one][b]);
+      return name !== undefined && leaf[name][a] < leaf[name][b];
+    };
+    const radius = leaf.inscribed_radius;
+    const best = new Int32Array(count).fill(-1);
+    grainOf.forEach((grain, i) => {
+      const other = best[grain];
+      if (!Number.isNaN(radius[i]) && (other < 0 || radius[i] > radius[other] ||
+          (radius[i] === radius[other] && isBefore(i, other)))) best[grain] = i;
+    });
+    for (const name of ['inscribed_radius', ...names])
+      result[name] = Float64Array.from(best, (i) => (i < 0 ? NaN : leaf[name][i]));
+  }
+
+  /// Of the ellipsoid of the same second moments: these add up about the common centroid.
+  addEllipsoids(result, grainOf, sum) {
+    const { leaf } = this;
+    const centroids = axes.map((axis) => leaf[`centroid_${axis}`]);
+    const middles = axes.map((axis) => result[`centroid_${axis}`]);
+    const moments = products.map((name) => {
+      const [a, b] = [...name].map((axis) => axes.indexOf(axis));
+      const away = (axis, i) => centroids[axis][i] - middles[axis][grainOf[i]];
+      return sum((i) => leaf.voxels[i] * (leaf[`moment_${name}`][i] + away(a, i) * away(b, i)))
+        .map((value, grain) => value / result.voxels[grain]);
+    });
+    const rows = Array.from(result.voxels, (_, grain) => principalAxes(moments.map((values) => values[grain])));
+    const column = (value) => Float64Array.from(rows, value);
+    for (let k = 0; k < 3; ++k) {
+      result[`axis${k + 1}_length`] = column(({ values }) => 2 * Math.sqrt(5 * Math.max(0, values[k])));
+      axes.forEach((axis, i) => { result[`axis${k + 1}_${axis}`] = column((row) => row.axes[k][i]); });
+    }
+    const ratio = (a, b) => result[a].map((length, grain) => length / result[b][grain]);
+    result.aspect_2_to_1 = ratio('axis2_length', 'axis1_length');
+    result.aspect_3_to_2 = ratio('axis3_length', 'axis2_length');
+  }
+
+  /// What grains share, by first, then second.
+  bondsOf(count, grainOf) {
+    const { contact } = this;
+    const found = new Map();
+    for (let i = 0; i < contact.faces.length; ++i) {
+      const one = grainOf[contact.first[i] - 1], two = grainOf[contact.second[i] - 1];
+      if (one === two) continue;
+      const first = Math.min(one, two), second = Math.max(one, two), key = first * count + second;
+      if (!found.has(key))
+        found.set(key, { key, first, second, faces: 0, area: 0, place: [0, 0, 0], normal: [0, 0, 0] });
+      const bond = found.get(key), area = contact.area[i], sign = one === first ? 1 : -1;
+      bond.faces += contact.faces[i];
+      bond.area += area;
+      axes.forEach((axis, k) => {
+        bond.place[k] += contact.faces[i] * contact[`centroid_${axis}`][i];
+        bond.normal[k] += sign * area * contact[`normal_${axis}`][i];
+      });
+    }
+    return [...found.values()].sort((a, b) => a.key - b.key);
+  }
+
+  bondColumns(bonds, grains) {
+    const column = (value) => Float64Array.from(bonds, value);
+    const result = { first: column((bond) => bond.first + 1), second: column((bond) => bond.second + 1),
+      faces: column((bond) => bond.faces), area: column((bond) => bond.area),
+      radius: column((bond) => Math.sqrt(bond.area / Math.PI)) };
+    axes.forEach((axis, k) => {
+      result[`centroid_${axis}`] = column((bond) => bond.place[k] / bond.faces);
+      result[`normal_${axis}`] = column(({ normal }) => normal[k] / Math.hypot(...normal));
+    });
+    result.distance = column(({ first, second }) => Math.hypot(...axes.map((axis) =>
+      grains[`representative_${axis}`][first] - grains[`representative_${axis}`][second])));
+    result.cos_alpha = column(({ first, second }, i) => {
+      const a = grains.inscribed_radius[first], b = grains.inscribed_radius[second];
+      return (result.distance[i] ** 2 - a * a - b * b) / (2 * a * b);
+    });
+    return result;
+  }
+
+  /// Tables as decode.js reads them, and the grain of each leaf. `own`: those of the labels.
+  at(strictness, own) {
+    const { count, grainOf } = this.grainsAt(strictness);
+    const all = this.bondsOf(count, grainOf);
+    const grains = this.grainColumns(count, grainOf, all);
+    const bonds = all.filter(({ faces }) => faces >= this.minFaces);
+    return { rowOfBody: grainOf, grains: tableLike(own.grains, grains, count),
+      bonds: tableLike(own.bonds, this.bondColumns(bonds, grains), bonds.length) };
+  }
+}
+
+/// A table with the columns of another one; NaN where there are no numbers.
+function tableLike(table, numbers, rows) {
+  const columns = table.columns.filter(({ isDerived }) => !isDerived);
+  const unknown = new Float64Array(rows).fill(NaN);
+  return { rows, columns, column: (name) => numbers[name] || unknown,
+    get lines() {
+      const values = columns.map(({ name }) => this.column(name));
+      const cell = (value) => (Number.isNaN(value) ? '' : String(Number(value.toPrecision(9))));
+      return [table.lines[0], ...Array.from({ length: rows }, (_, row) =>
+        values.map((column) => cell(column[row])).join(','))];
+    } };
+}
