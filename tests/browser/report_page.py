@@ -189,7 +189,8 @@ def check_state(page, path, labels_path, folder):
 
 def check_strictness(page, folder):
     """At each strictness the slices, tables and numbers have the grains of remerge."""
-    command("segment", "s.vdb", "k.vdb", "--keep", "manifold", "-q")
+    command("generate", "snow", "n.vdb", "--size", "72", "--voxel-size", "10um", "-q")
+    command("segment", "n.vdb", "k.vdb", "--keep", "manifold", "-q")
     out = os.path.join(folder, "slider.html")
     command("report", "k.vdb", out, "-q")
     complaints = page.open(out)

@@ -134,7 +134,11 @@ export class Levels {
         .map((value, grain) => value / result.voxels[grain]);
     });
     const rows = Array.from(result.voxels, (_, grain) => principalAxes(moments.map((values) => values[grain])));
-    const column = (value) => Float64Array.from(rows, value);
+    const column = (value) => {
+      const values = new Float64Array(rows.length);
+      rows.forEach((row, grain) => { values[grain] = value(row); });
+      return values;
+    };
     for (let k = 0; k < 3; ++k) {
       result[`axis${k + 1}_length`] = column(({ values }) => 2 * Math.sqrt(5 * Math.max(0, values[k])));
       axes.forEach((axis, i) => { result[`axis${k + 1}_${axis}`] = column((row) => row.axes[k][i]); });
@@ -166,7 +170,11 @@ export class Levels {
   }
 
   bondColumns(bonds, grains) {
-    const column = (value) => Float64Array.from(bonds, value);
+    const column = (value) => {
+      const values = new Float64Array(bonds.length);
+      bonds.forEach((bond, i) => { values[i] = value(bond, i); });
+      return values;
+    };
     const result = { first: column((bond) => bond.first + 1), second: column((bond) => bond.second + 1),
       faces: column((bond) => bond.faces), area: column((bond) => bond.area),
       radius: column((bond) => Math.sqrt(bond.area / Math.PI)) };

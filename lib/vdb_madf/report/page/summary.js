@@ -81,6 +81,8 @@ export function startSummary(sample, selection) {
   };
   selection.listen((what) => { if (what === 'strictness') draw(); });
   draw();
+  // What lies below must not move away under the slider for the strictness.
+  if (sample.levels) element('warnings').style.minHeight = `${element('warnings').offsetHeight}px`;
   tellMaker(sample.about.version, [sample.numbers.labels_digest]);
 }
 
