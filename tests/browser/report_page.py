@@ -206,14 +206,15 @@ def check_strictness(page, folder):
         command("measure", "m.vdb", "cut", "-q")
         command("convert", "m.vdb", "m.npy", "--grid", "grain", "-q")
         grains, bonds = table("cut/grains.csv"), table("cut/bonds.csv")
-        page.run("arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'))",
-                 slider, round(10 * strictness))
+        page.run("const [slider, value] = arguments; slider.value = value;"
+                 "slider.dispatchEvent(new Event('input'))", slider, round(10 * strictness))
         counts.add(len(grains))
         demand(page.run(voxels) == [int(row["voxels"]) for row in grains],
                f"grains at {strictness} are not those of remerge")
-        pairs = page.run("const {bonds} = window.report.sample; return ['first', 'second', 'faces']."
-                         "map((name) => Array.from(bonds.column(name)))")
-        demand(pairs == [[int(row[name]) for row in bonds] for name in ("first", "second", "faces")],
+        names = ["first", "second", "faces"]
+        pairs = page.run("const {bonds} = window.report.sample;"
+                         "return arguments[0].map((name) => Array.from(bonds.column(name)))", names)
+        demand(pairs == [[int(row[name]) for row in bonds] for name in names],
                f"bonds at {strictness} are not those of remerge")
         for name in ("equivalent_diameter", "centroid_y", "inscribed_radius", "axis2_length",
                      "axis1_z", "aspect_3_to_2", "box_min_x", "at_domain_face", "coordination"):
