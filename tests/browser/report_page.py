@@ -200,6 +200,8 @@ def check_strictness(page, folder):
     voxels = "return Array.from(window.report.sample.grains.column('voxels'))"
     demand(page.run(voxels) == own, "the page has not the grains of the labels")
     slider = page.find("#strictness")
+    page.button("Largest").click()
+    selected = page.selected()
     counts = set()
     for strictness in (8, 9.3, 10.5, 12, 14):
         command("remerge", "k.vdb", "m.vdb", "--strictness", str(strictness), "--tidy", "0", "-q")
@@ -233,10 +235,14 @@ def check_strictness(page, folder):
                   f"endsWith('of {len(grains)}')")
         demand(page.find("#shown").text.startswith(f"{len(grains)} of {len(grains)} grains"),
                f"at {strictness} the page says: {page.find('#shown').text}")
+        demand(len(page.selected()) == 1, f"at {strictness} {page.selected()} are selected")
     demand(len(counts) > 2, f"the slider changes nothing: {counts}")
+    back = page.button("As in the labels")
+    back.click()
+    demand(page.run(voxels) == own and page.selected() == selected,
+           "the grains of the labels do not come again")
+    page.run("window.report.selection.setStrictness(14); window.report.selection.select([])")
     check_clicks(page, labels)
-    page.button("As in the labels").click()
-    demand(page.run(voxels) == own, "the grains of the labels do not come again")
 
 
 def check_odd_samples(page, folder):

@@ -60,6 +60,13 @@ export class Levels {
     return { count, grainOf: this.placeOf.map((place) => number[name[place]]) };
   }
 
+  /// That of a grain.
+  largestLeaf(grainOf, grain) {
+    const { voxels } = this.leaf;
+    return grainOf.reduce((best, its, i) =>
+      (its === grain && (best < 0 || voxels[i] > voxels[best]) ? i : best), -1);
+  }
+
   /// The measures of grains, by name; what does not follow from those of leaves is missing.
   grainColumns(count, grainOf, bonds) {
     const { leaf, edges } = this;

@@ -23,6 +23,7 @@ export class Selection {
     this.slices = size.map((count) => Math.floor(count / 2));
     this.edits = [];
     this.strictness = null;  // that of the labels
+    this.pieces = [];  // bodies: see setStrictness()
     this.startFlags();
     this.colors = colorsOf(sample, '');
   }
@@ -34,13 +35,17 @@ export class Selection {
     this.states = new Uint8Array(sample.count).fill(kPlain);
   }
 
-  /// Another one, or null for that of the labels. Filters stay; what is selected becomes the grains
-  /// that it is part of.
+  /// Another one, or null for that of the labels. Filters stay; selected are the grains that have
+  /// the largest pieces of those that a reader has selected, also on the way back.
   setStrictness(strictness) {
-    const bodies = [...this.selected].map((row) => this.sample.rowOfBody.indexOf(row));
+    const { sample } = this;
+    const rows = () => new Set(this.pieces.map((body) => sample.rowOfBody[body]));
+    const before = rows();
+    if (before.size !== this.selected.size || [...before].some((row) => !this.selected.has(row)))
+      this.pieces = [...this.selected].map((row) => sample.levels.largestLeaf(sample.rowOfBody, row));
     this.strictness = strictness;
-    this.sample.setStrictness(strictness);
-    this.selected = new Set(bodies.map((body) => this.sample.rowOfBody[body]));
+    sample.setStrictness(strictness);
+    this.selected = rows();
     this.startFlags();
     this.changed('strictness');
   }
