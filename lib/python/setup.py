@@ -43,6 +43,6 @@ class CMakeBuild(build_ext):
 
 
 setup(version=version(), packages=["vdb_madf"],
-      package_data={"vdb_madf": ["py.typed", "*.pyi"]},
+      package_data={"vdb_madf": ["py.typed", "*.pyi", "napari.yaml"]},
       ext_modules=[Extension("vdb_madf._core", [])], cmdclass={"build_ext": CMakeBuild},
       zip_safe=False)

@@ -41,7 +41,8 @@ def test_an_installed_tree(prefix, tmp_path):
     packages = prefix / "lib/python3/dist-packages"
     assert tried(sys.executable, tmp_path, PYTHONPATH=str(packages)).parent == packages / "vdb_madf"
     names = {path.name for path in (packages / "vdb_madf").iterdir()}
-    assert names >= {path.name for path in (SOURCE / "vdb_madf").glob("*.py*")} | {"py.typed"}
+    assert names >= {path.name for path in (SOURCE / "vdb_madf").glob("*.py*")} | {
+        "py.typed", "napari.yaml"}
 
 
 def test_pip(prefix, tmp_path):
@@ -60,7 +61,7 @@ def test_pip(prefix, tmp_path):
     names = zipfile.ZipFile(wheel).namelist()
     assert {name.split("/")[1] for name in names if name.startswith("vdb_madf/")} == {
         path.name for path in (SOURCE / "vdb_madf").iterdir()
-        if path.suffix in (".py", ".pyi", ".typed")
+        if path.suffix in (".py", ".pyi", ".typed", ".yaml")
     } | {pathlib.Path(sys.modules["vdb_madf._core"].__file__).name}
     subprocess.run([sys.executable, "-m", "venv", "--system-site-packages", tmp_path / "venv"],
                    check=True)

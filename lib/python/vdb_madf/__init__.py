@@ -19,6 +19,7 @@ from ._labels import Labels
 from ._mask import Mask
 from ._measurements import Measurements, measure
 from ._mesh import Mesh
+from ._napari import to_napari
 from ._samples import generate
 from ._segmentation import PAPER, Segmentation, segment
 from ._tracks import Tracks, track
@@ -26,4 +27,4 @@ from ._tracks import Tracks, track
 __all__ = ["ArrayLike3D", "Comparison", "Cylinder", "InvalidInput", "IoError", "Labels", "Mask",
            "Measurements", "Mesh", "NotEnoughMemory", "PAPER", "Progress", "Segmentation", "Source",
            "Tracks", "__version__", "compare", "generate", "measure", "reads_hdf5", "segment",
-           "track", "verify_files"]
+           "to_napari", "track", "verify_files"]

@@ -1,0 +1,84 @@
+# SPDX-FileCopyrightText: The vdb_madf authors
+# SPDX-License-Identifier: Apache-2.0
+"""Layers of napari are tuples that lie where the grains are; the manifest names their reader."""
+
+import importlib
+import pathlib
+import re
+
+import numpy as np
+import pytest
+
+import vdb_madf as madf
+
+PACKAGE = pathlib.Path(madf.__file__).parent
+
+
+@pytest.fixture(scope="module")
+def labels():
+    """Two grains that touch, and one alone; voxels of 10 x 20 x 30 um along x, y, z."""
+    array = np.zeros((6, 7, 8), np.int32)
+    array[1:3, 2:4, 1:3] = 5
+    array[1:3, 2:4, 3:5] = 9
+    array[4, 5, 6] = 70000
+    return madf.Labels(array, voxel_size="10x20x30um")
+
+
+def test_layers(labels):
+    (grains, of_grains, kind), (bonds, of_bonds, other) = madf.to_napari(labels)
+    assert (kind, other) == ("labels", "vectors")
+    assert grains.dtype.kind == "i" and (grains == labels.to_array()).all()
+    assert of_grains["scale"] == pytest.approx((0.03, 0.02, 0.01))
+    assert of_grains["translate"] == pytest.approx((0, 0, 0))
+    features = of_grains["features"]
+    assert features["index"].tolist() == [5, 9, 70000]
+    assert features["voxels"].tolist() == [8, 8, 1]
+    assert {len(column) for column in features.values()} == {3}
+    assert of_grains["metadata"]["unit"] == "mm"
+    assert of_grains["metadata"]["units"]["volume"] == "mm^3"
+    # (N, 2, 3): the start, and the way to the other end, where the layer of labels shows them.
+    assert bonds.shape == (1, 2, 3)
+    index = (bonds[0, 0] - of_grains["translate"]) / of_grains["scale"]
+    assert index == pytest.approx([1.5, 2.5, 1.5])
+    assert bonds[0, 1] == pytest.approx([0, 0, 0.02])
+    assert (of_bonds["features"]["first"][0], of_bonds["features"]["second"][0]) == (5, 9)
+    assert "scale" not in of_bonds and of_bonds["edge_width"] > 0
+
+
+def test_measured_and_empty(labels):
+    measured = madf.measure(labels, shape=True)
+    (_, arguments, _), _ = madf.to_napari(labels, measured, name="sample")
+    assert arguments["name"] == "sample" and "feret_max" in arguments["features"]
+    (_, arguments, _), (bonds, _, _) = madf.to_napari(np.zeros((3, 4, 5), np.int32))
+    assert len(arguments["features"]["index"]) == 0 and bonds.shape == (0, 2, 3)
+
+
+def test_manifest(labels, tmp_path):
+    """The fields that npe2 wants, by its reference; what it names is there, and reads."""
+    yaml = pytest.importorskip("yaml", reason="the manifest of napari: python3-yaml is missing")
+    manifest = yaml.safe_load((PACKAGE / "napari.yaml").read_text())
+    project = (PACKAGE.resolve() / "__init__.py").resolve().parents[1] / "pyproject.toml"
+    if project.exists():  # not beside an installed package
+        assert re.search(rf'"napari.manifest"\]\n{manifest["name"]} = "vdb_madf:napari.yaml"',
+                         project.read_text())
+    assert re.fullmatch(r"[A-Za-z0-9][\w.-]*[A-Za-z0-9]", manifest["name"])
+    assert 3 <= len(manifest["display_name"]) <= 90
+    assert set(manifest) <= {"name", "display_name", "schema_version", "contributions"}
+    command, = manifest["contributions"]["commands"]
+    assert set(command) == {"id", "title", "python_name"}
+    assert command["id"].startswith(manifest["name"] + ".")
+    reader, = manifest["contributions"]["readers"]
+    assert reader["command"] == command["id"]
+    assert set(reader) == {"command", "filename_patterns", "accepts_directories"}
+    module, function = command["python_name"].split(":")
+    get_reader = getattr(importlib.import_module(module), function)
+    for pattern in reader["filename_patterns"]:
+        assert get_reader(pattern.replace("*", "sample")) is not None
+    assert get_reader("sample.png") is None and get_reader([]) is None
+
+    path = str(tmp_path / "sample.vdb")
+    labels.save(path)
+    for given, count in ((path, 1), ([path, path], 2)):
+        layers = get_reader(given)(given)
+        assert [kind for _, _, kind in layers] == ["labels", "vectors"] * count
+        assert layers[0][1]["name"] == "sample"
