@@ -59,6 +59,9 @@ def test_pip(prefix, tmp_path):
     wheel, = tmp_path.glob("*.whl")
     assert wheel.name.startswith(f"vdb_madf-{madf.__version__}-cp3")
     names = zipfile.ZipFile(wheel).namelist()
+    entries, = (name for name in names if name.endswith("/entry_points.txt"))
+    assert b"[napari.manifest]\nvdb-madf = vdb_madf:napari.yaml\n" in zipfile.ZipFile(wheel).read(
+        entries)
     assert {name.split("/")[1] for name in names if name.startswith("vdb_madf/")} == {
         path.name for path in (SOURCE / "vdb_madf").iterdir()
         if path.suffix in (".py", ".pyi", ".typed", ".yaml")
