@@ -84,22 +84,6 @@ def image_input(function):
             smdomain.xml(arrays)(function)))
 
 
-class Place:
-    """Where the voxels of labels lie: as they say themselves, or in an image of ParaView."""
-
-    def __init__(self, labels, first=None, edges=None):
-        self.labels_first, self.labels_edges = (
-            np.array(along[::-1]) for along in (labels.origin, labels.spacing))
-        self.first = self.labels_first if first is None else np.array(first)
-        self.edges = self.labels_edges if edges is None else np.array(edges)
-
-    def of(self, points):
-        """Points x, y, z, (N, 3)."""
-        if self.first is self.labels_first and self.edges is self.labels_edges:
-            return points
-        return self.first + (points - self.labels_first) / self.labels_edges * self.edges
-
-
 class Image:
     """An array of an image as [z, y, x], and where its voxels lie."""
 
@@ -128,6 +112,11 @@ class Image:
 
     def voxel_size(self, unit):
         return "x".join(f"{edge:.9g}{unit}" for edge in self.edges)
+
+    def place(self, points, labels):
+        """Where points of labels, (N, 3) x, y, z, lie in the image."""
+        first, edges = (np.array(along[::-1]) for along in (labels.origin, labels.spacing))
+        return np.array(self.first) + (points - first) / edges * np.array(self.edges)
 
 
 def column(values):
@@ -186,8 +175,12 @@ def columns_of(labels, path):
     return measured.grains, measured.bonds
 
 
-def show_grains(labels, place, columns, meshed, algorithm, outputs):
-    """A closed surface a grain into the first output, the network of grains into the second."""
+def show_grains(labels, image, columns, meshed, algorithm, outputs):
+    """A closed surface a grain into the first output, the network of grains into the second: in the
+    places of the labels, or those of an image."""
+    def place(points):
+        return image.place(points, labels) if image else points
+
     grains, bonds = columns
     ids = np.asarray(grains["id"]).astype(np.int32)
     known, rgb = labels.colors()
@@ -200,7 +193,7 @@ def show_grains(labels, place, columns, meshed, algorithm, outputs):
     for number, (id, row) in enumerate(zip(mesh.ids, np.searchsorted(ids, mesh.ids))):
         points, triangles = mesh.grain(int(id))
         surface = vtkPolyData()
-        surface.SetPoints(points_of(place.of(points).astype(np.float32)))
+        surface.SetPoints(points_of(place(points).astype(np.float32)))
         surface.SetPolys(cells(3, triangles))
         of_cells, count = surface.GetCellData(), len(triangles)
         add(of_cells, "grain_id", np.full(count, id, np.int32))
@@ -213,7 +206,7 @@ def show_grains(labels, place, columns, meshed, algorithm, outputs):
 
     network = vtkPolyData.GetData(outputs, 1)
     centers = np.array([grains[f"centroid_{axis}"] for axis in "xyz"], float).T
-    network.SetPoints(points_of(place.of(centers.reshape(-1, 3))))
+    network.SetPoints(points_of(place(centers.reshape(-1, 3))))
     ends = [np.searchsorted(ids, np.asarray(bonds[end]).astype(np.int32))
             for end in ("first", "second")]
     network.SetLines(cells(2, np.stack(ends, axis=1)))
@@ -258,8 +251,7 @@ class MadfGrains(VTKPythonAlgorithmBase):
         labels = package().Labels(self._FileName, voxel_size=self._VoxelSize or None,
                                   dataset=self._Dataset or None)
         meshed = labels if self._Reduce == 1 else labels.reduce(self._Reduce)
-        show_grains(labels, Place(labels), columns_of(labels, self._FileName), meshed, self,
-                    outputs)
+        show_grains(labels, None, columns_of(labels, self._FileName), meshed, self, outputs)
 
 
 @smproxy.filter(name="MadfSegment", label="Madf Segment")
@@ -317,5 +309,5 @@ class MadfShowGrains(VTKPythonAlgorithmBase):
     def RequestData(self, request, inputs, outputs):
         image = Image(self, inputs)
         labels = package().Labels(image.array, voxel_size=image.voxel_size(self._Unit))
-        place = Place(labels, image.first, image.edges)
-        show_grains(labels, place, columns_of(labels, ""), labels, self, outputs)
+        measured = package().measure(labels)
+        show_grains(labels, image, (measured.grains, measured.bonds), labels, self, outputs)
