@@ -74,6 +74,8 @@ def generate():
         yield f"generate {kind} option{number}.vdb --size 40 {rest}"
     yield "generate snow one.vdb --size 1 --length 4"
     yield "generate pack column.npy --dims 9x9x200 --radius 2:4"
+    yield ("generate evolve spheres.vdb evolved --strain 0.1 --turn 10 --rigid-grains --vanish 0.2 "
+           "--noise 0.5")
 
 
 def convert(images, grids):

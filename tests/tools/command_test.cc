@@ -43,7 +43,8 @@ TEST_CASE("cli: help names every verb and gives an example", "[cli]") {
     CHECK(bench.mustRun(verb + " --help").find("Example:\n  vdb_madf " + verb) !=
           std::string::npos);
   }
-  for (const std::string kind : {"spheres", "pack", "snow", "sintered", "particles", "bed"})
+  for (const std::string kind :
+       {"spheres", "pack", "snow", "sintered", "particles", "bed", "evolve"})
     CHECK(bench.mustRun("generate " + kind + " --help").find("vdb_madf generate " + kind) !=
           std::string::npos);
   CHECK(bench.mustRun("help") == help);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <random>
 #include <sstream>
 
@@ -215,4 +216,38 @@ TEST_CASE("cli: a series of scans keeps one number a grain", "[cli]") {
   refuses(bench, kWrongUsage, "track a.vdb b.vdb b.vdb other", {"b.vdb"});
   refuses(bench, kWrongUsage, "track a.vdb b.vdb c.vdb .", {"b.vdb"});
   refuses(bench, kFailed, "track a.vdb b.vdb none.vdb other", {"none.vdb"});
+}
+
+TEST_CASE("cli: a series that was made to move is followed as it moved", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate particles p.vdb --size 72 --count 70 --radius 6:9");
+  const std::string evolve =
+      " --steps 2 --strain 0.16 --turn 10 --axis 1,2,2 --drift 2.5,0,-1 --rigid-grains --vanish "
+      "0.1 --noise 0.3";
+  const std::string told = bench.mustRun("generate evolve p.vdb scans" + evolve);
+  CHECK(told.find("step-2.vdb: ") != std::string::npos);
+  bench.mustRun("generate evolve p.vdb again --threads 1 -q" + evolve);
+  for (const std::string file : {"/step-0.vdb", "/step-2.vdb", "/motion.csv", "/fates.csv"})
+    CHECK(bench.bytes("scans" + file) == bench.bytes("again" + file));
+  bench.mustRun(
+      "track scans/step-0.vdb scans/step-1.vdb scans/step-2.vdb tracks --motion affine -q");
+
+  const auto motion = rows(bench.bytes("scans/motion.csv"));
+  REQUIRE(motion.size() == 3);
+  std::map<std::string, std::string> fates;  // of the last step
+  for (const auto& row : rows(bench.bytes("scans/fates.csv")))
+    if (row[0] == "2") fates[row[1]] = row[2];
+  int kept = 0, right = 0, wrong = 0;
+  for (const auto& [grain, fate] : fates) kept += fate == "kept";
+  CHECK(kept > 20);
+  CHECK(kept < int(fates.size()) - 10);
+  for (const auto& row : rows(bench.bytes("tracks/step-2_grains.csv"))) {
+    if (row[0] != "after" || row[2] != "kept") continue;
+    right += row[1] == row[3] && fates.at(row[1]) == "kept";
+    wrong += row[1] != row[3];
+  }
+  CHECK(right > 0.9 * kept);
+  CHECK(wrong == 0);
+  refuses(bench, kFailed, "generate evolve none.vdb other", {"none.vdb"});
+  refuses(bench, kWrongUsage, "generate evolve scans/step-1.vdb scans", {"step-1.vdb"});
 }

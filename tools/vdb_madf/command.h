@@ -41,6 +41,7 @@ inline const char* exampleOfSegment(const Team* team) {
 
 // One function per verb; the returned action does the work once the command line is parsed.
 void addGenerate(Verb command, Common& common, Action& action);
+void addEvolve(Verb generate, Common& common, Action& action);  ///< a kind of it
 void addConvert(Verb command, Common& common, Action& action);
 void addSegment(Verb command, Common& common, Action& action);
 void addRemerge(Verb command, Common& common, Action& action);

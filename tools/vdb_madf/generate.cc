@@ -462,6 +462,7 @@ void addGenerate(Verb command, Common& common, Action& action) {
       "vdb_madf generate KIND --help explains a kind.\nExample:\n"
       "  vdb_madf generate snow snow.vdb --size 256");
   for (const SampleKind& kind : kSampleKinds) addKind(generate, common, action, kind);
+  addEvolve(generate, common, action);
 }
 
 }  // namespace vdb_madf::tools

@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <utility>
+
 /// Functions with the same bits on every machine, unlike the library's.
 namespace vdb_madf::detail {
 
@@ -23,6 +25,19 @@ inline double cubeRoot(double x) {
   double root = 1;
   for (int n = 0; n < 32; ++n) root -= (root * root * root - x) / (3 * root * root);
   return root;
+}
+
+/// The sine and the cosine of -4 <= x <= 4 by their series.
+inline std::pair<double, double> sineAndCosine(double x) {
+  double sine = 0, cosine = 0, term = 1;
+  for (int n = 0; n < 40; n += 4) {
+    cosine += term;
+    sine += term *= x / (n + 1);
+    cosine -= term *= x / (n + 2);
+    sine -= term *= x / (n + 3);
+    term *= x / (n + 4);
+  }
+  return {sine, cosine};
 }
 
 }  // namespace vdb_madf::detail

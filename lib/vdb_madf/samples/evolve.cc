@@ -1,0 +1,260 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/samples/evolve.h"
+
+#include <openvdb/Metadata.h>
+#include <openvdb/tools/Prune.h>
+#include <openvdb/tree/ValueAccessor.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/portable_math.h"
+#include "vdb_madf/base/detail/text.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/base/limits.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/labels/detail/label_blocks.h"
+#include "vdb_madf/labels/label_sizes.h"
+#include "vdb_madf/leaves/detail/voxels.h"
+#include "vdb_madf/matching/detail/grain_set.h"
+#include "vdb_madf/samples/detail/random.h"
+#include "vdb_madf/samples/detail/sample_options.h"
+
+namespace vdb_madf {
+
+namespace {
+
+using openvdb::Mat3d;
+using openvdb::Vec3d;
+using LabelLeaf = Int32Tree::LeafNodeType;
+
+constexpr int kMostSteps = 1000;
+/// Streams of noise are three a step, those of grains lie above.
+constexpr uint64_t kGrainStreams = uint64_t(1) << 32;
+/// WhiteNoise is bounded: so many standard deviations.
+constexpr double kFarthestNoise = 6;
+
+/// A grain that moves.
+struct MovedGrain {
+  int32_t label = 0;
+  Mat3d gradient, inverse;
+  Vec3d before, after;  ///< its center
+  double volume = 1;
+
+  Coord sourceOf(const Vec3d& x) const {
+    return Coord::floor(inverse * (x - after) + before + Vec3d(0.5));
+  }
+  /// Grows with the distance from the center in radii.
+  double distance(const Vec3d& x) const {
+    const double squared = (x - after).lengthSqr();
+    return squared * squared * squared / (volume * volume);
+  }
+  /// Bounds where the voxels of a box go, with a margin.
+  CoordBBox boundsOf(const CoordBBox& box, double margin) const {
+    const Vec3d half = box.dim().asVec3d() / 2;
+    const Vec3d middle = gradient * (box.getCenter() - before) + after;
+    Vec3d reach(margin + 1);
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column)
+        reach[row] += std::abs(gradient(row, column)) * half[column];
+    return {Coord::floor(middle - reach), Coord::ceil(middle + reach)};
+  }
+};
+
+using MovedGrains = std::map<int32_t, MovedGrain>;
+
+/// A rotation about an axis through the origin.
+Mat3d turnAbout(const Vec3d& axis, double degrees) {
+  const Vec3d a = axis.unit();
+  const auto [sine, cosine] = detail::sineAndCosine(degrees * 3.14159265358979323846 / 180);
+  const Mat3d cross(0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0);
+  return Mat3d::identity() + cross * sine + cross * cross * (1 - cosine);
+}
+
+std::string vectorText(const Vec3d& v) {
+  return detail::shortestDecimal(v.x()) + "," + detail::shortestDecimal(v.y()) + "," +
+         detail::shortestDecimal(v.z());
+}
+
+std::string sourceText(const EvolveOptions& options, int step) {
+  detail::SourceText source("evolve");
+  source.add("steps", std::to_string(options.steps))
+      .add("strain", options.strain)
+      .add("shear", options.shear)
+      .add("turn", options.degrees)
+      .add("axis", vectorText(options.axis))
+      .add("drift", vectorText(options.drift))
+      .add("vanish", options.vanish)
+      .add("noise", options.noise)
+      .add("seed", std::to_string(options.seed));
+  return source.str() + (options.rigidGrains ? " --rigid-grains" : "") + ", step " +
+         std::to_string(step);
+}
+
+/// Where a voxel looks for its label, without the motion.
+class Shaking {
+ public:
+  Shaking(const EvolveOptions& options, int step) : deviation_(options.noise) {
+    for (uint64_t axis = 0; axis < 3; ++axis)
+      noise_.emplace_back(options.seed, 3 * uint64_t(step) + axis);
+  }
+
+  double farthest() const { return kFarthestNoise * deviation_; }
+
+  Vec3d operator()(const Coord& p) const {
+    Vec3d x = p.asVec3d();
+    if (deviation_ > 0)
+      for (int axis = 0; axis < 3; ++axis) {
+        const detail::WhiteNoise& noise = noise_[size_t(axis)];
+        x[axis] += deviation_ * double(noise.value(noise.row(p.x(), p.y()), p.z()));
+      }
+    return x;
+  }
+
+ private:
+  double deviation_;
+  std::vector<detail::WhiteNoise> noise_;
+};
+
+/// A leaf of the result, by its origin, and the label of a grain that may lie in it.
+using Target = std::pair<Coord, int32_t>;
+
+std::vector<Target> targetsOf(const std::vector<const LabelLeaf*>& leaves,
+                              const MovedGrains& grains, double margin) {
+  std::vector<Target> targets;
+  for (const LabelLeaf* leaf : leaves) {
+    std::set<int32_t> labels;
+    for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) labels.insert(*voxel);
+    for (const int32_t label : labels) {
+      const auto grain = grains.find(label);
+      if (grain == grains.end()) continue;
+      const CoordBBox bounds = grain->second.boundsOf(leaf->getNodeBoundingBox(), margin);
+      const Coord first = bounds.min() & ~7, last = bounds.max();
+      for (int x = first.x(); x <= last.x(); x += 8)
+        for (int y = first.y(); y <= last.y(); y += 8)
+          for (int z = first.z(); z <= last.z(); z += 8)
+            targets.emplace_back(Coord(x, y, z), label);
+    }
+  }
+  std::sort(targets.begin(), targets.end());
+  targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
+  return targets;
+}
+
+Int32Tree::Ptr movedTree(const Int32Tree& tree, const MovedGrains& grains, const Shaking& shaken,
+                         Interrupter* interrupter) {
+  std::vector<const LabelLeaf*> sources;
+  tree.getNodes(sources);
+  const std::vector<Target> targets = targetsOf(sources, grains, shaken.farthest());
+  std::vector<size_t> firsts;  // of each leaf
+  for (size_t n = 0; n < targets.size(); ++n)
+    if (n == 0 || targets[n].first != targets[n - 1].first) firsts.push_back(n);
+  std::vector<std::unique_ptr<LabelLeaf>> leaves(firsts.size());
+  firsts.push_back(targets.size());
+  detail::parallelFor(
+      leaves.size(), detail::kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+        const openvdb::tree::ValueAccessor<const Int32Tree> values(tree);
+        for (size_t n = begin; n < end; ++n) {
+          std::vector<const MovedGrain*> near;
+          for (size_t at = firsts[n]; at < firsts[n + 1]; ++at)
+            near.push_back(&grains.at(targets[at].second));
+          auto leaf = std::make_unique<LabelLeaf>(targets[firsts[n]].first, 0);
+          for (openvdb::Index offset = 0; offset < LabelLeaf::SIZE; ++offset) {
+            const Vec3d x = shaken(leaf->offsetToGlobalCoord(offset));
+            const MovedGrain* owner = nullptr;
+            for (const MovedGrain* grain : near) {
+              int32_t label = 0;
+              if (values.probeValue(grain->sourceOf(x), label) && label == grain->label &&
+                  (!owner || grain->distance(x) < owner->distance(x)))
+                owner = grain;
+            }
+            if (owner) leaf->setValueOn(offset, owner->label);
+          }
+          if (!leaf->isEmpty()) leaves[n] = std::move(leaf);
+        }
+      });
+  auto moved = std::make_shared<Int32Tree>(0);
+  for (std::unique_ptr<LabelLeaf>& leaf : leaves)
+    if (leaf) moved->addLeaf(leaf.release());
+  return moved;
+}
+
+}  // namespace
+
+const char* toString(EvolvedFate fate) {
+  constexpr const char* kNames[] = {"kept", "left", "vanished"};
+  return kNames[size_t(fate)];
+}
+
+void checkEvolve(const EvolveOptions& options) {
+  detail::checkRange("number of steps", options.steps, 1, kMostSteps);
+  detail::checkRange("strain", options.strain, -0.9, 0.9);
+  detail::checkRange("shear", options.shear, -2, 2);
+  detail::checkRange("turn", options.degrees, -180, 180);
+  for (int axis = 0; axis < 3; ++axis) {
+    detail::checkRange("axis of the turn", options.axis[axis], -1e6, 1e6);
+    detail::checkRange("drift", options.drift[axis], -kMaxExtent, kMaxExtent);
+  }
+  if (!(options.axis.length() > 1e-6)) throw InvalidInput("the axis of the turn has no direction");
+  detail::checkRange("share that vanishes", options.vanish, 0, 1);
+  detail::checkRange("noise", options.noise, 0, 4);
+}
+
+EvolvedStep evolved(const Int32Grid& labels, const EvolveOptions& options, int step,
+                    Interrupter* interrupter) {
+  checkEvolve(options);
+  detail::checkRange("step", step, 0, options.steps);
+  requireCubicVoxels(labels, "moving grains");
+  const double share = double(step) / options.steps;
+  const Mat3d turn = turnAbout(options.axis, share * options.degrees);
+  Mat3d stretch = Mat3d::identity();
+  stretch(2, 2) = 1 - share * options.strain;
+  stretch(0, 2) = share * options.shear;
+  const Vec3d center = boxOf(labels).getCenter();
+  EvolvedStep result;
+  result.motion.linear = turn * stretch;
+  result.motion.shift = center + options.drift * share - result.motion.linear * center;
+
+  MovedGrains grains;
+  for (const GrainFeatures& grain : detail::grainSet(labels, interrupter).grains) {
+    const bool isGone =
+        detail::RandomSequence(options.seed, kGrainStreams + uint64_t(grain.grain)).uniform() <
+        share * options.vanish;
+    const Mat3d& gradient = options.rigidGrains ? turn : result.motion.linear;
+    const Vec3d after = result.motion(grain.center);
+    if (!isGone)
+      grains[grain.grain] = {grain.grain,  gradient, gradient.inverse(),
+                             grain.center, after,    grain.volume};
+    result.grains.push_back(
+        {grain.grain, isGone ? EvolvedFate::vanished : EvolvedFate::kept, 0, after});
+  }
+  result.labels = Int32Grid::create(
+      movedTree(*detail::withoutTiles(labels), grains, Shaking(options, step), interrupter));
+  const auto whole = labelSizes(*result.labels, interrupter);
+  const auto domain = storedDomain(labels);
+  if (domain) {
+    result.labels->tree().clip(domain->box());
+    openvdb::tools::pruneInactive(result.labels->tree());
+    setDomain(*result.labels, domain->box());
+  }
+  auto within = labelSizes(*result.labels, interrupter);
+  for (EvolvedGrain& grain : result.grains) {
+    grain.voxels = within[grain.grain];
+    const auto all = whole.find(grain.grain);
+    if (all != whole.end() && all->second > grain.voxels) grain.fate = EvolvedFate::left;
+  }
+  result.labels->setName("grain");
+  setVoxelSize(*result.labels, storedVoxelSize(labels));
+  result.labels->insertMeta(kSourceKey, openvdb::StringMetadata(sourceText(options, step)));
+  return result;
+}
+
+}  // namespace vdb_madf

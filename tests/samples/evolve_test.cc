@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/samples/evolve.h"
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "support/catch.h"
+#include "support/label_shapes.h"
+#include "support/runs.h"
+#include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/samples/detail/random.h"
+#include "vdb_madf/samples/particles.h"
+
+namespace {
+
+using namespace vdb_madf;
+using namespace vdb_madf::test;
+using openvdb::Vec3d;
+
+Int32Grid::Ptr fewGrains() {
+  ParticleOptions options;
+  options.size = {56, 50, 60};
+  options.count = 24;
+  options.minRadius = 5;
+  options.maxRadius = 8;
+  return generateParticles(options).truth;
+}
+
+EvolveOptions someMotion() {
+  EvolveOptions options;
+  options.steps = 2;
+  options.strain = 0.16;
+  options.shear = 0.05;
+  options.degrees = 13;
+  options.axis = {1, 2, 2};
+  options.drift = {2.3, -1.7, 0.9};
+  return options;
+}
+
+/// The voxel that a place lies in.
+Coord voxelAt(const Vec3d& place) {
+  return Coord::floor(place + Vec3d(0.5));
+}
+
+Vec3d centerOf(const Int32Grid& labels, int32_t label, int64_t voxels) {
+  Vec3d sum(0);
+  for (auto voxel = labels.cbeginValueOn(); voxel; ++voxel)
+    if (*voxel == label) sum += voxel.getCoord().asVec3d();
+  return sum / double(voxels);
+}
+
+uint64_t evolvedHash(const Int32Grid& labels) {
+  uint64_t state = 0;
+  for (auto p = vdb_madf::boxOf(labels).begin(); p; ++p)
+    state = detail::mixBits(state ^ uint64_t(labels.tree().getValue(*p)));
+  return state;
+}
+
+}  // namespace
+
+// Whoever compares methods on these samples relies on a seed giving the same sample for ever.
+TEST_CASE("evolve: the bits are fixed, for any threads", "[evolve]") {
+  const auto labels = fewGrains();
+  EvolveOptions options = someMotion();
+  options.vanish = 0.2;
+  options.noise = 0.5;
+  options.rigidGrains = true;
+  for (const int threads : {1, 2})
+    CHECK(withThreads(threads, [&] { return evolvedHash(*evolved(*labels, options, 2).labels); }) ==
+          0x9df232bb86c2c16eu);
+  options.seed = 2;
+  CHECK(evolvedHash(*evolved(*labels, options, 2).labels) != 0x9df232bb86c2c16eu);
+}
+
+TEST_CASE("evolve: the motion is what was asked for", "[evolve]") {
+  const auto labels = fewGrains();
+  EvolveOptions options;
+  options.steps = 2;
+  options.degrees = 180;
+  const auto turned = evolved(*labels, options, 1);  // by 90 degrees about z
+  CHECK((turned.motion.linear * Vec3d(1, 0, 0) - Vec3d(0, 1, 0)).length() < 1e-14);
+  CHECK((turned.motion.linear * Vec3d(0, 1, 0) - Vec3d(-1, 0, 0)).length() < 1e-14);
+  CHECK((turned.motion.linear * Vec3d(0, 0, 1) - Vec3d(0, 0, 1)).length() < 1e-14);
+
+  options = someMotion();
+  const auto partly = evolved(*labels, options, 1);
+  const Vec3d center = vdb_madf::boxOf(*labels).getCenter(), axis(1, 2, 2);
+  CHECK((partly.motion(center) - center - options.drift / 2).length() < 1e-12);
+  // R keeps its axis, and S takes off 8 % of z.
+  CHECK(partly.motion.linear.det() == Approx(0.92));
+  options.strain = options.shear = 0;
+  const openvdb::Mat3d turn = evolved(*labels, options, 2).motion.linear;
+  CHECK((turn * axis - axis).length() < 1e-12);
+  CHECK((turn(0, 0) + turn(1, 1) + turn(2, 2)) ==
+        Approx(1 + 2 * std::cos(13 * 3.141592653589793 / 180)));
+  CHECK((turn * turn.transpose()).eq(openvdb::Mat3d::identity(), 1e-12));
+}
+
+TEST_CASE("evolve: a voxel has the label of where it comes from", "[evolve]") {
+  const auto labels = fewGrains();
+  const CoordBBox box = vdb_madf::boxOf(*labels);
+  for (const int step : {0, 1, 2}) {
+    const EvolvedStep result = evolved(*labels, someMotion(), step);
+    const openvdb::Mat3d back = result.motion.linear.inverse();
+    std::map<int32_t, int64_t> sizes;
+    std::set<int32_t> leaving;
+    int64_t wrong = 0;
+    for (auto p = CoordBBox(box.min() - Coord(20), box.max() + Coord(20)).begin(); p; ++p) {
+      const int32_t label =
+          labels->tree().getValue(voxelAt(back * ((*p).asVec3d() - result.motion.shift)));
+      const bool isInside = box.isInside(*p);
+      wrong += result.labels->tree().getValue(*p) != (isInside ? label : 0);
+      if (label && isInside) ++sizes[label];
+      if (label && !isInside) leaving.insert(label);
+    }
+    CHECK(wrong == 0);
+    CHECK(storedDomain(*result.labels)->box() == box);
+    CHECK(leaving.empty() == (step == 0));
+    for (const EvolvedGrain& grain : result.grains) {
+      CAPTURE(step, grain.grain);
+      CHECK(grain.voxels == sizes[grain.grain]);
+      CHECK(grain.fate == (leaving.count(grain.grain) ? EvolvedFate::left : EvolvedFate::kept));
+    }
+  }
+}
+
+TEST_CASE("evolve: rigid grains keep their shapes where nothing is in their way", "[evolve]") {
+  LabelMap voxels;
+  for (auto p = CoordBBox(Coord(10), Coord(22, 16, 13)).begin(); p; ++p) voxels[*p] = 3;
+  for (auto p = CoordBBox(Coord(30, 8, 30), Coord(36, 20, 34)).begin(); p; ++p) voxels[*p] = 9;
+  const auto labels = labelGrid(voxels);
+  EvolveOptions options = someMotion();
+  options.rigidGrains = true;
+  const EvolvedStep result = evolved(*labels, options, 2);
+  for (const EvolvedGrain& grain : result.grains) {
+    CAPTURE(grain.grain);
+    const auto before = double(volumes(voxels)[grain.grain]);
+    CHECK(std::abs(double(grain.voxels) - before) < 0.05 * before);
+    CHECK((centerOf(*result.labels, grain.grain, grain.voxels) - grain.center).length() < 0.2);
+    const Vec3d whole = result.motion(centerOf(*labels, grain.grain, int64_t(before)));
+    CHECK((grain.center - whole).length() < 1e-9);
+  }
+  // Pushed into each other, they share the voxels by the distance of their centers.
+  voxels.clear();
+  for (auto p = cube(10).begin(); p; ++p) voxels[*p] = 1;
+  for (auto p = cube(10, {0, 0, 10}).begin(); p; ++p) voxels[*p] = 2;
+  options = {};
+  options.rigidGrains = true;
+  options.strain = 0.5;
+  const auto pushed = evolved(*labelGrid(voxels), options, options.steps).labels;
+  for (int z = 0; z < 20; ++z) {
+    CAPTURE(z);
+    CHECK(pushed->tree().getValue({5, 5, z}) == (z < 2 || z > 16 ? 0 : z < 10 ? 1 : 2));
+  }
+}
+
+TEST_CASE("evolve: what has vanished stays so, and noise is at boundaries alone", "[evolve]") {
+  const auto labels = fewGrains();
+  EvolveOptions options;
+  options.steps = 3;
+  options.vanish = 0.6;
+  std::set<int32_t> gone;
+  for (int step = 0; step <= 3; ++step) {
+    const EvolvedStep result = evolved(*labels, options, step);
+    for (const EvolvedGrain& grain : result.grains) {
+      CHECK((grain.voxels == 0) == (grain.fate == EvolvedFate::vanished));
+      if (grain.fate == EvolvedFate::vanished)
+        gone.insert(grain.grain);
+      else
+        CHECK_FALSE(gone.count(grain.grain));
+    }
+    CHECK(gone.empty() == (step == 0));
+  }
+  CHECK(gone.size() > 8);
+  CHECK(gone.size() < 20);
+
+  options.vanish = 0;
+  options.noise = 0.4;  // 2.4 voxels at most
+  const auto rough = evolved(*labels, options, 3).labels;
+  int64_t changed = 0, inside = 0;
+  for (auto p = vdb_madf::boxOf(*labels).begin(); p; ++p) {
+    const int32_t label = labels->tree().getValue(*p);
+    if (rough->tree().getValue(*p) == label) continue;
+    ++changed;
+    bool isInside = true;
+    for (auto q = CoordBBox(*p - Coord(3), *p + Coord(3)).begin(); q; ++q)
+      isInside = isInside && labels->tree().getValue(*q) == label;
+    inside += isInside;
+  }
+  CHECK(changed > 1000);
+  CHECK(inside == 0);
+}
+
+TEST_CASE("evolve: bad options are refused, and it stops when asked to", "[evolve]") {
+  const auto labels = fewGrains();
+  const auto refuses = [&](auto change) {
+    EvolveOptions options;
+    change(options);
+    CHECK_THROWS_AS(evolved(*labels, options, 1), InvalidInput);
+  };
+  refuses([](auto& o) { o.steps = 0; });
+  refuses([](auto& o) { o.strain = 1; });
+  refuses([](auto& o) { o.shear = std::nan(""); });
+  refuses([](auto& o) { o.degrees = 181; });
+  refuses([](auto& o) { o.axis = {0, 0, 0}; });
+  refuses([](auto& o) { o.drift = {0, 1e9, 0}; });
+  refuses([](auto& o) { o.vanish = 1.1; });
+  refuses([](auto& o) { o.noise = -1; });
+  CHECK_THROWS_AS(evolved(*labels, EvolveOptions{}, 5), InvalidInput);
+  for (const int polls : {0, 1, 3}) {
+    StopAfter stop(polls);
+    CHECK_THROWS_AS(evolved(*labels, EvolveOptions{}, 1, &stop), Interrupted);
+  }
+}
