@@ -45,7 +45,7 @@ constexpr const char* kKinds[] = {"balls", "ellipsoids", "sand", "snow"};
 Int32Grid::Ptr labelsOf(const std::string& kind) {
   if (kind == "snow") {
     SnowOptions snow;
-    snow.size = Coord(220);
+    snow.size = Coord(190);
     snow.length = 20;
     return segment(*generateSnow(snow).object).grain;
   }
@@ -100,10 +100,10 @@ void printLabels() {
         options.vanish = 0.03;
         options.noise = 0.5;
         const EvolvedStep after = evolved(*before, options, 1);
-        row += shares(*before, after) + " | ";
+        row += " | " + shares(*before, after);
         number = after.grains.size();
       }
-      std::printf("| %s | %zu | %.0f | %s\n", kind.c_str(), number, degrees, row.c_str());
+      std::printf("| %s | %zu | %.0f%s |\n", kind.c_str(), number, degrees, row.c_str());
       std::fflush(stdout);
     }
   }

@@ -180,6 +180,7 @@ TEST_CASE("evolve: what has vanished stays so, and noise is at boundaries alone"
 
   options.vanish = 0;
   options.noise = 0.4;  // 2.4 voxels at most
+  CHECK(evolvedHash(*evolved(*labels, options, 0).labels) == evolvedHash(*labels));
   const auto rough = evolved(*labels, options, 3).labels;
   int64_t changed = 0, inside = 0;
   for (auto p = vdb_madf::boxOf(*labels).begin(); p; ++p) {

@@ -102,7 +102,7 @@ std::string sourceText(const EvolveOptions& options, int step) {
 /// Where a voxel looks for its label, without the motion.
 class Shaking {
  public:
-  Shaking(const EvolveOptions& options, int step) : deviation_(options.noise) {
+  Shaking(const EvolveOptions& options, int step) : deviation_(step == 0 ? 0 : options.noise) {
     for (uint64_t axis = 0; axis < 3; ++axis)
       noise_.emplace_back(options.seed, 3 * uint64_t(step) + axis);
   }

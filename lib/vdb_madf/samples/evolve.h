@@ -27,7 +27,7 @@ struct EvolveOptions {
   bool rigidGrains = false;
   double vanish = 0;  ///< share of the grains that has vanished after the last step, 0..1
   /// A voxel looks for its label this far from where it should, by white noise along each axis: its
-  /// standard deviation in voxels, 0..4. It is seen at boundaries alone.
+  /// standard deviation in voxels, 0..4; not at step 0. It is seen at boundaries alone.
   double noise = 0;
 };
 
