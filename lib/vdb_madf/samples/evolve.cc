@@ -132,7 +132,9 @@ std::vector<Target> targetsOf(const std::vector<const LabelLeaf*>& leaves,
   std::vector<Target> targets;
   for (const LabelLeaf* leaf : leaves) {
     std::set<int32_t> labels;
-    for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) labels.insert(*voxel);
+    int32_t before = 0;
+    for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel)
+      if (*voxel != before) labels.insert(before = *voxel);
     for (const int32_t label : labels) {
       const auto grain = grains.find(label);
       if (grain == grains.end()) continue;
