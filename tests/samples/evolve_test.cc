@@ -92,6 +92,10 @@ TEST_CASE("evolve: the motion is what was asked for", "[evolve]") {
   CHECK((partly.motion(center) - center - options.drift / 2).length() < 1e-12);
   // R keeps its axis, and S takes off 8 % of z.
   CHECK(partly.motion.linear.det() == Approx(0.92));
+  options.degrees = 0;
+  CHECK(evolved(*labels, options, 2)
+            .motion.linear.eq(openvdb::Mat3d(1., 0., 0.05, 0., 1., 0., 0., 0., 0.84), 1e-12));
+  options = someMotion();
   options.strain = options.shear = 0;
   const openvdb::Mat3d turn = evolved(*labels, options, 2).motion.linear;
   CHECK((turn * axis - axis).length() < 1e-12);
