@@ -132,6 +132,18 @@ TEST_CASE("evolve: a voxel has the label of where it comes from", "[evolve]") {
   }
 }
 
+TEST_CASE("evolve: at half voxels all grains go the same way", "[evolve]") {
+  const auto labels = fewGrains();
+  EvolveOptions options;
+  options.steps = 1;
+  options.drift = {0.5, -0.5, 0.5};
+  const auto moved = evolved(*labels, options, 1).labels;
+  int64_t wrong = 0;
+  for (auto p = vdb_madf::boxOf(*labels).begin(); p; ++p)
+    wrong += moved->tree().getValue(*p) != labels->tree().getValue(*p - Coord(0, -1, 0));
+  CHECK(wrong == 0);
+}
+
 TEST_CASE("evolve: rigid grains keep their shapes where nothing is in their way", "[evolve]") {
   LabelMap voxels;
   for (auto p = CoordBBox(Coord(10), Coord(22, 16, 13)).begin(); p; ++p) voxels[*p] = 3;

@@ -46,13 +46,13 @@ constexpr double kFarthestNoise = 6;
 struct MovedGrain {
   int32_t label = 0;
   Mat3d gradient, inverse;
-  Vec3d before, after;  ///< its center
+  Vec3d before, after;  ///< where a point of it was, and is; of a rigid grain its center
   double volume = 1;
 
   Coord sourceOf(const Vec3d& x) const {
     return Coord::floor(inverse * (x - after) + before + Vec3d(0.5));
   }
-  /// Grows with the distance from the center in radii.
+  /// Grows with the distance from there in radii.
   double distance(const Vec3d& x) const {
     const double squared = (x - after).lengthSqr();
     return squared * squared * squared / (volume * volume);
@@ -231,12 +231,13 @@ EvolvedStep evolved(const Int32Grid& labels, const EvolveOptions& options, int s
         detail::RandomSequence(options.seed, kGrainStreams + uint64_t(grain.grain)).uniform() <
         share * options.vanish;
     const Mat3d& gradient = options.rigidGrains ? turn : result.motion.linear;
-    const Vec3d after = result.motion(grain.center);
+    // The whole has one center, so that its grains agree also where rounding decides.
+    const Vec3d before = options.rigidGrains ? grain.center : center;
     if (!isGone)
-      grains[grain.grain] = {grain.grain,  gradient, gradient.inverse(),
-                             grain.center, after,    grain.volume};
-    result.grains.push_back(
-        {grain.grain, isGone ? EvolvedFate::vanished : EvolvedFate::kept, 0, after});
+      grains[grain.grain] = {grain.grain,           gradient,    gradient.inverse(), before,
+                             result.motion(before), grain.volume};
+    result.grains.push_back({grain.grain, isGone ? EvolvedFate::vanished : EvolvedFate::kept, 0,
+                             result.motion(grain.center)});
   }
   result.labels = Int32Grid::create(
       movedTree(*detail::withoutTiles(labels), grains, Shaking(options, step), interrupter));
