@@ -12,9 +12,8 @@ namespace vdb_madf::tools {
 void askForLargePages() {
 #ifdef VDB_MADF_MIMALLOC
   mi_option_enable(mi_option_large_os_pages);
-#if MI_MALLOC_VERSION < 310  // Later ones do not keep the first memory of a thread in small pages.
+  // Otherwise a thread's first memory comes in small pages.
   mi_option_set(mi_option_eager_commit_delay, 0);
-#endif
 #endif
 }
 

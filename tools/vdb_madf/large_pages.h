@@ -9,7 +9,7 @@ namespace vdb_madf::tools {
 /// ask. A large sample has a million blocks of 2 KiB, the values of leaf nodes: a half of a small
 /// page each. Where a page's first touch is slow, as in virtual machines that are given memory on
 /// demand, these touches would take as long as the method. Nothing where the program was built
-/// without mimalloc, whose allocator it is then.
+/// without mimalloc 2, whose allocator it is then.
 void askForLargePages();
 
 }  // namespace vdb_madf::tools
