@@ -74,7 +74,7 @@ using MovedGrains = std::map<int32_t, MovedGrain>;
 /// A rotation about an axis through the origin.
 Mat3d turnAbout(const Vec3d& axis, double degrees) {
   const Vec3d a = axis.unit();
-  const auto [sine, cosine] = detail::sineAndCosine(degrees * 3.14159265358979323846 / 180);
+  const auto [sine, cosine] = detail::sineAndCosine(degrees * M_PI / 180);
   const Mat3d cross(0.0, -a.z(), a.y(), a.z(), 0.0, -a.x(), -a.y(), a.x(), 0.0);
   return Mat3d::identity() + cross * sine + cross * cross * (1 - cosine);
 }

@@ -34,43 +34,32 @@ struct Sand {
   double spread;
 };
 
-const Sand& sandOf(ParticleShape shape) {
-  // Flatness and elongation: Sand Atlas (X-ray tomography, CC BY 4.0).
-  static const Sand ottawa{{0.624, 0.695, 0.776, 0.848, 0.905},
-                           {0.626, 0.692, 0.767, 0.842, 0.898},
-                           0.87,
-                           0.895,
-                           {0.0692, 0.1723, 0.0117},
-                           0.204};
-  static const Sand ottawaFine{{0.599, 0.664, 0.743, 0.832, 0.892},
-                               {0.596, 0.656, 0.746, 0.822, 0.888},
-                               0.972,
-                               0.977,
-                               {0.0903, 0.044, 0.115},
-                               0.156};
-  static const Sand hamburg{{0.608, 0.685, 0.772, 0.853, 0.909},
+/// In the order of ParticleShape. Flatness and elongation are those of Sand Atlas (by X-ray
+/// tomography, CC BY 4.0).
+constexpr Sand kSands[] = {{{0.624, 0.695, 0.776, 0.848, 0.905},
+                            {0.626, 0.692, 0.767, 0.842, 0.898},
+                            0.87,
+                            0.895,
+                            {0.0692, 0.1723, 0.0117},
+                            0.204},
+                           {{0.599, 0.664, 0.743, 0.832, 0.892},
+                            {0.596, 0.656, 0.746, 0.822, 0.888},
+                            0.972,
+                            0.977,
+                            {0.0903, 0.044, 0.115},
+                            0.156},
+                           {{0.608, 0.685, 0.772, 0.853, 0.909},
                             {0.621, 0.696, 0.777, 0.851, 0.907},
                             0.9,
                             0.896,
                             {0.0794, 0.1544, 0.0629},
-                            0.304};
-  static const Sand hostun{{0.570, 0.660, 0.716, 0.780, 0.859},
-                           {0.510, 0.647, 0.765, 0.816, 0.869},
-                           0.971,
-                           0.938,
-                           {0.0567, 0.0881, 0.1779},
-                           0.147};
-  switch (shape) {
-    case ParticleShape::sandOttawaFine:
-      return ottawaFine;
-    case ParticleShape::sandHamburg:
-      return hamburg;
-    case ParticleShape::sandHostun:
-      return hostun;
-    default:
-      return ottawa;
-  }
-}
+                            0.304},
+                           {{0.570, 0.660, 0.716, 0.780, 0.859},
+                            {0.510, 0.647, 0.765, 0.816, 0.869},
+                            0.971,
+                            0.938,
+                            {0.0567, 0.0881, 0.1779},
+                            0.147}};
 
 /// Linear between the quantiles, and a little beyond them.
 double ratioAt(const Quantiles& quantiles, double share) {
@@ -121,7 +110,7 @@ double radiusAt(const std::vector<Bump>& bumps, const Vec3d& direction) {
 }  // namespace
 
 SandGrain drawSandGrain(ParticleShape shape, RandomSequence& random) {
-  const Sand& sand = sandOf(shape);
+  const Sand& sand = kSands[int(shape) - int(ParticleShape::sandOttawa)];
   const double flatness = closerToOne(ratioAt(sand.flatness, random.uniform()), sand.flatnessShare);
   const double elongation =
       closerToOne(ratioAt(sand.elongation, random.uniform()), sand.elongationShare);
