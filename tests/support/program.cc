@@ -3,16 +3,18 @@
 
 #include "support/program.h"
 #include "support/catch.h"
+#include "support/warm_start.h"
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
@@ -21,7 +23,7 @@ namespace vdb_madf::test {
 
 namespace {
 
-constexpr rlim_t kMaxSeconds = 120;  // of the processors; far more than any case takes
+constexpr int64_t kMaxSeconds = 120;  // of the processors; far more than any case takes
 
 using Clock = std::chrono::steady_clock;
 
@@ -44,33 +46,103 @@ struct Pipe {
   }
 };
 
-/// Between fork and exec: nothing but system calls.
-[[noreturn]] void become(char* const* arguments, const char* folder, const RunOptions& options,
-                         const sigset_t& signals, const Pipe& in, const Pipe& out,
-                         const Pipe& err) {
-  const int from =
-      options.in.empty() ? in.ends[0] : ::open(options.in.c_str(), O_RDONLY | O_CLOEXEC);
-  ::dup2(from, STDIN_FILENO);
-  const int to =
-      options.out.empty() ? out.ends[1] : ::open(options.out.c_str(), O_WRONLY | O_CLOEXEC);
-  ::dup2(to, STDOUT_FILENO);
-  ::dup2(err.ends[1], STDERR_FILENO);
-  if (options.largestFile > 0) {
-    const rlimit limit{rlim_t(options.largestFile), rlim_t(options.largestFile)};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
+/// A descriptor that closes itself.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {
+    if (number < 0) throw std::runtime_error("no file or socket for a run");
   }
-  if (options.memory > 0) {
-    const rlimit limit{rlim_t(options.memory), rlim_t(options.memory)};
-    ::setrlimit(RLIMIT_AS, &limit);
+  ~Descriptor() { ::close(number_); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+/// The command, loaded once and waiting for requests (warm_start.c). It ends with this process.
+class WarmCommand {
+ public:
+  WarmCommand() {
+    int ends[2];
+    if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
+      throw std::runtime_error("no socket");
+    server_ = ends[0];
+    const std::string number = "VDB_MADF_WARM_START=" + std::to_string(ends[1]);
+    std::string name = "vdb_madf", preload = "LD_PRELOAD=" VDB_MADF_WARM_START_LIBRARY,
+                variable = number;
+    std::vector<char*> variables{preload.data(), variable.data()};
+    for (char** each = environ; *each; ++each) variables.push_back(*each);
+    variables.push_back(nullptr);
+    char* arguments[] = {name.data(), nullptr};
+    // Until the child has become the program, a signal to it must not find the handlers of the
+    // tests.
+    sigset_t all, signals;
+    ::sigfillset(&all);
+    ::sigprocmask(SIG_SETMASK, &all, &signals);
+    process_ = ::fork();
+    if (process_ == 0) {
+      ::fcntl(ends[1], F_SETFD, 0);
+      ::sigprocmask(SIG_SETMASK, &signals, nullptr);
+      ::execve(VDB_MADF_TOOL, arguments, variables.data());
+      ::_exit(127);
+    }
+    ::sigprocmask(SIG_SETMASK, &signals, nullptr);
+    ::close(ends[1]);
+    if (process_ < 0) throw std::runtime_error("no process");
   }
-  // A program that hangs, or that outlives an aborted test, must not stay.
-  const rlimit seconds{kMaxSeconds, kMaxSeconds};
-  ::setrlimit(RLIMIT_CPU, &seconds);
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXFSZ}) ::signal(signal, SIG_DFL);
-  ::sigprocmask(SIG_SETMASK, &signals, nullptr);
-  if (::chdir(folder) == 0) ::execv(VDB_MADF_TOOL, arguments);
-  ::_exit(127);
+  ~WarmCommand() {
+    ::close(server_);
+    ::waitpid(process_, nullptr, 0);
+  }
+  WarmCommand(const WarmCommand&) = delete;
+  WarmCommand& operator=(const WarmCommand&) = delete;
+
+  void ask(std::string request, const std::array<int, 4>& descriptors) const {
+    alignas(cmsghdr) char control[CMSG_SPACE(sizeof descriptors)] = {};
+    iovec data{request.data(), request.size()};
+    msghdr message{};
+    message.msg_iov = &data;
+    message.msg_iovlen = 1;
+    message.msg_control = control;
+    message.msg_controllen = sizeof control;
+    cmsghdr* head = CMSG_FIRSTHDR(&message);
+    head->cmsg_level = SOL_SOCKET;
+    head->cmsg_type = SCM_RIGHTS;
+    head->cmsg_len = CMSG_LEN(sizeof descriptors);
+    std::memcpy(CMSG_DATA(head), descriptors.data(), sizeof descriptors);
+    if (request.size() > WARM_REQUEST_BYTES ||
+        ::sendmsg(server_, &message, MSG_NOSIGNAL) != ssize_t(request.size()))
+      throw std::runtime_error("the command cannot be asked to run");
+  }
+
+ private:
+  int server_ = -1;
+  pid_t process_ = -1;
+};
+
+std::string requestOf(const std::string& folder, const std::vector<std::string>& arguments,
+                      const RunOptions& options) {
+  WarmRequest head{options.largestFile, options.memory, kMaxSeconds, 1, 0};
+  std::string texts = folder + std::string(1, 0) + "vdb_madf" + std::string(1, 0);
+  for (const std::string& argument : arguments) {
+    texts += argument + std::string(1, 0);
+    ++head.arguments;
+  }
+  for (char** each = environ; *each; ++each) {
+    texts += *each + std::string(1, 0);
+    ++head.variables;
+  }
+  return std::string(reinterpret_cast<const char*>(&head), sizeof head) + texts;
+}
+
+/// What a run's watcher tells: its process, then its status.
+int toldBy(const Descriptor& watcher) {
+  int value = 0;
+  if (::read(watcher.number(), &value, sizeof value) != sizeof value)
+    throw std::runtime_error("a run was not begun, or is lost");
+  return value;
 }
 
 /// `path` may lie in a folder that is not there yet.
@@ -86,12 +158,7 @@ bool appears(const std::string& folder, const std::string& path) {
 }  // namespace
 
 Outcome Bench::run(const std::vector<std::string>& arguments, const RunOptions& options) const {
-  std::vector<std::string> texts{"vdb_madf"};
-  texts.insert(texts.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& text : texts) argv.push_back(text.data());
-  argv.push_back(nullptr);
-
+  static const WarmCommand command;
   Pipe in, out, err;
   // A pipe holds so much without a reader.
   if (::write(in.ends[1], options.piped.data(), options.piped.size()) !=
@@ -100,31 +167,37 @@ Outcome Bench::run(const std::vector<std::string>& arguments, const RunOptions& 
   in.closeWriting();
   const auto start = Clock::now();
   Clock::time_point signalled;
-  // Until the child has become the program, a signal to it must not find the handlers of the tests.
-  sigset_t all, signals;
-  ::sigfillset(&all);
-  ::sigprocmask(SIG_SETMASK, &all, &signals);
-  const pid_t child = ::fork();
-  if (child == 0) become(argv.data(), folder_.path().c_str(), options, signals, in, out, err);
-  ::sigprocmask(SIG_SETMASK, &signals, nullptr);
-  if (child < 0) throw std::runtime_error("no process");
+  int ends[2];
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
+    throw std::runtime_error("no socket");
+  const Descriptor watcher(ends[0]);
+  {
+    const Descriptor answer(ends[1]);
+    const Descriptor from(options.in.empty() ? ::dup(in.ends[0])
+                                             : ::open(options.in.c_str(), O_RDONLY | O_CLOEXEC));
+    const Descriptor to(options.out.empty() ? ::dup(out.ends[1])
+                                            : ::open(options.out.c_str(), O_WRONLY | O_CLOEXEC));
+    command.ask(requestOf(folder_.path(), arguments, options),
+                {from.number(), to.number(), err.ends[1], answer.number()});
+  }
   out.closeWriting();
   err.closeWriting();
+  const pid_t child = toldBy(watcher);
 
   Outcome outcome;
   bool waiting = options.signal != 0;
-  pollfd ends[2] = {{out.ends[0], POLLIN, 0}, {err.ends[0], POLLIN, 0}};
+  pollfd streams[2] = {{out.ends[0], POLLIN, 0}, {err.ends[0], POLLIN, 0}};
   std::string* const captured[2] = {&outcome.out, &outcome.err};
-  while (ends[0].fd >= 0 || ends[1].fd >= 0) {
-    ::poll(ends, 2, waiting ? 2 : -1);
+  while (streams[0].fd >= 0 || streams[1].fd >= 0) {
+    ::poll(streams, 2, waiting ? 2 : -1);
     for (int i = 0; i < 2; ++i) {
-      if (ends[i].fd < 0 || ends[i].revents == 0) continue;
+      if (streams[i].fd < 0 || streams[i].revents == 0) continue;
       char buffer[4096];
-      const ssize_t got = ::read(ends[i].fd, buffer, sizeof buffer);
+      const ssize_t got = ::read(streams[i].fd, buffer, sizeof buffer);
       if (got > 0)
         captured[i]->append(buffer, size_t(got));
       else
-        ends[i].fd = -1;  // poll passes over it
+        streams[i].fd = -1;  // poll passes over it
     }
     if (waiting && appears(folder_.path(), options.interruptOn)) {
       waiting = false;
@@ -133,8 +206,7 @@ Outcome Bench::run(const std::vector<std::string>& arguments, const RunOptions& 
       ::kill(child, options.signal);
     }
   }
-  int status = 0;
-  ::waitpid(child, &status, 0);
+  const int status = toldBy(watcher);
   outcome.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
   outcome.seconds = secondsSince(start);
   if (options.signal != 0 && !waiting) outcome.secondsAfterSignal = secondsSince(signalled);

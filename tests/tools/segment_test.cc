@@ -421,5 +421,7 @@ TEST_CASE("cli: segment --dry-run says what it would take, and does nothing", "[
   CHECK(filtered.at("estimated_scratch_bytes") > slabs.at("estimated_scratch_bytes"));
   const double slabMemory = slabs.at("estimated_memory_bytes");
   CHECK(slabMemory > made.at("peak_memory_bytes"));
-  CHECK(slabMemory < 4 * made.at("peak_memory_bytes").get<double>());
+  // The peak here is without what loading the libraries takes (warm_start.c).
+  constexpr double kLibraries = 12 << 20;
+  CHECK(slabMemory < 4 * (made.at("peak_memory_bytes").get<double>() + kLibraries));
 }
