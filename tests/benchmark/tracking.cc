@@ -99,7 +99,7 @@ void printLabels() {
         options.rigidGrains = kind != "snow";
         options.vanish = 0.03;
         options.noise = 0.5;
-        const EvolvedStep after = evolved(*before, options, 1);
+        const EvolvedStep after = Evolution(*before, options).after(1);
         row += " | " + shares(*before, after);
         number = after.grains.size();
       }

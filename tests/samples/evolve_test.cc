@@ -41,6 +41,10 @@ EvolveOptions someMotion() {
   return options;
 }
 
+EvolvedStep evolved(const Int32Grid& labels, const EvolveOptions& options, int step) {
+  return Evolution(labels, options).after(step);
+}
+
 /// The voxel that a place lies in.
 Coord voxelAt(const Vec3d& place) {
   return Coord::floor(place + Vec3d(0.5));
@@ -107,8 +111,9 @@ TEST_CASE("evolve: the motion is what was asked for", "[evolve]") {
 TEST_CASE("evolve: a voxel has the label of where it comes from", "[evolve]") {
   const auto labels = fewGrains();
   const CoordBBox box = vdb_madf::boxOf(*labels);
+  const Evolution evolution(*labels, someMotion());
   for (const int step : {0, 1, 2}) {
-    const EvolvedStep result = evolved(*labels, someMotion(), step);
+    const EvolvedStep result = evolution.after(step);
     const openvdb::Mat3d back = result.motion.linear.inverse();
     std::map<int32_t, int64_t> sizes;
     std::set<int32_t> leaving;
@@ -230,6 +235,6 @@ TEST_CASE("evolve: bad options are refused, and it stops when asked to", "[evolv
   CHECK_THROWS_AS(evolved(*labels, EvolveOptions{}, 5), InvalidInput);
   for (const int polls : {0, 1, 3}) {
     StopAfter stop(polls);
-    CHECK_THROWS_AS(evolved(*labels, EvolveOptions{}, 1, &stop), Interrupted);
+    CHECK_THROWS_AS(Evolution(*labels, EvolveOptions{}, &stop).after(1, &stop), Interrupted);
   }
 }

@@ -90,10 +90,12 @@ void runEvolve(const EvolveArguments& o, const Common& common) {
   motion << "step,f_xx,f_xy,f_xz,f_yx,f_yy,f_yz,f_zx,f_zy,f_zz,shift_x,shift_y,shift_z\n";
   fates << "step,grain,fate,voxels,center_x,center_y,center_z\n";
   OutputSet files;
+  common.progress->start("evolve");
+  const Evolution evolution =
+      withFileName(o.input.path, [&] { return Evolution(*labels, o.evolve, common.progress); });
   for (int step = 0; step <= o.evolve.steps; ++step) {
     common.progress->start("evolve");
-    const EvolvedStep result = withFileName(
-        o.input.path, [&] { return evolved(*labels, o.evolve, step, common.progress); });
+    const EvolvedStep result = evolution.after(step, common.progress);
     common.progress->start("write");
     writeVdb(o.stepFile(step), {result.labels}, common.progress);
     common.progress->end();

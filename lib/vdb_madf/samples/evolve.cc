@@ -20,7 +20,6 @@
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
-#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/label_sizes.h"
 #include "vdb_madf/leaves/detail/voxels.h"
@@ -210,43 +209,50 @@ void checkEvolve(const EvolveOptions& options) {
   detail::checkRange("noise", options.noise, 0, 4);
 }
 
-EvolvedStep evolved(const Int32Grid& labels, const EvolveOptions& options, int step,
-                    Interrupter* interrupter) {
+Evolution::Evolution(const Int32Grid& labels, const EvolveOptions& options,
+                     Interrupter* interrupter)
+    : options_(options),
+      tree_(detail::withoutTiles(labels)),
+      domain_(storedDomain(labels)),
+      voxelSize_(storedVoxelSize(labels)),
+      center_(boxOf(labels).getCenter()) {
   checkEvolve(options);
-  detail::checkRange("step", step, 0, options.steps);
   requireCubicVoxels(labels, "moving grains");
-  const double share = double(step) / options.steps;
-  const Mat3d turn = turnAbout(options.axis, share * options.degrees);
+  before_ = detail::grainSet(labels, interrupter);
+}
+
+EvolvedStep Evolution::after(int step, Interrupter* interrupter) const {
+  detail::checkRange("step", step, 0, options_.steps);
+  const double share = double(step) / options_.steps;
+  const Mat3d turn = turnAbout(options_.axis, share * options_.degrees);
   Mat3d stretch = Mat3d::identity();
-  stretch(2, 2) = 1 - share * options.strain;
-  stretch(0, 2) = share * options.shear;
-  const Vec3d center = boxOf(labels).getCenter();
+  stretch(2, 2) = 1 - share * options_.strain;
+  stretch(0, 2) = share * options_.shear;
   EvolvedStep result;
   result.motion.linear = turn * stretch;
-  result.motion.shift = center + options.drift * share - result.motion.linear * center;
+  result.motion.shift = center_ + options_.drift * share - result.motion.linear * center_;
 
   MovedGrains grains;
-  for (const GrainFeatures& grain : detail::grainSet(labels, interrupter).grains) {
+  for (const GrainFeatures& grain : before_.grains) {
     const bool isGone =
-        detail::RandomSequence(options.seed, kGrainStreams + uint64_t(grain.grain)).uniform() <
-        share * options.vanish;
-    const Mat3d& gradient = options.rigidGrains ? turn : result.motion.linear;
+        detail::RandomSequence(options_.seed, kGrainStreams + uint64_t(grain.grain)).uniform() <
+        share * options_.vanish;
+    const Mat3d& gradient = options_.rigidGrains ? turn : result.motion.linear;
     // The whole has one center, so that its grains agree also where rounding decides.
-    const Vec3d before = options.rigidGrains ? grain.center : center;
+    const Vec3d before = options_.rigidGrains ? grain.center : center_;
     if (!isGone)
       grains[grain.grain] = {grain.grain,           gradient,    gradient.inverse(), before,
                              result.motion(before), grain.volume};
     result.grains.push_back({grain.grain, isGone ? EvolvedFate::vanished : EvolvedFate::kept, 0,
                              result.motion(grain.center)});
   }
-  result.labels = Int32Grid::create(
-      movedTree(*detail::withoutTiles(labels), grains, Shaking(options, step), interrupter));
+  result.labels =
+      Int32Grid::create(movedTree(*tree_, grains, Shaking(options_, step), interrupter));
   const auto whole = labelSizes(*result.labels, interrupter);
-  const auto domain = storedDomain(labels);
-  if (domain) {
-    result.labels->tree().clip(domain->box());
+  if (domain_) {
+    result.labels->tree().clip(domain_->box());
     openvdb::tools::pruneInactive(result.labels->tree());
-    setDomain(*result.labels, domain->box());
+    setDomain(*result.labels, domain_->box());
   }
   auto within = labelSizes(*result.labels, interrupter);
   for (EvolvedGrain& grain : result.grains) {
@@ -255,8 +261,8 @@ EvolvedStep evolved(const Int32Grid& labels, const EvolveOptions& options, int s
     if (all != whole.end() && all->second > grain.voxels) grain.fate = EvolvedFate::left;
   }
   result.labels->setName("grain");
-  setVoxelSize(*result.labels, storedVoxelSize(labels));
-  result.labels->insertMeta(kSourceKey, openvdb::StringMetadata(sourceText(options, step)));
+  setVoxelSize(*result.labels, voxelSize_);
+  result.labels->insertMeta(kSourceKey, openvdb::StringMetadata(sourceText(options_, step)));
   return result;
 }
 

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/matching/match_grains.h"
 
@@ -56,11 +58,26 @@ struct EvolvedStep {
   std::vector<EvolvedGrain> grains;  ///< all of before, ascending
 };
 
-/// The labels after a step (0: as they are). A voxel takes the label of the voxel that it lies in
-/// when it is moved back. Where the domain is unknown, no grain leaves. The same bits on every
-/// machine. Memory: that of the labels before and, also beyond the domain, after.
-/// @throw InvalidInput for options out of range, or voxels that are no cubes; Interrupted.
-EvolvedStep evolved(const Int32Grid& labels, const EvolveOptions& options, int step,
-                    Interrupter* interrupter = nullptr);
+/// Labels that move. What is known of them beforehand is found once, for all steps.
+class Evolution {
+ public:
+  /// @throw InvalidInput for options out of range, or voxels that are no cubes; Interrupted.
+  Evolution(const Int32Grid& labels, const EvolveOptions& options,
+            Interrupter* interrupter = nullptr);
+
+  /// The labels after a step (0: as they are). A voxel takes the label of the voxel that it lies in
+  /// when it is moved back. Where the domain is unknown, no grain leaves. The same bits on every
+  /// machine. Memory: that of the labels before and, also beyond the domain, after.
+  /// @throw InvalidInput if there is no such step; Interrupted.
+  EvolvedStep after(int step, Interrupter* interrupter = nullptr) const;
+
+ private:
+  EvolveOptions options_;
+  Int32Tree::ConstPtr tree_;  ///< without tiles
+  std::optional<Domain> domain_;
+  std::optional<VoxelSize> voxelSize_;
+  openvdb::Vec3d center_;  ///< of the box
+  GrainSet before_;
+};
 
 }  // namespace vdb_madf
