@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "support/catch.h"
 #include "support/label_shapes.h"
@@ -217,6 +218,92 @@ TEST_CASE("evolve: what has vanished stays so, and noise is at boundaries alone"
   CHECK(inside == 0);
 }
 
+TEST_CASE("evolve: bonds that break leave a gap, and nothing else changes", "[evolve]") {
+  const auto labels = fewGrains();
+  EvolveOptions options;
+  options.steps = 2;
+  options.breaks = 0.9;
+  options.gap = 3;
+  const Evolution evolution(*labels, options);
+  std::set<std::pair<int32_t, int32_t>> gone;
+  for (int step = 0; step <= 2; ++step) {
+    CAPTURE(step);
+    const EvolvedStep result = evolution.after(step);
+    std::set<std::pair<int32_t, int32_t>> broken;
+    for (const EvolvedBond& bond : result.bonds) {
+      const bool isBroken = bond.fate == EvolvedBondFate::broken;
+      CHECK(
+          (isBroken || bond.fate == EvolvedBondFate::kept || bond.fate == EvolvedBondFate::parted));
+      CHECK((bond.fate == EvolvedBondFate::kept) == (bond.faces > 0));
+      if (isBroken) broken.insert({bond.first, bond.second});
+    }
+    for (const auto& bond : gone) CHECK(broken.count(bond));
+    gone = broken;
+    CHECK(broken.empty() == (step == 0));
+    int64_t wrong = 0;
+    for (auto p = vdb_madf::boxOf(*labels).begin(); p; ++p) {
+      const int32_t label = labels->tree().getValue(*p);
+      bool isNear = false;
+      for (auto q = CoordBBox(*p - Coord(3), *p + Coord(3)).begin(); label && q; ++q) {
+        const int32_t other = labels->tree().getValue(*q);
+        isNear = isNear || ((*q - *p).asVec3d().lengthSqr() <= 9 && other && other != label &&
+                            broken.count(std::minmax(label, other)));
+      }
+      wrong += result.labels->tree().getValue(*p) != (isNear ? 0 : label);
+    }
+    CHECK(wrong == 0);
+  }
+  CHECK(gone.size() > 4);
+}
+
+TEST_CASE("evolve: grains grow, dissolve and enter as they are told to", "[evolve]") {
+  const auto labels = fewGrains();
+  const CoordBBox box = vdb_madf::boxOf(*labels);
+  for (const double growth : {2.5, -1.5}) {
+    CAPTURE(growth);
+    EvolveOptions options;
+    options.steps = 1;
+    options.growth = growth;
+    const auto grown = evolved(*labels, options, 1).labels;
+    int64_t wrong = 0, changed = 0;
+    for (auto p = box.begin(); p; ++p) {
+      const int32_t own = labels->tree().getValue(*p), now = grown->tree().getValue(*p);
+      double nearest = 100;  // what is empty, or else a label
+      std::set<int32_t> there;
+      for (auto q = CoordBBox(*p - Coord(2), *p + Coord(2)).begin(); q; ++q) {
+        const int32_t other = labels->tree().getValue(*q);
+        const double away = (*q - *p).asVec3d().length();
+        if (!box.isInside(*q) || (other > 0) == (own > 0) || away > nearest) continue;
+        if (away < nearest) there.clear();
+        nearest = away;
+        there.insert(other);
+      }
+      const bool isReached = nearest <= std::abs(growth) && (own > 0) == (growth < 0);
+      wrong += isReached ? !there.count(now) : now != own;
+      changed += now != own;
+    }
+    CHECK(wrong == 0);
+    CHECK(changed > 1000);
+  }
+  EvolveOptions options;
+  options.steps = 3;
+  options.enter = 0.6;
+  const Evolution evolution(*labels, options);
+  size_t before = 100;
+  for (int step = 0; step <= 3; ++step) {
+    CAPTURE(step);
+    size_t absent = 0;
+    for (const EvolvedGrain& grain : evolution.after(step).grains) {
+      CHECK((grain.voxels == 0) == (grain.fate == EvolvedFate::absent));
+      absent += grain.fate == EvolvedFate::absent;
+    }
+    CHECK(absent <= before);
+    if (step == 0) CHECK((absent > 8 && absent < 20));
+    if (step == 3) CHECK(absent == 0);
+    before = absent;
+  }
+}
+
 TEST_CASE("evolve: bad options are refused, and it stops when asked to", "[evolve]") {
   const auto labels = fewGrains();
   const auto refuses = [&](auto change) {
@@ -232,6 +319,10 @@ TEST_CASE("evolve: bad options are refused, and it stops when asked to", "[evolv
   refuses([](auto& o) { o.drift = {0, 1e9, 0}; });
   refuses([](auto& o) { o.vanish = 1.1; });
   refuses([](auto& o) { o.noise = -1; });
+  refuses([](auto& o) { o.enter = -0.1; });
+  refuses([](auto& o) { o.breaks = 1.1; });
+  refuses([](auto& o) { o.gap = 9; });
+  refuses([](auto& o) { o.growth = -9; });
   CHECK_THROWS_AS(evolved(*labels, EvolveOptions{}, 5), InvalidInput);
   for (const int polls : {0, 1, 3}) {
     StopAfter stop(polls);

@@ -53,7 +53,7 @@ void parse(EvolveArguments& o) {
   } catch (const InvalidInput& error) {
     throw WrongUsage(std::string("cannot generate this: ") + error.what());
   }
-  o.input.outputs = {o.file("motion.csv"), o.file("fates.csv")};
+  o.input.outputs = {o.file("motion.csv"), o.file("fates.csv"), o.file("bonds.csv")};
   for (int step = 0; step <= o.evolve.steps; ++step) o.input.outputs.push_back(o.stepFile(step));
   o.input.parse();
 }
@@ -71,6 +71,12 @@ void addFateRows(std::ostream& csv, int step, const EvolvedStep& evolved) {
         << g.center.x() << ',' << g.center.y() << ',' << g.center.z() << '\n';
 }
 
+void addBondRows(std::ostream& csv, int step, const EvolvedStep& evolved) {
+  for (const EvolvedBond& b : evolved.bonds)
+    csv << step << ',' << b.first << ',' << b.second << ',' << toString(b.fate) << ',' << b.faces
+        << '\n';
+}
+
 void printStep(const std::string& path, const EvolvedStep& evolved) {
   std::map<EvolvedFate, int64_t> counts;
   for (const EvolvedGrain& grain : evolved.grains) ++counts[grain.fate];
@@ -82,13 +88,15 @@ void printStep(const std::string& path, const EvolvedStep& evolved) {
 
 void runEvolve(const EvolveArguments& o, const Common& common) {
   OutputFolder folder(o.out);
-  TextFile motionFile(o.file("motion.csv")), fateFile(o.file("fates.csv"));
+  TextFile motionFile(o.file("motion.csv")), fateFile(o.file("fates.csv")),
+      bondFile(o.file("bonds.csv"));
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
-  std::ostringstream motion, fates;
+  std::ostringstream motion, fates, bonds;
   motion.precision(9);
   fates.precision(9);
   motion << "step,f_xx,f_xy,f_xz,f_yx,f_yy,f_yz,f_zx,f_zy,f_zz,shift_x,shift_y,shift_z\n";
   fates << "step,grain,fate,voxels,center_x,center_y,center_z\n";
+  bonds << "step,first,second,fate,faces\n";
   OutputSet files;
   common.progress->start("evolve");
   const Evolution evolution =
@@ -101,10 +109,12 @@ void runEvolve(const EvolveArguments& o, const Common& common) {
     common.progress->end();
     addMotionRow(motion, step, result);
     addFateRows(fates, step, result);
+    addBondRows(bonds, step, result);
     if (!common.quiet) printStep(o.stepFile(step), result);
   }
   motionFile.write(motion.str());
   fateFile.write(fates.str());
+  bondFile.write(bonds.str());
   files.commit();
   folder.keep();
 }
@@ -113,14 +123,14 @@ void runEvolve(const EvolveArguments& o, const Common& common) {
 
 void addEvolve(Verb generate, Common& common, Action& action) {
   auto o = std::make_shared<EvolveArguments>();
-  Verb verb =
-      addVerb(generate, common, "evolve", "a series of scans of labels that move and vanish",
-              "vdb_madf generate evolve grains.vdb scans --steps 2 --strain 0.16 --turn 10");
+  Verb verb = addVerb(
+      generate, common, "evolve", "a series of scans of labels that move, break, grow and vanish",
+      "vdb_madf generate evolve grains.vdb scans --steps 2 --strain 0.16 --turn 10");
   EvolveOptions& evolve = o->evolve;
   verb.option("IN", o->input.path, "labels: VDB or integer image").required();
   verb.option("OUT", o->out,
               "folder for the labels after each step, step-N.vdb, and the truth: motion.csv, "
-              "fates.csv")
+              "fates.csv, bonds.csv")
       .required();
   verb.option("--steps", evolve.steps, "steps in which the motion grows").showDefault();
   verb.option("--strain", evolve.strain, "shortening along z at the end, as a share").showDefault();
@@ -134,6 +144,17 @@ void addEvolve(Verb generate, Common& common, Action& action) {
       "--rigid-grains", evolve.rigidGrains,
       "grains keep their shapes: their centers move as the whole does, and they turn with it");
   verb.option("--vanish", evolve.vanish, "share of the grains that has vanished at the end")
+      .showDefault();
+  verb.option("--enter", evolve.enter,
+              "share of the grains that is not there at step 0, and enters")
+      .showDefault();
+  verb.option("--break", evolve.breaks, "share of the bonds that has broken at the end")
+      .showDefault();
+  verb.option("--break-gap", evolve.gap,
+              "voxels: so near to the other grain of a broken bond, each loses its own")
+      .showDefault();
+  verb.option("--grow", evolve.growth,
+              "voxels by which grains have grown at the end, or, below 0, have dissolved")
       .showDefault();
   verb.option(
           "--noise", evolve.noise,

@@ -21,6 +21,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
+#include "vdb_madf/labels/detail/label_contacts.h"
 #include "vdb_madf/labels/label_sizes.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 #include "vdb_madf/matching/detail/grain_set.h"
@@ -36,8 +37,9 @@ using openvdb::Vec3d;
 using LabelLeaf = Int32Tree::LeafNodeType;
 
 constexpr int kMostSteps = 1000;
-/// Streams of noise are three a step, those of grains lie above.
-constexpr uint64_t kGrainStreams = uint64_t(1) << 32;
+/// Streams of noise are three a step, those of grains lie above, and above these those of bonds.
+constexpr uint64_t kGrainStreams = uint64_t(1) << 32, kBondStreams = uint64_t(1) << 63;
+constexpr int kMostGap = 8, kMostGrowth = 8;
 /// WhiteNoise is bounded: so many standard deviations.
 constexpr double kFarthestNoise = 6;
 
@@ -69,6 +71,7 @@ struct MovedGrain {
 };
 
 using MovedGrains = std::map<int32_t, MovedGrain>;
+using BondSet = std::set<std::pair<int32_t, int32_t>>;
 
 /// A rotation about an axis through the origin.
 Mat3d turnAbout(const Vec3d& axis, double degrees) {
@@ -94,6 +97,10 @@ std::string sourceText(const EvolveOptions& options, int step) {
       .add("vanish", options.vanish)
       .add("noise", options.noise)
       .add("seed", std::to_string(options.seed));
+  if (options.enter != 0) source.add("enter", options.enter);
+  if (options.breaks != 0)
+    source.add("break", options.breaks).add("break-gap", std::to_string(options.gap));
+  if (options.growth != 0) source.add("grow", options.growth);
   return source.str() + (options.rigidGrains ? " --rigid-grains" : "") + ", step " +
          std::to_string(step);
 }
@@ -122,6 +129,100 @@ class Shaking {
   double deviation_;
   std::vector<detail::WhiteNoise> noise_;
 };
+
+/// Steps of at most a length, the shortest first.
+std::vector<Coord> ballSteps(double length) {
+  std::vector<std::pair<int, Coord>> steps;
+  const int reach = int(length);
+  for (auto p = CoordBBox(Coord(-reach), Coord(reach)).begin(); p; ++p) {
+    const Coord& step = *p;
+    const int squared = step.x() * step.x() + step.y() * step.y() + step.z() * step.z();
+    if (squared <= length * length) steps.emplace_back(squared, step);
+  }
+  std::sort(steps.begin(), steps.end());
+  std::vector<Coord> sorted;
+  for (const auto& [squared, step] : steps) sorted.push_back(step);
+  return sorted;
+}
+
+using LabelReader = openvdb::tree::ValueAccessor<const Int32Tree>;
+
+/// 0: there is none.
+int32_t labelAt(const LabelReader& labels, const Coord& p) {
+  int32_t label = 0;
+  return labels.probeValue(p, label) && label > 0 ? label : 0;
+}
+
+/// A tree of the leaves with these origins; label(reader of the old tree, voxel, old label) is what
+/// a voxel of it has.
+template <typename Label>
+Int32Tree::Ptr mappedTree(const Int32Tree& tree, const std::set<Coord>& origins,
+                          Interrupter* interrupter, const Label& label) {
+  const std::vector<Coord> order(origins.begin(), origins.end());
+  std::vector<std::unique_ptr<LabelLeaf>> leaves(order.size());
+  detail::parallelFor(order.size(), detail::kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+    const LabelReader labels(tree);
+    for (size_t n = begin; n < end; ++n) {
+      auto leaf = std::make_unique<LabelLeaf>(order[n], 0);
+      for (openvdb::Index offset = 0; offset < LabelLeaf::SIZE; ++offset) {
+        const Coord p = leaf->offsetToGlobalCoord(offset);
+        const int32_t mapped = label(labels, p, labelAt(labels, p));
+        if (mapped > 0) leaf->setValueOn(offset, mapped);
+      }
+      if (!leaf->isEmpty()) leaves[n] = std::move(leaf);
+    }
+  });
+  auto mapped = std::make_shared<Int32Tree>(0);
+  for (std::unique_ptr<LabelLeaf>& leaf : leaves)
+    if (leaf) mapped->addLeaf(leaf.release());
+  return mapped;
+}
+
+/// Of a tree, and of those next to them as well.
+std::set<Coord> leafOrigins(const Int32Tree& tree, bool andNeighbors) {
+  std::set<Coord> origins;
+  const Coord reach(andNeighbors ? 1 : 0);
+  for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf)
+    for (auto step = CoordBBox(-reach, reach).begin(); step; ++step)
+      origins.insert(leaf->origin() + Coord((*step).x() * 8, (*step).y() * 8, (*step).z() * 8));
+  return origins;
+}
+
+/// Labels that have grown by a length into what is empty; below 0: that lost what is so near to it.
+/// What lies beyond the domain is neither empty nor gets a label.
+Int32Tree::ConstPtr grownTree(const Int32Tree::ConstPtr& tree, double length,
+                              const std::optional<Domain>& domain, Interrupter* interrupter) {
+  const std::vector<Coord> steps = ballSteps(std::abs(length));
+  if (steps.size() == 1) return tree;
+  const auto isSeen = [&](const Coord& p) { return !domain || domain->box().isInside(p); };
+  return mappedTree(*tree, leafOrigins(*tree, length > 0), interrupter,
+                    [&](const LabelReader& labels, const Coord& p, int32_t own) {
+                      if ((own > 0) == (length > 0) || !isSeen(p)) return own;
+                      for (const Coord& step : steps) {
+                        const int32_t label = labelAt(labels, p + step);
+                        if (length > 0 ? label > 0 : label == 0 && isSeen(p + step)) return label;
+                      }
+                      return own;
+                    });
+}
+
+/// Labels that have lost what lies within a gap of a grain to which their bond is broken.
+Int32Tree::Ptr brokenTree(const Int32Tree::Ptr& tree, const BondSet& broken, int gap,
+                          Interrupter* interrupter) {
+  if (broken.empty()) return tree;
+  std::set<int32_t> ends;
+  for (const auto& [first, second] : broken) ends.insert({first, second});
+  const std::vector<Coord> steps = ballSteps(gap);
+  return mappedTree(*tree, leafOrigins(*tree, false), interrupter,
+                    [&](const LabelReader& labels, const Coord& p, int32_t own) {
+                      if (!ends.count(own)) return own;
+                      for (const Coord& step : steps)
+                        if (const int32_t other = labelAt(labels, p + step);
+                            other > 0 && broken.count(std::minmax(own, other)))
+                          return 0;
+                      return own;
+                    });
+}
 
 /// A leaf of the result, by its origin, and the label of a grain that may lie in it.
 using Target = std::pair<Coord, int32_t>;
@@ -191,7 +292,12 @@ Int32Tree::Ptr movedTree(const Int32Tree& tree, const MovedGrains& grains, const
 }  // namespace
 
 const char* toString(EvolvedFate fate) {
-  constexpr const char* kNames[] = {"kept", "left", "vanished"};
+  constexpr const char* kNames[] = {"kept", "left", "vanished", "absent"};
+  return kNames[size_t(fate)];
+}
+
+const char* toString(EvolvedBondFate fate) {
+  constexpr const char* kNames[] = {"kept", "broken", "parted", "gone", "new"};
   return kNames[size_t(fate)];
 }
 
@@ -206,6 +312,10 @@ void checkEvolve(const EvolveOptions& options) {
   }
   if (!(options.axis.length() > 1e-6)) throw InvalidInput("the axis of the turn has no direction");
   detail::checkRange("share that vanishes", options.vanish, 0, 1);
+  detail::checkRange("share that enters", options.enter, 0, 1);
+  detail::checkRange("share of bonds that break", options.breaks, 0, 1);
+  detail::checkRange("gap of a broken bond", options.gap, 1, kMostGap);
+  detail::checkRange("growth", options.growth, -kMostGrowth, kMostGrowth);
   detail::checkRange("noise", options.noise, 0, 4);
 }
 
@@ -234,20 +344,31 @@ EvolvedStep Evolution::after(int step, Interrupter* interrupter) const {
 
   MovedGrains grains;
   for (const GrainFeatures& grain : before_.grains) {
-    const bool isGone =
-        detail::RandomSequence(options_.seed, kGrainStreams + uint64_t(grain.grain)).uniform() <
-        share * options_.vanish;
+    detail::RandomSequence random(options_.seed, kGrainStreams + uint64_t(grain.grain));
+    const bool isGone = random.uniform() < share * options_.vanish;
+    const bool isAbsent = !isGone && random.uniform() < (1 - share) * options_.enter;
     const Mat3d& gradient = options_.rigidGrains ? turn : result.motion.linear;
     // The whole has one center, so that its grains agree also where rounding decides.
     const Vec3d before = options_.rigidGrains ? grain.center : center_;
-    if (!isGone)
+    if (!isGone && !isAbsent)
       grains[grain.grain] = {grain.grain,           gradient,    gradient.inverse(), before,
                              result.motion(before), grain.volume};
-    result.grains.push_back({grain.grain, isGone ? EvolvedFate::vanished : EvolvedFate::kept, 0,
-                             result.motion(grain.center)});
+    result.grains.push_back({grain.grain,
+                             isGone     ? EvolvedFate::vanished
+                             : isAbsent ? EvolvedFate::absent
+                                        : EvolvedFate::kept,
+                             0, result.motion(grain.center)});
   }
+  BondSet broken;
+  for (const auto& bond : before_.contacts) {
+    const uint64_t stream = kBondStreams + (uint64_t(bond.first) << 32) + uint64_t(bond.second);
+    if (detail::RandomSequence(options_.seed, stream).uniform() < share * options_.breaks)
+      broken.insert(bond);
+  }
+  const Int32Tree::ConstPtr grown = grownTree(tree_, share * options_.growth, domain_, interrupter);
   result.labels =
-      Int32Grid::create(movedTree(*tree_, grains, Shaking(options_, step), interrupter));
+      Int32Grid::create(brokenTree(movedTree(*grown, grains, Shaking(options_, step), interrupter),
+                                   broken, options_.gap, interrupter));
   const auto whole = labelSizes(*result.labels, interrupter);
   if (domain_) {
     result.labels->tree().clip(domain_->box());
@@ -260,10 +381,35 @@ EvolvedStep Evolution::after(int step, Interrupter* interrupter) const {
     const auto all = whole.find(grain.grain);
     if (all != whole.end() && all->second > grain.voxels) grain.fate = EvolvedFate::left;
   }
+  result.bonds = bondsOf(result, broken, interrupter);
   result.labels->setName("grain");
   setVoxelSize(*result.labels, voxelSize_);
   result.labels->insertMeta(kSourceKey, openvdb::StringMetadata(sourceText(options_, step)));
   return result;
+}
+
+std::vector<EvolvedBond> Evolution::bondsOf(const EvolvedStep& step, const BondSet& broken,
+                                            Interrupter* interrupter) const {
+  std::map<int32_t, EvolvedFate> fates;
+  for (const EvolvedGrain& grain : step.grains) fates[grain.grain] = grain.fate;
+  const BondSet before(before_.contacts.begin(), before_.contacts.end());
+  std::map<std::pair<int32_t, int32_t>, int64_t> faces;  // of all
+  for (const auto& bond : before) faces[bond] = 0;
+  for (const detail::LabelContact& contact : detail::labelContacts(*step.labels, interrupter))
+    faces[{contact.first, contact.second}] = contact.faces;
+  std::vector<EvolvedBond> bonds;
+  for (const auto& [bond, count] : faces) {
+    EvolvedBondFate fate = count > 0 ? EvolvedBondFate::kept : EvolvedBondFate::parted;
+    if (!before.count(bond))
+      fate = EvolvedBondFate::created;
+    else if (fates.at(bond.first) != EvolvedFate::kept ||
+             fates.at(bond.second) != EvolvedFate::kept)
+      fate = EvolvedBondFate::gone;
+    else if (broken.count(bond))
+      fate = EvolvedBondFate::broken;
+    bonds.push_back({bond.first, bond.second, fate, count});
+  }
+  return bonds;
 }
 
 }  // namespace vdb_madf
