@@ -124,6 +124,42 @@ TEST_CASE("match_grains: strains are those of their definition", "[match_grains]
   }
 }
 
+TEST_CASE("match_grains: specks are in nobody's way, and small grains are followed",
+          "[match_grains]") {
+  MovedGrainsOptions options;
+  options.count = 113;
+  const MovedGrains plain = movedGrains(options);
+  openvdb::BBoxd box;
+  for (const GrainFeatures& grain : plain.before.grains) box.expand(grain.center);
+  Dice dice(7);
+  const auto somewhere = [&] {
+    const double x = dice.uniform(), y = dice.uniform();
+    return box.min() + box.extents() * openvdb::Vec3d(x, y, dice.uniform());
+  };
+  MovedGrains specks = plain, small = plain;
+  for (int32_t n = 0; n < 1900; ++n) {
+    const GrainFeatures speck{1000 + n, somewhere(), 1. + n % 2, {}};
+    GrainFeatures other = speck;
+    other.center = plain.motion(somewhere());
+    specks.before.grains.push_back(speck);
+    specks.after.grains.push_back(other);
+    if (n >= 200) continue;
+    other.center = plain.motion(speck.center);
+    small.before.grains.push_back(speck);
+    small.after.grains.push_back(other);
+    small.partners[speck.grain] = other.grain;
+  }
+  const auto alone = matchGrains(plain.before, plain.after),
+             beside = matchGrains(specks.before, specks.after),
+             both = matchGrains(small.before, small.after);
+  REQUIRE((alone && beside && both));
+  CHECK(beside->count == alone->count);
+  CHECK(scoreOf(specks, *beside).wrong == 0);
+  const MatchScore score = scoreOf(small, *both);
+  CHECK(share(score.right, score.all) > 0.9);
+  CHECK(score.wrong == 0);
+}
+
 TEST_CASE("match_grains: few grains are followed by a guess", "[match_grains]") {
   MovedGrainsOptions options;
   options.count = 5;

@@ -69,7 +69,7 @@ def track(before: Union[Labels, Segmentation, Source], after: Union[Labels, Segm
     shift, max_shift and share are not looked at then. gap: voxels between the grains of a broken
     bond up to which it is detached, else separated.
     The manual of `vdb_madf track` defines the fates. A warning says if hardly more is common than
-    of unrelated samples, and with a motion if fewer grains are followed than are lost.
+    of unrelated samples, and with a motion if more of the sample is lost than followed.
 
     For a series give the labels of the last step: track(track(a, b).labels, c)."""
     guess = None

@@ -78,8 +78,11 @@ struct FollowedGrains {
 /// logarithm of the volume, of the (turned) moments and of the contacts. A match is the cheapest
 /// for both, and for both any other is at least 1.6 times as expensive; all others are lost. This
 /// is repeated until nothing changes, at last with candidates no farther than four times the
-/// median (and 0.3 to 0.5 spacings). The confidence is 1 - cost / cost of the next best, times the
-/// share of the nearest 12 grains that are followed (of which two thirds are enough).
+/// median (and 0.3 to 0.5 spacings). Specks, grains that hold under a fiftieth of the volume of the
+/// grain in the middle of the mass, and under a tenth of the mass together, are nobody's neighbors;
+/// they are followed if most of them are found, else all are lost. The confidence is 1 - cost /
+/// cost of the next best, times the share of the nearest 12 grains that are followed (of which two
+/// thirds are enough).
 /// Deterministic: ties go to the smaller number. N log N. Memory: per grain.
 /// @return nothing if no such place is found, and there is no guess
 /// @throw InvalidInput if numbers do not ascend, or a feature is not finite; Interrupted

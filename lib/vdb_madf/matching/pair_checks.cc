@@ -110,12 +110,14 @@ std::vector<std::string> notesOn(const Tracks& tracks, const Int32Grid& before,
                                  const PairNames& names) {
   std::vector<std::string> notes;
   if (tracks.motion) {
-    const auto count = [&](GrainFate fate) {
-      return std::count_if(tracks.before.begin(), tracks.before.end(),
-                           [&](const TrackedGrain& grain) { return grain.fate == fate; });
-    };
-    const auto kept = count(GrainFate::kept), lost = count(GrainFate::lost);
-    if (lost > kept)
+    int64_t kept = 0, lost = 0, keptVoxels = 0, lostVoxels = 0;
+    for (const TrackedGrain& grain : tracks.before) {
+      const bool isLost = grain.fate == GrainFate::lost;
+      if (!isLost && grain.fate != GrainFate::kept) continue;
+      (isLost ? lost : kept) += 1;
+      (isLost ? lostVoxels : keptVoxels) += grain.voxels;
+    }
+    if (lostVoxels > keptVoxels)  // many may be lost that are but specks
       notes.push_back(names.second + ": only " + std::to_string(kept) + " of " +
                       std::to_string(kept + lost) + " grains of " + names.first +
                       " are followed: give scans between them, or a guess of the motion");

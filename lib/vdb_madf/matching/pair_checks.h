@@ -35,7 +35,7 @@ std::vector<std::string> notesOn(const Comparison& comparison, const Int32Grid& 
 
 /// Says if the shift that was found is the largest that is looked for, and if hardly more voxels
 /// are common than unrelated samples have by chance: the product of their solid fractions. With a
-/// motion: if fewer grains are followed than are lost.
+/// motion: if more of the sample is lost than is followed.
 std::vector<std::string> notesOn(const Tracks& tracks, const Int32Grid& before,
                                  const Int32Grid& after, const TrackOptions& options,
                                  const PairNames& names);

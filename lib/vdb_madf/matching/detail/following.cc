@@ -42,14 +42,21 @@ void Following::settle(Interrupter* interrupter) {
   }
 }
 
-bool Following::isSound() const {
+bool Following::areFound(bool specks) const {
   openvdb::BBoxd box;
   for (size_t m = 0; m < after_.size(); ++m) box.expand(after_.center(m));
-  size_t inside = 0;
-  for (size_t n = 0; n < before_.size(); ++n)
+  size_t inside = 0, followed = 0;
+  for (size_t n = 0; n < before_.size(); ++n) {
+    if (bool(before_.isSpeck[n]) != specks) continue;
     inside += expected_[n].isPlaced && box.isInside(expected_[n].place);
+    followed += partners_[n] != kNoIndex;
+  }
+  return 2 * followed >= inside;
+}
+
+bool Following::isSound() const {
   const std::vector<double> all = misses();
-  return all.size() >= kLeastSound && 2 * all.size() >= inside && upperMedian(all) <= kSound;
+  return all.size() >= kLeastSound && areFound(false) && upperMedian(all) <= kSound;
 }
 
 void Following::finish(Interrupter* interrupter) {
@@ -61,11 +68,14 @@ void Following::finish(Interrupter* interrupter) {
     expectAll(interrupter);
     match();
   }
+  if (areFound(true)) return;
+  for (size_t n = 0; n < before_.size(); ++n)
+    if (before_.isSpeck[n]) partners_[n] = kNoIndex;
 }
 
 std::vector<double> Following::misses() const {
   std::vector<double> all;
-  for (size_t n = 0; n < before_.size(); ++n)
+  for (const size_t n : before_.bodies)
     if (partners_[n] != kNoIndex) all.push_back(missOf(n) / before_.spacing[n]);
   return all;
 }
@@ -75,7 +85,7 @@ std::optional<Motion> Following::wholeOf(MotionKind kind) const {
   double most = std::numeric_limits<double>::infinity();
   for (int round = 0; round < 5; ++round) {
     LocalFit fit;
-    for (size_t n = 0; n < before_.size(); ++n)
+    for (const size_t n : before_.bodies)
       if (partners_[n] != kNoIndex && (round == 0 || missOf(n, motion) <= most))
         fit.add(before_.center(n), after_.center(partners_[n]));
     if (fit.count() < kLeastFitted) return std::nullopt;
@@ -84,7 +94,7 @@ std::optional<Motion> Following::wholeOf(MotionKind kind) const {
     motion.linear = kind == MotionKind::rigid ? turnOf(*gradient) : *gradient;
     motion.shift = fit.meanY() - motion.linear * fit.meanX();
     std::vector<double> misses;
-    for (size_t n = 0; n < before_.size(); ++n)
+    for (const size_t n : before_.bodies)
       if (partners_[n] != kNoIndex) misses.push_back(missOf(n, motion));
     most = 3 * upperMedian(misses);
   }

@@ -45,7 +45,8 @@ class Following {
   /// lie among those of after are there, and close to where they say.
   bool isSound() const;
 
-  /// All are looked at again, with an eye on how far the partners of most are.
+  /// All are looked at again, with an eye on how far the partners of most are. Specks are let go
+  /// if most of them are not found: what is left of them is chance.
   void finish(Interrupter* interrupter);
 
   /// The motion of most, by least squares without those that are far off.
@@ -69,7 +70,10 @@ class Following {
   double missOf(size_t n) const {
     return (after_.center(partners_[n]) - expected_[n].place).length();
   }
-  /// How far all that are followed miss their places, in spacings.
+  /// Whether most of the specks, or of the others, are followed that lie among those of after.
+  bool areFound(bool specks) const;
+
+  /// How far all that are followed, but specks, miss their places, in spacings.
   std::vector<double> misses() const;
   double missOf(size_t n, const Motion& motion) const {
     return (after_.center(partners_[n]) - motion(before_.center(n))).length();

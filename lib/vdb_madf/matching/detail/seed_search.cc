@@ -31,25 +31,26 @@ constexpr Stage kStages[] = {{kTested, kNear, 0.7},
 
 /// Distances from the middle, the mean square being one.
 std::vector<double> depthsOf(const ScanGrains& scan) {
+  const double count = double(scan.bodies.size());
   Vec3d middle(0, 0, 0);
-  for (size_t n = 0; n < scan.size(); ++n) middle += scan.center(n) / double(scan.size());
+  for (const size_t n : scan.bodies) middle += scan.center(n) / count;
   double squares = 0;
-  for (size_t n = 0; n < scan.size(); ++n) squares += (scan.center(n) - middle).lengthSqr();
-  const double unit = squares > 0 ? std::sqrt(squares / double(scan.size())) : 1;
+  for (const size_t n : scan.bodies) squares += (scan.center(n) - middle).lengthSqr();
+  const double unit = squares > 0 ? std::sqrt(squares / count) : 1;
   std::vector<double> depths;
   for (size_t n = 0; n < scan.size(); ++n)
     depths.push_back((scan.center(n) - middle).length() / unit);
   return depths;
 }
 
-/// The first of [0, count) in the order of a key.
+/// The bodies of a scan, or the first of them, in the order of a key.
 template <typename Key>
-std::vector<size_t> sorted(size_t count, size_t most, const Key& key) {
+std::vector<size_t> sorted(const ScanGrains& scan, size_t most, const Key& key) {
   std::vector<std::pair<double, size_t>> items;
-  for (size_t n = 0; n < count; ++n) items.emplace_back(key(n), n);
+  for (const size_t n : scan.bodies) items.emplace_back(key(n), n);
   std::sort(items.begin(), items.end());
   std::vector<size_t> order;
-  for (size_t k = 0; k < std::min(most, count); ++k) order.push_back(items[k].second);
+  for (size_t k = 0; k < std::min(most, items.size()); ++k) order.push_back(items[k].second);
   return order;
 }
 
@@ -62,25 +63,25 @@ SeedSearch::SeedSearch(const ScanGrains& before, const ScanGrains& after,
       guess_(options.guess),
       depthsBefore_(depthsOf(before)),
       depthsAfter_(depthsOf(after)),
-      inner_(sorted(before.size(), before.size(), [&](size_t n) { return depthsBefore_[n]; })) {
+      inner_(sorted(before, before.size(), [&](size_t n) { return depthsBefore_[n]; })) {
   if (options.kind != MotionKind::rigid) return;
   shortest_ = 0.88;
   longest_ = 1.14;
 }
 
 size_t SeedSearch::count() const {
-  return std::min(kSeeds, before_.size());
+  return std::min(kSeeds, inner_.size());
 }
 
 std::optional<Seed> SeedSearch::operator()(size_t k, Interrupter* interrupter) const {
   const size_t n = inner_[k * std::max<size_t>(1, inner_.size() / (2 * kSeeds))];
   // Whole samples have their inner grains in common, and a guess is near.
   const std::vector<size_t> places =
-      guess_ ? sorted(after_.size(), kGuessed,
+      guess_ ? sorted(after_, kGuessed,
                       [&](size_t m) {
                         return ((*guess_)(before_.center(n)) - after_.center(m)).lengthSqr();
                       })
-             : sorted(after_.size(), after_.size(),
+             : sorted(after_, after_.size(),
                       [&](size_t m) { return std::abs(depthsAfter_[m] - depthsBefore_[n]); });
   return bestOf(n, places, interrupter);
 }
