@@ -59,9 +59,10 @@ TEST_CASE("track: bonds are followed through a motion", "[track_motion]") {
   int pair = 0;
   for (const openvdb::Vec3d& middle : packed(std::vector<double>(36, 12), dice)) {
     // The bonds of the pairs 0 to 2 break: the first ends up near, the others far. The second ball
-    // of pair 3 goes, and pair 4 is bonded anew.
+    // of pair 3 goes, pair 4 is bonded anew, and less is left of the bond of pair 5.
     const double first = pair == 4 ? 6.5 : 4.5, second = pair == 0                ? 5.9
                                                          : pair == 1 || pair == 2 ? 7.5
+                                                         : pair == 5              ? 4.9
                                                                                   : 4.5;
     for (const double side : {-1., 1.}) {
       before.push_back(middle + openvdb::Vec3d(side * first, 0, 0));
@@ -116,6 +117,22 @@ TEST_CASE("track: bonds are followed through a motion", "[track_motion]") {
     for (const TrackedBond& bond : tracks.bondsAfter)
       isNew = isNew || (bond.fate == BondFate::created && bond.first == 90 && bond.second == 91);
     CHECK(isNew);
+    // What has fewer faces than a bond, or than a rough surface hides, is undecided.
+    options.minFaces = 14;
+    const auto undecided = [&] {
+      std::set<std::pair<int32_t, int32_t>> bonds;
+      for (const TrackedBond& bond : track(*a, *b, options).bondsBefore)
+        if (bond.fate == BondFate::undecided && bond.second == bond.first + 1)
+          bonds.insert({bond.first, bond.second});
+      return bonds;
+    };
+    using Bonds = std::set<std::pair<int32_t, int32_t>>;
+    CHECK(undecided() == Bonds{{11, 12}});
+    options.sureFaces = 1000;
+    CHECK(undecided() == Bonds{{1, 2}, {3, 4}, {5, 6}, {11, 12}});
+    CHECK(brokenBonds(tracks, 1000).all() == 0);
+    options = TrackOptions();
+    options.motion = MatchOptions{kind, {}};
     // With a gap that reaches them all, none is separated.
     options.gap = kMaxGap;
     for (const TrackedBond& bond : track(*a, *b, options).bondsBefore)
@@ -155,6 +172,9 @@ TEST_CASE("track: bonds are followed through a motion", "[track_motion]") {
   options.gap = 0;
   CHECK_THROWS_AS(track(*a, *b, options), InvalidInput);
   options.gap = 2;
+  options.sureFaces = -1;
+  CHECK_THROWS_AS(track(*a, *b, options), InvalidInput);
+  options.sureFaces = 10;
   CHECK_THROWS_WITH(track(*a, *labelGrid(twoBalls({0, 0, 0}, 5)), options),
                     vdb_madf::test::Contains("no motion is found"));
 }

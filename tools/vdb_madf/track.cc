@@ -32,8 +32,9 @@ namespace {
 struct TrackArguments {
   InputOptions before, after;
   std::vector<std::string> more;  // of a series: further scans, and the folder
-  std::string out, shift, motion, json, grains, links, bonds, minFaces = "1";
   TrackOptions track;
+  std::string out, shift, motion, json, grains, links, bonds,
+      minFaces = "1", sureFaces = std::to_string(track.sureFaces);
 };
 
 /// What a series writes of a scan.
@@ -87,6 +88,7 @@ void parse(TrackArguments& o) {
   }
   if (!o.shift.empty()) o.track.shift = parseShift(o.shift, "--shift");
   o.track.minFaces = parseCount(o.minFaces, "--min-faces");
+  o.track.sureFaces = parseCount(o.sureFaces, "--sure-faces");
   if (!(o.track.share > 0 && o.track.share <= 1))
     throw WrongUsage("--share: is the part of a grain, above 0 and at most 1");
   if (!o.motion.empty() && !o.links.empty())
@@ -122,9 +124,9 @@ MatchOptions motionOf(const std::string& text) {
 constexpr GrainFate kGrainFates[] = {GrainFate::kept,     GrainFate::split,    GrainFate::merged,
                                      GrainFate::vanished, GrainFate::appeared, GrainFate::lost,
                                      GrainFate::outside};
-constexpr BondFate kBondFates[] = {BondFate::kept,      BondFate::broken,   BondFate::created,
-                                   BondFate::inside,    BondFate::detached, BondFate::separated,
-                                   BondFate::unmatched, BondFate::outside};
+constexpr BondFate kBondFates[] = {BondFate::kept,      BondFate::broken,    BondFate::created,
+                                   BondFate::inside,    BondFate::detached,  BondFate::separated,
+                                   BondFate::undecided, BondFate::unmatched, BondFate::outside};
 
 template <typename Items, typename Fate>
 int64_t countOf(const Items& items, Fate fate) {
@@ -146,17 +148,18 @@ double percent(int64_t part, int64_t whole) {
   return whole > 0 ? 100.0 * double(part) / double(whole) : 0.0;
 }
 
-/// Of the bonds that were followed, and what it is at least and at most if some were lost.
+/// Of the bonds that are decided, and what it is at least and at most if some are not.
 Json brokenJson(const BrokenBonds& bonds) {
   Json json = Json::object();
   if (bonds.kept + bonds.broken == 0) return json;
+  json["bonds"] = bonds.all();
   json["share"] = double(bonds.broken) / double(bonds.kept + bonds.broken);
   json["at_least"] = double(bonds.broken) / double(bonds.all());
   json["at_most"] = double(bonds.broken + bonds.unknown) / double(bonds.all());
   return json;
 }
 
-void addMotion(Json& json, const Tracks& t, int gap) {
+void addMotion(Json& json, const Tracks& t, const TrackOptions& options) {
   json["motion"] = toString(*t.motion);
   if (t.whole) {
     Json rows = Json::array();
@@ -165,7 +168,8 @@ void addMotion(Json& json, const Tracks& t, int gap) {
                       t.whole->shift[row]});
     json["motion_of_whole"] = rows;
   }
-  json["gap"] = gap;
+  json["gap"] = options.gap;
+  json["sure_faces"] = options.sureFaces;
 }
 
 Json summary(const TrackArguments& o, const Tracks& t) {
@@ -174,7 +178,7 @@ Json summary(const TrackArguments& o, const Tracks& t) {
   json["after"] = o.after.path;
   if (!o.out.empty()) json["output"] = o.out;
   if (t.motion) {
-    addMotion(json, t, o.track.gap);
+    addMotion(json, t, o.track);
     json["min_faces"] = o.track.minFaces;
   } else {
     json["shift"] = coordJson(t.shift);
@@ -188,7 +192,7 @@ Json summary(const TrackArguments& o, const Tracks& t) {
   json["grains_after"] = fatesOf(t.after, kGrainFates);
   json["bonds_before"] = fatesOf(t.bondsBefore, kBondFates);
   json["bonds_after"] = fatesOf(t.bondsAfter, kBondFates);
-  if (t.motion) json["broken_bonds"] = brokenJson(brokenBonds(t));
+  if (t.motion) json["broken_bonds"] = brokenJson(brokenBonds(t, o.track.sureFaces));
   return json;
 }
 
@@ -212,12 +216,15 @@ void printMotion(const Tracks& t) {
       strain.turn.length(), strain.volumetric, strain.deviatoric);
 }
 
-void printBroken(const BrokenBonds& bonds) {
-  const int64_t followed = bonds.kept + bonds.broken;
-  if (followed == 0) return;
-  std::printf("broken         %.2f %% of the bonds that are followed, %.2f to %.2f %% of all\n",
-              percent(bonds.broken, followed), percent(bonds.broken, bonds.all()),
-              percent(bonds.broken + bonds.unknown, bonds.all()));
+void printBroken(const BrokenBonds& bonds, int64_t sureFaces) {
+  const int64_t decided = bonds.kept + bonds.broken;
+  if (decided == 0) return;
+  std::printf(
+      "broken         %.2f %% of the bonds of %lld faces or more, %.2f to %.2f %% if some are lost "
+      "or "
+      "undecided\n",
+      percent(bonds.broken, decided), static_cast<long long>(sureFaces),
+      percent(bonds.broken, bonds.all()), percent(bonds.broken + bonds.unknown, bonds.all()));
 }
 
 void printShift(const TrackArguments& o, const Tracks& t) {
@@ -236,7 +243,7 @@ void print(const TrackArguments& o, const Tracks& t, const Json& json) {
   printFates("grains after ", json["grains_after"]);
   printFates("bonds before ", json["bonds_before"]);
   printFates("bonds after  ", json["bonds_after"]);
-  if (t.motion) printBroken(brokenBonds(t));
+  if (t.motion) printBroken(brokenBonds(t, o.track.sureFaces), o.track.sureFaces);
 }
 
 /// A share with nine digits; empty where there is nothing to have a share of.
@@ -467,6 +474,10 @@ void addTrack(Verb command, Common& common, Action& action) {
   verb.option("--gap", o->track.gap,
               "with --motion: broken bonds are detached up to so many voxels, else separated")
       .range(1, kMaxGap)
+      .typeName("N")
+      .showDefault();
+  verb.option("--sure-faces", o->sureFaces,
+              "with --motion: whether a bond of fewer faces has broken is undecided")
       .typeName("N")
       .showDefault();
   verb.option("--share", o->track.share,

@@ -134,13 +134,14 @@ MatchOptions toOptions(const std::string& kind, const std::optional<Rows>& guess
 py::dict trackGrains(const GridPtr& before, const GridPtr& after, const Call& call,
                      const std::optional<Index>& shift, int maxShift, double share,
                      int64_t minFaces, const std::optional<std::string>& motion,
-                     const std::optional<Rows>& guess, int gap) {
+                     const std::optional<Rows>& guess, int gap, int64_t sureFaces) {
   TrackOptions options;
   if (shift) options.shift = toCoord(*shift);
   options.maxShift = maxShift;
   options.share = share;
   options.minFaces = minFaces;
   options.gap = gap;
+  options.sureFaces = sureFaces;
   if (motion) options.motion = toOptions(*motion, guess);
   const Int32Grid &first = asLabels(*before), &second = asLabels(*after);
   const PairNames names{"before", "after"};
@@ -176,7 +177,7 @@ py::dict trackGrains(const GridPtr& before, const GridPtr& after, const Call& ca
 void bindTracks(py::module_& m) {
   m.def("track", trackGrains, py::arg("before"), py::arg("after"), py::arg("call"), py::kw_only(),
         py::arg("shift"), py::arg("max_shift"), py::arg("share"), py::arg("min_faces"),
-        py::arg("motion"), py::arg("guess"), py::arg("gap"));
+        py::arg("motion"), py::arg("guess"), py::arg("gap"), py::arg("sure_faces"));
 }
 
 }  // namespace vdb_madf::python

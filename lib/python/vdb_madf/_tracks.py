@@ -43,8 +43,8 @@ class Tracks:
     """Pairs that have voxels in common: `before`, `after`, `voxels`, `link`."""
     bonds_before: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """A row a bond: `first`, `second`, `faces`, `shared_faces` (in what both volumes show), `fate`
-    ("kept", "broken", "inside", "unmatched", "outside"; with a motion "detached" and "separated" in
-    the place of "broken")."""
+    ("kept", "broken", "inside", "unmatched", "outside"; with a motion "detached", "separated"
+    and "undecided" in the place of "broken")."""
     bonds_after: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """What `bonds_before` says, after; "new" in the place of "broken"."""
     motion: Optional[npt.NDArray[Any]] = field(default=None, repr=False)
@@ -57,7 +57,8 @@ def track(before: Union[Labels, Segmentation, Source], after: Union[Labels, Segm
           *, shift: Optional[Tuple[int, int, int]] = None, max_shift: int = 10, share: float = 0.5,
           min_faces: int = 1,
           motion: Union[None, str, Sequence[Sequence[float]], npt.NDArray[Any]] = None,
-          gap: int = 2, progress: Progress = None, threads: int = 0) -> Tracks:
+          gap: int = 2, sure_faces: int = 10, progress: Progress = None,
+          threads: int = 0) -> Tracks:
     """Follows grains from one scan to a later one by the voxels that they share.
 
     shift: of the sample in voxels, (z, y, x); None: the one, up to max_shift along each axis, that
@@ -67,7 +68,8 @@ def track(before: Union[Labels, Segmentation, Source], after: Union[Labels, Segm
     motion: the sample was turned or strained in between: "rigid" or "affine" is looked for, "free"
     follows neighbors alone, an array of 3 x 4 numbers is a guess (Tracks.motion says of what).
     shift, max_shift and share are not looked at then. gap: voxels between the grains of a broken
-    bond up to which it is detached, else separated.
+    bond up to which it is detached, else separated. sure_faces: of a bond of fewer faces it is
+    undecided whether it has broken.
     The manual of `vdb_madf track` defines the fates. A warning says if hardly more is common than
     of unrelated samples, and with a motion if more of the sample is lost than followed.
 
@@ -81,6 +83,7 @@ def track(before: Union[Labels, Segmentation, Source], after: Union[Labels, Segm
     with calling(progress, threads) as call:
         first, second = (labels_of(given, call, threads) for given in (before, after))
         found = _core.track(first._grid, second._grid, call, shift=shift, max_shift=max_shift,
-                            share=share, min_faces=min_faces, motion=motion, guess=guess, gap=gap)
+                            share=share, min_faces=min_faces, motion=motion, guess=guess, gap=gap,
+                            sure_faces=sure_faces)
     warn(found.pop("notes"))
     return Tracks(labels=Labels._of(found.pop("labels")), **found)

@@ -44,6 +44,8 @@ void check(const TrackOptions& options) {
   if (!(options.share > 0 && options.share <= 1))
     throw InvalidInput("the share of voxels that links grains must lie above 0, and be 1 at most");
   if (options.minFaces < 0) throw InvalidInput("the fewest faces of a bond must be 0 or more");
+  if (options.sureFaces < 0)
+    throw InvalidInput("the faces of a bond that breaks for sure must be 0 or more");
   if (options.gap < 1 || options.gap > kMaxGap)
     throw InvalidInput("the gap of a detached bond must lie between 1 and " +
                        std::to_string(kMaxGap) + " voxels");
@@ -245,9 +247,9 @@ void link(Sides& sides, Tracks& tracks, const GrainSet& before, const GrainSet& 
   }
 }
 
-/// Says of broken bonds whether their grains are near, and of bonds of which an end is outside that
-/// they are.
-void refine(Tracks& tracks, const Sides& sides, const Int32Grid& after, int gap,
+/// Says of broken bonds whether their grains are near and whether this is sure, and of bonds of
+/// which an end is outside that they are.
+void refine(Tracks& tracks, const Sides& sides, const Int32Grid& after, const TrackOptions& options,
             Interrupter* interrupter) {
   const auto partners = [&](const TrackedBond& bond) {
     return Pair(
@@ -256,10 +258,15 @@ void refine(Tracks& tracks, const Sides& sides, const Int32Grid& after, int gap,
   std::set<Pair> apart;
   for (const TrackedBond& bond : tracks.bondsBefore)
     if (bond.fate == BondFate::separated) apart.insert(partners(bond));
-  const std::set<Pair> near = detail::nearPairs(after, apart, gap, interrupter);
-  for (TrackedBond& bond : tracks.bondsBefore)
-    if (bond.fate == BondFate::separated && near.count(partners(bond)))
+  const std::set<Pair> near = detail::nearPairs(after, apart, options.gap, interrupter),
+                       touching = detail::nearPairs(after, apart, 1, interrupter);
+  for (TrackedBond& bond : tracks.bondsBefore) {
+    if (bond.fate != BondFate::separated) continue;
+    if (bond.faces < options.sureFaces || touching.count(partners(bond)))
+      bond.fate = BondFate::undecided;
+    else if (near.count(partners(bond)))
       bond.fate = BondFate::detached;
+  }
   for (auto* bonds : {&tracks.bondsBefore, &tracks.bondsAfter}) {
     const TrackedGrains& grains = bonds == &tracks.bondsBefore ? sides.before : sides.after;
     for (TrackedBond& bond : *bonds)
@@ -297,7 +304,7 @@ Tracks trackMotion(const Int32Grid& before, const Int32Grid& after, const TrackO
                        pairsAfter = pairsOf(tracks.bondsAfter);
   judge(tracks.bondsBefore, sides.fromBefore, pairsAfter, BondFate::separated);
   judge(tracks.bondsAfter, sides.fromAfter, pairsBefore, BondFate::created);
-  refine(tracks, sides, after, options.gap, interrupter);
+  refine(tracks, sides, after, options, interrupter);
   tracks.before = listed(sides.before);
   tracks.after = listed(sides.after);
   return tracks;
@@ -366,6 +373,8 @@ const char* toString(BondFate fate) {
       return "detached";
     case BondFate::separated:
       return "separated";
+    case BondFate::undecided:
+      return "undecided";
     case BondFate::unmatched:
       return "unmatched";
     case BondFate::outside:
@@ -415,11 +424,12 @@ Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions
   return tracks;
 }
 
-BrokenBonds brokenBonds(const Tracks& tracks) {
+BrokenBonds brokenBonds(const Tracks& tracks, int64_t sureFaces) {
   BrokenBonds bonds;
   for (const TrackedBond& bond : tracks.bondsBefore) {
+    if (bond.faces < sureFaces) continue;  // of which no broken ones are known
     bonds.kept += bond.fate == BondFate::kept;
-    bonds.unknown += bond.fate == BondFate::unmatched;
+    bonds.unknown += bond.fate == BondFate::unmatched || bond.fate == BondFate::undecided;
     bonds.broken += bond.fate == BondFate::broken || bond.fate == BondFate::detached ||
                     bond.fate == BondFate::separated;
   }

@@ -29,6 +29,9 @@ struct TrackOptions {
   /// share are not looked at.
   std::optional<MatchOptions> motion = {};
   int gap = 2;  ///< voxels, with a motion: grains of a broken bond that are near; 1 to kMaxGap
+  /// A bond that had fewer faces is undecided, with a motion, and not broken: so many may a rough
+  /// surface open or close.
+  int64_t sureFaces = 10;
 };
 
 constexpr int kMaxShift = 256, kMaxGap = 16;
@@ -52,6 +55,7 @@ enum class BondFate {
   inside,    ///< ... and a grain is linked with both ends
   detached,  ///< with a motion: broken, and the ends have voxels within the gap
   separated,  ///< with a motion: broken, and they have not
+  undecided,  ///< with a motion: the ends touch, in fewer than minFaces; or had few: sureFaces
   unmatched,  ///< an end is linked with none
   outside     ///< fewer than minFaces (or none) of its faces lie in what both volumes show
 };
@@ -120,13 +124,15 @@ std::optional<MotionKind> motionKindOf(const std::string& name);
 using MoveOf = std::function<const GrainMove*(const TrackedGrain&)>;
 MoveOf moveOf(const Tracks& tracks);
 
-/// Bonds before that tell of breaking: both ends are followed, or one is lost.
+/// Bonds before that tell of breaking: both ends are followed, or one is lost, and they are of so
+/// many faces that a rough surface does not hide it (TrackOptions::sureFaces).
 struct BrokenBonds {
-  int64_t kept = 0, broken = 0, unknown = 0;  ///< unknown: an end is lost
+  int64_t kept = 0, broken = 0;
+  int64_t unknown = 0;  ///< it is undecided, or an end is lost
 
   int64_t all() const { return kept + broken + unknown; }
 };
-BrokenBonds brokenBonds(const Tracks& tracks);
+BrokenBonds brokenBonds(const Tracks& tracks, int64_t sureFaces = 0);
 
 /// Follows grains from one label grid to a later one of the same voxels, between which the sample
 /// may have moved by whole voxels. Labels are the active voxels, tiles included, of positive value.
