@@ -178,3 +178,49 @@ TEST_CASE("track: bonds are followed through a motion", "[track_motion]") {
   CHECK_THROWS_WITH(track(*a, *labelGrid(twoBalls({0, 0, 0}, 5)), options),
                     vdb_madf::test::Contains("no motion is found"));
 }
+
+TEST_CASE("track: grains that split or merge in a motion are told", "[track_motion]") {
+  Dice dice(6);
+  std::vector<openvdb::Vec3d> before, after;
+  std::vector<int32_t> numbers;
+  const openvdb::Mat3d turn = turnAbout({0, 0, 1}, 20);
+  for (const openvdb::Vec3d& middle : packed(std::vector<double>(40, 12), dice))
+    for (const double side : {-4.5, 4.5}) {
+      before.push_back(middle + openvdb::Vec3d(side, 0, 0));
+      after.push_back(turn * before.back() + openvdb::Vec3d(30, 5, -8));
+      numbers.push_back(int32_t(numbers.size()) + 1);
+    }
+  const auto whole = labelGrid(drawnBalls(before, numbers, 5));
+  LabelMap changed = drawnBalls(after, numbers, 5);
+  for (auto& [p, label] : changed) {
+    const double along = label <= 80 ? p.x() - after[size_t(label) - 1].x() : 0;
+    if (label == 21 && along > 0) label = 121;    // halves
+    if (label == 31 && along > 1.5) label = 131;  // a smaller part
+    if (label == 42) label = 41;
+    if (label == 52 && along > 4) label = 152;  // a crumb
+  }
+  const auto parts = labelGrid(changed);
+  for (const auto& labels : {whole, parts}) setDomain(*labels, CoordBBox(Coord(-100), Coord(200)));
+  TrackOptions options;
+  options.motion = MatchOptions{};
+  for (const bool isMirrored : {false, true}) {
+    CAPTURE(isMirrored);
+    const Tracks tracks =
+        isMirrored ? track(*parts, *whole, options) : track(*whole, *parts, options);
+    const GrainFate apart = isMirrored ? GrainFate::merged : GrainFate::split,
+                    together = isMirrored ? GrainFate::split : GrainFate::merged;
+    const auto expected = [&](int32_t grain) {
+      const bool isApart = grain == 21 || grain == 121 || grain == 31 || grain == 131;
+      return isApart ? apart : grain == 41 || grain == 42 ? together : GrainFate::kept;
+    };
+    for (const auto* side : {&tracks.before, &tracks.after})
+      for (const TrackedGrain& grain : *side) {
+        CAPTURE(side == &tracks.before, grain.grain);
+        if (grain.grain != 152) CHECK(grain.fate == expected(grain.grain));
+        CHECK((moveOf(tracks)(grain) != nullptr) == (grain.fate == GrainFate::kept));
+        if (grain.fate == GrainFate::kept) CHECK(grain.track == grain.grain);
+      }
+    for (const TrackedBond& bond : tracks.bondsBefore)
+      if (bond.first == 41 && bond.second == 42) CHECK(bond.fate == BondFate::inside);
+  }
+}

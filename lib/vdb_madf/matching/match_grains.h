@@ -56,8 +56,9 @@ struct FollowedGrain {
   double confidence = 0;          ///< 0 to 1; see matchGrains()
   bool isPlaced = false;          ///< its neighbors, or the whole, tell where it should be
   openvdb::Vec3d place{0, 0, 0};  ///< there
-  double miss = 0;                ///< from there to the partner's center
-  int neighbors = 0;              ///< followed ones that the gradient was fitted to
+  openvdb::Mat3d nearby = openvdb::Mat3d::identity();  ///< the gradient of what tells its place
+  double miss = 0;                                     ///< from there to the partner's center
+  int neighbors = 0;  ///< followed ones that the gradient was fitted to
   /// Deformation gradient: by least squares, with intercept, of the grain and its followed
   /// neighbors; of fewer than 6 neighbors, or of such in a plane: none.
   std::optional<openvdb::Mat3d> gradient;

@@ -247,24 +247,108 @@ void link(Sides& sides, Tracks& tracks, const GrainSet& before, const GrainSet& 
   }
 }
 
+/// Says which grains came apart: `parts` of the other side that were not followed. Most voxels of
+/// each lie in the whole when they are moved (`overlaps`: of whole and part), and the volumes agree;
+/// of a whole that was followed, better than without the parts.
+/// @return the new links, from whole to part
+std::vector<GrainOverlap> linkParts(TrackedGrains& wholes, TrackedGrains& parts,
+                                    const std::map<Pair, int64_t>& overlaps, GrainFate fate) {
+  constexpr double kLeastPart = 0.1, kLeast = 0.6, kMost = 1.6;  // of the whole
+  const auto isFree = [](const TrackedGrain& grain) {
+    return grain.fate == GrainFate::lost || grain.fate == GrainFate::appeared;
+  };
+  std::map<int32_t, std::pair<int64_t, int32_t>> owners;  // of parts: voxels, and the whole
+  for (const auto& [pair, voxels] : overlaps) {
+    const TrackedGrain &whole = wholes.at(pair.first), &part = parts.at(pair.second);
+    if (!isFree(part) || !(isFree(whole) || whole.fate == GrainFate::kept) ||
+        double(part.voxels) < kLeastPart * double(whole.voxels) || 2 * voxels < part.voxels)
+      continue;
+    auto& owner = owners[pair.second];
+    if (voxels > owner.first) owner = {voxels, pair.first};
+  }
+  std::map<int32_t, std::vector<int32_t>> ofWhole;
+  for (const auto& [part, owner] : owners) ofWhole[owner.second].push_back(part);
+  std::vector<GrainOverlap> links;
+  for (const auto& [number, some] : ofWhole) {
+    TrackedGrain& whole = wholes.at(number);
+    const double volume = double(whole.voxels);
+    const double without = whole.partner ? double(parts.at(whole.partner).voxels) / volume : 0;
+    double with = without;
+    for (const int32_t part : some) with += double(parts.at(part).voxels) / volume;
+    if (whole.partner ? !(std::abs(std::log(with)) < std::abs(std::log(without)))
+                      : !(some.size() > 1 && with >= kLeast && with <= kMost))
+      continue;
+    whole.fate = fate;
+    whole.links += int64_t(some.size());
+    if (whole.partner) parts.at(whole.partner).fate = fate;
+    for (const int32_t part : some) {
+      TrackedGrain& here = parts.at(part);
+      here.fate = fate;
+      here.links = 1;
+      here.partner = number;
+      links.push_back({number, part, owners.at(part).first, true});
+    }
+    if (whole.partner) continue;
+    int64_t most = 0;
+    for (const int32_t part : some)
+      if (owners.at(part).first > most) {
+        most = owners.at(part).first;
+        whole.partner = part;
+      }
+  }
+  return links;
+}
+
+/// Links grains that split or merged.
+void linkParts(Sides& sides, Tracks& tracks, const Int32Grid& before, const Int32Grid& after,
+               const GrainSet& grains, const FollowedGrains& followed, Interrupter* interrupter) {
+  std::map<int32_t, Motion> motions;
+  for (size_t n = 0; n < grains.grains.size(); ++n) {
+    const FollowedGrain& match = followed.grains[n];
+    if (match.isPlaced)
+      motions[grains.grains[n].grain] = {match.nearby,
+                                         match.place - match.nearby * grains.grains[n].center};
+  }
+  const auto overlaps = detail::movedOverlaps(before, after, motions, interrupter);
+  std::map<Pair, int64_t> mirrored;
+  for (const auto& [pair, voxels] : overlaps) mirrored[{pair.second, pair.first}] = voxels;
+  const auto add = [&](int32_t first, int32_t second, int64_t voxels) {
+    sides.fromBefore[first].insert(second);
+    sides.fromAfter[second].insert(first);
+    tracks.overlaps.push_back({first, second, voxels, true});
+  };
+  for (const GrainOverlap& link : linkParts(sides.before, sides.after, overlaps, GrainFate::split))
+    add(link.before, link.after, link.voxels);
+  for (const GrainOverlap& link : linkParts(sides.after, sides.before, mirrored, GrainFate::merged))
+    add(link.after, link.before, link.voxels);
+}
+
 /// Says of broken bonds whether their grains are near and whether this is sure, and of bonds of
 /// which an end is outside that they are.
 void refine(Tracks& tracks, const Sides& sides, const Int32Grid& after, const TrackOptions& options,
             Interrupter* interrupter) {
-  const auto partners = [&](const TrackedBond& bond) {
-    return Pair(
-        std::minmax(sides.before.at(bond.first).partner, sides.before.at(bond.second).partner));
-  };
   std::set<Pair> apart;
+  const auto now = [&](const TrackedBond& bond) {
+    std::vector<Pair> pairs;
+    for (const int32_t a : sides.fromBefore.at(bond.first))
+      for (const int32_t b : sides.fromBefore.at(bond.second)) pairs.push_back(std::minmax(a, b));
+    return pairs;
+  };
   for (const TrackedBond& bond : tracks.bondsBefore)
-    if (bond.fate == BondFate::separated) apart.insert(partners(bond));
+    if (bond.fate == BondFate::separated)
+      for (const Pair& pair : now(bond)) apart.insert(pair);
   const std::set<Pair> near = detail::nearPairs(after, apart, options.gap, interrupter),
                        touching = detail::nearPairs(after, apart, 1, interrupter);
   for (TrackedBond& bond : tracks.bondsBefore) {
     if (bond.fate != BondFate::separated) continue;
-    if (bond.faces < options.sureFaces || touching.count(partners(bond)))
+    const std::vector<Pair> pairs = now(bond);
+    const auto any = [&](const std::set<Pair>& of) {
+      return std::any_of(pairs.begin(), pairs.end(),
+                         [&](const Pair& pair) { return of.count(pair) > 0; });
+    };
+    if (bond.faces < options.sureFaces || any(touching))
       bond.fate = BondFate::undecided;
-    else if (near.count(partners(bond)))
+    else if (any(near))
       bond.fate = BondFate::detached;
   }
   for (auto* bonds : {&tracks.bondsBefore, &tracks.bondsAfter}) {
@@ -297,6 +381,7 @@ Tracks trackMotion(const Int32Grid& before, const Int32Grid& after, const TrackO
   tracks.whole = followed->whole;
   Sides sides{grainsOf(before, interrupter), grainsOf(after, interrupter), {}, {}};
   link(sides, tracks, first, second, *followed, boxOf(before), boxOf(after));
+  linkParts(sides, tracks, before, after, first, *followed, interrupter);
   tracks.lastTrack = number(sides, std::exchange(tracks.overlaps, {}), lastTrackOf(before));
   tracks.bondsBefore = bondsOf(before, before, options.minFaces, interrupter);
   tracks.bondsAfter = bondsOf(after, after, options.minFaces, interrupter);
@@ -333,9 +418,9 @@ std::optional<MotionKind> motionKindOf(const std::string& name) {
 MoveOf moveOf(const Tracks& tracks) {
   std::map<int32_t, const GrainMove*> moves;  // by the number before
   for (size_t n = 0; n < tracks.before.size(); ++n)
-    if (tracks.before[n].partner) moves[tracks.before[n].grain] = &tracks.moves[n];
+    if (tracks.before[n].fate == GrainFate::kept) moves[tracks.before[n].grain] = &tracks.moves[n];
   return [moves](const TrackedGrain& grain) {
-    return grain.partner ? moves.at(grain.track) : nullptr;
+    return grain.fate == GrainFate::kept ? moves.at(grain.track) : nullptr;
   };
 }
 

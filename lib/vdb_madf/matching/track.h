@@ -120,7 +120,7 @@ const char* toString(MotionKind kind);  ///< "rigid", "affine", "free"
 /// The kind of this name, if there is one.
 std::optional<MotionKind> motionKindOf(const std::string& name);
 
-/// Tells how a grain of either side has moved, with a motion; null if it was not followed.
+/// Tells how a grain of either side has moved, with a motion; null if it was not kept.
 using MoveOf = std::function<const GrainMove*(const TrackedGrain&)>;
 MoveOf moveOf(const Tracks& tracks);
 
@@ -145,7 +145,11 @@ BrokenBonds brokenBonds(const Tracks& tracks, int64_t sureFaces = 0);
 /// to the grain after, unless either has been used; what is left gets numbers above all of before,
 /// in ascending order; if before are tracked labels, above all that their series has had.
 /// With a motion matchGrains() says which grains are linked, and what both volumes show are the
-/// grains that would lie wholly in the other's box where their neighbors say.
+/// grains that would lie wholly in the other's box where their neighbors say. Besides, grains that
+/// were not followed are linked with the one that half of their voxels or more lie in where
+/// neighbors say (and a tenth of its voxels at least): if there are several and their volumes sum
+/// up to 0.6 to 1.6 of its own, or, with its partner, nearer to its own than that alone. So they
+/// are split or merged.
 /// Deterministic. Memory: a copy of each grid, and per pair of grains that meet.
 /// @throw InvalidInput if an option is out of range, or a limit of leaf_index.h is exceeded; with a
 ///   motion if none is found, or voxels are no cubes; Interrupted.

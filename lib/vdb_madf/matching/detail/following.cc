@@ -109,6 +109,7 @@ FollowedGrains Following::result() const {
     FollowedGrain& match = matches.grains[n];
     match.isPlaced = expected_[n].isPlaced;
     match.place = expected_[n].place;
+    match.nearby = expected_[n].gradient;
     if (partners_[n] == kNoIndex) continue;
     ++matches.count;
     match.partner = after_.grains[partners_[n]].grain;

@@ -143,4 +143,29 @@ std::set<std::pair<int32_t, int32_t>> nearPairs(const Int32Grid& labels,
   return near;
 }
 
+std::map<std::pair<int32_t, int32_t>, int64_t> movedOverlaps(
+    const Int32Grid& before, const Int32Grid& after, const std::map<int32_t, Motion>& motions,
+    Interrupter* interrupter) {
+  std::map<std::pair<int32_t, int32_t>, int64_t> overlaps;
+  const Int32Tree::ConstPtr tree = withoutTiles(before);
+  const auto leaves = leavesOf(*tree);
+  std::mutex mutex;
+  parallelFor(leaves.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+    openvdb::tree::ValueAccessor<const Int32Tree> values(after.tree());
+    std::map<std::pair<int32_t, int32_t>, int64_t> local;
+    auto motion = motions.end();
+    for (size_t n = begin; n < end; ++n)
+      forEachLabeled(*leaves[n], [&](const Coord& p, int32_t label) {
+        if (motion == motions.end() || motion->first != label) motion = motions.find(label);
+        if (motion == motions.end()) return;
+        int32_t other = 0;
+        const openvdb::Vec3d place = motion->second(p.asVec3d()) + openvdb::Vec3d(0.5);
+        if (values.probeValue(Coord::floor(place), other) && other > 0) ++local[{label, other}];
+      });
+    const std::lock_guard<std::mutex> lock(mutex);
+    for (const auto& [pair, voxels] : local) overlaps[pair] += voxels;
+  });
+  return overlaps;
+}
+
 }  // namespace vdb_madf::detail

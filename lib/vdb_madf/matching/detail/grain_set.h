@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <map>
 #include <set>
 #include <utility>
 
@@ -20,5 +21,11 @@ GrainSet grainSet(const Int32Grid& labels, Interrupter* interrupter);
 std::set<std::pair<int32_t, int32_t>> nearPairs(const Int32Grid& labels,
                                                 const std::set<std::pair<int32_t, int32_t>>& pairs,
                                                 int gap, Interrupter* interrupter);
+
+/// How many voxels of each grain before lie in each one after when they are moved, those of a grain
+/// of before by its motion; those without one stay out. @throw Interrupted
+std::map<std::pair<int32_t, int32_t>, int64_t> movedOverlaps(
+    const Int32Grid& before, const Int32Grid& after, const std::map<int32_t, Motion>& motions,
+    Interrupter* interrupter);
 
 }  // namespace vdb_madf::detail
