@@ -71,6 +71,12 @@ def test_a_series_and_a_given_shift(labels):
     assert madf.track(labels, moved, shift=(4, -6, 1)).labels.digest() == found.labels.digest()
     assert madf.track(found.labels, array, shift=(-4, 6, -1)).shift == (-4, 6, -1)
     assert madf.track(array, moved, max_shift=0).shift == (0, 0, 0)
+    there, back = madf.track_series([labels, moved, labels.drop([2])])
+    assert there.labels.digest() == found.labels.digest() and back.shift == (-4, 6, -1)
+    assert dict(zip(back.before["id"], back.before["fate"]))[2] == "vanished"
+    assert set(back.labels.ids) < set(labels.ids)
+    with pytest.raises(madf.InvalidInput, match="two or more"):
+        madf.track_series([labels])
 
 
 def test_unrelated_samples_are_said_to_be(labels):

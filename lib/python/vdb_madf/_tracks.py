@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any, Dict, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -73,7 +73,7 @@ def track(before: Union[Labels, Segmentation, Source], after: Union[Labels, Segm
     The manual of `vdb_madf track` defines the fates. A warning says if hardly more is common than
     of unrelated samples, and with a motion if more of the sample is lost than followed.
 
-    For a series give the labels of the last step: track(track(a, b).labels, c)."""
+    Of more than two scans: track_series()."""
     guess = None
     if motion is not None and not isinstance(motion, str):
         rows = np.asarray(motion, dtype=float)
@@ -87,3 +87,17 @@ def track(before: Union[Labels, Segmentation, Source], after: Union[Labels, Segm
                             sure_faces=sure_faces)
     warn(found.pop("notes"))
     return Tracks(labels=Labels._of(found.pop("labels")), **found)
+
+
+def track_series(scans: Sequence[Union[Labels, Segmentation, Source]],
+                 **options: Any) -> List[Tracks]:
+    """Follows grains through two scans or more, each from the one before it, with one number
+    through all of them: the tables of each scan but the first. Options are those of track()."""
+    if len(scans) < 2:
+        raise _core.InvalidInput("scans: give two or more")
+    series: List[Tracks] = []
+    before = scans[0]
+    for after in scans[1:]:
+        series.append(track(before, after, **options))
+        before = series[-1].labels
+    return series
