@@ -146,3 +146,29 @@ def test_a_turned_sample_is_that_of_the_command(command, tmp_path):
             madf.track(before, after, motion=wrong)
     with pytest.raises(madf.InvalidInput, match="no motion is found"):
         madf.track(before, balls(random.random((30, 3)) * 44 + 13, (70,) * 3), motion="rigid")
+
+
+def test_a_made_series_is_that_of_the_command(labels, command, tmp_path):
+    labels.save(tmp_path / "a.vdb")
+    command("generate", "evolve", tmp_path / "a.vdb", tmp_path / "made", "--steps", "2", "--strain",
+            "0.1", "--turn", "8", "--axis", "1,2,3", "--drift", "1,0,-2", "--break", "0.3",
+            "--break-gap", "1", "--vanish", "0.2", "--enter", "0.1", "--grow", "-1", "--noise",
+            "0.3", "--seed", "5")
+    made = madf.evolve(labels, steps=2, strain=0.1, turn=8, axis=(3, 2, 1), drift=(-2, 0, 1),
+                       breaks=0.3, break_gap=1, vanish=0.2, enter=0.1, grow=-1, noise=0.3, seed=5)
+    assert len(made) == 3
+    for step, now in enumerate(made):
+        there = madf.Labels(tmp_path / "made" / f"step-{step}.vdb")
+        assert now.labels.digest() == there.digest()
+        for table, names, name in ((now.grains, ("fate", "voxels"), "fates.csv"),
+                                   (now.bonds, ("first", "second", "fate", "faces"), "bonds.csv")):
+            mine = [row for row in rows(tmp_path / "made" / name) if row["step"] == str(step)]
+            for column in names:
+                assert [row[column] for row in mine] == [str(value) for value in table[column]]
+        row = rows(tmp_path / "made" / "motion.csv")[step]
+        assert np.isclose(now.motion[0, 2], float(row["f_zx"]), rtol=1e-6)
+        assert np.isclose(now.motion[2, 3], float(row["shift_x"]), rtol=1e-6)
+    _, broken = madf.evolve(labels, steps=1, breaks=1)
+    assert set(broken.bonds["fate"]) == {"broken"} and not broken.bonds["faces"].any()
+    with pytest.raises(madf.InvalidInput, match="strain"):
+        madf.evolve(labels, strain=1)

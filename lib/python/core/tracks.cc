@@ -7,6 +7,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/matching/pair_checks.h"
 #include "vdb_madf/matching/track.h"
+#include "vdb_madf/samples/evolve.h"
 
 namespace vdb_madf::python {
 
@@ -172,12 +173,69 @@ py::dict trackGrains(const GridPtr& before, const GridPtr& after, const Call& ca
   return dict;
 }
 
+py::dict toDict(const EvolvedStep& step) {
+  using G = EvolvedGrain;
+  using B = EvolvedBond;
+  std::vector<double> centers;
+  for (const G& grain : step.grains)
+    for (int axis = 2; axis >= 0; --axis) centers.push_back(grain.center[axis]);
+  py::dict grains, bonds, dict;
+  grains["id"] = column<int32_t>(step.grains, [](const G& g) { return g.grain; });
+  grains["fate"] = texts(step.grains, [](const G& g) { return toString(g.fate); });
+  grains["voxels"] = column<int64_t>(step.grains, [](const G& g) { return g.voxels; });
+  grains["center"] = toArray(std::move(centers))
+                         .reshape(std::vector<py::ssize_t>{py::ssize_t(step.grains.size()), 3});
+  bonds["first"] = column<int32_t>(step.bonds, [](const B& b) { return b.first; });
+  bonds["second"] = column<int32_t>(step.bonds, [](const B& b) { return b.second; });
+  bonds["fate"] = texts(step.bonds, [](const B& b) { return toString(b.fate); });
+  bonds["faces"] = column<int64_t>(step.bonds, [](const B& b) { return b.faces; });
+  dict["labels"] = GridPtr(step.labels);
+  dict["motion"] = toRows(step.motion);
+  dict["grains"] = grains;
+  dict["bonds"] = bonds;
+  return dict;
+}
+
+py::list evolve(const GridPtr& labels, const Call& call, int steps, uint64_t seed, double strain,
+                double shear, double turn, const std::array<double, 3>& axis,
+                const std::array<double, 3>& drift, bool rigidGrains, double vanish, double enter,
+                double breaks, int gap, double growth, double noise) {
+  EvolveOptions options;
+  options.steps = steps;
+  options.seed = seed;
+  options.strain = strain;
+  options.shear = shear;
+  options.degrees = turn;
+  options.axis = {axis[2], axis[1], axis[0]};
+  options.drift = {drift[2], drift[1], drift[0]};
+  options.rigidGrains = rigidGrains;
+  options.vanish = vanish;
+  options.enter = enter;
+  options.breaks = breaks;
+  options.gap = gap;
+  options.growth = growth;
+  options.noise = noise;
+  const auto made = withoutLock(call, [&](Interrupter* interrupter) {
+    std::vector<EvolvedStep> all;
+    const Evolution evolution(asLabels(*labels), options, interrupter);
+    for (int step = 0; step <= steps; ++step) all.push_back(evolution.after(step, interrupter));
+    return all;
+  });
+  py::list list;
+  for (const EvolvedStep& step : made) list.append(toDict(step));
+  return list;
+}
+
 }  // namespace
 
 void bindTracks(py::module_& m) {
   m.def("track", trackGrains, py::arg("before"), py::arg("after"), py::arg("call"), py::kw_only(),
         py::arg("shift"), py::arg("max_shift"), py::arg("share"), py::arg("min_faces"),
         py::arg("motion"), py::arg("guess"), py::arg("gap"), py::arg("sure_faces"));
+  m.def("evolve", evolve, py::arg("labels"), py::arg("call"), py::kw_only(), py::arg("steps"),
+        py::arg("seed"), py::arg("strain"), py::arg("shear"), py::arg("turn"), py::arg("axis"),
+        py::arg("drift"), py::arg("rigid_grains"), py::arg("vanish"), py::arg("enter"),
+        py::arg("breaks"), py::arg("gap"), py::arg("growth"), py::arg("noise"));
 }
 
 }  // namespace vdb_madf::python

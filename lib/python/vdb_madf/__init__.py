@@ -22,10 +22,10 @@ from ._mesh import Mesh
 from ._napari import to_napari
 from ._samples import generate
 from ._segmentation import PAPER, Segmentation, segment
-from ._tracks import Tracks, track, track_series
+from ._tracks import EvolvedStep, Tracks, evolve, track, track_series
 
-__all__ = ["ArrayLike3D", "Comparison", "Cylinder", "InvalidInput", "IoError", "Labels", "Mask",
-           "Measurements", "Mesh", "NotEnoughMemory", "PAPER", "Progress", "Segmentation", "Source",
-           "Tracks", "__version__", "compare", "generate", "measure", "reads_hdf5", "segment",
-           "to_napari", "track", "track_series",
+__all__ = ["ArrayLike3D", "Comparison", "Cylinder", "EvolvedStep", "InvalidInput", "IoError",
+           "Labels", "Mask", "Measurements", "Mesh", "NotEnoughMemory", "PAPER", "Progress",
+           "Segmentation", "Source", "Tracks", "__version__", "compare", "evolve", "generate",
+           "measure", "reads_hdf5", "segment", "to_napari", "track", "track_series",
            "verify_files"]

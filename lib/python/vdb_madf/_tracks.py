@@ -101,3 +101,43 @@ def track_series(scans: Sequence[Union[Labels, Segmentation, Source]],
         series.append(track(before, after, **options))
         before = series[-1].labels
     return series
+
+
+@dataclass(frozen=True, eq=False)
+class EvolvedStep:
+    """A sample that was moved, and the truth of it."""
+
+    labels: Labels
+    """With the numbers, and within the box, of before."""
+    motion: npt.NDArray[Any] = field(repr=False)
+    """Rows z, y, x, each with factors of z, y, x, and the shift."""
+    grains: Dict[str, npt.NDArray[Any]] = field(repr=False)
+    """A row a grain: `id`, `fate` ("kept", "left", "vanished", "absent"), `voxels`, `center` (z, y,
+    x) to where its center before has gone."""
+    bonds: Dict[str, npt.NDArray[Any]] = field(repr=False)
+    """A row a pair that touches before or now: `first`, `second`, `fate` ("kept", "broken",
+    "parted", "gone", "new"), `faces` now."""
+
+
+@checked
+def evolve(labels: Union[Labels, Segmentation, Source], *, steps: int = 2, seed: int = 1,
+           strain: float = 0, shear: float = 0, turn: float = 0,
+           axis: Tuple[float, float, float] = (1, 0, 0),
+           drift: Tuple[float, float, float] = (0, 0, 0), rigid_grains: bool = False,
+           vanish: float = 0, enter: float = 0, breaks: float = 0, break_gap: int = 2,
+           grow: float = 0, noise: float = 0, progress: Progress = None,
+           threads: int = 0) -> List[EvolvedStep]:
+    """Labels through a known motion, in steps, as they are (step 0) and after each of them. The
+    same options give the same voxels on every machine.
+
+    At the end, strain: shortening along z; shear: of x along z; turn: degrees about the axis
+    (z, y, x) through the center of the box; drift: voxels (z, y, x). rigid_grains: grains keep
+    their shapes. vanish, enter: shares of the grains. breaks: share of the bonds; either grain
+    loses what lies within break_gap voxels of the other. grow: voxels, below 0: dissolve. noise: of
+    boundaries, voxels. The manual of `vdb_madf generate evolve` says more."""
+    with calling(progress, threads) as call:
+        steps_of = _core.evolve(
+            labels_of(labels, call, threads)._grid, call, steps=steps, seed=seed, strain=strain,
+            shear=shear, turn=turn, axis=axis, drift=drift, rigid_grains=rigid_grains,
+            vanish=vanish, enter=enter, breaks=breaks, gap=break_gap, growth=grow, noise=noise)
+    return [EvolvedStep(labels=Labels._of(step.pop("labels")), **step) for step in steps_of]
