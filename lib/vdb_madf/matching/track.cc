@@ -247,9 +247,25 @@ void link(Sides& sides, Tracks& tracks, const GrainSet& before, const GrainSet& 
   }
 }
 
+/// How each grain moved: as its neighbors, about its own center, if it was followed.
+std::map<int32_t, Motion> motionsOf(const GrainSet& before, const GrainSet& after,
+                                    const FollowedGrains& followed) {
+  std::map<int32_t, openvdb::Vec3d> centers;
+  for (const GrainFeatures& grain : after.grains) centers[grain.grain] = grain.center;
+  std::map<int32_t, Motion> motions;
+  for (size_t n = 0; n < before.grains.size(); ++n) {
+    const FollowedGrain& match = followed.grains[n];
+    const openvdb::Vec3d place = match.partner ? centers.at(match.partner) : match.place;
+    if (match.isPlaced)
+      motions[before.grains[n].grain] = {match.nearby,
+                                         place - match.nearby * before.grains[n].center};
+  }
+  return motions;
+}
+
 /// Says which grains came apart: `parts` of the other side that were not followed. Most voxels of
-/// each lie in the whole when they are moved (`overlaps`: of whole and part), and the volumes agree;
-/// of a whole that was followed, better than without the parts.
+/// each lie in the whole when they are moved (`overlaps`: of whole and part), and the volumes
+/// agree; of a whole that was followed, better than without the parts.
 /// @return the new links, from whole to part
 std::vector<GrainOverlap> linkParts(TrackedGrains& wholes, TrackedGrains& parts,
                                     const std::map<Pair, int64_t>& overlaps, GrainFate fate) {
@@ -301,14 +317,7 @@ std::vector<GrainOverlap> linkParts(TrackedGrains& wholes, TrackedGrains& parts,
 
 /// Links grains that split or merged.
 void linkParts(Sides& sides, Tracks& tracks, const Int32Grid& before, const Int32Grid& after,
-               const GrainSet& grains, const FollowedGrains& followed, Interrupter* interrupter) {
-  std::map<int32_t, Motion> motions;
-  for (size_t n = 0; n < grains.grains.size(); ++n) {
-    const FollowedGrain& match = followed.grains[n];
-    if (match.isPlaced)
-      motions[grains.grains[n].grain] = {match.nearby,
-                                         match.place - match.nearby * grains.grains[n].center};
-  }
+               const std::map<int32_t, Motion>& motions, Interrupter* interrupter) {
   const auto overlaps = detail::movedOverlaps(before, after, motions, interrupter);
   std::map<Pair, int64_t> mirrored;
   for (const auto& [pair, voxels] : overlaps) mirrored[{pair.second, pair.first}] = voxels;
@@ -325,9 +334,10 @@ void linkParts(Sides& sides, Tracks& tracks, const Int32Grid& before, const Int3
 
 /// Says of broken bonds whether their grains are near and whether this is sure, and of bonds of
 /// which an end is outside that they are.
-void refine(Tracks& tracks, const Sides& sides, const Int32Grid& after, const TrackOptions& options,
+void refine(Tracks& tracks, const Sides& sides, const Int32Grid& before, const Int32Grid& after,
+            const std::map<int32_t, Motion>& motions, const TrackOptions& options,
             Interrupter* interrupter) {
-  std::set<Pair> apart;
+  std::set<Pair> apart, broken;
   const auto now = [&](const TrackedBond& bond) {
     std::vector<Pair> pairs;
     for (const int32_t a : sides.fromBefore.at(bond.first))
@@ -335,10 +345,13 @@ void refine(Tracks& tracks, const Sides& sides, const Int32Grid& after, const Tr
     return pairs;
   };
   for (const TrackedBond& bond : tracks.bondsBefore)
-    if (bond.fate == BondFate::separated)
+    if (bond.fate == BondFate::separated) {
+      broken.emplace(bond.first, bond.second);
       for (const Pair& pair : now(bond)) apart.insert(pair);
+    }
   const std::set<Pair> near = detail::nearPairs(after, apart, options.gap, interrupter),
-                       touching = detail::nearPairs(after, apart, 1, interrupter);
+                       touching = detail::nearPairs(after, apart, 1, interrupter),
+                       solid = detail::solidPairs(before, after, broken, motions, interrupter);
   for (TrackedBond& bond : tracks.bondsBefore) {
     if (bond.fate != BondFate::separated) continue;
     const std::vector<Pair> pairs = now(bond);
@@ -346,7 +359,7 @@ void refine(Tracks& tracks, const Sides& sides, const Int32Grid& after, const Tr
       return std::any_of(pairs.begin(), pairs.end(),
                          [&](const Pair& pair) { return of.count(pair) > 0; });
     };
-    if (bond.faces < options.sureFaces || any(touching))
+    if (bond.faces < options.sureFaces || any(touching) || solid.count({bond.first, bond.second}))
       bond.fate = BondFate::undecided;
     else if (any(near))
       bond.fate = BondFate::detached;
@@ -381,7 +394,8 @@ Tracks trackMotion(const Int32Grid& before, const Int32Grid& after, const TrackO
   tracks.whole = followed->whole;
   Sides sides{grainsOf(before, interrupter), grainsOf(after, interrupter), {}, {}};
   link(sides, tracks, first, second, *followed, boxOf(before), boxOf(after));
-  linkParts(sides, tracks, before, after, first, *followed, interrupter);
+  const auto motions = motionsOf(first, second, *followed);
+  linkParts(sides, tracks, before, after, motions, interrupter);
   tracks.lastTrack = number(sides, std::exchange(tracks.overlaps, {}), lastTrackOf(before));
   tracks.bondsBefore = bondsOf(before, before, options.minFaces, interrupter);
   tracks.bondsAfter = bondsOf(after, after, options.minFaces, interrupter);
@@ -389,7 +403,7 @@ Tracks trackMotion(const Int32Grid& before, const Int32Grid& after, const TrackO
                        pairsAfter = pairsOf(tracks.bondsAfter);
   judge(tracks.bondsBefore, sides.fromBefore, pairsAfter, BondFate::separated);
   judge(tracks.bondsAfter, sides.fromAfter, pairsBefore, BondFate::created);
-  refine(tracks, sides, after, options, interrupter);
+  refine(tracks, sides, before, after, motions, options, interrupter);
   tracks.before = listed(sides.before);
   tracks.after = listed(sides.after);
   return tracks;

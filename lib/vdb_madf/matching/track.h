@@ -55,7 +55,8 @@ enum class BondFate {
   inside,    ///< ... and a grain is linked with both ends
   detached,  ///< with a motion: broken, and the ends have voxels within the gap
   separated,  ///< with a motion: broken, and they have not
-  undecided,  ///< with a motion: the ends touch, in fewer than minFaces; or had few: sureFaces
+  undecided,  ///< with a motion: not bonded, but the ends touch, or something solid is where the
+              ///< bond was, or it was of fewer than sureFaces
   unmatched,  ///< an end is linked with none
   outside     ///< fewer than minFaces (or none) of its faces lie in what both volumes show
 };

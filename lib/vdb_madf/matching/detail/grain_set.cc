@@ -5,6 +5,7 @@
 
 #include <openvdb/tree/ValueAccessor.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <mutex>
@@ -141,6 +142,46 @@ std::set<std::pair<int32_t, int32_t>> nearPairs(const Int32Grid& labels,
     near.insert(local.begin(), local.end());
   });
   return near;
+}
+
+std::set<std::pair<int32_t, int32_t>> solidPairs(const Int32Grid& before, const Int32Grid& after,
+                                                 const std::set<std::pair<int32_t, int32_t>>& pairs,
+                                                 const std::map<int32_t, Motion>& motions,
+                                                 Interrupter* interrupter) {
+  std::set<std::pair<int32_t, int32_t>> solid;
+  if (pairs.empty()) return solid;
+  std::set<int32_t> ends;
+  for (const auto& [first, second] : pairs) ends.insert({first, second});
+  std::map<std::pair<int32_t, int32_t>, int64_t> excess;  // of solid faces over others
+  const Int32Tree::ConstPtr tree = withoutTiles(before);
+  const auto leaves = leavesOf(*tree);
+  std::mutex mutex;
+  parallelFor(leaves.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+    openvdb::tree::ValueAccessor<const Int32Tree> from(*tree), to(after.tree());
+    std::map<std::pair<int32_t, int32_t>, int64_t> local;
+    for (size_t n = begin; n < end; ++n)
+      forEachLabeled(*leaves[n], [&](const Coord& p, int32_t label) {
+        if (!ends.count(label)) return;
+        for (int axis = 0; axis < 3; ++axis) {
+          Coord next = p;
+          ++next[axis];
+          const int32_t other = from.getValue(next);
+          const std::pair<int32_t, int32_t> pair = std::minmax(label, other);
+          if (!pairs.count(pair)) continue;
+          const openvdb::Vec3d place =
+              (motions.at(label)(p.asVec3d()) + motions.at(other)(next.asVec3d())) * 0.5;
+          int32_t there = 0;
+          const bool isSolid =
+              to.probeValue(Coord::floor(place + openvdb::Vec3d(0.5)), there) && there > 0;
+          local[pair] += isSolid ? 1 : -1;
+        }
+      });
+    const std::lock_guard<std::mutex> lock(mutex);
+    for (const auto& [pair, count] : local) excess[pair] += count;
+  });
+  for (const auto& [pair, count] : excess)
+    if (count > 0) solid.insert(pair);
+  return solid;
 }
 
 std::map<std::pair<int32_t, int32_t>, int64_t> movedOverlaps(

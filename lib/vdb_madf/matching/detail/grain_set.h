@@ -22,6 +22,13 @@ std::set<std::pair<int32_t, int32_t>> nearPairs(const Int32Grid& labels,
                                                 const std::set<std::pair<int32_t, int32_t>>& pairs,
                                                 int gap, Interrupter* interrupter);
 
+/// Chooses from pairs of labels before those between which there is something solid after, at most
+/// of the places of their faces when these are moved. @throw Interrupted
+std::set<std::pair<int32_t, int32_t>> solidPairs(const Int32Grid& before, const Int32Grid& after,
+                                                 const std::set<std::pair<int32_t, int32_t>>& pairs,
+                                                 const std::map<int32_t, Motion>& motions,
+                                                 Interrupter* interrupter);
+
 /// How many voxels of each grain before lie in each one after when they are moved, those of a grain
 /// of before by its motion; those without one stay out. @throw Interrupted
 std::map<std::pair<int32_t, int32_t>, int64_t> movedOverlaps(
