@@ -4,15 +4,23 @@
 // How many grains are followed rightly through a known motion:
 //   vdb_madf_tracking [GRAINS...]     prints a table for each number of grains (500, 5000, 50000)
 //   vdb_madf_tracking --labels        prints one of labels that samples/evolve.h moves
+//   vdb_madf_tracking --bonds         prints one of their bonds, some of which break
+//   vdb_madf_tracking --confidence    prints how many matches of a confidence are right
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
+#include <map>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/moved_grains.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/matching/track.h"
 #include "vdb_madf/samples/evolve.h"
 #include "vdb_madf/samples/particles.h"
@@ -109,11 +117,134 @@ void printLabels() {
   }
 }
 
+/// Bonds that seem broken, of those that are decided, and the undecided ones of all, in %, though
+/// nothing has happened but roughness.
+std::string unloaded(const Int32Grid& before, const Int32Grid& after) {
+  TrackOptions options;
+  options.motion = MatchOptions{};
+  const Tracks tracks = track(before, after, options);
+  const BrokenBonds bonds = brokenBonds(tracks, options.sureFaces);
+  const auto undecided =
+      std::count_if(tracks.bondsBefore.begin(), tracks.bondsBefore.end(),
+                    [](const TrackedBond& bond) { return bond.fate == BondFate::undecided; });
+  char text[64];
+  std::snprintf(text, sizeof text, "%.2f, %.1f",
+                100 * double(bonds.broken) / double(bonds.broken + bonds.kept),
+                100 * double(undecided) / double(tracks.bondsBefore.size()));
+  return text;
+}
+
+/// The grains that are found in what is labeled.
+Int32Grid::Ptr cutAnew(const Int32Grid& labels) {
+  const auto object =
+      MaskGrid::create(std::make_shared<MaskTree>(labels.tree(), false, openvdb::TopologyCopy()));
+  setDomain(*object, *storedDomain(labels));
+  return segment(*object).grain;
+}
+
+/// Precision and recall of broken bonds, of those that are followed and of so many faces that this
+/// is decided, in %.
+std::string loaded(const Int32Grid& before, const EvolvedStep& after) {
+  std::map<std::pair<int32_t, int32_t>, EvolvedBondFate> truth;
+  for (const EvolvedBond& bond : after.bonds) truth[{bond.first, bond.second}] = bond.fate;
+  TrackOptions options;
+  options.motion = MatchOptions{};
+  double right = 0, said = 0, all = 0;
+  for (const TrackedBond& bond : track(before, *after.labels, options).bondsBefore) {
+    // What touched by roughness alone is not in the truth.
+    const auto known = truth.find({bond.first, bond.second});
+    const EvolvedBondFate fate = known == truth.end() ? EvolvedBondFate::parted : known->second;
+    if (fate == EvolvedBondFate::gone || bond.fate == BondFate::unmatched ||
+        bond.fate == BondFate::outside || bond.faces < options.sureFaces)
+      continue;
+    const bool isTrue = fate == EvolvedBondFate::broken;
+    const bool isSaid = bond.fate == BondFate::detached || bond.fate == BondFate::separated;
+    all += isTrue;
+    said += isSaid;
+    right += isTrue && isSaid;
+  }
+  char text[64];
+  std::snprintf(text, sizeof text, "%.1f, %.1f", 100 * right / said, 100 * right / all);
+  return text;
+}
+
+void printBonds() {
+  initialize();
+  std::printf(
+      "| grains | bonds | noise | unloaded: broken, undecided %% | cut anew: broken, undecided %% "
+      "| "
+      "gap 1: precision, recall %% | gap 2: precision, recall %% |\n"
+      "|---|---|---|---|---|---|---|\n");
+  for (const std::string kind : kKinds) {
+    const Int32Grid::Ptr before = labelsOf(kind);
+    for (const double noise : {0.5, 1.}) {
+      EvolveOptions options;
+      options.steps = 2;  // the second scan is as rough, in another way
+      options.noise = noise;
+      const Evolution still(*before, options);
+      const Int32Grid::Ptr first = still.after(1).labels, second = still.after(2).labels;
+      std::string row =
+          " | " + unloaded(*first, *second) + " | " + unloaded(*cutAnew(*first), *cutAnew(*second));
+      options.strain = 0.08;
+      options.degrees = 5;
+      options.axis = {1, 2, 2};
+      options.breaks = 0.1;
+      for (const int gap : {1, 2}) {
+        options.gap = gap;
+        row += " | " + loaded(*first, Evolution(*before, options).after(2));
+      }
+      std::printf("| %s | %zu | %.1f%s |\n", kind.c_str(), still.after(0).bonds.size(), noise,
+                  row.c_str());
+      std::fflush(stdout);
+    }
+  }
+}
+
+void printConfidence() {
+  constexpr double kBounds[] = {0, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.01};
+  constexpr size_t kBins = std::size(kBounds) - 1;
+  int64_t all[kBins] = {}, right[kBins] = {};
+  for (const char* kind : kKinds)
+    for (const double noise : {0.05, 0.08, 0.1, 0.12})
+      for (const double changed : {0.03, 0.2, 0.4})
+        for (const unsigned seed : {1u, 2u, 3u}) {
+          MovedGrainsOptions options;
+          options.kind = kind;
+          options.count = 2000;
+          options.noise = noise;
+          options.changed = changed;
+          options.seed = seed;
+          const MovedGrains moved = movedGrains(options);
+          const auto matches = matchGrains(moved.before, moved.after);
+          for (size_t n = 0; matches && n < matches->grains.size(); ++n) {
+            const FollowedGrain& match = matches->grains[n];
+            if (!match.partner) continue;
+            size_t bin = 0;
+            while (match.confidence >= kBounds[bin + 1]) ++bin;
+            const auto truth = moved.partners.find(moved.before.grains[n].grain);
+            ++all[bin];
+            right[bin] += truth != moved.partners.end() && truth->second == match.partner;
+          }
+        }
+  std::printf("| confidence | matches | right %% |\n|---|---|---|\n");
+  for (size_t bin = 0; bin < kBins; ++bin)
+    std::printf("| %.1f to %.1f | %lld | %.2f |\n", kBounds[bin], std::min(1., kBounds[bin + 1]),
+                static_cast<long long>(all[bin]), 100 * double(right[bin]) / double(all[bin]));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc > 1 && argv[1] == std::string("--labels")) {
     printLabels();
+    return 0;
+  }
+  if (argc > 1 && argv[1] == std::string("--bonds")) {
+    printBonds();
+    return 0;
+  }
+  if (argc > 1 && argv[1] == std::string("--confidence")) {
+    printConfidence();
     return 0;
   }
   std::vector<size_t> counts;
