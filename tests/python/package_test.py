@@ -99,8 +99,9 @@ def test_a_wheel_with_its_libraries(wheel, prefix, tmp_path):
     assert any(name.endswith(".dist-info/licenses/libtbb12.txt") for name in names)
     python = environment(tmp_path / "venv", whole)
     show = "import vdb_madf; print(open('/proc/self/maps').read())"
+    clean = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
     listed = subprocess.run([python, "-c", show], check=True, stdout=subprocess.PIPE, text=True,
-                            cwd=tmp_path, env={k: v for k, v in os.environ.items() if k != "PYTHONPATH"}).stdout
+                            cwd=tmp_path, env=clean).stdout
     for name in ("libopenvdb", "libtbb", "libtiff", "libblosc"):
         line, = {line.split()[-1] for line in listed.splitlines() if f"/{name}.so" in line}
         assert f"{tmp_path}/venv/" in line and "/vdb_madf.libs/" in line
