@@ -113,6 +113,7 @@ LabelMap naiveEdit(const LabelMap& voxels, const Edit& edit, const std::optional
         break;
       case Edit::Kind::split:
       case Edit::Kind::joinBelow:
+      case Edit::Kind::strictness:
         break;
     }
     if (now) result[p] = now;
@@ -297,6 +298,16 @@ TEST_CASE("edit_labels: what is not there is refused, and why", "[edit_labels]")
   CHECK_THROWS_WITH(
       edited(*labels, {"min-diameter 1um"}),
       vdb_madf::test::StartsWith("min-diameter 1um: the size of the voxels is unknown"));
+  says({"strictness 10.5", "drop 3"},
+       "strictness 10.5: these labels do not say that they were merged by score: edit those that "
+       "'vdb_madf remerge --strictness 10.5' makes");
+  MergeOptions merging;
+  merging.strictness = 11;
+  describeMerging(*labels, merging, 2, 2);
+  says({"strictness 10.5", "drop 3"},
+       "strictness 10.5: these labels were merged with the strictness 11: edit those that "
+       "'vdb_madf remerge --strictness 10.5' makes");
+  CHECK(edited(*labels, {"strictness 11", "drop 3"}).grains == 1);
   StopAtOnce stop;
   CHECK_THROWS_AS(editLabels(*labels, editsFrom({"merge 3 7"}), nullptr, &stop), Interrupted);
 }

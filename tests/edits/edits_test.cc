@@ -17,7 +17,8 @@ TEST_CASE("edits: a text says what it is of", "[edits]") {
   CHECK(parseEdit("max-diameter 1mm").diameter == 1e-3);
   for (const std::string text :
        {"split 9", "merge 12 17 3", "drop 5", "keep 1 2 3", "min-voxels 100", "max-voxels 5000",
-        "join-below 27", "min-diameter 8.5um", "max-diameter 1000um", "drop-at-faces", "renumber"})
+        "join-below 27", "min-diameter 8.5um", "max-diameter 1000um", "drop-at-faces", "renumber",
+        "strictness 10.5", "strictness -3"})
     CHECK(toString(parseEdit(text)) == text);
 }
 
@@ -54,6 +55,9 @@ TEST_CASE("edits: what is none is refused, by its line", "[edits]") {
       {"min-diameter 1x2x3um", "a diameter is one length"},
       {"min-diameter nanum", "nanum: "},
       {"renumber 1", "renumber takes nothing, and is given 1"},
+      {"strictness", "strictness takes one number, and is given 0"},
+      {"strictness 11um", "'11um' is no number"},
+      {"strictness nan", "'nan' is no number"},
       {"\x01", "'?' is no edit"}};
   for (const auto& [text, says] : wrong) {
     CAPTURE(text);

@@ -16,6 +16,7 @@
 #include "support/random_case.h"
 #include "support/runs.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/edits/detail/last_join.h"
 #include "vdb_madf/edits/detail/weakest_neck.h"
 #include "vdb_madf/edits/edit_labels.h"
 #include "vdb_madf/labels/label_digest.h"
@@ -100,6 +101,41 @@ std::optional<std::vector<char>> naiveNeck(const ManifoldGraph& graph, const Nod
   return best;
 }
 
+/// By the definition: sets of classes, voxels counted anew.
+std::optional<std::vector<char>> naiveJoin(const ManifoldGraph& graph, double strictness,
+                                           const Nodes& nodes, const std::vector<int64_t>& voxels) {
+  const Hierarchy hierarchy = mergeHierarchy(graph, strictness);
+  using Classes = std::set<uint32_t>;
+  std::map<uint32_t, Classes> sets;  // of each class the set that it is in
+  for (uint32_t c = 0; c < hierarchy.classes.size(); ++c) sets[c] = {c};
+  const auto count = [&](const Classes& classes) {
+    int64_t sum = 0;
+    for (size_t i = 0; i < nodes.size(); ++i)
+      if (classes.count(hierarchy.classOfNode[nodes[i]])) sum += voxels[i];
+    return sum;
+  };
+  std::array<Classes, 2> last;
+  for (const Hierarchy::Join& join : hierarchy.joins) {
+    const std::array<Classes, 2> two{sets[join.first], sets[join.second]};
+    if (count(two[0]) > 0 && count(two[1]) > 0) last = two;
+    Classes both = two[0];
+    both.insert(two[1].begin(), two[1].end());
+    for (const uint32_t c : both) sets[c] = both;
+  }
+  int64_t all = 0;
+  for (const int64_t its : voxels) all += its;
+  if (last[0].empty() || count(last[0]) + count(last[1]) < all) return std::nullopt;
+  const auto isIn = [&](size_t side, uint32_t node) {
+    return last[side].count(hierarchy.classOfNode[node]) > 0;
+  };
+  uint32_t largest = nodes[0];
+  for (const uint32_t node : nodes)
+    if (graph.nodes[node].squaredRadius > graph.nodes[largest].squaredRadius) largest = node;
+  std::vector<char> beyond;
+  for (const uint32_t node : nodes) beyond.push_back(isIn(isIn(1, largest) ? 0 : 1, node));
+  return beyond;
+}
+
 struct Sample {
   ObjectVolume object;
   Segmentation segmentation;
@@ -150,7 +186,8 @@ DenseVolume<int64_t> dense(const ObjectVolume& object, const Int32Grid& grid) {
   return values;
 }
 
-/// Two sides of a grain as the definition says, in all its voxels: 1, or 2 beyond the weakest neck.
+/// Two sides of a grain as the definition says, in all its voxels: 1, or 2 beyond the last join or
+/// the weakest neck.
 std::optional<DenseVolume<int64_t>> naiveHalves(const Sample& s, const DenseVolume<int64_t>& grains,
                                                 int64_t grain, const Nodes& nodes,
                                                 std::vector<Nodes>& halves) {
@@ -161,7 +198,10 @@ std::optional<DenseVolume<int64_t>> naiveHalves(const Sample& s, const DenseVolu
     if (grains[i] == grain) ++voxels[manifold[i] - 1];
   std::vector<int64_t> counts;
   for (const uint32_t node : nodes) counts.push_back(voxels[node]);
-  const auto beyond = naiveNeck(graph, nodes, counts);
+  std::optional<std::vector<char>> beyond;
+  if (s.options.merge.mode == MergeMode::score)
+    beyond = naiveJoin(graph, s.options.merge.strictness, nodes, counts);
+  if (!beyond) beyond = naiveNeck(graph, nodes, counts);
   if (!beyond) return std::nullopt;
   halves = {{}, {}};
   std::map<int64_t, int> sideOf;
@@ -239,6 +279,32 @@ TEST_CASE("grain_parts: the weakest neck of random graphs", "[grain_parts]") {
     }
     REQUIRE(detail::beyondWeakestNeck(graph, nodes, voxels) == naiveNeck(graph, nodes, voxels));
   }
+}
+
+TEST_CASE("grain_parts: the last join, drawn by hand", "[grain_parts]") {
+  // Five manifolds; the second and the fourth are of one class.
+  ManifoldGraph graph;
+  for (const int top : {9, 16, 25, 4, 36}) graph.nodes.push_back({{0, 0, top}, top, 3});
+  Hierarchy hierarchy;
+  hierarchy.classOfNode = {0, 1, 2, 1, 3};
+  hierarchy.classes = {{0, 9, 3, 0}, {1, 16, 6, 0}, {2, 25, 3, 0}, {4, 36, 3, 0}};
+  hierarchy.joins = {{0, 1, 900}, {2, 3, 800}, {1, 3, 700}};
+  using Sides = std::vector<char>;
+  const auto sides = [&](const Nodes& nodes, const std::vector<int64_t>& voxels) {
+    return detail::beyondLastJoin(graph, hierarchy, nodes, voxels);
+  };
+  CHECK(sides({0, 1, 2, 3, 4}, {3, 3, 3, 3, 3}) == Sides{1, 1, 0, 1, 0});
+  CHECK(sides({0, 1, 3}, {3, 3, 3}) == Sides{1, 0, 0});
+  CHECK(sides({2, 4}, {3, 3}) == Sides{1, 0});
+  // What has no voxels makes no side.
+  CHECK(sides({0, 1, 2, 3, 4}, {3, 3, 0, 0, 0}) == Sides{0, 1, 0, 1, 0});
+  CHECK(sides({0, 2, 4}, {0, 3, 3}) == Sides{0, 1, 0});
+  CHECK_FALSE(sides({1, 3}, {3, 3}));
+  CHECK_FALSE(sides({0}, {3}));
+  CHECK_FALSE(sides({}, {}));
+  hierarchy.joins.pop_back();
+  CHECK_FALSE(sides({0, 1, 2, 3, 4}, {3, 3, 3, 3, 3}));
+  CHECK(sides({0, 1}, {3, 3}) == Sides{1, 0});
 }
 
 TEST_CASE("grain_parts: a grain of a segmentation splits as defined", "[grain_parts]") {

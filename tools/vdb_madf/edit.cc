@@ -127,6 +127,8 @@ std::string didWhat(const EditResult& result) {
       return "joined " + counted(result.joinedGrains, "grain") + " to neighbors";
     case Edit::Kind::renumber:
       return "done";
+    case Edit::Kind::strictness:
+      return "as it is";
     default:
       return "dropped " + counted(result.droppedGrains, "grain") + ", " +
              counted(result.droppedVoxels, "voxel");
@@ -208,6 +210,7 @@ void addEdit(Verb command, Common& common, Action& action) {
   edit("--max-diameter", "LENGTH", "drops grains of a larger one");
   verb.repeatedFlag("--drop-at-faces", o->given, "drops grains at the faces of the domain");
   verb.repeatedFlag("--renumber", o->given, "numbers grains 1, 2, 3 ... in the order they have");
+  edit("--strictness", "K", "refuses labels that were merged with another one");
   edit(kEditsFile, "FILE", "edits from a file: a line an option without dashes, as 'merge 12 17'");
   verb.option("--grid", o->input.gridName, "VDB input: the grid to take").typeName("NAME");
   verb.option("--json", o->json, "machine-readable result (-: standard output)").typeName("FILE");

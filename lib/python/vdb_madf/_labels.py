@@ -130,6 +130,7 @@ class Labels(Volume):
         - "join-below N": grains of fewer voxels become part of the neighbor of most shared faces
         - "min-voxels N", "max-voxels N", "min-diameter 100um", "max-diameter 1mm" (of equal volume)
         - "renumber": 1, 2, 3 ... in the order of the labels
+        - "strictness K": refuses labels that were not merged with this one
 
         manifold: what the grains are made of, for "split": `Segmentation.manifold`, or
         Labels(path, grid="manifold") of a file."""

@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/edits/detail/grain_parts.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -99,6 +100,9 @@ class Editor {
       case Kind::renumber:
         renumber();
         break;
+      case Kind::strictness:
+        requireStrictness(edit.strictness);
+        break;
       default:
         dropUnless(kept(edit));
     }
@@ -124,6 +128,18 @@ class Editor {
     const auto by = gone_.find(grain);
     throw InvalidInput("there is no grain " + std::to_string(grain) +
                        (by == gone_.end() ? "" : " any more, after '" + by->second + "'"));
+  }
+
+  void requireStrictness(double strictness) const {
+    const auto stored = storedMerging(original_);
+    const bool isByScore = stored && stored->options.mode == MergeMode::score;
+    if (isByScore && stored->options.strictness == strictness) return;
+    const std::string wanted = detail::shortestDecimal(strictness);
+    throw InvalidInput(
+        (isByScore ? "these labels were merged with the strictness " +
+                         detail::shortestDecimal(stored->options.strictness)
+                   : std::string("these labels do not say that they were merged by score")) +
+        ": edit those that 'vdb_madf remerge --strictness " + wanted + "' makes");
   }
 
   void remove(int32_t grain) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <sstream>
@@ -25,13 +26,13 @@ using Kind = Edit::Kind;
 struct Word {
   Kind kind;
   const char* name;
-  enum class Takes { grains, voxels, length, nothing } takes;
+  enum class Takes { grains, voxels, length, number, nothing } takes;
   size_t least = 0, most = 0;  // grains
 };
 
 constexpr size_t kAny = std::numeric_limits<size_t>::max();
 using Takes = Word::Takes;
-constexpr std::array<Word, 11> kWords{{{Kind::split, "split", Takes::grains, 1, 1},
+constexpr std::array<Word, 12> kWords{{{Kind::split, "split", Takes::grains, 1, 1},
                                        {Kind::merge, "merge", Takes::grains, 2, kAny},
                                        {Kind::drop, "drop", Takes::grains, 1, kAny},
                                        {Kind::keep, "keep", Takes::grains, 1, kAny},
@@ -41,7 +42,8 @@ constexpr std::array<Word, 11> kWords{{{Kind::split, "split", Takes::grains, 1, 
                                        {Kind::maxDiameter, "max-diameter", Takes::length},
                                        {Kind::joinBelow, "join-below", Takes::voxels},
                                        {Kind::dropAtFaces, "drop-at-faces", Takes::nothing},
-                                       {Kind::renumber, "renumber", Takes::nothing}}};
+                                       {Kind::renumber, "renumber", Takes::nothing},
+                                       {Kind::strictness, "strictness", Takes::number}}};
 
 const Word& wordOf(Kind kind) {
   return *std::find_if(kWords.begin(), kWords.end(),
@@ -95,6 +97,26 @@ double lengthFrom(const std::string& text) {
   return size.edge();
 }
 
+double numberFrom(const std::string& text) {
+  const auto number = detail::reals(text);
+  if (!number || number->size() != 1 || !std::isfinite(number->front()))
+    throw InvalidInput(detail::inQuotes(text) + " is no number");
+  return number->front();
+}
+
+const char* takenBy(const Word& word) {
+  switch (word.takes) {
+    case Takes::voxels:
+      return "one number of voxels";
+    case Takes::length:
+      return "one length with its unit, as 100um";
+    case Takes::number:
+      return "one number";
+    default:
+      return "nothing";
+  }
+}
+
 std::vector<std::string> wordsOf(std::string text) {
   std::replace(text.begin(), text.end(), ',', ' ');
   std::istringstream stream(text);
@@ -115,6 +137,7 @@ std::string toString(const Edit& edit) {
   for (const int32_t grain : edit.grains) text += " " + std::to_string(grain);
   if (word.takes == Takes::voxels) text += " " + std::to_string(edit.voxels);
   if (word.takes == Takes::length) text += " " + lengthIn(1e6, edit.diameter) + "um";
+  if (word.takes == Takes::number) text += " " + detail::shortestDecimal(edit.strictness);
   return text;
 }
 
@@ -131,14 +154,11 @@ Edit parseEdit(const std::string& text) {
   }
   const size_t wanted = word.takes == Takes::nothing ? 0 : 1;
   if (words.size() != wanted)
-    throw InvalidInput(fmt::format("{} takes {}, and is given {}", word.name,
-                                   word.takes == Takes::nothing ? "nothing"
-                                   : word.takes == Takes::voxels
-                                       ? "one number of voxels"
-                                       : "one length with its unit, as 100um",
-                                   words.size()));
+    throw InvalidInput(
+        fmt::format("{} takes {}, and is given {}", word.name, takenBy(word), words.size()));
   if (word.takes == Takes::voxels) edit.voxels = voxelsFrom(words.front());
   if (word.takes == Takes::length) edit.diameter = lengthFrom(words.front());
+  if (word.takes == Takes::number) edit.strictness = numberFrom(words.front());
   return edit;
 }
 

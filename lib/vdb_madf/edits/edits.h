@@ -23,12 +23,14 @@ struct Edit {
     maxDiameter,  ///< "max-diameter 1mm"
     joinBelow,    ///< "join-below 27": grains of fewer voxels become part of a neighbor
     dropAtFaces,  ///< "drop-at-faces": what the domain may have cut goes
-    renumber      ///< "renumber": 1, 2, 3 ... in the order of the numbers
+    renumber,     ///< "renumber": 1, 2, 3 ... in the order of the numbers
+    strictness    ///< "strictness 10.5": changes nothing; others are of labels merged with this one
   };
   Kind kind = Kind::renumber;
   std::vector<int32_t> grains;  ///< of split, merge, drop, keep
   int64_t voxels = 0;           ///< of minVoxels, maxVoxels, joinBelow
   double diameter = 0;          ///< of minDiameter, maxDiameter; meters
+  double strictness = 0;
 };
 
 /// "split", "min-voxels" ...

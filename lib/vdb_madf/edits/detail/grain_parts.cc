@@ -12,6 +12,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/edits/detail/last_join.h"
 #include "vdb_madf/edits/detail/weakest_neck.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
@@ -116,6 +117,8 @@ GrainParts::GrainParts(const Int32Grid& manifold, const Int32Grid& labels, Inter
         "the labels do not say by which options manifolds were merged: take those of a "
         "segmentation");
   merging_ = merge(graph_, merging->options);
+  if (merging->options.mode == MergeMode::score)
+    hierarchy_ = mergeHierarchy(graph_, merging->options.strictness);
   tidyRounds_ = merging->tidy;
   const auto largest = int64_t(merging_.representative.size() + graph_.nodes.size());
   if (largest > std::numeric_limits<int32_t>::max())
@@ -231,7 +234,9 @@ std::optional<std::array<GrainPart, 2>> GrainParts::halves(const GrainPart& part
   std::vector<int64_t> voxels(part.nodes.size(), 0);
   for (size_t rank = 0; rank < places.size(); ++rank)
     if (places[rank] != kForeign) ++voxels[places[rank]];
-  const auto beyond = beyondWeakestNeck(graph_, part.nodes, voxels);
+  std::optional<std::vector<char>> beyond;
+  if (hierarchy_) beyond = beyondLastJoin(graph_, *hierarchy_, part.nodes, voxels);
+  if (!beyond) beyond = beyondWeakestNeck(graph_, part.nodes, voxels);
   if (!beyond) return std::nullopt;
 
   std::array<GrainPart, 2> two;

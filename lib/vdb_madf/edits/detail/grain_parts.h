@@ -10,6 +10,7 @@
 
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/leaves/leaf_index.h"
+#include "vdb_madf/method/hierarchy.h"
 #include "vdb_madf/method/manifold_graph.h"
 #include "vdb_madf/method/merge.h"
 #include "vdb_madf/method/tidy.h"
@@ -30,7 +31,8 @@ struct GrainPart {
 
 /// What the grains of a segmentation consist of, as its manifolds and their graph tell it: a tree
 /// of parts for each grain, which depends on the segmentation alone. The halves of a part are the
-/// two sides of its weakest neck (weakest_neck.h). A voxel goes to the half that has its manifold;
+/// two sides of the last join that made it, if score merged it (last_join.h), else, or if it is of
+/// one class, of its weakest neck (weakest_neck.h). A voxel goes to the half that has its manifold;
 /// what tidying gave to the grain from others is filled from the voxels around, in synchronous
 /// rounds; then the halves are tidied, in as many rounds as the segmentation was, without regard to
 /// other grains.
@@ -66,6 +68,7 @@ class GrainParts {
   const Int32Grid& manifold_;
   ManifoldGraph graph_;
   Merging merging_;
+  std::optional<Hierarchy> hierarchy_;  // if score merged them
   int tidyRounds_ = 0;
   LeafIndex index_;     // of all manifolds
   GrainLabels grains_;  // of the segmentation, on these
