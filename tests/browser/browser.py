@@ -113,6 +113,16 @@ class Page:
         ActionChains(self.driver).move_to_element_with_offset(node, *place[0]).click_and_hold() \
             .move_to_element_with_offset(node, *place[1]).release().perform()
 
+    def screen(self, width, height, **features):
+        """Of exactly so many pixels; `features`: of the reader's wishes or paper, as in CSS."""
+        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
+            "width": width, "height": height, "deviceScaleFactor": 1, "mobile": False})
+        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {
+            "media": features.pop("media", ""),
+            "features": [{"name": f"prefers-{name.replace('_', '-')}", "value": value}
+                         for name, value in features.items()]})
+        self.settle()
+
     def selected(self):
         """Labels of the selected grains."""
         return self.run("const {selection, sample} = window.report;"

@@ -187,15 +187,196 @@ def check_state(page, path, labels_path, folder):
     command("edit", labels_path, os.path.join(folder, "edited.vdb"), "--edits", edits, "-q")
 
 
+def check_tiles(page, grains):
+    """Numbers at the top are those of what passes the filters."""
+    voxels = sorted(int(row["voxels"]) for row in grains)
+    least = voxels[len(voxels) // 2]
+    page.run("window.report.selection.setFilter('grains', 'voxels', [arguments[0], Infinity])",
+             least)
+    kept = [row for row in grains if int(row["voxels"]) >= least]
+    shown = [node.text.split("\n")[0] for node in page.find("#numbers").find_elements(
+        "css selector", ".tile")]
+    demand(shown[0] == f"{len(kept)} of all {len(grains)}", f"the tile of grains says {shown[0]}")
+    mean = sum(int(row["coordination"]) for row in kept) / len(kept)
+    demand(abs(float(shown[2].split()[0]) - mean) < 0.006 * mean, f"bonds a grain: {shown[2]}")
+    surface = sum(float(row["free_area_mm2"]) for row in kept) / sum(
+        float(row["volume_mm3"]) for row in kept)
+    demand(abs(float(shown[6].split()[0]) - surface) < 0.006 * surface,
+           f"specific surface: {shown[6]}, not {surface}")
+    page.run("window.report.selection.clearFilters()")
+    demand("of all" not in page.find("#numbers").text, "without filters numbers are those of all")
+
+
+def check_doubts(page, grains, bonds):
+    """Whiskers are two standard errors: of counts, and in roses as drawing bonds again says."""
+    bars, whiskers = page.run(
+        "const plot = document.querySelector('#charts svg'), of = (node, name) => "
+        "Number(node.getAttribute(name));"
+        "return [[...plot.querySelectorAll('rect.shown')].map((bar) => of(bar, 'height')),"
+        "[...plot.querySelectorAll('.whisker')].map((line) => of(line, 'y1') - of(line, 'y2'))]")
+    one = sum(bars) / len(grains)
+    expected = [(2 * math.sqrt(n) + min(n, 2 * math.sqrt(n))) * one for n in
+                (height / one for height in bars)]
+    demand(len(whiskers) == len(bars) > 4 and numpy.allclose(whiskers, expected, atol=0.01),
+           f"whiskers of counts are {whiskers}, not {expected}")
+
+    # The sectors between 0 and 90 degrees from z come first.
+    radii, ends = page.run(
+        "const rose = document.querySelectorAll('#charts svg.rose')[1];"
+        "const places = [...rose.querySelectorAll('.whisker')].map((path) => "
+        "path.getAttribute('d').match(/[0-9.-]+/g).map(Number));"
+        "return [[...rose.querySelectorAll('path.shown')].map((path) => "
+        "Number(path.getAttribute('d').match(/A([0-9.]+)/)[1])),"
+        "places.map(([, , x, y]) => Math.hypot(x - 105, y - 105))]")
+    heights = numpy.array([abs(float(row["normal_z"])) for row in bonds])
+    areas = numpy.array([float(row["area_mm2"]) for row in bonds])
+    sectors = numpy.minimum(8, (numpy.degrees(numpy.arccos(numpy.minimum(1, heights))) / 10)
+                            .astype(int))
+    draws = numpy.random.default_rng(3).integers(0, len(bonds), (4000, len(bonds)))
+    filled = [i for i in range(9) if (sectors == i).any()]
+    many = [i for i in filled if (sectors == i).sum() >= 6]
+    demand(len(radii) == 4 * len(filled) and many, f"the rose has {len(radii)} sectors")
+    for i in many:
+        share = (areas * (sectors == i))[draws].sum(axis=1) / areas[draws].sum(axis=1)
+        expected = 1 + 2 * share.std() / ((areas * (sectors == i)).sum() / areas.sum())
+        place = filled.index(i)
+        demand(abs(ends[place] / radii[place] - expected) < 0.15 * (expected - 1),
+               f"the whisker of sector {i} ends at {ends[place] / radii[place]}, not {expected}")
+
+
+def check_looks(page, path):
+    """Light, dark and paper; view and controls on one screen; one unit, and another."""
+    ground = "return getComputedStyle(document.body).backgroundColor"
+    light, dark = "rgb(255, 255, 255)", page.run(
+        "document.documentElement.dataset.theme = 'dark';" + ground)
+    demand(dark != light, "dark is light")
+    page.screen(1400, 900, color_scheme="dark")
+    page.open(path)
+    demand(page.run(ground) == dark, "a reader who wishes it dark gets it light")
+    bottoms = page.run("return ['stage', 'controls', 'strictness', 'numbers'].map((id) => "
+                       "document.getElementById(id)).filter(Boolean)"
+                       ".map((node) => node.getBoundingClientRect().bottom)")
+    demand(max(bottoms) <= 900, f"view and controls end at {bottoms}, below 900 pixels")
+    page.screen(1400, 900, color_scheme="dark", media="print")
+    demand(page.run(ground) == light, "paper is dark")
+    page.screen(390, 844, color_scheme="dark")
+    demand(page.run("return document.documentElement.scrollWidth") <= 390,
+           "a phone has to scroll to the right")
+    page.screen(1400, 900)
+    demand(page.run(ground) == light, "the page does not follow the system")
+    page.button("Dark").click()
+    page.wait("return location.hash.includes('theme=dark')")
+    page.open(path, page.run("return location.hash.slice(1)"))
+    demand(page.run(ground) == dark, "the theme of an address is passed over")
+    page.button("Light").click()
+
+    column = "return Array.from(window.report.sample.grains.column('volume'))"
+    before = page.run(column)
+    page.run("window.report.selection.setFilter('grains', 'equivalent_diameter', [0.15, 0.2])")
+    told = page.find("#shown").text
+    page.run("const unit = document.getElementById('unit'); unit.value = 'um';"
+             "unit.dispatchEvent(new Event('change'))")
+    page.wait("return window.report && window.report.sample.shownUnit === 'um'")
+    demand(numpy.allclose(page.run(column), numpy.array(before) * 1e9, rtol=1e-12),
+           "volumes in cubic micrometers")
+    demand(page.find("#shown").text == told, "another unit filters other grains")
+    texts = page.run("return ['numbers', 'origin', 'charts', 'tables', 'grain', 'controls', "
+                     "'overlay'].map((id) => document.getElementById(id).textContent).join(' ')")
+    demand("\u00b5m\u00b3" in texts and " mm" not in texts and "(mm" not in texts,
+           "there are two units in the page")
+    page.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def check_lives(page, strictness, grains, bonds):
+    """How sure grains and bonds are, as 'measure --stability' says, as far as the slider goes."""
+    column = ("const [kind, name] = arguments; return Array.from(window.report.sample[kind]"
+              ".column(name), (value) => Number.isNaN(value) ? null : value)")
+
+    def within(text, known):
+        return float(text) if text and known(float(text)) else None
+
+    lives = [(within(row["born"], lambda at: at < 14), within(row["dies"], lambda at: at >= 8))
+             for row in grains]
+    expected = {
+        ("grains", "born"): [born for born, _ in lives],
+        ("grains", "dies"): [dies for _, dies in lives],
+        ("grains", "stability"): [min(6 if born is None else born - strictness,
+                                      6 if dies is None else strictness - dies)
+                                  for born, dies in lives],
+        ("bonds", "vanishes"): [within(row["vanishes"], lambda at: at >= 8) for row in bonds],
+    }
+    for place, values in expected.items():
+        mine = page.run(column, *place)
+        demand(len(mine) == len(values) and all(
+            (a is None) == (b is None) and (a is None or abs(a - b) < 1e-6)
+            for a, b in zip(mine, values)), f"{place} at {strictness}: {mine}, not {values}")
+
+
+def check_edits(page, strictness):
+    """Clicks at a strictness make a list that 'edit' replays on the labels of that one."""
+    page.run("const {selection} = window.report; selection.edits = [];"
+             "selection.setStrictness(arguments[0]);"
+             "const bond = selection.sample.bondEnds;"
+             "selection.select([bond.first[0], bond.second[0]])", strictness)
+    page.button("Merge the selected").click()
+    merged = page.selected()
+    # The largest one beside these that has two parts; parts of it by body, in voxels of the slices.
+    split = page.run(
+        "const {selection, sample} = window.report, skip = new Set(arguments[0]);"
+        "const sizes = sample.grains.column('voxels');"
+        "for (const row of Array.from(sizes.keys()).sort((a, b) => sizes[b] - sizes[a])) {"
+        "  if (skip.has(sample.ids[row])) continue;"
+        "  selection.select([row]); if (selection.parts) return sample.ids[row];"
+        "} return 0", merged)
+    demand(split > 0, f"no grain at {strictness} has two parts")
+    page.run("document.getElementById('grain').scrollIntoView({block: 'center'})")
+    page.find("#parts").click()
+    second = set(page.run("return [...window.report.selection.secondPart]"))
+    page.button("Split it so").click()
+    page.run("window.report.selection.setStrictness(null)")
+    demand(not page.button("Drop the selected").is_enabled() and page.find(
+        "#edits .warning").is_displayed(), "the list takes edits of two strictnesses")
+    text = page.run("window.saved = ''; const make = URL.createObjectURL;"
+                    "URL.createObjectURL = (blob) => { blob.text().then((text) => { window.saved = "
+                    "text; }); return make(blob); };"
+                    "[...document.querySelectorAll('#edits button')].find((button) => "
+                    "button.textContent === 'Save edits.txt').click()")
+    text = page.wait("return window.saved")
+    demand(text == f"strictness {strictness}\nmerge {merged[0]} {merged[1]}\nsplit {split}\n",
+           f"the list is {text!r}")
+    with open("clicked.txt", "w") as file:
+        file.write(text)
+    refusal = command("edit", "k.vdb", "no.vdb", "--edits", "clicked.txt", refused=True)
+    demand(f"remerge --strictness {strictness}" in refusal, f"edit says {refusal!r}")
+    command("remerge", "k.vdb", "cut.vdb", "--strictness", str(strictness), "--tidy", "0", "-q")
+    command("edit", "cut.vdb", "clicked.vdb", "--edits", "clicked.txt", "-q")
+    for name in ("cut", "clicked"):
+        command("convert", f"{name}.vdb", f"{name}.npy", "--grid", "grain", "-q")
+    cut, clicked = numpy.load("cut.npy"), numpy.load("clicked.npy")
+    bodies = numpy.array(page.run(
+        "const {sample} = window.report, {size} = sample.about.slices, bodies = [];"
+        "for (let k = 0; k < size[2]; ++k) for (let j = 0; j < size[1]; ++j)"
+        "for (let i = 0; i < size[0]; ++i) bodies.push(sample.bodyAt(i, j, k) - 1); return bodies"
+    )).reshape(cut.shape)
+    expected = numpy.where(cut == merged[1], merged[0], cut)
+    beyond = numpy.isin(bodies, list(second)) & (cut == split)
+    sides = [set(numpy.unique(clicked[side])) for side in (beyond, (cut == split) & ~beyond)]
+    demand(beyond.any() and len(sides[0]) == len(sides[1]) == 1 and sides[0] != sides[1],
+           f"edit splits grain {split} elsewhere than the page: {sides}")
+    rest = cut != split
+    demand((clicked[rest] == expected[rest]).all(), "edit merges others than the page")
+
+
 def check_strictness(page, folder):
     """At each strictness the slices, tables and numbers have the grains of remerge."""
     command("generate", "snow", "n.vdb", "--size", "72", "--voxel-size", "10um", "-q")
     command("segment", "n.vdb", "k.vdb", "--keep", "manifold", "-q")
     out = os.path.join(folder, "slider.html")
     command("report", "k.vdb", out, "--min-faces", "4", "-q")
-    complaints = page.open(out)
+    complaints = page.open(out, "unit=mm")
     demand(not complaints, f"the page with a slider: {complaints}")
-    command("measure", "k.vdb", "own", "-q")
+    command("measure", "k.vdb", "own", "--min-faces", "4", "--stability", "-q")
+    check_lives(page, 11, table("own/grains.csv"), table("own/bonds.csv"))
     own = [int(row["voxels"]) for row in table("own/grains.csv")]
     voxels = "return Array.from(window.report.sample.grains.column('voxels'))"
     demand(page.run(voxels) == own, "the page has not the grains of the labels")
@@ -205,7 +386,7 @@ def check_strictness(page, folder):
     counts = set()
     for strictness in (8, 9.3, 10.5, 12, 14):
         command("remerge", "k.vdb", "m.vdb", "--strictness", str(strictness), "--tidy", "0", "-q")
-        command("measure", "m.vdb", "cut", "--min-faces", "4", "-q")
+        command("measure", "m.vdb", "cut", "--min-faces", "4", "--stability", "-q")
         command("convert", "m.vdb", "m.npy", "--grid", "grain", "-q")
         grains, bonds = table("cut/grains.csv"), table("cut/bonds.csv")
         page.run("const [slider, value] = arguments; slider.value = value;"
@@ -225,6 +406,7 @@ def check_strictness(page, folder):
                             name)
             worst = max(abs(a - float(row[name + unit])) for a, row in zip(mine, grains))
             demand(worst < 1e-6, f"{name} at {strictness} is off by {worst}")
+        check_lives(page, strictness, grains, bonds)
         labels = numpy.load("m.npy")
         shown = page.run(
             "const {sample} = window.report, {size} = sample.about.slices, rows = [];"
@@ -241,6 +423,7 @@ def check_strictness(page, folder):
     back.click()
     demand(page.run(voxels) == own and page.selected() == selected,
            "the grains of the labels do not come again")
+    check_edits(page, 9.3)
     page.run("window.report.selection.setStrictness(14); window.report.selection.select([])")
     check_clicks(page, labels)
 
@@ -313,6 +496,9 @@ with tempfile.TemporaryDirectory() as folder:
         check_clicks(page, labels)
         check_filters(page, grains)
         check_links(page, grains, bonds)
+        check_tiles(page, grains)
+        check_doubts(page, grains, bonds)
+        check_looks(page, path)
         check_state(page, path, "l.vdb", folder)
         check_comparison(page, folder, "l.vdb", grains)
         check_strictness(page, folder)

@@ -10,30 +10,34 @@ function round(value) {
 }
 
 export function writeState(selection, camera) {
+  const { sample } = selection;
   const parts = new URLSearchParams();
   const set = (key, value, usual) => { if (String(value) !== String(usual)) parts.set(key, value); };
   set('camera', [camera.azimuth, camera.elevation, camera.zoom, ...camera.target].map(round),
     [camera.view.azimuth, camera.view.elevation, 1, 0, 0, 0]);
+  set('theme', selection.theme, null);
+  set('unit', selection.unit, sample.usualUnit);
   set('strictness', selection.strictness, null);
-  set('grains', [...selection.selected].map((row) => selection.sample.ids[row]), '');
+  set('grains', [...selection.selected].map((row) => sample.ids[row]), '');
   for (const [key, kind] of Object.entries(kFilters))
     for (const [name, range] of selection.filters[kind]) parts.append(key, `${name}=${writeRange(range)}`);
   set('inside', selection.insideOnly ? 1 : 0, 0);
   set('color', selection.colorBy, '');
+  set('bondcolor', selection.bondColorBy, '');
   set('others', selection.others, 'pale');
   set('bonds', selection.bondsAs, 'none');
   set('explode', selection.explode, 0);
   set('cuts', selection.cuts.map((cut, i) => (selection.flips[i] ? '-' : '') + round(cut)), '1,1,1');
-  const { size } = selection.sample.about.slices;
+  const { size } = sample.about.slices;
   set('slices', selection.slices, size.map((count) => Math.floor(count / 2)));
   for (const edit of selection.edits) parts.append('edit', edit);
+  if (selection.edits.length > 0 && selection.editsAt !== null) parts.set('editsat', selection.editsAt);
   return parts.toString().replace(/%2C/g, ',').replace(/%3A/g, ':');
 }
 
 /// What is wrong or unknown in an address is passed over.
-export function readState(text, selection, camera) {
+export function readState(parts, selection, camera) {
   const { sample } = selection;
-  const parts = new URLSearchParams(text);
   const numbers = (key, count) => {
     const values = (parts.get(key) || '').split(',').map(Number);
     return parts.get(key) && values.length === count && values.every(Number.isFinite) ? values : null;
@@ -57,6 +61,7 @@ export function readState(text, selection, camera) {
     }
   selection.insideOnly = parts.get('inside') === '1';
   selection.colorBy = oneOf('color', sample.grains.columns.map(({ name }) => name), '');
+  selection.bondColorBy = oneOf('bondcolor', sample.bonds.columns.map(({ name }) => name), '');
   selection.others = oneOf('others', ['plain', 'hidden'], 'pale');
   selection.bondsAs = oneOf('bonds', ['discs', 'lines'], 'none');
   selection.explode = Math.max(0, Math.min(1.5, (numbers('explode', 1) || [0])[0]));
@@ -73,6 +78,7 @@ export function readState(text, selection, camera) {
     selection.slices = slices.map((at, i) =>
       Math.max(0, Math.min(sample.about.slices.size[i] - 1, Math.round(at))));
   selection.edits = parts.getAll('edit');
+  if (sample.levels) selection.editsAt = (numbers('editsat', 1) || [sample.levels.own])[0];
 }
 
 /// Keeps the address up to date, not with every step of a drag.

@@ -38,6 +38,25 @@ export function sumsOf(values, weights, edges, flags = null) {
   return sums;
 }
 
+/// Two standard errors of the weights in each bin (of counts, if null), as if rows came by chance:
+/// of weights as shares, in percent of those of all rows.
+export function doubtsOf(values, weights, edges, flags) {
+  if (!weights) return sumsOf(values, null, edges, flags).map((count) => 2 * Math.sqrt(count));
+  const squares = weights.map((weight) => weight * weight);
+  return shareDoubts(sumsOf(values, weights, edges, flags), sumsOf(values, squares, edges, flags),
+    sumsOf(values, weights, edges), sumsOf(values, squares, edges)).map((doubt) => 100 * doubt);
+}
+
+/// Two standard errors of the shares that sums have of the whole, with sums of squares (of ratios).
+export function shareDoubts(sums, squares, whole = sums, wholeSquares = squares) {
+  const add = (list) => list.reduce((a, b) => a + b, 0);
+  const total = add(whole), square = add(wholeSquares);
+  return sums.map((sum, i) => {
+    const share = total > 0 ? sum / total : 0;
+    return total > 0 ? 2 * Math.sqrt((1 - 2 * share) * squares[i] + share * share * square) / total : 0;
+  });
+}
+
 export function inPercent(sums, total) {
   return sums.map((sum) => (total > 0 ? 100 * sum / total : 0));
 }

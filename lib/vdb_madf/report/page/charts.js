@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 // Charts of what passes the filters, over all; dragging in one sets a filter.
-import { binEdges, inPercent, sumsOf } from './bins.js';
+import { binEdges, doubtsOf, inPercent, sumsOf } from './bins.js';
 import { element } from './decode.js';
 import { Plot } from './plot.js';
 import { quarterRose, fullRose } from './roses.js';
@@ -43,10 +43,12 @@ class Histogram {
   }
 
   draw() {
-    const all = this.sums(null);
-    this.plot.clear(Math.max(...all));
+    const all = this.sums(null), shown = this.sums(this.flags());
+    const doubts = doubtsOf(this.values, this.weights, this.edges, this.flags());
+    this.plot.clear(Math.max(...all, ...shown.map((sum, i) => sum + doubts[i])));
     this.plot.bars(this.edges, all, 'all');
-    this.plot.bars(this.edges, this.sums(this.flags()), 'shown');
+    this.plot.bars(this.edges, shown, 'shown');
+    this.plot.whiskers(this.edges, shown, doubts);
     this.plot.mark(this.selection.filters[this.kind].get(this.name));
   }
 }
@@ -100,7 +102,7 @@ export function startCharts(sample, selection) {
     quarterRose(sample, selection, 'Long axes, angle to z, by volume', 'grains', 'axis1', 'volume'),
   ];
   element('charts').append(make('h2', {}, 'Charts'),
-    make('p', { className: 'hint' }, 'Gray: all. Blue: what passes the filters. Drag in a chart to filter by it, click in it to take that back. Circles of roses: no preferred direction.'),
+    make('p', { className: 'hint' }, 'Gray: all. Blue: what passes the filters. Drag in a chart to filter by it, click in it to take that back. Circles of roses: no preferred direction. Whiskers: two standard errors, by the numbers counted; a sector whose whisker reaches the circle shows no preference.'),
     make('div', { className: 'panels' }, ...charts.map((chart) => chart.figure)));
   const drawAll = () => charts.forEach((chart) => chart.draw());
   selection.listen((what) => {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 // Several samples side by side: numbers, pictures, distributions, roses.
-import { binEdges, inPercent, sumsOf } from './bins.js';
+import { binEdges, doubtsOf, inPercent, sumsOf } from './bins.js';
 import { element } from './decode.js';
 import { Plot } from './plot.js';
 import { fullRose, quarterRose } from './roses.js';
@@ -20,7 +20,7 @@ const distributions = [
 export async function startComparison(count) {
   document.body.classList.add('several');
   const samples = [];
-  for (let i = 0; i < count; ++i) samples.push(await Sample.load(`-${i}`));
+  for (let i = 0; i < count; ++i) samples.push(await Sample.load(`-${i}`, i > 0 ? samples[0].shownUnit : null));
   element('origin').textContent = `${count} samples`;
   element('numbers').append(numbersTable(samples));
   element('warnings').append(...samples.filter((sample) => warnings(sample).length > 0).map((sample) =>
@@ -33,7 +33,7 @@ export async function startComparison(count) {
 }
 
 function numbersTable(samples) {
-  const columns = samples.map(tiles);
+  const columns = samples.map((sample) => tiles(sample));
   const head = make('tr', {}, make('td', {}), ...samples.map(({ about }) => make('th', { scope: 'col' }, about.title)));
   const rows = columns[0].map(([title], row) => make('tr', {}, make('th', { scope: 'row' }, title),
     ...columns.map((values) => make('td', {}, values[row][1]))));
@@ -67,8 +67,13 @@ function overlaid(samples, { kind, name, title, weight, discrete, what }) {
     const sums = sumsOf(values[i], weight && sample[kind].column(weight), edges);
     return inPercent(sums, sums.reduce((a, b) => a + b, 0));
   });
-  plot.clear(Math.max(...shares.flat()));
-  shares.forEach((heights, i) => plot.steps(edges, heights, colorOf(i)));
+  const doubts = samples.map((sample, i) => doubtsOf(values[i],
+    weight ? sample[kind].column(weight) : values[i].map(() => 1), edges));
+  plot.clear(Math.max(...shares.flatMap((heights, i) => heights.map((height, bin) => height + doubts[i][bin]))));
+  shares.forEach((heights, i) => {
+    plot.steps(edges, heights, colorOf(i));
+    plot.whiskers(edges, heights, doubts[i], colorOf(i), (i + 1) / (samples.length + 1));
+  });
   return plot.figure;
 }
 

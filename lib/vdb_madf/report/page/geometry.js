@@ -75,16 +75,16 @@ export function cutGeometry(space, axis, at) {
   return geometry;
 }
 
-/// `center`: what explodes with the bond.
-export function bondGeometry(sample, space, bonds, as) {
-  return as === 'discs' ? discs(sample, space, bonds) : lines(sample, space, bonds);
+/// `center`: what explodes with the bond. `colors`: three bytes for each bond of the sample.
+export function bondGeometry(sample, space, bonds, colors, as) {
+  return as === 'discs' ? discs(sample, space, bonds, colors) : lines(sample, space, bonds, colors);
 }
 
-function discs(sample, space, bonds) {
-  const shortest = Math.min(...sample.about.edges);
+function discs(sample, space, bonds, colors) {
+  const shortest = Math.min(...sample.edges);
   const radii = sample.bonds.column('radius');
   const normals = ['x', 'y', 'z'].map((axis) => sample.bonds.column(`normal_${axis}`));
-  const places = [], centers = [], directions = [], index = [];
+  const places = [], centers = [], directions = [], shades = [], index = [];
   for (const bond of bonds) {
     const center = space.toWorld(sample.placeOf('bonds', bond));
     const n = normals.map((column) => column[bond]);
@@ -97,24 +97,28 @@ function discs(sample, space, bonds) {
         places.push(center[k] + radius * (Math.cos(angle) * u[k] + Math.sin(angle) * v[k]));
       centers.push(...center);
       directions.push(...n);
+      shades.push(...colors.subarray(3 * bond, 3 * bond + 3));
       if (i >= 2) index.push(first, first + i - 1, first + i);
     }
   }
-  const geometry = bondAttributes(places, centers, directions);
+  const geometry = bondAttributes(places, centers, directions, shades);
   geometry.setIndex(attribute(new Uint32Array(index), 1));
   return geometry;
 }
 
-function lines(sample, space, bonds) {
-  const places = [];
+function lines(sample, space, bonds, colors) {
+  const places = [], shades = [];
   for (const bond of bonds)
-    for (const end of ['first', 'second'])
+    for (const end of ['first', 'second']) {
       places.push(...space.toWorld(sample.placeOf('grains', sample.bondEnds[end][bond])));
-  return bondAttributes(places, places, places);
+      shades.push(...colors.subarray(3 * bond, 3 * bond + 3));
+    }
+  return bondAttributes(places, places, places, shades);
 }
 
-function bondAttributes(places, centers, directions) {
+function bondAttributes(places, centers, directions, shades) {
   const geometry = new three.BufferGeometry();
+  geometry.setAttribute('color', new three.BufferAttribute(new Uint8Array(shades), 3, true));
   for (const [name, values] of [['position', places], ['center', centers], ['normal', directions]])
     geometry.setAttribute(name, attribute(new Float32Array(values), 3));
   return geometry;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The card of what is selected: its numbers, its bonds, what to do with it.
 import { element } from './decode.js';
-import { make, written } from './sample.js';
+import { counted, make, written } from './sample.js';
 
 const shown = ['equivalent_diameter', 'voxels', 'coordination', 'inscribed_radius', 'sphericity',
   'axis1_length', 'axis2_length', 'axis3_length', 'free_area', 'shared_area'];
@@ -22,7 +22,7 @@ export function startGrain(sample, selection) {
       card.append(make('p', {}, `${rows.length} grains: `, ...links(sample, selection, rows)));
     }
   };
-  selection.listen((what) => { if (['selection', 'filter', 'strictness'].includes(what)) draw(); });
+  selection.listen((what) => { if (['selection', 'filter', 'strictness', 'edits'].includes(what)) draw(); });
   draw();
 }
 
@@ -57,8 +57,24 @@ function describe(sample, selection, row) {
       make('dd', {}, `${written(sample.grains.column(name)[row])} ${unit}`));
   }
   const atFace = sample.grains.column('at_domain_face')[row];
-  return [make('h3', {}, `Grain ${sample.ids[row]}${atFace ? ', cut by a face of the scan' : ''}`), list,
-    ...bondList(sample, selection, row)];
+  return [make('h3', {}, `Grain ${sample.ids[row]}${atFace ? ', cut by a face of the scan' : ''}`),
+    ...partList(sample, selection, row), list, ...bondList(sample, selection, row)];
+}
+
+/// What it was made of, to see and to part.
+function partList(sample, selection, row) {
+  const { parts } = selection;
+  if (!parts) return [];
+  const show = make('input', { type: 'checkbox', id: 'parts', checked: selection.showsParts });
+  show.addEventListener('change', () => {
+    selection.showsParts = show.checked;
+    selection.changed('looks');
+  });
+  const split = make('button', { type: 'button', disabled: !selection.mayEdit,
+    onclick: () => selection.addEdits(`split ${sample.ids[row]}`) }, 'Split it so');
+  return [make('p', {}, `Two parts, of ${parts.parts.map((part) => counted(part.voxels)).join(' and ')} voxels, ` +
+    `are one up to the strictness ${written(parts.strictness)}.`),
+  make('div', { className: 'bar' }, make('label', {}, show, ' show them'), split)];
 }
 
 function bondList(sample, selection, row) {

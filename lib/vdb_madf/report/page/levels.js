@@ -44,20 +44,119 @@ export class Levels {
     this.placeOf = Uint32Array.from(Array.from({ length: this.places }, (_, i) => i).filter((i) => !empty.has(i)));
   }
 
-  /// The grain of each leaf, from 0 on, numbered as 'vdb_madf remerge' does (from 1 on).
-  grainsAt(strictness) {
+  /// How many joins there are at a strictness.
+  joinsAt(strictness) {
     const least = Math.round(strictness * kUnitsOfScore);
     let made = 0;
     while (made < this.joins && this.strictness[made] >= least) ++made;
+    return made;
+  }
+
+  /// What the name of each place is after so many joins.
+  namesAfter(made) {
     // What a name became in the end is known of the later joins first.
     const name = Uint32Array.from({ length: this.places }, (_, i) => i);
     for (let join = made - 1; join >= 0; --join) name[this.gone[join]] = name[this.kept[join]];
+    return name;
+  }
+
+  /// The grain of each leaf, from 0 on, numbered as 'vdb_madf remerge' does (from 1 on).
+  grainsAt(strictness) {
+    const name = this.namesAfter(this.joinsAt(strictness));
     const hasVoxels = new Uint8Array(this.places);
     for (const place of this.placeOf) hasVoxels[name[place]] = 1;
     const number = new Uint32Array(this.places);
     let count = 0;
     for (let place = 0; place < this.places; ++place) if (hasVoxels[place]) number[place] = count++;
     return { count, grainOf: this.placeOf.map((place) => number[name[place]]) };
+  }
+
+  /// The strictnesses between which each row of grains is the same, and that at which each bond
+  /// vanishes, as method/grain_lives.h says; NaN: none. What happens beyond the slider does not count.
+  lives(strictness, rowOfBody, count, bondEnds) {
+    const cut = this.joinsAt(strictness), name = this.namesAfter(cut);
+    const at = (join) => this.strictness[join] / kUnitsOfScore;
+    const voxels = new Float64Array(this.places), grainVoxels = new Float64Array(this.places);
+    this.placeOf.forEach((place, body) => { voxels[place] = this.leaf.voxels[body]; });
+    voxels.forEach((value, place) => { grainVoxels[name[place]] += value; });
+    const isBorn = new Uint8Array(this.places), alive = new Int32Array(this.places).fill(-1);
+    voxels.forEach((value, place) => {
+      if (isAlmost(value, grainVoxels[name[place]])) isBorn[name[place]] = 1;
+      if (name[place] === place && grainVoxels[place] > 0) alive[place] = place;
+    });
+    const born = new Float64Array(this.places).fill(NaN), dies = born.slice();
+    for (let join = 0; join < this.joins; ++join) {
+      const one = this.kept[join], other = this.gone[join], sum = voxels[one] + voxels[other];
+      const grain = name[one];
+      if (join >= cut) {
+        const lived = [alive[one], alive[other]].filter((its) => its >= 0);
+        const survivors = lived.filter((its) => isAlmost(grainVoxels[its], sum));
+        for (const its of lived) if (!survivors.includes(its)) dies[its] = at(join);
+        alive[one] = survivors.length > 0 ? survivors[0] : -1;
+      } else if (!isBorn[grain] && isAlmost(sum, grainVoxels[grain])) {
+        isBorn[grain] = 1;
+        born[grain] = at(join);
+      }
+      voxels[one] = sum;
+    }
+    const nameOf = this.namesOfRows(name, rowOfBody, count);
+    const first = born.map((value) => value - strictness), last = dies.map((value) => strictness - value);
+    const range = this.highest - this.lowest;
+    const stability = first.map((value, place) => Math.min(Number.isNaN(value) ? range : value,
+      Number.isNaN(last[place]) ? range : last[place]));
+    const ofRows = (values) => Float64Array.from(nameOf, (place) => values[place]);
+    return { born: ofRows(born), dies: ofRows(dies), stability: ofRows(stability),
+      vanishes: Float64Array.from(bondEnds.first, (row, bond) =>
+        this.joinedAt(cut, nameOf[row], nameOf[bondEnds.second[bond]])) };
+  }
+
+  /// That of its largest leaf, of each row.
+  namesOfRows(name, rowOfBody, count) {
+    const { voxels } = this.leaf;
+    const names = new Uint32Array(count), largest = new Float64Array(count);
+    rowOfBody.forEach((row, body) => {
+      if (voxels[body] <= largest[row]) return;
+      largest[row] = voxels[body];
+      names[row] = name[this.placeOf[body]];
+    });
+    return names;
+  }
+
+  /// The largest strictness at which two names after the first joins are one; NaN: none.
+  joinedAt(cut, one, other) {
+    if (!this.joinOfGone) {
+      this.joinOfGone = new Int32Array(this.places).fill(this.joins);
+      this.gone.forEach((place, join) => { this.joinOfGone[place] = join; });
+    }
+    let last = cut - 1;
+    while (one !== other) {
+      const joins = [this.joinOfGone[one], this.joinOfGone[other]];
+      last = Math.min(...joins);
+      if (last === this.joins) return NaN;
+      if (joins[0] === last) one = this.kept[last]; else other = this.kept[last];
+    }
+    return last < cut ? NaN : this.strictness[last] / kUnitsOfScore;
+  }
+
+  /// The two that a grain was made of by its last join, as 'vdb_madf edit' splits it: the bodies and
+  /// voxels of each, and the strictness of the join; null if no join made it.
+  partsOf(strictness, rowOfBody, row) {
+    const { voxels } = this.leaf;
+    const bodies = Array.from(rowOfBody.keys()).filter((body) => rowOfBody[body] === row);
+    const cut = this.joinsAt(strictness), nameAtCut = this.namesAfter(cut);
+    const names = new Set(bodies.map((body) => nameAtCut[this.placeOf[body]]));
+    if (names.size > 1) return null;  // something else made it
+    for (let join = cut - 1; join >= 0; --join) {
+      if (!names.has(nameAtCut[this.kept[join]])) continue;
+      const name = this.namesAfter(join);
+      const parts = [this.kept[join], this.gone[join]].map((place) => {
+        const its = bodies.filter((body) => name[this.placeOf[body]] === place);
+        return { bodies: its, voxels: its.reduce((sum, body) => sum + voxels[body], 0) };
+      });
+      if (parts.every((part) => part.voxels > 0))
+        return { parts, strictness: this.strictness[join] / kUnitsOfScore };
+    }
+    return null;
   }
 
   /// That of a grain.
@@ -209,13 +308,18 @@ export class Levels {
   }
 }
 
+function isAlmost(smaller, larger) {
+  return 50 * smaller >= 49 * larger;
+}
+
 /// A table with the columns of another one; NaN where there are no numbers.
 function tableLike(table, numbers, rows) {
   const columns = table.columns.filter(({ isDerived }) => !isDerived);
   const unknown = new Float64Array(rows).fill(NaN);
-  return { rows, columns, column: (name) => numbers[name] || unknown,
+  const column = (name) => numbers[name] || unknown;
+  return { rows, columns, column,
     get lines() {
-      const values = columns.map(({ name }) => this.column(name));
+      const values = columns.map(({ name }) => column(name));
       const cell = (value) => (Number.isNaN(value) ? '' : String(Number(value.toPrecision(9))));
       return [table.lines[0], ...Array.from({ length: rows }, (_, row) =>
         values.map((column) => cell(column[row])).join(','))];

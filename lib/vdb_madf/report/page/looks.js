@@ -4,8 +4,9 @@
 
 const stops = [[68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141],
   [39, 173, 129], [92, 200, 99], [170, 220, 50], [253, 231, 37]];
-const unknown = [150, 150, 150];
-export const selectedColor = [255, 196, 0];
+export const unknownColor = [150, 150, 150];
+const bondColor = [199, 33, 28];
+export const selectedColor = [255, 196, 0], secondColor = [255, 110, 30];
 
 /// Of a share from 0 to 1.
 export function ramp(share) {
@@ -15,8 +16,13 @@ export function ramp(share) {
     Math.round(value + (place - below) * (stops[below + 1][i] - value)));
 }
 
+/// A grain that is the same this much farther is as sure as any.
+const ranges = { stability: [0, 1] };
+
 /// What the ramp spans: the values without the outermost 1 % at either end.
-export function rangeOf(values) {
+export function rangeOf(table, name) {
+  if (ranges[name]) return ranges[name];
+  const values = table.column(name);
   const sorted = values.filter((value) => !Number.isNaN(value)).sort();
   if (sorted.length === 0) return [0, 1];
   const at = (share) => sorted[Math.round(share * (sorted.length - 1))];
@@ -54,13 +60,15 @@ export function colorsOfUnions({ count, grains, bondsOf, bondEnds, rowOfBody, le
   return colors;
 }
 
-/// Three bytes a grain.
-export function colorsOf(sample, name) {
-  if (!name) return sample.colors;
-  const values = sample.grains.column(name);
-  const [low, high] = rangeOf(values);
-  const colors = new Uint8Array(3 * sample.count);
-  for (let row = 0; row < sample.count; ++row)
-    colors.set(Number.isNaN(values[row]) ? unknown : ramp((values[row] - low) / (high - low)), 3 * row);
+/// Three bytes a grain, or a bond, by a column or without one.
+export function colorsOf(sample, kind, name) {
+  if (!name && kind === 'grains') return sample.colors;
+  const table = sample[kind];
+  const values = name && table.column(name);
+  const [low, high] = name ? rangeOf(table, name) : [];
+  const colors = new Uint8Array(3 * table.rows);
+  for (let row = 0; row < table.rows; ++row)
+    colors.set(!name ? bondColor : Number.isNaN(values[row]) ? unknownColor
+      : ramp((values[row] - low) / (high - low)), 3 * row);
   return colors;
 }

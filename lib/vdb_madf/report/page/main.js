@@ -12,20 +12,33 @@ import { startSlices } from './slices.js';
 import { startStrictness } from './strictness.js';
 import { startSummary } from './summary.js';
 import { startSweep } from './sweep.js';
+import { startTheme, startUnits } from './switches.js';
 import { startTables } from './tables.js';
 import { newCamera, startView } from './view.js';
 
 async function start() {
-  if (element('samples')) await startComparison(json('samples')); else await startSample();
+  if (element('samples')) {
+    startTheme(null);
+    await startComparison(json('samples'));
+  } else {
+    await startSample();
+  }
   document.documentElement.dataset.ready = 'yes';
 }
 
 async function startSample() {
-  const sample = await Sample.load();
+  const state = new URLSearchParams(location.hash.slice(1));
+  const sample = await Sample.load('', state.get('unit'));
   await sample.loadVoxels();
   const selection = new Selection(sample);
   const camera = newCamera(sample);
-  readState(location.hash.slice(1), selection, camera);
+  selection.theme = ['light', 'dark'].find((theme) => theme === state.get('theme')) || null;
+  startTheme(selection.theme, (theme) => {
+    selection.theme = theme;
+    selection.changed('theme');
+  });
+  startUnits(sample, selection, camera);
+  readState(state, selection, camera);
   selection.applyFilters();
   selection.changed('looks');
   startSummary(sample, selection);

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 // What is written over the view: axes, a scale bar, a color bar.
-import { ramp, rangeOf } from './looks.js';
+import { ramp, rangeOf, unknownColor } from './looks.js';
 import { makeSvg, written } from './sample.js';
 
-const axisColors = ['#b3261e', '#1b7f3b', '#1f5fbf'];
+const axisColors = ['var(--x)', 'var(--y)', 'var(--z)'];
 
-function text(x, y, content, anchor = 'start', fill = '#222') {
+function text(x, y, content, anchor = 'start', fill = 'var(--text)') {
   return makeSvg('text', { x, y, 'text-anchor': anchor, fill }, content);
 }
 
@@ -22,7 +22,9 @@ export function drawOverlay(svg, scene, sample, selection) {
   svg.setAttribute('viewBox', `0 0 ${width} ${height}`);
   drawAxes(svg, scene.camera.axes(), height);
   drawScale(svg, sample, scene.scale, width, height);
-  if (selection.colorBy) drawColorBar(svg, sample, selection.colorBy, width, height);
+  if (selection.colorBy) drawColorBar(svg, sample, 'grains', selection.colorBy, width, height);
+  if (selection.bondsAs !== 'none' && selection.bondColorBy)
+    drawColorBar(svg, sample, 'bonds', selection.bondColorBy, width, height);
 }
 
 function drawAxes(svg, { right, up }, height) {
@@ -37,20 +39,25 @@ function drawAxes(svg, { right, up }, height) {
 }
 
 function drawScale(svg, sample, scale, width, height) {
-  const perUnit = scale / Math.min(...sample.about.edges);
+  const perUnit = scale / Math.min(...sample.edges);
   const length = roundLength(Math.min(150, width / 4) / perUnit);
   const pixels = length * perUnit, x = width - 16 - pixels, y = height - 16;
-  svg.append(makeSvg('rect', { x, y, width: pixels, height: 4, fill: '#222' }),
+  svg.append(makeSvg('rect', { x, y, width: pixels, height: 4, fill: 'var(--text)' }),
     text(x + pixels / 2, y - 5, sample.length(length), 'middle'));
 }
 
-function drawColorBar(svg, sample, name, width, height) {
-  const [low, high] = rangeOf(sample.grains.column(name));
-  const tall = Math.min(160, height - 130), x = width - 26, y = 42, steps = 32;
-  for (let i = 0; i < steps; ++i)
-    svg.append(makeSvg('rect', { x, y: y + tall * i / steps, width: 12, height: tall / steps + 0.5,
-      fill: `rgb(${ramp(1 - (i + 0.5) / steps)})` }));
-  svg.append(text(x + 12, y - 20, sample.titleWithUnit('grains', name), 'end'));
+/// That of grains on the right, that of bonds on the left.
+function drawColorBar(svg, sample, kind, name, width, height) {
+  const isRight = kind === 'grains', anchor = isRight ? 'end' : 'start';
+  const [low, high] = rangeOf(sample[kind], name);
+  const tall = Math.min(160, height - 150), x = isRight ? width - 26 : 14, y = 42, steps = 32;
+  const tick = isRight ? x - 5 : x + 17;
+  const box = (top, high_, color) => svg.append(makeSvg('rect', { x, y: top, width: 12, height: high_, fill: `rgb(${color})` }));
+  for (let i = 0; i < steps; ++i) box(y + tall * i / steps, tall / steps + 0.5, ramp(1 - (i + 0.5) / steps));
+  svg.append(text(isRight ? x + 12 : x, y - 20, (isRight ? '' : 'bonds: ') + sample.titleWithUnit(kind, name), anchor));
   for (const share of [0, 0.5, 1])
-    svg.append(text(x - 5, y + tall * (1 - share) + 4, written(low + share * (high - low), 3), 'end'));
+    svg.append(text(tick, y + tall * (1 - share) + 4, written(low + share * (high - low), 3), anchor));
+  if (!sample[kind].column(name).some(Number.isNaN)) return;
+  box(y + tall + 12, 12, unknownColor);
+  svg.append(text(tick, y + tall + 23, 'none', anchor));
 }

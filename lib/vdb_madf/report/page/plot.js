@@ -70,6 +70,16 @@ export class Plot {
     });
   }
 
+  /// Up and down from the top of each bar; `place`: where across it.
+  whiskers(edges, heights, doubts, color, place = 0.5) {
+    heights.forEach((height, i) => {
+      const x = this.toX(edges[i] + place * (edges[i + 1] - edges[i]));
+      if (height > 0)
+        this.add('line', { class: 'whisker', x1: x, x2: x, y1: this.toY(Math.max(0, height - doubts[i])),
+          y2: this.toY(height + doubts[i]), ...(color && { style: `stroke: ${color}` }) });
+    });
+  }
+
   /// The outline of bars.
   steps(edges, heights, color) {
     const tops = heights.map((height, i) =>

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 // Directions: how much of the weight each sector has, over what it had if no direction were preferred.
+import { shareDoubts } from './bins.js';
 import { make, makeSvg } from './sample.js';
 
 const kFullSectors = 18;  // of half a turn
@@ -24,8 +25,8 @@ class Rose {
   }
 
   draw() {
-    const { shares, starts, step } = this.sectors(this.directions, this.weights, this.flags());
-    const highest = Math.max(1, ...shares);
+    const { shares, doubts, starts, step } = this.sectors(this.directions, this.weights, this.flags());
+    const highest = Math.max(1, ...shares.map((share, i) => share + doubts[i]));
     const scale = Math.min(unit, most / highest);
     const at = (radius, angle) => `${(middle + radius * Math.cos(angle)).toFixed(2)} ${(middle - radius * Math.sin(angle)).toFixed(2)}`;
     this.svg.replaceChildren();
@@ -34,6 +35,12 @@ class Rose {
       if (radius > 0)
         this.svg.append(makeSvg('path', { class: 'shown',
           d: `M${middle} ${middle}L${at(radius, begin)}A${radius} ${radius} 0 0 0 ${at(radius, begin + step)}Z` }));
+    });
+    shares.forEach((share, i) => {
+      const angle = starts[i] + step / 2;
+      if (share > 0)
+        this.svg.append(makeSvg('path', { class: 'whisker',
+          d: `M${at(Math.max(0, share - doubts[i]) * scale, angle)}L${at((share + doubts[i]) * scale, angle)}` }));
     });
     this.svg.append(makeSvg('circle', { cx: middle, cy: middle, r: scale, class: 'class' }));
     for (const [name, angle] of this.corners)
@@ -44,34 +51,40 @@ class Rose {
 
 /// Azimuths of axial directions in the x-y plane, each with its weight times its shadow's length there.
 function azimuths([x, y], weights, flags) {
-  const step = Math.PI / kFullSectors, sums = new Array(kFullSectors).fill(0);
+  const step = Math.PI / kFullSectors, sums = new Array(kFullSectors).fill(0), squares = [...sums];
   let total = 0;
   for (let row = 0; row < weights.length; ++row) {
     const share = flags[row] ? weights[row] * Math.hypot(x[row], y[row]) : 0;
     if (!(share > 0)) continue;
     const angle = (Math.atan2(y[row], x[row]) + 2 * Math.PI) % Math.PI;
-    sums[Math.floor(angle / step + 0.5) % kFullSectors] += share;
+    const sector = Math.floor(angle / step + 0.5) % kFullSectors;
+    sums[sector] += share;
+    squares[sector] += share * share;
     total += share;
   }
   const shares = sums.map((sum) => (total ? sum * kFullSectors / total : 0));
-  return { shares: [...shares, ...shares], step,
+  const doubts = shareDoubts(sums, squares).map((doubt) => doubt * kFullSectors);
+  return { shares: [...shares, ...shares], doubts: [...doubts, ...doubts], step,
     starts: Array.from({ length: 2 * kFullSectors }, (_, i) => step * (i - 0.5)) };
 }
 
 /// Angles to z, upward in the picture; four times the same.
 function rises([x, y, z], weights, flags) {
-  const step = Math.PI / 2 / kQuarterSectors, sums = new Array(kQuarterSectors).fill(0);
-  let total = 0;
+  const step = Math.PI / 2 / kQuarterSectors, sums = new Array(kQuarterSectors).fill(0), squares = [...sums];
   for (let row = 0; row < weights.length; ++row) {
     if (!flags[row] || Number.isNaN(x[row])) continue;
     const angle = Math.atan2(Math.hypot(x[row], y[row]), Math.abs(z[row]));
-    sums[Math.min(kQuarterSectors - 1, Math.floor(angle / step))] += weights[row];
-    total += weights[row];
+    const sector = Math.min(kQuarterSectors - 1, Math.floor(angle / step));
+    sums[sector] += weights[row];
+    squares[sector] += weights[row] ** 2;
   }
-  const quarter = sums.map((sum, i) =>
-    (total ? sum / total / (Math.cos(i * step) - Math.cos((i + 1) * step)) : 0));
-  const half = [...quarter, ...[...quarter].reverse()];
-  return { shares: [...half, ...half], step,
+  const total = sums.reduce((a, b) => a + b, 0);
+  const whole = (quarter) => {
+    const even = quarter.map((value, i) => value / (Math.cos(i * step) - Math.cos((i + 1) * step)));
+    const half = [...even, ...even.slice().reverse()];
+    return [...half, ...half];
+  };
+  return { shares: whole(sums.map((sum) => (total ? sum / total : 0))), doubts: whole(shareDoubts(sums, squares)), step,
     starts: Array.from({ length: 4 * kQuarterSectors }, (_, i) => Math.PI / 2 - step * (i + 1)) };
 }
 

@@ -15,21 +15,56 @@ const titles = {
 };
 
 /// Of lines, told apart by those who are blind to a color, too (Okabe and Ito).
-export const lineColors = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#000000', '#999999'];
+export const lineColors = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', 'currentColor', '#999999'];
+
+const perMetre = { nm: 1e9, um: 1e6, mm: 1e3 };
+const smaller = { mm: 'um', um: 'nm' };
+const kShort = 0.1;  // of a unit, for the size of a grain
 
 export class Sample {
-  /// Its tables. `suffix`: of the ids of its elements.
-  static async load(suffix = '') {
+  /// Its tables. `suffix`: of the ids of its elements; `unit`: to show lengths in, if it is one of
+  /// `units`, else the one in which grains are easiest to read.
+  static async load(suffix = '', unit = null) {
     const sample = new Sample();
     sample.isOwn = true;
     sample.about = json(`about${suffix}`);
     sample.numbers = json(`sample${suffix}`);
+    sample.chooseUnit(unit);
     const text = new TextDecoder();
     const { columns } = sample.about;
-    sample.grains = table(text.decode(await bytes(`grains${suffix}`)), columns.grains);
-    sample.bonds = table(text.decode(await bytes(`bonds${suffix}`)), columns.bonds);
+    sample.grains = sample.inUnit(table(text.decode(await bytes(`grains${suffix}`)), columns.grains));
+    sample.bonds = sample.inUnit(table(text.decode(await bytes(`bonds${suffix}`)), columns.bonds));
     sample.link();
     return sample;
+  }
+
+  chooseUnit(unit) {
+    const { unit: own, edges, voxelSizeKnown } = this.about;
+    const isCube = new Set(edges).size === 1;
+    this.units = voxelSizeKnown ? [...Object.keys(perMetre), ...(isCube ? ['voxel'] : [])] : [own];
+    const { d50 } = this.numbers[`grain_diameter_by_volume_${own}`];
+    this.usualUnit = smaller[own] && d50 > 0 && d50 < kShort ? smaller[own] : own;
+    this.shownUnit = this.units.includes(unit) ? unit : this.usualUnit;
+    this.factor = this.factorTo(this.shownUnit);
+    this.edges = edges.map((edge) => edge * this.factor);
+  }
+
+  /// From the unit of the files.
+  factorTo(unit) {
+    const { unit: own, edges } = this.about;
+    return unit === own ? 1 : unit === 'voxel' ? 1 / edges[0] : perMetre[unit] / perMetre[own];
+  }
+
+  /// A table with its columns in the unit that is shown; its lines are those of the file.
+  inUnit(file) {
+    const made = new Map();
+    const column = (name) => {
+      const power = file.columns.find((one) => one.name === name)?.power;
+      if (!power || this.factor === 1) return file.column(name);
+      if (!made.has(name)) made.set(name, file.column(name).map((value) => value * this.factor ** power));
+      return made.get(name);
+    };
+    return Object.assign(Object.create(file), { columns: file.columns, column });
   }
 
   async loadVoxels() {
@@ -40,6 +75,7 @@ export class Sample {
     this.rowOfBody = this.levels ? Uint32Array.from(this.levels.ownGrain, (id) => this.rowOf.get(id))
       : Uint32Array.from({ length: this.count }, (_, row) => row);
     this.volume = labelVolume(await bytes('labels'), this.about.slices.size, this.bodies);
+    if (this.levels) this.addLives(this.levels.own);
     this.own = { ...this };
   }
 
@@ -50,9 +86,12 @@ export class Sample {
       Object.assign(this, this.own);
       return;
     }
-    Object.assign(this, this.levels.at(strictness, this.own));
+    const { rowOfBody, grains, bonds } = this.levels.at(strictness, this.own);
+    Object.assign(this, { rowOfBody, grains: this.inUnit(grains), bonds: this.inUnit(bonds) });
     this.link();
-    this.numbers = numbersOf(this, strictness);
+    this.addLives(strictness);
+    const { numbers } = this.own;
+    this.numbers = { ...numbers, bonds_without_curvature: 0, segmentation: { ...numbers.segmentation, strictness } };
     this.colors = colorsOfUnions(this);
   }
 
@@ -79,21 +118,51 @@ export class Sample {
       this.bondsOf[second[bond]].push(bond);
       ratio[bond] = 2 * radius[bond] / Math.min(diameter[first[bond]], diameter[second[bond]]);
     }
-    const column = bonds.column;
-    bonds.columns = [...bonds.columns, { name: 'radius_ratio', power: 0, isDerived: true }];
-    bonds.column = (name) => (name === 'radius_ratio' ? ratio : column(name));
+    addColumn(bonds, 'radius_ratio', ratio);
+    this.bondOfPair = new Map(Array.from(first, (one, bond) => [one * this.count + second[bond], bond]));
+  }
+
+  /// How sure grains and bonds are, as far as the slider goes.
+  addLives(strictness) {
+    const { born, dies, stability, vanishes } = this.levels.lives(strictness, this.rowOfBody, this.count, this.bondEnds);
+    for (const [name, values] of Object.entries({ born, dies, stability })) addColumn(this.grains, name, values);
+    addColumn(this.bonds, 'vanishes', vanishes);
+  }
+
+  /// That of two rows of grains; -1: none.
+  bondBetween(one, other) {
+    return this.bondOfPair.get(Math.min(one, other) * this.count + Math.max(one, other)) ?? -1;
   }
 
   unit(power) {
-    const { unit } = this.about;
-    const name = unit === 'um' ? '\u00b5m' : unit === 'voxel' && power > 0 ? 'voxels' : unit;
+    const name = this.shownUnit === 'um' ? '\u00b5m'
+      : this.shownUnit === 'voxel' && power > 0 ? 'voxels' : this.shownUnit;
     return power ? powers[power].replace('u', name) : '';
   }
 
-  /// A length with its unit, micrometers where that is easier to read.
+  /// A length with its unit.
   length(value, digits = 4) {
-    return this.about.unit === 'mm' && value > 0 && value < 0.1
-      ? `${written(1000 * value, digits)} \u00b5m` : `${written(value, digits)} ${this.unit(1)}`;
+    return `${written(value, digits)} ${this.unit(1)}`;
+  }
+
+  /// The numbers of the grains and bonds whose flags are set, lengths in the unit that is shown.
+  summary(visible, visibleBonds) {
+    const { grains, bonds, numbers, factor, about } = this;
+    const isAll = this.isOwn && !visible.includes(0) && !visibleBonds.includes(0);
+    const sum = (values, flags) => values.reduce((total, value, row) => total + (flags[row] ? value : 0), 0);
+    const volume = grains.column('volume'), shownVolume = sum(volume, visible);
+    const count = sum(visible, visible), bondCount = sum(visibleBonds, visibleBonds);
+    const share = visible.includes(0) ? shownVolume / sum(volume, volume) : 1;
+    const surface = (numbers[`specific_surface_per_${about.unit}`] ?? NaN) / factor;
+    const median = (by) => (isAll ? factor * (numbers[`grain_diameter_by_${by}_${about.unit}`].d50 ?? NaN)
+      : medianOf(grains.column('equivalent_diameter'), by === 'number' ? visible : volume, visible));
+    const shownSurface = visible.includes(0) ? sum(grains.column('free_area'), visible) / shownVolume : surface;
+    return { grains: count, bonds: bondCount, solidFraction: share * numbers.solid_fraction,
+      coordination: isAll ? numbers.mean_coordination : sum(grains.column('coordination'), visible) / count,
+      diameterByVolume: median('volume'), diameterByNumber: median('number'), surface: shownSurface,
+      ratio: isAll ? numbers.bond_to_grain_ratio : sum(bonds.column('radius_ratio'), visibleBonds) / bondCount,
+      surfaceOfMass: numbers.specific_surface_m2_per_kg * shownSurface / surface,
+      density: numbers.bulk_density_kg_per_m3 * share };
   }
 
   columnOf(kind, name) {
@@ -112,8 +181,7 @@ export class Sample {
 
   /// Index coordinates of a place in the tables.
   placeOf(kind, row, name = 'centroid') {
-    return ['x', 'y', 'z'].map((axis, i) =>
-      this[kind].column(`${name}_${axis}`)[row] / this.about.edges[i]);
+    return ['x', 'y', 'z'].map((axis, i) => this[kind].column(`${name}_${axis}`)[row] / this.edges[i]);
   }
 
   /// From 1 on; 0: none.
@@ -128,22 +196,18 @@ export class Sample {
   }
 }
 
-/// Those of the labels, but for what another strictness changes.
-function numbersOf({ grains, bonds, own, about }, strictness) {
-  const diameters = grains.column('equivalent_diameter');
-  const median = (weights) => {
-    const rows = Array.from(diameters.keys()).sort((a, b) => diameters[a] - diameters[b]);
-    const half = 0.5 * weights.reduce((sum, weight) => sum + weight, 0);
-    let below = 0;
-    return { d50: diameters[rows.find((row) => (below += weights[row]) >= half)] };
-  };
-  const ratios = bonds.column('radius_ratio');
-  return { ...own.numbers, grains: grains.rows, bonds: bonds.rows,
-    mean_coordination: grains.rows > 0 ? 2 * bonds.rows / grains.rows : 0,
-    bond_to_grain_ratio: bonds.rows > 0 ? ratios.reduce((sum, ratio) => sum + ratio, 0) / bonds.rows : null,
-    [`grain_diameter_by_number_${about.unit}`]: median(diameters.map(() => 1)),
-    [`grain_diameter_by_volume_${about.unit}`]: median(grains.column('voxels')),
-    bonds_without_curvature: 0, segmentation: { ...own.numbers.segmentation, strictness } };
+/// One that the files do not have.
+function addColumn(table, name, values) {
+  const { column } = table;
+  table.columns = [...table.columns, { name, power: 0, isDerived: true }];
+  table.column = (one) => (one === name ? values : column(one));
+}
+
+function medianOf(values, weights, flags) {
+  const rows = Array.from(values.keys()).filter((row) => flags[row]).sort((a, b) => values[a] - values[b]);
+  const half = 0.5 * rows.reduce((sum, row) => sum + weights[row], 0);
+  let below = 0;
+  return values[rows.find((row) => (below += weights[row]) >= half)];
 }
 
 /// Four digits, without an exponent where that is short.

@@ -3,14 +3,13 @@
 // The grains in three dimensions.
 import * as three from 'three';
 import { bondGeometry, cutGeometry, frameGeometry, grainGeometry } from './geometry.js';
-import { selectedColor } from './looks.js';
+import { secondColor, selectedColor } from './looks.js';
 import { kHidden, kPale, kPlain, kSelected } from './selection.js';
 import * as shaders from './shaders.js';
 
 const kTableWidth = 256;
 const kPaleStrength = 0.24;
 const kFar = 1e9;  // beyond every box
-const bondColor = new three.Vector3(0.78, 0.13, 0.11);
 
 /// WebGL 2, or null. Smooth edges cost too much where software draws.
 export function contextOf(canvas) {
@@ -19,7 +18,7 @@ export function contextOf(canvas) {
   const info = probe.getExtension('WEBGL_debug_renderer_info');
   const name = info ? probe.getParameter(info.UNMASKED_RENDERER_WEBGL) : '';
   const isSoftware = /swiftshader|llvmpipe|software|basic render/i.test(name);
-  return canvas.getContext('webgl2', { antialias: !isSoftware, alpha: false });
+  return canvas.getContext('webgl2', { antialias: !isSoftware });
 }
 
 export class Scene {
@@ -28,7 +27,7 @@ export class Scene {
     this.space = new Space(sample.about);
     this.renderer = new three.WebGLRenderer({ canvas, context });
     this.renderer.autoClear = false;
-    this.renderer.setClearColor(0xffffff, 1);
+    this.renderer.setClearColor(0, 0);  // the page shows through
     this.eye = new three.OrthographicCamera(-1, 1, 1, -1, 0, 1);
     this.eye.matrixAutoUpdate = false;
     this.pixel = new three.WebGLRenderTarget(1, 1);
@@ -39,7 +38,7 @@ export class Scene {
     this.frame = new three.Scene();
     this.frame.add(new three.LineSegments(frameGeometry(this.space), raw(shaders.lineVertex, shaders.lineFragment, {})));
     selection.listen((what) => {
-      if (what === 'slices' || what === 'edits') return;
+      if (['slices', 'edits', 'theme'].includes(what)) return;
       if (what === 'strictness') this.updatePlaces();
       if (what !== 'camera' && what !== 'cuts') this.updateLooks();
       if (what === 'cuts') this.updateCuts();
@@ -98,7 +97,7 @@ export class Scene {
   }
 
   makeBonds() {
-    const uniforms = { ...this.shared, color: { value: bondColor }, isLit: { value: true } };
+    const uniforms = { ...this.shared, isLit: { value: true } };
     const material = raw(shaders.bondVertex, shaders.bondFragment, uniforms);
     material.side = three.DoubleSide;
     this.bondUniforms = uniforms;
@@ -109,14 +108,14 @@ export class Scene {
   }
 
   updateLooks() {
-    const { colors, states, bondsAs, selected, others } = this.selection;
+    const { colors, states, bondsAs, selected, others, secondPart } = this.selection;
     // Bonds lie within the grains: these make way for them.
     const plain = bondsAs !== 'none' && selected.size === 0
       ? { pale: kPale, plain: kPlain, hidden: kHidden }[others] : kPlain;
     const { data } = this.looks.image;
     this.sample.rowOfBody.forEach((row, body) => {
       const state = states[row];
-      const color = state === kSelected ? selectedColor : colors.subarray(3 * row, 3 * row + 3);
+      const color = state === kSelected ? (secondPart.has(body) ? secondColor : selectedColor) : colors.subarray(3 * row, 3 * row + 3);
       data.set(color, 4 * body);
       data[4 * body + 3] = state === kPlain ? plain : state;
     });
@@ -149,13 +148,13 @@ export class Scene {
   }
 
   updateBonds() {
-    const { bondsAs } = this.selection;
+    const { bondsAs, bondColors } = this.selection;
     this.discs.visible = bondsAs === 'discs';
     this.lines.visible = bondsAs === 'lines';
     if (bondsAs === 'none') return;
     const object = bondsAs === 'discs' ? this.discs : this.lines;
     object.geometry.dispose();
-    object.geometry = bondGeometry(this.sample, this.space, this.selection.shownBonds(), bondsAs);
+    object.geometry = bondGeometry(this.sample, this.space, this.selection.shownBonds(), bondColors, bondsAs);
     this.bondUniforms.isLit.value = bondsAs === 'discs';
   }
 
@@ -278,7 +277,6 @@ export class Scene {
     this.aim(Math.floor(x), Math.floor(y), 1, 1);
     this.shared.picking.value = true;
     this.renderer.setRenderTarget(this.pixel);
-    this.renderer.setClearColor(0, 0);
     const bytes = new Uint8Array(4);
     let body = -1;
     for (const part of [this.solid, this.pale]) {
@@ -289,7 +287,6 @@ export class Scene {
       if (body >= 0) break;
     }
     this.renderer.setRenderTarget(null);
-    this.renderer.setClearColor(0xffffff, 1);
     this.shared.picking.value = false;
     return body < 0 ? -1 : this.sample.rowOfBody[body];
   }

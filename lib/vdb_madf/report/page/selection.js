@@ -15,6 +15,7 @@ export class Selection {
     this.colorBy = '';  // a column of grains; '': the labels' colors
     this.others = 'pale';  // grains beside the selected: pale, plain or hidden
     this.bondsAs = 'none';  // none, discs or lines
+    this.bondColorBy = '';  // a column of bonds; '': one color
     this.explode = 0;
     // An axis each: where it is cut, as a share of the box; what lies beyond is not shown.
     this.cuts = [1, 1, 1];
@@ -22,10 +23,20 @@ export class Selection {
     const { size } = sample.about.slices;
     this.slices = size.map((count) => Math.floor(count / 2));
     this.edits = [];
+    this.editsAt = null;  // the strictness that they are of, if the page knows one
+    this.showsParts = false;  // of a grain that is selected alone, in two colors
+    this.unit = sample.shownUnit;
+    this.theme = null;  // that of the system
     this.strictness = null;  // that of the labels
     this.pieces = [];  // bodies: see setStrictness()
     this.startFlags();
-    this.colors = colorsOf(sample, '');
+    this.updateColors();
+    this.updateParts();
+  }
+
+  updateColors() {
+    this.colors = colorsOf(this.sample, 'grains', this.colorBy);
+    this.bondColors = colorsOf(this.sample, 'bonds', this.bondColorBy);
   }
 
   startFlags() {
@@ -50,7 +61,7 @@ export class Selection {
     this.changed('strictness');
   }
 
-  /// call(what): 'selection', 'filter', 'looks', 'cuts', 'slices', 'edits', 'camera',
+  /// call(what): 'selection', 'filter', 'looks', 'cuts', 'slices', 'edits', 'camera', 'theme',
   /// 'strictness' (all of the sample is new)
   listen(call) {
     this.listeners.push(call);
@@ -59,7 +70,8 @@ export class Selection {
   changed(...what) {
     const isNew = what.includes('strictness');
     if (isNew || what.includes('filter')) this.applyFilters();
-    if (isNew || what.includes('looks')) this.colors = colorsOf(this.sample, this.colorBy);
+    if (isNew || what.includes('looks')) this.updateColors();
+    if (isNew || what.includes('selection') || what.includes('looks')) this.updateParts();
     this.updateStates();
     for (const one of what) for (const call of this.listeners) call(one);
   }
@@ -87,6 +99,17 @@ export class Selection {
   setFilter(kind, name, range) {
     if (range) this.filters[kind].set(name, range); else this.filters[kind].delete(name);
     this.changed('filter');
+  }
+
+  /// For the page when it is opened anew: filters keep what they let pass.
+  useUnit(unit) {
+    const factor = this.sample.factorTo(unit) / this.sample.factor;
+    for (const kind of ['grains', 'bonds'])
+      for (const [name, range] of this.filters[kind]) {
+        const scale = factor ** this.sample.columnOf(kind, name).power;
+        this.filters[kind].set(name, range.map((value) => Number((scale * value).toPrecision(12))));
+      }
+    this.unit = unit;
   }
 
   clearFilters() {
@@ -128,6 +151,30 @@ export class Selection {
   neighbors(row) {
     const { first, second } = this.sample.bondEnds;
     return this.sample.bondsOf[row].map((bond) => (first[bond] === row ? second[bond] : first[bond]));
+  }
+
+  /// The strictness that the page shows; null: it has no levels.
+  get shownStrictness() {
+    const { levels } = this.sample;
+    return !levels ? null : this.strictness === null ? levels.own : this.strictness;
+  }
+
+  /// parts: what a grain that is selected alone was made of (Levels.partsOf()); null: none is known.
+  updateParts() {
+    const { levels, rowOfBody } = this.sample;
+    const [row] = this.selected;
+    this.parts = levels && this.selected.size === 1 ? levels.partsOf(this.shownStrictness, rowOfBody, row) : null;
+    this.secondPart = new Set(this.showsParts && this.parts ? this.parts.parts[1].bodies : []);
+  }
+
+  addEdits(...edits) {
+    this.editsAt = this.shownStrictness;
+    this.edits.push(...edits);
+    this.changed('edits');
+  }
+  /// The numbers of grains mean something at the strictness alone that the list is of.
+  get mayEdit() {
+    return this.edits.length === 0 || this.editsAt === this.shownStrictness;
   }
 
   /// Bonds to draw: those of the selected grains, or all.

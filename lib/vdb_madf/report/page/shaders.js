@@ -55,7 +55,7 @@ void main() {
   if (any(lessThan(place, low)) || any(greaterThan(place, high))) discard;
   // Where a cut shows the inside of a surface, the cut face is drawn over it (but for a rim).
   result = picking ? idColor(number)
-    : vec4(mix(vec3(1.0), gl_FrontFacing ? lit(color, viewNormal) : 0.9 * color, strength), 1.0);
+    : vec4(gl_FrontFacing ? lit(color, viewNormal) : 0.9 * color, 1.0) * strength;
 }`;
 
 /// The face of a cut: slice has the numbers of the grains there, from 1 on.
@@ -88,7 +88,7 @@ void main() {
   vec4 look = texelFetch(looks, cellOf(grain), 0);
   float state = look.a * 255.0;
   if (state < lowState || state > highState) discard;
-  result = picking ? idColor(grain) : vec4(mix(vec3(1.0), 0.97 * look.rgb, strength), 1.0);
+  result = picking ? idColor(grain) : vec4(0.97 * look.rgb, 1.0) * strength;
 }`;
 
 /// Bonds: discs, or lines between the grains' centroids.
@@ -96,22 +96,23 @@ export const bondVertex = `${head}
 uniform mat4 modelViewMatrix, projectionMatrix;
 uniform mat3 normalMatrix;
 uniform float explode;
-in vec3 position, center, normal;
-out vec3 place, viewNormal;
+in vec3 position, center, normal, color;
+out vec3 place, viewNormal, shade;
 void main() {
   place = position;
+  shade = color;
   viewNormal = normalMatrix * normal;
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position + explode * center, 1.0);
 }`;
 
 export const bondFragment = `${head}${light}
-uniform vec3 low, high, color;
+uniform vec3 low, high;
 uniform bool isLit;
-in vec3 place, viewNormal;
+in vec3 place, viewNormal, shade;
 out vec4 result;
 void main() {
   if (any(lessThan(place, low)) || any(greaterThan(place, high))) discard;
-  result = vec4(isLit ? lit(color, gl_FrontFacing ? viewNormal : -viewNormal) : color, 1.0);
+  result = vec4(isLit ? lit(shade, gl_FrontFacing ? viewNormal : -viewNormal) : shade, 1.0);
 }`;
 
 export const lineVertex = `${head}

@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Three slices through the labels, with what is selected and filtered as in the view.
 import { element } from './decode.js';
-import { selectedColor } from './looks.js';
+import { secondColor, selectedColor } from './looks.js';
 import { make, makeSvg } from './sample.js';
 import { kHidden, kPale, kSelected } from './selection.js';
 
 const names = ['x', 'y', 'z'];
-const hiddenColor = [224, 226, 229];
-const white = [255, 255, 255];
+const hiddenColor = [128, 136, 144];
+// How much of the page a color covers.
+const kNothing = 0, kHiddenCover = 62, kPaleCover = 90, kFullCover = 255;
 
 /// The planes x-y, x-z and y-z: what goes to the right and what goes down; z goes up.
 const planes = [[0, 1], [0, 2], [1, 2]];
@@ -24,7 +25,7 @@ export function startSlices(sample, selection) {
       `A pixel stands for ${factor} \u00d7 ${factor} \u00d7 ${factor} voxels: the label that most of them have.`));
   const drawAll = () => panels.forEach((panel) => panel.draw());
   selection.listen((what) => {
-    if (what !== 'camera' && what !== 'cuts' && what !== 'edits') drawAll();
+    if (!['camera', 'cuts', 'edits', 'theme'].includes(what)) drawAll();
   });
   drawAll();
 }
@@ -95,19 +96,25 @@ class Panel {
 
   draw() {
     const { selection, sample } = this;
-    const { colors, states } = selection;
+    const { colors, states, bondsAs, bondColors, secondPart } = selection;
     const { data } = this.image;
     let to = 0;
     for (let line = 0; line < this.height; ++line)
       for (let column = 0; column < this.width; ++column, to += 4) {
-        const row = sample.rowAt(...this.voxel(column, line));
+        const voxel = this.voxel(column, line), row = sample.rowAt(...voxel);
         const state = row < 0 ? -1 : states[row];
-        const color = state < 0 ? white : state === kHidden ? hiddenColor
-          : state === kSelected ? selectedColor : null;
-        const pale = state === kPale ? 0.65 : 0;
-        for (let k = 0; k < 3; ++k)
-          data[to + k] = color ? color[k] : colors[3 * row + k] + pale * (255 - colors[3 * row + k]);
-        data[to + 3] = 255;
+        const bond = bondsAs === 'none' ? -1 : this.bondAt(row, column, line);
+        let source = colors, at = 3 * row, cover = kFullCover;
+        if (state < 0) cover = kNothing;
+        else if (bond >= 0) [source, at] = [bondColors, 3 * bond];
+        else if (state === kHidden) [source, at, cover] = [hiddenColor, 0, kHiddenCover];
+        else if (state === kSelected) {
+          const isSecond = secondPart.size > 0 && secondPart.has(sample.bodyAt(...voxel) - 1);
+          [source, at] = [isSecond ? secondColor : selectedColor, 0];
+        }
+        else if (state === kPale) cover = kPaleCover;
+        for (let k = 0; k < 3; ++k) data[to + k] = source[at + k];
+        data[to + 3] = cover;
       }
     this.canvas.getContext('2d').putImageData(this.image, 0, 0);
     this.drawCross();
@@ -115,7 +122,22 @@ class Panel {
     this.slider.value = layer;
     const { factor, min } = sample.about.slices;
     const index = (layer + min[this.fixed]) * factor + (factor - 1) / 2;
-    this.place.textContent = sample.length(index * sample.about.edges[this.fixed]);
+    this.place.textContent = sample.length(index * sample.edges[this.fixed]);
+  }
+
+  /// The bond of a grain with that of the pixel to the right or below, if it is shown; -1: none.
+  bondAt(row, column, line) {
+    const { selected, visibleBonds } = this.selection;
+    if (row < 0) return -1;
+    for (const [right, down] of [[1, 0], [0, 1]]) {
+      if (column + right >= this.width || line + down >= this.height) continue;
+      const other = this.sample.rowAt(...this.voxel(column + right, line + down));
+      if (other < 0 || other === row) continue;
+      const bond = this.sample.bondBetween(row, other);
+      if (bond >= 0 && visibleBonds[bond] && (selected.size === 0 || selected.has(row) || selected.has(other)))
+        return bond;
+    }
+    return -1;
   }
 
   drawCross() {

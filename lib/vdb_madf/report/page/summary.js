@@ -13,7 +13,7 @@ function percent(share) {
 export function originOf(sample) {
   const { numbers } = sample;
   const size = numbers.box_max.map((high, i) => high - numbers.box_min[i] + 1);
-  const edges = sample.about.edges.map((edge) => sample.length(edge));
+  const edges = sample.edges.map((edge) => sample.length(edge));
   const cubes = new Set(edges).size === 1;
   const voxel = sample.about.voxelSizeKnown
     ? `voxels of ${cubes ? edges[0] : edges.join(' \u00d7 ')}`
@@ -23,27 +23,33 @@ export function originOf(sample) {
   return [numbers.labels, `${size.join(' \u00d7 ')} voxels`, voxel, made].filter(Boolean).join('; ');
 }
 
-/// Titles and values of the numbers of a sample.
-export function tiles(sample) {
-  const { numbers, about } = sample;
-  const u = about.unit;
-  const number = (name) => numbers[name];
-  const d50 = (by) => number(`grain_diameter_by_${by}_${u}`).d50;
+/// Titles and values of the numbers of a sample, or of its grains and bonds whose flags are set.
+export function tiles(sample, visible = new Uint8Array(sample.count).fill(1),
+  visibleBonds = new Uint8Array(sample.bonds.rows).fill(1)) {
+  const numbers = sample.summary(visible, visibleBonds);
   const result = [
-    ['Grains', counted(number('grains'))],
-    ['Bonds', counted(number('bonds'))],
-    ['Bonds a grain', written(number('mean_coordination'), 3)],
-    ['Solid fraction', percent(number('solid_fraction'))],
-    ['Median diameter, by volume', sample.length(d50('volume'), 3)],
-    ['Median diameter, by number', sample.length(d50('number'), 3)],
-    ['Specific surface', `${written(number(`specific_surface_per_${u}`), 3)} ${sample.unit(-1)}`],
-    ['Bond radius / grain radius', written(number('bond_to_grain_ratio'), 3)],
+    ['Grains', counted(numbers.grains)],
+    ['Bonds', counted(numbers.bonds)],
+    ['Bonds a grain', written(numbers.coordination, 3)],
+    ['Solid fraction', percent(numbers.solidFraction)],
+    ['Median diameter, by volume', sample.length(numbers.diameterByVolume, 3)],
+    ['Median diameter, by number', sample.length(numbers.diameterByNumber, 3)],
+    ['Specific surface', `${written(numbers.surface, 3)} ${sample.unit(-1)}`],
+    ['Bond radius / grain radius', written(numbers.ratio, 3)],
   ];
-  if ('specific_surface_m2_per_kg' in numbers)
-    result.push(['Specific surface', `${written(number('specific_surface_m2_per_kg'), 3)} m\u00b2/kg`]);
-  if ('bulk_density_kg_per_m3' in numbers)
-    result.push(['Density', `${written(number('bulk_density_kg_per_m3'), 3)} kg/m\u00b3`]);
+  if ('specific_surface_m2_per_kg' in sample.numbers)
+    result.push(['Specific surface', `${written(numbers.surfaceOfMass, 3)} m\u00b2/kg`]);
+  if ('bulk_density_kg_per_m3' in sample.numbers)
+    result.push(['Density', `${written(numbers.density, 3)} kg/m\u00b3`]);
   return result;
+}
+
+function drawTiles(sample, selection) {
+  const all = selection.filterCount > 0 ? tiles(sample) : [];
+  element('numbers').replaceChildren(...tiles(sample, selection.visible, selection.visibleBonds).map(([title, value], i) => {
+    const whole = all.length > 0 ? [' ', make('small', {}, `of all ${all[i][1]}`)] : [];
+    return make('div', { className: 'tile' }, make('b', {}, value, ...whole), make('span', {}, title));
+  }));
 }
 
 export function warnings(sample) {
@@ -73,13 +79,15 @@ export function warnings(sample) {
 export function startSummary(sample, selection) {
   const draw = () => {
     element('origin').textContent = originOf(sample);
-    element('numbers').replaceChildren(...tiles(sample).map(([title, value]) =>
-      make('div', { className: 'tile' }, make('b', {}, value), make('span', {}, title))));
+    drawTiles(sample, selection);
     const list = warnings(sample);
     element('warnings').replaceChildren(
       ...(list.length > 0 ? [make('ul', {}, ...list.map((text) => make('li', {}, text)))] : []));
   };
-  selection.listen((what) => { if (what === 'strictness') draw(); });
+  selection.listen((what) => {
+    if (what === 'strictness') draw();
+    if (what === 'filter') drawTiles(sample, selection);
+  });
   draw();
   // What lies below must not move away under the slider for the strictness.
   if (sample.levels) element('warnings').style.minHeight = `${element('warnings').offsetHeight}px`;

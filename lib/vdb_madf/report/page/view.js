@@ -8,7 +8,7 @@ import { make } from './sample.js';
 import { contextOf, Scene, Space } from './scene.js';
 
 /// Columns that say nothing as a color.
-const notColors = /^(id|centroid_|representative_|box_|axis[123]_[xyz]$)/;
+const notColors = /^(id$|first$|second$|centroid_|representative_|box_|normal_|neck_normal_|axis[123]_[xyz]$)/;
 
 export function newCamera(sample) {
   return new Camera(sample.about.view, 2 * new Space(sample.about).radius);
@@ -17,6 +17,8 @@ export function newCamera(sample) {
 /// @return the scene, or null where there is none
 export async function startView(sample, selection, camera) {
   const stage = element('stage');
+  // Its height is such that it fits on the screen with what is above it (page.css).
+  stage.style.setProperty('--above', `${stage.getBoundingClientRect().top + window.scrollY}px`);
   const context = sample.about.mesh && contextOf(element('canvas'));
   const mesh = context && await sample.loadMesh();
   element('wait').remove();
@@ -48,26 +50,33 @@ export async function startView(sample, selection, camera) {
 
 function controls(sample, selection, camera) {
   const box = element('controls');
-  const color = make('select', { id: 'color' }, make('option', { value: '' }, 'a color each'));
-  for (const { name } of sample.grains.columns)
-    if (!notColors.test(name))
-      color.append(make('option', { value: name }, sample.titleWithUnit('grains', name)));
+  const color = columnChoice(sample, 'grains', 'color', 'a color each');
   bind(color, selection, 'colorBy', 'looks');
   box.append(labelled('Color by', color));
-  if (!camera) return;
+  const bondColor = columnChoice(sample, 'bonds', 'bond-color', 'one color');
+  bind(bondColor, selection, 'bondColorBy', 'looks');
   const others = choice('others', { pale: 'pale', plain: 'as they are', hidden: 'hidden' });
   bind(others, selection, 'others', 'selection');
   const bonds = choice('bonds-as', { none: 'not shown', discs: 'discs', lines: 'lines' });
   bind(bonds, selection, 'bondsAs', 'selection');
+  box.append(labelled('Beside the selected', others), labelled('Bonds', bonds), labelled('Color bonds by', bondColor));
+  if (!camera) return;
   const explode = make('input', { id: 'explode', type: 'range', min: 0, max: 1.5, step: 0.05 });
   bind(explode, selection, 'explode', 'looks', Number);
-  box.append(labelled('Beside the selected', others), labelled('Bonds', bonds), labelled('Explode', explode));
+  box.append(labelled('Explode', explode));
   ['x', 'y', 'z'].forEach((name, axis) => box.append(cutControl(selection, name, axis)));
   const views = make('span', { className: 'buttons' });
   for (const name of ['x', 'y', 'z'])
     views.append(button(`along ${name}`, () => camera.axis(name), selection));
   views.append(button('home', () => camera.home(), selection));
   box.append(labelled('Look', views, 'div'));
+}
+
+function columnChoice(sample, kind, id, usual) {
+  const select = make('select', { id }, make('option', { value: '' }, usual));
+  for (const { name } of sample[kind].columns)
+    if (!notColors.test(name)) select.append(make('option', { value: name }, sample.titleWithUnit(kind, name)));
+  return select;
 }
 
 function button(title, act, selection) {
