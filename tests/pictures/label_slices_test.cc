@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include "support/catch.h"
 #include "support/label_shapes.h"
@@ -158,7 +159,7 @@ TEST_CASE("label_slices: gray values show between the outlines of grains", "[lab
   labels->fill(CoordBBox(Coord(10, 0, 0), Coord(17, 9, 9)), 2);
   const GrainColors colors = grainColors(*labels);
   SliceOptions options;
-  options.edge = 200;
+  options.edge = 600;
   options.planes = {{1, 4}};  // x-z: z is up
   GrayPlane gray{20, 10, {}};
   for (int z = 0; z < 10; ++z)
@@ -166,14 +167,21 @@ TEST_CASE("label_slices: gray values show between the outlines of grains", "[lab
   options.gray = {gray};
   const Picture picture = labelSlices(*labels, box, colors, options).pictures[0];
   const auto grayOf = [](int value) { return Rgb{uint8_t(value), uint8_t(value), uint8_t(value)}; };
-  CHECK(picture.at(5, 95) == grayOf(0));     // voxel (0, 0)
-  CHECK(picture.at(195, 95) == grayOf(19));  // (19, 0)
-  CHECK(picture.at(5, 5) == grayOf(90));     // (0, 9)
-  CHECK(picture.at(55, 45) == grayOf(55));   // (5, 5), within a grain
-  CHECK(picture.at(20, 45) == colors.colorOf(1));
-  CHECK(picture.at(99, 45) == colors.colorOf(1));
-  CHECK(picture.at(100, 45) == colors.colorOf(2));
-  CHECK(picture.at(179, 45) == colors.colorOf(2));
+  CHECK(picture.at(15, 285) == grayOf(0));    // voxel (0, 0)
+  CHECK(picture.at(585, 285) == grayOf(19));  // (19, 0)
+  CHECK(picture.at(15, 15) == grayOf(90));    // (0, 9)
+  CHECK(picture.at(165, 135) == grayOf(55));  // (5, 5), within a grain
+  // From both ends of a grain inwards its color, a dark and a light line, then gray.
+  const Rgb dark = grayOf(25), light = grayOf(235);
+  const std::vector<Rgb> left{colors.colorOf(1), colors.colorOf(1), dark, light, grayOf(52)};
+  const std::vector<Rgb> right{colors.colorOf(2), colors.colorOf(2), dark, light, grayOf(67)};
+  for (int i = 0; i < 5; ++i) {
+    CHECK(picture.at(60 + i, 135) == left[size_t(i)]);
+    CHECK(picture.at(539 - i, 135) == right[size_t(i)]);
+  }
+  CHECK(picture.at(59, 135) == grayOf(51));
+  CHECK(picture.at(299, 135) == colors.colorOf(1));
+  CHECK(picture.at(300, 135) == colors.colorOf(2));
   options.gray.front().width = 19;
   CHECK_THROWS_AS(labelSlices(*labels, box, colors, options), InvalidInput);
 }

@@ -181,6 +181,65 @@ TEST_CASE("cli: render draws outlines of grains on the gray scan", "[cli]") {
   CHECK(bench.run("render s.vdb w.png --overlay missing.tif").exitCode == 1);
 }
 
+TEST_CASE("cli: render frames the grains that are selected", "[cli]") {
+  const Bench bench;
+  bench.write("l.raw", [] {
+    std::string voxels(24 * 24 * 24, '\0');
+    for (int z = 2; z < 6; ++z)
+      for (int y = 4; y < 7; ++y)
+        for (int x = 15; x < 20; ++x) voxels[size_t((z * 24 + y) * 24 + x)] = 2;
+    voxels[0] = 1;
+    return voxels;
+  }());
+  const std::string raw = " --dims 24x24x24 --type uint8 --no-axes --size 60 ";
+  bench.mustRun("render l.raw all.png --only view" + raw);
+  bench.mustRun("render l.raw one.png --only view --azimuth 0 --elevation 0 --select 2" + raw);
+  // 5 x 4 voxels of 12 pixels, seen along y; a line of the caption below.
+  const auto colored = [](const Picture& picture) {
+    return std::count_if(picture.pixels.begin(), picture.pixels.end(), [](const Rgb& c) {
+      return std::max({c[0], c[1], c[2]}) > std::min({c[0], c[1], c[2]}) + 20;
+    });
+  };
+  CHECK(colored(readPng(bench.bytes("one.png"))) == 60 * 48);
+  CHECK(colored(readPng(bench.bytes("all.png"))) < 60 * 48 / 4);
+  // The middle slices of all miss it, those of the grain do not.
+  bench.mustRun("render l.raw slices.png --only slices --select 2" + raw);
+  CHECK(colored(readPng(bench.bytes("slices.png"))) > 100);
+  bench.mustRun("render l.raw slices.png --only slices" + raw);
+  CHECK(colored(readPng(bench.bytes("slices.png"))) == 0);
+}
+
+TEST_CASE("cli: render turns the grains, in pictures of one size", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate spheres s.vdb --size 30 --count 4 --radius 4:6");
+  const std::string options = " --only view --size 80 --transparent ";
+  bench.mustRun("render s.vdb turn.png --turn 3 --azimuth 10" + options);
+  const Picture first = readPng(bench.bytes("turn_000.png"));
+  for (const char* name : {"turn_001.png", "turn_002.png"}) {
+    const Picture next = readPng(bench.bytes(name));
+    CHECK(next.width == first.width);
+    CHECK(next.height == first.height);
+    CHECK(next.pixels != first.pixels);
+  }
+  CHECK(bench.names().count("turn.png") + bench.names().count("turn_003.png") == 0);
+  CHECK(bench.run("render s.vdb w.png --turn 4").exitCode == 2);
+  CHECK(bench.run("render s.vdb w.png --only view --turn 1").exitCode == 2);
+}
+
+TEST_CASE("cli: render colors grains by a column of their table", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSintered + "--voxel-size 10um");
+  bench.mustRun("render s.vdb plain.png --size 64");
+  bench.mustRun("render s.vdb by.png --size 64 --color-by sphericity");
+  CHECK(readPng(bench.bytes("by.png")).pixels != readPng(bench.bytes("plain.png")).pixels);
+  const auto wrong = bench.run("render s.vdb w.png --color-by colour");
+  CHECK(wrong.exitCode == 1);
+  CHECK_THAT(wrong.err, vdb_madf::test::Contains("s.vdb: grains have no 'colour': there are id, "));
+  CHECK(bench.run("render s.vdb w.png --color-by stability").exitCode == 1);
+  bench.mustRun("segment s.vdb k.vdb --keep manifold");
+  bench.mustRun("render k.vdb sure.png --size 64 --color-by stability");
+}
+
 TEST_CASE("cli: labels without a voxel size are drawn with the one that is given", "[cli]") {
   const Bench bench;
   bench.mustRun("generate spheres s.vdb --size 40 --count 4 --radius 6:8 --voxel-size 8.5um");

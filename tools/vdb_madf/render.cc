@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <limits>
@@ -15,11 +16,15 @@
 #include "input_options.h"
 #include "outputs.h"
 #include "parse.h"
+#include "remerge_slabs.h"
 #include "scan_option.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/files/output_set.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/intensity/gray_planes.h"
+#include "vdb_madf/measure/measure_stability.h"
+#include "vdb_madf/pictures/column_colors.h"
 #include "vdb_madf/pictures/label_panels.h"
 #include "vdb_madf/pictures/png_file.h"
 
@@ -29,9 +34,9 @@ namespace {
 
 struct RenderArguments {
   InputOptions input;
-  std::string out, only, slice, select, scan, scanGrid;
-  int size = 512;
-  bool interfaces = false, noAxes = false;
+  std::string out, only, slice, select, scan, scanGrid, colorBy;
+  int size = 512, frames = 1;
+  bool interfaces = false, noAxes = false, transparent = false;
   ViewOptions view;
   // Filled by parse().
   std::vector<SlicePlane> planes;
@@ -57,6 +62,12 @@ std::vector<SlicePlane> parseSlices(const std::string& text) {
   return planes;
 }
 
+/// OUT.png, of several OUT_000.png and so on.
+std::string frameName(const RenderArguments& o, int frame) {
+  if (o.frames == 1) return o.out;
+  return fmt::format("{}_{:03}.png", o.out.substr(0, o.out.size() - 4), frame);
+}
+
 void parse(RenderArguments& o) {
   if (!hasPngEnding(o.out)) throw WrongUsage(o.out + ": the output's ending must be .png");
   // Option::range() lets NaN pass.
@@ -64,21 +75,23 @@ void parse(RenderArguments& o) {
   if (!std::isfinite(o.view.elevation)) throw WrongUsage("--elevation: not a finite number");
   if (o.only == "view" && !o.slice.empty()) throw WrongUsage("--slice: --only view has no slices");
   if (o.only == "view" && !o.scan.empty()) throw WrongUsage("--overlay: --only view has no slices");
+  if (o.frames > 1 && o.only != "view") throw WrongUsage("--turn: it is of views: add --only view");
   o.planes = parseSlices(o.slice);
   if (int64_t(o.planes.size() + 1) * o.size * o.size > kMostPixels)
     throw WrongUsage(fmt::format("--slice: {} of {} pixels are too large a picture: lower --size",
                                  counted(int64_t(o.planes.size()), "slice"), o.size));
   o.selected = parseGrains(o.select, "--select");
-  o.input.outputs = {o.out};
+  std::sort(o.selected.begin(), o.selected.end());
+  for (int frame = 0; frame < o.frames; ++frame) o.input.outputs.push_back(frameName(o, frame));
   o.input.parse();
   checkScan({o.scan, o.scanGrid, "--overlay"}, o.input);
 }
 
 std::vector<GrayPlane> grayPlanes(const RenderArguments& o, const CoordBBox& box,
-                                  const Common& common) {
+                                  const std::vector<SlicePlane>& given, const Common& common) {
   if (o.scan.empty()) return {};
   GrayScan scan = openScan({o.scan, o.scanGrid, "--overlay"}, o.input, common.progress);
-  const std::vector<SlicePlane> planes = o.planes.empty() ? middlePlanes(box) : o.planes;
+  const std::vector<SlicePlane> planes = given.empty() ? middlePlanes(box) : given;
   for (const SlicePlane& plane : planes)
     if (plane.index < box.min()[plane.axis] || plane.index > box.max()[plane.axis])
       return {};  // labelPanels() says it better
@@ -94,6 +107,14 @@ std::string scaleText(double voxelsPerPixel) {
   return number.str() + (large ? " pixels a voxel" : " voxels a pixel");
 }
 
+/// Labels in a file, or in slabs.
+struct Source {
+  bool isInSlabs = false;
+  LabelSlabs slabs;
+  Int32Grid::ConstPtr labels;  ///< of slabs, without voxels
+  CoordBBox box;
+};
+
 /// As boxOf().
 CoordBBox boxOfSlabs(const LabelSlabs& labels, const Common& common) {
   if (const auto domain = storedDomain(*labels.about)) return domain->box();
@@ -105,50 +126,118 @@ CoordBBox boxOfSlabs(const LabelSlabs& labels, const Common& common) {
   return box;
 }
 
-void runRender(const RenderArguments& o, const Common& common) {
-  checkWritable(o.out);
-  const bool areInSlabs = isInSlabs(o.input);
-  LabelSlabs slabs;
-  Int32Grid::ConstPtr labels;  // of slabs, without voxels
-  if (areInSlabs) {
-    slabs = openLabelSlabs(o.input, "--grid", common.progress);
-    labels = slabs.about;
+Source openSource(const RenderArguments& o, const Common& common) {
+  Source source;
+  source.isInSlabs = isInSlabs(o.input);
+  if (source.isInSlabs) {
+    source.slabs = openLabelSlabs(o.input, "--grid", common.progress);
+    source.labels = source.slabs.about;
+    source.box = boxOfSlabs(source.slabs, common);
   } else {
-    labels = loadLabels(o.input, "--grid", common.progress);
+    source.labels = loadLabels(o.input, "--grid", common.progress);
+    source.box = boxOf(*source.labels);
   }
-  const CoordBBox box = areInSlabs ? boxOfSlabs(slabs, common) : boxOf(*labels);
-  if (box.empty())
+  if (source.box.empty())
     throw InvalidInput(o.input.path + ": has no labels and no domain: nothing to show");
+  return source;
+}
 
+void expandBySelected(const RenderArguments& o, const Int32Grid& labels, CoordBBox& box) {
+  for (auto voxel = labels.cbeginValueOn(); voxel; ++voxel) {
+    if (!std::binary_search(o.selected.begin(), o.selected.end(), *voxel)) continue;
+    CoordBBox its;
+    voxel.getBoundingBox(its);
+    box.expand(its);
+  }
+}
+
+/// Of the grains that are selected; empty if there are none.
+CoordBBox boxOfSelected(const RenderArguments& o, const Source& source, const Common& common) {
+  CoordBBox box;
+  if (o.selected.empty()) return box;
+  if (!source.isInSlabs) expandBySelected(o, *source.labels, box);
+  for (size_t s = 0; source.isInSlabs && s < source.slabs.slabCount(); ++s)
+    expandBySelected(o, *source.slabs.read(s, common.progress), box);
+  box.intersect(source.box);
+  return box;
+}
+
+ColumnColors colorsBy(const RenderArguments& o, const Source& source, const Common& common) {
+  if (source.isInSlabs)
+    throw InvalidInput("--color-by is of labels in one file: write these as one (convert)");
+  Measurements measured = measure(*source.labels, {}, common.progress);
+  if (o.colorBy == "born" || o.colorBy == "dies" || o.colorBy == "stability")
+    measureStability(keptGraph(o.input, common.progress), measured);
+  return columnColors(measured, o.colorBy);
+}
+
+PanelOptions panelOptions(const RenderArguments& o, const Source& source, const Common& common) {
   PanelOptions options;
   options.slices = o.only != "view";
   options.view = o.only != "slices";
   options.edge = o.size;
   options.direction = o.view;
+  options.direction.turns = o.frames > 1;
   options.axes = !o.noAxes;
-  options.planes = o.planes;
-  options.gray = grayPlanes(o, box, common);
   options.select = o.selected;
+  options.frame = boxOfSelected(o, source, common);
+  options.planes = o.planes;
+  if (o.planes.empty() && !options.frame.empty()) options.planes = middlePlanes(options.frame);
+  options.gray = grayPlanes(o, source.box, options.planes, common);
   options.interfaces = o.interfaces;
-  const std::vector<PicturePanel> panels = withFileName(o.input.path, [&] {
-    return areInSlabs ? labelPanels(slabs, box, options, common.progress)
-                      : labelPanels(*labels, box, options, common.progress);
-  });
-  const Picture sheet = pictureSheet(panels, storedVoxelSize(*labels));
-  writePng(o.out, sheet);
-  common.progress->end();
-  if (common.quiet) return;
-  std::cout << o.out << ": " << sheet.width << " x " << sheet.height << " pixels; ";
-  if (options.slices)
+  return options;
+}
+
+void print(const RenderArguments& o, const Picture& sheet, double voxelsPerPixel,
+           const Int32Grid& labels) {
+  std::cout << frameName(o, 0) << ": " << sheet.width << " x " << sheet.height << " pixels; ";
+  if (o.only != "view")
     std::cout << (o.planes.empty() ? "middle slices x-y, x-z, y-z"
                                    : counted(int64_t(o.planes.size()), "slice"))
-              << " (z up), " << scaleText(panels[0].voxelsPerPixel)
-              << (hasCubicVoxels(*labels) ? "" : " along its shortest edge");
+              << " (z up), " << scaleText(voxelsPerPixel)
+              << (hasCubicVoxels(labels) ? "" : " along its shortest edge");
   if (o.only.empty()) std::cout << "; ";
-  if (options.view)
+  if (o.only != "slices")
     std::cout << "view from azimuth " << o.view.azimuth << ", elevation " << o.view.elevation
               << " degrees";
+  if (o.frames > 1) std::cout << ", and " << o.frames - 1 << " more around z";
   std::cout << "\n";
+}
+
+void runRender(const RenderArguments& o, const Common& common) {
+  for (const std::string& output : o.input.outputs) checkWritable(output);
+  const Source source = openSource(o, common);
+  PanelOptions options = panelOptions(o, source, common);
+  std::optional<ColumnColors> columns;
+  if (!o.colorBy.empty()) {
+    columns = withFileName(o.input.path, [&] { return colorsBy(o, source, common); });
+    options.colors = columns->colors;
+  }
+  double voxelsPerPixel = 1;
+  const auto drawn = [&](int frame, const Rgb& background) {
+    options.direction.background = background;
+    options.direction.azimuth = o.view.azimuth + 360.0 * frame / o.frames;
+    std::vector<PicturePanel> panels = withFileName(o.input.path, [&] {
+      return source.isInSlabs ? labelPanels(source.slabs, source.box, options, common.progress)
+                              : labelPanels(*source.labels, source.box, options, common.progress);
+    });
+    voxelsPerPixel = panels[0].voxelsPerPixel;
+    if (columns) panels.push_back(colorScalePanel(*columns, o.size, background));
+    return pictureSheet(panels, storedVoxelSize(*source.labels), background);
+  };
+  constexpr Rgb kWhite{255, 255, 255}, kBlack{0, 0, 0};
+  OutputSet files;
+  Picture sheet(0, 0, kWhite);
+  for (int frame = 0; frame < o.frames; ++frame) {
+    sheet = drawn(frame, kWhite);
+    if (o.transparent)
+      writePng(frameName(o, frame), sheet, drawn(frame, kBlack));
+    else
+      writePng(frameName(o, frame), sheet);
+  }
+  files.commit();
+  common.progress->end();
+  if (!common.quiet) print(o, sheet, voxelsPerPixel, *source.labels);
 }
 
 }  // namespace
@@ -172,8 +261,12 @@ void addRender(Verb command, Common& common, Action& action) {
       .showDefault();
   verb.option("--slice", o->slice, "slices to show instead of the middle ones, by voxel: x=20,z=40")
       .typeName("AXIS=N,...");
-  verb.option("--select", o->select, "shows these grains; in slices the others are pale")
+  verb.option("--select", o->select,
+              "shows these grains: the view is theirs, slices go through their middle")
       .typeName("A,B,...");
+  verb.option("--color-by", o->colorBy,
+              "colors grains by a column of measure, such as sphericity, with a scale")
+      .typeName("COLUMN");
   verb.flag("--interfaces", o->interfaces, "shows of grains the voxels alone that touch another");
   verb.option("--overlay", o->scan, "the gray scan: slices show it with the outlines of grains")
       .typeName("FILE");
@@ -181,6 +274,10 @@ void addRender(Verb command, Common& common, Action& action) {
               "of that scan: the grid of a VDB, the array of a Zarr or HDF5 file")
       .typeName("NAME");
   verb.flag("--no-axes", o->noAxes, "the view without a box and names of axes");
+  verb.option("--turn", o->frames, "so many views around z: OUT_000.png, OUT_001.png ...")
+      .typeName("N")
+      .range(2, 999);
+  verb.flag("--transparent", o->transparent, "nothing behind grains and letters");
   o->input.addRaw(verb);
   o->input.addVoxelSize(verb);
   verb.onParsed([o, &common, &action] {

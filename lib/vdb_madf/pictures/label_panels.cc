@@ -40,8 +40,7 @@ LengthUnit unitFor(double longestMetres) {
 /// The captions of the panels of a box.
 class Captions {
  public:
-  Captions(const Int32Grid& labels, const CoordBBox& box)
-      : box_(box), size_(storedVoxelSize(labels)) {
+  Captions(const Int32Grid& labels, const CoordBBox& box) : size_(storedVoxelSize(labels)) {
     if (!size_) return;
     double longest = 0;
     for (int axis = 0; axis < 3; ++axis)
@@ -60,10 +59,10 @@ class Captions {
   }
 
   /// "2.56 × 2.56 × 2.13 mm", or voxels if their size is unknown.
-  std::string ofBox() const {
+  std::string of(const CoordBBox& box) const {
     std::string text;
     for (int axis = 0; axis < 3; ++axis) {
-      const int voxels = box_.extents()[axis];
+      const int voxels = box.extents()[axis];
       const double length = size_ ? voxels * size_->edges()[size_t(axis)] / unit_.metres : 0;
       text += (axis ? " × " : "") + (size_ ? threeDigits(length) : std::to_string(voxels));
     }
@@ -71,7 +70,6 @@ class Captions {
   }
 
  private:
-  const CoordBBox box_;
   const std::optional<VoxelSize> size_;
   LengthUnit unit_;
 };
@@ -87,6 +85,10 @@ Int32Grid::Ptr shownPart(const Int32Grid& labels, const PanelOptions& options,
     shown->topologyIntersection(*selected);
   }
   return shown;
+}
+
+CoordBBox frameOf(const PanelOptions& options, const CoordBBox& box) {
+  return options.frame.empty() ? box : options.frame;
 }
 
 /// The panels of labels of which some are shown (null: all). view(how): as viewGrains().
@@ -110,8 +112,9 @@ std::vector<PicturePanel> panelsOf(const Int32Grid& labels, const Int32Grid* sho
     direction.box = options.axes;
     GrainView seen = view(direction);
     const bool isSecond = panels.size() == 3;
-    panels.insert(isSecond ? panels.begin() + 1 : panels.end(),
-                  {std::move(seen.picture), captions.ofBox(), seen.voxelsPerPixel, false});
+    panels.insert(
+        isSecond ? panels.begin() + 1 : panels.end(),
+        {std::move(seen.picture), captions.of(frameOf(options, box)), seen.voxelsPerPixel, false});
   }
   return panels;
 }
@@ -222,10 +225,10 @@ class SlabParts {
 
 std::vector<PicturePanel> labelPanels(const Int32Grid& labels, const CoordBBox& box,
                                       const PanelOptions& options, Interrupter* interrupter) {
-  const GrainColors colors = grainColors(labels, interrupter);
+  const GrainColors colors = options.colors ? *options.colors : grainColors(labels, interrupter);
   const Int32Grid::Ptr shown = shownPart(labels, options, interrupter);
   const auto view = [&](const ViewOptions& how) {
-    return viewGrains(shown ? *shown : labels, box, colors, how, interrupter);
+    return viewGrains(shown ? *shown : labels, frameOf(options, box), colors, how, interrupter);
   };
   return panelsOf(labels, shown.get(), box, colors, options, view, interrupter);
 }
@@ -234,13 +237,14 @@ std::vector<PicturePanel> labelPanels(const LabelSlabs& labels, const CoordBBox&
                                       const PanelOptions& options, Interrupter* interrupter) {
   SlabParts parts(labels, box, options);
   parts.gather(interrupter);
+  const GrainColors& colors = options.colors ? *options.colors : parts.colors();
   const auto view = [&](const ViewOptions& how) {
-    const std::vector<Coord> leaves = seenLeaves(parts.object(), box, how, interrupter);
-    return viewGrains(parts.object(), *parts.labelsOf(leaves, interrupter), box, parts.colors(),
-                      how, interrupter);
+    const CoordBBox frame = frameOf(options, box);
+    const std::vector<Coord> leaves = seenLeaves(parts.object(), frame, how, interrupter);
+    return viewGrains(parts.object(), *parts.labelsOf(leaves, interrupter), frame, colors, how,
+                      interrupter);
   };
-  return panelsOf(parts.inPlanes(), parts.shownInPlanes(), box, parts.colors(), options, view,
-                  interrupter);
+  return panelsOf(parts.inPlanes(), parts.shownInPlanes(), box, colors, options, view, interrupter);
 }
 
 }  // namespace vdb_madf

@@ -3,10 +3,12 @@
 
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/grids/label_slabs.h"
+#include "vdb_madf/labels/grain_colors.h"
 #include "vdb_madf/pictures/grain_view.h"
 #include "vdb_madf/pictures/label_slices.h"
 #include "vdb_madf/pictures/picture_sheet.h"
@@ -24,12 +26,14 @@ struct PanelOptions {
   /// Grains that are shown: in slices the others are pale, in the view they are left out. None:
   /// all.
   std::vector<int32_t> select = {};
+  CoordBBox frame = {};                              ///< what the view shows; empty: all of the box
+  std::optional<GrainColors> colors = std::nullopt;  ///< none: those of all labels
   /// Shows only the voxels of grains that share a face with another grain.
   bool interfaces = false;
 };
 
 /// Labels for pictureSheet(): the slices, with where they are, and the view, with the size of the
-/// box; the view is the second of four. Colors are those of all labels, whatever is shown.
+/// box; the view is the second of four. Colors do not depend on what is shown.
 /// @param box not empty
 /// @throw as selectGrains(), labelSlices() and viewGrains()
 std::vector<PicturePanel> labelPanels(const Int32Grid& labels, const CoordBBox& box,

@@ -21,6 +21,8 @@ namespace {
 constexpr Rgb kBackground{243, 244, 246}, kPale{206, 209, 214};
 constexpr size_t kSliceRowGrain = 16;
 constexpr double kOutline = 1 / 300.0;  ///< of the edge: width of an outline, on each side
+/// Lines within an outline, half as wide: one of them stands out on any gray.
+constexpr Rgb kDarkLine{25, 25, 25}, kLightLine{235, 235, 235};
 
 /// Goes between the pixels of pictures and the voxels of a box.
 class Scale {
@@ -60,6 +62,7 @@ class PlanePainter {
         down_(plane.down()),
         fine_(gray ? 2 : 3),
         outline_(gray ? std::max(fine_, int(std::lround(fine_ * options.edge * kOutline))) : 0),
+        line_((outline_ + 1) / 2),
         picture_(scale.pixels(box.extents()[right_], right_),
                  scale.pixels(box.extents()[down_], down_), kBackground) {
     for (int x = 0; x < picture_.width * fine_; ++x)
@@ -100,8 +103,8 @@ class PlanePainter {
   }
 
   void paintRows(int begin, int end) {
-    const int first = std::max(0, begin * fine_ - outline_),
-              last = std::min(picture_.height * fine_, end * fine_ + outline_) - 1;
+    const int reach = outline_ + 2 * line_, first = std::max(0, begin * fine_ - reach),
+              last = std::min(picture_.height * fine_, end * fine_ + reach) - 1;
     // The rows of voxels that the fine rows show; many show the same.
     const int firstVoxel = voxelRow(first);
     std::vector<Row> rows;
@@ -123,7 +126,7 @@ class PlanePainter {
       for (int i = x * fine_; i < (x + 1) * fine_; ++i) {
         const int32_t label = labelAt(i, j);
         if (gray_) {
-          color = isOutline(i, j, label, labelAt) ? colorOf(label) : grayAt(i, j);
+          color = outlined(i, j, label, labelAt);
         } else if (label != last) {
           color = colorOf(label);
           last = label;
@@ -141,15 +144,22 @@ class PlanePainter {
     return label > 0 ? colors_.colorOf(label) : label < 0 ? kPale : kBackground;
   }
 
-  /// Within a grain that has its color, near where it ends.
+  /// Inwards from where a grain ends that has its color: that, a dark line and a light one.
   template <typename LabelAt>
-  bool isOutline(int x, int y, int32_t label, const LabelAt& labelAt) const {
-    if (label <= 0) return false;
-    const int slanted = int(std::lround(outline_ * 0.7));
-    for (const auto& [dx, dy] : {std::pair<int, int>{outline_, 0},
-                                 {-outline_, 0},
-                                 {0, outline_},
-                                 {0, -outline_},
+  Rgb outlined(int x, int y, int32_t label, const LabelAt& labelAt) const {
+    const Rgb gray = grayAt(x, y);
+    if (label <= 0 || !isNearEnd(x, y, label, outline_ + 2 * line_, labelAt)) return gray;
+    if (isNearEnd(x, y, label, outline_, labelAt)) return colorOf(label);
+    return isNearEnd(x, y, label, outline_ + line_, labelAt) ? kDarkLine : kLightLine;
+  }
+
+  template <typename LabelAt>
+  bool isNearEnd(int x, int y, int32_t label, int reach, const LabelAt& labelAt) const {
+    const int slanted = int(std::lround(reach * 0.7));
+    for (const auto& [dx, dy] : {std::pair<int, int>{reach, 0},
+                                 {-reach, 0},
+                                 {0, reach},
+                                 {0, -reach},
                                  {slanted, slanted},
                                  {slanted, -slanted},
                                  {-slanted, slanted},
@@ -172,7 +182,7 @@ class PlanePainter {
   const SlicePlane plane_;
   const Int32Grid* shown_;
   const GrayPlane* gray_;
-  const int right_, down_, fine_, outline_;
+  const int right_, down_, fine_, outline_, line_;  ///< outlines in fine pixels
   Picture picture_;
   std::vector<int> columns_, rows_;  ///< the voxel of each fine column, fine row
 };

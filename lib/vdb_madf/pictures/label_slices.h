@@ -19,7 +19,8 @@ struct SliceOptions {
   /// The grains, or parts of them, that have their color, under their labels; the others are pale.
   /// Null: all.
   const Int32Grid* shown = nullptr;
-  /// What lies under each plane: the grains are then outlines. None: the grains are filled.
+  /// What lies under each plane: the grains are then outlines of their color, with a dark and a
+  /// light line. None: the grains are filled.
   std::vector<GrayPlane> gray;
 };
 

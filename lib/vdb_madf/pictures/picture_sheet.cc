@@ -16,7 +16,7 @@ namespace {
 using detail::Canvas;
 using detail::ScaleBar;
 
-constexpr Rgb kMargin{255, 255, 255}, kInk{40, 40, 40}, kFrameLine{190, 194, 200};
+constexpr Rgb kInk{40, 40, 40}, kFrameLine{190, 194, 200};
 constexpr double kWideness = 1.5;  ///< width over height of a sheet that is just right
 
 /// A panel with what stands below it: its caption and, beside that or in a second line, its bar.
@@ -50,7 +50,7 @@ std::vector<Cell> cellsOf(const std::vector<PicturePanel>& panels,
   std::vector<Cell> cells;
   for (const PicturePanel& panel : panels) {
     Cell cell{panel, std::nullopt, detail::textWidth(panel.caption, layout.text), 0};
-    if (voxelSize) {
+    if (voxelSize && panel.voxelsPerPixel > 0) {
       cell.bar = detail::fitScaleBar(panel.voxelsPerPixel * voxelSize->shortestEdge(),
                                      panel.picture.width / 3.0);
       if (cell.bar)
@@ -123,7 +123,7 @@ void drawBelow(const Cell& cell, const Layout& layout, Canvas& canvas) {
 }  // namespace
 
 Picture pictureSheet(const std::vector<PicturePanel>& panels,
-                     const std::optional<VoxelSize>& voxelSize) {
+                     const std::optional<VoxelSize>& voxelSize, const Rgb& background) {
   double area = 0;
   for (const PicturePanel& panel : panels)
     area = std::max(area, double(panel.picture.width) * panel.picture.height);
@@ -137,7 +137,7 @@ Picture pictureSheet(const std::vector<PicturePanel>& panels,
       layout.lines = cell.captionWidth > 0 ? 2 : layout.lines;
   layout = bestLayout(cells, layout);
 
-  Picture whole(layout.width(), layout.height(), kMargin);
+  Picture whole(layout.width(), layout.height(), background);
   const int thickness = std::max(1, int(std::lround(layout.text / 16)));
   const size_t columns = layout.widths.size();
   int top = layout.gap;

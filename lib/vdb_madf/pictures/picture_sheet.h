@@ -16,15 +16,16 @@ namespace vdb_madf {
 struct PicturePanel {
   Picture picture;
   std::string caption;        ///< UTF-8
-  double voxelsPerPixel = 1;  ///< of their shortest edge
+  double voxelsPerPixel = 1;  ///< of their shortest edge; 0: it has no scale
   bool framed = true;         ///< a thin line around it
 };
 
-/// The panels in reading order on white, each with its name below and, where the voxel size is
+/// The panels in reading order, each with its name below and, where the voxel size is
 /// known, a scale bar of a round length. There are as many columns as make the sheet small, and
 /// rather wide than tall. Letters and gaps grow with the largest panel: a line is 1/24 of the
 /// side of a square of its area, and 15 pixels at least.
 Picture pictureSheet(const std::vector<PicturePanel>& panels,
-                     const std::optional<VoxelSize>& voxelSize = std::nullopt);
+                     const std::optional<VoxelSize>& voxelSize = std::nullopt,
+                     const Rgb& background = {255, 255, 255});
 
 }  // namespace vdb_madf

@@ -34,6 +34,10 @@ Camera::Camera(const CoordBBox& box, const Vec& edges, const ViewOptions& option
     across += std::abs(right[axis]) * size[axis];
     high += std::abs(up[axis]) * size[axis];
   }
+  if (options.turns) {
+    across = std::hypot(size[0], size[1]);
+    high = std::abs(std::sin(e)) * across + std::abs(std::cos(e)) * size[2];
+  }
   const int least = std::min(13, options.edge / 6);  // for letters that can be read
   const int margin = options.box ? std::max(int(options.edge * kMargin), least) : 0;
   const int edge = options.edge - 2 * margin;
