@@ -75,6 +75,37 @@ TEST_CASE("mesh_file: every format has every triangle at its place in the world"
   }
 }
 
+TEST_CASE("mesh_file: an OBJ has materials of the colors of its grains", "[mesh_file]") {
+  const ScratchFolder folder;
+  const auto grid = labelGrid(twoBalls({0, 0, 0}, 4));
+  const MeshFileOptions options = optionsOf(*grid);
+  writeMesh(folder / "a b.obj", grainMesh(*grid), options);
+  std::map<std::string, std::array<double, 3>> colors;  // by material
+  std::istringstream materials(readFile(folder / "a b.mtl"));
+  for (std::string word, name; materials >> word;)
+    if (word == "newmtl") {
+      materials >> name;
+    } else {
+      REQUIRE(word == "Kd");
+      for (double& channel : colors[name]) materials >> channel;
+    }
+  REQUIRE(colors.size() == 2);
+  const std::string text = readFile(folder / "a b.obj");
+  CHECK_THAT(text, vdb_madf::test::Contains("\nmtllib a b.mtl\n"));
+  std::istringstream words(text);
+  int32_t label = 0;
+  int used = 0;
+  for (std::string word; words >> word;) {
+    if (word.substr(0, 6) == "grain_") label = std::stoi(word.substr(6));
+    if (word != "usemtl") continue;
+    words >> word;
+    const Rgb color = options.colors.colorOf(label);
+    for (size_t i = 0; i < 3; ++i) CHECK(colors.at(word)[i] == Approx(color[i] / 255.0));
+    ++used;
+  }
+  CHECK(used == 2);
+}
+
 TEST_CASE("mesh_file: one STL per grain", "[mesh_file]") {
   const ScratchFolder folder;
   const LabelMap voxels = twoBalls({0, 0, 0}, 4);
@@ -265,7 +296,8 @@ TEST_CASE("mesh_file: nothing to write, and endings nobody knows", "[mesh_file]"
   CHECK(readGlb(readFile(folder / "m.glb")).empty());
   CHECK_THROWS_AS(writeMesh(folder / "m.abc", mesh, optionsOf(*grid)), InvalidInput);
   CHECK_THROWS_AS(writeMesh(folder / "no/m.ply", mesh, optionsOf(*grid)), IoError);
-  CHECK(folder.fileCount() == 5);
+  // Also the materials of the .obj.
+  CHECK(folder.fileCount() == 6);
   CHECK(isMeshEnding("a.PLY"));
   CHECK(!isMeshEnding("a.vdb"));
 }

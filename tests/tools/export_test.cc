@@ -113,7 +113,7 @@ TEST_CASE("cli: endings in upper case are the same", "[cli]") {
   const Bench bench;
   makeLabels(bench);
   for (const auto& [lower, upper, as] : {std::tuple{"m.ply", "M.PLY", ""},
-                                         {"m.obj", "M.Obj", ""},
+                                         {"m.obj", "m.Obj", ""},
                                          {"m.stl", "M.STL", ""},
                                          {"m.glb", "M.GLB", ""},
                                          {"m.vtp", "M.VTP", " --as mesh"},

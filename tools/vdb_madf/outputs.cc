@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/output_file.h"
@@ -21,8 +22,9 @@ std::vector<std::string> filesOf(const std::vector<std::string>& outputs) {
   for (const std::string& output : outputs) {
     if (output.empty() || isOnStandardOutput(output)) continue;
     files.push_back(output);
-    if (fileEnding(output) == ".mhd")
-      files.push_back(std::filesystem::path(output).replace_extension(".raw").string());
+    for (const auto& [ending, beside] : {std::pair(".mhd", ".raw"), {".obj", ".mtl"}})
+      if (fileEnding(output) == ending)
+        files.push_back(std::filesystem::path(output).replace_extension(beside).string());
   }
   return files;
 }

@@ -8,8 +8,8 @@
 
 namespace vdb_madf::tools {
 
-/// All files that the outputs are written to: an .mhd has its samples in a file beside it. Empty
-/// names and "-" are none.
+/// All files that the outputs are written to: an .mhd has its samples in a file beside it, an .obj
+/// its materials. Empty names and "-" are none.
 std::vector<std::string> filesOf(const std::vector<std::string>& outputs);
 /// @throw WrongUsage if the outputs would overwrite the input or each other, or standard output
 ///   cannot take them

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <memory>
 #include <set>
 #include <vector>
@@ -59,9 +60,21 @@ void writePly(const std::string& path, const WorldMesh& world, Interrupter* inte
   out.commit();
 }
 
+/// Three numbers from 0 to 1.
+void writeColor(OutputStream& out, const Rgb& color) {
+  for (const uint8_t channel : color) {
+    out.text(" ");
+    out.number(float(channel) / 255.0f);
+  }
+}
+
+/// With a file of materials beside it: few programs show colors of points.
 void writeObj(const std::string& path, const WorldMesh& world, Interrupter* interrupter) {
-  OutputStream out(path, interrupter);
-  out.text("# vdb_madf grains; lengths in " + world.unit() + "\n");
+  const auto beside = std::filesystem::path(path).replace_extension(".mtl");
+  OutputStream out(path, interrupter), materials(beside.string(), interrupter);
+  std::map<Rgb, std::string> names;
+  out.text("# vdb_madf grains; lengths in " + world.unit() + "\nmtllib " +
+           beside.filename().string() + "\n");
   for (size_t grain = 0; grain < world.grainCount(); ++grain) {
     const Rgb color = world.color(grain);
     const auto& points = world.mesh().firstPoint;
@@ -72,13 +85,16 @@ void writeObj(const std::string& path, const WorldMesh& world, Interrupter* inte
         out.text(" ");
         out.number(p[axis]);
       }
-      for (const uint8_t channel : color) {
-        out.text(" ");
-        out.number(float(channel) / 255.0f);
-      }
+      writeColor(out, color);
       out.text("\n");
     }
-    out.text("g " + grainName(world.label(grain)) + "\n");
+    const auto [name, isNew] = names.emplace(color, "color_" + std::to_string(names.size()));
+    if (isNew) {
+      materials.text("newmtl " + name->second + "\nKd");
+      writeColor(materials, color);
+      materials.text("\n");
+    }
+    out.text("g " + grainName(world.label(grain)) + "\nusemtl " + name->second + "\n");
     const auto& triangles = world.mesh().firstTriangle;
     for (uint32_t i = triangles[grain]; i < triangles[grain + 1]; ++i) {
       out.text("f");
@@ -89,7 +105,10 @@ void writeObj(const std::string& path, const WorldMesh& world, Interrupter* inte
       out.text("\n");
     }
   }
+  OutputSet files;
   out.commit();
+  materials.commit();
+  files.commit();
 }
 
 /// Triangles of grains [begin, end).

@@ -26,7 +26,7 @@ struct MeshFileOptions {
 
 /// Writes all grains into one file, whole or not at all, by ending:
 /// - .ply: binary; points with color and int `grain_id`, faces with int `grain_id` and color
-/// - .obj: a group `grain_000123` per grain, points with color
+/// - .obj: a group `grain_000123` per grain, points with color; materials in the .mtl beside it
 /// - .stl: binary, all triangles; the grains are not told apart (see writeStlFolder)
 /// - .vtp: VTK polygons, appended raw; per point and per polygon Int32 `grain_id` and UInt8 `color`
 /// - .glb: glTF 2.0; a node `grain_000123` per grain, with a material of its color, and the label
