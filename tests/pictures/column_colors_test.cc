@@ -61,8 +61,8 @@ TEST_CASE("column_colors: lengths are in the unit of tables", "[pictures]") {
   // All are alike.
   CHECK(columnColors(hundredGrains(), "coordination").high == 1);
   CHECK(columnColors({}, "voxels").colors.labels.empty());
-  CHECK_THROWS_WITH(columnColors(hundredGrains(), "colour"),
-                    vdb_madf::test::StartsWith("grains have no 'colour': there are id, voxels, "));
+  CHECK_THROWS_WITH(columnColors(hundredGrains(), "hue"),
+                    vdb_madf::test::StartsWith("grains have no 'hue': there are id, voxels, "));
 }
 
 TEST_CASE("column_colors: the scale stands beside pictures, without a bar of lengths",

@@ -232,9 +232,9 @@ TEST_CASE("cli: render colors grains by a column of their table", "[cli]") {
   bench.mustRun("render s.vdb plain.png --size 64");
   bench.mustRun("render s.vdb by.png --size 64 --color-by sphericity");
   CHECK(readPng(bench.bytes("by.png")).pixels != readPng(bench.bytes("plain.png")).pixels);
-  const auto wrong = bench.run("render s.vdb w.png --color-by colour");
+  const auto wrong = bench.run("render s.vdb w.png --color-by hue");
   CHECK(wrong.exitCode == 1);
-  CHECK_THAT(wrong.err, vdb_madf::test::Contains("s.vdb: grains have no 'colour': there are id, "));
+  CHECK_THAT(wrong.err, vdb_madf::test::Contains("s.vdb: grains have no 'hue': there are id, "));
   CHECK(bench.run("render s.vdb w.png --color-by stability").exitCode == 1);
   bench.mustRun("segment s.vdb k.vdb --keep manifold");
   bench.mustRun("render k.vdb sure.png --size 64 --color-by stability");

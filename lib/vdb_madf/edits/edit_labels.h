@@ -52,8 +52,8 @@ struct EditedLabels {
 /// @param manifold with the graph of the segmentation that the labels come from (`segment` with
 ///   keepManifold); for split alone
 /// @throw InvalidInput that names the edit: a grain that is not there, a diameter where the size of
-///   voxels is unknown, another strictness, a grain that cannot be split; without manifold or graph, or if these do not
-///   fit the labels, every split; Interrupted.
+///   voxels is unknown, another strictness, a grain that cannot be split; without manifold or
+///   graph, or if these do not fit the labels, every split; Interrupted.
 EditedLabels editLabels(const Int32Grid& labels, const std::vector<Edit>& edits,
                         const Int32Grid* manifold = nullptr, Interrupter* interrupter = nullptr);
 

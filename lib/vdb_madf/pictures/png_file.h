@@ -13,7 +13,8 @@ namespace vdb_madf {
 /// @throw IoError with libpng's words
 std::string pngBytes(const Picture& picture);
 
-/// Of a picture that was drawn twice, on white and on black: RGBA, covered where both are alike.
+/// The bytes of an RGBA PNG of a picture that was drawn twice, on white and on black: it is covered
+/// where both are alike.
 std::string pngBytes(const Picture& onWhite, const Picture& onBlack);
 
 /// Writes an RGB PNG of 8 bits a channel at 300 dpi, whole or not at all. It is made in memory

@@ -47,8 +47,8 @@ export function tiles(sample, visible = new Uint8Array(sample.count).fill(1),
 function drawTiles(sample, selection) {
   const all = selection.filterCount > 0 ? tiles(sample) : [];
   element('numbers').replaceChildren(...tiles(sample, selection.visible, selection.visibleBonds).map(([title, value], i) => {
-    const whole = all.length > 0 ? [' ', make('small', {}, `of all ${all[i][1]}`)] : [];
-    return make('div', { className: 'tile' }, make('b', {}, value, ...whole), make('span', {}, title));
+    const whole = make('small', {}, all.length > 0 ? `of all ${all[i][1]}` : '');
+    return make('div', { className: 'tile' }, make('b', {}, value, whole), make('span', {}, title));
   }));
 }
 
