@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include <openvdb/io/Stream.h>
-
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -21,60 +19,6 @@
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-namespace io = openvdb::io;
-
-namespace {
-
-struct NamedBytes {
-  std::string name, bytes;
-};
-
-/// Small files of every kind that OpenVDB and we write.
-std::vector<NamedBytes> smallFiles() {
-  initialize();
-  const TemporaryFolder folder;
-  std::vector<NamedBytes> files;
-  const auto add = [&](const std::string& name, auto write) {
-    const std::string path = folder.file(name);
-    write(path);
-    files.push_back({name, bytesOf(path)});
-  };
-  const auto labels = ballWithTiles<Int32Grid>(Coord(-5, 3, 9), 9, "grain");
-  setGraph(*labels, smallGraph());
-  setDomain(*labels, CoordBBox(Coord(-20), Coord(300)));
-  labels->insertMeta("flag", openvdb::BoolMetadata(true));
-  const auto flags = ballWithTiles<BoolGrid>(Coord(4000, 0, -4), 5, "object");
-  const auto mask = ballWithTiles<MaskGrid>(Coord(0, -8, 0), 5, "mask");
-  const auto inRegion = ballWithTiles<Int32Grid>(Coord(0), 2, "color");
-  setDomain(*inRegion, Domain(mask->tree()));
-  const auto colors = ballWithTiles<Vec3sGrid>(Coord(1, 2, 3), 4, "color");
-  const auto half = ballWithTiles<FloatGrid>(Coord(1, 2, 3), 5, "density");
-  half->setSaveFloatAsHalf(true);
-  const auto sharing = labels->copyWithNewTree();
-  sharing->setTree(labels->treePtr());
-  sharing->setName("shared");
-
-  add("ours", [&](auto& path) { writeVdb(path, {labels, flags}); });
-  add("region", [&](auto& path) { writeVdb(path, {inRegion}); });
-  add("blosc", [&](auto& path) { writeWithOpenVdb(path, {labels, mask, sharing}); });
-  add("zip", [&](auto& path) {
-    writeWithOpenVdb(path, {labels, colors}, io::COMPRESS_ZIP | io::COMPRESS_ACTIVE_MASK);
-  });
-  add("none", [&](auto& path) { writeWithOpenVdb(path, {flags, labels}, io::COMPRESS_NONE); });
-  add("level_set", [&](auto& path) { writeWithOpenVdb(path, {levelSet()}); });
-  add("half", [&](auto& path) { writeWithOpenVdb(path, {half}); });
-  add("half_mask", [&](auto& path) {
-    writeWithOpenVdb(path, {half, levelSet()}, io::COMPRESS_ACTIVE_MASK);
-  });
-  add("stream", [&](auto& path) {
-    std::ofstream out(path, std::ios::binary);
-    io::Stream(out).write(Grids{labels, colors});
-  });
-  return files;
-}
-
-}  // namespace
-
 TEST_CASE("vdb_file: what is no VDB file is refused by name", "[vdb_file]") {
   const TemporaryFolder folder;
   const auto refused = [](const std::string& path, const std::string& reason) {
