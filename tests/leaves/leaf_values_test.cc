@@ -38,7 +38,6 @@ TEST_CASE("leaf_values: spread over the voxels of a mask and packed again", "[le
       if (object) values.push_back(dense.back());
     }
     const size_t count = values.size();
-    values.resize(count + VoxelArray<uint32_t>::kSlack, 12345);  // may be read, not used
     std::array<uint32_t, 512> spread;
     expandLeaf(mask, values.data(), spread.data());
     CAPTURE(round);

@@ -130,7 +130,7 @@ class BinderMeter {
   /// Step by step from the voxels beside another cell.
   void findPartners(Interrupter* interrupter) {
     std::vector<std::pair<VoxelId, int32_t>> reached, next;  // voxels with their partners
-    const auto grown = grown_->getConstAccessor();
+    const auto grown = grown_->getConstUnsafeAccessor();
     forEach([&](VoxelId id, size_t rank) {
       partner_[rank] = 0;
       if (cell_[rank] == 0) return;

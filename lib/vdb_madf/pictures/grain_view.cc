@@ -106,8 +106,8 @@ class Renderer {
    public:
     explicit Eye(const Renderer& renderer)
         : renderer_(renderer),
-          object_(renderer.rays_.object().getConstAccessor()),
-          labels_(renderer.labels_.getConstAccessor()),
+          object_(renderer.rays_.object().getConstUnsafeAccessor()),
+          labels_(renderer.labels_.getConstUnsafeAccessor()),
           surface_(renderer.rays_.object()),
           outside_(renderer.rays_.object()) {}
     Sample look(int x, int y, int ray) {
@@ -125,8 +125,8 @@ class Renderer {
 
    private:
     const Renderer& renderer_;
-    const MaskGrid::ConstAccessor object_;
-    const Int32Grid::ConstAccessor labels_;
+    const MaskGrid::ConstUnsafeAccessor object_;
+    const Int32Grid::ConstUnsafeAccessor labels_;
     detail::SmoothSurface surface_, outside_;  ///< where a ray hits; in front of that
   };
 
@@ -211,7 +211,7 @@ std::vector<Coord> seenLeaves(const MaskGrid::Ptr& object, const CoordBBox& box,
   const detail::VoxelRays rays(clipped(object, box), box, edges, camera.direction);
   detail::PerThread<std::vector<Coord>> found{std::vector<Coord>()};
   forEachRow(camera, interrupter, [&](int y) {
-    const auto tree = object->getConstAccessor();
+    const auto tree = object->getConstUnsafeAccessor();
     std::vector<Coord>& leaves = found.local();
     const size_t before = leaves.size();
     for (int ray = 0; ray < camera.width * kRays * kRays; ++ray) {

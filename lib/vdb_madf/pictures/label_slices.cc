@@ -85,8 +85,8 @@ class PlanePainter {
   int voxelRow(int fineRow) const { return rows_[size_t(fineRow)]; }
 
   Row readRow(int voxelRow) const {
-    const auto labels = labels_.getConstAccessor();
-    const auto shown = (shown_ ? *shown_ : labels_).getConstAccessor();
+    const auto labels = labels_.getConstUnsafeAccessor();
+    const auto shown = (shown_ ? *shown_ : labels_).getConstUnsafeAccessor();
     Coord p;
     p[plane_.axis] = plane_.index;
     p[down_] = down_ == 2 ? box_.max().z() - voxelRow : box_.min()[down_] + voxelRow;  // z is up

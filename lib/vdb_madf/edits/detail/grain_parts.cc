@@ -267,7 +267,7 @@ VoxelArray<uint32_t> GrainParts::placesIn(const GrainPart& part, const LeafIndex
                                           Interrupter* interrupter) const {
   VoxelArray<uint32_t> places(size_t(index.voxelCount()));
   parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    const auto tree = manifold_.getConstAccessor();
+    const auto tree = manifold_.getConstUnsafeAccessor();
     int32_t last = 0;  // neighbors mostly share their manifold
     uint32_t place = kForeign;
     for (size_t leaf = begin; leaf < end; ++leaf) {

@@ -25,7 +25,7 @@ void addParts(const int32_t* values, const LeafIndex::Mask& mask, std::vector<La
 LabelLeaves::LabelLeaves(const Int32Grid& labels, Interrupter* interrupter)
     : index_(*objectMask(labels)), chunks_((index_.leafCount() + kChunk - 1) / kChunk) {
   parallelFor(chunks_.size(), 1, interrupter, [&](size_t begin, size_t end) {
-    const Int32Grid::ConstAccessor accessor = labels.getConstAccessor();
+    const Int32Grid::ConstUnsafeAccessor accessor = labels.getConstUnsafeAccessor();
     for (size_t i = begin; i < end; ++i) {
       auto& [parts, first] = chunks_[i];
       for (size_t leaf = i * kChunk; leaf < std::min((i + 1) * kChunk, index_.leafCount());

@@ -17,9 +17,16 @@ namespace vdb_madf::detail {
 
 namespace {
 
-// No branches on single voxels: a mispredicted one costs more than ten of these steps.
+// No branches on single voxels: a mispredicted one costs more than ten of these steps. Nothing is
+// read past the last value: the next leaf's may be written at the same time.
 
-void expandPortable(const uint64_t* words, size_t count, const uint32_t* values, uint32_t* dense) {
+void expandPortable(const uint64_t* words, size_t count, const uint32_t* packed, uint32_t* dense) {
+  uint32_t copied[512 + 1];  // as one is read past the last
+  size_t all = 0;
+  for (size_t x = 0; x < count; ++x) all += countBits(words[x]);
+  std::memcpy(copied, packed, all * sizeof(uint32_t));
+  copied[all] = 0;
+  const uint32_t* values = copied;
   for (size_t x = 0; x < count; ++x, dense += 64) {
     uint64_t word = words[x];
     if (word == ~uint64_t(0)) {
@@ -89,6 +96,7 @@ __attribute__((target("arch=x86-64-v3"))) inline __m256i permuted(__m256i values
 __attribute__((target("arch=x86-64-v3"))) void expandV3(const uint64_t* words, size_t count,
                                                         const uint32_t* values, uint32_t* dense) {
   const __m256i bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+  const __m256i lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
   for (size_t x = 0; x < count; ++x, dense += 64) {
     if (words[x] == ~uint64_t(0)) {
       std::memcpy(dense, values, 64 * sizeof(uint32_t));
@@ -99,10 +107,12 @@ __attribute__((target("arch=x86-64-v3"))) void expandV3(const uint64_t* words, s
       const uint32_t inside = uint32_t(words[x] >> lane & 0xff);
       const __m256i object =
           _mm256_cmpeq_epi32(_mm256_and_si256(_mm256_set1_epi32(int(inside)), bits), bits);
-      const __m256i packed = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(values));
+      const int held = __builtin_popcount(inside);
+      const __m256i packed = _mm256_maskload_epi32(
+          reinterpret_cast<const int*>(values), _mm256_cmpgt_epi32(_mm256_set1_epi32(held), lanes));
       _mm256_storeu_si256(reinterpret_cast<__m256i*>(dense + lane),
                           _mm256_and_si256(permuted(packed, kSpreading[inside]), object));
-      values += __builtin_popcount(inside);
+      values += held;
     }
   }
 }
@@ -132,7 +142,7 @@ __attribute__((target("arch=x86-64-v4"))) void expandV4(const uint64_t* words, s
   for (size_t x = 0; x < count; ++x) {
     for (size_t lane = 0; lane < 64; lane += 16, dense += 16) {
       const __mmask16 inside = __mmask16(words[x] >> lane);
-      _mm512_storeu_si512(dense, _mm512_maskz_expand_epi32(inside, _mm512_loadu_si512(values)));
+      _mm512_storeu_si512(dense, _mm512_maskz_expandloadu_epi32(inside, values));
       values += __builtin_popcount(inside);
     }
   }

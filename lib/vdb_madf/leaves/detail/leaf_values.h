@@ -11,8 +11,7 @@
 namespace vdb_madf::detail {
 
 /// Spreads the values of a leaf's object voxels, one after the other as a VoxelArray holds them,
-/// over all of its 512 voxels; 0 outside the object. Reads (and does not use) up to
-/// VoxelArray::kSlack values past the last.
+/// over all of its 512 voxels; 0 outside the object.
 void expandLeaf(const LeafIndex::Mask& mask, const uint32_t* values, uint32_t* dense);
 
 /// Expands the 64 voxels of one x, a word of the mask, likewise.

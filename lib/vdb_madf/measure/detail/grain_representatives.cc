@@ -145,7 +145,7 @@ bool SlabRepresentatives::add(const LabelLeaves& labels, const LeafLayers& own,
 
 GrainRepresentatives grainRepresentatives(const Int32Grid& labels, const ManifoldGraph& graph) {
   GrainRepresentatives result;
-  const auto accessor = labels.getConstAccessor();
+  const auto accessor = labels.getConstUnsafeAccessor();
   for (const ManifoldGraph::Node& node : graph.nodes)
     improve({node.position, node.squaredRadius}, result[accessor.getValue(node.position)]);
   return result;

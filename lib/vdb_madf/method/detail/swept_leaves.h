@@ -52,7 +52,7 @@ class SweptLeaves {
   /// Expands a leaf with one value for all unknown voxels.
   template <typename T>
   void expand(uint32_t leaf, const VoxelArray<T>& ofObject, T ofUnknown, T* dense) const {
-    std::array<T, 512 + VoxelArray<T>::kSlack> same;
+    std::array<T, 512> same;
     if (passage_) same.fill(ofUnknown);
     expand(leaf, ofObject, same.data(), dense);
   }

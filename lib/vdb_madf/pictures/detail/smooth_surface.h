@@ -23,7 +23,7 @@ struct SmoothValue {
 class SmoothSurface {
  public:
   /// @param object without tiles; is kept by reference
-  explicit SmoothSurface(const MaskGrid& object) : object_(object.getConstAccessor()) {}
+  explicit SmoothSurface(const MaskGrid& object) : object_(object.getConstUnsafeAccessor()) {}
 
   /// @param point in voxels; voxel (i, j, k) is the box from there to (i + 1, j + 1, k + 1)
   SmoothValue at(const openvdb::Vec3d& point);
@@ -31,7 +31,7 @@ class SmoothSurface {
  private:
   void moveTo(const Coord& low);
 
-  const MaskGrid::ConstAccessor object_;
+  const MaskGrid::ConstUnsafeAccessor object_;
   Coord low_{0};           ///< of the voxels that are remembered
   bool isFilled_ = false;  ///< are there any?
   /// The rows of them along z, by x, then y: the lower four voxels and the upper ones as bits,

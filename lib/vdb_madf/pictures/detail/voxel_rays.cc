@@ -133,8 +133,8 @@ VoxelRays::VoxelRays(const MaskGrid::ConstPtr& object, const CoordBBox& box, con
   }
 }
 
-bool VoxelRays::first(const MaskGrid::ConstAccessor& accessor, const Vec& origin, Coord& voxel,
-                      double& t) const {
+bool VoxelRays::first(const MaskGrid::ConstUnsafeAccessor& accessor, const Vec& origin,
+                      Coord& voxel, double& t) const {
   const Span span(origin, direction_, low_, high_);
   if (span.empty()) return false;
   CellWalk leaves(origin, direction_, span.begin, leafEdges_, leafLow_, leafHigh_);

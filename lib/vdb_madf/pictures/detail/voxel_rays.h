@@ -22,7 +22,7 @@ class VoxelRays {
   /// Does the ray from `origin` meet a voxel? The first one, and where it enters it: origin +
   /// t * direction.
   /// @param accessor of the object
-  bool first(const MaskGrid::ConstAccessor& accessor, const Vec& origin, Coord& voxel,
+  bool first(const MaskGrid::ConstUnsafeAccessor& accessor, const Vec& origin, Coord& voxel,
              double& t) const;
 
  private:

@@ -43,7 +43,7 @@ VoxelArray<uint32_t> nodesOf(const Int32Grid& manifold, const LeafIndex& index,
     return uint32_t(found - numbers.begin());
   };
   parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    const auto tree = manifold.getConstAccessor();
+    const auto tree = manifold.getConstUnsafeAccessor();
     int32_t last = 0;  // neighbors mostly share their manifold: count by runs
     uint32_t node = 0;
     int64_t run = 0;
