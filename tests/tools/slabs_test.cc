@@ -389,7 +389,9 @@ TEST_CASE("slabs: exports are those of one file", "[slabs]") {
     bench.mustRun("segment in.vdb in.slabs --slab-height 16 --grid object -q " + options);
     for (const std::string kind :
          {"ome.zarr", "zarr --ome 0.5 --min-faces 5", "graphml --min-faces 5", "csv --as network",
-          "vtp --as network", "mha --as mask", "tif --as mask", "zarr --meshes", "ply"}) {
+          "vtp --as network", "mha --as mask", "tif --as mask", "zarr --meshes", "ply",
+          "ply --reduce 2", "glb --max-dim 20", "vdb --as lod", "vdb --as lod --reduce 3",
+          "vdb --as viz", "vdb --as viz --max-dim 9"}) {
       INFO(kind);
       const std::string ending = kind.substr(0, kind.find(' ')),
                         as = kind.substr(std::min(kind.size(), ending.size()));
@@ -402,6 +404,9 @@ TEST_CASE("slabs: exports are those of one file", "[slabs]") {
       CHECK(!files.empty());
       CHECK((files == wanted));
     }
+    // What needs all labels says so before it reads them.
+    CHECK_THAT(bench.run("export in.slabs out.ply").err, Contains("in memory together: about"));
+    CHECK(bench.run("export one.vdb out.ply").err.empty());
     bench.mustRun("measure one.vdb one -q");
     bench.mustRun("measure in.slabs cut -q");
     CHECK(bench.bytes("one/grains.csv") == bench.bytes("cut/grains.csv"));

@@ -56,9 +56,9 @@ bool isVtiOutput(const std::string& out) {
 
 const ExportKind kExportKinds[] = {
     {"mesh", exportMesh, ".ply, .obj, .stl, .glb or .vtp, or a folder name without an ending (STL)",
-     isMeshOutput},
-    {"viz", exportPreview, ".vdb", hasVdbEnding},
-    {"lod", exportReduced, ".vdb", hasVdbEnding},
+     isMeshOutput, exportMesh},
+    {"viz", exportPreview, ".vdb", hasVdbEnding, exportPreview},
+    {"lod", exportReduced, ".vdb", hasVdbEnding, exportReduced},
     {"grids", exportGrainGrids, ".vdb", hasVdbEnding},
     {"surface", exportSurface, ".vdb", hasVdbEnding},
     {"vti", exportVti, ".vti", isVtiOutput},
@@ -111,7 +111,10 @@ void runExport(const ExportArguments& o, const Common& common, const ExportKind&
     checkWritable(o.out);
   for (const std::string& file : {o.bonds, o.cover})
     if (!file.empty()) checkWritable(file);
-  if (kind.runSlabs && isInSlabs(o.input) && !o.meshes) {
+  // Meshes of all voxels need the labels in memory together.
+  const bool isOfAll =
+      o.meshes || (kind.run == exportMesh<Int32Grid> && o.reduce <= 1 && o.maxDim == 0);
+  if (kind.runSlabs && isInSlabs(o.input) && !isOfAll) {
     const LabelSlabs labels = openLabelSlabs(o.input, "--grid", common.progress);
     const auto domain = storedDomain(*labels.about);
     if (domain && domain->isBox())
@@ -192,7 +195,7 @@ void addExport(Verb command, Common& common, Action& action) {
     o->measure.minFaces = parseCount(o->minFaces, "--min-faces");
     const ExportKind& kind = findKind(*o);
     o->grains = parseGrains(o->select, "--select");
-    if (!o->grains.empty() && kind.run != exportMesh)
+    if (!o->grains.empty() && kind.run != exportMesh<Int32Grid>)
       throw WrongUsage("--select chooses the grains of --as mesh");
     checkTables(*o, kind);
     o->input.outputs = {o->out, o->bonds, o->cover};

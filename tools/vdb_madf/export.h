@@ -36,16 +36,27 @@ void say(const ExportArguments& o, const Common& common, const std::string& text
 int reductionOf(const ExportArguments& o, const Int32Grid& labels);
 GrainMeshOptions meshOptions(const ExportArguments& o);
 
-// The kinds of export: grains as shapes,
-void exportMesh(const ExportArguments& o, const Common& common, const Int32Grid& labels);
-void exportPreview(const ExportArguments& o, const Common& common, const Int32Grid& labels);
-void exportReduced(const ExportArguments& o, const Common& common, const Int32Grid& labels);
+/// Has the transform and the metadata of labels.
+inline const Int32Grid& aboutOf(const Int32Grid& labels) {
+  return labels;
+}
+inline const Int32Grid& aboutOf(const LabelSlabs& labels) {
+  return *labels.about;
+}
+
+// The kinds of export: grains as shapes, the templates of an Int32Grid or of LabelSlabs,
+template <typename Labels>
+void exportMesh(const ExportArguments& o, const Common& common, const Labels& labels);
+template <typename Labels>
+void exportPreview(const ExportArguments& o, const Common& common, const Labels& labels);
+template <typename Labels>
+void exportReduced(const ExportArguments& o, const Common& common, const Labels& labels);
 void exportGrainGrids(const ExportArguments& o, const Common& common, const Int32Grid& labels);
 void exportSurface(const ExportArguments& o, const Common& common, const Int32Grid& labels);
 void exportClumps(const ExportArguments& o, const Common& common, const Int32Grid& labels);
 void exportHexahedra(const ExportArguments& o, const Common& common, const Int32Grid& labels);
 
-// and labels as volumes and networks, of an Int32Grid or of LabelSlabs.
+// and labels as volumes and networks.
 void exportVti(const ExportArguments& o, const Common& common, const Int32Grid& labels);
 template <typename Labels>
 void exportMask(const ExportArguments& o, const Common& common, const Labels& labels);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <type_traits>
 
 #include "export.h"
 #include "vdb_madf/base/errors.h"
@@ -37,10 +38,13 @@ std::string unitOf(const openvdb::GridBase& grid) {
 }
 
 /// Labels as they are meshed: those of the chosen grains, reduced.
+template <typename Labels>
 Int32Grid::ConstPtr meshedLabels(const ExportArguments& o, const Common& common,
-                                 const Int32Grid& labels, int factor) {
-  const Int32Grid::ConstPtr all =
-      factor == 1 ? labels.copy() : reduceLabels(labels, factor, common.progress);
+                                 const Labels& labels, int factor) {
+  Int32Grid::ConstPtr all;
+  if constexpr (std::is_same_v<Labels, Int32Grid>)
+    if (factor == 1) all = labels.copy();
+  if (!all) all = reduceLabels(labels, factor, common.progress);
   return o.grains.empty() ? all : selectGrains(*all, o.grains, common.progress);
 }
 
@@ -84,13 +88,14 @@ GrainMeshOptions meshOptions(const ExportArguments& o) {
   return options;
 }
 
-void exportMesh(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
+template <typename Labels>
+void exportMesh(const ExportArguments& o, const Common& common, const Labels& labels) {
   const GrainMeshOptions options = meshOptions(o);
-  const int factor = reductionOf(o, labels);
+  const int factor = reductionOf(o, aboutOf(labels));
   const Int32Grid::ConstPtr meshed = meshedLabels(o, common, labels, factor);
   MeshFileOptions file;
   file.transform = meshed->constTransformPtr();
-  file.lengthUnit = unitOf(labels);
+  file.lengthUnit = unitOf(aboutOf(labels));
   file.shadeSmooth = o.smoothing > 0;
   if (isGlb(o.out) && options.triangles == 0)
     checkMeshRoom(o.out, countTriangles(*meshed, common.progress), file);
@@ -111,8 +116,9 @@ void exportMesh(const ExportArguments& o, const Common& common, const Int32Grid&
                   file.lengthUnit.empty() ? "voxels" : file.lengthUnit));
 }
 
-void exportPreview(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
-  const int factor = reductionOf(o, labels);
+template <typename Labels>
+void exportPreview(const ExportArguments& o, const Common& common, const Labels& labels) {
+  const int factor = reductionOf(o, aboutOf(labels));
   const LabelPreview preview = previewLabels(labels, factor, common.progress);
   writeVdb(o.out, {preview.color, preview.density}, common.progress);
   say(o, common,
@@ -120,8 +126,9 @@ void exportPreview(const ExportArguments& o, const Common& common, const Int32Gr
                   counted(preview.density->activeVoxelCount(), "voxel")));
 }
 
-void exportReduced(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
-  const int factor = o.reduce == 0 && o.maxDim == 0 ? 2 : reductionOf(o, labels);
+template <typename Labels>
+void exportReduced(const ExportArguments& o, const Common& common, const Labels& labels) {
+  const int factor = o.reduce == 0 && o.maxDim == 0 ? 2 : reductionOf(o, aboutOf(labels));
   const Int32Grid::Ptr reduced = reduceLabels(labels, factor, common.progress);
   writeVdb(o.out, {reduced}, common.progress);
   say(o, common,
@@ -194,5 +201,12 @@ void exportHexahedra(const ExportArguments& o, const Common& common, const Int32
       fmt::format("{}, {}, {}", counted(counts.grains, "grain"),
                   counted(counts.elements, "element"), counted(counts.nodes, "node")));
 }
+
+template void exportMesh(const ExportArguments&, const Common&, const Int32Grid&);
+template void exportMesh(const ExportArguments&, const Common&, const LabelSlabs&);
+template void exportPreview(const ExportArguments&, const Common&, const Int32Grid&);
+template void exportPreview(const ExportArguments&, const Common&, const LabelSlabs&);
+template void exportReduced(const ExportArguments&, const Common&, const Int32Grid&);
+template void exportReduced(const ExportArguments&, const Common&, const LabelSlabs&);
 
 }  // namespace vdb_madf::tools

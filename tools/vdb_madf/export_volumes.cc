@@ -24,14 +24,6 @@ std::string sizeText(const CoordBBox& box) {
   return fmt::format("{}x{}x{} voxels", size.x(), size.y(), size.z());
 }
 
-/// Has the transform and the metadata of labels.
-const Int32Grid& aboutOf(const Int32Grid& labels) {
-  return labels;
-}
-const Int32Grid& aboutOf(const LabelSlabs& labels) {
-  return *labels.about;
-}
-
 void writeMask(const ExportArguments& o, const CoordBBox& box, const Int32Grid& labels,
                Progress* progress) {
   writeImage(o.out, *objectMask(labels), box, SampleType::uint8, progress);

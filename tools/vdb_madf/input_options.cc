@@ -6,9 +6,12 @@
 #include <fmt/core.h>
 #include <openvdb/Metadata.h>
 
+#include <algorithm>
+
 #include "outputs.h"
 #include "parse.h"
 #include "vdb_madf/base/lower_case.h"
+#include "vdb_madf/base/memory.h"
 #include "vdb_madf/base/word_list.h"
 #include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -16,6 +19,7 @@
 #include "vdb_madf/scans/filtered_image.h"
 #include "vdb_madf/scans/image_box.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"
+#include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/slab_folder.h"
 #include "wrong_usage.h"
 
@@ -252,8 +256,27 @@ MaskGrid::Ptr loadObject(const InputOptions& input, Progress* progress) {
   return object;
 }
 
+namespace {
+
+/// Says what memory labels take, before all slabs of a folder are read.
+void noteMemory(const InputOptions& input, Progress* progress) {
+  constexpr int64_t kLeafBytes = 2224;
+  int64_t leaves = 0;
+  for (const openvdb::GridBase::Ptr& grid : readVdbHeaders(input.path, progress))
+    if (const auto count = grid->getMetadata<openvdb::Int64Metadata>("madf_leaves"))
+      leaves = std::max(leaves, count->value());
+  if (leaves > 0)
+    progress->note(fmt::format(
+        "{}: its labels are needed in memory together: about {}, and {} "
+        "are free",
+        input.path, readableBytes(leaves * kLeafBytes), readableBytes(availableMemory())));
+}
+
+}  // namespace
+
 Int32Grid::Ptr loadLabels(const InputOptions& input, const std::string& gridOption,
                           Progress* progress) {
+  if (isInSlabs(input)) noteMemory(input, progress);
   if (!isVdb(input)) checkNoGrid(input, gridOption);
   return withGridOption(input, gridOption, [&] {
     return vdb_madf::loadLabels(input.path, input.volume(progress), progress);

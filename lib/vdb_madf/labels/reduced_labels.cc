@@ -41,4 +41,13 @@ Int32Grid::Ptr reduceLabels(const Int32Grid& labels, int factor, Interrupter* in
   return detail::gather<Int32Grid>(leaves, labels, factor, labels.getName());
 }
 
+Int32Grid::Ptr reduceLabels(const LabelSlabs& labels, int factor, Interrupter* interrupter) {
+  const Int32Grid::Ptr whole = reduceLabels(*labels.about, factor, interrupter);
+  const auto add = [&](const Int32Grid& part) {
+    whole->tree().merge(reduceLabels(part, factor, interrupter)->tree());
+  };
+  detail::forEachPart(labels, factor, add, interrupter);
+  return whole;
+}
+
 }  // namespace vdb_madf

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/label_slabs.h"
 
 namespace vdb_madf {
 
@@ -23,6 +24,11 @@ int reductionFor(const CoordBBox& box, int maxDim);
 /// equally frequent ones the smallest. Labels are never averaged.
 /// @throw InvalidInput if the factor is not 1 .. kMaxReduction; Interrupted.
 Int32Grid::Ptr reduceLabels(const Int32Grid& labels, int factor,
+                            Interrupter* interrupter = nullptr);
+
+/// Labels in slabs, of which some layers are in memory at a time.
+/// @throw as above; what reading throws
+Int32Grid::Ptr reduceLabels(const LabelSlabs& labels, int factor,
                             Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

@@ -13,9 +13,11 @@ namespace vdb_madf {
 
 using openvdb::Vec3f;
 
-LabelPreview previewLabels(const Int32Grid& labels, int factor, Interrupter* interrupter) {
+namespace {
+
+LabelPreview preview(const Int32Grid& labels, const GrainColors& colors, int factor,
+                     Interrupter* interrupter) {
   const detail::Reduction reduction(labels, factor);
-  const GrainColors colors = grainColors(labels, interrupter);
   const float whole = float(int64_t(factor) * factor * factor);
   std::vector<std::unique_ptr<FloatGrid::TreeType::LeafNodeType>> densities(reduction.leafCount());
   std::vector<std::unique_ptr<ColorGrid::TreeType::LeafNodeType>> shades(reduction.leafCount());
@@ -32,12 +34,30 @@ LabelPreview previewLabels(const Int32Grid& labels, int factor, Interrupter* int
         }
       },
       interrupter);
-  LabelPreview preview;
-  preview.density = detail::gather<FloatGrid>(densities, labels, factor, "density");
-  preview.density->setGridClass(openvdb::GRID_FOG_VOLUME);
-  preview.color = detail::gather<ColorGrid>(shades, labels, factor, "color");
-  preview.color->setVectorType(openvdb::VEC_INVARIANT);
-  return preview;
+  LabelPreview made;
+  made.density = detail::gather<FloatGrid>(densities, labels, factor, "density");
+  made.density->setGridClass(openvdb::GRID_FOG_VOLUME);
+  made.color = detail::gather<ColorGrid>(shades, labels, factor, "color");
+  made.color->setVectorType(openvdb::VEC_INVARIANT);
+  return made;
+}
+
+}  // namespace
+
+LabelPreview previewLabels(const Int32Grid& labels, int factor, Interrupter* interrupter) {
+  return preview(labels, grainColors(labels, interrupter), factor, interrupter);
+}
+
+LabelPreview previewLabels(const LabelSlabs& labels, int factor, Interrupter* interrupter) {
+  const GrainColors colors = grainColors(labels, interrupter);
+  const LabelPreview whole = preview(*labels.about, colors, factor, interrupter);
+  const auto add = [&](const Int32Grid& labelsOfPart) {
+    const LabelPreview part = preview(labelsOfPart, colors, factor, interrupter);
+    whole.density->tree().merge(part.density->tree());
+    whole.color->tree().merge(part.color->tree());
+  };
+  detail::forEachPart(labels, factor, add, interrupter);
+  return whole;
 }
 
 }  // namespace vdb_madf

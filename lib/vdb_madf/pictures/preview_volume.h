@@ -4,6 +4,7 @@
 #pragma once
 
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/label_slabs.h"
 
 namespace vdb_madf {
 
@@ -19,5 +20,9 @@ struct LabelPreview {
 /// Colors are those of the full resolution. Factor: as reduceLabels() (labels/reduced_labels.h),
 /// also what it throws.
 LabelPreview previewLabels(const Int32Grid& labels, int factor, Interrupter* interrupter = nullptr);
+
+/// Labels in slabs are read twice. @throw as above; what reading throws
+LabelPreview previewLabels(const LabelSlabs& labels, int factor,
+                           Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

@@ -150,6 +150,29 @@ Cells Reduction::count(const std::vector<uint64_t>& keys) const {
   return cells;
 }
 
+void forEachPart(const LabelSlabs& labels, int factor,
+                 const std::function<void(const Int32Grid&)>& f, Interrupter* interrupter) {
+  using Leaf = Int32Tree::LeafNodeType;
+  Int32Grid::Ptr waiting = labels.about->deepCopy();
+  for (size_t s = 0; s < labels.slabCount(); ++s) {
+    const Int32Grid::Ptr slab = labels.read(s, interrupter);
+    slab->tree().voxelizeActiveTiles();
+    waiting->tree().merge(slab->tree());
+    const int64_t layer = 8 * int64_t(factor), cut = labels.cuts[s + 1];
+    const int64_t end = cut - (cut % layer + layer) % layer;
+    const Int32Grid::Ptr above = labels.about->deepCopy();
+    if (s + 1 < labels.slabCount()) {
+      std::vector<Coord> origins;
+      for (auto leaf = waiting->tree().cbeginLeaf(); leaf; ++leaf)
+        if (leaf->origin().z() >= end) origins.push_back(leaf->origin());
+      for (const Coord& origin : origins)
+        above->tree().addLeaf(waiting->tree().stealNode<Leaf>(origin, 0, false));
+    }
+    f(*waiting);
+    waiting = above;
+  }
+}
+
 void placeReduced(openvdb::GridBase& grid, const Int32Grid& labels, int factor,
                   const std::string& name) {
   grid.setName(name);

@@ -12,6 +12,7 @@
 
 #include "vdb_madf/grids/domain.h"
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/label_slabs.h"
 
 namespace vdb_madf::detail {
 
@@ -62,6 +63,11 @@ class Reduction {
   std::vector<CoarseLeaf> pairs_;
   std::vector<size_t> first_;
 };
+
+/// Reads slabs one by one, and calls f with all labels in ascending parts, each of whole coarse
+/// leaves. @throw Interrupted; what reading throws
+void forEachPart(const LabelSlabs& labels, int factor,
+                 const std::function<void(const Int32Grid&)>& f, Interrupter* interrupter);
 
 /// Tells a coarse grid its name, and where its voxels lie: transform, domain and voxel size of
 /// `labels`, times the factor.
