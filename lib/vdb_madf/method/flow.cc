@@ -14,8 +14,9 @@ namespace vdb_madf {
 
 namespace {
 
-/// Follows the sites from ball to ball: the critical ball that each one flows to, by rank. Other
-/// threads may shorten a path while this one walks it; all lead to one root.
+/// Follows the sites from ball to ball: the critical ball that each one flows to, by rank. All balls
+/// of a path that was walked get its end, so that long paths are walked once. Other threads may
+/// shorten a path meanwhile; all lead to one root.
 std::vector<uint32_t> rootBalls(const LeafIndex& index, const VoxelArray<VoxelId>& site,
                                 const VoxelSet& balls, const std::vector<VoxelId>& ids,
                                 Interrupter* interrupter) {
@@ -32,7 +33,8 @@ std::vector<uint32_t> rootBalls(const LeafIndex& index, const VoxelArray<VoxelId
     for (size_t i = begin; i < end; ++i) {
       uint32_t root = load(i);
       for (uint32_t further; (further = load(root)) != root;) root = further;
-      __atomic_store_n(&next[i], root, __ATOMIC_RELAXED);
+      for (uint32_t at = uint32_t(i), further; (further = load(at)) != root; at = further)
+        __atomic_store_n(&next[at], root, __ATOMIC_RELAXED);
     }
   });
   return next;

@@ -27,16 +27,19 @@ void setFlag(std::vector<char>& flags, uint32_t label) {
   __atomic_store_n(&flags[label - 1], char(1), __ATOMIC_RELAXED);
 }
 
-/// The voxels of a mask with the 26 around them in it too, as far as the leaf tells.
-Mask erode(const Mask& mask) {
-  constexpr uint64_t kInnerZ = ~(detail::kFirstZ | detail::kLastZ);
+/// The voxels of a mask with the 26 around them in it too, where those beyond the leaf all are
+/// (beyond is ~0) or all are not (0).
+Mask erode(const Mask& mask, uint64_t beyond) {
+  using detail::kFirstY, detail::kFirstZ, detail::kLastY, detail::kLastZ;
+  const auto inner = [&](uint64_t row, uint64_t face) { return (row & ~face) | (beyond & face); };
   Mask planes{};  // along y and z
   for (size_t x = 0; x < 8; ++x) {
-    const uint64_t row = mask[x] & mask[x] << 1 & mask[x] >> 1 & kInnerZ;
-    planes[x] = row & row << 8 & row >> 8 & ~(detail::kFirstY | detail::kLastY);
+    const uint64_t row = mask[x] & inner(mask[x] << 1, kFirstZ) & inner(mask[x] >> 1, kLastZ);
+    planes[x] = row & inner(row << 8, kFirstY) & inner(row >> 8, kLastY);
   }
-  Mask deep{};
-  for (size_t x = 1; x < 7; ++x) deep[x] = planes[x - 1] & planes[x] & planes[x + 1];
+  Mask deep;
+  for (size_t x = 0; x < 8; ++x)
+    deep[x] = planes[x] & (x > 0 ? planes[x - 1] : beyond) & (x < 7 ? planes[x + 1] : beyond);
   return deep;
 }
 
@@ -45,6 +48,14 @@ class FlawFinder {
   FlawFinder(const LeafIndex& index, const detail::LabelMasks& labels,
              const std::optional<Domain>& domain)
       : index_(index), labels_(labels), domain_(domain) {}
+
+  /// False if what lies in a leaf tells that a label is not two layers deep there. \p outside: what
+  /// of the leaf lies outside the domain.
+  static bool mayBeDeep(const Entry& own, const Mask& outside) {
+    Mask mask = own.mask;
+    for (size_t x = 0; x < 8; ++x) mask[x] |= outside[x];
+    return detail::meet(own.mask, erode(mask, ~uint64_t(0)));
+  }
 
   /// Has a label a voxel in a leaf that is two layers deep? What lies outside the domain does not
   /// count.
@@ -64,15 +75,28 @@ class FlawFinder {
     return detail::meet(own.mask, detail::areSurrounded(detail::voxelsAround(set)));
   }
 
-  /// Has such a voxel a neighbor of another label?
-  bool touchesAnother(uint32_t leaf, const Entry& own) const {
-    if (meetsAnother(leaf, detail::dilate(own.mask), own.label)) return true;
+  /// Has such a voxel a neighbor of another label? \p labelled: the voxels of the leaf that have
+  /// one.
+  bool touchesAnother(uint32_t leaf, const Entry& own, const Mask& labelled) const {
+    if (detail::meet(detail::without(detail::dilate(own.mask), own.mask), labelled)) return true;
     for (size_t side = 0; side < 6; ++side) {
       const uint32_t next = index_.neighbors(leaf)[side];
-      if (next != LeafIndex::kNone && meetsAnother(next, detail::across(own.mask, side), own.label))
-        return true;
+      if (next == LeafIndex::kNone) continue;
+      const Mask touched = detail::both(detail::across(own.mask, side), index_.mask(next));
+      if (detail::anyVoxel(touched) && meetsAnother(next, touched, own.label)) return true;
     }
     return false;
+  }
+
+  Mask outside(uint32_t leaf) const {
+    if (!domain_) return {};
+    return detail::without(detail::kFullMask, detail::insideMask(*domain_, index_.origin(leaf)));
+  }
+  Mask labelled(uint32_t leaf) const {
+    Mask all{};
+    for (auto entry = labels_.begin(leaf); entry != labels_.end(leaf); ++entry)
+      for (size_t x = 0; x < 8; ++x) all[x] |= entry->mask[x];
+    return all;
   }
 
  private:
@@ -92,15 +116,12 @@ class FlawFinder {
   std::optional<Domain> domain_;
 };
 
-/// f(leaf, entry) for all entries, in parallel.
+/// f(leaf) for all leaves, in parallel.
 template <typename F>
-void forEachEntry(const LeafIndex& index, const detail::LabelMasks& labels,
-                  Interrupter* interrupter, const F& f) {
+void forEachLeaf(const LeafIndex& index, Interrupter* interrupter, const F& f) {
   detail::parallelFor(index.leafCount(), detail::kLeafGrain, interrupter,
                       [&](size_t begin, size_t end) {
-                        for (uint32_t leaf = uint32_t(begin); leaf < end; ++leaf)
-                          for (auto entry = labels.begin(leaf); entry != labels.end(leaf); ++entry)
-                            f(leaf, *entry);
+                        for (uint32_t leaf = uint32_t(begin); leaf < end; ++leaf) f(leaf);
                       });
 }
 
@@ -114,17 +135,26 @@ void detail::findFlags(const LeafIndex& index, const LabelMasks& labels,
   const FlawFinder finder(index, labels, domain);
   std::vector<char>&deep = flags.deep, &touching = flags.touching;
   // Nearly all grains show within a leaf that they are deep.
-  forEachEntry(index, labels, interrupter, [&](uint32_t, const Entry& own) {
-    if (!isSet(deep, own.label) && anyVoxel(erode(own.mask))) setFlag(deep, own.label);
+  forEachLeaf(index, interrupter, [&](uint32_t leaf) {
+    for (auto own = labels.begin(leaf); own != labels.end(leaf); ++own)
+      if (!isSet(deep, own->label) && anyVoxel(erode(own->mask, 0))) setFlag(deep, own->label);
   });
   PerThread<LeafNeighborhood> neighborhoods{LeafNeighborhood(index)};
-  forEachEntry(index, labels, interrupter, [&](uint32_t leaf, const Entry& own) {
-    const uint32_t label = own.label;
-    if (!isSet(deep, label) && finder.isDeep(leaf, own, neighborhoods.local()))
-      setFlag(deep, label);
-    const bool matters = small[label - 1] || !isSet(deep, label);
-    if (matters && !isSet(touching, label) && finder.touchesAnother(leaf, own))
-      setFlag(touching, label);
+  forEachLeaf(index, interrupter, [&](uint32_t leaf) {
+    std::optional<Mask> outside, labelled;  // of the leaf, once they are needed
+    for (auto own = labels.begin(leaf); own != labels.end(leaf); ++own) {
+      const uint32_t label = own->label;
+      if (!isSet(deep, label)) {
+        if (!outside) outside = finder.outside(leaf);
+        if (FlawFinder::mayBeDeep(*own, *outside) &&
+            finder.isDeep(leaf, *own, neighborhoods.local()))
+          setFlag(deep, label);
+      }
+      const bool matters = small[label - 1] || !isSet(deep, label);
+      if (!matters || isSet(touching, label)) continue;
+      if (!labelled) labelled = finder.labelled(leaf);
+      if (finder.touchesAnother(leaf, *own, *labelled)) setFlag(touching, label);
+    }
   });
 }
 
