@@ -18,9 +18,11 @@ namespace vdb_madf::detail {
 
 namespace {
 
-/// The leaves, a voxel for each, that are up to reach(leaf) leaves away from a leaf of the object.
+/// The leaves of the box of a region, a voxel for each, that are up to reach(leaf) leaves away from
+/// a leaf of the object. They grow within the box alone, which is convex.
 template <typename Reach>
-MaskTree leavesAround(const LeafIndex& object, const Reach& reach) {
+MaskTree leavesAround(const LeafIndex& object, const Domain& region, const Reach& reach) {
+  const CoordBBox box{region.box().min() >> 3, region.box().max() >> 3};
   std::vector<std::vector<uint32_t>> byReach;
   for (uint32_t leaf = 0; leaf < object.leafCount(); ++leaf) {
     const auto r = size_t(reach(leaf));
@@ -30,16 +32,16 @@ MaskTree leavesAround(const LeafIndex& object, const Reach& reach) {
   MaskTree leaves;
   for (size_t r = byReach.size(); r-- > 0;) {  // those of the longest reach grow most often
     for (const uint32_t leaf : byReach[r]) leaves.setValueOn(object.origin(leaf) >> 3);
-    if (r > 0)
-      openvdb::tools::dilateActiveValues(leaves, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
-                                         openvdb::tools::EXPAND_TILES);
+    if (r == 0) break;
+    openvdb::tools::dilateActiveValues(leaves, 1, openvdb::tools::NN_FACE_EDGE_VERTEX,
+                                       openvdb::tools::EXPAND_TILES);
+    leaves.clip(box);
   }
   return leaves;
 }
 
-/// The unknown voxels of leaves, as far as the box of the region goes.
-std::vector<LeafIndex::LeafVoxels> unknownVoxels(MaskTree leaves, const Domain& region) {
-  leaves.clip({region.box().min() >> 3, region.box().max() >> 3});
+/// The unknown voxels of leaves.
+std::vector<LeafIndex::LeafVoxels> unknownVoxels(const MaskTree& leaves, const Domain& region) {
   std::vector<LeafIndex::LeafVoxels> unknown;
   for (auto at = leaves.cbeginValueOn(); at; ++at) {
     CoordBBox tile;
@@ -81,8 +83,8 @@ Passage::Passage(const LeafIndex& object, const Domain& region, int reach,
   const int leaves = (std::min(reach, side) + 7) / 8;
   exactUpTo_ = leaves * 8 >= side ? kInfinite
                                   : squaredAlong(uint32_t(leaves * 8), uint32_t(weights.least()));
-  index_ = LeafIndex(object,
-                     unknownVoxels(leavesAround(object, [&](uint32_t) { return leaves; }), region));
+  const auto all = [&](uint32_t) { return leaves; };
+  index_ = LeafIndex(object, unknownVoxels(leavesAround(object, region, all), region));
   linkObject(object);
   chooseCarriers({0, 1, 2}, false);
 }
@@ -94,7 +96,7 @@ Passage::Passage(const LeafIndex& object, const Domain& region,
     const int32_t largest = *std::max_element(first, first + object.leafVoxels(leaf));
     return (int(std::sqrt(double(largest) / weights.least())) + 7) / 8;
   };
-  index_ = LeafIndex(object, unknownVoxels(leavesAround(object, reach), region));
+  index_ = LeafIndex(object, unknownVoxels(leavesAround(object, region, reach), region));
   linkObject(object);
   chooseCarriers({2, 1, 0}, true);
 }
