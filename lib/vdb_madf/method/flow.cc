@@ -14,9 +14,9 @@ namespace vdb_madf {
 
 namespace {
 
-/// Follows the sites from ball to ball: the critical ball that each one flows to, by rank. All balls
-/// of a path that was walked get its end, so that long paths are walked once. Other threads may
-/// shorten a path meanwhile; all lead to one root.
+/// Follows the sites from ball to ball: the critical ball that each one flows to, by rank. All
+/// balls of a path that was walked get its end, so that long paths are walked once. Other threads
+/// may shorten a path meanwhile; all lead to one root.
 std::vector<uint32_t> rootBalls(const LeafIndex& index, const VoxelArray<VoxelId>& site,
                                 const VoxelSet& balls, const std::vector<VoxelId>& ids,
                                 Interrupter* interrupter) {

@@ -75,10 +75,9 @@ class FlawFinder {
     return detail::meet(own.mask, detail::areSurrounded(detail::voxelsAround(set)));
   }
 
-  /// Has such a voxel a neighbor of another label? \p labelled: the voxels of the leaf that have
-  /// one.
-  bool touchesAnother(uint32_t leaf, const Entry& own, const Mask& labelled) const {
-    if (detail::meet(detail::without(detail::dilate(own.mask), own.mask), labelled)) return true;
+  /// Has such a voxel a neighbor of another label? \p voxels: those of the leaf with a label.
+  bool touchesAnother(uint32_t leaf, const Entry& own, const Mask& voxels) const {
+    if (detail::meet(detail::without(detail::dilate(own.mask), own.mask), voxels)) return true;
     for (size_t side = 0; side < 6; ++side) {
       const uint32_t next = index_.neighbors(leaf)[side];
       if (next == LeafIndex::kNone) continue;
