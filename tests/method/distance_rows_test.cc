@@ -90,3 +90,26 @@ TEST_CASE("distance_rows: the other passes by their definition", "[distance_rows
     }
   }
 }
+
+TEST_CASE("distance_rows: background hundreds of voxels away", "[distance_rows]") {
+  std::mt19937 random(3);
+  constexpr int kLength = 600;
+  for (const int weight : {1, 2, 144}) {
+    std::vector<uint32_t> in((kLength + 2) * 64, kInfinite), out(kLength * 64, 7);
+    for (uint32_t& value : in)
+      if (random() % 400 == 0) value = random() % unsigned(90000 * weight);
+    for (int t = -1; t <= kLength; ++t) in[rowIndex(t + 1, 5)] = kInfinite;
+    const int begin = 16, end = kLength - 8;
+    widenWindows(in.data() + 64, kLength, begin, end, weight, kLength, out.data());
+    int wrong = 0;
+    for (int t = 0; t < kLength; ++t)
+      for (int row = 0; row < 64; ++row) {
+        uint32_t expected = kInfinite;
+        for (int s = -1; s <= kLength; ++s)
+          expected =
+              std::min(expected, in[rowIndex(s + 1, row)] + uint32_t(weight * (s - t) * (s - t)));
+        wrong += out[rowIndex(t, row)] != (t < begin || t >= end ? 7 : expected);
+      }
+    REQUIRE(wrong == 0);
+  }
+}

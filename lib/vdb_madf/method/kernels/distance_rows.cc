@@ -4,6 +4,7 @@
 #include "vdb_madf/method/kernels/distance_rows.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "vdb_madf/base/detail/simd.h"
 #include "vdb_madf/base/limits.h"
@@ -18,6 +19,9 @@ namespace {
 /// whose square does not fit.
 constexpr uint32_t kFar = 46341;
 static_assert(kFar > kMaxExtent + 8 && uint64_t(kFar) * kFar > kInfinite);
+
+/// The window beyond which a look at each row by itself costs less.
+constexpr int kWidest = 256;
 
 /// Of 16 of the 64 rows, from row `first` on.
 template <int Bytes, typename Weight>
@@ -63,8 +67,10 @@ VDB_MADF_KERNEL void scan(const uint64_t* masks, int length, const RowDomain& do
 // in all lanes, nor anything of w reach^2 or less after k = reach. Beyond an end of the row the
 // padding there is looked at again, from further away than before, which changes nothing: so the
 // nearer end needs no loop of its own.
+//
+// False if a window would be wider than kWidest: then `out` is not complete.
 template <int Bytes, typename Weight>
-VDB_MADF_KERNEL void widen(const uint32_t* in, int length, int begin, int end, Weight weight,
+VDB_MADF_KERNEL bool widen(const uint32_t* in, int length, int begin, int end, Weight weight,
                            int reach, uint32_t* out) {
   constexpr int kTogether = 2;  // steps until the largest is looked for again
   for (int t = begin; t < end; ++t) {
@@ -75,6 +81,7 @@ VDB_MADF_KERNEL void widen(const uint32_t* in, int length, int begin, int end, W
       Lanes<Bytes, uint32_t> best, below, above;
       best.load(center);
       for (int k = 1; k <= last && squaredAlong(uint32_t(k), weight) < best.largest();) {
+        if (k > kWidest) return false;
         for (const int stop = std::min(k + kTogether, last + 1); k < stop; ++k) {
           const uint32_t k2 = squaredAlong(uint32_t(k), weight);
           below.load(center - std::min(k, toBegin) * 64);
@@ -87,6 +94,44 @@ VDB_MADF_KERNEL void widen(const uint32_t* in, int length, int begin, int end, W
       }
       for (auto& v : best.v) v = v < kInfinite ? v : kInfinite;
       best.store(out + t * 64 + lane);
+    }
+  }
+  return true;
+}
+
+/// What a position of a row offers to the others, and from which one on it is the best.
+struct RowPart {
+  int64_t value;
+  int place, from;
+};
+
+/// The same of one row, by the lower envelope of what its positions offer: in time that goes with
+/// its length, however wide the windows are. A later position s gains on an earlier one p where
+///   2 w t (s - p) > in(s) - in(p) + w (s^2 - p^2).
+void widenFar(const uint32_t* in, int length, int begin, int end, int64_t weight,
+              std::vector<RowPart>& lowest, uint32_t* out) {
+  lowest.clear();
+  for (int s = -1; s <= length; ++s) {
+    const int64_t value = in[s * 64];
+    if (value >= kInfinite) continue;
+    int64_t from = begin;  // where none is left that was lower before
+    for (; !lowest.empty(); lowest.pop_back()) {
+      const RowPart& p = lowest.back();
+      const int64_t over = value - p.value + weight * (s - p.place) * (s + p.place);
+      const int64_t slope = 2 * weight * (s - p.place);
+      if (over >= slope * p.from) {
+        from = over / slope + 1;
+        break;
+      }
+    }
+    if (from < end) lowest.push_back({value, s, int(from)});
+  }
+  for (int t = begin; lowest.empty() && t < end; ++t) out[t * 64] = kInfinite;
+  for (size_t i = 0; i < lowest.size(); ++i) {
+    const int stop = i + 1 < lowest.size() ? lowest[i + 1].from : end;
+    for (int64_t t = lowest[i].from; t < stop; ++t) {
+      const int64_t away = t - lowest[i].place;
+      out[t * 64] = uint32_t(std::min<int64_t>(lowest[i].value + weight * away * away, kInfinite));
     }
   }
 }
@@ -107,12 +152,13 @@ void scanRows(const uint64_t* masks, int length, const RowDomain& domain, int32_
 
 void widenWindows(const uint32_t* in, int length, int begin, int end, int32_t weight, int reach,
                   uint32_t* out) {
-  atBestLevel([&](auto bytes) VDB_MADF_INLINE {
-    if (weight == 1)
-      widen<bytes>(in, length, begin, end, UnitWeight(), reach, out);
-    else
-      widen<bytes>(in, length, begin, end, weight, reach, out);
+  const bool isDone = atBestLevel([&](auto bytes) VDB_MADF_INLINE {
+    return weight == 1 ? widen<bytes>(in, length, begin, end, UnitWeight(), reach, out)
+                       : widen<bytes>(in, length, begin, end, weight, reach, out);
   });
+  std::vector<RowPart> lowest;
+  for (int row = 0; row < 64 && !isDone; ++row)
+    widenFar(in + row, length, begin, end, weight, lowest, out + row);
 }
 
 }  // namespace vdb_madf::detail
