@@ -88,7 +88,11 @@ bool connect(const LeafIndex& index, const std::vector<VoxelId>& anchor, detail:
     --grains.voxels[loose[i].lost - 1];
     ++grains.voxels[label - 1];
   };
-  const auto unreached = detail::refill(loose.size(), around, give, interrupter);
+  std::vector<VoxelId> ids;
+  for (const LooseVoxel& voxel : loose) ids.push_back(voxel.id);
+  const detail::NumberedVoxels numbers(index, ids);
+  const auto beside = [&](uint32_t i, const auto& f) { numbers.forEachBeside(ids[i], f); };
+  const auto unreached = detail::refill(loose.size(), around, give, beside, interrupter);
   for (const uint32_t i : unreached) grains.label[index.rank(loose[i].id)] = loose[i].lost;
   return unreached.empty();
 }

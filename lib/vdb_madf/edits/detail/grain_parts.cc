@@ -84,7 +84,9 @@ void fill(const LeafIndex& index, VoxelArray<uint32_t>& labels, Interrupter* int
   });
   const auto around = [&](uint32_t i) { return labelsAround(index, labels, open[i]); };
   const auto give = [&](uint32_t i, uint32_t label) { labels[index.rank(open[i])] = label; };
-  for (const uint32_t i : refill(open.size(), around, give, interrupter)) give(i, 1);
+  const NumberedVoxels numbers(index, open);
+  const auto beside = [&](uint32_t i, const auto& f) { numbers.forEachBeside(open[i], f); };
+  for (const uint32_t i : refill(open.size(), around, give, beside, interrupter)) give(i, 1);
 }
 
 /// The voxels of an index with a label.

@@ -3,9 +3,12 @@
 
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
@@ -33,32 +36,63 @@ inline LabelsAround labelsAround(const LeafIndex& index, const VoxelArray<uint32
 /// The label that most neighbors have, of equally frequent ones the smallest; 0 if none has one.
 uint32_t mostFrequent(const LabelsAround& around);
 
+/// Finds the numbers that voxels of an index have in a list.
+class NumberedVoxels {
+ public:
+  NumberedVoxels(const LeafIndex& index, const std::vector<VoxelId>& ids) : index_(index) {
+    for (uint32_t i = 0; i < ids.size(); ++i) numbers_.emplace_back(ids[i], i);
+    parallelSort(numbers_.begin(), numbers_.end(), std::less<>());
+  }
+
+  /// f(number) for the neighbors of a voxel that are in the list.
+  template <typename F>
+  void forEachBeside(VoxelId id, const F& f) const {
+    forEachNeighbor(index_, id, [&](VoxelId q, int, int) {
+      const auto found = std::lower_bound(numbers_.begin(), numbers_.end(), std::pair(q, 0u));
+      if (found != numbers_.end() && found->first == q) f(found->second);
+    });
+  }
+
+ private:
+  const LeafIndex& index_;
+  std::vector<std::pair<VoxelId, uint32_t>> numbers_;  // ascending
+};
+
 /// Gives labels to `count` voxels that have none, in synchronous rounds: each takes the most
-/// frequent one around it, until a round changes nothing.
+/// frequent one around it, until a round changes nothing. After the first round voxels are looked
+/// at beside which the round before has given a label.
 /// @param around around(i): the labels around voxel i, as they are before the round
 /// @param give give(i, label): voxel i has it from now on
+/// @param beside beside(i, f): f(j) for the voxels of these that are neighbors of voxel i
 /// @return the voxels that no round reaches, ascending. @throw Interrupted
-template <typename Around, typename Give>
+template <typename Around, typename Give, typename Beside>
 std::vector<uint32_t> refill(size_t count, const Around& around, const Give& give,
-                             Interrupter* interrupter) {
+                             const Beside& beside, Interrupter* interrupter) {
   constexpr size_t kVoxelGrain = 1024;
-  std::vector<uint32_t> rest(count), found;
-  std::iota(rest.begin(), rest.end(), 0);
-  for (bool changed = true; changed && !rest.empty();) {
-    found.resize(rest.size());
-    parallelFor(rest.size(), kVoxelGrain, interrupter, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) found[i] = mostFrequent(around(rest[i]));
+  std::vector<char> isOpen(count, 1);
+  std::vector<uint32_t> front(count), found, next;
+  std::iota(front.begin(), front.end(), 0);
+  while (!front.empty()) {
+    found.resize(front.size());
+    parallelFor(front.size(), kVoxelGrain, interrupter, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) found[i] = mostFrequent(around(front[i]));
     });
-    size_t left = 0;
-    for (size_t i = 0; i < rest.size(); ++i) {
-      if (found[i] == 0)
-        rest[left++] = rest[i];
-      else
-        give(rest[i], found[i]);
+    next.clear();
+    for (size_t i = 0; i < front.size(); ++i) {
+      if (found[i] == 0) continue;
+      give(front[i], found[i]);
+      isOpen[front[i]] = 0;
+      beside(front[i], [&](uint32_t j) { next.push_back(j); });
     }
-    changed = left < rest.size();
-    rest.resize(left);
+    std::sort(next.begin(), next.end());
+    next.erase(std::unique(next.begin(), next.end()), next.end());
+    next.erase(std::remove_if(next.begin(), next.end(), [&](uint32_t j) { return !isOpen[j]; }),
+               next.end());
+    front.swap(next);
   }
+  std::vector<uint32_t> rest;
+  for (uint32_t i = 0; i < count; ++i)
+    if (isOpen[i]) rest.push_back(i);
   return rest;
 }
 

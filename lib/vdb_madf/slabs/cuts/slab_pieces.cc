@@ -124,15 +124,21 @@ void refillAll(std::vector<LooseVoxel>& loose, Interrupter* interrupter) {
     return found != loose.end() && found->position == p ? &*found : nullptr;
   };
   const auto around = [&](uint32_t i) { return loose[i].around; };
-  const auto give = [&](uint32_t i, uint32_t label) {
-    loose[i].label = label;
+  const auto forEachNext = [&](uint32_t i, const auto& f) {
     for (size_t side = 0; side < 6; ++side) {
       Coord q = loose[i].position;
       q[int(side / 2)] += side % 2 ? 1 : -1;
-      if (LooseVoxel* const next = find(q)) next->around[side ^ 1] = label;
+      if (LooseVoxel* const next = find(q)) f(*next, side);
     }
   };
-  refill(loose.size(), around, give, interrupter);
+  const auto give = [&](uint32_t i, uint32_t label) {
+    loose[i].label = label;
+    forEachNext(i, [&](LooseVoxel& next, size_t side) { next.around[side ^ 1] = label; });
+  };
+  const auto beside = [&](uint32_t i, const auto& f) {
+    forEachNext(i, [&](const LooseVoxel& next, size_t) { f(uint32_t(&next - loose.data())); });
+  };
+  refill(loose.size(), around, give, beside, interrupter);
 }
 
 }  // namespace vdb_madf::detail
