@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -81,4 +82,44 @@ TEST_CASE("size_biases: of a gray scan they are larger", "[size_biases]") {
   CHECK(clean[0].expected == Approx(-0.14));
   CHECK(toString(clean[0]).find("specific_surface about -14 % at a median radius of 4.0 voxels "
                                 "(within 5 % from 12 on)") == 0);
+}
+
+TEST_CASE("size_biases: by the blur that the scan tells, with that of smoothing", "[size_biases]") {
+  const auto surface = [](std::optional<double> sigma, const std::string& steps) {
+    Measurements measured = ofSizes(8, 12);
+    measured.metadata.insertMeta(kThresholdKey, openvdb::DoubleMetadata(7));
+    measured.metadata.insertMeta(kObjectKey, openvdb::StringMetadata(steps));
+    if (sigma) measured.scan = ScanBlur{1, 0, 0.05, *sigma};
+    const auto biases = sizeBiases(measured);
+    REQUIRE(!biases.empty());
+    REQUIRE(biases[0].number == "specific_surface");
+    return biases[0].expected;
+  };
+  const double unknown = surface({}, "value >= 7");
+  const double sharp = surface(0.29, "value >= 7"), wide = surface(1.04, "value >= 7");
+  CHECK(sharp == Approx(sizeBiases(ofSizes(8, 12))[0].expected));
+  CHECK(unknown == Approx(surface(0.76, "value >= 7")));
+  CHECK(surface(0.9, "value >= 7") == Approx((unknown + wide) / 2));
+  CHECK(surface(2, "value >= 7") == Approx(wide));
+  CHECK(surface(0.1, "value >= 7") == Approx(sharp));
+  CHECK(std::abs(wide) > std::abs(unknown));
+  CHECK(surface({}, "median 1, smooth 0.5, value >= 7") ==
+        Approx(surface(std::hypot(0.76, 0.5), "value >= 7")));
+}
+
+TEST_CASE("size_biases: what a scan tells is wrong where its blur hides contacts",
+          "[size_biases]") {
+  const auto says = [](double sigma, double grains, double bonds, const std::string& number) {
+    Measurements measured = ofSizes(grains, bonds);
+    measured.scan = ScanBlur{1, 0, 0.05, sigma};
+    const auto all = numbers(measured);
+    return std::find(all.begin(), all.end(), number) != all.end();
+  };
+  CHECK_FALSE(says(0.76, 6, 8, "contact_coordination"));
+  CHECK(says(1.04, 6, 8, "contact_coordination"));
+  CHECK_FALSE(says(1.04, 12, 8, "contact_coordination"));
+  CHECK(says(1.04, 12, 2.8, "neck_area"));
+  CHECK_FALSE(says(1.04, 12, 5, "neck_area"));
+  CHECK(numbers(ofSizes(6, 2.8)) ==
+        std::vector<std::string>{"specific_surface", "mean_coordination", "bond_area"});
 }
