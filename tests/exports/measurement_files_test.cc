@@ -95,6 +95,28 @@ TEST_CASE("measurement_files: units and digits of the tables", "[measurement_fil
   CHECK(cell(bonds, 1, "cos_alpha").empty());
 }
 
+TEST_CASE("measurement_files: lengths are in the unit that is asked for", "[measurement_files]") {
+  Measurements m = fewMeasurements();
+  TableOptions options;
+  options.unit = "um";
+  CHECK_THROWS_AS(measurementTexts(m, options), InvalidInput);  // the voxel size is unknown
+  m.voxelSize = VoxelSize{0.5e-6};
+  const MeasurementTexts inMm = measurementTexts(m), inUm = measurementTexts(m, options);
+  CHECK(cell(inMm.grains, 0, "equivalent_diameter_mm") == "0.000333333333");
+  CHECK(cell(inUm.grains, 0, "equivalent_diameter_um") == "0.333333333");
+  CHECK(cell(inUm.grains, 0, "free_area_um2") == "1.5");
+  CHECK(cell(inUm.bonds, 0, "mean_curvature_per_um") == "6");
+  const auto sample = nlohmann::json::parse(inUm.sample);
+  CHECK(sample.at("length_unit") == "um");
+  CHECK(sample.at("voxel_size_um") == 0.5);
+  CHECK(sample.at("object_volume_um3") == 1);
+  options.unit = "mm";
+  CHECK(measurementTexts(m, options).grains == inMm.grains);
+  CHECK(measurementTexts(m, options).sample == inMm.sample);
+  options.unit = "km";
+  CHECK_THROWS_AS(measurementTexts(m, options), InvalidInput);
+}
+
 TEST_CASE("measurement_files: the sample", "[measurement_files]") {
   const ScratchFolder scratch;
   Measurements m = fewMeasurements();

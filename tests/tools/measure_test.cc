@@ -511,6 +511,10 @@ TEST_CASE("cli: measure refuses, and leaves nothing behind", "[cli]") {
   CHECK(bench.run("measure balls.vdb out --density 900 --ice").exitCode == 2);
   CHECK(bench.run("measure balls.vdb out --min-faces -1").exitCode == 2);
   CHECK(bench.run("measure balls.vdb out --min-faces few").exitCode == 2);
+  CHECK(bench.run("measure balls.vdb out --unit km").exitCode == 2);
+  const std::string unknown = bench.run("measure balls.vdb out --unit um").err;
+  CHECK(unknown.find("the voxel size is unknown") != std::string::npos);
+  CHECK(unknown.find("(--voxel-size)") != std::string::npos);
   CHECK(bench.run("measure balls.vdb out --grid none").exitCode == 1);
   CHECK(bench.run("measure missing.vdb out").exitCode == 1);
   CHECK(bench.run("measure balls.vdb file").exitCode == 1);

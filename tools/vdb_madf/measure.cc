@@ -104,7 +104,8 @@ void runMeasure(MeasureArguments& o, const Common& common) {
   options.labels = o.input.path;
   OutputSet files;
   tables.write(measurements, options);
-  if (!plot.isNowhere()) plot.write(measuresPlot(measurements, titleOf(o), *plotTypeOf(o.plot)));
+  if (!plot.isNowhere())
+    plot.write(measuresPlot(measurements, titleOf(o), *plotTypeOf(o.plot), o.tables.unit));
   if (!bridges.isNowhere()) bridges.write(bridgesText(measurements, options));
   if (!sizes.isNowhere()) sizes.write(sizeCurveText(measurements, options));
   files.commit();
@@ -131,6 +132,8 @@ void addMeasure(Verb command, Common& common, Action& action) {
   verb.option("--sample", o->tables.sample,
               "name of the sample: becomes the first column of both tables")
       .typeName("NAME");
+  verb.option("--unit", o->tables.unit, "of lengths; default: mm, of voxels under 20 nm um")
+      .oneOf({"mm", "um"});
   verb.option("--min-faces", o->minFaces,
               "fewest voxel faces of a bond; the areas keep what smaller contacts share")
       .typeName("N")

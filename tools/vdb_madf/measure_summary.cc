@@ -4,7 +4,6 @@
 #include "measure_summary.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 
 #include "command.h"
@@ -12,6 +11,7 @@
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
 #include "vdb_madf/measure/size_biases.h"
+#include "vdb_madf/measure/table_unit.h"
 
 namespace vdb_madf::tools {
 
@@ -99,9 +99,9 @@ void printOnDemand(const Measurements& m, double length, const std::string& unit
 }  // namespace
 
 void print(const MeasureArguments& o, const Measurements& m) {
-  const std::string unit = m.voxelSize ? m.voxelSize->unit() : "voxel";
-  const auto edges = m.voxelSize ? m.voxelSize->edgesInUnit() : std::array<double, 3>{1, 1, 1};
-  const double length = *std::min_element(edges.begin(), edges.end());
+  const TableUnit own(m, o.tables.unit);
+  const std::string& unit = own.name;
+  const double length = own.length;
   std::printf("%s: %s, %s%s\n", o.folder.c_str(),
               counted(int64_t(m.grains.size()), "grain").c_str(),
               counted(int64_t(m.bonds.size()), "bond").c_str(),

@@ -20,6 +20,7 @@
 #include "vdb_madf/measure/measure_binder.h"
 #include "vdb_madf/measure/measure_stability.h"
 #include "vdb_madf/measure/size_biases.h"
+#include "vdb_madf/measure/table_unit.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/volumes/choose_grid.h"
 #include "vdb_madf/volumes/load_object.h"
@@ -28,27 +29,13 @@ namespace vdb_madf::python {
 
 namespace {
 
-/// The unit of length, and the edges of a voxel in it.
-struct Unit {
-  std::string name = "voxel";
-  double length = 1;  ///< of the shortest edge
-  openvdb::Vec3d edges;
-
-  explicit Unit(const Measurements& measured) {
-    if (const auto& size = measured.voxelSize) {
-      name = size->unit();
-      const auto own = size->edgesInUnit();
-      length = *std::min_element(own.begin(), own.end());
-    }
-    edges = length * measured.edges;
-  }
-  std::string power(int exponent) const {
-    if (exponent == 0) return "";
-    const std::string positive =
-        name + (std::abs(exponent) == 1 ? "" : "^" + std::to_string(std::abs(exponent)));
-    return (exponent < 0 ? "1/" : "") + positive;
-  }
-};
+/// "mm^2" or "1/mm"; nothing of 0.
+std::string powerOf(const TableUnit& unit, int exponent) {
+  if (exponent == 0) return "";
+  const std::string positive =
+      unit.name + (std::abs(exponent) == 1 ? "" : "^" + std::to_string(std::abs(exponent)));
+  return (exponent < 0 ? "1/" : "") + positive;
+}
 
 bool isFlag(const std::string& name) {
   return name == "at_domain_face" || name == "bonded" || name == "cell_at_domain_face";
@@ -57,7 +44,7 @@ bool isLabel(const std::string& name) {
   return name == "id" || name == "first" || name == "second";
 }
 
-py::object columnArray(const MeasureColumn& c, const Unit& unit) {
+py::object columnArray(const MeasureColumn& c, const TableUnit& unit) {
   if (isFlag(c.name)) return column<bool>(c.values, [](double v) { return v != 0; });
   if (isLabel(c.name)) return column<int32_t>(c.values, [](double v) { return v; });
   if (c.kind == MeasureColumn::Kind::count)
@@ -65,11 +52,11 @@ py::object columnArray(const MeasureColumn& c, const Unit& unit) {
   return column<double>(c.values, [&](double v) { return scaled(c, v, unit.edges) + 0.0; });
 }
 
-py::dict table(const std::vector<MeasureColumn>& columns, const Unit& unit, py::dict& units) {
+py::dict table(const std::vector<MeasureColumn>& columns, const TableUnit& unit, py::dict& units) {
   py::dict dict;
   for (const MeasureColumn& c : columns) {
     dict[py::str(c.name)] = columnArray(c, unit);
-    units[py::str(c.name)] = unit.power(c.power);
+    units[py::str(c.name)] = powerOf(unit, c.power);
   }
   return dict;
 }
@@ -97,11 +84,12 @@ py::dict percentiles(double length, const DiameterOf& diameterOf) {
   return dict;
 }
 
-void addEdgeCorrected(const Measurements& m, const Unit& unit, py::dict& dict, py::dict& units) {
+void addEdgeCorrected(const Measurements& m, const TableUnit& unit, py::dict& dict,
+                      py::dict& units) {
   const EdgeCorrected corrected = edgeCorrected(m.grains);
   const auto add = [&](const char* name, const std::optional<double>& value, int power) {
     dict[name] = scaled(orNan(value), power, unit.length);
-    units[name] = unit.power(power);
+    units[name] = powerOf(unit, power);
   };
   dict["grains_at_faces"] = corrected.leftOut;
   dict["corrected_grains"] = corrected.grains;
@@ -115,11 +103,12 @@ void addEdgeCorrected(const Measurements& m, const Unit& unit, py::dict& dict, p
     dict[name] = percentiles(unit.length, [&](double share) {
       return correctedDiameterPercentile(m.grains, share, byVolume);
     });
-    units[name] = unit.power(1);
+    units[name] = powerOf(unit, 1);
   }
 }
 
-py::dict intervalsOf(const std::vector<MeanInterval>& list, const Unit& unit, py::dict& units) {
+py::dict intervalsOf(const std::vector<MeanInterval>& list, const TableUnit& unit,
+                     py::dict& units) {
   py::dict intervals;
   for (const MeanInterval& mean : list) {
     py::dict interval;
@@ -127,12 +116,12 @@ py::dict intervalsOf(const std::vector<MeanInterval>& list, const Unit& unit, py
     interval["low"] = scaled(orNan(mean.low), mean.power, unit.length);
     interval["high"] = scaled(orNan(mean.high), mean.power, unit.length);
     intervals[py::str(mean.name)] = interval;
-    units[py::str(mean.name)] = unit.power(mean.power);
+    units[py::str(mean.name)] = powerOf(unit, mean.power);
   }
   return intervals;
 }
 
-py::dict sensitivityOf(const Sensitivity& s, const Unit& unit, py::dict& units) {
+py::dict sensitivityOf(const Sensitivity& s, const TableUnit& unit, py::dict& units) {
   const auto range = [](const VariedRange& varied) {
     return py::make_tuple(varied.low, varied.high);
   };
@@ -153,12 +142,12 @@ void setVaried(const std::map<std::string, double>& vary, SensitivityOptions& op
       throw InvalidInput("vary: '" + name + "' is none of threshold, smooth, strictness, gamma");
 }
 
-py::dict sampleOf(const Measurements& m, const Unit& unit, py::dict& units) {
+py::dict sampleOf(const Measurements& m, const TableUnit& unit, py::dict& units) {
   const SampleMeasures& s = m.sample;
   py::dict dict;
   const auto add = [&](const char* name, double value, int power) {
     dict[name] = scaled(value, power, unit.length);
-    units[name] = unit.power(power);
+    units[name] = powerOf(unit, power);
   };
   dict["grains"] = m.grains.size();
   dict["bonds"] = m.bonds.size();
@@ -176,7 +165,7 @@ py::dict sampleOf(const Measurements& m, const Unit& unit, py::dict& units) {
   for (int axis : {2, 1, 0})
     lengths.append(orNan(s.correlationLengths[size_t(axis)]) * unit.length);
   dict["correlation_length"] = py::tuple(lengths);
-  units["correlation_length"] = unit.power(1);
+  units["correlation_length"] = powerOf(unit, 1);
   dict["euler_characteristic"] = s.eulerCharacteristic;
   dict["components"] = s.components;
   dict["mean_coordination"] = s.meanCoordination;
@@ -191,8 +180,8 @@ py::dict sampleOf(const Measurements& m, const Unit& unit, py::dict& units) {
   for (const bool byVolume : {false, true})
     dict[byVolume ? "diameter_by_volume" : "diameter_by_number"] = percentiles(
         unit.length, [&](double share) { return diameterPercentile(m.grains, share, byVolume); });
-  units["diameter_by_number"] = unit.power(1);
-  units["diameter_by_volume"] = unit.power(1);
+  units["diameter_by_number"] = powerOf(unit, 1);
+  units["diameter_by_volume"] = powerOf(unit, 1);
   dict["labels_digest"] = m.labelDigest;
   if (m.extra.edgeWeights) addEdgeCorrected(m, unit, dict, units);
   if (m.replicates > 0) dict["intervals"] = intervalsOf(m.intervals, unit, units);
@@ -289,7 +278,7 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
     if (sensitivity > 0) measureSensitivity(grid, openAgain, again, result, interrupter);
     return result;
   });
-  const Unit unit(measured);
+  const TableUnit unit(measured);
   py::dict dict, units;
   dict["grains"] = table(grainColumns(measured.grains, measured.extra), unit, units);
   dict["bonds"] = table(bondColumns(measured.bonds, measured.extra), unit, units);

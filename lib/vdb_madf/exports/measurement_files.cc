@@ -5,8 +5,6 @@
 
 #include <openvdb/Metadata.h>
 
-#include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -23,30 +21,13 @@
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/edge_weights.h"
 #include "vdb_madf/measure/size_biases.h"
+#include "vdb_madf/measure/table_unit.h"
 
 namespace vdb_madf {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Factors and names of the unit of length.
-struct Unit {
-  std::string name = "voxel";
-  double length = 1;     ///< of the shortest edge of a voxel
-  openvdb::Vec3d edges;  ///< of a voxel
-
-  explicit Unit(const Measurements& measured) {
-    if (const auto& size = measured.voxelSize) {
-      name = size->unit();
-      const std::array<double, 3> own = size->edgesInUnit();
-      length = *std::min_element(own.begin(), own.end());
-    }
-    edges = length * measured.edges;
-  }
-  double area() const { return length * length; }
-  double volume() const { return length * length * length; }
-};
 
 /// Nine digits; whole numbers whole; empty where there is no value.
 std::string cell(const MeasureColumn& column, size_t row, const openvdb::Vec3d& edges) {
@@ -61,7 +42,7 @@ std::string cell(const MeasureColumn& column, size_t row, const openvdb::Vec3d& 
 }
 
 /// Comma-separated values.
-std::string table(const std::vector<MeasureColumn>& columns, const Unit& unit,
+std::string table(const std::vector<MeasureColumn>& columns, const TableUnit& unit,
                   const std::string& sample) {
   const std::string first = sample.empty() ? "" : csvCell(sample) + ",";
   std::string text = sample.empty() ? "" : "sample,";
@@ -116,7 +97,7 @@ Json orNull(const std::optional<double>& value, int power, double length) {
 
 /// Percentiles by diameterOf(share, byVolume), in voxels.
 template <typename DiameterOf>
-void addDiameters(const std::string& stem, const Unit& unit, const DiameterOf& diameterOf,
+void addDiameters(const std::string& stem, const TableUnit& unit, const DiameterOf& diameterOf,
                   Json& json) {
   for (const bool byVolume : {false, true}) {
     Json sizes;
@@ -126,7 +107,7 @@ void addDiameters(const std::string& stem, const Unit& unit, const DiameterOf& d
   }
 }
 
-void addEdgeCorrected(const Measurements& m, const Unit& unit, Json& json) {
+void addEdgeCorrected(const Measurements& m, const TableUnit& unit, Json& json) {
   const EdgeCorrected corrected = edgeCorrected(m.grains);
   const auto add = [&](const char* name, const std::optional<double>& value, int power) {
     json[name + unitSuffix(power, unit.name)] = orNull(value, power, unit.length);
@@ -147,7 +128,7 @@ void addEdgeCorrected(const Measurements& m, const Unit& unit, Json& json) {
 }
 
 void addIntervals(const std::vector<MeanInterval>& intervals, const std::string& ending,
-                  const Unit& unit, Json& json) {
+                  const TableUnit& unit, Json& json) {
   for (const MeanInterval& mean : intervals) {
     Json interval;
     interval["mean"] = orNull(mean.mean, mean.power, unit.length);
@@ -157,7 +138,7 @@ void addIntervals(const std::vector<MeanInterval>& intervals, const std::string&
   }
 }
 
-void addScan(const Measurements& m, const Unit& unit, Json& json) {
+void addScan(const Measurements& m, const TableUnit& unit, Json& json) {
   int64_t confirmed = 0;
   double area = 0;
   for (const BondMeasures& bond : m.bonds)
@@ -175,7 +156,7 @@ void addScan(const Measurements& m, const Unit& unit, Json& json) {
   json["contact_coordination"] = contactCoordination(m);
 }
 
-void addSensitivity(const Measurements& m, const Unit& unit, Json& json) {
+void addSensitivity(const Measurements& m, const TableUnit& unit, Json& json) {
   const Sensitivity& s = *m.sensitivity;
   const auto range = [](const VariedRange& varied) { return Json{varied.low, varied.high}; };
   json["sensitivity_runs"] = s.runs;
@@ -186,7 +167,7 @@ void addSensitivity(const Measurements& m, const Unit& unit, Json& json) {
   addIntervals(s.intervals, "_sensitivity", unit, json);
 }
 
-Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& options) {
+Json sampleJson(const Measurements& m, const TableUnit& unit, const TableOptions& options) {
   const SampleMeasures& s = m.sample;
   const std::string& u = unit.name;
   Json json;
@@ -199,8 +180,7 @@ Json sampleJson(const Measurements& m, const Unit& unit, const TableOptions& opt
   json["boundary"] = m.open ? "open" : "closed";
   json["length_unit"] = u;
   if (m.voxelSize)
-    json["voxel_size_" + u] =
-        m.voxelSize->isCube() ? Json(unit.length) : Json(m.voxelSize->edgesInUnit());
+    json["voxel_size_" + u] = m.voxelSize->isCube() ? Json(unit.length) : Json(unit.voxel);
   json["box"] = s.regionVoxels ? "region" : s.domainKnown ? "domain" : "grains";
   json["box_min"] = {s.box.min().x(), s.box.min().y(), s.box.min().z()};
   json["box_max"] = {s.box.max().x(), s.box.max().y(), s.box.max().z()};
@@ -268,7 +248,7 @@ std::string jsonText(const Json& sample) {
 }  // namespace
 
 MeasurementTexts measurementTexts(const Measurements& m, const TableOptions& options) {
-  const Unit unit(m);
+  const TableUnit unit(m, options.unit);
   return {table(grainColumns(m.grains, m.extra), unit, options.sample),
           table(bondColumns(m.bonds, m.extra), unit, options.sample),
           jsonText(sampleJson(m, unit, options))};
@@ -285,11 +265,11 @@ SizeReference readSizeReference(const std::string& path) {
 }
 
 std::string sizeCurveText(const Measurements& m, const TableOptions& options) {
-  return table(sizeCurve(m), Unit(m), options.sample);
+  return table(sizeCurve(m), TableUnit(m, options.unit), options.sample);
 }
 
 std::string bridgesText(const Measurements& m, const TableOptions& options) {
-  return table(bridgeColumns(m.binder.value().bridges), Unit(m), options.sample);
+  return table(bridgeColumns(m.binder.value().bridges), TableUnit(m, options.unit), options.sample);
 }
 
 std::vector<std::string> MeasurementTables::paths(const std::string& folder) {
@@ -319,7 +299,7 @@ MeasurementTables::~MeasurementTables() = default;
 
 void MeasurementTables::write(const Measurements& measurements, const TableOptions& options) {
   if (!file_.empty()) {
-    const Unit unit(measurements);
+    const TableUnit unit(measurements, options.unit);
     return detail::writeHdf5Tables(
         file_, {unit.name, unit.edges, grainColumns(measurements.grains, measurements.extra),
                 bondColumns(measurements.bonds, measurements.extra),

@@ -27,6 +27,7 @@ struct TableOptions {
   std::string sample;
   /// Density of the grains' material, kg/m^3, above 0; none: nothing is said of masses.
   std::optional<double> density;
+  std::string unit{};  ///< of lengths, as TableUnit takes it
 };
 
 /// The texts of the three files below.
@@ -51,10 +52,10 @@ std::string bridgesText(const Measurements& measurements, const TableOptions& op
 /// whole or not at all. A run replaces the files of an earlier one; if one of them is there without
 /// the others, it is not of a run, and is left alone.
 ///
-/// The columns are those of columns.h; lengths are in the unit of the voxel size, which the names
-/// end with, else in voxels. An unknown number is an empty cell, or null. sample.json also says
-/// where the numbers come from: our version, the labels and their digest, and of the metadata of
-/// their grid the numbers and texts whose names begin with `madf_`.
+/// The columns are those of columns.h; lengths are in the unit asked for, else in that of the voxel
+/// size, else in voxels, and names end with it. An unknown number is an empty cell, or null.
+/// sample.json also says where the numbers come from: our version, the labels and their digest, and
+/// of the metadata of their grid the numbers and texts whose names begin with `madf_`.
 ///
 /// A name that ends with .h5 or .hdf5 is that of one HDF5 file instead, with the same bytes
 /// whenever it is written: groups `grains` and `bonds` with a dataset per column, named without the

@@ -4,12 +4,12 @@
 #include "vdb_madf/pictures/measures_plot.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
 
 #include "vdb_madf/base/counted.h"
+#include "vdb_madf/measure/table_unit.h"
 #include "vdb_madf/pictures/detail/diagram.h"
 
 namespace vdb_madf {
@@ -164,11 +164,11 @@ void drawInclinations(Canvas& canvas, int cell, const Directions& directions,
 
 }  // namespace
 
-std::string measuresPlot(const Measurements& m, const std::string& title, PlotType type) {
-  const std::array<double, 3> edges =
-      m.voxelSize ? m.voxelSize->edgesInUnit() : std::array<double, 3>{1, 1, 1};
-  const double length = *std::min_element(edges.begin(), edges.end());
-  const std::string unit = m.voxelSize ? m.voxelSize->unit() : "voxels";
+std::string measuresPlot(const Measurements& m, const std::string& title, PlotType type,
+                         const std::string& wanted) {
+  const TableUnit own(m, wanted);
+  const double length = own.length;
+  const std::string unit = own.name == "voxel" ? "voxels" : own.name;
   Weighted diameters, volumes, sphericities, coordinations, radii;
   Directions axes, normals;
   double volume = 0;

@@ -16,9 +16,10 @@ namespace vdb_madf {
 /// Grains at a face of the domain are left out of sizes, shapes and axes. Directions are axial (n
 /// and -n are one), so the roses are symmetric; their radius is the density of directions against
 /// an isotropic sample, which is 1, the dashed circle. Bonds count by their area, grains by their
-/// volume, as in the fabric tensors. Lengths are in the unit of the voxel size, else in voxels.
+/// volume, as in the fabric tensors.
 /// @param title before the numbers of grains and bonds; UTF-8, may be empty
+/// @param unit of lengths, as TableUnit takes it
 std::string measuresPlot(const Measurements& measurements, const std::string& title,
-                         PlotType type = PlotType::svg);
+                         PlotType type = PlotType::svg, const std::string& unit = "");
 
 }  // namespace vdb_madf

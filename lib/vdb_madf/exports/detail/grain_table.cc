@@ -3,20 +3,16 @@
 
 #include "vdb_madf/exports/detail/grain_table.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
+
+#include "vdb_madf/measure/table_unit.h"
 
 namespace vdb_madf::detail {
 
 GrainTable::GrainTable(const Measurements& measured)
-    : columns_(grainColumns(measured.grains)), edges_(measured.edges) {
-  std::string unit = "voxel";
-  if (const auto& size = measured.voxelSize) {
-    unit = size->unit();
-    const std::array<double, 3> own = size->edgesInUnit();
-    edges_ *= *std::min_element(own.begin(), own.end());
-  }
+    : columns_(grainColumns(measured.grains)), edges_(TableUnit(measured).edges) {
+  const std::string unit = TableUnit(measured).name;
   for (const MeasureColumn& column : columns_)
     names_.push_back(column.name + unitSuffix(column.power, unit));
 }

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "vdb_madf/measure/table_unit.h"
+
+#include <algorithm>
+
+#include "vdb_madf/base/errors.h"
+
+namespace vdb_madf {
+
+TableUnit::TableUnit(const Measurements& measured, const std::string& wanted) {
+  if (!wanted.empty() && wanted != "mm" && wanted != "um")
+    throw InvalidInput("the unit of length " + wanted + ": must be mm or um");
+  const std::optional<VoxelSize>& size = measured.voxelSize;
+  if (!size && !wanted.empty())
+    throw InvalidInput(
+        "the voxel size is unknown, so that lengths cannot be in " + wanted + ": give it",
+        Hint::voxelSize);
+  for (int axis = 0; axis < 3; ++axis) voxel[size_t(axis)] = measured.edges[axis];
+  if (size) {
+    name = wanted.empty() ? size->unit() : wanted;
+    voxel = size->edges();
+    for (double& edge : voxel) edge *= name == "um" ? 1e6 : 1e3;
+    length = *std::min_element(voxel.begin(), voxel.end());
+  }
+  edges = length * measured.edges;
+}
+
+}  // namespace vdb_madf

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "vdb_madf/measure/measure.h"
+
+namespace vdb_madf {
+
+/// The unit of length of tables and charts, and what a voxel is in it.
+struct TableUnit {
+  std::string name = "voxel";            ///< or "mm", "um"
+  std::array<double, 3> voxel{1, 1, 1};  ///< its edges; of unknown ones 1 is the shortest
+  double length = 1;                     ///< the shortest of them
+  openvdb::Vec3d edges{1, 1, 1};         ///< what places, which are index coordinates, are times
+
+  /// @param wanted "mm" or "um"; empty: the unit of the voxel size, voxels if there is none
+  /// @throw InvalidInput for another unit, and without a voxel size
+  explicit TableUnit(const Measurements& measured, const std::string& wanted = "");
+
+  double area() const { return length * length; }
+  double volume() const { return length * length * length; }
+};
+
+}  // namespace vdb_madf
