@@ -42,7 +42,7 @@ class WorkPart : public Interrupter {
   int begin_, end_;
 };
 
-/// Runs body(begin, end) over [0, count) in chunks of at least `grain` items, in parallel. The
+/// Runs body(begin, end) over [0, count) in chunks of at most `grain` items, in parallel. The
 /// interrupter is asked between chunks, with the percentage done.
 /// The one place that knows the threading library. @throw Interrupted; what body throws.
 void parallelFor(size_t count, size_t grain, Interrupter* interrupter,
