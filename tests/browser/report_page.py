@@ -5,6 +5,7 @@ labels and tables of the command. Chromium draws without a graphics card, so thi
 other tests."""
 
 import csv
+import json
 import math
 import os
 import random
@@ -113,6 +114,16 @@ def check_clicks(page, labels):
     page.run("window.report.selection.clearFilters(); window.report.selection.select([])")
 
 
+def check_biases(page):
+    """The page says which numbers the grains are too small for, as the tables do."""
+    with open("tables/sample.json") as file:
+        biases = json.load(file)["expected_bias_percent"]
+    told = page.find("#warnings").text.replace("\u2212", "-")
+    for name, bias in biases.items():
+        said = f"{name.replace('_', ' ')} {bias:+d} %"
+        demand(said in told, f"the page does not say {said}: {told}")
+
+
 def check_filters(page, grains):
     """What is typed in a table, dragged in a chart and ticked is what the CSV says."""
     diameters = [float(row["equivalent_diameter_mm"]) for row in grains]
@@ -128,6 +139,13 @@ def check_filters(page, grains):
         page.run(
             "return Array.from(window.report.selection.states).filter(Boolean).length") == expected,
            "the view shows other grains than the table")
+    page.button("Clear filters").click()
+    demand("goes from" not in page.find("#shown").text, "a range is told without a filter")
+    field = page.find("input[aria-label='Range of diameter (mm)']")
+    field.send_keys("12:\n")  # micrometers are meant
+    told = page.find("#shown").text
+    demand(told.startswith("0 of ") and "; diameter (mm) goes from 0." in told,
+           f"no grain has 12 mm, the page says: {told}")
     page.button("Clear filters").click()
 
     page.drag(page.find("#charts svg.drag"), (0.5, 0.5), (0.95, 0.4))
@@ -493,6 +511,7 @@ with tempfile.TemporaryDirectory() as folder:
         demand(not complaints, f"the page complains: {complaints}")
         demand(len(page.find("#charts").find_elements("css selector", ".steps")) >= 3,
                "the sweep is not plotted")
+        check_biases(page)
         check_clicks(page, labels)
         check_filters(page, grains)
         check_links(page, grains, bonds)

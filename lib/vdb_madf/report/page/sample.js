@@ -91,7 +91,8 @@ export class Sample {
     this.link();
     this.addLives(strictness);
     const { numbers } = this.own;
-    this.numbers = { ...numbers, bonds_without_curvature: 0, segmentation: { ...numbers.segmentation, strictness } };
+    this.numbers = { ...numbers, bonds_without_curvature: 0, expected_bias_percent: {},
+      segmentation: { ...numbers.segmentation, strictness } };
     this.colors = colorsOfUnions(this);
   }
 

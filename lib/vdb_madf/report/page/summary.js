@@ -73,6 +73,10 @@ export function warnings(sample) {
   say((row) => voxels[row] < kDustVoxels, `are dust, of fewer than ${kDustVoxels} voxels.`);
   if (numbers.bonds_without_curvature > 0)
     found.push(`${counted(numbers.bonds_without_curvature)} of ${counted(numbers.bonds)} bonds have so few voxel faces that no curvature can be fitted.`);
+  const biases = Object.entries(numbers.expected_bias_percent || {}).map(([name, bias]) =>
+    `${name.replace('_', ' ')} ${bias > 0 ? '+' : '\u2212'}${Math.abs(bias)} %`);
+  if (biases.length > 0)
+    found.push(`Grains or bonds are so small that numbers are off, as far as packs of balls tell, by about: ${biases.join(', ')}.`);
   return found;
 }
 

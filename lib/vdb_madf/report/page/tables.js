@@ -46,6 +46,15 @@ export function startTables(sample, selection) {
   show(0);
 }
 
+/// Of filters that no value passes, as of a range in another unit, what values there are.
+function missed(sample, selection) {
+  return ['grains', 'bonds'].flatMap((kind) => Array.from(selection.filters[kind], ([name, [low, high]]) => {
+    const values = Array.from(sample[kind].column(name)).filter((value) => !Number.isNaN(value)).sort((a, b) => a - b);
+    return values.length === 0 || values.some((value) => value >= low && value <= high) ? ''
+      : `; ${sample.titleWithUnit(kind, name)} goes from ${written(values[0])} to ${written(values[values.length - 1])}`;
+  })).join('');
+}
+
 function filterBar(sample, selection) {
   const inside = make('input', { type: 'checkbox', id: 'inside' });
   inside.addEventListener('change', () => {
@@ -60,7 +69,7 @@ function filterBar(sample, selection) {
     const grains = selection.visible.reduce((sum, flag) => sum + flag, 0);
     const bonds = selection.visibleBonds.reduce((sum, flag) => sum + flag, 0);
     status.textContent = `${counted(grains)} of ${counted(sample.count)} grains, ` +
-      `${counted(bonds)} of ${counted(sample.bonds.rows)} bonds`;
+      `${counted(bonds)} of ${counted(sample.bonds.rows)} bonds${missed(sample, selection)}`;
   };
   selection.listen((what) => { if (what === 'filter' || what === 'strictness') tell(); });
   tell();
