@@ -38,6 +38,20 @@ TEST_CASE("segment_memory: voxels of thin structures are counted apart", "[segme
   CHECK(segmentMemory(wire) > segmentMemory(thick) + 9000000);
 }
 
+TEST_CASE("segment_memory: specks are pieces, and grains of tables", "[segment_memory]") {
+  ObjectVolume specks(boxAt({0, 0, 0}, {64, 64, 64}), 0);
+  for (int x = 0; x < 64; x += 2)
+    for (int y = 0; y < 64; y += 2)
+      for (int z = 0; z < 64; z += 2) specks[Coord(x, y, z)] = 1;
+  const ObjectSize size = objectSize(*toMask(specks));
+  CHECK(size.pieces == 32 * 32 * 32);
+  CHECK(double(size.specks) == Approx(32 * 32 * 32).epsilon(0.01));
+  CHECK(tablesMemory(size) > segmentMemory(size));
+  const ObjectSize thick = objectSize(*toMask(ObjectVolume(boxAt({0, 0, 0}, {64, 64, 64}), 1)));
+  CHECK(thick.pieces == 0);
+  CHECK(tablesMemory(thick) < segmentMemory(thick));
+}
+
 TEST_CASE("segment_memory: holds what is known exactly, and nothing of the bounding box",
           "[segment_memory]") {
   const ObjectSize size{1000000, 300000000};

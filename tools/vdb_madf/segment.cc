@@ -146,6 +146,13 @@ void parse(SegmentArguments& o) {
     checkSlabArguments(o);
 }
 
+/// Bytes beside the mask: to segment it, and to measure what comes of it, if that is asked for.
+int64_t neededMemory(const SegmentArguments& o, const ObjectSize& size,
+                     const SegmentOptions& options) {
+  const int64_t segmenting = segmentMemory(size, options);
+  return o.tables.empty() ? segmenting : std::max(segmenting, tablesMemory(size));
+}
+
 void runSegment(const SegmentArguments& o, const Common& common) {
   if (hasSlabsEnding(o.out)) return o.dryRun ? estimateSlabs(o, common) : runInSlabs(o, common);
   if (o.autoSlabs && isSurelyForSlabs(o)) return runAutoSlabs(o, common);
@@ -171,13 +178,20 @@ void runSegment(const SegmentArguments& o, const Common& common) {
     const ObjectSize size = objectSize(*object);
     const auto mask = int64_t(object->memUsage());
     return say(o, common,
-               {size.voxels, size.leaves, mask + segmentMemory(size, options),
+               {size.voxels, size.leaves, mask + neededMemory(o, size, options),
                 options.maxMemory > 0 ? mask + options.maxMemory : 0, 0, timing.read},
                jsonFile);
   }
 
-  const bool fits =
-      options.maxMemory == 0 || segmentMemory(objectSize(*object), options) <= options.maxMemory;
+  const ObjectSize size = options.maxMemory == 0 ? ObjectSize{} : objectSize(*object);
+  const int64_t needed = neededMemory(o, size, options);
+  const bool fits = options.maxMemory == 0 || needed <= options.maxMemory;
+  if (!fits && tables && segmentMemory(size, options) <= options.maxMemory)
+    throw InvalidInput(
+        fmt::format("{}: to segment and measure it needs about {} of memory, and {} may be used: "
+                    "allow more, or "
+                    "leave --tables out and measure the labels",
+                    o.input.path, readableBytes(needed), readableBytes(options.maxMemory)));
   if (!fits && o.autoSlabs) {
     object.reset();
     return runAutoSlabs(o, common);

@@ -108,7 +108,9 @@ class Segmenter {
       if (cavities.count > 0) index_ = LeafIndex(index_, cavities.leaves);
       cavities_ = cavityVoxels(index_, cavities);
     }
-    checkMemory({int64_t(index_.leafCount()), index_.voxelCount(), size.thin}, options_);
+    size.leaves = int64_t(index_.leafCount());
+    size.voxels = index_.voxelCount();
+    checkMemory(size, options_);
     detail::chooseWeights(object_, options_, obstacles_, index_.boundingBox(), result_);
   }
 

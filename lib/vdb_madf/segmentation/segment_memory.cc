@@ -20,7 +20,7 @@ namespace {
 constexpr double kIndex = 128;    // origin, mask, neighbors, ranks
 constexpr double kVoxelSet = 96;  // one bit per voxel, and ranks
 constexpr double kGrid = 2224;    // an Int32 leaf as the heap holds it, and its share of the tree
-constexpr double kPieces = 160;   // connected pieces within leaves, of the object or of labels
+constexpr double kPieces = 165;   // connected pieces within leaves, of the object or of labels
 
 // Bytes per object voxel.
 constexpr double kPower = 4, kSite = 4, kManifold = 4;
@@ -32,10 +32,19 @@ constexpr double kCompletion = 0.12 * 24;
 
 // Critical points, in the graph and what makes it: of thin structures nearly each voxel is one, but
 // for those that the filter drops; of others next to none.
-constexpr double kGraph = 100, kFilteredShare = 0.25;
+constexpr double kGraph = 120, kFilteredShare = 0.25;
+// Each of them while the graph is made and merged.
+constexpr double kMaking = 180;
+
+// Measures and tables, per grain, and per leaf: faces and surfaces.
+constexpr double kTables = 1300, kMeasure = 2000;
 
 // Threads' scratch space and stacks, the graph, code.
-constexpr double kBase = 48 << 20;
+constexpr double kBase = 56 << 20;
+
+/// The voxels at the faces of a leaf.
+constexpr uint64_t kRows = detail::kFirstY | detail::kLastY | detail::kFirstZ | detail::kLastZ;
+constexpr LeafIndex::Mask kAtFaces{~0ull, kRows, kRows, kRows, kRows, kRows, kRows, ~0ull};
 
 }  // namespace
 
@@ -46,14 +55,29 @@ ObjectSize objectSize(const MaskGrid& object) {
   size.voxels = int64_t(tree.activeVoxelCount());
   size.leaves += (size.voxels - int64_t(tree.activeLeafVoxelCount())) / 512;
   const openvdb::tree::LeafManager<const MaskTree> leaves(tree);
-  std::atomic<int64_t> thin{0};
+  std::atomic<int64_t> thin{0}, pieces{0}, inside{0};
   detail::parallelFor(leaves.leafCount(), detail::kLeafGrain, nullptr,
                       [&](size_t begin, size_t end) {
-                        for (size_t i = begin; i < end; ++i)
-                          thin += detail::countThin(detail::maskOf(leaves.leaf(i)));
+                        for (size_t i = begin; i < end; ++i) {
+                          const LeafIndex::Mask mask = detail::maskOf(leaves.leaf(i));
+                          const int64_t ofLeaf = detail::countThin(mask);
+                          if (ofLeaf == 0) continue;
+                          thin += ofLeaf;
+                          detail::forEachPiece(mask, [&](const LeafIndex::Mask& piece) {
+                            ++pieces;
+                            inside += !detail::meet(piece, kAtFaces);
+                          });
+                        }
                       });
   size.thin = thin;
+  size.pieces = pieces;
+  size.specks = inside * 512 / 216;
   return size;
+}
+
+int64_t tablesMemory(const ObjectSize& size) {
+  return int64_t(kBase + (kIndex + kGrid + kMeasure) * double(size.leaves) +
+                 kGraph * double(size.thin) + kTables * double(size.specks));
 }
 
 int64_t segmentMemory(const ObjectSize& size, const SegmentOptions& options) {
@@ -76,14 +100,17 @@ int64_t segmentMemory(const ObjectSize& size, const SegmentOptions& options) {
                               2 * kVoxelSet * leaves);
   }
   peak = std::max(peak, kept + (kPower + kSite) * voxels + balls + sets);  // flow
-  kept += kGraph * double(size.thin) * (filter ? kFilteredShare : 1);
+  const double points = double(size.thin) * (filter ? kFilteredShare : 1);
+  peak = std::max(peak, kept + (kPower + kManifold) * voxels + sets + kMaking * points);
+  kept += kGraph * points;
   if (options.keepPower) {
     kept += perGrid;
     peak = std::max(peak, kept + (kPower + kManifold) * voxels + sets);
   }
   if (options.keepManifold) kept += perGrid;
   // tidy: masks of labels, and pieces of them
-  peak = std::max(peak, kept + sets + kManifold * voxels + 2 * kPieces * leaves);
+  peak = std::max(
+      peak, kept + sets + kManifold * voxels + 2 * kPieces * std::max(leaves, double(size.pieces)));
   // The labels' grid grows while the manifolds shrink.
   peak = std::max(peak, kept + sets + std::max(kManifold * voxels, perGrid));
   if (options.keepManifold) peak = std::max(peak, kept + sets + kManifold * voxels);

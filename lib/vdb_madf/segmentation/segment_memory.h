@@ -10,13 +10,17 @@
 
 namespace vdb_madf {
 
-/// What the memory of segment() depends on: touched 8x8x8 leaves (active tiles counted as leaves)
-/// and active voxels; and about how many of these are in structures one or two voxels thick, which
-/// may all be balls and critical points.
+/// What the memory of segment() depends on.
 struct ObjectSize {
-  int64_t leaves = 0;
-  int64_t voxels = 0;
+  int64_t leaves = 0;  ///< touched 8x8x8 ones, active tiles counted as leaves
+  int64_t voxels = 0;  ///< active ones
+  /// About how many of these are in structures one or two voxels thick: all may be balls and
+  /// critical points.
   int64_t thin = 0;
+  int64_t pieces = 0;  ///< 6-connected ones within leaves, of leaves with thin structures
+  /// About how many small pieces touch nothing else, and are grains by themselves: as many as lie
+  /// inside of leaves, in proportion.
+  int64_t specks = 0;
 };
 ObjectSize objectSize(const MaskGrid& object);
 
@@ -25,5 +29,8 @@ ObjectSize objectSize(const MaskGrid& object);
 /// generous shares of the object, so that the true peak is mostly a little lower (tests and the
 /// benchmark compare). Nothing in it depends on the bounding box.
 int64_t segmentMemory(const ObjectSize& size, const SegmentOptions& options = {});
+
+/// Bytes that measure() and its tables need after that, at their peak, with the labels' grid.
+int64_t tablesMemory(const ObjectSize& size);
 
 }  // namespace vdb_madf
