@@ -142,8 +142,11 @@ __attribute__((target("arch=x86-64-v4"))) void expandV4(const uint64_t* words, s
   for (size_t x = 0; x < count; ++x) {
     for (size_t lane = 0; lane < 64; lane += 16, dense += 16) {
       const __mmask16 inside = __mmask16(words[x] >> lane);
-      _mm512_storeu_si512(dense, _mm512_maskz_expandloadu_epi32(inside, values));
-      values += __builtin_popcount(inside);
+      const int held = __builtin_popcount(inside);
+      // (One instruction loads and expands, but in microcode on some processors.)
+      const __m512i packed = _mm512_maskz_loadu_epi32(__mmask16((1u << held) - 1), values);
+      _mm512_storeu_si512(dense, _mm512_maskz_expand_epi32(inside, packed));
+      values += held;
     }
   }
 }
