@@ -53,7 +53,7 @@ class FlawFinder {
   /// of the leaf lies outside the domain.
   static bool mayBeDeep(const Entry& own, const Mask& outside) {
     Mask mask = own.mask;
-    for (size_t x = 0; x < 8; ++x) mask[x] |= outside[x];
+    add(mask, outside);
     return detail::meet(own.mask, erode(mask, ~uint64_t(0)));
   }
 
@@ -69,8 +69,7 @@ class FlawFinder {
       if (!domain_) continue;
       const Coord origin = index_.origin(leaf).offsetBy(
           8 * (int(i) / 9 - 1), 8 * (int(i) / 3 % 3 - 1), 8 * (int(i) % 3 - 1));
-      const Mask inside = detail::insideMask(*domain_, origin);
-      for (size_t x = 0; x < 8; ++x) masks[i][x] |= ~inside[x];
+      add(masks[i], outside(origin));
     }
     return detail::meet(own.mask, detail::areSurrounded(detail::voxelsAround(set)));
   }
@@ -87,18 +86,23 @@ class FlawFinder {
     return false;
   }
 
-  Mask outside(uint32_t leaf) const {
+  /// What of the leaf at an origin lies outside the domain.
+  Mask outside(const Coord& origin) const {
     if (!domain_) return {};
-    return detail::without(detail::kFullMask, detail::insideMask(*domain_, index_.origin(leaf)));
+    return detail::without(detail::kFullMask, detail::insideMask(*domain_, origin));
   }
   Mask labelled(uint32_t leaf) const {
     Mask all{};
     for (auto entry = labels_.begin(leaf); entry != labels_.end(leaf); ++entry)
-      for (size_t x = 0; x < 8; ++x) all[x] |= entry->mask[x];
+      add(all, entry->mask);
     return all;
   }
 
  private:
+  static void add(Mask& mask, const Mask& more) {
+    for (size_t x = 0; x < 8; ++x) mask[x] |= more[x];
+  }
+
   Mask maskOf(uint32_t leaf, uint32_t label) const {
     for (auto entry = labels_.begin(leaf); entry != labels_.end(leaf); ++entry)
       if (entry->label == label) return entry->mask;
@@ -144,7 +148,7 @@ void detail::findFlags(const LeafIndex& index, const LabelMasks& labels,
     for (auto own = labels.begin(leaf); own != labels.end(leaf); ++own) {
       const uint32_t label = own->label;
       if (!isSet(deep, label)) {
-        if (!outside) outside = finder.outside(leaf);
+        if (!outside) outside = finder.outside(index.origin(leaf));
         if (FlawFinder::mayBeDeep(*own, *outside) &&
             finder.isDeep(leaf, *own, neighborhoods.local()))
           setFlag(deep, label);

@@ -11,8 +11,7 @@ namespace vdb_madf::detail {
 
 /// The `values`, of a VoxelArray, of the 64 voxels of a leaf at one position (0 to 7) along an
 /// axis, by their other two coordinates, the slower one first; 0 where there is no object voxel, or
-/// no leaf (LeafIndex::kNone). Reads (and does not use) up to VoxelArray::kSlack values past the
-/// leaf's last.
+/// no leaf (LeafIndex::kNone). May read (and does not use) the value past the leaf's last.
 void copyFace(const LeafIndex& index, const uint32_t* values, uint32_t leaf, int axis, int position,
               uint32_t* face);
 
