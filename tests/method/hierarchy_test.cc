@@ -45,7 +45,8 @@ struct Case {
 
 int32_t score(const Case& c, const VoxelWeights& weights = {},
               const std::optional<int>& flatAxis = {}) {
-  return JoinScore(weights, flatAxis)({c.voxelsA, c.topA}, {c.voxelsB, c.topB}, c.faces, c.height);
+  return JoinScore(weights, flatAxis)({c.voxelsA, c.topA, c.topA}, {c.voxelsB, c.topB, c.topB},
+                                      c.faces, c.height);
 }
 int64_t slowScore(const Case& c, const VoxelWeights& weights = {}) {
   return oracleScore(c.voxelsA, c.topA, c.voxelsB, c.topB, c.faces, c.height, weights);
@@ -106,6 +107,10 @@ ManifoldGraph randomGraph(Rng& rng) {
     }
   if (rng.chance(0.2)) graph.weights = {rng.between(1, 9), rng.between(1, 9), rng.between(1, 9)};
   if (rng.chance(0.3)) graph.flatAxis = rng.below(3);
+  const double doubtful = rng.chance(0.5) ? rng.unit() : 0;
+  for (ManifoldGraph::Node& node : graph.nodes)
+    if (rng.chance(doubtful))
+      node.doubt = rng.chance(0.7) ? node.squaredRadius : rng.below(node.squaredRadius);
   return graph;
 }
 
@@ -235,6 +240,28 @@ TEST_CASE("hierarchy: scores, as integers of any size give them", "[hierarchy]")
     CHECK(score(c.first, c.second) == expected);
     CHECK(slowScore(c.first, c.second) == expected);
   }
+}
+
+TEST_CASE("hierarchy: a top that is not sure is what fits the neighbor", "[hierarchy]") {
+  const JoinScore score({}, {});
+  const auto of = [&](int32_t topA, int32_t sureA, int32_t topB, int32_t sureB, int height,
+                      int64_t voxelsB = 5000) {
+    return score({5000, topA, sureA}, {voxelsB, topB, sureB}, 200, height);
+  };
+  const auto known = [&](int32_t topA, int32_t topB, int height, int64_t voxelsB = 5000) {
+    return of(topA, topA, topB, topB, height, voxelsB);
+  };
+  // The end of a rod, whose ball is larger than those within it, is no grain for its radius.
+  CHECK(of(100, 100, 200, 0, 98) == known(100, 100, 98));
+  CHECK(of(100, 100, 121, 110, 98) == known(100, 110, 98));            // some ball of it is known
+  CHECK(of(100, 100, 200, 0, 98, 5001) == known(100, 200, 98, 5001));  // it is no end
+  CHECK(of(100, 0, 121, 121, 60) == known(100, 121, 60));
+  // Nothing is sure of either.
+  CHECK(of(100, 0, 121, 95, 60) == known(95, 95, 60));
+  CHECK(of(100, 0, 121, 95, 98) == known(98, 98, 98));
+  CHECK(of(100, 99, 121, 95, 60) == known(99, 99, 60));
+  CHECK(of(100, 0, 121, 0, 60) == known(90, 90, 60));
+  CHECK(of(100, 0, 121, 0, 60, 5001) == known(90, 121, 60, 5001));
 }
 
 TEST_CASE("hierarchy: scores in a plane", "[hierarchy]") {
@@ -472,6 +499,7 @@ TEST_CASE("hierarchy: any sizes are joined, however large", "[hierarchy]") {
     for (ManifoldGraph::Node& node : graph.nodes) {
       node.voxels = rng.chance(0.3) ? kHuge : logarithmic(rng, 50);
       node.squaredRadius = rng.chance(0.3) ? 2147483647 : int32_t(2 + logarithmic(rng, 30.9));
+      node.doubt = rng.chance(0.3) ? node.squaredRadius : 0;
     }
     for (ManifoldGraph::Edge& edge : graph.edges) {
       edge.contactFaces = rng.chance(0.3) ? kHuge : logarithmic(rng, 40);

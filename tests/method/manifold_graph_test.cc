@@ -245,6 +245,61 @@ TEST_CASE("manifold_graph: threads do not matter", "[manifold_graph]") {
   }
 }
 
+TEST_CASE("manifold_graph: of a ball that reaches out of an open domain D is not sure",
+          "[manifold_graph]") {
+  ManifoldGraph graph;
+  graph.nodes = {{{4, 5, 5}, 25, 1}, {{4, 5, 5}, 26, 1}, {{5, 5, 6}, 16, 1}, {{5, 5, 6}, 17, 1}};
+  const auto doubts = [&](const Domain& domain, bool open = true) {
+    placeGraph(graph, domain, open);
+    std::vector<int32_t> found;
+    for (const CriticalPoint& node : graph.nodes) found.push_back(node.doubt);
+    return found;
+  };
+  const CoordBBox box({0, 0, 0}, {19, 19, 9});  // the voxels next to its faces are 5 and 4 away
+  CHECK(doubts(box) == std::vector<int32_t>{0, 26, 0, 17});
+  CHECK(doubts(box, false) == std::vector<int32_t>{0, 0, 0, 0});
+  CHECK(graph.flatAxis == std::nullopt);
+  graph.weights = {1, 1, 4};
+  CHECK(doubts(box) == std::vector<int32_t>{0, 26, 0, 0});
+  CHECK(doubts(CoordBBox({0, 0, 6}, {19, 19, 6})) == std::vector<int32_t>{25, 26, 16, 17});
+  CHECK(graph.flatAxis == 2);
+}
+
+TEST_CASE("manifold_graph: balls reach out of regions as the voxels say", "[manifold_graph]") {
+  int out = 0, within = 0;
+  for (uint64_t seed = 1; seed <= 200; ++seed) {
+    Rng rng(seed);
+    // Tiles of all sizes, and voxels that are missing here and there.
+    MaskTree region;
+    const Coord corner = randomOrigin(rng) & ~127;
+    region.fill(boxAt(corner, {256, 128, 136}), true);
+    if (rng.chance(0.3)) region.fill(CoordBBox::createCube(corner & ~4095, 4096), true);
+    for (int hole = rng.below(40); hole > 0; --hole)
+      region.setValueOff(corner + Coord(rng.below(256), rng.below(128), rng.below(136)));
+    if (rng.chance(0.3)) region.fill(boxAt(corner + Coord(128, 0, 0), {128, 128, 128}), false);
+    region.prune();
+    const Domain domain(region);
+    ManifoldGraph graph;
+    if (rng.chance(0.5)) graph.weights = {rng.between(1, 9), rng.between(1, 9), rng.between(1, 9)};
+    for (int i = 0; i < 20; ++i)
+      graph.nodes.push_back({corner + Coord(rng.below(256), rng.below(128), rng.below(136)),
+                             1 + rng.below(rng.chance(0.5) ? 40 : 900), 1});
+    placeGraph(graph, domain, true);
+    for (const CriticalPoint& node : graph.nodes) {
+      bool isSure = true;
+      const int reach = 30;  // the square of which no D is above
+      for (auto d = CoordBBox(Coord(-reach), Coord(reach)).begin(); d && isSure; ++d)
+        isSure = squaredLength(*d, graph.weights) >= node.squaredRadius ||
+                 domain.isInside(node.position + *d);
+      CAPTURE(seed, node.position, node.squaredRadius, graph.weights.toString());
+      REQUIRE(node.doubt == (isSure ? 0 : node.squaredRadius));
+      ++(isSure ? within : out);
+    }
+  }
+  CHECK(out > 500);
+  CHECK(within > 500);
+}
+
 TEST_CASE("manifold_graph: none once interrupted", "[manifold_graph]") {
   const Manifolds m = drawn("ab");
   const LeafIndex index(*toMask(m.object));

@@ -29,6 +29,7 @@ int64_t root(int64_t n) {
 struct Size {
   int64_t voxels = 0, top = 0;
   uint32_t representative = 0;
+  int64_t sure = 0;  ///< its largest D that is sure
 };
 
 struct Touch {
@@ -39,6 +40,16 @@ bool comesFirst(const Size& a, const Size& b) {
   if (a.top != b.top) return a.top < b.top;
   if (a.voxels != b.voxels) return a.voxels < b.voxels;
   return a.representative > b.representative;
+}
+
+/// What a score takes for the tops of a pair, the first of which has the smaller one.
+void limitTops(Size& a, Size& b, int64_t height) {
+  if (a.sure < a.top) {
+    const int64_t fitting = b.sure < a.top ? b.sure : a.top;
+    a.top = std::max(std::max(a.sure, fitting), std::max(height, a.top * 9 / 10));
+  }
+  if (b.sure >= b.top || b.voxels > a.voxels) return;
+  b.top = b.sure > a.top ? b.sure : a.top;
 }
 
 }  // namespace
@@ -124,6 +135,7 @@ OracleHierarchy oracleHierarchy(const ManifoldGraph& graph) {
       Size& size = sizes[classes[i]];
       size.voxels += nodes[i].voxels + nodes[i].cavityVoxels;
       size.top = nodes[classes[i]].squaredRadius;
+      size.sure = std::max<int64_t>(size.sure, nodes[i].squaredRadius - nodes[i].doubt);
       size.representative = classes[i];
     }
     for (auto& entry : sizes) entry.second.voxels = std::max<int64_t>(1, entry.second.voxels);
@@ -140,6 +152,7 @@ OracleHierarchy oracleHierarchy(const ManifoldGraph& graph) {
       if (touch.height <= 0) continue;
       Size a = sizes[pair.first], b = sizes[pair.second];
       if (!comesFirst(a, b)) std::swap(a, b);
+      limitTops(a, b, touch.height);
       const VoxelWeights& w = graph.weights;
       const int64_t score =
           graph.flatAxis

@@ -58,7 +58,7 @@ void addClasses(const ManifoldGraph& graph, Hierarchy& hierarchy) {
 /// Joins the pair of largest score, again and again.
 ///
 /// Each pair waits in the heap of its b, under the score less b's volume term; b takes a
-/// turn with its first pair. When b has grown, but has its m and name still, what was computed of
+/// turn with its first pair. When b has grown, but has its m, s and name still, what was computed of
 /// its pairs is a bound, for it can only have become smaller (JoinScore): that of the first one is
 /// computed anew when it is its turn. So a class that joins thousands of small neighbors does not
 /// look at all others each time.
@@ -72,7 +72,11 @@ class Joining {
     for (uint32_t c = 0; c < hierarchy.classes.size(); ++c) {
       const Hierarchy::Class& one = hierarchy.classes[c];
       const int64_t voxels = addVoxels(one.voxels, one.cavityVoxels);
-      clusters_.push_back({voxels, {std::max<int64_t>(1, voxels), one.top}, c});
+      clusters_.push_back({voxels, {std::max<int64_t>(1, voxels), one.top, 0}, c});
+    }
+    for (size_t i = 0; i < graph.nodes.size(); ++i) {
+      int32_t& sure = clusters_[hierarchy.classOfNode[i]].size.sure;
+      sure = std::max(sure, graph.nodes[i].squaredRadius - graph.nodes[i].doubt);
     }
     for (const ManifoldGraph::Edge& edge : graph.edges) addContact(edge);
     for (uint32_t c = 0; c < contacts_.size(); ++c) score(c);
@@ -218,9 +222,11 @@ class Joining {
     clusters_[goneIndex].version = gone.version + 1;  // its turn never comes
     Cluster& kept = clusters_[keptIndex];
     const uint32_t nameBefore = kept.name;
+    const int32_t sureBefore = kept.size.sure;
     if (gone.size.top > kept.size.top || (gone.size.top == kept.size.top && gone.name < kept.name))
       kept.name = gone.name;
     kept.size.top = std::max(kept.size.top, gone.size.top);
+    kept.size.sure = std::max(kept.size.sure, gone.size.sure);
     kept.voxels = addVoxels(kept.voxels, gone.voxels);
     kept.size.voxels = std::max<int64_t>(1, kept.voxels);
 
@@ -229,9 +235,10 @@ class Joining {
     std::vector<uint32_t> changed;
     for (const auto& [other, its] : gone.contactWith)
       changed.push_back(moveContact(its, other, goneIndex, keptIndex));
-    // Another name, another order of equal scores, and maybe another m; else only what touches the
-    // part that came, and the scores in which the cluster is a, are new.
-    if (kept.name != nameBefore) {
+    // Another name, another order of equal scores, and maybe another m; else, if what is sure of m
+    // is the same, only what touches the part that came, and the scores in which the cluster is a,
+    // are new.
+    if (kept.name != nameBefore || kept.size.sure != sureBefore) {
       changed.clear();
       for (const auto& [other, its] : kept.contactWith) changed.push_back(its);
       kept.above.clear();

@@ -59,6 +59,15 @@ struct Hierarchy {
 ///   1.5 log2(V_b / U_a) + 8 sqrt(m_a / m_b) + 3 F / sqrt(U_b) - 2.5 (sqrt(m_a) - sqrt(h))
 ///     + max(0, 6 - log2 V_a).
 ///
+/// Where the domain is cut open, the ball of a class may reach out of it: then m may be too large,
+/// as nothing out there can end the ball, and the end of a rod would be a grain by its radius. Let
+/// s be the largest D of those balls of a class that lie in the domain (CriticalPoint::doubt); 0 if
+/// none does. For the score, but not for the order of a and b,
+///   m_a, if s_a < m_a, is the largest of s_a, min(m_a, s_b), h and 0.9 m_a;
+///   m_b, if s_b < m_b and V_b <= V_a, is the larger of s_b and that m_a:
+/// a top that is not sure is what fits the neighbor. A class of more voxels than the neighbor is no
+/// end of it, so its top is believed.
+///
 /// Again and again the pair of largest score is joined; of equal ones that whose smaller
 /// representative is lexicographically smaller, then the other one.
 ///

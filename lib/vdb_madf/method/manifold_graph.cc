@@ -13,6 +13,7 @@
 #include "vdb_madf/leaves/detail/leaf_faces.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/leaf_values.h"
+#include "vdb_madf/method/detail/ball_reach.h"
 #include "vdb_madf/method/detail/reduce_edges.h"
 #include "vdb_madf/method/flow.h"
 
@@ -238,6 +239,12 @@ ManifoldGraph manifoldGraph(const LeafIndex& index, const Flow& flow,
                       });
   detail::reduceEdges(edges);
   return {flow.criticalPoints, std::move(edges)};
+}
+
+void placeGraph(ManifoldGraph& graph, const Domain& domain, bool open) {
+  graph.flatAxis = domain.flatAxis();
+  for (CriticalPoint& node : graph.nodes)
+    node.doubt = open && detail::reachesOut(node, domain, graph.weights) ? node.squaredRadius : 0;
 }
 
 }  // namespace vdb_madf

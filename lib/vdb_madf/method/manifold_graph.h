@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "vdb_madf/grids/domain.h"
 #include "vdb_madf/leaves/leaf_index.h"
 #include "vdb_madf/leaves/voxel_array.h"
 #include "vdb_madf/method/critical_point.h"
@@ -37,11 +38,16 @@ struct ManifoldGraph {
   std::optional<int> flatAxis{};
 };
 
-/// The graph of a flow, all but the weights and the axis; \p power is the (filtered) power map that
-/// it followed.
+/// The graph of a flow, all but what placeGraph() says and the weights; \p power is the (filtered)
+/// power map that it followed.
 /// Height of a voxel: H(p) = -power(p) = D(s) - |p - s|^2 with s = Pi(p).
 /// @throw Interrupted
 ManifoldGraph manifoldGraph(const LeafIndex& index, const Flow& flow,
                             const VoxelArray<int32_t>& power, Interrupter* interrupter = nullptr);
+
+/// Tells a graph, whose weights are known, of the domain in which it lies: the axis along which
+/// that is one voxel thick, and, if its boundary is open, of which critical points D is not sure:
+/// those with a voxel outside of the domain nearer than D.
+void placeGraph(ManifoldGraph& graph, const Domain& domain, bool open);
 
 }  // namespace vdb_madf

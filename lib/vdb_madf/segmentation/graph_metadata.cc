@@ -21,6 +21,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/method/boundary.h"
 #include "vdb_madf/segmentation/detail/graph_metadata_type.h"
 
 namespace vdb_madf {
@@ -312,11 +313,12 @@ std::shared_ptr<const GraphMetadata> metadataOf(const openvdb::GridBase& grid) {
   return std::dynamic_pointer_cast<const GraphMetadata>(grid[kName]);
 }
 
-/// Gives a graph that was stored on a grid its weights and its axis.
+/// Gives a graph that was stored on a grid its weights and its place in the domain.
 void takeMetric(const openvdb::GridBase& grid, ManifoldGraph& graph) {
   graph.weights = storedWeights(grid);
   checkWeights(graph.weights, extentOf(graph));
-  if (const auto domain = storedDomain(grid)) graph.flatAxis = domain->flatAxis();
+  if (const auto domain = storedDomain(grid))
+    placeGraph(graph, *domain, storedBoundary(grid) == Boundary::open);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ ManifoldGraph joinedGraph(const std::vector<GraphPart>& parts) {
       const ManifoldGraph::Node& node = part.graph.nodes[i];
       ManifoldGraph::Node& all = whole.nodes[at];
       if (!isKnown[at])
-        all = {node.position, node.squaredRadius, 0};
+        all = {node.position, node.squaredRadius, 0, 0, node.doubt};
       else if (all.position != node.position || all.squaredRadius != node.squaredRadius)
         fail(at + 1, " is another one in another part");
       isKnown[at] = 1;

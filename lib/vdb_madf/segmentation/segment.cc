@@ -151,7 +151,7 @@ class Segmenter {
   void linkManifolds(const Flow& flowMap, const PowerMap& map) {
     result_.graph = manifoldGraph(index_, flowMap, map.power, stages_.begin("manifold_graph"));
     result_.graph.weights = result_.weights;
-    if (result_.domain) result_.graph.flatAxis = result_.domain->flatAxis();
+    if (result_.domain) placeGraph(result_.graph, *result_.domain, result_.open);
     if (options_.keepPower) result_.power = toObjectGrid(map.power, "power");
     if (options_.keepManifold) result_.manifold = toObjectGrid(flowMap.manifold, "manifold");
   }

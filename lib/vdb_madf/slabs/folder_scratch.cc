@@ -32,7 +32,7 @@ constexpr const char* kLock = detail::FolderLock::kName;
 
 /// What a file of a piece begins with; the table of its blocks follows, then these.
 struct Header {
-  std::array<char, 8> magic{'m', 'a', 'd', 'f', 'p', 'c', '0', '3'};
+  std::array<char, 8> magic{'m', 'a', 'd', 'f', 'p', 'c', '0', '4'};
   uint64_t size = 0;                   ///< of the bytes, before they were compressed
   std::array<uint64_t, 2> checksum{};  ///< of the table
 };

@@ -44,12 +44,14 @@ inline int32_t squareRoot(int64_t n) {
 struct ScoredClass {
   int64_t voxels = 0;  ///< V, 1 to kMaxVoxels
   int32_t top = 0;     ///< m, its largest D
+  int32_t sure = 0;  ///< s, the largest D of those of its balls that lie in the domain; 0: of none
 };
 
 /// The score of joining a class a with a class b, m_a <= m_b, over the faces F of their contact and
 /// the highest saddle h between them, in units of 1/512.
 ///
-/// Ranges: 1 <= V < 2^43, 0 <= F < 2^31, 1 <= h <= m < 2^31. Then nothing overflows:
+/// Ranges: 1 <= V < 2^43, 0 <= F < 2^31, 0 <= s <= m, 1 <= h <= m < 2^31. Tops that are not sure
+/// become smaller, but no less than h, and m_a stays the smaller one. Then nothing overflows:
 /// - 65536 m < 2^47, so roots are below 2^24;
 /// - V^2 < 2^86 and 18 m^3 < 2^98, in 128 bits; U_b^2 < 2^86, as U <= V (or 1);
 /// - x^3 U_b^2 < 2^39 2^86 = 2^125 and (256 F)^3 < 2^117, in 128 bits;
@@ -60,8 +62,9 @@ struct ScoredClass {
 /// - the disc is below 10 m < 2^35, so w < 2^45, x^2 w < 2^71 and (512 F)^2 < 2^80;
 /// - u <= 11007, 16 rho <= 4096, 6 f <= 49146, the last term at most 3072: at most 89335.
 ///
-/// Of V_b alone it depends by volumeTerm() and by f, which falls as V_b grows: if a, F, h and m_b
-/// stay, the score less that term never grows with V_b.
+/// Of V_b alone it depends by volumeTerm(), by f, which falls as V_b grows, and by m_b, which may be
+/// taken for less while V_b <= V_a, so that rho and f are larger: if a, F, h, m_b and s_b stay, the
+/// score less that term never grows with V_b.
 class JoinScore {
  public:
   static constexpr int64_t kMaxVoxels = (int64_t(1) << 43) - 1, kMaxFaces = (int64_t(1) << 31) - 1;
@@ -80,8 +83,8 @@ class JoinScore {
       if (flatAxis != axis) lgProduct_ += lg(weights[axis] / factor_);
   }
 
-  int32_t operator()(const ScoredClass& a, const ScoredClass& b, int64_t faces,
-                     int32_t height) const {
+  int32_t operator()(ScoredClass a, ScoredClass b, int64_t faces, int32_t height) const {
+    limitDoubtful(a, b, height);
     const int32_t rho = squareRoot((int64_t(a.top) << 16) / b.top);
     const int32_t d = rootInEdges(a.top) - rootInEdges(height);
     const int32_t lgVoxels = lg(a.voxels);
@@ -96,6 +99,15 @@ class JoinScore {
 
  private:
   using Wide = unsigned __int128;
+
+  /// Takes tops that are not sure for less (hierarchy.h).
+  static void limitDoubtful(ScoredClass& a, ScoredClass& b, int32_t height) {
+    if (a.sure < a.top) {
+      const auto nearlyAll = int32_t(int64_t(a.top) * 9 / 10);
+      a.top = std::max({a.sure, std::min(a.top, b.sure), height, nearlyAll});
+    }
+    if (b.sure < b.top && b.voxels <= a.voxels) b.top = std::max(a.top, b.sure);
+  }
 
   /// 256 times the length of that square, in shortest edges of a voxel.
   int32_t rootInEdges(int32_t square) const {

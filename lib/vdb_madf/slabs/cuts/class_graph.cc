@@ -27,7 +27,8 @@ ClassGraph classGraph(const SlabPart& part, const std::vector<uint32_t>& classOf
   std::vector<ClassGraph::Size>& sizes = graph.sizes;
   for (size_t i = 0; i < classOfNode.size(); ++i) {
     const CriticalPoint& node = part.graph.nodes[i];
-    sizes.push_back({classOfNode[i], node.squaredRadius, node.voxels, node.cavityVoxels});
+    sizes.push_back({classOfNode[i], node.squaredRadius, node.squaredRadius - node.doubt,
+                     node.voxels, node.cavityVoxels});
   }
   std::sort(sizes.begin(), sizes.end(),
             [](const auto& a, const auto& b) { return a.number < b.number; });
@@ -39,6 +40,7 @@ ClassGraph classGraph(const SlabPart& part, const std::vector<uint32_t>& classOf
     }
     ClassGraph::Size& all = sizes[count - 1];
     all.top = std::max(all.top, size.top);
+    all.sure = std::max(all.sure, size.sure);
     all.voxels += size.voxels;
     all.cavityVoxels += size.cavityVoxels;
   }
@@ -52,10 +54,7 @@ ClassGraph classGraph(const SlabPart& part, const std::vector<uint32_t>& classOf
   return graph;
 }
 
-JoinedClasses::JoinedClasses(const std::vector<Coord>& representatives, const VoxelWeights& weights,
-                             const std::optional<int>& flatAxis) {
-  graph_.weights = weights;
-  graph_.flatAxis = flatAxis;
+JoinedClasses::JoinedClasses(const std::vector<Coord>& representatives) {
   graph_.nodes.reserve(representatives.size());
   for (const Coord& position : representatives) graph_.nodes.push_back({position, 0, 0});
 }
@@ -63,14 +62,19 @@ JoinedClasses::JoinedClasses(const std::vector<Coord>& representatives, const Vo
 void JoinedClasses::add(const ClassGraph& part) {
   for (const ClassGraph::Size& size : part.sizes) {
     CriticalPoint& all = graph_.nodes[size.number];
+    const int32_t sure = std::max(all.squaredRadius - all.doubt, size.sure);
     all.squaredRadius = std::max(all.squaredRadius, size.top);
+    all.doubt = all.squaredRadius - sure;
     all.voxels += size.voxels;
     all.cavityVoxels += size.cavityVoxels;
   }
   graph_.edges.insert(graph_.edges.end(), part.contacts.begin(), part.contacts.end());
 }
 
-ManifoldGraph JoinedClasses::finish() {
+ManifoldGraph JoinedClasses::finish(const VoxelWeights& weights,
+                                    const std::optional<int>& flatAxis) {
+  graph_.weights = weights;
+  graph_.flatAxis = flatAxis;
   reduceEdges(graph_.edges);
   return std::move(graph_);
 }

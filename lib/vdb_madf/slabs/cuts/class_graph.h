@@ -17,7 +17,7 @@ namespace vdb_madf::detail {
 struct ClassGraph {
   struct Size {
     uint32_t number;
-    int32_t top;  ///< the largest D that the slab knows of
+    int32_t top, sure;  ///< the largest D that the slab knows of, and the largest sure one
     int64_t voxels, cavityVoxels;
   };
   std::vector<Size> sizes;                    ///< ascending, each class once
@@ -35,10 +35,9 @@ ClassGraph classGraph(const SlabPart& part, const std::vector<uint32_t>& classOf
 /// and each edge was lower than both when it was visited.)
 class JoinedClasses {
  public:
-  JoinedClasses(const std::vector<Coord>& representatives, const VoxelWeights& weights,
-                const std::optional<int>& flatAxis);
+  explicit JoinedClasses(const std::vector<Coord>& representatives);
   void add(const ClassGraph& part);
-  ManifoldGraph finish();
+  ManifoldGraph finish(const VoxelWeights& weights, const std::optional<int>& flatAxis);
 
  private:
   ManifoldGraph graph_;

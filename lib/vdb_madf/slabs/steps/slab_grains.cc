@@ -89,16 +89,21 @@ class MergeTree {
     work_.steps.exchange();
     std::vector<uint32_t> grains;
     if (work_.plan.isRoot()) {
-      JoinedClasses joined(representatives_, work_.facts.weights, work_.facts.flatAxis);
+      JoinedClasses joined(representatives_);
       for (size_t s = 0; s < work_.plan.slabCount(); ++s)
         joined.add(work_.store.receive(kClassGraph, s, kRoot));
-      const Merging merging = grainsOfClasses(joined.finish());
+      const Merging merging = grainsOfClasses(joined.finish(work_.facts.weights, flatAxis()));
       grains.assign(merging.grainOfNode.begin(), merging.grainOfNode.end());
       std::vector<Coord> ofGrains;
       for (const uint32_t c : merging.representative) ofGrains.push_back(representatives_[c]);
       representatives_ = std::move(ofGrains);
     }
     return work_.store.broadcast(grains);
+  }
+
+  std::optional<int> flatAxis() const {
+    const auto& domain = work_.facts.domain;
+    return domain ? domain->flatAxis() : std::nullopt;
   }
 
   Merging grainsOfClasses(const ManifoldGraph& classes) const {

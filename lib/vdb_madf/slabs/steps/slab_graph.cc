@@ -175,10 +175,11 @@ class PartSteps {
 
   void makePart(size_t s) {
     const SlabTerminals own = work_.store.read(kTerminals, s);
-    work_.store.write(kGraphPart, s,
-                      slabPart(s, own, roots(s, own), work_.store.read(kContacts, s),
-                               work_.store.receive(kRootsBelow, s - 1, s),
-                               work_.store.receive(kTouched, s + 1, s)));
+    SlabPart part = slabPart(s, own, roots(s, own), work_.store.read(kContacts, s),
+                             work_.store.receive(kRootsBelow, s - 1, s),
+                             work_.store.receive(kTouched, s + 1, s));
+    work_.facts.place(part.graph);
+    work_.store.write(kGraphPart, s, part);
   }
   SlabWork& work_;
   SegmentCounts& counts_;

@@ -25,7 +25,7 @@ class Setup {
     fillHoles(extent);
     chooseWeights(about, work_.options, obstacles, extent, result_);
     work_.facts.weights = result_.weights;
-    if (result_.domain) work_.facts.flatAxis = result_.domain->flatAxis();
+    work_.facts.domain = result_.domain;
     checkBackground(obstacles, result_.counts.objectVoxels);
   }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "vdb_madf/method/boundary.h"
+#include "vdb_madf/method/manifold_graph.h"
 #include "vdb_madf/slabs/segment_slabs.h"
 #include "vdb_madf/slabs/steps/slab_steps.h"
 
@@ -13,11 +14,17 @@ namespace vdb_madf::detail {
 struct SlabFacts {
   Obstacles obstacles{};
   VoxelWeights weights;
-  std::optional<int> flatAxis{};       ///< of the domain
+  std::optional<Domain> domain{};
   bool fillsNone = false;              ///< would the cavities be all background?
   int32_t largestSquaredDistance = 0;  ///< of all slabs, once they are measured
 
   bool inRegion() const { return obstacles.inRegion(); }
+
+  /// Tells a part of the graph of its metric and of the domain.
+  void place(ManifoldGraph& graph) const {
+    graph.weights = weights;
+    if (domain) placeGraph(graph, *domain, obstacles.open);
+  }
 };
 
 /// What all steps of segmentSlabs() work with.

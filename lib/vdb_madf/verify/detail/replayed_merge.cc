@@ -52,7 +52,7 @@ int64_t lg(int64_t n) {
 
 /// What a score sees of a class.
 struct Sizes {
-  int64_t voxels, top;
+  int64_t voxels, top, sureTop;
 };
 
 /// The score of two classes, a of the smaller top, in units of 1/512.
@@ -68,9 +68,12 @@ class Score {
     factor_ = std::gcd(w_[0], std::gcd(w_[1], w_[2]));
   }
 
-  int64_t operator()(const Sizes& a, const Sizes& b, int64_t faces, int64_t height) const {
-    const int64_t va = std::max<int64_t>(1, a.voxels), vb = std::max<int64_t>(1, b.voxels),
-                  rho = squareRoot(65536 * a.top / b.top),
+  int64_t operator()(Sizes a, Sizes b, int64_t faces, int64_t height) const {
+    const int64_t va = std::max<int64_t>(1, a.voxels), vb = std::max<int64_t>(1, b.voxels);
+    if (a.sureTop < a.top)
+      a.top = std::max({a.sureTop, std::min(a.top, b.sureTop), height, 9 * a.top / 10});
+    if (b.sureTop < b.top && vb <= va) b.top = std::max(b.sureTop, a.top);
+    const int64_t rho = squareRoot(65536 * a.top / b.top),
                   d = squareRoot(65536 * a.top / least_) - squareRoot(65536 * height / least_),
                   m = std::max<int64_t>(1, a.top / factor_);
     if (flat_ >= 0) {
@@ -160,11 +163,14 @@ void mergeByScore(const Definition& definition, const Manifolds& manifolds, Clas
   };
   const int64_t least = std::llround(512 * definition.strictness);
   const Score score(definition);
-  std::vector<Sizes> sizes(manifolds.nodes.size(), Sizes{0, 0});
+  std::vector<Sizes> sizes(manifolds.nodes.size(), Sizes{0, 0, 0});
   std::vector<std::map<int32_t, Touch>> neighbors(manifolds.nodes.size());
   for (size_t i = 0; i < sizes.size(); ++i) {
-    sizes[size_t(classes.of(int32_t(i)))].voxels += manifolds.nodes[i].voxels;
-    sizes[i].top = manifolds.nodes[i].top;
+    const Manifolds::Node& node = manifolds.nodes[i];
+    Sizes& all = sizes[size_t(classes.of(int32_t(i)))];
+    all.voxels += node.voxels;
+    if (node.isSure) all.sureTop = std::max(all.sureTop, node.top);
+    sizes[i].top = node.top;
   }
   std::set<std::tuple<int64_t, int32_t, int32_t>> queue;  // -score, the pair
   const auto addTouch = [](Touch& to, int64_t faces, int64_t height) {
@@ -204,6 +210,8 @@ void mergeByScore(const Definition& definition, const Manifolds& manifolds, Clas
     for (const int32_t side : {x, y})
       for (const auto& [other, touch] : neighbors[size_t(side)]) drop(side, other, touch);
     sizes[size_t(name)].voxels += sizes[size_t(gone)].voxels;
+    sizes[size_t(name)].sureTop =
+        std::max(sizes[size_t(name)].sureTop, sizes[size_t(gone)].sureTop);
     for (const auto& [other, touch] : neighbors[size_t(gone)]) {
       neighbors[size_t(other)].erase(gone);
       if (other == name) continue;
@@ -281,6 +289,23 @@ void joinSmall(const Manifolds& manifolds, int64_t least, Grains& grains) {
 
 }  // namespace
 
+/// Does the domain hold each voxel that is nearer to a point than its squared radius?
+bool isWithin(const Domain& domain, const Coord& center, int64_t squaredRadius,
+              const std::array<int64_t, 3>& weights) {
+  Coord reach;
+  for (size_t axis = 0; axis < 3; ++axis)
+    reach[int(axis)] = int(std::ceil(std::sqrt(double(squaredRadius) / double(weights[axis]))));
+  for (auto p = CoordBBox(center - reach, center + reach).begin(); p; ++p) {
+    int64_t squared = 0;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const int64_t steps = (*p)[int(axis)] - center[int(axis)];
+      squared += weights[axis] * steps * steps;
+    }
+    if (squared < squaredRadius && !domain.isInside(*p)) return false;
+  }
+  return true;
+}
+
 Manifolds manifoldsOf(const DenseBox& space, const Definition& definition, const Voxels& voxels,
                       const std::vector<int32_t>& distance, Flow& flow) {
   Manifolds manifolds;
@@ -289,6 +314,9 @@ Manifolds manifoldsOf(const DenseBox& space, const Definition& definition, const
     if (isBody(voxels[i]) && flow.site[i] == int32_t(i)) {
       nodeOf[i] = int32_t(manifolds.nodes.size());
       manifolds.nodes.push_back({int32_t(i), distance[i], 0, 0});
+      if (definition.open && definition.domain)
+        manifolds.nodes.back().isSure =
+            isWithin(*definition.domain, space.coord(int64_t(i)), distance[i], definition.weights);
     }
   for (size_t i = 0; i < voxels.size(); ++i) {
     if (!isBody(voxels[i])) continue;

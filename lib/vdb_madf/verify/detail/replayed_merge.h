@@ -15,6 +15,7 @@ struct Manifolds {
   struct Node {
     int32_t at = 0;  ///< the number of its voxel
     int64_t top = 0, objectVoxels = 0, voxels = 0;
+    bool isSure = true;  ///< Does all that is nearer than its top lie in an open domain?
   };
   struct Edge {
     int32_t first = 0, second = 0;
