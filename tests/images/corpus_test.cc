@@ -75,7 +75,7 @@ TEST_CASE("image_corpus: changed files read or are refused with one line that na
     const std::string& whole = sample.files.at(sample.changed);
     for (int i = 0; i < kMutationsPerFormat / files; ++i) {
       const std::string bytes = mutated(whole, sample.headerBytes, ++seed);
-      writeFile(folder / sample.changed, bytes);
+      overwriteFile(folder / sample.changed, bytes);
       const std::string wrong =
           complaint(folder / sample.path, sample.bytes() + bytes.size(), sample.expansion);
       if (wrong.empty()) continue;
@@ -98,8 +98,8 @@ TEST_CASE("image_corpus: PNG of sound checksums and unsound content", "[image_co
     for (unsigned k = random() % 3; k > 0; --k) header[random() % 13] = char(random() % 20);
     if (random() % 4 == 0) header[random() % 8] = char(random());
     for (unsigned k = random() % 500; k > 0; --k) rows += char(random() % 6);
-    writeFile(path, file.substr(0, 8) + pngChunk("IHDR", header) +
-                        pngChunk("IDAT", deflated(rows, 15)) + pngChunk("IEND", ""));
+    overwriteFile(path, file.substr(0, 8) + pngChunk("IHDR", header) +
+                            pngChunk("IDAT", deflated(rows, 15)) + pngChunk("IEND", ""));
     CAPTURE(i);
     REQUIRE(complaint(path, file.size(), 8 * kDeflate) == "");
   }

@@ -74,7 +74,7 @@ TEST_CASE("image_file: mutated files read or are refused with one line that name
     const MemoryLimit limit(kDamageMemory);
     for (int i = 0; i < mutations; ++i) {
       const std::string bytes = mutated(sample.bytes, sample.headerBytes, ++seed);
-      writeFile(path, bytes);
+      overwriteFile(path, bytes);
       const std::string wrong = complaint(path, bytes.size() + sample.data.size(), kMaxExpansion);
       if (wrong.empty()) continue;
       CAPTURE(sample.name, seed, wrong);

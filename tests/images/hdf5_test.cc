@@ -360,7 +360,7 @@ TEST_CASE("image_hdf5: damaged files read or are refused with one line", "[image
     const MemoryLimit limit(uint64_t(512) << 20);
     // A process is made for each, which takes most of the time.
     for (int i = 0; i < mutationsPerFormat(600) / 2; ++i) {
-      writeFile(path, mutated(whole, whole.size(), ++seed));
+      overwriteFile(path, mutated(whole, whole.size(), ++seed));
       CAPTURE(chunked, seed);
       REQUIRE(complaint(path, 2 * whole.size(), 1 << 16) == "");
     }

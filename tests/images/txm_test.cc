@@ -187,7 +187,7 @@ TEST_CASE("image_txm: large slices, changed at random, read or are refused", "[i
         bytes[place] = char(random() % 3 ? random() % 64 : random());
       }
       if (random() % 2) bytes = mutated(bytes, bytes.size(), seed);
-      writeFile(path, bytes);
+      overwriteFile(path, bytes);
       CAPTURE(version, seed);
       REQUIRE(complaint(path, bytes.size(), 1) == "");
     }

@@ -376,7 +376,7 @@ TEST_CASE("image_zarr3: damaged chunks and shards are refused", "[image_zarr3]")
                                      std::string(59, '\2'), std::string(5000, 'y')}) {
       layout.codecs = codecs;
       write(path, zarr3Files(layout, samples));
-      writeFile(path + "/c/1/1/1", bytes);
+      overwriteFile(path + "/c/1/1/1", bytes);
       CAPTURE(codecs, bytes.size());
       CHECK_THROWS_WITH(readAll(*openImage(path)), Contains(path) && Contains("c/1/1/1"));
     }

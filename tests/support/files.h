@@ -44,6 +44,17 @@ inline void writeFile(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
+/// Like writeFile(), for what is written thousands of times: to make a file, ext4 looks through all
+/// that were removed in the last seconds.
+inline void overwriteFile(const std::string& path, const std::string& bytes) {
+  {
+    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+    if (!file) file.open(path, std::ios::binary | std::ios::out);
+    file << bytes;
+  }
+  std::filesystem::resize_file(path, bytes.size());
+}
+
 inline std::string readFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};

@@ -9,6 +9,7 @@
 
 #include "support/catch.h"
 #include "support/damage.h"
+#include "support/files.h"
 #include "support/temporary_folder.h"
 #include "support/vdb_files.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -72,15 +73,15 @@ TEST_CASE("vdb_file: a file that is cut anywhere is refused", "[vdb_file]") {
     for (size_t i = 0; i < 300; ++i) lengths.insert(i * 3);
     for (size_t i = 1; i < 60; ++i) lengths.insert(bytes.size() - i);
     for (size_t i = 0; i < 150; ++i) lengths.insert(random() % bytes.size());
-    writeBytes(path, bytes);
+    overwriteFile(path, bytes);
     for (auto length = lengths.rbegin(); length != lengths.rend(); ++length) {
       INFO("length " << *length << " of " << bytes.size());
       std::filesystem::resize_file(path, *length);
       requireOneLineNaming(errorOf(path), path);
     }
-    writeBytes(path, bytes);
+    overwriteFile(path, bytes);
     REQUIRE(errorOf(path).empty());
-    writeBytes(path, bytes + 'x');
+    overwriteFile(path, bytes + 'x');
     requireOneLineNaming(errorOf(path), path);
   }
 }
@@ -130,7 +131,7 @@ TEST_CASE("vdb_file: damaged files are read or refused, quickly and in little me
         }
       }
       INFO(name << ", seed " << seed);
-      writeBytes(path, changed);
+      overwriteFile(path, changed);
       const std::clock_t start = std::clock();
       const std::string error = errorOf(path), errorOfSome = errorOf(path, some);
       REQUIRE(double(std::clock() - start) < kMaxSeconds * double(CLOCKS_PER_SEC));
