@@ -111,7 +111,7 @@ TEST_CASE("measure_sample: specific surface of a ball", "[measure_sample]") {
   CHECK(sample.freeArea / double(sample.objectVoxels) == Approx(sample.specificSurface));
 }
 
-TEST_CASE("measure_sample: a segmentation measures as its labels do", "[measure_sample]") {
+TEST_CASE("measure_sample: a segmentation measures as its labels do", "[measure_sample][long]") {
   Rng rng(7);
   bool wasFiltered = false;
   for (const int64_t gamma : {0, 1, 8})

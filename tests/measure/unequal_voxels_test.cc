@@ -136,7 +136,7 @@ TEST_CASE("unequal_voxels: ellipsoids have the size that they have in space", "[
 }
 
 TEST_CASE("unequal_voxels: interfaces have their area, direction and curvature",
-          "[unequal_voxels]") {
+          "[unequal_voxels][long]") {
   Rng rng(7);
   for (const auto& [edges, mean, worst] : kAreas) {
     const double longest = std::max({edges[0], edges[1], edges[2]});
@@ -178,7 +178,7 @@ TEST_CASE("unequal_voxels: interfaces have their area, direction and curvature",
   }
 }
 
-TEST_CASE("unequal_voxels: free planes have their area", "[unequal_voxels]") {
+TEST_CASE("unequal_voxels: free planes have their area", "[unequal_voxels][long]") {
   Rng rng(8);
   for (const auto& [unequal, mean, worst] : kAreas) {
     const auto& edges = unequal;  // for a lambda
