@@ -1,0 +1,150 @@
+# SPDX-FileCopyrightText: The vdb_madf authors
+# SPDX-License-Identifier: Apache-2.0
+"""The page of a report at other strictnesses than that of its labels."""
+
+import os
+
+import numpy
+from command import command, demand, table
+
+
+def check_lives(page, strictness, grains, bonds):
+    """How sure grains and bonds are, as 'measure --stability' says, as far as the slider goes."""
+    column = ("const [kind, name] = arguments; return Array.from(window.report.sample[kind]"
+              ".column(name), (value) => Number.isNaN(value) ? null : value)")
+
+    def within(text, known):
+        return float(text) if text and known(float(text)) else None
+
+    lives = [(within(row["born"], lambda at: at < 14), within(row["dies"], lambda at: at >= 8))
+             for row in grains]
+    expected = {
+        ("grains", "born"): [born for born, _ in lives],
+        ("grains", "dies"): [dies for _, dies in lives],
+        ("grains", "stability"): [min(6 if born is None else born - strictness,
+                                      6 if dies is None else strictness - dies)
+                                  for born, dies in lives],
+        ("bonds", "vanishes"): [within(row["vanishes"], lambda at: at >= 8) for row in bonds],
+    }
+    for place, values in expected.items():
+        mine = page.run(column, *place)
+        demand(len(mine) == len(values) and all(
+            (a is None) == (b is None) and (a is None or abs(a - b) < 1e-6)
+            for a, b in zip(mine, values)), f"{place} at {strictness}: {mine}, not {values}")
+
+
+def check_edits(page, strictness):
+    """Clicks at a strictness make a list that 'edit' replays on the labels of that one."""
+    page.run("const {selection} = window.report; selection.edits = [];"
+             "selection.setStrictness(arguments[0]);"
+             "const bond = selection.sample.bondEnds;"
+             "selection.select([bond.first[0], bond.second[0]])", strictness)
+    page.button("Merge the selected").click()
+    merged = page.selected()
+    # The largest one beside these that has two parts; parts of it by body, in voxels of the slices.
+    split = page.run(
+        "const {selection, sample} = window.report, skip = new Set(arguments[0]);"
+        "const sizes = sample.grains.column('voxels');"
+        "for (const row of Array.from(sizes.keys()).sort((a, b) => sizes[b] - sizes[a])) {"
+        "  if (skip.has(sample.ids[row])) continue;"
+        "  selection.select([row]); if (selection.parts) return sample.ids[row];"
+        "} return 0", merged)
+    demand(split > 0, f"no grain at {strictness} has two parts")
+    page.run("document.getElementById('grain').scrollIntoView({block: 'center'})")
+    page.find("#parts").click()
+    second = set(page.run("return [...window.report.selection.secondPart]"))
+    page.button("Split it so").click()
+    page.run("window.report.selection.setStrictness(null)")
+    demand(not page.button("Drop the selected").is_enabled() and page.find(
+        "#edits .warning").is_displayed(), "the list takes edits of two strictnesses")
+    text = page.run("window.saved = ''; const make = URL.createObjectURL;"
+                    "URL.createObjectURL = (blob) => { blob.text().then((text) => { window.saved = "
+                    "text; }); return make(blob); };"
+                    "[...document.querySelectorAll('#edits button')].find((button) => "
+                    "button.textContent === 'Save edits.txt').click()")
+    text = page.wait("return window.saved")
+    demand(text == f"strictness {strictness}\nmerge {merged[0]} {merged[1]}\nsplit {split}\n",
+           f"the list is {text!r}")
+    with open("clicked.txt", "w") as file:
+        file.write(text)
+    refusal = command("edit", "k.vdb", "no.vdb", "--edits", "clicked.txt", refused=True)
+    demand(f"remerge --strictness {strictness}" in refusal, f"edit says {refusal!r}")
+    command("remerge", "k.vdb", "cut.vdb", "--strictness", str(strictness), "--tidy", "0", "-q")
+    command("edit", "cut.vdb", "clicked.vdb", "--edits", "clicked.txt", "-q")
+    for name in ("cut", "clicked"):
+        command("convert", f"{name}.vdb", f"{name}.npy", "--grid", "grain", "-q")
+    cut, clicked = numpy.load("cut.npy"), numpy.load("clicked.npy")
+    bodies = numpy.array(page.run(
+        "const {sample} = window.report, {size} = sample.about.slices, bodies = [];"
+        "for (let k = 0; k < size[2]; ++k) for (let j = 0; j < size[1]; ++j)"
+        "for (let i = 0; i < size[0]; ++i) bodies.push(sample.bodyAt(i, j, k) - 1); return bodies"
+    )).reshape(cut.shape)
+    expected = numpy.where(cut == merged[1], merged[0], cut)
+    beyond = numpy.isin(bodies, list(second)) & (cut == split)
+    sides = [set(numpy.unique(clicked[side])) for side in (beyond, (cut == split) & ~beyond)]
+    demand(beyond.any() and len(sides[0]) == len(sides[1]) == 1 and sides[0] != sides[1],
+           f"edit splits grain {split} elsewhere than the page: {sides}")
+    rest = cut != split
+    demand((clicked[rest] == expected[rest]).all(), "edit merges others than the page")
+
+
+def check_strictness(page, folder):
+    """At each strictness the slices, tables and numbers have the grains of remerge. Leaves the page
+    at the last one, whose labels it returns."""
+    command("generate", "snow", "n.vdb", "--size", "72", "--voxel-size", "10um", "-q")
+    command("segment", "n.vdb", "k.vdb", "--keep", "manifold", "-q")
+    out = os.path.join(folder, "slider.html")
+    command("report", "k.vdb", out, "--min-faces", "4", "-q")
+    complaints = page.open(out, "unit=mm")
+    demand(not complaints, f"the page with a slider: {complaints}")
+    command("measure", "k.vdb", "own", "--min-faces", "4", "--stability", "-q")
+    check_lives(page, 11, table("own/grains.csv"), table("own/bonds.csv"))
+    own = [int(row["voxels"]) for row in table("own/grains.csv")]
+    voxels = "return Array.from(window.report.sample.grains.column('voxels'))"
+    demand(page.run(voxels) == own, "the page has not the grains of the labels")
+    slider = page.find("#strictness")
+    page.button("Largest").click()
+    selected = page.selected()
+    counts = set()
+    for strictness in (8, 9.3, 10.5, 12, 14):
+        command("remerge", "k.vdb", "m.vdb", "--strictness", str(strictness), "--tidy", "0", "-q")
+        command("measure", "m.vdb", "cut", "--min-faces", "4", "--stability", "-q")
+        command("convert", "m.vdb", "m.npy", "--grid", "grain", "-q")
+        grains, bonds = table("cut/grains.csv"), table("cut/bonds.csv")
+        page.run("const [slider, value] = arguments; slider.value = value;"
+                 "slider.dispatchEvent(new Event('input'))", slider, round(10 * strictness))
+        counts.add(len(grains))
+        demand(page.run(voxels) == [int(row["voxels"]) for row in grains],
+               f"grains at {strictness} are not those of remerge")
+        names = ["first", "second", "faces"]
+        pairs = page.run("const {bonds} = window.report.sample;"
+                         "return arguments[0].map((name) => Array.from(bonds.column(name)))", names)
+        demand(pairs == [[int(row[name]) for row in bonds] for name in names],
+               f"bonds at {strictness} are not those of remerge")
+        for name in ("equivalent_diameter", "centroid_y", "inscribed_radius", "axis2_length",
+                     "axis1_z", "aspect_3_to_2", "box_min_x", "at_domain_face", "coordination"):
+            unit = "_mm" if name + "_mm" in grains[0] else ""
+            mine = page.run("return Array.from(window.report.sample.grains.column(arguments[0]))",
+                            name)
+            worst = max(abs(a - float(row[name + unit])) for a, row in zip(mine, grains))
+            demand(worst < 1e-6, f"{name} at {strictness} is off by {worst}")
+        check_lives(page, strictness, grains, bonds)
+        labels = numpy.load("m.npy")
+        shown = page.run(
+            "const {sample} = window.report, {size} = sample.about.slices, rows = [];"
+            "for (let k = 0; k < size[2]; ++k) for (let j = 0; j < size[1]; ++j)"
+            "for (let i = 0; i < size[0]; ++i) rows.push(sample.rowAt(i, j, k) + 1); return rows")
+        demand(shown == labels.ravel().tolist(), f"slices at {strictness} are not those of remerge")
+        page.wait(f"return document.querySelector('#table-grains_info').textContent.trim()."
+                  f"endsWith('of {len(grains)}')")
+        demand(page.find("#shown").text.startswith(f"{len(grains)} of {len(grains)} grains"),
+               f"at {strictness} the page says: {page.find('#shown').text}")
+        demand(len(page.selected()) == 1, f"at {strictness} {page.selected()} are selected")
+    demand(len(counts) > 2, f"the slider changes nothing: {counts}")
+    back = page.button("As in the labels")
+    back.click()
+    demand(page.run(voxels) == own and page.selected() == selected,
+           "the grains of the labels do not come again")
+    check_edits(page, 9.3)
+    page.run("window.report.selection.setStrictness(14); window.report.selection.select([])")
+    return labels
