@@ -100,9 +100,8 @@ void addArray(detail::VtkFile& file, const Slabs& slabs, bool compressed, const 
   }
   detail::VtkFile::Blocks blocks;
   blocks.data.resize(slabs.count());
-  detail::parallelFor(slabs.count(), 1, interrupter, [&](size_t begin, size_t end) {
-    for (size_t slab = begin; slab < end; ++slab)
-      blocks.data[slab] = deflated(valuesOf(slabs.read(slab)));
+  detail::parallelForEach(slabs.count(), 1, interrupter, [&](size_t slab) {
+    blocks.data[slab] = deflated(valuesOf(slabs.read(slab)));
   });
   blocks.wholeBytes = bytes * uint64_t(slabs.slabBox(0).volume());
   blocks.lastBytes = bytes * uint64_t(slabs.slabBox(slabs.count() - 1).volume());

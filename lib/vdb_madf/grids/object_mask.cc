@@ -60,15 +60,13 @@ MaskTree::Ptr listedVoxels(const Tree& tree, const Test& test) {
   leaves.reserve(tree.leafCount());
   tree.getNodes(leaves);
   std::vector<std::unique_ptr<MaskLeaf>> packed(leaves.size());
-  detail::parallelFor(leaves.size(), kLeavesPerChunk, nullptr, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      openvdb::util::NodeMask<3> bits;
-      for (openvdb::Index n = 0; n < kWords; ++n)
-        bits.template getWord<Word>(n) = objectWord(*leaves[i], n, test);
-      if (bits.isOff()) continue;
-      packed[i] = std::make_unique<MaskLeaf>(leaves[i]->origin(), false);
-      packed[i]->setValueMask(bits);
-    }
+  detail::parallelForEach(leaves.size(), kLeavesPerChunk, nullptr, [&](size_t i) {
+    openvdb::util::NodeMask<3> bits;
+    for (openvdb::Index n = 0; n < kWords; ++n)
+      bits.template getWord<Word>(n) = objectWord(*leaves[i], n, test);
+    if (bits.isOff()) return;
+    packed[i] = std::make_unique<MaskLeaf>(leaves[i]->origin(), false);
+    packed[i]->setValueMask(bits);
   });
   openvdb::tree::ValueAccessor<MaskTree> accessor(*mask);
   for (auto& leaf : packed)

@@ -127,10 +127,8 @@ class AreaResampling {
 
   MaskTree run(Interrupter* interrupter) {
     std::vector<std::unique_ptr<MaskLeaf>> leaves(first_.size() - 1);
-    detail::parallelFor(leaves.size(), kResampledLeafGrain, interrupter,
-                        [&](size_t begin, size_t end) {
-                          for (size_t n = begin; n < end; ++n) leaves[n] = leafOf(n);
-                        });
+    detail::parallelForEach(leaves.size(), kResampledLeafGrain, interrupter,
+                            [&](size_t n) { leaves[n] = leafOf(n); });
     for (auto& leaf : leaves)
       if (leaf) result_.addLeaf(leaf.release());
     return std::move(result_);

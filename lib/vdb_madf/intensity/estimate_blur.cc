@@ -71,9 +71,8 @@ void forEachLine(const Middle& m, int axis, const F& f) {
   const size_t n[3] = {size_t(m.nx), size_t(m.ny), size_t(m.nz)};
   const size_t steps[3] = {1, n[0], n[0] * n[1]};
   const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-  detail::parallelFor(n[b], 1, nullptr, [&](size_t begin, size_t end) {
-    for (size_t j = begin; j < end; ++j)
-      for (size_t i = 0; i < n[a]; ++i) f(i * steps[a] + j * steps[b], steps[axis], n[axis]);
+  detail::parallelForEach(n[b], 1, nullptr, [&](size_t j) {
+    for (size_t i = 0; i < n[a]; ++i) f(i * steps[a] + j * steps[b], steps[axis], n[axis]);
   });
 }
 

@@ -106,11 +106,9 @@ class SampleLists {
         if (isComplete(grain)) complete_.push_back(grain);
       }
     std::vector<std::vector<std::pair<size_t, T>>> besideBonds(layer.size());
-    detail::parallelFor(layer.size(), kLeavesTogether, nullptr, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) {
-        copyParts(leaves, layer[i], places[i], slab);
-        besideBonds[i] = samplesBesideBonds(tree, leaves.index().origin(layer[i]), slab);
-      }
+    detail::parallelForEach(layer.size(), kLeavesTogether, nullptr, [&](size_t i) {
+      copyParts(leaves, layer[i], places[i], slab);
+      besideBonds[i] = samplesBesideBonds(tree, leaves.index().origin(layer[i]), slab);
     });
     for (const auto& samples : besideBonds)
       for (const auto& [bond, sample] : samples) ofBonds_[bond].push_back(sample);
@@ -172,11 +170,9 @@ class SampleLists {
 
   /// What grains and bonds have no samples to come is known now, and their samples go.
   void finishComplete(Interrupter* interrupter) {
-    detail::parallelFor(complete_.size(), kGrainsTogether, interrupter,
-                        [&](size_t begin, size_t end) {
-                          for (size_t i = begin; i < end; ++i)
-                            measured_.grains[complete_[i]].gray = taken(ofGrains_[complete_[i]]);
-                        });
+    detail::parallelForEach(complete_.size(), kGrainsTogether, interrupter, [&](size_t i) {
+      measured_.grains[complete_[i]].gray = taken(ofGrains_[complete_[i]]);
+    });
     complete_.clear();
     for (size_t i = 0; i < ofBonds_.size(); ++i) {
       BondMeasures& bond = measured_.bonds[i];

@@ -282,27 +282,25 @@ std::vector<Section> sectionsOf(const Int32Tree& labels, const Measurements& mea
     return found->equivalentDiameter / 2;
   };
   std::vector<Section> sections(measured.bonds.size());
-  detail::parallelFor(sections.size(), kBondsTogether, interrupter, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const BondMeasures& bond = measured.bonds[i];
-      Section& section = sections[i];
-      section.center = bond.centroid;
-      section.normal = normalOf(labels, bond);
-      section.radius = std::min(bond.equivalentRadius, kMaxReach);
-      // Balls of that size have sections within this reach, and a rim around them.
-      const double ball = std::max(radiusOf(bond.first), radiusOf(bond.second));
-      section.reach =
-          std::min(kMaxReach, std::sqrt(section.radius * section.radius + 2 * ball * kHeight)) +
-          kBlursOfRim * blur + kRim + 1;
-      Vec3d halves;
-      for (int axis = 0; axis < 3; ++axis) {
-        const double along = section.normal[axis];
-        halves[axis] =
-            section.reach * std::sqrt(std::max(0.0, 1 - along * along)) + kHeight * std::abs(along);
-      }
-      section.box = around(section.center, halves);
-      section.box.intersect(scan);
+  detail::parallelForEach(sections.size(), kBondsTogether, interrupter, [&](size_t i) {
+    const BondMeasures& bond = measured.bonds[i];
+    Section& section = sections[i];
+    section.center = bond.centroid;
+    section.normal = normalOf(labels, bond);
+    section.radius = std::min(bond.equivalentRadius, kMaxReach);
+    // Balls of that size have sections within this reach, and a rim around them.
+    const double ball = std::max(radiusOf(bond.first), radiusOf(bond.second));
+    section.reach =
+        std::min(kMaxReach, std::sqrt(section.radius * section.radius + 2 * ball * kHeight)) +
+        kBlursOfRim * blur + kRim + 1;
+    Vec3d halves;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double along = section.normal[axis];
+      halves[axis] =
+          section.reach * std::sqrt(std::max(0.0, 1 - along * along)) + kHeight * std::abs(along);
     }
+    section.box = around(section.center, halves);
+    section.box.intersect(scan);
   });
   return sections;
 }
@@ -367,9 +365,8 @@ void measureNecks(const Int32Grid& labels, GrayScan& scan, const ScanBlur& blur,
       sectionsOf(*tree, measured, scan.box(), blur.sigma, &framing);
   const FloatTree::Ptr gray = readAround(sections, scan, &reading);
   const NeckMeter meter(*tree, *gray, blur);
-  detail::parallelFor(sections.size(), kBondsTogether, &fitting, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      measured.bonds[i].neck = meter.measure(measured.bonds[i], sections[i]);
+  detail::parallelForEach(sections.size(), kBondsTogether, &fitting, [&](size_t i) {
+    measured.bonds[i].neck = meter.measure(measured.bonds[i], sections[i]);
   });
   measured.scan = blur;
   measured.extra.necks = true;

@@ -50,11 +50,8 @@ Int32Grid::Ptr interfaceVoxels(const Int32Grid& labels, Interrupter* interrupter
   std::vector<const Leaf*> leaves;
   tree->getNodes(leaves);
   std::vector<std::unique_ptr<Leaf>> parts(leaves.size());
-  detail::parallelFor(leaves.size(), detail::kLeafGrain, interrupter,
-                      [&](size_t begin, size_t end) {
-                        for (size_t n = begin; n < end; ++n)
-                          parts[n] = interfacesIn(*tree, leaves[n]->origin());
-                      });
+  detail::parallelForEach(leaves.size(), detail::kLeafGrain, interrupter,
+                          [&](size_t n) { parts[n] = interfacesIn(*tree, leaves[n]->origin()); });
   for (std::unique_ptr<Leaf>& part : parts)
     if (part) result->tree().addLeaf(part.release());
   return result;

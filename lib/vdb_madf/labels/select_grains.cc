@@ -80,11 +80,8 @@ Int32Grid::Ptr selectGrains(const Int32Grid& labels, const std::vector<int32_t>&
   std::vector<const Leaf*> leaves;
   labels.tree().getNodes(leaves);
   std::vector<std::unique_ptr<Leaf>> parts(leaves.size());
-  detail::parallelFor(leaves.size(), detail::kLeafGrain, interrupter,
-                      [&](size_t begin, size_t end) {
-                        for (size_t n = begin; n < end; ++n)
-                          parts[n] = wantedPart(*leaves[n], wanted);
-                      });
+  detail::parallelForEach(leaves.size(), detail::kLeafGrain, interrupter,
+                          [&](size_t n) { parts[n] = wantedPart(*leaves[n], wanted); });
   for (std::unique_ptr<Leaf>& part : parts) {
     if (!part) continue;
     for (auto voxel = part->cbeginValueOn(); voxel; ++voxel) wanted.find(*voxel);

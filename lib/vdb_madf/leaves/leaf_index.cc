@@ -164,20 +164,17 @@ void LeafIndex::finish() {
   firstRank_.resize(leafCount() + 1);
   wordRank_.resize(leafCount());
   constexpr size_t kGrain = 4096;  // leaves per task: some hundred microseconds
-  detail::parallelFor(leafCount(), kGrain, nullptr, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      uint32_t count = 0;
-      for (size_t x = 0; x < 8; ++x) {
-        wordRank_[i][x] = uint16_t(count);
-        count += detail::countBits(masks_[i][x]);
-      }
-      firstRank_[i + 1] = count;
+  detail::parallelForEach(leafCount(), kGrain, nullptr, [&](size_t i) {
+    uint32_t count = 0;
+    for (size_t x = 0; x < 8; ++x) {
+      wordRank_[i][x] = uint16_t(count);
+      count += detail::countBits(masks_[i][x]);
     }
+    firstRank_[i + 1] = count;
   });
   for (size_t i = 0; i < leafCount(); ++i) firstRank_[i + 1] += firstRank_[i];
-  detail::parallelFor(3, 1, nullptr, [&](size_t begin, size_t end) {
-    for (size_t axis = begin; axis < end; ++axis) linkNeighbors(origins_, int(axis), neighbors_);
-  });
+  detail::parallelForEach(3, 1, nullptr,
+                          [&](size_t axis) { linkNeighbors(origins_, int(axis), neighbors_); });
 }
 
 }  // namespace vdb_madf

@@ -94,12 +94,11 @@ class BinderMeter {
     for (size_t leaf = 0; leaf < index_.leafCount(); ++leaf)
       layers[index_.origin(leaf).z()].push_back(leaf);
     const std::vector<std::pair<int, std::vector<size_t>>> list(layers.begin(), layers.end());
-    detail::parallelFor(list.size(), 1, interrupter, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i)
-        for (int z = list[i].first; z < list[i].first + detail::kLeafSide; ++z) {
-          const bool isWithin = z >= box.min().z() && z <= box.max().z();
-          setSlice(list[i].second, z, isWithin ? cells.slice(z - box.min().z()) : Slice());
-        }
+    detail::parallelForEach(list.size(), 1, interrupter, [&](size_t i) {
+      for (int z = list[i].first; z < list[i].first + detail::kLeafSide; ++z) {
+        const bool isWithin = z >= box.min().z() && z <= box.max().z();
+        setSlice(list[i].second, z, isWithin ? cells.slice(z - box.min().z()) : Slice());
+      }
     });
     grown_ = labels_.deepCopy();
     auto grown = grown_->getAccessor();

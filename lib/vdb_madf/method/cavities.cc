@@ -74,16 +74,13 @@ class CavityFinder {
     constexpr size_t kChunk = 1024;
     std::vector<std::vector<Piece>> chunks((object_.leafCount() + kChunk - 1) / kChunk);
     firstPiece_.assign(object_.leafCount() + 1, 0);
-    detail::parallelFor(chunks.size(), 1, interrupter, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) {
-        const size_t stop = std::min(object_.leafCount(), (i + 1) * kChunk);
-        for (size_t leaf = i * kChunk; leaf < stop; ++leaf)
-          detail::forEachPiece(background(leaf), [&](const Mask& piece) {
-            if (detail::countVoxels(piece) < fillHoles_ &&
-                !reachesFace(object_.origin(leaf), piece))
-              chunks[i].push_back({uint32_t(leaf), piece});
-          });
-      }
+    detail::parallelForEach(chunks.size(), 1, interrupter, [&](size_t i) {
+      const size_t stop = std::min(object_.leafCount(), (i + 1) * kChunk);
+      for (size_t leaf = i * kChunk; leaf < stop; ++leaf)
+        detail::forEachPiece(background(leaf), [&](const Mask& piece) {
+          if (detail::countVoxels(piece) < fillHoles_ && !reachesFace(object_.origin(leaf), piece))
+            chunks[i].push_back({uint32_t(leaf), piece});
+        });
     });
     size_t count = 0;
     for (const std::vector<Piece>& chunk : chunks) count += chunk.size();

@@ -42,10 +42,8 @@ PowerMap powerMap(const LeafIndex& index, SquaredDistance distance, Interrupter*
   map.weights = distance.weights;
   map.site = VoxelArray<VoxelId>(size_t(index.voxelCount()));
   map.passage = std::move(distance.passage);
-  detail::parallelFor(map.power.size(), size_t(1) << 16, interrupter,
-                      [&](size_t begin, size_t end) {
-                        for (size_t i = begin; i < end; ++i) map.power[i] = -map.power[i];
-                      });
+  detail::parallelForEach(map.power.size(), size_t(1) << 16, interrupter,
+                          [&](size_t i) { map.power[i] = -map.power[i]; });
   detail::sweepPower(index, distance.largest, map, interrupter);
   return map;
 }

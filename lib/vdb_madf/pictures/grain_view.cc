@@ -180,9 +180,8 @@ class Renderer {
 
 template <typename F>
 void forEachRow(const detail::Camera& camera, Interrupter* interrupter, const F& work) {
-  detail::parallelFor(size_t(camera.height), kRowGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t y = begin; y < end; ++y) work(int(y));
-  });
+  detail::parallelForEach(size_t(camera.height), kRowGrain, interrupter,
+                          [&](size_t y) { work(int(y)); });
 }
 
 /// Sorts the leaves from `first` on.

@@ -38,9 +38,8 @@ void addParticle(MaskBlocks& blocks, size_t block, const Particle& particle,
 MaskTree::Ptr uniteParticles(const Coord& voxels, const Lattice& lattice,
                              const std::vector<Particle>& particles, Interrupter* interrupter) {
   MaskBlocks blocks(voxels);
-  detail::parallelFor(blocks.count(), 1, interrupter, [&](size_t begin, size_t end) {
-    for (size_t block = begin; block < end; ++block)
-      for (const Particle& particle : particles) addParticle(blocks, block, particle, lattice);
+  detail::parallelForEach(blocks.count(), 1, interrupter, [&](size_t block) {
+    for (const Particle& particle : particles) addParticle(blocks, block, particle, lattice);
   });
   return blocks.takeTree();
 }

@@ -200,14 +200,12 @@ std::vector<uint16_t> grayValues(const Sample& sample, const ScanOptions& option
   const std::vector<CoordBBox> blocks = grayBlocks(box);
   const Coord dim = box.dim();
   std::vector<uint16_t> values(size_t(dim.x()) * dim.y() * dim.z());
-  detail::parallelFor(blocks.size(), 1, interrupter, [&](size_t begin, size_t end) {
-    for (size_t block = begin; block < end; ++block) {
-      const FloatBox field = scan.in(blocks[block]);
-      size_t i = 0;
-      for (auto p = field.box.begin(); p; ++p, ++i) {
-        const Coord at = *p - box.min();
-        values[(size_t(at.z()) * dim.y() + at.y()) * dim.x() + at.x()] = grayOf(field.values[i]);
-      }
+  detail::parallelForEach(blocks.size(), 1, interrupter, [&](size_t block) {
+    const FloatBox field = scan.in(blocks[block]);
+    size_t i = 0;
+    for (auto p = field.box.begin(); p; ++p, ++i) {
+      const Coord at = *p - box.min();
+      values[(size_t(at.z()) * dim.y() + at.y()) * dim.x() + at.x()] = grayOf(field.values[i]);
     }
   });
   return values;

@@ -97,9 +97,8 @@ class SurfaceBuilder {
   }
 
   MaskTree::Ptr build(Interrupter* interrupter) {
-    detail::parallelFor(blocks_.count(), 1, interrupter, [&](size_t begin, size_t end) {
-      for (size_t block = begin; block < end; ++block) fillBlock(block);
-    });
+    detail::parallelForEach(blocks_.count(), 1, interrupter,
+                            [&](size_t block) { fillBlock(block); });
     return blocks_.takeTree();
   }
 

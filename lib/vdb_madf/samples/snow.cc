@@ -158,9 +158,8 @@ class SnowBuilder {
 
   MaskTree::Ptr build() {
     const uint32_t cut = findCut();
-    detail::parallelFor(blocks_.count(), 1, interrupter_, [&](size_t begin, size_t end) {
-      for (size_t block = begin; block < end; ++block) fillBlock(block, cut);
-    });
+    detail::parallelForEach(blocks_.count(), 1, interrupter_,
+                            [&](size_t block) { fillBlock(block, cut); });
     return blocks_.takeTree();
   }
 

@@ -41,9 +41,8 @@ class FilteredImage : public ImageReader {
   template <typename F>
   void forEachRow(int first, int count, const F& f) const {
     const auto ny = size_t(info_.size.y);
-    detail::parallelFor(ny * size_t(count), kRowsPerChunk, nullptr, [&](size_t begin, size_t end) {
-      for (size_t row = begin; row < end; ++row) f(int(row % ny), first + int(row / ny), row);
-    });
+    detail::parallelForEach(ny * size_t(count), kRowsPerChunk, nullptr,
+                            [&](size_t row) { f(int(row % ny), first + int(row / ny), row); });
   }
 
   std::unique_ptr<ImageReader> image_;

@@ -160,13 +160,10 @@ class Segmenter {
   GrainLabels labelGrains(VoxelArray<uint32_t> manifold, const Merging& merging) {
     GrainLabels grains = detail::grainsOf(result_.graph, merging);
     grains.label = std::move(manifold);
-    detail::parallelFor(grains.label.size(), size_t(1) << 16, &stages_,
-                        [&](size_t begin, size_t end) {
-                          for (size_t i = begin; i < end; ++i) {
-                            const uint32_t node = (grains.label[i] & ~Flow::kOwnCell) - 1;
-                            grains.label[i] = uint32_t(merging.grainOfNode[node]);
-                          }
-                        });
+    detail::parallelForEach(grains.label.size(), size_t(1) << 16, &stages_, [&](size_t i) {
+      const uint32_t node = (grains.label[i] & ~Flow::kOwnCell) - 1;
+      grains.label[i] = uint32_t(merging.grainOfNode[node]);
+    });
     for (const VoxelId id : cavities_) grains.label[index_.rank(id)] = 0;
     return grains;
   }

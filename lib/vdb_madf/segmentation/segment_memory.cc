@@ -56,19 +56,16 @@ ObjectSize objectSize(const MaskGrid& object) {
   size.leaves += (size.voxels - int64_t(tree.activeLeafVoxelCount())) / 512;
   const openvdb::tree::LeafManager<const MaskTree> leaves(tree);
   std::atomic<int64_t> thin{0}, pieces{0}, inside{0};
-  detail::parallelFor(leaves.leafCount(), detail::kLeafGrain, nullptr,
-                      [&](size_t begin, size_t end) {
-                        for (size_t i = begin; i < end; ++i) {
-                          const LeafIndex::Mask mask = detail::maskOf(leaves.leaf(i));
-                          const int64_t ofLeaf = detail::countThin(mask);
-                          if (ofLeaf == 0) continue;
-                          thin += ofLeaf;
-                          detail::forEachPiece(mask, [&](const LeafIndex::Mask& piece) {
-                            ++pieces;
-                            inside += !detail::meet(piece, kAtFaces);
-                          });
-                        }
-                      });
+  detail::parallelForEach(leaves.leafCount(), detail::kLeafGrain, nullptr, [&](size_t i) {
+    const LeafIndex::Mask mask = detail::maskOf(leaves.leaf(i));
+    const int64_t ofLeaf = detail::countThin(mask);
+    if (ofLeaf == 0) return;
+    thin += ofLeaf;
+    detail::forEachPiece(mask, [&](const LeafIndex::Mask& piece) {
+      ++pieces;
+      inside += !detail::meet(piece, kAtFaces);
+    });
+  });
   size.thin = thin;
   size.pieces = pieces;
   size.specks = inside * 512 / 216;

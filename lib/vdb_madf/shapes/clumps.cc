@@ -248,26 +248,22 @@ std::vector<Clump> weightedClumps(const Int32Grid& labels, const Int32Grid& ball
   std::vector<Clump> result(blocks.labels().size());
   detail::PerThread<detail::BallRowsCache> rows(weights);
   detail::WorkPart choosing(interrupter, 0, options.apart ? 80 : 100);
-  detail::parallelFor(result.size(), 1, &choosing, [&](size_t begin, size_t end) {
-    for (size_t g = begin; g < end; ++g) {
-      Clump& clump = result[g];
-      clump.label = blocks.labels()[g];
-      clump.voxels = blocks.voxelCounts()[g];
-      if (options.apart) endAtOtherGrains(*tree, bounds, clump.label, weights, grains.balls[g]);
-      BitBox uncovered = voxelsOfGrain(*tree, clump.label, grains.boxes[g], weights);
-      chooseBalls(grains.balls[g], options, rows.local(), uncovered, clump);
-      if (!options.apart) measure(uncovered, weights, clump);
-    }
+  detail::parallelForEach(result.size(), 1, &choosing, [&](size_t g) {
+    Clump& clump = result[g];
+    clump.label = blocks.labels()[g];
+    clump.voxels = blocks.voxelCounts()[g];
+    if (options.apart) endAtOtherGrains(*tree, bounds, clump.label, weights, grains.balls[g]);
+    BitBox uncovered = voxelsOfGrain(*tree, clump.label, grains.boxes[g], weights);
+    chooseBalls(grains.balls[g], options, rows.local(), uncovered, clump);
+    if (!options.apart) measure(uncovered, weights, clump);
   });
   if (!options.apart) return result;
   detail::WorkPart shortening(interrupter, 80, 90), measuring(interrupter, 90, 100);
   detail::keepBallsApart(result, weights, &shortening);
-  detail::parallelFor(result.size(), 1, &measuring, [&](size_t begin, size_t end) {
-    for (size_t g = begin; g < end; ++g) {
-      BitBox uncovered = voxelsOfGrain(*tree, result[g].label, grains.boxes[g], weights);
-      for (const Clump::Ball& ball : result[g].balls) cover(uncovered, ball);
-      measure(uncovered, weights, result[g]);
-    }
+  detail::parallelForEach(result.size(), 1, &measuring, [&](size_t g) {
+    BitBox uncovered = voxelsOfGrain(*tree, result[g].label, grains.boxes[g], weights);
+    for (const Clump::Ball& ball : result[g].balls) cover(uncovered, ball);
+    measure(uncovered, weights, result[g]);
   });
   return result;
 }

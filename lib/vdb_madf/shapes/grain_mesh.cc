@@ -119,19 +119,17 @@ uint64_t countTriangles(const Int32Grid& labels, Interrupter* interrupter) {
 
 std::vector<double> meshVolumes(const GrainMesh& mesh) {
   std::vector<double> volumes(mesh.labels.size());
-  detail::parallelFor(volumes.size(), 16, nullptr, [&](size_t begin, size_t end) {
-    for (size_t g = begin; g < end; ++g) {
-      const Vec3d reference(mesh.points[mesh.firstPoint[g]]);  // near: keeps the sum exact enough
-      double sixfold = 0;
-      for (uint32_t t = mesh.firstTriangle[g]; t < mesh.firstTriangle[g + 1]; ++t) {
-        const auto& triangle = mesh.triangles[t];
-        const Vec3d a = Vec3d(mesh.points[triangle[0]]) - reference,
-                    b = Vec3d(mesh.points[triangle[1]]) - reference,
-                    c = Vec3d(mesh.points[triangle[2]]) - reference;
-        sixfold += a.dot(b.cross(c));
-      }
-      volumes[g] = sixfold / 6;
+  detail::parallelForEach(volumes.size(), 16, nullptr, [&](size_t g) {
+    const Vec3d reference(mesh.points[mesh.firstPoint[g]]);  // near: keeps the sum exact enough
+    double sixfold = 0;
+    for (uint32_t t = mesh.firstTriangle[g]; t < mesh.firstTriangle[g + 1]; ++t) {
+      const auto& triangle = mesh.triangles[t];
+      const Vec3d a = Vec3d(mesh.points[triangle[0]]) - reference,
+                  b = Vec3d(mesh.points[triangle[1]]) - reference,
+                  c = Vec3d(mesh.points[triangle[2]]) - reference;
+      sixfold += a.dot(b.cross(c));
     }
+    volumes[g] = sixfold / 6;
   });
   return volumes;
 }

@@ -68,15 +68,13 @@ FloatGrid::Ptr levelSet(const GrainMesh& mesh, size_t grain, const Int32Grid& la
   const detail::MeshDistance distance(mesh, grain, options.halfWidth);
   const std::vector<CoordBBox>& blocks = distance.blocks();
   std::vector<std::vector<std::unique_ptr<FloatLeaf>>> made(blocks.size());
-  detail::parallelFor(blocks.size(), 1, interrupter, [&](size_t begin, size_t end) {
-    for (size_t block = begin; block < end; ++block) {
-      const std::vector<float> squares = distance.squaredDistances(block);
-      detail::forEachLeafOrigin(blocks[block], [&](const Coord& origin) {
-        auto leaf = makeLeaf(origin, blocks[block], squares, leaves.probeConstLeaf(origin),
-                             mesh.labels[grain], options.halfWidth, edge);
-        if (leaf) made[block].push_back(std::move(leaf));
-      });
-    }
+  detail::parallelForEach(blocks.size(), 1, interrupter, [&](size_t block) {
+    const std::vector<float> squares = distance.squaredDistances(block);
+    detail::forEachLeafOrigin(blocks[block], [&](const Coord& origin) {
+      auto leaf = makeLeaf(origin, blocks[block], squares, leaves.probeConstLeaf(origin),
+                           mesh.labels[grain], options.halfWidth, edge);
+      if (leaf) made[block].push_back(std::move(leaf));
+    });
   });
   const auto grid = FloatGrid::create(options.halfWidth * edge);
   for (auto& block : made)
@@ -94,14 +92,11 @@ Int32Grid::Ptr asOneLabel(const Int32Grid& labels) {
   copyProvenance(labels, *one);
   std::vector<Int32Tree::LeafNodeType*> leaves;
   one->tree().getNodes(leaves);
-  detail::parallelFor(leaves.size(), detail::kLightLeafGrain, nullptr,
-                      [&](size_t begin, size_t end) {
-                        for (size_t n = begin; n < end; ++n) {
-                          int32_t* values = leaves[n]->buffer().data();
-                          for (openvdb::Index i = 0; i < Int32Tree::LeafNodeType::SIZE; ++i)
-                            values[i] = detail::labelAt(*leaves[n], values, i) ? 1 : 0;
-                        }
-                      });
+  detail::parallelForEach(leaves.size(), detail::kLightLeafGrain, nullptr, [&](size_t n) {
+    int32_t* values = leaves[n]->buffer().data();
+    for (openvdb::Index i = 0; i < Int32Tree::LeafNodeType::SIZE; ++i)
+      values[i] = detail::labelAt(*leaves[n], values, i) ? 1 : 0;
+  });
   return one;
 }
 

@@ -92,13 +92,11 @@ class PlaceSplitter {
 
 std::vector<Vec3f> worldPoints(const GrainMesh& mesh, const openvdb::math::Transform& transform) {
   std::vector<Vec3f> points(mesh.points.size());
-  detail::parallelFor(points.size(), kPointGrain, nullptr, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      points[i] = Vec3f(transform.indexToWorld(Vec3d(mesh.points[i])));
+  detail::parallelForEach(points.size(), kPointGrain, nullptr, [&](size_t i) {
+    points[i] = Vec3f(transform.indexToWorld(Vec3d(mesh.points[i])));
   });
-  detail::parallelFor(mesh.labels.size(), 1, nullptr, [&](size_t begin, size_t end) {
-    for (size_t grain = begin; grain < end; ++grain)
-      PlaceSplitter(mesh, transform, grain, points).split();
+  detail::parallelForEach(mesh.labels.size(), 1, nullptr, [&](size_t grain) {
+    PlaceSplitter(mesh, transform, grain, points).split();
   });
   return points;
 }

@@ -53,9 +53,7 @@ size_t blockCount(size_t size) {
 /// f(block) in parallel.
 template <typename F>
 void forEachBlock(size_t size, const F& f) {
-  detail::parallelFor(blockCount(size), 1, nullptr, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) f(i);
-  });
+  detail::parallelForEach(blockCount(size), 1, nullptr, [&](size_t i) { f(i); });
 }
 
 /// What killed programs were writing: see OutputFile.

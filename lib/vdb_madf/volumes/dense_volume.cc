@@ -49,9 +49,8 @@ class Places {
   template <typename F>
   void forEachRow(int z, int count, const F& f) const {
     const size_t ny = size_t(size_.y()), nx = size_t(size_.x());
-    detail::parallelFor(ny * size_t(count), kRowsPerChunk, nullptr, [&](size_t begin, size_t end) {
-      for (size_t row = begin; row < end; ++row)
-        f(slice(z + int(row / ny)) + int64_t(row % ny) * strides_[1], row * nx);
+    detail::parallelForEach(ny * size_t(count), kRowsPerChunk, nullptr, [&](size_t row) {
+      f(slice(z + int(row / ny)) + int64_t(row % ny) * strides_[1], row * nx);
     });
   }
   int64_t alongX() const { return strides_[0]; }

@@ -48,4 +48,12 @@ class WorkPart : public Interrupter {
 void parallelFor(size_t count, size_t grain, Interrupter* interrupter,
                  const std::function<void(size_t begin, size_t end)>& body);
 
+/// Runs f(i) for all i of [0, count), as parallelFor() does.
+template <typename F>
+void parallelForEach(size_t count, size_t grain, Interrupter* interrupter, const F& f) {
+  parallelFor(count, grain, interrupter, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) f(i);
+  });
+}
+
 }  // namespace vdb_madf::detail

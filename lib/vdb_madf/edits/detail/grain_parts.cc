@@ -55,12 +55,10 @@ std::vector<LeafVoxels> voxelsWith(const Int32Grid& labels, int32_t grain,
   std::vector<const Leaf*> leaves;
   tree->getNodes(leaves);
   std::vector<Mask> masks(leaves.size());
-  parallelFor(leaves.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) {
-      masks[n] = Mask{};
-      for (auto voxel = leaves[n]->cbeginValueOn(); voxel; ++voxel)
-        if (*voxel == grain) masks[n][voxel.pos() >> 6] |= uint64_t(1) << (voxel.pos() & 63);
-    }
+  parallelForEach(leaves.size(), kLeafGrain, interrupter, [&](size_t n) {
+    masks[n] = Mask{};
+    for (auto voxel = leaves[n]->cbeginValueOn(); voxel; ++voxel)
+      if (*voxel == grain) masks[n][voxel.pos() >> 6] |= uint64_t(1) << (voxel.pos() & 63);
   });
   std::vector<LeafVoxels> voxels;
   for (size_t n = 0; n < leaves.size(); ++n)
@@ -176,14 +174,12 @@ std::vector<GrainPart> GrainParts::divide(const Int32Grid& labels, int32_t grain
 
 std::vector<LeafVoxels> GrainParts::voxelsOf(int32_t grain, Interrupter* interrupter) const {
   std::vector<Mask> masks(index_.leafCount());
-  parallelFor(masks.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t leaf = begin; leaf < end; ++leaf) {
-      masks[leaf] = Mask{};
-      forEachVoxel(index_, leaf, leaf + 1, [&](VoxelId id, size_t rank) {
-        if (int32_t(grains_.label[rank]) == grain)
-          masks[leaf][wordOf(id)] |= uint64_t(1) << bitOf(id);
-      });
-    }
+  parallelForEach(masks.size(), kLeafGrain, interrupter, [&](size_t leaf) {
+    masks[leaf] = Mask{};
+    forEachVoxel(index_, leaf, leaf + 1, [&](VoxelId id, size_t rank) {
+      if (int32_t(grains_.label[rank]) == grain)
+        masks[leaf][wordOf(id)] |= uint64_t(1) << bitOf(id);
+    });
   });
   std::vector<LeafVoxels> voxels;
   for (size_t leaf = 0; leaf < masks.size(); ++leaf)

@@ -70,11 +70,10 @@ std::vector<LabelCount> countLabels(const Int32Tree& labels, Interrupter* interr
   labels.getNodes(leaves);
   std::vector<std::vector<LabelCount>> parts((leaves.size() + kLightLeafGrain - 1) /
                                              kLightLeafGrain);
-  parallelFor(parts.size(), 1, interrupter, [&](size_t begin, size_t end) {
-    for (size_t part = begin; part < end; ++part)
-      for (size_t n = part * kLightLeafGrain;
-           n < std::min(leaves.size(), (part + 1) * kLightLeafGrain); ++n)
-        countLeaf(*leaves[n], parts[part]);
+  parallelForEach(parts.size(), 1, interrupter, [&](size_t part) {
+    for (size_t n = part * kLightLeafGrain;
+         n < std::min(leaves.size(), (part + 1) * kLightLeafGrain); ++n)
+      countLeaf(*leaves[n], parts[part]);
   });
   std::vector<LabelCount> counts;
   for (const auto& part : parts) counts.insert(counts.end(), part.begin(), part.end());

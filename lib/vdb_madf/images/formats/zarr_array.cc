@@ -209,17 +209,15 @@ void ZarrArray::read(int first, int count, char* samples) const {
     for (size_t i = 0; i < all; ++i) readShard(numberOf(i), first, count, samples);
     return;
   }
-  parallelFor(all, chunksAtATime(all), nullptr, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const ChunkNumber chunk = numberOf(i);
-      const std::string path = chunkPath(chunk);
-      if (!isFileThere(path)) {
-        readChunk(chunk, std::nullopt, first, count, samples);
-        continue;
-      }
-      const InputFile file(name_, path);
-      readChunk(chunk, StoredPiece{&file, 0, file.size()}, first, count, samples);
+  parallelForEach(all, chunksAtATime(all), nullptr, [&](size_t i) {
+    const ChunkNumber chunk = numberOf(i);
+    const std::string path = chunkPath(chunk);
+    if (!isFileThere(path)) {
+      readChunk(chunk, std::nullopt, first, count, samples);
+      return;
     }
+    const InputFile file(name_, path);
+    readChunk(chunk, StoredPiece{&file, 0, file.size()}, first, count, samples);
   });
 }
 

@@ -52,9 +52,8 @@ Int32Grid::Ptr relabelled(const Int32Grid& labels, const Pairs& to, Interrupter*
   std::vector<const Leaf*> leaves;
   labels.tree().getNodes(leaves);
   std::vector<std::unique_ptr<Leaf>> changed(leaves.size());
-  parallelFor(leaves.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) changed[n] = relabelled(*leaves[n], to);
-  });
+  parallelForEach(leaves.size(), kLeafGrain, interrupter,
+                  [&](size_t n) { changed[n] = relabelled(*leaves[n], to); });
   for (std::unique_ptr<Leaf>& leaf : changed)
     if (leaf) result->tree().addLeaf(leaf.release());
   return result;

@@ -50,19 +50,17 @@ void ConnectedComponents::findPieces(const LeafIndex& index, const LabelMasks* l
     std::vector<uint32_t> counts;  // per leaf
   };
   std::vector<Chunk> chunks((index.leafCount() + kChunk - 1) / kChunk);
-  parallelFor(chunks.size(), 1, interrupter, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      Pieces& pieces = chunks[i].pieces;
-      const size_t stop = std::min(index.leafCount(), (i + 1) * kChunk);
-      for (size_t leaf = i * kChunk; leaf < stop; ++leaf) {
-        const size_t before = pieces.size();
-        if (labels)
-          for (auto entry = labels->begin(leaf); entry != labels->end(leaf); ++entry)
-            addPieces(entry->mask, entry->label, pieces);
-        else
-          addPieces(index.mask(leaf), 1, pieces);
-        chunks[i].counts.push_back(uint32_t(pieces.size() - before));
-      }
+  parallelForEach(chunks.size(), 1, interrupter, [&](size_t i) {
+    Pieces& pieces = chunks[i].pieces;
+    const size_t stop = std::min(index.leafCount(), (i + 1) * kChunk);
+    for (size_t leaf = i * kChunk; leaf < stop; ++leaf) {
+      const size_t before = pieces.size();
+      if (labels)
+        for (auto entry = labels->begin(leaf); entry != labels->end(leaf); ++entry)
+          addPieces(entry->mask, entry->label, pieces);
+      else
+        addPieces(index.mask(leaf), 1, pieces);
+      chunks[i].counts.push_back(uint32_t(pieces.size() - before));
     }
   });
   firstPiece_.reserve(index.leafCount() + 1);
@@ -70,12 +68,10 @@ void ConnectedComponents::findPieces(const LeafIndex& index, const LabelMasks* l
   for (const Chunk& chunk : chunks)
     for (const uint32_t pieces : chunk.counts) firstPiece_.push_back(firstPiece_.back() + pieces);
   pieces_.resize(firstPiece_.back());
-  parallelFor(chunks.size(), 1, interrupter, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      std::copy(chunks[i].pieces.begin(), chunks[i].pieces.end(),
-                pieces_.begin() + firstPiece_[i * kChunk]);
-      chunks[i] = {};
-    }
+  parallelForEach(chunks.size(), 1, interrupter, [&](size_t i) {
+    std::copy(chunks[i].pieces.begin(), chunks[i].pieces.end(),
+              pieces_.begin() + firstPiece_[i * kChunk]);
+    chunks[i] = {};
   });
 }
 
@@ -98,9 +94,8 @@ void ConnectedComponents::joinPieces(const LeafIndex& index, DisjointSets& sets,
             joinFaces(uint32_t(leaf), next, axis, sets);
         }
     };
-    parallelFor((leaves + width - 1) / width, 1, interrupter, [&](size_t begin, size_t end) {
-      for (size_t group = begin; group < end; ++group) join(group);
-    });
+    parallelForEach((leaves + width - 1) / width, 1, interrupter,
+                    [&](size_t group) { join(group); });
   }
 }
 

@@ -40,16 +40,14 @@ void addEntries(const LeafIndex::Mask& mask, size_t count, const uint32_t* value
 LabelMasks::LabelMasks(const LeafIndex& index, const VoxelArray<uint32_t>& labels,
                        Interrupter* interrupter)
     : chunks_((index.leafCount() + kChunk - 1) / kChunk), lists_(index.leafCount()) {
-  parallelFor(chunks_.size(), 1, interrupter, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const size_t stop = std::min(index.leafCount(), (i + 1) * kChunk);
-      for (size_t leaf = i * kChunk; leaf < stop; ++leaf) {
-        const uint32_t first = uint32_t(chunks_[i].size());
-        addEntries(index.mask(leaf), index.leafVoxels(leaf), labels.data() + index.firstRank(leaf),
-                   chunks_[i]);
-        const uint32_t count = uint32_t(chunks_[i].size()) - first;
-        lists_[leaf] = {first, count, count};
-      }
+  parallelForEach(chunks_.size(), 1, interrupter, [&](size_t i) {
+    const size_t stop = std::min(index.leafCount(), (i + 1) * kChunk);
+    for (size_t leaf = i * kChunk; leaf < stop; ++leaf) {
+      const uint32_t first = uint32_t(chunks_[i].size());
+      addEntries(index.mask(leaf), index.leafVoxels(leaf), labels.data() + index.firstRank(leaf),
+                 chunks_[i]);
+      const uint32_t count = uint32_t(chunks_[i].size()) - first;
+      lists_[leaf] = {first, count, count};
     }
   });
 }

@@ -134,13 +134,11 @@ FollowedGrains Following::result() const {
 void Following::expectAll(Interrupter* interrupter) {
   std::vector<Expected> next(before_.size());
   std::vector<char> isNew(before_.size(), 0);
-  parallelFor(before_.size(), kGrainsPerTask, interrupter, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) {
-      const auto& around = before_.around[n];
-      isNew[n] = changed_[n] || std::any_of(around.begin(), around.end(),
-                                            [&](size_t other) { return changed_[other]; });
-      if (isNew[n]) next[n] = expect(n);
-    }
+  parallelForEach(before_.size(), kGrainsPerTask, interrupter, [&](size_t n) {
+    const auto& around = before_.around[n];
+    isNew[n] = changed_[n] || std::any_of(around.begin(), around.end(),
+                                          [&](size_t other) { return changed_[other]; });
+    if (isNew[n]) next[n] = expect(n);
   });
   for (size_t n = 0; n < before_.size(); ++n)
     if (isNew[n]) expected_[n] = std::move(next[n]);

@@ -69,9 +69,8 @@ Int32Grid::Ptr movedLabels(const Int32Grid& labels, const Coord& shift, const Co
   tree->getNodes(leaves);
   const std::vector<Coord> origins = targets(leaves, shift);
   std::vector<std::unique_ptr<Leaf>> moved(origins.size());
-  parallelFor(origins.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) moved[n] = gathered(*tree, origins[n], shift, within);
-  });
+  parallelForEach(origins.size(), kLeafGrain, interrupter,
+                  [&](size_t n) { moved[n] = gathered(*tree, origins[n], shift, within); });
   const auto result = Int32Grid::create(0);
   for (std::unique_ptr<Leaf>& leaf : moved)
     if (leaf) result->tree().addLeaf(leaf.release());

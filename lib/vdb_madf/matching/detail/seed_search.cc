@@ -110,9 +110,8 @@ std::optional<Seed> SeedSearch::bestOf(size_t n, const std::vector<size_t>& plac
   std::optional<Seed> best;
   for (size_t first = 0; first < places.size(); first += kBlock) {
     std::vector<std::optional<Seed>> seeds(std::min(kBlock, places.size() - first));
-    parallelFor(seeds.size(), 16, interrupter, [&](size_t begin, size_t end) {
-      for (size_t k = begin; k < end; ++k) seeds[k] = at(n, corners, far, places[first + k]);
-    });
+    parallelForEach(seeds.size(), 16, interrupter,
+                    [&](size_t k) { seeds[k] = at(n, corners, far, places[first + k]); });
     for (const auto& seed : seeds)
       if (seed && (!best || seed->pairs.size() > best->pairs.size())) best = seed;
     // Chance does not find as many; fewer may be the right ones, where a scan ends.

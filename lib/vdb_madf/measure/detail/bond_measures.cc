@@ -100,9 +100,8 @@ BondMeasures measureBond(const BondSums& from, const VoxelShape& voxel) {
 std::vector<BondMeasures> bondMeasures(const std::vector<BondSums>& sums, const VoxelShape& voxel,
                                        Interrupter* interrupter) {
   std::vector<BondMeasures> bonds(sums.size());
-  parallelFor(bonds.size(), kBondGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) bonds[i] = measureBond(sums[i], voxel);
-  });
+  parallelForEach(bonds.size(), kBondGrain, interrupter,
+                  [&](size_t i) { bonds[i] = measureBond(sums[i], voxel); });
   return bonds;
 }
 

@@ -134,18 +134,16 @@ void GrainShapes::add(const LabelLeaves& slab, const std::function<bool(int32_t 
   const PartsOfGrains parts(slab);
   std::vector<std::vector<Row>> rowsOfOpen(parts.grains());
   std::vector<GrainShape> shapes(parts.grains());
-  parallelFor(parts.grains(), kTogether, interrupter, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      std::vector<Row> rows;
-      if (const auto open = open_.find(parts.label(i)); open != open_.end()) rows = open->second;
-      for (const auto* part = parts.begin(i); part != parts.end(i); ++part)
-        addRows(*part->voxels, slab.index().origin(part->leaf), rows);
-      joinRows(rows);
-      if (isComplete(parts.label(i)))
-        shapes[i] = shapeOf(rows, voxel_);
-      else
-        rowsOfOpen[i] = std::move(rows);
-    }
+  parallelForEach(parts.grains(), kTogether, interrupter, [&](size_t i) {
+    std::vector<Row> rows;
+    if (const auto open = open_.find(parts.label(i)); open != open_.end()) rows = open->second;
+    for (const auto* part = parts.begin(i); part != parts.end(i); ++part)
+      addRows(*part->voxels, slab.index().origin(part->leaf), rows);
+    joinRows(rows);
+    if (isComplete(parts.label(i)))
+      shapes[i] = shapeOf(rows, voxel_);
+    else
+      rowsOfOpen[i] = std::move(rows);
   });
   for (size_t i = 0; i < parts.grains(); ++i) {
     const int32_t label = parts.label(i);

@@ -203,9 +203,8 @@ std::vector<BondSums> LabelSums::takeBonds(
     }
     bond = bonds_.erase(bond);
   }
-  parallelFor(taken.size(), kSummedBondGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      std::sort(taken[i].faces.begin(), taken[i].faces.end(), faceOrder);
+  parallelForEach(taken.size(), kSummedBondGrain, interrupter, [&](size_t i) {
+    std::sort(taken[i].faces.begin(), taken[i].faces.end(), faceOrder);
   });
   return taken;
 }

@@ -209,9 +209,8 @@ void VoronoiCells::count(int begin, int end, Part& part) const {
 std::unordered_map<int32_t, VoronoiCells::Cell> VoronoiCells::cells(
     Interrupter* interrupter) const {
   std::vector<Part> parts(size_t(dim_.z() + kSlicesTogether - 1) / kSlicesTogether);
-  parallelFor(parts.size(), 1, interrupter, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      count(int(i) * kSlicesTogether, std::min(int(i + 1) * kSlicesTogether, dim_.z()), parts[i]);
+  parallelForEach(parts.size(), 1, interrupter, [&](size_t i) {
+    count(int(i) * kSlicesTogether, std::min(int(i + 1) * kSlicesTogether, dim_.z()), parts[i]);
   });
   Part whole;
   for (Part& part : parts) {

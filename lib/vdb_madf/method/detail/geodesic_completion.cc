@@ -97,18 +97,16 @@ bool GeodesicCompletion::round(Interrupter* interrupter) {
   const std::vector<uint32_t> words = takeFrontWords();
   constexpr size_t kWordsPerChunk = 256;
   changes_.assign((words.size() + kWordsPerChunk - 1) / kWordsPerChunk, {});
-  parallelFor(changes_.size(), 1, interrupter, [&](size_t begin, size_t end) {
-    for (size_t chunk = begin; chunk < end; ++chunk) {
-      const size_t last = std::min(words.size(), (chunk + 1) * kWordsPerChunk);
-      for (size_t w = chunk * kWordsPerChunk; w < last; ++w) {
-        uint64_t& word = front_.word(words[w]);
-        forEachBit(word, [&](int bit) {
-          const VoxelId p = VoxelId(words[w]) * 64 + VoxelId(bit);
-          const State state = best(p);
-          if (state.site != map_.site[index_.rank(p)]) changes_[chunk].push_back({p, state});
-        });
-        word = 0;
-      }
+  parallelForEach(changes_.size(), 1, interrupter, [&](size_t chunk) {
+    const size_t last = std::min(words.size(), (chunk + 1) * kWordsPerChunk);
+    for (size_t w = chunk * kWordsPerChunk; w < last; ++w) {
+      uint64_t& word = front_.word(words[w]);
+      forEachBit(word, [&](int bit) {
+        const VoxelId p = VoxelId(words[w]) * 64 + VoxelId(bit);
+        const State state = best(p);
+        if (state.site != map_.site[index_.rank(p)]) changes_[chunk].push_back({p, state});
+      });
+      word = 0;
     }
   });
   size_t changed = 0;
@@ -116,18 +114,16 @@ bool GeodesicCompletion::round(Interrupter* interrupter) {
   // To look through all words then takes no longer.
   const bool isMuch = changed > front_.wordCount() / 64;
   std::vector<std::vector<uint32_t>> touched(isMuch ? 0 : changes_.size());
-  parallelFor(changes_.size(), 1, interrupter, [&](size_t begin, size_t end) {
-    for (size_t chunk = begin; chunk < end; ++chunk) {
-      for (const Change& change : changes_[chunk]) {
-        const size_t rank = index_.rank(change.voxel);
-        map_.site[rank] = change.state.site;
-        map_.power[rank] = change.state.power;
-        forEachNeighbor(index_, change.voxel, [&](VoxelId q, int, int) {
-          if (!uncovered_.contains(q)) return;
-          front_.insertAtomic(q);
-          if (!isMuch) touched[chunk].push_back(uint32_t(q >> 6));
-        });
-      }
+  parallelForEach(changes_.size(), 1, interrupter, [&](size_t chunk) {
+    for (const Change& change : changes_[chunk]) {
+      const size_t rank = index_.rank(change.voxel);
+      map_.site[rank] = change.state.site;
+      map_.power[rank] = change.state.power;
+      forEachNeighbor(index_, change.voxel, [&](VoxelId q, int, int) {
+        if (!uncovered_.contains(q)) return;
+        front_.insertAtomic(q);
+        if (!isMuch) touched[chunk].push_back(uint32_t(q >> 6));
+      });
     }
   });
   std::vector<uint32_t> ahead;

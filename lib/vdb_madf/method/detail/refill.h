@@ -74,9 +74,8 @@ std::vector<uint32_t> refill(size_t count, const Around& around, const Give& giv
   std::iota(front.begin(), front.end(), 0);
   while (!front.empty()) {
     found.resize(front.size());
-    parallelFor(front.size(), kVoxelGrain, interrupter, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) found[i] = mostFrequent(around(front[i]));
-    });
+    parallelForEach(front.size(), kVoxelGrain, interrupter,
+                    [&](size_t i) { found[i] = mostFrequent(around(front[i])); });
     next.clear();
     for (size_t i = 0; i < front.size(); ++i) {
       if (found[i] == 0) continue;

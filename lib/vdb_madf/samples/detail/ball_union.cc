@@ -182,14 +182,12 @@ void BallUnion::add(const std::vector<Ball>& balls, Interrupter* interrupter) {
 
   // A union and its count do not depend on the order of the balls.
   std::atomic<int64_t> added{0};
-  parallelFor(blocks_.count(), 1, interrupter, [&](size_t begin, size_t end) {
-    for (size_t block = begin; block < end; ++block) {
-      if (ballsOf[block].empty()) continue;
-      int64_t here = 0;
-      for (const uint32_t i : ballsOf[block])
-        here += addTo(blocks_.node(block), blocks_.box(block), balls[i], lattice_, tiles_);
-      added += here;
-    }
+  parallelForEach(blocks_.count(), 1, interrupter, [&](size_t block) {
+    if (ballsOf[block].empty()) return;
+    int64_t here = 0;
+    for (const uint32_t i : ballsOf[block])
+      here += addTo(blocks_.node(block), blocks_.box(block), balls[i], lattice_, tiles_);
+    added += here;
   });
   voxelCount_ += added;
 }

@@ -12,18 +12,16 @@ void numberOwners(Int32Tree& labels, size_t count, Interrupter* interrupter) {
   std::vector<Int32Tree::LeafNodeType*> leaves;
   labels.getNodes(leaves);
   std::vector<std::atomic<bool>> owns(count + 1);
-  parallelFor(leaves.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      for (auto voxel = leaves[i]->cbeginValueOn(); voxel; ++voxel)
-        owns[size_t(*voxel)].store(true, std::memory_order_relaxed);
+  parallelForEach(leaves.size(), kLeafGrain, interrupter, [&](size_t i) {
+    for (auto voxel = leaves[i]->cbeginValueOn(); voxel; ++voxel)
+      owns[size_t(*voxel)].store(true, std::memory_order_relaxed);
   });
   std::vector<int32_t> number(count + 1);
   for (size_t i = 1; i <= count; ++i) number[i] = number[i - 1] + int32_t(owns[i]);
   if (number[count] == int32_t(count)) return;
-  parallelFor(leaves.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      for (auto voxel = leaves[i]->beginValueOn(); voxel; ++voxel)
-        voxel.setValue(number[size_t(*voxel)]);
+  parallelForEach(leaves.size(), kLeafGrain, interrupter, [&](size_t i) {
+    for (auto voxel = leaves[i]->beginValueOn(); voxel; ++voxel)
+      voxel.setValue(number[size_t(*voxel)]);
   });
 }
 

@@ -41,12 +41,10 @@ class LeastCells {
 
     std::vector<int32_t> all(sites_.size());
     for (size_t i = 0; i < all.size(); ++i) all[i] = int32_t(i);
-    parallelFor(work.size(), 1, interrupter, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) {
-        const auto inRegion = candidates(all, work[i].first, kRegionEdge);
-        for (Leaf* leaf : work[i].second)
-          labelLeaf(*leaf, candidates(inRegion, leaf->origin(), int(Leaf::DIM)));
-      }
+    parallelForEach(work.size(), 1, interrupter, [&](size_t i) {
+      const auto inRegion = candidates(all, work[i].first, kRegionEdge);
+      for (Leaf* leaf : work[i].second)
+        labelLeaf(*leaf, candidates(inRegion, leaf->origin(), int(Leaf::DIM)));
     });
     numberOwners(*labels, sites_.size(), interrupter);
     return labels;

@@ -19,13 +19,11 @@ ObjectChange::ObjectChange(const Sample& sample)
 
 MaskTree::Ptr ObjectChange::apply(Interrupter* interrupter) const {
   MaskBlocks blocks(domain_.dim());
-  parallelFor(blocks.count(), 1, interrupter, [&](size_t begin, size_t end) {
-    for (size_t block = begin; block < end; ++block) {
-      const FloatBox field = height(blocks.box(block));
-      size_t i = 0;
-      for (auto p = field.box.begin(); p; ++p, ++i)
-        if (field.values[i] >= 0) blocks.node(block).touchLeaf(*p)->setValueOn(*p);
-    }
+  parallelForEach(blocks.count(), 1, interrupter, [&](size_t block) {
+    const FloatBox field = height(blocks.box(block));
+    size_t i = 0;
+    for (auto p = field.box.begin(); p; ++p, ++i)
+      if (field.values[i] >= 0) blocks.node(block).touchLeaf(*p)->setValueOn(*p);
   });
   return blocks.takeTree();
 }

@@ -186,12 +186,10 @@ void packAs(const T* samples, const CoordBBox& slab, const Selection& selection,
   const Intervals<T> object = intervalsOf<T>(selection);
   const size_t samplesPerRow = size_t(slab.dim().x()) * size_t(kLeafSide * slab.dim().z());
   std::vector<LeafRow> rows(leavesAlong(slab, 1));
-  parallelFor(rows.size(), 1 + kSamplesPerChunk / samplesPerRow, nullptr,
-              [&](size_t begin, size_t end) {
-                for (size_t row = begin; row < end; ++row)
-                  rows[row] = packRow(samples, slab, object,
-                                      (slab.min().y() & ~(kLeafSide - 1)) + int(row) * kLeafSide);
-              });
+  parallelForEach(rows.size(), 1 + kSamplesPerChunk / samplesPerRow, nullptr, [&](size_t row) {
+    rows[row] =
+        packRow(samples, slab, object, (slab.min().y() & ~(kLeafSide - 1)) + int(row) * kLeafSide);
+  });
   openvdb::tree::ValueAccessor<MaskTree> accessor(tree);
   for (LeafRow& row : rows)
     for (auto& leaf : row) accessor.addLeaf(leaf.release());

@@ -84,9 +84,8 @@ GrainLabels labelGrains(const Int32Grid& manifold, const LeafIndex& index,
   GrainLabels grains = grainsOf(graph, merging);
   grains.label = nodesOf(manifold, index, graph, numbers, interrupter);
   constexpr size_t kVoxelGrain = size_t(1) << 16;
-  parallelFor(grains.label.size(), kVoxelGrain, interrupter, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      grains.label[i] = uint32_t(merging.grainOfNode[grains.label[i]]);
+  parallelForEach(grains.label.size(), kVoxelGrain, interrupter, [&](size_t i) {
+    grains.label[i] = uint32_t(merging.grainOfNode[grains.label[i]]);
   });
   return grains;
 }

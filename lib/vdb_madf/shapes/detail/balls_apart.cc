@@ -72,17 +72,16 @@ void keepBallsApart(std::vector<Clump>& clumps, const VoxelWeights& weights,
   for (const Clump& clump : clumps) boxes.push_back(boxOf(clump, weights));
   const auto neighbors = neighborsOf(boxes);
   std::vector<std::vector<Clump::Ball>> kept(clumps.size());
-  parallelFor(clumps.size(), 1, interrupter, [&](size_t begin, size_t end) {
-    for (size_t g = begin; g < end; ++g)
-      for (const Clump::Ball& ball : clumps[g].balls) {
-        const double whole = std::sqrt(ball.squaredRadius);
-        double radius = whole;
-        for (const size_t other : neighbors[g]) shorten(radius, ball, clumps[other], weights);
-        if (radius == whole)
-          kept[g].push_back(ball);
-        else if (radius > 0)
-          kept[g].push_back({ball.center, radius * radius});
-      }
+  parallelForEach(clumps.size(), 1, interrupter, [&](size_t g) {
+    for (const Clump::Ball& ball : clumps[g].balls) {
+      const double whole = std::sqrt(ball.squaredRadius);
+      double radius = whole;
+      for (const size_t other : neighbors[g]) shorten(radius, ball, clumps[other], weights);
+      if (radius == whole)
+        kept[g].push_back(ball);
+      else if (radius > 0)
+        kept[g].push_back({ball.center, radius * radius});
+    }
   });
   for (size_t g = 0; g < clumps.size(); ++g) clumps[g].balls = std::move(kept[g]);
 }

@@ -66,9 +66,8 @@ class QuadCutter {
     for (size_t g = 0; g < mesh_.grainCount(); ++g)
       std::fill(mesh_.pointGrain.begin() + points.first[g],
                 mesh_.pointGrain.begin() + points.first[g + 1], uint32_t(g));
-    parallelFor(mesh_.triangles.size(), kTriangleGrain, nullptr, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i)
-        for (uint32_t& point : mesh_.triangles[i]) point = place[point];
+    parallelForEach(mesh_.triangles.size(), kTriangleGrain, nullptr, [&](size_t i) {
+      for (uint32_t& point : mesh_.triangles[i]) point = place[point];
     });
   }
 

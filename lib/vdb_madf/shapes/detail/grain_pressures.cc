@@ -17,13 +17,11 @@ constexpr int kMaxSteps = 200;
 
 void multiply(const PressureEquations& equations, const std::vector<double>& x,
               std::vector<double>& product) {
-  parallelFor(x.size(), kRowGrain, nullptr, [&](size_t begin, size_t end) {
-    for (size_t g = begin; g < end; ++g) {
-      double sum = equations.own[g] * x[g];
-      for (uint32_t i = equations.first[g]; i < equations.first[g + 1]; ++i)
-        sum += equations.byNeighbor[i] * x[equations.neighbors[i]];
-      product[g] = sum;
-    }
+  parallelForEach(x.size(), kRowGrain, nullptr, [&](size_t g) {
+    double sum = equations.own[g] * x[g];
+    for (uint32_t i = equations.first[g]; i < equations.first[g + 1]; ++i)
+      sum += equations.byNeighbor[i] * x[equations.neighbors[i]];
+    product[g] = sum;
   });
 }
 

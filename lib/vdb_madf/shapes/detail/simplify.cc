@@ -105,9 +105,8 @@ class Simplifier {
 
   template <typename F>
   void forEachGrain(const F& f) const {
-    parallelFor(mesh_.grainCount(), kGrainGrain, nullptr, [&](size_t begin, size_t end) {
-      for (size_t g = begin; g < end; ++g) f(g, mesh_.firstTriangle[g], mesh_.firstTriangle[g + 1]);
-    });
+    parallelForEach(mesh_.grainCount(), kGrainGrain, nullptr,
+                    [&](size_t g) { f(g, mesh_.firstTriangle[g], mesh_.firstTriangle[g + 1]); });
   }
 
   template <typename F>
@@ -339,12 +338,10 @@ class Simplifier {
   }
 
   void apply() {
-    parallelFor(chosen_.size(), kSiteGrain, nullptr, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) {
-        const Collapse& collapse = chosen_[i];
-        forEachPoint(collapse.from, [&](uint32_t point) { move(point, collapse.to); });
-        quadrics_[collapse.to] += quadrics_[collapse.from];
-      }
+    parallelForEach(chosen_.size(), kSiteGrain, nullptr, [&](size_t i) {
+      const Collapse& collapse = chosen_[i];
+      forEachPoint(collapse.from, [&](uint32_t point) { move(point, collapse.to); });
+      quadrics_[collapse.to] += quadrics_[collapse.from];
     });
     for (const Collapse& collapse : chosen_) stamps_[collapse.from] = kNone;
     sites_.erase(std::remove_if(sites_.begin(), sites_.end(),

@@ -57,9 +57,8 @@ class Relaxation {
         reach_(net.corners.size()),
         offsets_(net.corners.size() + 1),
         next_(net.corners.size() + 1) {
-    parallelFor(reach_.size(), kCornerGrain, nullptr, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) chooseLinks(i, domain);
-    });
+    parallelForEach(reach_.size(), kCornerGrain, nullptr,
+                    [&](size_t i) { chooseLinks(i, domain); });
   }
 
   std::vector<Vec3f> run(int rounds) {
@@ -68,11 +67,9 @@ class Relaxation {
       smoothOnce(&part);
     }
     std::vector<Vec3f> positions(net_.corners.size());
-    parallelFor(positions.size(), kCornerGrain, nullptr, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) {
-        const Offset& offset = offsets_[i];
-        positions[i] = home(net_.corners[i]) + Vec3f(offset[0], offset[1], offset[2]);
-      }
+    parallelForEach(positions.size(), kCornerGrain, nullptr, [&](size_t i) {
+      const Offset& offset = offsets_[i];
+      positions[i] = home(net_.corners[i]) + Vec3f(offset[0], offset[1], offset[2]);
     });
     turnQuads(positions);
     return positions;
@@ -104,20 +101,18 @@ class Relaxation {
 
   void smoothOnce(Interrupter* interrupter) {
     static const std::array<Mean, 64> table = means();
-    parallelFor(reach_.size(), kCornerGrain, interrupter, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) {
-        const auto& links = net_.links[i];
-        const Mean& mean = table[reach_[i].links];
-        const Offset sum = ((offsets_[links[0]] + offsets_[links[1]]) +
-                            (offsets_[links[2]] + offsets_[links[3]])) +
-                           ((offsets_[links[4]] + offsets_[links[5]]) + mean.directions);
-        const Offset wanted = (1 - kStep) * offsets_[i] + mean.scale * sum;
-        const int faces = reach_[i].faces;
-        const Offset most{faces & 1 ? 0 : kCornerReach, faces & 2 ? 0 : kCornerReach,
-                          faces & 4 ? 0 : kCornerReach, 0};
-        const Offset low = wanted < -most ? -most : wanted;
-        next_[i] = low > most ? most : low;
-      }
+    parallelForEach(reach_.size(), kCornerGrain, interrupter, [&](size_t i) {
+      const auto& links = net_.links[i];
+      const Mean& mean = table[reach_[i].links];
+      const Offset sum =
+          ((offsets_[links[0]] + offsets_[links[1]]) + (offsets_[links[2]] + offsets_[links[3]])) +
+          ((offsets_[links[4]] + offsets_[links[5]]) + mean.directions);
+      const Offset wanted = (1 - kStep) * offsets_[i] + mean.scale * sum;
+      const int faces = reach_[i].faces;
+      const Offset most{faces & 1 ? 0 : kCornerReach, faces & 2 ? 0 : kCornerReach,
+                        faces & 4 ? 0 : kCornerReach, 0};
+      const Offset low = wanted < -most ? -most : wanted;
+      next_[i] = low > most ? most : low;
     });
     offsets_.swap(next_);
   }
@@ -126,12 +121,10 @@ class Relaxation {
   /// of an interface see the same lengths, so they are cut alike; of equal ones neither is turned.
   void turnQuads(const std::vector<Vec3f>& positions) {
     const auto at = [&](uint32_t point) { return Vec3d(positions[net_.pointCorner[point]]); };
-    parallelFor(net_.quads.size(), kCornerGrain, nullptr, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) {
-        auto& quad = net_.quads[i];
-        if ((at(quad[1]) - at(quad[3])).lengthSqr() < (at(quad[0]) - at(quad[2])).lengthSqr())
-          std::rotate(quad.begin(), quad.begin() + 1, quad.end());
-      }
+    parallelForEach(net_.quads.size(), kCornerGrain, nullptr, [&](size_t i) {
+      auto& quad = net_.quads[i];
+      if ((at(quad[1]) - at(quad[3])).lengthSqr() < (at(quad[0]) - at(quad[2])).lengthSqr())
+        std::rotate(quad.begin(), quad.begin() + 1, quad.end());
     });
   }
 

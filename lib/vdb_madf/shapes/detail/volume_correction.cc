@@ -75,10 +75,9 @@ class VolumeCorrection {
  private:
   void blockDomainFaces() {
     if (!domain_.areKnown) return;
-    parallelFor(homes_.size(), kMovedSiteGrain, nullptr, [&](size_t begin, size_t end) {
-      for (size_t site = begin; site < end; ++site)
-        for (int axis = 0; axis < 3; ++axis)
-          blocked_[site] = uint8_t(blocked_[site] | int(domain_.isOn(homes_[site], axis)) << axis);
+    parallelForEach(homes_.size(), kMovedSiteGrain, nullptr, [&](size_t site) {
+      for (int axis = 0; axis < 3; ++axis)
+        blocked_[site] = uint8_t(blocked_[site] | int(domain_.isOn(homes_[site], axis)) << axis);
     });
   }
 
@@ -125,9 +124,7 @@ class VolumeCorrection {
 
   template <typename F>
   void forEachGrain(Interrupter* interrupter, const F& f) const {
-    parallelFor(volumes_.size(), kMovedGrainGrain, interrupter, [&](size_t begin, size_t end) {
-      for (size_t g = begin; g < end; ++g) f(g);
-    });
+    parallelForEach(volumes_.size(), kMovedGrainGrain, interrupter, [&](size_t g) { f(g); });
   }
 
   void listNeighbors() {

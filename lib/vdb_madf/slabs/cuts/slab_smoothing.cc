@@ -82,10 +82,9 @@ LabelWindow labelWindow(const LeafIndex& index, const VoxelArray<uint32_t>& labe
       window.ownLeaves.push_back(leaf);
     }
   }
-  parallelFor(sources.size(), kLeafGrain, nullptr, [&](size_t begin, size_t end) {
-    for (size_t leaf = begin; leaf < end; ++leaf)
-      std::copy_n(sources[leaf], window.index.leafVoxels(leaf),
-                  window.labels.data() + window.index.firstRank(leaf));
+  parallelForEach(sources.size(), kLeafGrain, nullptr, [&](size_t leaf) {
+    std::copy_n(sources[leaf], window.index.leafVoxels(leaf),
+                window.labels.data() + window.index.firstRank(leaf));
   });
   return window;
 }
@@ -105,10 +104,9 @@ void smoothSlab(const LeafIndex& index, const LeafLabels& below, const LeafLabel
   LabelMasks masks(window, grains.label, interrupter);
   smoothInterfaces(window, rounds, anchorIds, masks, grains, interrupter);
 
-  parallelFor(index.leafCount(), kLeafGrain, nullptr, [&](size_t begin, size_t end) {
-    for (size_t leaf = begin; leaf < end; ++leaf)
-      std::copy_n(grains.label.data() + window.firstRank(all.ownLeaves[leaf]),
-                  index.leafVoxels(leaf), labels.data() + index.firstRank(leaf));
+  parallelForEach(index.leafCount(), kLeafGrain, nullptr, [&](size_t leaf) {
+    std::copy_n(grains.label.data() + window.firstRank(all.ownLeaves[leaf]), index.leafVoxels(leaf),
+                labels.data() + index.firstRank(leaf));
   });
 }
 

@@ -64,9 +64,8 @@ class SlabLabels {
   VoxelArray<uint32_t> mergedLabels(size_t s, const SlabBody& slab) const {
     auto labels = work_.store.read(kFlow, s);
     const auto grains = work_.store.read(kGrains, s);
-    parallelFor(labels.size(), kVoxelGrain, nullptr, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) labels[i] = grains[(labels[i] & ~Flow::kOwnCell) - 1];
-    });
+    parallelForEach(labels.size(), kVoxelGrain, nullptr,
+                    [&](size_t i) { labels[i] = grains[(labels[i] & ~Flow::kOwnCell) - 1]; });
     for (const VoxelId id : slab.cavities) labels[slab.index.rank(id)] = 0;
     return labels;
   }

@@ -101,28 +101,26 @@ LeafBuffers leafBuffers(const Grid& grid, uint32_t compression, Interrupter* int
   buffers.sizes.resizeMask(leaves.size());
   buffers.sizes.resizeCompressedSize(leaves.size());
   const auto background = grid.tree().background();
-  parallelFor(buffers.bytes.size(), 1, interrupter, [&](size_t begin, size_t end) {
-    for (size_t block = begin; block < end; ++block) {
-      TextBuffer buffer;
-      std::ostream stream(&buffer);
-      // Or a stream would keep to itself that there is no memory, and the file be short.
-      stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
-      io::setDataCompression(stream, compression);
-      io::setGridBackgroundValuePtr(stream, &background);
-      for (size_t i = block * kLeavesAtOnce;
-           i < std::min(leaves.size(), (block + 1) * kLeavesAtOnce); ++i) {
-        const size_t start = buffer.bytes.size();
-        bool isWritten = false;
-        if constexpr (std::is_same_v<Grid, Int32Grid>)
-          isWritten = writeLabels(*leaves[i], background, stream);
-        if (!isWritten) leaves[i]->writeBuffers(stream, grid.saveFloatAsHalf());
-        const auto inactive = int8_t(buffer.bytes[start + Leaf::SIZE / 8]);
-        buffers.sizes.setMask(i, inactive);
-        buffers.sizes.setCompressedSize(
-            i, int64_t(buffer.bytes.size() - start - bytesBeforeValues<Leaf>(inactive)));
-      }
-      buffers.bytes[block] = std::move(buffer.bytes);
+  parallelForEach(buffers.bytes.size(), 1, interrupter, [&](size_t block) {
+    TextBuffer buffer;
+    std::ostream stream(&buffer);
+    // Or a stream would keep to itself that there is no memory, and the file be short.
+    stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
+    io::setDataCompression(stream, compression);
+    io::setGridBackgroundValuePtr(stream, &background);
+    for (size_t i = block * kLeavesAtOnce; i < std::min(leaves.size(), (block + 1) * kLeavesAtOnce);
+         ++i) {
+      const size_t start = buffer.bytes.size();
+      bool isWritten = false;
+      if constexpr (std::is_same_v<Grid, Int32Grid>)
+        isWritten = writeLabels(*leaves[i], background, stream);
+      if (!isWritten) leaves[i]->writeBuffers(stream, grid.saveFloatAsHalf());
+      const auto inactive = int8_t(buffer.bytes[start + Leaf::SIZE / 8]);
+      buffers.sizes.setMask(i, inactive);
+      buffers.sizes.setCompressedSize(
+          i, int64_t(buffer.bytes.size() - start - bytesBeforeValues<Leaf>(inactive)));
     }
+    buffers.bytes[block] = std::move(buffer.bytes);
   });
   return buffers;
 }

@@ -42,12 +42,10 @@ void addLeaves(const int32_t* labels, const CoordBBox& slab, Int32Tree& tree) {
   const Coord first = slab.min() & ~(kLeafSide - 1);
   std::vector<std::vector<std::unique_ptr<Leaf>>> rows(
       size_t((slab.max().y() >> 3) - (slab.min().y() >> 3)) + 1);
-  parallelFor(rows.size(), 1, nullptr, [&](size_t begin, size_t end) {
-    for (size_t row = begin; row < end; ++row)
-      for (int x = first.x(); x <= slab.max().x(); x += kLeafSide)
-        if (auto leaf =
-                makeLeaf(labels, slab, Coord(x, first.y() + int(row) * kLeafSide, first.z())))
-          rows[row].push_back(std::move(leaf));
+  parallelForEach(rows.size(), 1, nullptr, [&](size_t row) {
+    for (int x = first.x(); x <= slab.max().x(); x += kLeafSide)
+      if (auto leaf = makeLeaf(labels, slab, Coord(x, first.y() + int(row) * kLeafSide, first.z())))
+        rows[row].push_back(std::move(leaf));
   });
   openvdb::tree::ValueAccessor<Int32Tree> accessor(tree);
   for (auto& row : rows)
