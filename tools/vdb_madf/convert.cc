@@ -26,7 +26,6 @@
 #include "vdb_madf/scans/histogram.h"
 #include "vdb_madf/scans/image_box.h"
 #include "vdb_madf/scans/resampled_image.h"
-#include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/write_vdb.h"
 

@@ -8,7 +8,6 @@
 
 #include "outputs.h"
 #include "parse.h"
-#include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/base/word_list.h"
 #include "vdb_madf/exports/clump_file.h"

@@ -23,7 +23,6 @@
 #include "vdb_madf/measure/grain_network.h"
 #include "vdb_madf/pictures/preview_volume.h"
 #include "vdb_madf/segmentation/ball_grids.h"
-#include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/shapes/level_sets.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/write_vdb.h"

@@ -14,7 +14,6 @@
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/open_image.h"
-#include "vdb_madf/images/shared_image.h"
 #include "vdb_madf/volumes/label_type.h"
 #include "vdb_madf/volumes/write_image.h"
 

@@ -18,7 +18,6 @@
 #include "vdb_madf/grids/object_keys.h"
 #include "vdb_madf/scans/filtered_image.h"
 #include "vdb_madf/scans/image_box.h"
-#include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/slab_folder.h"
 #include "wrong_usage.h"

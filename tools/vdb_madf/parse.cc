@@ -6,7 +6,6 @@
 #include <fmt/core.h>
 
 #include <charconv>
-#include <cmath>
 #include <limits>
 #include <optional>
 

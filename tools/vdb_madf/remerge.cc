@@ -14,7 +14,6 @@
 #include "remerge_slabs.h"
 #include "slab_output.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/write_vdb.h"

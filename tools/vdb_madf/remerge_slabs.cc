@@ -3,7 +3,6 @@
 
 #include "remerge_slabs.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <optional>

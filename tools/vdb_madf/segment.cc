@@ -14,7 +14,6 @@
 #include <memory>
 #include <optional>
 #include <sstream>
-#include <utility>
 #include <vector>
 
 #include "auto_slabs.h"
@@ -33,8 +32,6 @@
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/files/output_set.h"
-#include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/measure/measure.h"
 #include "vdb_madf/measure/size_biases.h"
 #include "vdb_madf/segmentation/ball_grids.h"

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "outputs.h"
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_keys.h"

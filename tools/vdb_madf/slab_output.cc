@@ -8,13 +8,10 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <memory>
-#include <utility>
 #include <vector>
 
 #include "estimate.h"
 #include "member_failure.h"
-#include "parse.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/files/file_ending.h"

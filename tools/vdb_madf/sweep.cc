@@ -22,7 +22,6 @@
 #include "parse.h"
 #include "remerge_slabs.h"
 #include "text_file.h"
-#include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/files/output_set.h"
 #include "vdb_madf/pictures/sweep_plot.h"

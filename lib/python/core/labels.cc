@@ -4,7 +4,6 @@
 #include "bindings.h"
 #include "mesh_options.h"
 #include "vdb_madf/edits/edit_labels.h"
-#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/grain_colors.h"
 #include "vdb_madf/labels/label_digest.h"
 #include "vdb_madf/labels/label_sizes.h"

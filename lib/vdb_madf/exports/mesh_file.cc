@@ -4,7 +4,6 @@
 #include "vdb_madf/exports/mesh_file.h"
 #include "vdb_madf/labels/grain_name.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <limits>

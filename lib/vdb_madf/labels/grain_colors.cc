@@ -9,7 +9,6 @@
 #include <limits>
 #include <mutex>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"

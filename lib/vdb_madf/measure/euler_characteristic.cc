@@ -3,7 +3,6 @@
 
 #include "vdb_madf/measure/euler_characteristic.h"
 
-#include <array>
 #include <atomic>
 
 #include "vdb_madf/base/detail/bits.h"

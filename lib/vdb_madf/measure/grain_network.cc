@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "vdb_madf/grids/detail/world_transform.h"
-#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/grain_colors.h"
 #include "vdb_madf/measure/columns.h"
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/measure/grain_shape.h"

@@ -3,7 +3,6 @@
 
 #include "vdb_madf/method/flow.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"

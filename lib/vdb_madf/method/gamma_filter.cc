@@ -4,7 +4,6 @@
 #include "vdb_madf/method/gamma_filter.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"

@@ -10,7 +10,6 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/method/detail/envelope_sweeps.h"
-#include "vdb_madf/method/detail/passage.h"
 #include "vdb_madf/method/detail/power_passes.h"
 #include "vdb_madf/method/detail/window_sweeps.h"
 #include "vdb_madf/method/kernels/power_windows.h"

@@ -12,7 +12,6 @@
 
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/base/limits.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 
 namespace vdb_madf {

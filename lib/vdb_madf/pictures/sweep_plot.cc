@@ -4,8 +4,6 @@
 #include "vdb_madf/pictures/sweep_plot.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <functional>
 #include <string>
 

@@ -3,7 +3,6 @@
 
 #include "vdb_madf/samples/pack.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "vdb_madf/base/errors.h"

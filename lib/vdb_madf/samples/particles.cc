@@ -3,9 +3,6 @@
 
 #include "vdb_madf/samples/particles.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/samples/detail/bodies.h"
 #include "vdb_madf/samples/detail/lattice.h"

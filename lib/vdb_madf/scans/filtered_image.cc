@@ -6,7 +6,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <string>
 #include <vector>
 
 #include "vdb_madf/base/detail/gaussian.h"

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <memory>
 #include <new>
-#include <string>
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/grid_slabs.h"

@@ -4,7 +4,6 @@
 #include "vdb_madf/scans/scan_region.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "vdb_madf/scans/detail/cylinder_axis.h"
 

@@ -11,7 +11,6 @@
 #include <filesystem>
 #include <memory>
 #include <tuple>
-#include <utility>
 
 #include "vdb_madf/base/detail/checksum.h"
 #include "vdb_madf/base/detail/parallel.h"

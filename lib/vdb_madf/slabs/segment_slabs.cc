@@ -13,7 +13,6 @@
 #include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/slabs/steps/slab_flow.h"
 #include "vdb_madf/slabs/steps/slab_grains.h"
-#include "vdb_madf/slabs/steps/slab_graph.h"
 #include "vdb_madf/slabs/steps/slab_labels.h"
 #include "vdb_madf/slabs/steps/slab_options.h"
 

@@ -4,7 +4,6 @@
 #include "vdb_madf/slabs/slab_builder.h"
 
 #include <algorithm>
-#include <string>
 #include <utility>
 
 #include "vdb_madf/base/errors.h"

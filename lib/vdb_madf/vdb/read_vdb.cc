@@ -9,7 +9,6 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <ios>
 #include <istream>
@@ -20,7 +19,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/files/detail/content_digest.h"

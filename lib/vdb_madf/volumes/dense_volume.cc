@@ -3,7 +3,6 @@
 
 #include "vdb_madf/volumes/dense_volume.h"
 
-#include <algorithm>
 #include <string>
 #include <vector>
 

@@ -5,7 +5,6 @@
 
 #include <fmt/core.h>
 
-#include <string>
 #include <utility>
 
 #include "vdb_madf/base/errors.h"

@@ -3,7 +3,6 @@
 
 #include "vdb_madf/images/formats/dgtal_vol.h"
 
-#include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/key_value_header.h"

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "vdb_madf/files/detail/input_file.h"
 #include "vdb_madf/images/image.h"

@@ -3,7 +3,6 @@
 
 #include <png.h>
 
-#include <algorithm>
 #include <vector>
 
 #include "vdb_madf/base/errors.h"

@@ -3,7 +3,6 @@
 
 #include "vdb_madf/images/formats/slice_names.h"
 
-#include <cctype>
 #include <filesystem>
 #include <map>
 #include <set>

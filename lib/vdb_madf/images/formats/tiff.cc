@@ -3,7 +3,6 @@
 
 #include "vdb_madf/images/formats/tiff.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>

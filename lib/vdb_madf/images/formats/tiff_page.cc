@@ -8,7 +8,6 @@
 #include <memory>
 
 #include "vdb_madf/base/detail/byte_order.h"
-#include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/images/detail/gray_colors.h"
 

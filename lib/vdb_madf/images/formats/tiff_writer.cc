@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/images/detail/header_checks.h"

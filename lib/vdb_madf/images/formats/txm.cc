@@ -3,7 +3,6 @@
 
 #include "vdb_madf/images/formats/txm.h"
 
-#include <cstring>
 #include <optional>
 #include <utility>
 #include <vector>

@@ -4,7 +4,6 @@
 #include "vdb_madf/images/formats/zarr_description.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <limits>
 #include <numeric>

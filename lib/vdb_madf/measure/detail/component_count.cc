@@ -3,8 +3,6 @@
 
 #include "vdb_madf/measure/detail/component_count.h"
 
-#include <algorithm>
-
 #include "vdb_madf/base/detail/disjoint_sets.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 
 #include "vdb_madf/leaves/leaf_index.h"
 

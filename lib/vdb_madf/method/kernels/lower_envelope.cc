@@ -4,7 +4,6 @@
 #include "vdb_madf/method/kernels/lower_envelope.h"
 
 #include <algorithm>
-#include <type_traits>
 
 #include "vdb_madf/base/detail/simd.h"
 #include "vdb_madf/method/detail/metric.h"

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "vdb_madf/pictures/detail/canvas.h"
 #include "vdb_madf/pictures/detail/plot_axis.h"

@@ -3,7 +3,6 @@
 
 #include "vdb_madf/samples/detail/gaussian_blur.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "vdb_madf/base/detail/gaussian.h"

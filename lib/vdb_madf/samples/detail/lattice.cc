@@ -6,7 +6,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <string>
 
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"

@@ -3,7 +3,6 @@
 
 #include "vdb_madf/samples/detail/mask_blocks.h"
 
-#include <algorithm>
 #include <map>
 
 namespace vdb_madf::detail {

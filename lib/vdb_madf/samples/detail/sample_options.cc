@@ -6,8 +6,6 @@
 #include <fmt/core.h>
 #include <openvdb/Metadata.h>
 
-#include <cmath>
-
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"

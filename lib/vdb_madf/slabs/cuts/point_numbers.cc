@@ -3,7 +3,6 @@
 
 #include "vdb_madf/slabs/cuts/point_numbers.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace vdb_madf::detail {

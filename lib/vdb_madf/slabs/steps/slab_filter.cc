@@ -4,7 +4,6 @@
 #include "vdb_madf/slabs/steps/slab_filter.h"
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"

@@ -4,7 +4,6 @@
 #include "vdb_madf/slabs/steps/slab_graph.h"
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 #include "vdb_madf/slabs/cuts/point_numbers.h"

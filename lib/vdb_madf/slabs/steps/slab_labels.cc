@@ -12,7 +12,6 @@
 #include "vdb_madf/method/detail/tidy_steps.h"
 #include "vdb_madf/slabs/cuts/slab_pieces.h"
 #include "vdb_madf/slabs/cuts/slab_smoothing.h"
-#include "vdb_madf/slabs/steps/slab_grains.h"
 
 namespace vdb_madf::detail {
 

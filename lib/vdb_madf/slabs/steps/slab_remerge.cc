@@ -13,7 +13,6 @@
 #include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/slabs/cuts/part_check.h"
 #include "vdb_madf/slabs/steps/slab_grains.h"
-#include "vdb_madf/slabs/steps/slab_graph.h"
 
 namespace vdb_madf::detail {
 

@@ -3,9 +3,6 @@
 
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "vdb_madf/grids/label_slabs.h"
 #include "vdb_madf/slabs/steps/slab_labels.h"
 

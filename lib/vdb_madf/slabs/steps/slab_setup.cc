@@ -3,7 +3,6 @@
 
 #include "vdb_madf/slabs/steps/slab_setup.h"
 
-#include <algorithm>
 #include <vector>
 
 #include "vdb_madf/method/detail/check_background.h"

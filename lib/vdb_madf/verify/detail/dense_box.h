@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/grids/grid_types.h"

@@ -14,7 +14,6 @@
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/scans/detail/cylinder_axis.h"
 #include "vdb_madf/scans/detail/field_of_view.h"
-#include "vdb_madf/scans/detail/scan_part.h"
 #include "vdb_madf/scans/image_box.h"
 #include "vdb_madf/volumes/choose_grid.h"
 #include "vdb_madf/volumes/load_object.h"

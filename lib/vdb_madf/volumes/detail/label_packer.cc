@@ -3,7 +3,6 @@
 
 #include "vdb_madf/volumes/detail/label_packer.h"
 
-#include <algorithm>
 #include <memory>
 #include <vector>
 
