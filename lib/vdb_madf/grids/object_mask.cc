@@ -6,9 +6,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/grids/detail/number_grids.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_keys.h"
@@ -55,22 +55,17 @@ MaskTree::Ptr listedVoxels(const Tree& tree, const Test& test) {
     if (test(*tile, tile.isValueOn()))
       mask->addTile(Tree::DEPTH - 1 - tile.getDepth(), tile.getCoord(), true, true);
 
-  using Leaf = typename Tree::LeafNodeType;
-  std::vector<const Leaf*> leaves;
-  leaves.reserve(tree.leafCount());
-  tree.getNodes(leaves);
-  std::vector<std::unique_ptr<MaskLeaf>> packed(leaves.size());
-  detail::parallelForEach(leaves.size(), kLeavesPerChunk, nullptr, [&](size_t i) {
+  const auto leaves = detail::leavesOf(tree);
+  detail::addLeaves(*mask, leaves.size(), kLeavesPerChunk, nullptr, [&](size_t i) {
+    std::unique_ptr<MaskLeaf> packed;
     openvdb::util::NodeMask<3> bits;
     for (openvdb::Index n = 0; n < kWords; ++n)
       bits.template getWord<Word>(n) = objectWord(*leaves[i], n, test);
-    if (bits.isOff()) return;
-    packed[i] = std::make_unique<MaskLeaf>(leaves[i]->origin(), false);
-    packed[i]->setValueMask(bits);
+    if (bits.isOff()) return packed;
+    packed = std::make_unique<MaskLeaf>(leaves[i]->origin(), false);
+    packed->setValueMask(bits);
+    return packed;
   });
-  openvdb::tree::ValueAccessor<MaskTree> accessor(*mask);
-  for (auto& leaf : packed)
-    if (leaf) accessor.addLeaf(leaf.release());
   return mask;
 }
 

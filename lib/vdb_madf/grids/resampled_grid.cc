@@ -13,7 +13,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/active_tiles.h"
-#include "vdb_madf/grids/detail/leaf_origins.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/grids/grid_metadata.h"
 
@@ -126,11 +126,8 @@ class AreaResampling {
   }
 
   MaskTree run(Interrupter* interrupter) {
-    std::vector<std::unique_ptr<MaskLeaf>> leaves(first_.size() - 1);
-    detail::parallelForEach(leaves.size(), kResampledLeafGrain, interrupter,
-                            [&](size_t n) { leaves[n] = leafOf(n); });
-    for (auto& leaf : leaves)
-      if (leaf) result_.addLeaf(leaf.release());
+    detail::addLeaves(result_, first_.size() - 1, kResampledLeafGrain, interrupter,
+                      [&](size_t n) { return leafOf(n); });
     return std::move(result_);
   }
 

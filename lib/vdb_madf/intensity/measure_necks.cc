@@ -12,6 +12,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
 #include "vdb_madf/intensity/detail/near_squares.h"
@@ -56,18 +57,14 @@ struct Block {
 template <typename T, typename Tree, typename ValueAt>
 Block<T> copyOf(const Tree& tree, const CoordBBox& box, const ValueAt& valueAt) {
   Block<T> block(box);
-  const auto first = [](int v) { return v & ~7; };
-  const Coord& low = box.min();
-  for (int x = first(low.x()); x <= box.max().x(); x += 8)
-    for (int y = first(low.y()); y <= box.max().y(); y += 8)
-      for (int z = first(low.z()); z <= box.max().z(); z += 8) {
-        const auto* leaf = tree.probeConstLeaf(Coord(x, y, z));
-        if (!leaf) continue;
-        CoordBBox part = leaf->getNodeBoundingBox();
-        part.intersect(box);
-        for (auto p = part.begin(); p; ++p)
-          block.values[block.at(*p)] = valueAt(*leaf, leaf->coordToOffset(*p));
-      }
+  detail::forEachLeafOrigin(box, [&](const Coord& origin) {
+    const auto* leaf = tree.probeConstLeaf(origin);
+    if (!leaf) return;
+    CoordBBox part = leaf->getNodeBoundingBox();
+    part.intersect(box);
+    for (auto p = part.begin(); p; ++p)
+      block.values[block.at(*p)] = valueAt(*leaf, leaf->coordToOffset(*p));
+  });
   return block;
 }
 
@@ -310,10 +307,7 @@ FloatTree::Ptr readAround(const std::vector<Section>& sections, GrayScan& scan,
                           Interrupter* interrupter) {
   auto tree = std::make_shared<FloatTree>(0.0F);
   for (const Section& section : sections)
-    for (int x = section.box.min().x() & ~7; x <= section.box.max().x(); x += 8)
-      for (int y = section.box.min().y() & ~7; y <= section.box.max().y(); y += 8)
-        for (int z = section.box.min().z() & ~7; z <= section.box.max().z(); z += 8)
-          tree->touchLeaf(Coord(x, y, z));
+    detail::forEachLeafOrigin(section.box, [&](const Coord& origin) { tree->touchLeaf(origin); });
   std::map<int, std::vector<FloatTree::LeafNodeType*>> layers;
   for (auto leaf = tree->beginLeaf(); leaf; ++leaf)
     layers[leaf->origin().z()].push_back(leaf.getLeaf());

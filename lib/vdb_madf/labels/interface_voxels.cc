@@ -4,9 +4,8 @@
 #include "vdb_madf/labels/interface_voxels.h"
 
 #include <memory>
-#include <vector>
 
-#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/leaves/detail/voxels.h"
@@ -47,13 +46,9 @@ Int32Grid::Ptr interfaceVoxels(const Int32Grid& labels, Interrupter* interrupter
   const auto result = Int32Grid::create(0);
   copyProvenance(labels, *result);
   result->setName(labels.getName());
-  std::vector<const Leaf*> leaves;
-  tree->getNodes(leaves);
-  std::vector<std::unique_ptr<Leaf>> parts(leaves.size());
-  detail::parallelForEach(leaves.size(), detail::kLeafGrain, interrupter,
-                          [&](size_t n) { parts[n] = interfacesIn(*tree, leaves[n]->origin()); });
-  for (std::unique_ptr<Leaf>& part : parts)
-    if (part) result->tree().addLeaf(part.release());
+  const auto leaves = detail::leavesOf(*tree);
+  detail::addLeaves(result->tree(), leaves.size(), detail::kLeafGrain, interrupter,
+                    [&](size_t n) { return interfacesIn(*tree, leaves[n]->origin()); });
   return result;
 }
 

@@ -4,9 +4,9 @@
 #include "vdb_madf/labels/label_sizes.h"
 
 #include <mutex>
-#include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 
 namespace vdb_madf {
@@ -29,8 +29,7 @@ void addVoxels(const Leaf& leaf, Sizes& sizes) {
 std::map<int32_t, int64_t> labelSizes(const Int32Grid& labels, Interrupter* interrupter) {
   Sizes sizes;
   std::mutex mutex;
-  std::vector<const Leaf*> leaves;
-  labels.tree().getNodes(leaves);
+  const auto leaves = detail::leavesOf(labels.tree());
   detail::parallelFor(leaves.size(), detail::kLightLeafGrain, interrupter,
                       [&](size_t begin, size_t end) {
                         Sizes local;

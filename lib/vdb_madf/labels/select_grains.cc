@@ -9,6 +9,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 
@@ -77,8 +78,7 @@ Int32Grid::Ptr selectGrains(const Int32Grid& labels, const std::vector<int32_t>&
     wanted.find(*tile);
   }
 
-  std::vector<const Leaf*> leaves;
-  labels.tree().getNodes(leaves);
+  const auto leaves = detail::leavesOf(labels.tree());
   std::vector<std::unique_ptr<Leaf>> parts(leaves.size());
   detail::parallelForEach(leaves.size(), detail::kLeafGrain, interrupter,
                           [&](size_t n) { parts[n] = wantedPart(*leaves[n], wanted); });

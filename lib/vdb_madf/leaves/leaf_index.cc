@@ -8,7 +8,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/active_tiles.h"
-#include "vdb_madf/grids/detail/leaf_origins.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 
 namespace vdb_madf {

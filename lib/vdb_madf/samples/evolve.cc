@@ -20,6 +20,7 @@
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/detail/label_contacts.h"
 #include "vdb_madf/labels/label_sizes.h"
@@ -159,22 +160,17 @@ template <typename Label>
 Int32Tree::Ptr mappedTree(const Int32Tree& tree, const std::set<Coord>& origins,
                           Interrupter* interrupter, const Label& label) {
   const std::vector<Coord> order(origins.begin(), origins.end());
-  std::vector<std::unique_ptr<LabelLeaf>> leaves(order.size());
-  detail::parallelFor(order.size(), detail::kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    const LabelReader labels(tree);
-    for (size_t n = begin; n < end; ++n) {
-      auto leaf = std::make_unique<LabelLeaf>(order[n], 0);
-      for (openvdb::Index offset = 0; offset < LabelLeaf::SIZE; ++offset) {
-        const Coord p = leaf->offsetToGlobalCoord(offset);
-        const int32_t mapped = label(labels, p, labelAt(labels, p));
-        if (mapped > 0) leaf->setValueOn(offset, mapped);
-      }
-      if (!leaf->isEmpty()) leaves[n] = std::move(leaf);
-    }
-  });
   auto mapped = std::make_shared<Int32Tree>(0);
-  for (std::unique_ptr<LabelLeaf>& leaf : leaves)
-    if (leaf) mapped->addLeaf(leaf.release());
+  detail::addLeaves(*mapped, order.size(), detail::kLeafGrain, interrupter, [&](size_t n) {
+    const LabelReader labels(tree);
+    auto leaf = std::make_unique<LabelLeaf>(order[n], 0);
+    for (openvdb::Index offset = 0; offset < LabelLeaf::SIZE; ++offset) {
+      const Coord p = leaf->offsetToGlobalCoord(offset);
+      const int32_t own = label(labels, p, labelAt(labels, p));
+      if (own > 0) leaf->setValueOn(offset, own);
+    }
+    return leaf->isEmpty() ? nullptr : std::move(leaf);
+  });
   return mapped;
 }
 
@@ -239,11 +235,8 @@ std::vector<Target> targetsOf(const std::vector<const LabelLeaf*>& leaves,
       const auto grain = grains.find(label);
       if (grain == grains.end()) continue;
       const CoordBBox bounds = grain->second.boundsOf(leaf->getNodeBoundingBox(), margin);
-      const Coord first = bounds.min() & ~7, last = bounds.max();
-      for (int x = first.x(); x <= last.x(); x += 8)
-        for (int y = first.y(); y <= last.y(); y += 8)
-          for (int z = first.z(); z <= last.z(); z += 8)
-            targets.emplace_back(Coord(x, y, z), label);
+      detail::forEachLeafOrigin(bounds,
+                                [&](const Coord& origin) { targets.emplace_back(origin, label); });
     }
   }
   std::sort(targets.begin(), targets.end());
@@ -253,39 +246,31 @@ std::vector<Target> targetsOf(const std::vector<const LabelLeaf*>& leaves,
 
 Int32Tree::Ptr movedTree(const Int32Tree& tree, const MovedGrains& grains, const Shaking& shaken,
                          Interrupter* interrupter) {
-  std::vector<const LabelLeaf*> sources;
-  tree.getNodes(sources);
-  const std::vector<Target> targets = targetsOf(sources, grains, shaken.farthest());
+  const std::vector<Target> targets = targetsOf(detail::leavesOf(tree), grains, shaken.farthest());
   std::vector<size_t> firsts;  // of each leaf
   for (size_t n = 0; n < targets.size(); ++n)
     if (n == 0 || targets[n].first != targets[n - 1].first) firsts.push_back(n);
-  std::vector<std::unique_ptr<LabelLeaf>> leaves(firsts.size());
   firsts.push_back(targets.size());
-  detail::parallelFor(
-      leaves.size(), detail::kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-        const openvdb::tree::ValueAccessor<const Int32Tree> values(tree);
-        for (size_t n = begin; n < end; ++n) {
-          std::vector<const MovedGrain*> near;
-          for (size_t at = firsts[n]; at < firsts[n + 1]; ++at)
-            near.push_back(&grains.at(targets[at].second));
-          auto leaf = std::make_unique<LabelLeaf>(targets[firsts[n]].first, 0);
-          for (openvdb::Index offset = 0; offset < LabelLeaf::SIZE; ++offset) {
-            const Vec3d x = shaken(leaf->offsetToGlobalCoord(offset));
-            const MovedGrain* owner = nullptr;
-            for (const MovedGrain* grain : near) {
-              int32_t label = 0;
-              if (values.probeValue(grain->sourceOf(x), label) && label == grain->label &&
-                  (!owner || grain->distance(x) < owner->distance(x)))
-                owner = grain;
-            }
-            if (owner) leaf->setValueOn(offset, owner->label);
-          }
-          if (!leaf->isEmpty()) leaves[n] = std::move(leaf);
-        }
-      });
   auto moved = std::make_shared<Int32Tree>(0);
-  for (std::unique_ptr<LabelLeaf>& leaf : leaves)
-    if (leaf) moved->addLeaf(leaf.release());
+  detail::addLeaves(*moved, firsts.size() - 1, detail::kLeafGrain, interrupter, [&](size_t n) {
+    const LabelReader values(tree);
+    std::vector<const MovedGrain*> near;
+    for (size_t at = firsts[n]; at < firsts[n + 1]; ++at)
+      near.push_back(&grains.at(targets[at].second));
+    auto leaf = std::make_unique<LabelLeaf>(targets[firsts[n]].first, 0);
+    for (openvdb::Index offset = 0; offset < LabelLeaf::SIZE; ++offset) {
+      const Vec3d x = shaken(leaf->offsetToGlobalCoord(offset));
+      const MovedGrain* owner = nullptr;
+      for (const MovedGrain* grain : near) {
+        int32_t label = 0;
+        if (values.probeValue(grain->sourceOf(x), label) && label == grain->label &&
+            (!owner || grain->distance(x) < owner->distance(x)))
+          owner = grain;
+      }
+      if (owner) leaf->setValueOn(offset, owner->label);
+    }
+    return leaf->isEmpty() ? nullptr : std::move(leaf);
+  });
   return moved;
 }
 

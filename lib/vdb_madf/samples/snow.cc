@@ -11,7 +11,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/limits.h"
-#include "vdb_madf/grids/detail/leaf_origins.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/samples/detail/gaussian_blur.h"
 #include "vdb_madf/samples/detail/mask_blocks.h"
 #include "vdb_madf/samples/detail/sample_options.h"

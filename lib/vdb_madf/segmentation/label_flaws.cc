@@ -119,15 +119,6 @@ class FlawFinder {
   std::optional<Domain> domain_;
 };
 
-/// f(leaf) for all leaves, in parallel.
-template <typename F>
-void forEachLeaf(const LeafIndex& index, Interrupter* interrupter, const F& f) {
-  detail::parallelFor(index.leafCount(), detail::kLeafGrain, interrupter,
-                      [&](size_t begin, size_t end) {
-                        for (uint32_t leaf = uint32_t(begin); leaf < end; ++leaf) f(leaf);
-                      });
-}
-
 constexpr int64_t kCrumbVoxels = 100, kSliverVoxels = 20;
 
 }  // namespace
@@ -138,12 +129,12 @@ void detail::findFlags(const LeafIndex& index, const LabelMasks& labels,
   const FlawFinder finder(index, labels, domain);
   std::vector<char>&deep = flags.deep, &touching = flags.touching;
   // Nearly all grains show within a leaf that they are deep.
-  forEachLeaf(index, interrupter, [&](uint32_t leaf) {
+  parallelForEach(index.leafCount(), kLeafGrain, interrupter, [&](size_t leaf) {
     for (auto own = labels.begin(leaf); own != labels.end(leaf); ++own)
       if (!isSet(deep, own->label) && anyVoxel(erode(own->mask, 0))) setFlag(deep, own->label);
   });
   PerThread<LeafNeighborhood> neighborhoods{LeafNeighborhood(index)};
-  forEachLeaf(index, interrupter, [&](uint32_t leaf) {
+  parallelForEach(index.leafCount(), kLeafGrain, interrupter, [&](uint32_t leaf) {
     std::optional<Mask> outside, labelled;  // of the leaf, once they are needed
     for (auto own = labels.begin(leaf); own != labels.end(leaf); ++own) {
       const uint32_t label = own->label;

@@ -14,7 +14,7 @@
 #include "vdb_madf/base/detail/bits.h"
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/grids/detail/leaf_origins.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/leaves/leaf_index.h"

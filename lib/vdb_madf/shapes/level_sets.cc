@@ -11,7 +11,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/grids/detail/leaf_origins.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/grain_name.h"
@@ -90,8 +90,7 @@ Int32Grid::Ptr asOneLabel(const Int32Grid& labels) {
   const auto one = Int32Grid::create(std::make_shared<Int32Tree>(labels.tree()));
   one->tree().voxelizeActiveTiles();
   copyProvenance(labels, *one);
-  std::vector<Int32Tree::LeafNodeType*> leaves;
-  one->tree().getNodes(leaves);
+  const auto leaves = detail::leavesOf(one->tree());
   detail::parallelForEach(leaves.size(), detail::kLightLeafGrain, nullptr, [&](size_t n) {
     int32_t* values = leaves[n]->buffer().data();
     for (openvdb::Index i = 0; i < Int32Tree::LeafNodeType::SIZE; ++i)

@@ -9,15 +9,14 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 
 namespace vdb_madf {
 
 SampleType labelType(const Int32Grid& grid) {
   using Leaf = Int32Tree::LeafNodeType;
-  std::vector<const Leaf*> leaves;
-  leaves.reserve(grid.tree().leafCount());
-  grid.tree().getNodes(leaves);
+  const auto leaves = detail::leavesOf(grid.tree());
   int32_t min = grid.background(), max = min;
   std::mutex mutex;
   detail::parallelFor(leaves.size(), detail::kLeafGrain, nullptr, [&](size_t begin, size_t end) {

@@ -14,6 +14,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/edits/detail/last_join.h"
 #include "vdb_madf/edits/detail/weakest_neck.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/method/detail/refill.h"
@@ -52,8 +53,7 @@ int64_t countCommon(const std::vector<LeafVoxels>& few, const std::vector<LeafVo
 std::vector<LeafVoxels> voxelsWith(const Int32Grid& labels, int32_t grain,
                                    Interrupter* interrupter) {
   const Int32Tree::ConstPtr tree = withoutTiles(labels);
-  std::vector<const Leaf*> leaves;
-  tree->getNodes(leaves);
+  const auto leaves = leavesOf(*tree);
   std::vector<Mask> masks(leaves.size());
   parallelForEach(leaves.size(), kLeafGrain, interrupter, [&](size_t n) {
     masks[n] = Mask{};

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/detail/reduction.h"
 #include "vdb_madf/leaves/detail/voxels.h"
@@ -66,8 +67,7 @@ CoarseTrees coarseTrees(const Int32Grid& labels, int factor, Interrupter* interr
 }
 
 std::vector<LabelCount> countLabels(const Int32Tree& labels, Interrupter* interrupter) {
-  std::vector<const Leaf*> leaves;
-  labels.getNodes(leaves);
+  const auto leaves = leavesOf(labels);
   std::vector<std::vector<LabelCount>> parts((leaves.size() + kLightLeafGrain - 1) /
                                              kLightLeafGrain);
   parallelForEach(parts.size(), 1, interrupter, [&](size_t part) {

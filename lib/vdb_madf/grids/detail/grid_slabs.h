@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/grids/grid_types.h"
 
 namespace vdb_madf::detail {
@@ -41,10 +42,7 @@ class GridSlabs {
   GridSlabs(const Tree& tree, const CoordBBox& box)
       : box_(box), background_(ValueOf()(tree.background(), false)) {
     layers_.resize(layerOf(box.max().z()) + 1);
-    std::vector<const Leaf*> leaves;
-    leaves.reserve(tree.leafCount());
-    tree.getNodes(leaves);
-    for (const Leaf* leaf : leaves)
+    for (const Leaf* leaf : leavesOf(tree))
       if (leaf->getNodeBoundingBox().hasOverlap(box))
         layers_[layerOf(leaf->origin().z())].leaves.push_back(leaf);
     auto tile = tree.cbeginValueAll();

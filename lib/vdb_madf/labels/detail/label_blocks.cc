@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 
 namespace vdb_madf::detail {
@@ -84,8 +85,7 @@ void readLabelHalo(const Int32Tree& tree, const Coord& origin, LabelHalo& halo) 
 }
 
 LabelBlocks::LabelBlocks(const Int32Grid& labels) : tree_(withoutTiles(labels)) {
-  std::vector<const Leaf*> leaves;
-  tree_->getNodes(leaves);
+  const auto leaves = leavesOf(*tree_);
   for (const Leaf* leaf : leaves) addOrigins(*leaf, origins_);
   std::sort(origins_.begin(), origins_.end());
   origins_.erase(std::unique(origins_.begin(), origins_.end()), origins_.end());

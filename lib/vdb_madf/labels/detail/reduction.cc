@@ -10,7 +10,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/active_tiles.h"
-#include "vdb_madf/grids/detail/leaf_origins.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/reduced_labels.h"
@@ -91,9 +91,7 @@ Reduction::Reduction(const Int32Grid& labels, int factor)
     : tree_(withoutTiles(labels)), factor_(factor) {
   if (factor < 1 || factor > kMaxReduction)
     throw InvalidInput("the reduction must lie between 1 and 256");
-  std::vector<const Leaf*> leaves;
-  tree_->getNodes(leaves);
-  for (const Leaf* leaf : leaves) {
+  for (const Leaf* leaf : leavesOf(*tree_)) {
     const CoordBBox reduced(floorDiv(leaf->origin(), factor),
                             floorDiv(leaf->origin().offsetBy(7), factor));
     forEachLeafOrigin(reduced, [&](const Coord& origin) { pairs_.push_back({origin, leaf}); });

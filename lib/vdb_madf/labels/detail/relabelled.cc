@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 
 namespace vdb_madf::detail {
@@ -49,13 +49,9 @@ Int32Grid::Ptr relabelled(const Int32Grid& labels, const Pairs& to, Interrupter*
     if (const int32_t label = find(to, *tile); label > 0)
       result->tree().sparseFill(tile.getBoundingBox(), label, true);
 
-  std::vector<const Leaf*> leaves;
-  labels.tree().getNodes(leaves);
-  std::vector<std::unique_ptr<Leaf>> changed(leaves.size());
-  parallelForEach(leaves.size(), kLeafGrain, interrupter,
-                  [&](size_t n) { changed[n] = relabelled(*leaves[n], to); });
-  for (std::unique_ptr<Leaf>& leaf : changed)
-    if (leaf) result->tree().addLeaf(leaf.release());
+  const auto leaves = leavesOf(labels.tree());
+  addLeaves(result->tree(), leaves.size(), kLeafGrain, interrupter,
+            [&](size_t n) { return relabelled(*leaves[n], to); });
   return result;
 }
 

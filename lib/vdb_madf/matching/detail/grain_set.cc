@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/detail/label_contacts.h"
 #include "vdb_madf/leaves/detail/voxels.h"
@@ -69,12 +70,6 @@ template <typename F>
 void forEachLabeled(const LabelLeaf& leaf, const F& f) {
   for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel)
     if (*voxel > 0) f(voxel.getCoord(), *voxel);
-}
-
-std::vector<const LabelLeaf*> leavesOf(const Int32Tree& tree) {
-  std::vector<const LabelLeaf*> leaves;
-  tree.getNodes(leaves);
-  return leaves;
 }
 
 std::vector<Coord> ballOf(int radius) {

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 
@@ -18,19 +18,13 @@ namespace {
 
 using Leaf = Int32Tree::LeafNodeType;
 
-Coord floorToLeaf(const Coord& p) {
-  return {p.x() & ~7, p.y() & ~7, p.z() & ~7};
-}
-
 /// The leaves that the voxels of some leaves come to lie in, ascending.
 std::vector<Coord> targets(const std::vector<const Leaf*>& leaves, const Coord& shift) {
   std::vector<Coord> origins;
   for (const Leaf* leaf : leaves) {
-    const Coord first = floorToLeaf(leaf->origin() + shift),
-                last = floorToLeaf(leaf->origin() + shift + Coord(7));
-    for (int x = first.x(); x <= last.x(); x += 8)
-      for (int y = first.y(); y <= last.y(); y += 8)
-        for (int z = first.z(); z <= last.z(); z += 8) origins.emplace_back(x, y, z);
+    CoordBBox moved = leaf->getNodeBoundingBox();
+    moved.translate(shift);
+    forEachLeafOrigin(moved, [&](const Coord& origin) { origins.push_back(origin); });
   }
   std::sort(origins.begin(), origins.end());
   origins.erase(std::unique(origins.begin(), origins.end()), origins.end());
@@ -40,7 +34,7 @@ std::vector<Coord> targets(const std::vector<const Leaf*>& leaves, const Coord& 
 /// The leaf at an origin, of the (up to eight) leaves that its voxels come from; null if empty.
 std::unique_ptr<Leaf> gathered(const Int32Tree& tree, const Coord& origin, const Coord& shift,
                                const CoordBBox& within) {
-  const Coord from = origin - shift, base = floorToLeaf(from), inBase = from - base;
+  const Coord from = origin - shift, base = from & ~7, inBase = from - base;
   std::array<const Leaf*, 8> sources{};
   for (int n = 0; n < 8; ++n)
     sources[size_t(n)] =
@@ -65,15 +59,10 @@ std::unique_ptr<Leaf> gathered(const Int32Tree& tree, const Coord& origin, const
 Int32Grid::Ptr movedLabels(const Int32Grid& labels, const Coord& shift, const CoordBBox& within,
                            Interrupter* interrupter) {
   const Int32Tree::ConstPtr tree = withoutTiles(labels);
-  std::vector<const Leaf*> leaves;
-  tree->getNodes(leaves);
-  const std::vector<Coord> origins = targets(leaves, shift);
-  std::vector<std::unique_ptr<Leaf>> moved(origins.size());
-  parallelForEach(origins.size(), kLeafGrain, interrupter,
-                  [&](size_t n) { moved[n] = gathered(*tree, origins[n], shift, within); });
+  const std::vector<Coord> origins = targets(leavesOf(*tree), shift);
   const auto result = Int32Grid::create(0);
-  for (std::unique_ptr<Leaf>& leaf : moved)
-    if (leaf) result->tree().addLeaf(leaf.release());
+  addLeaves(result->tree(), origins.size(), kLeafGrain, interrupter,
+            [&](size_t n) { return gathered(*tree, origins[n], shift, within); });
   return result;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/samples/detail/least_cells.h"
 
 namespace vdb_madf::detail {
@@ -56,8 +57,7 @@ int32_t nearestLabel(const Labels& labels, const Coord& p, const std::vector<Ste
 Int32Tree::Ptr carriedLabels(const Int32Tree& labels, const MaskTree& object, int reach,
                              Interrupter* interrupter) {
   auto result = std::make_shared<Int32Tree>(object, 0, openvdb::TopologyCopy());
-  std::vector<Int32Tree::LeafNodeType*> leaves;
-  result->getNodes(leaves);
+  const auto leaves = leavesOf(*result);
   const std::vector<Step> steps = stepsWithin(reach);
   parallelFor(leaves.size(), 16, interrupter, [&](size_t begin, size_t end) {
     const openvdb::tree::ValueAccessor<const Int32Tree> known(labels);

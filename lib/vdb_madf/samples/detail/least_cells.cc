@@ -9,8 +9,7 @@
 namespace vdb_madf::detail {
 
 void numberOwners(Int32Tree& labels, size_t count, Interrupter* interrupter) {
-  std::vector<Int32Tree::LeafNodeType*> leaves;
-  labels.getNodes(leaves);
+  const auto leaves = leavesOf(labels);
   std::vector<std::atomic<bool>> owns(count + 1);
   parallelForEach(leaves.size(), kLeafGrain, interrupter, [&](size_t i) {
     for (auto voxel = leaves[i]->cbeginValueOn(); voxel; ++voxel)

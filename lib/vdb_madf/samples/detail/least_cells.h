@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/grids/grid_types.h"
 
 namespace vdb_madf::detail {
@@ -33,10 +34,9 @@ class LeastCells {
 
   Int32Tree::Ptr label(const MaskTree& object, Interrupter* interrupter) const {
     auto labels = std::make_shared<Int32Tree>(object, 0, openvdb::TopologyCopy());
-    std::vector<Leaf*> leaves;
-    labels->getNodes(leaves);
     std::map<Coord, std::vector<Leaf*>> regions;
-    for (Leaf* leaf : leaves) regions[leaf->origin() & ~(kRegionEdge - 1)].push_back(leaf);
+    for (Leaf* leaf : leavesOf(*labels))
+      regions[leaf->origin() & ~(kRegionEdge - 1)].push_back(leaf);
     const std::vector<std::pair<Coord, std::vector<Leaf*>>> work(regions.begin(), regions.end());
 
     std::vector<int32_t> all(sites_.size());

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/leaf_values.h"
@@ -93,9 +94,7 @@ bool writeLabels(const Int32Tree::LeafNodeType& leaf, int32_t background, std::o
 template <typename Grid>
 LeafBuffers leafBuffers(const Grid& grid, uint32_t compression, Interrupter* interrupter) {
   using Leaf = typename Grid::TreeType::LeafNodeType;
-  std::vector<const Leaf*> leaves;
-  leaves.reserve(grid.tree().leafCount());
-  grid.tree().getNodes(leaves);
+  const auto leaves = leavesOf(grid.tree());
   LeafBuffers buffers;
   buffers.bytes.resize((leaves.size() + kLeavesAtOnce - 1) / kLeavesAtOnce);
   buffers.sizes.resizeMask(leaves.size());

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/grids/grid_types.h"
 
 namespace vdb_madf::detail {
@@ -35,10 +36,7 @@ class MemoryBuffer : public std::streambuf {
 
 template <typename Grid>
 void readLeavesOf(InputBuffer& file, std::istream& stream, const TreeExtent& extent, Grid& grid) {
-  using Leaf = typename Grid::TreeType::LeafNodeType;
-  std::vector<Leaf*> leaves;
-  leaves.reserve(grid.tree().leafCount());
-  grid.tree().getNodes(leaves);
+  const auto leaves = leavesOf(grid.tree());
   const auto background = grid.tree().background();
   std::vector<int64_t> starts = extent.blocks;
   starts.push_back(extent.end);
