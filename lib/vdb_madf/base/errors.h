@@ -21,11 +21,10 @@ enum class Hint {
   unverified,     ///< that files are read whatever their digests say
 };
 
-/// The caller's data or options cannot be worked with; what() is one line that says why and what to
-/// do.
-class InvalidInput : public std::runtime_error {
+/// What can be told with a hint.
+class HintedError : public std::runtime_error {
  public:
-  explicit InvalidInput(const std::string& what, Hint hint = Hint::none)
+  explicit HintedError(const std::string& what, Hint hint = Hint::none)
       : std::runtime_error(what), hint_(hint) {}
   Hint hint() const { return hint_; }
 
@@ -33,15 +32,15 @@ class InvalidInput : public std::runtime_error {
   Hint hint_;
 };
 
-/// A file cannot be read or written; what() is one line that names the file.
-class IoError : public std::runtime_error {
- public:
-  explicit IoError(const std::string& what, Hint hint = Hint::none)
-      : std::runtime_error(what), hint_(hint) {}
-  Hint hint() const { return hint_; }
+/// The caller's data or options cannot be worked with; what() is one line that says why and what to
+/// do.
+class InvalidInput : public HintedError {
+  using HintedError::HintedError;
+};
 
- private:
-  Hint hint_;
+/// A file cannot be read or written; what() is one line that names the file.
+class IoError : public HintedError {
+  using HintedError::HintedError;
 };
 
 /// The caller's interrupter asked to stop; no partial result exists.

@@ -412,15 +412,8 @@ Tracks trackMotion(const Int32Grid& before, const Int32Grid& after, const TrackO
 }  // namespace
 
 const char* toString(MotionKind kind) {
-  switch (kind) {
-    case MotionKind::rigid:
-      return "rigid";
-    case MotionKind::affine:
-      return "affine";
-    case MotionKind::free:
-      break;
-  }
-  return "free";
+  constexpr const char* kNames[] = {"rigid", "affine", "free"};
+  return kNames[size_t(kind)];
 }
 
 std::optional<MotionKind> motionKindOf(const std::string& name) {
@@ -439,47 +432,15 @@ MoveOf moveOf(const Tracks& tracks) {
 }
 
 const char* toString(GrainFate fate) {
-  switch (fate) {
-    case GrainFate::kept:
-      return "kept";
-    case GrainFate::split:
-      return "split";
-    case GrainFate::merged:
-      return "merged";
-    case GrainFate::vanished:
-      return "vanished";
-    case GrainFate::appeared:
-      return "new";
-    case GrainFate::lost:
-      return "lost";
-    case GrainFate::outside:
-      break;
-  }
-  return "outside";
+  constexpr const char* kNames[] = {"kept", "split", "merged", "vanished",
+                                    "new",  "lost",  "outside"};
+  return kNames[size_t(fate)];
 }
 
 const char* toString(BondFate fate) {
-  switch (fate) {
-    case BondFate::kept:
-      return "kept";
-    case BondFate::broken:
-      return "broken";
-    case BondFate::created:
-      return "new";
-    case BondFate::inside:
-      return "inside";
-    case BondFate::detached:
-      return "detached";
-    case BondFate::separated:
-      return "separated";
-    case BondFate::undecided:
-      return "undecided";
-    case BondFate::unmatched:
-      return "unmatched";
-    case BondFate::outside:
-      break;
-  }
-  return "outside";
+  constexpr const char* kNames[] = {"kept",      "broken",    "new",       "inside", "detached",
+                                    "separated", "undecided", "unmatched", "outside"};
+  return kNames[size_t(fate)];
 }
 
 Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions& options,

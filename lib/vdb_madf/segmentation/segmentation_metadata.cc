@@ -45,17 +45,8 @@ bool isNamed(const std::string& name, std::initializer_list<Enum> values, Enum& 
 }  // namespace
 
 const char* toString(MergeMode mode) {
-  switch (mode) {
-    case MergeMode::both:
-      return "both";
-    case MergeMode::angle:
-      return "angle";
-    case MergeMode::score:
-      return "score";
-    case MergeMode::neck:
-      break;
-  }
-  return "neck";
+  constexpr const char* kNames[] = {"both", "angle", "neck", "score"};
+  return kNames[size_t(mode)];
 }
 
 const char* toString(Adjacency adjacency) {
