@@ -137,19 +137,17 @@ void writeVtp(const std::string& path, const WorldMesh& world, Interrupter* inte
   file.xml("<PolyData>\n<Piece NumberOfPoints=\"" + std::to_string(points) +
            "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
            std::to_string(triangles) + "\">\n<PointData Scalars=\"grain_id\">\n");
-  file.array("Int32", "grain_id", 1, 4 * points, [&](OutputStream& out) {
-    world.forEachPoint([&](size_t grain, uint32_t) { out.value(world.label(grain)); });
-  });
-  file.array("UInt8", "color", 3, 3 * points, [&](OutputStream& out) {
-    world.forEachPoint([&](size_t grain, uint32_t) { out.value(world.color(grain)); });
-  });
+  const auto addGrains = [&](uint64_t count, const auto& forEach) {
+    file.array("Int32", "grain_id", 1, 4 * count, [&world, forEach](OutputStream& out) {
+      forEach([&](size_t grain, uint32_t) { out.value(world.label(grain)); });
+    });
+    file.array("UInt8", "color", 3, 3 * count, [&world, forEach](OutputStream& out) {
+      forEach([&](size_t grain, uint32_t) { out.value(world.color(grain)); });
+    });
+  };
+  addGrains(points, [&world](const auto& f) { world.forEachPoint(f); });
   file.xml("</PointData>\n<CellData Scalars=\"grain_id\">\n");
-  file.array("Int32", "grain_id", 1, 4 * triangles, [&](OutputStream& out) {
-    world.forEachTriangle([&](size_t grain, uint32_t) { out.value(world.label(grain)); });
-  });
-  file.array("UInt8", "color", 3, 3 * triangles, [&](OutputStream& out) {
-    world.forEachTriangle([&](size_t grain, uint32_t) { out.value(world.color(grain)); });
-  });
+  addGrains(triangles, [&world](const auto& f) { world.forEachTriangle(f); });
   file.xml("</CellData>\n<Points>\n");
   file.array("Float32", "Points", 3, 12 * points, [&](OutputStream& out) {
     world.forEachPoint([&](size_t, uint32_t i) { out.value(world.point(i)); });

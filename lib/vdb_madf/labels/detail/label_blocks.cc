@@ -4,12 +4,9 @@
 #include "vdb_madf/labels/detail/label_blocks.h"
 
 #include <algorithm>
-#include <map>
-#include <mutex>
 
-#include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"
-#include "vdb_madf/leaves/detail/voxels.h"
+#include "vdb_madf/labels/label_sizes.h"
 
 namespace vdb_madf::detail {
 
@@ -85,38 +82,10 @@ void readLabelHalo(const Int32Tree& tree, const Coord& origin, LabelHalo& halo) 
 }
 
 LabelBlocks::LabelBlocks(const Int32Grid& labels) : tree_(withoutTiles(labels)) {
-  const auto leaves = leavesOf(*tree_);
-  for (const Leaf* leaf : leaves) addOrigins(*leaf, origins_);
+  for (const Leaf* leaf : leavesOf(*tree_)) addOrigins(*leaf, origins_);
   std::sort(origins_.begin(), origins_.end());
   origins_.erase(std::unique(origins_.begin(), origins_.end()), origins_.end());
-  countLabels(leaves);
-}
-
-void LabelBlocks::countLabels(const std::vector<const Leaf*>& leaves) {
-  std::map<int32_t, int64_t> counts;
-  std::mutex mutex;
-  parallelFor(leaves.size(), kLightLeafGrain, nullptr, [&](size_t begin, size_t end) {
-    std::map<int32_t, int64_t> local;
-    for (size_t n = begin; n < end; ++n) {
-      const int32_t* values = leaves[n]->buffer().data();
-      int32_t label = 0;
-      int64_t run = 0;
-      for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
-        const int32_t here = labelAt(*leaves[n], values, i);
-        if (here != label) {
-          if (label) local[label] += run;
-          label = here;
-          run = 0;
-        }
-        ++run;
-      }
-      if (label) local[label] += run;
-    }
-    // Integer sums: the order in which the parts arrive does not matter.
-    const std::lock_guard<std::mutex> lock(mutex);
-    for (const auto& [label, voxels] : local) counts[label] += voxels;
-  });
-  for (const auto& [label, voxels] : counts) {
+  for (const auto& [label, voxels] : labelSizes(labels)) {
     labels_.push_back(label);
     voxelCounts_.push_back(voxels);
   }

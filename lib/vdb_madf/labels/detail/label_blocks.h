@@ -53,8 +53,6 @@ class LabelBlocks {
   uint32_t number(int32_t label) const;
 
  private:
-  void countLabels(const std::vector<const Int32Tree::LeafNodeType*>& leaves);
-
   Int32Tree::ConstPtr tree_;
   std::vector<Coord> origins_;
   std::vector<int32_t> labels_;
