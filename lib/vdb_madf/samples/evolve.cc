@@ -20,6 +20,7 @@
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/grids/detail/ball_steps.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/detail/label_contacts.h"
@@ -131,21 +132,6 @@ class Shaking {
   std::vector<detail::WhiteNoise> noise_;
 };
 
-/// Steps of at most a length, the shortest first.
-std::vector<Coord> ballSteps(double length) {
-  std::vector<std::pair<int, Coord>> steps;
-  const int reach = int(length);
-  for (auto p = CoordBBox(Coord(-reach), Coord(reach)).begin(); p; ++p) {
-    const Coord& step = *p;
-    const int squared = step.x() * step.x() + step.y() * step.y() + step.z() * step.z();
-    if (squared <= length * length) steps.emplace_back(squared, step);
-  }
-  std::sort(steps.begin(), steps.end());
-  std::vector<Coord> sorted;
-  for (const auto& [squared, step] : steps) sorted.push_back(step);
-  return sorted;
-}
-
 using LabelReader = openvdb::tree::ValueAccessor<const Int32Tree>;
 
 /// 0: there is none.
@@ -188,13 +174,13 @@ std::set<Coord> leafOrigins(const Int32Tree& tree, bool andNeighbors) {
 /// What lies beyond the domain is neither empty nor gets a label.
 Int32Tree::ConstPtr grownTree(const Int32Tree::ConstPtr& tree, double length,
                               const std::optional<Domain>& domain, Interrupter* interrupter) {
-  const std::vector<Coord> steps = ballSteps(std::abs(length));
+  const auto steps = detail::ballSteps(std::abs(length));
   if (steps.size() == 1) return tree;
   const auto isSeen = [&](const Coord& p) { return !domain || domain->box().isInside(p); };
   return mappedTree(*tree, leafOrigins(*tree, length > 0), interrupter,
                     [&](const LabelReader& labels, const Coord& p, int32_t own) {
                       if ((own > 0) == (length > 0) || !isSeen(p)) return own;
-                      for (const Coord& step : steps) {
+                      for (const auto& [squared, step] : steps) {
                         const int32_t label = labelAt(labels, p + step);
                         if (length > 0 ? label > 0 : label == 0 && isSeen(p + step)) return label;
                       }
@@ -208,11 +194,11 @@ Int32Tree::Ptr brokenTree(const Int32Tree::Ptr& tree, const BondSet& broken, int
   if (broken.empty()) return tree;
   std::set<int32_t> ends;
   for (const auto& [first, second] : broken) ends.insert({first, second});
-  const std::vector<Coord> steps = ballSteps(gap);
+  const auto steps = detail::ballSteps(gap);
   return mappedTree(*tree, leafOrigins(*tree, false), interrupter,
                     [&](const LabelReader& labels, const Coord& p, int32_t own) {
                       if (!ends.count(own)) return own;
-                      for (const Coord& step : steps)
+                      for (const auto& [squared, step] : steps)
                         if (const int32_t other = labelAt(labels, p + step);
                             other > 0 && broken.count(std::minmax(own, other)))
                           return 0;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/grids/detail/ball_steps.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/detail/label_contacts.h"
@@ -22,7 +23,9 @@ namespace vdb_madf::detail {
 namespace {
 
 using Wide = __int128;
-using LabelLeaf = Int32Tree::LeafNodeType;
+using Pair = std::pair<int32_t, int32_t>;
+using PairCounts = std::map<Pair, int64_t>;
+using Values = openvdb::tree::ValueAccessor<const Int32Tree>;
 
 /// Integer sums: the order in which voxels come does not matter.
 struct PlaceSums {
@@ -65,36 +68,45 @@ GrainFeatures featuresOf(int32_t label, const PlaceSums& sums) {
   return grain;
 }
 
-/// f(voxel, label) for the labeled voxels of a leaf.
-template <typename F>
-void forEachLabeled(const LabelLeaf& leaf, const F& f) {
-  for (auto voxel = leaf.cbeginValueOn(); voxel; ++voxel)
-    if (*voxel > 0) f(voxel.getCoord(), *voxel);
+/// Lets add(voxel, label, part) see the labeled voxels of a tree, by any thread, and merge(part)
+/// what each of them made of its own, one after the other: sums and sets, as the order is any.
+template <typename Part, typename MakeAdd, typename Merge>
+void forEachPart(const Int32Tree& tree, size_t grain, Interrupter* interrupter,
+                 const MakeAdd& makeAdd, const Merge& merge) {
+  const auto leaves = leavesOf(tree);
+  std::mutex mutex;
+  parallelFor(leaves.size(), grain, interrupter, [&](size_t begin, size_t end) {
+    Part part;
+    auto add = makeAdd();
+    for (size_t n = begin; n < end; ++n)
+      for (auto voxel = leaves[n]->cbeginValueOn(); voxel; ++voxel)
+        if (*voxel > 0) add(voxel.getCoord(), *voxel, part);
+    const std::lock_guard<std::mutex> lock(mutex);
+    merge(part);
+  });
 }
 
-std::vector<Coord> ballOf(int radius) {
-  std::vector<Coord> ball;
-  for (int x = -radius; x <= radius; ++x)
-    for (int y = -radius; y <= radius; ++y)
-      for (int z = -radius; z <= radius; ++z)
-        if (x * x + y * y + z * z <= radius * radius) ball.emplace_back(x, y, z);
-  return ball;
+/// The sums of what is added for pairs of labels.
+template <typename MakeAdd>
+PairCounts counted(const Int32Tree& tree, Interrupter* interrupter, const MakeAdd& makeAdd) {
+  PairCounts counts;
+  forEachPart<PairCounts>(tree, kLeafGrain, interrupter, makeAdd, [&](const PairCounts& part) {
+    for (const auto& [pair, count] : part) counts[pair] += count;
+  });
+  return counts;
 }
 
 }  // namespace
 
 GrainSet grainSet(const Int32Grid& labels, Interrupter* interrupter) {
-  const Int32Tree::ConstPtr tree = withoutTiles(labels);
-  const auto leaves = leavesOf(*tree);
-  std::map<int32_t, PlaceSums> all;
-  std::mutex mutex;
-  parallelFor(leaves.size(), kLightLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    std::map<int32_t, PlaceSums> local;
-    for (size_t n = begin; n < end; ++n)
-      forEachLabeled(*leaves[n], [&](const Coord& p, int32_t label) { local[label].add(p); });
-    const std::lock_guard<std::mutex> lock(mutex);
-    for (const auto& [label, sums] : local) all[label].add(sums);
-  });
+  using Sums = std::map<int32_t, PlaceSums>;
+  Sums all;
+  forEachPart<Sums>(
+      *withoutTiles(labels), kLightLeafGrain, interrupter,
+      [] { return [](const Coord& p, int32_t label, Sums& part) { part[label].add(p); }; },
+      [&](const Sums& part) {
+        for (const auto& [label, sums] : part) all[label].add(sums);
+      });
   GrainSet set;
   for (const auto& [label, sums] : all) set.grains.push_back(featuresOf(label, sums));
   for (const LabelContact& contact : labelContacts(labels, interrupter))
@@ -105,37 +117,33 @@ GrainSet grainSet(const Int32Grid& labels, Interrupter* interrupter) {
 std::set<std::pair<int32_t, int32_t>> nearPairs(const Int32Grid& labels,
                                                 const std::set<std::pair<int32_t, int32_t>>& pairs,
                                                 int gap, Interrupter* interrupter) {
-  std::set<std::pair<int32_t, int32_t>> near;
+  std::set<Pair> near;
   if (pairs.empty()) return near;
   std::set<int32_t> firsts;
   for (const auto& [first, second] : pairs) firsts.insert(first);
-  const std::vector<Coord> ball = ballOf(gap);
+  const auto ball = ballSteps(gap);
   const Int32Tree::ConstPtr tree = withoutTiles(labels);
-  const auto leaves = leavesOf(*tree);
-  std::mutex mutex;
-  parallelFor(leaves.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    openvdb::tree::ValueAccessor<const Int32Tree> values(*tree);
-    std::set<std::pair<int32_t, int32_t>> local;
-    for (size_t n = begin; n < end; ++n)
-      forEachLabeled(*leaves[n], [&](const Coord& p, int32_t label) {
-        if (!firsts.count(label)) return;
-        int inside = 0;
-        for (int axis = 0; axis < 3; ++axis)
-          for (const int step : {-1, 1}) {
-            Coord next = p;
-            next[axis] += step;
-            inside += values.getValue(next) == label;
-          }
-        if (inside == 6) return;
-        for (const Coord& step : ball) {
-          int32_t other = 0;
-          if (values.probeValue(p + step, other) && other > label && pairs.count({label, other}))
-            local.emplace(label, other);
+  const auto makeAdd = [&] {
+    return [&, values = Values(*tree)](const Coord& p, int32_t label, std::set<Pair>& part) {
+      if (!firsts.count(label)) return;
+      int inside = 0;
+      for (int axis = 0; axis < 3; ++axis)
+        for (const int step : {-1, 1}) {
+          Coord next = p;
+          next[axis] += step;
+          inside += values.getValue(next) == label;
         }
-      });
-    const std::lock_guard<std::mutex> lock(mutex);
-    near.insert(local.begin(), local.end());
-  });
+      if (inside == 6) return;
+      for (const auto& [squared, step] : ball) {
+        int32_t other = 0;
+        if (values.probeValue(p + step, other) && other > label && pairs.count({label, other}))
+          part.emplace(label, other);
+      }
+    };
+  };
+  forEachPart<std::set<Pair>>(
+      *tree, kLeafGrain, interrupter, makeAdd,
+      [&](const std::set<Pair>& part) { near.insert(part.begin(), part.end()); });
   return near;
 }
 
@@ -143,65 +151,48 @@ std::set<std::pair<int32_t, int32_t>> solidPairs(const Int32Grid& before, const 
                                                  const std::set<std::pair<int32_t, int32_t>>& pairs,
                                                  const std::map<int32_t, Motion>& motions,
                                                  Interrupter* interrupter) {
-  std::set<std::pair<int32_t, int32_t>> solid;
+  std::set<Pair> solid;
   if (pairs.empty()) return solid;
   std::set<int32_t> ends;
   for (const auto& [first, second] : pairs) ends.insert({first, second});
-  std::map<std::pair<int32_t, int32_t>, int64_t> excess;  // of solid faces over others
   const Int32Tree::ConstPtr tree = withoutTiles(before);
-  const auto leaves = leavesOf(*tree);
-  std::mutex mutex;
-  parallelFor(leaves.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    openvdb::tree::ValueAccessor<const Int32Tree> from(*tree), to(after.tree());
-    std::map<std::pair<int32_t, int32_t>, int64_t> local;
-    for (size_t n = begin; n < end; ++n)
-      forEachLabeled(*leaves[n], [&](const Coord& p, int32_t label) {
-        if (!ends.count(label)) return;
-        for (int axis = 0; axis < 3; ++axis) {
-          Coord next = p;
-          ++next[axis];
-          const int32_t other = from.getValue(next);
-          const std::pair<int32_t, int32_t> pair = std::minmax(label, other);
-          if (!pairs.count(pair)) continue;
-          const openvdb::Vec3d place =
-              (motions.at(label)(p.asVec3d()) + motions.at(other)(next.asVec3d())) * 0.5;
-          int32_t there = 0;
-          const bool isSolid =
-              to.probeValue(Coord::floor(place + openvdb::Vec3d(0.5)), there) && there > 0;
-          local[pair] += isSolid ? 1 : -1;
-        }
-      });
-    const std::lock_guard<std::mutex> lock(mutex);
-    for (const auto& [pair, count] : local) excess[pair] += count;
-  });
-  for (const auto& [pair, count] : excess)
-    if (count > 0) solid.insert(pair);
+  const auto makeAdd = [&] {
+    return [&, from = Values(*tree), to = Values(after.tree())](const Coord& p, int32_t label,
+                                                                PairCounts& part) {
+      if (!ends.count(label)) return;
+      for (int axis = 0; axis < 3; ++axis) {
+        Coord next = p;
+        ++next[axis];
+        const int32_t other = from.getValue(next);
+        const Pair pair = std::minmax(label, other);
+        if (!pairs.count(pair)) continue;
+        const openvdb::Vec3d place =
+            (motions.at(label)(p.asVec3d()) + motions.at(other)(next.asVec3d())) * 0.5;
+        int32_t there = 0;
+        const bool isSolid =
+            to.probeValue(Coord::floor(place + openvdb::Vec3d(0.5)), there) && there > 0;
+        part[pair] += isSolid ? 1 : -1;
+      }
+    };
+  };
+  for (const auto& [pair, excess] : counted(*tree, interrupter, makeAdd))  // of solid faces
+    if (excess > 0) solid.insert(pair);
   return solid;
 }
 
 std::map<std::pair<int32_t, int32_t>, int64_t> movedOverlaps(
     const Int32Grid& before, const Int32Grid& after, const std::map<int32_t, Motion>& motions,
     Interrupter* interrupter) {
-  std::map<std::pair<int32_t, int32_t>, int64_t> overlaps;
-  const Int32Tree::ConstPtr tree = withoutTiles(before);
-  const auto leaves = leavesOf(*tree);
-  std::mutex mutex;
-  parallelFor(leaves.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    openvdb::tree::ValueAccessor<const Int32Tree> values(after.tree());
-    std::map<std::pair<int32_t, int32_t>, int64_t> local;
-    auto motion = motions.end();
-    for (size_t n = begin; n < end; ++n)
-      forEachLabeled(*leaves[n], [&](const Coord& p, int32_t label) {
-        if (motion == motions.end() || motion->first != label) motion = motions.find(label);
-        if (motion == motions.end()) return;
-        int32_t other = 0;
-        const openvdb::Vec3d place = motion->second(p.asVec3d()) + openvdb::Vec3d(0.5);
-        if (values.probeValue(Coord::floor(place), other) && other > 0) ++local[{label, other}];
-      });
-    const std::lock_guard<std::mutex> lock(mutex);
-    for (const auto& [pair, voxels] : local) overlaps[pair] += voxels;
+  return counted(*withoutTiles(before), interrupter, [&] {
+    return [&, values = Values(after.tree()), motion = motions.end()](const Coord& p, int32_t label,
+                                                                      PairCounts& part) mutable {
+      if (motion == motions.end() || motion->first != label) motion = motions.find(label);
+      if (motion == motions.end()) return;
+      int32_t other = 0;
+      const openvdb::Vec3d place = motion->second(p.asVec3d()) + openvdb::Vec3d(0.5);
+      if (values.probeValue(Coord::floor(place), other) && other > 0) ++part[{label, other}];
+    };
   });
-  return overlaps;
 }
 
 }  // namespace vdb_madf::detail

@@ -7,10 +7,10 @@
 #include <openvdb/tree/ValueAccessor.h>
 
 #include <algorithm>
-#include <tuple>
 #include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/grids/detail/ball_steps.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/samples/detail/least_cells.h"
 
@@ -18,36 +18,18 @@ namespace vdb_madf::detail {
 
 namespace {
 
-struct Step {
-  int square;
-  Coord offset;
-};
-
-/// The steps to all voxels within reach, the nearest first.
-std::vector<Step> stepsWithin(int reach) {
-  std::vector<Step> steps;
-  for (auto k = CoordBBox(Coord(-reach), Coord(reach)).begin(); k; ++k) {
-    const Coord offset = *k;
-    const int square = offset.x() * offset.x() + offset.y() * offset.y() + offset.z() * offset.z();
-    if (square <= reach * reach) steps.push_back({square, offset});
-  }
-  std::sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) {
-    return std::tie(a.square, a.offset) < std::tie(b.square, b.offset);
-  });
-  return steps;
-}
-
 /// 0 if no label is within reach.
 template <typename Labels>
-int32_t nearestLabel(const Labels& labels, const Coord& p, const std::vector<Step>& steps) {
+int32_t nearestLabel(const Labels& labels, const Coord& p,
+                     const std::vector<std::pair<int, Coord>>& steps) {
   int32_t best = 0;
-  int square = 0;
-  for (const Step& step : steps) {
-    if (best > 0 && step.square > square) break;
-    const int32_t label = labels.getValue(p + step.offset);
+  int least = 0;
+  for (const auto& [squared, step] : steps) {
+    if (best > 0 && squared > least) break;
+    const int32_t label = labels.getValue(p + step);
     if (label == 0 || (best > 0 && best < label)) continue;
     best = label;
-    square = step.square;
+    least = squared;
   }
   return best;
 }
@@ -58,7 +40,7 @@ Int32Tree::Ptr carriedLabels(const Int32Tree& labels, const MaskTree& object, in
                              Interrupter* interrupter) {
   auto result = std::make_shared<Int32Tree>(object, 0, openvdb::TopologyCopy());
   const auto leaves = leavesOf(*result);
-  const std::vector<Step> steps = stepsWithin(reach);
+  const auto steps = ballSteps(reach);
   parallelFor(leaves.size(), 16, interrupter, [&](size_t begin, size_t end) {
     const openvdb::tree::ValueAccessor<const Int32Tree> known(labels);
     for (size_t i = begin; i < end; ++i)
