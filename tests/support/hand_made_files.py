@@ -184,8 +184,8 @@ def bmp(rows, bits=8, top_down=False):
 # --- all of them
 
 # What is no volume that can be read; the others are.
-REFUSED = ("beside.dat", "colour_dir", "complex.nii", "empty_dir", "filters.zarr", "flat.mha",
-           "flat.npy", "fortran.npy", "group.zarr", "half.npy", "jpeg.tif", "list.mhd", "long.mha",
+REFUSED = ("beside.dat", "colour_dir", "complex.nii", "empty_dir", "filters.zarr", "flat.npy",
+           "fortran.npy", "group.zarr", "half.npy", "jpeg.tif", "list.mhd", "long.mha",
            "mixed_dir", "pyhst_lone.vol", "sheared.nrrd", "text.nrrd", "two.hdf5", "uneven_dir",
            "version1.vol", "version3.zarr")
 

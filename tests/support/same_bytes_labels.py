@@ -62,7 +62,7 @@ def measure():
         yield f"measure {name} measured_{ending}_dir{layout(name, kind='int32')} --voxel-size 1um"
     for name in ("tiles", "plain", "solid_labels", "none", "one_labels", "large_tile", "theta1"):
         yield f"measure {name}.vdb measured_{name}_dir"
-    yield "measure i8_little.npy measured_noise_dir"
+    yield "! measure i8_little.npy measured_noise_dir"
 
 
 def collect():
@@ -129,6 +129,8 @@ def render():
 
 
 def export():
+    yield "export sintered.vdb truth_clumps.csv --as clumps"
+    yield "export sintered32.truth.tif image_clumps.csv --as clumps"
     labels = "export all_snow_0.vdb"
     for ending in ("ply", "obj", "stl", "vtp", "glb"):
         for number, options in enumerate(("", "--smooth 0", "--smooth 3 --reduce 2", "--max-dim 20",

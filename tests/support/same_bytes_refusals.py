@@ -130,8 +130,6 @@ def wrong_content():
                  "compare sintered.vdb all_snow_0.vdb --truth-grid snow",
                  "remerge sintered.vdb never.vdb", "segment snow32.tif never.vdb --grid truth",
                  "measure sintered32.truth.tif never_dir --grid truth",
-                 "export sintered.vdb never.csv --as clumps",
-                 "export sintered32.truth.tif never.csv --as clumps",
                  "segment snow.vdb never.vdb --domain 0,0,0:9,9,9",
                  "segment snow32.tif never.vdb --threshold 0",
                  "segment object.vdb never.vdb --boundary open",
