@@ -62,9 +62,9 @@ struct ScoredClass {
 /// - the disc is below 10 m < 2^35, so w < 2^45, x^2 w < 2^71 and (512 F)^2 < 2^80;
 /// - u <= 11007, 16 rho <= 4096, 6 f <= 49146, the last term at most 3072: at most 89335.
 ///
-/// Of V_b alone it depends by volumeTerm(), by f, which falls as V_b grows, and by m_b, which may be
-/// taken for less while V_b <= V_a, so that rho and f are larger: if a, F, h, m_b and s_b stay, the
-/// score less that term never grows with V_b.
+/// Of V_b alone it depends by volumeTerm(), by f, which falls as V_b grows, and by m_b, which may
+/// be taken for less while V_b <= V_a, so that rho and f are larger: if a, F, h, m_b and s_b stay,
+/// the score less that term never grows with V_b.
 class JoinScore {
  public:
   static constexpr int64_t kMaxVoxels = (int64_t(1) << 43) - 1, kMaxFaces = (int64_t(1) << 31) - 1;
