@@ -58,10 +58,10 @@ void addClasses(const ManifoldGraph& graph, Hierarchy& hierarchy) {
 /// Joins the pair of largest score, again and again.
 ///
 /// Each pair waits in the heap of its b, under the score less b's volume term; b takes a turn with
-/// its first pair. When b has grown, but has its m, s and name still, what was computed of its pairs
-/// is a bound, for it can only have become smaller (JoinScore): that of the first one is computed
-/// anew when it is its turn. So a class that joins thousands of small neighbors does not look at all
-/// others each time.
+/// its first pair. When b has grown, but has its m, s and name still, what was computed of its
+/// pairs is a bound, for it can only have become smaller (JoinScore): that of the first one is
+/// computed anew when it is its turn. So a class that joins thousands of small neighbors does not
+/// look at all others each time.
 ///
 /// Wherever there is a score 1 <= h < m: an edge with 0 < h that had not h < m of both its classes
 /// has joined them before (addClasses), and m only grows.
