@@ -261,8 +261,13 @@ TEST_CASE("manifold_graph: of a ball that reaches out of an open domain D is not
   CHECK(graph.flatAxis == std::nullopt);
   graph.weights = {1, 1, 4};
   CHECK(doubts(box) == std::vector<int32_t>{0, 26, 0, 0});
-  CHECK(doubts(CoordBBox({0, 0, 6}, {19, 19, 6})) == std::vector<int32_t>{25, 26, 16, 17});
+  graph.nodes[0].position.z() = graph.nodes[1].position.z() = 6;
+  CHECK(doubts(CoordBBox({0, 0, 6}, {19, 19, 6})) == std::vector<int32_t>{0, 26, 0, 0});
   CHECK(graph.flatAxis == 2);
+  MaskTree slice;  // with a hole in it
+  slice.fill(CoordBBox({0, 0, 6}, {19, 19, 6}), true);
+  slice.setValueOff({5, 9, 6});
+  CHECK(doubts(Domain(slice)) == std::vector<int32_t>{25, 26, 0, 17});
 }
 
 TEST_CASE("manifold_graph: balls reach out of regions as the voxels say", "[manifold_graph]") {

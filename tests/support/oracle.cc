@@ -342,11 +342,14 @@ ManifoldGraph oracleGraph(const ObjectVolume& object, const DenseVolume<int64_t>
   return graph;
 }
 
-/// Of a critical point: is a voxel that is not in the domain nearer than its D?
-void oracleDoubt(const OracleDomain& domain, const VoxelWeights& weights, CriticalPoint& node) {
+/// Of a critical point: is a voxel that is not in the domain, but in its plane if it is flat,
+/// nearer than its D?
+void oracleDoubt(const OracleDomain& domain, const VoxelWeights& weights,
+                 const std::optional<int>& flatAxis, CriticalPoint& node) {
   Coord reach;
   for (int axis = 0; axis < 3; ++axis)
-    reach[axis] = int(std::sqrt(double(node.squaredRadius) / weights[axis])) + 1;
+    if (flatAxis != axis)
+      reach[axis] = int(std::sqrt(double(node.squaredRadius) / weights[axis])) + 1;
   for (auto q = CoordBBox(-reach, reach).begin(); q; ++q)
     if (squaredLength(*q, weights) < node.squaredRadius && !domain.isInside(node.position + *q)) {
       node.doubt = node.squaredRadius;
@@ -387,7 +390,8 @@ OracleResult oracleSegment(const ObjectVolume& object, const std::optional<Oracl
     for (int axis = 2; axis >= 0; --axis)
       if (domain->box().dim()[axis] == 1) result.graph.flatAxis = axis;
   if (domain && result.open)
-    for (CriticalPoint& node : result.graph.nodes) oracleDoubt(*domain, weights, node);
+    for (CriticalPoint& node : result.graph.nodes)
+      oracleDoubt(*domain, weights, result.graph.flatAxis, node);
   std::map<Coord, size_t> node;
   for (size_t i = 0; i < result.graph.nodes.size(); ++i) {
     node[result.graph.nodes[i].position] = i;

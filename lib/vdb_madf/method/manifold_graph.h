@@ -47,7 +47,7 @@ ManifoldGraph manifoldGraph(const LeafIndex& index, const Flow& flow,
 
 /// Tells a graph, whose weights are known, of the domain in which it lies: the axis along which
 /// that is one voxel thick, and, if its boundary is open, of which critical points D is not sure:
-/// those with a voxel outside of the domain nearer than D.
+/// those with a voxel outside of the domain nearer than D (in a plane: with one of that plane).
 void placeGraph(ManifoldGraph& graph, const Domain& domain, bool open);
 
 }  // namespace vdb_madf

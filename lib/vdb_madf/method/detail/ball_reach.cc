@@ -25,6 +25,7 @@ class BallReach {
   bool leavesBox() const {
     const CoordBBox& box = domain_.box();
     for (int axis = 0; axis < 3; ++axis) {
+      if (domain_.flatAxis() == axis) continue;
       Coord before = center_, after = center_;  // the nearest voxels outside are straight on
       before[axis] = box.min()[axis] - 1;
       after[axis] = box.max()[axis] + 1;
@@ -40,6 +41,7 @@ class BallReach {
       ball.min()[axis] -= reach;
       ball.max()[axis] += reach;
     }
+    ball.intersect(domain_.box());
     return meetsOutside(RegionLook(*domain_.region()), ball, 0);
   }
 
@@ -75,19 +77,20 @@ class BallReach {
           if (region.getValueDepth(node) <= int(depth)) {  // a tile, or the background
             if (!region.isValueOn(node)) return true;
           } else if (depth + 1 < kEdges.size() ? meetsOutside(region, part, depth + 1)
-                                               : meetsOutside(*region.probeConstLeaf(node))) {
+                                               : meetsOutside(*region.probeConstLeaf(node), part)) {
             return true;
           }
         }
     return false;
   }
 
-  bool meetsOutside(const MaskTree::LeafNodeType& leaf) const {
+  bool meetsOutside(const MaskTree::LeafNodeType& leaf, const CoordBBox& box) const {
     const LeafIndex::Mask outside = without(kFullMask, maskOf(leaf));
     bool found = false;
     for (uint32_t x = 0; x < 8; ++x)
       forEachBit(outside[x], [&](int bit) {
-        found = found || isNear(leaf.origin() + Coord(int(x), bit >> 3, bit & 7));
+        const Coord voxel = leaf.origin() + Coord(int(x), bit >> 3, bit & 7);
+        found = found || (box.isInside(voxel) && isNear(voxel));
       });
     return found;
   }

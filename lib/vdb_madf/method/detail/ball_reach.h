@@ -9,8 +9,9 @@
 
 namespace vdb_madf::detail {
 
-/// Is some voxel outside of the domain nearer to a point than its D? In a region that takes time
-/// for the parts of its tree that the ball meets and that are neither all in it nor all outside.
+/// Is some voxel outside of the domain nearer to a point than its D? If all is in a plane, voxels
+/// of that plane alone count. In a region that takes time for the parts of its tree that the ball
+/// meets and that are neither all in it nor all outside.
 bool reachesOut(const CriticalPoint& point, const Domain& domain, const VoxelWeights& weights);
 
 }  // namespace vdb_madf::detail

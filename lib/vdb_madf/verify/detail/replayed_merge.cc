@@ -289,12 +289,17 @@ void joinSmall(const Manifolds& manifolds, int64_t least, Grains& grains) {
 
 }  // namespace
 
-/// Does the domain hold each voxel that is nearer to a point than its squared radius?
+/// Does the domain hold each voxel that is nearer to a point than its squared radius? (If it is
+/// flat, each of its plane.)
 bool isWithin(const Domain& domain, const Coord& center, int64_t squaredRadius,
               const std::array<int64_t, 3>& weights) {
   Coord reach;
+  bool isPlane = false;
   for (size_t axis = 0; axis < 3; ++axis)
-    reach[int(axis)] = int(std::ceil(std::sqrt(double(squaredRadius) / double(weights[axis]))));
+    if (isPlane || domain.box().dim()[int(axis)] > 1)
+      reach[int(axis)] = int(std::ceil(std::sqrt(double(squaredRadius) / double(weights[axis]))));
+    else
+      isPlane = true;
   for (auto p = CoordBBox(center - reach, center + reach).begin(); p; ++p) {
     int64_t squared = 0;
     for (size_t axis = 0; axis < 3; ++axis) {
