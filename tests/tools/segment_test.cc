@@ -421,7 +421,8 @@ TEST_CASE("cli: segment --dry-run says what it would take, and does nothing", "[
   CHECK(filtered.at("estimated_scratch_bytes") > slabs.at("estimated_scratch_bytes"));
   const double slabMemory = slabs.at("estimated_memory_bytes");
   CHECK(slabMemory > made.at("peak_memory_bytes"));
-  // The peak here is without what loading the libraries takes (warm_start.c).
-  constexpr double kLibraries = 12 << 20;
+  // The peak here is without what loading the libraries takes (warm_start.c): up to 29 MB, as a
+  // start of the program alone shows, by release.
+  constexpr double kLibraries = 28 << 20;
   CHECK(slabMemory < 4 * (made.at("peak_memory_bytes").get<double>() + kLibraries));
 }
