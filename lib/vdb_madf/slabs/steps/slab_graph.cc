@@ -177,7 +177,9 @@ class PartSteps {
     SlabPart part = slabPart(s, own, roots(s, own), work_.store.read(kContacts, s),
                              work_.store.receive(kRootsBelow, s - 1, s),
                              work_.store.receive(kTouched, s + 1, s));
-    work_.facts.place(part.graph);
+    const SlabFacts& facts = work_.facts;
+    part.graph.weights = facts.weights;
+    if (facts.domain) placeGraph(part.graph, *facts.domain, facts.obstacles.open);
     work_.store.write(kGraphPart, s, part);
   }
   SlabWork& work_;

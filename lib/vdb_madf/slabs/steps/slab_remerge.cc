@@ -52,7 +52,6 @@ SlabRemerge::SlabRemerge(const LabelSlabs& manifolds, SlabWork& work)
     : manifolds_(manifolds), work_(work) {
   work_.facts.weights = storedWeights(*manifolds.about);
   work_.facts.domain = storedDomain(*manifolds.about);
-  work_.facts.obstacles.open = storedBoundary(*manifolds.about) == Boundary::open;
 }
 
 void SlabRemerge::read() {
@@ -82,8 +81,7 @@ void SlabRemerge::merge(SlabSegmentation& result, const PutLabels& put) {
 /// nodes of its part as terminals.
 void SlabRemerge::take(size_t s) {
   const Int32Grid::Ptr manifold = manifolds_.read(s, work_.interrupter);
-  SlabPart part = requiredPart(*manifold);
-  work_.facts.place(part.graph);  // the grid does not hold a region, which the whole has
+  const SlabPart part = requiredPart(*manifold);
   SlabBody body;
   body.index = topologyOf(*manifold);
   const LeafIndex& index = body.index;

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "vdb_madf/method/boundary.h"
-#include "vdb_madf/method/manifold_graph.h"
 #include "vdb_madf/slabs/segment_slabs.h"
 #include "vdb_madf/slabs/steps/slab_steps.h"
 
@@ -19,12 +18,6 @@ struct SlabFacts {
   int32_t largestSquaredDistance = 0;  ///< of all slabs, once they are measured
 
   bool inRegion() const { return obstacles.inRegion(); }
-
-  /// Tells a part of the graph of its metric and of the domain.
-  void place(ManifoldGraph& graph) const {
-    graph.weights = weights;
-    if (domain) placeGraph(graph, *domain, obstacles.open);
-  }
 };
 
 /// What all steps of segmentSlabs() work with.
