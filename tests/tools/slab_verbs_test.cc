@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/catch.h"
+#include "support/refusals.h"
 #include "support/slab_runs.h"
 
 using namespace vdb_madf::test;
@@ -69,17 +70,10 @@ TEST_CASE("slabs: remerge makes others of them, as of one file", "[slabs]") {
   bench.mustRun("remerge one.vdb one.tif -q");
   CHECK(bench.bytes("out.tif") == bench.bytes("one.tif"));
 
-  const auto refused = [&](const std::string& arguments, const std::string& why) {
-    INFO(arguments);
-    const Outcome run = bench.run(arguments);
-    CHECK(run.exitCode != 0);
-    CHECK_THAT(run.err, Contains(why));
-    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
-    CHECK_FALSE(bench.names().count("other.slabs"));
-    CHECK_FALSE(bench.names().count("other.slabs.part"));
-  };
+  const auto refused = [&](const std::string& arguments, const std::string& why,
+                           int code = kFailed) { refuses(bench, code, arguments, {why}); };
   refused("remerge one.vdb other.slabs", "no folder of slabs");
-  refused("remerge in.slabs in.slabs", "in.slabs");
+  refused("remerge in.slabs in.slabs", "in.slabs", kWrongUsage);
   refused("remerge in.slabs other.slabs --tidy 17", "at least as many voxels high");
   refused("remerge in.slabs/slab-0001.vdb other.vdb", "give the whole folder");
   bench.mustRun("segment in.vdb bare.slabs --slab-height 16 --grid object -q");
@@ -123,20 +117,15 @@ TEST_CASE("slabs: sweep merges their manifolds, as of one file", "[slabs]") {
   bench.mustRun("sweep in.vdb object.csv --grid object --gamma 0 --strictness 9 -q");
   CHECK(bench.bytes("grain.csv") == bench.bytes("object.csv"));
 
-  const auto refused = [&](const std::string& arguments, const std::string& why) {
-    INFO(arguments);
-    const Outcome run = bench.run("sweep in.slabs out.csv " + arguments);
-    CHECK(run.exitCode != 0);
-    CHECK_THAT(run.err, Contains(why));
-    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
-    CHECK_FALSE(bench.names().count("out.csv"));
-    CHECK_FALSE(bench.names().count("out.csv.scratch"));
+  const auto refused = [&](const std::string& arguments, const std::string& why,
+                           int code = kFailed) {
+    refuses(bench, code, "sweep in.slabs out.csv " + arguments, {why});
   };
-  refused("--gamma 20", "those of gamma 9");
-  refused("--boundary closed", "--boundary");
-  refused("--phase 1", "leave --phase out");
-  refused("--fill-holes 3", "leave --fill-holes out");
-  refused("--crop 0,0,0:9,9,9", "leave --crop out");
+  refused("--gamma 20", "those of gamma 9", kWrongUsage);
+  refused("--boundary closed", "--boundary", kWrongUsage);
+  refused("--phase 1", "leave --phase out", kWrongUsage);
+  refused("--fill-holes 3", "leave --fill-holes out", kWrongUsage);
+  refused("--crop 0,0,0:9,9,9", "leave --crop out", kWrongUsage);
   refused("--tidy 17", "at least as many voxels high");
   refused("--scratch .", "no folder of scratch data");
   const Outcome piped = bench.run("sweep in.slabs -");
@@ -175,13 +164,9 @@ TEST_CASE("slabs: pictures are those of one file", "[slabs]") {
       CHECK(bench.bytes("one.png") == bench.bytes("cut.png"));
     }
   }
-  const auto refused = [&](const std::string& arguments, const std::string& why) {
-    INFO(arguments);
-    const Outcome run = bench.run("render out.slabs no.png " + arguments);
-    CHECK(run.exitCode != 0);
-    CHECK_THAT(run.err, Contains("out.slabs") && Contains(why));
-    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
-    CHECK_FALSE(bench.names().count("no.png"));
+  const auto refused = [&](const std::string& arguments, const std::string& why,
+                           int code = kFailed) {
+    refuses(bench, code, "render out.slabs no.png " + arguments, {"out.slabs", why});
   };
   refused("--select 1,9999", "there is no grain 9999");
   refused("--slice z=93", "there is no slice z = 93");

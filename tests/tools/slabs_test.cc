@@ -10,6 +10,7 @@
 #include <string>
 
 #include "support/catch.h"
+#include "support/refusals.h"
 #include "support/slab_runs.h"
 
 using namespace vdb_madf::test;
@@ -233,21 +234,14 @@ TEST_CASE("slabs: nothing is made of a half of what a run left", "[slabs]") {
 TEST_CASE("slabs: what cannot be is said in one line", "[slabs]") {
   const Bench bench;
   bench.mustRun(kTall + "in.vdb -q");
-  const auto refused = [&](const std::string& arguments, const std::string& why) {
-    INFO(arguments);
-    const Outcome run = bench.run(arguments);
-    CHECK(run.exitCode != 0);
-    CHECK_THAT(run.err, Contains(why));
-    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
-    CHECK_FALSE(bench.names().count("out.slabs.part"));
-    CHECK_FALSE(bench.names().count("out.slabs.scratch"));
-  };
+  const auto refused = [&](const std::string& arguments, const std::string& why,
+                           int code = kFailed) { refuses(bench, code, arguments, {why}); };
   const std::string segment = "segment in.vdb out.slabs --grid object ";
-  refused(segment + "--keep power", "--keep manifold alone");
-  refused(segment + "--tables tables", "by vdb_madf measure");
+  refused(segment + "--keep power", "--keep manifold alone", kWrongUsage);
+  refused(segment + "--tables tables", "by vdb_madf measure", kWrongUsage);
   refused(segment + "--max-memory 100MiB", "allow more");
   refused("segment none.tif out.slabs", "none.tif");
-  refused("segment in.vdb one.vdb --grid object --resume", "OUT.slabs");
+  refused("segment in.vdb one.vdb --grid object --resume", "OUT.slabs", kWrongUsage);
   bench.write("out.slabs", "a file");
   refused(segment, "is there");
   CHECK(bench.bytes("out.slabs") == "a file");
