@@ -16,7 +16,7 @@ class FolderLock;
 
 /// A folder with a file for each piece, compressed, with a checksum. Each file is there whole or
 /// not at all, so that what a killed program left can be taken up again.
-class FolderScratch : public Scratch {
+class FolderScratch final : public Scratch {
  public:
   /// Makes the folder, or takes what is there, if that was made for the same work.
   /// @param work what the pieces depend on, as text
