@@ -252,6 +252,17 @@ def test_points(measured):
     assert np.allclose((normals**2).sum(1), 1)
 
 
+def test_unit(labels, measured):
+    small = madf.measure(labels, unit="um")
+    assert small.unit == "um" and small.units["area"] == "um^2"
+    assert np.allclose(small.grains["volume"], 1e9 * measured.grains["volume"], rtol=1e-12)
+    assert np.isclose(small.sample["specific_surface"], measured.sample["specific_surface"] / 1e3)
+    with pytest.raises(madf.InvalidInput, match="the unit of length cm: must be mm or um"):
+        madf.measure(labels, unit="cm")
+    with pytest.raises(madf.InvalidInput, match="the voxel size is unknown"):
+        madf.measure(np.asarray(labels).astype(np.uint16), unit="um")
+
+
 def test_measures_of_foreign_labels(labels, measured):
     again = madf.measure(np.asarray(labels).astype(np.uint16), voxel_size="10um")
     for name, column in measured.grains.items():

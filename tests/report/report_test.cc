@@ -16,6 +16,7 @@
 #include "support/catch.h"
 #include "support/files.h"
 #include "support/label_shapes.h"
+#include "support/label_slabs.h"
 #include "support/random_volume.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/measurement_files.h"
@@ -89,7 +90,7 @@ struct Page {
   std::string bytes(const std::string& id) const { return unpacked(element(id)); }
 };
 
-Page write(const Int32Grid& labels, const ReportOptions& options = {}) {
+Page write(const ReportLabels& labels, const ReportOptions& options = {}) {
   const ScratchFolder folder;
   const Report report = writeReport(folder / "page.html", labels, options);
   const Page page{readFile(folder / "page.html")};
@@ -249,7 +250,7 @@ Segmentation withManifolds(double strictness) {
 }
 
 /// Without what takes time here.
-Page writePlain(const Int32Grid& labels, const Int32Grid::ConstPtr& manifold) {
+Page writePlain(const Int32Grid::ConstPtr& labels, const Int32Grid::ConstPtr& manifold) {
   ReportOptions options;
   options.manifold = manifold;
   options.maxTriangles = 0;
@@ -305,15 +306,15 @@ TEST_CASE("report: words of a template are replaced once", "[report]") {
 TEST_CASE("report: the same bytes again, with any number of threads", "[report]") {
   NEEDS_PAGE();
   const auto labels = balls();
-  const Page page = write(*labels);
-  CHECK(write(*labels).text == page.text);
+  const Page page = write(labels);
+  CHECK(write(labels).text == page.text);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  CHECK(write(*labels).text == page.text);
+  CHECK(write(labels).text == page.text);
 }
 
 TEST_CASE("report: a page that may ask for nothing", "[report]") {
   NEEDS_PAGE();
-  const Page page = write(*balls());
+  const Page page = write(balls());
   CHECK(page.text.find("<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
                        "script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: "
                        "blob:\">") != std::string::npos);
@@ -327,7 +328,7 @@ TEST_CASE("report: titles and paths are text, whatever they hold", "[report]") {
   ReportOptions options;
   options.title = "a </script><b> & \"c\" <!-- @DATA@";
   options.labels = "/x/</script><script>alert(1)//.vdb";
-  const Page page = write(*balls(), options);
+  const Page page = write(balls(), options);
   CHECK(page.text.find(
             "<title>a &lt;/script&gt;&lt;b&gt; &amp; &quot;c&quot; &lt;!-- @DATA@</title>") !=
         std::string::npos);
@@ -343,7 +344,7 @@ TEST_CASE("report: its tables are those of the measures", "[report]") {
   setVoxelSize(*labels, VoxelSize(1e-5));
   ReportOptions options;
   options.density = 917;
-  const Page page = write(*labels, options);
+  const Page page = write(labels, options);
   const MeasurementTexts texts = measurementTexts(measure(*labels), {"", "", 917.0});
   CHECK(page.bytes("grains") == texts.grains);
   CHECK(page.bytes("bonds") == texts.bonds);
@@ -362,7 +363,7 @@ TEST_CASE("report: slices hold every voxel, or each block's most frequent label"
   for (const int side : {256, 12}) {
     ReportOptions options;
     options.maxSlice = side;
-    const Page page = write(*labels, options);
+    const Page page = write(labels, options);
     const Json about = page.json("about").at("slices");
     const int factor = side == 256 ? 1 : 3;
     REQUIRE(about.at("factor") == factor);
@@ -383,7 +384,7 @@ TEST_CASE("report: slices hold every voxel, or each block's most frequent label"
 TEST_CASE("report: every grain has a body of about its volume", "[report]") {
   NEEDS_PAGE();
   const auto labels = balls();
-  const auto volumes = meshVolumes(write(*labels), 2);
+  const auto volumes = meshVolumes(write(labels), 2);
   const Measurements measured = measure(*labels);
   for (size_t i = 0; i < 2; ++i)
     CHECK(volumes[i] == Approx(double(measured.grains[i].voxels)).epsilon(0.02));
@@ -392,7 +393,7 @@ TEST_CASE("report: every grain has a body of about its volume", "[report]") {
 TEST_CASE("report: labels above 16 bits, and grains of one voxel", "[report]") {
   NEEDS_PAGE();
   const auto labels = labelGrid(marker());
-  const Page page = write(*labels);
+  const Page page = write(labels);
   CHECK(page.bytes("grains").find("\n70000,2,") != std::string::npos);
   const auto volumes = meshVolumes(page, 4);
   for (const double volume : volumes) CHECK(volume > 0.2);
@@ -410,29 +411,47 @@ TEST_CASE("report: a grain that is lost where labels are reduced is an octahedro
   CHECK(meshVolumes(page, 1)[0] == Approx(2).epsilon(0.1));
 }
 
+TEST_CASE("report: labels in slabs have the page of the whole, reduced or not", "[report]") {
+  NEEDS_PAGE();
+  ReportOptions options;
+  options.maxSlice = 20;
+  const std::string page = write(balls(), options).text;
+  CHECK(write(inSlabs(balls(), {0, 8, 16, 32}), options).text == page);
+  CHECK(write(inSlabs(balls(), {0, 24, 32})).text == write(balls()).text);
+  // So many faces that the labels are reduced before they are meshed.
+  const auto labels = Int32Grid::create(0);
+  const CoordBBox box(Coord(0), Coord(39));
+  for (auto voxel = box.begin(); voxel; ++voxel)
+    labels->tree().setValue(*voxel, 1 + ((*voxel).x() / 2 + (*voxel).y() + (*voxel).z() / 3) % 3);
+  setDomain(*labels, Domain(box));
+  const Page whole = write(labels);
+  CHECK(write(inSlabs(labels, {0, 16, 40})).text == whole.text);
+  CHECK(whole.json("about").at("mesh").at("step") > 0.05);
+}
+
 TEST_CASE("report: no more triangles than asked for", "[report]") {
   NEEDS_PAGE();
   ReportOptions options;
   options.maxTriangles = 200;
-  CHECK(write(*balls(), options).json("about").at("mesh").at("triangles") <= 200);
+  CHECK(write(balls(), options).json("about").at("mesh").at("triangles") <= 200);
 }
 
 TEST_CASE("report: no grains, one, none that touch", "[report]") {
   NEEDS_PAGE();
   const auto none = Int32Grid::create(0);
-  CHECK_THROWS_AS(write(*none), InvalidInput);
+  CHECK_THROWS_AS(write(none), InvalidInput);
   setDomain(*none, Domain(CoordBBox({0, 0, 0}, {9, 8, 7})));
-  const Page empty = write(*none);
+  const Page empty = write(none);
   CHECK(!empty.has("mesh"));
   CHECK(empty.json("sample").at("grains") == 0);
   CHECK(sliceVoxels(empty) == std::vector<uint64_t>(720, 0));
 
-  const Page one = write(*labelGrid({{{1, 1, 1}, 5}, {{2, 1, 1}, 5}}));
+  const Page one = write(labelGrid({{{1, 1, 1}, 5}, {{2, 1, 1}, 5}}));
   CHECK(one.json("sample").at("grains") == 1);
   CHECK(one.json("about").at("unit") == "voxel");
   CHECK(one.json("about").at("voxelSizeKnown") == false);
 
-  const Page apart = write(*labelGrid({{{1, 1, 1}, 5}, {{4, 1, 1}, 6}}));
+  const Page apart = write(labelGrid({{{1, 1, 1}, 5}, {{4, 1, 1}, 6}}));
   CHECK(apart.json("sample").at("bonds") == 0);
   const std::string bonds = apart.bytes("bonds");
   CHECK(std::count(bonds.begin(), bonds.end(), '\n') == 1);
@@ -443,7 +462,7 @@ TEST_CASE("report: the table of a sweep goes along", "[report]") {
   ReportOptions options;
   options.sweep =
       "gamma,merge,strictness,delta,theta,grains,median_voxels,more\n0,score,11,,,9,8,6\n";
-  const Page page = write(*balls(), options);
+  const Page page = write(balls(), options);
   CHECK(page.bytes("sweep") == options.sweep);
 }
 
@@ -451,7 +470,7 @@ TEST_CASE("report: without a view in three dimensions there is no mesh", "[repor
   NEEDS_PAGE();
   ReportOptions options;
   options.maxTriangles = 0;
-  const Page page = write(*balls(), options);
+  const Page page = write(balls(), options);
   CHECK(!page.has("mesh"));
   CHECK(page.json("about").at("mesh").is_null());
   CHECK(page.text.find("src=\"data:image/png;base64,iVBOR") != std::string::npos);
@@ -461,7 +480,7 @@ TEST_CASE("report: with manifolds, its grains at any strictness are those of rem
   NEEDS_PAGE();
   for (const double own : {11.0, 15.25}) {
     const Segmentation grains = withManifolds(own);
-    const Page page = writePlain(*grains.grain, grains.manifold);
+    const Page page = writePlain(grains.grain, grains.manifold);
     const PageLevels levels(page);
     const double highest = std::max(own, 14.0);
     CHECK(levels.leafCount() == levels.grainVoxels(highest).size());
@@ -504,7 +523,7 @@ TEST_CASE("report: a piece in a cavity, which has no voxels, joins and names a g
   graph.edges = {{0, 2, 100, 81, true}};
   setGraph(*manifold, graph);
   const auto labels = remerge(*manifold);
-  const PageLevels levels(writePlain(*labels, manifold));
+  const PageLevels levels(writePlain(labels, manifold));
   CHECK(levels.grainVoxels(14) == std::vector<int64_t>{500, 400});
   CHECK(levels.grainVoxels(11) == std::vector<int64_t>{400, 500});
   CHECK(levels.ownGrain(1) == 2);
@@ -522,8 +541,8 @@ TEST_CASE("report: manifolds that are not those of the labels change nothing", "
   const auto others = balls();
   describeMerging(*others, {}, 2, 2);
   for (const auto& labels : {otherwise, edited, others, balls()})
-    CHECK(writePlain(*labels, grains.manifold).text == writePlain(*labels, nullptr).text);
-  CHECK(writePlain(*grains.grain, grains.manifold).has("joins"));
+    CHECK(writePlain(labels, grains.manifold).text == writePlain(labels, nullptr).text);
+  CHECK(writePlain(grains.grain, grains.manifold).has("joins"));
 }
 
 TEST_CASE("report: samples side by side have their tables and pictures", "[report]") {
@@ -531,7 +550,7 @@ TEST_CASE("report: samples side by side have their tables and pictures", "[repor
   const ScratchFolder folder;
   const auto first = balls(), second = labelGrid(marker());
   const auto sample = [](const std::string& name, const Int32Grid::Ptr& labels) {
-    return ReportSample{name, name + ".vdb", [labels]() -> Int32Grid::ConstPtr { return labels; }};
+    return ReportSample{name, name + ".vdb", [labels] { return labels; }};
   };
   ReportOptions options;
   options.title = "a & b";
@@ -562,13 +581,13 @@ TEST_CASE("report: what is refused leaves no file", "[report]") {
   const ScratchFolder folder;
   ReportOptions options;
   options.maxSlice = 0;
-  CHECK_THROWS_AS(writeReport(folder / "p.html", *balls(), options), InvalidInput);
+  CHECK_THROWS_AS(writeReport(folder / "p.html", balls(), options), InvalidInput);
   options = {};
   options.pictureEdge = 8;
-  CHECK_THROWS_AS(writeReport(folder / "p.html", *balls(), options), InvalidInput);
+  CHECK_THROWS_AS(writeReport(folder / "p.html", balls(), options), InvalidInput);
   options = {};
   options.sweep = "a,b\n1,2\n";
-  CHECK_THROWS_AS(writeReport(folder / "p.html", *balls(), options), InvalidInput);
-  CHECK_THROWS_AS(writeReport(folder / "none/p.html", *balls()), IoError);
+  CHECK_THROWS_AS(writeReport(folder / "p.html", balls(), options), InvalidInput);
+  CHECK_THROWS_AS(writeReport(folder / "none/p.html", balls()), IoError);
   CHECK(folder.fileCount() == 0);
 }

@@ -10,6 +10,7 @@
 
 #include "support/catch.h"
 #include "support/label_shapes.h"
+#include "support/label_slabs.h"
 #include "support/mesh_checks.h"
 #include "vdb_madf/base/errors.h"
 
@@ -232,6 +233,7 @@ TEST_CASE("grain_mesh: triangles are counted without meshing", "[grain_mesh]") {
     grid->tree().setValueOn({40, 0, 0}, -3);  // background
     CHECK(countTriangles(*grid) == grainMesh(*grid).triangles.size());
     CHECK(countTriangles(*grid) == grainMesh(*grid, {3}).triangles.size());
+    CHECK(countTriangles(inSlabs(grid, {-24, -8, 8, 16, 32})) == countTriangles(*grid));
   }
   auto tiled = labelGrid({});
   tiled->fill(CoordBBox(Coord(0), Coord(15, 7, 7)), 5);

@@ -409,6 +409,11 @@ TEST_CASE("cli: segment writes the tables that measure writes, with any threads"
   one["labels"] = "two.vdb";
   CHECK(one == Json::parse(bench.bytes("two/sample.json")));
   requireSumsFit(bench, "one");
+  bench.mustRun("segment pack.vdb one.vdb --tables small --unit um");
+  bench.mustRun("measure one.vdb measured --unit um");
+  CHECK(bench.bytes("small/bonds.csv") == bench.bytes("measured/bonds.csv"));
+  CHECK(bench.run("segment pack.vdb one.vdb --unit um").err.find("give --tables, too") !=
+        std::string::npos);
 }
 
 TEST_CASE("cli: the tables of a CT scan, with one thread and with two", "[cli]") {

@@ -17,6 +17,7 @@
 #include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/read_text.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
 
 namespace vdb_madf::tools {
@@ -70,25 +71,33 @@ Int32Grid::Ptr manifoldsBeside(const InputOptions& input, Progress* progress) {
   return manifoldsAmong(readVdb(input.path, manifolds, progress));
 }
 
+/// In slabs only if they can be measured so.
+ReportLabels labelsOf(const InputOptions& input, const Common& common) {
+  common.progress->start("read");
+  if (isInSlabs(input)) {
+    const LabelSlabs slabs = openLabelSlabs(input, "--grid", common.progress);
+    const auto domain = storedDomain(*slabs.about);
+    if (domain && domain->isBox()) return slabs;
+  }
+  return Int32Grid::ConstPtr(loadLabels(input, "--grid", common.progress));
+}
+
 Report writeOne(const ReportArguments& o, const Common& common) {
   ReportOptions options = o.report;
   if (!o.sweep.empty()) options.sweep = readText(o.sweep, kMaxSweepBytes);
   if (!o.sweep.empty() && !isSweepTable(options.sweep))
     throw InvalidInput(o.sweep + ": is no table of the verb sweep");
-  common.progress->start("read");
-  const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
+  const ReportLabels labels = labelsOf(o.input, common);
   options.manifold = manifoldsBeside(o.input, common.progress);
   return withFileName(o.input.path,
-                      [&] { return writeReport(o.out, *labels, options, common.progress); });
+                      [&] { return writeReport(o.out, labels, options, common.progress); });
 }
 
 Report writeAll(const ReportArguments& o, const Common& common) {
   std::vector<ReportSample> samples;
   for (const InputOptions& input : o.samples)
-    samples.push_back({input.path, input.path, [&input, &common]() -> Int32Grid::ConstPtr {
-                         common.progress->start("read");
-                         return loadLabels(input, "--grid", common.progress);
-                       }});
+    samples.push_back(
+        {input.path, input.path, [&input, &common] { return labelsOf(input, common); }});
   return writeComparison(o.out, samples, o.report, common.progress);
 }
 

@@ -61,6 +61,8 @@ void parseFiles(SegmentArguments& o) {
   o.input.longestSide = hasSlabsEnding(o.out) || o.autoSlabs ? kMaxImageSide : kMaxExtent;
   o.input.parse();
   if (!o.maxMemory.empty()) o.segment.maxMemory = parseMemory(o.maxMemory);
+  if (!o.unit.empty() && o.tables.empty())
+    throw WrongUsage("--unit is that of the tables: give --tables, too");
   if (o.necks && (o.tables.empty() || !readsGray(o.input.gray)))
     throw WrongUsage("--necks measures those of a gray scan: give --tables and --threshold, too");
   if (o.out.empty() && !o.dryRun) throw WrongUsage("OUT is required (or --dry-run)");
@@ -208,6 +210,7 @@ void runSegment(const SegmentArguments& o, const Common& common) {
     const Clock::time_point startMeasure = Clock::now();
     TableOptions about;
     about.labels = o.out;
+    about.unit = o.unit;
     const Measurements measurements = measureGrains(o, s, common.progress);
     biases = sizeBiases(measurements);
     tables->write(measurements, about);
@@ -270,6 +273,8 @@ void addSegment(Verb command, Common& common, Action& action) {
   verb.option("--tables", o->tables,
               "also measure: grains.csv, bonds.csv, sample.json in here (a folder, or FILE.h5)")
       .typeName("DIR");
+  verb.option("--unit", o->unit, "with --tables: of lengths; default: mm, of voxels under 20 nm um")
+      .oneOf({"mm", "um"});
   verb.flag("--necks", o->necks,
             "with --tables: the necks as the gray scan shows them, freed of its blur, too");
   verb.option("--json", o->json, "machine-readable summary (-: standard output)").typeName("FILE");

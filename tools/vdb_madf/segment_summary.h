@@ -22,7 +22,7 @@ namespace vdb_madf::tools {
 /// What was typed after `segment`, and what it means.
 struct SegmentArguments {
   InputOptions input;
-  std::string out, gamma = "0", boundary = "auto", keep, json, maxMemory, tables;
+  std::string out, gamma = "0", boundary = "auto", keep, json, maxMemory, tables, unit;
   std::string fillHoles, tidy;
   MergeArguments merge;
   bool paper = false, dryRun = false;

@@ -240,7 +240,8 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
                        const std::string& grayGrid, bool edgeWeights, bool voronoi, bool sizeCurve,
                        const std::string& sizeReference, const py::object& phases,
                        const std::string& phasesGrid, int64_t binder, const GridPtr& manifold,
-                       int bootstrap, int sensitivity, const std::map<std::string, double>& vary) {
+                       int bootstrap, int sensitivity, const std::map<std::string, double>& vary,
+                       const std::string& unitName) {
   const Int32Grid& grid = asLabels(*labels);
   MeasureOptions options;
   options.minFaces = minFaces;
@@ -278,7 +279,7 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
     if (sensitivity > 0) measureSensitivity(grid, openAgain, again, result, interrupter);
     return result;
   });
-  const TableUnit unit(measured);
+  const TableUnit unit(measured, unitName);
   py::dict dict, units;
   dict["grains"] = table(grainColumns(measured.grains, measured.extra), unit, units);
   dict["bonds"] = table(bondColumns(measured.bonds, measured.extra), unit, units);
@@ -345,7 +346,7 @@ void bindMeasures(py::module_& m) {
         py::arg("intensity_grid"), py::arg("gray"), py::arg("gray_grid"), py::arg("edge_weights"),
         py::arg("voronoi"), py::arg("size_curve"), py::arg("size_reference"), py::arg("phases"),
         py::arg("phases_grid"), py::arg("binder"), py::arg("manifold"), py::arg("bootstrap"),
-        py::arg("sensitivity"), py::arg("vary"));
+        py::arg("sensitivity"), py::arg("vary"), py::arg("unit"));
   m.def("compare", compareLabels, py::arg("truth"), py::arg("test"), py::arg("call"));
 }
 

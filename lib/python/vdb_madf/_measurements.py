@@ -132,13 +132,14 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
             size_reference: Optional[str] = None, phases: Optional[Source] = None,
             phases_grid: Optional[str] = None, binder: int = 1, stability: bool = False,
             bootstrap: int = 0, sensitivity: int = 0, vary: Optional[Dict[str, float]] = None,
-            dataset: Optional[str] = None, grid: Optional[str] = None, progress: Progress = None,
-            threads: int = 0) -> Measurements:
+            unit: Optional[str] = None, dataset: Optional[str] = None, grid: Optional[str] = None,
+            progress: Progress = None, threads: int = 0) -> Measurements:
     """Measures the grains of labels, of any program.
 
     boundary: what lies beyond the faces, "open" (unknown, so that they are no surface), "closed" or
-    "auto": as the labels were made, else open. min_faces: of a bond. voxel_size, dataset, grid: as
-    of Labels, of files and arrays. help(Measurements) says what the columns mean.
+    "auto": as the labels were made, else open. min_faces: of a bond. unit: of lengths, "mm" or
+    "um"; default: mm, of voxels under 20 nm um, without a voxel size voxels. voxel_size, dataset, grid:
+    as of Labels, of files and arrays. help(Measurements) says what the columns mean.
 
     What is there on demand:
     shape: columns `feret_max`, `feret_min`, `convex_volume`, `solidity`, `zingg_class` of the
@@ -187,5 +188,6 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
                              phases=None if phases is None else readable(phases),
                              phases_grid=phases_grid or "", binder=binder,
                              manifold=labels._manifolds() if stability else None,
-                             bootstrap=bootstrap, sensitivity=sensitivity, vary=vary or {})
+                             bootstrap=bootstrap, sensitivity=sensitivity, vary=vary or {},
+                             unit=unit or "")
     return Measurements(**made, provenance=measured.metadata)

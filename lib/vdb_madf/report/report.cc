@@ -38,7 +38,8 @@ const detail::PageSources& sourcesFor(const std::string& path) {
 }
 
 /// What is wrong with a sample names it.
-std::unique_ptr<detail::ReportParts> partsOf(const Int32Grid& labels, const ReportOptions& options,
+std::unique_ptr<detail::ReportParts> partsOf(const ReportLabels& labels,
+                                             const ReportOptions& options,
                                              const std::string& suffix, Interrupter* interrupter) {
   try {
     return std::make_unique<detail::ReportParts>(labels, options, suffix, interrupter);
@@ -80,8 +81,8 @@ bool isSweepTable(const std::string& text) {
   return text.compare(0, head.size(), head) == 0;
 }
 
-Report writeReport(const std::string& path, const Int32Grid& labels, const ReportOptions& options,
-                   Interrupter* interrupter) {
+Report writeReport(const std::string& path, const ReportLabels& labels,
+                   const ReportOptions& options, Interrupter* interrupter) {
   checkOptions(options);
   const detail::PageSources& sources = sourcesFor(path);
   detail::OutputStream file(path, interrupter);
@@ -105,12 +106,12 @@ Report writeComparison(const std::string& path, const std::vector<ReportSample>&
   Report whole;
   std::string unit;
   for (size_t i = 0; i < samples.size(); ++i) {
-    const Int32Grid::ConstPtr labels = samples[i].labels();
+    const ReportLabels labels = samples[i].labels();
     ReportOptions own = options;
     own.title = samples[i].name;
     own.labels = samples[i].path;
     own.manifold = nullptr;
-    const auto made = partsOf(*labels, own, "-" + std::to_string(i), interrupter);
+    const auto made = partsOf(labels, own, "-" + std::to_string(i), interrupter);
     const detail::ReportParts& parts = *made;
     if (i > 0 && parts.unit() != unit)
       throw InvalidInput("lengths of " + samples[0].path + " are in " + unit + ", those of " +

@@ -7,13 +7,18 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "vdb_madf/base/interrupter.h"
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/label_slabs.h"
 #include "vdb_madf/measure/measure.h"
 
 namespace vdb_madf {
+
+/// In memory, or in slabs, which need not fit there together.
+using ReportLabels = std::variant<Int32Grid::ConstPtr, LabelSlabs>;
 
 /// What a page says of a sample, and how fine its view is.
 struct ReportOptions {
@@ -57,17 +62,18 @@ bool isSweepTable(const std::string& text);
 /// labels with many times the triangles reduced ones are meshed, and a grain that is lost there
 /// becomes an octahedron of its volume. With manifolds, mesh and slices are those of the grains at
 /// the largest strictness of the slider, without tidying; at any other, the page joins these and
-/// adds up their measures. Memory: that of measure() and grainMesh(), and of the
-/// page's text.
+/// adds up their measures. Memory: that of measure() and grainMesh(), and of the page's text.
+/// Labels in slabs are the same page; they are in memory together only if they are meshed, or
+/// sliced, without being reduced.
 /// @throw InvalidInput for options out of range, labels without a domain and without grains, and as
 ///   measure() does; IoError, also if !canWriteReport(); Interrupted.
-Report writeReport(const std::string& path, const Int32Grid& labels,
+Report writeReport(const std::string& path, const ReportLabels& labels,
                    const ReportOptions& options = {}, Interrupter* interrupter = nullptr);
 
 /// One of several.
 struct ReportSample {
-  std::string name, path;                       ///< of the labels
-  std::function<Int32Grid::ConstPtr()> labels;  ///< called once: one sample is in memory at a time
+  std::string name, path;                ///< of the labels
+  std::function<ReportLabels()> labels;  ///< called once: one sample is in memory at a time
 };
 
 /// Writes samples side by side: their numbers, pictures, distributions and roses. Of the options

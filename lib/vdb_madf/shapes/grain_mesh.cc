@@ -10,6 +10,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
+#include "vdb_madf/labels/detail/rimmed_slabs.h"
 #include "vdb_madf/labels/select_grains.h"
 #include "vdb_madf/shapes/detail/net_builder.h"
 #include "vdb_madf/shapes/detail/simplify.h"
@@ -62,6 +63,29 @@ void check(const GrainMeshOptions& options) {
   if (!(options.error >= 0)) throw InvalidInput("the error of meshes must be 0 or more");
 }
 
+/// Of the blocks whose z is wanted.
+template <typename IsWanted>
+uint64_t trianglesOf(const Int32Grid& labels, const IsWanted& isWanted, Interrupter* interrupter) {
+  const LabelBlocks blocks(labels);
+  std::vector<uint64_t> quads(blocks.size());
+  detail::parallelFor(blocks.size(), kBlockGrain, interrupter, [&](size_t begin, size_t end) {
+    detail::LabelHalo halo;
+    for (size_t block = begin; block < end; ++block) {
+      if (!isWanted(blocks.origin(block).z())) continue;
+      blocks.readHalo(block, halo);
+      // The faces below the voxels of a block are its own; each grain at a face has it.
+      for (int x = 0; x < 8; ++x)
+        for (int y = 0; y < 8; ++y)
+          for (int z = 0; z < 8; ++z) {
+            const int32_t* at = &halo[detail::haloAt(x, y, z)];
+            for (const int step : detail::kHaloStride)
+              if (at[0] != at[-step]) quads[block] += uint64_t(at[0] > 0) + uint64_t(at[-step] > 0);
+          }
+    }
+  });
+  return 2 * std::accumulate(quads.begin(), quads.end(), uint64_t(0));
+}
+
 }  // namespace
 
 GrainMesh grainMesh(const Int32Grid& labels, const GrainMeshOptions& options,
@@ -98,23 +122,21 @@ GrainMesh meshOfGrains(const Int32Grid& labels, const std::vector<int32_t>& grai
 }
 
 uint64_t countTriangles(const Int32Grid& labels, Interrupter* interrupter) {
-  const LabelBlocks blocks(labels);
-  std::vector<uint64_t> quads(blocks.size());
-  detail::parallelFor(blocks.size(), kBlockGrain, interrupter, [&](size_t begin, size_t end) {
-    detail::LabelHalo halo;
-    for (size_t block = begin; block < end; ++block) {
-      blocks.readHalo(block, halo);
-      // The faces below the voxels of a block are its own; each grain at a face has it.
-      for (int x = 0; x < 8; ++x)
-        for (int y = 0; y < 8; ++y)
-          for (int z = 0; z < 8; ++z) {
-            const int32_t* at = &halo[detail::haloAt(x, y, z)];
-            for (const int step : detail::kHaloStride)
-              if (at[0] != at[-step]) quads[block] += uint64_t(at[0] > 0) + uint64_t(at[-step] > 0);
-          }
-    }
-  });
-  return 2 * std::accumulate(quads.begin(), quads.end(), uint64_t(0));
+  return trianglesOf(
+      labels, [](int) { return true; }, interrupter);
+}
+
+uint64_t countTriangles(const LabelSlabs& labels, Interrupter* interrupter) {
+  detail::RimmedSlabs slabs(labels);
+  uint64_t triangles = 0;
+  for (size_t s = 0; slabs.next(interrupter); ++s) {
+    // Blocks above the last slab have faces of its voxels.
+    const int below = labels.cuts[s],
+              above = labels.cuts[s + 1] + (s + 2 == labels.cuts.size() ? 8 : 0);
+    triangles += trianglesOf(
+        slabs.labels(), [&](int z) { return z >= below && z < above; }, interrupter);
+  }
+  return triangles;
 }
 
 std::vector<double> meshVolumes(const GrainMesh& mesh) {

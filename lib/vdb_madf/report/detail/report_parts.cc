@@ -73,10 +73,34 @@ Json paletteJson(const GrainColors& colors) {
   return palette;
 }
 
+/// f(labels), of either kind.
+template <typename F>
+auto applied(const ReportLabels& labels, const F& f) {
+  if (const auto* const whole = std::get_if<Int32Grid::ConstPtr>(&labels)) return f(**whole);
+  return f(std::get<LabelSlabs>(labels));
+}
+
+/// A grid with their metadata.
+const Int32Grid& aboutOf(const ReportLabels& labels) {
+  const auto* const whole = std::get_if<Int32Grid::ConstPtr>(&labels);
+  return whole ? **whole : *std::get<LabelSlabs>(labels).about;
+}
+
+/// In one grid; itself if it is one, and is not reduced.
+Int32Grid::ConstPtr reduced(const ReportLabels& labels, int factor, Interrupter* interrupter) {
+  if (const auto* const whole = std::get_if<Int32Grid::ConstPtr>(&labels))
+    if (factor == 1) return *whole;
+  return applied(labels, [&](const auto& fine) -> Int32Grid::ConstPtr {
+    return reduceLabels(fine, factor, interrupter);
+  });
+}
+
 /// How far to reduce labels for about so many triangles: the surface of a sample has a factor
 /// squared less.
-int reductionTo(uint64_t most, const Int32Grid& labels, Interrupter* interrupter) {
-  const double times = double(countTriangles(labels, interrupter)) / double(most);
+int reductionTo(uint64_t most, const ReportLabels& labels, Interrupter* interrupter) {
+  const uint64_t all =
+      applied(labels, [&](const auto& fine) { return countTriangles(fine, interrupter); });
+  const double times = double(all) / double(most);
   return std::clamp(int(std::ceil(std::sqrt(times))), 1, kMaxReduction);
 }
 
@@ -88,25 +112,26 @@ void enlarge(GrainMesh& mesh, int factor) {
 
 }  // namespace
 
-ReportParts::ReportParts(const Int32Grid& labels, const ReportOptions& options, std::string suffix,
-                         Interrupter* interrupter)
+ReportParts::ReportParts(const ReportLabels& labels, const ReportOptions& options,
+                         std::string suffix, Interrupter* interrupter)
     : labels_(labels), options_(options), suffix_(std::move(suffix)), interrupter_(interrupter) {
   begin("measure");
-  measured_ = measure(labels, options.measure, interrupter);
+  measured_ =
+      applied(labels, [&](const auto& all) { return measure(all, options.measure, interrupter); });
   box_ = sliceBox_ = measured_.sample.box;
   if (box_.empty()) throw InvalidInput("has no labels and no domain: nothing to show");
-  colors_ = grainColors(labels, interrupter);
+  colors_ = applied(labels, [&](const auto& all) { return grainColors(all, interrupter); });
   for (const GrainMeasures& grain : measured_.grains) ids_.push_back(grain.id);
   if (options.manifold) addLevels();
 }
 
 void ReportParts::addLevels() {
   begin("levels");
-  levels_ = grainLevels(labels_, ids_, *options_.manifold, interrupter_);
+  levels_ = grainLevels(aboutOf(labels_), ids_, *options_.manifold, interrupter_);
   if (!levels_) return;
-  setVoxelSize(*levels_->leaves, storedVoxelSize(labels_));
+  setVoxelSize(*levels_->leaves, storedVoxelSize(aboutOf(labels_)));
   MeasureOptions options = options_.measure;
-  options.domain = options.domain ? options.domain : storedDomain(labels_);
+  options.domain = options.domain ? options.domain : storedDomain(aboutOf(labels_));
   options.minFaces = 1;  // the page sums the faces of leaves before it counts them
   leafMeasures_ = measure(*levels_->leaves, options, interrupter_);
 }
@@ -164,11 +189,9 @@ std::string ReportParts::sweep() const {
 std::string ReportParts::slices() {
   begin("slices");
   reduction_ = reductionFor(box_, options_.maxSlice);
-  const Int32Grid::ConstPtr reduced =
-      reduction_ > 1 ? reduceLabels(bodies(), reduction_, interrupter_) : nullptr;
-  if (reduced) sliceBox_ = boxOf(*reduced);
-  return dataElement("labels" + suffix_,
-                     packLabels(reduced ? *reduced : bodies(), sliceBox_, bodyIds(), interrupter_));
+  const Int32Grid::ConstPtr sliced = reduced(bodies(), reduction_, interrupter_);
+  if (reduction_ > 1) sliceBox_ = boxOf(*sliced);
+  return dataElement("labels" + suffix_, packLabels(*sliced, sliceBox_, bodyIds(), interrupter_));
 }
 
 std::string ReportParts::mesh() {
@@ -181,9 +204,7 @@ std::string ReportParts::mesh() {
   const uint64_t most =
       std::min(kMostMeshed, kMostSimplified * std::max(options.triangles, kFewestTriangles));
   const int factor = reductionTo(most, bodies(), interrupter_);
-  GrainMesh mesh =
-      factor > 1 ? grainMesh(*reduceLabels(bodies(), factor, interrupter_), options, interrupter_)
-                 : grainMesh(bodies(), options, interrupter_);
+  GrainMesh mesh = grainMesh(*reduced(bodies(), factor, interrupter_), options, interrupter_);
   if (factor > 1) enlarge(mesh, factor);
   const PackedMesh packed = packMesh(mesh, bodyMeasures().grains, kMeshStep * double(factor));
   points_ = packed.points;
@@ -238,8 +259,9 @@ std::string ReportParts::about() const {
 std::string ReportParts::picture() const {
   begin("picture");
   const PanelOptions panel{false, true, options_.pictureEdge, view_};
-  const std::vector<PicturePanel> panels = labelPanels(labels_, box_, panel, interrupter_);
-  const Picture sheet = pictureSheet(panels, storedVoxelSize(labels_));
+  const std::vector<PicturePanel> panels = applied(
+      labels_, [&](const auto& all) { return labelPanels(all, box_, panel, interrupter_); });
+  const Picture sheet = pictureSheet(panels, storedVoxelSize(aboutOf(labels_)));
   return fmt::format(
       "<img id=\"picture{}\" alt=\"The grains from outside\" width=\"{}\" height=\"{}\" "
       "src=\"data:image/png;base64,{}\">\n",
