@@ -138,8 +138,8 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
 
     boundary: what lies beyond the faces, "open" (unknown, so that they are no surface), "closed" or
     "auto": as the labels were made, else open. min_faces: of a bond. unit: of lengths, "mm" or
-    "um"; default: mm, of voxels under 20 nm um, without a voxel size voxels. voxel_size, dataset, grid:
-    as of Labels, of files and arrays. help(Measurements) says what the columns mean.
+    "um"; default: mm, of voxels under 20 nm um, without a voxel size voxels. voxel_size, dataset,
+    grid: as of Labels, of files and arrays. help(Measurements) says what the columns mean.
 
     What is there on demand:
     shape: columns `feret_max`, `feret_min`, `convex_volume`, `solidity`, `zingg_class` of the

@@ -58,10 +58,10 @@ void addClasses(const ManifoldGraph& graph, Hierarchy& hierarchy) {
 /// Joins the pair of largest score, again and again.
 ///
 /// Each pair waits in the heap of its b, under the score less b's volume term; b takes a turn with
-/// its first pair. When b has grown, but has its m, s and name still, what was computed of its
+/// its first pair. When a or b has grown, but has its m, s and name still, what was computed of its
 /// pairs is a bound, for it can only have become smaller (JoinScore): that of the first one is
 /// computed anew when it is its turn. So a class that joins thousands of small neighbors does not
-/// look at all others each time.
+/// look at all others each time, but only at those that it has outgrown (`larger`).
 ///
 /// Wherever there is a score 1 <= h < m: an edge with 0 < h that had not h < m of both its classes
 /// has joined them before (addClasses), and m only grows.
@@ -98,7 +98,7 @@ class Joining {
           continue;
         }
         pop(b.pairs);
-        if (isNew) push(b.pairs, waiting(restOfScore(pair, first.of), first.of));
+        if (isNew) wait(first.of, pair);
         pop(turns_);
         takeTurn(turn.of);
       } else {
@@ -125,6 +125,12 @@ class Joining {
     int64_t faces;  ///< up to JoinScore::kMaxFaces
     uint32_t version = 0;
   };
+  /// A pair whose score may gain once its a has as many voxels as its b.
+  struct Larger {
+    int64_t voxels;  ///< of b, which may have grown
+    uint32_t of, version;
+    bool operator<(const Larger& o) const { return voxels > o.voxels; }  // the first is the least
+  };
   struct Cluster {
     int64_t voxels = 0;
     detail::ScoredClass size;
@@ -132,17 +138,19 @@ class Joining {
     uint32_t version = 0;
     std::unordered_map<uint32_t, uint32_t> contactWith = {};  ///< by cluster
     std::vector<Waiting> pairs = {};                          ///< a heap: those of which it is b
-    std::vector<Waiting> above = {};                          ///< those of which it is a
+    std::vector<Larger> larger = {};                          ///< a heap: those of which it is a
   };
   struct Pair {
     uint32_t a = 0, b = 0;
   };
 
-  static void push(std::vector<Waiting>& heap, const Waiting& item) {
+  template <typename Item>
+  static void push(std::vector<Item>& heap, const Item& item) {
     heap.push_back(item);
     std::push_heap(heap.begin(), heap.end());
   }
-  static void pop(std::vector<Waiting>& heap) {
+  template <typename Item>
+  static void pop(std::vector<Item>& heap) {
     std::pop_heap(heap.begin(), heap.end());
     heap.pop_back();
   }
@@ -189,14 +197,20 @@ class Joining {
     return {score, first, second, contact, c.version};
   }
 
+  /// Puts a pair where it waits.
+  void wait(uint32_t contact, const Pair& pair) {
+    push(clusters_[pair.b].pairs, waiting(restOfScore(pair, contact), contact));
+    const detail::ScoredClass &a = clusters_[pair.a].size, &b = clusters_[pair.b].size;
+    if (a.top == b.top || (b.sure < b.top && b.voxels > a.voxels))
+      push(clusters_[pair.a].larger, {b.voxels, contact, contacts_[contact].version});
+  }
+
   /// Lets the pair of a contact wait anew, if it has a score.
   void score(uint32_t contact) {
     ++contacts_[contact].version;
     if (contacts_[contact].height <= 0) return;
     const Pair pair = pairOf(contact);
-    const Waiting entry = waiting(restOfScore(pair, contact), contact);
-    clusters_[pair.a].above.push_back(entry);
-    push(clusters_[pair.b].pairs, entry);
+    wait(contact, pair);
     if (clusters_[pair.b].pairs.front().of == contact) takeTurn(pair.b);
   }
 
@@ -236,17 +250,17 @@ class Joining {
     for (const auto& [other, its] : gone.contactWith)
       changed.push_back(moveContact(its, other, goneIndex, keptIndex));
     // Another name, another order of equal scores, and maybe another m; else, if what is sure of m
-    // is the same, only what touches the part that came, and the scores in which the cluster is a,
-    // are new.
+    // is the same, only what touches the part that came, and what it has outgrown, is new.
     if (kept.name != nameBefore || kept.size.sure != sureBefore) {
       changed.clear();
       for (const auto& [other, its] : kept.contactWith) changed.push_back(its);
-      kept.above.clear();
+      kept.larger.clear();
     } else {
       for (const uint32_t c : changed) ++contacts_[c].version;
-      for (const Waiting& entry : kept.above)
-        if (contacts_[entry.of].version == entry.version) changed.push_back(entry.of);
-      kept.above.clear();
+      for (; !kept.larger.empty() && kept.larger.front().voxels <= kept.size.voxels;
+           pop(kept.larger))
+        if (contacts_[kept.larger.front().of].version == kept.larger.front().version)
+          changed.push_back(kept.larger.front().of);
     }
     for (const uint32_t c : changed) score(c);
     takeTurn(keptIndex);

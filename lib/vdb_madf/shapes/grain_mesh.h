@@ -82,7 +82,8 @@ GrainMesh meshOfGrains(const Int32Grid& labels, const std::vector<int32_t>& grai
 /// grain that is not towards a voxel of its own; edges that are cut in the middle, which are rare,
 /// add some. @throw Interrupted
 uint64_t countTriangles(const Int32Grid& labels, Interrupter* interrupter = nullptr);
-/// As many for labels in slabs, two of which are in memory at a time. @throw what reading throws
+/// Counts those of labels in slabs, two of which are in memory at a time.
+/// @throw Interrupted; what reading throws
 uint64_t countTriangles(const LabelSlabs& labels, Interrupter* interrupter = nullptr);
 
 /// Signed volume of each grain, in voxels.

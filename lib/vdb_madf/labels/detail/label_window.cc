@@ -26,14 +26,23 @@ void LabelWindow::labelled(WindowRows& rows) const {
       addLeaf(labels_->index().mask(leaf), side, range_, rows);
 }
 
+void LabelWindow::moveTo(size_t leaf) {
+  around_ = neighborhood_.around(leaf);
+  places_.clear();
+  for (int side = 0; side < 27; ++side)
+    if (const uint32_t beside = around_[size_t(side)]; beside != LeafIndex::kNone)
+      for (const LabelPart& part : labels_->parts(beside))
+        places_.push_back({part.label, side, &part});
+  std::sort(places_.begin(), places_.end(),
+            [](const Place& a, const Place& b) { return a.label < b.label; });
+}
+
 void LabelWindow::labelled(int32_t label, WindowRows& rows) const {
   rows.rows.fill(0);
-  for (int side = 0; side < 27; ++side) {
-    const uint32_t leaf = around_[size_t(side)];
-    if (leaf == LeafIndex::kNone) continue;
-    for (const LabelPart& part : labels_->parts(leaf))
-      if (part.label == label) addLeaf(part.mask, side, range_, rows);
-  }
+  auto place = std::lower_bound(places_.begin(), places_.end(), label,
+                                [](const Place& p, int32_t wanted) { return p.label < wanted; });
+  for (; place != places_.end() && place->label == label; ++place)
+    addLeaf(place->part->mask, place->side, range_, rows);
 }
 
 int32_t LabelWindow::label(int x, int y, int z) const {

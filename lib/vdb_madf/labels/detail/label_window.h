@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "vdb_madf/labels/detail/label_leaves.h"
 #include "vdb_madf/leaves/detail/leaf_neighborhood.h"
@@ -41,7 +42,7 @@ class LabelWindow {
 
   const WindowRange& range() const { return range_; }
 
-  void moveTo(size_t leaf) { around_ = neighborhood_.around(leaf); }
+  void moveTo(size_t leaf);
 
   /// The voxels that have any label, or this one.
   void labelled(WindowRows& rows) const;
@@ -54,6 +55,14 @@ class LabelWindow {
   LeafNeighborhood neighborhood_;
   WindowRange range_;
   std::array<uint32_t, 27> around_{};
+
+  /// Where a label lies in one of the 27 leaves.
+  struct Place {
+    int32_t label;
+    int side;
+    const LabelPart* part;
+  };
+  std::vector<Place> places_;  // all, by label
 };
 
 }  // namespace vdb_madf::detail

@@ -64,7 +64,9 @@ struct ScoredClass {
 ///
 /// Of V_b alone it depends by volumeTerm(), by f, which falls as V_b grows, and by m_b, which may
 /// be taken for less while V_b <= V_a, so that rho and f are larger: if a, F, h, m_b and s_b stay,
-/// the score less that term never grows with V_b.
+/// the score less that term never grows with V_b. Nor does it grow with V_a, of which it depends by
+/// U_a and the last term, until V_a reaches V_b: m_b may be taken for less from there on, and of
+/// equal tops the other one becomes a.
 class JoinScore {
  public:
   static constexpr int64_t kMaxVoxels = (int64_t(1) << 43) - 1, kMaxFaces = (int64_t(1) << 31) - 1;
