@@ -107,7 +107,7 @@ TEST_CASE("mpi: each member puts the labels of the whole in its slabs", "[mpi]")
     limits.height = rng.chance(0.5) ? 8 : 0;
     limits.leastHeight = options.tidy;
     MemoryScratch scratch;
-    SlabDealer dealer(team, scratch);
+    SlabDealer dealer(team, SlabCosts({}), scratch);
     for (const auto& [z, layer] : layersOf(*mask))  // each has read some
       if ((z >> 3 & 0xff) % team.count() == team.member()) dealer.add(layer);
     dealer.finish(limits, whole.fillHoles, whole.domain);

@@ -39,7 +39,7 @@ Dealt deal(const Layers& layers, int members, const SlabLimits& limits, int64_t 
   ThreadTeam team(members);
   asMembers(team, [&](Team& member) {
     MemoryScratch scratch;
-    SlabDealer dealer(member, scratch);
+    SlabDealer dealer(member, SlabCosts({}), scratch);
     int next = 0;
     for (const auto& [z, voxels] : layers)
       if (next++ % members == member.member()) dealer.add(layerAt(z, voxels));
@@ -63,7 +63,7 @@ using Places = std::vector<Coord>;
 
 TEST_CASE("dealt slabs: about as much for each member, within the limits", "[slabs]") {
   const Layers layers{{-8, 6}, {0, 6}, {8, 6}, {16, 6}, {24, 6}, {40, 6}};
-  const int64_t two = 2 * slabBytes(1, 6, 5 * 512 / 216);
+  const int64_t two = 2 * SlabCosts({}).of(1, 6, 5 * 512 / 216);
   CHECK(deal(layers, 1, {}, 0).cuts == Cuts{-8, 48});
   CHECK(deal(layers, 3, {}, 0).cuts == Cuts{-8, 8, 24, 48});
   CHECK(deal(layers, 2, {0, 8, 8}, 0).cuts == Cuts{-8, 0, 8, 16, 24, 32, 40, 48});
@@ -96,7 +96,7 @@ TEST_CASE("dealt slabs: a member has its own, and what lies within reach", "[sla
 TEST_CASE("dealt slabs: layers are single, and each comes once", "[slabs]") {
   Team alone;
   MemoryScratch scratch;
-  SlabDealer dealer(alone, scratch);
+  SlabDealer dealer(alone, SlabCosts({}), scratch);
   dealer.add(layerAt(8, 3));
   dealer.add(MaskTree());
   dealer.add(layerAt(0, 3));

@@ -24,7 +24,7 @@ MaskTree twoLeavesAt(int z, int voxels) {
 
 SlabObject built(const SlabLimits& limits, const std::vector<int>& layers, Scratch& scratch,
                  const std::optional<Domain>& domain = std::nullopt) {
-  SlabBuilder builder(limits, scratch);
+  SlabBuilder builder(limits, SlabCosts({}), scratch);
   for (const int z : layers) builder.add(twoLeavesAt(z, 10));
   CHECK_FALSE(hasSlabs(scratch));
   builder.finish(domain);
@@ -40,7 +40,7 @@ TEST_CASE("slab builder: cuts where a slab would be too high or too full", "[sla
     MemoryScratch scratch;
     return built({bytes, height, leastHeight}, {-16, -8, 0, 8, 24, 32}, scratch).cuts;
   };
-  const int64_t layer = slabBytes(2, 20, 0);
+  const int64_t layer = SlabCosts({}).of(2, 20, 0);
   CHECK(cuts(0, 0, 8) == Cuts{-16, 40});
   CHECK(cuts(0, 8, 8) == Cuts{-16, -8, 0, 8, 24, 32, 40});
   CHECK(cuts(0, 9, 8) == Cuts{-16, 0, 24, 40});
@@ -70,16 +70,17 @@ TEST_CASE("slab builder: slabs hold the layers, and cover the domain", "[slabs]"
 
 TEST_CASE("slab builder: layers are single, and ascend", "[slabs]") {
   MemoryScratch scratch;
-  SlabBuilder builder({}, scratch);
+  SlabBuilder builder({}, SlabCosts({}), scratch);
   builder.add(twoLeavesAt(8, 3));
   builder.add(MaskTree());
   CHECK_THROWS_AS(builder.add(twoLeavesAt(8, 3)), InvalidInput);
   MaskTree two = twoLeavesAt(16, 1);
   two.setValueOn(Coord(0, 0, 24));
-  CHECK_THROWS_AS(SlabBuilder({}, scratch).add(two), InvalidInput);
+  CHECK_THROWS_AS(SlabBuilder({}, SlabCosts({}), scratch).add(two), InvalidInput);
   MaskTree tile;
   tile.fill(CoordBBox(Coord(0), Coord(7)), true);
-  if (tile.activeTileCount() > 0) CHECK_THROWS_AS(SlabBuilder({}, scratch).add(tile), InvalidInput);
+  if (tile.activeTileCount() > 0)
+    CHECK_THROWS_AS(SlabBuilder({}, SlabCosts({}), scratch).add(tile), InvalidInput);
 }
 
 TEST_CASE("slab builder: counts voxels of thin structures apart", "[slabs]") {
@@ -87,12 +88,12 @@ TEST_CASE("slab builder: counts voxels of thin structures apart", "[slabs]") {
     MaskTree layer;
     for (auto p = box.begin(); p; ++p) layer.setValueOn(*p);
     std::vector<LeafIndex::LeafVoxels> leaves;
-    return addLeaves(layer, leaves);
+    return addLeaves(layer, SlabCosts({}), leaves);
   };
-  CHECK(bytes({Coord(0), Coord(7)}) == slabBytes(1, 512, 0));
+  CHECK(bytes({Coord(0), Coord(7)}) == SlabCosts({}).of(1, 512, 0));
   // 6 and 24 of 216 that are not at faces of the leaf.
-  CHECK(bytes({Coord(2, 2, 0), Coord(2, 2, 7)}) == slabBytes(1, 8, 6 * 512 / 216));
-  CHECK(bytes({Coord(2, 2, 0), Coord(3, 3, 7)}) == slabBytes(1, 32, 24 * 512 / 216));
+  CHECK(bytes({Coord(2, 2, 0), Coord(2, 2, 7)}) == SlabCosts({}).of(1, 8, 6 * 512 / 216));
+  CHECK(bytes({Coord(2, 2, 0), Coord(3, 3, 7)}) == SlabCosts({}).of(1, 32, 24 * 512 / 216));
   // Of 3 x 3 those at the edges have none inside beside them.
-  CHECK(bytes({Coord(2, 2, 0), Coord(4, 4, 7)}) == slabBytes(1, 72, 24 * 512 / 216));
+  CHECK(bytes({Coord(2, 2, 0), Coord(4, 4, 7)}) == SlabCosts({}).of(1, 72, 24 * 512 / 216));
 }

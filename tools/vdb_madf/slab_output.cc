@@ -53,7 +53,7 @@ int64_t memoryFor(const SegmentArguments& o) {
 
 /// Reads the object into slabs; returns it without voxels.
 MaskGrid::Ptr readSlabs(const SegmentArguments& o, const Common& common, WorkPlace& place) {
-  SlabBuilder builder(limitsOf(o, memoryFor(o)), place.scratch());
+  SlabBuilder builder(limitsOf(o, memoryFor(o)), SlabCosts(o.segment), place.scratch());
   const MaskGrid::Ptr object = streamObject(
       o.input, [&](const MaskTree& layer) { builder.add(layer); }, {}, common.progress);
   writeVdb(place.aboutFile(), {object}, common.progress);
@@ -65,7 +65,7 @@ MaskGrid::Ptr readSlabs(const SegmentArguments& o, const Common& common, WorkPla
 MaskGrid::Ptr readShare(const SegmentArguments& o, const Common& common, WorkPlace& place) {
   Team& team = *common.team;
   const SlabLimits limits = limitsOf(o, o.segment.maxMemory);  // others share what is free
-  SlabDealer dealer(team, place.scratch());
+  SlabDealer dealer(team, SlabCosts(o.segment), place.scratch());
   MaskGrid::Ptr object;
   inAllMembers(team, [&] {
     object = streamObject(
@@ -205,7 +205,7 @@ void estimateSlabs(const SegmentArguments& o, const Common& common) {
   estimate.limit = memoryFor(o);
   common.progress->start("read");
   NoScratch nowhere;
-  SlabBuilder builder(limitsOf(o, estimate.limit), nowhere);
+  SlabBuilder builder(limitsOf(o, estimate.limit), SlabCosts(o.segment), nowhere);
   const MaskGrid::Ptr about = streamObject(
       o.input,
       [&](const MaskTree& layer) {

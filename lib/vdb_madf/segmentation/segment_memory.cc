@@ -17,6 +17,7 @@ namespace vdb_madf {
 namespace {
 
 // Bytes per leaf.
+constexpr double kMask = 104;     // of the object
 constexpr double kIndex = 128;    // origin, mask, neighbors, ranks
 constexpr double kVoxelSet = 96;  // one bit per voxel, and ranks
 constexpr double kGrid = 2224;    // an Int32 leaf as the heap holds it, and its share of the tree
@@ -34,13 +35,15 @@ constexpr double kCompletion = 0.12 * 24;
 // for those that the filter drops; of others next to none.
 constexpr double kGraph = 120, kFilteredShare = 0.25;
 // Each of them while the graph is made and merged.
-constexpr double kMaking = 180;
+constexpr double kMaking = 270;
+// Of the angle's grains there are more, and so many leaves more that each lies in.
+constexpr double kLeavesOfPoint = 2.25;
 
 // Measures and tables, per grain, and per leaf: faces and surfaces.
 constexpr double kTables = 1300, kMeasure = 2000;
 
 // Threads' scratch space and stacks, the graph, code.
-constexpr double kBase = 56 << 20;
+constexpr double kBase = 60 << 20;
 
 /// The voxels at the faces of a leaf.
 constexpr uint64_t kRows = detail::kFirstY | detail::kLastY | detail::kFirstZ | detail::kLastZ;
@@ -73,7 +76,7 @@ ObjectSize objectSize(const MaskGrid& object) {
 }
 
 int64_t tablesMemory(const ObjectSize& size) {
-  return int64_t(kBase + (kIndex + kGrid + kMeasure) * double(size.leaves) +
+  return int64_t(kBase + (kMask + kIndex + kGrid + kMeasure) * double(size.leaves) +
                  kGraph * double(size.thin) + kTables * double(size.specks));
 }
 
@@ -83,7 +86,7 @@ int64_t segmentMemory(const ObjectSize& size, const SegmentOptions& options) {
   const double perGrid = kGrid * leaves;
   const double ballCount = kBallShare * voxels + double(size.thin);
   // What lives until the end.
-  double kept = kBase + kIndex * leaves;
+  double kept = kBase + (kMask + kIndex) * leaves;
   if (options.keepDistance) kept += perGrid;
 
   double peak = kept + (kPower + kSite) * voxels;  // power map
@@ -106,8 +109,9 @@ int64_t segmentMemory(const ObjectSize& size, const SegmentOptions& options) {
   }
   if (options.keepManifold) kept += perGrid;
   // tidy: masks of labels, and pieces of them
-  peak = std::max(
-      peak, kept + sets + kManifold * voxels + 2 * kPieces * std::max(leaves, double(size.pieces)));
+  double parts = std::max(leaves, double(size.pieces));
+  if (options.merge.mode == MergeMode::angle) parts += kLeavesOfPoint * points;
+  peak = std::max(peak, kept + sets + kManifold * voxels + 2 * kPieces * parts);
   // The labels' grid grows while the manifolds shrink.
   peak = std::max(peak, kept + sets + std::max(kManifold * voxels, perGrid));
   if (options.keepManifold) peak = std::max(peak, kept + sets + kManifold * voxels);

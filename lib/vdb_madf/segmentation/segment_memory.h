@@ -24,7 +24,7 @@ struct ObjectSize {
 };
 ObjectSize objectSize(const MaskGrid& object);
 
-/// Bytes that segment() needs besides the mask, at its peak. The arrays and grids are counted
+/// Bytes that segment() needs at its peak, with the mask. The arrays and grids are counted
 /// exactly; balls, critical points and voxels without a ball are not known beforehand and enter as
 /// generous shares of the object, so that the true peak is mostly a little lower (tests and the
 /// benchmark compare). Nothing in it depends on the bounding box.

@@ -32,15 +32,15 @@ bool isWanted(const Team& team, int member, const std::vector<int>& cuts, int64_
 
 /// What each layer takes, of all members.
 struct SlabDealer::Layers {
-  int first = 0;               ///< z of the lowest
-  std::vector<int64_t> bytes;  ///< slabBytes()
+  int first = 0;  ///< z of the lowest
+  std::vector<int64_t> bytes;
 
   std::vector<int> chooseCuts(const SlabLimits& limits, int members) const;
 };
 
 void SlabDealer::add(const MaskTree& layer) {
   Leaves leaves;
-  const int64_t bytes = addLeaves(layer, leaves);
+  const int64_t bytes = addLeaves(layer, costs_, leaves);
   if (leaves.empty()) return;
   const int z = leaves[0].origin.z();
   for (const LeafIndex::LeafVoxels& leaf : leaves)

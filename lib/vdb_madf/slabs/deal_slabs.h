@@ -17,7 +17,8 @@ namespace vdb_madf {
 /// is in scratch.
 class SlabDealer {
  public:
-  SlabDealer(Team& team, Scratch& scratch) : team_(team), scratch_(scratch) {}
+  SlabDealer(Team& team, const SlabCosts& costs, Scratch& scratch)
+      : team_(team), costs_(costs), scratch_(scratch) {}
 
   /// A layer, which no other member reads, in any order. @throw InvalidInput if it is not one, or
   /// comes twice
@@ -37,8 +38,9 @@ class SlabDealer {
   void receive(const std::vector<int>& cuts, int64_t reach, const Layers& layers);
 
   Team& team_;
+  SlabCosts costs_;
   Scratch& scratch_;
-  std::map<int, int64_t> read_;  // slabBytes() of the layers of this member, by their z
+  std::map<int, int64_t> read_;  // what the layers of this member cost, by their z
 };
 
 }  // namespace vdb_madf

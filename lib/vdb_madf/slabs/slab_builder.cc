@@ -19,13 +19,19 @@ constexpr char kCuts[] = "cuts";
 
 }  // namespace
 
-int64_t addLeaves(const MaskTree& layer, std::vector<LeafIndex::LeafVoxels>& leaves) {
+SlabCosts::SlabCosts(const SegmentOptions& options) : leaf(2400), voxel(4), thin(660) {
+  if (options.gamma > 1) voxel += 2;
+  if (options.keepManifold) leaf += 2700;
+}
+
+int64_t addLeaves(const MaskTree& layer, const SlabCosts& costs,
+                  std::vector<LeafIndex::LeafVoxels>& leaves) {
   int64_t bytes = 0;
   for (auto leaf = layer.cbeginLeaf(); leaf; ++leaf) {
     if (leaf->isEmpty()) continue;
     leaves.push_back({leaf->origin(), detail::maskOf(*leaf)});
     const LeafIndex::Mask& mask = leaves.back().mask;
-    bytes += slabBytes(1, detail::countVoxels(mask), detail::countThin(mask));
+    bytes += costs.of(1, detail::countVoxels(mask), detail::countThin(mask));
   }
   detail::forEachActiveTile(layer, [](const CoordBBox&) {
     throw InvalidInput("a layer of leaf nodes has an active tile: voxelize it");
@@ -35,7 +41,7 @@ int64_t addLeaves(const MaskTree& layer, std::vector<LeafIndex::LeafVoxels>& lea
 
 void SlabBuilder::add(const MaskTree& layer) {
   const size_t before = leaves_.size();
-  const int64_t bytes = addLeaves(layer, leaves_);
+  const int64_t bytes = addLeaves(layer, costs_, leaves_);
   if (leaves_.size() == before) return;
   const int z = leaves_[before].origin.z();
   for (size_t i = before; i < leaves_.size(); ++i)

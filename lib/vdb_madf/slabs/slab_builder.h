@@ -13,31 +13,38 @@ namespace vdb_madf {
 
 /// Where an object is cut.
 struct SlabLimits {
-  int64_t bytes = 0;    ///< slabBytes() of a slab, unless one layer of leaf nodes has more; 0: any
+  int64_t bytes = 0;    ///< SlabCosts of a slab, unless one layer of leaf nodes has more; 0: any
   int height = 0;       ///< of a slab, voxels, rounded up to a multiple of 8; 0: any
   int leastHeight = 8;  ///< of a slab, but for the last
 };
 
-/// The memory that segmentSlabs() takes at its peak for a slab, about. For limits; what is kept of
-/// the whole is not counted (README.md). \p thin: how many voxels are in structures one or two
-/// voxels thick (about), each of which may become a critical point.
-constexpr int64_t slabBytes(int64_t leaves, int64_t voxels, int64_t thin) {
-  constexpr int64_t kLeaf = 2560;  // mostly that of the grid of labels
-  constexpr int64_t kVoxel = 24;   // maps, and what of them goes to scratch
-  constexpr int64_t kThin = 640;   // the graph, or what the filter leaves without a ball
-  return kLeaf * leaves + kVoxel * voxels + kThin * thin;
-}
-/// Apart from that; most of it is the program itself.
-constexpr int64_t kSlabOtherBytes = int64_t(160) << 20;
+/// The memory that segmentSlabs() takes at its peak for a slab, about, in bytes, as `tests/memory`
+/// finds. For limits; what is kept of the whole is not counted (README.md).
+struct SlabCosts {
+  int64_t leaf;   ///< of each leaf node: mostly that of the grid of labels
+  int64_t voxel;  ///< of each voxel: maps, and what of them goes to scratch
+  /// Of each voxel that may become a critical point, about (detail/leaf_mask.h): the graph, or what
+  /// the filter leaves without a ball.
+  int64_t thin;
 
-/// Adds the leaves of a layer that hold object voxels; returns their slabBytes().
+  explicit SlabCosts(const SegmentOptions& options);
+  int64_t of(int64_t leaves, int64_t voxels, int64_t thinVoxels) const {
+    return leaf * leaves + voxel * voxels + thin * thinVoxels;
+  }
+};
+/// Apart from that; most of it is the program itself.
+constexpr int64_t kSlabOtherBytes = int64_t(128) << 20;
+
+/// Adds the leaves of a layer that hold object voxels; returns what they cost.
 /// @throw InvalidInput if the layer has active tiles
-int64_t addLeaves(const MaskTree& layer, std::vector<LeafIndex::LeafVoxels>& leaves);
+int64_t addLeaves(const MaskTree& layer, const SlabCosts& costs,
+                  std::vector<LeafIndex::LeafVoxels>& leaves);
 
 /// Cuts an object that comes in layers of leaf nodes into slabs, and keeps these in scratch.
 class SlabBuilder {
  public:
-  SlabBuilder(const SlabLimits& limits, Scratch& scratch) : limits_(limits), scratch_(scratch) {}
+  SlabBuilder(const SlabLimits& limits, const SlabCosts& costs, Scratch& scratch)
+      : limits_(limits), costs_(costs), scratch_(scratch) {}
 
   /// The next layer, which lies above those before. @throw InvalidInput if it does not
   void add(const MaskTree& layer);
@@ -45,12 +52,13 @@ class SlabBuilder {
   void finish(const std::optional<Domain>& domain);
 
   size_t slabCount() const { return cuts_.size() - 1; }           ///< once it is finished
-  int64_t largestSlabBytes() const { return largestSlabBytes_; }  ///< slabBytes() of any slab
+  int64_t largestSlabBytes() const { return largestSlabBytes_; }  ///< of any slab
 
  private:
   void endSlab(int z);
 
   SlabLimits limits_;
+  SlabCosts costs_;
   Scratch& scratch_;
   std::vector<int> cuts_;
   std::vector<LeafIndex::LeafVoxels> leaves_;  // of the slab that is not ended

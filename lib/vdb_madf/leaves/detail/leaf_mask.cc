@@ -14,6 +14,31 @@ uint64_t dilateWord(uint64_t w) {
   return w | (w & ~kLastZ) << 1 | (w & ~kFirstZ) >> 1 | w << 8 | w >> 8;
 }
 
+using Mask = LeafIndex::Mask;
+
+Mask alongZ(Mask mask) {
+  for (uint64_t& w : mask) w |= (w & ~kLastZ) << 1 | (w & ~kFirstZ) >> 1;
+  return mask;
+}
+Mask alongY(Mask mask) {
+  for (uint64_t& w : mask) w |= w << 8 | w >> 8;
+  return mask;
+}
+Mask alongX(const Mask& mask) {
+  Mask result = mask;
+  for (size_t x = 0; x < 8; ++x) {
+    if (x > 0) result[x] |= mask[x - 1];
+    if (x < 7) result[x] |= mask[x + 1];
+  }
+  return result;
+}
+
+/// The voxels of two masks.
+Mask either(Mask mask, const Mask& other) {
+  for (size_t x = 0; x < 8; ++x) mask[x] |= other[x];
+  return mask;
+}
+
 }  // namespace
 
 LeafIndex::Mask flood(LeafIndex::Mask seed, const LeafIndex::Mask& mask) {
@@ -47,8 +72,16 @@ LeafIndex::Mask dilate(const LeafIndex::Mask& mask) {
 int64_t countThin(const LeafIndex::Mask& mask) {
   constexpr uint64_t kInner = ~(kFirstY | kLastY | kFirstZ | kLastZ);
   constexpr LeafIndex::Mask kNotAtFaces{0, kInner, kInner, kInner, kInner, kInner, kInner, 0};
-  const LeafIndex::Mask inside = without(kFullMask, dilate(without(kFullMask, mask)));
-  return int64_t(countVoxels(both(without(mask, dilate(inside)), kNotAtFaces))) * 512 / 216;
+  const Mask outside = without(kFullMask, mask);
+  const auto told = [&](const Mask& voxels) {
+    return int64_t(countVoxels(both(without(mask, voxels), kNotAtFaces)));
+  };
+  const int64_t thin = told(dilate(without(kFullMask, dilate(outside))));
+  const Mask z = alongZ(outside), zy = alongY(z);
+  const Mask with18 = either(zy, either(alongX(z), alongX(alongY(outside))));
+  const Mask deep = without(kFullMask, with18), deepest = without(kFullMask, alongX(zy));
+  const int64_t holed = told(either(dilate(deep), alongX(alongY(alongZ(deepest)))));
+  return std::max(thin, holed * 55 / 100) * 512 / 216;
 }
 
 LeafIndex::Mask across(const LeafIndex::Mask& mask, size_t side) {

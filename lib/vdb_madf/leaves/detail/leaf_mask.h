@@ -84,8 +84,10 @@ constexpr size_t opposite(size_t side) {
 /// The voxels of `mask` and their neighbors within the leaf.
 LeafIndex::Mask dilate(const LeafIndex::Mask& mask);
 
-/// About how many voxels are in structures one or two voxels thick: those that have no face in
-/// common with a voxel all of whose neighbors are in `mask`. Told by the voxels that are not at
+/// About how many voxels are in structures one or two voxels thick, or between small holes: those
+/// that have no face in common with a voxel all of whose six neighbors are in `mask`; or, if that
+/// is more, 0.55 of those without one all of whose 18 are, and of 26 around them without one all of
+/// whose 26 are (as many are critical points in smoothed noise). Told by the voxels that are not at
 /// faces of the leaf, for all in proportion.
 int64_t countThin(const LeafIndex::Mask& mask);
 
