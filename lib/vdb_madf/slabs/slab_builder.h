@@ -23,8 +23,8 @@ struct SlabLimits {
 struct SlabCosts {
   int64_t leaf;   ///< of each leaf node: mostly that of the grid of labels
   int64_t voxel;  ///< of each voxel: maps, and what of them goes to scratch
-  /// Of each voxel that may become a critical point, about (detail/leaf_mask.h): the graph, or what
-  /// the filter leaves without a ball.
+  /// Each voxel that may become a critical point, about (detail/leaf_mask.h), adds this: the graph,
+  /// or what the filter leaves without a ball.
   int64_t thin;
 
   explicit SlabCosts(const SegmentOptions& options);
