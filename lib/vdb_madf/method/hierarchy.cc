@@ -98,8 +98,8 @@ class Joining {
           continue;
         }
         pop(b.pairs);
-        if (isNew) wait(first.of, pair);
         pop(turns_);
+        if (isNew) score(first.of);
         takeTurn(turn.of);
       } else {
         pop(turns_);
@@ -197,20 +197,15 @@ class Joining {
     return {score, first, second, contact, c.version};
   }
 
-  /// Puts a pair where it waits.
-  void wait(uint32_t contact, const Pair& pair) {
-    push(clusters_[pair.b].pairs, waiting(restOfScore(pair, contact), contact));
-    const detail::ScoredClass &a = clusters_[pair.a].size, &b = clusters_[pair.b].size;
-    if (a.top == b.top || (b.sure < b.top && b.voxels > a.voxels))
-      push(clusters_[pair.a].larger, {b.voxels, contact, contacts_[contact].version});
-  }
-
   /// Lets the pair of a contact wait anew, if it has a score.
   void score(uint32_t contact) {
     ++contacts_[contact].version;
     if (contacts_[contact].height <= 0) return;
     const Pair pair = pairOf(contact);
-    wait(contact, pair);
+    push(clusters_[pair.b].pairs, waiting(restOfScore(pair, contact), contact));
+    const detail::ScoredClass &a = clusters_[pair.a].size, &b = clusters_[pair.b].size;
+    if (a.top == b.top || (b.sure < b.top && b.voxels > a.voxels))
+      push(clusters_[pair.a].larger, {b.voxels, contact, contacts_[contact].version});
     if (clusters_[pair.b].pairs.front().of == contact) takeTurn(pair.b);
   }
 
