@@ -33,8 +33,7 @@ void keepComponents(MaskGrid& mask, const LeafIndex& index, const ConnectedCompo
   for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) {
     LeafIndex::Mask voxels{};
     for (auto piece = components.begin(leaf); piece != components.end(leaf); ++piece)
-      if (kept[piece->component])
-        for (size_t x = 0; x < 8; ++x) voxels[x] |= piece->mask[x];
+      if (kept[piece->component]) voxels = detail::either(voxels, piece->mask);
     if (!detail::anyVoxel(voxels)) continue;
     auto node = std::make_unique<MaskLeaf>(index.origin(leaf), false);
     node->setValueMask(bitsOf(voxels));

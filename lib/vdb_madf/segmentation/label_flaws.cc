@@ -27,22 +27,6 @@ void setFlag(std::vector<char>& flags, uint32_t label) {
   __atomic_store_n(&flags[label - 1], char(1), __ATOMIC_RELAXED);
 }
 
-/// The voxels of a mask with the 26 around them in it too, where those beyond the leaf all are
-/// (beyond is ~0) or all are not (0).
-Mask erode(const Mask& mask, uint64_t beyond) {
-  using detail::kFirstY, detail::kFirstZ, detail::kLastY, detail::kLastZ;
-  const auto inner = [&](uint64_t row, uint64_t face) { return (row & ~face) | (beyond & face); };
-  Mask planes{};  // along y and z
-  for (size_t x = 0; x < 8; ++x) {
-    const uint64_t row = mask[x] & inner(mask[x] << 1, kFirstZ) & inner(mask[x] >> 1, kLastZ);
-    planes[x] = row & inner(row << 8, kFirstY) & inner(row >> 8, kLastY);
-  }
-  Mask deep;
-  for (size_t x = 0; x < 8; ++x)
-    deep[x] = planes[x] & (x > 0 ? planes[x - 1] : beyond) & (x < 7 ? planes[x + 1] : beyond);
-  return deep;
-}
-
 class FlawFinder {
  public:
   FlawFinder(const LeafIndex& index, const detail::LabelMasks& labels,
@@ -52,9 +36,7 @@ class FlawFinder {
   /// False if what lies in a leaf tells that a label is not two layers deep there. \p outside: what
   /// of the leaf lies outside the domain.
   static bool mayBeDeep(const Entry& own, const Mask& outside) {
-    Mask mask = own.mask;
-    add(mask, outside);
-    return detail::meet(own.mask, erode(mask, ~uint64_t(0)));
+    return detail::meet(own.mask, detail::erode(detail::either(own.mask, outside), ~uint64_t(0)));
   }
 
   /// Has a label a voxel in a leaf that is two layers deep? What lies outside the domain does not
@@ -69,7 +51,7 @@ class FlawFinder {
       if (!domain_) continue;
       const Coord origin = index_.origin(leaf).offsetBy(
           8 * (int(i) / 9 - 1), 8 * (int(i) / 3 % 3 - 1), 8 * (int(i) % 3 - 1));
-      add(masks[i], outside(origin));
+      masks[i] = detail::either(masks[i], outside(origin));
     }
     return detail::meet(own.mask, detail::areSurrounded(detail::voxelsAround(set)));
   }
@@ -94,15 +76,11 @@ class FlawFinder {
   Mask labelled(uint32_t leaf) const {
     Mask all{};
     for (auto entry = labels_.begin(leaf); entry != labels_.end(leaf); ++entry)
-      add(all, entry->mask);
+      all = detail::either(all, entry->mask);
     return all;
   }
 
  private:
-  static void add(Mask& mask, const Mask& more) {
-    for (size_t x = 0; x < 8; ++x) mask[x] |= more[x];
-  }
-
   Mask maskOf(uint32_t leaf, uint32_t label) const {
     for (auto entry = labels_.begin(leaf); entry != labels_.end(leaf); ++entry)
       if (entry->label == label) return entry->mask;

@@ -24,19 +24,16 @@ Mask alongY(Mask mask) {
   for (uint64_t& w : mask) w |= w << 8 | w >> 8;
   return mask;
 }
-Mask alongX(const Mask& mask) {
-  Mask result = mask;
+/// `some` and the neighbors of a mask along x.
+Mask alongX(Mask some, const Mask& mask) {
   for (size_t x = 0; x < 8; ++x) {
-    if (x > 0) result[x] |= mask[x - 1];
-    if (x < 7) result[x] |= mask[x + 1];
+    if (x > 0) some[x] |= mask[x - 1];
+    if (x < 7) some[x] |= mask[x + 1];
   }
-  return result;
+  return some;
 }
-
-/// The voxels of two masks.
-Mask either(Mask mask, const Mask& other) {
-  for (size_t x = 0; x < 8; ++x) mask[x] |= other[x];
-  return mask;
+Mask alongX(const Mask& mask) {
+  return alongX(mask, mask);
 }
 
 }  // namespace
@@ -61,12 +58,21 @@ LeafIndex::Mask flood(LeafIndex::Mask seed, const LeafIndex::Mask& mask) {
 
 LeafIndex::Mask dilate(const LeafIndex::Mask& mask) {
   LeafIndex::Mask result;
+  for (size_t x = 0; x < 8; ++x) result[x] = dilateWord(mask[x]);
+  return alongX(result, mask);
+}
+
+LeafIndex::Mask erode(const LeafIndex::Mask& mask, uint64_t beyond) {
+  const auto inner = [&](uint64_t row, uint64_t face) { return (row & ~face) | (beyond & face); };
+  LeafIndex::Mask planes{};  // along y and z
   for (size_t x = 0; x < 8; ++x) {
-    result[x] = dilateWord(mask[x]);
-    if (x > 0) result[x] |= mask[x - 1];
-    if (x < 7) result[x] |= mask[x + 1];
+    const uint64_t row = mask[x] & inner(mask[x] << 1, kFirstZ) & inner(mask[x] >> 1, kLastZ);
+    planes[x] = row & inner(row << 8, kFirstY) & inner(row >> 8, kLastY);
   }
-  return result;
+  LeafIndex::Mask deep;
+  for (size_t x = 0; x < 8; ++x)
+    deep[x] = planes[x] & (x > 0 ? planes[x - 1] : beyond) & (x < 7 ? planes[x + 1] : beyond);
+  return deep;
 }
 
 int64_t countThin(const LeafIndex::Mask& mask) {
@@ -77,9 +83,9 @@ int64_t countThin(const LeafIndex::Mask& mask) {
     return int64_t(countVoxels(both(without(mask, voxels), kNotAtFaces)));
   };
   const int64_t thin = told(dilate(without(kFullMask, dilate(outside))));
-  const Mask z = alongZ(outside), zy = alongY(z);
-  const Mask with18 = either(zy, either(alongX(z), alongX(alongY(outside))));
-  const Mask deep = without(kFullMask, with18), deepest = without(kFullMask, alongX(zy));
+  const Mask y = alongY(outside), z = alongZ(outside);
+  const Mask with18 = either(alongY(z), either(alongX(z), alongX(y)));
+  const Mask deep = without(kFullMask, with18), deepest = erode(mask, ~uint64_t(0));
   const int64_t holed = told(either(dilate(deep), alongX(alongY(alongZ(deepest)))));
   return std::max(thin, holed * 55 / 100) * 512 / 216;
 }

@@ -84,6 +84,10 @@ constexpr size_t opposite(size_t side) {
 /// The voxels of `mask` and their neighbors within the leaf.
 LeafIndex::Mask dilate(const LeafIndex::Mask& mask);
 
+/// The voxels of a mask with the 26 around them in it too, where those beyond the leaf all are
+/// (beyond is ~0) or all are not (0).
+LeafIndex::Mask erode(const LeafIndex::Mask& mask, uint64_t beyond);
+
 /// About how many voxels are in structures one or two voxels thick, or between small holes: those
 /// that have no face in common with a voxel all of whose six neighbors are in `mask`; or, if that
 /// is more, 0.55 of those without one all of whose 18 are, and of 26 around them without one all of
@@ -108,6 +112,10 @@ inline Coord beside(Coord origin, size_t side) {
 
 inline LeafIndex::Mask without(LeafIndex::Mask mask, const LeafIndex::Mask& other) {
   for (size_t x = 0; x < 8; ++x) mask[x] &= ~other[x];
+  return mask;
+}
+inline LeafIndex::Mask either(LeafIndex::Mask mask, const LeafIndex::Mask& other) {
+  for (size_t x = 0; x < 8; ++x) mask[x] |= other[x];
   return mask;
 }
 inline LeafIndex::Mask both(LeafIndex::Mask mask, const LeafIndex::Mask& other) {

@@ -100,7 +100,7 @@ class LeafSmoothing {
   Mask changeable(uint32_t leaf) const {
     Mask voxels{};
     for (auto entry = masks_.begin(leaf); entry != masks_.end(leaf); ++entry) {
-      for (size_t x = 0; x < 8; ++x) voxels[x] |= entry->mask[x];
+      voxels = either(voxels, entry->mask);
       const VoxelId anchor = anchor_[entry->label - 1];
       if (anchor != kNoAnchor && leafOf(anchor) == leaf)
         voxels[wordOf(anchor)] &= ~(uint64_t(1) << bitOf(anchor));
