@@ -17,10 +17,9 @@ namespace vdb_madf {
 namespace {
 
 // Bytes per leaf.
-constexpr double kMask = 104;     // of the object
 constexpr double kIndex = 128;    // origin, mask, neighbors, ranks
 constexpr double kVoxelSet = 96;  // one bit per voxel, and ranks
-constexpr double kGrid = 2224;    // an Int32 leaf as the heap holds it, and its share of the tree
+constexpr double kGrid = 2328;    // an Int32 leaf as the heap holds it, and its share of the tree
 constexpr double kPieces = 165;   // connected pieces within leaves, of the object or of labels
 
 // Bytes per object voxel.
@@ -76,7 +75,7 @@ ObjectSize objectSize(const MaskGrid& object) {
 }
 
 int64_t tablesMemory(const ObjectSize& size) {
-  return int64_t(kBase + (kMask + kIndex + kGrid + kMeasure) * double(size.leaves) +
+  return int64_t(kBase + (kIndex + kGrid + kMeasure) * double(size.leaves) +
                  kGraph * double(size.thin) + kTables * double(size.specks));
 }
 
@@ -86,7 +85,7 @@ int64_t segmentMemory(const ObjectSize& size, const SegmentOptions& options) {
   const double perGrid = kGrid * leaves;
   const double ballCount = kBallShare * voxels + double(size.thin);
   // What lives until the end.
-  double kept = kBase + (kMask + kIndex) * leaves;
+  double kept = kBase + kIndex * leaves;
   if (options.keepDistance) kept += perGrid;
 
   double peak = kept + (kPower + kSite) * voxels;  // power map

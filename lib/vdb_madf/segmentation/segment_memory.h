@@ -14,8 +14,8 @@ namespace vdb_madf {
 struct ObjectSize {
   int64_t leaves = 0;  ///< touched 8x8x8 ones, active tiles counted as leaves
   int64_t voxels = 0;  ///< active ones
-  /// About how many of these are in structures one or two voxels thick: all may be balls and
-  /// critical points.
+  /// About how many of these may be balls and critical points: detail::countThin(), as those of
+  /// structures one or two voxels thick.
   int64_t thin = 0;
   int64_t pieces = 0;  ///< 6-connected ones within leaves, of leaves with thin structures
   /// About how many small pieces touch nothing else, and are grains by themselves: as many as lie
@@ -24,7 +24,7 @@ struct ObjectSize {
 };
 ObjectSize objectSize(const MaskGrid& object);
 
-/// Bytes that segment() needs at its peak, with the mask. The arrays and grids are counted
+/// Bytes that segment() needs besides the mask, at its peak. The arrays and grids are counted
 /// exactly; balls, critical points and voxels without a ball are not known beforehand and enter as
 /// generous shares of the object, so that the true peak is mostly a little lower (tests and the
 /// benchmark compare). Nothing in it depends on the bounding box.
