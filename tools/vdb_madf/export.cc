@@ -113,12 +113,9 @@ void runExport(const ExportArguments& o, const Common& common, const ExportKind&
   // Meshes of all voxels need the labels in memory together.
   const bool isOfAll =
       o.meshes || (kind.run == exportMesh<Int32Grid> && o.reduce <= 1 && o.maxDim == 0);
-  if (kind.runSlabs && isInSlabs(o.input) && !isOfAll) {
-    const LabelSlabs labels = openLabelSlabs(o.input, "--grid", common.progress);
-    const auto domain = storedDomain(*labels.about);
-    if (domain && domain->isBox())
-      return withFileName(o.input.path, [&] { kind.runSlabs(o, common, labels); });
-  }
+  if (kind.runSlabs && !isOfAll)
+    if (const auto labels = openBoxSlabs(o.input, "--grid", common.progress))
+      return withFileName(o.input.path, [&] { kind.runSlabs(o, common, *labels); });
   const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
   withFileName(o.input.path, [&] { kind.run(o, common, *labels); });
 }

@@ -293,6 +293,15 @@ LabelSlabs openLabelSlabs(const InputOptions& input, const std::string& gridOpti
   });
 }
 
+std::optional<LabelSlabs> openBoxSlabs(const InputOptions& input, const std::string& gridOption,
+                                       Progress* progress) {
+  if (!isInSlabs(input)) return std::nullopt;
+  LabelSlabs labels = openLabelSlabs(input, gridOption, progress);
+  const auto domain = storedDomain(*labels.about);
+  if (!domain || !domain->isBox()) return std::nullopt;
+  return labels;
+}
+
 void addBoundary(Verb verb, std::string& boundary) {
   verb.option("--boundary", boundary, "beyond the scan's faces: open: unknown, closed: background")
       .oneOf({"auto", "open", "closed"})

@@ -82,6 +82,10 @@ Int32Grid::Ptr loadLabels(const InputOptions& input, const std::string& gridOpti
                           Progress* progress);
 LabelSlabs openLabelSlabs(const InputOptions& input, const std::string& gridOption,
                           Progress* progress);
+/// Opens a folder of slabs whose domain is a box, so that they can be taken one by one; none of
+/// other labels.
+std::optional<LabelSlabs> openBoxSlabs(const InputOptions& input, const std::string& gridOption,
+                                       Progress* progress);
 /// True if it is a folder of slabs, which can be taken one by one.
 bool isInSlabs(const InputOptions& input);
 

@@ -17,7 +17,6 @@
 #include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/read_text.h"
-#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
 
 namespace vdb_madf::tools {
@@ -74,11 +73,7 @@ Int32Grid::Ptr manifoldsBeside(const InputOptions& input, Progress* progress) {
 /// In slabs only if they can be measured so.
 ReportLabels labelsOf(const InputOptions& input, const Common& common) {
   common.progress->start("read");
-  if (isInSlabs(input)) {
-    const LabelSlabs slabs = openLabelSlabs(input, "--grid", common.progress);
-    const auto domain = storedDomain(*slabs.about);
-    if (domain && domain->isBox()) return slabs;
-  }
+  if (const auto slabs = openBoxSlabs(input, "--grid", common.progress)) return *slabs;
   return Int32Grid::ConstPtr(loadLabels(input, "--grid", common.progress));
 }
 
