@@ -414,6 +414,9 @@ TEST_CASE("cli: segment writes the tables that measure writes, with any threads"
   CHECK(bench.bytes("small/bonds.csv") == bench.bytes("measured/bonds.csv"));
   CHECK(bench.run("segment pack.vdb one.vdb --unit um").err.find("give --tables, too") !=
         std::string::npos);
+  bench.mustRun("generate spheres --size 40 --count 4 --radius 6:8 balls.vdb");
+  const Outcome unknown = bench.run("segment balls.vdb none.vdb --tables none --unit um");
+  CHECK(unknown.err.find("the voxel size is unknown") != std::string::npos);
 }
 
 TEST_CASE("cli: the tables of a CT scan, with one thread and with two", "[cli]") {

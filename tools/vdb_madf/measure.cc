@@ -20,6 +20,7 @@
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/measure/measure_binder.h"
 #include "vdb_madf/measure/measure_stability.h"
+#include "vdb_madf/measure/table_unit.h"
 #include "vdb_madf/pictures/measures_plot.h"
 
 namespace vdb_madf::tools {
@@ -89,10 +90,13 @@ Measurements measureInput(const MeasureArguments& o, const Common& common) {
   if (isInSlabs(o.input) && o.gray.path.empty() && o.phases.path.empty()) {
     const LabelSlabs labels = openLabelSlabs(o.input, "--grid", common.progress);
     const auto domain = storedDomain(*labels.about);
+    requireTableUnit(o.tables.unit, storedVoxelSize(*labels.about));
     if (!domain || domain->isBox()) return measureLabels(o, common, labels);
   }  // in a region, for necks and for binder, they have to be there together
   common.progress->start("read");
-  return measureLabels(o, common, *loadLabels(o.input, "--grid", common.progress));
+  const Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
+  requireTableUnit(o.tables.unit, storedVoxelSize(*labels));
+  return measureLabels(o, common, *labels);
 }
 
 void runMeasure(MeasureArguments& o, const Common& common) {

@@ -32,8 +32,10 @@
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/files/output_set.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/measure/measure.h"
 #include "vdb_madf/measure/size_biases.h"
+#include "vdb_madf/measure/table_unit.h"
 #include "vdb_madf/segmentation/ball_grids.h"
 #include "vdb_madf/segmentation/segment_memory.h"
 #include "vdb_madf/vdb/write_vdb.h"
@@ -166,6 +168,7 @@ void runSegment(const SegmentArguments& o, const Common& common) {
   SegmentOptions options = o.segment;
   options.boundary = boundaryOf(o.boundary, o.input, *object);
   timing.read = secondsSince(start);
+  requireTableUnit(o.unit, storedVoxelSize(*object));
 
   // What is free now, or what was allowed for the whole process, less the mask.
   if (o.maxMemory.empty())

@@ -8,6 +8,7 @@
 #include "array_source.h"
 #include "bindings.h"
 #include "vdb_madf/exports/measurement_files.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/intensity/measure_gray.h"
 #include "vdb_madf/intensity/measure_necks.h"
@@ -243,6 +244,7 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
                        int bootstrap, int sensitivity, const std::map<std::string, double>& vary,
                        const std::string& unitName) {
   const Int32Grid& grid = asLabels(*labels);
+  requireTableUnit(unitName, storedVoxelSize(grid));
   MeasureOptions options;
   options.minFaces = minFaces;
   options.shape = shape;

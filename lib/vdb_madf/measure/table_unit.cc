@@ -9,14 +9,18 @@
 
 namespace vdb_madf {
 
-TableUnit::TableUnit(const Measurements& measured, const std::string& wanted) {
+void requireTableUnit(const std::string& wanted, const std::optional<VoxelSize>& size) {
   if (!wanted.empty() && wanted != "mm" && wanted != "um")
     throw InvalidInput("the unit of length " + wanted + ": must be mm or um");
-  const std::optional<VoxelSize>& size = measured.voxelSize;
   if (!size && !wanted.empty())
     throw InvalidInput(
         "the voxel size is unknown, so that lengths cannot be in " + wanted + ": give it",
         Hint::voxelSize);
+}
+
+TableUnit::TableUnit(const Measurements& measured, const std::string& wanted) {
+  const std::optional<VoxelSize>& size = measured.voxelSize;
+  requireTableUnit(wanted, size);
   for (int axis = 0; axis < 3; ++axis) voxel[size_t(axis)] = measured.edges[axis];
   if (size) {
     name = wanted.empty() ? size->unit() : wanted;

@@ -4,11 +4,16 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 
 #include "vdb_madf/measure/measure.h"
 
 namespace vdb_madf {
+
+/// Refuses what TableUnit would, before there are measures.
+/// @throw InvalidInput for another unit than "", "mm" and "um", and for these two without a size
+void requireTableUnit(const std::string& wanted, const std::optional<VoxelSize>& size);
 
 /// The unit of length of tables and charts, and what a voxel is in it.
 struct TableUnit {
@@ -18,7 +23,7 @@ struct TableUnit {
   openvdb::Vec3d edges{1, 1, 1};         ///< what places, which are index coordinates, are times
 
   /// @param wanted "mm" or "um"; empty: the unit of the voxel size, voxels if there is none
-  /// @throw InvalidInput for another unit, and without a voxel size
+  /// @throw InvalidInput as requireTableUnit()
   explicit TableUnit(const Measurements& measured, const std::string& wanted = "");
 
   double area() const { return length * length; }
