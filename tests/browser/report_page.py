@@ -316,6 +316,21 @@ def check_odd_samples(page, folder):
             demand(page.selected() == [70000], "numbers beyond 16 bits")
 
 
+def check_crossings(page, folder):
+    """Bonds have the colors of what flows through them."""
+    out = os.path.join(folder, "crossing.html")
+    command("report", "l.vdb", out, "--crossing", "-q")
+    command("measure", "l.vdb", "crossed", "--crossing", "-q")
+    expected = table("crossed/bonds.csv")
+    complaints = page.open(out, "bonds=discs&bondcolor=current_z")
+    demand(not complaints, f"the page of crossings: {complaints}")
+    for name in ("current_z", "cut_z"):
+        shown = page.run(f"return Array.from(window.report.sample.bonds.column('{name}'))")
+        demand(numpy.allclose(shown, [float(row[name]) for row in expected]), name)
+    demand(max(float(row["current_z"]) for row in expected) > 0.01, "nothing flows")
+    page.wait("return document.getElementById('overlay').textContent.includes('current, z')")
+
+
 def check_comparison(page, folder, labels, grains):
     """Two samples side by side, the second one larger grains alone."""
     command("edit", labels, "large.vdb", "--min-voxels", "800", "-q")
@@ -360,6 +375,7 @@ with tempfile.TemporaryDirectory() as folder:
         check_looks(page, path)
         check_state(page, path, "l.vdb", folder)
         check_comparison(page, folder, "l.vdb", grains)
+        check_crossings(page, folder)
         check_clicks(page, check_strictness(page, folder))
         check_odd_samples(page, folder)
     with Page("--disable-3d-apis") as page:

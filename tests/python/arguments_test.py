@@ -94,8 +94,8 @@ def test_an_index_that_is_an_array_is_refused_in_a_line(expected):
 
 def test_the_help_says_what_is_measured(array):
     measured = madf.measure(madf.segment(array, phase=1), shape=True, intensity=array,
-                            edge_weights=True, voronoi=True, size_curve=True, stability=True,
-                            bootstrap=100)
+                            edge_weights=True, crossing=True, voronoi=True, size_curve=True,
+                            stability=True, bootstrap=100)
     text = inspect.getdoc(madf.Measurements)
     for name in {**measured.grains, **measured.bonds, **measured.sample}:
         assert f"`{re.sub('_[xyz]$', '_*', name)}`" in text, name

@@ -134,11 +134,11 @@ def test_stability(command, tmp_path):
 
 
 def test_what_is_there_on_demand(labels, scan, command, tmp_path):
-    everything = dict(shape=True, edge_weights=True, voronoi=True, bootstrap=200)
+    everything = dict(shape=True, edge_weights=True, crossing=True, voronoi=True, bootstrap=200)
     np.save(tmp_path / "scan.npy", scan)
     labels.save(tmp_path / "labels.vdb")
     command("measure", tmp_path / "labels.vdb", tmp_path / "out", "--shape", "--edge-weights",
-            "--voronoi", "--bootstrap", "200", "--intensity", tmp_path / "scan.npy")
+            "--crossing", "--voronoi", "--bootstrap", "200", "--intensity", tmp_path / "scan.npy")
     there = json.loads((tmp_path / "out" / "sample.json").read_text())
     for source in (scan, str(tmp_path / "scan.npy")):
         here = madf.measure(labels, intensity=source, **everything)
@@ -158,6 +158,10 @@ def test_what_is_there_on_demand(labels, scan, command, tmp_path):
         assert here.sample[name] == pytest.approx(there[key], rel=1e-12), name
     assert list(here.sample["corrected_diameter_by_volume"].values()) == pytest.approx(
         list(there["corrected_grain_diameter_by_volume_mm"].values()))
+    for name, unit in (("minimum_cut_area", "_mm2"), ("minimum_cut_share", ""),
+                       ("minimum_cut_bonds", ""), ("bond_conductivity", "")):
+        assert here.sample[name] == pytest.approx(
+            [there[f"{name}_{axis}{unit}"] for axis in "zyx"], rel=1e-12), name
     for name, interval in here.sample["intervals"].items():
         key = next(key for key in there if key.startswith(f"{name}_interval"))
         assert interval == pytest.approx(there[key], rel=1e-12), name

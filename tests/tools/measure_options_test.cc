@@ -84,7 +84,8 @@ TEST_CASE(
   bench.mustRun("convert balls.vdb scan.tif --grid truth --type uint8");
   bench.mustRun("measure balls.vdb plain");
   const std::string said = bench.mustRun(
-      "measure balls.vdb all --shape --edge-weights --voronoi --bootstrap 100 --intensity "
+      "measure balls.vdb all --shape --edge-weights --crossing --voronoi --bootstrap 100 "
+      "--intensity "
       "scan.tif");
   CHECK(said.find("corrected diameter") != std::string::npos);
   CHECK(said.find("  mean_coordination  ") != std::string::npos);
@@ -110,6 +111,15 @@ TEST_CASE(
   for (const auto& [key, value] : before.items()) CHECK(after.at(key) == value);
   CHECK(after.at("grain_diameter_mean_interval_mm").at("mean") ==
         after.at("grain_diameter_mean_mm"));
+  CHECK(said.find("  minimum cut         x ") != std::string::npos);
+  for (const std::string axis : {"x", "y", "z"}) {
+    double cut = 0;
+    for (size_t i = 0; i < bonds.rows.size(); ++i)
+      cut += bonds.at(i, "cut_" + axis) * bonds.at(i, "area_mm2");
+    CHECK(after.at("minimum_cut_area_" + axis + "_mm2").get<double>() == Approx(cut).margin(1e-12));
+    CHECK(after.at("bond_conductivity_" + axis) < after.at("solid_fraction"));
+  }
+  CHECK_FALSE(before.contains("bond_conductivity_x"));
   CHECK_FALSE(before.contains("corrected_grains"));
   CHECK_FALSE(before.contains("bootstrap_replicates"));
   bench.mustRun("measure balls.vdb again --intensity balls.vdb --intensity-grid truth --threads 1");

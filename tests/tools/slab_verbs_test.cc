@@ -264,7 +264,7 @@ TEST_CASE("slabs: tables, comparisons and images are those of one file", "[slabs
   };
   for (const Sample& sample :
        {Sample{"--voxel-size 8um", "8", "",
-               "--shape --edge-weights --voronoi --bootstrap 100 --min-faces 5"},
+               "--shape --edge-weights --crossing --voronoi --bootstrap 100 --min-faces 5"},
         Sample{"--voxel-size 8x8x20um", "16", "--boundary closed --tidy 0", "--shape"},
         Sample{"", "40", "--fill-holes 1000 --merge neck", "--boundary closed --sample a"}}) {
     INFO(sample.made);

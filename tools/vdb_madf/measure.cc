@@ -149,6 +149,8 @@ void addMeasure(Verb command, Common& common, Action& action) {
             "adds Feret diameters, convex volume, solidity and Zingg's class");
   verb.flag("--edge-weights", o->measure.edgeWeights,
             "adds weights for what the faces of a box cut, and sizes corrected by them");
+  verb.flag("--crossing", o->measure.crossings,
+            "adds what leads from face to face of a box: the minimum cut, what the bonds conduct");
   verb.flag("--voronoi", o->measure.cells,
             "adds each grain's set-Voronoi cell: its volume, local solid fraction and neighbors");
   verb.option("--size-curve", o->sizeCurve,

@@ -77,6 +77,22 @@ void printNecks(const Measurements& m, double length, const std::string& unit) {
               kContactGap * length, unit.c_str());
 }
 
+/// What leads from face to face, along x, y and z.
+void printCrossings(const Crossings& crossings) {
+  std::printf("  minimum cut        ");
+  for (size_t axis = 0; axis < 3; ++axis) {
+    std::printf("%s %c ", axis ? "," : "", "xyz"[axis]);
+    if (const auto& area = crossings[axis].cutArea)
+      std::printf("%.4g %%", 100 * *area / crossings[axis].section);
+    else
+      std::printf("none");
+  }
+  std::printf(" of the section\n  bonds conduct      ");
+  for (size_t axis = 0; axis < 3; ++axis)
+    std::printf("%s %c %.4g %%", axis ? "," : "", "xyz"[axis], 100 * crossings[axis].conductivity);
+  std::printf(" of the full box\n");
+}
+
 void printOnDemand(const Measurements& m, double length, const std::string& unit) {
   if (m.scan)
     printNecks(m, length, unit);
@@ -88,6 +104,7 @@ void printOnDemand(const Measurements& m, double length, const std::string& unit
     std::printf("  binder              %s, %.3g %% of the binder in none\n",
                 counted(int64_t(m.binder->bridges.size()), "bridge").c_str(),
                 m.binder->volume > 0 ? 100 * m.binder->looseVolume / m.binder->volume : 0.0);
+  if (m.crossings) printCrossings(*m.crossings);
   for (const SizeDeviation& deviation : m.sizeDeviations)
     std::printf("  %-20sRMS %.2f %% from the curve\n", deviation.size.c_str(), deviation.percent);
   printIntervals(m.intervals, length, unit);

@@ -83,7 +83,8 @@ Report writeOne(const ReportArguments& o, const Common& common) {
   if (!o.sweep.empty() && !isSweepTable(options.sweep))
     throw InvalidInput(o.sweep + ": is no table of the verb sweep");
   const ReportLabels labels = labelsOf(o.input, common);
-  options.manifold = manifoldsBeside(o.input, common.progress);
+  // What crosses at another strictness the page cannot tell.
+  if (!options.measure.crossings) options.manifold = manifoldsBeside(o.input, common.progress);
   return withFileName(o.input.path,
                       [&] { return writeReport(o.out, labels, options, common.progress); });
 }
@@ -145,6 +146,10 @@ void addReport(Verb command, Common& common, Action& action) {
   verb.option("--min-faces", o->minFaces, "fewest voxel faces of a bond")
       .typeName("N")
       .showDefault();
+  verb.flag(
+      "--crossing", o->report.measure.crossings,
+      "adds the minimum cut and the currents between opposite faces of a box, in the place of "
+      "the slider of strictness");
   verb.option("--density", o->density, "of the grains' material, kg/m3: adds what is per mass")
       .typeName("D");
   verb.flag("--ice", o->ice, "the density of ice: --density 917");

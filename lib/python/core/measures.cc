@@ -143,6 +143,19 @@ void setVaried(const std::map<std::string, double>& vary, SensitivityOptions& op
       throw InvalidInput("vary: '" + name + "' is none of threshold, smooth, strictness, gamma");
 }
 
+/// Numbers along z, y, x.
+void addCrossings(const Crossings& crossings, const TableUnit& unit, py::dict& dict,
+                  py::dict& units) {
+  const auto add = [&](const char* name, const auto& number) {
+    dict[name] = py::make_tuple(number(crossings[2]), number(crossings[1]), number(crossings[0]));
+  };
+  add("minimum_cut_area", [&](const Crossing& c) { return orNan(c.cutArea) * unit.area(); });
+  units["minimum_cut_area"] = powerOf(unit, 2);
+  add("minimum_cut_share", [](const Crossing& c) { return orNan(c.cutArea) / c.section; });
+  add("minimum_cut_bonds", [](const Crossing& c) { return c.cutBonds; });
+  add("bond_conductivity", [](const Crossing& c) { return c.conductivity; });
+}
+
 py::dict sampleOf(const Measurements& m, const TableUnit& unit, py::dict& units) {
   const SampleMeasures& s = m.sample;
   py::dict dict;
@@ -185,6 +198,7 @@ py::dict sampleOf(const Measurements& m, const TableUnit& unit, py::dict& units)
   units["diameter_by_volume"] = powerOf(unit, 1);
   dict["labels_digest"] = m.labelDigest;
   if (m.extra.edgeWeights) addEdgeCorrected(m, unit, dict, units);
+  if (m.crossings) addCrossings(*m.crossings, unit, dict, units);
   if (m.replicates > 0) dict["intervals"] = intervalsOf(m.intervals, unit, units);
   if (!m.sizeDeviations.empty()) {
     py::dict deviations;
@@ -238,8 +252,8 @@ MaskGrid::Ptr loadBinder(const py::object& source, const std::string& part, int6
 py::dict measureLabels(const GridPtr& labels, const Call& call, const std::string& boundary,
                        int64_t minFaces, bool shape, const py::object& intensity,
                        const std::string& intensityGrid, const py::object& gray,
-                       const std::string& grayGrid, bool edgeWeights, bool voronoi, bool sizeCurve,
-                       const std::string& sizeReference, const py::object& phases,
+                       const std::string& grayGrid, bool edgeWeights, bool crossing, bool voronoi,
+                       bool sizeCurve, const std::string& sizeReference, const py::object& phases,
                        const std::string& phasesGrid, int64_t binder, const GridPtr& manifold,
                        int bootstrap, int sensitivity, const std::map<std::string, double>& vary,
                        const std::string& unitName) {
@@ -249,6 +263,7 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
   options.minFaces = minFaces;
   options.shape = shape;
   options.edgeWeights = edgeWeights;
+  options.crossings = crossing;
   options.cells = voronoi;
   options.sizes = sizeCurve;
   if (!sizeReference.empty()) options.sizeReference = readSizeReference(sizeReference);
@@ -346,9 +361,9 @@ void bindMeasures(py::module_& m) {
   m.def("measure", measureLabels, py::arg("labels"), py::arg("call"), py::kw_only(),
         py::arg("boundary"), py::arg("min_faces"), py::arg("shape"), py::arg("intensity"),
         py::arg("intensity_grid"), py::arg("gray"), py::arg("gray_grid"), py::arg("edge_weights"),
-        py::arg("voronoi"), py::arg("size_curve"), py::arg("size_reference"), py::arg("phases"),
-        py::arg("phases_grid"), py::arg("binder"), py::arg("manifold"), py::arg("bootstrap"),
-        py::arg("sensitivity"), py::arg("vary"), py::arg("unit"));
+        py::arg("crossing"), py::arg("voronoi"), py::arg("size_curve"), py::arg("size_reference"),
+        py::arg("phases"), py::arg("phases_grid"), py::arg("binder"), py::arg("manifold"),
+        py::arg("bootstrap"), py::arg("sensitivity"), py::arg("vary"), py::arg("unit"));
   m.def("compare", compareLabels, py::arg("truth"), py::arg("test"), py::arg("call"));
 }
 

@@ -93,7 +93,7 @@ def ball_grids(mask: Grid, call: Call) -> Grid: ...
 
 def measure(labels: Grid, call: Call, *, boundary: str, min_faces: int, shape: bool,
             intensity: Union[None, str, ArraySource], intensity_grid: str,
-            gray: Union[None, str, ArraySource], gray_grid: str, edge_weights: bool, voronoi: bool, size_curve: bool,
+            gray: Union[None, str, ArraySource], gray_grid: str, edge_weights: bool, crossing: bool, voronoi: bool, size_curve: bool,
             size_reference: str, phases: Union[None, str, ArraySource], phases_grid: str,
             binder: int, manifold: Optional[Grid], bootstrap: int, sensitivity: int,
             vary: Dict[str, float], unit: str) -> Dict[str, Any]: ...

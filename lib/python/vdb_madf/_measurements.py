@@ -62,6 +62,8 @@ class Measurements:
     - with intensity: the `gray_` columns, of the voxels on both sides
     - with sensitivity: `p_bond`, share of the runs in which both grains are there and touch, and
       `area_sd` over these
+    - with crossing: `cut_*`, 1 if the bond is in the minimum cut along this axis; `current_*`: of
+      all that flows between the faces, through this bond
     - with stability: `vanishes`, the largest strictness at which the two grains are one
 
     sample:
@@ -80,6 +82,9 @@ class Measurements:
     - with edge_weights: `grains_at_faces`, `corrected_grains`, `grain_diameter_mean`,
       `corrected_grain_diameter_mean`, `grain_volume_mean`, `corrected_grain_volume_mean`,
       `corrected_mean_coordination`, `corrected_diameter_by_number`, `corrected_diameter_by_volume`
+    - with crossing, along z, y, x: `minimum_cut_area`, least area of bonds that part the two faces
+      (NaN: a grain reaches from face to face), `minimum_cut_share` of the faces' area,
+      `minimum_cut_bonds`; `bond_conductivity` of what the full box would conduct
     - with sensitivity: `sensitivity`: `runs`, the ends of what was varied, and `intervals`
     - with bootstrap: `intervals`, by name of a mean its `mean`, and `low` and `high` of 95 %
     - with size_curve: `size_curve`, by kind of size (columns of the grains) the sizes that
@@ -128,7 +133,8 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
             boundary: str = "auto", min_faces: int = 1, shape: bool = False,
             intensity: Optional[Source] = None, intensity_grid: Optional[str] = None,
             gray: Optional[Source] = None, gray_grid: Optional[str] = None,
-            edge_weights: bool = False, voronoi: bool = False, size_curve: bool = False,
+            edge_weights: bool = False, crossing: bool = False, voronoi: bool = False,
+            size_curve: bool = False,
             size_reference: Optional[str] = None, phases: Optional[Source] = None,
             phases_grid: Optional[str] = None, binder: int = 1, stability: bool = False,
             bootstrap: int = 0, sensitivity: int = 0, vary: Optional[Dict[str, float]] = None,
@@ -154,6 +160,9 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
     `contact_coordination`. gray_grid: as intensity_grid.
     edge_weights: column `edge_weight` of the grains (0 at the faces), and in the sample
     `corrected_grain_diameter_mean`, `corrected_diameter_by_number` ... The domain has to be a box.
+    crossing: what leads through grains and bonds between opposite faces of a box: columns `cut_x`
+    ... and `current_x` ... of the bonds, and in the sample `minimum_cut_area`, `minimum_cut_share`,
+    `minimum_cut_bonds` and `bond_conductivity`.
     voronoi: columns `cell_volume`, `local_solid_fraction`, `cell_neighbors`, `cell_at_domain_face`
     of the grains' set-Voronoi cells, in the time of the domain's box.
     size_curve: cumulative curves by volume, in the sample as `size_curve`. size_reference: a CSV
@@ -183,8 +192,9 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
                              shape=shape, intensity=None if intensity is None
                              else readable(intensity), intensity_grid=intensity_grid or "",
                              gray=None if gray is None else readable(gray),
-                             gray_grid=gray_grid or "", edge_weights=edge_weights, voronoi=voronoi,
-                             size_curve=size_curve, size_reference=size_reference or "",
+                             gray_grid=gray_grid or "", edge_weights=edge_weights,
+                             crossing=crossing, voronoi=voronoi, size_curve=size_curve,
+                             size_reference=size_reference or "",
                              phases=None if phases is None else readable(phases),
                              phases_grid=phases_grid or "", binder=binder,
                              manifold=labels._manifolds() if stability else None,

@@ -167,6 +167,19 @@ void addSensitivity(const Measurements& m, const TableUnit& unit, Json& json) {
   addIntervals(s.intervals, "_sensitivity", unit, json);
 }
 
+void addCrossings(const Crossings& crossings, const TableUnit& unit, Json& json) {
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const Crossing& crossing = crossings[axis];
+    const std::string name = std::string("_") + "xyz"[axis];
+    json["minimum_cut_area" + name + "_" + unit.name + "2"] =
+        orNull(crossing.cutArea, 2, unit.length);
+    json["minimum_cut_share" + name] =
+        crossing.cutArea ? Json(*crossing.cutArea / crossing.section) : Json();
+    json["minimum_cut_bonds" + name] = crossing.cutArea ? Json(crossing.cutBonds) : Json();
+    json["bond_conductivity" + name] = crossing.conductivity;
+  }
+}
+
 Json sampleJson(const Measurements& m, const TableUnit& unit, const TableOptions& options) {
   const SampleMeasures& s = m.sample;
   const std::string& u = unit.name;
@@ -233,6 +246,7 @@ Json sampleJson(const Measurements& m, const TableUnit& unit, const TableOptions
   for (const SizeDeviation& deviation : m.sizeDeviations)
     json["size_curve_rms_percent"][deviation.size] =
         std::isnan(deviation.percent) ? Json() : Json(deviation.percent);
+  if (m.crossings) addCrossings(*m.crossings, unit, json);
   if (m.scan) addScan(m, unit, json);
   if (m.sensitivity) addSensitivity(m, unit, json);
   for (const SizeBias& bias : sizeBiases(m))

@@ -197,6 +197,15 @@ std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
   if (extra.stability)
     make.add("vanishes", 0, [](const B& b) { return b.vanishes.value_or(kNone); });
   if (extra.recurrence) addRecurrence(make, "p_bond", "area_sd", 2);
+  if (extra.crossings) {
+    make.addVector(
+        "cut",
+        [](const B& b) { return b.crossing ? Vec3d(b.crossing->inCut.data()) : Vec3d(kNone); },
+        Kind::count);
+    make.addVector("current", [](const B& b) {
+      return b.crossing ? Vec3d(b.crossing->current.data()) : Vec3d(kNone);
+    });
+  }
   return make.columns();
 }
 

@@ -48,7 +48,8 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
 /// `curvature_points` and none of the four. With gray values the columns that grains have;
 /// with necks `neck_area`, `neck_radius`, `neck_error`, `neck_gap`, `neck_confirmed` (0 or 1),
 /// `neck_normal_x`, `_y`, `_z`; with recurrences `p_bond`, `area_sd`; with the stability
-/// `vanishes`.
+/// `vanishes`; with crossings `cut_x`, `_y`, `_z` (0 or 1), `current_x`, `_y`,
+/// `_z`.
 std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
                                        const ExtraMeasures& extra = {});
 

@@ -15,6 +15,7 @@ struct ExtraMeasures {
   bool sizes = false;        ///< GrainShape::projectedDiameter as a column
   /// GrainMeasures::recurrence, BondMeasures::recurrence, Measurements::sensitivity.
   bool recurrence = false;
+  bool crossings = false;  ///< BondMeasures::crossing, Measurements::crossings
   bool stability = false;  ///< GrainMeasures::life, BondMeasures::vanishes
 };
 

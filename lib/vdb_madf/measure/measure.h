@@ -41,8 +41,9 @@ struct MeasureOptions {
   bool shape = false;  ///< also GrainMeasures::shape
   /// Fills GrainMeasures::edgeWeight. The boundary has to be open, and the domain a box.
   bool edgeWeights = false;
-  bool cells = false;  ///< also GrainMeasures::cell, which takes the time of the domain's box
-  bool sizes = false;  ///< all kinds of size_curve.h, and shape
+  bool cells = false;      ///< also GrainMeasures::cell, which takes the time of the domain's box
+  bool crossings = false;  ///< also BondMeasures::crossing; asks what edgeWeights ask
+  bool sizes = false;      ///< all kinds of size_curve.h, and shape
   std::optional<SizeReference> sizeReference{};  ///< with it sizeDeviations, and sizes
   /// Replicates of a bootstrap of the means (bootstrap.h); 0: none.
   int bootstrap = 0;
@@ -61,6 +62,7 @@ struct Measurements {
   int replicates = 0;                         ///< of these
   std::optional<ScanBlur> scan;               ///< that necks were measured in
   std::optional<Binder> binder;               ///< of measureBinder()
+  std::optional<Crossings> crossings;         ///< if they were asked for
   std::optional<Sensitivity> sensitivity;     ///< to the choices the labels were made by
   bool open = false;                          ///< the boundary
   std::optional<VoxelSize> voxelSize;         ///< of the grid
@@ -78,8 +80,9 @@ struct Measurements {
 /// exact. Depends on nothing but labels, domain and boundary: not on tiles or threads, bit for bit.
 /// Memory: per grain, per face of a bond, and for the representatives per voxel.
 /// @throw InvalidInput if labels leave the domain, the boundary is open without one, minFaces is
-///   negative, edge weights, cells, deviations or a bootstrap are asked for that cannot be had, no
-///   weights fit the voxels (voxel_weights.h), or a limit of leaf_index.h is exceeded; Interrupted.
+///   negative, edge weights, crossings, cells, deviations or a bootstrap are asked for that cannot
+///   be had, no weights fit the voxels (voxel_weights.h), or a limit of leaf_index.h is exceeded;
+///   Interrupted.
 Measurements measure(const Int32Grid& labels, const MeasureOptions& options = {},
                      Interrupter* interrupter = nullptr);
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/measure/crossing.h"
 #include "vdb_madf/measure/gray_values.h"
 #include "vdb_madf/measure/interface_curvature.h"
 #include "vdb_madf/measure/neck.h"
@@ -39,6 +40,7 @@ struct BondMeasures {
   std::optional<GrayValues> gray;
   std::optional<Neck> neck;              ///< of the gray scan; none unless it was asked for
   std::optional<Recurrence> recurrence;  ///< likewise, when the scan was segmented by other choices
+  std::optional<BondCrossing> crossing;  ///< none unless it was asked for
   /// The largest strictness at which the two grains are one; none: nowhere, or not asked for.
   std::optional<double> vanishes;
 };

@@ -46,6 +46,7 @@ struct GrainMeasures {
   double freeArea = 0;            ///< towards the background
   double sharedArea = 0;          ///< towards other grains, be there a bond or too few faces for it
   double cutArea = 0;             ///< voxel faces at the wall of an open domain; in no other area
+  std::array<double, 3> cutAreas{};  ///< of it what lies across each axis
   /// Area of the ball of this volume / area, the cut one included; none for grains of fewer than
   /// 27 voxels, whose area is too uncertain.
   std::optional<double> sphericity;

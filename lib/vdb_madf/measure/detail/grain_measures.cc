@@ -53,8 +53,10 @@ std::vector<GrainMeasures> grainMeasures(const LabelSums& sums,
     grain.volume = n * voxel.volume();
     grain.equivalentDiameter = std::cbrt(6 * grain.volume / M_PI);
     grain.freeArea = double(from.freeArea) / kAreaUnit;
-    for (int axis = 0; axis < 3; ++axis)
-      grain.cutArea += double(from.cutFaces[size_t(axis)]) * voxel.faceArea(axis);
+    for (int axis = 0; axis < 3; ++axis) {
+      grain.cutAreas[size_t(axis)] = double(from.cutFaces[size_t(axis)]) * voxel.faceArea(axis);
+      grain.cutArea += grain.cutAreas[size_t(axis)];
+    }
     grain.ellipsoid = ellipsoidOf(from, voxel);
     row[grain.id] = grains.size();
     grains.push_back(grain);

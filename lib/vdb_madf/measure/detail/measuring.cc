@@ -37,8 +37,8 @@ std::vector<BondMeasures> takeSmallBonds(Measurements& result) {
   return small;
 }
 
-void checkEdgeWeights(const std::optional<Domain>& domain, bool open) {
-  const std::string what = "weights for grains cut by the faces of the scan";
+/// @param what needs it
+void checkOpenBox(const std::string& what, const std::optional<Domain>& domain, bool open) {
   if (!domain) throw InvalidInput(what + ": its domain is unknown: give it");
   if (!domain->isBox())
     throw InvalidInput(what +
@@ -63,7 +63,10 @@ Measuring::Measuring(const Int32Grid& about, const MeasureOptions& options)
   options_.shape = options.shape || options_.sizes;
   if (options_.boundary == Boundary::automatic) options_.boundary = storedBoundary(about);
   obstacles_ = resolveBoundary(LeafIndex(), options_.boundary, domain_);
-  if (options.edgeWeights) checkEdgeWeights(domain_, obstacles_.open);
+  if (options.edgeWeights)
+    checkOpenBox("weights for grains cut by the faces of the scan", domain_, obstacles_.open);
+  if (options.crossings)
+    checkOpenBox("what crosses between grains cut by opposite faces", domain_, obstacles_.open);
   if (options.bootstrap != 0) requireReplicates(options.bootstrap);
 }
 
@@ -172,6 +175,7 @@ Measurements Measuring::finish(const GrainRepresentatives& representatives,
     if (auto& length = sample.correlationLengths[size_t(axis)]) *length *= voxel_.edges[axis];
   sample.eulerCharacteristic = euler_;
   sample.components = components_.count();
+  if (options_.crossings) measureCrossings(result);
   if (options_.sizeReference)
     result.sizeDeviations = sizeDeviations(result, *options_.sizeReference);
   if (options_.bootstrap != 0)

@@ -12,6 +12,8 @@ const titles = {
   at_domain_face: 'cut by a face', equivalent_diameter: 'diameter', coordination: 'bonds',
   radius_ratio: 'bond radius / grain radius', aspect_2_to_1: 'axis 2 / axis 1',
   aspect_3_to_2: 'axis 3 / axis 2', cos_alpha: 'cos alpha',
+  cut_x: 'minimum cut, x', cut_y: 'minimum cut, y', cut_z: 'minimum cut, z',
+  current_x: 'current, x', current_y: 'current, y', current_z: 'current, z',
 };
 
 /// Of lines, told apart by those who are blind to a color, too (Okabe and Ito).
