@@ -30,21 +30,27 @@ struct Element {
 struct Mesh {
   std::vector<Vec3d> nodes;
   std::vector<Element> elements;
+  std::map<std::string, std::set<size_t>> faces;
 };
 
 /// The keywords and lines that we write; numbers must count from 1.
 Mesh readInp(const std::string& path) {
   Mesh mesh;
   std::istringstream file(readFile(path));
-  std::string set;
+  std::string set, face;
   for (std::string line; std::getline(file, line);) {
-    const std::string header = "*ELEMENT, TYPE=C3D8, ELSET=";
+    const std::string header = "*ELEMENT, TYPE=C3D8, ELSET=", faceHeader = "*NSET, NSET=";
+    if (line.rfind(faceHeader, 0) == 0) face = line.substr(faceHeader.size());
     if (line.rfind(header, 0) == 0) set = line.substr(header.size());
     if (line[0] == '*') continue;
     for (char& c : line)
       if (c == ',') c = ' ';
     std::istringstream numbers(line);
     size_t number = 0, node = 0;
+    if (!face.empty()) {
+      while (numbers >> node) CHECK(mesh.faces[face].insert(node - 1).second);
+      continue;
+    }
     numbers >> number;
     if (set.empty()) {
       Vec3d place;
@@ -99,6 +105,18 @@ TEST_CASE("hexa_file: a cube for each voxel, corners shared", "[hexa_file]") {
     for (const auto& [p, label] : voxels)
       for (int n = 0; n < 8; ++n) corners.insert(p.offsetBy(n >> 2, n >> 1 & 1, n & 1));
     CHECK(seen.size() == voxels.size());
+    REQUIRE(mesh.faces.size() == 6);
+    for (int axis = 0; axis < 3; ++axis)
+      for (const bool isMax : {false, true}) {
+        std::set<size_t> outermost;
+        double plane = mesh.nodes.front()[axis];
+        for (const Vec3d& node : mesh.nodes)
+          plane = isMax ? std::max(plane, node[axis]) : std::min(plane, node[axis]);
+        for (size_t i = 0; i < mesh.nodes.size(); ++i)
+          if (mesh.nodes[i][axis] == plane) outermost.insert(i);
+        const std::string name = std::string("face_") + "xyz"[axis] + (isMax ? "_max" : "_min");
+        CHECK(mesh.faces.at(name) == outermost);
+      }
     CHECK(mesh.nodes.size() == corners.size());
     CHECK(used.size() == corners.size());
     CHECK(counts.nodes == corners.size());

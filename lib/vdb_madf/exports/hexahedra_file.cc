@@ -44,6 +44,27 @@ void writeVtu(const std::string& path, const Hexahedra& mesh, Interrupter* inter
   file.write(path, interrupter);
 }
 
+/// Sets of the nodes that lie outermost along an axis: what a load or a support takes hold of.
+void writeFaceSets(OutputStream& out, const Hexahedra& mesh) {
+  constexpr int kPerLine = 16;
+  if (mesh.counts().nodes == 0) return;
+  openvdb::BBoxd box;
+  mesh.forEachNode([&](const Vec3d& place) { box.expand(place); });
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool isMax : {false, true}) {
+      const double plane = isMax ? box.max()[axis] : box.min()[axis];
+      out.text(std::string("*NSET, NSET=face_") + "xyz"[axis] + (isMax ? "_max" : "_min"));
+      size_t node = 0, written = 0;
+      mesh.forEachNode([&](const Vec3d& place) {
+        ++node;
+        if (place[axis] != plane) return;
+        out.text(written++ % kPerLine == 0 ? "\n" : ", ");
+        out.number(node);
+      });
+      out.text("\n");
+    }
+}
+
 void writeInp(const std::string& path, const Hexahedra& mesh, Interrupter* interrupter) {
   OutputStream out(path, interrupter);
   out.text("** Voxels of grains as elements (vdb_madf)\n*NODE\n");
@@ -65,6 +86,7 @@ void writeInp(const std::string& path, const Hexahedra& mesh, Interrupter* inter
     }
     out.text("\n");
   }
+  writeFaceSets(out, mesh);
   out.commit();
 }
 
