@@ -19,6 +19,16 @@ PLACES = {label: [EDGE * sum(p[axis] for p in LABELS if LABELS[p] == label) / co
 BOND = sorted(VOXELS).index(2), sorted(VOXELS).index(3)
 
 
+# What OpenPNM and PoreSpy call our columns, or multiples of them.
+OTHER_NAMES = {"pore.region_label": ("pore.grain_id", 1), "pore.region_volume": ("pore.volume", 1),
+               "pore.diameter": ("pore.equivalent_diameter", 1),
+               "pore.inscribed_diameter": ("pore.inscribed_radius", 2),
+               "pore.surface_area": ("pore.area", 1), "throat.diameter": ("throat.radius", 2),
+               "throat.equivalent_diameter": ("throat.radius", 2),
+               "throat.cross_sectional_area": ("throat.area", 1),
+               "throat.direct_length": ("throat.length", 1)}
+
+
 def check_rules(path):
     with open(path, newline="") as file:
         rows = list(csv.reader(file))
@@ -44,6 +54,9 @@ def check_rules(path):
     for row, label in enumerate(sorted(VOXELS)):
         place = [float(columns[f"pore.coords[{axis}]"][row]) for axis in range(3)]
         check(near(place, PLACES[label]), f"grain {label} at {place}")
+    for theirs, (ours, factor) in OTHER_NAMES.items():
+        check([cell and float(cell) for cell in columns[theirs]] ==
+              [cell and factor * float(cell) for cell in columns[ours]], theirs)
     ends = int(columns["throat.conns[0]"][0]), int(columns["throat.conns[1]"][0])
     check(ends == BOND, f"the bond connects {ends}")
 
@@ -57,6 +70,8 @@ def check_openpnm(openpnm, path):
     check(tuple(int(end) for end in network["throat.conns"][0]) == BOND,
           f"OpenPNM: the bond connects {network['throat.conns']}")
     check(network["throat.faces"][0] == 2, "OpenPNM: faces of the bond")
+    for name in OTHER_NAMES:
+        check(name in network, f"OpenPNM: no {name}")
 
 
 with Bench() as bench:

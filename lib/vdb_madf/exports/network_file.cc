@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/detail/vtk_file.h"
@@ -100,19 +101,47 @@ void writeGraphml(const std::string& path, const GrainNetwork& network, Interrup
   out.commit();
 }
 
+/// What OpenPNM and PoreSpy call a column of ours, or a multiple of it.
+struct OtherName {
+  const char *theirs, *ours;
+  double factor;
+};
+constexpr OtherName kPoreNames[] = {{"diameter", "equivalent_diameter", 1},
+                                    {"inscribed_diameter", "inscribed_radius", 2},
+                                    {"surface_area", "area", 1},
+                                    {"region_volume", "volume", 1}};
+constexpr OtherName kThroatNames[] = {{"diameter", "radius", 2},
+                                      {"equivalent_diameter", "radius", 2},
+                                      {"cross_sectional_area", "area", 1},
+                                      {"direct_length", "length", 1}};
+
+template <size_t Count>
+std::vector<Column> withOtherNames(std::vector<Column> columns, const OtherName (&names)[Count]) {
+  for (const OtherName& name : names) {
+    const auto own = std::find_if(columns.begin(), columns.end(),
+                                  [&](const Column& column) { return column.name == name.ours; });
+    if (own == columns.end()) continue;
+    Column column{name.theirs, own->values, own->isCount};
+    for (double& value : column.values) value *= name.factor;
+    columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
 void writeCsv(const std::string& path, const GrainNetwork& network, Interrupter* interrupter) {
+  const std::vector<Column> pores = withOtherNames(network.grainColumns, kPoreNames),
+                            throats = withOtherNames(network.bondColumns, kThroatNames);
   OutputStream out(path, interrupter);
-  out.text("pore.coords[0],pore.coords[1],pore.coords[2],pore.grain_id");
-  for (const Column& column : network.grainColumns) out.text(",pore." + column.name);
+  out.text("pore.coords[0],pore.coords[1],pore.coords[2],pore.grain_id,pore.region_label");
+  for (const Column& column : pores) out.text(",pore." + column.name);
   out.text(",throat.conns[0],throat.conns[1]");
-  for (const Column& column : network.bondColumns) out.text(",throat." + column.name);
+  for (const Column& column : throats) out.text(",throat." + column.name);
   out.text("\n");
   const auto cell = [&](double value) {
     out.text(",");
     if (!std::isnan(value)) out.number(value);
   };
-  const std::string noGrain(network.grainColumns.size() + 3, ','),
-      noBond(network.bondColumns.size() + 2, ',');
+  const std::string noGrain(pores.size() + 4, ','), noBond(throats.size() + 2, ',');
   for (size_t i = 0; i < std::max(network.grains.size(), network.bonds.size()); ++i) {
     if (i < network.grains.size()) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -120,7 +149,8 @@ void writeCsv(const std::string& path, const GrainNetwork& network, Interrupter*
         out.text(",");
       }
       out.number(network.grains[i]);
-      for (const Column& column : network.grainColumns) cell(column.values[i]);
+      cell(network.grains[i]);
+      for (const Column& column : pores) cell(column.values[i]);
     } else {
       out.text(noGrain);
     }
@@ -129,7 +159,7 @@ void writeCsv(const std::string& path, const GrainNetwork& network, Interrupter*
         out.text(",");
         out.number(end);
       }
-      for (const Column& column : network.bondColumns) cell(column.values[i]);
+      for (const Column& column : throats) cell(column.values[i]);
     } else {
       out.text(noBond);
     }

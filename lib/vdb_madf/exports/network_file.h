@@ -14,8 +14,11 @@ namespace vdb_madf {
 ///   and Int32 `first`, `second`; points have UInt8 `color`, too
 /// - .graphml: nodes `n<label>` with `grain_id`, x, y, z and the columns; undirected edges
 /// - .csv: a table in OpenPNM's naming: `pore.coords[0..2]`, `pore.<column>`,
-///   `throat.conns[0..1]`, `throat.<column>`; the shorter of the two lists is filled up with empty
-///   cells
+///   `throat.conns[0..1]`, `throat.<column>`, and once more by its and PoreSpy's names:
+///   `pore.region_label`, `pore.diameter` (of equal volume), `pore.inscribed_diameter`,
+///   `pore.surface_area`, `pore.region_volume`, `throat.diameter`, `throat.equivalent_diameter` (of
+///   equal area), `throat.cross_sectional_area`, `throat.direct_length`; the shorter of the two
+///   lists is filled up with empty cells
 /// A NaN is NaN in .vtp, no entry in .graphml, an empty cell in .csv.
 /// @throw InvalidInput for another ending; IoError; Interrupted.
 void writeNetwork(const std::string& path, const GrainNetwork& network,
