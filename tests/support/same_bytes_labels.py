@@ -156,6 +156,7 @@ def export():
     yield "export all_sintered_0.vdb surface.vdb --as surface"
     yield "export all_sintered_0.vdb bool_grids.vdb --as grids --bool"
     yield f"{labels} cells.vti"
+    yield f"{labels} cells.dat --as palabos"
     yield f"{labels} compressed.vti --compress --threads 1"
     yield f"{labels} named.vti --as vti"
     yield f"{labels} cells.ome.zarr"

@@ -55,6 +55,7 @@ TEST_CASE("cli: export writes every kind, the same for any number of threads", "
                                  "b.vdb --as grids --bool",
                                  "s2.vdb --as surface",
                                  "i.vti",
+                                 "p.dat --as palabos",
                                  "c.vti --compress",
                                  "n.vtp --as network",
                                  "n.graphml",
@@ -139,8 +140,8 @@ TEST_CASE("cli: labels without a voxel are exported, but for their surface", "[c
   const std::string layout = " --dims 4x4x4 --type int32";
   for (const std::string out :
        {"m.ply", "m.obj", "m.stl", "folder --as mesh", "m.vtp --as mesh", "v.vdb --as viz",
-        "l.vdb --as lod", "g.vdb --as grids", "i.vti", "n.vtp --as network", "n.graphml", "h.vtu",
-        "h.inp", "k.raw --as mask", "z.zarr"})
+        "l.vdb --as lod", "g.vdb --as grids", "i.vti", "p.dat --as palabos", "n.vtp --as network",
+        "n.graphml", "h.vtu", "h.inp", "k.raw --as mask", "z.zarr"})
     bench.mustRun("export zero.raw " + out + layout);
   const Outcome surface = bench.run("export zero.raw s.vdb --as surface" + layout);
   CHECK(surface.exitCode == 1);
@@ -164,6 +165,7 @@ TEST_CASE("cli: an export onto a full disk leaves nothing", "[cli]") {
                                 "q.vdb --as grids",
                                 "s2.vdb --as surface",
                                 "i.vti",
+                                "p.dat --as palabos",
                                 "i.vti --compress",
                                 "n.vtp --as network",
                                 "n.graphml",

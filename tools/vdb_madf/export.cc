@@ -49,6 +49,10 @@ bool isMeshOutput(const std::string& out) {
   return isMeshEnding(out) || fileEnding(out).empty();
 }
 
+bool isPalabosOutput(const std::string& out) {
+  return fileEnding(out) == ".dat";
+}
+
 bool isVtiOutput(const std::string& out) {
   return fileEnding(out) == ".vti";
 }
@@ -64,6 +68,7 @@ const ExportKind kExportKinds[] = {
     {"clumps", exportClumps, ".csv, .txt (YADE) or .data (LAMMPS)", isClumpEnding},
     {"hexa", exportHexahedra, ".vtu or .inp (Abaqus)", isHexahedraEnding},
     {"mask", exportMask, wordList(writtenEndings()), isImageEnding, exportMask},
+    {"palabos", exportPalabos, ".dat", isPalabosOutput},
     {"network", exportNetwork, ".vtp, .graphml or .csv", isNetworkEnding, exportNetwork},
     {"zarr", exportZarr, ".zarr, a folder (.ome.zarr)", isZarrEnding, exportZarr},
 };

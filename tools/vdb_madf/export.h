@@ -57,6 +57,7 @@ void exportClumps(const ExportArguments& o, const Common& common, const Int32Gri
 void exportHexahedra(const ExportArguments& o, const Common& common, const Int32Grid& labels);
 
 // and labels as volumes and networks.
+void exportPalabos(const ExportArguments& o, const Common& common, const Int32Grid& labels);
 void exportVti(const ExportArguments& o, const Common& common, const Int32Grid& labels);
 template <typename Labels>
 void exportMask(const ExportArguments& o, const Common& common, const Labels& labels);

@@ -9,6 +9,7 @@
 #include "grid_image.h"
 #include "vdb_madf/exports/network_file.h"
 #include "vdb_madf/exports/ome_zarr.h"
+#include "vdb_madf/exports/palabos_file.h"
 #include "vdb_madf/exports/vti_file.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
@@ -41,6 +42,12 @@ void writeMask(const ExportArguments& o, const CoordBBox& box, const LabelSlabs&
 }
 
 }  // namespace
+
+void exportPalabos(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
+  const CoordBBox box = boxOf(labels);
+  writePalabos(o.out, labels, box, common.progress);
+  say(o, common, "0 = fluid, 1 = wall, 2 = inside, " + sizeText(box) + ", x slowest");
+}
 
 void exportVti(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
   const CoordBBox box = boxOf(labels);
