@@ -113,7 +113,7 @@ std::optional<Seed> SeedSearch::bestOf(size_t n, const std::vector<size_t>& plac
     parallelForEach(seeds.size(), 16, interrupter,
                     [&](size_t k) { seeds[k] = at(n, corners, far, places[first + k]); });
     for (const auto& seed : seeds)
-      if (seed && (!best || seed->pairs.size() > best->pairs.size())) best = seed;
+      if (seed && (!best || seed->score > best->score)) best = seed;
     // Chance does not find as many; fewer may be the right ones, where a scan ends.
     if (best && double(best->pairs.size()) >= kCertain * double(far.size() + 1)) break;
   }
@@ -141,6 +141,7 @@ std::optional<Seed> SeedSearch::at(size_t n, const std::array<size_t, 3>& corner
   }
   const Mat3d edges(v[0], v[1], v[2], false);
   const Mat3d inverse = edges.inverse(0);
+  std::optional<Seed> best;
   for (const size_t a : found[0])
     for (const size_t b : found[1]) {
       w[0] = after_.center(a) - y;
@@ -154,12 +155,12 @@ std::optional<Seed> SeedSearch::at(size_t n, const std::array<size_t, 3>& corner
         const Mat3d gradient = Mat3d(w[0], w[1], w[2], false) * inverse;
         if (!(gradient.det() > 0.4 && gradient.det() < 2)) continue;
         if (!looksRight(n, m, gradient)) continue;
-        if (auto seed =
-                refined(n, far, {{n, m}, {corners[0], a}, {corners[1], b}, {corners[2], c}}))
-          return seed;
+        const auto seed =
+            refined(n, far, {{n, m}, {corners[0], a}, {corners[1], b}, {corners[2], c}});
+        if (seed && (!best || seed->score > best->score)) best = seed;
       }
     }
-  return std::nullopt;
+  return best;
 }
 
 size_t SeedSearch::near(size_t n, const Vec3d& place, double radius) const {
@@ -187,6 +188,7 @@ bool SeedSearch::looksRight(size_t n, size_t m, const Mat3d& gradient) const {
 std::optional<Seed> SeedSearch::refined(size_t n, const std::vector<size_t>& far,
                                         Pairs pairs) const {
   Mat3d gradient = Mat3d::identity();
+  double score = 0;
   for (const Stage& stage : kStages) {
     LocalFit fit;
     for (const auto& [a, b] : pairs) fit.add(before_.center(a), after_.center(b));
@@ -194,18 +196,22 @@ std::optional<Seed> SeedSearch::refined(size_t n, const std::vector<size_t>& far
     if (!fitted) return std::nullopt;
     gradient = *fitted;
     pairs.clear();
+    score = 0;
     std::set<size_t> used;
     const size_t count = std::min(stage.neighbors, far.size());
     for (size_t k = 0; k <= count; ++k) {
       const size_t a = k == 0 ? n : far[k - 1];
       const Vec3d place = fit.meanY() + gradient * (before_.center(a) - fit.meanX());
-      const size_t b = near(a, place, stage.near * before_.spacing[n]);
-      if (b != kNoIndex && used.insert(b).second) pairs.emplace_back(a, b);
+      const double radius = stage.near * before_.spacing[n];
+      const size_t b = near(a, place, radius);
+      if (b == kNoIndex || !used.insert(b).second) continue;
+      pairs.emplace_back(a, b);
+      score += 1 - (after_.center(b) - place).lengthSqr() / (radius * radius);
     }
     if (pairs.size() < std::max(kLeastPairs, size_t(stage.share * double(count + 1))))
       return std::nullopt;
   }
-  return Seed{pairs, gradient};
+  return Seed{pairs, gradient, score};
 }
 
 }  // namespace vdb_madf::detail

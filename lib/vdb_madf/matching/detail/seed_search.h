@@ -20,6 +20,9 @@ using Pairs = std::vector<std::pair<size_t, size_t>>;
 struct Seed {
   Pairs pairs;
   Mat3d gradient;
+  /// Of each pair as much as it is nearer than it may be: where places are nearly regular, wrong
+  /// ones have as many pairs, but they fit worse.
+  double score = 0;
 };
 
 /// Looks for a neighborhood of before in after.
@@ -41,7 +44,7 @@ class SeedSearch {
 
   bool alikeInLength(const Vec3d& a, const Vec3d& b) const;
 
-  /// All ways to find the three neighbors among those of a grain after.
+  /// The best of all ways to find the three neighbors among those of a grain after.
   std::optional<Seed> at(size_t n, const std::array<size_t, 3>& corners,
                          const std::vector<size_t>& far, size_t m) const;
 
