@@ -174,7 +174,7 @@ TEST_CASE("track: bonds are followed through a motion", "[track_motion]") {
   options.gap = 2;
   options.sureFaces = -1;
   CHECK_THROWS_AS(track(*a, *b, options), InvalidInput);
-  options.sureFaces = 10;
+  options.sureFaces = 16;
   CHECK_THROWS_WITH(track(*a, *labelGrid(twoBalls({0, 0, 0}, 5)), options),
                     vdb_madf::test::Contains("no motion is found"));
 }

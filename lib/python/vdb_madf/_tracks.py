@@ -57,7 +57,7 @@ def track(before: Union[Labels, Segmentation, Source], after: Union[Labels, Segm
           *, shift: Optional[Tuple[int, int, int]] = None, max_shift: int = 10, share: float = 0.5,
           min_faces: int = 1,
           motion: Union[None, str, Sequence[Sequence[float]], npt.NDArray[Any]] = None,
-          gap: int = 2, sure_faces: int = 10, progress: Progress = None,
+          gap: int = 2, sure_faces: int = 16, progress: Progress = None,
           threads: int = 0) -> Tracks:
     """Follows grains from one scan to a later one by the voxels that they share.
 

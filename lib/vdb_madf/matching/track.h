@@ -31,7 +31,7 @@ struct TrackOptions {
   int gap = 2;  ///< voxels, with a motion: grains of a broken bond that are near; 1 to kMaxGap
   /// A bond that had fewer faces is undecided, with a motion, and not broken: so many may a rough
   /// surface open or close.
-  int64_t sureFaces = 10;
+  int64_t sureFaces = 16;
 };
 
 constexpr int kMaxShift = 256, kMaxGap = 16;
