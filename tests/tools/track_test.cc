@@ -12,6 +12,7 @@
 
 #include "support/catch.h"
 #include "support/command_runs.h"
+#include "support/csv_table.h"
 #include "support/refusals.h"
 
 using namespace vdb_madf::test;
@@ -159,6 +160,44 @@ TEST_CASE("cli: a sample that was turned and shortened is followed", "[cli]") {
     CHECK(gridOf(infoOf(bench, "t.vdb"), "truth").at("metadata").at("madf_track") ==
           "motion " + kind);
   }
+  bench.mustRun(pair + "--motion affine --phi phi.tsv --network moved.csv -q");
+  std::istringstream phi(bench.bytes("phi.tsv"));
+  std::string line;
+  REQUIRE(std::getline(phi, line));
+  CHECK(line.find("Label\tZpos\tYpos\tXpos\tFzz\tFzy\tFzx\tZdisp\tFyz") == 0);
+  const Table moved(bench.bytes("moved.csv"));
+  REQUIRE(moved.rows.size() == centers.size());
+  // Both samples begin anew where their first balls do: places are compared with the first one's.
+  std::vector<double> first;
+  const double turn[3][3] = {{1, 0, 0}, {0, cosine, sine}, {0, -sine, cosine}};  // z, y, x
+  for (size_t label = 0; label <= centers.size(); ++label) {
+    CAPTURE(label);
+    std::vector<double> row(20);
+    for (double& value : row) REQUIRE(phi >> value);
+    CHECK(row[0] == double(label));
+    CHECK(row[18] == (label == 0 ? -1 : 2));
+    if (label == 0) continue;
+    if (first.empty()) first = row;
+    std::array<double, 3> way{};  // from the first one
+    for (size_t axis = 0; axis < 3; ++axis) way[axis] = centers[label - 1][axis] - centers[0][axis];
+    const double change[] = {-0.1 * way[2], sine * way[0] + (cosine - 1) * way[1],
+                             (cosine - 1) * way[0] - sine * way[1]};
+    for (size_t axis = 0; axis < 3; ++axis) {
+      CHECK(std::abs(row[1 + axis] - first[1 + axis] - way[2 - axis]) < 0.3);
+      CHECK(std::abs(row[7 + 4 * axis] - first[7 + 4 * axis] - change[axis]) < 0.4);
+      for (size_t column = 0; column < 3; ++column)
+        CHECK(std::abs(row[4 + 4 * axis + column] - turn[axis][column]) < 0.05);
+    }
+    const size_t n = label - 1;
+    CHECK(moved.at(n, "pore.coords[2]") == Approx(row[1]));
+    CHECK(moved.at(n, "pore.displacement_z") == Approx(row[7]));
+    CHECK(moved.at(n, "pore.fate") == 0);
+    CHECK(moved.at(n, "pore.partner") == double(label));
+  }
+  refuses(bench, kWrongUsage, pair + "--phi phi.tsv", {"phi.tsv", "--motion"});
+  refuses(bench, kWrongUsage, pair + "--network n.vtp", {"n.vtp", "--motion"});
+  refuses(bench, kWrongUsage, pair + "--motion free --network n.txt", {"n.txt", ".graphml"});
+  refuses(bench, kWrongUsage, pair + "--motion affine --phi phi.csv", {"phi.csv", ".tsv"});
   const std::string told = bench.mustRun(pair + "--motion affine");
   CHECK(told.find("turned by 11.") != std::string::npos);
   bench.write("guess.txt", "0.98 -0.2 0 0\n0.2 0.98 0 0\n0 0 0.9 0\n");
@@ -173,6 +212,36 @@ TEST_CASE("cli: a sample that was turned and shortened is followed", "[cli]") {
   refuses(bench, kFailed,
           "track before.vdb other.vdb --before-grid truth --after-grid truth --motion free",
           {"other.vdb", "no motion is found"});
+}
+
+TEST_CASE("cli: a simple shear of a nearly regular pack is found to a thousandth", "[cli]") {
+  const Bench bench;
+  constexpr double kShear = 0.12;  // of x along z
+  std::mt19937 random(8);
+  std::ostringstream before, after;
+  for (int n = 0; n < 343; ++n) {  // near the points of a lattice
+    double p[3];
+    for (int axis = 0; axis < 3; ++axis)
+      p[axis] = 13 * (n / (axis == 0 ? 1 : axis == 1 ? 7 : 49) % 7) + double(random() % 200) / 100;
+    before << p[0] << ' ' << p[1] << ' ' << p[2] << " 5\n";
+    after << p[0] + kShear * p[2] << ' ' << p[1] << ' ' << p[2] << " 5\n";
+  }
+  bench.write("before.txt", before.str());
+  bench.write("after.txt", after.str());
+  for (const std::string side : {"before", "after"})
+    bench.mustRun("generate balls " + side + ".txt " + side + ".vdb --radius 1 -q");
+  const Json json = Json::parse(
+      bench.mustRun("track before.vdb after.vdb --before-grid truth --after-grid truth --motion "
+                    "affine --grains g.csv --json - -q"));
+  CHECK(json.at("grains_before").at("kept") == 343);
+  for (size_t row = 0; row < 3; ++row)
+    for (size_t column = 0; column < 3; ++column) {
+      const double truth = row == column ? 1 : row == 0 && column == 2 ? kShear : 0;
+      CHECK(std::abs(json.at("motion_of_whole")[row][column].get<double>() - truth) < 1e-3);
+    }
+  double sum = 0;
+  for (const auto& row : rows(bench.bytes("g.csv"))) sum += std::stod(row[14]);  // f_xz
+  CHECK(std::abs(sum / 686 - kShear) < 1e-3);
 }
 
 TEST_CASE("cli: a pair of scans becomes a scene of OME-Zarr", "[cli]") {

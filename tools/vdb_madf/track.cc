@@ -14,15 +14,20 @@
 #include "input_options.h"
 #include "json_file.h"
 #include "label_pair.h"
+#include "motion_network.h"
 #include "outputs.h"
 #include "parse.h"
+#include "phi_table.h"
 #include "text_file.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/exports/network_file.h"
 #include "vdb_madf/exports/ome_zarr.h"
+#include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/output_folder.h"
 #include "vdb_madf/files/output_set.h"
 #include "vdb_madf/files/output_tree.h"
 #include "vdb_madf/files/read_text.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/vdb/write_vdb.h"
 
 namespace vdb_madf::tools {
@@ -33,7 +38,7 @@ struct TrackArguments {
   InputOptions before, after;
   std::vector<std::string> more;  // of a series: further scans, and the folder
   TrackOptions track;
-  std::string out, shift, motion, json, grains, links, bonds,
+  std::string out, shift, motion, json, grains, links, bonds, phi, network,
       minFaces = "1", sureFaces = std::to_string(track.sureFaces);
 };
 
@@ -57,7 +62,7 @@ std::vector<std::string> laterScans(const TrackArguments& o) {
 
 /// All that is read and written is told apart by its place.
 void parseSeries(TrackArguments& o) {
-  for (const std::string& table : {o.json, o.grains, o.links, o.bonds})
+  for (const std::string& table : {o.json, o.grains, o.links, o.bonds, o.phi, o.network})
     if (!table.empty())
       throw WrongUsage(table + ": of more than two scans all tables go to the folder, " +
                        o.more.back());
@@ -78,7 +83,7 @@ void parse(TrackArguments& o) {
     parseSeries(o);
     parsePair(o.before, o.after, {});
   } else {
-    parsePair(o.before, o.after, {o.out, o.json, o.grains, o.links, o.bonds});
+    parsePair(o.before, o.after, {o.out, o.json, o.grains, o.links, o.bonds, o.phi, o.network});
     const bool isScene = isZarrEnding(o.out);
     if (!o.out.empty() && !isScene) checkVolumeEnding(o.out);
     if (isScene && motionKindOf(o.motion) == MotionKind::free)
@@ -91,6 +96,13 @@ void parse(TrackArguments& o) {
   o.track.sureFaces = parseCount(o.sureFaces, "--sure-faces");
   if (!(o.track.share > 0 && o.track.share <= 1))
     throw WrongUsage("--share: is the part of a grain, above 0 and at most 1");
+  if (!o.phi.empty() && fileEnding(o.phi) != ".tsv")
+    throw WrongUsage(o.phi + ": the ending for --phi must be .tsv");
+  for (const std::string& file : {o.phi, o.network})
+    if (!file.empty() && o.motion.empty())
+      throw WrongUsage(file + ": tells how grains turned and moved: give --motion, too");
+  if (!o.network.empty() && !isNetworkEnding(o.network))
+    throw WrongUsage(o.network + ": the ending for --network must be .vtp, .graphml or .csv");
   if (!o.motion.empty() && !o.links.empty())
     throw WrongUsage("--links: lists voxels in common, which --motion does without: see --grains");
 }
@@ -410,8 +422,9 @@ void runTrack(const TrackArguments& o, const Common& common) {
     checkOutputTree(o.out);
   else if (!o.out.empty())
     checkWritable(o.out);
+  if (!o.network.empty()) checkWritable(o.network);
   JsonFile jsonFile(o.json);
-  TextFile grainFile(o.grains), linkFile(o.links), bondFile(o.bonds);
+  TextFile grainFile(o.grains), linkFile(o.links), bondFile(o.bonds), phiFile(o.phi);
   const Int32Grid::Ptr before = loadLabels(o.before, "--before-grid", common.progress);
   const Int32Grid::Ptr after = loadLabels(o.after, "--after-grid", common.progress);
   const PairNames names = namesOf(o.before, o.after);
@@ -432,6 +445,8 @@ void runTrack(const TrackArguments& o, const Common& common) {
   grainFile.write(tracks.motion ? moveTable(tracks) : grainTable(tracks));
   linkFile.write(linkTable(tracks));
   bondFile.write(bondTable(tracks));
+  if (!o.network.empty()) writeNetwork(o.network, motionNetwork(*before, tracks), common.progress);
+  if (!phiFile.isNowhere()) phiFile.write(phiTable(tracks, boxOf(*before).min()));
   Json json = summary(o, tracks);
   addNotes(json, *common.progress);
   jsonFile.write(json);
@@ -491,6 +506,12 @@ void addTrack(Verb command, Common& common, Action& action) {
   verb.option("--links", o->links, "CSV: a line per pair of grains that share voxels")
       .typeName("FILE");
   verb.option("--bonds", o->bonds, "CSV: a line per bond of either side").typeName("FILE");
+  verb.option("--network", o->network,
+              "with --motion: grains and bonds of BEFORE with their motion, .vtp, .graphml or .csv")
+      .typeName("FILE");
+  verb.option("--phi", o->phi,
+              "with --motion: how BEFORE moved, as spam's discrete correlation takes it, .tsv")
+      .typeName("FILE.tsv");
   verb.option("--json", o->json, "machine-readable result (-: standard output)").typeName("FILE");
   o->before.addRaw(verb);
   verb.onParsed([o, &common, &action] {
@@ -499,7 +520,8 @@ void addTrack(Verb command, Common& common, Action& action) {
       if (!o->motion.empty()) o->track.motion = motionOf(o->motion);
       if (!o->more.empty()) return runSeries(*o, besideOutput(common, o->more.back()));
       Common beside = common;
-      for (const std::string& output : {o->out, o->json, o->grains, o->links, o->bonds})
+      for (const std::string& output :
+           {o->out, o->json, o->grains, o->links, o->bonds, o->phi, o->network})
         beside = besideOutput(beside, output);
       runTrack(*o, beside);
     };

@@ -215,13 +215,23 @@ void link(Sides& sides, Tracks& tracks, const GrainSet& before, const GrainSet& 
     GrainMove& move = tracks.moves.emplace_back();
     TrackedGrain& here = sides.before.at(grain.grain);
     here.partner = match.partner;
+    move.center = grain.center;
+    move.isPlaced = match.isPlaced;
     if (!match.partner) {
+      if (match.isPlaced) {
+        move.displacement = match.place - grain.center;
+        move.gradient = match.nearby;
+      }
       const bool isSeen = !match.isPlaced || isWithin(boxAfter, match.place, grain.volume);
       here.fate = isSeen ? GrainFate::lost : GrainFate::outside;
       continue;
     }
     const openvdb::Vec3d& there = ofAfter.at(match.partner)->center;
-    move = {match.confidence, there - grain.center, match.miss, match.neighbors, match.gradient};
+    move.confidence = match.confidence;
+    move.displacement = there - grain.center;
+    move.miss = match.miss;
+    move.neighbors = match.neighbors;
+    move.gradient = match.gradient;
     TrackedGrain& partner = sides.after.at(match.partner);
     partner.partner = grain.grain;
     here.fate = partner.fate = GrainFate::kept;

@@ -78,7 +78,11 @@ struct TrackedGrain {
 
 /// How a grain has moved, with a motion.
 struct GrainMove {
-  double confidence = 0;                   ///< see matchGrains(); 0: it was not followed
+  double confidence = 0;  ///< see matchGrains(); 0: it was not followed
+  /// Its neighbors say where it should be. Of one that was not followed displacement and gradient
+  /// are theirs.
+  bool isPlaced = false;
+  openvdb::Vec3d center{0, 0, 0};          ///< of mass, before, in index coordinates
   openvdb::Vec3d displacement{0, 0, 0};    ///< of the center, in voxels
   double miss = 0;                         ///< from where neighbors say it is, in voxels
   int neighbors = 0;                       ///< that the gradient is from

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "phi_table.h"
+
+#include <openvdb/math/Mat3.h>
+
+#include <cmath>
+#include <sstream>
+
+namespace vdb_madf::tools {
+
+namespace {
+
+enum Status { kFollowed = 2, kExpected = 1, kUnknown = -1 };
+
+/// What F = R U turns by.
+openvdb::Mat3d rotationOf(const openvdb::Mat3d& gradient) {
+  openvdb::Vec3d axis = strainOf(gradient).turn;
+  const double degrees = axis.length();
+  if (degrees == 0) return openvdb::Mat3d::identity();
+  axis /= degrees;
+  return openvdb::math::rotation<openvdb::Mat3d>(axis, degrees * M_PI / 180).transpose();
+}
+
+void addRow(std::ostream& tsv, int32_t label, const openvdb::Vec3d& center,
+            const openvdb::Mat3d& rotation, const openvdb::Vec3d& displacement, Status status) {
+  tsv << label;
+  for (const int axis : {2, 1, 0}) tsv << '\t' << center[axis];
+  for (const int row : {2, 1, 0}) {
+    for (const int column : {2, 1, 0}) tsv << '\t' << rotation(row, column);
+    tsv << '\t' << displacement[row];
+  }
+  tsv << "\t0\t0\t" << int(status) << "\t0\n";
+}
+
+}  // namespace
+
+std::string phiTable(const Tracks& tracks, const Coord& first) {
+  std::ostringstream tsv;
+  tsv.precision(9);
+  tsv << "Label\tZpos\tYpos\tXpos\tFzz\tFzy\tFzx\tZdisp\tFyz\tFyy\tFyx\tYdisp\tFxz\tFxy\tFxx\tXdisp"
+         "\terror\titerations\treturnStatus\tdeltaPhiNorm\n";
+  const openvdb::Vec3d zero(0);
+  int32_t next = 0;
+  for (size_t n = 0; n < tracks.before.size(); ++n) {
+    const int32_t label = tracks.before[n].grain;
+    for (; next < label; ++next)
+      addRow(tsv, next, zero, openvdb::Mat3d::identity(), zero, kUnknown);
+    const GrainMove& move = tracks.moves[n];
+    const auto rotation = move.gradient ? rotationOf(*move.gradient) : openvdb::Mat3d::identity();
+    const Status status = move.confidence > 0 ? kFollowed : move.isPlaced ? kExpected : kUnknown;
+    addRow(tsv, next++, move.center - first.asVec3d(), rotation, move.displacement, status);
+  }
+  return tsv.str();
+}
+
+}  // namespace vdb_madf::tools
