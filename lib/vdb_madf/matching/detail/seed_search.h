@@ -20,8 +20,8 @@ using Pairs = std::vector<std::pair<size_t, size_t>>;
 struct Seed {
   Pairs pairs;
   Mat3d gradient;
-  /// Of each pair as much as it is nearer than it may be: where places are nearly regular, wrong
-  /// ones have as many pairs, but they fit worse.
+  /// The sum over the pairs of how much nearer they are than they may be, 0 to 1. In nearly regular
+  /// packs wrong places have as many pairs, but fit worse.
   double score = 0;
 };
 
