@@ -324,6 +324,9 @@ def test_what_is_kept(sample, command, tmp_path):
     z, y, x = seg.graph["position"].T
     inside = mask[z, y, x]  # or in a filled cavity
     assert (distance[z, y, x][inside] == seg.graph["squared_radius"][inside]).all()
+    margin = np.min([np.minimum(p + 1, n - p) for p, n in zip((z, y, x), mask.shape)], axis=0)
+    assert (seg.graph["reaches_out"] == (margin**2 < seg.graph["squared_radius"])).all()
+    assert 0 < seg.graph["reaches_out"].sum() < len(margin)
     assert seg.graph["voxels"].sum() == mask.sum() == seg.counts["object_voxels"]
     assert (seg.graph["first"] < seg.graph["second"]).all()
     assert seg.graph["second"].max() < seg.counts["critical_points"]

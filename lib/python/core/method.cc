@@ -111,6 +111,7 @@ py::dict toDict(const ManifoldGraph& graph) {
   dict["position"] = places(graph.nodes, [](const Node& n) { return n.position; });
   dict["squared_radius"] =
       column<int64_t>(graph.nodes, [](const Node& n) { return n.squaredRadius; });
+  dict["reaches_out"] = column<bool>(graph.nodes, [](const Node& n) { return n.doubt > 0; });
   dict["voxels"] = column<int64_t>(graph.nodes, [](const Node& n) { return n.voxels; });
   dict["first"] = column<int32_t>(graph.edges, [](const Edge& e) { return e.first; });
   dict["second"] = column<int32_t>(graph.edges, [](const Edge& e) { return e.second; });

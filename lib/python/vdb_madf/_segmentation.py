@@ -40,6 +40,7 @@ class Segmentation:
     gamma, fill_holes, tidy, boundary."""
     graph: Dict[str, npt.NDArray[Any]] = field(repr=False)
     """Critical points: `position` (K, 3) z, y, x in voxels of the scan, `squared_radius` (K,),
+    `reaches_out` (K,), true if its ball leaves an open domain, where nobody knows how large it is,
     `voxels` (K,) of their manifolds; pairs of manifolds that touch: `first`, `second` (E,), numbers
     of critical points from 0, `contact_faces`, `saddle_height`, `cells_touch` (E,)."""
     manifold: Optional[Labels] = field(default=None, repr=False)
