@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <openvdb/math/Vec3.h>
+#include <openvdb/Types.h>
 
 #include <vector>
 
