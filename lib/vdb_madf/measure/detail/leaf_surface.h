@@ -82,6 +82,8 @@ class LeafSurface {
   void measureShared(int32_t label);
   void measureBond(int32_t label, int32_t other);
 
+  WindowRows labelled_, background_, outside_;  // outside: of the domain
+  WindowRows own_, other_, near_;
   const LabelLeaves* labels_;
   LabelWindow window_;
   std::optional<Domain> domain_;
@@ -89,9 +91,7 @@ class LeafSurface {
   FaceRange freeRange_, sharedRange_;  // of the faces in reach of what is measured
 
   Coord origin_;
-  bool atBorder_ = false;                       // of the domain
-  WindowRows labelled_, background_, outside_;  // outside: of the domain
-  WindowRows own_, other_, near_;
+  bool atBorder_ = false;  // of the domain
   std::vector<SurfaceTarget> targets_;
   SurfaceFaces faces_;
   std::vector<std::pair<int32_t, int32_t>> bonds_;  // that were measured
