@@ -79,13 +79,6 @@ class SampleLists {
   }
 
  private:
-  size_t rowOf(int32_t label) const {
-    const auto& grains = measured_.grains;
-    return size_t(
-        std::lower_bound(grains.begin(), grains.end(), label,
-                         [](const GrainMeasures& grain, int32_t id) { return grain.id < id; }) -
-        grains.begin());
-  }
   bool isComplete(size_t grain) const {
     return counts_[grain] == size_t(measured_.grains[grain].voxels);
   }
@@ -96,7 +89,8 @@ class SampleLists {
     std::vector<std::vector<T*>> places(layer.size());  // of the samples of each part
     for (size_t i = 0; i < layer.size(); ++i)
       for (const detail::LabelPart& part : leaves.parts(layer[i])) {
-        const size_t grain = rowOf(part.label), count = detail::countVoxels(part.mask);
+        const size_t grain = rowOf(measured_.grains, part.label),
+                     count = detail::countVoxels(part.mask);
         if (grain == counts_.size() || measured_.grains[grain].id != part.label ||
             counts_[grain] + count > size_t(measured_.grains[grain].voxels))
           throw InvalidInput("these are not the labels that were measured");
@@ -176,7 +170,8 @@ class SampleLists {
     complete_.clear();
     for (size_t i = 0; i < ofBonds_.size(); ++i) {
       BondMeasures& bond = measured_.bonds[i];
-      if (!bond.gray && isComplete(rowOf(bond.first)) && isComplete(rowOf(bond.second)))
+      if (!bond.gray && isComplete(rowOf(measured_.grains, bond.first)) &&
+          isComplete(rowOf(measured_.grains, bond.second)))
         bond.gray = taken(ofBonds_[i]);
     }
   }

@@ -271,12 +271,10 @@ std::vector<Section> sectionsOf(const Int32Tree& labels, const Measurements& mea
                                 const CoordBBox& scan, double blur, Interrupter* interrupter) {
   const auto radiusOf = [&](int32_t label) {
     const auto& grains = measured.grains;
-    const auto found =
-        std::lower_bound(grains.begin(), grains.end(), label,
-                         [](const GrainMeasures& grain, int32_t id) { return grain.id < id; });
-    if (found == grains.end() || found->id != label)
+    const size_t row = rowOf(grains, label);
+    if (row == grains.size() || grains[row].id != label)
       throw InvalidInput("these are not the labels that were measured");
-    return found->equivalentDiameter / 2;
+    return grains[row].equivalentDiameter / 2;
   };
   std::vector<Section> sections(measured.bonds.size());
   detail::parallelForEach(sections.size(), kBondsTogether, interrupter, [&](size_t i) {

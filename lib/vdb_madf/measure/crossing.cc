@@ -67,14 +67,10 @@ class GrainConductors {
   };
 
   Vec3d place(const Vec3d& index) const { return index * measured_.edges; }
-  uint32_t rowOf(int32_t id) const {
-    const auto& grains = measured_.grains;
-    return uint32_t(std::lower_bound(grains.begin(), grains.end(), id,
-                                     [](const GrainMeasures& g, int32_t to) { return g.id < to; }) -
-                    grains.begin());
-  }
   void addBond(const BondMeasures& bond) {
-    const Conductor conductor{{rowOf(bond.first), rowOf(bond.second)}, 0};
+    const auto& grains = measured_.grains;
+    const Conductor conductor{
+        {uint32_t(rowOf(grains, bond.first)), uint32_t(rowOf(grains, bond.second))}, 0};
     for (const uint32_t row : conductor.grains)
       contacts_[row].push_back(
           {{place(bond.centroid) - place(measured_.grains[row].centroid), bond.area},

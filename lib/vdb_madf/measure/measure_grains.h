@@ -3,9 +3,12 @@
 
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/measure/grain_shape.h"
@@ -66,5 +69,13 @@ struct GrainMeasures {
   double solidity() const { return volume / shape.value().convexVolume; }
   double localSolidFraction() const { return volume / cell.value().volume; }
 };
+
+/// Where in a list, ascending by label, the grain of a label is, or the first of a larger one.
+inline size_t rowOf(const std::vector<GrainMeasures>& grains, int32_t label) {
+  return size_t(
+      std::lower_bound(grains.begin(), grains.end(), label,
+                       [](const GrainMeasures& grain, int32_t id) { return grain.id < id; }) -
+      grains.begin());
+}
 
 }  // namespace vdb_madf

@@ -31,9 +31,7 @@ std::vector<BondMeasures> takeSmallBonds(Measurements& result) {
   bonds.erase(firstSmall, bonds.end());
   for (const BondMeasures& bond : small)
     for (const int32_t id : {bond.first, bond.second})
-      --std::lower_bound(result.grains.begin(), result.grains.end(), id,
-                         [](const GrainMeasures& grain, int32_t label) { return grain.id < label; })
-            ->coordination;
+      --result.grains[rowOf(result.grains, id)].coordination;
   return small;
 }
 
