@@ -6,7 +6,9 @@
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "vdb_madf/measure/detail/bond_resistance.h"
@@ -23,96 +25,89 @@ constexpr double kAreaUnits = 1 << 20;  // of a cut, in a voxel face
 constexpr double kTolerance = 1e-12;    // of the potentials
 constexpr double kLeastCurrent = 1e-9;  // of all: what is less is no more than rounding
 
-/// The lower (0) and the upper face (1) normal to an axis.
-struct Face {
-  int axis, end;
-};
+/// Does a grain touch the lower (0) or the upper face (1) of a box, normal to an axis?
+bool touches(const CoordBBox& grain, const CoordBBox& box, int axis, int end) {
+  return end == 0 ? grain.min()[axis] <= box.min()[axis] : grain.max()[axis] >= box.max()[axis];
+}
 
 /// A bond as a conductor between two grains.
 struct Conductor {
   std::array<uint32_t, 2> grains;  ///< rows
-  double conductance = 0;
+  double conductance;
 };
 
 class GrainConductors {
  public:
-  explicit GrainConductors(const Measurements& measured) : measured_(measured) {
-    contacts_.resize(measured.grains.size());
-    for (size_t i = 0; i < measured.bonds.size(); ++i) addBond(measured.bonds[i]);
-    for (size_t row = 0; row < measured.grains.size(); ++row) addFaces(uint32_t(row));
-    for (size_t row = 0; row < measured.grains.size(); ++row) addResistances(uint32_t(row));
-    for (Conductor& bond : bonds_) bond.conductance = 1 / bond.conductance;
+  explicit GrainConductors(const Measurements& measured)
+      : measured_(measured), ends_(measured.grains.size()), toFace_(measured.grains.size()) {
+    for (size_t i = 0; i < measured.bonds.size(); ++i) addBond(i);
+    std::vector<double> resistances(measured.bonds.size());
+    for (size_t row = 0; row < ends_.size(); ++row) {
+      addFaces(row);
+      addResistances(row, resistances);
+    }
+    for (size_t i = 0; i < bonds_.size(); ++i) bonds_[i].conductance = 1 / resistances[i];
   }
 
   const std::vector<Conductor>& bonds() const { return bonds_; }
-  /// From a grain to a face of the box; 0 if it does not touch it.
-  double toFace(uint32_t row, Face face) const {
-    double conductance = 0;
-    for (const Wall& wall : walls_[row])
-      if (wall.face.axis == face.axis && wall.face.end == face.end) conductance = wall.conductance;
-    return conductance;
+  /// From a grain to the lower (0) or the upper face (1); 0 if it does not touch it.
+  double toFace(size_t row, int axis, int end) const {
+    return toFace_[row][size_t(axis)][size_t(end)];
   }
   double extent(int axis) const { return measured_.sample.box.dim()[axis] * measured_.edges[axis]; }
 
  private:
-  struct Wall {
-    Face face;
-    double conductance;
-  };
-  /// Of a grain: to a bond, or to a face.
+  /// Where a grain ends: at a bond, or at a face.
   struct End {
     detail::Contact contact;
-    int64_t bond;
-    Face face;
+    std::optional<size_t> bond;
+    int axis = 0, face = 0;  ///< if it is none
   };
 
-  Vec3d place(const Vec3d& index) const { return index * measured_.edges; }
-  void addBond(const BondMeasures& bond) {
+  detail::Contact contactAt(const Vec3d& index, double area, size_t row) const {
+    return {index * measured_.edges - measured_.grains[row].centroid * measured_.edges, area};
+  }
+  void addBond(size_t i) {
+    const BondMeasures& bond = measured_.bonds[i];
     const auto& grains = measured_.grains;
-    const Conductor conductor{
-        {uint32_t(rowOf(grains, bond.first)), uint32_t(rowOf(grains, bond.second))}, 0};
-    for (const uint32_t row : conductor.grains)
-      contacts_[row].push_back(
-          {{place(bond.centroid) - place(measured_.grains[row].centroid), bond.area},
-           int64_t(bonds_.size()),
-           {}});
-    bonds_.push_back(conductor);
+    bonds_.push_back(
+        {{uint32_t(rowOf(grains, bond.first)), uint32_t(rowOf(grains, bond.second))}, 0});
+    for (const uint32_t row : bonds_.back().grains)
+      ends_[row].push_back({contactAt(bond.centroid, bond.area, row), i});
   }
   /// A grain that reaches from face to face has half of what is cut across this axis at each.
-  void addFaces(uint32_t row) {
+  void addFaces(size_t row) {
     const GrainMeasures& grain = measured_.grains[row];
     const CoordBBox& box = measured_.sample.box;
     for (int axis = 0; axis < 3; ++axis) {
-      const bool touches[] = {grain.box.min()[axis] <= box.min()[axis],
-                              grain.box.max()[axis] >= box.max()[axis]};
-      for (const int end : {0, 1}) {
-        if (!touches[end]) continue;
+      const bool both = touches(grain.box, box, axis, 0) && touches(grain.box, box, axis, 1);
+      const double area = grain.cutAreas[size_t(axis)] / (both ? 2 : 1);
+      for (const int face : {0, 1}) {
+        if (!touches(grain.box, box, axis, face)) continue;
         Vec3d middle = grain.centroid;
-        middle[axis] = end == 0 ? box.min()[axis] - 0.5 : box.max()[axis] + 0.5;
-        const double area = grain.cutAreas[size_t(axis)] / (touches[0] && touches[1] ? 2 : 1);
-        contacts_[row].push_back({{place(middle) - place(grain.centroid), area}, -1, {axis, end}});
+        middle[axis] = face == 0 ? box.min()[axis] - 0.5 : box.max()[axis] + 0.5;
+        ends_[row].push_back({contactAt(middle, area, row), {}, axis, face});
       }
     }
   }
-  void addResistances(uint32_t row) {
+  /// \p resistances of the bonds get what this grain has.
+  void addResistances(size_t row, std::vector<double>& resistances) {
     std::vector<detail::Contact> contacts;
-    for (const End& end : contacts_[row]) contacts.push_back(end.contact);
-    const std::vector<double> resistances =
-        detail::contactResistances(measured_.grains[row].volume, contacts);
-    walls_.emplace_back();
-    for (size_t i = 0; i < contacts.size(); ++i) {
-      const End& end = contacts_[row][i];
-      if (end.bond >= 0)
-        bonds_[size_t(end.bond)].conductance += resistances[i];
+    for (const End& end : ends_[row]) contacts.push_back(end.contact);
+    const auto found = detail::contactResistances(measured_.grains[row].volume, contacts);
+    for (size_t i = 0; i < found.size(); ++i) {
+      const End& end = ends_[row][i];
+      if (end.bond)
+        resistances[*end.bond] += found[i];
       else
-        walls_.back().push_back({end.face, 1 / resistances[i]});
+        toFace_[row][size_t(end.axis)][size_t(end.face)] = 1 / found[i];
     }
   }
 
   const Measurements& measured_;
-  std::vector<std::vector<End>> contacts_;  // of each grain
+  std::vector<std::vector<End>> ends_;  // of each grain
   std::vector<Conductor> bonds_;
-  std::vector<std::vector<Wall>> walls_;  // of each grain
+  std::vector<std::array<std::array<double, 2>, 3>> toFace_;  // of each grain
 };
 
 /// The potentials of the grains, the lower face being at 0 and the upper one at 1. Grains that hang
@@ -129,9 +124,9 @@ Eigen::VectorXd potentials(const GrainConductors& network, size_t grains, int ax
     diagonal[b] += bond.conductance;
   }
   for (uint32_t row = 0; row < grains; ++row) {
-    const double up = network.toFace(row, {axis, 1});
+    const double up = network.toFace(row, axis, 1);
     inflow[row] = up;
-    diagonal[row] += up + network.toFace(row, {axis, 0});
+    diagonal[row] += up + network.toFace(row, axis, 0);
     terms.emplace_back(row, row, diagonal[row] > 0 ? diagonal[row] : 1);
   }
   Eigen::SparseMatrix<double> matrix(inflow.size(), inflow.size());
@@ -145,8 +140,7 @@ void conduct(const GrainConductors& network, int axis, Measurements& measured, C
   const size_t grains = measured.grains.size();
   const Eigen::VectorXd potential = potentials(network, grains, axis);
   double all = 0;
-  for (uint32_t row = 0; row < grains; ++row)
-    all += network.toFace(row, {axis, 0}) * potential[row];
+  for (uint32_t row = 0; row < grains; ++row) all += network.toFace(row, axis, 0) * potential[row];
   crossing.conductivity = all * network.extent(axis) / crossing.section;
   if (!(all > 0)) return;
   for (size_t i = 0; i < measured.bonds.size(); ++i) {
@@ -161,8 +155,7 @@ void cut(const GrainConductors& network, int axis, Measurements& measured, Cross
   const CoordBBox& box = measured.sample.box;
   for (uint32_t row = 0; row < measured.grains.size(); ++row) {
     const CoordBBox& grain = measured.grains[row].box;
-    const bool isLower = grain.min()[axis] <= box.min()[axis];
-    const bool isUpper = grain.max()[axis] >= box.max()[axis];
+    const bool isLower = touches(grain, box, axis, 0), isUpper = touches(grain, box, axis, 1);
     if (isLower && isUpper) return;
     if (isLower) lower.push_back(row);
     if (isUpper) upper.push_back(row);
