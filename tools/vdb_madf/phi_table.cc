@@ -3,9 +3,6 @@
 
 #include "phi_table.h"
 
-#include <openvdb/math/Mat3.h>
-
-#include <cmath>
 #include <sstream>
 
 namespace vdb_madf::tools {
@@ -13,15 +10,6 @@ namespace vdb_madf::tools {
 namespace {
 
 enum Status { kFollowed = 2, kExpected = 1, kUnknown = -1 };
-
-/// What F = R U turns by.
-openvdb::Mat3d rotationOf(const openvdb::Mat3d& gradient) {
-  openvdb::Vec3d axis = strainOf(gradient).turn;
-  const double degrees = axis.length();
-  if (degrees == 0) return openvdb::Mat3d::identity();
-  axis /= degrees;
-  return openvdb::math::rotation<openvdb::Mat3d>(axis, degrees * M_PI / 180).transpose();
-}
 
 void addRow(std::ostream& tsv, int32_t label, const openvdb::Vec3d& center,
             const openvdb::Mat3d& rotation, const openvdb::Vec3d& displacement, Status status) {

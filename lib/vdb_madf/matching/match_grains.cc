@@ -67,13 +67,17 @@ std::optional<FollowedGrains> matchGrains(const GrainSet& before, const GrainSet
   return following->result();
 }
 
+Mat3d rotationOf(const Mat3d& gradient) {
+  return detail::turnOf(gradient);
+}
+
 Strain strainOf(const Mat3d& gradient) {
   Strain strain;
   const Mat3d green = (gradient.transpose() * gradient - Mat3d::identity()) * 0.5;
   strain.volumetric = detail::trace(green);
   const Mat3d rest = green - Mat3d::identity() * (strain.volumetric / 3);
   strain.deviatoric = std::sqrt(2. / 3 * detail::squaredNorm(rest));
-  const Mat3d turn = detail::turnOf(gradient);
+  const Mat3d turn = rotationOf(gradient);
   // The antisymmetric part has the sine of the angle, the trace its cosine.
   const Vec3d sine =
       Vec3d(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1)) * 0.5;

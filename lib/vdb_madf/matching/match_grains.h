@@ -98,5 +98,7 @@ struct Strain {
   openvdb::Vec3d turn{0, 0, 0};  ///< R: the axis, as long as the angle in degrees
 };
 Strain strainOf(const openvdb::Mat3d& gradient);
+/// R; the identity of what has none.
+openvdb::Mat3d rotationOf(const openvdb::Mat3d& gradient);
 
 }  // namespace vdb_madf
