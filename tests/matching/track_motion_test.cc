@@ -7,16 +7,20 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <sstream>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "support/catch.h"
 #include "support/label_shapes.h"
+#include "support/label_slabs.h"
 #include "support/moved_grains.h"
 #include "support/runs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/label_digest.h"
+#include "vdb_madf/labels/label_sizes.h"
 #include "vdb_madf/matching/track.h"
 
 using namespace vdb_madf;
@@ -44,6 +48,44 @@ LabelMap drawnBalls(const std::vector<openvdb::Vec3d>& centers, const std::vecto
   LabelMap voxels;
   for (const auto& [p, owner] : nearest) voxels[p] = owner.second;
   return voxels;
+}
+
+/// Slabs of 24 layers in which all labels lie.
+std::vector<int> layersOf(const Int32Grid& labels) {
+  const CoordBBox box = labels.evalActiveVoxelBoundingBox();
+  std::vector<int> cuts{box.min().z() & ~7};
+  while (cuts.back() <= box.max().z()) cuts.push_back(cuts.back() + 24);
+  return cuts;
+}
+
+/// All that track() says, and the labels that follow.
+std::string madeBy(const AnyLabels& before, const AnyLabels& after, const TrackOptions& options) {
+  const Tracks tracks = track(before, after, options);
+  std::ostringstream text;
+  text.precision(17);
+  for (const auto* side : {&tracks.before, &tracks.after})
+    for (const TrackedGrain& grain : *side)
+      text << grain.grain << ' ' << toString(grain.fate) << ' ' << grain.voxels << ' '
+           << grain.links << ' ' << grain.partner << ' ' << grain.track << '\n';
+  for (const GrainMove& move : tracks.moves)
+    text << move.confidence << ' ' << move.center << ' ' << move.displacement << ' ' << move.miss
+         << '\n';
+  for (const auto* side : {&tracks.bondsBefore, &tracks.bondsAfter})
+    for (const TrackedBond& bond : *side)
+      text << bond.first << ' ' << bond.second << ' ' << bond.faces << ' ' << toString(bond.fate)
+           << '\n';
+  const AnyLabels labels = trackedLabels(after, tracks);
+  text << aboutOf(labels).metaValue<std::string>(kTrackKey) << '\n';
+  std::map<int32_t, int64_t> voxels;
+  const auto add = [&](const Int32Grid& some) {
+    for (const auto& [number, count] : labelSizes(some)) voxels[number] += count;
+  };
+  if (const auto* const slabs = std::get_if<LabelSlabs>(&labels))
+    for (size_t slab = 0; slab < slabs->slabCount(); ++slab) add(*slabs->read(slab, nullptr));
+  else
+    add(*std::get<Int32Grid::ConstPtr>(labels));
+  for (const auto& [number, count] : voxels) text << number << ' ' << count << '\n';
+  return text.str();
 }
 
 }  // namespace
@@ -117,6 +159,8 @@ TEST_CASE("track: bonds are followed through a motion", "[track_motion]") {
     for (const TrackedBond& bond : tracks.bondsAfter)
       isNew = isNew || (bond.fate == BondFate::created && bond.first == 90 && bond.second == 91);
     CHECK(isNew);
+    CHECK(madeBy(inSlabs(a, layersOf(*a)), inSlabs(b, layersOf(*b)), options) ==
+          madeBy(a, b, options));
     // What has fewer faces than a bond, or than a rough surface hides, is undecided.
     options.minFaces = 14;
     const auto undecided = [&] {
@@ -130,6 +174,12 @@ TEST_CASE("track: bonds are followed through a motion", "[track_motion]") {
     CHECK(undecided() == Bonds{{11, 12}});
     options.sureFaces = 1000;
     CHECK(undecided() == Bonds{{1, 2}, {3, 4}, {5, 6}, {11, 12}});
+    for (const TrackedBond& bond : track(*a, *b, options).bondsAfter)
+      CHECK(bond.fate != BondFate::created);
+    // A bond that gains faces is not made, if there were some.
+    options.sureFaces = 0;
+    for (const TrackedBond& bond : track(*b, *a, options).bondsAfter)
+      if (bond.first == 11 && bond.second == 12) CHECK(bond.fate == BondFate::undecided);
     CHECK(brokenBonds(tracks, 1000).all() == 0);
     options = TrackOptions();
     options.motion = MatchOptions{kind, {}};
@@ -179,6 +229,15 @@ TEST_CASE("track: bonds are followed through a motion", "[track_motion]") {
                     vdb_madf::test::Contains("no motion is found"));
 }
 
+TEST_CASE("track: of labels in slabs the domain and a motion have to be known", "[track_motion]") {
+  const auto labels = labelGrid(twoBalls({0, 0, 0}, 5));
+  const LabelSlabs slabs = inSlabs(labels, {-8, 0, 8, 16});
+  TrackOptions options;
+  CHECK_THROWS_WITH(track(slabs, labels, options), vdb_madf::test::Contains("with a motion alone"));
+  options.motion = MatchOptions{};
+  CHECK_THROWS_WITH(track(labels, slabs, options), vdb_madf::test::Contains("domain"));
+}
+
 TEST_CASE("track: grains that split or merge in a motion are told", "[track_motion]") {
   Dice dice(6);
   std::vector<openvdb::Vec3d> before, after;
@@ -210,6 +269,12 @@ TEST_CASE("track: grains that split or merge in a motion are told", "[track_moti
     CAPTURE(isMirrored);
     const Tracks tracks =
         isMirrored ? track(*parts, *whole, options) : track(*whole, *parts, options);
+    if (isMirrored)
+      CHECK(madeBy(inSlabs(parts, layersOf(*parts)), whole, options) ==
+            madeBy(parts, whole, options));
+    else
+      CHECK(madeBy(whole, inSlabs(parts, layersOf(*parts)), options) ==
+            madeBy(whole, parts, options));
     const GrainFate apart = isMirrored ? GrainFate::merged : GrainFate::split,
                     together = isMirrored ? GrainFate::split : GrainFate::merged;
     const auto expected = [&](int32_t grain) {

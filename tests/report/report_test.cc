@@ -90,7 +90,7 @@ struct Page {
   std::string bytes(const std::string& id) const { return unpacked(element(id)); }
 };
 
-Page write(const ReportLabels& labels, const ReportOptions& options = {}) {
+Page write(const AnyLabels& labels, const ReportOptions& options = {}) {
   const ScratchFolder folder;
   const Report report = writeReport(folder / "page.html", labels, options);
   const Page page{readFile(folder / "page.html")};

@@ -318,6 +318,25 @@ TEST_CASE("cli: a series that was made to move is followed as it moved", "[cli]"
   }
   CHECK(right > 0.9 * kept);
   CHECK(wrong == 0);
+  // In slabs it is the same.
+  for (const std::string step : {"1", "2"})
+    for (const std::string ending : {".vdb", ".slabs --slab-height 16"})
+      bench.mustRun("segment scans/step-" + step + ".vdb " + step + ending + " -q");
+  for (const std::string ending : {".vdb", ".slabs"})
+    bench.mustRun("track 1" + ending + " 2" + ending + " 3" + ending +
+                  " --motion affine --grains 3" + ending + ".csv --bonds b" + ending +
+                  ".csv --network n" + ending + ".csv -q");
+  bench.mustRun("track 1.slabs 2.slabs 4.tif --motion affine -q");
+  for (const std::string table : {"3", "b", "n"})
+    CHECK(bench.bytes(table + ".slabs.csv") == bench.bytes(table + ".vdb.csv"));
+  for (const std::string made : {"3.slabs", "4.tif"})
+    CHECK(bench.mustRun("compare 3.vdb " + made).find("only 0, in test only 0") !=
+          std::string::npos);
+  bench.mustRun("track 1.slabs 2.slabs 3.slabs later --motion affine -q");
+  CHECK(bench.bytes("later/2_grains.csv") == bench.bytes("3.vdb.csv"));
+  CHECK(infoOf(bench, "later/3.slabs").at("grids").size() == 1);
+  refuses(bench, kFailed, "track 1.slabs 2.slabs none/5.slabs --motion affine", {"none"});
+
   refuses(bench, kFailed, "generate evolve none.vdb other", {"none.vdb"});
   refuses(bench, kWrongUsage, "generate evolve scans/step-1.vdb scans", {"step-1.vdb"});
 }

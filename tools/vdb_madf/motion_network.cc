@@ -27,8 +27,8 @@ Column column(const std::string& name, const Items& items, const Number& number,
 }
 
 /// Of the grains that were followed, along x, y and z.
-void addMoves(const Int32Grid& before, const Tracks& tracks, std::vector<Column>& columns) {
-  const double edge = before.voxelSize()[0];  // of a cube
+void addMoves(const Int32Grid& about, const Tracks& tracks, std::vector<Column>& columns) {
+  const double edge = about.voxelSize()[0];  // of a cube
   const auto& moves = tracks.moves;
   const auto add = [&](const std::string& name, const auto& number) {
     columns.push_back(column(
@@ -53,14 +53,15 @@ void addMoves(const Int32Grid& before, const Tracks& tracks, std::vector<Column>
 
 }  // namespace
 
-GrainNetwork motionNetwork(const Int32Grid& before, const Tracks& tracks) {
-  const GrainColors colors = grainColors(before);
+GrainNetwork motionNetwork(const AnyLabels& before, const Tracks& tracks) {
+  const GrainColors colors = applied(before, [](const auto& all) { return grainColors(all); });
+  const Int32Grid& about = aboutOf(before);
   const auto& grains = tracks.before;
   const auto& bonds = tracks.bondsBefore;
   GrainNetwork network;
   for (size_t n = 0; n < grains.size(); ++n) {
     network.grains.push_back(grains[n].grain);
-    network.centers.push_back(before.transform().indexToWorld(tracks.moves[n].center));
+    network.centers.push_back(about.transform().indexToWorld(tracks.moves[n].center));
     network.colors.push_back(colors.colorOf(grains[n].grain));
   }
   const auto positionOf = [&](int32_t grain) {
@@ -76,7 +77,7 @@ GrainNetwork motionNetwork(const Int32Grid& before, const Tracks& tracks) {
       "fate", grains, [&](size_t n) { return int(grains[n].fate); }, true));
   columns.push_back(column(
       "partner", grains, [&](size_t n) { return grains[n].partner; }, true));
-  addMoves(before, tracks, columns);
+  addMoves(about, tracks, columns);
   network.bondColumns.push_back(column(
       "faces", bonds, [&](size_t n) { return bonds[n].faces; }, true));
   network.bondColumns.push_back(column(

@@ -14,6 +14,6 @@ namespace vdb_madf::tools {
 /// (degrees); bonds `faces` and `fate` (its position in BondFate). Places and displacements are in
 /// world units. NaN: not known.
 /// @pre tracked with a motion
-GrainNetwork motionNetwork(const Int32Grid& before, const Tracks& tracks);
+GrainNetwork motionNetwork(const AnyLabels& before, const Tracks& tracks);
 
 }  // namespace vdb_madf::tools

@@ -71,7 +71,7 @@ Int32Grid::Ptr manifoldsBeside(const InputOptions& input, Progress* progress) {
 }
 
 /// In slabs only if they can be measured so.
-ReportLabels labelsOf(const InputOptions& input, const Common& common) {
+AnyLabels labelsOf(const InputOptions& input, const Common& common) {
   common.progress->start("read");
   if (const auto slabs = openBoxSlabs(input, "--grid", common.progress)) return *slabs;
   return Int32Grid::ConstPtr(loadLabels(input, "--grid", common.progress));
@@ -82,7 +82,7 @@ Report writeOne(const ReportArguments& o, const Common& common) {
   if (!o.sweep.empty()) options.sweep = readText(o.sweep, kMaxSweepBytes);
   if (!o.sweep.empty() && !isSweepTable(options.sweep))
     throw InvalidInput(o.sweep + ": is no table of the verb sweep");
-  const ReportLabels labels = labelsOf(o.input, common);
+  const AnyLabels labels = labelsOf(o.input, common);
   // What crosses at another strictness the page cannot tell.
   if (!options.measure.crossings) options.manifold = manifoldsBeside(o.input, common.progress);
   return withFileName(o.input.path,

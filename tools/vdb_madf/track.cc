@@ -18,7 +18,9 @@
 #include "outputs.h"
 #include "parse.h"
 #include "phi_table.h"
+#include "slab_output.h"
 #include "text_file.h"
+#include "track_tables.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/network_file.h"
 #include "vdb_madf/exports/ome_zarr.h"
@@ -28,6 +30,7 @@
 #include "vdb_madf/files/output_tree.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/vdb/slab_folder_writer.h"
 #include "vdb_madf/vdb/write_vdb.h"
 
 namespace vdb_madf::tools {
@@ -50,7 +53,8 @@ struct SeriesFiles {
 SeriesFiles seriesFiles(const TrackArguments& o, const std::string& scan) {
   namespace fs = std::filesystem;
   const std::string stem = (fs::path(o.more.back()) / fs::path(scan).stem()).string();
-  return {stem + ".vdb", stem + "_grains.csv", stem + "_bonds.csv"};
+  const bool isInSlabs = !o.motion.empty() && hasSlabsEnding(withoutSlash(scan));
+  return {stem + (isInSlabs ? ".slabs" : ".vdb"), stem + "_grains.csv", stem + "_bonds.csv"};
 }
 
 /// The scans after the first one of a series.
@@ -85,7 +89,7 @@ void parse(TrackArguments& o) {
   } else {
     parsePair(o.before, o.after, {o.out, o.json, o.grains, o.links, o.bonds, o.phi, o.network});
     const bool isScene = isZarrEnding(o.out);
-    if (!o.out.empty() && !isScene) checkVolumeEnding(o.out);
+    if (!o.out.empty() && !isScene && !hasSlabsEnding(o.out)) checkVolumeEnding(o.out);
     if (isScene && motionKindOf(o.motion) == MotionKind::free)
       throw WrongUsage(o.out +
                        ": a scene tells where the whole has gone, which --motion free does "
@@ -232,9 +236,8 @@ void printBroken(const BrokenBonds& bonds, int64_t sureFaces) {
   const int64_t decided = bonds.kept + bonds.broken;
   if (decided == 0) return;
   std::printf(
-      "broken         %.2f %% of the bonds of %lld faces or more, %.2f to %.2f %% if some are lost "
-      "or "
-      "undecided\n",
+      "broken         %.2f %% of the bonds of %lld faces or more, %.2f to %.2f %% if some are "
+      "lost or undecided\n",
       percent(bonds.broken, decided), static_cast<long long>(sureFaces),
       percent(bonds.broken, bonds.all()), percent(bonds.broken + bonds.unknown, bonds.all()));
 }
@@ -258,111 +261,47 @@ void print(const TrackArguments& o, const Tracks& t, const Json& json) {
   if (t.motion) printBroken(brokenBonds(t, o.track.sureFaces), o.track.sureFaces);
 }
 
-/// A share with nine digits; empty where there is nothing to have a share of.
-void addShare(std::ostream& csv, int64_t part, int64_t whole) {
-  csv << ',';
-  if (whole > 0) csv << double(part) / double(whole);
+/// Of a folder of slabs, slab by slab if that is asked for and can be done.
+AnyLabels labelsOf(const InputOptions& input, const char* gridOption, bool bySlabs,
+                   const Common& common) {
+  if (bySlabs)
+    if (const auto slabs = openBoxSlabs(input, gridOption, common.progress)) return *slabs;
+  return Int32Grid::ConstPtr(loadLabels(input, gridOption, common.progress));
 }
 
-std::string grainTable(const Tracks& t) {
-  std::ostringstream csv;
-  csv.precision(9);
-  csv << "side,grain,fate,track,voxels,shared_voxels,links,partner,overlap_voxels,overlap_share\n";
-  for (const auto& [side, grains] :
-       {std::pair<const char*, const std::vector<TrackedGrain>&>{"before", t.before},
-        {"after", t.after}})
-    for (const TrackedGrain& g : grains) {
-      csv << side << ',' << g.grain << ',' << toString(g.fate) << ',' << g.track << ',' << g.voxels
-          << ',' << g.sharedVoxels << ',' << g.links << ',' << g.partner << ',' << g.overlapVoxels;
-      addShare(csv, g.overlapVoxels, g.sharedVoxels);
-      csv << '\n';
-    }
-  return csv.str();
-}
-
-/// What a grain's motion was; empty cells for what is not known.
-void addMove(std::ostream& csv, const GrainMove* move) {
-  if (!move) {
-    csv << std::string(20, ',');
-    return;
-  }
-  const auto add = [&](double value) { csv << ',' << value; };
-  add(move->confidence);
-  add(move->miss);
-  for (int axis = 0; axis < 3; ++axis) add(move->displacement[axis]);
-  csv << ',' << move->neighbors;
-  if (!move->gradient) {
-    csv << std::string(14, ',');
-    return;
-  }
-  for (int n = 0; n < 9; ++n) add((*move->gradient)(n / 3, n % 3));
-  const Strain strain = strainOf(*move->gradient);
-  add(strain.volumetric);
-  add(strain.deviatoric);
-  for (int axis = 0; axis < 3; ++axis) add(strain.turn[axis]);
-}
-
-/// With a motion. What was followed has its motion on either side.
-std::string moveTable(const Tracks& t) {
-  std::ostringstream csv;
-  csv.precision(9);
-  csv << "side,grain,fate,track,voxels,partner,confidence,miss,displacement_x,displacement_y,"
-         "displacement_z,neighbors,f_xx,f_xy,f_xz,f_yx,f_yy,f_yz,f_zx,f_zy,f_zz,"
-         "strain_volumetric,strain_deviatoric,rotation_x,rotation_y,rotation_z\n";
-  const MoveOf move = moveOf(t);
-  for (const auto& [side, grains] :
-       {std::pair<const char*, const std::vector<TrackedGrain>&>{"before", t.before},
-        {"after", t.after}})
-    for (const TrackedGrain& g : grains) {
-      csv << side << ',' << g.grain << ',' << toString(g.fate) << ',' << g.track << ',' << g.voxels
-          << ',' << g.partner;
-      addMove(csv, move(g));
-      csv << '\n';
-    }
-  return csv.str();
-}
-
-/// Of one of the grains of a side.
-int64_t sharedVoxels(const std::vector<TrackedGrain>& grains, int32_t grain) {
-  return std::lower_bound(grains.begin(), grains.end(), grain,
-                          [](const TrackedGrain& g, int32_t number) { return g.grain < number; })
-      ->sharedVoxels;
-}
-
-std::string linkTable(const Tracks& t) {
-  std::ostringstream csv;
-  csv.precision(9);
-  csv << "before,after,voxels,share_before,share_after,link\n";
-  for (const GrainOverlap& overlap : t.overlaps) {
-    csv << overlap.before << ',' << overlap.after << ',' << overlap.voxels;
-    addShare(csv, overlap.voxels, sharedVoxels(t.before, overlap.before));
-    addShare(csv, overlap.voxels, sharedVoxels(t.after, overlap.after));
-    csv << ',' << int(overlap.isLink) << '\n';
-  }
-  return csv.str();
-}
-
-std::string bondTable(const Tracks& t) {
-  std::ostringstream csv;
-  csv << "side,first,second,faces,shared_faces,fate\n";
-  for (const auto& [side, bonds] :
-       {std::pair<const char*, const std::vector<TrackedBond>&>{"before", t.bondsBefore},
-        {"after", t.bondsAfter}})
-    for (const TrackedBond& bond : bonds)
-      csv << side << ',' << bond.first << ',' << bond.second << ',' << bond.faces << ','
-          << bond.sharedFaces << ',' << toString(bond.fate) << '\n';
-  return csv.str();
-}
-
-/// Tracks, the notes on them, and the labels after by tracks, if these are asked for.
-Tracks tracksOf(const TrackArguments& o, const Int32Grid& before, const Int32Grid& after,
-                const PairNames& names, Int32Grid::Ptr* labels, const Common& common) {
-  checkSameVoxels(before, after, names);
+Tracks tracksOf(const TrackArguments& o, const AnyLabels& before, const AnyLabels& after,
+                const PairNames& names, const Common& common) {
+  checkSameVoxels(aboutOf(before), aboutOf(after), names);
   const Tracks tracks =
       withFileName(names.second, [&] { return track(before, after, o.track, common.progress); });
   checkAnyCommon(tracks, names);
-  if (labels) *labels = trackedLabels(after, tracks, common.progress);
   return tracks;
+}
+
+const Int32Grid& wholeOf(const AnyLabels& labels) {
+  return *std::get<Int32Grid::ConstPtr>(labels);
+}
+
+/// Writes tracked labels as a file.
+void writeLabels(const std::string& path, const AnyLabels& labels, const std::string& source,
+                 const Common& common) {
+  if (hasVdbEnding(path))
+    writeVdb(path, {std::get<Int32Grid::ConstPtr>(labels)}, common.progress);
+  else if (const auto* const slabs = std::get_if<LabelSlabs>(&labels))
+    writeSlabsAsImage(path, *slabs, std::nullopt, source, common);
+  else
+    writeGridAsImage(path, wholeOf(labels), std::nullopt, source, common);
+}
+
+/// Writes tracked labels as a folder of slabs, which appears whole by itself.
+void writeInSlabs(const std::string& path, const AnyLabels& labels, const std::string& source,
+                  const Common& common) {
+  const auto* const slabs = std::get_if<LabelSlabs>(&labels);
+  const LabelSlabs written = slabs ? *slabs : singleSlab(wholeOf(labels).deepCopy());
+  const SlabFolderWriter folder(path, written.cuts);
+  for (size_t slab = 0; slab < written.slabCount(); ++slab)
+    folder.write(slab, {written.read(slab, common.progress)}, common.progress);
+  folder.commit(Json({{"input", source}}).dump());
 }
 
 /// Both scans, and where the whole has gone, as an OME-Zarr.
@@ -388,23 +327,26 @@ void runSeries(TrackArguments o, const Common& common) {
     if (!std::filesystem::exists(scan))
       throw IoError(scan + ": cannot be opened: No such file or directory");
   OutputFolder folder(o.more.back());
-  Int32Grid::Ptr before = loadLabels(o.before, "--before-grid", common.progress);
+  const bool bySlabs = o.track.motion.has_value();
+  AnyLabels before = labelsOf(o.before, "--before-grid", bySlabs, common);
   for (const std::string& scan : laterScans(o)) {
     const SeriesFiles files = seriesFiles(o, scan);
     TextFile grainFile(files.grains), bondFile(files.bonds);
     o.after.path = scan;
-    const Int32Grid::Ptr after = loadLabels(o.after, "--after-grid", common.progress);
+    const AnyLabels after =
+        labelsOf(o.after, "--after-grid", bySlabs && hasSlabsEnding(files.labels), common);
     const PairNames names = namesOf(o.before, o.after);
     common.progress->start("track");
-    Int32Grid::Ptr labels;
-    const Tracks tracks = tracksOf(o, *before, *after, names, &labels, common);
+    const Tracks tracks = tracksOf(o, before, after, names, common);
+    const AnyLabels labels = trackedLabels(after, tracks, common.progress);
+    if (hasSlabsEnding(files.labels)) writeInSlabs(files.labels, labels, scan, common);
     OutputSet set;
-    writeVdb(files.labels, {labels}, common.progress);
+    if (!hasSlabsEnding(files.labels)) writeLabels(files.labels, labels, scan, common);
     common.progress->end();
-    for (const std::string& note : notesOn(tracks, *before, *after, o.track, names))
+    for (const std::string& note : notesOn(tracks, aboutOf(before), aboutOf(after), o.track, names))
       common.progress->note(note);
-    grainFile.write(tracks.motion ? moveTable(tracks) : grainTable(tracks));
-    bondFile.write(bondTable(tracks));
+    grainFile.write(trackedGrainTable(tracks));
+    bondFile.write(trackedBondTable(tracks));
     set.commit();
     folder.keep();
     if (!common.quiet) {
@@ -420,37 +362,36 @@ void runTrack(const TrackArguments& o, const Common& common) {
   const bool isScene = isZarrEnding(o.out);
   if (isScene)
     checkOutputTree(o.out);
-  else if (!o.out.empty())
+  else if (!o.out.empty() && !hasSlabsEnding(o.out))
     checkWritable(o.out);
   if (!o.network.empty()) checkWritable(o.network);
   JsonFile jsonFile(o.json);
   TextFile grainFile(o.grains), linkFile(o.links), bondFile(o.bonds), phiFile(o.phi);
-  const Int32Grid::Ptr before = loadLabels(o.before, "--before-grid", common.progress);
-  const Int32Grid::Ptr after = loadLabels(o.after, "--after-grid", common.progress);
+  const bool bySlabs = o.track.motion && !isScene;
+  const AnyLabels before = labelsOf(o.before, "--before-grid", bySlabs, common);
+  const AnyLabels after =
+      labelsOf(o.after, "--after-grid", bySlabs && !hasVdbEnding(o.out), common);
   const PairNames names = namesOf(o.before, o.after);
   common.progress->start("track");
-  Int32Grid::Ptr labels;
-  const Tracks tracks =
-      tracksOf(o, *before, *after, names, o.out.empty() ? nullptr : &labels, common);
+  const Tracks tracks = tracksOf(o, before, after, names, common);
+  AnyLabels labels;
+  if (!o.out.empty()) labels = trackedLabels(after, tracks, common.progress);
+  const bool isInSlabs = hasSlabsEnding(o.out);
+  if (isInSlabs) writeInSlabs(o.out, labels, o.after.path, common);
   OutputSet files;
-  if (labels && !isScene) {
-    if (hasVdbEnding(o.out))
-      writeVdb(o.out, {labels}, common.progress);
-    else
-      writeGridAsImage(o.out, *labels, std::nullopt, o.after.path, common);
-  }
+  if (!o.out.empty() && !isScene && !isInSlabs) writeLabels(o.out, labels, o.after.path, common);
   common.progress->end();
-  for (const std::string& note : notesOn(tracks, *before, *after, o.track, names))
+  for (const std::string& note : notesOn(tracks, aboutOf(before), aboutOf(after), o.track, names))
     common.progress->note(note);
-  grainFile.write(tracks.motion ? moveTable(tracks) : grainTable(tracks));
-  linkFile.write(linkTable(tracks));
-  bondFile.write(bondTable(tracks));
-  if (!o.network.empty()) writeNetwork(o.network, motionNetwork(*before, tracks), common.progress);
-  if (!phiFile.isNowhere()) phiFile.write(phiTable(tracks, boxOf(*before).min()));
+  grainFile.write(trackedGrainTable(tracks));
+  linkFile.write(trackLinkTable(tracks));
+  bondFile.write(trackedBondTable(tracks));
+  if (!o.network.empty()) writeNetwork(o.network, motionNetwork(before, tracks), common.progress);
+  if (!phiFile.isNowhere()) phiFile.write(phiTable(tracks, boxOf(aboutOf(before)).min()));
   Json json = summary(o, tracks);
   addNotes(json, *common.progress);
   jsonFile.write(json);
-  if (isScene) writeScene(o, *before, *labels, tracks, common);
+  if (isScene) writeScene(o, wholeOf(before), wholeOf(labels), tracks, common);
   files.commit();
   if (!common.quiet) print(o, tracks, json);
 }
@@ -462,11 +403,12 @@ void addTrack(Verb command, Common& common, Action& action) {
   Verb verb = addVerb(command, common, "track",
                       "what became of grains and bonds from one scan of a sample to the next",
                       "vdb_madf track grains.vdb later.vdb tracked.vdb --max-shift 20");
-  verb.option("BEFORE", o->before.path, "labels: VDB or integer image").required();
+  verb.option("BEFORE", o->before.path, "labels: VDB, folder of slabs or integer image").required();
   verb.option("AFTER", o->after.path, "labels of a later scan, of the same voxels").required();
   verb.option(
       "OUT", o->out,
-      "gets the labels of AFTER with the numbers of BEFORE; .zarr: both, as a scene of OME-Zarr");
+      "gets the labels of AFTER with the numbers of BEFORE, also as a folder of slabs, .slabs; "
+      ".zarr: both, as a scene of OME-Zarr");
   verb.option("MORE", o->more,
               "of a series, OUT being a scan: further scans, and last a folder, which gets labels "
               "and tables of all but the first");

@@ -15,4 +15,9 @@ LabelSlabs singleSlab(const Int32Grid::Ptr& labels) {
   return slabs;
 }
 
+const Int32Grid& aboutOf(const AnyLabels& labels) {
+  const auto* const whole = std::get_if<Int32Grid::ConstPtr>(&labels);
+  return whole ? **whole : *std::get<LabelSlabs>(labels).about;
+}
+
 }  // namespace vdb_madf

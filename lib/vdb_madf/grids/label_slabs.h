@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <variant>
 #include <vector>
 
 #include "vdb_madf/base/interrupter.h"
@@ -27,5 +28,16 @@ struct LabelSlabs {
 
 /// Labels that are in memory as a single slab, for functions that take slabs.
 LabelSlabs singleSlab(const Int32Grid::Ptr& labels);
+
+/// In memory, or in slabs.
+using AnyLabels = std::variant<Int32Grid::ConstPtr, LabelSlabs>;
+/// A grid of their name, transform and metadata.
+const Int32Grid& aboutOf(const AnyLabels& labels);
+/// f(labels), of either kind: const Int32Grid& or const LabelSlabs&.
+template <typename F>
+auto applied(const AnyLabels& labels, const F& f) {
+  if (const auto* const whole = std::get_if<Int32Grid::ConstPtr>(&labels)) return f(**whole);
+  return f(std::get<LabelSlabs>(labels));
+}
 
 }  // namespace vdb_madf

@@ -53,7 +53,7 @@ struct MatchOptions {
 /// Where a grain of before went.
 struct FollowedGrain {
   int32_t partner = 0;            ///< its number after; 0: lost
-  double confidence = 0;          ///< 0 to 1; see matchGrains()
+  double confidence = 0;          ///< 0.88 to 1; 0: lost; see matchGrains()
   bool isPlaced = false;          ///< its neighbors, or the whole, tell where it should be
   openvdb::Vec3d place{0, 0, 0};  ///< there
   openvdb::Mat3d nearby = openvdb::Mat3d::identity();  ///< the gradient of what tells its place
@@ -81,9 +81,11 @@ struct FollowedGrains {
 /// is repeated until nothing changes, at last with candidates no farther than four times the
 /// median (and 0.3 to 0.5 spacings). Specks, grains that hold under a fiftieth of the volume of the
 /// grain in the middle of the mass, and under a tenth of the mass together, are nobody's neighbors;
-/// they are followed if most of them are found, else all are lost. The confidence is 1 - cost /
-/// cost of the next best, times the share of the nearest 12 grains that are followed (of which two
-/// thirds are enough).
+/// they are followed if most of them are found, else all are lost.
+/// The confidence is the probability that a match is right: 1 - 0.12 (1 - s)^5, where s is 1 - cost
+/// / cost of the next best, times the share of the nearest 12 grains that are followed (of which two
+/// thirds are enough). The formula is calibrated on moved packs (tests/benchmark/README.md); where
+/// a scan has few grains of the other one it promises too much.
 /// Deterministic: ties go to the smaller number. N log N. Memory: per grain.
 /// @return nothing if no such place is found, and there is no guess
 /// @throw InvalidInput if numbers do not ascend, or a feature is not finite; Interrupted

@@ -6,11 +6,8 @@
 #include <openvdb/Metadata.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <limits>
 #include <map>
-#include <set>
 #include <string>
 #include <utility>
 
@@ -21,21 +18,19 @@
 #include "vdb_madf/labels/detail/relabelled.h"
 #include "vdb_madf/labels/label_sizes.h"
 #include "vdb_madf/matching/compare.h"
-#include "vdb_madf/matching/detail/grain_set.h"
-#include "vdb_madf/matching/detail/local_fit.h"
+#include "vdb_madf/matching/detail/motion_tracks.h"
 #include "vdb_madf/matching/detail/moved_labels.h"
-#include "vdb_madf/matching/detail/point_cells.h"
 #include "vdb_madf/matching/detail/rigid_shift.h"
+#include "vdb_madf/matching/detail/track_sides.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
 
 namespace vdb_madf {
 
 namespace {
 
-/// The grains of one side, by number.
-using TrackedGrains = std::map<int32_t, TrackedGrain>;
-/// The grains that each grain of one side is linked with.
-using Links = std::map<int32_t, std::set<int32_t>>;
+using detail::Links;
+using detail::Sides;
+using detail::TrackedGrains;
 
 void check(const TrackOptions& options) {
   if (options.maxShift < 0 || options.maxShift > kMaxShift)
@@ -82,20 +77,13 @@ void addOverlap(TrackedGrains& grains, int32_t number, int32_t other, int64_t vo
   grain.overlapVoxels = voxels;
 }
 
-/// The two sides, and how they are linked.
-struct Sides {
-  TrackedGrains before, after;
-  Links fromBefore, fromAfter;
-};
-
 void link(Sides& sides, std::vector<GrainOverlap>& overlaps, double share) {
   for (GrainOverlap& overlap : overlaps) {
     const int64_t smaller = std::min(sides.before.at(overlap.before).sharedVoxels,
                                      sides.after.at(overlap.after).sharedVoxels);
     overlap.isLink = double(overlap.voxels) >= share * double(smaller);
     if (!overlap.isLink) continue;
-    sides.fromBefore[overlap.before].insert(overlap.after);
-    sides.fromAfter[overlap.after].insert(overlap.before);
+    sides.link(overlap.before, overlap.after);
   }
 }
 
@@ -115,308 +103,6 @@ void judge(TrackedGrains& grains, const Links& own, const Links& other, GrainFat
     else
       grain.fate = other.at(*links->second.begin()).size() > 1 ? part : GrainFate::kept;
   }
-}
-
-/// What a series of labels has used already.
-int64_t lastTrackOf(const Int32Grid& labels) {
-  const auto last = labels.getMetadata<openvdb::Int64Metadata>(kLastTrackKey);
-  return last ? std::clamp<int64_t>(last->value(), 0, std::numeric_limits<int32_t>::max()) : 0;
-}
-
-/// Returns the largest number so far.
-int32_t number(Sides& sides, std::vector<GrainOverlap> links, int64_t last) {
-  std::stable_sort(links.begin(), links.end(), [](const GrainOverlap& a, const GrainOverlap& b) {
-    return a.voxels > b.voxels;
-  });
-  std::set<int32_t> used;
-  for (const GrainOverlap& overlap : links) {
-    TrackedGrain& after = sides.after.at(overlap.after);
-    if (overlap.isLink && after.track == 0 && used.insert(overlap.before).second)
-      after.track = overlap.before;
-  }
-  for (auto& [own, grain] : sides.before) {
-    grain.track = own;
-    last = std::max<int64_t>(last, own);
-  }
-  for (auto& [own, grain] : sides.after) {
-    if (grain.track > 0) continue;
-    if (++last > std::numeric_limits<int32_t>::max())
-      throw InvalidInput("there are no numbers left for new grains: renumber the first labels");
-    grain.track = int32_t(last);
-  }
-  return int32_t(last);
-}
-
-using Pair = std::pair<int32_t, int32_t>;
-
-/// Judges the bonds of one side. `lost`: the grains are linked, but have no such bond there.
-void judge(std::vector<TrackedBond>& bonds, const Links& links, const std::set<Pair>& there,
-           BondFate lost) {
-  for (TrackedBond& bond : bonds) {
-    const auto first = links.find(bond.first), second = links.find(bond.second);
-    if (bond.fate == BondFate::outside || first == links.end() || second == links.end()) continue;
-    bond.fate = lost;
-    for (const int32_t a : first->second) {
-      if (bond.fate == lost && second->second.count(a)) bond.fate = BondFate::inside;
-      for (const int32_t b : second->second)
-        if (a != b && there.count({std::min(a, b), std::max(a, b)})) bond.fate = BondFate::kept;
-    }
-  }
-}
-
-/// \p shared: the same labels, as far as both volumes show them.
-std::vector<TrackedBond> bondsOf(const Int32Grid& labels, const Int32Grid& shared, int64_t minFaces,
-                                 Interrupter* interrupter) {
-  std::map<Pair, int64_t> sharedFaces;
-  for (const detail::LabelContact& contact : detail::labelContacts(shared, interrupter))
-    sharedFaces[{contact.first, contact.second}] = contact.faces;
-  std::vector<TrackedBond> bonds;
-  for (const detail::LabelContact& contact : detail::labelContacts(labels, interrupter)) {
-    if (contact.faces < minFaces) continue;
-    const auto here = sharedFaces.find({contact.first, contact.second});
-    const int64_t faces = here == sharedFaces.end() ? 0 : here->second;
-    bonds.push_back(
-        {contact.first, contact.second, contact.faces, faces,
-         faces < std::max<int64_t>(minFaces, 1) ? BondFate::outside : BondFate::unmatched});
-  }
-  return bonds;
-}
-
-/// The pairs of bonds in what both volumes show.
-std::set<Pair> pairsOf(const std::vector<TrackedBond>& bonds) {
-  std::set<Pair> pairs;
-  for (const TrackedBond& bond : bonds)
-    if (bond.fate != BondFate::outside) pairs.emplace(bond.first, bond.second);
-  return pairs;
-}
-
-/// Whether a ball as large as a grain lies in a box.
-bool isWithin(const CoordBBox& box, const openvdb::Vec3d& center, double volume) {
-  constexpr double kBall = 0.2387324146378430;  // 3 / (4 pi)
-  const double radius = std::cbrt(kBall * volume);
-  for (int axis = 0; axis < 3; ++axis)
-    if (!(center[axis] - radius >= box.min()[axis] - 0.5 &&
-          center[axis] + radius <= box.max()[axis] + 0.5))
-      return false;
-  return true;
-}
-
-/// Links grains that were followed, and judges all. Of those that were not it is asked whether both
-/// volumes show them.
-void link(Sides& sides, Tracks& tracks, const GrainSet& before, const GrainSet& after,
-          const FollowedGrains& followed, const CoordBBox& boxBefore, const CoordBBox& boxAfter) {
-  std::map<int32_t, const GrainFeatures*> ofAfter;
-  for (const GrainFeatures& grain : after.grains) ofAfter[grain.grain] = &grain;
-  std::vector<openvdb::Vec3d> places;  // after, of those whose gradient is known
-  std::vector<size_t> known;
-  for (size_t n = 0; n < before.grains.size(); ++n) {
-    const GrainFeatures& grain = before.grains[n];
-    const FollowedGrain& match = followed.grains[n];
-    GrainMove& move = tracks.moves.emplace_back();
-    TrackedGrain& here = sides.before.at(grain.grain);
-    here.partner = match.partner;
-    move.center = grain.center;
-    move.isPlaced = match.isPlaced;
-    if (!match.partner) {
-      if (match.isPlaced) {
-        move.displacement = match.place - grain.center;
-        move.gradient = match.nearby;
-      }
-      const bool isSeen = !match.isPlaced || isWithin(boxAfter, match.place, grain.volume);
-      here.fate = isSeen ? GrainFate::lost : GrainFate::outside;
-      continue;
-    }
-    const openvdb::Vec3d& there = ofAfter.at(match.partner)->center;
-    move.confidence = match.confidence;
-    move.displacement = there - grain.center;
-    move.miss = match.miss;
-    move.neighbors = match.neighbors;
-    move.gradient = match.gradient;
-    TrackedGrain& partner = sides.after.at(match.partner);
-    partner.partner = grain.grain;
-    here.fate = partner.fate = GrainFate::kept;
-    here.links = partner.links = 1;
-    sides.fromBefore[grain.grain].insert(match.partner);
-    sides.fromAfter[match.partner].insert(grain.grain);
-    tracks.overlaps.push_back({grain.grain, match.partner, here.voxels, true});
-    if (!match.gradient || !detail::inverseOf(*match.gradient)) continue;
-    places.push_back(there);
-    known.push_back(n);
-  }
-  const detail::PointCells cells(places);
-  for (const GrainFeatures& grain : after.grains) {
-    TrackedGrain& here = sides.after.at(grain.grain);
-    if (here.partner) continue;
-    here.fate = GrainFate::appeared;
-    if (known.empty()) continue;
-    const size_t near = cells.nearest(grain.center, 1)[0];
-    const openvdb::Vec3d from =
-        before.grains[known[near]].center +
-        *detail::inverseOf(*followed.grains[known[near]].gradient) * (grain.center - cells[near]);
-    if (!isWithin(boxBefore, from, grain.volume)) here.fate = GrainFate::outside;
-  }
-}
-
-/// How each grain moved: as its neighbors, about its own center, if it was followed.
-std::map<int32_t, Motion> motionsOf(const GrainSet& before, const GrainSet& after,
-                                    const FollowedGrains& followed) {
-  std::map<int32_t, openvdb::Vec3d> centers;
-  for (const GrainFeatures& grain : after.grains) centers[grain.grain] = grain.center;
-  std::map<int32_t, Motion> motions;
-  for (size_t n = 0; n < before.grains.size(); ++n) {
-    const FollowedGrain& match = followed.grains[n];
-    const openvdb::Vec3d place = match.partner ? centers.at(match.partner) : match.place;
-    if (match.isPlaced)
-      motions[before.grains[n].grain] = {match.nearby,
-                                         place - match.nearby * before.grains[n].center};
-  }
-  return motions;
-}
-
-/// Says which grains came apart: `parts` of the other side that were not followed. Most voxels of
-/// each lie in the whole when they are moved (`overlaps`: of whole and part), and the volumes
-/// agree; of a whole that was followed, better than without the parts.
-/// @return the new links, from whole to part
-std::vector<GrainOverlap> linkParts(TrackedGrains& wholes, TrackedGrains& parts,
-                                    const std::map<Pair, int64_t>& overlaps, GrainFate fate) {
-  constexpr double kLeastPart = 0.1, kLeast = 0.6, kMost = 1.6;  // of the whole
-  const auto isFree = [](const TrackedGrain& grain) {
-    return grain.fate == GrainFate::lost || grain.fate == GrainFate::appeared;
-  };
-  std::map<int32_t, std::pair<int64_t, int32_t>> owners;  // of parts: voxels, and the whole
-  for (const auto& [pair, voxels] : overlaps) {
-    const TrackedGrain &whole = wholes.at(pair.first), &part = parts.at(pair.second);
-    if (!isFree(part) || !(isFree(whole) || whole.fate == GrainFate::kept) ||
-        double(part.voxels) < kLeastPart * double(whole.voxels) || 2 * voxels < part.voxels)
-      continue;
-    auto& owner = owners[pair.second];
-    if (voxels > owner.first) owner = {voxels, pair.first};
-  }
-  std::map<int32_t, std::vector<int32_t>> ofWhole;
-  for (const auto& [part, owner] : owners) ofWhole[owner.second].push_back(part);
-  std::vector<GrainOverlap> links;
-  for (const auto& [number, some] : ofWhole) {
-    TrackedGrain& whole = wholes.at(number);
-    const double volume = double(whole.voxels);
-    const double without = whole.partner ? double(parts.at(whole.partner).voxels) / volume : 0;
-    double with = without;
-    for (const int32_t part : some) with += double(parts.at(part).voxels) / volume;
-    if (whole.partner ? !(std::abs(std::log(with)) < std::abs(std::log(without)))
-                      : !(some.size() > 1 && with >= kLeast && with <= kMost))
-      continue;
-    whole.fate = fate;
-    whole.links += int64_t(some.size());
-    if (whole.partner) parts.at(whole.partner).fate = fate;
-    for (const int32_t part : some) {
-      TrackedGrain& here = parts.at(part);
-      here.fate = fate;
-      here.links = 1;
-      here.partner = number;
-      links.push_back({number, part, owners.at(part).first, true});
-    }
-    if (whole.partner) continue;
-    int64_t most = 0;
-    for (const int32_t part : some)
-      if (owners.at(part).first > most) {
-        most = owners.at(part).first;
-        whole.partner = part;
-      }
-  }
-  return links;
-}
-
-/// Links grains that split or merged.
-void linkParts(Sides& sides, Tracks& tracks, const Int32Grid& before, const Int32Grid& after,
-               const std::map<int32_t, Motion>& motions, Interrupter* interrupter) {
-  const auto overlaps = detail::movedOverlaps(before, after, motions, interrupter);
-  std::map<Pair, int64_t> mirrored;
-  for (const auto& [pair, voxels] : overlaps) mirrored[{pair.second, pair.first}] = voxels;
-  const auto add = [&](int32_t first, int32_t second, int64_t voxels) {
-    sides.fromBefore[first].insert(second);
-    sides.fromAfter[second].insert(first);
-    tracks.overlaps.push_back({first, second, voxels, true});
-  };
-  for (const GrainOverlap& link : linkParts(sides.before, sides.after, overlaps, GrainFate::split))
-    add(link.before, link.after, link.voxels);
-  for (const GrainOverlap& link : linkParts(sides.after, sides.before, mirrored, GrainFate::merged))
-    add(link.after, link.before, link.voxels);
-}
-
-/// Says of broken bonds whether their grains are near and whether this is sure, and of bonds of
-/// which an end is outside that they are.
-void refine(Tracks& tracks, const Sides& sides, const Int32Grid& before, const Int32Grid& after,
-            const std::map<int32_t, Motion>& motions, const TrackOptions& options,
-            Interrupter* interrupter) {
-  std::set<Pair> apart, broken;
-  const auto now = [&](const TrackedBond& bond) {
-    std::vector<Pair> pairs;
-    for (const int32_t a : sides.fromBefore.at(bond.first))
-      for (const int32_t b : sides.fromBefore.at(bond.second)) pairs.push_back(std::minmax(a, b));
-    return pairs;
-  };
-  for (const TrackedBond& bond : tracks.bondsBefore)
-    if (bond.fate == BondFate::separated) {
-      broken.emplace(bond.first, bond.second);
-      for (const Pair& pair : now(bond)) apart.insert(pair);
-    }
-  const std::set<Pair> near = detail::nearPairs(after, apart, options.gap, interrupter),
-                       touching = detail::nearPairs(after, apart, 1, interrupter),
-                       solid = detail::solidPairs(before, after, broken, motions, interrupter);
-  for (TrackedBond& bond : tracks.bondsBefore) {
-    if (bond.fate != BondFate::separated) continue;
-    const std::vector<Pair> pairs = now(bond);
-    const auto any = [&](const std::set<Pair>& of) {
-      return std::any_of(pairs.begin(), pairs.end(),
-                         [&](const Pair& pair) { return of.count(pair) > 0; });
-    };
-    if (bond.faces < options.sureFaces || any(touching) || solid.count({bond.first, bond.second}))
-      bond.fate = BondFate::undecided;
-    else if (any(near))
-      bond.fate = BondFate::detached;
-  }
-  for (auto* bonds : {&tracks.bondsBefore, &tracks.bondsAfter}) {
-    const TrackedGrains& grains = bonds == &tracks.bondsBefore ? sides.before : sides.after;
-    for (TrackedBond& bond : *bonds)
-      for (const int32_t end : {bond.first, bond.second})
-        if (grains.at(end).fate == GrainFate::outside) bond.fate = BondFate::outside;
-  }
-}
-
-std::vector<TrackedGrain> listed(const TrackedGrains& grains) {
-  std::vector<TrackedGrain> list;
-  for (const auto& [number, grain] : grains) list.push_back(grain);
-  return list;
-}
-
-Tracks trackMotion(const Int32Grid& before, const Int32Grid& after, const TrackOptions& options,
-                   Interrupter* interrupter) {
-  for (const Int32Grid* labels : {&before, &after})
-    requireCubicVoxels(*labels, "following grains through a motion");
-  const GrainSet first = detail::grainSet(before, interrupter),
-                 second = detail::grainSet(after, interrupter);
-  const auto followed = matchGrains(first, second, *options.motion, interrupter);
-  if (!followed)
-    throw InvalidInput(
-        "no motion is found that brings some grain and its neighbors to such of the later scan: "
-        "give labels of the same sample, or a guess of its motion");
-  Tracks tracks;
-  tracks.motion = options.motion->kind;
-  tracks.whole = followed->whole;
-  Sides sides{grainsOf(before, interrupter), grainsOf(after, interrupter), {}, {}};
-  link(sides, tracks, first, second, *followed, boxOf(before), boxOf(after));
-  const auto motions = motionsOf(first, second, *followed);
-  linkParts(sides, tracks, before, after, motions, interrupter);
-  tracks.lastTrack = number(sides, std::exchange(tracks.overlaps, {}), lastTrackOf(before));
-  tracks.bondsBefore = bondsOf(before, before, options.minFaces, interrupter);
-  tracks.bondsAfter = bondsOf(after, after, options.minFaces, interrupter);
-  const std::set<Pair> pairsBefore = pairsOf(tracks.bondsBefore),
-                       pairsAfter = pairsOf(tracks.bondsAfter);
-  judge(tracks.bondsBefore, sides.fromBefore, pairsAfter, BondFate::separated);
-  judge(tracks.bondsAfter, sides.fromAfter, pairsBefore, BondFate::created);
-  refine(tracks, sides, before, after, motions, options, interrupter);
-  tracks.before = listed(sides.before);
-  tracks.after = listed(sides.after);
-  return tracks;
 }
 
 }  // namespace
@@ -456,7 +142,13 @@ const char* toString(BondFate fate) {
 Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions& options,
              Interrupter* interrupter) {
   check(options);
-  if (options.motion) return trackMotion(before, after, options, interrupter);
+  if (options.motion) {
+    // The grids are the caller's.
+    const auto shared = [](const Int32Grid& labels) {
+      return Int32Grid::ConstPtr(Int32Grid::ConstPtr(), &labels);
+    };
+    return detail::motionTracks(shared(before), shared(after), options, interrupter);
+  }
   Tracks tracks;
   tracks.shift = options.shift ? *options.shift
                                : detail::findShift(detail::labelledVoxels(before),
@@ -482,16 +174,31 @@ Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions
         GrainFate::vanished);
   judge(sides.after, sides.fromAfter, sides.fromBefore, GrainFate::merged, GrainFate::split,
         GrainFate::appeared);
-  tracks.lastTrack = number(sides, tracks.overlaps, lastTrackOf(before));
-  tracks.before = listed(sides.before);
-  tracks.after = listed(sides.after);
-  tracks.bondsBefore = bondsOf(before, *first, options.minFaces, interrupter);
-  tracks.bondsAfter = bondsOf(after, *second, options.minFaces, interrupter);
-  const std::set<Pair> pairsBefore = pairsOf(tracks.bondsBefore),
-                       pairsAfter = pairsOf(tracks.bondsAfter);
-  judge(tracks.bondsBefore, sides.fromBefore, pairsAfter, BondFate::broken);
-  judge(tracks.bondsAfter, sides.fromAfter, pairsBefore, BondFate::created);
+  tracks.lastTrack = detail::numberTracks(sides, tracks.overlaps, detail::lastTrackOf(before));
+  tracks.before = detail::listed(sides.before);
+  tracks.after = detail::listed(sides.after);
+  const auto bondsOf = [&](const Int32Grid& labels, const Int32Grid& shared) {
+    return detail::bondsOf(detail::labelContacts(labels, interrupter),
+                           detail::labelContacts(shared, interrupter), options.minFaces);
+  };
+  tracks.bondsBefore = bondsOf(before, *first);
+  tracks.bondsAfter = bondsOf(after, *second);
+  const auto pairsBefore = detail::pairsOf(tracks.bondsBefore),
+             pairsAfter = detail::pairsOf(tracks.bondsAfter);
+  detail::judgeBonds(tracks.bondsBefore, sides.fromBefore, pairsAfter, BondFate::broken);
+  detail::judgeBonds(tracks.bondsAfter, sides.fromAfter, pairsBefore, BondFate::created);
   return tracks;
+}
+
+Tracks track(const AnyLabels& before, const AnyLabels& after, const TrackOptions& options,
+             Interrupter* interrupter) {
+  check(options);
+  if (options.motion) return detail::motionTracks(before, after, options, interrupter);
+  const auto *const first = std::get_if<Int32Grid::ConstPtr>(&before),
+                    *const second = std::get_if<Int32Grid::ConstPtr>(&after);
+  if (!first || !second)
+    throw InvalidInput("labels in slabs are followed with a motion alone: say which one");
+  return track(**first, **second, options, interrupter);
 }
 
 BrokenBonds brokenBonds(const Tracks& tracks, int64_t sureFaces) {
@@ -506,20 +213,48 @@ BrokenBonds brokenBonds(const Tracks& tracks, int64_t sureFaces) {
   return bonds;
 }
 
+namespace {
+
+/// Gives labels the numbers of their tracks.
+struct Renumbering {
+  std::vector<detail::LabelPair> to;
+  std::string how;
+  int32_t last = 0;
+
+  explicit Renumbering(const Tracks& tracks) : last(tracks.lastTrack) {
+    for (const TrackedGrain& grain : tracks.after) to.emplace_back(grain.grain, grain.track);
+    const Coord& s = tracks.shift;
+    how = tracks.motion ? std::string("motion ") + toString(*tracks.motion)
+                        : "shift " + std::to_string(s.x()) + "," + std::to_string(s.y()) + "," +
+                              std::to_string(s.z());
+  }
+
+  Int32Grid::Ptr operator()(const Int32Grid& labels, Interrupter* interrupter) const {
+    const Int32Grid::Ptr result = detail::relabelled(labels, to, interrupter);
+    removeGraph(*result);  // of manifolds, should these have been tracked themselves
+    result->insertMeta(kTrackKey, openvdb::StringMetadata(how));
+    result->insertMeta(kLastTrackKey, openvdb::Int64Metadata(last));
+    return result;
+  }
+};
+
+}  // namespace
+
 Int32Grid::Ptr trackedLabels(const Int32Grid& after, const Tracks& tracks,
                              Interrupter* interrupter) {
-  std::vector<Pair> to;
-  for (const TrackedGrain& grain : tracks.after) to.emplace_back(grain.grain, grain.track);
-  const auto labels = detail::relabelled(after, to, interrupter);
-  const Coord& s = tracks.shift;
-  const std::string shift =
-      std::to_string(s.x()) + "," + std::to_string(s.y()) + "," + std::to_string(s.z());
-  removeGraph(*labels);  // of manifolds, should these have been tracked themselves
-  labels->insertMeta(kTrackKey, openvdb::StringMetadata(tracks.motion ? std::string("motion ") +
-                                                                            toString(*tracks.motion)
-                                                                      : "shift " + shift));
-  labels->insertMeta(kLastTrackKey, openvdb::Int64Metadata(tracks.lastTrack));
-  return labels;
+  return Renumbering(tracks)(after, interrupter);
+}
+
+AnyLabels trackedLabels(const AnyLabels& after, const Tracks& tracks, Interrupter* interrupter) {
+  const Renumbering renumbered(tracks);
+  if (const auto* const whole = std::get_if<Int32Grid::ConstPtr>(&after))
+    return Int32Grid::ConstPtr(renumbered(**whole, interrupter));
+  LabelSlabs slabs = std::get<LabelSlabs>(after);
+  slabs.about = renumbered(*slabs.about, interrupter);
+  slabs.read = [read = slabs.read, renumbered](size_t slab, Interrupter* reading) {
+    return renumbered(*read(slab, reading), reading);
+  };
+  return slabs;
 }
 
 }  // namespace vdb_madf

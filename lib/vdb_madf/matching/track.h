@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/label_slabs.h"
 #include "vdb_madf/matching/match_grains.h"
 
 namespace vdb_madf {
@@ -51,12 +52,12 @@ enum class GrainFate {
 enum class BondFate {
   kept,      ///< a grain linked with the one end is bonded to another that is linked with the other
   broken,    ///< before: both ends are linked, but not so
-  created,   ///< after: both ends are linked, but not so
+  created,   ///< after: both ends are linked, but not so; with a motion: surely
   inside,    ///< ... and a grain is linked with both ends
   detached,  ///< with a motion: broken, and the ends have voxels within the gap
   separated,  ///< with a motion: broken, and they have not
-  undecided,  ///< with a motion: not bonded, but the ends touch, or something solid is where the
-              ///< bond was, or it was of fewer than sureFaces
+  undecided,  ///< with a motion: not bonded there, but the ends touch, or something solid is where
+              ///< the bond is, or it is of fewer than sureFaces
   unmatched,  ///< an end is linked with none
   outside     ///< fewer than minFaces (or none) of its faces lie in what both volumes show
 };
@@ -161,8 +162,17 @@ BrokenBonds brokenBonds(const Tracks& tracks, int64_t sureFaces = 0);
 Tracks track(const Int32Grid& before, const Int32Grid& after, const TrackOptions& options = {},
              Interrupter* interrupter = nullptr);
 
+/// In memory, or in slabs, whose domain is known: with a motion. Memory: that of the grains and of
+/// some slabs, so many as a slab of the other scan comes to lie in when it is moved.
+/// @throw as above; what reading throws
+Tracks track(const AnyLabels& before, const AnyLabels& after, const TrackOptions& options,
+             Interrupter* interrupter = nullptr);
+
 /// The labels after with the numbers of their tracks, and kTrackKey and kLastTrackKey.
 Int32Grid::Ptr trackedLabels(const Int32Grid& after, const Tracks& tracks,
                              Interrupter* interrupter = nullptr);
+/// Those in slabs get the numbers when they are read.
+AnyLabels trackedLabels(const AnyLabels& after, const Tracks& tracks,
+                        Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

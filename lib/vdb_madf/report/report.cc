@@ -38,8 +38,7 @@ const detail::PageSources& sourcesFor(const std::string& path) {
 }
 
 /// What is wrong with a sample names it.
-std::unique_ptr<detail::ReportParts> partsOf(const ReportLabels& labels,
-                                             const ReportOptions& options,
+std::unique_ptr<detail::ReportParts> partsOf(const AnyLabels& labels, const ReportOptions& options,
                                              const std::string& suffix, Interrupter* interrupter) {
   try {
     return std::make_unique<detail::ReportParts>(labels, options, suffix, interrupter);
@@ -81,8 +80,8 @@ bool isSweepTable(const std::string& text) {
   return text.compare(0, head.size(), head) == 0;
 }
 
-Report writeReport(const std::string& path, const ReportLabels& labels,
-                   const ReportOptions& options, Interrupter* interrupter) {
+Report writeReport(const std::string& path, const AnyLabels& labels, const ReportOptions& options,
+                   Interrupter* interrupter) {
   checkOptions(options);
   const detail::PageSources& sources = sourcesFor(path);
   detail::OutputStream file(path, interrupter);
@@ -106,7 +105,7 @@ Report writeComparison(const std::string& path, const std::vector<ReportSample>&
   Report whole;
   std::string unit;
   for (size_t i = 0; i < samples.size(); ++i) {
-    const ReportLabels labels = samples[i].labels();
+    const AnyLabels labels = samples[i].labels();
     ReportOptions own = options;
     own.title = samples[i].name;
     own.labels = samples[i].path;

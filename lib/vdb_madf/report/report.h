@@ -7,7 +7,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "vdb_madf/base/interrupter.h"
@@ -16,9 +15,6 @@
 #include "vdb_madf/measure/measure.h"
 
 namespace vdb_madf {
-
-/// In memory, or in slabs, which need not fit there together.
-using ReportLabels = std::variant<Int32Grid::ConstPtr, LabelSlabs>;
 
 /// What a page says of a sample, and how fine its view is.
 struct ReportOptions {
@@ -67,13 +63,13 @@ bool isSweepTable(const std::string& text);
 /// sliced, without being reduced.
 /// @throw InvalidInput for options out of range, labels without a domain and without grains, and as
 ///   measure() does; IoError, also if !canWriteReport(); Interrupted.
-Report writeReport(const std::string& path, const ReportLabels& labels,
+Report writeReport(const std::string& path, const AnyLabels& labels,
                    const ReportOptions& options = {}, Interrupter* interrupter = nullptr);
 
 /// One of several.
 struct ReportSample {
-  std::string name, path;                ///< of the labels
-  std::function<ReportLabels()> labels;  ///< called once: one sample is in memory at a time
+  std::string name, path;             ///< of the labels
+  std::function<AnyLabels()> labels;  ///< called once: one sample is in memory at a time
 };
 
 /// Writes samples side by side: their numbers, pictures, distributions and roses. Of the options

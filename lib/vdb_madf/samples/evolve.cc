@@ -299,7 +299,8 @@ Evolution::Evolution(const Int32Grid& labels, const EvolveOptions& options,
       center_(boxOf(labels).getCenter()) {
   checkEvolve(options);
   requireCubicVoxels(labels, "moving grains");
-  before_ = detail::grainSet(labels, interrupter);
+  detail::ScanLabels scan(labels);
+  before_ = detail::scanSums(scan, interrupter).set;
 }
 
 EvolvedStep Evolution::after(int step, Interrupter* interrupter) const {

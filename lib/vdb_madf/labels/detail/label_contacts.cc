@@ -4,9 +4,7 @@
 #include "vdb_madf/labels/detail/label_contacts.h"
 
 #include <algorithm>
-#include <map>
 #include <mutex>
-#include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/grids/object_mask.h"
@@ -17,10 +15,8 @@ namespace vdb_madf::detail {
 
 namespace {
 
-using Faces = std::map<std::pair<int32_t, int32_t>, int64_t>;
-
 /// Each face is counted with the lower of its two voxels.
-void addFaces(const LabelHalo& halo, Faces& faces) {
+void addFaces(const LabelHalo& halo, ContactFaces& faces) {
   auto last = faces.end();  // the next face is mostly of the same pair
   for (int x = 0; x < 8; ++x)
     for (int y = 0; y < 8; ++y)
@@ -39,24 +35,35 @@ void addFaces(const LabelHalo& halo, Faces& faces) {
 
 }  // namespace
 
-std::vector<LabelContact> labelContacts(const Int32Grid& labels, Interrupter* interrupter) {
-  const LeafIndex index(*objectMask(labels));
-  Faces faces;
+void addContactFaces(const Int32Tree& labels, const std::vector<Coord>& origins,
+                     ContactFaces& faces, Interrupter* interrupter) {
   std::mutex mutex;
-  parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
-    Faces local;
+  parallelFor(origins.size(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+    ContactFaces local;
     LabelHalo halo;
-    for (size_t leaf = begin; leaf < end; ++leaf) {
-      readLabelHalo(labels.tree(), index.origin(leaf), halo);
+    for (size_t n = begin; n < end; ++n) {
+      readLabelHalo(labels, origins[n], halo);
       addFaces(halo, local);
     }
     // Integer sums: the order in which the parts arrive does not matter.
     const std::lock_guard<std::mutex> lock(mutex);
     for (const auto& [pair, count] : local) faces[pair] += count;
   });
+}
+
+std::vector<LabelContact> contactsOf(const ContactFaces& faces) {
   std::vector<LabelContact> contacts;
   for (const auto& [pair, count] : faces) contacts.push_back({pair.first, pair.second, count});
   return contacts;
+}
+
+std::vector<LabelContact> labelContacts(const Int32Grid& labels, Interrupter* interrupter) {
+  const LeafIndex index(*objectMask(labels));
+  std::vector<Coord> origins;
+  for (size_t leaf = 0; leaf < index.leafCount(); ++leaf) origins.push_back(index.origin(leaf));
+  ContactFaces faces;
+  addContactFaces(labels.tree(), origins, faces, interrupter);
+  return contactsOf(faces);
 }
 
 }  // namespace vdb_madf::detail

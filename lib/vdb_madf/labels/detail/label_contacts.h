@@ -4,8 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
+#include "vdb_madf/base/interrupter.h"
 #include "vdb_madf/grids/grid_types.h"
 
 namespace vdb_madf::detail {
@@ -18,5 +21,13 @@ struct LabelContact {
 
 /// All pairs that share a face, ascending. @throw InvalidInput as LeafIndex does; Interrupted
 std::vector<LabelContact> labelContacts(const Int32Grid& labels, Interrupter* interrupter);
+
+/// Faces by pairs that share them.
+using ContactFaces = std::map<std::pair<int32_t, int32_t>, int64_t>;
+/// Adds the faces that the voxels of some 8x8x8 blocks have with those above them along an axis, in
+/// these or others. @throw Interrupted
+void addContactFaces(const Int32Tree& labels, const std::vector<Coord>& origins,
+                     ContactFaces& faces, Interrupter* interrupter);
+std::vector<LabelContact> contactsOf(const ContactFaces& faces);
 
 }  // namespace vdb_madf::detail

@@ -29,6 +29,12 @@ constexpr size_t kLeastSound = 7;  // grains that were followed
 constexpr double kSound = 0.2;     // half of them miss their place by less, in spacings
 constexpr int kMaxSweeps = 400;
 
+/// That a match is right, of a score from 0 to 1: fitted to moved packs.
+double confidence(double score) {
+  const double rest = 1 - score, squared = rest * rest;
+  return 1 - 0.12 * squared * squared * rest;
+}
+
 Mat3d tensor(const std::array<double, 6>& t) {
   return {t[0], t[3], t[4], t[3], t[1], t[5], t[4], t[5], t[2]};
 }
@@ -126,7 +132,8 @@ FollowedGrains Following::result() const {
     }
     match.neighbors = fit.count() - 1;
     if (match.neighbors >= kLeastStrained) match.gradient = fit.gradient(Mat3d::identity(), 0);
-    match.confidence = (1 - ratios_[n]) * std::min(1., double(near) / (kConfident * 2. / 3));
+    match.confidence =
+        confidence((1 - ratios_[n]) * std::min(1., double(near) / (kConfident * 2. / 3)));
   }
   return matches;
 }

@@ -7,15 +7,14 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
+#include <cmath>
+#include <limits>
+#include <memory>
 #include <mutex>
-#include <vector>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/grids/detail/ball_steps.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"
-#include "vdb_madf/labels/detail/label_blocks.h"
-#include "vdb_madf/labels/detail/label_contacts.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 
 namespace vdb_madf::detail {
@@ -23,8 +22,8 @@ namespace vdb_madf::detail {
 namespace {
 
 using Wide = __int128;
-using Pair = std::pair<int32_t, int32_t>;
-using PairCounts = std::map<Pair, int64_t>;
+using Leaf = Int32Tree::LeafNodeType;
+using PairCounts = std::map<LabelPair, int64_t>;
 using Values = openvdb::tree::ValueAccessor<const Int32Tree>;
 
 /// Integer sums: the order in which voxels come does not matter.
@@ -68,131 +67,202 @@ GrainFeatures featuresOf(int32_t label, const PlaceSums& sums) {
   return grain;
 }
 
-/// Lets add(voxel, label, part) see the labeled voxels of a tree, by any thread, and merge(part)
-/// what each of them made of its own, one after the other: sums and sets, as the order is any.
-template <typename Part, typename MakeAdd, typename Merge>
-void forEachPart(const Int32Tree& tree, size_t grain, Interrupter* interrupter,
-                 const MakeAdd& makeAdd, const Merge& merge) {
-  const auto leaves = leavesOf(tree);
+/// The leaves of a part that are its own.
+std::vector<const Leaf*> ownLeaves(const ScanLabels::Part& part) {
+  std::vector<const Leaf*> leaves = leavesOf(*part.tree);
+  leaves.erase(std::remove_if(leaves.begin(), leaves.end(),
+                              [&](const Leaf* leaf) { return !part.isOwn(leaf->origin()); }),
+               leaves.end());
+  return leaves;
+}
+
+/// Lets add(voxel, label, sums) see labeled voxels, by any thread, and merge(sums) what each of
+/// them made of its own, one after the other: sums and sets, as the order is any.
+template <typename Sums, typename MakeAdd, typename Merge>
+void forEachVoxel(const std::vector<const Leaf*>& leaves, size_t grain, Interrupter* interrupter,
+                  const MakeAdd& makeAdd, const Merge& merge) {
   std::mutex mutex;
   parallelFor(leaves.size(), grain, interrupter, [&](size_t begin, size_t end) {
-    Part part;
+    Sums sums;
     auto add = makeAdd();
     for (size_t n = begin; n < end; ++n)
       for (auto voxel = leaves[n]->cbeginValueOn(); voxel; ++voxel)
-        if (*voxel > 0) add(voxel.getCoord(), *voxel, part);
+        if (*voxel > 0) add(voxel.getCoord(), *voxel, sums);
     const std::lock_guard<std::mutex> lock(mutex);
-    merge(part);
+    merge(sums);
   });
 }
 
-/// The sums of what is added for pairs of labels.
+/// Adds what is counted for pairs of labels.
 template <typename MakeAdd>
-PairCounts counted(const Int32Tree& tree, Interrupter* interrupter, const MakeAdd& makeAdd) {
-  PairCounts counts;
-  forEachPart<PairCounts>(tree, kLeafGrain, interrupter, makeAdd, [&](const PairCounts& part) {
-    for (const auto& [pair, count] : part) counts[pair] += count;
+void count(const std::vector<const Leaf*>& leaves, PairCounts& counts, Interrupter* interrupter,
+           const MakeAdd& makeAdd) {
+  forEachVoxel<PairCounts>(leaves, kLeafGrain, interrupter, makeAdd, [&](const PairCounts& some) {
+    for (const auto& [pair, number] : some) counts[pair] += number;
   });
-  return counts;
+}
+
+/// Finds the motion of one grain after the other, which are mostly the same.
+class MotionOf {
+ public:
+  explicit MotionOf(const Motions& motions) : motions_(motions), last_(motions.end()) {}
+  /// Null if there is none.
+  const Motion* operator()(int32_t label) {
+    if (last_ == motions_.end() || last_->first != label) last_ = motions_.find(label);
+    return last_ == motions_.end() ? nullptr : &last_->second;
+  }
+
+ private:
+  const Motions& motions_;
+  Motions::const_iterator last_;
+};
+
+/// The layers of another scan that some voxels come to lie in, and those beside them.
+Int32Tree::ConstPtr layersThere(const std::vector<const Leaf*>& leaves, ScanLabels& other,
+                                const Motions& motions, Interrupter* interrupter) {
+  if (other.isWhole()) return other.layers(0, 0, interrupter);
+  struct Range {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+  } all;
+  forEachVoxel<Range>(
+      leaves, kLeafGrain, interrupter,
+      [&] {
+        return [motion = MotionOf(motions)](const Coord& p, int32_t label, Range& range) mutable {
+          const Motion* const moved = motion(label);
+          if (!moved) return;
+          const double z = (*moved)(p.asVec3d()).z();
+          range.low = std::min(range.low, z);
+          range.high = std::max(range.high, z);
+        };
+      },
+      [&](const Range& range) {
+        all.low = std::min(all.low, range.low);
+        all.high = std::max(all.high, range.high);
+      });
+  if (!(all.low <= all.high)) return std::make_shared<Int32Tree>(0);
+  constexpr double kMost = 1e9;  // no scan reaches farther
+  const auto layer = [&](double z) { return int(std::floor(std::clamp(z, -kMost, kMost))); };
+  return other.layers(layer(all.low) - 1, layer(all.high) + 2, interrupter);
+}
+
+/// What is labeled where a place is; 0: nothing.
+int32_t labelAround(Values& values, const openvdb::Vec3d& place) {
+  int32_t label = 0;
+  const bool isOn = values.probeValue(Coord::floor(place + openvdb::Vec3d(0.5)), label);
+  return isOn && label > 0 ? label : 0;
 }
 
 }  // namespace
 
-GrainSet grainSet(const Int32Grid& labels, Interrupter* interrupter) {
+ScanSums scanSums(ScanLabels& labels, Interrupter* interrupter) {
   using Sums = std::map<int32_t, PlaceSums>;
   Sums all;
-  forEachPart<Sums>(
-      *withoutTiles(labels), kLightLeafGrain, interrupter,
-      [] { return [](const Coord& p, int32_t label, Sums& part) { part[label].add(p); }; },
-      [&](const Sums& part) {
-        for (const auto& [label, sums] : part) all[label].add(sums);
-      });
-  GrainSet set;
-  for (const auto& [label, sums] : all) set.grains.push_back(featuresOf(label, sums));
-  for (const LabelContact& contact : labelContacts(labels, interrupter))
-    set.contacts.emplace_back(contact.first, contact.second);
-  return set;
+  ContactFaces faces;
+  labels.forEachPart(1, interrupter, [&](const ScanLabels::Part& part) {
+    const auto leaves = ownLeaves(part);
+    forEachVoxel<Sums>(
+        leaves, kLightLeafGrain, interrupter,
+        [] { return [](const Coord& p, int32_t label, Sums& sums) { sums[label].add(p); }; },
+        [&](const Sums& some) {
+          for (const auto& [label, sums] : some) all[label].add(sums);
+        });
+    std::vector<Coord> origins;
+    for (const Leaf* const leaf : leaves) origins.push_back(leaf->origin());
+    addContactFaces(*part.tree, origins, faces, interrupter);
+  });
+  ScanSums scan;
+  for (const auto& [label, sums] : all) scan.set.grains.push_back(featuresOf(label, sums));
+  scan.contacts = contactsOf(faces);
+  for (const auto& [pair, number] : faces) scan.set.contacts.push_back(pair);
+  return scan;
 }
 
-std::set<std::pair<int32_t, int32_t>> nearPairs(const Int32Grid& labels,
-                                                const std::set<std::pair<int32_t, int32_t>>& pairs,
-                                                int gap, Interrupter* interrupter) {
-  std::set<Pair> near;
+std::set<LabelPair> nearPairs(ScanLabels& labels, const std::set<LabelPair>& pairs, int gap,
+                              Interrupter* interrupter) {
+  std::set<LabelPair> near;
   if (pairs.empty()) return near;
   std::set<int32_t> firsts;
   for (const auto& [first, second] : pairs) firsts.insert(first);
   const auto ball = ballSteps(gap);
-  const Int32Tree::ConstPtr tree = withoutTiles(labels);
-  const auto makeAdd = [&] {
-    return [&, values = Values(*tree)](const Coord& p, int32_t label, std::set<Pair>& part) {
-      if (!firsts.count(label)) return;
-      int inside = 0;
-      for (int axis = 0; axis < 3; ++axis)
-        for (const int step : {-1, 1}) {
-          Coord next = p;
-          next[axis] += step;
-          inside += values.getValue(next) == label;
+  labels.forEachPart(gap, interrupter, [&](const ScanLabels::Part& part) {
+    const auto makeAdd = [&] {
+      return [&, values = Values(*part.tree)](const Coord& p, int32_t label,
+                                              std::set<LabelPair>& found) {
+        if (!firsts.count(label)) return;
+        int inside = 0;
+        for (int axis = 0; axis < 3; ++axis)
+          for (const int step : {-1, 1}) {
+            Coord next = p;
+            next[axis] += step;
+            inside += values.getValue(next) == label;
+          }
+        if (inside == 6) return;
+        for (const auto& [squared, step] : ball) {
+          int32_t other = 0;
+          if (values.probeValue(p + step, other) && other > label && pairs.count({label, other}))
+            found.emplace(label, other);
         }
-      if (inside == 6) return;
-      for (const auto& [squared, step] : ball) {
-        int32_t other = 0;
-        if (values.probeValue(p + step, other) && other > label && pairs.count({label, other}))
-          part.emplace(label, other);
-      }
+      };
     };
-  };
-  forEachPart<std::set<Pair>>(
-      *tree, kLeafGrain, interrupter, makeAdd,
-      [&](const std::set<Pair>& part) { near.insert(part.begin(), part.end()); });
+    forEachVoxel<std::set<LabelPair>>(
+        ownLeaves(part), kLeafGrain, interrupter, makeAdd,
+        [&](const std::set<LabelPair>& found) { near.insert(found.begin(), found.end()); });
+  });
   return near;
 }
 
-std::set<std::pair<int32_t, int32_t>> solidPairs(const Int32Grid& before, const Int32Grid& after,
-                                                 const std::set<std::pair<int32_t, int32_t>>& pairs,
-                                                 const std::map<int32_t, Motion>& motions,
-                                                 Interrupter* interrupter) {
-  std::set<Pair> solid;
+std::set<LabelPair> solidPairs(ScanLabels& labels, ScanLabels& other,
+                               const std::set<LabelPair>& pairs, const Motions& motions,
+                               Interrupter* interrupter) {
+  std::set<LabelPair> solid;
   if (pairs.empty()) return solid;
   std::set<int32_t> ends;
   for (const auto& [first, second] : pairs) ends.insert({first, second});
-  const Int32Tree::ConstPtr tree = withoutTiles(before);
-  const auto makeAdd = [&] {
-    return [&, from = Values(*tree), to = Values(after.tree())](const Coord& p, int32_t label,
-                                                                PairCounts& part) {
-      if (!ends.count(label)) return;
-      for (int axis = 0; axis < 3; ++axis) {
-        Coord next = p;
-        ++next[axis];
-        const int32_t other = from.getValue(next);
-        const Pair pair = std::minmax(label, other);
-        if (!pairs.count(pair)) continue;
-        const openvdb::Vec3d place =
-            (motions.at(label)(p.asVec3d()) + motions.at(other)(next.asVec3d())) * 0.5;
-        int32_t there = 0;
-        const bool isSolid =
-            to.probeValue(Coord::floor(place + openvdb::Vec3d(0.5)), there) && there > 0;
-        part[pair] += isSolid ? 1 : -1;
-      }
-    };
-  };
-  for (const auto& [pair, excess] : counted(*tree, interrupter, makeAdd))  // of solid faces
-    if (excess > 0) solid.insert(pair);
+  PairCounts excess;  // of solid faces
+  labels.forEachPart(1, interrupter, [&](const ScanLabels::Part& part) {
+    const auto leaves = ownLeaves(part);
+    const Int32Tree::ConstPtr there = layersThere(leaves, other, motions, interrupter);
+    count(leaves, excess, interrupter, [&] {
+      return [&, from = Values(*part.tree), to = Values(*there), motion = MotionOf(motions),
+              motionThere = MotionOf(motions)](const Coord& p, int32_t label,
+                                               PairCounts& counts) mutable {
+        if (!ends.count(label)) return;
+        for (int axis = 0; axis < 3; ++axis) {
+          Coord next = p;
+          ++next[axis];
+          const int32_t touched = from.getValue(next);
+          const LabelPair pair = std::minmax(label, touched);
+          if (!pairs.count(pair)) continue;
+          const Motion *const first = motion(label), *const second = motionThere(touched);
+          if (!first || !second) continue;
+          const openvdb::Vec3d place = ((*first)(p.asVec3d()) + (*second)(next.asVec3d())) * 0.5;
+          counts[pair] += labelAround(to, place) ? 1 : -1;
+        }
+      };
+    });
+  });
+  for (const auto& [pair, faces] : excess)
+    if (faces > 0) solid.insert(pair);
   return solid;
 }
 
-std::map<std::pair<int32_t, int32_t>, int64_t> movedOverlaps(
-    const Int32Grid& before, const Int32Grid& after, const std::map<int32_t, Motion>& motions,
-    Interrupter* interrupter) {
-  return counted(*withoutTiles(before), interrupter, [&] {
-    return [&, values = Values(after.tree()), motion = motions.end()](const Coord& p, int32_t label,
-                                                                      PairCounts& part) mutable {
-      if (motion == motions.end() || motion->first != label) motion = motions.find(label);
-      if (motion == motions.end()) return;
-      int32_t other = 0;
-      const openvdb::Vec3d place = motion->second(p.asVec3d()) + openvdb::Vec3d(0.5);
-      if (values.probeValue(Coord::floor(place), other) && other > 0) ++part[{label, other}];
-    };
+PairCounts movedOverlaps(ScanLabels& before, ScanLabels& after, const Motions& motions,
+                         Interrupter* interrupter) {
+  PairCounts overlaps;
+  before.forEachPart(0, interrupter, [&](const ScanLabels::Part& part) {
+    const auto leaves = ownLeaves(part);
+    const Int32Tree::ConstPtr there = layersThere(leaves, after, motions, interrupter);
+    count(leaves, overlaps, interrupter, [&] {
+      return [&, values = Values(*there), motion = MotionOf(motions)](const Coord& p, int32_t label,
+                                                                      PairCounts& counts) mutable {
+        const Motion* const moved = motion(label);
+        if (!moved) return;
+        if (const int32_t other = labelAround(values, (*moved)(p.asVec3d())))
+          ++counts[{label, other}];
+      };
+    });
   });
+  return overlaps;
 }
 
 }  // namespace vdb_madf::detail

@@ -73,21 +73,8 @@ Json paletteJson(const GrainColors& colors) {
   return palette;
 }
 
-/// f(labels), of either kind.
-template <typename F>
-auto applied(const ReportLabels& labels, const F& f) {
-  if (const auto* const whole = std::get_if<Int32Grid::ConstPtr>(&labels)) return f(**whole);
-  return f(std::get<LabelSlabs>(labels));
-}
-
-/// A grid with their metadata.
-const Int32Grid& aboutOf(const ReportLabels& labels) {
-  const auto* const whole = std::get_if<Int32Grid::ConstPtr>(&labels);
-  return whole ? **whole : *std::get<LabelSlabs>(labels).about;
-}
-
 /// In one grid; itself if it is one, and is not reduced.
-Int32Grid::ConstPtr reduced(const ReportLabels& labels, int factor, Interrupter* interrupter) {
+Int32Grid::ConstPtr reduced(const AnyLabels& labels, int factor, Interrupter* interrupter) {
   if (const auto* const whole = std::get_if<Int32Grid::ConstPtr>(&labels))
     if (factor == 1) return *whole;
   return applied(labels, [&](const auto& fine) -> Int32Grid::ConstPtr {
@@ -97,7 +84,7 @@ Int32Grid::ConstPtr reduced(const ReportLabels& labels, int factor, Interrupter*
 
 /// How far to reduce labels for about so many triangles: the surface of a sample has a factor
 /// squared less.
-int reductionTo(uint64_t most, const ReportLabels& labels, Interrupter* interrupter) {
+int reductionTo(uint64_t most, const AnyLabels& labels, Interrupter* interrupter) {
   const uint64_t all =
       applied(labels, [&](const auto& fine) { return countTriangles(fine, interrupter); });
   const double times = double(all) / double(most);
@@ -112,8 +99,8 @@ void enlarge(GrainMesh& mesh, int factor) {
 
 }  // namespace
 
-ReportParts::ReportParts(const ReportLabels& labels, const ReportOptions& options,
-                         std::string suffix, Interrupter* interrupter)
+ReportParts::ReportParts(const AnyLabels& labels, const ReportOptions& options, std::string suffix,
+                         Interrupter* interrupter)
     : labels_(labels), options_(options), suffix_(std::move(suffix)), interrupter_(interrupter) {
   begin("measure");
   measured_ =

@@ -21,7 +21,7 @@ namespace vdb_madf::detail {
 class ReportParts {
  public:
   /// Measures. Labels and options must live as long. @throw as writeReport()
-  ReportParts(const ReportLabels& labels, const ReportOptions& options, std::string suffix,
+  ReportParts(const AnyLabels& labels, const ReportOptions& options, std::string suffix,
               Interrupter* interrupter);
 
   const Measurements& measured() const { return measured_; }
@@ -45,11 +45,11 @@ class ReportParts {
   void begin(const char* stage) const;
   void addLevels();
   /// What mesh and slices show: the leaves of the slider, or the labels.
-  ReportLabels bodies() const { return levels_ ? ReportLabels(levels_->leaves) : labels_; }
+  AnyLabels bodies() const { return levels_ ? AnyLabels(levels_->leaves) : labels_; }
   const Measurements& bodyMeasures() const { return levels_ ? *leafMeasures_ : measured_; }
   std::vector<int32_t> bodyIds() const;
 
-  const ReportLabels& labels_;
+  const AnyLabels& labels_;
   const ReportOptions& options_;
   const std::string suffix_;
   Interrupter* interrupter_;
