@@ -4,6 +4,7 @@
 #include "vdb_madf/report/report.h"
 
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,7 +31,7 @@ struct ReportArguments {
   std::vector<std::string> files;  ///< of labels, and of the page
   std::vector<InputOptions> samples;
   std::string out, boundary = "auto", minFaces = "1", density, sweep, triangles = "1000000";
-  bool ice = false, noView = false;
+  bool ice = false, noView = false, isSeries = false;
   ReportOptions report;
 };
 
@@ -49,6 +50,8 @@ void parse(ReportArguments& o) {
   o.report.labels = o.input.path;
   if (!o.sweep.empty() && o.samples.size() > 1)
     throw WrongUsage("--sweep is of one sample: give the labels of one");
+  if (o.isSeries && o.samples.size() == 1)
+    throw WrongUsage("--series: give the labels of two scans or more, and last the page");
   o.report.measure.boundary = parseBoundary(o.boundary);
   o.report.measure.minFaces = parseCount(o.minFaces, "--min-faces");
   o.report.maxTriangles = o.noView ? 0 : uint64_t(parseCount(o.triangles, "--triangles"));
@@ -94,6 +97,10 @@ Report writeAll(const ReportArguments& o, const Common& common) {
   for (const InputOptions& input : o.samples)
     samples.push_back(
         {input.path, input.path, [&input, &common] { return labelsOf(input, common); }});
+  if (o.isSeries) {
+    for (ReportSample& scan : samples) scan.name = std::filesystem::path(scan.path).stem().string();
+    return writeSeries(o.out, samples, o.report, common.progress);
+  }
   return writeComparison(o.out, samples, o.report, common.progress);
 }
 
@@ -104,7 +111,8 @@ void runReport(const ReportArguments& o, const Common& common) {
   common.progress->end();
   if (common.quiet) return;
   std::printf("%s: %.1f MB, open it in a browser: ", o.out.c_str(), double(report.bytes) / 1e6);
-  if (!isOne) std::printf("%s, ", counted(int64_t(o.samples.size()), "sample").c_str());
+  if (!isOne)
+    std::printf("%s, ", counted(int64_t(o.samples.size()), o.isSeries ? "scan" : "sample").c_str());
   std::printf("%s, %s", counted(report.grains, "grain").c_str(),
               counted(report.bonds, "bond").c_str());
   if (report.triangles > 0)
@@ -136,6 +144,9 @@ void addReport(Verb command, Common& common, Action& action) {
   verb.flag("--no-3d", o->noView, "a picture in the place of the view to turn");
   verb.option("--sweep", o->sweep, "a table of the verb sweep, of the same object: adds its plots")
       .typeName("FILE.csv");
+  verb.flag("--series", o->isSeries,
+            "the labels are scans of one sample, numbered by track: a page with a slider from scan "
+            "to scan");
   verb.option("--max-dim", o->report.maxSlice, "longest side of the slices, in voxels")
       .range(16, 1024)
       .showDefault();

@@ -29,7 +29,7 @@ struct LabelSlabs {
 /// Labels that are in memory as a single slab, for functions that take slabs.
 LabelSlabs singleSlab(const Int32Grid::Ptr& labels);
 
-/// In memory, or in slabs.
+/// Labels in memory, or in slabs.
 using AnyLabels = std::variant<Int32Grid::ConstPtr, LabelSlabs>;
 /// A grid of their name, transform and metadata.
 const Int32Grid& aboutOf(const AnyLabels& labels);

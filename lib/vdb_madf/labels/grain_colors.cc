@@ -274,10 +274,14 @@ GrainColors grainColors(const Int32Grid& labels, Interrupter* interrupter) {
   return coloring.colors();
 }
 
+void GrainColoring::add(const LabelSlabs& parts, Interrupter* interrupter) {
+  detail::RimmedSlabs slabs(parts);
+  while (slabs.next(interrupter)) add(slabs.labels(), interrupter);
+}
+
 GrainColors grainColors(const LabelSlabs& labels, Interrupter* interrupter) {
   GrainColoring coloring;
-  detail::RimmedSlabs slabs(labels);
-  while (slabs.next(interrupter)) coloring.add(slabs.labels(), interrupter);
+  coloring.add(labels, interrupter);
   return coloring.colors();
 }
 

@@ -48,6 +48,7 @@ class GrainColoring {
  public:
   /// @throw as grainColors()
   void add(const Int32Grid& part, Interrupter* interrupter = nullptr);
+  void add(const LabelSlabs& parts, Interrupter* interrupter = nullptr);
   GrainColors colors() const;
 
  private:

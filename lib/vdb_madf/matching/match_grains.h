@@ -83,8 +83,8 @@ struct FollowedGrains {
 /// grain in the middle of the mass, and under a tenth of the mass together, are nobody's neighbors;
 /// they are followed if most of them are found, else all are lost.
 /// The confidence is the probability that a match is right: 1 - 0.12 (1 - s)^5, where s is 1 - cost
-/// / cost of the next best, times the share of the nearest 12 grains that are followed (of which two
-/// thirds are enough). The formula is calibrated on moved packs (tests/benchmark/README.md); where
+/// / cost of the next best, times the share of the nearest 12 grains that are followed (two thirds
+/// of them are enough). The formula is calibrated on moved packs (tests/benchmark/README.md); where
 /// a scan has few grains of the other one it promises too much.
 /// Deterministic: ties go to the smaller number. N log N. Memory: per grain.
 /// @return nothing if no such place is found, and there is no guess

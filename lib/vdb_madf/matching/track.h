@@ -171,7 +171,7 @@ Tracks track(const AnyLabels& before, const AnyLabels& after, const TrackOptions
 /// The labels after with the numbers of their tracks, and kTrackKey and kLastTrackKey.
 Int32Grid::Ptr trackedLabels(const Int32Grid& after, const Tracks& tracks,
                              Interrupter* interrupter = nullptr);
-/// Those in slabs get the numbers when they are read.
+/// Labels in slabs get the numbers of their tracks when they are read.
 AnyLabels trackedLabels(const AnyLabels& after, const Tracks& tracks,
                         Interrupter* interrupter = nullptr);
 

@@ -3,6 +3,7 @@
 
 #include "vdb_madf/report/report.h"
 
+#include <algorithm>
 #include <memory>
 #include <stdexcept>
 
@@ -69,6 +70,41 @@ uint64_t write(detail::OutputStream& file, const detail::PageSources& sources,
   return bytes;
 }
 
+/// Adds what a page has of each of some samples, whose ids end with their position.
+template <typename Add>
+Report addSamples(const std::vector<ReportSample>& samples, const ReportOptions& options,
+                  const Add& add, PageText& page, Interrupter* interrupter) {
+  Report whole;
+  std::string unit;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const AnyLabels labels = samples[i].labels();
+    ReportOptions own = options;
+    own.title = samples[i].name;
+    own.labels = samples[i].path;
+    own.manifold = nullptr;
+    own.sweep.clear();
+    const auto parts = partsOf(labels, own, "-" + std::to_string(i), interrupter);
+    if (i > 0 && parts->unit() != unit)
+      throw InvalidInput("lengths of " + samples[0].path + " are in " + unit + ", those of " +
+                             samples[i].path + " in " + parts->unit() +
+                             ": give all samples a voxel size",
+                         Hint::voxelSize);
+    unit = parts->unit();
+    page.data += add(*parts);
+    const Report report = parts->report();
+    whole.grains += report.grains;
+    whole.bonds += report.bonds;
+    whole.triangles += report.triangles;
+    whole.sliceReduction = std::max(whole.sliceReduction, report.sliceReduction);
+  }
+  return whole;
+}
+
+Report written(Report report, uint64_t bytes) {
+  report.bytes = bytes;
+  return report;
+}
+
 }  // namespace
 
 bool canWriteReport() {
@@ -91,9 +127,7 @@ Report writeReport(const std::string& path, const AnyLabels& labels, const Repor
   page.data += parts.mesh();
   page.data += parts.levels();
   page.data += parts.about();
-  Report report = parts.report();
-  report.bytes = write(file, sources, page);
-  return report;
+  return written(parts.report(), write(file, sources, page));
 }
 
 Report writeComparison(const std::string& path, const std::vector<ReportSample>& samples,
@@ -102,30 +136,36 @@ Report writeComparison(const std::string& path, const std::vector<ReportSample>&
   const detail::PageSources& sources = sourcesFor(path);
   detail::OutputStream file(path, interrupter);
   PageText page{options.title.empty() ? "Samples side by side" : options.title, "", ""};
-  Report whole;
-  std::string unit;
-  for (size_t i = 0; i < samples.size(); ++i) {
-    const AnyLabels labels = samples[i].labels();
-    ReportOptions own = options;
-    own.title = samples[i].name;
-    own.labels = samples[i].path;
-    own.manifold = nullptr;
-    const auto made = partsOf(labels, own, "-" + std::to_string(i), interrupter);
-    const detail::ReportParts& parts = *made;
-    if (i > 0 && parts.unit() != unit)
-      throw InvalidInput("lengths of " + samples[0].path + " are in " + unit + ", those of " +
-                             samples[i].path + " in " + parts.unit() +
-                             ": give all samples a voxel size",
-                         Hint::voxelSize);
-    unit = parts.unit();
-    page.data += parts.tables() + parts.picture() + parts.about();
-    const Report report = parts.report();
-    whole.grains += report.grains;
-    whole.bonds += report.bonds;
-  }
+  const Report whole = addSamples(
+      samples, options,
+      [&](detail::ReportParts& parts) { return parts.tables() + parts.picture() + parts.about(); },
+      page, interrupter);
   page.data += detail::jsonElement("samples", std::to_string(samples.size()));
-  whole.bytes = write(file, sources, page);
-  return whole;
+  return written(whole, write(file, sources, page));
+}
+
+Report writeSeries(const std::string& path, const std::vector<ReportSample>& scans,
+                   const ReportOptions& options, Interrupter* interrupter) {
+  checkOptions(options);
+  const detail::PageSources& sources = sourcesFor(path);
+  detail::OutputStream file(path, interrupter);
+  PageText page{options.title.empty() ? "Through time" : options.title, "", ""};
+  GrainColoring coloring;
+  for (const ReportSample& scan : scans)
+    applied(scan.labels(), [&](const auto& labels) { coloring.add(labels, interrupter); });
+  const GrainColors colors = coloring.colors();
+  const Report whole = addSamples(
+      scans, options,
+      [&](detail::ReportParts& parts) {
+        parts.setColors(colors);
+        if (page.picture.empty()) page.picture = parts.picture();
+        std::string text = parts.tables() + parts.colors() + parts.slices();
+        text += parts.mesh();
+        return text + parts.about();
+      },
+      page, interrupter);
+  page.data += detail::jsonElement("scans", std::to_string(scans.size()));
+  return written(whole, write(file, sources, page));
 }
 
 }  // namespace vdb_madf

@@ -69,8 +69,15 @@ Report writeReport(const std::string& path, const AnyLabels& labels,
 /// One of several.
 struct ReportSample {
   std::string name, path;             ///< of the labels
-  std::function<AnyLabels()> labels;  ///< called once: one sample is in memory at a time
+  std::function<AnyLabels()> labels;  ///< one sample is in memory at a time
 };
+
+/// Writes a sample scan by scan: the page of each, as writeReport() makes it, with a slider from
+/// scan to scan and curves of what changes. Grains have one number, and one color, in all scans:
+/// see track(). Of the options `labels`, `manifold` and `sweep` are not used. Labels are asked for
+/// twice. @throw as writeComparison()
+Report writeSeries(const std::string& path, const std::vector<ReportSample>& scans,
+                   const ReportOptions& options = {}, Interrupter* interrupter = nullptr);
 
 /// Writes samples side by side: their numbers, pictures, distributions and roses. Of the options
 /// those of view and slices are not used, nor are `labels` and `manifold`.

@@ -24,6 +24,9 @@ class ReportParts {
   ReportParts(const AnyLabels& labels, const ReportOptions& options, std::string suffix,
               Interrupter* interrupter);
 
+  /// Instead of those of the labels alone.
+  void setColors(const GrainColors& colors) { colors_ = colors; }
+
   const Measurements& measured() const { return measured_; }
   std::string title() const;
   std::string unit() const;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 // The state of the page behind the # of its address: a reload or a link shows the same.
+import { element } from './decode.js';
 import { parseRange, writeRange } from './tables.js';
 
 const kFilters = { f: 'grains', b: 'bonds' };
@@ -18,7 +19,8 @@ export function writeState(selection, camera) {
   set('theme', selection.theme, null);
   set('unit', selection.unit, sample.usualUnit);
   set('strictness', selection.strictness, null);
-  set('grains', [...selection.selected].map((row) => sample.ids[row]), '');
+  set('scan', selection.scan, 0);
+  set('grains', [...[...selection.selected].map((row) => sample.ids[row]), ...selection.absent], '');
   for (const [key, kind] of Object.entries(kFilters))
     for (const [name, range] of selection.filters[kind]) parts.append(key, `${name}=${writeRange(range)}`);
   set('inside', selection.insideOnly ? 1 : 0, 0);
@@ -72,6 +74,7 @@ export function readState(parts, selection, camera) {
   }
   for (const id of (parts.get('grains') || '').split(','))
     if (sample.rowOf.has(Number(id))) selection.selected.add(sample.rowOf.get(Number(id)));
+    else if (element('scans') && Number(id) > 0) selection.absent.push(Number(id));
   const slices = numbers('slices', 3);
   for (const row of selection.selected) selection.goTo(sample.placeOf('grains', row));
   if (slices)

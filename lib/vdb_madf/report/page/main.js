@@ -6,6 +6,7 @@ import { startComparison } from './comparison.js';
 import { element, json } from './decode.js';
 import { startEdits } from './edits.js';
 import { startGrain } from './grain.js';
+import { scanOf, startHistory, startScans } from './history.js';
 import { make, Sample } from './sample.js';
 import { Selection } from './selection.js';
 import { startSlices } from './slices.js';
@@ -28,9 +29,11 @@ async function start() {
 
 async function startSample() {
   const state = new URLSearchParams(location.hash.slice(1));
-  const sample = await Sample.load('', state.get('unit'));
+  const scan = scanOf(state);
+  const sample = await Sample.load(scan ? `-${scan.at}` : '', state.get('unit'));
   await sample.loadVoxels();
   const selection = new Selection(sample);
+  if (scan) selection.scan = scan.at;
   const camera = newCamera(sample);
   selection.theme = ['light', 'dark'].find((theme) => theme === state.get('theme')) || null;
   startTheme(selection.theme, (theme) => {
@@ -43,17 +46,19 @@ async function startSample() {
   selection.changed('looks');
   startSummary(sample, selection);
   startStrictness(sample, selection);
+  startScans(scan, selection, camera);
   startGrain(sample, selection);
   startSlices(sample, selection);
   startCharts(sample, selection);
   await startSweep(sample);
+  await startHistory(scan, sample, selection);
   startTables(sample, selection);
   startEdits(sample, selection);
   const scene = await startView(sample, selection, camera);
   selection.changed('filter', 'selection', 'looks', 'cuts');
   followState(selection, camera);
   document.addEventListener('keydown', (event) => {
-    if (event.key === 'Escape' && selection.selected.size > 0) selection.select([]);
+    if (event.key === 'Escape' && selection.selected.size + selection.absent.length > 0) selection.select([]);
   });
   // For tests, and for a reader's console.
   window.report = { sample, selection, camera, scene };

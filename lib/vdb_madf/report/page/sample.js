@@ -29,6 +29,7 @@ export class Sample {
   static async load(suffix = '', unit = null) {
     const sample = new Sample();
     sample.isOwn = true;
+    sample.suffix = suffix;
     sample.about = json(`about${suffix}`);
     sample.numbers = json(`sample${suffix}`);
     sample.chooseUnit(unit);
@@ -70,13 +71,13 @@ export class Sample {
   }
 
   async loadVoxels() {
-    this.colors = await bytes('colors');
+    this.colors = await bytes(`colors${this.suffix}`);
     this.levels = await Levels.load(this.about);
     // Bodies: what slices and mesh are made of, the grains or the leaves of the levels.
     this.bodies = this.levels ? this.levels.leaves : this.count;
     this.rowOfBody = this.levels ? Uint32Array.from(this.levels.ownGrain, (id) => this.rowOf.get(id))
       : Uint32Array.from({ length: this.count }, (_, row) => row);
-    this.volume = labelVolume(await bytes('labels'), this.about.slices.size, this.bodies);
+    this.volume = labelVolume(await bytes(`labels${this.suffix}`), this.about.slices.size, this.bodies);
     if (this.levels) this.addLives(this.levels.own);
     this.own = { ...this };
   }
@@ -99,7 +100,7 @@ export class Sample {
   }
 
   async loadMesh() {
-    const packed = await bytes('mesh');
+    const packed = await bytes(`mesh${this.suffix}`);
     return packed && grainMesh(packed, this.about.mesh, this.bodies);
   }
 

@@ -10,6 +10,8 @@ export class Selection {
     this.sample = sample;
     this.listeners = [];
     this.selected = new Set();  // rows of grains
+    this.absent = [];  // numbers of grains that are selected, but in another scan
+    this.scan = 0;
     this.filters = { grains: new Map(), bonds: new Map() };  // column name: [low, high]
     this.insideOnly = false;
     this.colorBy = '';  // a column of grains; '': the labels' colors
@@ -77,7 +79,10 @@ export class Selection {
   }
 
   select(rows, more = false) {
-    if (!more) this.selected.clear();
+    if (!more) {
+      this.selected.clear();
+      this.absent = [];
+    }
     for (const row of rows)
       if (more && this.selected.has(row)) this.selected.delete(row); else this.selected.add(row);
     const last = rows[rows.length - 1];
