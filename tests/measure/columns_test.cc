@@ -4,6 +4,7 @@
 #include "vdb_madf/measure/columns.h"
 
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -209,4 +210,30 @@ TEST_CASE("columns: powers of a length", "[columns]") {
   CHECK(scaled(3, 3, 0.5) == 0.375);
   CHECK(scaled(3, -1, 0.5) == 6);
   CHECK(scaled(3, -2, 0.5) == 12);
+}
+
+TEST_CASE("columns: what is given of grains comes last", "[columns]") {
+  const std::string moves =
+      "side,grain,fate,track,miss,turn,voxels\nbefore,3,kept,3,0.5,,10\nbefore,7,lost,7,,-2e-1,11\n"
+      "after,1,kept,7,9,8,12\n";
+  ExtraMeasures extra;
+  extra.given = givenColumns(moves);
+  std::vector<GrainMeasures> grains(2);
+  grains[0].id = 3;
+  grains[1].id = 7;
+  const auto columns = grainColumns(grains, extra);
+  CHECK(columns[columns.size() - 2].name == "miss");
+  CHECK(columns.back().name == "turn");  // there are voxels already
+  CHECK(column(columns, "miss").values[0] == 0.5);
+  CHECK(std::isnan(column(columns, "miss").values[1]));
+  CHECK(column(columns, "turn").values[1] == -0.2);
+  CHECK(givenColumns(moves, true).at(0).values == std::map<int32_t, double>{{7, 9}});
+  CHECK(givenColumns("a,id\r\n1,2\r\n").at(0).values.at(2) == 1);
+  using vdb_madf::test::Contains;
+  CHECK_THROWS_WITH(givenColumns(""), Contains("no column 'grain' or 'id'"));
+  CHECK_THROWS_WITH(givenColumns("grain\n1\n"), Contains("no column of numbers"));
+  CHECK_THROWS_WITH(givenColumns("grain,a\n1,2,3\n"), Contains("line 2: has 3 cells"));
+  CHECK_THROWS_WITH(givenColumns("grain,a\n0.5,2\n"), Contains("'0.5' is no number of a grain"));
+  CHECK_THROWS_WITH(givenColumns("grain,a\n9999999999,2\n"), Contains("no number of a grain"));
+  CHECK_THROWS_WITH(givenColumns("grain,a\n1,2\n1,3\n"), Contains("line 3: grain 1 comes twice"));
 }

@@ -232,6 +232,13 @@ TEST_CASE("cli: render colors grains by a column of their table", "[cli]") {
   bench.mustRun("render s.vdb plain.png --size 64");
   bench.mustRun("render s.vdb by.png --size 64 --color-by sphericity");
   CHECK(readPng(bench.bytes("by.png")).pixels != readPng(bench.bytes("plain.png")).pixels);
+  bench.write("given.csv", "grain,heat\n1,2\n2,5\n");
+  bench.mustRun("render s.vdb given.png --size 64 --color-by heat --with given.csv");
+  CHECK(bench.bytes("given.png") != bench.bytes("by.png"));
+  bench.write("bad.csv", "label,heat\n1,2\n");
+  CHECK(
+      bench.run("render s.vdb w.png --color-by heat --with bad.csv").err.find("bad.csv: has no") !=
+      std::string::npos);
   const auto wrong = bench.run("render s.vdb w.png --color-by hue");
   CHECK(wrong.exitCode == 1);
   CHECK_THAT(wrong.err, vdb_madf::test::Contains("s.vdb: grains have no 'hue': there are id, "));

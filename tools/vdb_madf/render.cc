@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "command.h"
+#include "given_option.h"
 #include "input_options.h"
 #include "outputs.h"
 #include "parse.h"
@@ -33,7 +34,7 @@ namespace {
 
 struct RenderArguments {
   InputOptions input;
-  std::string out, only, slice, select, scan, scanGrid, colorBy;
+  std::string out, only, slice, select, scan, scanGrid, colorBy, with;
   int size = 512, frames = 1;
   bool interfaces = false, noAxes = false, transparent = false;
   ViewOptions view;
@@ -167,6 +168,7 @@ ColumnColors colorsBy(const RenderArguments& o, const Source& source, const Comm
   Measurements measured = measure(*source.labels, {}, common.progress);
   if (o.colorBy == "born" || o.colorBy == "dies" || o.colorBy == "stability")
     measureStability(keptGraph(o.input, common.progress), measured);
+  measured.extra.given = readGiven(o.with, *source.labels);
   return columnColors(measured, o.colorBy);
 }
 
@@ -266,6 +268,7 @@ void addRender(Verb command, Common& common, Action& action) {
   verb.option("--color-by", o->colorBy,
               "colors grains by a column of measure, such as sphericity, with a scale")
       .typeName("COLUMN");
+  verb.option("--with", o->with, kWithHelp).typeName("FILE.csv");
   verb.flag("--interfaces", o->interfaces, "shows of grains the voxels alone that touch another");
   verb.option("--overlay", o->scan, "the gray scan: slices show it with the outlines of grains")
       .typeName("FILE");

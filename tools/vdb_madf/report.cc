@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "command.h"
+#include "given_option.h"
 #include "input_options.h"
 #include "outputs.h"
 #include "parse.h"
@@ -30,7 +31,7 @@ struct ReportArguments {
   InputOptions input;
   std::vector<std::string> files;  ///< of labels, and of the page
   std::vector<InputOptions> samples;
-  std::string out, boundary = "auto", minFaces = "1", density, sweep, triangles = "1000000";
+  std::string out, boundary = "auto", minFaces = "1", density, sweep, with, triangles = "1000000";
   bool ice = false, noView = false, isSeries = false;
   ReportOptions report;
 };
@@ -50,6 +51,8 @@ void parse(ReportArguments& o) {
   o.report.labels = o.input.path;
   if (!o.sweep.empty() && o.samples.size() > 1)
     throw WrongUsage("--sweep is of one sample: give the labels of one");
+  if (!o.with.empty() && o.samples.size() > 1)
+    throw WrongUsage("--with is of one sample: give the labels of one");
   if (o.isSeries && o.samples.size() == 1)
     throw WrongUsage("--series: give the labels of two scans or more, and last the page");
   o.report.measure.boundary = parseBoundary(o.boundary);
@@ -86,6 +89,7 @@ Report writeOne(const ReportArguments& o, const Common& common) {
   if (!o.sweep.empty() && !isSweepTable(options.sweep))
     throw InvalidInput(o.sweep + ": is no table of the verb sweep");
   const AnyLabels labels = labelsOf(o.input, common);
+  options.given = readGiven(o.with, aboutOf(labels));
   // What crosses at another strictness the page cannot tell.
   if (!options.measure.crossings) options.manifold = manifoldsBeside(o.input, common.progress);
   return withFileName(o.input.path,
@@ -147,6 +151,7 @@ void addReport(Verb command, Common& common, Action& action) {
   verb.flag("--series", o->isSeries,
             "the labels are scans of one sample, numbered by track: a page with a slider from scan "
             "to scan");
+  verb.option("--with", o->with, kWithHelp).typeName("FILE.csv");
   verb.option("--max-dim", o->report.maxSlice, "longest side of the slices, in voxels")
       .range(16, 1024)
       .showDefault();

@@ -32,6 +32,12 @@ class ColumnMaker {
     columns_.push_back(std::move(column));
   }
   template <typename Number>
+  void addUnlessThere(const std::string& name, const Number& number) {
+    for (const MeasureColumn& column : columns_)
+      if (column.name == name) return;
+    add(name, 0, number);
+  }
+  template <typename Number>
   void addCount(const std::string& name, const Number& number) {
     add(name, 0, number, Kind::count);
   }
@@ -162,6 +168,11 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
     make.add("dies", 0, [](const G& g) { return g.life.dies.value_or(kNone); });
     make.add("stability", 0, [](const G& g) { return g.life.stability.value_or(kNone); });
   }
+  for (const GivenColumn& column : extra.given)
+    make.addUnlessThere(column.name, [&](const G& g) {
+      const auto value = column.values.find(g.id);
+      return value == column.values.end() ? kNone : value->second;
+    });
   return make.columns();
 }
 

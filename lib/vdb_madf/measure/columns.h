@@ -37,7 +37,7 @@ struct MeasureColumn {
 /// `gray_sd`, `gray_min`, `gray_max`, `gray_median`; with edge weights `edge_weight`; with cells
 /// `cell_volume`, `local_solid_fraction`, `cell_neighbors`, `cell_at_domain_face` (0 or 1); with
 /// sizes `projected_diameter`; with recurrences `p_grain`, `volume_sd`; with the stability `born`,
-/// `dies`, `stability`.
+/// `dies`, `stability`. What is given comes last, unless a column is called so already.
 std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains,
                                         const ExtraMeasures& extra = {});
 

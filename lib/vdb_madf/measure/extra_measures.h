@@ -3,6 +3,10 @@
 
 #pragma once
 
+#include <vector>
+
+#include "vdb_madf/measure/given_columns.h"
+
 namespace vdb_madf {
 
 /// Which measures are there besides those that always are.
@@ -15,8 +19,9 @@ struct ExtraMeasures {
   bool sizes = false;        ///< GrainShape::projectedDiameter as a column
   /// GrainMeasures::recurrence, BondMeasures::recurrence, Measurements::sensitivity.
   bool recurrence = false;
-  bool crossings = false;  ///< BondMeasures::crossing, Measurements::crossings
-  bool stability = false;  ///< GrainMeasures::life, BondMeasures::vanishes
+  bool crossings = false;               ///< BondMeasures::crossing, Measurements::crossings
+  bool stability = false;               ///< GrainMeasures::life, BondMeasures::vanishes
+  std::vector<GivenColumn> given = {};  ///< columns of grains from outside
 };
 
 }  // namespace vdb_madf

@@ -83,6 +83,7 @@ Report addSamples(const std::vector<ReportSample>& samples, const ReportOptions&
     own.labels = samples[i].path;
     own.manifold = nullptr;
     own.sweep.clear();
+    own.given.clear();
     const auto parts = partsOf(labels, own, "-" + std::to_string(i), interrupter);
     if (i > 0 && parts->unit() != unit)
       throw InvalidInput("lengths of " + samples[0].path + " are in " + unit + ", those of " +

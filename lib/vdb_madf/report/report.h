@@ -26,6 +26,9 @@ struct ReportOptions {
   /// than this. 0: no view in three dimensions.
   uint64_t maxTriangles = 1000000;
   std::string sweep;  ///< the text of a table of the verb sweep, to be shown as plots; empty: none
+  /// Columns of grains from outside, which the tables get. There is no slider for the strictness
+  /// then: what they are of other grains is not known.
+  std::vector<GivenColumn> given;
   /// What the labels were merged from (segment with keepManifold): the page gets a slider for the
   /// strictness, if merging by score made them and nothing has edited them since. Null: none.
   Int32Grid::ConstPtr manifold;
@@ -74,7 +77,8 @@ struct ReportSample {
 
 /// Writes a sample scan by scan: the page of each, as writeReport() makes it, with a slider from
 /// scan to scan and curves of what changes. Grains have one number, and one color, in all scans:
-/// see track(). Of the options `labels`, `manifold` and `sweep` are not used. Labels are asked for
+/// see track(). Of the options `labels`, `manifold`, `given` and
+/// `sweep` are not used. Labels are asked for
 /// twice. @throw as writeComparison()
 Report writeSeries(const std::string& path, const std::vector<ReportSample>& scans,
                    const ReportOptions& options = {}, Interrupter* interrupter = nullptr);

@@ -43,7 +43,7 @@ Mat3d tensor(const std::array<double, 6>& t) {
 
 void Following::settle(Interrupter* interrupter) {
   for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-    expectAll(interrupter);
+    expectDue(interrupter);
     if (!match()) break;
   }
 }
@@ -70,8 +70,8 @@ void Following::finish(Interrupter* interrupter) {
   if (all.empty()) return;
   limit_ = std::clamp(4 * upperMedian(all), kLeastLimit, kLimit);
   for (int sweep = 0; sweep < 3; ++sweep) {
-    std::fill(changed_.begin(), changed_.end(), 1);
-    expectAll(interrupter);
+    changeAll();
+    expectDue(interrupter);
     match();
   }
   if (areFound(true)) return;
@@ -138,17 +138,39 @@ FollowedGrains Following::result() const {
   return matches;
 }
 
-void Following::expectAll(Interrupter* interrupter) {
-  std::vector<Expected> next(before_.size());
-  std::vector<char> isNew(before_.size(), 0);
-  parallelForEach(before_.size(), kGrainsPerTask, interrupter, [&](size_t n) {
-    const auto& around = before_.around[n];
-    isNew[n] = changed_[n] || std::any_of(around.begin(), around.end(),
-                                          [&](size_t other) { return changed_[other]; });
-    if (isNew[n]) next[n] = expect(n);
-  });
-  for (size_t n = 0; n < before_.size(); ++n)
-    if (isNew[n]) expected_[n] = std::move(next[n]);
+Following::Dependents::Dependents(const std::vector<std::vector<size_t>>& around)
+    : first(around.size() + 1, 0) {
+  for (const auto& near : around)
+    for (const size_t n : near) ++first[n + 1];
+  for (size_t n = 0; n < around.size(); ++n) first[n + 1] += first[n];
+  grains.resize(first.back());
+  std::vector<size_t> next(first.begin(), first.end() - 1);
+  for (size_t n = 0; n < around.size(); ++n)
+    for (const size_t other : around[n]) grains[next[other]++] = uint32_t(n);
+}
+
+std::vector<size_t> Following::due() {
+  std::vector<size_t> due;
+  const auto add = [&](size_t n) {
+    if (isDue_[n]) return;
+    isDue_[n] = 1;
+    due.push_back(n);
+  };
+  for (const size_t n : changed_) {
+    add(n);
+    for (size_t k = dependents_.first[n]; k < dependents_.first[n + 1]; ++k)
+      add(dependents_.grains[k]);
+  }
+  for (const size_t n : due) isDue_[n] = 0;
+  return due;
+}
+
+void Following::expectDue(Interrupter* interrupter) {
+  const std::vector<size_t> grains = due();
+  std::vector<Expected> next(grains.size());
+  parallelForEach(grains.size(), kGrainsPerTask, interrupter,
+                  [&](size_t k) { next[k] = expect(grains[k]); });
+  for (size_t k = 0; k < grains.size(); ++k) expected_[grains[k]] = std::move(next[k]);
 }
 
 Following::Expected Following::expect(size_t n) const {
@@ -226,14 +248,10 @@ double Following::contactsKept(size_t n, size_t m) const {
 }
 
 bool Following::match() {
-  struct Claim {
-    size_t grain = kNoIndex;
-    double cost = kReach, second = kReach;
-  };
-  std::vector<Claim> claims(after_.size());
+  claims_.assign(after_.size(), {kNoIndex, kReach, kReach});
   for (size_t n = 0; n < before_.size(); ++n)
     for (const Candidate& candidate : expected_[n].candidates) {
-      Claim& claim = claims[candidate.grain];
+      Claim& claim = claims_[candidate.grain];
       if (claim.grain == kNoIndex || candidate.cost < claim.cost) {
         if (claim.grain != kNoIndex) claim.second = std::min(claim.second, claim.cost);
         claim.cost = candidate.cost;
@@ -242,25 +260,25 @@ bool Following::match() {
         claim.second = std::min(claim.second, candidate.cost);
       }
     }
-  std::vector<size_t> partners(before_.size(), kNoIndex);
   ratios_.assign(before_.size(), 1);
+  changed_.clear();
   for (size_t n = 0; n < before_.size(); ++n) {
-    const auto& candidates = expected_[n].candidates;
-    if (candidates.empty() || candidates[0].distance > limit_) continue;
-    const Claim& claim = claims[candidates[0].grain];
-    if (claim.grain != n) continue;
-    double second = std::max(claim.second, candidates[0].cost);
-    if (candidates.size() > 1) second = std::min(second, candidates[1].cost);
-    ratios_[n] = second > 0 ? candidates[0].cost / second : 0;
-    if (ratios_[n] * kUnique <= 1) partners[n] = candidates[0].grain;
+    const size_t partner = partnerOf(n);
+    if (partner != partners_[n]) changed_.push_back(n);
+    partners_[n] = partner;
   }
-  bool any = false;
-  for (size_t n = 0; n < before_.size(); ++n) {
-    changed_[n] = partners[n] != partners_[n];
-    any = any || changed_[n];
-  }
-  partners_ = std::move(partners);
-  return any;
+  return !changed_.empty();
+}
+
+size_t Following::partnerOf(size_t n) {
+  const auto& candidates = expected_[n].candidates;
+  if (candidates.empty() || candidates[0].distance > limit_) return kNoIndex;
+  const Claim& claim = claims_[candidates[0].grain];
+  if (claim.grain != n) return kNoIndex;
+  double second = std::max(claim.second, candidates[0].cost);
+  if (candidates.size() > 1) second = std::min(second, candidates[1].cost);
+  ratios_[n] = second > 0 ? candidates[0].cost / second : 0;
+  return ratios_[n] * kUnique <= 1 ? candidates[0].grain : kNoIndex;
 }
 
 }  // namespace vdb_madf::detail

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -23,8 +24,11 @@ class Following {
       : before_(before),
         after_(after),
         partners_(before.size(), kNoIndex),
-        changed_(before.size(), 1),
-        expected_(before.size()) {}
+        dependents_(before.around),
+        isDue_(before.size(), 0),
+        expected_(before.size()) {
+    changeAll();
+  }
 
   void take(const Seed& seed) {
     for (const auto& [n, m] : seed.pairs) {
@@ -35,7 +39,7 @@ class Following {
 
   void setWhole(const Motion& whole) {
     whole_ = whole;
-    std::fill(changed_.begin(), changed_.end(), 1);
+    changeAll();
   }
 
   /// Matches until nothing changes. Grains are looked at again where a neighbor has changed.
@@ -55,9 +59,21 @@ class Following {
   FollowedGrains result() const;
 
  private:
+  /// The grains that each grain is around, one list after the other.
+  struct Dependents {
+    std::vector<size_t> first;
+    std::vector<uint32_t> grains;
+
+    explicit Dependents(const std::vector<std::vector<size_t>>& around);
+  };
   struct Candidate {
     size_t grain;
     double cost, distance;
+  };
+  /// The grain before that a grain after suits best, and what the second best costs.
+  struct Claim {
+    size_t grain = kNoIndex;
+    double cost = 0, second = 0;
   };
   /// Where a grain should be, and what is there.
   struct Expected {
@@ -79,7 +95,14 @@ class Following {
     return (after_.center(partners_[n]) - motion(before_.center(n))).length();
   }
 
-  void expectAll(Interrupter* interrupter);
+  void changeAll() {
+    const auto& inCells = before_.cells.inCells();
+    changed_.assign(inCells.begin(), inCells.end());  // near ones together
+  }
+  /// Grains that have changed, or have a neighbor that has.
+  std::vector<size_t> due();
+  /// Looks at the due ones anew.
+  void expectDue(Interrupter* interrupter);
 
   Expected expect(size_t n) const;
 
@@ -90,12 +113,18 @@ class Following {
 
   /// @return whether anything has changed
   bool match();
+  /// The one that suits it best, if it suits that one best, too, and nothing else nearly as well;
+  /// else kNoIndex.
+  size_t partnerOf(size_t n);
 
   const ScanGrains &before_, &after_;
   std::vector<size_t> partners_;
-  std::vector<char> changed_;
+  std::vector<size_t> changed_;
+  const Dependents dependents_;
+  std::vector<char> isDue_;  ///< none but while they are collected
   std::vector<Expected> expected_;
   std::vector<double> ratios_;
+  std::vector<Claim> claims_;  ///< kept from one round to the next for their memory
   std::optional<Motion> whole_;
   double limit_ = kLimit;
 };

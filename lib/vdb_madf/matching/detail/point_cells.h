@@ -44,6 +44,8 @@ class PointCells {
   const Point& operator[](size_t n) const { return points_[n]; }
   size_t size() const { return points_.size(); }
   double side() const { return side_; }
+  /// All points, those of a cell one after the other.
+  const std::vector<uint32_t>& inCells() const { return order_; }
 
   /// f(n, squared distance) for the points within a radius.
   template <typename F>

@@ -54,8 +54,9 @@ struct ScanGrains {
         contacts(grains.size()),
         spacing(grains.size(), 1) {
     parallelFor(size(), kGrainsPerTask, interrupter, [&](size_t begin, size_t end) {
-      for (size_t n = begin; n < end; ++n) around[n] = aroundOf(n, kAround);
-      for (size_t n = begin; n < end; ++n) {
+      for (size_t at = begin; at < end; ++at) {  // near ones together, for the cache
+        const size_t n = cells.inCells()[at];
+        around[n] = aroundOf(n, kAround);
         const std::vector<size_t> near =
             isSpeck[n] ? others(n, cells.nearest(center(n), 7)) : around[n];
         const size_t few = std::min<size_t>(6, near.size());

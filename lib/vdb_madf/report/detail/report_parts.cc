@@ -105,11 +105,12 @@ ReportParts::ReportParts(const AnyLabels& labels, const ReportOptions& options, 
   begin("measure");
   measured_ =
       applied(labels, [&](const auto& all) { return measure(all, options.measure, interrupter); });
+  measured_.extra.given = options.given;
   box_ = sliceBox_ = measured_.sample.box;
   if (box_.empty()) throw InvalidInput("has no labels and no domain: nothing to show");
   colors_ = applied(labels, [&](const auto& all) { return grainColors(all, interrupter); });
   for (const GrainMeasures& grain : measured_.grains) ids_.push_back(grain.id);
-  if (options.manifold) addLevels();
+  if (options.manifold && options.given.empty()) addLevels();
 }
 
 void ReportParts::addLevels() {

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: The vdb_madf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "given_option.h"
+
+#include <openvdb/Metadata.h>
+
+#include <cstdint>
+
+#include "outputs.h"
+#include "vdb_madf/files/read_text.h"
+#include "vdb_madf/matching/track.h"
+
+namespace vdb_madf::tools {
+
+std::vector<GivenColumn> readGiven(const std::string& path, const Int32Grid& labels) {
+  constexpr uint64_t kMostBytes = uint64_t(1) << 30;
+  if (path.empty()) return {};
+  const bool isTracked = labels.getMetadata<openvdb::StringMetadata>(kTrackKey) != nullptr;
+  return withFileName(path, [&] { return givenColumns(readText(path, kMostBytes), isTracked); });
+}
+
+}  // namespace vdb_madf::tools
