@@ -302,6 +302,12 @@ std::optional<LabelSlabs> openBoxSlabs(const InputOptions& input, const std::str
   return labels;
 }
 
+AnyLabels loadAnyLabels(const InputOptions& input, const std::string& gridOption,
+                        Progress* progress) {
+  if (const auto slabs = openBoxSlabs(input, gridOption, progress)) return *slabs;
+  return Int32Grid::ConstPtr(loadLabels(input, gridOption, progress));
+}
+
 void addBoundary(Verb verb, std::string& boundary) {
   verb.option("--boundary", boundary, "beyond the scan's faces: open: unknown, closed: background")
       .oneOf({"auto", "open", "closed"})

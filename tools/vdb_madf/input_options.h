@@ -86,6 +86,9 @@ LabelSlabs openLabelSlabs(const InputOptions& input, const std::string& gridOpti
 /// other labels.
 std::optional<LabelSlabs> openBoxSlabs(const InputOptions& input, const std::string& gridOption,
                                        Progress* progress);
+/// Labels that can be taken so, or else whole.
+AnyLabels loadAnyLabels(const InputOptions& input, const std::string& gridOption,
+                        Progress* progress);
 /// True if it is a folder of slabs, which can be taken one by one.
 bool isInSlabs(const InputOptions& input);
 

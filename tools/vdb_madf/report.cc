@@ -79,8 +79,7 @@ Int32Grid::Ptr manifoldsBeside(const InputOptions& input, Progress* progress) {
 /// In slabs only if they can be measured so.
 AnyLabels labelsOf(const InputOptions& input, const Common& common) {
   common.progress->start("read");
-  if (const auto slabs = openBoxSlabs(input, "--grid", common.progress)) return *slabs;
-  return Int32Grid::ConstPtr(loadLabels(input, "--grid", common.progress));
+  return loadAnyLabels(input, "--grid", common.progress);
 }
 
 Report writeOne(const ReportArguments& o, const Common& common) {

@@ -264,8 +264,7 @@ void print(const TrackArguments& o, const Tracks& t, const Json& json) {
 /// Of a folder of slabs, slab by slab if that is asked for and can be done.
 AnyLabels labelsOf(const InputOptions& input, const char* gridOption, bool bySlabs,
                    const Common& common) {
-  if (bySlabs)
-    if (const auto slabs = openBoxSlabs(input, gridOption, common.progress)) return *slabs;
+  if (bySlabs) return loadAnyLabels(input, gridOption, common.progress);
   return Int32Grid::ConstPtr(loadLabels(input, gridOption, common.progress));
 }
 

@@ -10,6 +10,7 @@
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/detail/output_stream.h"
+#include "vdb_madf/labels/grain_colors.h"
 #include "vdb_madf/report/detail/page_sources.h"
 #include "vdb_madf/report/detail/page_text.h"
 #include "vdb_madf/report/detail/report_parts.h"
@@ -70,41 +71,68 @@ uint64_t write(detail::OutputStream& file, const detail::PageSources& sources,
   return bytes;
 }
 
-/// Adds what a page has of each of some samples, whose ids end with their position.
-template <typename Add>
-Report addSamples(const std::vector<ReportSample>& samples, const ReportOptions& options,
-                  const Add& add, PageText& page, Interrupter* interrupter) {
-  Report whole;
-  std::string unit;
-  for (size_t i = 0; i < samples.size(); ++i) {
-    const AnyLabels labels = samples[i].labels();
-    ReportOptions own = options;
-    own.title = samples[i].name;
-    own.labels = samples[i].path;
-    own.manifold = nullptr;
-    own.sweep.clear();
-    own.given.clear();
-    const auto parts = partsOf(labels, own, "-" + std::to_string(i), interrupter);
-    if (i > 0 && parts->unit() != unit)
-      throw InvalidInput("lengths of " + samples[0].path + " are in " + unit + ", those of " +
-                             samples[i].path + " in " + parts->unit() +
-                             ": give all samples a voxel size",
-                         Hint::voxelSize);
-    unit = parts->unit();
-    page.data += add(*parts);
-    const Report report = parts->report();
-    whole.grains += report.grains;
-    whole.bonds += report.bonds;
-    whole.triangles += report.triangles;
-    whole.sliceReduction = std::max(whole.sliceReduction, report.sliceReduction);
-  }
-  return whole;
-}
-
 Report written(Report report, uint64_t bytes) {
   report.bytes = bytes;
   return report;
 }
+
+/// Options without what is of one sample.
+ReportOptions ofSeveral(ReportOptions options) {
+  checkOptions(options);
+  options.manifold = nullptr;
+  options.sweep.clear();
+  options.given.clear();
+  return options;
+}
+
+/// A page of several samples.
+class SeveralPage {
+ public:
+  /// Refuses what is wrong before any work is done.
+  SeveralPage(const std::string& path, const ReportOptions& options, const std::string& usualTitle,
+              Interrupter* interrupter)
+      : options_(ofSeveral(options)),
+        sources_(sourcesFor(path)),
+        file_(path, interrupter),
+        page_{options.title.empty() ? usualTitle : options.title, "", ""},
+        interrupter_(interrupter) {}
+
+  /// \p add: what the page has of a sample, whose ids end with its position. \p countId: of the
+  /// element that says how many there are.
+  template <typename Add>
+  Report write(const std::vector<ReportSample>& samples, const std::string& countId,
+               const Add& add) {
+    Report whole;
+    std::string unit;
+    for (size_t i = 0; i < samples.size(); ++i) {
+      const AnyLabels labels = samples[i].labels();
+      options_.title = samples[i].name;
+      options_.labels = samples[i].path;
+      const auto parts = partsOf(labels, options_, "-" + std::to_string(i), interrupter_);
+      if (i > 0 && parts->unit() != unit)
+        throw InvalidInput("lengths of " + samples[0].path + " are in " + unit + ", those of " +
+                               samples[i].path + " in " + parts->unit() +
+                               ": give all samples a voxel size",
+                           Hint::voxelSize);
+      unit = parts->unit();
+      page_.data += add(*parts, page_);
+      const Report report = parts->report();
+      whole.grains += report.grains;
+      whole.bonds += report.bonds;
+      whole.triangles += report.triangles;
+      whole.sliceReduction = std::max(whole.sliceReduction, report.sliceReduction);
+    }
+    page_.data += detail::jsonElement(countId, std::to_string(samples.size()));
+    return written(whole, vdb_madf::write(file_, sources_, page_));
+  }
+
+ private:
+  ReportOptions options_;
+  const detail::PageSources& sources_;
+  detail::OutputStream file_;
+  PageText page_;
+  Interrupter* interrupter_;
+};
 
 }  // namespace
 
@@ -124,7 +152,9 @@ Report writeReport(const std::string& path, const AnyLabels& labels, const Repor
   detail::OutputStream file(path, interrupter);
   detail::ReportParts parts(labels, options, "", interrupter);
   PageText page{parts.title(), parts.picture(), ""};
-  page.data = parts.tables() + parts.colors() + parts.sweep() + parts.slices();
+  const GrainColors colors =
+      applied(labels, [&](const auto& all) { return grainColors(all, interrupter); });
+  page.data = parts.tables() + parts.colors(colors) + parts.sweep() + parts.slices();
   page.data += parts.mesh();
   page.data += parts.levels();
   page.data += parts.about();
@@ -133,40 +163,25 @@ Report writeReport(const std::string& path, const AnyLabels& labels, const Repor
 
 Report writeComparison(const std::string& path, const std::vector<ReportSample>& samples,
                        const ReportOptions& options, Interrupter* interrupter) {
-  checkOptions(options);
-  const detail::PageSources& sources = sourcesFor(path);
-  detail::OutputStream file(path, interrupter);
-  PageText page{options.title.empty() ? "Samples side by side" : options.title, "", ""};
-  const Report whole = addSamples(
-      samples, options,
-      [&](detail::ReportParts& parts) { return parts.tables() + parts.picture() + parts.about(); },
-      page, interrupter);
-  page.data += detail::jsonElement("samples", std::to_string(samples.size()));
-  return written(whole, write(file, sources, page));
+  SeveralPage page(path, options, "Samples side by side", interrupter);
+  return page.write(samples, "samples", [](const detail::ReportParts& parts, const PageText&) {
+    return parts.tables() + parts.picture() + parts.about();
+  });
 }
 
 Report writeSeries(const std::string& path, const std::vector<ReportSample>& scans,
                    const ReportOptions& options, Interrupter* interrupter) {
-  checkOptions(options);
-  const detail::PageSources& sources = sourcesFor(path);
-  detail::OutputStream file(path, interrupter);
-  PageText page{options.title.empty() ? "Through time" : options.title, "", ""};
+  SeveralPage page(path, options, "Through time", interrupter);
   GrainColoring coloring;
   for (const ReportSample& scan : scans)
     applied(scan.labels(), [&](const auto& labels) { coloring.add(labels, interrupter); });
   const GrainColors colors = coloring.colors();
-  const Report whole = addSamples(
-      scans, options,
-      [&](detail::ReportParts& parts) {
-        parts.setColors(colors);
-        if (page.picture.empty()) page.picture = parts.picture();
-        std::string text = parts.tables() + parts.colors() + parts.slices();
-        text += parts.mesh();
-        return text + parts.about();
-      },
-      page, interrupter);
-  page.data += detail::jsonElement("scans", std::to_string(scans.size()));
-  return written(whole, write(file, sources, page));
+  return page.write(scans, "scans", [&](detail::ReportParts& parts, PageText& text) {
+    if (text.picture.empty()) text.picture = parts.picture();
+    std::string data = parts.tables() + parts.colors(colors) + parts.slices();
+    data += parts.mesh();
+    return data + parts.about();
+  });
 }
 
 }  // namespace vdb_madf

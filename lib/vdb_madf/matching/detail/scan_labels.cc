@@ -35,8 +35,10 @@ Int32Tree::ConstPtr ScanLabels::layers(int low, int high, Interrupter* interrupt
   if (whole_) return whole_;
   const auto tree = std::make_shared<Int32Tree>(0);
   for (size_t slab = 0; slab < slabs_->slabCount(); ++slab) {
-    if (slabs_->cuts[slab + 1] <= low) read_.erase(slab);
-    if (slabs_->cuts[slab + 1] <= low || slabs_->cuts[slab] > high) continue;
+    if (slabs_->cuts[slab + 1] <= low || slabs_->cuts[slab] > high) {
+      read_.erase(slab);
+      continue;
+    }
     Int32Tree::ConstPtr& labels = read_[slab];
     if (!labels) labels = withoutTiles(*slabs_->read(slab, interrupter));
     for (auto leaf = labels->cbeginLeaf(); leaf; ++leaf)

@@ -29,8 +29,8 @@ class ScanLabels {
   /// Lets f see all layers, each as an own one once, with those that are at most `margin` voxels
   /// from them. @throw Interrupted; what reading throws
   void forEachPart(int margin, Interrupter* interrupter, const std::function<void(const Part&)>& f);
-  /// The layers of leaves with low <= z <= high, at least. Slabs below them are forgotten, and read
-  /// again if need be. @throw as forEachPart()
+  /// The layers of leaves with low <= z <= high, at least. Slabs of no such layer are forgotten,
+  /// and read again if need be. @throw as forEachPart()
   Int32Tree::ConstPtr layers(int low, int high, Interrupter* interrupter);
 
  private:

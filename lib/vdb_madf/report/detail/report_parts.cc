@@ -108,7 +108,6 @@ ReportParts::ReportParts(const AnyLabels& labels, const ReportOptions& options, 
   measured_.extra.given = options.given;
   box_ = sliceBox_ = measured_.sample.box;
   if (box_.empty()) throw InvalidInput("has no labels and no domain: nothing to show");
-  colors_ = applied(labels, [&](const auto& all) { return grainColors(all, interrupter); });
   for (const GrainMeasures& grain : measured_.grains) ids_.push_back(grain.id);
   if (options.manifold && options.given.empty()) addLevels();
 }
@@ -163,10 +162,10 @@ std::string ReportParts::tables() const {
          dataElement("bonds" + suffix_, packed(texts.bonds));
 }
 
-std::string ReportParts::colors() const {
+std::string ReportParts::colors(const GrainColors& colors) const {
   std::string bytes;
   for (const int32_t id : ids_)
-    for (const uint8_t channel : colors_.colorOf(id)) bytes += char(channel);
+    for (const uint8_t channel : colors.colorOf(id)) bytes += char(channel);
   return dataElement("colors" + suffix_, packed(bytes));
 }
 

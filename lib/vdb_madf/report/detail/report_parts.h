@@ -24,16 +24,13 @@ class ReportParts {
   ReportParts(const AnyLabels& labels, const ReportOptions& options, std::string suffix,
               Interrupter* interrupter);
 
-  /// Instead of those of the labels alone.
-  void setColors(const GrainColors& colors) { colors_ = colors; }
-
   const Measurements& measured() const { return measured_; }
   std::string title() const;
   std::string unit() const;
   Report report() const;
 
   std::string tables() const;
-  std::string colors() const;
+  std::string colors(const GrainColors& colors) const;
   std::string sweep() const;
   std::string slices();
   std::string mesh();
@@ -59,7 +56,6 @@ class ReportParts {
   const ViewOptions view_;
   Measurements measured_;
   CoordBBox box_, sliceBox_;
-  GrainColors colors_;
   std::vector<int32_t> ids_;
   std::optional<GrainLevels> levels_;
   std::optional<Measurements> leafMeasures_;

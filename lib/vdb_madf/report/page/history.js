@@ -7,12 +7,8 @@ import { element, json } from './decode.js';
 import { Plot } from './plot.js';
 import { lineColors, make, Sample } from './sample.js';
 
-const ofSample = [
-  ['Grains', (sample) => sample.count],
-  ['Bonds a grain', (sample) => sample.numbers.mean_coordination],
-  ['Median diameter, by volume', (sample) => all(sample).diameterByVolume, 1],
-  ['Specific surface', (sample) => all(sample).surface, -1],
-];
+const ofSample = [['grains', 'Grains'], ['coordination', 'Bonds a grain'],
+  ['diameterByVolume', 'Median diameter, by volume', 1], ['surface', 'Specific surface', -1]];
 const ofGrain = [['volume', 'Volume'], ['free_area', 'Free area'], ['shared_area', 'Area of its bonds'],
   ['coordination', 'Its bonds']];
 
@@ -62,6 +58,7 @@ export async function startHistory(scan, shown, selection) {
   const samples = [];
   for (let i = 0; i < scan.count; ++i)
     samples.push(i === scan.at ? shown : await Sample.load(`-${i}`, shown.shownUnit));
+  const summaries = samples.map(all);
   const panels = make('div', { className: 'panels', id: 'history' });
   const title = make('h2');
   element('charts').prepend(title, panels);
@@ -83,7 +80,8 @@ export async function startHistory(scan, shown, selection) {
     panels.replaceChildren(...(ids.length === 1
       ? ofGrain.map(([name, called]) => curve(called, shown.unit(shown.columnOf('grains', name).power),
         samples.map((sample) => (sample.rowOf.has(id) ? sample.grains.column(name)[sample.rowOf.get(id)] : NaN))))
-      : ofSample.map(([called, valueOf, power]) => curve(called, power ? shown.unit(power) : '', samples.map(valueOf)))));
+      : ofSample.map(([name, called, power]) => curve(called, power ? shown.unit(power) : '',
+        summaries.map((summary) => summary[name])))));
   };
   selection.listen((what) => { if (what === 'selection') draw(); });
   draw();

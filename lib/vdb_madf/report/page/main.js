@@ -51,11 +51,11 @@ async function startSample() {
   startSlices(sample, selection);
   startCharts(sample, selection);
   await startSweep(sample);
-  await startHistory(scan, sample, selection);
   startTables(sample, selection);
   startEdits(sample, selection);
   const scene = await startView(sample, selection, camera);
   selection.changed('filter', 'selection', 'looks', 'cuts');
+  await startHistory(scan, sample, selection);
   followState(selection, camera);
   document.addEventListener('keydown', (event) => {
     if (event.key === 'Escape' && selection.selected.size + selection.absent.length > 0) selection.select([]);
