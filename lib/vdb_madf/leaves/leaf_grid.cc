@@ -4,6 +4,7 @@
 #include "vdb_madf/leaves/leaf_grid.h"
 
 #include "vdb_madf/base/detail/bits.h"
+#include "vdb_madf/base/detail/pages.h"
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 
@@ -11,7 +12,7 @@ namespace vdb_madf {
 
 namespace {
 
-/// Leaves per task: some hundred microseconds, and values enough for discarding whole pages.
+/// Leaves per task: some hundred microseconds.
 constexpr size_t kGridGrain = 512;
 
 /// done(begin, end) tells the ranks that are not asked for again.
@@ -61,9 +62,11 @@ Int32Grid::Ptr toGrid(const LeafIndex& index, const VoxelArray<uint32_t>& values
 
 Int32Grid::Ptr toGrid(const LeafIndex& index, VoxelArray<uint32_t>&& values,
                       const std::string& name, Interrupter* interrupter) {
+  constexpr size_t kBytes = sizeof(uint32_t);
+  detail::PageReturn memory(values.data(), values.size() * kBytes);
   return makeGrid(
       index, name, interrupter, [&](size_t rank) { return int32_t(values[rank] & 0x7fffffffu); },
-      [&](size_t begin, size_t end) { values.discard(begin, end); });
+      [&](size_t begin, size_t end) { memory.giveBack(begin * kBytes, end * kBytes); });
 }
 
 void removeVoxels(Int32Grid& grid, const LeafIndex& index, const std::vector<VoxelId>& voxels) {

@@ -31,10 +31,6 @@ class VoxelArray {
     values_.reset();
     size_ = 0;
   }
-  /// The values of ranks [begin, end) are no longer needed: their memory may go back to the system.
-  void discard(size_t begin, size_t end) {
-    detail::discardPages(values_.get(), begin * sizeof(T), end * sizeof(T));
-  }
 
  private:
   struct Free {

@@ -6,7 +6,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <cstdint>
+#include <algorithm>
 #include <cstdlib>
 #include <new>
 
@@ -33,13 +33,33 @@ void freePages(void* block) noexcept {
   std::free(block);
 }
 
-void discardPages(void* block, size_t begin, size_t end) noexcept {
+PageReturn::PageReturn(void* block, size_t bytes)
+    : begin_(uintptr_t(block)),
+      end_(begin_ + bytes),
+      left_((end_ + kHugePage - 1) / kHugePage - begin_ / kHugePage) {
+  for (size_t i = 0; i < left_.size(); ++i) left_[i] = bytesIn(i, begin_, end_);
+}
+
+size_t PageReturn::bytesIn(size_t page, uintptr_t from, uintptr_t to) const {
+  const uintptr_t first = (begin_ / kHugePage + page) * kHugePage;
+  return std::min(to, first + kHugePage) - std::max(from, first);
+}
+
+void PageReturn::giveBack(size_t begin, size_t end) noexcept {
 #ifdef MADV_DONTNEED
-  static const uintptr_t page = uintptr_t(sysconf(_SC_PAGESIZE));
-  const uintptr_t from = (uintptr_t(block) + begin + page - 1) & ~(page - 1);
-  const uintptr_t to = (uintptr_t(block) + end) & ~(page - 1);
-  if (from < to)
-    madvise(static_cast<char*>(block) + (from - uintptr_t(block)), to - from, MADV_DONTNEED);
+  static const uintptr_t small = uintptr_t(sysconf(_SC_PAGESIZE));
+  const uintptr_t from = begin_ + begin, to = begin_ + end;
+  for (size_t i = from / kHugePage - begin_ / kHugePage; from < to && i < left_.size(); ++i) {
+    const uintptr_t first = (begin_ / kHugePage + i) * kHugePage;
+    if (first >= to) return;
+    const size_t given = bytesIn(i, from, to);
+    if (left_[i].fetch_sub(given) != given) continue;
+    // Other blocks may lie beside this one.
+    const uintptr_t whole = (std::max(begin_, first) + small - 1) & ~(small - 1);
+    const uintptr_t stop = std::min(end_, first + kHugePage) & ~(small - 1);
+    if (whole < stop)
+      madvise(reinterpret_cast<void*>(whole), stop - whole, MADV_DONTNEED);  // NOLINT
+  }
 #endif
 }
 
