@@ -113,3 +113,30 @@ TEST_CASE("distance_rows: background hundreds of voxels away", "[distance_rows]"
     REQUIRE(wrong == 0);
   }
 }
+
+TEST_CASE("distance_rows: thick rows, with background beyond their ends or nowhere",
+          "[distance_rows]") {
+  std::mt19937 random(4);
+  for (int i = 0; i < 24; ++i) {
+    const int length = 8 * (1 + int(random() % 20)), weight = kWeights[i % 3];
+    const auto far = unsigned(weight * length * length / 2);
+    std::vector<uint32_t> in(size_t(length + 2) * 64), out(size_t(length) * 64);
+    for (uint32_t& value : in) value = far / 2 + random() % far;
+    const std::vector<uint32_t> ends = {0, kInfinite, far / 3};
+    for (int row = 0; row < 64; ++row) {
+      in[rowIndex(0, row)] = ends[random() % 3];
+      in[rowIndex(length + 1, row)] = ends[random() % 3];
+    }
+    widenWindows(in.data() + 64, length, 0, length, weight, length + 1, out.data());
+    int wrong = 0;
+    for (int t = 0; t < length; ++t)
+      for (int row = 0; row < 64; ++row) {
+        uint32_t expected = kInfinite;
+        for (int s = -1; s <= length; ++s)
+          expected =
+              std::min(expected, in[rowIndex(s + 1, row)] + uint32_t(weight * (s - t) * (s - t)));
+        wrong += out[rowIndex(t, row)] != expected;
+      }
+    REQUIRE(wrong == 0);
+  }
+}

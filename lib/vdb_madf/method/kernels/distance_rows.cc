@@ -60,27 +60,56 @@ VDB_MADF_KERNEL void scan(const uint64_t* masks, int length, const RowDomain& do
   }
 }
 
+/// The least value of 16 rows, from row `first` on, without the padding.
+template <int Bytes>
+VDB_MADF_KERNEL uint32_t leastOfRows(const uint32_t* in, int length, int first) {
+  Lanes<Bytes, uint32_t> least, value;
+  least.load(in + first);
+  for (int t = 1; t < length; ++t) {
+    value.load(in + t * 64 + first);
+    for (int i = 0; i < least.kCount; ++i)
+      least.v[i] = value.v[i] < least.v[i] ? value.v[i] : least.v[i];
+  }
+  for (auto& v : least.v) v = ~v;
+  return ~least.largest();
+}
+
 // The window around t grows by one position at either end, k = 1, 2, ...: after step k
 //   best = min over |s - t| <= k of in(s) + w (s - t)^2,  w = weight.
-// What is further away than k - 1 adds at least w k^2 to in >= 0, so nothing can gain once
-//   w k^2 >= best
-// in all lanes, nor anything of w reach^2 or less after k = reach. Beyond an end of the row the
-// padding there is looked at again, from further away than before, which changes nothing: so the
-// nearer end needs no loop of its own.
+// What is further away than k - 1 adds at least w k^2 to in >= least, so nothing can gain once
+//   w k^2 + least >= best
+// in all lanes, nor anything of w reach^2 or less after k = reach. Where `least`, of the positions
+// without the padding, is above 0, as it is in rows with no background in them, the padding is
+// looked at before. Beyond an end of the row the padding there is looked at again, from further
+// away than before, which changes nothing: so the nearer end needs no loop of its own.
 //
 // False if a window would be wider than kWidest: then `out` is not complete.
 template <int Bytes, typename Weight>
 VDB_MADF_KERNEL bool widen(const uint32_t* in, int length, int begin, int end, Weight weight,
                            int reach, uint32_t* out) {
   constexpr int kTogether = 2;  // steps until the largest is looked for again
+  uint32_t leastOf[64 / kLanes];
+  for (int lane = 0; lane < 64; lane += kLanes)
+    leastOf[lane / kLanes] = leastOfRows<Bytes>(in, length, lane);
   for (int t = begin; t < end; ++t) {
     const int toBegin = t + 1, toEnd = length - t;  // distances of the padding
     const int last = std::min(reach, std::max(toBegin, toEnd));
     for (int lane = 0; lane < 64; lane += kLanes) {
-      const uint32_t* center = in + t * 64 + lane;
+      const uint32_t* const center = in + t * 64 + lane;
+      const uint32_t least = leastOf[lane / kLanes];
       Lanes<Bytes, uint32_t> best, below, above;
       best.load(center);
-      for (int k = 1; k <= last && squaredAlong(uint32_t(k), weight) < best.largest();) {
+      if (least > 0) {
+        below.load(in - 64 + lane);
+        above.load(in + length * 64 + lane);
+        for (int i = 0; i < best.kCount; ++i) {
+          const auto before = below.v[i] + squaredAlong(uint32_t(toBegin), weight);
+          const auto after = above.v[i] + squaredAlong(uint32_t(toEnd), weight);
+          const auto nearer = before < after ? before : after;
+          best.v[i] = nearer < best.v[i] ? nearer : best.v[i];
+        }
+      }
+      for (int k = 1; k <= last && squaredAlong(uint32_t(k), weight) + least < best.largest();) {
         if (k > kWidest) return false;
         for (const int stop = std::min(k + kTogether, last + 1); k < stop; ++k) {
           const uint32_t k2 = squaredAlong(uint32_t(k), weight);
