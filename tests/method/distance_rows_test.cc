@@ -20,6 +20,22 @@ size_t rowIndex(int t, int row) {
   return size_t(t) * 64 + size_t(row);
 }
 
+/// What the passes but the first one are to find. Slab 0 of `in` is position -1.
+uint32_t leastByDefinition(const std::vector<uint32_t>& in, int length, int weight, int row,
+                           int t) {
+  uint32_t least = kInfinite;
+  for (int s = -1; s <= length; ++s)
+    least = std::min(least, in[rowIndex(s + 1, row)] + uint32_t(weight * (s - t) * (s - t)));
+  return least;
+}
+
+/// Runs the kernel with what it wants to know of the rows.
+void widenRows(const std::vector<uint32_t>& in, int length, int begin, int end, int weight,
+               int reach, std::vector<uint32_t>& out) {
+  const uint32_t* const first = in.data() + 64;
+  widenWindows(first, leastOfRows(first, length), length, begin, end, weight, reach, out.data());
+}
+
 }  // namespace
 
 TEST_CASE("distance_rows: the first pass by its definition", "[distance_rows]") {
@@ -66,20 +82,17 @@ TEST_CASE("distance_rows: the other passes by their definition", "[distance_rows
   for (const int length : {8, 16, 104}) {
     for (int i = 0; i < 80; ++i) {
       const int weight = kWeights[i % 4];
-      // Slab 0 is position -1. Few small values, so that windows grow wide; some rows have none.
+      // Few small values, so that windows grow wide; some rows have none.
       std::vector<uint32_t> in((size_t(length) + 2) * 64, kInfinite), out(size_t(length) * 64);
       for (uint32_t& value : in)
         if (random() % unsigned(2 + 5 * i) == 0) value = random() % unsigned(500 * weight);
       const int reach = i % 3 ? int(random() % 30) : length + 1;
       const auto known = uint32_t(weight * reach * reach);
-      widenWindows(in.data() + 64, length, 0, length, weight, reach, out.data());
+      widenRows(in, length, 0, length, weight, reach, out);
       int wrong = 0;
       for (int t = 0; t < length; ++t) {
         for (int row = 0; row < 64; ++row) {
-          uint32_t expected = kInfinite;
-          for (int s = -1; s <= length; ++s)
-            expected =
-                std::min(expected, in[rowIndex(s + 1, row)] + uint32_t(weight * (s - t) * (s - t)));
+          const uint32_t expected = leastByDefinition(in, length, weight, row, t);
           if (expected <= known)
             wrong += out[rowIndex(t, row)] != expected;
           else
@@ -100,14 +113,11 @@ TEST_CASE("distance_rows: background hundreds of voxels away", "[distance_rows]"
       if (random() % 400 == 0) value = random() % unsigned(90000 * weight);
     for (int t = -1; t <= kLength; ++t) in[rowIndex(t + 1, 5)] = kInfinite;
     const int begin = 16, end = kLength - 8;
-    widenWindows(in.data() + 64, kLength, begin, end, weight, kLength, out.data());
+    widenRows(in, kLength, begin, end, weight, kLength, out);
     int wrong = 0;
     for (int t = 0; t < kLength; ++t)
       for (int row = 0; row < 64; ++row) {
-        uint32_t expected = kInfinite;
-        for (int s = -1; s <= kLength; ++s)
-          expected =
-              std::min(expected, in[rowIndex(s + 1, row)] + uint32_t(weight * (s - t) * (s - t)));
+        const uint32_t expected = leastByDefinition(in, kLength, weight, row, t);
         wrong += out[rowIndex(t, row)] != (t < begin || t >= end ? 7 : expected);
       }
     REQUIRE(wrong == 0);
@@ -127,14 +137,11 @@ TEST_CASE("distance_rows: thick rows, with background beyond their ends or nowhe
       in[rowIndex(0, row)] = ends[random() % 3];
       in[rowIndex(length + 1, row)] = ends[random() % 3];
     }
-    widenWindows(in.data() + 64, length, 0, length, weight, length + 1, out.data());
+    widenRows(in, length, 0, length, weight, length + 1, out);
     int wrong = 0;
     for (int t = 0; t < length; ++t)
       for (int row = 0; row < 64; ++row) {
-        uint32_t expected = kInfinite;
-        for (int s = -1; s <= length; ++s)
-          expected =
-              std::min(expected, in[rowIndex(s + 1, row)] + uint32_t(weight * (s - t) * (s - t)));
+        const uint32_t expected = leastByDefinition(in, length, weight, row, t);
         wrong += out[rowIndex(t, row)] != expected;
       }
     REQUIRE(wrong == 0);

@@ -104,13 +104,14 @@ void widen(const Leaves& leaves, const detail::RowDomain& d, int32_t weight, int
   std::fill_n(s.in.data() + 64, size_t(d.begin) * 64, detail::kInfinite);
   std::fill(s.in.data() + (d.end + 1) * 64, s.in.data() + (length + 1) * 64, detail::kInfinite);
   std::copy(d.after.begin(), d.after.end(), s.in.data() + (length + 1) * 64);
+  const detail::LeastOfRows least = detail::leastOfRows(s.in.data() + 64, length);
   for (size_t i = 0, next; i < s.leaves.size(); i = next) {
     const bool carries = leaves.carries(Axis, s.leaves[i]);
     for (next = i + 1; next < s.leaves.size(); ++next)
       if (leaves.carries(Axis, s.leaves[next]) != carries) break;
     if (carries)
-      detail::widenWindows(s.in.data() + 64, length, int(i) * 8, int(next) * 8, weight, reach,
-                           s.out.data() + 64);
+      detail::widenWindows(s.in.data() + 64, least, length, int(i) * 8, int(next) * 8, weight,
+                           reach, s.out.data() + 64);
   }
 }
 

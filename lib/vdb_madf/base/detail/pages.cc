@@ -37,28 +37,26 @@ PageReturn::PageReturn(void* block, size_t bytes)
     : begin_(uintptr_t(block)),
       end_(begin_ + bytes),
       left_((end_ + kHugePage - 1) / kHugePage - begin_ / kHugePage) {
-  for (size_t i = 0; i < left_.size(); ++i) left_[i] = bytesIn(i, begin_, end_);
+  for (size_t i = 0; i < left_.size(); ++i)
+    left_[i] = bytesIn(begin_ / kHugePage + i, begin_, end_);
 }
 
-size_t PageReturn::bytesIn(size_t page, uintptr_t from, uintptr_t to) const {
-  const uintptr_t first = (begin_ / kHugePage + page) * kHugePage;
-  return std::min(to, first + kHugePage) - std::max(from, first);
+size_t PageReturn::bytesIn(uintptr_t page, uintptr_t from, uintptr_t to) {
+  return std::min(to, (page + 1) * kHugePage) - std::max(from, page * kHugePage);
 }
 
 void PageReturn::giveBack(size_t begin, size_t end) noexcept {
 #ifdef MADV_DONTNEED
   static const uintptr_t small = uintptr_t(sysconf(_SC_PAGESIZE));
   const uintptr_t from = begin_ + begin, to = begin_ + end;
-  for (size_t i = from / kHugePage - begin_ / kHugePage; from < to && i < left_.size(); ++i) {
-    const uintptr_t first = (begin_ / kHugePage + i) * kHugePage;
-    if (first >= to) return;
-    const size_t given = bytesIn(i, from, to);
-    if (left_[i].fetch_sub(given) != given) continue;
+  for (uintptr_t page = from / kHugePage; page * kHugePage < to; ++page) {
+    const size_t given = bytesIn(page, from, to);
+    if (left_[page - begin_ / kHugePage].fetch_sub(given) != given) continue;
     // Other blocks may lie beside this one.
-    const uintptr_t whole = (std::max(begin_, first) + small - 1) & ~(small - 1);
-    const uintptr_t stop = std::min(end_, first + kHugePage) & ~(small - 1);
-    if (whole < stop)
-      madvise(reinterpret_cast<void*>(whole), stop - whole, MADV_DONTNEED);  // NOLINT
+    const uintptr_t first = (std::max(begin_, page * kHugePage) + small - 1) & ~(small - 1);
+    const uintptr_t stop = std::min(end_, (page + 1) * kHugePage) & ~(small - 1);
+    if (first < stop)
+      madvise(reinterpret_cast<void*>(first), stop - first, MADV_DONTNEED);  // NOLINT
   }
 #endif
 }

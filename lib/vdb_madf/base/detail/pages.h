@@ -53,8 +53,8 @@ class PageReturn {
   void giveBack(size_t begin, size_t end) noexcept;
 
  private:
-  /// The number of bytes [from, to) that lie in a huge page; some do.
-  size_t bytesIn(size_t page, uintptr_t from, uintptr_t to) const;
+  /// The number of bytes [from, to) in the huge page of that number, which they meet.
+  static size_t bytesIn(uintptr_t page, uintptr_t from, uintptr_t to);
 
   uintptr_t begin_, end_;
   std::vector<std::atomic<size_t>> left_;  // of each huge page, the bytes that are in use

@@ -60,9 +60,9 @@ VDB_MADF_KERNEL void scan(const uint64_t* masks, int length, const RowDomain& do
   }
 }
 
-/// The least value of 16 rows, from row `first` on, without the padding.
+/// The least value of 16 rows, from row `first` on.
 template <int Bytes>
-VDB_MADF_KERNEL uint32_t leastOfRows(const uint32_t* in, int length, int first) {
+VDB_MADF_KERNEL uint32_t leastOf16(const uint32_t* in, int length, int first) {
   Lanes<Bytes, uint32_t> least, value;
   least.load(in + first);
   for (int t = 1; t < length; ++t) {
@@ -85,18 +85,15 @@ VDB_MADF_KERNEL uint32_t leastOfRows(const uint32_t* in, int length, int first) 
 //
 // False if a window would be wider than kWidest: then `out` is not complete.
 template <int Bytes, typename Weight>
-VDB_MADF_KERNEL bool widen(const uint32_t* in, int length, int begin, int end, Weight weight,
-                           int reach, uint32_t* out) {
+VDB_MADF_KERNEL bool widen(const uint32_t* in, const uint32_t* leastOfRows, int length, int begin,
+                           int end, Weight weight, int reach, uint32_t* out) {
   constexpr int kTogether = 2;  // steps until the largest is looked for again
-  uint32_t leastOf[64 / kLanes];
-  for (int lane = 0; lane < 64; lane += kLanes)
-    leastOf[lane / kLanes] = leastOfRows<Bytes>(in, length, lane);
   for (int t = begin; t < end; ++t) {
     const int toBegin = t + 1, toEnd = length - t;  // distances of the padding
     const int last = std::min(reach, std::max(toBegin, toEnd));
     for (int lane = 0; lane < 64; lane += kLanes) {
       const uint32_t* const center = in + t * 64 + lane;
-      const uint32_t least = leastOf[lane / kLanes];
+      const uint32_t least = leastOfRows[lane / kLanes];
       Lanes<Bytes, uint32_t> best, below, above;
       best.load(center);
       if (least > 0) {
@@ -179,11 +176,22 @@ void scanRows(const uint64_t* masks, int length, const RowDomain& domain, int32_
   });
 }
 
-void widenWindows(const uint32_t* in, int length, int begin, int end, int32_t weight, int reach,
-                  uint32_t* out) {
+LeastOfRows leastOfRows(const uint32_t* in, int length) {
+  LeastOfRows least;
+  static_assert(least.size() * kLanes == 64);
+  atBestLevel([&](auto bytes) VDB_MADF_INLINE {
+    for (size_t i = 0; i < least.size(); ++i)
+      least[i] = leastOf16<bytes>(in, length, int(i) * kLanes);
+  });
+  return least;
+}
+
+void widenWindows(const uint32_t* in, const LeastOfRows& least, int length, int begin, int end,
+                  int32_t weight, int reach, uint32_t* out) {
   const bool isDone = atBestLevel([&](auto bytes) VDB_MADF_INLINE {
-    return weight == 1 ? widen<bytes>(in, length, begin, end, UnitWeight(), reach, out)
-                       : widen<bytes>(in, length, begin, end, weight, reach, out);
+    const uint32_t* const of = least.data();
+    return weight == 1 ? widen<bytes>(in, of, length, begin, end, UnitWeight(), reach, out)
+                       : widen<bytes>(in, of, length, begin, end, weight, reach, out);
   });
   std::vector<RowPart> lowest;
   for (int row = 0; row < 64 && !isDone; ++row)

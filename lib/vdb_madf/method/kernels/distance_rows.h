@@ -33,11 +33,15 @@ struct RowDomain {
 void scanRows(const uint64_t* masks, int length, const RowDomain& domain, int32_t weight,
               uint32_t* out);
 
+/// The least value of each group of 16 rows, at the positions [0, length).
+using LeastOfRows = std::array<uint32_t, 4>;
+LeastOfRows leastOfRows(const uint32_t* in, int length);
+
 /// Other passes, at the positions t in [begin, end): out(t) = min over s of in(s) + weight (s -
 /// t)^2, at most kInfinite; where that is more than weight * reach^2, anything more. `in` and `out`
 /// point to the slab of position 0; `in` has `length` slabs and one more at either end, the
-/// positions -1 and `length`.
-void widenWindows(const uint32_t* in, int length, int begin, int end, int32_t weight, int reach,
-                  uint32_t* out);
+/// positions -1 and `length`. `least` is leastOfRows(in, length).
+void widenWindows(const uint32_t* in, const LeastOfRows& least, int length, int begin, int end,
+                  int32_t weight, int reach, uint32_t* out);
 
 }  // namespace vdb_madf::detail
