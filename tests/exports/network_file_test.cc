@@ -24,7 +24,7 @@ using openvdb::Vec3d;
 namespace {
 
 /// Cells of a line of a .csv beside the columns: place, label twice, ends, eight other names.
-constexpr size_t kCsvExtra = 3 + 2 + 2 + 8 - 1;  // one comma less
+constexpr size_t kCsvExtra = 3 + 2 + 2 + 9 - 1;  // one comma less
 
 const std::vector<double>& column(const std::vector<GrainNetwork::Column>& columns,
                                   const std::string& name) {
@@ -112,7 +112,10 @@ TEST_CASE("grain_network: the columns are those of the tables, in their order", 
         CHECK(names == wanted);
       };
   requireNames(network.grainColumns, grainColumns({}), {"id"}, {});
-  requireNames(network.bondColumns, bondColumns({}), {"first", "second"}, {"face_area", "length"});
+  ExtraMeasures extra;
+  extra.bondRadii = true;
+  requireNames(network.bondColumns, bondColumns({}, extra), {"first", "second"},
+               {"face_area", "length"});
 }
 
 TEST_CASE("grain_network: every measure is there, in world units", "[grain_network]") {
@@ -189,6 +192,8 @@ TEST_CASE("grain_network: every measure is there, in world units", "[grain_netwo
   CHECK(value("radius") == Approx(std::sqrt(bond.area / M_PI)));
   CHECK(value("distance") == *bond.distance);
   CHECK(value("cos_alpha") == *bond.cosAlpha);
+  CHECK(value("inscribed_radius") > 1);
+  CHECK(value("inscribed_radius") < 6);
   CHECK(value("patches") == 1);
   REQUIRE(bond.curvature);
   CHECK(value("mean_curvature") == bond.curvature->mean);
@@ -204,7 +209,8 @@ TEST_CASE("grain_network: what is not known is left out", "[grain_network]") {
   for (const char* name :
        {"representative_x", "representative_z", "inscribed_radius", "sphericity"})
     CHECK(std::isnan(column(network.grainColumns, name)[1]));
-  for (const char* name : {"distance", "cos_alpha", "mean_curvature", "curvature_residual"})
+  for (const char* name :
+       {"distance", "cos_alpha", "inscribed_radius", "mean_curvature", "curvature_residual"})
     CHECK(std::isnan(column(network.bondColumns, name)[0]));
   const ScratchFolder folder;
   for (const std::string end : {"vtp", "graphml", "csv"})
@@ -212,7 +218,7 @@ TEST_CASE("grain_network: what is not known is left out", "[grain_network]") {
   const std::string graphml = readFile(folder / "n.graphml"), csv = readFile(folder / "n.csv");
   // Beside the columns a grain has its id and place; it lacks five of them.
   const size_t grainData = 4 + network.grainColumns.size() - 5,
-               bondData = network.bondColumns.size() - 7;
+               bondData = network.bondColumns.size() - 8;
   CHECK(count(graphml, "</data>") == 2 * grainData + bondData);
   CHECK(count(csv, ",") ==
         3 * (kCsvExtra + network.grainColumns.size() + network.bondColumns.size()));

@@ -14,7 +14,9 @@ using namespace vdb_madf::test;
 namespace {
 
 BondMeasures onlyBond(const Int32Grid& labels) {
-  const std::vector<BondMeasures> bonds = measure(labels).bonds;
+  MeasureOptions options;
+  options.bondRadii = true;
+  const std::vector<BondMeasures> bonds = measure(labels, options).bonds;
   REQUIRE(bonds.size() == 1);
   return bonds[0];
 }
@@ -40,6 +42,7 @@ TEST_CASE("measure_bonds: the disc between two balls", "[measure_bonds]") {
     CHECK(bond.normal.length() == Approx(1));
     CHECK(bond.normal.dot(balls.normal) > 0.995);
     CHECK(bond.patches == 1);
+    CHECK(bond.inscribedRadius.value() == Approx(balls.radius).margin(1));
     // A plane but for the voxels' steps, of at most half a voxel and a mean square of a twelfth.
     CHECK(bond.flatness < 0.3);
     REQUIRE(bond.curvature.has_value());

@@ -154,7 +154,7 @@ Int32Grid::Ptr cut(const Int32Grid& labels, const Domain& domain) {
 
 TEST_CASE("measure_region: by the definitions on random labels in random regions",
           "[measure_region]") {
-  int regions = 0, cutGrains = 0, freeGrains = 0, innerGrains = 0;
+  int regions = 0, cutGrains = 0, freeGrains = 0, innerGrains = 0, bonds = 0;
   for (uint64_t seed = 1; seed <= 240; ++seed) {
     Rng rng(seed);
     RandomCase c =
@@ -169,7 +169,9 @@ TEST_CASE("measure_region: by the definitions on random labels in random regions
     const Int32Grid::Ptr grid = toGrid(c.object, labels);
     setDomain(*grid, *domainOf(c));
     setBoundary(*grid, open ? Boundary::open : Boundary::closed);
-    const Measurements m = withThreads(c.threads, [&] { return measure(*grid); });
+    MeasureOptions options;
+    options.bondRadii = true;
+    const Measurements m = withThreads(c.threads, [&] { return measure(*grid, options); });
 
     const std::map<int32_t, NaiveGrain> expected = naiveGrains(labels, domain, open);
     REQUIRE(m.grains.size() == expected.size());
@@ -192,6 +194,20 @@ TEST_CASE("measure_region: by the definitions on random labels in random regions
         REQUIRE(grain.inscribedRadius == std::sqrt(double(deepest)));
         REQUIRE(distance[*grain.representative] == deepest);
       }
+      for (const BondMeasures& bond : m.bonds) {
+        int64_t deepest = 0;
+        for (auto p = labels.box().begin(); p; ++p)
+          for (int axis = 0; axis < 3; ++axis) {
+            Coord upper = *p;
+            ++upper[axis];
+            if (!labels.box().isInside(upper)) continue;
+            const auto [low, high] = std::minmax({labels[*p], labels[upper]});
+            if (low != bond.first || high != bond.second) continue;
+            deepest = std::max(deepest, std::min(distance[*p], distance[upper]));
+          }
+        REQUIRE(bond.inscribedRadius.value() == std::sqrt(double(deepest)));
+        ++bonds;
+      }
     }
     REQUIRE(m.sample.regionVoxels.value_or(countObject(*c.region)) == countObject(*c.region));
     REQUIRE(m.sample.box == objectBox(*c.region));
@@ -201,6 +217,7 @@ TEST_CASE("measure_region: by the definitions on random labels in random regions
   }
   CHECK(regions > 100);
   CHECK(cutGrains > 100);
+  CHECK(bonds > 100);
   CHECK(freeGrains > 100);
   CHECK(innerGrains > 20);
 }

@@ -102,6 +102,7 @@ TEST_CASE("measure_slabs: random labels are measured as in one piece", "[measure
     options.boundary = i % 6 == 5 ? Boundary::closed : Boundary::automatic;
     options.edgeWeights = i % 3 > 0 && options.boundary != Boundary::closed;
     options.cells = i % 2 == 1;
+    options.bondRadii = i % 4 > 1;
     options.minFaces = i % 5;
     options.bootstrap = i % 8 == 0 ? 100 : 0;
     CAPTURE(i);

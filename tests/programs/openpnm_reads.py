@@ -25,6 +25,7 @@ OTHER_NAMES = {"pore.region_label": ("pore.grain_id", 1), "pore.region_volume": 
                "pore.inscribed_diameter": ("pore.inscribed_radius", 2),
                "pore.surface_area": ("pore.area", 1), "throat.diameter": ("throat.radius", 2),
                "throat.equivalent_diameter": ("throat.radius", 2),
+               "throat.inscribed_diameter": ("throat.inscribed_radius", 2),
                "throat.cross_sectional_area": ("throat.area", 1),
                "throat.direct_length": ("throat.length", 1)}
 

@@ -112,6 +112,7 @@ constexpr OtherName kPoreNames[] = {{"diameter", "equivalent_diameter", 1},
                                     {"region_volume", "volume", 1}};
 constexpr OtherName kThroatNames[] = {{"diameter", "radius", 2},
                                       {"equivalent_diameter", "radius", 2},
+                                      {"inscribed_diameter", "inscribed_radius", 2},
                                       {"cross_sectional_area", "area", 1},
                                       {"direct_length", "length", 1}};
 

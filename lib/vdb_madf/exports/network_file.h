@@ -17,8 +17,8 @@ namespace vdb_madf {
 ///   `throat.conns[0..1]`, `throat.<column>`, and once more by its and PoreSpy's names:
 ///   `pore.region_label`, `pore.diameter` (of equal volume), `pore.inscribed_diameter`,
 ///   `pore.surface_area`, `pore.region_volume`, `throat.diameter`, `throat.equivalent_diameter` (of
-///   equal area), `throat.cross_sectional_area`, `throat.direct_length`; the shorter of the two
-///   lists is filled up with empty cells
+///   equal area), `throat.inscribed_diameter`, `throat.cross_sectional_area`,
+///   `throat.direct_length`; the shorter of the two lists is filled up with empty cells
 /// A NaN is NaN in .vtp, no entry in .graphml, an empty cell in .csv.
 /// @throw InvalidInput for another ending; IoError; Interrupted.
 void writeNetwork(const std::string& path, const GrainNetwork& network,

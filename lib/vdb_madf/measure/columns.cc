@@ -203,6 +203,8 @@ std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
   addCurvature("gaussian_curvature", -2, &InterfaceCurvature::gaussian);
   addCurvature("gaussian_curvature_sd", -2, &InterfaceCurvature::gaussianDeviation);
   addCurvature("curvature_residual", 1, &InterfaceCurvature::residual);
+  if (extra.bondRadii)
+    make.add("inscribed_radius", 1, [](const B& b) { return b.inscribedRadius.value_or(kNone); });
   if (extra.gray) addGray(make);
   if (extra.necks) addNecks(make);
   if (extra.stability)

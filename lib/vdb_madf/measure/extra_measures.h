@@ -17,6 +17,7 @@ struct ExtraMeasures {
   bool necks = false;        ///< BondMeasures::neck, Measurements::scan
   bool cells = false;        ///< GrainMeasures::cell
   bool sizes = false;        ///< GrainShape::projectedDiameter as a column
+  bool bondRadii = false;    ///< BondMeasures::inscribedRadius
   /// GrainMeasures::recurrence, BondMeasures::recurrence, Measurements::sensitivity.
   bool recurrence = false;
   bool crossings = false;               ///< BondMeasures::crossing, Measurements::crossings

@@ -43,8 +43,9 @@ uint32_t position(const std::vector<int32_t>& labels, int32_t label) {
 /// @param labels a grid or slabs
 /// @param about has their transform
 template <typename Labels>
-GrainNetwork networkOf(const Labels& labels, const Int32Grid& about, const MeasureOptions& options,
+GrainNetwork networkOf(const Labels& labels, const Int32Grid& about, MeasureOptions options,
                        Interrupter* interrupter) {
+  options.bondRadii = true;
   const WorldTransform world = detail::worldTransform(about.transform());
   const double shortest = std::min({world.edges[0], world.edges[1], world.edges[2]});
   const Measurements measured = measure(labels, options, interrupter);

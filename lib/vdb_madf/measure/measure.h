@@ -43,6 +43,7 @@ struct MeasureOptions {
   bool edgeWeights = false;
   bool cells = false;      ///< also GrainMeasures::cell, which takes the time of the domain's box
   bool crossings = false;  ///< also BondMeasures::crossing; asks what edgeWeights ask
+  bool bondRadii = false;  ///< also BondMeasures::inscribedRadius
   bool sizes = false;      ///< all kinds of size_curve.h, and shape
   std::optional<SizeReference> sizeReference{};  ///< with it sizeDeviations, and sizes
   /// Replicates of a bootstrap of the means (bootstrap.h); 0: none.

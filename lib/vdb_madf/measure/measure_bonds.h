@@ -35,6 +35,10 @@ struct BondMeasures {
   /// Distance of the representatives c of the grains, with squared inscribed radii D, and
   /// cos alpha = (|c1 - c2|^2 - D1 - D2) / (2 sqrt(D1 D2)). None without background.
   std::optional<double> distance, cosAlpha;
+  /// The largest ball within both grains' object that is centered beside the interface: of its
+  /// voxel faces the largest of the smaller distances of the two voxels to the background. None
+  /// unless it was asked for, and without background.
+  std::optional<double> inscribedRadius;
   /// Gray values at the voxels on both sides, those of either grain with a face towards the other,
   /// each once. None unless it was asked for.
   std::optional<GrayValues> gray;

@@ -77,12 +77,15 @@ GrainRepresentatives deepest(const LabelLeaves& labels, const LeafLayers& layers
 }  // namespace
 
 GrainRepresentatives grainRepresentatives(const LabelLeaves& labels, const Obstacles& obstacles,
-                                          const VoxelWeights& weights, Interrupter* interrupter) {
+                                          const VoxelWeights& weights, BondDepths* bonds,
+                                          Interrupter* interrupter) {
   const LeafIndex& index = labels.index();
   if (index.leafCount() == 0) return {};
   if (obstacles.open && index.voxelCount() == obstacles.domain.voxelCount()) return {};
-  return deepest(labels, {}, squaredDistance(index, obstacles, weights, interrupter).values,
-                 interrupter);
+  const VoxelArray<int32_t> distances =
+      squaredDistance(index, obstacles, weights, interrupter).values;
+  if (bonds) addBondDepths(labels, {}, distances, *bonds, interrupter);
+  return deepest(labels, {}, distances, interrupter);
 }
 
 void improve(const GrainRepresentatives& candidates, GrainRepresentatives& best) {
@@ -90,8 +93,8 @@ void improve(const GrainRepresentatives& candidates, GrainRepresentatives& best)
 }
 
 SlabRepresentatives::SlabRepresentatives(const CoordBBox& object, const Obstacles& obstacles,
-                                         const VoxelWeights& weights)
-    : domain_(object), weights_(weights) {
+                                         const VoxelWeights& weights, BondDepths* bonds)
+    : domain_(object), weights_(weights), bonds_(bonds) {
   // The nearest background outside of the object's box is beside it.
   domain_.expand(1);
   if (obstacles.open) domain_ = obstacles.domain.box();
@@ -135,10 +138,13 @@ bool SlabRepresentatives::add(const LabelLeaves& labels, const LeafLayers& own,
       if (!own.hold(index.origin(leaf))) continue;
       const int32_t most =
           largest(distances.data() + index.firstRank(leaf), index.leafVoxels(leaf));
-      if (most > std::min(nearestUnknown(z), nearestUnknown(z + 7))) areExact = false;
+      // Bonds look at the voxels above, too, which may lie one deeper.
+      if (most > std::min(nearestUnknown(z), nearestUnknown(z + (bonds_ ? 9 : 7))))
+        areExact = false;
     }
   });
   if (!areExact) return refuse();
+  if (bonds_) addBondDepths(labels, own, distances, *bonds_, interrupter);
   improve(deepest(labels, own, distances, interrupter), best);
   return true;
 }

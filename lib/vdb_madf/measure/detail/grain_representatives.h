@@ -6,6 +6,7 @@
 #include <map>
 
 #include "vdb_madf/labels/detail/label_leaves.h"
+#include "vdb_madf/measure/detail/bond_depths.h"
 #include "vdb_madf/method/boundary.h"
 #include "vdb_madf/method/manifold_graph.h"
 #include "vdb_madf/method/squared_distance.h"
@@ -23,8 +24,10 @@ using GrainRepresentatives = std::map<int32_t, GrainRepresentative>;  ///< by la
 
 /// Empty if there is no background. Computed from the labels alone.
 /// Memory while it runs: four bytes per voxel.
+/// @param bonds gets the depths of the bonds, unless it is null
 GrainRepresentatives grainRepresentatives(const LabelLeaves& labels, const Obstacles& obstacles,
-                                          const VoxelWeights& weights, Interrupter* interrupter);
+                                          const VoxelWeights& weights, BondDepths* bonds,
+                                          Interrupter* interrupter);
 
 /// Takes over the candidates that lie deeper; they are of other voxels of the same labels.
 void improve(const GrainRepresentatives& candidates, GrainRepresentatives& best);
@@ -34,9 +37,9 @@ void improve(const GrainRepresentatives& candidates, GrainRepresentatives& best)
 class SlabRepresentatives {
  public:
   static constexpr int kFirstReach = 40;  ///< above and below a slab, a multiple of 8
-  /// \p object bounds all labels, which are not all of an open domain.
+  /// \p object bounds all labels, which are not all of an open domain. \p bonds as above.
   SlabRepresentatives(const CoordBBox& object, const Obstacles& obstacles,
-                      const VoxelWeights& weights);
+                      const VoxelWeights& weights, BondDepths* bonds);
 
   /// The layers that have to be known to add some. More than at first may turn out to be needed.
   LeafLayers around(const LeafLayers& own) const;
@@ -49,6 +52,7 @@ class SlabRepresentatives {
  private:
   CoordBBox domain_;  // background is what it holds besides
   VoxelWeights weights_;
+  BondDepths* bonds_;
   int reach_ = kFirstReach;
 };
 

@@ -117,7 +117,7 @@ void Measuring::setCells(std::vector<GrainMeasures>& grains, Interrupter* interr
 }
 
 void Measuring::setRepresentatives(const GrainRepresentatives& representatives,
-                                   Measurements& result) {
+                                   const BondDepths& bondDepths, Measurements& result) {
   if (representatives.empty()) return;
   const double unit = weights().least();  // the weight of the shortest edge, which is 1
   for (GrainMeasures& grain : result.grains) {
@@ -131,10 +131,13 @@ void Measuring::setRepresentatives(const GrainRepresentatives& representatives,
     const int64_t squaredDistance = squaredBetween(a.voxel, b.voxel, weights());
     bond.distance = std::sqrt(double(squaredDistance) / unit);
     bond.cosAlpha = cosAlpha(squaredDistance, a.squaredRadius, b.squaredRadius);
+    if (options_.bondRadii)
+      bond.inscribedRadius = std::sqrt(double(bondDepths.at({bond.first, bond.second})) / unit);
   }
 }
 
 Measurements Measuring::finish(const GrainRepresentatives& representatives,
+                               const BondDepths& bondDepths,
                                const std::array<std::optional<double>, 3>& correlationLengths,
                                Interrupter* interrupter) {
   Measurements result;
@@ -145,6 +148,7 @@ Measurements Measuring::finish(const GrainRepresentatives& representatives,
   result.extra.edgeWeights = options_.edgeWeights;
   result.extra.cells = options_.cells;
   result.extra.sizes = options_.sizes;
+  result.extra.bondRadii = options_.bondRadii;
   result.replicates = options_.bootstrap;
   result.open = obstacles_.open;
   result.gridName = about_->getName();
@@ -160,7 +164,7 @@ Measurements Measuring::finish(const GrainRepresentatives& representatives,
     if (options_.shape) grain.shape = shapes_.shapes().at(grain.id);
   }
   setCells(result.grains, interrupter);
-  setRepresentatives(representatives, result);
+  setRepresentatives(representatives, bondDepths, result);
   const std::vector<BondMeasures> leftOut = takeSmallBonds(result);
   SampleMeasures& sample = result.sample;
   sample = sampleMeasures(result.grains, result.bonds, whole());

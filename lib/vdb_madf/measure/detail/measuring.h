@@ -46,13 +46,14 @@ class Measuring {
            const IsComplete& isComplete, Interrupter* interrupter);
 
   /// \p correlationLengths: in voxels. @throw Interrupted
-  Measurements finish(const GrainRepresentatives& representatives,
+  Measurements finish(const GrainRepresentatives& representatives, const BondDepths& bondDepths,
                       const std::array<std::optional<double>, 3>& correlationLengths,
                       Interrupter* interrupter);
 
  private:
   void setCells(std::vector<GrainMeasures>& grains, Interrupter* interrupter) const;
-  void setRepresentatives(const GrainRepresentatives& representatives, Measurements& result);
+  void setRepresentatives(const GrainRepresentatives& representatives, const BondDepths& bondDepths,
+                          Measurements& result);
 
   const Int32Grid* about_;
   MeasureOptions options_;
