@@ -329,6 +329,13 @@ def check_crossings(page, folder):
         demand(numpy.allclose(shown, [float(row[name]) for row in expected]), name)
     demand(max(float(row["current_z"]) for row in expected) > 0.01, "nothing flows")
     page.wait("return document.getElementById('overlay').textContent.includes('current, z')")
+    with open(os.path.join(folder, "crossed", "sample.json"), encoding="utf-8") as file:
+        numbers = json.load(file)
+    shown = [float(f"{100 * numbers[f'bond_conductivity_{axis}']:.3g}") for axis in "xyz"]
+    found = [tile for tile in page.find("#numbers").text.split("\n") if tile.count(", ") == 2]
+    demand([float(n) for n in found[0].split(", ")] == shown, f"conductivity: {found}, not {shown}")
+    curves = page.find("#charts").find_elements("css selector", "figure .rose path.steps")
+    demand(len(curves) == 3, f"{len(curves)} curves of the tensor")
 
 
 def check_comparison(page, folder, labels, grains):

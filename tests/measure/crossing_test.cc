@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What leads from face to face: the minimum cut against all cuts there are, the conductivity
-// against elimination, and both on layers.
+// against elimination, the tensor against relaxation, and all on layers and rods.
 
 #include "vdb_madf/measure/crossing.h"
 
@@ -89,56 +89,116 @@ double resistance(const Vec3d& arm, double area, double volume, double allAlongA
   return d / section + (a < b ? std::pow(1 - a / b, 1.5) : 0) / (4 * a);
 }
 
-/// Conductances between the nodes: the grains, the lower and the upper face.
-using Matrix = std::vector<std::vector<double>>;
+/// Where a grain ends.
+struct Leg {
+  Vec3d arm;
+  double area;
+  std::optional<size_t> bond;  // else at a face of the box:
+  int axis = 0;
+  bool isUpper = false;
+  double conductance = 0;
+  Vec3d place{0};  // of its middle, in space
+};
 
-Matrix conductances(const Measurements& m, int axis) {
-  struct Leg {
-    Vec3d arm;
-    double area;
-    size_t bond, face;  // of these the one that it is
-  };
-  const size_t n = m.grains.size(), none = ~size_t(0);
+/// Of all voxel faces at the faces of the box, by grain, axis and end: the mean and the area.
+void addFaces(const Int32Grid& labels, const Measurements& m, std::vector<std::vector<Leg>>& legs) {
+  const CoordBBox& box = m.sample.box;
+  for (size_t row = 0; row < m.grains.size(); ++row)
+    for (int axis = 0; axis < 3; ++axis)
+      for (const bool isUpper : {false, true}) {
+        const int at = isUpper ? box.max()[axis] : box.min()[axis];
+        Vec3d sum(0);
+        int count = 0;
+        for (auto voxel = labels.cbeginValueOn(); voxel; ++voxel)
+          if (voxel.getCoord()[axis] == at && *voxel == m.grains[row].id) {
+            sum += voxel.getCoord().asVec3d();
+            ++count;
+          }
+        if (count == 0) continue;
+        Vec3d middle = sum / count;
+        middle[axis] += isUpper ? 0.5 : -0.5;
+        const Vec3d place = middle * m.edges;
+        legs[row].push_back({place - m.grains[row].centroid * m.edges,
+                             count * m.edges[(axis + 1) % 3] * m.edges[(axis + 2) % 3],
+                             {},
+                             axis,
+                             isUpper,
+                             0,
+                             place});
+      }
+}
+
+/// Of each grain, with the conductances.
+std::vector<std::vector<Leg>> legsOf(const Int32Grid& labels, const Measurements& m) {
   const auto rows = rowsOf(m);
-  std::vector<std::vector<Leg>> legs(n);
+  std::vector<std::vector<Leg>> legs(m.grains.size());
   for (size_t i = 0; i < m.bonds.size(); ++i)
     for (const int32_t id : {m.bonds[i].first, m.bonds[i].second}) {
       const size_t row = rows.at(id);
       legs[row].push_back(
-          {(m.bonds[i].centroid - m.grains[row].centroid) * m.edges, m.bonds[i].area, i, none});
+          {(m.bonds[i].centroid - m.grains[row].centroid) * m.edges, m.bonds[i].area, i});
     }
-  for (size_t row = 0; row < n; ++row)
-    for (int along = 0; along < 3; ++along) {
-      const Sides sides = sidesOf(m.grains[row], m.sample.box, along);
-      const double area =
-          m.grains[row].cutAreas[size_t(along)] / (sides.lower && sides.upper ? 2 : 1);
-      for (const bool upper : {false, true}) {
-        if (!(upper ? sides.upper : sides.lower)) continue;
-        Vec3d arm(0);
-        arm[along] = upper ? m.sample.box.max()[along] + 0.5 - m.grains[row].centroid[along]
-                           : m.sample.box.min()[along] - 0.5 - m.grains[row].centroid[along];
-        const size_t face = along == axis ? n + upper : none;
-        legs[row].push_back({arm * m.edges, area, none, face});
-      }
-    }
-  Matrix matrix(n + 2, std::vector<double>(n + 2));
-  std::vector<double> ofBond(m.bonds.size());
-  for (size_t row = 0; row < n; ++row)
-    for (const Leg& leg : legs[row]) {
+  addFaces(labels, m, legs);
+  for (size_t row = 0; row < legs.size(); ++row)
+    for (Leg& leg : legs[row]) {
       double all = 0;
       for (const Leg& other : legs[row]) {
         const double reach = other.arm.dot(leg.arm) / leg.arm.length();
         all += other.area * reach * reach;
       }
-      const double r = resistance(leg.arm, leg.area, m.grains[row].volume, all);
-      if (leg.bond != none) ofBond[leg.bond] += r;
-      if (leg.face != none) matrix[row][leg.face] = matrix[leg.face][row] = 1 / r;
+      leg.conductance = 1 / resistance(leg.arm, leg.area, m.grains[row].volume, all);
     }
+  return legs;
+}
+
+/// Conductances between the nodes: the grains, and two more that are left to the caller.
+using Matrix = std::vector<std::vector<double>>;
+
+Matrix conductances(const Measurements& m, const std::vector<std::vector<Leg>>& legs) {
+  const size_t n = m.grains.size();
+  const auto rows = rowsOf(m);
+  Matrix matrix(n + 2, std::vector<double>(n + 2));
+  std::vector<double> ofBond(m.bonds.size());
+  for (const auto& ofGrain : legs)
+    for (const Leg& leg : ofGrain)
+      if (leg.bond) ofBond[*leg.bond] += 1 / leg.conductance;
   for (size_t i = 0; i < m.bonds.size(); ++i) {
     const size_t a = rows.at(m.bonds[i].first), b = rows.at(m.bonds[i].second);
     matrix[a][b] = matrix[b][a] = 1 / ofBond[i];
   }
   return matrix;
+}
+
+/// With the lower and the upper face as the last nodes.
+Matrix betweenFaces(const Measurements& m, const std::vector<std::vector<Leg>>& legs, int axis) {
+  Matrix matrix = conductances(m, legs);
+  const size_t n = m.grains.size();
+  for (size_t row = 0; row < n; ++row)
+    for (const Leg& leg : legs[row])
+      if (!leg.bond && leg.axis == axis)
+        matrix[row][n + leg.isUpper] = matrix[n + leg.isUpper][row] = leg.conductance;
+  return matrix;
+}
+
+/// The potentials of the grains while all faces are at their places along an axis, by sweeps that
+/// set each grain to the mean of what it touches.
+std::vector<double> relaxed(const Matrix& g, const std::vector<std::vector<Leg>>& legs, int axis) {
+  std::vector<double> potential(legs.size());
+  for (int sweep = 0; sweep < 3000; ++sweep)
+    for (size_t i = 0; i < legs.size(); ++i) {
+      double weights = 0, sum = 0;
+      for (size_t j = 0; j < legs.size(); ++j) {
+        weights += g[i][j];
+        sum += g[i][j] * potential[j];
+      }
+      for (const Leg& leg : legs[i])
+        if (!leg.bond) {
+          weights += leg.conductance;
+          sum += leg.conductance * leg.place[axis];
+        }
+      if (weights > 0) potential[i] = sum / weights;
+    }
+  return potential;
 }
 
 /// Takes out one node after the other (the star-mesh transform); what is left is what lies between
@@ -164,7 +224,7 @@ TEST_CASE("crossing: the minimum cut is the least of all cuts", "[crossing]") {
     CAPTURE(i);
     const Measurements m = measureCrossing(*randomGrains(rng));
     for (int axis = 0; axis < 3; ++axis) {
-      const Crossing& crossing = m.crossings.value()[size_t(axis)];
+      const Crossing& crossing = m.crossings.value().along[size_t(axis)];
       const std::optional<double> least = leastCut(m, axis);
       REQUIRE(crossing.cutArea.has_value() == least.has_value());
       ++(least ? cuts : spanned);
@@ -189,12 +249,14 @@ TEST_CASE("crossing: the conductivity is that of the network", "[crossing]") {
   int conduct = 0;
   for (int i = 0; i < 60; ++i) {
     CAPTURE(i);
-    const Measurements m = measureCrossing(*randomGrains(rng));
+    const auto labels = randomGrains(rng);
+    const Measurements m = measureCrossing(*labels);
+    const auto legs = legsOf(*labels, m);
     for (int axis = 0; axis < 3; ++axis) {
-      const Crossing& crossing = m.crossings.value()[size_t(axis)];
+      const Crossing& crossing = m.crossings.value().along[size_t(axis)];
       const Vec3d extent = m.sample.box.dim().asVec3d() * m.edges;
       CHECK(crossing.section == Approx(extent[(axis + 1) % 3] * extent[(axis + 2) % 3]));
-      const double all = between(conductances(m, axis));
+      const double all = between(betweenFaces(m, legs, axis));
       CHECK(crossing.conductivity ==
             Approx(all * extent[axis] / crossing.section).epsilon(1e-9).margin(1e-12));
       conduct += all > 0;
@@ -210,15 +272,72 @@ TEST_CASE("crossing: the conductivity is that of the network", "[crossing]") {
   CHECK(conduct > 100);
 }
 
+TEST_CASE("crossing: the tensor is that of the network, and bounds the conductivity",
+          "[crossing]") {
+  Rng rng(13);
+  int conduct = 0;
+  for (int i = 0; i < 60; ++i) {
+    CAPTURE(i);
+    const auto labels = randomGrains(rng);
+    const Measurements m = measureCrossing(*labels);
+    const auto legs = legsOf(*labels, m);
+    const Matrix g = conductances(m, legs);
+    const SymmetricTensor& tensor = m.crossings.value().conductivity;
+    const double volume = (m.sample.box.dim().asVec3d() * m.edges).product();
+    constexpr size_t kPlace[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+    for (int gradient = 0; gradient < 3; ++gradient) {
+      const std::vector<double> potential = relaxed(g, legs, gradient);
+      Vec3d flux(0);
+      for (size_t row = 0; row < legs.size(); ++row)
+        for (const Leg& leg : legs[row])
+          if (!leg.bond)
+            flux += leg.place * leg.conductance * (leg.place[gradient] - potential[row]) / volume;
+      for (int axis = 0; axis < 3; ++axis) {
+        CAPTURE(gradient, axis);
+        CHECK(tensor.components[kPlace[gradient][axis]] ==
+              Approx(flux[axis]).epsilon(1e-6).margin(1e-9));
+      }
+      const double along = m.crossings->along[size_t(gradient)].conductivity;
+      CHECK(tensor.components[size_t(gradient)] > along * (1 - 1e-9));
+      conduct += along > 0;
+    }
+    CHECK(tensor.principal.values[2] > -1e-12);
+  }
+  CHECK(conduct > 100);
+}
+
+TEST_CASE("crossing: rods that lean conduct along themselves", "[crossing]") {
+  // In layers across y, from the lower to the upper end of a high box: along (3, 0, 4) / 5.
+  const CoordBBox box = boxAt(Coord(-20, 3, 7), Coord(300, 20, 160));
+  auto rods = drawLabels(box, [](const Vec3d& p) {
+    const double across = 4 * p[0] - 3 * p[2] + 10000;
+    return int(p[1]) % 4 < 2 && int(across) % 100 < 50 ? int(across) / 100 * 100 + int(p[1]) / 4
+                                                       : 0;
+  });
+  setDomain(*rods, box);
+  const Measurements m = measureCrossing(*rods);
+  REQUIRE(m.bonds.empty());
+  const auto& t = m.crossings.value().conductivity;
+  const double solid = m.sample.objectFraction;
+  CHECK(t.components[0] == Approx(0.36 * solid).epsilon(0.02));
+  CHECK(t.components[2] == Approx(0.64 * solid).epsilon(0.02));
+  CHECK(t.components[4] == Approx(0.48 * solid).epsilon(0.02));
+  CHECK(t.principal.values[0] == Approx(solid).epsilon(0.02));
+  CHECK(std::abs(t.principal.axes[0].dot(Vec3d(0.6, 0, 0.8))) > 0.9999);
+  CHECK(t.principal.values[1] < 0.02 * solid);
+}
+
 TEST_CASE("crossing: layers conduct as their material, but for gaps", "[crossing]") {
   const CoordBBox box = boxAt(Coord(-3, 5, 0), Coord(20, 24, 40));
   auto layers = drawLabels(box, [](const Vec3d& p) { return int(p[2]) / 8 + 1; });
   setDomain(*layers, box);
   const Measurements m = measureCrossing(*layers);
   REQUIRE(m.bonds.size() == 4);
-  const auto& crossings = m.crossings.value();
+  const auto& crossings = m.crossings.value().along;
   for (const Crossing& crossing : crossings)
     CHECK(crossing.conductivity == Approx(1).epsilon(1e-6));
+  for (size_t i = 0; i < 6; ++i)
+    CHECK(m.crossings->conductivity.components[i] == Approx(i < 3).epsilon(1e-6).margin(1e-9));
   CHECK_FALSE(crossings[0].cutArea);
   CHECK_FALSE(crossings[1].cutArea);
   CHECK(crossings[2].cutArea.value() == Approx(20 * 24));
@@ -234,7 +353,7 @@ TEST_CASE("crossing: layers conduct as their material, but for gaps", "[crossing
       return p[0] < 7 && !(isParted && layer == 2) ? layer + 1 : 0;
     });
     setDomain(*column, box);
-    const Crossing along = measureCrossing(*column).crossings.value()[2];
+    const Crossing along = measureCrossing(*column).crossings.value().along[2];
     CHECK(along.conductivity == Approx(isParted ? 0 : 0.5).epsilon(1e-2).margin(1e-12));
     CHECK(along.cutArea.value() == Approx(isParted ? 0 : 10 * 24).epsilon(0.05));
   }
@@ -245,7 +364,7 @@ TEST_CASE("crossing: grains of nothing, and what cannot be had", "[crossing]") {
   auto labels = Int32Grid::create(0);
   setDomain(*labels, box);
   const Measurements empty = measureCrossing(*labels);
-  for (const Crossing& crossing : empty.crossings.value()) {
+  for (const Crossing& crossing : empty.crossings.value().along) {
     CHECK(crossing.cutArea.value() == 0);
     CHECK(crossing.conductivity == 0);
   }

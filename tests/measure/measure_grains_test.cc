@@ -276,6 +276,11 @@ TEST_CASE("measure_grains: the faces of an open domain are no surface", "[measur
   for (auto p = domain.begin(); p; ++p)
     disc += (*p).x() == 0 && (*p).asVec3d().lengthSqr() < 14.5 * 14.5;
   CHECK(open.cutArea == disc);
+  REQUIRE(open.cuts.size() == 1);
+  CHECK(open.cuts[0].axis == 0);
+  CHECK_FALSE(open.cuts[0].isUpper);
+  CHECK(open.cuts[0].area == disc);
+  CHECK(open.cuts[0].centroid == Vec3d(-0.5, 0, 0));
   CHECK(open.freeArea == Approx(2 * M_PI * 14.5 * (14.5 + 0.5)).epsilon(0.01));
   CHECK(open.atDomainFace);
   CHECK(open.inscribedRadius == Approx(14.5).margin(0.8));  // the ball goes on beyond

@@ -82,14 +82,15 @@ void printCrossings(const Crossings& crossings) {
   std::printf("  minimum cut        ");
   for (size_t axis = 0; axis < 3; ++axis) {
     std::printf("%s %c ", axis ? "," : "", "xyz"[axis]);
-    if (const auto& area = crossings[axis].cutArea)
-      std::printf("%.4g %%", 100 * *area / crossings[axis].section);
+    if (const auto& area = crossings.along[axis].cutArea)
+      std::printf("%.4g %%", 100 * *area / crossings.along[axis].section);
     else
       std::printf("none");
   }
   std::printf(" of the section\n  bonds conduct      ");
   for (size_t axis = 0; axis < 3; ++axis)
-    std::printf("%s %c %.4g %%", axis ? "," : "", "xyz"[axis], 100 * crossings[axis].conductivity);
+    std::printf("%s %c %.4g %%", axis ? "," : "", "xyz"[axis],
+                100 * crossings.along[axis].conductivity);
   std::printf(" of the full box\n");
 }
 

@@ -63,12 +63,12 @@ py::dict table(const std::vector<MeasureColumn>& columns, const TableUnit& unit,
 }
 
 /// A symmetric tensor, [z, y, x].
-py::array_t<double> tensor(const FabricTensor& fabric) {
+py::array_t<double> tensor(const SymmetricTensor& of) {
   constexpr int kPlace[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};  // of x, y, z
   py::array_t<double> array({py::ssize_t(3), py::ssize_t(3)});
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      array.mutable_at(2 - i, 2 - j) = fabric.components[size_t(kPlace[i][j])];
+      array.mutable_at(2 - i, 2 - j) = of.components[size_t(kPlace[i][j])];
   return array;
 }
 
@@ -147,13 +147,15 @@ void setVaried(const std::map<std::string, double>& vary, SensitivityOptions& op
 void addCrossings(const Crossings& crossings, const TableUnit& unit, py::dict& dict,
                   py::dict& units) {
   const auto add = [&](const char* name, const auto& number) {
-    dict[name] = py::make_tuple(number(crossings[2]), number(crossings[1]), number(crossings[0]));
+    const auto& [x, y, z] = crossings.along;
+    dict[name] = py::make_tuple(number(z), number(y), number(x));
   };
   add("minimum_cut_area", [&](const Crossing& c) { return orNan(c.cutArea) * unit.area(); });
   units["minimum_cut_area"] = powerOf(unit, 2);
   add("minimum_cut_share", [](const Crossing& c) { return orNan(c.cutArea) / c.section; });
   add("minimum_cut_bonds", [](const Crossing& c) { return c.cutBonds; });
   add("bond_conductivity", [](const Crossing& c) { return c.conductivity; });
+  dict["bond_conductivity_tensor"] = tensor(crossings.conductivity);
 }
 
 py::dict sampleOf(const Measurements& m, const TableUnit& unit, py::dict& units) {

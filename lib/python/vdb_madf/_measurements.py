@@ -84,7 +84,8 @@ class Measurements:
       `corrected_mean_coordination`, `corrected_diameter_by_number`, `corrected_diameter_by_volume`
     - with crossing, along z, y, x: `minimum_cut_area`, least area of bonds that part the two faces
       (NaN: a grain reaches from face to face), `minimum_cut_share` of the faces' area,
-      `minimum_cut_bonds`; `bond_conductivity` of what the full box would conduct
+      `minimum_cut_bonds`; `bond_conductivity` of what the full box would conduct; and
+      `bond_conductivity_tensor`, (3, 3), [z, y, x], with all six faces at a gradient's potentials
     - with sensitivity: `sensitivity`: `runs`, the ends of what was varied, and `intervals`
     - with bootstrap: `intervals`, by name of a mean its `mean`, and `low` and `high` of 95 %
     - with size_curve: `size_curve`, by kind of size (columns of the grains) the sizes that
@@ -162,7 +163,7 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
     `corrected_grain_diameter_mean`, `corrected_diameter_by_number` ... The domain has to be a box.
     crossing: what leads through grains and bonds between opposite faces of a box: columns `cut_x`
     ... and `current_x` ... of the bonds, and in the sample `minimum_cut_area`, `minimum_cut_share`,
-    `minimum_cut_bonds` and `bond_conductivity`.
+    `minimum_cut_bonds`, `bond_conductivity` and its tensor.
     voronoi: columns `cell_volume`, `local_solid_fraction`, `cell_neighbors`, `cell_at_domain_face`
     of the grains' set-Voronoi cells, in the time of the domain's box.
     size_curve: cumulative curves by volume, in the sample as `size_curve`. size_reference: a CSV

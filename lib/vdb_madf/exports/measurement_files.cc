@@ -65,13 +65,13 @@ Json toJson(const openvdb::Vec3d& vector) {
   return {vector[0], vector[1], vector[2]};
 }
 
-Json toJson(const FabricTensor& fabric) {
-  const auto& c = fabric.components;
+Json toJson(const SymmetricTensor& tensor) {
+  const auto& c = tensor.components;
   Json json;
   json["tensor"] = {{c[0], c[3], c[4]}, {c[3], c[1], c[5]}, {c[4], c[5], c[2]}};
-  json["eigenvalues"] = fabric.principal.values;
+  json["eigenvalues"] = tensor.principal.values;
   Json vectors = Json::array();
-  for (const openvdb::Vec3d& axis : fabric.principal.axes) vectors.push_back(toJson(axis));
+  for (const openvdb::Vec3d& axis : tensor.principal.axes) vectors.push_back(toJson(axis));
   json["eigenvectors"] = vectors;
   return json;
 }
@@ -169,7 +169,7 @@ void addSensitivity(const Measurements& m, const TableUnit& unit, Json& json) {
 
 void addCrossings(const Crossings& crossings, const TableUnit& unit, Json& json) {
   for (size_t axis = 0; axis < 3; ++axis) {
-    const Crossing& crossing = crossings[axis];
+    const Crossing& crossing = crossings.along[axis];
     const std::string name = std::string("_") + "xyz"[axis];
     json["minimum_cut_area" + name + "_" + unit.name + "2"] =
         orNull(crossing.cutArea, 2, unit.length);
@@ -178,6 +178,7 @@ void addCrossings(const Crossings& crossings, const TableUnit& unit, Json& json)
     json["minimum_cut_bonds" + name] = crossing.cutArea ? Json(crossing.cutBonds) : Json();
     json["bond_conductivity" + name] = crossing.conductivity;
   }
+  json["bond_conductivity_tensor"] = toJson(crossings.conductivity);
 }
 
 Json sampleJson(const Measurements& m, const TableUnit& unit, const TableOptions& options) {

@@ -9,10 +9,12 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "vdb_madf/measure/detail/bond_resistance.h"
 #include "vdb_madf/measure/detail/minimum_cut.h"
+#include "vdb_madf/measure/detail/principal_axes.h"
 #include "vdb_madf/measure/measure.h"
 
 namespace vdb_madf {
@@ -25,122 +27,125 @@ constexpr double kAreaUnits = 1 << 20;  // of a cut, in a voxel face
 constexpr double kTolerance = 1e-12;    // of the potentials
 constexpr double kLeastCurrent = 1e-9;  // of all: what is less is no more than rounding
 
-/// Does a grain touch the lower (0) or the upper face (1) of a box, normal to an axis?
-bool touches(const CoordBBox& grain, const CoordBBox& box, int axis, int end) {
-  return end == 0 ? grain.min()[axis] <= box.min()[axis] : grain.max()[axis] >= box.max()[axis];
-}
-
 /// A bond as a conductor between two grains.
 struct Conductor {
   std::array<uint32_t, 2> grains;  ///< rows
   double conductance;
 };
 
+/// From a grain to a face of the box that cuts it.
+struct Outlet {
+  uint32_t grain;  ///< row
+  int axis;        ///< normal to the face
+  bool isUpper;
+  Vec3d place;  ///< its middle, in space
+  double conductance;
+};
+
 class GrainConductors {
  public:
-  explicit GrainConductors(const Measurements& measured)
-      : measured_(measured), ends_(measured.grains.size()), toFace_(measured.grains.size()) {
-    for (size_t i = 0; i < measured.bonds.size(); ++i) addBond(i);
-    std::vector<double> resistances(measured.bonds.size());
-    for (size_t row = 0; row < ends_.size(); ++row) {
-      addFaces(row);
-      addResistances(row, resistances);
+  explicit GrainConductors(const Measurements& measured) : measured_(measured) {
+    const auto& grains = measured.grains;
+    std::vector<std::vector<End>> ends(grains.size());
+    for (const BondMeasures& bond : measured.bonds) {
+      bonds_.push_back(
+          {{uint32_t(rowOf(grains, bond.first)), uint32_t(rowOf(grains, bond.second))}, 0});
+      for (const uint32_t row : bonds_.back().grains)
+        ends[row].push_back({contactAt(bond.centroid, bond.area, row), bonds_.size() - 1});
+    }
+    for (uint32_t row = 0; row < grains.size(); ++row)
+      for (const GrainCut& cut : grains[row].cuts) {
+        ends[row].push_back({contactAt(cut.centroid, cut.area, row), {}});
+        outlets_.push_back({row, cut.axis, cut.isUpper, cut.centroid * measured.edges, 0});
+      }
+    setConductances(ends);
+  }
+
+  const std::vector<Conductor>& bonds() const { return bonds_; }
+  const std::vector<Outlet>& outlets() const { return outlets_; }
+  double extent(int axis) const { return measured_.sample.box.dim()[axis] * measured_.edges[axis]; }
+
+ private:
+  /// Where a grain ends: at a bond, or at an outlet.
+  struct End {
+    detail::Contact contact;
+    std::optional<size_t> bond;
+  };
+
+  detail::Contact contactAt(const Vec3d& index, double area, size_t row) const {
+    return {(index - measured_.grains[row].centroid) * measured_.edges, area};
+  }
+  void setConductances(const std::vector<std::vector<End>>& ends) {
+    std::vector<double> resistances(bonds_.size());
+    auto outlet = outlets_.begin();
+    for (size_t row = 0; row < ends.size(); ++row) {
+      std::vector<detail::Contact> contacts;
+      for (const End& end : ends[row]) contacts.push_back(end.contact);
+      const auto found = detail::contactResistances(measured_.grains[row].volume, contacts);
+      for (size_t i = 0; i < found.size(); ++i) {
+        if (const auto bond = ends[row][i].bond)
+          resistances[*bond] += found[i];
+        else
+          outlet++->conductance = 1 / found[i];
+      }
     }
     for (size_t i = 0; i < bonds_.size(); ++i) bonds_[i].conductance = 1 / resistances[i];
   }
 
-  const std::vector<Conductor>& bonds() const { return bonds_; }
-  /// From a grain to the lower (0) or the upper face (1); 0 if it does not touch it.
-  double toFace(size_t row, int axis, int end) const {
-    return toFace_[row][size_t(axis)][size_t(end)];
-  }
-  double extent(int axis) const { return measured_.sample.box.dim()[axis] * measured_.edges[axis]; }
-
- private:
-  /// Where a grain ends: at a bond, or at a face.
-  struct End {
-    detail::Contact contact;
-    std::optional<size_t> bond;
-    int axis = 0, face = 0;  ///< if it is none
-  };
-
-  detail::Contact contactAt(const Vec3d& index, double area, size_t row) const {
-    return {index * measured_.edges - measured_.grains[row].centroid * measured_.edges, area};
-  }
-  void addBond(size_t i) {
-    const BondMeasures& bond = measured_.bonds[i];
-    const auto& grains = measured_.grains;
-    bonds_.push_back(
-        {{uint32_t(rowOf(grains, bond.first)), uint32_t(rowOf(grains, bond.second))}, 0});
-    for (const uint32_t row : bonds_.back().grains)
-      ends_[row].push_back({contactAt(bond.centroid, bond.area, row), i});
-  }
-  /// A grain that reaches from face to face has half of what is cut across this axis at each.
-  void addFaces(size_t row) {
-    const GrainMeasures& grain = measured_.grains[row];
-    const CoordBBox& box = measured_.sample.box;
-    for (int axis = 0; axis < 3; ++axis) {
-      const bool both = touches(grain.box, box, axis, 0) && touches(grain.box, box, axis, 1);
-      const double area = grain.cutAreas[size_t(axis)] / (both ? 2 : 1);
-      for (const int face : {0, 1}) {
-        if (!touches(grain.box, box, axis, face)) continue;
-        Vec3d middle = grain.centroid;
-        middle[axis] = face == 0 ? box.min()[axis] - 0.5 : box.max()[axis] + 0.5;
-        ends_[row].push_back({contactAt(middle, area, row), {}, axis, face});
-      }
-    }
-  }
-  /// \p resistances of the bonds get what this grain has.
-  void addResistances(size_t row, std::vector<double>& resistances) {
-    std::vector<detail::Contact> contacts;
-    for (const End& end : ends_[row]) contacts.push_back(end.contact);
-    const auto found = detail::contactResistances(measured_.grains[row].volume, contacts);
-    for (size_t i = 0; i < found.size(); ++i) {
-      const End& end = ends_[row][i];
-      if (end.bond)
-        resistances[*end.bond] += found[i];
-      else
-        toFace_[row][size_t(end.axis)][size_t(end.face)] = 1 / found[i];
-    }
-  }
-
   const Measurements& measured_;
-  std::vector<std::vector<End>> ends_;  // of each grain
   std::vector<Conductor> bonds_;
-  std::vector<std::array<std::array<double, 2>, 3>> toFace_;  // of each grain
+  std::vector<Outlet> outlets_;  // by grain
 };
 
-/// The potentials of the grains, the lower face being at 0 and the upper one at 1. Grains that hang
-/// on neither are at 0.
-Eigen::VectorXd potentials(const GrainConductors& network, size_t grains, int axis) {
-  std::vector<Eigen::Triplet<double>> terms;
-  Eigen::VectorXd inflow = Eigen::VectorXd::Zero(Eigen::Index(grains));
-  Eigen::VectorXd diagonal = inflow;
-  for (const Conductor& bond : network.bonds()) {
-    const auto [a, b] = bond.grains;
-    terms.emplace_back(a, b, -bond.conductance);
-    terms.emplace_back(b, a, -bond.conductance);
-    diagonal[a] += bond.conductance;
-    diagonal[b] += bond.conductance;
+/// The network with some of its outlets held at potentials.
+class HeldNetwork {
+ public:
+  HeldNetwork(const GrainConductors& network, size_t grains, std::vector<Outlet> held)
+      : held_(std::move(held)), matrix_(Eigen::Index(grains), Eigen::Index(grains)) {
+    std::vector<Eigen::Triplet<double>> terms;
+    std::vector<double> diagonal(grains);
+    for (const Conductor& bond : network.bonds()) {
+      const auto [a, b] = bond.grains;
+      terms.emplace_back(a, b, -bond.conductance);
+      terms.emplace_back(b, a, -bond.conductance);
+      diagonal[a] += bond.conductance;
+      diagonal[b] += bond.conductance;
+    }
+    for (const Outlet& outlet : held_) diagonal[outlet.grain] += outlet.conductance;
+    for (uint32_t row = 0; row < grains; ++row)
+      terms.emplace_back(row, row, diagonal[row] > 0 ? diagonal[row] : 1);
+    matrix_.setFromTriplets(terms.begin(), terms.end());
+    solver_.setTolerance(kTolerance);
+    solver_.compute(matrix_);
   }
-  for (uint32_t row = 0; row < grains; ++row) {
-    const double up = network.toFace(row, axis, 1);
-    inflow[row] = up;
-    diagonal[row] += up + network.toFace(row, axis, 0);
-    terms.emplace_back(row, row, diagonal[row] > 0 ? diagonal[row] : 1);
+  HeldNetwork(const HeldNetwork&) = delete;  // the solver refers to the matrix
+  HeldNetwork& operator=(const HeldNetwork&) = delete;
+
+  /// Of the grains, the held outlets being at `at`(outlet). Grains that hang on none are at 0.
+  template <typename At>
+  Eigen::VectorXd potentials(const At& at) const {
+    Eigen::VectorXd inflow = Eigen::VectorXd::Zero(matrix_.rows());
+    for (const Outlet& outlet : held_) inflow[outlet.grain] += outlet.conductance * at(outlet);
+    return solver_.solve(inflow);
   }
-  Eigen::SparseMatrix<double> matrix(inflow.size(), inflow.size());
-  matrix.setFromTriplets(terms.begin(), terms.end());
-  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver;
-  solver.setTolerance(kTolerance);
-  return solver.compute(matrix).solve(inflow);
-}
+  const std::vector<Outlet>& held() const { return held_; }
+
+ private:
+  std::vector<Outlet> held_;
+  Eigen::SparseMatrix<double> matrix_;
+  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver_;
+};
 
 void conduct(const GrainConductors& network, int axis, Measurements& measured, Crossing& crossing) {
-  const size_t grains = measured.grains.size();
-  const Eigen::VectorXd potential = potentials(network, grains, axis);
+  std::vector<Outlet> ofAxis;
+  for (const Outlet& outlet : network.outlets())
+    if (outlet.axis == axis) ofAxis.push_back(outlet);
+  const HeldNetwork held(network, measured.grains.size(), std::move(ofAxis));
+  const Eigen::VectorXd potential =
+      held.potentials([](const Outlet& outlet) { return double(outlet.isUpper); });
   double all = 0;
-  for (uint32_t row = 0; row < grains; ++row) all += network.toFace(row, axis, 0) * potential[row];
+  for (const Outlet& outlet : held.held())
+    if (!outlet.isUpper) all += outlet.conductance * potential[outlet.grain];
   crossing.conductivity = all * network.extent(axis) / crossing.section;
   if (!(all > 0)) return;
   for (size_t i = 0; i < measured.bonds.size(); ++i) {
@@ -150,12 +155,43 @@ void conduct(const GrainConductors& network, int axis, Measurements& measured, C
   }
 }
 
+/// The moments of what flows through the faces make the mean flux.
+SymmetricTensor conductivityTensor(const GrainConductors& network, const Measurements& measured) {
+  constexpr int kAxes[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+  const CoordBBox& box = measured.sample.box;
+  const Vec3d middle = 0.5 * (box.min() + box.max()).asVec3d() * measured.edges;
+  const HeldNetwork held(network, measured.grains.size(), network.outlets());
+  std::array<Eigen::VectorXd, 3> potentials;
+  for (int axis = 0; axis < 3; ++axis)
+    potentials[size_t(axis)] =
+        held.potentials([&](const Outlet& outlet) { return (outlet.place - middle)[axis]; });
+  const double volume = network.extent(0) * network.extent(1) * network.extent(2);
+  SymmetricTensor tensor;
+  for (size_t i = 0; i < 6; ++i) {
+    const auto [a, b] = kAxes[i];
+    double moment = 0;
+    for (const Outlet& outlet : held.held()) {
+      const Vec3d place = outlet.place - middle;
+      moment += outlet.conductance * place[a] * (place[b] - potentials[size_t(b)][outlet.grain]);
+    }
+    tensor.components[i] = moment / volume;
+  }
+  tensor.principal = detail::principalAxes(tensor.components);
+  return tensor;
+}
+
+/// Does a grain end at the lower or the upper face of the box, normal to an axis?
+bool isCut(const GrainMeasures& grain, int axis, bool isUpper) {
+  return std::any_of(grain.cuts.begin(), grain.cuts.end(), [&](const GrainCut& cut) {
+    return cut.axis == axis && cut.isUpper == isUpper;
+  });
+}
+
 void cut(const GrainConductors& network, int axis, Measurements& measured, Crossing& crossing) {
   std::vector<uint32_t> lower, upper;
-  const CoordBBox& box = measured.sample.box;
   for (uint32_t row = 0; row < measured.grains.size(); ++row) {
-    const CoordBBox& grain = measured.grains[row].box;
-    const bool isLower = touches(grain, box, axis, 0), isUpper = touches(grain, box, axis, 1);
+    const GrainMeasures& grain = measured.grains[row];
+    const bool isLower = isCut(grain, axis, false), isUpper = isCut(grain, axis, true);
     if (isLower && isUpper) return;
     if (isLower) lower.push_back(row);
     if (isUpper) upper.push_back(row);
@@ -181,11 +217,13 @@ void measureCrossings(Measurements& measured) {
   const GrainConductors network(measured);
   measured.crossings.emplace();
   for (int axis = 0; axis < 3; ++axis) {
-    Crossing& crossing = (*measured.crossings)[size_t(axis)];
+    Crossing& crossing = measured.crossings->along[size_t(axis)];
     crossing.section = network.extent((axis + 1) % 3) * network.extent((axis + 2) % 3);
     cut(network, axis, measured, crossing);
     if (!measured.grains.empty()) conduct(network, axis, measured, crossing);
   }
+  if (!measured.grains.empty())
+    measured.crossings->conductivity = conductivityTensor(network, measured);
   measured.extra.crossings = true;
 }
 

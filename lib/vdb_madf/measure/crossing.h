@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "vdb_madf/measure/measure_grains.h"
+
 namespace vdb_madf {
 
 /// What leads through the grains and bonds of a sample from the lower to the upper face of its
@@ -23,7 +25,13 @@ struct Crossing {
   double conductivity = 0;
 };
 
-using Crossings = std::array<Crossing, 3>;  ///< along x, y, z
+struct Crossings {
+  std::array<Crossing, 3> along;  ///< x, y, z
+  /// The mean flux through the box for each mean gradient, of what the full box would conduct: all
+  /// six faces are held at the potentials of that gradient. Symmetric (Hill 1963). Not below
+  /// Crossing::conductivity, and nearer to it the more grains there are.
+  SymmetricTensor conductivity;
+};
 
 /// A bond in that, along x, y, z.
 struct BondCrossing {

@@ -25,6 +25,12 @@ struct Principal {
   std::array<double, 3> values{};
 };
 
+/// xx, yy, zz, xy, xz, yz.
+struct SymmetricTensor {
+  std::array<double, 6> components{};
+  Principal principal;
+};
+
 /// The part of the domain to which no other grain is nearer (detail/voronoi_cells.h).
 struct GrainCell {
   double volume = 0;          ///< with the grain itself
@@ -32,13 +38,21 @@ struct GrainCell {
   bool atDomainFace = false;  ///< it ends at the domain, and is too small
 };
 
+/// Where the wall of an open domain cuts a grain: all voxel faces of one side.
+struct GrainCut {
+  int axis = 0;          ///< of their normals
+  bool isUpper = false;  ///< the domain ends above them
+  double area = 0;
+  openvdb::Vec3d centroid{0, 0, 0};  ///< of the faces' centers, index coordinates
+};
+
 /// A grain; lengths in voxels, of unequal ones in their shortest edge (Measurements::edges).
 struct GrainMeasures {
   int32_t id = 0;  ///< its label
   int64_t voxels = 0;
-  double volume = 0;        ///< = voxels, of cubes
-  openvdb::Vec3d centroid;  ///< of the voxels' centers, index coordinates
-  CoordBBox box;            ///< inclusive
+  double volume = 0;                 ///< = voxels, of cubes
+  openvdb::Vec3d centroid{0, 0, 0};  ///< of the voxels' centers, index coordinates
+  CoordBBox box;                     ///< inclusive
   /// A voxel has a face neighbor outside the domain or, if that is unknown, the box of all grains.
   bool atDomainFace = false;
   /// The voxel of largest squared distance to the background, of several the first; none without
@@ -49,7 +63,7 @@ struct GrainMeasures {
   double freeArea = 0;            ///< towards the background
   double sharedArea = 0;          ///< towards other grains, be there a bond or too few faces for it
   double cutArea = 0;             ///< voxel faces at the wall of an open domain; in no other area
-  std::array<double, 3> cutAreas{};  ///< of it what lies across each axis
+  std::vector<GrainCut> cuts;     ///< what it is made of, by axis, the lower side first
   /// Area of the ball of this volume / area, the cut one included; none for grains of fewer than
   /// 27 voxels, whose area is too uncertain.
   std::optional<double> sphericity;

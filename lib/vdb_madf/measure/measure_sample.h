@@ -13,12 +13,9 @@
 
 namespace vdb_madf {
 
-/// Mean of n n^T over directions n: xx, yy, zz, xy, xz, yz; its trace is 1. Isotropic: a third on
-/// each axis. All 0 if there are none.
-struct FabricTensor {
-  std::array<double, 6> components{};
-  Principal principal;
-};
+/// Mean of n n^T over directions n; its trace is 1. Isotropic: a third on each axis. All 0 if there
+/// are none.
+using FabricTensor = SymmetricTensor;
 
 /// A sample; lengths in voxels, of unequal ones in their shortest edge (Measurements::edges).
 struct SampleMeasures {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 
 #include "vdb_madf/measure/detail/principal_axes.h"
 
@@ -34,6 +35,22 @@ bool touchesFace(const CoordBBox& box, const CoordBBox& domain) {
   return false;
 }
 
+std::vector<GrainCut> cutsOf(const GrainSums& grain, const Coord& origin, const VoxelShape& voxel) {
+  std::vector<GrainCut> cuts;
+  for (const auto& [side, faces, sum] : grain.cuts) {
+    GrainCut& cut = cuts.emplace_back();
+    cut.axis = side >> 1;
+    cut.isUpper = !(side & 1);
+    cut.area = double(faces) * voxel.faceArea(cut.axis);
+    for (int i = 0; i < 3; ++i)
+      cut.centroid[i] = origin[i] + double(sum[size_t(i)]) / double(2 * faces);
+  }
+  std::sort(cuts.begin(), cuts.end(), [](const GrainCut& a, const GrainCut& b) {
+    return std::pair(a.axis, a.isUpper) < std::pair(b.axis, b.isUpper);
+  });
+  return cuts;
+}
+
 }  // namespace
 
 std::vector<GrainMeasures> grainMeasures(const LabelSums& sums,
@@ -53,10 +70,8 @@ std::vector<GrainMeasures> grainMeasures(const LabelSums& sums,
     grain.volume = n * voxel.volume();
     grain.equivalentDiameter = std::cbrt(6 * grain.volume / M_PI);
     grain.freeArea = double(from.freeArea) / kAreaUnit;
-    for (int axis = 0; axis < 3; ++axis) {
-      grain.cutAreas[size_t(axis)] = double(from.cutFaces[size_t(axis)]) * voxel.faceArea(axis);
-      grain.cutArea += grain.cutAreas[size_t(axis)];
-    }
+    grain.cuts = cutsOf(from, sums.origin(), voxel);
+    for (const GrainCut& cut : grain.cuts) grain.cutArea += cut.area;
     grain.ellipsoid = ellipsoidOf(from, voxel);
     row[grain.id] = grains.size();
     grains.push_back(grain);

@@ -84,13 +84,25 @@ void add(const LeafSums& leaf, const Coord& at, const Coord& origin, GrainSums& 
   grain.box.expand(CoordBBox(origin + leaf.min, origin + leaf.max));
 }
 
+/// Adds faces whose centers are relative to a place `at` from the origin of all sums.
+void addCut(const LeafSurface::CutFaces& from, const Coord& at, GrainSums& to) {
+  auto cut = std::find_if(to.cuts.begin(), to.cuts.end(),
+                          [&](const auto& known) { return known.side == from.side; });
+  if (cut == to.cuts.end()) {
+    cut = to.cuts.emplace(cut);
+    cut->side = from.side;
+  }
+  cut->faces += from.faces;
+  for (size_t i = 0; i < 3; ++i) cut->sum[i] += from.sum[i] + 2 * from.faces * at[int(i)];
+}
+
 void add(const GrainSums& from, GrainSums& to) {
   to.voxels += from.voxels;
   for (size_t i = 0; i < 3; ++i) to.sum[i] += from.sum[i];
   for (size_t i = 0; i < 6; ++i) to.products[i] += from.products[i];
   to.box.expand(from.box);
   to.freeArea += from.freeArea;
-  for (size_t i = 0; i < 3; ++i) to.cutFaces[i] += from.cutFaces[i];
+  for (const LeafSurface::CutFaces& cut : from.cuts) addCut(cut, Coord(0), to);
   to.atRegionWall = to.atRegionWall || from.atRegionWall;
 }
 
@@ -125,7 +137,7 @@ class LeafCounter {
     for (const LeafSurface::Free& free : surface_.free()) {
       GrainSums& grain = grains[free.label];
       grain.freeArea += free.area;
-      for (size_t i = 0; i < 3; ++i) grain.cutFaces[i] += free.cutFaces[i];
+      for (const LeafSurface::CutFaces& cut : free.cuts) addCut(cut, at - origin_, grain);
     }
     for (const LeafSurface::Shared& shared : surface_.shared()) {
       BondSums& bond = bonds[{shared.first, shared.second}];

@@ -23,8 +23,9 @@ struct GrainSums {
   std::array<int64_t, 3> sum{};       ///< of coordinates relative to LabelSums::origin()
   std::array<int64_t, 6> products{};  ///< likewise: xx, yy, zz, xy, xz, yz
   CoordBBox box;
-  int64_t freeArea = 0;               ///< in kAreaUnit
-  std::array<int64_t, 3> cutFaces{};  ///< across each axis
+  int64_t freeArea = 0;  ///< in kAreaUnit
+  /// Faces by side, in no order; relative to LabelSums::origin().
+  std::vector<LeafSurface::CutFaces> cuts;
   bool atRegionWall = false;  ///< the domain is a region, and a face neighbor lies outside of it
 };
 

@@ -109,7 +109,12 @@ void LeafSurface::measureFree(int32_t label) {
   for (int side = 0; side < 6; ++side) {
     targets_.clear();
     addTargets(own_, outside_, side >> 1, side & 1 ? -1 : 1, side, targets_);
-    free_.back().cutFaces[size_t(side >> 1)] += int64_t(targets_.size());
+    if (targets_.empty()) continue;
+    CutFaces& cut = free_.back().cuts.emplace_back();
+    cut.side = side;
+    cut.faces = int64_t(targets_.size());
+    for (const SurfaceTarget& target : targets_)
+      for (size_t i = 0; i < 3; ++i) cut.sum[i] += target.center[i];
   }
 }
 

@@ -50,11 +50,16 @@ namespace vdb_madf::detail {
 /// allow.
 class LeafSurface {
  public:
+  struct CutFaces {
+    int side = 0;  ///< as of a target
+    int64_t faces = 0;
+    std::array<int64_t, 3> sum{};  ///< of the faces' centers, doubled, from the leaf's origin
+  };
   struct Free {
     int32_t label = 0;
     int64_t area = 0;  ///< between grain and background, in kAreaUnit
-    /// Voxel faces on the border of the domain, across each axis.
-    std::array<int64_t, 3> cutFaces{};
+    /// On the border of the domain, by side; none where the leaf lies within.
+    std::vector<CutFaces> cuts;
   };
   struct Shared {
     int32_t first = 0, second = 0;  ///< labels, first < second

@@ -4,7 +4,7 @@
 import { binEdges, doubtsOf, inPercent, sumsOf } from './bins.js';
 import { element } from './decode.js';
 import { Plot } from './plot.js';
-import { quarterRose, fullRose } from './roses.js';
+import { fullRose, quarterRose, tensorRose } from './roses.js';
 import { make } from './sample.js';
 
 /// Bars of the values of a column, each counted as one or by its weight.
@@ -101,9 +101,11 @@ export function startCharts(sample, selection) {
     quarterRose(sample, selection, 'Bonds, angle to z, by area', 'bonds', 'normal', 'area'),
     quarterRose(sample, selection, 'Long axes, angle to z, by volume', 'grains', 'axis1', 'volume'),
   ];
+  const { bond_conductivity_tensor: conducts } = sample.numbers;
+  const conductivity = conducts ? [tensorRose('Bonds conduct, of the full box', conducts.tensor)] : [];
   element('charts').append(make('h2', {}, 'Charts'),
     make('p', { className: 'hint' }, 'Gray: all. Blue: what passes the filters. Drag in a chart to filter by it, click in it to take that back. Circles of roses: no preferred direction. Whiskers: two standard errors, by the numbers counted; a sector whose whisker reaches the circle shows no preference.'),
-    make('div', { className: 'panels' }, ...charts.map((chart) => chart.figure)));
+    make('div', { className: 'panels' }, ...charts.map((chart) => chart.figure), ...conductivity));
   const drawAll = () => charts.forEach((chart) => chart.draw());
   selection.listen((what) => {
     if (what === 'strictness') charts.forEach((chart) => chart.load());

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Directions: how much of the weight each sector has, over what it had if no direction were preferred.
 import { shareDoubts } from './bins.js';
-import { make, makeSvg } from './sample.js';
+import { lineColors, make, makeSvg, written } from './sample.js';
 
 const kFullSectors = 18;  // of half a turn
 const kQuarterSectors = 9;  // of a quarter turn
@@ -96,4 +96,30 @@ export function fullRose(sample, selection, title, kind, name, weight) {
 export function quarterRose(sample, selection, title, kind, name, weight) {
   return new Rose(sample, selection, title, kind, name, weight, rises,
     [['z', Math.PI / 2], ['90\u00b0', 0]]);
+}
+
+/// What a symmetric tensor has along each direction of the three planes, in percent; the circle is its mean.
+export function tensorRose(title, tensor) {
+  const names = ['x', 'y', 'z'], planes = [[0, 1], [0, 2], [1, 2]];
+  const mean = (tensor[0][0] + tensor[1][1] + tensor[2][2]) / 3;
+  const along = ([i, j], angle) => {
+    const c = Math.cos(angle), s = Math.sin(angle);
+    return c * c * tensor[i][i] + 2 * c * s * tensor[i][j] + s * s * tensor[j][j];
+  };
+  const angles = Array.from({ length: 121 }, (_, i) => i * Math.PI / 60);
+  const highest = Math.max(mean, ...planes.flatMap((plane) => angles.map((angle) => along(plane, angle))));
+  const scale = highest > 0 ? most / highest : 0;
+  const svg = makeSvg('svg', { viewBox: '-6 4 222 202', role: 'img', 'aria-label': title, class: 'rose' });
+  svg.append(makeSvg('circle', { cx: middle, cy: middle, r: mean * scale, class: 'class' }));
+  planes.forEach((plane, k) => {
+    const places = angles.map((angle) => {
+      const radius = along(plane, angle) * scale;
+      return `${(middle + radius * Math.cos(angle)).toFixed(2)} ${(middle - radius * Math.sin(angle)).toFixed(2)}`;
+    });
+    svg.append(makeSvg('path', { class: 'steps', style: `stroke: ${lineColors[k]}; stroke-width: 1.6`, d: `M${places.join('L')}` }),
+      makeSvg('text', { x: -2, y: 16 + 12 * k, style: `fill: ${lineColors[k]}` },
+        `${names[plane[0]]} \u2192, ${names[plane[1]]} \u2191`));
+  });
+  svg.append(makeSvg('text', { x: middle, y: 202, 'text-anchor': 'middle' }, `circle: ${written(100 * mean, 3)} %`));
+  return make('figure', {}, make('figcaption', {}, title), svg);
 }

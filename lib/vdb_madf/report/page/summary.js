@@ -41,6 +41,10 @@ export function tiles(sample, visible = new Uint8Array(sample.count).fill(1),
     result.push(['Specific surface', `${written(numbers.surfaceOfMass, 3)} m\u00b2/kg`]);
   if ('bulk_density_kg_per_m3' in sample.numbers)
     result.push(['Density', `${written(numbers.density, 3)} kg/m\u00b3`]);
+  const across = (name) => ['x', 'y', 'z'].map((axis) => written(100 * (sample.numbers[`${name}_${axis}`] ?? NaN), 3)).join(', ');
+  if ('bond_conductivity_x' in sample.numbers)
+    result.push(['Bonds conduct along x, y, z, % of the full box', across('bond_conductivity')],
+      ['Minimum cut across x, y, z, % of the section', across('minimum_cut_share')]);
   return result;
 }
 
