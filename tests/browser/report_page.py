@@ -286,6 +286,20 @@ def check_looks(page, path):
     page.driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
+def check_frame(page, folder):
+    """In a frame of another page a report begins at its view, and that page stays where it is."""
+    with open("frame.html", "w", encoding="utf-8") as file:
+        file.write('<p style="height: 400px">Above</p>'
+                   '<iframe src="r.html" width="800" height="500"></iframe><p>Below</p>')
+    page.driver.get(f"file://{folder}/frame.html")
+    page.driver.switch_to.frame(0)
+    page.wait("return document.documentElement.dataset.ready")
+    top = page.run("return document.getElementById('view').getBoundingClientRect().top")
+    page.driver.switch_to.default_content()
+    demand(abs(top) < 2, f"in a frame the view is {top} pixels off its upper edge")
+    demand(page.run("return window.scrollY") == 0, "a report moves the page around it")
+
+
 def check_odd_samples(page, folder):
     """Pages of samples that lack something, or have something large."""
     raw = os.path.join(folder, "odd.raw")
@@ -432,6 +446,7 @@ with tempfile.TemporaryDirectory() as folder:
         check_comparison(page, folder, "l.vdb", grains)
         check_series(page, folder)
         check_crossings(page, folder)
+        check_frame(page, folder)
         check_clicks(page, check_strictness(page, folder))
         check_odd_samples(page, folder)
     with Page("--disable-3d-apis") as page:

@@ -60,6 +60,9 @@ async function startSample() {
   document.addEventListener('keydown', (event) => {
     if (event.key === 'Escape' && selection.selected.size + selection.absent.length > 0) selection.select([]);
   });
+  // In a frame the view comes first. (scrollIntoView would move the page around the frame, too.)
+  if (window.parent !== window)
+    window.scrollBy(0, (element('levels') || element('view')).getBoundingClientRect().top);
   // For tests, and for a reader's console.
   window.report = { sample, selection, camera, scene };
 }
