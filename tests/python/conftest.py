@@ -43,6 +43,26 @@ def expected(array, command, tmp_path_factory):
     return np.load(folder / "labels.npy")
 
 
+@pytest.fixture(scope="session")
+def labels(sample):
+    """Those of the mask."""
+    return madf.segment(sample[0], keep=()).labels
+
+
+@pytest.fixture(scope="session")
+def measured(labels):
+    return madf.measure(labels)
+
+
+@pytest.fixture(scope="session")
+def tables(labels, command, tmp_path_factory):
+    """The folder of the labels and of what the command measures of them."""
+    folder = tmp_path_factory.mktemp("tables")
+    labels.save(folder / "labels.vdb")
+    command("measure", folder / "labels.vdb", folder)
+    return folder
+
+
 def pytest_terminal_summary(terminalreporter):
     """Skipped tests are said as those of the other tests are."""
     for report in terminalreporter.stats.get("skipped", []):

@@ -1,35 +1,15 @@
 # SPDX-FileCopyrightText: The vdb_madf authors
 # SPDX-License-Identifier: Apache-2.0
-"""Measures, comparisons, meshes and files are those of the command."""
+"""Measures are those of the command."""
 
 import csv
-import gc
 import json
 import pickle
-import warnings
 
 import numpy as np
 import pytest
 
 import vdb_madf as madf
-
-
-@pytest.fixture(scope="module")
-def labels(sample):
-    return madf.segment(sample[0]).labels
-
-
-@pytest.fixture(scope="module")
-def measured(labels):
-    return madf.measure(labels)
-
-
-@pytest.fixture(scope="module")
-def tables(labels, command, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("tables")
-    labels.save(folder / "labels.vdb")
-    command("measure", folder / "labels.vdb", folder)
-    return folder
 
 
 def columns(path):
@@ -277,159 +257,6 @@ def test_measures_of_foreign_labels(labels, measured):
     with pytest.raises(ValueError, match="gray image"):
         madf.measure(np.random.default_rng(5).integers(0, 60000, (20, 20, 20)))
     pickle.loads(pickle.dumps(measured))
-
-
-def test_comparison(sample, labels):
-    truth = sample[1]
-    found = madf.compare(truth, np.asarray(labels))
-    again = madf.compare(truth, madf.segment(sample[0]))
-    assert again.adjusted_rand_index == found.adjusted_rand_index
-    a, b = np.asarray(truth), np.asarray(labels)
-    assert found.truth_grains == len(truth.ids) and found.common_voxels == ((a > 0) & (b > 0)).sum()
-    pairs, counts = np.unique(np.stack([a[a > 0], b[a > 0]]), axis=1, return_counts=True)
-    assert (found.overlaps["truth"] == pairs[0]).all() and (
-        found.overlaps["voxels"] == counts).all()
-    same = madf.compare(labels, labels)
-    assert same.adjusted_rand_index == 1 and same.misclassified_percent == 0
-
-
-def test_what_is_said_of_a_comparison(labels):
-    dense = np.asarray(labels)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        madf.compare(labels, labels)
-        madf.compare(labels, dense)
-    with pytest.warns(UserWarning, match="the domains differ") as heard:
-        madf.compare(labels, labels[1:])
-    assert any("differ in topology" in str(warning.message) for warning in heard)
-    assert {warning.filename for warning in heard} == {__file__}
-    for work in (madf.compare, madf.track):
-        with pytest.raises(ValueError, match="its voxels are 2 times as long as those of"):
-            work(labels, madf.Labels(dense, voxel_size="20um"))
-    with pytest.raises(ValueError, match="test: no voxel is labeled both here and in truth"):
-        madf.compare(labels, np.zeros_like(dense))
-
-
-def test_mesh(labels, measured):
-    mesh = labels.mesh(smoothing=0)
-    assert (mesh.ids == labels.ids).all() and mesh.unit == "mm"
-    assert np.allclose(mesh.volumes(), measured.grains["volume"], rtol=1e-5)
-    smooth = labels.mesh()
-    assert np.allclose(smooth.volumes(), measured.grains["volume"], rtol=5e-3)
-    points, triangles = mesh.grain(int(mesh.ids[1]))
-    assert triangles.max() == len(points) - 1 and triangles.min() == 0
-    low = measured.grains["box_min_x"][1] * 0.01 - 0.005
-    assert points[:, 0].min() == pytest.approx(low, abs=1e-6)
-    one = labels.mesh(smoothing=0, ids=[int(mesh.ids[1])])
-    assert (one.points == points).all() and (one.triangles == triangles).all()
-    assert len(labels.mesh(smoothing=0, triangles=2000).triangles) <= 2000
-    with pytest.raises(KeyError):
-        mesh.grain(99999)
-
-
-def test_arrays_of_a_mesh_are_its_memory(labels):
-    mesh = labels.mesh(smoothing=0)
-    assert not mesh.points.flags.owndata and mesh.points.base is mesh.triangles.base
-    points, total = mesh.points, mesh.points.sum()
-    del mesh
-    gc.collect()
-    [np.empty(10**6) for _ in range(5)]
-    assert points.sum() == total
-
-
-HDF5 = pytest.mark.skipif(not madf.reads_hdf5(), reason="HDF5: built without libhdf5-dev")
-
-# What is written here, and how the command writes it.
-FILES = [
-    ("a.npy", {}, ["convert"]), ("a.tif", {}, ["convert"]), ("a.nrrd", {}, ["convert"]),
-    ("a.mha", dict(type="uint16"), ["convert", "--out-type", "uint16"]),
-    ("a.vdb", {}, ["convert", "--grid", "grain"]),
-    ("a.ply", {}, ["export"]), ("a.vti", dict(compress=True), ["export", "--compress"]),
-    ("a.obj", dict(reduce=2, smoothing=0), ["export", "--reduce", "2", "--smooth", "0"]),
-    ("a.vtp", dict(kind="mesh", triangles=3000), ["export", "--as", "mesh", "--triangles", "3000"]),
-    ("a.glb", {}, ["export"]),
-    ("b.glb", dict(triangles=3000, smoothing=0),
-     ["export", "--triangles", "3000", "--smooth", "0"]),
-    pytest.param("a.h5", {}, ["convert"], marks=HDF5),
-    pytest.param("m.hdf5", dict(kind="mask"), ["export", "--as", "mask"], marks=HDF5),
-    ("a.graphml", {}, ["export"]), ("a.csv", dict(kind="network", min_faces=9),
-                                    ["export", "--as", "network", "--min-faces", "9"]),
-    ("a.txt", dict(max_balls=20, apart=True),
-     ["export", "--as", "clumps", "--balls", "20", "--apart"]),
-    ("a.inp", {}, ["export"]), ("a.vtu", {}, ["export"]),
-    ("p.vdb", dict(kind="preview", reduce=2), ["export", "--as", "viz", "--reduce", "2"]),
-    ("s.vdb", dict(kind="surface"), ["export", "--as", "surface"]),
-    ("g.vdb", dict(kind="level sets"), ["export", "--as", "grids"]),
-    ("m.raw", dict(kind="mask"), ["export", "--as", "mask"]),
-    ("a.png", dict(size=128, azimuth=60), ["render", "--size", "128", "--azimuth", "60"]),
-]
-
-
-@pytest.mark.parametrize("name, arguments, verb", FILES)
-def test_files_are_those_of_the_command(name, arguments, verb, labels, tables, command, tmp_path):
-    (tmp_path / "here").mkdir()
-    (tmp_path / "there").mkdir()
-    labels.save(tmp_path / "here" / name, **arguments)
-    command(verb[0], tables / "labels.vdb", tmp_path / "there" / name, *verb[1:])
-    assert (tmp_path / "here" / name).read_bytes() == (tmp_path / "there" / name).read_bytes()
-
-
-@HDF5
-def test_h5py_reads_labels_and_masks_while_others_are_written(labels, tmp_path):
-    h5py = pytest.importorskip("h5py")
-    with h5py.File(tmp_path / "theirs.h5", "w") as theirs:
-        theirs["labels"] = np.asarray(labels)
-        labels.save(tmp_path / "ours.h5")
-        assert (np.asarray(madf.Labels(tmp_path / "ours.h5")) == np.asarray(labels)).all()
-        theirs["again"] = np.asarray(labels)
-    with h5py.File(tmp_path / "ours.h5") as ours:
-        assert (ours["data"][...] == np.asarray(labels)).all()
-        edges = np.array(labels.spacing) * {"mm": 1e3, "um": 1}[labels.unit]
-        assert np.allclose(ours["data"].attrs["element_size_um"], edges, rtol=1e-12)
-    madf.Mask(np.asarray(labels) > 0).save(tmp_path / "mask.h5")
-    with h5py.File(tmp_path / "mask.h5") as mask:
-        assert (mask["data"][...] == (np.asarray(labels) > 0)).all()
-
-
-def test_a_folder_of_meshes(labels, tmp_path):
-    labels.save(tmp_path / "grains", kind="mesh")
-    assert len(list((tmp_path / "grains").glob("grain_*.stl"))) == len(labels.ids)
-
-
-def test_ome_zarr_is_that_of_the_command_and_is_read_back(labels, tables, command, tmp_path):
-    for ome in ("0.4", "0.5", "0.6"):
-        ours, theirs = (tmp_path / f"{place}{ome}.ome.zarr" for place in ("here", "there"))
-        with_meshes = ome == "0.5"
-        labels.save(ours, ome=ome, meshes=with_meshes, reduce=2)
-        command("export", tables / "labels.vdb", theirs, "--ome", ome,
-                *["--meshes", "--reduce", "2"] * with_meshes)
-        files = sorted(path.relative_to(ours) for path in ours.rglob("*"))
-        assert len(files) > 8 and files == sorted(path.relative_to(theirs)
-                                                  for path in theirs.rglob("*"))
-        for file in files:
-            if file.name == "state.json":  # it has the name of the folder
-                continue
-            assert (ours / file).is_dir() or (ours / file).read_bytes() == (theirs
-                                                                            / file).read_bytes()
-        read = madf.Labels(ours, dataset="labels/grain")
-        assert np.array_equal(read, labels) and read.spacing == labels.spacing
-        with pytest.raises(madf.IoError, match="already"):
-            labels.save(ours)
-
-
-@pytest.mark.parametrize("name, arguments, text", [
-    ("a.zarr", dict(ome="0.3"), "0.4, 0.5 or 0.6"),
-    ("a.docx", {}, "no format has the ending '.docx'"),
-    ("a.csv", {}, "kind='network' or 'clumps'"),
-    ("a.png", dict(kind="mesh"), "must be one of .ply"),
-    ("a.vdb", dict(kind="fog"), "must be one of labels"),
-    ("a.tif", dict(type="uint1"), "no sample type"),
-    ("nowhere/a.vdb", {}, "nowhere/a.vdb"),
-])
-def test_files_that_cannot_be_written(name, arguments, text, labels, tmp_path):
-    with pytest.raises((madf.InvalidInput, madf.IoError), match=text):
-        labels.save(tmp_path / name, **arguments)
-    assert not list(tmp_path.iterdir())
 
 
 def test_necks_in_a_gray_scan(command, tmp_path):

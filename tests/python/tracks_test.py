@@ -11,11 +11,6 @@ import pytest
 import vdb_madf as madf
 
 
-@pytest.fixture(scope="module")
-def labels(sample):
-    return madf.segment(sample[0], keep=()).labels
-
-
 def rows(path, side=None):
     with open(path) as file:
         return [row for row in csv.DictReader(file) if side is None or row["side"] == side]

@@ -15,11 +15,6 @@ import vdb_madf as madf
 
 
 @pytest.fixture(scope="module")
-def labels(sample):
-    return madf.segment(sample[0], keep=()).labels
-
-
-@pytest.fixture(scope="module")
 def dense(labels):
     return np.asarray(labels)
 
