@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "support/catch.h"
+#include "support/command_runs.h"
 #include "support/program.h"
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/pictures/picture.h"
@@ -70,6 +71,25 @@ int longestBar(const Picture& picture) {
 }
 
 }  // namespace
+
+TEST_CASE("cli: render writes a PNG", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSpheres + "s.vdb");
+  bench.mustRun("render s.vdb s.png");
+  const std::string png = bench.bytes("s.png");
+  REQUIRE(png.size() > 33);
+  CHECK(png.substr(0, 8) == "\x89PNG\r\n\x1a\n");
+  CHECK(png.substr(12, 4) == "IHDR");
+  const auto number = [&](size_t at) {
+    uint32_t value = 0;
+    for (size_t i = 0; i < 4; ++i) value = value << 8 | uint8_t(png[at + i]);
+    return value;
+  };
+  CHECK(number(16) >= 2 * 480);  // two columns, 12 pixels a voxel
+  CHECK(number(20) >= 2 * 480);
+  bench.mustRun("render s.vdb t.png --threads 1");
+  CHECK(bench.bytes("t.png") == png);
+}
 
 TEST_CASE("cli: render shows the middle slices, touching grains in unlike colors", "[cli]") {
   const Bench bench;

@@ -1,14 +1,10 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The verbs segment, remerge, sweep and compare, run as a user runs them.
-
-#include <algorithm>
-#include <sstream>
+// vdb_madf segment, run as a user runs it.
 
 #include "support/catch.h"
 #include "support/command_runs.h"
-#include "support/svg.h"
 
 using namespace vdb_madf::test;
 using vdb_madf::test::Contains;
@@ -128,50 +124,6 @@ TEST_CASE("cli: the paper's merging is a short form", "[cli]") {
   CHECK(bench.bytes("short.vdb") == bench.bytes("long.vdb"));
 }
 
-TEST_CASE("cli: remerge equals a fresh segmentation", "[cli]") {
-  const Bench bench;
-  bench.mustRun(kSnow + "s.vdb");
-  bench.mustRun("segment s.vdb g.vdb --keep manifold");
-  for (const std::string options :
-       {"", " --strictness 9", " --strictness 12.5 --tidy 0", " --merge both --theta 1",
-        " --merge angle --adjacency cell", " --merge neck", " --merge both --delta 9 --tidy 5",
-        " --min-grain 400", " --merge angle --min-grain 400 --tidy 0"}) {
-    CAPTURE(options);
-    bench.mustRun("remerge g.vdb re.vdb" + options);
-    bench.mustRun("segment s.vdb fresh.vdb --keep manifold" + options);
-    CHECK(bench.bytes("re.vdb") == bench.bytes("fresh.vdb"));
-    bench.mustRun("remerge re.vdb back.vdb");  // the manifolds went along
-    CHECK(bench.bytes("back.vdb") == bench.bytes("g.vdb"));
-  }
-}
-
-TEST_CASE("cli: a least grain is told, swept and taken along", "[cli]") {
-  const Bench bench;
-  bench.mustRun(kSnow + "s.vdb");
-  const Json plain = Json::parse(bench.mustRun("segment s.vdb g.vdb --keep manifold --json -"));
-  CHECK(plain.count("min_grain") == 0);
-  CHECK(bench.mustRun("segment s.vdb h.vdb --keep manifold --min-grain 0 --tidy 0")
-            .find("min-grain") == std::string::npos);
-  const std::string said = bench.mustRun("segment s.vdb m.vdb --min-grain 400 --tidy 0");
-  CHECK(said.find("fill-holes 27, min-grain 400, tidy 0\n") != std::string::npos);
-  CHECK(bench.mustRun("segment s.vdb n.vdb --merge both --min-grain 400")
-            .find("fill-holes 27, delta 2, min-grain 400, tidy 2\n") != std::string::npos);
-  const Json json = Json::parse(bench.mustRun("segment s.vdb m.vdb --min-grain 400 --json -"));
-  CHECK(json.at("min_grain") == 400);
-  CHECK(json.at("grains") < plain.at("grains"));
-  CHECK(gridOf(infoOf(bench, "m.vdb"), "grain").at("metadata").at("madf_min_grain") == 400);
-  CHECK(gridOf(infoOf(bench, "g.vdb"), "grain").at("metadata").count("madf_min_grain") == 0);
-  bench.mustRun("sweep s.vdb a.csv --strictness 11 --min-grain 400");
-  CHECK(bench.bytes("a.csv").find("\n0,score,11,,," + std::to_string(json.at("grains").get<int>()) +
-                                  ",") != std::string::npos);
-  // Before they are tidied, labels are those of the edit.
-  bench.mustRun("segment s.vdb m.vdb --min-grain 400 --tidy 0");
-  bench.mustRun("edit h.vdb e.vdb --join-below 400");
-  const Json same = Json::parse(bench.mustRun("compare m.vdb e.vdb --json -"));
-  CHECK(same.at("misclassified_percent") == 0);
-  CHECK(same.at("test_grains") == json.at("grains"));
-}
-
 TEST_CASE("cli: segment and remerge write images as convert does", "[cli]") {
   const Bench bench;
   bench.mustRun(kSnow + "s.vdb");
@@ -188,177 +140,6 @@ TEST_CASE("cli: segment and remerge write images as convert does", "[cli]") {
     CHECK(bench.bytes("remerged" + ending) == bench.bytes("wanted" + ending));
   }
   CHECK(Json::parse(bench.mustRun("segment s.vdb x.tif --json -")).at("output") == "x.tif");
-}
-
-TEST_CASE("cli: sweep gives a line for each choice, equal to its segmentation", "[cli]") {
-  const Bench bench;
-  bench.mustRun(kSnow + "s.vdb");
-  bench.mustRun(
-      "sweep s.vdb a.csv --gamma 0,9 --theta -1:-0.7:0.1,-0.95 --merge angle,both --small 50 "
-      "--delta 2,4 --tidy 1 --fill-holes 9 --plot a.svg");
-  std::istringstream csv(bench.bytes("a.csv"));
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(csv, line);) lines.push_back(line);
-  REQUIRE(lines.size() == 1 + 2 * 2 * 2 * 5);
-  CHECK(lines[0].find("gamma,merge,strictness,delta,theta,grains,median_voxels,") == 0);
-  for (const auto& [line, options] :
-       {std::pair<size_t, std::string>{1, "--gamma 0 --theta -1 --merge angle"},
-        {8, "--gamma 0 --theta -0.8 --merge angle --delta 4"},
-        {25, "--gamma 9 --theta -0.95 --merge angle"},
-        {39, "--gamma 9 --theta -0.7 --merge both --delta 4"}}) {
-    const Json json = Json::parse(
-        bench.mustRun("segment s.vdb g.vdb --tidy 1 --fill-holes 9 --json - " + options));
-    std::istringstream fields(lines[line]);
-    std::string gamma, merge, strictness, delta, theta, grains;
-    for (std::string* field : {&gamma, &merge, &strictness, &delta, &theta, &grains})
-      std::getline(fields, *field, ',');
-    CHECK(std::stoi(delta) == json.at("delta"));
-    const std::string flaws = "," + std::to_string(json.at("crumbs").get<int>()) + "," +
-                              std::to_string(json.at("specks").get<int>()) + "," +
-                              std::to_string(json.at("slivers").get<int>()) + "," +
-                              std::to_string(json.at("grains_in_pieces").get<int>());
-    CHECK(lines[line].substr(lines[line].size() - flaws.size()) == flaws);
-    CHECK(std::stoll(gamma) == json.at("gamma"));
-    CHECK(merge == json.at("merge").get<std::string>());
-    CHECK(std::stod(theta) == json.at("theta"));
-    CHECK(std::stoll(grains) == json.at("grains"));
-  }
-  const std::string svg = bench.bytes("a.svg");
-  CHECK(svg.find("<svg ") != std::string::npos);
-  CHECK(svg.substr(svg.size() - 7) == "</svg>\n");
-  CHECK(svg.find("nan") == std::string::npos);
-  // In three diagrams and the legend.
-  CHECK(countInSvg(svg, "stroke:rgb(0%,44.705882%") == 4 * 4);
-  CHECK(countInSvg(svg, "stroke:rgb(83.529412%,36") == 4 * 4);
-
-  bench.mustRun(
-      "sweep s.vdb b.csv --gamma 0,9 --theta -1:-0.7:0.1,-0.95 --merge angle,both --small 50 "
-      "--delta 2,4 --tidy 1 --fill-holes 9 --plot b.svg --threads 1");
-  CHECK(bench.bytes("a.csv") == bench.bytes("b.csv"));
-  CHECK(svg == bench.bytes("b.svg"));
-}
-
-TEST_CASE("cli: grains by score, segmented, remerged and swept", "[cli]") {
-  const Bench bench;
-  bench.mustRun(kSnow + "s.vdb");
-  bench.mustRun("segment s.vdb all.vdb --keep manifold");
-  bench.mustRun("sweep s.vdb a.csv --strictness 9:12:1.5,11 --plot a.svg");
-  std::istringstream csv(bench.bytes("a.csv"));
-  std::string line;
-  std::getline(csv, line);
-  CHECK(line.find("gamma,merge,strictness,delta,theta,grains,") == 0);
-  for (const std::string strictness : {"9", "10.5", "12", "11"}) {
-    std::getline(csv, line);
-    CAPTURE(strictness, line);
-    const std::string how = strictness == "11" ? "" : " --strictness " + strictness;
-    const Json json = Json::parse(bench.mustRun("segment s.vdb g.vdb --json -" + how));
-    CHECK(line.find("0,score," + strictness + ",,," + std::to_string(json.at("grains").get<int>()) +
-                    ",") == 0);
-    bench.mustRun("remerge all.vdb r.vdb" + how);
-    bench.mustRun("convert r.vdb r.npy --grid grain");
-    bench.mustRun("convert g.vdb g.npy --grid grain");
-    CHECK(bench.bytes("r.npy") == bench.bytes("g.npy"));
-  }
-  CHECK(bench.bytes("a.svg").find("nan") == std::string::npos);
-  const Json json = Json::parse(bench.mustRun("segment s.vdb g.vdb --json -"));
-  CHECK(json.at("strictness") == 11);
-  for (const char* key : {"theta", "delta", "adjacency"}) CHECK(!json.contains(key));
-  const std::string said = bench.mustRun("segment s.vdb g.vdb");
-  CHECK(said.find("merge score, strictness 11, boundary open,\n") != std::string::npos);
-  CHECK(said.find("theta") == std::string::npos);
-  bench.mustRun("sweep s.vdb b.csv --merge neck,score --theta -0.9 --strictness 11");
-  CHECK(bench.bytes("b.csv").find("\n0,neck,,2,-0.9,") != std::string::npos);
-  CHECK(bench.bytes("b.csv").find("\n0,score,11,,,") != std::string::npos);
-}
-
-TEST_CASE("cli: the joins of the hierarchy, in one file and in slabs", "[cli]") {
-  const Bench bench;
-  bench.mustRun(kSnow + "s.vdb");
-  bench.mustRun("segment s.vdb all.vdb --keep manifold --strictness 3");
-  CHECK(bench.mustRun("hierarchy all.vdb joins.csv").find(" joins of ") != std::string::npos);
-  const std::string table = bench.bytes("joins.csv");
-  std::istringstream csv(table);
-  std::string line, last;
-  std::getline(csv, line);
-  CHECK(line ==
-        "join,score,strictness,grains,first,first_x,first_y,first_z,first_voxels,second,second_x,"
-        "second_y,second_z,second_voxels");
-  while (std::getline(csv, line)) {
-    std::istringstream fields(line);
-    std::string join, score, strictness, grains;
-    for (std::string* field : {&join, &score, &strictness, &grains})
-      std::getline(fields, *field, ',');
-    if (std::stod(strictness) < 3) break;
-    last = grains;
-  }
-  const Json info = Json::parse(bench.mustRun("info all.vdb --json -"));
-  const Json* labels = nullptr;
-  for (const Json& grid : info.at("grids"))
-    if (grid.at("name") == "grain") labels = &grid;
-  REQUIRE(labels);
-  CHECK(last == std::to_string(labels->at("metadata").at("madf_grains").get<int>()));
-  CHECK(bench.mustRun("hierarchy all.vdb -") == table);
-  bench.mustRun("segment s.vdb all.slabs --slab-height 16 --keep manifold");
-  bench.mustRun("hierarchy all.slabs cut.csv");
-  CHECK(bench.bytes("cut.csv") == table);
-
-  bench.mustRun("segment s.vdb grains.vdb");
-  const Outcome none = bench.run("hierarchy grains.vdb joins.csv");
-  CHECK(none.exitCode == 1);
-  CHECK(none.err.find("holds no manifolds") != std::string::npos);
-  CHECK(bench.bytes("joins.csv") == table);
-  CHECK(bench.run("hierarchy all.vdb joins.txt").exitCode == 2);
-}
-
-TEST_CASE("cli: compare finds a file equal to itself", "[cli]") {
-  const Bench bench;
-  bench.mustRun(kSpheres + "s.vdb");
-  bench.mustRun(kSpheres + "s.tif");
-  for (const std::string pair : {"s.vdb s.vdb", "s.vdb s.truth.tif", "s.truth.tif s.vdb"}) {
-    CAPTURE(pair);
-    const Json json = Json::parse(bench.mustRun("compare " + pair + " --json -"));
-    CHECK(json.at("truth_grains") == 5);
-    CHECK(json.at("test_grains") == 5);
-    CHECK(json.at("misclassified_percent") == 0);
-    CHECK(json.at("adjusted_rand_index") == 1);
-    CHECK(json.at("variation_of_information_bits").get<double>() == Approx(0).margin(1e-12));
-  }
-  bench.mustRun("segment s.vdb one.vdb --theta 1 --merge angle --adjacency cell");
-  const Json json = Json::parse(bench.mustRun("compare s.vdb one.vdb --json -"));
-  CHECK(json.at("test_grains").get<int>() < 5);
-  CHECK(json.at("adjusted_rand_index").get<double>() < 1);
-  CHECK(bench.mustRun("compare s.vdb one.vdb").find("misclassified") != std::string::npos);
-  CHECK(bench.mustRun("compare s.vdb one.vdb -q") == "");
-
-  CHECK(json.at("same_topology") == true);
-  CHECK(json.at("splits").empty());
-  REQUIRE(json.at("merges").size() == 1);
-  CHECK(json.at("merges")[0].at("truth").size() >= 2);
-  bench.mustRun("compare s.vdb one.vdb --grains grains.csv --confusion confusion.csv");
-  const auto lines = [&](const std::string& file) {
-    const std::string text = bench.bytes(file);
-    return std::count(text.begin(), text.end(), '\n');
-  };
-  CHECK(lines("grains.csv") == 1 + 5 + json.at("test_grains").get<int>());
-  CHECK(lines("confusion.csv") >= 1 + 5);
-}
-
-TEST_CASE("cli: compare says when the grids differ in topology", "[cli]") {
-  const Bench bench;
-  bench.write("a.raw", std::string("\1\1\2\2", 4));
-  bench.write("b.raw", std::string("\0\1\2\2", 4));
-  const std::string pair = "compare a.raw b.raw --dims 4x1x1 --type uint8";
-  CHECK(bench.mustRun(pair).find("differ in topology") != std::string::npos);
-  CHECK(Json::parse(bench.mustRun(pair + " --json -")).at("same_topology") == false);
-  CHECK(bench.mustRun(pair + " --grains -") ==
-        "side,grain,voxels,partner,overlap_voxels,intersection_over_union,pieces\n"
-        "truth,1,2,1,1,0.5,1\ntruth,2,2,2,2,1,1\ntest,1,1,1,1,0.5,1\ntest,2,2,2,2,1,1\n");
-  CHECK(bench.mustRun(pair + " --confusion -") == "truth,test,voxels\n1,0,1\n1,1,1\n2,2,2\n");
-
-  CHECK(bench.mustRun(pair).find("domains differ") == std::string::npos);
-  bench.mustRun("convert a.raw a.npy --dims 4x1x1 --type uint8");
-  bench.mustRun("convert a.raw longer.npy --dims 2x2x1 --type uint8");
-  CHECK(bench.mustRun("compare a.npy longer.npy").find("domains differ") != std::string::npos);
 }
 
 TEST_CASE("cli: an empty object has no grains", "[cli]") {
