@@ -5,22 +5,26 @@
 
 #include <openvdb/Metadata.h>
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "support/catch.h"
 #include "support/edits.h"
+#include "support/naive_neck.h"
 #include "support/oracle.h"
 #include "support/random_case.h"
 #include "support/runs.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/edits/detail/last_join.h"
-#include "vdb_madf/edits/detail/weakest_neck.h"
 #include "vdb_madf/edits/edit_labels.h"
 #include "vdb_madf/labels/label_digest.h"
 #include "vdb_madf/labels/label_sizes.h"
+#include "vdb_madf/method/hierarchy.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"
 
@@ -30,76 +34,6 @@ using namespace vdb_madf::test;
 namespace {
 
 using Nodes = std::vector<uint32_t>;
-
-/// By the definition: classes as sets, tops looked up anew, sides by walking.
-std::optional<std::vector<char>> naiveNeck(const ManifoldGraph& graph, const Nodes& nodes,
-                                           const std::vector<int64_t>& voxels) {
-  struct Link {
-    size_t a, b;
-    int height, order;
-    double narrower;
-  };
-  const auto place = [&](uint32_t node) {
-    return size_t(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
-  };
-  std::vector<Link> links;
-  for (const auto& edge : graph.edges)
-    if (place(edge.first) < nodes.size() && place(edge.second) < nodes.size())
-      links.push_back({place(edge.first), place(edge.second), std::max(0, edge.saddleHeight),
-                       int(links.size()), 0});
-  std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) {
-    return a.height != b.height ? a.height > b.height : a.order < b.order;
-  });
-  std::vector<std::set<size_t>> classes;
-  for (size_t i = 0; i < nodes.size(); ++i) classes.push_back({i});
-  const auto top = [&](const std::set<size_t>& members) {
-    int largest = 0;
-    for (const size_t i : members) largest = std::max(largest, graph.nodes[nodes[i]].squaredRadius);
-    return largest;
-  };
-  std::vector<Link> tree;
-  for (Link link : links) {
-    const auto with = [&](size_t i) {
-      return std::find_if(classes.begin(), classes.end(),
-                          [&](const auto& c) { return c.count(i); });
-    };
-    if (with(link.a) == with(link.b)) continue;
-    const std::set<size_t> a = *with(link.a), b = *with(link.b);
-    link.narrower = std::sqrt(double(std::min(top(a), top(b)))) - std::sqrt(double(link.height));
-    tree.push_back(link);
-    with(link.a)->insert(b.begin(), b.end());
-    classes.erase(std::find(classes.begin(), classes.end(), b));
-  }
-  REQUIRE(classes.size() == 1);
-  size_t largest = 0;
-  for (size_t i = 1; i < nodes.size(); ++i)
-    if (graph.nodes[nodes[i]].squaredRadius > graph.nodes[nodes[largest]].squaredRadius)
-      largest = i;
-  std::optional<std::vector<char>> best;
-  double most = 0;
-  int lowest = 0;
-  for (size_t without = 0; without < tree.size(); ++without) {
-    std::vector<char> beyond(nodes.size(), 1);
-    beyond[largest] = 0;
-    for (bool changed = true; changed;) {
-      changed = false;
-      for (size_t i = 0; i < tree.size(); ++i) {
-        if (i == without || beyond[tree[i].a] == beyond[tree[i].b]) continue;
-        beyond[tree[i].a] = beyond[tree[i].b] = 0;
-        changed = true;
-      }
-    }
-    int64_t here = 0, there = 0;
-    for (size_t i = 0; i < nodes.size(); ++i) (beyond[i] ? there : here) += voxels[i];
-    if (here == 0 || there == 0) continue;
-    const Link& link = tree[without];
-    if (best && (link.narrower < most || (link.narrower == most && link.height > lowest))) continue;
-    best = beyond;
-    most = link.narrower;
-    lowest = link.height;
-  }
-  return best;
-}
 
 /// By the definition: sets of classes, voxels counted anew.
 std::optional<std::vector<char>> naiveJoin(const ManifoldGraph& graph, double strictness,
@@ -241,71 +175,6 @@ std::optional<DenseVolume<int64_t>> naiveHalves(const Sample& s, const DenseVolu
 }
 
 }  // namespace
-
-TEST_CASE("grain_parts: the weakest neck, drawn by hand", "[grain_parts]") {
-  // Two large balls, a bump on the first that hardly sticks out, and one without voxels.
-  ManifoldGraph graph;
-  graph.nodes = {
-      {{0, 0, 0}, 400, 9}, {{0, 0, 9}, 9, 2}, {{0, 0, 30}, 441, 9}, {{0, 0, 60}, 900, 0}};
-  graph.edges = {{0, 1, 1, 8, true}, {0, 2, 1, 385, true}, {1, 3, 1, 2, true}};
-  using Sides = std::vector<char>;
-  CHECK(detail::beyondWeakestNeck(graph, {0, 1, 2}, {9, 2, 9}) == Sides{1, 1, 0});
-  CHECK(detail::beyondWeakestNeck(graph, {0, 1}, {9, 2}) == Sides{0, 1});
-  CHECK(detail::beyondWeakestNeck(graph, {0, 1, 2, 3}, {9, 2, 9, 0}) == Sides{0, 0, 1, 0});
-  CHECK_FALSE(detail::beyondWeakestNeck(graph, {1, 3}, {2, 0}));
-  CHECK_FALSE(detail::beyondWeakestNeck(graph, {2}, {9}));
-  CHECK_FALSE(detail::beyondWeakestNeck(graph, {}, {}));
-  // Without an edge.
-  CHECK(detail::beyondWeakestNeck(graph, {1, 2}, {2, 9}) == Sides{1, 0});
-}
-
-TEST_CASE("grain_parts: the weakest neck of random graphs", "[grain_parts]") {
-  for (uint64_t seed = 1; seed <= 400; ++seed) {
-    CAPTURE(seed);
-    Rng rng(seed);
-    ManifoldGraph graph;
-    const int count = rng.between(1, 9);
-    for (int i = 0; i < count; ++i) graph.nodes.push_back({Coord(i, 0, 0), rng.between(1, 12), 0});
-    for (uint32_t i = 0; i < uint32_t(count); ++i)
-      for (uint32_t j = i + 1; j < uint32_t(count); ++j)
-        if (j == i + 1 || rng.chance(0.3))
-          graph.edges.push_back({i, j, 1, rng.between(-2, 9), false});
-    Nodes nodes;
-    std::vector<int64_t> voxels;
-    const int first = rng.below(count);
-    for (int i = first; i < count; ++i) {
-      nodes.push_back(uint32_t(i));
-      voxels.push_back(rng.chance(0.3) ? 0 : rng.between(1, 5));
-    }
-    REQUIRE(detail::beyondWeakestNeck(graph, nodes, voxels) == naiveNeck(graph, nodes, voxels));
-  }
-}
-
-TEST_CASE("grain_parts: the last join, drawn by hand", "[grain_parts]") {
-  // Five manifolds; the second and the fourth are of one class.
-  ManifoldGraph graph;
-  for (const int top : {9, 16, 25, 4, 36}) graph.nodes.push_back({{0, 0, top}, top, 3});
-  Hierarchy hierarchy;
-  hierarchy.classOfNode = {0, 1, 2, 1, 3};
-  hierarchy.classes = {{0, 9, 3, 0}, {1, 16, 6, 0}, {2, 25, 3, 0}, {4, 36, 3, 0}};
-  hierarchy.joins = {{0, 1, 900}, {2, 3, 800}, {1, 3, 700}};
-  using Sides = std::vector<char>;
-  const auto sides = [&](const Nodes& nodes, const std::vector<int64_t>& voxels) {
-    return detail::beyondLastJoin(graph, hierarchy, nodes, voxels);
-  };
-  CHECK(sides({0, 1, 2, 3, 4}, {3, 3, 3, 3, 3}) == Sides{1, 1, 0, 1, 0});
-  CHECK(sides({0, 1, 3}, {3, 3, 3}) == Sides{1, 0, 0});
-  CHECK(sides({2, 4}, {3, 3}) == Sides{1, 0});
-  // What has no voxels makes no side.
-  CHECK(sides({0, 1, 2, 3, 4}, {3, 3, 0, 0, 0}) == Sides{0, 1, 0, 1, 0});
-  CHECK(sides({0, 2, 4}, {0, 3, 3}) == Sides{0, 1, 0});
-  CHECK_FALSE(sides({1, 3}, {3, 3}));
-  CHECK_FALSE(sides({0}, {3}));
-  CHECK_FALSE(sides({}, {}));
-  hierarchy.joins.pop_back();
-  CHECK_FALSE(sides({0, 1, 2, 3, 4}, {3, 3, 3, 3, 3}));
-  CHECK(sides({0, 1}, {3, 3}) == Sides{1, 0});
-}
 
 TEST_CASE("grain_parts: a grain of a segmentation splits as defined", "[grain_parts]") {
   int splits = 0, singles = 0;
