@@ -18,26 +18,11 @@ using Codecs = std::vector<std::string>;
 
 namespace {
 
-const ImageSize kZarr3Size{11, 7, 9}, kZarr3Chunk{4, 3, 5}, kZarr3Shard{8, 6, 5};
-
-void write(const std::string& path, const std::map<std::string, std::string>& files) {
-  std::filesystem::remove_all(path);
-  for (const auto& [name, bytes] : files) {
-    std::filesystem::create_directories(std::filesystem::path(path + "/" + name).parent_path());
-    writeFile(path + "/" + name, bytes);
-  }
-}
-
-Zarr3Layout layoutOf(SampleType type) {
-  Zarr3Layout layout{kZarr3Size, kZarr3Chunk};
-  layout.type = sampleTypeName(type);
-  layout.bytes = sampleSize(type);
-  return layout;
-}
+const ImageSize kZarr3Shard{8, 6, 5};
 
 void checkReads(const std::string& path, const std::string& bytes) {
   const auto image = openImage(path);
-  CHECK(image->info().size == kZarr3Size);
+  CHECK(image->info().size == kZarrSize);
   CHECK(image->info().format == "zarr");
   for (const int step : {1, 2, 5, 100}) CHECK(readAll(*image, step) == bytes);
 }
@@ -57,13 +42,13 @@ TEST_CASE("image_zarr3: every type, byte order and order of axes", "[image_zarr3
     for (const std::string order : {"", "zyx", "xyz", "yzx", "xzy"})
       for (const bool bigEndian : {false, true}) {
         if (type != SampleType::uint16 && order == "yzx") continue;
-        Zarr3Layout layout = layoutOf(type);
+        Zarr3Layout layout = zarr3Layout(type);
         layout.order = order;
         layout.bigEndian = bigEndian;
         layout.leading = order == "xyz" ? 2 : 0;
         CAPTURE(layout.type, order, bigEndian);
-        const std::string bytes = randomSamples(type, voxels(kZarr3Size), 1);
-        write(path, zarr3Files(layout, bigEndian ? swapped(bytes, layout.bytes) : bytes));
+        const std::string bytes = randomSamples(type, voxels(kZarrSize), 1);
+        writeZarr(path, zarr3Files(layout, bigEndian ? swapped(bytes, layout.bytes) : bytes));
         CHECK(looksLikeImage(path));
         CHECK(openImage(path)->info().type == type);
         CHECK_FALSE(openImage(path)->info().voxelSize);
@@ -74,8 +59,8 @@ TEST_CASE("image_zarr3: every type, byte order and order of axes", "[image_zarr3
 TEST_CASE("image_zarr3: one transposition after the other", "[image_zarr3]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.zarr";
-  const std::string bytes = randomSamples(SampleType::uint8, voxels(kZarr3Size), 8);
-  Zarr3Layout layout = layoutOf(SampleType::uint8);
+  const std::string bytes = randomSamples(SampleType::uint8, voxels(kZarrSize), 8);
+  Zarr3Layout layout = zarr3Layout(SampleType::uint8);
   layout.order = "yxz";
   auto files = zarr3Files(layout, bytes);
   const auto transposition = [](const std::string& order) {
@@ -83,20 +68,20 @@ TEST_CASE("image_zarr3: one transposition after the other", "[image_zarr3]") {
   };
   files["zarr.json"] = replaced(files["zarr.json"], transposition("[1, 2, 0]"),
                                 transposition("[1, 0, 2]") + ", " + transposition("[0, 2, 1]"));
-  write(path, files);
+  writeZarr(path, files);
   checkReads(path, bytes);
 }
 
 TEST_CASE("image_zarr3: every codec, in shards or not, and every key", "[image_zarr3]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.zarr";
-  const std::string bytes = randomSamples(SampleType::uint16, voxels(kZarr3Size), 2);
+  const std::string bytes = randomSamples(SampleType::uint16, voxels(kZarrSize), 2);
   for (const Codecs& codecs :
        {Codecs{}, Codecs{"gzip"}, Codecs{"zstd"}, Codecs{"blosc"}, Codecs{"crc32c"},
         Codecs{"gzip", "crc32c"}, Codecs{"crc32c", "gzip"}, Codecs{"crc32c", "zstd", "crc32c"},
         Codecs{"blosc", "crc32c"}, Codecs{"crc32c", "crc32c"}})
     for (const int sharded : {0, 1, 2, 3}) {
-      Zarr3Layout layout = layoutOf(SampleType::uint16);
+      Zarr3Layout layout = zarr3Layout(SampleType::uint16);
       layout.codecs = codecs;
       if (sharded > 0) layout.shard = sharded == 3 ? ImageSize{12, 9, 10} : kZarr3Shard;
       layout.indexAtStart = sharded == 2;
@@ -105,11 +90,11 @@ TEST_CASE("image_zarr3: every codec, in shards or not, and every key", "[image_z
       layout.separator = sharded > 1 ? "." : "/";
       layout.leading = sharded % 2;
       CAPTURE(codecs, sharded);
-      write(path, zarr3Files(layout, bytes));
+      writeZarr(path, zarr3Files(layout, bytes));
       checkReads(path, bytes);
       layout.bigEndian = true;
       layout.order = "yxz";
-      write(path, zarr3Files(layout, swapped(bytes, 2)));
+      writeZarr(path, zarr3Files(layout, swapped(bytes, 2)));
       checkReads(path, bytes);
     }
 }
@@ -118,12 +103,12 @@ TEST_CASE("image_zarr3: bool, 64-bit labels, and codecs and keys that are named 
           "[image_zarr3]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.zarr";
-  Zarr3Layout layout = layoutOf(SampleType::uint8);
-  std::string bits = randomSamples(SampleType::uint8, voxels(kZarr3Size), 3);
+  Zarr3Layout layout = zarr3Layout(SampleType::uint8);
+  std::string bits = randomSamples(SampleType::uint8, voxels(kZarrSize), 3);
   for (char& c : bits) c &= 1;
   layout.type = "bool";
   layout.fill = "false";
-  write(path, zarr3Files(layout, bits));
+  writeZarr(path, zarr3Files(layout, bits));
   CHECK(openImage(path)->info().type == SampleType::uint8);
   checkReads(path, bits);
   for (const std::string alone :
@@ -141,30 +126,30 @@ TEST_CASE("image_zarr3: bool, 64-bit labels, and codecs and keys that are named 
   checkReads(path, bits);
   layout.keys = "v2";
   layout.separator = ".";
-  write(path, zarr3Files(layout, bits));
+  writeZarr(path, zarr3Files(layout, bits));
   writeFile(path + "/zarr.json", replaced(zarr3Description(layout),
                                           R"({"name": "v2", "configuration": {"separator": "."}})",
                                           R"({"name": "v2"})"));
   checkReads(path, bits);
 
-  const std::string labels = randomSamples(SampleType::uint32, voxels(kZarr3Size), 4);
+  const std::string labels = randomSamples(SampleType::uint32, voxels(kZarrSize), 4);
   std::string wide;
   for (size_t i = 0; i < labels.size(); i += 4) wide += labels.substr(i, 4) + std::string(4, '\0');
-  Zarr3Layout wideLayout{kZarr3Size, kZarr3Chunk};
+  Zarr3Layout wideLayout{kZarrSize, kZarrChunk};
   wideLayout.type = "uint64";
   wideLayout.bytes = 8;
-  write(path, zarr3Files(wideLayout, wide));
+  writeZarr(path, zarr3Files(wideLayout, wide));
   CHECK(openImage(path)->info().type == SampleType::uint32);
   checkReads(path, labels);
   wide[4] = 1;
-  write(path, zarr3Files(wideLayout, wide));
+  writeZarr(path, zarr3Files(wideLayout, wide));
   CHECK_THROWS_WITH(readAll(*openImage(path)), Contains(path) && Contains("beyond 32 bits"));
 }
 
 TEST_CASE("image_zarr3: chunks and shards that are not there are the fill value", "[image_zarr3]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.zarr";
-  std::string bytes = randomSamples(SampleType::uint8, voxels(kZarr3Size), 5);
+  std::string bytes = randomSamples(SampleType::uint8, voxels(kZarrSize), 5);
   const auto fillBox = [&](const ImageSize& first, const ImageSize& end, char value) {
     std::string filled = bytes;
     for (int z = first.z; z < end.z; ++z)
@@ -172,149 +157,34 @@ TEST_CASE("image_zarr3: chunks and shards that are not there are the fill value"
         for (int x = first.x; x < end.x; ++x) filled[size_t((z * 7 + y) * 11 + x)] = value;
     return filled;
   };
-  Zarr3Layout layout = layoutOf(SampleType::uint8);
+  Zarr3Layout layout = zarr3Layout(SampleType::uint8);
   layout.fill = "7";
-  write(path, zarr3Files(layout, bytes));
+  writeZarr(path, zarr3Files(layout, bytes));
   std::filesystem::remove(path + "/c/1/0/2");
   checkReads(path, fillBox({8, 0, 5}, {11, 3, 9}, 7));
 
   layout.shard = kZarr3Shard;
   bytes = fillBox({4, 3, 0}, {8, 6, 5}, 0);  // a chunk that is left out of its shard
-  write(path, zarr3Files(layout, bytes));
+  writeZarr(path, zarr3Files(layout, bytes));
   std::filesystem::remove(path + "/c/1/1/0");
   bytes = fillBox({4, 3, 0}, {8, 6, 5}, 7);
   checkReads(path, fillBox({0, 6, 5}, {8, 7, 9}, 7));
 
   for (const std::string fill : {"256", "-1", "0.5", "\"NaN\"", "[]"}) {
     layout.fill = fill;
-    write(path, zarr3Files(layout, bytes));
+    writeZarr(path, zarr3Files(layout, bytes));
     CHECK_THROWS_WITH(openImage(path), Contains(path) && Contains("fill value"));
   }
 }
 
-TEST_CASE("image_zarr3: the voxel size of OME-Zarr 0.6 is that of the coordinate system of a scale",
-          "[image_zarr3]") {
-  const ScratchFolder folder;
-  const std::string path = folder / "scene.zarr";
-  const auto axes = [](const std::string& name, const std::string& unit) {
-    std::string all;
-    for (const char* axis : {"z", "y", "x"})
-      all += std::string(all.empty() ? "" : ", ") + "{\"name\": \"" + axis +
-             "\", \"type\": \"space\", \"unit\": \"" + unit + "\"}";
-    return "{\"name\": \"" + name + "\", \"axes\": [" + all + "]}";
-  };
-  const auto group = [](const std::string& attributes) {
-    return R"({"zarr_format": 3, "node_type": "group", "attributes": {"ome": {"version": "0.6", )" +
-           attributes + "}}}";
-  };
-  const std::string scale = R"("type": "scale", "scale": [8.5, 8.5, 8.5])",
-                    ends = R"("input": {"path": "0"}, "output": {"name": "physical"})",
-                    sequence = R"({"type": "sequence", "transformations": [{)" + scale +
-                               R"(}, {"type": "translation", "translation": [1, 2, 3]}], )" + ends +
-                               "}";
-  const auto image = [&](const std::string& transformation) {
-    return group(R"("multiscales": [{"coordinateSystems": [)" + axes("turned", "meter") + ", " +
-                 axes("physical", "micrometer") + R"(], "datasets": [{"path": "0", )" +
-                 R"("coordinateTransformations": [)" + transformation + R"(]}], )" +
-                 R"("coordinateTransformations": [{"type": "scale", "scale": [2, 2, 2], )" +
-                 R"("input": {"name": "physical"}, "output": {"name": "turned"}}]}])");
-  };
-  const std::string fine = randomSamples(SampleType::uint16, voxels(kZarr3Size), 6);
-  std::map<std::string, std::string> files;
-  for (const auto& [name, bytes] : zarr3Files(layoutOf(SampleType::uint16), fine))
-    files["before/0/" + name] = files["after/0/" + name] = files["lost/0/" + name] = bytes;
-  files["zarr.json"] = group(R"("scene": {"coordinateTransformations": []})");
-  files["before/zarr.json"] = image(sequence);
-  files["after/zarr.json"] = image("{" + scale + ", " + ends + "}");
-  files["lost/zarr.json"] = image("{" + scale + R"(, "output": {"name": "nowhere"}})");
-  write(path, files);
-  for (const std::string dataset : {"before", "after"}) {
-    const auto opened = openImage(path, {}, dataset);
-    CHECK(readAll(*opened, 8) == fine);
-    REQUIRE(opened->info().voxelSize);
-    CHECK(opened->info().voxelSize->edge() == 8.5e-6);
-  }
-  CHECK_FALSE(openImage(path, {}, "lost")->info().voxelSize);
-  CHECK_THROWS_WITH(openImage(path), Contains("name one of a group in it"));
-  const auto nested = [](int count) {
-    std::string text;
-    for (int i = 0; i < count; ++i) text += R"([{"type": "sequence", "transformations": )";
-    text += "[]";
-    for (int i = 0; i < count; ++i) text += "}]";
-    return text;
-  };
-  for (const auto& [steps, said] : {std::pair{std::string("3"), "scales cannot be read"},
-                                    {nested(1), "scales cannot be read"},
-                                    {nested(50000), "too deep"}}) {
-    files["before/zarr.json"] =
-        image(R"({"type": "sequence", "transformations": )" + steps + ", " + ends + "}");
-    write(path, files);
-    CHECK_THROWS_WITH(openImage(path, {}, "before"), Contains(said));
-  }
-}
-
-TEST_CASE("image_zarr3: OME-Zarr 0.5 gives scales, voxel sizes and labels", "[image_zarr3]") {
-  const ScratchFolder folder;
-  const std::string path = folder / "a.ome.zarr";
-  const std::string fine = randomSamples(SampleType::uint16, voxels(kZarr3Size), 6);
-  const auto group = [](const std::string& attributes) {
-    return R"({"zarr_format": 3, "node_type": "group", "attributes": )" + attributes + "}";
-  };
-  const auto multiscales = [](const std::string& array, double edge) {
-    std::string axes;
-    for (const char* name : {"z", "y", "x"})
-      axes += std::string(axes.empty() ? "" : ", ") + "{\"name\": \"" + name +
-              "\", \"type\": \"space\", \"unit\": \"micrometer\"}";
-    const std::string e = std::to_string(edge);
-    return R"("multiscales": [{"axes": [)" + axes + R"(], "datasets": [{"path": ")" + array +
-           R"(", "coordinateTransformations": [{"type": "scale", "scale": [)" + e + ", " + e +
-           ", " + e + "]}]}]}]";
-  };
-  std::map<std::string, std::string> files;
-  for (const std::string array : {"s0/image", "labels/grain/0"})
-    for (const auto& [name, bytes] : zarr3Files(layoutOf(SampleType::uint16), fine))
-      files[array + "/" + name] = bytes;
-  files["zarr.json"] =
-      group("{\"ome\": {\"version\": \"0.5\", " + multiscales("s0/image", 8.5) + "}}");
-  files["s0/zarr.json"] = files["labels/zarr.json"] = group("{}");
-  // What is said of each label may be long, and is not kept.
-  std::string properties = "[";
-  for (int i = 1; i < 100000; ++i)
-    properties += (i > 1 ? ", " : "") + std::string("{\"label-value\": ") + std::to_string(i) +
-                  ", \"rgba\": [1, 2, 3, 255], \"multiscales\": [[]]}";
-  files["labels/grain/zarr.json"] = group("{\"ome\": {\"image-label\": {\"colors\": " + properties +
-                                          "]}, " + multiscales("0", 17) + "}}");
-  REQUIRE(files["labels/grain/zarr.json"].size() > size_t(1) << 22);
-  write(path, files);
-  for (const std::string& named : {path, path + "/", path + "/s0/image"}) {
-    const auto image = openImage(named);
-    CHECK(readAll(*image, 8) == fine);
-    REQUIRE(image->info().voxelSize);
-    CHECK(image->info().voxelSize->edge() == 8.5e-6);
-  }
-  for (const std::string dataset : {"labels/grain", "labels/grain/0", "/labels/grain/"}) {
-    const auto image = openImage(path, {}, dataset);
-    CHECK(readAll(*image, 8) == fine);
-    REQUIRE(image->info().voxelSize);
-    CHECK(image->info().voxelSize->edge() == 17e-6);
-  }
-  CHECK(openImage(path + "/labels/grain")->info().voxelSize->edge() == 17e-6);
-  CHECK_THROWS_WITH(openImage(path, {}, "labels/other"), Contains("'labels/other'"));
-  CHECK_THROWS_WITH(openImage(path + "/labels"), Contains("no array itself"));
-  files["s0/other/zarr.json"] = files["s0/image/zarr.json"];
-  files["s0/other/c/0/0/0"] = files["s0/image/c/0/0/0"];
-  write(path, files);
-  CHECK_THROWS_WITH(openImage(path + "/s0"), Contains("'image', 'other'"));
-}
-
 TEST_CASE("image_zarr3: what cannot be read says why", "[image_zarr3]") {
   const ScratchFolder folder;
-  const std::string path = folder / "a.zarr", samples(voxels(kZarr3Size), 'a');
-  Zarr3Layout layout{kZarr3Size, kZarr3Chunk};
+  const std::string path = folder / "a.zarr", samples(voxels(kZarrSize), 'a');
+  Zarr3Layout layout{kZarrSize, kZarrChunk};
   const auto refused = [&](const std::string& from, const std::string& to, const std::string& why) {
     auto files = zarr3Files(layout, samples);
     files["zarr.json"] = replaced(files["zarr.json"], from, to);
-    write(path, files);
+    writeZarr(path, files);
     CAPTURE(from, to);
     CHECK_THROWS_WITH(openImage(path), Contains(path) && Contains(why) && !Contains("\n"));
   };
@@ -343,7 +213,7 @@ TEST_CASE("image_zarr3: what cannot be read says why", "[image_zarr3]") {
   layout.bytes = 2;
   layout.size = ImageSize{11, 7, 4};
   refused("\"endian\": \"little\"", "", "byte order");
-  layout = {kZarr3Size, kZarr3Chunk};
+  layout = {kZarrSize, kZarrChunk};
   layout.order = "xyz";
   for (const std::string order : {"[2, 1]", "[2, 1, 1]", "[3, 1, 0]", "[-1, 1, 0]", "\"F\""})
     refused("[2, 1, 0]", order, "transpose");
@@ -362,20 +232,20 @@ TEST_CASE("image_zarr3: what cannot be read says why", "[image_zarr3]") {
   auto files = zarr3Files(layout, samples);
   files["zarr.json"] = replaced(files["zarr.json"], "\"attributes\"",
                                 "\"new\": {\"must_understand\": false}, \"attributes\"");
-  write(path, files);
+  writeZarr(path, files);
   CHECK(readAll(*openImage(path)) == samples);
 }
 
 TEST_CASE("image_zarr3: damaged chunks and shards are refused", "[image_zarr3]") {
   const ScratchFolder folder;
-  const std::string path = folder / "a.zarr", samples(voxels(kZarr3Size), 'a');
-  Zarr3Layout layout{kZarr3Size, kZarr3Chunk};
+  const std::string path = folder / "a.zarr", samples(voxels(kZarrSize), 'a');
+  Zarr3Layout layout{kZarrSize, kZarrChunk};
   for (const Codecs& codecs : {Codecs{}, Codecs{"gzip"}, Codecs{"zstd"}, Codecs{"blosc"},
                                Codecs{"crc32c"}, Codecs{"zstd", "crc32c"}})
     for (const std::string& bytes : {std::string(), std::string("abc"), std::string(30, 'x'),
                                      std::string(59, '\2'), std::string(5000, 'y')}) {
       layout.codecs = codecs;
-      write(path, zarr3Files(layout, samples));
+      writeZarr(path, zarr3Files(layout, samples));
       overwriteFile(path + "/c/1/1/1", bytes);
       CAPTURE(codecs, bytes.size());
       CHECK_THROWS_WITH(readAll(*openImage(path)), Contains(path) && Contains("c/1/1/1"));
@@ -383,7 +253,7 @@ TEST_CASE("image_zarr3: damaged chunks and shards are refused", "[image_zarr3]")
   layout.codecs = {"crc32c"};
   auto files = zarr3Files(layout, samples);
   files["c/1/1/1"][7] = 'b';
-  write(path, files);
+  writeZarr(path, files);
   CHECK_THROWS_WITH(readAll(*openImage(path)), Contains("c/1/1/1") && Contains("checksum"));
 
   // Four chunks, then an index of 64 bytes and its checksum.
@@ -392,7 +262,7 @@ TEST_CASE("image_zarr3: damaged chunks and shards are refused", "[image_zarr3]")
   const auto damaged = [&](const std::string& shard, const std::string& why) {
     auto changed = zarr3Files(layout, samples);
     changed["c/0/0/0"] = shard;
-    write(path, changed);
+    writeZarr(path, changed);
     CHECK_THROWS_WITH(readAll(*openImage(path)),
                       Contains(path) && Contains("c/0/0/0") && Contains(why));
   };
@@ -417,6 +287,6 @@ TEST_CASE("image_zarr3: damaged chunks and shards are refused", "[image_zarr3]")
   layout.shard = ImageSize{1048576, 1048575, 1048575};
   layout.size = ImageSize{1048576, 2, 2};
   layout.chunk = ImageSize{1, 1, 1};
-  write(path, {{"zarr.json", zarr3Description(layout)}, {"c/0/0/0", std::string(4096, '\0')}});
+  writeZarr(path, {{"zarr.json", zarr3Description(layout)}, {"c/0/0/0", std::string(4096, '\0')}});
   CHECK_THROWS_WITH(openImage(path), Contains("too short for the index"));
 }

@@ -15,16 +15,6 @@ using vdb_madf::test::Contains;
 
 namespace {
 
-const ImageSize kZarrSize{11, 7, 9}, kZarrChunk{4, 3, 5};
-
-void writeZarr(const std::string& path, const ZarrLayout& layout, const std::string& samples) {
-  std::filesystem::remove_all(path);
-  for (const auto& [name, bytes] : zarrFiles(layout, samples)) {
-    std::filesystem::create_directories(std::filesystem::path(path + "/" + name).parent_path());
-    writeFile(path + "/" + name, bytes);
-  }
-}
-
 /// An OME-Zarr image of two scales at `path`; all axes have the unit.
 std::string omeAttributes(const std::string& unit, double edge, const std::string& more = "") {
   const auto scale = [](double s) {
@@ -64,7 +54,7 @@ TEST_CASE("image_zarr: every type, codec, order and separator", "[image_zarr]") 
         layout.type = (layout.bytes == 1 ? "|" : "<") + std::string(names[size_t(type)]);
         CAPTURE(layout.type, codec, order);
         const std::string bytes = randomSamples(type, voxels(kZarrSize), 1);
-        writeZarr(path, layout, bytes);
+        writeZarr(path, zarrFiles(layout, bytes));
         CHECK(looksLikeImage(path));
         const auto image = openImage(path);
         CHECK(image->info().size == kZarrSize);
@@ -74,7 +64,7 @@ TEST_CASE("image_zarr: every type, codec, order and separator", "[image_zarr]") 
         for (const int step : {1, 2, 5, 8, 100}) CHECK(readAll(*image, step) == bytes);
         CHECK(readAll(*openImage(path + "/")) == bytes);
         layout.type[0] = '>';
-        writeZarr(path, layout, swapped(bytes, layout.bytes));
+        writeZarr(path, zarrFiles(layout, swapped(bytes, layout.bytes)));
         CHECK(readAll(*openImage(path), 3) == bytes);
       }
 }
@@ -87,7 +77,7 @@ TEST_CASE("image_zarr: chunks that are not there are the fill value", "[image_za
          {std::pair("7", 7), {"null", 0}, {"0.0", 0}, {"true", 1}, {"255", 255}}) {
       ZarrLayout layout{kZarrSize, kZarrChunk, "|u1", 1, "blosc", order, ".", fill, 0};
       std::string bytes = randomSamples(SampleType::uint8, voxels(kZarrSize), 2);
-      writeZarr(path, layout, bytes);
+      writeZarr(path, zarrFiles(layout, bytes));
       std::filesystem::remove(path + "/1.0.2");
       for (int z = 5; z < 9; ++z)
         for (int y = 0; y < 3; ++y)
@@ -95,12 +85,12 @@ TEST_CASE("image_zarr: chunks that are not there are the fill value", "[image_za
       CHECK(readAll(*openImage(path), 8) == bytes);
     }
   for (const std::string fill : {"256", "-1", "0.5", "\"NaN\"", "[]", "1e300"}) {
-    writeZarr(path, {kZarrSize, kZarrChunk, "|u1", 1, "", "C", ".", fill, 0},
-              std::string(693, 'a'));
+    writeZarr(path, zarrFiles({kZarrSize, kZarrChunk, "|u1", 1, "", "C", ".", fill, 0},
+                              std::string(693, 'a')));
     CHECK_THROWS_WITH(openImage(path), Contains(path) && Contains("fill value"));
   }
   ZarrLayout layout{ImageSize{2, 2, 2}, ImageSize{1, 1, 1}, "<f4", 4, "", "C", ".", "\"NaN\"", 0};
-  writeZarr(path, layout, std::string(32, '\0'));
+  writeZarr(path, zarrFiles(layout, std::string(32, '\0')));
   std::filesystem::remove(path + "/0.0.1");
   float values[8];
   std::memcpy(values, readAll(*openImage(path)).data(), sizeof values);
@@ -116,11 +106,11 @@ TEST_CASE("image_zarr: 64-bit labels", "[image_zarr]") {
   const std::string path = folder / "a.zarr";
   std::string bytes = randomSamples(SampleType::uint32, voxels(kZarrSize), 3), stored;
   for (size_t i = 0; i < bytes.size(); i += 4) stored += bytes.substr(i, 4) + std::string(4, '\0');
-  writeZarr(path, {kZarrSize, kZarrChunk, "<u8", 8, "zlib", "C", ".", "0", 0}, stored);
+  writeZarr(path, zarrFiles({kZarrSize, kZarrChunk, "<u8", 8, "zlib", "C", ".", "0", 0}, stored));
   CHECK(openImage(path)->info().type == SampleType::uint32);
   CHECK(readAll(*openImage(path), 8) == bytes);
   stored[4] = '\1';
-  writeZarr(path, {kZarrSize, kZarrChunk, "<u8", 8, "zlib", "C", ".", "0", 0}, stored);
+  writeZarr(path, zarrFiles({kZarrSize, kZarrChunk, "<u8", 8, "zlib", "C", ".", "0", 0}, stored));
   CHECK_THROWS_WITH(readAll(*openImage(path)), Contains(path) && Contains("beyond 32 bits"));
 }
 
@@ -131,9 +121,11 @@ TEST_CASE("image_zarr: OME-Zarr gives the first scale and its voxel size", "[ima
   const std::string coarse = randomSamples(SampleType::uint16, 8, 5);
   const auto write = [&](const std::string& attributes) {
     std::filesystem::remove_all(path);
-    writeZarr(path + "/0", {kZarrSize, kZarrChunk, "<u2", 2, "blosc", "C", "/", "0", 2}, fine);
-    writeZarr(path + "/1", {ImageSize{2, 2, 2}, ImageSize{2, 2, 2}, "<u2", 2, "", "C", "/", "0", 2},
-              coarse);
+    writeZarr(path + "/0",
+              zarrFiles({kZarrSize, kZarrChunk, "<u2", 2, "blosc", "C", "/", "0", 2}, fine));
+    writeZarr(path + "/1",
+              zarrFiles({ImageSize{2, 2, 2}, ImageSize{2, 2, 2}, "<u2", 2, "", "C", "/", "0", 2},
+                        coarse));
     writeFile(path + "/.zgroup", "{\"zarr_format\": 2}");
     writeFile(path + "/.zattrs", attributes);
   };
@@ -177,7 +169,7 @@ TEST_CASE("image_zarr: what cannot be read says why", "[image_zarr]") {
   const std::string path = folder / "a.zarr", samples(voxels(kZarrSize), 'a');
   const ZarrLayout good{kZarrSize, kZarrChunk, "|u1", 1, "", "C", ".", "0", 0};
   const auto refused = [&](const std::string& from, const std::string& to, const std::string& why) {
-    writeZarr(path, good, samples);
+    writeZarr(path, zarrFiles(good, samples));
     std::string text = zarrDescription(good);
     const size_t place = text.find(from);
     REQUIRE(place != std::string::npos);
@@ -204,14 +196,14 @@ TEST_CASE("image_zarr: what cannot be read says why", "[image_zarr]") {
     ZarrLayout layout = good;
     layout.codec = codec;
     for (const std::string& bytes : {std::string(), std::string(30, 'x'), std::string(59, '\2')}) {
-      writeZarr(path, layout, samples);
+      writeZarr(path, zarrFiles(layout, samples));
       writeFile(path + "/1.1.1", bytes);
       CAPTURE(codec, bytes);
       CHECK_THROWS_WITH(readAll(*openImage(path)), Contains(path) && Contains("1.1.1"));
     }
     ZarrLayout larger = layout;
     larger.chunk = ImageSize{4, 3, 6};
-    writeZarr(path, layout, samples);
+    writeZarr(path, zarrFiles(layout, samples));
     writeFile(path + "/.zarray", zarrDescription(larger));
     CHECK_THROWS_AS(readAll(*openImage(path)), IoError);
   }

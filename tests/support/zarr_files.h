@@ -7,12 +7,13 @@
 #include <zstd.h>
 
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "support/files.h"
 #include "support/images.h"
-
 #include "vdb_madf/images/image.h"
 
 // Zarr arrays of versions 2 and 3, built by hand from the definitions.
@@ -245,6 +246,24 @@ inline std::map<std::string, std::string> zarr3Files(const Zarr3Layout& layout,
             isSharded ? zarr3Shard(layout, samples, i, j, k) : zarr3Chunk(layout, samples, i, j, k);
       }
   return files;
+}
+
+inline const ImageSize kZarrSize{11, 7, 9}, kZarrChunk{4, 3, 5};
+
+inline Zarr3Layout zarr3Layout(SampleType type) {
+  Zarr3Layout layout{kZarrSize, kZarrChunk};
+  layout.type = sampleTypeName(type);
+  layout.bytes = sampleSize(type);
+  return layout;
+}
+
+/// In the place of what was there.
+inline void writeZarr(const std::string& path, const std::map<std::string, std::string>& files) {
+  std::filesystem::remove_all(path);
+  for (const auto& [name, bytes] : files) {
+    std::filesystem::create_directories(std::filesystem::path(path + "/" + name).parent_path());
+    writeFile(path + "/" + name, bytes);
+  }
 }
 
 }  // namespace vdb_madf::test
