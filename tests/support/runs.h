@@ -37,7 +37,11 @@ class StopAtOnce : public Interrupter {
 class StopAfter : public Interrupter {
  public:
   explicit StopAfter(int polls) : polls_(polls) {}
-  bool wasInterrupted(int /*percent*/) override { return --polls_ < 0; }
+  bool wasInterrupted(int /*percent*/) override {
+    ++asked;
+    return --polls_ < 0;
+  }
+  std::atomic<int> asked{0};
 
  private:
   std::atomic<int> polls_;
