@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "support/catch.h"
+#include "support/grid_values.h"
 #include "support/invariants.h"
 #include "support/random_case.h"
 #include "vdb_madf/base/errors.h"
@@ -30,13 +31,6 @@ SegmentOptions keepAll(SegmentOptions options = {}) {
   return options;
 }
 
-DenseVolume<int64_t> values(const Int32Grid& grid, const CoordBBox& box) {
-  DenseVolume<int64_t> result(box);
-  const auto accessor = grid.getConstAccessor();
-  for (int i = 0; i < result.size(); ++i) result[i] = accessor.getValue(result.coord(i));
-  return result;
-}
-
 /// All that a segmentation says, moved back by `shift`. With kept grids.
 struct Everything {
   std::vector<DenseVolume<int64_t>> grids;
@@ -47,7 +41,7 @@ struct Everything {
     CoordBBox moved = box;
     moved.translate(shift);
     for (const auto& grid : {s.grain, s.distanceSquared, s.power, s.manifold}) {
-      const DenseVolume<int64_t> there = values(*grid, moved);
+      const DenseVolume<int64_t> there = valuesIn(*grid, moved);
       DenseVolume<int64_t> here(box);
       for (int i = 0; i < here.size(); ++i) here[i] = there[i];
       grids.push_back(here);
@@ -168,9 +162,9 @@ TEST_CASE("segment: axis permutations and mirrors keep what ties do not touch", 
           options.weights = VoxelWeights{(*w)[from[0]], (*w)[from[1]], (*w)[from[2]]};
         const Segmentation turned = segmentObject(permuted(c.object, map), options);
         INFO(describe(c) << from[0] << from[1] << from[2] << " mirrored " << mirrors);
-        REQUIRE(values(*turned.distanceSquared, map(box)) ==
-                permuted(values(*original.distanceSquared, box), map));
-        REQUIRE(values(*turned.power, map(box)) == permuted(values(*original.power, box), map));
+        REQUIRE(valuesIn(*turned.distanceSquared, map(box)) ==
+                permuted(valuesIn(*original.distanceSquared, box), map));
+        REQUIRE(valuesIn(*turned.power, map(box)) == permuted(valuesIn(*original.power, box), map));
         std::set<std::pair<Coord, int32_t>> critical, expected;
         for (const auto& node : turned.graph.nodes)
           critical.insert({node.position, node.squaredRadius});

@@ -9,9 +9,6 @@
 #include "vdb_madf/segmentation/segment.h"
 #include "vdb_madf/base/limits.h"
 
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -31,14 +28,6 @@ namespace {
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
-
-Segmentation segmentWithThreads(const MaskGrid& mask, const SegmentOptions& options, int threads) {
-  // The arena allows more threads than the machine has cores, the control fewer.
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
-  Segmentation result;
-  tbb::task_arena(threads).execute([&] { result = segment(mask, options); });
-  return result;
-}
 
 std::string difference(const ManifoldGraph& graph, const ManifoldGraph& expected) {
   std::ostringstream text;
@@ -129,7 +118,7 @@ std::string disagreement(const RandomCase& c) {
   const auto mask = maskOf(c);
   Segmentation result;
   try {
-    result = segmentWithThreads(*mask, optionsOf(c), c.threads);
+    result = withThreads(c.threads, [&] { return segment(*mask, optionsOf(c)); });
   } catch (const InvalidInput& e) {
     return expected ? std::string("refused: ") + e.what() : "";
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "support/catch.h"
+#include "support/grid_values.h"
 #include "support/invariants.h"
 #include "support/random_case.h"
 #include "vdb_madf/segmentation/segment.h"
@@ -19,13 +20,6 @@ using namespace vdb_madf::test;
 Segmentation segmentKeepingAll(const ObjectVolume& object, SegmentOptions options) {
   options.keepDistance = options.keepPower = options.keepManifold = options.keepBalls = true;
   return segment(*toMask(object), options);
-}
-
-DenseVolume<int64_t> scaledValues(const Int32Grid& grid, const CoordBBox& box, int64_t factor = 1) {
-  DenseVolume<int64_t> result(box);
-  const auto accessor = grid.getConstAccessor();
-  for (int i = 0; i < result.size(); ++i) result[i] = factor * accessor.getValue(result.coord(i));
-  return result;
 }
 
 /// p in the volume of which every k-th slice along an axis was taken.
@@ -91,11 +85,10 @@ TEST_CASE("weights: a common factor scales squared lengths and changes no label"
     for (const int factor : {2, 64}) {
       c.options.weights = VoxelWeights{factor, factor, factor};
       const Segmentation s = segmentKeepingAll(c.object, c.options);
-      REQUIRE(scaledValues(*s.grain, box) == scaledValues(*cubes.grain, box));
-      REQUIRE(scaledValues(*s.manifold, box) == scaledValues(*cubes.manifold, box));
-      REQUIRE(scaledValues(*s.power, box) == scaledValues(*cubes.power, box, factor));
-      REQUIRE(scaledValues(*s.distanceSquared, box) ==
-              scaledValues(*cubes.distanceSquared, box, factor));
+      REQUIRE(valuesIn(*s.grain, box) == valuesIn(*cubes.grain, box));
+      REQUIRE(valuesIn(*s.manifold, box) == valuesIn(*cubes.manifold, box));
+      REQUIRE(valuesIn(*s.power, box) == valuesIn(*cubes.power, box, factor));
+      REQUIRE(valuesIn(*s.distanceSquared, box) == valuesIn(*cubes.distanceSquared, box, factor));
       REQUIRE(s.balls.size() == cubes.balls.size());
       for (size_t i = 0; i < s.balls.size(); ++i) {
         REQUIRE(s.balls[i].center == cubes.balls[i].center);
@@ -123,8 +116,8 @@ TEST_CASE("weights: every k-th slice knows a part of the background", "[weights]
     options.weights = longAlong(axis, k);
     const Segmentation quick = segmentKeepingAll(coarse, options);
     CAPTURE(seed, k, axis);
-    const auto all = scaledValues(*slow.distanceSquared, fine.box());
-    const auto some = scaledValues(*quick.distanceSquared, coarse.box());
+    const auto all = valuesIn(*slow.distanceSquared, fine.box());
+    const auto some = valuesIn(*quick.distanceSquared, coarse.box());
     for (int i = 0; i < coarse.size(); ++i)
       REQUIRE(some[i] >= all[inFine(coarse.coord(i), axis, k)]);
   }
@@ -154,8 +147,8 @@ TEST_CASE("weights: a stretched volume has the same distances, to less than a sl
     options.weights.reset();
     const Segmentation slow = segmentKeepingAll(fine, options);
     CAPTURE(seed, k, axis);
-    const auto thick = scaledValues(*quick.distanceSquared, coarse.box());
-    const auto thin = scaledValues(*slow.distanceSquared, fine.box());
+    const auto thick = valuesIn(*quick.distanceSquared, coarse.box());
+    const auto thin = valuesIn(*slow.distanceSquared, fine.box());
     for (int i = 0; i < coarse.size(); ++i) {
       const int64_t d = thick[i], e = thin[inFine(coarse.coord(i), axis, k)];
       REQUIRE(e <= d);
@@ -186,7 +179,7 @@ TEST_CASE("weights: along a prism slices are alike, however thick", "[weights]")
     REQUIRE(anyViolation(quick, *toMask(coarse), 0) == "");
     for (const auto& [thick, thin] : {std::pair(quick.distanceSquared, slow.distanceSquared),
                                       std::pair(quick.power, slow.power)}) {
-      const auto some = scaledValues(*thick, coarse.box()), all = scaledValues(*thin, fine.box());
+      const auto some = valuesIn(*thick, coarse.box()), all = valuesIn(*thin, fine.box());
       for (int i = 0; i < coarse.size(); ++i)
         REQUIRE(some[i] == all[inFine(coarse.coord(i), axis, k)]);
     }
