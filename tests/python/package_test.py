@@ -102,7 +102,7 @@ def test_a_wheel_with_its_libraries(wheel, prefix, tmp_path):
     clean = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
     listed = subprocess.run([python, "-c", show], check=True, stdout=subprocess.PIPE, text=True,
                             cwd=tmp_path, env=clean).stdout
-    for name in ("libopenvdb", "libtbb", "libtiff", "libblosc"):
+    for name in ("libopenvdb", "libtbb", "libtiff", "libblosc", "libX11"):
         line, = {line.split()[-1] for line in listed.splitlines() if f"/{name}.so" in line}
         assert f"{tmp_path}/venv/" in line and "/vdb_madf.libs/" in line
     assert tmp_path / "venv" in tried(python, tmp_path).parents
