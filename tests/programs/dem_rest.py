@@ -27,9 +27,10 @@ PAGES = ("clumps.md", "lammps.md", "yade.md")
 AT_REST = 0.05
 AT_REST_SETTLED = 0.01
 # What is plausible in the middle of a settled pack: random packs fill 0.55 to 0.64, small ones
-# between near walls less; grains with friction need 4 contacts, ellipsoids without it have 10.
+# between near walls less; grains with friction need 4 contacts, but for those that rattle, and
+# ellipsoids without it have 10.
 SOLID_FRACTION = (0.5, 0.65)
-CONTACTS = (4, 7)
+CONTACTS = (3.5, 7)
 
 
 def blocks(language):
@@ -186,15 +187,17 @@ with Bench() as bench:
     lines = [line for line in "".join(blocks("sh")).splitlines()
              if re.search(r" segment |--as clumps|^awk ", line)]
     check(len(lines) == 5, f"the manual's lines for clumps are {lines}")
+    if count:  # newer releases of LAMMPS ignore contacts of balls that bonds join
+        lines = [line.replace("--balls 20", "--balls 10").replace(" --bonds bonds.csv", "")
+                 for line in lines if not line.startswith("awk ")]
     for line in [sample] + lines:
-        if count:
-            line = line.replace("--balls 20", "--balls 10")
         done = subprocess.run(["bash", "-c", line], cwd=bench.folder, env=environment,
                               capture_output=True, text=True)
         check(done.returncode == 0, f"{line}: {done.stdout}{done.stderr}")
-    with open(bench.path("bonds.csv")) as file:
-        bonds = list(csv.DictReader(file))
-    check(len(bonds) > 10, f"only {len(bonds)} bonds")
+    if not count:
+        with open(bench.path("bonds.csv")) as file:
+            bonds = list(csv.DictReader(file))
+        check(len(bonds) > 10, f"only {len(bonds)} bonds")
     text = block({"yade": "python", "lammps": "lammps"}[chosen])
     if chosen == "yade":
         loose = replaced(text, r"^for row in .*?(?=^O\.dt)", "")
@@ -202,7 +205,7 @@ with Bench() as bench:
         loose = replaced(text, r"^(bond_style|include bonds)[^\n]*\n", "")
     if count and chosen == "yade":
         softer = replaced(loose, "young=1e5", "young=1e4")
-        softer = replaced(softer, r"^O\.run\(\d+", f"O.run({500 * round(12 * edge**0.5)}")
+        softer = replaced(softer, r"^O\.run\(\d+", f"O.run({500 * round(11.4 * edge**0.5)}")
         look = yade(bench, softer, "YADE", 0, AT_REST_SETTLED)
         settles("YADE", count, look["balls"], look["low"], look["high"])
     elif count:
