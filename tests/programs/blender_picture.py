@@ -25,6 +25,8 @@ def opened(path):
         return bpy.context.object
     if path.lower().endswith(".obj"):
         bpy.ops.wm.obj_import(filepath=path, forward_axis="Y", up_axis="Z")
+    elif "ply_import" in dir(bpy.ops.wm):
+        bpy.ops.wm.ply_import(filepath=path, forward_axis="Y", up_axis="Z")
     else:
         bpy.ops.import_mesh.ply(filepath=path)
     paint_mesh(bpy.context.selected_objects[0])
