@@ -4,6 +4,7 @@
 labels and tables of the command. Chromium draws without a graphics card, so this takes longer than
 other tests."""
 
+import json
 import os
 import tempfile
 
