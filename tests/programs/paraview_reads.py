@@ -13,10 +13,12 @@ import subprocess
 import sys
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from proof import EDGE, VOXELS, Bench, box_of, check, near, skip  # noqa: E402
+from proof import (  # noqa: E402
+    EDGE, VOXELS, Bench, box_of, check, near, skip, vtk_opens_its_own)
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
 PLUGIN = os.path.join(ROOT, "tools/doors/paraview_vdb_madf.py")
+NO_IMAGES = "ParaView does not open its own images"
 
 
 def pvpython(script, folder, *words, env=None):
@@ -45,6 +47,7 @@ def start():
                                          for y in range(24) for x in range(40)]).tobytes())
         code, said = pvpython(os.path.abspath(__file__), bench.folder, "inside")
         check(code == 0 and "DONE" in said, f"ParaView: {said[-3000:]}")
+        opens_images = NO_IMAGES not in said
         # Without the package: a line.
         clean = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
         with open(bench.path("alone.py"), "w") as file:
@@ -54,6 +57,8 @@ def start():
                        "MadfGrains(FileName='labels.vdb').UpdatePipeline()\n")
         said = pvpython("alone.py", bench.folder, env=clean)[1]
         check("PYTHONPATH" in said and "Traceback" not in said, f"without the package: {said}")
+        if not opens_images:
+            skip("images and the page's script in ParaView: it opens not even the .vti it writes")
         # The script of the page.
         with open(os.path.join(ROOT, "tools/manual/paraview.md")) as file:
             scripts = re.findall(r"^```python\n(.*?)^```", file.read(), re.M | re.S)
@@ -127,8 +132,11 @@ def inside():
     check(fetched(other).GetNumberOfPartitionedDataSets() < len(VOXELS), "coarser: no grain less")
 
     # An image with labels in its cells.
-    image = simple.XMLImageDataReader(FileName=["labels.vti"])
-    check_grains(simple.MadfShowGrains(Input=image, Array=["CELLS", "grain_id"], Smoothing=0))
+    if vtk_opens_its_own("own.vti"):
+        image = simple.XMLImageDataReader(FileName=["labels.vti"])
+        check_grains(simple.MadfShowGrains(Input=image, Array=["CELLS", "grain_id"], Smoothing=0))
+    else:
+        print(NO_IMAGES)
 
     # Two balls: gray values at points, with an origin of their own.
     raw = simple.ImageReader(FileNames=["two.raw"], DataScalarType="unsigned char",

@@ -88,6 +88,26 @@ def run_in_blender(script, folder, what):
     return done[0][len("DONE: "):]
 
 
+def vtk_opens_its_own(path):
+    """Does VTK open an image that it writes? Older ones do not with newer or mended libexpat."""
+    from vtkmodules.vtkCommonDataModel import vtkImageData
+    from vtkmodules.vtkIOXML import vtkXMLImageDataReader, vtkXMLImageDataWriter
+    image = vtkImageData()
+    image.SetDimensions(20, 20, 20)  # more than the piece of a file that the reader takes
+    image.AllocateScalars(3, 1)  # bytes
+    writer, reader = vtkXMLImageDataWriter(), vtkXMLImageDataReader()
+    for each in (writer, reader):
+        each.SetFileName(path)
+    reader.AddObserver("ErrorEvent", lambda *_: None)
+    writer.SetInputData(image)
+    writer.SetCompressorTypeToNone()
+    writer.SetDataModeToAppended()
+    writer.EncodeAppendedDataOff()
+    writer.Write()
+    reader.Update()
+    return reader.GetOutput().GetNumberOfPoints() == 8000
+
+
 def near(a, b, tolerance=1e-6):
     return len(a) == len(b) and all(abs(x - y) <= tolerance for x, y in zip(a, b))
 

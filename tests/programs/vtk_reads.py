@@ -4,7 +4,8 @@
 
 from math import isnan
 
-from proof import Bench, EDGE, LABELS, SIZE, VOXELS, box_of, check, near, skip, values
+from proof import (
+    Bench, EDGE, LABELS, SIZE, VOXELS, box_of, check, near, skip, values, vtk_opens_its_own)
 
 try:
     from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -59,6 +60,8 @@ def volume(mesh):
 
 
 with Bench() as bench:
+    if not vtk_opens_its_own(bench.path("own.vti")):
+        skip("what VTK reads: this one opens not even the .vti it writes")
     for name, options in {"raw.vti": [], "packed.vti": ["--compress"]}.items():
         image = read(vtkXMLImageDataReader(), bench.run("export", name, *options))
         found = vtk_to_numpy(image.GetCellData().GetArray("grain_id"))
