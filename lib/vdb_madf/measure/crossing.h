@@ -25,6 +25,7 @@ struct Crossing {
   double conductivity = 0;
 };
 
+/// What leads across along each axis, and in any direction.
 struct Crossings {
   std::array<Crossing, 3> along;  ///< x, y, z
   /// The mean flux through the box for each mean gradient, of what the full box would conduct: all
