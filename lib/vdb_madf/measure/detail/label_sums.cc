@@ -122,8 +122,8 @@ class LeafCounter {
               const VoxelShape& voxel)
       : labels_(&labels),
         domain_(domain),
-        surface_(labels, open ? std::optional(domain) : std::nullopt, voxel),
-        origin_(origin) {}
+        origin_(origin),
+        surface_(labels, open ? std::optional(domain) : std::nullopt, voxel) {}
 
   void count(size_t leaf) {
     const Coord& at = labels_->index().origin(leaf);
@@ -154,8 +154,8 @@ class LeafCounter {
 
   const LabelLeaves* labels_;
   Domain domain_;
-  LeafSurface surface_;
   Coord origin_;
+  LeafSurface surface_;
 };
 
 bool faceOrder(const InterfaceFace& a, const InterfaceFace& b) {
