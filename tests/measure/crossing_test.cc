@@ -151,6 +151,17 @@ std::vector<std::vector<Leg>> legsOf(const Int32Grid& labels, const Measurements
   return legs;
 }
 
+struct Network {
+  Measurements measured;
+  std::vector<std::vector<Leg>> legs;
+};
+
+Network randomNetwork(Rng& rng) {
+  const auto labels = randomGrains(rng);
+  const Measurements measured = measureCrossing(*labels);
+  return {measured, legsOf(*labels, measured)};
+}
+
 /// Conductances between the nodes: the grains, and two more that are left to the caller.
 using Matrix = std::vector<std::vector<double>>;
 
@@ -249,9 +260,7 @@ TEST_CASE("crossing: the conductivity is that of the network", "[crossing]") {
   int conduct = 0;
   for (int i = 0; i < 60; ++i) {
     CAPTURE(i);
-    const auto labels = randomGrains(rng);
-    const Measurements m = measureCrossing(*labels);
-    const auto legs = legsOf(*labels, m);
+    const auto [m, legs] = randomNetwork(rng);
     for (int axis = 0; axis < 3; ++axis) {
       const Crossing& crossing = m.crossings.value().along[size_t(axis)];
       const Vec3d extent = m.sample.box.dim().asVec3d() * m.edges;
@@ -278,13 +287,10 @@ TEST_CASE("crossing: the tensor is that of the network, and bounds the conductiv
   int conduct = 0;
   for (int i = 0; i < 60; ++i) {
     CAPTURE(i);
-    const auto labels = randomGrains(rng);
-    const Measurements m = measureCrossing(*labels);
-    const auto legs = legsOf(*labels, m);
+    const auto [m, legs] = randomNetwork(rng);
     const Matrix g = conductances(m, legs);
     const SymmetricTensor& tensor = m.crossings.value().conductivity;
     const double volume = (m.sample.box.dim().asVec3d() * m.edges).product();
-    constexpr size_t kPlace[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
     for (int gradient = 0; gradient < 3; ++gradient) {
       const std::vector<double> potential = relaxed(g, legs, gradient);
       Vec3d flux(0);
@@ -294,11 +300,10 @@ TEST_CASE("crossing: the tensor is that of the network, and bounds the conductiv
             flux += leg.place * leg.conductance * (leg.place[gradient] - potential[row]) / volume;
       for (int axis = 0; axis < 3; ++axis) {
         CAPTURE(gradient, axis);
-        CHECK(tensor.components[kPlace[gradient][axis]] ==
-              Approx(flux[axis]).epsilon(1e-6).margin(1e-9));
+        CHECK(tensor.at(gradient, axis) == Approx(flux[axis]).epsilon(1e-6).margin(1e-9));
       }
       const double along = m.crossings->along[size_t(gradient)].conductivity;
-      CHECK(tensor.components[size_t(gradient)] > along * (1 - 1e-9));
+      CHECK(tensor.at(gradient, gradient) > along * (1 - 1e-9));
       conduct += along > 0;
     }
     CHECK(tensor.principal.values[2] > -1e-12);

@@ -64,11 +64,9 @@ py::dict table(const std::vector<MeasureColumn>& columns, const TableUnit& unit,
 
 /// A symmetric tensor, [z, y, x].
 py::array_t<double> tensor(const SymmetricTensor& of) {
-  constexpr int kPlace[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};  // of x, y, z
   py::array_t<double> array({py::ssize_t(3), py::ssize_t(3)});
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      array.mutable_at(2 - i, 2 - j) = of.components[size_t(kPlace[i][j])];
+    for (int j = 0; j < 3; ++j) array.mutable_at(2 - i, 2 - j) = of.at(i, j);
   return array;
 }
 

@@ -66,9 +66,9 @@ Json toJson(const openvdb::Vec3d& vector) {
 }
 
 Json toJson(const SymmetricTensor& tensor) {
-  const auto& c = tensor.components;
   Json json;
-  json["tensor"] = {{c[0], c[3], c[4]}, {c[3], c[1], c[5]}, {c[4], c[5], c[2]}};
+  for (int row = 0; row < 3; ++row)
+    json["tensor"].push_back({tensor.at(row, 0), tensor.at(row, 1), tensor.at(row, 2)});
   json["eigenvalues"] = tensor.principal.values;
   Json vectors = Json::array();
   for (const openvdb::Vec3d& axis : tensor.principal.axes) vectors.push_back(toJson(axis));

@@ -28,24 +28,20 @@ Measurements measureLabels(const Int32Grid& labels, const MeasureOptions& option
   const VoxelWeights& weights = measuring.weights();
   measuring.add(
       leaves, leaves, {}, [](int32_t) { return true; }, interrupter);
-  detail::BondDepths bondDepths;
   const auto representatives =
       graph && graph->weights == weights
           ? detail::grainRepresentatives(labels, *graph)
           : detail::grainRepresentatives(leaves, measuring.obstacles(), weights,
-                                         options.bondRadii ? &bondDepths : nullptr, interrupter);
+                                         measuring.bondDepths(), interrupter);
   const auto lengths = correlationLengths(leaves.index(), measuring.whole(), interrupter);
-  return measuring.finish(representatives, bondDepths, lengths, interrupter);
+  return measuring.finish(representatives, lengths, interrupter);
 }
 
 /// Labels slab by slab. What is around a slab is read, too, as far as it matters.
 class SlabMeasuring {
  public:
   SlabMeasuring(const LabelSlabs& slabs, const MeasureOptions& options, Interrupter* interrupter)
-      : slabs_(slabs),
-        measuring_(*slabs.about, options),
-        bondRadii_(options.bondRadii),
-        interrupter_(interrupter) {
+      : slabs_(slabs), measuring_(*slabs.about, options), interrupter_(interrupter) {
     if (!measuring_.obstacles().domain.isBox())
       throw InvalidInput("labels in slabs cannot be measured in a region: take a box as domain");
   }
@@ -56,7 +52,7 @@ class SlabMeasuring {
     std::array<std::optional<double>, 3> lengths;
     for (size_t axis = 0; axis < decays_.size(); ++axis) lengths[axis] = decays_[axis].length();
     detail::WorkPart part(interrupter_, 100, 100);
-    return measuring_.finish(representatives_, bondDepths_, lengths, &part);
+    return measuring_.finish(representatives_, lengths, &part);
   }
 
  private:
@@ -91,8 +87,7 @@ class SlabMeasuring {
     for (int axis = 0; axis < 3; ++axis)
       decays_.emplace_back(measuring_.voxels(), measuring_.whole(), axis);
     detail::SlabRepresentatives representatives(measuring_.object(), measuring_.obstacles(),
-                                                measuring_.weights(),
-                                                bondRadii_ ? &bondDepths_ : nullptr);
+                                                measuring_.weights(), measuring_.bondDepths());
     Pairs pairs = noPairs(kLags);
     detail::SlabWindow window(slabs_);
     for (size_t s = 0; s < slabs_.slabCount(); ++s) {
@@ -162,11 +157,9 @@ class SlabMeasuring {
 
   const LabelSlabs& slabs_;
   detail::Measuring measuring_;
-  bool bondRadii_;
   Interrupter* interrupter_;
   std::unordered_map<int32_t, size_t> lastSlab_;  // of each label
   detail::GrainRepresentatives representatives_;
-  detail::BondDepths bondDepths_;
   std::vector<detail::CorrelationDecay> decays_;  // along each axis
 };
 

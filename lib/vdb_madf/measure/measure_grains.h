@@ -25,10 +25,14 @@ struct Principal {
   std::array<double, 3> values{};
 };
 
-/// xx, yy, zz, xy, xz, yz.
+/// A tensor of second order, symmetric.
 struct SymmetricTensor {
-  std::array<double, 6> components{};
+  std::array<double, 6> components{};  ///< xx, yy, zz, xy, xz, yz
   Principal principal;
+
+  double at(int row, int column) const {
+    return components[size_t(row == column ? row : row + column + 2)];
+  }
 };
 
 /// The part of the domain to which no other grain is nearer (detail/voronoi_cells.h).

@@ -117,7 +117,7 @@ void Measuring::setCells(std::vector<GrainMeasures>& grains, Interrupter* interr
 }
 
 void Measuring::setRepresentatives(const GrainRepresentatives& representatives,
-                                   const BondDepths& bondDepths, Measurements& result) {
+                                   Measurements& result) {
   if (representatives.empty()) return;
   const double unit = weights().least();  // the weight of the shortest edge, which is 1
   for (GrainMeasures& grain : result.grains) {
@@ -132,12 +132,11 @@ void Measuring::setRepresentatives(const GrainRepresentatives& representatives,
     bond.distance = std::sqrt(double(squaredDistance) / unit);
     bond.cosAlpha = cosAlpha(squaredDistance, a.squaredRadius, b.squaredRadius);
     if (options_.bondRadii)
-      bond.inscribedRadius = std::sqrt(double(bondDepths.at({bond.first, bond.second})) / unit);
+      bond.inscribedRadius = std::sqrt(double(bondDepths_.at({bond.first, bond.second})) / unit);
   }
 }
 
 Measurements Measuring::finish(const GrainRepresentatives& representatives,
-                               const BondDepths& bondDepths,
                                const std::array<std::optional<double>, 3>& correlationLengths,
                                Interrupter* interrupter) {
   Measurements result;
@@ -164,7 +163,7 @@ Measurements Measuring::finish(const GrainRepresentatives& representatives,
     if (options_.shape) grain.shape = shapes_.shapes().at(grain.id);
   }
   setCells(result.grains, interrupter);
-  setRepresentatives(representatives, bondDepths, result);
+  setRepresentatives(representatives, result);
   const std::vector<BondMeasures> leftOut = takeSmallBonds(result);
   SampleMeasures& sample = result.sample;
   sample = sampleMeasures(result.grains, result.bonds, whole());

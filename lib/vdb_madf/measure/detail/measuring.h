@@ -38,6 +38,8 @@ class Measuring {
   const VoxelWeights& weights();
   /// Distances have to be measured for representatives; otherwise there is no background.
   bool hasBackground() const;
+  /// Depths of bonds, to be filled with the representatives; null: not asked for.
+  BondDepths* bondDepths() { return options_.bondRadii ? &bondDepths_ : nullptr; }
 
   /// A label, and whether none of its voxels are in slabs to come.
   using IsComplete = std::function<bool(int32_t label)>;
@@ -46,14 +48,13 @@ class Measuring {
            const IsComplete& isComplete, Interrupter* interrupter);
 
   /// \p correlationLengths: in voxels. @throw Interrupted
-  Measurements finish(const GrainRepresentatives& representatives, const BondDepths& bondDepths,
+  Measurements finish(const GrainRepresentatives& representatives,
                       const std::array<std::optional<double>, 3>& correlationLengths,
                       Interrupter* interrupter);
 
  private:
   void setCells(std::vector<GrainMeasures>& grains, Interrupter* interrupter) const;
-  void setRepresentatives(const GrainRepresentatives& representatives, const BondDepths& bondDepths,
-                          Measurements& result);
+  void setRepresentatives(const GrainRepresentatives& representatives, Measurements& result);
 
   const Int32Grid* about_;
   MeasureOptions options_;
@@ -67,6 +68,7 @@ class Measuring {
   std::optional<VoxelWeights> weights_;
   std::optional<LabelSums> sums_;
   std::vector<BondMeasures> bonds_;
+  BondDepths bondDepths_;
   GrainShapes shapes_;
   std::optional<VoronoiCells> cells_;
   ComponentCount components_;
