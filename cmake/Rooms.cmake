@@ -71,10 +71,28 @@ function(vdb_madf_share_header target level suffix)
     set_target_properties(${owner} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_include_directories(${owner} PRIVATE ${PROJECT_SOURCE_DIR}/lib)
     target_link_libraries(${owner} PRIVATE OpenVDB::openvdb TBB::tbb)
+    vdb_madf_map_classes(${owner})
     target_precompile_headers(${owner} PRIVATE
       <vdb_madf/grids/grid_types.h> <vdb_madf/grids/detail/grid_instances.h>)
   endif()
   target_precompile_headers(${target} REUSE_FROM ${owner})
+endfunction()
+
+# Leaves OpenVDB's map classes (ScaleMap and others) to its library. They are not templates, but
+# their virtual functions are inline, and GCC compiles all of them wherever the header is seen: two
+# seconds a file. '#pragma interface' in the header would say that they are compiled elsewhere; as
+# it looks at the name of the file alone, '#line' puts it there. Optimized code only: else inline
+# functions are called that the library need not have.
+function(vdb_madf_map_classes target)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR NOT CMAKE_BUILD_TYPE STREQUAL "Release")
+    return()
+  endif()
+  set(header ${PROJECT_BINARY_DIR}/map_classes.h)
+  file(CONFIGURE OUTPUT ${header} CONTENT "#line 1 \"${OpenVDB_INCLUDE_DIR}/openvdb/math/Maps.h\"
+#pragma interface
+#line 4 \"${header}\"
+")
+  target_precompile_headers(${target} PRIVATE ${header})
 endfunction()
 
 # The level is "" or as OPTIMIZE of vdb_madf_room().
