@@ -117,6 +117,18 @@ def test_ome_zarr_is_that_of_the_command_and_is_read_back(labels, tables, comman
             labels.save(ours)
 
 
+def test_a_folder_for_the_sand_atlas_is_that_of_the_command(labels, tables, command, tmp_path):
+    ours, theirs = tmp_path / "here" / "sand", tmp_path / "there" / "sand"
+    ours.parent.mkdir()
+    theirs.parent.mkdir()
+    labels.save(ours, kind="sandatlas", smoothing=2)
+    command("export", tables / "labels.vdb", theirs, "--as", "sandatlas", "--smooth", "2")
+    files = sorted(path.relative_to(ours) for path in ours.rglob("*.*"))
+    assert len(files) > 2 and files == sorted(path.relative_to(theirs)
+                                              for path in theirs.rglob("*.*"))
+    assert all((ours / file).read_bytes() == (theirs / file).read_bytes() for file in files)
+
+
 @pytest.mark.parametrize("name, arguments, text", [
     ("a.zarr", dict(ome="0.3"), "0.4, 0.5 or 0.6"),
     ("a.docx", {}, "no format has the ending '.docx'"),

@@ -53,6 +53,10 @@ bool isPalabosOutput(const std::string& out) {
   return fileEnding(out) == ".dat";
 }
 
+bool isFolder(const std::string& out) {
+  return fileEnding(out).empty();
+}
+
 bool isVtiOutput(const std::string& out) {
   return fileEnding(out) == ".vti";
 }
@@ -71,6 +75,7 @@ const ExportKind kExportKinds[] = {
     {"palabos", exportPalabos, ".dat", isPalabosOutput},
     {"network", exportNetwork, ".vtp, .graphml or .csv", isNetworkEnding, exportNetwork},
     {"zarr", exportZarr, ".zarr, a folder (.ome.zarr)", isZarrEnding, exportZarr},
+    {"sandatlas", exportSandAtlas, "none: a folder", isFolder},
 };
 
 std::vector<std::string> kindList() {
@@ -107,10 +112,10 @@ void checkTables(const ExportArguments& o, const ExportKind& kind) {
 }
 
 void runExport(const ExportArguments& o, const Common& common, const ExportKind& kind) {
-  if (fileEnding(o.out).empty())
-    checkOutputFolder(o.out);
-  else if (isZarrEnding(o.out))
+  if (isZarrEnding(o.out) || kind.run == exportSandAtlas)
     checkOutputTree(o.out);
+  else if (fileEnding(o.out).empty())
+    checkOutputFolder(o.out);
   else
     checkWritable(o.out);
   for (const std::string& file : {o.bonds, o.cover})
@@ -150,7 +155,8 @@ void addExport(Verb command, Common& common, Action& action) {
       .offer(kindList());
   verb.option("--grid", o->input.gridName, "VDB input: the grid to take").typeName("NAME");
   verb.option("--smooth", o->smoothing,
-              "mesh, grids, surface, zarr: rounds of smoothing; 0: the exact faces of the voxels")
+              "mesh, grids, surface, zarr, sandatlas: rounds of smoothing; 0: the exact faces of "
+              "voxels")
       .range(0, 1000)
       .showDefault();
   Option maxDim =

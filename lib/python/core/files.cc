@@ -10,6 +10,7 @@
 #include "vdb_madf/exports/mesh_file.h"
 #include "vdb_madf/exports/network_file.h"
 #include "vdb_madf/exports/ome_zarr.h"
+#include "vdb_madf/exports/sand_atlas.h"
 #include "vdb_madf/exports/vti_file.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
@@ -114,6 +115,13 @@ void saveZarr(const std::string& path, const GridPtr& labels, const std::string&
   });
 }
 
+void saveSandAtlas(const std::string& path, const GridPtr& labels, int smoothing,
+                   const Call& call) {
+  write(call, [&](Interrupter* interrupter) {
+    writeSandAtlas(path, asLabels(*labels), smoothing, interrupter);
+  });
+}
+
 void saveClumps(const std::string& path, const GridPtr& labels, const GridPtr& balls, int mostBalls,
                 double uncovered, bool apart, const Call& call) {
   write(call, [&](Interrupter* interrupter) {
@@ -177,6 +185,7 @@ void bindFiles(py::module_& m) {
   m.def("save_network", saveNetwork, path, labels, py::arg("min_faces"), call);
   m.def("save_zarr", saveZarr, path, labels, py::arg("ome"), py::arg("min_faces"),
         py::arg("meshes"), py::arg("smoothing"), py::arg("reduction"), py::arg("triangles"), call);
+  m.def("save_sand_atlas", saveSandAtlas, path, labels, py::arg("smoothing"), call);
   m.def("save_clumps", saveClumps, path, labels, py::arg("balls"), py::arg("max_balls"),
         py::arg("uncovered"), py::arg("apart"), call);
   m.def("save_hexahedra", saveHexahedra, path, labels, call);

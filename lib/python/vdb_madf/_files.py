@@ -22,6 +22,7 @@ KINDS = {
     "clumps": (".txt", ".data", ".csv"),
     "hexahedra": (".vtu", ".inp"),
     "zarr": (".zarr",),
+    "sandatlas": ("",),
     "preview": (".vdb",),
     "level sets": (".vdb",),
     "surface": (".vdb",),
@@ -36,7 +37,7 @@ def kind_of(path: str, kind: Optional[str]) -> str:
         if ending in KINDS["labels"]:
             return "labels"
         kinds = [name for name, endings in KINDS.items() if ending in endings]
-        if len(kinds) == 1:
+        if len(kinds) == 1 or not ending:  # a folder is one of meshes
             return kinds[0]
         every = sorted({e for endings in KINDS.values() for e in endings if e})
         raise _core.InvalidInput(

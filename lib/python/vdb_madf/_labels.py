@@ -198,6 +198,8 @@ class Labels(Volume):
           napari, neuroglancer and others: pyramids of the object and of `labels/grain`, colors and
           measures; `meshes` (`smoothing`, `reduce`, `triangles`): also meshes and measures for
           neuroglancer
+        - "sandatlas": a folder that is not there yet, for the Sand Atlas: voxels, meshes
+          (`smoothing`) and measures of each grain
         - "clumps": .txt (YADE), .data (LAMMPS), .csv: grains as balls, `max_balls` each,
           `uncovered` part of them, `apart` if balls of different grains shall not overlap
         - "preview" (fog and color, `reduce`), "level sets", "surface" (`smoothing`): .vdb for
@@ -227,6 +229,8 @@ class Labels(Volume):
             elif kind == "zarr":
                 _core.save_zarr(name, grid, ome, min_faces, meshes, smoothing, reduce, triangles,
                                 call)
+            elif kind == "sandatlas":
+                _core.save_sand_atlas(name, grid, smoothing, call)
             elif kind == "clumps":
                 balls = _core.ball_grids(_core.mask_of_labels(grid), call)
                 _core.save_clumps(name, grid, balls, max_balls, uncovered, apart, call)
