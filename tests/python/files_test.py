@@ -54,6 +54,7 @@ FILES = [
     pytest.param("m.hdf5", dict(kind="mask"), ["export", "--as", "mask"], marks=HDF5),
     ("a.graphml", {}, ["export"]), ("a.csv", dict(kind="network", min_faces=9),
                                     ["export", "--as", "network", "--min-faces", "9"]),
+    ("n.txt", dict(kind="network"), ["export", "--as", "network"]),
     ("a.txt", dict(max_balls=20, apart=True),
      ["export", "--as", "clumps", "--balls", "20", "--apart"]),
     ("a.inp", {}, ["export"]), ("a.vtu", {}, ["export"]),

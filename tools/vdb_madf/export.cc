@@ -73,7 +73,8 @@ const ExportKind kExportKinds[] = {
     {"hexa", exportHexahedra, ".vtu or .inp (Abaqus)", isHexahedraEnding},
     {"mask", exportMask, wordList(writtenEndings()), isImageEnding, exportMask},
     {"palabos", exportPalabos, ".dat", isPalabosOutput},
-    {"network", exportNetwork, ".vtp, .graphml or .csv", isNetworkEnding, exportNetwork},
+    {"network", exportNetwork, ".vtp, .graphml, .csv or .txt (MUSEN)", isNetworkEnding,
+     exportNetwork},
     {"zarr", exportZarr, ".zarr, a folder (.ome.zarr)", isZarrEnding, exportZarr},
     {"sandatlas", exportSandAtlas, "none: a folder", isFolder},
 };

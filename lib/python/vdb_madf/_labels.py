@@ -193,7 +193,7 @@ class Labels(Volume):
           .stl files; `smoothing`, `reduce`, `triangles`
         - "vti": VTK's image, `compress`; "hexahedra": .vtu, .inp (Abaqus), an element a voxel
         - "network": .graphml, .vtp, .csv: grains and bonds with their measures, `min_faces` of a
-          bond
+          bond; .txt, if `kind` says so: spheres and solid bonds for MUSEN
         - "zarr": .zarr, a folder that is not there yet: OME-Zarr `ome` "0.4", "0.5" or "0.6" for
           napari, neuroglancer and others: pyramids of the object and of `labels/grain`, colors and
           measures; `meshes` (`smoothing`, `reduce`, `triangles`): also meshes and measures for
