@@ -118,12 +118,16 @@ def test_ome_zarr_is_that_of_the_command_and_is_read_back(labels, tables, comman
             labels.save(ours)
 
 
-def test_a_folder_for_the_sand_atlas_is_that_of_the_command(labels, tables, command, tmp_path):
+@pytest.mark.parametrize("arguments, options", [
+    (dict(kind="sandatlas", smoothing=2), ["--as", "sandatlas", "--smooth", "2"]),
+    (dict(kind="clumps", max_balls=5), ["--as", "clumps", "--balls", "5"]),
+])
+def test_folders_are_those_of_the_command(arguments, options, labels, tables, command, tmp_path):
     ours, theirs = tmp_path / "here" / "sand", tmp_path / "there" / "sand"
     ours.parent.mkdir()
     theirs.parent.mkdir()
-    labels.save(ours, kind="sandatlas", smoothing=2)
-    command("export", tables / "labels.vdb", theirs, "--as", "sandatlas", "--smooth", "2")
+    labels.save(ours, **arguments)
+    command("export", tables / "labels.vdb", theirs, *options)
     files = sorted(path.relative_to(ours) for path in ours.rglob("*.*"))
     assert len(files) > 2 and files == sorted(path.relative_to(theirs)
                                               for path in theirs.rglob("*.*"))

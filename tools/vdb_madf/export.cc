@@ -57,6 +57,10 @@ bool isFolder(const std::string& out) {
   return fileEnding(out).empty();
 }
 
+bool isClumpOutput(const std::string& out) {
+  return isClumpEnding(out) || isFolder(out);
+}
+
 bool isVtiOutput(const std::string& out) {
   return fileEnding(out) == ".vti";
 }
@@ -69,7 +73,8 @@ const ExportKind kExportKinds[] = {
     {"grids", exportGrainGrids, ".vdb", hasVdbEnding},
     {"surface", exportSurface, ".vdb", hasVdbEnding},
     {"vti", exportVti, ".vti", isVtiOutput},
-    {"clumps", exportClumps, ".csv, .txt (YADE) or .data (LAMMPS)", isClumpEnding},
+    {"clumps", exportClumps, ".csv, .txt (YADE) or .data (LAMMPS), or none: a folder (MercuryDPM)",
+     isClumpOutput},
     {"hexa", exportHexahedra, ".vtu or .inp (Abaqus)", isHexahedraEnding},
     {"mask", exportMask, wordList(writtenEndings()), isImageEnding, exportMask},
     {"palabos", exportPalabos, ".dat", isPalabosOutput},
@@ -113,10 +118,10 @@ void checkTables(const ExportArguments& o, const ExportKind& kind) {
 }
 
 void runExport(const ExportArguments& o, const Common& common, const ExportKind& kind) {
-  if (isZarrEnding(o.out) || kind.run == exportSandAtlas)
-    checkOutputTree(o.out);
-  else if (fileEnding(o.out).empty())
+  if (isFolder(o.out) && kind.run == exportMesh<Int32Grid>)
     checkOutputFolder(o.out);
+  else if (isFolder(o.out) || isZarrEnding(o.out))
+    checkOutputTree(o.out);
   else
     checkWritable(o.out);
   for (const std::string& file : {o.bonds, o.cover})

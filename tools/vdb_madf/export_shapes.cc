@@ -12,9 +12,11 @@
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/exports/clump_bonds.h"
 #include "vdb_madf/exports/clump_file.h"
+#include "vdb_madf/exports/clump_folder.h"
 #include "vdb_madf/exports/hexahedra_file.h"
 #include "vdb_madf/exports/mesh_file.h"
 #include "vdb_madf/exports/sand_atlas.h"
+#include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/output_set.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
@@ -165,7 +167,11 @@ void exportClumps(const ExportArguments& o, const Common& common, const Int32Gri
   const auto made = clumps(labels, *balls, o.clumps, common.progress);
   OutputSet files;
   const auto bonds = exportClumpTables(o, common, labels, made);
-  writeClumps(o.out, made, labels.transform(), bonds, common.progress);
+  if (fileEnding(o.out).empty())
+    writeClumpFolder(o.out, made, measure(labels, o.measure, common.progress).grains,
+                     labels.transform());
+  else
+    writeClumps(o.out, made, labels.transform(), bonds, common.progress);
   files.commit();
   size_t ballCount = 0, without = 0;
   int64_t voxels = 0, uncovered = 0, outside = 0;

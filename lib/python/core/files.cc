@@ -6,15 +6,18 @@
 #include "bindings.h"
 #include "mesh_options.h"
 #include "vdb_madf/exports/clump_file.h"
+#include "vdb_madf/exports/clump_folder.h"
 #include "vdb_madf/exports/hexahedra_file.h"
 #include "vdb_madf/exports/mesh_file.h"
 #include "vdb_madf/exports/network_file.h"
 #include "vdb_madf/exports/ome_zarr.h"
 #include "vdb_madf/exports/sand_atlas.h"
 #include "vdb_madf/exports/vti_file.h"
+#include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/labels/grain_colors.h"
+#include "vdb_madf/measure/measure.h"
 #include "vdb_madf/pictures/label_panels.h"
 #include "vdb_madf/pictures/png_file.h"
 #include "vdb_madf/pictures/preview_volume.h"
@@ -127,7 +130,11 @@ void saveClumps(const std::string& path, const GridPtr& labels, const GridPtr& b
   write(call, [&](Interrupter* interrupter) {
     const auto made =
         clumps(asLabels(*labels), asLabels(*balls), {mostBalls, uncovered, apart}, interrupter);
-    writeClumps(path, made, labels->transform(), {}, interrupter);
+    if (fileEnding(path).empty())
+      writeClumpFolder(path, made, measure(asLabels(*labels), {}, interrupter).grains,
+                       labels->transform());
+    else
+      writeClumps(path, made, labels->transform(), {}, interrupter);
   });
 }
 

@@ -19,7 +19,7 @@ KINDS = {
     "mesh": (".ply", ".obj", ".stl", ".glb", ".vtp", ""),
     "vti": (".vti",),
     "network": (".graphml", ".vtp", ".csv", ".txt"),
-    "clumps": (".txt", ".data", ".csv"),
+    "clumps": (".txt", ".data", ".csv", ""),
     "hexahedra": (".vtu", ".inp"),
     "zarr": (".zarr",),
     "sandatlas": ("",),
