@@ -23,10 +23,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Two balls that touch, 3 and 7, a leaf of one voxel's thickness, 40, and at a face one voxel, 5.
+/// Two balls that touch, 3 and 7, a leaf of one voxel's thickness, 40, a shell, 41, which no facets
+/// of a third of it could show, and at a face one voxel, 5.
 LabelMap sample() {
   LabelMap voxels = twoBalls(Coord(20, 14, 12), 8);
   for (const Coord& p : CoordBBox(Coord(4, 30, 3), Coord(24, 30, 22))) voxels[p] = 40;
+  const Coord center(60, 20, 15);
+  for (const Coord& p : CoordBBox(center - Coord(12), center + Coord(12))) {
+    const double distance = (p - center).asVec3d().length();
+    if (distance > 10 && distance < 12) voxels[p] = 41;
+  }
   voxels[Coord(0, 35, 3)] = 5;
   return voxels;
 }
@@ -34,11 +40,12 @@ LabelMap sample() {
 Int32Grid::Ptr sampleGrid() {
   const auto grid = labelGrid(sample());
   setVoxelSize(*grid, VoxelSize(1e-5));
-  setDomain(*grid, CoordBBox(Coord(0), Coord(49, 39, 29)));
+  setDomain(*grid, CoordBBox(Coord(0), Coord(79, 39, 29)));
   return grid;
 }
 
 struct Body {
+  openvdb::BBoxd box;
   double volume = 0;
   openvdb::Vec3d moment{0, 0, 0};
 };
@@ -53,6 +60,7 @@ Body bodyOf(const std::string& stl) {
     std::memcpy(corners.data(), &stl[84 + 50 * i + 12], sizeof corners);
     const openvdb::Vec3d a(corners[0]), b(corners[1]), c(corners[2]);
     const double volume = a.dot(b.cross(c)) / 6;
+    for (const openvdb::Vec3d& corner : {a, b, c}) body.box.expand(corner);
     body.volume += volume;
     body.moment += volume * (a + b + c) / 4;
   }
@@ -66,9 +74,9 @@ TEST_CASE("sand_atlas: grains away from the faces, whole, by number", "[sand_atl
   const std::string path = folder / "sand-1";
   const auto grid = sampleGrid();
   const SandAtlasCounts counts = writeSandAtlas(path, *grid);
-  CHECK(counts.particles == 3);
+  CHECK(counts.particles == 4);
   CHECK(counts.atFaces == 1);
-  const std::vector<int32_t> labels{3, 7, 40};
+  const std::vector<int32_t> labels{3, 7, 40, 41};
   const LabelMap voxels = sample();
   const auto sizes = volumes(voxels);
   for (size_t i = 0; i < labels.size(); ++i) {
@@ -96,9 +104,11 @@ TEST_CASE("sand_atlas: grains away from the faces, whole, by number", "[sand_atl
       const Body body = bodyOf(readFile(path + "/stl_" + quality + name + ".stl"));
       CHECK(body.volume == Approx(1e-6 * double(sizes.at(labels[i]))).epsilon(1e-4));
       CHECK((body.moment / body.volume).length() < 1e-5);
+      for (int axis = 0; axis < 3; ++axis)
+        CHECK(body.box.extents()[axis] > 0.006 * box.dim()[axis]);  // no part is lost
     }
   }
-  CHECK_FALSE(fs::exists(path + "/vdb/particle_00004.vdb"));
+  CHECK_FALSE(fs::exists(path + "/vdb/particle_00005.vdb"));
   CHECK_THROWS_AS(writeSandAtlas(path, *grid), IoError);  // nothing is replaced
 }
 
@@ -136,7 +146,7 @@ TEST_CASE("sand_atlas: the table has the measures, the JSON what is known", "[sa
   const std::string about = readFile(folder / "sand-1/sand-1.json");
   CHECK(about.find("\"title\": \"sand-1\"") != std::string::npos);
   CHECK(about.find("\"lat_lon\": null") != std::string::npos);
-  CHECK(about.find("\"number_of_particles\": 3,") != std::string::npos);
+  CHECK(about.find("\"number_of_particles\": 4,") != std::string::npos);
   CHECK(about.find("\"microns_per_pixel\": 10.0\n") != std::string::npos);
 }
 

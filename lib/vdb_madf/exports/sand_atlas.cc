@@ -93,7 +93,8 @@ GrainMesh inFacets(const GrainMesh& mesh, double facet, double volume) {
   for (;; facet /= 2) {
     facet = std::max(facet, kFinestFacet);
     GrainMesh made = remesh(mesh, facet);
-    if (facet == kFinestFacet || meshVolumes(made)[0] > volume / 2) return made;
+    const bool hasMost = !made.triangles.empty() && meshVolumes(made)[0] > volume / 2;
+    if (hasMost || facet == kFinestFacet) return made;
   }
 }
 
