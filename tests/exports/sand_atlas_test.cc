@@ -4,6 +4,7 @@
 #include "vdb_madf/exports/sand_atlas.h"
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -11,6 +12,7 @@
 
 #include "support/catch.h"
 #include "support/files.h"
+#include "support/full_disk.h"
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -162,4 +164,31 @@ TEST_CASE("sand_atlas: without a size, of boxes, or of cut grains alone there is
   setVoxelSize(*cut, VoxelSize(1e-5));
   CHECK_THROWS_AS(writeSandAtlas(path, *cut), InvalidInput);
   CHECK(fs::is_empty(folder / ""));
+}
+
+TEST_CASE("sand_atlas: interrupted anywhere, or on a full disk, it leaves nothing",
+          "[sand_atlas]") {
+  struct Stop : Interrupter {
+    explicit Stop(int last) : left(last) {}
+    bool wasInterrupted(int) override { return --left < 0; }
+    std::atomic<int> left;
+  };
+  const ScratchFolder folder;
+  const auto grid = sampleGrid();
+  int polls = 0;
+  for (;; ++polls) {
+    Stop stop(polls);
+    try {
+      writeSandAtlas(folder / "sand", *grid, 10, &stop);
+      break;
+    } catch (const Interrupted&) {
+      REQUIRE(folder.fileCount() == 0);
+    }
+  }
+  CHECK(polls > 4);  // each grain asks
+  for (const rlim_t bytes : {4000, 100000}) {
+    const FullDisk disk(bytes);
+    CHECK_THROWS_AS(writeSandAtlas(folder / "more", *grid), IoError);
+  }
+  CHECK(folder.fileCount() == 1);
 }
