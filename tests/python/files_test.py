@@ -54,6 +54,7 @@ FILES = [
     pytest.param("m.hdf5", dict(kind="mask"), ["export", "--as", "mask"], marks=HDF5),
     ("a.graphml", {}, ["export"]), ("a.csv", dict(kind="network", min_faces=9),
                                     ["export", "--as", "network", "--min-faces", "9"]),
+    ("n.txt", dict(kind="network"), ["export", "--as", "network"]),
     ("a.txt", dict(max_balls=20, apart=True),
      ["export", "--as", "clumps", "--balls", "20", "--apart"]),
     ("a.inp", {}, ["export"]), ("a.vtu", {}, ["export"]),
@@ -115,6 +116,22 @@ def test_ome_zarr_is_that_of_the_command_and_is_read_back(labels, tables, comman
         assert np.array_equal(read, labels) and read.spacing == labels.spacing
         with pytest.raises(madf.IoError, match="already"):
             labels.save(ours)
+
+
+@pytest.mark.parametrize("arguments, options", [
+    (dict(kind="sandatlas", smoothing=2), ["--as", "sandatlas", "--smooth", "2"]),
+    (dict(kind="clumps", max_balls=5), ["--as", "clumps", "--balls", "5"]),
+])
+def test_folders_are_those_of_the_command(arguments, options, labels, tables, command, tmp_path):
+    ours, theirs = tmp_path / "here" / "sand", tmp_path / "there" / "sand"
+    ours.parent.mkdir()
+    theirs.parent.mkdir()
+    labels.save(ours, **arguments)
+    command("export", tables / "labels.vdb", theirs, *options)
+    files = sorted(path.relative_to(ours) for path in ours.rglob("*.*"))
+    assert len(files) > 2 and files == sorted(path.relative_to(theirs)
+                                              for path in theirs.rglob("*.*"))
+    assert all((ours / file).read_bytes() == (theirs / file).read_bytes() for file in files)
 
 
 @pytest.mark.parametrize("name, arguments, text", [

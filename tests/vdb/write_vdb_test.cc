@@ -38,6 +38,7 @@ TEST_CASE("vdb_file: equal grids make equal bytes", "[vdb_file]") {
                                       size_t(threads));
     writeVdb(folder.file("again.vdb"), make());
     CHECK(bytesOf(folder.file("again.vdb")) == bytes);
+    CHECK(vdbBytes("again.vdb", make()) == bytes);
   }
   // What was read is written the same again.
   const auto read = readVdb(folder.file("first.vdb"));

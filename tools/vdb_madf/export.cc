@@ -53,6 +53,14 @@ bool isPalabosOutput(const std::string& out) {
   return fileEnding(out) == ".dat";
 }
 
+bool isFolder(const std::string& out) {
+  return fileEnding(out).empty();
+}
+
+bool isClumpOutput(const std::string& out) {
+  return isClumpEnding(out) || isFolder(out);
+}
+
 bool isVtiOutput(const std::string& out) {
   return fileEnding(out) == ".vti";
 }
@@ -65,12 +73,15 @@ const ExportKind kExportKinds[] = {
     {"grids", exportGrainGrids, ".vdb", hasVdbEnding},
     {"surface", exportSurface, ".vdb", hasVdbEnding},
     {"vti", exportVti, ".vti", isVtiOutput},
-    {"clumps", exportClumps, ".csv, .txt (YADE) or .data (LAMMPS)", isClumpEnding},
+    {"clumps", exportClumps, ".csv, .txt (YADE) or .data (LAMMPS), or none: a folder (MercuryDPM)",
+     isClumpOutput},
     {"hexa", exportHexahedra, ".vtu or .inp (Abaqus)", isHexahedraEnding},
     {"mask", exportMask, wordList(writtenEndings()), isImageEnding, exportMask},
     {"palabos", exportPalabos, ".dat", isPalabosOutput},
-    {"network", exportNetwork, ".vtp, .graphml or .csv", isNetworkEnding, exportNetwork},
+    {"network", exportNetwork, ".vtp, .graphml, .csv or .txt (MUSEN)", isNetworkEnding,
+     exportNetwork},
     {"zarr", exportZarr, ".zarr, a folder (.ome.zarr)", isZarrEnding, exportZarr},
+    {"sandatlas", exportSandAtlas, "none: a folder", isFolder},
 };
 
 std::vector<std::string> kindList() {
@@ -107,9 +118,9 @@ void checkTables(const ExportArguments& o, const ExportKind& kind) {
 }
 
 void runExport(const ExportArguments& o, const Common& common, const ExportKind& kind) {
-  if (fileEnding(o.out).empty())
+  if (isFolder(o.out) && kind.run == exportMesh<Int32Grid>)
     checkOutputFolder(o.out);
-  else if (isZarrEnding(o.out))
+  else if (isFolder(o.out) || isZarrEnding(o.out))
     checkOutputTree(o.out);
   else
     checkWritable(o.out);
@@ -150,7 +161,8 @@ void addExport(Verb command, Common& common, Action& action) {
       .offer(kindList());
   verb.option("--grid", o->input.gridName, "VDB input: the grid to take").typeName("NAME");
   verb.option("--smooth", o->smoothing,
-              "mesh, grids, surface, zarr: rounds of smoothing; 0: the exact faces of the voxels")
+              "mesh, grids, surface, zarr, sandatlas: rounds of smoothing; 0: the exact faces of "
+              "voxels")
       .range(0, 1000)
       .showDefault();
   Option maxDim =

@@ -54,6 +54,7 @@ void exportReduced(const ExportArguments& o, const Common& common, const Labels&
 void exportGrainGrids(const ExportArguments& o, const Common& common, const Int32Grid& labels);
 void exportSurface(const ExportArguments& o, const Common& common, const Int32Grid& labels);
 void exportClumps(const ExportArguments& o, const Common& common, const Int32Grid& labels);
+void exportSandAtlas(const ExportArguments& o, const Common& common, const Int32Grid& labels);
 void exportHexahedra(const ExportArguments& o, const Common& common, const Int32Grid& labels);
 
 // and labels as volumes and networks.

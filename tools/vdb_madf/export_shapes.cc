@@ -12,8 +12,11 @@
 #include "vdb_madf/base/memory.h"
 #include "vdb_madf/exports/clump_bonds.h"
 #include "vdb_madf/exports/clump_file.h"
+#include "vdb_madf/exports/clump_folder.h"
 #include "vdb_madf/exports/hexahedra_file.h"
 #include "vdb_madf/exports/mesh_file.h"
+#include "vdb_madf/exports/sand_atlas.h"
+#include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/output_set.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
@@ -47,10 +50,10 @@ Int32Grid::ConstPtr meshedLabels(const ExportArguments& o, const Common& common,
   return o.grains.empty() ? all : selectGrains(*all, o.grains, common.progress);
 }
 
-/// @throw InvalidInput for voxels that level sets do not take
-void requireCubes(const Int32Grid& labels) {
+/// @throw InvalidInput for other voxels, which `what` does not take
+void requireCubes(const Int32Grid& labels, const std::string& what) {
   try {
-    requireCubicVoxels(labels, "a level set");
+    requireCubicVoxels(labels, what);
   } catch (const InvalidInput& error) {
     throw InvalidInput(error.what() + std::string(" (convert --resample)"));
   }
@@ -141,7 +144,7 @@ void exportGrainGrids(const ExportArguments& o, const Common& common, const Int3
     say(o, common, counted(grids.size(), "Bool grid"));
     return;
   }
-  requireCubes(labels);
+  requireCubes(labels, "a level set");
   LevelSetOptions options;
   options.smoothing = o.smoothing;
   const auto grids = grainLevelSets(labels, options, common.progress);
@@ -150,7 +153,7 @@ void exportGrainGrids(const ExportArguments& o, const Common& common, const Int3
 }
 
 void exportSurface(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
-  requireCubes(labels);
+  requireCubes(labels, "a level set");
   LevelSetOptions options;
   options.smoothing = o.smoothing;
   const auto grid = surfaceLevelSet(labels, options, common.progress);
@@ -164,7 +167,11 @@ void exportClumps(const ExportArguments& o, const Common& common, const Int32Gri
   const auto made = clumps(labels, *balls, o.clumps, common.progress);
   OutputSet files;
   const auto bonds = exportClumpTables(o, common, labels, made);
-  writeClumps(o.out, made, labels.transform(), bonds, common.progress);
+  if (fileEnding(o.out).empty())
+    writeClumpFolder(o.out, made, measure(labels, o.measure, common.progress).grains,
+                     labels.transform());
+  else
+    writeClumps(o.out, made, labels.transform(), bonds, common.progress);
   files.commit();
   size_t ballCount = 0, without = 0;
   int64_t voxels = 0, uncovered = 0, outside = 0;
@@ -199,6 +206,14 @@ void exportHexahedra(const ExportArguments& o, const Common& common, const Int32
   say(o, common,
       fmt::format("{}, {}, {}", counted(counts.grains, "grain"),
                   counted(counts.elements, "element"), counted(counts.nodes, "node")));
+}
+
+void exportSandAtlas(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
+  requireCubes(labels, "the Sand Atlas");
+  const SandAtlasCounts counts = writeSandAtlas(o.out, labels, o.smoothing, common.progress);
+  say(o, common,
+      fmt::format("{}; {} at faces left out", counted(counts.particles, "particle"),
+                  counted(counts.atFaces, "grain")));
 }
 
 template void exportMesh(const ExportArguments&, const Common&, const Int32Grid&);

@@ -105,7 +105,8 @@ void parse(TrackArguments& o) {
   for (const std::string& file : {o.phi, o.network})
     if (!file.empty() && o.motion.empty())
       throw WrongUsage(file + ": tells how grains turned and moved: give --motion, too");
-  if (!o.network.empty() && !isNetworkEnding(o.network))
+  // (Those for MUSEN, .txt, have no columns.)
+  if (!o.network.empty() && (!isNetworkEnding(o.network) || fileEnding(o.network) == ".txt"))
     throw WrongUsage(o.network + ": the ending for --network must be .vtp, .graphml or .csv");
   if (!o.motion.empty() && !o.links.empty())
     throw WrongUsage("--links: lists voxels in common, which --motion does without: see --grains");

@@ -6,14 +6,18 @@
 #include "bindings.h"
 #include "mesh_options.h"
 #include "vdb_madf/exports/clump_file.h"
+#include "vdb_madf/exports/clump_folder.h"
 #include "vdb_madf/exports/hexahedra_file.h"
 #include "vdb_madf/exports/mesh_file.h"
 #include "vdb_madf/exports/network_file.h"
 #include "vdb_madf/exports/ome_zarr.h"
+#include "vdb_madf/exports/sand_atlas.h"
 #include "vdb_madf/exports/vti_file.h"
+#include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/labels/grain_colors.h"
+#include "vdb_madf/measure/measure.h"
 #include "vdb_madf/pictures/label_panels.h"
 #include "vdb_madf/pictures/png_file.h"
 #include "vdb_madf/pictures/preview_volume.h"
@@ -114,12 +118,23 @@ void saveZarr(const std::string& path, const GridPtr& labels, const std::string&
   });
 }
 
+void saveSandAtlas(const std::string& path, const GridPtr& labels, int smoothing,
+                   const Call& call) {
+  write(call, [&](Interrupter* interrupter) {
+    writeSandAtlas(path, asLabels(*labels), smoothing, interrupter);
+  });
+}
+
 void saveClumps(const std::string& path, const GridPtr& labels, const GridPtr& balls, int mostBalls,
                 double uncovered, bool apart, const Call& call) {
   write(call, [&](Interrupter* interrupter) {
     const auto made =
         clumps(asLabels(*labels), asLabels(*balls), {mostBalls, uncovered, apart}, interrupter);
-    writeClumps(path, made, labels->transform(), {}, interrupter);
+    if (fileEnding(path).empty())
+      writeClumpFolder(path, made, measure(asLabels(*labels), {}, interrupter).grains,
+                       labels->transform());
+    else
+      writeClumps(path, made, labels->transform(), {}, interrupter);
   });
 }
 
@@ -177,6 +192,7 @@ void bindFiles(py::module_& m) {
   m.def("save_network", saveNetwork, path, labels, py::arg("min_faces"), call);
   m.def("save_zarr", saveZarr, path, labels, py::arg("ome"), py::arg("min_faces"),
         py::arg("meshes"), py::arg("smoothing"), py::arg("reduction"), py::arg("triangles"), call);
+  m.def("save_sand_atlas", saveSandAtlas, path, labels, py::arg("smoothing"), call);
   m.def("save_clumps", saveClumps, path, labels, py::arg("balls"), py::arg("max_balls"),
         py::arg("uncovered"), py::arg("apart"), call);
   m.def("save_hexahedra", saveHexahedra, path, labels, call);

@@ -18,15 +18,19 @@ KINDS = {
     "mask": _VOLUMES,
     "mesh": (".ply", ".obj", ".stl", ".glb", ".vtp", ""),
     "vti": (".vti",),
-    "network": (".graphml", ".vtp", ".csv"),
-    "clumps": (".txt", ".data", ".csv"),
+    "network": (".graphml", ".vtp", ".csv", ".txt"),
+    "clumps": (".txt", ".data", ".csv", ""),
     "hexahedra": (".vtu", ".inp"),
     "zarr": (".zarr",),
+    "sandatlas": ("",),
     "preview": (".vdb",),
     "level sets": (".vdb",),
     "surface": (".vdb",),
     "picture": (".png",),
 }
+
+#: ending -> the kind that is taken where several have it
+_USUAL = {"": "mesh", ".txt": "clumps"}
 
 
 def kind_of(path: str, kind: Optional[str]) -> str:
@@ -36,8 +40,8 @@ def kind_of(path: str, kind: Optional[str]) -> str:
         if ending in KINDS["labels"]:
             return "labels"
         kinds = [name for name, endings in KINDS.items() if ending in endings]
-        if len(kinds) == 1:
-            return kinds[0]
+        if len(kinds) == 1 or ending in _USUAL:
+            return _USUAL.get(ending, kinds[0])
         every = sorted({e for endings in KINDS.values() for e in endings if e})
         raise _core.InvalidInput(
             f"{path}: say what to write, kind='{kinds[0]}' or '{kinds[1]}'" if kinds else

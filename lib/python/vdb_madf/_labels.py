@@ -193,13 +193,16 @@ class Labels(Volume):
           .stl files; `smoothing`, `reduce`, `triangles`
         - "vti": VTK's image, `compress`; "hexahedra": .vtu, .inp (Abaqus), an element a voxel
         - "network": .graphml, .vtp, .csv: grains and bonds with their measures, `min_faces` of a
-          bond
+          bond; .txt, if `kind` says so: spheres and solid bonds for MUSEN
         - "zarr": .zarr, a folder that is not there yet: OME-Zarr `ome` "0.4", "0.5" or "0.6" for
           napari, neuroglancer and others: pyramids of the object and of `labels/grain`, colors and
           measures; `meshes` (`smoothing`, `reduce`, `triangles`): also meshes and measures for
           neuroglancer
-        - "clumps": .txt (YADE), .data (LAMMPS), .csv: grains as balls, `max_balls` each,
-          `uncovered` part of them, `apart` if balls of different grains shall not overlap
+        - "sandatlas": a folder that is not there yet, for the Sand Atlas: voxels, meshes
+          (`smoothing`) and measures of each grain
+        - "clumps": .txt (YADE), .data (LAMMPS), .csv, or a folder that is not there yet
+          (MercuryDPM): grains as balls, `max_balls` each, `uncovered` part of them, `apart` if
+          balls of different grains shall not overlap
         - "preview" (fog and color, `reduce`), "level sets", "surface" (`smoothing`): .vdb for
           renderers
         - "picture": .png as of `vdb_madf render`; `size` of each part in pixels, `azimuth`,
@@ -227,6 +230,8 @@ class Labels(Volume):
             elif kind == "zarr":
                 _core.save_zarr(name, grid, ome, min_faces, meshes, smoothing, reduce, triangles,
                                 call)
+            elif kind == "sandatlas":
+                _core.save_sand_atlas(name, grid, smoothing, call)
             elif kind == "clumps":
                 balls = _core.ball_grids(_core.mask_of_labels(grid), call)
                 _core.save_clumps(name, grid, balls, max_balls, uncovered, apart, call)

@@ -14,6 +14,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/detail/glb_file.h"
+#include "vdb_madf/exports/detail/stl_bytes.h"
 #include "vdb_madf/exports/detail/vtk_file.h"
 #include "vdb_madf/exports/detail/world_mesh.h"
 #include "vdb_madf/files/detail/output_stream.h"
@@ -27,7 +28,6 @@ namespace {
 
 using detail::OutputStream;
 using detail::WorldMesh;
-using openvdb::Vec3d;
 using openvdb::Vec3f;
 
 void writePly(const std::string& path, const WorldMesh& world, Interrupter* interrupter) {
@@ -113,21 +113,10 @@ void writeObj(const std::string& path, const WorldMesh& world, Interrupter* inte
 /// Triangles of grains [begin, end).
 void writeStl(OutputStream& out, const WorldMesh& world, size_t begin, size_t end) {
   const auto& first = world.mesh().firstTriangle;
-  std::string header = "vdb_madf grains; lengths in " + world.unit();  // not "solid": that is text
-  header.resize(80, ' ');
-  out.text(header);
-  out.value(uint32_t(first[end] - first[begin]));
+  out.text(detail::stlHead(world.unit(), first[end] - first[begin]));
   for (uint32_t i = first[begin]; i < first[end]; ++i) {
-    const auto triangle = world.triangle(i);
-    const Vec3f a = world.point(triangle[0]), b = world.point(triangle[1]),
-                c = world.point(triangle[2]);
-    const Vec3d normal = Vec3d(b - a).cross(Vec3d(c - a));
-    const double length = normal.length();
-    out.value(length > 0 ? Vec3f(normal / length) : Vec3f(0));
-    out.value(a);
-    out.value(b);
-    out.value(c);
-    out.value(uint16_t(0));
+    const auto [a, b, c] = world.triangle(i);
+    out.value(detail::stlTriangle(world.point(a), world.point(b), world.point(c)));
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/detail/vtk_file.h"
+#include "vdb_madf/exports/musen_file.h"
 #include "vdb_madf/exports/network_file.h"
 #include "vdb_madf/files/detail/output_stream.h"
 #include "vdb_madf/files/file_ending.h"
@@ -173,7 +174,7 @@ void writeCsv(const std::string& path, const GrainNetwork& network, Interrupter*
 
 bool isNetworkEnding(const std::string& path) {
   const std::string end = fileEnding(path);
-  return end == ".vtp" || end == ".graphml" || end == ".csv";
+  return end == ".vtp" || end == ".graphml" || end == ".csv" || end == ".txt";
 }
 
 void writeNetwork(const std::string& path, const GrainNetwork& network, Interrupter* interrupter) {
@@ -184,8 +185,11 @@ void writeNetwork(const std::string& path, const GrainNetwork& network, Interrup
     writeGraphml(path, network, interrupter);
   else if (end == ".csv")
     writeCsv(path, network, interrupter);
+  else if (end == ".txt")
+    writeMusen(path, network, interrupter);
   else
-    throw InvalidInput(path + ": no network format has this ending; use .vtp, .graphml or .csv");
+    throw InvalidInput(path +
+                       ": no network format has this ending; use .vtp, .graphml, .csv or .txt");
 }
 
 }  // namespace vdb_madf

@@ -19,8 +19,9 @@ namespace vdb_madf {
 ///   `pore.surface_area`, `pore.region_volume`, `throat.diameter`, `throat.equivalent_diameter` (of
 ///   equal area), `throat.inscribed_diameter`, `throat.cross_sectional_area`,
 ///   `throat.direct_length`; the shorter of the two lists is filled up with empty cells
+/// - .txt: a bonded-particle model for MUSEN (musen_file.h)
 /// A NaN is NaN in .vtp, no entry in .graphml, an empty cell in .csv.
-/// @throw InvalidInput for another ending; IoError; Interrupted.
+/// @throw InvalidInput for another ending, or as writeMusen(); IoError; Interrupted.
 void writeNetwork(const std::string& path, const GrainNetwork& network,
                   Interrupter* interrupter = nullptr);
 /// True if writeNetwork knows the ending.

@@ -52,6 +52,7 @@ GrainNetwork networkOf(const Labels& labels, const Int32Grid& about, MeasureOpti
 
   GrainNetwork network;
   network.contactsLeftOut = measured.sample.contactsLeftOut;
+  if (measured.voxelSize) network.unit = measured.voxelSize->unit();
   for (const GrainMeasures& grain : measured.grains) {
     network.grains.push_back(grain.id);
     network.centers.push_back(world.origin + world.edges * grain.centroid);

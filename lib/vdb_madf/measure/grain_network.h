@@ -28,6 +28,7 @@ struct GrainNetwork {
   std::vector<Rgb> colors;                     ///< of the grains, by grainColors()
   std::vector<std::array<uint32_t, 2>> bonds;  ///< positions in `grains`, first < second; sorted
   std::vector<Column> grainColumns, bondColumns;
+  std::string unit;             ///< of the world, "mm" or "um"; empty: the voxel size is not known
   int64_t contactsLeftOut = 0;  ///< pairs of grains with too few faces for a bond
 };
 

@@ -3,8 +3,10 @@
 
 #include "vdb_madf/vdb/write_vdb.h"
 
+#include <cstring>
 #include <ios>
 #include <ostream>
+#include <sstream>
 
 #include "vdb_madf/files/detail/file_buffer.h"
 #include "vdb_madf/files/detail/output_stream.h"
@@ -31,6 +33,20 @@ void writeVdb(const std::string& path, const std::vector<openvdb::GridBase::Cons
       interrupter);
   output.writeAt(detail::kUuidStart, detail::uuidOf(sum).data(), detail::kUuidLength);
   output.commit();
+}
+
+std::string vdbBytes(const std::string& name, const std::vector<openvdb::GridBase::ConstPtr>& grids,
+                     Interrupter* interrupter) {
+  initialize();
+  std::ostringstream stream;
+  stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
+  detail::ParallelArchive().writeAll(stream, detail::withRegionGrid(name, grids), interrupter);
+  std::string bytes = stream.str();
+  detail::VdbSum sum(int64_t(bytes.size()));
+  sum.addRest([&](uint64_t position, char* to,
+                  size_t count) { std::memcpy(to, bytes.data() + position, count); },
+              interrupter);
+  return bytes.replace(detail::kUuidStart, detail::kUuidLength, detail::uuidOf(sum));
 }
 
 }  // namespace vdb_madf

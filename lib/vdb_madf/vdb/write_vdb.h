@@ -19,4 +19,8 @@ namespace vdb_madf {
 void writeVdb(const std::string& path, const std::vector<openvdb::GridBase::ConstPtr>& grids,
               Interrupter* interrupter = nullptr);
 
+/// The bytes of that file. \p name: of the file, in messages. @throw as above, but no IoError
+std::string vdbBytes(const std::string& name, const std::vector<openvdb::GridBase::ConstPtr>& grids,
+                     Interrupter* interrupter = nullptr);
+
 }  // namespace vdb_madf
