@@ -17,6 +17,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/exports/detail/remesh.h"
 #include "vdb_madf/exports/detail/stl_bytes.h"
 #include "vdb_madf/files/output_tree.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"
@@ -25,7 +26,6 @@
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/measure/measure.h"
 #include "vdb_madf/shapes/grain_mesh.h"
-#include "vdb_madf/shapes/remesh.h"
 #include "vdb_madf/shapes/world_points.h"
 #include "vdb_madf/vdb/write_vdb.h"
 
@@ -119,7 +119,7 @@ void forEachToItsEnd(size_t count, Interrupter* interrupter, const F& f) {
 GrainMesh inFacets(const GrainMesh& mesh, double facet, double volume) {
   for (;; facet /= 2) {
     facet = std::max(facet, kFinestFacet);
-    GrainMesh made = remesh(mesh, facet);
+    GrainMesh made = detail::remesh(mesh, facet);
     const bool hasMost = !made.triangles.empty() && meshVolumes(made)[0] > volume / 2;
     if (hasMost || facet == kFinestFacet) return made;
   }

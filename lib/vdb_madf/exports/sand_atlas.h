@@ -22,9 +22,10 @@ struct SandAtlasCounts {
 /// - `vdb/particle_00001.vdb`: the fog volume `density`, 1 and active at the grain's voxels, else
 ///   0. One voxel is one unit; the first voxels lie at 1.
 /// - `stl_ORIGINAL/particle_00001.stl` (binary, mm): grainMesh(), its center of volume at the
-///   origin, scaled to the volume of the voxels. `stl_100`, `stl_30`, `stl_10`, `stl_3`: remesh()
-///   of that with so many facets across the smallest axis of the ellipsoid of the grain's second
-///   moments, none below 1/4 voxel; finer ones where less than half of the grain would be left.
+///   origin, scaled to the volume of the voxels. `stl_100`, `stl_30`, `stl_10`, `stl_3`: that
+///   in facets of one size, by OpenVDB's level sets, with so many across the smallest axis of the
+///   ellipsoid of the grain's second moments, none below 1/4 voxel; finer ones where less than half
+///   of the grain would be left.
 /// - `NAME.csv`: `Particle ID`, `Volume (µm³)`, `Equivalent Diameter (µm)`, `Major Axis Length
 ///   (µm)`, `Middle ...`, `Minor ...`, `True Sphericity (-)`, `Convexity (-)`, `Flatness (-)`,
 ///   `Elongation (-)`, `Compactness (-)`: our measures (GrainMeasures), compactness being the cube

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/shapes/remesh.h"
+#include "vdb_madf/exports/detail/remesh.h"
 
 #include <tbb/global_control.h>
 
@@ -13,6 +13,7 @@
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
+using detail::remesh;
 
 namespace {
 

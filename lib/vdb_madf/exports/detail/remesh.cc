@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/shapes/remesh.h"
+#include "vdb_madf/exports/detail/remesh.h"
 
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <vector>
 
-namespace vdb_madf {
+namespace vdb_madf::detail {
 
 GrainMesh remesh(const GrainMesh& mesh, double facet) {
   using openvdb::Vec3s;
@@ -37,4 +37,4 @@ GrainMesh remesh(const GrainMesh& mesh, double facet) {
   return result;
 }
 
-}  // namespace vdb_madf
+}  // namespace vdb_madf::detail

@@ -5,7 +5,7 @@
 
 #include "vdb_madf/shapes/grain_mesh.h"
 
-namespace vdb_madf {
+namespace vdb_madf::detail {
 
 /// The surface of one grain in facets of one size: quadrangles, each as two triangles, of about
 /// `facet` voxels along a side. OpenVDB makes a level set of the mesh, with samples so far apart,
@@ -14,4 +14,4 @@ namespace vdb_madf {
 /// \p mesh: closed, of one grain, not far from the origin. \p facet: > 0
 GrainMesh remesh(const GrainMesh& mesh, double facet);
 
-}  // namespace vdb_madf
+}  // namespace vdb_madf::detail
