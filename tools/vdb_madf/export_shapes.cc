@@ -71,12 +71,11 @@ Int32Grid::Ptr ballsOf(const ExportArguments& o, const Common& common, const Int
 /// Writes the tables of the bonds and of the cover, if they are asked for.
 /// @return the bonds
 std::vector<ClumpBond> exportClumpTables(const ExportArguments& o, const Common& common,
-                                         const Int32Grid& labels,
-                                         const std::vector<Clump>& clumps) {
+                                         const Int32Grid& labels, const std::vector<Clump>& clumps,
+                                         const Measurements& measured) {
   if (!o.cover.empty()) writeClumpCover(o.cover, clumps, labels.transform(), common.progress);
   if (o.bonds.empty()) return {};
-  const auto bonds =
-      clumpBonds(clumps, measure(labels, o.measure, common.progress).bonds, labels.transform());
+  const auto bonds = clumpBonds(clumps, measured.bonds, labels.transform());
   writeClumpBonds(o.bonds, bonds, labels.transform(), common.progress);
   return bonds;
 }
@@ -166,10 +165,12 @@ void exportClumps(const ExportArguments& o, const Common& common, const Int32Gri
   const Int32Grid::Ptr balls = ballsOf(o, common, labels);
   const auto made = clumps(labels, *balls, o.clumps, common.progress);
   OutputSet files;
-  const auto bonds = exportClumpTables(o, common, labels, made);
-  if (fileEnding(o.out).empty())
-    writeClumpFolder(o.out, made, measure(labels, o.measure, common.progress).grains,
-                     labels.transform());
+  const bool isFolder = fileEnding(o.out).empty();
+  Measurements measured;
+  if (isFolder || !o.bonds.empty()) measured = measure(labels, o.measure, common.progress);
+  const auto bonds = exportClumpTables(o, common, labels, made, measured);
+  if (isFolder)
+    writeClumpFolder(o.out, made, measured.grains, labels.transform());
   else
     writeClumps(o.out, made, labels.transform(), bonds, common.progress);
   files.commit();
