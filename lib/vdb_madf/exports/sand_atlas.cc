@@ -6,12 +6,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -91,30 +88,6 @@ std::string stlOf(const GrainMesh& mesh, double volume, double edge) {
   return bytes;
 }
 
-/// Runs f(i) for all i of [0, count) in parallel. Where one fails, or the interrupter stops them,
-/// those that run go on to their ends: parallelFor() would have OpenVDB's loops end within, whose
-/// callers take no half results.
-template <typename F>
-void forEachToItsEnd(size_t count, Interrupter* interrupter, const F& f) {
-  std::atomic<size_t> done{0};
-  std::atomic<bool> stop{false};
-  std::mutex mutex;
-  std::exception_ptr failure;
-  detail::parallelForEach(count, 1, nullptr, [&](size_t i) {
-    if (stop) return;
-    try {
-      if (interrupter && interrupter->wasInterrupted(int(done * 100 / count))) throw Interrupted();
-      f(i);
-      ++done;
-    } catch (...) {
-      const std::lock_guard<std::mutex> lock(mutex);
-      if (!failure) failure = std::current_exception();
-      stop = true;
-    }
-  });
-  if (failure) std::rethrow_exception(failure);
-}
-
 /// In facets of about this size, but smaller ones where that loses most of the grain.
 GrainMesh inFacets(const GrainMesh& mesh, double facet, double volume) {
   for (;; facet /= 2) {
@@ -192,7 +165,7 @@ SandAtlasCounts writeSandAtlas(const std::string& folder, const Int32Grid& label
   const Int32Tree::ConstPtr leaves = detail::withoutTiles(labels);
   GrainMeshOptions meshOptions;
   meshOptions.smoothing = smoothing;
-  forEachToItsEnd(grains.size(), &writing, [&](size_t i) {
+  detail::parallelForEach(grains.size(), 1, &writing, [&](size_t i) {
     const GrainMeasures& grain = grains[i];
     const std::string name = fmt::format("/particle_{:05}", i + 1);
     const Int32Grid::Ptr particle = particleOf(*leaves, grain);

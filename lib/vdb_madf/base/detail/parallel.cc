@@ -7,6 +7,8 @@
 #include <tbb/parallel_for.h>
 
 #include <atomic>
+#include <exception>
+#include <mutex>
 
 #include "vdb_madf/base/errors.h"
 
@@ -17,21 +19,27 @@ void parallelFor(size_t count, size_t grain, Interrupter* interrupter,
   if (count == 0) return;
   std::atomic<size_t> done{0};
   std::atomic<bool> stop{false};
-  tbb::task_group_context context;
+  std::mutex mutex;
+  std::exception_ptr failure;
   tbb::parallel_for(
       tbb::blocked_range<size_t>(0, count, grain),
       [&](const tbb::blocked_range<size_t>& range) {
         if (stop.load(std::memory_order_relaxed)) return;
-        if (interrupter && interrupter->wasInterrupted(int(done.load() * 100 / count))) {
+        try {
+          if (interrupter && interrupter->wasInterrupted(int(done.load() * 100 / count)))
+            throw Interrupted();
+          body(range.begin(), range.end());
+          done += range.size();
+        } catch (...) {
+          // Not left to TBB, which would end OpenVDB's loops in other chunks halfway, whose callers
+          // take no half results.
+          const std::lock_guard<std::mutex> lock(mutex);
+          if (!failure) failure = std::current_exception();
           stop = true;
-          context.cancel_group_execution();
-          return;
         }
-        body(range.begin(), range.end());
-        done += range.size();
       },
-      tbb::simple_partitioner(), context);
-  if (stop) throw Interrupted();
+      tbb::simple_partitioner());
+  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace vdb_madf::detail

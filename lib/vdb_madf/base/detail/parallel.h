@@ -43,7 +43,8 @@ class WorkPart : public Interrupter {
 };
 
 /// Runs body(begin, end) over [0, count) in chunks of at most `grain` items, in parallel. The
-/// interrupter is asked between chunks, with the percentage done.
+/// interrupter is asked between chunks, with the percentage done. Where one fails, or the
+/// interrupter stops them, chunks that run go on to their ends.
 /// The one place that knows the threading library. @throw Interrupted; what body throws.
 void parallelFor(size_t count, size_t grain, Interrupter* interrupter,
                  const std::function<void(size_t begin, size_t end)>& body);
