@@ -33,11 +33,12 @@ enum MusenKey {
 enum MusenType { sphere = 1, solidBond = 9 };
 
 const std::vector<double>& valuesOf(const std::vector<GrainNetwork::Column>& columns,
-                                    const std::string& name) {
+                                    const char* name) {
   const auto found =
       std::find_if(columns.begin(), columns.end(),
                    [&](const GrainNetwork::Column& column) { return column.name == name; });
-  if (found == columns.end()) throw InvalidInput("the network has no column " + name);
+  if (found == columns.end())
+    throw InvalidInput(std::string("the network has no column ") + name);
   return found->values;
 }
 
