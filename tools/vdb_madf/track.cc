@@ -3,7 +3,6 @@
 
 #include "vdb_madf/matching/track.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -20,6 +19,7 @@
 #include "phi_table.h"
 #include "slab_output.h"
 #include "text_file.h"
+#include "track_summary.h"
 #include "track_tables.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/network_file.h"
@@ -36,14 +36,6 @@
 namespace vdb_madf::tools {
 
 namespace {
-
-struct TrackArguments {
-  InputOptions before, after;
-  std::vector<std::string> more;  // of a series: further scans, and the folder
-  TrackOptions track;
-  std::string out, shift, motion, json, grains, links, bonds, phi, network,
-      minFaces = "1", sureFaces = std::to_string(track.sureFaces);
-};
 
 /// What a series writes of a scan.
 struct SeriesFiles {
@@ -145,123 +137,6 @@ constexpr BondFate kBondFates[] = {BondFate::kept,      BondFate::broken,    Bon
                                    BondFate::inside,    BondFate::detached,  BondFate::separated,
                                    BondFate::undecided, BondFate::unmatched, BondFate::outside};
 
-template <typename Items, typename Fate>
-int64_t countOf(const Items& items, Fate fate) {
-  return std::count_if(items.begin(), items.end(),
-                       [&](const auto& item) { return item.fate == fate; });
-}
-
-/// How many have each fate, as far as there are any.
-template <typename Items, typename Fates>
-Json fatesOf(const Items& items, const Fates& fates) {
-  Json json = Json::object();
-  json["all"] = items.size();
-  for (const auto fate : fates)
-    if (const int64_t count = countOf(items, fate)) json[toString(fate)] = count;
-  return json;
-}
-
-double percent(int64_t part, int64_t whole) {
-  return whole > 0 ? 100.0 * double(part) / double(whole) : 0.0;
-}
-
-/// Of the bonds that are decided, and what it is at least and at most if some are not.
-Json brokenJson(const BrokenBonds& bonds) {
-  Json json = Json::object();
-  if (bonds.kept + bonds.broken == 0) return json;
-  json["bonds"] = bonds.all();
-  json["share"] = double(bonds.broken) / double(bonds.kept + bonds.broken);
-  json["at_least"] = double(bonds.broken) / double(bonds.all());
-  json["at_most"] = double(bonds.broken + bonds.unknown) / double(bonds.all());
-  return json;
-}
-
-void addMotion(Json& json, const Tracks& t, const TrackOptions& options) {
-  json["motion"] = toString(*t.motion);
-  if (t.whole) {
-    Json rows = Json::array();
-    for (int row = 0; row < 3; ++row)
-      rows.push_back({t.whole->linear(row, 0), t.whole->linear(row, 1), t.whole->linear(row, 2),
-                      t.whole->shift[row]});
-    json["motion_of_whole"] = rows;
-  }
-  json["gap"] = options.gap;
-  json["sure_faces"] = options.sureFaces;
-}
-
-Json summary(const TrackArguments& o, const Tracks& t) {
-  Json json;
-  json["before"] = o.before.path;
-  json["after"] = o.after.path;
-  if (!o.out.empty()) json["output"] = o.out;
-  if (t.motion) {
-    addMotion(json, t, o.track);
-    json["min_faces"] = o.track.minFaces;
-  } else {
-    json["shift"] = coordJson(t.shift);
-    json["share"] = o.track.share;
-    json["min_faces"] = o.track.minFaces;
-    json["voxels_before"] = t.voxelsBefore;
-    json["voxels_after"] = t.voxelsAfter;
-    json["common_voxels"] = t.commonVoxels;
-  }
-  json["grains_before"] = fatesOf(t.before, kGrainFates);
-  json["grains_after"] = fatesOf(t.after, kGrainFates);
-  json["bonds_before"] = fatesOf(t.bondsBefore, kBondFates);
-  json["bonds_after"] = fatesOf(t.bondsAfter, kBondFates);
-  if (t.motion) json["broken_bonds"] = brokenJson(brokenBonds(t, o.track.sureFaces));
-  return json;
-}
-
-void printFates(const char* what, const Json& fates) {
-  std::printf("%s  %s", what, fates["all"].dump().c_str());
-  const char* before = ": ";
-  for (const auto& [fate, count] : fates.items()) {
-    if (fate == "all") continue;
-    std::printf("%s%s %s", before, count.dump().c_str(), fate.c_str());
-    before = ", ";
-  }
-  std::printf("\n");
-}
-
-void printMotion(const Tracks& t) {
-  std::printf("motion         %s\n", toString(*t.motion));
-  if (!t.whole) return;
-  const Strain strain = strainOf(t.whole->linear);
-  std::printf(
-      "of the whole   turned by %.2f degrees, strain %.4f (volumetric), %.4f (deviatoric)\n",
-      strain.turn.length(), strain.volumetric, strain.deviatoric);
-}
-
-void printBroken(const BrokenBonds& bonds, int64_t sureFaces) {
-  const int64_t decided = bonds.kept + bonds.broken;
-  if (decided == 0) return;
-  std::printf(
-      "broken         %.2f %% of the bonds of %lld faces or more, %.2f to %.2f %% if some are "
-      "lost or undecided\n",
-      percent(bonds.broken, decided), static_cast<long long>(sureFaces),
-      percent(bonds.broken, bonds.all()), percent(bonds.broken + bonds.unknown, bonds.all()));
-}
-
-void printShift(const TrackArguments& o, const Tracks& t) {
-  std::printf("shift          %d,%d,%d voxels%s\n", t.shift.x(), t.shift.y(), t.shift.z(),
-              o.track.shift ? "" : ", found");
-  std::printf("in common      %.2f %% of the labeled voxels before, %.2f %% of those after\n",
-              percent(t.commonVoxels, t.voxelsBefore), percent(t.commonVoxels, t.voxelsAfter));
-}
-
-void print(const TrackArguments& o, const Tracks& t, const Json& json) {
-  if (t.motion)
-    printMotion(t);
-  else
-    printShift(o, t);
-  printFates("grains before", json["grains_before"]);
-  printFates("grains after ", json["grains_after"]);
-  printFates("bonds before ", json["bonds_before"]);
-  printFates("bonds after  ", json["bonds_after"]);
-  if (t.motion) printBroken(brokenBonds(t, o.track.sureFaces), o.track.sureFaces);
-}
-
 /// Of a folder of slabs, slab by slab if that is asked for and can be done.
 AnyLabels labelsOf(const InputOptions& input, const char* gridOption, bool bySlabs,
                    const Common& common) {
@@ -351,7 +226,7 @@ void runSeries(TrackArguments o, const Common& common) {
     folder.keep();
     if (!common.quiet) {
       std::printf("%s%s\n", scan == laterScans(o).front() ? "" : "\n", scan.c_str());
-      print(o, tracks, summary(o, tracks));
+      print(o, tracks, summaryOf(o, tracks));
     }
     before = labels;
     o.before.path = scan;
@@ -388,7 +263,7 @@ void runTrack(const TrackArguments& o, const Common& common) {
   bondFile.write(trackedBondTable(tracks));
   if (!o.network.empty()) writeNetwork(o.network, motionNetwork(before, tracks), common.progress);
   if (!phiFile.isNowhere()) phiFile.write(phiTable(tracks, boxOf(aboutOf(before)).min()));
-  Json json = summary(o, tracks);
+  Json json = summaryOf(o, tracks);
   addNotes(json, *common.progress);
   jsonFile.write(json);
   if (isScene) writeScene(o, wholeOf(before), wholeOf(labels), tracks, common);

@@ -37,8 +37,7 @@ const std::vector<double>& valuesOf(const std::vector<GrainNetwork::Column>& col
   const auto found =
       std::find_if(columns.begin(), columns.end(),
                    [&](const GrainNetwork::Column& column) { return column.name == name; });
-  if (found == columns.end())
-    throw InvalidInput(std::string("the network has no column ") + name);
+  if (found == columns.end()) throw InvalidInput(std::string("the network has no column ") + name);
   return found->values;
 }
 
