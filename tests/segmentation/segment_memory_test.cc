@@ -52,6 +52,15 @@ TEST_CASE("segment_memory: specks are pieces, and grains of tables", "[segment_m
   CHECK(tablesMemory(thick) < segmentMemory(thick));
 }
 
+TEST_CASE("segment_memory: the angle's crumbs are grains of tables", "[segment_memory]") {
+  SegmentOptions angle;
+  angle.merge.mode = MergeMode::angle;
+  const ObjectSize size{64000, 10000000, 400000};
+  CHECK(tablesMemory(size, angle) > tablesMemory(size) + 2000 * size.thin);
+  angle.gamma = 9;
+  CHECK(tablesMemory(size, angle) < tablesMemory(size) + 1500 * size.thin);
+}
+
 TEST_CASE("segment_memory: holds what is known exactly, and nothing of the bounding box",
           "[segment_memory]") {
   const ObjectSize size{1000000, 300000000};

@@ -151,7 +151,7 @@ void parse(SegmentArguments& o) {
 int64_t neededMemory(const SegmentArguments& o, const ObjectSize& size,
                      const SegmentOptions& options) {
   const int64_t segmenting = segmentMemory(size, options);
-  return o.tables.empty() ? segmenting : std::max(segmenting, tablesMemory(size));
+  return o.tables.empty() ? segmenting : std::max(segmenting, tablesMemory(size, options));
 }
 
 void runSegment(const SegmentArguments& o, const Common& common) {

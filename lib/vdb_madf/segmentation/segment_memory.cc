@@ -40,6 +40,9 @@ constexpr double kLeavesOfPoint = 2.25;
 
 // Measures and tables, per grain, and per leaf: faces and surfaces.
 constexpr double kTables = 1300, kMeasure = 2000;
+// Of the angle's crumbs, with their bonds: of snow nearly each critical point of thin structures is
+// one, of balls few are, and of them the filter leaves up to half.
+constexpr double kCrumbTables = 2600, kFilteredCrumbs = 0.5;
 
 // Threads' scratch space and stacks, the graph, code.
 constexpr double kBase = 60 << 20;
@@ -74,9 +77,13 @@ ObjectSize objectSize(const MaskGrid& object) {
   return size;
 }
 
-int64_t tablesMemory(const ObjectSize& size) {
+int64_t tablesMemory(const ObjectSize& size, const SegmentOptions& options) {
+  double tables = kTables * double(size.specks);
+  if (options.merge.mode == MergeMode::angle)
+    tables = std::max(tables,
+                      kCrumbTables * double(size.thin) * (options.gamma > 1 ? kFilteredCrumbs : 1));
   return int64_t(kBase + (kIndex + kGrid + kMeasure) * double(size.leaves) +
-                 kGraph * double(size.thin) + kTables * double(size.specks));
+                 kGraph * double(size.thin) + tables);
 }
 
 int64_t segmentMemory(const ObjectSize& size, const SegmentOptions& options) {

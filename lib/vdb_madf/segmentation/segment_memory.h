@@ -31,6 +31,6 @@ ObjectSize objectSize(const MaskGrid& object);
 int64_t segmentMemory(const ObjectSize& size, const SegmentOptions& options = {});
 
 /// Bytes that measure() and its tables need after that, at their peak, with the labels' grid.
-int64_t tablesMemory(const ObjectSize& size);
+int64_t tablesMemory(const ObjectSize& size, const SegmentOptions& options = {});
 
 }  // namespace vdb_madf
