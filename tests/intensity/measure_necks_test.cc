@@ -288,6 +288,30 @@ TEST_CASE("measure_necks: a rod cut across has its own section", "[measure_necks
   CHECK(measured.bonds[0].neck->normal.x() > 0.9999);
 }
 
+TEST_CASE("measure_necks: a scan that is larger than the domain adds nothing", "[measure_necks]") {
+  const Row& row = fourPairs();
+  const CoordBBox box(Coord(1, 20, 8), Coord(row.size.x - 2, 37, 47));  // cuts grains
+  const Coord size = box.dim();
+  const auto all = row.sides();
+  const auto labels =
+      drawLabels(box, [&](const Vec3d& p) { return all->tree().getValue(Coord::round(p)); });
+  setDomain(*labels, box);
+  std::vector<float> cut;
+  for (int z = box.min().z(); z <= box.max().z(); ++z)
+    for (int y = box.min().y(); y <= box.max().y(); ++y)
+      for (int x = box.min().x(); x <= box.max().x(); ++x)
+        cut.push_back(row.grays[(size_t(z) * size_t(row.size.y) + size_t(y)) * size_t(row.size.x) +
+                                size_t(x)]);
+  GrayScan part{imageOf({size.x(), size.y(), size.z()}, cut), box.min()}, whole = row.scan();
+  const ScanBlur blur{3000, 1000, 0.04, 0.85};
+  Measurements byPart = measure(*labels), byWhole = byPart;
+  measureNecks(*labels, part, blur, byPart);
+  measureNecks(*labels, whole, blur, byWhole);
+  REQUIRE(byPart.bonds.size() >= 3);
+  for (size_t i = 0; i < byPart.bonds.size(); ++i)
+    CHECK(byWhole.bonds[i].neck->area == byPart.bonds[i].neck->area);
+}
+
 TEST_CASE("measure_necks: refuses another scan, slices and unequal voxels", "[measure_necks]") {
   const auto labels = fourPairs().sides();
   Measurements measured = measure(*labels);

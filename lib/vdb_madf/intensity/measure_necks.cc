@@ -268,7 +268,7 @@ class NeckMeter {
 
 /// The bonds' sections, by the labels alone.
 std::vector<Section> sectionsOf(const Int32Tree& labels, const Measurements& measured,
-                                const CoordBBox& scan, double blur, Interrupter* interrupter) {
+                                const CoordBBox& known, double blur, Interrupter* interrupter) {
   const auto radiusOf = [&](int32_t label) {
     const auto& grains = measured.grains;
     const size_t row = rowOf(grains, label);
@@ -295,7 +295,7 @@ std::vector<Section> sectionsOf(const Int32Tree& labels, const Measurements& mea
           section.reach * std::sqrt(std::max(0.0, 1 - along * along)) + kHeight * std::abs(along);
     }
     section.box = around(section.center, halves);
-    section.box.intersect(scan);
+    section.box.intersect(known);
   });
   return sections;
 }
@@ -353,8 +353,10 @@ void measureNecks(const Int32Grid& labels, GrayScan& scan, const ScanBlur& blur,
   const Int32Tree::ConstPtr tree = detail::withoutTiles(labels);
   detail::WorkPart framing(interrupter, 0, 20), reading(interrupter, 20, 50),
       fitting(interrupter, 50, 100);
-  const std::vector<Section> sections =
-      sectionsOf(*tree, measured, scan.box(), blur.sigma, &framing);
+  // What a larger scan shows beyond the labels' domain belongs to grains that nobody knows.
+  CoordBBox known = scan.box();
+  known.intersect(measured.sample.box);
+  const std::vector<Section> sections = sectionsOf(*tree, measured, known, blur.sigma, &framing);
   const FloatTree::Ptr gray = readAround(sections, scan, &reading);
   const NeckMeter meter(*tree, *gray, blur);
   detail::parallelForEach(sections.size(), kBondsTogether, &fitting, [&](size_t i) {
