@@ -285,6 +285,15 @@ TEST_CASE("mesh_file: a GLB of more than 4 GiB is refused before it is meshed", 
   CHECK_THROWS_AS(checkMeshRoom("m.GLB", 238700000, options), InvalidInput);
 }
 
+TEST_CASE("mesh_file: materials of another file are not replaced", "[mesh_file]") {
+  const ScratchFolder folder;
+  const auto grid = labelGrid(twoBalls({0, 0, 0}, 4));
+  std::ofstream(folder / "m.mtl") << "mine";
+  CHECK_THROWS_AS(writeMesh(folder / "m.obj", grainMesh(*grid), optionsOf(*grid)), IoError);
+  CHECK(readFile(folder / "m.mtl") == "mine");
+  CHECK(folder.fileCount() == 1);
+}
+
 TEST_CASE("mesh_file: nothing to write, and endings nobody knows", "[mesh_file]") {
   const ScratchFolder folder;
   const auto grid = labelGrid({});

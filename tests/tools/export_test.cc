@@ -114,7 +114,6 @@ TEST_CASE("cli: endings in upper case are the same", "[cli]") {
   const Bench bench;
   makeLabels(bench);
   for (const auto& [lower, upper, as] : {std::tuple{"m.ply", "M.PLY", ""},
-                                         {"m.obj", "m.Obj", ""},
                                          {"m.stl", "M.STL", ""},
                                          {"m.glb", "M.GLB", ""},
                                          {"m.vtp", "M.VTP", " --as mesh"},
@@ -131,6 +130,12 @@ TEST_CASE("cli: endings in upper case are the same", "[cli]") {
     bench.mustRun(std::string("export g.vdb ") + upper + as);
     CHECK(bench.bytes(upper) == bench.bytes(lower));
   }
+  bench.mustRun("export g.vdb m.obj");
+  const std::string lower = bench.bytes("m.obj");  // which names its materials, m.mtl
+  std::filesystem::remove(bench.path("m.obj"));
+  std::filesystem::remove(bench.path("m.mtl"));
+  bench.mustRun("export g.vdb m.Obj");
+  CHECK(bench.bytes("m.Obj") == lower);
   CHECK(bench.run("export g.vdb O.VTP").exitCode == 2);  // mesh or network: not clear
 }
 

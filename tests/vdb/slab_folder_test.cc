@@ -106,6 +106,21 @@ TEST_CASE("slab_folder: a new folder takes the place of the old one", "[slab_fol
   CHECK_THROWS_AS(checkSlabFolder(folder / "mine"), IoError);
 }
 
+TEST_CASE("slab_folder: files of others and links are not replaced", "[slab_folder]") {
+  const ScratchFolder folder;
+  const std::string path = folder / "a.slabs";
+  makeFolder(path, "mine");
+  checkSlabFolder(path);
+  std::filesystem::create_directory_symlink(path, folder / "link.slabs");
+  CHECK_THROWS_WITH(checkSlabFolder(folder / "link.slabs"), Contains("it is a link"));
+  std::ofstream(path + "/grains.csv") << "label";
+  CHECK_THROWS_WITH(checkSlabFolder(path), Contains("it holds grains.csv, too"));
+  makeFolder(folder / "made", "new");
+  CHECK_THROWS_AS(commitSlabFolder(folder / "made", path), IoError);
+  CHECK(holds(path, "mine"));
+  CHECK(std::filesystem::exists(path + "/grains.csv"));
+}
+
 TEST_CASE("slab_folder: what a kill put aside goes away, or back if nothing took its place",
           "[slab_folder]") {
   const ScratchFolder folder;

@@ -21,6 +21,7 @@
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/output_folder.h"
 #include "vdb_madf/files/output_set.h"
+#include "vdb_madf/files/written_together.h"
 
 namespace vdb_madf {
 
@@ -70,6 +71,7 @@ void writeColor(OutputStream& out, const Rgb& color) {
 /// With a file of materials beside it: few programs show colors of points.
 void writeObj(const std::string& path, const WorldMesh& world, Interrupter* interrupter) {
   const auto beside = std::filesystem::path(path).replace_extension(".mtl");
+  checkWrittenTogether(path, {beside.string()});
   OutputStream out(path, interrupter), materials(beside.string(), interrupter);
   std::map<Rgb, std::string> names;
   out.text("# vdb_madf grains; lengths in " + world.unit() + "\nmtllib " +

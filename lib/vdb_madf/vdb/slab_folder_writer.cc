@@ -52,6 +52,12 @@ void settleReplaced(const std::string& path) {
       fs::rename(old, path, error);
 }
 
+/// False of a file that somebody put among the slabs (not of hidden ones: no one would miss them).
+bool isOfSlabs(const std::string& name) {
+  return name == kSlabIndex || name[0] == '.' ||
+         (name.compare(0, 5, "slab-") == 0 && fs::path(name).extension() == ".vdb");
+}
+
 }  // namespace
 
 SlabFolderWriter::SlabFolderWriter(const std::string& path, std::vector<int> cuts)
@@ -118,11 +124,18 @@ void writeSlabIndex(const std::string& folder, const std::vector<int>& cuts,
 }
 
 void checkSlabFolder(const std::string& path) {
-  settleReplaced(path);
   std::error_code ignored;
-  if (fs::exists(path, ignored) && !hasSlabIndex(path))
+  if (fs::is_symlink(path, ignored))
+    throw IoError("cannot write " + path + ": it is a link; give the path that it leads to");
+  settleReplaced(path);
+  if (!fs::exists(path, ignored)) return;
+  if (!hasSlabIndex(path))
     throw IoError("cannot write " + path +
                   ": it is there, and no folder of slabs; choose another name");
+  for (const auto& entry : fs::directory_iterator(path, ignored))
+    if (const std::string name = entry.path().filename().string(); !isOfSlabs(name))
+      throw IoError("cannot replace " + path + ": it holds " + name +
+                    ", too; move that away, or choose another name");
 }
 
 void commitSlabFolder(const std::string& made, const std::string& path) {

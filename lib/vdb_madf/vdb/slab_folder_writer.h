@@ -58,7 +58,7 @@ void writeSlabIndex(const std::string& folder, const std::vector<int>& cuts,
 /// Finds out before the work whether a folder of slabs can be written. A folder that
 /// commitSlabFolder() of a killed run has put aside goes back to its path if none is there, else
 /// away.
-/// @throw IoError if something else is at the path
+/// @throw IoError if something else is at the path, or a link, or if the folder holds other files
 void checkSlabFolder(const std::string& path);
 
 /// Puts the folder `made` in the place of `path`, and of the folder of slabs that is there.
