@@ -150,6 +150,14 @@ TEST_CASE("region: all verbs keep it", "[region]") {
   CHECK(regionOf("r.vdb") == core.inside);
   bench.mustRun("remerge r.vdb s.vdb");
   CHECK(bench.bytes("s.vdb") == bench.bytes("g.vdb"));
+  // The joins of kept manifolds know what reaches out of it.
+  segmented(bench, "core.npy g.slabs --keep manifold --roi cylinder", kFitted);
+  bench.mustRun("hierarchy g.vdb joins.csv");
+  bench.mustRun("hierarchy g.slabs joins_of_slabs.csv");
+  CHECK(bench.bytes("joins.csv") == bench.bytes("joins_of_slabs.csv"));
+  bench.mustRun("measure g.vdb stable --stability");
+  bench.mustRun("remerge g.vdb r.vdb --strictness auto");
+  CHECK(regionOf("r.vdb") == core.inside);
   // convert: copies have it, images its box; a mask has it, too.
   bench.mustRun("convert g.vdb c.vdb");
   CHECK(bench.bytes("c.vdb") == bench.bytes("g.vdb"));

@@ -50,6 +50,13 @@ Json newIndex(const std::string& folder, const MergeOptions& merge, int tidy,
 
 }  // namespace
 
+VdbReadOptions manifoldsAlone() {
+  VdbReadOptions reading;
+  reading.wanted = [](const openvdb::GridBase& grid) { return grid.getName() == kManifoldGrid; };
+  reading.anyVoxelShape = true;
+  return reading;
+}
+
 Int32Grid::Ptr manifoldsAmong(const std::vector<openvdb::GridBase::Ptr>& grids) {
   for (const auto& grid : grids)
     if (grid->getName() == kManifoldGrid && grid->isType<Int32Grid>())
@@ -101,8 +108,12 @@ ManifoldGraph keptGraph(const InputOptions& input, Progress* progress) {
         parts.push_back(std::move(*part));
     return joinedGraph(parts);
   }
+  const Int32Grid::Ptr header =
+      requiredManifolds(readVdbHeaders(input.path, progress, /*verified=*/true), input.path);
+  if (regionName(*header).empty()) return requiredGraph(*header);
+  // A region is voxels, which decide what reaches out of the domain.
   return requiredGraph(
-      *requiredManifolds(readVdbHeaders(input.path, progress, /*verified=*/true), input.path));
+      *requiredManifolds(readVdb(input.path, manifoldsAlone(), progress), input.path));
 }
 
 void remergeInSlabs(const InputOptions& input, const std::string& out, const MergeOptions& merge,

@@ -11,11 +11,14 @@
 #include "vdb_madf/method/manifold_graph.h"
 #include "vdb_madf/method/merge.h"
 #include "vdb_madf/slabs/folder_scratch.h"
+#include "vdb_madf/vdb/read_vdb.h"
 
 namespace vdb_madf::tools {
 
 constexpr char kManifoldGrid[] = "manifold";
 
+/// Reads the manifolds alone, and the region that is their domain; voxels of any shape.
+VdbReadOptions manifoldsAlone();
 /// The manifolds among the grids of a file; null if there are none.
 Int32Grid::Ptr manifoldsAmong(const std::vector<openvdb::GridBase::Ptr>& grids);
 /// The manifolds among the grids of the file `path`. @throw InvalidInput if there are none
@@ -23,7 +26,8 @@ Int32Grid::Ptr requiredManifolds(const std::vector<openvdb::GridBase::Ptr>& grid
                                  const std::string& path);
 /// Opens the manifolds in a folder of slabs. @throw InvalidInput if it has none
 LabelSlabs openManifoldSlabs(const InputOptions& input, Progress* progress);
-/// The graph of the kept manifolds, in one file, of which no voxels are read, or in slabs.
+/// The graph of the kept manifolds, in one file, of which no voxels are read unless the domain is a
+/// region, or in slabs.
 /// @throw InvalidInput if there are none
 ManifoldGraph keptGraph(const InputOptions& input, Progress* progress);
 

@@ -71,9 +71,7 @@ void parse(ReportArguments& o) {
 /// The manifolds that a file keeps beside its labels; null if it does not.
 Int32Grid::Ptr manifoldsBeside(const InputOptions& input, Progress* progress) {
   if (!isVdb(input) || isInSlabs(input)) return nullptr;
-  VdbReadOptions manifolds;
-  manifolds.wanted = [](const openvdb::GridBase& grid) { return grid.getName() == kManifoldGrid; };
-  return manifoldsAmong(readVdb(input.path, manifolds, progress));
+  return manifoldsAmong(readVdb(input.path, manifoldsAlone(), progress));
 }
 
 /// In slabs only if they can be measured so.

@@ -228,11 +228,8 @@ void refuseScratch(const SweepArguments& o) {
 std::vector<SweepRow> sweepManifolds(const SweepArguments& o, const Common& common) {
   if (!isInSlabs(o.input)) {
     refuseScratch(o);
-    VdbReadOptions manifolds;
-    manifolds.wanted = [](const auto& grid) { return grid.getName() == kManifoldGrid; };
-    manifolds.anyVoxelShape = true;
     const Int32Grid::Ptr manifold =
-        requiredManifolds(readVdb(o.input.path, manifolds, common.progress), o.input.path);
+        requiredManifolds(readVdb(o.input.path, manifoldsAlone(), common.progress), o.input.path);
     const SweepOptions options = manifoldOptions(o, *manifold);
     return withFileName(o.input.path,
                         [&] { return mergingSweep(*manifold, options, common.progress); });
