@@ -10,6 +10,7 @@
 
 #include "support/catch.h"
 #include "support/command_runs.h"
+#include "support/refusals.h"
 #include "support/svg.h"
 
 using namespace vdb_madf::test;
@@ -137,6 +138,18 @@ TEST_CASE("cli: grains by score, segmented, remerged and swept", "[cli]") {
   bench.mustRun("sweep s.vdb b.csv --merge neck,score --theta -0.9 --strictness 11");
   CHECK(bench.bytes("b.csv").find("\n0,neck,,2,-0.9,") != std::string::npos);
   CHECK(bench.bytes("b.csv").find("\n0,score,11,,,") != std::string::npos);
+}
+
+TEST_CASE("cli: unequal voxels of an image are swept as they are segmented", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSnow + "s.npy");
+  const std::string edges = " --phase 1 --voxel-size 10x10x30um";
+  bench.mustRun("sweep s.npy a.csv --strictness 11" + edges);
+  const Json json =
+      Json::parse(bench.mustRun("segment s.npy g.vdb --keep manifold --json -" + edges));
+  const std::string grains = std::to_string(json.at("grains").get<int>());
+  CHECK(bench.bytes("a.csv").find("\n0,score,11,,," + grains + ",") != std::string::npos);
+  refuses(bench, 2, "sweep g.vdb b.csv --voxel-size 10um", {"leave --voxel-size out"});
 }
 
 TEST_CASE("cli: the joins of the hierarchy, in one file and in slabs", "[cli]") {

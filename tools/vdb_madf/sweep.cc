@@ -197,6 +197,7 @@ void checkManifoldOptions(const SweepArguments& o, const openvdb::MetaMap& manif
                                    {&in.smooth, "--smooth"},
                                    {&in.despeckle, "--despeckle"},
                                    {&in.domainText, "--domain"},
+                                   {&in.voxelSizeText, "--voxel-size"},
                                    {&in.roi, "--roi"},
                                    {&in.cropText, "--crop"},
                                    {&o.fillHoles, "--fill-holes"}})
@@ -283,6 +284,7 @@ void addSweep(Verb command, Common& common, Action& action) {
       .required();
   o->input.addSelection(verb);
   o->input.addRaw(verb);
+  o->input.addVoxelSize(verb);
   o->input.addDomain(verb);
   o->input.addRegion(verb);
   verb.option("--gamma", o->gamma, "list of gammas, voxels; one segmentation each")
