@@ -32,27 +32,29 @@ Coord floorDiv(const Coord& p, int factor) {
   return {floorDiv(p.x(), factor), floorDiv(p.y(), factor), floorDiv(p.z(), factor)};
 }
 
-/// What the arrays at 1/factor should hold, counted voxel by voxel.
+/// What the arrays at 1/factor of a box should hold, counted voxel by voxel.
 struct Wanted {
   std::map<Coord, uint32_t> labels, gray;
 };
-Wanted reduced(const LabelMap& voxels, const Coord& first, int factor) {
+Wanted reduced(const LabelMap& voxels, const CoordBBox& box, int factor) {
+  const Coord first = floorDiv(box.min(), factor);
   std::map<Coord, std::map<int32_t, int64_t>> counts;
-  for (const auto& [p, label] : voxels)
-    ++counts[floorDiv(p, factor) - floorDiv(first, factor)][label];
+  for (const auto& [p, label] : voxels) ++counts[floorDiv(p, factor) - first][label];
+  std::map<Coord, int64_t> known;
+  for (auto p = box.begin(); p; ++p) ++known[floorDiv(*p, factor) - first];
   Wanted wanted;
   const int64_t all = int64_t(factor) * factor * factor;
   for (const auto& [p, labels] : counts) {
-    int64_t background = all, most = 0;
+    int64_t labeled = 0, most = 0;
     uint32_t label = 0;
     for (const auto& [candidate, count] : labels) {
-      background -= count;
+      labeled += count;
       if (count <= most) continue;
       most = count;
       label = uint32_t(candidate);
     }
-    if (most > background) wanted.labels[p] = label;
-    const auto gray = uint32_t(std::floor(255.0 * double(all - background) / double(all) + 0.5));
+    if (most > known[p] - labeled) wanted.labels[p] = label;
+    const auto gray = uint32_t(std::floor(255.0 * double(labeled) / double(all) + 0.5));
     if (gray) wanted.gray[p] = gray;
   }
   return wanted;
@@ -111,7 +113,7 @@ TEST_CASE("ome_zarr: each level holds the most frequent labels, and the object's
       const std::string name = "/" + std::to_string(level);
       const Array labels = readArray(path + "/labels/grain" + name, version),
                   object = readArray(path + name, version);
-      const Wanted wanted = reduced(voxels, kBox.min(), factor);
+      const Wanted wanted = reduced(voxels, kBox, factor);
       const Coord size = floorDiv(kBox.max(), factor) - floorDiv(kBox.min(), factor) + Coord(1);
       CHECK(labels.size == size);
       CHECK(object.size == size);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/reduction.h"
 
 namespace vdb_madf {
@@ -29,7 +30,7 @@ int reductionFor(const CoordBBox& box, int maxDim) {
 }
 
 Int32Grid::Ptr reduceLabels(const Int32Grid& labels, int factor, Interrupter* interrupter) {
-  const detail::Reduction reduction(labels, factor);
+  const detail::Reduction reduction(labels, factor, storedDomain(labels));
   std::vector<std::unique_ptr<Leaf>> leaves(reduction.leafCount());
   reduction.run(
       [&](size_t n, const Coord& origin, const detail::Cells& cells) {

@@ -20,8 +20,8 @@ constexpr int kMaxReduction = 256;
 /// @throw InvalidInput if that exceeds kMaxReduction, or maxDim < 1.
 int reductionFor(const CoordBBox& box, int maxDim);
 
-/// Each coarse voxel takes the most frequent value of its fine ones, background (0) included; of
-/// equally frequent ones the smallest. Labels are never averaged.
+/// Each coarse voxel takes the most frequent value of its fine ones in the box of the domain,
+/// background (0) included; of equally frequent ones the smallest. Labels are never averaged.
 /// @throw InvalidInput if the factor is not 1 .. kMaxReduction; Interrupted.
 Int32Grid::Ptr reduceLabels(const Int32Grid& labels, int factor,
                             Interrupter* interrupter = nullptr);

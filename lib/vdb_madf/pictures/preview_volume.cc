@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/reduction.h"
 #include "vdb_madf/labels/grain_colors.h"
 
@@ -17,7 +18,7 @@ namespace {
 
 LabelPreview preview(const Int32Grid& labels, const GrainColors& colors, int factor,
                      Interrupter* interrupter) {
-  const detail::Reduction reduction(labels, factor);
+  const detail::Reduction reduction(labels, factor, storedDomain(labels));
   const float whole = float(int64_t(factor) * factor * factor);
   std::vector<std::unique_ptr<FloatGrid::TreeType::LeafNodeType>> densities(reduction.leafCount());
   std::vector<std::unique_ptr<ColorGrid::TreeType::LeafNodeType>> shades(reduction.leafCount());

@@ -44,8 +44,9 @@ void countLeaf(const Leaf& leaf, std::vector<LabelCount>& counts) {
 
 }  // namespace
 
-CoarseTrees coarseTrees(const Int32Grid& labels, int factor, Interrupter* interrupter) {
-  const Reduction reduction(labels, factor);
+CoarseTrees coarseTrees(const Int32Grid& labels, int factor, const std::optional<Domain>& domain,
+                        Interrupter* interrupter) {
+  const Reduction reduction(labels, factor, domain);
   std::vector<std::unique_ptr<Leaf>> label(reduction.leafCount()), gray(reduction.leafCount());
   reduction.run(
       [&](size_t n, const Coord& origin, const Cells& cells) {
@@ -111,7 +112,8 @@ CoarseTrees CoarseCounts::take(int end) {
       labelled += begin->voxels;
       if (begin->voxels > most->voxels) most = begin;  // of equal ones the smallest label
     }
-    if (most->voxels > voxelsOf(factor_) - labelled) trees.label.setValueOn(voxel, most->label);
+    if (most->voxels > fineVoxels(voxel, factor_, domain_) - labelled)
+      trees.label.setValueOn(voxel, most->label);
     if (const int32_t part = grayOf(labelled, factor_)) trees.gray.setValueOn(voxel, part);
   }
   entries_.erase(entries_.begin(), begin);

@@ -4,9 +4,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "vdb_madf/base/interrupter.h"
+#include "vdb_madf/grids/domain.h"
 #include "vdb_madf/grids/grid_types.h"
 
 namespace vdb_madf::detail {
@@ -17,7 +20,8 @@ struct CoarseTrees {
   Int32Tree gray;   ///< parts of the voxels, times 255
 };
 /// @throw InvalidInput if the factor is not 1 .. kMaxReduction; Interrupted
-CoarseTrees coarseTrees(const Int32Grid& labels, int factor, Interrupter* interrupter);
+CoarseTrees coarseTrees(const Int32Grid& labels, int factor, const std::optional<Domain>& domain,
+                        Interrupter* interrupter);
 
 /// How many voxels of a leaf have a label.
 struct LabelCount {
@@ -32,7 +36,8 @@ std::vector<LabelCount> countLabels(const Int32Tree& labels, Interrupter* interr
 /// what is known of the coarse voxels that are not complete.
 class CoarseCounts {
  public:
-  explicit CoarseCounts(int factor) : factor_(factor) {}
+  CoarseCounts(int factor, std::optional<Domain> domain)
+      : factor_(factor), domain_(std::move(domain)) {}
 
   void add(const std::vector<LabelCount>& counts);
   /// Takes the coarse voxels below a coarse slice, of which all leaves were added.
@@ -44,6 +49,7 @@ class CoarseCounts {
   static bool comesBefore(const Entry& a, const Entry& b);
 
   int factor_;
+  std::optional<Domain> domain_;
   std::vector<Entry> entries_;  // by z, y, x, then label; each once
 };
 

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/exports/detail/coarse_trees.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/detail/reduction.h"
 #include "vdb_madf/labels/reduced_labels.h"
@@ -53,9 +55,10 @@ class LevelArrays {
 class SlabLevel {
  public:
   SlabLevel(const OutputTree& folder, const std::string& group, const OmeLevel& level,
-            const std::string& name, ZarrVersion version)
+            const std::string& name, ZarrVersion version, const std::optional<Domain>& domain)
       : factor_(level.factor),
-        counts_(level.factor),
+        domain_(domain),
+        counts_(level.factor, domain),
         arrays_(folder, group, level, name, version) {}
 
   /// The next slab; the finest level takes its leaves. @param counts of its leaves, for factors
@@ -67,7 +70,7 @@ class SlabLevel {
     if (factor_ == 1) {
       label_.merge(slab.tree());
     } else if (factor_ <= kLeaf) {  // a coarse voxel lies in one leaf
-      addTrees(coarseTrees(slab, factor_, interrupter));
+      addTrees(coarseTrees(slab, factor_, domain_, interrupter));
     } else {
       counts_.add(counts);
       addTrees(counts_.take(known));
@@ -105,6 +108,7 @@ class SlabLevel {
   }
 
   const int factor_;
+  const std::optional<Domain> domain_;  // of the whole
   CoarseCounts counts_;
   LevelArrays arrays_;
   Int32Tree label_, gray_;  // of layers that are not written
@@ -134,7 +138,7 @@ void writeOmeLevels(const OutputTree& folder, const std::string& group, const In
     if (levels[i].factor == 1) {
       arrays.write(*withoutTiles(labels), Int32Tree(), 0, arrays.layerCount(), &part);
     } else {
-      const CoarseTrees trees = coarseTrees(labels, levels[i].factor, &part);
+      const CoarseTrees trees = coarseTrees(labels, levels[i].factor, storedDomain(labels), &part);
       arrays.write(trees.label, trees.gray, 0, arrays.layerCount(), &part);
     }
     arrays.finish();
@@ -146,8 +150,8 @@ void writeOmeLevels(const OutputTree& folder, const std::string& group, const La
                     Interrupter* interrupter) {
   std::vector<std::unique_ptr<SlabLevel>> open;
   for (size_t i = 0; i < levels.size(); ++i)
-    open.push_back(
-        std::make_unique<SlabLevel>(folder, group, levels[i], std::to_string(i), version));
+    open.push_back(std::make_unique<SlabLevel>(folder, group, levels[i], std::to_string(i), version,
+                                               storedDomain(*labels.about)));
   for (size_t s = 0; s < labels.slabCount(); ++s) {
     const auto percent = [&](size_t done) { return int(done * 100 / labels.slabCount()); };
     WorkPart part(interrupter, percent(s), percent(s + 1));

@@ -87,8 +87,15 @@ Domain reducedDomain(const Domain& domain, int factor) {
   return CoordBBox(floorDiv(domain.box().min(), factor), floorDiv(domain.box().max(), factor));
 }
 
-Reduction::Reduction(const Int32Grid& labels, int factor)
-    : tree_(withoutTiles(labels)), factor_(factor) {
+int64_t fineVoxels(const Coord& coarse, int factor, const std::optional<Domain>& domain) {
+  const Coord low(coarse.x() * factor, coarse.y() * factor, coarse.z() * factor);
+  CoordBBox box(low, low.offsetBy(factor - 1));
+  if (domain) box.intersect(domain->box());
+  return int64_t(box.volume());
+}
+
+Reduction::Reduction(const Int32Grid& labels, int factor, const std::optional<Domain>& domain)
+    : tree_(withoutTiles(labels)), factor_(factor), domain_(domain) {
   if (factor < 1 || factor > kMaxReduction)
     throw InvalidInput("the reduction must lie between 1 and 256");
   for (const Leaf* leaf : leavesOf(*tree_)) {
@@ -111,7 +118,7 @@ void Reduction::run(const std::function<void(size_t, const Coord&, const Cells&)
       keys.clear();
       for (size_t i = first_[n]; i < first_[n + 1]; ++i) collect(*pairs_[i].fine, origin, keys);
       std::sort(keys.begin(), keys.end());
-      f(n, origin, count(keys));
+      f(n, origin, count(keys, origin));
     }
   });
 }
@@ -128,8 +135,7 @@ void Reduction::collect(const Leaf& leaf, const Coord& origin, std::vector<uint6
   }
 }
 
-Cells Reduction::count(const std::vector<uint64_t>& keys) const {
-  const int64_t all = int64_t(factor_) * factor_ * factor_;
+Cells Reduction::count(const std::vector<uint64_t>& keys, const Coord& origin) const {
   Cells cells;
   for (size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
     const size_t offset = keys[begin] >> 32;
@@ -143,7 +149,9 @@ Cells Reduction::count(const std::vector<uint64_t>& keys) const {
       }
     }
     cells[offset].labelled = int64_t(end - begin);
-    cells[offset].majority = most > all - cells[offset].labelled ? cells[offset].label : 0;
+    const Coord coarse = origin + Leaf::offsetToLocalCoord(openvdb::Index(offset));
+    const int64_t background = fineVoxels(coarse, factor_, domain_) - cells[offset].labelled;
+    cells[offset].majority = most > background ? cells[offset].label : 0;
   }
   return cells;
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,9 +24,13 @@ Coord floorDiv(const Coord& a, int b);
 /// @throw InvalidInput if there are none.
 Domain reducedDomain(const Domain& domain, int factor);
 
+/// How many fine voxels of a coarse one lie in the box of the domain: beyond it there is no
+/// background.
+int64_t fineVoxels(const Coord& coarse, int factor, const std::optional<Domain>& domain);
+
 /// What the fine voxels of a coarse one are.
 struct Cell {
-  int32_t majority = 0;  ///< of all
+  int32_t majority = 0;  ///< of all in the box of the domain
   int32_t label = 0;     ///< of the labeled ones
   int64_t labelled = 0;
 };
@@ -34,8 +39,9 @@ using Cells = std::array<Cell, Int32Tree::LeafNodeType::SIZE>;
 /// The voxels of a label grid, gathered by the coarse voxels of a whole factor.
 class Reduction {
  public:
+  /// @param domain of the whole, of which the labels may be a slab
   /// @throw InvalidInput if the factor is not 1 .. kMaxReduction
-  Reduction(const Int32Grid& labels, int factor);
+  Reduction(const Int32Grid& labels, int factor, const std::optional<Domain>& domain);
 
   size_t leafCount() const { return first_.size() - 1; }
 
@@ -56,10 +62,11 @@ class Reduction {
   };
 
   void collect(const Leaf& leaf, const Coord& origin, std::vector<uint64_t>& keys) const;
-  Cells count(const std::vector<uint64_t>& keys) const;
+  Cells count(const std::vector<uint64_t>& keys, const Coord& origin) const;
 
   Int32Tree::ConstPtr tree_;
   const int factor_;
+  const std::optional<Domain> domain_;
   std::vector<CoarseLeaf> pairs_;
   std::vector<size_t> first_;
 };
