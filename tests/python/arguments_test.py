@@ -84,6 +84,24 @@ def test_numbers_out_of_range(array):
             madf.segment(array, phase=1, **{name: value})
 
 
+@pytest.mark.parametrize("arguments, said", [
+    (dict(threshold=float("nan")), "threshold=nan: not a finite number"),
+    (dict(threshold=(1, float("inf"))), "threshold=inf: not a finite number"),
+    (dict(range=(float("nan"), 1)), "range=nan: not a finite number"),
+    (dict(phase=[1, float("nan")]), "phase=nan: not a finite number"),
+    (dict(phase=1, crop=np.s_[-9:, :, :]), "crop: slice(-9, None, None): places are counted from"),
+    (dict(phase=1, crop=np.s_[:-5, :, :]), "crop: slice(None, -5, None): places are counted from")])
+def test_numbers_that_select_nothing_are_refused(array, arguments, said):
+    with pytest.raises(ValueError) as refused:
+        madf.Mask(array, **arguments)
+    assert str(refused.value).startswith(said)
+
+
+def test_where_nothing_is_selected_a_warning_says_so(array):
+    with pytest.warns(UserWarning, match="nothing is selected"):
+        assert not np.asarray(madf.Mask(array, phase=7)).any()
+
+
 def test_an_index_that_is_an_array_is_refused_in_a_line(expected):
     labels = madf.Labels(expected)
     with pytest.raises(IndexError) as refused:

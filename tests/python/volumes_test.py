@@ -216,3 +216,18 @@ def test_a_file_that_is_not_what_was_written_is_refused(tmp_path):
         assert madf.Labels(path).ids.tolist() == [1]
     finally:
         madf.verify_files(True)
+
+
+def test_a_volume_made_of_one_keeps_place_and_region(array):
+    mask = madf.Mask(array, phase=1, voxel_size="10um", roi="cylinder", crop=np.s_[8:40, :, 5:70])
+    labels = madf.segment(mask).labels
+    for volume, kind in ((mask, madf.Mask), (labels, madf.Labels)):
+        copy = kind(volume, voxel_size="10um")
+        assert copy.first == volume.first and copy.metadata == volume.metadata
+        assert np.array_equal(copy, volume)
+        with pytest.raises(ValueError, match="voxel_size='20um': the volume has"):
+            kind(volume, voxel_size="20um")
+    copied, measured = madf.measure(madf.Labels(labels)), madf.measure(labels)
+    assert measured.sample["box"] == "region" and repr(copied.sample) == repr(measured.sample)
+    with pytest.warns(UserWarning, match="its place and its region are left behind"):
+        madf.Mask(mask, invert=True)

@@ -105,8 +105,17 @@ Loaded withNotes(VolumeOptions options, const Call& call, const Load& load) {
   return {grid, notes};
 }
 
+template <typename Load>
+Loaded loadMask(const std::string& name, const VolumeOptions& options, const Call& call,
+                const Load& load) {
+  Loaded loaded = withNotes(options, call, load);
+  if (options.selection && openvdb::gridConstPtrCast<MaskGrid>(loaded.first)->empty())
+    loaded.second.push_back(name + ": nothing is selected (see phase, threshold, range, invert)");
+  return loaded;
+}
+
 Loaded loadMaskFile(const std::string& path, const VolumeOptions& options, const Call& call) {
-  return withNotes(options, call, [&](const VolumeOptions& o, Interrupter* interrupter) {
+  return loadMask(path, options, call, [&](const VolumeOptions& o, Interrupter* interrupter) {
     return loadObject(path, o, interrupter);
   });
 }
@@ -124,9 +133,10 @@ Loaded loadLabelFile(const std::string& path, const VolumeOptions& options, cons
 }
 
 Loaded loadMaskArray(const ArraySource& source, const VolumeOptions& options, const Call& call) {
-  return withNotes(options, call, [&](const VolumeOptions& o, Interrupter* interrupter) {
-    return loadObject([&] { return std::make_unique<ArrayReader>(source); }, o, interrupter);
-  });
+  return loadMask(
+      source.name, options, call, [&](const VolumeOptions& o, Interrupter* interrupter) {
+        return loadObject([&] { return std::make_unique<ArrayReader>(source); }, o, interrupter);
+      });
 }
 
 Loaded loadLabelArray(const ArraySource& source, const VolumeOptions& options, const Call& call) {

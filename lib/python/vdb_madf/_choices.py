@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import dataclass
 from typing import Any, Collection, Optional, Sequence, Tuple, Union
@@ -41,6 +42,10 @@ def _bounds(box: Box, name: str, open_ended: bool) -> Tuple[_core.Index, _core.I
             raise ValueError(f"{name}: {part} has a step")
         if not open_ended and (part.start is None or part.stop is None):
             raise ValueError(f"{name}: {part} has no start or stop")
+        if any(end is not None and end < 0 for end in (part.start, part.stop)) and None in (
+                part.start, part.stop):
+            raise ValueError(f"{name}: {part}: places are counted from the first voxel, not from "
+                             "the end: give both")
         start = -_FAR if part.start is None else int(part.start)
         stop = _FAR if part.stop is None else int(part.stop)
         if stop <= start:
@@ -48,6 +53,13 @@ def _bounds(box: Box, name: str, open_ended: bool) -> Tuple[_core.Index, _core.I
         first.append(start)
         last.append(stop - 1)
     return (first[0], first[1], first[2]), (last[0], last[1], last[2])
+
+
+def _finite(name: str, value: Any) -> float:
+    number = float(value)
+    if not math.isfinite(number):
+        raise ValueError(f"{name}={number}: not a finite number")
+    return number
 
 
 def _set_region(options: _core.VolumeOptions, roi: Any, mask_type: type) -> None:
@@ -83,19 +95,19 @@ def volume_options(
         raise ValueError("give only one of phase, threshold and range")
     options = _core.VolumeOptions()
     if phase is not None:
-        options.select_phases([float(v) for v in phase] if isinstance(phase, Collection)
-                              else [float(phase)])
+        options.select_phases([_finite("phase", v) for v in phase] if isinstance(phase, Collection)
+                              else [_finite("phase", phase)])
     if isinstance(threshold, str):
         options.select_automatically(threshold)
     elif isinstance(threshold, Collection):
-        low, high = (float(v) for v in threshold)
+        low, high = (_finite("threshold", v) for v in threshold)
         if low > high:
             raise ValueError(f"threshold={threshold}: the first value exceeds the second")
         options.select_hysteresis(low, high)
     elif threshold is not None:
-        options.select_from(float(threshold))
+        options.select_from(_finite("threshold", threshold))
     if range is not None:
-        low, high = (float(v) for v in range)
+        low, high = (_finite("range", v) for v in range)
         if low > high:
             raise ValueError(f"range={range}: the first value exceeds the second")
         options.select_range(low, high)

@@ -17,7 +17,7 @@ from ._arrays import Source, readable
 from ._calls import Progress, calling, warn
 from ._files import is_tiff, kind_of, loaded
 from ._mesh import Mesh
-from ._volume import Volume, edges_of
+from ._volume import Volume, edges_of, same_grid
 
 _Ids = Union[Sequence[int], npt.NDArray[Any]]
 
@@ -36,6 +36,9 @@ class Labels(Volume):
     def __init__(self, source: Source, *, voxel_size: Optional[str] = None,
                  dataset: Optional[str] = None, grid: Optional[str] = None,
                  progress: Progress = None, threads: int = 0) -> None:
+        if isinstance(source, Labels):
+            self._grid = same_grid(source, voxel_size)
+            return
         options = _core.VolumeOptions()
         edges = edges_of(source, voxel_size)
         if edges is not None:

@@ -15,7 +15,7 @@ from ._arguments import checked
 from ._arrays import ArrayLike3D, Source, readable
 from ._calls import Progress, calling, warn
 from ._choices import Box, Cylinder, volume_options
-from ._volume import Volume, edges_of
+from ._volume import Volume, edges_of, same_grid
 
 #: A region: the round field of view, or voxels that are not 0 in a mask, an array or a file.
 Region = Union[str, Cylinder, "Mask", os.PathLike[str], ArrayLike3D]
@@ -48,6 +48,11 @@ class Mask(Volume):
                  roi: Optional[Region] = None, crop: Optional[Box] = None,
                  domain: Optional[Box] = None, dataset: Optional[str] = None,
                  grid: Optional[str] = None, progress: Progress = None, threads: int = 0) -> None:
+        chosen = (phase, threshold, range, roi, crop, domain)
+        if isinstance(source, Mask) and not (invert or median or smooth or despeckle) and all(
+                choice is None for choice in chosen):
+            self._grid = same_grid(source, voxel_size)
+            return
         options = volume_options(
             mask_type=Mask, phase=phase, threshold=threshold, range=range, invert=invert,
             median=median, smooth=smooth, despeckle=despeckle,
@@ -57,6 +62,8 @@ class Mask(Volume):
             if phase is None and threshold is None and range is None and _is_bool(source):
                 options.select_phases([1.0])
             self._grid, notes = _core.load_mask(readable(source), options, call)
+        if isinstance(source, Volume) and (any(source.first) or "madf_region" in source.metadata):
+            notes.append("a volume is read as an array: its place and its region are left behind")
         warn(notes)
 
     @property

@@ -193,6 +193,15 @@ def edges_of(source: object, voxel_size: Optional[str]) -> Optional[_core.Edges]
     return meters(voxel_size)
 
 
+def same_grid(source: Volume, voxel_size: Optional[str]) -> _core.Grid:
+    """That of a volume of the same kind: its place and its region stay what they are."""
+    edges = meters(voxel_size)
+    if edges is not None and edges != source.voxel_size:
+        raise ValueError(f"voxel_size={voxel_size!r}: the volume has {source.voxel_size} m; give "
+                         "numpy.asarray() of it, which knows no voxels, to change that")
+    return source._grid
+
+
 def _fitted(slab: npt.NDArray[Any], dtype: np.dtype[Any]) -> npt.NDArray[Any]:
     if dtype.kind in "iu" and slab.dtype != bool:
         limits = np.iinfo(dtype)
