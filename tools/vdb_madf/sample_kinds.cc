@@ -39,6 +39,14 @@ void parseRadius(const GenerateArguments& typed, KindOptions& kind) {
   parseSpan(typed.radius, "--radius", kind.minRadius, kind.maxRadius);
 }
 
+/// What kinds whose balls have voxels of any shape share.
+template <typename KindOptions>
+void parseBodies(const GenerateArguments& typed, KindOptions& kind) {
+  parseSizeAndSeed(typed, kind);
+  parseRadius(typed, kind);
+  kind.voxelSize = typed.voxelSize;
+}
+
 void parseShape(const std::string& text, ParticleShape& shape) {
   const auto& names = particleShapeNames();
   const auto name = std::find(names.begin(), names.end(), text);
@@ -65,11 +73,7 @@ const std::vector<SampleKind>& sampleKinds() {
              .notNegative()
              .showDefault();
        },
-       [](GenerateArguments& options) {
-         parseSizeAndSeed(options, options.spheres);
-         options.spheres.voxelSize = options.voxelSize;
-         parseRadius(options, options.spheres);
-       },
+       [](GenerateArguments& options) { parseBodies(options, options.spheres); },
        [](const GenerateArguments& options, Interrupter* interrupter) {
          return generateSpheres(options.spheres, interrupter);
        }},
@@ -80,9 +84,7 @@ const std::vector<SampleKind>& sampleKinds() {
          verb.option("--radius", options.radius, "radii A:B, voxels (default 8:28)");
        },
        [](GenerateArguments& options) {
-         parseSizeAndSeed(options, options.pack);
-         options.pack.voxelSize = options.voxelSize;
-         parseRadius(options, options.pack);
+         parseBodies(options, options.pack);
          checkFraction(options.pack.fraction);
        },
        [](const GenerateArguments& options, Interrupter* interrupter) {
@@ -113,11 +115,7 @@ const std::vector<SampleKind>& sampleKinds() {
              .showDefault();
          verb.option("--roughness", sintered.roughness, "amplitude of surface noise").showDefault();
        },
-       [](GenerateArguments& options) {
-         parseSizeAndSeed(options, options.sintered);
-         options.sintered.voxelSize = options.voxelSize;
-         parseRadius(options, options.sintered);
-       },
+       [](GenerateArguments& options) { parseBodies(options, options.sintered); },
        [](const GenerateArguments& options, Interrupter* interrupter) {
          return generateSintered(options.sintered, interrupter);
        }},
@@ -139,9 +137,7 @@ const std::vector<SampleKind>& sampleKinds() {
              .showDefault();
        },
        [](GenerateArguments& options) {
-         parseSizeAndSeed(options, options.particles);
-         options.particles.voxelSize = options.voxelSize;
-         parseRadius(options, options.particles);
+         parseBodies(options, options.particles);
          ParticleOptions& particles = options.particles;
          parseShape(options.shape, particles.shape);
          if (!options.aspect.empty() && !haveAspect(particles.shape))
