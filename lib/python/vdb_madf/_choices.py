@@ -42,8 +42,8 @@ def _bounds(box: Box, name: str, open_ended: bool) -> Tuple[_core.Index, _core.I
             raise ValueError(f"{name}: {part} has a step")
         if not open_ended and (part.start is None or part.stop is None):
             raise ValueError(f"{name}: {part} has no start or stop")
-        if any(end is not None and end < 0 for end in (part.start, part.stop)) and None in (
-                part.start, part.stop):
+        ends = (part.start, part.stop)
+        if None in ends and any(end is not None and end < 0 for end in ends):
             raise ValueError(f"{name}: {part}: places are counted from the first voxel, not from "
                              "the end: give both")
         start = -_FAR if part.start is None else int(part.start)

@@ -198,7 +198,7 @@ def same_grid(source: Volume, voxel_size: Optional[str]) -> _core.Grid:
     edges = meters(voxel_size)
     if edges is not None and edges != source.voxel_size:
         raise ValueError(f"voxel_size={voxel_size!r}: the volume has {source.voxel_size} m; give "
-                         "numpy.asarray() of it, which knows no voxels, to change that")
+                         "numpy.asarray() of it, which has no voxel size, to change that")
     return source._grid
 
 
