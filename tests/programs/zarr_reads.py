@@ -39,18 +39,18 @@ def labels():
 
 
 def level(volume, factor):
-    """The most frequent value of each block, of equally frequent ones the smallest; and the part of
-    the blocks that is labeled, as 0 to 255. Blocks reach into background beyond the volume."""
-    padded = np.pad(volume, [(0, -n % factor) for n in volume.shape])
-    shape = [n // factor for n in padded.shape]
+    """The most frequent value of those voxels of each block that lie in the volume, of equally
+    frequent ones the smallest; and the part of the whole block that is labeled, as 0 to 255."""
 
     def count(there):
-        blocks = there.reshape(shape[0], factor, shape[1], factor, shape[2], factor)
+        padded = np.pad(there, [(0, -n % factor) for n in there.shape])
+        shape = [n // factor for n in padded.shape]
+        blocks = padded.reshape(shape[0], factor, shape[1], factor, shape[2], factor)
         return blocks.sum(axis=(1, 3, 5))
 
-    values = np.unique(padded)  # ascending; argmax takes the first
-    most = values[np.argmax([count(padded == value) for value in values], axis=0)]
-    part = np.floor(255 * count(padded > 0) / factor**3 + 0.5)
+    values = np.unique(volume)  # ascending; argmax takes the first
+    most = values[np.argmax([count(volume == value) for value in values], axis=0)]
+    part = np.floor(255 * count(volume > 0) / factor**3 + 0.5)
     return most.astype("<u4"), part.astype("u1")
 
 
