@@ -33,6 +33,24 @@ def check_lives(page, strictness, grains, bonds):
             for a, b in zip(mine, values)), f"{place} at {strictness}: {mine}, not {values}")
 
 
+AREAS = {"grains": ("area_mm2", "free_area_mm2", "shared_area_mm2", "sphericity"),
+         "bonds": ("area_mm2", "radius_mm", "normal_x", "normal_z")}
+
+
+def check_areas(page, kind, name, rows, strictness):
+    """Areas and what is made of them are those of measure, though they are no sums."""
+    mine = page.run("const [kind, name] = arguments; return Array.from(window.report.sample[kind]"
+                    ".column(name), (value) => Number.isNaN(value) ? null : value)",
+                    kind, name.replace("_mm2", "").replace("_mm", ""))
+    worst = 0
+    for value, row in zip(mine, rows):
+        demand((value is None) == (row[name] == ""), f"{name} of {kind} at {strictness} is {value}")
+        if value is not None:
+            expected = float(row[name])
+            worst = max(worst, abs(value - expected) / max(abs(expected), 1e-4))
+    demand(worst < 1e-6, f"{name} of {kind} at {strictness} is off by {worst}")
+
+
 def check_edits(page, strictness):
     """Clicks at a strictness make a list that 'edit' replays on the labels of that one."""
     page.run("const {selection} = window.report; selection.edits = [];"
@@ -128,6 +146,9 @@ def check_strictness(page, folder):
                             name)
             worst = max(abs(a - float(row[name + unit])) for a, row in zip(mine, grains))
             demand(worst < 1e-6, f"{name} at {strictness} is off by {worst}")
+        for kind, rows in (("grains", grains), ("bonds", bonds)):
+            for name in AREAS[kind]:
+                check_areas(page, kind, name, rows, strictness)
         check_lives(page, strictness, grains, bonds)
         labels = numpy.load("m.npy")
         shown = page.run(

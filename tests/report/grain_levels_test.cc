@@ -33,7 +33,7 @@ class PageLevels {
   explicit PageLevels(const Page& page)
       : about_(page.json("about").at("levels")), joins_(page.bytes("joins")) {
     const std::string leaves = page.bytes("leaves");
-    REQUIRE(about_["columns"]["grains"][0] == Json{{"name", "voxels"}, {"exact", true}});
+    REQUIRE(about_["tables"]["grains"]["columns"][0] == Json{{"name", "voxels"}, {"exact", true}});
     for (size_t leaf = 0; leaf < leafCount(); ++leaf) {
       uint64_t bits = 0;
       for (size_t plane = 0; plane < 8; ++plane)

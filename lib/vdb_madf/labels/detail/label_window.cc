@@ -33,6 +33,10 @@ void LabelWindow::moveTo(size_t leaf) {
     if (const uint32_t beside = around_[size_t(side)]; beside != LeafIndex::kNone)
       for (const LabelPart& part : labels_->parts(beside))
         places_.push_back({part.label, side, &part});
+  sortPlaces();
+}
+
+void LabelWindow::sortPlaces() {
   std::sort(places_.begin(), places_.end(),
             [](const Place& a, const Place& b) { return a.label < b.label; });
 }
@@ -43,6 +47,19 @@ void LabelWindow::labelled(int32_t label, WindowRows& rows) const {
                                 [](const Place& p, int32_t wanted) { return p.label < wanted; });
   for (; place != places_.end() && place->label == label; ++place)
     addLeaf(place->part->mask, place->side, range_, rows);
+}
+
+std::vector<int32_t> LabelWindow::labels() const {
+  std::vector<int32_t> labels;
+  for (const Place& place : places_)
+    if (labels.empty() || labels.back() != place.label) labels.push_back(place.label);
+  return labels;
+}
+
+void LabelWindow::join(int32_t kept, int32_t gone) {
+  for (Place& place : places_)
+    if (place.label == gone) place.label = kept;
+  sortPlaces();
 }
 
 int32_t LabelWindow::label(int x, int y, int z) const {

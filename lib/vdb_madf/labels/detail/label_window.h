@@ -47,6 +47,9 @@ class LabelWindow {
   /// The voxels that have any label, or this one.
   void labelled(WindowRows& rows) const;
   void labelled(int32_t label, WindowRows& rows) const;
+  std::vector<int32_t> labels() const;  ///< all, ascending
+  /// Takes the voxels of `gone` for those of `kept` from now on, but for label(x, y, z).
+  void join(int32_t kept, int32_t gone);
   /// The label of a labeled voxel, -8 to 15 along each axis.
   int32_t label(int x, int y, int z) const;
 
@@ -62,6 +65,8 @@ class LabelWindow {
     int side;
     const LabelPart* part;
   };
+  void sortPlaces();
+
   std::vector<Place> places_;  // all, by label
 };
 

@@ -182,6 +182,29 @@ void LeafSurface::measure(size_t leaf) {
   }
 }
 
+void LeafSurface::join(int32_t kept, int32_t gone) {
+  free_.clear();
+  shared_.clear();
+  window_.join(kept, gone);
+  window_.labelled(kept, own_);
+  measureFree(kept);
+  std::vector<int32_t> others;
+  std::vector<std::pair<int32_t, int32_t>> rest;
+  for (const auto& bond : bonds_) {
+    const bool first = bond.first == kept || bond.first == gone;
+    const bool second = bond.second == kept || bond.second == gone;
+    if (!first && !second)
+      rest.push_back(bond);
+    else if (first != second)
+      others.push_back(first ? bond.second : bond.first);
+  }
+  bonds_.swap(rest);
+  for (const int32_t other : others) {
+    window_.labelled(other, other_);
+    measureBond(kept, other);  // once: it knows those that it has measured
+  }
+}
+
 double bondArea(const std::array<int64_t, 3>& areas, const VoxelShape& voxel) {
   const double meanFace = voxel.meanEdge() * voxel.meanEdge();
   const double unit = kAreaUnit * meanFace;

@@ -77,6 +77,12 @@ class LeafSurface {
   /// lower voxel.
   void measure(size_t leaf);
 
+  /// Makes one of two labels in or around the leaf that was measured last, and measures that one
+  /// alone: its free area, and what it shares with each other one.
+  void join(int32_t kept, int32_t gone);
+
+  /// All in and around the leaf that was measured last, ascending.
+  std::vector<int32_t> labels() const { return window_.labels(); }
   const std::vector<Free>& free() const { return free_; }  ///< of the labels of the leaf
   const std::vector<Shared>& shared() const { return shared_; }
 

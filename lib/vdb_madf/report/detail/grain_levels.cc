@@ -53,19 +53,24 @@ void addJoins(const Hierarchy& hierarchy, const Merging& finest, const Merging& 
     levels.joins.push_back({placeOf[join->kept], placeOf[join->gone], join->strictness});
 }
 
-/// Columns of measures in the page, with those of their names.
-class LeafPacker {
+/// Writes tables of the page, column by column.
+class TablePacker {
  public:
-  explicit LeafPacker(const Measurements& leaves) : edges_(leaves.edges) {
+  explicit TablePacker(const Measurements& leaves) : edges_(leaves.edges) {
     if (leaves.voxelSize) {
       const std::array<double, 3> edges = leaves.voxelSize->edgesInUnit();
       edges_ = {edges[0], edges[1], edges[2]};
     }
   }
 
-  void add(const MeasureColumn& column, std::vector<PackedLeaves::Column>& list) {
+  void begin(PackedLeaves::Table& table, size_t rows) {
+    table_ = &table;
+    table.rows = rows;
+  }
+
+  void add(const MeasureColumn& column) {
     const bool isExact = column.kind == MeasureColumn::Kind::count;
-    list.push_back({column.name, isExact});
+    table_->columns.push_back({column.name, isExact});
     std::vector<uint64_t> exact;
     std::vector<uint32_t> rounded;
     for (const double value : column.values)
@@ -77,10 +82,26 @@ class LeafPacker {
     bytes_.planes(rounded);
   }
 
-  void addNamed(const std::vector<MeasureColumn>& columns, const std::vector<std::string>& names,
-                std::vector<PackedLeaves::Column>& list) {
+  void addNamed(const std::vector<MeasureColumn>& columns, const std::vector<std::string>& names) {
     for (const MeasureColumn& column : columns)
-      if (std::find(names.begin(), names.end(), column.name) != names.end()) add(column, list);
+      if (std::find(names.begin(), names.end(), column.name) != names.end()) add(column);
+  }
+
+  /// Whole numbers, of each row.
+  template <typename Rows, typename F>
+  void addExact(const std::string& name, const Rows& rows, const F& number) {
+    MeasureColumn column;
+    column.name = name;
+    column.kind = MeasureColumn::Kind::count;
+    for (const auto& row : rows) column.values.push_back(double(number(row)));
+    add(column);
+  }
+
+  template <typename Rows>
+  void addAreas(const Rows& rows) {
+    const char* const names[] = {"area1", "area2", "area4"};
+    for (size_t i = 0; i < 3; ++i)
+      addExact(names[i], rows, [i](const auto& row) { return row.areas[i]; });
   }
 
   std::string text() { return bytes_.text(); }
@@ -95,8 +116,22 @@ class LeafPacker {
   }
 
   openvdb::Vec3d edges_;
+  PackedLeaves::Table* table_ = nullptr;
   PackedBytes bytes_;
 };
+
+/// The bonds in the order of the contacts; one of no face where grains share none.
+std::vector<BondMeasures> bondsOf(const std::vector<JoinedAreas::Contact>& contacts,
+                                  const std::vector<BondMeasures>& bonds) {
+  std::vector<BondMeasures> result;
+  auto bond = bonds.begin();
+  for (const JoinedAreas::Contact& contact : contacts) {
+    const bool isBond =
+        bond != bonds.end() && bond->first == contact.first && bond->second == contact.second;
+    result.push_back(isBond ? *bond++ : BondMeasures());
+  }
+  return result;
+}
 
 /// A solid ellipsoid of axis l (not half of it) has the moment l^2 / 20 along it.
 double moment(const Principal& ellipsoid, int i, int j) {
@@ -147,15 +182,30 @@ std::string packJoins(const GrainLevels& levels) {
   return bytes.text();
 }
 
-PackedLeaves packLeaves(const Measurements& leaves) {
+JoinedAreas levelAreas(const GrainLevels& levels, const Measurements& leaves,
+                       const std::optional<Domain>& domain, Interrupter* interrupter) {
+  std::vector<uint32_t> names;  // the places of leaves that have voxels
+  auto empty = levels.empty.begin();
+  for (uint32_t place = 0; names.size() < levels.grainOfLeaf.size(); ++place)
+    if (empty != levels.empty.end() && *empty == place)
+      ++empty;
+    else
+      names.push_back(place);
+  std::vector<NamedJoin> joins;
+  for (const GrainLevels::Join& join : levels.joins) joins.push_back({join.kept, join.gone});
+  return joinedAreas(LabelLeaves(*levels.leaves, interrupter), leaves.open ? domain : std::nullopt,
+                     VoxelShape{leaves.edges}, names, joins, interrupter);
+}
+
+PackedLeaves packLeaves(const Measurements& leaves, const JoinedAreas& areas) {
   PackedLeaves packed;
-  LeafPacker packer(leaves);
+  TablePacker packer(leaves);
+  packer.begin(packed.grains, leaves.grains.size());
   packer.addNamed(
       grainColumns(leaves.grains),
       {"voxels", "centroid_x", "centroid_y", "centroid_z", "representative_x", "representative_y",
        "representative_z", "inscribed_radius", "free_area", "cut_area", "box_min_x", "box_min_y",
-       "box_min_z", "box_max_x", "box_max_y", "box_max_z", "at_domain_face"},
-      packed.grains);
+       "box_min_z", "box_max_x", "box_max_y", "box_max_z", "at_domain_face"});
   const char* const names[] = {"xx", "yy", "zz", "xy", "xz", "yz"};
   const std::array<std::array<int, 2>, 6> axes{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
   for (size_t k = 0; k < axes.size(); ++k) {
@@ -164,12 +214,24 @@ PackedLeaves packLeaves(const Measurements& leaves) {
     column.power = 2;
     for (const GrainMeasures& leaf : leaves.grains)
       column.values.push_back(moment(leaf.ellipsoid, axes[k][0], axes[k][1]));
-    packer.add(column, packed.grains);
+    packer.add(column);
   }
-  packer.addNamed(bondColumns(leaves.bonds),
-                  {"first", "second", "faces", "area", "centroid_x", "centroid_y", "centroid_z",
-                   "normal_x", "normal_y", "normal_z"},
-                  packed.bonds);
+  const auto& contacts = areas.contacts;
+  packer.begin(packed.contacts, contacts.size());
+  packer.addExact("first", contacts, [](const auto& contact) { return contact.first; });
+  packer.addExact("second", contacts, [](const auto& contact) { return contact.second; });
+  packer.addNamed(bondColumns(bondsOf(contacts, leaves.bonds)),
+                  {"faces", "centroid_x", "centroid_y", "centroid_z"});
+  packer.addAreas(contacts);
+  for (size_t k = 0; k < 3; ++k)
+    packer.addExact(std::string("across_") + "xyz"[k], contacts,
+                    [k](const auto& contact) { return contact.faces[k]; });
+  packer.begin(packed.changes, areas.changes.size());
+  packer.addExact("join", areas.changes, [](const auto& change) { return change.join; });
+  packer.addExact("other", areas.changes, [](const auto& change) { return change.other; });
+  packer.addAreas(areas.changes);
+  packer.begin(packed.joins, areas.freeAreas.size());
+  packer.addExact("free_area", areas.freeAreas, [](int64_t area) { return area; });
   packed.text = packer.text();
   return packed;
 }

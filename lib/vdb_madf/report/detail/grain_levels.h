@@ -10,6 +10,7 @@
 
 #include "vdb_madf/base/interrupter.h"
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/measure/detail/joined_areas.h"
 #include "vdb_madf/measure/measure.h"
 
 namespace vdb_madf::detail {
@@ -43,18 +44,33 @@ std::optional<GrainLevels> grainLevels(const Int32Grid& labels, const std::vecto
 /// `kept`, `gone` and `strictness`.
 std::string packJoins(const GrainLevels& levels);
 
-/// Measures that add up, or of which the largest or smallest counts, of leaves and their bonds.
+/// What is measured of the surfaces of the leaves, and what the joins of the levels add to it.
+/// @param leaves their measures; @param domain that these were measured with
+JoinedAreas levelAreas(const GrainLevels& levels, const Measurements& leaves,
+                       const std::optional<Domain>& domain, Interrupter* interrupter);
+
+/// Measures that add up, or of which the largest or smallest counts, of leaves and their contacts.
 struct PackedLeaves {
-  /// Column by column, planes of the bits of numbers, 64 of those that are exact, else 32. Lengths
-  /// are in the unit of the tables. Columns are those of columns.h, and `moment_xx`, `_yy`, `_zz`,
-  /// `_xy`, `_xz`, `_yz`: the covariance of the places in a leaf.
-  std::string text;
   struct Column {
     std::string name;
     bool isExact = false;
   };
-  std::vector<Column> grains, bonds;
+  struct Table {
+    size_t rows = 0;
+    std::vector<Column> columns;
+  };
+  /// Table by table, column by column, planes of the bits of numbers, 64 of those that are exact,
+  /// else 32. Lengths are in the unit of the tables.
+  std::string text;
+  /// Columns of columns.h, and `moment_xx`, `_yy`, `_zz`, `_xy`, `_xz`, `_yz`: the covariance of
+  /// the places in a leaf.
+  Table grains;
+  /// `first`, `second`, `faces`, `centroid_x`, `_y`, `_z`, and of JoinedAreas::Contact `area1`,
+  /// `area2`, `area4`, `across_x`, `_y`, `_z`.
+  Table contacts;
+  Table changes;  ///< JoinedAreas::Change: `join`, `other`, `area1`, `area2`, `area4`
+  Table joins;    ///< what each adds: `free_area`, in kAreaUnit
 };
-PackedLeaves packLeaves(const Measurements& leaves);
+PackedLeaves packLeaves(const Measurements& leaves, const JoinedAreas& areas);
 
 }  // namespace vdb_madf::detail

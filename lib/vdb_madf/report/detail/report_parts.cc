@@ -59,11 +59,11 @@ Json columnsJson(const std::vector<MeasureColumn>& columns) {
   return json;
 }
 
-Json listed(const std::vector<PackedLeaves::Column>& columns) {
-  Json json = Json::array();
-  for (const PackedLeaves::Column& column : columns)
-    json.push_back({{"name", column.name}, {"exact", column.isExact}});
-  return json;
+Json listed(const PackedLeaves::Table& table) {
+  Json columns = Json::array();
+  for (const PackedLeaves::Column& column : table.columns)
+    columns.push_back({{"name", column.name}, {"exact", column.isExact}});
+  return {{"rows", table.rows}, {"columns", columns}};
 }
 
 /// The colors that are enough to tell these apart, each once.
@@ -121,6 +121,8 @@ void ReportParts::addLevels() {
   options.domain = options.domain ? options.domain : storedDomain(aboutOf(labels_));
   options.minFaces = 1;  // the page sums the faces of leaves before it counts them
   leafMeasures_ = measure(*levels_->leaves, options, interrupter_);
+  packedLeaves_ = packLeaves(*leafMeasures_,
+                             levelAreas(*levels_, *leafMeasures_, options.domain, interrupter_));
 }
 
 std::vector<int32_t> ReportParts::bodyIds() const {
@@ -200,9 +202,8 @@ std::string ReportParts::mesh() {
   return dataElement("mesh" + suffix_, packed.text);
 }
 
-std::string ReportParts::levels() {
+std::string ReportParts::levels() const {
   if (!levels_) return "";
-  packedLeaves_ = packLeaves(*leafMeasures_);
   return dataElement("joins" + suffix_, packJoins(*levels_)) +
          dataElement("leaves" + suffix_, packedLeaves_.text);
 }
@@ -226,18 +227,19 @@ std::string ReportParts::about() const {
   json["columns"] = {{"grains", columnsJson(grainColumns({}, measured_.extra))},
                      {"bonds", columnsJson(bondColumns({}, measured_.extra))}};
   if (levels_) {
-    json["levels"] = {
-        {"lowest", levels_->lowest},
-        {"highest", levels_->highest},
-        {"own", levels_->own},
-        {"leaves", leafMeasures_->grains.size()},
-        {"bonds", leafMeasures_->bonds.size()},
-        {"empty", levels_->empty},
-        {"joins", levels_->joins.size()},
-        {"minFaces", measured_.minFaces},
-        {"palette", paletteJson(grainColors(*levels_->leaves, interrupter_))},
-        {"columns",
-         {{"grains", listed(packedLeaves_.grains)}, {"bonds", listed(packedLeaves_.bonds)}}}};
+    json["levels"] = {{"lowest", levels_->lowest},
+                      {"highest", levels_->highest},
+                      {"own", levels_->own},
+                      {"leaves", leafMeasures_->grains.size()},
+                      {"empty", levels_->empty},
+                      {"joins", levels_->joins.size()},
+                      {"minFaces", measured_.minFaces},
+                      {"palette", paletteJson(grainColors(*levels_->leaves, interrupter_))},
+                      {"tables",
+                       {{"grains", listed(packedLeaves_.grains)},
+                        {"contacts", listed(packedLeaves_.contacts)},
+                        {"changes", listed(packedLeaves_.changes)},
+                        {"steps", listed(packedLeaves_.joins)}}}};
   }
   // A file name need not be UTF-8: what is not is replaced.
   return jsonElement("about" + suffix_, json.dump(-1, ' ', false, Json::error_handler_t::replace));

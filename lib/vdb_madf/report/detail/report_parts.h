@@ -35,7 +35,7 @@ class ReportParts {
   std::string slices();
   std::string mesh();
   /// What the slider needs; empty if there is none.
-  std::string levels();
+  std::string levels() const;
   /// After slices(), mesh() and levels(), if there are these: it tells how to read them.
   std::string about() const;
   /// An image element for where there is no WebGL, and for paper.

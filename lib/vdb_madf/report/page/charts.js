@@ -107,9 +107,17 @@ export function startCharts(sample, selection) {
     make('p', { className: 'hint' }, 'Gray: all. Blue: what passes the filters. Drag in a chart to filter by it, click in it to take that back. Circles of roses: no preferred direction. Whiskers: two standard errors, by the numbers counted; a sector whose whisker reaches the circle shows no preference.'),
     make('div', { className: 'panels' }, ...charts.map((chart) => chart.figure), ...conductivity));
   const drawAll = () => charts.forEach((chart) => chart.draw());
+  let isDue = false;
   selection.listen((what) => {
-    if (what === 'strictness') charts.forEach((chart) => chart.load());
-    if (what === 'strictness' || what === 'filter') drawAll();
+    if (what === 'filter' && !isDue) drawAll();
+    if (what !== 'strictness' || isDue) return;
+    // The view and the slices are what a reader looks at: charts come after their picture.
+    isDue = true;
+    requestAnimationFrame(() => setTimeout(() => {
+      isDue = false;
+      charts.forEach((chart) => chart.load());
+      drawAll();
+    }));
   });
   drawAll();
 }

@@ -35,10 +35,12 @@ export class Levels {
     [this.kept, this.gone] = [next(Uint32Array, levels.joins), next(Uint32Array, levels.joins)];
     this.strictness = next(Int32Array, levels.joins);
     const column = planeReader(leaves);
-    const columns = (kind, rows) => Object.fromEntries(levels.columns[kind].map(({ name, exact }) =>
+    const table = ({ rows, columns }) => Object.fromEntries(columns.map(({ name, exact }) =>
       [name, column(exact ? Float64Array : Float32Array, rows)]));
-    this.leaf = columns('grains', levels.leaves);
-    this.contact = columns('bonds', levels.bonds);
+    const { grains, contacts, changes, steps } = levels.tables;
+    [this.leaf, this.contact, this.change, this.step] = [grains, contacts, changes, steps].map(table);
+    this.areaUnit = Math.min(...this.edges) ** 2 / 2 ** 20;
+    this.meanFace = Math.cbrt(this.edges.reduce((product, edge) => product * edge, 1)) ** 2;
     const empty = new Set(levels.empty);
     this.places = levels.leaves + levels.empty.length;
     this.placeOf = Uint32Array.from(Array.from({ length: this.places }, (_, i) => i).filter((i) => !empty.has(i)));
@@ -60,15 +62,17 @@ export class Levels {
     return name;
   }
 
-  /// The grain of each leaf, from 0 on, numbered as 'vdb_madf remerge' does (from 1 on).
+  /// How many grains there are, numbered from 0 on as 'vdb_madf remerge' does (from 1 on), the grain
+  /// of each leaf, after how many joins, and that of a name before any of these.
   grainsAt(strictness) {
-    const name = this.namesAfter(this.joinsAt(strictness));
+    const made = this.joinsAt(strictness), name = this.namesAfter(made);
     const hasVoxels = new Uint8Array(this.places);
     for (const place of this.placeOf) hasVoxels[name[place]] = 1;
     const number = new Uint32Array(this.places);
     let count = 0;
     for (let place = 0; place < this.places; ++place) if (hasVoxels[place]) number[place] = count++;
-    return { count, grainOf: this.placeOf.map((place) => number[name[place]]) };
+    const grainOfName = (place) => number[name[place]];
+    return { count, grainOf: this.placeOf.map(grainOfName), made, grainOfName };
   }
 
   /// The strictnesses between which each row of grains is the same, and that at which each bond
@@ -167,7 +171,7 @@ export class Levels {
   }
 
   /// The measures of grains, by name; what does not follow from those of leaves is missing.
-  grainColumns(count, grainOf, bonds) {
+  grainColumns({ count, grainOf, made, grainOfName }, bonds) {
     const { leaf, edges } = this;
     const sum = (value) => {
       const sums = new Float64Array(count);
@@ -191,6 +195,8 @@ export class Levels {
     }
     this.addRepresentatives(result, count, grainOf);
     for (const name of ['free_area', 'cut_area']) result[name] = sum((i) => leaf[name][i]);
+    for (let join = 0; join < made; ++join)
+      result.free_area[grainOfName(this.kept[join])] += this.step.free_area[join] * this.areaUnit;
     result.at_domain_face = extreme(leaf.at_domain_face, 1);
     result.shared_area = new Float64Array(count);
     result.coordination = new Float64Array(count);
@@ -255,24 +261,50 @@ export class Levels {
   }
 
   /// What grains share, by first, then second.
-  bondsOf(count, grainOf) {
-    const { contact } = this;
+  bondsOf({ count, grainOf, made, grainOfName }) {
+    const { contact, change } = this;
     const found = new Map();
-    for (let i = 0; i < contact.faces.length; ++i) {
-      const one = grainOf[contact.first[i] - 1], two = grainOf[contact.second[i] - 1];
-      if (one === two) continue;
+    const bondOf = (one, two) => {
       const first = Math.min(one, two), second = Math.max(one, two), key = first * count + second;
-      if (!found.has(key))
-        found.set(key, { key, first, second, faces: 0, area: 0, place: [0, 0, 0], normal: [0, 0, 0] });
-      const bond = found.get(key), area = contact.area[i], sign = one === first ? 1 : -1;
-      bond.faces += contact.faces[i];
-      bond.area += area;
-      axes.forEach((axis, k) => {
-        bond.place[k] += contact.faces[i] * contact[`centroid_${axis}`][i];
-        bond.normal[k] += sign * area * contact[`normal_${axis}`][i];
-      });
+      let bond = found.get(key);
+      if (!bond) {
+        bond = { key, first, second, faces: 0, areas: [0, 0, 0], place: [0, 0, 0], across: [0, 0, 0] };
+        found.set(key, bond);
+      }
+      return bond;
+    };
+    const addAreas = ({ areas }, from, i) => {
+      areas[0] += from.area1[i];
+      areas[1] += from.area2[i];
+      areas[2] += from.area4[i];
+    };
+    const places = axes.map((axis) => contact[`centroid_${axis}`]), across = axes.map((axis) => contact[`across_${axis}`]);
+    for (let i = 0; i < contact.faces.length; ++i) {
+      const one = grainOf[contact.first[i] - 1], two = grainOf[contact.second[i] - 1], faces = contact.faces[i];
+      if (one === two) continue;
+      const bond = bondOf(one, two), sign = one === bond.first ? 1 : -1;
+      bond.faces += faces;
+      addAreas(bond, contact, i);
+      for (let k = 0; k < 3; ++k) {
+        bond.place[k] += faces * places[k][i];
+        bond.across[k] += sign * across[k][i];
+      }
     }
-    return [...found.values()].sort((a, b) => a.key - b.key);
+    for (let i = 0; change.join[i] < made; ++i) {
+      const one = grainOfName(this.kept[change.join[i]]), two = grainOfName(change.other[i]);
+      if (one !== two) addAreas(bondOf(one, two), change, i);
+    }
+    const bonds = [...found.values()].filter(({ faces }) => faces > 0).sort((a, b) => a.key - b.key);
+    for (const bond of bonds) bond.area = this.areaOf(bond.areas);
+    return bonds;
+  }
+
+  /// From pairs of voxels 1, 2 and 4 apart, as bondArea() of measure/detail/leaf_surface.h.
+  areaOf(areas) {
+    const [one, two, four] = areas.map((area, i) => area / 2 ** i * this.areaUnit / this.meanFace);
+    const groove = clamp((four - two) / (2 * Math.sqrt(Math.PI * Math.max(two, 1))) / 0.4, 0, 1);
+    const atZero = (1 - groove) * (2 * one - two) + groove * (2 * two - four);
+    return this.meanFace * clamp(atZero, 0.25 * one, 1.1 * one);
   }
 
   bondColumns(bonds, grains) {
@@ -286,7 +318,10 @@ export class Levels {
       radius: column((bond) => Math.sqrt(bond.area / Math.PI)) };
     axes.forEach((axis, k) => {
       result[`centroid_${axis}`] = column((bond) => bond.place[k] / bond.faces);
-      result[`normal_${axis}`] = column(({ normal }) => normal[k] / Math.hypot(...normal));
+      result[`normal_${axis}`] = column(({ across }) => {
+        const normal = across.map((faces, i) => faces / this.edges[i]);
+        return normal[k] / Math.hypot(...normal);
+      });
     });
     result.distance = column(({ first, second }) => Math.hypot(...axes.map((axis) =>
       grains[`representative_${axis}`][first] - grains[`representative_${axis}`][second])));
@@ -299,13 +334,17 @@ export class Levels {
 
   /// Tables as decode.js reads them, and the grain of each leaf. `own`: those of the labels.
   at(strictness, own) {
-    const { count, grainOf } = this.grainsAt(strictness);
-    const all = this.bondsOf(count, grainOf);
-    const grains = this.grainColumns(count, grainOf, all);
+    const cut = this.grainsAt(strictness);
+    const all = this.bondsOf(cut);
+    const grains = this.grainColumns(cut, all);
     const bonds = all.filter(({ faces }) => faces >= this.minFaces);
-    return { rowOfBody: grainOf, grains: tableLike(own.grains, grains, count),
+    return { rowOfBody: cut.grainOf, grains: tableLike(own.grains, grains, cut.count),
       bonds: tableLike(own.bonds, this.bondColumns(bonds, grains), bonds.length) };
   }
+}
+
+function clamp(value, least, most) {
+  return Math.min(Math.max(value, least), most);
 }
 
 function isAlmost(smaller, larger) {

@@ -29,7 +29,7 @@ export function startStrictness(sample, selection) {
     note.textContent = sample.isOwn
       ? 'These are the grains of the labels. To the left grains join, to the right they part.'
       : `These are the grains of: vdb_madf remerge LABELS OUT.vdb --strictness ${strictness} --tidy 0. ` +
-        `Bodies and numbers are put together from those at ${written(levels.highest)}; areas are sums, and what cannot be summed is not known.`;
+        `Bodies and numbers are put together from those at ${written(levels.highest)}; what cannot be put together, such as curvatures, is not known.`;
   };
   selection.listen((what) => { if (what === 'strictness') draw(); });
   element('numbers').after(make('section', { id: 'levels', 'aria-label': 'Strictness' },
