@@ -148,9 +148,17 @@ TEST_CASE("joined_areas: are those of joined labels, after any number of joins",
     for (const uint32_t name : names)
       if (name != 2) nameOfLabel.push_back(name);  // 2 has no voxel
     const std::vector<NamedJoin> joins = randomJoins(rng, names);
-    const JoinedAreas joined =
-        detail::joinedAreas({*labels, nullptr}, options.domain, detail::VoxelShape{{1, 1, edge}},
-                            nameOfLabel, joins, nullptr);
+    detail::JoinedAreasCounter counter(options.domain, detail::VoxelShape{{1, 1, edge}},
+                                       nameOfLabel, joins);
+    // In two slabs, or in one.
+    const detail::LabelLeaves leaves(*labels, nullptr);
+    if (seed == 1) {
+      counter.add(leaves, {0, 64}, nullptr);
+      counter.add(leaves, {-64, 0}, nullptr);
+    } else {
+      counter.add(leaves, {}, nullptr);
+    }
+    const JoinedAreas joined = counter.areas();
     CHECK_FALSE(joined.changes.empty());
     CHECK(std::is_sorted(joined.changes.begin(), joined.changes.end(),
                          [](const auto& a, const auto& b) { return a.join < b.join; }));
@@ -168,8 +176,9 @@ TEST_CASE("joined_areas: are those of joined labels, after any number of joins",
 TEST_CASE("joined_areas: without joins, nothing changes", "[joined_areas]") {
   const auto labels = labelGrid(twoBalls({3, 4, 5}, 9));
   std::vector<uint32_t> names{0, 1, 2, 3, 4, 5, 6};
-  const JoinedAreas joined =
-      detail::joinedAreas({*labels, nullptr}, std::nullopt, {}, names, {}, nullptr);
+  detail::JoinedAreasCounter counter(std::nullopt, {}, names, {});
+  counter.add({*labels, nullptr}, {}, nullptr);
+  const JoinedAreas joined = counter.areas();
   REQUIRE(joined.contacts.size() == 1);
   CHECK(joined.contacts[0].first == 3);
   CHECK(joined.contacts[0].second == 7);

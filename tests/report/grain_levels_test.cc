@@ -104,7 +104,7 @@ Segmentation withManifolds(double strictness) {
 /// Without what takes time here.
 Page writePlain(const Int32Grid::ConstPtr& labels, const Int32Grid::ConstPtr& manifold) {
   ReportOptions options;
-  options.manifold = manifold;
+  if (manifold) options.manifold = manifold;
   options.maxTriangles = 0;
   options.pictureEdge = 16;
   return write(labels, options);

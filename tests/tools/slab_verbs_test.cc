@@ -175,6 +175,25 @@ TEST_CASE("slabs: pictures are those of one file", "[slabs]") {
   refused("", "slab-0002.vdb: is missing");
 }
 
+TEST_CASE("slabs: a report has the slider of one file with kept manifolds", "[slabs]") {
+  const Bench bench;
+  bench.mustRun(kTall + "in.vdb --voxel-size 8um -q");
+  const std::string options = " --grid object --keep manifold -q";
+  bench.mustRun("segment in.vdb one.vdb" + options);
+  bench.mustRun("segment in.vdb out.slabs --slab-height 24" + options);
+  if (bench.run("report one.vdb one.html --title T -q").err.find("esbuild") != std::string::npos) {
+    WARN("SKIPPED: a report of slabs: built without esbuild, libjs-three, libjs-jquery-datatables");
+    return;
+  }
+  CHECK_THAT(bench.mustRun("report out.slabs cut.html --title T"), Contains("a slider"));
+  const std::string whole = bench.bytes("one.html");
+  std::string cut = bench.bytes("cut.html");
+  for (size_t at = 0; (at = cut.find("out.slabs", at)) != std::string::npos;)
+    cut.replace(at, 9, "one.vdb");
+  CHECK(whole.find("id=\"joins\"") != std::string::npos);
+  CHECK(cut == whole);
+}
+
 TEST_CASE("slabs: every verb that takes labels reads the folder", "[slabs]") {
   const Bench bench;
   bench.mustRun(kTall + "in.vdb -q");

@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "command.h"
@@ -68,10 +70,17 @@ void parse(ReportArguments& o) {
   }
 }
 
-/// The manifolds that a file keeps beside its labels; null if it does not.
-Int32Grid::Ptr manifoldsBeside(const InputOptions& input, Progress* progress) {
-  if (!isVdb(input) || isInSlabs(input)) return nullptr;
-  return manifoldsAmong(readVdb(input.path, manifoldsAlone(), progress));
+/// The manifolds that a file or a folder of slabs keeps beside its labels, in slabs if these are.
+std::optional<AnyLabels> manifoldsBeside(const InputOptions& input, const AnyLabels& labels,
+                                         Progress* progress) {
+  if (std::holds_alternative<LabelSlabs>(labels)) {
+    if (!manifoldsAmong(readVdbHeaders(input.path, progress))) return std::nullopt;
+    return openManifoldSlabs(input, progress);
+  }
+  if (!isVdb(input) || isInSlabs(input)) return std::nullopt;
+  if (const auto whole = manifoldsAmong(readVdb(input.path, manifoldsAlone(), progress)))
+    return Int32Grid::ConstPtr(whole);
+  return std::nullopt;
 }
 
 /// In slabs only if they can be measured so.
@@ -88,7 +97,8 @@ Report writeOne(const ReportArguments& o, const Common& common) {
   const AnyLabels labels = labelsOf(o.input, common);
   options.given = readGiven(o.with, aboutOf(labels));
   // What crosses at another strictness the page cannot tell.
-  if (!options.measure.crossings) options.manifold = manifoldsBeside(o.input, common.progress);
+  if (!options.measure.crossings)
+    options.manifold = manifoldsBeside(o.input, labels, common.progress);
   return withFileName(o.input.path,
                       [&] { return writeReport(o.out, labels, options, common.progress); });
 }

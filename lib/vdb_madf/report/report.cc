@@ -79,7 +79,7 @@ Report written(Report report, uint64_t bytes) {
 /// Options without what is of one sample.
 ReportOptions ofSeveral(ReportOptions options) {
   checkOptions(options);
-  options.manifold = nullptr;
+  options.manifold.reset();
   options.sweep.clear();
   options.given.clear();
   return options;

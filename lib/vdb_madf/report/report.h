@@ -30,8 +30,9 @@ struct ReportOptions {
   /// then: what they are of other grains is not known.
   std::vector<GivenColumn> given;
   /// What the labels were merged from (segment with keepManifold): the page gets a slider for the
-  /// strictness, if merging by score made them and nothing has edited them since. Null: none.
-  Int32Grid::ConstPtr manifold;
+  /// strictness, if merging by score made them and nothing has edited them since. In slabs if the
+  /// labels are.
+  std::optional<AnyLabels> manifold;
   /// Slices are those of labels that are reduced to at most so many voxels a side, 1 or more.
   int maxSlice = 256;
   int pictureEdge = 640;  ///< pixels of the picture for where there is no WebGL, about; 16 .. 8192

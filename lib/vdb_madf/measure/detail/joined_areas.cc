@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"
+#include "vdb_madf/leaves/detail/voxels.h"
 #include "vdb_madf/measure/detail/leaf_surface.h"
 
 namespace vdb_madf::detail {
@@ -146,31 +147,42 @@ class LeafJoiner {
 
 }  // namespace
 
-JoinedAreas joinedAreas(const LabelLeaves& labels, const std::optional<Domain>& openDomain,
-                        const VoxelShape& voxel, const std::vector<uint32_t>& nameOfLabel,
-                        const std::vector<NamedJoin>& joins, Interrupter* interrupter) {
-  const Successors successors(nameOfLabel, joins);
+JoinedAreasCounter::JoinedAreasCounter(const std::optional<Domain>& openDomain,
+                                       const VoxelShape& voxel, std::vector<uint32_t> nameOfLabel,
+                                       std::vector<NamedJoin> joins)
+    : openDomain_(openDomain),
+      voxel_(voxel),
+      nameOfLabel_(std::move(nameOfLabel)),
+      joins_(std::move(joins)),
+      freeAreas_(joins_.size(), 0) {}
+
+void JoinedAreasCounter::add(const LabelLeaves& labels, const LeafLayers& layers,
+                             Interrupter* interrupter) {
+  const Successors successors(nameOfLabel_, joins_);
   PerThread<LeafJoiner> joiners(
-      [&] { return LeafJoiner(labels, openDomain, voxel, nameOfLabel, successors); });
-  parallelFor(labels.index().leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
+      [&] { return LeafJoiner(labels, openDomain_, voxel_, nameOfLabel_, successors); });
+  const LeafIndex& index = labels.index();
+  parallelFor(index.leafCount(), kLeafGrain, interrupter, [&](size_t begin, size_t end) {
     LeafJoiner& joiner = joiners.local();
-    for (size_t leaf = begin; leaf < end; ++leaf) joiner.add(leaf);
+    for (size_t leaf = begin; leaf < end; ++leaf)
+      if (layers.hold(index.origin(leaf))) joiner.add(leaf);
   });
-  JoinedAreas result;
-  result.freeAreas.assign(joins.size(), 0);
-  std::map<std::pair<int32_t, int32_t>, JoinedAreas::Contact> contacts;
-  std::map<std::pair<uint32_t, uint32_t>, Areas> changes;
   for (const LeafJoiner& joiner : joiners) {
     for (const auto& [pair, contact] : joiner.contacts) {
-      add(contact.areas, 1, contacts[pair].areas);
-      add(contact.faces, 1, contacts[pair].faces);
+      detail::add(contact.areas, 1, contacts_[pair].areas);
+      detail::add(contact.faces, 1, contacts_[pair].faces);
     }
-    for (const auto& [pair, areas] : joiner.changes) add(areas, 1, changes[pair]);
-    for (const auto& [join, area] : joiner.freeAreas) result.freeAreas[join] += area;
+    for (const auto& [pair, areas] : joiner.changes) detail::add(areas, 1, changes_[pair]);
+    for (const auto& [join, area] : joiner.freeAreas) freeAreas_[join] += area;
   }
-  for (const auto& [pair, contact] : contacts)
+}
+
+JoinedAreas JoinedAreasCounter::areas() const {
+  JoinedAreas result;
+  result.freeAreas = freeAreas_;
+  for (const auto& [pair, contact] : contacts_)
     result.contacts.push_back({pair.first, pair.second, contact.areas, contact.faces});
-  for (const auto& [pair, areas] : changes)
+  for (const auto& [pair, areas] : changes_)
     if (areas != Areas{}) result.changes.push_back({pair.first, pair.second, areas});
   return result;
 }

@@ -5,7 +5,9 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "vdb_madf/grids/domain.h"
@@ -42,13 +44,28 @@ struct JoinedAreas {
 };
 
 /// Measures labels again for every join, but only in the leaf nodes around which both of its grains
-/// lie: what is left of the work of measure() is about twice that of its surfaces, for few joins.
-/// @param openDomain what lies outside of it is unknown; none: background
-/// @param nameOfLabel of label l at l - 1
-/// @param joins in the order in which they are made
-/// @throw Interrupted
-JoinedAreas joinedAreas(const LabelLeaves& labels, const std::optional<Domain>& openDomain,
-                        const VoxelShape& voxel, const std::vector<uint32_t>& nameOfLabel,
-                        const std::vector<NamedJoin>& joins, Interrupter* interrupter);
+/// lie. They may come slab by slab.
+class JoinedAreasCounter {
+ public:
+  /// @param openDomain what lies outside of it is unknown; none: background
+  /// @param nameOfLabel of label l at l - 1
+  /// @param joins in the order in which they are made
+  JoinedAreasCounter(const std::optional<Domain>& openDomain, const VoxelShape& voxel,
+                     std::vector<uint32_t> nameOfLabel, std::vector<NamedJoin> joins);
+
+  /// The leaves in some layers. Those around them have to be there, too. @throw Interrupted
+  void add(const LabelLeaves& labels, const LeafLayers& layers, Interrupter* interrupter);
+
+  JoinedAreas areas() const;
+
+ private:
+  std::optional<Domain> openDomain_;
+  VoxelShape voxel_;
+  std::vector<uint32_t> nameOfLabel_;
+  std::vector<NamedJoin> joins_;
+  std::map<std::pair<int32_t, int32_t>, JoinedAreas::Contact> contacts_;
+  std::map<std::pair<uint32_t, uint32_t>, JoinedAreas::Areas> changes_;
+  std::vector<int64_t> freeAreas_;
+};
 
 }  // namespace vdb_madf::detail

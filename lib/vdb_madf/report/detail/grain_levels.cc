@@ -7,11 +7,16 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <utility>
 
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/labels/detail/relabelled.h"
+#include "vdb_madf/labels/detail/slab_window.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/method/hierarchy.h"
 #include "vdb_madf/report/detail/packed_bytes.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
+#include "vdb_madf/segmentation/graph_part.h"
 #include "vdb_madf/segmentation/remerge.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"
 
@@ -142,15 +147,45 @@ double moment(const Principal& ellipsoid, int i, int j) {
   return sum;
 }
 
+std::optional<ManifoldGraph> graphOf(const AnyLabels& manifold, Interrupter* interrupter) {
+  if (const auto* const whole = std::get_if<Int32Grid::ConstPtr>(&manifold))
+    return storedGraph(**whole);
+  const auto& slabs = std::get<LabelSlabs>(manifold);
+  std::vector<GraphPart> parts;
+  for (size_t s = 0; s < slabs.slabCount(); ++s)
+    if (auto part = storedGraphPart(*slabs.read(s, interrupter))) parts.push_back(std::move(*part));
+  if (parts.empty()) return std::nullopt;
+  return joinedGraph(parts);
+}
+
+/// The grains of a merging, with the transform and the metadata of the labels.
+AnyLabels mergedLabels(const AnyLabels& manifold, const Merging& merging, const Int32Grid& labels,
+                       Interrupter* interrupter) {
+  if (const auto* const whole = std::get_if<Int32Grid::ConstPtr>(&manifold)) {
+    const Int32Grid::Ptr grains = applyMerging(**whole, merging, 0, interrupter);
+    setVoxelSize(*grains, storedVoxelSize(labels));
+    return Int32Grid::ConstPtr(grains);
+  }
+  LabelSlabs slabs = std::get<LabelSlabs>(manifold);
+  slabs.about = openvdb::gridConstPtrCast<Int32Grid>(labels.copyGridWithNewTree());
+  std::vector<std::pair<int32_t, int32_t>> grainOf;
+  for (size_t node = 0; node < merging.grainOfNode.size(); ++node)
+    grainOf.emplace_back(int32_t(node) + 1, merging.grainOfNode[node]);
+  slabs.read = [read = slabs.read, grainOf](size_t slab, Interrupter* reader) {
+    return relabelled(*read(slab, reader), grainOf, reader);
+  };
+  return slabs;
+}
+
 }  // namespace
 
 std::optional<GrainLevels> grainLevels(const Int32Grid& labels, const std::vector<int32_t>& ids,
-                                       const Int32Grid& manifold, Interrupter* interrupter) {
+                                       const AnyLabels& manifold, Interrupter* interrupter) {
   const auto stored = storedMerging(labels);
   if (!stored || stored->options.mode != MergeMode::score || labels[kEditsKey] || ids.empty())
     return std::nullopt;
   checkMergeOptions(stored->options);
-  const std::optional<ManifoldGraph> graph = storedGraph(manifold);
+  const std::optional<ManifoldGraph> graph = graphOf(manifold, interrupter);
   if (!graph) return std::nullopt;
   const Merging own = merge(*graph, stored->options);
   if (ids.size() != own.representative.size() || size_t(ids.back()) != ids.size())
@@ -161,7 +196,7 @@ std::optional<GrainLevels> grainLevels(const Int32Grid& labels, const std::vecto
   levels.highest = std::max(levels.highest, levels.own);
   const Hierarchy hierarchy = mergeHierarchy(*graph, levels.lowest);
   const Merging finest = cut(hierarchy, levels.highest);
-  levels.leaves = applyMerging(manifold, finest, 0, interrupter);
+  levels.leaves = mergedLabels(manifold, finest, labels, interrupter);
   addJoins(hierarchy, finest, own, levels);
   return levels;
 }
@@ -193,8 +228,19 @@ JoinedAreas levelAreas(const GrainLevels& levels, const Measurements& leaves,
       names.push_back(place);
   std::vector<NamedJoin> joins;
   for (const GrainLevels::Join& join : levels.joins) joins.push_back({join.kept, join.gone});
-  return joinedAreas(LabelLeaves(*levels.leaves, interrupter), leaves.open ? domain : std::nullopt,
-                     VoxelShape{leaves.edges}, names, joins, interrupter);
+  JoinedAreasCounter counter(leaves.open ? domain : std::nullopt, VoxelShape{leaves.edges},
+                             std::move(names), std::move(joins));
+  if (const auto* const whole = std::get_if<Int32Grid::ConstPtr>(&levels.leaves)) {
+    counter.add(LabelLeaves(**whole, interrupter), {}, interrupter);
+    return counter.areas();
+  }
+  const auto& slabs = std::get<LabelSlabs>(levels.leaves);
+  SlabWindow window(slabs);
+  for (size_t s = 0; s < slabs.slabCount(); ++s) {
+    const int begin = slabs.cuts[s], end = slabs.cuts[s + 1];
+    counter.add(window.leaves({begin - 8, end + 8}, interrupter), {begin, end}, interrupter);
+  }
+  return counter.areas();
 }
 
 PackedLeaves packLeaves(const Measurements& leaves, const JoinedAreas& areas) {

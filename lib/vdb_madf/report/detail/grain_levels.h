@@ -10,6 +10,7 @@
 
 #include "vdb_madf/base/interrupter.h"
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/label_slabs.h"
 #include "vdb_madf/measure/detail/joined_areas.h"
 #include "vdb_madf/measure/measure.h"
 
@@ -20,8 +21,8 @@ namespace vdb_madf::detail {
 struct GrainLevels {
   /// From 8 to 14, and further if that of the labels is not among them.
   double lowest = 8, highest = 14;
-  double own = 0;                    ///< that of the labels
-  Int32Grid::Ptr leaves;             ///< their labels, 1 to their number, without tidying
+  double own = 0;    ///< that of the labels
+  AnyLabels leaves;  ///< 1 to their number, without tidying; in slabs as the manifolds
   std::vector<int32_t> grainOfLeaf;  ///< among the labels, of leaf g at g - 1
   /// Leaves are named by their places in the order of their representatives, in which also those
   /// are that have no voxel of the object, and no label (`empty`, ascending).
@@ -37,8 +38,9 @@ struct GrainLevels {
 
 /// None if the labels, which are \p ids, are not what merging these manifolds by score made: if
 /// they do not say so, or were edited, or have other grains.
+/// @param labels their transform and metadata
 std::optional<GrainLevels> grainLevels(const Int32Grid& labels, const std::vector<int32_t>& ids,
-                                       const Int32Grid& manifold, Interrupter* interrupter);
+                                       const AnyLabels& manifold, Interrupter* interrupter);
 
 /// For the page: planes (PackedBytes::planes()) of 32 bits, of grainOfLeaf; then of the joins
 /// `kept`, `gone` and `strictness`.

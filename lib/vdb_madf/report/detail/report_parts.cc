@@ -116,11 +116,13 @@ void ReportParts::addLevels() {
   begin("levels");
   levels_ = grainLevels(aboutOf(labels_), ids_, *options_.manifold, interrupter_);
   if (!levels_) return;
-  setVoxelSize(*levels_->leaves, storedVoxelSize(aboutOf(labels_)));
   MeasureOptions options = options_.measure;
   options.domain = options.domain ? options.domain : storedDomain(aboutOf(labels_));
   options.minFaces = 1;  // the page sums the faces of leaves before it counts them
-  leafMeasures_ = measure(*levels_->leaves, options, interrupter_);
+  leafMeasures_ = applied(
+      levels_->leaves, [&](const auto& leaves) { return measure(leaves, options, interrupter_); });
+  if (leafMeasures_->grains.size() != levels_->grainOfLeaf.size())
+    throw InvalidInput("the manifolds have no voxels of some that their graph has: segment again");
   packedLeaves_ = packLeaves(*leafMeasures_,
                              levelAreas(*levels_, *leafMeasures_, options.domain, interrupter_));
 }
@@ -227,6 +229,7 @@ std::string ReportParts::about() const {
   json["columns"] = {{"grains", columnsJson(grainColumns({}, measured_.extra))},
                      {"bonds", columnsJson(bondColumns({}, measured_.extra))}};
   if (levels_) {
+    const auto colorsOf = [&](const auto& leaves) { return grainColors(leaves, interrupter_); };
     json["levels"] = {{"lowest", levels_->lowest},
                       {"highest", levels_->highest},
                       {"own", levels_->own},
@@ -234,7 +237,7 @@ std::string ReportParts::about() const {
                       {"empty", levels_->empty},
                       {"joins", levels_->joins.size()},
                       {"minFaces", measured_.minFaces},
-                      {"palette", paletteJson(grainColors(*levels_->leaves, interrupter_))},
+                      {"palette", paletteJson(applied(levels_->leaves, colorsOf))},
                       {"tables",
                        {{"grains", listed(packedLeaves_.grains)},
                         {"contacts", listed(packedLeaves_.contacts)},

@@ -45,7 +45,7 @@ class ReportParts {
   void begin(const char* stage) const;
   void addLevels();
   /// What mesh and slices show: the leaves of the slider, or the labels.
-  AnyLabels bodies() const { return levels_ ? AnyLabels(levels_->leaves) : labels_; }
+  const AnyLabels& bodies() const { return levels_ ? levels_->leaves : labels_; }
   const Measurements& bodyMeasures() const { return levels_ ? *leafMeasures_ : measured_; }
   std::vector<int32_t> bodyIds() const;
 
