@@ -16,7 +16,8 @@
 namespace vdb_madf::test {
 
 struct GlbPrimitive {
-  std::vector<std::array<float, 3>> points, normals;
+  std::vector<std::array<float, 3>> points, normals;  ///< in the world
+  std::array<float, 3> pivot;                         ///< of the node
   std::vector<uint32_t> indices;
   std::array<double, 4> color;  ///< linear
   nlohmann::json extras;        ///< of the node
@@ -48,7 +49,7 @@ class Glb {
     std::map<std::string, GlbPrimitive> result;
     for (const auto& index : json_.at("scenes").at(0).value("nodes", nlohmann::json::array())) {
       const auto& node = json_.at("nodes").at(index.get<size_t>());
-      for (const char* moved : {"matrix", "translation", "rotation", "scale", "children"})
+      for (const char* moved : {"matrix", "rotation", "scale", "children"})
         CHECK(node.count(moved) == 0);
       const auto& mesh = json_.at("meshes").at(node.at("mesh").get<size_t>());
       REQUIRE(mesh.at("primitives").size() == 1);
@@ -58,6 +59,9 @@ class Glb {
       REQUIRE(made.points.empty());
       const auto& attributes = primitive.at("attributes");
       made.points = vectors(attributes.at("POSITION"), true);
+      made.pivot = node.at("translation");
+      for (auto& point : made.points)
+        for (size_t axis = 0; axis < 3; ++axis) point[axis] += made.pivot[axis];
       if (attributes.count("NORMAL")) made.normals = vectors(attributes.at("NORMAL"), false);
       made.indices = indices(primitive.at("indices"), made.points.size());
       const auto& material = json_.at("materials").at(primitive.at("material").get<size_t>());

@@ -64,6 +64,7 @@ class GlbFile {
       : world_(world), options_(options) {
     bytes_ = indexStart();
     for (size_t grain = 0; grain < world.grainCount(); ++grain) {
+      pivots_.push_back(pivot(grain));
       firstIndex_.push_back(bytes_);
       bytes_ += padded(3 * triangles(grain) * (isShort(grain) ? 2 : 4));
       const auto [place, isNew] =
@@ -86,7 +87,7 @@ class GlbFile {
     if (bytes_) {
       out.value(uint32_t(bytes_));
       out.value(kBinaryChunk);
-      world_.forEachPoint([&](size_t, uint32_t i) { out.value(turned(world_.point(i))); });
+      world_.forEachPoint([&](size_t grain, uint32_t i) { out.value(placed(grain, i)); });
       for (size_t grain = 0; options_.shadeSmooth && grain < world_.grainCount(); ++grain)
         for (const Vec3f& normal : normals(grain)) out.value(normal);
       for (size_t grain = 0; grain < world_.grainCount(); ++grain) writeIndices(out, grain);
@@ -106,6 +107,36 @@ class GlbFile {
   /// Positions, perhaps normals, then indices.
   uint64_t indexStart() const { return pointBytes() * (options_.shadeSmooth ? 2 : 1); }
   size_t accessorsOfGrain() const { return options_.shadeSmooth ? 3 : 2; }
+
+  /// The centroid of what a grain's surface encloses; of one that is open or flat the mean of its
+  /// points.
+  Vec3f pivot(size_t grain) const {
+    const Vec3d origin = turned(world_.point(firstPoint(grain)));
+    Vec3d mean(0), sum(0), low(0), high(0);
+    for (uint32_t i = firstPoint(grain); i < firstPoint(grain + 1); ++i) {
+      const Vec3d p = turned(world_.point(i)) - Vec3f(origin);
+      mean += p / points(grain);
+      low = openvdb::math::minComponent(low, p);
+      high = openvdb::math::maxComponent(high, p);
+    }
+    double volume = 0;
+    for (uint32_t i = mesh().firstTriangle[grain]; i < mesh().firstTriangle[grain + 1]; ++i) {
+      const auto corners = world_.triangle(i);
+      const auto at = [&](size_t k) { return Vec3d(turned(world_.point(corners[k]))) - origin; };
+      const Vec3d a = at(0), b = at(1), c = at(2);
+      const double part = a.dot(b.cross(c)) / 6;
+      volume += part;
+      sum += part * (a + b + c) / 4;
+    }
+    const Vec3d extent = high - low;
+    const double box = extent[0] * extent[1] * extent[2];
+    return Vec3f(origin + (volume > 1e-3 * box ? sum / volume : mean));
+  }
+
+  /// A point, from the pivot of its grain.
+  Vec3f placed(size_t grain, uint32_t point) const {
+    return Vec3f(Vec3d(turned(world_.point(point))) - Vec3d(pivots_[grain]));
+  }
 
   std::string header() const {
     const size_t grains = world_.grainCount();
@@ -137,6 +168,7 @@ class GlbFile {
     Json json;
     json["name"] = grainName(world_.label(grain));
     json["mesh"] = grain;
+    json["translation"] = triple(pivots_[grain]);
     json["extras"] = measuresOf(world_.label(grain));
     return json;
   }
@@ -196,7 +228,7 @@ class GlbFile {
     if (which == 0) {
       Vec3f low(std::numeric_limits<float>::max()), high(-low);
       for (uint32_t i = firstPoint(grain); i < firstPoint(grain + 1); ++i) {
-        const Vec3f p = turned(world_.point(i));
+        const Vec3f p = placed(grain, i);
         low = openvdb::math::minComponent(low, p);
         high = openvdb::math::maxComponent(high, p);
       }
@@ -249,6 +281,7 @@ class GlbFile {
 
   const WorldMesh& world_;
   const MeshFileOptions& options_;
+  std::vector<Vec3f> pivots_;         ///< of the grains
   std::vector<uint64_t> firstIndex_;  ///< bytes, of each grain
   uint64_t bytes_ = 0;                ///< of the chunk of numbers
   std::map<Rgb, uint32_t> materials_;
