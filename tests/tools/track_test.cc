@@ -151,7 +151,7 @@ TEST_CASE("cli: a sample that was turned and shortened is followed", "[cli]") {
     const auto table = rows(bench.bytes("g.csv"));
     REQUIRE(table.size() == 120);
     for (const auto& row : table) {
-      REQUIRE(row.size() == 26);
+      REQUIRE(row.size() == 27);
       CHECK(row[2] == "kept");
       CHECK(row[3] == row[1]);
       CHECK(std::abs(std::stod(row[20]) - 0.9) < 0.05);   // f_zz
@@ -194,6 +194,36 @@ TEST_CASE("cli: a sample that was turned and shortened is followed", "[cli]") {
     CHECK(moved.at(n, "pore.fate") == 0);
     CHECK(moved.at(n, "pore.partner") == double(label));
   }
+  // Displacements are those between images of the labels, which begin where their boxes do.
+  const auto box = gridOf(infoOf(bench, "before.vdb"), "truth").at("metadata");
+  const auto corner = [&](const std::string& which, int add) {
+    std::string text;
+    for (const int64_t value : box.at("madf_domain_" + which))
+      text += (text.empty() ? "" : ",") + std::to_string(value + add);
+    return text;
+  };
+  bench.mustRun("convert before.vdb cut.vdb --grid truth --labels --crop " + corner("min", 3) +
+                ":" + corner("max", 0) + " -q");
+  bench.mustRun("track cut.vdb after.vdb --after-grid truth --motion affine --phi cut.tsv -q");
+  const auto phiOf = [&](const std::string& file) {
+    std::istringstream text(bench.bytes(file));
+    std::string head;
+    std::getline(text, head);
+    std::vector<std::vector<double>> all(1, std::vector<double>(20));
+    while (std::all_of(all.back().begin(), all.back().end(),
+                       [&](double& v) { return bool(text >> v); }))
+      all.emplace_back(20);
+    return all;
+  };
+  const auto wholePhi = phiOf("phi.tsv"), cutPhi = phiOf("cut.tsv");
+  int compared = 0;
+  for (size_t n = 1; n + 1 < cutPhi.size(); ++n) {
+    if (std::abs(cutPhi[n][1] + 3 - wholePhi[n][1]) > 0.01) continue;  // not seen whole
+    ++compared;
+    for (const size_t axis : {7, 11, 15})
+      CHECK(std::abs(cutPhi[n][axis] - wholePhi[n][axis] - 3) < 0.3);
+  }
+  CHECK(compared > 20);
   refuses(bench, kWrongUsage, pair + "--phi phi.tsv", {"phi.tsv", "--motion"});
   refuses(bench, kWrongUsage, pair + "--network n.vtp", {"n.vtp", "--motion"});
   refuses(bench, kWrongUsage, pair + "--motion free --network n.txt", {"n.txt", ".graphml"});

@@ -24,12 +24,12 @@ void addRow(std::ostream& tsv, int32_t label, const openvdb::Vec3d& center,
 
 }  // namespace
 
-std::string phiTable(const Tracks& tracks, const Coord& first) {
+std::string phiTable(const Tracks& tracks, const Coord& firstBefore, const Coord& firstAfter) {
   std::ostringstream tsv;
   tsv.precision(9);
   tsv << "Label\tZpos\tYpos\tXpos\tFzz\tFzy\tFzx\tZdisp\tFyz\tFyy\tFyx\tYdisp\tFxz\tFxy\tFxx\tXdisp"
          "\terror\titerations\treturnStatus\tdeltaPhiNorm\n";
-  const openvdb::Vec3d zero(0);
+  const openvdb::Vec3d zero(0), between = (firstBefore - firstAfter).asVec3d();
   int32_t next = 0;
   for (size_t n = 0; n < tracks.before.size(); ++n) {
     const int32_t label = tracks.before[n].grain;
@@ -38,7 +38,8 @@ std::string phiTable(const Tracks& tracks, const Coord& first) {
     const GrainMove& move = tracks.moves[n];
     const auto rotation = move.gradient ? rotationOf(*move.gradient) : openvdb::Mat3d::identity();
     const Status status = move.confidence > 0 ? kFollowed : move.isPlaced ? kExpected : kUnknown;
-    addRow(tsv, next++, move.center - first.asVec3d(), rotation, move.displacement, status);
+    addRow(tsv, next++, move.center - firstBefore.asVec3d(), rotation, move.displacement + between,
+           status);
   }
   return tsv.str();
 }

@@ -262,7 +262,8 @@ void runTrack(const TrackArguments& o, const Common& common) {
   linkFile.write(trackLinkTable(tracks));
   bondFile.write(trackedBondTable(tracks));
   if (!o.network.empty()) writeNetwork(o.network, motionNetwork(before, tracks), common.progress);
-  if (!phiFile.isNowhere()) phiFile.write(phiTable(tracks, boxOf(aboutOf(before)).min()));
+  if (!phiFile.isNowhere())
+    phiFile.write(phiTable(tracks, boxOf(aboutOf(before)).min(), boxOf(aboutOf(after)).min()));
   Json json = summaryOf(o, tracks);
   addNotes(json, *common.progress);
   jsonFile.write(json);
