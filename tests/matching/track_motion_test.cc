@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include <sstream>
 #include <string>
@@ -22,6 +23,7 @@
 #include "vdb_madf/labels/label_digest.h"
 #include "vdb_madf/labels/label_sizes.h"
 #include "vdb_madf/matching/track.h"
+#include "vdb_madf/method/boundary.h"
 
 using namespace vdb_madf;
 using namespace vdb_madf::test;
@@ -227,6 +229,46 @@ TEST_CASE("track: bonds are followed through a motion", "[track_motion]") {
   options.sureFaces = 16;
   CHECK_THROWS_WITH(track(*a, *labelGrid(twoBalls({0, 0, 0}, 5)), options),
                     vdb_madf::test::Contains("no motion is found"));
+}
+
+TEST_CASE("track: what a scan cuts of grains is no motion of theirs", "[track_motion]") {
+  Dice dice(9);
+  std::vector<openvdb::Vec3d> centers;
+  for (const openvdb::Vec3d& center : packed(std::vector<double>(250, 5.5), dice))
+    centers.push_back(center);
+  std::vector<int32_t> numbers(centers.size());
+  std::iota(numbers.begin(), numbers.end(), 1);
+  const LabelMap drawn = drawnBalls(centers, numbers, 5);
+  const CoordBBox box(Coord(4), Coord(62));
+  const auto seen = [&](const Coord& shift) {
+    LabelMap voxels;
+    for (const auto& [p, label] : drawn)
+      if (box.isInside(p + shift)) voxels[p + shift] = label;
+    const auto labels = labelGrid(voxels);
+    setDomain(*labels, box);
+    return labels;
+  };
+  const Coord shift(2, -3, 1);
+  const auto before = seen(Coord(0)), after = seen(shift);
+  TrackOptions options;
+  options.motion = MatchOptions{};
+  const Tracks tracks = track(*before, *after, options);
+  REQUIRE(tracks.whole);
+  CHECK((tracks.whole->shift - shift.asVec3d()).length() < 1e-9);
+  int cut = 0, strained = 0;
+  for (const GrainMove& move : tracks.moves) {
+    if (move.confidence == 0) continue;
+    cut += move.isCut;
+    if (!move.isCut || move.gradient) CHECK((move.displacement - shift.asVec3d()).length() < 1e-9);
+    if (!move.gradient) continue;
+    ++strained;
+    CHECK(std::abs(strainOf(*move.gradient).volumetric) < 1e-9);
+  }
+  CHECK(cut > 20);
+  CHECK(strained > 40);
+  // Where the boundary is closed, nothing is cut.
+  for (const auto& labels : {before, after}) setBoundary(*labels, Boundary::closed);
+  for (const GrainMove& move : track(*before, *after, options).moves) CHECK_FALSE(move.isCut);
 }
 
 TEST_CASE("track: of labels in slabs the domain and a motion have to be known", "[track_motion]") {

@@ -44,6 +44,8 @@ void addMoves(const Int32Grid& about, const Tracks& tracks, std::vector<Column>&
   for (int axis = 0; axis < 3; ++axis)
     add(std::string("displacement_") + "xyz"[axis],
         [&](const GrainMove& move) { return edge * move.displacement[axis]; });
+  columns.push_back(column(
+      "cut", moves, [&](size_t n) { return moves[n].isCut; }, true));
   addStrain("strain_volumetric", [](const Strain& strain) { return strain.volumetric; });
   addStrain("strain_deviatoric", [](const Strain& strain) { return strain.deviatoric; });
   for (int axis = 0; axis < 3; ++axis)

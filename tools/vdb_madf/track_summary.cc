@@ -41,6 +41,12 @@ Json brokenJson(const BrokenBonds& bonds) {
   return json;
 }
 
+/// Of those that were followed.
+int64_t cutGrains(const Tracks& t) {
+  return std::count_if(t.moves.begin(), t.moves.end(),
+                       [](const GrainMove& move) { return move.isCut; });
+}
+
 void addMotion(Json& json, const Tracks& t, const TrackOptions& options) {
   json["motion"] = toString(*t.motion);
   if (t.whole) {
@@ -50,6 +56,7 @@ void addMotion(Json& json, const Tracks& t, const TrackOptions& options) {
                       t.whole->shift[row]});
     json["motion_of_whole"] = rows;
   }
+  json["cut_grains"] = cutGrains(t);
   json["gap"] = options.gap;
   json["sure_faces"] = options.sureFaces;
 }
@@ -126,6 +133,9 @@ void print(const TrackArguments& o, const Tracks& t, const Json& json) {
   printFates("grains after ", json["grains_after"]);
   printFates("bonds before ", json["bonds_before"]);
   printFates("bonds after  ", json["bonds_after"]);
+  if (t.motion && cutGrains(t) > 0)
+    std::printf("cut            %s that scans end within: displacements are as neighbors say\n",
+                counted(cutGrains(t), "grain").c_str());
   if (t.motion) printBroken(brokenBonds(t, o.track.sureFaces), o.track.sureFaces);
 }
 

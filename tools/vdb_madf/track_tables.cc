@@ -35,10 +35,23 @@ std::string overlapTable(const Tracks& t) {
   return csv.str();
 }
 
+void addStrain(std::ostream& csv, const GrainMove& move) {
+  if (!move.gradient) {
+    csv << std::string(14, ',');
+    return;
+  }
+  const auto add = [&](double value) { csv << ',' << value; };
+  for (int n = 0; n < 9; ++n) add((*move.gradient)(n / 3, n % 3));
+  const Strain strain = strainOf(*move.gradient);
+  add(strain.volumetric);
+  add(strain.deviatoric);
+  for (int axis = 0; axis < 3; ++axis) add(strain.turn[axis]);
+}
+
 /// What a grain's motion was; empty cells for what is not known.
 void addMove(std::ostream& csv, const GrainMove* move) {
   if (!move) {
-    csv << std::string(20, ',');
+    csv << std::string(21, ',');
     return;
   }
   const auto add = [&](double value) { csv << ',' << value; };
@@ -46,15 +59,8 @@ void addMove(std::ostream& csv, const GrainMove* move) {
   add(move->miss);
   for (int axis = 0; axis < 3; ++axis) add(move->displacement[axis]);
   csv << ',' << move->neighbors;
-  if (!move->gradient) {
-    csv << std::string(14, ',');
-    return;
-  }
-  for (int n = 0; n < 9; ++n) add((*move->gradient)(n / 3, n % 3));
-  const Strain strain = strainOf(*move->gradient);
-  add(strain.volumetric);
-  add(strain.deviatoric);
-  for (int axis = 0; axis < 3; ++axis) add(strain.turn[axis]);
+  addStrain(csv, *move);
+  csv << ',' << int(move->isCut);
 }
 
 /// With a motion. What was followed has its motion on either side.
@@ -63,7 +69,7 @@ std::string moveTable(const Tracks& t) {
   csv.precision(9);
   csv << "side,grain,fate,track,voxels,partner,confidence,miss,displacement_x,displacement_y,"
          "displacement_z,neighbors,f_xx,f_xy,f_xz,f_yx,f_yy,f_yz,f_zx,f_zy,f_zz,"
-         "strain_volumetric,strain_deviatoric,rotation_x,rotation_y,rotation_z\n";
+         "strain_volumetric,strain_deviatoric,rotation_x,rotation_y,rotation_z,cut\n";
   const MoveOf move = moveOf(t);
   for (const auto& [side, grains] :
        {std::pair<const char*, const std::vector<TrackedGrain>&>{"before", t.before},

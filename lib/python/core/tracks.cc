@@ -90,6 +90,7 @@ py::dict toDict(const std::vector<TrackedGrain>& grains, const Tracks& tracks) {
   dict["miss"] = column<double>(moves, [&](const M* m) { return m ? m->miss : none; });
   dict["displacement"] =
       numbers<3>(moves, {3}, [&](const M* m, int n) { return m ? m->displacement[2 - n] : none; });
+  dict["cut"] = column<bool>(moves, [](const M* m) { return m && m->isCut; });
   dict["neighbors"] = column<int64_t>(moves, [](const M* m) { return m ? m->neighbors : 0; });
   dict["gradient"] = numbers<9>(moves, {3, 3}, [&](const M* m, int n) {
     return m && m->gradient ? (*m->gradient)(2 - n / 3, 2 - n % 3) : none;

@@ -30,7 +30,8 @@ struct MeshFileOptions {
 /// - .stl: binary, all triangles; the grains are not told apart (see writeStlFolder)
 /// - .vtp: VTK polygons, appended raw; per point and per polygon Int32 `grain_id` and UInt8 `color`
 /// - .glb: glTF 2.0; a node `grain_000123` per grain, at the centroid of what its surface encloses,
-///   from which its points are counted, with a material of its color, and the label and the numbers of `measured` in its `extras`, by their names; what is not known is left out.
+///   from which its points are counted, with a material of its color, and the label and the numbers
+///   of `measured` in its `extras`, by their names; what is not known is left out.
 ///   One unit of length is that of the grid, though glTF says meters; y is upwards, so that a
 ///   program with z upwards, which turns such files, shows the places of the grid.
 /// An empty mesh is written as a file without faces.

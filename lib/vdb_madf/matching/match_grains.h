@@ -21,6 +21,7 @@ struct GrainFeatures {
   openvdb::Vec3d center;            ///< of mass
   double volume = 0;                ///< above 0
   std::array<double, 6> moments{};  ///< covariance of its places: xx, yy, zz, xy, xz, yz
+  bool isCut = false;  ///< the scan ends within it: all this is of the part that is seen
 };
 
 /// The grains of a scan, ascending by number, and the pairs of numbers that touch.
@@ -58,9 +59,11 @@ struct FollowedGrain {
   openvdb::Vec3d place{0, 0, 0};  ///< there
   openvdb::Mat3d nearby = openvdb::Mat3d::identity();  ///< the gradient of what tells its place
   double miss = 0;                                     ///< from there to the partner's center
-  int neighbors = 0;  ///< followed ones that the gradient was fitted to
-  /// Deformation gradient: by least squares, with intercept, of the grain and its followed
-  /// neighbors; of fewer than 6 neighbors, or of such in a plane: none.
+  bool isCut = false;  ///< it or its partner is: how its center has moved tells nothing
+  int neighbors = 0;   ///< followed ones, not cut, that the gradient was fitted to
+  /// Deformation gradient: by least squares, with intercept, of the grain, unless it is cut, and
+  /// these neighbors; of fewer than 6, or of such in a plane: none. If there is one, it says the
+  /// place of a grain that is cut.
   std::optional<openvdb::Mat3d> gradient;
 };
 
@@ -81,7 +84,8 @@ struct FollowedGrains {
 /// is repeated until nothing changes, at last with candidates no farther than four times the
 /// median (and 0.3 to 0.5 spacings). Specks, grains that hold under a fiftieth of the volume of the
 /// grain in the middle of the mass, and under a tenth of the mass together, are nobody's neighbors;
-/// they are followed if most of them are found, else all are lost.
+/// they are followed if most of them are found, else all are lost. Grains that are cut are followed
+/// as others are, but say nothing of gradients, nor of the motion of the whole if four do.
 /// The confidence is the probability that a match is right: 1 - 0.12 (1 - s)^5, where s is 1 - cost
 /// / cost of the next best, times the share of the nearest 12 grains that are followed (two thirds
 /// of them are enough). The formula is calibrated on moved packs (tests/benchmark/README.md); where

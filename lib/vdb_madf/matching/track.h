@@ -83,8 +83,10 @@ struct GrainMove {
   /// Its neighbors say where it should be. Of one that was not followed displacement and gradient
   /// are theirs.
   bool isPlaced = false;
-  openvdb::Vec3d center{0, 0, 0};          ///< of mass, before, in index coordinates
-  openvdb::Vec3d displacement{0, 0, 0};    ///< of the center, in voxels
+  openvdb::Vec3d center{0, 0, 0};  ///< of mass, before, in index coordinates
+  /// A scan ends within it, before or after: its center is that of what is seen of it.
+  bool isCut = false;
+  openvdb::Vec3d displacement{0, 0, 0};    ///< of the center, in voxels; if cut, as neighbors say
   double miss = 0;                         ///< from where neighbors say it is, in voxels
   int neighbors = 0;                       ///< that the gradient is from
   std::optional<openvdb::Mat3d> gradient;  ///< see FollowedGrain

@@ -300,7 +300,7 @@ Evolution::Evolution(const Int32Grid& labels, const EvolveOptions& options,
   checkEvolve(options);
   requireCubicVoxels(labels, "moving grains");
   detail::ScanLabels scan(labels);
-  before_ = detail::scanSums(scan, interrupter).set;
+  before_ = detail::scanSums(scan, std::nullopt, interrupter).set;
 }
 
 EvolvedStep Evolution::after(int step, Interrupter* interrupter) const {

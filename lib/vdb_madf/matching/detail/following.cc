@@ -87,12 +87,19 @@ std::vector<double> Following::misses() const {
 }
 
 std::optional<Motion> Following::wholeOf(MotionKind kind) const {
+  std::vector<size_t> followed, whole;
+  for (const size_t n : before_.bodies) {
+    if (partners_[n] == kNoIndex) continue;
+    followed.push_back(n);
+    if (!isCut(n)) whole.push_back(n);
+  }
+  if (int(whole.size()) >= kLeastFitted) followed.swap(whole);
   Motion motion;
   double most = std::numeric_limits<double>::infinity();
   for (int round = 0; round < 5; ++round) {
     LocalFit fit;
-    for (const size_t n : before_.bodies)
-      if (partners_[n] != kNoIndex && (round == 0 || missOf(n, motion) <= most))
+    for (const size_t n : followed)
+      if (round == 0 || missOf(n, motion) <= most)
         fit.add(before_.center(n), after_.center(partners_[n]));
     if (fit.count() < kLeastFitted) return std::nullopt;
     const auto gradient = fit.gradient(Mat3d::identity(), 0);
@@ -100,8 +107,7 @@ std::optional<Motion> Following::wholeOf(MotionKind kind) const {
     motion.linear = kind == MotionKind::rigid ? turnOf(*gradient) : *gradient;
     motion.shift = fit.meanY() - motion.linear * fit.meanX();
     std::vector<double> misses;
-    for (const size_t n : before_.bodies)
-      if (partners_[n] != kNoIndex) misses.push_back(missOf(n, motion));
+    for (const size_t n : followed) misses.push_back(missOf(n, motion));
     most = 3 * upperMedian(misses);
   }
   return motion;
@@ -119,19 +125,23 @@ FollowedGrains Following::result() const {
     if (partners_[n] == kNoIndex) continue;
     ++matches.count;
     match.partner = after_.grains[partners_[n]].grain;
-    match.miss = missOf(n);
+    match.isCut = isCut(n);
     LocalFit fit;
-    fit.add(before_.center(n), after_.center(partners_[n]));
+    if (!match.isCut) fit.add(before_.center(n), after_.center(partners_[n]));
+    const int own = fit.count();
     size_t near = 0;
     for (size_t k = 0; k < before_.around[n].size(); ++k) {
       const size_t other = before_.around[n][k];
       if (partners_[other] == kNoIndex) continue;
       near += k < kConfident;
-      if (fit.count() <= int(kConfident))
+      if (fit.count() - own < int(kConfident) && !isCut(other))
         fit.add(before_.center(other), after_.center(partners_[other]));
     }
-    match.neighbors = fit.count() - 1;
+    match.neighbors = fit.count() - own;
     if (match.neighbors >= kLeastStrained) match.gradient = fit.gradient(Mat3d::identity(), 0);
+    if (match.isCut && match.gradient)
+      match.place = fit.meanY() + *match.gradient * (before_.center(n) - fit.meanX());
+    match.miss = (after_.center(partners_[n]) - match.place).length();
     match.confidence =
         confidence((1 - ratios_[n]) * std::min(1., double(near) / (kConfident * 2. / 3)));
   }

@@ -53,7 +53,8 @@ class Following {
   /// if most of them are not found: what is left of them is chance.
   void finish(Interrupter* interrupter);
 
-  /// The motion of most, by least squares without those that are far off.
+  /// The motion of most, by least squares without those that are far off, or cut if enough are
+  /// not.
   std::optional<Motion> wholeOf(MotionKind kind) const;
 
   FollowedGrains result() const;
@@ -89,6 +90,10 @@ class Following {
   /// Whether most of the specks, or of the others, are followed that lie among those of after.
   bool areFound(bool specks) const;
 
+  /// Whether a grain that is followed, or its partner, is cut.
+  bool isCut(size_t n) const {
+    return before_.grains[n].isCut || after_.grains[partners_[n]].isCut;
+  }
   /// How far all that are followed, but specks, miss their places, in spacings.
   std::vector<double> misses() const;
   double missOf(size_t n, const Motion& motion) const {

@@ -15,6 +15,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/grids/detail/ball_steps.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"
+#include "vdb_madf/leaves/detail/leaf_mask.h"
 #include "vdb_madf/leaves/detail/voxels.h"
 
 namespace vdb_madf::detail {
@@ -31,6 +32,7 @@ struct PlaceSums {
   int64_t voxels = 0;
   std::array<int64_t, 3> sum{};
   std::array<Wide, 6> products{};  ///< xx, yy, zz, xy, xz, yz
+  bool isCut = false;
 
   void add(const Coord& p) {
     const int64_t x = p.x(), y = p.y(), z = p.z();
@@ -49,7 +51,29 @@ struct PlaceSums {
     voxels += other.voxels;
     for (size_t n = 0; n < 3; ++n) sum[n] += other.sum[n];
     for (size_t n = 0; n < 6; ++n) products[n] += other.products[n];
+    isCut = isCut || other.isCut;
   }
+};
+
+/// Tells the voxels beside which a domain ends; near ones one after the other.
+class AtEnd {
+ public:
+  explicit AtEnd(const std::optional<Domain>& domain) : domain_(domain) {}
+  bool operator()(const Coord& p) {
+    if (!domain_) return false;
+    const Coord origin = p & ~7;
+    if (!inner_ || origin != origin_) {
+      origin_ = origin;
+      inner_ = innerMask(*domain_, origin);
+    }
+    const openvdb::Index offset = Leaf::coordToOffset(p);
+    return !((*inner_)[offset >> 6] >> (offset & 63) & 1);
+  }
+
+ private:
+  const std::optional<Domain>& domain_;
+  Coord origin_;
+  std::optional<LeafIndex::Mask> inner_;
 };
 
 GrainFeatures featuresOf(int32_t label, const PlaceSums& sums) {
@@ -57,6 +81,7 @@ GrainFeatures featuresOf(int32_t label, const PlaceSums& sums) {
   grain.grain = label;
   const double n = double(sums.voxels);
   grain.volume = n;
+  grain.isCut = sums.isCut;
   for (size_t axis = 0; axis < 3; ++axis) grain.center[int(axis)] = double(sums.sum[axis]) / n;
   constexpr size_t kFirst[6] = {0, 1, 2, 0, 0, 1}, kSecond[6] = {0, 1, 2, 1, 2, 2};
   for (size_t k = 0; k < 6; ++k) {
@@ -154,7 +179,7 @@ int32_t labelAround(Values& values, const openvdb::Vec3d& place) {
 
 }  // namespace
 
-ScanSums scanSums(ScanLabels& labels, Interrupter* interrupter) {
+ScanSums scanSums(ScanLabels& labels, const std::optional<Domain>& open, Interrupter* interrupter) {
   using Sums = std::map<int32_t, PlaceSums>;
   Sums all;
   ContactFaces faces;
@@ -162,7 +187,13 @@ ScanSums scanSums(ScanLabels& labels, Interrupter* interrupter) {
     const auto leaves = ownLeaves(part);
     forEachVoxel<Sums>(
         leaves, kLightLeafGrain, interrupter,
-        [] { return [](const Coord& p, int32_t label, Sums& sums) { sums[label].add(p); }; },
+        [&] {
+          return [isAtEnd = AtEnd(open)](const Coord& p, int32_t label, Sums& sums) mutable {
+            PlaceSums& grain = sums[label];
+            grain.add(p);
+            if (isAtEnd(p)) grain.isCut = true;
+          };
+        },
         [&](const Sums& some) {
           for (const auto& [label, sums] : some) all[label].add(sums);
         });

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <vector>
 
+#include "vdb_madf/grids/domain.h"
 #include "vdb_madf/labels/detail/label_contacts.h"
 #include "vdb_madf/matching/detail/scan_labels.h"
 #include "vdb_madf/matching/detail/track_sides.h"
@@ -19,8 +21,9 @@ struct ScanSums {
   GrainSet set;  ///< from exact sums; contacts are of a face or more
   std::vector<LabelContact> contacts;
 };
+/// @param open what grains are cut at: of such a voxel has a face neighbor outside of it
 /// @throw Interrupted; what reading throws
-ScanSums scanSums(ScanLabels& labels, Interrupter* interrupter);
+ScanSums scanSums(ScanLabels& labels, const std::optional<Domain>& open, Interrupter* interrupter);
 
 /// Chooses from pairs of labels, the smaller one first, those of which two voxels lie at most `gap`
 /// apart, from center to center. @throw as scanSums()

@@ -15,6 +15,7 @@
 #include "vdb_madf/matching/detail/local_fit.h"
 #include "vdb_madf/matching/detail/point_cells.h"
 #include "vdb_madf/matching/detail/track_sides.h"
+#include "vdb_madf/method/boundary.h"
 
 namespace vdb_madf::detail {
 
@@ -29,6 +30,12 @@ bool isWithin(const CoordBBox& box, const openvdb::Vec3d& center, double volume)
           center[axis] + radius <= box.max()[axis] + 0.5))
       return false;
   return true;
+}
+
+/// Where the center of a grain went: to that of its partner, or, if a scan ends within either, to
+/// where its neighbors say.
+openvdb::Vec3d placeOf(const FollowedGrain& match, const openvdb::Vec3d& partner) {
+  return match.isCut ? match.place : partner;
 }
 
 /// Links grains that were followed, and judges all. Of those that were not it is asked whether both
@@ -56,7 +63,8 @@ void link(Sides& sides, Tracks& tracks, const GrainSet& before, const GrainSet& 
       here.fate = isSeen ? GrainFate::lost : GrainFate::outside;
       continue;
     }
-    const openvdb::Vec3d& there = ofAfter.at(match.partner)->center;
+    const openvdb::Vec3d there = placeOf(match, ofAfter.at(match.partner)->center);
+    move.isCut = match.isCut;
     move.confidence = match.confidence;
     move.displacement = there - grain.center;
     move.miss = match.miss;
@@ -93,7 +101,8 @@ Motions motionsOf(const GrainSet& before, const GrainSet& after, const FollowedG
   Motions motions;
   for (size_t n = 0; n < before.grains.size(); ++n) {
     const FollowedGrain& match = followed.grains[n];
-    const openvdb::Vec3d place = match.partner ? centers.at(match.partner) : match.place;
+    const openvdb::Vec3d place =
+        match.partner ? placeOf(match, centers.at(match.partner)) : match.place;
     if (match.isPlaced)
       motions[before.grains[n].grain] = {match.nearby,
                                          place - match.nearby * before.grains[n].center};
@@ -238,6 +247,11 @@ CoordBBox requiredBox(const AnyLabels& labels) {
   return boxOf(about);
 }
 
+/// What grains are cut at; none where there is no such, or it is not known.
+std::optional<Domain> openDomain(const Int32Grid& about) {
+  return storedBoundary(about) == Boundary::closed ? std::nullopt : storedDomain(about);
+}
+
 TrackedGrains grainsOf(const GrainSet& set) {
   TrackedGrains grains;
   for (const GrainFeatures& known : set.grains) {
@@ -256,8 +270,8 @@ Tracks motionTracks(const AnyLabels& before, const AnyLabels& after, const Track
     requireCubicVoxels(aboutOf(*labels), "following grains through a motion");
   const CoordBBox boxBefore = requiredBox(before), boxAfter = requiredBox(after);
   ScanLabels labelsBefore(before), labelsAfter(after);
-  const ScanSums first = scanSums(labelsBefore, interrupter),
-                 second = scanSums(labelsAfter, interrupter);
+  const ScanSums first = scanSums(labelsBefore, openDomain(aboutOf(before)), interrupter),
+                 second = scanSums(labelsAfter, openDomain(aboutOf(after)), interrupter);
   const auto followed = matchGrains(first.set, second.set, *options.motion, interrupter);
   if (!followed)
     throw InvalidInput(
