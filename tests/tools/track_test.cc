@@ -315,6 +315,13 @@ TEST_CASE("cli: a series of scans keeps one number a grain", "[cli]") {
   refuses(bench, kWrongUsage, "track a.vdb b.vdb b.vdb other", {"b.vdb"});
   refuses(bench, kWrongUsage, "track a.vdb b.vdb c.vdb .", {"b.vdb"});
   refuses(bench, kFailed, "track a.vdb b.vdb none.vdb other", {"none.vdb"});
+  bench.write("c.vdb", "nothing");
+  for (const std::string folder : {"out", "new"}) {
+    const Outcome outcome = bench.run("track a.vdb b.vdb c.vdb " + folder);
+    CHECK(outcome.exitCode == kFailed);
+    CHECK((outcome.err.find("of an earlier run") != std::string::npos) == (folder == "out"));
+  }
+  CHECK(bench.bytes("new/b.vdb") == bench.bytes("step.vdb"));
 }
 
 TEST_CASE("cli: a series that was made to move is followed as it moved", "[cli]") {

@@ -196,6 +196,47 @@ void writeScene(const TrackArguments& o, const Int32Grid& before, const Int32Gri
   common.progress->end();
 }
 
+/// What a series has made is kept scan by scan: it may have taken hours. Says which files in the
+/// folder are not of it, if it ends before `scan` is done.
+void noteOlderFiles(const TrackArguments& o, const std::string& scan, const Common& common) {
+  const std::vector<std::string> scans = laterScans(o);
+  const bool anyOlder = std::any_of(std::find(scans.begin(), scans.end(), scan), scans.end(),
+                                    [&](const std::string& later) {
+                                      return std::filesystem::exists(seriesFiles(o, later).grains);
+                                    });
+  if (anyOlder)
+    common.progress->note(o.more.back() + ": what it has of " + scan +
+                          " and later scans is of an earlier run");
+}
+
+/// Tracks one scan of a series from the one before it. Returns its labels with the tracks.
+AnyLabels runScan(TrackArguments& o, const std::string& scan, const AnyLabels& before, bool bySlabs,
+                  const Common& common) {
+  const SeriesFiles files = seriesFiles(o, scan);
+  TextFile grainFile(files.grains), bondFile(files.bonds);
+  o.after.path = scan;
+  const AnyLabels after =
+      labelsOf(o.after, "--after-grid", bySlabs && hasSlabsEnding(files.labels), common);
+  const PairNames names = namesOf(o.before, o.after);
+  common.progress->start("track");
+  const Tracks tracks = tracksOf(o, before, after, names, common);
+  AnyLabels labels = trackedLabels(after, tracks, common.progress);
+  if (hasSlabsEnding(files.labels)) writeInSlabs(files.labels, labels, scan, common);
+  OutputSet set;
+  if (!hasSlabsEnding(files.labels)) writeLabels(files.labels, labels, scan, common);
+  common.progress->end();
+  for (const std::string& note : notesOn(tracks, aboutOf(before), aboutOf(after), o.track, names))
+    common.progress->note(note);
+  grainFile.write(trackedGrainTable(tracks));
+  bondFile.write(trackedBondTable(tracks));
+  set.commit();
+  if (!common.quiet) {
+    std::printf("%s%s\n", scan == laterScans(o).front() ? "" : "\n", scan.c_str());
+    print(o, tracks, summaryOf(o, tracks));
+  }
+  return labels;
+}
+
 /// Each scan but the first one is tracked from the one before it, which has the tracks by now.
 void runSeries(TrackArguments o, const Common& common) {
   for (const std::string& scan : laterScans(o))  // before hours of work
@@ -205,30 +246,13 @@ void runSeries(TrackArguments o, const Common& common) {
   const bool bySlabs = o.track.motion.has_value();
   AnyLabels before = labelsOf(o.before, "--before-grid", bySlabs, common);
   for (const std::string& scan : laterScans(o)) {
-    const SeriesFiles files = seriesFiles(o, scan);
-    TextFile grainFile(files.grains), bondFile(files.bonds);
-    o.after.path = scan;
-    const AnyLabels after =
-        labelsOf(o.after, "--after-grid", bySlabs && hasSlabsEnding(files.labels), common);
-    const PairNames names = namesOf(o.before, o.after);
-    common.progress->start("track");
-    const Tracks tracks = tracksOf(o, before, after, names, common);
-    const AnyLabels labels = trackedLabels(after, tracks, common.progress);
-    if (hasSlabsEnding(files.labels)) writeInSlabs(files.labels, labels, scan, common);
-    OutputSet set;
-    if (!hasSlabsEnding(files.labels)) writeLabels(files.labels, labels, scan, common);
-    common.progress->end();
-    for (const std::string& note : notesOn(tracks, aboutOf(before), aboutOf(after), o.track, names))
-      common.progress->note(note);
-    grainFile.write(trackedGrainTable(tracks));
-    bondFile.write(trackedBondTable(tracks));
-    set.commit();
-    folder.keep();
-    if (!common.quiet) {
-      std::printf("%s%s\n", scan == laterScans(o).front() ? "" : "\n", scan.c_str());
-      print(o, tracks, summaryOf(o, tracks));
+    try {
+      before = runScan(o, scan, before, bySlabs, common);
+    } catch (...) {
+      noteOlderFiles(o, scan, common);
+      throw;
     }
-    before = labels;
+    folder.keep();
     o.before.path = scan;
   }
 }
