@@ -289,6 +289,41 @@ TEST_CASE("grain_view: what ends within a pixel is smooth", "[grain_view]") {
   CHECK(inside > 600);
 }
 
+TEST_CASE("grain_view: where voxels are large, smooth surfaces end smoothly", "[grain_view]") {
+  constexpr double kRadius = 9.4;
+  LabelMap voxels;
+  for (int x = -10; x <= 10; ++x)
+    for (int y = -10; y <= 10; ++y)
+      for (int z = -10; z <= 10; ++z)
+        if (x * x + y * y + z * z <= kRadius * kRadius) voxels[{x, y, z}] = x < 0 ? 1 : 2;
+  const auto labels = labelGrid(voxels);
+  const CoordBBox box(Coord(-12), Coord(12));
+  // How far the rim of what is seen lies from a circle, in voxels.
+  const auto unevenness = [&](bool surfaces, int edge) {
+    ViewOptions options;
+    options.edge = edge;
+    options.surfaces = surfaces;
+    const GrainView view = viewGrains(*labels, box, grainColors(*labels), options);
+    const int width = view.picture.width, height = view.picture.height;
+    double least = 1e9, most = 0;
+    for (int y = 1; y + 1 < height; ++y)
+      for (int x = 1; x + 1 < width; ++x) {
+        const auto at = [&](int i, int j) {
+          return view.labels[size_t(j) * size_t(width) + size_t(i)];
+        };
+        if (!at(x, y) || (at(x - 1, y) && at(x + 1, y) && at(x, y - 1) && at(x, y + 1))) continue;
+        const double away = std::hypot(x + 0.5 - 0.5 * width, y + 0.5 - 0.5 * height);
+        least = std::min(least, away);
+        most = std::max(most, away);
+      }
+    CHECK(most * view.voxelsPerPixel == Approx(kRadius).epsilon(0.1));
+    return (most - least) * view.voxelsPerPixel;
+  };
+  CHECK(unevenness(false, 300) > 0.7);
+  CHECK(unevenness(true, 300) < 0.5);
+  CHECK(unevenness(true, 60) == unevenness(false, 60));  // voxels of two pixels
+}
+
 TEST_CASE("grain_view: the box is drawn behind the grains and its axes are named", "[grain_view]") {
   const auto grid = ball(Coord(20, 20, 20), 12, 1);
   ViewOptions options;

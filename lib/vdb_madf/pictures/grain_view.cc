@@ -6,15 +6,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <utility>
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/world_transform.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/pictures/detail/camera.h"
 #include "vdb_madf/pictures/detail/smooth_surface.h"
+#include "vdb_madf/pictures/detail/surface_raster.h"
 #include "vdb_madf/pictures/detail/voxel_rays.h"
+#include "vdb_madf/shapes/grain_mesh.h"
 
 namespace vdb_madf {
 
@@ -27,6 +32,9 @@ constexpr size_t kRowGrain = 4;
 
 constexpr int kRays = 3;  ///< along each edge of a pixel at which something ends
 constexpr int kMiddleRay = kRays * kRays / 2;
+/// Voxels of so many pixels or more are not drawn as such, but as smoothed surfaces.
+constexpr double kLeastPixels = 3;
+constexpr int kSmoothing = 10;
 constexpr double kStep = 3;  ///< shortest edges of a voxel: more of depth is an end of the surface
 
 // Light, as shares of the grain's color. Found by eye.
@@ -93,6 +101,18 @@ class Renderer {
     }
   }
 
+  /// The pixels of some rows by what is seen of smoothed surfaces there.
+  void drawBand(int band, const detail::SurfaceRaster& raster, const Picture& backdrop,
+                GrainView& view) const {
+    detail::SurfaceRaster::Samples samples;
+    raster.draw(band, samples);
+    Eye eye(*this);
+    const int first = band * raster.kBand, end = std::min(camera_.height, first + raster.kBand);
+    for (int y = first; y < end; ++y)
+      for (int x = 0; x < camera_.width; ++x)
+        drawPixel(x, y, first, raster, samples, backdrop, eye, view);
+  }
+
  private:
   struct Sample {
     int32_t label = 0;  ///< 0: background
@@ -128,6 +148,38 @@ class Renderer {
     const Int32Grid::ConstUnsafeAccessor labels_;
     detail::SmoothSurface surface_, outside_;  ///< where a ray hits; in front of that
   };
+
+  void drawPixel(int x, int y, int firstRow, const detail::SurfaceRaster& raster,
+                 const detail::SurfaceRaster::Samples& samples, const Picture& backdrop, Eye& eye,
+                 GrainView& view) const {
+    std::array<Sample, kRays * kRays> seen;
+    float nearest = std::numeric_limits<float>::infinity(), farthest = -nearest;
+    for (int i = 0; i < kRays * kRays; ++i) {
+      const auto& sample = samples[raster.place(x, y - firstRow, i % kRays, i / kRays)];
+      nearest = std::min(nearest, sample.t);
+      farthest = std::max(farthest, sample.t);
+      if (sample.triangle != raster.kNothing)
+        seen[size_t(i)] = {raster.labelOf(sample.triangle), {}, sample.t};
+    }
+    const int32_t label = seen[kMiddleRay].label;
+    view.labels[at(x, y)] = label;
+    const bool isEven =
+        std::all_of(seen.begin(), seen.end(), [&](const Sample& s) { return s.label == label; }) &&
+        (label == 0 || farthest - nearest <= kStep + 3 * camera_.voxelsPerPixel);
+    if (isEven && label == 0) return;
+    std::array<int, 3> sum{};
+    const int begin = isEven ? kMiddleRay : 0, end = isEven ? kMiddleRay + 1 : kRays * kRays;
+    for (int i = begin; i < end; ++i) {
+      const Sample& sample = seen[size_t(i)];
+      const Vec hit = (rayOrigin(camera_, x, y, i) + sample.t * camera_.direction) / edges_;
+      const Rgb color = sample.label ? shade(colors_.colorOf(sample.label), eye, hit, sample.t)
+                                     : backdrop.at(x, y);
+      for (size_t channel = 0; channel < 3; ++channel) sum[channel] += color[channel];
+    }
+    const int count = end - begin;
+    for (size_t channel = 0; channel < 3; ++channel)
+      view.picture.at(x, y)[channel] = uint8_t((sum[channel] + count / 2) / count);
+  }
 
   size_t at(int x, int y) const { return size_t(y) * size_t(camera_.width) + size_t(x); }
 
@@ -189,6 +241,62 @@ void sortUnique(std::vector<Coord>& leaves, size_t first) {
   leaves.erase(std::unique(leaves.begin() + std::ptrdiff_t(first), leaves.end()), leaves.end());
 }
 
+/// The leaves whose voxels some rays of each pixel meet first, ascending.
+std::vector<Coord> leavesSeen(const detail::VoxelRays& rays, const detail::Camera& camera,
+                              int firstRay, int endRay, Interrupter* interrupter) {
+  detail::PerThread<std::vector<Coord>> found{std::vector<Coord>()};
+  forEachRow(camera, interrupter, [&](int y) {
+    const auto tree = rays.object().getConstUnsafeAccessor();
+    std::vector<Coord>& leaves = found.local();
+    const size_t before = leaves.size();
+    for (int x = 0; x < camera.width; ++x)
+      for (int ray = firstRay; ray < endRay; ++ray) {
+        Coord voxel;
+        double t = 0;
+        if (!rays.first(tree, rayOrigin(camera, x, y, ray), voxel, t)) continue;
+        const Coord leaf = voxel & ~7;
+        if (leaves.empty() || leaves.back() != leaf) leaves.push_back(leaf);
+      }
+    sortUnique(leaves, before);
+  });
+  std::vector<Coord> all;
+  for (const std::vector<Coord>& part : found) all.insert(all.end(), part.begin(), part.end());
+  sortUnique(all, 0);
+  return all;
+}
+
+bool drawsSurfaces(const ViewOptions& options, const detail::Camera& camera) {
+  return options.surfaces && kLeastPixels * camera.voxelsPerPixel <= 1;
+}
+
+/// Those leaves, and those of the object around them: what is near a smoothed surface that is seen.
+std::vector<Coord> leavesAround(const std::vector<Coord>& leaves, const MaskGrid& object) {
+  std::vector<Coord> around;
+  for (const Coord& leaf : leaves)
+    for (int side = 0; side < 27; ++side) {
+      const Coord beside =
+          leaf.offsetBy(8 * (side / 9 - 1), 8 * (side / 3 % 3 - 1), 8 * (side % 3 - 1));
+      if (object.tree().probeConstLeaf(beside)) around.push_back(beside);
+    }
+  sortUnique(around, 0);
+  return around;
+}
+
+/// The labels of the object's voxels in some leaves.
+Int32Grid::Ptr labelsIn(const std::vector<Coord>& leaves, const MaskGrid& object,
+                        const Int32Grid& labels, const CoordBBox& box) {
+  const auto near = Int32Grid::create(0);
+  setDomain(*near, Domain(box));
+  const auto accessor = labels.getConstUnsafeAccessor();
+  for (const Coord& origin : leaves) {
+    auto leaf = std::make_unique<Int32Tree::LeafNodeType>(origin, 0);
+    for (auto voxel = object.tree().probeConstLeaf(origin)->cbeginValueOn(); voxel; ++voxel)
+      leaf->setValueOn(voxel.pos(), accessor.getValue(voxel.getCoord()));
+    near->tree().addLeaf(leaf.release());
+  }
+  return near;
+}
+
 void check(const ViewOptions& options) {
   if (!std::isfinite(options.azimuth))
     throw InvalidInput("the azimuth of the view is an angle in degrees");
@@ -207,25 +315,8 @@ std::vector<Coord> seenLeaves(const MaskGrid::Ptr& object, const CoordBBox& box,
   const Vec edges = detail::proportions(object->transform());
   const detail::Camera camera(box, edges, options);
   const detail::VoxelRays rays(clipped(object, box), box, edges, camera.direction);
-  detail::PerThread<std::vector<Coord>> found{std::vector<Coord>()};
-  forEachRow(camera, interrupter, [&](int y) {
-    const auto tree = object->getConstUnsafeAccessor();
-    std::vector<Coord>& leaves = found.local();
-    const size_t before = leaves.size();
-    for (int ray = 0; ray < camera.width * kRays * kRays; ++ray) {
-      const int i = ray % (kRays * kRays), x = ray / (kRays * kRays);
-      Coord voxel;
-      double t = 0;
-      if (!rays.first(tree, rayOrigin(camera, x, y, i), voxel, t)) continue;
-      const Coord leaf = voxel & ~7;
-      if (leaves.empty() || leaves.back() != leaf) leaves.push_back(leaf);
-    }
-    sortUnique(leaves, before);
-  });
-  std::vector<Coord> all;
-  for (const std::vector<Coord>& part : found) all.insert(all.end(), part.begin(), part.end());
-  sortUnique(all, 0);
-  return all;
+  const std::vector<Coord> leaves = leavesSeen(rays, camera, 0, kRays * kRays, interrupter);
+  return drawsSurfaces(options, camera) ? leavesAround(leaves, *object) : leaves;
 }
 
 GrainView viewGrains(const MaskGrid::Ptr& object, const Int32Grid& labels, const CoordBBox& box,
@@ -238,9 +329,20 @@ GrainView viewGrains(const MaskGrid::Ptr& object, const Int32Grid& labels, const
   Picture backdrop(camera.width, camera.height, options.background);
   if (options.box) detail::drawBox(camera, backdrop);
   GrainView view{backdrop, std::vector<int32_t>(backdrop.pixels.size(), 0), camera.voxelsPerPixel};
-  std::vector<float> depths(view.labels.size(), 0);
   const detail::VoxelRays rays(clipped(object, box), box, edges, camera.direction);
   const Renderer renderer(rays, labels, box, edges, colors, camera);
+  if (drawsSurfaces(options, camera)) {
+    const std::vector<Coord> leaves =
+        leavesSeen(rays, camera, kMiddleRay, kMiddleRay + 1, interrupter);
+    const Int32Grid::Ptr near = labelsIn(leavesAround(leaves, *object), *object, labels, box);
+    const GrainMesh mesh = grainMesh(*near, {kSmoothing}, interrupter);
+    const detail::SurfaceRaster raster(mesh, edges, camera);
+    detail::parallelForEach(size_t(raster.bandCount()), 1, interrupter, [&](size_t band) {
+      renderer.drawBand(int(band), raster, backdrop, view);
+    });
+    return view;
+  }
+  std::vector<float> depths(view.labels.size(), 0);
   forEachRow(camera, interrupter, [&](int y) { renderer.drawRow(y, view, depths); });
   Picture smooth = view.picture;
   forEachRow(camera, interrupter,

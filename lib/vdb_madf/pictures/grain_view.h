@@ -18,7 +18,8 @@ struct ViewOptions {
   double elevation = 25;  ///< degrees above the x-y plane, -90..90; z is up
   int edge = 512;         ///< pixels along the longer side, 1..16384
   Rgb background{255, 255, 255};
-  bool turns = false;  ///< one scale and size for all azimuths
+  bool turns = false;     ///< one scale and size for all azimuths
+  bool surfaces = false;  ///< smoothed ones in the place of voxels that are three pixels wide
   bool box = false;  ///< also the edges of the box behind the grains and, around it, names of axes
 };
 
@@ -37,6 +38,9 @@ struct GrainView {
 /// Where a grain or a surface ends, a pixel is the mean of 3 x 3 rays. Normal: the gradient of the
 /// object's indicator, smoothed over 4 voxels, near the surface where that is 1/2. Light: ambient,
 /// less in concave places, and diffuse from above on the left; what is farther is a little darker.
+/// With `surfaces`, where a voxel is three pixels wide or more, the smoothed surfaces of the grains
+/// (grainMesh()) are drawn instead, from 3 x 3 samples a pixel: of the leaf nodes that the rays
+/// meet, and of those around them. The light is as before.
 /// The result does not depend on threads. An empty box gives a picture of one background pixel.
 /// @throw InvalidInput for an option out of range; Interrupted.
 GrainView viewGrains(const Int32Grid& labels, const CoordBBox& box, const GrainColors& colors,

@@ -110,6 +110,7 @@ std::vector<PicturePanel> panelsOf(const Int32Grid& labels, const Int32Grid* sho
     ViewOptions direction = options.direction;
     direction.edge = options.edge;
     direction.box = options.axes;
+    direction.surfaces = true;
     GrainView seen = view(direction);
     const bool isSecond = panels.size() == 3;
     panels.insert(
