@@ -144,6 +144,42 @@ def check_links(page, grains, bonds):
     demand(page.selected() == [], "Escape does not clear the selection")
 
 
+SAVED = ("window.saved = ''; const make = URL.createObjectURL; URL.createObjectURL = (blob) => {"
+         "blob.text().then((text) => { window.saved = text; }); return make(blob); }")
+
+
+def check_only(page, path):
+    """What is selected is a filter: numbers and lines are those of its grains and of the bonds
+    between them, whatever is selected later, until it is taken back; a link keeps it."""
+    with open("tables/grains.csv") as file:
+        lines = file.read().split("\n")
+    with open("tables/bonds.csv") as file:
+        bonds = file.read().split("\n")[1:-1]
+    pairs = [line.split(",")[:2] for line in bonds]
+    chosen = {*pairs[0], *pairs[1]}
+    demand(not page.find("#tables .only input").is_enabled(), "what is not selected can be shown")
+    page.run("const {selection, sample} = window.report; selection.select("
+             "arguments[0].map((id) => sample.rowOf.get(id)))", [int(id) for id in chosen])
+    page.run("document.getElementById('grain').scrollIntoView({block: 'center'})")
+    page.find("#grain .only input").click()
+    page.find("body").send_keys("\ue00c")
+    between = sum(chosen.issuperset(pair) for pair in pairs)
+    told = (f"{len(chosen)} of {len(lines) - 2} grains, {between} of {len(pairs)} bonds")
+    demand(page.find("#shown").text == told, f"{told}: the page says {page.find('#shown').text}")
+    demand(page.find("#numbers .tile").text.startswith(f"{len(chosen)}\nof all"),
+           "the numbers are not those of the selected")
+    page.wait("return location.hash.includes('only=')")
+    complaints = page.open(path, page.run("return location.hash.slice(1)"))
+    demand(not complaints and page.find("#shown").text == told, f"a link says {complaints}, "
+           f"{page.find('#shown').text}")
+    page.run(SAVED)
+    page.button("Save as CSV").click()
+    expected = [lines[0]] + [line for line in lines[1:] if line.split(",")[0] in chosen] + [""]
+    demand(page.wait("return window.saved") == "\n".join(expected), "other lines are saved")
+    page.find("#tables .only input").click()
+    demand(page.find("#shown").text.startswith(f"{len(lines) - 2} of "), "all do not come back")
+
+
 def check_state(page, path, labels_path, folder):
     """Keys turn; the address keeps the state; corrections are such that 'edit' takes."""
     page.find("#stage").send_keys("\ue014")  # to the right

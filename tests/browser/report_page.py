@@ -17,7 +17,7 @@ try:
 except ImportError as error:
     skip(f"reports in a browser: python3-numpy is not installed ({error})")
 
-from choosing import check_clicks, check_filters, check_links, check_state  # noqa: E402
+from choosing import check_clicks, check_filters, check_links, check_only, check_state  # noqa: E402
 from figures import check_biases, check_doubts, check_tiles  # noqa: E402
 from several import check_comparison, check_series  # noqa: E402
 from strictness import check_strictness  # noqa: E402
@@ -156,6 +156,7 @@ with tempfile.TemporaryDirectory() as folder:
         check_clicks(page, labels)
         check_filters(page, grains)
         check_links(page, grains, bonds)
+        check_only(page, path)
         check_tiles(page, grains)
         check_doubts(page, grains, bonds)
         check_looks(page, path)

@@ -5,6 +5,7 @@
 import os
 
 import numpy
+from choosing import SAVED
 from command import command, demand, table
 
 
@@ -75,11 +76,9 @@ def check_edits(page, strictness):
     page.run("window.report.selection.setStrictness(null)")
     demand(not page.button("Drop the selected").is_enabled() and page.find(
         "#edits .warning").is_displayed(), "the list takes edits of two strictnesses")
-    text = page.run("window.saved = ''; const make = URL.createObjectURL;"
-                    "URL.createObjectURL = (blob) => { blob.text().then((text) => { window.saved = "
-                    "text; }); return make(blob); };"
-                    "[...document.querySelectorAll('#edits button')].find((button) => "
-                    "button.textContent === 'Save edits.txt').click()")
+    page.run(SAVED)
+    page.run("[...document.querySelectorAll('#edits button')].find((button) => "
+             "button.textContent === 'Save edits.txt').click()")
     text = page.wait("return window.saved")
     demand(text == f"strictness {strictness}\nmerge {merged[0]} {merged[1]}\nsplit {split}\n",
            f"the list is {text!r}")
@@ -162,6 +161,14 @@ def check_strictness(page, folder):
                f"at {strictness} the page says: {page.find('#shown').text}")
         demand(len(page.selected()) == 1, f"at {strictness} {page.selected()} are selected")
     demand(len(counts) > 2, f"the slider changes nothing: {counts}")
+    page.run("window.report.selection.setOnly(true)")
+    shown = ("const {sample, selection} = window.report; return Array.from(sample.ids)"
+             ".filter((_, row) => selection.visible[row])")
+    for strictness in (14, 8):
+        page.run("window.report.selection.setStrictness(arguments[0])", strictness)
+        demand(page.run(shown) == page.selected() and len(page.selected()) == 1,
+               f"at {strictness} {page.run(shown)} pass, not {page.selected()}")
+    page.run("window.report.selection.setOnly(false)")
     back = page.button("As in the labels")
     back.click()
     demand(page.run(voxels) == own and page.selected() == selected,

@@ -23,6 +23,8 @@ export function writeState(selection, camera) {
   set('grains', [...[...selection.selected].map((row) => sample.ids[row]), ...selection.absent], '');
   for (const [key, kind] of Object.entries(kFilters))
     for (const [name, range] of selection.filters[kind]) parts.append(key, `${name}=${writeRange(range)}`);
+  const { only, onlyRows } = selection;
+  if (only) set('only', [...[...onlyRows].map((row) => sample.ids[row]), ...only.absent], '');
   set('inside', selection.insideOnly ? 1 : 0, 0);
   set('color', selection.colorBy, '');
   set('bondcolor', selection.bondColorBy, '');
@@ -72,9 +74,16 @@ export function readState(parts, selection, camera) {
     selection.cuts = cuts.map((cut) => Math.abs(Number(cut)));
     selection.flips = cuts.map((cut) => cut.startsWith('-'));
   }
-  for (const id of (parts.get('grains') || '').split(','))
-    if (sample.rowOf.has(Number(id))) selection.selected.add(sample.rowOf.get(Number(id)));
-    else if (element('scans') && Number(id) > 0) selection.absent.push(Number(id));
+  const grainsOf = (key) => {
+    const ids = (parts.get(key) || '').split(',').map(Number);
+    return { rows: ids.filter((id) => sample.rowOf.has(id)).map((id) => sample.rowOf.get(id)),
+      absent: element('scans') ? ids.filter((id) => id > 0 && !sample.rowOf.has(id)) : [] };
+  };
+  const chosen = grainsOf('grains'), only = grainsOf('only');
+  selection.selected = new Set(chosen.rows);
+  selection.absent = chosen.absent;
+  if (only.rows.length + only.absent.length > 0)
+    selection.only = { bodies: selection.bodiesOf(only.rows), absent: only.absent };
   const slices = numbers('slices', 3);
   for (const row of selection.selected) selection.goTo(sample.placeOf('grains', row));
   if (slices)

@@ -40,8 +40,7 @@ export function startEdits(sample, selection) {
     const { mayEdit, edits, editsAt } = selection;
     merge.disabled = !mayEdit || count < 2;
     drop.disabled = split.disabled = !mayEdit || count === 0;
-    keep.disabled = !mayEdit || selection.filters.grains.size === 0 && !selection.insideOnly ||
-      !selection.visible.includes(1);
+    keep.disabled = !mayEdit || selection.grainFilterCount === 0 || !selection.visible.includes(1);
     save.disabled = clear.disabled = edits.length === 0;
     how.replaceChildren('A list to save; then: ', ...commands(sample, edits.length > 0 ? editsAt : selection.shownStrictness));
     elsewhere.hidden = mayEdit;

@@ -3,17 +3,19 @@
 // The card of what is selected: its numbers, its bonds, what to do with it.
 import { element } from './decode.js';
 import { counted, make, written } from './sample.js';
+import { onlySwitch } from './tables.js';
 
 const shown = ['equivalent_diameter', 'voxels', 'coordination', 'inscribed_radius', 'sphericity',
   'axis1_length', 'axis2_length', 'axis3_length', 'free_area', 'shared_area'];
 
 export function startGrain(sample, selection) {
   const card = element('grain');
+  const only = onlySwitch(selection);
   const draw = () => {
     const diameters = sample.grains.column('equivalent_diameter');
     const bySize = Array.from(diameters.keys()).sort((a, b) => diameters[b] - diameters[a] || a - b);
     const rows = [...selection.selected];
-    card.replaceChildren(make('h2', {}, 'Grain'), finder(sample, selection, bySize));
+    card.replaceChildren(make('h2', {}, 'Grain'), finder(sample, selection, bySize, only));
     if (rows.length === 0) {
       card.append(make('p', { className: 'hint' }, 'Click a grain in the view, in a slice or in the table.'));
     } else if (rows.length === 1) {
@@ -27,7 +29,7 @@ export function startGrain(sample, selection) {
 }
 
 /// By number, the largest, and the next ones by size.
-function finder(sample, selection, bySize) {
+function finder(sample, selection, bySize, only) {
   const field = make('input', { type: 'number', min: 1, id: 'find', placeholder: 'number' });
   field.addEventListener('change', () => {
     const row = sample.rowOf.get(Number(field.value));
@@ -46,7 +48,7 @@ function finder(sample, selection, bySize) {
   return make('div', { className: 'bar' }, make('label', {}, 'Number ', field),
     button('Largest', () => { const [first] = candidates(); if (first !== undefined) selection.select([first]); }),
     button('Next smaller', () => step(1)), button('Next larger', () => step(-1)),
-    button('None (Esc)', () => selection.select([])));
+    button('None (Esc)', () => selection.select([])), only);
 }
 
 function describe(sample, selection, row) {

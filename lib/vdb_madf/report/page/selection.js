@@ -14,6 +14,7 @@ export class Selection {
     this.scan = 0;
     this.filters = { grains: new Map(), bonds: new Map() };  // column name: [low, high]
     this.insideOnly = false;
+    this.only = null;  // { bodies, absent } of grains that were selected to pass alone; null: all may
     this.colorBy = '';  // a column of grains; '': the labels' colors
     this.others = 'pale';  // grains beside the selected: pale, plain or hidden
     this.bondsAs = 'none';  // none, discs or lines
@@ -51,16 +52,27 @@ export class Selection {
   /// Another one, or null for that of the labels. Filters stay; selected are the grains that have
   /// the largest pieces of those that a reader has selected, also on the way back.
   setStrictness(strictness) {
-    const { sample } = this;
-    const rows = () => new Set(this.pieces.map((body) => sample.rowOfBody[body]));
-    const before = rows();
-    if (before.size !== this.selected.size || [...before].some((row) => !this.selected.has(row)))
-      this.pieces = [...this.selected].map((row) => sample.levels.largestLeaf(sample.rowOfBody, row));
+    this.keepPieces();
     this.strictness = strictness;
-    sample.setStrictness(strictness);
-    this.selected = rows();
+    this.sample.setStrictness(strictness);
+    this.selected = this.rowsOf(this.pieces);
     this.startFlags();
     this.changed('strictness');
+  }
+
+  keepPieces() {
+    const before = this.rowsOf(this.pieces);
+    if (before.size !== this.selected.size || [...before].some((row) => !this.selected.has(row)))
+      this.pieces = this.bodiesOf([...this.selected]);
+  }
+
+  /// The largest body of each grain, and the grains of bodies.
+  bodiesOf(rows) {
+    const { levels, rowOfBody } = this.sample;
+    return levels ? rows.map((row) => levels.largestLeaf(rowOfBody, row)) : rows;
+  }
+  rowsOf(bodies) {
+    return new Set(bodies.map((body) => this.sample.rowOfBody[body]));
   }
 
   /// call(what): 'selection', 'filter', 'looks', 'cuts', 'slices', 'edits', 'camera', 'theme',
@@ -106,6 +118,16 @@ export class Selection {
     this.changed('filter');
   }
 
+  /// Only the grains that are selected now pass, whatever is selected later; or all may again.
+  setOnly(isOn) {
+    this.keepPieces();
+    this.only = isOn ? { bodies: this.pieces, absent: this.absent } : null;
+    this.changed('filter');
+  }
+  get onlyRows() {
+    return this.rowsOf(this.only ? this.only.bodies : []);
+  }
+
   /// For the page when it is opened anew: filters keep what they let pass.
   useUnit(unit) {
     const factor = this.sample.factorTo(unit) / this.sample.factor;
@@ -121,16 +143,21 @@ export class Selection {
     this.filters.grains.clear();
     this.filters.bonds.clear();
     this.insideOnly = false;
+    this.only = null;
     this.changed('filter');
   }
 
+  get grainFilterCount() {
+    return this.filters.grains.size + (this.insideOnly ? 1 : 0) + (this.only ? 1 : 0);
+  }
   get filterCount() {
-    return this.filters.grains.size + this.filters.bonds.size + (this.insideOnly ? 1 : 0);
+    return this.grainFilterCount + this.filters.bonds.size;
   }
 
   applyFilters() {
     const { grains, bonds, bondEnds } = this.sample;
-    this.visible.fill(1);
+    this.visible.fill(this.only ? 0 : 1);
+    for (const row of this.onlyRows) this.visible[row] = 1;
     restrict(this.visible, grains, this.filters.grains);
     if (this.insideOnly) {
       const atFace = grains.column('at_domain_face');

@@ -55,6 +55,22 @@ function missed(sample, selection) {
   })).join('');
 }
 
+/// Makes what is selected a filter.
+export function onlySwitch(selection) {
+  const box = make('input', { type: 'checkbox' }), text = make('span');
+  box.addEventListener('change', () => selection.setOnly(box.checked));
+  const show = () => {
+    const { only, selected, onlyRows } = selection;
+    box.checked = only !== null;
+    box.disabled = !only && selected.size === 0;
+    text.textContent = only ? ` only the selected (${counted(onlyRows.size)})` : ' only the selected';
+  };
+  selection.listen((what) => { if (['selection', 'filter', 'strictness'].includes(what)) show(); });
+  show();
+  return make('label', { className: 'only', title: 'Also when others are selected; the strictness takes the largest piece of each along' },
+    box, text);
+}
+
 function filterBar(sample, selection) {
   const inside = make('input', { type: 'checkbox', id: 'inside' });
   inside.addEventListener('change', () => {
@@ -74,7 +90,7 @@ function filterBar(sample, selection) {
   selection.listen((what) => { if (what === 'filter' || what === 'strictness') tell(); });
   tell();
   return make('div', { className: 'bar' }, status,
-    make('label', {}, inside, ' only grains that no face of the scan cuts'), clear);
+    make('label', {}, inside, ' only grains that no face of the scan cuts'), onlySwitch(selection), clear);
 }
 
 class SampleTable {
