@@ -8,6 +8,7 @@ import random
 
 import numpy
 from command import command, demand
+from saved import SAVED
 
 random.seed(17)
 
@@ -142,10 +143,6 @@ def check_links(page, grains, bonds):
     demand(page.selected() == [int(row.text.split()[0])], "Enter does not select a row")
     page.find("body").send_keys("\ue00c")
     demand(page.selected() == [], "Escape does not clear the selection")
-
-
-SAVED = ("window.saved = ''; const make = URL.createObjectURL; URL.createObjectURL = (blob) => {"
-         "blob.text().then((text) => { window.saved = text; }); return make(blob); }")
 
 
 def check_only(page, path):

@@ -19,6 +19,7 @@ except ImportError as error:
 
 from choosing import check_clicks, check_filters, check_links, check_only, check_state  # noqa: E402
 from figures import check_biases, check_doubts, check_tiles  # noqa: E402
+from saved import check_pictures  # noqa: E402
 from several import check_comparison, check_series  # noqa: E402
 from strictness import check_strictness  # noqa: E402
 
@@ -159,6 +160,7 @@ with tempfile.TemporaryDirectory() as folder:
         check_only(page, path)
         check_tiles(page, grains)
         check_doubts(page, grains, bonds)
+        check_pictures(page)
         check_looks(page, path)
         check_state(page, path, "l.vdb", folder)
         check_comparison(page, folder, "l.vdb", grains)

@@ -5,8 +5,8 @@
 import os
 
 import numpy
-from choosing import SAVED
 from command import command, demand, table
+from saved import SAVED
 
 
 def check_lives(page, strictness, grains, bonds):

@@ -3,7 +3,7 @@
 // A list of corrections to save, for 'vdb_madf edit'. The page itself changes nothing.
 import { element } from './decode.js';
 import { make } from './sample.js';
-import { saveText } from './tables.js';
+import { saveText } from './save.js';
 
 /// The first line makes other labels than those that the list is of refuse it.
 function textOf({ edits, editsAt }) {

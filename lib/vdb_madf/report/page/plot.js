@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 // Axes with bars or points, in which ranges can be dragged.
-import { make, makeSvg, written } from './sample.js';
 import { roundLength } from './overlay.js';
+import { makeSvg, written } from './sample.js';
+import { figureOf } from './save.js';
 
 const size = { width: 320, height: 210 };
 const frame = { left: 46, right: 304, top: 10, bottom: 168 };
@@ -23,7 +24,7 @@ export class Plot {
     Object.assign(this, { title, xTitle, yTitle, x, y, isLog });
     this.svg = makeSvg('svg', { viewBox: `0 0 ${size.width} ${size.height}`, role: 'img' });
     this.svg.setAttribute('aria-label', title);
-    this.figure = make('figure', {}, make('figcaption', {}, title), this.svg);
+    this.figure = figureOf(title, this.svg);
   }
 
   toX(value) {

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Directions: how much of the weight each sector has, over what it had if no direction were preferred.
 import { shareDoubts } from './bins.js';
-import { lineColors, make, makeSvg, written } from './sample.js';
+import { lineColors, makeSvg, written } from './sample.js';
+import { figureOf } from './save.js';
 
 const kFullSectors = 18;  // of half a turn
 const kQuarterSectors = 9;  // of a quarter turn
@@ -14,7 +15,7 @@ class Rose {
     this.load();
     this.flags = () => (kind === 'grains' ? selection.visible : selection.visibleBonds);
     this.svg = makeSvg('svg', { viewBox: '-6 4 222 202', role: 'img', 'aria-label': title, class: 'rose' });
-    this.figure = make('figure', {}, make('figcaption', {}, title), this.svg);
+    this.figure = figureOf(title, this.svg);
   }
 
   /// Takes the numbers of the sample as it is now.
@@ -121,5 +122,5 @@ export function tensorRose(title, tensor) {
         `${names[plane[0]]} \u2192, ${names[plane[1]]} \u2191`));
   });
   svg.append(makeSvg('text', { x: middle, y: 202, 'text-anchor': 'middle' }, `circle: ${written(100 * mean, 3)} %`));
-  return make('figure', {}, make('figcaption', {}, title), svg);
+  return figureOf(title, svg);
 }

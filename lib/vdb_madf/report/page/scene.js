@@ -251,6 +251,23 @@ export class Scene {
     if (this.onDrawn) this.onDrawn();
   }
 
+  /// The view on a ground, so many times as large as on the screen, if that can be drawn.
+  picture(times, ground) {
+    const { renderer, canvas, width, height } = this;
+    const ratio = renderer.getPixelRatio();
+    renderer.setPixelRatio(Math.min(times * ratio, renderer.capabilities.maxTextureSize / Math.max(width, height)));
+    this.draw();
+    const picture = document.createElement('canvas');
+    [picture.width, picture.height] = [canvas.width, canvas.height];
+    const context = picture.getContext('2d');
+    context.fillStyle = ground;
+    context.fillRect(0, 0, picture.width, picture.height);
+    context.drawImage(canvas, 0, 0);
+    renderer.setPixelRatio(ratio);
+    this.draw();
+    return picture;
+  }
+
   /// In front of the grains, within which they lie.
   drawBonds() {
     this.renderer.clearDepth();

@@ -5,6 +5,7 @@ import jQuery from 'jquery';
 import addDataTables from 'datatables';
 import { element } from './decode.js';
 import { counted, make, written } from './sample.js';
+import { saveText } from './save.js';
 
 const shownAtFirst = {
   grains: ['id', 'voxels', 'equivalent_diameter', 'inscribed_radius', 'coordination', 'sphericity',
@@ -240,10 +241,4 @@ class SampleTable {
     const { lines } = this.table;
     saveText(`${this.kind}.csv`, [lines[0], ...this.shownRows().map((row) => lines[row + 1]), ''].join('\n'));
   }
-}
-
-export function saveText(name, text) {
-  const address = URL.createObjectURL(new Blob([text], { type: 'text/plain' }));
-  make('a', { href: address, download: name }).click();
-  setTimeout(() => URL.revokeObjectURL(address), 10000);
 }

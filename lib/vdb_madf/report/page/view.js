@@ -5,6 +5,7 @@ import { Camera, steer } from './camera.js';
 import { element } from './decode.js';
 import { drawOverlay } from './overlay.js';
 import { make } from './sample.js';
+import { saveView } from './save.js';
 import { contextOf, Scene, Space } from './scene.js';
 
 /// Columns that say nothing as a color.
@@ -41,6 +42,8 @@ export async function startView(sample, selection, camera) {
     if (row >= 0) selection.select([row], more); else if (!more) selection.select([]);
   });
   controls(sample, selection, camera);
+  element('controls').append(labelled('Picture',
+    make('button', { type: 'button', onclick: () => saveView(scene) }, 'Save as PNG'), 'div'));
   window.addEventListener('beforeprint', () => {
     scene.draw();
     element('picture').src = element('canvas').toDataURL();
