@@ -20,6 +20,7 @@ except ImportError as error:
 from choosing import check_clicks, check_filters, check_links, check_only, check_state  # noqa: E402
 from figures import check_biases, check_doubts, check_tiles  # noqa: E402
 from saved import check_pictures  # noqa: E402
+from scan import check_scan  # noqa: E402
 from several import check_comparison, check_series  # noqa: E402
 from strictness import check_strictness  # noqa: E402
 
@@ -163,6 +164,7 @@ with tempfile.TemporaryDirectory() as folder:
         check_pictures(page)
         check_looks(page, path)
         check_state(page, path, "l.vdb", folder)
+        check_scan(page, folder)
         check_comparison(page, folder, "l.vdb", grains)
         check_series(page, folder)
         check_crossings(page, folder)

@@ -4,7 +4,10 @@
 #include "vdb_madf/intensity/gray_planes.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
+#include <vector>
 
 #include "support/catch.h"
 #include "vdb_madf/base/errors.h"
@@ -80,4 +83,69 @@ TEST_CASE("gray_planes: one value is gray, and the scan has to hold the box", "[
   CHECK(gray[0].values == std::vector<uint8_t>{128});
   CHECK_THROWS_WITH(readGrayPlanes(scan, CoordBBox(Coord(0), Coord(1, 0, 2)), {{2, 1}}),
                     vdb_madf::test::Contains("ramp: has 1x1x3 voxels"));
+}
+
+namespace {
+
+/// What readGrayBlocks() says of a scan, each block by itself.
+std::vector<uint8_t> blocksOneByOne(const CoordBBox& scan, const CoordBBox& blocks, int factor) {
+  std::vector<float> means;
+  for (int z = blocks.min().z(); z <= blocks.max().z(); ++z)
+    for (int y = blocks.min().y(); y <= blocks.max().y(); ++y)
+      for (int x = blocks.min().x(); x <= blocks.max().x(); ++x) {
+        double sum = 0;
+        int count = 0;
+        const Coord low(x * factor, y * factor, z * factor);
+        CoordBBox block(low, low.offsetBy(factor - 1));
+        block.intersect(scan);
+        for (auto p = block.begin(); p; ++p, ++count) sum += Ramp::value(*p - scan.min());
+        means.push_back(float(sum / count));
+      }
+  std::vector<float> sorted = means;
+  std::sort(sorted.begin(), sorted.end());
+  const size_t clipped = sorted.size() / 200;
+  const double low = sorted[clipped], high = sorted[sorted.size() - 1 - clipped];
+  std::vector<uint8_t> gray;
+  for (const float mean : means)
+    gray.push_back(
+        uint8_t(std::lround(255 * std::clamp((double(mean) - low) / (high - low), 0.0, 1.0))));
+  return gray;
+}
+
+/// A scan of nothing but values that are not finite, but for one voxel.
+class Holes : public ImageReader {
+ public:
+  Holes() {
+    info_.size = {4, 4, 4};
+    info_.type = SampleType::float32;
+  }
+  void read(int first, int count, void* samples) override {
+    auto* to = static_cast<float*>(samples);
+    std::fill_n(to, 16 * count, std::numeric_limits<float>::quiet_NaN());
+    if (first == 0) to[0] = 5;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("gray_planes: blocks show the mean of the voxels that the scan has", "[gray_planes]") {
+  const Coord first(-5, 2, -7);
+  GrayScan scan{std::make_unique<Ramp>(19, 11, 29), first};
+  for (const int factor : {1, 3, 4}) {
+    const auto down = [&](int value) { return int(std::floor(double(value) / factor)); };
+    const CoordBBox whole = scan.box();
+    CoordBBox blocks;
+    for (const Coord& end : {whole.min(), whole.max()})
+      blocks.expand(Coord(down(end.x()), down(end.y()), down(end.z())));
+    CHECK(readGrayBlocks(scan, blocks, factor) == blocksOneByOne(whole, blocks, factor));
+    blocks.min() = blocks.min().offsetBy(0, 1, 1);
+    blocks.max() = blocks.max().offsetBy(-1, 0, -1);
+    CHECK(readGrayBlocks(scan, blocks, factor) == blocksOneByOne(whole, blocks, factor));
+  }
+}
+
+TEST_CASE("gray_planes: blocks without a value are black", "[gray_planes]") {
+  GrayScan scan{std::make_unique<Holes>(), Coord(0)};
+  CHECK(readGrayBlocks(scan, CoordBBox(Coord(0), Coord(1)), 2) ==
+        std::vector<uint8_t>{128, 0, 0, 0, 0, 0, 0, 0});
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/intensity/gray_planes.h"
 #include "vdb_madf/labels/grain_colors.h"
 #include "vdb_madf/labels/reduced_labels.h"
 #include "vdb_madf/report/detail/packed_bytes.h"
@@ -76,6 +78,22 @@ std::vector<double> meshVolumes(const Page& page, size_t grains) {
   }
   return volumes;
 }
+
+/// Brighter to the right and upward.
+class Ramp : public ImageReader {
+ public:
+  explicit Ramp(const Coord& size) {
+    info_.size = {size.x(), size.y(), size.z()};
+    info_.type = SampleType::uint8;
+    path_ = "folder/ramp.tif";
+  }
+  void read(int first, int count, void* samples) override {
+    auto* to = static_cast<uint8_t*>(samples);
+    for (int z = first; z < first + count; ++z)
+      for (int y = 0; y < info_.size.y; ++y)
+        for (int x = 0; x < info_.size.x; ++x) *to++ = uint8_t(2 * x + y + 3 * z);
+  }
+};
 
 }  // namespace
 
@@ -185,6 +203,30 @@ TEST_CASE("report: slices hold every voxel, or each block's most frequent label"
           expected.push_back(label == 0 ? 0 : label == 3 ? 1 : 2);
         }
     CHECK(sliceVoxels(page) == expected);
+  }
+}
+
+TEST_CASE("report: the scan lies under the slices, by its mean where these are reduced",
+          "[report]") {
+  NEEDS_PAGE();
+  const auto labels = balls();
+  GrayScan scan{std::make_unique<Ramp>(Coord(35, 26, 28)), Coord(0)};
+  CHECK_FALSE(write(labels).has("gray"));
+  for (const int side : {256, 12}) {
+    ReportOptions options;
+    options.maxSlice = side;
+    options.scan = &scan;
+    const Page page = write(labels, options);
+    const Json slices = page.json("about").at("slices"), gray = page.json("about").at("gray");
+    CHECK(gray == Json{{"scan", "ramp.tif"}, {"levels", 32}});
+    const Coord min(slices["min"][0], slices["min"][1], slices["min"][2]),
+        size(slices["size"][0], slices["size"][1], slices["size"][2]);
+    std::string expected;
+    const CoordBBox blocks(min, min + size.offsetBy(-1));
+    for (const uint8_t value : readGrayBlocks(scan, blocks, slices["factor"]))
+      expected += char(value / 8);
+    CHECK(page.bytes("gray") == expected);
+    CHECK(page.text == write(inSlabs(labels, {0, 8, 32}), options).text);
   }
 }
 
@@ -326,6 +368,13 @@ TEST_CASE("report: what is refused leaves no file", "[report]") {
   options = {};
   options.sweep = "a,b\n1,2\n";
   CHECK_THROWS_AS(writeReport(folder / "p.html", balls(), options), InvalidInput);
+  GrayScan small{std::make_unique<Ramp>(Coord(33, 26, 27)), Coord(0)};
+  options = {};
+  options.scan = &small;
+  if (canWriteReport())
+    CHECK_THROWS_WITH(writeReport(folder / "p.html", balls(), options),
+                      "folder/ramp.tif: has 33x26x27 voxels, and the labels are those of a scan of "
+                      "33x26x28 voxels: give the one that they were made of, cropped as they were");
   CHECK_THROWS_AS(writeReport(folder / "none/p.html", balls()), IoError);
   CHECK(folder.fileCount() == 0);
 }

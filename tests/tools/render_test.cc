@@ -201,6 +201,23 @@ TEST_CASE("cli: render draws outlines of grains on the gray scan", "[cli]") {
   CHECK(bench.run("render s.vdb w.png --overlay missing.tif").exitCode == 1);
 }
 
+TEST_CASE("cli: report takes the scans that render takes", "[cli]") {
+  const Bench bench;
+  bench.mustRun(kSintered);
+  bench.mustRun("generate spheres small.tif --size 32 --count 2 --radius 6:8");
+  for (const std::string scan : {"small.tif", "missing.tif", "s.vdb --overlay-grid no"}) {
+    const auto drawn = bench.run("render s.vdb w.png --overlay " + scan);
+    const auto written = bench.run("report s.vdb r.html --overlay " + scan);
+    CHECK(written.exitCode == 1);
+    CHECK(written.err == drawn.err);
+  }
+  CHECK(bench.names().count("r.html") == 0);
+  if (bench.run("report s.vdb r.html --no-3d").exitCode != 0) return;  // no esbuild
+  bench.mustRun("report s.vdb o.html --no-3d --overlay s.vdb --overlay-grid object");
+  CHECK(bench.bytes("r.html").find("id=\"gray\"") == std::string::npos);
+  CHECK(bench.bytes("o.html").find("id=\"gray\"") != std::string::npos);
+}
+
 TEST_CASE("cli: render frames the grains that are selected", "[cli]") {
   const Bench bench;
   bench.write("l.raw", [] {

@@ -17,10 +17,13 @@
 #include "outputs.h"
 #include "parse.h"
 #include "remerge_slabs.h"
+#include "scan_option.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/files/file_ending.h"
 #include "vdb_madf/files/read_text.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/intensity/gray_planes.h"
 #include "vdb_madf/vdb/read_vdb.h"
 
 namespace vdb_madf::tools {
@@ -34,6 +37,7 @@ struct ReportArguments {
   std::vector<std::string> files;  ///< of labels, and of the page
   std::vector<InputOptions> samples;
   std::string out, boundary = "auto", minFaces = "1", density, sweep, with, triangles = "1000000";
+  ScanOption scan{"", "", "--overlay"};
   bool ice = false, noView = false, isSeries = false;
   ReportOptions report;
 };
@@ -55,6 +59,9 @@ void parse(ReportArguments& o) {
     throw WrongUsage("--sweep is of one sample: give the labels of one");
   if (!o.with.empty() && o.samples.size() > 1)
     throw WrongUsage("--with is of one sample: give the labels of one");
+  if (!o.scan.path.empty() && o.samples.size() > 1)
+    throw WrongUsage("--overlay is of one sample: give the labels of one");
+  checkScan(o.scan, o.input);
   if (o.isSeries && o.samples.size() == 1)
     throw WrongUsage("--series: give the labels of two scans or more, and last the page");
   o.report.measure.boundary = parseBoundary(o.boundary);
@@ -96,6 +103,12 @@ Report writeOne(const ReportArguments& o, const Common& common) {
     throw InvalidInput(o.sweep + ": is no table of the verb sweep");
   const AnyLabels labels = labelsOf(o.input, common);
   options.given = readGiven(o.with, aboutOf(labels));
+  std::optional<GrayScan> scan;
+  if (!o.scan.path.empty()) {
+    scan = openScan(o.scan, o.input, common.progress);
+    checkHolds(*scan, boxOf(aboutOf(labels)));
+    options.scan = &*scan;
+  }
   // What crosses at another strictness the page cannot tell.
   if (!options.measure.crossings)
     options.manifold = manifoldsBeside(o.input, labels, common.progress);
@@ -159,6 +172,12 @@ void addReport(Verb command, Common& common, Action& action) {
             "the labels are scans of one sample, numbered by track: a page with a slider from scan "
             "to scan");
   verb.option("--with", o->with, kWithHelp).typeName("FILE.csv");
+  verb.option("--overlay", o->scan.path,
+              "the gray scan: slices show it with the outlines of grains")
+      .typeName("FILE");
+  verb.option("--overlay-grid", o->scan.grid,
+              "of that scan: the grid of a VDB, the array of a Zarr or HDF5 file")
+      .typeName("NAME");
   verb.option("--max-dim", o->report.maxSlice, "longest side of the slices, in voxels")
       .range(16, 1024)
       .showDefault();

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "vdb_madf/grids/slice_plane.h"
@@ -20,5 +21,17 @@ namespace vdb_madf {
 std::vector<GrayPlane> readGrayPlanes(GrayScan& scan, const CoordBBox& box,
                                       const std::vector<SlicePlane>& planes,
                                       Interrupter* interrupter = nullptr);
+
+/// What blocks show of a scan, x fastest, then y, then z, with the same contrast of all blocks.
+/// Block (i,j,k) has the voxels factor * i .. factor * i + factor - 1 along each axis, as in
+/// reduceLabels(), and shows the mean of the finite values among them; without any it is black.
+/// Memory: eight slices of the scan, and eight bytes a block.
+/// @param factor 1 .. 256
+/// @throw IoError; Interrupted.
+std::vector<uint8_t> readGrayBlocks(GrayScan& scan, const CoordBBox& blocks, int factor,
+                                    Interrupter* interrupter = nullptr);
+
+/// @throw InvalidInput, one line that names the scan, if its box does not hold the box.
+void checkHolds(const GrayScan& scan, const CoordBBox& box);
 
 }  // namespace vdb_madf

@@ -80,6 +80,7 @@ Report written(Report report, uint64_t bytes) {
 ReportOptions ofSeveral(ReportOptions options) {
   checkOptions(options);
   options.manifold.reset();
+  options.scan = nullptr;
   options.sweep.clear();
   options.given.clear();
   return options;
@@ -155,6 +156,7 @@ Report writeReport(const std::string& path, const AnyLabels& labels, const Repor
   const GrainColors colors =
       applied(labels, [&](const auto& all) { return grainColors(all, interrupter); });
   page.data = parts.tables() + parts.colors(colors) + parts.sweep() + parts.slices();
+  page.data += parts.gray();
   page.data += parts.mesh();
   page.data += parts.levels();
   page.data += parts.about();

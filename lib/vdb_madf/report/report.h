@@ -12,6 +12,7 @@
 #include "vdb_madf/base/interrupter.h"
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/grids/label_slabs.h"
+#include "vdb_madf/intensity/gray_scan.h"
 #include "vdb_madf/measure/measure.h"
 
 namespace vdb_madf {
@@ -35,6 +36,8 @@ struct ReportOptions {
   std::optional<AnyLabels> manifold;
   /// Slices are those of labels that are reduced to at most so many voxels a side, 1 or more.
   int maxSlice = 256;
+  /// The gray scan that slices show with the grains: its box holds that of the labels. Null: none.
+  GrayScan* scan = nullptr;
   int pictureEdge = 640;  ///< pixels of the picture for where there is no WebGL, about; 16 .. 8192
 };
 
@@ -65,8 +68,9 @@ bool isSweepTable(const std::string& text);
 /// adds up their measures. Memory: that of measure() and grainMesh(), and of the page's text.
 /// Labels in slabs are the same page; they are in memory together only if they are meshed, or
 /// sliced, without being reduced.
-/// @throw InvalidInput for options out of range, labels without a domain and without grains, and as
-///   measure() does; IoError, also if !canWriteReport(); Interrupted.
+/// @throw InvalidInput for options out of range, labels without a domain and without grains, a scan
+///   that does not hold them, and as measure() does; IoError, also if !canWriteReport();
+///   Interrupted.
 Report writeReport(const std::string& path, const AnyLabels& labels,
                    const ReportOptions& options = {}, Interrupter* interrupter = nullptr);
 
@@ -78,9 +82,8 @@ struct ReportSample {
 
 /// Writes a sample scan by scan: the page of each, as writeReport() makes it, with a slider from
 /// scan to scan and curves of what changes. Grains have one number, and one color, in all scans:
-/// see track(). Of the options `labels`, `manifold`, `given` and
-/// `sweep` are not used. Labels are asked for
-/// twice. @throw as writeComparison()
+/// see track(). Of the options `labels`, `manifold`, `given`, `scan` and `sweep` are not used.
+/// Labels are asked for twice. @throw as writeComparison()
 Report writeSeries(const std::string& path, const std::vector<ReportSample>& scans,
                    const ReportOptions& options = {}, Interrupter* interrupter = nullptr);
 

@@ -16,6 +16,7 @@
 #include "vdb_madf/base/version.h"
 #include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/intensity/gray_planes.h"
 #include "vdb_madf/labels/reduced_labels.h"
 #include "vdb_madf/measure/columns.h"
 #include "vdb_madf/pictures/label_panels.h"
@@ -40,6 +41,9 @@ constexpr uint64_t kTrianglesOfGrain = 150, kFewestTriangles = 40000;
 constexpr uint64_t kMostSimplified = 8, kMostMeshed = 3000000;
 /// The step of a point in the page, voxels (reduced ones, if the mesh is made of such).
 constexpr double kMeshStep = 1.0 / 32;
+
+/// Grays under the slices: noise takes more of the file with each.
+constexpr int kGrayLevels = 32;
 
 std::string packed(const std::string& text) {
   PackedBytes bytes;
@@ -108,6 +112,7 @@ ReportParts::ReportParts(const AnyLabels& labels, const ReportOptions& options, 
   measured_.extra.given = options.given;
   box_ = sliceBox_ = measured_.sample.box;
   if (box_.empty()) throw InvalidInput("has no labels and no domain: nothing to show");
+  if (options.scan) checkHolds(*options.scan, box_);
   for (const GrainMeasures& grain : measured_.grains) ids_.push_back(grain.id);
   if (options.manifold && options.given.empty()) addLevels();
 }
@@ -185,6 +190,16 @@ std::string ReportParts::slices() {
   return dataElement("labels" + suffix_, packLabels(*sliced, sliceBox_, bodyIds(), interrupter_));
 }
 
+std::string ReportParts::gray() const {
+  if (!options_.scan) return "";
+  begin("scan");
+  std::vector<uint8_t> gray = readGrayBlocks(*options_.scan, sliceBox_, reduction_, interrupter_);
+  for (uint8_t& value : gray) value = uint8_t(value * kGrayLevels / 256);
+  PackedBytes bytes;
+  bytes.bytes(gray.data(), gray.size());
+  return dataElement("gray" + suffix_, bytes.text());
+}
+
 std::string ReportParts::mesh() {
   if (options_.maxTriangles == 0 || ids_.empty()) return "";
   begin("mesh");
@@ -222,6 +237,10 @@ std::string ReportParts::about() const {
   json["box"] = {{"min", toJson(box_.min())}, {"max", toJson(box_.max())}};
   json["slices"] = {
       {"factor", reduction_}, {"min", toJson(sliceBox_.min())}, {"size", toJson(sliceBox_.dim())}};
+  if (options_.scan) {
+    const std::filesystem::path path = options_.scan->image->path();
+    json["gray"] = {{"scan", path.filename().string()}, {"levels", kGrayLevels}};
+  }
   json["mesh"] = nullptr;
   if (triangles_ > 0)
     json["mesh"] = {{"step", step_}, {"points", points_}, {"triangles", triangles_}};

@@ -33,6 +33,9 @@ class ReportParts {
   std::string colors(const GrainColors& colors) const;
   std::string sweep() const;
   std::string slices();
+  /// The scan under the slices, after these; empty if there is none. A byte a voxel of theirs, x
+  /// fastest, then y, then z: from 0, black, to about().gray.levels - 1, white.
+  std::string gray() const;
   std::string mesh();
   /// What the slider needs; empty if there is none.
   std::string levels() const;

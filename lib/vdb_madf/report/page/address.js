@@ -34,6 +34,7 @@ export function writeState(selection, camera) {
   set('cuts', selection.cuts.map((cut, i) => (selection.flips[i] ? '-' : '') + round(cut)), '1,1,1');
   const { size } = sample.about.slices;
   set('slices', selection.slices, size.map((count) => Math.floor(count / 2)));
+  set('show', selection.slicesAs, sample.gray ? 'outlines' : 'grains');
   for (const edit of selection.edits) parts.append('edit', edit);
   if (selection.edits.length > 0 && selection.editsAt !== null) parts.set('editsat', selection.editsAt);
   return parts.toString().replace(/%2C/g, ',').replace(/%3A/g, ':');
@@ -89,6 +90,7 @@ export function readState(parts, selection, camera) {
   if (slices)
     selection.slices = slices.map((at, i) =>
       Math.max(0, Math.min(sample.about.slices.size[i] - 1, Math.round(at))));
+  if (sample.gray) selection.slicesAs = oneOf('show', ['grains', 'scan'], 'outlines');
   selection.edits = parts.getAll('edit');
   if (sample.levels) selection.editsAt = (numbers('editsat', 1) || [sample.levels.own])[0];
 }

@@ -78,6 +78,7 @@ export class Sample {
     this.rowOfBody = this.levels ? Uint32Array.from(this.levels.ownGrain, (id) => this.rowOf.get(id))
       : Uint32Array.from({ length: this.count }, (_, row) => row);
     this.volume = labelVolume(await bytes(`labels${this.suffix}`), this.about.slices.size, this.bodies);
+    this.gray = await bytes(`gray${this.suffix}`);  // of the scan, as the volume; null: not there
     if (this.levels) this.addLives(this.levels.own);
     this.own = { ...this };
   }

@@ -25,6 +25,7 @@ export class Selection {
     this.flips = [false, false, false];
     const { size } = sample.about.slices;
     this.slices = size.map((count) => Math.floor(count / 2));
+    this.slicesAs = sample.gray ? 'outlines' : 'grains';  // or 'scan'
     this.edits = [];
     this.editsAt = null;  // the strictness that they are of, if the page knows one
     this.showsParts = false;  // of a grain that is selected alone, in two colors

@@ -86,14 +86,14 @@ function button(title, act, selection) {
   return make('button', { type: 'button', onclick: () => { act(); selection.changed('camera'); } }, title);
 }
 
-function choice(id, texts) {
+export function choice(id, texts) {
   const select = make('select', { id });
   for (const [value, title] of Object.entries(texts)) select.append(make('option', { value }, title));
   return select;
 }
 
 /// Keeps a control and a member of the selection the same.
-function bind(control, selection, member, what, parse = String) {
+export function bind(control, selection, member, what, parse = String) {
   control.value = selection[member];
   control.addEventListener('input', () => {
     selection[member] = parse(control.value);
@@ -123,6 +123,6 @@ function cutControl(selection, name, axis) {
   return labelled(`Cut ${name}`, make('span', { className: 'buttons' }, slider, flip), 'div');
 }
 
-function labelled(title, control, tag = 'label') {
+export function labelled(title, control, tag = 'label') {
   return make(tag, { className: 'control' }, make('span', {}, title), control);
 }
