@@ -19,7 +19,7 @@ except ImportError as error:
 
 from choosing import check_clicks, check_filters, check_links, check_only, check_state  # noqa: E402
 from figures import check_biases, check_doubts, check_tiles  # noqa: E402
-from saved import check_pictures  # noqa: E402
+from saved import check_pictures, check_still  # noqa: E402
 from scan import check_scan  # noqa: E402
 from several import check_comparison, check_series  # noqa: E402
 from strictness import check_strictness  # noqa: E402
@@ -177,6 +177,7 @@ with tempfile.TemporaryDirectory() as folder:
         demand(page.run("const p = document.getElementById('picture');"
                         "return p.complete && p.naturalWidth > 100 && p.offsetWidth > 100"),
                         "no picture without WebGL")
+        check_still(page)
         page.button("Largest").click()
         demand(len(page.selected()) == 1, "nothing is selected without WebGL")
 print(f"{len(grains)} grains were clicked, filtered and linked")

@@ -44,6 +44,37 @@ createImageBitmap(window.savedBlob).then((image) => {
 });
 """
 
+# Of the picture in the place of the view: how much its corner and its middle cover of the page, how
+# many of its pixels have the color of letters, and the contrast of these with the page.
+STILL = """
+const picture = document.getElementById('picture'), canvas = document.createElement('canvas');
+[canvas.width, canvas.height] = [picture.naturalWidth, picture.naturalHeight];
+const context = canvas.getContext('2d');
+context.drawImage(picture, 0, 0);
+const {data} = context.getImageData(0, 0, canvas.width, canvas.height);
+let letters = 0;
+for (let i = 0; i < data.length; i += 4)
+  if (data.slice(i, i + 4).join() === '120,126,132,255') ++letters;
+const light = (color) => color.map((value) => value / 255)
+  .map((value) => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4))
+  .reduce((sum, value, k) => sum + value * [0.2126, 0.7152, 0.0722][k], 0.05);
+const ground = getComputedStyle(document.body).backgroundColor.match(/[0-9]+/g).map(Number);
+const both = [light(ground), light([120, 126, 132])].sort((a, b) => a - b);
+const middle = 4 * ((canvas.height >> 1) * canvas.width + (canvas.width >> 1));
+return [data[3], data[middle + 3], letters, both[1] / both[0]];
+"""
+
+
+def check_still(page):
+    """Without WebGL a picture has the ground of the page, light or dark or on paper."""
+    for features in ({}, {"color_scheme": "dark"}, {"color_scheme": "dark", "media": "print"}):
+        page.screen(1400, 900, **features)
+        corner, middle, letters, contrast = page.run(STILL)
+        demand(corner == 0 and middle == 255, f"the picture covers {corner}, {middle}")
+        demand(letters > 100 and contrast > 4, f"{letters} pixels of letters, at {contrast}")
+        demand(page.find("#picture").is_displayed(), f"no picture on {features}")
+    page.screen(1400, 900)
+
 
 def check_pictures(page):
     """The view, drawn anew at twice its size with its scales, and charts, both as they look."""

@@ -327,7 +327,7 @@ GrainView viewGrains(const MaskGrid::Ptr& object, const Int32Grid& labels, const
   const Vec edges = detail::proportions(labels.transform());
   const detail::Camera camera(box, edges, options);
   Picture backdrop(camera.width, camera.height, options.background);
-  if (options.box) detail::drawBox(camera, backdrop);
+  if (options.box) detail::drawBox(camera, options.ink, backdrop);
   GrainView view{backdrop, std::vector<int32_t>(backdrop.pixels.size(), 0), camera.voxelsPerPixel};
   const detail::VoxelRays rays(clipped(object, box), box, edges, camera.direction);
   const Renderer renderer(rays, labels, box, edges, colors, camera);

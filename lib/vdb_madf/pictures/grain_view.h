@@ -18,8 +18,9 @@ struct ViewOptions {
   double elevation = 25;  ///< degrees above the x-y plane, -90..90; z is up
   int edge = 512;         ///< pixels along the longer side, 1..16384
   Rgb background{255, 255, 255};
-  bool turns = false;     ///< one scale and size for all azimuths
   bool surfaces = false;  ///< smoothed ones in the place of voxels that are three pixels wide
+  Rgb ink{70, 74, 80};  ///< of names of axes
+  bool turns = false;   ///< one scale and size for all azimuths
   bool box = false;  ///< also the edges of the box behind the grains and, around it, names of axes
 };
 

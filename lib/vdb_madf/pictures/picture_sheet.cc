@@ -16,7 +16,7 @@ namespace {
 using detail::Canvas;
 using detail::ScaleBar;
 
-constexpr Rgb kInk{40, 40, 40}, kFrameLine{190, 194, 200};
+constexpr Rgb kFrameLine{190, 194, 200};
 constexpr double kWideness = 1.5;  ///< width over height of a sheet that is just right
 
 /// A panel with what stands below it: its caption and, beside that or in a second line, its bar.
@@ -106,24 +106,25 @@ void frame(const Picture& around, int left, int top, int thickness, Picture& who
 }
 
 /// The caption and the bar; the canvas begins at the panel's lower left corner.
-void drawBelow(const Cell& cell, const Layout& layout, Canvas& canvas) {
+void drawBelow(const Cell& cell, const Layout& layout, const Rgb& ink, Canvas& canvas) {
   const double base = 0.75 * layout.line;
-  canvas.text({0, base}, cell.panel.caption, layout.text, kInk);
+  canvas.text({0, base}, cell.panel.caption, layout.text, ink);
   if (!cell.bar) return;
   const double left = layout.lines > 1 ? 0 : cell.panel.picture.width - cell.barWidth;
   const double bottom = base + (layout.lines - 1) * layout.line;
   const double thickness = std::max(2.0, std::round(layout.text / 5));
   const double middle = std::round(bottom - 0.36 * layout.text);
   canvas.rectangle({std::round(left), middle - std::floor(thickness / 2)},
-                   std::round(cell.bar->pixels), thickness, kInk);
+                   std::round(cell.bar->pixels), thickness, ink);
   canvas.text({left + cell.bar->pixels + layout.text / 2, bottom}, cell.bar->text, layout.text,
-              kInk);
+              ink);
 }
 
 }  // namespace
 
 Picture pictureSheet(const std::vector<PicturePanel>& panels,
-                     const std::optional<VoxelSize>& voxelSize, const Rgb& background) {
+                     const std::optional<VoxelSize>& voxelSize, const Rgb& background,
+                     const Rgb& ink) {
   double area = 0;
   for (const PicturePanel& panel : panels)
     area = std::max(area, double(panel.picture.width) * panel.picture.height);
@@ -150,7 +151,7 @@ Picture pictureSheet(const std::vector<PicturePanel>& panels,
       if (cells[i].panel.framed) frame(picture, left, below - picture.height, thickness, whole);
       detail::paint(whole, left, below + thickness, layout.widths[i % columns],
                     layout.lines * layout.line,
-                    [&](Canvas& canvas) { drawBelow(cells[i], layout, canvas); });
+                    [&](Canvas& canvas) { drawBelow(cells[i], layout, ink, canvas); });
       left += layout.widths[i % columns] + layout.gap;
     }
     top += layout.heights[row] + layout.lines * layout.line + layout.gap;

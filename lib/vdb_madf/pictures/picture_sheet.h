@@ -23,9 +23,9 @@ struct PicturePanel {
 /// The panels in reading order, each with its name below and, where the voxel size is
 /// known, a scale bar of a round length. There are as many columns as make the sheet small, and
 /// rather wide than tall. Letters and gaps grow with the largest panel: a line is 1/24 of the
-/// side of a square of its area, and 15 pixels at least.
+/// side of a square of its area, and 15 pixels at least. \p ink: of letters and bars.
 Picture pictureSheet(const std::vector<PicturePanel>& panels,
                      const std::optional<VoxelSize>& voxelSize = std::nullopt,
-                     const Rgb& background = {255, 255, 255});
+                     const Rgb& background = {255, 255, 255}, const Rgb& ink = {40, 40, 40});
 
 }  // namespace vdb_madf

@@ -152,9 +152,9 @@ Report writeReport(const std::string& path, const AnyLabels& labels, const Repor
   const detail::PageSources& sources = sourcesFor(path);
   detail::OutputStream file(path, interrupter);
   detail::ReportParts parts(labels, options, "", interrupter);
-  PageText page{parts.title(), parts.picture(), ""};
   const GrainColors colors =
       applied(labels, [&](const auto& all) { return grainColors(all, interrupter); });
+  PageText page{parts.title(), parts.picture(colors), ""};
   page.data = parts.tables() + parts.colors(colors) + parts.sweep() + parts.slices();
   page.data += parts.gray();
   page.data += parts.mesh();
@@ -179,7 +179,7 @@ Report writeSeries(const std::string& path, const std::vector<ReportSample>& sca
     applied(scan.labels(), [&](const auto& labels) { coloring.add(labels, interrupter); });
   const GrainColors colors = coloring.colors();
   return page.write(scans, "scans", [&](detail::ReportParts& parts, PageText& text) {
-    if (text.picture.empty()) text.picture = parts.picture();
+    if (text.picture.empty()) text.picture = parts.picture(colors);
     std::string data = parts.tables() + parts.colors(colors) + parts.slices();
     data += parts.mesh();
     return data + parts.about();

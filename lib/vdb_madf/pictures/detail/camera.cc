@@ -11,7 +11,7 @@ namespace vdb_madf::detail {
 
 namespace {
 
-constexpr Rgb kEdges{170, 174, 180}, kNames{70, 74, 80};
+constexpr Rgb kEdges{170, 174, 180};
 constexpr double kMargin = 1 / 22.0;  ///< of the longer side, around a box that is drawn
 
 double lengthOf(const Point& p) {
@@ -46,7 +46,7 @@ Camera::Camera(const CoordBBox& box, const Vec& edges, const ViewOptions& option
   height = std::clamp(int(std::ceil(high / voxelsPerPixel)), 1, edge) + 2 * margin;
 }
 
-void drawBox(const Camera& camera, Picture& picture) {
+void drawBox(const Camera& camera, const Rgb& ink, Picture& picture) {
   const double edge = std::sqrt(double(camera.width) * camera.height);
   const Pen pen{kEdges, std::max(1.0, edge / 700)};
   const double textSize = std::max(10.0, edge / 30);
@@ -87,9 +87,9 @@ void drawBox(const Camera& camera, Picture& picture) {
                      middle[1] + (forward * along[1] / length + off * away[1]) * textSize};
       };
       const Point name = at(-0.4, 0.75);
-      canvas.text({name[0], name[1] + 0.27 * textSize}, std::string(1, "xyz"[axis]), textSize,
-                  kNames, Anchor::middle);
-      const Pen arrow{kNames, std::max(1.0, textSize / 14)};
+      canvas.text({name[0], name[1] + 0.27 * textSize}, std::string(1, "xyz"[axis]), textSize, ink,
+                  Anchor::middle);
+      const Pen arrow{ink, std::max(1.0, textSize / 14)};
       canvas.line({at(0.1, 0.75), at(1.0, 0.75)}, arrow);
       canvas.line({at(0.72, 0.9), at(1.0, 0.75), at(0.72, 0.6)}, arrow);
     }

@@ -34,6 +34,6 @@ struct Camera {
 };
 
 /// The edges of the camera's box that do not lie before it, and the names of the axes beside it.
-void drawBox(const Camera& camera, Picture& picture);
+void drawBox(const Camera& camera, const Rgb& ink, Picture& picture);
 
 }  // namespace vdb_madf::detail

@@ -42,6 +42,8 @@ constexpr uint64_t kMostSimplified = 8, kMostMeshed = 3000000;
 /// The step of a point in the page, voxels (reduced ones, if the mesh is made of such).
 constexpr double kMeshStep = 1.0 / 32;
 
+/// Of letters that are read on white and on the ground of a dark page.
+constexpr Rgb kInk{120, 126, 132};
 /// Grays under the slices: noise takes more of the file with each.
 constexpr int kGrayLevels = 32;
 
@@ -267,16 +269,23 @@ std::string ReportParts::about() const {
   return jsonElement("about" + suffix_, json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-std::string ReportParts::picture() const {
+std::string ReportParts::picture(const std::optional<GrainColors>& colors) const {
   begin("picture");
-  const PanelOptions panel{false, true, options_.pictureEdge, view_};
-  const std::vector<PicturePanel> panels = applied(
-      labels_, [&](const auto& all) { return labelPanels(all, box_, panel, interrupter_); });
-  const Picture sheet = pictureSheet(panels, storedVoxelSize(aboutOf(labels_)));
+  PanelOptions panel{false, true, options_.pictureEdge, view_};
+  panel.colors = colors;
+  panel.direction.ink = kInk;
+  const auto drawn = [&](const Rgb& background) {
+    panel.direction.background = background;
+    return pictureSheet(
+        applied(labels_,
+                [&](const auto& all) { return labelPanels(all, box_, panel, interrupter_); }),
+        storedVoxelSize(aboutOf(labels_)), background, kInk);
+  };
+  const Picture sheet = drawn({255, 255, 255});
   return fmt::format(
       "<img id=\"picture{}\" alt=\"The grains from outside\" width=\"{}\" height=\"{}\" "
       "src=\"data:image/png;base64,{}\">\n",
-      suffix_, sheet.width, sheet.height, base64(pngBytes(sheet)));
+      suffix_, sheet.width, sheet.height, base64(pngBytes(sheet, drawn({0, 0, 0}))));
 }
 
 }  // namespace vdb_madf::detail

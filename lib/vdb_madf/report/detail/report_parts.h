@@ -41,8 +41,9 @@ class ReportParts {
   std::string levels() const;
   /// After slices(), mesh() and levels(), if there are these: it tells how to read them.
   std::string about() const;
-  /// An image element for where there is no WebGL, and for paper.
-  std::string picture() const;
+  /// An image element for where there is no WebGL, and for paper: on any ground, light or dark.
+  /// @param colors none: those of the labels
+  std::string picture(const std::optional<GrainColors>& colors = std::nullopt) const;
 
  private:
   void begin(const char* stage) const;
