@@ -19,8 +19,8 @@ struct ViewOptions {
   int edge = 512;         ///< pixels along the longer side, 1..16384
   Rgb background{255, 255, 255};
   bool surfaces = false;  ///< smoothed ones in the place of voxels that are three pixels wide
-  Rgb ink{70, 74, 80};  ///< of names of axes
-  bool turns = false;   ///< one scale and size for all azimuths
+  Rgb ink{70, 74, 80};    ///< of names of axes
+  bool turns = false;     ///< one scale and size for all azimuths
   bool box = false;  ///< also the edges of the box behind the grains and, around it, names of axes
 };
 
