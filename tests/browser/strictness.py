@@ -123,7 +123,7 @@ def check_strictness(page, folder):
     page.button("Largest").click()
     selected = page.selected()
     counts = set()
-    for strictness in [round(8 + 0.3 * step, 1) for step in range(20)]:
+    for strictness in [8, *(round(8.2 + 0.3 * step, 1) for step in range(18)), 14]:
         command("remerge", "k.vdb", "m.vdb", "--strictness", str(strictness), "--tidy", "0", "-q")
         command("measure", "m.vdb", "cut", "--min-faces", "4", "--stability", "-q")
         command("convert", "m.vdb", "m.npy", "--grid", "grain", "-q")
