@@ -213,6 +213,33 @@ TEST_CASE("cli: outputs that are in each other's way are refused before the work
   CHECK(bench.bytes("s.slabs/slab-0000.vdb") == slab);
 }
 
+TEST_CASE("cli: an input does not go with the slabs that it lies among", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate pack s.slabs --dims 24x24x48 --radius 4:6 -q");
+  bench.mustRun("convert s.slabs s.vdb");
+  bench.mustRun("segment s.slabs g.slabs -q");
+  const std::string slab = "g.slabs/slab-0000.vdb", guess = "g.slabs/.guess.txt";
+  std::filesystem::create_symlink(slab, bench.path("link.vdb"));
+  std::filesystem::create_symlink(".", bench.path("here"));
+  bench.write(guess, "1 0 0 0  0 1 0 0  0 0 1 0");
+  const std::string content = bench.bytes(slab);
+  for (const std::string& run :
+       {"segment " + slab + " g.slabs", "segment " + slab + " here/g.slabs/",
+        std::string("segment link.vdb g.slabs"), "segment s.vdb g.slabs --roi " + slab,
+        "remerge " + slab + " g.slabs", "track " + slab + " s.vdb g.slabs",
+        "track s.vdb " + slab + " g.slabs", "track s.vdb s.vdb g.slabs --motion " + guess,
+        "track " + slab + " s.vdb other/g.slabs here --motion rigid"})
+    refuses(bench, kWrongUsage, run, {"g.slabs: replaces the slabs that are there", "among them"});
+  CHECK(bench.bytes(slab) == content);
+  CHECK(bench.bytes(guess) != "");
+
+  std::filesystem::rename(bench.path("g.slabs"), bench.path("g.slabs.part"));
+  const std::string part = "segment g.slabs.part/slab-0000.vdb g.slabs --resume";
+  refuses(bench, kWrongUsage, part, {"among them"});
+  std::filesystem::rename(bench.path("g.slabs.part"), bench.path("g.slabs"));
+  bench.mustRun("segment s.slabs g.slabs -q");
+}
+
 TEST_CASE("cli: a plot on standard output is nothing but the plot", "[cli]") {
   const Bench bench;
   bench.mustRun("generate snow s.vdb --size 24 --length 8");

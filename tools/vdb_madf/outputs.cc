@@ -38,7 +38,23 @@ bool isOfSlabs(const std::string& file, const std::string& folder) {
   return isSlabFolder(folder) && isSameFile(place.string(), folder);
 }
 
+/// True if the file would go with the folder of slabs, or with what a run left of it.
+bool goesWithSlabs(const std::string& file, const std::string& folder) {
+  return fileEnding(folder) == ".slabs" &&
+         (isWithin(file, folder) || isWithin(file, folder + ".part"));
+}
+
 }  // namespace
+
+bool isWithin(const std::string& path, const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const auto place = [&](const std::string& of) {
+    return (fs::weakly_canonical(fs::absolute(of, ignored), ignored) / "").string();
+  };
+  const std::string inner = place(path), outer = place(folder);
+  return inner.compare(0, outer.size(), outer) == 0;
+}
 
 bool isOnStandardOutput(const std::string& output) {
   return output == "-" || output == "/dev/stdout" || isStandardOutput(output);
@@ -58,6 +74,9 @@ void checkOutputs(const std::vector<std::string>& outputs, const std::string& in
       throw WrongUsage(files[i] +
                        ": the output would lie among the slabs of the input; choose "
                        "another folder");
+    if (!input.empty() && goesWithSlabs(input, files[i]))
+      throw WrongUsage(files[i] + ": replaces the slabs that are there, and the input " + input +
+                       " is among them; choose another name");
     for (size_t j = 0; j < i; ++j)
       if (isSameFile(files[j], files[i]))
         throw WrongUsage(files[i] + ": two outputs would go to this file; choose another name");

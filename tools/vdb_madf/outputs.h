@@ -11,9 +11,11 @@ namespace vdb_madf::tools {
 /// All files that the outputs are written to: an .mhd has its samples in a file beside it, an .obj
 /// its materials. Empty names and "-" are none.
 std::vector<std::string> filesOf(const std::vector<std::string>& outputs);
-/// @throw WrongUsage if the outputs would overwrite the input or each other, or standard output
-///   cannot take them
+/// @throw WrongUsage if the outputs would overwrite the input or each other, or replace the folder
+///   that it lies in, or standard output cannot take them
 void checkOutputs(const std::vector<std::string>& outputs, const std::string& input);
+/// True if a path is that of a folder, or of something in it, be it through links.
+bool isWithin(const std::string& path, const std::string& folder);
 /// True if the output goes to standard output: "-", or "npy:-" and the like (standard_streams.h).
 bool isOnStandardOutput(const std::string& output);
 /// Finds out before the work, not after it, that the output cannot be written or would replace what

@@ -56,8 +56,8 @@ std::vector<std::string> laterScans(const TrackArguments& o) {
   return scans;
 }
 
-/// All that is read and written is told apart by its place.
-void parseSeries(TrackArguments& o) {
+/// All that is read and written is told apart by its place. Returns what is written.
+std::vector<std::string> parseSeries(TrackArguments& o) {
   for (const std::string& table : {o.json, o.grains, o.links, o.bonds, o.phi, o.network})
     if (!table.empty())
       throw WrongUsage(table + ": of more than two scans all tables go to the folder, " +
@@ -72,14 +72,16 @@ void parseSeries(TrackArguments& o) {
     after.path = scan;
     parsePair(before, after, outputs);
   }
+  return outputs;
 }
 
 void parse(TrackArguments& o) {
+  std::vector<std::string> outputs{o.out, o.json, o.grains, o.links, o.bonds, o.phi, o.network};
   if (!o.more.empty()) {
-    parseSeries(o);
+    outputs = parseSeries(o);
     parsePair(o.before, o.after, {});
   } else {
-    parsePair(o.before, o.after, {o.out, o.json, o.grains, o.links, o.bonds, o.phi, o.network});
+    parsePair(o.before, o.after, outputs);
     const bool isScene = isZarrEnding(o.out);
     if (!o.out.empty() && !isScene && !hasSlabsEnding(o.out)) checkVolumeEnding(o.out);
     if (isScene && motionKindOf(o.motion) == MotionKind::free)
@@ -87,6 +89,7 @@ void parse(TrackArguments& o) {
                        ": a scene tells where the whole has gone, which --motion free does "
                        "not find: choose rigid or affine, or write labels");
   }
+  if (!o.motion.empty() && !motionKindOf(o.motion)) checkOutputs(outputs, o.motion);
   if (!o.shift.empty()) o.track.shift = parseShift(o.shift, "--shift");
   o.track.minFaces = parseCount(o.minFaces, "--min-faces");
   o.track.sureFaces = parseCount(o.sureFaces, "--sure-faces");

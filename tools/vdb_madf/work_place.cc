@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "member_failure.h"
+#include "outputs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/version.h"
 #include "vdb_madf/slabs/slab_builder.h"
@@ -85,15 +86,6 @@ bool isOf(const Json& index, const SegmentArguments& o) {
   return index.value("invert", false) == o.input.invert &&
          index.value("min_grain", int64_t(0)) == int64_t(o.segment.merge.minGrain) &&
          index.contains("reading") == wanted.contains("reading");
-}
-
-/// Is a path that of a folder, or of something in it?
-bool isWithin(const std::string& path, const std::string& folder) {
-  std::error_code ignored;
-  const std::string a = (fs::weakly_canonical(fs::absolute(path, ignored), ignored) / "").string(),
-                    b = (fs::weakly_canonical(fs::absolute(folder, ignored), ignored) / "")
-                            .string();
-  return a.compare(0, b.size(), b) == 0;
 }
 
 std::string scratchOf(const SegmentArguments& o) {
