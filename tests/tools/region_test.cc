@@ -235,6 +235,38 @@ TEST_CASE("region: labels of another program are cut to it", "[region]") {
         Json({5, 6, 7}));
 }
 
+TEST_CASE("region: it makes no mask of labels, and chooses no other grid", "[region]") {
+  const Bench bench;
+  bench.mustRun("generate sintered s.vdb --size 32 --count 6 --radius 5:9");
+  bench.mustRun("segment s.vdb g.slabs --grid object --slab-height 16 -q");
+  bench.mustRun("segment s.vdb keep.vdb --grid object --keep distance,balls");
+  bench.mustRun("convert g.slabs full.npy");
+  bench.mustRun("convert full.npy wanted.npy --labels --crop 2,3,4:27,28,29");
+  const std::string wanted = bench.bytes("wanted.npy");
+  const std::string crop = " --crop 2,3,4:27,28,29";
+  for (const std::string in : {"g.slabs", "keep.vdb", "keep.vdb --grid grain", "full.npy"}) {
+    const std::string said = bench.run("convert " + in + " o.npy" + crop).out;
+    CHECK_THAT(said, Contains("grid 'grain', 26x26x26 voxels of type int32"));
+    CHECK(bench.bytes("o.npy") == wanted);
+  }
+  CHECK_THAT(bench.mustRun("convert keep.vdb o.vdb" + crop), Contains("o.vdb: grid 'grain'"));
+  const Json grid = gridOf(infoOf(bench, "o.vdb"), "grain");
+  CHECK(grid.at("metadata").at("madf_object_voxels") == grid.at("active_voxels"));
+  CHECK(grid.at("metadata").count("madf_critical_points") == 0);
+  bench.mustRun("convert o.vdb o.npy");
+  CHECK(bench.bytes("o.npy") == wanted);
+  bench.mustRun("convert s.vdb o.npy" + crop);  // its grid 'truth'
+  CHECK(infoOf(bench, "o.npy").at("type") == "int32");
+  // Masks stay masks, and a selection makes one.
+  for (const std::string in : {"s.vdb --grid object", "g.slabs --threshold 1"}) {
+    bench.mustRun("convert " + in + " o.npy" + crop);
+    CHECK(infoOf(bench, "o.npy").at("type") == "uint8");
+  }
+  bench.mustRun("export g.slabs fog.vdb --as viz");
+  refuses(bench, kFailed, "convert fog.vdb o.npy --grid density --crop 0,0,0:9,9,9",
+          {"fog.vdb: grid 'density' holds float values", "--roi and --crop take masks and labels"});
+}
+
 TEST_CASE("region: Otsu's threshold is that of the core", "[region]") {
   const Bench bench;
   const Core core(bench);

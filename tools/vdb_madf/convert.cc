@@ -8,6 +8,7 @@
 #include <array>
 #include <iostream>
 #include <memory>
+#include <unordered_set>
 
 #include "command.h"
 #include "grid_image.h"
@@ -26,6 +27,7 @@
 #include "vdb_madf/scans/histogram.h"
 #include "vdb_madf/scans/image_box.h"
 #include "vdb_madf/scans/resampled_image.h"
+#include "vdb_madf/segmentation/segmentation_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
 #include "vdb_madf/vdb/write_vdb.h"
 
@@ -74,6 +76,13 @@ void convertMask(const ConvertArguments& o, const Common& common) {
               << (steps.empty() ? "" : ": ") << steps << "\n";
 }
 
+/// Grains that a region left out are no longer counted.
+void updateCountsOf(Int32Grid& labels) {
+  std::unordered_set<int32_t> grains;
+  for (auto value = labels.cbeginValueOn(); value; ++value) grains.insert(*value);
+  updateCounts(labels, int64_t(grains.size()), true);
+}
+
 /// Labels of another program become what `segment` writes, but for the method's own metadata.
 void convertLabels(const ConvertArguments& o, const Common& common) {
   Int32Grid::Ptr labels = loadLabels(o.input, "--grid", common.progress);
@@ -89,6 +98,7 @@ void convertLabels(const ConvertArguments& o, const Common& common) {
     range = openvdb::tools::minMax(labels->tree());
   }
   labels->setName("grain");
+  if (o.input.region.any() && grainCount(*labels)) updateCountsOf(*labels);
   if (!hasVdbEnding(o.out)) {
     writeGridAsImage(o.out, *labels, outputType(o), o.input.path, common);
     return;
@@ -105,17 +115,18 @@ void convertLabels(const ConvertArguments& o, const Common& common) {
   std::cout << "\n";
 }
 
-/// Cubes take the place of one grid's voxels, as labels or as a mask.
-void resampleVdb(ConvertArguments o, const Common& common) {
+/// One grid, the one that would be copied: labels or a mask, cut to a region or of other voxels.
+void convertGrid(ConvertArguments o, const Common& common) {
   const auto grid = chooseGrid(o.input, readVdbHeaders(o.input.path));
   o.input.gridName = grid->getName();
   if (grid->isType<Int32Grid>()) return convertLabels(o, common);
   if (!grid->isType<MaskGrid>() && !grid->isType<BoolGrid>() &&
       grid->getGridClass() != openvdb::GRID_LEVEL_SET)
     throw InvalidInput(fmt::format(
-        "{}: grid '{}' holds {} values, and --resample takes masks and labels: say which values "
-        "are object (--threshold, --range)",
-        o.input.path, o.input.gridName, grid->valueType()));
+        "{}: grid '{}' holds {} values, and {} masks and labels: say which values are object "
+        "(--threshold, --range)",
+        o.input.path, o.input.gridName, grid->valueType(),
+        o.cube ? "--resample takes" : "--roi and --crop take"));
   convertMask(o, common);
 }
 
@@ -143,6 +154,12 @@ void copyVdb(const ConvertArguments& o, const Common& common) {
 void copySlabs(const ConvertArguments& o, const Common& common) {
   const LabelSlabs labels = openLabelSlabs(o.input, "--grid", common.progress);
   writeSlabsAsImage(o.out, labels, outputType(o), o.input.path, common);
+}
+
+bool isImageOfLabels(const ConvertArguments& o, const Common& common) {
+  if (isVdb(o.input) || readsGray(o.input.gray)) return false;
+  const auto image = openVolumeImage(o.input.path, o.input.volume(common.progress));
+  return kindOf(histogramOf(*image, common.progress)) == ImageKind::labels;
 }
 
 std::unique_ptr<ImageReader> openFiltered(const ConvertArguments& o, const Common& common) {
@@ -207,13 +224,14 @@ void runConvert(const ConvertArguments& o, const Common& common) {
   const bool fromVdb = isVdb(o.input);
   if (fromVdb && readsGray(o.input.gray) && !o.input.selection)
     throw InvalidInput(o.input.path + ": --median and --smooth are for images; leave them out");
-  if (o.labels)
+  const bool isCut = o.input.region.any();
+  const bool makesMask = o.input.selection || o.input.gray.despeckle > 0;
+  if (o.labels || (isCut && !makesMask && !hasVdbEnding(o.out) && isImageOfLabels(o, common)))
     convertLabels(o, common);
-  else if (o.input.selection || o.input.gray.despeckle > 0 || o.input.region.any() ||
-           (!fromVdb && hasVdbEnding(o.out)))
+  else if (makesMask || (!fromVdb && (isCut || hasVdbEnding(o.out))))
     convertMask(o, common);
-  else if (fromVdb && o.cube)
-    resampleVdb(o, common);
+  else if (fromVdb && (o.cube || isCut))
+    convertGrid(o, common);
   else if (isInSlabs(o.input) && !hasVdbEnding(o.out))
     copySlabs(o, common);
   else if (fromVdb)
