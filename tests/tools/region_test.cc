@@ -87,7 +87,7 @@ TEST_CASE("region: a round core has the porosity of its cylinder", "[region]") {
     CHECK(json.at("region_voxels") == core.inside);
     CHECK(json.at("porosity").get<double>() == Approx(porosity));
     CHECK(json.at("boundary") == "open");
-    bench.mustRun("convert g.vdb g.raw --grid grain");
+    bench.mustRun("convert g.vdb g.raw --grid grain -q");
     if (labels.empty()) labels = bench.bytes("g.raw");
     CHECK(bench.bytes("g.raw") == labels);
   }
@@ -163,14 +163,14 @@ TEST_CASE("region: all verbs keep it", "[region]") {
   CHECK(bench.bytes("c.vdb") == bench.bytes("g.vdb"));
   bench.mustRun("convert g.vdb c.vdb --grid grain");
   CHECK(gridsOf(infoOf(bench, "c.vdb")) == std::set<std::string>{"grain", "region"});
-  CHECK_THAT(bench.mustRun("convert g.vdb c.npy"), Contains("grid 'grain', 40x40x48 voxels"));
+  CHECK_THAT(bench.run("convert g.vdb c.npy").out, Contains("grid 'grain', 40x40x48 voxels"));
   CHECK_THAT(bench.mustRun("convert g.vdb v.npy --grid region"), Contains("40x40x48 voxels"));
   bench.run("convert core.npy mask.vdb --roi cylinder -q");
   CHECK(regionOf("mask.vdb") == core.inside);
   bench.mustRun("segment mask.vdb m.vdb --keep manifold");
   CHECK(regionOf("m.vdb") == core.inside);
-  bench.mustRun("convert m.vdb a.raw --grid grain");
-  bench.mustRun("convert g.vdb b.raw --grid grain");
+  bench.mustRun("convert m.vdb a.raw --grid grain -q");
+  bench.mustRun("convert g.vdb b.raw --grid grain -q");
   CHECK(bench.bytes("a.raw") == bench.bytes("b.raw"));
   // Inverted, it is the pores of the region.
   bench.mustRun("segment mask.vdb pores.vdb --invert --json s.json");
@@ -265,6 +265,28 @@ TEST_CASE("region: it makes no mask of labels, and chooses no other grid", "[reg
   bench.mustRun("export g.slabs fog.vdb --as viz");
   refuses(bench, kFailed, "convert fog.vdb o.npy --grid density --crop 0,0,0:9,9,9",
           {"fog.vdb: grid 'density' holds float values", "--roi and --crop take masks and labels"});
+}
+
+TEST_CASE("region: what does not hold it says so", "[region]") {
+  const Bench bench;
+  bench.mustRun("generate pack p.tif --size 32 --radius 5");
+  bench.mustRun("segment p.tif r.vdb --roi cylinder:z::14 -q");
+  bench.mustRun("segment p.tif r.slabs --roi cylinder:z::14 -q");
+  for (const std::string run :
+       {"export r.vdb o.npy --as mask", "export r.slabs o.npy --as mask", "export r.vdb o.vti",
+        "export r.vdb o.zarr", "convert r.vdb o.npy", "convert r.slabs o.npy"}) {
+    const std::string out = run.substr(run.find(" o.") + 1, 6);
+    const Outcome outcome = bench.run(run);
+    CAPTURE(run);
+    CHECK(outcome.exitCode == 0);
+    CHECK_THAT(outcome.err,
+               Contains(note(out.substr(0, out.find(' ')) +
+                             ": does not say where the region ends: outside of it there is 0, as "
+                             "in pores (a .vdb says it)")));
+  }
+  CHECK_THAT(bench.mustRun("export r.vdb o.dat --as palabos"),
+             Contains("2 = inside, outside of the region as in grains, 28x28x32 voxels"));
+  bench.mustRun("convert r.vdb o.vdb");
 }
 
 TEST_CASE("region: Otsu's threshold is that of the core", "[region]") {

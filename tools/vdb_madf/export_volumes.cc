@@ -46,12 +46,17 @@ void writeMask(const ExportArguments& o, const CoordBBox& box, const LabelSlabs&
 void exportPalabos(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
   const CoordBBox box = boxOf(labels);
   writePalabos(o.out, labels, box, common.progress);
-  say(o, common, "0 = fluid, 1 = wall, 2 = inside, " + sizeText(box) + ", x slowest");
+  const auto domain = storedDomain(labels);
+  say(o, common,
+      std::string("0 = fluid, 1 = wall, 2 = inside") +
+          (domain && !domain->isBox() ? ", outside of the region as in grains, " : ", ") +
+          sizeText(box) + ", x slowest");
 }
 
 void exportVti(const ExportArguments& o, const Common& common, const Int32Grid& labels) {
   const CoordBBox box = boxOf(labels);
   writeVti(o.out, labels, box, o.compress, common.progress);
+  noteLostRegion(o.out, labels, common);
   say(o, common, "cell data grain_id, " + sizeText(box));
 }
 
@@ -61,6 +66,7 @@ void exportMask(const ExportArguments& o, const Common& common, const Labels& la
   const CoordBBox box = boxOf(about);
   writeMask(o, box, labels, common.progress);
   noteLostEdges(o.out, hasCubicVoxels(about), storedVoxelSize(about), common);
+  noteLostRegion(o.out, about, common);
   say(o, common, "1 = grain, 0 = background, " + sizeText(box) + " of type uint8, x fastest");
 }
 
@@ -86,6 +92,7 @@ void exportZarr(const ExportArguments& o, const Common& common, const Labels& la
   options.mesh = meshOptions(o);
   options.meshReduction = reductionOf(o, aboutOf(labels));
   writeOmeZarr(o.out, labels, box, options, common.progress);
+  noteLostRegion(o.out, aboutOf(labels), common);
   say(o, common,
       fmt::format("OME-Zarr {}, the object and labels/grain, {}{}", o.ome, sizeText(box),
                   o.meshes ? "; meshes and measures for neuroglancer" : ""));

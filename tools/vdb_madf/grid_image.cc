@@ -48,6 +48,7 @@ void tellBox(const std::string& path, const CoordBBox& box, const Common& common
 void report(const std::string& path, const openvdb::GridBase& grid, const CoordBBox& box,
             SampleType type, const Common& common) {
   noteLostEdges(path, hasCubicVoxels(grid), storedVoxelSize(grid), common);
+  noteLostRegion(path, grid, common);
   reportImage(path, "grid '" + grid.getName() + "'", box.dim(), type, common);
 }
 
@@ -155,6 +156,14 @@ void noteLostEdges(const std::string& path, bool areCubes, const std::optional<V
   common.progress->note(path +
                         ": does not say that its voxels are no cubes: give their edges again "
                         "where it is read (--voxel-size)");
+}
+
+void noteLostRegion(const std::string& path, const openvdb::GridBase& grid, const Common& common) {
+  const auto domain = storedDomain(grid);
+  if (domain && !domain->isBox())
+    common.progress->note(path +
+                          ": does not say where the region ends: outside of it there is 0, as in "
+                          "pores (a .vdb says it)");
 }
 
 void reportImage(const std::string& path, const std::string& what, const Coord& size,

@@ -37,6 +37,9 @@ void writeSlabsAsImage(const std::string& path, const LabelSlabs& labels,
 void noteLostEdges(const std::string& path, bool areCubes, const std::optional<VoxelSize>& size,
                    const Common& common);
 
+/// A note if a grid has a region, which no image holds.
+void noteLostRegion(const std::string& path, const openvdb::GridBase& grid, const Common& common);
+
 /// Says what samples an image has, unless the user wants to hear nothing.
 void reportImage(const std::string& path, const std::string& what, const Coord& size,
                  SampleType type, const Common& common);

@@ -12,7 +12,8 @@ namespace vdb_madf {
 /// Writes the grains over `box` as a geometry for Palabos, whole or not at all: a digit and a space
 /// per voxel, x slowest, a line per row along z, without a header. 0: fluid, no grain is there;
 /// 1: wall, where fluid bounces back: of a grain, and a face of the box or one of the 26 neighbors
-/// without a grain is next to it; 2: inside of grains, nothing is computed there.
+/// without a grain is next to it; 2: inside of grains, nothing is computed there. What lies outside
+/// of the labels' region is as a grain.
 ///
 /// Memory: ten slices across x, a byte a voxel, and a mask of the grains.
 /// @throw InvalidInput if the box is empty; IoError; Interrupted.
