@@ -140,6 +140,25 @@ TEST_CASE("histogram: masks, phases, labels and gray images are told apart", "[h
   CHECK(kindOfRow(std::vector<float>(labels.begin(), labels.end())) == ImageKind::labels);
 }
 
+TEST_CASE("histogram: gray values are strewn over the image, labels lie together", "[histogram]") {
+  constexpr int kSide = 24;
+  const size_t voxels = size_t(kSide) * kSide * kSide;
+  for (const int most : {255, 65535})
+    CHECK(valueSpread(*imageOf<uint16_t>({kSide, kSide, kSide},
+                                         randomNumbers<uint16_t>(voxels, 0, most, 1))) > 0.3);
+  // Bars of two voxels along any axis: of 23 steps one, along one axis of three.
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<int32_t> bars;
+    for (int i = 0; i < int(voxels); ++i) {
+      const int step = axis == 0 ? 1 : axis == 1 ? kSide : kSide * kSide;
+      bars.push_back(1 + i - i / step % 2 * step);
+    }
+    CHECK(valueSpread(*imageOf<int32_t>({kSide, kSide, kSide}, bars)) == Approx(1.0 / 69));
+  }
+  CHECK(valueSpread(*imageOf<uint8_t>({4, 1, 1}, {0, 0, 1, 2})) == 1);
+  CHECK(valueSpread(*imageOf<uint8_t>({4, 1, 1}, {3, 0, 0, 3})) == 1);
+}
+
 TEST_CASE("histogram: Otsu's threshold is that of the definition", "[histogram]") {
   for (unsigned seed = 1; seed <= 60; ++seed) {
     CAPTURE(seed);

@@ -91,12 +91,17 @@ TEST_CASE("gray: Otsu's threshold takes the object back out of a scan", "[gray]"
 TEST_CASE("gray: a scan is no image of labels, and what selects nothing is said", "[gray]") {
   const Bench bench;
   makeScan(bench);
-  for (const std::string verb : {"measure s.tif t", "render s.tif o.png", "export s.tif o.ply",
-                                 "compare s.tif s.tif", "convert s.tif o.vdb --labels"}) {
+  for (const std::string verb :
+       {"measure s.tif t", "render s.tif o.png", "export s.tif o.ply", "compare s.tif s.tif"}) {
     CAPTURE(verb);
     CHECK_THAT(refused(bench, verb).err,
-               Contains("s.tif: is a gray image, with values from ") && Contains("segment it"));
+               Contains("s.tif: is a gray image, with values from ") &&
+                   Contains("segment it first (or, if it holds labels, convert --labels)"));
   }
+  const Outcome labels = bench.run("convert s.tif o.vdb --labels");
+  CHECK(labels.exitCode == 0);
+  CHECK_THAT(labels.err, Contains("vdb_madf: note: s.tif: its values, from ") &&
+                             Contains("are taken for labels, as was said"));
   const Outcome nothing = bench.run("segment s.tif o.vdb --phase 1");
   CHECK(nothing.exitCode == 0);
   CHECK_THAT(nothing.err, Contains("vdb_madf: note: s.tif: nothing is selected"));

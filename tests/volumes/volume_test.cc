@@ -3,10 +3,12 @@
 
 #include "vdb_madf/volumes/volume.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <random>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "support/catch.h"
 #include "support/files.h"
@@ -81,6 +83,39 @@ TEST_CASE("volume: labels and object are the same from every kind of file", "[vo
     options.selection = Selection::phase(2);
     CHECK(loadObject(path, options)->activeVoxelCount() == second->activeVoxelCount());
   }
+}
+
+TEST_CASE("volume: labels of many small grains are no gray image", "[volume]") {
+  const ScratchFolder folder;
+  LabelMap grains;
+  for (const Coord& p : CoordBBox(Coord(0), Coord(15)))
+    if (p.y() % 3 != 2) grains[p] = 1 + p.x() + 16 * (p.y() / 3) + 96 * (p.z() / 2);
+  std::vector<int32_t> values;
+  for (const auto& voxel : grains) values.push_back(voxel.second);
+  LabelMap strewn = grains;
+  std::mt19937 random(1);
+  std::shuffle(values.begin(), values.end(), random);
+  for (auto& voxel : strewn) {
+    voxel.second = values.back();
+    values.pop_back();
+  }
+  const std::string labels = folder / "labels.npy", gray = folder / "gray.npy";
+  const CoordBBox box(Coord(0), Coord(15));
+  writeImage(labels, *labelGrid(grains), box, SampleType::int32);
+  writeImage(gray, *labelGrid(strewn), box, SampleType::int32);
+  CHECK(sameValues(*labelGrid(grains), *loadLabels(labels)));
+  CHECK_THROWS_WITH(loadLabels(gray), Contains("is a gray image, with values from 0 to 768"));
+
+  VolumeOptions options;
+  std::string notes;
+  options.note = [&](const std::string& text, NoteAbout) { notes += text + "\n"; };
+  CHECK(sameValues(*labelGrid(grains), *loadLabels(labels, options)));
+  CHECK(notes == "");
+  options.areLabels = true;
+  CHECK(sameValues(*labelGrid(strewn), *loadLabels(gray, options)));
+  CHECK(notes == gray +
+                     ": its values, from 0 to 768, are taken for labels, as was said, though they "
+                     "lie as in a gray image\n");
 }
 
 TEST_CASE("volume: domain and voxel size of the options replace the file's", "[volume]") {

@@ -278,6 +278,7 @@ void addConvert(Verb command, Common& common, Action& action) {
   verb.onParsed([o, &common, &action] {
     o->input.outputs = {o->out};
     o->input.typeIsOfInput = hasVdbEnding(o->out);
+    o->input.areLabels = o->labels;
     o->input.parse();
     if (!o->resample.empty()) {
       const VoxelSize cube = parseVoxelSize(o->resample, "--resample");

@@ -208,6 +208,7 @@ VolumeOptions InputOptions::volume(Progress* progress) const {
   options.region = region;
   options.outputs = filesOf(outputs);
   options.longestSide = longestSide;
+  options.areLabels = areLabels;
   options.note = [progress](const std::string& text, NoteAbout about) {
     progress->note(text + (about == NoteAbout::voxelSize  ? " (--voxel-size)"
                            : about == NoteAbout::labels   ? " (convert --labels keeps them apart)"

@@ -34,7 +34,8 @@ struct InputOptions {
   std::string phase, threshold, range;
   bool invert = false;
   std::string median, smooth, despeckle;
-  int longestSide = 0;  ///< see VolumeOptions
+  int longestSide = 0;     ///< see VolumeOptions
+  bool areLabels = false;  ///< so is this
   std::string voxelSizeText, domainText, roi, cropText;
 
   // Filled by parse().

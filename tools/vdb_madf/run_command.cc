@@ -75,6 +75,8 @@ const char* optionFor(Hint hint) {
       return " with --keep manifold";
     case Hint::smallerLabels:
       return " (export --as lod)";
+    case Hint::areLabels:
+      return " (or, if it holds labels, convert --labels)";
     case Hint::unverified:
       return " (--no-verify)";
   }

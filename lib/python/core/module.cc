@@ -19,6 +19,7 @@ namespace {
 const char* argumentFor(Hint hint) {
   switch (hint) {
     case Hint::none:
+    case Hint::areLabels:
       break;
     case Hint::rawLayout:
       return " (numpy.memmap)";

@@ -18,6 +18,7 @@ enum class Hint {
   memoryLimit,    ///< a higher one
   manifolds,      ///< a segmentation that keeps them
   smallerLabels,  ///< a reduced copy of the labels
+  areLabels,      ///< that these are labels
   unverified,     ///< that files are read whatever their digests say
 };
 

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/images/detail/header_checks.h"
@@ -107,6 +109,48 @@ int64_t countLabels(const Histogram& histogram, ImageReader& image, Interrupter*
     });
   });
   return int64_t(values.size());
+}
+
+double valueSpread(ImageReader& image, Interrupter* interrupter) {
+  constexpr int64_t kMostVoxels = int64_t(1) << 26;
+  constexpr size_t kMostValues = 65536;  // that were met first
+  const ImageInfo& info = image.info();
+  const int64_t slice = int64_t(info.size.x) * info.size.y;
+  const int64_t step = 1 + slice * info.size.z / kMostVoxels;
+  std::unordered_map<int64_t, std::pair<CoordBBox, int64_t>> places;  // box, voxels
+  std::vector<char> samples(size_t(slice) * sampleSize(info.type) * size_t(detail::kSlab));
+  detail::forEachSlab(0, info.size.z, interrupter, [&](int z, int count) {
+    if (z / detail::kSlab % step != 0) return;
+    image.read(z, count, samples.data());
+    detail::withSampleType(info.type, [&](auto sample) {
+      const auto* value = reinterpret_cast<const decltype(sample)*>(samples.data());
+      Coord p;
+      for (p.z() = z; p.z() < z + count; ++p.z())
+        for (p.y() = 0; p.y() < info.size.y; ++p.y())
+          for (p.x() = 0; p.x() < info.size.x; ++p.x(), ++value) {
+            if (*value == 0 || (places.size() == kMostValues && places.count(int64_t(*value)) == 0))
+              continue;
+            auto& [box, voxels] = places[int64_t(*value)];
+            box.expand(p);
+            ++voxels;
+          }
+    });
+  });
+  double sum = 0;
+  int64_t several = 0;
+  for (const auto& [value, place] : places) {
+    if (place.second < 2) continue;
+    ++several;
+    int axes = 0;
+    double parts = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (info.size[axis] < 2) continue;
+      ++axes;
+      parts += double(place.first.dim()[axis] - 1) / (info.size[axis] - 1);
+    }
+    sum += parts / axes;
+  }
+  return several > 0 ? sum / double(several) : 1;
 }
 
 std::optional<double> otsuThreshold(const Histogram& histogram) {

@@ -54,6 +54,13 @@ ImageKind kindOf(const Histogram& histogram);
 /// other.
 double meanRun(const Histogram& histogram);
 
+/// How far apart the voxels of a value lie, on average of the values but 0 that have several: the
+/// length of their box as a part of the image's, 0 to 1, the mean of its axes. It is 1/3 or more of
+/// values that are strewn at random, and small of labels of many grains; 1 if no value has several.
+/// The values are whole numbers. Of a large image some slices are looked at, 2^26 voxels in all.
+/// @throw IoError; Interrupted.
+double valueSpread(ImageReader& image, Interrupter* interrupter = nullptr);
+
 /// How many values but 0 there are, all of which are whole numbers. Takes another pass over the
 /// image where a bin holds several values; memory is that of the values. @throw IoError;
 /// Interrupted.

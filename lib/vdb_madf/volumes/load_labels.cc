@@ -22,16 +22,34 @@ namespace vdb_madf {
 namespace {
 
 /// A gray scan would have millions of grains: it has many values, and hardly two voxels side by
-/// side have the same.
-void checkLabels(ImageReader& image, Interrupter* interrupter) {
+/// side have the same. So have labels of grains that are a voxel or two wide; but theirs lie close
+/// together, where those of a gray value lie anywhere. Ordinary labels have longer runs, and are
+/// not read a second time.
+void checkLabels(const ImageOpener& open, const VolumeOptions& options, Interrupter* interrupter) {
   constexpr double kNoise = 1.5;
+  constexpr double kScattered = 0.2;  // between a tenth, of a thousand grains, and 1/3
   constexpr size_t kFewValues = 100;
-  const Histogram values = histogramOf(image, interrupter);
-  if (values.counts.size() > kFewValues && kindOf(values) == ImageKind::gray &&
-      meanRun(values) < kNoise)
-    throw InvalidInput(fmt::format(
-        "{}: is a gray image, with values from {} to {}, not labels: segment it first",
-        image.path(), detail::shortestDecimal(values.min), detail::shortestDecimal(values.max)));
+  const auto image = open();
+  const Histogram values = histogramOf(*image, interrupter);
+  if (values.counts.size() <= kFewValues || kindOf(values) != ImageKind::gray ||
+      meanRun(values) >= kNoise)
+    return;
+  constexpr double kMost = 2147483647;
+  const bool couldBe =
+      values.whole && values.notFinite == 0 && values.max <= kMost && values.min >= -kMost - 1;
+  if (couldBe && valueSpread(*open(), interrupter) < kScattered) return;
+  const std::string range = fmt::format("{} to {}", detail::shortestDecimal(values.min),
+                                        detail::shortestDecimal(values.max));
+  if (!couldBe || !options.areLabels)
+    throw InvalidInput(fmt::format("{}: is a gray image, with values from {}, not labels: segment "
+                                   "it first",
+                                   image->path(), range),
+                       couldBe ? Hint::areLabels : Hint::none);
+  if (options.note)
+    options.note(fmt::format("{}: its values, from {}, are taken for labels, as was said, though "
+                             "they lie as in a gray image",
+                             image->path(), range),
+                 NoteAbout::file);
 }
 
 Int32Grid::Ptr labelsOfGrid(const std::string& path, const VolumeOptions& options,
@@ -47,7 +65,7 @@ Int32Grid::Ptr labelsOfGrid(const std::string& path, const VolumeOptions& option
 
 Int32Grid::Ptr labelsOfImage(const std::string& path, const ImageOpener& open,
                              const VolumeOptions& options, Interrupter* interrupter) {
-  checkLabels(*open(), interrupter);
+  checkLabels(open, options, interrupter);
   const auto part = detail::partOfImage(open, options, interrupter);
   const auto image = open();
   if (!part) {

@@ -30,6 +30,7 @@ struct VolumeOptions {
   std::optional<RawLayout> raw;        ///< of a file without a header
   std::optional<Selection> selection;  ///< object only: by value; default: see loadObject()
   GrayOptions gray;                    ///< object only: filters and thresholds of a gray image
+  bool areLabels = false;              ///< labels only: also if they look like a gray image
   std::optional<VoxelSize> voxelSize;  ///< instead of the file's
   std::optional<CoordBBox> domain;     ///< of the scan, in voxels, instead of the file's
   RegionOptions region;                ///< the part of that to work on
