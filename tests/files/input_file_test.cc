@@ -46,6 +46,8 @@ TEST_CASE("input_file: a text is read whole, unless it is too long", "[input_fil
   CHECK(readText(path, 10) == "0123456789");
   CHECK_THROWS_WITH(readText(path, 9),
                     path + ": has 10 bytes, and a text of at most 9 is expected");
+  writeBytes(path, "\xEF\xBB\xBFx\n\xEF\xBB\xBF");
+  CHECK(readText(path, 10) == "x\n\xEF\xBB\xBF");
   writeBytes(path, "");
   CHECK(readText(path, 0).empty());
   CHECK_THROWS_AS(readText(folder.file("missing"), 9), IoError);

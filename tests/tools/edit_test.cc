@@ -27,7 +27,9 @@ TEST_CASE("cli: edits are done in the order given, from the command line and fro
   const Bench bench;
   bench.mustRun(kSnow + "s.vdb");
   bench.mustRun("segment s.vdb g.vdb --keep manifold,power");
-  bench.write("list.txt", "drop 2 # a bubble\r\n\nmin-voxels 30\n");
+  bench.write("list.txt",
+              "\xEF\xBB\xBF"
+              "drop 2 # a bubble\r\n\nmin-voxels 30\n");
   const Json json = Json::parse(
       bench.mustRun("edit g.vdb e.vdb --merge 1,3 --edits list.txt --renumber --json -"));
   std::vector<std::string> texts;

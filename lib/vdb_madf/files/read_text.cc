@@ -24,6 +24,8 @@ std::string readText(const std::string& path, uint64_t mostBytes) {
     got = file.readSome(text.size() - kPart, &text[text.size() - kPart], kPart);
     text.resize(text.size() - kPart + got);
   }
+  constexpr char kByteOrderMark[] = "\xEF\xBB\xBF";
+  if (text.compare(0, 3, kByteOrderMark) == 0) text.erase(0, 3);
   return text;
 }
 
