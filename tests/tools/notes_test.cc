@@ -43,6 +43,24 @@ void writeGrid(const Bench& bench, const std::string& file, const openvdb::Vec3d
 
 }  // namespace
 
+TEST_CASE("cli: a place that is not taken over is said", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate spheres s.vdb --size 32 --count 3 --radius 4:6");
+  bench.mustRun("segment s.vdb g.vdb --crop 3,0,5:28,31,31");
+  bench.mustRun("export g.vdb c.zarr");
+  for (const std::string out : {"c.mha", "c.mhd", "c.nrrd"}) {
+    bench.mustRun("convert g.vdb " + out);
+    notes(bench, "convert " + out + " o.vdb --labels", {out + ": begins elsewhere than at 0"});
+    bench.mustRun("convert s.vdb --grid object " + out);
+    bench.mustRun("convert " + out + " o.vdb");
+  }
+  notes(bench, "convert c.zarr o.vdb --labels --dataset labels/grain/0",
+        {"c.zarr: begins elsewhere than at 0"});
+  bench.mustRun("segment s.vdb g.vdb");
+  bench.mustRun("export g.vdb w.zarr");
+  bench.mustRun("convert w.zarr o.vdb --labels --dataset labels/grain/0");
+}
+
 TEST_CASE("cli: a voxel size that contradicts the file is said", "[cli]") {
   const Bench bench;
   bench.mustRun("generate snow a.tif --size 24 --length 8 --voxel-size 10um");

@@ -37,7 +37,8 @@ struct ImageInfo {
   /// Edges along x, y and z of voxels that are no cubes, in a unit that the file does not say; then
   /// there is no voxelSize.
   std::optional<std::array<double, 3>> proportions;
-  std::string format;  ///< "tiff", "raw", "mhd", "nrrd", "npy", "isq", "nifti" ...
+  bool isPlaced = false;  ///< in the file's world, voxel 0,0,0 is a voxel or more from the origin
+  std::string format;     ///< "tiff", "raw", "mhd", "nrrd", "npy", "isq", "nifti" ...
 };
 
 /// Reads a volume as slabs of z-slices; never holds more than it is asked for.

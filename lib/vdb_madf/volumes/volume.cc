@@ -50,6 +50,11 @@ std::unique_ptr<ImageReader> checkedImage(std::unique_ptr<ImageReader> image,
           box.dim()[axis], options.longestSide));
   if (options.note)
     for (const std::string& note : image->notes()) options.note(note, NoteAbout::file);
+  if (options.note && image->info().isPlaced)
+    options.note(path +
+                     ": begins elsewhere than at 0, by its header, which is not taken over: its "
+                     "first voxel is 0,0,0 (a .vdb keeps the place of a crop)",
+                 NoteAbout::file);
   noteVoxelSize(path, image->info().voxelSize, options);
   return image;
 }

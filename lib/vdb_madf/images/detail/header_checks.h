@@ -32,6 +32,9 @@ std::optional<VoxelSize> checkedVoxelSize(const std::string& path,
 void setSpacing(ImageInfo& info, const std::string& path, const std::array<double, 3>& spacing,
                 std::optional<double> unitsPerMetre);
 
+/// The part of an edge from which on a distance counts as a voxel (ImageInfo::isPlaced).
+constexpr double kNearlyOne = 1 - 1e-6;
+
 /// @throw IoError unless each size is in 1 .. kMaxImageSide.
 ImageSize checkedSize(const std::string& path, const std::vector<int64_t>& size);
 

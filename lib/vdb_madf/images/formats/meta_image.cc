@@ -3,6 +3,7 @@
 
 #include "vdb_madf/images/formats/meta_image.h"
 
+#include <cmath>
 #include <filesystem>
 #include <optional>
 
@@ -69,6 +70,15 @@ std::optional<VoxelSize> elementSpacing(const std::string& path, const KeyValueH
   const std::array<double, 3> spacing{(*values)[0], (*values)[1], (*values)[2]};
   if (spacing == std::array<double, 3>{1, 1, 1}) return std::nullopt;
   return checkedVoxelSize(path, spacing, unitsPerMetre("mm"));
+}
+
+bool isPlaced(const KeyValueHeader& header, const std::optional<VoxelSize>& size) {
+  for (const char* key : {"Offset", "Position", "Origin"})
+    if (const auto place = reals(header.find(key).value_or("")); place && place->size() == 3)
+      for (size_t axis = 0; axis < 3; ++axis)
+        if (std::abs((*place)[axis]) >= (size ? 1e3 * size->edges()[axis] : 1) * kNearlyOne)
+          return true;
+  return false;
 }
 
 std::string headerText(const ImageInfo& info, const std::array<double, 3>& origin,
@@ -172,6 +182,7 @@ std::unique_ptr<ImageReader> openMeta(std::unique_ptr<InputFile> file) {
   info.size = checkedSize(path, *size);
   info.type = elementType(header);
   info.voxelSize = elementSpacing(path, header);
+  info.isPlaced = isPlaced(header, info.voxelSize);
 
   SampleLayout layout;
   layout.deflated = flag(header, "CompressedData");

@@ -111,13 +111,18 @@ std::optional<double> commonUnit(const std::string& path, const std::optional<st
   return units[0];
 }
 
+/// "(1,2,3) (4,5,6)" becomes numbers with blanks between them.
+std::string withoutParentheses(std::string vectors) {
+  for (char& c : vectors)
+    if (c == '(' || c == ')' || c == ',') c = ' ';
+  return vectors;
+}
+
 void setSpacingOfDirections(ImageInfo& info, const std::string& path,
                             const KeyValueHeader& header) {
-  std::string text = header.require("spacedirections");
+  const std::string text = header.require("spacedirections");
   if (std::count(text.begin(), text.end(), '(') != 3) header.fail("spacedirections");
-  for (char& c : text)
-    if (c == '(' || c == ')' || c == ',') c = ' ';
-  const auto values = reals(text);
+  const auto values = reals(withoutParentheses(text));
   if (!values || values->size() != 9) header.fail("spacedirections");
   const auto dot = [&](int a, int b) {
     double sum = 0;
@@ -132,6 +137,10 @@ void setSpacingOfDirections(ImageInfo& info, const std::string& path,
       throw IoError(path + ": its space directions are sheared: resample it to cubic voxels");
   }
   setSpacing(info, path, spacing, commonUnit(path, header.find("spaceunits")));
+  const auto place = reals(withoutParentheses(header.find("spaceorigin").value_or("")));
+  if (!place || place->size() != 3) return;
+  for (size_t axis = 0; axis < 3; ++axis)
+    info.isPlaced |= std::abs((*place)[axis]) >= spacing[axis] * kNearlyOne;
 }
 
 void setSpacingOf(ImageInfo& info, const std::string& path, const KeyValueHeader& header) {

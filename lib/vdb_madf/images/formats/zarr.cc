@@ -4,6 +4,7 @@
 #include "vdb_madf/images/formats/zarr.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <optional>
@@ -62,6 +63,21 @@ bool applyScales(const Json& transformations, std::vector<double>& scale, bool i
   return true;
 }
 
+/// True if a list of transformations, or a sequence in it, moves the image by a voxel or more.
+bool isMoved(const Json& transformations, const std::vector<double>& scale) {
+  if (!transformations.is_array()) return false;
+  return std::any_of(transformations.begin(), transformations.end(), [&](const Json& one) {
+    if (textOf(member(one, "type")) == "sequence")
+      return isMoved(member(one, "transformations"), scale);
+    const Json& shift = member(one, "translation");
+    for (size_t i = 0; i < std::min(shift.size(), scale.size()); ++i)
+      if (shift.is_array() && shift[i].is_number() &&
+          std::abs(shift[i].get<double>()) >= std::abs(scale[i]) * kNearlyOne)
+        return true;
+    return false;
+  });
+}
+
 /// The axes that the transformations of a scale lead to: before OME-Zarr 0.6 the only ones.
 const Json& axesOf(const Json& image, const Json& transformations) {
   const Json& systems = member(image, "coordinateSystems");
@@ -75,9 +91,9 @@ const Json& axesOf(const Json& image, const Json& transformations) {
   return system == systems.end() ? kNoAxes : member(*system, "axes");
 }
 
-/// Of the scale at `path` within the image.
+/// Of the scale at `path` within the image; also sets info.isPlaced.
 std::optional<VoxelSize> voxelSizeOf(const std::string& name, const Json& image,
-                                     const std::string& path, size_t axesCount) {
+                                     const std::string& path, size_t axesCount, ImageInfo& info) {
   const Json& datasets = member(image, "datasets");
   if (!datasets.is_array()) return std::nullopt;
   const auto dataset = std::find_if(datasets.begin(), datasets.end(), [&](const Json& one) {
@@ -96,6 +112,8 @@ std::optional<VoxelSize> voxelSizeOf(const std::string& name, const Json& image,
     throw IoError(
         name + ": its scales cannot be read: correct its metadata, or give the voxel size",
         Hint::voxelSize);
+  info.isPlaced =
+      isMoved(transformations, scale) || isMoved(member(image, "coordinateTransformations"), scale);
   std::array<double, 3> edges;
   std::array<std::optional<double>, 3> units;
   for (size_t i = 0; i < 3; ++i) {  // x, y, z
@@ -130,18 +148,15 @@ std::string chooseArray(const std::string& path, const Json& image) {
                 Hint::dataset);
 }
 
-/// What the groups around an array say of it, the nearest first: it may be called "a/b".
-std::optional<VoxelSize> voxelSizeOf(const std::string& name, const fs::path& array,
-                                     size_t axesCount) {
+/// Takes what the groups around an array say of it, the nearest first: it may be called "a/b".
+void addPlace(const std::string& name, const fs::path& array, size_t axesCount, ImageInfo& info) {
   for (fs::path group = array.parent_path(); isZarrFolder(group.string());
        group = group.parent_path()) {
     const Json image = multiscale(name, group);
-    if (const auto size =
-            voxelSizeOf(name, image, array.lexically_relative(group).string(), axesCount))
-      return size;
-    if (!group.has_filename() || group == group.parent_path()) break;
+    info.voxelSize =
+        voxelSizeOf(name, image, array.lexically_relative(group).string(), axesCount, info);
+    if (info.voxelSize || !group.has_filename() || group == group.parent_path()) break;
   }
-  return std::nullopt;
 }
 
 class ZarrReader : public ImageReader {
@@ -156,7 +171,7 @@ class ZarrReader : public ImageReader {
     keepLayer_ = sliceBytes(info_) * depth <= kMaxLayerBytes;
   }
   size_t axes() const { return array_.leadingAxes() + 3; }
-  void setVoxelSize(const std::optional<VoxelSize>& size) { info_.voxelSize = size; }
+  ImageInfo& ownInfo() { return info_; }
 
   void read(int first, int count, void* samples) override {
     checkSlices(path_, info_, first, count);
@@ -217,7 +232,7 @@ std::unique_ptr<ImageReader> openZarr(const std::string& path, const std::string
                   detail::inQuotes(dataset.empty() ? array.filename().string() : dataset) +
                   " in it");
   auto reader = std::make_unique<ZarrReader>(path, array.string());
-  reader->setVoxelSize(voxelSizeOf(path, array, reader->axes()));
+  addPlace(path, array, reader->axes(), reader->ownInfo());
   return reader;
 }
 
