@@ -33,6 +33,7 @@ function finder(sample, selection, bySize, only) {
   const field = make('input', { type: 'number', min: 1, id: 'find', placeholder: 'number' });
   field.addEventListener('change', () => {
     const row = sample.rowOf.get(Number(field.value));
+    field.classList.toggle('wrong', row === undefined && field.value !== '');
     if (row !== undefined) selection.select([row]);
   });
   const [row] = [...selection.selected].slice(-1);

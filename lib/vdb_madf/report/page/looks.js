@@ -27,7 +27,7 @@ export function rangeOf(table, name) {
   if (sorted.length === 0) return [0, 1];
   const at = (share) => sorted[Math.round(share * (sorted.length - 1))];
   const low = at(0.01), high = at(0.99);
-  return high > low ? [low, high] : [low, low + (Math.abs(low) || 1)];
+  return [low, high];
 }
 
 /// Three bytes a grain. Each has the color of its largest leaf in the labels, unless a larger one
@@ -69,6 +69,6 @@ export function colorsOf(sample, kind, name) {
   const colors = new Uint8Array(3 * table.rows);
   for (let row = 0; row < table.rows; ++row)
     colors.set(!name ? bondColor : Number.isNaN(values[row]) ? unknownColor
-      : ramp((values[row] - low) / (high - low)), 3 * row);
+      : ramp((values[row] - low) / (high - low || 1)), 3 * row);
   return colors;
 }

@@ -55,7 +55,7 @@ function drawColorBar(svg, sample, kind, name, width, height) {
   const box = (top, high_, color) => svg.append(makeSvg('rect', { x, y: top, width: 12, height: high_, fill: `rgb(${color})` }));
   for (let i = 0; i < steps; ++i) box(y + tall * i / steps, tall / steps + 0.5, ramp(1 - (i + 0.5) / steps));
   svg.append(text(isRight ? x + 12 : x, y - 20, (isRight ? '' : 'bonds: ') + sample.titleWithUnit(kind, name), anchor));
-  for (const share of [0, 0.5, 1])
+  for (const share of high > low ? [0, 0.5, 1] : [0])
     svg.append(text(tick, y + tall * (1 - share) + 4, written(low + share * (high - low), 3), anchor));
   if (!sample[kind].column(name).some(Number.isNaN)) return;
   box(y + tall + 12, 12, unknownColor);

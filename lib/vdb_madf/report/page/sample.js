@@ -16,6 +16,17 @@ const titles = {
   current_x: 'current, x', current_y: 'current, y', current_z: 'current, z',
 };
 
+/// What columns mean whose titles do not say it.
+const hints = {
+  cos_alpha: 'cos alpha: by the law of cosines, of the radii at the deepest places of two grains and the distance of these; above 1 where the balls there do not meet.',
+  vanishes: 'vanishes: the strictness from which on, downwards, the two grains of a bond are one. A bond is doubtful where that is near the strictness shown; none: they stay two as far as the slider goes.',
+  born: 'born: above this strictness the grain is in parts; none: nowhere on the slider.',
+  dies: 'dies: below this strictness the grain is part of another one; none: nowhere on the slider.',
+  stability: 'stability: how far the strictness is from where the grain is in parts, or part of another one. From 1 on it is sure.',
+  patches: 'patches: the parts of an interface that hang together.',
+  flatness: 'flatness: variance of the places of a bond across it; 0 for a plane.',
+};
+
 /// Of lines, told apart by those who are blind to a color, too (Okabe and Ito).
 export const lineColors = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', 'currentColor', '#999999'];
 
@@ -177,6 +188,10 @@ export class Sample {
   /// "equivalent diameter", and with the unit.
   titleOf(name) {
     return titles[name] || name.replace(/_/g, ' ');
+  }
+  /// What it means; empty where the title says that.
+  hintOf(name) {
+    return hints[name] || '';
   }
   titleWithUnit(kind, name) {
     const column = this.columnOf(kind, name);

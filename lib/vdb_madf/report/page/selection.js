@@ -202,7 +202,7 @@ export class Selection {
 
   addEdits(...edits) {
     this.editsAt = this.shownStrictness;
-    this.edits.push(...edits);
+    this.edits.push(...edits.filter((edit) => !this.edits.includes(edit)));
     this.changed('edits');
   }
   /// The numbers of grains mean something at the strictness alone that the list is of.

@@ -56,7 +56,7 @@ class Panel {
       'aria-label': `Place of the slice along ${names[fixed]}` });
     this.place = make('output');
     this.figure = make('figure', {},
-      make('figcaption', {}, `${names[right]}-${names[down]} at ${names[fixed]} = `, this.place), this.frame, this.slider);
+      make('figcaption', {}, `${names[right]} \u2192, ${names[down]} ${down === 2 ? '\u2191' : '\u2193'} at ${names[fixed]} = `, this.place), this.frame, this.slider);
     this.slider.addEventListener('input', () => this.moveTo(Number(this.slider.value)));
     this.frame.addEventListener('wheel', (event) => {
       event.preventDefault();

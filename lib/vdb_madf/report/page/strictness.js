@@ -33,7 +33,7 @@ export function startStrictness(sample, selection) {
   };
   selection.listen((what) => { if (what === 'strictness') draw(); });
   element('numbers').after(make('section', { id: 'levels', 'aria-label': 'Strictness' },
-    make('label', { htmlFor: 'strictness' }, 'Strictness ', value), make('div', { className: 'track' }, svg, slider),
+    make('label', { htmlFor: 'strictness', title: `From ${written(levels.lowest)} to ${written(levels.highest)}` }, 'Strictness ', value), make('div', { className: 'track' }, svg, slider),
     back, note));
   draw();
 }

@@ -15,7 +15,7 @@ export function originOf(sample) {
   const size = numbers.box_max.map((high, i) => high - numbers.box_min[i] + 1);
   const edges = sample.edges.map((edge) => sample.length(edge));
   const cubes = new Set(edges).size === 1;
-  const voxel = sample.about.voxelSizeKnown
+  const voxel = sample.shownUnit === 'voxel' && sample.about.voxelSizeKnown ? 'lengths are in voxels' : sample.about.voxelSizeKnown
     ? `voxels of ${cubes ? edges[0] : edges.join(' \u00d7 ')}`
     : 'voxels of unknown size: lengths are in voxels';
   const made = ['merge', 'strictness', 'gamma', 'theta', 'delta'].filter((key) => key in numbers.segmentation)
@@ -38,7 +38,7 @@ export function tiles(sample, visible = new Uint8Array(sample.count).fill(1),
     ['Bond radius / grain radius', written(numbers.ratio, 3)],
   ];
   if ('specific_surface_m2_per_kg' in sample.numbers)
-    result.push(['Specific surface', `${written(numbers.surfaceOfMass, 3)} m\u00b2/kg`]);
+    result.push(['Specific surface, by mass', `${written(numbers.surfaceOfMass, 3)} m\u00b2/kg`]);
   if ('bulk_density_kg_per_m3' in sample.numbers)
     result.push(['Density', `${written(numbers.density, 3)} kg/m\u00b3`]);
   const across = (name) => ['x', 'y', 'z'].map((axis) => written(100 * (sample.numbers[`${name}_${axis}`] ?? NaN), 3)).join(', ');
@@ -77,6 +77,8 @@ export function warnings(sample) {
   say((row) => voxels[row] < kDustVoxels, `are dust, of fewer than ${kDustVoxels} voxels.`);
   if (numbers.bonds_without_curvature > 0)
     found.push(`${counted(numbers.bonds_without_curvature)} of ${counted(numbers.bonds)} bonds have so few voxel faces that no curvature can be fitted.`);
+  if (!sample.isOwn && Object.keys(sample.own.numbers.expected_bias_percent || {}).length > 0)
+    found.push('How far numbers are off because grains are small is said of the grains of the labels alone.');
   const biases = Object.entries(numbers.expected_bias_percent || {}).map(([name, bias]) =>
     `${name.replace('_', ' ')} ${bias > 0 ? '+' : '\u2212'}${Math.abs(bias)} %`);
   if (biases.length > 0)

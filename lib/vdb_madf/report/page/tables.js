@@ -134,7 +134,7 @@ class SampleTable {
         this.selection.setFilter(this.kind, name, range);
       });
       this.inputs.set(name, input);
-      titles.append(make('th', { scope: 'col' }, title));
+      titles.append(make('th', { scope: 'col', title: this.sample.hintOf(name) }, title));
       fields.append(make('td', {}, input));
     }
     return make('thead', {}, titles, fields);

@@ -58,11 +58,24 @@ function controls(sample, selection, camera) {
   box.append(labelled('Color by', color));
   const bondColor = columnChoice(sample, 'bonds', 'bond-color', 'one color');
   bind(bondColor, selection, 'bondColorBy', 'looks');
+  // To choose a color of bonds is to want to see them.
+  bondColor.addEventListener('input', () => {
+    if (selection.bondsAs !== 'none' || !bondColor.value) return;
+    selection.bondsAs = 'discs';
+    selection.changed('selection');
+  });
   const others = choice('others', { pale: 'pale', plain: 'as they are', hidden: 'hidden' });
   bind(others, selection, 'others', 'selection');
   const bonds = choice('bonds-as', { none: 'not shown', discs: 'discs', lines: 'lines' });
   bind(bonds, selection, 'bondsAs', 'selection');
   box.append(labelled('Beside the selected', others), labelled('Bonds', bonds), labelled('Color bonds by', bondColor));
+  const hint = make('p', { className: 'hint', id: 'color-hint' });
+  const explain = () => {
+    hint.textContent = [selection.colorBy, selection.bondColorBy].map((name) => sample.hintOf(name)).join(' ').trim();
+  };
+  selection.listen((what) => { if (what === 'looks') explain(); });
+  explain();
+  box.append(hint);
   if (!camera) return;
   const explode = make('input', { id: 'explode', type: 'range', min: 0, max: 1.5, step: 0.05 });
   bind(explode, selection, 'explode', 'looks', Number);
