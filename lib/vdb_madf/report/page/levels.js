@@ -9,6 +9,9 @@ const kUnitsOfScore = 512;
 const kLeastOfSphericity = 27;  // voxels
 const axes = ['x', 'y', 'z'];
 const products = ['xx', 'yy', 'zz', 'xy', 'xz', 'yz'];
+const normalColumns = axes.map((axis) => `normal_${axis}`);
+const ellipsoidColumns = ['aspect_2_to_1', 'aspect_3_to_2',
+  ...[1, 2, 3].flatMap((k) => [`axis${k}_length`, ...axes.map((axis) => `axis${k}_${axis}`)])];
 
 /// Numbers of the next planes of bytes.
 function planeReader(packed) {
@@ -211,7 +214,7 @@ export class Levels {
       return voxels[grain] >= kLeastOfSphericity && whole > 0
         ? Math.PI * result.equivalent_diameter[grain] ** 2 / whole : NaN;
     });
-    this.addEllipsoids(result, grainOf, sum);
+    lazily(result, ellipsoidColumns, () => this.ellipsoids(result, grainOf, sum));
     return result;
   }
 
@@ -235,17 +238,18 @@ export class Levels {
   }
 
   /// Of the ellipsoid of the same second moments: these add up about the common centroid.
-  addEllipsoids(result, grainOf, sum) {
+  ellipsoids(grains, grainOf, sum) {
     const { leaf } = this;
     const centroids = axes.map((axis) => leaf[`centroid_${axis}`]);
-    const middles = axes.map((axis) => result[`centroid_${axis}`]);
+    const middles = axes.map((axis) => grains[`centroid_${axis}`]);
     const moments = products.map((name) => {
       const [a, b] = [...name].map((axis) => axes.indexOf(axis));
       const away = (axis, i) => centroids[axis][i] - middles[axis][grainOf[i]];
       return sum((i) => leaf.voxels[i] * (leaf[`moment_${name}`][i] + away(a, i) * away(b, i)))
-        .map((value, grain) => value / result.voxels[grain]);
+        .map((value, grain) => value / grains.voxels[grain]);
     });
-    const rows = Array.from(result.voxels, (_, grain) => principalAxes(moments.map((values) => values[grain])));
+    const result = {};
+    const rows = Array.from(grains.voxels, (_, grain) => principalAxes(moments.map((values) => values[grain])));
     const column = (value) => {
       const values = new Float64Array(rows.length);
       rows.forEach((row, grain) => { values[grain] = value(row); });
@@ -258,6 +262,7 @@ export class Levels {
     const ratio = (a, b) => result[a].map((length, grain) => length / result[b][grain]);
     result.aspect_2_to_1 = ratio('axis2_length', 'axis1_length');
     result.aspect_3_to_2 = ratio('axis3_length', 'axis2_length');
+    return result;
   }
 
   /// What grains share, by first, then second.
@@ -316,18 +321,21 @@ export class Levels {
     const result = { first: column((bond) => bond.first + 1), second: column((bond) => bond.second + 1),
       faces: column((bond) => bond.faces), area: column((bond) => bond.area),
       radius: column((bond) => Math.sqrt(bond.area / Math.PI)) };
-    axes.forEach((axis, k) => {
-      result[`centroid_${axis}`] = column((bond) => bond.place[k] / bond.faces);
-      result[`normal_${axis}`] = column(({ across }) => {
-        const normal = across.map((faces, i) => faces / this.edges[i]);
-        return normal[k] / Math.hypot(...normal);
+    axes.forEach((axis, k) => { result[`centroid_${axis}`] = column((bond) => bond.place[k] / bond.faces); });
+    lazily(result, normalColumns, () => {
+      const normals = bonds.map(({ across }) => {
+        const normal = across.map((faces, k) => faces / this.edges[k]), length = Math.hypot(...normal);
+        return normal.map((value) => value / length);
       });
+      return Object.fromEntries(normalColumns.map((name, k) => [name, column((_, i) => normals[i][k])]));
     });
-    result.distance = column(({ first, second }) => Math.hypot(...axes.map((axis) =>
-      grains[`representative_${axis}`][first] - grains[`representative_${axis}`][second])));
-    result.cos_alpha = column(({ first, second }, i) => {
-      const a = grains.inscribed_radius[first], b = grains.inscribed_radius[second];
-      return (result.distance[i] ** 2 - a * a - b * b) / (2 * a * b);
+    lazily(result, ['distance', 'cos_alpha'], () => {
+      const distance = column(({ first, second }) => Math.hypot(...axes.map((axis) =>
+        grains[`representative_${axis}`][first] - grains[`representative_${axis}`][second])));
+      return { distance, cos_alpha: column(({ first, second }, i) => {
+        const a = grains.inscribed_radius[first], b = grains.inscribed_radius[second];
+        return (distance[i] ** 2 - a * a - b * b) / (2 * a * b);
+      }) };
     });
     return result;
   }
@@ -341,6 +349,12 @@ export class Levels {
     return { rowOfBody: cut.grainOf, grains: tableLike(own.grains, grains, cut.count),
       bonds: tableLike(own.bonds, this.bondColumns(bonds, grains), bonds.length) };
   }
+}
+
+/// Columns that are made, together, when one is asked for: a step of the slider does not need them.
+function lazily(columns, names, make) {
+  let made = null;
+  for (const name of names) Object.defineProperty(columns, name, { get: () => (made ??= make())[name] });
 }
 
 function clamp(value, least, most) {
