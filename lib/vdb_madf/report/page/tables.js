@@ -9,8 +9,8 @@ import { saveText } from './save.js';
 
 const shownAtFirst = {
   grains: ['id', 'voxels', 'equivalent_diameter', 'inscribed_radius', 'coordination', 'sphericity',
-    'aspect_2_to_1', 'aspect_3_to_2', 'free_area', 'shared_area', 'at_domain_face'],
-  bonds: ['first', 'second', 'area', 'radius', 'radius_ratio', 'distance', 'cos_alpha', 'mean_curvature'],
+    'aspect_2_to_1', 'aspect_3_to_2', 'free_area', 'shared_area', 'at_domain_face', 'stability'],
+  bonds: ['first', 'second', 'area', 'radius', 'radius_ratio', 'distance', 'cos_alpha', 'mean_curvature', 'vanishes'],
 };
 
 /// "0.2:0.5", ":3", "4:" or "7" as a range; null if it is none.
