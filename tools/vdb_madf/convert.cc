@@ -8,7 +8,6 @@
 #include <array>
 #include <iostream>
 #include <memory>
-#include <unordered_set>
 
 #include "command.h"
 #include "grid_image.h"
@@ -23,6 +22,7 @@
 #include "vdb_madf/grids/resampled_grid.h"
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/images/open_image.h"
+#include "vdb_madf/labels/label_sizes.h"
 #include "vdb_madf/scans/copy_image.h"
 #include "vdb_madf/scans/histogram.h"
 #include "vdb_madf/scans/image_box.h"
@@ -77,10 +77,8 @@ void convertMask(const ConvertArguments& o, const Common& common) {
 }
 
 /// Grains that a region left out are no longer counted.
-void updateCountsOf(Int32Grid& labels) {
-  std::unordered_set<int32_t> grains;
-  for (auto value = labels.cbeginValueOn(); value; ++value) grains.insert(*value);
-  updateCounts(labels, int64_t(grains.size()), true);
+void updateCountsOf(Int32Grid& labels, Progress* progress) {
+  updateCounts(labels, int64_t(labelSizes(labels, progress).size()), true);
 }
 
 /// Labels of another program become what `segment` writes, but for the method's own metadata.
@@ -98,7 +96,7 @@ void convertLabels(const ConvertArguments& o, const Common& common) {
     range = openvdb::tools::minMax(labels->tree());
   }
   labels->setName("grain");
-  if (o.input.region.any() && grainCount(*labels)) updateCountsOf(*labels);
+  if (o.input.region.any() && grainCount(*labels)) updateCountsOf(*labels, common.progress);
   if (!hasVdbEnding(o.out)) {
     writeGridAsImage(o.out, *labels, outputType(o), o.input.path, common);
     return;

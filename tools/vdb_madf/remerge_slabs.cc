@@ -100,14 +100,8 @@ LabelSlabs openManifoldSlabs(const InputOptions& input, Progress* progress) {
 }
 
 ManifoldGraph keptGraph(const InputOptions& input, Progress* progress) {
-  if (isInSlabs(input)) {
-    const LabelSlabs manifolds = openManifoldSlabs(input, progress);
-    std::vector<GraphPart> parts;
-    for (size_t slab = 0; slab < manifolds.slabCount(); ++slab)
-      if (auto part = storedGraphPart(*manifolds.read(slab, progress)))
-        parts.push_back(std::move(*part));
-    return joinedGraph(parts);
-  }
+  if (isInSlabs(input))
+    return storedGraph(openManifoldSlabs(input, progress), progress).value_or(ManifoldGraph());
   const Int32Grid::Ptr header =
       requiredManifolds(readVdbHeaders(input.path, progress, /*verified=*/true), input.path);
   if (regionName(*header).empty()) return requiredGraph(*header);

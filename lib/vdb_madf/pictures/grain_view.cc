@@ -15,6 +15,7 @@
 #include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
+#include "vdb_madf/leaves/detail/leaf_neighborhood.h"
 #include "vdb_madf/pictures/detail/camera.h"
 #include "vdb_madf/pictures/detail/smooth_surface.h"
 #include "vdb_madf/pictures/detail/surface_raster.h"
@@ -30,7 +31,8 @@ using Vec = openvdb::Vec3d;
 constexpr int kMaxEdge = 16384;
 constexpr size_t kRowGrain = 4;
 
-constexpr int kRays = 3;  ///< along each edge of a pixel at which something ends
+/// Along each edge of a pixel at which something ends.
+constexpr int kRays = detail::SurfaceRaster::kSamples;
 constexpr int kMiddleRay = kRays * kRays / 2;
 /// Voxels of so many pixels or more are not drawn as such, but as smoothed surfaces.
 constexpr double kLeastPixels = 3;
@@ -271,15 +273,14 @@ bool drawsSurfaces(const ViewOptions& options, const detail::Camera& camera) {
 
 /// Those leaves, and those of the object around them: what is near a smoothed surface that is seen.
 std::vector<Coord> leavesAround(const std::vector<Coord>& leaves, const MaskGrid& object) {
-  std::vector<Coord> around;
+  std::vector<Coord> found;
   for (const Coord& leaf : leaves)
     for (int side = 0; side < 27; ++side) {
-      const Coord beside =
-          leaf.offsetBy(8 * (side / 9 - 1), 8 * (side / 3 % 3 - 1), 8 * (side % 3 - 1));
-      if (object.tree().probeConstLeaf(beside)) around.push_back(beside);
+      const Coord beside = detail::around(leaf, side);
+      if (object.tree().probeConstLeaf(beside)) found.push_back(beside);
     }
-  sortUnique(around, 0);
-  return around;
+  sortUnique(found, 0);
+  return found;
 }
 
 /// The labels of the object's voxels in some leaves.

@@ -362,6 +362,15 @@ std::optional<GraphPart> storedGraphPart(const openvdb::GridBase& grid) {
   return part;
 }
 
+std::optional<ManifoldGraph> storedGraph(const LabelSlabs& manifolds, Interrupter* interrupter) {
+  std::vector<GraphPart> parts;
+  for (size_t slab = 0; slab < manifolds.slabCount(); ++slab)
+    if (auto part = storedGraphPart(*manifolds.read(slab, interrupter)))
+      parts.push_back(std::move(*part));
+  if (parts.empty()) return std::nullopt;
+  return joinedGraph(parts);
+}
+
 void detail::registerGraphMetadata() {
   if (!openvdb::Metadata::isRegisteredType(kName))
     openvdb::Metadata::registerType(kName, GraphMetadata::create);

@@ -5,7 +5,9 @@
 
 #include <optional>
 
+#include "vdb_madf/base/interrupter.h"
 #include "vdb_madf/grids/grid_types.h"
+#include "vdb_madf/grids/label_slabs.h"
 #include "vdb_madf/segmentation/graph_part.h"
 
 namespace vdb_madf {
@@ -39,6 +41,9 @@ void removeGraph(openvdb::GridBase& grid);
 /// Writes and reads the part of a slab, as setGraph() and storedGraph() do the whole.
 void setGraphPart(openvdb::GridBase& grid, GraphPart part);
 std::optional<GraphPart> storedGraphPart(const openvdb::GridBase& grid);
+/// The graph of manifolds in slabs, each of which is read once. Absent: none of them has a part.
+/// @throw InvalidInput if parts are not those of one graph; what reading throws
+std::optional<ManifoldGraph> storedGraph(const LabelSlabs& manifolds, Interrupter* interrupter);
 
 /// The metadata value.
 constexpr char kGraphMetadata[] = "madf_manifold_graph";

@@ -55,6 +55,11 @@ void setSpacing(ImageInfo& info, const std::string& path, const std::array<doubl
     info.proportions = spacing;
 }
 
+bool isVoxelAway(double place, double edge) {
+  constexpr double kNearlyOne = 1 - 1e-6;
+  return std::abs(place) >= edge * kNearlyOne;
+}
+
 ImageSize checkedSize(const std::string& path, const std::vector<int64_t>& size) {
   if (size.size() != 3)
     throw IoError(path + ": has " + std::to_string(size.size()) +

@@ -32,8 +32,9 @@ std::optional<VoxelSize> checkedVoxelSize(const std::string& path,
 void setSpacing(ImageInfo& info, const std::string& path, const std::array<double, 3>& spacing,
                 std::optional<double> unitsPerMetre);
 
-/// The part of an edge from which on a distance counts as a voxel (ImageInfo::isPlaced).
-constexpr double kNearlyOne = 1 - 1e-6;
+/// Is a place along an axis, but for rounding, a voxel of this edge or more from the origin
+/// (ImageInfo::isPlaced)?
+bool isVoxelAway(double place, double edge);
 
 /// @throw IoError unless each size is in 1 .. kMaxImageSide.
 ImageSize checkedSize(const std::string& path, const std::vector<int64_t>& size);

@@ -3,7 +3,6 @@
 
 #include "vdb_madf/images/formats/meta_image.h"
 
-#include <cmath>
 #include <filesystem>
 #include <optional>
 
@@ -76,8 +75,7 @@ bool isPlaced(const KeyValueHeader& header, const std::optional<VoxelSize>& size
   for (const char* key : {"Offset", "Position", "Origin"})
     if (const auto place = reals(header.find(key).value_or("")); place && place->size() == 3)
       for (size_t axis = 0; axis < 3; ++axis)
-        if (std::abs((*place)[axis]) >= (size ? 1e3 * size->edges()[axis] : 1) * kNearlyOne)
-          return true;
+        if (isVoxelAway((*place)[axis], size ? 1e3 * size->edges()[axis] : 1)) return true;
   return false;
 }
 

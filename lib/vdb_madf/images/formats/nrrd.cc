@@ -140,7 +140,7 @@ void setSpacingOfDirections(ImageInfo& info, const std::string& path,
   const auto place = reals(withoutParentheses(header.find("spaceorigin").value_or("")));
   if (!place || place->size() != 3) return;
   for (size_t axis = 0; axis < 3; ++axis)
-    info.isPlaced |= std::abs((*place)[axis]) >= spacing[axis] * kNearlyOne;
+    info.isPlaced |= isVoxelAway((*place)[axis], spacing[axis]);
 }
 
 void setSpacingOf(ImageInfo& info, const std::string& path, const KeyValueHeader& header) {

@@ -72,7 +72,7 @@ bool isMoved(const Json& transformations, const std::vector<double>& scale) {
     const Json& shift = member(one, "translation");
     for (size_t i = 0; i < std::min(shift.size(), scale.size()); ++i)
       if (shift.is_array() && shift[i].is_number() &&
-          std::abs(shift[i].get<double>()) >= std::abs(scale[i]) * kNearlyOne)
+          isVoxelAway(shift[i].get<double>(), std::abs(scale[i])))
         return true;
     return false;
   });

@@ -10,6 +10,11 @@
 
 namespace vdb_madf::detail {
 
+/// The origin of the leaf at one of the 27 places around one, numbered as by LeafNeighborhood.
+inline Coord around(const Coord& origin, int side) {
+  return origin.offsetBy(8 * (side / 9 - 1), 8 * (side / 3 % 3 - 1), 8 * (side % 3 - 1));
+}
+
 /// The 27 leaves around each leaf of an index, diagonal ones too. Cheap if leaves are asked for in
 /// rising order: shifting keeps the order of origins, so nine cursors walk along. One per thread.
 class LeafNeighborhood {

@@ -78,9 +78,7 @@ bool LeafSurface::findOutside() {
   outside_.rows.fill(0);
   bool any = false;
   for (int side = 0; side < 27; ++side) {
-    const Coord leaf =
-        origin_.offsetBy(8 * (side / 9 - 1), 8 * (side / 3 % 3 - 1), 8 * (side % 3 - 1));
-    const LeafIndex::Mask beyond = without(kFullMask, insideMask(*domain_, leaf));
+    const LeafIndex::Mask beyond = without(kFullMask, insideMask(*domain_, around(origin_, side)));
     if (!anyVoxel(beyond)) continue;
     addLeaf(beyond, side, window_.range(), outside_);
     any = true;

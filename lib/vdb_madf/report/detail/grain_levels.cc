@@ -16,7 +16,6 @@
 #include "vdb_madf/method/hierarchy.h"
 #include "vdb_madf/report/detail/packed_bytes.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
-#include "vdb_madf/segmentation/graph_part.h"
 #include "vdb_madf/segmentation/remerge.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"
 
@@ -150,12 +149,7 @@ double moment(const Principal& ellipsoid, int i, int j) {
 std::optional<ManifoldGraph> graphOf(const AnyLabels& manifold, Interrupter* interrupter) {
   if (const auto* const whole = std::get_if<Int32Grid::ConstPtr>(&manifold))
     return storedGraph(**whole);
-  const auto& slabs = std::get<LabelSlabs>(manifold);
-  std::vector<GraphPart> parts;
-  for (size_t s = 0; s < slabs.slabCount(); ++s)
-    if (auto part = storedGraphPart(*slabs.read(s, interrupter))) parts.push_back(std::move(*part));
-  if (parts.empty()) return std::nullopt;
-  return joinedGraph(parts);
+  return storedGraph(std::get<LabelSlabs>(manifold), interrupter);
 }
 
 /// The grains of a merging, with the transform and the metadata of the labels.
