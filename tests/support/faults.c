@@ -200,16 +200,25 @@ int mkdir(const char* path, mode_t mode) {
   return hitsPath("mkdir", path) ? -1 : next(path, mode);
 }
 
-// Allocations go to the functions of glibc that lie behind these.
+// Allocations go to the functions that the program has without this library, mimalloc's or glibc's;
+// before main(), when these are not known yet, to glibc's.
 extern void* __libc_malloc(size_t);
 extern void* __libc_calloc(size_t, size_t);
 extern void* __libc_realloc(void*, size_t);
 extern void* __libc_memalign(size_t, size_t);
+static void* (*nextMalloc)(size_t) = __libc_malloc;
+static void* (*nextCalloc)(size_t, size_t) = __libc_calloc;
+static void* (*nextRealloc)(void*, size_t) = __libc_realloc;
+static void* (*nextMemalign)(size_t, size_t) = __libc_memalign;
 
 static int (*realMain)(int, char**, char**);
 static atomic_bool isInMain;
 
 static int mainOfProgram(int count, char** words, char** environment) {
+  nextMalloc = (void* (*)(size_t))dlsym(RTLD_NEXT, "malloc");
+  nextCalloc = (void* (*)(size_t, size_t))dlsym(RTLD_NEXT, "calloc");
+  nextRealloc = (void* (*)(void*, size_t))dlsym(RTLD_NEXT, "realloc");
+  nextMemalign = (void* (*)(size_t, size_t))dlsym(RTLD_NEXT, "memalign");
   atomic_store(&isInMain, 1);
   return realMain(count, words, environment);
 }
@@ -236,19 +245,19 @@ static int hitsAllocation(size_t bytes, const void* caller) {
 }
 #define CALLER __builtin_return_address(0)
 void* malloc(size_t bytes) {
-  return hitsAllocation(bytes, CALLER) ? NULL : __libc_malloc(bytes);
+  return hitsAllocation(bytes, CALLER) ? NULL : nextMalloc(bytes);
 }
 void* calloc(size_t count, size_t bytes) {
-  return hitsAllocation(count * bytes, CALLER) ? NULL : __libc_calloc(count, bytes);
+  return hitsAllocation(count * bytes, CALLER) ? NULL : nextCalloc(count, bytes);
 }
 void* realloc(void* old, size_t bytes) {
-  return hitsAllocation(bytes, CALLER) ? NULL : __libc_realloc(old, bytes);
+  return hitsAllocation(bytes, CALLER) ? NULL : nextRealloc(old, bytes);
 }
 void* aligned_alloc(size_t alignment, size_t bytes) {
-  return hitsAllocation(bytes, CALLER) ? NULL : __libc_memalign(alignment, bytes);
+  return hitsAllocation(bytes, CALLER) ? NULL : nextMemalign(alignment, bytes);
 }
 int posix_memalign(void** to, size_t alignment, size_t bytes) {
   if (hitsAllocation(bytes, CALLER)) return ENOMEM;
-  *to = __libc_memalign(alignment, bytes);
+  *to = nextMemalign(alignment, bytes);
   return *to ? 0 : ENOMEM;
 }

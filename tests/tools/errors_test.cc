@@ -4,6 +4,7 @@
 // What the command refuses, and how: the exit code, one line on stderr, nothing on stdout, no file
 // left.
 
+#include <algorithm>
 #include <csignal>
 
 #include "support/catch.h"
@@ -194,6 +195,23 @@ TEST_CASE("cli: segment refuses what needs more memory than allowed", "[cli]") {
   for (const std::string size : {"1.5 GiB", "2gib", "2gb", "900M", "1e9B", "1e6 kb"})
     CHECK(bench.run({"segment", "s.vdb", "g.vdb", "--max-memory", size}).exitCode == 0);
   refuses(bench, kWrongUsage, "segment s.vdb", {"OUT is required"});
+}
+
+TEST_CASE("cli: where memory ends, a line says so", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate sintered s.vdb --size 128 --count 60 --radius 11:18 -q");
+  bench.mustRun("segment s.vdb g.vdb --grid object -q");
+  for (const std::string verb : {"export g.vdb o.obj", "measure g.vdb t"}) {
+    RunOptions limits;
+    limits.memory = 360 << 20;
+    Outcome run = bench.run(verb + " -q", limits);
+    for (; run.exitCode == 0; limits.memory -= 30 << 20) run = bench.run(verb + " -q", limits);
+    INFO(verb << ": " << limits.memory);
+    CHECK(run.exitCode == kFailed);
+    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+    CHECK_THAT(run.err, Contains("memory"));
+  }
+  CHECK_FALSE(bench.names().count("o.obj"));
 }
 
 TEST_CASE("cli: an image that is too long is refused before its samples are read", "[cli]") {
