@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "outputs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/version.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/slabs/slab_builder.h"
 #include "vdb_madf/vdb/slab_folder.h"
 #include "vdb_madf/vdb/slab_folder_writer.h"
@@ -52,14 +54,40 @@ std::vector<NamedText> choiceOptions(const SegmentArguments& o) {
           {"keep", o.keep}};
 }
 
+/// What tells, without reading it, whether an input is as it was.
+struct Stamp {
+  uintmax_t bytes = 0;
+  fs::file_time_type changed = fs::file_time_type::min();  ///< when the last of its files was
+
+  std::string text() const {
+    return fmt::format("{} {}", bytes, changed.time_since_epoch().count());
+  }
+};
+
+/// Of a file, or of all that lies in a folder.
+Stamp stampOf(const std::string& path) {
+  Stamp stamp;
+  const auto add = [&](const fs::path& file) {
+    std::error_code error;
+    if (const auto size = fs::file_size(file, error); !error) stamp.bytes += size;
+    if (const auto time = fs::last_write_time(file, error); !error)
+      stamp.changed = std::max(stamp.changed, time);
+  };
+  std::error_code error;
+  if (!fs::is_directory(path, error)) add(path);
+  fs::recursive_directory_iterator entry(path, error);
+  for (; entry != fs::recursive_directory_iterator(); entry.increment(error))
+    if (entry->is_regular_file(error)) add(entry->path());
+  return stamp;
+}
+
 /// What the slabs in scratch depend on. --max-memory only says where to cut, which is done once.
 std::string workOf(const SegmentArguments& o) {
   const std::string& in = o.input.path;
   std::error_code ignored;
-  std::string work =
-      fmt::format("{}\n{}\n{} {} {}", kVersion, fs::absolute(o.out, ignored).string(),
-                  fs::absolute(in, ignored).string(), fs::file_size(in, ignored),
-                  fs::last_write_time(in, ignored).time_since_epoch().count());
+  std::string work = fmt::format(
+      "{}\n{}\n{} {} {}", kVersion, fs::absolute(o.out, ignored).string(),
+      fs::absolute(in, ignored).string(), stampOf(in).text(), stampOf(o.input.region.mask).text());
   for (const auto& option : readingOptions(o.input)) work += "\n" + option.second;
   for (const auto& option : choiceOptions(o)) work += "\n" + option.second;
   for (const std::string& text :
@@ -97,10 +125,7 @@ constexpr char kWhole[] = "done";  // the piece that says that OUT.slabs.part is
 }  // namespace
 
 Json originOf(const SegmentArguments& o) {
-  std::error_code error;
-  const auto bytes = fs::file_size(o.input.path, error);
-  Json origin{{"input", fs::path(o.input.path).filename().string()},
-              {"input_bytes", error ? 0 : bytes}};
+  Json origin{{"input", lastPart(o.input.path)}, {"input_bytes", stampOf(o.input.path).bytes}};
   for (const auto& [name, text] : readingOptions(o.input))
     if (!text.empty()) origin["reading"][name] = text;
   return origin;
@@ -115,8 +140,8 @@ bool isFinished(const SegmentArguments& o) {
   const std::string path = (fs::path(o.out) / kSlabIndex).string();
   std::ifstream file(path);
   const Json index = Json::parse(file, nullptr, false);
-  if (!isOf(index, o) ||
-      fs::last_write_time(o.input.path, ignored) > fs::last_write_time(path, ignored))
+  const auto read = std::max(stampOf(o.input.path).changed, stampOf(o.input.region.mask).changed);
+  if (!isOf(index, o) || read > fs::last_write_time(path, ignored))
     throw InvalidInput(o.out +
                        ": is finished, and was made of another input or with other options: leave "
                        "--resume out to make it anew");
