@@ -117,6 +117,9 @@ def test_paint(labels, dense):
     want[dense == labels.ids[3]], want[dense == labels.ids[1]] = 30, 10
     assert some.dtype == np.int16 and (some == want).all()
     assert (labels.paint([], [], background=0) == 0).all()
+    far = madf.Labels(np.array([[[0, 5, 2**31 - 1]]], np.int32))  # no table as long as that
+    painted = far.paint([2**31 - 1, 5, 7], [0.5, 2, 9], background=-1)
+    assert painted.tolist() == [[[-1, 2, 0.5]]]
     with pytest.raises(ValueError, match="one for each"):
         labels.paint([1, 2], [1])
     with pytest.raises(ValueError, match="0 is no id"):

@@ -90,14 +90,16 @@ class Labels(Volume):
         known, painted = np.asarray(ids, np.int64), np.asarray(values)
         if known.ndim != 1 or known.shape != painted.shape:
             raise ValueError(f"{known.shape} ids and {painted.shape} values: give one for each")
-        largest = int(known.max()) if len(known) else 0
         if len(known) and known.min() < 1:
             raise ValueError(f"{known.min()} is no id of a grain: they are above 0")
         out = np.empty(self.shape, dtype)
-        table = np.full(largest + 2, background, dtype)  # the last is for all other labels
-        table[known] = painted
+        order = np.argsort(known, kind="stable")  # of an id given twice the last value counts
+        sorted_ids = np.append(known[order], 1 << 31)  # above all labels
+        table = np.append(painted[order].astype(dtype), np.asarray(background, dtype))
         for first, slab in self._slabs():
-            out[first:first + len(slab)] = table[np.clip(slab, -1, largest + 1)]
+            place = np.searchsorted(sorted_ids, slab, "right") - 1
+            place[sorted_ids[place] != slab] = len(known)
+            out[first:first + len(slab)] = table[place]
         return out
 
     @checked
