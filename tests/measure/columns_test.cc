@@ -232,6 +232,8 @@ TEST_CASE("columns: what is given of grains comes last", "[columns]") {
   using vdb_madf::test::Contains;
   CHECK_THROWS_WITH(givenColumns(""), Contains("no column 'grain' or 'id'"));
   CHECK_THROWS_WITH(givenColumns("grain\n1\n"), Contains("no column of numbers"));
+  CHECK(givenColumns("grain,a\n1,2\n\r\n\n").size() == 1);  // as editors leave at the end
+  CHECK_THROWS_WITH(givenColumns("grain,a\n1\n"), Contains("line 2: has 1 cell, and the first 2"));
   CHECK_THROWS_WITH(givenColumns("grain,a\n1,2,3\n"), Contains("line 2: has 3 cells"));
   CHECK_THROWS_WITH(givenColumns("grain,a\n0.5,2\n"), Contains("'0.5' is no number of a grain"));
   CHECK_THROWS_WITH(givenColumns("grain,a\n9999999999,2\n"), Contains("no number of a grain"));

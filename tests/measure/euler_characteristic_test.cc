@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/measure/euler_characteristic.h"
+#include "vdb_madf/measure/detail/euler_characteristic.h"
 
 #include <map>
 #include <string>
@@ -19,7 +19,7 @@ using namespace vdb_madf;
 using namespace vdb_madf::test;
 
 int64_t euler(const ObjectVolume& object, Tiles tiles = Tiles::none) {
-  return eulerCharacteristic(LeafIndex(*toMask(object, tiles)));
+  return detail::eulerCharacteristic(LeafIndex(*toMask(object, tiles)));
 }
 
 /// Voxels - edges + squares - cubes, one by one.
@@ -160,11 +160,12 @@ TEST_CASE("euler_characteristic: threads do not matter", "[euler_characteristic]
   const LeafIndex index(*toMask(object));
   REQUIRE(index.leafCount() > 512);
   for (const int threads : {1, 2, 4})
-    CHECK(withThreads(threads, [&] { return eulerCharacteristic(index); }) == naiveEuler(object));
+    CHECK(withThreads(threads, [&] { return detail::eulerCharacteristic(index); }) ==
+          naiveEuler(object));
 }
 
 TEST_CASE("euler_characteristic: none once interrupted", "[euler_characteristic]") {
   const LeafIndex index(*toMask(fromPicture("##")));
   StopAtOnce stop;
-  CHECK_THROWS_AS(eulerCharacteristic(index, &stop), Interrupted);
+  CHECK_THROWS_AS(detail::eulerCharacteristic(index, {}, &stop), Interrupted);
 }

@@ -283,6 +283,10 @@ def test_necks_in_a_gray_scan(command, tmp_path):
     there = columns(tmp_path / "out" / "bonds.csv")
     assert there["neck_area_mm2"] == pytest.approx(measured.bonds["neck_area"], rel=1e-8)
     sample = json.loads((tmp_path / "out" / "sample.json").read_text())
+    for name in ("necks_confirmed", "scan_gray_inside", "scan_gray_outside"):
+        assert measured.sample[name] == sample[name]
+    for name in ("neck_area_mm2", "contact_gap_mm"):
+        assert measured.sample[name[:name.rindex("_")]] == pytest.approx(sample[name])
     assert sample["necks_confirmed"] == 1
     assert sample["scan_blur_mm"] == pytest.approx(measured.sample["scan_blur"])
     again = madf.measure(labels, gray=values, sensitivity=5, vary={"gamma": 0})
@@ -299,3 +303,7 @@ def test_necks_in_a_gray_scan(command, tmp_path):
             madf.measure(labels, **arguments)
     with pytest.raises(ValueError, match="its edges tell no blur"):
         madf.measure(labels, gray=(values > 2000).astype(np.uint8))
+    noise = np.random.default_rng(2).integers(0, 4000, (20, 20, 20)).astype(np.uint16)
+    labels = madf.segment(noise, threshold=2000.0).labels
+    with pytest.warns(UserWarning, match="tell no blur: necks are not measured"):
+        madf.measure(labels, gray=noise, sensitivity=5)

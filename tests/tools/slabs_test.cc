@@ -187,6 +187,29 @@ TEST_CASE("slabs: what is finished is not done again to resume it", "[slabs]") {
   CHECK_THAT(bench.run(segment + "--resume").err, Contains("slab-0000.vdb"));
 }
 
+TEST_CASE("slabs: a folder or a mask that changed since is another input", "[slabs]") {
+  const Bench bench;
+  bench.mustRun(kTall + "in.vdb -q");
+  bench.mustRun("generate pack roi.tif --dims 40x33x93 --radius 9:12 -q");
+  bench.mustRun("segment in.vdb in.slabs --grid object --slab-height 8 -q");
+  const std::string segment = "segment in.slabs/ out.slabs/ --roi roi.tif --slab-height 8 --resume";
+  bench.mustRun(segment + " -q");
+  const Json index = Json::parse(bench.bytes("out.slabs/index.json"));
+  CHECK(index.at("input") == "in.slabs");  // the slash, as shells complete it, is no part of it
+  CHECK(index.at("input_bytes") > 0);
+  CHECK_THAT(bench.run(segment).err, Contains("out.slabs: is finished"));
+  for (const std::string name : {"in.slabs/slab-0001.vdb", "roi.tif"}) {
+    const auto before = std::filesystem::last_write_time(bench.path(name));
+    std::filesystem::last_write_time(bench.path(name),
+                                     std::filesystem::file_time_type::clock::now());
+    const Outcome refused = bench.run(segment);
+    CHECK(refused.exitCode == 1);
+    CHECK_THAT(refused.err, Contains("made of another input"));
+    std::filesystem::last_write_time(bench.path(name), before);
+    CHECK(bench.run(segment).exitCode == 0);
+  }
+}
+
 TEST_CASE("slabs: nothing is made of a half of what a run left", "[slabs]") {
   const Bench bench;
   bench.mustRun(kTall + "in.vdb -q");

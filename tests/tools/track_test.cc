@@ -369,7 +369,7 @@ TEST_CASE("cli: a series that was made to move is followed as it moved", "[cli]"
   for (const std::string made : {"3.slabs", "4.tif"})
     CHECK(bench.mustRun("compare 3.vdb " + made).find("only 0, in test only 0") !=
           std::string::npos);
-  bench.mustRun("track 1.slabs 2.slabs 3.slabs later --motion affine -q");
+  bench.mustRun("track 1.slabs 2.slabs/ 3.slabs/ later/ --motion affine -q");
   CHECK(bench.bytes("later/2_grains.csv") == bench.bytes("3.vdb.csv"));
   CHECK(infoOf(bench, "later/3.slabs").at("grids").size() == 1);
   refuses(bench, kFailed, "track 1.slabs 2.slabs none/5.slabs --motion affine", {"none"});

@@ -14,7 +14,7 @@
 #include "support/files.h"
 #include "support/label_shapes.h"
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/same_file.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"

@@ -20,7 +20,7 @@
 #include "text_file.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/csv_cell.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/measure/columns.h"
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "nearest_name.h"
+#include "vdb_madf/files/file_name.h"
 
 namespace vdb_madf::tools {
 
@@ -71,6 +72,13 @@ std::vector<std::string> argumentsOf(int argc, char** argv) {
     arguments.push_back("--help");
   }
   return {arguments.rbegin(), arguments.rend()};
+}
+
+/// Takes a folder "name/", as shells complete it, for "name". Arguments are files; options are left
+/// as they are.
+CLI::Option* takePaths(CLI::Option* option) {
+  if (option->get_positional()) option->transform(withoutSlash);
+  return option;
 }
 
 /// What a value is, by the name that the help shows for it. Arguments are files.
@@ -208,7 +216,7 @@ Verb Verb::verb(const std::string& name, const std::string& description) {
 }
 
 Option Verb::option(const std::string& name, std::string& value, const std::string& help) {
-  return Option(app_->add_option(name, value, help), choices_);
+  return Option(takePaths(app_->add_option(name, value, help)), choices_);
 }
 
 Option Verb::option(const std::string& name, int& value, const std::string& help) {
@@ -229,7 +237,7 @@ Option Verb::option(const std::string& name, double& value, const std::string& h
 
 Option Verb::option(const std::string& name, std::vector<std::string>& values,
                     const std::string& help) {
-  return Option(app_->add_option(name, values, help), choices_);
+  return Option(takePaths(app_->add_option(name, values, help)), choices_);
 }
 
 void Verb::flag(const std::string& name, bool& value, const std::string& help) {

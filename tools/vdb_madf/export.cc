@@ -15,7 +15,7 @@
 #include "vdb_madf/exports/mesh_file.h"
 #include "vdb_madf/exports/network_file.h"
 #include "vdb_madf/exports/ome_zarr.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/output_folder.h"
 #include "vdb_madf/files/output_tree.h"
 #include "vdb_madf/grids/grid_metadata.h"

@@ -16,7 +16,7 @@
 #include "vdb_madf/exports/hexahedra_file.h"
 #include "vdb_madf/exports/mesh_file.h"
 #include "vdb_madf/exports/sand_atlas.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/output_set.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"

@@ -18,7 +18,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/base/word_list.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/output_set.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/files/written_together.h"

@@ -11,7 +11,7 @@
 #include "outputs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/word_list.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/open_image.h"
 #include "vdb_madf/volumes/label_type.h"

@@ -17,7 +17,7 @@
 #include "remerge_slabs.h"
 #include "text_file.h"
 #include "vdb_madf/base/counted.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/segmentation/graph_metadata.h"
 #include "vdb_madf/vdb/read_vdb.h"
 

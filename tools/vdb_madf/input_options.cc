@@ -265,11 +265,11 @@ void noteMemory(const InputOptions& input, Progress* progress) {
   for (const openvdb::GridBase::Ptr& grid : readVdbHeaders(input.path, progress))
     if (const auto count = grid->getMetadata<openvdb::Int64Metadata>("madf_leaves"))
       leaves = std::max(leaves, count->value());
-  if (leaves > 0)
-    progress->note(fmt::format(
-        "{}: its labels are needed in memory together: about {}, and {} "
-        "are free",
-        input.path, readableBytes(leaves * kLeafBytes), readableBytes(availableMemory())));
+  if (leaves == 0) return;
+  const int64_t free = availableMemory();
+  progress->note(fmt::format("{}: its labels are needed in memory together: about {}{}", input.path,
+                             readableBytes(leaves * kLeafBytes),
+                             free ? fmt::format(", and {} are free", readableBytes(free)) : ""));
 }
 
 }  // namespace

@@ -59,20 +59,13 @@ void printSensitivity(const Measurements& m, double length, const std::string& u
 
 /// Necks as the labels have them and as the scan shows them.
 void printNecks(const Measurements& m, double length, const std::string& unit) {
-  int64_t confirmed = 0;
-  double labelled = 0, shown = 0;
-  for (const BondMeasures& bond : m.bonds)
-    if (bond.neck->confirmed) {
-      ++confirmed;
-      labelled += bond.area;
-      shown += bond.neck->area;
-    }
+  const ConfirmedNecks necks = confirmedNecks(m);
+  const double share = necks.count ? length * length / double(necks.count) : 0;
   std::printf("  scan                blur %.2f voxel, noise %.1f %% of the contrast\n",
               m.scan->sigma, 100 * m.scan->noise);
   std::printf("  necks in the scan   %lld of %s, mean area %.5g %s2 (%.5g in the labels)\n",
-              (long long)confirmed, counted(int64_t(m.bonds.size()), "bond").c_str(),
-              confirmed ? shown / double(confirmed) * length * length : 0.0, unit.c_str(),
-              confirmed ? labelled / double(confirmed) * length * length : 0.0);
+              (long long)necks.count, counted(int64_t(m.bonds.size()), "bond").c_str(),
+              necks.area * share, unit.c_str(), necks.labelledArea * share);
   std::printf("  contacts a grain    %.2f with gaps of up to %.3g %s\n", contactCoordination(m),
               kContactGap * length, unit.c_str());
 }

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/output_file.h"
 #include "vdb_madf/files/same_file.h"
 #include "vdb_madf/files/standard_streams.h"
@@ -105,7 +105,7 @@ bool hasPngEnding(const std::string& path) {
   return fileEnding(path) == ".png";
 }
 void checkTableEnding(const std::string& path) {
-  if (path != "-" && (path.size() < 4 || path.compare(path.size() - 4, 4, ".csv") != 0))
+  if (!isOnStandardOutput(path) && fileEnding(path) != ".csv")
     throw WrongUsage(path + ": the output's ending must be .csv");
 }
 

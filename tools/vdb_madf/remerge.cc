@@ -91,7 +91,6 @@ void addRemerge(Verb command, Common& common, Action& action) {
   verb.onParsed([o, &common, &action] {
     o->merge.parse();
     parseTidy(o->tidy);
-    o->out = withoutSlash(o->out);
     o->input.outputs = {o->out};
     o->input.parse();
     if (!hasSlabsEnding(o->out)) checkVolumeEnding(o->out);

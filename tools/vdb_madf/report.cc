@@ -20,7 +20,7 @@
 #include "scan_option.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/measurement_files.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/intensity/gray_planes.h"

@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "vdb_madf/segmentation/segment.h"
-#include "vdb_madf/intensity/estimate_blur.h"
-#include "vdb_madf/intensity/measure_necks.h"
 
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -33,6 +30,8 @@
 #include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/files/output_set.h"
 #include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/intensity/estimate_blur.h"
+#include "vdb_madf/intensity/measure_necks.h"
 #include "vdb_madf/measure/measure.h"
 #include "vdb_madf/measure/size_biases.h"
 #include "vdb_madf/measure/table_unit.h"
@@ -51,7 +50,6 @@ std::filesystem::path placeOf(const std::string& path) {
 }
 
 void parseFiles(SegmentArguments& o) {
-  o.out = withoutSlash(o.out);
   o.input.outputs = {o.out, o.json};
   if (!o.tables.empty()) {
     for (const std::string& path : MeasurementTables::paths(o.tables))

@@ -14,7 +14,7 @@
 #include "member_failure.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/memory.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/method/cavities.h"
 #include "vdb_madf/slabs/deal_slabs.h"
@@ -89,14 +89,6 @@ MaskGrid::Ptr storedAbout(const WorkPlace& place) {
 
 bool hasSlabsEnding(const std::string& path) {
   return fileEnding(path) == ".slabs";
-}
-
-std::string withoutSlash(std::string path) {
-  const std::string ending = ".slabs/";
-  while (path.size() > ending.size() &&
-         path.compare(path.size() - ending.size(), ending.size(), ending) == 0)
-    path.pop_back();
-  return path;
 }
 
 void checkSlabArguments(const SegmentArguments& o) {

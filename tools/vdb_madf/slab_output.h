@@ -14,8 +14,6 @@ namespace vdb_madf::tools {
 
 /// True for the ending .slabs.
 bool hasSlabsEnding(const std::string& path);
-/// Makes "OUT.slabs" of "OUT.slabs/", as shells complete it; other paths as they are.
-std::string withoutSlash(std::string path);
 
 /// Checks the options of an output in slabs. @throw WrongUsage for what slabs do not know
 void checkSlabArguments(const SegmentArguments& o);

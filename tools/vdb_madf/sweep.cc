@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "vdb_madf/base/memory.h"
 #include "vdb_madf/segmentation/parameter_sweep.h"
 
 #include <fmt/core.h>
@@ -23,6 +22,7 @@
 #include "remerge_slabs.h"
 #include "text_file.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/base/memory.h"
 #include "vdb_madf/files/output_set.h"
 #include "vdb_madf/pictures/sweep_plot.h"
 #include "vdb_madf/segmentation/segmentation_metadata.h"

@@ -31,10 +31,10 @@ void TextFile::write(const std::string& text) {
     return;
   }
   std::ofstream stream(file_ ? file_->temporaryPath() : path_, std::ios::binary);
-  stream << text << std::flush;
+  stream << text;
+  stream.close();
   if (!stream)
     throw IoError("cannot write " + path_ + ": " + std::strerror(errno) + "; write it elsewhere");
-  stream.close();
   if (file_) file_->commit();
 }
 

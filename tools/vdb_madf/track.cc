@@ -24,7 +24,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/network_file.h"
 #include "vdb_madf/exports/ome_zarr.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/output_folder.h"
 #include "vdb_madf/files/output_set.h"
 #include "vdb_madf/files/output_tree.h"
@@ -45,7 +45,7 @@ struct SeriesFiles {
 SeriesFiles seriesFiles(const TrackArguments& o, const std::string& scan) {
   namespace fs = std::filesystem;
   const std::string stem = (fs::path(o.more.back()) / fs::path(scan).stem()).string();
-  const bool isInSlabs = !o.motion.empty() && hasSlabsEnding(withoutSlash(scan));
+  const bool isInSlabs = !o.motion.empty() && hasSlabsEnding(scan);
   return {stem + (isInSlabs ? ".slabs" : ".vdb"), stem + "_grains.csv", stem + "_bonds.csv"};
 }
 

@@ -13,7 +13,7 @@
 #include "vdb_madf/exports/ome_zarr.h"
 #include "vdb_madf/exports/sand_atlas.h"
 #include "vdb_madf/exports/vti_file.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/grids/object_mask.h"
 #include "vdb_madf/labels/grain_colors.h"

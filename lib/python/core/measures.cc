@@ -209,10 +209,17 @@ py::dict sampleOf(const Measurements& m, const TableUnit& unit, py::dict& units)
   if (m.binder) {
     add("binder_volume", m.binder->volume, 3);
     add("binder_loose_volume", m.binder->looseVolume, 3);
+    dict["bridges"] = m.binder->bridges.size();
   }
   if (m.scan) {
     add("scan_blur", m.scan->sigma, 1);
     dict["scan_noise_of_contrast"] = m.scan->noise;
+    dict["scan_gray_inside"] = m.scan->inside;
+    dict["scan_gray_outside"] = m.scan->outside;
+    const ConfirmedNecks necks = confirmedNecks(m);
+    dict["necks_confirmed"] = necks.count;
+    add("neck_area", necks.area, 2);
+    add("contact_gap", kContactGap, 1);
     dict["contact_coordination"] = contactCoordination(m);
   }
   if (m.sensitivity) dict["sensitivity"] = sensitivityOf(*m.sensitivity, unit, units);
@@ -283,6 +290,7 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
   };
   std::optional<ManifoldGraph> graph;
   if (manifold) graph = requiredGraph(asLabels(*manifold));
+  std::vector<std::string> notes;
   const Measurements measured = withoutLock(call, [&](Interrupter* interrupter) {
     Measurements result = measure(grid, options, interrupter);
     if (graph) measureStability(*graph, result);
@@ -291,7 +299,10 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
     if (edges) {
       const auto blur = sensitivity > 0 ? estimateBlur(*edges->image, interrupter)
                                         : blurOf(*edges->image, interrupter);
-      if (blur) measureNecks(grid, *sections, *blur, result, interrupter);
+      if (blur)
+        measureNecks(grid, *sections, *blur, result, interrupter);
+      else
+        notes.push_back("the edges of the gray scan tell no blur: necks are not measured");
     }
     if (sensitivity > 0) measureSensitivity(grid, openAgain, again, result, interrupter);
     return result;
@@ -306,6 +317,7 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
   if (sizeCurve) dict["sample"]["size_curve"] = table(vdb_madf::sizeCurve(measured), unit, units);
   dict["unit"] = unit.name;
   dict["units"] = units;
+  dict["notes"] = notes;
   return dict;
 }
 

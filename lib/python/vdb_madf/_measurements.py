@@ -13,7 +13,7 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import checked
 from ._arrays import Source, readable
-from ._calls import Progress, calling
+from ._calls import Progress, calling, warn
 from ._labels import Labels
 from ._segmentation import Segmentation, labels_of
 
@@ -86,6 +86,9 @@ class Measurements:
       (NaN: a grain reaches from face to face), `minimum_cut_share` of the faces' area,
       `minimum_cut_bonds`; `bond_conductivity` of what the full box would conduct; and
       `bond_conductivity_tensor`, (3, 3), [z, y, x], with all six faces at a gradient's potentials
+    - with gray: `scan_blur`, its standard deviation; `scan_noise_of_contrast`, `scan_gray_inside`,
+      `scan_gray_outside`; `necks_confirmed` of the bonds, with the sum `neck_area`;
+      `contact_coordination`, mean number of a grain's bonds without a gap over `contact_gap`
     - with sensitivity: `sensitivity`: `runs`, the ends of what was varied, and `intervals`
     - with bootstrap: `intervals`, by name of a mean its `mean`, and `low` and `high` of 95 %
     - with size_curve: `size_curve`, by kind of size (columns of the grains) the sizes that
@@ -105,7 +108,8 @@ class Measurements:
     """With phases, a row for each pair of grains that binder connects, by `first`, then `second`:
     `bonded`: they touch, too; `voxels`, `volume`; `section_area` where it is as far from both,
     `section_radius`; `first_cover_area`, `second_cover_area` of the grains, and `..._share` of
-    their free areas. In the sample `binder_volume`, `binder_loose_volume` (in no bridge)."""
+    their free areas. In the sample `binder_volume`, `binder_loose_volume` (in no bridge),
+    and the number of `bridges`."""
 
     def to_pandas(self) -> Tuple["pd.DataFrame", "pd.DataFrame"]:
         """Grains, indexed by id, and bonds. `attrs` has "unit", "units" and "provenance"."""
@@ -201,4 +205,5 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
                              manifold=labels._manifolds() if stability else None,
                              bootstrap=bootstrap, sensitivity=sensitivity, vary=vary or {},
                              unit=unit or "")
+    warn(made.pop("notes"))
     return Measurements(**made, provenance=measured.metadata)

@@ -9,7 +9,7 @@
 
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/detail/output_stream.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 
 namespace vdb_madf {

@@ -6,7 +6,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/detail/vtk_file.h"
 #include "vdb_madf/files/detail/output_stream.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/labels/grain_name.h"
 
 namespace vdb_madf {

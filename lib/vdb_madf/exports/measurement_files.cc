@@ -139,19 +139,13 @@ void addIntervals(const std::vector<MeanInterval>& intervals, const std::string&
 }
 
 void addScan(const Measurements& m, const TableUnit& unit, Json& json) {
-  int64_t confirmed = 0;
-  double area = 0;
-  for (const BondMeasures& bond : m.bonds)
-    if (bond.neck && bond.neck->confirmed) {
-      ++confirmed;
-      area += bond.neck->area;
-    }
+  const ConfirmedNecks necks = confirmedNecks(m);
   json["scan_blur_" + unit.name] = m.scan->sigma * unit.length;
   json["scan_noise_of_contrast"] = m.scan->noise;
   json["scan_gray_inside"] = m.scan->inside;
   json["scan_gray_outside"] = m.scan->outside;
-  json["necks_confirmed"] = confirmed;
-  json["neck_area_" + unit.name + "2"] = area * unit.area();
+  json["necks_confirmed"] = necks.count;
+  json["neck_area_" + unit.name + "2"] = necks.area * unit.area();
   json["contact_gap_" + unit.name] = kContactGap * unit.length;
   json["contact_coordination"] = contactCoordination(m);
 }

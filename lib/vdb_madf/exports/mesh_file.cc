@@ -18,7 +18,7 @@
 #include "vdb_madf/exports/detail/vtk_file.h"
 #include "vdb_madf/exports/detail/world_mesh.h"
 #include "vdb_madf/files/detail/output_stream.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/output_folder.h"
 #include "vdb_madf/files/output_set.h"
 #include "vdb_madf/files/written_together.h"

@@ -10,7 +10,7 @@
 #include "vdb_madf/exports/musen_file.h"
 #include "vdb_madf/exports/network_file.h"
 #include "vdb_madf/files/detail/output_stream.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 
 #include <fmt/core.h>
 

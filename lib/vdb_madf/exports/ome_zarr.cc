@@ -3,7 +3,6 @@
 
 #include "vdb_madf/exports/ome_zarr.h"
 
-#include <filesystem>
 #include <type_traits>
 #include <vector>
 
@@ -13,7 +12,7 @@
 #include "vdb_madf/exports/detail/neuroglancer_files.h"
 #include "vdb_madf/exports/detail/ome_attributes.h"
 #include "vdb_madf/exports/detail/ome_levels.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/labels/grain_colors.h"
 
 namespace vdb_madf {
@@ -44,12 +43,6 @@ void writeGroups(const OutputTree& folder, const std::string& group, const OmePl
                               {"image-label", imageLabel}});
 }
 
-/// The last part of a path, with or without a slash behind it.
-std::string nameOf(const std::string& path) {
-  const std::filesystem::path name(path);
-  return (name.has_filename() ? name : name.parent_path()).filename().string();
-}
-
 ZarrVersion zarrOf(OmeVersion version) {
   return version == OmeVersion::v04 ? ZarrVersion::two : ZarrVersion::three;
 }
@@ -70,8 +63,8 @@ void writeGroup(const OutputTree& folder, const std::string& path, const std::st
                 options.version, zarr);
     if constexpr (std::is_same_v<Labels, Int32Grid>)
       if (options.meshes)
-        detail::writeNeuroglancer(folder, nameOf(path), labels, box, place, table, colors, options,
-                                  interrupter);
+        detail::writeNeuroglancer(folder, lastPart(path), labels, box, place, table, colors,
+                                  options, interrupter);
   }
   WorkPart part(interrupter, kMeasured, 100);
   detail::writeOmeLevels(folder, group, labels, levels, zarr, &part);

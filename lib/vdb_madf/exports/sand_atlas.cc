@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/exports/detail/remesh.h"
 #include "vdb_madf/exports/detail/stl_bytes.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/output_tree.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"
 #include "vdb_madf/grids/detail/world_transform.h"
@@ -180,8 +180,7 @@ SandAtlasCounts writeSandAtlas(const std::string& folder, const Int32Grid& label
       writeStl(std::to_string(across),
                inFacets(mesh, grain.ellipsoid.values[2] / across, double(grain.voxels)));
   });
-  const std::filesystem::path path(folder);
-  const std::string name = (path.has_filename() ? path : path.parent_path()).filename().string();
+  const std::string name = lastPart(folder);
   tree.write(name + ".csv", tableOf(grains, 1e6 * size->edge()));
   tree.write(name + ".json", aboutSand(name, grains.size(), 1e6 * size->edge()));
   tree.commit();

@@ -13,6 +13,7 @@
 
 #include "vdb_madf/files/detail/output_place.h"
 #include "vdb_madf/files/detail/write_whole.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/output_file.h"
 
 namespace vdb_madf {
@@ -21,11 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using detail::failToWrite;
-
-std::string withoutSlashes(std::string path) {
-  while (path.size() > 1 && path.back() == '/') path.pop_back();
-  return path;
-}
 
 void checkNothingThere(const std::string& path) {
   std::error_code error;
@@ -56,7 +52,7 @@ int syncFileSystemOf(const std::string& folder) {
 
 }  // namespace
 
-OutputTree::OutputTree(const std::string& path) : path_(withoutSlashes(path)) {
+OutputTree::OutputTree(const std::string& path) : path_(withoutSlash(path)) {
   checkNothingThere(path_);
   int made = -1;
   do {
@@ -90,7 +86,7 @@ void OutputTree::commit() {
 }
 
 void checkOutputTree(const std::string& path) {
-  removeLeftovers({withoutSlashes(path)});
+  removeLeftovers({withoutSlash(path)});
   const OutputTree probe(path);
 }
 

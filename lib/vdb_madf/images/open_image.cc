@@ -11,7 +11,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/word_list.h"
 #include "vdb_madf/files/detail/input_file.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/standard_streams.h"
 #include "vdb_madf/images/formats/dgtal_vol.h"
 #include "vdb_madf/images/formats/hdf5.h"

@@ -45,11 +45,11 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
 /// (mean of the centers of the faces), `normal_x`, `_y`, `_z`, `distance`, `cos_alpha`, `flatness`,
 /// `patches`, `curvature_points`, `mean_curvature`, `mean_curvature_sd`, `gaussian_curvature`,
 /// `gaussian_curvature_sd`, `curvature_residual`. A bond without a curvature has 0
-/// `curvature_points` and none of the four. With gray values the columns that grains have;
-/// with necks `neck_area`, `neck_radius`, `neck_error`, `neck_gap`, `neck_confirmed` (0 or 1),
-/// `neck_normal_x`, `_y`, `_z`; with recurrences `p_bond`, `area_sd`; with the stability
-/// `vanishes`; with crossings `cut_x`, `_y`, `_z` (0 or 1), `current_x`, `_y`,
-/// `_z`.
+/// `curvature_points` and none of the four. With radii of bonds `inscribed_radius`; with gray
+/// values the columns that grains have; with necks `neck_area`, `neck_radius`, `neck_error`,
+/// `neck_gap`, `neck_confirmed` (0 or 1), `neck_normal_x`, `_y`, `_z`; with the stability
+/// `vanishes`; with recurrences `p_bond`, `area_sd`; with crossings `cut_x`, `_y`, `_z` (0 or 1),
+/// `current_x`, `_y`, `_z`.
 std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,
                                        const ExtraMeasures& extra = {});
 

@@ -9,6 +9,7 @@
 #include <optional>
 #include <sstream>
 
+#include "vdb_madf/base/counted.h"
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 
@@ -70,9 +71,10 @@ std::vector<GivenColumn> givenColumns(const std::string& csv, bool ofLaterScan) 
   std::map<int32_t, int> seen;
   for (int number = 2; std::getline(lines, line); ++number) {
     const Cells cells = cellsOf(line);
+    if (cells == Cells{""}) continue;
     const std::string where = "line " + std::to_string(number) + ": ";
     if (cells.size() != names.size())
-      throw InvalidInput(where + "has " + std::to_string(cells.size()) + " cells, and the first " +
+      throw InvalidInput(where + "has " + counted(cells.size(), "cell") + ", and the first " +
                          std::to_string(names.size()));
     if (side && cells[*side] != (ofLaterScan ? "after" : "before")) continue;
     const auto id = numberOf(cells[*grain]);

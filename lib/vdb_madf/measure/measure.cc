@@ -192,4 +192,15 @@ double contactCoordination(const Measurements& measured) {
   return 2.0 * double(contacts) / double(measured.grains.size());
 }
 
+ConfirmedNecks confirmedNecks(const Measurements& measured) {
+  ConfirmedNecks necks;
+  for (const BondMeasures& bond : measured.bonds)
+    if (bond.neck && bond.neck->confirmed) {
+      ++necks.count;
+      necks.area += bond.neck->area;
+      necks.labelledArea += bond.area;
+    }
+  return necks;
+}
+
 }  // namespace vdb_madf

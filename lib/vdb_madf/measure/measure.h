@@ -103,4 +103,12 @@ Measurements measure(const Segmentation& segmentation, Interrupter* interrupter 
 /// Mean number of the bonds of a grain that touch in the scan (Neck::touches()); needs necks.
 double contactCoordination(const Measurements& measured);
 
+/// The bonds that the scan confirms (Neck::confirmed).
+struct ConfirmedNecks {
+  int64_t count = 0;
+  double area = 0;          ///< of their necks, added; voxels
+  double labelledArea = 0;  ///< of the same bonds in the labels
+};
+ConfirmedNecks confirmedNecks(const Measurements& measured);
+
 }  // namespace vdb_madf

@@ -30,7 +30,7 @@ struct SampleMeasures {
   double sharedArea = 0;       ///< of all bonds and of the contacts that were left out
   double specificSurface = 0;  ///< free area per volume of object, 1/voxel
   std::array<std::optional<double>, 3> correlationLengths;  ///< see correlation_length.h
-  int64_t eulerCharacteristic = 0;                          ///< see euler_characteristic.h
+  int64_t eulerCharacteristic = 0;                          ///< components - tunnels + cavities
   int64_t components = 0;                                   ///< 6-connected parts of the object
   std::vector<int64_t> coordinations;                       ///< grains with 0, 1, 2 ... bonds
   double meanCoordination = 0;

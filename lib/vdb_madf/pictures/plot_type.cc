@@ -3,7 +3,7 @@
 
 #include "vdb_madf/pictures/plot_type.h"
 
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 
 namespace vdb_madf {
 

@@ -59,10 +59,11 @@ int64_t fillVoxels(const DenseBox& space, const Definition& definition, const Ma
     });
   int64_t outside = 0;
   forActive(object.tree(), [&](const CoordBBox& bounds, bool) {
-    outside += forVoxels(space, bounds, [&](int64_t i) {
+    const int64_t beyond = forVoxels(space, bounds, [&](int64_t i) {
       outside += voxels[size_t(i)] == Voxel::unknown;
       voxels[size_t(i)] = Voxel::object;
     });
+    outside += beyond;
   });
   return outside;
 }

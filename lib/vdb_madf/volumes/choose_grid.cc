@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 
 #include "vdb_madf/files/detail/input_file.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/open_image.h"
 #include "vdb_madf/vdb/slab_folder.h"

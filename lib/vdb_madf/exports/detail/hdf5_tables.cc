@@ -4,7 +4,7 @@
 #include "vdb_madf/exports/detail/hdf5_tables.h"
 
 #include "vdb_madf/base/errors.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/output_file.h"
 
 #ifdef VDB_MADF_HDF5

@@ -11,7 +11,7 @@
 #include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/base/lower_case.h"
 #include "vdb_madf/files/detail/output_stream.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/output_set.h"
 #include "vdb_madf/files/same_file.h"
 #include "vdb_madf/images/detail/header_checks.h"

@@ -94,7 +94,7 @@ KeyValueHeader nrrdHeader(const InputFile& file) {
   return header;
 }
 
-/// The unit that all three inQuotes names agree on: "mm" "mm" "mm".
+/// The unit that all three quoted names agree on: "mm" "mm" "mm".
 std::optional<double> commonUnit(const std::string& path, const std::optional<std::string>& text) {
   if (!text) return std::nullopt;
   std::vector<std::optional<double>> units;

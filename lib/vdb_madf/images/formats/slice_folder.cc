@@ -10,7 +10,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/length_unit.h"
 #include "vdb_madf/base/lower_case.h"
-#include "vdb_madf/files/file_ending.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/key_value_header.h"
 #include "vdb_madf/images/formats/picture_slice.h"

@@ -11,7 +11,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/measure/detail/bond_measures.h"
-#include "vdb_madf/measure/detail/euler_in_layers.h"
+#include "vdb_madf/measure/detail/euler_characteristic.h"
 #include "vdb_madf/measure/detail/grain_measures.h"
 #include "vdb_madf/measure/detail/sample_measures.h"
 #include "vdb_madf/measure/edge_weights.h"

@@ -15,6 +15,7 @@
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/version.h"
 #include "vdb_madf/exports/measurement_files.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/intensity/gray_planes.h"
 #include "vdb_madf/labels/reduced_labels.h"
@@ -148,7 +149,7 @@ void ReportParts::begin(const char* stage) const {
 
 std::string ReportParts::title() const {
   if (!options_.title.empty()) return options_.title;
-  const std::string name = std::filesystem::path(options_.labels).filename().string();
+  const std::string name = lastPart(options_.labels);
   return name.empty() ? "Grains" : name;
 }
 

@@ -5,9 +5,7 @@
 
 #include <openvdb/Metadata.h>
 
-#include <filesystem>
-#include <string>
-
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/image.h"
 #include "vdb_madf/scans/image_box.h"
@@ -20,9 +18,7 @@ inline void describeImageGrid(const ImageReader& image, openvdb::GridBase& grid)
   setDomain(grid, imageBox(image.info().size));
   setVoxelSize(grid, image.info().voxelSize);
   if (image.info().proportions) setProportions(grid, *image.info().proportions);
-  const std::filesystem::path path(image.path());
-  const std::string name = (path.has_filename() ? path : path.parent_path()).filename().string();
-  grid.insertMeta(kSourceKey, openvdb::StringMetadata(name));
+  grid.insertMeta(kSourceKey, openvdb::StringMetadata(lastPart(image.path())));
 }
 
 }  // namespace vdb_madf::detail

@@ -28,7 +28,7 @@ struct ComponentBall;
 struct OpenGraph;
 struct SlabPart;
 struct SlabTerminals;
-// Types of slab_setup.cc, slab_map.h, slab_completion.cc, slab_filter.cc, slab_graph.cc,
+// Types of tidy_steps.h, slab_map.h, slab_completion.cc, slab_filter.cc, slab_graph.cc,
 // slab_labels.cc and slab_remerge.cc.
 struct Largest;
 struct FaceChange;
