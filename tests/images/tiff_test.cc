@@ -211,8 +211,8 @@ TEST_CASE("image_file: a folder of slices is read in natural order", "[image_fil
 TEST_CASE("image_file: TIFF voxel size as ImageJ writes it", "[image_file]") {
   const ScratchFolder folder;
   const std::string path = folder / "a.tif";
+  TiffLayout layout;
   const auto size = [&](const std::string& description, double resolution) {
-    TiffLayout layout;
     layout.description = description;
     layout.resolution = resolution;
     writeTiff(path, kTiffSize, SampleType::uint8, std::string(voxels(kTiffSize), 'a'), layout);
@@ -225,12 +225,26 @@ TEST_CASE("image_file: TIFF voxel size as ImageJ writes it", "[image_file]") {
   CHECK_FALSE(size("ImageJ=1.52a\nunit=mm\n", 4));
   CHECK_FALSE(size("ImageJ=1.52a\nunit=pixel\nspacing=1\n", 1));
   CHECK_FALSE(size("ImageJ=1.52a\nspacing=4\n", 0.25));
+  CHECK(size("ImageJ=1.52a\nunit=\\u03BCm\nspacing=4\n", 0.25)->edge() == 4e-6);
+  CHECK(size("ImageJ=1.52a\nunit=inch\nspacing=0.25\n", 4)->edge() == 0.25 * 0.0254);
   CHECK_FALSE(size("unit=mm\nspacing=4\n", 0.25));
   CHECK_FALSE(size("", 72));
   CHECK(size("ImageJ=1.52a\nunit=mm\nspacing=4\n", 1)->edges() ==
         std::array<double, 3>{1e-3, 1e-3, 4e-3});
   CHECK(size("ImageJ=1.52a\nunit=mm\nspacing=-4\n", 1 / 1.2)->edges() ==
         std::array<double, 3>{1.2e-3, 1.2e-3, 4e-3});
+  // Without a unit: the proportions, if the tags are said to have none, too.
+  const auto proportions = [&](const std::string& text, double resolution, int unit) {
+    layout.resolutionUnit = unit;
+    size(text, resolution);
+    return openImage(path)->info().proportions;
+  };
+  using Edges = std::array<double, 3>;
+  for (const std::string unit : {"", "unit=pixel\n"})
+    CHECK(proportions("ImageJ=1.52a\n" + unit + "spacing=3\n", 1, RESUNIT_NONE) == Edges{1, 1, 3});
+  CHECK_FALSE(proportions("ImageJ=1.52a\nspacing=3\n", 72, RESUNIT_INCH));
+  CHECK_FALSE(proportions("ImageJ=1.52a\n", 72, RESUNIT_NONE));
+  CHECK_FALSE(proportions("ImageJ=1.52a\nspacing=1\n", 1, RESUNIT_NONE));
   CHECK_THROWS_WITH(size("ImageJ=1.52a\nchannels=3\n", 0), Contains("channels"));
 }
 

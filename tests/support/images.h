@@ -107,6 +107,7 @@ struct TiffLayout {
   int predictor = 0;
   std::string description;
   double resolution = 0;
+  int resolutionUnit = 0;  ///< 0: not said
 };
 
 inline int formatOf(SampleType type) {
@@ -132,6 +133,7 @@ inline void setTiffTags(TIFF* tiff, const ImageSize& size, SampleType type,
   if (layout.resolution > 0) {
     TIFFSetField(tiff, TIFFTAG_XRESOLUTION, layout.resolution);
     TIFFSetField(tiff, TIFFTAG_YRESOLUTION, layout.resolution);
+    if (layout.resolutionUnit) TIFFSetField(tiff, TIFFTAG_RESOLUTIONUNIT, layout.resolutionUnit);
   }
 }
 

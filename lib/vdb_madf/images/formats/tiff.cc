@@ -58,24 +58,31 @@ double decimalOfReciprocal(float number) {
 
 /// Only the calibrations of OME and ImageJ are trusted: the plain resolution tags are mostly a
 /// scanner's or a printer's default of 72 dots per inch.
-std::optional<VoxelSize> calibration(const TiffFile& file, const KeyValueHeader& imageJ,
-                                     const OmePixels& ome, int slices) {
-  if (ome.images() > 0) return ome.voxelSize(file.path());
+void setCalibration(ImageInfo& info, const TiffFile& file, const KeyValueHeader& imageJ,
+                    const OmePixels& ome, int slices) {
+  if (ome.images() > 0) {
+    info.voxelSize = ome.voxelSize(file.path());
+    return;
+  }
   const auto unit = unitsPerMetre(imageJ.find("unit").value_or(""));
   const float perX = file.handle().field<float>(TIFFTAG_XRESOLUTION, 0);
   const float perY = file.handle().field<float>(TIFFTAG_YRESOLUTION, 0);
-  if (!unit || !(perX > 0) || !(perY > 0)) return std::nullopt;
+  // Without a unit the tags are no one's, but where ImageJ says that they have none, either.
+  const bool isPlain =
+      file.handle().field<uint16_t>(TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH) == RESUNIT_NONE;
+  if (!(unit || isPlain) || !(perX > 0) || !(perY > 0)) return;
   const double x = 1.0 / double(perX), y = 1.0 / double(perY);
   // ImageJ leaves out a slice spacing of 1; then nobody may have set it.
   const auto z = numberIn(imageJ, "spacing");
-  if (!z && slices > 1 && std::abs(x - 1) > 1e-3) return std::nullopt;
+  if (!z && slices > 1 && (!unit || std::abs(x - 1) > 1e-3)) return;
   // The text is exact and the tags are single precision: the text comes first. Its sign is the
   // order of the slices.
   const double depth = z ? std::abs(*z) : slices > 1 ? 1.0 : x;
   if (areEdgesOfCube({depth, x, y}))
-    return checkedVoxelSize(file.path(), {depth, depth, depth}, unit);
-  return checkedVoxelSize(file.path(),
-                          {decimalOfReciprocal(perX), decimalOfReciprocal(perY), depth}, unit);
+    info.voxelSize = checkedVoxelSize(file.path(), {depth, depth, depth}, unit);
+  else
+    setSpacing(info, file.path(), {decimalOfReciprocal(perX), decimalOfReciprocal(perY), depth},
+               unit);
 }
 
 /// The pages have to be the slices of one volume, and all of them.
@@ -124,7 +131,7 @@ class TiffStack : public ImageReader {
     info_.type = page_.type;
     const OmePixels ome(description(file_));
     checkOme(file_, ome, page_.channels, slices);
-    info_.voxelSize = calibration(file_, imageJ, ome, info_.size.z);
+    setCalibration(info_, file_, imageJ, ome, info_.size.z);
     info_.format = "tiff";
     if (whiteIsZero_ > 0) notes_.push_back(whiteIsZeroNote(path_, whiteIsZero_, pages_.size()));
   }
@@ -199,8 +206,8 @@ class TiffFolder : public ImageReader {
       whiteIsZero += page.whiteIsZero;
       if (z == 0) {
         page_ = page;
-        info_.voxelSize = calibration(file, imageJDescription(file), OmePixels(description(file)),
-                                      int(files_.size()));
+        setCalibration(info_, file, imageJDescription(file), OmePixels(description(file)),
+                       int(files_.size()));
       } else if (!page.sameAs(page_)) {
         throw IoError(files_[z] + ": is " + std::to_string(page.width) + " x " +
                       std::to_string(page.height) + " " + sampleTypeName(page.type) +
