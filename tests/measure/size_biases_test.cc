@@ -46,6 +46,16 @@ TEST_CASE("size_biases: no word of large grains, of none, of slices", "[size_bia
   CHECK(sizeBiases(small).empty());
 }
 
+TEST_CASE("size_biases: of unequal voxels cubes as large as they count", "[size_biases]") {
+  Measurements thick = ofSizes(8, 5);
+  thick.edges = {1, 1, 8};  // lengths are in the shortest edge
+  const auto biases = sizeBiases(thick), ofCubes = sizeBiases(ofSizes(4, 2.5));
+  REQUIRE(biases.size() == ofCubes.size());
+  CHECK(biases.size() > 1);
+  for (size_t i = 0; i < biases.size(); ++i)
+    CHECK(biases[i].expected == Approx(ofCubes[i].expected));
+}
+
 TEST_CASE("size_biases: each number by its own size, up to where it is enough", "[size_biases]") {
   using Names = std::vector<std::string>;
   CHECK(numbers(ofSizes(2.5, 12)) == Names{"grains", "specific_surface", "mean_coordination"});

@@ -3,6 +3,8 @@
 
 #include "vdb_madf/measure/edge_weights.h"
 
+#include <limits>
+
 #include "vdb_madf/measure/detail/weighted_percentile.h"
 
 namespace vdb_madf {
@@ -61,6 +63,7 @@ double correctedDiameterPercentile(const std::vector<GrainMeasures>& grains, dou
     if (grain.edgeWeight > 0)
       sizes.emplace_back(grain.equivalentDiameter,
                          grain.edgeWeight * (byVolume ? double(grain.voxels) : 1.0));
+  if (sizes.empty()) return std::numeric_limits<double>::quiet_NaN();
   return detail::weightedPercentile(std::move(sizes), share);
 }
 

@@ -128,10 +128,13 @@ std::vector<SizeBias> sizeBiases(const Measurements& measured) {
   std::vector<SizeBias> biases;
   if (measured.grains.empty() || isSlice(measured.sample.box)) return biases;
   const double ofObject = blurOf(measured);
+  const openvdb::Vec3d& edges = measured.edges;
+  const double edge = std::cbrt(edges[0] * edges[1] * edges[2]);  // of a cube as large as a voxel
   for (const Row& row : rows()) {
     if ((row.ofBonds && measured.bonds.empty()) || (row.ofScan && !measured.scan)) continue;
-    const double radius = row.ofBonds ? medianRadius(measured.bonds)
-                                      : diameterPercentile(measured.grains, 0.5, true) / 2;
+    const double radius = (row.ofBonds ? medianRadius(measured.bonds)
+                                       : diameterPercentile(measured.grains, 0.5, true) / 2) /
+                          edge;
     const double blur = row.ofScan ? measured.scan->sigma : ofObject;
     const double expected = biasAt(row, blur, radius);
     if (std::abs(expected) > kTrusted)

@@ -16,8 +16,9 @@ struct SizeBias {
   /// "neck_area", "contact_coordination".
   std::string number;
   double expected = 0;  ///< by which share it comes out too large, below 0: too small
-  double radius = 0;    ///< voxels: the median of the grains by volume, or of the bonds
-  double enough = 0;    ///< radius from which on it is within kTrusted
+  /// The median of the grains by volume, or of the bonds, in edges of a cube as large as a voxel.
+  double radius = 0;
+  double enough = 0;  ///< radius from which on it is within kTrusted
 };
 
 constexpr double kTrusted = 0.05;
