@@ -56,7 +56,7 @@ TEST_CASE("cli: measure refuses, and leaves nothing behind", "[cli]") {
   bench.write("file", "");
   const auto names = bench.names();
   CHECK(bench.run("measure balls.vdb").exitCode == 2);
-  CHECK(bench.run("measure balls.vdb out --density 0").exitCode == 2);
+  CHECK(bench.run("measure balls.vdb out --density 0.917").exitCode == 2);
   CHECK(bench.run("measure balls.vdb out --density ice").exitCode == 2);
   CHECK(bench.run("measure balls.vdb out --density 900 --ice").exitCode == 2);
   CHECK(bench.run("measure balls.vdb out --min-faces -1").exitCode == 2);

@@ -64,15 +64,6 @@ void parseBinder(MeasureArguments& o) {
   }
 }
 
-void parseDensity(MeasureArguments& o) {
-  if (o.ice) o.tables.density = kIceDensity;
-  if (!o.density.empty()) {
-    if (o.ice) throw WrongUsage("--ice is --density 917: give one of the two");
-    o.tables.density = parseNumber(o.density, "--density");
-    if (!(*o.tables.density > 0)) throw WrongUsage("--density " + o.density + ": must be above 0");
-  }
-}
-
 }  // namespace
 
 void parse(MeasureArguments& o) {
@@ -87,7 +78,7 @@ void parse(MeasureArguments& o) {
   if (!o.plot.empty() && !plotTypeOf(o.plot))
     throw WrongUsage(o.plot + ": the plot's ending must be .svg, .pdf or .png");
   o.input.parse();
-  parseDensity(o);
+  o.tables.density = parseDensity(o.ice, o.density);
   if (o.stability && !hasVdbEnding(o.input.path) && !isInSlabs(o.input))
     throw WrongUsage(o.input.path +
                      ": --stability needs what segment --keep manifold keeps, in .vdb or .slabs");

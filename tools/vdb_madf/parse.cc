@@ -13,6 +13,7 @@
 #include "vdb_madf/base/limits.h"
 #include "vdb_madf/base/lower_case.h"
 #include "vdb_madf/base/size_text.h"
+#include "vdb_madf/exports/measurement_files.h"
 #include "wrong_usage.h"
 
 namespace vdb_madf::tools {
@@ -63,6 +64,17 @@ std::vector<std::string> split(const std::string& text, char separator) {
 
 double parseNumber(const std::string& text, const std::string& option) {
   return withOption(option, [&] { return numberFromText(text); });
+}
+
+std::optional<double> parseDensity(bool ice, const std::string& density) {
+  if (ice && !density.empty()) throw WrongUsage("--ice is --density 917: give one of the two");
+  if (ice) return kIceDensity;
+  if (density.empty()) return std::nullopt;
+  const double number = parseNumber(density, "--density");
+  constexpr double kLeast = 10;
+  if (!(number >= kLeast))
+    throw WrongUsage("--density " + density + ": must be 10 or more, in kg/m3: ice has 917");
+  return number;
 }
 
 Coord parseDims(const std::string& text, const std::string& option) {

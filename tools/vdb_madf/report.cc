@@ -69,12 +69,7 @@ void parse(ReportArguments& o) {
   o.report.maxTriangles = o.noView ? 0 : uint64_t(parseCount(o.triangles, "--triangles"));
   if (!o.noView && o.report.maxTriangles == 0)
     throw WrongUsage("--triangles 0: give --no-3d for a page without them");
-  if (o.ice && !o.density.empty()) throw WrongUsage("--ice is --density 917: give one of the two");
-  if (o.ice) o.report.density = kIceDensity;
-  if (!o.density.empty()) {
-    o.report.density = parseNumber(o.density, "--density");
-    if (!(*o.report.density > 0)) throw WrongUsage("--density " + o.density + ": must be above 0");
-  }
+  o.report.density = parseDensity(o.ice, o.density);
 }
 
 /// The manifolds that a file or a folder of slabs keeps beside its labels, in slabs if these are.
@@ -106,7 +101,7 @@ Report writeOne(const ReportArguments& o, const Common& common) {
   std::optional<GrayScan> scan;
   if (!o.scan.path.empty()) {
     scan = openScan(o.scan, o.input, common.progress);
-    checkHolds(*scan, boxOf(aboutOf(labels)));
+    placeScan(*scan, boxOf(aboutOf(labels)));
     options.scan = &*scan;
   }
   // What crosses at another strictness the page cannot tell.
