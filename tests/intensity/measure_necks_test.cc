@@ -303,13 +303,72 @@ TEST_CASE("measure_necks: a scan that is larger than the domain adds nothing", "
         cut.push_back(row.grays[(size_t(z) * size_t(row.size.y) + size_t(y)) * size_t(row.size.x) +
                                 size_t(x)]);
   GrayScan part{imageOf({size.x(), size.y(), size.z()}, cut), box.min()}, whole = row.scan();
+  GrayScan unplaced{imageOf({size.x(), size.y(), size.z()}, cut), Coord(0)};
   const ScanBlur blur{3000, 1000, 0.04, 0.85};
-  Measurements byPart = measure(*labels), byWhole = byPart;
+  Measurements byPart = measure(*labels), byWhole = byPart, byUnplaced = byPart;
   measureNecks(*labels, part, blur, byPart);
   measureNecks(*labels, whole, blur, byWhole);
+  measureNecks(*labels, unplaced, blur, byUnplaced);
   REQUIRE(byPart.bonds.size() >= 3);
   for (size_t i = 0; i < byPart.bonds.size(); ++i)
-    CHECK(byWhole.bonds[i].neck->area == byPart.bonds[i].neck->area);
+    for (const Measurements* by : {&byWhole, &byUnplaced})
+      CHECK(by->bonds[i].neck->area == byPart.bonds[i].neck->area);
+}
+
+TEST_CASE("measure_necks: grains may be dark, and have to be where the labels are",
+          "[measure_necks]") {
+  const auto labels = fourPairs().sides();
+  Measurements bright = measure(*labels), dark = bright;
+  Row row = fourPairs();
+  GrayScan scan = row.scan();
+  measureNecks(*labels, scan, blurOf(*scan.image), bright);
+  for (float& gray : row.grays) gray = 4000 - gray;
+  scan = row.scan();
+  measureNecks(*labels, scan, blurOf(*scan.image), dark);
+  CHECK(dark.scan->inside == Approx(1000).epsilon(0.01));
+  for (size_t i = 0; i < 4; ++i) {
+    CHECK(dark.bonds[i].neck->area == Approx(bright.bonds[i].neck->area).epsilon(1e-4));
+    CHECK(dark.bonds[i].neck->confirmed == bright.bonds[i].neck->confirmed);
+  }
+  std::reverse(row.grays.begin(), row.grays.end());  // all axes the other way
+  scan = row.scan();
+  CHECK_THROWS_WITH(measureNecks(*labels, scan, blurOf(*scan.image), dark),
+                    Contains("not where the labels have them"));
+}
+
+TEST_CASE("measure_necks: beside a flat face nothing is known", "[measure_necks]") {
+  const Vec3d center(27.8, 28.2, 22.1), normal(0.6, -0.64, 0.48), across(0.8, 0.48, -0.36);
+  const Vec3d along = normal.cross(across);
+  const auto holds = [&](const Vec3d& p) {
+    const Vec3d q = p - center;
+    const double z = q.dot(normal);
+    const bool inPlate =
+        z <= 0 && z > -14 && std::abs(q.dot(across)) < 18 && std::abs(q.dot(along)) < 18;
+    return inPlate || (q - normal * std::sqrt(121.0 - 25)).length() < 11;  // a neck of radius 5
+  };
+  const ImageSize size{64, 64, 64};
+  std::vector<float> values;
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x) values.push_back(holds(Vec3d(x, y, z)) ? 3000 : 1000);
+  smoothedImage(imageOf(size, values), 0.8)->read(0, size.z, values.data());
+  const CoordBBox box(Coord(0), Coord(63));
+  const auto labels = drawLabels(box, [&](const Vec3d& p) {
+    const bool isSolid = values[(size_t(p.z()) * 64 + size_t(p.y())) * 64 + size_t(p.x())] >= 2000;
+    return !isSolid ? 0 : (p - center).dot(normal) > 0 ? 2 : 1;
+  });
+  setDomain(*labels, box);
+  Measurements measured = measure(*labels);
+  REQUIRE(measured.bonds.size() == 1);
+  GrayScan scan{imageOf(size, values), Coord(0)};
+  measureNecks(*labels, scan, {3000, 1000, 0.02, 0.85}, measured);
+  const Neck& neck = *measured.bonds[0].neck;
+  INFO(neck.area << " +- " << neck.error << ", gap " << neck.gap);
+  CHECK(std::isnan(neck.area));
+  CHECK(std::isnan(neck.gap));
+  CHECK_FALSE(neck.confirmed);
+  CHECK(neck.touches());
+  CHECK(neck.error > 21);
 }
 
 TEST_CASE("measure_necks: refuses another scan, slices and unequal voxels", "[measure_necks]") {

@@ -374,7 +374,8 @@ TEST_CASE("report: what is refused leaves no file", "[report]") {
   if (canWriteReport())
     CHECK_THROWS_WITH(writeReport(folder / "p.html", balls(), options),
                       "folder/ramp.tif: has 33x26x27 voxels, and the labels are those of a scan of "
-                      "33x26x28 voxels: give the one that they were made of, cropped as they were");
+                      "33x26x28 voxels: give the one that they were made of, whole or cropped "
+                      "as they were");
   CHECK_THROWS_AS(writeReport(folder / "none/p.html", balls()), IoError);
   CHECK(folder.fileCount() == 0);
 }

@@ -36,14 +36,6 @@ void say(const ExportArguments& o, const Common& common, const std::string& text
 int reductionOf(const ExportArguments& o, const Int32Grid& labels);
 GrainMeshOptions meshOptions(const ExportArguments& o);
 
-/// Has the transform and the metadata of labels.
-inline const Int32Grid& aboutOf(const Int32Grid& labels) {
-  return labels;
-}
-inline const Int32Grid& aboutOf(const LabelSlabs& labels) {
-  return *labels.about;
-}
-
 // The kinds of export: grains as shapes, the templates of an Int32Grid or of LabelSlabs,
 template <typename Labels>
 void exportMesh(const ExportArguments& o, const Common& common, const Labels& labels);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "scan_option.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/pictures/histogram_plot.h"
@@ -75,6 +76,7 @@ void describeValues(const InputOptions& input, const Histogram& histogram, Json&
   if (const auto valley = valleyThreshold(histogram)) json["valley_threshold"] = number(*valley);
   if (const auto blur =
           estimateBlur(*openVolumeImage(input.path, input.volume(progress)), progress)) {
+    noteBlur(input.path, *blur, progress);
     json["blur_voxels"] = blur->sigma;
     json["noise_of_contrast"] = blur->noise;
   }

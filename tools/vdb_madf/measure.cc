@@ -38,18 +38,23 @@ template <typename Labels>
 Measurements measureLabels(const MeasureArguments& o, const Common& common, const Labels& labels) {
   // Scans are opened before the work: what is wrong with them is said at once.
   std::optional<GrayScan> scan;
-  if (!o.intensity.path.empty()) scan = openScan(o.intensity, o.input, common.progress);
+  if (!o.intensity.path.empty()) {
+    scan = openScan(o.intensity, o.input, common.progress);
+    noteLarger(*scan, aboutOf(labels), common.progress);
+  }
   const MaskGrid::Ptr binder =
       o.phases.path.empty() ? nullptr : loadPhase(o.phases, o.binder, o.input, common.progress);
   std::optional<ScanBlur> blur;
   if (!o.gray.path.empty()) {
     const GrayScan gray = openScan(o.gray, o.input, common.progress);
+    noteLarger(gray, aboutOf(labels), common.progress);
     common.progress->start("blur");
     if (!o.sensitivity)
       blur = blurOf(*gray.image, common.progress);
     else if (blur = estimateBlur(*gray.image, common.progress); !blur)
       common.progress->note(gray.image->path() +
                             ": its edges tell no blur: necks are not measured");
+    if (blur) noteBlur(gray.image->path(), *blur, common.progress);
   }
   std::optional<ManifoldGraph> graph;
   if (o.stability)

@@ -6,6 +6,8 @@
 #include "outputs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/standard_streams.h"
+#include "vdb_madf/grids/grid_metadata.h"
+#include "vdb_madf/intensity/estimate_blur.h"
 
 namespace vdb_madf::tools {
 
@@ -68,6 +70,21 @@ GrayScan openScan(const ScanOption& scan, const InputOptions& labels, Progress* 
   return openedWith(scan, labels, [&](const InputOptions& input) {
     return openGrayScan(scan.path, input.volume(progress), progress);
   });
+}
+
+void noteLarger(const GrayScan& scan, const openvdb::GridBase& about, Progress* progress) {
+  const auto domain = storedDomain(about);
+  const CoordBBox box = scan.box();
+  if (!domain || !domain->isBox() || domain->box() == box || !box.isInside(domain->box()) ||
+      domain->box().min() != box.min())
+    return;
+  progress->note(scan.image->path() +
+                 ": is larger than the volume of the labels: taken for the scan that they were "
+                 "cropped from");
+}
+
+void noteBlur(const std::string& path, const ScanBlur& blur, Progress* progress) {
+  if (const std::string note = noteOn(blur); !note.empty()) progress->note(path + ": " + note);
 }
 
 }  // namespace vdb_madf::tools

@@ -7,6 +7,7 @@
 
 #include "input_options.h"
 #include "vdb_madf/intensity/gray_scan.h"
+#include "vdb_madf/measure/scan_blur.h"
 
 namespace vdb_madf::tools {
 
@@ -26,5 +27,12 @@ MaskGrid::Ptr loadPhase(const ScanOption& map, int64_t value, const InputOptions
 /// @param labels the scan must not be one of its outputs
 /// @throw InvalidInput, IoError: one line that names the file and what to do.
 GrayScan openScan(const ScanOption& scan, const InputOptions& labels, Progress* progress);
+
+/// Notes that a scan goes on beyond labels that begin where it does: nothing but their size tells
+/// whether they were cropped or are of another scan.
+/// @param about a grid with their domain
+void noteLarger(const GrayScan& scan, const openvdb::GridBase& about, Progress* progress);
+/// Notes that a scan was cut off (noteOn()).
+void noteBlur(const std::string& path, const ScanBlur& blur, Progress* progress);
 
 }  // namespace vdb_madf::tools

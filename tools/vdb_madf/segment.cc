@@ -22,6 +22,7 @@
 #include "merge_options.h"
 #include "outputs.h"
 #include "parse.h"
+#include "scan_option.h"
 #include "segment_summary.h"
 #include "slab_output.h"
 #include "vdb_madf/base/errors.h"
@@ -82,6 +83,7 @@ Measurements measureGrains(const SegmentArguments& o, const Segmentation& s, Pro
   progress->start("necks");
   const auto open = [&] { return openGrayScan(o.input.path, o.input.volume(progress), progress); };
   const ScanBlur blur = blurOf(*open().image, progress);
+  noteBlur(o.input.path, blur, progress);
   GrayScan scan = open();
   measureNecks(*s.grain, scan, blur, measurements, progress);
   return measurements;

@@ -299,10 +299,9 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
     if (edges) {
       const auto blur = sensitivity > 0 ? estimateBlur(*edges->image, interrupter)
                                         : blurOf(*edges->image, interrupter);
-      if (blur)
-        measureNecks(grid, *sections, *blur, result, interrupter);
-      else
-        notes.push_back("the edges of the gray scan tell no blur: necks are not measured");
+      if (blur) measureNecks(grid, *sections, *blur, result, interrupter);
+      if (blur && !noteOn(*blur).empty()) notes.push_back("the gray scan: " + noteOn(*blur));
+      if (!blur) notes.push_back("the edges of the gray scan tell no blur: necks are not measured");
     }
     if (sensitivity > 0) measureSensitivity(grid, openAgain, again, result, interrupter);
     return result;

@@ -33,6 +33,12 @@ LabelSlabs singleSlab(const Int32Grid::Ptr& labels);
 using AnyLabels = std::variant<Int32Grid::ConstPtr, LabelSlabs>;
 /// A grid of their name, transform and metadata.
 const Int32Grid& aboutOf(const AnyLabels& labels);
+inline const Int32Grid& aboutOf(const Int32Grid& labels) {
+  return labels;
+}
+inline const Int32Grid& aboutOf(const LabelSlabs& labels) {
+  return *labels.about;
+}
 /// f(labels), of either kind: const Int32Grid& or const LabelSlabs&.
 template <typename F>
 auto applied(const AnyLabels& labels, const F& f) {

@@ -3,9 +3,12 @@
 
 #include "vdb_madf/intensity/estimate_blur.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "vdb_madf/base/errors.h"
@@ -209,6 +212,22 @@ double edgeSum(const std::vector<float>& values, const std::vector<uint8_t>& mat
   return sum;
 }
 
+double partAtEnds(const std::vector<float>& values, const std::vector<uint8_t>& materials) {
+  float least = std::numeric_limits<float>::infinity(), largest = -least;
+  size_t count = 0, low = 0, high = 0;
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (materials[i] == absent) continue;
+    ++count;
+    if (values[i] < least) low = 0;
+    if (values[i] > largest) high = 0;
+    least = std::min(least, values[i]);
+    largest = std::max(largest, values[i]);
+    low += values[i] == least;
+    high += values[i] == largest;
+  }
+  return double(std::max(low, high)) / double(count);
+}
+
 }  // namespace
 
 std::optional<ScanBlur> estimateBlur(ImageReader& image, Interrupter* interrupter) {
@@ -227,12 +246,22 @@ std::optional<ScanBlur> estimateBlur(ImageReader& image, Interrupter* interrupte
   if (!far) return std::nullopt;
   keepStraight(middle, materials, *far, squares);
   ScanBlur blur, afterwards;
+  blur.atEnds = partAtEnds(middle.values, materials);
   const double sharper = edgeSum(middle.values, materials, squares, *far, blur);
   const double ratio = sharper / edgeSum(smooth, materials, squares, *far, afterwards);
   if (!(ratio > 0 && ratio < 1)) return std::nullopt;
   blur.sigma = std::sqrt(kSmoothing * ratio * ratio / (1 - ratio * ratio));
   if (blur.sigma > kMostBlur) return std::nullopt;
   return blur;
+}
+
+std::string noteOn(const ScanBlur& blur) {
+  constexpr double kMuch = 0.05;
+  if (blur.atEnds < kMuch) return "";
+  return fmt::format(
+      "{:.0f} % of its values are the least or the largest that there are: it was cut off, so that "
+      "its blur, noise and necks come out wrong",
+      100 * blur.atEnds);
 }
 
 ScanBlur blurOf(ImageReader& image, Interrupter* interrupter) {

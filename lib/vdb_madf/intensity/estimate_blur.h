@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "vdb_madf/base/interrupter.h"
 #include "vdb_madf/images/image.h"
@@ -29,6 +30,10 @@ namespace vdb_madf {
 ///   tell no blur, or one of more than 2.5 voxels (a mask, labels, a scan without two materials).
 /// @throw IoError; Interrupted.
 std::optional<ScanBlur> estimateBlur(ImageReader& image, Interrupter* interrupter = nullptr);
+
+/// A sentence on a scan whose values were cut off: a twentieth of them or more are at one end
+/// (ScanBlur::atEnds). Of others it is empty.
+std::string noteOn(const ScanBlur& blur);
 
 /// What estimateBlur() says, where a blur is needed.
 /// @throw InvalidInput, one line that names the image, if none is found; as above

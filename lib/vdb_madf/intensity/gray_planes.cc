@@ -29,10 +29,6 @@ struct Samples {
   std::vector<float> values;
 };
 
-std::string sizeText(const CoordBBox& box) {
-  return fmt::format("{}x{}x{} voxels", box.dim().x(), box.dim().y(), box.dim().z());
-}
-
 /// Takes what planes show of the slices [z, z + count) of the scan.
 template <typename T>
 void take(const T* slices, int z, int count, const CoordBBox& scan, const CoordBBox& box,
@@ -168,18 +164,10 @@ void readSlices(GrayScan& scan, int low, int high, const Wanted& wanted, const T
 
 }  // namespace
 
-void checkHolds(const GrayScan& scan, const CoordBBox& box) {
-  const CoordBBox whole = scan.box();
-  if (!whole.isInside(box))
-    throw InvalidInput(scan.image->path() + ": has " + sizeText(whole) +
-                       ", and the labels are those of a scan of " + sizeText(box) +
-                       ": give the one that they were made of, cropped as they were");
-}
-
 std::vector<GrayPlane> readGrayPlanes(GrayScan& scan, const CoordBBox& box,
                                       const std::vector<SlicePlane>& planes,
                                       Interrupter* interrupter) {
-  checkHolds(scan, box);
+  placeScan(scan, box);
   std::vector<Samples> samples;
   bool needsAll = false;
   for (const SlicePlane& plane : planes) {

@@ -31,7 +31,4 @@ std::vector<GrayPlane> readGrayPlanes(GrayScan& scan, const CoordBBox& box,
 std::vector<uint8_t> readGrayBlocks(GrayScan& scan, const CoordBBox& blocks, int factor,
                                     Interrupter* interrupter = nullptr);
 
-/// @throw InvalidInput, one line that names the scan, if its box does not hold the box.
-void checkHolds(const GrayScan& scan, const CoordBBox& box);
-
 }  // namespace vdb_madf

@@ -5,7 +5,9 @@
 
 #include <utility>
 
+#include "vdb_madf/base/errors.h"
 #include "vdb_madf/base/limits.h"
+#include "vdb_madf/grids/detail/size_and_place.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/scans/image_box.h"
 #include "vdb_madf/vdb/read_vdb.h"
@@ -73,6 +75,24 @@ GrayScan scanOfGrid(const std::string& path, const VolumeOptions& options,
 
 CoordBBox GrayScan::box() const {
   return {first, first + toCoord(image->info().size).offsetBy(-1)};
+}
+
+void placeScan(GrayScan& scan, const CoordBBox& domain) {
+  if (scan.box().isInside(domain)) return;
+  const std::string has = scan.image->path() + ": has " + detail::sizeAndPlace(scan.box());
+  if (scan.first == Coord(0)) scan.first = domain.min();
+  if (scan.box() != domain)
+    throw InvalidInput(has + ", and the labels are those of a scan of " +
+                       detail::sizeAndPlace(domain) +
+                       ": give the one that they were made of, whole or cropped as they were");
+}
+
+void placeScan(GrayScan& scan, const SampleMeasures& sample) {
+  if (!sample.domainKnown)
+    throw InvalidInput(scan.image->path() +
+                       ": the domain of the labels is unknown, so that nothing tells whether this "
+                       "is their scan: give the domain");
+  placeScan(scan, sample.box);
 }
 
 GrayScan openGrayScan(const std::string& path, const VolumeOptions& options,

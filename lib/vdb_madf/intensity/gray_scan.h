@@ -9,6 +9,7 @@
 #include "vdb_madf/base/interrupter.h"
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/images/image.h"
+#include "vdb_madf/measure/measure_sample.h"
 #include "vdb_madf/volumes/volume.h"
 
 namespace vdb_madf {
@@ -20,6 +21,13 @@ struct GrayScan {
 
   CoordBBox box() const;
 };
+
+/// Puts a scan where labels with this domain are: as it is, if it holds all of the domain; an image
+/// of just its size, where the domain begins elsewhere, is the scan cropped as the labels were.
+/// @throw InvalidInput, one line that begins with the path
+void placeScan(GrayScan& scan, const CoordBBox& domain);
+/// Likewise; @throw also if the domain of the labels is unknown
+void placeScan(GrayScan& scan, const SampleMeasures& sample);
 
 /// Any readable file: an image, as openVolumeImage(), or a grid of numbers of a VDB file (the one
 /// that the options name, or GridUse::object), with its background outside of its voxels; its box

@@ -13,7 +13,6 @@
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
 #include "vdb_madf/intensity/detail/gray_statistics.h"
-#include "vdb_madf/intensity/detail/scan_fit.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 #include "vdb_madf/labels/detail/label_leaves.h"
 #include "vdb_madf/labels/detail/rimmed_slabs.h"
@@ -204,7 +203,7 @@ void addSlabs(const LabelSlabs& slabs, GrayScan& scan, SampleLists<T>& lists,
 /// addAll(lists) adds all labels.
 template <typename AddAll>
 void measureSamples(GrayScan& scan, Measurements& measured, const AddAll& addAll) {
-  detail::checkScanBox(scan.image->path(), scan.box(), measured.sample);
+  placeScan(scan, measured.sample);
   detail::withSampleType(scan.image->info().type, [&](auto sample) {
     SampleLists<decltype(sample)> lists(measured);
     addAll(lists);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
@@ -16,7 +17,6 @@
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
 #include "vdb_madf/intensity/detail/near_squares.h"
-#include "vdb_madf/intensity/detail/scan_fit.h"
 #include "vdb_madf/intensity/detail/section_fit.h"
 #include "vdb_madf/labels/detail/label_blocks.h"
 
@@ -35,6 +35,12 @@ constexpr double kBlursOfRim = 3;   // from a surface on all is inside or outsid
 constexpr double kRim = 0.7;        // voxels, and that many blurs
 constexpr int kEnoughVoxels = 100;  // for a mean of their own
 constexpr double kLeastArea = 7;    // voxel faces of a confirmed neck
+// A neck is not known by an error of so many voxel faces and so much of the bond's area, and if its
+// area is so many times that of the bond: blur makes bonds larger, not smaller.
+constexpr double kMostError = 21, kMostErrorShare = 0.35, kMostGrowth = 3;
+// As many of the labelled voxels have to be on the grains' side of the scan's middle gray, and of
+// the others on the other side, in the mean; of a scan of something else it is a half.
+constexpr double kLeastAgreement = 0.65;
 
 /// Height of the last voxels that count in a section.
 const double kHeight = SectionFit::kReach + 4 * SectionFit::kThickness;
@@ -135,9 +141,14 @@ class NeckMeter {
     const auto area = fit_.leastArea(sections, variance);
     Neck neck;
     neck.normal = section.normal;
+    neck.error = area.error;
+    if (area.error > std::max(kMostError, kMostErrorShare * bond.area) ||
+        area.value > kMostGrowth * bond.area + kLeastArea) {
+      neck.area = neck.radius = neck.gap = std::numeric_limits<double>::quiet_NaN();
+      return neck;
+    }
     neck.area = std::max(0.0, area.value);
     neck.radius = std::sqrt(neck.area / M_PI);
-    neck.error = area.error;
     neck.confirmed = area.value >= std::max(kLeastArea, area.error);
     neck.gap = neck.confirmed ? 0 : std::max(0.0, fit_.gap(sections, variance));
     return neck;
@@ -266,6 +277,36 @@ class NeckMeter {
   const double rim_;  // distance of voxel centers
 };
 
+/// The blur with the grains inside, which a scan may show darker than what is around them.
+/// @throw InvalidInput, one line that names the scan, if it does not show the labels' grains
+ScanBlur withGrainsInside(const ScanBlur& blur, const Int32Tree& labels, const FloatTree& gray,
+                          const CoordBBox& known, const std::string& path) {
+  const double middle = (blur.inside + blur.outside) / 2;
+  int64_t voxels[2] = {0, 0}, bright[2] = {0, 0};  // of what is around grains, of grains
+  for (auto leaf = gray.cbeginLeaf(); leaf; ++leaf) {
+    const auto* labelled = labels.probeConstLeaf(leaf->origin());
+    CoordBBox part = leaf->getNodeBoundingBox();
+    part.intersect(known);
+    for (auto p = part.begin(); p; ++p) {
+      const openvdb::Index i = leaf->coordToOffset(*p);
+      const bool isGrain =
+          labelled && detail::labelAt(*labelled, labelled->buffer().data(), i) != 0;
+      ++voxels[isGrain];
+      bright[isGrain] += double(leaf->getValue(i)) > middle;
+    }
+  }
+  if (voxels[0] == 0 || voxels[1] == 0) return blur;
+  const double difference =
+      double(bright[1]) / double(voxels[1]) - double(bright[0]) / double(voxels[0]);
+  if (std::abs(difference) < 2 * kLeastAgreement - 1)
+    throw InvalidInput(path +
+                       ": its grains are not where the labels have them: give the scan that they "
+                       "were made of, with axes and slices in the same order");
+  ScanBlur turned = blur;
+  if (difference < 0) std::swap(turned.inside, turned.outside);
+  return turned;
+}
+
 /// The bonds' sections, by the labels alone.
 std::vector<Section> sectionsOf(const Int32Tree& labels, const Measurements& measured,
                                 const CoordBBox& known, double blur, Interrupter* interrupter) {
@@ -343,7 +384,7 @@ FloatTree::Ptr readAround(const std::vector<Section>& sections, GrayScan& scan,
 
 void measureNecks(const Int32Grid& labels, GrayScan& scan, const ScanBlur& blur,
                   Measurements& measured, Interrupter* interrupter) {
-  detail::checkScanBox(scan.image->path(), scan.box(), measured.sample);
+  placeScan(scan, measured.sample);
   if (measured.edges != Vec3d(1))
     throw InvalidInput(scan.image->path() +
                        ": necks are measured in a scan of cubic voxels: resample it "
@@ -358,11 +399,11 @@ void measureNecks(const Int32Grid& labels, GrayScan& scan, const ScanBlur& blur,
   known.intersect(measured.sample.box);
   const std::vector<Section> sections = sectionsOf(*tree, measured, known, blur.sigma, &framing);
   const FloatTree::Ptr gray = readAround(sections, scan, &reading);
-  const NeckMeter meter(*tree, *gray, blur);
+  measured.scan = withGrainsInside(blur, *tree, *gray, known, scan.image->path());
+  const NeckMeter meter(*tree, *gray, *measured.scan);
   detail::parallelForEach(sections.size(), kBondsTogether, &fitting, [&](size_t i) {
     measured.bonds[i].neck = meter.measure(measured.bonds[i], sections[i]);
   });
-  measured.scan = blur;
   measured.extra.necks = true;
 }
 

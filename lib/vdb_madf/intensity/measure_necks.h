@@ -23,16 +23,22 @@ namespace vdb_madf {
 /// normal; voxels further than three blurs and 0.7 voxel from any surface count as all inside or
 /// outside, pore voxels go with the nearest grain, and other grains do not count. The grays of
 /// inside and outside are those around the bond, if there are 100 voxels of each, else the scan's.
+/// A neck is not known, NaN, if its error is over 21 voxel faces and over 0.35 of the bond's area,
+/// as beside flat faces and in grooves, or if its area is over 3 times that of the bond and 7 faces.
 /// A neck is confirmed if its area is at least 7 voxel faces and not below its error. Of others the
 /// gap is told: how far apart the tips of the two grains are, by how their sections grow from
 /// there.
+///
+/// Grains may be bright or dark in the scan.
 ///
 /// The scan is read once, in slabs of eight slices. Memory: that, and four bytes for each voxel of
 /// the leaf nodes around bonds.
 /// @param blur what estimateBlur() says of the scan
 /// @param measured what measure() says of these labels
 /// @throw InvalidInput, one line that names the scan, if the domain is unknown or the scan's box
-///   does not fit (as measureGray()), or if voxels are no cubes; IoError; Interrupted.
+///   does not fit (as measureGray()), if voxels are no cubes, or if its grains are elsewhere:
+///   around bonds, of the voxels of grains and of others, less than 65 % in the mean are on their
+///   own side of the middle gray; IoError; Interrupted.
 void measureNecks(const Int32Grid& labels, GrayScan& scan, const ScanBlur& blur,
                   Measurements& measured, Interrupter* interrupter = nullptr);
 

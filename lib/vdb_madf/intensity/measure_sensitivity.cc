@@ -14,7 +14,6 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
-#include "vdb_madf/intensity/detail/scan_fit.h"
 #include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/matching/compare.h"
 #include "vdb_madf/scans/filtered_image.h"
@@ -227,11 +226,13 @@ void measureSensitivity(const Int32Grid& labels, const std::function<GrayScan()>
                                    options.runs, kMinRuns, kMaxRuns));
   const Choices choices = choicesOf(labels, options.measure);
   {
-    const GrayScan scan = open();
-    detail::checkScanBox(scan.image->path(), scan.box(), measured.sample);
+    GrayScan scan = open();
     if (scan.first != Coord(0))
       throw InvalidInput(scan.image->path() +
                          ": its voxels do not begin at 0,0,0: save it as .tif");
+    placeScan(scan, measured.sample);
+    if (scan.first != Coord(0))
+      throw InvalidInput(scan.image->path() + ": is a part of the scan: give the whole one");
   }
   Sensitivity sensitivity = boundsOf(choices, options, measured.scan, open, interrupter);
   const Domain& domain = *choices.segment.domain;

@@ -12,6 +12,7 @@
 
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/detail/size_and_place.h"
 #include "vdb_madf/grids/detail/world_transform.h"
 #include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/leaves/detail/voxels.h"
@@ -34,13 +35,10 @@ void checkDomains(const MaskGrid& binder, const SampleMeasures& sample) {
     throw InvalidInput(
         "whether phases and labels have the same voxels is unknown, for the domain "
         "of one of them is: give both as images, or --domain");
-  if (fitsScan(sample, domain->box())) return;
-  const auto text = [](const Coord& size) {
-    return std::to_string(size.x()) + "x" + std::to_string(size.y()) + "x" +
-           std::to_string(size.z());
-  };
-  throw InvalidInput("the phases have " + text(domain->box().dim()) + " voxels, the labels " +
-                     text(sample.box.dim()) + ": give those of the same scan, cropped as it was");
+  if (domain->box().isInside(sample.box)) return;
+  throw InvalidInput("the phases have " + detail::sizeAndPlace(domain->box()) + ", the labels " +
+                     detail::sizeAndPlace(sample.box) +
+                     ": give those of the whole scan, or of a part that holds the labels");
 }
 
 class BinderMeter {

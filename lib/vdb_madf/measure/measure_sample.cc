@@ -7,11 +7,6 @@
 
 namespace vdb_madf {
 
-bool fitsScan(const SampleMeasures& sample, const CoordBBox& scan) {
-  const bool isPart = sample.regionVoxels || sample.box.min() != scan.min();
-  return scan == sample.box || (isPart && scan.isInside(sample.box));
-}
-
 double diameterPercentile(const std::vector<GrainMeasures>& grains, double share, bool byVolume) {
   std::vector<std::pair<double, double>> sizes;
   for (const GrainMeasures& grain : grains)

@@ -44,11 +44,6 @@ struct SampleMeasures {
   std::optional<double> bondToGrainRatio;
 };
 
-/// Could labels be those of a scan with this box? It has to be their domain; around labels that
-/// know but a part of it, a region or a box that begins elsewhere, it may be larger.
-/// @pre the domain is known
-bool fitsScan(const SampleMeasures& sample, const CoordBBox& scan);
-
 /// Equivalent-sphere diameter below or at which \p share of the grains lie, or of their volume.
 /// \p share in [0, 1]; 0 without grains.
 double diameterPercentile(const std::vector<GrainMeasures>& grains, double share, bool byVolume);

@@ -10,7 +10,8 @@ namespace vdb_madf {
 /// Grains with a gap of no more voxels touch: by so much gaps are uncertain.
 constexpr double kContactGap = 0.3;
 
-/// The neck of a bond as the gray scan shows it, freed of the scan's blur; in voxels.
+/// The neck of a bond as the gray scan shows it, freed of the scan's blur; in voxels. Area, radius
+/// and gap are NaN where the scan does not tell them.
 struct Neck {
   double area = 0;        ///< of the narrowest plane section; 0: the scan shows a gap
   double radius = 0;      ///< of the disc of this area
@@ -20,7 +21,8 @@ struct Neck {
   /// The area is larger than what noise and blur make of two grains that do not touch.
   bool confirmed = false;
 
-  bool touches() const { return gap <= kContactGap; }
+  /// Not where there is a gap; where nothing is known the labels are believed.
+  bool touches() const { return !(gap > kContactGap); }
 };
 
 }  // namespace vdb_madf

@@ -115,7 +115,7 @@ ReportParts::ReportParts(const AnyLabels& labels, const ReportOptions& options, 
   measured_.extra.given = options.given;
   box_ = sliceBox_ = measured_.sample.box;
   if (box_.empty()) throw InvalidInput("has no labels and no domain: nothing to show");
-  if (options.scan) checkHolds(*options.scan, box_);
+  if (options.scan) placeScan(*options.scan, box_);
   for (const GrainMeasures& grain : measured_.grains) ids_.push_back(grain.id);
   if (options.manifold && options.given.empty()) addLevels();
 }
