@@ -102,6 +102,16 @@ def test_to_array(labels, dense):
         labels.to_array(out=np.empty((1, 2, 3), np.int32))
 
 
+def test_labels_that_floats_do_not_hold():
+    far = np.array([[[0, 2**24, 2**24 + 1]]], np.int32)
+    volume = madf.Labels(far)
+    for read in (lambda dtype: volume.to_array(dtype), lambda dtype: np.asarray(volume, dtype)):
+        assert (read(np.float64) == far).all() and (read(bool) == (far > 0)).all()
+        with pytest.raises(ValueError, match="16777217 does not fit float32"):
+            read(np.float32)
+    assert (madf.Labels(far[:, :, :2]).to_array("f4") == far[:, :, :2]).all()
+
+
 def test_ids_and_sizes(labels, dense):
     ids, counts = np.unique(dense[dense > 0], return_counts=True)
     assert (labels.ids == ids).all() and (labels.voxels == counts).all()

@@ -124,7 +124,8 @@ class Volume:
             self._read((0, 0, 0), out)
         else:
             for first, slab in self._slabs():
-                out[first:first + len(slab)] = _fitted(slab, out.dtype)
+                out[first:first + len(slab)] = (
+                    fitted(slab, out.dtype) if out.dtype.kind in "iufc" else slab)
         return out
 
     def __array__(self, dtype: npt.DTypeLike = None,
@@ -202,12 +203,16 @@ def same_grid(source: Volume, voxel_size: Optional[str]) -> _core.Grid:
     return source._grid
 
 
-def _fitted(slab: npt.NDArray[Any], dtype: np.dtype[Any]) -> npt.NDArray[Any]:
-    if dtype.kind in "iu" and slab.dtype != bool:
-        limits = np.iinfo(dtype)
-        if int(slab.max()) > limits.max or int(slab.min()) < limits.min:
-            raise ValueError(f"{slab.max()} does not fit {dtype}")
-    return slab
+def fitted(values: npt.NDArray[Any], dtype: npt.DTypeLike) -> npt.NDArray[Any]:
+    """The values in that type; those that it does not hold as they are are refused."""
+    if np.can_cast(values.dtype, dtype):
+        return values.astype(dtype, copy=False)
+    with np.errstate(invalid="ignore", over="ignore"):
+        made = values.astype(dtype)
+    changed = values[made != values]
+    if changed.size:
+        raise ValueError(f"{changed.flat[0]} does not fit {np.dtype(dtype)}")
+    return made
 
 
 def _ranges(key: Any, shape: Tuple[int, int, int]) -> Tuple[List[range], List[bool]]:
