@@ -136,6 +136,15 @@ def test_paint(labels, dense):
         labels.paint([0, 2], [1, 1])
 
 
+@pytest.mark.parametrize("values, background, dtype, wrong", [
+    ([1, 300], 0, np.uint8, 300), ([1, -1], 0, np.uint64, -1), ([1, 1.5], 0, np.int32, 1.5),
+    ([1, 2], np.nan, np.int16, np.nan), ([1, 2], -1.5, np.uint8, -1.5), ([1, 2], 0, bool, 2)])
+def test_what_integers_do_not_hold_is_not_painted(labels, values, background, dtype, wrong):
+    with pytest.raises(ValueError, match=f"^{wrong} does not fit {np.dtype(dtype)}$"):
+        labels.paint(labels.ids[:2], values, background, dtype)
+    assert labels.paint(labels.ids[:2], [1, 1], 0, dtype).max() == 1
+
+
 def test_colors(labels, dense):
     ids, rgb = labels.colors()
     assert (ids == labels.ids).all() and rgb.shape == (len(ids), 3) and rgb.dtype == np.uint8

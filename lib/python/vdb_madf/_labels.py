@@ -17,7 +17,7 @@ from ._arrays import Source, readable
 from ._calls import Progress, calling, warn
 from ._files import is_tiff, kind_of, loaded
 from ._mesh import Mesh
-from ._volume import Volume, edges_of, same_grid
+from ._volume import Volume, edges_of, fitted, same_grid
 
 _Ids = Union[Sequence[int], npt.NDArray[Any]]
 
@@ -86,7 +86,8 @@ class Labels(Volume):
     def paint(self, ids: _Ids, values: npt.ArrayLike, background: float = np.nan,
               dtype: npt.DTypeLike = np.float32) -> npt.NDArray[Any]:
         """An array [z, y, x] with a value for each grain: `values[i]` where the label is `ids[i]`,
-        and `background` where it is none of them."""
+        and `background` where it is none of them. What an integer `dtype` does not hold, as NaN, is
+        refused."""
         known, painted = np.asarray(ids, np.int64), np.asarray(values)
         if known.ndim != 1 or known.shape != painted.shape:
             raise ValueError(f"{known.shape} ids and {painted.shape} values: give one for each")
@@ -95,7 +96,9 @@ class Labels(Volume):
         out = np.empty(self.shape, dtype)
         order = np.argsort(known, kind="stable")  # of an id given twice the last value counts
         sorted_ids = np.append(known[order], 1 << 31)  # above all labels
-        table = np.append(painted[order].astype(dtype), np.asarray(background, dtype))
+        whole = out.dtype.kind in "biu"
+        table = np.append(*[fitted(part, out.dtype) if whole else part.astype(out.dtype)
+                            for part in (painted[order], np.asarray(background))])
         for first, slab in self._slabs():
             place = np.searchsorted(sorted_ids, slab, "right") - 1
             place[sorted_ids[place] != slab] = len(known)
