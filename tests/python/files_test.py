@@ -141,6 +141,9 @@ def test_folders_are_those_of_the_command(arguments, options, labels, tables, co
     ("a.png", dict(kind="mesh"), "must be one of .ply"),
     ("a.vdb", dict(kind="fog"), "must be one of labels"),
     ("a.tif", dict(type="uint1"), "no sample type"),
+    ("a.vdb", dict(type="uint8"), "type='uint8': .*a.vdb has no type"),
+    ("a.vdb", dict(kind="mask", type="foo"), "type='foo': .*a.vdb has no type"),
+    ("a.ply", dict(type="float32"), "type='float32': .*a.ply has no type"),
     ("nowhere/a.vdb", {}, "nowhere/a.vdb"),
 ])
 def test_files_that_cannot_be_written(name, arguments, text, labels, tmp_path):

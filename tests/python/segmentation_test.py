@@ -171,6 +171,7 @@ def test_memory_is_said_and_limited(sample, array):
     (dict(max_memory="12"), ValueError, "max_memory: 12: give a size with its unit"),
     (dict(threads=-1), ValueError, "threads"),
     (dict(threshold=1), ValueError, "only one"),
+    (dict(despeckle=-1), ValueError, "despeckle=-1: must be 0 or more"),
     (dict(roi=madf.Cylinder("w")), ValueError, "axis"),
     (dict(crop=np.s_[5:5, :, :]), ValueError, "empty"),
     (dict(crop=np.s_[::2, :, :]), ValueError, "step"),

@@ -93,6 +93,8 @@ def volume_options(
     """The options as the library wants them."""
     if sum(choice is not None for choice in (phase, threshold, range)) > 1:
         raise ValueError("give only one of phase, threshold and range")
+    if despeckle < 0:
+        raise ValueError(f"despeckle={despeckle}: must be 0 or more")
     options = _core.VolumeOptions()
     if phase is not None:
         options.select_phases([_finite("phase", v) for v in phase] if isinstance(phase, Collection)

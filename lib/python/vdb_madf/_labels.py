@@ -218,6 +218,8 @@ class Labels(Volume):
         """
         name = os.fspath(path)
         kind = kind_of(name, kind)
+        if type is not None and (kind not in ("labels", "mask") or name.lower().endswith(".vdb")):
+            raise _core.InvalidInput(f"type={type!r}: {name} has no type of samples to choose")
         grid = self._grid
         with calling(progress, threads) as call:
             if kind == "labels" and name.lower().endswith(".vdb"):
