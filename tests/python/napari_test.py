@@ -53,6 +53,24 @@ def test_measured_and_empty(labels):
     assert len(arguments["features"]["index"]) == 0 and bonds.shape == (0, 2, 3)
 
 
+def test_bonds_lie_where_the_labels_are(labels):
+    """Whatever the unit of the measures is; those of other labels or voxels are refused."""
+    _, (bonds, _, _) = madf.to_napari(labels)
+    (_, arguments, _), (same, _, _) = madf.to_napari(labels, madf.measure(labels, unit="um"))
+    assert same == pytest.approx(bonds) and arguments["metadata"]["unit"] == "um"
+    array = labels.to_array()
+    with pytest.raises(ValueError, match="of other labels"):
+        madf.to_napari(labels, madf.measure(np.where(array == 5, 6, array)))
+    for edge in ("20x20x30um", None):
+        with pytest.raises(ValueError, match="voxels of another size"):
+            madf.to_napari(labels, madf.measure(array, voxel_size=edge))
+    voxels = madf.Labels(array)
+    _, (bonds, _, _) = madf.to_napari(voxels, madf.measure(voxels))
+    assert bonds[0, 1] == pytest.approx([0, 0, 2])
+    with pytest.raises(ValueError, match="voxels of another size"):
+        madf.to_napari(voxels, madf.measure(labels))
+
+
 def test_manifest(labels, tmp_path):
     """The fields that npe2 wants, by its reference; what it names is there, and reads."""
     yaml = pytest.importorskip("yaml", reason="the manifest of napari: python3-yaml is missing")

@@ -36,15 +36,18 @@ def to_napari(labels: Union[Labels, Segmentation, Source],
     centroid of the first grain of each bond to that of the second, with those of the bonds.
     Both lie where they are in the world, in `labels.unit`.
 
-    measured: of these labels; None: they are measured, without columns on demand."""
+    measured: of these labels, in any unit; None: they are measured, without columns on demand."""
     with calling(progress, threads) as call:
         volume = labels_of(labels, call, threads)
         if measured is None:
             measured = measure(volume, progress=call.progress, threads=threads)
+        elif measured.sample["labels_digest"] != volume.digest():
+            raise ValueError("measured: is of other labels")
+    factor = _factor(measured, volume)
     grains = {column: values for column, values in measured.grains.items() if column != "id"}
     ends = [np.searchsorted(measured.grains["id"], measured.bonds[end])
             for end in ("first", "second")]
-    centers = measured.points("centroid").reshape(-1, 3)
+    centers = factor * measured.points("centroid").reshape(-1, 3)
     first, second = (centers[rows] for rows in ends)
     metadata = {"unit": measured.unit, "units": dict(measured.units)}
     return [
@@ -56,6 +59,18 @@ def to_napari(labels: Union[Labels, Segmentation, Source],
             "name": f"{name}: bonds", "features": dict(measured.bonds), "metadata": metadata,
             "edge_width": float(min(volume.spacing))},
          "vectors")]
+
+
+def _factor(measured: Measurements, labels: Labels) -> float:
+    """What lengths of the measures are multiplied by to be in the unit of their labels."""
+    factor = 1.0
+    if measured.unit != labels.unit:
+        units = {"mm": 1.0, "um": 1e-3}
+        factor = units.get(measured.unit, np.nan) / units.get(labels.unit, np.nan)
+    volume = measured.sample["object_voxels"] * np.prod(labels.spacing)
+    if not np.isclose(factor**3 * measured.sample["object_volume"], volume, rtol=1e-6, atol=0):
+        raise ValueError("measured: with voxels of another size than those of the labels")
+    return factor
 
 
 def get_reader(path: _Paths) -> Optional[Callable[[_Paths], List[Layer]]]:
