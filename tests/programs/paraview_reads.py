@@ -42,11 +42,19 @@ def start():
         shutil.copy(bench.path("labels.vdb"), bench.path("beside"))
         for name in ("grains.csv", "bonds.csv", "sample.json"):
             shutil.copy(bench.path(f"tables/{name}"), bench.path("beside"))
+        for folder, options in (("micrometers", ["--unit", "um"]),
+                                ("other voxels", ["--voxel-size", "20um"])):
+            os.mkdir(bench.path(folder))
+            labels = shutil.copy(bench.path("labels.vdb"), bench.path(folder))
+            subprocess.run([bench.tool, "measure", labels, bench.path(folder), "-q", *options],
+                           check=True)
         with open(bench.path("two.raw"), "wb") as file:  # an object of two balls of 1 and 2 mm
             file.write(array.array("B", [128 * two_balls(x, y, z) for z in range(20)
                                          for y in range(24) for x in range(40)]).tobytes())
         code, said = pvpython(os.path.abspath(__file__), bench.folder, "inside")
         check(code == 0 and "DONE" in said, f"ParaView: {said[-3000:]}")
+        refused = [line for line in said.splitlines() if "are of voxels of [0.02 0.02 0.02] mm" in line]
+        check(refused and "Traceback" not in said, f"tables of other voxels: {said[-3000:]}")
         opens_images = NO_IMAGES not in said
         # Without the package: a line.
         clean = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"}
@@ -96,7 +104,7 @@ def inside():
         proxy.UpdatePipeline()
         return proxy.SMProxy.GetClientSideObject().GetOutputDataObject(port)
 
-    def check_grains(proxy, more=()):
+    def check_grains(proxy, more=(), edge=EDGE):
         grains, network = fetched(proxy), fetched(proxy, 1)
         check(grains.GetNumberOfPartitionedDataSets() == len(VOXELS), "the number of grains")
         for number, label in enumerate(sorted(VOXELS)):
@@ -104,19 +112,20 @@ def inside():
             check(name == f"grain_{label:06d}", f"grain {label} is called {name}")
             surface = grains.GetPartition(number, 0)
             bounds = surface.GetBounds()
-            check(near(bounds, box_of(label)), f"{name} lies at {bounds}, not {box_of(label)}")
+            box = [edge / EDGE * end for end in box_of(label)]
+            check(near(bounds, box, 1e-4 * edge), f"{name} lies at {bounds}, not {box}")
             mass = vtkMassProperties()
             mass.SetInputData(surface)
-            check(abs(mass.GetVolume() / EDGE**3 - VOXELS[label]) < 1e-3, f"{name}: its volume")
+            check(abs(mass.GetVolume() / edge**3 - VOXELS[label]) < 1e-3, f"{name}: its volume")
             of = arrays(surface.GetCellData())
             check((of["grain_id"] == label).all() and (of["voxels"] == VOXELS[label]).all() and
-                  np.allclose(of["volume"], VOXELS[label] * EDGE**3) and
+                  np.allclose(of["volume"], VOXELS[label] * edge**3) and
                   of["color"].shape == (surface.GetNumberOfCells(), 3), f"{name} has {of}")
             check(set(more) <= set(of), f"{name} has {sorted(of)}, not {more}")
         of = arrays(network.GetPointData())
         check(of["grain_id"].tolist() == sorted(VOXELS), f"the network has {of['grain_id']}")
         place = network.GetPoint(0)
-        check(near(place, (2 * EDGE, 3 * EDGE, 5 * EDGE)), f"grain 1 lies at {place}")
+        check(near(place, (2 * edge, 3 * edge, 5 * edge)), f"grain 1 lies at {place}")
         of = arrays(network.GetCellData())
         check((of["first"].tolist(), of["second"].tolist(), of["faces"].tolist()) ==
               ([2], [3], [2]), f"the bonds are {of}")
@@ -128,6 +137,12 @@ def inside():
     check(beside.SMProxy.GetXMLName() == "MadfGrains", beside.SMProxy.GetXMLName())
     beside.Smoothing = 0
     check_grains(beside, more=["feret_max", "solidity"])
+    # All is in the unit of the tables. Those of other voxels are refused, unless the reader knows.
+    check_grains(simple.MadfGrains(FileName="micrometers/labels.vdb", Smoothing=0), edge=10)
+    other = simple.MadfGrains(FileName="other voxels/labels.vdb", Smoothing=0)
+    check(fetched(other).GetNumberOfPartitionedDataSets() == 0, "tables of other voxels")
+    other.VoxelSize = "20um"
+    check_grains(other, edge=0.02)
     other = simple.MadfGrains(FileName="labels.vdb", Reduce=2, Smoothing=0)
     check(fetched(other).GetNumberOfPartitionedDataSets() < len(VOXELS), "coarser: no grain less")
 

@@ -158,30 +158,45 @@ def table(path):
     return columns
 
 
+def factor_to(sample, labels):
+    """What places of the labels are multiplied by to be in the unit of the tables of sample.json.
+    Tables of other voxels are refused."""
+    meters = {"mm": 1e-3, "um": 1e-6, "voxel": 1}
+    unit = sample["length_unit"]
+    factor = meters[labels.unit] / meters[unit]
+    edges = np.broadcast_to(sample.get(f"voxel_size_{unit}", 1), 3)  # x, y, z
+    ours = np.array(labels.spacing[::-1])
+    if not np.allclose(edges, factor * ours, rtol=1e-6, atol=0):
+        raise ValueError(f"the tables beside the labels are of voxels of {edges} {unit}, and these "
+                         f"have {ours} {labels.unit}: measure again, or set VoxelSize")
+    return factor
+
+
 def columns_of(labels, path):
-    """Grains and bonds: the tables beside the file if they are of these labels, else measured."""
+    """Grains and bonds: the tables beside the file if they are of these labels, else measured; and
+    what places of the labels are multiplied by to be in their unit."""
     folder = os.path.dirname(path)
     try:
         with open(os.path.join(folder, "sample.json")) as file:
-            is_theirs = json.load(file).get("labels_digest") == labels.digest()
-        if is_theirs:
-            grains, bonds = (table(os.path.join(folder, name))
-                             for name in ("grains.csv", "bonds.csv"))
-            if np.array_equal(grains["id"], labels.ids):
-                return grains, bonds
+            sample = json.load(file)
+        grains, bonds = (table(os.path.join(folder, name)) for name in ("grains.csv", "bonds.csv"))
+        are_theirs = (sample.get("labels_digest") == labels.digest() and
+                      np.array_equal(grains["id"], labels.ids))
     except (OSError, ValueError, AttributeError, IndexError, KeyError):
-        pass
+        are_theirs = False
+    if are_theirs:
+        return grains, bonds, factor_to(sample, labels)
     measured = package().measure(labels)
-    return measured.grains, measured.bonds
+    return measured.grains, measured.bonds, 1
 
 
 def show_grains(labels, image, columns, meshed, algorithm, outputs):
     """A closed surface a grain into the first output, the network of grains into the second: in the
-    places of the labels, or those of an image."""
+    places of the labels, in the unit of the columns, or those of an image."""
     def place(points):
         return image.place(points, labels) if image else points
 
-    grains, bonds = columns
+    grains, bonds, factor = columns
     ids = np.asarray(grains["id"]).astype(np.int32)
     known, rgb = labels.colors()
     colors = rgb[np.searchsorted(known, ids)]
@@ -193,7 +208,7 @@ def show_grains(labels, image, columns, meshed, algorithm, outputs):
     for number, (id, row) in enumerate(zip(mesh.ids, np.searchsorted(ids, mesh.ids))):
         points, triangles = mesh.grain(int(id))
         surface = vtkPolyData()
-        surface.SetPoints(points_of(place(points).astype(np.float32)))
+        surface.SetPoints(points_of((factor * place(points)).astype(np.float32)))
         surface.SetPolys(cells(3, triangles))
         of_cells, count = surface.GetCellData(), len(triangles)
         add(of_cells, "grain_id", np.full(count, id, np.int32))
@@ -310,4 +325,4 @@ class MadfShowGrains(VTKPythonAlgorithmBase):
         image = Image(self, inputs)
         labels = package().Labels(image.array, voxel_size=image.voxel_size(self._Unit))
         measured = package().measure(labels)
-        show_grains(labels, image, (measured.grains, measured.bonds), labels, self, outputs)
+        show_grains(labels, image, (measured.grains, measured.bonds, 1), labels, self, outputs)
