@@ -67,7 +67,17 @@ with Bench() as bench:
     if fails("report", "scans/second.npy", "probe.html"):
         skip("tools/Snakefile: this vdb_madf was built without the verb report")
 
-    samples = ("core 1", "second", "slices")
+    # Headers with data beside them are a scan each.
+    generate("scans/meta.mhd", "3")
+    shutil.copy(bench.path("scans/meta.raw"), bench.path("scans/nrrd.raw"))
+    with open(bench.path("scans/nrrd.nhdr"), "w") as file:
+        file.write("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 32 32 32\nencoding: raw\n"
+                   "data file: nrrd.raw\n")
+    shutil.copy(bench.path("scans/meta.raw"), bench.path("scans/pyhst.vol"))
+    with open(bench.path("scans/pyhst.vol.info"), "w") as file:
+        file.write("! PyHST_SLAVE VOLUME INFO FILE\nNUM_X = 32\nNUM_Y = 32\nNUM_Z = 32\n")
+
+    samples = ("core 1", "meta", "nrrd", "pyhst", "second", "slices")
     wanted = sorted(["samples.csv"] + [f"{s}/{kind}" for s in samples for kind in KINDS])
     made, _ = snakemake()
     check(made == wanted, f"made: {made}")
