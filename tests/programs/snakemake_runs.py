@@ -61,6 +61,9 @@ with Bench() as bench:
     generate("scans/core 1.npy", "2")
     check("both would go to" in snakemake(code=1)[1], "two scans of one name")
     os.rename(bench.path("scans/core 1.npy"), bench.path("scans/second.npy"))
+    shutil.copy(bench.path("scans/second.npy"), bench.path("scans/run{A}.npy"))
+    check("run{A}.npy: braces in names" in snakemake(code=1)[1], "a name with braces")
+    os.remove(bench.path("scans/run{A}.npy"))
     for z in range(6):
         run("convert", "scans/second.npy", f"scans/slices/{z}.tif",
             "--crop", f"0,0,{z}:31,31,{z}")
