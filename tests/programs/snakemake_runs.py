@@ -101,6 +101,18 @@ with Bench() as bench:
     made, _ = snakemake()
     check("second/labels.vdb" in made, f"made again: {made}")
     check(all(name.startswith("second/") or name == "samples.csv" for name in made), f"{made}")
+    # Another scan in the place of one, though it is older, other data of a header, another slice.
+    generate("other.npy", "5")
+    generate("other.mhd", "5")
+    run("convert", "other.npy", "other.tif", "--crop", "0,0,3:31,31,3")
+    old = os.stat(bench.path("scans/second.npy")).st_mtime - 9e4
+    for new, place in (("other.npy", "second.npy"), ("other.raw", "meta.raw"),
+                       ("other.tif", "slices/3.tif")):
+        os.utime(bench.path(new), (old, old))
+        os.replace(bench.path(new), bench.path("scans/" + place))
+    made, _ = snakemake()
+    check(made == sorted(["samples.csv"] + [f"{s}/{kind}" for s in ("meta", "second", "slices")
+                                            for kind in KINDS]), f"of other scans: {made}")
     # A scan that cannot be read: the others are done all the same.
     with open(bench.path("scans/bad.tif"), "w") as file:
         file.write("damaged")
