@@ -152,6 +152,16 @@ run("Properties...", "unit=micron pixel_width=0.5 pixel_height=0.5 voxel_depth=1
     madf("measure", "grains.vdb", "tables", "--shape", "--unit", "um", "--size-curve", "ours.csv")
     check_what_it_has(said, "a calibrated stack")
 
+    # A voxel size that is given overrules that of the stack.
+    calibrated = scan + """
+run("Properties...", "unit=micron pixel_width=0.5 pixel_height=0.5 voxel_depth=1");
+"""
+    said = cut(calibrated, "--phase 1 --voxel-size 3um")
+    check("voxel 3,3,3,microns" in said, f"a voxel size of its own: {said[:9]}")
+    madf("segment", "a scan's.tif", "grains.vdb", "--phase", "1", "--voxel-size", "3um")
+    madf("measure", "grains.vdb", "tables")
+    check_what_it_has(said, "a voxel size of its own")
+
     # ImageJ has signed samples as unsigned ones and an offset. Inches are no voxel size.
     madf("convert", "a scan's.tif", "bytes.raw", "--type", "uint8")
     with open(bench.path("bytes.raw"), "rb") as file:

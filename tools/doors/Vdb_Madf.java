@@ -79,7 +79,9 @@ public class Vdb_Madf implements PlugIn {
     if (!(copy.getStackSize() > 1 ? new FileSaver(copy).saveAsTiffStack(file)
                                   : new FileSaver(copy).saveAsTiff(file)))
       throw new IOException("the stack could not be written into " + folder);
-    segment.addAll(size(calibration));
+    boolean overruled = false;
+    for (String word : segment) overruled |= word.matches("--voxel-size(=.*)?");
+    if (!overruled) segment.addAll(size(calibration));
 
     run(folder, command, "segment", "/scan.tif", "/grains.vdb", segment);
     run(folder, command, "convert", "/grains.vdb", "/grains.tif", new ArrayList<String>());
@@ -88,7 +90,7 @@ public class Vdb_Madf implements PlugIn {
     ImagePlus grains = new Opener().openImage(folder + "/grains.tif");
     if (grains == null) throw new IOException("the labels could not be opened");
     grains.setTitle("grains of " + scan.getTitle());
-    grains.setCalibration(calibration);
+    if (!overruled) grains.setCalibration(calibration);
     grains.setLut(colors());
     grains.resetDisplayRange();
     for (String name : new String[] {"grains.csv", "bonds.csv"})
