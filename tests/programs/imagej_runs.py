@@ -161,6 +161,9 @@ run("Properties...", "unit=micron pixel_width=0.5 pixel_height=0.5 voxel_depth=1
     madf("segment", "a scan's.tif", "grains.vdb", "--phase", "1", "--voxel-size", "3um")
     madf("measure", "grains.vdb", "tables")
     check_what_it_has(said, "a voxel size of its own")
+    # Notes are shown.
+    said = cut(scan, "--phase 77")
+    check(said[0].startswith("vdb_madf: note: scan.tif: nothing is selected"), f"{said[:9]}")
 
     # ImageJ has signed samples as unsigned ones and an offset. Inches are no voxel size.
     madf("convert", "a scan's.tif", "bytes.raw", "--type", "uint8")

@@ -83,9 +83,9 @@ public class Vdb_Madf implements PlugIn {
     for (String word : segment) overruled |= word.matches("--voxel-size(=.*)?");
     if (!overruled) segment.addAll(size(calibration));
 
-    run(folder, command, "segment", "/scan.tif", "/grains.vdb", segment);
-    run(folder, command, "convert", "/grains.vdb", "/grains.tif", new ArrayList<String>());
-    run(folder, command, "measure", "/grains.vdb", "/tables", measure);
+    run(folder, command, segment, "segment", "/scan.tif", "/grains.vdb");
+    run(folder, command, Arrays.asList("-q"), "convert", "/grains.vdb", "/grains.tif");
+    run(folder, command, measure, "measure", "/grains.vdb", "/tables");
 
     ImagePlus grains = new Opener().openImage(folder + "/grains.tif");
     if (grains == null) throw new IOException("the labels could not be opened");
@@ -109,17 +109,18 @@ public class Vdb_Madf implements PlugIn {
     return shown;
   }
 
-  /** Runs a verb of the command on files of the folder; fails with what it says. */
-  private static void run(File folder, String command, String verb, String in, String out,
-                          List<String> options) throws IOException {
-    List<String> line =
-        new ArrayList<>(Arrays.asList(command, verb, folder + in, folder + out, "-q"));
+  /** Runs a verb on files of the folder, and logs its notes; fails with what it says. */
+  private static void run(File folder, String command, List<String> options, String verb,
+                          String... files) throws IOException {
+    List<String> line = new ArrayList<>(Arrays.asList(command, verb));
+    for (String file : files) line.add(folder + file);
     line.addAll(options);
     IJ.showStatus("vdb_madf " + verb + " (Esc stops it)");
+    File printed = new File(folder, "printed.txt");
     File said = new File(folder, "said.txt");
     IJ.resetEscape();
     Process process =
-        new ProcessBuilder(line).redirectErrorStream(true).redirectOutput(said).start();
+        new ProcessBuilder(line).redirectOutput(printed).redirectError(said).start();
     boolean stopped = false;
     while (process.isAlive()) {  // also when it was told to stop, for it may still write
       try {
@@ -131,9 +132,14 @@ public class Vdb_Madf implements PlugIn {
       if (stopped) process.destroy();
     }
     if (stopped) throw new IOException(verb + " was stopped");
-    if (process.exitValue() != 0)
-      throw new IOException(
-          new String(Files.readAllBytes(said.toPath()), StandardCharsets.UTF_8).trim());
+    String errors = text(said).trim();
+    if (process.exitValue() != 0) throw new IOException(errors);
+    for (String note : errors.split("\n"))
+      if (note.startsWith("vdb_madf: note:")) IJ.log(note.replace(folder + "/", ""));
+  }
+
+  private static String text(File file) throws IOException {
+    return new String(Files.readAllBytes(file.toPath()), StandardCharsets.UTF_8);
   }
 
   /** Splits options at blanks; those in double quotes stay together. */
