@@ -26,6 +26,9 @@ run("Vdb Madf", "command=[{command}] segment=[{segment}] measure=[{measure}]");
 print("image " + getTitle() + "," + nSlices);
 getVoxelSize(width, height, depth, unit);
 print("voxel " + width + "," + height + "," + depth + "," + unit);
+x = 0; y = 0; z = 0;
+toScaled(x, y, z);
+print("first " + x + "," + y + "," + z);
 saveAs("Tiff", "{labels}");
 names = newArray("grains.csv", "bonds.csv");
 for (n = 0; n < 2; n++) {{
@@ -152,15 +155,17 @@ run("Properties...", "unit=micron pixel_width=0.5 pixel_height=0.5 voxel_depth=1
     madf("measure", "grains.vdb", "tables", "--shape", "--unit", "um", "--size-curve", "ours.csv")
     check_what_it_has(said, "a calibrated stack")
 
-    # A voxel size that is given overrules that of the stack.
+    # A voxel size that is given overrules that of the stack; labels of a crop lie where it does.
     calibrated = scan + """
 run("Properties...", "unit=micron pixel_width=0.5 pixel_height=0.5 voxel_depth=1");
 """
-    said = cut(calibrated, "--phase 1 --voxel-size 3um")
-    check("voxel 3,3,3,microns" in said, f"a voxel size of its own: {said[:9]}")
-    madf("segment", "a scan's.tif", "grains.vdb", "--phase", "1", "--voxel-size", "3um")
+    said = cut(calibrated, "--phase 1 --voxel-size 3um --crop 2,3,4:39,39,39")
+    check("voxel 3,3,3,microns" in said and "first 6,9,12" in said,
+          f"a voxel size of its own, and a crop: {said[:9]}")
+    madf("segment", "a scan's.tif", "grains.vdb", "--phase", "1", "--voxel-size", "3um",
+         "--crop", "2,3,4:39,39,39")
     madf("measure", "grains.vdb", "tables")
-    check_what_it_has(said, "a voxel size of its own")
+    check_what_it_has(said, "a crop")
     # Notes are shown.
     said = cut(scan, "--phase 77")
     check(said[0].startswith("vdb_madf: note: scan.tif: nothing is selected"), f"{said[:9]}")

@@ -86,11 +86,20 @@ public class Vdb_Madf implements PlugIn {
     run(folder, command, segment, "segment", "/scan.tif", "/grains.vdb");
     run(folder, command, Arrays.asList("-q"), "convert", "/grains.vdb", "/grains.tif");
     run(folder, command, measure, "measure", "/grains.vdb", "/tables");
+    String info = run(folder, command, new ArrayList<String>(), "info", "/grains.vdb");
 
     ImagePlus grains = new Opener().openImage(folder + "/grains.tif");
     if (grains == null) throw new IOException("the labels could not be opened");
     grains.setTitle("grains of " + scan.getTitle());
-    if (!overruled) grains.setCalibration(calibration);
+    Calibration own = overruled ? grains.getCalibration().copy() : calibration.copy();
+    Matcher first =
+        Pattern.compile("madf_domain_min = \\[(-?\\d+),(-?\\d+),(-?\\d+)\\]").matcher(info);
+    if (first.find()) {  // labels of a crop lie where it does
+      own.xOrigin = calibration.xOrigin - Integer.parseInt(first.group(1));
+      own.yOrigin = calibration.yOrigin - Integer.parseInt(first.group(2));
+      own.zOrigin = calibration.zOrigin - Integer.parseInt(first.group(3));
+    }
+    grains.setCalibration(own);
     grains.setLut(colors());
     grains.resetDisplayRange();
     for (String name : new String[] {"grains.csv", "bonds.csv"})
@@ -109,9 +118,10 @@ public class Vdb_Madf implements PlugIn {
     return shown;
   }
 
-  /** Runs a verb on files of the folder, and logs its notes; fails with what it says. */
-  private static void run(File folder, String command, List<String> options, String verb,
-                          String... files) throws IOException {
+  /** Runs a verb on files of the folder, logs its notes, returns what it prints; fails with what it
+   *  says. */
+  private static String run(File folder, String command, List<String> options, String verb,
+                            String... files) throws IOException {
     List<String> line = new ArrayList<>(Arrays.asList(command, verb));
     for (String file : files) line.add(folder + file);
     line.addAll(options);
@@ -136,6 +146,7 @@ public class Vdb_Madf implements PlugIn {
     if (process.exitValue() != 0) throw new IOException(errors);
     for (String note : errors.split("\n"))
       if (note.startsWith("vdb_madf: note:")) IJ.log(note.replace(folder + "/", ""));
+    return text(printed);
   }
 
   private static String text(File file) throws IOException {
