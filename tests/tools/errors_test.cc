@@ -211,7 +211,7 @@ TEST_CASE("cli: where memory ends, a line says so", "[cli]") {
     CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
     CHECK_THAT(run.err, Contains("memory"));
   }
-  CHECK_FALSE(bench.names().count("o.obj"));
+  for (const std::string& name : bench.names()) CHECK(name[0] != '.');  // no half of a file
 }
 
 TEST_CASE("cli: an image that is too long is refused before its samples are read", "[cli]") {
