@@ -4,6 +4,7 @@
 // Where tables come from, what `vdb_madf measure` refuses, and what it measures on demand.
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 
 #include "support/catch.h"
@@ -133,15 +134,20 @@ TEST_CASE(
 TEST_CASE("cli: measure refuses scans and options that do not fit its labels", "[cli]") {
   const Bench bench;
   bench.mustRun("generate spheres --size 30 --count 4 --radius 5:6 balls.vdb");
-  bench.mustRun("generate spheres --size 31 --count 4 --radius 5:6 other.vdb");
-  bench.mustRun("convert other.vdb other.tif --grid truth --type uint8");
+  for (const std::string size : {"29", "31"}) {
+    bench.mustRun("generate spheres --size " + size + " --count 4 --radius 5:6 other.vdb");
+    bench.mustRun("convert other.vdb other" + size + ".tif --grid truth --type uint8");
+  }
   bench.mustRun("convert balls.vdb scan.npy --grid truth --type uint8");
   bench.mustRun("convert balls.vdb scan.raw --grid truth --type uint8");
   const std::string bytes = bench.bytes("scan.npy");
   bench.write("cut.npy", bytes.substr(0, bytes.size() / 2));
   const std::string measure = "measure balls.vdb out ";
-  refuses(bench, kFailed, measure + "--intensity other.tif",
-          {"other.tif: has 31x31x31 voxels", "of a scan of 30x30x30 voxels: give the one that"});
+  refuses(bench, kFailed, measure + "--intensity other29.tif",
+          {"other29.tif: has 29x29x29 voxels", "of a scan of 30x30x30 voxels: give the one that"});
+  CHECK(bench.run(measure + "--intensity other31.tif")
+            .err.find("other31.tif: is larger than the volume of the labels") != std::string::npos);
+  std::filesystem::remove_all(bench.path("out"));
   refuses(bench, kFailed, measure + "--intensity cut.npy", {"cut.npy"});
   refuses(bench, kFailed, measure + "--intensity nothing.tif", {"nothing.tif"});
   refuses(bench, kFailed, measure + "--intensity other.vdb --intensity-grid fog",

@@ -65,7 +65,7 @@ void printNecks(const Measurements& m, double length, const std::string& unit) {
               m.scan->sigma, 100 * m.scan->noise);
   std::printf("  necks in the scan   %lld of %s, mean area %.5g %s2 (%.5g in the labels)\n",
               (long long)necks.count, counted(int64_t(m.bonds.size()), "bond").c_str(),
-              necks.area * share, unit.c_str(), necks.labelledArea * share);
+              necks.area * share, unit.c_str(), necks.labeledArea * share);
   std::printf("  contacts a grain    %.2f with gaps of up to %.3g %s\n", contactCoordination(m),
               kContactGap * length, unit.c_str());
 }

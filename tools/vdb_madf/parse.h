@@ -19,8 +19,8 @@ namespace vdb_madf::tools {
 
 /// Finite.
 double parseNumber(const std::string& text, const std::string& option);
-/// Of `--ice` and `--density`, in kg/m3. @throw WrongUsage for both, and for one under 10, which no
-/// material has that grains are made of (0.917 is in g/cm3)
+/// What `--ice` or `--density` says, in kg/m3. @throw WrongUsage for both, and for one under 10,
+/// which no material has that grains are made of (0.917 is in g/cm3)
 std::optional<double> parseDensity(bool ice, const std::string& density);
 /// "301x301x251", each from 1 to kMaxImageSide.
 Coord parseDims(const std::string& text, const std::string& option);

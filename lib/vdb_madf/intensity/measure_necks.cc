@@ -38,7 +38,7 @@ constexpr double kLeastArea = 7;    // voxel faces of a confirmed neck
 // A neck is not known by an error of so many voxel faces and so much of the bond's area, and if its
 // area is so many times that of the bond: blur makes bonds larger, not smaller.
 constexpr double kMostError = 21, kMostErrorShare = 0.35, kMostGrowth = 3;
-// As many of the labelled voxels have to be on the grains' side of the scan's middle gray, and of
+// As many of the labeled voxels have to be on the grains' side of the scan's middle gray, and of
 // the others on the other side, in the mean; of a scan of something else it is a half.
 constexpr double kLeastAgreement = 0.65;
 
@@ -284,13 +284,13 @@ ScanBlur withGrainsInside(const ScanBlur& blur, const Int32Tree& labels, const F
   const double middle = (blur.inside + blur.outside) / 2;
   int64_t voxels[2] = {0, 0}, bright[2] = {0, 0};  // of what is around grains, of grains
   for (auto leaf = gray.cbeginLeaf(); leaf; ++leaf) {
-    const auto* labelled = labels.probeConstLeaf(leaf->origin());
+    const auto* labeled = labels.probeConstLeaf(leaf->origin());
     CoordBBox part = leaf->getNodeBoundingBox();
     part.intersect(known);
     for (auto p = part.begin(); p; ++p) {
       const openvdb::Index i = leaf->coordToOffset(*p);
       const bool isGrain =
-          labelled && detail::labelAt(*labelled, labelled->buffer().data(), i) != 0;
+          labeled && detail::labelAt(*labeled, labeled->buffer().data(), i) != 0;
       ++voxels[isGrain];
       bright[isGrain] += double(leaf->getValue(i)) > middle;
     }

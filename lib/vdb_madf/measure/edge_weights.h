@@ -33,8 +33,8 @@ struct EdgeCorrected {
 };
 EdgeCorrected edgeCorrected(const std::vector<GrainMeasures>& grains);
 
-/// diameterPercentile() of the grains by their weights, or their weights times their volumes; NaN if
-/// no grain is whole.
+/// diameterPercentile() of the grains by their weights, or their weights times their volumes; NaN
+/// if no grain is whole.
 double correctedDiameterPercentile(const std::vector<GrainMeasures>& grains, double share,
                                    bool byVolume);
 

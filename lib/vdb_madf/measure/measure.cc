@@ -78,7 +78,7 @@ class SlabMeasuring {
       const detail::LabelLeaves slab = window.leaves(layersOf(s), &part);
       measuring_.survey(slab);
       for (size_t leaf = 0; leaf < slab.index().leafCount(); ++leaf)
-        for (const detail::LabelPart& labelled : slab.parts(leaf)) lastSlab_[labelled.label] = s;
+        for (const detail::LabelPart& labeled : slab.parts(leaf)) lastSlab_[labeled.label] = s;
     }
   }
 
@@ -198,7 +198,7 @@ ConfirmedNecks confirmedNecks(const Measurements& measured) {
     if (bond.neck && bond.neck->confirmed) {
       ++necks.count;
       necks.area += bond.neck->area;
-      necks.labelledArea += bond.area;
+      necks.labeledArea += bond.area;
     }
   return necks;
 }

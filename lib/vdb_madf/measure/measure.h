@@ -107,7 +107,7 @@ double contactCoordination(const Measurements& measured);
 struct ConfirmedNecks {
   int64_t count = 0;
   double area = 0;          ///< of their necks, added; voxels
-  double labelledArea = 0;  ///< of the same bonds in the labels
+  double labeledArea = 0;  ///< of the same bonds in the labels
 };
 ConfirmedNecks confirmedNecks(const Measurements& measured);
 

@@ -14,8 +14,8 @@ struct ScanBlur {
   /// Standard deviation of the point spread along an axis, in voxels, with the voxel itself: a
   /// perfect scanner has sqrt(1/12) = 0.29.
   double sigma = 0;
-  /// The part of the values that are the least, or the largest, if that is more: much of a scan that
-  /// was cut off, whose blur and noise are larger than these.
+  /// The part of the values that are the least, or the largest, if that is more: much of a scan
+  /// that was cut off, whose blur and noise are larger than these.
   double atEnds = 0;
 };
 
