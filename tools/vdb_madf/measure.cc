@@ -10,6 +10,7 @@
 #include "measure_arguments.h"
 #include "measure_summary.h"
 #include "remerge_slabs.h"
+#include "scan_option.h"
 #include "text_file.h"
 #include "vdb_madf/exports/measurement_files.h"
 #include "vdb_madf/files/output_set.h"
@@ -40,14 +41,16 @@ Measurements measureLabels(const MeasureArguments& o, const Common& common, cons
   std::optional<GrayScan> scan;
   if (!o.intensity.path.empty()) {
     scan = openScan(o.intensity, o.input, common.progress);
-    noteLarger(*scan, aboutOf(labels), common.progress);
+    noteLarger(o.intensity.path, scan->box(), aboutOf(labels), common.progress);
   }
   const MaskGrid::Ptr binder =
       o.phases.path.empty() ? nullptr : loadPhase(o.phases, o.binder, o.input, common.progress);
+  if (const auto domain = binder ? storedDomain(*binder) : std::nullopt)
+    noteLarger(o.phases.path, domain->box(), aboutOf(labels), common.progress);
   std::optional<ScanBlur> blur;
   if (!o.gray.path.empty()) {
     const GrayScan gray = openScan(o.gray, o.input, common.progress);
-    noteLarger(gray, aboutOf(labels), common.progress);
+    noteLarger(o.gray.path, gray.box(), aboutOf(labels), common.progress);
     common.progress->start("blur");
     if (!o.sensitivity)
       blur = blurOf(*gray.image, common.progress);

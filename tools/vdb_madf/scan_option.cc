@@ -72,13 +72,13 @@ GrayScan openScan(const ScanOption& scan, const InputOptions& labels, Progress* 
   });
 }
 
-void noteLarger(const GrayScan& scan, const openvdb::GridBase& about, Progress* progress) {
+void noteLarger(const std::string& path, const CoordBBox& scan, const openvdb::GridBase& about,
+                Progress* progress) {
   const auto domain = storedDomain(about);
-  const CoordBBox box = scan.box();
-  if (!domain || !domain->isBox() || domain->box() == box || !box.isInside(domain->box()) ||
-      domain->box().min() != box.min())
+  if (!domain || !domain->isBox() || domain->box() == scan || !scan.isInside(domain->box()) ||
+      domain->box().min() != scan.min())
     return;
-  progress->note(scan.image->path() +
+  progress->note(path +
                  ": is larger than the volume of the labels: taken for the scan that they were "
                  "cropped from");
 }

@@ -289,8 +289,7 @@ ScanBlur withGrainsInside(const ScanBlur& blur, const Int32Tree& labels, const F
     part.intersect(known);
     for (auto p = part.begin(); p; ++p) {
       const openvdb::Index i = leaf->coordToOffset(*p);
-      const bool isGrain =
-          labeled && detail::labelAt(*labeled, labeled->buffer().data(), i) != 0;
+      const bool isGrain = labeled && detail::labelAt(*labeled, labeled->buffer().data(), i) != 0;
       ++voxels[isGrain];
       bright[isGrain] += double(leaf->getValue(i)) > middle;
     }

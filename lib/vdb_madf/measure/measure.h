@@ -106,7 +106,7 @@ double contactCoordination(const Measurements& measured);
 /// The bonds that the scan confirms (Neck::confirmed).
 struct ConfirmedNecks {
   int64_t count = 0;
-  double area = 0;          ///< of their necks, added; voxels
+  double area = 0;         ///< of their necks, added; voxels
   double labeledArea = 0;  ///< of the same bonds in the labels
 };
 ConfirmedNecks confirmedNecks(const Measurements& measured);
