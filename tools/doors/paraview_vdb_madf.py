@@ -162,8 +162,10 @@ def factor_to(sample, labels):
     """What places of the labels are multiplied by to be in the unit of the tables of sample.json.
     Tables of other voxels are refused."""
     meters = {"mm": 1e-3, "um": 1e-6, "voxel": 1}
-    unit = sample["length_unit"]
+    unit = sample.get("length_unit", "voxel")
     factor = meters[labels.unit] / meters[unit]
+    if unit == labels.unit == "voxel":  # the tables do not tell the proportions of voxels
+        return factor
     edges = np.broadcast_to(sample.get(f"voxel_size_{unit}", 1), 3)  # x, y, z
     ours = np.array(labels.spacing[::-1])
     if not np.allclose(edges, factor * ours, rtol=1e-6, atol=0):
@@ -182,7 +184,7 @@ def columns_of(labels, path):
         grains, bonds = (table(os.path.join(folder, name)) for name in ("grains.csv", "bonds.csv"))
         are_theirs = (sample.get("labels_digest") == labels.digest() and
                       np.array_equal(grains["id"], labels.ids))
-    except (OSError, ValueError, AttributeError, IndexError, KeyError):
+    except (OSError, ValueError, AttributeError, IndexError, KeyError, csv.Error):
         are_theirs = False
     if are_theirs:
         return grains, bonds, factor_to(sample, labels)

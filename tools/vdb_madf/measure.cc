@@ -13,6 +13,7 @@
 #include "scan_option.h"
 #include "text_file.h"
 #include "vdb_madf/exports/measurement_files.h"
+#include "vdb_madf/files/file_name.h"
 #include "vdb_madf/files/output_set.h"
 #include "vdb_madf/intensity/estimate_blur.h"
 #include "vdb_madf/intensity/measure_gray.h"
@@ -30,8 +31,7 @@ namespace {
 
 /// The sample's name, else that of the file without folders.
 std::string titleOf(const MeasureArguments& o) {
-  return o.tables.sample.empty() ? o.input.path.substr(o.input.path.find_last_of('/') + 1)
-                                 : o.tables.sample;
+  return o.tables.sample.empty() ? lastPart(o.input.path) : o.tables.sample;
 }
 
 /// Of labels, a grid or slabs.

@@ -6,7 +6,6 @@
 #include "outputs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/standard_streams.h"
-#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/intensity/estimate_blur.h"
 
 namespace vdb_madf::tools {
@@ -74,13 +73,8 @@ GrayScan openScan(const ScanOption& scan, const InputOptions& labels, Progress* 
 
 void noteLarger(const std::string& path, const CoordBBox& scan, const openvdb::GridBase& about,
                 Progress* progress) {
-  const auto domain = storedDomain(about);
-  if (!domain || !domain->isBox() || domain->box() == scan || !scan.isInside(domain->box()) ||
-      domain->box().min() != scan.min())
-    return;
-  progress->note(path +
-                 ": is larger than the volume of the labels: taken for the scan that they were "
-                 "cropped from");
+  if (const std::string note = noteOnSize(scan, about); !note.empty())
+    progress->note(path + ": " + note);
 }
 
 void noteBlur(const std::string& path, const ScanBlur& blur, Progress* progress) {

@@ -28,9 +28,7 @@ MaskGrid::Ptr loadPhase(const ScanOption& map, int64_t value, const InputOptions
 /// @throw InvalidInput, IoError: one line that names the file and what to do.
 GrayScan openScan(const ScanOption& scan, const InputOptions& labels, Progress* progress);
 
-/// Notes that a scan with this box goes on beyond labels that begin where it does: nothing but
-/// their size tells whether they were cropped or are of another scan.
-/// @param about a grid with their domain
+/// Notes what noteOnSize() says.
 void noteLarger(const std::string& path, const CoordBBox& scan, const openvdb::GridBase& about,
                 Progress* progress);
 /// Notes that a scan was cut off (noteOn()).

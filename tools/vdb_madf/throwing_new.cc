@@ -6,6 +6,7 @@
 // takes the place of the system's, and goes back by its operators delete.
 
 #ifdef VDB_MADF_MIMALLOC
+#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
 #include <new>
@@ -18,7 +19,8 @@ void* orThrow(void* memory) {
 }
 void* aligned(size_t bytes, std::align_val_t to) {
   void* memory = nullptr;
-  return ::posix_memalign(&memory, size_t(to), bytes) == 0 ? memory : nullptr;
+  const size_t least = sizeof(void*);  // that posix_memalign() takes
+  return ::posix_memalign(&memory, std::max(size_t(to), least), bytes) == 0 ? memory : nullptr;
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ struct Stamp {
   }
 };
 
-/// Of a file, or of all that lies in a folder.
+/// Of a file, with the data that lie beside a header, or of all that lies in a folder.
 Stamp stampOf(const std::string& path) {
   Stamp stamp;
   const auto add = [&](const fs::path& file) {
@@ -75,6 +75,9 @@ Stamp stampOf(const std::string& path) {
   };
   std::error_code error;
   if (!fs::is_directory(path, error)) add(path);
+  const std::string ending = fileEnding(path);
+  if (ending == ".mhd" || ending == ".nhdr")
+    for (const char* data : {".raw", ".zraw", ".raw.gz"}) add(fs::path(path).replace_extension(data));
   fs::recursive_directory_iterator entry(path, error);
   for (; entry != fs::recursive_directory_iterator(); entry.increment(error))
     if (entry->is_regular_file(error)) add(entry->path());

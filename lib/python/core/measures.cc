@@ -291,6 +291,14 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
   std::optional<ManifoldGraph> graph;
   if (manifold) graph = requiredGraph(asLabels(*manifold));
   std::vector<std::string> notes;
+  const auto noteSize = [&](const char* name, const CoordBBox& box) {
+    if (const std::string note = noteOnSize(box, grid); !note.empty())
+      notes.push_back(name + (": " + note));
+  };
+  if (scan) noteSize("intensity", scan->box());
+  if (edges) noteSize("gray", edges->box());
+  if (const auto domain = third ? storedDomain(*third) : std::nullopt)
+    noteSize("phases", domain->box());
   const Measurements measured = withoutLock(call, [&](Interrupter* interrupter) {
     Measurements result = measure(grid, options, interrupter);
     if (graph) measureStability(*graph, result);

@@ -156,9 +156,9 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
     shape: columns `feret_max`, `feret_min`, `convex_volume`, `solidity`, `zingg_class` of the
     grains.
     intensity: the scan that the labels were made of, a file or an array [z, y, x] of the same
-    shape, read slab by slab: columns `gray_mean`, `gray_sd`, `gray_min`, `gray_max`, `gray_median`,
-    `gray_voxels` of grains and bonds. intensity_grid: of a VDB, or the array of a Zarr or HDF5
-    file.
+    shape, or the whole of which they were cropped, read slab by slab: columns `gray_mean`,
+    `gray_sd`, `gray_min`, `gray_max`, `gray_median`, `gray_voxels` of grains and bonds.
+    intensity_grid: of a VDB, or the array of a Zarr or HDF5 file.
     gray: the gray scan that the labels were made of, likewise: columns `neck_area`, `neck_radius`,
     `neck_error`, `neck_gap`, `neck_confirmed`, `neck_normal_x` ... of the bonds, freed of the
     scan's blur, and in the sample `scan_blur`, `scan_noise_of_contrast` and

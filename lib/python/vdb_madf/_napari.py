@@ -36,7 +36,8 @@ def to_napari(labels: Union[Labels, Segmentation, Source],
     centroid of the first grain of each bond to that of the second, with those of the bonds.
     Both lie where they are in the world, in `labels.unit`.
 
-    measured: of these labels, in any unit; None: they are measured, without columns on demand."""
+    measured: of these labels, in any unit; None: they are measured, without columns on demand.
+    ValueError: it is of other labels, or of voxels of another size."""
     with calling(progress, threads) as call:
         volume = labels_of(labels, call, threads)
         if measured is None:

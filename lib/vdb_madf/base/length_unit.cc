@@ -32,16 +32,16 @@ std::array<std::string, 3> lengthsIn(double unitsPerMetre, const std::array<doub
 
 std::optional<double> unitsPerMetre(const std::string& unit) {
   static const std::map<std::string, double> kUnits = {
-      {"nm", 1e9},         {"nanometer", 1e9},   {"nanometre", 1e9},
-      {"um", 1e6},         {"micron", 1e6},      {"micrometer", 1e6},
+      {"nm", 1e9},         {"nanometer", 1e9}, {"nanometre", 1e9},
+      {"um", 1e6},         {"micron", 1e6},    {"micrometer", 1e6},
       {"micrometre", 1e6}, {"\u00b5m", 1e6},  // micro sign, UTF-8
       {"\u03bcm", 1e6},                       // Greek mu, UTF-8
       {"\xb5m", 1e6},                         // micro sign, Latin-1
       {"\\u00b5m", 1e6},                      // as ImageJ escapes it
-      {"\\u03bcm", 1e6},   {"inch", 1 / 0.0254}, {"mm", 1e3},
-      {"millimeter", 1e3}, {"millimetre", 1e3},  {"cm", 1e2},
-      {"centimeter", 1e2}, {"centimetre", 1e2},  {"m", 1},
-      {"meter", 1},        {"metre", 1}};
+      {"\\u03bcm", 1e6},   {"mm", 1e3},        {"millimeter", 1e3},
+      {"millimetre", 1e3}, {"cm", 1e2},        {"centimeter", 1e2},
+      {"centimetre", 1e2}, {"m", 1},           {"meter", 1},
+      {"metre", 1}};
   std::string name = lowerCase(detail::trimmed(unit));
   auto found = kUnits.find(name);
   if (found == kUnits.end() && name.size() > 2 && name.back() == 's') {

@@ -69,9 +69,9 @@ int64_t availableMemory() {
 }
 
 int64_t memoryLimit() {
-  int64_t bytes = std::numeric_limits<int64_t>::max();
+  int64_t bytes = detail::limitOfGroups(textOf("/proc/self/cgroup"), "/sys/fs/cgroup");
   const long pages = ::sysconf(_SC_PHYS_PAGES), pageSize = ::sysconf(_SC_PAGESIZE);
-  if (pages > 0 && pageSize > 0) bytes = int64_t(pages) * pageSize;
+  if (pages > 0 && pageSize > 0) bytes = std::min(bytes, int64_t(pages) * pageSize);
   for (const auto resource : {RLIMIT_AS, RLIMIT_DATA}) {
     struct rlimit limit {};
     if (::getrlimit(resource, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)

@@ -18,7 +18,8 @@ int64_t pageFaults();
 /// control groups and its own (`ulimit -v`); 0 if that is unknown.
 int64_t availableMemory();
 
-/// Bytes that this process can have at most: the machine's memory, or the process's own limits.
+/// Bytes that this process can have at most: the machine's memory, or the limits of its control
+/// groups, or its own.
 int64_t memoryLimit();
 
 /// How messages write a number of bytes: "154 MiB", with three digits; units are powers of 1024.

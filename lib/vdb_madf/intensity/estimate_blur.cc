@@ -259,7 +259,7 @@ std::string noteOn(const ScanBlur& blur) {
   constexpr double kMuch = 0.05;
   if (blur.atEnds < kMuch) return "";
   return fmt::format(
-      "{:.0f} % of its values are the least or the largest that there are: it was cut off, so that "
+      "{:.0f} % of its values are the least or the largest that there are: if they were cut off, "
       "its blur, noise and necks come out wrong",
       100 * blur.atEnds);
 }

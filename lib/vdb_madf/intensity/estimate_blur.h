@@ -31,8 +31,8 @@ namespace vdb_madf {
 /// @throw IoError; Interrupted.
 std::optional<ScanBlur> estimateBlur(ImageReader& image, Interrupter* interrupter = nullptr);
 
-/// A sentence on a scan whose values were cut off: a twentieth of them or more are at one end
-/// (ScanBlur::atEnds). Of others it is empty.
+/// A sentence on a scan whose values may have been cut off: a twentieth of them or more are at one
+/// end (ScanBlur::atEnds). Of others it is empty.
 std::string noteOn(const ScanBlur& blur);
 
 /// What estimateBlur() says, where a blur is needed.

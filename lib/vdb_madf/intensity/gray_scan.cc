@@ -79,11 +79,11 @@ CoordBBox GrayScan::box() const {
 
 void placeScan(GrayScan& scan, const CoordBBox& domain) {
   if (scan.box().isInside(domain)) return;
-  const std::string has = scan.image->path() + ": has " + detail::sizeAndPlace(scan.box());
-  if (scan.first == Coord(0)) scan.first = domain.min();
-  if (scan.box() != domain)
-    throw InvalidInput(has + ", and the labels are those of a scan of " +
-                       detail::sizeAndPlace(domain) +
+  if (scan.first == Coord(0) && scan.box().dim() == domain.dim())
+    scan.first = domain.min();
+  else
+    throw InvalidInput(scan.image->path() + ": has " + detail::sizeAndPlace(scan.box()) +
+                       ", and the labels are those of a scan of " + detail::sizeAndPlace(domain) +
                        ": give the one that they were made of, whole or cropped as they were");
 }
 
@@ -93,6 +93,14 @@ void placeScan(GrayScan& scan, const SampleMeasures& sample) {
                        ": the domain of the labels is unknown, so that nothing tells whether this "
                        "is their scan: give the domain");
   placeScan(scan, sample.box);
+}
+
+std::string noteOnSize(const CoordBBox& scan, const openvdb::GridBase& about) {
+  const auto domain = storedDomain(about);
+  if (!domain || !domain->isBox() || domain->box() == scan || !scan.isInside(domain->box()) ||
+      domain->box().min() != scan.min())
+    return "";
+  return "is larger than the volume of the labels: taken for the scan that they were cropped from";
 }
 
 GrayScan openGrayScan(const std::string& path, const VolumeOptions& options,

@@ -29,6 +29,11 @@ void placeScan(GrayScan& scan, const CoordBBox& domain);
 /// Likewise; @throw also if the domain of the labels is unknown
 void placeScan(GrayScan& scan, const SampleMeasures& sample);
 
+/// A sentence on a scan with this box that goes on beyond labels which begin where it does: nothing
+/// but their size tells whether they were cropped or are of another scan. Of others it is empty.
+/// @param about a grid with the domain of the labels
+std::string noteOnSize(const CoordBBox& scan, const openvdb::GridBase& about);
+
 /// Any readable file: an image, as openVolumeImage(), or a grid of numbers of a VDB file (the one
 /// that the options name, or GridUse::object), with its background outside of its voxels; its box
 /// is its domain, or the box of its active voxels. Of the options `grid`, `dataset`, `raw`,

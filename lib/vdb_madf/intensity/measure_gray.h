@@ -12,9 +12,8 @@ namespace vdb_madf {
 /// Sets the gray values of grains (of all their voxels) and of bonds (of the voxels of either grain
 /// that have a face towards the other, each once). NaN and infinite values do not count.
 ///
-/// The scan is read in slabs of eight slices, those without labels not at all. Its box has to be
-/// the domain of the labels; around labels that know but a part of it, a region or a box that
-/// begins elsewhere, it may be larger. Of integers mean and deviation are taken of exact sums; of
+/// The scan is read in slabs of eight slices, those without labels not at all. It is placed by
+/// placeScan(). Of integers mean and deviation are taken of exact sums; of
 /// other numbers the sums are those of one order. Either way they are the same bits for any number
 /// of threads. Memory: a slab, and a sample for each labeled voxel and for each voxel beside a
 /// bond.

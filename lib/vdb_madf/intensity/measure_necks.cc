@@ -142,8 +142,8 @@ class NeckMeter {
     Neck neck;
     neck.normal = section.normal;
     neck.error = area.error;
-    if (area.error > std::max(kMostError, kMostErrorShare * bond.area) ||
-        area.value > kMostGrowth * bond.area + kLeastArea) {
+    if (!(area.error <= std::max(kMostError, kMostErrorShare * bond.area)) ||
+        !(area.value <= kMostGrowth * bond.area + kLeastArea)) {
       neck.area = neck.radius = neck.gap = std::numeric_limits<double>::quiet_NaN();
       return neck;
     }
@@ -289,9 +289,11 @@ ScanBlur withGrainsInside(const ScanBlur& blur, const Int32Tree& labels, const F
     part.intersect(known);
     for (auto p = part.begin(); p; ++p) {
       const openvdb::Index i = leaf->coordToOffset(*p);
+      const double value = double(leaf->getValue(i));
+      if (!std::isfinite(value)) continue;
       const bool isGrain = labeled && detail::labelAt(*labeled, labeled->buffer().data(), i) != 0;
       ++voxels[isGrain];
-      bright[isGrain] += double(leaf->getValue(i)) > middle;
+      bright[isGrain] += value > middle;
     }
   }
   if (voxels[0] == 0 || voxels[1] == 0) return blur;

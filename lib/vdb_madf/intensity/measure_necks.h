@@ -24,7 +24,7 @@ namespace vdb_madf {
 /// outside, pore voxels go with the nearest grain, and other grains do not count. The grays of
 /// inside and outside are those around the bond, if there are 100 voxels of each, else the scan's.
 /// A neck is not known, NaN, if its error is over 21 voxel faces and over 0.35 of the bond's area,
-/// as beside flat faces and in grooves, or its area over 3 times that of the bond and 7 faces.
+/// as beside flat faces and in grooves, or its area over 3 times that of the bond plus 7 faces.
 /// A neck is confirmed if its area is at least 7 voxel faces and not below its error. Of others the
 /// gap is told: how far apart the tips of the two grains are, by how their sections grow from
 /// there.

@@ -37,8 +37,7 @@ void checkDomains(const MaskGrid& binder, const SampleMeasures& sample) {
         "of one of them is: give both as images, or --domain");
   if (domain->box().isInside(sample.box)) return;
   throw InvalidInput("the phases have " + detail::sizeAndPlace(domain->box()) + ", the labels " +
-                     detail::sizeAndPlace(sample.box) +
-                     ": give those of the whole scan, or of a part that holds the labels");
+                     detail::sizeAndPlace(sample.box) + ": give those of the whole scan");
 }
 
 class BinderMeter {

@@ -312,13 +312,10 @@ class Reader {
     const detail::TreeExtent extent = findExtent(entry);
     if (header_.hasOffsets && entry.descriptor.buffers != extent.topologyEnd)
       damaged("the voxels of a grid are not where their offset says");
-    const int64_t free = availableMemory();
-    if (extent.memoryBytes > (free ? free : memoryLimit()))
-      refuse(file_,
-             fmt::format("it takes {} of memory, and {} are free; close other programs, crop "
-                         "it, or use a larger computer",
-                         readableBytes(extent.memoryBytes),
-                         readableBytes(free ? free : memoryLimit())));
+    if (extent.memoryBytes > memoryLimit())
+      refuse(file_, fmt::format("it takes {} of memory, and there are {}; crop it, or use a larger "
+                                "computer",
+                                readableBytes(extent.memoryBytes), readableBytes(memoryLimit())));
     file_.moveTo(entry.treeStart);
     entry.grid->readTopology(stream_);
     if (file_.position() != extent.topologyEnd) damaged("its nodes have the wrong size");

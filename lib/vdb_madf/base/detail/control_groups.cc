@@ -38,6 +38,13 @@ int64_t cacheIn(const std::string& path, const GroupFiles& files) {
   return sum;
 }
 
+/// What a group in a folder says.
+using InGroup = int64_t(const std::string& folder, const GroupFiles& files);
+
+int64_t limitOfGroup(const std::string& folder, const GroupFiles& files) {
+  return numberIn(folder + files.limit).value_or(kNoLimit);
+}
+
 int64_t freeInGroup(const std::string& folder, const GroupFiles& files) {
   const auto limit = numberIn(folder + files.limit);
   if (!limit) return kNoLimit;
@@ -48,10 +55,11 @@ int64_t freeInGroup(const std::string& folder, const GroupFiles& files) {
 
 /// In a group and all above it; in a container the path may be one of outside, where only the
 /// uppermost folder is there.
-int64_t freeAlong(const std::string& mounted, std::string path, const GroupFiles& files) {
-  int64_t least = freeInGroup(mounted + "/", files);
+int64_t leastAlong(const std::string& mounted, std::string path, const GroupFiles& files,
+                   InGroup& inGroup) {
+  int64_t least = inGroup(mounted + "/", files);
   while (path.size() > 1) {
-    least = std::min(least, freeInGroup(mounted + path + "/", files));
+    least = std::min(least, inGroup(mounted + path + "/", files));
     path.resize(path.rfind('/'));
   }
   return least;
@@ -61,9 +69,7 @@ bool holdsMemory(const std::string& controllers) {
   return ("," + controllers + ",").find(",memory,") != std::string::npos;
 }
 
-}  // namespace
-
-int64_t freeInGroups(const std::string& groups, const std::string& mounted) {
+int64_t leastOf(const std::string& groups, const std::string& mounted, InGroup& inGroup) {
   std::istringstream lines(groups);
   int64_t least = kNoLimit;
   for (std::string number, controllers, path; std::getline(lines, number, ':') &&
@@ -71,11 +77,21 @@ int64_t freeInGroups(const std::string& groups, const std::string& mounted) {
                                               std::getline(lines, path);) {
     if (path.empty() || path[0] != '/') continue;
     if (controllers.empty())
-      least = std::min(least, freeAlong(mounted, path, kVersion2));
+      least = std::min(least, leastAlong(mounted, path, kVersion2, inGroup));
     else if (holdsMemory(controllers))
-      least = std::min(least, freeAlong(mounted + "/memory", path, kVersion1));
+      least = std::min(least, leastAlong(mounted + "/memory", path, kVersion1, inGroup));
   }
   return least;
+}
+
+}  // namespace
+
+int64_t freeInGroups(const std::string& groups, const std::string& mounted) {
+  return leastOf(groups, mounted, freeInGroup);
+}
+
+int64_t limitOfGroups(const std::string& groups, const std::string& mounted) {
+  return leastOf(groups, mounted, limitOfGroup);
 }
 
 }  // namespace vdb_madf::detail

@@ -15,4 +15,7 @@ namespace vdb_madf::detail {
 /// @param mounted /sys/fs/cgroup
 int64_t freeInGroups(const std::string& groups, const std::string& mounted);
 
+/// The least limit of these groups, whatever they use; parameters as above.
+int64_t limitOfGroups(const std::string& groups, const std::string& mounted);
+
 }  // namespace vdb_madf::detail

@@ -74,7 +74,8 @@ void setCalibration(ImageInfo& info, const TiffFile& file, const KeyValueHeader&
   const double x = 1.0 / double(perX), y = 1.0 / double(perY);
   // ImageJ leaves out a slice spacing of 1; then nobody may have set it.
   const auto z = numberIn(imageJ, "spacing");
-  if (!z && slices > 1 && (!unit || std::abs(x - 1) > 1e-3)) return;
+  if (!unit && !(z && std::isfinite(*z) && *z != 0)) return;
+  if (!z && slices > 1 && std::abs(x - 1) > 1e-3) return;
   // The text is exact and the tags are single precision: the text comes first. Its sign is the
   // order of the slices.
   const double depth = z ? std::abs(*z) : slices > 1 ? 1.0 : x;
@@ -215,7 +216,7 @@ class TiffFolder : public ImageReader {
                       " x " + std::to_string(page_.height) + " " + sampleTypeName(page_.type));
       }
     }
-    if (!info_.voxelSize) info_.voxelSize = voxelSizeInLog(path);
+    if (!info_.voxelSize && !info_.proportions) info_.voxelSize = voxelSizeInLog(path);
     info_.size = checkedSize(path, {page_.width, page_.height, int64_t(files_.size())});
     info_.type = page_.type;
     info_.format = "tiff";

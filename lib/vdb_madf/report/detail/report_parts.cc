@@ -241,8 +241,8 @@ std::string ReportParts::about() const {
   json["slices"] = {
       {"factor", reduction_}, {"min", toJson(sliceBox_.min())}, {"size", toJson(sliceBox_.dim())}};
   if (options_.scan) {
-    const std::filesystem::path path = options_.scan->image->path();
-    json["gray"] = {{"scan", path.filename().string()}, {"levels", kGrayLevels}};
+    const std::string name = lastPart(options_.scan->image->path());
+    json["gray"] = {{"scan", name}, {"levels", kGrayLevels}};
   }
   json["mesh"] = nullptr;
   if (triangles_ > 0)
