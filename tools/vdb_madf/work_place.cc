@@ -77,7 +77,8 @@ Stamp stampOf(const std::string& path) {
   if (!fs::is_directory(path, error)) add(path);
   const std::string ending = fileEnding(path);
   if (ending == ".mhd" || ending == ".nhdr")
-    for (const char* data : {".raw", ".zraw", ".raw.gz"}) add(fs::path(path).replace_extension(data));
+    for (const char* data : {".raw", ".zraw", ".raw.gz"})
+      add(fs::path(path).replace_extension(data));
   fs::recursive_directory_iterator entry(path, error);
   for (; entry != fs::recursive_directory_iterator(); entry.increment(error))
     if (entry->is_regular_file(error)) add(entry->path());
