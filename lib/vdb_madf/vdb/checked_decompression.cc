@@ -59,6 +59,7 @@ void requireBloscMemory(const char* packed) {
   int flags = 0;
   blosc_cbuffer_sizes(packed, &bytes, &size, &block);
   blosc_cbuffer_metainfo(packed, &type, &flags);
+  require(block <= bytes);
   void* memory = nullptr;
   if (::posix_memalign(&memory, 32, 2 * block + type * sizeof(int32_t)) != 0)
     throw std::bad_alloc();
