@@ -13,10 +13,8 @@
 #include <zlib.h>
 
 #include <cstdint>
-#include <cstdlib>
 #include <istream>
 #include <limits>
-#include <new>
 #include <vector>
 
 namespace {
@@ -52,20 +50,6 @@ bool readStored(std::istream& stream, int64_t size, char* data, size_t bytes) {
   return true;
 }
 
-/// Blosc takes memory to decompress a block in, and does not look whether it got any: asks for as
-/// much in its place, and gives it back to be found there.
-void requireBloscMemory(const char* packed) {
-  size_t bytes = 0, size = 0, block = 0, type = 0;
-  int flags = 0;
-  blosc_cbuffer_sizes(packed, &bytes, &size, &block);
-  blosc_cbuffer_metainfo(packed, &type, &flags);
-  require(block <= bytes);
-  void* memory = nullptr;
-  if (::posix_memalign(&memory, 32, 2 * block + type * sizeof(int32_t)) != 0)
-    throw std::bad_alloc();
-  std::free(memory);
-}
-
 }  // namespace
 
 namespace openvdb {
@@ -84,7 +68,6 @@ void bloscFromStream(std::istream& stream, char* data, size_t bytes) {
   size_t unpacked = 0;
   require(blosc_cbuffer_validate(packed.data(), packed.size(), &unpacked) == 0 &&
           unpacked == bytes);
-  requireBloscMemory(packed.data());
   require(blosc_decompress_ctx(packed.data(), data, bytes, /*numinternalthreads=*/1) == int(bytes));
 }
 
