@@ -204,10 +204,10 @@ TEST_CASE("cli: where memory ends, a line says so", "[cli]") {
   // A mesh takes several times the memory of labels, so that it ends after they were read.
   RunOptions limits;
   limits.memory = 360 << 20;
-  Outcome run = bench.run("export g.vdb o.obj -q", limits);
+  Outcome run = bench.run("export g.vdb o.obj -q --threads 1", limits);
   for (; run.exitCode == 0; limits.memory -= 20 << 20) {
     REQUIRE(limits.memory > 0);
-    run = bench.run("export g.vdb o.obj -q", limits);
+    run = bench.run("export g.vdb o.obj -q --threads 1", limits);
   }
   INFO(limits.memory);
   CHECK(run.exitCode == kFailed);
