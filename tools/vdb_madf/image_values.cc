@@ -76,7 +76,7 @@ void describeValues(const InputOptions& input, const Histogram& histogram, Json&
   if (const auto valley = valleyThreshold(histogram)) json["valley_threshold"] = number(*valley);
   if (const auto blur =
           estimateBlur(*openVolumeImage(input.path, input.volume(progress)), progress)) {
-    noteBlur(input.path, *blur, progress);
+    noteOfScan(input.path, noteOn(*blur), progress);
     json["blur_voxels"] = blur->sigma;
     json["noise_of_contrast"] = blur->noise;
   }

@@ -41,23 +41,23 @@ Measurements measureLabels(const MeasureArguments& o, const Common& common, cons
   std::optional<GrayScan> scan;
   if (!o.intensity.path.empty()) {
     scan = openScan(o.intensity, o.input, common.progress);
-    noteLarger(o.intensity.path, scan->box(), aboutOf(labels), common.progress);
+    noteOfScan(o.intensity.path, noteOnSize(scan->box(), aboutOf(labels)), common.progress);
   }
   const MaskGrid::Ptr binder =
       o.phases.path.empty() ? nullptr : loadPhase(o.phases, o.binder, o.input, common.progress);
   if (const auto domain = binder ? storedDomain(*binder) : std::nullopt)
-    noteLarger(o.phases.path, domain->box(), aboutOf(labels), common.progress);
+    noteOfScan(o.phases.path, noteOnSize(domain->box(), aboutOf(labels)), common.progress);
   std::optional<ScanBlur> blur;
   if (!o.gray.path.empty()) {
     const GrayScan gray = openScan(o.gray, o.input, common.progress);
-    noteLarger(o.gray.path, gray.box(), aboutOf(labels), common.progress);
+    noteOfScan(o.gray.path, noteOnSize(gray.box(), aboutOf(labels)), common.progress);
     common.progress->start("blur");
     if (!o.sensitivity)
       blur = blurOf(*gray.image, common.progress);
     else if (blur = estimateBlur(*gray.image, common.progress); !blur)
       common.progress->note(gray.image->path() +
                             ": its edges tell no blur: necks are not measured");
-    if (blur) noteBlur(gray.image->path(), *blur, common.progress);
+    if (blur) noteOfScan(gray.image->path(), noteOn(*blur), common.progress);
   }
   std::optional<ManifoldGraph> graph;
   if (o.stability)

@@ -6,7 +6,6 @@
 #include "outputs.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/files/standard_streams.h"
-#include "vdb_madf/intensity/estimate_blur.h"
 
 namespace vdb_madf::tools {
 
@@ -71,14 +70,8 @@ GrayScan openScan(const ScanOption& scan, const InputOptions& labels, Progress* 
   });
 }
 
-void noteLarger(const std::string& path, const CoordBBox& scan, const openvdb::GridBase& about,
-                Progress* progress) {
-  if (const std::string note = noteOnSize(scan, about); !note.empty())
-    progress->note(path + ": " + note);
-}
-
-void noteBlur(const std::string& path, const ScanBlur& blur, Progress* progress) {
-  if (const std::string note = noteOn(blur); !note.empty()) progress->note(path + ": " + note);
+void noteOfScan(const std::string& path, const std::string& note, Progress* progress) {
+  if (!note.empty()) progress->note(path + ": " + note);
 }
 
 }  // namespace vdb_madf::tools

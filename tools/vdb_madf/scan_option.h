@@ -7,7 +7,6 @@
 
 #include "input_options.h"
 #include "vdb_madf/intensity/gray_scan.h"
-#include "vdb_madf/measure/scan_blur.h"
 
 namespace vdb_madf::tools {
 
@@ -28,10 +27,7 @@ MaskGrid::Ptr loadPhase(const ScanOption& map, int64_t value, const InputOptions
 /// @throw InvalidInput, IoError: one line that names the file and what to do.
 GrayScan openScan(const ScanOption& scan, const InputOptions& labels, Progress* progress);
 
-/// Notes what noteOnSize() says.
-void noteLarger(const std::string& path, const CoordBBox& scan, const openvdb::GridBase& about,
-                Progress* progress);
-/// Notes that a scan was cut off (noteOn()).
-void noteBlur(const std::string& path, const ScanBlur& blur, Progress* progress);
+/// Tells what noteOn() or noteOnSize() says of a scan, if anything.
+void noteOfScan(const std::string& path, const std::string& note, Progress* progress);
 
 }  // namespace vdb_madf::tools

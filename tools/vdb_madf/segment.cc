@@ -83,7 +83,7 @@ Measurements measureGrains(const SegmentArguments& o, const Segmentation& s, Pro
   progress->start("necks");
   const auto open = [&] { return openGrayScan(o.input.path, o.input.volume(progress), progress); };
   const ScanBlur blur = blurOf(*open().image, progress);
-  noteBlur(o.input.path, blur, progress);
+  noteOfScan(o.input.path, noteOn(blur), progress);
   GrayScan scan = open();
   measureNecks(*s.grain, scan, blur, measurements, progress);
   return measurements;

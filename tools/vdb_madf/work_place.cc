@@ -85,6 +85,13 @@ Stamp stampOf(const std::string& path) {
   return stamp;
 }
 
+Json originOf(const SegmentArguments& o, const Stamp& input) {
+  Json origin{{"input", lastPart(o.input.path)}, {"input_bytes", input.bytes}};
+  for (const auto& [name, text] : readingOptions(o.input))
+    if (!text.empty()) origin["reading"][name] = text;
+  return origin;
+}
+
 /// What the slabs in scratch depend on. --max-memory only says where to cut, which is done once.
 std::string workOf(const SegmentArguments& o) {
   const std::string& in = o.input.path;
@@ -103,8 +110,8 @@ std::string workOf(const SegmentArguments& o) {
 }
 
 /// True if an index says of the labels what they would be of these arguments.
-bool isOf(const Json& index, const SegmentArguments& o) {
-  Json wanted = originOf(o);
+bool isOf(const Json& index, const SegmentArguments& o, const Stamp& input) {
+  Json wanted = originOf(o, input);
   wanted["version"] = kVersion;
   wanted["gamma"] = o.segment.gamma;
   wanted["tidy"] = o.segment.tidy;
@@ -129,10 +136,7 @@ constexpr char kWhole[] = "done";  // the piece that says that OUT.slabs.part is
 }  // namespace
 
 Json originOf(const SegmentArguments& o) {
-  Json origin{{"input", lastPart(o.input.path)}, {"input_bytes", stampOf(o.input.path).bytes}};
-  for (const auto& [name, text] : readingOptions(o.input))
-    if (!text.empty()) origin["reading"][name] = text;
-  return origin;
+  return originOf(o, stampOf(o.input.path));
 }
 
 bool isFinished(const SegmentArguments& o) {
@@ -144,8 +148,9 @@ bool isFinished(const SegmentArguments& o) {
   const std::string path = (fs::path(o.out) / kSlabIndex).string();
   std::ifstream file(path);
   const Json index = Json::parse(file, nullptr, false);
-  const auto read = std::max(stampOf(o.input.path).changed, stampOf(o.input.region.mask).changed);
-  if (!isOf(index, o) || read > fs::last_write_time(path, ignored))
+  const Stamp input = stampOf(o.input.path);
+  const auto read = std::max(input.changed, stampOf(o.input.region.mask).changed);
+  if (!isOf(index, o, input) || read > fs::last_write_time(path, ignored))
     throw InvalidInput(o.out +
                        ": is finished, and was made of another input or with other options: leave "
                        "--resume out to make it anew");

@@ -291,14 +291,13 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
   std::optional<ManifoldGraph> graph;
   if (manifold) graph = requiredGraph(asLabels(*manifold));
   std::vector<std::string> notes;
-  const auto noteSize = [&](const char* name, const CoordBBox& box) {
-    if (const std::string note = noteOnSize(box, grid); !note.empty())
-      notes.push_back(name + (": " + note));
+  const auto noteOf = [&](const std::string& scanName, const std::string& note) {
+    if (!note.empty()) notes.push_back(scanName + ": " + note);
   };
-  if (scan) noteSize("intensity", scan->box());
-  if (edges) noteSize("gray", edges->box());
+  if (scan) noteOf("intensity", noteOnSize(scan->box(), grid));
+  if (edges) noteOf("gray", noteOnSize(edges->box(), grid));
   if (const auto domain = third ? storedDomain(*third) : std::nullopt)
-    noteSize("phases", domain->box());
+    noteOf("phases", noteOnSize(domain->box(), grid));
   const Measurements measured = withoutLock(call, [&](Interrupter* interrupter) {
     Measurements result = measure(grid, options, interrupter);
     if (graph) measureStability(*graph, result);
@@ -307,9 +306,9 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
     if (edges) {
       const auto blur = sensitivity > 0 ? estimateBlur(*edges->image, interrupter)
                                         : blurOf(*edges->image, interrupter);
+      noteOf("gray",
+             blur ? noteOn(*blur) : "the scan's edges tell no blur: necks are not measured");
       if (blur) measureNecks(grid, *sections, *blur, result, interrupter);
-      if (blur && !noteOn(*blur).empty()) notes.push_back("the gray scan: " + noteOn(*blur));
-      if (!blur) notes.push_back("the edges of the gray scan tell no blur: necks are not measured");
     }
     if (sensitivity > 0) measureSensitivity(grid, openAgain, again, result, interrupter);
     return result;

@@ -13,10 +13,9 @@ namespace vdb_madf {
 /// that have a face towards the other, each once). NaN and infinite values do not count.
 ///
 /// The scan is read in slabs of eight slices, those without labels not at all. It is placed by
-/// placeScan(). Of integers mean and deviation are taken of exact sums; of
-/// other numbers the sums are those of one order. Either way they are the same bits for any number
-/// of threads. Memory: a slab, and a sample for each labeled voxel and for each voxel beside a
-/// bond.
+/// placeScan(). Of integers mean and deviation are taken of exact sums; of other numbers the sums
+/// are those of one order. Either way they are the same bits for any number of threads. Memory: a
+/// slab, and a sample for each labeled voxel and for each voxel beside a bond.
 /// @param measured what measure() says of these labels
 /// @throw InvalidInput, one line that names the scan, if the domain is unknown, or the scan's box
 ///   does not fit; InvalidInput if `measured` is of other labels; IoError; Interrupted.

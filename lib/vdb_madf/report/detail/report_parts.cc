@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
@@ -241,8 +240,7 @@ std::string ReportParts::about() const {
   json["slices"] = {
       {"factor", reduction_}, {"min", toJson(sliceBox_.min())}, {"size", toJson(sliceBox_.dim())}};
   if (options_.scan) {
-    const std::string name = lastPart(options_.scan->image->path());
-    json["gray"] = {{"scan", name}, {"levels", kGrayLevels}};
+    json["gray"] = {{"scan", lastPart(options_.scan->image->path())}, {"levels", kGrayLevels}};
   }
   json["mesh"] = nullptr;
   if (triangles_ > 0)
