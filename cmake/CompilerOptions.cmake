@@ -21,7 +21,7 @@ endfunction()
 # of uninitialized values when it instruments.) Left out is what AddressSanitizer sees as the bad
 # access itself: these checks would double the time to compile.
 function(vdb_madf_sanitize target)
-  target_compile_options(${target} PRIVATE -O1 -Wno-error -fsanitize=address,undefined
+  target_compile_options(${target} PRIVATE -Og -Wno-error -fsanitize=address,undefined
     -fno-sanitize=null,alignment,object-size,pointer-overflow,vptr -fno-sanitize-recover=all
     -fno-omit-frame-pointer -g1)
   target_link_options(${target} PUBLIC -fsanitize=address,undefined)

@@ -9,7 +9,7 @@
 #     [LINKS target...]     libraries that its headers need
 #     [PRIVATE target...]   libraries that only its sources need
 #     [PACKAGES name...]    what find_package(vdb_madf COMPONENTS NAME) has to find
-#     [OPTIMIZE level]      O1 or O2, where its loops wait for others or for files; default: that
+#     [OPTIMIZE level]      Og or O2, where its loops wait for others or for files; default: that
 #                           of the build type
 #     [GRIDS]               its sources see OpenVDB's grids, by a precompiled header
 #     [SANITIZE]            with the tests, also built with sanitizers, as vdb_madf_NAME_sanitized
@@ -78,13 +78,13 @@ function(vdb_madf_share_header target level suffix)
   target_precompile_headers(${target} REUSE_FROM ${owner})
 endfunction()
 
-# Leaves OpenVDB's map classes (ScaleMap and others) to its library. They are not templates, but
-# their virtual functions are inline, and GCC compiles all of them wherever the header is seen: two
-# seconds a file. '#pragma interface' in the header would say that they are compiled elsewhere; as
-# it looks at the name of the file alone, '#line' puts it there. Optimized code only: else inline
-# functions are called that the library need not have.
+# Leaves OpenVDB's map classes (ScaleMap and others) to one object, vdb_madf_grid_instances. They
+# are not templates, but their virtual functions are inline, and GCC compiles all of them wherever
+# the header is seen: two seconds a file. '#pragma interface' in the header would say that they are
+# compiled elsewhere; as it looks at the name of the file alone, '#line' puts it there. Where
+# '#pragma implementation' comes first (the option HERE), all their functions are compiled.
 function(vdb_madf_map_classes target)
-  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR NOT CMAKE_BUILD_TYPE STREQUAL "Release")
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     return()
   endif()
   set(header ${PROJECT_BINARY_DIR}/map_classes.h)
@@ -92,7 +92,15 @@ function(vdb_madf_map_classes target)
 #pragma interface
 #line 4 \"${header}\"
 ")
-  target_precompile_headers(${target} PRIVATE ${header})
+  if("${ARGN}" STREQUAL "HERE")
+    set(here ${PROJECT_BINARY_DIR}/map_classes_here.h)
+    file(CONFIGURE OUTPUT ${here} CONTENT "#pragma implementation \"Maps.h\"
+#include \"map_classes.h\"
+")
+    target_compile_options(${target} PRIVATE "SHELL:-include ${here}")
+  else()
+    target_precompile_headers(${target} PRIVATE ${header})
+  endif()
 endfunction()
 
 # The level is "" or as OPTIMIZE of vdb_madf_room().

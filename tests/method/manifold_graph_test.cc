@@ -270,7 +270,8 @@ TEST_CASE("manifold_graph: of a ball that reaches out of an open domain D is not
   CHECK(doubts(Domain(slice)) == std::vector<int32_t>{25, 26, 0, 17});
 }
 
-TEST_CASE("manifold_graph: balls reach out of regions as the voxels say", "[manifold_graph]") {
+TEST_CASE("manifold_graph: balls reach out of regions as the voxels say",
+          "[manifold_graph][long]") {
   int out = 0, within = 0;
   for (uint64_t seed = 1; seed <= 200; ++seed) {
     Rng rng(seed);

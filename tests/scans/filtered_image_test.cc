@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include <array>
 #include <cmath>
 
 #include "support/catch.h"
@@ -84,12 +85,11 @@ void checkMedian(int low, int high) {
       CAPTURE(size.x, size.y, size.z, radius);
       const auto samples = randomNumbers<T>(voxels(size), low, high, ++seed);
       const auto expected = medianByDefinition(samples, size, radius);
-      for (const int step : {1, 8, 100}) {
-        const auto image = medianImage(imageOf(size, samples), radius);
-        CHECK(image->info().type == typeOf<T>());
-        const bool same = valuesOf<T>(*image, step) == expected;
-        CHECK(same);
-      }
+      constexpr std::array<int, 3> kSteps{1, 8, 100};
+      const auto image = medianImage(imageOf(size, samples), radius);
+      CHECK(image->info().type == typeOf<T>());
+      const bool same = valuesOf<T>(*image, kSteps.at(seed % kSteps.size())) == expected;
+      CHECK(same);
     }
 }
 

@@ -231,7 +231,7 @@ TEST_CASE("segment: by angle, a larger theta gives coarser grains", "[segment]")
   }
 }
 
-TEST_CASE("segment: threads do not change anything", "[segment]") {
+TEST_CASE("segment: threads do not change anything", "[segment][long]") {
   // Enough leaves for every loop to be cut up.
   for (const VolumeKind kind : {VolumeKind::blurredNoise, VolumeKind::roughBalls})
     for (const int64_t gamma : {0, 20}) {
@@ -354,7 +354,7 @@ class StopAt : public Interrupter {
 
 }  // namespace
 
-TEST_CASE("segment: stops at any poll of the interrupter, with no result", "[segment]") {
+TEST_CASE("segment: stops at any poll of the interrupter, with no result", "[segment][long]") {
   Rng rng(3);
   const ObjectVolume object =
       randomVolume(VolumeKind::roughBalls, boxAt({-3, -40, 100}, {48, 43, 57}), rng);

@@ -261,7 +261,7 @@ TEST_CASE("slabs: what comes to a cut with the last round of a window goes on in
 
 TEST_CASE("slabs: labels in regions are those of the whole", "[slabs]") {
   requireSameAsWhole(fromEnvironment("VDB_MADF_SEED", 1) + 300000,
-                     fromEnvironment("VDB_MADF_CASES", 3 * kCombinations), 70, true);
+                     fromEnvironment("VDB_MADF_CASES", 3 * kCombinations), 40, true);
 }
 
 TEST_CASE("slabs: an empty object has no grains, whatever the cuts", "[slabs]") {
@@ -415,7 +415,7 @@ class SharedScratch : public Scratch {
 
 TEST_CASE("slabs: what was stopped with some members goes on with any number of them", "[slabs]") {
   const uint64_t first = fromEnvironment("VDB_MADF_SEED", 1) + 400000;
-  const uint64_t cases = fromEnvironment("VDB_MADF_CASES", 300);
+  const uint64_t cases = fromEnvironment("VDB_MADF_CASES", 150);
   int64_t stops = 0;
   for (uint64_t seed = first; seed < first + cases; ++seed) {
     Rng rng(seed);

@@ -93,6 +93,7 @@ std::vector<double> numbersIn(const std::string& path, const std::optional<RawLa
 template <typename Value>
 void checkBoxes(const ScratchFolder& folder) {
   const auto grid = randomGrid<Value>(11, std::is_same_v<Value, openvdb::ValueMask> ? 0 : 1);
+  const auto voxels = grid->getConstAccessor();
   for (const CoordBBox& box :
        {CoordBBox(Coord(-31, -11, -21), Coord(30, 41, 22)), CoordBBox(Coord(0), Coord(7)),
         CoordBBox(Coord(-3, 5, -9), Coord(-3, 5, 13)), CoordBBox(Coord(-5, -5, 6), Coord(20, 3, 9)),
@@ -108,7 +109,7 @@ void checkBoxes(const ScratchFolder& folder) {
       for (int z = box.min().z(); z <= box.max().z(); ++z)
         for (int y = box.min().y(); y <= box.max().y(); ++y)
           for (int x = box.min().x(); x <= box.max().x(); ++x)
-            wrong += numbers[i++] != double(grid->tree().getValue(Coord(x, y, z)));
+            wrong += numbers[i++] != double(voxels.getValue(Coord(x, y, z)));
       REQUIRE(wrong == 0);
     }
 }
