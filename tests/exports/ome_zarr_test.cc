@@ -349,7 +349,7 @@ TEST_CASE("ome_zarr: labels in slabs give the files of the whole", "[ome_zarr]")
       Rng rng{uint64_t(seed)};
       const Coord low(rng.between(-70, 70), rng.between(-70, 70), rng.between(-300, 300));
       // Levels up to 1/2, 1/4 ... 1/32 of it.
-      const Coord size(rng.between(1, 20), rng.between(1, 20), rng.between(65, 1500));
+      const Coord size(rng.between(1, 20), rng.between(1, 20), rng.between(65, 700));
       const CoordBBox box(low, low + size.offsetBy(-1));
       const auto labels = Int32Grid::create(0);
       const int grains = rng.between(1, 60), height = rng.between(1, 40);

@@ -16,8 +16,8 @@ import vdb_madf as madf
 
 @pytest.fixture(scope="module")
 def long_work():
-    """A mask whose segmentation takes a second or so."""
-    return madf.generate("pack", size=400, fraction=0.4)[0]
+    """A mask whose segmentation takes half a second or so."""
+    return madf.generate("pack", size=300, fraction=0.4)[0]
 
 
 @pytest.fixture(autouse=True)
@@ -56,7 +56,7 @@ def test_ctrl_c_at_random_times(long_work):
     want = madf.segment(long_work, keep=()).counts
     whole = time.monotonic() - start
     draw, heard = random.Random(11), []
-    for _ in range(20):
+    for _ in range(12):
         try:
             took = interrupted_after(draw.uniform(0, 0.9) * whole,
                                      lambda: madf.segment(long_work, keep=()))
@@ -64,7 +64,7 @@ def test_ctrl_c_at_random_times(long_work):
             continue
         if took is not None:
             heard.append(took)
-    assert len(heard) >= 5
+    assert len(heard) >= 4
     assert sorted(heard)[-1] < 1
     assert madf.segment(long_work, keep=()).counts == want
 
@@ -155,9 +155,9 @@ def test_memory_is_given_back():
         madf.measure(seg.remerge(strictness=9).labels)
         seg.labels.mesh()
         return seg.labels[20].sum()
-    for _ in range(30):
+    for _ in range(20):
         work()
     before = resident()
-    for _ in range(170):
+    for _ in range(80):
         work()
-    assert resident() - before < 16 * 2**20
+    assert resident() - before < 8 * 2**20

@@ -95,7 +95,7 @@ void checkBoxes(const ScratchFolder& folder) {
   const auto grid = randomGrid<Value>(11, std::is_same_v<Value, openvdb::ValueMask> ? 0 : 1);
   const auto voxels = grid->getConstAccessor();
   for (const CoordBBox& box :
-       {CoordBBox(Coord(-31, -11, -21), Coord(30, 41, 22)), CoordBBox(Coord(0), Coord(7)),
+       {CoordBBox(Coord(-21, -11, -13), Coord(20, 31, 18)), CoordBBox(Coord(0), Coord(7)),
         CoordBBox(Coord(-3, 5, -9), Coord(-3, 5, 13)), CoordBBox(Coord(-5, -5, 6), Coord(20, 3, 9)),
         CoordBBox(Coord(120, -2, 100), Coord(140, 3, 130)),
         CoordBBox(Coord(5000, 5000, 5000), Coord(5002, 5003, 5004))})
