@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: The vdb_madf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 
 #include "support/catch.h"
 #include "support/images.h"
@@ -28,6 +30,11 @@ T at(const std::vector<T>& samples, const ImageSize& size, int x, int y, int z) 
 }
 
 template <typename T>
+bool isNan(T value) {
+  return value != value;
+}
+
+template <typename T>
 std::vector<T> medianByDefinition(const std::vector<T>& samples, const ImageSize& size, int r) {
   std::vector<T> medians;
   for (int z = 0; z < size.z; ++z)
@@ -37,8 +44,10 @@ std::vector<T> medianByDefinition(const std::vector<T>& samples, const ImageSize
         for (int k = -r; k <= r; ++k)
           for (int j = -r; j <= r; ++j)
             for (int i = -r; i <= r; ++i) cube.push_back(at(samples, size, x + i, y + j, z + k));
+        const T here = at(samples, size, x, y, z);
+        cube.erase(std::remove_if(cube.begin(), cube.end(), isNan<T>), cube.end());
         std::sort(cube.begin(), cube.end());
-        medians.push_back(cube[cube.size() / 2]);
+        medians.push_back(isNan(here) ? here : cube[(cube.size() - 1) / 2]);
       }
   return medians;
 }
@@ -49,20 +58,23 @@ std::vector<double> gaussianByDefinition(const std::vector<T>& samples, const Im
                                          double sigma) {
   const int r = int(4 * sigma + 0.5);
   std::vector<double> weights;
-  double sum = 0;
   for (int i = -r; i <= r; ++i) weights.push_back(std::exp(-i * i / (2 * sigma * sigma)));
-  for (const double weight : weights) sum += weight;
   std::vector<double> smooth;
   for (int z = 0; z < size.z; ++z)
     for (int y = 0; y < size.y; ++y)
       for (int x = 0; x < size.x; ++x) {
-        double value = 0;
+        double value = 0, sum = 0;
         for (int k = -r; k <= r; ++k)
           for (int j = -r; j <= r; ++j)
-            for (int i = -r; i <= r; ++i)
-              value += weights[size_t(i + r)] * weights[size_t(j + r)] * weights[size_t(k + r)] *
-                       double(at(samples, size, x + i, y + j, z + k));
-        smooth.push_back(value / (sum * sum * sum));
+            for (int i = -r; i <= r; ++i) {
+              const auto there = double(at(samples, size, x + i, y + j, z + k));
+              if (isNan(there)) continue;
+              const double weight =
+                  weights[size_t(i + r)] * weights[size_t(j + r)] * weights[size_t(k + r)];
+              value += weight * there;
+              sum += weight;
+            }
+        smooth.push_back(isNan(at(samples, size, x, y, z)) ? NAN : value / sum);
       }
   return smooth;
 }
@@ -129,6 +141,37 @@ TEST_CASE("filtered_image: the Gaussian is the convolution", "[filtered_image]")
   checkSmoothing<float, float>(3e-7);
   checkSmoothing<int32_t, double>(1e-13);
   checkSmoothing<double, double>(1e-13);
+}
+
+TEST_CASE("filtered_image: what is no number takes nothing with it", "[filtered_image]") {
+  unsigned seed = 50;
+  for (const ImageSize& size : kSizes) {
+    CAPTURE(size.x, size.y, size.z);
+    auto samples = randomNumbers<float>(voxels(size), 0, 120, ++seed);
+    std::mt19937 random(seed);
+    for (float& sample : samples)
+      if (random() % 12 == 0) sample = NAN;
+    const auto median = medianByDefinition(samples, size, 1);
+    const auto smooth = gaussianByDefinition(samples, size, 0.7);
+    for (const int step : {1, 8, 100}) {
+      const auto medians = valuesOf<float>(*medianImage(imageOf(size, samples), 1), step);
+      const auto means = valuesOf<float>(*smoothedImage(imageOf(size, samples), 0.7), step);
+      size_t wrong = 0;
+      for (size_t i = 0; i < samples.size(); ++i) {
+        wrong += isNan(median[i]) ? !isNan(medians[i]) : medians[i] != median[i];
+        wrong +=
+            isNan(smooth[i]) ? !isNan(means[i]) : !(std::abs(double(means[i]) - smooth[i]) <= 5e-5);
+      }
+      CHECK(wrong == 0);
+    }
+    // Far from NaN the bits are those without.
+    if (size.z < 30) continue;
+    auto whole = randomNumbers<float>(voxels(size), 0, 120, seed);
+    const auto expected = valuesOf<float>(*smoothedImage(imageOf(size, whole), 0.7), 100);
+    whole[3] = NAN;
+    const auto found = valuesOf<float>(*smoothedImage(imageOf(size, whole), 0.7), 100);
+    CHECK(std::equal(found.begin() + 7, found.end(), expected.begin() + 7));
+  }
 }
 
 TEST_CASE("filtered_image: a filter reads a slice once, and no more at a time than asked for",

@@ -6,6 +6,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <iterator>
+#include <type_traits>
 #include <vector>
 
 #include "vdb_madf/base/detail/gaussian.h"
@@ -100,6 +104,8 @@ class MedianImage : public FilteredImage {
     std::vector<T> rows, work;
   };
 
+  /// Row `row` of the window holds the values beside those of the voxels at x + dx in
+  /// row[x + radius + dx].
   void filterRow(int y, int z, Scratch& scratch, T* to) const {
     const auto side = size_t(2 * radius_ + 1);
     const size_t length = rowLength() + side + kLanes;  // room for the lanes of the last block
@@ -116,6 +122,9 @@ class MedianImage : public FilteredImage {
               from[mirrored(info_.size.x - 1 + i, info_.size.x)];
         }
       }
+    if constexpr (std::is_floating_point_v<T>)
+      if (!allKnown(scratch.rows.data(), side * side, length, rowLength() + side - 1))
+        return filterKnown(window_.row(y, z), length, scratch, to);
     for (size_t x = 0; x < rowLength(); x += kLanes) {
       const auto fetch = [&](size_t i, T* lanes) {
         const T* from = scratch.rows.data() + i / side * length + x + i % side;
@@ -123,6 +132,30 @@ class MedianImage : public FilteredImage {
       };
       const T* median = medians(side * side * side, fetch, scratch.work.data());
       std::copy(median, median + std::min(kLanes, rowLength() - x), to + x);
+    }
+  }
+
+  static bool allKnown(const T* rows, size_t count, size_t length, size_t used) {
+    for (size_t row = 0; row < count; ++row)
+      for (size_t i = 0; i < used; ++i)
+        if (std::isnan(rows[row * length + i])) return false;
+    return true;
+  }
+
+  /// The same of the values that are no NaN; of an even number the lower middle one.
+  void filterKnown(const T* middle, size_t length, Scratch& scratch, T* to) const {
+    const auto side = size_t(2 * radius_ + 1);
+    std::vector<T>& known = scratch.work;
+    for (size_t x = 0; x < rowLength(); ++x) {
+      to[x] = middle[x];
+      if (std::isnan(middle[x])) continue;
+      known.clear();
+      for (size_t row = 0; row < side * side; ++row)
+        std::copy_if(&scratch.rows[row * length + x], &scratch.rows[row * length + x] + side,
+                     std::back_inserter(known), [](T value) { return !std::isnan(value); });
+      const auto half = known.begin() + std::ptrdiff_t((known.size() - 1) / 2);
+      std::nth_element(known.begin(), half, known.end());
+      to[x] = *half;
     }
   }
 
@@ -154,14 +187,84 @@ class SmoothedImage : public FilteredImage {
   void read(int first, int count, void* samples) override {
     detail::checkSlices(path_, info_, first, count);
     window_.moveTo(first, count);
+    auto* to = static_cast<T*>(samples);
+    const auto inWindow = [&](int y, int z) { return window_.row(y, z); };
+    if (allKnown(first, count))
+      smooth(inWindow, first, count, to);
+    else
+      smoothKnown(first, count, to);
+  }
+
+ private:
+  struct Scratch {
+    std::vector<double> sums;
+    std::vector<T> row;
+  };
+  int radius() const { return int(weights_.size()) - 1; }
+
+  /// Whether all values that slices [first, first + count) are made of are numbers.
+  bool allKnown(int first, int count) const {
+    const SampleType type = image_->info().type;
+    if (type != SampleType::float32 && type != SampleType::float64) return true;
+    std::atomic<bool> all{true};
+    forEachRow(first - radius(), count + 2 * radius(), [&](int y, int z, size_t) {
+      const T* row = window_.row(y, z);
+      if (std::any_of(row, row + rowLength(), [](T value) { return std::isnan(value); }))
+        all = false;
+    });
+    return all;
+  }
+
+  /// Where values are NaN, their place stays NaN, and around it the others have all the weight: a
+  /// sum of known values is divided by that of ones in their places. Where all are known it stands
+  /// as it is, so that the bits do not depend on what else is in the window.
+  void smoothKnown(int first, int count, T* to) {
+    const int begin = first - radius();
+    const size_t slice = size_t(info_.size.y) * rowLength();
+    std::vector<T> values(slice * size_t(count + 2 * radius())), ones(values.size());
+    forEachRow(begin, count + 2 * radius(), [&](int y, int z, size_t row) {
+      const T* from = window_.row(y, z);
+      for (size_t x = 0; x < rowLength(); ++x) {
+        const bool isKnown = !std::isnan(from[x]);
+        values[row * rowLength() + x] = isKnown ? from[x] : 0;
+        ones[row * rowLength() + x] = isKnown;
+      }
+    });
+    const auto rowsOf = [&](const std::vector<T>& all) {
+      return [&](int y, int z) {
+        return &all[(size_t(z - begin) * size_t(info_.size.y) + size_t(y)) * rowLength()];
+      };
+    };
+    std::vector<T> weights(slice * size_t(count));
+    smooth(rowsOf(ones), first, count, weights.data());
+    smooth(rowsOf(values), first, count, to);
+    T whole = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      double sum = weights_[0] * double(whole);
+      for (int k = radius(); k > 0; --k)
+        sum += weights_[size_t(k)] * (double(whole) + double(whole));
+      whole = T(sum);
+    }
+    forEachRow(first, count, [&](int y, int z, size_t row) {
+      const T* from = window_.row(y, z);
+      for (size_t x = 0, i = row * rowLength(); x < rowLength(); ++x, ++i)
+        if (std::isnan(from[x]))
+          to[i] = from[x];
+        else if (weights[i] != whole)
+          to[i] /= weights[i];
+    });
+  }
+
+  /// Slices [first, first + count) of an image whose rows are rowAt(y, z).
+  template <typename RowAt>
+  void smooth(const RowAt& rowsAt, int first, int count, T* to) {
     const auto ny = size_t(info_.size.y);
     alongZ_.resize(ny * rowLength() * size_t(count));
     detail::PerThread<Scratch> scratches;
     forEachRow(first, count, [&](int y, int z, size_t row) {
-      convolve([&](int k) { return window_.row(y, z + k); }, scratches.local(),
+      convolve([&](int k) { return rowsAt(y, z + k); }, scratches.local(),
                &alongZ_[row * rowLength()]);
     });
-    auto* to = static_cast<T*>(samples);
     forEachRow(first, count, [&](int y, int z, size_t row) {
       Scratch& scratch = scratches.local();
       const size_t slice = size_t(z - first) * ny;
@@ -178,13 +281,6 @@ class SmoothedImage : public FilteredImage {
       convolve([&](int k) { return middle + k; }, scratch, to + row * rowLength());
     });
   }
-
- private:
-  struct Scratch {
-    std::vector<double> sums;
-    std::vector<T> row;
-  };
-  int radius() const { return int(weights_.size()) - 1; }
 
   /// The weighted sum of rows rowAt(-radius) .. rowAt(radius).
   template <typename RowAt>

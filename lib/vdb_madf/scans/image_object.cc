@@ -270,6 +270,7 @@ ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& ope
       object = {read.masks[0], read.leftOut};
     }
     object.corner = cornerOfGray(counted);
+    if (!part) object.notFinite = counted.histogram().notFinite;
   }
   if (readsGray(gray) || (chosen.kind == Selection::Kind::threshold && chosen.invert))
     describeObject(chosen, gray, *object.mask);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "vdb_madf/base/counted.h"
 #include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/grid_metadata.h"
@@ -127,6 +128,11 @@ MaskGrid::Ptr objectOfImage(const std::string& path, const ImageOpener& open,
                      detail::shortestDecimal(*found.corner) +
                      ", as around a round field of view, and count as scanned: say that the scan "
                      "is a cylinder, if it is one",
+                 NoteAbout::cylinder);
+  if (found.notFinite > 0 && options.note)
+    options.note(path + ": " + counted(found.notFinite, "voxel") +
+                     " have no finite number and count as scanned background: if they are around a "
+                     "round field of view, say that the scan is a cylinder",
                  NoteAbout::cylinder);
   detail::noteLeftOut(path, found.leftOut, "object voxel", options);
   if (options.domain && !part) setDomain(*found.mask, *options.domain);
