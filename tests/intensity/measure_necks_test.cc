@@ -186,7 +186,7 @@ TEST_CASE("estimate_blur: none of a mask, noise, one value, NaN or small grains"
   row = fourPairs();  // edges that are wider than what is looked at
   smoothedImage(imageOf(row.size, row.grays), 4)->read(0, row.size.z, row.grays.data());
   CHECK_FALSE(estimateBlur(*row.scan().image));
-  CHECK_THROWS_AS(blurOf(*row.scan().image), InvalidInput);
+  CHECK_THROWS_AS(blurOf(row.scan(), {}), InvalidInput);
 }
 
 TEST_CASE("measure_necks: areas without the blur, gaps, normals", "[measure_necks]") {
@@ -194,7 +194,7 @@ TEST_CASE("measure_necks: areas without the blur, gaps, normals", "[measure_neck
   Measurements measured = measure(*labels);
   REQUIRE(measured.bonds.size() == 4);
   GrayScan scan = fourPairs().scan();
-  const ScanBlur blur = blurOf(*scan.image);
+  const ScanBlur blur = blurOf(fourPairs().scan(), {});
   measureNecks(*labels, scan, blur, measured);
   CHECK(measured.extra.necks);
   CHECK(measured.scan->sigma == blur.sigma);
@@ -253,7 +253,7 @@ TEST_CASE("measure_necks: how wide gaps are", "[measure_necks]") {
     const auto labels = row.sides();
     Measurements measured = measure(*labels);
     GrayScan scan = row.scan();
-    measureNecks(*labels, scan, blurOf(*row.scan().image), measured);
+    measureNecks(*labels, scan, blurOf(row.scan(), {}), measured);
     REQUIRE(measured.bonds.size() == pairs.size());
     Spread errors;
     for (size_t i = 0; i < pairs.size(); ++i) {
@@ -321,10 +321,10 @@ TEST_CASE("measure_necks: grains may be dark, and have to be where the labels ar
   Measurements bright = measure(*labels), dark = bright;
   Row row = fourPairs();
   GrayScan scan = row.scan();
-  measureNecks(*labels, scan, blurOf(*scan.image), bright);
+  measureNecks(*labels, scan, blurOf(fourPairs().scan(), {}), bright);
   for (float& gray : row.grays) gray = 4000 - gray;
   scan = row.scan();
-  measureNecks(*labels, scan, blurOf(*scan.image), dark);
+  measureNecks(*labels, scan, blurOf(fourPairs().scan(), {}), dark);
   CHECK(dark.scan->inside == Approx(1000).epsilon(0.01));
   for (size_t i = 0; i < 4; ++i) {
     CHECK(dark.bonds[i].neck->area == Approx(bright.bonds[i].neck->area).epsilon(1e-4));
@@ -332,7 +332,7 @@ TEST_CASE("measure_necks: grains may be dark, and have to be where the labels ar
   }
   std::reverse(row.grays.begin(), row.grays.end());  // all axes the other way
   scan = row.scan();
-  CHECK_THROWS_WITH(measureNecks(*labels, scan, blurOf(*scan.image), dark),
+  CHECK_THROWS_WITH(measureNecks(*labels, scan, blurOf(fourPairs().scan(), {}), dark),
                     Contains("not where the labels have them"));
 }
 
@@ -407,7 +407,7 @@ TEST_CASE("measure_necks: how right areas are", "[measure_necks]") {
       const Segmentation segmentation = segment(*mask);
       Measurements measured = measure(segmentation);
       GrayScan scan = row.scan();
-      measureNecks(*segmentation.grain, scan, blurOf(*row.scan().image), measured);
+      measureNecks(*segmentation.grain, scan, blurOf(row.scan(), {}), measured);
       Spread sharp, fillets, all, labels, angles;
       int gaps = 0, falseNecks = 0, missed = 0, within = 0;
       for (size_t i = 0; i < count; ++i) {

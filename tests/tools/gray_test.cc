@@ -242,6 +242,7 @@ TEST_CASE("gray: necks are measured in the scan that is segmented", "[gray]") {
         recurring.at("specific_surface_sensitivity_per_voxel").at("high"));
   bench.mustRun(segment + " --necks --crop 4,0,0:59,63,60");
   CHECK(Json::parse(bench.bytes("t/sample.json")).at("necks_confirmed").get<int>() > 0);
+  bench.mustRun("segment s.tif byvalue.vdb --threshold 29500 --tables byvalue --necks -q");
   CHECK(bench.run("segment clean.vdb o.vdb --tables t --necks").exitCode == 2);
   CHECK(bench.run("segment s.tif o.vdb --threshold otsu --necks").exitCode == 2);
   // A threshold by its value is told, too, and in a part of the scan the runs stay in it.

@@ -49,15 +49,15 @@ Measurements measureLabels(const MeasureArguments& o, const Common& common, cons
     noteOfScan(o.phases.path, noteOnSize(domain->box(), aboutOf(labels)), common.progress);
   std::optional<ScanBlur> blur;
   if (!o.gray.path.empty()) {
-    const GrayScan gray = openScan(o.gray, o.input, common.progress);
+    GrayScan gray = openScan(o.gray, o.input, common.progress);
     noteOfScan(o.gray.path, noteOnSize(gray.box(), aboutOf(labels)), common.progress);
     common.progress->start("blur");
+    const auto domain = storedDomain(aboutOf(labels));
     if (!o.sensitivity)
-      blur = blurOf(*gray.image, common.progress);
-    else if (blur = estimateBlur(*gray.image, common.progress); !blur)
-      common.progress->note(gray.image->path() +
-                            ": its edges tell no blur: necks are not measured");
-    if (blur) noteOfScan(gray.image->path(), noteOn(*blur), common.progress);
+      blur = blurOf(std::move(gray), domain, common.progress);
+    else if (blur = estimateBlur(std::move(gray), domain, common.progress); !blur)
+      noteOfScan(o.gray.path, "its edges tell no blur: necks are not measured", common.progress);
+    if (blur) noteOfScan(o.gray.path, noteOn(*blur), common.progress);
   }
   std::optional<ManifoldGraph> graph;
   if (o.stability)

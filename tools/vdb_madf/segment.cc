@@ -50,6 +50,12 @@ std::filesystem::path placeOf(const std::string& path) {
   return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored) / "";
 }
 
+/// By a threshold, or after a filter.
+bool cutsGray(const InputOptions& input) {
+  return readsGray(input.gray) ||
+         (input.selection && input.selection->kind == Selection::Kind::threshold);
+}
+
 void parseFiles(SegmentArguments& o) {
   o.input.outputs = {o.out, o.json};
   if (!o.tables.empty()) {
@@ -64,7 +70,7 @@ void parseFiles(SegmentArguments& o) {
   if (!o.maxMemory.empty()) o.segment.maxMemory = parseMemory(o.maxMemory);
   if (!o.unit.empty() && o.tables.empty())
     throw WrongUsage("--unit is that of the tables: give --tables, too");
-  if (o.necks && (o.tables.empty() || !readsGray(o.input.gray)))
+  if (o.necks && (o.tables.empty() || !cutsGray(o.input)))
     throw WrongUsage("--necks measures those of a gray scan: give --tables and --threshold, too");
   if (o.out.empty() && !o.dryRun) throw WrongUsage("OUT is required (or --dry-run)");
   if (o.out.empty() || hasSlabsEnding(o.out)) return;
@@ -82,7 +88,7 @@ Measurements measureGrains(const SegmentArguments& o, const Segmentation& s, Pro
   if (!o.necks) return measurements;
   progress->start("necks");
   const auto open = [&] { return openGrayScan(o.input.path, o.input.volume(progress), progress); };
-  const ScanBlur blur = blurOf(*open().image, progress);
+  const ScanBlur blur = blurOf(open(), storedDomain(*s.grain), progress);
   noteOfScan(o.input.path, noteOn(blur), progress);
   GrayScan scan = open();
   measureNecks(*s.grain, scan, blur, measurements, progress);

@@ -304,8 +304,9 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
     if (scan) measureGray(grid, *scan, result, interrupter);
     if (third) measureBinder(grid, *third, options, result, interrupter);
     if (edges) {
-      const auto blur = sensitivity > 0 ? estimateBlur(*edges->image, interrupter)
-                                        : blurOf(*edges->image, interrupter);
+      const auto domain = storedDomain(grid);
+      const auto blur = sensitivity > 0 ? estimateBlur(std::move(*edges), domain, interrupter)
+                                        : blurOf(std::move(*edges), domain, interrupter);
       noteOf("gray",
              blur ? noteOn(*blur) : "the scan's edges tell no blur: necks are not measured");
       if (blur) measureNecks(grid, *sections, *blur, result, interrupter);

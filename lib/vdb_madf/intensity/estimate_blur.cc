@@ -9,13 +9,17 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "vdb_madf/base/errors.h"
+#include "vdb_madf/grids/detail/grid_slabs.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
 #include "vdb_madf/intensity/detail/near_squares.h"
 #include "vdb_madf/scans/histogram.h"
+#include "vdb_madf/scans/image_box.h"
 
 namespace vdb_madf {
 
@@ -112,6 +116,51 @@ class ValuesReader : public ImageReader {
   const std::vector<float>& values_;
 };
 
+/// The box of a domain in a scan, with NaN where the domain is not.
+class DomainReader : public ImageReader {
+ public:
+  DomainReader(GrayScan scan, const Domain& domain)
+      : scan_(std::move(scan)), domain_(domain), box_(domain.box()) {
+    info_.size = toImageSize(box_.dim());
+    info_.type = SampleType::float32;
+    path_ = scan_.image->path();
+    slice_.resize(size_t(detail::sliceBytes(scan_.image->info())));
+    if (!domain.isBox()) region_.emplace(*domain_.region(), box_);
+  }
+  void read(int first, int count, void* samples) override {
+    auto* to = static_cast<float*>(samples);
+    for (int z = first; z < first + count; ++z, to += size_t(info_.size.x) * size_t(info_.size.y))
+      readSlice(box_.min().z() + z, to);
+  }
+
+ private:
+  void readSlice(int z, float* to) {
+    const ImageInfo& whole = scan_.image->info();
+    const Coord corner = box_.min() - scan_.first;
+    const size_t nx = size_t(info_.size.x), ny = size_t(info_.size.y);
+    scan_.image->read(z - scan_.first.z(), 1, slice_.data());
+    detail::withSampleType(whole.type, [&](auto type) {
+      const auto* samples = reinterpret_cast<const decltype(type)*>(slice_.data());
+      for (size_t y = 0; y < ny; ++y) {
+        const auto* from = samples + (size_t(corner.y()) + y) * size_t(whole.size.x) + corner.x();
+        std::transform(from, from + nx, to + y * nx, [](auto value) { return float(value); });
+      }
+    });
+    if (!region_) return;
+    isInside_.resize(nx * ny);
+    region_->read(z, 1, isInside_.data());
+    for (size_t i = 0; i < isInside_.size(); ++i)
+      if (!isInside_[i]) to[i] = NAN;
+  }
+
+  GrayScan scan_;
+  const Domain domain_;
+  const CoordBBox box_;
+  std::vector<char> slice_;
+  std::optional<detail::GridSlabs<MaskTree>> region_;
+  std::vector<uint8_t> isInside_;
+};
+
 enum Material : uint8_t { pore, solid, absent };
 
 constexpr int16_t kAbsent = -1;
@@ -203,6 +252,8 @@ double edgeSum(const std::vector<float>& values, const std::vector<uint8_t>& mat
   const double variance =
       (plain[solid].variance() + plain[pore].variance()) / 2 / (contrast * contrast);
   blur.noise = std::sqrt(std::max(variance, 0.0));
+  const auto [less, more] = std::minmax({plain[solid].variance(), plain[pore].variance()});
+  if (less > 0) blur.unlike = std::sqrt(more / less);
   double sum = 0;
   for (size_t i = 0; i < values.size(); ++i)
     if (squares[i] >= 0 && squares[i] <= far * far) {
@@ -255,18 +306,33 @@ std::optional<ScanBlur> estimateBlur(ImageReader& image, Interrupter* interrupte
   return blur;
 }
 
-std::string noteOn(const ScanBlur& blur) {
-  constexpr double kMuch = 0.05;
-  if (blur.atEnds < kMuch) return "";
-  return fmt::format(
-      "{:.0f} % of its values are the least or the largest that there are: if they were cut off, "
-      "its blur, noise and necks come out wrong",
-      100 * blur.atEnds);
+std::optional<ScanBlur> estimateBlur(GrayScan scan, const std::optional<Domain>& domain,
+                                     Interrupter* interrupter) {
+  if (domain) placeScan(scan, domain->box());
+  if (!domain || *domain == Domain(scan.box())) return estimateBlur(*scan.image, interrupter);
+  DomainReader part(std::move(scan), *domain);
+  return estimateBlur(part, interrupter);
 }
 
-ScanBlur blurOf(ImageReader& image, Interrupter* interrupter) {
-  if (const auto blur = estimateBlur(image, interrupter)) return *blur;
-  throw InvalidInput(image.path() +
+std::string noteOn(const ScanBlur& blur) {
+  constexpr double kMuch = 0.05, kMostUnlike = 2;
+  if (blur.atEnds >= kMuch)
+    return fmt::format(
+        "{:.0f} % of its values are the least or the largest that there are: if they were cut off, "
+        "its blur, noise and necks come out wrong",
+        100 * blur.atEnds);
+  if (blur.unlike >= kMostUnlike)
+    return fmt::format(
+        "the values of one of its two materials spread {:.1f} times as far as those of the other: "
+        "if that is two, noise and necks come out wrong",
+        blur.unlike);
+  return "";
+}
+
+ScanBlur blurOf(GrayScan scan, const std::optional<Domain>& domain, Interrupter* interrupter) {
+  const std::string path = scan.image->path();
+  if (const auto blur = estimateBlur(std::move(scan), domain, interrupter)) return *blur;
+  throw InvalidInput(path +
                      ": its edges tell no blur: give the gray scan of two materials, in which "
                      "grains and pores are wider than 8 voxels");
 }

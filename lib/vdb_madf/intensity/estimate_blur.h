@@ -7,7 +7,9 @@
 #include <string>
 
 #include "vdb_madf/base/interrupter.h"
+#include "vdb_madf/grids/domain.h"
 #include "vdb_madf/images/image.h"
+#include "vdb_madf/intensity/gray_scan.h"
 #include "vdb_madf/measure/scan_blur.h"
 
 namespace vdb_madf {
@@ -30,13 +32,21 @@ namespace vdb_madf {
 ///   tell no blur, or one of more than 2.5 voxels (a mask, labels, a scan without two materials).
 /// @throw IoError; Interrupted.
 std::optional<ScanBlur> estimateBlur(ImageReader& image, Interrupter* interrupter = nullptr);
+/// The blur and noise of a scan by the voxels of a domain alone, that of labels: around it, where a
+/// container may be, none counts.
+/// @param domain absent: all of the scan
+/// @throw as placeScan(), too
+std::optional<ScanBlur> estimateBlur(GrayScan scan, const std::optional<Domain>& domain,
+                                     Interrupter* interrupter = nullptr);
 
-/// A sentence on a scan whose values may have been cut off: a twentieth of them or more are at one
-/// end (ScanBlur::atEnds). Of others it is empty.
+/// A sentence on a scan whose values may have been cut off (a twentieth of them or more are at one
+/// end, ScanBlur::atEnds), or which shows more than two materials (ScanBlur::unlike). Of others it
+/// is empty.
 std::string noteOn(const ScanBlur& blur);
 
 /// What estimateBlur() says, where a blur is needed.
 /// @throw InvalidInput, one line that names the image, if none is found; as above
-ScanBlur blurOf(ImageReader& image, Interrupter* interrupter = nullptr);
+ScanBlur blurOf(GrayScan scan, const std::optional<Domain>& domain,
+                Interrupter* interrupter = nullptr);
 
 }  // namespace vdb_madf

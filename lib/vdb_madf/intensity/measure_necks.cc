@@ -14,6 +14,7 @@
 #include "vdb_madf/base/detail/parallel.h"
 #include "vdb_madf/base/errors.h"
 #include "vdb_madf/grids/detail/leaf_nodes.h"
+#include "vdb_madf/grids/grid_metadata.h"
 #include "vdb_madf/images/detail/header_checks.h"
 #include "vdb_madf/images/detail/sample_conversion.h"
 #include "vdb_madf/intensity/detail/near_squares.h"
@@ -381,6 +382,16 @@ FloatTree::Ptr readAround(const std::vector<Section>& sections, GrayScan& scan,
   return tree;
 }
 
+/// What a scan shows outside of a region belongs to nothing known: NaN.
+void forgetOutside(const MaskTree& region, FloatTree& gray) {
+  for (auto leaf = gray.beginLeaf(); leaf; ++leaf) {
+    const auto* inside = region.probeConstLeaf(leaf->origin());
+    const bool all = !inside && region.isValueOn(leaf->origin());
+    for (openvdb::Index i = 0; !all && i < FloatTree::LeafNodeType::SIZE; ++i)
+      if (!inside || !inside->isValueOn(i)) leaf->setValueOnly(i, NAN);
+  }
+}
+
 }  // namespace
 
 void measureNecks(const Int32Grid& labels, GrayScan& scan, const ScanBlur& blur,
@@ -400,6 +411,8 @@ void measureNecks(const Int32Grid& labels, GrayScan& scan, const ScanBlur& blur,
   known.intersect(measured.sample.box);
   const std::vector<Section> sections = sectionsOf(*tree, measured, known, blur.sigma, &framing);
   const FloatTree::Ptr gray = readAround(sections, scan, &reading);
+  if (const auto domain = storedDomain(labels); domain && !domain->isBox())
+    forgetOutside(*domain->region(), *gray);
   measured.scan = withGrainsInside(blur, *tree, *gray, known, scan.image->path());
   const NeckMeter meter(*tree, *gray, *measured.scan);
   detail::parallelForEach(sections.size(), kBondsTogether, &fitting, [&](size_t i) {

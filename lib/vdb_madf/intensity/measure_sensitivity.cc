@@ -84,7 +84,7 @@ Sensitivity boundsOf(const Choices& choices, const SensitivityOptions& options,
                      Interrupter* interrupter) {
   double threshold = options.threshold.value_or(0), smooth = options.smooth.value_or(0);
   if (!options.threshold || !options.smooth) {
-    const auto blur = known ? known : estimateBlur(*open().image, interrupter);
+    const auto blur = known ? known : estimateBlur(open(), choices.segment.domain, interrupter);
     const double contrast = blur ? std::abs(blur->inside - blur->outside)
                                  : contrastAt(choices.selection.low, *open().image);
     const double share = std::max(kThresholdShare, blur ? blur->noise : 0);

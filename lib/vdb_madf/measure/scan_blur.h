@@ -17,6 +17,9 @@ struct ScanBlur {
   /// The part of the values that are the least, or the largest, if that is more: much of a scan
   /// that was cut off, whose blur and noise are larger than these.
   double atEnds = 0;
+  /// The larger standard deviation of the gray values far from edges, inside or outside, over the
+  /// smaller: large where either is of two materials.
+  double unlike = 1;
 };
 
 }  // namespace vdb_madf
