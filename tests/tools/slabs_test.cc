@@ -129,6 +129,20 @@ TEST_CASE("slabs: samples are made in slabs, and segmented slab by slab", "[slab
   for (const std::string& name : bench.names()) CHECK(name.find(".part") == std::string::npos);
 }
 
+TEST_CASE("slabs: a folder that no run made is left alone", "[slabs]") {
+  const Bench bench;
+  bench.mustRun(kTall + "in.vdb -q");
+  std::filesystem::create_directory(bench.path("out.slabs.part"));
+  bench.write("out.slabs.part/mine", "precious");
+  for (const std::string resume : {"", " --resume"}) {
+    const Outcome refused = bench.run("segment in.vdb out.slabs --grid object -q" + resume);
+    CHECK(refused.exitCode == 1);
+    CHECK_THAT(refused.err, Contains("out.slabs.part: holds mine"));
+  }
+  CHECK(bench.bytes("out.slabs.part/mine") == "precious");
+  CHECK_FALSE(bench.names().count("out.slabs"));
+}
+
 TEST_CASE("slabs: what was killed goes on", "[slabs]") {
   const Bench bench;
   bench.mustRun(kTall + "in.vdb -q");

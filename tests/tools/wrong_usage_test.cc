@@ -256,6 +256,15 @@ TEST_CASE("cli: a misspelt verb or option is named first, with what was likely m
     CHECK(bench.run(far).err.find("did you mean") == std::string::npos);
 }
 
+TEST_CASE("cli: a whole number is decimal", "[cli]") {
+  const Bench bench;
+  bench.mustRun("generate snow s.tif --size 16 --length 6");
+  for (const std::string number : {"060", "0x10", "-08"})
+    refuses(bench, kWrongUsage, "segment s.tif o.slabs --phase 1 --slab-height " + number,
+            {"--slab-height", number, "decimal digits"});
+  bench.mustRun("segment s.tif o.vdb --phase 1 --threads 10");
+}
+
 TEST_CASE("cli: an empty argument is an unset variable, not a default", "[cli]") {
   const Bench bench;
   bench.mustRun("generate snow s.tif --size 16 --length 6");

@@ -81,6 +81,16 @@ CLI::Option* takePaths(CLI::Option* option) {
   return option;
 }
 
+/// Refuses what the library would take for an octal or hexadecimal number, as 060.
+CLI::Option* takeDecimals(CLI::Option* option) {
+  const auto decimal = [](const std::string& text) {
+    const size_t first = text.find_first_not_of("+-");
+    const bool isOther = first + 1 < text.size() && text[first] == '0';
+    return isOther ? text + " begins with 0: give a whole number in decimal digits" : "";
+  };
+  return option->check(decimal);
+}
+
 /// What a value is, by the name that the help shows for it. Arguments are files.
 ValueWords valueWords(const CLI::Option& option, const Choices& choices) {
   ValueWords words;
@@ -220,15 +230,15 @@ Option Verb::option(const std::string& name, std::string& value, const std::stri
 }
 
 Option Verb::option(const std::string& name, int& value, const std::string& help) {
-  return Option(app_->add_option(name, value, help), choices_);
+  return Option(takeDecimals(app_->add_option(name, value, help)), choices_);
 }
 
 Option Verb::option(const std::string& name, uint64_t& value, const std::string& help) {
-  return Option(app_->add_option(name, value, help), choices_);
+  return Option(takeDecimals(app_->add_option(name, value, help)), choices_);
 }
 
 Option Verb::option(const std::string& name, int64_t& value, const std::string& help) {
-  return Option(app_->add_option(name, value, help), choices_);
+  return Option(takeDecimals(app_->add_option(name, value, help)), choices_);
 }
 
 Option Verb::option(const std::string& name, double& value, const std::string& help) {

@@ -133,6 +133,13 @@ std::string scratchOf(const SegmentArguments& o) {
 
 constexpr char kWhole[] = "done";  // the piece that says that OUT.slabs.part is whole
 
+/// Whether a file in OUT.slabs.part may be of a run, by its name; temporary ones begin with a dot.
+bool isOfRun(std::string name) {
+  if (name[0] == '.') name.erase(0, 1);
+  return name.compare(0, 5, "slab-") == 0 ||
+         name.compare(0, sizeof kSlabIndex - 1, kSlabIndex) == 0;
+}
+
 }  // namespace
 
 Json originOf(const SegmentArguments& o) {
@@ -165,7 +172,7 @@ WorkPlace::WorkPlace(const SegmentArguments& o, const Common& common, Team& team
     if (!isRoot) return;
     checkSlabFolder(out_);
     if (inMemory)
-      makePart(o);
+      makePart(false);  // nothing else keeps two runs apart
     else
       makeFolders(o);
   });
@@ -181,15 +188,23 @@ WorkPlace::WorkPlace(const SegmentArguments& o, const Common& common, Team& team
   }
 }
 
-void WorkPlace::makePart(const SegmentArguments& o) {
+/// @param mayBeThere whether what a run left, or nothing, may be in it
+void WorkPlace::makePart(bool mayBeThere) {
   std::error_code error;
   const bool isNew = fs::create_directory(part_, error);
   if (error)
     throw IoError("cannot make " + part_ + ": " + error.message() +
                   "; make its folder first, or remove what is there");
-  if (!isNew && !o.resume && !fs::is_empty(part_, error))
-    throw IoError(part_ +
-                  ": is what a run left that did not end: give --resume to go on, or remove it");
+  if (isNew) return;
+  for (const auto& entry : fs::directory_iterator(part_, error))
+    if (!isOfRun(entry.path().filename().string()))
+      throw IoError(part_ + ": holds " + entry.path().filename().string() +
+                    ", which is of no run in slabs: move it away");
+  if (!mayBeThere)
+    throw IoError(
+        part_ +
+        ": is that of another run, or what one left that did not end: remove it when none "
+        "works there");
 }
 
 void WorkPlace::makeFolders(const SegmentArguments& o) {
@@ -199,7 +214,10 @@ void WorkPlace::makeFolders(const SegmentArguments& o) {
         fmt::format("scratch data cannot be in {}, for {}: choose another folder", scratch, out_));
   std::error_code ignored;
   const bool isNew = !fs::exists(part_, ignored);
-  makePart(o);
+  makePart(true);
+  if (!isNew && !o.resume && !fs::is_empty(part_, ignored))
+    throw IoError(part_ +
+                  ": is what a run left that did not end: give --resume to go on, or remove it");
   try {
     folder_ = std::make_unique<FolderScratch>(scratch, workOf(o), o.resume);
     if (team_.count() > 1) folder_->share();

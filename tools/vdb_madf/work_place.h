@@ -54,7 +54,7 @@ class WorkPlace {
  private:
   std::string file(const std::string& name) const;
   void makeFolders(const SegmentArguments& o);
-  void makePart(const SegmentArguments& o);
+  void makePart(bool mayBeThere);
   void clearPart(bool butSlabs);
   void discard();
 
