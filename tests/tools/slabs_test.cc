@@ -197,6 +197,10 @@ TEST_CASE("slabs: what is finished is not done again to resume it", "[slabs]") {
   CHECK_FALSE(isMadeAnew());
   bench.mustRun(segment + "-q");
   CHECK(isMadeAnew());
+  std::filesystem::resize_file(slab, std::filesystem::file_size(slab) - 9);
+  const Outcome damaged = bench.run(segment + "--resume");
+  CHECK(damaged.exitCode == 1);
+  CHECK_THAT(damaged.err, Contains("slab-0000.vdb") && Contains("remove out.slabs first"));
   std::filesystem::remove(slab);
   CHECK_THAT(bench.run(segment + "--resume").err, Contains("slab-0000.vdb"));
 }

@@ -216,12 +216,27 @@ void estimateSlabs(const SegmentArguments& o, const Common& common) {
   say(o, common, estimate, jsonFile);
 }
 
+/// Reads all slabs of a folder that may be damaged. @throw IoError, which says what to do
+void checkWhole(const std::string& path, Progress* progress) {
+  try {
+    const SlabFolder folder = openSlabFolder(path);
+    for (size_t slab = 0; slab < folder.slabCount(); ++slab)
+      readVdbSlab(folder, slab, {}, progress);
+  } catch (const IoError& error) {
+    throw IoError(fmt::format("{}: to make it anew, remove {} first", error.what(), path));
+  }
+}
+
 void runInSlabs(const SegmentArguments& o, const Common& common) {
   Team alone;
   Team& team = common.team ? *common.team : alone;
+  checkAlike(o, team);
   bool finished = false;
   inAllMembers(team, [&] { finished = o.resume && isFinished(o); });
   if (finished) {
+    inAllMembers(team, [&] {
+      if (team.member() == 0) checkWhole(o.out, common.progress);
+    });
     common.progress->note(o.out + ": is finished, there is nothing to go on with");
     return;
   }

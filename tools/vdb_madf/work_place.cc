@@ -92,13 +92,9 @@ Json originOf(const SegmentArguments& o, const Stamp& input) {
   return origin;
 }
 
-/// What the slabs in scratch depend on. --max-memory only says where to cut, which is done once.
-std::string workOf(const SegmentArguments& o) {
-  const std::string& in = o.input.path;
-  std::error_code ignored;
-  std::string work = fmt::format(
-      "{}\n{}\n{} {} {}", kVersion, fs::absolute(o.out, ignored).string(),
-      fs::absolute(in, ignored).string(), stampOf(in).text(), stampOf(o.input.region.mask).text());
+/// The options that slabs depend on. --max-memory only says where to cut, which is done once.
+std::string choicesOf(const SegmentArguments& o) {
+  std::string work = kVersion;
   for (const auto& option : readingOptions(o.input)) work += "\n" + option.second;
   for (const auto& option : choiceOptions(o)) work += "\n" + option.second;
   for (const std::string& text :
@@ -107,6 +103,15 @@ std::string workOf(const SegmentArguments& o) {
     work += "\n" + text;
   for (const bool flag : {o.input.invert, o.paper}) work += flag ? "\nyes" : "\nno";
   return work;
+}
+
+/// What the slabs in scratch depend on.
+std::string workOf(const SegmentArguments& o) {
+  const std::string& in = o.input.path;
+  std::error_code ignored;
+  return fmt::format("{}\n{} {} {}\n{}", fs::absolute(o.out, ignored).string(),
+                     fs::absolute(in, ignored).string(), stampOf(in).text(),
+                     stampOf(o.input.region.mask).text(), choicesOf(o));
 }
 
 /// True if an index says of the labels what they would be of these arguments.
@@ -144,6 +149,19 @@ bool isOfRun(std::string name) {
 
 Json originOf(const SegmentArguments& o) {
   return originOf(o, stampOf(o.input.path));
+}
+
+void checkAlike(const SegmentArguments& o, Team& team) {
+  const std::string own = fmt::format("{}\n{}\n{}", choicesOf(o), stampOf(o.input.path).bytes,
+                                      stampOf(o.input.region.mask).bytes);
+  Bytes first(own.begin(), own.end());
+  team.broadcast(first);
+  inAllMembers(team, [&] {
+    if (!std::equal(first.begin(), first.end(), own.begin(), own.end()))
+      throw InvalidInput(o.input.path +
+                         ": is of another size, or has other options, for another process of the "
+                         "job: give all the same");
+  });
 }
 
 bool isFinished(const SegmentArguments& o) {

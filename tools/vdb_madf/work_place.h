@@ -15,6 +15,10 @@ namespace vdb_madf::tools {
 /// was read.
 Json originOf(const SegmentArguments& o);
 
+/// Compares options, and the sizes of IN and of a mask, over the processes of a job.
+/// @throw InvalidInput where they differ from those of member 0
+void checkAlike(const SegmentArguments& o, Team& team);
+
 /// Was OUT.slabs made, of the same IN and with the same options, by a run that ended?
 /// @throw InvalidInput if there is one of other ones; IoError if it is damaged
 bool isFinished(const SegmentArguments& o);
