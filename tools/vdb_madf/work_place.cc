@@ -152,6 +152,7 @@ Json originOf(const SegmentArguments& o) {
 }
 
 void checkAlike(const SegmentArguments& o, Team& team) {
+  if (team.count() == 1) return;
   const std::string own = fmt::format("{}\n{}\n{}", choicesOf(o), stampOf(o.input.path).bytes,
                                       stampOf(o.input.region.mask).bytes);
   Bytes first(own.begin(), own.end());
@@ -207,13 +208,14 @@ WorkPlace::WorkPlace(const SegmentArguments& o, const Common& common, Team& team
 }
 
 /// @param mayBeThere whether what a run left, or nothing, may be in it
-void WorkPlace::makePart(bool mayBeThere) {
+/// @return whether it was not there
+bool WorkPlace::makePart(bool mayBeThere) {
   std::error_code error;
   const bool isNew = fs::create_directory(part_, error);
   if (error)
     throw IoError("cannot make " + part_ + ": " + error.message() +
                   "; make its folder first, or remove what is there");
-  if (isNew) return;
+  if (isNew) return true;
   for (const auto& entry : fs::directory_iterator(part_, error))
     if (!isOfRun(entry.path().filename().string()))
       throw IoError(part_ + ": holds " + entry.path().filename().string() +
@@ -223,6 +225,7 @@ void WorkPlace::makePart(bool mayBeThere) {
         part_ +
         ": is that of another run, or what one left that did not end: remove it when none "
         "works there");
+  return false;
 }
 
 void WorkPlace::makeFolders(const SegmentArguments& o) {
@@ -231,8 +234,7 @@ void WorkPlace::makeFolders(const SegmentArguments& o) {
     throw IoError(
         fmt::format("scratch data cannot be in {}, for {}: choose another folder", scratch, out_));
   std::error_code ignored;
-  const bool isNew = !fs::exists(part_, ignored);
-  makePart(true);
+  const bool isNew = makePart(true);
   if (!isNew && !o.resume && !fs::is_empty(part_, ignored))
     throw IoError(part_ +
                   ": is what a run left that did not end: give --resume to go on, or remove it");

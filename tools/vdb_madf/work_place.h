@@ -58,7 +58,7 @@ class WorkPlace {
  private:
   std::string file(const std::string& name) const;
   void makeFolders(const SegmentArguments& o);
-  void makePart(bool mayBeThere);
+  bool makePart(bool mayBeThere);
   void clearPart(bool butSlabs);
   void discard();
 

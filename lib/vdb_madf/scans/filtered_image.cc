@@ -7,9 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <iterator>
-#include <type_traits>
 #include <vector>
 
 #include "vdb_madf/base/detail/gaussian.h"
@@ -29,6 +27,11 @@ using detail::SliceWindow;
 
 constexpr size_t kRowsPerChunk = 4;
 
+template <typename T>
+bool isNan(T value) {
+  return value != value;
+}
+
 /// An image made of another one.
 class FilteredImage : public ImageReader {
  protected:
@@ -46,6 +49,20 @@ class FilteredImage : public ImageReader {
     const auto ny = size_t(info_.size.y);
     detail::parallelForEach(ny * size_t(count), kRowsPerChunk, nullptr,
                             [&](size_t row) { f(int(row % ny), first + int(row / ny), row); });
+  }
+
+  /// Whether all values of slices [first, first + count), and of those within `radius` of them, are
+  /// numbers.
+  template <typename T>
+  bool allKnown(const SliceWindow<T>& window, int radius, int first, int count) const {
+    const SampleType type = image_->info().type;
+    if (type != SampleType::float32 && type != SampleType::float64) return true;
+    std::atomic<bool> all{true};
+    forEachRow(first - radius, count + 2 * radius, [&](int y, int z, size_t) {
+      const T* row = window.row(y, z);
+      if (std::any_of(row, row + rowLength(), isNan<T>)) all = false;
+    });
+    return all;
   }
 
   std::unique_ptr<ImageReader> image_;
@@ -92,6 +109,7 @@ class MedianImage : public FilteredImage {
   void read(int first, int count, void* samples) override {
     detail::checkSlices(path_, info_, first, count);
     window_.moveTo(first, count);
+    allKnown_ = allKnown(window_, radius_, first, count);
     auto* to = static_cast<T*>(samples);
     detail::PerThread<Scratch> scratches;
     forEachRow(first, count, [&](int y, int z, size_t row) {
@@ -104,8 +122,6 @@ class MedianImage : public FilteredImage {
     std::vector<T> rows, work;
   };
 
-  /// Row `row` of the window holds the values beside those of the voxels at x + dx in
-  /// row[x + radius + dx].
   void filterRow(int y, int z, Scratch& scratch, T* to) const {
     const auto side = size_t(2 * radius_ + 1);
     const size_t length = rowLength() + side + kLanes;  // room for the lanes of the last block
@@ -122,9 +138,8 @@ class MedianImage : public FilteredImage {
               from[mirrored(info_.size.x - 1 + i, info_.size.x)];
         }
       }
-    if constexpr (std::is_floating_point_v<T>)
-      if (!allKnown(scratch.rows.data(), side * side, length, rowLength() + side - 1))
-        return filterKnown(window_.row(y, z), length, scratch, to);
+    if (!allKnown_ && std::any_of(scratch.rows.begin(), scratch.rows.end(), isNan<T>))
+      return filterKnown(window_.row(y, z), length, scratch, to);
     for (size_t x = 0; x < rowLength(); x += kLanes) {
       const auto fetch = [&](size_t i, T* lanes) {
         const T* from = scratch.rows.data() + i / side * length + x + i % side;
@@ -135,24 +150,17 @@ class MedianImage : public FilteredImage {
     }
   }
 
-  static bool allKnown(const T* rows, size_t count, size_t length, size_t used) {
-    for (size_t row = 0; row < count; ++row)
-      for (size_t i = 0; i < used; ++i)
-        if (std::isnan(rows[row * length + i])) return false;
-    return true;
-  }
-
   /// The same of the values that are no NaN; of an even number the lower middle one.
   void filterKnown(const T* middle, size_t length, Scratch& scratch, T* to) const {
     const auto side = size_t(2 * radius_ + 1);
     std::vector<T>& known = scratch.work;
     for (size_t x = 0; x < rowLength(); ++x) {
       to[x] = middle[x];
-      if (std::isnan(middle[x])) continue;
+      if (isNan(middle[x])) continue;
       known.clear();
       for (size_t row = 0; row < side * side; ++row)
         std::copy_if(&scratch.rows[row * length + x], &scratch.rows[row * length + x] + side,
-                     std::back_inserter(known), [](T value) { return !std::isnan(value); });
+                     std::back_inserter(known), [](T value) { return !isNan(value); });
       const auto half = known.begin() + std::ptrdiff_t((known.size() - 1) / 2);
       std::nth_element(known.begin(), half, known.end());
       to[x] = *half;
@@ -161,6 +169,7 @@ class MedianImage : public FilteredImage {
 
   int radius_;
   SliceWindow<T> window_;
+  bool allKnown_ = true;  // of the slices that are read
 };
 
 // Each lane by itself, so that vectors of any width give the same bits.
@@ -189,7 +198,7 @@ class SmoothedImage : public FilteredImage {
     window_.moveTo(first, count);
     auto* to = static_cast<T*>(samples);
     const auto inWindow = [&](int y, int z) { return window_.row(y, z); };
-    if (allKnown(first, count))
+    if (allKnown(window_, radius(), first, count))
       smooth(inWindow, first, count, to);
     else
       smoothKnown(first, count, to);
@@ -202,19 +211,6 @@ class SmoothedImage : public FilteredImage {
   };
   int radius() const { return int(weights_.size()) - 1; }
 
-  /// Whether all values that slices [first, first + count) are made of are numbers.
-  bool allKnown(int first, int count) const {
-    const SampleType type = image_->info().type;
-    if (type != SampleType::float32 && type != SampleType::float64) return true;
-    std::atomic<bool> all{true};
-    forEachRow(first - radius(), count + 2 * radius(), [&](int y, int z, size_t) {
-      const T* row = window_.row(y, z);
-      if (std::any_of(row, row + rowLength(), [](T value) { return std::isnan(value); }))
-        all = false;
-    });
-    return all;
-  }
-
   /// Where values are NaN, their place stays NaN, and around it the others have all the weight: a
   /// sum of known values is divided by that of ones in their places. Where all are known it stands
   /// as it is, so that the bits do not depend on what else is in the window.
@@ -225,7 +221,7 @@ class SmoothedImage : public FilteredImage {
     forEachRow(begin, count + 2 * radius(), [&](int y, int z, size_t row) {
       const T* from = window_.row(y, z);
       for (size_t x = 0; x < rowLength(); ++x) {
-        const bool isKnown = !std::isnan(from[x]);
+        const bool isKnown = !isNan(from[x]);
         values[row * rowLength() + x] = isKnown ? from[x] : 0;
         ones[row * rowLength() + x] = isKnown;
       }
@@ -248,7 +244,7 @@ class SmoothedImage : public FilteredImage {
     forEachRow(first, count, [&](int y, int z, size_t row) {
       const T* from = window_.row(y, z);
       for (size_t x = 0, i = row * rowLength(); x < rowLength(); ++x, ++i)
-        if (std::isnan(from[x]))
+        if (isNan(from[x]))
           to[i] = from[x];
         else if (weights[i] != whole)
           to[i] /= weights[i];

@@ -157,9 +157,8 @@ detail::CountedImage sampled(ImageReader& image, const Part& part) {
   return {image, rows, !part};
 }
 
-std::optional<double> cornerOfGray(const detail::CountedImage& image) {
-  const Histogram histogram = image.histogram();
-  const bool enough = image.info().size.z >= kCornerSlices;
+std::optional<double> cornerOfGray(const Histogram& histogram, int slices) {
+  const bool enough = slices >= kCornerSlices;
   if (!enough || !histogram.corner || kindOf(histogram) != ImageKind::gray) return std::nullopt;
   // A circle leaves 21 % of its square; what most voxels have is the pore of a scan without noise.
   constexpr double kMostAround = 0.4;
@@ -269,8 +268,9 @@ ImageObject imageObject(const std::function<std::unique_ptr<ImageReader>()>& ope
       const PartMasks read = readPart(counted, {chosen}, part, &reading, takeRead);
       object = {read.masks[0], read.leftOut};
     }
-    object.corner = cornerOfGray(counted);
-    if (!part) object.notFinite = counted.histogram().notFinite;
+    const Histogram histogram = counted.histogram();
+    object.corner = cornerOfGray(histogram, opened->info().size.z);
+    if (!part) object.notFinite = histogram.notFinite;
   }
   if (readsGray(gray) || (chosen.kind == Selection::Kind::threshold && chosen.invert))
     describeObject(chosen, gray, *object.mask);

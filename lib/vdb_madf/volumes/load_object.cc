@@ -130,8 +130,8 @@ MaskGrid::Ptr objectOfImage(const std::string& path, const ImageOpener& open,
                      "is a cylinder, if it is one",
                  NoteAbout::cylinder);
   if (found.notFinite > 0 && options.note)
-    options.note(path + ": " + counted(found.notFinite, "voxel") +
-                     " have no finite number and count as scanned background: if they are around a "
+    options.note(path + ": has " + counted(found.notFinite, "voxel") +
+                     " without a finite number, taken for scanned background: if they are around a "
                      "round field of view, say that the scan is a cylinder",
                  NoteAbout::cylinder);
   detail::noteLeftOut(path, found.leftOut, "object voxel", options);
