@@ -6,8 +6,6 @@
 template class openvdb::Grid<vdb_madf::StandardTree<double>>;
 template class openvdb::Grid<vdb_madf::StandardTree<int64_t>>;
 template class openvdb::Grid<vdb_madf::StandardTree<uint32_t>>;
-template class openvdb::Grid<vdb_madf::StandardTree<openvdb::Vec3s>>;
 template class openvdb::tree::Tree<vdb_madf::StandardTree<double>::RootNodeType>;
 template class openvdb::tree::Tree<vdb_madf::StandardTree<int64_t>::RootNodeType>;
 template class openvdb::tree::Tree<vdb_madf::StandardTree<uint32_t>::RootNodeType>;
-template class openvdb::tree::Tree<vdb_madf::StandardTree<openvdb::Vec3s>::RootNodeType>;

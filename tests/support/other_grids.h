@@ -19,8 +19,6 @@ using Vec3sGrid = openvdb::Grid<StandardTree<openvdb::Vec3s>>;
 extern template class openvdb::Grid<vdb_madf::StandardTree<double>>;
 extern template class openvdb::Grid<vdb_madf::StandardTree<int64_t>>;
 extern template class openvdb::Grid<vdb_madf::StandardTree<uint32_t>>;
-extern template class openvdb::Grid<vdb_madf::StandardTree<openvdb::Vec3s>>;
 extern template class openvdb::tree::Tree<vdb_madf::StandardTree<double>::RootNodeType>;
 extern template class openvdb::tree::Tree<vdb_madf::StandardTree<int64_t>::RootNodeType>;
 extern template class openvdb::tree::Tree<vdb_madf::StandardTree<uint32_t>::RootNodeType>;
-extern template class openvdb::tree::Tree<vdb_madf::StandardTree<openvdb::Vec3s>::RootNodeType>;
