@@ -217,25 +217,57 @@ TEST_CASE("columns: what is given of grains comes last", "[columns]") {
       "side,grain,fate,track,miss,turn,voxels\nbefore,3,kept,3,0.5,,10\nbefore,7,lost,7,,-2e-1,11\n"
       "after,1,kept,7,9,8,12\n";
   ExtraMeasures extra;
-  extra.given = givenColumns(moves);
+  extra.given = givenColumns(moves).columns;
   std::vector<GrainMeasures> grains(2);
   grains[0].id = 3;
   grains[1].id = 7;
   const auto columns = grainColumns(grains, extra);
-  CHECK(columns[columns.size() - 2].name == "miss");
-  CHECK(columns.back().name == "turn");  // there are voxels already
+  CHECK(columns[columns.size() - 3].name == "miss");
+  CHECK(columns[columns.size() - 2].name == "turn");
+  CHECK(columns.back().name == "given_voxels");  // others than those that are there
+  grains[0].voxels = 10;
+  grains[1].voxels = 11;
+  CHECK(grainColumns(grains, extra).back().name == "turn");
   CHECK(column(columns, "miss").values[0] == 0.5);
   CHECK(std::isnan(column(columns, "miss").values[1]));
   CHECK(column(columns, "turn").values[1] == -0.2);
-  CHECK(givenColumns(moves, true).at(0).values == std::map<int32_t, double>{{7, 9}});
-  CHECK(givenColumns("a,id\r\n1,2\r\n").at(0).values.at(2) == 1);
+  CHECK(givenColumns(moves, true).columns.at(0).values == std::map<int32_t, double>{{7, 9}});
+  CHECK(givenColumns("a,id\r\n1,2\r\n").columns.at(0).values.at(2) == 1);
   using vdb_madf::test::Contains;
   CHECK_THROWS_WITH(givenColumns(""), Contains("no column 'grain' or 'id'"));
   CHECK_THROWS_WITH(givenColumns("grain\n1\n"), Contains("no column of numbers"));
-  CHECK(givenColumns("grain,a\n1,2\n\r\n\n").size() == 1);  // as editors leave at the end
+  CHECK(givenColumns("grain,a\n1,2\n\r\n\n").columns.size() == 1);  // as editors leave at the end
   CHECK_THROWS_WITH(givenColumns("grain,a\n1\n"), Contains("line 2: has 1 cell, and the first 2"));
   CHECK_THROWS_WITH(givenColumns("grain,a\n1,2,3\n"), Contains("line 2: has 3 cells"));
   CHECK_THROWS_WITH(givenColumns("grain,a\n0.5,2\n"), Contains("'0.5' is no number of a grain"));
   CHECK_THROWS_WITH(givenColumns("grain,a\n9999999999,2\n"), Contains("no number of a grain"));
   CHECK_THROWS_WITH(givenColumns("grain,a\n1,2\n1,3\n"), Contains("line 3: grain 1 comes twice"));
+  CHECK_THROWS_WITH(givenColumns("grain,a\n1,\"2\n"), Contains("quotation mark"));
+}
+
+TEST_CASE("columns: tables of other programs", "[columns]") {
+  const vdb_madf::GivenTable table = givenColumns(
+      "\"id\",\"mean stress (MPa)\",shape,mean_stress_MPa,volume_mm3,\"a \"\"b\"\"\"\r\n"
+      "\"1\",\"2.5\",\"round, flat\",1,7,NA\r\n2,NA,\"two\nlines\",1,8,3\r\n");
+  REQUIRE(table.columns.size() == 3);
+  CHECK(table.columns[0].name == "mean_stress_MPa");
+  CHECK(table.columns[0].values == std::map<int32_t, double>{{1, 2.5}});
+  CHECK(table.columns[1].name == "volume_mm3");
+  CHECK(table.columns[2].name == "a_b");
+  CHECK(table.columns[2].values == std::map<int32_t, double>{{2, 3}});
+  CHECK(table.leftOut == std::vector<std::string>{"shape", "mean_stress_MPa"});
+  CHECK(givenColumns("id,__proto__\n1,2\n").columns.at(0).name == "proto");
+
+  ExtraMeasures extra;
+  extra.given = table.columns;
+  std::vector<GrainMeasures> grains(1);
+  grains[0].id = 2;
+  const auto columns = grainColumns(grains, extra);
+  CHECK(column(columns, "given_volume_mm3").values[0] == 8);  // `volume` has this name in mm
+  CHECK(vdb_madf::noteOnGiven(table.columns, grains) ==
+        "1 of its 2 grains are not among those of the labels");
+  grains[0].id = 1;
+  grains.push_back(grains[0]);
+  grains[1].id = 2;
+  CHECK(vdb_madf::noteOnGiven(table.columns, grains).empty());
 }

@@ -272,6 +272,15 @@ TEST_CASE("cli: render colors grains by a column of their table", "[cli]") {
   bench.write("given.csv", "grain,heat\n1,2\n2,5\n");
   bench.mustRun("render s.vdb given.png --size 64 --color-by heat --with given.csv");
   CHECK(bench.bytes("given.png") != bench.bytes("by.png"));
+  bench.write("own.csv", "grain,sphericity,kind\n1,2,a\n9999,5,b\n");
+  const auto own = bench.run("render s.vdb own.png --size 64 --color-by sphericity --with own.csv");
+  CHECK(own.exitCode == 0);
+  CHECK(readPng(bench.bytes("own.png")).pixels != readPng(bench.bytes("by.png")).pixels);
+  CHECK_THAT(own.err, vdb_madf::test::Contains("own.csv: left out is what has other cells than "
+                                               "numbers, no name of its own, or nothing: 'kind'"));
+  CHECK_THAT(own.err, vdb_madf::test::Contains("own.csv: 1 of its 2 grains are not among those"));
+  const auto paged = bench.run("report s.vdb own.html --with own.csv");
+  CHECK_THAT(paged.err, vdb_madf::test::Contains("own.csv: 1 of its 2 grains are not among those"));
   bench.write("bad.csv", "label,heat\n1,2\n");
   CHECK(
       bench.run("render s.vdb w.png --color-by heat --with bad.csv").err.find("bad.csv: has no") !=

@@ -6,18 +6,31 @@
 #include <openvdb/Metadata.h>
 
 #include <cstdint>
+#include <utility>
 
 #include "outputs.h"
+#include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/matching/track.h"
 
 namespace vdb_madf::tools {
 
-std::vector<GivenColumn> readGiven(const std::string& path, const Int32Grid& labels) {
+std::vector<GivenColumn> readGiven(const std::string& path, const Int32Grid& labels,
+                                   Progress* progress) {
   constexpr uint64_t kMostBytes = uint64_t(1) << 30;
   if (path.empty()) return {};
   const bool isTracked = labels.getMetadata<openvdb::StringMetadata>(kTrackKey) != nullptr;
-  return withFileName(path, [&] { return givenColumns(readText(path, kMostBytes), isTracked); });
+  GivenTable table =
+      withFileName(path, [&] { return givenColumns(readText(path, kMostBytes), isTracked); });
+  std::string leftOut;
+  for (const std::string& name : table.leftOut)
+    leftOut += (leftOut.empty() ? "" : ", ") + detail::inQuotes(name);
+  if (!leftOut.empty())
+    progress->note(path +
+                   ": left out is what has other cells than numbers, no name of its own, "
+                   "or nothing: " +
+                   leftOut);
+  return std::move(table.columns);
 }
 
 }  // namespace vdb_madf::tools

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "progress.h"
 #include "vdb_madf/grids/grid_types.h"
 #include "vdb_madf/measure/given_columns.h"
 
@@ -16,7 +17,8 @@ constexpr char kWithHelp[] =
     "numbers become columns";
 
 /// The columns of --with FILE; none of no file. Of labels that track numbered those of the later
-/// scan.
-std::vector<GivenColumn> readGiven(const std::string& path, const Int32Grid& labels);
+/// scan. A note tells what is left out.
+std::vector<GivenColumn> readGiven(const std::string& path, const Int32Grid& labels,
+                                   Progress* progress);
 
 }  // namespace vdb_madf::tools

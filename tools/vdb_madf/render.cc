@@ -88,9 +88,11 @@ void parse(RenderArguments& o) {
 }
 
 std::vector<GrayPlane> grayPlanes(const RenderArguments& o, const CoordBBox& box,
-                                  const std::vector<SlicePlane>& given, const Common& common) {
+                                  const std::vector<SlicePlane>& given, const Int32Grid& about,
+                                  const Common& common) {
   if (o.scan.empty()) return {};
   GrayScan scan = openScan({o.scan, o.scanGrid, "--overlay"}, o.input, common.progress);
+  noteOfScan(o.scan, noteOnSize(scan.box(), about), common.progress);
   const std::vector<SlicePlane> planes = given.empty() ? middlePlanes(box) : given;
   for (const SlicePlane& plane : planes)
     if (plane.index < box.min()[plane.axis] || plane.index > box.max()[plane.axis])
@@ -168,7 +170,9 @@ ColumnColors colorsBy(const RenderArguments& o, const Source& source, const Comm
   Measurements measured = measure(*source.labels, {}, common.progress);
   if (o.colorBy == "born" || o.colorBy == "dies" || o.colorBy == "stability")
     measureStability(keptGraph(o.input, common.progress), measured);
-  measured.extra.given = readGiven(o.with, *source.labels);
+  measured.extra.given = readGiven(o.with, *source.labels, common.progress);
+  const std::string note = noteOnGiven(measured.extra.given, measured.grains);
+  if (!note.empty()) common.progress->note(o.with + ": " + note);
   return columnColors(measured, o.colorBy);
 }
 
@@ -184,7 +188,7 @@ PanelOptions panelOptions(const RenderArguments& o, const Source& source, const 
   options.frame = boxOfSelected(o, source, common);
   options.planes = o.planes;
   if (o.planes.empty() && !options.frame.empty()) options.planes = middlePlanes(options.frame);
-  options.gray = grayPlanes(o, source.box, options.planes, common);
+  options.gray = grayPlanes(o, source.box, options.planes, *source.labels, common);
   options.interfaces = o.interfaces;
   return options;
 }

@@ -97,10 +97,11 @@ Report writeOne(const ReportArguments& o, const Common& common) {
   if (!o.sweep.empty() && !isSweepTable(options.sweep))
     throw InvalidInput(o.sweep + ": is no table of the verb sweep");
   const AnyLabels labels = labelsOf(o.input, common);
-  options.given = readGiven(o.with, aboutOf(labels));
+  options.given = readGiven(o.with, aboutOf(labels), common.progress);
   std::optional<GrayScan> scan;
   if (!o.scan.path.empty()) {
     scan = openScan(o.scan, o.input, common.progress);
+    noteOfScan(o.scan.path, noteOnSize(scan->box(), aboutOf(labels)), common.progress);
     placeScan(*scan, boxOf(aboutOf(labels)));
     options.scan = &*scan;
   }
@@ -128,6 +129,7 @@ void runReport(const ReportArguments& o, const Common& common) {
   const bool isOne = o.samples.size() == 1;
   const Report report = isOne ? writeOne(o, common) : writeAll(o, common);
   common.progress->end();
+  if (!report.noteOnGiven.empty()) common.progress->note(o.with + ": " + report.noteOnGiven);
   if (common.quiet) return;
   std::printf("%s: %.1f MB, open it in a browser: ", o.out.c_str(), double(report.bytes) / 1e6);
   if (!isOne)

@@ -4,6 +4,7 @@
 #include "vdb_madf/measure/columns.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <utility>
@@ -16,6 +17,19 @@ using openvdb::Vec3d;
 using Kind = MeasureColumn::Kind;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+bool isNameOf(const MeasureColumn& column, const std::string& name) {
+  if (name == column.name) return true;
+  for (const char* const unit : {"voxel", "um", "mm"})
+    if (column.power != 0 && name == column.name + unitSuffix(column.power, unit)) return true;
+  return false;
+}
+
+bool isSaidBy(const MeasureColumn& column, const MeasureColumn& other) {
+  for (size_t i = 0; i < other.values.size(); ++i)
+    if (!std::isnan(other.values[i]) && other.values[i] != column.values[i]) return false;
+  return true;
+}
 
 /// Makes columns of the items of a list, one by one.
 template <typename Item>
@@ -32,10 +46,16 @@ class ColumnMaker {
     columns_.push_back(std::move(column));
   }
   template <typename Number>
-  void addUnlessThere(const std::string& name, const Number& number) {
-    for (const MeasureColumn& column : columns_)
-      if (column.name == name) return;
+  void addGiven(const std::string& name, const Number& number) {
     add(name, 0, number);
+    for (size_t i = 0; i + 1 < columns_.size(); ++i)
+      if (isNameOf(columns_[i], name)) {
+        if (isSaidBy(columns_[i], columns_.back()))
+          columns_.pop_back();
+        else
+          columns_.back().name = givenName(name);
+        return;
+      }
   }
   template <typename Number>
   void addCount(const std::string& name, const Number& number) {
@@ -169,11 +189,15 @@ std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains
     make.add("stability", 0, [](const G& g) { return g.life.stability.value_or(kNone); });
   }
   for (const GivenColumn& column : extra.given)
-    make.addUnlessThere(column.name, [&](const G& g) {
+    make.addGiven(column.name, [&](const G& g) {
       const auto value = column.values.find(g.id);
       return value == column.values.end() ? kNone : value->second;
     });
   return make.columns();
+}
+
+std::string givenName(const std::string& name) {
+  return "given_" + name;
 }
 
 std::vector<MeasureColumn> bondColumns(const std::vector<BondMeasures>& bonds,

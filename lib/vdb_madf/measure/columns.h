@@ -37,9 +37,13 @@ struct MeasureColumn {
 /// `gray_sd`, `gray_min`, `gray_max`, `gray_median`; with edge weights `edge_weight`; with cells
 /// `cell_volume`, `local_solid_fraction`, `cell_neighbors`, `cell_at_domain_face` (0 or 1); with
 /// sizes `projected_diameter`; with recurrences `p_grain`, `volume_sd`; with the stability `born`,
-/// `dies`, `stability`. What is given comes last, unless a column is called so already.
+/// `dies`, `stability`. What is given comes last; if a column is called so already, with or
+/// without its unit, as givenName(), or not at all if it has the same numbers.
 std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains,
                                         const ExtraMeasures& extra = {});
+
+/// The name of what is given where there is another column of this name: `given_` and the name.
+std::string givenName(const std::string& name);
 
 /// `first`, `second`, `faces` (shared voxel faces), `area`, `radius`, `centroid_x`, `_y`, `_z`
 /// (mean of the centers of the faces), `normal_x`, `_y`, `_z`, `distance`, `cos_alpha`, `flatness`,

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include "vdb_madf/base/counted.h"
@@ -19,15 +20,27 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
-Cells cellsOf(std::string line) {
-  if (!line.empty() && line.back() == '\r') line.pop_back();
-  Cells cells(1);
-  for (const char c : line)
-    if (c == ',')
+/// A line of cells; those in quotation marks may go on in the next one.
+bool readCells(std::istream& table, Cells& cells) {
+  cells.assign(1, "");
+  if (table.peek() == EOF) return false;
+  bool isQuoted = false;
+  for (int c = table.get(); c != EOF; c = table.get()) {
+    if (c == '"' && isQuoted && table.peek() == '"')
+      cells.back() += char(table.get());
+    else if (c == '"' && (isQuoted || cells.back().empty()))
+      isQuoted = !isQuoted;
+    else if (isQuoted)
+      cells.back() += char(c);
+    else if (c == ',')
       cells.emplace_back();
-    else
-      cells.back() += c;
-  return cells;
+    else if (c == '\n')
+      break;
+    else if (c != '\r' || table.peek() != '\n')
+      cells.back() += char(c);
+  }
+  if (isQuoted) throw InvalidInput("a quotation mark is never closed");
+  return true;
 }
 
 std::optional<double> numberOf(const std::string& cell) {
@@ -42,19 +55,29 @@ std::optional<size_t> find(const Cells& names, const std::string& name) {
   return size_t(found - names.begin());
 }
 
-bool isName(const std::string& name) {
-  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-  });
+/// With an underscore for what cannot be part of a name, but for those at the ends.
+std::string nameOf(const std::string& text) {
+  std::string name;
+  bool isApart = false;
+  for (const char c : text) {
+    const bool isPart = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (isPart && isApart && !name.empty()) name += '_';
+    isApart = !isPart;
+    if (isPart) name += c;
+  }
+  return name;
+}
+
+bool isMissing(const std::string& cell) {
+  return cell.empty() || cell == "NA" || cell == "N/A" || cell == "NaN" || cell == "nan";
 }
 
 }  // namespace
 
-std::vector<GivenColumn> givenColumns(const std::string& csv, bool ofLaterScan) {
+GivenTable givenColumns(const std::string& csv, bool ofLaterScan) {
   std::istringstream lines(csv);
-  std::string line;
-  std::getline(lines, line);
-  const Cells names = cellsOf(line);
+  Cells names, cells;
+  readCells(lines, names);
   const auto side = find(names, "side");
   const auto grain = side && ofLaterScan    ? find(names, "track")
                      : find(names, "grain") ? find(names, "grain")
@@ -63,14 +86,17 @@ std::vector<GivenColumn> givenColumns(const std::string& csv, bool ofLaterScan) 
     throw InvalidInput("has no column 'grain' or 'id' that says of which grain a line is");
   std::vector<GivenColumn> columns(names.size());
   std::vector<bool> isNumber;
+  const auto isOfGrain = [&](size_t n) {
+    return n == *grain || names[n] == "grain" || names[n] == "track";
+  };
+  std::set<std::string> taken;
   for (size_t n = 0; n < names.size(); ++n) {
-    columns[n].name = names[n];
-    const bool isNumberOfGrain = n == *grain || names[n] == "grain" || names[n] == "track";
-    isNumber.push_back(!isNumberOfGrain && n != side && isName(names[n]));
+    columns[n].name = nameOf(names[n]);
+    isNumber.push_back(!isOfGrain(n) && n != side && !columns[n].name.empty() &&
+                       taken.insert(columns[n].name).second);
   }
   std::map<int32_t, int> seen;
-  for (int number = 2; std::getline(lines, line); ++number) {
-    const Cells cells = cellsOf(line);
+  for (int number = 2; readCells(lines, cells); ++number) {
     if (cells == Cells{""}) continue;
     const std::string where = "line " + std::to_string(number) + ": ";
     if (cells.size() != names.size())
@@ -83,17 +109,33 @@ std::vector<GivenColumn> givenColumns(const std::string& csv, bool ofLaterScan) 
       throw InvalidInput(where + "'" + cells[*grain] + "' is no number of a grain");
     if (seen[int32_t(*id)]++) throw InvalidInput(where + "grain " + cells[*grain] + " comes twice");
     for (size_t n = 0; n < names.size(); ++n) {
-      if (!isNumber[n] || cells[n].empty()) continue;
+      if (!isNumber[n] || isMissing(cells[n])) continue;
       const auto value = numberOf(cells[n]);
       isNumber[n] = value.has_value();
       if (value && std::isfinite(*value)) columns[n].values[int32_t(*id)] = *value;
     }
   }
-  std::vector<GivenColumn> kept;
+  GivenTable result;
   for (size_t n = 0; n < names.size(); ++n)
-    if (isNumber[n] && !columns[n].values.empty()) kept.push_back(std::move(columns[n]));
-  if (kept.empty()) throw InvalidInput("has no column of numbers");
-  return kept;
+    if (isNumber[n] && !columns[n].values.empty())
+      result.columns.push_back(std::move(columns[n]));
+    else if (!side && !isOfGrain(n))
+      result.leftOut.push_back(names[n]);
+  if (result.columns.empty()) throw InvalidInput("has no column of numbers");
+  return result;
+}
+
+std::string noteOnGiven(const std::vector<GivenColumn>& columns,
+                        const std::vector<GrainMeasures>& grains) {
+  std::set<int32_t> known, given;
+  for (const GrainMeasures& grain : grains) known.insert(grain.id);
+  for (const GivenColumn& column : columns)
+    for (const auto& [id, value] : column.values) given.insert(id);
+  const auto strangers =
+      std::count_if(given.begin(), given.end(), [&](int32_t id) { return known.count(id) == 0; });
+  if (strangers == 0) return "";
+  return std::to_string(strangers) + " of its " + counted(int64_t(given.size()), "grain") +
+         " are not among those of the labels";
 }
 
 }  // namespace vdb_madf

@@ -70,9 +70,14 @@ ColumnColors columnColors(const Measurements& measured, const std::string& colum
   openvdb::Vec3d edges = measured.edges;
   if (measured.voxelSize) edges = openvdb::Vec3d(measured.voxelSize->edgesInUnit().data());
   std::string all;
-  for (const MeasureColumn& known : grainColumns(measured.grains, measured.extra)) {
+  const auto columns = grainColumns(measured.grains, measured.extra);
+  const bool isGiven = std::any_of(columns.begin(), columns.end(), [&](const MeasureColumn& known) {
+    return known.name == givenName(column);
+  });
+  const std::string wanted = isGiven ? givenName(column) : column;
+  for (const MeasureColumn& known : columns) {
     const std::string title = known.name + unitSuffix(known.power, unit);
-    if (column != known.name && column != title) {
+    if (wanted != known.name && wanted != title) {
       all += (all.empty() ? "" : ", ") + known.name;
       continue;
     }

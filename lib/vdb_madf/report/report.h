@@ -45,9 +45,10 @@ struct ReportOptions {
 struct Report {
   int64_t grains = 0, bonds = 0;
   uint64_t triangles = 0;
-  int sliceReduction = 1;  ///< voxels of the labels along an edge of one in the slices
-  bool hasLevels = false;  ///< a slider for the strictness
-  uint64_t bytes = 0;      ///< of the file
+  int sliceReduction = 1;   ///< voxels of the labels along an edge of one in the slices
+  bool hasLevels = false;   ///< a slider for the strictness
+  uint64_t bytes = 0;       ///< of the file
+  std::string noteOnGiven;  ///< see noteOnGiven()
 };
 
 /// False if this was built without what the page's script is made with.

@@ -112,6 +112,7 @@ ReportParts::ReportParts(const AnyLabels& labels, const ReportOptions& options, 
   measured_ =
       applied(labels, [&](const auto& all) { return measure(all, options.measure, interrupter); });
   measured_.extra.given = options.given;
+  noteOnGiven_ = noteOnGiven(options.given, measured_.grains);
   box_ = sliceBox_ = measured_.sample.box;
   if (box_.empty()) throw InvalidInput("has no labels and no domain: nothing to show");
   if (options.scan) placeScan(*options.scan, box_);
@@ -162,7 +163,8 @@ Report ReportParts::report() const {
           triangles_,
           reduction_,
           levels_.has_value(),
-          0};
+          0,
+          noteOnGiven_};
 }
 
 std::string ReportParts::tables() const {
