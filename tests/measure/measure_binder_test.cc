@@ -149,6 +149,11 @@ TEST_CASE("measure_binder: no binder, one grain, and maps of other voxels", "[me
   const Measurements one = measureBridges(*labels, *some);
   CHECK(one.binder->bridges.empty());
   CHECK(one.binder->looseVolume == kSide);
+  CHECK(vdb_madf::noteOn(*one.binder, 1).empty());
+  const auto noGrains = Int32Grid::create(0);
+  setDomain(*noGrains, kBox);
+  CHECK(measureBridges(*noGrains, *some).binder->volume == kSide);
+  CHECK(measureBridges(*noGrains, *some).binder->looseVolume == kSide);
   setDomain(*some, CoordBBox(Coord(1), Coord(kSide - 1)));
   CHECK_THROWS_WITH(measureBridges(*labels, *some),
                     vdb_madf::test::Contains("the phases have 63x63x63 voxels from 1,1,1 on, the "

@@ -190,6 +190,8 @@ def test_binder(labels, command, tmp_path):
     assert here.bridges["volume"].sum() + here.sample["binder_loose_volume"] == pytest.approx(
         here.sample["binder_volume"])
     assert madf.measure(labels, phases=map, binder=7).sample["binder_volume"] == 0
+    with pytest.raises(ValueError, match="binder is a value in the map of phases"):
+        madf.measure(labels, binder=2)
     with pytest.raises(ValueError, match="the phases have 79x72x64 voxels"):
         madf.measure(labels, phases=map[:, :, 1:])
 

@@ -76,6 +76,7 @@ Measurements measureLabels(const MeasureArguments& o, const Common& common, cons
       withFileName(o.phases.path, [&] {
         measureBinder(labels, *binder, o.measure, measurements, common.progress);
       });
+      noteOfScan(o.phases.path, noteOn(*measurements.binder, o.binder), common.progress);
     }
     if (blur) {
       common.progress->start("necks");
@@ -84,7 +85,7 @@ Measurements measureLabels(const MeasureArguments& o, const Common& common, cons
     }
     if (o.sensitivity) {
       common.progress->start("sensitivity");
-      withFileName(o.input.path, [&] {
+      withFileName(o.gray.path, [&] {
         measureSensitivity(
             labels, [&] { return openScan(o.gray, o.input, common.progress); }, *o.sensitivity,
             measurements, common.progress);

@@ -303,6 +303,7 @@ py::dict measureLabels(const GridPtr& labels, const Call& call, const std::strin
     if (graph) measureStability(*graph, result);
     if (scan) measureGray(grid, *scan, result, interrupter);
     if (third) measureBinder(grid, *third, options, result, interrupter);
+    if (third) noteOf("phases", noteOn(*result.binder, binder));
     if (edges) {
       const auto domain = storedDomain(grid);
       const auto blur = sensitivity > 0 ? estimateBlur(std::move(*edges), domain, interrupter)

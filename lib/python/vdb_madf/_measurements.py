@@ -141,8 +141,9 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
             edge_weights: bool = False, crossing: bool = False, voronoi: bool = False,
             size_curve: bool = False,
             size_reference: Optional[str] = None, phases: Optional[Source] = None,
-            phases_grid: Optional[str] = None, binder: int = 1, stability: bool = False,
-            bootstrap: int = 0, sensitivity: int = 0, vary: Optional[Dict[str, float]] = None,
+            phases_grid: Optional[str] = None, binder: Optional[int] = None,
+            stability: bool = False, bootstrap: int = 0, sensitivity: int = 0,
+            vary: Optional[Dict[str, float]] = None,
             unit: Optional[str] = None, dataset: Optional[str] = None, grid: Optional[str] = None,
             progress: Progress = None, threads: int = 0) -> Measurements:
     """Measures the grains of labels, of any program.
@@ -174,7 +175,7 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
     file size_mm,percent_passing (or size_um, size_voxel): in the sample `size_curve_rms_percent`,
     how far each kind of curve is from it between 5 and 95 %.
     phases: a map of phases of the same shape, a file or an array: `bridges`, the binder (the voxels
-    of value `binder`) between grains. phases_grid: as intensity_grid.
+    of value `binder`, else 1) between grains. phases_grid: as intensity_grid.
     stability: of a Segmentation that kept its manifolds: columns `born`, `dies`, `stability` of the
     grains and `vanishes` of the bonds.
     bootstrap: replicates, 100 to 100000: in the sample `intervals`, by name of a mean its `mean`
@@ -188,6 +189,8 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
         raise _core.InvalidInput("sensitivity segments the scan again: give it as gray")
     if vary and sensitivity <= 0:
         raise _core.InvalidInput("vary says how far sensitivity goes: give it, too")
+    if binder is not None and phases is None:
+        raise _core.InvalidInput("binder is a value in the map of phases: give it, too")
     if stability and not isinstance(labels, Segmentation):
         raise _core.InvalidInput("stability: give the Segmentation itself, which has the manifolds")
     with calling(progress, threads) as call:
@@ -201,7 +204,7 @@ def measure(labels: Union[Labels, Segmentation, Source], *, voxel_size: Optional
                              crossing=crossing, voronoi=voronoi, size_curve=size_curve,
                              size_reference=size_reference or "",
                              phases=None if phases is None else readable(phases),
-                             phases_grid=phases_grid or "", binder=binder,
+                             phases_grid=phases_grid or "", binder=1 if binder is None else binder,
                              manifold=labels._manifolds() if stability else None,
                              bootstrap=bootstrap, sensitivity=sensitivity, vary=vary or {},
                              unit=unit or "")

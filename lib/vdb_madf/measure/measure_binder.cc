@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -52,6 +53,7 @@ class BinderMeter {
         partner_(index_.voxelCount()) {}
 
   Binder measure(const Measurements& measured, Interrupter* interrupter) {
+    if (measured.grains.empty()) return withoutGrains();
     findCells(interrupter);
     findPartners(interrupter);
     std::map<LabelPair, Bridge> bridges;
@@ -78,6 +80,15 @@ class BinderMeter {
   template <typename F>
   void forEach(const F& f) const {
     detail::forEachVoxel(index_, 0, index_.leafCount(), f);
+  }
+
+  Binder withoutGrains() const {
+    Binder result;
+    forEach([&](VoxelId id, size_t) {
+      if (domain_.isInside(index_.coord(id))) result.volume += voxel_.volume();
+    });
+    result.looseVolume = result.volume;
+    return result;
   }
 
   /// The nearest grain of each voxel, and the labels that have grown by these.
@@ -235,6 +246,12 @@ void measureBinder(const Int32Grid& labels, const MaskGrid& binder, const Measur
   const Domain domain = options.domain ? *options.domain : storedDomain(labels).value();
   BinderMeter meter(labels, binder, domain, measured.open);
   measured.binder = meter.measure(measured, interrupter);
+}
+
+std::string noteOn(const Binder& binder, int64_t value) {
+  if (binder.volume > 0) return "";
+  return "no voxel outside of the grains has the value " + std::to_string(value) +
+         " (--binder): there is no binder";
 }
 
 }  // namespace vdb_madf

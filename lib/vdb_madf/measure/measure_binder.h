@@ -3,6 +3,9 @@
 
 #pragma once
 
+#include <cstdint>
+#include <string>
+
 #include "vdb_madf/measure/measure.h"
 
 namespace vdb_madf {
@@ -17,5 +20,9 @@ namespace vdb_madf {
 ///   Interrupted.
 void measureBinder(const Int32Grid& labels, const MaskGrid& binder, const MeasureOptions& options,
                    Measurements& measured, Interrupter* interrupter = nullptr);
+
+/// A note if a map has no binder outside of the grains, else empty.
+/// @param value of the binder in the map
+std::string noteOn(const Binder& binder, int64_t value);
 
 }  // namespace vdb_madf
