@@ -35,6 +35,11 @@ def start():
                               cwd=bench.folder, capture_output=True, text=True,
                               env=dict(os.environ, PATH="/usr/bin:" + os.environ["PATH"]))
         check(os.path.exists(bench.path("grains.blend")), done.stdout + done.stderr)
+        for wrong in (["labels.vdb"], ["labels.vdb", "no/such/place.blend"]):
+            done = subprocess.run(line + wrong, cwd=bench.folder, capture_output=True, text=True,
+                                  env=dict(os.environ, PATH="/usr/bin:" + os.environ["PATH"]))
+            check(done.returncode == 1 and "Traceback" not in done.stderr,
+                  f"{done.returncode}: {done.stderr}")
 
 
 def refused(**settings):
@@ -76,10 +81,11 @@ def inside(folder):
     preferences.command = os.environ["VDB_MADF"]
     said = refused(filepath=os.path.join(folder, "missing.vdb"))
     check("missing.vdb" in said and "Traceback" not in said, said)
-    said = refused(filepath=path, measure="weight")
-    check("weight" in said and "volume" in said, said)
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
+    said = refused(filepath=path, measure="weight")
+    check("weight" in said and "volume" in said, said)
+    check(not bpy.data.objects and not bpy.data.collections.get("labels"), "something is left")
 
     bpy.ops.import_scene.vdb_madf(filepath=path, smoothing=0)
     grains = check_grains(bpy.data.collections[-1])

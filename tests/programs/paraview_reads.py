@@ -43,7 +43,8 @@ def start():
         for name in ("grains.csv", "bonds.csv", "sample.json"):
             shutil.copy(bench.path(f"tables/{name}"), bench.path("beside"))
         for folder, options in (("micrometers", ["--unit", "um"]),
-                                ("other voxels", ["--voxel-size", "20um"])):
+                                ("other voxels", ["--voxel-size", "20um"]),
+                                ("no bonds", ["--min-faces", "1000"])):
             os.mkdir(bench.path(folder))
             labels = shutil.copy(bench.path("labels.vdb"), bench.path(folder))
             subprocess.run([bench.tool, "measure", labels, bench.path(folder), "-q", *options],
@@ -143,6 +144,11 @@ def inside():
     check(fetched(other).GetNumberOfPartitionedDataSets() == 0, "tables of other voxels")
     other.VoxelSize = "20um"
     check_grains(other, edge=0.02)
+    other = simple.MadfGrains(FileName="no bonds/labels.vdb", Smoothing=0)
+    check(fetched(other).GetNumberOfPartitionedDataSets() == len(VOXELS), "tables without bonds")
+    network = fetched(other, 1)
+    check((network.GetNumberOfPoints(), network.GetNumberOfLines()) == (len(VOXELS), 0),
+          "the network of tables without bonds")
     other = simple.MadfGrains(FileName="labels.vdb", Reduce=2, Smoothing=0)
     check(fetched(other).GetNumberOfPartitionedDataSets() < len(VOXELS), "coarser: no grain less")
 

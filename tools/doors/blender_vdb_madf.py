@@ -43,17 +43,17 @@ class Preferences(bpy.types.AddonPreferences):
 
 
 def run(*words):
-    """Runs the command; raises an OSError with a line that says what was wrong."""
+    """Runs the command, returns its notes. An OSError is a line that says what was wrong."""
     addon = bpy.context.preferences.addons.get(__name__)
     command = addon.preferences.command if addon else os.environ.get("VDB_MADF", "vdb_madf")
     try:
-        done = subprocess.run([bpy.path.abspath(command), *words, "-q"], capture_output=True,
-                              text=True)
+        done = subprocess.run([bpy.path.abspath(command), *words], capture_output=True, text=True)
     except OSError as error:
         raise OSError(f"{command} cannot be run ({error.strerror}): say in the preferences of the "
                       "add-on where the command vdb_madf is") from None
     if done.returncode:
         raise OSError((done.stderr.strip().splitlines() or ["vdb_madf failed"])[-1])
+    return [line for line in done.stderr.splitlines() if line.startswith("vdb_madf: note:")]
 
 
 def linear(channel):
@@ -123,21 +123,27 @@ def network_curve(path, name):
 
 
 def import_grains(path, voxel_size="", smoothing=10, triangles=1000000, measure="", bonds=False):
-    """Returns the grains. An OSError or a ValueError is a line that says what was wrong."""
+    """Returns the grains, and notes. An OSError or a ValueError is a line that says what was wrong;
+    nothing is left in the scene then."""
     size = ["--voxel-size", voxel_size] if voxel_size else []
     coarser = ["--triangles", str(triangles)] if triangles else []
     name = os.path.splitext(os.path.basename(path))[0]
     with tempfile.TemporaryDirectory() as folder:
         meshes, network = os.path.join(folder, "grains.glb"), os.path.join(folder, "network.csv")
-        run("export", path, meshes, "--smooth", str(smoothing), *coarser, *size)
+        notes = run("export", path, meshes, "--smooth", str(smoothing), *coarser, *size)
         if bonds:
             run("export", path, network, "--as", "network", *size)
         grains = import_meshes(meshes)
+        try:
+            material = material_of(measure, grains) if measure and grains else None
+        except ValueError:
+            for grain in grains:
+                bpy.data.meshes.remove(grain.data)
+            raise
         collection = bpy.data.collections.new(name)
         bpy.context.scene.collection.children.link(collection)
         if bonds:
             collection.objects.link(network_curve(network, f"{name} bonds"))
-    material = material_of(measure, grains) if measure and grains else None
     for grain in grains:
         for other in list(grain.users_collection):
             other.objects.unlink(grain)
@@ -148,7 +154,7 @@ def import_grains(path, voxel_size="", smoothing=10, triangles=1000000, measure=
             grain.data.materials.append(material)
         elif grain.data.materials:
             grain.color = grain.data.materials[0].diffuse_color
-    return grains
+    return grains, notes
 
 
 class ImportGrains(bpy.types.Operator, ImportHelper):
@@ -173,11 +179,13 @@ class ImportGrains(bpy.types.Operator, ImportHelper):
 
     def execute(self, _):
         try:
-            grains = import_grains(self.filepath, self.voxel_size, self.smoothing, self.triangles,
-                                   self.measure, self.bonds)
+            grains, notes = import_grains(self.filepath, self.voxel_size, self.smoothing,
+                                          self.triangles, self.measure, self.bonds)
         except (OSError, ValueError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+        for note in notes:
+            self.report({"WARNING"}, note)
         self.report({"INFO"}, f"{len(grains)} grains")
         return {"FINISHED"}
 
@@ -203,11 +211,15 @@ def main(source, target, measure="", bonds=""):
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
     try:
-        import_grains(source, measure=measure, bonds=bonds == "bonds")
-    except (OSError, ValueError) as error:
-        sys.exit(f"{error}")
-    bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(target))
+        for note in import_grains(source, measure=measure, bonds=bonds == "bonds")[1]:
+            print(note)
+        bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(target))
+    except (OSError, ValueError, RuntimeError) as error:
+        sys.exit(f"{error}".strip())
 
 
 if __name__ == "__main__":
-    main(*sys.argv[sys.argv.index("--") + 1:])
+    words = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
+    if not 2 <= len(words) <= 4:
+        sys.exit("give after -- the labels, the .blend to write, and maybe a measure and 'bonds'")
+    main(*words)

@@ -149,9 +149,9 @@ def table(path):
     with open(path, newline="") as file:
         rows = list(csv.reader(file))
     columns = {}
-    for name, cells_of in zip(rows[0], zip(*rows[1:])):
+    for number, name in enumerate(rows[0]):
         try:
-            values = np.array([float(cell or "nan") for cell in cells_of])
+            values = np.array([float(row[number] or "nan") for row in rows[1:]])
         except ValueError:
             continue
         columns[re.sub(r"_(per_)?(mm|um|voxel)\d?$", "", name)] = values
@@ -183,7 +183,9 @@ def columns_of(labels, path):
             sample = json.load(file)
         grains, bonds = (table(os.path.join(folder, name)) for name in ("grains.csv", "bonds.csv"))
         are_theirs = (sample.get("labels_digest") == labels.digest() and
-                      np.array_equal(grains["id"], labels.ids))
+                      np.array_equal(grains["id"], labels.ids) and
+                      {"centroid_x", "centroid_y", "centroid_z"} <= grains.keys() and
+                      {"first", "second"} <= bonds.keys())
     except (OSError, ValueError, AttributeError, IndexError, KeyError, csv.Error):
         are_theirs = False
     if are_theirs:
