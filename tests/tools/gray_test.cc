@@ -222,6 +222,8 @@ TEST_CASE("gray: necks are measured in the scan that is segmented", "[gray]") {
   makeScan(bench);
   const std::string segment = "segment s.tif o.vdb --threshold otsu --tables t";
   CHECK_THAT(bench.mustRun(segment), Contains("hint") && Contains("--necks frees them of it"));
+  CHECK_THAT(bench.mustRun("segment s.tif p.vdb --threshold 29500 --tables p"),
+             Contains("--necks frees them of it"));
   CHECK_FALSE(Json::parse(bench.bytes("t/sample.json")).contains("scan_blur_voxel"));
   CHECK_THAT(bench.mustRun("measure o.vdb m"), Contains("thresholded scan") && Contains("--gray"));
   CHECK_THAT(bench.mustRun(segment + " --necks"), !Contains("--necks frees"));

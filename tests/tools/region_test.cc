@@ -155,6 +155,7 @@ TEST_CASE("region: all verbs keep it", "[region]") {
   bench.mustRun("hierarchy g.vdb joins.csv");
   bench.mustRun("hierarchy g.slabs joins_of_slabs.csv");
   CHECK(bench.bytes("joins.csv") == bench.bytes("joins_of_slabs.csv"));
+  refuses(bench, kWrongUsage, "hierarchy g.vdb n.csv --levels nan", {"--levels nan"});
   bench.mustRun("measure g.vdb stable --stability");
   bench.mustRun("remerge g.vdb r.vdb --strictness auto");
   CHECK(regionOf("r.vdb") == core.inside);

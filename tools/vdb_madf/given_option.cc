@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "outputs.h"
-#include "vdb_madf/base/detail/text.h"
 #include "vdb_madf/files/read_text.h"
 #include "vdb_madf/matching/track.h"
 
@@ -24,7 +23,7 @@ std::vector<GivenColumn> readGiven(const std::string& path, const Int32Grid& lab
       withFileName(path, [&] { return givenColumns(readText(path, kMostBytes), isTracked); });
   std::string leftOut;
   for (const std::string& name : table.leftOut)
-    leftOut += (leftOut.empty() ? "" : ", ") + detail::inQuotes(name);
+    leftOut += (leftOut.empty() ? "'" : ", '") + name + "'";
   if (!leftOut.empty())
     progress->note(path +
                    ": left out is what has other cells than numbers, no name of its own, "

@@ -194,7 +194,7 @@ std::vector<double> parseLevels(const std::string& text) {
   std::vector<double> levels;
   std::stringstream list(text);
   for (std::string level; std::getline(list, level, ',');) {
-    levels.push_back(parseStrictness(level));
+    levels.push_back(parseStrictness(level, "--levels"));
     if (levels.size() > 1 && !(levels.back() < levels[levels.size() - 2]))
       throw WrongUsage("--levels " + text + ": each has to be smaller than the one before");
   }

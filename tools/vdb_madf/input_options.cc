@@ -283,6 +283,11 @@ Int32Grid::Ptr loadLabels(const InputOptions& input, const std::string& gridOpti
   });
 }
 
+bool cutsGray(const InputOptions& input) {
+  return readsGray(input.gray) ||
+         (input.selection && input.selection->kind == Selection::Kind::threshold);
+}
+
 bool isInSlabs(const InputOptions& input) {
   return isVdb(input) && isSlabFolder(input.path);
 }

@@ -92,6 +92,8 @@ AnyLabels loadAnyLabels(const InputOptions& input, const std::string& gridOption
                         Progress* progress);
 /// True if it is a folder of slabs, which can be taken one by one.
 bool isInSlabs(const InputOptions& input);
+/// True if a gray image is cut into object and pores: by a threshold, or after a filter.
+bool cutsGray(const InputOptions& input);
 
 /// Runs `work`; what the library has to say against the data then names the file, too.
 template <typename Work>

@@ -82,10 +82,10 @@ int parseDelta(const std::string& text) {
   return int(delta);
 }
 
-double parseStrictness(const std::string& text) {
-  const double strictness = parseNumber(text, "--strictness");
+double parseStrictness(const std::string& text, const std::string& option) {
+  const double strictness = parseNumber(text, option);
   if (!(std::abs(strictness) <= kMaxStrictness))
-    throw WrongUsage("--strictness " + text + ": must lie between -200000 and 200000");
+    throw WrongUsage(option + " " + text + ": must lie between -200000 and 200000");
   return strictness;
 }
 

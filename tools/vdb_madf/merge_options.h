@@ -33,8 +33,8 @@ std::string textOf(const StableStrictness& stable, const std::string& indentOfSe
 /// --delta. @throw WrongUsage
 int parseDelta(const std::string& text);
 
-/// --strictness. @throw WrongUsage
-double parseStrictness(const std::string& text);
+/// The value of an option. @throw WrongUsage
+double parseStrictness(const std::string& text, const std::string& option = "--strictness");
 
 /// --min-grain; empty: not given.
 void addMinGrain(Verb verb, std::string& text);

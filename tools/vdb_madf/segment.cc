@@ -50,12 +50,6 @@ std::filesystem::path placeOf(const std::string& path) {
   return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored) / "";
 }
 
-/// By a threshold, or after a filter.
-bool cutsGray(const InputOptions& input) {
-  return readsGray(input.gray) ||
-         (input.selection && input.selection->kind == Selection::Kind::threshold);
-}
-
 void parseFiles(SegmentArguments& o) {
   o.input.outputs = {o.out, o.json};
   if (!o.tables.empty()) {
