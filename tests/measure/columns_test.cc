@@ -256,6 +256,7 @@ TEST_CASE("columns: tables of other programs", "[columns]") {
   CHECK(table.columns[2].name == "a_b");
   CHECK(table.columns[2].values == std::map<int32_t, double>{{2, 3}});
   CHECK(table.leftOut == std::vector<std::string>{"shape", "mean_stress_MPa"});
+  CHECK(givenColumns("\xEF\xBB\xBFid,a\n1,2\n").columns.at(0).values.at(1) == 2);
   CHECK(givenColumns("id,__proto__\n1,2\n").columns.at(0).name == "proto");
 
   ExtraMeasures extra;
@@ -264,6 +265,19 @@ TEST_CASE("columns: tables of other programs", "[columns]") {
   grains[0].id = 2;
   const auto columns = grainColumns(grains, extra);
   CHECK(column(columns, "given_volume_mm3").values[0] == 8);  // `volume` has this name in mm
+  // The program's own tables, in any unit and to some digits, say nothing new.
+  extra.given =
+      givenColumns("id,volume_mm3,equivalent_diameter_um\n2,0.012,30.00001\n3,0.03,50\n").columns;
+  grains.resize(2);
+  grains[1].id = 3;
+  grains[0].volume = 12;
+  grains[1].volume = 30;
+  grains[0].equivalentDiameter = 3;
+  grains[1].equivalentDiameter = 6;
+  CHECK(grainColumns(grains, extra).back().name == "given_equivalent_diameter_um");
+  grains[1].equivalentDiameter = 5;
+  CHECK(grainColumns(grains, extra).back().name == "at_domain_face");
+  grains.resize(1);
   CHECK(vdb_madf::noteOnGiven(table.columns, grains) ==
         "1 of its 2 grains are not among those of the labels");
   grains[0].id = 1;

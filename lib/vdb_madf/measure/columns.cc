@@ -25,9 +25,16 @@ bool isNameOf(const MeasureColumn& column, const std::string& name) {
   return false;
 }
 
+/// True if a column has the numbers of the other one in another unit, as tables print them.
 bool isSaidBy(const MeasureColumn& column, const MeasureColumn& other) {
-  for (size_t i = 0; i < other.values.size(); ++i)
-    if (!std::isnan(other.values[i]) && other.values[i] != column.values[i]) return false;
+  constexpr double kDigits = 1e-5;
+  double unit = column.power == 0 ? 1 : 0;  // 0: not known yet
+  for (size_t i = 0; i < other.values.size(); ++i) {
+    const double own = column.values[i], given = other.values[i];
+    if (std::isnan(given) || (own == 0 && given == 0)) continue;
+    if (unit == 0) unit = given / own;
+    if (!(std::abs(given - unit * own) <= kDigits * std::abs(given))) return false;
+  }
   return true;
 }
 

@@ -78,6 +78,8 @@ GivenTable givenColumns(const std::string& csv, bool ofLaterScan) {
   std::istringstream lines(csv);
   Cells names, cells;
   readCells(lines, names);
+  if (const std::string mark = "\xEF\xBB\xBF"; names[0].rfind(mark, 0) == 0)
+    names[0].erase(0, mark.size());  // as spreadsheets write it
   const auto side = find(names, "side");
   const auto grain = side && ofLaterScan    ? find(names, "track")
                      : find(names, "grain") ? find(names, "grain")

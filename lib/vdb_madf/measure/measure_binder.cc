@@ -251,7 +251,7 @@ void measureBinder(const Int32Grid& labels, const MaskGrid& binder, const Measur
 std::string noteOn(const Binder& binder, int64_t value) {
   if (binder.volume > 0) return "";
   return "no voxel outside of the grains has the value " + std::to_string(value) +
-         " (--binder): there is no binder";
+         ", that of binder: there is none";
 }
 
 }  // namespace vdb_madf
