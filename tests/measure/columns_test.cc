@@ -277,6 +277,11 @@ TEST_CASE("columns: tables of other programs", "[columns]") {
   CHECK(grainColumns(grains, extra).back().name == "given_equivalent_diameter_um");
   grains[1].equivalentDiameter = 5;
   CHECK(grainColumns(grains, extra).back().name == "at_domain_face");
+  // Without a unit in the name larger numbers are others, and one number tells no unit.
+  extra.given = givenColumns("id,volume\n2,24\n3,60\n").columns;
+  CHECK(grainColumns(grains, extra).back().name == "given_volume");
+  extra.given = givenColumns("id,volume_mm3\n2,24\n").columns;
+  CHECK(grainColumns(grains, extra).back().name == "given_volume_mm3");
   grains.resize(1);
   CHECK(vdb_madf::noteOnGiven(table.columns, grains) ==
         "1 of its 2 grains are not among those of the labels");

@@ -25,17 +25,21 @@ bool isNameOf(const MeasureColumn& column, const std::string& name) {
   return false;
 }
 
-/// True if a column has the numbers of the other one in another unit, as tables print them.
-bool isSaidBy(const MeasureColumn& column, const MeasureColumn& other) {
+/// True if a column has the numbers of a given one, as tables print them. If that is named with a
+/// unit, its numbers may all be as many times larger, which one number alone cannot tell.
+bool isSaidBy(const MeasureColumn& column, const MeasureColumn& given) {
   constexpr double kDigits = 1e-5;
-  double unit = column.power == 0 ? 1 : 0;  // 0: not known yet
-  for (size_t i = 0; i < other.values.size(); ++i) {
-    const double own = column.values[i], given = other.values[i];
-    if (std::isnan(given) || (own == 0 && given == 0)) continue;
-    if (unit == 0) unit = given / own;
-    if (!(std::abs(given - unit * own) <= kDigits * std::abs(given))) return false;
+  const bool isUnitKnown = given.name == column.name;
+  double unit = isUnitKnown ? 1 : 0;  // 0: not known yet
+  int compared = 0;
+  for (size_t i = 0; i < given.values.size(); ++i) {
+    const double own = column.values[i], other = given.values[i];
+    if (std::isnan(other) || (own == 0 && other == 0)) continue;
+    if (unit == 0) unit = other / own;
+    if (!(std::abs(other - unit * own) <= kDigits * std::abs(other))) return false;
+    ++compared;
   }
-  return true;
+  return isUnitKnown || compared != 1;
 }
 
 /// Makes columns of the items of a list, one by one.

@@ -38,8 +38,8 @@ struct MeasureColumn {
 /// `cell_volume`, `local_solid_fraction`, `cell_neighbors`, `cell_at_domain_face` (0 or 1); with
 /// sizes `projected_diameter`; with recurrences `p_grain`, `volume_sd`; with the stability `born`,
 /// `dies`, `stability`. What is given comes last; if a column is called so already, with or
-/// without its unit, as givenName(), or not at all if it has the same numbers,
-/// to five digits and in any unit.
+/// without its unit, as givenName(), or not at all if it has the same numbers
+/// to five digits, with a unit in its name also if all are as many times larger.
 std::vector<MeasureColumn> grainColumns(const std::vector<GrainMeasures>& grains,
                                         const ExtraMeasures& extra = {});
 
