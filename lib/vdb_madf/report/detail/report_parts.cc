@@ -112,7 +112,6 @@ ReportParts::ReportParts(const AnyLabels& labels, const ReportOptions& options, 
   measured_ =
       applied(labels, [&](const auto& all) { return measure(all, options.measure, interrupter); });
   measured_.extra.given = options.given;
-  noteOnGiven_ = noteOnGiven(options.given, measured_.grains);
   box_ = sliceBox_ = measured_.sample.box;
   if (box_.empty()) throw InvalidInput("has no labels and no domain: nothing to show");
   if (options.scan) placeScan(*options.scan, box_);
@@ -164,7 +163,7 @@ Report ReportParts::report() const {
           reduction_,
           levels_.has_value(),
           0,
-          noteOnGiven_};
+          noteOnGiven(options_.given, measured_.grains)};
 }
 
 std::string ReportParts::tables() const {

@@ -61,7 +61,6 @@ class ReportParts {
   Measurements measured_;
   CoordBBox box_, sliceBox_;
   std::vector<int32_t> ids_;
-  std::string noteOnGiven_;
   std::optional<GrainLevels> levels_;
   std::optional<Measurements> leafMeasures_;
   PackedLeaves packedLeaves_;
